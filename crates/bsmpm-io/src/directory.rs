@@ -1,0 +1,164 @@
+//! The output directory: one run each. Nothing in it is deleted but what an older `run.json` names, on request.
+
+use std::fs::{self, Metadata};
+use std::io::{self, ErrorKind};
+use std::path::{Component, Path, PathBuf};
+
+use crate::Error;
+use crate::frames::COLLECTION;
+use crate::manifest::{MANIFEST, Manifest};
+use crate::steps::STEPS;
+
+/// The file of the histories.
+pub const HISTORY: &str = "history.csv";
+/// Files of a run that stand in the directory itself.
+const FILES: [&str; 5] = [MANIFEST, HISTORY, STEPS, COLLECTION, "frames.vtkhdf"];
+/// Folders of a run.
+const FOLDERS: [&str; 2] = ["frames", "checkpoint"];
+/// How the names of all files end that a run writes; others are never deleted, whoever names them.
+const ENDINGS: [&str; 7] = ["csv", "pvd", "vtu", "vtkhdf", "png", "h5", "json"];
+
+/// What becomes of a run that is there already.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Existing {
+    /// The directory is refused.
+    Refuse,
+    /// The files that its `run.json` names are deleted (`--force`).
+    Delete,
+}
+
+/// An output directory that belongs to the run which claimed it.
+#[derive(Debug)]
+pub struct OutputDirectory {
+    path: PathBuf,
+}
+
+impl OutputDirectory {
+    /// Makes the directory if need be and puts the run's first manifest there, which claims it: of several programs that
+    /// try at once, one succeeds.
+    ///
+    /// # Errors
+    /// [`Error::Occupied`] by another run; with [`Existing::Delete`] only if there is a file of a run that no `run.json`
+    /// names. [`Error::UnsafeOutput`] if the older `run.json` names what no run of ours wrote: nothing is deleted then.
+    /// [`Error::NotDirectory`], [`Error::Directory`] if the path is a file or cannot be made or written to.
+    pub fn claim(path: &Path, existing: Existing, first: &Manifest) -> Result<Self, Error> {
+        let refused = |action| move |source| Error::Directory { action, path: path.to_owned(), source };
+        match fs::metadata(path) {
+            Ok(found) if !found.is_dir() => return Err(Error::NotDirectory { path: path.to_owned() }),
+            Ok(_) => {}
+            Err(_) => fs::create_dir_all(path).map_err(refused("create"))?,
+        }
+        let held = run_files(path).map_err(refused("read"))?;
+        match (held.first(), existing) {
+            (None, _) => {}
+            (Some(found), Existing::Refuse) => {
+                return Err(occupied(
+                    path,
+                    found,
+                    "give another with -o, or --force to delete what its run.json names",
+                ));
+            }
+            (Some(_), Existing::Delete) => delete_run(path, &held)?,
+        }
+        first.write_first(path)?;
+        Ok(Self { path: path.to_owned() })
+    }
+
+    /// Where it is.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+}
+
+fn occupied(path: &Path, found: &str, advice: &'static str) -> Error {
+    Error::Occupied { path: path.to_owned(), found: found.to_owned(), advice }
+}
+
+/// The files of a run that a directory holds, relative to it.
+fn run_files(directory: &Path) -> io::Result<Vec<String>> {
+    let mut found: Vec<String> = FILES.iter().filter(|file| exists(&directory.join(file))).map(|&f| f.into()).collect();
+    for folder in FOLDERS {
+        let entries = match fs::read_dir(directory.join(folder)) {
+            Err(error) if [ErrorKind::NotFound, ErrorKind::NotADirectory].contains(&error.kind()) => continue,
+            entries => entries?,
+        };
+        for entry in entries {
+            let name = entry?.file_name().to_string_lossy().into_owned();
+            if !name.starts_with('.') && has_our_ending(&name) {
+                found.push(format!("{folder}/{name}"));
+            }
+        }
+    }
+    found.sort_by_key(|file| file != MANIFEST);
+    Ok(found)
+}
+
+/// Whether there is anything of that name, be it a link that leads nowhere.
+fn exists(path: &Path) -> bool {
+    fs::symlink_metadata(path).is_ok()
+}
+
+/// Deletes the outputs that the directory's `run.json` names, then itself. All are looked at before the first is deleted.
+fn delete_run(directory: &Path, held: &[String]) -> Result<(), Error> {
+    if held[0] != MANIFEST {
+        return Err(occupied(
+            directory,
+            &held[0],
+            "but no run.json that names it; delete it by hand or give another -o",
+        ));
+    }
+    let manifest = Manifest::read(directory)?;
+    let mut doomed = Vec::new();
+    for output in &manifest.outputs {
+        let unsafe_output =
+            |reason| Error::UnsafeOutput { path: directory.to_owned(), name: output.path.clone(), reason };
+        if inspect(directory, &output.path).map_err(unsafe_output)? {
+            doomed.push(directory.join(&output.path));
+        }
+    }
+    let named = |file: &String| file == MANIFEST || manifest.outputs.iter().any(|output| output.path == *file);
+    if let Some(other) = held.iter().find(|file| !named(file)) {
+        return Err(occupied(directory, other, "its run.json does not name it; delete it by hand or give another -o"));
+    }
+    // The manifest goes last: whatever interrupts this, it still names what is left.
+    doomed.push(directory.join(MANIFEST));
+    for path in doomed {
+        fs::remove_file(&path).map_err(|source| Error::Directory { action: "empty", path: path.clone(), source })?;
+    }
+    Ok(())
+}
+
+/// Whether an output that a `run.json` names is there to be deleted, or why it must not be.
+fn inspect(directory: &Path, name: &str) -> Result<bool, &'static str> {
+    if !is_plain_relative(name) {
+        return Err("is no relative path that stays in the directory");
+    }
+    if !has_our_ending(name) {
+        return Err("is no file of a run");
+    }
+    let mut path = directory.to_owned();
+    let mut last: Option<Metadata> = None;
+    for part in Path::new(name).components() {
+        path.push(part);
+        match fs::symlink_metadata(&path) {
+            Ok(found) if found.is_symlink() => return Err("leads over a symbolic link"),
+            Ok(found) => last = Some(found),
+            Err(error) if error.kind() == ErrorKind::NotFound => return Ok(false),
+            Err(_) => return Err("cannot be looked at"),
+        }
+    }
+    match last {
+        Some(found) if found.is_file() => Ok(true),
+        _ => Err("is no file"),
+    }
+}
+
+fn has_our_ending(name: &str) -> bool {
+    Path::new(name).extension().is_some_and(|ending| ENDINGS.iter().any(|&ours| ending == ours))
+}
+
+/// Whether a path is relative and goes nowhere but down.
+pub(crate) fn is_plain_relative(name: &str) -> bool {
+    let mut parts = Path::new(name).components().peekable();
+    parts.peek().is_some() && parts.all(|part| matches!(part, Component::Normal(_)))
+}

@@ -1,0 +1,135 @@
+//! What can go wrong when a run's files are written or read, with the exit code that each error means.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use thiserror::Error;
+
+/// Why a file of a run was not written or not read.
+#[derive(Debug, Error)]
+pub enum Error {
+    /// A quantity of a point is infinite or not a number; nothing was written.
+    #[error("{}: {field} (component {component}) of point {point} is {value}; nothing was written", path.display())]
+    PointNotFinite {
+        /// The file that was to be written.
+        path: PathBuf,
+        /// The name of the quantity, `position` for the points' places.
+        field: String,
+        /// The component, counted from 0.
+        component: usize,
+        /// The point's `id` where the frame has such a field, else its index.
+        point: u64,
+        /// The number found.
+        value: f64,
+    },
+    /// A number of a table or of the manifest is infinite or not a number; nothing was written.
+    #[error("{}: {item} is {value}; nothing was written", path.display())]
+    NotFinite {
+        /// The file that was to be written.
+        path: PathBuf,
+        /// The column and step, or the key.
+        item: String,
+        /// The number found.
+        value: f64,
+    },
+    /// A field or a row has another length than the frame or table needs.
+    #[error("{}: {item} has {found} values where {expected} are needed", path.display())]
+    Length {
+        /// The file that was to be written.
+        path: PathBuf,
+        /// The field or row.
+        item: String,
+        /// How many values are needed.
+        expected: usize,
+        /// How many were given.
+        found: usize,
+    },
+    /// A name of a field or column that the file format cannot hold, or that stands there twice.
+    #[error("{}: the name \"{name}\" {reason}", path.display())]
+    Name {
+        /// The file that was to be written.
+        path: PathBuf,
+        /// The name.
+        name: String,
+        /// What is wrong with it.
+        reason: &'static str,
+    },
+    /// The operating system refused to read or write a file.
+    #[error("cannot {action} {}: {source}", path.display())]
+    File {
+        /// What was tried: `read`, `write`, ...
+        action: &'static str,
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// A file is damaged, or none that this program wrote.
+    #[error("{} is no file that this program wrote, or it is damaged: {reason}", path.display())]
+    Format {
+        /// The file.
+        path: PathBuf,
+        /// What was found.
+        reason: String,
+    },
+    /// The output directory cannot be made, opened or written to.
+    #[error("cannot {action} the output directory {}: {source}", path.display())]
+    Directory {
+        /// What was tried.
+        action: &'static str,
+        /// The directory.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// The output directory's path leads to something that is no directory.
+    #[error("{} is not a directory", path.display())]
+    NotDirectory {
+        /// The path.
+        path: PathBuf,
+    },
+    /// The output directory holds a run already.
+    #[error("the output directory {} holds {found} already: {advice}", path.display())]
+    Occupied {
+        /// The directory.
+        path: PathBuf,
+        /// The first file of a run that was found.
+        found: String,
+        /// What the user can do.
+        advice: &'static str,
+    },
+    /// A `run.json` names an output that this program would never have written there; nothing was deleted.
+    #[error("run.json in {} names \"{name}\" as an output, which {reason}; nothing was deleted", path.display())]
+    UnsafeOutput {
+        /// The directory.
+        path: PathBuf,
+        /// The output's name.
+        name: String,
+        /// Why it is not believed.
+        reason: &'static str,
+    },
+}
+
+impl Error {
+    /// The exit code of a program that ends with this error: 73 for the output directory, 81 for numbers that are not
+    /// finite, 70 for a caller's mistake, 74 for all other trouble with files.
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Self::Directory { .. } | Self::NotDirectory { .. } | Self::Occupied { .. } | Self::UnsafeOutput { .. } => {
+                73
+            }
+            Self::PointNotFinite { .. } | Self::NotFinite { .. } => 81,
+            Self::Length { .. } | Self::Name { .. } => 70,
+            Self::File { .. } | Self::Format { .. } => 74,
+        }
+    }
+
+    /// For `map_err`: the system's error while `action` was done to the file `path`.
+    pub(crate) fn file(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Self {
+        move |source| Self::File { action, path: path.to_owned(), source }
+    }
+
+    pub(crate) fn format(path: &Path, reason: impl Into<String>) -> Self {
+        Self::Format { path: path.to_owned(), reason: reason.into() }
+    }
+}

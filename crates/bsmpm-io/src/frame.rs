@@ -1,0 +1,130 @@
+//! The state of all points at one moment, as it is written for pictures; it knows no file format.
+
+use std::path::Path;
+
+use crate::Error;
+
+/// All points at one moment.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Frame {
+    /// The number of accepted steps that led here.
+    pub step: u64,
+    /// s, or the pseudo-time of a quasi-static analysis.
+    pub time: f64,
+    /// m  place of each point; the third coordinate is 0 in a plane.
+    pub position: Vec<[f64; 3]>,
+    /// The quantities, each with one entry per point.
+    pub fields: Vec<Field>,
+}
+
+/// One quantity of all points.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Field {
+    /// The name that ParaView shows: letters, digits, `_`, `-` and `.`.
+    pub name: String,
+    /// How many numbers a point has: 1, 3 (x, y, z) or 6 (XX YY ZZ XY YZ XZ).
+    pub components: usize,
+    /// The numbers, the components of a point together.
+    pub values: Values,
+}
+
+/// The numbers of a field.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Values {
+    /// Physical quantities in SI units.
+    F64(Vec<f64>),
+    /// Numbers of points.
+    U64(Vec<u64>),
+    /// Numbers of materials.
+    U16(Vec<u16>),
+}
+
+impl Values {
+    /// How many numbers there are.
+    pub fn len(&self) -> usize {
+        match self {
+            Self::F64(values) => values.len(),
+            Self::U64(values) => values.len(),
+            Self::U16(values) => values.len(),
+        }
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}
+
+impl Field {
+    /// A physical quantity with `components` numbers per point, in SI units.
+    pub fn real(name: &str, components: usize, values: Vec<f64>) -> Self {
+        Self { name: name.to_owned(), components, values: Values::F64(values) }
+    }
+}
+
+impl Frame {
+    /// The numbers of the physical quantity `name` with `components` per point, if the frame has it.
+    pub fn real(&self, name: &str, components: usize) -> Option<&[f64]> {
+        let field = self.fields.iter().find(|field| field.name == name && field.components == components)?;
+        match &field.values {
+            Values::F64(values) => Some(values),
+            _ => None,
+        }
+    }
+
+    /// Whether the frame may be written to `path`.
+    ///
+    /// # Errors
+    /// [`Error::Name`] for a name that XML or ParaView cannot take, [`Error::Length`] for a field that does not have its
+    /// numbers for every point, [`Error::PointNotFinite`] for the first number that is infinite or none.
+    pub fn check(&self, path: &Path) -> Result<(), Error> {
+        if !self.time.is_finite() {
+            return Err(Error::NotFinite { path: path.to_owned(), item: "time".to_owned(), value: self.time });
+        }
+        self.check_finite(path, "position", 3, self.position.as_flattened())?;
+        for (index, field) in self.fields.iter().enumerate() {
+            self.check_name(path, index)?;
+            let expected = self.position.len() * field.components;
+            if field.values.len() != expected || field.components == 0 {
+                let (item, found) = (field.name.clone(), field.values.len());
+                return Err(Error::Length { path: path.to_owned(), item, expected, found });
+            }
+            if let Values::F64(values) = &field.values {
+                self.check_finite(path, &field.name, field.components, values)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn check_name(&self, path: &Path, index: usize) -> Result<(), Error> {
+        let name = &self.fields[index].name;
+        let plain = |c: char| c.is_ascii_alphanumeric() || "_-.".contains(c);
+        let reason = if name.is_empty() || !name.chars().all(plain) {
+            "may hold only letters, digits, _, - and ."
+        } else if self.fields[..index].iter().any(|other| other.name == *name) {
+            "is given to two fields"
+        } else {
+            return Ok(());
+        };
+        Err(Error::Name { path: path.to_owned(), name: name.clone(), reason })
+    }
+
+    fn check_finite(&self, path: &Path, field: &str, components: usize, values: &[f64]) -> Result<(), Error> {
+        let Some(bad) = values.iter().position(|value| !value.is_finite()) else { return Ok(()) };
+        Err(Error::PointNotFinite {
+            path: path.to_owned(),
+            field: field.to_owned(),
+            component: bad % components,
+            point: self.id(bad / components),
+            value: values[bad],
+        })
+    }
+
+    fn id(&self, index: usize) -> u64 {
+        let ids = self.fields.iter().find(|field| field.name == "id").map(|field| &field.values);
+        match ids {
+            Some(Values::U64(ids)) => ids.get(index).copied().unwrap_or(index as u64),
+            _ => index as u64,
+        }
+    }
+}

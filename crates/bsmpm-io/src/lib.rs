@@ -1,0 +1,22 @@
+//! What a run leaves in its output directory, and how it is read back: frames for ParaView ([`frame`], [`vtu`],
+//! [`frames`]), one row a step ([`table`], [`steps`]), the manifest `run.json` ([`manifest`]) and the directory itself
+//! ([`directory`]). Checkpoints are not here yet.
+//!
+//! Two promises hold for everything that is written: no number that is not finite ever reaches a file, and a file that is
+//! replaced is either the old or the new one, whenever the program is killed ([`atomic`]).
+#![forbid(unsafe_code)]
+
+pub mod atomic;
+pub mod directory;
+pub mod error;
+pub mod frame;
+pub mod frames;
+pub mod manifest;
+pub mod steps;
+pub mod table;
+pub mod utc;
+pub mod vtu;
+mod vtu_read;
+mod xml;
+
+pub use error::Error;

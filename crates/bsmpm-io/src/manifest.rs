@@ -1,0 +1,202 @@
+//! `run.json`, the manifest: what was run, by which program, how it went, and what it left. It is replaced whole, so that
+//! a reader finds a good one at any moment.
+
+use std::collections::BTreeMap;
+use std::fs::{self, File};
+use std::io::{self, Write};
+use std::path::Path;
+use std::time::SystemTime;
+
+use serde::{Deserialize, Serialize};
+
+use crate::utc::utc;
+use crate::{Error, atomic};
+
+pub mod parts;
+
+pub use parts::{Case, Check, Choice, Extent, Failure, Output, Status, Summary, Worst};
+
+/// The manifest's file.
+pub const MANIFEST: &str = "run.json";
+/// The number of this form of the manifest; it grows when older readers would misunderstand a newer file.
+pub const SCHEMA: u32 = 1;
+
+/// Everything that `run.json` says.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Manifest {
+    /// The form of the file, [`SCHEMA`].
+    pub schema: u32,
+    /// How the run stands.
+    pub status: Status,
+    /// The program's exit code; none while it runs.
+    pub exit_code: Option<u8>,
+    /// The program's version.
+    pub version: String,
+    /// The command line, the program first.
+    pub argv: Vec<String>,
+    /// What was solved.
+    pub case: Case,
+    /// Versions of libraries and compilers, by name.
+    #[serde(default)]
+    pub versions: BTreeMap<String, String>,
+    /// Processes of the run.
+    pub ranks: u32,
+    /// Threads of each process.
+    pub threads: u32,
+    /// Derived numbers of things: points, cells, active nodes, unknowns, ...
+    #[serde(default)]
+    pub sizes: BTreeMap<String, u64>,
+    /// The region of the grid, for pictures.
+    #[serde(default)]
+    pub grid: Option<Extent>,
+    /// Times (s or pseudo-time) whose pictures the case asks for.
+    #[serde(default)]
+    pub picture_times: Vec<f64>,
+    /// What the program chose by itself.
+    #[serde(default)]
+    pub choices: Vec<Choice>,
+    /// Every warning that was given.
+    #[serde(default)]
+    pub warnings: Vec<String>,
+    /// When the run began, RFC 3339 in UTC.
+    pub start: String,
+    /// When it ended.
+    pub end: Option<String>,
+    /// s  by the clock, by phase.
+    #[serde(default)]
+    pub timers: BTreeMap<String, f64>,
+    /// Totals of the run so far.
+    #[serde(default)]
+    pub summary: Summary,
+    /// The case's checks, once they were made.
+    #[serde(default)]
+    pub checks: Vec<Check>,
+    /// Every file that the run wrote or is about to write, but for this one.
+    #[serde(default)]
+    pub outputs: Vec<Output>,
+    /// The newest good checkpoint, relative to the directory.
+    pub checkpoint: Option<String>,
+    /// Why the run ended early.
+    pub failure: Option<Failure>,
+}
+
+impl Manifest {
+    /// The manifest of a run that begins now, on one rank and thread until the caller says otherwise.
+    pub fn begin(version: &str, argv: Vec<String>, case: Case) -> Self {
+        Self {
+            schema: SCHEMA,
+            status: Status::Running,
+            exit_code: None,
+            version: version.to_owned(),
+            argv,
+            case,
+            versions: BTreeMap::new(),
+            ranks: 1,
+            threads: 1,
+            sizes: BTreeMap::new(),
+            grid: None,
+            picture_times: Vec::new(),
+            choices: Vec::new(),
+            warnings: Vec::new(),
+            start: utc(SystemTime::now()),
+            end: None,
+            timers: BTreeMap::new(),
+            summary: Summary::default(),
+            checks: Vec::new(),
+            outputs: Vec::new(),
+            checkpoint: None,
+            failure: None,
+        }
+    }
+
+    /// Notes that the run ends now.
+    pub fn finish(&mut self, status: Status, exit_code: u8) {
+        self.status = status;
+        self.exit_code = Some(exit_code);
+        self.end = Some(utc(SystemTime::now()));
+    }
+
+    /// Names a file, relative to the directory, that is about to be written; a name that is there already stays once.
+    pub fn name_output(&mut self, path: &str) {
+        if !self.outputs.iter().any(|output| output.path == path) {
+            self.outputs.push(Output { path: path.to_owned(), bytes: None, blake3: None });
+        }
+    }
+
+    /// Notes the size and hash of every named output as it now stands in `directory`; one that is not there has none.
+    ///
+    /// # Errors
+    /// [`Error::File`] when a file cannot be read.
+    pub fn seal(&mut self, directory: &Path) -> Result<(), Error> {
+        self.outputs.iter_mut().try_for_each(|output| output.seal(directory))
+    }
+
+    /// Writes `run.json` into `directory`, replacing it in one go.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`] with the key, before anything is written; [`Error::File`] when the system refuses.
+    pub fn write(&self, directory: &Path) -> Result<(), Error> {
+        let path = directory.join(MANIFEST);
+        self.check(&path)?;
+        atomic::replace(&path, |file| self.print(file))
+    }
+
+    /// Writes `run.json` where there is none: of several programs that try at once, one succeeds.
+    pub(crate) fn write_first(&self, directory: &Path) -> Result<(), Error> {
+        let path = directory.join(MANIFEST);
+        self.check(&path)?;
+        let write = || {
+            let mut file = File::create_new(&path)?;
+            let mut text = Vec::new();
+            self.print(&mut text)?;
+            file.write_all(&text)
+        };
+        write().map_err(|source| Error::Directory { action: "claim", path: directory.to_owned(), source })
+    }
+
+    fn print(&self, file: &mut impl Write) -> io::Result<()> {
+        serde_json::to_writer_pretty(&mut *file, self)?;
+        file.write_all(b"\n")
+    }
+
+    /// JSON has no infinite numbers, and serde would write `null` for them.
+    fn check(&self, path: &Path) -> Result<(), Error> {
+        match self.numbers().find(|(_, value)| !value.is_finite()) {
+            Some((item, value)) => Err(Error::NotFinite { path: path.to_owned(), item, value }),
+            None => Ok(()),
+        }
+    }
+
+    /// Every float of the manifest with its key.
+    fn numbers(&self) -> impl Iterator<Item = (String, f64)> {
+        let timers = self.timers.iter().map(|(name, &value)| (format!("timers.{name}"), value));
+        let times = self.picture_times.iter().map(|&time| ("picture_times".to_owned(), time));
+        let grid = self.grid.iter().flat_map(Extent::numbers).map(|value| ("grid".to_owned(), value));
+        let checks = self.checks.iter().flat_map(|check| {
+            let numbers = [check.at, check.value, check.min, check.max].into_iter().flatten();
+            numbers.map(|value| (format!("checks.{}", check.quantity), value))
+        });
+        let failure = self.failure.iter().flat_map(Failure::numbers).map(|value| ("failure".to_owned(), value));
+        let cpu = [("summary.cpu_seconds".to_owned(), self.summary.cpu_seconds)];
+        timers.chain(times).chain(grid).chain(checks).chain(failure).chain(cpu)
+    }
+
+    /// Reads the `run.json` of `directory`.
+    ///
+    /// # Errors
+    /// [`Error::File`] when there is none or the system refuses, [`Error::Format`] when it is not ours, or of a newer form.
+    pub fn read(directory: &Path) -> Result<Self, Error> {
+        #[derive(Deserialize)]
+        struct Form {
+            schema: u32,
+        }
+        let path = directory.join(MANIFEST);
+        let text = fs::read_to_string(&path).map_err(Error::file("read", &path))?;
+        let damaged = |error: serde_json::Error| Error::format(&path, error.to_string());
+        let Form { schema } = serde_json::from_str(&text).map_err(damaged)?;
+        if schema != SCHEMA {
+            return Err(Error::format(&path, format!("it has form {schema}, this program knows form {SCHEMA}")));
+        }
+        serde_json::from_str(&text).map_err(damaged)
+    }
+}

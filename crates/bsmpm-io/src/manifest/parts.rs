@@ -1,0 +1,168 @@
+//! The parts of the manifest.
+
+use std::fs::File;
+use std::io::ErrorKind;
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use crate::Error;
+
+/// How a run stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Status {
+    /// It goes on, or was killed.
+    Running,
+    /// It came to the end of the case.
+    Finished,
+    /// It was asked to stop before the end.
+    Stopped,
+    /// It could not go on, or a check failed.
+    Failed,
+}
+
+/// What was solved.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Case {
+    /// The case file's name, without folders.
+    pub file: String,
+    /// The case's title.
+    pub title: String,
+    /// `plane-strain`, `axisymmetric` or `solid`.
+    pub geometry: String,
+    /// The text that took effect, overrides included.
+    pub text: String,
+    /// BLAKE3 of `text`, in hexadecimal.
+    pub blake3: String,
+}
+
+impl Case {
+    /// A case with the hash of its text.
+    pub fn new(file: &str, title: &str, geometry: &str, text: String) -> Self {
+        let blake3 = blake3::hash(text.as_bytes()).to_hex().to_string();
+        Self { file: file.to_owned(), title: title.to_owned(), geometry: geometry.to_owned(), text, blake3 }
+    }
+}
+
+/// The box of the grid.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Extent {
+    /// m  its lowest corner.
+    pub lower: Vec<f64>,
+    /// m  its highest corner.
+    pub upper: Vec<f64>,
+    /// m  the largest size of a cell along each axis.
+    pub cell: Vec<f64>,
+}
+
+impl Extent {
+    pub(super) fn numbers(&self) -> impl Iterator<Item = f64> {
+        [&self.lower, &self.upper, &self.cell].into_iter().flatten().copied()
+    }
+}
+
+/// A quantity that the program chose by itself.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Choice {
+    /// The key of the case file.
+    pub key: String,
+    /// What it became.
+    pub value: String,
+    /// Why.
+    pub reason: String,
+}
+
+/// Totals of a run.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Summary {
+    /// Accepted steps.
+    pub steps: u64,
+    /// Nonlinear iterations.
+    pub iterations: u64,
+    /// Iterations of the linear solver.
+    pub linear_iterations: u64,
+    /// Steps that were cut.
+    pub cutbacks: u64,
+    /// Evaluations of the out-of-balance force.
+    pub residual_evaluations: u64,
+    /// s  of processor time, all ranks together.
+    pub cpu_seconds: f64,
+    /// bytes  the largest resident memory of each rank.
+    pub peak_memory: Vec<u64>,
+}
+
+/// One `[[check]]` of the case and what came of it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Check {
+    /// What was looked at.
+    pub quantity: String,
+    /// s or pseudo-time  when; none for the end.
+    pub at: Option<f64>,
+    /// What it was; none if the run did not get there.
+    pub value: Option<f64>,
+    /// The least that passes.
+    pub min: Option<f64>,
+    /// The most that passes.
+    pub max: Option<f64>,
+    /// Whether it passed.
+    pub passed: bool,
+}
+
+/// A file that the run wrote.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Output {
+    /// Its place relative to the output directory, with `/` between its parts.
+    pub path: String,
+    /// Its size, once it is complete.
+    pub bytes: Option<u64>,
+    /// Its BLAKE3 in hexadecimal, once it is complete.
+    pub blake3: Option<String>,
+}
+
+impl Output {
+    pub(super) fn seal(&mut self, directory: &Path) -> Result<(), Error> {
+        let path = directory.join(&self.path);
+        let mut hasher = blake3::Hasher::new();
+        let hashed = File::open(&path).and_then(|file| hasher.update_reader(file).map(|hashed| hashed.count()));
+        (self.bytes, self.blake3) = match hashed {
+            Ok(bytes) => (Some(bytes), Some(hasher.finalize().to_hex().to_string())),
+            Err(error) if error.kind() == ErrorKind::NotFound => (None, None),
+            Err(error) => return Err(Error::file("read", &path)(error)),
+        };
+        Ok(())
+    }
+}
+
+/// Why a run ended early.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Failure {
+    /// The step that failed.
+    pub step: u64,
+    /// s or pseudo-time  at its start.
+    pub time: f64,
+    /// What happened, in words.
+    pub reason: String,
+    /// The energy measure of each iteration of the last attempt; none where it was not finite.
+    pub residuals: Vec<Option<f64>>,
+    /// Where it was worst.
+    pub worst: Option<Worst>,
+}
+
+impl Failure {
+    pub(super) fn numbers(&self) -> impl Iterator<Item = f64> {
+        let place = self.worst.iter().flat_map(|worst| &worst.position).copied();
+        self.residuals.iter().copied().flatten().chain(place).chain([self.time])
+    }
+}
+
+/// The point or node that was worst in a failed step.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Worst {
+    /// `point` or `node`.
+    pub kind: String,
+    /// Its number.
+    pub id: u64,
+    /// m  where it was.
+    pub position: Vec<f64>,
+}

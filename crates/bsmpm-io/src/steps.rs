@@ -1,0 +1,62 @@
+//! `steps.csv`: how hard each accepted step was.
+
+use crate::table::{Cell, Column};
+
+/// The file's name.
+pub const STEPS: &str = "steps.csv";
+
+/// What `steps.csv` keeps of one accepted step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Step {
+    /// The step's number.
+    pub step: u64,
+    /// s (pseudo-time in a quasi-static analysis)  at its end.
+    pub time: f64,
+    /// s (pseudo-time)  its length.
+    pub dt: f64,
+    /// Iterations of the nonlinear solution.
+    pub iterations: u64,
+    /// The last energy measure of convergence, without unit.
+    pub residual: f64,
+    /// Iterations of the linear solver in all of them; 0 for a direct one.
+    pub linear_iterations: u64,
+    /// How often the step was cut before it converged.
+    pub cutbacks: u64,
+    /// Nodes with unknowns.
+    pub active_nodes: u64,
+    /// s  that it took by the clock.
+    pub wall: f64,
+}
+
+impl Step {
+    /// The file's columns; `time_unit` is `s`, or `-` for pseudo-time.
+    pub fn columns(time_unit: &str) -> [Column; 9] {
+        [
+            ("step", "-"),
+            ("time", time_unit),
+            ("dt", time_unit),
+            ("iterations", "-"),
+            ("residual", "-"),
+            ("linear_iterations", "-"),
+            ("cutbacks", "-"),
+            ("active_nodes", "-"),
+            ("wall", "s"),
+        ]
+        .map(|(name, unit)| Column::new(name, unit))
+    }
+
+    /// The step as a row under [`Step::columns`].
+    pub fn cells(&self) -> [Cell; 9] {
+        [
+            Cell::Int(self.step),
+            Cell::Float(self.time),
+            Cell::Float(self.dt),
+            Cell::Int(self.iterations),
+            Cell::Float(self.residual),
+            Cell::Int(self.linear_iterations),
+            Cell::Int(self.cutbacks),
+            Cell::Int(self.active_nodes),
+            Cell::Float(self.wall),
+        ]
+    }
+}

@@ -1,0 +1,165 @@
+//! Tables with one row a step, as comma-separated values: a line of names, a line of units that begins with `#`, then the
+//! rows. Each row is in the file before the next step begins.
+
+use std::fs::{self, File};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use crate::Error;
+
+/// The heading of one column.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Column {
+    /// The quantity's name.
+    pub name: String,
+    /// Its unit, `-` for a pure number.
+    pub unit: String,
+}
+
+impl Column {
+    /// A column `name` in `unit`; an empty unit is written as `-`.
+    pub fn new(name: &str, unit: &str) -> Self {
+        let unit = if unit.is_empty() { "-" } else { unit };
+        Self { name: name.to_owned(), unit: unit.to_owned() }
+    }
+}
+
+/// One entry of a row.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Cell {
+    /// A count.
+    Int(u64),
+    /// A quantity, in the unit of its column.
+    Float(f64),
+}
+
+/// A table that grows by a row at a time.
+#[derive(Debug)]
+pub struct Table {
+    path: PathBuf,
+    file: File,
+    columns: Vec<Column>,
+}
+
+impl Table {
+    /// Begins a new file with its two heading lines.
+    ///
+    /// # Errors
+    /// [`Error::Name`] for an empty or repeated name or one with a comma, quote, `#` or line break;
+    /// [`Error::File`] when the file is there already or cannot be made.
+    pub fn create(path: &Path, columns: &[Column]) -> Result<Self, Error> {
+        check_headings(path, columns)?;
+        let join = |part: fn(&Column) -> &str| columns.iter().map(part).collect::<Vec<_>>().join(",");
+        let heading = format!("{}\n# {}\n", join(|column| &column.name), join(|column| &column.unit));
+        let mut file = File::create_new(path).map_err(Error::file("create", path))?;
+        file.write_all(heading.as_bytes()).map_err(Error::file("write", path))?;
+        Ok(Self { path: path.to_owned(), file, columns: columns.to_vec() })
+    }
+
+    /// Adds a row, floats in the shortest form that reads back to the same bits. The row goes to the system whole.
+    ///
+    /// # Errors
+    /// [`Error::Length`] for a row of another length, [`Error::NotFinite`] for a number that is infinite or none: the file
+    /// is then as before. [`Error::File`] when the system refuses.
+    pub fn row(&mut self, cells: &[Cell]) -> Result<(), Error> {
+        if cells.len() != self.columns.len() {
+            let (expected, found) = (self.columns.len(), cells.len());
+            return Err(Error::Length { path: self.path.clone(), item: "a row".to_owned(), expected, found });
+        }
+        let mut line = String::new();
+        for (column, cell) in self.columns.iter().zip(cells) {
+            let separator = if line.is_empty() { "" } else { "," };
+            line += separator;
+            line += &self.text(column, *cell, cells[0])?;
+        }
+        line.push('\n');
+        self.file.write_all(line.as_bytes()).map_err(Error::file("write", &self.path))
+    }
+
+    fn text(&self, column: &Column, cell: Cell, first: Cell) -> Result<String, Error> {
+        match cell {
+            Cell::Int(value) => Ok(value.to_string()),
+            Cell::Float(value) if value.is_finite() => Ok(format!("{value:?}")),
+            Cell::Float(value) => {
+                let of_step = if let Cell::Int(step) = first { format!(" in step {step}") } else { String::new() };
+                let item = format!("{}{of_step}", column.name);
+                Err(Error::NotFinite { path: self.path.clone(), item, value })
+            }
+        }
+    }
+}
+
+fn check_headings(path: &Path, columns: &[Column]) -> Result<(), Error> {
+    let bad = |text: &str| text.trim() != text || text.is_empty() || text.contains([',', '"', '#', '\n', '\r']);
+    for (index, Column { name, unit }) in columns.iter().enumerate() {
+        let reason = if bad(name) || bad(unit) {
+            "or its unit is empty or holds a comma, quote, # or space at an end"
+        } else if columns[..index].iter().any(|other| other.name == *name) {
+            "is given to two columns"
+        } else {
+            continue;
+        };
+        return Err(Error::Name { path: path.to_owned(), name: name.clone(), reason });
+    }
+    Ok(())
+}
+
+/// A table that was read; counts come as floats too.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Columns {
+    /// The headings; the units are empty if the file has none.
+    pub headings: Vec<Column>,
+    /// One list of numbers per column, all of one length.
+    pub values: Vec<Vec<f64>>,
+}
+
+impl Columns {
+    /// The numbers of the column `name`.
+    pub fn get(&self, name: &str) -> Option<&[f64]> {
+        let index = self.headings.iter().position(|column| column.name == name)?;
+        Some(&self.values[index])
+    }
+
+    /// The unit of the column `name`.
+    pub fn unit(&self, name: &str) -> Option<&str> {
+        self.headings.iter().find(|column| column.name == name).map(|column| column.unit.as_str())
+    }
+}
+
+/// Reads a table of numbers: ours, or another with a line of names. Lines that begin with `#` are comments, the one right
+/// after the names their units; a last line without its end is one that is being written, and left out.
+///
+/// # Errors
+/// [`Error::File`] when the system refuses, [`Error::Format`] with the line for anything but finite numbers.
+pub fn read(path: &Path) -> Result<Columns, Error> {
+    let text = fs::read_to_string(path).map_err(Error::file("read", path))?;
+    let whole = text.rfind('\n').map_or("", |end| &text[..end]);
+    parse(whole).map_err(|reason| Error::format(path, reason))
+}
+
+/// Reads a table from text that is whole, as [`read`] does.
+///
+/// # Errors
+/// Says in words which line is no row of finite numbers.
+pub fn parse(text: &str) -> Result<Columns, String> {
+    let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty()).peekable();
+    while lines.next_if(|(_, line)| line.starts_with('#')).is_some() {}
+    let (_, names) = lines.next().ok_or("it has no line of names")?;
+    let mut headings: Vec<_> =
+        names.split(',').map(|name| Column { name: name.trim().to_owned(), unit: String::new() }).collect();
+    if let Some(units) = lines.peek().and_then(|(_, line)| line.strip_prefix('#')) {
+        let units: Vec<_> = units.split(',').collect();
+        if units.len() == headings.len() {
+            headings.iter_mut().zip(units).for_each(|(heading, unit)| unit.trim().clone_into(&mut heading.unit));
+        }
+    }
+    let mut values = vec![Vec::new(); headings.len()];
+    for (index, line) in lines.filter(|(_, line)| !line.starts_with('#')) {
+        let cells = line.split(',').map(|cell| cell.trim().parse::<f64>().ok().filter(|value| value.is_finite()));
+        let row: Option<Vec<_>> = cells.collect();
+        let row = row.filter(|row| row.len() == values.len());
+        let row = row.ok_or_else(|| format!("line {}: {} finite numbers are needed", index + 1, values.len()))?;
+        values.iter_mut().zip(row).for_each(|(column, value)| column.push(value));
+    }
+    Ok(Columns { headings, values })
+}

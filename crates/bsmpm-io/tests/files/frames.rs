@@ -1,0 +1,133 @@
+//! Frames and their list.
+
+use bsmpm_io::frame::{Field, Frame, Values};
+use bsmpm_io::frames::{Frames, read_collection};
+use bsmpm_io::{Error, vtu};
+
+use crate::listing;
+
+/// Numbers whose bits a careless writer would lose.
+const DELICATE: [f64; 6] = [0.1 + 0.2, -0.0, 5e-324, f64::MAX, 1.0 / 3.0, -1e-7];
+
+fn frame(points: usize) -> Frame {
+    let delicate = |count: usize| (0..count).map(|i| DELICATE[i % DELICATE.len()]).collect::<Vec<_>>();
+    Frame {
+        step: 1 << 40,
+        time: 0.1 + 0.2,
+        position: (0..points).map(|p| [p as f64 / 3.0, DELICATE[p % 6], 0.0]).collect(),
+        fields: vec![
+            Field::real("velocity", 3, delicate(3 * points)),
+            Field::real("stress", 6, delicate(6 * points)),
+            Field::real("pressure", 1, delicate(points)),
+            Field { name: "material".into(), components: 1, values: Values::U16(vec![65_535; points]) },
+            Field {
+                name: "id".into(),
+                components: 1,
+                values: Values::U64((0..points as u64).map(|p| u64::MAX - p).collect()),
+            },
+        ],
+    }
+}
+
+fn bits(frame: &Frame) -> Vec<u64> {
+    let mut bits: Vec<_> = frame.position.as_flattened().iter().map(|value| value.to_bits()).collect();
+    for (name, components) in [("velocity", 3), ("stress", 6), ("pressure", 1)] {
+        bits.extend(frame.real(name, components).unwrap().iter().map(|value| value.to_bits()));
+    }
+    bits.push(frame.time.to_bits());
+    bits
+}
+
+#[test]
+fn a_frame_reads_back_to_the_bit() {
+    let dir = tempfile::tempdir().unwrap();
+    for points in [0, 1, 1000] {
+        let path = dir.path().join(format!("{points}.vtu"));
+        let written = frame(points);
+        vtu::write(&path, &written).unwrap();
+        let read = vtu::read(&path).unwrap();
+        assert_eq!(bits(&read), bits(&written));
+        assert_eq!(read, written);
+    }
+}
+
+#[test]
+fn a_number_that_is_not_finite_is_named_and_nothing_is_written() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("bad.vtu");
+    for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        let mut bad = frame(9);
+        let Values::F64(stress) = &mut bad.fields[1].values else { unreachable!() };
+        stress[6 * 7 + 3] = value;
+        match vtu::write(&path, &bad) {
+            Err(Error::PointNotFinite { field, component: 3, point, .. }) => {
+                assert_eq!((field.as_str(), point), ("stress", u64::MAX - 7));
+            }
+            other => panic!("{other:?}"),
+        }
+        let mut bad = frame(2);
+        bad.position[1][2] = value;
+        assert!(matches!(vtu::write(&path, &bad), Err(Error::PointNotFinite { .. })));
+        bad = Frame { time: value, ..frame(2) };
+        assert_eq!(vtu::write(&path, &bad).unwrap_err().exit_code(), 81);
+    }
+    assert_eq!(listing(dir.path()), [""; 0]);
+}
+
+#[test]
+fn fields_that_do_not_fit_are_refused() {
+    let path = tempfile::tempdir().unwrap().path().join("bad.vtu");
+    let mut short = frame(3);
+    short.fields.push(Field::real("volume", 1, vec![1.0; 2]));
+    assert!(matches!(vtu::write(&path, &short), Err(Error::Length { expected: 3, found: 2, .. })));
+    for name in ["", "a\"b", "a<b", "velocity"] {
+        let mut named = frame(1);
+        named.fields.push(Field::real(name, 1, vec![1.0]));
+        assert!(matches!(vtu::write(&path, &named), Err(Error::Name { .. })), "{name}");
+    }
+}
+
+#[test]
+fn a_damaged_frame_is_an_error_wherever_it_is_cut() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("frame.vtu");
+    vtu::write(&path, &frame(5)).unwrap();
+    let whole = std::fs::read(&path).unwrap();
+    let data = whole.windows(2).position(|pair| pair == b"\n_").unwrap();
+    for length in (0..data + 500).step_by(7) {
+        std::fs::write(&path, &whole[..length]).unwrap();
+        assert!(matches!(vtu::read(&path), Err(Error::Format { .. })), "cut at {length}");
+    }
+    let mut huge = whole.clone();
+    huge[data + 2..data + 10].copy_from_slice(&u64::MAX.to_le_bytes());
+    std::fs::write(&path, &huge).unwrap();
+    assert!(matches!(vtu::read(&path), Err(Error::Format { .. })));
+}
+
+#[test]
+fn the_list_names_every_frame_with_its_exact_time() {
+    let dir = tempfile::tempdir().unwrap();
+    let mut frames = Frames::create(dir.path()).unwrap();
+    let times = [0.0, 0.1 + 0.2, 0.607];
+    for (step, time) in times.into_iter().enumerate() {
+        frames.write(&Frame { step: step as u64, time, ..frame(2) }).unwrap();
+    }
+    frames.write(&Frame { step: 2, time: 0.607, ..frame(3) }).unwrap();
+    let bad = Frame { step: 3, time: f64::NAN, ..frame(2) };
+    assert!(frames.write(&bad).is_err());
+    let entries = read_collection(dir.path()).unwrap();
+    assert_eq!(entries, frames.entries());
+    assert_eq!(entries.iter().map(|entry| entry.time).collect::<Vec<_>>(), times);
+    assert_eq!(entries[1].file, Frames::file(1));
+    assert_eq!(listing(dir.path()).len(), 4);
+}
+
+#[test]
+fn a_list_that_leads_out_of_the_directory_is_refused() {
+    let dir = tempfile::tempdir().unwrap();
+    for file in ["../secret.vtu", "/etc/passwd", "frames/../../a.vtu", ""] {
+        let text = format!("<VTKFile><DataSet timestep=\"0\" file=\"{file}\"/></VTKFile>");
+        std::fs::write(dir.path().join("frames.pvd"), text).unwrap();
+        assert!(matches!(read_collection(dir.path()), Err(Error::Format { .. })), "{file}");
+    }
+}

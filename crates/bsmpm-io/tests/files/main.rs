@@ -1,0 +1,24 @@
+//! The files of a run: what is written is read back to the bit, and what must not be written leaves no trace.
+
+mod directory;
+mod frames;
+mod manifest;
+mod table;
+
+use std::path::Path;
+
+/// The names of everything below a directory, sorted.
+fn listing(directory: &Path) -> Vec<String> {
+    let mut names = Vec::new();
+    for entry in std::fs::read_dir(directory).unwrap() {
+        let entry = entry.unwrap();
+        let name = entry.file_name().into_string().unwrap();
+        if entry.file_type().unwrap().is_dir() {
+            names.extend(listing(&entry.path()).iter().map(|inner| format!("{name}/{inner}")));
+        } else {
+            names.push(name);
+        }
+    }
+    names.sort();
+    names
+}

@@ -1,0 +1,106 @@
+//! Tables with one row a step.
+
+use bsmpm_io::Error;
+use bsmpm_io::steps::Step;
+use bsmpm_io::table::{self, Cell, Column, Table};
+
+fn columns() -> [Column; 3] {
+    [Column::new("step", ""), Column::new("time", "s"), Column::new("footing-pressure", "Pa")]
+}
+
+#[test]
+fn every_float_reads_back_to_the_bit_and_is_in_the_file_at_once() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("history.csv");
+    let mut table = Table::create(&path, &columns()).unwrap();
+    let mut numbers = vec![0.1 + 0.2, -0.0, 5e-324, f64::MAX, 1e16, 123_456_789.123_456_78, -1e-7];
+    // A linear congruential walk through the bit patterns.
+    let mut state = 1_u64;
+    for _ in 0..1000 {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        numbers.extend(Some(f64::from_bits(state)).filter(|value| value.is_finite()));
+    }
+    for (step, &value) in numbers.iter().enumerate() {
+        table.row(&[Cell::Int(step as u64), Cell::Float(step as f64 * 0.1), Cell::Float(value)]).unwrap();
+        if step < 10 {
+            assert_eq!(table::read(&path).unwrap().values[0].len(), step + 1);
+        }
+    }
+    let read = table::read(&path).unwrap();
+    assert_eq!(read.headings, columns());
+    assert_eq!(read.unit("footing-pressure"), Some("Pa"));
+    let bits = |values: &[f64]| values.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
+    assert_eq!(bits(read.get("footing-pressure").unwrap()), bits(&numbers));
+    assert!(std::fs::read_to_string(&path).unwrap().starts_with("step,time,footing-pressure\n# -,s,Pa\n0,0.0,0.3"));
+}
+
+#[test]
+fn a_bad_row_leaves_the_file_as_it_was() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("history.csv");
+    let mut table = Table::create(&path, &columns()).unwrap();
+    table.row(&[Cell::Int(0), Cell::Float(0.0), Cell::Float(1.5)]).unwrap();
+    let before = std::fs::read(&path).unwrap();
+    for value in [f64::NAN, f64::INFINITY] {
+        let error = table.row(&[Cell::Int(7), Cell::Float(0.1), Cell::Float(value)]).unwrap_err();
+        assert!(matches!(&error, Error::NotFinite { item, .. } if item == "footing-pressure in step 7"), "{error}");
+    }
+    assert!(matches!(table.row(&[Cell::Int(1)]), Err(Error::Length { expected: 3, found: 1, .. })));
+    assert_eq!(std::fs::read(&path).unwrap(), before);
+}
+
+#[test]
+fn headings_that_would_break_the_file_are_refused() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("history.csv");
+    for name in ["", "a,b", "a\nb", "\"a\"", "#a", " a", "step"] {
+        let columns = [Column::new("step", ""), Column::new(name, "m")];
+        assert!(matches!(Table::create(&path, &columns), Err(Error::Name { .. })), "{name:?}");
+    }
+    assert!(!path.exists());
+    Table::create(&path, &columns()).unwrap();
+    assert!(matches!(Table::create(&path, &columns()), Err(Error::File { action: "create", .. })));
+}
+
+#[test]
+fn a_row_that_is_being_written_is_left_out_and_a_damaged_one_is_told() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("history.csv");
+    std::fs::write(&path, "step,time\n# -,s\n0,0.0\n1,0.2").unwrap();
+    assert_eq!(table::read(&path).unwrap().values, [[0.0], [0.0]]);
+    for (text, line) in [("step,time\n0,0\n1\n2,2\n", "line 3"), ("a\n1\nNaN\n", "line 3"), ("\n", "no line of names")]
+    {
+        std::fs::write(&path, text).unwrap();
+        let error = table::read(&path).unwrap_err();
+        assert!(error.to_string().contains(line), "{error}");
+    }
+}
+
+#[test]
+fn a_table_of_the_literature_may_begin_with_its_source() {
+    let read = table::parse("# Xie et al. (2023), figure 5\ntime, x, y\n0.1,0.2,0.05\n# later\n0.2,0.3,0.04").unwrap();
+    assert_eq!(read.get("y").unwrap(), [0.05, 0.04]);
+    assert_eq!(read.unit("y"), Some(""));
+}
+
+#[test]
+fn steps_fit_their_columns() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("steps.csv");
+    let mut table = Table::create(&path, &Step::columns("s")).unwrap();
+    let step = Step {
+        step: 1,
+        time: 2.5e-4,
+        dt: 2.5e-4,
+        iterations: 7,
+        residual: 3e-9,
+        linear_iterations: 0,
+        cutbacks: 1,
+        active_nodes: 4000,
+        wall: 0.25,
+    };
+    table.row(&step.cells()).unwrap();
+    let text = std::fs::read_to_string(&path).unwrap();
+    let names = "step,time,dt,iterations,residual,linear_iterations,cutbacks,active_nodes,wall\n";
+    assert_eq!(text, format!("{names}# -,s,s,-,-,-,-,-,s\n1,0.00025,0.00025,7,3e-9,0,1,4000,0.25\n"));
+}

@@ -1,0 +1,179 @@
+//! The linear system on PETSc: numbering of the unknowns, assembly, factorisation, and solutions that are checked.
+
+use crate::halo::MpiHalo;
+use crate::stencil::{Numbering, Stencil};
+use crate::timers::Timers;
+use bsmpm::error::SolveError;
+use bsmpm::grid::Grid;
+use bsmpm::seam::{Halo, LinearSolver};
+use mpi::collective::{CommunicatorCollectives, SystemOperation};
+use petsc_rs::{Ksp, Matrix, Petsc, Symmetry, Vector};
+use std::rc::Rc;
+
+/// Largest relative residual of a solution that is accepted, recomputed: direct solvers report success for NaN.
+const TRUSTED: f64 = 1e-6;
+
+/// Method, preconditioner and factorising package by PETSc's names.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Choice {
+    /// KSPType, e.g. `preonly`, `cg`
+    pub ksp: String,
+    /// PCType, e.g. `cholesky`, `gamg`
+    pub pc: String,
+    /// MatSolverType of a factorisation, e.g. `mumps`
+    pub factor: Option<String>,
+}
+
+/// The linear solver of a run: one matrix, rebuilt every step; pattern and analysis are kept while the unknowns stay.
+pub struct KspSolver<'p, const D: usize> {
+    petsc: &'p Petsc<'p>,
+    choice: Choice,
+    halo: Rc<MpiHalo>,
+    stencil: Stencil<D>,
+    free: Vec<bool>,
+    numbers: Numbering,
+    own: usize, // unknowns of this rank
+    system: Option<System<'p>>,
+    timers: Rc<Timers>,
+}
+
+struct System<'p> {
+    matrix: Matrix<'p>,
+    ksp: Ksp<'p>,
+    b: Vector<'p>,
+    x: Vector<'p>,
+    r: Vector<'p>,
+}
+
+impl<'p, const D: usize> KspSolver<'p, D> {
+    /// A solver for a window of the grid.
+    pub fn new(petsc: &'p Petsc<'p>, choice: Choice, grid: &Grid<D>, halo: Rc<MpiHalo>, timers: Rc<Timers>) -> Self {
+        let (stencil, free, numbers) = (Stencil::new(grid), Vec::new(), Vec::new());
+        Self { petsc, choice, halo, stencil, free, numbers, own: 0, system: None, timers }
+    }
+
+    /// Numbers the free components: those of rank 0 first, by node; the same number on every rank that shares a node.
+    fn number(&mut self, free: &[bool]) {
+        let owned = self.halo.owned();
+        let owned = owned.start * D..owned.end * D;
+        self.own = free[owned.clone()].iter().filter(|&&free| free).count();
+        let count = self.own as u64;
+        let mut before = 0_u64;
+        self.halo.world().exclusive_scan_into(&count, &mut before, SystemOperation::sum());
+        let mut next = if self.petsc.rank() == 0 { 0 } else { before };
+        let mut numbers = vec![0.0; free.len()]; // one more than the number: 0 is none
+        for component in owned.filter(|&component| free[component]) {
+            next += 1;
+            numbers[component] = next as f64;
+        }
+        self.halo.sum(&mut numbers, D);
+        self.numbers = numbers.iter().map(|&number| (number > 0.0).then(|| number as usize - 1)).collect();
+        self.free = free.to_vec();
+    }
+
+    /// Hands the values over; the pattern too, if the unknowns have changed.
+    fn build(&mut self) -> petsc_rs::Result<()> {
+        let values = self.stencil.entries(&self.numbers);
+        let system = match &mut self.system {
+            Some(system) => system,
+            none => none.insert(System::new(self.petsc, &self.choice, &self.stencil, &self.numbers, self.own)?),
+        };
+        system.matrix.set_values(&values)?;
+        system.ksp.set_operator(&system.matrix)?;
+        system.ksp.set_from_options()?;
+        system.ksp.set_up()
+    }
+
+    fn solve_owned(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<usize, SolveError> {
+        let owned = self.halo.owned();
+        let unknowns: Vec<usize> =
+            (owned.start * D..owned.end * D).filter(|&component| self.free[component]).collect();
+        let Some(system) = &mut self.system else {
+            return Err(SolveError::Failed("no matrix was assembled".into()));
+        };
+        let own: Vec<f64> = unknowns.iter().map(|&component| rhs[component]).collect();
+        let (iterations, x) = system.solve(&own)?;
+        solution.fill(0.0);
+        for (&component, value) in unknowns.iter().zip(x) {
+            solution[component] = value;
+        }
+        Ok(iterations)
+    }
+}
+
+impl<'p> System<'p> {
+    fn new<const D: usize>(
+        petsc: &'p Petsc<'p>,
+        choice: &Choice,
+        stencil: &Stencil<D>,
+        numbers: &Numbering,
+        own: usize,
+    ) -> petsc_rs::Result<Self> {
+        let places = stencil.coordinates(numbers);
+        let mut matrix = Matrix::from_coo(petsc, own, 1, &places.rows, &places.columns)?;
+        matrix.set_symmetry(Symmetry::PositiveDefinite)?;
+        let mut ksp = Ksp::new(petsc)?;
+        ksp.set_operator(&matrix)?;
+        ksp.set_type(&choice.ksp)?;
+        ksp.set_pc_type(&choice.pc)?;
+        if let Some(factor) = &choice.factor {
+            ksp.set_factor_solver(factor)?;
+        }
+        let vector = || Vector::new(petsc, own);
+        Ok(Self { matrix, ksp, b: vector()?, x: vector()?, r: vector()? })
+    }
+
+    /// Solution of this rank's unknowns, if it is finite and its recomputed residual small.
+    fn solve(&mut self, rhs: &[f64]) -> Result<(usize, Vec<f64>), SolveError> {
+        let failed = |error: petsc_rs::Error| SolveError::Failed(error.to_string());
+        self.b.copy_from(rhs).map_err(failed)?;
+        let info = self.ksp.solve(&self.b, &mut self.x).map_err(failed)?;
+        self.matrix.residual(&self.b, &self.x, &mut self.r).map_err(failed)?;
+        let (left, right) = (self.r.norm().map_err(failed)?, self.b.norm().map_err(failed)?);
+        if !left.is_finite() {
+            return Err(SolveError::NotFinite);
+        }
+        if left > TRUSTED * right {
+            return Err(SolveError::Residual(left / right));
+        }
+        Ok((info.iterations, self.x.read(<[f64]>::to_vec).map_err(failed)?))
+    }
+}
+
+impl<const D: usize> LinearSolver for KspSolver<'_, D> {
+    fn begin(&mut self, free: &[bool]) {
+        let mut changed = [f64::from(self.free != free)];
+        self.halo.maximum(&mut changed);
+        if changed[0] > 0.0 {
+            self.number(free);
+            self.system = None;
+        }
+        self.stencil.clear();
+    }
+
+    fn add(&mut self, first_node: usize, block: &[f64]) {
+        self.stencil.add(first_node, block);
+    }
+
+    fn add_diagonal(&mut self, diagonal: &[f64]) {
+        for node in self.halo.owned() {
+            for component in 0..D {
+                self.stencil.add_diagonal(node, component, diagonal[node * D + component]);
+            }
+        }
+    }
+
+    fn finish(&mut self) -> Result<(), SolveError> {
+        let timers = Rc::clone(&self.timers);
+        let _timed = timers.time("factorisation");
+        self.build().map_err(|error| SolveError::Failed(error.to_string()))
+    }
+
+    fn solve(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<usize, SolveError> {
+        let timers = Rc::clone(&self.timers);
+        let _timed = timers.time("linear solve");
+        let iterations = self.solve_owned(rhs, solution)?;
+        self.halo.sum(solution, D);
+        Ok(iterations)
+    }
+}

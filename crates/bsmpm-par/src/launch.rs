@@ -1,0 +1,74 @@
+//! Start and end of the ranks: what MPI needs before it starts, and how a failure on one rank ends all of them.
+
+use mpi::environment::Universe;
+use mpi::topology::{Communicator, SimpleCommunicator};
+use std::fmt::Display;
+use std::io::Write;
+
+/// Exit code of a panic: a bug.
+pub const BUG: u8 = 70;
+/// Exit code of N separate runs where one run on N ranks was meant.
+pub const WRONG_LAUNCH: u8 = 78;
+
+/// Variables by which a launcher tells a process how many ranks it started.
+const LAUNCHED: [&str; 4] = ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_SIZE", "SLURM_STEP_NUM_TASKS"];
+
+/// Starts MPI; from here on a panic on any rank ends the job. `Err` holds the exit code.
+pub fn start() -> Result<Universe, u8> {
+    if !LAUNCHED.iter().any(|name| std::env::var_os(name).is_some()) {
+        prepare_single_rank();
+    }
+    let Some((universe, _)) = mpi::initialize_with_threading(mpi::Threading::Funneled) else {
+        eprintln!("bsmpm-par: MPI could not be started");
+        return Err(BUG);
+    };
+    abort_on_panic();
+    let ranks = universe.world().size().unsigned_abs() as usize;
+    let wanted = LAUNCHED.iter().find_map(|name| std::env::var(name).ok()?.parse::<usize>().ok());
+    if ranks == 1 && wanted.is_some_and(|wanted| wanted > 1) {
+        eprintln!(
+            "bsmpm-par: the launcher started {} processes, but each is a run of its own: \
+             the launcher and this program use different MPI libraries",
+            wanted.unwrap_or(0)
+        );
+        return Err(WRONG_LAUNCH);
+    }
+    Ok(universe)
+}
+
+/// Without a launcher Open MPI would start a daemon and look for a network; one rank needs neither.
+#[allow(unsafe_code)]
+fn prepare_single_rank() {
+    for (name, value) in
+        [("OMPI_MCA_ess_singleton_isolated", "1"), ("OMPI_MCA_pml", "ob1"), ("OMPI_MCA_btl", "self")]
+    {
+        if std::env::var_os(name).is_none() {
+            // SAFETY: called first thing in `main`, before any other thread exists.
+            unsafe { std::env::set_var(name, value) };
+        }
+    }
+}
+
+/// rsmpi finalises MPI while a panic unwinds, and the other ranks would wait for ever: abort them all instead.
+fn abort_on_panic() {
+    std::panic::set_hook(Box::new(|panic| {
+        let world = SimpleCommunicator::world();
+        let place = panic.location().map_or_else(String::new, |place| format!(" at {place}"));
+        let text = panic.payload();
+        let text = text.downcast_ref::<&str>().copied().or_else(|| text.downcast_ref::<String>().map(String::as_str));
+        let reason = text.unwrap_or("no reason given");
+        end(&world, BUG, &format!("panic on rank {}{place}: {reason}; please report it", world.rank()));
+    }));
+}
+
+/// Ends the job on all ranks with `code`, for failures that the other ranks do not know of. Prints `reason` once.
+pub fn end(world: &SimpleCommunicator, code: u8, reason: &dyn Display) -> ! {
+    let mut stderr = std::io::stderr().lock();
+    // Nothing is left to do where even stderr is gone.
+    let _ = writeln!(stderr, "bsmpm-par: {reason}").and_then(|()| stderr.flush());
+    drop(stderr);
+    if mpi::environment::is_initialized() && !mpi::environment::is_finalized() {
+        world.abort(i32::from(code));
+    }
+    std::process::exit(i32::from(code));
+}

@@ -1,0 +1,134 @@
+//! The cut of the grid into slabs of columns along its first axis: plain data, known to every rank, without MPI.
+//!
+//! A rank owns the cells of its columns and the node layers that begin in them; the last rank owns the q layers at the
+//! far end too. Its window reaches q ghost layers further, into the slab (or, of thin slabs, the slabs) behind.
+
+use std::ops::Range;
+
+/// Columns at which the slabs begin, and the number of columns last.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Slabs {
+    bounds: Vec<usize>,
+}
+
+impl Slabs {
+    /// Cuts columns of given cost into `ranks` slabs of about equal cost, each at least one column wide.
+    /// `None` if there are fewer columns than ranks.
+    pub fn cut(cost: &[f64], ranks: usize) -> Option<Self> {
+        if cost.len() < ranks {
+            return None;
+        }
+        let total: f64 = cost.iter().sum();
+        let (mut bounds, mut column, mut before) = (vec![0], 0, 0.0);
+        for rank in 1..ranks {
+            let wanted = total * rank as f64 / ranks as f64;
+            let last = cost.len() - (ranks - rank);
+            let mut taken = 0;
+            // A column goes to the slab in which more than half of it lies, as long as the others keep one each.
+            while column < last && (taken == 0 || before + 0.5 * cost[column] < wanted) {
+                before += cost[column];
+                column += 1;
+                taken += 1;
+            }
+            bounds.push(column);
+        }
+        bounds.push(cost.len());
+        Some(Self { bounds })
+    }
+
+    /// Number of slabs.
+    pub fn ranks(&self) -> usize {
+        self.bounds.len() - 1
+    }
+
+    /// Columns of cells of a rank.
+    pub fn columns(&self, rank: usize) -> Range<usize> {
+        self.bounds[rank]..self.bounds[rank + 1]
+    }
+
+    /// The rank whose slab holds a column.
+    pub fn owner(&self, column: usize) -> usize {
+        self.bounds.partition_point(|&bound| bound <= column).clamp(1, self.ranks()) - 1
+    }
+
+    /// Node layers that the cells of a rank touch, for splines of order `q`.
+    pub fn layers(&self, rank: usize, q: usize) -> Range<usize> {
+        self.bounds[rank]..self.bounds[rank + 1] + q
+    }
+
+    /// Node layers that a rank owns.
+    pub fn owned_layers(&self, rank: usize, q: usize) -> Range<usize> {
+        let extra = if rank + 1 == self.ranks() { q } else { 0 };
+        self.bounds[rank]..self.bounds[rank + 1] + extra
+    }
+
+    /// Other ranks that share node layers with `rank`, ascending, and the layers.
+    pub fn shared(&self, rank: usize, q: usize) -> Vec<(usize, Range<usize>)> {
+        let own = self.layers(rank, q);
+        (0..self.ranks())
+            .filter(|&other| other != rank)
+            .map(|other| (other, intersection(&own, &self.layers(other, q))))
+            .filter(|(_, layers)| !layers.is_empty())
+            .collect()
+    }
+}
+
+/// The common part of two ranges; empty if there is none.
+pub fn intersection(a: &Range<usize>, b: &Range<usize>) -> Range<usize> {
+    let start = a.start.max(b.start);
+    start..a.end.min(b.end).max(start)
+}
+
+/// Largest load over the mean.
+pub fn imbalance(loads: impl Iterator<Item = f64> + Clone) -> f64 {
+    let count = loads.clone().count() as f64;
+    let (most, sum) = loads.fold((0.0_f64, 0.0), |(most, sum), load| (most.max(load), sum + load));
+    if sum > 0.0 { most * count / sum } else { 1.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_node_layer_has_one_owner_and_every_window_holds_what_it_owns() {
+        for (columns, ranks, q) in [(10, 3, 2), (4, 4, 3), (7, 1, 2), (5, 4, 1)] {
+            let slabs = Slabs::cut(&vec![1.0; columns], ranks).unwrap();
+            let owned: Vec<usize> = (0..ranks).flat_map(|rank| slabs.owned_layers(rank, q)).collect();
+            assert_eq!(owned, (0..columns + q).collect::<Vec<_>>());
+            for rank in 0..ranks {
+                let (own, window) = (slabs.owned_layers(rank, q), slabs.layers(rank, q));
+                assert!(window.start <= own.start && own.end <= window.end);
+                assert!(slabs.columns(rank).all(|column| slabs.owner(column) == rank));
+            }
+        }
+    }
+
+    #[test]
+    fn sharing_is_mutual_also_when_slabs_are_thinner_than_the_order() {
+        let slabs = Slabs::cut(&[1.0; 4], 4).unwrap();
+        for rank in 0..4 {
+            for (other, layers) in slabs.shared(rank, 3) {
+                assert!(slabs.shared(other, 3).contains(&(rank, layers)));
+            }
+        }
+        assert_eq!(slabs.shared(0, 3).len(), 3);
+    }
+
+    #[test]
+    fn the_cut_follows_the_cost_and_leaves_no_rank_without_a_column() {
+        let mut cost = vec![36.0; 80];
+        cost.extend(vec![0.0; 140]);
+        let slabs = Slabs::cut(&cost, 2).unwrap();
+        assert_eq!(slabs.columns(0), 0..40);
+        let slabs = Slabs::cut(&[0.0, 0.0, 5.0], 3).unwrap();
+        assert_eq!(slabs.bounds, [0, 1, 2, 3]);
+        assert_eq!(Slabs::cut(&[1.0; 2], 3), None);
+    }
+
+    #[test]
+    fn imbalance_is_the_largest_load_over_the_mean() {
+        assert_eq!(imbalance([1.0, 3.0].into_iter()), 1.5);
+        assert_eq!(imbalance([0.0, 0.0].into_iter()), 1.0);
+    }
+}

@@ -1,0 +1,179 @@
+//! The stiffness of one window as node stencils, and its entries as PETSc wants them: plain data, without MPI or PETSc.
+//!
+//! A node couples with the (2q+1)^D nodes around it. Blocks of patches are summed into that fixed stencil, so that every
+//! rank hands each of its coordinates over once; rows of ghost nodes are completed by their owner.
+
+use bsmpm::grid::Grid;
+
+/// Stencils of all nodes of a window: D x D blocks of a node with each node of its stencil.
+#[derive(Clone, Debug)]
+pub struct Stencil<const D: usize> {
+    reach: Vec<isize>,    // offset in local nodes of every stencil place, ascending
+    slot: Vec<usize>,     // stencil place of patch node b as seen from patch node a
+    offsets: Vec<usize>,  // of a patch's nodes
+    values: Vec<f64>,     // node, place, row, column
+    valid: Vec<Vec<u16>>, // per node the places that lie in the grid
+}
+
+/// Global number of every nodal component of a window, `None` where it is no unknown.
+pub type Numbering = Vec<Option<usize>>;
+
+/// Global row and column of every entry, each pair once.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Coordinates {
+    /// global row of every entry
+    pub rows: Vec<usize>,
+    /// global column of every entry
+    pub columns: Vec<usize>,
+}
+
+impl<const D: usize> Stencil<D> {
+    /// Zero stencils over a window.
+    pub fn new(grid: &Grid<D>) -> Self {
+        let q = grid.order() as isize;
+        let side = 2 * q + 1;
+        let places = side.pow(D as u32);
+        let along = |place: isize, axis: usize| place / side.pow((D - 1 - axis) as u32) % side - q;
+        let functions: Vec<isize> = grid.axes().iter().map(|axis| axis.functions() as isize).collect();
+        let flat = |step: &dyn Fn(usize) -> isize| (1..D).fold(step(0), |sum, axis| sum * functions[axis] + step(axis));
+        let reach: Vec<isize> = (0..places).map(|place| flat(&|axis| along(place, axis))).collect();
+        let width = q as usize + 1;
+        let patch = grid.cell_nodes();
+        let at = |k: usize, axis: usize| (k / width.pow((D - 1 - axis) as u32) % width) as isize;
+        let slot = (0..patch * patch)
+            .map(|pair| {
+                let (a, b) = (pair / patch, pair % patch);
+                (0..D).fold(0, |place, axis| place * side + at(b, axis) - at(a, axis) + q) as usize
+            })
+            .collect();
+        let layers = grid.layers();
+        let inside = |node: &[usize; D], place: isize| {
+            (0..D).all(|axis| {
+                let (lower, upper) =
+                    if axis == 0 { (layers.start as isize, layers.end as isize) } else { (0, functions[axis]) };
+                (lower..upper).contains(&(node[axis] as isize + along(place, axis)))
+            })
+        };
+        let valid = (0..grid.nodes())
+            .map(|node| {
+                let node = grid.node_at(node);
+                (0..places).filter(|&place| inside(&node, place)).map(|place| place as u16).collect()
+            })
+            .collect();
+        let values = vec![0.0; grid.nodes() * places as usize * D * D];
+        Self { reach, slot, offsets: grid.offsets(), values, valid }
+    }
+
+    /// Sets all blocks to zero.
+    pub fn clear(&mut self) {
+        self.values.fill(0.0);
+    }
+
+    fn width(&self) -> usize {
+        self.reach.len() * D * D
+    }
+
+    /// Adds the dense block of the patch whose first node is `first`.
+    pub fn add(&mut self, first: usize, block: &[f64]) {
+        let patch = self.offsets.len();
+        let width = self.width();
+        for a in 0..patch {
+            let node = (first + self.offsets[a]) * width;
+            for b in 0..patch {
+                let at = node + self.slot[a * patch + b] * D * D;
+                for i in 0..D {
+                    let row = &block[(a * D + i) * patch * D + b * D..][..D];
+                    for (value, entry) in self.values[at + i * D..][..D].iter_mut().zip(row) {
+                        *value += entry;
+                    }
+                }
+            }
+        }
+    }
+
+    /// Adds to the diagonal entry of a component of `node`.
+    pub fn add_diagonal(&mut self, node: usize, component: usize, value: f64) {
+        let middle = self.reach.len() / 2;
+        let at = node * self.width() + (middle * D + component) * D + component;
+        self.values[at] += value;
+    }
+
+    /// Coordinates of all entries between components that have a number.
+    pub fn coordinates(&self, numbers: &Numbering) -> Coordinates {
+        let mut coordinates = Coordinates::default();
+        self.walk(numbers, |row, column, _| {
+            coordinates.rows.push(row);
+            coordinates.columns.push(column);
+        });
+        coordinates
+    }
+
+    /// Values of the entries in the order of [`Stencil::coordinates`].
+    pub fn entries(&self, numbers: &Numbering) -> Vec<f64> {
+        let mut values = Vec::new();
+        self.walk(numbers, |_, _, at| values.push(self.values[at]));
+        values
+    }
+
+    /// Visits every entry with its global row and column and its place in `values`.
+    fn walk(&self, numbers: &Numbering, mut visit: impl FnMut(usize, usize, usize)) {
+        for (component, row) in numbers.iter().enumerate() {
+            let Some(row) = row else { continue };
+            let (node, i) = (component / D, component % D);
+            for &place in &self.valid[node] {
+                let other = node.wrapping_add_signed(self.reach[usize::from(place)]);
+                let at = node * self.width() + (usize::from(place) * D + i) * D;
+                for j in 0..D {
+                    if let Some(column) = numbers[other * D + j] {
+                        visit(*row, column, at + j);
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bsmpm::grid::KnotVector;
+
+    fn grid() -> Grid<2> {
+        Grid::new([KnotVector::uniform(1.0, 4, 2).unwrap(), KnotVector::uniform(1.0, 3, 2).unwrap()]).unwrap()
+    }
+
+    /// Dense sum of the same blocks, the plain way.
+    #[test]
+    fn entries_hold_the_sum_of_the_patch_blocks() {
+        let grid = grid();
+        let size = grid.nodes() * 2;
+        let (mut stencil, mut dense) = (Stencil::new(&grid), vec![0.0; size * size]);
+        for cell in 0..grid.cells() {
+            let first = grid.first_node(&grid.cell_at(cell));
+            let block: Vec<f64> = (0..18 * 18).map(|entry| ((entry * 7 + cell * 13) % 31) as f64).collect();
+            stencil.add(first, &block);
+            let component = |k: usize| (first + grid.offsets()[k / 2]) * 2 + k % 2;
+            for (entry, value) in block.iter().enumerate() {
+                dense[component(entry / 18) * size + component(entry % 18)] += value;
+            }
+        }
+        let numbers: Numbering = (0..size).map(Some).collect();
+        let (places, values) = (stencil.coordinates(&numbers), stencil.entries(&numbers));
+        let mut found = vec![0.0; size * size];
+        for ((row, column), value) in places.rows.iter().zip(&places.columns).zip(values) {
+            assert_eq!(std::mem::replace(&mut found[row * size + column], value), 0.0, "each pair stands once");
+        }
+        assert_eq!(found, dense);
+    }
+
+    #[test]
+    fn components_without_a_number_have_neither_row_nor_column() {
+        let grid = grid();
+        let stencil = Stencil::new(&grid);
+        let numbers: Numbering =
+            (0..grid.nodes() * 2).map(|component| (component % 2 == 0).then_some(component / 2)).collect();
+        let places = stencil.coordinates(&numbers);
+        assert_eq!(places.rows.len(), stencil.entries(&numbers).len());
+        assert!(places.rows.iter().chain(&places.columns).all(|&number| number < grid.nodes()));
+    }
+}

@@ -1,0 +1,36 @@
+//! Wall-clock seconds by phase: what `run.json` tells of where a run's time went.
+
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::time::Instant;
+
+/// Seconds and calls of every phase; the physics, which knows no clock, is what remains of the steps.
+#[derive(Debug, Default)]
+pub struct Timers {
+    seconds: RefCell<BTreeMap<&'static str, f64>>,
+}
+
+/// Adds to its phase when dropped.
+pub struct Timed<'a> {
+    timers: &'a Timers,
+    phase: &'static str,
+    start: Instant,
+}
+
+impl Timers {
+    /// Times `phase` until the value is dropped; phases may nest, each counts its own whole span.
+    pub fn time(&self, phase: &'static str) -> Timed<'_> {
+        Timed { timers: self, phase, start: Instant::now() }
+    }
+
+    /// Seconds by phase so far.
+    pub fn seconds(&self) -> BTreeMap<&'static str, f64> {
+        self.seconds.borrow().clone()
+    }
+}
+
+impl Drop for Timed<'_> {
+    fn drop(&mut self) {
+        *self.timers.seconds.borrow_mut().entry(self.phase).or_default() += self.start.elapsed().as_secs_f64();
+    }
+}

@@ -1,0 +1,347 @@
+//! A valid case: all numbers in SI and within their ranges, angles in radians.
+
+use crate::document;
+use crate::error::Error;
+use crate::grid::GridSpec;
+use crate::report::Report;
+use crate::source::{Source, decode};
+use crate::{overrides, record, validate};
+use bsmpm::background::Extent;
+use bsmpm::material::Material;
+use bsmpm::model::Regime;
+use bsmpm::stabilisation::Stabilisation;
+
+/// Everything that a run needs to know of what it solves.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Case {
+    /// What the case is, in a line; empty if it does not say.
+    pub title: String,
+    /// Kind of the geometry.
+    pub geometry: Geometry,
+    /// Kind and time of the analysis.
+    pub analysis: Analysis,
+    /// The grid.
+    pub grid: GridSpec,
+    /// Materials in the order of the file; bodies name them by their number here.
+    pub materials: Vec<NamedMaterial>,
+    /// Bodies in the order of the file.
+    pub bodies: Vec<Body>,
+    /// Body force, if any.
+    pub gravity: Option<Gravity>,
+    /// Supports of the grid's faces: per axis the lower and the upper one.
+    pub boundary: [[Support; 2]; 2],
+    /// Section 2.3 of the paper.
+    pub stabilisation: Stabilisation,
+    /// The non-linear iteration.
+    pub solver: Solver,
+    /// Frames.
+    pub output: Output,
+    /// What is recorded every step.
+    pub histories: Vec<History>,
+    /// Bounds that are verified at the end.
+    pub checks: Vec<Check>,
+    /// What is doubtful but allowed.
+    pub warnings: Vec<String>,
+    /// What the program chose by itself.
+    pub notes: Vec<Choice>,
+    /// The case as it is run: the file's text, or with overrides the same content written anew.
+    pub text: String,
+}
+
+impl Case {
+    /// The case in `text`, the content of the file `name`, with overrides `KEY=VALUE` merged in their order.
+    ///
+    /// # Errors
+    /// All errors of the file and the overrides at once; if the text is no TOML, the syntax errors only.
+    pub fn from_text(name: &str, text: &str, overrides: &[String]) -> Result<Self, Vec<Error>> {
+        Self::from_bytes(name, text.as_bytes(), overrides)
+    }
+
+    /// [`Case::from_text`] for bytes as they stand in the file, see [`crate::load`].
+    ///
+    /// # Errors
+    /// As [`Case::from_text`]; also if the bytes are too many, binary, UTF-16 or no UTF-8.
+    pub fn from_bytes(name: &str, bytes: &[u8], overrides: &[String]) -> Result<Self, Vec<Error>> {
+        let text = decode(name, bytes).map_err(|error| vec![error])?;
+        let source = Source::new(name, text);
+        let mut report = Report::new(&source, overrides);
+        let mut document = document::parse(&source, &mut report);
+        if report.failed() {
+            return Err(report.into_errors());
+        }
+        overrides::apply(&mut document, overrides, &mut report);
+        if document.entries.is_empty() && !report.failed() {
+            report.error(document::Origin::Nowhere, "", "the file is empty: it holds no key of a case");
+            return Err(report.into_errors());
+        }
+        let record = record::read(&document, &mut report);
+        let effective = if overrides.is_empty() { text.to_owned() } else { document.to_toml() };
+        match validate::case(&record, effective, &mut report) {
+            Some(case) if !report.failed() => Ok(case),
+            _ => Err(report.into_errors()),
+        }
+    }
+}
+
+/// Kind of the geometry.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Geometry {
+    /// Plane strain, 1 m thick.
+    PlaneStrain,
+}
+
+/// Kind and time of the analysis.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Analysis {
+    /// Whether inertia acts.
+    pub regime: Regime,
+    /// s (quasi-static: pseudo-time)  end of the run
+    pub end: f64,
+    /// s (quasi-static: pseudo-time)  nominal step; the step before a wanted time or the end is shortened
+    pub dt: f64,
+}
+
+/// A material and its name.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamedMaterial {
+    /// Name in the file.
+    pub name: String,
+    /// Law and parameters.
+    pub material: Material,
+    /// kg/m3; `None`: weightless
+    pub density: Option<f64>,
+}
+
+/// A rectangular body of material points.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Body {
+    /// Number of its material.
+    pub material: usize,
+    /// m  lower corner, in the case's coordinates
+    pub lower: [f64; 2],
+    /// m  upper corner
+    pub upper: [f64; 2],
+    /// Points along each axis of a cell.
+    pub points_per_cell: usize,
+    /// m/s  at the start; `None`: at rest
+    pub velocity: Option<[f64; 2]>,
+}
+
+/// Body force per mass.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Gravity {
+    /// m/s2  when fully applied
+    pub acceleration: [f64; 2],
+    /// s (quasi-static: pseudo-time)  over which it grows linearly; 0: at once
+    pub ramp: f64,
+}
+
+/// Support of one face of the grid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Support {
+    /// All components held.
+    Fixed,
+    /// The normal component held.
+    Roller,
+    /// Nothing held.
+    Free,
+}
+
+/// The non-linear iteration and the linear solver.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Solver {
+    /// Which iteration.
+    pub nonlinear: Nonlinear,
+    /// -  energy measure of convergence
+    pub tolerance: f64,
+    /// -  force measure of convergence; both must hold
+    pub force_tolerance: f64,
+    /// Iterations of one attempt.
+    pub max_iterations: usize,
+    /// -  coefficient of the soft background; 0: none
+    pub background: f64,
+    /// Cells that get the background.
+    pub background_cells: Extent,
+    /// The linear solver.
+    pub linear: Linear,
+    /// The same bits in every run on as many ranks.
+    pub reproducible: bool,
+}
+
+/// The non-linear iteration.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Nonlinear {
+    /// The controller's choice: Broyden with cut steps.
+    Auto,
+    /// Broyden only.
+    Broyden,
+}
+
+/// The linear solver by PETSc's own names, all of them known ones.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Linear {
+    /// Krylov method, or `preonly`.
+    pub ksp: &'static str,
+    /// Preconditioner, or direct solver.
+    pub pc: &'static str,
+    /// Package of a direct solver; `None` for other preconditioners.
+    pub factor: Option<&'static str>,
+}
+
+/// Frames for ParaView; without `every` and `times` there are none.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Output {
+    /// Regular frames, if any.
+    pub every: Option<Every>,
+    /// s (quasi-static: pseudo-time)  further frames, increasing, within (0, end]; hit exactly
+    pub times: Vec<f64>,
+    /// Format of the frames.
+    pub format: Format,
+}
+
+/// Distance of regular frames.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Every {
+    /// s (quasi-static: pseudo-time)  hit exactly
+    Time(f64),
+    /// Accepted steps.
+    Steps(u64),
+}
+
+/// Format of frames.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Format {
+    /// One `.vtu` per frame and a `.pvd`.
+    #[default]
+    Vtu,
+}
+
+/// A quantity that is recorded every step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct History {
+    /// What is recorded.
+    pub quantity: Quantity,
+    /// Name of the column, or beginning of the columns' names.
+    pub name: String,
+    /// -  multiplies
+    pub scale: f64,
+}
+
+/// What a history records.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Quantity {
+    /// m  the x that `percentile` per cent of the points do not exceed
+    Runout {
+        /// %  100: the farthest point
+        percentile: f64,
+    },
+    /// m  the farthest x in a cell of the lowest occupied row that is at least half filled
+    Front,
+    /// m  the largest y of any point
+    Height,
+    /// m  the largest displacement of any point
+    MaxDisplacement,
+    /// kg/m  of all points
+    Mass,
+    /// kg/s  of all points, per metre of thickness (kg m/s per m)
+    Momentum,
+    /// N/m  force of a face's supports on the body
+    Reaction {
+        /// The face.
+        face: Face,
+    },
+    /// m  of the point nearest to `at` at the start
+    Displacement {
+        /// m  in the case's coordinates
+        at: [f64; 2],
+    },
+    /// m/s  of the point nearest to `at` at the start
+    Velocity {
+        /// m  in the case's coordinates
+        at: [f64; 2],
+    },
+    /// Pa  Cauchy stress of the point nearest to `at` at the start
+    Stress {
+        /// m  in the case's coordinates
+        at: [f64; 2],
+    },
+    /// -  oscillation of sigma_yy about its average over the grid and about a plane
+    StressNoise,
+}
+
+/// A face of the grid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Face {
+    /// axis that it is normal to
+    pub axis: usize,
+    /// the face at the axis' upper end
+    pub upper: bool,
+}
+
+/// One column of the history file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Column {
+    /// Its name.
+    pub name: String,
+    /// Unit of its numbers; `scaled UNIT` where a scale multiplies.
+    pub unit: String,
+}
+
+impl Quantity {
+    /// What a column's name gets appended, in the order of the numbers; one empty text for a scalar.
+    pub fn suffixes(&self) -> &'static [&'static str] {
+        match self {
+            Self::Momentum | Self::Reaction { .. } | Self::Displacement { .. } | Self::Velocity { .. } => &["-x", "-y"],
+            Self::Stress { .. } => &["-xx", "-yy", "-zz", "-xy"],
+            Self::StressNoise => &["-average", "-plane"],
+            _ => &[""],
+        }
+    }
+
+    /// Unit of its numbers.
+    pub fn unit(&self) -> &'static str {
+        match self {
+            Self::Runout { .. } | Self::Front | Self::Height | Self::MaxDisplacement | Self::Displacement { .. } => "m",
+            Self::Mass => "kg/m",
+            Self::Momentum => "kg/s",
+            Self::Reaction { .. } => "N/m",
+            Self::Velocity { .. } => "m/s",
+            Self::Stress { .. } => "Pa",
+            Self::StressNoise => "-",
+        }
+    }
+}
+
+impl History {
+    /// Its columns in the history file.
+    pub fn columns(&self) -> Vec<Column> {
+        let unit = self.quantity.unit();
+        let unit = if self.scale == 1.0 { unit.to_owned() } else { format!("scaled {unit}") };
+        let column = |suffix: &&str| Column { name: format!("{}{suffix}", self.name), unit: unit.clone() };
+        self.quantity.suffixes().iter().map(column).collect()
+    }
+}
+
+/// Bounds of a history column at a time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Check {
+    /// Name of the column.
+    pub quantity: String,
+    /// s (quasi-static: pseudo-time)  within (0, end]; hit exactly
+    pub at: f64,
+    /// Least value, in the column's unit.
+    pub min: Option<f64>,
+    /// Largest value, in the column's unit.
+    pub max: Option<f64>,
+}
+
+/// Something that the program chose by itself, for the manifest.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Choice {
+    /// Path of the key.
+    pub key: String,
+    /// The value chosen.
+    pub value: String,
+    /// Why.
+    pub reason: String,
+}

@@ -1,0 +1,128 @@
+//! The case as written: a tree of values, each with the place where it stands.
+
+use crate::report::{Report, shortened};
+use crate::source::Source;
+use toml::de::{DeTable, DeValue};
+
+mod write;
+
+/// Where a value or key was written. Orders as a report lists: the file from its start, then overrides.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Origin {
+    /// nowhere: the file as a whole, or a default
+    Nowhere,
+    /// byte offset in the text
+    Text(usize),
+    /// number of the override
+    Override(usize),
+}
+
+/// A value with its place.
+#[derive(Clone, Debug)]
+pub(crate) struct Node {
+    pub(crate) origin: Origin,
+    pub(crate) value: Value,
+}
+
+/// A value of TOML. Numbers are kept as text, without underscores.
+#[derive(Clone, Debug)]
+pub(crate) enum Value {
+    Text(String),
+    Integer(String),
+    Float(String),
+    Flag(bool),
+    Date(String),
+    List(Vec<Node>),
+    Table(Table),
+}
+
+/// The entries of a table in the order of the file.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Table {
+    pub(crate) entries: Vec<Entry>,
+}
+
+/// A key, its place and its value.
+#[derive(Clone, Debug)]
+pub(crate) struct Entry {
+    pub(crate) key: String,
+    pub(crate) origin: Origin,
+    pub(crate) node: Node,
+}
+
+impl Table {
+    pub(crate) fn get(&self, key: &str) -> Option<&Entry> {
+        self.entries.iter().find(|entry| entry.key == key)
+    }
+
+    pub(crate) fn get_mut(&mut self, key: &str) -> Option<&mut Entry> {
+        self.entries.iter_mut().find(|entry| entry.key == key)
+    }
+}
+
+impl Node {
+    /// The value as an error shows it.
+    pub(crate) fn show(&self) -> String {
+        match &self.value {
+            Value::Text(text) => format!("\"{}\"", shortened(text)),
+            Value::Integer(text) | Value::Float(text) | Value::Date(text) => shortened(text),
+            Value::Flag(flag) => flag.to_string(),
+            Value::List(list) => format!("a list of {}", list.len()),
+            Value::Table(_) => "a table".to_owned(),
+        }
+    }
+}
+
+/// The document in `source`; syntax errors go to `report`, one per line.
+pub(crate) fn parse(source: &Source<'_>, report: &mut Report<'_>) -> Table {
+    let (table, errors) = DeTable::parse_recoverable(source.text);
+    let mut last_line = None;
+    for error in errors {
+        let origin = error.span().map_or(Origin::Nowhere, |span| Origin::Text(span.start));
+        let line = error.span().map(|span| source.line(span.start));
+        if line.is_none() || line != last_line {
+            report.error(origin, "", format!("no valid TOML: {}", error.message()));
+        }
+        last_line = line;
+    }
+    let place = |span: std::ops::Range<usize>| Origin::Text(span.start);
+    entries(table.get_ref(), &place)
+}
+
+/// The value `text` of an override, standing at `origin`.
+pub(crate) fn parse_value(text: &str, origin: Origin) -> Result<Node, String> {
+    let value = DeValue::parse(text).map_err(|error| error.message().to_owned())?;
+    Ok(Node { origin, value: convert(value.get_ref(), &|_| origin) })
+}
+
+type Placing<'a> = dyn Fn(std::ops::Range<usize>) -> Origin + 'a;
+
+fn entries(table: &DeTable<'_>, place: &Placing<'_>) -> Table {
+    let entry = |(key, value): (&toml::Spanned<std::borrow::Cow<'_, str>>, &toml::Spanned<DeValue<'_>>)| Entry {
+        key: key.get_ref().to_string(),
+        origin: place(key.span()),
+        node: Node { origin: place(value.span()), value: convert(value.get_ref(), place) },
+    };
+    let mut entries: Vec<Entry> = table.iter().map(entry).collect();
+    entries.sort_by_key(|entry| entry.origin);
+    Table { entries }
+}
+
+fn convert(value: &DeValue<'_>, place: &Placing<'_>) -> Value {
+    match value {
+        DeValue::String(text) => Value::Text(text.to_string()),
+        DeValue::Integer(number) => match i64::from_str_radix(number.as_str(), number.radix()) {
+            Ok(decimal) => Value::Integer(decimal.to_string()),
+            Err(_) => Value::Integer(number.to_string()),
+        },
+        DeValue::Float(number) => Value::Float(number.as_str().to_owned()),
+        DeValue::Boolean(flag) => Value::Flag(*flag),
+        DeValue::Datetime(date) => Value::Date(date.to_string()),
+        DeValue::Array(list) => {
+            let node =
+                |item: &toml::Spanned<DeValue<'_>>| Node { origin: place(item.span()), value: convert(item.get_ref(), place) };
+            Value::List(list.iter().map(node).collect())
+        }
+        DeValue::Table(table) => Value::Table(entries(table, place)),
+    }
+}

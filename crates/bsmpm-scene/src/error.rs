@@ -1,0 +1,57 @@
+//! One thing that is wrong with a case, told so that its author finds it and knows what to write.
+
+use std::fmt;
+
+/// Where an error stands.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Place {
+    /// In the file, both counted from 1; the column counts characters.
+    Line {
+        /// Line.
+        line: usize,
+        /// Column.
+        column: usize,
+    },
+    /// In the override given as `--set KEY=VALUE`.
+    Override(String),
+    /// The file as a whole.
+    File,
+}
+
+/// One error of a case file.
+///
+/// `{}` writes one line, `FILE:LINE:COLUMN: KEY: MESSAGE`; `{:#}` adds the line of the file with a mark under the place.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Error {
+    /// The case file as it was named.
+    pub file: String,
+    /// Where in it.
+    pub place: Place,
+    /// Path of the key, as `--set` takes it (`body.0.box.upper`); empty where no key is concerned.
+    pub key: String,
+    /// What was found and what is allowed.
+    pub message: String,
+    /// The line of the file, shortened around the place, and the characters before the mark.
+    pub(crate) excerpt: Option<(String, usize)>,
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.place {
+            Place::Line { line, column } => write!(f, "{}:{line}:{column}: ", self.file)?,
+            Place::Override(text) => write!(f, "--set {text}: ")?,
+            Place::File => write!(f, "{}: ", self.file)?,
+        }
+        if !self.key.is_empty() {
+            write!(f, "{}: ", self.key)?;
+        }
+        f.write_str(&self.message)?;
+        if let (true, Some((text, before)), Place::Line { line, .. }) = (f.alternate(), &self.excerpt, &self.place) {
+            let gutter = line.to_string().len();
+            write!(f, "\n  {line} | {text}\n  {:gutter$} | {:before$}^", "", "")?;
+        }
+        Ok(())
+    }
+}
+
+impl std::error::Error for Error {}

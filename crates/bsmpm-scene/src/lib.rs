@@ -1,0 +1,36 @@
+//! What to solve: a TOML case file, read strictly, becomes a valid [`Case`] in SI units and its material points.
+//!
+//! The way of a case: bytes ([`decode`]) -> the document as written, with every value's place -> overrides
+//! (`--set KEY=VALUE`) -> the document held against the [`schema`]: names, types, units, ranges -> the rules between
+//! keys -> [`Case`]. All errors of a file are reported at once; nothing is used differently from how it was written.
+//! This crate knows no MPI, writes nothing and allocates nothing in proportion to a number that a case gives.
+#![forbid(unsafe_code)]
+
+pub mod schema;
+pub mod unit;
+
+mod case;
+mod document;
+mod error;
+mod estimate;
+mod grid;
+mod nearest;
+mod overrides;
+mod record;
+mod report;
+mod seed;
+mod source;
+mod validate;
+
+pub use bsmpm::background::Extent;
+pub use bsmpm::model::Regime;
+pub use bsmpm::points::Seed;
+pub use case::{
+    Analysis, Body, Case, Check, Choice, Column, Every, Face, Format, Geometry, Gravity, History, Linear, NamedMaterial,
+    Nonlinear, Output, Quantity, Solver, Support,
+};
+pub use error::{Error, Place};
+pub use estimate::Estimate;
+pub use grid::{Axis, GridSpec};
+pub use seed::seed;
+pub use source::{MAX_BYTES, decode, load};

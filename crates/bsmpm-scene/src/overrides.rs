@@ -1,0 +1,114 @@
+//! `--set KEY=VALUE`: one value of the document replaced before anything is validated.
+
+use crate::document::{self, Entry, Node, Origin, Table, Value};
+use crate::report::{Report, shortened};
+use crate::schema::{Kind, ROOT, Table as Schema};
+
+/// Parts of a key path at most; no key lies deeper.
+const DEEPEST: usize = 6;
+
+/// Merges the overrides into the document in their order; a later one wins.
+pub(crate) fn apply(document: &mut Table, overrides: &[String], report: &mut Report<'_>) {
+    for (number, text) in overrides.iter().enumerate() {
+        let origin = Origin::Override(number);
+        let Some((key, value)) = text.split_once('=') else {
+            report.error(origin, "", "expected KEY=VALUE");
+            continue;
+        };
+        let parts: Vec<&str> = key.split('.').map(str::trim).collect();
+        if parts.len() > DEEPEST || parts.iter().any(|part| part.is_empty()) {
+            report.error(origin, key.trim(), "no key path; expected e.g. grid.cell or body.0.points_per_cell");
+            continue;
+        }
+        match parsed(value.trim(), origin) {
+            Ok(node) => {
+                let mut setting = Setting { parts: &parts, node, origin };
+                if let Err(message) = setting.in_table(document, Some(&ROOT), 0) {
+                    report.error(origin, key.trim(), message);
+                }
+            }
+            Err(message) => report.error(origin, key.trim(), format!("no valid TOML: {message}")),
+        }
+    }
+}
+
+/// The value as TOML; what is none, like a bare word or `5 mm`, is a string.
+fn parsed(text: &str, origin: Origin) -> Result<Node, String> {
+    match document::parse_value(text, origin) {
+        Err(message) if text.starts_with(['[', '{', '"', '\'']) => Err(message),
+        Err(_) => Ok(Node { origin, value: Value::Text(text.to_owned()) }),
+        read => read,
+    }
+}
+
+struct Setting<'a> {
+    parts: &'a [&'a str],
+    node: Node,
+    origin: Origin,
+}
+
+impl Setting<'_> {
+    fn in_table(&mut self, table: &mut Table, schema: Option<&'static Schema>, depth: usize) -> Result<(), String> {
+        let name = self.parts[depth];
+        if let Some(group) = schema.and_then(|schema| schema.group(name)) {
+            table.entries.retain(|entry| entry.key == name || !group.keys.contains(&entry.key.as_str()));
+        }
+        let kind = schema.and_then(|schema| schema.key(name)).map(|key| &key.kind);
+        if depth + 1 == self.parts.len() {
+            let node = self.node.clone();
+            match table.get_mut(name) {
+                Some(entry) => *entry = Entry { key: name.to_owned(), origin: self.origin, node },
+                None => table.entries.push(Entry { key: name.to_owned(), origin: self.origin, node }),
+            }
+            return Ok(());
+        }
+        if table.get(name).is_none() {
+            let value = match kind {
+                Some(Kind::Tables(_)) => Value::List(Vec::new()),
+                _ => Value::Table(Table::default()),
+            };
+            let node = Node { origin: self.origin, value };
+            table.entries.push(Entry { key: name.to_owned(), origin: self.origin, node });
+        }
+        let Some(entry) = table.get_mut(name) else { return Ok(()) };
+        match (kind, &mut entry.node.value) {
+            (Some(Kind::Named(below)), Value::Table(named)) => self.in_named(named, below, depth + 1),
+            _ => self.in_value(&mut entry.node, kind.and_then(Kind::table), depth + 1),
+        }
+    }
+
+    /// In a table whose keys are names of the author's choice.
+    fn in_named(&mut self, named: &mut Table, schema: &'static Schema, depth: usize) -> Result<(), String> {
+        let name = self.parts[depth];
+        if depth + 1 < self.parts.len() && let Some(entry) = named.get_mut(name) {
+            return self.in_value(&mut entry.node, Some(schema), depth + 1);
+        }
+        self.in_table(named, None, depth)
+    }
+
+    fn in_value(&mut self, node: &mut Node, schema: Option<&'static Schema>, depth: usize) -> Result<(), String> {
+        let shown = node.show();
+        let part = self.parts[depth];
+        match &mut node.value {
+            Value::Table(table) => self.in_table(table, schema, depth),
+            Value::List(items) => {
+                let length = items.len();
+                let index: usize = part.parse().map_err(|_| format!("`{}` is no index of a list", shortened(part)))?;
+                if index > length {
+                    return Err(format!("index {index} is beyond the list of {length}"));
+                }
+                let last = depth + 1 == self.parts.len();
+                if index == length {
+                    let value = if last { self.node.value.clone() } else { Value::Table(Table::default()) };
+                    items.push(Node { origin: self.origin, value });
+                }
+                if last {
+                    items[index] = self.node.clone();
+                    return Ok(());
+                }
+                self.in_value(&mut items[index], schema, depth + 1)
+            }
+            _ => Err(format!("`{}` lies in {shown}, which is no table", shortened(part))),
+        }
+    }
+}

@@ -1,0 +1,262 @@
+//! The document held against the schema: every value typed, in SI and within its range, or an error.
+
+mod value;
+
+use crate::document::{self, Node, Origin, Value};
+use crate::nearest::nearest;
+use crate::report::{Report, shortened};
+use crate::schema::{Group, Kind, Presence, ROOT, Table};
+use crate::unit::Dimension;
+
+/// A table whose keys and values are as the schema says.
+#[derive(Clone, Debug)]
+pub(crate) struct Record {
+    pub(crate) path: String,
+    pub(crate) origin: Origin,
+    fields: Vec<Field>,
+}
+
+#[derive(Clone, Debug)]
+struct Field {
+    key: &'static str,
+    origin: Origin,
+    written: bool,
+    datum: Option<Datum>, // None: an error has been reported
+}
+
+/// A value of a known type; quantities are in SI, angles in degrees.
+#[derive(Clone, Debug)]
+pub(crate) enum Datum {
+    Number(f64),
+    /// the dimension is that of its unit, if it has one
+    Measure(f64, Option<Dimension>),
+    Numbers(Vec<f64>),
+    Count(u64),
+    Word(&'static str),
+    Text(String),
+    Flag(bool),
+    Record(Record),
+    Named(Vec<(String, Record)>),
+    Records(Vec<Record>),
+}
+
+/// What the types of values depend on besides the schema.
+#[derive(Clone, Copy)]
+struct Context {
+    /// time is a pseudo-time without unit
+    pseudo_time: bool,
+}
+
+/// The whole file as a record; what does not fit goes to `report`.
+pub(crate) fn read(document: &document::Table, report: &mut Report<'_>) -> Record {
+    let kind = document.get("analysis").and_then(|entry| match &entry.node.value {
+        Value::Table(analysis) => analysis.get("type"),
+        _ => None,
+    });
+    let pseudo_time = kind.is_some_and(|entry| matches!(&entry.node.value, Value::Text(text) if text == "quasi-static"));
+    Context { pseudo_time }.record(&ROOT, document, Origin::Nowhere, "", report)
+}
+
+impl Context {
+    fn record(
+        self,
+        table: &'static Table,
+        written: &document::Table,
+        origin: Origin,
+        path: &str,
+        report: &mut Report<'_>,
+    ) -> Record {
+        for entry in written.entries.iter().filter(|entry| table.key(&entry.key).is_none()) {
+            report.error(entry.origin, &join(path, &entry.key), unknown(table, &entry.key));
+        }
+        let mut record = Record { path: path.to_owned(), origin, fields: Vec::new() };
+        for key in table.keys {
+            let path = join(path, key.name);
+            match (written.get(key.name), key.presence) {
+                (Some(entry), Presence::Later) => report.error(entry.origin, &path, "not available yet"),
+                (Some(entry), _) => {
+                    let datum = self.datum(&key.kind, &entry.node, &path, report);
+                    record.fields.push(Field { key: key.name, origin: entry.node.origin, written: true, datum });
+                }
+                (None, Presence::Required) => {
+                    report.error(origin, &path, format!("missing; it is {}", key.kind));
+                    record.fields.push(Field { key: key.name, origin, written: false, datum: None });
+                }
+                (None, Presence::Default(text)) => {
+                    let datum = self.default(&key.kind, text, (origin, &path), report);
+                    record.fields.push(Field { key: key.name, origin, written: false, datum });
+                }
+                (None, Presence::Optional | Presence::Later) => {}
+            }
+        }
+        for group in table.exclusive {
+            exclusive(group, written, &record, report);
+        }
+        record
+    }
+
+    fn default(self, kind: &Kind, text: &str, (origin, path): (Origin, &str), report: &mut Report<'_>) -> Option<Datum> {
+        let Ok(node) = document::parse_value(text, origin) else {
+            report.error(origin, path, format!("the default {text} is no TOML: a mistake of the program"));
+            return None;
+        };
+        let listed = path.split('.').any(|part| part.starts_with(|c: char| c.is_ascii_digit()));
+        if kind.table().is_none() && !listed {
+            report.note(path, text, "default");
+        }
+        self.datum(kind, &node, path, report)
+    }
+
+    fn datum(self, kind: &Kind, node: &Node, path: &str, report: &mut Report<'_>) -> Option<Datum> {
+        match (kind, &node.value) {
+            (Kind::Table(table), Value::Table(written)) => {
+                Some(Datum::Record(self.record(table, written, node.origin, path, report)))
+            }
+            (Kind::Named(table), Value::Table(written)) => Some(self.named(table, written, path, report)),
+            (Kind::Tables(table), Value::List(items)) => self.records(table, items, path, report),
+            (Kind::Table(_) | Kind::Named(_) | Kind::Tables(_), _) => {
+                report.error(node.origin, path, format!("expected {kind}, found {}", node.show()));
+                None
+            }
+            _ => value::read(kind, node, path, self.pseudo_time, report),
+        }
+    }
+
+    fn named(self, table: &'static Table, written: &document::Table, path: &str, report: &mut Report<'_>) -> Datum {
+        let mut named = Vec::new();
+        for entry in &written.entries {
+            let path = join(path, &entry.key);
+            if !value::is_name(&entry.key) {
+                report.error(entry.origin, &path, format!("the name must be {}", Kind::Name));
+            }
+            match &entry.node.value {
+                Value::Table(inner) => {
+                    named.push((entry.key.clone(), self.record(table, inner, entry.origin, &path, report)));
+                }
+                _ => {
+                    let message = format!("expected a table, {}, found {}", table.header, entry.node.show());
+                    report.error(entry.origin, &path, message);
+                }
+            }
+        }
+        Datum::Named(named)
+    }
+
+    fn records(self, table: &'static Table, items: &[Node], path: &str, report: &mut Report<'_>) -> Option<Datum> {
+        let mut records = Vec::new();
+        for (number, item) in items.iter().enumerate() {
+            let path = join(path, &number.to_string());
+            match &item.value {
+                Value::Table(written) => records.push(self.record(table, written, item.origin, &path, report)),
+                _ => {
+                    report.error(item.origin, &path, format!("expected a table, {}, found {}", table.header, item.show()));
+                }
+            }
+        }
+        (records.len() == items.len()).then_some(Datum::Records(records))
+    }
+}
+
+fn join(path: &str, key: &str) -> String {
+    if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") }
+}
+
+fn unknown(table: &'static Table, key: &str) -> String {
+    let names = || table.keys.iter().map(|key| key.name);
+    let elsewhere = || ROOT.all().into_iter().find(|other| other.key(key).is_some());
+    let hint = match (nearest(key, names()), elsewhere()) {
+        (Some(name), _) => format!("; did you mean `{name}`?"),
+        (None, Some(other)) => format!("; `{key}` belongs to {}", other.header),
+        (None, None) => String::new(),
+    };
+    let known: Vec<&str> = names().collect();
+    format!("unknown key `{}` in {}{hint} (known: {})", shortened(key), table.header, known.join(", "))
+}
+
+fn exclusive(group: &Group, written: &document::Table, record: &Record, report: &mut Report<'_>) {
+    let given: Vec<_> = group.keys.iter().filter_map(|key| written.get(key)).collect();
+    if let [first, second, ..] = given[..] {
+        let message = format!("`{}` is given too; only one of {} may be", first.key, group.keys.join(", "));
+        report.error(second.origin, &join(&record.path, &second.key), message);
+    }
+    if given.is_empty() && group.required {
+        report.error(record.origin, &record.path, format!("missing: one of {}", group.keys.join(", ")));
+    }
+}
+
+impl Record {
+    fn field(&self, key: &str) -> Option<&Field> {
+        self.fields.iter().find(|field| field.key == key)
+    }
+
+    fn datum(&self, key: &str) -> Option<&Datum> {
+        self.field(key)?.datum.as_ref()
+    }
+
+    /// Whether the file gives the key, even with a wrong value.
+    pub(crate) fn gives(&self, key: &str) -> bool {
+        self.field(key).is_some_and(|field| field.written)
+    }
+
+    /// Place of the key's value, or of the table where there is none.
+    pub(crate) fn place(&self, key: &str) -> Origin {
+        self.field(key).map_or(self.origin, |field| field.origin)
+    }
+
+    /// Path of a key of this table.
+    pub(crate) fn path_of(&self, key: &str) -> String {
+        join(&self.path, key)
+    }
+
+    /// Records an error about the key.
+    pub(crate) fn error(&self, key: &str, message: impl Into<String>, report: &mut Report<'_>) {
+        report.error(self.place(key), &self.path_of(key), message);
+    }
+}
+
+/// Typed access: `None` if the key is absent or an error has been reported.
+impl Record {
+    pub(crate) fn number(&self, key: &str) -> Option<f64> {
+        if let Datum::Number(number) = self.datum(key)? { Some(*number) } else { None }
+    }
+
+    pub(crate) fn measure(&self, key: &str) -> Option<(f64, Option<Dimension>)> {
+        if let Datum::Measure(number, dimension) = self.datum(key)? { Some((*number, *dimension)) } else { None }
+    }
+
+    pub(crate) fn numbers(&self, key: &str) -> Option<&[f64]> {
+        if let Datum::Numbers(numbers) = self.datum(key)? { Some(numbers) } else { None }
+    }
+
+    pub(crate) fn pair(&self, key: &str) -> Option<[f64; 2]> {
+        self.numbers(key)?.try_into().ok()
+    }
+
+    pub(crate) fn count(&self, key: &str) -> Option<u64> {
+        if let Datum::Count(count) = self.datum(key)? { Some(*count) } else { None }
+    }
+
+    pub(crate) fn word(&self, key: &str) -> Option<&'static str> {
+        if let Datum::Word(word) = self.datum(key)? { Some(word) } else { None }
+    }
+
+    pub(crate) fn text(&self, key: &str) -> Option<&str> {
+        if let Datum::Text(text) = self.datum(key)? { Some(text) } else { None }
+    }
+
+    pub(crate) fn flag(&self, key: &str) -> Option<bool> {
+        if let Datum::Flag(flag) = self.datum(key)? { Some(*flag) } else { None }
+    }
+
+    pub(crate) fn record(&self, key: &str) -> Option<&Record> {
+        if let Datum::Record(record) = self.datum(key)? { Some(record) } else { None }
+    }
+
+    pub(crate) fn named(&self, key: &str) -> &[(String, Record)] {
+        if let Some(Datum::Named(named)) = self.datum(key) { named } else { &[] }
+    }
+
+    pub(crate) fn records(&self, key: &str) -> &[Record] {
+        if let Some(Datum::Records(records)) = self.datum(key) { records } else { &[] }
+    }
+}

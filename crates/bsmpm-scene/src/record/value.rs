@@ -1,0 +1,152 @@
+//! One value held against its kind.
+
+use super::Datum;
+use crate::document::{Node, Value};
+use crate::nearest::hint;
+use crate::report::{Report, shortened};
+use crate::schema::{Kind, Range};
+use crate::unit::{self, Dimension};
+
+/// Longest name of a material, column or check.
+const LONGEST_NAME: usize = 64;
+
+/// The value of `node` as `kind` says; `None` after an error.
+pub(super) fn read(
+    kind: &Kind,
+    node: &Node,
+    path: &str,
+    pseudo_time: bool,
+    report: &mut Report<'_>,
+) -> Option<Datum> {
+    let name = path.rsplit('.').next().unwrap_or(path);
+    let mut reader = Reader { kind, path, name, pseudo_time, report };
+    match kind {
+        Kind::Quantity(dimension, range) => reader.quantity(node, *dimension, range).map(Datum::Number),
+        Kind::Profile(dimension, range) => match node.value {
+            Value::Table(_) => reader.fail(node, "{ value, at_y, per_metre } is not available yet"),
+            _ => reader.quantity(node, *dimension, range).map(Datum::Number),
+        },
+        Kind::Measure => reader.measure(node),
+        Kind::Pair(dimension, range) => reader.quantities(node, *dimension, range, Some(2)),
+        Kind::List(dimension, range) => reader.quantities(node, *dimension, range, None),
+        Kind::Either(dimension, range) => match node.value {
+            Value::List(_) => reader.quantities(node, *dimension, range, Some(2)),
+            _ => reader.quantity(node, *dimension, range).map(|number| Datum::Numbers(vec![number])),
+        },
+        Kind::Count(least, most) => reader.count(node, *least, *most),
+        Kind::Choice(words, later) => reader.choice(node, words, later),
+        Kind::Text(most) => reader.text(node, *most),
+        Kind::Name => match &node.value {
+            Value::Text(text) if is_name(text) => Some(Datum::Text(text.clone())),
+            _ => reader.unexpected(node),
+        },
+        Kind::Flag => match node.value {
+            Value::Flag(flag) => Some(Datum::Flag(flag)),
+            _ => reader.unexpected(node),
+        },
+        Kind::Table(_) | Kind::Named(_) | Kind::Tables(_) | Kind::Open => reader.unexpected(node),
+    }
+}
+
+/// Whether `text` is fit for a name that stands in files' headers and key paths.
+pub(super) fn is_name(text: &str) -> bool {
+    let fit = |c: char| c.is_ascii_alphanumeric() || matches!(c, '-' | '_');
+    (1..=LONGEST_NAME).contains(&text.len()) && text.chars().all(fit)
+}
+
+struct Reader<'a, 'r> {
+    kind: &'a Kind,
+    path: &'a str,
+    name: &'a str,
+    pseudo_time: bool,
+    report: &'a mut Report<'r>,
+}
+
+impl Reader<'_, '_> {
+    fn fail<T>(&mut self, node: &Node, message: impl Into<String>) -> Option<T> {
+        self.report.error(node.origin, self.path, message);
+        None
+    }
+
+    fn unexpected<T>(&mut self, node: &Node) -> Option<T> {
+        self.fail(node, format!("expected {}, found {}", self.kind, node.show()))
+    }
+
+    fn quantity(&mut self, node: &Node, dimension: Dimension, range: &Range) -> Option<f64> {
+        let read = match &node.value {
+            Value::Integer(text) if text.parse::<i64>().is_err() => Err(format!("{} is too large", shortened(text))),
+            Value::Integer(text) | Value::Float(text) => unit::finite(text),
+            Value::Text(_) if dimension == Dimension::Time && self.pseudo_time => {
+                Err(format!("found {}; quasi-static time is a pseudo-time without unit: a number", node.show()))
+            }
+            Value::Text(_) if dimension == Dimension::Number => return self.unexpected(node),
+            Value::Text(text) => unit::parse(text, dimension),
+            _ => return self.unexpected(node),
+        };
+        let value = match read {
+            Ok(value) => value,
+            Err(message) => return self.fail(node, message),
+        };
+        if !range.contains(value) {
+            let why = if range.why.is_empty() { String::new() } else { format!(" ({})", range.why) };
+            let allowed = range.condition(self.name);
+            return self.fail(node, format!("{} is out of range; allowed: {allowed}{why}", node.show()));
+        }
+        if value.abs() > dimension.limit() {
+            let most = dimension.limit();
+            return self.fail(node, format!("{} is out of range; {dimension} is at most {most:e} in SI", node.show()));
+        }
+        Some(value)
+    }
+
+    fn quantities(&mut self, node: &Node, dimension: Dimension, range: &Range, length: Option<usize>) -> Option<Datum> {
+        let Value::List(items) = &node.value else { return self.unexpected(node) };
+        if length.is_some_and(|length| length != items.len()) {
+            return self.unexpected(node);
+        }
+        let read: Vec<Option<f64>> = items.iter().map(|item| self.quantity(item, dimension, range)).collect();
+        read.into_iter().collect::<Option<Vec<f64>>>().map(Datum::Numbers)
+    }
+
+    fn measure(&mut self, node: &Node) -> Option<Datum> {
+        let Value::Text(text) = &node.value else {
+            return self.quantity(node, Dimension::Number, &Range::ANY).map(|number| Datum::Measure(number, None));
+        };
+        match unit::parse_any(text, None) {
+            Ok((number, dimension)) => Some(Datum::Measure(number, Some(dimension))),
+            Err(message) => self.fail(node, message),
+        }
+    }
+
+    fn count(&mut self, node: &Node, least: u64, most: u64) -> Option<Datum> {
+        let Value::Integer(text) = &node.value else { return self.unexpected(node) };
+        match text.parse::<u64>() {
+            Ok(count) if (least..=most).contains(&count) => Some(Datum::Count(count)),
+            _ => {
+                let allowed = format!("{least} <= {} <= {most}", self.name);
+                self.fail(node, format!("{} is out of range; allowed: {allowed}", shortened(text)))
+            }
+        }
+    }
+
+    fn choice(&mut self, node: &Node, words: &[&'static str], later: &[&str]) -> Option<Datum> {
+        let Value::Text(text) = &node.value else { return self.unexpected(node) };
+        if let Some(word) = words.iter().find(|word| **word == text.as_str()) {
+            return Some(Datum::Word(word));
+        }
+        if later.contains(&text.as_str()) {
+            return self.fail(node, format!("\"{text}\" is not available yet; allowed: {}", self.kind));
+        }
+        let near = hint(text, words.iter().copied());
+        self.fail(node, format!("expected {}, found {}{near}", self.kind, node.show()))
+    }
+
+    fn text(&mut self, node: &Node, most: usize) -> Option<Datum> {
+        match &node.value {
+            Value::Text(text) if text.chars().nth(most).is_none() && !text.chars().any(char::is_control) => {
+                Some(Datum::Text(text.clone()))
+            }
+            _ => self.unexpected(node),
+        }
+    }
+}

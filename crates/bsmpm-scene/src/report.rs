@@ -1,0 +1,87 @@
+//! Collects what is wrong, doubtful or chosen while a case is read, each thing once and in the file's order.
+
+use crate::case::Choice;
+use crate::document::Origin;
+use crate::error::{Error, Place};
+use crate::source::Source;
+use std::collections::HashSet;
+
+/// Errors that are reported at most; a file with more is no case.
+const MOST: usize = 100;
+
+/// Errors, warnings and choices of one case.
+#[derive(Debug)]
+pub(crate) struct Report<'a> {
+    source: &'a Source<'a>,
+    overrides: &'a [String],
+    errors: Vec<(Origin, Error)>,
+    pub(crate) warnings: Vec<String>,
+    pub(crate) notes: Vec<Choice>,
+}
+
+impl<'a> Report<'a> {
+    pub(crate) fn new(source: &'a Source<'a>, overrides: &'a [String]) -> Self {
+        Self { source, overrides, errors: Vec::new(), warnings: Vec::new(), notes: Vec::new() }
+    }
+
+    /// Records an error at `origin` that concerns the key path `key`.
+    pub(crate) fn error(&mut self, origin: Origin, key: &str, message: impl Into<String>) {
+        let (place, excerpt) = match origin {
+            Origin::Text(offset) => {
+                let (place, excerpt) = self.source.locate(offset);
+                (place, Some(excerpt))
+            }
+            Origin::Override(number) => (Place::Override(shortened(&self.overrides[number])), None),
+            Origin::Nowhere => (Place::File, None),
+        };
+        let (file, key) = (self.source.name.to_owned(), shortened(key));
+        self.errors.push((origin, Error { file, place, key, message: message.into(), excerpt }));
+    }
+
+    pub(crate) fn warn(&mut self, message: impl Into<String>) {
+        self.warnings.push(message.into());
+    }
+
+    pub(crate) fn note(&mut self, key: impl Into<String>, value: impl Into<String>, reason: impl Into<String>) {
+        self.notes.push(Choice { key: key.into(), value: value.into(), reason: reason.into() });
+    }
+
+    pub(crate) fn failed(&self) -> bool {
+        !self.errors.is_empty()
+    }
+
+    /// The errors in the order of the file, without repetitions; those of overrides last.
+    pub(crate) fn into_errors(mut self) -> Vec<Error> {
+        self.errors.sort_by_key(|(origin, _)| *origin);
+        let mut seen = HashSet::new();
+        let once = |error: &Error| seen.insert((format!("{:?}", error.place), error.key.clone(), error.message.clone()));
+        let mut errors: Vec<Error> = self.errors.into_iter().map(|(_, error)| error).filter(once).collect();
+        if errors.len() > MOST {
+            let more = errors.len() - MOST;
+            errors.truncate(MOST);
+            errors.push(Error {
+                file: self.source.name.to_owned(),
+                place: Place::File,
+                key: String::new(),
+                message: format!("{more} more errors are not shown"),
+                excerpt: None,
+            });
+        }
+        errors
+    }
+}
+
+/// Text of a case made safe to print: no control characters, at most 60 characters.
+pub(crate) fn shortened(text: &str) -> String {
+    const LENGTH: usize = 60;
+    let safe = text.chars().take(LENGTH).flat_map(|c| {
+        let plain = matches!(c, '"' | '\'' | '\\');
+        if plain { vec![c] } else { c.escape_debug().collect() }
+    });
+    let mut safe: String = safe.collect();
+    if text.chars().nth(LENGTH).is_some() {
+        safe.push_str("...");
+    }
+    safe
+}
+

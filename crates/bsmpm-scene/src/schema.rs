@@ -1,0 +1,222 @@
+//! The language of case files as one table: every key with its type, range, default and meaning.
+//!
+//! The reader takes names, types, units, ranges and defaults from here; messages and `did you mean` do too.
+
+mod tables;
+
+pub use crate::unit::Dimension;
+pub use tables::ROOT;
+
+use std::fmt;
+use std::ops::Bound;
+
+/// A table of the case file.
+#[derive(Debug)]
+pub struct Table {
+    /// Its header as written, e.g. `[material.NAME]`.
+    pub header: &'static str,
+    /// What it says.
+    pub doc: &'static str,
+    /// Its keys.
+    pub keys: &'static [Key],
+    /// Keys of which only one may be given.
+    pub exclusive: &'static [Group],
+}
+
+/// Keys of which only one may be given; `--set` of one removes the others.
+#[derive(Debug)]
+pub struct Group {
+    /// The keys.
+    pub keys: &'static [&'static str],
+    /// Whether one of them must be given.
+    pub required: bool,
+}
+
+/// A key of a table.
+#[derive(Debug)]
+pub struct Key {
+    /// The key as written.
+    pub name: &'static str,
+    /// What its value may be.
+    pub kind: Kind,
+    /// Whether it must be given.
+    pub presence: Presence,
+    /// What it means.
+    pub doc: &'static str,
+}
+
+/// Whether a key must be given, and what holds if it is not.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Presence {
+    /// It must be given.
+    Required,
+    /// It may be absent: then the thing does not exist, or follows from other keys as its meaning says.
+    Optional,
+    /// Absent, it has this value (TOML).
+    Default(&'static str),
+    /// Part of the language, but not available yet: an error that says so.
+    Later,
+}
+
+/// What a value may be.
+#[derive(Debug)]
+pub enum Kind {
+    /// A number in SI (degrees for angles), or a string with a unit.
+    Quantity(Dimension, Range),
+    /// Like `Quantity`; a table `{ value, at_y, per_metre }` is not available yet.
+    Profile(Dimension, Range),
+    /// A number, or a string with a unit of whatever the key is about.
+    Measure,
+    /// Two quantities, x and y.
+    Pair(Dimension, Range),
+    /// One quantity for both axes, or two.
+    Either(Dimension, Range),
+    /// Any number of quantities.
+    List(Dimension, Range),
+    /// A whole number within bounds, both included.
+    Count(u64, u64),
+    /// One of several words; the second list is not available yet.
+    Choice(&'static [&'static str], &'static [&'static str]),
+    /// Text of at most so many characters.
+    Text(usize),
+    /// A name: ASCII letters, digits, `-` and `_`.
+    Name,
+    /// `true` or `false`.
+    Flag,
+    /// A table.
+    Table(&'static Table),
+    /// Tables with names of the author's choice, `[key.NAME]`.
+    Named(&'static Table),
+    /// Any number of tables, `[[key]]`.
+    Tables(&'static Table),
+    /// Whatever it will be once it is available.
+    Open,
+}
+
+/// An interval that a quantity must lie in.
+#[derive(Clone, Copy, Debug)]
+pub struct Range {
+    /// Lower end, in SI (angles in degrees).
+    pub lower: Bound<f64>,
+    /// Upper end.
+    pub upper: Bound<f64>,
+    /// Why, where that helps; else empty.
+    pub why: &'static str,
+}
+
+impl Range {
+    /// Any finite number.
+    pub const ANY: Self = Self::of(Bound::Unbounded, Bound::Unbounded);
+    /// Above zero.
+    pub const POSITIVE: Self = Self::of(Bound::Excluded(0.0), Bound::Unbounded);
+    /// Zero or above.
+    pub const NOT_NEGATIVE: Self = Self::of(Bound::Included(0.0), Bound::Unbounded);
+
+    /// Between two ends.
+    pub const fn of(lower: Bound<f64>, upper: Bound<f64>) -> Self {
+        Self { lower, upper, why: "" }
+    }
+
+    /// Whether `value` lies in it.
+    pub fn contains(&self, value: f64) -> bool {
+        use std::ops::RangeBounds;
+        (self.lower, self.upper).contains(&value)
+    }
+
+    /// The condition on `name` in words, e.g. `0 <= friction < 90`.
+    pub fn condition(&self, name: &str) -> String {
+        let (more, at_least) = (" < ", " <= ");
+        match (self.lower, self.upper) {
+            (Bound::Unbounded, Bound::Unbounded) => format!("any {name}"),
+            (Bound::Excluded(lower), Bound::Unbounded) => format!("{name} > {lower}"),
+            (Bound::Included(lower), Bound::Unbounded) => format!("{name} >= {lower}"),
+            (lower, upper) => {
+                let left = match lower {
+                    Bound::Excluded(lower) => format!("{lower}{more}"),
+                    Bound::Included(lower) => format!("{lower}{at_least}"),
+                    Bound::Unbounded => String::new(),
+                };
+                match upper {
+                    Bound::Excluded(upper) => format!("{left}{name}{more}{upper}"),
+                    Bound::Included(upper) => format!("{left}{name}{at_least}{upper}"),
+                    Bound::Unbounded => format!("{left}{name}"),
+                }
+            }
+        }
+    }
+}
+
+impl Table {
+    /// The key called `name`.
+    pub fn key(&self, name: &str) -> Option<&'static Key> {
+        self.keys.iter().find(|key| key.name == name)
+    }
+
+    /// The group of exclusive keys that `name` belongs to.
+    pub fn group(&self, name: &str) -> Option<&'static Group> {
+        self.exclusive.iter().find(|group| group.keys.contains(&name))
+    }
+
+    /// This table and all below it, outer ones first.
+    pub fn all(&'static self) -> Vec<&'static Table> {
+        let below = self.keys.iter().filter_map(|key| key.kind.table()).flat_map(Table::all);
+        std::iter::once(self).chain(below).collect()
+    }
+}
+
+impl Kind {
+    /// The table that the value is, or is made of.
+    pub fn table(&self) -> Option<&'static Table> {
+        match self {
+            Self::Table(table) | Self::Named(table) | Self::Tables(table) => Some(table),
+            _ => None,
+        }
+    }
+}
+
+impl fmt::Display for Kind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Quantity(dimension, _) | Self::Profile(dimension, _) => write!(f, "{}", Quantity(*dimension)),
+            Self::Measure => f.write_str("a number, or a string with a unit"),
+            Self::Pair(dimension, _) => write!(f, "a list of two, each {}", Quantity(*dimension)),
+            Self::Either(dimension, _) => write!(f, "{}, or a list of two", Quantity(*dimension)),
+            Self::List(dimension, _) => write!(f, "a list, each item {}", Quantity(*dimension)),
+            Self::Count(least, most) => write!(f, "a whole number from {least} to {most}"),
+            Self::Choice(words, _) => write!(f, "one of {}", words.map_quoted()),
+            Self::Text(most) => write!(f, "a text of at most {most} characters without control characters"),
+            Self::Name => f.write_str("a name of at most 64 ASCII letters, digits, `-` and `_`"),
+            Self::Flag => f.write_str("true or false"),
+            Self::Table(table) => write!(f, "a table, {}", table.header),
+            Self::Named(table) => write!(f, "tables with names, {}", table.header),
+            Self::Tables(table) => write!(f, "a list of tables, {}", table.header),
+            Self::Open => f.write_str("not available yet"),
+        }
+    }
+}
+
+/// A quantity of a dimension in words.
+struct Quantity(Dimension);
+
+impl fmt::Display for Quantity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match (self.0.units().next(), self.0) {
+            (None, _) => f.write_str("a number"),
+            (Some(unit), dimension) => {
+                let units: Vec<&str> = dimension.units().collect();
+                write!(f, "a number ({unit}) or a string with a unit ({})", units.join(", "))
+            }
+        }
+    }
+}
+
+trait Quoted {
+    fn map_quoted(&self) -> String;
+}
+
+impl Quoted for [&str] {
+    fn map_quoted(&self) -> String {
+        let quoted: Vec<String> = self.iter().map(|word| format!("\"{word}\"")).collect();
+        quoted.join(", ")
+    }
+}

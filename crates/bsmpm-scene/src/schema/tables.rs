@@ -1,0 +1,252 @@
+//! The tables and keys of the language.
+
+use super::Kind::*;
+use super::Presence::{Default, Later, Optional, Required};
+use super::{Dimension as In, Group, Key, Kind, Presence, Range, Table};
+use std::ops::Bound::{Excluded, Included};
+
+const fn key(name: &'static str, kind: Kind, presence: Presence, doc: &'static str) -> Key {
+    Key { name, kind, presence, doc }
+}
+
+const fn later(name: &'static str, doc: &'static str) -> Key {
+    key(name, Open, Later, doc)
+}
+
+const fn one_of(keys: &'static [&'static str], required: bool) -> Group {
+    Group { keys, required }
+}
+
+/// The whole file.
+pub static ROOT: Table = Table {
+    header: "the file",
+    doc: "One case: everything that a run needs",
+    keys: &[
+        key("title", Text(200), Optional, "what the case is, in a line"),
+        key("geometry", Choice(&["plane-strain"], &["axisymmetric", "solid"]), Required, "kind of the geometry"),
+        key("analysis", Kind::Table(&ANALYSIS), Required, "kind of the analysis and its time"),
+        key("grid", Kind::Table(&GRID), Required, "the parametric grid"),
+        key("material", Named(&MATERIAL), Required, "materials by name"),
+        key("body", Tables(&BODY), Required, "bodies made of material points"),
+        key("gravity", Kind::Table(&GRAVITY), Optional, "body force; absent: none"),
+        key("boundary", Kind::Table(&BOUNDARY), Default("{}"), "supports at the faces of the grid"),
+        key("stabilisation", Kind::Table(&STABILISATION), Optional, "against locking and oscillation; absent: none"),
+        key("solver", Kind::Table(&SOLVER), Default("{}"), "the non-linear iteration and the linear solver"),
+        key("output", Kind::Table(&OUTPUT), Optional, "frames for ParaView; absent: none"),
+        key("history", Tables(&HISTORY), Optional, "columns of history.csv"),
+        key("check", Tables(&CHECK), Optional, "bounds that are verified at the end"),
+        later("footing", "a rigid strip that moves down"),
+        later("prescribed", "motion of a face or segment"),
+        later("traction", "stress on the body's surface"),
+        later("point_load", "a force at a point"),
+        later("strength_reduction", "strength divided by a factor"),
+        later("initial", "stress at the start"),
+        later("stage", "staged loading"),
+        later("profile", "strength with depth"),
+    ],
+    exclusive: &[],
+};
+
+static ANALYSIS: Table = Table {
+    header: "[analysis]",
+    doc: "Dynamic (Newmark 1/4, 1/2) or quasi-static (no inertia; time is a pseudo-time without unit)",
+    keys: &[
+        key("type", Choice(&["dynamic", "quasi-static"], &[]), Required, "whether inertia acts"),
+        key("end", Quantity(In::Time, Range::POSITIVE), Optional, "end of the run; quasi-static: 1.0 unless given"),
+        key("dt", Quantity(In::Time, Range::POSITIVE), Optional, "nominal step"),
+        key("steps", Count(1, 1_000_000_000), Optional, "number of equal steps, instead of dt"),
+    ],
+    exclusive: &[one_of(&["dt", "steps"], true)],
+};
+
+static GRID: Table = Table {
+    header: "[grid]",
+    doc: "The background grid: open knot vectors, one patch per cell",
+    keys: &[
+        key("lower", Pair(In::Length, Range::ANY), Optional, "lower corner; cells start here"),
+        key("upper", Pair(In::Length, Range::ANY), Optional, "upper corner; a free face moves out to a whole cell"),
+        key("cell", Either(In::Length, Range::POSITIVE), Optional, "edge of the cells, or [hx, hy]"),
+        key("knots", Kind::Table(&KNOTS), Optional, "explicit breakpoints instead of cell"),
+        key("order", Choice(&["linear", "quadratic", "cubic"], &[]), Required, "order of the B-splines"),
+    ],
+    exclusive: &[one_of(&["cell", "knots"], true)],
+};
+
+static KNOTS: Table = Table {
+    header: "[grid.knots]",
+    doc: "Breakpoints between the cells, increasing",
+    keys: &[
+        key("x", List(In::Length, Range::ANY), Required, "breakpoints along x"),
+        key("y", List(In::Length, Range::ANY), Required, "breakpoints along y"),
+    ],
+    exclusive: &[],
+};
+
+static MATERIAL: Table = Table {
+    header: "[material.NAME]",
+    doc: "A material by its name",
+    keys: &[
+        key("model", Choice(&["hencky", "mohr-coulomb", "tresca"], &[]), Required, "constitutive law"),
+        key("young", Profile(In::Stress, Range::POSITIVE), Required, "Young's modulus"),
+        key("poisson", Quantity(In::Number, POISSON), Required, "Poisson's ratio"),
+        key("friction", Profile(In::Angle, BELOW_90), Optional, "friction angle (mohr-coulomb: required)"),
+        key("dilation", Quantity(In::Angle, BELOW_90), Optional, "dilation angle, at most friction; 0 unless given"),
+        key("cohesion", Profile(In::Stress, Range::NOT_NEGATIVE), Optional, "cohesion (elastic: none; else required)"),
+        key("unit_weight", Quantity(In::UnitWeight, Range::POSITIVE), Optional, "density = unit_weight / 9.81 m/s2"),
+        key("density", Quantity(In::Density, Range::POSITIVE), Optional, "neither: weightless, in dynamics an error"),
+        later("k0", "earth pressure coefficient of this material"),
+    ],
+    exclusive: &[one_of(&["unit_weight", "density"], false)],
+};
+
+const POISSON: Range = Range {
+    lower: Excluded(-1.0),
+    upper: Excluded(0.5),
+    why: "at 0.5 the material is incompressible and its elastic stiffness singular",
+};
+const BELOW_90: Range = Range::of(Included(0.0), Excluded(90.0));
+
+static BODY: Table = Table {
+    header: "[[body]]",
+    doc: "A body made of material points",
+    keys: &[
+        key("material", Name, Required, "name of its material"),
+        key("box", Kind::Table(&BOX), Optional, "a rectangle"),
+        later("polygon", "a polygon"),
+        later("circle", "a circle"),
+        later("subtract", "what is cut out"),
+        key("points_per_cell", Count(1, 100), Required, "points along each axis of a cell"),
+        key("velocity", Pair(In::Velocity, Range::ANY), Optional, "at the start; absent: at rest"),
+    ],
+    exclusive: &[one_of(&["box", "polygon", "circle"], true)],
+};
+
+static BOX: Table = Table {
+    header: "box = { lower, upper }",
+    doc: "A rectangle along the axes; it may cut cells",
+    keys: &[
+        key("lower", Pair(In::Length, Range::ANY), Required, "lower corner"),
+        key("upper", Pair(In::Length, Range::ANY), Required, "upper corner"),
+    ],
+    exclusive: &[],
+};
+
+static GRAVITY: Table = Table {
+    header: "[gravity]",
+    doc: "Body force per mass",
+    keys: &[
+        key("acceleration", Pair(In::Acceleration, Range::ANY), Required, "when fully applied"),
+        key("ramp", Quantity(In::Time, Range::NOT_NEGATIVE), Default("0.0"), "time over which it grows; 0: at once"),
+    ],
+    exclusive: &[],
+};
+
+const SUPPORT: Kind = Choice(&["fixed", "roller", "free"], &[]);
+
+static BOUNDARY: Table = Table {
+    header: "[boundary]",
+    doc: "Support of every face of the grid: all components held, the normal one, or none",
+    keys: &[
+        key("left", SUPPORT, Default("\"free\""), "face at the lowest x"),
+        key("right", SUPPORT, Default("\"free\""), "face at the highest x"),
+        key("bottom", SUPPORT, Default("\"free\""), "face at the lowest y"),
+        key("top", SUPPORT, Default("\"free\""), "face at the highest y"),
+        later("front", "face of a three-dimensional grid"),
+        later("back", "face of a three-dimensional grid"),
+    ],
+    exclusive: &[],
+};
+
+static STABILISATION: Table = Table {
+    header: "[stabilisation]",
+    doc: "Section 2.3 of the paper",
+    keys: &[key("method", METHOD, Required, "what is averaged over the grid")],
+    exclusive: &[],
+};
+
+const METHOD: Kind = Choice(&["none", "f-bar", "modified-f-bar"], &["f-bar-zhao", "consistent-f-bar"]);
+
+static SOLVER: Table = Table {
+    header: "[solver]",
+    doc: "The non-linear iteration",
+    keys: &[
+        key("nonlinear", Choice(&["auto", "broyden"], &["newton"]), Default("\"auto\""), "auto: Broyden, steps cut"),
+        key("tolerance", Quantity(In::Number, FRACTION), Default("1e-8"), "energy measure"),
+        key("force_tolerance", Quantity(In::Number, FRACTION), Default("1e-4"), "force measure; both must hold"),
+        key("max_iterations", Count(1, 100_000), Default("200"), "iterations of one attempt"),
+        key("background", Quantity(In::Number, UP_TO_1), Optional, "soft background; 1e-4 quasi-static, else 0"),
+        key("background_cells", CELLS, Default("\"occupied\""), "cells that get the background"),
+        key("linear", Kind::Table(&LINEAR), Default("{}"), "the linear solver, by PETSc's names"),
+        key("reproducible", Flag, Default("true"), "the same bits in every run on as many ranks"),
+    ],
+    exclusive: &[],
+};
+
+const FRACTION: Range = Range::of(Excluded(0.0), Excluded(1.0));
+const UP_TO_1: Range = Range::of(Included(0.0), Included(1.0));
+const CELLS: Kind = Choice(&["occupied", "partly-filled"], &[]);
+
+static LINEAR: Table = Table {
+    header: "linear = { ksp, pc, factor }",
+    doc: "The linear solver, by PETSc's own names",
+    keys: &[
+        key("ksp", Choice(&["preonly", "cg", "minres", "gmres", "fgmres", "bcgs"], &[]), Default("\"preonly\""), "method"),
+        key("pc", PRECONDITIONERS, Default("\"cholesky\""), "preconditioner or direct solver"),
+        key("factor", PACKAGES, Optional, "package of a direct solver; mumps unless given"),
+    ],
+    exclusive: &[],
+};
+
+const PRECONDITIONERS: Kind = Choice(
+    &["cholesky", "lu", "redundant", "none", "jacobi", "pbjacobi", "bjacobi", "sor", "asm", "icc", "ilu", "gamg", "ml", "hypre"],
+    &[],
+);
+const PACKAGES: Kind = Choice(&["mumps", "petsc", "superlu", "superlu_dist", "cholmod", "umfpack"], &[]);
+
+static OUTPUT: Table = Table {
+    header: "[output]",
+    doc: "Frames for ParaView",
+    keys: &[
+        key("every", Quantity(In::Time, Range::POSITIVE), Optional, "time between frames, hit exactly"),
+        key("every_steps", Count(1, 1_000_000_000), Optional, "accepted steps between frames, instead of every"),
+        key("times", List(In::Time, Range::POSITIVE), Optional, "further times of frames, hit exactly"),
+        key("format", Choice(&["vtu"], &["vtkhdf"]), Default("\"vtu\""), "format of the frames"),
+        later("checkpoint", "restart files"),
+    ],
+    exclusive: &[one_of(&["every", "every_steps"], false)],
+};
+
+static HISTORY: Table = Table {
+    header: "[[history]]",
+    doc: "One column of history.csv, or several",
+    keys: &[
+        key("quantity", QUANTITY, Required, "what is recorded every step"),
+        key("name", Name, Optional, "name of the column; the quantity's unless given"),
+        key("scale", Quantity(In::Number, Range::ANY), Default("1.0"), "multiplies"),
+        key("percentile", Quantity(In::Number, PERCENT), Optional, "of runout: share of the points; 100 unless given"),
+        key("face", Choice(&["left", "right", "bottom", "top"], &[]), Optional, "of reaction: the face"),
+        key("at", Pair(In::Length, Range::ANY), Optional, "of a point's quantity: the point nearest at the start"),
+    ],
+    exclusive: &[],
+};
+
+const PERCENT: Range = Range::of(Excluded(0.0), Included(100.0));
+const QUANTITY: Kind = Choice(
+    &[
+        "runout", "front", "height", "max-displacement", "mass", "momentum", "reaction", "displacement", "velocity",
+        "stress", "stress-noise",
+    ],
+    &["heave", "footing-pressure", "footing-force", "penetration", "slip", "energy"],
+);
+
+static CHECK: Table = Table {
+    header: "[[check]]",
+    doc: "Bounds of a history column, verified at the end",
+    keys: &[
+        key("quantity", Name, Required, "a column of the history"),
+        key("at", Quantity(In::Time, Range::POSITIVE), Optional, "time, hit exactly; the end unless given"),
+        key("min", Measure, Optional, "least value"),
+        key("max", Measure, Optional, "largest value"),
+    ],
+    exclusive: &[],
+};

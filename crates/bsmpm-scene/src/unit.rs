@@ -1,0 +1,252 @@
+//! Numbers with units: `"5840 kPa"`, `"2.5 mm"`. A decimal prefix moves the exponent, so that `"2.5 mm"` is 0.0025 to
+//! the last bit.
+
+use crate::nearest::hint;
+use std::fmt;
+
+/// What a quantity measures. Values are SI; angles are in degrees.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Dimension {
+    /// A pure number.
+    Number,
+    /// m
+    Length,
+    /// s
+    Time,
+    /// Pa
+    Stress,
+    /// kg/m3
+    Density,
+    /// N/m3
+    UnitWeight,
+    /// degrees
+    Angle,
+    /// m/s
+    Velocity,
+    /// m/s2
+    Acceleration,
+}
+
+/// What one unit is worth.
+#[derive(Clone, Copy)]
+enum Worth {
+    Ten(i32),
+    Times(f64),
+    Radian,
+}
+use Worth::{Radian, Ten, Times};
+
+const UNITS: [(Dimension, &[(&str, Worth)]); 8] = [
+    (Dimension::Length, &[("m", Ten(0)), ("cm", Ten(-2)), ("mm", Ten(-3)), ("um", Ten(-6)), ("nm", Ten(-9)), ("km", Ten(3))]),
+    (
+        Dimension::Time,
+        &[("s", Ten(0)), ("ms", Ten(-3)), ("us", Ten(-6)), ("ns", Ten(-9)), ("min", Times(60.0)), ("h", Times(3600.0))],
+    ),
+    (
+        Dimension::Stress,
+        &[
+            ("Pa", Ten(0)),
+            ("kPa", Ten(3)),
+            ("MPa", Ten(6)),
+            ("GPa", Ten(9)),
+            ("N/m2", Ten(0)),
+            ("kN/m2", Ten(3)),
+            ("MN/m2", Ten(6)),
+        ],
+    ),
+    (Dimension::Density, &[("kg/m3", Ten(0)), ("t/m3", Ten(3)), ("g/cm3", Ten(3))]),
+    (Dimension::UnitWeight, &[("N/m3", Ten(0)), ("kN/m3", Ten(3)), ("MN/m3", Ten(6))]),
+    (Dimension::Angle, &[("deg", Ten(0)), ("rad", Radian)]),
+    (Dimension::Velocity, &[("m/s", Ten(0)), ("cm/s", Ten(-2)), ("mm/s", Ten(-3)), ("km/s", Ten(3))]),
+    (Dimension::Acceleration, &[("m/s2", Ten(0)), ("cm/s2", Ten(-2)), ("mm/s2", Ten(-3))]),
+];
+
+impl Dimension {
+    /// Its units, the first one SI; none for a pure number.
+    pub fn units(self) -> impl Iterator<Item = &'static str> {
+        table(self).iter().map(|(name, _)| *name)
+    }
+
+    /// Largest magnitude that is taken for meant: what is derived from such values stays finite.
+    pub fn limit(self) -> f64 {
+        match self {
+            Self::Number => 1e100,
+            Self::Length | Self::Density | Self::Velocity => 1e9,
+            Self::Time | Self::Acceleration => 1e12,
+            Self::Stress => 1e18,
+            Self::UnitWeight => 1e10,
+            Self::Angle => 1e6,
+        }
+    }
+}
+
+impl fmt::Display for Dimension {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Number => "a pure number",
+            Self::Length => "a length",
+            Self::Time => "a time",
+            Self::Stress => "a stress",
+            Self::Density => "a density",
+            Self::UnitWeight => "a unit weight",
+            Self::Angle => "an angle",
+            Self::Velocity => "a velocity",
+            Self::Acceleration => "an acceleration",
+        })
+    }
+}
+
+/// Value of `text`, a number followed by a unit of the dimension `expected`, in SI (angles in degrees).
+///
+/// # Errors
+/// In words: no number, no unit, an unknown unit, a unit of another dimension, or a number that no double holds.
+pub fn parse(text: &str, expected: Dimension) -> Result<f64, String> {
+    let (value, found) = parse_any(text, Some(expected))?;
+    if found == expected {
+        return Ok(value);
+    }
+    let unit = split(text).map_or("", |(_, unit)| unit);
+    Err(match expected {
+        Dimension::Number => format!("`{unit}` is a unit of {}, but this is a pure number", noun(found)),
+        _ => format!("`{unit}` is a unit of {}; expected {expected} ({})", noun(found), list(expected)),
+    })
+}
+
+/// Value and dimension of `text`, whatever its unit; `meant` helps to guess what an unknown unit stands for.
+pub(crate) fn parse_any(text: &str, meant: Option<Dimension>) -> Result<(f64, Dimension), String> {
+    let written = crate::report::shortened(text);
+    let units = meant.map_or(String::new(), |dimension| format!(" ({})", list(dimension)));
+    let Some((number, unit)) = split(text) else {
+        return Err(format!("\"{written}\" is no number with a unit{units}"));
+    };
+    if unit.is_empty() {
+        return Err(format!("\"{written}\" has no unit{units}; a number without one is written without quotes"));
+    }
+    let plain = unit.replace('²', "2").replace('³', "3").replace(['µ', 'μ'], "u").replace('^', "").replace('°', "deg");
+    let known = |(dimension, units): &(Dimension, &'static [(&'static str, Worth)])| {
+        units.iter().find(|(name, _)| *name == plain).map(|(_, worth)| (*dimension, *worth))
+    };
+    let Some((dimension, worth)) = UNITS.iter().find_map(known) else {
+        let all = UNITS.iter().filter(|(dimension, _)| meant.is_none_or(|meant| meant == *dimension));
+        let near = hint(&plain, all.flat_map(|(_, units)| units.iter().map(|(name, _)| *name)));
+        return Err(format!("\"{written}\": `{}` is no known unit{units}{near}", crate::report::shortened(unit)));
+    };
+    Ok((value(number, worth)?, dimension))
+}
+
+/// The double nearest to the decimal number `text`.
+pub(crate) fn finite(text: &str) -> Result<f64, String> {
+    let written = crate::report::shortened(text);
+    let value: f64 = text.parse().map_err(|_| format!("{written} is no number"))?;
+    let mantissa = text.split(['e', 'E']).next().unwrap_or(text);
+    match value {
+        _ if value.is_nan() || text.contains("inf") => Err(format!("{written} is no finite number")),
+        _ if value.is_infinite() => Err(format!("{written} is too large for a double")),
+        0.0 if mantissa.contains(|c: char| matches!(c, '1'..='9')) => Err(format!("{written} is too small for a double")),
+        _ => Ok(value + 0.0), // -0.0 becomes 0.0
+    }
+}
+
+fn value(number: &str, worth: Worth) -> Result<f64, String> {
+    let (mantissa, exponent) = number.split_once(['e', 'E']).unwrap_or((number, "0"));
+    match worth {
+        Ten(shift) => {
+            let exponent: i64 = exponent.parse().map_err(|_| format!("{number} is no number that a double holds"))?;
+            finite(&format!("{mantissa}e{}", exponent.saturating_add(shift.into())))
+        }
+        Times(factor) => finite(number).map(|value| value * factor),
+        Radian => finite(number).map(f64::to_degrees),
+    }
+}
+
+/// Number and unit of `text`, both trimmed; `None` if it does not begin with a decimal number.
+fn split(text: &str) -> Option<(&str, &str)> {
+    let text = text.trim();
+    let digits = |from: usize| text[from..].bytes().take_while(u8::is_ascii_digit).count();
+    let mut end = usize::from(text.starts_with(['+', '-']));
+    let whole = digits(end);
+    end += whole;
+    let mut fraction = 0;
+    if text[end..].starts_with('.') {
+        fraction = digits(end + 1);
+        end += 1 + fraction;
+    }
+    if whole + fraction == 0 {
+        return None;
+    }
+    if text[end..].starts_with(['e', 'E']) {
+        let sign = usize::from(text[end + 1..].starts_with(['+', '-']));
+        let exponent = digits(end + 1 + sign);
+        end += if exponent > 0 { 1 + sign + exponent } else { 0 };
+    }
+    Some((&text[..end], text[end..].trim_start()))
+}
+
+fn table(dimension: Dimension) -> &'static [(&'static str, Worth)] {
+    UNITS.iter().find(|(known, _)| *known == dimension).map_or(&[], |(_, units)| *units)
+}
+
+fn list(dimension: Dimension) -> String {
+    let units: Vec<&str> = dimension.units().collect();
+    if units.is_empty() { "none: a pure number".to_owned() } else { units.join(", ") }
+}
+
+fn noun(dimension: Dimension) -> String {
+    dimension.to_string().trim_start_matches("an ").trim_start_matches("a ").to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Dimension::*;
+    use super::*;
+
+    #[test]
+    fn prefixes_keep_every_bit() {
+        let rows = [
+            ("2.5 mm", Length, 2.5e-3),
+            ("0.25ms", Time, 2.5e-4),
+            ("5840 kPa", Stress, 5.84e6),
+            (" 20.4 kN/m3 ", UnitWeight, 20.4e3),
+            ("20.4 kN/m^3", UnitWeight, 20.4e3),
+            ("20.4 kN/m³", UnitWeight, 20.4e3),
+            ("1.8e0 t/m3", Density, 1800.0),
+            ("1.8 g/cm3", Density, 1800.0),
+            ("-3.1E+2 cm/s", Velocity, -3.1),
+            ("981 cm/s2", Acceleration, 9.81),
+            ("1.5 min", Time, 90.0),
+            ("21.9 °", Angle, 21.9),
+            ("5 µm", Length, 5e-6),
+            (".5 km", Length, 500.0),
+        ];
+        for (text, dimension, value) in rows {
+            assert_eq!(parse(text, dimension).map(f64::to_bits), Ok(f64::to_bits(value)), "{text}");
+        }
+        assert!((parse("0.5 rad", Angle).unwrap() - 0.5_f64.to_degrees()).abs() < 1e-15);
+        assert_eq!(parse("-0.0 m", Length).map(f64::to_bits), Ok(0));
+    }
+
+    #[test]
+    fn wrong_units_say_which() {
+        let rows = [
+            ("5 kPa", Length, "`kPa` is a unit of stress; expected a length (m, cm, mm"),
+            ("5 m", Number, "unit of length, but this is a pure number"),
+            ("5", Length, "has no unit"),
+            ("5 KPa", Stress, "did you mean `kPa`?"),
+            ("5 furlong", Length, "no known unit (m, cm"),
+            ("five m", Length, "no number with a unit"),
+            ("nan m", Length, "no number"),
+            ("inf m", Length, "no number"),
+            ("1e400 m", Length, "too large"),
+            ("1e-400 m", Length, "too small"),
+            ("1e99999999999999999999 m", Length, "no number that a double holds"),
+            ("1_000 m", Length, "no known unit"),
+            ("", Length, "no number"),
+            ("-", Length, "no number"),
+            ("5 \u{202e}m", Length, "\\u{202e}"),
+        ];
+        for (text, dimension, says) in rows {
+            let error = parse(text, dimension).unwrap_err();
+            assert!(error.contains(says), "{text}: {error}");
+        }
+    }
+}

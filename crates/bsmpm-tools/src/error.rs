@@ -1,0 +1,70 @@
+//! What can go wrong in a command, with the exit code that it means.
+
+use std::path::PathBuf;
+
+use thiserror::Error;
+
+/// Why a command could not be carried out.
+#[derive(Debug, Error)]
+pub enum Error {
+    /// The directory is not there or holds no run.
+    #[error("{} is not the directory of a run: it holds no run.json", directory.display())]
+    NoRun {
+        /// The directory.
+        directory: PathBuf,
+    },
+    /// The run has left nothing yet that could be drawn.
+    #[error("the run in {} has left no frame, no history and no step yet", directory.display())]
+    Empty {
+        /// The directory.
+        directory: PathBuf,
+    },
+    /// The frames do not hold the quantity that is wanted.
+    #[error("the frames of {} have no field \"{field}\"", directory.display())]
+    NoField {
+        /// The directory.
+        directory: PathBuf,
+        /// The field's name in the frames.
+        field: &'static str,
+    },
+    /// A file of reference points is not there.
+    #[error("cannot read the reference {}: {source}", path.display())]
+    NoReference {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// A file of reference points cannot be understood.
+    #[error("the reference {}: {reason}", path.display())]
+    BadReference {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        reason: String,
+    },
+    /// A picture could not be drawn.
+    #[error("cannot draw {}: {reason}", path.display())]
+    Drawing {
+        /// The picture.
+        path: PathBuf,
+        /// What the library said.
+        reason: String,
+    },
+    /// A file of the run could not be read or a picture not be written.
+    #[error(transparent)]
+    File(#[from] bsmpm_io::Error),
+}
+
+impl Error {
+    /// The exit code of `bsmpm`: 66 for what is missing, 65 for a bad reference file, 70 for a fault of this program, else
+    /// that of the file's error.
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Self::NoRun { .. } | Self::Empty { .. } | Self::NoField { .. } | Self::NoReference { .. } => 66,
+            Self::BadReference { .. } => 65,
+            Self::Drawing { .. } => 70,
+            Self::File(error) => error.exit_code(),
+        }
+    }
+}

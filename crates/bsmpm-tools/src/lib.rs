@@ -1,0 +1,11 @@
+//! The companion of bsmpm: what a person does with a case before, and with a run after, `bsmpm-par` has solved it. It
+//! never starts MPI.
+//!
+//! Each command is a module with its arguments and one function that carries it out; [`cli`] lists them.
+#![forbid(unsafe_code)]
+
+pub mod cli;
+pub mod error;
+pub mod plot;
+
+pub use error::Error;

@@ -1,0 +1,111 @@
+//! Two axes with ticks and labels about a box of the sheet.
+
+use super::canvas::{Align, Canvas, fitting, width};
+use super::colour::{INK, RULE, Rgb};
+use super::ticks::Ticks;
+
+/// Sizes of letters in pixels, for a picture 1600 wide.
+pub(super) const TITLE: f64 = 34.0;
+pub(super) const LABEL: f64 = 30.0;
+pub(super) const NUMBER: f64 = 26.0;
+/// Room for the numbers and label left of, and below, the axes.
+pub(super) const LEFT: f64 = 170.0;
+pub(super) const BELOW: f64 = 105.0;
+const TICK: f64 = 9.0;
+const THIN: f64 = 1.7;
+
+/// A quantity and its unit.
+pub(super) type Label<'a> = (&'a str, &'a str);
+
+/// A box of the sheet and the region of the plane that it shows.
+#[derive(Clone, Copy)]
+pub(super) struct Axes {
+    /// Left, top, right and bottom edge in pixels.
+    pub left: f64,
+    pub top: f64,
+    pub right: f64,
+    pub bottom: f64,
+    pub x: (f64, f64),
+    pub y: (f64, f64),
+}
+
+impl Axes {
+    /// Where a place of the region lies on the sheet.
+    pub fn place(&self, (x, y): (f64, f64)) -> (f64, f64) {
+        let across = (x - self.x.0) / (self.x.1 - self.x.0);
+        let up = (y - self.y.0) / (self.y.1 - self.y.0);
+        (self.left + across * (self.right - self.left), self.bottom - up * (self.bottom - self.top))
+    }
+
+    fn x_ticks(&self) -> Ticks {
+        Ticks::between(self.x.0, self.x.1, (self.right - self.left) / 150.0)
+    }
+
+    fn y_ticks(&self) -> Ticks {
+        Ticks::between(self.y.0, self.y.1, (self.bottom - self.top) / 70.0)
+    }
+
+    /// Faint lines across the box at each tick, to be drawn first.
+    pub fn rules(&self, canvas: &mut Canvas) {
+        for x in self.x_ticks().values {
+            let x = self.place((x, 0.0)).0;
+            canvas.fill((x - THIN / 2.0, self.top), (x + THIN / 2.0, self.bottom), RULE);
+        }
+        for y in self.y_ticks().values {
+            let y = self.place((0.0, y)).1;
+            canvas.fill((self.left, y - THIN / 2.0), (self.right, y + THIN / 2.0), RULE);
+        }
+    }
+
+    /// The box, ticks outside of it, their numbers and the labels.
+    ///
+    /// Without a label for `x` its ticks have no numbers: for axes above others that share it.
+    pub fn draw(&self, canvas: &mut Canvas, x: Option<Label>, y: Label) {
+        canvas.frame((self.left, self.top), (self.right, self.bottom), THIN, INK);
+        self.draw_x(canvas, x);
+        let ticks = self.y_ticks();
+        let mut widest: f64 = 0.0;
+        for &value in &ticks.values {
+            let at = self.place((0.0, value)).1;
+            let text = ticks.text(value);
+            widest = widest.max(width(&text, NUMBER));
+            canvas.fill((self.left - TICK, at - THIN / 2.0), (self.left, at + THIN / 2.0), INK);
+            canvas.text(&text, (self.left - TICK - 8.0, at), NUMBER, Align::Right, INK);
+        }
+        let label = ticks.label(y.0, y.1);
+        let size = fitting(&label, LABEL, self.bottom - self.top + 90.0);
+        let at = (self.left - TICK - 8.0 - widest - 36.0, f64::midpoint(self.top, self.bottom));
+        canvas.upward(&label, at, size, INK);
+    }
+
+    /// The ticks below the box, with their numbers and label if there is a label.
+    fn draw_x(&self, canvas: &mut Canvas, label: Option<Label>) {
+        let ticks = self.x_ticks();
+        for &value in &ticks.values {
+            let at = self.place((value, 0.0)).0;
+            canvas.fill((at - THIN / 2.0, self.bottom), (at + THIN / 2.0, self.bottom + TICK), INK);
+            if label.is_some() {
+                canvas.text(&ticks.text(value), (at, self.bottom + TICK + 22.0), NUMBER, Align::Centre, INK);
+            }
+        }
+        if let Some((quantity, unit)) = label {
+            let centre = f64::midpoint(self.left, self.right);
+            canvas.text(&ticks.label(quantity, unit), (centre, self.bottom + 72.0), LABEL, Align::Centre, INK);
+        }
+    }
+
+    /// A line through places of the region; a place that is not finite breaks it.
+    pub fn line(&self, canvas: &mut Canvas, places: &[(f64, f64)], width: f64, colour: Rgb) {
+        for run in places.split(|(x, y)| !(x.is_finite() && y.is_finite())) {
+            canvas.line(run.iter().map(|&place| self.place(place)), width, colour);
+        }
+    }
+}
+
+/// The title of a picture: what was solved and, smaller, what is seen.
+pub(super) fn title(canvas: &mut Canvas, sheet: f64, text: &str, below: &str) {
+    let size = fitting(text, TITLE, sheet - 60.0);
+    canvas.text(text, (sheet / 2.0, 42.0), size, Align::Centre, INK);
+    let size = fitting(below, LABEL, sheet - 60.0);
+    canvas.text(below, (sheet / 2.0, 88.0), size, Align::Centre, INK);
+}

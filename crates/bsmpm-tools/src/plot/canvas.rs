@@ -1,0 +1,197 @@
+//! A sheet of paper in memory. Everything is drawn [`FINE`] times larger and averaged when it is saved, which smooths all
+//! edges alike. Lengths are pixels of the saved picture, from its upper left corner.
+
+use std::io;
+use std::path::Path;
+use std::sync::Once;
+
+use bsmpm_io::atomic;
+use plotters::backend::BitMapBackend;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+use plotters::style::{FontStyle, FontTransform, IntoFont, RGBColor, ShapeStyle, TextStyle, register_font};
+use plotters_backend::{BackendTextStyle, DrawingBackend};
+
+use super::colour::{Rgb, WHITE};
+use crate::Error;
+
+/// How many times finer than the saved picture the drawing is.
+pub(super) const FINE: usize = 3;
+const FONT: &str = "DejaVu Sans";
+/// Plotters puts the top of a text half a size above the foot of its letters; a capital is .626 sizes high.
+const CAPITAL_CENTRE: f64 = 0.5 - 0.626 / 2.0;
+
+/// Where a text stands about its place; upright it is always centred on it.
+#[derive(Clone, Copy)]
+pub(super) enum Align {
+    Left,
+    Centre,
+    Right,
+}
+
+pub(super) struct Canvas {
+    width: usize,
+    height: usize,
+    pixels: Vec<u8>,
+    failure: Option<String>,
+}
+
+impl Canvas {
+    /// A white sheet.
+    pub fn new(width: f64, height: f64) -> Self {
+        static FONT_ONCE: Once = Once::new();
+        FONT_ONCE.call_once(|| {
+            // A font that could not be read shows itself as the failure of the first text.
+            let _ = register_font(FONT, FontStyle::Normal, include_bytes!("../../assets/DejaVuSans.ttf"));
+        });
+        let (width, height) = (width.round() as usize, height.round() as usize);
+        let pixels = vec![WHITE[0]; 3 * FINE * FINE * width * height];
+        Self { width, height, pixels, failure: None }
+    }
+
+    fn draw(&mut self, with: impl FnOnce(&mut BitMapBackend) -> Result<(), String>) {
+        let size = ((FINE * self.width) as u32, (FINE * self.height) as u32);
+        let drawn = with(&mut BitMapBackend::with_buffer(&mut self.pixels, size));
+        self.failure = self.failure.take().or(drawn.err());
+    }
+
+    /// A text whose capitals are centred upright on `(x, y)`.
+    pub fn text(&mut self, text: &str, (x, y): (f64, f64), size: f64, align: Align, colour: Rgb) {
+        let place = fine((x, y - CAPITAL_CENTRE * size));
+        let style = style(size, align, colour, FontTransform::None);
+        self.draw(|sheet| sheet.draw_text(text, &style, place).map_err(|error| error.to_string()));
+    }
+
+    /// A text that reads upward, centred on `(x, y)`.
+    pub fn upward(&mut self, text: &str, (x, y): (f64, f64), size: f64, colour: Rgb) {
+        let place = fine((x - CAPITAL_CENTRE * size, y));
+        let style = style(size, Align::Centre, colour, FontTransform::Rotate270);
+        self.draw(|sheet| sheet.draw_text(text, &style, place).map_err(|error| error.to_string()));
+    }
+
+    /// A line through `points` with round joints. Points nearer than half a pixel to the one before add nothing.
+    pub fn line(&mut self, points: impl IntoIterator<Item = (f64, f64)>, width: f64, colour: Rgb) {
+        let style = filled(colour, width);
+        let radius = (width * FINE as f64 / 2.0) as u32;
+        self.draw(|sheet| {
+            let mut from: Option<(f64, f64)> = None;
+            for to in points {
+                if let Some(last) = from {
+                    if (to.0 - last.0).hypot(to.1 - last.1) < 0.5 {
+                        continue;
+                    }
+                    sheet.draw_line(fine(last), fine(to), &style).map_err(|error| error.to_string())?;
+                }
+                if radius > 2 {
+                    sheet.draw_circle(fine(to), radius, &style, true).map_err(|error| error.to_string())?;
+                }
+                from = Some(to);
+            }
+            Ok(())
+        });
+    }
+
+    /// A filled disc.
+    pub fn disc(&mut self, centre: (f64, f64), radius: f64, colour: Rgb) {
+        let radius = (radius * FINE as f64).round() as u32;
+        self.draw(|sheet| {
+            let style = filled(colour, 1.0);
+            sheet.draw_circle(fine(centre), radius, &style, true).map_err(|error| error.to_string())
+        });
+    }
+
+    /// A filled rectangle between two corners.
+    pub fn fill(&mut self, (left, top): (f64, f64), (right, bottom): (f64, f64), colour: Rgb) {
+        let ((left, top), (right, bottom)) = (fine((left, top)), fine((right, bottom)));
+        for y in top..bottom {
+            for x in left..right {
+                self.dot((x, y), colour);
+            }
+        }
+    }
+
+    /// The outline of a rectangle between two corners.
+    pub fn frame(&mut self, (left, top): (f64, f64), (right, bottom): (f64, f64), width: f64, colour: Rgb) {
+        let half = width / 2.0;
+        for y in [top, bottom] {
+            self.fill((left - half, y - half), (right + half, y + half), colour);
+        }
+        for x in [left, right] {
+            self.fill((x - half, top - half), (x + half, bottom + half), colour);
+        }
+    }
+
+    /// Colours one dot of the fine drawing; those outside the sheet are left out.
+    pub fn dot(&mut self, (x, y): (i32, i32), colour: Rgb) {
+        let (Ok(x), Ok(y)) = (usize::try_from(x), usize::try_from(y)) else { return };
+        if x < FINE * self.width && y < FINE * self.height {
+            let at = 3 * (y * FINE * self.width + x);
+            self.pixels[at..at + 3].copy_from_slice(&colour);
+        }
+    }
+
+    /// Saves the sheet as a PNG picture, replacing the file in one go.
+    ///
+    /// # Errors
+    /// [`Error::Drawing`] with the first thing that could not be drawn, [`Error::File`] when the system refuses.
+    pub fn save(self, path: &Path) -> Result<(), Error> {
+        if let Some(reason) = self.failure {
+            return Err(Error::Drawing { path: path.to_owned(), reason });
+        }
+        let averaged = self.averaged();
+        atomic::replace(path, |file| {
+            let mut encoder = png::Encoder::new(file, self.width as u32, self.height as u32);
+            encoder.set_color(png::ColorType::Rgb);
+            encoder.write_header().and_then(|mut picture| picture.write_image_data(&averaged)).map_err(io::Error::other)
+        })?;
+        Ok(())
+    }
+
+    fn averaged(&self) -> Vec<u8> {
+        let mut averaged = Vec::with_capacity(3 * self.width * self.height);
+        for y in 0..self.height {
+            for x in 0..3 * self.width {
+                let (column, channel) = (x / 3, x % 3);
+                let dot =
+                    |i: usize| 3 * ((FINE * y + i / FINE) * FINE * self.width + FINE * column + i % FINE) + channel;
+                let sum: usize = (0..FINE * FINE).map(|i| usize::from(self.pixels[dot(i)])).sum();
+                averaged.push(((sum + FINE * FINE / 2) / (FINE * FINE)) as u8);
+            }
+        }
+        averaged
+    }
+}
+
+/// The width of a text in pixels; 0 for one that cannot be drawn, which its drawing tells.
+pub(super) fn width(text: &str, size: f64) -> f64 {
+    let style = style(size, Align::Left, WHITE, FontTransform::None);
+    style.layout_box(text).map_or(0.0, |(from, to)| f64::from(to.0 - from.0) / FINE as f64)
+}
+
+/// The size, at most `size`, at which a text is no wider than `room`.
+pub(super) fn fitting(text: &str, size: f64, room: f64) -> f64 {
+    size.min(size * room / width(text, size).max(1.0))
+}
+
+fn style(size: f64, align: Align, colour: Rgb, turn: FontTransform) -> TextStyle<'static> {
+    let across = match align {
+        Align::Left => HPos::Left,
+        Align::Centre => HPos::Center,
+        Align::Right => HPos::Right,
+    };
+    let font = (FONT, size * FINE as f64).into_font().transform(turn);
+    TextStyle::from(font).pos(Pos::new(across, VPos::Top)).color(&rgb(colour))
+}
+
+fn filled(colour: Rgb, width: f64) -> ShapeStyle {
+    let stroke_width = (width * FINE as f64).round().max(1.0) as u32;
+    ShapeStyle { color: rgb(colour).into(), filled: true, stroke_width }
+}
+
+fn rgb([red, green, blue]: Rgb) -> RGBColor {
+    RGBColor(red, green, blue)
+}
+
+/// A place of the picture in dots of the fine drawing.
+pub(super) fn fine((x, y): (f64, f64)) -> (i32, i32) {
+    ((x * FINE as f64).round() as i32, (y * FINE as f64).round() as i32)
+}

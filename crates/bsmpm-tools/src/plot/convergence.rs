@@ -1,0 +1,54 @@
+//! How hard the steps were: iterations of each step above, its length below.
+
+use bsmpm_io::table::Columns;
+
+use super::axes::{Axes, BELOW, LEFT, title};
+use super::canvas::Canvas;
+use super::colour;
+use super::legend::{self, Entry};
+use super::record::Record;
+use super::ticks::{padded, range};
+use crate::Error;
+
+const SHEET: (f64, f64) = (1600.0, 1100.0);
+const ABOVE: f64 = 115.0;
+const RIGHT: f64 = 60.0;
+const BETWEEN: f64 = 40.0;
+const NAME: &str = "convergence.png";
+
+/// Draws `convergence.png` if there is a row in `steps.csv`; returns its name.
+pub(super) fn draw(record: &Record) -> Result<Option<String>, Error> {
+    let column = |name| record.steps.as_ref().and_then(|steps: &Columns| steps.get(name));
+    let columns = (column("time"), column("iterations"), column("dt"));
+    let (Some(time), Some(iterations), Some(dt)) = columns else { return Ok(None) };
+    let Some(x) = range(time.iter().copied()) else { return Ok(None) };
+    let x = if x.1 > x.0 { x } else { padded(x.0, x.1, 0.0) };
+    let cut: Vec<(f64, f64)> = column("cutbacks").map_or_else(Vec::new, |cutbacks| {
+        time.iter().zip(dt).zip(cutbacks).filter(|(_, cuts)| **cuts > 0.0).map(|((&time, &dt), _)| (time, dt)).collect()
+    });
+
+    let legend = Entry { name: "step that was cut back".to_owned(), colour: colour::line(1, 2), points: true };
+    let legend: &[&Entry] = if cut.is_empty() { &[] } else { &[&legend] };
+    let top = ABOVE + legend::height(legend, SHEET.0 - 80.0) + 20.0;
+    let bottom = SHEET.1 - BELOW;
+    let middle = f64::midpoint(top, bottom);
+    let above = |values: &[f64]| (0.0, 1.08 * range(values.iter().copied()).map_or(1.0, |(_, high)| high.max(1e-300)));
+    let (left, right) = (LEFT, SHEET.0 - RIGHT);
+    let upper = Axes { left, top, right, bottom: middle - BETWEEN / 2.0, x, y: above(iterations) };
+    let lower = Axes { left, top: middle + BETWEEN / 2.0, right, bottom, x, y: above(dt) };
+
+    let mut canvas = Canvas::new(SHEET.0, SHEET.1);
+    title(&mut canvas, SHEET.0, &record.manifest.case.title, "Convergence of the steps");
+    legend::draw(&mut canvas, legend, 40.0, ABOVE, SHEET.0 - 80.0);
+    for (axes, values) in [(&upper, iterations), (&lower, dt)] {
+        axes.rules(&mut canvas);
+        let places: Vec<_> = time.iter().copied().zip(values.iter().copied()).collect();
+        axes.line(&mut canvas, &places, 2.5, colour::line(0, 2));
+    }
+    cut.iter().for_each(|&place| canvas.disc(lower.place(place), 6.0, colour::line(1, 2)));
+    upper.draw(&mut canvas, None, ("Iterations per step", "-"));
+    let (time_name, time_unit) = record.time_label();
+    lower.draw(&mut canvas, Some((time_name, time_unit)), ("Length of step", time_unit));
+    canvas.save(&record.directory.join(NAME))?;
+    Ok(Some(NAME.to_owned()))
+}

@@ -1,0 +1,110 @@
+//! The free surface at chosen times: the highest point of every column of cells.
+
+use bsmpm_io::frame::Frame;
+use bsmpm_io::table::Columns;
+
+use super::axes::{Axes, BELOW, LEFT, title};
+use super::body::{outline, region};
+use super::canvas::Canvas;
+use super::colour::{self, INK};
+use super::legend::{self, Entry};
+use super::record::Record;
+use super::splat;
+use super::ticks::range;
+use crate::Error;
+
+const SHEET: f64 = 1600.0;
+const ABOVE: f64 = 115.0;
+const RIGHT: f64 = 60.0;
+const NAME: &str = "surface.png";
+/// A picture lower than this share of its width is stretched upward.
+const LOWEST: f64 = 0.16;
+const HIGHEST: f64 = 1.0;
+
+/// Draws the surfaces of all frames, with the points of a reference that has columns `time,x,y`; returns the picture's name.
+pub(super) fn draw(record: &Record, frames: &[Frame], reference: Option<&Columns>) -> Result<String, Error> {
+    let reference = reference.map(|table| places(record, frames, table)).unwrap_or_default();
+    let entries = entries(record, frames, &reference);
+    let entries: Vec<&Entry> = entries.iter().collect();
+    let [x, y] = region(record, frames);
+    let aspect = (y.1 - y.0) / (x.1 - x.0);
+    let wide = (SHEET - LEFT - RIGHT).min(1300.0 / aspect.min(HIGHEST));
+    let left = (SHEET + LEFT - RIGHT - wide) / 2.0;
+    let top = ABOVE + legend::height(&entries, SHEET - 80.0) + 20.0;
+    let high = if aspect > HIGHEST { 1300.0 } else { wide * aspect.max(LOWEST) };
+    let wide = if aspect > HIGHEST { 1300.0 / aspect.min(4.0) } else { wide };
+    let axes = Axes { left, top, right: left + wide, bottom: top + high, x, y };
+    let mut canvas = Canvas::new(SHEET, top + high + BELOW);
+    title(&mut canvas, SHEET, &record.manifest.case.title, "Free surface");
+    legend::draw(&mut canvas, &entries, 40.0, ABOVE, SHEET - 80.0);
+    axes.rules(&mut canvas);
+    outline(&mut canvas, &axes, record);
+    for (index, frame) in frames.iter().enumerate() {
+        axes.line(&mut canvas, &surface(record, frame), 3.5, colour::line(index, frames.len()));
+    }
+    for (place, colour) in reference.iter().flat_map(|group| group.places.iter().map(|place| (place, group.colour))) {
+        canvas.disc(axes.place(*place), 6.0, colour);
+    }
+    axes.draw(&mut canvas, Some(("x", "m")), ("y", "m"));
+    canvas.save(&record.directory.join(NAME))?;
+    Ok(NAME.to_owned())
+}
+
+/// The highest point of every column of cells from left to right; an empty column breaks the line.
+fn surface(record: &Record, frame: &Frame) -> Vec<(f64, f64)> {
+    let Some((low, high)) = range(frame.position.iter().map(|point| point[0])) else { return Vec::new() };
+    let grid = record.manifest.grid.as_ref();
+    let cell = grid.and_then(|grid| Some((*grid.lower.first()?, *grid.cell.first()?)));
+    let sizes = || splat::sizes(frame, &record.manifest.case.geometry);
+    let (origin, width) = cell.unwrap_or_else(|| (low, 2.0 * range(sizes()).map_or(1.0, |(_, largest)| largest)));
+    // A hundred thousand columns are more than a picture can show, and bound the memory whatever the numbers are.
+    let width = if width > 0.0 { width } else { high - low }.max((high - low) / 1e5);
+    let column = |x: f64| if width > 0.0 { ((x - origin) / width).floor() } else { 0.0 };
+    let first = column(low);
+    let mut highest = vec![(f64::NAN, f64::NAN); (column(high) - first) as usize + 1];
+    for &[x, y, _] in &frame.position {
+        let top = &mut highest[(column(x) - first) as usize];
+        if !(top.1 >= y) {
+            *top = (x, y);
+        }
+    }
+    highest
+}
+
+/// Reference points of one time.
+struct Group {
+    time: f64,
+    places: Vec<(f64, f64)>,
+    colour: colour::Rgb,
+}
+
+/// The reference's points by time, in the colour of the frame of the same time, if there is one.
+fn places(record: &Record, frames: &[Frame], table: &Columns) -> Vec<Group> {
+    let columns = (table.get("time"), table.get("x"), table.get("y"));
+    let (Some(times), Some(x), Some(y)) = columns else { return Vec::new() };
+    let mut groups: Vec<Group> = Vec::new();
+    for ((&time, &x), &y) in times.iter().zip(x).zip(y) {
+        if let Some(group) = groups.iter_mut().find(|group| group.time == time) {
+            group.places.push((x, y));
+        } else {
+            let same = |frame: &Frame| record.moment(frame.time) == record.moment(time);
+            let colour = frames.iter().position(same).map_or(INK, |index| colour::line(index, frames.len()));
+            groups.push(Group { time, places: vec![(x, y)], colour });
+        }
+    }
+    groups
+}
+
+fn entries(record: &Record, frames: &[Frame], reference: &[Group]) -> Vec<Entry> {
+    let line = |(index, frame): (usize, &Frame)| Entry {
+        name: record.moment(frame.time),
+        colour: colour::line(index, frames.len()),
+        points: false,
+    };
+    let group = |group: &Group| Entry {
+        name: format!("reference, {}", record.moment(group.time)),
+        colour: group.colour,
+        points: true,
+    };
+    frames.iter().enumerate().map(line).chain(reference.iter().map(group)).collect()
+}

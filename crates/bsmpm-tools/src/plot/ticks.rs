@@ -1,0 +1,110 @@
+//! Round numbers for axes.
+
+/// The round numbers of an axis and how they are written.
+pub(super) struct Ticks {
+    pub values: Vec<f64>,
+    /// What the numbers are divided by before they are written: a power of 1000.
+    scale: f64,
+    decimals: usize,
+}
+
+/// Powers of 1000 in the form that a unit takes.
+const POWERS: [(i32, &str); 9] = [
+    (-12, "10⁻¹²"),
+    (-9, "10⁻⁹"),
+    (-6, "10⁻⁶"),
+    (-3, "10⁻³"),
+    (0, ""),
+    (3, "10³"),
+    (6, "10⁶"),
+    (9, "10⁹"),
+    (12, "10¹²"),
+];
+
+impl Ticks {
+    /// At most `count` (but at least two) round numbers between two finite ones: steps of 1, 2 or 5 times a power of ten.
+    pub fn between(low: f64, high: f64, count: f64) -> Self {
+        let rough = (high - low) / count.max(2.0);
+        let power = 10_f64.powf(rough.log10().floor());
+        let step = [1.0, 2.0, 5.0, 10.0].map(|digit| digit * power).into_iter().find(|step| *step >= rough * 0.999);
+        let step = step.unwrap_or(10.0 * power);
+        let first = (low / step - 1e-6).ceil();
+        let steps = ((high / step + 1e-6).floor() - first).clamp(0.0, 100.0) as usize;
+        // Adding zero turns the minus zero of a rounded-up fraction into zero.
+        let values = (0..=steps).map(|i| (first + i as f64) * step + 0.0).collect();
+        let scale = 10_f64.powi(power_of(low.abs().max(high.abs())));
+        let decimals = (-(step / scale * 1.001).log10().floor()).clamp(0.0, 12.0) as usize;
+        Self { values, scale, decimals }
+    }
+
+    /// How a number of this axis is written.
+    pub fn text(&self, value: f64) -> String {
+        let text = format!("{:.*}", self.decimals, value / self.scale);
+        let is_zero = text.trim_start_matches(['-', '0', '.']).is_empty();
+        if is_zero { "0".to_owned() } else { text.replace('-', "−") }
+    }
+
+    /// The axis' label: the quantity with its unit, and the power of ten by which the numbers were divided.
+    pub fn label(&self, quantity: &str, unit: &str) -> String {
+        let power = POWERS.iter().find(|(power, _)| 10_f64.powi(*power) == self.scale).map_or("", |(_, text)| text);
+        let unit = if unit == "-" { "" } else { unit };
+        match (power.is_empty(), unit.is_empty()) {
+            (true, true) => quantity.to_owned(),
+            (true, false) => format!("{quantity} ({unit})"),
+            (false, true) => format!("{quantity} ({power})"),
+            (false, false) => format!("{quantity} ({power} {unit})"),
+        }
+    }
+}
+
+/// The power of 1000, as one of ten, that brings numbers up to `largest` to a form without rows of zeros.
+fn power_of(largest: f64) -> i32 {
+    if !(largest > 0.0) || (1e-2..1e5).contains(&largest) {
+        return 0;
+    }
+    let last = POWERS[POWERS.len() - 1].0;
+    ((largest.log10() / 3.0).floor() as i32 * 3).clamp(-last, last)
+}
+
+/// A range with `share` of its length added at both ends; one of no length gets some.
+pub(super) fn padded(low: f64, high: f64, share: f64) -> (f64, f64) {
+    let length = high - low;
+    let room = if length > 1e-12 * high.abs().max(low.abs()) { share * length } else { high.abs().max(1e-9) / 2.0 };
+    (low - room, high + room)
+}
+
+/// The smallest and largest of finite numbers, if there are any.
+pub(super) fn range(values: impl IntoIterator<Item = f64>) -> Option<(f64, f64)> {
+    values.into_iter().filter(|value| value.is_finite()).fold(None, |range, value| match range {
+        None => Some((value, value)),
+        Some((low, high)) => Some((value.min(low), value.max(high))),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ticks_are_round_and_written_without_noise() {
+        let texts = |low, high, count| {
+            let ticks = Ticks::between(low, high, count);
+            ticks.values.iter().map(|&value| ticks.text(value)).collect::<Vec<_>>()
+        };
+        assert_eq!(texts(0.0, 0.55, 6.0), ["0", "0.1", "0.2", "0.3", "0.4", "0.5"]);
+        assert_eq!(texts(-1.9, 0.1, 5.0), ["−1.5", "−1.0", "−0.5", "0"]);
+        assert_eq!(texts(0.0, 2.5e-4, 5.0), ["0", "50", "100", "150", "200", "250"]);
+        assert_eq!(texts(0.0, 3e6, 3.0), ["0", "1", "2", "3"]);
+        assert_eq!(Ticks::between(0.0, 2.5e-4, 5.0).label("Step", "s"), "Step (10⁻⁶ s)");
+        assert_eq!(Ticks::between(0.0, 1.0, 5.0).label("Iterations", "-"), "Iterations");
+    }
+
+    #[test]
+    fn a_range_of_no_length_still_makes_an_axis() {
+        for value in [0.0, 1e-30, -5.0, 1e12] {
+            let (low, high) = padded(value, value, 0.05);
+            assert!(low < value && value < high);
+            assert!(Ticks::between(low, high, 5.0).values.len() >= 2, "{value}");
+        }
+    }
+}

@@ -1,0 +1,74 @@
+//! Supports at the faces of the grid: components of nodes whose displacement is prescribed.
+
+use crate::grid::Grid;
+use crate::seam::Halo;
+
+/// Motion of one face of the grid.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Support<const D: usize> {
+    /// axis that the face is normal to
+    pub axis: usize,
+    /// the face at the axis' upper end
+    pub upper: bool,
+    /// per component: velocity of the prescribed motion (m per unit of time), 0 where it is held, `None` where free
+    pub velocity: [Option<f64>; D],
+}
+
+impl<const D: usize> Support<D> {
+    /// All components held.
+    pub fn fixed(axis: usize, upper: bool) -> Self {
+        Self { axis, upper, velocity: [Some(0.0); D] }
+    }
+
+    /// The normal component held.
+    pub fn roller(axis: usize, upper: bool) -> Self {
+        let mut velocity = [None; D];
+        velocity[axis] = Some(0.0);
+        Self { axis, upper, velocity }
+    }
+}
+
+/// All supports of a scene; where faces meet, the one named last decides a component that both prescribe.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Boundary<const D: usize> {
+    /// Supports, at most one per face.
+    pub supports: Vec<Support<D>>,
+}
+
+impl<const D: usize> Boundary<D> {
+    /// Prescribed velocity of every nodal component of the window (D per node), `None` where it is free.
+    pub fn velocities(&self, grid: &Grid<D>) -> Vec<Option<f64>> {
+        let mut prescribed = vec![None; grid.nodes() * D];
+        for support in &self.supports {
+            for node in grid.face_nodes(support.axis, support.upper) {
+                for (component, velocity) in support.velocity.iter().enumerate() {
+                    if velocity.is_some() {
+                        prescribed[node * D + component] = *velocity;
+                    }
+                }
+            }
+        }
+        prescribed
+    }
+
+    /// Force of every support on the body: the nodal `reaction` summed over the components that it prescribes, N.
+    pub fn reactions(&self, grid: &Grid<D>, reaction: &[f64], halo: &dyn Halo) -> Vec<Vec<f64>> {
+        let owned = halo.owned();
+        let mut sums = vec![0.0; self.supports.len() * D];
+        for (support, sum) in self.supports.iter().zip(sums.chunks_exact_mut(D)) {
+            for node in grid.face_nodes(support.axis, support.upper) {
+                if owned.contains(&node) {
+                    let prescribed = (0..D).filter(|&component| support.velocity[component].is_some());
+                    prescribed.for_each(|component| sum[component] += reaction[node * D + component]);
+                }
+            }
+        }
+        halo.reduce(&mut sums);
+        sums.chunks_exact(D).map(<[f64]>::to_vec).collect()
+    }
+
+    /// Whether component `axis` is held at some face: without it a quasi-static body floats.
+    pub fn holds(&self, component: usize) -> bool {
+        self.supports.iter().any(|support| support.velocity[component].is_some())
+    }
+}

@@ -1,0 +1,132 @@
+//! When a step fails: it is halved and later grown back, and none is accepted that has not converged.
+//!
+//! A nominal step is divided into 1024 ticks; attempts are powers of two of them, on the binary subdivision of the
+//! nominal step, so that the step's end is always met and a cut step is a refinement, not another path.
+
+use crate::error::StepError;
+use crate::kinematics::Kinematics;
+use crate::model::Model;
+use crate::points::Points;
+use crate::schedule::Schedule;
+use crate::seam::{Halo, LinearSolver};
+use crate::step::{Report, step};
+
+/// Halvings of the nominal step before the run gives up.
+const MOST_CUTS: u32 = 10;
+/// Ticks of a nominal step.
+const TICKS: u32 = 1 << MOST_CUTS;
+/// Easy steps in a row after which the step is doubled.
+const EASY: u32 = 2;
+
+/// A step that converged.
+#[derive(Clone, Debug)]
+pub struct Accepted {
+    /// s  time at its end
+    pub t: f64,
+    /// s  its length
+    pub dt: f64,
+    /// what it did
+    pub report: Report,
+    /// the attempts before it that failed, first one first
+    pub rejected: Vec<StepError>,
+}
+
+/// A step that failed down to the smallest size, or that no smaller step can mend.
+#[derive(Clone, Debug)]
+pub struct Failure {
+    /// s  time of the last converged state
+    pub t: f64,
+    /// s  length of the last attempt
+    pub dt: f64,
+    /// attempts, first one first
+    pub attempts: Vec<StepError>,
+}
+
+/// Position within the current nominal step, and the state of the step-size control.
+#[derive(Clone, Debug)]
+pub struct Stepper {
+    /// m  nodal displacement of the last converged step, D numbers per node of the window
+    pub guess: Vec<f64>,
+    guess_dt: f64,
+    t: f64,
+    nominal: Option<(f64, f64)>,
+    tick: u32,
+    cuts: u32,
+    easy: u32,
+}
+
+impl Stepper {
+    /// At time 0, with no displacement to start from.
+    pub fn new(unknowns: usize) -> Self {
+        Self { guess: vec![0.0; unknowns], guess_dt: 0.0, t: 0.0, nominal: None, tick: 0, cuts: 0, easy: 0 }
+    }
+
+    /// s  time of the last converged state.
+    pub fn time(&self) -> f64 {
+        self.t
+    }
+
+    /// Makes one accepted step towards the end of `schedule`; `None` if the end is reached.
+    pub fn advance<K: Kinematics<D>, const D: usize>(
+        &mut self,
+        schedule: &Schedule,
+        model: &Model<K, D>,
+        points: &mut Points<D>,
+        halo: &dyn Halo,
+        solver: &mut dyn LinearSolver,
+    ) -> Option<Result<Accepted, Failure>> {
+        let (from, to) = match self.nominal {
+            Some(nominal) => nominal,
+            None => (self.t, schedule.next(self.t)?),
+        };
+        self.nominal = Some((from, to));
+        let mut rejected = Vec::new();
+        loop {
+            let size = TICKS >> self.cuts;
+            let end = if self.tick + size == TICKS { to } else { from + (to - from) * fraction(self.tick + size) };
+            let dt = end - self.t;
+            let mut guess = self.scaled_guess(dt);
+            match step(model, points, &mut guess, (self.t, dt), halo, solver) {
+                Ok(report) => {
+                    (self.guess, self.guess_dt, self.t) = (guess, dt, end);
+                    self.accept(size, report.first_guess && report.iterations * 2 <= model.criteria.max_iterations);
+                    return Some(Ok(Accepted { t: end, dt, report, rejected }));
+                }
+                Err(error) => {
+                    let hopeless = matches!(error, StepError::Left { .. } | StepError::Outside { .. });
+                    rejected.push(error);
+                    if hopeless || self.cuts == MOST_CUTS {
+                        return Some(Err(Failure { t: self.t, dt, attempts: rejected }));
+                    }
+                    self.cuts += 1;
+                    self.easy = 0;
+                }
+            }
+        }
+    }
+
+    /// The last displacement, scaled by the ratio of the steps (step 3b).
+    fn scaled_guess(&self, dt: f64) -> Vec<f64> {
+        if self.guess_dt == 0.0 {
+            return vec![0.0; self.guess.len()];
+        }
+        let ratio = dt / self.guess_dt;
+        self.guess.iter().map(|u| ratio * u).collect()
+    }
+
+    fn accept(&mut self, size: u32, easy: bool) {
+        self.tick += size;
+        self.easy = if easy { self.easy + 1 } else { 0 };
+        if self.tick == TICKS {
+            (self.tick, self.nominal) = (0, None);
+        }
+        if self.cuts > 0 && self.easy >= EASY && self.tick.is_multiple_of(2 * size) {
+            self.cuts -= 1;
+            self.easy = 0;
+        }
+    }
+}
+
+fn fraction(tick: u32) -> f64 {
+    f64::from(tick) / f64::from(TICKS)
+}

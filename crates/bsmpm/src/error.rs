@@ -1,0 +1,84 @@
+//! What can go wrong in the physics; every variant names the point, node or number concerned.
+
+use crate::material::MaterialError;
+use thiserror::Error;
+
+/// A grid that cannot be built.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum GridError {
+    /// The order is not linear, quadratic or cubic.
+    #[error("B-splines of order {0} are not supported (1, 2 or 3)")]
+    Order(usize),
+    /// Breakpoints are not finite and increasing, or there is no cell.
+    #[error("the breakpoints of an axis must be finite, increasing and at least two")]
+    Breakpoints,
+    /// The axes have different orders.
+    #[error("all axes must have the same order")]
+    MixedOrders,
+}
+
+/// A linear solution that cannot be trusted.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum SolveError {
+    /// The library reported a failure.
+    #[error("linear solver: {0}")]
+    Failed(String),
+    /// The solution holds a number that is not finite.
+    #[error("the linear solution is not finite")]
+    NotFinite,
+    /// The recomputed residual is too large.
+    #[error("the linear solution leaves a relative residual of {0:.1e}")]
+    Residual(f64),
+}
+
+/// Why a step was not accepted.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum StepError {
+    /// A point is outside the grid, or was not sorted into this rank's window.
+    #[error("point {id} is outside the grid at {x:?}")]
+    Outside {
+        /// Global id of the point.
+        id: u64,
+        /// Position from the grid's lower corner, m.
+        x: Vec<f64>,
+    },
+    /// A point would leave the grid in this step.
+    #[error("{count} point(s) would leave the grid; on this rank first point {first:?}")]
+    Left {
+        /// Number of points over all ranks.
+        count: u64,
+        /// Id and position (m) of the first one on this rank, if any.
+        first: Option<(u64, Vec<f64>)>,
+    },
+    /// Material turned inside out or became non-finite, also with shortened iterations.
+    #[error("{count} point(s) inverted or not finite in iteration {iteration}{}", .first.map_or(String::new(), |p| format!("; on this rank first point {p}")))]
+    Inverted {
+        /// Number of points over all ranks.
+        count: u64,
+        /// Quasi-Newton iteration.
+        iteration: usize,
+        /// Id of the first one on this rank, if any.
+        first: Option<u64>,
+    },
+    /// The iteration limit was reached.
+    #[error("not converged after {iterations} iterations: energy measure {energy:.2e}, force measure {force:.2e}")]
+    NotConverged {
+        /// Iterations made.
+        iterations: usize,
+        /// |du . f| / |du_0 . f_0|.
+        energy: f64,
+        /// |f_oob| / largest force.
+        force: f64,
+    },
+    /// The linear system could not be solved.
+    #[error(transparent)]
+    Solve(#[from] SolveError),
+    /// The constitution refused a trial state when the step was committed.
+    #[error("point {id}: {source}")]
+    Material {
+        /// Global id of the point.
+        id: u64,
+        /// The constitution's reason.
+        source: MaterialError,
+    },
+}

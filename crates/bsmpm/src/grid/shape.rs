@@ -1,0 +1,164 @@
+//! Step (1): shape functions and topology of all points, in product form.
+//!
+//! A point keeps D one-dimensional rows of N and dN/dx instead of (q+1)^D values and gradients: as fast, with half to a
+//! tenth of the memory. The topology p2N is a cell's first node plus offsets that all cells share.
+
+use super::Grid;
+use crate::error::StepError;
+use crate::points::Points;
+use crate::tensor::Vector;
+use std::ops::Range;
+
+/// An occupied cell with its points: the patch of section 2.1.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Patch {
+    /// local index of the cell
+    pub cell: usize,
+    /// local index of its first node
+    pub first_node: usize,
+    /// its points
+    pub points: Range<usize>,
+}
+
+/// Shape functions of all points at the start of a step.
+#[derive(Clone, Debug)]
+pub struct Shape<const D: usize> {
+    width: usize,
+    offsets: Vec<usize>,
+    patches: Vec<Patch>,
+    rows: Vec<f64>, // per point and axis: q + 1 values, then q + 1 derivatives (1/m)
+}
+
+/// Runs `$body` with the constant `W` = q + 1, so that the loops over a patch's nodes are unrolled.
+macro_rules! with_width {
+    ($width:expr, $W:ident => $body:expr) => {
+        match $width {
+            2 => {
+                const $W: usize = 2;
+                $body
+            }
+            3 => {
+                const $W: usize = 3;
+                $body
+            }
+            _ => {
+                const $W: usize = 4;
+                $body
+            }
+        }
+    };
+}
+pub(crate) use with_width;
+
+impl<const D: usize> Shape<D> {
+    /// Evaluates the functions at all points, which must be sorted by cell. Fails on a point outside the window.
+    pub fn at(grid: &Grid<D>, points: &Points<D>) -> Result<Self, StepError> {
+        let width = grid.order() + 1;
+        let mut shape = Self {
+            width,
+            offsets: grid.offsets(),
+            patches: Vec::new(),
+            rows: Vec::with_capacity(points.len() * 2 * D * width),
+        };
+        with_width!(width, W => shape.evaluate::<W>(grid, points))?;
+        Ok(shape)
+    }
+
+    fn evaluate<const W: usize>(&mut self, grid: &Grid<D>, points: &Points<D>) -> Result<(), StepError> {
+        let columns = grid.columns();
+        for (p, x) in points.x.iter().enumerate() {
+            let outside = || StepError::Outside { id: points.id[p], x: x.as_slice().to_vec() };
+            let located = grid.locate(x).filter(|cell| columns.contains(&cell[0])).ok_or_else(outside)?;
+            let cell = grid.cell_index(&located);
+            match self.patches.last_mut() {
+                Some(patch) if patch.cell == cell => patch.points.end = p + 1,
+                _ => self.patches.push(Patch { cell, first_node: grid.first_node(&located), points: p..p + 1 }),
+            }
+            for axis in 0..D {
+                let (N, dN) = grid.axes()[axis].basis::<W>(x[axis], located[axis]);
+                self.rows.extend_from_slice(&N);
+                self.rows.extend_from_slice(&dN);
+            }
+        }
+        debug_assert!(self.patches.is_sorted_by(|a, b| a.cell < b.cell), "points must be sorted by cell");
+        Ok(())
+    }
+
+    /// Functions per axis, q + 1.
+    pub fn width(&self) -> usize {
+        self.width
+    }
+
+    /// Occupied cells in ascending order.
+    pub fn patches(&self) -> &[Patch] {
+        &self.patches
+    }
+
+    /// Offsets of a patch's nodes from its first one.
+    pub fn offsets(&self) -> &[usize] {
+        &self.offsets
+    }
+
+    /// Number of points.
+    pub fn len(&self) -> usize {
+        self.rows.len() / (2 * D * self.width)
+    }
+
+    /// Whether there is no point.
+    pub fn is_empty(&self) -> bool {
+        self.rows.is_empty()
+    }
+
+    /// The rows of point `p`, for a width known to the compiler.
+    #[inline(always)]
+    pub(crate) fn support<const W: usize>(&self, p: usize) -> Support<'_, D, W> {
+        let size = 2 * D * W;
+        Support { rows: &self.rows[p * size..(p + 1) * size] }
+    }
+
+    /// N_Ip and grad N_Ip of every node of point `p`, axis 0 slowest; for tests and observations, not for hot loops.
+    pub fn of(&self, p: usize) -> Vec<(f64, Vector<D>)> {
+        with_width!(self.width, W => {
+            let support = self.support::<W>(p);
+            (0..W.pow(D as u32)).map(|k| (support.value(k), support.gradient(k))).collect()
+        })
+    }
+}
+
+/// One point's functions: D rows of W values and W derivatives.
+#[derive(Clone, Copy)]
+pub(crate) struct Support<'a, const D: usize, const W: usize> {
+    rows: &'a [f64],
+}
+
+impl<const D: usize, const W: usize> Support<'_, D, W> {
+    /// Position of local node `k` along `axis`.
+    #[inline(always)]
+    fn along(k: usize, axis: usize) -> usize {
+        k / W.pow((D - 1 - axis) as u32) % W
+    }
+
+    /// N_Ip of local node `k`.
+    #[inline(always)]
+    pub fn value(&self, k: usize) -> f64 {
+        let mut product = 1.0;
+        for axis in 0..D {
+            product *= self.rows[2 * W * axis + Self::along(k, axis)];
+        }
+        product
+    }
+
+    /// grad N_Ip of local node `k`, 1/m.
+    #[inline(always)]
+    pub fn gradient(&self, k: usize) -> Vector<D> {
+        let mut gradient = Vector::repeat(1.0);
+        for axis in 0..D {
+            let a = Self::along(k, axis);
+            let (N, dN) = (self.rows[2 * W * axis + a], self.rows[2 * W * axis + W + a]);
+            for component in 0..D {
+                gradient[component] *= if component == axis { dN } else { N };
+            }
+        }
+        gradient
+    }
+}

@@ -1,0 +1,133 @@
+//! Open B-splines in one dimension (Eqs 3-6).
+//!
+//! Appendix A evaluates all functions and keeps those that are not zero. Here the span is found directly and all q+1
+//! functions of the span are kept: on a knot N = 0 while dN/dx != 0, and those must not be dropped.
+
+use crate::error::GridError;
+
+/// Largest supported order.
+pub const MAX_ORDER: usize = 3;
+
+/// An open knot vector: breakpoints from 0 to the length of the axis, the end knots q + 1 times (Eq. 3).
+#[derive(Clone, Debug, PartialEq)]
+pub struct KnotVector {
+    order: usize,
+    knots: Vec<f64>,         // m  with repeated end knots
+    inverse_cell: Option<f64>, // 1/m  of uniform breakpoints
+}
+
+impl KnotVector {
+    /// `cells` equal cells of length `cell` (m). Fails on an unsupported order, no cell or a bad length.
+    pub fn uniform(cell: f64, cells: usize, order: usize) -> Result<Self, GridError> {
+        let breakpoints: Vec<f64> = (0..=cells).map(|i| i as f64 * cell).collect();
+        let mut axis = Self::graded(&breakpoints, order)?;
+        axis.inverse_cell = Some(1.0 / cell);
+        Ok(axis)
+    }
+
+    /// Cells between increasing `breakpoints` (m), counted from the first. Fails as [`KnotVector::uniform`] does.
+    pub fn graded(breakpoints: &[f64], order: usize) -> Result<Self, GridError> {
+        if !(1..=MAX_ORDER).contains(&order) {
+            return Err(GridError::Order(order));
+        }
+        let increasing = breakpoints.windows(2).all(|pair| pair[1] > pair[0]);
+        if breakpoints.len() < 2 || !increasing || breakpoints.iter().any(|x| !x.is_finite()) {
+            return Err(GridError::Breakpoints);
+        }
+        let from = breakpoints[0];
+        let length = breakpoints[breakpoints.len() - 1] - from;
+        let mut knots = vec![0.0; order];
+        knots.extend(breakpoints.iter().map(|x| x - from));
+        knots.extend(std::iter::repeat_n(length, order));
+        Ok(Self { order, knots, inverse_cell: None })
+    }
+
+    /// Polynomial order q.
+    pub fn order(&self) -> usize {
+        self.order
+    }
+
+    /// Knot `i` of the n + q + 1 (m).
+    pub fn knot(&self, i: usize) -> f64 {
+        self.knots[i]
+    }
+
+    /// Number of cells (patches).
+    pub fn cells(&self) -> usize {
+        self.knots.len() - 1 - 2 * self.order
+    }
+
+    /// Number n of functions: cells + q.
+    pub fn functions(&self) -> usize {
+        self.cells() + self.order
+    }
+
+    /// Breakpoint `i`, from 0 to the number of cells (m).
+    pub fn breakpoint(&self, i: usize) -> f64 {
+        self.knots[i + self.order]
+    }
+
+    /// Length of the axis, m.
+    pub fn length(&self) -> f64 {
+        self.knots[self.knots.len() - 1]
+    }
+
+    /// Shortest cell, m.
+    pub fn smallest_cell(&self) -> f64 {
+        (0..self.cells()).map(|i| self.breakpoint(i + 1) - self.breakpoint(i)).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The cell that holds `x`; the last one is closed, so that x = length has shape functions. `None` outside.
+    #[inline]
+    pub fn cell_of(&self, x: f64) -> Option<usize> {
+        if !(0.0..=self.length()).contains(&x) {
+            return None;
+        }
+        let last = self.cells() - 1;
+        let guess = match self.inverse_cell {
+            Some(inverse) => (x * inverse) as usize,
+            None => self.knots[self.order..=self.order + last].partition_point(|&knot| knot <= x) - 1,
+        };
+        let mut cell = guess.min(last);
+        // A rounded quotient may land one cell off a breakpoint; the half-open spans of Eq. 4 decide.
+        if x < self.breakpoint(cell) {
+            cell -= 1;
+        } else if cell < last && x >= self.breakpoint(cell + 1) {
+            cell += 1;
+        }
+        Some(cell)
+    }
+
+    /// The W = q + 1 functions of `cell` at `x` and their derivatives (Eqs 4-6): function `a` is number `cell + a`.
+    ///
+    /// N is dimensionless, dN/dx in 1/m. The Cox-de Boor recursion runs over the span's own functions only.
+    #[inline]
+    pub fn basis<const W: usize>(&self, x: f64, cell: usize) -> ([f64; W], [f64; W]) {
+        debug_assert_eq!(W, self.order + 1);
+        let span = cell + self.order;
+        let knots = &self.knots[span + 1 - self.order..=span + self.order];
+        let q = W - 1;
+        let (mut N, mut lower) = ([0.0; W], [0.0; W]);
+        N[0] = 1.0;
+        for degree in 1..=q {
+            if degree == q {
+                lower = N;
+            }
+            let mut saved = 0.0;
+            for r in 0..degree {
+                let (left, right) = (knots[q - degree + r], knots[q + r]);
+                let ratio = N[r] / (right - left);
+                N[r] = saved + (right - x) * ratio;
+                saved = (x - left) * ratio;
+            }
+            N[degree] = saved;
+        }
+        let mut dN = [0.0; W];
+        for r in 0..q {
+            let slope = q as f64 * lower[r] / (knots[q + r] - knots[r]);
+            dN[r] -= slope;
+            dN[r + 1] += slope;
+        }
+        (N, dN)
+    }
+}

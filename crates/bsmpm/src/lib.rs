@@ -1,0 +1,37 @@
+//! Implicit, locking-free B-spline material point method for large-strain geotechnics, after Xie, Navas and
+//! López-Querol (2023), "An implicit locking-free B-spline Material Point Method for large strain geotechnical
+//! modelling" (the paper). This crate is the physics: it knows no MPI, PETSc, file, clock or log.
+//!
+//! Who has read the paper's section 2.4 finds its numbered steps here:
+//!
+//! | step | what | where |
+//! | --- | --- | --- |
+//! | (1) | shape functions and topology | [`grid::spline`], [`grid::shape`] |
+//! | (2) | points to nodes | [`step::nodes`] |
+//! | (3), (7)-(9) | quasi-Newton iteration, both convergence measures | [`step::equilibrium`], [`step::broyden`] |
+//! | (4) | trial deformation, F-bar | [`step::trial`] |
+//! | (5) | out-of-balance force | [`step::residual`] |
+//! | (6) | elastic stiffness K_0 | [`step::stiffness`] |
+//! | (10), (11) | grid kinematics, converged points | [`step::commit`] |
+//!
+//! [`control`] cuts and grows the steps so that a non-converged one is never accepted; [`seam`] holds the two traits
+//! behind which ranks and linear algebra live; [`observe`] evaluates what a history records.
+#![forbid(unsafe_code)]
+// The fields of section 2.4 keep the paper's letters (F, dF, J, N) where they have one meaning in mechanics.
+#![allow(non_snake_case)]
+
+pub mod background;
+pub mod boundary;
+pub mod control;
+pub mod error;
+pub mod grid;
+pub mod kinematics;
+pub mod material;
+pub mod model;
+pub mod observe;
+pub mod points;
+pub mod schedule;
+pub mod seam;
+pub mod stabilisation;
+pub mod step;
+pub mod tensor;

@@ -1,0 +1,126 @@
+//! Constitution (section 2.2): a trial elastic left Cauchy-Green tensor in, Kirchhoff stress and elastic state out.
+//!
+//! Every law is isotropic and works on principal Hencky strains, ε = ½ ln bᵉ (Eq. 9), so the small-strain return of
+//! de Souza Neto et al. (2008) holds at large strain (Eq. 10). Stress is in Pa, tension positive, principal values
+//! descending. Nothing here knows F, J or the grid, nor stores a state: old state in, new state out.
+
+mod hencky;
+mod mohr_coulomb;
+mod response;
+mod spectral;
+mod tangent;
+
+pub use hencky::Hencky;
+pub use mohr_coulomb::MohrCoulomb;
+pub use response::{Region, Response};
+pub use tangent::Tangent;
+
+use crate::tensor::Symmetric;
+use mohr_coulomb::Return;
+use spectral::Spectrum;
+
+/// Isotropic linear elasticity between Hencky strain and Kirchhoff stress: `τ = λ tr(ε) I + 2μ ε`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Elastic {
+    /// Pa  Young's modulus E
+    pub young: f64,
+    /// (-)  Poisson's ratio ν, -1 < ν < ½
+    pub poisson: f64,
+}
+
+impl Elastic {
+    /// The Lamé constants in Pa: `λ = E ν/((1 + ν)(1 - 2ν))`, `μ = E/(2(1 + ν))`.
+    #[inline]
+    pub fn lame(&self) -> (f64, f64) {
+        let mu = 0.5 * self.young / (1.0 + self.poisson);
+        (2.0 * mu * self.poisson / (1.0 - 2.0 * self.poisson), mu)
+    }
+
+    /// The constrained modulus in Pa, stress over strain without lateral strain: `M = λ + 2μ`.
+    pub fn oedometric(&self) -> f64 {
+        let (lambda, mu) = self.lame();
+        lambda + 2.0 * mu
+    }
+
+    #[inline]
+    fn moduli(&self) -> Moduli {
+        let (lambda, mu) = self.lame();
+        Moduli { lambda, mu }
+    }
+}
+
+/// The Lamé constants, in Pa.
+#[derive(Clone, Copy, Debug)]
+struct Moduli {
+    lambda: f64,
+    mu: f64,
+}
+
+impl Moduli {
+    /// `τ_A = λ Σ_B ε_B + 2μ ε_A`.
+    #[inline]
+    fn stress(&self, eps: [f64; 3]) -> [f64; 3] {
+        let spherical = self.lambda * (eps[0] + eps[1] + eps[2]);
+        eps.map(|e| spherical + 2.0 * self.mu * e)
+    }
+
+    /// The inverse of [`Moduli::stress`]: `ε_A = (τ_A - p)/(2μ) + p/(3K)`, p the mean stress.
+    #[inline]
+    fn strain(&self, tau: [f64; 3]) -> [f64; 3] {
+        let mean = (tau[0] + tau[1] + tau[2]) / 3.0;
+        let spherical = mean / (3.0 * self.bulk());
+        tau.map(|t| (t - mean) / (2.0 * self.mu) + spherical)
+    }
+
+    /// `K = λ + ⅔ μ`.
+    #[inline]
+    fn bulk(&self) -> f64 {
+        self.lambda + self.mu * (2.0 / 3.0)
+    }
+}
+
+/// A material of the case.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Material {
+    /// Elastic at any strain.
+    Hencky(Hencky),
+    /// Elastic, perfectly plastic with friction, dilation and cohesion.
+    MohrCoulomb(MohrCoulomb),
+}
+
+impl Material {
+    /// The elastic part of the law.
+    pub fn elastic(&self) -> &Elastic {
+        match self {
+            Self::Hencky(law) => &law.elastic,
+            Self::MohrCoulomb(law) => &law.elastic,
+        }
+    }
+
+    /// The response to a trial elastic left Cauchy-Green tensor, `b_trial = ΔF bᵉ ΔFᵀ` (Eq. 7).
+    ///
+    /// # Errors
+    /// When `b_trial` has a component that is not finite, or an eigenvalue that is not positive.
+    #[inline]
+    pub fn respond(&self, b_trial: &Symmetric) -> Result<Response, MaterialError> {
+        let spectrum = Spectrum::of(b_trial)?;
+        let moduli = self.elastic().moduli();
+        let trial = moduli.stress(spectrum.eps);
+        let returned = match self {
+            Self::Hencky(_) => Return::elastic(trial),
+            Self::MohrCoulomb(law) => law.project(moduli, trial),
+        };
+        Ok(Response::new(*b_trial, spectrum, moduli, returned))
+    }
+}
+
+/// Why a material has no response.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum MaterialError {
+    /// A component of the trial tensor is NaN, infinite or beyond 1e100.
+    #[error("the trial elastic left Cauchy-Green tensor is not finite: {0:?}")]
+    NotFinite([f64; 6]),
+    /// An eigenvalue of the trial tensor is not positive: the step has turned the material inside out.
+    #[error("the trial elastic left Cauchy-Green tensor is not positive definite: smallest eigenvalue {0:e}")]
+    NotPositive(f64),
+}

@@ -1,0 +1,149 @@
+//! Mohr-Coulomb plasticity (section 2.2; de Souza Neto et al., 2008, Boxes 8.4 to 8.7): perfect, non-associated.
+//!
+//! With no hardening each return is linear, so all are in closed form, and region by region:
+//! face, the edges τ₁ = τ₂ (left) and τ₂ = τ₃ (right), apex. Tresca is φ = ψ = 0, which has no apex.
+
+use super::{Elastic, Moduli, Region};
+
+/// Elastic inside `f = (τ₁ - τ₃) + (τ₁ + τ₃) sin φ - 2 c cos φ ≤ 0`, with the same form in ψ as plastic potential.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MohrCoulomb {
+    /// The elastic part.
+    pub elastic: Elastic,
+    /// rad  friction angle φ, 0 ≤ φ < π/2
+    pub friction: f64,
+    /// rad  dilation angle ψ, 0 ≤ ψ ≤ φ
+    pub dilation: f64,
+    /// Pa   cohesion c ≥ 0
+    pub cohesion: f64,
+}
+
+/// Principal stress after the return, where it lies, and the two sines its tangent needs.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Return {
+    pub tau: [f64; 3],
+    pub region: Region,
+    pub flow: Flow,
+}
+
+impl Return {
+    /// No return: the trial stress itself.
+    #[inline]
+    pub fn elastic(tau: [f64; 3]) -> Self {
+        Self { tau, region: Region::Elastic, flow: Flow { sin_phi: 0.0, sin_psi: 0.0 } }
+    }
+}
+
+/// Slopes of the yield surface and of the plastic potential.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Flow {
+    pub sin_phi: f64,
+    pub sin_psi: f64,
+}
+
+/// An edge of the yield surface with the plane of trial stresses that return to each of its points.
+pub(super) struct Edge {
+    /// Direction of the edge where τ₃ grows by one: (N, 1, 1) or (N, N, 1), N = (1 - sin φ)/(1 + sin φ).
+    pub along: [f64; 3],
+    /// Normal in strain to both plastic flows, which an edge return therefore keeps: q · εᵖ = 0.
+    pub kept: [f64; 3],
+    /// 18 K μ C q without cancellation, C the elastic compliance: `w = 9 K dev q + 2μ tr(q) I`.
+    pub weight: [f64; 3],
+    /// Pa²  `w · along`, positive for all ν, φ and ψ.
+    pub slope: f64,
+}
+
+impl Flow {
+    /// `N = (1 - sin φ)/(1 + sin φ)`, the smaller over the larger principal stress at yield without cohesion.
+    #[inline]
+    pub fn ratio(self) -> f64 {
+        (1.0 - self.sin_phi) / (1.0 + self.sin_phi)
+    }
+
+    /// The right edge (τ₂ = τ₃), on which the potentials of the planes 1-3 and 1-2 flow together.
+    #[inline]
+    pub fn right(self, moduli: Moduli) -> Edge {
+        let (minus, plus) = (1.0 - self.sin_psi, 1.0 + self.sin_psi);
+        let (dev, trace) = (6.0 * moduli.bulk() * self.sin_psi, 2.0 * moduli.mu * (3.0 + self.sin_psi));
+        Edge::new([self.ratio(), 1.0, 1.0], [minus, plus, plus], [trace - 2.0 * dev, trace + dev, trace + dev])
+    }
+
+    /// The left edge (τ₁ = τ₂), on which the potentials of the planes 1-3 and 2-3 flow together.
+    #[inline]
+    pub fn left(self, moduli: Moduli) -> Edge {
+        let (minus, plus) = (1.0 - self.sin_psi, 1.0 + self.sin_psi);
+        let (dev, trace) = (6.0 * moduli.bulk() * self.sin_psi, 2.0 * moduli.mu * (3.0 - self.sin_psi));
+        let ratio = self.ratio();
+        Edge::new([ratio, ratio, 1.0], [minus, minus, plus], [trace - dev, trace - dev, trace + 2.0 * dev])
+    }
+}
+
+impl Edge {
+    #[inline]
+    fn new(along: [f64; 3], kept: [f64; 3], weight: [f64; 3]) -> Self {
+        Self { along, kept, weight, slope: dot(weight, along) }
+    }
+
+    /// τ₃ after the return to this edge: `τ₃ = w · (τ_trial - o)/(w · along)`, o the edge's point where τ₃ = 0.
+    #[inline]
+    fn third(&self, trial: [f64; 3], origin: [f64; 3]) -> f64 {
+        dot(self.weight, [trial[0] - origin[0], trial[1] - origin[1], trial[2]]) / self.slope
+    }
+}
+
+impl MohrCoulomb {
+    /// Returns a descending trial stress to the yield surface, if it lies outside.
+    ///
+    /// τ₁ is always taken from τ₃ by f = 0, so the result satisfies yield and order to the last digits even where it
+    /// is much smaller than the trial.
+    #[inline]
+    pub(super) fn project(&self, moduli: Moduli, trial: [f64; 3]) -> Return {
+        let (sin_phi, cos_phi) = self.friction.sin_cos();
+        let strength = self.cohesion * cos_phi;
+        let excess = (trial[0] - trial[2]) + (trial[0] + trial[2]) * sin_phi - 2.0 * strength;
+        if excess <= 0.0 {
+            return Return::elastic(trial);
+        }
+        let flow = Flow { sin_phi, sin_psi: self.dilation.sin() };
+        let shift = 2.0 * strength / (1.0 + sin_phi);
+        let (tau, region) = face(flow, moduli, trial, excess, shift)
+            .or_else(|| edge(flow, moduli, trial, shift))
+            .unwrap_or_else(|| ([strength / sin_phi; 3], Region::Apex));
+        Return { tau, region, flow }
+    }
+}
+
+/// Return along `τ = τ_trial - Δγ D m`, `Δγ = f/(4λ sin φ sin ψ + 4μ(1 + sin φ sin ψ))`; none if it breaks the order.
+#[inline]
+fn face(flow: Flow, moduli: Moduli, trial: [f64; 3], excess: f64, shift: f64) -> Option<([f64; 3], Region)> {
+    let Flow { sin_phi, sin_psi } = flow;
+    let Moduli { lambda, mu } = moduli;
+    let product = sin_phi * sin_psi;
+    let half = 0.5 * excess / (lambda * product + mu * (1.0 + product));
+    let second = trial[1] - half * lambda * sin_psi;
+    let third = trial[2] - half * (lambda * sin_psi - mu * (1.0 - sin_psi));
+    let first = flow.ratio() * third + shift;
+    // Beyond the apex f = 0 and the order exclude each other, so this test covers the apex too.
+    (first >= second && second >= third).then_some(([first, second, third], Region::Face))
+}
+
+/// Return to the edge that the face return crosses first; none if that is beyond the apex (never when sin φ = 0).
+#[inline]
+fn edge(flow: Flow, moduli: Moduli, trial: [f64; 3], shift: f64) -> Option<([f64; 3], Region)> {
+    let (upper, lower) = (trial[0] - trial[1], trial[1] - trial[2]);
+    let is_right = (1.0 - flow.sin_psi) * upper > (1.0 + flow.sin_psi) * lower;
+    if is_right {
+        let third = flow.right(moduli).third(trial, [shift, 0.0, 0.0]);
+        let first = flow.ratio() * third + shift;
+        (first >= third).then_some(([first, third, third], Region::RightEdge))
+    } else {
+        let third = flow.left(moduli).third(trial, [shift, shift, 0.0]);
+        let first = flow.ratio() * third + shift;
+        (first >= third).then_some(([first, first, third], Region::LeftEdge))
+    }
+}
+
+#[inline]
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}

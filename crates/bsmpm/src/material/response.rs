@@ -1,0 +1,102 @@
+//! What a material answers: principal values and axes (section 2.2); tensors and the tangent are formed on demand.
+
+use super::mohr_coulomb::{Flow, Return};
+use super::spectral::{Spectrum, assemble};
+use super::{Moduli, Tangent};
+use crate::tensor::{Symmetric, Tensor};
+
+/// Where on the yield surface the stress lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Region {
+    /// Inside or on the yield surface: no return.
+    Elastic,
+    /// One plane of the surface, τ₁ > τ₂ > τ₃.
+    Face,
+    /// The edge τ₁ = τ₂.
+    LeftEdge,
+    /// The edge τ₂ = τ₃.
+    RightEdge,
+    /// The tip, τ₁ = τ₂ = τ₃ = c cot φ.
+    Apex,
+}
+
+/// The response of one point, in the axes of the trial b; principal values are descending.
+#[derive(Clone, Copy, Debug)]
+pub struct Response {
+    b_trial: Symmetric,
+    pub(super) trial: Spectrum,
+    pub(super) moduli: Moduli,
+    pub(super) flow: Flow,
+    pub(super) tau: [f64; 3],
+    region: Region,
+}
+
+impl Response {
+    #[inline]
+    pub(super) fn new(b_trial: Symmetric, trial: Spectrum, moduli: Moduli, returned: Return) -> Self {
+        let Return { tau, region, flow } = returned;
+        Self { b_trial, trial, moduli, flow, tau, region }
+    }
+
+    /// Kirchhoff stress in Pa: `τ = Σ_A τ_A n_A ⊗ n_A` (Eq. 10).
+    #[inline]
+    pub fn tau(&self) -> Symmetric {
+        assemble(self.tau, &self.trial.axis)
+    }
+
+    /// The elastic left Cauchy-Green tensor after the return: `bᵉ = Σ_A exp(2 εᵉ_A) n_A ⊗ n_A`.
+    ///
+    /// Without plastic flow this is the trial tensor, bit for bit.
+    pub fn b_e(&self) -> Symmetric {
+        if self.region == Region::Elastic {
+            return self.b_trial;
+        }
+        // b - I is assembled, which is accurate relative to the strain where that is small.
+        let mut b = assemble(self.principal_eps_e().map(|e| (2.0 * e).exp_m1()), &self.trial.axis);
+        b.0[..3].iter_mut().for_each(|c| *c += 1.0);
+        b
+    }
+
+    /// Where on the yield surface the stress lies.
+    #[inline]
+    pub fn region(&self) -> Region {
+        self.region
+    }
+
+    /// The equivalent plastic strain of this return: `Δεᵖ = √(2/3) |dev(ε_trial - εᵉ)|`, zero if elastic.
+    pub fn plastic_increment(&self) -> f64 {
+        let (eps_e, eps) = (self.principal_eps_e(), self.trial.eps);
+        let flow = [eps[0] - eps_e[0], eps[1] - eps_e[1], eps[2] - eps_e[2]];
+        let (a, b, c) = (flow[0] - flow[1], flow[1] - flow[2], flow[2] - flow[0]);
+        // |dev x|² is a third of the sum of squared differences.
+        (2.0 * (a * a + b * b + c * c)).sqrt() / 3.0
+    }
+
+    /// Principal Kirchhoff stress in Pa, descending.
+    #[inline]
+    pub fn principal_tau(&self) -> [f64; 3] {
+        self.tau
+    }
+
+    /// Principal Hencky strain of the trial, descending: `ε = ½ ln b_trial` (Eq. 9).
+    #[inline]
+    pub fn principal_eps_trial(&self) -> [f64; 3] {
+        self.trial.eps
+    }
+
+    /// Principal elastic Hencky strain after the return, descending: `εᵉ = D⁻¹ τ`.
+    pub fn principal_eps_e(&self) -> [f64; 3] {
+        if self.region == Region::Elastic { self.trial.eps } else { self.moduli.strain(self.tau) }
+    }
+
+    /// The tangent of this response, for use with many gradients.
+    #[inline]
+    pub fn tangent(&self) -> Tangent {
+        Tangent::of(self)
+    }
+
+    /// The change dτ in Pa for a spatial gradient `l = ∂(δu)/∂x` of a displacement increment: see [`Tangent::apply`].
+    pub fn linearise(&self, l: &Tensor) -> Tensor {
+        self.tangent().apply(l)
+    }
+}

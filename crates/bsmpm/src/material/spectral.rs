@@ -1,0 +1,174 @@
+//! Spectral form of b with its Hencky strains (section 2.2, Eq. 9), accurate from strains of 1e-16 to several.
+//!
+//! Jacobi rotations: one is exact when z is a principal axis (plane strain, axisymmetry), a few sweeps serve otherwise.
+//! They resolve nearly equal eigenvalues without a branch, and give them as a component of b plus a small gain; the
+//! logarithm uses both, so the digits that their sum would round away are not lost near b = I.
+
+use super::MaterialError;
+use crate::tensor::Symmetric;
+
+/// Beyond this, squares would overflow; b is without unit, and no meaningful one comes near.
+const LARGEST: f64 = 1e100;
+/// Sweeps of the cyclic Jacobi iteration; it converges quadratically, in 3 to 5.
+const SWEEPS: usize = 12;
+
+/// Principal values of b and of ε = ½ ln b, descending, with their orthonormal axes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Spectrum {
+    /// (-)  eigenvalues of b
+    pub b: [f64; 3],
+    /// (-)  principal Hencky strains
+    pub eps: [f64; 3],
+    /// (-)  unit eigenvectors, one a row
+    pub axis: [[f64; 3]; 3],
+}
+
+impl Spectrum {
+    /// `b = Σ_A b_A n_A ⊗ n_A`, `ε_A = ½ ln b_A`; fails unless b is finite and positive definite.
+    #[inline]
+    pub fn of(b: &Symmetric) -> Result<Self, MaterialError> {
+        let [xx, yy, zz, xy, yz, xz] = b.0;
+        let largest = xx.abs() + yy.abs() + zz.abs() + xy.abs() + yz.abs() + xz.abs();
+        if largest.is_nan() || largest > LARGEST {
+            return Err(MaterialError::NotFinite(b.0));
+        }
+        if yz == 0.0 && xz == 0.0 { Self::plane([xx, yy, zz], xy) } else { Self::solid(b) }
+    }
+
+    #[inline]
+    fn plane([xx, yy, zz]: [f64; 3], xy: f64) -> Result<Self, MaterialError> {
+        let Turn { tan, cos, sin } = Turn::of(0.5 * (xx - yy), xy);
+        let gain = tan * xy;
+        let (x, y, z) = ([cos, sin, 0.0], [-sin, cos, 0.0], [0.0, 0.0, 1.0]);
+        let (x, y) = (Principal::of(xx, gain, x)?, Principal::of(yy, -gain, y)?);
+        Ok(Self::sorted([x, y, Principal::of(zz, 0.0, z)?]))
+    }
+
+    fn solid(b: &Symmetric) -> Result<Self, MaterialError> {
+        let [xx, yy, zz, xy, yz, xz] = b.0;
+        let start = [xx, yy, zz];
+        // off[k] couples the two axes other than k; gain is what the rotations have added to the diagonal.
+        let mut off = [yz, xz, xy];
+        let mut gain = [0.0; 3];
+        let mut axis = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let norm = |off: &[f64; 3]| off[0].abs() + off[1].abs() + off[2].abs();
+        let enough = 1e-18 * ((xx - yy).abs() + (yy - zz).abs() + norm(&off));
+        for _ in 0..SWEEPS {
+            if norm(&off) <= enough {
+                break;
+            }
+            for (p, q, k) in [(0, 1, 2), (1, 2, 0), (0, 2, 1)] {
+                let turn = Turn::of(0.5 * ((start[p] - start[q]) + (gain[p] - gain[q])), off[k]);
+                gain[p] += turn.tan * off[k];
+                gain[q] -= turn.tan * off[k];
+                off[k] = 0.0;
+                (off[q], off[p]) = turn.apply(off[q], off[p]);
+                let pair = [0, 1, 2].map(|i| turn.apply(axis[p][i], axis[q][i]));
+                (axis[p], axis[q]) = (pair.map(|x| x.0), pair.map(|x| x.1));
+            }
+        }
+        let principal = |k: usize| Principal::of(start[k], gain[k], axis[k]);
+        Ok(Self::sorted([principal(0)?, principal(1)?, principal(2)?]))
+    }
+
+    /// Ranks by comparisons without branches, which random points would mispredict.
+    #[inline]
+    fn sorted(p: [Principal; 3]) -> Self {
+        let below = |i: usize, j: usize| usize::from(p[i].eps < p[j].eps);
+        let (a, b, c) = (below(0, 1), below(1, 2), below(0, 2));
+        let mut order = [0; 3];
+        order[a + c] = 0;
+        order[1 - a + b] = 1;
+        order[2 - b - c] = 2;
+        let sorted = order.map(|k| p[k]);
+        Self { b: sorted.map(|p| p.b), eps: sorted.map(|p| p.eps), axis: sorted.map(|p| p.axis) }
+    }
+}
+
+/// `s₂ I + (s₁ - s₂) n₁ ⊗ n₁ + (s₃ - s₂) n₃ ⊗ n₃`: the tensor of given principal values, exactly isotropic if they are equal.
+#[inline]
+pub(super) fn assemble(values: [f64; 3], axis: &[[f64; 3]; 3]) -> Symmetric {
+    let (first, third) = (values[0] - values[1], values[2] - values[1]);
+    let [a, _, c] = axis;
+    let at = |i: usize, j: usize| first * (a[i] * a[j]) + third * (c[i] * c[j]);
+    let spherical = values[1];
+    Symmetric([spherical + at(0, 0), spherical + at(1, 1), spherical + at(2, 2), at(0, 1), at(1, 2), at(0, 2)])
+}
+
+/// An eigenvalue, its Hencky strain and its axis.
+#[derive(Clone, Copy)]
+struct Principal {
+    b: f64,
+    eps: f64,
+    axis: [f64; 3],
+}
+
+impl Principal {
+    /// `ε = ½ (ln b + r/b)`, b the rounded sum of `start` and `gain`, r what the rounding lost (Knuth's two-sum).
+    #[inline]
+    fn of(start: f64, gain: f64, axis: [f64; 3]) -> Result<Self, MaterialError> {
+        let b = start + gain;
+        if b <= 0.0 {
+            return Err(MaterialError::NotPositive(b));
+        }
+        let kept = b - start;
+        let lost = (start - (b - kept)) + (gain - kept);
+        Ok(Self { b, eps: 0.5 * (b.ln() + lost / b), axis })
+    }
+}
+
+/// The smaller of the two rotations that make a pair of axes principal.
+struct Turn {
+    tan: f64,
+    cos: f64,
+    sin: f64,
+}
+
+impl Turn {
+    /// `tan θ = g/(d ± √(d² + g²))` for half the difference d of the diagonal and the coupling g, the sign that of d.
+    #[inline]
+    fn of(half: f64, coupling: f64) -> Self {
+        let sum = half.abs() + (half * half + coupling * coupling).sqrt();
+        let tan = if sum > 0.0 { coupling / sum.copysign(half) } else { 0.0 };
+        let cos = 1.0 / (1.0 + tan * tan).sqrt();
+        Self { tan, cos, sin: tan * cos }
+    }
+
+    #[inline]
+    fn apply(&self, p: f64, q: f64) -> (f64, f64) {
+        (self.cos * p + self.sin * q, self.cos * q - self.sin * p)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{Rotation3, Vector3};
+
+    fn defect(values: [f64; 3], turn: Vector3<f64>) -> f64 {
+        let q = Rotation3::new(turn).into_inner();
+        let b = Symmetric::of(&(q * nalgebra::Matrix3::from_diagonal(&values.into()) * q.transpose()));
+        let found = Spectrum::of(&b).unwrap();
+        let again = assemble(found.b, &found.axis);
+        let strain = assemble(found.eps.map(|e| (2.0 * e).exp()), &found.axis);
+        let worst = |t: Symmetric| (0..6).map(|i| (t.0[i] - b.0[i]).abs()).fold(0.0, f64::max);
+        worst(again).max(worst(strain)) / values[0]
+    }
+
+    #[test]
+    fn b_is_rebuilt_whatever_the_gap() {
+        let mut worst = 0.0_f64;
+        for exponent in 0..=16 {
+            let gap = 10.0_f64.powi(-exponent);
+            for (k, base) in [1.0, 0.01, 100.0, 1.0 + 1e-7].into_iter().enumerate() {
+                for turn in [[0.0, 0.0, 0.7], [0.3, -0.8, 1.1], [1e-9, 0.4, 2e-5], [1e-3, 0.0, 0.0]] {
+                    let turn = Vector3::from(turn) * (1.0 + k as f64);
+                    let values = [base * (1.0 + gap), base, base * (1.0 - 0.5 * gap)];
+                    worst = worst.max(defect(values, turn));
+                    worst = worst.max(defect([base, base, base * gap.max(1e-12)], turn));
+                }
+            }
+        }
+        assert!(worst <= 1e-13, "rebuilt to {worst:e}");
+    }
+}

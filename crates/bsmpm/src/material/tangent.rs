@@ -1,0 +1,87 @@
+//! The consistent spatial tangent (section 2.2; de Souza Neto et al., 2008, sections 8.2.3 and 14.5).
+//!
+//! It linearises τ(b_trial) only; the term τ lᵀ of the internal force and the F-bar factor belong to the stiffness.
+
+use super::{Region, Response};
+use crate::tensor::Tensor;
+
+/// dτ as a linear map of the spatial gradient of the displacement increment, in the axes of the trial b.
+#[derive(Clone, Copy, Debug)]
+pub struct Tangent {
+    /// (-)  rows are the axes of b
+    axes: Tensor,
+    /// (-)  eigenvalues of the trial b
+    b: [f64; 3],
+    /// Pa  `D_AB = ∂τ_A/∂ε_B` of principal values
+    principal: Tensor,
+    /// Pa  `(τ_A - τ_B)/(b_A - b_B)` for the pairs 12, 23 and 13
+    chord: [f64; 3],
+}
+
+/// Pairs of axes, in the order of [`Tangent`]'s chords.
+const PAIRS: [(usize, usize); 3] = [(0, 1), (1, 2), (0, 2)];
+
+impl Tangent {
+    pub(super) fn of(response: &Response) -> Self {
+        let axis = &response.trial.axis;
+        Self {
+            axes: Tensor::from_fn(|i, j| axis[i][j]),
+            b: response.trial.b,
+            principal: principal(response),
+            chord: PAIRS.map(|(a, b)| chord(response, a, b)),
+        }
+    }
+
+    /// `dτ_AA = Σ_B D_AB l_BB`, `dτ_AB = (τ_A - τ_B)/(b_A - b_B) (l_AB b_B + b_A l_BA)`, in the eigenbasis of the trial b.
+    pub fn apply(&self, l: &Tensor) -> Tensor {
+        let l = self.axes * l * self.axes.transpose();
+        let mut d_tau = Tensor::from_diagonal(&(self.principal * l.diagonal()));
+        for ((a, b), chord) in PAIRS.into_iter().zip(self.chord) {
+            let shear = chord * (l[(a, b)] * self.b[b] + self.b[a] * l[(b, a)]);
+            d_tau[(a, b)] = shear;
+            d_tau[(b, a)] = shear;
+        }
+        self.axes.transpose() * d_tau * self.axes
+    }
+}
+
+/// `∂τ_A/∂ε_B`: D, on the face `D - (D m)(D n)ᵀ/(n · D m)`, on an edge of direction a `a qᵀ/(q · C a)`, at the apex zero.
+fn principal(response: &Response) -> Tensor {
+    let (moduli, flow) = (response.moduli, response.flow);
+    let elastic = Tensor::from_element(moduli.lambda) + Tensor::identity() * (2.0 * moduli.mu);
+    match response.region() {
+        Region::Elastic => elastic,
+        Region::Apex => Tensor::zeros(),
+        Region::Face => {
+            let normal = |sin: f64| [1.0 + sin, 0.0, sin - 1.0];
+            let (n, m) = (normal(flow.sin_phi), normal(flow.sin_psi));
+            let (d_n, d_m) = (moduli.stress(n), moduli.stress(m));
+            let product = flow.sin_phi * flow.sin_psi;
+            let scale = 4.0 * (moduli.lambda * product + moduli.mu * (1.0 + product));
+            elastic - Tensor::from_fn(|i, j| d_m[i] * d_n[j] / scale)
+        }
+        edge => {
+            let edge = if edge == Region::LeftEdge { flow.left(moduli) } else { flow.right(moduli) };
+            let scale = 18.0 * moduli.bulk() * moduli.mu / edge.slope;
+            Tensor::from_fn(|i, j| scale * edge.along[i] * edge.kept[j])
+        }
+    }
+}
+
+/// `(τ_A - τ_B)/(b_A - b_B) = (τ_A - τ_B)/(ε_A - ε_B) · ln(1 + x)/(2 x b_B)`, x = b_A/b_B - 1.
+///
+/// The second factor tends to 1/(2b) for equal eigenvalues; the first is 2μ if elastic. If plastic it lies in 0..2μ, since
+/// returns shrink stress differences, and equal strains return to equal stresses (an edge or the apex): the limit is 0, as
+/// `(D11 - D12 - D21 + D22)/(4 b)` gives there. The bounds keep rounding of a tiny gap inside.
+fn chord(response: &Response, a: usize, b: usize) -> f64 {
+    let trial = &response.trial;
+    let (shear, gap) = (2.0 * response.moduli.mu, trial.eps[a] - trial.eps[b]);
+    let slope = match response.region() {
+        Region::Elastic => shear,
+        _ if gap > 0.0 => ((response.tau[a] - response.tau[b]) / gap).max(0.0).min(shear),
+        _ => 0.0,
+    };
+    let x = (trial.b[a] - trial.b[b]) / trial.b[b];
+    let log = if x == 0.0 { 1.0 } else { x.ln_1p() / x };
+    slope * log / (2.0 * trial.b[b])
+}

@@ -1,0 +1,88 @@
+//! What stays constant in a run: grid, materials, loads, supports and the measures of convergence.
+
+use crate::background::Background;
+use crate::boundary::Boundary;
+use crate::grid::Grid;
+use crate::kinematics::Kinematics;
+use crate::material::Material;
+use crate::stabilisation::Stabilisation;
+use crate::tensor::Vector;
+use std::marker::PhantomData;
+
+/// Whether inertia acts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Regime {
+    /// Newmark's average acceleration (1/4, 1/2); time in s.
+    Dynamic,
+    /// No mass terms at all; time is a pseudo-time.
+    QuasiStatic,
+}
+
+/// What the averages of Eqs 16-20 are weighted with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Weighting {
+    /// The points' mass, as in the paper.
+    Mass,
+    /// The points' reference volume, where a scene has weightless material.
+    Volume,
+}
+
+/// Body force per mass that grows linearly over a ramp.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gravity<const D: usize> {
+    /// m/s2  when fully applied
+    pub acceleration: Vector<D>,
+    /// s (or pseudo-time) over which it grows; 0: at once
+    pub ramp: f64,
+}
+
+impl<const D: usize> Gravity<D> {
+    /// Acceleration at time `t`, m/s2.
+    pub fn at(&self, t: f64) -> Vector<D> {
+        let grown = if self.ramp > 0.0 { (t / self.ramp).clamp(0.0, 1.0) } else { 1.0 };
+        self.acceleration * grown
+    }
+}
+
+/// When a step is in equilibrium: both measures must hold.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Criteria {
+    /// |du_k . f_k| / |du_0 . f_0| (step 9)
+    pub energy: f64,
+    /// |f_oob| / max(|f_ext|, |f_int|, |M a|, |reaction|): the energy product alone is no norm
+    pub force: f64,
+    /// quasi-Newton iterations of one attempt
+    pub max_iterations: usize,
+}
+
+/// A scene, ready to be stepped.
+#[derive(Clone, Debug)]
+pub struct Model<K, const D: usize> {
+    /// Grid, seen through this rank's window.
+    pub grid: Grid<D>,
+    /// Materials by the number that the points carry.
+    pub materials: Vec<Material>,
+    /// Dynamic or quasi-static.
+    pub regime: Regime,
+    /// Weights of the averages.
+    pub weighting: Weighting,
+    /// Body force, if any.
+    pub gravity: Option<Gravity<D>>,
+    /// Supports at the faces of the grid.
+    pub boundary: Boundary<D>,
+    /// Section 2.3.
+    pub stabilisation: Stabilisation,
+    /// Soft background in nearly empty cells, if any.
+    pub background: Option<Background>,
+    /// Convergence.
+    pub criteria: Criteria,
+    /// The geometry, a type without data.
+    pub kinematics: PhantomData<K>,
+}
+
+impl<K: Kinematics<D>, const D: usize> Model<K, D> {
+    /// Largest Young's modulus, Pa.
+    pub fn stiffest(&self) -> f64 {
+        self.materials.iter().map(|m| m.elastic().young).fold(0.0, f64::max)
+    }
+}

@@ -1,0 +1,105 @@
+//! What a history records: numbers of the whole body, the same on every rank.
+
+pub mod noise;
+
+use crate::grid::Grid;
+use crate::points::Points;
+use crate::seam::Halo;
+use crate::tensor::Vector;
+
+/// Bisections of a percentile: the interval shrinks to 1e-15 of the grid.
+const BISECTIONS: usize = 50;
+
+/// Largest coordinate of any point along `axis`, from the grid's lower corner (m); 0 without points.
+pub fn farthest<const D: usize>(points: &Points<D>, axis: usize, halo: &dyn Halo) -> f64 {
+    let mut largest = [points.x.iter().map(|x| x[axis]).fold(0.0, f64::max)];
+    halo.maximum(&mut largest);
+    largest[0]
+}
+
+/// Coordinate along `axis` (m) below which `percentile` per cent of the points lie.
+pub fn percentile<const D: usize>(points: &Points<D>, axis: usize, percentile: f64, halo: &dyn Halo) -> f64 {
+    let mut count = [points.len() as f64];
+    halo.reduce(&mut count);
+    let wanted = percentile / 100.0 * count[0];
+    let (mut lower, mut upper) = (0.0, farthest(points, axis, halo));
+    for _ in 0..BISECTIONS {
+        let middle = 0.5 * (lower + upper);
+        let mut below = [points.x.iter().filter(|x| x[axis] <= middle).count() as f64];
+        halo.reduce(&mut below);
+        if below[0] >= wanted { upper = middle } else { lower = middle }
+    }
+    upper
+}
+
+/// The body's front (m): the farthest point in the farthest cell of the lowest occupied row that the points' volume
+/// fills at least half. A few loose points run ahead of it. Rows count along the last axis, the front along axis 0.
+pub fn front<const D: usize>(grid: &Grid<D>, points: &Points<D>, halo: &dyn Halo) -> f64 {
+    let row_of = |p: usize| grid.axes()[D - 1].cell_of(points.x[p][D - 1]).unwrap_or(0);
+    let lowest = (0..points.len()).map(|p| -(row_of(p) as f64)).fold(f64::NEG_INFINITY, f64::max);
+    let mut lowest = [lowest];
+    halo.maximum(&mut lowest);
+    let row = -lowest[0];
+    let mut held = vec![(0.0, 0.0_f64); grid.cells()];
+    for p in (0..points.len()).filter(|&p| row_of(p) as f64 == row) {
+        if let Some(cell) = grid.locate(&points.x[p]) {
+            let (volume, farthest) = &mut held[grid.cell_index(&cell)];
+            *volume += points.volume[p] * points.F[p].determinant();
+            *farthest = farthest.max(points.x[p][0]);
+        }
+    }
+    let half_full = |(index, (volume, _)): &(usize, &(f64, f64))| {
+        let (_, size) = grid.cell_box(&grid.cell_at(*index));
+        *volume >= 0.5 * size.product()
+    };
+    let mut front = [held.iter().enumerate().filter(half_full).map(|(_, (_, x))| *x).fold(0.0, f64::max)];
+    halo.maximum(&mut front);
+    front[0]
+}
+
+/// Largest displacement of any point, m.
+pub fn largest_displacement<const D: usize>(points: &Points<D>, halo: &dyn Halo) -> f64 {
+    let mut largest = [points.u.iter().map(|u| u.norm()).fold(0.0, f64::max)];
+    halo.maximum(&mut largest);
+    largest[0]
+}
+
+/// Total mass, kg.
+pub fn mass<const D: usize>(points: &Points<D>, halo: &dyn Halo) -> f64 {
+    let mut sum = [points.mass.iter().sum()];
+    halo.reduce(&mut sum);
+    sum[0]
+}
+
+/// Total momentum, kg m/s; zero in quasi-static scenes.
+pub fn momentum<const D: usize>(points: &Points<D>, halo: &dyn Halo) -> Vector<D> {
+    let mut sum = Vector::<D>::zeros();
+    if let Some(motion) = &points.motion {
+        motion.v.iter().zip(&points.mass).for_each(|(v, mass)| sum += v * *mass);
+    }
+    halo.reduce(sum.as_mut_slice());
+    sum
+}
+
+/// Id of the point nearest to `at` (m, from the grid's lower corner); of equally near ones the smallest id.
+pub fn nearest<const D: usize>(points: &Points<D>, at: &Vector<D>, halo: &dyn Halo) -> Option<u64> {
+    let distance = |p: usize| (points.x[p] - at).norm_squared();
+    let mut closest = [-(0..points.len()).map(distance).fold(f64::INFINITY, f64::min)];
+    halo.maximum(&mut closest);
+    let candidates = (0..points.len()).filter(|&p| -distance(p) == closest[0]);
+    let mut id = [candidates.map(|p| -(points.id[p] as f64)).fold(f64::NEG_INFINITY, f64::max)];
+    halo.maximum(&mut id);
+    id[0].is_finite().then(|| -id[0] as u64)
+}
+
+/// A vector or tensor of the point `id`, wherever it is: `value` is called on the rank that has it.
+pub fn at_point<const D: usize, const C: usize>(
+    points: &Points<D>,
+    id: u64,
+    halo: &dyn Halo,
+    value: impl Fn(usize) -> [f64; C],
+) -> [f64; C] {
+    let mut found = points.id.iter().position(|&own| own == id).map_or([0.0; C], value);
+    halo.reduce(&mut found);
+    found
+}

@@ -1,0 +1,150 @@
+//! Oscillation of the stress from point to point, by two measures that do not flatter each other.
+//!
+//! A method that smooths with the mass-weighted map S passes the first measure by construction; the second knows
+//! nothing of S.
+
+use crate::error::StepError;
+use crate::grid::shape::Patch;
+use crate::grid::{Grid, Shape, transfer};
+use crate::model::Weighting;
+use crate::points::Points;
+use crate::seam::Halo;
+use crate::tensor::Vector;
+use nalgebra::{Matrix4, Vector4};
+
+/// Root mean squares of a stress component about its smooth part, over the mean of its absolute value.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Noise {
+    /// about S sigma, the mass-weighted map to the nodes and back (Eqs 16-18)
+    pub about_average: f64,
+    /// about the least-squares plane through the points of the cell and its neighbours
+    pub about_plane: f64,
+}
+
+/// Unknowns of a plane in up to three dimensions.
+const MOST: usize = 4;
+/// Numbers of the moments at a node: t t^T and t sigma.
+const WIDTH: usize = MOST * MOST + MOST;
+/// Determinant of the moments, relative to points spread over cells, below which they span no plane.
+const SINGULAR: f64 = 1e-9;
+
+/// Noise of component `component` (XX YY ZZ XY YZ XZ) of the Cauchy stress over all points, which must be sorted by
+/// cell. The plane runs through all points in the support of the cell's middle node: for quadratic splines these are
+/// the cell and its 3^D - 1 neighbours. Zero without stress.
+pub fn stress_noise<const D: usize>(
+    grid: &Grid<D>,
+    points: &Points<D>,
+    weighting: Weighting,
+    component: usize,
+    halo: &dyn Halo,
+) -> Result<Noise, StepError> {
+    let shape = Shape::at(grid, points)?;
+    let stress = |p: usize| points.sigma[p].0[component];
+    let average = averaged(grid, &shape, points, weighting, &stress, halo);
+    let planes = planes(grid, &shape, points, &stress, halo);
+    let mut sums = [points.len() as f64, 0.0, 0.0, 0.0];
+    for (patch_number, patch) in shape.patches().iter().enumerate() {
+        for p in patch.points.clone() {
+            let terms = terms(grid, &grid.cell_at(patch.cell), &points.x[p]);
+            let on_plane: f64 = planes[patch_number].iter().zip(&terms).map(|(a, b)| a * b).sum();
+            sums[1] += stress(p).abs();
+            sums[2] += (stress(p) - average[p]).powi(2);
+            sums[3] += (stress(p) - on_plane).powi(2);
+        }
+    }
+    halo.reduce(&mut sums);
+    let [count, absolute, average, plane] = sums;
+    if absolute == 0.0 {
+        return Ok(Noise::default());
+    }
+    let relative = |squares: f64| (squares / count).sqrt() / (absolute / count);
+    Ok(Noise { about_average: relative(average), about_plane: relative(plane) })
+}
+
+fn averaged<const D: usize>(
+    grid: &Grid<D>,
+    shape: &Shape<D>,
+    points: &Points<D>,
+    weighting: Weighting,
+    stress: &impl Fn(usize) -> f64,
+    halo: &dyn Halo,
+) -> Vec<f64> {
+    let weights = match weighting {
+        Weighting::Mass => &points.mass,
+        Weighting::Volume => &points.volume,
+    };
+    let mut nodal = vec![0.0; grid.nodes() * 2];
+    transfer::to_nodes(shape, &mut nodal, |p| [weights[p], weights[p] * stress(p)]);
+    halo.sum(&mut nodal, 2);
+    let mean = |pair: &[f64]| if pair[0] > 0.0 { pair[1] / pair[0] } else { 0.0 };
+    let nodal: Vec<f64> = nodal.chunks_exact(2).map(mean).collect();
+    let mut average = vec![0.0; points.len()];
+    transfer::to_points(shape, &nodal, |p, [value]| average[p] = value);
+    average
+}
+
+/// Terms 1, x, y, .. of a plane, about the middle of `cell` and in units of it.
+fn terms<const D: usize>(grid: &Grid<D>, cell: &[usize; D], x: &Vector<D>) -> [f64; MOST] {
+    let (lower, size) = grid.cell_box(cell);
+    let mut terms = [1.0, 0.0, 0.0, 0.0];
+    for axis in 0..D {
+        terms[axis + 1] = (x[axis] - lower[axis]) / size[axis] - 0.5;
+    }
+    terms
+}
+
+/// Coefficients of the least-squares plane of every patch.
+///
+/// Sums of t t^T and t sigma are taken at every node over the points in its support, so that one exchange gives every
+/// cell the points of its neighbours on other ranks. A node belongs to the cell whose middle node it is.
+fn planes<const D: usize>(
+    grid: &Grid<D>,
+    shape: &Shape<D>,
+    points: &Points<D>,
+    stress: &impl Fn(usize) -> f64,
+    halo: &dyn Halo,
+) -> Vec<[f64; MOST]> {
+    let middle = grid.order() / 2;
+    let mut sums = vec![0.0; grid.nodes() * WIDTH];
+    for patch in shape.patches() {
+        for offset in shape.offsets() {
+            let node = patch.first_node + offset;
+            let of_node = grid.node_at(node);
+            let cell = std::array::from_fn(|axis| {
+                of_node[axis].saturating_sub(middle).min(grid.axes()[axis].cells() - 1)
+            });
+            let sum = &mut sums[node * WIDTH..(node + 1) * WIDTH];
+            for p in patch.points.clone() {
+                add_moments(&terms(grid, &cell, &points.x[p]), stress(p), sum);
+            }
+        }
+    }
+    halo.sum(&mut sums, WIDTH);
+    let middle_offset = shape.offsets()[(0..D).fold(0, |k, _| k * shape.width() + middle)];
+    let plane = |patch: &Patch| {
+        let node = patch.first_node + middle_offset;
+        fit::<D>(&sums[node * WIDTH..(node + 1) * WIDTH])
+    };
+    shape.patches().iter().map(plane).collect()
+}
+
+fn add_moments(t: &[f64; MOST], stress: f64, sum: &mut [f64]) {
+    for i in 0..MOST {
+        for j in 0..MOST {
+            sum[i * MOST + j] += t[i] * t[j];
+        }
+        sum[MOST * MOST + i] += t[i] * stress;
+    }
+}
+
+/// Least squares from the moments; the mean where the points do not span a plane.
+fn fit<const D: usize>(sum: &[f64]) -> [f64; MOST] {
+    let mut matrix = Matrix4::from_row_slice(&sum[..MOST * MOST]);
+    let right = Vector4::from_column_slice(&sum[MOST * MOST..]);
+    for unused in D + 1..MOST {
+        matrix[(unused, unused)] = 1.0;
+    }
+    let mean = [right[0] / matrix[(0, 0)], 0.0, 0.0, 0.0];
+    let singular = matrix.determinant() <= SINGULAR * matrix[(0, 0)].powi(D as i32 + 1);
+    if singular { mean } else { matrix.lu().solve(&right).map_or(mean, |plane| plane.into()) }
+}

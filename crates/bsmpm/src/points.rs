@@ -1,0 +1,214 @@
+//! Material points: the permanent state, one array per quantity, sorted by cell.
+
+use crate::grid::Grid;
+use crate::tensor::{Symmetric, Tensor, Vector};
+use nalgebra::SMatrix;
+
+/// Velocity and acceleration; absent in quasi-static scenes.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Motion<const D: usize> {
+    /// m/s  velocity
+    pub v: Vec<Vector<D>>,
+    /// m/s2  acceleration
+    pub a: Vec<Vector<D>>,
+}
+
+/// The material points of one rank. Read-only until a step is committed.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Points<const D: usize> {
+    /// global id, unique over all ranks
+    pub id: Vec<u64>,
+    /// number of the material
+    pub material: Vec<u16>,
+    /// m  position from the grid's lower corner
+    pub x: Vec<Vector<D>>,
+    /// m  displacement since the start
+    pub u: Vec<Vector<D>>,
+    /// velocity and acceleration
+    pub motion: Option<Motion<D>>,
+    /// kg (per metre in plane strain)
+    pub mass: Vec<f64>,
+    /// m^D  reference volume V0; the current one is det F V0
+    pub volume: Vec<f64>,
+    /// -  deformation gradient
+    pub F: Vec<Tensor>,
+    /// -  elastic left Cauchy-Green tensor that the next step starts from (averaged under modified F-bar)
+    pub b_e: Vec<Symmetric>,
+    /// Pa  Cauchy stress of the last converged step
+    pub sigma: Vec<Symmetric>,
+    /// -  accumulated plastic strain
+    pub eps_p: Vec<f64>,
+}
+
+/// A point as it is placed at the start.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Seed<const D: usize> {
+    /// global id
+    pub id: u64,
+    /// number of the material
+    pub material: u16,
+    /// m  position from the grid's lower corner
+    pub x: Vector<D>,
+    /// m^D  volume
+    pub volume: f64,
+    /// kg  mass
+    pub mass: f64,
+    /// m/s  initial velocity
+    pub v: Vector<D>,
+}
+
+impl<const D: usize> Points<D> {
+    /// Stress-free points at rest or with their initial velocity; with `dynamic` they carry velocity and acceleration.
+    pub fn from_seeds(seeds: impl IntoIterator<Item = Seed<D>>, dynamic: bool) -> Self {
+        let mut points = Self { motion: dynamic.then(Motion::default), ..Self::default() };
+        for seed in seeds {
+            points.id.push(seed.id);
+            points.material.push(seed.material);
+            points.x.push(seed.x);
+            points.u.push(Vector::zeros());
+            points.mass.push(seed.mass);
+            points.volume.push(seed.volume);
+            points.F.push(Tensor::identity());
+            points.b_e.push(Symmetric::IDENTITY);
+            points.sigma.push(Symmetric::default());
+            points.eps_p.push(0.0);
+            if let Some(motion) = &mut points.motion {
+                motion.v.push(seed.v);
+                motion.a.push(Vector::zeros());
+            }
+        }
+        points
+    }
+
+    /// Number of points.
+    pub fn len(&self) -> usize {
+        self.id.len()
+    }
+
+    /// Whether this rank has no point.
+    pub fn is_empty(&self) -> bool {
+        self.id.is_empty()
+    }
+
+    /// Every array once: sorting, migration and checkpoints walk this list, so that a new state variable is one line.
+    pub fn columns(&mut self) -> Vec<&mut dyn Column> {
+        let mut columns: Vec<&mut dyn Column> = vec![
+            &mut self.id,
+            &mut self.material,
+            &mut self.x,
+            &mut self.u,
+            &mut self.mass,
+            &mut self.volume,
+            &mut self.F,
+            &mut self.b_e,
+            &mut self.sigma,
+            &mut self.eps_p,
+        ];
+        if let Some(motion) = &mut self.motion {
+            columns.push(&mut motion.v);
+            columns.push(&mut motion.a);
+        }
+        columns
+    }
+
+    /// Bytes of one point.
+    pub fn bytes(&mut self) -> usize {
+        self.columns().iter().map(|column| column.bytes()).sum()
+    }
+
+    /// Sorts by (cell, id), the canonical order: neither migration nor restart then matters to any sum over points.
+    /// Points outside the window keep the end.
+    pub fn sort_by_cell(&mut self, grid: &Grid<D>) {
+        let columns = grid.columns();
+        let key = |p: usize| match grid.locate(&self.x[p]) {
+            Some(cell) if columns.contains(&cell[0]) => (grid.cell_index(&cell), self.id[p]),
+            _ => (usize::MAX, self.id[p]),
+        };
+        let keys: Vec<(usize, u64)> = (0..self.len()).map(key).collect();
+        if keys.is_sorted() {
+            return;
+        }
+        let mut order: Vec<u32> = (0..self.len() as u32).collect();
+        order.sort_by_key(|&p| keys[p as usize]);
+        for column in self.columns() {
+            column.reorder(&order);
+        }
+    }
+}
+
+/// One array of the points, whatever it holds.
+pub trait Column {
+    /// Bytes of one row.
+    fn bytes(&self) -> usize;
+    /// Keeps the rows `order`, in that order.
+    fn reorder(&mut self, order: &[u32]);
+    /// Appends row `p` to a message.
+    fn put(&self, p: usize, message: &mut Vec<u8>);
+    /// Adds the row that `message` begins with, and moves past it; the message must hold it.
+    fn take(&mut self, message: &mut &[u8]);
+}
+
+impl<T: Row> Column for Vec<T> {
+    fn bytes(&self) -> usize {
+        T::BYTES
+    }
+    fn reorder(&mut self, order: &[u32]) {
+        *self = order.iter().map(|&p| self[p as usize]).collect();
+    }
+    fn put(&self, p: usize, message: &mut Vec<u8>) {
+        self[p].put(message);
+    }
+    fn take(&mut self, message: &mut &[u8]) {
+        let (row, rest) = message.split_at(T::BYTES);
+        self.push(T::take(row));
+        *message = rest;
+    }
+}
+
+/// A row that travels between ranks bit by bit.
+trait Row: Copy {
+    const BYTES: usize;
+    fn put(&self, message: &mut Vec<u8>);
+    fn take(row: &[u8]) -> Self;
+}
+
+macro_rules! number_rows {
+    ($($number:ty),*) => {$(
+        impl Row for $number {
+            const BYTES: usize = size_of::<$number>();
+            fn put(&self, message: &mut Vec<u8>) {
+                message.extend_from_slice(&self.to_le_bytes());
+            }
+            fn take(row: &[u8]) -> Self {
+                let mut bytes = [0; Self::BYTES];
+                bytes.copy_from_slice(row);
+                Self::from_le_bytes(bytes)
+            }
+        }
+    )*};
+}
+number_rows!(u16, u64, f64);
+
+impl<const R: usize, const C: usize> Row for SMatrix<f64, R, C> {
+    const BYTES: usize = 8 * R * C;
+    fn put(&self, message: &mut Vec<u8>) {
+        self.iter().for_each(|entry| entry.put(message));
+    }
+    fn take(row: &[u8]) -> Self {
+        Self::from_iterator(row.chunks_exact(8).map(f64::take))
+    }
+}
+
+impl Row for Symmetric {
+    const BYTES: usize = 48;
+    fn put(&self, message: &mut Vec<u8>) {
+        self.0.iter().for_each(|entry| entry.put(message));
+    }
+    fn take(row: &[u8]) -> Self {
+        let mut components = [0.0; 6];
+        for (component, bytes) in components.iter_mut().zip(row.chunks_exact(8)) {
+            *component = f64::take(bytes);
+        }
+        Self(components)
+    }
+}

@@ -1,0 +1,62 @@
+//! The two seams of the physics: what other ranks know, and the linear system. Called a few times per iteration.
+//!
+//! Nodal arrays are flat: `width` numbers per local node of the window, node after node.
+
+use crate::error::SolveError;
+use std::ops::Range;
+
+/// Exchange of nodal contributions between slabs, and reductions over all ranks.
+pub trait Halo {
+    /// Local nodes that this rank owns: every node of the grid has exactly one owner.
+    fn owned(&self) -> Range<usize>;
+    /// Adds the contributions of all ranks to the nodes that they share; all of them get the same sum.
+    fn sum(&self, nodal: &mut [f64], width: usize);
+    /// Replaces each number by its sum over the ranks.
+    fn reduce(&self, numbers: &mut [f64]);
+    /// Replaces each number by its largest over the ranks.
+    fn maximum(&self, numbers: &mut [f64]);
+}
+
+/// Dot products of nodal vectors (`width` numbers a node) over all nodes, each counted once, in one reduction.
+pub fn dots(halo: &dyn Halo, width: usize, pairs: &[(&[f64], &[f64])]) -> Vec<f64> {
+    let owned = halo.owned();
+    let range = owned.start * width..owned.end * width;
+    let mut sums: Vec<f64> = pairs
+        .iter()
+        .map(|(a, b)| a[range.clone()].iter().zip(&b[range.clone()]).map(|(a, b)| a * b).sum())
+        .collect();
+    halo.reduce(&mut sums);
+    sums
+}
+
+/// A distributed sparse system whose matrix is summed from dense patch blocks.
+pub trait LinearSolver {
+    /// Starts a matrix whose unknowns are the components marked `free` (D per local node, equal on all ranks that
+    /// share the node).
+    fn begin(&mut self, free: &[bool]);
+    /// Adds the dense row-major block of a patch: D unknowns for each of its (q+1)^D nodes, counted from `first_node`.
+    fn add(&mut self, first_node: usize, block: &[f64]);
+    /// Adds to the diagonal, D numbers per local node; those of owned nodes count.
+    fn add_diagonal(&mut self, diagonal: &[f64]);
+    /// Completes and factorises the matrix.
+    fn finish(&mut self) -> Result<(), SolveError>;
+    /// Solves for a nodal right-hand side; the solution is zero at components that are not free, and right at
+    /// ghost nodes too. Returns the linear iterations.
+    fn solve(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<usize, SolveError>;
+}
+
+/// The halo of a run on one rank without MPI: unit tests and tools.
+#[derive(Clone, Copy, Debug)]
+pub struct Alone {
+    /// Nodes of the grid.
+    pub nodes: usize,
+}
+
+impl Halo for Alone {
+    fn owned(&self) -> Range<usize> {
+        0..self.nodes
+    }
+    fn sum(&self, _nodal: &mut [f64], _width: usize) {}
+    fn reduce(&self, _numbers: &mut [f64]) {}
+    fn maximum(&self, _numbers: &mut [f64]) {}
+}

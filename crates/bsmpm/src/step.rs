@@ -1,0 +1,61 @@
+//! One load step, t -> t + dt: section 2.4 of the paper, numbered as there.
+
+pub mod broyden;
+pub mod commit;
+pub mod equilibrium;
+pub mod nodes;
+pub mod residual;
+pub mod stiffness;
+pub mod trial;
+
+use crate::error::StepError;
+use crate::grid::Shape;
+use crate::kinematics::Kinematics;
+use crate::model::Model;
+use crate::points::Points;
+use crate::seam::{Halo, LinearSolver};
+use crate::step::nodes::Nodes;
+
+/// What an accepted step did.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Report {
+    /// quasi-Newton iterations of the attempt that converged
+    pub iterations: usize,
+    /// evaluations of the residual in all attempts, rejected ones included
+    pub evaluations: usize,
+    /// iterations of the linear solver
+    pub linear_iterations: usize,
+    /// force measure |f_oob| / largest force of the accepted state
+    pub force: f64,
+    /// nodes that carry material, over all ranks
+    pub active_nodes: usize,
+    /// unknowns of the linear system, over all ranks
+    pub unknowns: usize,
+    /// active nodes without mass, whose velocity and averages count as zero
+    pub massless_nodes: usize,
+    /// whether the first guess of the displacement led to convergence
+    pub first_guess: bool,
+    /// N  force of every support on the body, by component, in the order of the model's supports
+    pub reactions: Vec<Vec<f64>>,
+}
+
+/// Steps the points from `t` to `t + dt`, starting from the nodal displacement `guess` (D numbers per node of the
+/// window; replaced by the converged one). On an error nothing has changed.
+#[allow(clippy::too_many_arguments)] // the step's data, its interval and the two seams; a bundle would only hide them
+pub fn step<K: Kinematics<D>, const D: usize>(
+    model: &Model<K, D>,
+    points: &mut Points<D>,
+    guess: &mut Vec<f64>,
+    (t, dt): (f64, f64),
+    halo: &dyn Halo,
+    solver: &mut dyn LinearSolver,
+) -> Result<Report, StepError> {
+    let shape = Shape::at(&model.grid, points)?; // (1)
+    let nodes = Nodes::map(model, &shape, points, (t, dt), halo); // (2)
+    let scene = equilibrium::Scene { model, shape: &shape, nodes: &nodes, points, halo };
+    let found = equilibrium::find(&scene, guess, solver)?; // (3)-(9)
+    commit::check_inside(model, &shape, points, &found.u, halo)?;
+    let report = found.report(&scene);
+    *guess = commit::commit(model, &shape, &nodes, found, points, halo)?; // (10), (11)
+    Ok(report)
+}

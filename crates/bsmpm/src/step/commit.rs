@@ -1,0 +1,97 @@
+//! Steps (10), (11): grid kinematics, and the converged state saved into the points.
+//!
+//! The Cauchy stress that is kept comes from the converged tau; the b^e that the next step starts from is the averaged
+//! one under modified F-bar: the two differ, and the stress is the one in equilibrium.
+
+use crate::error::StepError;
+use crate::grid::{Shape, transfer};
+use crate::kinematics::Kinematics;
+use crate::model::Model;
+use crate::points::Points;
+use crate::seam::Halo;
+use crate::stabilisation::Stabilisation;
+use crate::step::equilibrium::Found;
+use crate::step::nodes::{Inertia, Nodes};
+use crate::tensor::{Symmetric, Vector};
+
+/// Refuses a displacement that takes a point out of the grid; agreed by all ranks.
+pub fn check_inside<K: Kinematics<D>, const D: usize>(
+    model: &Model<K, D>,
+    shape: &Shape<D>,
+    points: &Points<D>,
+    u: &[f64],
+    halo: &dyn Halo,
+) -> Result<(), StepError> {
+    let (mut count, mut first) = (0_u64, None);
+    transfer::to_points::<D, D>(shape, u, |p, du| {
+        let x = points.x[p] + Vector::from(du);
+        if model.grid.locate(&x).is_none() {
+            count += 1;
+            first.get_or_insert_with(|| (points.id[p], x.as_slice().to_vec()));
+        }
+    });
+    let mut counts = [count as f64];
+    halo.reduce(&mut counts);
+    if counts[0] > 0.0 {
+        return Err(StepError::Left { count: counts[0] as u64, first });
+    }
+    Ok(())
+}
+
+/// Saves the converged step into the points and returns its nodal displacement. Fails, before any point has changed,
+/// if the constitution refuses a state that it answered during the iteration.
+pub fn commit<K: Kinematics<D>, const D: usize>(
+    model: &Model<K, D>,
+    shape: &Shape<D>,
+    nodes: &Nodes,
+    found: Found,
+    points: &mut Points<D>,
+    halo: &dyn Halo,
+) -> Result<Vec<f64>, StepError> {
+    let Found { u, trial, .. } = found;
+    let mut responses = Vec::with_capacity(points.len());
+    for p in 0..points.len() {
+        let response = trial.respond(model, points, p);
+        responses.push(response.map_err(|source| StepError::Material { id: points.id[p], source })?);
+    }
+    if let Some(inertia) = &nodes.inertia {
+        move_with_inertia(shape, inertia, &u, points);
+    }
+    transfer::to_points::<D, D>(shape, &u, |p, du| {
+        points.x[p] += Vector::from(du); // (11a)
+        points.u[p] += Vector::from(du); // (11b)
+    });
+    for (p, response) in responses.iter().enumerate() {
+        points.F[p] = trial.dF[p] * points.F[p];
+        points.sigma[p] = response.tau().scaled(1.0 / points.F[p].determinant());
+        points.b_e[p] = response.b_e();
+        points.eps_p[p] += response.plastic_increment();
+    }
+    if model.stabilisation == Stabilisation::ModifiedFBar {
+        smooth_b_e(model, shape, nodes, points, halo);
+    }
+    Ok(u)
+}
+
+/// Steps (10a), (11c), (11d): a_I by Newmark, a_p = sum_I N_Ip a_I, v_p += (a_p(t) + a_p(t+dt)) dt / 2.
+fn move_with_inertia<const D: usize>(shape: &Shape<D>, inertia: &Inertia, u: &[f64], points: &mut Points<D>) {
+    let Some(motion) = &mut points.motion else { return };
+    let a: Vec<f64> = u.iter().enumerate().map(|(c, &u)| inertia.acceleration(c, u)).collect();
+    transfer::to_points::<D, D>(shape, &a, |p, a| {
+        let a = Vector::from(a);
+        motion.v[p] += (motion.a[p] + a) * (0.5 * inertia.dt);
+        motion.a[p] = a;
+    });
+}
+
+/// Step (11e), Eq. 20: b^e_p <- sum_I N_Ip (1/m_I sum_p N_Ip m_p b^e_p).
+fn smooth_b_e<K: Kinematics<D>, const D: usize>(
+    model: &Model<K, D>,
+    shape: &Shape<D>,
+    nodes: &Nodes,
+    points: &mut Points<D>,
+    halo: &dyn Halo,
+) {
+    let nodal = nodes.average(shape, points, model.weighting, halo, |p| points.b_e[p].0);
+    transfer::to_points(shape, &nodal, |p, b_e| points.b_e[p] = Symmetric(b_e));
+}

@@ -1,0 +1,190 @@
+//! Steps (3), (7)-(9): the quasi-Newton iteration, and when it has converged.
+//!
+//! Step (9) of the paper prints the same numerator and denominator; read |du_k . f_k| / |du_0 . f_0|. That product is
+//! no norm (under Broyden it crosses zero while the forces are far from balanced), so the relative out-of-balance
+//! force must be small too. The displacement that is accepted is the one whose forces were evaluated.
+
+use crate::error::StepError;
+use crate::grid::Shape;
+use crate::kinematics::Kinematics;
+use crate::model::Model;
+use crate::points::Points;
+use crate::seam::{Halo, LinearSolver};
+use crate::step::Report;
+use crate::step::broyden::Broyden;
+use crate::step::nodes::Nodes;
+use crate::step::residual::Residual;
+use crate::step::stiffness;
+use crate::step::trial::Trial;
+
+/// A first residual this much below the force tolerance needs no iteration: |du_0 . f_0| would only be noise.
+const ALREADY: f64 = 1e-2;
+/// Round-off of the internal force, relative to E h^(D-1) x 1 m^(3-D) per square root of an unknown.
+const ROUND_OFF: f64 = 1e-13;
+/// Shortest part of a direction that is tried when points invert.
+const SHORTEST: f64 = 1.0 / 16.0;
+
+/// Everything that is fixed while a step is iterated.
+pub struct Scene<'a, K, const D: usize> {
+    /// the scene
+    pub model: &'a Model<K, D>,
+    /// step (1)
+    pub shape: &'a Shape<D>,
+    /// step (2)
+    pub nodes: &'a Nodes,
+    /// state at t
+    pub points: &'a Points<D>,
+    /// the other ranks
+    pub halo: &'a dyn Halo,
+}
+
+/// A converged displacement.
+#[derive(Clone, Debug)]
+pub struct Found {
+    /// m, nodal
+    pub u: Vec<f64>,
+    /// deformation under `u`
+    pub trial: Trial,
+    /// N  force of the supports on the body, nodal
+    pub reaction: Vec<f64>,
+    counts: Counts,
+    iterations: usize,
+    force: f64,
+    first_guess: bool,
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+struct Counts {
+    evaluations: usize,
+    linear: usize,
+}
+
+impl Found {
+    /// The step's numbers; one reduction for the supports' forces.
+    pub fn report<K: Kinematics<D>, const D: usize>(&self, scene: &Scene<'_, K, D>) -> Report {
+        let nodes = scene.nodes;
+        Report {
+            iterations: self.iterations,
+            evaluations: self.counts.evaluations,
+            linear_iterations: self.counts.linear,
+            force: self.force,
+            active_nodes: nodes.active_nodes,
+            unknowns: nodes.unknowns,
+            massless_nodes: nodes.massless_nodes,
+            first_guess: self.first_guess,
+            reactions: scene.model.boundary.reactions(&scene.model.grid, &self.reaction, scene.halo),
+        }
+    }
+}
+
+/// Finds equilibrium from the last displacement `guess` (step 3b); if that fails, from zero.
+pub fn find<K: Kinematics<D>, const D: usize>(
+    scene: &Scene<'_, K, D>,
+    guess: &[f64],
+    solver: &mut dyn LinearSolver,
+) -> Result<Found, StepError> {
+    stiffness::assemble(scene, solver)?;
+    let mut counts = Counts::default();
+    match iterate(scene, admissible(scene.nodes, guess), solver, &mut counts) {
+        Err(_) => {
+            let zero = admissible(scene.nodes, &vec![0.0; guess.len()]);
+            let found = iterate(scene, zero, solver, &mut counts)?;
+            Ok(Found { first_guess: false, ..found })
+        }
+        found => found,
+    }
+}
+
+/// The guess where it is free, the prescribed values, zero elsewhere.
+fn admissible(nodes: &Nodes, guess: &[f64]) -> Vec<f64> {
+    let component = |(c, &value): (usize, &f64)| match nodes.prescribed[c] {
+        Some(prescribed) => prescribed,
+        None if nodes.free[c] => value,
+        None => 0.0,
+    };
+    guess.iter().enumerate().map(component).collect()
+}
+
+fn iterate<K: Kinematics<D>, const D: usize>(
+    scene: &Scene<'_, K, D>,
+    mut u: Vec<f64>,
+    solver: &mut dyn LinearSolver,
+    counts: &mut Counts,
+) -> Result<Found, StepError> {
+    let criteria = scene.model.criteria;
+    let floor = round_off(scene);
+    let mut broyden = Broyden::default();
+    let mut residual = evaluate(scene, &u, counts);
+    if !residual.is_sound() {
+        return Err(inverted(scene, &residual, 0));
+    }
+    let mut first_energy = f64::INFINITY;
+    let mut energy = f64::INFINITY;
+    for iteration in 0..criteria.max_iterations {
+        let force = residual.measure();
+        let found = |residual: Residual, u, counts| Found {
+            u,
+            trial: residual.trial,
+            reaction: residual.reaction,
+            counts,
+            iterations: iteration,
+            force,
+            first_guess: true,
+        };
+        if residual.norm <= floor || (iteration == 0 && force <= ALREADY * criteria.force) {
+            return Ok(found(residual, u, *counts));
+        }
+        let direction = broyden.direction::<D>(&residual.f_oob, scene.halo, solver)?; // (6), (7)
+        counts.linear += direction.linear_iterations;
+        if iteration == 0 {
+            first_energy = direction.energy;
+        }
+        energy = direction.energy / first_energy;
+        if energy < criteria.energy && force < criteria.force {
+            return Ok(found(residual, u, *counts)); // (9)
+        }
+        let length = advance(scene, &mut u, &direction.du, &mut residual, counts, iteration)?; // (8), (4), (5)
+        broyden.took(length);
+    }
+    Err(StepError::NotConverged { iterations: criteria.max_iterations, energy, force: residual.measure() })
+}
+
+/// Step (8): takes the direction, or the first half, quarter, .. of it under which no point inverts.
+fn advance<K: Kinematics<D>, const D: usize>(
+    scene: &Scene<'_, K, D>,
+    u: &mut Vec<f64>,
+    du: &[f64],
+    residual: &mut Residual,
+    counts: &mut Counts,
+    iteration: usize,
+) -> Result<f64, StepError> {
+    let mut length = 1.0;
+    loop {
+        let next: Vec<f64> = u.iter().zip(du).map(|(u, du)| u + length * du).collect();
+        let found = evaluate(scene, &next, counts);
+        if found.is_sound() {
+            (*u, *residual) = (next, found);
+            return Ok(length);
+        }
+        if length <= SHORTEST {
+            return Err(inverted(scene, &found, iteration + 1));
+        }
+        length *= 0.5;
+    }
+}
+
+fn evaluate<K: Kinematics<D>, const D: usize>(scene: &Scene<'_, K, D>, u: &[f64], counts: &mut Counts) -> Residual {
+    counts.evaluations += 1;
+    Residual::of(scene, u)
+}
+
+fn inverted<K, const D: usize>(scene: &Scene<'_, K, D>, residual: &Residual, iteration: usize) -> StepError {
+    let first = residual.first_inverted.map(|p| scene.points.id[p]);
+    StepError::Inverted { count: residual.inverted, iteration, first }
+}
+
+/// Out-of-balance force that is round-off of the stiffest material: 1e-13 E_max h^(D-1) sqrt(n), N.
+fn round_off<K: Kinematics<D>, const D: usize>(scene: &Scene<'_, K, D>) -> f64 {
+    let edge = scene.model.grid.smallest_edge();
+    ROUND_OFF * scene.model.stiffest() * edge.powi(D as i32 - 1) * (scene.nodes.unknowns as f64).sqrt()
+}

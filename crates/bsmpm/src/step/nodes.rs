@@ -1,0 +1,240 @@
+//! Step (2): what the points tell the nodes: mass, velocity, acceleration, external force, and which are unknowns.
+
+use crate::background::Blocks;
+use crate::grid::{Shape, transfer};
+use crate::kinematics::Kinematics;
+use crate::model::{Model, Regime, Weighting};
+use crate::points::Points;
+use crate::seam::Halo;
+
+/// Nodes lighter than this fraction of the heaviest one have no velocity, acceleration or average: 1/m is never formed.
+const MASSLESS: f64 = 1e-14;
+
+/// Nodal velocity and acceleration at the start of the step, and Newmark's view of them.
+#[derive(Clone, Debug)]
+pub struct Inertia {
+    /// m/s, D numbers a node
+    pub v: Vec<f64>,
+    /// m/s2, D numbers a node
+    pub a: Vec<f64>,
+    /// s  length of the step
+    pub dt: f64,
+}
+
+impl Inertia {
+    /// Factor of the mass in the stiffness, 4/dt^2.
+    pub fn factor(&self) -> f64 {
+        4.0 / (self.dt * self.dt)
+    }
+
+    /// Acceleration of a component: 4/dt^2 u - 4/dt v - a (steps 5b, 10a).
+    #[inline]
+    pub fn acceleration(&self, component: usize, u: f64) -> f64 {
+        self.factor() * u - 4.0 / self.dt * self.v[component] - self.a[component]
+    }
+}
+
+/// Nodal quantities of one step; flat arrays over the window's nodes, the same on every rank that shares a node.
+#[derive(Clone, Debug)]
+pub struct Nodes {
+    /// kg (or m^D, see `Weighting`)  m_I = sum_p N_Ip m_p
+    pub weight: Vec<f64>,
+    /// present in dynamics; then `weight` is the mass
+    pub inertia: Option<Inertia>,
+    /// N  external force at t + dt, D numbers a node
+    pub f_ext: Vec<f64>,
+    /// m  prescribed displacement of the step per component; `None` where it is not prescribed
+    pub prescribed: Vec<Option<f64>>,
+    /// per component: an unknown of the linear system
+    pub free: Vec<bool>,
+    /// per node: supported by an occupied cell
+    pub active: Vec<bool>,
+    /// soft background of the step
+    pub background: Option<Blocks>,
+    /// active nodes, over all ranks
+    pub active_nodes: usize,
+    /// unknowns, over all ranks
+    pub unknowns: usize,
+    /// active nodes without mass, over all ranks
+    pub massless_nodes: usize,
+    /// weight at and below which a node counts as massless
+    threshold: f64,
+}
+
+impl Nodes {
+    /// Maps the points to the nodes for the step from `t` to `t + dt`.
+    pub fn map<K: Kinematics<D>, const D: usize>(
+        model: &Model<K, D>,
+        shape: &Shape<D>,
+        points: &Points<D>,
+        (t, dt): (f64, f64),
+        halo: &dyn Halo,
+    ) -> Self {
+        let nodes = model.grid.nodes();
+        let weight = scatter_weight(model.weighting, shape, points, nodes, halo);
+        let mut heaviest = [weight.iter().copied().fold(0.0, f64::max)];
+        halo.maximum(&mut heaviest);
+        let threshold = MASSLESS * heaviest[0];
+        let velocities = model.boundary.velocities(&model.grid);
+        let inertia = (model.regime == Regime::Dynamic)
+            .then(|| map_inertia(shape, points, &weight, threshold, &velocities, dt, halo));
+        let background = model.background.map(|soft| soft.blocks(&model.grid, shape, points, &model.materials));
+        let (active, stiff) = supported(shape, points, nodes, halo);
+        let unknown = |node: usize| {
+            active[node] && (weight[node] > threshold || stiff[node] || background.is_some())
+        };
+        let free = velocities.iter().enumerate().map(|(c, v)| v.is_none() && unknown(c / D)).collect();
+        let mut mapped = Self {
+            f_ext: external_force(model, shape, points, t + dt, &weight, halo),
+            prescribed: velocities.iter().map(|velocity| velocity.map(|v| v * dt)).collect(),
+            inertia,
+            free,
+            background,
+            active_nodes: 0,
+            unknowns: 0,
+            massless_nodes: 0,
+            threshold,
+            weight,
+            active,
+        };
+        mapped.count::<D>(halo);
+        mapped
+    }
+
+    /// Nodal average a_I = 1/m_I sum_p N_Ip m_p a_p (Eqs 16, 17); zero at massless nodes.
+    pub fn average<const D: usize, const C: usize>(
+        &self,
+        shape: &Shape<D>,
+        points: &Points<D>,
+        weighting: Weighting,
+        halo: &dyn Halo,
+        value: impl Fn(usize) -> [f64; C],
+    ) -> Vec<f64> {
+        let mut nodal = vec![0.0; self.weight.len() * C];
+        let weights = weights(weighting, points);
+        transfer::to_nodes(shape, &mut nodal, |p| value(p).map(|v| weights[p] * v));
+        halo.sum(&mut nodal, C);
+        divide(&mut nodal, &self.weight, self.threshold);
+        nodal
+    }
+
+    fn count<const D: usize>(&mut self, halo: &dyn Halo) {
+        let owned = halo.owned();
+        let count = |marks: &mut dyn Iterator<Item = bool>| marks.filter(|&mark| mark).count() as f64;
+        let mut counts = [
+            count(&mut self.active[owned.clone()].iter().copied()),
+            count(&mut self.free[owned.start * D..owned.end * D].iter().copied()),
+            count(&mut owned.map(|node| self.active[node] && self.weight[node] <= self.threshold)),
+        ];
+        halo.reduce(&mut counts);
+        [self.active_nodes, self.unknowns, self.massless_nodes] = counts.map(|count| count as usize);
+    }
+}
+
+fn weights<const D: usize>(weighting: Weighting, points: &Points<D>) -> &[f64] {
+    match weighting {
+        Weighting::Mass => &points.mass,
+        Weighting::Volume => &points.volume,
+    }
+}
+
+fn scatter_weight<const D: usize>(
+    weighting: Weighting,
+    shape: &Shape<D>,
+    points: &Points<D>,
+    nodes: usize,
+    halo: &dyn Halo,
+) -> Vec<f64> {
+    let weights = weights(weighting, points);
+    let mut weight = vec![0.0; nodes];
+    transfer::to_nodes(shape, &mut weight, |p| [weights[p]]);
+    halo.sum(&mut weight, 1);
+    weight
+}
+
+/// v_I and a_I (steps 2b, 2c). Where a motion is prescribed, the node already has it: else Newmark's formula would turn
+/// the points' velocity near a wall into an acceleration of the wall.
+fn map_inertia<const D: usize>(
+    shape: &Shape<D>,
+    points: &Points<D>,
+    mass: &[f64],
+    threshold: f64,
+    prescribed: &[Option<f64>],
+    dt: f64,
+    halo: &dyn Halo,
+) -> Inertia {
+    let mut inertia = Inertia { v: vec![0.0; mass.len() * D], a: vec![0.0; mass.len() * D], dt };
+    if let Some(motion) = &points.motion {
+        for (field, nodal) in [(&motion.v, &mut inertia.v), (&motion.a, &mut inertia.a)] {
+            transfer::to_nodes::<D, D>(shape, nodal, |p| (field[p] * points.mass[p]).into());
+            halo.sum(nodal, D);
+            divide(nodal, mass, threshold);
+        }
+    }
+    for (component, velocity) in prescribed.iter().enumerate() {
+        if let Some(velocity) = velocity {
+            inertia.v[component] = *velocity;
+            inertia.a[component] = 0.0;
+        }
+    }
+    inertia
+}
+
+/// Per node: touched by an occupied cell, and: touched by a point with a gradient, so that its stiffness is positive.
+fn supported<const D: usize>(
+    shape: &Shape<D>,
+    points: &Points<D>,
+    nodes: usize,
+    halo: &dyn Halo,
+) -> (Vec<bool>, Vec<bool>) {
+    let mut touched = vec![0.0; nodes];
+    for patch in shape.patches() {
+        for offset in shape.offsets() {
+            touched[patch.first_node + offset] = 1.0;
+        }
+    }
+    halo.sum(&mut touched, 1);
+    let mut stiff = vec![0.0; nodes];
+    transfer::squared_gradients(shape, &mut stiff, |p| points.volume[p]);
+    halo.sum(&mut stiff, 1);
+    let mut stiffest = [stiff.iter().copied().fold(0.0, f64::max)];
+    halo.maximum(&mut stiffest);
+    let above = MASSLESS * stiffest[0];
+    (touched.iter().map(|&t| t > 0.0).collect(), stiff.iter().map(|&s| s > above).collect())
+}
+
+/// Body force (step 2d): sum_p N_Ip m_p g(t + dt).
+fn external_force<K: Kinematics<D>, const D: usize>(
+    model: &Model<K, D>,
+    shape: &Shape<D>,
+    points: &Points<D>,
+    t: f64,
+    weight: &[f64],
+    halo: &dyn Halo,
+) -> Vec<f64> {
+    let mut f_ext = vec![0.0; weight.len() * D];
+    let Some(gravity) = &model.gravity else { return f_ext };
+    let own;
+    let mass = match model.weighting {
+        Weighting::Mass => weight,
+        Weighting::Volume => {
+            own = scatter_weight(Weighting::Mass, shape, points, weight.len(), halo);
+            &own
+        }
+    };
+    let g = gravity.at(t);
+    for (force, mass) in f_ext.chunks_exact_mut(D).zip(mass) {
+        for component in 0..D {
+            force[component] = mass * g[component];
+        }
+    }
+    f_ext
+}
+
+fn divide(nodal: &mut [f64], weight: &[f64], threshold: f64) {
+    let width = nodal.len() / weight.len();
+    for (values, &weight) in nodal.chunks_exact_mut(width).zip(weight) {
+        let inverse = if weight > threshold { 1.0 / weight } else { 0.0 };
+        values.iter_mut().for_each(|value| *value *= inverse);
+    }
+}

@@ -1,0 +1,97 @@
+//! Step (4): deformation of the points under a nodal displacement, and its F-bar (Eqs 15-18).
+
+use crate::grid::{Shape, transfer};
+use crate::kinematics::Kinematics;
+use crate::material::{MaterialError, Response};
+use crate::model::Model;
+use crate::points::Points;
+use crate::seam::Halo;
+use crate::stabilisation::Stabilisation;
+use crate::step::nodes::Nodes;
+use crate::tensor::{Symmetric, Tensor};
+
+/// Increment of the deformation of every point.
+#[derive(Clone, Debug)]
+pub struct Trial {
+    /// -  dF (step 4a)
+    pub dF: Vec<Tensor>,
+    /// -  dJ-bar / dJ under F-bar (steps 4c, 4e)
+    ratio: Option<Vec<f64>>,
+    /// points with det dF <= 0 or not finite, on this rank
+    pub inverted: u64,
+    /// the first of them
+    pub first_inverted: Option<usize>,
+}
+
+impl Trial {
+    /// Deformation under the nodal displacement `u`. Points that inverted are counted, not raised: all ranks decide
+    /// together once the residual's norms are reduced.
+    pub fn of<K: Kinematics<D>, const D: usize>(
+        model: &Model<K, D>,
+        shape: &Shape<D>,
+        nodes: &Nodes,
+        points: &Points<D>,
+        u: &[f64],
+        halo: &dyn Halo,
+    ) -> Self {
+        let mut trial =
+            Self { dF: Vec::with_capacity(points.len()), ratio: None, inverted: 0, first_inverted: None };
+        let averaged = model.stabilisation != Stabilisation::None;
+        let mut dJ = Vec::with_capacity(if averaged { points.len() } else { 0 });
+        transfer::gradients(shape, u, |p, grad| {
+            let dF = Tensor::identity() + K::gradient(&grad);
+            let determinant = dF.determinant();
+            if !(determinant > 0.0 && determinant.is_finite()) {
+                trial.reject(p);
+            }
+            if averaged {
+                dJ.push(determinant);
+            }
+            trial.dF.push(dF);
+        });
+        if averaged {
+            trial.average(model, shape, nodes, points, dJ, halo);
+        }
+        trial
+    }
+
+    /// Step (4e): dJ-bar_p = sum_I N_Ip (1/m_I sum_p N_Ip m_p dJ_p).
+    fn average<K: Kinematics<D>, const D: usize>(
+        &mut self,
+        model: &Model<K, D>,
+        shape: &Shape<D>,
+        nodes: &Nodes,
+        points: &Points<D>,
+        mut dJ: Vec<f64>,
+        halo: &dyn Halo,
+    ) {
+        let nodal = nodes.average(shape, points, model.weighting, halo, |p| [dJ[p]]);
+        transfer::to_points(shape, &nodal, |p, [dJ_bar]| {
+            dJ[p] = dJ_bar / dJ[p];
+            if !(dJ[p] > 0.0 && dJ[p].is_finite()) {
+                self.reject(p);
+            }
+        });
+        self.ratio = Some(dJ);
+    }
+
+    fn reject(&mut self, p: usize) {
+        self.inverted += 1;
+        self.first_inverted.get_or_insert(p);
+    }
+
+    /// Steps (4f)-(4i): trial b^e of point `p` under dF-bar, and the constitution's answer.
+    #[inline]
+    pub fn respond<K: Kinematics<D>, const D: usize>(
+        &self,
+        model: &Model<K, D>,
+        points: &Points<D>,
+        p: usize,
+    ) -> Result<Response, MaterialError> {
+        let b_trial: Symmetric = match &self.ratio {
+            Some(ratio) => K::push_forward(&K::dilate(&self.dF[p], ratio[p]), &points.b_e[p]),
+            None => K::push_forward(&self.dF[p], &points.b_e[p]),
+        };
+        model.materials[usize::from(points.material[p])].respond(&b_trial)
+    }
+}

@@ -1,0 +1,45 @@
+//! Vectors of the grid's dimension, and second-order tensors, which are three-dimensional in every geometry.
+
+use nalgebra::{Matrix3, SMatrix, SVector};
+
+/// A vector of the grid's dimension.
+pub type Vector<const D: usize> = SVector<f64, D>;
+/// A square matrix of the grid's dimension: gradients of grid fields.
+pub type Square<const D: usize> = SMatrix<f64, D, D>;
+/// A second-order tensor: constitution is always three-dimensional.
+pub type Tensor = Matrix3<f64>;
+
+/// A symmetric tensor by its components XX, YY, ZZ, XY, YZ, XZ, the order that ParaView expects.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Symmetric(pub [f64; 6]);
+
+impl Symmetric {
+    /// The identity.
+    pub const IDENTITY: Self = Self([1.0, 1.0, 1.0, 0.0, 0.0, 0.0]);
+
+    /// The symmetric part of `t`.
+    #[inline]
+    pub fn of(t: &Tensor) -> Self {
+        let half = |i, j| 0.5 * (t[(i, j)] + t[(j, i)]);
+        Self([t[(0, 0)], t[(1, 1)], t[(2, 2)], half(0, 1), half(1, 2), half(0, 2)])
+    }
+
+    /// The same tensor as a full matrix.
+    #[inline]
+    pub fn full(&self) -> Tensor {
+        let [xx, yy, zz, xy, yz, xz] = self.0;
+        Tensor::new(xx, xy, xz, xy, yy, yz, xz, yz, zz)
+    }
+
+    /// A third of the trace.
+    #[inline]
+    pub fn mean(&self) -> f64 {
+        (self.0[0] + self.0[1] + self.0[2]) / 3.0
+    }
+
+    /// Every component multiplied by `factor`.
+    #[inline]
+    pub fn scaled(&self, factor: f64) -> Self {
+        Self(self.0.map(|c| c * factor))
+    }
+}

@@ -1,0 +1,50 @@
+//! Constitution (section 2.2): reference values, properties and closed forms, each named by its source.
+
+mod continuity;
+mod driver;
+mod eigen;
+mod input;
+mod projection;
+mod random;
+mod reference;
+mod tangent;
+mod yield_surface;
+
+use bsmpm::material::{Elastic, Hencky, Material, MohrCoulomb, Region, Response};
+use bsmpm::tensor::{Symmetric, Tensor};
+
+/// Every region of a response.
+const REGIONS: [Region; 5] = [Region::Elastic, Region::Face, Region::LeftEdge, Region::RightEdge, Region::Apex];
+
+fn hencky(young: f64, poisson: f64) -> Material {
+    Material::Hencky(Hencky { elastic: Elastic { young, poisson } })
+}
+
+/// Angles in degrees.
+fn mohr_coulomb(young: f64, poisson: f64, friction: f64, dilation: f64, cohesion: f64) -> Material {
+    let (friction, dilation) = (friction.to_radians(), dilation.to_radians());
+    Material::MohrCoulomb(MohrCoulomb { elastic: Elastic { young, poisson }, friction, dilation, cohesion })
+}
+
+/// `b = diag(exp(2 ε))`.
+fn stretched(eps: [f64; 3]) -> Symmetric {
+    let [x, y, z] = eps.map(|e| (2.0 * e).exp());
+    Symmetric([x, y, z, 0.0, 0.0, 0.0])
+}
+
+/// `q b qᵀ`.
+fn turned(q: &Tensor, b: &Symmetric) -> Symmetric {
+    Symmetric::of(&(q * b.full() * q.transpose()))
+}
+
+fn respond(material: &Material, b: &Symmetric) -> Response {
+    material.respond(b).unwrap_or_else(|error| panic!("{error} for {material:?}"))
+}
+
+fn largest(t: &[f64]) -> f64 {
+    t.iter().fold(0.0, |m: f64, x| m.max(x.abs()))
+}
+
+fn difference(a: &Symmetric, b: &Symmetric) -> f64 {
+    (0..6).map(|i| (a.0[i] - b.0[i]).abs()).fold(0.0, f64::max)
+}

@@ -1,0 +1,81 @@
+//! Associated returns against a brute-force projection: closest point in the energy norm (reliability N03).
+
+use super::{Region, largest, mohr_coulomb, respond, stretched};
+use crate::random::Random;
+use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
+
+/// The closest admissible point among the projections onto all sets of one, two and three of the six planes.
+fn closest(trial: Vector3<f64>, stiffness: Matrix3<f64>, sin: f64, strength: f64) -> Vector3<f64> {
+    let planes: Vec<Vector3<f64>> = [(0, 1), (1, 0), (1, 2), (2, 1), (0, 2), (2, 0)]
+        .into_iter()
+        .map(|(i, j)| {
+            let mut normal = Vector3::zeros();
+            normal[i] = 1.0 + sin;
+            normal[j] = sin - 1.0;
+            normal
+        })
+        .collect();
+    let compliance = stiffness.try_inverse().unwrap();
+    let admissible = |tau: &Vector3<f64>| {
+        planes.iter().all(|n| n.dot(tau) - strength <= 1e-9 * (strength + tau.amax() + 1e-3 * trial.amax()))
+    };
+    let mut best = (f64::INFINITY, trial);
+    for set in 1_u32..64 {
+        let active: Vec<_> = (0..6).filter(|i| set >> i & 1 == 1).map(|i| planes[i]).collect();
+        if active.len() > 3 {
+            continue;
+        }
+        let rows = DMatrix::from_fn(active.len(), 3, |i, j| active[i][j]);
+        let flow = DMatrix::from_fn(3, 3, |i, j| stiffness[(i, j)]) * rows.transpose();
+        let excess = DVector::from_fn(active.len(), |i, _| active[i].dot(&trial) - strength);
+        let normal = &rows * &flow;
+        let size = normal.amax();
+        if (&normal / size).determinant().abs() < 1e-10 {
+            continue;
+        }
+        let step = flow * normal.lu().solve(&excess).unwrap();
+        let tau = trial - Vector3::new(step[0], step[1], step[2]);
+        let distance = (trial - tau).dot(&(compliance * (trial - tau)));
+        if admissible(&tau) && distance < best.0 {
+            best = (distance, tau);
+        }
+    }
+    best.1
+}
+
+fn region(tau: &[f64; 3], size: f64) -> Region {
+    let ties = (tau[0] - tau[1] <= 1e-8 * size, tau[1] - tau[2] <= 1e-8 * size);
+    match ties {
+        (true, true) => Region::Apex,
+        (true, false) => Region::LeftEdge,
+        (false, true) => Region::RightEdge,
+        (false, false) => Region::Face,
+    }
+}
+
+#[test]
+fn associated_return_is_the_closest_point() {
+    let mut random = Random::new(30);
+    let (mut tried, mut worst) = (0, 0.0_f64);
+    while tried < 10_000 {
+        let friction = random.pick(&[0.0, 10.0, 20.0, 45.0, 60.0]);
+        let poisson = random.pick(&[0.0, 0.3, 0.45]);
+        let material = mohr_coulomb(1e3, poisson, friction, friction, 1.0);
+        let found = respond(&material, &stretched(random.strains(-3.0, -1.0)));
+        if found.region() == Region::Elastic {
+            continue;
+        }
+        tried += 1;
+        let (lambda, mu) = material.elastic().lame();
+        let stiffness = Matrix3::from_element(lambda) + Matrix3::identity() * (2.0 * mu);
+        let trial = stiffness * Vector3::from(found.principal_eps_trial());
+        let (sin, cos) = friction.to_radians().sin_cos();
+        let exact = closest(trial, stiffness, sin, 2.0 * cos);
+        let tau = found.principal_tau();
+        let size = trial.amax();
+        worst = worst.max(largest(&[tau[0] - exact[0], tau[1] - exact[1], tau[2] - exact[2]]) / size);
+        assert_eq!(found.region(), region(&exact.into(), size), "{tau:?} for {exact:?} with friction {friction}");
+    }
+    println!("distance to the closest point {worst:.2e}");
+    assert!(worst <= 1e-9, "{worst:e}");
+}

@@ -1,0 +1,94 @@
+//! Reference values of method.md section 2, and limits between materials.
+
+use super::{Material, Region, difference, hencky, largest, mohr_coulomb, respond, stretched};
+use crate::random::Random;
+
+/// φ, ψ (degrees) and c; principal strain; region; principal stress.
+type Row = ([f64; 3], [f64; 3], Region, [f64; 3]);
+
+#[test]
+fn method_section_2_table() {
+    let rows: [Row; 5] = [
+        (
+            [20.0, 0.0, 1.0],
+            [0.002, -0.001, -0.01],
+            Region::Face,
+            [-4.501294655559524, -5.961538461538462, -12.037166882902014],
+        ),
+        (
+            [20.0, 10.0, 1.0],
+            [0.002, 0.0015, -0.01],
+            Region::LeftEdge,
+            [-3.764196803964208, -3.764196803964208, -10.533777144737742],
+        ),
+        (
+            [20.0, 0.0, 1.0],
+            [0.01, -0.01, -0.011],
+            Region::RightEdge,
+            [-4.28952398866601, -11.605238005666994, -11.605238005666994],
+        ),
+        ([0.0, 0.0, 1.0], [0.005, 0.0, -0.005], Region::Face, [1.0, 0.0, -1.0]),
+        ([30.0, 0.0, 1.0], [0.01; 3], Region::Apex, [1.7320508075688776; 3]),
+    ];
+    for ([friction, dilation, cohesion], eps, region, tau) in rows {
+        let found = respond(&mohr_coulomb(1000.0, 0.3, friction, dilation, cohesion), &stretched(eps));
+        assert_eq!(found.region(), region);
+        for (a, b) in found.principal_tau().into_iter().zip(tau) {
+            assert!((a - b).abs() <= 1e-10 * largest(&tau), "{a} for {b} on {region:?}");
+        }
+    }
+}
+
+#[test]
+fn friction_to_zero_is_tresca() {
+    let mut random = Random::new(1);
+    let (tresca, nearly) = (mohr_coulomb(1e3, 0.3, 0.0, 0.0, 1.0), mohr_coulomb(1e3, 0.3, 1e-9, 1e-9, 1.0));
+    for _ in 0..10_000 {
+        let b = random.trial(-4.0, -1.0);
+        let (a, b) = (respond(&tresca, &b).tau(), respond(&nearly, &b).tau());
+        assert!(difference(&a, &b) <= 1e-8 * (1.0 + largest(&a.0)));
+    }
+}
+
+#[test]
+fn results_scale_exactly_with_the_unit_of_stress() {
+    let mut random = Random::new(2);
+    let unit = 1024.0 * 1024.0;
+    for _ in 0..10_000 {
+        let (friction, cohesion) = (random.pick(&[0.0, 20.0, 45.0]), random.pick(&[0.0, 1.0]));
+        let b = random.trial(-6.0, -0.5);
+        let small = respond(&mohr_coulomb(1e3, 0.3, friction, 0.5 * friction, cohesion), &b);
+        let large = respond(&mohr_coulomb(1e3 * unit, 0.3, friction, 0.5 * friction, cohesion * unit), &b);
+        assert_eq!(small.tau().scaled(unit), large.tau());
+        assert_eq!((small.region(), small.b_e()), (large.region(), large.b_e()));
+    }
+}
+
+#[test]
+fn elastic_state_is_the_trial_bit_for_bit() {
+    let mut random = Random::new(3);
+    let strong = mohr_coulomb(1e3, 0.3, 20.0, 10.0, 1e6);
+    for _ in 0..10_000 {
+        let b = random.trial(-8.0, -1.0);
+        let (a, c) = (respond(&strong, &b), respond(&hencky(1e3, 0.3), &b));
+        assert_eq!((a.region(), a.b_e(), a.tau()), (Region::Elastic, b, c.tau()));
+        assert_eq!((c.b_e(), a.plastic_increment()), (b, 0.0));
+    }
+}
+
+#[test]
+fn plastic_increment_is_the_deviatoric_strain_lost() {
+    let found = respond(&mohr_coulomb(1000.0, 0.3, 0.0, 0.0, 1.0), &stretched([0.005, 0.0, -0.005]));
+    // tau = (1, 0, -1) is eps_e = 1.3e-3 (1, 0, -1): 3.7e-3 (1, 0, -1) is lost.
+    let exact = (2.0_f64 / 3.0).sqrt() * 2.0_f64.sqrt() * 3.7e-3;
+    assert!((found.plastic_increment() - exact).abs() <= 1e-14);
+}
+
+#[test]
+fn elastic_constants() {
+    let material = hencky(1000.0, 0.25);
+    let (lambda, mu) = material.elastic().lame();
+    assert!((lambda - 400.0).abs() <= 1e-12 && (mu - 400.0).abs() <= 1e-12);
+    assert!((material.elastic().oedometric() - 1200.0).abs() <= 1e-12);
+    assert!(matches!(material, Material::Hencky(_)));
+}

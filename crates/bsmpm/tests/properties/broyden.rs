@@ -1,0 +1,88 @@
+//! Broyden's product form against the dense update of K that it stands for (method.md 4).
+
+use crate::support::random::Random;
+use crate::support::solver::Skyline;
+use bsmpm::seam::{Alone, LinearSolver};
+use bsmpm::step::broyden::Broyden;
+use nalgebra::{DMatrix, DVector};
+
+const N: usize = 12;
+
+fn stiffness(random: &mut Random) -> DMatrix<f64> {
+    let A = DMatrix::from_fn(N, N, |_, _| random.signed());
+    &A * A.transpose() / N as f64 + DMatrix::identity(N, N)
+}
+
+/// The solver with `K` as its one patch.
+fn factorised(K: &DMatrix<f64>) -> Skyline {
+    let mut solver = Skyline::of_patches(1, (0..N).collect());
+    solver.begin(&[true; N]);
+    solver.add(0, K.transpose().as_slice());
+    solver.finish().unwrap();
+    solver
+}
+
+/// The update after a step a d along the direction d = K^-1 f_old: the secant of least change,
+/// K+ = K + ((1-a) f_old - f_new) s^T / s.s with s = a d.
+fn updated(K: &DMatrix<f64>, (f_old, f_new): (&DVector<f64>, &DVector<f64>), d: &DVector<f64>, a: f64) -> DMatrix<f64> {
+    let s = d * a;
+    K + (f_old * (1.0 - a) - f_new) * s.transpose() / s.norm_squared()
+}
+
+/// Largest relative difference of the directions over the iterations with step lengths `lengths`.
+fn worst_difference(lengths: &[f64], seed: u64) -> f64 {
+    let mut random = Random::new(seed);
+    let mut K = stiffness(&mut random);
+    let (mut solver, halo, mut broyden) = (factorised(&K), Alone { nodes: N }, Broyden::default());
+    let mut f = DVector::from_vec(random.array(N));
+    let mut worst = 0.0_f64;
+    for &a in lengths {
+        let found = broyden.direction::<1>(f.as_slice(), &halo, &mut solver).unwrap();
+        let expected = K.clone().lu().solve(&f).unwrap();
+        worst = worst.max((DVector::from_vec(found.du) - &expected).norm() / expected.norm());
+        assert!((found.energy - expected.dot(&f).abs()).abs() <= 1e-12 * expected.norm() * f.norm());
+        broyden.took(a);
+        let f_new = (&f + DVector::from_vec(random.array(N)) * 0.3) * (1.0 - 0.7 * a);
+        K = updated(&K, (&f, &f_new), &expected, a);
+        f = f_new;
+    }
+    worst
+}
+
+#[test]
+fn the_dense_update_is_the_secant() {
+    let mut random = Random::new(9);
+    let K = stiffness(&mut random);
+    for a in [1.0, 0.5, 0.125] {
+        let (f_old, f_new) = (DVector::from_vec(random.array(N)), DVector::from_vec(random.array(N)));
+        let d = K.clone().lu().solve(&f_old).unwrap();
+        let K = updated(&K, (&f_old, &f_new), &d, a);
+        assert!((K * (d * a) - (f_old - f_new)).norm() <= 1e-13);
+    }
+}
+
+#[test]
+fn full_steps_agree_with_the_dense_update() {
+    let worst = (0..20).map(|seed| worst_difference(&[1.0; 6], seed)).fold(0.0, f64::max);
+    println!("worst relative difference {worst:.1e}");
+    assert!(worst <= 2e-14); // measured 3e-15
+}
+
+#[test]
+fn shortened_steps_agree_with_the_dense_update() {
+    let worst = (0..20).map(|seed| worst_difference(&[1.0, 0.5, 1.0, 0.25, 0.5, 1.0], seed)).fold(0.0, f64::max);
+    println!("worst relative difference {worst:.1e}");
+    assert!(worst <= 2e-14); // measured 3e-15
+}
+
+#[test]
+fn a_nearly_singular_update_drops_the_history() {
+    let mut random = Random::new(2);
+    let K = stiffness(&mut random);
+    let (mut solver, halo, mut broyden) = (factorised(&K), Alone { nodes: N }, Broyden::default());
+    let f = random.array(N);
+    let plain = broyden.direction::<1>(&f, &halo, &mut solver).unwrap().du;
+    broyden.took(1.0);
+    let again = broyden.direction::<1>(&f, &halo, &mut solver).unwrap().du; // f unchanged: g = 1
+    assert_eq!(again, plain);
+}

@@ -1,0 +1,108 @@
+//! Objectivity, F-bar's neutral element, and that the dimensions agree where they must.
+
+use crate::support::random::Random;
+use crate::support::scene::hencky;
+use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
+use bsmpm::tensor::{Square, Symmetric, Tensor};
+use nalgebra::{Rotation3, Vector3};
+
+/// A deformation in the plane: the third direction is untouched.
+fn in_plane(random: &mut Random) -> Tensor {
+    PlaneStrain::gradient(&(random.square::<2>() * 0.3)) + Tensor::identity()
+}
+
+fn b_of(F: &Tensor) -> Symmetric {
+    Symmetric::of(&(F * F.transpose()))
+}
+
+#[test]
+fn f_bar_with_ratio_one_leaves_the_increment_bit_by_bit() {
+    let mut random = Random::new(1);
+    for _ in 0..1000 {
+        let plane = in_plane(&mut random);
+        let solid = Tensor::identity() + random.square::<3>() * 0.3;
+        assert_eq!(PlaneStrain::dilate(&plane, 1.0), plane);
+        assert_eq!(Solid::dilate(&solid, 1.0), solid);
+    }
+}
+
+#[test]
+fn f_bar_gives_the_wanted_determinant_and_in_plane_leaves_the_third_direction() {
+    let mut random = Random::new(2);
+    for _ in 0..1000 {
+        let ratio = 2.0_f64.powf(random.signed());
+        let (plane, solid) = (in_plane(&mut random), Tensor::identity() + random.square::<3>() * 0.3);
+        for (before, after) in
+            [(plane, PlaneStrain::dilate(&plane, ratio)), (solid, Solid::dilate(&solid, ratio))]
+        {
+            let wanted = ratio * before.determinant();
+            assert!((after.determinant() / wanted - 1.0).abs() <= 1e-14 * 10.0); // measured 9e-15
+        }
+        assert_eq!(PlaneStrain::dilate(&plane, ratio)[(2, 2)], 1.0);
+    }
+}
+
+#[test]
+fn a_rigid_rotation_keeps_the_principal_stress_and_turns_the_stress() {
+    let (mut random, law) = (Random::new(3), hencky(1000.0, 0.3));
+    let mut worst = 0.0_f64;
+    for _ in 0..200 {
+        let b = b_of(&(Tensor::identity() + random.square::<3>() * 0.2));
+        let before = law.respond(&b).unwrap();
+        let R = *Rotation3::new(random.vector::<3>() * 3.0).matrix();
+        let after = law.respond(&Solid::push_forward(&R, &b)).unwrap();
+        for (x, y) in before.principal_tau().iter().zip(after.principal_tau()) {
+            worst = worst.max((x - y).abs());
+        }
+        worst = worst.max((after.tau().full() - R * before.tau().full() * R.transpose()).amax());
+    }
+    println!("worst change {:.1e} E", worst / 1000.0);
+    assert!(worst <= 1e-13 * 1000.0); // measured 4e-15 E
+}
+
+#[test]
+fn ten_turns_in_steps_of_a_degree_keep_the_kirchhoff_stress() {
+    // reliability.md N17: <= 1e-8 E for an exact rotation at point level.
+    let law = hencky(1000.0, 0.3);
+    let mut b = b_of(&Tensor::new(1.1, 0.05, 0.0, -0.02, 0.93, 0.0, 0.0, 0.0, 1.0));
+    let before = law.respond(&b).unwrap();
+    let R = *Rotation3::new(Vector3::z() * 1.0_f64.to_radians()).matrix();
+    (0..3600).for_each(|_| b = PlaneStrain::push_forward(&R, &b));
+    let after = law.respond(&b).unwrap();
+    let change = (after.tau().full() - before.tau().full()).amax() / 1000.0;
+    println!("change after ten turns {change:.1e} E");
+    assert!(change <= 1e-11); // measured 1e-12
+}
+
+#[test]
+fn plane_strain_is_the_solid_without_out_of_plane_displacement() {
+    let mut random = Random::new(4);
+    for _ in 0..200 {
+        let dF = in_plane(&mut random);
+        let b = b_of(&in_plane(&mut random));
+        let (plane, solid) = (PlaneStrain::push_forward(&dF, &b), Solid::push_forward(&dF, &b));
+        assert!((plane.full() - solid.full()).amax() <= 1e-15 * 10.0); // measured 1.3e-15
+        let tau = hencky(1.0, 0.3).respond(&solid).unwrap().tau();
+        let (plane, solid) = (PlaneStrain::flux(&tau, &dF), Solid::flux(&tau, &dF));
+        let corner = solid.fixed_view::<2, 2>(0, 0);
+        assert!((plane - corner).amax() <= 1e-14 * 10.0 * plane.amax()); // measured 1e-15
+    }
+}
+
+/// lambda tr(e) I + 2 mu e for the symmetric gradient of a displacement along `a` of node gradient `g`.
+fn elastic_force<const D: usize>(moment: &Square<D>, (lambda, mu): (f64, f64)) -> Square<D> {
+    // k_ij = sum D_ikjl g_k h_l with D_ikjl = lambda d_ik d_jl + mu (d_ij d_kl + d_il d_kj) and T = g (x) h.
+    Square::from_fn(|i, j| {
+        let trace = if i == j { mu * moment.trace() } else { 0.0 };
+        lambda * moment[(i, j)] + mu * moment[(j, i)] + trace
+    })
+}
+
+#[test]
+fn the_stiffness_of_a_node_pair_is_the_isotropic_one() {
+    let mut random = Random::new(6);
+    let lame = (3.0, 2.0);
+    let (plane, solid) = (random.square::<2>(), random.square::<3>());
+    assert!((PlaneStrain::stiffness(&plane, lame) - elastic_force(&plane, lame)).amax() <= 1e-15);
+    assert!((Solid::stiffness(&solid, lame) - elastic_force(&solid, lame)).amax() <= 2e-15);
+}

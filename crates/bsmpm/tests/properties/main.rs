@@ -1,0 +1,16 @@
+//! What must hold for any input: properties of the splines, the mapping, the kinematics, the iteration and the step
+//! control. Numbers after `measured` are what this machine gave; bounds leave room for another one.
+
+#![allow(non_snake_case)] // the paper's letters, as in the crate
+
+mod broyden;
+mod kinematics;
+mod points;
+mod rigid;
+mod spline;
+mod stepping;
+mod topology;
+mod transfer;
+
+#[path = "../support/mod.rs"]
+mod support;

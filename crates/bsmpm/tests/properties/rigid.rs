@@ -1,0 +1,89 @@
+//! Motion without deformation: free flight, crossing cells, and rigid rotation of the grid's field.
+
+use crate::support::scene::{Scene, axis, hencky};
+use bsmpm::grid::Shape;
+use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
+use bsmpm::model::Regime;
+use bsmpm::stabilisation::Stabilisation;
+use bsmpm::step::nodes::Nodes;
+use bsmpm::step::trial::Trial;
+use bsmpm::tensor::{Square, Symmetric, Vector};
+use nalgebra::Rotation2;
+
+const METHODS: [Stabilisation; 3] = [Stabilisation::None, Stabilisation::FBar, Stabilisation::ModifiedFBar];
+
+/// Flies a block of 3^D cells through a longer grid; worst change of velocity per step and largest |sigma| / E.
+fn flight<K: Kinematics<D>, const D: usize>(order: usize, method: Stabilisation, steps: usize) -> (f64, f64) {
+    let axes = std::array::from_fn(|k| axis(0.1, if k == 0 { 12 } else { 6 }, order));
+    let velocity = Vector::<D>::from_fn(|k, _| if k == 0 { 1.0 } else { 0.37 });
+    let mut scene = Scene::<K, D>::new(axes, hencky(100.0, 0.3), Regime::Dynamic)
+        .body(std::array::from_fn(|_| 1..4), 2, 1.0, |_| velocity)
+        .stabilised(method);
+    let dt = 0.4 / steps as f64;
+    let (mut change, mut stress) = (0.0_f64, 0.0_f64);
+    let mut last = vec![velocity; scene.points.len()];
+    scene.march(dt, 0.4, |points, _| {
+        let v = &points.motion.as_ref().unwrap().v;
+        for p in 0..points.len() {
+            let id = points.id[p] as usize;
+            change = change.max((v[p] - last[id]).amax());
+            last[id] = v[p];
+            stress = stress.max(points.sigma[p].0.iter().fold(0.0, |most, s| s.abs().max(most)) / 100.0);
+        }
+    });
+    let travelled = scene.points.u.iter().map(|u| (u - velocity * 0.4).amax()).fold(0.0, f64::max);
+    assert!(travelled <= 1e-12, "{travelled:e}");
+    (change, stress)
+}
+
+#[test]
+fn free_flight_across_cells_keeps_velocity_and_no_stress() {
+    // reliability.md N16: velocity change <= 1e-12 per step, stress <= 1e-10 E.
+    for method in METHODS {
+        for order in 1..=3 {
+            let (change, stress) = flight::<PlaneStrain, 2>(order, method, 50);
+            println!("{method:?}, q = {order}: change of v {change:.1e}, stress {stress:.1e} E");
+            assert!(change <= 1e-12 && stress <= 1e-10);
+        }
+    }
+    let (change, stress) = flight::<Solid, 3>(2, Stabilisation::ModifiedFBar, 10);
+    println!("solid: change of v {change:.1e}, stress {stress:.1e} E");
+    assert!(change <= 1e-12 && stress <= 1e-10);
+}
+
+#[test]
+fn a_rigidly_rotating_field_turns_the_stress_of_every_point() {
+    let mut scene = Scene::<PlaneStrain, 2>::new([axis(0.5, 4, 2), axis(0.5, 4, 2)], hencky(100.0, 0.3), Regime::QuasiStatic)
+        .body([1..3, 1..3], 3, 1.0, |_| Vector::zeros());
+    let b_e = Symmetric([1.2, 0.9, 1.05, 0.1, 0.0, 0.0]);
+    scene.points.b_e.fill(b_e);
+    let R = *Rotation2::new(0.8).matrix();
+    let u = field(&scene, &(R - Square::identity()));
+    for method in METHODS {
+        scene.model.stabilisation = method;
+        let (points, halo) = (&scene.points, scene.halo());
+        let shape = Shape::at(&scene.model.grid, points).unwrap();
+        let nodes = Nodes::map(&scene.model, &shape, points, (0.0, 1.0), &halo);
+        let trial = Trial::of(&scene.model, &shape, &nodes, points, &u, &halo);
+        let before = scene.model.materials[0].respond(&b_e).unwrap();
+        for p in 0..points.len() {
+            let after = trial.respond(&scene.model, points, p).unwrap();
+            for (x, y) in before.principal_tau().iter().zip(after.principal_tau()) {
+                assert!((x - y).abs() <= 1e-14 * 100.0 * 10.0); // measured 1e-15 E
+            }
+            let turned = R * before.tau().full().fixed_view::<2, 2>(0, 0) * R.transpose();
+            assert!((after.tau().full().fixed_view::<2, 2>(0, 0) - turned).amax() <= 1e-13 * 100.0);
+        }
+    }
+}
+
+/// Nodal values of the linear field H x, at the Greville abscissae.
+fn field(scene: &Scene<PlaneStrain, 2>, H: &Square<2>) -> Vec<f64> {
+    let grid = &scene.model.grid;
+    let along = |k: usize, i: usize| 0.5 * (grid.axes()[k].knot(i + 1) + grid.axes()[k].knot(i + 2));
+    let at = |node: usize| {
+        let [i, j] = grid.node_at(node);
+        Vector::<2>::new(along(0, i), along(1, j))
+    };
+    (0..grid.nodes()).flat_map(|node| <[f64; 2]>::from(H * at(node))).collect()
+}

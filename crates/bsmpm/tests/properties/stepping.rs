@@ -1,0 +1,126 @@
+//! The step control: cut, grown back, given up, and never anything in between (reliability: a failed step costs
+//! nothing).
+
+use crate::support::random::Random;
+use crate::support::scene::{Scene, axis, hencky};
+use crate::support::solver::{Reluctant, Skyline};
+use bsmpm::boundary::Support;
+use bsmpm::control::{Accepted, Failure, Stepper};
+use bsmpm::error::{SolveError, StepError};
+use bsmpm::kinematics::PlaneStrain;
+use bsmpm::model::Regime;
+use bsmpm::schedule::Schedule;
+
+/// A block settling on a fixed base.
+fn block(regime: Regime) -> Scene<PlaneStrain, 2> {
+    Scene::new([axis(0.5, 2, 2), axis(0.5, 3, 2)], hencky(100.0, 0.3), regime)
+        .body([0..2, 0..2], 2, 1.0, |x| x * 0.1)
+        .support(Support::roller(0, false))
+        .support(Support::fixed(1, false))
+        .gravity(1.0, 4.0)
+}
+
+fn run(scene: &mut Scene<PlaneStrain, 2>, schedule: &Schedule, refusals: usize) -> Result<Vec<Accepted>, Failure> {
+    let mut solver = Reluctant { solver: Skyline::new(&scene.model.grid), refusals };
+    let halo = scene.halo();
+    let mut stepper = Stepper::new(scene.model.grid.nodes() * 2);
+    let mut steps = Vec::new();
+    while let Some(found) = stepper.advance(schedule, &scene.model, &mut scene.points, &halo, &mut solver) {
+        steps.push(found?);
+        scene.points.sort_by_cell(&scene.model.grid);
+    }
+    Ok(steps)
+}
+
+#[test]
+fn a_cut_step_lands_on_its_nominal_end_and_grows_back_after_two_easy_ones() {
+    let steps = run(&mut block(Regime::QuasiStatic), &Schedule::new(1.0, 4.0, []), 2).unwrap();
+    let lengths: Vec<f64> = steps.iter().map(|step| step.dt).collect();
+    assert_eq!(lengths, [0.25, 0.25, 0.5, 0.5, 0.5, 1.0, 1.0]);
+    assert_eq!(steps[0].rejected.len(), 2);
+    assert!(steps[1..].iter().all(|step| step.rejected.is_empty()));
+    assert_eq!(steps.last().map(|step| step.t), Some(4.0));
+}
+
+#[test]
+fn whatever_is_cut_every_wanted_time_is_hit_exactly() {
+    let wanted = [0.1, 0.7, 1.3, 2.9];
+    let schedule = Schedule::new(0.3, 3.0, wanted);
+    for refusals in [0, 1, 3, 5] {
+        let steps = run(&mut block(Regime::QuasiStatic), &schedule, refusals).unwrap();
+        let times: Vec<f64> = steps.iter().map(|step| step.t).collect();
+        assert!(times.is_sorted_by(|a, b| a < b));
+        assert!(wanted.iter().chain(&[3.0]).all(|t| times.contains(t)), "{refusals}: {times:?}");
+        assert!((steps.iter().map(|step| step.dt).sum::<f64>() - 3.0).abs() <= 1e-14);
+    }
+}
+
+#[test]
+fn nominal_ends_of_a_schedule_ascend_and_are_a_function_of_time_alone() {
+    let mut random = Random::new(1);
+    for _ in 0..200 {
+        let (dt, end) = (0.01 + random.unit(), 0.5 + 10.0 * random.unit());
+        let wanted: Vec<f64> = (0..4).map(|_| 12.0 * random.unit()).collect();
+        let schedule = Schedule::new(dt, end, wanted.clone());
+        let stations: Vec<f64> = std::iter::successors(schedule.next(0.0), |&t| schedule.next(t)).collect();
+        assert_eq!(stations.last(), Some(&end));
+        assert!(stations.windows(2).all(|pair| pair[0] < pair[1] && pair[1] - pair[0] <= dt * (1.0 + 2e-6)));
+        assert!(wanted.iter().filter(|&&t| t < end - 1e-6 * dt).all(|t| stations.contains(t)));
+        let restarted = schedule.next(stations[stations.len() / 2]);
+        assert_eq!(restarted, stations.get(stations.len() / 2 + 1).copied());
+    }
+}
+
+#[test]
+fn a_step_that_never_converges_fails_after_ten_halvings_and_leaves_the_points_bit_by_bit() {
+    for regime in [Regime::QuasiStatic, Regime::Dynamic] {
+        let mut scene = block(regime);
+        let before = scene.points.clone();
+        let failure = run(&mut scene, &Schedule::new(1.0, 4.0, []), usize::MAX).unwrap_err();
+        assert_eq!((failure.t, failure.dt), (0.0, 1.0 / 1024.0));
+        assert_eq!(failure.attempts.len(), 11);
+        assert!(matches!(failure.attempts[10], StepError::Solve(SolveError::Failed(_))));
+        assert_eq!(scene.points, before);
+    }
+}
+
+#[test]
+fn too_few_iterations_are_a_failure_and_not_an_answer() {
+    let mut scene = block(Regime::QuasiStatic);
+    scene.model.criteria.max_iterations = 1;
+    let before = scene.points.clone();
+    let failure = run(&mut scene, &Schedule::new(1.0, 1.0, []), 0).unwrap_err();
+    assert!(failure.attempts.iter().all(|error| matches!(error, StepError::NotConverged { iterations: 1, .. })));
+    assert_eq!(scene.points, before);
+}
+
+#[test]
+fn a_point_that_leaves_the_grid_ends_the_run_at_once_with_the_points_unchanged() {
+    let mut scene = block(Regime::Dynamic);
+    scene.model.gravity = None;
+    scene.model.boundary.supports.clear();
+    scene.points.motion.as_mut().unwrap().v.iter_mut().for_each(|v| *v = [-1.0, 0.0].into());
+    let before = scene.points.clone();
+    let failure = run(&mut scene, &Schedule::new(1.0, 1.0, []), 0).unwrap_err();
+    assert_eq!(failure.attempts.len(), 1);
+    assert!(matches!(failure.attempts[0], StepError::Left { count: 16, first: Some((0, _)) }));
+    assert_eq!(scene.points, before);
+}
+
+#[test]
+fn a_step_that_turns_material_inside_out_is_cut_and_then_finds_equilibrium() {
+    let mut scene = block(Regime::QuasiStatic);
+    scene.model.gravity = None;
+    let push = Support { axis: 0, upper: true, velocity: [Some(-0.6), None] };
+    scene = scene.support(push);
+    let steps = run(&mut scene, &Schedule::new(1.0, 1.0, []), 0).unwrap();
+    let rejected: Vec<_> = steps.iter().flat_map(|step| &step.rejected).collect();
+    assert!(!rejected.is_empty() && rejected.iter().all(|e| matches!(e, StepError::Inverted { .. })));
+    assert_eq!(steps.last().map(|step| step.t), Some(1.0));
+}
+
+#[test]
+fn the_same_run_twice_is_the_same_bit_by_bit() {
+    let run = || block(Regime::Dynamic).solved(0.1, 2.0).0.points;
+    assert_eq!(run(), run());
+}

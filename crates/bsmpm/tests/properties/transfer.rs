@@ -1,0 +1,146 @@
+//! The passes between points and nodes: adjoint to each other, and conserving (Eqs 1, 2; steps 2, 4a, 5a).
+
+use crate::support::random::Random;
+use crate::support::scene::{Scene, axis, hencky};
+use bsmpm::grid::{KnotVector, Shape, transfer};
+use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
+use bsmpm::model::{Gravity, Regime};
+use bsmpm::step::nodes::Nodes;
+use bsmpm::tensor::{Square, Vector};
+
+/// A body of scattered points of different mass with velocities, in a graded grid.
+fn scattered<K: Kinematics<D>, const D: usize>(order: usize) -> Scene<K, D> {
+    let graded = KnotVector::graded(&[0.0, 0.2, 0.7, 0.8, 2.0], order).unwrap();
+    let axes = std::array::from_fn(|k| if k == 0 { graded.clone() } else { axis(0.4, 3, order) });
+    let mut random = Random::new(order as u64);
+    let mut scene = Scene::<K, D>::new(axes, hencky(1.0, 0.3), Regime::Dynamic);
+    let cells = std::array::from_fn(|k| 0..scene.model.grid.axes()[k].cells());
+    scene = scene.body(cells, 2, 3.0, |x| x * 2.0 - Vector::repeat(0.3));
+    for p in 0..scene.points.len() {
+        scene.points.x[p] += random.vector::<D>() * 0.01;
+        scene.points.mass[p] *= 1.0 + 0.5 * random.signed();
+    }
+    scene.points.sort_by_cell(&scene.model.grid);
+    scene
+}
+
+fn dot(a: &[f64], b: &[f64]) -> (f64, f64) {
+    let terms = || a.iter().zip(b).map(|(a, b)| a * b);
+    (terms().sum(), terms().map(f64::abs).sum())
+}
+
+/// Largest |<B u, P> - <u, B^T P>| relative to the sum of the terms' sizes: gradients, then values.
+fn adjointness<K: Kinematics<D>, const D: usize>(order: usize) -> (f64, f64) {
+    let scene = scattered::<K, D>(order);
+    let (grid, n) = (&scene.model.grid, scene.points.len());
+    let shape = Shape::at(grid, &scene.points).unwrap();
+    let mut random = Random::new(11);
+    let u = random.array(grid.nodes() * D);
+    let P: Vec<Square<D>> = (0..n).map(|_| random.square()).collect();
+    let mut at_points = vec![0.0; 0];
+    transfer::gradients(&shape, &u, |_, gradient| at_points.extend(gradient.iter()));
+    let flat: Vec<f64> = P.iter().flat_map(|P| P.iter().copied()).collect();
+    let mut f = vec![0.0; u.len()];
+    transfer::divergence(&shape, &mut f, |p| P[p]);
+    let ((gathered, scale), (scattered, _)) = (dot(&at_points, &flat), dot(&u, &f));
+    let gradients = (gathered - scattered).abs() / scale;
+
+    let a = random.array(n * 3);
+    let nodal = random.array(grid.nodes() * 3);
+    let mut sums = vec![0.0; nodal.len()];
+    transfer::to_nodes(&shape, &mut sums, |p| [a[3 * p], a[3 * p + 1], a[3 * p + 2]]);
+    let mut at_points = vec![0.0; 0];
+    transfer::to_points::<D, 3>(&shape, &nodal, |_, value| at_points.extend(value));
+    let ((gathered, scale), (scattered, _)) = (dot(&at_points, &a), dot(&nodal, &sums));
+    (gradients, (gathered - scattered).abs() / scale)
+}
+
+#[test]
+fn gather_and_scatter_are_adjoint_in_two_and_three_dimensions() {
+    for order in 1..=3 {
+        for (gradients, values) in [adjointness::<PlaneStrain, 2>(order), adjointness::<Solid, 3>(order)] {
+            println!("order {order}: gradients {gradients:.1e}, values {values:.1e}");
+            assert!(gradients <= 1e-14 && values <= 1e-14); // measured 9e-17, 3e-17
+        }
+    }
+}
+
+fn linear_fields_are_exact<K: Kinematics<D>, const D: usize>(order: usize) {
+    let scene = scattered::<K, D>(order);
+    let shape = Shape::at(&scene.model.grid, &scene.points).unwrap();
+    let mut random = Random::new(5);
+    let (H, shift) = (random.square::<D>(), random.vector::<D>());
+    let u = linear_field(&scene, &H, &shift);
+    transfer::gradients(&shape, &u, |_, found| assert!((found - H).amax() <= 2e-13)); // measured 3e-14
+    transfer::to_points::<D, D>(&shape, &u, |p, found| {
+        let exact = H * scene.points.x[p] + shift;
+        assert!((Vector::from(found) - exact).amax() <= 2e-14); // measured 1.3e-15
+    });
+}
+
+/// Nodal values of H x + shift at the Greville abscissae.
+fn linear_field<K: Kinematics<D>, const D: usize>(
+    scene: &Scene<K, D>,
+    H: &Square<D>,
+    shift: &Vector<D>,
+) -> Vec<f64> {
+    let grid = &scene.model.grid;
+    let greville = |k: usize, i: usize| {
+        let knots = &grid.axes()[k];
+        (1..=knots.order()).map(|j| knots.knot(i + j)).sum::<f64>() / knots.order() as f64
+    };
+    let at = |node: usize| Vector::<D>::from_fn(|k, _| greville(k, grid.node_at(node)[k]));
+    (0..grid.nodes()).flat_map(|node| <[f64; D]>::from(H * at(node) + shift)).collect()
+}
+
+#[test]
+fn a_linear_displacement_field_has_its_exact_gradient_at_every_point() {
+    for order in 1..=3 {
+        linear_fields_are_exact::<PlaneStrain, 2>(order);
+        linear_fields_are_exact::<Solid, 3>(order);
+    }
+}
+
+fn the_mapping_conserves<K: Kinematics<D>, const D: usize>(order: usize) {
+    let mut scene = scattered::<K, D>(order);
+    scene.model.gravity = Some(Gravity { acceleration: Vector::repeat(-9.81), ramp: 0.0 });
+    let (points, halo) = (&scene.points, scene.halo());
+    let shape = Shape::at(&scene.model.grid, points).unwrap();
+    let nodes = Nodes::map(&scene.model, &shape, points, (0.0, 0.1), &halo);
+    let mass: f64 = points.mass.iter().sum();
+    assert!((nodes.weight.iter().sum::<f64>() / mass - 1.0).abs() <= 1e-14); // measured 9e-16
+    let motion = points.motion.as_ref().unwrap();
+    let v = &nodes.inertia.as_ref().unwrap().v;
+    for c in 0..D {
+        let at_points: f64 = (0..points.len()).map(|p| points.mass[p] * motion.v[p][c]).sum();
+        let at_nodes: f64 = nodes.weight.iter().zip(v[c..].iter().step_by(D)).map(|(m, v)| m * v).sum();
+        assert!((at_nodes - at_points).abs() <= 1e-14 * mass * 4.0); // speeds are up to 4; measured 2e-15 of it
+        let weight: f64 = nodes.f_ext[c..].iter().step_by(D).sum();
+        assert!((weight / (-9.81 * mass) - 1.0).abs() <= 1e-14); // measured 7e-16
+    }
+}
+
+#[test]
+fn mapping_to_the_nodes_conserves_mass_momentum_and_weight() {
+    for order in 1..=3 {
+        the_mapping_conserves::<PlaneStrain, 2>(order);
+        the_mapping_conserves::<Solid, 3>(order);
+    }
+}
+
+#[test]
+fn squared_gradients_are_the_trace_of_the_moment() {
+    let scene = scattered::<PlaneStrain, 2>(2);
+    let shape = Shape::at(&scene.model.grid, &scene.points).unwrap();
+    let mut found = vec![0.0; scene.model.grid.nodes()];
+    transfer::squared_gradients(&shape, &mut found, |p| scene.points.volume[p]);
+    let mut expected = vec![0.0; found.len()];
+    for patch in shape.patches() {
+        for p in patch.points.clone() {
+            for (offset, (_, grad)) in shape.offsets().iter().zip(shape.of(p)) {
+                expected[patch.first_node + offset] += scene.points.volume[p] * grad.norm_squared();
+            }
+        }
+    }
+    assert!(found.iter().zip(&expected).all(|(a, b)| (a - b).abs() <= 1e-13 * b.abs()));
+}

@@ -1,0 +1,167 @@
+//! Small scenes in any dimension: a grid, elastic bodies of whole cells, points placed n^D per cell.
+
+use super::solver::Skyline;
+use bsmpm::boundary::{Boundary, Support};
+use bsmpm::control::{Accepted, Stepper};
+use bsmpm::grid::{Grid, KnotVector};
+use bsmpm::kinematics::Kinematics;
+use bsmpm::material::{Elastic, Hencky, Material};
+use bsmpm::model::{Criteria, Gravity, Model, Regime, Weighting};
+use bsmpm::points::{Points, Seed};
+use bsmpm::schedule::Schedule;
+use bsmpm::seam::Alone;
+use bsmpm::stabilisation::Stabilisation;
+use bsmpm::tensor::Vector;
+use std::marker::PhantomData;
+use std::ops::Range;
+
+/// A model with its points.
+#[derive(Clone)]
+pub struct Scene<K, const D: usize> {
+    /// What stays constant.
+    pub model: Model<K, D>,
+    /// The points.
+    pub points: Points<D>,
+}
+
+/// `cells` equal cells of length `cell` and order `order`.
+pub fn axis(cell: f64, cells: usize, order: usize) -> KnotVector {
+    KnotVector::uniform(cell, cells, order).expect("a valid axis")
+}
+
+/// Hencky elasticity.
+pub fn hencky(young: f64, poisson: f64) -> Material {
+    Material::Hencky(Hencky { elastic: Elastic { young, poisson } })
+}
+
+impl<K: Kinematics<D>, const D: usize> Scene<K, D> {
+    /// An empty grid: no load, no support, no stabilisation, tight tolerances.
+    pub fn new(axes: [KnotVector; D], material: Material, regime: Regime) -> Self {
+        let model = Model {
+            grid: Grid::new(axes).expect("axes of one order"),
+            materials: vec![material],
+            regime,
+            weighting: Weighting::Mass,
+            gravity: None,
+            boundary: Boundary::default(),
+            stabilisation: Stabilisation::None,
+            background: None,
+            criteria: Criteria { energy: 1e-14, force: 1e-10, max_iterations: 200 },
+            kinematics: PhantomData,
+        };
+        Self { model, points: Points::from_seeds([], regime == Regime::Dynamic) }
+    }
+
+    /// Fills the cells of a box with `per_axis`^D points each, of `density` and with velocity `v(x)`.
+    pub fn body(
+        mut self,
+        cells: [Range<usize>; D],
+        per_axis: usize,
+        density: f64,
+        v: impl Fn(&Vector<D>) -> Vector<D>,
+    ) -> Self {
+        let along: Vec<Vec<(f64, f64)>> = (0..D)
+            .map(|axis| {
+                let knots = &self.model.grid.axes()[axis];
+                let place = |k: usize| {
+                    let (lower, upper) = (knots.breakpoint(k / per_axis), knots.breakpoint(k / per_axis + 1));
+                    let length = (upper - lower) / per_axis as f64;
+                    (lower + ((k % per_axis) as f64 + 0.5) * length, length)
+                };
+                (cells[axis].start * per_axis..cells[axis].end * per_axis).map(place).collect()
+            })
+            .collect();
+        let held = self.points.len() as u64;
+        let total: usize = along.iter().map(Vec::len).product();
+        let seed = |mut index: usize| {
+            let id = held + index as u64;
+            let (mut x, mut volume) = (Vector::zeros(), 1.0);
+            for axis in (0..D).rev() {
+                let (at, length) = along[axis][index % along[axis].len()];
+                index /= along[axis].len();
+                x[axis] = at;
+                volume *= length;
+            }
+            Seed { id, material: 0, x, volume, mass: density * volume, v: v(&x) }
+        };
+        let mut added = Points::from_seeds((0..total).map(seed), self.points.motion.is_some());
+        append(&mut self.points, &mut added);
+        self.points.sort_by_cell(&self.model.grid);
+        self
+    }
+
+    /// Adds a support.
+    pub fn support(mut self, support: Support<D>) -> Self {
+        self.model.boundary.supports.push(support);
+        self
+    }
+
+    /// Rollers at both ends of the axes.
+    pub fn rollers(self, axes: impl IntoIterator<Item = usize>) -> Self {
+        axes.into_iter().fold(self, |scene, axis| {
+            scene.support(Support::roller(axis, false)).support(Support::roller(axis, true))
+        })
+    }
+
+    /// Gravity `g` against the last axis, growing over `ramp`.
+    pub fn gravity(mut self, g: f64, ramp: f64) -> Self {
+        let mut acceleration = Vector::zeros();
+        acceleration[D - 1] = -g;
+        self.model.gravity = Some(Gravity { acceleration, ramp });
+        self
+    }
+
+    /// Another method of section 2.3.
+    pub fn stabilised(mut self, stabilisation: Stabilisation) -> Self {
+        self.model.stabilisation = stabilisation;
+        self
+    }
+
+    /// The halo of one rank.
+    pub fn halo(&self) -> Alone {
+        Alone { nodes: self.model.grid.nodes() }
+    }
+
+    /// Steps to `end` with nominal steps `dt`; `watch` sees the state after every accepted one. Panics on a failure.
+    pub fn march(&mut self, dt: f64, end: f64, mut watch: impl FnMut(&Points<D>, &Accepted)) {
+        let (halo, schedule) = (self.halo(), Schedule::new(dt, end, []));
+        let mut solver = Skyline::new(&self.model.grid);
+        let mut stepper = Stepper::new(self.model.grid.nodes() * D);
+        while let Some(found) = stepper.advance(&schedule, &self.model, &mut self.points, &halo, &mut solver) {
+            let accepted = found.unwrap_or_else(|failure| panic!("{failure:?}"));
+            self.points.sort_by_cell(&self.model.grid);
+            watch(&self.points, &accepted);
+        }
+    }
+
+    /// Steps to `end`, and hands back the scene and its accepted steps.
+    pub fn solved(mut self, dt: f64, end: f64) -> (Self, Vec<Accepted>) {
+        let mut steps = Vec::new();
+        self.march(dt, end, |_, accepted| steps.push(accepted.clone()));
+        (self, steps)
+    }
+}
+
+/// Moves the rows of `from` to the end of `to`.
+fn append<const D: usize>(to: &mut Points<D>, from: &mut Points<D>) {
+    let rows = from.len();
+    for (to, from) in to.columns().into_iter().zip(from.columns()) {
+        let mut message = Vec::new();
+        (0..rows).for_each(|p| from.put(p, &mut message));
+        let mut rest = message.as_slice();
+        (0..rows).for_each(|_| to.take(&mut rest));
+    }
+}
+
+/// Indices of the points in the order of their ids.
+pub fn by_id<const D: usize>(points: &Points<D>) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..points.len()).collect();
+    order.sort_by_key(|&p| points.id[p]);
+    order
+}
+
+/// Volume-weighted root mean square.
+pub fn rms<const D: usize>(points: &Points<D>, value: impl Fn(usize) -> f64) -> f64 {
+    let sum: f64 = (0..points.len()).map(|p| points.volume[p] * value(p).powi(2)).sum();
+    (sum / points.volume.iter().sum::<f64>()).sqrt()
+}

@@ -1,0 +1,148 @@
+//! Test doubles of the linear solver for one rank, so that the physics is tested without MPI and PETSc.
+
+use bsmpm::error::SolveError;
+use bsmpm::grid::Grid;
+use bsmpm::seam::LinearSolver;
+
+/// Direct solver: L D L^T within the profile of the lower triangle. Without square roots its rounding does not depend
+/// on the unit of stiffness. Refuses a matrix that is not positive definite.
+#[derive(Clone, Debug)]
+pub struct Skyline {
+    components: usize,
+    offsets: Vec<usize>,
+    number: Vec<Option<usize>>, // of the unknown, per nodal component
+    first: Vec<usize>,          // first column of each row's profile
+    entries: Vec<f64>,          // row-major square: the matrix, then L below the diagonal and D on it
+}
+
+impl Skyline {
+    /// For the systems of `grid`.
+    pub fn new<const D: usize>(grid: &Grid<D>) -> Self {
+        Self::of_patches(D, grid.offsets())
+    }
+
+    /// For patches whose nodes stand at `offsets` from their first one, with `components` unknowns a node.
+    pub fn of_patches(components: usize, offsets: Vec<usize>) -> Self {
+        Self { components, offsets, number: Vec::new(), first: Vec::new(), entries: Vec::new() }
+    }
+
+    fn size(&self) -> usize {
+        self.first.len()
+    }
+
+    fn add_entry(&mut self, row: usize, column: usize, value: f64) {
+        if column <= row {
+            let at = row * self.size() + column;
+            self.first[row] = self.first[row].min(column);
+            self.entries[at] += value;
+        }
+    }
+}
+
+impl LinearSolver for Skyline {
+    fn begin(&mut self, free: &[bool]) {
+        let mut count = 0;
+        let numbered = free.iter().map(|&free| {
+            count += usize::from(free);
+            free.then(|| count - 1)
+        });
+        self.number = numbered.collect();
+        self.first = (0..count).collect();
+        self.entries = vec![0.0; count * count];
+    }
+
+    fn add(&mut self, first_node: usize, block: &[f64]) {
+        let components = self.components;
+        let of_node = |&offset: &usize| (0..components).map(move |c| (first_node + offset) * components + c);
+        let unknowns: Vec<_> = self.offsets.iter().flat_map(of_node).map(|c| self.number[c]).collect();
+        for (row, values) in unknowns.iter().zip(block.chunks_exact(unknowns.len())) {
+            for (column, value) in unknowns.iter().zip(values) {
+                if let (Some(row), Some(column)) = (row, column) {
+                    self.add_entry(*row, *column, *value);
+                }
+            }
+        }
+    }
+
+    fn add_diagonal(&mut self, diagonal: &[f64]) {
+        for (component, value) in diagonal.iter().enumerate() {
+            if let Some(row) = self.number[component] {
+                self.add_entry(row, row, *value);
+            }
+        }
+    }
+
+    fn finish(&mut self) -> Result<(), SolveError> {
+        let n = self.size();
+        for i in 0..n {
+            let (above, below) = self.entries.split_at_mut(i * n);
+            let (row, first) = (&mut below[..=i], self.first[i]);
+            for j in first..i {
+                let from = first.max(self.first[j]);
+                let lower = &above[j * n + from..j * n + j];
+                row[j] -= row[from..j].iter().zip(lower).map(|(u, l)| u * l).sum::<f64>();
+            }
+            for j in first..i {
+                let factor = row[j] / above[j * n + j];
+                row[i] -= factor * row[j];
+                row[j] = factor;
+            }
+            if row[i].is_nan() || row[i] <= 0.0 {
+                return Err(SolveError::Failed(format!("pivot {:e} of unknown {i} of {n}", row[i])));
+            }
+        }
+        Ok(())
+    }
+
+    fn solve(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<usize, SolveError> {
+        let n = self.size();
+        let pick = |(number, value): (&Option<usize>, &f64)| number.map(|_| *value);
+        let mut x: Vec<f64> = self.number.iter().zip(rhs).filter_map(pick).collect();
+        for i in 0..n {
+            let row = &self.entries[i * n + self.first[i]..i * n + i];
+            x[i] -= row.iter().zip(&x[self.first[i]..i]).map(|(l, x)| l * x).sum::<f64>();
+        }
+        for (i, x) in x.iter_mut().enumerate() {
+            *x /= self.entries[i * n + i];
+        }
+        for i in (0..n).rev() {
+            let (row, value) = (&self.entries[i * n + self.first[i]..i * n + i], x[i]);
+            x[self.first[i]..i].iter_mut().zip(row).for_each(|(x, l)| *x -= l * value);
+        }
+        for (number, value) in self.number.iter().zip(solution) {
+            *value = number.map_or(0.0, |i| x[i]);
+        }
+        Ok(1)
+    }
+}
+
+/// A solver that refuses to factorise a number of times before it works: steps fail on demand.
+#[derive(Clone, Debug)]
+pub struct Reluctant {
+    /// The solver behind it.
+    pub solver: Skyline,
+    /// Factorisations that it still refuses.
+    pub refusals: usize,
+}
+
+impl LinearSolver for Reluctant {
+    fn begin(&mut self, free: &[bool]) {
+        self.solver.begin(free);
+    }
+    fn add(&mut self, first_node: usize, block: &[f64]) {
+        self.solver.add(first_node, block);
+    }
+    fn add_diagonal(&mut self, diagonal: &[f64]) {
+        self.solver.add_diagonal(diagonal);
+    }
+    fn finish(&mut self) -> Result<(), SolveError> {
+        if self.refusals == 0 {
+            return self.solver.finish();
+        }
+        self.refusals -= 1;
+        Err(SolveError::Failed("refused by the test".into()))
+    }
+    fn solve(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<usize, SolveError> {
+        self.solver.solve(rhs, solution)
+    }
+}

@@ -1,0 +1,275 @@
+//! Linear solvers: a Krylov method with its preconditioner, or a factorisation (method `preonly`).
+
+use std::ptr;
+
+use crate::error::{Error, Result, c_string, check, int, same_length, text};
+use crate::ffi;
+use crate::matrix::Matrix;
+use crate::petsc::Petsc;
+use crate::vector::Vector;
+
+/// When an iteration ends: |r| <= max(relative |b|, absolute), or too many iterations (an `Err`).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tolerances {
+    /// of the norm of the right-hand side
+    pub relative: f64,
+    /// of the residual itself
+    pub absolute: f64,
+    /// most iterations
+    pub max_iterations: usize,
+}
+
+/// The norm of the residual r that the convergence test sees, with preconditioner B.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum NormType {
+    /// none: a fixed number of iterations
+    None,
+    /// |B r|, which may be far from the true residual
+    Preconditioned,
+    /// |r|
+    Unpreconditioned,
+    /// sqrt(r . B r), of conjugate gradients
+    Natural,
+}
+
+/// How a solve ended well.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct SolveInfo {
+    /// KSPConvergedReason, > 0
+    pub reason: i32,
+    /// iterations done, 1 for a factorisation
+    pub iterations: usize,
+}
+
+/// A linear solver.
+pub struct Ksp<'p> {
+    petsc: &'p Petsc<'p>,
+    raw: ffi::KSP,
+    /// of the operator, None before there is one
+    local_rows: Option<usize>,
+}
+
+impl<'p> Ksp<'p> {
+    /// A solver without an operator, of PETSc's default method. Collective.
+    pub fn new(petsc: &'p Petsc) -> Result<Self> {
+        let mut raw = ptr::null_mut();
+        // SAFETY: PETSc runs; the pointer is valid.
+        check(unsafe { ffi::KSPCreate(petsc.comm(), &mut raw) })?;
+        Ok(Self { petsc, raw, local_rows: None })
+    }
+
+    /// Solves with `matrix` from now on, and builds the preconditioner from it. PETSc shares the
+    /// matrix: new values in it are seen by the next solve. Collective.
+    pub fn set_operator(&mut self, matrix: &Matrix<'p>) -> Result<()> {
+        // SAFETY: both handles are valid; PETSc takes a reference of its own.
+        check(unsafe { ffi::KSPSetOperators(self.raw, matrix.raw(), matrix.raw()) })?;
+        self.local_rows = Some(matrix.local_rows());
+        Ok(())
+    }
+
+    /// The method, e.g. `cg`, or `preonly` for a factorisation. Collective.
+    pub fn set_type(&mut self, name: &str) -> Result<()> {
+        let name = c_string(name)?;
+        // SAFETY: the handle is valid; the text is copied.
+        check(unsafe { ffi::KSPSetType(self.raw, name.as_ptr()) })
+    }
+
+    /// The preconditioner, e.g. `cholesky`, `icc`, `gamg`. Collective.
+    pub fn set_pc_type(&mut self, name: &str) -> Result<()> {
+        let name = c_string(name)?;
+        // SAFETY: the handle is valid; the text is copied.
+        check(unsafe { ffi::PCSetType(self.pc()?, name.as_ptr()) })
+    }
+
+    /// The package that factorises, e.g. `mumps`, `petsc`, `cholmod`; after [`Ksp::set_pc_type`] has
+    /// chosen a factorisation, else `Unsupported`. Whether PETSc has the package shows in
+    /// [`Ksp::set_up`]. Collective.
+    pub fn set_factor_solver(&mut self, name: &str) -> Result<()> {
+        let (name, pc) = (c_string(name)?, self.pc()?);
+        let mut taken = ptr::null();
+        // SAFETY: the handle is valid; the text is copied.
+        check(unsafe { ffi::PCFactorSetMatSolverType(pc, name.as_ptr()) })?;
+        // SAFETY: the handle and the pointer are valid.
+        check(unsafe { ffi::PCFactorGetMatSolverType(pc, &mut taken) })?;
+        // SAFETY: null or a text of PETSc.
+        if unsafe { text(taken) }.as_bytes() != name.as_bytes() {
+            return Err(Error::Unsupported("the preconditioner is no factorisation"));
+        }
+        Ok(())
+    }
+
+    /// Text put before the names of this solver's options: `flow_` makes it read `-flow_ksp_type`.
+    pub fn set_options_prefix(&mut self, prefix: &str) -> Result<()> {
+        let prefix = c_string(prefix)?;
+        // SAFETY: the handle is valid; the text is copied.
+        check(unsafe { ffi::KSPSetOptionsPrefix(self.raw, prefix.as_ptr()) })
+    }
+
+    /// Reads the options database; it overrules what was set before. After
+    /// [`Ksp::set_operator`]. Collective.
+    pub fn set_from_options(&mut self) -> Result<()> {
+        // SAFETY: the handle is valid.
+        check(unsafe { ffi::KSPSetFromOptions(self.raw) })
+    }
+
+    /// When an iteration ends. Collective.
+    pub fn set_tolerances(&mut self, tolerances: Tolerances) -> Result<()> {
+        let most = int("max_iterations", tolerances.max_iterations)?;
+        let (relative, absolute) = (tolerances.relative, tolerances.absolute);
+        let (mut divergence, none) = (0.0, ptr::null_mut());
+        // SAFETY: the handle is valid; null pointers are not filled.
+        check(unsafe { ffi::KSPGetTolerances(self.raw, none, none, &mut divergence, ptr::null_mut()) })?;
+        // SAFETY: the handle is valid; PETSc checks the numbers.
+        check(unsafe { ffi::KSPSetTolerances(self.raw, relative, absolute, divergence, most) })
+    }
+
+    /// The norm of the convergence test; not every method has all of them. Collective.
+    pub fn set_norm(&mut self, norm: NormType) -> Result<()> {
+        let norm = match norm {
+            NormType::None => ffi::KSP_NORM_NONE,
+            NormType::Preconditioned => ffi::KSP_NORM_PRECONDITIONED,
+            NormType::Unpreconditioned => ffi::KSP_NORM_UNPRECONDITIONED,
+            NormType::Natural => ffi::KSP_NORM_NATURAL,
+        };
+        // SAFETY: the handle is valid.
+        check(unsafe { ffi::KSPSetNormType(self.raw, norm) })
+    }
+
+    /// Whether `x` enters [`Ksp::solve`] as the first guess, instead of zero. Collective.
+    pub fn set_initial_guess_nonzero(&mut self, nonzero: bool) -> Result<()> {
+        // SAFETY: the handle is valid.
+        check(unsafe { ffi::KSPSetInitialGuessNonzero(self.raw, ffi::PetscBool::from(nonzero)) })
+    }
+
+    /// Whether the preconditioner or factor is kept when the matrix gets new values. Collective.
+    pub fn set_reuse_preconditioner(&mut self, reuse: bool) -> Result<()> {
+        // SAFETY: the handle is valid.
+        check(unsafe { ffi::KSPSetReusePreconditioner(self.raw, ffi::PetscBool::from(reuse)) })
+    }
+
+    /// Builds the preconditioner or factor now, instead of in the next solve; a factor that fails,
+    /// for instance at a zero pivot, is [`Error::Diverged`]. Collective.
+    pub fn set_up(&mut self) -> Result<()> {
+        self.operator_rows()?;
+        let pc = self.pc()?;
+        // SAFETY: the handles are valid and have an operator. The PC is asked besides the KSP, which
+        // after its first time would leave new values of the matrix to the solve.
+        let built = check(unsafe { ffi::KSPSetUp(self.raw) })
+            .and_then(|()| check(unsafe { ffi::PCSetUp(pc) }))
+            .and_then(|()| check(unsafe { ffi::KSPSetUpOnBlocks(self.raw) }));
+        let outcome = built.and_then(|()| match self.factor_failure()? {
+            Some(failure) => Err(self.diverged(ffi::KSP_DIVERGED_PC_FAILED, failure, 0)),
+            None => Ok(()),
+        });
+        self.conclude(outcome)
+    }
+
+    /// Solves A x = b, with [`Ksp::set_up`] before it. Collective.
+    ///
+    /// `Ok` is PETSc's word only: a factorisation reports success also for a right-hand side with
+    /// NaN and for a singular matrix whose pivots rounding has hidden. The caller checks that `x` is
+    /// finite and [`Matrix::residual`] small.
+    pub fn solve(&mut self, b: &Vector, x: &mut Vector) -> Result<SolveInfo> {
+        let rows = self.operator_rows()?;
+        let checked = same_length("right-hand side", b.local_len(), rows)
+            .and_then(|()| same_length("solution", x.local_len(), rows));
+        self.petsc.agree(checked)?;
+        // A failed factor must not be applied: PETSc would try.
+        self.set_up()?;
+        // SAFETY: the handles are valid; the vectors have the operator's layout and are distinct.
+        let outcome = check(unsafe { ffi::KSPSolve(self.raw, b.raw(), x.raw()) }).and_then(|()| self.verdict());
+        self.petsc.agree(outcome)
+    }
+
+    /// How the solve that has just returned ended.
+    fn verdict(&self) -> Result<SolveInfo> {
+        let (mut reason, mut count) = (0, 0);
+        // SAFETY: the handle and the pointers are valid.
+        check(unsafe { ffi::KSPGetConvergedReason(self.raw, &mut reason) })?;
+        // SAFETY: as above.
+        check(unsafe { ffi::KSPGetIterationNumber(self.raw, &mut count) })?;
+        let iterations = usize::try_from(count).unwrap_or(0);
+        match self.factor_failure()? {
+            Some(failure) => Err(self.diverged(ffi::KSP_DIVERGED_PC_FAILED, failure, iterations)),
+            None if reason > 0 => Ok(SolveInfo { reason, iterations }),
+            None => Err(self.diverged(reason, "", iterations)),
+        }
+    }
+
+    /// The outcome of this rank, agreed with the others; a preconditioner that failed is dropped.
+    fn conclude<T>(&mut self, outcome: Result<T>) -> Result<T> {
+        let broken = match &outcome {
+            Ok(_) => false,
+            Err(Error::Diverged { reason, .. }) => *reason == ffi::KSP_DIVERGED_PC_FAILED,
+            Err(_) => true,
+        };
+        if self.petsc.any(broken) {
+            // The error that led here says more than one of the cleaning up would.
+            let _ = self.forget_factor();
+        }
+        self.petsc.agree(outcome)
+    }
+
+    fn diverged(&self, reason: i32, failure: &str, iterations: usize) -> Error {
+        if reason == ffi::KSP_DIVERGED_PC_FAILED {
+            return Error::Diverged {
+                reason,
+                name: format!("DIVERGED_PC_FAILED {failure}").trim_end().to_owned(),
+                iterations,
+            };
+        }
+        let mut name = ptr::null();
+        // SAFETY: the handle and the pointer are valid; PETSc's text is constant.
+        let known = check(unsafe { ffi::KSPGetConvergedReasonString(self.raw, &mut name) });
+        // SAFETY: null or a text of PETSc.
+        let name = known.map(|()| unsafe { text(name) }).unwrap_or_default();
+        Error::Diverged { reason, name, iterations }
+    }
+
+    /// Why the preconditioner or factor cannot be used, if it cannot.
+    fn factor_failure(&self) -> Result<Option<&'static str>> {
+        let mut failure = ffi::PC_NOERROR;
+        // SAFETY: the handle and the pointer are valid.
+        check(unsafe { ffi::PCGetFailedReason(self.pc()?, &mut failure) })?;
+        Ok(match failure {
+            ffi::PC_NOERROR => None,
+            ffi::PC_FACTOR_STRUCT_ZEROPIVOT => Some("(structurally zero pivot)"),
+            ffi::PC_FACTOR_NUMERIC_ZEROPIVOT => Some("(zero pivot)"),
+            ffi::PC_FACTOR_OUTMEMORY => Some("(factor out of memory)"),
+            _ => Some("(factor or preconditioner failed)"),
+        })
+    }
+
+    /// Drops a factor that failed: PETSc would keep it, failed, for later values of the matrix.
+    fn forget_factor(&mut self) -> Result<()> {
+        let (pc, mut matrix) = (self.pc()?, ptr::null_mut());
+        // SAFETY: the handle and the pointer are valid; the matrix stays PETSc's.
+        check(unsafe { ffi::KSPGetOperators(self.raw, ptr::null_mut(), &mut matrix) })?;
+        // SAFETY: a matrix is a PetscObject; this reference outlives the PC's, which ends next.
+        check(unsafe { ffi::PetscObjectReference(matrix.cast()) })?;
+        // SAFETY: the handles are valid; the reference taken above is given back at the end.
+        check(unsafe { ffi::PCReset(pc) })
+            .and_then(|()| check(unsafe { ffi::PCSetFailedReason(pc, ffi::PC_NOERROR) }))
+            .and_then(|()| check(unsafe { ffi::KSPSetOperators(self.raw, matrix, matrix) }))
+            .and(check(unsafe { ffi::MatDestroy(&mut matrix) }))
+    }
+
+    fn pc(&self) -> Result<ffi::PC> {
+        let mut pc = ptr::null_mut();
+        // SAFETY: the handle and the pointer are valid; the PC is the KSP's own.
+        check(unsafe { ffi::KSPGetPC(self.raw, &mut pc) })?;
+        Ok(pc)
+    }
+
+    fn operator_rows(&self) -> Result<usize> {
+        let missing = Error::Unsupported("a solve before set_operator");
+        self.local_rows.ok_or(missing)
+    }
+}
+
+impl Drop for Ksp<'_> {
+    fn drop(&mut self) {
+        // SAFETY: PETSc runs (borrowed); the handle is valid, and not used again.
+        let _ = check(unsafe { ffi::KSPDestroy(&mut self.raw) });
+    }
+}

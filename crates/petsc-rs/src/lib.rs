@@ -1,0 +1,56 @@
+//! A small, safe binding of PETSc: distributed vectors, sparse matrices and Krylov or direct
+//! solvers, as owned handles whose errors are values.
+//!
+//! PETSc neither prints nor aborts: its errors become [`Error`]. A call marked *collective* is made
+//! by every rank, in the same order, and when one rank's arguments are refused every rank gets an
+//! `Err` ([`Error::OtherRank`] where its own were good), so that no rank waits for another. A call
+//! not marked so is local.
+//!
+//! ```no_run
+//! # fn main() -> petsc_rs::Result<()> {
+//! use petsc_rs::{Ksp, Matrix, Petsc, Vector};
+//! let universe = mpi::initialize().expect("MPI starts once");
+//! let petsc = Petsc::initialize(&universe, &["-ksp_type", "cg"])?;
+//! let mut matrix = Matrix::from_coo(&petsc, 2, 1, &[0, 1], &[0, 1])?; // on one rank
+//! matrix.set_values(&[2.0, 4.0])?;
+//! let mut b = Vector::new(&petsc, 2)?;
+//! b.copy_from(&[2.0, 2.0])?;
+//! let mut x = Vector::new(&petsc, 2)?;
+//! let mut ksp = Ksp::new(&petsc)?;
+//! ksp.set_operator(&matrix)?;
+//! ksp.set_from_options()?;
+//! let info = ksp.solve(&b, &mut x)?;
+//! assert!(info.iterations <= 2);
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! It needs a PETSc >= 3.18 of real, double scalars; indices may have 32 or 64 bits. A PETSc outside
+//! the loader's directories needs `LD_LIBRARY_PATH` at run time.
+
+mod error;
+mod ksp;
+mod matrix;
+mod options;
+mod petsc;
+mod vector;
+
+pub use error::{Error, Result};
+pub use ksp::{Ksp, NormType, SolveInfo, Tolerances};
+pub use matrix::{Matrix, Symmetry};
+pub use petsc::{Petsc, petsc_int_bits, version};
+pub use vector::Vector;
+
+/// What bindgen made of PETSc's headers.
+#[allow(
+    missing_docs,
+    dead_code,
+    non_camel_case_types,
+    non_snake_case,
+    non_upper_case_globals,
+    clippy::all,
+    clippy::undocumented_unsafe_blocks
+)]
+mod ffi {
+    include!(concat!(env!("OUT_DIR"), "/bindings.rs"));
+}
