@@ -145,13 +145,15 @@ impl Manifest {
     pub(crate) fn write_first(&self, directory: &Path) -> Result<(), Error> {
         let path = directory.join(MANIFEST);
         self.check(&path)?;
-        let write = || {
-            let mut file = File::create_new(&path)?;
-            let mut text = Vec::new();
-            self.print(&mut text)?;
-            file.write_all(&text)
-        };
-        write().map_err(|source| Error::Directory { action: "claim", path: directory.to_owned(), source })
+        let refused = |source| Error::Directory { action: "claim", path: directory.to_owned(), source };
+        let mut file = File::create_new(&path).map_err(refused)?;
+        let mut text = Vec::new();
+        let written = self.print(&mut text).and_then(|()| file.write_all(&text));
+        written.map_err(|source| {
+            // It is ours, and half of it would only block the directory.
+            let _ = fs::remove_file(&path);
+            refused(source)
+        })
     }
 
     fn print(&self, file: &mut impl Write) -> io::Result<()> {

@@ -1,5 +1,9 @@
 //! A valid case: all numbers in SI and within their ranges, angles in radians.
 
+mod history;
+
+pub use history::{Check, Column, Face, History, Quantity};
+
 use crate::document;
 use crate::error::Error;
 use crate::grid::GridSpec;
@@ -62,7 +66,7 @@ impl Case {
     /// # Errors
     /// As [`Case::from_text`]; also if the bytes are too many, binary, UTF-16 or no UTF-8.
     pub fn from_bytes(name: &str, bytes: &[u8], overrides: &[String]) -> Result<Self, Vec<Error>> {
-        let text = decode(name, bytes).map_err(|error| vec![error])?;
+        let text = decode(name, bytes)?;
         let source = Source::new(name, text);
         let mut report = Report::new(&source, overrides);
         let mut document = document::parse(&source, &mut report);
@@ -214,125 +218,6 @@ pub enum Format {
     /// One `.vtu` per frame and a `.pvd`.
     #[default]
     Vtu,
-}
-
-/// A quantity that is recorded every step.
-#[derive(Clone, Debug, PartialEq)]
-pub struct History {
-    /// What is recorded.
-    pub quantity: Quantity,
-    /// Name of the column, or beginning of the columns' names.
-    pub name: String,
-    /// -  multiplies
-    pub scale: f64,
-}
-
-/// What a history records.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Quantity {
-    /// m  the x that `percentile` per cent of the points do not exceed
-    Runout {
-        /// %  100: the farthest point
-        percentile: f64,
-    },
-    /// m  the farthest x in a cell of the lowest occupied row that is at least half filled
-    Front,
-    /// m  the largest y of any point
-    Height,
-    /// m  the largest displacement of any point
-    MaxDisplacement,
-    /// kg/m  of all points
-    Mass,
-    /// kg/s  of all points, per metre of thickness (kg m/s per m)
-    Momentum,
-    /// N/m  force of a face's supports on the body
-    Reaction {
-        /// The face.
-        face: Face,
-    },
-    /// m  of the point nearest to `at` at the start
-    Displacement {
-        /// m  in the case's coordinates
-        at: [f64; 2],
-    },
-    /// m/s  of the point nearest to `at` at the start
-    Velocity {
-        /// m  in the case's coordinates
-        at: [f64; 2],
-    },
-    /// Pa  Cauchy stress of the point nearest to `at` at the start
-    Stress {
-        /// m  in the case's coordinates
-        at: [f64; 2],
-    },
-    /// -  oscillation of sigma_yy about its average over the grid and about a plane
-    StressNoise,
-}
-
-/// A face of the grid.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Face {
-    /// axis that it is normal to
-    pub axis: usize,
-    /// the face at the axis' upper end
-    pub upper: bool,
-}
-
-/// One column of the history file.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Column {
-    /// Its name.
-    pub name: String,
-    /// Unit of its numbers; `scaled UNIT` where a scale multiplies.
-    pub unit: String,
-}
-
-impl Quantity {
-    /// What a column's name gets appended, in the order of the numbers; one empty text for a scalar.
-    pub fn suffixes(&self) -> &'static [&'static str] {
-        match self {
-            Self::Momentum | Self::Reaction { .. } | Self::Displacement { .. } | Self::Velocity { .. } => &["-x", "-y"],
-            Self::Stress { .. } => &["-xx", "-yy", "-zz", "-xy"],
-            Self::StressNoise => &["-average", "-plane"],
-            _ => &[""],
-        }
-    }
-
-    /// Unit of its numbers.
-    pub fn unit(&self) -> &'static str {
-        match self {
-            Self::Runout { .. } | Self::Front | Self::Height | Self::MaxDisplacement | Self::Displacement { .. } => "m",
-            Self::Mass => "kg/m",
-            Self::Momentum => "kg/s",
-            Self::Reaction { .. } => "N/m",
-            Self::Velocity { .. } => "m/s",
-            Self::Stress { .. } => "Pa",
-            Self::StressNoise => "-",
-        }
-    }
-}
-
-impl History {
-    /// Its columns in the history file.
-    pub fn columns(&self) -> Vec<Column> {
-        let unit = self.quantity.unit();
-        let unit = if self.scale == 1.0 { unit.to_owned() } else { format!("scaled {unit}") };
-        let column = |suffix: &&str| Column { name: format!("{}{suffix}", self.name), unit: unit.clone() };
-        self.quantity.suffixes().iter().map(column).collect()
-    }
-}
-
-/// Bounds of a history column at a time.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Check {
-    /// Name of the column.
-    pub quantity: String,
-    /// s (quasi-static: pseudo-time)  within (0, end]; hit exactly
-    pub at: f64,
-    /// Least value, in the column's unit.
-    pub min: Option<f64>,
-    /// Largest value, in the column's unit.
-    pub max: Option<f64>,
 }
 
 /// Something that the program chose by itself, for the manifest.

@@ -119,8 +119,10 @@ fn convert(value: &DeValue<'_>, place: &Placing<'_>) -> Value {
         DeValue::Boolean(flag) => Value::Flag(*flag),
         DeValue::Datetime(date) => Value::Date(date.to_string()),
         DeValue::Array(list) => {
-            let node =
-                |item: &toml::Spanned<DeValue<'_>>| Node { origin: place(item.span()), value: convert(item.get_ref(), place) };
+            let node = |item: &toml::Spanned<DeValue<'_>>| Node {
+                origin: place(item.span()),
+                value: convert(item.get_ref(), place),
+            };
             Value::List(list.iter().map(node).collect())
         }
         DeValue::Table(table) => Value::Table(entries(table, place)),

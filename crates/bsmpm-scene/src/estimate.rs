@@ -8,9 +8,9 @@ pub(crate) const MOST_UNKNOWNS: u128 = i32::MAX as u128;
 /// Largest number of points: they are sorted by 32-bit numbers.
 pub(crate) const MOST_POINTS: u128 = u32::MAX as u128;
 
-/// Bytes of a point: its state, its trial state and its shape functions.
+/// Bytes of a point, assumed: its state (about 270), its trial state and its shape functions.
 const POINT: u128 = 800;
-/// Bytes of a node: about a dozen vectors of two doubles.
+/// Bytes of a node, assumed: about a dozen vectors of two doubles.
 const NODE: u128 = 200;
 /// Bytes of an entry of the stiffness: value, column, and the place it is summed at.
 const ENTRY: u128 = 20;
@@ -26,7 +26,8 @@ pub struct Estimate {
     pub unknowns: u64,
     /// Material points.
     pub points: u64,
-    /// Memory of all ranks together, bytes: points, nodes, stiffness and its factor; right within a factor of two.
+    /// Memory of all ranks together, bytes: points, nodes, stiffness and its factor. A rough figure from
+    /// assumed sizes, not yet compared with a run.
     pub bytes: u64,
 }
 
@@ -38,7 +39,7 @@ impl Case {
         let support = 2 * (2 * self.grid.order as u128 + 1).pow(2);
         let occupied = occupied_nodes(self).min(nodes);
         let entries = 2 * occupied * support;
-        // Nested dissection in two dimensions: entries of the factor grow as n log n; measured about 3 at n = 2e4.
+        // Nested dissection in two dimensions: entries of the factor grow as n log n; the 5 is an assumption.
         let levels = u128::from((2 * occupied).max(2).ilog2());
         let factor = if self.solver.linear.factor.is_some() { 2 * occupied * 8 * 5 * levels } else { entries * 12 };
         let bytes = points * POINT + nodes * NODE + entries * ENTRY + factor;

@@ -1,6 +1,6 @@
 //! What to solve: a TOML case file, read strictly, becomes a valid [`Case`] in SI units and its material points.
 //!
-//! The way of a case: bytes ([`decode`]) -> the document as written, with every value's place -> overrides
+//! The way of a case: bytes ([`load`]) -> the document as written, with every value's place -> overrides
 //! (`--set KEY=VALUE`) -> the document held against the [`schema`]: names, types, units, ranges -> the rules between
 //! keys -> [`Case`]. All errors of a file are reported at once; nothing is used differently from how it was written.
 //! This crate knows no MPI, writes nothing and allocates nothing in proportion to a number that a case gives.
@@ -26,11 +26,11 @@ pub use bsmpm::background::Extent;
 pub use bsmpm::model::Regime;
 pub use bsmpm::points::Seed;
 pub use case::{
-    Analysis, Body, Case, Check, Choice, Column, Every, Face, Format, Geometry, Gravity, History, Linear, NamedMaterial,
-    Nonlinear, Output, Quantity, Solver, Support,
+    Analysis, Body, Case, Check, Choice, Column, Every, Face, Format, Geometry, Gravity, History, Linear,
+    NamedMaterial, Nonlinear, Output, Quantity, Solver, Support,
 };
 pub use error::{Error, Place};
 pub use estimate::Estimate;
 pub use grid::{Axis, GridSpec};
 pub use seed::seed;
-pub use source::{MAX_BYTES, decode, load};
+pub use source::{MAX_BYTES, load};

@@ -80,7 +80,9 @@ impl Setting<'_> {
     /// In a table whose keys are names of the author's choice.
     fn in_named(&mut self, named: &mut Table, schema: &'static Schema, depth: usize) -> Result<(), String> {
         let name = self.parts[depth];
-        if depth + 1 < self.parts.len() && let Some(entry) = named.get_mut(name) {
+        if depth + 1 < self.parts.len()
+            && let Some(entry) = named.get_mut(name)
+        {
             return self.in_value(&mut entry.node, Some(schema), depth + 1);
         }
         self.in_table(named, None, depth)

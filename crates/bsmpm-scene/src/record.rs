@@ -53,7 +53,8 @@ pub(crate) fn read(document: &document::Table, report: &mut Report<'_>) -> Recor
         Value::Table(analysis) => analysis.get("type"),
         _ => None,
     });
-    let pseudo_time = kind.is_some_and(|entry| matches!(&entry.node.value, Value::Text(text) if text == "quasi-static"));
+    let pseudo_time =
+        kind.is_some_and(|entry| matches!(&entry.node.value, Value::Text(text) if text == "quasi-static"));
     Context { pseudo_time }.record(&ROOT, document, Origin::Nowhere, "", report)
 }
 
@@ -66,9 +67,7 @@ impl Context {
         path: &str,
         report: &mut Report<'_>,
     ) -> Record {
-        for entry in written.entries.iter().filter(|entry| table.key(&entry.key).is_none()) {
-            report.error(entry.origin, &join(path, &entry.key), unknown(table, &entry.key));
-        }
+        unknown_keys(table, written, path, report);
         let mut record = Record { path: path.to_owned(), origin, fields: Vec::new() };
         for key in table.keys {
             let path = join(path, key.name);
@@ -95,7 +94,13 @@ impl Context {
         record
     }
 
-    fn default(self, kind: &Kind, text: &str, (origin, path): (Origin, &str), report: &mut Report<'_>) -> Option<Datum> {
+    fn default(
+        self,
+        kind: &Kind,
+        text: &str,
+        (origin, path): (Origin, &str),
+        report: &mut Report<'_>,
+    ) -> Option<Datum> {
         let Ok(node) = document::parse_value(text, origin) else {
             report.error(origin, path, format!("the default {text} is no TOML: a mistake of the program"));
             return None;
@@ -149,7 +154,11 @@ impl Context {
             match &item.value {
                 Value::Table(written) => records.push(self.record(table, written, item.origin, &path, report)),
                 _ => {
-                    report.error(item.origin, &path, format!("expected a table, {}, found {}", table.header, item.show()));
+                    report.error(
+                        item.origin,
+                        &path,
+                        format!("expected a table, {}, found {}", table.header, item.show()),
+                    );
                 }
             }
         }
@@ -161,7 +170,19 @@ fn join(path: &str, key: &str) -> String {
     if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") }
 }
 
-fn unknown(table: &'static Table, key: &str) -> String {
+fn unknown_keys(table: &'static Table, written: &document::Table, path: &str, report: &mut Report<'_>) {
+    const SHOWN: usize = 50;
+    let mut unknown = written.entries.iter().filter(|entry| table.key(&entry.key).is_none());
+    for entry in unknown.by_ref().take(SHOWN) {
+        report.error(entry.origin, &join(path, &entry.key), unknown_key(table, &entry.key));
+    }
+    if let Some(entry) = unknown.next() {
+        let message = format!("{} more unknown keys from here on", unknown.count() + 1);
+        report.error(entry.origin, path, message);
+    }
+}
+
+fn unknown_key(table: &'static Table, key: &str) -> String {
     let names = || table.keys.iter().map(|key| key.name);
     let elsewhere = || ROOT.all().into_iter().find(|other| other.key(key).is_some());
     let hint = match (nearest(key, names()), elsewhere()) {

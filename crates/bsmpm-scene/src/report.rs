@@ -54,7 +54,8 @@ impl<'a> Report<'a> {
     pub(crate) fn into_errors(mut self) -> Vec<Error> {
         self.errors.sort_by_key(|(origin, _)| *origin);
         let mut seen = HashSet::new();
-        let once = |error: &Error| seen.insert((format!("{:?}", error.place), error.key.clone(), error.message.clone()));
+        let once =
+            |error: &Error| seen.insert((format!("{:?}", error.place), error.key.clone(), error.message.clone()));
         let mut errors: Vec<Error> = self.errors.into_iter().map(|(_, error)| error).filter(once).collect();
         if errors.len() > MOST {
             let more = errors.len() - MOST;
@@ -84,4 +85,3 @@ pub(crate) fn shortened(text: &str) -> String {
     }
     safe
 }
-

@@ -70,7 +70,12 @@ pub fn seed(case: &Case, columns: Range<usize>) -> impl Iterator<Item = Seed<2>>
     })
 }
 
-fn of_body<'a>(case: &'a Case, body: &'a Body, first_id: u64, columns: Range<usize>) -> impl Iterator<Item = Seed<2>> + 'a {
+fn of_body<'a>(
+    case: &'a Case,
+    body: &'a Body,
+    first_id: u64,
+    columns: Range<usize>,
+) -> impl Iterator<Item = Seed<2>> + 'a {
     let [across, up] = body.extents(&case.grid);
     let cells = across.cells.start.max(columns.start)..across.cells.end.min(columns.end);
     cells.flat_map(move |i| {

@@ -10,7 +10,7 @@ pub const MAX_BYTES: usize = 1 << 20;
 /// Characters of a line that an excerpt shows at most.
 const EXCERPT: usize = 100;
 
-/// Bytes of the case file at `path`, at most [`MAX_BYTES`] + 1 of them (what is larger [`decode`] refuses).
+/// Bytes of the case file at `path`, at most [`MAX_BYTES`] + 1 of them (what is larger [`crate::Case::from_bytes`] refuses).
 ///
 /// # Errors
 /// Those of opening and reading; [`io::ErrorKind::InvalidInput`] for a directory, pipe or device, which is not opened.
@@ -23,17 +23,10 @@ pub fn load(path: &Path) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Text of a case file: UTF-8 without its byte order mark.
-///
-/// # Errors
-/// One error if the file is too large, UTF-16, binary or no UTF-8; it says which.
-pub fn decode<'a>(name: &str, bytes: &'a [u8]) -> Result<&'a str, Error> {
-    let whole = |message: String| Error {
-        file: name.to_owned(),
-        place: Place::File,
-        key: String::new(),
-        message,
-        excerpt: None,
+/// Text of a case file: UTF-8 without its byte order mark. One error if it is too large, UTF-16, binary or no UTF-8.
+pub(crate) fn decode<'a>(name: &str, bytes: &'a [u8]) -> Result<&'a str, Vec<Error>> {
+    let whole = |message: String| {
+        vec![Error { file: name.to_owned(), place: Place::File, key: String::new(), message, excerpt: None }]
     };
     if bytes.len() > MAX_BYTES {
         return Err(whole(format!("the file is larger than {MAX_BYTES} bytes, the limit of a case file")));

@@ -37,7 +37,10 @@ enum Worth {
 use Worth::{Radian, Ten, Times};
 
 const UNITS: [(Dimension, &[(&str, Worth)]); 8] = [
-    (Dimension::Length, &[("m", Ten(0)), ("cm", Ten(-2)), ("mm", Ten(-3)), ("um", Ten(-6)), ("nm", Ten(-9)), ("km", Ten(3))]),
+    (
+        Dimension::Length,
+        &[("m", Ten(0)), ("cm", Ten(-2)), ("mm", Ten(-3)), ("um", Ten(-6)), ("nm", Ten(-9)), ("km", Ten(3))],
+    ),
     (
         Dimension::Time,
         &[("s", Ten(0)), ("ms", Ten(-3)), ("us", Ten(-6)), ("ns", Ten(-9)), ("min", Times(60.0)), ("h", Times(3600.0))],
@@ -142,7 +145,9 @@ pub(crate) fn finite(text: &str) -> Result<f64, String> {
     match value {
         _ if value.is_nan() || text.contains("inf") => Err(format!("{written} is no finite number")),
         _ if value.is_infinite() => Err(format!("{written} is too large for a double")),
-        0.0 if mantissa.contains(|c: char| matches!(c, '1'..='9')) => Err(format!("{written} is too small for a double")),
+        0.0 if mantissa.contains(|c: char| matches!(c, '1'..='9')) => {
+            Err(format!("{written} is too small for a double"))
+        }
         _ => Ok(value + 0.0), // -0.0 becomes 0.0
     }
 }

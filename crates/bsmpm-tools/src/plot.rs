@@ -1,5 +1,5 @@
-//! `bsmpm plot`: the pictures of a run. The files of the run are read in [`record`]; every picture has a module; they
-//! share a sheet of paper ([`canvas`]), axes ([`axes`], [`ticks`]), a legend ([`legend`]) and colours ([`colour`]).
+//! `bsmpm plot`: the pictures of a run. The files of the run are read in `record`; every picture has a module; they
+//! share a sheet of paper (`canvas`), axes (`layout`, `axes`, `ticks`), a legend (`legend`) and colours (`colour`).
 
 use std::path::PathBuf;
 
@@ -9,12 +9,14 @@ use clap::Args;
 use crate::Error;
 
 mod axes;
+mod bar;
 mod body;
 mod canvas;
 mod colour;
 mod convergence;
 mod curves;
 mod field;
+mod layout;
 mod legend;
 mod record;
 mod reference;

@@ -178,7 +178,7 @@ impl<'p> Ksp<'p> {
         self.set_up()?;
         // SAFETY: the handles are valid; the vectors have the operator's layout and are distinct.
         let outcome = check(unsafe { ffi::KSPSolve(self.raw, b.raw(), x.raw()) }).and_then(|()| self.verdict());
-        self.petsc.agree(outcome)
+        self.conclude(outcome)
     }
 
     /// How the solve that has just returned ended.

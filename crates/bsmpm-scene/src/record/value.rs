@@ -11,13 +11,7 @@ use crate::unit::{self, Dimension};
 const LONGEST_NAME: usize = 64;
 
 /// The value of `node` as `kind` says; `None` after an error.
-pub(super) fn read(
-    kind: &Kind,
-    node: &Node,
-    path: &str,
-    pseudo_time: bool,
-    report: &mut Report<'_>,
-) -> Option<Datum> {
+pub(super) fn read(kind: &Kind, node: &Node, path: &str, pseudo_time: bool, report: &mut Report<'_>) -> Option<Datum> {
     let name = path.rsplit('.').next().unwrap_or(path);
     let mut reader = Reader { kind, path, name, pseudo_time, report };
     match kind {

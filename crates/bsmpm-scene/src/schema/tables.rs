@@ -190,7 +190,12 @@ static LINEAR: Table = Table {
     header: "linear = { ksp, pc, factor }",
     doc: "The linear solver, by PETSc's own names",
     keys: &[
-        key("ksp", Choice(&["preonly", "cg", "minres", "gmres", "fgmres", "bcgs"], &[]), Default("\"preonly\""), "method"),
+        key(
+            "ksp",
+            Choice(&["preonly", "cg", "minres", "gmres", "fgmres", "bcgs"], &[]),
+            Default("\"preonly\""),
+            "method",
+        ),
         key("pc", PRECONDITIONERS, Default("\"cholesky\""), "preconditioner or direct solver"),
         key("factor", PACKAGES, Optional, "package of a direct solver; mumps unless given"),
     ],
@@ -198,7 +203,22 @@ static LINEAR: Table = Table {
 };
 
 const PRECONDITIONERS: Kind = Choice(
-    &["cholesky", "lu", "redundant", "none", "jacobi", "pbjacobi", "bjacobi", "sor", "asm", "icc", "ilu", "gamg", "ml", "hypre"],
+    &[
+        "cholesky",
+        "lu",
+        "redundant",
+        "none",
+        "jacobi",
+        "pbjacobi",
+        "bjacobi",
+        "sor",
+        "asm",
+        "icc",
+        "ilu",
+        "gamg",
+        "ml",
+        "hypre",
+    ],
     &[],
 );
 const PACKAGES: Kind = Choice(&["mumps", "petsc", "superlu", "superlu_dist", "cholmod", "umfpack"], &[]);
@@ -233,8 +253,17 @@ static HISTORY: Table = Table {
 const PERCENT: Range = Range::of(Excluded(0.0), Included(100.0));
 const QUANTITY: Kind = Choice(
     &[
-        "runout", "front", "height", "max-displacement", "mass", "momentum", "reaction", "displacement", "velocity",
-        "stress", "stress-noise",
+        "runout",
+        "front",
+        "height",
+        "max-displacement",
+        "mass",
+        "momentum",
+        "reaction",
+        "displacement",
+        "velocity",
+        "stress",
+        "stress-noise",
     ],
     &["heave", "footing-pressure", "footing-force", "penetration", "slip", "energy"],
 );

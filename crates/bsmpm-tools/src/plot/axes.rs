@@ -11,8 +11,8 @@ pub(super) const NUMBER: f64 = 26.0;
 /// Room for the numbers and label left of, and below, the axes.
 pub(super) const LEFT: f64 = 170.0;
 pub(super) const BELOW: f64 = 105.0;
-const TICK: f64 = 9.0;
-const THIN: f64 = 1.7;
+pub(super) const TICK: f64 = 9.0;
+pub(super) const THIN: f64 = 1.7;
 
 /// A quantity and its unit.
 pub(super) type Label<'a> = (&'a str, &'a str);

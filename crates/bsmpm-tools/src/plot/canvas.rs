@@ -6,10 +6,11 @@ use std::path::Path;
 use std::sync::Once;
 
 use bsmpm_io::atomic;
-use plotters::backend::BitMapBackend;
+use plotters::prelude::{BitMapBackend, DrawingBackend};
 use plotters::style::text_anchor::{HPos, Pos, VPos};
-use plotters::style::{FontStyle, FontTransform, IntoFont, RGBColor, ShapeStyle, TextStyle, register_font};
-use plotters_backend::{BackendTextStyle, DrawingBackend};
+use plotters::style::{
+    Color, FontDesc, FontStyle, FontTransform, IntoFont, RGBColor, ShapeStyle, TextStyle, register_font,
+};
 
 use super::colour::{Rgb, WHITE};
 use crate::Error;
@@ -163,13 +164,16 @@ impl Canvas {
 
 /// The width of a text in pixels; 0 for one that cannot be drawn, which its drawing tells.
 pub(super) fn width(text: &str, size: f64) -> f64 {
-    let style = style(size, Align::Left, WHITE, FontTransform::None);
-    style.layout_box(text).map_or(0.0, |(from, to)| f64::from(to.0 - from.0) / FINE as f64)
+    font(size).box_size(text).map_or(0.0, |(width, _)| f64::from(width) / FINE as f64)
 }
 
 /// The size, at most `size`, at which a text is no wider than `room`.
 pub(super) fn fitting(text: &str, size: f64, room: f64) -> f64 {
     size.min(size * room / width(text, size).max(1.0))
+}
+
+fn font(size: f64) -> FontDesc<'static> {
+    (FONT, size * FINE as f64).into_font()
 }
 
 fn style(size: f64, align: Align, colour: Rgb, turn: FontTransform) -> TextStyle<'static> {
@@ -178,8 +182,9 @@ fn style(size: f64, align: Align, colour: Rgb, turn: FontTransform) -> TextStyle
         Align::Centre => HPos::Center,
         Align::Right => HPos::Right,
     };
-    let font = (FONT, size * FINE as f64).into_font().transform(turn);
-    TextStyle::from(font).pos(Pos::new(across, VPos::Top)).color(&rgb(colour))
+    let mut style = TextStyle::from(font(size).transform(turn)).pos(Pos::new(across, VPos::Top));
+    style.color = rgb(colour).to_backend_color();
+    style
 }
 
 fn filled(colour: Rgb, width: f64) -> ShapeStyle {

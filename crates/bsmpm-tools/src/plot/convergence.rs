@@ -22,6 +22,8 @@ pub(super) fn draw(record: &Record) -> Result<Option<String>, Error> {
     let columns = (column("time"), column("iterations"), column("dt"));
     let (Some(time), Some(iterations), Some(dt)) = columns else { return Ok(None) };
     let Some(x) = range(time.iter().copied()) else { return Ok(None) };
+    // The first row is the end of a step, whose start is where the picture begins.
+    let x = (x.0 - dt.first().copied().unwrap_or(0.0), x.1);
     let x = if x.1 > x.0 { x } else { padded(x.0, x.1, 0.0) };
     let cut: Vec<(f64, f64)> = column("cutbacks").map_or_else(Vec::new, |cutbacks| {
         time.iter().zip(dt).zip(cutbacks).filter(|(_, cuts)| **cuts > 0.0).map(|((&time, &dt), _)| (time, dt)).collect()

@@ -94,7 +94,11 @@ impl Picture {
     }
 
     fn draw(&self, record: &Record, history: &Columns, curves: &[Curve]) -> Result<(), Error> {
-        let entries: Vec<&Entry> = curves.iter().map(|curve| &curve.entry).collect();
+        let mut entries: Vec<&Entry> = curves.iter().map(|curve| &curve.entry).collect();
+        if entries.len() == 1 {
+            // The axis says what a lonely line is.
+            entries.clear();
+        }
         let top = ABOVE + legend::height(&entries, SHEET.0 - 80.0) + 20.0;
         let places = || curves.iter().flat_map(|curve| &curve.places);
         let x = range(places().map(|place| place.0)).unwrap_or((0.0, 1.0));
@@ -115,9 +119,10 @@ impl Picture {
                 axes.line(&mut canvas, &curve.places, 3.5, curve.entry.colour);
             }
         }
+        let heading = capitalised(self.across);
         let across = match self.across {
             "time" => record.time_label(),
-            name => (name, history.unit(name).unwrap_or("-")),
+            name => (heading.as_str(), history.unit(name).unwrap_or("-")),
         };
         axes.draw(&mut canvas, Some(across), (&vertical(curves), &curves[0].unit));
         canvas.save(&record.directory.join(self.file))
@@ -128,6 +133,12 @@ impl Picture {
 fn vertical(curves: &[Curve]) -> String {
     let lines = curves.iter().filter(|curve| !curve.entry.points).count();
     let name = if lines == 1 { curves[0].entry.name.as_str() } else { "length" };
+    capitalised(name)
+}
+
+/// A column's name as a heading: `stress-noise` becomes `Stress noise`.
+fn capitalised(name: &str) -> String {
+    let name = name.replace('-', " ");
     let mut letters = name.chars();
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }

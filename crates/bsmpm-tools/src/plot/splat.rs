@@ -1,16 +1,21 @@
-//! Fills a body from its points: a dot of the sheet takes the colour of the nearest point, if one is near enough. So a
-//! body of few points or of many, stretched or not, looks filled, and no point hides its neighbours.
+//! Fills a body from its points: a dot of the sheet takes the colour of the nearest point, if one is near enough; then the
+//! rim is taken off again to where the body ends. So a body of few points or of many looks filled where it is stretched,
+//! keeps its size, and no point hides its neighbours.
 
 use std::collections::HashSet;
 
 use bsmpm_io::frame::Frame;
 
 use super::axes::Axes;
-use super::canvas::{Canvas, FINE};
+use super::canvas::{Canvas, FINE, fine};
 use super::colour::Rgb;
 
-/// How far a point's colour reaches, in its own size: more than half the diagonal of a square, to close a body that sheared.
-const REACH: f64 = 0.85;
+/// How far a point's colour reaches, in its own size: enough to close a body that is stretched to four times its length.
+const REACH: f64 = 2.0;
+/// How far the body reaches beyond its outer points, in their size.
+const SKIN: f64 = 0.5;
+/// dots  The most that is looked at beyond the window, which bounds the memory for huge points.
+const MARGIN: f64 = 600.0;
 
 /// The side of each point's share of the body, in m: from its volume in a plane of 1 m thickness, else the mean one.
 pub(super) fn sizes(frame: &Frame, geometry: &str) -> Vec<f64> {
@@ -33,7 +38,7 @@ fn spacing(points: &[[f64; 3]]) -> f64 {
     }
     let count = points.len() as f64;
     let first = ((high[0] - low[0]) * (high[1] - low[1]) / count).sqrt();
-    if !(first > 0.0) {
+    if !first.is_finite() || first <= 0.0 {
         return (high[0] - low[0]).max(high[1] - low[1]).max(0.0) / count.max(1.0);
     }
     let net = 4.0 * first;
@@ -42,7 +47,7 @@ fn spacing(points: &[[f64; 3]]) -> f64 {
     net * (covered.len() as f64 / count).sqrt()
 }
 
-/// The dots of the box of some axes, with the nearest point of each.
+/// The dots of a window and a margin about it, with the nearest point of each.
 struct Nearest {
     left: i32,
     top: i32,
@@ -53,28 +58,44 @@ struct Nearest {
 
 const NOBODY: u32 = u32::MAX;
 
-/// Draws the points inside the box of `axes`, each in its colour.
-pub(super) fn draw(canvas: &mut Canvas, axes: &Axes, points: &[[f64; 3]], sizes: &[f64], colours: &[Rgb]) {
-    let mut nearest = Nearest::of(axes);
+/// Draws the part of a body that lies in `window`, the ranges of x and y in m, each point in its colour.
+pub(super) fn draw(
+    canvas: &mut Canvas,
+    axes: &Axes,
+    window: [(f64, f64); 2],
+    (points, sizes): (&[[f64; 3]], &[f64]),
+    colours: &[Rgb],
+) {
+    let [x, y] = window;
     let dots_per_metre = FINE as f64 * (axes.right - axes.left) / (axes.x.1 - axes.x.0);
+    let dots = |size: &f64| (size * dots_per_metre).max(1.0);
+    let largest = sizes.iter().map(dots).fold(1.0, f64::max);
+    let (lower, upper) = (fine(axes.place((x.0, y.1))), fine(axes.place((x.1, y.0))));
+    let mut nearest = Nearest::about(lower, upper, (REACH * largest).min(MARGIN));
     for (index, (point, size)) in points.iter().zip(sizes).enumerate() {
         let (x, y) = axes.place((point[0], point[1]));
-        nearest.add(index as u32, FINE as f64 * x, FINE as f64 * y, (REACH * size * dots_per_metre).max(1.0));
+        nearest.add(index as u32, FINE as f64 * x, FINE as f64 * y, REACH * dots(size));
     }
-    for (at, &(_, point)) in nearest.dots.iter().enumerate() {
-        if point != NOBODY {
+    let outside = nearest.distance_to_nobody();
+    for (at, (&(_, point), outside)) in nearest.dots.iter().zip(outside).enumerate() {
+        if point != NOBODY && f64::from(outside) > (REACH - SKIN) * dots(&sizes[point as usize]) {
             let place = (nearest.left + (at % nearest.width) as i32, nearest.top + (at / nearest.width) as i32);
-            canvas.dot(place, colours[point as usize]);
+            if (lower.0..upper.0).contains(&place.0) && (lower.1..upper.1).contains(&place.1) {
+                canvas.dot(place, colours[point as usize]);
+            }
         }
     }
 }
 
 impl Nearest {
-    fn of(axes: &Axes) -> Self {
-        let fine = |pixels: f64| (FINE as f64 * pixels).round();
-        let (width, height) = (fine(axes.right - axes.left) as usize, fine(axes.bottom - axes.top) as usize);
-        let dots = vec![(f32::INFINITY, NOBODY); width.max(1) * height];
-        Self { left: fine(axes.left) as i32, top: fine(axes.top) as i32, width: width.max(1), dots }
+    /// The dots between two corners and `margin` more on each side: a body that goes on beyond the window does not
+    /// end there.
+    fn about(lower: (i32, i32), upper: (i32, i32), margin: f64) -> Self {
+        let margin = margin.ceil() as i32;
+        let span = |from: i32, to: i32| (to - from + 2 * margin).max(1) as usize;
+        let (width, height) = (span(lower.0, upper.0), span(lower.1, upper.1));
+        let dots = vec![(f32::INFINITY, NOBODY); width * height];
+        Self { left: lower.0 - margin, top: lower.1 - margin, width, dots }
     }
 
     /// A point at `(x, y)` whose colour reaches `reach`, all in dots of the sheet.
@@ -94,5 +115,31 @@ impl Nearest {
                 }
             }
         }
+    }
+
+    /// How far each dot is from the next one that no point reaches, in dots (up to 8 % too long): the way over neighbours, found
+    /// in one sweep down and one up.
+    fn distance_to_nobody(&self) -> Vec<f32> {
+        let mut way: Vec<f32> =
+            self.dots.iter().map(|&(_, point)| if point == NOBODY { 0.0 } else { f32::INFINITY }).collect();
+        let (width, count) = (self.width, way.len());
+        let diagonal = std::f32::consts::SQRT_2;
+        for at in 0..count {
+            let (column, above) = (at % width, at.checked_sub(width));
+            let left = (column > 0).then(|| way[at - 1] + 1.0);
+            let up = above.map(|above| way[above] + 1.0);
+            let up_left = above.filter(|_| column > 0).map(|above| way[above - 1] + diagonal);
+            let up_right = above.filter(|_| column + 1 < width).map(|above| way[above + 1] + diagonal);
+            way[at] = [left, up, up_left, up_right].into_iter().flatten().fold(way[at], f32::min);
+        }
+        for at in (0..count).rev() {
+            let (column, below) = (at % width, Some(at + width).filter(|&below| below < count));
+            let right = (column + 1 < width).then(|| way[at + 1] + 1.0);
+            let down = below.map(|below| way[below] + 1.0);
+            let down_left = below.filter(|_| column > 0).map(|below| way[below - 1] + diagonal);
+            let down_right = below.filter(|_| column + 1 < width).map(|below| way[below + 1] + diagonal);
+            way[at] = [right, down, down_left, down_right].into_iter().flatten().fold(way[at], f32::min);
+        }
+        way
     }
 }

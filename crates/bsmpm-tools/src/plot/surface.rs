@@ -3,46 +3,43 @@
 use bsmpm_io::frame::Frame;
 use bsmpm_io::table::Columns;
 
-use super::axes::{Axes, BELOW, LEFT, title};
+use super::axes::{BELOW, title};
 use super::body::{outline, region};
 use super::canvas::Canvas;
-use super::colour::{self, INK};
+use super::colour::{self, INK, WHITE};
+use super::layout::Layout;
 use super::legend::{self, Entry};
 use super::record::Record;
 use super::splat;
 use super::ticks::range;
 use crate::Error;
 
-const SHEET: f64 = 1600.0;
 const ABOVE: f64 = 115.0;
 const RIGHT: f64 = 60.0;
 const NAME: &str = "surface.png";
 /// A picture lower than this share of its width is stretched upward.
 const LOWEST: f64 = 0.16;
-const HIGHEST: f64 = 1.0;
 
 /// Draws the surfaces of all frames, with the points of a reference that has columns `time,x,y`; returns the picture's name.
 pub(super) fn draw(record: &Record, frames: &[Frame], reference: Option<&Columns>) -> Result<String, Error> {
     let reference = reference.map(|table| places(record, frames, table)).unwrap_or_default();
     let entries = entries(record, frames, &reference);
     let entries: Vec<&Entry> = entries.iter().collect();
-    let [x, y] = region(record, frames);
-    let aspect = (y.1 - y.0) / (x.1 - x.0);
-    let wide = (SHEET - LEFT - RIGHT).min(1300.0 / aspect.min(HIGHEST));
-    let left = (SHEET + LEFT - RIGHT - wide) / 2.0;
-    let top = ABOVE + legend::height(&entries, SHEET - 80.0) + 20.0;
-    let high = if aspect > HIGHEST { 1300.0 } else { wide * aspect.max(LOWEST) };
-    let wide = if aspect > HIGHEST { 1300.0 / aspect.min(4.0) } else { wide };
-    let axes = Axes { left, top, right: left + wide, bottom: top + high, x, y };
-    let mut canvas = Canvas::new(SHEET, top + high + BELOW);
-    title(&mut canvas, SHEET, &record.manifest.case.title, "Free surface");
-    legend::draw(&mut canvas, &entries, 40.0, ABOVE, SHEET - 80.0);
+    let layout = Layout::of(region(record, frames), RIGHT, LOWEST);
+    let room = layout.width - 80.0;
+    let axes = layout.axes(ABOVE + legend::height(&entries, room) + 20.0);
+    let mut canvas = Canvas::new(layout.width, axes.bottom + BELOW);
+    let stretched = format!("Free surface, heights enlarged {:.1} times", layout.stretch);
+    let below = if layout.stretch > 1.0 { stretched.as_str() } else { "Free surface" };
+    title(&mut canvas, layout.width, &record.manifest.case.title, below);
+    legend::draw(&mut canvas, &entries, 40.0, ABOVE, room);
     axes.rules(&mut canvas);
     outline(&mut canvas, &axes, record);
     for (index, frame) in frames.iter().enumerate() {
         axes.line(&mut canvas, &surface(record, frame), 3.5, colour::line(index, frames.len()));
     }
     for (place, colour) in reference.iter().flat_map(|group| group.places.iter().map(|place| (place, group.colour))) {
+        canvas.disc(axes.place(*place), 8.0, WHITE);
         canvas.disc(axes.place(*place), 6.0, colour);
     }
     axes.draw(&mut canvas, Some(("x", "m")), ("y", "m"));
@@ -64,7 +61,7 @@ fn surface(record: &Record, frame: &Frame) -> Vec<(f64, f64)> {
     let mut highest = vec![(f64::NAN, f64::NAN); (column(high) - first) as usize + 1];
     for &[x, y, _] in &frame.position {
         let top = &mut highest[(column(x) - first) as usize];
-        if !(top.1 >= y) {
+        if top.1.is_nan() || top.1 < y {
             *top = (x, y);
         }
     }

@@ -59,11 +59,13 @@ impl Ticks {
 
 /// The power of 1000, as one of ten, that brings numbers up to `largest` to a form without rows of zeros.
 fn power_of(largest: f64) -> i32 {
-    if !(largest > 0.0) || (1e-2..1e5).contains(&largest) {
+    if largest <= 0.0 || !largest.is_finite() || (1e-2..1e5).contains(&largest) {
         return 0;
     }
     let last = POWERS[POWERS.len() - 1].0;
-    ((largest.log10() / 3.0).floor() as i32 * 3).clamp(-last, last)
+    // Small numbers read better as .25 thousandths than as 250 millionths.
+    let lift = if largest < 1.0 { 1.0 } else { 0.0 };
+    (((largest.log10() + lift) / 3.0).floor() as i32 * 3).clamp(-last, last)
 }
 
 /// A range with `share` of its length added at both ends; one of no length gets some.
@@ -93,9 +95,9 @@ mod tests {
         };
         assert_eq!(texts(0.0, 0.55, 6.0), ["0", "0.1", "0.2", "0.3", "0.4", "0.5"]);
         assert_eq!(texts(-1.9, 0.1, 5.0), ["−1.5", "−1.0", "−0.5", "0"]);
-        assert_eq!(texts(0.0, 2.5e-4, 5.0), ["0", "50", "100", "150", "200", "250"]);
+        assert_eq!(texts(0.0, 2.5e-4, 5.0), ["0", "0.05", "0.10", "0.15", "0.20", "0.25"]);
         assert_eq!(texts(0.0, 3e6, 3.0), ["0", "1", "2", "3"]);
-        assert_eq!(Ticks::between(0.0, 2.5e-4, 5.0).label("Step", "s"), "Step (10⁻⁶ s)");
+        assert_eq!(Ticks::between(0.0, 2.5e-4, 5.0).label("Step", "s"), "Step (10⁻³ s)");
         assert_eq!(Ticks::between(0.0, 1.0, 5.0).label("Iterations", "-"), "Iterations");
     }
 

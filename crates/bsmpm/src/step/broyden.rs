@@ -1,7 +1,7 @@
 //! Steps (6), (7): Broyden's quasi-Newton direction in product form, one solve with K_0 per iteration.
 //!
-//! H_{k+1} = (I + z_k s_k^T / s_k.s_k) H_k, where s is a direction as it was found and a the length that was taken of
-//! it: the printed update K+ = K - f s^T / s.s holds for full steps, in general it is
+//! H_{k+1} = (I + z_k s_k^T / s_k.s_k) H_k, where s is the step that was taken and a the part of the direction that it
+//! is: the printed update K+ = K - f s^T / s.s holds for full steps, in general it is
 //! K+ = K + ((1-a) f_old - f_new) s^T / s.s.
 
 use crate::error::SolveError;
@@ -10,7 +10,7 @@ use crate::seam::{Halo, LinearSolver, dots};
 /// Denominator 1 - a g below which the update is nearly singular and the history is dropped.
 const SINGULAR: f64 = 0.1;
 
-/// Directions taken so far in this step, with what the product form needs of them.
+/// Steps taken so far in this load step, with what the product form needs of them.
 #[derive(Clone, Debug, Default)]
 pub struct Broyden {
     steps: Vec<Step>,
@@ -54,6 +54,10 @@ impl Broyden {
     /// Tells how much of the last direction was taken: 1 for a full step.
     pub fn took(&mut self, length: f64) {
         self.length = length;
+        if let Some(last) = self.steps.last_mut() {
+            last.s.iter_mut().for_each(|s| *s *= length);
+            last.s_squared *= length * length;
+        }
     }
 
     /// Applies the product form to w = K_0^-1 f; completes the last step's z. All dots come from one reduction.

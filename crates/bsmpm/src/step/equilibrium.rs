@@ -9,7 +9,7 @@ use crate::grid::Shape;
 use crate::kinematics::Kinematics;
 use crate::model::Model;
 use crate::points::Points;
-use crate::seam::{Halo, LinearSolver};
+use crate::seam::{Halo, LinearSolver, dots};
 use crate::step::Report;
 use crate::step::broyden::Broyden;
 use crate::step::nodes::Nodes;
@@ -21,6 +21,8 @@ use crate::step::trial::Trial;
 const ALREADY: f64 = 1e-2;
 /// Round-off of the internal force, relative to E h^(D-1) x 1 m^(3-D) per square root of an unknown.
 const ROUND_OFF: f64 = 1e-13;
+/// Round-off of the inertia, relative to |4/dt M v|: a few roundings.
+const CANCELLED: f64 = 4.0 * f64::EPSILON;
 /// Shortest part of a direction that is tried when points invert.
 const SHORTEST: f64 = 1.0 / 16.0;
 
@@ -183,8 +185,14 @@ fn inverted<K, const D: usize>(scene: &Scene<'_, K, D>, residual: &Residual, ite
     StepError::Inverted { count: residual.inverted, iteration, first }
 }
 
-/// Out-of-balance force that is round-off of the stiffest material: 1e-13 E_max h^(D-1) sqrt(n), N.
+/// Out-of-balance force that is round-off, N: of the stiffest material, 1e-13 E_max h^(D-1) sqrt(n), or of the inertia,
+/// whose terms 4/dt^2 u and 4/dt v cancel when dt is tiny.
 fn round_off<K: Kinematics<D>, const D: usize>(scene: &Scene<'_, K, D>) -> f64 {
     let edge = scene.model.grid.smallest_edge();
-    ROUND_OFF * scene.model.stiffest() * edge.powi(D as i32 - 1) * (scene.nodes.unknowns as f64).sqrt()
+    let nodes = scene.nodes;
+    let internal = ROUND_OFF * scene.model.stiffest() * edge.powi(D as i32 - 1) * (nodes.unknowns as f64).sqrt();
+    let Some(inertia) = &nodes.inertia else { return internal };
+    let pulse = |(c, v): (usize, &f64)| 4.0 / inertia.dt * nodes.weight[c / D] * v;
+    let pulse: Vec<f64> = inertia.v.iter().enumerate().map(pulse).collect();
+    internal.max(CANCELLED * dots(scene.halo, D, &[(&pulse, &pulse)])[0].sqrt())
 }

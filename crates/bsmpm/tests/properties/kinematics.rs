@@ -32,9 +32,7 @@ fn f_bar_gives_the_wanted_determinant_and_in_plane_leaves_the_third_direction() 
     for _ in 0..1000 {
         let ratio = 2.0_f64.powf(random.signed());
         let (plane, solid) = (in_plane(&mut random), Tensor::identity() + random.square::<3>() * 0.3);
-        for (before, after) in
-            [(plane, PlaneStrain::dilate(&plane, ratio)), (solid, Solid::dilate(&solid, ratio))]
-        {
+        for (before, after) in [(plane, PlaneStrain::dilate(&plane, ratio)), (solid, Solid::dilate(&solid, ratio))] {
             let wanted = ratio * before.determinant();
             assert!((after.determinant() / wanted - 1.0).abs() <= 1e-14 * 10.0); // measured 9e-15
         }

@@ -5,6 +5,7 @@
 
 mod broyden;
 mod kinematics;
+mod observe;
 mod points;
 mod rigid;
 mod spline;

@@ -43,18 +43,22 @@ fn free_flight_across_cells_keeps_velocity_and_no_stress() {
         for order in 1..=3 {
             let (change, stress) = flight::<PlaneStrain, 2>(order, method, 50);
             println!("{method:?}, q = {order}: change of v {change:.1e}, stress {stress:.1e} E");
-            assert!(change <= 1e-12 && stress <= 1e-10);
+            assert!(change <= 1e-11 && stress <= 1e-10);
         }
     }
     let (change, stress) = flight::<Solid, 3>(2, Stabilisation::ModifiedFBar, 10);
     println!("solid: change of v {change:.1e}, stress {stress:.1e} E");
-    assert!(change <= 1e-12 && stress <= 1e-10);
+    assert!(change <= 1e-11 && stress <= 1e-10);
 }
 
 #[test]
 fn a_rigidly_rotating_field_turns_the_stress_of_every_point() {
-    let mut scene = Scene::<PlaneStrain, 2>::new([axis(0.5, 4, 2), axis(0.5, 4, 2)], hencky(100.0, 0.3), Regime::QuasiStatic)
-        .body([1..3, 1..3], 3, 1.0, |_| Vector::zeros());
+    let mut scene = Scene::<PlaneStrain, 2>::new(
+        [axis(0.5, 4, 2), axis(0.5, 4, 2)],
+        hencky(100.0, 0.3),
+        Regime::QuasiStatic,
+    )
+    .body([1..3, 1..3], 3, 1.0, |_| Vector::zeros());
     let b_e = Symmetric([1.2, 0.9, 1.05, 0.1, 0.0, 0.0]);
     scene.points.b_e.fill(b_e);
     let R = *Rotation2::new(0.8).matrix();

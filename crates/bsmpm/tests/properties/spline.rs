@@ -121,9 +121,8 @@ fn derivatives_agree_with_central_differences_inside_a_span() {
 
 #[test]
 fn greville_abscissae_reproduce_the_coordinate() {
-    let greville = |axis: &KnotVector, i: usize| {
-        (1..=axis.order()).map(|k| axis.knot(i + k)).sum::<f64>() / axis.order() as f64
-    };
+    let greville =
+        |axis: &KnotVector, i: usize| (1..=axis.order()).map(|k| axis.knot(i + k)).sum::<f64>() / axis.order() as f64;
     let error = worst(|axis, x| {
         let sum: f64 = all(axis, x).iter().enumerate().map(|(i, f)| f.0 * greville(axis, i)).sum();
         (sum - x).abs() / axis.length()

@@ -111,7 +111,7 @@ fn a_point_that_leaves_the_grid_ends_the_run_at_once_with_the_points_unchanged()
 fn a_step_that_turns_material_inside_out_is_cut_and_then_finds_equilibrium() {
     let mut scene = block(Regime::QuasiStatic);
     scene.model.gravity = None;
-    let push = Support { axis: 0, upper: true, velocity: [Some(-0.6), None] };
+    let push = Support { axis: 0, upper: true, velocity: [Some(-0.4), None] };
     scene = scene.support(push);
     let steps = run(&mut scene, &Schedule::new(1.0, 1.0, []), 0).unwrap();
     let rejected: Vec<_> = steps.iter().flat_map(|step| &step.rejected).collect();

@@ -9,8 +9,13 @@ use bsmpm::tensor::Vector;
 
 /// Points at `places`, sorted by cell; ids count in the order given.
 fn points_at<const D: usize>(grid: &Grid<D>, places: &[Vector<D>]) -> Points<D> {
-    let seed = |(id, x): (usize, &Vector<D>)| {
-        Seed { id: id as u64, material: 0, x: *x, volume: 1.0, mass: 1.0, v: Vector::zeros() }
+    let seed = |(id, x): (usize, &Vector<D>)| Seed {
+        id: id as u64,
+        material: 0,
+        x: *x,
+        volume: 1.0,
+        mass: 1.0,
+        v: Vector::zeros(),
     };
     let mut points = Points::from_seeds(places.iter().enumerate().map(seed), false);
     points.sort_by_cell(grid);

@@ -79,11 +79,7 @@ fn linear_fields_are_exact<K: Kinematics<D>, const D: usize>(order: usize) {
 }
 
 /// Nodal values of H x + shift at the Greville abscissae.
-fn linear_field<K: Kinematics<D>, const D: usize>(
-    scene: &Scene<K, D>,
-    H: &Square<D>,
-    shift: &Vector<D>,
-) -> Vec<f64> {
+fn linear_field<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>, H: &Square<D>, shift: &Vector<D>) -> Vec<f64> {
     let grid = &scene.model.grid;
     let greville = |k: usize, i: usize| {
         let knots = &grid.axes()[k];

@@ -9,7 +9,9 @@ impl Random {
     /// A stream of its own for every `seed`.
     pub fn new(seed: u64) -> Self {
         let mut stream = Self(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1);
-        (0..8).for_each(|_| drop(stream.unit()));
+        for _ in 0..8 {
+            stream.unit();
+        }
         stream
     }
 

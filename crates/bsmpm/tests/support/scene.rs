@@ -98,9 +98,8 @@ impl<K: Kinematics<D>, const D: usize> Scene<K, D> {
 
     /// Rollers at both ends of the axes.
     pub fn rollers(self, axes: impl IntoIterator<Item = usize>) -> Self {
-        axes.into_iter().fold(self, |scene, axis| {
-            scene.support(Support::roller(axis, false)).support(Support::roller(axis, true))
-        })
+        axes.into_iter()
+            .fold(self, |scene, axis| scene.support(Support::roller(axis, false)).support(Support::roller(axis, true)))
     }
 
     /// Gravity `g` against the last axis, growing over `ramp`.

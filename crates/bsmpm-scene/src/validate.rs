@@ -1,0 +1,139 @@
+//! The rules between keys: a record whose values fit one by one becomes a valid case, or errors.
+
+mod body;
+mod grid;
+mod history;
+mod material;
+mod output;
+mod physics;
+mod solver;
+
+use crate::case::{Analysis, Case, Geometry, Gravity, Support};
+use crate::record::Record;
+use crate::report::Report;
+use bsmpm::model::Regime;
+use bsmpm::stabilisation::Stabilisation;
+
+/// Steps of a run at most.
+const MOST_STEPS: f64 = 1e9;
+/// m/s2  by which a unit weight is divided, whatever the scene's gravity is.
+const STANDARD_GRAVITY: f64 = 9.81;
+
+/// The case that `record` describes; `text` is what was read. `None` after an error.
+pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Option<Case> {
+    let regime = regime(record);
+    let analysis = analysis(record, regime, report);
+    let end = analysis.as_ref().map(|analysis| analysis.end);
+    let boundary = boundary(record);
+    let grid = grid::read(record, boundary, report);
+    let materials = material::read_all(record, regime, report);
+    let bodies = body::read_all(record, grid.as_ref(), regime, report);
+    let gravity = gravity(record, end, report);
+    let stabilisation = stabilisation(record);
+    let solver = solver::read(record, regime, report);
+    let output = output::read(record, end, report);
+    let histories = history::read_all(record, (regime, grid.as_ref()), report);
+    let checks = history::checks(record, &histories, end, report);
+    let case = Case {
+        title: record.text("title").unwrap_or_default().to_owned(),
+        geometry: record.word("geometry").map(|_| Geometry::PlaneStrain)?,
+        analysis: analysis?,
+        grid: grid?,
+        materials: materials?,
+        bodies: bodies?,
+        gravity,
+        boundary: boundary?,
+        stabilisation: stabilisation?,
+        solver: solver?,
+        output: output?,
+        histories,
+        checks,
+        warnings: Vec::new(),
+        notes: Vec::new(),
+        text,
+    };
+    if report.failed() {
+        return None;
+    }
+    physics::check(&case, record, report);
+    Some(Case { warnings: std::mem::take(&mut report.warnings), notes: std::mem::take(&mut report.notes), ..case })
+}
+
+fn regime(record: &Record) -> Option<Regime> {
+    let word = record.record("analysis")?.word("type")?;
+    Some(if word == "dynamic" { Regime::Dynamic } else { Regime::QuasiStatic })
+}
+
+fn analysis(record: &Record, regime: Option<Regime>, report: &mut Report<'_>) -> Option<Analysis> {
+    let analysis = record.record("analysis")?;
+    let regime = regime?;
+    let end = match (analysis.gives("end"), regime) {
+        (true, _) => analysis.number("end")?,
+        (false, Regime::QuasiStatic) => {
+            report.note("analysis.end", "1.0", "pseudo-time of a quasi-static analysis");
+            1.0
+        }
+        (false, Regime::Dynamic) => {
+            report.error(analysis.origin, &analysis.path_of("end"), "missing; a dynamic analysis needs its end");
+            return None;
+        }
+    };
+    let dt = match analysis.count("steps") {
+        Some(steps) => end / steps as f64,
+        None => analysis.number("dt")?,
+    };
+    if dt > end {
+        analysis.error("dt", format!("{dt} is out of range; allowed: dt <= end = {end}"), report);
+        return None;
+    }
+    if end / dt > MOST_STEPS {
+        let message = format!("{:.3e} steps to the end; at most {MOST_STEPS:e} are possible", end / dt);
+        analysis.error("dt", message, report);
+        return None;
+    }
+    Some(Analysis { regime, end, dt })
+}
+
+fn boundary(record: &Record) -> Option<[[Support; 2]; 2]> {
+    let boundary = record.record("boundary")?;
+    let support = |face| {
+        Some(match boundary.word(face)? {
+            "fixed" => Support::Fixed,
+            "roller" => Support::Roller,
+            _ => Support::Free,
+        })
+    };
+    Some([[support("left")?, support("right")?], [support("bottom")?, support("top")?]])
+}
+
+fn gravity(record: &Record, end: Option<f64>, report: &mut Report<'_>) -> Option<Gravity> {
+    let gravity = record.record("gravity")?;
+    let acceleration = gravity.pair("acceleration")?;
+    let ramp = gravity.number("ramp")?;
+    let size = acceleration[0].hypot(acceleration[1]);
+    let off = (size / STANDARD_GRAVITY - 1.0).abs();
+    if off <= 0.01 && off > 1e-9 {
+        report.warn(format!(
+            "gravity.acceleration: |acceleration| = {size} m/s2 is near {STANDARD_GRAVITY} without being it; densities \
+             follow from unit weights with {STANDARD_GRAVITY}"
+        ));
+    }
+    if size == 0.0 {
+        report.warn("gravity.acceleration: zero; leave [gravity] out where there is none");
+    }
+    if end.is_some_and(|end| ramp > end) {
+        report.warn(format!("gravity.ramp: {ramp} is beyond the end of the run; gravity is never fully applied"));
+    }
+    Some(Gravity { acceleration, ramp })
+}
+
+fn stabilisation(record: &Record) -> Option<Stabilisation> {
+    if !record.gives("stabilisation") {
+        return Some(Stabilisation::None);
+    }
+    Some(match record.record("stabilisation")?.word("method")? {
+        "f-bar" => Stabilisation::FBar,
+        "modified-f-bar" => Stabilisation::ModifiedFBar,
+        _ => Stabilisation::None,
+    })
+}

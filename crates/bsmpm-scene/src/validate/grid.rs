@@ -1,0 +1,139 @@
+//! Cells along the axes; a free face moves outward to a whole cell.
+
+use crate::case::Support;
+use crate::estimate::{self, MOST_UNKNOWNS};
+use crate::grid::{Axis, GridSpec};
+use crate::record::Record;
+use crate::report::Report;
+
+/// Parts of a cell by which a length may miss a whole number of cells.
+const WHOLE: f64 = 1e-9;
+const NAMES: [&str; 2] = ["x", "y"];
+
+/// The grid, once the supports of its faces are known.
+pub(super) fn read(root: &Record, boundary: Option<[[Support; 2]; 2]>, report: &mut Report<'_>) -> Option<GridSpec> {
+    let grid = root.record("grid")?;
+    let order = match grid.word("order") {
+        Some("linear") => 1,
+        Some("cubic") => 3,
+        _ => 2,
+    };
+    let axes = if grid.gives("knots") { graded(grid, report) } else { uniform(grid, boundary?, report) }?;
+    let spec = GridSpec { axes, order };
+    let (cells, unknowns) = (estimate::cells(&spec), 2 * estimate::nodes(&spec));
+    if cells > MOST_UNKNOWNS || unknowns > MOST_UNKNOWNS {
+        let message = format!("{cells} cells and {unknowns} unknowns; at most {MOST_UNKNOWNS} of each are possible");
+        report.error(grid.place("cell"), &grid.path_of("cell"), message);
+        return None;
+    }
+    warn_of_rounding(&spec, report);
+    Some(spec)
+}
+
+fn graded(grid: &Record, report: &mut Report<'_>) -> Option<[Axis; 2]> {
+    let knots = grid.record("knots")?;
+    let mut axis = |number: usize| {
+        let name = NAMES[number];
+        let breakpoints = knots.numbers(name)?;
+        if breakpoints.len() < 2 || breakpoints.windows(2).any(|pair| pair[1] <= pair[0]) {
+            knots.error(name, "breakpoints must increase, and be at least two", report);
+            return None;
+        }
+        for (key, end) in [("lower", breakpoints[0]), ("upper", breakpoints[breakpoints.len() - 1])] {
+            if let Some(corner) = grid.pair(key).filter(|corner| corner[number] != end) {
+                let message = format!("{} differs from the breakpoints of {name}, which end at {end}", corner[number]);
+                grid.error(key, message, report);
+            }
+        }
+        Some(Axis::Graded(breakpoints.to_vec()))
+    };
+    let (x, y) = (axis(0), axis(1));
+    Some([x?, y?])
+}
+
+fn uniform(grid: &Record, boundary: [[Support; 2]; 2], report: &mut Report<'_>) -> Option<[Axis; 2]> {
+    for key in ["lower", "upper"] {
+        if !grid.gives(key) {
+            report.error(grid.origin, &grid.path_of(key), "missing; it is needed with `cell`");
+        }
+    }
+    let (lower, upper) = (grid.pair("lower")?, grid.pair("upper")?);
+    let cell = match *grid.numbers("cell")? {
+        [both] => [both, both],
+        [x, y] => [x, y],
+        _ => return None,
+    };
+    let mut axis = |number: usize| {
+        if upper[number] <= lower[number] {
+            let message = format!("{} along {} is not above lower = {}", upper[number], NAMES[number], lower[number]);
+            grid.error("upper", message, report);
+            return None;
+        }
+        Faces { grid, number, supports: boundary[number] }.cells(lower[number], upper[number], cell[number], report)
+    };
+    let (x, y) = (axis(0), axis(1));
+    Some([x?, y?])
+}
+
+/// The two faces of an axis.
+struct Faces<'a> {
+    grid: &'a Record,
+    number: usize,
+    supports: [Support; 2],
+}
+
+impl Faces<'_> {
+    fn cells(&self, lower: f64, upper: f64, cell: f64, report: &mut Report<'_>) -> Option<Axis> {
+        let exact = (upper - lower) / cell;
+        let name = NAMES[self.number];
+        if exact > MOST_UNKNOWNS as f64 {
+            let message = format!("{exact:.3e} cells along {name}; at most {MOST_UNKNOWNS} are possible");
+            self.grid.error("cell", message, report);
+            return None;
+        }
+        let rounding = 4.0 * f64::EPSILON * lower.abs().max(upper.abs()) / cell;
+        if exact >= 0.5 && (exact - exact.round()).abs() <= (WHOLE + rounding).min(0.01) {
+            return Some(Axis::Uniform { lower, cell, cells: exact.round() as usize });
+        }
+        let cells = exact.ceil();
+        let length = cells * cell;
+        let reason =
+            format!("(upper - lower)/cell = {exact} along {name} is no whole number; the free face moves outward");
+        match self.supports {
+            [_, Support::Free] => {
+                report.note(
+                    self.grid.path_of(&format!("upper.{}", self.number)),
+                    format!("{}", lower + length),
+                    reason,
+                );
+                Some(Axis::Uniform { lower, cell, cells: cells as usize })
+            }
+            [Support::Free, _] => {
+                let lower = upper - length;
+                report.note(self.grid.path_of(&format!("lower.{}", self.number)), format!("{lower}"), reason);
+                Some(Axis::Uniform { lower, cell, cells: cells as usize })
+            }
+            _ => {
+                let message = format!(
+                    "(upper - lower)/cell = {exact} along {name} is no whole number, and neither face is free to move; e.g. cell = {}",
+                    (upper - lower) / exact.round().max(1.0)
+                );
+                self.grid.error("cell", message, report);
+                None
+            }
+        }
+    }
+}
+
+/// Far from the origin the coordinates of the file resolve a cell too coarsely.
+fn warn_of_rounding(spec: &GridSpec, report: &mut Report<'_>) {
+    for (axis, name) in spec.axes.iter().zip(NAMES) {
+        let far = axis.lower().abs().max((axis.lower() + axis.length()).abs());
+        let spacing = far * f64::EPSILON;
+        if spacing > 1e-6 * axis.shortest() {
+            report.warn(format!(
+                "grid: coordinates along {name} of up to {far:e} m resolve {spacing:.1e} m only, more than 1e-6 of a cell"
+            ));
+        }
+    }
+}

@@ -1,0 +1,148 @@
+//! Histories and the checks of their columns.
+
+use crate::case::{Check, Face, History, Quantity};
+use crate::grid::GridSpec;
+use crate::nearest::hint;
+use crate::record::Record;
+use crate::report::{Report, shortened};
+use crate::unit::Dimension;
+use bsmpm::model::Regime;
+use std::collections::HashSet;
+
+/// Histories at most, each a column or several of every row.
+const MOST: usize = 1000;
+
+/// All histories in the order of the file, without those that have an error.
+pub(super) fn read_all(
+    root: &Record,
+    (regime, grid): (Option<Regime>, Option<&GridSpec>),
+    report: &mut Report<'_>,
+) -> Vec<History> {
+    let records = root.records("history");
+    if records.len() > MOST {
+        root.error("history", format!("{} histories; at most {MOST} are possible", records.len()), report);
+        return Vec::new();
+    }
+    let mut taken = HashSet::from(["step".to_owned(), "time".to_owned()]);
+    let mut histories = Vec::new();
+    for record in records {
+        let Some(history) = read(record, (regime, grid), report) else { continue };
+        if let Some(column) = history.columns().into_iter().find(|column| !taken.insert(column.name.clone())) {
+            let message = format!("there is a column `{}` already; give this one another `name`", column.name);
+            record.error("name", message, report);
+        }
+        histories.push(history);
+    }
+    histories
+}
+
+fn read(
+    record: &Record,
+    (regime, grid): (Option<Regime>, Option<&GridSpec>),
+    report: &mut Report<'_>,
+) -> Option<History> {
+    let word = record.word("quantity")?;
+    let own = match word {
+        "runout" => "percentile",
+        "reaction" => "face",
+        "displacement" | "velocity" | "stress" => "at",
+        _ => "",
+    };
+    let others = ["percentile", "face", "at"].into_iter().filter(|key| *key != own);
+    for key in others.filter(|key| record.gives(key)) {
+        record.error(key, format!("has no meaning for quantity \"{word}\""), report);
+    }
+    if matches!(own, "face" | "at") && !record.gives(own) {
+        report.error(record.origin, &record.path_of(own), format!("missing; quantity \"{word}\" needs it"));
+    }
+    if regime == Some(Regime::QuasiStatic) && matches!(word, "velocity" | "momentum") {
+        record.error("quantity", format!("there is no {word} in a quasi-static analysis"), report);
+    }
+    let quantity = match word {
+        "runout" => {
+            let given = record.gives("percentile");
+            Quantity::Runout { percentile: if given { record.number("percentile")? } else { 100.0 } }
+        }
+        "front" => Quantity::Front,
+        "height" => Quantity::Height,
+        "max-displacement" => Quantity::MaxDisplacement,
+        "mass" => Quantity::Mass,
+        "momentum" => Quantity::Momentum,
+        "reaction" => Quantity::Reaction { face: face(record.word("face")?) },
+        "displacement" => Quantity::Displacement { at: at(record, grid, report)? },
+        "velocity" => Quantity::Velocity { at: at(record, grid, report)? },
+        "stress" => Quantity::Stress { at: at(record, grid, report)? },
+        _ => Quantity::StressNoise,
+    };
+    let name = if record.gives("name") { record.text("name")? } else { word };
+    Some(History { quantity, name: name.to_owned(), scale: record.number("scale")? })
+}
+
+fn face(word: &str) -> Face {
+    Face { axis: usize::from(matches!(word, "bottom" | "top")), upper: matches!(word, "right" | "top") }
+}
+
+fn at(record: &Record, grid: Option<&GridSpec>, report: &mut Report<'_>) -> Option<[f64; 2]> {
+    let at = record.pair("at")?;
+    if let Some(grid) = grid {
+        let (lower, upper) = (grid.lower(), grid.upper());
+        if (0..2).any(|axis| at[axis] < lower[axis] || at[axis] > upper[axis]) {
+            record.error("at", format!("{at:?} is outside the grid, {lower:?} to {upper:?}"), report);
+        }
+    }
+    Some(at)
+}
+
+/// All checks in the order of the file, without those that have an error.
+pub(super) fn checks(root: &Record, histories: &[History], end: Option<f64>, report: &mut Report<'_>) -> Vec<Check> {
+    root.records("check").iter().filter_map(|record| check(record, histories, end, report)).collect()
+}
+
+fn check(record: &Record, histories: &[History], end: Option<f64>, report: &mut Report<'_>) -> Option<Check> {
+    let quantity = record.text("quantity")?;
+    let columns =
+        || histories.iter().flat_map(|history| history.columns().into_iter().map(move |column| (history, column)));
+    let Some((history, _)) = columns().find(|(_, column)| column.name == quantity) else {
+        let names: Vec<String> = columns().map(|(_, column)| column.name).collect();
+        let hint = hint(quantity, names.iter().map(String::as_str));
+        let known = if names.is_empty() { "there is no [[history]]".to_owned() } else { names.join(", ") };
+        let message = format!("no history has a column `{}`{hint} (columns: {known})", shortened(quantity));
+        record.error("quantity", message, report);
+        return None;
+    };
+    let at = if record.gives("at") { record.number("at")? } else { end? };
+    if end.is_some_and(|end| at > end) {
+        record.error("at", format!("{at} is beyond the end of the run"), report);
+    }
+    let (min, max) = (bound("min", record, history, report)?, bound("max", record, history, report)?);
+    match (min, max) {
+        (None, None) => report.error(record.origin, &record.path, "missing: min, max or both"),
+        (Some(min), Some(max)) if min > max => {
+            record.error("min", format!("{min} is above max = {max}"), report);
+        }
+        _ => {}
+    }
+    Some(Check { quantity: quantity.to_owned(), at, min, max })
+}
+
+/// A bound in the column's unit; the outer option is `None` after an error.
+fn bound(key: &str, record: &Record, history: &History, report: &mut Report<'_>) -> Option<Option<f64>> {
+    if !record.gives(key) {
+        return Some(None);
+    }
+    let (value, dimension) = record.measure(key)?;
+    let Some(dimension) = dimension else { return Some(Some(value)) };
+    let expected = match history.quantity.unit() {
+        _ if history.scale != 1.0 => None,
+        "m" => Some(Dimension::Length),
+        "m/s" => Some(Dimension::Velocity),
+        "Pa" => Some(Dimension::Stress),
+        _ => None,
+    };
+    if expected == Some(dimension) {
+        return Some(Some(value));
+    }
+    let allowed = expected.map_or("a number".to_owned(), |expected| expected.to_string());
+    record.error(key, format!("{dimension} was found; the column `{}` takes {allowed}", history.name), report);
+    None
+}

@@ -1,0 +1,34 @@
+//! Frames.
+
+use crate::case::{Every, Format, Output};
+use crate::record::Record;
+use crate::report::Report;
+
+/// The frames that are wanted; none without the table.
+pub(super) fn read(root: &Record, end: Option<f64>, report: &mut Report<'_>) -> Option<Output> {
+    if !root.gives("output") {
+        return Some(Output { every: None, times: Vec::new(), format: Format::default() });
+    }
+    let output = root.record("output")?;
+    let every = match (output.gives("every"), output.gives("every_steps")) {
+        (true, _) => Some(Every::Time(output.number("every")?)),
+        (_, true) => Some(Every::Steps(output.count("every_steps")?)),
+        _ => None,
+    };
+    if let (Some(Every::Time(every)), Some(end)) = (every, end) {
+        if every > end {
+            report.warn(format!("output.every: {every} is beyond the end of the run: the first and last frame only"));
+        }
+        if end / every > super::MOST_STEPS {
+            output.error("every", format!("{:.3e} frames are too many", end / every), report);
+        }
+    }
+    let mut times = if output.gives("times") { output.numbers("times")?.to_vec() } else { Vec::new() };
+    if let Some(late) = times.iter().find(|time| end.is_some_and(|end| **time > end)) {
+        output.error("times", format!("{late} is beyond the end of the run"), report);
+        return None;
+    }
+    times.sort_by(f64::total_cmp);
+    times.dedup();
+    Some(Output { every, times, format: Format::Vtu })
+}

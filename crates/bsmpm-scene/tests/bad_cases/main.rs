@@ -1,0 +1,92 @@
+//! Malformed cases: every one is refused with the line, the key and the reason that it deserves.
+//!
+//! A row changes one place of a valid case; the line expected is that of the change, moved where the row says so.
+
+mod rows;
+mod texts;
+
+use bsmpm_scene::{Case, Error, Place};
+
+const DYNAMIC: &str = include_str!("../full.toml");
+const STATIC: &str = include_str!("static.toml");
+
+/// One malformed case: `find` in the base becomes `put`, and an error must say `says` of `key`, `moved` lines below.
+pub struct Row {
+    find: &'static str,
+    put: &'static str,
+    moved: isize,
+    key: &'static str,
+    says: &'static str,
+}
+
+const fn row(find: &'static str, put: &'static str, key: &'static str, says: &'static str) -> Row {
+    Row { find, put, moved: 0, key, says }
+}
+
+impl Row {
+    const fn down(self, lines: isize) -> Self {
+        Self { moved: lines, ..self }
+    }
+
+    const fn up(self, lines: isize) -> Self {
+        Self { moved: -lines, ..self }
+    }
+}
+
+fn verify(base: &str, row: &Row) -> Result<(), String> {
+    let at = base.find(row.find).ok_or(format!("`{}` is not in the base", row.find))?;
+    let line = (1 + base[..at].matches('\n').count()).saturating_add_signed(row.moved);
+    let text = base.replacen(row.find, row.put, 1);
+    let errors = match Case::from_text("case.toml", &text, &[]) {
+        Ok(_) => return Err(format!("`{}` is accepted", row.put)),
+        Err(errors) => errors,
+    };
+    let fits = |error: &Error| {
+        let placed = matches!(error.place, Place::Line { line: found, column } if found == line && column > 0);
+        placed && error.key == row.key && error.message.contains(row.says)
+    };
+    if errors.iter().any(fits) {
+        return Ok(());
+    }
+    let found: String = errors.iter().map(|error| format!("\n   {error}")).collect();
+    Err(format!("`{}`: expected line {line}: {}: ..{}.., found{found}", row.put, row.key, row.says))
+}
+
+fn verify_all(base: &str, rows: &[Row]) {
+    let failed: Vec<String> = rows.iter().filter_map(|row| verify(base, row).err()).collect();
+    assert!(failed.is_empty(), "{} of {} rows:\n{}", failed.len(), rows.len(), failed.join("\n"));
+}
+
+#[test]
+fn the_bases_are_valid() {
+    for base in [DYNAMIC, STATIC] {
+        Case::from_text("case.toml", base, &[]).unwrap_or_else(|errors| panic!("{errors:#?}"));
+    }
+}
+
+#[test]
+fn names_types_and_units() {
+    verify_all(DYNAMIC, rows::LANGUAGE);
+}
+
+#[test]
+fn values_out_of_range() {
+    verify_all(DYNAMIC, rows::RANGES);
+}
+
+#[test]
+fn rules_between_keys() {
+    verify_all(DYNAMIC, rows::RULES);
+}
+
+#[test]
+fn quasi_static_cases() {
+    verify_all(STATIC, rows::QUASI_STATIC);
+}
+
+#[test]
+fn known_but_not_available_yet() {
+    let later =
+        |(find, put, key): &(&'static str, &'static str, &'static str)| row(find, put, key, "not available yet");
+    verify_all(DYNAMIC, &rows::LATER.iter().map(later).collect::<Vec<_>>());
+}

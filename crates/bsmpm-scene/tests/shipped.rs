@@ -1,0 +1,54 @@
+//! Every case that the project ships is valid, and the paper's column has the sizes that it should.
+
+use bsmpm_scene::{Axis, Case, load};
+use std::path::{Path, PathBuf};
+
+fn cases() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases")
+}
+
+fn read(path: &Path) -> Case {
+    let bytes = load(path).unwrap();
+    let errors = |errors: Vec<bsmpm_scene::Error>| errors.iter().map(|e| format!("{e:#}\n")).collect::<String>();
+    Case::from_bytes(&path.display().to_string(), &bytes, &[]).map_err(errors).unwrap_or_else(|text| panic!("{text}"))
+}
+
+#[test]
+fn every_shipped_case_is_valid() {
+    let mut folders = vec![cases()];
+    let mut found = 0;
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|extension| extension == "toml") {
+                let case = read(&path);
+                assert!(case.warnings.is_empty(), "{}: {:?}", path.display(), case.warnings);
+                found += 1;
+            }
+        }
+    }
+    assert!(found >= 3);
+}
+
+#[test]
+fn the_column_of_the_paper() {
+    let case = read(&cases().join("column_collapse.toml"));
+    let estimate = case.estimate();
+    assert_eq!((estimate.cells, estimate.nodes, estimate.points), (220 * 41, 222 * 43, 115_200));
+    assert!((5e7..5e9).contains(&(estimate.bytes as f64)), "{estimate:?}");
+    let density = case.materials[0].density.unwrap();
+    assert!((density - 20_400.0 / 9.81).abs() < 1e-10);
+    assert_eq!(case.output.times, [0.109, 0.235, 0.3, 0.351, 0.42, 0.607]);
+    assert_eq!(case.analysis.dt, 2.5e-4);
+}
+
+#[test]
+fn the_coarse_column_moves_its_free_top_outward() {
+    let case = read(&cases().join("short/column_collapse.toml"));
+    assert_eq!(case.grid.axes[1], Axis::Uniform { lower: 0.0, cell: 0.01, cells: 11 });
+    let note = case.notes.iter().find(|note| note.key == "grid.upper.1").unwrap();
+    assert!(note.reason.contains("outward"), "{note:?}");
+    assert_eq!(case.points(), 800);
+}

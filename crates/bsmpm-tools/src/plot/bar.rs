@@ -1,0 +1,72 @@
+//! The bar that tells which colour is which number.
+
+use super::axes::{self, Axes, LABEL, Label, NUMBER, THIN, TICK};
+use super::canvas::{Align, Canvas, fitting, width};
+use super::colour::{self, INK};
+use super::ticks::Ticks;
+
+/// Room for an upright bar right of the axes, with its numbers and label.
+pub(super) const BESIDE: f64 = 240.0;
+/// Room for a lying bar below the axes' own labels.
+pub(super) const BELOW: f64 = 120.0;
+const THICK: f64 = 30.0;
+const SHADES: usize = 512;
+
+/// A range of numbers that colours stand for.
+pub(super) struct Bar<'a> {
+    pub range: (f64, f64),
+    pub label: Label<'a>,
+}
+
+impl Bar<'_> {
+    /// Draws the bar lying below the axes, its label on the left.
+    pub fn lying(&self, canvas: &mut Canvas, axes: &Axes) {
+        let ticks = Ticks::between(self.range.0, self.range.1, 8.0);
+        let label = ticks.label(self.label.0, self.label.1);
+        let size = fitting(&label, LABEL, 0.5 * (axes.right - axes.left));
+        let (left, right) = (axes.left + width(&label, size) + 28.0, axes.right);
+        let (top, bottom) = (axes.bottom + axes::BELOW + 20.0, axes.bottom + axes::BELOW + 20.0 + THICK);
+        for (from, to, shade) in shades(left, right) {
+            canvas.fill((from, top), (to, bottom), shade);
+        }
+        canvas.frame((left, top), (right, bottom), THIN, INK);
+        for &value in &ticks.values {
+            let at = left + (right - left) * self.share(value);
+            canvas.fill((at - THIN / 2.0, bottom), (at + THIN / 2.0, bottom + TICK), INK);
+            canvas.text(&ticks.text(value), (at, bottom + TICK + 22.0), NUMBER, Align::Centre, INK);
+        }
+        canvas.text(&label, (axes.left, f64::midpoint(top, bottom)), size, Align::Left, INK);
+    }
+
+    /// Draws the bar standing right of the axes, its label reading upward.
+    pub fn upright(&self, canvas: &mut Canvas, axes: &Axes) {
+        let Axes { top, bottom, .. } = *axes;
+        let ticks = Ticks::between(self.range.0, self.range.1, (bottom - top) / 90.0);
+        let (left, right) = (axes.right + 50.0, axes.right + 50.0 + THICK);
+        for (from, to, shade) in shades(bottom, top) {
+            canvas.fill((left, to), (right, from), shade);
+        }
+        canvas.frame((left, top), (right, bottom), THIN, INK);
+        let mut widest: f64 = 0.0;
+        for &value in &ticks.values {
+            let (at, text) = (bottom - (bottom - top) * self.share(value), ticks.text(value));
+            widest = widest.max(width(&text, NUMBER));
+            canvas.fill((right, at - THIN / 2.0), (right + TICK, at + THIN / 2.0), INK);
+            canvas.text(&text, (right + TICK + 8.0, at), NUMBER, Align::Left, INK);
+        }
+        let label = ticks.label(self.label.0, self.label.1);
+        let size = fitting(&label, LABEL, bottom - top + 80.0);
+        canvas.upward(&label, (right + TICK + 8.0 + widest + 36.0, f64::midpoint(top, bottom)), size, INK);
+    }
+
+    /// Where a number lies in the range: 0 at its lower, 1 at its upper end.
+    pub fn share(&self, value: f64) -> f64 {
+        (value - self.range.0) / (self.range.1 - self.range.0)
+    }
+}
+
+/// The colours in strips along the way between two edges.
+fn shades(from: f64, to: f64) -> impl Iterator<Item = (f64, f64, colour::Rgb)> {
+    let edge = move |i: usize| from + (to - from) * i as f64 / SHADES as f64;
+    (0..SHADES).map(move |i| (edge(i), edge(i + 1), colour::map(i as f64 / (SHADES - 1) as f64)))
+}

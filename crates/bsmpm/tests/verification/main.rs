@@ -1,0 +1,14 @@
+//! Analyses against exact solutions, known orders and the figures of method.md 9; numbers after `measured` are what
+//! this machine gave.
+
+#![allow(non_snake_case)] // the paper's letters, as in the crate
+
+mod bar;
+mod column;
+mod dynamics;
+mod invariance;
+mod locking;
+mod oedometer;
+
+#[path = "../support/mod.rs"]
+mod support;
