@@ -21,12 +21,7 @@ pub struct MpiHalo {
 
 impl MpiHalo {
     /// The halo of this rank's window of `grid` under the cut `slabs`.
-    pub fn new<const D: usize>(
-        world: SimpleCommunicator,
-        slabs: &Slabs,
-        grid: &Grid<D>,
-        timers: Rc<Timers>,
-    ) -> Self {
+    pub fn new<const D: usize>(world: SimpleCommunicator, slabs: &Slabs, grid: &Grid<D>, timers: Rc<Timers>) -> Self {
         let rank = world.rank().unsigned_abs() as usize;
         let (q, size, first) = (grid.order(), grid.layer_nodes(), grid.layers().start);
         let nodes = |layers: Range<usize>| (layers.start - first) * size..(layers.end - first) * size;
@@ -42,8 +37,7 @@ impl MpiHalo {
 
     /// What every sharing rank contributes to the shared nodes, in the order of `shared`.
     fn receive(&self, nodal: &[f64], width: usize) -> Vec<Vec<f64>> {
-        let mut incoming: Vec<Vec<f64>> =
-            self.shared.iter().map(|(_, nodes)| vec![0.0; nodes.len() * width]).collect();
+        let mut incoming: Vec<Vec<f64>> = self.shared.iter().map(|(_, nodes)| vec![0.0; nodes.len() * width]).collect();
         mpi::request::scope(|scope| {
             let receives: Vec<_> = self
                 .shared

@@ -86,8 +86,7 @@ impl<'p, const D: usize> KspSolver<'p, D> {
 
     fn solve_owned(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<usize, SolveError> {
         let owned = self.halo.owned();
-        let unknowns: Vec<usize> =
-            (owned.start * D..owned.end * D).filter(|&component| self.free[component]).collect();
+        let unknowns: Vec<usize> = (owned.start * D..owned.end * D).filter(|&component| self.free[component]).collect();
         let Some(system) = &mut self.system else {
             return Err(SolveError::Failed("no matrix was assembled".into()));
         };

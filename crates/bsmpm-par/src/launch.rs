@@ -39,9 +39,7 @@ pub fn start() -> Result<Universe, u8> {
 /// Without a launcher Open MPI would start a daemon and look for a network; one rank needs neither.
 #[allow(unsafe_code)]
 fn prepare_single_rank() {
-    for (name, value) in
-        [("OMPI_MCA_ess_singleton_isolated", "1"), ("OMPI_MCA_pml", "ob1"), ("OMPI_MCA_btl", "self")]
-    {
+    for (name, value) in [("OMPI_MCA_ess_singleton_isolated", "1"), ("OMPI_MCA_pml", "ob1"), ("OMPI_MCA_btl", "self")] {
         if std::env::var_os(name).is_none() {
             // SAFETY: called first thing in `main`, before any other thread exists.
             unsafe { std::env::set_var(name, value) };

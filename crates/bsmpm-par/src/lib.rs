@@ -3,10 +3,21 @@
 //! One program for any number of ranks; a single rank is a cut into one slab. `bsmpm` computes, this crate connects.
 #![deny(unsafe_code)]
 
+pub mod cli;
+pub mod fault;
+pub mod gather;
 pub mod halo;
 pub mod ksp;
 pub mod launch;
+pub mod ledger;
+pub mod log;
+pub mod machine;
 pub mod migrate;
+pub mod program;
+pub mod record;
+pub mod setup;
+pub mod simulation;
 pub mod slab;
+pub mod source;
 pub mod stencil;
 pub mod timers;

@@ -9,12 +9,7 @@ use mpi::topology::{Communicator, SimpleCommunicator};
 use std::ops::Range;
 
 /// Sends every point to the rank whose slab it is in, and sorts by cell. `grid` is the window under `slabs`.
-pub fn points<const D: usize>(
-    world: &SimpleCommunicator,
-    slabs: &Slabs,
-    grid: &Grid<D>,
-    points: &mut Points<D>,
-) {
+pub fn points<const D: usize>(world: &SimpleCommunicator, slabs: &Slabs, grid: &Grid<D>, points: &mut Points<D>) {
     let rank = world.rank().unsigned_abs() as usize;
     let owner = |p: usize| grid.locate(&points.x[p]).map_or(rank, |cell| slabs.owner(cell[0]));
     let owners: Vec<usize> = (0..points.len()).map(owner).collect();
@@ -77,7 +72,8 @@ pub fn nodal<const D: usize>(
 
 /// Sends message `r` to rank `r` and returns those received, by rank.
 fn exchange(world: &SimpleCommunicator, outgoing: &[Vec<u8>]) -> Vec<Vec<u8>> {
-    let sizes: Vec<i32> = outgoing.iter().map(|message| i32::try_from(message.len()).expect("one message stays below 2 GiB")).collect();
+    let sizes: Vec<i32> =
+        outgoing.iter().map(|message| i32::try_from(message.len()).expect("one message stays below 2 GiB")).collect();
     let mut incoming = vec![0_i32; sizes.len()];
     world.all_to_all_into(&sizes[..], &mut incoming[..]);
     // One byte more than is sent: the address of an empty Vec<u8> is 1, which Open MPI reads as MPI_IN_PLACE.

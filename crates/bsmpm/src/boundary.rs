@@ -51,15 +51,17 @@ impl<const D: usize> Boundary<D> {
         prescribed
     }
 
-    /// Force of every support on the body: the nodal `reaction` summed over the components that it prescribes, N.
+    /// Force of every support on the body: the nodal `reaction` summed over the components that it decides, N.
     pub fn reactions(&self, grid: &Grid<D>, reaction: &[f64], halo: &dyn Halo) -> Vec<Vec<f64>> {
         let owned = halo.owned();
+        let mut counted = vec![false; reaction.len()];
         let mut sums = vec![0.0; self.supports.len() * D];
-        for (support, sum) in self.supports.iter().zip(sums.chunks_exact_mut(D)) {
+        for (support, sum) in self.supports.iter().zip(sums.chunks_exact_mut(D)).rev() {
             for node in grid.face_nodes(support.axis, support.upper) {
-                if owned.contains(&node) {
-                    let prescribed = (0..D).filter(|&component| support.velocity[component].is_some());
-                    prescribed.for_each(|component| sum[component] += reaction[node * D + component]);
+                for component in (0..D).filter(|&component| support.velocity[component].is_some()) {
+                    if !std::mem::replace(&mut counted[node * D + component], true) && owned.contains(&node) {
+                        sum[component] += reaction[node * D + component];
+                    }
                 }
             }
         }

@@ -21,10 +21,8 @@ pub trait Halo {
 pub fn dots(halo: &dyn Halo, width: usize, pairs: &[(&[f64], &[f64])]) -> Vec<f64> {
     let owned = halo.owned();
     let range = owned.start * width..owned.end * width;
-    let mut sums: Vec<f64> = pairs
-        .iter()
-        .map(|(a, b)| a[range.clone()].iter().zip(&b[range.clone()]).map(|(a, b)| a * b).sum())
-        .collect();
+    let mut sums: Vec<f64> =
+        pairs.iter().map(|(a, b)| a[range.clone()].iter().zip(&b[range.clone()]).map(|(a, b)| a * b).sum()).collect();
     halo.reduce(&mut sums);
     sums
 }

@@ -12,7 +12,7 @@ pub const MAX_ORDER: usize = 3;
 #[derive(Clone, Debug, PartialEq)]
 pub struct KnotVector {
     order: usize,
-    knots: Vec<f64>,         // m  with repeated end knots
+    knots: Vec<f64>,           // m  with repeated end knots
     inverse_cell: Option<f64>, // 1/m  of uniform breakpoints
 }
 

@@ -110,9 +110,8 @@ fn planes<const D: usize>(
         for offset in shape.offsets() {
             let node = patch.first_node + offset;
             let of_node = grid.node_at(node);
-            let cell = std::array::from_fn(|axis| {
-                of_node[axis].saturating_sub(middle).min(grid.axes()[axis].cells() - 1)
-            });
+            let cell =
+                std::array::from_fn(|axis| of_node[axis].saturating_sub(middle).min(grid.axes()[axis].cells() - 1));
             let sum = &mut sums[node * WIDTH..(node + 1) * WIDTH];
             for p in patch.points.clone() {
                 add_moments(&terms(grid, &cell, &points.x[p]), stress(p), sum);

@@ -80,9 +80,7 @@ impl Nodes {
             .then(|| map_inertia(shape, points, &weight, threshold, &velocities, dt, halo));
         let background = model.background.map(|soft| soft.blocks(&model.grid, shape, points, &model.materials));
         let (active, stiff) = supported(shape, points, nodes, halo);
-        let unknown = |node: usize| {
-            active[node] && (weight[node] > threshold || stiff[node] || background.is_some())
-        };
+        let unknown = |node: usize| active[node] && (weight[node] > threshold || stiff[node] || background.is_some());
         let free = velocities.iter().enumerate().map(|(c, v)| v.is_none() && unknown(c / D)).collect();
         let mut mapped = Self {
             f_ext: external_force(model, shape, points, t + dt, &weight, halo),

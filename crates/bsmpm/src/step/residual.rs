@@ -45,14 +45,8 @@ impl Residual {
         }
         halo.sum(&mut f_int, D);
         let forces = Forces::of(scene, u, &f_int);
-        let mut sums = [
-            inverted as f64,
-            forces.unbalanced,
-            forces.external,
-            forces.internal,
-            forces.inertial,
-            forces.supporting,
-        ];
+        let mut sums =
+            [inverted as f64, forces.unbalanced, forces.external, forces.internal, forces.inertial, forces.supporting];
         halo.reduce(&mut sums);
         Self {
             trial,

@@ -34,8 +34,7 @@ impl Trial {
         u: &[f64],
         halo: &dyn Halo,
     ) -> Self {
-        let mut trial =
-            Self { dF: Vec::with_capacity(points.len()), ratio: None, inverted: 0, first_inverted: None };
+        let mut trial = Self { dF: Vec::with_capacity(points.len()), ratio: None, inverted: 0, first_inverted: None };
         let averaged = model.stabilisation != Stabilisation::None;
         let mut dJ = Vec::with_capacity(if averaged { points.len() } else { 0 });
         transfer::gradients(shape, u, |p, grad| {

@@ -28,16 +28,18 @@ fn f_bar_with_ratio_one_leaves_the_increment_bit_by_bit() {
 
 #[test]
 fn f_bar_gives_the_wanted_determinant_and_in_plane_leaves_the_third_direction() {
-    let mut random = Random::new(2);
+    let (mut random, mut worst) = (Random::new(2), 0.0_f64);
     for _ in 0..1000 {
         let ratio = 2.0_f64.powf(random.signed());
         let (plane, solid) = (in_plane(&mut random), Tensor::identity() + random.square::<3>() * 0.3);
         for (before, after) in [(plane, PlaneStrain::dilate(&plane, ratio)), (solid, Solid::dilate(&solid, ratio))] {
             let wanted = ratio * before.determinant();
-            assert!((after.determinant() / wanted - 1.0).abs() <= 1e-14 * 10.0); // measured 9e-15
+            worst = worst.max((after.determinant() / wanted - 1.0).abs());
         }
         assert_eq!(PlaneStrain::dilate(&plane, ratio)[(2, 2)], 1.0);
     }
+    println!("determinant to {worst:.1e}");
+    assert!(worst <= 1e-14); // measured 6.7e-16
 }
 
 #[test]
@@ -55,7 +57,7 @@ fn a_rigid_rotation_keeps_the_principal_stress_and_turns_the_stress() {
         worst = worst.max((after.tau().full() - R * before.tau().full() * R.transpose()).amax());
     }
     println!("worst change {:.1e} E", worst / 1000.0);
-    assert!(worst <= 1e-13 * 1000.0); // measured 4e-15 E
+    assert!(worst <= 1e-14 * 1000.0); // measured 8e-16 E
 }
 
 #[test]
@@ -69,22 +71,24 @@ fn ten_turns_in_steps_of_a_degree_keep_the_kirchhoff_stress() {
     let after = law.respond(&b).unwrap();
     let change = (after.tau().full() - before.tau().full()).amax() / 1000.0;
     println!("change after ten turns {change:.1e} E");
-    assert!(change <= 1e-11); // measured 1e-12
+    assert!(change <= 1e-11); // measured 2.2e-13
 }
 
 #[test]
 fn plane_strain_is_the_solid_without_out_of_plane_displacement() {
-    let mut random = Random::new(4);
+    let (mut random, mut b_e, mut flux) = (Random::new(4), 0.0_f64, 0.0_f64);
     for _ in 0..200 {
         let dF = in_plane(&mut random);
         let b = b_of(&in_plane(&mut random));
         let (plane, solid) = (PlaneStrain::push_forward(&dF, &b), Solid::push_forward(&dF, &b));
-        assert!((plane.full() - solid.full()).amax() <= 1e-15 * 10.0); // measured 1.3e-15
+        b_e = b_e.max((plane.full() - solid.full()).amax());
         let tau = hencky(1.0, 0.3).respond(&solid).unwrap().tau();
         let (plane, solid) = (PlaneStrain::flux(&tau, &dF), Solid::flux(&tau, &dF));
         let corner = solid.fixed_view::<2, 2>(0, 0);
-        assert!((plane - corner).amax() <= 1e-14 * 10.0 * plane.amax()); // measured 1e-15
+        flux = flux.max((plane - corner).amax() / plane.amax());
     }
+    println!("b to {b_e:.1e}, flux to {flux:.1e}");
+    assert!(b_e <= 1e-14 && flux <= 1e-14); // measured 2.2e-16, 3.6e-16
 }
 
 /// lambda tr(e) I + 2 mu e for the symmetric gradient of a displacement along `a` of node gradient `g`.

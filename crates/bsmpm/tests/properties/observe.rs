@@ -9,17 +9,21 @@ use bsmpm::tensor::Vector;
 
 /// A block of 4^D cells, one cell off the lower corner.
 fn block<K: Kinematics<D>, const D: usize>(order: usize) -> Scene<K, D> {
-    Scene::new(std::array::from_fn(|_| axis(0.5, 6, order)), hencky(1.0, 0.3), Regime::QuasiStatic)
-        .body(std::array::from_fn(|_| 1..5), 2, 3.0, |x| x * 0.0)
+    Scene::new(std::array::from_fn(|_| axis(0.5, 6, order)), hencky(1.0, 0.3), Regime::QuasiStatic).body(
+        std::array::from_fn(|_| 1..5),
+        2,
+        3.0,
+        |x| x * 0.0,
+    )
 }
 
 fn noise_of_a_linear_field<K: Kinematics<D>, const D: usize>() -> (f64, f64) {
     let mut scene = block::<K, D>(2);
-    let field = |x: &Vector<D>| 1.0 + x.iter().enumerate().map(|(k, x)| (k as f64 + 1.0) * x).sum::<f64>();
+    let field = |x: &Vector<D>| 1.0 + x.iter().enumerate().map(|(k, x)| (k as f64 + 0.3) * x).sum::<f64>();
     let points = &mut scene.points;
     (0..points.len()).for_each(|p| points.sigma[p].0[1] = field(&points.x[p]));
     let linear = stress_noise(&scene.model.grid, &scene.points, Weighting::Mass, 1, &scene.halo()).unwrap();
-    scene.points.sigma.iter_mut().for_each(|sigma| sigma.0[1] = -7.0);
+    scene.points.sigma.iter_mut().for_each(|sigma| sigma.0[1] = -7.1);
     let uniform = stress_noise(&scene.model.grid, &scene.points, Weighting::Volume, 1, &scene.halo()).unwrap();
     (linear.about_plane, uniform.about_average.max(uniform.about_plane))
 }
@@ -28,7 +32,7 @@ fn noise_of_a_linear_field<K: Kinematics<D>, const D: usize>() -> (f64, f64) {
 fn a_linear_stress_has_no_noise_about_planes_and_a_uniform_one_none_at_all() {
     for (linear, uniform) in [noise_of_a_linear_field::<PlaneStrain, 2>(), noise_of_a_linear_field::<Solid, 3>()] {
         println!("linear about planes {linear:.1e}, uniform {uniform:.1e}");
-        assert!(linear <= 1e-13 && uniform <= 1e-13);
+        assert!(linear <= 1e-13 && uniform <= 1e-13); // measured 5.3e-16, 4.7e-15
     }
 }
 
@@ -47,12 +51,13 @@ fn numbers_of_a_known_block() {
 
 #[test]
 fn reactions_sum_to_the_weight_also_where_two_supports_hold_the_same_node() {
-    let (_, steps) = Scene::<PlaneStrain, 2>::new([axis(0.5, 4, 2), axis(0.5, 4, 2)], hencky(100.0, 0.3), Regime::QuasiStatic)
-        .body([0..3, 0..3], 2, 2.0, |x| x * 0.0)
-        .support(Support::fixed(0, false))
-        .support(Support::fixed(1, false))
-        .gravity(1.0, 0.0)
-        .solved(1.0, 1.0);
+    let (_, steps) =
+        Scene::<PlaneStrain, 2>::new([axis(0.5, 4, 2), axis(0.5, 4, 2)], hencky(100.0, 0.3), Regime::QuasiStatic)
+            .body([0..3, 0..3], 2, 2.0, |x| x * 0.0)
+            .support(Support::fixed(0, false))
+            .support(Support::fixed(1, false))
+            .gravity(1.0, 0.0)
+            .solved(1.0, 1.0);
     let reactions = &steps[0].report.reactions;
     let (sideways, upwards) = (reactions[0][0] + reactions[1][0], reactions[0][1] + reactions[1][1]);
     println!("reactions {reactions:?}, weight {}", 2.0 * 2.25);

@@ -70,8 +70,8 @@ fn functions_sum_to_one_and_gradients_to_zero_in_one_two_and_three_dimensions() 
             partition_of_unity([axis(0.3, 5, order), graded()]),
             partition_of_unity([graded(), axis(0.3, 5, order), axis(2.0, 1, order)]),
         ] {
-            assert!(unity <= 1e-14, "{unity:e}"); // measured <= 6.7e-16
-            assert!(gradient <= 1e-14, "{gradient:e}"); // measured <= 8.9e-16
+            println!("q = {order}: unity {unity:.1e}, gradients x smallest edge {gradient:.1e}");
+            assert!(unity <= 1e-14 && gradient <= 1e-14); // measured 6.7e-16, 1.8e-16
         }
     }
 }

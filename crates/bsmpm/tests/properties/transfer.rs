@@ -60,7 +60,7 @@ fn gather_and_scatter_are_adjoint_in_two_and_three_dimensions() {
     for order in 1..=3 {
         for (gradients, values) in [adjointness::<PlaneStrain, 2>(order), adjointness::<Solid, 3>(order)] {
             println!("order {order}: gradients {gradients:.1e}, values {values:.1e}");
-            assert!(gradients <= 1e-14 && values <= 1e-14); // measured 9e-17, 3e-17
+            assert!(gradients <= 1e-14 && values <= 1e-14); // measured 1.3e-16, 8.1e-17
         }
     }
 }
@@ -71,11 +71,14 @@ fn linear_fields_are_exact<K: Kinematics<D>, const D: usize>(order: usize) {
     let mut random = Random::new(5);
     let (H, shift) = (random.square::<D>(), random.vector::<D>());
     let u = linear_field(&scene, &H, &shift);
-    transfer::gradients(&shape, &u, |_, found| assert!((found - H).amax() <= 2e-13)); // measured 3e-14
+    let (mut gradient, mut value) = (0.0_f64, 0.0_f64);
+    transfer::gradients(&shape, &u, |_, found| gradient = gradient.max((found - H).amax()));
     transfer::to_points::<D, D>(&shape, &u, |p, found| {
         let exact = H * scene.points.x[p] + shift;
-        assert!((Vector::from(found) - exact).amax() <= 2e-14); // measured 1.3e-15
+        value = value.max((Vector::from(found) - exact).amax());
     });
+    println!("q = {order}, {D}-D: gradient to {gradient:.1e}, value to {value:.1e}");
+    assert!(gradient <= 1e-13 && value <= 1e-14); // measured 6.7e-15, 1.6e-15
 }
 
 /// Nodal values of H x + shift at the Greville abscissae.
@@ -104,16 +107,18 @@ fn the_mapping_conserves<K: Kinematics<D>, const D: usize>(order: usize) {
     let shape = Shape::at(&scene.model.grid, points).unwrap();
     let nodes = Nodes::map(&scene.model, &shape, points, (0.0, 0.1), &halo);
     let mass: f64 = points.mass.iter().sum();
-    assert!((nodes.weight.iter().sum::<f64>() / mass - 1.0).abs() <= 1e-14); // measured 9e-16
+    let mut worst = [(nodes.weight.iter().sum::<f64>() / mass - 1.0).abs(), 0.0, 0.0];
     let motion = points.motion.as_ref().unwrap();
     let v = &nodes.inertia.as_ref().unwrap().v;
     for c in 0..D {
         let at_points: f64 = (0..points.len()).map(|p| points.mass[p] * motion.v[p][c]).sum();
         let at_nodes: f64 = nodes.weight.iter().zip(v[c..].iter().step_by(D)).map(|(m, v)| m * v).sum();
-        assert!((at_nodes - at_points).abs() <= 1e-14 * mass * 4.0); // speeds are up to 4; measured 2e-15 of it
+        worst[1] = worst[1].max((at_nodes - at_points).abs() / (4.0 * mass)); // speeds are up to 4 m/s
         let weight: f64 = nodes.f_ext[c..].iter().step_by(D).sum();
-        assert!((weight / (-9.81 * mass) - 1.0).abs() <= 1e-14); // measured 7e-16
+        worst[2] = worst[2].max((weight / (-9.81 * mass) - 1.0).abs());
     }
+    println!("q = {order}, {D}-D: mass, momentum, weight to {worst:?}");
+    assert!(worst.iter().all(|&error| error <= 1e-14)); // measured 1.3e-15
 }
 
 #[test]

@@ -1,4 +1,6 @@
 //! Uniform confined compression by a face that moves: sigma = M ln(l) / l.
+//!
+//! In one step: afterwards the body no longer touches the face of the grid, which does not move with it.
 
 use crate::support::scene::{Scene, axis, hencky};
 use bsmpm::boundary::Support;
@@ -48,7 +50,7 @@ fn one_step_of_a_prescribed_face_gives_the_exact_stress_in_two_and_three_dimensi
         let found = (errors(&plane, 0.8), errors(&solid, 0.8));
         println!("{method:?}: {found:?}, {} iterations", steps[0].report.iterations);
         assert_eq!(steps.len(), 1);
-        assert!(found.0 <= 1e-10 && found.1 <= 1e-10); // measured 3e-14 without, 6e-12 with F-bar
+        assert!(found.0 <= 1e-10 && found.1 <= 1e-10); // measured 3.3e-14, F-bar 1.4e-14
     }
 }
 
@@ -58,7 +60,7 @@ fn one_step_over_many_cells_too() {
         let (scene, steps) = compressed::<PlaneStrain, 2>(6, 0.95, method);
         println!("{method:?}: {:.1e}, {} iterations", errors(&scene, 0.95), steps[0].report.iterations);
         assert_eq!(steps.len(), 1);
-        assert!(errors(&scene, 0.95) <= 1e-10);
+        assert!(errors(&scene, 0.95) <= 1e-10); // measured 2.6e-12
     }
 }
 
@@ -89,8 +91,10 @@ fn without_mass_the_averages_weigh_with_volume() {
             .support(face)
             .stabilised(method);
         scene.model.weighting = Weighting::Volume;
+        scene.model.criteria.force = 1e-12;
         let (scene, _) = scene.solved(1.0, 1.0);
-        assert!(errors(&scene, 0.8) <= 1e-9); // measured 8.8e-11
+        println!("{method:?}: {:.1e}", errors(&scene, 0.8));
+        assert!(errors(&scene, 0.8) <= 1e-10); // measured 3.2e-14
     }
 }
 

@@ -1,0 +1,15 @@
+//! `mpirun -n 2 bsmpm-par case.toml`: the solver program.
+
+use bsmpm_par::{launch, program};
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    match launch::start() {
+        Ok(universe) => {
+            let code = program::run(&universe);
+            drop(universe);
+            ExitCode::from(code)
+        }
+        Err(code) => ExitCode::from(code),
+    }
+}

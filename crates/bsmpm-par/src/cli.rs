@@ -1,0 +1,195 @@
+//! The command line of `bsmpm-par`.
+
+use clap::{Parser, ValueEnum};
+use std::path::PathBuf;
+use std::time::Duration;
+
+/// Exit code of a wrong command line.
+pub const USAGE: u8 = 2;
+
+/// Beginnings of the PETSc options that may follow `--`: methods, preconditioners and their reports, no files.
+const PETSC_OPTIONS: [&str; 8] =
+    ["-ksp_", "-pc_", "-mg_", "-sub_", "-redundant_", "-mat_mumps_", "-mat_superlu_dist_", "-mat_cholmod_"];
+
+/// How a run is logged.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum LogFormat {
+    /// Lines for people.
+    Text,
+    /// One JSON object a line.
+    Json,
+}
+
+/// Form of the frames.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum FrameFormat {
+    /// One .vtu file a frame, and a .pvd file with their times.
+    Vtu,
+    /// One file; not available yet.
+    Vtkhdf,
+}
+
+/// Implicit B-spline material point method: runs a case on one or more MPI ranks.
+#[derive(Clone, Debug, Parser)]
+#[command(name = "bsmpm-par", version, about)]
+pub struct Arguments {
+    /// The case file (TOML).
+    pub case: PathBuf,
+    /// Where everything is written [default: <case stem>.out in the working directory]
+    #[arg(short, long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
+    /// Override one key of the case, e.g. --set grid.cell="5 mm"; repeatable
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
+    /// Validate the case, print the derived sizes, run nothing
+    #[arg(long)]
+    pub check: bool,
+    /// Replace a run in the output directory: deletes the files that its run.json names
+    #[arg(long, conflicts_with = "restart")]
+    pub force: bool,
+    /// Go on from a checkpoint; not available yet
+    #[arg(long, value_name = "auto|FILE")]
+    pub restart: Option<String>,
+    /// Stop when the run's step number reaches N (exit 75; 0 if the end was reached)
+    #[arg(long, value_name = "N")]
+    pub max_steps: Option<u64>,
+    /// Stop cleanly before this much time has passed (exit 75)
+    #[arg(long, value_name = "HH:MM:SS", value_parser = wall)]
+    pub max_wall: Option<Duration>,
+    /// Form of the frames
+    #[arg(long, value_name = "FORMAT", default_value = "vtu")]
+    pub frames: FrameFormat,
+    /// Cores of each rank; more than one is not available yet
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub threads: u32,
+    /// Refuse a case that would need more memory, e.g. 16GiB (exit 71)
+    #[arg(long, value_name = "SIZE", value_parser = size)]
+    pub max_memory: Option<u64>,
+    /// No log lines
+    #[arg(short, long, conflicts_with = "verbose")]
+    pub quiet: bool,
+    /// Log rejected attempts in full, too
+    #[arg(short, long)]
+    pub verbose: bool,
+    /// Form of the log
+    #[arg(long, value_name = "FORMAT", default_value = "text")]
+    pub log_format: LogFormat,
+    /// Options for PETSc, after `--`, e.g. -- -ksp_type cg -pc_type gamg
+    #[arg(last = true, value_name = "PETSC OPTIONS")]
+    pub petsc: Vec<String>,
+}
+
+impl Arguments {
+    /// Reads the process's arguments. Every rank does; only one of them should `print`. `Err` holds the exit code.
+    pub fn read(print: bool) -> Result<Self, u8> {
+        let arguments = Self::try_parse().map_err(|error| {
+            if print {
+                // Nothing is left to do where even the terminal is gone.
+                let _ = error.print();
+            }
+            u8::try_from(error.exit_code()).unwrap_or(USAGE)
+        })?;
+        arguments.admissible().map_err(|reason| {
+            if print {
+                eprintln!("bsmpm-par: {reason}");
+            }
+            USAGE
+        })?;
+        Ok(arguments)
+    }
+
+    fn admissible(&self) -> Result<(), String> {
+        if self.restart.is_some() {
+            return Err("--restart is not available yet: this version writes no checkpoints".into());
+        }
+        if self.frames == FrameFormat::Vtkhdf {
+            return Err("--frames vtkhdf is not available yet; use vtu".into());
+        }
+        if self.threads != 1 {
+            return Err("--threads: more than one core of a rank is not available yet; start more ranks".into());
+        }
+        petsc_options(&self.petsc)
+    }
+
+    /// Where the run is written.
+    pub fn directory(&self) -> PathBuf {
+        self.output.clone().unwrap_or_else(|| {
+            let mut name = self.case.file_stem().unwrap_or_default().to_owned();
+            name.push(".out");
+            PathBuf::from(name)
+        })
+    }
+}
+
+/// Refuses what could write files, attach debuggers or read more options.
+fn petsc_options(options: &[String]) -> Result<(), String> {
+    for option in options {
+        let is_name = option.starts_with('-') && option.parse::<f64>().is_err();
+        let allowed = option == "-log_view" || PETSC_OPTIONS.iter().any(|beginning| option.starts_with(beginning));
+        if is_name && !allowed {
+            return Err(format!(
+                "{option} is not among the PETSc options that may be given: {}",
+                PETSC_OPTIONS.join("* ")
+            ));
+        }
+        if !is_name && option.contains([':', '/']) {
+            return Err(format!("{option}: PETSc options must not name files"));
+        }
+    }
+    let after_view = options.windows(2).find(|pair| pair[0] == "-log_view" && !pair[1].starts_with('-'));
+    after_view.map_or(Ok(()), |pair| Err(format!("-log_view takes no value here, found {}", pair[1])))
+}
+
+fn wall(text: &str) -> Result<Duration, String> {
+    let wrong = || format!("{text} is no time; expected HH:MM:SS");
+    let parts: Vec<u64> = text.split(':').map(|part| part.parse().map_err(|_| wrong())).collect::<Result<_, _>>()?;
+    match parts[..] {
+        [hours, minutes, seconds] if minutes < 60 && seconds < 60 && hours < 1_000_000 => {
+            Ok(Duration::from_secs(hours * 3600 + minutes * 60 + seconds))
+        }
+        _ => Err(wrong()),
+    }
+}
+
+fn size(text: &str) -> Result<u64, String> {
+    let wrong = || format!("{text} is no size; expected e.g. 800MB, 16GiB");
+    let split = text.find(|c: char| c.is_ascii_alphabetic()).unwrap_or(text.len());
+    let number: f64 = text[..split].trim().parse().map_err(|_| wrong())?;
+    let factor = match text[split..].trim() {
+        "" | "B" => 1.0,
+        "kB" => 1e3,
+        "MB" => 1e6,
+        "GB" => 1e9,
+        "KiB" => 1024.0,
+        "MiB" => 1024.0 * 1024.0,
+        "GiB" => 1024.0 * 1024.0 * 1024.0,
+        _ => return Err(wrong()),
+    };
+    let bytes = number * factor;
+    if bytes >= 1.0 && bytes < 1e18 { Ok(bytes as u64) } else { Err(wrong()) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn petsc_options_that_write_or_read_files_are_refused() {
+        let refused =
+            |options: &[&str]| petsc_options(&options.iter().map(|&o| o.to_owned()).collect::<Vec<_>>()).is_err();
+        assert!(!refused(&["-ksp_type", "cg", "-pc_type", "gamg", "-log_view", "-ksp_rtol", "1e-12"]));
+        assert!(refused(&["-log_view", ":pwned"]));
+        assert!(refused(&["-log_view", "pwned"]));
+        assert!(refused(&["-options_file", "x"]));
+        assert!(refused(&["-ksp_monitor", "ascii:pwned"]));
+        assert!(refused(&["-on_error_attach_debugger"]));
+    }
+
+    #[test]
+    fn sizes_and_times_are_read_with_their_units() {
+        assert_eq!(size("16GiB"), Ok(16 << 30));
+        assert!(size("many").is_err() && size("-1").is_err());
+        assert_eq!(wall("01:02:03"), Ok(Duration::from_secs(3723)));
+        assert!(wall("90").is_err() && wall("00:99:00").is_err());
+    }
+}

@@ -1,0 +1,180 @@
+//! Files of a run, written by rank 0: manifest, histories, steps and frames.
+
+use crate::cli::Arguments;
+use crate::machine;
+use crate::setup;
+use bsmpm::control::Accepted;
+use bsmpm_io::Error;
+use bsmpm_io::directory::{Existing, HISTORY, OutputDirectory};
+use bsmpm_io::frame::Frame;
+use bsmpm_io::frames::{COLLECTION, Frames};
+use bsmpm_io::manifest::{self, Check, Extent, Manifest, Status};
+use bsmpm_io::steps::{STEPS, Step};
+use bsmpm_io::table::{Cell, Column, Table};
+use bsmpm_scene::Case;
+use bsmpm_scene::Regime;
+
+/// The open files of a run, and what its manifest will say.
+pub struct Ledger {
+    directory: OutputDirectory,
+    manifest: Manifest,
+    columns: Vec<Column>,
+    history: Table,
+    steps: Table,
+    frames: Frames,
+    end: f64,
+}
+
+impl Ledger {
+    /// Claims the output directory and opens the tables.
+    pub fn open(arguments: &Arguments, case: &Case, ranks: usize, columns: Vec<Column>) -> Result<Self, Error> {
+        let existing = if arguments.force { Existing::Delete } else { Existing::Refuse };
+        let mut manifest = first_manifest(arguments, case, ranks);
+        [HISTORY, STEPS, COLLECTION].iter().for_each(|file| manifest.name_output(file));
+        let directory = OutputDirectory::claim(&arguments.directory(), existing, &manifest)?;
+        let time = match case.analysis.regime {
+            Regime::Dynamic => "s",
+            Regime::QuasiStatic => "-",
+        };
+        let path = directory.path().to_owned();
+        let mut headings = vec![Column::new("step", "-"), Column::new("time", time)];
+        headings.extend(columns.iter().cloned());
+        Ok(Self {
+            history: Table::create(&path.join(HISTORY), &headings)?,
+            steps: Table::create(&path.join(STEPS), &Step::columns(time))?,
+            frames: Frames::create(&path)?,
+            end: case.analysis.end,
+            directory,
+            manifest,
+            columns,
+        })
+    }
+
+    /// What `run.json` says; written when the next file is.
+    pub fn manifest(&mut self) -> &mut Manifest {
+        &mut self.manifest
+    }
+
+    /// Where the run is written.
+    pub fn path(&self) -> &std::path::Path {
+        self.directory.path()
+    }
+
+    /// A row of `history.csv`; the checks whose time this is take their value.
+    pub fn history(&mut self, step: u64, time: f64, row: &[f64]) -> Result<(), Error> {
+        let mut cells = vec![Cell::Int(step), Cell::Float(time)];
+        cells.extend(row.iter().map(|&value| Cell::Float(value)));
+        for check in &mut self.manifest.checks {
+            if check.at.unwrap_or(self.end) == time {
+                let column = self.columns.iter().position(|column| column.name == check.quantity);
+                check.value = column.map(|column| row[column]);
+            }
+        }
+        self.history.row(&cells)
+    }
+
+    /// A row of `steps.csv`, and its share of the totals.
+    pub fn step(&mut self, number: u64, accepted: &Accepted, wall: f64) -> Result<(), Error> {
+        let report = &accepted.report;
+        let summary = &mut self.manifest.summary;
+        summary.steps = number;
+        summary.iterations += report.iterations as u64;
+        summary.linear_iterations += report.linear_iterations as u64;
+        summary.cutbacks += accepted.rejected.len() as u64;
+        summary.residual_evaluations += report.evaluations as u64;
+        self.manifest.sizes.insert("active_nodes".into(), report.active_nodes as u64);
+        self.manifest.sizes.insert("unknowns".into(), report.unknowns as u64);
+        let row = Step {
+            step: number,
+            time: accepted.t,
+            dt: accepted.dt,
+            iterations: report.iterations as u64,
+            residual: report.force,
+            linear_iterations: report.linear_iterations as u64,
+            cutbacks: accepted.rejected.len() as u64,
+            active_nodes: report.active_nodes as u64,
+            wall,
+        };
+        self.steps.row(&row.cells())
+    }
+
+    /// A frame; the manifest names it before it is there.
+    pub fn frame(&mut self, frame: &Frame) -> Result<(), Error> {
+        self.manifest.name_output(&Frames::file(frame.step));
+        self.manifest.write(self.directory.path())?;
+        self.frames.write(frame)
+    }
+
+    /// Decides the checks, and writes the manifest for the last time; true if all checks passed.
+    pub fn close(&mut self, status: Status, exit_code: u8) -> Result<(), Error> {
+        self.manifest.finish(status, exit_code);
+        self.manifest.seal(self.directory.path())?;
+        self.manifest.write(self.directory.path())
+    }
+
+    /// Decides the checks of a run that reached its end; true if all passed.
+    pub fn judge(&mut self) -> bool {
+        for check in &mut self.manifest.checks {
+            check.passed = check.value.is_some_and(|value| {
+                check.min.is_none_or(|min| value >= min) && check.max.is_none_or(|max| value <= max)
+            });
+        }
+        self.manifest.checks.iter().all(|check| check.passed)
+    }
+}
+
+fn first_manifest(arguments: &Arguments, case: &Case, ranks: usize) -> Manifest {
+    let file = arguments.case.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let described = manifest::Case::new(&file, &case.title, "plane-strain", case.text.clone());
+    let mut manifest = Manifest::begin(env!("CARGO_PKG_VERSION"), std::env::args().collect(), described);
+    let axes = &case.grid.axes;
+    let longest = |axis: &bsmpm_scene::Axis| (0..axis.cells()).map(|i| axis.cell(i)).fold(0.0, f64::max);
+    manifest.ranks = ranks as u32;
+    manifest.grid = Some(Extent {
+        lower: case.grid.lower().to_vec(),
+        upper: case.grid.upper().to_vec(),
+        cell: axes.iter().map(longest).collect(),
+    });
+    let estimate = case.estimate();
+    manifest.sizes = [("points", estimate.points), ("cells", estimate.cells), ("nodes", estimate.nodes)]
+        .map(|(k, v)| (k.into(), v))
+        .into();
+    manifest.picture_times = picture_times(case);
+    manifest.choices = case
+        .notes
+        .iter()
+        .map(|note| manifest::Choice { key: note.key.clone(), value: note.value.clone(), reason: note.reason.clone() })
+        .collect();
+    manifest.warnings = case.warnings.clone();
+    manifest.versions = versions();
+    let check = |check: &bsmpm_scene::Check| Check {
+        quantity: check.quantity.clone(),
+        at: Some(check.at),
+        value: None,
+        min: check.min,
+        max: check.max,
+        passed: false,
+    };
+    manifest.checks = case.checks.iter().map(check).collect();
+    manifest
+}
+
+fn picture_times(case: &Case) -> Vec<f64> {
+    if case.output.times.is_empty() {
+        setup::frame_times(case).last().copied().into_iter().collect()
+    } else {
+        case.output.times.clone()
+    }
+}
+
+fn versions() -> std::collections::BTreeMap<String, String> {
+    let (major, minor, subminor) = petsc_rs::version();
+    let mpi = mpi::environment::library_version().unwrap_or_default();
+    [
+        ("petsc", format!("{major}.{minor}.{subminor}, {}-bit indices", petsc_rs::petsc_int_bits())),
+        ("mpi", mpi.split(',').next().unwrap_or_default().trim().to_owned()),
+        ("blas", machine::blas().unwrap_or_else(|| "unknown".into())),
+    ]
+    .map(|(name, version)| (name.to_owned(), version))
+    .into()
+}

@@ -1,0 +1,116 @@
+//! Whatever fails on whichever rank: the job ends by itself, with the code and the message, and leaves what is good.
+
+mod support;
+
+use bsmpm_io::manifest::Status;
+use support::cases::{COLUMN, SLIDING_BLOCK, changed};
+use support::results::{all_finite, all_frames, history, manifest, steps};
+use support::{Output, Scratch};
+
+/// s  Far more than a job that ends by itself takes here.
+const HANGS: u64 = 30;
+
+fn with_fault(scratch: &Scratch, ranks: Option<usize>, fault: &str) -> Output {
+    scratch.job(ranks, &["case.toml", "--force"]).variable("BSMPM_FAULT", fault).within(HANGS).run()
+}
+
+#[test]
+fn a_panic_on_any_rank_ends_the_job_with_70_and_one_message() {
+    for (ranks, rank) in [(2, 0), (2, 1), (3, 0), (3, 2)] {
+        let scratch = Scratch::with_case(SLIDING_BLOCK);
+        let output = with_fault(&scratch, Some(ranks), &format!("panic:rank={rank},step=3")).expect(70);
+        output.says_once(&format!("panic on rank {rank}"));
+        assert_eq!(output.count("panic on rank"), 1, "{output:#?}");
+    }
+}
+
+#[test]
+fn a_panic_in_the_first_step_and_without_a_launcher_ends_with_70() {
+    let scratch = Scratch::with_case(SLIDING_BLOCK);
+    with_fault(&scratch, Some(2), "panic:rank=1,step=1").expect(70).says_once("panic on rank 1");
+    with_fault(&scratch, Some(1), "panic:rank=0,step=3").expect(70).says_once("panic on rank 0");
+    with_fault(&scratch, None, "panic:rank=0,step=3").expect(70).says_once("panic on rank 0");
+}
+
+/// The manifest of a run that was killed says `running`, names what there is, and lets `--force` clear it away.
+#[test]
+fn what_a_panic_leaves_is_readable_and_can_be_replaced() {
+    let scratch = Scratch::with_case(SLIDING_BLOCK);
+    with_fault(&scratch, Some(2), "panic:rank=1,step=30").expect(70);
+    let directory = scratch.path("case.out");
+    assert_eq!(manifest(&directory).status, Status::Running);
+    assert_eq!(*steps(&directory).get("step").unwrap().last().unwrap(), 29.0);
+    assert!(all_frames(&directory).iter().any(|frame| frame.time == 0.02));
+    all_finite(&directory);
+    scratch.mpirun(2, &["case.toml", "-q"]).expect(73);
+    scratch.mpirun(2, &["case.toml", "-q", "--force"]).expect(0);
+}
+
+#[test]
+fn a_fault_that_cannot_be_read_or_cannot_happen_is_refused() {
+    let wrong = ["", "panic", "panic:rank=0", "panic:step=1", "panic:rank=x,step=1", "panic:rank=0,step=-1", "melt:rank=0,step=1"];
+    for fault in wrong {
+        let scratch = Scratch::with_case(COLUMN);
+        let output = with_fault(&scratch, Some(2), fault).expect(2);
+        output.says_once("BSMPM_FAULT");
+        assert_eq!(scratch.entries(), ["case.toml"], "{fault}");
+    }
+    let scratch = Scratch::with_case(COLUMN);
+    with_fault(&scratch, Some(2), "panic:rank=2,step=1").expect(2).says_once("BSMPM_FAULT");
+}
+
+/// What a failed run must have left, whatever the reason.
+fn failed(scratch: &Scratch, code: u8) -> bsmpm_io::manifest::Manifest {
+    let directory = scratch.path("case.out");
+    all_finite(&directory);
+    let manifest = manifest(&directory);
+    assert_eq!((manifest.status, manifest.exit_code), (Status::Failed, Some(code)));
+    assert_eq!(manifest.checkpoint, None);
+    let failure = manifest.failure.as_ref().expect("a failure");
+    let times = history(&directory).get("time").unwrap().to_vec();
+    let (frames, last) = (all_frames(&directory), *times.last().unwrap());
+    assert_eq!(frames.last().unwrap().time, last, "the last converged state is in the last frame");
+    assert_eq!((failure.time, failure.step), (last, times.len() as u64));
+    manifest
+}
+
+#[test]
+fn a_first_step_that_never_converges_ends_with_80_and_saves_the_start() {
+    for ranks in [1, 2] {
+        let scratch = Scratch::with_case(COLUMN);
+        let hard = ["--set", "solver.max_iterations=1", "--set", "solver.tolerance=1e-15"];
+        let output = scratch.mpirun(ranks, &[&["case.toml"], &hard[..]].concat()).expect(80);
+        assert_eq!(output.count("bsmpm-par:"), 1, "{output:#?}");
+        let manifest = failed(&scratch, 80);
+        assert_eq!(manifest.summary.steps, 0);
+        let failure = manifest.failure.unwrap();
+        assert!(failure.reason.contains("not converged"), "{}", failure.reason);
+    }
+}
+
+/// Gravity grows until the column, softer than its own weight, cannot be followed any more.
+#[test]
+fn a_later_step_that_never_converges_ends_with_80_and_saves_the_last_good_state() {
+    for ranks in [1, 2] {
+        let scratch = Scratch::with_case(&changed(COLUMN, "young   = \"1 MPa\"", "young   = \"20 kPa\""));
+        scratch.mpirun(ranks, &["case.toml", "--set", "solver.max_iterations=6"]).expect(80);
+        let manifest = failed(&scratch, 80);
+        assert!(manifest.summary.steps > 0 && manifest.summary.cutbacks > 0, "{:?}", manifest.summary);
+        assert!(manifest.failure.unwrap().time < 1.0);
+    }
+}
+
+#[test]
+fn a_point_that_leaves_the_grid_ends_the_run_with_81_and_is_named() {
+    for ranks in [1, 2, 3] {
+        let scratch = Scratch::with_case(&changed(SLIDING_BLOCK, "right  = \"roller\"\n", ""));
+        let output = scratch.mpirun(ranks, &["case.toml", "--set", "analysis.end=0.2"]).expect(81);
+        let manifest = failed(&scratch, 81);
+        let failure = manifest.failure.unwrap();
+        let worst = failure.worst.expect("the point that left");
+        assert_eq!(worst.kind, "point");
+        assert!(worst.position[0] > 1.0 && worst.position.len() == 2, "{worst:?}");
+        output.says_once(&format!("point {}", worst.id));
+        assert!(failure.time > 0.1 && failure.time < 0.13, "{failure:?}");
+    }
+}

@@ -1,0 +1,116 @@
+//! The number of ranks changes nothing but the time that a run takes.
+
+mod support;
+
+use support::cases::{SLIDING_BLOCK, changed};
+use support::results::{all_frames, differences, history, last_frame, manifest};
+use support::{Scratch, shipped};
+
+/// Asserts that the last frames of runs on these numbers of ranks agree with the first one's to `tolerance`, relative to
+/// the largest number of each field.
+#[track_caller]
+fn agree(scratch: &Scratch, case: &str, further: &[&str], ranks: &[usize], tolerance: f64) {
+    let frames: Vec<_> = ranks
+        .iter()
+        .map(|&count| {
+            let directory = format!("{count}.out");
+            let arguments = [&[case, "-q", "-o", &directory], further].concat();
+            scratch.mpirun(count, &arguments).expect(0);
+            assert_eq!(manifest(&scratch.path(&directory)).ranks as usize, count);
+            last_frame(&scratch.path(&directory))
+        })
+        .collect();
+    for (frame, count) in frames.iter().zip(ranks) {
+        for (field, difference) in differences(frame, &frames[0]) {
+            assert!(difference <= tolerance, "{field} on {count} ranks differs by {difference:.1e}");
+        }
+    }
+}
+
+#[test]
+fn an_elastic_block_that_slides_from_slab_to_slab_is_the_same_on_1_2_3_and_4_ranks() {
+    let scratch = Scratch::with_case(SLIDING_BLOCK);
+    agree(&scratch, "case.toml", &[], &[1, 2, 3, 4], 1e-9);
+    for ranks in [1, 2, 3, 4] {
+        let directory = scratch.path(&format!("{ranks}.out"));
+        let history = history(&directory);
+        let mass = history.get("mass").unwrap();
+        assert!(mass.iter().all(|value| value.to_bits() == mass[0].to_bits()), "on {ranks} ranks: {mass:?}");
+        assert!((mass[0] - 80.0).abs() < 1e-10, "{}", mass[0]);
+    }
+}
+
+/// On 4 ranks the block's 8 columns of cells begin as 4 slabs of 2; each point then moves by more than 3 columns. So
+/// that no rank keeps its points unless all slabs move along, which the next test excludes.
+#[test]
+fn the_sliding_block_does_cross_the_bounds_of_slabs() {
+    let scratch = Scratch::with_case(SLIDING_BLOCK);
+    scratch.mpirun(1, &["case.toml", "-q"]).expect(0);
+    let frames = all_frames(&scratch.path("case.out"));
+    let (first, last) = (&frames[0], &frames[frames.len() - 1]);
+    let moved = first.position.iter().zip(&last.position).map(|(from, to)| to[0] - from[0]);
+    let least = moved.fold(f64::INFINITY, f64::min);
+    assert!(least > 3.0 * 0.05, "{least}");
+}
+
+/// Two blocks move towards each other: whatever way the slabs follow, points of one of them change their ranks.
+#[test]
+fn blocks_that_move_in_opposite_directions_are_the_same_on_1_2_3_and_4_ranks() {
+    let second = "[[body]]\nmaterial = \"rubber\"\nbox = { lower = [0.55, 0.0], upper = [0.9, 0.2] }\n\
+                  points_per_cell = 2\nvelocity = [-4.0, 0.0]\n\n[gravity]";
+    let apart = changed(SLIDING_BLOCK, "upper = [0.5, 0.2]", "upper = [0.35, 0.2]");
+    let scratch = Scratch::with_case(&changed(&apart, "[gravity]", second));
+    agree(&scratch, "case.toml", &["--set", "analysis.end=0.035"], &[1, 2, 3, 4], 1e-9);
+}
+
+#[test]
+fn the_shipped_elastic_column_is_the_same_on_1_2_3_and_4_ranks() {
+    let case = shipped("short/self_weight_column.toml");
+    agree(&Scratch::new(), case.to_str().unwrap(), &[], &[1, 2, 3, 4], 1e-9);
+}
+
+/// The column is 4 cells wide: on 4 ranks slabs of one column have ghosts from beyond the next slab.
+#[test]
+fn slabs_thinner_than_the_splines_reach_work_for_every_order() {
+    let case = shipped("short/self_weight_column.toml");
+    for order in ["linear", "quadratic", "cubic"] {
+        let order = format!("grid.order={order}");
+        agree(&Scratch::new(), case.to_str().unwrap(), &["--set", &order], &[1, 3, 4], 1e-9);
+    }
+}
+
+#[test]
+fn ranks_without_points_take_part() {
+    let scratch = Scratch::with_case(&changed(SLIDING_BLOCK, "upper = [0.5, 0.2]", "upper = [0.2, 0.2]"));
+    agree(&scratch, "case.toml", &[], &[1, 4], 1e-9);
+}
+
+#[test]
+fn more_ranks_than_columns_of_cells_are_refused_with_the_most_that_are_possible() {
+    let scratch = Scratch::new();
+    let case = shipped("short/self_weight_column.toml");
+    let output = scratch.mpirun(5, &[case.to_str().unwrap()]).expect(65);
+    let lines: Vec<&str> = output.stderr.lines().filter(|line| line.contains("ranks")).collect();
+    assert!(lines.len() == 1 && lines[0].contains('5') && lines[0].contains('4'), "{output:#?}");
+    assert_eq!(scratch.entries(), [""; 0]);
+}
+
+/// Plastic flow amplifies round-off, so that only the result that matters is compared.
+#[test]
+fn the_collapse_runs_out_as_far_on_1_2_3_and_4_ranks() {
+    let text = std::fs::read_to_string(shipped("short/column_collapse.toml")).unwrap();
+    let (case, _check) = text.split_once("[[check]]").unwrap();
+    let times = "times = [\"0.109 s\", \"0.235 s\", \"0.300 s\", \"0.351 s\", \"0.420 s\", \"0.607 s\"]";
+    let case = changed(&changed(case, times, ""), "end  = \"0.607 s\"", "end  = \"0.12 s\"");
+    let scratch = Scratch::with_case(&case);
+    let runouts = [1, 2, 3, 4].map(|ranks| {
+        let directory = format!("{ranks}.out");
+        scratch.mpirun(ranks, &["case.toml", "-q", "-o", &directory]).expect(0);
+        let history = history(&scratch.path(&directory));
+        let mass = history.get("mass").unwrap();
+        assert!(mass.iter().all(|value| value.to_bits() == mass[0].to_bits()), "on {ranks} ranks: {mass:?}");
+        *history.get("runout").unwrap().last().unwrap()
+    });
+    assert!(runouts[0] > 0.23, "{runouts:?}");
+    assert!(runouts.iter().all(|runout| (runout - runouts[0]).abs() < 1e-3 * runouts[0]), "{runouts:?}");
+}

@@ -1,0 +1,104 @@
+//! Small cases, as text.
+
+/// An elastic block slides over a smooth floor, four cells far: it needs no case of its own to migrate.
+pub const SLIDING_BLOCK: &str = r#"title    = "Elastic block that slides and sags"
+geometry = "plane-strain"
+
+[analysis]
+type = "dynamic"
+end  = "0.05 s"
+dt   = "1 ms"
+
+[grid]
+lower = [0.0, 0.0]
+upper = [1.0, 0.3]
+cell  = "50 mm"
+order = "quadratic"
+
+[material.rubber]
+model   = "hencky"
+young   = "500 kPa"
+poisson = 0.3
+density = 1000
+
+[[body]]
+material = "rubber"
+box = { lower = [0.1, 0.0], upper = [0.5, 0.2] }
+points_per_cell = 2
+velocity = [4.0, 0.0]
+
+[gravity]
+acceleration = [0.0, -9.81]
+
+[boundary]
+bottom = "roller"
+left   = "roller"
+right  = "roller"
+
+[solver]
+tolerance       = 1e-14
+force_tolerance = 1e-9
+
+[output]
+every = "20 ms"
+
+[[history]]
+quantity = "runout"
+
+[[history]]
+quantity = "mass"
+
+[[history]]
+quantity = "momentum"
+"#;
+
+/// Quasi-static, five steps of next to no work.
+pub const COLUMN: &str = r#"geometry = "plane-strain"
+
+[analysis]
+type  = "quasi-static"
+steps = 5
+
+[grid]
+lower = [0.0, 0.0]
+upper = [4.0, 5.0]
+cell  = "1 m"
+order = "quadratic"
+
+[material.soil]
+model   = "hencky"
+young   = "1 MPa"
+poisson = 0.3
+density = "2 t/m3"
+
+[[body]]
+material = "soil"
+box = { lower = [0.0, 0.0], upper = [4.0, 4.0] }
+points_per_cell = 2
+
+[gravity]
+acceleration = [0.0, -9.81]
+ramp = 1.0
+
+[boundary]
+bottom = "fixed"
+left   = "roller"
+right  = "roller"
+
+[output]
+every = 0.4
+
+[[history]]
+quantity = "height"
+
+[[history]]
+quantity = "reaction"
+face = "bottom"
+"#;
+
+/// The text with one part replaced, which must be in it once.
+#[track_caller]
+pub fn changed(text: &str, part: &str, by: &str) -> String {
+    assert_eq!(text.matches(part).count(), 1, "{part:?} must be in the case once");
+    text.replacen(part, by, 1)
+}

@@ -1,0 +1,113 @@
+//! Runs the real program under mpirun, in a scratch directory of its own, and looks at what it left.
+
+#![allow(dead_code)] // every test program takes its part of this
+
+pub mod cases;
+mod processes;
+pub mod results;
+
+pub use processes::Output;
+
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// The program under test.
+pub const PROGRAM: &str = env!("CARGO_BIN_EXE_bsmpm-par");
+
+/// After this long a run counts as hanging.
+const PATIENCE: Duration = Duration::from_secs(120);
+
+/// A shipped case.
+pub fn shipped(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases").join(name)
+}
+
+/// A directory in which runs are started; it goes with everything in it.
+pub struct Scratch(tempfile::TempDir);
+
+impl Scratch {
+    pub fn new() -> Self {
+        Self(tempfile::tempdir().unwrap())
+    }
+
+    /// With the text of a case in `case.toml`.
+    pub fn with_case(text: &str) -> Self {
+        let scratch = Self::new();
+        scratch.write("case.toml", text);
+        scratch
+    }
+
+    pub fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    pub fn write(&self, name: &str, text: impl AsRef<[u8]>) {
+        std::fs::write(self.path(name), text).unwrap();
+    }
+
+    /// Names of everything that is directly in it, sorted.
+    pub fn entries(&self) -> Vec<String> {
+        entries(self.0.path())
+    }
+
+    /// A run of the program on `ranks` ranks with this directory as the working directory.
+    pub fn mpirun(&self, ranks: usize, arguments: &[&str]) -> Output {
+        self.job(Some(ranks), arguments).run()
+    }
+
+    /// A run without a launcher.
+    pub fn direct(&self, arguments: &[&str]) -> Output {
+        self.job(None, arguments).run()
+    }
+
+    /// A run to which more is to be said.
+    pub fn job(&self, ranks: Option<usize>, arguments: &[&str]) -> Job {
+        let arguments = arguments.iter().map(|&argument| argument.to_owned()).collect();
+        Job { directory: self.0.path().to_owned(), ranks, arguments, variables: Vec::new(), patience: PATIENCE }
+    }
+}
+
+/// Names of everything that is directly in a directory, sorted.
+pub fn entries(directory: &Path) -> Vec<String> {
+    let entries = std::fs::read_dir(directory).unwrap();
+    let mut names: Vec<String> = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    names
+}
+
+/// A run before it is started.
+pub struct Job {
+    directory: PathBuf,
+    ranks: Option<usize>,
+    arguments: Vec<String>,
+    variables: Vec<(String, String)>,
+    patience: Duration,
+}
+
+impl Job {
+    /// With an environment variable.
+    pub fn variable(mut self, name: &str, value: &str) -> Self {
+        self.variables.push((name.to_owned(), value.to_owned()));
+        self
+    }
+
+    /// With another time after which it counts as hanging.
+    pub fn within(mut self, seconds: u64) -> Self {
+        self.patience = Duration::from_secs(seconds);
+        self
+    }
+
+    /// Runs to the end. Panics if that does not come, or if a process of the run outlives it.
+    pub fn run(self) -> Output {
+        let (program, mut arguments) = match self.ranks {
+            None => (PROGRAM, Vec::new()),
+            Some(ranks) => {
+                let count = ranks.to_string();
+                let launcher = ["-q", "--oversubscribe", "-n", &count, PROGRAM];
+                ("mpirun", launcher.iter().map(|&part| part.to_owned()).collect())
+            }
+        };
+        arguments.extend(self.arguments);
+        processes::run(program, &arguments, &self.directory, &self.variables, self.patience)
+    }
+}

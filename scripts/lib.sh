@@ -1,0 +1,72 @@
+# shellcheck shell=bash disable=SC2034  # the names that are set here are read by the scripts
+# What the scripts share: where things are, building, launching on ranks, counting. Sourced, never run.
+
+root=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.." && pwd -P)
+
+# A shell that has not been opened anew since Rust came does not know it yet.
+command -v cargo >/dev/null || PATH="$PATH:${CARGO_HOME:-${HOME:-}/.cargo}/bin"
+
+say() {
+    printf '%s\n' "$*" >&2
+}
+
+die() {
+    say "${0##*/}: $*"
+    exit 1
+}
+
+# build ARGUMENTS...: cargo with the arguments in the workspace; prints the path of each executable that it made.
+build() {
+    local messages
+    messages=$(cd -- "$root" && cargo "$@" --message-format=json-render-diagnostics </dev/null) || return
+    sed -n 's/.*"executable":"\([^"]*\)".*/\1/p' <<<"$messages"
+}
+
+# build_programs: both programs, optimised; sets `solver` and `companion`.
+build_programs() {
+    local built
+    built=$(build build --release --package bsmpm-par --package bsmpm-tools --bins) || die "the build failed"
+    solver=$(grep '/bsmpm-par$' <<<"$built") || die "cargo built no bsmpm-par"
+    companion=$(grep '/bsmpm$' <<<"$built") || die "cargo built no bsmpm"
+}
+
+# default NAME VALUE: an environment variable, unless the caller has set it.
+default() {
+    export "$1=${!1-$2}"
+}
+
+# mpi_environment: what MPI needs to start anywhere; also for programs that start mpirun themselves.
+mpi_environment() {
+    # The ranks are the parallelism: no threads in BLAS besides.
+    export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
+    if ((EUID == 0)); then
+        export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+    fi
+    # The program says itself why it ends; mpirun need not add its own page.
+    default OMPI_MCA_orte_execute_quiet 1
+    # In a Slurm job the site decides on placement and transport.
+    [[ -z ${SLURM_JOB_ID-} ]] || return 0
+    # More ranks than cores, and several runs side by side: no ranks bound to the same cores, no busy waiting.
+    default OMPI_MCA_rmaps_base_oversubscribe 1
+    default PRTE_MCA_rmaps_default_mapping_policy :oversubscribe
+    default OMPI_MCA_hwloc_base_binding_policy none
+    default OMPI_MCA_mpi_yield_when_idle 1
+    # One machine: shared memory only, without the system call that containers forbid.
+    default OMPI_MCA_pml ob1
+    default OMPI_MCA_btl self,vader
+    default OMPI_MCA_btl_vader_single_copy_mechanism none
+}
+
+# launch RANKS PROGRAM ARGUMENTS...: the program on that many ranks; its exit code.
+launch() {
+    local ranks=$1
+    shift
+    mpi_environment
+    mpirun -n "$ranks" "$@" </dev/null
+}
+
+# set_counts LINE: `passed` and `failed` from a line "N passed, M failed"; false for any other line.
+set_counts() {
+    [[ $1 =~ ^([0-9]+)\ passed,\ ([0-9]+)\ failed$ ]] || return 1
+    passed=${BASH_REMATCH[1]} failed=${BASH_REMATCH[2]}
+}
