@@ -244,21 +244,42 @@ impl Run<'_> {
         let left = matches!(last, Some(StepError::Left { .. } | StepError::Outside { .. }));
         let reason = last.map_or_else(String::new, ToString::to_string);
         let step = self.simulation.steps() + 1;
-        self.tell_failure(step, failure, &reason);
+        let worst = self.worst_point(last);
+        self.tell_failure(step, failure, &reason, worst.as_ref());
         if let Some(ledger) = &mut self.ledger {
+            let residuals = match last {
+                Some(StepError::NotConverged { energies, .. }) => {
+                    energies.iter().map(|energy| Some(*energy).filter(|energy| energy.is_finite())).collect()
+                }
+                _ => Vec::new(),
+            };
             ledger.manifest().summary.cutbacks += failure.attempts.len() as u64;
-            ledger.manifest().failure =
-                Some(manifest::Failure { step, time: failure.t, reason, residuals: Vec::new(), worst: None });
+            ledger.manifest().failure = Some(manifest::Failure { step, time: failure.t, reason, residuals, worst });
         }
         self.end(Status::Failed, if left { code::LEFT } else { code::NO_CONVERGENCE })
     }
 
-    /// Rank 0 says why; where only another rank knows the point, that rank adds it.
-    fn tell_failure(&self, step: u64, failure: &Failure, reason: &str) {
+    /// The point that the error is about; of those that several ranks name, the one with the smallest id.
+    fn worst_point(&self, error: Option<&StepError>) -> Option<manifest::Worst> {
+        let world = self.universe.world();
+        let lower = self.case.grid.lower();
+        let mut own = [f64::INFINITY, 0.0, 0.0];
+        if let Some((id, x)) = error.and_then(StepError::point) {
+            own = [id as f64, lower[0] + x[0], lower[1] + x[1]];
+        }
+        let mut all = vec![0.0_f64; own.len() * world.size().unsigned_abs() as usize];
+        world.all_gather_into(&own[..], &mut all[..]);
+        let named = all.chunks_exact(own.len()).filter(|point| point.iter().all(|number| number.is_finite()));
+        let worst = named.min_by(|a, b| a[0].total_cmp(&b[0]))?;
+        Some(manifest::Worst { kind: "point".into(), id: worst[0] as u64, position: worst[1..].to_vec() })
+    }
+
+    fn tell_failure(&self, step: u64, failure: &Failure, reason: &str, worst: Option<&manifest::Worst>) {
         self.log.finish();
         if self.rank() == 0 {
+            let point = worst.map_or_else(String::new, |worst| format!("; point {} at {:?}", worst.id, worst.position));
             eprintln!(
-                "bsmpm-par: step {step} failed at t = {} after {} attempts, the last with dt = {:.3e}: {reason}; \
+                "bsmpm-par: step {step} failed at t = {} after {} attempt(s), the last with dt = {:.3e}: {reason}{point}; \
                  the last converged state is saved",
                 failure.t,
                 failure.attempts.len(),

@@ -48,7 +48,15 @@ fn what_a_panic_leaves_is_readable_and_can_be_replaced() {
 
 #[test]
 fn a_fault_that_cannot_be_read_or_cannot_happen_is_refused() {
-    let wrong = ["", "panic", "panic:rank=0", "panic:step=1", "panic:rank=x,step=1", "panic:rank=0,step=-1", "melt:rank=0,step=1"];
+    let wrong = [
+        "",
+        "panic",
+        "panic:rank=0",
+        "panic:step=1",
+        "panic:rank=x,step=1",
+        "panic:rank=0,step=-1",
+        "melt:rank=0,step=1",
+    ];
     for fault in wrong {
         let scratch = Scratch::with_case(COLUMN);
         let output = with_fault(&scratch, Some(2), fault).expect(2);
@@ -107,7 +115,7 @@ fn a_point_that_leaves_the_grid_ends_the_run_with_81_and_is_named() {
         let output = scratch.mpirun(ranks, &["case.toml", "--set", "analysis.end=0.2"]).expect(81);
         let manifest = failed(&scratch, 81);
         let failure = manifest.failure.unwrap();
-        let worst = failure.worst.expect("the point that left");
+        let worst = failure.worst.as_ref().expect("the point that left");
         assert_eq!(worst.kind, "point");
         assert!(worst.position[0] > 1.0 && worst.position.len() == 2, "{worst:?}");
         output.says_once(&format!("point {}", worst.id));

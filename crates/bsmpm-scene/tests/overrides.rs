@@ -106,9 +106,9 @@ fn the_full_case_in_si() {
     let names: Vec<&str> = case.materials.iter().map(|material| material.name.as_str()).collect();
     assert_eq!(names, ["sand", "clay", "block"]);
     let Material::MohrCoulomb(sand) = &case.materials[0].material else { panic!() };
-    assert_eq!((sand.friction, sand.cohesion, sand.elastic.young), (30_f64.to_radians(), 1e3, 2e7));
+    assert_eq!((sand.friction(), sand.cohesion(), sand.elastic().young), (30_f64.to_radians(), 1e3, 2e7));
     let Material::MohrCoulomb(clay) = &case.materials[1].material else { panic!() };
-    assert_eq!((clay.friction, clay.dilation, clay.cohesion), (0.0, 0.0, 2e4));
+    assert_eq!((clay.friction(), clay.dilation(), clay.cohesion()), (0.0, 0.0, 2e4));
     assert!(matches!(case.materials[2].material, Material::Hencky(_)));
     assert_eq!(case.bodies[2].velocity, Some([0.0, -1.0]));
     assert_eq!(case.boundary, [[Support::Roller; 2], [Support::Fixed, Support::Free]]);

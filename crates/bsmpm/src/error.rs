@@ -31,7 +31,7 @@ pub enum SolveError {
     Residual(f64),
 }
 
-/// Why a step was not accepted.
+/// Why a step was not accepted. The texts are the same on every rank; what only one rank knows is in the fields.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum StepError {
     /// A point is outside the grid, or was not sorted into this rank's window.
@@ -43,7 +43,7 @@ pub enum StepError {
         x: Vec<f64>,
     },
     /// A point would leave the grid in this step.
-    #[error("{count} point(s) would leave the grid; on this rank first point {first:?}")]
+    #[error("{count} point(s) would leave the grid")]
     Left {
         /// Number of points over all ranks.
         count: u64,
@@ -51,14 +51,14 @@ pub enum StepError {
         first: Option<(u64, Vec<f64>)>,
     },
     /// Material turned inside out or became non-finite, also with shortened iterations.
-    #[error("{count} point(s) inverted or not finite in iteration {iteration}{}", .first.map_or(String::new(), |p| format!("; on this rank first point {p}")))]
+    #[error("{count} point(s) inverted or not finite in iteration {iteration}")]
     Inverted {
         /// Number of points over all ranks.
         count: u64,
         /// Quasi-Newton iteration.
         iteration: usize,
-        /// Id of the first one on this rank, if any.
-        first: Option<u64>,
+        /// Id and position (m) of the first one on this rank, if any.
+        first: Option<(u64, Vec<f64>)>,
     },
     /// The iteration limit was reached.
     #[error("not converged after {iterations} iterations: energy measure {energy:.2e}, force measure {force:.2e}")]
@@ -69,6 +69,8 @@ pub enum StepError {
         energy: f64,
         /// |f_oob| / largest force.
         force: f64,
+        /// Energy measure of every iteration.
+        energies: Vec<f64>,
     },
     /// The linear system could not be solved.
     #[error(transparent)]
@@ -81,4 +83,15 @@ pub enum StepError {
         /// The constitution's reason.
         source: MaterialError,
     },
+}
+
+impl StepError {
+    /// Id and position (m, from the grid's lower corner) of a point of this rank that the error is about.
+    pub fn point(&self) -> Option<(u64, &[f64])> {
+        match self {
+            Self::Outside { id, x } => Some((*id, x)),
+            Self::Left { first, .. } | Self::Inverted { first, .. } => first.as_ref().map(|(id, x)| (*id, &x[..])),
+            _ => None,
+        }
+    }
 }

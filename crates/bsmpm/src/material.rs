@@ -93,7 +93,7 @@ impl Material {
     pub fn elastic(&self) -> &Elastic {
         match self {
             Self::Hencky(law) => &law.elastic,
-            Self::MohrCoulomb(law) => &law.elastic,
+            Self::MohrCoulomb(law) => law.elastic(),
         }
     }
 

@@ -66,7 +66,9 @@ pub fn run(
     command.args(arguments).current_dir(directory).process_group(0);
     command.env("OMP_NUM_THREADS", "1").env(MARK, &mark);
     command.env("OMPI_ALLOW_RUN_AS_ROOT", "1").env("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1");
-    REMOVED.iter().for_each(|name| drop(command.env_remove(name)));
+    for name in REMOVED {
+        command.env_remove(name);
+    }
     command.envs(variables.iter().map(|(name, value)| (name, value)));
     command.stdin(Stdio::null()).stdout(stdout.try_clone().unwrap()).stderr(stderr.try_clone().unwrap());
     let started = Instant::now();
@@ -78,14 +80,15 @@ pub fn run(
     }
     let left = survivors(&mark);
     left.iter().for_each(|process| signal("KILL", process));
-    let output = Output { code: status.and_then(code), stdout: text(&mut stdout), stderr: text(&mut stderr), elapsed };
+    let output = Output {
+        code: status.and_then(|status| status.code()),
+        stdout: text(&mut stdout),
+        stderr: text(&mut stderr),
+        elapsed,
+    };
     assert!(status.is_some(), "hangs: {arguments:?}: {output:#?}");
     assert!(left.is_empty(), "processes {left:?} outlive their run: {arguments:?}: {output:#?}");
     output
-}
-
-fn code(status: ExitStatus) -> Option<i32> {
-    status.code()
 }
 
 fn wait(child: &mut Child, patience: Duration) -> Option<ExitStatus> {

@@ -34,7 +34,7 @@ fn read(name: &str, record: &Record, regime: Option<Regime>, report: &mut Report
         None => Material::Hencky(Hencky { elastic }),
         Some([friction, dilation, cohesion]) => {
             let (friction, dilation) = (friction.to_radians(), dilation.to_radians());
-            Material::MohrCoulomb(MohrCoulomb { elastic, friction, dilation, cohesion })
+            Material::MohrCoulomb(MohrCoulomb::new(elastic, friction, dilation, cohesion))
         }
     };
     Some(NamedMaterial { name: name.to_owned(), material, density: density? })

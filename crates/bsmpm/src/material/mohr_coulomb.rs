@@ -8,14 +8,12 @@ use super::{Elastic, Moduli, Region};
 /// Elastic inside `f = (τ₁ - τ₃) + (τ₁ + τ₃) sin φ - 2 c cos φ ≤ 0`, with the same form in ψ as plastic potential.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MohrCoulomb {
-    /// The elastic part.
-    pub elastic: Elastic,
-    /// rad  friction angle φ, 0 ≤ φ < π/2
-    pub friction: f64,
-    /// rad  dilation angle ψ, 0 ≤ ψ ≤ φ
-    pub dilation: f64,
-    /// Pa   cohesion c ≥ 0
-    pub cohesion: f64,
+    elastic: Elastic,
+    friction: f64,
+    dilation: f64,
+    cohesion: f64,
+    flow: Flow,    // sin φ and sin ψ, which every response needs
+    strength: f64, // Pa  c cos φ
 }
 
 /// Principal stress after the return, where it lies, and the two sines its tangent needs.
@@ -35,7 +33,7 @@ impl Return {
 }
 
 /// Slopes of the yield surface and of the plastic potential.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Flow {
     pub sin_phi: f64,
     pub sin_psi: f64,
@@ -92,19 +90,44 @@ impl Edge {
 }
 
 impl MohrCoulomb {
+    /// A law with friction angle 0 ≤ φ < π/2 (rad), dilation angle 0 ≤ ψ ≤ φ (rad) and cohesion c ≥ 0 (Pa).
+    pub fn new(elastic: Elastic, friction: f64, dilation: f64, cohesion: f64) -> Self {
+        let flow = Flow { sin_phi: friction.sin(), sin_psi: dilation.sin() };
+        Self { elastic, friction, dilation, cohesion, flow, strength: cohesion * friction.cos() }
+    }
+
+    /// The elastic part.
+    pub fn elastic(&self) -> &Elastic {
+        &self.elastic
+    }
+
+    /// Friction angle φ, rad.
+    pub fn friction(&self) -> f64 {
+        self.friction
+    }
+
+    /// Dilation angle ψ, rad.
+    pub fn dilation(&self) -> f64 {
+        self.dilation
+    }
+
+    /// Cohesion c, Pa.
+    pub fn cohesion(&self) -> f64 {
+        self.cohesion
+    }
+
     /// Returns a descending trial stress to the yield surface, if it lies outside.
     ///
     /// τ₁ is always taken from τ₃ by f = 0, so the result satisfies yield and order to the last digits even where it
     /// is much smaller than the trial.
     #[inline]
     pub(super) fn project(&self, moduli: Moduli, trial: [f64; 3]) -> Return {
-        let (sin_phi, cos_phi) = self.friction.sin_cos();
-        let strength = self.cohesion * cos_phi;
+        let Self { flow, strength, .. } = *self;
+        let sin_phi = flow.sin_phi;
         let excess = (trial[0] - trial[2]) + (trial[0] + trial[2]) * sin_phi - 2.0 * strength;
         if excess <= 0.0 {
             return Return::elastic(trial);
         }
-        let flow = Flow { sin_phi, sin_psi: self.dilation.sin() };
         let shift = 2.0 * strength / (1.0 + sin_phi);
         let (tau, region) = face(flow, moduli, trial, excess, shift)
             .or_else(|| edge(flow, moduli, trial, shift))

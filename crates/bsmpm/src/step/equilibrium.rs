@@ -87,9 +87,11 @@ pub fn find<K: Kinematics<D>, const D: usize>(
 ) -> Result<Found, StepError> {
     stiffness::assemble(scene, solver)?;
     let mut counts = Counts::default();
-    match iterate(scene, admissible(scene.nodes, guess), solver, &mut counts) {
-        Err(_) => {
-            let zero = admissible(scene.nodes, &vec![0.0; guess.len()]);
+    let (last, zero) = (admissible(scene.nodes, guess), admissible(scene.nodes, &vec![0.0; guess.len()]));
+    let mut differs = [f64::from(u8::from(last != zero))];
+    scene.halo.maximum(&mut differs);
+    match iterate(scene, last, solver, &mut counts) {
+        Err(_) if differs[0] > 0.0 => {
             let found = iterate(scene, zero, solver, &mut counts)?;
             Ok(Found { first_guess: false, ..found })
         }
@@ -121,7 +123,7 @@ fn iterate<K: Kinematics<D>, const D: usize>(
         return Err(inverted(scene, &residual, 0));
     }
     let mut first_energy = f64::INFINITY;
-    let mut energy = f64::INFINITY;
+    let mut energies = Vec::new();
     for iteration in 0..criteria.max_iterations {
         let force = residual.measure();
         let found = |residual: Residual, u, counts| Found {
@@ -141,14 +143,16 @@ fn iterate<K: Kinematics<D>, const D: usize>(
         if iteration == 0 {
             first_energy = direction.energy;
         }
-        energy = direction.energy / first_energy;
+        let energy = direction.energy / first_energy;
+        energies.push(energy);
         if energy < criteria.energy && force < criteria.force {
             return Ok(found(residual, u, *counts)); // (9)
         }
         let length = advance(scene, &mut u, &direction.du, &mut residual, counts, iteration)?; // (8), (4), (5)
         broyden.took(length);
     }
-    Err(StepError::NotConverged { iterations: criteria.max_iterations, energy, force: residual.measure() })
+    let energy = energies.last().copied().unwrap_or(f64::INFINITY);
+    Err(StepError::NotConverged { iterations: criteria.max_iterations, energy, force: residual.measure(), energies })
 }
 
 /// Step (8): takes the direction, or the first half, quarter, .. of it under which no point inverts.
@@ -181,7 +185,7 @@ fn evaluate<K: Kinematics<D>, const D: usize>(scene: &Scene<'_, K, D>, u: &[f64]
 }
 
 fn inverted<K, const D: usize>(scene: &Scene<'_, K, D>, residual: &Residual, iteration: usize) -> StepError {
-    let first = residual.first_inverted.map(|p| scene.points.id[p]);
+    let first = residual.first_inverted.map(|p| (scene.points.id[p], scene.points.x[p].as_slice().to_vec()));
     StepError::Inverted { count: residual.inverted, iteration, first }
 }
 

@@ -50,7 +50,10 @@ impl<K: Kinematics<D>, const D: usize> Scene<K, D> {
 /// Mean and RMS error of the stress under S = 1e-7, in one step.
 fn small_strain_error<K: Kinematics<D>, const D: usize>(order: usize, cells: usize) -> [f64; 2] {
     let (scene, steps) = column::<K, D>(order, cells, 1e-7, 1).solved(1.0, 1.0);
-    assert!(steps.iter().all(|step| step.rejected.is_empty()));
+    assert_eq!(steps.len(), 1);
+    // K_0 is the tangent of a stress-free body: one direction leaves what is quadratic in the strain.
+    assert_eq!(steps[0].report.iterations, 1);
+    assert!(steps[0].report.force <= 1e-6); // measured 5.4e-8
     scene.stress_error(1e-7)
 }
 
@@ -125,8 +128,10 @@ fn heights_of_the_hencky_column_agree_with_lamberts_function() {
 }
 
 #[test]
-fn the_base_carries_the_columns_weight_at_any_strain() {
-    let (_, steps) = column::<PlaneStrain, 2>(2, 10, 1.0, 10).solved(1.0, 10.0);
-    let base = steps[9].report.reactions[2][1];
-    assert!((base / (1.0 * 0.1) - 1.0).abs() <= 1e-9, "{base}"); // one cell of .1 m wide
+fn the_base_carries_the_columns_weight_at_any_strain_and_any_time_of_the_ramp() {
+    let (_, steps) = column::<PlaneStrain, 2>(2, 10, 1.0, 10).solved(1.0, 12.0);
+    for step in &steps {
+        let weight = 0.1 * (step.t / 10.0).min(1.0); // one cell of .1 m wide
+        assert!((step.report.reactions[2][1] / weight - 1.0).abs() <= 1e-9);
+    }
 }

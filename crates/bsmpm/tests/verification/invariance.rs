@@ -172,7 +172,8 @@ fn the_soft_background_changes_a_filled_elastic_block_by_the_order_of_its_coeffi
         println!(
             "coefficient {coefficient:.0e}: displacement changes by {occupied:.1e}; only partly filled {partly:.1e}"
         );
-        assert!(occupied <= 2.6 * coefficient); // E / G = 2.6: the background has the stiffness E in shear; measured 1.1
+        // E / G = 2.6: in shear the background has the stiffness E. Measured 1.1.
+        assert!(occupied <= 2.6 * coefficient);
         assert_eq!(partly, 0.0);
     }
 }

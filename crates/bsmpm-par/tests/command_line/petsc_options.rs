@@ -1,0 +1,60 @@
+//! Options of PETSc come after `--` and from nowhere else, and none of them writes or reads a file.
+
+use crate::support::Scratch;
+use crate::support::cases::COLUMN;
+use crate::support::results::steps;
+
+#[test]
+fn options_after_two_dashes_reach_the_solver() {
+    let scratch = Scratch::with_case(COLUMN);
+    let options = ["--", "-ksp_type", "cg", "-pc_type", "jacobi", "-ksp_rtol", "1e-12"];
+    for ranks in [1, 2] {
+        scratch.mpirun(ranks, &[&["case.toml", "-q", "--force"], &options[..]].concat()).expect(0);
+        let steps = steps(&scratch.path("case.out"));
+        let (linear, nonlinear) = (steps.get("linear_iterations").unwrap(), steps.get("iterations").unwrap());
+        let many = linear.iter().zip(nonlinear).all(|(linear, nonlinear)| *linear > 5.0 * nonlinear);
+        assert!(many, "conjugate gradients take many iterations: {linear:?}");
+    }
+}
+
+#[test]
+fn log_view_reports_to_the_terminal() {
+    let scratch = Scratch::with_case(COLUMN);
+    scratch.mpirun(2, &["case.toml", "-q", "--", "-log_view"]).expect(0).says_once("PETSc Performance Summary");
+    assert_eq!(scratch.entries(), ["case.out", "case.toml"]);
+}
+
+#[test]
+fn options_that_write_or_read_files_or_start_programs_are_refused_once_with_2() {
+    let refused: [&[&str]; 11] = [
+        &["-log_view", ":pwned"],
+        &["-log_view", "pwned"],
+        &["-log_trace", "pwned"],
+        &["-options_file", "x"],
+        &["-options_view"],
+        &["-on_error_attach_debugger"],
+        &["-start_in_debugger"],
+        &["-ksp_monitor", "ascii:pwned"],
+        &["-ksp_view", ":pwned"],
+        &["-ksp_view_mat", "binary"],
+        &["-ksp_view_rhs", "hdf5"],
+    ];
+    for options in refused {
+        let scratch = Scratch::with_case(COLUMN);
+        let output = scratch.mpirun(2, &[&["case.toml", "--"], options].concat()).expect(2);
+        assert_eq!(output.count("bsmpm-par:"), 1, "{output:#?}");
+        assert!(output.stderr.contains(options[0]), "{output:#?}");
+        assert_eq!(scratch.entries(), ["case.toml"], "{options:?}");
+    }
+}
+
+#[test]
+fn petscrc_files_and_variables_have_no_effect() {
+    let scratch = Scratch::with_case(COLUMN);
+    scratch.write(".petscrc", "-log_view :pwned\n-ksp_type bogus\n");
+    let home = scratch.path("");
+    let job = scratch.job(Some(2), &["case.toml", "-q"]).variable("HOME", home.to_str().unwrap());
+    let output = job.variable("PETSC_OPTIONS", "-log_view :pwned2 -ksp_type bogus").run().expect(0);
+    assert_eq!(output.said(), "");
+    assert_eq!(scratch.entries(), [".petscrc", "case.out", "case.toml"]);
+}

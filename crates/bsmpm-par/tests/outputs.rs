@@ -1,0 +1,222 @@
+//! What a run leaves: tables, frames and the manifest, complete and true.
+
+mod support;
+
+use bsmpm_io::manifest::{Manifest, Status};
+use bsmpm_io::{frames, table};
+use std::path::Path;
+use support::cases::{COLUMN, SLIDING_BLOCK, changed};
+use support::results::{all_finite, all_frames, at, history, ids, manifest, steps};
+use support::{Scratch, entries, shipped};
+
+/// Every number of a table as it stands in the file, without the headings.
+fn rows(path: &Path) -> Vec<Vec<String>> {
+    let text = std::fs::read_to_string(path).unwrap();
+    assert!(text.ends_with('\n'));
+    text.lines().skip(2).map(|line| line.split(',').map(str::to_owned).collect()).collect()
+}
+
+/// Counts are whole numbers; floats the shortest text that reads back to the same bits.
+#[track_caller]
+fn shortest(rows: &[Vec<String>], counts: &[usize]) {
+    for row in rows {
+        for (column, text) in row.iter().enumerate() {
+            let value: f64 = text.parse().unwrap();
+            let expected = if counts.contains(&column) { format!("{value}") } else { format!("{value:?}") };
+            assert_eq!(*text, expected);
+        }
+    }
+}
+
+#[test]
+fn history_has_names_units_and_one_row_a_step_from_the_start_on() {
+    let scratch = Scratch::with_case(SLIDING_BLOCK);
+    scratch.mpirun(2, &["case.toml", "-q"]).expect(0);
+    let path = scratch.path("case.out/history.csv");
+    let text = std::fs::read_to_string(&path).unwrap();
+    let heading = "step,time,runout,mass,momentum-x,momentum-y\n# -,s,m,kg/m,kg/s,kg/s\n";
+    assert!(text.starts_with(heading), "{}", &text[..200]);
+    let rows = rows(&path);
+    shortest(&rows, &[0]);
+    let history = history(&scratch.path("case.out"));
+    let numbers: Vec<f64> = (0..=50).map(f64::from).collect();
+    assert_eq!(history.get("step").unwrap(), numbers);
+    let start: Vec<f64> = history.values.iter().map(|column| column[0]).collect();
+    let expected = [0.0, 0.0, 0.4875, 80.0, 320.0, 0.0];
+    assert!(start.iter().zip(expected).all(|(value, expected)| (value - expected).abs() < 1e-9), "{start:?}");
+    let times = history.get("time").unwrap();
+    assert!(times.is_sorted() && *times.last().unwrap() == 0.05);
+}
+
+#[test]
+fn steps_tells_how_hard_each_step_was() {
+    let scratch = Scratch::with_case(SLIDING_BLOCK);
+    scratch.mpirun(2, &["case.toml", "-q"]).expect(0);
+    let directory = scratch.path("case.out");
+    let text = std::fs::read_to_string(directory.join("steps.csv")).unwrap();
+    let names = "step,time,dt,iterations,residual,linear_iterations,cutbacks,active_nodes,wall\n";
+    assert!(text.starts_with(&format!("{names}# -,s,s,-,-,-,-,-,s\n")), "{}", &text[..200]);
+    shortest(&rows(&directory.join("steps.csv")), &[0, 3, 5, 6, 7]);
+    let (steps, history) = (steps(&directory), history(&directory));
+    for name in ["step", "time"] {
+        assert_eq!(steps.get(name).unwrap(), &history.get(name).unwrap()[1..]);
+    }
+    let times = history.get("time").unwrap();
+    let lengths = times.windows(2).map(|pair| pair[1] - pair[0]);
+    assert!(steps.get("dt").unwrap().iter().zip(lengths).all(|(dt, length)| (dt - length).abs() < 1e-15));
+    assert!(steps.get("iterations").unwrap().iter().all(|count| *count >= 1.0));
+    assert!(steps.get("residual").unwrap().iter().all(|residual| *residual >= 0.0));
+    assert!(steps.get("active_nodes").unwrap().iter().all(|count| *count >= 60.0));
+    let summary = manifest(&directory).summary;
+    assert_eq!(summary.steps, 50);
+    assert_eq!(summary.iterations as f64, steps.get("iterations").unwrap().iter().sum::<f64>());
+    assert_eq!(summary.linear_iterations as f64, steps.get("linear_iterations").unwrap().iter().sum::<f64>());
+    assert!(summary.residual_evaluations >= summary.iterations && summary.cpu_seconds > 0.0);
+    assert!(summary.peak_memory.len() == 2 && summary.peak_memory.iter().all(|bytes| *bytes > 1_000_000));
+}
+
+#[test]
+fn frames_are_at_the_start_the_wanted_times_and_the_end() {
+    let times = "every = \"20 ms\"\ntimes = [\"7.5 ms\", \"33 ms\"]";
+    let scratch = Scratch::with_case(&changed(SLIDING_BLOCK, "every = \"20 ms\"", times));
+    scratch.mpirun(2, &["case.toml", "-q"]).expect(0);
+    let directory = scratch.path("case.out");
+    let listed: Vec<f64> = frames::read_collection(&directory).unwrap().iter().map(|entry| entry.time).collect();
+    assert_eq!(listed, [0.0, 0.0075, 0.02, 0.033, 0.04, 0.05]);
+    assert_eq!(all_frames(&directory).iter().map(|frame| frame.time).collect::<Vec<_>>(), listed);
+    let times = history(&directory).get("time").unwrap().to_vec();
+    assert!(listed.iter().all(|time| times.contains(time)), "hit exactly");
+}
+
+#[test]
+fn frames_every_so_many_steps_and_without_a_table_come_as_asked() {
+    let scratch = Scratch::with_case(&changed(COLUMN, "every = 0.4", "every_steps = 2"));
+    scratch.mpirun(2, &["case.toml", "-q"]).expect(0);
+    let steps = |frames: Vec<bsmpm_io::frame::Frame>| frames.iter().map(|frame| frame.step).collect::<Vec<_>>();
+    assert_eq!(steps(all_frames(&scratch.path("case.out"))), [0, 2, 4, 5]);
+}
+
+#[test]
+fn a_frame_holds_every_point_once_by_id_with_all_its_quantities() {
+    let scratch = Scratch::with_case(SLIDING_BLOCK);
+    scratch.mpirun(3, &["case.toml", "-q"]).expect(0);
+    for frame in all_frames(&scratch.path("case.out")) {
+        let ids = ids(&frame);
+        assert!(ids.len() == 128 && ids.windows(2).all(|pair| pair[0] < pair[1]), "{ids:?}");
+        let fields: Vec<_> = frame.fields.iter().map(|field| (field.name.as_str(), field.components)).collect();
+        for field in [("displacement", 3), ("velocity", 3), ("stress", 6), ("pressure", 1), ("plastic_strain", 1)] {
+            assert!(fields.contains(&field), "{field:?} in {fields:?}");
+        }
+        assert!(fields.contains(&("material", 1)));
+        let (stress, pressure) = (frame.real("stress", 6).unwrap(), frame.real("pressure", 1).unwrap());
+        let mean = stress.chunks_exact(6).map(|s| -(s[0] + s[1] + s[2]) / 3.0);
+        assert!(mean.zip(pressure).all(|(mean, pressure)| (mean - pressure).abs() <= 1e-9 * mean.abs()));
+        assert!(frame.position.iter().all(|x| x[2] == 0.0 && (0.0..=1.0).contains(&x[0])));
+    }
+    all_finite(&scratch.path("case.out"));
+}
+
+/// Where a point is, less its displacement, is where it began.
+#[test]
+fn positions_are_in_the_coordinates_of_the_case() {
+    let text =
+        changed(SLIDING_BLOCK, "lower = [0.0, 0.0]\nupper = [1.0, 0.3]", "lower = [-0.5, 2.0]\nupper = [0.5, 2.3]");
+    let text =
+        changed(&text, "{ lower = [0.1, 0.0], upper = [0.5, 0.2] }", "{ lower = [-0.4, 2.0], upper = [0.0, 2.2] }");
+    let scratch = Scratch::with_case(&text);
+    scratch.mpirun(2, &["case.toml", "-q"]).expect(0);
+    let frames = all_frames(&scratch.path("case.out"));
+    let last = frames.last().unwrap();
+    let displacement = last.real("displacement", 3).unwrap().chunks_exact(3);
+    for ((x, u), start) in last.position.iter().zip(displacement).zip(&frames[0].position) {
+        assert!((0..2).all(|axis| (x[axis] - u[axis] - start[axis]).abs() < 1e-12), "{x:?} {u:?} {start:?}");
+        assert!((-0.4..0.0).contains(&start[0]) && (2.0..2.2).contains(&start[1]), "{start:?}");
+    }
+    let runout = history(&scratch.path("case.out")).get("runout").unwrap()[0];
+    assert!((runout + 0.0125).abs() < 1e-12, "{runout}");
+}
+
+/// The outputs that the manifest names, all with their hash, are the files that there are.
+#[track_caller]
+fn complete(directory: &Path, manifest: &Manifest) {
+    let mut named: Vec<_> = manifest.outputs.iter().map(|output| output.path.clone()).collect();
+    let of_frames = entries(&directory.join("frames")).into_iter().map(|name| format!("frames/{name}"));
+    let plain = entries(directory).into_iter().filter(|name| !["frames", "run.json"].contains(&name.as_str()));
+    let mut there: Vec<_> = plain.chain(of_frames).collect();
+    named.sort();
+    there.sort();
+    assert_eq!(named, there);
+    let mut sealed = manifest.clone();
+    sealed.seal(directory).unwrap();
+    assert_eq!(sealed.outputs, manifest.outputs, "sizes and hashes are those of the files");
+    assert!(manifest.outputs.iter().all(|output| output.blake3.is_some()));
+}
+
+#[test]
+fn the_manifest_explains_a_finished_run() {
+    let text = format!("{COLUMN}\n[[check]]\nquantity = \"height\"\nmin = 3.0\nmax = 3.75\n");
+    let scratch = Scratch::with_case(&text);
+    scratch.mpirun(2, &["case.toml", "-q"]).expect(0);
+    let directory = scratch.path("case.out");
+    let manifest = manifest(&directory);
+    assert_eq!((manifest.status, manifest.exit_code), (Status::Finished, Some(0)));
+    assert_eq!((manifest.case.file.as_str(), &manifest.case.text), ("case.toml", &text));
+    assert_eq!(manifest.case, bsmpm_io::manifest::Case::new("case.toml", "", "plane-strain", text));
+    assert_eq!((manifest.ranks, manifest.threads), (2, 1));
+    for (size, expected) in [("points", 64), ("cells", 20), ("nodes", 42)] {
+        assert_eq!(manifest.sizes.get(size), Some(&expected), "{size}");
+    }
+    for name in ["petsc", "mpi"] {
+        assert!(manifest.versions.get(name).is_some_and(|version| !version.is_empty()), "{:?}", manifest.versions);
+    }
+    assert!(manifest.argv.iter().any(|argument| argument == "case.toml"));
+    assert!(manifest.timers.values().all(|seconds| *seconds >= 0.0) && manifest.timers.contains_key("wall"));
+    assert!(manifest.end.as_ref().is_some_and(|end| *end >= manifest.start));
+    let extent = manifest.grid.as_ref().unwrap();
+    assert_eq!(
+        (&extent.lower[..], &extent.upper[..], &extent.cell[..]),
+        (&[0.0; 2][..], &[4.0, 5.0][..], &[1.0; 2][..])
+    );
+    assert!(manifest.failure.is_none() && manifest.checkpoint.is_none() && manifest.warnings.is_empty());
+    let background = manifest.choices.iter().find(|choice| choice.key == "solver.background").unwrap();
+    assert!(background.value == "0.0001" && background.reason.contains("quasi-static"), "{background:?}");
+    let check = &manifest.checks[0];
+    assert!(check.passed && check.value == history(&directory).get("height").unwrap().last().copied(), "{check:?}");
+    complete(&directory, &manifest);
+}
+
+/// 3 x 0.3 is not 0.9 in binary: the check takes its value where a wanted time stands for another.
+#[test]
+fn a_check_takes_its_value_at_its_time() {
+    let text = changed(&changed(COLUMN, "steps = 5", "end = 1.2\nsteps = 4"), "every = 0.4", "every = 0.3");
+    let check = |at: &str| format!("\n[[check]]\nquantity = \"height\"\nat = {at}\nmin = 3.0\n");
+    let scratch = Scratch::with_case(&[text, check("0.9"), check("0.45"), check("1.2")].concat());
+    scratch.mpirun(2, &["case.toml", "-q"]).expect(0);
+    let directory = scratch.path("case.out");
+    let values: Vec<_> = manifest(&directory).checks.iter().map(|check| check.value.unwrap()).collect();
+    assert_eq!(values, [0.9, 0.45, 1.2].map(|time| at(&history(&directory), "height", time)));
+}
+
+/// The figures of the issue, on two ranks and without a failed step.
+#[test]
+fn the_short_collapse_runs_out_as_the_paper_says() {
+    let scratch = Scratch::new();
+    let case = shipped("short/column_collapse.toml");
+    scratch.mpirun(2, &[case.to_str().unwrap(), "-q", "-o", "out"]).expect(0);
+    let directory = scratch.path("out");
+    let history = history(&directory);
+    let expected = [(0.109, 0.237), (0.235, 0.333), (0.3, 0.372), (0.351, 0.398), (0.42, 0.419), (0.607, 0.467)];
+    let found = expected.map(|(time, _)| at(&history, "runout", time));
+    assert!(found.iter().zip(expected).all(|(found, (_, runout))| (found - runout).abs() < 0.01), "{found:?}");
+    let manifest = manifest(&directory);
+    assert_eq!(manifest.summary.cutbacks, 0);
+    assert!(
+        table::read(&directory.join("steps.csv")).unwrap().get("cutbacks").unwrap().iter().all(|cuts| *cuts == 0.0)
+    );
+    let frames = frames::read_collection(&directory).unwrap();
+    assert!(expected.iter().all(|(time, _)| frames.iter().any(|entry| entry.time == *time)));
+    assert_eq!(manifest.picture_times, expected.map(|(time, _)| time));
+    assert!(manifest.checks.len() == 1 && manifest.checks[0].passed);
+    complete(&directory, &manifest);
+    all_finite(&directory);
+}
