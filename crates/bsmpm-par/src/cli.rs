@@ -136,8 +136,10 @@ fn petsc_options(options: &[String]) -> Result<(), String> {
             return Err(format!("{option}: PETSc options must not name files"));
         }
     }
-    let after_view = options.windows(2).find(|pair| pair[0] == "-log_view" && !pair[1].starts_with('-'));
-    after_view.map_or(Ok(()), |pair| Err(format!("-log_view takes no value here, found {}", pair[1])))
+    // The value would be a viewer, and some of those write files of their own choice of name: binary, hdf5, vtk, ...
+    let views = |name: &str| ["view", "monitor", "reason"].iter().any(|part| name.contains(part));
+    let viewer = options.windows(2).find(|pair| views(&pair[0]) && !pair[1].starts_with('-'));
+    viewer.map_or(Ok(()), |pair| Err(format!("{} takes no value here, found {}", pair[0], pair[1])))
 }
 
 fn wall(text: &str) -> Result<Duration, String> {
@@ -182,6 +184,7 @@ mod tests {
         assert!(refused(&["-log_view", "pwned"]));
         assert!(refused(&["-options_file", "x"]));
         assert!(refused(&["-ksp_monitor", "ascii:pwned"]));
+        assert!(refused(&["-ksp_view_mat", "binary"]));
         assert!(refused(&["-on_error_attach_debugger"]));
     }
 

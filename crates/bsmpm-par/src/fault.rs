@@ -9,11 +9,10 @@ pub struct Fault {
 
 impl Fault {
     /// Reads `BSMPM_FAULT`; `Err` says what is wrong with it.
-    pub fn from_environment() -> Result<Option<Self>, String> {
-        match std::env::var("BSMPM_FAULT") {
-            Ok(text) => Self::parse(&text).map(Some),
-            Err(_) => Ok(None),
-        }
+    pub fn from_environment(ranks: usize) -> Result<Option<Self>, String> {
+        let Some(text) = std::env::var_os("BSMPM_FAULT") else { return Ok(None) };
+        let fault = Self::parse(&text.to_string_lossy())?;
+        if fault.rank < ranks { Ok(Some(fault)) } else { Err(format!("BSMPM_FAULT: there are {ranks} ranks only")) }
     }
 
     fn parse(text: &str) -> Result<Self, String> {

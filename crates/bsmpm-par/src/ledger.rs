@@ -23,6 +23,7 @@ pub struct Ledger {
     steps: Table,
     frames: Frames,
     end: f64,
+    dt: f64,
 }
 
 impl Ledger {
@@ -44,6 +45,7 @@ impl Ledger {
             steps: Table::create(&path.join(STEPS), &Step::columns(time))?,
             frames: Frames::create(&path)?,
             end: case.analysis.end,
+            dt: case.analysis.dt,
             directory,
             manifest,
             columns,
@@ -65,7 +67,7 @@ impl Ledger {
         let mut cells = vec![Cell::Int(step), Cell::Float(time)];
         cells.extend(row.iter().map(|&value| Cell::Float(value)));
         for check in &mut self.manifest.checks {
-            if check.at.unwrap_or(self.end) == time {
+            if (check.at.unwrap_or(self.end) - time).abs() <= 1e-6 * self.dt {
                 let column = self.columns.iter().position(|column| column.name == check.quantity);
                 check.value = column.map(|column| row[column]);
             }

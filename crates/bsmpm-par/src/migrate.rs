@@ -60,7 +60,8 @@ pub fn nodal<const D: usize>(
         .collect();
     let window = new.layers(rank, q);
     let mut moved = vec![0.0; window.len() * size];
-    for (other, message) in exchange(world, &outgoing).into_iter().enumerate() {
+    // Layers of a rank that sends nothing may begin beyond the window.
+    for (other, message) in exchange(world, &outgoing).into_iter().enumerate().filter(|(_, m)| !m.is_empty()) {
         let layers = intersection(&old.owned_layers(other, q), &window);
         let to = layers.start.saturating_sub(window.start) * size;
         for (slot, bytes) in moved[to..].iter_mut().zip(message.chunks_exact(8)) {

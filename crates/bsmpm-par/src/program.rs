@@ -58,7 +58,7 @@ fn try_run(universe: &Universe) -> Result<u8, u8> {
         code
     };
     let arguments = Arguments::read(speaks)?;
-    let fault = Fault::from_environment().map_err(|reason| refuse(crate::cli::USAGE, reason))?;
+    let fault = Fault::from_environment(ranks).map_err(|reason| refuse(crate::cli::USAGE, reason))?;
     let case = source::read(&world, &arguments)?;
     let columns = case.grid.axes[0].cells();
     let Some(slabs) = setup::slabs(&case, ranks) else {

@@ -10,7 +10,8 @@ use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::{Criteria, Gravity, Model, Weighting};
 use bsmpm::points::Points;
 use bsmpm::schedule::Schedule;
-use bsmpm_scene::{Axis, Case, Every, Regime};
+use bsmpm::step::quasi_newton::QuasiNewton;
+use bsmpm_scene::{Axis, Case, Every, Nonlinear, Regime};
 use std::marker::PhantomData;
 
 /// The model of a plane-strain case over its whole grid.
@@ -38,6 +39,10 @@ pub fn model(case: &Case) -> Result<Model<PlaneStrain, 2>, GridError> {
             energy: case.solver.tolerance,
             force: case.solver.force_tolerance,
             max_iterations: case.solver.max_iterations,
+        },
+        quasi_newton: match case.solver.nonlinear {
+            Nonlinear::Auto => QuasiNewton::Multisecant,
+            Nonlinear::Broyden => QuasiNewton::Broyden,
         },
         kinematics: PhantomData,
     })

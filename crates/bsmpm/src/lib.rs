@@ -8,7 +8,7 @@
 //! | --- | --- | --- |
 //! | (1) | shape functions and topology | [`grid::spline`], [`grid::shape`] |
 //! | (2) | points to nodes | [`step::nodes`] |
-//! | (3), (7)-(9) | quasi-Newton iteration, both convergence measures | [`step::equilibrium`], [`step::broyden`] |
+//! | (3), (7)-(9) | quasi-Newton iteration, both convergence measures | [`step::equilibrium`], [`step::quasi_newton`] |
 //! | (4) | trial deformation, F-bar | [`step::trial`] |
 //! | (5) | out-of-balance force | [`step::residual`] |
 //! | (6) | elastic stiffness K_0 | [`step::stiffness`] |

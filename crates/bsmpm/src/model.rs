@@ -6,6 +6,7 @@ use crate::grid::Grid;
 use crate::kinematics::Kinematics;
 use crate::material::Material;
 use crate::stabilisation::Stabilisation;
+use crate::step::quasi_newton::QuasiNewton;
 use crate::tensor::Vector;
 use std::marker::PhantomData;
 
@@ -76,6 +77,8 @@ pub struct Model<K, const D: usize> {
     pub background: Option<Background>,
     /// Convergence.
     pub criteria: Criteria,
+    /// How directions are found.
+    pub quasi_newton: QuasiNewton,
     /// The geometry, a type without data.
     pub kinematics: PhantomData<K>,
 }

@@ -3,7 +3,9 @@
 pub mod broyden;
 pub mod commit;
 pub mod equilibrium;
+pub mod multisecant;
 pub mod nodes;
+pub mod quasi_newton;
 pub mod residual;
 pub mod stiffness;
 pub mod trial;

@@ -170,7 +170,12 @@ static SOLVER: Table = Table {
     header: "[solver]",
     doc: "The non-linear iteration",
     keys: &[
-        key("nonlinear", Choice(&["auto", "broyden"], &["newton"]), Default("\"auto\""), "auto: Broyden, steps cut"),
+        key(
+            "nonlinear",
+            Choice(&["auto", "broyden"], &["newton"]),
+            Default("\"auto\""),
+            "auto: all recent secants on the elastic stiffness; broyden: the paper's update; steps cut",
+        ),
         key("tolerance", Quantity(In::Number, FRACTION), Default("1e-8"), "energy measure"),
         key("force_tolerance", Quantity(In::Number, FRACTION), Default("1e-4"), "force measure; both must hold"),
         key("max_iterations", Count(1, 100_000), Default("200"), "iterations of one attempt"),

@@ -6,6 +6,7 @@
 
 use crate::error::SolveError;
 use crate::seam::{Halo, LinearSolver, dots};
+use crate::step::quasi_newton::Direction;
 
 /// Denominator 1 - a g below which the update is nearly singular and the history is dropped.
 const SINGULAR: f64 = 0.1;
@@ -23,16 +24,6 @@ struct Step {
     s: Vec<f64>,
     s_squared: f64,
     z: Vec<f64>, // empty for the last direction, whose z follows from the next solve
-}
-
-/// A direction and the linear iterations that it took.
-pub struct Direction {
-    /// m, nodal
-    pub du: Vec<f64>,
-    /// |du . f|, N m
-    pub energy: f64,
-    /// iterations of the linear solver
-    pub linear_iterations: usize,
 }
 
 impl Broyden {

@@ -1,7 +1,7 @@
 //! Steps (3), (7)-(9): the quasi-Newton iteration, and when it has converged.
 //!
 //! Step (9) of the paper prints the same numerator and denominator; read |du_k . f_k| / |du_0 . f_0|. That product is
-//! no norm (under Broyden it crosses zero while the forces are far from balanced), so the relative out-of-balance
+//! no norm (it crosses zero while the forces are far from balanced), so the relative out-of-balance
 //! force must be small too. The displacement that is accepted is the one whose forces were evaluated.
 
 use crate::error::StepError;
@@ -11,8 +11,8 @@ use crate::model::Model;
 use crate::points::Points;
 use crate::seam::{Halo, LinearSolver, dots};
 use crate::step::Report;
-use crate::step::broyden::Broyden;
 use crate::step::nodes::Nodes;
+use crate::step::quasi_newton::Secants;
 use crate::step::residual::Residual;
 use crate::step::stiffness;
 use crate::step::trial::Trial;
@@ -117,7 +117,7 @@ fn iterate<K: Kinematics<D>, const D: usize>(
 ) -> Result<Found, StepError> {
     let criteria = scene.model.criteria;
     let floor = round_off(scene);
-    let mut broyden = Broyden::default();
+    let mut secants = Secants::new(scene.model.quasi_newton);
     let mut residual = evaluate(scene, &u, counts);
     if !residual.is_sound() {
         return Err(inverted(scene, &residual, 0));
@@ -138,7 +138,7 @@ fn iterate<K: Kinematics<D>, const D: usize>(
         if residual.norm <= floor || (iteration == 0 && force <= ALREADY * criteria.force) {
             return Ok(found(residual, u, *counts));
         }
-        let direction = broyden.direction::<D>(&residual.f_oob, scene.halo, solver)?; // (6), (7)
+        let direction = secants.direction::<D>(&residual.f_oob, scene.halo, solver)?; // (6), (7)
         counts.linear += direction.linear_iterations;
         if iteration == 0 {
             first_energy = direction.energy;
@@ -149,7 +149,7 @@ fn iterate<K: Kinematics<D>, const D: usize>(
             return Ok(found(residual, u, *counts)); // (9)
         }
         let length = advance(scene, &mut u, &direction.du, &mut residual, counts, iteration)?; // (8), (4), (5)
-        broyden.took(length);
+        secants.took(length);
     }
     let energy = energies.last().copied().unwrap_or(f64::INFINITY);
     Err(StepError::NotConverged { iterations: criteria.max_iterations, energy, force: residual.measure(), energies })

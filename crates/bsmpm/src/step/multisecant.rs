@@ -1,0 +1,129 @@
+//! Steps (6), (7) by all recent secants at once: Anderson (1965), in the form of Fang and Saad (2009).
+//!
+//! With w = K_0^-1 f, a step du = w - sum_j g_j (s_j + dw_j), where s_j are the last steps, dw_j what they changed in w,
+//! and g makes the predicted rest w - sum_j g_j dw_j smallest in the energy of K_0: its products dw_i . K_0 dw_j are
+//! dw_i . df_j, which need no product with K_0. On a linear problem that is as good as GMRES, where Broyden's update
+//! may take twice the iterations.
+
+use crate::error::SolveError;
+use crate::seam::{Halo, LinearSolver, dots};
+use crate::step::quasi_newton::Direction;
+use nalgebra::{DMatrix, DVector, SymmetricEigen};
+
+/// Secants that are kept: older ones tell little of a plastic state that has changed.
+const MOST: usize = 20;
+/// Eigenvalues of the scaled products below this part of the largest are round-off: their secants repeat others.
+const DEPENDENT: f64 = 1e-12;
+
+/// Steps of this iteration and what they changed.
+#[derive(Clone, Debug, Default)]
+pub struct Multisecant {
+    secants: Vec<Secant>,
+    products: Vec<Vec<f64>>, // N m  dw_i . df_j for j <= i
+    last: Option<Last>,
+}
+
+#[derive(Clone, Debug)]
+struct Secant {
+    s: Vec<f64>,
+    dw: Vec<f64>,
+    df: Vec<f64>,
+}
+
+#[derive(Clone, Debug)]
+struct Last {
+    s: Vec<f64>,
+    w: Vec<f64>,
+    f: Vec<f64>,
+}
+
+impl Multisecant {
+    /// Direction for the out-of-balance force `f`, `D` components a node.
+    pub fn direction<const D: usize>(
+        &mut self,
+        f: &[f64],
+        halo: &dyn Halo,
+        solver: &mut dyn LinearSolver,
+    ) -> Result<Direction, SolveError> {
+        let mut w = vec![0.0; f.len()];
+        let linear_iterations = solver.solve(f, &mut w)?;
+        self.learn(&w, f);
+        let mut du = w.clone();
+        for (weight, secant) in self.weights::<D>(f, halo).into_iter().zip(&self.secants) {
+            for (du, (s, dw)) in du.iter_mut().zip(secant.s.iter().zip(&secant.dw)) {
+                *du -= weight * (s + dw);
+            }
+        }
+        let energy = dots(halo, D, &[(&du, f)])[0].abs();
+        self.last = Some(Last { s: du.clone(), w, f: f.to_vec() });
+        Ok(Direction { du, energy, linear_iterations })
+    }
+
+    /// Tells how much of the last direction was taken: 1 for a full step.
+    pub fn took(&mut self, length: f64) {
+        if let Some(last) = &mut self.last {
+            last.s.iter_mut().for_each(|s| *s *= length);
+        }
+    }
+
+    /// Adds the secant of the last step, and forgets the oldest one if there are too many.
+    fn learn(&mut self, w: &[f64], f: &[f64]) {
+        let Some(last) = self.last.take() else { return };
+        let change = |now: &[f64], before: &[f64]| now.iter().zip(before).map(|(a, b)| a - b).collect();
+        self.secants.push(Secant { s: last.s, dw: change(w, &last.w), df: change(f, &last.f) });
+        if self.secants.len() > MOST {
+            self.secants.remove(0);
+            self.products.remove(0);
+            for row in &mut self.products {
+                row.remove(0);
+            }
+        }
+    }
+
+    /// Weights g of the secants, from one reduction; rows of `products` are completed on the way.
+    fn weights<const D: usize>(&mut self, f: &[f64], halo: &dyn Halo) -> Vec<f64> {
+        let Some(newest) = self.secants.last() else { return Vec::new() };
+        let among = self.secants.iter().map(|secant| (newest.dw.as_slice(), secant.df.as_slice()));
+        let with_f = self.secants.iter().map(|secant| (secant.dw.as_slice(), f));
+        let mut row = dots(halo, D, &among.chain(with_f).collect::<Vec<_>>());
+        let right = row.split_off(self.secants.len());
+        self.products.push(row);
+        least_squares(&self.products, &right)
+    }
+}
+
+/// Solves the symmetric system of the products (lower triangle by rows) where its secants are independent.
+fn least_squares(products: &[Vec<f64>], right: &[f64]) -> Vec<f64> {
+    let size = right.len();
+    let scale: Vec<f64> = (0..size).map(|i| products[i][i].abs().sqrt()).collect();
+    let inverse = |i: usize| if scale[i] > 0.0 { 1.0 / scale[i] } else { 0.0 };
+    let matrix = DMatrix::from_fn(size, size, |i, j| products[i.max(j)][i.min(j)] * inverse(i) * inverse(j));
+    if matrix.iter().any(|entry| !entry.is_finite()) {
+        return vec![0.0; size];
+    }
+    let SymmetricEigen { eigenvectors, eigenvalues } = SymmetricEigen::new(matrix);
+    let mut along = eigenvectors.tr_mul(&DVector::from_fn(size, |i, _| right[i] * inverse(i)));
+    let least = DEPENDENT * eigenvalues.amax();
+    for (component, value) in along.iter_mut().zip(&eigenvalues) {
+        *component = if *value > least { *component / value } else { 0.0 };
+    }
+    (eigenvectors * along).iter().enumerate().map(|(i, weight)| weight * inverse(i)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_secant_that_repeats_another_does_no_harm() {
+        let weights = least_squares(&[vec![4.0], vec![4.0, 4.0]], &[2.0, 2.0]);
+        assert!((weights[0] + weights[1] - 0.5).abs() < 1e-14, "{weights:?}");
+    }
+
+    #[test]
+    fn independent_secants_solve_the_system() {
+        let weights = least_squares(&[vec![4.0], vec![1.0, 3.0]], &[1.0, 2.0]);
+        assert!((4.0 * weights[0] + weights[1] - 1.0).abs() < 1e-14);
+        assert!((weights[0] + 3.0 * weights[1] - 2.0).abs() < 1e-14);
+    }
+}
