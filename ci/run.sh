@@ -43,7 +43,7 @@ scripts_are_sound() {
 cd -- "$root"
 export CARGO_TERM_COLOR=never
 gate "setup" scripts/setup
-gate "lock file" cargo fetch --locked
+gate "lock file" cargo tree --locked --workspace --depth 0 --quiet
 gate "scripts" scripts_are_sound
 gate "format" cargo fmt --all --check
 gate "clippy" cargo clippy --workspace --all-targets -- -D warnings
