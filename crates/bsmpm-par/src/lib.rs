@@ -15,6 +15,7 @@ pub mod machine;
 pub mod migrate;
 pub mod program;
 pub mod record;
+pub mod run;
 pub mod setup;
 pub mod simulation;
 pub mod slab;

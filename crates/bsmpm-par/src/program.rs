@@ -1,40 +1,28 @@
-//! The run from its command line to its exit code.
+//! From the command line to a run that is ready: every way to be refused before anything is written.
 
-use crate::cli::Arguments;
+use crate::cli::{self, Arguments};
 use crate::fault::Fault;
-use crate::gather;
 use crate::launch;
 use crate::ledger::Ledger;
 use crate::log::Log;
-use crate::machine;
 use crate::record::Recorder;
+use crate::run::{Run, Task};
 use crate::setup;
 use crate::simulation::Simulation;
+use crate::slab::Slabs;
 use crate::source;
 use crate::timers::Timers;
-use bsmpm::control::{Accepted, Failure};
-use bsmpm::error::StepError;
-use bsmpm::kinematics::PlaneStrain;
-use bsmpm::seam::Halo;
-use bsmpm_io::manifest::{self, Status};
-use bsmpm_scene::{Case, Every};
-use mpi::collective::{CommunicatorCollectives, Root};
+use bsmpm_scene::Case;
+use mpi::collective::Root;
 use mpi::environment::Universe;
 use mpi::topology::Communicator;
 use petsc_rs::Petsc;
 use std::rc::Rc;
-use std::time::Instant;
 
-/// Exit codes of a run that began.
-mod code {
-    pub const DONE: u8 = 0;
-    pub const CASE: u8 = 65;
-    pub const MEMORY: u8 = 71;
-    pub const STOPPED: u8 = 75;
-    pub const CHECK: u8 = 77;
-    pub const NO_CONVERGENCE: u8 = 80;
-    pub const LEFT: u8 = 81;
-}
+/// Exit code of a case that cannot be run on so many ranks.
+const CASE: u8 = 65;
+/// Exit code of a case that needs more memory than allowed.
+const MEMORY: u8 = 71;
 
 /// Ordering of MUMPS' factor (approximate minimum fill): of all that were tried the cheapest for plane grids. Given
 /// before the user's own options, which win.
@@ -42,57 +30,64 @@ const ORDERING: [&str; 2] = ["-mat_mumps_icntl_7", "2"];
 
 /// Runs what the command line asks for and returns the exit code; the same on every rank.
 pub fn run(universe: &Universe) -> u8 {
-    match try_run(universe) {
-        Ok(code) | Err(code) => code,
+    match prepare(universe) {
+        Ok(Some((task, slabs))) => solve(universe, task, slabs).unwrap_or_else(|code| code),
+        Ok(None) => 0,
+        Err(code) => code,
     }
 }
 
-fn try_run(universe: &Universe) -> Result<u8, u8> {
+/// Prints a reason on rank 0 and hands the exit code on.
+fn refuse(universe: &Universe, code: u8, reason: &str) -> u8 {
+    if universe.world().rank() == 0 {
+        eprintln!("bsmpm-par: {reason}");
+    }
+    code
+}
+
+/// What is to be run, `None` if it was only to be checked; `Err` holds the exit code, and rank 0 has said why.
+fn prepare(universe: &Universe) -> Result<Option<(Task, Slabs)>, u8> {
     let world = universe.world();
-    let (rank, ranks) = (world.rank().unsigned_abs() as usize, world.size().unsigned_abs() as usize);
-    let speaks = rank == 0;
-    let refuse = |code: u8, reason: String| {
-        if speaks {
-            eprintln!("bsmpm-par: {reason}");
-        }
-        code
-    };
+    let (speaks, ranks) = (world.rank() == 0, world.size().unsigned_abs() as usize);
     let arguments = Arguments::read(speaks)?;
-    let fault = Fault::from_environment(ranks).map_err(|reason| refuse(crate::cli::USAGE, reason))?;
+    let fault = Fault::from_environment(ranks).map_err(|reason| refuse(universe, cli::USAGE, &reason))?;
     let case = source::read(&world, &arguments)?;
-    let columns = case.grid.axes[0].cells();
-    let Some(slabs) = setup::slabs(&case, ranks) else {
-        let reason =
-            format!("{ranks} ranks are too many: the grid has {columns} columns of cells, so at most {columns} ranks");
-        return Err(refuse(code::CASE, reason));
-    };
     let needed = case.estimate().bytes;
     if arguments.max_memory.is_some_and(|limit| needed > limit) {
-        return Err(refuse(
-            code::MEMORY,
-            format!("the case needs about {needed} bytes, more than --max-memory allows"),
-        ));
+        let reason = format!("the case needs about {needed} bytes, more than --max-memory allows");
+        return Err(refuse(universe, MEMORY, &reason));
     }
+    let Some(slabs) = setup::slabs(&case, ranks) else {
+        let columns = case.grid.axes[0].cells();
+        let reason =
+            format!("{ranks} ranks are too many: the grid has {columns} columns of cells, so at most {columns} ranks");
+        return Err(refuse(universe, CASE, &reason));
+    };
     if arguments.check {
         if speaks {
             source::describe(&case, ranks);
         }
-        return Ok(code::DONE);
+        return Ok(None);
     }
-    let model = setup::model(&case).map_err(|error| refuse(code::CASE, error.to_string()))?;
+    Ok(Some((Task { case, arguments, fault }, slabs)))
+}
+
+fn solve(universe: &Universe, task: Task, slabs: Slabs) -> Result<u8, u8> {
+    let Task { case, arguments, .. } = &task;
+    let rank = universe.world().rank().unsigned_abs() as usize;
+    let model = setup::model(case).map_err(|error| refuse(universe, CASE, &error.to_string()))?;
     let options: Vec<&str> = ORDERING.into_iter().chain(arguments.petsc.iter().map(String::as_str)).collect();
     let petsc = Petsc::initialize(universe, &options)
-        .map_err(|error| refuse(launch::BUG, format!("PETSc could not be started: {error}")))?;
+        .map_err(|error| refuse(universe, launch::BUG, &format!("PETSc could not be started: {error}")))?;
     let timers = Rc::new(Timers::default());
-    let points = setup::points(&case, slabs.columns(rank));
-    let seam = (universe, &petsc, setup::linear(&case));
-    let simulation = Simulation::new(seam, model, (slabs, points), setup::schedule(&case), Rc::clone(&timers));
+    let points = setup::points(case, slabs.columns(rank));
+    let seam = (universe, &petsc, setup::linear(case));
+    let simulation = Simulation::new(seam, model, (slabs, points), setup::schedule(case), Rc::clone(&timers));
     let recorder = Recorder::new(&case.histories, case.grid.lower(), &simulation.points, &*simulation.halo);
-    let ledger = open_ledger(universe, &arguments, &case, &recorder)?;
-    let log = Log::new(speaks, arguments.quiet, arguments.verbose, arguments.log_format, case.analysis.end);
-    let (start, last_frame) = (Instant::now(), None);
-    let run = Run { universe, case, arguments, fault, simulation, recorder, ledger, log, timers, start, last_frame };
-    Ok(run.to_the_end())
+    let ledger = open_ledger(universe, arguments, case, &recorder)?;
+    let log = Log::new(rank == 0, arguments.quiet, arguments.verbose, arguments.log_format, case.analysis.end);
+    let run = Run::new(universe, task, simulation, recorder, (ledger, log), timers);
+    Ok(run.until_the_end())
 }
 
 /// Rank 0 claims the directory; all ranks learn the outcome.
@@ -116,237 +111,4 @@ fn open_ledger(
         });
     world.process_at_rank(0).broadcast_into(&mut refused);
     if refused == 0 { Ok(ledger) } else { Err(refused) }
-}
-
-/// A run under way.
-struct Run<'p> {
-    universe: &'p Universe,
-    case: Case,
-    arguments: Arguments,
-    fault: Option<Fault>,
-    simulation: Simulation<'p, PlaneStrain, 2>,
-    recorder: Recorder,
-    ledger: Option<Ledger>, // on rank 0
-    log: Log,
-    timers: Rc<Timers>,
-    start: Instant,
-    last_frame: Option<u64>,
-}
-
-impl Run<'_> {
-    fn to_the_end(mut self) -> u8 {
-        self.begin();
-        let mut slowest = 0.0_f64;
-        loop {
-            let step = self.simulation.steps() + 1;
-            let stop = self.arguments.max_steps.is_some_and(|most| step > most) || self.out_of_time(slowest);
-            if stop && self.simulation.time() < self.case.analysis.end {
-                return self.end(Status::Stopped, code::STOPPED);
-            }
-            if let Some(fault) = self.fault {
-                fault.strike(self.rank(), step);
-            }
-            let begin = Instant::now();
-            match self.simulation.advance() {
-                None => return self.finish(),
-                Some(Ok(accepted)) => self.accept(&accepted),
-                Some(Err(failure)) => return self.fail(&failure),
-            }
-            slowest = slowest.max(begin.elapsed().as_secs_f64());
-        }
-    }
-
-    fn begin(&mut self) {
-        let warn = |condition: bool, text: &str| condition.then(|| text.to_owned());
-        let slow = warn(
-            machine::has_reference_blas(),
-            "the BLAS in use is the reference one: factorisations take several times as long as with an optimised one \
-             (on Debian: libopenblas0-serial)",
-        );
-        if let Some(ledger) = &mut self.ledger {
-            ledger.manifest().warnings.extend(slow);
-            for warning in ledger.manifest().warnings.clone() {
-                self.log.line("warning", &format!("warning: {warning}"));
-            }
-        }
-        for note in &self.case.notes {
-            self.log.detail(&format!("{} = {}: {}", note.key, note.value, note.reason));
-        }
-        self.record(&[]);
-        self.frame();
-    }
-
-    fn accept(&mut self, accepted: &Accepted) {
-        let (step, wall) = (self.simulation.steps(), self.start.elapsed().as_secs_f64());
-        self.log.step(step, accepted, wall);
-        let written = self.ledger.as_mut().map_or(Ok(()), |ledger| ledger.step(step, accepted, wall));
-        self.require(written);
-        self.record(&accepted.report.reactions);
-        if self.wants_frame(accepted.t) {
-            self.frame();
-        }
-    }
-
-    /// A row of histories.
-    fn record(&mut self, reactions: &[Vec<f64>]) {
-        let timers = Rc::clone(&self.timers);
-        let _timed = timers.time("histories");
-        let Simulation { model, points, halo, .. } = &self.simulation;
-        let row = match self.recorder.row(model, points, reactions, &**halo) {
-            Ok(row) => row,
-            Err(error) => launch::end(&self.universe.world(), launch::BUG, &error),
-        };
-        let (step, time) = (self.simulation.steps(), self.simulation.time());
-        let written = self.ledger.as_mut().map_or(Ok(()), |ledger| ledger.history(step, time, &row));
-        self.require(written);
-    }
-
-    fn wants_frame(&self, time: f64) -> bool {
-        let every =
-            matches!(self.case.output.every, Some(Every::Steps(n)) if self.simulation.steps().is_multiple_of(n));
-        // The schedule hits wanted times to the bit, unless two of them are closer than a millionth of a step.
-        let close = |wanted: &f64| (wanted - time).abs() <= 1e-6 * self.case.analysis.dt;
-        every || setup::frame_times(&self.case).iter().any(close)
-    }
-
-    fn frame(&mut self) {
-        let timers = Rc::clone(&self.timers);
-        let _timed = timers.time("frames");
-        let (step, time) = (self.simulation.steps(), self.simulation.time());
-        let frame =
-            gather::frame(&self.universe.world(), &self.simulation.points, self.case.grid.lower(), (step, time));
-        let written = match (&mut self.ledger, frame) {
-            (Some(ledger), Some(frame)) => ledger.frame(&frame),
-            _ => Ok(()),
-        };
-        self.require(written);
-        self.last_frame = Some(step);
-    }
-
-    fn finish(self) -> u8 {
-        let mut failed = [0.0];
-        let mut run = self;
-        if let Some(ledger) = &mut run.ledger {
-            failed[0] = f64::from(!ledger.judge());
-            for check in ledger.manifest().checks.iter().filter(|check| !check.passed) {
-                eprintln!(
-                    "bsmpm-par: check failed: {} = {:?}, wanted {:?} to {:?}",
-                    check.quantity, check.value, check.min, check.max
-                );
-            }
-        }
-        run.simulation.halo.maximum(&mut failed);
-        if failed[0] > 0.0 { run.end(Status::Failed, code::CHECK) } else { run.end(Status::Finished, code::DONE) }
-    }
-
-    fn fail(mut self, failure: &Failure) -> u8 {
-        let last = failure.attempts.last();
-        let left = matches!(last, Some(StepError::Left { .. } | StepError::Outside { .. }));
-        let reason = last.map_or_else(String::new, ToString::to_string);
-        let step = self.simulation.steps() + 1;
-        let worst = self.worst_point(last);
-        self.tell_failure(step, failure, &reason, worst.as_ref());
-        if let Some(ledger) = &mut self.ledger {
-            let residuals = match last {
-                Some(StepError::NotConverged { energies, .. }) => {
-                    energies.iter().map(|energy| Some(*energy).filter(|energy| energy.is_finite())).collect()
-                }
-                _ => Vec::new(),
-            };
-            ledger.manifest().summary.cutbacks += failure.attempts.len() as u64;
-            ledger.manifest().failure = Some(manifest::Failure { step, time: failure.t, reason, residuals, worst });
-        }
-        self.end(Status::Failed, if left { code::LEFT } else { code::NO_CONVERGENCE })
-    }
-
-    /// The point that the error is about; of those that several ranks name, the one with the smallest id.
-    fn worst_point(&self, error: Option<&StepError>) -> Option<manifest::Worst> {
-        let world = self.universe.world();
-        let lower = self.case.grid.lower();
-        let mut own = [f64::INFINITY, 0.0, 0.0];
-        if let Some((id, x)) = error.and_then(StepError::point) {
-            own = [id as f64, lower[0] + x[0], lower[1] + x[1]];
-        }
-        let mut all = vec![0.0_f64; own.len() * world.size().unsigned_abs() as usize];
-        world.all_gather_into(&own[..], &mut all[..]);
-        let named = all.chunks_exact(own.len()).filter(|point| point.iter().all(|number| number.is_finite()));
-        let worst = named.min_by(|a, b| a[0].total_cmp(&b[0]))?;
-        Some(manifest::Worst { kind: "point".into(), id: worst[0] as u64, position: worst[1..].to_vec() })
-    }
-
-    fn tell_failure(&self, step: u64, failure: &Failure, reason: &str, worst: Option<&manifest::Worst>) {
-        self.log.finish();
-        if self.rank() == 0 {
-            let point = worst.map_or_else(String::new, |worst| format!("; point {} at {:?}", worst.id, worst.position));
-            eprintln!(
-                "bsmpm-par: step {step} failed at t = {} after {} attempt(s), the last with dt = {:.3e}: {reason}{point}; \
-                 the last converged state is saved",
-                failure.t,
-                failure.attempts.len(),
-                failure.dt
-            );
-        }
-    }
-
-    fn end(mut self, status: Status, code: u8) -> u8 {
-        if self.last_frame != Some(self.simulation.steps()) {
-            self.frame();
-        }
-        let world = self.universe.world();
-        let (cpu, memory) = (machine::cpu_seconds(), machine::peak_memory());
-        let mut all_memory = vec![0_u64; world.size().unsigned_abs() as usize];
-        world.all_gather_into(&memory, &mut all_memory[..]);
-        let mut total = [cpu];
-        self.simulation.halo.reduce(&mut total);
-        let written = match &mut self.ledger {
-            Some(ledger) => {
-                let manifest = ledger.manifest();
-                manifest.summary.cpu_seconds = total[0];
-                manifest.summary.peak_memory = all_memory;
-                manifest.timers = self.timers.seconds().into_iter().map(|(k, v)| (k.to_owned(), v)).collect();
-                manifest.timers.insert("wall".into(), self.start.elapsed().as_secs_f64());
-                ledger.close(status, code)
-            }
-            None => Ok(()),
-        };
-        self.require(written);
-        self.log.finish();
-        self.summarise(status);
-        code
-    }
-
-    fn summarise(&mut self, status: Status) {
-        let Some(ledger) = &mut self.ledger else { return };
-        let summary = ledger.manifest().summary.clone();
-        let text = format!(
-            "{status:?} at t = {}: {} steps, {} iterations, {} cuts, {:.1} s by the clock, {:.1} CPU s, {:.0} MiB on the largest rank; written to {}",
-            self.simulation.time(),
-            summary.steps,
-            summary.iterations,
-            summary.cutbacks,
-            self.start.elapsed().as_secs_f64(),
-            summary.cpu_seconds,
-            summary.peak_memory.iter().max().copied().unwrap_or(0) as f64 / 1_048_576.0,
-            ledger.path().display()
-        );
-        self.log.line("end", &text);
-    }
-
-    fn out_of_time(&self, slowest: f64) -> bool {
-        let Some(limit) = self.arguments.max_wall else { return false };
-        let mut needed = [self.start.elapsed().as_secs_f64() + 1.5 * slowest];
-        self.simulation.halo.maximum(&mut needed);
-        needed[0] > limit.as_secs_f64()
-    }
-
-    /// Ends the job if rank 0 could not write: the other ranks do not know of it.
-    fn require(&self, written: Result<(), bsmpm_io::Error>) {
-        if let Err(error) = written {
-            launch::end(&self.universe.world(), error.exit_code(), &error);
-        }
-    }
-
-    fn rank(&self) -> usize {
-        self.universe.world().rank().unsigned_abs() as usize
-    }
 }

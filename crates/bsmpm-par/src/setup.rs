@@ -69,9 +69,7 @@ pub fn points(case: &Case, columns: std::ops::Range<usize>) -> Points<2> {
 
 /// The first cut of the grid: about equal numbers of points. `None` with more ranks than columns.
 pub fn slabs(case: &Case, ranks: usize) -> Option<Slabs> {
-    let columns = case.grid.axes[0].cells();
-    let count = |column| bsmpm_scene::seed(case, column..column + 1).count() as f64;
-    Slabs::cut(&(0..columns).map(count).collect::<Vec<_>>(), ranks)
+    Slabs::cut(&case.points_by_column().into_iter().map(|count| count as f64).collect::<Vec<_>>(), ranks)
 }
 
 /// Steps and the times that they must hit: frames, pictures and checks.

@@ -53,6 +53,17 @@ impl Case {
     pub fn points(&self) -> u64 {
         self.bodies.iter().map(|body| body.points(&self.grid)).sum::<u128>().try_into().unwrap_or(u64::MAX)
     }
+
+    /// Number of material points in every column of cells along axis 0, without making them.
+    pub fn points_by_column(&self) -> Vec<u64> {
+        let mut counts = vec![0; self.grid.axes[0].cells()];
+        for body in &self.bodies {
+            let [across, up] = body.extents(&self.grid);
+            let in_column = (up.cells.len() * body.points_per_cell * body.points_per_cell) as u64;
+            counts[across.cells].iter_mut().for_each(|count| *count += in_column);
+        }
+        counts
+    }
 }
 
 /// Points of all bodies in the cells `columns` along axis 0.
