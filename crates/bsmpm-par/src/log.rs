@@ -2,9 +2,10 @@
 
 use crate::cli::LogFormat;
 use bsmpm::control::Accepted;
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::json;
 use std::io::{IsTerminal, Write};
+use std::time::Duration;
 
 /// Divisions of the progress bar: simulated time is no whole number.
 const DIVISIONS: f64 = 10_000.0;
@@ -47,8 +48,13 @@ impl Log {
                 .to_string(),
             ),
             LogFormat::Text => self.print(&format!(
-                "step {number:>6}  t {:<10.6} dt {:<9.3e} iterations {:>3}  residual {:.1e}  active nodes {:>6}  wall {wall:.1} s",
-                accepted.t, accepted.dt, report.iterations, report.force, report.active_nodes
+                "step {number:>6}  t {:<10.6} dt {:<9.3e} iterations {:>3}  residual {:.1e}  active nodes {:>6}  {}",
+                accepted.t,
+                accepted.dt,
+                report.iterations,
+                report.force,
+                report.active_nodes,
+                progress(accepted.t / self.end, wall)
             )),
         }
         self.bar.set_position((accepted.t / self.end * DIVISIONS) as u64);
@@ -83,4 +89,11 @@ impl Log {
             let _ = writeln!(std::io::stderr().lock(), "{line}");
         });
     }
+}
+
+/// How far the run is and how long it will take at the present pace: mpirun hides the terminal, so that lines must tell
+/// what the bar would.
+fn progress(done: f64, wall: f64) -> String {
+    let left = HumanDuration(Duration::from_secs_f64(wall * (1.0 / done - 1.0).clamp(0.0, 1e6)));
+    format!("{:4.1} % in {wall:.1} s, {left:#} left", 100.0 * done)
 }

@@ -51,12 +51,10 @@ fn force_deletes_what_the_older_run_wrote_and_nothing_else() {
 fn an_output_path_that_is_no_directory_or_cannot_be_made_is_refused_once_with_73() {
     let scratch = Scratch::with_case(COLUMN);
     scratch.write("file", "mine");
-    for directory in ["file", "file/below", "/proc/below"] {
-        for flags in [&["-q"][..], &["-q", "--force"]] {
-            let output = scratch.mpirun(2, &[&["case.toml", "-o", directory], flags].concat()).expect(73);
-            assert_eq!(output.count("bsmpm-par:"), 1, "{output:#?}");
-            assert!(output.stderr.contains(directory), "{output:#?}");
-        }
+    for (directory, flag) in [("file", "-q"), ("file", "--force"), ("file/below", "-q"), ("/proc/below", "-q")] {
+        let output = scratch.mpirun(2, &["case.toml", "-o", directory, flag]).expect(73);
+        assert_eq!(output.count("bsmpm-par:"), 1, "{output:#?}");
+        assert!(output.stderr.contains(directory), "{output:#?}");
     }
     assert_eq!(std::fs::read(scratch.path("file")).unwrap(), b"mine");
 }

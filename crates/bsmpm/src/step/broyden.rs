@@ -4,9 +4,7 @@
 //! is: the printed update K+ = K - f s^T / s.s holds for full steps, in general it is
 //! K+ = K + ((1-a) f_old - f_new) s^T / s.s.
 
-use crate::error::SolveError;
-use crate::seam::{Halo, LinearSolver, dots};
-use crate::step::quasi_newton::Direction;
+use crate::seam::{Halo, dots};
 
 /// Denominator 1 - a g below which the update is nearly singular and the history is dropped.
 const SINGULAR: f64 = 0.1;
@@ -17,6 +15,7 @@ pub struct Broyden {
     steps: Vec<Step>,
     length: f64,         // of the last direction
     gram: Vec<Vec<f64>>, // s_j . z_i for i < j
+    with_w: Vec<f64>,    // s_j . w of the present direction
 }
 
 #[derive(Clone, Debug)]
@@ -27,44 +26,26 @@ struct Step {
 }
 
 impl Broyden {
-    /// Direction du = H f for the out-of-balance force `f`, `D` components a node.
-    pub fn direction<const D: usize>(
-        &mut self,
-        f: &[f64],
-        halo: &dyn Halo,
-        solver: &mut dyn LinearSolver,
-    ) -> Result<Direction, SolveError> {
-        let mut w = vec![0.0; f.len()];
-        let linear_iterations = solver.solve(f, &mut w)?;
-        let du = self.correct::<D>(w, halo);
-        let numbers = dots(halo, D, &[(&du, f), (&du, &du)]);
-        self.steps.push(Step { s: du.clone(), s_squared: numbers[1], z: Vec::new() });
-        Ok(Direction { du, energy: numbers[0].abs(), linear_iterations })
-    }
-
     /// Tells how much of the last direction was taken: 1 for a full step.
     pub fn took(&mut self, length: f64) {
         self.length = length;
         if let Some(last) = self.steps.last_mut() {
             last.s.iter_mut().for_each(|s| *s *= length);
-            last.s_squared *= length * length;
         }
     }
 
-    /// Applies the product form to w = K_0^-1 f; completes the last step's z. All dots come from one reduction.
-    fn correct<const D: usize>(&mut self, mut w: Vec<f64>, halo: &dyn Halo) -> Vec<f64> {
+    /// Direction du from w = K_0^-1 f, `D` components a node. All dots come from one reduction.
+    pub fn correct<const D: usize>(&mut self, w: Vec<f64>, halo: &dyn Halo) -> Vec<f64> {
+        let du = self.product_form::<D>(w, halo);
+        self.steps.push(Step { s: du.clone(), s_squared: f64::NAN, z: Vec::new() });
+        du
+    }
+
+    /// Applies all steps to w; completes the last step's z.
+    fn product_form<const D: usize>(&mut self, mut w: Vec<f64>, halo: &dyn Halo) -> Vec<f64> {
         let Some(last) = self.steps.len().checked_sub(1) else { return w };
-        let s = &self.steps[last].s;
-        let with_w = self.steps.iter().map(|step| (step.s.as_slice(), w.as_slice()));
-        let with_z = self.steps[..last].iter().map(|step| (s.as_slice(), step.z.as_slice()));
-        let pairs: Vec<_> = with_w.chain(with_z).collect();
-        let mut sums = dots(halo, D, &pairs);
-        self.gram.push(sums.split_off(last + 1));
-        let mut coefficients: Vec<f64> = Vec::with_capacity(last + 1);
-        for (j, step) in self.steps.iter().enumerate() {
-            let through: f64 = coefficients.iter().zip(&self.gram[j]).map(|(c, g)| c * g).sum();
-            coefficients.push((sums[j] + through) / step.s_squared);
-        }
+        self.complete_products::<D>(&w, halo);
+        let coefficients = self.coefficients();
         let (a, g) = (self.length, coefficients[last]);
         let denominator = 1.0 - a * g;
         if !(denominator.abs() >= SINGULAR && denominator.is_finite()) {
@@ -81,6 +62,29 @@ impl Broyden {
         let z = w.iter().zip(s).map(|(du, s)| a * du - (1.0 - a) * s).collect();
         self.steps[last].z = z;
         w
+    }
+
+    /// s_j . w for all steps; s . s and s . z_i of the last one.
+    fn complete_products<const D: usize>(&mut self, w: &[f64], halo: &dyn Halo) {
+        let last = self.steps.len() - 1;
+        let s = self.steps[last].s.as_slice();
+        let with_w = self.steps.iter().map(|step| (step.s.as_slice(), w));
+        let with_z = self.steps[..last].iter().map(|step| (s, step.z.as_slice()));
+        let pairs: Vec<_> = with_w.chain([(s, s)]).chain(with_z).collect();
+        self.with_w = dots(halo, D, &pairs);
+        let mut of_last = self.with_w.split_off(last + 1);
+        self.gram.push(of_last.split_off(1));
+        self.steps[last].s_squared = of_last[0];
+    }
+
+    /// c_j = s_j . w_j / s_j . s_j, where w_j is w after the steps before j.
+    fn coefficients(&self) -> Vec<f64> {
+        let mut coefficients: Vec<f64> = Vec::with_capacity(self.steps.len());
+        for (j, step) in self.steps.iter().enumerate() {
+            let through: f64 = coefficients.iter().zip(&self.gram[j]).map(|(c, g)| c * g).sum();
+            coefficients.push((self.with_w[j] + through) / step.s_squared);
+        }
+        coefficients
     }
 }
 

@@ -5,9 +5,7 @@
 //! dw_i . df_j, which need no product with K_0. On a linear problem that is as good as GMRES, where Broyden's update
 //! may take twice the iterations.
 
-use crate::error::SolveError;
-use crate::seam::{Halo, LinearSolver, dots};
-use crate::step::quasi_newton::Direction;
+use crate::seam::{Halo, dots};
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 /// Secants that are kept: older ones tell little of a plastic state that has changed.
@@ -38,15 +36,8 @@ struct Last {
 }
 
 impl Multisecant {
-    /// Direction for the out-of-balance force `f`, `D` components a node.
-    pub fn direction<const D: usize>(
-        &mut self,
-        f: &[f64],
-        halo: &dyn Halo,
-        solver: &mut dyn LinearSolver,
-    ) -> Result<Direction, SolveError> {
-        let mut w = vec![0.0; f.len()];
-        let linear_iterations = solver.solve(f, &mut w)?;
+    /// Direction du from w = K_0^-1 f, `D` components a node.
+    pub fn correct<const D: usize>(&mut self, w: Vec<f64>, f: &[f64], halo: &dyn Halo) -> Vec<f64> {
         self.learn(&w, f);
         let mut du = w.clone();
         for (weight, secant) in self.weights::<D>(f, halo).into_iter().zip(&self.secants) {
@@ -54,9 +45,8 @@ impl Multisecant {
                 *du -= weight * (s + dw);
             }
         }
-        let energy = dots(halo, D, &[(&du, f)])[0].abs();
         self.last = Some(Last { s: du.clone(), w, f: f.to_vec() });
-        Ok(Direction { du, energy, linear_iterations })
+        du
     }
 
     /// Tells how much of the last direction was taken: 1 for a full step.

@@ -1,7 +1,7 @@
 //! Steps (6), (7): directions from one factorised stiffness K_0 and what the iteration has seen of the true one.
 
 use crate::error::SolveError;
-use crate::seam::{Halo, LinearSolver};
+use crate::seam::{Halo, LinearSolver, dots};
 use crate::step::broyden::Broyden;
 use crate::step::multisecant::Multisecant;
 
@@ -51,10 +51,14 @@ impl Secants {
         halo: &dyn Halo,
         solver: &mut dyn LinearSolver,
     ) -> Result<Direction, SolveError> {
-        match self {
-            Self::Multisecant(secants) => secants.direction::<D>(f, halo, solver),
-            Self::Broyden(secants) => secants.direction::<D>(f, halo, solver),
-        }
+        let mut w = vec![0.0; f.len()];
+        let linear_iterations = solver.solve(f, &mut w)?;
+        let du = match self {
+            Self::Multisecant(secants) => secants.correct::<D>(w, f, halo),
+            Self::Broyden(secants) => secants.correct::<D>(w, halo),
+        };
+        let energy = dots(halo, D, &[(&du, f)])[0].abs();
+        Ok(Direction { du, energy, linear_iterations })
     }
 
     /// Tells how much of the last direction was taken: 1 for a full step.
