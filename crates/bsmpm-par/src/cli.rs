@@ -35,7 +35,7 @@ pub enum FrameFormat {
 pub struct Arguments {
     /// The case file (TOML).
     pub case: PathBuf,
-    /// Where everything is written [default: <case stem>.out in the working directory]
+    /// Where everything is written [default: the case's stem with .out, in the working directory]
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
     /// Override one key of the case, e.g. --set grid.cell="5 mm"; repeatable
