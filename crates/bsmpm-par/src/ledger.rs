@@ -128,7 +128,11 @@ impl Ledger {
 fn first_manifest(arguments: &Arguments, case: &Case, ranks: usize) -> Manifest {
     let file = arguments.case.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let described = manifest::Case::new(&file, &case.title, "plane-strain", case.text.clone());
-    let mut manifest = Manifest::begin(env!("CARGO_PKG_VERSION"), std::env::args().collect(), described);
+    let mut manifest = Manifest::begin(
+        env!("CARGO_PKG_VERSION"),
+        std::env::args_os().map(|argument| argument.to_string_lossy().into_owned()).collect(),
+        described,
+    );
     let axes = &case.grid.axes;
     let longest = |axis: &bsmpm_scene::Axis| (0..axis.cells()).map(|i| axis.cell(i)).fold(0.0, f64::max);
     manifest.ranks = ranks as u32;

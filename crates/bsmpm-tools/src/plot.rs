@@ -38,6 +38,9 @@ pub struct Arguments {
     /// What colours the body
     #[arg(long, value_enum, default_value_t = FieldName::StressYy)]
     pub field: FieldName,
+    /// Ends of the colours, in the unit of the picture, so that runs can be compared [default: from the values]
+    #[arg(long, value_name = "MIN,MAX", value_parser = ends, allow_hyphen_values = true)]
+    pub range: Option<(f64, f64)>,
     /// Points to compare with: a CSV file with columns `time,x,y` (free surface) or `time,<history>`
     #[arg(long, value_name = "FILE")]
     pub reference: Option<PathBuf>,
@@ -46,7 +49,7 @@ pub struct Arguments {
 impl Arguments {
     /// All pictures of a run as its case wants them.
     pub fn of(directory: PathBuf) -> Self {
-        Self { directory, times: Vec::new(), field: FieldName::StressYy, reference: None }
+        Self { directory, times: Vec::new(), field: FieldName::StressYy, range: None, reference: None }
     }
 }
 
@@ -54,6 +57,12 @@ fn time(text: &str) -> Result<f64, String> {
     let number = text.trim().trim_end_matches('s').trim_end();
     let time: f64 = number.parse().map_err(|_| "a time is a number of seconds".to_owned())?;
     if time.is_finite() { Ok(time) } else { Err("a time is finite".to_owned()) }
+}
+
+fn ends(text: &str) -> Result<(f64, f64), String> {
+    let number = |part: &str| part.trim().parse::<f64>().ok().filter(|number| number.is_finite());
+    let ends = text.split_once(',').and_then(|(lower, upper)| Some((number(lower)?, number(upper)?)));
+    ends.filter(|(lower, upper)| lower < upper).ok_or_else(|| "two numbers MIN,MAX, the smaller one first".to_owned())
 }
 
 /// Draws the pictures and, unless the run still goes on, names them in its `run.json`, so that `--force` knows them.
@@ -84,7 +93,7 @@ fn pictures(arguments: &Arguments) -> Result<(record::Record, Vec<String>), Erro
     let frames = record.frames(&arguments.times)?;
     let mut names = Vec::new();
     if !frames.is_empty() {
-        names.extend(body::draw(&record, &frames, arguments.field)?);
+        names.extend(body::draw(&record, &frames, arguments.field, arguments.range)?);
         names.push(surface::draw(&record, &frames, reference.as_ref())?);
     }
     names.extend(curves::draw(&record, reference.as_ref())?);

@@ -62,3 +62,17 @@ fn warnings_of_the_case_are_told_once_and_kept() {
     let warnings = crate::support::results::manifest(&scratch.path("case.out")).warnings;
     assert_eq!(warnings.len(), 1, "{warnings:?}");
 }
+
+/// A full disk or a reader that went away is no reason to fail, let alone to report a bug.
+#[test]
+fn streams_that_take_nothing_do_not_change_the_exit_code() {
+    let scratch = Scratch::with_case(COLUMN);
+    let code = |arguments: &[&str]| scratch.job(None, &[&["case.toml"], arguments].concat()).unheard().run().code;
+    assert_eq!(code(&[]), Some(0));
+    assert_eq!(code(&["--check"]), Some(0));
+    assert_eq!(code(&["--set", "grid.cell=-1"]), Some(65));
+    assert_eq!(code(&["--nonsense"]), Some(2));
+    assert_eq!(code(&["--max-memory", "1kB"]), Some(71));
+    assert_eq!(code(&[]), Some(73));
+    assert_eq!(code(&["--force", "--set", "solver.max_iterations=1", "--set", "solver.tolerance=1e-15"]), Some(80));
+}

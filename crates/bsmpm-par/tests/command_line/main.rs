@@ -9,6 +9,8 @@ mod petsc_options;
 mod support;
 
 use bsmpm_io::manifest::Status;
+use std::ffi::OsStr;
+use std::os::unix::ffi::OsStrExt;
 use support::Scratch;
 use support::cases::{COLUMN, changed};
 use support::results::{history, manifest, steps};
@@ -59,6 +61,15 @@ fn a_case_that_cannot_be_read_is_refused_once_with_66() {
         scratch.direct(&[name]).expect(66).says_once(name);
     }
     assert_eq!(scratch.entries(), ["folder.toml"]);
+}
+
+#[test]
+fn a_name_that_is_no_utf_8_is_a_name_like_any_other() {
+    let scratch = Scratch::with_case(COLUMN);
+    let name = OsStr::from_bytes(b"case \xff.toml");
+    std::fs::rename(scratch.path("case.toml"), scratch.path("").join(name)).unwrap();
+    scratch.job(Some(2), &["-q", "-o", "out"]).argument(name.as_bytes()).run().expect(0);
+    assert_eq!(manifest(&scratch.path("out")).case.file, "case \u{fffd}.toml");
 }
 
 #[test]

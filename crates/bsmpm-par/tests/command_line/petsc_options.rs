@@ -17,6 +17,23 @@ fn options_after_two_dashes_reach_the_solver() {
     }
 }
 
+/// Without a tolerance of their own the methods must still solve well enough to be trusted; the first row is the example
+/// of the documentation.
+#[test]
+fn iterative_methods_work_by_their_names_alone() {
+    let options: [&[&str]; 4] = [
+        &["--", "-ksp_type", "cg", "-pc_type", "gamg"],
+        &["--", "-ksp_type", "gmres", "-pc_type", "bjacobi"],
+        &["--set", "solver.linear={ ksp = \"cg\", pc = \"jacobi\" }"],
+        &["--set", "solver.linear={ ksp = \"minres\", pc = \"none\" }"],
+    ];
+    for options in options {
+        let scratch = Scratch::with_case(COLUMN);
+        scratch.mpirun(2, &[&["case.toml", "-q"], options].concat()).expect(0);
+        assert!(steps(&scratch.path("case.out")).get("cutbacks").unwrap().iter().all(|cuts| *cuts == 0.0));
+    }
+}
+
 #[test]
 fn log_view_reports_to_the_terminal() {
     let scratch = Scratch::with_case(COLUMN);

@@ -8,7 +8,10 @@ pub mod results;
 
 pub use processes::Output;
 
+use std::ffi::OsString;
+use std::os::unix::ffi::OsStringExt;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 use std::time::Duration;
 
 /// The program under test.
@@ -62,8 +65,15 @@ impl Scratch {
 
     /// A run to which more is to be said.
     pub fn job(&self, ranks: Option<usize>, arguments: &[&str]) -> Job {
-        let arguments = arguments.iter().map(|&argument| argument.to_owned()).collect();
-        Job { directory: self.0.path().to_owned(), ranks, arguments, variables: Vec::new(), patience: PATIENCE }
+        let arguments = arguments.iter().map(|&argument| argument.to_owned().into()).collect();
+        Job {
+            directory: self.0.path().to_owned(),
+            ranks,
+            arguments,
+            variables: Vec::new(),
+            patience: PATIENCE,
+            heard: true,
+        }
     }
 }
 
@@ -79,9 +89,10 @@ pub fn entries(directory: &Path) -> Vec<String> {
 pub struct Job {
     directory: PathBuf,
     ranks: Option<usize>,
-    arguments: Vec<String>,
+    arguments: Vec<OsString>,
     variables: Vec<(String, String)>,
     patience: Duration,
+    heard: bool,
 }
 
 impl Job {
@@ -97,17 +108,29 @@ impl Job {
         self
     }
 
+    /// With one more argument, which need not be UTF-8.
+    pub fn argument(mut self, argument: &[u8]) -> Self {
+        self.arguments.push(OsString::from_vec(argument.to_owned()));
+        self
+    }
+
+    /// With streams that take nothing: every write to them fails.
+    pub fn unheard(mut self) -> Self {
+        self.heard = false;
+        self
+    }
+
     /// Runs to the end. Panics if that does not come, or if a process of the run outlives it.
     pub fn run(self) -> Output {
-        let (program, mut arguments) = match self.ranks {
-            None => (PROGRAM, Vec::new()),
+        let mut command = match self.ranks {
+            None => Command::new(PROGRAM),
             Some(ranks) => {
-                let count = ranks.to_string();
-                let launcher = ["-q", "--oversubscribe", "-n", &count, PROGRAM];
-                ("mpirun", launcher.iter().map(|&part| part.to_owned()).collect())
+                let mut launcher = Command::new("mpirun");
+                launcher.args(["-q", "--oversubscribe", "-n", &ranks.to_string(), PROGRAM]);
+                launcher
             }
         };
-        arguments.extend(self.arguments);
-        processes::run(program, &arguments, &self.directory, &self.variables, self.patience)
+        command.args(self.arguments).current_dir(self.directory);
+        processes::run(command, &self.variables, self.heard, self.patience)
     }
 }

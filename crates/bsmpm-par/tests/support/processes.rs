@@ -3,7 +3,6 @@
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
 use std::os::unix::process::CommandExt;
-use std::path::Path;
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
@@ -52,18 +51,13 @@ impl Output {
     }
 }
 
-pub fn run(
-    program: &str,
-    arguments: &[String],
-    directory: &Path,
-    variables: &[(String, String)],
-    patience: Duration,
-) -> Output {
+/// Runs a command to its end. Panics if that does not come within `patience`, or if a process outlives the run. What
+/// is said goes to `/dev/full` if nobody is to hear it.
+pub fn run(mut command: Command, variables: &[(String, String)], heard: bool, patience: Duration) -> Output {
     let _turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
     let mark = format!("{}-{}", std::process::id(), RUNS.fetch_add(1, Ordering::Relaxed));
     let (mut stdout, mut stderr) = (tempfile::tempfile().unwrap(), tempfile::tempfile().unwrap());
-    let mut command = Command::new(program);
-    command.args(arguments).current_dir(directory).process_group(0);
+    command.process_group(0);
     command.env("OMP_NUM_THREADS", "1").env(MARK, &mark);
     command.env("OMPI_ALLOW_RUN_AS_ROOT", "1").env("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1");
     // Shared memory will do; looking for faster networks takes most of the time of a start.
@@ -72,9 +66,10 @@ pub fn run(
         command.env_remove(name);
     }
     command.envs(variables.iter().map(|(name, value)| (name, value)));
-    command.stdin(Stdio::null()).stdout(stdout.try_clone().unwrap()).stderr(stderr.try_clone().unwrap());
+    let stream = |file: &File| if heard { file.try_clone() } else { File::options().write(true).open("/dev/full") };
+    command.stdin(Stdio::null()).stdout(stream(&stdout).unwrap()).stderr(stream(&stderr).unwrap());
     let started = Instant::now();
-    let mut child = command.spawn().unwrap_or_else(|error| panic!("{program}: {error}"));
+    let mut child = command.spawn().unwrap_or_else(|error| panic!("{command:?}: {error}"));
     let status = wait(&mut child, patience);
     let elapsed = started.elapsed();
     if status.is_none() {
@@ -88,8 +83,8 @@ pub fn run(
         stderr: text(&mut stderr),
         elapsed,
     };
-    assert!(status.is_some(), "hangs: {arguments:?}: {output:#?}");
-    assert!(left.is_empty(), "processes {left:?} outlive their run: {arguments:?}: {output:#?}");
+    assert!(status.is_some(), "hangs: {command:?}: {output:#?}");
+    assert!(left.is_empty(), "processes {left:?} outlive their run: {command:?}: {output:#?}");
     output
 }
 

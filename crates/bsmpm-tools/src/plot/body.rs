@@ -18,12 +18,17 @@ const RIGHT: f64 = 60.0;
 /// The share of points whose values lie beyond each end of the range of colours, so that a few wild ones do not set it.
 const BEYOND: f64 = 0.005;
 
-/// Draws a picture for every frame; returns their names.
-pub(super) fn draw(record: &Record, frames: &[Frame], field: FieldName) -> Result<Vec<String>, Error> {
+/// Draws a picture for every frame, with the `wanted` range of colours or one from the values; returns their names.
+pub(super) fn draw(
+    record: &Record,
+    frames: &[Frame],
+    field: FieldName,
+    wanted: Option<(f64, f64)>,
+) -> Result<Vec<String>, Error> {
     let values: Option<Vec<_>> = frames.iter().map(|frame| field.values(frame)).collect();
     let missing = || Error::NoField { directory: record.directory.clone(), field: field.field() };
     let values = values.ok_or_else(missing)?;
-    let colours = colour_range(&values);
+    let colours = wanted.unwrap_or_else(|| colour_range(&values));
     let region = region(record, frames);
     let mut names = Vec::new();
     for (frame, values) in frames.iter().zip(&values) {
