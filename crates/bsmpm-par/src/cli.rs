@@ -1,11 +1,10 @@
 //! The command line of `bsmpm-par`.
 
+use crate::exit::USAGE;
+use crate::launch::say;
 use clap::{Parser, ValueEnum};
 use std::path::PathBuf;
 use std::time::Duration;
-
-/// Exit code of a wrong command line.
-pub const USAGE: u8 = 2;
 
 /// Beginnings of the PETSc options that may follow `--`: methods, preconditioners and their reports, no files.
 const PETSC_OPTIONS: [&str; 8] =
@@ -91,7 +90,7 @@ impl Arguments {
         })?;
         arguments.admissible().map_err(|reason| {
             if print {
-                eprintln!("bsmpm-par: {reason}");
+                say(&format!("bsmpm-par: {reason}"));
             }
             USAGE
         })?;

@@ -8,7 +8,7 @@ pub struct Fault {
 }
 
 impl Fault {
-    /// Reads `BSMPM_FAULT`; `Err` says what is wrong with it.
+    /// Reads this rank's `BSMPM_FAULT` for a run on so many ranks; `Err` says what is wrong with it.
     pub fn from_environment(ranks: usize) -> Result<Option<Self>, String> {
         let Some(text) = std::env::var_os("BSMPM_FAULT") else { return Ok(None) };
         let fault = Self::parse(&text.to_string_lossy())?;

@@ -31,7 +31,11 @@ pub fn frame(
     root.gather_varcount_into_root(&own[..], &mut PartitionMut::new(&mut all[..], &counts[..], &starts[..]));
     let mut rows: Vec<&[f64]> = all.chunks_exact(WIDTH).collect();
     rows.sort_by(|a, b| a[0].total_cmp(&b[0]));
-    Some(unpack(&rows, lower, (step, time)))
+    let mut frame = unpack(&rows, lower, (step, time));
+    if points.motion.is_none() {
+        frame.fields.retain(|field| field.name != "velocity");
+    }
+    Some(frame)
 }
 
 fn pack(points: &Points<2>) -> Vec<f64> {

@@ -1,14 +1,11 @@
 //! Start and end of the ranks: what MPI needs before it starts, and how a failure on one rank ends all of them.
 
+use crate::exit::{BUG, WRONG_LAUNCH};
+use mpi::collective::{CommunicatorCollectives, SystemOperation};
 use mpi::environment::Universe;
 use mpi::topology::{Communicator, SimpleCommunicator};
 use std::fmt::Display;
 use std::io::Write;
-
-/// Exit code of a panic: a bug.
-pub const BUG: u8 = 70;
-/// Exit code of N separate runs where one run on N ranks was meant.
-pub const WRONG_LAUNCH: u8 = 78;
 
 /// Variables by which a launcher tells a process how many ranks it started.
 const LAUNCHED: [&str; 4] = ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_SIZE", "SLURM_STEP_NUM_TASKS"];
@@ -19,18 +16,18 @@ pub fn start() -> Result<Universe, u8> {
         prepare_single_rank();
     }
     let Some((universe, _)) = mpi::initialize_with_threading(mpi::Threading::Funneled) else {
-        eprintln!("bsmpm-par: MPI could not be started");
+        say("bsmpm-par: MPI could not be started");
         return Err(BUG);
     };
     abort_on_panic();
     let ranks = universe.world().size().unsigned_abs() as usize;
     let wanted = LAUNCHED.iter().find_map(|name| std::env::var(name).ok()?.parse::<usize>().ok());
     if ranks == 1 && wanted.is_some_and(|wanted| wanted > 1) {
-        eprintln!(
+        say(&format!(
             "bsmpm-par: the launcher started {} processes, but each is a run of its own: \
              the launcher and this program use different MPI libraries",
             wanted.unwrap_or(0)
-        );
+        ));
         return Err(WRONG_LAUNCH);
     }
     Ok(universe)
@@ -61,12 +58,29 @@ fn abort_on_panic() {
 
 /// Ends the job on all ranks with `code`, for failures that the other ranks do not know of. Prints `reason` once.
 pub fn end(world: &SimpleCommunicator, code: u8, reason: &dyn Display) -> ! {
-    let mut stderr = std::io::stderr().lock();
-    // Nothing is left to do where even stderr is gone.
-    let _ = writeln!(stderr, "bsmpm-par: {reason}").and_then(|()| stderr.flush());
-    drop(stderr);
+    say(&format!("bsmpm-par: {reason}"));
     if mpi::environment::is_initialized() && !mpi::environment::is_finalized() {
         world.abort(i32::from(code));
     }
     std::process::exit(i32::from(code));
+}
+
+/// Writes a line to stderr; where nobody listens there is nothing left to do.
+pub fn say(line: &str) {
+    let mut stderr = std::io::stderr().lock();
+    let _ = writeln!(stderr, "{line}").and_then(|()| stderr.flush());
+}
+
+/// The same exit code on all ranks: the largest of them, 0 where all are well. Collective.
+pub fn agree(world: &SimpleCommunicator, own: u8) -> u8 {
+    let mut largest = 0;
+    world.all_reduce_into(&own, &mut largest, SystemOperation::max());
+    largest
+}
+
+/// Number of ranks on which a condition holds. Collective.
+pub fn count(world: &SimpleCommunicator, holds: bool) -> usize {
+    let mut sum = 0_u32;
+    world.all_reduce_into(&u32::from(holds), &mut sum, SystemOperation::sum());
+    sum as usize
 }

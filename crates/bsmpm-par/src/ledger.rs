@@ -4,6 +4,7 @@ use crate::cli::Arguments;
 use crate::machine;
 use crate::setup;
 use bsmpm::control::Accepted;
+use bsmpm::step::Counts;
 use bsmpm_io::Error;
 use bsmpm_io::directory::{Existing, HISTORY, OutputDirectory};
 use bsmpm_io::frame::Frame;
@@ -78,26 +79,34 @@ impl Ledger {
     /// A row of `steps.csv`, and its share of the totals.
     pub fn step(&mut self, number: u64, accepted: &Accepted, wall: f64) -> Result<(), Error> {
         let report = &accepted.report;
-        let summary = &mut self.manifest.summary;
-        summary.steps = number;
-        summary.iterations += report.iterations as u64;
-        summary.linear_iterations += report.linear_iterations as u64;
-        summary.cutbacks += accepted.rejected.len() as u64;
-        summary.residual_evaluations += report.evaluations as u64;
-        self.manifest.sizes.insert("active_nodes".into(), report.active_nodes as u64);
-        self.manifest.sizes.insert("unknowns".into(), report.unknowns as u64);
+        self.manifest.summary.steps = number;
+        self.attempts(accepted.rejected.len(), accepted.counts);
+        let sizes = &mut self.manifest.sizes;
+        sizes.insert("active_nodes".into(), report.active_nodes as u64);
+        sizes.insert("unknowns".into(), report.unknowns as u64);
+        let massless = sizes.entry("most_massless_nodes".into()).or_default();
+        *massless = (*massless).max(report.massless_nodes as u64);
         let row = Step {
             step: number,
             time: accepted.t,
             dt: accepted.dt,
             iterations: report.iterations as u64,
             residual: report.force,
-            linear_iterations: report.linear_iterations as u64,
+            linear_iterations: accepted.counts.linear_iterations as u64,
             cutbacks: accepted.rejected.len() as u64,
             active_nodes: report.active_nodes as u64,
             wall,
         };
         self.steps.row(&row.cells())
+    }
+
+    /// Adds the work of attempts, of which so many led to a cut, to the totals.
+    pub fn attempts(&mut self, cuts: usize, counts: Counts) {
+        let summary = &mut self.manifest.summary;
+        summary.cutbacks += cuts as u64;
+        summary.iterations += counts.iterations as u64;
+        summary.linear_iterations += counts.linear_iterations as u64;
+        summary.residual_evaluations += counts.evaluations as u64;
     }
 
     /// A frame; the manifest names it before it is there.
@@ -107,7 +116,7 @@ impl Ledger {
         self.frames.write(frame)
     }
 
-    /// Decides the checks, and writes the manifest for the last time; true if all checks passed.
+    /// Notes how the run ended, and sizes and hashes of all files; writes the manifest for the last time.
     pub fn close(&mut self, status: Status, exit_code: u8) -> Result<(), Error> {
         self.manifest.finish(status, exit_code);
         self.manifest.seal(self.directory.path())?;
@@ -151,7 +160,8 @@ fn first_manifest(arguments: &Arguments, case: &Case, ranks: usize) -> Manifest 
         .iter()
         .map(|note| manifest::Choice { key: note.key.clone(), value: note.value.clone(), reason: note.reason.clone() })
         .collect();
-    manifest.warnings = case.warnings.clone();
+    manifest.choices.extend(setup::choices(case, ranks));
+    manifest.warnings = setup::warnings(case);
     manifest.versions = versions();
     let check = |check: &bsmpm_scene::Check| Check {
         quantity: check.quantity.clone(),

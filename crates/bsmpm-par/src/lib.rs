@@ -4,6 +4,7 @@
 #![deny(unsafe_code)]
 
 pub mod cli;
+pub mod exit;
 pub mod fault;
 pub mod gather;
 pub mod halo;

@@ -1,10 +1,11 @@
 //! The log of rank 0 on stderr: one line a step, and on a terminal a progress bar with the time that is left.
 
 use crate::cli::LogFormat;
+use crate::launch::say;
 use bsmpm::control::Accepted;
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::json;
-use std::io::{IsTerminal, Write};
+use std::io::IsTerminal;
 use std::time::Duration;
 
 /// Divisions of the progress bar: simulated time is no whole number.
@@ -12,6 +13,7 @@ const DIVISIONS: f64 = 10_000.0;
 
 /// Where log lines go; silent on all ranks but the first.
 pub struct Log {
+    speaks: bool,
     quiet: bool,
     verbose: bool,
     format: LogFormat,
@@ -29,7 +31,7 @@ impl Log {
         if let Ok(style) = ProgressStyle::with_template("{bar:40} {percent} %  {elapsed} passed, {eta} left  {msg}") {
             bar.set_style(style);
         }
-        Self { quiet, verbose, format, bar, end }
+        Self { speaks, quiet, verbose, format, bar, end }
     }
 
     /// One accepted step, its number and the seconds since the start.
@@ -43,7 +45,7 @@ impl Log {
                 &json!({
                     "event": "step", "step": number, "time": accepted.t, "dt": accepted.dt,
                     "iterations": report.iterations, "residual": report.force,
-                    "evaluations": report.evaluations, "active_nodes": report.active_nodes, "wall": wall,
+                    "evaluations": accepted.counts.evaluations, "active_nodes": report.active_nodes, "wall": wall,
                 })
                 .to_string(),
             ),
@@ -75,6 +77,17 @@ impl Log {
         }
     }
 
+    /// A failure: told however quiet the run is.
+    pub fn failure(&self, text: &str) {
+        self.bar.finish_and_clear();
+        if self.speaks {
+            match self.format {
+                LogFormat::Json => say(&json!({ "event": "failure", "message": text }).to_string()),
+                LogFormat::Text => say(&format!("bsmpm-par: {text}")),
+            }
+        }
+    }
+
     /// Takes the bar away.
     pub fn finish(&self) {
         self.bar.finish_and_clear();
@@ -84,10 +97,7 @@ impl Log {
         if self.quiet {
             return;
         }
-        self.bar.suspend(|| {
-            // A log that cannot be written is no reason to end a run.
-            let _ = writeln!(std::io::stderr().lock(), "{line}");
-        });
+        self.bar.suspend(|| say(line));
     }
 }
 

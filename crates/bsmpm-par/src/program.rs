@@ -1,7 +1,9 @@
 //! From the command line to a run that is ready: every way to be refused before anything is written.
 
-use crate::cli::{self, Arguments};
+use crate::cli::Arguments;
+use crate::exit;
 use crate::fault::Fault;
+use crate::ksp;
 use crate::launch;
 use crate::ledger::Ledger;
 use crate::log::Log;
@@ -17,23 +19,14 @@ use mpi::collective::Root;
 use mpi::environment::Universe;
 use mpi::topology::Communicator;
 use petsc_rs::Petsc;
+use std::io::Write;
 use std::rc::Rc;
-
-/// Exit code of a case that cannot be run on so many ranks.
-const CASE: u8 = 65;
-/// Exit code of a case that needs more memory than allowed.
-const MEMORY: u8 = 71;
-
-/// MUMPS: ordering by approximate minimum fill, of all that were tried the cheapest for plane grids, and twice the
-/// workspace that it estimates, which on several ranks is at times too little. Iterative methods: a tolerance whose
-/// solutions are trusted, unlike those of PETSc's 1e-5. The user's own options come later and win.
-const DEFAULTS: [&str; 6] = ["-mat_mumps_icntl_7", "2", "-mat_mumps_icntl_14", "100", "-ksp_rtol", "1e-10"];
 
 /// Runs what the command line asks for and returns the exit code; the same on every rank.
 pub fn run(universe: &Universe) -> u8 {
     match prepare(universe) {
         Ok(Some((task, slabs))) => solve(universe, task, slabs).unwrap_or_else(|code| code),
-        Ok(None) => 0,
+        Ok(None) => exit::DONE,
         Err(code) => code,
     }
 }
@@ -41,7 +34,7 @@ pub fn run(universe: &Universe) -> u8 {
 /// Prints a reason on rank 0 and hands the exit code on.
 fn refuse(universe: &Universe, code: u8, reason: &str) -> u8 {
     if universe.world().rank() == 0 {
-        eprintln!("bsmpm-par: {reason}");
+        launch::say(&format!("bsmpm-par: {reason}"));
     }
     code
 }
@@ -51,38 +44,56 @@ fn prepare(universe: &Universe) -> Result<Option<(Task, Slabs)>, u8> {
     let world = universe.world();
     let (speaks, ranks) = (world.rank() == 0, world.size().unsigned_abs() as usize);
     let arguments = Arguments::read(speaks)?;
-    let fault = Fault::from_environment(ranks).map_err(|reason| refuse(universe, cli::USAGE, &reason))?;
+    let fault = agreed(universe, exit::USAGE, Fault::from_environment(ranks))?;
     let case = source::read(&world, &arguments)?;
     let needed = case.estimate().bytes;
     if arguments.max_memory.is_some_and(|limit| needed > limit) {
         let reason = format!("the case needs about {needed} bytes, more than --max-memory allows");
-        return Err(refuse(universe, MEMORY, &reason));
+        return Err(refuse(universe, exit::MEMORY, &reason));
     }
     let Some(slabs) = setup::slabs(&case, ranks) else {
         let columns = case.grid.axes[0].cells();
         let reason =
             format!("{ranks} ranks are too many: the grid has {columns} columns of cells, so at most {columns} ranks");
-        return Err(refuse(universe, CASE, &reason));
+        return Err(refuse(universe, exit::CASE, &reason));
     };
     if arguments.check {
         if speaks {
-            source::describe(&case, ranks);
+            // A closed stdout is no reason to fail.
+            let _ = writeln!(std::io::stdout(), "{}", source::describe(&case, ranks));
         }
         return Ok(None);
     }
     Ok(Some((Task { case, arguments, fault }, slabs)))
 }
 
+/// The outcome of this rank, if it is good on all; else the exit code, and the ranks that know a reason have said it.
+fn agreed<T>(universe: &Universe, code: u8, mine: Result<T, String>) -> Result<T, u8> {
+    let world = universe.world();
+    // What is wrong everywhere is said once.
+    let (first, own) = (world.rank() == 0, u8::from(mine.is_err()));
+    let everywhere = world.size().unsigned_abs() as usize == launch::count(&world, own == 1);
+    if let (Err(reason), true) = (&mine, first || !everywhere) {
+        launch::say(&format!("bsmpm-par: {reason}"));
+    }
+    let failed = launch::agree(&world, own * code);
+    mine.map_err(|_| failed).and_then(|good| if failed == 0 { Ok(good) } else { Err(failed) })
+}
+
 fn solve(universe: &Universe, task: Task, slabs: Slabs) -> Result<u8, u8> {
     let Task { case, arguments, .. } = &task;
     let rank = universe.world().rank().unsigned_abs() as usize;
-    let model = setup::model(case).map_err(|error| refuse(universe, CASE, &error.to_string()))?;
-    let options: Vec<&str> = DEFAULTS.into_iter().chain(arguments.petsc.iter().map(String::as_str)).collect();
-    let petsc = Petsc::initialize(universe, &options)
-        .map_err(|error| refuse(universe, launch::BUG, &format!("PETSc could not be started: {error}")))?;
+    let model = setup::model(case).map_err(|error| refuse(universe, exit::CASE, &error.to_string()))?;
+    let choice = setup::linear(case, universe.world().size().unsigned_abs() as usize);
+    let own = arguments.petsc.iter().map(String::as_str);
+    let options: Vec<&str> = choice.options().into_iter().chain(own).collect();
+    let petsc = Petsc::initialize(universe, &options).map_err(|error| format!("PETSc could not be started: {error}"));
+    let petsc = agreed(universe, exit::BUG, petsc)?;
+    let probed = ksp::probe(&petsc, &choice).map_err(|error| format!("the linear solver cannot be used: {error}"));
+    agreed(universe, exit::CASE, probed)?;
     let timers = Rc::new(Timers::default());
     let points = setup::points(case, slabs.columns(rank));
-    let seam = (universe, &petsc, setup::linear(case));
+    let seam = (universe, &petsc, choice);
     let simulation = Simulation::new(seam, model, (slabs, points), setup::schedule(case), Rc::clone(&timers));
     let recorder = Recorder::new(&case.histories, case.grid.lower(), &simulation.points, &*simulation.halo);
     let ledger = open_ledger(universe, arguments, case, &recorder)?;
@@ -105,7 +116,7 @@ fn open_ledger(
         .and_then(|opened| {
             opened
                 .map_err(|error| {
-                    eprintln!("bsmpm-par: {error}");
+                    launch::say(&format!("bsmpm-par: {error}"));
                     refused = error.exit_code();
                 })
                 .ok()

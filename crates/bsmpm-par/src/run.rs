@@ -1,6 +1,7 @@
 //! A run: step after step, what is written after each, and the ways in which it ends.
 
 use crate::cli::Arguments;
+use crate::exit;
 use crate::fault::Fault;
 use crate::gather;
 use crate::launch;
@@ -22,15 +23,6 @@ use mpi::environment::Universe;
 use mpi::topology::Communicator;
 use std::rc::Rc;
 use std::time::Instant;
-
-/// Exit codes of a run that began.
-mod code {
-    pub const DONE: u8 = 0;
-    pub const STOPPED: u8 = 75;
-    pub const CHECK: u8 = 77;
-    pub const NO_CONVERGENCE: u8 = 80;
-    pub const LEFT: u8 = 81;
-}
 
 /// What is to be run, and how.
 #[derive(Debug)]
@@ -55,6 +47,7 @@ pub struct Run<'p> {
     log: Log,
     timers: Rc<Timers>,
     start: Instant,
+    frame_times: Vec<f64>,
     last_frame: Option<u64>,
 }
 
@@ -68,8 +61,21 @@ impl<'p> Run<'p> {
         (ledger, log): (Option<Ledger>, Log),
         timers: Rc<Timers>,
     ) -> Self {
-        let (start, last_frame) = (Instant::now(), None);
-        Self { universe, case, arguments, fault, simulation, recorder, ledger, log, timers, start, last_frame }
+        let (start, frame_times, last_frame) = (Instant::now(), setup::frame_times(&case), None);
+        Self {
+            universe,
+            case,
+            arguments,
+            fault,
+            simulation,
+            recorder,
+            ledger,
+            log,
+            timers,
+            start,
+            frame_times,
+            last_frame,
+        }
     }
 
     /// Steps to the end of the case, or to what ends the run before; returns the exit code.
@@ -80,7 +86,7 @@ impl<'p> Run<'p> {
             let step = self.simulation.steps() + 1;
             let stop = self.arguments.max_steps.is_some_and(|most| step > most) || self.out_of_time(slowest);
             if stop && self.simulation.time() < self.case.analysis.end {
-                return self.end(Status::Stopped, code::STOPPED);
+                return self.end(Status::Stopped, exit::STOPPED);
             }
             if let Some(fault) = self.fault {
                 fault.strike(self.rank(), step);
@@ -120,9 +126,26 @@ impl<'p> Run<'p> {
         self.log.step(step, accepted, wall);
         let written = self.ledger.as_mut().map_or(Ok(()), |ledger| ledger.step(step, accepted, wall));
         self.require(written);
+        if step == 1 {
+            self.tell_unused_options();
+        }
         self.record(&accepted.report.reactions);
         if self.wants_frame(accepted.t) {
             self.frame();
+        }
+    }
+
+    /// Misspelt options of PETSc would do nothing in silence.
+    fn tell_unused_options(&mut self) {
+        let unused = self.simulation.unused_options();
+        let given = |name: &String| self.arguments.petsc.iter().any(|option| option.strip_prefix('-') == Some(name));
+        for name in unused.iter().filter(|name| given(name)) {
+            let warning =
+                format!("the PETSc option -{name} was not used: it is misspelt, or the solver has no such part");
+            self.log.line("warning", &format!("warning: {warning}"));
+            if let Some(ledger) = &mut self.ledger {
+                ledger.manifest().warnings.push(warning);
+            }
         }
     }
 
@@ -133,7 +156,7 @@ impl<'p> Run<'p> {
         let Simulation { model, points, halo, .. } = &self.simulation;
         let row = match self.recorder.row(model, points, reactions, &**halo) {
             Ok(row) => row,
-            Err(error) => launch::end(&self.universe.world(), launch::BUG, &error),
+            Err(error) => launch::end(&self.universe.world(), exit::BUG, &error),
         };
         let (step, time) = (self.simulation.steps(), self.simulation.time());
         let written = self.ledger.as_mut().map_or(Ok(()), |ledger| ledger.history(step, time, &row));
@@ -145,7 +168,7 @@ impl<'p> Run<'p> {
             matches!(self.case.output.every, Some(Every::Steps(n)) if self.simulation.steps().is_multiple_of(n));
         // The schedule hits wanted times to the bit, unless two of them are closer than a millionth of a step.
         let close = |wanted: &f64| (wanted - time).abs() <= 1e-6 * self.case.analysis.dt;
-        every || setup::frame_times(&self.case).iter().any(close)
+        every || self.frame_times.iter().any(close)
     }
 
     fn frame(&mut self) {
@@ -168,63 +191,62 @@ impl<'p> Run<'p> {
         if let Some(ledger) = &mut run.ledger {
             failed[0] = f64::from(!ledger.judge());
             for check in ledger.manifest().checks.iter().filter(|check| !check.passed) {
-                eprintln!(
-                    "bsmpm-par: check failed: {} = {:?}, wanted {:?} to {:?}",
+                run.log.failure(&format!(
+                    "check failed: {} = {:?}, wanted {:?} to {:?}",
                     check.quantity, check.value, check.min, check.max
-                );
+                ));
             }
         }
         run.simulation.halo.maximum(&mut failed);
-        if failed[0] > 0.0 { run.end(Status::Failed, code::CHECK) } else { run.end(Status::Finished, code::DONE) }
+        if failed[0] > 0.0 { run.end(Status::Failed, exit::CHECK) } else { run.end(Status::Finished, exit::DONE) }
     }
 
     fn fail(mut self, failure: &Failure) -> u8 {
         let last = failure.attempts.last();
         let left = matches!(last, Some(StepError::Left { .. } | StepError::Outside { .. }));
+        let code = launch::agree(&self.universe.world(), if left { exit::LEFT } else { exit::NO_CONVERGENCE });
         let reason = last.map_or_else(String::new, ToString::to_string);
         let step = self.simulation.steps() + 1;
-        let worst = self.worst_point(last);
-        self.tell_failure(step, failure, &reason, worst.as_ref());
+        let worst = self.worst_place(last);
+        let place = worst.as_ref().map_or_else(String::new, |w| format!("; {} {} at {:?}", w.kind, w.id, w.position));
+        self.log.failure(&format!(
+            "step {step} failed at t = {} after {} attempt(s), the last with dt = {:.3e}: {reason}{place}; the last \
+             converged state is saved",
+            failure.t,
+            failure.attempts.len(),
+            failure.dt
+        ));
         if let Some(ledger) = &mut self.ledger {
+            let finite = |energy: &f64| Some(*energy).filter(|energy| energy.is_finite());
             let residuals = match last {
-                Some(StepError::NotConverged { energies, .. }) => {
-                    energies.iter().map(|energy| Some(*energy).filter(|energy| energy.is_finite())).collect()
-                }
+                Some(StepError::NotConverged { energies, .. }) => energies.iter().map(finite).collect(),
                 _ => Vec::new(),
             };
-            ledger.manifest().summary.cutbacks += failure.attempts.len() as u64;
+            ledger.attempts(failure.attempts.len() - 1, failure.counts);
             ledger.manifest().failure = Some(manifest::Failure { step, time: failure.t, reason, residuals, worst });
         }
-        self.end(Status::Failed, if left { code::LEFT } else { code::NO_CONVERGENCE })
+        self.end(Status::Failed, code)
     }
 
-    /// The point that the error is about; of those that several ranks name, the one with the smallest id.
-    fn worst_point(&self, error: Option<&StepError>) -> Option<manifest::Worst> {
+    /// The point or node that the error is about: of the points that ranks name the one with the smallest id, of the
+    /// nodes the one whose forces are the least balanced.
+    fn worst_place(&self, error: Option<&StepError>) -> Option<manifest::Worst> {
         let world = self.universe.world();
         let lower = self.case.grid.lower();
-        let mut own = [f64::INFINITY, 0.0, 0.0];
-        if let Some((id, x)) = error.and_then(StepError::point) {
-            own = [id as f64, lower[0] + x[0], lower[1] + x[1]];
+        let (mut kind, mut own) = ("point", [f64::INFINITY; 4]); // order among the places, number, x, y
+        if let Some(StepError::NotConverged { worst, .. }) = error {
+            kind = "node";
+            if let [x, y] = worst.x[..] {
+                own = [-worst.force, worst.number as f64, lower[0] + x, lower[1] + y];
+            }
+        } else if let Some((id, x)) = error.and_then(StepError::point) {
+            own = [id as f64, id as f64, lower[0] + x[0], lower[1] + x[1]];
         }
         let mut all = vec![0.0_f64; own.len() * world.size().unsigned_abs() as usize];
         world.all_gather_into(&own[..], &mut all[..]);
-        let named = all.chunks_exact(own.len()).filter(|point| point.iter().all(|number| number.is_finite()));
+        let named = all.chunks_exact(own.len()).filter(|place| place.iter().all(|number| number.is_finite()));
         let worst = named.min_by(|a, b| a[0].total_cmp(&b[0]))?;
-        Some(manifest::Worst { kind: "point".into(), id: worst[0] as u64, position: worst[1..].to_vec() })
-    }
-
-    fn tell_failure(&self, step: u64, failure: &Failure, reason: &str, worst: Option<&manifest::Worst>) {
-        self.log.finish();
-        if self.rank() == 0 {
-            let point = worst.map_or_else(String::new, |worst| format!("; point {} at {:?}", worst.id, worst.position));
-            eprintln!(
-                "bsmpm-par: step {step} failed at t = {} after {} attempt(s), the last with dt = {:.3e}: {reason}{point}; \
-                 the last converged state is saved",
-                failure.t,
-                failure.attempts.len(),
-                failure.dt
-            );
-        }
+        Some(manifest::Worst { kind: kind.into(), id: worst[1] as u64, position: worst[2..].to_vec() })
     }
 
     fn end(mut self, status: Status, code: u8) -> u8 {

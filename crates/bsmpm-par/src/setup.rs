@@ -10,7 +10,9 @@ use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::{Criteria, Gravity, Model, Weighting};
 use bsmpm::points::Points;
 use bsmpm::schedule::Schedule;
+use bsmpm::stabilisation::Stabilisation;
 use bsmpm::step::quasi_newton::QuasiNewton;
+use bsmpm_io::manifest;
 use bsmpm_scene::{Axis, Case, Every, Nonlinear, Regime};
 use std::marker::PhantomData;
 
@@ -21,12 +23,11 @@ pub fn model(case: &Case) -> Result<Model<PlaneStrain, 2>, GridError> {
         Axis::Uniform { cell, cells, .. } => KnotVector::uniform(*cell, *cells, order),
         Axis::Graded(breakpoints) => KnotVector::graded(breakpoints, order),
     };
-    let all_have_mass = case.bodies.iter().all(|body| case.materials[body.material].density.is_some());
     Ok(Model {
         grid: Grid::new([axis(&case.grid.axes[0])?, axis(&case.grid.axes[1])?])?,
         materials: case.materials.iter().map(|named| named.material.clone()).collect(),
         regime: case.analysis.regime,
-        weighting: if all_have_mass { Weighting::Mass } else { Weighting::Volume },
+        weighting: weighting(case),
         gravity: case
             .gravity
             .as_ref()
@@ -89,7 +90,83 @@ pub fn frame_times(case: &Case) -> Vec<f64> {
 }
 
 /// The linear solver by PETSc's names.
-pub fn linear(case: &Case) -> Choice {
+pub fn linear(case: &Case, ranks: usize) -> Choice {
     let linear = &case.solver.linear;
-    Choice { ksp: linear.ksp.into(), pc: linear.pc.into(), factor: linear.factor.map(Into::into) }
+    let direct = ["cholesky", "lu"].contains(&linear.pc);
+    Choice {
+        ksp: linear.ksp.into(),
+        pc: linear.pc.into(),
+        factor: linear.factor.map(Into::into),
+        redundant: case.solver.reproducible && direct && ranks > 1,
+    }
+}
+
+/// Nominal number of steps.
+pub fn nominal_steps(case: &Case) -> u64 {
+    (case.analysis.end / case.analysis.dt - 1e-6).ceil() as u64
+}
+
+/// What the program chooses by itself in a run on so many ranks.
+pub fn choices(case: &Case, ranks: usize) -> Vec<manifest::Choice> {
+    let choice = |key: &str, value: &str, reason: &str| manifest::Choice {
+        key: key.into(),
+        value: value.into(),
+        reason: reason.into(),
+    };
+    let mut choices = Vec::new();
+    if case.solver.nonlinear == Nonlinear::Auto {
+        let reason = "all recent secants on the elastic stiffness: half the iterations of Broyden's update";
+        choices.push(choice("solver.nonlinear", "multisecant", reason));
+    }
+    if linear(case, ranks).redundant {
+        let reason = "solver.reproducible: every rank factorises the whole system, as a parallel factorisation need not \
+                      repeat to the bit";
+        choices.push(choice("solver.linear.pc", "redundant", reason));
+    }
+    if case.solver.linear.factor == Some("mumps") {
+        choices.push(choice("mat_mumps_icntl_7", "2", "ordering by minimum fill, the cheapest for plane grids"));
+        choices.push(choice("mat_mumps_icntl_14", "100", "the estimated workspace is at times too little"));
+    }
+    if weighting(case) == Weighting::Volume {
+        choices.push(choice("weights of averages", "volume", "some material is weightless"));
+    }
+    if let Some((length, size)) = smoothing(case, nominal_steps(case)) {
+        let reason =
+            format!("sqrt(steps (q+1)/6) h of modified-f-bar at the nominal steps; the thinnest body has {size} m");
+        choices.push(choice("smoothing length", &format!("{length:.3e} m"), &reason));
+    }
+    choices
+}
+
+/// Warnings of the case, and of what the program makes of it.
+pub fn warnings(case: &Case) -> Vec<String> {
+    let mut warnings = case.warnings.clone();
+    if let Some((length, size)) = smoothing(case, nominal_steps(case)).filter(|(length, size)| length > &(SMALL * size))
+    {
+        warnings.push(format!(
+            "modified-f-bar smooths the elastic strain once a step, whatever the step's length: over all steps along about \
+             {length:.2e} m, where the thinnest body has {size} m; results belong to their number of steps"
+        ));
+    }
+    warnings
+}
+
+/// Part of a body's size beyond which the smoothing of all steps is told.
+const SMALL: f64 = 0.1;
+
+/// Length (m) along which modified F-bar smooths in so many steps, and the smallest edge of any body (m).
+fn smoothing(case: &Case, steps: u64) -> Option<(f64, f64)> {
+    if case.stabilisation != Stabilisation::ModifiedFBar {
+        return None;
+    }
+    let longest = |axis: &Axis| (0..axis.cells()).map(|i| axis.cell(i)).fold(0.0, f64::max);
+    let h = case.grid.axes.iter().map(longest).fold(0.0, f64::max);
+    let edges = case.bodies.iter().flat_map(|body| [0, 1].map(|axis| body.upper[axis] - body.lower[axis]));
+    let length = (steps as f64 * (case.grid.order as f64 + 1.0) / 6.0).sqrt() * h;
+    Some((length, edges.fold(f64::INFINITY, f64::min)))
+}
+
+fn weighting(case: &Case) -> Weighting {
+    let all_have_mass = case.bodies.iter().all(|body| case.materials[body.material].density.is_some());
+    if all_have_mass { Weighting::Mass } else { Weighting::Volume }
 }

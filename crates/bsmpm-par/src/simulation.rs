@@ -62,6 +62,11 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         self.stepper.time()
     }
 
+    /// Options given to PETSc that nothing has asked for, without their dash.
+    pub fn unused_options(&self) -> Vec<String> {
+        self.petsc.unused_options().unwrap_or_default()
+    }
+
     /// Accepted steps.
     pub fn steps(&self) -> u64 {
         self.steps

@@ -1,30 +1,28 @@
 //! The case file: read by rank 0, parsed by every rank from the same bytes.
 
 use crate::cli::Arguments;
+use crate::exit::{CASE, MISSING};
+use crate::launch::say;
+use crate::setup;
 use bsmpm_scene::Case;
 use mpi::collective::Root;
 use mpi::topology::{Communicator, SimpleCommunicator};
-
-/// Exit code of a wrong case.
-const WRONG: u8 = 65;
-/// Exit code of a case file that is missing or cannot be read.
-const MISSING: u8 = 66;
 
 /// The valid case of the command line; `Err` holds the exit code, and rank 0 has said why.
 pub fn read(world: &SimpleCommunicator, arguments: &Arguments) -> Result<Case, u8> {
     let speaks = world.rank() == 0;
     let name = arguments.case.display().to_string();
     let bytes = broadcast(world, || {
-        bsmpm_scene::load(&arguments.case).map_err(|error| eprintln!("bsmpm-par: {name}: {error}")).ok()
+        bsmpm_scene::load(&arguments.case).map_err(|error| say(&format!("bsmpm-par: {name}: {error}"))).ok()
     })
     .ok_or(MISSING)?;
     Case::from_bytes(&name, &bytes, &arguments.set).map_err(|errors| {
         if speaks {
-            errors.iter().for_each(|error| eprintln!("{error:#}"));
+            errors.iter().for_each(|error| say(&format!("{error:#}")));
             let plural = if errors.len() == 1 { "error" } else { "errors" };
-            eprintln!("bsmpm-par: {name}: {} {plural}; nothing was run or written", errors.len());
+            say(&format!("bsmpm-par: {name}: {} {plural}; nothing was run or written", errors.len()));
         }
-        WRONG
+        CASE
     })
 }
 
@@ -43,20 +41,26 @@ fn broadcast(world: &SimpleCommunicator, bytes: impl FnOnce() -> Option<Vec<u8>>
 }
 
 /// What `--check` prints: sizes, choices and warnings.
-pub fn describe(case: &Case, ranks: usize) {
+pub fn describe(case: &Case, ranks: usize) -> String {
     let estimate = case.estimate();
-    println!("{}", case.title);
-    println!("points           {}", estimate.points);
-    println!("cells            {}", estimate.cells);
-    println!("nodes            {}", estimate.nodes);
-    println!("unknowns         at most {}", estimate.unknowns);
-    println!("memory           about {} MiB on each of {ranks} rank(s)", estimate.bytes / ranks as u64 / 1_048_576 + 1);
-    println!("ranks            at most {}", case.grid.axes[0].cells());
-    println!("nominal steps    {}", (case.analysis.end / case.analysis.dt - 1e-6).ceil());
-    for note in &case.notes {
-        println!("{} = {} ({})", note.key, note.value, note.reason);
-    }
-    for warning in &case.warnings {
-        println!("warning: {warning}");
-    }
+    let mut lines = vec![
+        case.title.clone(),
+        format!("points           {}", estimate.points),
+        format!("cells            {}", estimate.cells),
+        format!("nodes            {}", estimate.nodes),
+        format!("unknowns         at most {}", estimate.unknowns),
+        format!(
+            "memory           about {} MiB on each of {ranks} rank(s)",
+            estimate.bytes / ranks as u64 / 1_048_576 + 1
+        ),
+        format!("ranks            at most {}", case.grid.axes[0].cells()),
+        format!("nominal steps    {}", setup::nominal_steps(case)),
+    ];
+    let told = case.notes.iter().map(|note| format!("{} = {} ({})", note.key, note.value, note.reason));
+    let chosen = setup::choices(case, ranks);
+    lines.extend(
+        told.chain(chosen.iter().map(|choice| format!("{} = {} ({})", choice.key, choice.value, choice.reason))),
+    );
+    lines.extend(setup::warnings(case).iter().map(|warning| format!("warning: {warning}")));
+    lines.join("\n")
 }

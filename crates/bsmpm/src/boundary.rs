@@ -31,7 +31,7 @@ impl<const D: usize> Support<D> {
 /// All supports of a scene; where faces meet, the one named last decides a component that both prescribe.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Boundary<const D: usize> {
-    /// Supports, at most one per face.
+    /// Supports of the faces.
     pub supports: Vec<Support<D>>,
 }
 
@@ -67,10 +67,5 @@ impl<const D: usize> Boundary<D> {
         }
         halo.reduce(&mut sums);
         sums.chunks_exact(D).map(<[f64]>::to_vec).collect()
-    }
-
-    /// Whether component `axis` is held at some face: without it a quasi-static body floats.
-    pub fn holds(&self, component: usize) -> bool {
-        self.supports.iter().any(|support| support.velocity[component].is_some())
     }
 }

@@ -9,7 +9,7 @@ use crate::model::Model;
 use crate::points::Points;
 use crate::schedule::Schedule;
 use crate::seam::{Halo, LinearSolver};
-use crate::step::{Report, step};
+use crate::step::{Counts, Report, step};
 
 /// Halvings of the nominal step before the run gives up.
 const MOST_CUTS: u32 = 10;
@@ -27,6 +27,8 @@ pub struct Accepted {
     pub dt: f64,
     /// what it did
     pub report: Report,
+    /// work of all attempts, rejected ones included
+    pub counts: Counts,
     /// the attempts before it that failed, first one first
     pub rejected: Vec<StepError>,
 }
@@ -40,6 +42,8 @@ pub struct Failure {
     pub dt: f64,
     /// attempts, first one first
     pub attempts: Vec<StepError>,
+    /// work of all attempts
+    pub counts: Counts,
 }
 
 /// Position within the current nominal step, and the state of the step-size control.
@@ -80,23 +84,24 @@ impl Stepper {
             None => (self.t, schedule.next(self.t)?),
         };
         self.nominal = Some((from, to));
-        let mut rejected = Vec::new();
+        let (mut rejected, mut counts) = (Vec::new(), Counts::default());
         loop {
             let size = TICKS >> self.cuts;
             let end = if self.tick + size == TICKS { to } else { from + (to - from) * fraction(self.tick + size) };
             let dt = end - self.t;
             let mut guess = self.scaled_guess(dt);
-            match step(model, points, &mut guess, (self.t, dt), halo, solver) {
+            match step(model, points, &mut guess, (self.t, dt), (halo, solver), &mut counts) {
                 Ok(report) => {
                     (self.guess, self.guess_dt, self.t) = (guess, dt, end);
                     self.accept(size, report.first_guess && report.iterations * 2 <= model.criteria.max_iterations);
-                    return Some(Ok(Accepted { t: end, dt, report, rejected }));
+                    return Some(Ok(Accepted { t: end, dt, report, counts, rejected }));
                 }
                 Err(error) => {
-                    let hopeless = matches!(error, StepError::Left { .. } | StepError::Outside { .. });
+                    let hopeless =
+                        matches!(error, StepError::Left { .. } | StepError::Outside { .. } | StepError::OtherRank);
                     rejected.push(error);
                     if hopeless || self.cuts == MOST_CUTS {
-                        return Some(Err(Failure { t: self.t, dt, attempts: rejected }));
+                        return Some(Err(Failure { t: self.t, dt, attempts: rejected, counts }));
                     }
                     self.cuts += 1;
                     self.easy = 0;

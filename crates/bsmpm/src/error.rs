@@ -31,7 +31,18 @@ pub enum SolveError {
     Residual(f64),
 }
 
-/// Why a step was not accepted. The texts are the same on every rank; what only one rank knows is in the fields.
+/// The node of a rank whose forces are the least balanced.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct WorstNode {
+    /// Number over the whole grid, axis 0 slowest.
+    pub number: u64,
+    /// Its place from the grid's lower corner, m: the mean of the function's inner knots (Greville).
+    pub x: Vec<f64>,
+    /// |f_oob| there, N; 0 if this rank owns no node.
+    pub force: f64,
+}
+
+/// Why a step was not accepted. All ranks return an error together; what only one of them knows is in the fields.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum StepError {
     /// A point is outside the grid, or was not sorted into this rank's window.
@@ -71,7 +82,12 @@ pub enum StepError {
         force: f64,
         /// Energy measure of every iteration.
         energies: Vec<f64>,
+        /// The worst node of this rank.
+        worst: WorstNode,
     },
+    /// Another rank has the error; this rank's part was good.
+    #[error("another rank could not make the step")]
+    OtherRank,
     /// The linear system could not be solved.
     #[error(transparent)]
     Solve(#[from] SolveError),

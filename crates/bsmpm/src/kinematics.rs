@@ -1,19 +1,16 @@
-//! The only place where plane strain, axisymmetry and three dimensions differ: G, G^T and the F-bar exponent.
+//! The only place where plane strain, axisymmetry and three dimensions differ: G, G^T and F-bar's exponent.
 
 use crate::tensor::{Square, Symmetric, Tensor};
 
 /// How grid fields of dimension `D` become three-dimensional tensors, and back.
 pub trait Kinematics<const D: usize>: Copy + Default + Send + Sync + 'static {
-    /// The `dof` of Eqs 13-15: the directions that F-bar dilates.
-    const DOF: u32;
-
     /// Displacement gradient as a tensor, from the in-plane gradient du_i/dx_j.
     fn gradient(grad: &Square<D>) -> Tensor;
 
     /// In-plane part of V0 tau dF^-T: times grad N_I it is the internal force of a point at node I (step 5a).
     fn flux(tau: &Symmetric, dF: &Tensor) -> Square<D>;
 
-    /// dF-bar = (dJ-bar/dJ)^(1/dof) dF (Eq. 15); `ratio` is dJ-bar/dJ > 0.
+    /// dF-bar = (dJ-bar/dJ)^(1/dof) dF (Eq. 15), `ratio` = dJ-bar/dJ > 0; dof are the directions that the grid dilates.
     fn dilate(dF: &Tensor, ratio: f64) -> Tensor;
 
     /// Trial b^e = dF-bar b^e dF-bar^T (Eqs 7, 19).
@@ -32,8 +29,6 @@ pub trait Kinematics<const D: usize>: Copy + Default + Send + Sync + 'static {
 pub struct PlaneStrain;
 
 impl Kinematics<2> for PlaneStrain {
-    const DOF: u32 = 2;
-
     #[inline]
     fn gradient(grad: &Square<2>) -> Tensor {
         Tensor::new(grad[(0, 0)], grad[(0, 1)], 0.0, grad[(1, 0)], grad[(1, 1)], 0.0, 0.0, 0.0, 0.0)
@@ -77,8 +72,6 @@ impl Kinematics<2> for PlaneStrain {
 pub struct Solid;
 
 impl Kinematics<3> for Solid {
-    const DOF: u32 = 3;
-
     #[inline]
     fn gradient(grad: &Square<3>) -> Tensor {
         *grad

@@ -27,6 +27,13 @@ pub fn dots(halo: &dyn Halo, width: usize, pairs: &[(&[f64], &[f64])]) -> Vec<f6
     sums
 }
 
+/// The outcome of this rank, or `other` where only another rank failed: nobody goes on while another has returned.
+pub fn agreed<T, E>(halo: &dyn Halo, mine: Result<T, E>, other: E) -> Result<T, E> {
+    let mut failed = [f64::from(u8::from(mine.is_err()))];
+    halo.maximum(&mut failed);
+    if failed[0] > 0.0 { mine.and(Err(other)) } else { mine }
+}
+
 /// A distributed sparse system whose matrix is summed from dense patch blocks.
 pub trait LinearSolver {
     /// Starts a matrix whose unknowns are the components marked `free` (D per local node, equal on all ranks that

@@ -15,18 +15,25 @@ use crate::grid::Shape;
 use crate::kinematics::Kinematics;
 use crate::model::Model;
 use crate::points::Points;
-use crate::seam::{Halo, LinearSolver};
+use crate::seam::{Halo, LinearSolver, agreed};
 use crate::step::nodes::Nodes;
+
+/// Work of one or more attempts, failed ones included.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// quasi-Newton iterations
+    pub iterations: usize,
+    /// evaluations of the residual
+    pub evaluations: usize,
+    /// iterations of the linear solver
+    pub linear_iterations: usize,
+}
 
 /// What an accepted step did.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Report {
-    /// quasi-Newton iterations of the attempt that converged
+    /// quasi-Newton iterations from the guess that led to convergence
     pub iterations: usize,
-    /// evaluations of the residual in all attempts, rejected ones included
-    pub evaluations: usize,
-    /// iterations of the linear solver
-    pub linear_iterations: usize,
     /// force measure |f_oob| / largest force of the accepted state
     pub force: f64,
     /// nodes that carry material, over all ranks
@@ -42,20 +49,19 @@ pub struct Report {
 }
 
 /// Steps the points from `t` to `t + dt`, starting from the nodal displacement `guess` (D numbers per node of the
-/// window; replaced by the converged one). On an error nothing has changed.
-#[allow(clippy::too_many_arguments)] // the step's data, its interval and the two seams; a bundle would only hide them
+/// window; replaced by the converged one). On an error nothing has changed but `counts`, which tells the work done.
 pub fn step<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     points: &mut Points<D>,
     guess: &mut Vec<f64>,
     (t, dt): (f64, f64),
-    halo: &dyn Halo,
-    solver: &mut dyn LinearSolver,
+    (halo, solver): (&dyn Halo, &mut dyn LinearSolver),
+    counts: &mut Counts,
 ) -> Result<Report, StepError> {
-    let shape = Shape::at(&model.grid, points)?; // (1)
+    let shape = agreed(halo, Shape::at(&model.grid, points), StepError::OtherRank)?; // (1)
     let nodes = Nodes::map(model, &shape, points, (t, dt), halo); // (2)
     let scene = equilibrium::Scene { model, shape: &shape, nodes: &nodes, points, halo };
-    let found = equilibrium::find(&scene, guess, solver)?; // (3)-(9)
+    let found = equilibrium::find(&scene, guess, solver, counts)?; // (3)-(9)
     commit::check_inside(model, &shape, points, &found.u, halo)?;
     let report = found.report(&scene);
     *guess = commit::commit(model, &shape, &nodes, found, points, halo)?; // (10), (11)

@@ -31,12 +31,6 @@ impl Symmetric {
         Tensor::new(xx, xy, xz, xy, yy, yz, xz, yz, zz)
     }
 
-    /// A third of the trace.
-    #[inline]
-    pub fn mean(&self) -> f64 {
-        (self.0[0] + self.0[1] + self.0[2]) / 3.0
-    }
-
     /// Every component multiplied by `factor`.
     #[inline]
     pub fn scaled(&self, factor: f64) -> Self {

@@ -3,7 +3,7 @@
 #![allow(dead_code)] // every test program takes its part of this
 
 pub mod cases;
-mod processes;
+pub mod processes;
 pub mod results;
 
 pub use processes::Output;

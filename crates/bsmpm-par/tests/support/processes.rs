@@ -62,6 +62,8 @@ pub fn run(mut command: Command, variables: &[(String, String)], heard: bool, pa
     command.env("OMPI_ALLOW_RUN_AS_ROOT", "1").env("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1");
     // Shared memory will do; looking for faster networks takes most of the time of a start.
     command.env("OMPI_MCA_pml", "ob1");
+    // Nor does mpirun wait a second for ranks to go after one has left with an error: they have nothing left to do then.
+    command.env("OMPI_MCA_odls_base_sigkill_timeout", "0");
     for name in REMOVED {
         command.env_remove(name);
     }

@@ -72,6 +72,11 @@ impl KnotVector {
         self.knots[self.knots.len() - 1]
     }
 
+    /// Place of function `i`, the mean of its inner knots (Greville), m.
+    pub fn greville(&self, i: usize) -> f64 {
+        self.knots[i + 1..=i + self.order].iter().sum::<f64>() / self.order as f64
+    }
+
     /// Shortest cell, m.
     pub fn smallest_cell(&self) -> f64 {
         (0..self.cells()).map(|i| self.breakpoint(i + 1) - self.breakpoint(i)).fold(f64::INFINITY, f64::min)

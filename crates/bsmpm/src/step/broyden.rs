@@ -9,6 +9,9 @@ use crate::seam::{Halo, dots};
 /// Denominator 1 - a g below which the update is nearly singular and the history is dropped.
 const SINGULAR: f64 = 0.1;
 
+/// Steps after which the history is dropped: two vectors are kept of each.
+const MOST: usize = 100;
+
 /// Steps taken so far in this load step, with what the product form needs of them.
 #[derive(Clone, Debug, Default)]
 pub struct Broyden {
@@ -43,6 +46,9 @@ impl Broyden {
 
     /// Applies all steps to w; completes the last step's z.
     fn product_form<const D: usize>(&mut self, mut w: Vec<f64>, halo: &dyn Halo) -> Vec<f64> {
+        if self.steps.len() == MOST {
+            *self = Self::default();
+        }
         let Some(last) = self.steps.len().checked_sub(1) else { return w };
         self.complete_products::<D>(&w, halo);
         let coefficients = self.coefficients();

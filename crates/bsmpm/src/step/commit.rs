@@ -8,7 +8,7 @@ use crate::grid::{Shape, transfer};
 use crate::kinematics::Kinematics;
 use crate::model::Model;
 use crate::points::Points;
-use crate::seam::Halo;
+use crate::seam::{Halo, agreed};
 use crate::stabilisation::Stabilisation;
 use crate::step::equilibrium::Found;
 use crate::step::nodes::{Inertia, Nodes};
@@ -49,11 +49,10 @@ pub fn commit<K: Kinematics<D>, const D: usize>(
     halo: &dyn Halo,
 ) -> Result<Vec<f64>, StepError> {
     let Found { u, trial, .. } = found;
-    let mut responses = Vec::with_capacity(points.len());
-    for p in 0..points.len() {
-        let response = trial.respond(model, points, p);
-        responses.push(response.map_err(|source| StepError::Material { id: points.id[p], source })?);
-    }
+    let respond =
+        |p: usize| trial.respond(model, points, p).map_err(|source| StepError::Material { id: points.id[p], source });
+    let responses: Result<Vec<_>, _> = (0..points.len()).map(respond).collect();
+    let responses = agreed(halo, responses, StepError::OtherRank)?;
     if let Some(inertia) = &nodes.inertia {
         move_with_inertia(shape, inertia, &u, points);
     }

@@ -4,18 +4,18 @@
 //! no norm (it crosses zero while the forces are far from balanced), so the relative out-of-balance
 //! force must be small too. The displacement that is accepted is the one whose forces were evaluated.
 
-use crate::error::StepError;
+use crate::error::{StepError, WorstNode};
 use crate::grid::Shape;
 use crate::kinematics::Kinematics;
 use crate::model::Model;
 use crate::points::Points;
 use crate::seam::{Halo, LinearSolver, dots};
-use crate::step::Report;
 use crate::step::nodes::Nodes;
 use crate::step::quasi_newton::Secants;
 use crate::step::residual::Residual;
 use crate::step::stiffness;
 use crate::step::trial::Trial;
+use crate::step::{Counts, Report};
 
 /// A first residual this much below the force tolerance needs no iteration: |du_0 . f_0| would only be noise.
 const ALREADY: f64 = 1e-2;
@@ -49,16 +49,9 @@ pub struct Found {
     pub trial: Trial,
     /// N  force of the supports on the body, nodal
     pub reaction: Vec<f64>,
-    counts: Counts,
     iterations: usize,
     force: f64,
     first_guess: bool,
-}
-
-#[derive(Clone, Copy, Debug, Default)]
-struct Counts {
-    evaluations: usize,
-    linear: usize,
 }
 
 impl Found {
@@ -67,8 +60,6 @@ impl Found {
         let nodes = scene.nodes;
         Report {
             iterations: self.iterations,
-            evaluations: self.counts.evaluations,
-            linear_iterations: self.counts.linear,
             force: self.force,
             active_nodes: nodes.active_nodes,
             unknowns: nodes.unknowns,
@@ -84,15 +75,17 @@ pub fn find<K: Kinematics<D>, const D: usize>(
     scene: &Scene<'_, K, D>,
     guess: &[f64],
     solver: &mut dyn LinearSolver,
+    counts: &mut Counts,
 ) -> Result<Found, StepError> {
-    stiffness::assemble(scene, solver)?;
-    let mut counts = Counts::default();
+    if scene.nodes.unknowns > 0 {
+        stiffness::assemble(scene, solver)?;
+    }
     let (last, zero) = (admissible(scene.nodes, guess), admissible(scene.nodes, &vec![0.0; guess.len()]));
     let mut differs = [f64::from(u8::from(last != zero))];
     scene.halo.maximum(&mut differs);
-    match iterate(scene, last, solver, &mut counts) {
+    match iterate(scene, last, solver, counts) {
         Err(_) if differs[0] > 0.0 => {
-            let found = iterate(scene, zero, solver, &mut counts)?;
+            let found = iterate(scene, zero, solver, counts)?;
             Ok(Found { first_guess: false, ..found })
         }
         found => found,
@@ -126,33 +119,34 @@ fn iterate<K: Kinematics<D>, const D: usize>(
     let mut energies = Vec::new();
     for iteration in 0..criteria.max_iterations {
         let force = residual.measure();
-        let found = |residual: Residual, u, counts| Found {
+        let found = |residual: Residual, u| Found {
             u,
             trial: residual.trial,
             reaction: residual.reaction,
-            counts,
             iterations: iteration,
             force,
             first_guess: true,
         };
         if residual.norm <= floor || (iteration == 0 && force <= ALREADY * criteria.force) {
-            return Ok(found(residual, u, *counts));
+            return Ok(found(residual, u));
         }
         let direction = secants.direction::<D>(&residual.f_oob, scene.halo, solver)?; // (6), (7)
-        counts.linear += direction.linear_iterations;
+        counts.iterations += 1;
+        counts.linear_iterations += direction.linear_iterations;
         if iteration == 0 {
             first_energy = direction.energy;
         }
         let energy = direction.energy / first_energy;
         energies.push(energy);
         if energy < criteria.energy && force < criteria.force {
-            return Ok(found(residual, u, *counts)); // (9)
+            return Ok(found(residual, u)); // (9)
         }
         let length = advance(scene, &mut u, &direction.du, &mut residual, counts, iteration)?; // (8), (4), (5)
         secants.took(length);
     }
     let energy = energies.last().copied().unwrap_or(f64::INFINITY);
-    Err(StepError::NotConverged { iterations: criteria.max_iterations, energy, force: residual.measure(), energies })
+    let (iterations, force) = (criteria.max_iterations, residual.measure());
+    Err(StepError::NotConverged { iterations, energy, force, energies, worst: worst_node(scene, &residual) })
 }
 
 /// Step (8): takes the direction, or the first half, quarter, .. of it under which no point inverts.
@@ -187,6 +181,19 @@ fn evaluate<K: Kinematics<D>, const D: usize>(scene: &Scene<'_, K, D>, u: &[f64]
 fn inverted<K, const D: usize>(scene: &Scene<'_, K, D>, residual: &Residual, iteration: usize) -> StepError {
     let first = residual.first_inverted.map(|p| (scene.points.id[p], scene.points.x[p].as_slice().to_vec()));
     StepError::Inverted { count: residual.inverted, iteration, first }
+}
+
+/// Where the forces of this rank's own nodes are the least balanced.
+fn worst_node<K, const D: usize>(scene: &Scene<'_, K, D>, residual: &Residual) -> WorstNode {
+    let grid = &scene.model.grid;
+    let force = |node: usize| residual.f_oob[node * D..(node + 1) * D].iter().map(|f| f * f).sum::<f64>().sqrt();
+    let Some(worst) = scene.halo.owned().max_by(|&a, &b| force(a).total_cmp(&force(b))) else {
+        return WorstNode::default();
+    };
+    let place = grid.node_at(worst);
+    let x = (0..D).map(|axis| grid.axes()[axis].greville(place[axis])).collect();
+    let first = grid.columns().start * grid.layer_nodes();
+    WorstNode { number: (first + worst) as u64, x, force: force(worst) }
 }
 
 /// Out-of-balance force that is round-off, N: of the stiffest material, 1e-13 E_max h^(D-1) sqrt(n), or of the inertia,

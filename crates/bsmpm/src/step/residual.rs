@@ -21,6 +21,8 @@ pub struct Residual {
     pub scale: f64,
     /// points inverted or not finite, over all ranks
     pub inverted: u64,
+    /// no norm overflowed
+    finite: bool,
     /// the first of them on this rank
     pub first_inverted: Option<usize>,
 }
@@ -30,7 +32,7 @@ impl Residual {
     pub fn of<K: Kinematics<D>, const D: usize>(scene: &Scene<'_, K, D>, u: &[f64]) -> Self {
         let Scene { model, shape, nodes, points, halo } = *scene;
         let trial = Trial::of(model, shape, nodes, points, u, halo);
-        let (mut inverted, mut first_inverted) = (trial.inverted, trial.first_inverted);
+        let (mut inverted, mut first_inverted) = (0_u64, None);
         let mut f_int = vec![0.0; u.len()];
         transfer::divergence(shape, &mut f_int, |p| match trial.respond(model, points, p) {
             Ok(response) => K::flux(&response.tau(), &trial.dF[p]) * points.volume[p],
@@ -55,6 +57,7 @@ impl Residual {
             norm: sums[1].sqrt(),
             scale: sums[2..].iter().copied().fold(0.0, f64::max).sqrt(),
             inverted: sums[0] as u64,
+            finite: sums.iter().all(|sum| sum.is_finite()),
             first_inverted,
         }
     }
@@ -66,7 +69,7 @@ impl Residual {
 
     /// No point inverted and no number overflowed, on any rank.
     pub fn is_sound(&self) -> bool {
-        self.inverted == 0 && self.norm.is_finite() && self.scale.is_finite()
+        self.inverted == 0 && self.finite
     }
 }
 

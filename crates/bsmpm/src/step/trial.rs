@@ -17,15 +17,11 @@ pub struct Trial {
     pub dF: Vec<Tensor>,
     /// -  dJ-bar / dJ under F-bar (steps 4c, 4e)
     ratio: Option<Vec<f64>>,
-    /// points with det dF <= 0 or not finite, on this rank
-    pub inverted: u64,
-    /// the first of them
-    pub first_inverted: Option<usize>,
 }
 
 impl Trial {
-    /// Deformation under the nodal displacement `u`. Points that inverted are counted, not raised: all ranks decide
-    /// together once the residual's norms are reduced.
+    /// Deformation under the nodal displacement `u`. A point that inverted gets a dF that is not finite, which the
+    /// constitution refuses: all ranks decide together once the residual's norms are reduced.
     pub fn of<K: Kinematics<D>, const D: usize>(
         model: &Model<K, D>,
         shape: &Shape<D>,
@@ -34,19 +30,17 @@ impl Trial {
         u: &[f64],
         halo: &dyn Halo,
     ) -> Self {
-        let mut trial = Self { dF: Vec::with_capacity(points.len()), ratio: None, inverted: 0, first_inverted: None };
+        let mut trial = Self { dF: Vec::with_capacity(points.len()), ratio: None };
         let averaged = model.stabilisation != Stabilisation::None;
         let mut dJ = Vec::with_capacity(if averaged { points.len() } else { 0 });
-        transfer::gradients(shape, u, |p, grad| {
+        transfer::gradients(shape, u, |_, grad| {
             let dF = Tensor::identity() + K::gradient(&grad);
             let determinant = dF.determinant();
-            if !(determinant > 0.0 && determinant.is_finite()) {
-                trial.reject(p);
-            }
+            let sound = determinant > 0.0 && determinant.is_finite();
             if averaged {
-                dJ.push(determinant);
+                dJ.push(if sound { determinant } else { 1.0 });
             }
-            trial.dF.push(dF);
+            trial.dF.push(if sound { dF } else { Tensor::from_element(f64::NAN) });
         });
         if averaged {
             trial.average(model, shape, nodes, points, dJ, halo);
@@ -65,18 +59,8 @@ impl Trial {
         halo: &dyn Halo,
     ) {
         let nodal = nodes.average(shape, points, model.weighting, halo, |p| [dJ[p]]);
-        transfer::to_points(shape, &nodal, |p, [dJ_bar]| {
-            dJ[p] = dJ_bar / dJ[p];
-            if !(dJ[p] > 0.0 && dJ[p].is_finite()) {
-                self.reject(p);
-            }
-        });
+        transfer::to_points(shape, &nodal, |p, [dJ_bar]| dJ[p] = dJ_bar / dJ[p]);
         self.ratio = Some(dJ);
-    }
-
-    fn reject(&mut self, p: usize) {
-        self.inverted += 1;
-        self.first_inverted.get_or_insert(p);
     }
 
     /// Steps (4f)-(4i): trial b^e of point `p` under dF-bar, and the constitution's answer.
