@@ -51,7 +51,7 @@ pub fn describe(case: &Case, ranks: usize) -> String {
         format!("unknowns         at most {}", estimate.unknowns),
         format!(
             "memory           about {} MiB on each of {ranks} rank(s)",
-            estimate.bytes / ranks as u64 / 1_048_576 + 1
+            estimate.bytes_on(ranks) / ranks as u64 / 1_048_576 + 1
         ),
         format!("ranks            at most {}", case.grid.axes[0].cells()),
         format!("nominal steps    {}", setup::nominal_steps(case)),

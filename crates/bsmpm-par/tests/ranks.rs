@@ -76,6 +76,26 @@ fn the_shipped_elastic_column_is_the_same_on_1_2_3_and_4_ranks() {
     agree(&Scratch::new(), case.to_str().unwrap(), &[], &[1, 2, 3, 4], 1e-9);
 }
 
+#[test]
+fn a_run_repeats_to_the_bit_on_as_many_ranks() {
+    let scratch = Scratch::with_case(SLIDING_BLOCK);
+    for ranks in [1, 2, 4] {
+        let runs = [1, 2, 3].map(|_| {
+            scratch.mpirun(ranks, &["case.toml", "-q", "--force", "--set", "analysis.end=0.02"]).expect(0);
+            let read = |name: &str| std::fs::read(scratch.path("case.out").join(name)).unwrap();
+            (read("history.csv"), read("frames/step_000000020.vtu"))
+        });
+        assert!(runs[0] == runs[1] && runs[0] == runs[2], "on {ranks} ranks");
+    }
+}
+
+#[test]
+fn a_factorisation_shared_by_the_ranks_gives_the_same() {
+    let case = shipped("short/self_weight_column.toml");
+    let shared = ["--set", "solver.reproducible=false"];
+    agree(&Scratch::new(), case.to_str().unwrap(), &shared, &[1, 2, 4], 1e-9);
+}
+
 /// The column is 4 cells wide: on 4 ranks slabs of one column have ghosts from beyond the next slab.
 #[test]
 fn slabs_thinner_than_the_splines_reach_work_for_every_order() {
@@ -108,14 +128,15 @@ fn the_collapse_runs_out_as_far_on_1_2_3_and_4_ranks() {
     let text = std::fs::read_to_string(shipped("short/column_collapse.toml")).unwrap();
     let (case, _check) = text.split_once("[[check]]").unwrap();
     let times = "times = [\"0.109 s\", \"0.235 s\", \"0.300 s\", \"0.351 s\", \"0.420 s\", \"0.607 s\"]";
-    let case = changed(&changed(case, times, ""), "end  = \"0.607 s\"", "end  = \"0.12 s\"");
+    let case = changed(&changed(case, times, ""), "end  = \"0.607 s\"", "end  = \"0.08 s\"");
     let scratch = Scratch::with_case(&case);
     let runouts = [1, 2, 3, 4].map(|ranks| {
         let directory = format!("{ranks}.out");
-        scratch.mpirun(ranks, &["case.toml", "-q", "-o", &directory]).expect(0);
+        // Four ranks on two cores take their time when others want those too.
+        scratch.job(Some(ranks), &["case.toml", "-q", "-o", &directory]).within(240).run().expect(0);
         let history = history(&scratch.path(&directory));
         *history.get("runout").unwrap().last().unwrap()
     });
-    assert!(runouts[0] > 0.23, "{runouts:?}");
+    assert!(runouts[0] > 0.21, "{runouts:?}");
     assert!(runouts.iter().all(|runout| (runout - runouts[0]).abs() < 1e-3 * runouts[0]), "{runouts:?}");
 }

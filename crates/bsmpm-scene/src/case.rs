@@ -175,9 +175,9 @@ pub struct Solver {
 /// The non-linear iteration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Nonlinear {
-    /// The controller's choice: Broyden with cut steps.
+    /// The controller's choice: all recent secants on the elastic stiffness, with cut steps.
     Auto,
-    /// Broyden only.
+    /// The paper's rank-one update.
     Broyden,
 }
 

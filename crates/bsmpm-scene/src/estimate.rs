@@ -8,14 +8,17 @@ pub(crate) const MOST_UNKNOWNS: u128 = i32::MAX as u128;
 /// Largest number of points: they are sorted by 32-bit numbers.
 pub(crate) const MOST_POINTS: u128 = u32::MAX as u128;
 
-/// Bytes of a point, assumed: its state (about 270), its trial state and its shape functions.
-const POINT: u128 = 800;
-/// Bytes of a node, assumed: about a dozen vectors of two doubles.
-const NODE: u128 = 200;
+/// Bytes of a point: its state (about 310), shape functions (up to 130), trial state and responses (about 360), and its
+/// copies while a frame is gathered (about 500).
+const POINT: u128 = 1300;
+/// Bytes of a node without its stencil: some vectors of two doubles, and those of the secants.
+const NODE: u128 = 1200;
+/// Bytes of a process before it has a point: libraries of MPI and PETSc. Measured, about.
+const PROCESS: u64 = 45 << 20;
 /// Bytes of an entry of the stiffness: value, column, and the place it is summed at.
 const ENTRY: u128 = 20;
 
-/// Sizes that follow from a case; those of the grid are upper bounds, since empty cells cost next to nothing.
+/// Sizes that follow from a case. Empty cells cost memory, too: every node of the grid has its vectors and its stencil.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Estimate {
     /// Cells of the grid.
@@ -26,9 +29,16 @@ pub struct Estimate {
     pub unknowns: u64,
     /// Material points.
     pub points: u64,
-    /// Memory of all ranks together, bytes: points, nodes, stiffness and its factor. A rough figure from
-    /// assumed sizes, not yet compared with a run.
+    /// Memory for points, nodes, stiffness and its factor, bytes.
     pub bytes: u64,
+}
+
+impl Estimate {
+    /// Memory of all processes of a run on so many ranks, bytes. Measured peaks, for comparison: the paper's collapse on
+    /// 2 ranks 287e6, the short collapse on 1 rank 51e6.
+    pub fn bytes_on(&self, ranks: usize) -> u64 {
+        self.bytes.saturating_add((ranks as u64).saturating_mul(PROCESS))
+    }
 }
 
 impl Case {
@@ -42,7 +52,8 @@ impl Case {
         // Nested dissection in two dimensions: entries of the factor grow as n log n; the 5 is an assumption.
         let levels = u128::from((2 * occupied).max(2).ilog2());
         let factor = if self.solver.linear.factor.is_some() { 2 * occupied * 8 * 5 * levels } else { entries * 12 };
-        let bytes = points * POINT + nodes * NODE + entries * ENTRY + factor;
+        let stencil = (2 * self.grid.order as u128 + 1).pow(2) * 34 + 24;
+        let bytes = points * POINT + nodes * (NODE + stencil) + entries * ENTRY + factor;
         let bounded = |number: u128| u64::try_from(number).unwrap_or(u64::MAX);
         Estimate {
             cells: bounded(cells(&self.grid)),

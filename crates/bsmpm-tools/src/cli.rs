@@ -1,5 +1,7 @@
 //! The command line of `bsmpm`.
 
+use std::io::Write;
+
 use clap::{Parser, Subcommand};
 
 use crate::{Error, plot};
@@ -28,7 +30,8 @@ pub fn run(cli: &Cli) -> Result<(), Error> {
     match &cli.command {
         Command::Plot(arguments) => {
             for picture in plot::run(arguments)? {
-                println!("{}", picture.display());
+                // Where nobody listens there is nothing left to do.
+                let _ = writeln!(std::io::stdout(), "{}", picture.display());
             }
         }
     }

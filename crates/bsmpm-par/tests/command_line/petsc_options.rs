@@ -35,6 +35,19 @@ fn iterative_methods_work_by_their_names_alone() {
 }
 
 #[test]
+fn methods_that_petsc_does_not_know_are_refused_once_before_anything_is_written() {
+    for options in [["-ksp_type", "bogus"], ["-pc_type", "bogus"], ["-pc_factor_mat_solver_type", "bogus"]] {
+        let scratch = Scratch::with_case(COLUMN);
+        let shared = ["case.toml", "--set", "solver.reproducible=false", "--"];
+        let output = scratch.mpirun(2, &[&shared[..], &options].concat());
+        assert!(matches!(output.code, Some(2 | 65)), "{output:#?}");
+        assert_eq!(output.count("bsmpm-par:"), 1, "{output:#?}");
+        assert!(output.stderr.contains("bogus"), "{output:#?}");
+        assert_eq!(scratch.entries(), ["case.toml"]);
+    }
+}
+
+#[test]
 fn log_view_reports_to_the_terminal() {
     let scratch = Scratch::with_case(COLUMN);
     scratch.mpirun(2, &["case.toml", "-q", "--", "-log_view"]).expect(0).says_once("PETSc Performance Summary");

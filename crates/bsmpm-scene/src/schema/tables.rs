@@ -182,7 +182,12 @@ static SOLVER: Table = Table {
         key("background", Quantity(In::Number, UP_TO_1), Optional, "soft background; 1e-4 quasi-static, else 0"),
         key("background_cells", CELLS, Default("\"occupied\""), "cells that get the background"),
         key("linear", Kind::Table(&LINEAR), Default("{}"), "the linear solver, by PETSc's names"),
-        key("reproducible", Flag, Default("true"), "the same bits in every run on as many ranks"),
+        key(
+            "reproducible",
+            Flag,
+            Default("true"),
+            "the same bits in every run on as many ranks: each factorises the whole system by itself",
+        ),
     ],
     exclusive: &[],
 };

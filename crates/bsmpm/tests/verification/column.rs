@@ -110,19 +110,20 @@ fn large_strain_stress_stalls_with_linear_splines_ten_times_above_quadratic_ones
     };
     for cells in [16, 32] {
         assert!((0.04..0.12).contains(&error(1, cells))); // measured 5.5e-2, 5.7e-2
-        assert!(error(2, cells) <= 8e-3); // measured 2.3e-3, 5.4e-3
+        assert!(error(2, cells) <= 6e-3); // measured 2.3e-3, 5.4e-3
     }
 }
 
 #[test]
 fn heights_of_the_hencky_column_agree_with_lamberts_function() {
     // Height / l0 of method.md 9 and reference/hencky_column.csv; 20 cells, gravity in 10 steps.
-    for (S, exact) in [(0.04, 0.9807598284), (0.4, 0.8533052167), (1.0, 0.7279690463)] {
+    // The last number bounds the error: a few times the measured 1.5e-6, 2.3e-4, 2.4e-4.
+    for (S, exact, bound) in [(0.04, 0.9807598284, 1e-5), (0.4, 0.8533052167, 5e-4), (1.0, 0.7279690463, 5e-4)] {
         for method in [Stabilisation::None, Stabilisation::FBar, Stabilisation::ModifiedFBar] {
             let (scene, steps) = column::<PlaneStrain, 2>(2, 20, S, 10).stabilised(method).solved(1.0, 10.0);
             let height = scene.height(1.0 / 60.0);
             println!("S = {S}, {method:?}: {height:.6}, exact {exact:.6}, {} steps", steps.len());
-            assert!((height - exact).abs() <= 1e-3); // measured <= 1.5e-6, 2.3e-4, 2.4e-4
+            assert!((height - exact).abs() <= bound);
         }
     }
 }
