@@ -16,15 +16,15 @@ pub struct Step {
     pub dt: f64,
     /// Iterations of the nonlinear solution.
     pub iterations: u64,
-    /// The last energy measure of convergence, without unit.
+    /// The force measure of the accepted state, without unit.
     pub residual: f64,
-    /// Iterations of the linear solver in all of them; 0 for a direct one.
+    /// Iterations of the linear solver in all attempts; a direct solve counts as one.
     pub linear_iterations: u64,
     /// How often the step was cut before it converged.
     pub cutbacks: u64,
-    /// Nodes with unknowns.
+    /// Nodes that carry material.
     pub active_nodes: u64,
-    /// s  that it took by the clock.
+    /// s  by the clock since the run began.
     pub wall: f64,
 }
 

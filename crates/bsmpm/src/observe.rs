@@ -64,11 +64,29 @@ pub fn largest_displacement<const D: usize>(points: &Points<D>, halo: &dyn Halo)
     largest[0]
 }
 
-/// Total mass, kg.
+/// Bits of a word of a mass: sums of 2^32 words are still exact.
+const WORD: f64 = (1_u64 << 20) as f64;
+
+/// Total mass, kg: the same bits however the points are distributed and ordered. Every mass is cut into three words of
+/// 20 bits below a common power of two, whose sums are whole numbers without rounding.
 pub fn mass<const D: usize>(points: &Points<D>, halo: &dyn Halo) -> f64 {
-    let mut sum = [points.mass.iter().sum()];
-    halo.reduce(&mut sum);
-    sum[0]
+    let mut heaviest = [points.mass.iter().copied().fold(0.0, f64::max)];
+    halo.maximum(&mut heaviest);
+    if heaviest[0] == 0.0 {
+        return 0.0;
+    }
+    let unit = heaviest[0].log2().ceil().exp2();
+    let mut words = [0.0; 3];
+    for mass in &points.mass {
+        let mut rest = mass / unit;
+        for word in &mut words {
+            rest *= WORD;
+            *word += rest.floor();
+            rest -= rest.floor();
+        }
+    }
+    halo.reduce(&mut words);
+    words.iter().rev().fold(0.0, |sum, word| (sum + word) / WORD) * unit
 }
 
 /// Total momentum, kg m/s; zero in quasi-static scenes.
