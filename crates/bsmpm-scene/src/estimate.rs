@@ -1,4 +1,6 @@
 //! Sizes of a case before anything is allocated.
+//!
+//! The bytes are counted from what the program holds and rounded to what runs took; `tests/shipped.rs` compares.
 
 use crate::case::Case;
 use crate::grid::GridSpec;
@@ -8,17 +10,24 @@ pub(crate) const MOST_UNKNOWNS: u128 = i32::MAX as u128;
 /// Largest number of points: they are sorted by 32-bit numbers.
 pub(crate) const MOST_POINTS: u128 = u32::MAX as u128;
 
-/// Bytes of a point: its state (about 310), shape functions (up to 130), trial state and responses (about 360), and its
-/// copies while a frame is gathered (about 500).
-const POINT: u128 = 1300;
-/// Bytes of a node without its stencil: some vectors of two doubles, and those of the secants.
-const NODE: u128 = 1200;
-/// Bytes of a process before it has a point: libraries of MPI and PETSc. Measured, about.
-const PROCESS: u64 = 45 << 20;
-/// Bytes of an entry of the stiffness: value, column, and the place it is summed at.
-const ENTRY: u128 = 20;
+/// Bytes of a point: its state (about 270), shape functions (96), two trial states (160), response and buffers of its
+/// migration. Measured: 820, from 28,800 and 115,200 points in the same cells.
+const POINT: u128 = 820;
+/// Bytes of a node's vectors: about a dozen, and twenty secants of three, all of two doubles.
+const VECTORS: u128 = (12 + 20 * 3) * 16;
+/// Bytes of an entry of the stiffness while the system is built: value, row and column, its place in the matrix, and
+/// what the factorisation copies. An assumption that fits the measured sums.
+const ENTRY: u128 = 36;
+/// The part of [`ENTRY`] that every rank has for itself where all factorise the whole system: matrix and copy of it.
+const REPEATED: u128 = 20;
+/// Bytes of the factor per unknown and level of a nested dissection: 10 doubles, and as many of workspace. Measured: 18
+/// to 24 doubles on 3,444 and 13,284 nodes of quadratic functions.
+const LEVEL: u128 = 20 * 8;
+/// Bytes of a process that has next to nothing to solve: libraries and buffers of MPI and PETSc. Measured: 47.8e6.
+const PROCESS: u64 = 48_000_000;
 
-/// Sizes that follow from a case. Empty cells cost memory, too: every node of the grid has its vectors and its stencil.
+/// Sizes that follow from a case; unknowns are bounded from above, since empty cells have none. Empty cells do cost
+/// memory: vectors and the stencils of the stiffness are held for every node of the grid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Estimate {
     /// Cells of the grid.
@@ -29,15 +38,20 @@ pub struct Estimate {
     pub unknowns: u64,
     /// Material points.
     pub points: u64,
-    /// Memory for points, nodes, stiffness and its factor, bytes.
+    /// Memory of the case, bytes, however many ranks share it: points, nodes, stiffness and its factor, where the bodies
+    /// are at the start. Not what each rank adds, see [`Estimate::bytes_on`].
     pub bytes: u64,
+    /// Bytes of this that every further rank holds again: the system, where each factorises the whole.
+    pub repeated: u64,
 }
 
 impl Estimate {
-    /// Memory of all processes of a run on so many ranks, bytes. Measured peaks, for comparison: the paper's collapse on
-    /// 2 ranks 287e6, the short collapse on 1 rank 51e6.
+    /// Memory of all of `ranks` ranks together, bytes, their libraries included. Within .85 to 1.1 of the peaks that
+    /// were measured on one and two ranks; bodies that spread take more.
     pub fn bytes_on(&self, ranks: usize) -> u64 {
-        self.bytes.saturating_add((ranks as u64).saturating_mul(PROCESS))
+        let ranks = ranks as u64;
+        let further = self.repeated.saturating_mul(ranks.saturating_sub(1));
+        self.bytes.saturating_add(PROCESS.saturating_mul(ranks)).saturating_add(further)
     }
 }
 
@@ -45,22 +59,24 @@ impl Case {
     /// Sizes of the case.
     pub fn estimate(&self) -> Estimate {
         let nodes = nodes(&self.grid);
-        let points = u128::from(self.points());
-        let support = 2 * (2 * self.grid.order as u128 + 1).pow(2);
+        let places = (2 * self.grid.order as u128 + 1).pow(2);
+        // The stencil of the stiffness: per place 2 x 2 doubles and an index of two bytes, and the list's head.
+        let stencil = places * (4 * 8 + 2) + 24;
         let occupied = occupied_nodes(self).min(nodes);
-        let entries = 2 * occupied * support;
-        // Nested dissection in two dimensions: entries of the factor grow as n log n; the 5 is an assumption.
+        let entries = 2 * occupied * 2 * places;
         let levels = u128::from((2 * occupied).max(2).ilog2());
-        let factor = if self.solver.linear.factor.is_some() { 2 * occupied * 8 * 5 * levels } else { entries * 12 };
-        let stencil = (2 * self.grid.order as u128 + 1).pow(2) * 34 + 24;
-        let bytes = points * POINT + nodes * (NODE + stencil) + entries * ENTRY + factor;
+        let direct = self.solver.linear.factor.is_some();
+        let factor = if direct { 2 * occupied * levels * LEVEL } else { entries * 12 };
+        let bytes = u128::from(self.points()) * POINT + nodes * (stencil + VECTORS) + entries * ENTRY + factor;
+        let repeated = if direct && self.solver.reproducible { factor + entries * REPEATED } else { 0 };
         let bounded = |number: u128| u64::try_from(number).unwrap_or(u64::MAX);
         Estimate {
             cells: bounded(cells(&self.grid)),
             nodes: bounded(nodes),
             unknowns: bounded(2 * nodes),
-            points: bounded(points),
+            points: self.points(),
             bytes: bounded(bytes),
+            repeated: bounded(repeated),
         }
     }
 }

@@ -48,6 +48,32 @@ fn the_column_of_the_paper() {
     assert_eq!(case.analysis.dt, 2.5e-4);
 }
 
+/// Peaks of resident memory, summed over the ranks, as `run.json` told them: the whole runs of the paper's column on two
+/// ranks (138.1e6 + 148.9e6 bytes) and of the coarse one on one, and ten steps of the paper's column with other values.
+#[test]
+fn estimated_memory_is_near_what_runs_took() {
+    let measured: [(&str, &[&str], usize, f64); 9] = [
+        ("column_collapse", &[], 2, 287.0e6),
+        ("short/column_collapse", &[], 1, 51.7e6),
+        ("column_collapse", &[], 1, 182.5e6),
+        ("column_collapse", &["solver.reproducible=false"], 2, 247.8e6),
+        ("column_collapse", &["body.0.points_per_cell=1"], 1, 94.1e6),
+        ("column_collapse", &["body.0.points_per_cell=3"], 1, 111.5e6),
+        ("column_collapse", &["body.0.points_per_cell=2", "grid.cell=0.05"], 1, 47.8e6),
+        ("column_collapse", &["body.0.points_per_cell=2", "grid.cell=1.25e-3"], 1, 277.0e6),
+        // Four times as many empty cells.
+        ("column_collapse", &["body.0.points_per_cell=2", "grid.upper=[2.2, 0.1025]"], 1, 149.8e6),
+    ];
+    for (name, set, ranks, peak) in measured {
+        let overrides: Vec<String> = set.iter().map(ToString::to_string).collect();
+        let text = load(&cases().join(name).with_extension("toml")).unwrap();
+        let estimate = Case::from_bytes(name, &text, &overrides).unwrap().estimate();
+        let ratio = estimate.bytes_on(ranks) as f64 / peak;
+        println!("{name} {set:?} on {ranks}: {ratio:.3} of {peak:.4e}");
+        assert!((0.85..1.1).contains(&ratio), "{name} {set:?}: {ratio} of {peak}, {estimate:?}");
+    }
+}
+
 #[test]
 fn the_coarse_column_moves_its_free_top_outward() {
     let case = read(&cases().join("short/column_collapse.toml"));
