@@ -1,8 +1,10 @@
 //! A valid case: all numbers in SI and within their ranges, angles in radians.
 
 mod history;
+mod loads;
 
 pub use history::{Check, Column, Face, History, Quantity};
+pub use loads::{Base, Footing, Initial, Path, PointLoad, Prescribed, Site, Traction};
 
 use crate::document;
 use crate::error::Error;
@@ -34,6 +36,18 @@ pub struct Case {
     pub gravity: Option<Gravity>,
     /// Supports of the grid's faces: per axis the lower and the upper one.
     pub boundary: [[Support; 2]; 2],
+    /// A rigid strip, if any.
+    pub footing: Option<Footing>,
+    /// Prescribed motions, in the order of the file.
+    pub prescribed: Vec<Prescribed>,
+    /// Tractions, in the order of the file.
+    pub tractions: Vec<Traction>,
+    /// Point loads, in the order of the file.
+    pub point_loads: Vec<PointLoad>,
+    /// -  factor by which the materials' strength has been divided (section 3.2), if any
+    pub strength_reduction: Option<f64>,
+    /// Stress at the start, if any.
+    pub initial: Option<Initial>,
     /// Section 2.3 of the paper.
     pub stabilisation: Stabilisation,
     /// The non-linear iteration.

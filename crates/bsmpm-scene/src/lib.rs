@@ -26,8 +26,8 @@ pub use bsmpm::background::Extent;
 pub use bsmpm::model::Regime;
 pub use bsmpm::points::Seed;
 pub use case::{
-    Analysis, Body, Case, Check, Choice, Column, Every, Face, Format, Geometry, Gravity, History, Linear,
-    NamedMaterial, Nonlinear, Output, Quantity, Solver, Support,
+    Analysis, Base, Body, Case, Check, Choice, Column, Every, Face, Footing, Format, Geometry, Gravity, History, Initial,
+    Linear, NamedMaterial, Nonlinear, Output, Path, PointLoad, Prescribed, Quantity, Site, Solver, Support, Traction,
 };
 pub use error::{Error, Place};
 pub use estimate::Estimate;

@@ -4,12 +4,14 @@
 //! de Souza Neto et al. (2008) holds at large strain (Eq. 10). Stress is in Pa, tension positive, principal values
 //! descending. Nothing here knows F, J or the grid, nor stores a state: old state in, new state out.
 
+mod graded;
 mod hencky;
 mod mohr_coulomb;
 mod response;
 mod spectral;
 mod tangent;
 
+pub use graded::{Graded, GradedStrength, Profile};
 pub use hencky::Hencky;
 pub use mohr_coulomb::MohrCoulomb;
 pub use response::{Region, Response};
@@ -18,6 +20,7 @@ pub use tangent::Tangent;
 use crate::tensor::Symmetric;
 use mohr_coulomb::Return;
 use spectral::Spectrum;
+use std::borrow::Cow;
 
 /// Isotropic linear elasticity between Hencky strain and Kirchhoff stress: `τ = λ tr(ε) I + 2μ ε`.
 #[derive(Clone, Debug, PartialEq)]
@@ -86,18 +89,37 @@ pub enum Material {
     Hencky(Hencky),
     /// Elastic, perfectly plastic with friction, dilation and cohesion.
     MohrCoulomb(MohrCoulomb),
+    /// One of the others, with parameters that depend on the height.
+    Graded(Graded),
 }
 
 impl Material {
-    /// The elastic part of the law.
+    /// The elastic part of the law; of a graded one where it is stiffest.
     pub fn elastic(&self) -> &Elastic {
         match self {
             Self::Hencky(law) => &law.elastic,
             Self::MohrCoulomb(law) => law.elastic(),
+            Self::Graded(law) => law.stiffest(),
         }
     }
 
-    /// The response to a trial elastic left Cauchy-Green tensor, `b_trial = ΔF bᵉ ΔFᵀ` (Eq. 7).
+    /// The law of a point that was placed at `height` (m from the grid's lower corner).
+    #[inline]
+    pub fn at(&self, height: f64) -> Cow<'_, Self> {
+        match self {
+            Self::Graded(law) => Cow::Owned(law.at(height)),
+            uniform => Cow::Borrowed(uniform),
+        }
+    }
+
+    /// Young's modulus at `height` over that of [`Material::elastic`].
+    #[inline]
+    pub fn relative_stiffness(&self, height: f64) -> f64 {
+        if let Self::Graded(law) = self { law.relative_stiffness(height) } else { 1.0 }
+    }
+
+    /// The response to a trial elastic left Cauchy-Green tensor, `b_trial = ΔF bᵉ ΔFᵀ` (Eq. 7); a graded law answers
+    /// through [`Material::at`] only, and elastically here.
     ///
     /// # Errors
     /// When `b_trial` has a component that is not finite, or an eigenvalue that is not positive.
@@ -107,7 +129,7 @@ impl Material {
         let moduli = self.elastic().moduli();
         let trial = moduli.stress(spectrum.eps);
         let returned = match self {
-            Self::Hencky(_) => Return::elastic(trial),
+            Self::Hencky(_) | Self::Graded(_) => Return::elastic(trial),
             Self::MohrCoulomb(law) => law.project(moduli, trial),
         };
         Ok(Response::new(*b_trial, spectrum, moduli, returned))

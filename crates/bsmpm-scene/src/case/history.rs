@@ -51,6 +51,21 @@ pub enum Quantity {
     },
     /// -  oscillation of sigma_yy about its average over the grid and about a plane
     StressNoise,
+    /// Pa  oscillation of the pressure about its average over the grid and about a plane
+    PressureNoise {
+        /// m  lower and upper corner of the points that count, in the case's coordinates; `None`: all points
+        within: Option<[[f64; 2]; 2]>,
+    },
+    /// m  the largest upward displacement of any point
+    Heave,
+    /// Pa  mean normal pressure on the footing's base
+    FootingPressure,
+    /// N/m  force of the soil on the footing against its motion
+    FootingForce,
+    /// m  of the footing, downwards
+    Penetration,
+    /// -  largest distance that the material has slipped from the footing in the step, over the footing's motion
+    Slip,
 }
 
 /// A face of the grid.
@@ -77,7 +92,7 @@ impl Quantity {
         match self {
             Self::Momentum | Self::Reaction { .. } | Self::Displacement { .. } | Self::Velocity { .. } => &["-x", "-y"],
             Self::Stress { .. } => &["-xx", "-yy", "-zz", "-xy"],
-            Self::StressNoise => &["-average", "-plane"],
+            Self::StressNoise | Self::PressureNoise { .. } => &["-average", "-plane"],
             _ => &[""],
         }
     }
@@ -85,13 +100,19 @@ impl Quantity {
     /// Unit of its numbers.
     pub fn unit(&self) -> &'static str {
         match self {
-            Self::Runout { .. } | Self::Front | Self::Height | Self::MaxDisplacement | Self::Displacement { .. } => "m",
+            Self::Runout { .. }
+            | Self::Front
+            | Self::Height
+            | Self::MaxDisplacement
+            | Self::Displacement { .. }
+            | Self::Heave
+            | Self::Penetration => "m",
             Self::Mass => "kg/m",
             Self::Momentum => "kg/s",
-            Self::Reaction { .. } => "N/m",
+            Self::Reaction { .. } | Self::FootingForce => "N/m",
             Self::Velocity { .. } => "m/s",
-            Self::Stress { .. } => "Pa",
-            Self::StressNoise => "-",
+            Self::Stress { .. } | Self::PressureNoise { .. } | Self::FootingPressure => "Pa",
+            Self::StressNoise | Self::Slip => "-",
         }
     }
 }

@@ -96,6 +96,15 @@ impl MohrCoulomb {
         Self { elastic, friction, dilation, cohesion, flow, strength: cohesion * friction.cos() }
     }
 
+    /// The law with its strength divided by `factor` (section 3.2): `c/SRF`, `atan(tan φ/SRF)`, `ψ_f = min(ψ, φ_f)`.
+    pub fn reduced(self, factor: f64) -> Self {
+        if factor == 1.0 {
+            return self;
+        }
+        let friction = (self.friction.tan() / factor).atan();
+        Self::new(self.elastic, friction, self.dilation.min(friction), self.cohesion / factor)
+    }
+
     /// The elastic part.
     pub fn elastic(&self) -> &Elastic {
         &self.elastic

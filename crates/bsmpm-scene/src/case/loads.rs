@@ -1,0 +1,90 @@
+//! What acts on the bodies besides gravity: rigid strips, prescribed motions, tractions, point loads, initial stress.
+
+use super::Face;
+
+/// A displacement as a function of time, linear between its rows; zero at the start, constant after the last row.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Path {
+    /// s (quasi-static: pseudo-time), increasing, and m
+    pub rows: Vec<(f64, [f64; 2])>,
+}
+
+/// A rigid strip that moves, section 3.3 of the paper.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Footing {
+    /// m  one end of its base at the start
+    pub from: [f64; 2],
+    /// m  the other end
+    pub to: [f64; 2],
+    /// its motion
+    pub path: Path,
+    /// what it holds
+    pub base: Base,
+}
+
+/// What a rigid strip holds of the material at it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Base {
+    /// The component normal to it.
+    Smooth,
+    /// All components.
+    Rough,
+}
+
+/// Prescribed motion of what lies at a face of the grid or at a segment.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Prescribed {
+    /// where
+    pub site: Site,
+    /// its motion
+    pub path: Path,
+    /// which components
+    pub base: Base,
+}
+
+/// Where a prescribed motion acts at the start.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Site {
+    /// A face of the grid.
+    Face(Face),
+    /// m  a segment
+    Segment {
+        /// one end
+        from: [f64; 2],
+        /// the other
+        to: [f64; 2],
+    },
+}
+
+/// A load on a segment of the body's surface that follows the body; its direction and the force on it stay.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Traction {
+    /// m  one end at the start
+    pub from: [f64; 2],
+    /// m  the other end
+    pub to: [f64; 2],
+    /// Pa  force per area of the start
+    pub stress: [f64; 2],
+    /// s (quasi-static: pseudo-time)  over which it grows linearly; 0: at once
+    pub ramp: f64,
+}
+
+/// A force at a point of the body, which follows the body.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PointLoad {
+    /// m  where at the start
+    pub at: [f64; 2],
+    /// N/m
+    pub force: [f64; 2],
+    /// s (quasi-static: pseudo-time)  over which it grows linearly; 0: at once
+    pub ramp: f64,
+}
+
+/// The stress at the start.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Initial {
+    /// Weight of what lies above as vertical stress, and a part of it as horizontal stress: per material that part.
+    AtRest(Vec<f64>),
+    /// The elastic equilibrium under the loads at time 0.
+    Elastic,
+}

@@ -1,0 +1,93 @@
+//! Stiffness and strength that vary linearly with depth (layers of one material, section 3.2's soils in the field).
+//!
+//! A point keeps the parameters of the height at which it was placed: they follow the material, not the place.
+
+use super::{Elastic, Hencky, Material, MohrCoulomb};
+use std::ops::Range;
+
+/// A parameter that grows linearly downwards: `value + per_metre (at - y)`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Profile {
+    /// the parameter at the height `at`, in its own unit
+    pub value: f64,
+    /// m  height from the grid's lower corner
+    pub at: f64,
+    /// growth per metre of depth
+    pub per_metre: f64,
+}
+
+impl Profile {
+    /// The same everywhere.
+    pub fn constant(value: f64) -> Self {
+        Self { value, at: 0.0, per_metre: 0.0 }
+    }
+
+    /// The parameter at a height, m from the grid's lower corner.
+    #[inline]
+    pub fn at(&self, height: f64) -> f64 {
+        self.value + self.per_metre * (self.at - height)
+    }
+
+    /// Its smallest and largest value between two heights.
+    pub fn bounds(&self, heights: &Range<f64>) -> (f64, f64) {
+        let (a, b) = (self.at(heights.start), self.at(heights.end));
+        (a.min(b), a.max(b))
+    }
+}
+
+/// Mohr-Coulomb strength by height.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GradedStrength {
+    /// rad  friction angle
+    pub friction: Profile,
+    /// rad  dilation angle; where the friction angle is smaller, that
+    pub dilation: f64,
+    /// Pa  cohesion
+    pub cohesion: Profile,
+    /// -  strength reduction factor (section 3.2); 1: none
+    pub reduction: f64,
+}
+
+/// An elastic or Mohr-Coulomb material whose parameters depend on the height.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Graded {
+    young: Profile,
+    stiffest: Elastic,
+    strength: Option<GradedStrength>,
+}
+
+impl Graded {
+    /// A material between two heights (m from the grid's lower corner), elastic without `strength`.
+    pub fn new(young: Profile, poisson: f64, strength: Option<GradedStrength>, heights: Range<f64>) -> Self {
+        let stiffest = Elastic { young: young.bounds(&heights).1, poisson };
+        Self { young, stiffest, strength }
+    }
+
+    /// The elastic part where it is stiffest.
+    pub fn stiffest(&self) -> &Elastic {
+        &self.stiffest
+    }
+
+    /// Young's modulus at a height over the largest one.
+    #[inline]
+    pub fn relative_stiffness(&self, height: f64) -> f64 {
+        self.young.at(height) / self.stiffest.young
+    }
+
+    /// The law at a height.
+    pub fn at(&self, height: f64) -> Material {
+        let elastic = Elastic { young: self.young.at(height), poisson: self.stiffest.poisson };
+        match &self.strength {
+            None => Material::Hencky(Hencky { elastic }),
+            Some(strength) => {
+                let law = MohrCoulomb::new(
+                    elastic,
+                    strength.friction.at(height),
+                    strength.dilation.min(strength.friction.at(height)),
+                    strength.cohesion.at(height),
+                );
+                Material::MohrCoulomb(law.reduced(strength.reduction))
+            }
+        }
+    }
+}
