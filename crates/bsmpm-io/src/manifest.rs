@@ -14,7 +14,7 @@ use crate::{Error, atomic};
 
 pub mod parts;
 
-pub use parts::{Case, Check, Choice, Extent, Failure, Output, Status, Summary, Worst};
+pub use parts::{Case, Check, Choice, Extent, Failure, Initial, Output, Status, Summary, Worst};
 
 /// The manifest's file.
 pub const MANIFEST: &str = "run.json";
@@ -68,6 +68,9 @@ pub struct Manifest {
     /// Totals of the run so far.
     #[serde(default)]
     pub summary: Summary,
+    /// How the state at the start was balanced, if the case gives it a stress.
+    #[serde(default)]
+    pub initial: Option<Initial>,
     /// The case's checks, once they were made.
     #[serde(default)]
     pub checks: Vec<Check>,
@@ -102,6 +105,7 @@ impl Manifest {
             end: None,
             timers: BTreeMap::new(),
             summary: Summary::default(),
+            initial: None,
             checks: Vec::new(),
             outputs: Vec::new(),
             checkpoint: None,

@@ -3,6 +3,7 @@
 use crate::cli::Arguments;
 use crate::machine;
 use crate::setup;
+use crate::surfaces;
 use bsmpm::control::Accepted;
 use bsmpm::step::Counts;
 use bsmpm_io::Error;
@@ -81,6 +82,9 @@ impl Ledger {
         let report = &accepted.report;
         self.manifest.summary.steps = number;
         self.attempts(accepted.rejected.len(), accepted.counts);
+        let slips = report.strips.iter().filter(|strip| strip.motion > 0.0).map(surfaces::relative_slip);
+        let largest = slips.chain(self.manifest.summary.largest_slip).reduce(f64::max);
+        self.manifest.summary.largest_slip = largest;
         let sizes = &mut self.manifest.sizes;
         sizes.insert("active_nodes".into(), report.active_nodes as u64);
         sizes.insert("unknowns".into(), report.unknowns as u64);

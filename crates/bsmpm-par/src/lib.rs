@@ -22,4 +22,5 @@ pub mod simulation;
 pub mod slab;
 pub mod source;
 pub mod stencil;
+pub mod surfaces;
 pub mod timers;

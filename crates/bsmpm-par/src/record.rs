@@ -1,13 +1,15 @@
 //! Rows of `history.csv`: the quantities that the case asks for, in the case's own coordinates.
 
+use crate::surfaces::{self, Gauge};
 use bsmpm::error::StepError;
 use bsmpm::kinematics::Kinematics;
 use bsmpm::model::Model;
 use bsmpm::observe::{self, noise};
 use bsmpm::points::Points;
 use bsmpm::seam::Halo;
+use bsmpm::step::Report;
 use bsmpm::tensor::Vector;
-use bsmpm_scene::{Face, History, Quantity};
+use bsmpm_scene::{Case, Face, History, Quantity};
 
 /// Place of the vertical normal stress among XX YY ZZ XY YZ XZ.
 const VERTICAL: usize = 1;
@@ -16,20 +18,32 @@ const VERTICAL: usize = 1;
 pub struct Recorder {
     histories: Vec<History>,
     followed: Vec<Option<u64>>,
+    reacting: Vec<Option<usize>>, // strip whose force a reaction is
+    gauge: Option<Gauge>,
     lower: Vector<2>,
 }
 
 impl Recorder {
-    /// Finds the points nearest to the wanted places; `lower` is the grid's lower corner in the case's coordinates (m).
-    pub fn new(histories: &[History], lower: [f64; 2], points: &Points<2>, halo: &dyn Halo) -> Self {
-        let lower = Vector::from(lower);
+    /// Finds the points nearest to the wanted places.
+    pub fn new(case: &Case, points: &Points<2>, halo: &dyn Halo) -> Self {
+        let (histories, lower) = (&case.histories, Vector::from(case.grid.lower()));
         let follow = |history: &History| match history.quantity {
             Quantity::Displacement { at } | Quantity::Velocity { at } | Quantity::Stress { at } => {
                 observe::nearest(points, &(Vector::from(at) - lower), halo)
             }
             _ => None,
         };
-        Self { histories: histories.to_vec(), followed: histories.iter().map(follow).collect(), lower }
+        let react = |history: &History| match history.quantity {
+            Quantity::Reaction { face } => surfaces::strip_of_face(case, face),
+            _ => None,
+        };
+        Self {
+            histories: histories.clone(),
+            followed: histories.iter().map(follow).collect(),
+            reacting: histories.iter().map(react).collect(),
+            gauge: Gauge::of(case),
+            lower,
+        }
     }
 
     /// Heading and unit of every column.
@@ -38,17 +52,23 @@ impl Recorder {
         columns.map(|column| bsmpm_io::table::Column::new(&column.name, &column.unit)).collect()
     }
 
-    /// The row of the present state; `reactions` are the supports' forces by component, empty at the start.
+    /// The row of the state at time `t`; `report` is that of the step that led to it, empty at the start.
     pub fn row<K: Kinematics<2>>(
         &self,
         model: &Model<K, 2>,
         points: &Points<2>,
-        reactions: &[Vec<f64>],
+        (t, report): (f64, &Report),
         halo: &dyn Halo,
     ) -> Result<Vec<f64>, StepError> {
         let mut row = Vec::new();
-        for (history, followed) in self.histories.iter().zip(&self.followed) {
-            let values = self.values(&history.quantity, *followed, model, points, reactions, halo)?;
+        for (number, history) in self.histories.iter().enumerate() {
+            let values = match &history.quantity {
+                Quantity::Reaction { face } => self.reaction(number, model, *face, report),
+                Quantity::FootingPressure | Quantity::FootingForce | Quantity::Penetration | Quantity::Slip => {
+                    vec![self.footing(&history.quantity, t, report)]
+                }
+                quantity => self.values(quantity, self.followed[number], model, points, halo)?,
+            };
             row.extend(values.iter().map(|value| history.scale * value));
         }
         Ok(row)
@@ -60,7 +80,6 @@ impl Recorder {
         followed: Option<u64>,
         model: &Model<K, 2>,
         points: &Points<2>,
-        reactions: &[Vec<f64>],
         halo: &dyn Halo,
     ) -> Result<Vec<f64>, StepError> {
         let id = followed.unwrap_or(u64::MAX);
@@ -74,7 +93,6 @@ impl Recorder {
             Quantity::MaxDisplacement => vec![observe::largest_displacement(points, halo)],
             Quantity::Mass => vec![observe::mass(points, halo)],
             Quantity::Momentum => observe::momentum(points, halo).as_slice().to_vec(),
-            Quantity::Reaction { face } => reaction(model, *face, reactions),
             Quantity::Displacement { .. } => observe::at_point(points, id, halo, |p| points.u[p].into()).to_vec(),
             Quantity::Velocity { .. } => {
                 let velocity = |p: usize| points.motion.as_ref().map_or([0.0; 2], |motion| motion.v[p].into());
@@ -88,13 +106,39 @@ impl Recorder {
                 let noise = noise::stress_noise(&model.grid, points, model.weighting, VERTICAL, halo)?;
                 vec![noise.about_average, noise.about_plane]
             }
+            Quantity::PressureNoise { within } => {
+                let window = within.map(|corners| corners.map(|corner| Vector::from(corner) - self.lower));
+                let noise = noise::pressure_noise(&model.grid, points, model.weighting, window, halo)?;
+                vec![noise.about_average, noise.about_plane]
+            }
+            Quantity::Heave => vec![observe::heave(points, halo)],
+            Quantity::Reaction { .. }
+            | Quantity::FootingPressure
+            | Quantity::FootingForce
+            | Quantity::Penetration
+            | Quantity::Slip => Vec::new(),
         })
     }
-}
 
-/// Force of the support at `face` on the body; zero where there is none.
-fn reaction<K: Kinematics<2>>(model: &Model<K, 2>, face: Face, reactions: &[Vec<f64>]) -> Vec<f64> {
-    let supports = model.boundary.supports.iter().zip(reactions);
-    let mut at_face = supports.filter(|(support, _)| support.axis == face.axis && support.upper == face.upper);
-    at_face.next().map_or_else(|| vec![0.0; 2], |(_, force)| force.clone())
+    /// A quantity of the footing; 0 without one, and before the first step.
+    fn footing(&self, quantity: &Quantity, t: f64, report: &Report) -> f64 {
+        let strip = report.strips.first();
+        let Some(gauge) = &self.gauge else { return 0.0 };
+        match quantity {
+            Quantity::Penetration => gauge.penetration(t),
+            Quantity::FootingPressure => strip.map_or(0.0, |strip| gauge.pressure(strip)),
+            Quantity::FootingForce => strip.map_or(0.0, |strip| gauge.force(strip)),
+            _ => strip.map_or(0.0, surfaces::relative_slip),
+        }
+    }
+
+    /// Force of what holds a face on the body; zero where there is nothing, and before the first step.
+    fn reaction<K: Kinematics<2>>(&self, number: usize, model: &Model<K, 2>, face: Face, report: &Report) -> Vec<f64> {
+        if let Some(strip) = self.reacting[number].and_then(|strip| report.strips.get(strip)) {
+            return strip.force.clone();
+        }
+        let supports = model.boundary.supports.iter().zip(&report.reactions);
+        let mut at_face = supports.filter(|(support, _)| support.axis == face.axis && support.upper == face.upper);
+        at_face.next().map_or_else(|| vec![0.0; 2], |(_, force)| force.clone())
+    }
 }

@@ -16,6 +16,7 @@ use bsmpm::control::{Accepted, Failure};
 use bsmpm::error::StepError;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::seam::Halo;
+use bsmpm::step::Report;
 use bsmpm_io::manifest::{self, Status};
 use bsmpm_scene::{Case, Every};
 use mpi::collective::CommunicatorCollectives;
@@ -117,7 +118,16 @@ impl<'p> Run<'p> {
         for note in &self.case.notes {
             self.log.detail(&format!("{} = {}: {}", note.key, note.value, note.reason));
         }
-        self.record(&[]);
+        if let Some(start) = self.ledger.as_mut().and_then(|ledger| ledger.manifest().initial) {
+            self.log.line(
+                "initial",
+                &format!(
+                    "stress at the start: unbalance {:.2e} of the largest force, {} point(s) beyond yield",
+                    start.unbalance, start.yielding
+                ),
+            );
+        }
+        self.record(&Report::default());
         self.frame();
     }
 
@@ -129,7 +139,7 @@ impl<'p> Run<'p> {
         if step == 1 {
             self.tell_unused_options();
         }
-        self.record(&accepted.report.reactions);
+        self.record(&accepted.report);
         if self.wants_frame(accepted.t) {
             self.frame();
         }
@@ -150,15 +160,16 @@ impl<'p> Run<'p> {
     }
 
     /// A row of histories.
-    fn record(&mut self, reactions: &[Vec<f64>]) {
+    fn record(&mut self, report: &Report) {
         let timers = Rc::clone(&self.timers);
         let _timed = timers.time("histories");
         let Simulation { model, points, halo, .. } = &self.simulation;
-        let row = match self.recorder.row(model, points, reactions, &**halo) {
+        let time = self.simulation.time();
+        let row = match self.recorder.row(model, points, (time, report), &**halo) {
             Ok(row) => row,
             Err(error) => launch::end(&self.universe.world(), exit::BUG, &error),
         };
-        let (step, time) = (self.simulation.steps(), self.simulation.time());
+        let step = self.simulation.steps();
         let written = self.ledger.as_mut().map_or(Ok(()), |ledger| ledger.history(step, time, &row));
         self.require(written);
     }

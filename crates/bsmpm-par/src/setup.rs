@@ -1,10 +1,12 @@
 //! From a valid case to a model and its points: the only place where the case's words become the physics' types.
 
 use crate::ksp::Choice;
+use crate::simulation::{Simulation, StartStress};
 use crate::slab::Slabs;
+use crate::surfaces;
 use bsmpm::background::Background;
 use bsmpm::boundary::{Boundary, Support};
-use bsmpm::error::GridError;
+use bsmpm::error::{GridError, StepError};
 use bsmpm::grid::{Grid, KnotVector};
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::{Criteria, Gravity, Model, Weighting};
@@ -12,8 +14,9 @@ use bsmpm::points::Points;
 use bsmpm::schedule::Schedule;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::step::quasi_newton::QuasiNewton;
+use bsmpm::tensor::{Symmetric, Vector};
 use bsmpm_io::manifest;
-use bsmpm_scene::{Axis, Case, Every, Nonlinear, Regime};
+use bsmpm_scene::{Axis, Case, Every, Initial, Nonlinear, Regime};
 use std::marker::PhantomData;
 
 /// The model of a plane-strain case over its whole grid.
@@ -23,8 +26,8 @@ pub fn model(case: &Case) -> Result<Model<PlaneStrain, 2>, GridError> {
         Axis::Uniform { cell, cells, .. } => KnotVector::uniform(*cell, *cells, order),
         Axis::Graded(breakpoints) => KnotVector::graded(breakpoints, order),
     };
+    let grid = Grid::new([axis(&case.grid.axes[0])?, axis(&case.grid.axes[1])?])?;
     Ok(Model {
-        grid: Grid::new([axis(&case.grid.axes[0])?, axis(&case.grid.axes[1])?])?,
         materials: case.materials.iter().map(|named| named.material.clone()).collect(),
         regime: case.analysis.regime,
         weighting: weighting(case),
@@ -32,7 +35,8 @@ pub fn model(case: &Case) -> Result<Model<PlaneStrain, 2>, GridError> {
             .gravity
             .as_ref()
             .map(|gravity| Gravity { acceleration: gravity.acceleration.into(), ramp: gravity.ramp }),
-        boundary: boundary(case),
+        boundary: boundary(case, &grid),
+        grid,
         stabilisation: case.stabilisation,
         background: (case.solver.background > 0.0)
             .then_some(Background { coefficient: case.solver.background, extent: case.solver.background_cells }),
@@ -49,7 +53,7 @@ pub fn model(case: &Case) -> Result<Model<PlaneStrain, 2>, GridError> {
     })
 }
 
-fn boundary(case: &Case) -> Boundary<2> {
+fn boundary(case: &Case, grid: &Grid<2>) -> Boundary<2> {
     let mut supports = Vec::new();
     for (axis, faces) in case.boundary.iter().enumerate() {
         for (upper, support) in [false, true].into_iter().zip(faces) {
@@ -60,12 +64,37 @@ fn boundary(case: &Case) -> Boundary<2> {
             }
         }
     }
-    Boundary { supports }
+    Boundary { supports, strips: surfaces::strips(case, grid, penalty(case)), loads: surfaces::loads(case, grid) }
+}
+
+/// Penalty of the rigid strips, Pa/m.
+fn penalty(case: &Case) -> f64 {
+    let stiffest = case.materials.iter().map(|named| named.material.elastic().young).fold(0.0, f64::max);
+    surfaces::penalty(stiffest, case.grid.axes.iter().map(Axis::shortest).fold(f64::INFINITY, f64::min))
 }
 
 /// The points of the columns of one slab.
 pub fn points(case: &Case, columns: std::ops::Range<usize>) -> Points<2> {
     Points::from_seeds(bsmpm_scene::seed(case, columns), case.analysis.regime == Regime::Dynamic)
+}
+
+/// Gives the points the stress that the case wants at the start, and tells how well it is balanced.
+pub fn start(
+    case: &Case,
+    simulation: &mut Simulation<'_, PlaneStrain, 2>,
+) -> Result<Option<manifest::Initial>, StepError> {
+    let lower = case.grid.lower();
+    let at_rest = |k0: &[f64], material: u16, x: &Vector<2>| {
+        let vertical = -case.overburden([lower[0] + x[0], lower[1] + x[1]]);
+        let horizontal = k0[usize::from(material)] * vertical;
+        Symmetric([horizontal, vertical, horizontal, 0.0, 0.0, 0.0])
+    };
+    let found = match &case.initial {
+        None => return Ok(None),
+        Some(Initial::Elastic) => simulation.stress(StartStress::Elastic)?,
+        Some(Initial::AtRest(k0)) => simulation.stress(StartStress::Given(&|material, x| at_rest(k0, material, x)))?,
+    };
+    Ok(Some(manifest::Initial { unbalance: found.force, yielding: found.yielding }))
 }
 
 /// The first cut of the grid: about equal numbers of points. `None` with more ranks than columns.
@@ -129,6 +158,11 @@ pub fn choices(case: &Case, ranks: usize) -> Vec<manifest::Choice> {
     }
     if weighting(case) == Weighting::Volume {
         choices.push(choice("weights of averages", "volume", "some material is weightless"));
+    }
+    if case.footing.is_some() || !case.prescribed.is_empty() {
+        let reason = "E of the stiffest material over the smallest cell, times a factor; the traction is carried from step \
+                      to step, so that the slips of all steps add up to pressure / penalty";
+        choices.push(choice("penalty of rigid strips", &format!("{:.6e} Pa/m", penalty(case)), reason));
     }
     if let Some((length, size)) = smoothing(case, nominal_steps(case)) {
         let reason =

@@ -6,11 +6,14 @@ use crate::migrate;
 use crate::slab::{Slabs, imbalance};
 use crate::timers::Timers;
 use bsmpm::control::{Accepted, Failure, Stepper};
+use bsmpm::error::StepError;
+use bsmpm::initial::{self, Equilibrium};
 use bsmpm::kinematics::Kinematics;
 use bsmpm::model::Model;
 use bsmpm::points::Points;
 use bsmpm::schedule::Schedule;
 use bsmpm::seam::Halo;
+use bsmpm::tensor::{Symmetric, Vector};
 use mpi::environment::Universe;
 use petsc_rs::Petsc;
 use std::rc::Rc;
@@ -19,6 +22,14 @@ use std::rc::Rc;
 const LOOK: u64 = 10;
 /// Largest load over the mean, relative to the best possible cut, that is left alone.
 const TOLERATED: f64 = 1.05;
+
+/// The stress of the points at the start.
+pub enum StartStress<'a, const D: usize> {
+    /// Pa  by material and position (m, from the grid's lower corner)
+    Given(&'a dyn Fn(u16, &Vector<D>) -> Symmetric),
+    /// linear elastic equilibrium
+    Elastic,
+}
 
 /// The distributed state of a run.
 pub struct Simulation<'p, K, const D: usize> {
@@ -50,11 +61,23 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
     ) -> Self {
         model.grid = model.grid.window(slabs.columns(petsc.rank()));
         points.sort_by_cell(&model.grid);
+        points.surface = model.boundary.surface();
         let halo = Rc::new(MpiHalo::new(universe.world(), &slabs, &model.grid, Rc::clone(&timers)));
         let solver = KspSolver::new(petsc, choice.clone(), &model.grid, Rc::clone(&halo), Rc::clone(&timers));
         let stepper = Stepper::new(model.grid.nodes() * D);
         let (halo, steps) = (halo, 0);
         Self { model, points, halo, universe, petsc, choice, slabs, schedule, stepper, solver, steps, timers }
+    }
+
+    /// Gives the points a stress at the start, see [`initial`], and tells how well it is balanced.
+    pub fn stress(&mut self, start: StartStress<'_, D>) -> Result<Equilibrium, StepError> {
+        match start {
+            StartStress::Given(sigma) => initial::set_stress(&self.model, &mut self.points, sigma),
+            StartStress::Elastic => {
+                initial::set_elastic(&self.model, &mut self.points, (&*self.halo, &mut self.solver))?
+            }
+        }
+        initial::balance(&self.model, &self.points, &*self.halo)
     }
 
     /// Time of the last converged state.

@@ -47,7 +47,10 @@ impl Background {
     ) -> Blocks {
         let tables: Vec<AxisTable> = grid.axes().iter().map(AxisTable::new).collect();
         let modulus = |patch: &Patch| {
-            let young = |p: usize| materials[usize::from(points.material[p])].elastic().young;
+            let young = |p: usize| {
+                let material = &materials[usize::from(points.material[p])];
+                material.elastic().young * material.relative_stiffness(points.height(p))
+            };
             patch.points.clone().map(young).fold(0.0, f64::max)
         };
         let concerned = |patch: &Patch| match self.extent {

@@ -1,7 +1,16 @@
-//! Supports at the faces of the grid: components of nodes whose displacement is prescribed.
+//! What holds and loads the bodies: supports at the faces of the grid, rigid strips, tractions and point loads.
+
+pub mod load;
+pub mod strip;
+pub mod surface;
+
+pub use load::Load;
+pub use strip::{Path, Strip, StripReport};
+pub use surface::{Surface, SurfacePoint};
 
 use crate::grid::Grid;
 use crate::seam::Halo;
+use crate::tensor::Vector;
 
 /// Motion of one face of the grid.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,14 +37,27 @@ impl<const D: usize> Support<D> {
     }
 }
 
-/// All supports of a scene; where faces meet, the one named last decides a component that both prescribe.
+/// All that holds and loads a scene besides gravity.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Boundary<const D: usize> {
-    /// Supports of the faces.
+    /// Supports of the faces; where faces meet, the one named last decides a component that both prescribe.
     pub supports: Vec<Support<D>>,
+    /// Rigid strips.
+    pub strips: Vec<Strip<D>>,
+    /// Tractions and point loads.
+    pub loads: Vec<Load<D>>,
 }
 
 impl<const D: usize> Boundary<D> {
+    /// The state of strips and loads at the start: no traction, every point at its place.
+    pub fn surface(&self) -> Surface<D> {
+        let at_rest = |strip: &Strip<D>| vec![Vector::zeros(); strip.points.len()];
+        Surface {
+            traction: self.strips.iter().map(at_rest).collect(),
+            position: self.loads.iter().map(|load| load.points.iter().map(|point| point.x).collect()).collect(),
+        }
+    }
+
     /// Prescribed velocity of every nodal component of the window (D per node), `None` where it is free.
     pub fn velocities(&self, grid: &Grid<D>) -> Vec<Option<f64>> {
         let mut prescribed = vec![None; grid.nodes() * D];

@@ -97,8 +97,13 @@ impl Stepper {
                     return Some(Ok(Accepted { t: end, dt, report, counts, rejected }));
                 }
                 Err(error) => {
-                    let hopeless =
-                        matches!(error, StepError::Left { .. } | StepError::Outside { .. } | StepError::OtherRank);
+                    let hopeless = matches!(
+                        error,
+                        StepError::Left { .. }
+                            | StepError::Outside { .. }
+                            | StepError::Unloaded { .. }
+                            | StepError::OtherRank
+                    );
                     rejected.push(error);
                     if hopeless || self.cuts == MOST_CUTS {
                         return Some(Err(Failure { t: self.t, dt, attempts: rejected, counts }));

@@ -61,6 +61,14 @@ pub enum StepError {
         /// Id and position (m) of the first one on this rank, if any.
         first: Option<(u64, Vec<f64>)>,
     },
+    /// A load has no material at some of its points any more.
+    #[error("{points} point(s) of load {load} have lost their material")]
+    Unloaded {
+        /// Number of the load, tractions first.
+        load: usize,
+        /// Points without material.
+        points: usize,
+    },
     /// Material turned inside out or became non-finite, also with shortened iterations.
     #[error("{count} point(s) inverted or not finite in iteration {iteration}")]
     Inverted {

@@ -14,7 +14,7 @@
 //! | (6) | elastic stiffness K_0 | [`step::stiffness`] |
 //! | (10), (11) | grid kinematics, converged points | [`step::commit`] |
 //!
-//! [`control`] cuts and grows the steps so that a non-converged one is never accepted; [`seam`] holds the two traits
+//! [`boundary`] holds and loads the bodies, [`initial`] gives them stress at the start. [`control`] cuts and grows the steps so that a non-converged one is never accepted; [`seam`] holds the two traits
 //! behind which ranks and linear algebra live; [`observe`] evaluates what a history records.
 #![forbid(unsafe_code)]
 // The fields of section 2.4 keep the paper's letters (F, dF, J, N) where they have one meaning in mechanics.
@@ -25,6 +25,7 @@ pub mod boundary;
 pub mod control;
 pub mod error;
 pub mod grid;
+pub mod initial;
 pub mod kinematics;
 pub mod material;
 pub mod model;

@@ -4,10 +4,11 @@ use crate::background::Background;
 use crate::boundary::Boundary;
 use crate::grid::Grid;
 use crate::kinematics::Kinematics;
-use crate::material::Material;
+use crate::material::{Material, MaterialError, Response};
+use crate::points::Points;
 use crate::stabilisation::Stabilisation;
 use crate::step::quasi_newton::QuasiNewton;
-use crate::tensor::Vector;
+use crate::tensor::{Symmetric, Vector};
 use std::marker::PhantomData;
 
 /// Whether inertia acts.
@@ -84,6 +85,15 @@ pub struct Model<K, const D: usize> {
 }
 
 impl<K: Kinematics<D>, const D: usize> Model<K, D> {
+    /// The constitution's answer to the trial b^e of point `p`.
+    #[inline]
+    pub fn respond(&self, points: &Points<D>, p: usize, b_trial: &Symmetric) -> Result<Response, MaterialError> {
+        match &self.materials[usize::from(points.material[p])] {
+            Material::Graded(law) => law.at(points.height(p)).respond(b_trial),
+            uniform => uniform.respond(b_trial),
+        }
+    }
+
     /// Largest Young's modulus, Pa.
     pub fn stiffest(&self) -> f64 {
         self.materials.iter().map(|m| m.elastic().young).fold(0.0, f64::max)

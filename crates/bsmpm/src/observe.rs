@@ -64,6 +64,13 @@ pub fn largest_displacement<const D: usize>(points: &Points<D>, halo: &dyn Halo)
     largest[0]
 }
 
+/// Largest displacement of any point along the last axis, m; 0 if none has risen.
+pub fn heave<const D: usize>(points: &Points<D>, halo: &dyn Halo) -> f64 {
+    let mut largest = [points.u.iter().map(|u| u[D - 1]).fold(0.0, f64::max)];
+    halo.maximum(&mut largest);
+    largest[0]
+}
+
 /// Bits of a word of a mass: sums of 2^32 words are still exact.
 const WORD: f64 = (1_u64 << 20) as f64;
 

@@ -1,5 +1,6 @@
 //! Material points: the permanent state, one array per quantity, sorted by cell.
 
+use crate::boundary::Surface;
 use crate::grid::Grid;
 use crate::tensor::{Symmetric, Tensor, Vector};
 use nalgebra::SMatrix;
@@ -38,6 +39,8 @@ pub struct Points<const D: usize> {
     pub sigma: Vec<Symmetric>,
     /// -  accumulated plastic strain
     pub eps_p: Vec<f64>,
+    /// what strips and loads carry on; no column: it is the same on every rank
+    pub surface: Surface<D>,
 }
 
 /// A point as it is placed at the start.
@@ -88,6 +91,12 @@ impl<const D: usize> Points<D> {
     /// Whether this rank has no point.
     pub fn is_empty(&self) -> bool {
         self.id.is_empty()
+    }
+
+    /// Height at which a point was placed, along the last axis from the grid's lower corner, m.
+    #[inline]
+    pub fn height(&self, p: usize) -> f64 {
+        self.x[p][D - 1] - self.u[p][D - 1]
     }
 
     /// Every array once: sorting, migration and checkpoints walk this list, so that a new state variable is one line.

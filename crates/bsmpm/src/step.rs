@@ -10,6 +10,8 @@ pub mod residual;
 pub mod stiffness;
 pub mod trial;
 
+use crate::boundary::strip::Grips;
+use crate::boundary::{StripReport, Surface, load};
 use crate::error::StepError;
 use crate::grid::Shape;
 use crate::kinematics::Kinematics;
@@ -46,6 +48,8 @@ pub struct Report {
     pub first_guess: bool,
     /// N  force of every support on the body, by component, in the order of the model's supports
     pub reactions: Vec<Vec<f64>>,
+    /// what every rigid strip did
+    pub strips: Vec<StripReport>,
 }
 
 /// Steps the points from `t` to `t + dt`, starting from the nodal displacement `guess` (D numbers per node of the
@@ -59,11 +63,18 @@ pub fn step<K: Kinematics<D>, const D: usize>(
     counts: &mut Counts,
 ) -> Result<Report, StepError> {
     let shape = agreed(halo, Shape::at(&model.grid, points), StepError::OtherRank)?; // (1)
-    let nodes = Nodes::map(model, &shape, points, (t, dt), halo); // (2)
-    let scene = equilibrium::Scene { model, shape: &shape, nodes: &nodes, points, halo };
+    let nodes = Nodes::map(model, &shape, points, (t, dt), halo)?; // (2)
+    let grips = Grips::at(&model.boundary.strips, &points.surface, &model.grid, &nodes.active, (t, dt));
+    let scene = equilibrium::Scene { model, shape: &shape, nodes: &nodes, grips: &grips, points, halo };
     let found = equilibrium::find(&scene, guess, solver, counts)?; // (3)-(9)
     commit::check_inside(model, &shape, points, &found.u, halo)?;
-    let report = found.report(&scene);
+    let (strips, traction) = grips.conclude(&model.boundary.strips, &found.u, halo);
+    let report = Report { strips, ..found.report(&scene) };
+    let surface = Surface {
+        traction,
+        position: load::moved(&model.boundary.loads, &points.surface, (&model.grid, &nodes.active), &found.u, halo),
+    };
     *guess = commit::commit(model, &shape, &nodes, found, points, halo)?; // (10), (11)
+    points.surface = surface;
     Ok(report)
 }

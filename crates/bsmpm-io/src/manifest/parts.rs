@@ -73,6 +73,15 @@ pub struct Choice {
     pub reason: String,
 }
 
+/// How the state at the start was balanced.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Initial {
+    /// |out-of-balance force| / largest force
+    pub unbalance: f64,
+    /// Points whose stress lies outside the yield surface.
+    pub yielding: u64,
+}
+
 /// Totals of a run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Summary {
@@ -86,6 +95,9 @@ pub struct Summary {
     pub cutbacks: u64,
     /// Evaluations of the out-of-balance force.
     pub residual_evaluations: u64,
+    /// Largest slip of any rigid strip in a step, over its motion in that step; none without strips that move.
+    #[serde(default)]
+    pub largest_slip: Option<f64>,
     /// s  of processor time, all ranks together.
     pub cpu_seconds: f64,
     /// bytes  the largest resident memory of each rank.

@@ -8,11 +8,11 @@ use crate::grid::shape::Patch;
 use crate::grid::{Grid, Shape, transfer};
 use crate::model::Weighting;
 use crate::points::Points;
-use crate::seam::Halo;
+use crate::seam::{Halo, agreed};
 use crate::tensor::Vector;
 use nalgebra::{Matrix4, Vector4};
 
-/// Root mean squares of a stress component about its smooth part, over the mean of its absolute value.
+/// Root mean squares of a stress about its smooth parts.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Noise {
     /// about S sigma, the mass-weighted map to the nodes and back (Eqs 16-18)
@@ -28,9 +28,9 @@ const WIDTH: usize = MOST * MOST + MOST;
 /// Determinant of the moments, relative to points spread over cells, below which they span no plane.
 const SINGULAR: f64 = 1e-9;
 
-/// Noise of component `component` (XX YY ZZ XY YZ XZ) of the Cauchy stress over all points, which must be sorted by
-/// cell. The plane runs through all points in the support of the cell's middle node: for quadratic splines these are
-/// the cell and its 3^D - 1 neighbours. Zero without stress.
+/// Noise of component `component` (XX YY ZZ XY YZ XZ) of the Cauchy stress over all points, relative to the mean of its
+/// absolute value; zero without stress. The points must be sorted by cell. The plane runs through all points in the
+/// support of the cell's middle node: for quadratic splines these are the cell and its 3^D - 1 neighbours.
 pub fn stress_noise<const D: usize>(
     grid: &Grid<D>,
     points: &Points<D>,
@@ -38,27 +38,66 @@ pub fn stress_noise<const D: usize>(
     component: usize,
     halo: &dyn Halo,
 ) -> Result<Noise, StepError> {
-    let shape = Shape::at(grid, points)?;
-    let stress = |p: usize| points.sigma[p].0[component];
-    let average = averaged(grid, &shape, points, weighting, &stress, halo);
-    let planes = planes(grid, &shape, points, &stress, halo);
-    let mut sums = [points.len() as f64, 0.0, 0.0, 0.0];
-    for (patch_number, patch) in shape.patches().iter().enumerate() {
-        for p in patch.points.clone() {
-            let terms = terms(grid, &grid.cell_at(patch.cell), &points.x[p]);
-            let on_plane: f64 = planes[patch_number].iter().zip(&terms).map(|(a, b)| a * b).sum();
-            sums[1] += stress(p).abs();
-            sums[2] += (stress(p) - average[p]).powi(2);
-            sums[3] += (stress(p) - on_plane).powi(2);
+    let squares = Squares::of(grid, points, weighting, &|p| points.sigma[p].0[component], None, halo)?;
+    Ok(if squares.mean == 0.0 { Noise::default() } else { squares.noise(squares.mean) })
+}
+
+/// Noise of the pressure -tr(sigma)/3, Pa, over the points between the corners of `window` (m, from the grid's lower
+/// corner), or over all.
+pub fn pressure_noise<const D: usize>(
+    grid: &Grid<D>,
+    points: &Points<D>,
+    weighting: Weighting,
+    window: Option<[Vector<D>; 2]>,
+    halo: &dyn Halo,
+) -> Result<Noise, StepError> {
+    let pressure = |p: usize| -points.sigma[p].0[..3].iter().sum::<f64>() / 3.0;
+    Ok(Squares::of(grid, points, weighting, &pressure, window, halo)?.noise(1.0))
+}
+
+/// Means over the points of a stress and of its squared distances from its smooth parts.
+struct Squares {
+    mean: f64, // of the absolute value
+    average: f64,
+    plane: f64,
+}
+
+impl Squares {
+    fn of<const D: usize>(
+        grid: &Grid<D>,
+        points: &Points<D>,
+        weighting: Weighting,
+        stress: &impl Fn(usize) -> f64,
+        window: Option<[Vector<D>; 2]>,
+        halo: &dyn Halo,
+    ) -> Result<Self, StepError> {
+        let shape = agreed(halo, Shape::at(grid, points), StepError::OtherRank)?;
+        let average = averaged(grid, &shape, points, weighting, stress, halo);
+        let planes = planes(grid, &shape, points, stress, halo);
+        let counts = |x: &Vector<D>| {
+            window.is_none_or(|[lower, upper]| (0..D).all(|axis| (lower[axis]..=upper[axis]).contains(&x[axis])))
+        };
+        let mut sums = [0.0; 4];
+        for (patch, plane) in shape.patches().iter().zip(&planes) {
+            let cell = grid.cell_at(patch.cell);
+            for p in patch.points.clone().filter(|&p| counts(&points.x[p])) {
+                let terms = terms(grid, &cell, &points.x[p]);
+                let on_plane: f64 = plane.iter().zip(&terms).map(|(a, b)| a * b).sum();
+                sums[0] += 1.0;
+                sums[1] += stress(p).abs();
+                sums[2] += (stress(p) - average[p]).powi(2);
+                sums[3] += (stress(p) - on_plane).powi(2);
+            }
         }
+        halo.reduce(&mut sums);
+        let [count, absolute, average, plane] = sums;
+        let mean = |sum: f64| if count > 0.0 { sum / count } else { 0.0 };
+        Ok(Self { mean: mean(absolute), average: mean(average), plane: mean(plane) })
     }
-    halo.reduce(&mut sums);
-    let [count, absolute, average, plane] = sums;
-    if absolute == 0.0 {
-        return Ok(Noise::default());
+
+    fn noise(&self, unit: f64) -> Noise {
+        Noise { about_average: self.average.sqrt() / unit, about_plane: self.plane.sqrt() / unit }
     }
-    let relative = |squares: f64| (squares / count).sqrt() / (absolute / count);
-    Ok(Noise { about_average: relative(average), about_plane: relative(plane) })
 }
 
 fn averaged<const D: usize>(

@@ -4,6 +4,7 @@
 //! no norm (it crosses zero while the forces are far from balanced), so the relative out-of-balance
 //! force must be small too. The displacement that is accepted is the one whose forces were evaluated.
 
+use crate::boundary::strip::Grips;
 use crate::error::{StepError, WorstNode};
 use crate::grid::Shape;
 use crate::kinematics::Kinematics;
@@ -11,7 +12,7 @@ use crate::model::Model;
 use crate::points::Points;
 use crate::seam::{Halo, LinearSolver, dots};
 use crate::step::nodes::Nodes;
-use crate::step::quasi_newton::Secants;
+use crate::step::quasi_newton::{Direction, Secants};
 use crate::step::residual::Residual;
 use crate::step::stiffness;
 use crate::step::trial::Trial;
@@ -34,6 +35,8 @@ pub struct Scene<'a, K, const D: usize> {
     pub shape: &'a Shape<D>,
     /// step (2)
     pub nodes: &'a Nodes,
+    /// strips, attached to the nodes
+    pub grips: &'a Grips<D>,
     /// state at t
     pub points: &'a Points<D>,
     /// the other ranks
@@ -66,6 +69,7 @@ impl Found {
             massless_nodes: nodes.massless_nodes,
             first_guess: self.first_guess,
             reactions: scene.model.boundary.reactions(&scene.model.grid, &self.reaction, scene.halo),
+            strips: Vec::new(),
         }
     }
 }
@@ -112,29 +116,29 @@ fn iterate<K: Kinematics<D>, const D: usize>(
     let floor = round_off(scene);
     let mut secants = Secants::new(scene.model.quasi_newton);
     let mut residual = evaluate(scene, &u, counts);
-    if !residual.is_sound() {
+    if !residual.balance.is_sound() {
         return Err(inverted(scene, &residual, 0));
     }
     let mut first_energy = f64::INFINITY;
     let mut energies = Vec::new();
     for iteration in 0..criteria.max_iterations {
-        let force = residual.measure();
+        let force = residual.balance.measure();
         let found = |residual: Residual, u| Found {
             u,
             trial: residual.trial,
-            reaction: residual.reaction,
+            reaction: residual.balance.reaction,
             iterations: iteration,
             force,
             first_guess: true,
         };
-        if residual.norm <= floor || (iteration == 0 && force <= ALREADY * criteria.force) {
+        if residual.balance.norm <= floor || (iteration == 0 && force <= ALREADY * criteria.force) {
             return Ok(found(residual, u));
         }
-        let direction = secants.direction::<D>(&residual.f_oob, scene.halo, solver)?; // (6), (7)
+        let direction = secants.direction::<D>(&residual.balance.f_oob, scene.halo, solver)?; // (6), (7)
         counts.iterations += 1;
         counts.linear_iterations += direction.linear_iterations;
         if iteration == 0 {
-            first_energy = direction.energy;
+            first_energy = predicted_energy(scene, &residual.balance.f_oob, &direction);
         }
         let energy = direction.energy / first_energy;
         energies.push(energy);
@@ -145,7 +149,7 @@ fn iterate<K: Kinematics<D>, const D: usize>(
         secants.took(length);
     }
     let energy = energies.last().copied().unwrap_or(f64::INFINITY);
-    let (iterations, force) = (criteria.max_iterations, residual.measure());
+    let (iterations, force) = (criteria.max_iterations, residual.balance.measure());
     Err(StepError::NotConverged { iterations, energy, force, energies, worst: worst_node(scene, &residual) })
 }
 
@@ -162,7 +166,7 @@ fn advance<K: Kinematics<D>, const D: usize>(
     loop {
         let next: Vec<f64> = u.iter().zip(du).map(|(u, du)| u + length * du).collect();
         let found = evaluate(scene, &next, counts);
-        if found.is_sound() {
+        if found.balance.is_sound() {
             (*u, *residual) = (next, found);
             return Ok(length);
         }
@@ -173,6 +177,17 @@ fn advance<K: Kinematics<D>, const D: usize>(
     }
 }
 
+/// |du_0 . (f_0 - K_strips du_0)|: the energy of the first direction without that of the strips' penalty, which takes up
+/// their motion in it and would make the measure as much too lenient as the penalty is stiff.
+fn predicted_energy<K: Kinematics<D>, const D: usize>(scene: &Scene<'_, K, D>, f: &[f64], first: &Direction) -> f64 {
+    if scene.model.boundary.strips.is_empty() {
+        return first.energy;
+    }
+    let mut penalty = [scene.grips.energy(&first.du)];
+    scene.halo.reduce(&mut penalty);
+    (dots(scene.halo, D, &[(&first.du, f)])[0] - penalty[0]).abs()
+}
+
 fn evaluate<K: Kinematics<D>, const D: usize>(scene: &Scene<'_, K, D>, u: &[f64], counts: &mut Counts) -> Residual {
     counts.evaluations += 1;
     Residual::of(scene, u)
@@ -180,13 +195,14 @@ fn evaluate<K: Kinematics<D>, const D: usize>(scene: &Scene<'_, K, D>, u: &[f64]
 
 fn inverted<K, const D: usize>(scene: &Scene<'_, K, D>, residual: &Residual, iteration: usize) -> StepError {
     let first = residual.first_inverted.map(|p| (scene.points.id[p], scene.points.x[p].as_slice().to_vec()));
-    StepError::Inverted { count: residual.inverted, iteration, first }
+    StepError::Inverted { count: residual.balance.inverted, iteration, first }
 }
 
 /// Where the forces of this rank's own nodes are the least balanced.
 fn worst_node<K, const D: usize>(scene: &Scene<'_, K, D>, residual: &Residual) -> WorstNode {
     let grid = &scene.model.grid;
-    let force = |node: usize| residual.f_oob[node * D..(node + 1) * D].iter().map(|f| f * f).sum::<f64>().sqrt();
+    let force =
+        |node: usize| residual.balance.f_oob[node * D..(node + 1) * D].iter().map(|f| f * f).sum::<f64>().sqrt();
     let Some(worst) = scene.halo.owned().max_by(|&a, &b| force(a).total_cmp(&force(b))) else {
         return WorstNode::default();
     };

@@ -1,6 +1,8 @@
 //! Step (2): what the points tell the nodes: mass, velocity, acceleration, external force, and which are unknowns.
 
 use crate::background::Blocks;
+use crate::boundary::load;
+use crate::error::StepError;
 use crate::grid::{Shape, transfer};
 use crate::kinematics::Kinematics;
 use crate::model::{Model, Regime, Weighting};
@@ -62,14 +64,14 @@ pub struct Nodes {
 }
 
 impl Nodes {
-    /// Maps the points to the nodes for the step from `t` to `t + dt`.
+    /// Maps the points to the nodes for the step from `t` to `t + dt`. Fails if a load has lost its material.
     pub fn map<K: Kinematics<D>, const D: usize>(
         model: &Model<K, D>,
         shape: &Shape<D>,
         points: &Points<D>,
         (t, dt): (f64, f64),
         halo: &dyn Halo,
-    ) -> Self {
+    ) -> Result<Self, StepError> {
         let nodes = model.grid.nodes();
         let weight = scatter_weight(model.weighting, shape, points, nodes, halo);
         let mut heaviest = [weight.iter().copied().fold(0.0, f64::max)];
@@ -82,8 +84,11 @@ impl Nodes {
         let (active, stiff) = supported(shape, points, nodes, halo);
         let unknown = |node: usize| active[node] && (weight[node] > threshold || stiff[node] || background.is_some());
         let free = velocities.iter().enumerate().map(|(c, v)| v.is_none() && unknown(c / D)).collect();
+        let mut f_ext = external_force(model, shape, points, t + dt, &weight, halo);
+        let window = (&model.grid, &active[..]);
+        load::add_forces(&model.boundary.loads, &points.surface, window, t + dt, halo, &mut f_ext)?;
         let mut mapped = Self {
-            f_ext: external_force(model, shape, points, t + dt, &weight, halo),
+            f_ext,
             prescribed: velocities.iter().map(|velocity| velocity.map(|v| v * dt)).collect(),
             inertia,
             free,
@@ -96,7 +101,7 @@ impl Nodes {
             active,
         };
         mapped.count::<D>(halo);
-        mapped
+        Ok(mapped)
     }
 
     /// Nodal average a_I = 1/m_I sum_p N_Ip m_p a_p (Eqs 16, 17); zero at massless nodes.

@@ -1,10 +1,11 @@
 //! Step (6): the elastic stiffness K_0 = 4/dt^2 M + sum_p V0 G^T D^e G at the start of the step, symmetric, with the
-//! soft background. The quasi-Newton method stands for everything that it leaves out.
+//! soft background and the hold of strips. The quasi-Newton method stands for everything that it leaves out.
 
 use crate::error::SolveError;
 use crate::grid::shape::Patch;
 use crate::grid::transfer;
 use crate::kinematics::Kinematics;
+use crate::material::Material;
 use crate::seam::LinearSolver;
 use crate::step::equilibrium::Scene;
 use crate::tensor::{Square, Vector};
@@ -22,15 +23,16 @@ pub fn assemble<K: Kinematics<D>, const D: usize>(
     for (number, patch) in scene.shape.patches().iter().enumerate() {
         block.fill(0.0);
         for run in runs_of_one_material(patch, &scene.points.material) {
-            let elastic = scene.model.materials[usize::from(scene.points.material[run.start])].elastic();
-            accumulate(scene, run, &mut moments);
-            add_elastic::<K, D>(&moments, elastic.lame(), &mut block);
+            let material = &scene.model.materials[usize::from(scene.points.material[run.start])];
+            accumulate(scene, run, material, &mut moments);
+            add_elastic::<K, D>(&moments, material.elastic().lame(), &mut block);
         }
         if let Some(soft) = nodes.background.as_ref().and_then(|background| background.of(number)) {
             add_background::<D>(soft, &mut block);
         }
         solver.add(patch.first_node, &block);
     }
+    scene.grips.assemble(solver);
     if let Some(inertia) = &nodes.inertia {
         let diagonal: Vec<f64> = (0..nodes.free.len()).map(|c| inertia.factor() * nodes.weight[c / D]).collect();
         solver.add_diagonal(&diagonal);
@@ -49,10 +51,11 @@ fn runs_of_one_material(patch: &Patch, material: &[u16]) -> Vec<std::ops::Range<
         .collect()
 }
 
-/// T_ab = sum_p V0 grad N_a (x) grad N_b for a <= b.
+/// T_ab = sum_p V0 grad N_a (x) grad N_b for a <= b, weighted with the stiffness relative to the material's.
 fn accumulate<K: Kinematics<D>, const D: usize>(
     scene: &Scene<'_, K, D>,
     points: std::ops::Range<usize>,
+    material: &Material,
     moments: &mut [Square<D>],
 ) {
     let size = scene.shape.offsets().len();
@@ -60,7 +63,7 @@ fn accumulate<K: Kinematics<D>, const D: usize>(
     moments.fill(Square::zeros());
     for p in points {
         transfer::gradients_of(scene.shape, p, &mut grad);
-        let volume = scene.points.volume[p];
+        let volume = scene.points.volume[p] * material.relative_stiffness(scene.points.height(p));
         for a in 0..size {
             let weighted = grad[a] * volume;
             for (moment, other) in moments[a * size + a..(a + 1) * size].iter_mut().zip(&grad[a..size]) {

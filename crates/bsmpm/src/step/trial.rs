@@ -75,6 +75,6 @@ impl Trial {
             Some(ratio) => K::push_forward(&K::dilate(&self.dF[p], ratio[p]), &points.b_e[p]),
             None => K::push_forward(&self.dF[p], &points.b_e[p]),
         };
-        model.materials[usize::from(points.material[p])].respond(&b_trial)
+        model.respond(points, p, &b_trial)
     }
 }

@@ -105,7 +105,7 @@ fn the_mapping_conserves<K: Kinematics<D>, const D: usize>(order: usize) {
     scene.model.gravity = Some(Gravity { acceleration: Vector::repeat(-9.81), ramp: 0.0 });
     let (points, halo) = (&scene.points, scene.halo());
     let shape = Shape::at(&scene.model.grid, points).unwrap();
-    let nodes = Nodes::map(&scene.model, &shape, points, (0.0, 0.1), &halo);
+    let nodes = Nodes::map(&scene.model, &shape, points, (0.0, 0.1), &halo).expect("no loads");
     let mass: f64 = points.mass.iter().sum();
     let mut worst = [(nodes.weight.iter().sum::<f64>() / mass - 1.0).abs(), 0.0, 0.0];
     let motion = points.motion.as_ref().unwrap();

@@ -1,7 +1,7 @@
 //! Small scenes in any dimension: a grid, elastic bodies of whole cells, points placed n^D per cell.
 
 use super::solver::Skyline;
-use bsmpm::boundary::{Boundary, Support};
+use bsmpm::boundary::{Boundary, Load, Strip, Support};
 use bsmpm::control::{Accepted, Stepper};
 use bsmpm::grid::{Grid, KnotVector};
 use bsmpm::kinematics::Kinematics;
@@ -95,6 +95,20 @@ impl<K: Kinematics<D>, const D: usize> Scene<K, D> {
     /// Adds a support.
     pub fn support(mut self, support: Support<D>) -> Self {
         self.model.boundary.supports.push(support);
+        self
+    }
+
+    /// Adds a rigid strip.
+    pub fn strip(mut self, strip: Strip<D>) -> Self {
+        self.model.boundary.strips.push(strip);
+        self.points.surface = self.model.boundary.surface();
+        self
+    }
+
+    /// Adds a load.
+    pub fn load(mut self, load: Load<D>) -> Self {
+        self.model.boundary.loads.push(load);
+        self.points.surface = self.model.boundary.surface();
         self
     }
 

@@ -6,9 +6,11 @@
 mod bar;
 mod column;
 mod dynamics;
+mod geostatic;
 mod invariance;
 mod locking;
 mod oedometer;
+mod surfaces;
 
 #[path = "../support/mod.rs"]
 mod support;

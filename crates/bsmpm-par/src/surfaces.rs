@@ -1,0 +1,125 @@
+//! Strips and loads of a case as the physics wants them, and the footing's gauges.
+
+use bsmpm::boundary::{Load, Path, Strip, StripReport, SurfacePoint, surface};
+use bsmpm::grid::Grid;
+use bsmpm::tensor::Vector;
+use bsmpm_scene::{Base, Case, Face, Prescribed, Site};
+
+/// Stiffness of the penalty over E/h of the stiffest material and the smallest cell. The traction is carried from step to
+/// step, so that all slips together stay at p/beta: measured on the footing, 1e2 to 1e5 give the same pressure.
+const PENALTY: f64 = 1e3;
+/// Points of a strip in every cell that it crosses.
+const HELD: usize = 4;
+
+/// The penalty beta of all strips of a case, Pa/m.
+pub fn penalty(young: f64, edge: f64) -> f64 {
+    PENALTY * young / edge
+}
+
+/// Rigid strips: the footing first, then the prescribed motions in the order of the file.
+pub fn strips(case: &Case, grid: &Grid<2>, penalty: f64) -> Vec<Strip<2>> {
+    let lower = Vector::from(case.grid.lower());
+    let strip = |from: [f64; 2], to: [f64; 2], path: &bsmpm_scene::Path, base: Base| {
+        let (from, to) = (Vector::from(from) - lower, Vector::from(to) - lower);
+        Strip {
+            points: surface::along(grid, &from, &to, HELD),
+            normal: (base == Base::Smooth).then(|| normal(&from, &to)),
+            path: Path { rows: path.rows.iter().map(|(time, moved)| (*time, Vector::from(*moved))).collect() },
+            penalty,
+        }
+    };
+    let footing = case.footing.iter().map(|footing| strip(footing.from, footing.to, &footing.path, footing.base));
+    let prescribed = case.prescribed.iter().map(|prescribed| {
+        let (from, to) = ends(case, prescribed);
+        strip(from, to, &prescribed.path, prescribed.base)
+    });
+    footing.chain(prescribed).collect()
+}
+
+/// The strip that holds a face of the grid, if any.
+pub fn strip_of_face(case: &Case, face: Face) -> Option<usize> {
+    let found = case.prescribed.iter().position(|prescribed| prescribed.site == Site::Face(face))?;
+    Some(found + usize::from(case.footing.is_some()))
+}
+
+/// Tractions, then point loads.
+pub fn loads(case: &Case, grid: &Grid<2>) -> Vec<Load<2>> {
+    let lower = Vector::from(case.grid.lower());
+    let place = |at: [f64; 2]| Vector::from(at) - lower;
+    let across = case.bodies.iter().map(|body| body.points_per_cell).max().unwrap_or(1);
+    let tractions = case.tractions.iter().map(|traction| Load {
+        points: surface::along(grid, &place(traction.from), &place(traction.to), across),
+        traction: traction.stress.into(),
+        ramp: traction.ramp,
+    });
+    let forces = case.point_loads.iter().map(|load| Load {
+        points: vec![SurfacePoint { x: place(load.at), area: 1.0 }],
+        traction: load.force.into(),
+        ramp: load.ramp,
+    });
+    tractions.chain(forces).collect()
+}
+
+fn ends(case: &Case, prescribed: &Prescribed) -> ([f64; 2], [f64; 2]) {
+    match prescribed.site {
+        Site::Segment { from, to } => (from, to),
+        Site::Face(face) => {
+            let (mut from, mut to) = (case.grid.lower(), case.grid.upper());
+            let at = if face.upper { to[face.axis] } else { from[face.axis] };
+            (from[face.axis], to[face.axis]) = (at, at);
+            (from, to)
+        }
+    }
+}
+
+/// Unit normal of a segment.
+fn normal(from: &Vector<2>, to: &Vector<2>) -> Vector<2> {
+    let along = (to - from).normalize();
+    Vector::<2>::new(-along[1], along[0])
+}
+
+/// What the footing's histories need.
+#[derive(Clone, Debug)]
+pub struct Gauge {
+    path: Path<2>,
+    length: f64,
+    pressing: Vector<2>, // unit normal of the base, towards the material
+    moving: Vector<2>,   // unit direction of the whole motion
+}
+
+impl Gauge {
+    /// The gauge of the case's footing, if there is one.
+    pub fn of(case: &Case) -> Option<Self> {
+        let footing = case.footing.as_ref()?;
+        let rows = footing.path.rows.iter().map(|(time, moved)| (*time, Vector::from(*moved))).collect();
+        let (from, to) = (Vector::from(footing.from), Vector::from(footing.to));
+        let down = Vector::<2>::new(0.0, -1.0);
+        let path = Path { rows };
+        let whole = path.at(case.analysis.end);
+        let moving = whole.try_normalize(0.0).unwrap_or(down);
+        let normal = normal(&from, &to);
+        // A base that only slides along itself presses downwards.
+        let side = if normal.dot(&moving).abs() > 1e-9 { normal.dot(&moving) } else { normal.dot(&down) };
+        Some(Self { length: (to - from).norm(), pressing: normal * side.signum(), moving, path })
+    }
+
+    /// Mean normal pressure on the base, Pa, compression positive.
+    pub fn pressure(&self, report: &StripReport) -> f64 {
+        Vector::<2>::from_column_slice(&report.force).dot(&self.pressing) / self.length
+    }
+
+    /// Force of the soil against the motion, N/m.
+    pub fn force(&self, report: &StripReport) -> f64 {
+        Vector::<2>::from_column_slice(&report.force).dot(&self.moving)
+    }
+
+    /// Downward motion until time `t`, m.
+    pub fn penetration(&self, t: f64) -> f64 {
+        -self.path.at(t)[1]
+    }
+}
+
+/// Largest slip of a step over its motion; 0 where nothing moved.
+pub fn relative_slip(report: &StripReport) -> f64 {
+    if report.motion > 0.0 { report.slip / report.motion } else { 0.0 }
+}

@@ -1,0 +1,74 @@
+//! Tractions and point loads: forces on points of the body's surface that move with the body.
+
+use super::strip::reduce;
+use super::surface::{Attachment, Surface, SurfacePoint};
+use crate::error::StepError;
+use crate::grid::Grid;
+use crate::seam::Halo;
+use crate::tensor::Vector;
+
+/// A load whose force, direction and area are those of the start.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Load<const D: usize> {
+    /// points of the surface at the start; a point load has one, of area 1
+    pub points: Vec<SurfacePoint<D>>,
+    /// Pa (point load: N)  when fully applied
+    pub traction: Vector<D>,
+    /// s (or pseudo-time) over which it grows linearly; 0: at once
+    pub ramp: f64,
+}
+
+/// Nodal forces of all loads at time `t`, N, added to `f_ext`. Fails on all ranks if a load has lost its material.
+pub fn add_forces<const D: usize>(
+    loads: &[Load<D>],
+    surface: &Surface<D>,
+    (grid, active): (&Grid<D>, &[bool]),
+    t: f64,
+    halo: &dyn Halo,
+    f_ext: &mut [f64],
+) -> Result<(), StepError> {
+    if loads.is_empty() {
+        return Ok(());
+    }
+    let (offsets, mut applied, mut force) = (grid.offsets(), vec![0.0; loads.len()], vec![0.0; f_ext.len()]);
+    for (number, load) in loads.iter().enumerate() {
+        let grown = if load.ramp > 0.0 { (t / load.ramp).clamp(0.0, 1.0) } else { 1.0 };
+        for (point, x) in load.points.iter().zip(&surface.position[number]) {
+            if let Some(attachment) = Attachment::at(grid, &offsets, active, x) {
+                attachment.scatter(&offsets, &(load.traction * (grown * point.area)), &mut force);
+                applied[number] += 1.0;
+            }
+        }
+    }
+    halo.reduce(&mut applied);
+    let lost = (0..loads.len()).find(|&number| applied[number] < loads[number].points.len() as f64);
+    if let Some(load) = lost {
+        let points = loads[load].points.len() - applied[load] as usize;
+        return Err(StepError::Unloaded { load, points });
+    }
+    halo.sum(&mut force, D);
+    f_ext.iter_mut().zip(force).for_each(|(sum, force)| *sum += force);
+    Ok(())
+}
+
+/// Positions of all loads' points after the converged displacement `u`, m.
+pub fn moved<const D: usize>(
+    loads: &[Load<D>],
+    surface: &Surface<D>,
+    (grid, active): (&Grid<D>, &[bool]),
+    u: &[f64],
+    halo: &dyn Halo,
+) -> Vec<Vec<Vector<D>>> {
+    if loads.is_empty() {
+        return Vec::new();
+    }
+    let offsets = grid.offsets();
+    let place = |x: &Vector<D>| {
+        let attachment = Attachment::at(grid, &offsets, active, x);
+        attachment.map_or_else(Vector::zeros, |attachment| x + attachment.displacement::<D>(&offsets, u))
+    };
+    let mut position: Vec<Vec<Vector<D>>> =
+        surface.position.iter().map(|points| points.iter().map(place).collect()).collect();
+    reduce(&mut position, halo);
+    position
+}

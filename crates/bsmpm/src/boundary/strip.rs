@@ -1,0 +1,191 @@
+//! Rigid strips (section 3.3): footings, platens and clamps that move on a given path and hold the material at them.
+//!
+//! The paper holds the material by a penalty on boundary points (Cortis et al., 2018), whose slip is lost every step.
+//! Here the traction of the last step is carried on, as a multiplier: p = p(t) + beta (motion - sum N u). What has slipped
+//! in all steps together is then p / beta, so that a moderate penalty does. The hold is bilateral.
+
+use super::surface::{Attachment, Surface, SurfacePoint};
+use crate::grid::Grid;
+use crate::seam::{Halo, LinearSolver};
+use crate::tensor::Vector;
+
+/// A displacement as a function of time, linear between its rows: a cut step follows the same path.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Path<const D: usize> {
+    /// s (or pseudo-time), increasing, and m; it starts at (0, 0) and stays after the last row
+    pub rows: Vec<(f64, Vector<D>)>,
+}
+
+impl<const D: usize> Path<D> {
+    /// Displacement at time `t`, m.
+    pub fn at(&self, t: f64) -> Vector<D> {
+        let next = self.rows.partition_point(|(time, _)| *time < t);
+        let start = (0.0, Vector::zeros());
+        let before = if next == 0 { &start } else { &self.rows[next - 1] };
+        match self.rows.get(next) {
+            Some(after) => before.1 + (after.1 - before.1) * ((t - before.0) / (after.0 - before.0)),
+            None => before.1,
+        }
+    }
+}
+
+/// A rigid strip.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Strip<const D: usize> {
+    /// points along its base
+    pub points: Vec<SurfacePoint<D>>,
+    /// unit normal, if only the normal component is held; `None`: all are
+    pub normal: Option<Vector<D>>,
+    /// its motion
+    pub path: Path<D>,
+    /// Pa/m  penalty beta
+    pub penalty: f64,
+}
+
+/// What a strip did in a step.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct StripReport {
+    /// N  force of the strip on the body, by component
+    pub force: Vec<f64>,
+    /// m  largest distance that the material has slipped from it in the step
+    pub slip: f64,
+    /// m  length of its motion in the step, as far as it is held
+    pub motion: f64,
+    /// points with material at them
+    pub held: usize,
+}
+
+/// The strips' points of this rank in one step.
+#[derive(Clone, Debug)]
+pub struct Grips<const D: usize> {
+    offsets: Vec<usize>,
+    held: Vec<Held<D>>,
+}
+
+#[derive(Clone, Debug)]
+struct Held<const D: usize> {
+    strip: usize,
+    point: usize,
+    attachment: Attachment,
+    area: f64,
+    penalty: f64,
+    normal: Option<Vector<D>>,
+    motion: Vector<D>,
+    carried: Vector<D>,
+}
+
+impl<const D: usize> Held<D> {
+    /// The part of a vector that is held.
+    fn part(&self, vector: Vector<D>) -> Vector<D> {
+        held_part(self.normal.as_ref(), vector)
+    }
+
+    /// m  what the material lags behind the strip.
+    fn slip(&self, offsets: &[usize], u: &[f64]) -> Vector<D> {
+        self.part(self.motion - self.attachment.displacement::<D>(offsets, u))
+    }
+
+    /// Pa  on the body.
+    fn traction(&self, offsets: &[usize], u: &[f64]) -> Vector<D> {
+        self.carried + self.slip(offsets, u) * self.penalty
+    }
+}
+
+fn held_part<const D: usize>(normal: Option<&Vector<D>>, vector: Vector<D>) -> Vector<D> {
+    normal.map_or(vector, |normal| normal * normal.dot(&vector))
+}
+
+impl<const D: usize> Grips<D> {
+    /// Attaches the strips at their places at time `t`, to move until `t + dt`.
+    pub fn at(strips: &[Strip<D>], surface: &Surface<D>, grid: &Grid<D>, active: &[bool], (t, dt): (f64, f64)) -> Self {
+        let (offsets, mut held) = (if strips.is_empty() { Vec::new() } else { grid.offsets() }, Vec::new());
+        for (number, strip) in strips.iter().enumerate() {
+            let (place, motion) = (strip.path.at(t), strip.path.at(t + dt) - strip.path.at(t));
+            for (index, point) in strip.points.iter().enumerate() {
+                let Some(attachment) = Attachment::at(grid, &offsets, active, &(point.x + place)) else { continue };
+                held.push(Held {
+                    strip: number,
+                    point: index,
+                    attachment,
+                    area: point.area,
+                    penalty: strip.penalty,
+                    normal: strip.normal,
+                    motion,
+                    carried: surface.traction[number][index],
+                });
+            }
+        }
+        Self { offsets, held }
+    }
+
+    /// Adds the strips' forces on the body to the nodes; other ranks' parts are not yet in them.
+    pub fn add_forces(&self, u: &[f64], out: &mut [f64]) {
+        for held in &self.held {
+            let force = held.traction(&self.offsets, u) * held.area;
+            held.attachment.scatter(&self.offsets, &force, out);
+        }
+    }
+
+    /// Adds beta A N_a N_b, in the held direction, to the stiffness.
+    pub fn assemble(&self, solver: &mut dyn LinearSolver) {
+        let size = self.offsets.len();
+        for held in &self.held {
+            let mut block = vec![0.0; (size * D).pow(2)];
+            let N = held.attachment.N();
+            let directions: [Vector<D>; D] = std::array::from_fn(|j| {
+                let mut unit = Vector::zeros();
+                unit[j] = held.penalty * held.area;
+                held.part(unit)
+            });
+            for (entry, value) in block.iter_mut().enumerate() {
+                let (row, column) = (entry / (size * D), entry % (size * D));
+                *value = N[row / D] * N[column / D] * directions[column % D][row % D];
+            }
+            solver.add(held.attachment.first_node(), &block);
+        }
+    }
+
+    /// du . K du of the strips' stiffness on this rank, N m.
+    pub fn energy(&self, du: &[f64]) -> f64 {
+        let of = |held: &Held<D>| {
+            let moved = held.part(held.attachment.displacement::<D>(&self.offsets, du));
+            held.penalty * held.area * moved.norm_squared()
+        };
+        self.held.iter().map(of).sum()
+    }
+
+    /// What every strip did under the converged displacement `u`, and the tractions that the next step starts from.
+    pub fn conclude(&self, strips: &[Strip<D>], u: &[f64], halo: &dyn Halo) -> (Vec<StripReport>, Vec<Vec<Vector<D>>>) {
+        if strips.is_empty() {
+            return (Vec::new(), Vec::new());
+        }
+        let mut traction: Vec<Vec<Vector<D>>> = strips.iter().map(|s| vec![Vector::zeros(); s.points.len()]).collect();
+        let (mut held_count, mut longest) = (vec![0.0; strips.len()], vec![0.0; 2 * strips.len()]);
+        for held in &self.held {
+            traction[held.strip][held.point] = held.traction(&self.offsets, u);
+            held_count[held.strip] += 1.0;
+            let (slip, motion) = (held.slip(&self.offsets, u).norm(), held.part(held.motion).norm());
+            for (most, length) in longest[2 * held.strip..].iter_mut().zip([slip, motion]) {
+                *most = f64::max(*most, length);
+            }
+        }
+        halo.maximum(&mut longest);
+        halo.reduce(&mut held_count);
+        reduce(&mut traction, halo);
+        let report = |number: usize| {
+            let shares = strips[number].points.iter().zip(&traction[number]);
+            let force = shares.fold(Vector::<D>::zeros(), |sum, (point, traction)| sum + traction * point.area);
+            let (slip, motion) = (longest[2 * number], longest[2 * number + 1]);
+            StripReport { force: force.as_slice().to_vec(), slip, motion, held: held_count[number] as usize }
+        };
+        ((0..strips.len()).map(report).collect(), traction)
+    }
+}
+
+/// Sums vectors of which each is non-zero on one rank only: exact.
+pub(super) fn reduce<const D: usize>(lists: &mut [Vec<Vector<D>>], halo: &dyn Halo) {
+    let mut flat: Vec<f64> = lists.iter().flatten().flat_map(|vector| vector.iter().copied()).collect();
+    halo.reduce(&mut flat);
+    let summed = flat.chunks_exact(D).map(Vector::from_column_slice);
+    lists.iter_mut().flatten().zip(summed).for_each(|(vector, sum)| *vector = sum);
+}

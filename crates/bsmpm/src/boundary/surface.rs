@@ -1,0 +1,112 @@
+//! Points on the surface of bodies, where rigid strips hold the material and loads act on it.
+//!
+//! They are few and the same on every rank; each is worked on by the rank whose slab it lies in.
+
+use crate::grid::shape::with_width;
+use crate::grid::{Grid, KnotVector};
+use crate::tensor::Vector;
+
+/// Share of a surface point's shape functions that active nodes must have: below it no material is near enough.
+const NEAR: f64 = 0.25;
+
+/// A point of a surface with its share of the area.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SurfacePoint<const D: usize> {
+    /// m  position at the start, from the grid's lower corner
+    pub x: Vector<D>,
+    /// m^(D-1)  share of the area
+    pub area: f64,
+}
+
+/// Points in the middles of `count` equal pieces of every part of a straight segment that the grid's lines cut off; `from`
+/// and `to` in m from the grid's lower corner. With as many pieces as a cell has points across, a load is in exact balance
+/// with uniform stress: the points' quadrature is the same rule.
+pub fn along(grid: &Grid<2>, from: &Vector<2>, to: &Vector<2>, count: usize) -> Vec<SurfacePoint<2>> {
+    let mut cuts = vec![0.0, 1.0];
+    for (axis, knots) in grid.axes().iter().enumerate() {
+        let reach = to[axis] - from[axis];
+        if reach != 0.0 {
+            let cut = |i: usize| (knots.breakpoint(i) - from[axis]) / reach;
+            cuts.extend((0..=knots.cells()).map(cut).filter(|s| *s > 0.0 && *s < 1.0));
+        }
+    }
+    cuts.sort_by(f64::total_cmp);
+    cuts.dedup_by(|b, a| *b - *a < 1e-9);
+    let length = (to - from).norm();
+    let piece = |part: &[f64], k: usize| {
+        let share = (part[1] - part[0]) / count as f64;
+        SurfacePoint { x: from + (to - from) * (part[0] + (k as f64 + 0.5) * share), area: share * length }
+    };
+    cuts.windows(2).flat_map(|part| (0..count).map(move |k| piece(part, k))).collect()
+}
+
+/// What the surfaces carry from step to step; the same on every rank.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Surface<const D: usize> {
+    /// Pa  traction of every strip on the body at its points, in the last converged state
+    pub traction: Vec<Vec<Vector<D>>>,
+    /// m  position of every load's points, which move with the body
+    pub position: Vec<Vec<Vector<D>>>,
+}
+
+/// A surface point as the active nodes of its cell see it.
+#[derive(Clone, Debug)]
+pub struct Attachment {
+    first_node: usize,
+    N: Vec<f64>, // of the cell's (q+1)^D nodes, zero at those without material, sum 1
+}
+
+impl Attachment {
+    /// The point at `x`; `None` where another rank has its cell, or no material is near.
+    pub fn at<const D: usize>(grid: &Grid<D>, offsets: &[usize], active: &[bool], x: &Vector<D>) -> Option<Self> {
+        let cell = grid.locate(x).filter(|cell| grid.columns().contains(&cell[0]))?;
+        let first_node = grid.first_node(&cell);
+        let rows: Vec<Vec<f64>> = (0..D).map(|axis| values(&grid.axes()[axis], x[axis], cell[axis])).collect();
+        let width = grid.order() + 1;
+        let along = |k: usize, axis: usize| k / width.pow((D - 1 - axis) as u32) % width;
+        let product = |k: usize| (0..D).map(|axis| rows[axis][along(k, axis)]).product::<f64>();
+        let seen = |(k, offset): (usize, &usize)| if active[first_node + offset] { product(k) } else { 0.0 };
+        let mut N: Vec<f64> = offsets.iter().enumerate().map(seen).collect();
+        let sum: f64 = N.iter().sum();
+        if sum < NEAR {
+            return None;
+        }
+        N.iter_mut().for_each(|value| *value /= sum);
+        Some(Self { first_node, N })
+    }
+
+    /// First node of the cell, from which the grid's offsets count.
+    pub fn first_node(&self) -> usize {
+        self.first_node
+    }
+
+    /// N_I of the cell's nodes.
+    pub fn N(&self) -> &[f64] {
+        &self.N
+    }
+
+    /// sum_I N_I u_I, m.
+    pub fn displacement<const D: usize>(&self, offsets: &[usize], u: &[f64]) -> Vector<D> {
+        let mut sum = Vector::zeros();
+        for (N, offset) in self.N.iter().zip(offsets) {
+            for component in 0..D {
+                sum[component] += N * u[(self.first_node + offset) * D + component];
+            }
+        }
+        sum
+    }
+
+    /// out_I += N_I force.
+    pub fn scatter<const D: usize>(&self, offsets: &[usize], force: &Vector<D>, out: &mut [f64]) {
+        for (N, offset) in self.N.iter().zip(offsets) {
+            for component in 0..D {
+                out[(self.first_node + offset) * D + component] += N * force[component];
+            }
+        }
+    }
+}
+
+/// Values of the functions of a cell of one axis.
+fn values(axis: &KnotVector, x: f64, cell: usize) -> Vec<f64> {
+    with_width!(axis.order() + 1, W => axis.basis::<W>(x, cell).0.to_vec())
+}

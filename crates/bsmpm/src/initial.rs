@@ -1,0 +1,154 @@
+//! Stress at the start (a geostatic state), on the geometry as it is given: nothing has moved, displacements count from
+//! there. The elastic strain that belongs to the stress is put into b^e; F stays the identity.
+
+use crate::boundary::strip::Grips;
+use crate::error::StepError;
+use crate::grid::{Shape, transfer};
+use crate::kinematics::Kinematics;
+use crate::material::{Elastic, Region};
+use crate::model::{Model, Regime};
+use crate::points::Points;
+use crate::seam::{Halo, LinearSolver, agreed};
+use crate::step::equilibrium::Scene;
+use crate::step::nodes::Nodes;
+use crate::step::residual::{Balance, Residual};
+use crate::step::stiffness;
+use crate::tensor::{Symmetric, Tensor, Vector};
+
+/// Corrections of the elastic state: the stiffness holds the soft background too, which carries nothing in the end.
+const CORRECTIONS: usize = 20;
+/// Relative out-of-balance force of the elastic state that is left.
+const BALANCED: f64 = 1e-12;
+
+/// How well the state at the start is in equilibrium.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Equilibrium {
+    /// |f_oob| / max(|f_ext|, |f_int|, |reaction|)
+    pub force: f64,
+    /// points whose stress lies outside the yield surface, over all ranks
+    pub yielding: u64,
+}
+
+/// Gives every point the Cauchy stress `sigma(material, x)`, Pa; x in m from the grid's lower corner.
+pub fn set_stress<K: Kinematics<D>, const D: usize>(
+    model: &Model<K, D>,
+    points: &mut Points<D>,
+    sigma: impl Fn(u16, &Vector<D>) -> Symmetric,
+) {
+    for p in 0..points.len() {
+        let stress = sigma(points.material[p], &points.x[p]);
+        let strain = strain_of(&elastic_at(model, points, p), &stress);
+        set(points, p, stress, &strain);
+    }
+}
+
+/// Gives every point the stress of linear elastic equilibrium under the loads at time 0. Fails if the system cannot be
+/// solved, or a load has no material.
+pub fn set_elastic<K: Kinematics<D>, const D: usize>(
+    model: &Model<K, D>,
+    points: &mut Points<D>,
+    (halo, solver): (&dyn Halo, &mut dyn LinearSolver),
+) -> Result<(), StepError> {
+    let model = &Model { regime: Regime::QuasiStatic, ..model.clone() };
+    let start = Start::of(model, points, halo)?;
+    let scene = start.scene(model, points, halo);
+    stiffness::assemble(&scene, solver)?;
+    let mut u = vec![0.0; model.grid.nodes() * D];
+    let mut du = u.clone();
+    let mut strains = vec![Symmetric::default(); points.len()];
+    for _ in 0..CORRECTIONS {
+        let residual = elastic_residual(&scene, &strains, &u);
+        if residual.measure() <= BALANCED {
+            break;
+        }
+        solver.solve(&residual.f_oob, &mut du)?;
+        u.iter_mut().zip(&du).for_each(|(u, du)| *u += du);
+        transfer::gradients(&start.shape, &u, |p, grad| strains[p] = Symmetric::of(&K::gradient(&grad)));
+    }
+    let (_, traction) = start.grips.conclude(&model.boundary.strips, &u, halo);
+    points.surface.traction = traction;
+    for (p, strain) in strains.iter().enumerate() {
+        let sigma = stress_of(&elastic_at(model, points, p), strain);
+        set(points, p, sigma, strain);
+    }
+    Ok(())
+}
+
+/// Equilibrium of the points as they are, under the loads at time 0.
+pub fn balance<K: Kinematics<D>, const D: usize>(
+    model: &Model<K, D>,
+    points: &Points<D>,
+    halo: &dyn Halo,
+) -> Result<Equilibrium, StepError> {
+    let model = &Model { regime: Regime::QuasiStatic, ..model.clone() };
+    let start = Start::of(model, points, halo)?;
+    let residual = Residual::of(&start.scene(model, points, halo), &vec![0.0; model.grid.nodes() * D]);
+    let yields = |p: &usize| model.respond(points, *p, &points.b_e[*p]).is_ok_and(|r| r.region() != Region::Elastic);
+    let mut yielding = [(0..points.len()).filter(yields).count() as f64];
+    halo.reduce(&mut yielding);
+    Ok(Equilibrium { force: residual.balance.measure(), yielding: yielding[0] as u64 })
+}
+
+/// Steps (1) and (2) at time 0, without motion.
+struct Start<const D: usize> {
+    shape: Shape<D>,
+    nodes: Nodes,
+    grips: Grips<D>,
+}
+
+impl<const D: usize> Start<D> {
+    fn of<K: Kinematics<D>>(model: &Model<K, D>, points: &Points<D>, halo: &dyn Halo) -> Result<Self, StepError> {
+        let shape = agreed(halo, Shape::at(&model.grid, points), StepError::OtherRank)?;
+        let nodes = Nodes::map(model, &shape, points, (0.0, 0.0), halo)?;
+        let grips = Grips::at(&model.boundary.strips, &points.surface, &model.grid, &nodes.active, (0.0, 0.0));
+        Ok(Self { shape, nodes, grips })
+    }
+
+    fn scene<'a, K>(&'a self, model: &'a Model<K, D>, points: &'a Points<D>, halo: &'a dyn Halo) -> Scene<'a, K, D> {
+        Scene { model, shape: &self.shape, nodes: &self.nodes, grips: &self.grips, points, halo }
+    }
+}
+
+/// Out-of-balance force of linear elastic stress on the undeformed geometry.
+fn elastic_residual<K: Kinematics<D>, const D: usize>(
+    scene: &Scene<'_, K, D>,
+    strains: &[Symmetric],
+    u: &[f64],
+) -> Balance {
+    let mut f_int = vec![0.0; u.len()];
+    transfer::divergence(scene.shape, &mut f_int, |p| {
+        let tau = stress_of(&elastic_at(scene.model, scene.points, p), &strains[p]);
+        K::flux(&tau, &Tensor::identity()) * scene.points.volume[p]
+    });
+    scene.halo.sum(&mut f_int, D);
+    Balance::of(scene, u, &f_int, 0)
+}
+
+fn elastic_at<K: Kinematics<D>, const D: usize>(model: &Model<K, D>, points: &Points<D>, p: usize) -> Elastic {
+    model.materials[usize::from(points.material[p])].at(points.height(p)).elastic().clone()
+}
+
+/// D eps: lambda tr(eps) I + 2 mu eps, Pa.
+fn stress_of(elastic: &Elastic, strain: &Symmetric) -> Symmetric {
+    let (lambda, mu) = elastic.lame();
+    let [xx, yy, zz, ..] = strain.0;
+    let mut stress = strain.scaled(2.0 * mu);
+    stress.0[..3].iter_mut().for_each(|normal| *normal += lambda * (xx + yy + zz));
+    stress
+}
+
+/// D^-1 sigma: (1 + nu)/E sigma - nu/E tr(sigma) I.
+fn strain_of(elastic: &Elastic, stress: &Symmetric) -> Symmetric {
+    let [xx, yy, zz, ..] = stress.0;
+    let mut strain = stress.scaled((1.0 + elastic.poisson) / elastic.young);
+    strain.0[..3].iter_mut().for_each(|normal| *normal -= elastic.poisson / elastic.young * (xx + yy + zz));
+    strain
+}
+
+/// sigma and b^e = exp(2 eps) of a point.
+fn set<const D: usize>(points: &mut Points<D>, p: usize, sigma: Symmetric, strain: &Symmetric) {
+    let spectrum = strain.full().symmetric_eigen();
+    let stretches = Tensor::from_diagonal(&spectrum.eigenvalues.map(|eps| (2.0 * eps).exp()));
+    points.b_e[p] = Symmetric::of(&(spectrum.eigenvectors * stretches * spectrum.eigenvectors.transpose()));
+    points.sigma[p] = sigma;
+}

@@ -1,0 +1,109 @@
+//! Stress at the start: equilibrium where it must hold, displacements that count from there, layers that grow with depth.
+
+use crate::support::scene::{Scene, axis, hencky};
+use crate::support::solver::Skyline;
+use bsmpm::initial;
+use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
+use bsmpm::material::{Graded, GradedStrength, Material, Profile, Region};
+use bsmpm::model::Regime;
+use bsmpm::stabilisation::Stabilisation;
+use bsmpm::tensor::Symmetric;
+
+/// A block of 3 x 4 cells of 1 m with gravity, an empty row above.
+fn ground<K: Kinematics<D>, const D: usize>(material: Material) -> Scene<K, D> {
+    let count = |k: usize| if k + 1 == D { 5 } else { 3 };
+    let filled = std::array::from_fn(|k| 0..if k + 1 == D { 4 } else { 3 });
+    let mut scene = Scene::<K, D>::new(std::array::from_fn(|k| axis(1.0, count(k), 2)), material, Regime::QuasiStatic)
+        .body(filled, 3, 2.0, |x| x * 0.0)
+        .rollers(0..D)
+        .gravity(10.0, 0.0);
+    scene.model.boundary.supports.retain(|support| !(support.axis + 1 == D && support.upper));
+    scene
+}
+
+fn elastic_start<K: Kinematics<D>, const D: usize>(method: Stabilisation) {
+    let mut scene = ground::<K, D>(hencky(1e4, 0.3)).stabilised(method);
+    let halo = scene.halo();
+    let mut solver = Skyline::new(&scene.model.grid);
+    let before = scene.points.clone();
+    initial::set_elastic(&scene.model, &mut scene.points, (&halo, &mut solver)).expect("an elastic state");
+    let found = initial::balance(&scene.model, &scene.points, &halo).expect("forces");
+    assert_eq!((&scene.points.x, &scene.points.F), (&before.x, &before.F));
+    let stress = |p: usize| scene.points.sigma[p].0[D - 1] + 20.0 * (4.0 - scene.points.x[p][D - 1]);
+    let off = (0..scene.points.len()).map(|p| stress(p).abs()).fold(0.0, f64::max);
+    let (after, steps) = scene.clone().solved(1.0, 1.0);
+    let moved = after.points.u.iter().map(|u| u.norm()).fold(0.0, f64::max);
+    println!("{D}-D {method:?}: unbalance {:.1e}, stress off by {off:.1e} of 80, moved {moved:.1e} m", found.force);
+    assert!(found.force <= 1e-8 && found.yielding == 0 && off <= 3.0);
+    assert!(moved <= 1e-7 && steps.len() == 1);
+}
+
+#[test]
+fn elastic_gravity_is_in_equilibrium_on_the_drawn_geometry() {
+    elastic_start::<PlaneStrain, 2>(Stabilisation::None);
+    elastic_start::<PlaneStrain, 2>(Stabilisation::FBar);
+    elastic_start::<Solid, 3>(Stabilisation::None);
+}
+
+#[test]
+fn earth_pressure_at_rest_gives_back_its_stress_and_is_nearly_balanced() {
+    let mut scene = ground::<PlaneStrain, 2>(hencky(1e4, 0.3));
+    let at_rest = |y: f64| Symmetric([-10.0 * (4.0 - y), -20.0 * (4.0 - y), -10.0 * (4.0 - y), 0.0, 0.0, 0.0]);
+    initial::set_stress(&scene.model, &mut scene.points, |_, x| at_rest(x[1]));
+    let found = initial::balance(&scene.model, &scene.points, &scene.halo()).expect("forces");
+    for p in 0..scene.points.len() {
+        let tau = scene.model.respond(&scene.points, p, &scene.points.b_e[p]).expect("a response").tau();
+        let off = tau.0.iter().zip(scene.points.sigma[p].0).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(off <= 1e-10, "{off}");
+    }
+    println!("unbalance {:.1e}", found.force);
+    assert!(found.force <= 2e-2); // the points' quadrature of linear stress
+}
+
+#[test]
+fn a_state_beyond_yield_is_counted() {
+    let law = bsmpm::material::MohrCoulomb::new(bsmpm::material::Elastic { young: 1e4, poisson: 0.3 }, 0.5, 0.0, 0.0);
+    let mut scene = ground::<PlaneStrain, 2>(Material::MohrCoulomb(law));
+    initial::set_stress(&scene.model, &mut scene.points, |_, x| {
+        let deep = if x[1] < 2.0 { 0.1 } else { 0.5 };
+        Symmetric([-deep, -1.0, -deep, 0.0, 0.0, 0.0]).scaled(20.0 * (4.0 - x[1]))
+    });
+    let found = initial::balance(&scene.model, &scene.points, &scene.halo()).expect("forces");
+    assert_eq!(found.yielding, scene.points.len() as u64 / 2);
+}
+
+#[test]
+fn a_modulus_that_grows_with_depth_settles_by_the_integral() {
+    // E = e (1 + k z), z the depth: settlement of the surface = int_0^H gamma z / M(z) dz at small strain.
+    let (e, k, height) = (1e8, 0.5, 4.0);
+    let young = Profile { value: e, at: height, per_metre: k * e };
+    let scene = ground::<PlaneStrain, 2>(Material::Graded(Graded::new(young, 0.3, None, 0.0..height)));
+    let oedometric = hencky(1.0, 0.3).elastic().oedometric();
+    let exact = 20.0 / (e * oedometric) * (height / k - (1.0 + k * height).ln() / (k * k));
+    let (scene, steps) = scene.solved(1.0, 1.0);
+    let top = (0..scene.points.len()).max_by(|&a, &b| scene.points.x[a][1].total_cmp(&scene.points.x[b][1])).unwrap();
+    let found = -scene.points.u[top][1];
+    println!("settled {:.4} of the exact, {} iterations", found / exact, steps[0].report.iterations);
+    assert!((found / exact - 1.0).abs() <= 0.02);
+    assert!(steps[0].report.iterations <= 3, "the stiffness knows the profile");
+}
+
+#[test]
+fn strength_follows_the_height_at_which_a_point_was_placed() {
+    let strength = GradedStrength {
+        friction: Profile::constant(0.0),
+        dilation: 0.0,
+        cohesion: Profile { value: 10.0, at: 4.0, per_metre: 5.0 },
+        reduction: 2.0,
+    };
+    let law = Graded::new(Profile::constant(1e5), 0.3, Some(strength), 0.0..4.0);
+    let scene = ground::<PlaneStrain, 2>(Material::Graded(law));
+    let sheared = Symmetric([1.1, 0.9, 1.0, 0.0, 0.0, 0.0]);
+    for p in 0..scene.points.len() {
+        let response = scene.model.respond(&scene.points, p, &sheared).expect("a response");
+        let [first, _, third] = response.principal_tau();
+        let cohesion = (10.0 + 5.0 * (4.0 - scene.points.x[p][1])) / 2.0;
+        assert_ne!(response.region(), Region::Elastic);
+        assert!(((first - third) / 2.0 - cohesion).abs() <= 1e-10 * cohesion);
+    }
+}
