@@ -195,7 +195,10 @@ fn smoothing(case: &Case, steps: u64) -> Option<(f64, f64)> {
     }
     let longest = |axis: &Axis| (0..axis.cells()).map(|i| axis.cell(i)).fold(0.0, f64::max);
     let h = case.grid.axes.iter().map(longest).fold(0.0, f64::max);
-    let edges = case.bodies.iter().flat_map(|body| [0, 1].map(|axis| body.upper[axis] - body.lower[axis]));
+    let edges = case.bodies.iter().flat_map(|body| {
+        let [lower, upper] = body.bounds();
+        [0, 1].map(|axis| upper[axis] - lower[axis])
+    });
     let length = (steps as f64 * (case.grid.order as f64 + 1.0) / 6.0).sqrt() * h;
     Some((length, edges.fold(f64::INFINITY, f64::min)))
 }

@@ -7,7 +7,7 @@ use bsmpm_scene::{Base, Case, Face, Prescribed, Site};
 
 /// Stiffness of the penalty over E/h of the stiffest material and the smallest cell. The traction is carried from step to
 /// step, so that all slips together stay at p/beta: measured on the footing, 1e2 to 1e5 give the same pressure.
-const PENALTY: f64 = 1e3;
+const PENALTY: f64 = 1e4;
 /// Points of a strip in every cell that it crosses.
 const HELD: usize = 4;
 

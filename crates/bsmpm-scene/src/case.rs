@@ -9,6 +9,7 @@ pub use loads::{Base, Footing, Initial, Path, PointLoad, Prescribed, Site, Tract
 use crate::document;
 use crate::error::Error;
 use crate::grid::GridSpec;
+use crate::region::Region;
 use crate::report::Report;
 use crate::source::{Source, decode};
 use crate::{overrides, record, validate};
@@ -130,19 +131,41 @@ pub struct NamedMaterial {
     pub density: Option<f64>,
 }
 
-/// A rectangular body of material points.
+/// A body of material points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Body {
     /// Number of its material.
     pub material: usize,
-    /// m  lower corner, in the case's coordinates
-    pub lower: [f64; 2],
-    /// m  upper corner
-    pub upper: [f64; 2],
+    /// What it fills.
+    pub region: Region,
     /// Points along each axis of a cell.
     pub points_per_cell: usize,
     /// m/s  at the start; `None`: at rest
     pub velocity: Option<[f64; 2]>,
+}
+
+impl Body {
+    /// Lower and upper corner of the smallest rectangle around it, m, in the case's coordinates; around the whole shape
+    /// where something is cut out.
+    pub fn bounds(&self) -> [[f64; 2]; 2] {
+        self.region.bounds()
+    }
+
+    /// Area, m².
+    pub fn area(&self) -> f64 {
+        self.region.area()
+    }
+}
+
+impl Case {
+    /// Weight of all bodies vertically above `at` (m, in the case's coordinates) under the full gravity, Pa:
+    /// `Σ ρ |g_y| l`, l the length of the vertical ray inside a body. What lies beside each other is counted once: a
+    /// body's left side belongs to it, its right side does not.
+    pub fn overburden(&self, at: [f64; 2]) -> f64 {
+        let Some(gravity) = &self.gravity else { return 0.0 };
+        let above = |body: &Body| self.materials[body.material].density.map_or(0.0, |rho| rho * body.region.above(at));
+        gravity.acceleration[1].abs() * self.bodies.iter().map(above).sum::<f64>()
+    }
 }
 
 /// Body force per mass.

@@ -91,10 +91,12 @@ pub(crate) fn nodes(grid: &GridSpec) -> u128 {
     grid.axes.iter().map(|axis| (axis.cells() + grid.order) as u128).product()
 }
 
-/// Nodes that the bodies' cells touch at the start.
+/// Nodes that the bodies' cells touch at the start: exact for boxes, and for shapes without holes or bays.
 fn occupied_nodes(case: &Case) -> u128 {
+    let order = case.grid.order as u128;
     let of_body = |body: &crate::case::Body| -> u128 {
-        body.extents(&case.grid).iter().map(|extent| (extent.cells.len() + case.grid.order) as u128).product()
+        let [columns, rows] = body.occupied(&case.grid).map(|cells| cells.len() as u128);
+        body.cells(&case.grid) + order * (columns + rows + order)
     };
     case.bodies.iter().map(of_body).sum()
 }

@@ -3,7 +3,8 @@
 //! The way of a case: bytes ([`load`]) -> the document as written, with every value's place -> overrides
 //! (`--set KEY=VALUE`) -> the document held against the [`schema`]: names, types, units, ranges -> the rules between
 //! keys -> [`Case`]. All errors of a file are reported at once; nothing is used differently from how it was written.
-//! This crate knows no MPI, writes nothing and allocates nothing in proportion to a number that a case gives.
+//! This crate knows no MPI, writes nothing and allocates nothing in proportion to a number that a case gives, but for a
+//! bounded count per column of cells of a body that is no box.
 #![forbid(unsafe_code)]
 
 pub mod schema;
@@ -17,6 +18,7 @@ mod grid;
 mod nearest;
 mod overrides;
 mod record;
+mod region;
 mod report;
 mod seed;
 mod source;
@@ -26,11 +28,13 @@ pub use bsmpm::background::Extent;
 pub use bsmpm::model::Regime;
 pub use bsmpm::points::Seed;
 pub use case::{
-    Analysis, Base, Body, Case, Check, Choice, Column, Every, Face, Footing, Format, Geometry, Gravity, History, Initial,
-    Linear, NamedMaterial, Nonlinear, Output, Path, PointLoad, Prescribed, Quantity, Site, Solver, Support, Traction,
+    Analysis, Base, Body, Case, Check, Choice, Column, Every, Face, Footing, Format, Geometry, Gravity, History,
+    Initial, Linear, NamedMaterial, Nonlinear, Output, Path, PointLoad, Prescribed, Quantity, Site, Solver, Support,
+    Traction,
 };
 pub use error::{Error, Place};
 pub use estimate::Estimate;
 pub use grid::{Axis, GridSpec};
+pub use region::{Outline, Region};
 pub use seed::seed;
 pub use source::{MAX_BYTES, load};

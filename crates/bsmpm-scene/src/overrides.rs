@@ -5,7 +5,7 @@ use crate::report::{Report, shortened};
 use crate::schema::{Kind, ROOT, Table as Schema};
 
 /// Parts of a key path at most; no key lies deeper.
-const DEEPEST: usize = 6;
+const DEEPEST: usize = 7;
 
 /// Merges the overrides into the document in their order; a later one wins.
 pub(crate) fn apply(document: &mut Table, overrides: &[String], report: &mut Report<'_>) {
@@ -50,8 +50,8 @@ struct Setting<'a> {
 impl Setting<'_> {
     fn in_table(&mut self, table: &mut Table, schema: Option<&'static Schema>, depth: usize) -> Result<(), String> {
         let name = self.parts[depth];
-        if let Some(group) = schema.and_then(|schema| schema.group(name)) {
-            table.entries.retain(|entry| entry.key == name || !group.keys.contains(&entry.key.as_str()));
+        if let Some(schema) = schema {
+            table.entries.retain(|entry| schema.rivals(name).all(|rival| rival != entry.key));
         }
         let kind = schema.and_then(|schema| schema.key(name)).map(|key| &key.kind);
         if depth + 1 == self.parts.len() {

@@ -31,6 +31,7 @@ pub(crate) enum Datum {
     /// the dimension is that of its unit, if it has one
     Measure(f64, Option<Dimension>),
     Numbers(Vec<f64>),
+    Rows(Vec<Row>),
     Count(u64),
     Word(&'static str),
     Text(String),
@@ -38,6 +39,13 @@ pub(crate) enum Datum {
     Record(Record),
     Named(Vec<(String, Record)>),
     Records(Vec<Record>),
+}
+
+/// A row of numbers and its place.
+#[derive(Clone, Debug)]
+pub(crate) struct Row {
+    pub(crate) origin: Origin,
+    pub(crate) numbers: Vec<f64>,
 }
 
 /// What the types of values depend on besides the schema.
@@ -114,7 +122,7 @@ impl Context {
 
     fn datum(self, kind: &Kind, node: &Node, path: &str, report: &mut Report<'_>) -> Option<Datum> {
         match (kind, &node.value) {
-            (Kind::Table(table), Value::Table(written)) => {
+            (Kind::Table(table) | Kind::Profile(.., table), Value::Table(written)) => {
                 Some(Datum::Record(self.record(table, written, node.origin, path, report)))
             }
             (Kind::Named(table), Value::Table(written)) => Some(self.named(table, written, path, report)),
@@ -247,6 +255,10 @@ impl Record {
 
     pub(crate) fn numbers(&self, key: &str) -> Option<&[f64]> {
         if let Datum::Numbers(numbers) = self.datum(key)? { Some(numbers) } else { None }
+    }
+
+    pub(crate) fn rows(&self, key: &str) -> Option<&[Row]> {
+        if let Datum::Rows(rows) = self.datum(key)? { Some(rows) } else { None }
     }
 
     pub(crate) fn pair(&self, key: &str) -> Option<[f64; 2]> {

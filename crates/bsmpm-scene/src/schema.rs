@@ -2,9 +2,12 @@
 //!
 //! The reader takes names, types, units, ranges and defaults from here; messages and `did you mean` do too.
 
+mod body;
+mod loads;
 mod tables;
 
 pub use crate::unit::Dimension;
+pub(crate) use tables::BELOW_90;
 pub use tables::ROOT;
 
 use std::fmt;
@@ -63,8 +66,10 @@ pub enum Presence {
 pub enum Kind {
     /// A number in SI (degrees for angles), or a string with a unit.
     Quantity(Dimension, Range),
-    /// Like `Quantity`; a table `{ value, at_y, per_metre }` is not available yet.
-    Profile(Dimension, Range),
+    /// Like `Quantity`, or a table that says how it grows with depth; the range holds wherever there are bodies.
+    Profile(Dimension, Range, &'static Table),
+    /// Growth of a quantity per metre: a number in SI per metre (degrees per metre), or a string such as `"2 kPa/m"`.
+    Gradient(Dimension),
     /// A number, or a string with a unit of whatever the key is about.
     Measure,
     /// Two quantities, x and y.
@@ -73,6 +78,8 @@ pub enum Kind {
     Either(Dimension, Range),
     /// Any number of quantities.
     List(Dimension, Range),
+    /// Any number of rows, each a list of quantities.
+    Rows(&'static [(Dimension, Range)]),
     /// A whole number within bounds, both included.
     Count(u64, u64),
     /// One of several words; the second list is not available yet.
@@ -152,9 +159,10 @@ impl Table {
         self.keys.iter().find(|key| key.name == name)
     }
 
-    /// The group of exclusive keys that `name` belongs to.
-    pub fn group(&self, name: &str) -> Option<&'static Group> {
-        self.exclusive.iter().find(|group| group.keys.contains(&name))
+    /// Keys of which none may be given beside `name`.
+    pub fn rivals(&self, name: &str) -> impl Iterator<Item = &'static str> {
+        let groups = self.exclusive.iter().filter(move |group| group.keys.contains(&name));
+        groups.flat_map(|group| group.keys).copied().filter(move |key| *key != name)
     }
 
     /// This table and all below it, outer ones first.
@@ -168,7 +176,7 @@ impl Kind {
     /// The table that the value is, or is made of.
     pub fn table(&self) -> Option<&'static Table> {
         match self {
-            Self::Table(table) | Self::Named(table) | Self::Tables(table) => Some(table),
+            Self::Table(table) | Self::Named(table) | Self::Tables(table) | Self::Profile(.., table) => Some(table),
             _ => None,
         }
     }
@@ -177,7 +185,16 @@ impl Kind {
 impl fmt::Display for Kind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Quantity(dimension, _) | Self::Profile(dimension, _) => write!(f, "{}", Quantity(*dimension)),
+            Self::Quantity(dimension, _) => write!(f, "{}", Quantity(*dimension)),
+            Self::Profile(dimension, _, table) => write!(f, "{}, or {}", Quantity(*dimension), table.header),
+            Self::Gradient(dimension) => {
+                let units: Vec<String> = dimension.units().map(|unit| format!("{unit}/m")).collect();
+                write!(f, "a number ({}) or a string with a unit ({})", units[0], units.join(", "))
+            }
+            Self::Rows(columns) => {
+                let columns: Vec<String> = columns.iter().map(|(dimension, _)| dimension.to_string()).collect();
+                write!(f, "a list of rows, each [{}]", columns.join(", "))
+            }
             Self::Measure => f.write_str("a number, or a string with a unit"),
             Self::Pair(dimension, _) => write!(f, "a list of two, each {}", Quantity(*dimension)),
             Self::Either(dimension, _) => write!(f, "{}, or a list of two", Quantity(*dimension)),

@@ -1,7 +1,9 @@
-//! Bodies to material points: a regular lattice in the part of every cell that a body covers.
+//! Bodies to material points: a regular lattice in the part of every cell that a box covers, or in the cells themselves
+//! where another shape cuts them.
 
 use crate::case::{Body, Case};
 use crate::grid::{Axis, GridSpec};
+use crate::region::{self, Outline, Part, Place, Region};
 use bsmpm::points::Seed;
 use bsmpm::tensor::Vector;
 use std::ops::Range;
@@ -9,14 +11,14 @@ use std::ops::Range;
 /// Parts of a cell's edge below which a body is not taken to reach into it.
 const SLIVER: f64 = 1e-9;
 
-/// The part of one axis that a body covers.
+/// The part of one axis that a box covers.
 #[derive(Clone, Debug)]
-pub(crate) struct Extent<'a> {
+struct Extent<'a> {
     axis: &'a Axis,
-    /// m  ends of the body, from the grid's lower corner
+    /// m  ends of the box, from the grid's lower corner
     ends: [f64; 2],
     /// cells that it reaches into
-    pub(crate) cells: Range<usize>,
+    cells: Range<usize>,
 }
 
 impl<'a> Extent<'a> {
@@ -36,15 +38,34 @@ impl<'a> Extent<'a> {
 }
 
 impl Body {
-    /// Cells that the body reaches into, per axis.
-    pub(crate) fn extents<'a>(&self, grid: &'a GridSpec) -> [Extent<'a>; 2] {
-        [0, 1].map(|axis| Extent::new(&grid.axes[axis], self.lower[axis], self.upper[axis]))
+    /// Cells that the body reaches into, per axis, if it is a box.
+    fn extents<'a>(&self, grid: &'a GridSpec) -> Option<[Extent<'a>; 2]> {
+        let Region::Box { lower, upper } = &self.region else { return None };
+        Some([0, 1].map(|axis| Extent::new(&grid.axes[axis], lower[axis], upper[axis])))
+    }
+
+    /// Cells between the first and the last one along each axis that hold its points.
+    pub(crate) fn occupied(&self, grid: &GridSpec) -> [Range<usize>; 2] {
+        match &self.region {
+            Region::Outline(outline) => outline.tally().occupied.clone(),
+            Region::Box { .. } => self.extents(grid).map_or([0..0, 0..0], |extents| extents.map(|extent| extent.cells)),
+        }
+    }
+
+    /// Number of cells that hold its points.
+    pub(crate) fn cells(&self, grid: &GridSpec) -> u128 {
+        match &self.region {
+            Region::Outline(outline) => outline.tally().cells.into(),
+            Region::Box { .. } => self.occupied(grid).iter().map(|cells| cells.len() as u128).product(),
+        }
     }
 
     /// Number of its points; cannot overflow.
     pub(crate) fn points(&self, grid: &GridSpec) -> u128 {
-        let cells = self.extents(grid).map(|extent| extent.cells.len() as u128);
-        cells[0] * cells[1] * (self.points_per_cell as u128).pow(2)
+        match &self.region {
+            Region::Outline(outline) => outline.tally().before.last().copied().unwrap_or(0).into(),
+            Region::Box { .. } => self.cells(grid) * (self.points_per_cell as u128).pow(2),
+        }
     }
 }
 
@@ -58,9 +79,17 @@ impl Case {
     pub fn points_by_column(&self) -> Vec<u64> {
         let mut counts = vec![0; self.grid.axes[0].cells()];
         for body in &self.bodies {
-            let [across, up] = body.extents(&self.grid);
-            let in_column = (up.cells.len() * body.points_per_cell * body.points_per_cell) as u64;
-            counts[across.cells].iter_mut().for_each(|count| *count += in_column);
+            let [across, up] = body.occupied(&self.grid);
+            match &body.region {
+                Region::Box { .. } => {
+                    let in_column = (up.len() * body.points_per_cell * body.points_per_cell) as u64;
+                    counts[across].iter_mut().for_each(|count| *count += in_column);
+                }
+                Region::Outline(outline) => {
+                    let before = outline.tally().before.windows(2);
+                    counts[across].iter_mut().zip(before).for_each(|(count, pair)| *count += pair[1] - pair[0]);
+                }
+            }
         }
         counts
     }
@@ -68,55 +97,91 @@ impl Case {
 
 /// Points of all bodies in the cells `columns` along axis 0.
 ///
-/// In every cell a body has `points_per_cell`² points at (i + ½)/n of the part that it covers, each with 1/n² of the
-/// part's area; the areas add up to the body's. Ids count body by body, cell by cell and point by point, axis 0
-/// slowest; they and the points do not depend on `columns`. Positions are relative to the grid's lower corner (m),
-/// volumes and masses per metre of thickness (m², kg/m).
+/// In every cell a box has `points_per_cell`² points at (i + ½)/n of the part that it covers, each with 1/n² of the
+/// part's area. Of any other shape only those places (i + ½)/n of the whole cell are points that lie inside; each has
+/// what the shape covers of its n-th of the cell along each axis, and the nearest point of the cell has what is covered
+/// around places outside. A cell without a place inside has one point in the covered part. The areas add up to the
+/// body's; where an outline, but not a box, covers less than 1e-9 of a cell, that is left out.
+///
+/// Ids count body by body, cell by cell and point by point, axis 0 slowest; they and the points do not depend on
+/// `columns`. Positions are relative to the grid's lower corner (m), volumes and masses per metre of thickness (m², kg/m).
 pub fn seed(case: &Case, columns: Range<usize>) -> impl Iterator<Item = Seed<2>> + '_ {
     let mut offset = 0;
     case.bodies.iter().flat_map(move |body| {
         let first_id = offset;
         offset += body.points(&case.grid) as u64;
-        of_body(case, body, first_id, columns.clone())
+        let of_box = body.extents(&case.grid).map(|extents| of_box(case, body, first_id, extents, columns.clone()));
+        let of_outline = match &body.region {
+            Region::Outline(outline) => Some(of_outline(case, body, first_id, outline, columns.clone())),
+            Region::Box { .. } => None,
+        };
+        of_box.into_iter().flatten().chain(of_outline.into_iter().flatten())
     })
 }
 
-fn of_body<'a>(
+fn of_box<'a>(
     case: &'a Case,
     body: &'a Body,
     first_id: u64,
+    [across, up]: [Extent<'a>; 2],
     columns: Range<usize>,
 ) -> impl Iterator<Item = Seed<2>> + 'a {
-    let [across, up] = body.extents(&case.grid);
     let cells = across.cells.start.max(columns.start)..across.cells.end.min(columns.end);
     cells.flat_map(move |i| {
         let (across, up) = (across.clone(), up.clone());
         let row = (i - across.cells.start) * up.cells.len();
         up.cells.clone().flat_map(move |j| {
-            let cell = row + (j - up.cells.start);
-            of_cell(case, body, [across.part(i), up.part(j)], (first_id, cell as u64))
+            let cell = (row + (j - up.cells.start)) as u64;
+            let count = (body.points_per_cell * body.points_per_cell) as u64;
+            let first_id = first_id + cell * count;
+            of_cell(body.points_per_cell, [across.part(i), up.part(j)])
+                .zip(first_id..)
+                .map(move |(place, id)| body.seed(case, id, place))
         })
     })
 }
 
-/// Points of a body in one cell.
-fn of_cell<'a>(
+fn of_outline<'a>(
     case: &'a Case,
     body: &'a Body,
-    [across, up]: [[f64; 2]; 2],
-    (first_id, cell): (u64, u64),
+    first_id: u64,
+    outline: &'a Outline,
+    columns: Range<usize>,
 ) -> impl Iterator<Item = Seed<2>> + 'a {
-    let n = body.points_per_cell;
-    let count = n * n;
-    let volume = (across[1] - across[0]) * (up[1] - up[0]) / count as f64;
-    let mass = case.materials[body.material].density.unwrap_or(0.0) * volume;
-    let place = move |[lower, upper]: [f64; 2], k: usize| lower + (upper - lower) * ((k as f64 + 0.5) / n as f64);
-    (0..count).map(move |k| Seed {
-        id: first_id + cell * count as u64 + k as u64,
-        material: body.material as u16,
-        x: Vector::<2>::new(place(across, k / n), place(up, k % n)),
-        volume,
-        mass,
-        v: body.velocity.map_or(Vector::<2>::zeros(), |v| Vector::<2>::new(v[0], v[1])),
+    let tally = outline.tally();
+    let occupied = &tally.occupied[0];
+    let (grid, n) = (&case.grid, body.points_per_cell);
+    (occupied.start.max(columns.start)..occupied.end.min(columns.end)).flat_map(move |i| {
+        let first_id = first_id + tally.before[i - occupied.start];
+        let x = [grid.axes[0].breakpoint(i), grid.axes[0].breakpoint(i + 1)];
+        let places = outline.column(grid, n, i).parts.into_iter().flat_map(move |part| {
+            let (whole, cut) = match part {
+                Part::Whole(rows) => (rows, Vec::new()),
+                Part::Cut(_, places) => (0..0, places),
+            };
+            let y = move |j: usize| [grid.axes[1].breakpoint(j), grid.axes[1].breakpoint(j + 1)];
+            whole.flat_map(move |j| of_cell(n, [x, y(j)])).chain(cut)
+        });
+        places.zip(first_id..).map(move |(place, id)| body.seed(case, id, place))
     })
+}
+
+/// Points of a rectangle that lies in one cell.
+fn of_cell(n: usize, [across, up]: [[f64; 2]; 2]) -> impl Iterator<Item = Place> {
+    let count = n * n;
+    let area = (across[1] - across[0]) * (up[1] - up[0]) / count as f64;
+    (0..count).map(move |k| Place { x: [region::place(across, k / n, n), region::place(up, k % n, n)], area })
+}
+
+impl Body {
+    fn seed(&self, case: &Case, id: u64, place: Place) -> Seed<2> {
+        Seed {
+            id,
+            material: self.material as u16,
+            x: place.x.into(),
+            volume: place.area,
+            mass: case.materials[self.material].density.unwrap_or(0.0) * place.area,
+            v: self.velocity.map_or(Vector::<2>::zeros(), Vector::from),
+        }
+    }
 }

@@ -25,6 +25,8 @@ pub enum Dimension {
     Velocity,
     /// m/s2
     Acceleration,
+    /// N/m
+    LineForce,
 }
 
 /// What one unit is worth.
@@ -36,7 +38,7 @@ enum Worth {
 }
 use Worth::{Radian, Ten, Times};
 
-const UNITS: [(Dimension, &[(&str, Worth)]); 8] = [
+const UNITS: [(Dimension, &[(&str, Worth)]); 9] = [
     (
         Dimension::Length,
         &[("m", Ten(0)), ("cm", Ten(-2)), ("mm", Ten(-3)), ("um", Ten(-6)), ("nm", Ten(-9)), ("km", Ten(3))],
@@ -62,6 +64,7 @@ const UNITS: [(Dimension, &[(&str, Worth)]); 8] = [
     (Dimension::Angle, &[("deg", Ten(0)), ("rad", Radian)]),
     (Dimension::Velocity, &[("m/s", Ten(0)), ("cm/s", Ten(-2)), ("mm/s", Ten(-3)), ("km/s", Ten(3))]),
     (Dimension::Acceleration, &[("m/s2", Ten(0)), ("cm/s2", Ten(-2)), ("mm/s2", Ten(-3))]),
+    (Dimension::LineForce, &[("N/m", Ten(0)), ("kN/m", Ten(3)), ("MN/m", Ten(6))]),
 ];
 
 impl Dimension {
@@ -76,7 +79,7 @@ impl Dimension {
             Self::Number => 1e100,
             Self::Length | Self::Density | Self::Velocity => 1e9,
             Self::Time | Self::Acceleration => 1e12,
-            Self::Stress => 1e18,
+            Self::Stress | Self::LineForce => 1e18,
             Self::UnitWeight => 1e10,
             Self::Angle => 1e6,
         }
@@ -95,6 +98,7 @@ impl fmt::Display for Dimension {
             Self::Angle => "an angle",
             Self::Velocity => "a velocity",
             Self::Acceleration => "an acceleration",
+            Self::LineForce => "a force per metre of thickness",
         })
     }
 }
@@ -115,6 +119,14 @@ pub fn parse(text: &str, expected: Dimension) -> Result<f64, String> {
     })
 }
 
+/// Value of `text`, a number followed by a unit of the dimension `of` and `/m`, e.g. `"2 kPa/m"`, in SI.
+pub(crate) fn parse_per_metre(text: &str, of: Dimension) -> Result<f64, String> {
+    let upper = text.trim().strip_suffix('m').and_then(|rest| rest.trim_end().strip_suffix('/'));
+    let units: Vec<String> = of.units().map(|unit| format!("{unit}/m")).collect();
+    let wrong = || format!("\"{}\" has no unit per metre ({})", crate::report::shortened(text), units.join(", "));
+    parse(upper.ok_or_else(wrong)?, of)
+}
+
 /// Value and dimension of `text`, whatever its unit; `meant` helps to guess what an unknown unit stands for.
 pub(crate) fn parse_any(text: &str, meant: Option<Dimension>) -> Result<(f64, Dimension), String> {
     let written = crate::report::shortened(text);
@@ -130,6 +142,11 @@ pub(crate) fn parse_any(text: &str, meant: Option<Dimension>) -> Result<(f64, Di
         units.iter().find(|(name, _)| *name == plain).map(|(_, worth)| (*dimension, *worth))
     };
     let Some((dimension, worth)) = UNITS.iter().find_map(known) else {
+        if meant == Some(Dimension::LineForce) && plain.ends_with('N') {
+            return Err(format!(
+                "\"{written}\" is a force; plane strain is 1 m thick and takes forces per metre{units}"
+            ));
+        }
         let all = UNITS.iter().filter(|(dimension, _)| meant.is_none_or(|meant| meant == *dimension));
         let near = hint(&plain, all.flat_map(|(_, units)| units.iter().map(|(name, _)| *name)));
         return Err(format!("\"{written}\": `{}` is no known unit{units}{near}", crate::report::shortened(unit)));
@@ -221,6 +238,7 @@ mod tests {
             ("1.5 min", Time, 90.0),
             ("21.9 °", Angle, 21.9),
             ("5 µm", Length, 5e-6),
+            ("2.5 kN/m", LineForce, 2500.0),
             (".5 km", Length, 500.0),
         ];
         for (text, dimension, value) in rows {
@@ -228,6 +246,19 @@ mod tests {
         }
         assert!((parse("0.5 rad", Angle).unwrap() - 0.5_f64.to_degrees()).abs() < 1e-15);
         assert_eq!(parse("-0.0 m", Length).map(f64::to_bits), Ok(0));
+    }
+
+    #[test]
+    fn growth_per_metre() {
+        for (text, of, value) in [("2 kPa/m", Stress, 2e3), ("-.5deg / m", Angle, -0.5), ("3 kN/m2/m", Stress, 3e3)] {
+            assert_eq!(parse_per_metre(text, of), Ok(value), "{text}");
+        }
+        for (text, says) in
+            [("2 kPa", "no unit per metre (Pa/m, kPa/m"), ("2 m/m", "expected a stress"), ("/m", "no number")]
+        {
+            let error = parse_per_metre(text, Stress).unwrap_err();
+            assert!(error.contains(says), "{text}: {error}");
+        }
     }
 
     #[test]
@@ -248,6 +279,8 @@ mod tests {
             ("", Length, "no number"),
             ("-", Length, "no number"),
             ("5 \u{202e}m", Length, "\\u{202e}"),
+            ("5 kN", LineForce, "plane strain is 1 m thick and takes forces per metre (N/m, kN/m, MN/m)"),
+            ("5 kPa", LineForce, "expected a force per metre of thickness (N/m"),
         ];
         for (text, dimension, says) in rows {
             let error = parse(text, dimension).unwrap_err();

@@ -3,10 +3,14 @@
 mod body;
 mod grid;
 mod history;
+mod load;
 mod material;
 mod output;
 mod physics;
+mod place;
+mod shape;
 mod solver;
+mod strip;
 
 use crate::case::{Analysis, Case, Geometry, Gravity, Support};
 use crate::record::Record;
@@ -18,6 +22,8 @@ use bsmpm::stabilisation::Stabilisation;
 const MOST_STEPS: f64 = 1e9;
 /// m/s2  by which a unit weight is divided, whatever the scene's gravity is.
 const STANDARD_GRAVITY: f64 = 9.81;
+/// Relative difference from it that the rounded components of an inclined gravity may have.
+const NEARLY_STANDARD: f64 = 1e-6;
 
 /// The case that `record` describes; `text` is what was read. `None` after an error.
 pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Option<Case> {
@@ -26,9 +32,18 @@ pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Op
     let end = analysis.as_ref().map(|analysis| analysis.end);
     let boundary = boundary(record);
     let grid = grid::read(record, boundary, report);
-    let materials = material::read_all(record, regime, report);
     let bodies = body::read_all(record, grid.as_ref(), regime, report);
+    let factor = record.record("strength_reduction").and_then(|reduction| reduction.number("factor"));
+    let (placed, made) = (grid.as_ref(), bodies.as_deref());
+    let around = material::Around { regime, grid: placed, bodies: made, factor: factor.unwrap_or(1.0) };
+    let materials = material::read_all(record, around, report);
     let gravity = gravity(record, end, report);
+    let around = strip::Around { grid: placed, bodies: made, boundary, end };
+    let footing = strip::footing(record, around, report);
+    let prescribed = strip::prescribed(record, around, report);
+    let tractions = load::tractions(record, around, report);
+    let point_loads = load::point_loads(record, around, report);
+    let initial = load::initial(record, (materials.as_deref(), made), gravity.as_ref(), report);
     let stabilisation = stabilisation(record);
     let solver = solver::read(record, regime, report);
     let output = output::read(record, end, report);
@@ -43,12 +58,12 @@ pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Op
         bodies: bodies?,
         gravity,
         boundary: boundary?,
-        footing: None,
-        prescribed: Vec::new(),
-        tractions: Vec::new(),
-        point_loads: Vec::new(),
-        strength_reduction: None,
-        initial: None,
+        footing,
+        prescribed,
+        tractions,
+        point_loads,
+        strength_reduction: factor,
+        initial,
         stabilisation: stabilisation?,
         solver: solver?,
         output: output?,
@@ -118,7 +133,7 @@ fn gravity(record: &Record, end: Option<f64>, report: &mut Report<'_>) -> Option
     let ramp = gravity.number("ramp")?;
     let size = acceleration[0].hypot(acceleration[1]);
     let off = (size / STANDARD_GRAVITY - 1.0).abs();
-    if off <= 0.01 && off > 1e-9 {
+    if off <= 0.01 && off > NEARLY_STANDARD {
         report.warn(format!(
             "gravity.acceleration: |acceleration| = {size} m/s2 is near {STANDARD_GRAVITY} without being it; densities \
              follow from unit weights with {STANDARD_GRAVITY}"

@@ -1,8 +1,8 @@
 //! `--set KEY=VALUE`, and what a valid case becomes.
 
-use bsmpm::material::Material;
+use bsmpm::material::{Material, MohrCoulomb};
 use bsmpm::stabilisation::Stabilisation;
-use bsmpm_scene::{Axis, Case, Error, Every, Extent, Face, Place, Quantity, Support};
+use bsmpm_scene::{Axis, Base, Case, Error, Every, Extent, Face, Initial, Place, Quantity, Site, Support};
 
 const FULL: &str = include_str!("full.toml");
 const STATIC: &str = include_str!("bad_cases/static.toml");
@@ -30,7 +30,7 @@ fn values_arrive_as_toml_bare_words_and_units() {
 #[test]
 fn lists_are_reached_by_index_and_absent_tables_are_made() {
     let case = valid(FULL, &["body.0.points_per_cell=5", "grid.upper.1=4.0", "body.2.box.upper.0=3"]);
-    assert_eq!((case.bodies[0].points_per_cell, case.grid.upper()[1], case.bodies[2].upper[0]), (5, 4.0, 3.0));
+    assert_eq!((case.bodies[0].points_per_cell, case.grid.upper()[1], case.bodies[2].bounds()[1][0]), (5, 4.0, 3.0));
     let case = valid(STATIC, &["gravity.acceleration=[0, -9.81]", "material.soil.density=2000"]);
     assert_eq!(case.gravity.unwrap().acceleration, [0.0, -9.81]);
     let case =
@@ -51,8 +51,16 @@ fn one_of_two_exclusive_keys_removes_the_other() {
     let case = valid(FULL, &["grid.knots.x=[0, 1, 4]", "grid.knots.y=[0, 1.5, 3]"]);
     assert_eq!(case.grid.axes, [Axis::Graded(vec![0.0, 1.0, 4.0]), Axis::Graded(vec![0.0, 1.5, 3.0])]);
     assert_eq!(valid(&case.text, &["grid.cell=1"]).grid.axes[0].cells(), 4);
-    let errors = set(FULL, &["body.0.polygon=[[0, 0]]"]).unwrap_err();
-    assert!(errors.len() == 1 && errors[0].message == "not available yet", "{errors:?}");
+    let round = valid(FULL, &["body.3.circle={center=[3, 2], radius=0.5}"]);
+    assert_eq!(round.bodies[3].bounds(), [[2.5, 1.5], [3.5, 2.5]]);
+    assert_eq!(valid(FULL, &["body.4.box={lower=[0, 2], upper=[0.5, 2.5]}"]).bodies[4].area(), 0.25);
+    let moved = |set: &str| valid(FULL, &[set]).footing.unwrap().path.rows;
+    assert_eq!(moved("footing.velocity=[0, -0.25]"), [(1.0, [0.0, -0.25])]);
+    assert_eq!(moved("footing.path=[[0, 0, 0], [0.5, 0, -0.25]]"), [(0.5, [0.0, -0.25])]);
+    let case = valid(FULL, &["prescribed.1.face=left", "boundary.left=free", "prescribed.1.path.0=[0.5, 0.1, 0]"]);
+    assert_eq!(case.prescribed[1].site, Site::Face(Face { axis: 0, upper: false }));
+    let errors = set(FULL, &["initial.gravity=elastic"]).unwrap_err();
+    assert!(errors.len() == 1 && errors[0].key == "material.till.k0", "only its own k0 is left: {errors:?}");
 }
 
 #[test]
@@ -61,8 +69,8 @@ fn errors_cite_the_override() {
         ("grid.cell=-1", "grid.cell", "allowed: cell > 0"),
         ("grid.cell=5 s", "grid.cell", "unit of time"),
         ("grid.cel=5 mm", "grid.cel", "did you mean `cell`?"),
-        ("body.3.points_per_cell=3", "body.3", "missing"),
-        ("body.9.points_per_cell=3", "body.9.points_per_cell", "index 9 is beyond the list of 3"),
+        ("body.5.points_per_cell=3", "body.5", "missing"),
+        ("body.9.points_per_cell=3", "body.9.points_per_cell", "index 9 is beyond the list of 5"),
         ("body.x.points_per_cell=3", "body.x.points_per_cell", "`x` is no index of a list"),
         ("title.x=3", "title.x", "which is no table"),
         ("grid.cell", "", "expected KEY=VALUE"),
@@ -71,7 +79,10 @@ fn errors_cite_the_override() {
         ("grid.cell=[1", "grid.cell", "no valid TOML"),
         ("a.b.c.d.e.f.g.h=1", "a.b.c.d.e.f.g.h", "no key path"),
         ("material.mud.young=1", "material.mud.model", "missing"),
-        ("footing.from=[0, 1]", "footing", "not available yet"),
+        ("footing.base=soft", "footing.base", "expected one of \"smooth\", \"rough\""),
+        ("strength_reduction.factor=0.01", "strength_reduction.factor", "0.1 <= factor <= 100"),
+        ("body.3.subtract.0.circle.radius=0", "body.3.subtract.0.circle.radius", "radius > 0"),
+        ("stage.0.end=1", "stage", "not available yet"),
     ];
     for (text, key, says) in rows {
         let errors = set(FULL, &[text]).unwrap_err();
@@ -104,11 +115,12 @@ fn the_full_case_in_si() {
     assert_eq!((case.analysis.end, case.analysis.dt), (1.0, 0.01));
     assert_eq!(case.grid.axes, [8, 6].map(|cells| Axis::Uniform { lower: 0.0, cell: 0.5, cells }));
     let names: Vec<&str> = case.materials.iter().map(|material| material.name.as_str()).collect();
-    assert_eq!(names, ["sand", "clay", "block"]);
+    assert_eq!(names, ["sand", "clay", "block", "till"]);
     let Material::MohrCoulomb(sand) = &case.materials[0].material else { panic!() };
-    assert_eq!((sand.friction(), sand.cohesion(), sand.elastic().young), (30_f64.to_radians(), 1e3, 2e7));
+    let whole = MohrCoulomb::new(sand.elastic().clone(), 30_f64.to_radians(), 5_f64.to_radians(), 1e3);
+    assert!(sand.elastic().young == 2e7 && *sand == whole.reduced(1.25));
     let Material::MohrCoulomb(clay) = &case.materials[1].material else { panic!() };
-    assert_eq!((clay.friction(), clay.dilation(), clay.cohesion()), (0.0, 0.0, 2e4));
+    assert_eq!((clay.friction(), clay.dilation(), clay.cohesion()), (0.0, 0.0, 1.6e4));
     assert!(matches!(case.materials[2].material, Material::Hencky(_)));
     assert_eq!(case.bodies[2].velocity, Some([0.0, -1.0]));
     assert_eq!(case.boundary, [[Support::Roller; 2], [Support::Fixed, Support::Free]]);
@@ -116,7 +128,21 @@ fn the_full_case_in_si() {
     assert_eq!(case.output.times, [0.25, 0.75]);
     assert_eq!(case.histories[1].quantity, Quantity::Reaction { face: Face { axis: 1, upper: false } });
     let columns: Vec<String> = case.histories.iter().flat_map(|h| h.columns()).map(|c| c.name).collect();
-    assert_eq!(columns, ["runout", "floor-x", "floor-y", "stress-xx", "stress-yy", "stress-zz", "stress-xy"]);
+    let expected = [
+        "runout",
+        "floor-x",
+        "floor-y",
+        "stress-xx",
+        "stress-yy",
+        "stress-zz",
+        "stress-xy",
+        "footing-pressure",
+        "pressure-noise-average",
+        "pressure-noise-plane",
+        "heave",
+    ];
+    assert_eq!(columns, expected);
+    assert_eq!(case.histories[4].quantity, Quantity::PressureNoise { within: Some([[0.0, 0.0], [2.0, 1.0]]) });
     assert_eq!((case.checks[0].at, case.checks[0].max, case.checks[1].at), (0.5, Some(4.0), 1.0));
     assert!(case.warnings.is_empty(), "{:?}", case.warnings);
 }
@@ -130,6 +156,80 @@ fn what_the_program_chooses_is_noted() {
     let case = valid(&STATIC.replace("end   = 1.0\n", ""), &[]);
     assert_eq!(case.analysis.end, 1.0);
     assert!(case.notes.iter().any(|note| note.key == "analysis.end"));
+}
+
+#[test]
+fn strips_loads_and_initial_stress_arrive() {
+    let case = valid(FULL, &["footing.base=\"rough\""]);
+    let footing = case.footing.unwrap();
+    assert_eq!((footing.from, footing.to, footing.base), ([1.25, 2.5], [1.75, 2.5], Base::Rough));
+    assert_eq!(footing.path.rows, [(1.0, [0.0, -0.1])]);
+    assert_eq!(valid(FULL, &[]).footing.unwrap().base, Base::Smooth);
+    let bases: Vec<Base> = case.prescribed.iter().map(|prescribed| prescribed.base).collect();
+    assert_eq!(bases, [Base::Smooth, Base::Rough]);
+    assert_eq!(case.prescribed[0].site, Site::Face(Face { axis: 1, upper: true }));
+    assert_eq!(case.prescribed[0].path.rows, [(1.0, [0.0, -0.01])]);
+    assert_eq!(case.prescribed[1].path.rows, [(0.5, [0.0, -0.1]), (1.0, [0.0, 0.0])]);
+    assert_eq!((case.tractions[0].stress, case.tractions[0].ramp), ([0.0, -2e4], 0.5));
+    assert_eq!((case.point_loads[0].at, case.point_loads[0].force), ([3.5, 1.25], [0.0, -1e3]));
+    assert_eq!(case.initial, Some(Initial::AtRest(vec![0.5, 0.5, 0.5, 0.6])));
+    let elastic = FULL.replace("k0          = 0.6\n", "").replace("k0 = 0.5\n", "gravity = \"elastic\"\n");
+    assert_eq!(valid(&elastic, &[]).initial, Some(Initial::Elastic));
+    let own = FULL.replace("k0 = 0.5\n", "");
+    assert!(set(&own, &[]).is_err(), "not all materials have their own");
+    let k0 = ["material.sand.k0=0.4", "material.clay.k0=0.7", "material.block.k0=0"];
+    assert_eq!(valid(&own, &k0).initial, Some(Initial::AtRest(vec![0.4, 0.7, 0.0, 0.6])));
+}
+
+#[test]
+fn layers_by_height_and_reduced_strength() {
+    let case = valid(FULL, &["grid.lower=[-1, -1]", "grid.cell=0.5"]);
+    let law = |y: f64| match case.materials[3].material.at(y + 1.0).as_ref() {
+        Material::MohrCoulomb(law) => law.clone(),
+        other => panic!("{other:?}"),
+    };
+    for (y, young, friction, cohesion) in [(3.0, 1e7, 30.0, 1e3), (2.0, 1.2e7, 30.5, 1.5e3), (3.5, 9e6, 29.75, 750.0)] {
+        let law = law(y);
+        let (tan, expected): (f64, f64) = (law.friction().tan(), f64::to_radians(friction).tan() / 1.25);
+        assert!((law.elastic().young / young - 1.0).abs() < 1e-14 && (tan / expected - 1.0).abs() < 1e-14, "y = {y}");
+        assert!((law.cohesion() / (cohesion / 1.25) - 1.0).abs() < 1e-14 && law.dilation() == 0.0);
+    }
+    assert_eq!(case.materials[3].material.elastic().young, 1.3e7, "stiffest at the lowest place of a body, y = 1.5");
+    assert!(!matches!(case.materials[0].material, Material::Graded(_)));
+    let note = |case: &Case, name: &str| case.notes.iter().find(|note| note.key == name).unwrap().value.clone();
+    assert!(note(&case, "material.clay").starts_with("c = 16000.000000 Pa, phi = 0.000000 deg"));
+    let till = note(&case, "material.till");
+    assert!(till.contains("at y = 1.5; c = 1000.000000 Pa") && till.ends_with("at y = 2.5"), "{till}");
+    let case = valid(FULL, &["strength_reduction.factor=1.4"]);
+    assert_eq!(case.strength_reduction, Some(1.4));
+    assert!(note(&case, "material.clay").starts_with("c = 14285.714286 Pa"));
+    let plain = FULL.replace("[strength_reduction]\nfactor = 1.25\n", "");
+    let case = valid(&plain, &["material.till.cohesion.value=2e3"]);
+    let cohesion = |y: f64| match case.materials[3].material.at(y).as_ref() {
+        Material::MohrCoulomb(law) => law.cohesion(),
+        other => panic!("{other:?}"),
+    };
+    assert_eq!((case.strength_reduction, cohesion(3.0), cohesion(1.5)), (None, 2e3, 2750.0));
+}
+
+#[test]
+fn strips_hold_and_load_a_quasi_static_body() {
+    let free = STATIC.replace("bottom = \"fixed\"\n", "");
+    let errors = set(&free, &["traction.0={from=[0, 1], to=[2, 1], stress=[0, -1]}"]).unwrap_err();
+    assert_eq!(errors.len(), 2, "along x and y: {errors:?}");
+    let strip = |more: &str| format!("prescribed.0={{from=[0, 1], to=[2, 1], displacement=[0, -0.1]{more}}}");
+    assert!(valid(&free, &[&strip("")]).warnings.is_empty());
+    let errors = set(&free, &[&strip(", components=\"normal\"")]).unwrap_err();
+    assert!(errors.len() == 1 && errors[0].message.contains("along x"), "{errors:?}");
+    let face = "prescribed.0={face=\"bottom\", displacement=[0.1, 0]}";
+    assert!(valid(&free, &[face]).warnings.is_empty());
+    assert!(set(&free, &["prescribed.0={face=\"top\", displacement=[0, -0.1]}"]).is_err(), "no body reaches it");
+    let held = valid(&free, &["footing={from=[0, 1], to=[2, 1], displacement=[0, -0.1]}", "boundary.left=roller"]);
+    assert!(held.warnings.is_empty(), "{:?}", held.warnings);
+    for load in ["traction.0={from=[0, 1], to=[2, 1], stress=[0, -1]}", "point_load.0={at=[1, 1], force=[0, -1]}"] {
+        assert!(valid(STATIC, &[load]).warnings.is_empty(), "{load}");
+    }
+    assert!(!valid(STATIC, &["traction.0={from=[0, 1], to=[2, 1], stress=[0, 0]}"]).warnings.is_empty());
 }
 
 #[test]
@@ -153,7 +253,15 @@ fn doubtful_cases_are_warned_of() {
         (FULL, "body.0.points_per_cell=1", "too coarsely"),
         (FULL, "body.1.box.lower.1=0.9", "body.0 and body.1 overlap"),
         (FULL, "body.1.material=sand", "material.clay: no body"),
-        (FULL, "gravity.ramp=5", "never fully applied"),
+        (STATIC, "gravity={acceleration=[0, -9.81], ramp=5}", "never fully applied"),
+        (FULL, "traction.0.ramp=5", "never acts in full"),
+        (FULL, "traction.0={from=[0, 1.5], to=[0, 1.4], stress=[0, 1]}", "traction.0: no body is at"),
+        (FULL, "footing={from=[1, 2.8], to=[2, 2.8], velocity=[0, -1]}", "footing: no body is at"),
+        (FULL, "point_load.0.at=[1.5, 1.6]", "point_load.0: no body is at"),
+        (FULL, "prescribed.1.path.1.0=2", "prescribed.1.path: the row at t = 2 is beyond the end"),
+        (FULL, "material.till.dilation=30.5", "above the friction angle in places"),
+        (FULL, "body.3.polygon=[[2.5, 1.25], [3.75, 1.25], [2.5, 0.9]]", "overlap"),
+        (STATIC, "strength_reduction.factor=2", "no material has strength"),
         (FULL, "output.every=5", "beyond the end"),
         (STATIC, "material.soil.poisson=0.46", "expect locking"),
         (STATIC, "gravity.acceleration=[0, -9.81]", "no body has mass"),

@@ -1,6 +1,6 @@
 //! Points of bodies: areas add up, ids are unique, and a range of columns gives the same points as the whole.
 
-use bsmpm_scene::{Case, Seed, seed};
+use bsmpm_scene::{Body, Case, Seed, seed};
 use std::collections::HashSet;
 
 /// A quasi-static case on `grid` with the bodies' `boxes` ([x0, y0, x1, y1]) and `n` points per cell.
@@ -26,13 +26,14 @@ fn verify(case: &Case) -> Vec<Seed<2>> {
     assert_eq!(ids.iter().collect::<HashSet<_>>().len(), seeds.len());
     ids.sort_unstable();
     assert!(ids.iter().enumerate().all(|(i, id)| i as u64 == *id), "ids count from 0 without gaps");
-    let area: f64 = case.bodies.iter().map(|b| (b.upper[0] - b.lower[0]) * (b.upper[1] - b.lower[1])).sum();
+    let area: f64 = case.bodies.iter().map(Body::area).sum();
     let sum: f64 = seeds.iter().map(|seed| seed.volume).sum();
     assert!((sum / area - 1.0).abs() < 1e-12, "{sum} {area}");
     let lower = case.grid.lower();
     for seed in &seeds {
         let x = [seed.x[0] + lower[0], seed.x[1] + lower[1]];
-        let inside = case.bodies.iter().any(|b| (0..2).all(|i| b.lower[i] < x[i] && x[i] < b.upper[i]));
+        let inside =
+            case.bodies.iter().map(Body::bounds).any(|[low, high]| (0..2).all(|i| low[i] < x[i] && x[i] < high[i]));
         assert!(inside && seed.volume > 0.0 && (seed.mass / seed.volume / 2000.0 - 1.0).abs() < 1e-14, "{seed:?}");
     }
     let mut parts: Vec<Seed<2>> = (0..columns).flat_map(|column| seed(case, column..column + 1)).collect();

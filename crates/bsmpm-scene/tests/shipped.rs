@@ -1,6 +1,6 @@
 //! Every case that the project ships is valid, and the paper's column has the sizes that it should.
 
-use bsmpm_scene::{Axis, Case, load};
+use bsmpm_scene::{Axis, Base, Case, Quantity, load};
 use std::path::{Path, PathBuf};
 
 fn cases() -> PathBuf {
@@ -71,6 +71,33 @@ fn estimated_memory_is_near_what_runs_took() {
         let ratio = estimate.bytes_on(ranks) as f64 / peak;
         println!("{name} {set:?} on {ranks}: {ratio:.3} of {peak:.4e}");
         assert!((0.85..1.1).contains(&ratio), "{name} {set:?}: {ratio} of {peak}, {estimate:?}");
+    }
+}
+
+#[test]
+fn the_slopes_of_the_paper() {
+    for (name, points, area) in [("slope_stability", 7920, 220.0), ("slope_foundation", 21_600, 600.0)] {
+        let case = read(&cases().join(name).with_extension("toml"));
+        assert_eq!(
+            (case.points(), case.bodies[0].area(), case.strength_reduction),
+            (points, area, Some(1.3)),
+            "{name}"
+        );
+        assert!((case.overburden([0.5, 5.0]) - 20e3 * (case.bodies[0].bounds()[1][1] - 5.0)).abs() < 1e-6);
+        assert!((case.histories[0].scale - 1e8 / (20e3 * 100.0)).abs() < 1e-12);
+    }
+    assert_eq!(read(&cases().join("short/slope_stability.toml")).points(), 1980);
+}
+
+#[test]
+fn the_footing_of_the_paper() {
+    for (name, points, ground) in [("strip_footing", 360_000, 10.0), ("short/strip_footing", 900, 5.0)] {
+        let case = read(&cases().join(name).with_extension("toml"));
+        let footing = case.footing.as_ref().unwrap();
+        assert_eq!((case.points(), footing.from, footing.to), (points, [0.0, ground], [1.0, ground]), "{name}");
+        assert_eq!((footing.base, &footing.path.rows[..]), (Base::Smooth, &[(1.0, [0.0, -2.0])][..]));
+        let within = Some([[0.0, ground - 2.5], [2.5, ground - 0.5]]);
+        assert_eq!(case.histories[5].quantity, Quantity::PressureNoise { within });
     }
 }
 

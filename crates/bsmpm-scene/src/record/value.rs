@@ -1,6 +1,6 @@
 //! One value held against its kind.
 
-use super::Datum;
+use super::{Datum, Row};
 use crate::document::{Node, Value};
 use crate::nearest::hint;
 use crate::report::{Report, shortened};
@@ -16,10 +16,9 @@ pub(super) fn read(kind: &Kind, node: &Node, path: &str, pseudo_time: bool, repo
     let mut reader = Reader { kind, path, name, pseudo_time, report };
     match kind {
         Kind::Quantity(dimension, range) => reader.quantity(node, *dimension, range).map(Datum::Number),
-        Kind::Profile(dimension, range) => match node.value {
-            Value::Table(_) => reader.fail(node, "{ value, at_y, per_metre } is not available yet"),
-            _ => reader.quantity(node, *dimension, range).map(Datum::Number),
-        },
+        Kind::Profile(dimension, range, _) => reader.quantity(node, *dimension, range).map(Datum::Number),
+        Kind::Gradient(dimension) => reader.gradient(node, *dimension).map(Datum::Number),
+        Kind::Rows(columns) => reader.rows(node, columns),
         Kind::Measure => reader.measure(node),
         Kind::Pair(dimension, range) => reader.quantities(node, *dimension, range, Some(2)),
         Kind::List(dimension, range) => reader.quantities(node, *dimension, range, None),
@@ -73,6 +72,10 @@ impl Reader<'_, '_> {
             Value::Text(_) if dimension == Dimension::Time && self.pseudo_time => {
                 Err(format!("found {}; quasi-static time is a pseudo-time without unit: a number", node.show()))
             }
+            Value::Text(_) if dimension == Dimension::Velocity && self.pseudo_time => Err(format!(
+                "found {}; quasi-static time has no unit: a number, m per unit of pseudo-time",
+                node.show()
+            )),
             Value::Text(_) if dimension == Dimension::Number => return self.unexpected(node),
             Value::Text(text) => unit::parse(text, dimension),
             _ => return self.unexpected(node),
@@ -86,11 +89,40 @@ impl Reader<'_, '_> {
             let allowed = range.condition(self.name);
             return self.fail(node, format!("{} is out of range; allowed: {allowed}{why}", node.show()));
         }
-        if value.abs() > dimension.limit() {
-            let most = dimension.limit();
+        self.bounded(node, value, dimension)
+    }
+
+    /// The value, if what is derived from it stays finite.
+    fn bounded(&mut self, node: &Node, value: f64, dimension: Dimension) -> Option<f64> {
+        let most = dimension.limit();
+        if value.abs() > most {
             return self.fail(node, format!("{} is out of range; {dimension} is at most {most:e} in SI", node.show()));
         }
         Some(value)
+    }
+
+    fn gradient(&mut self, node: &Node, dimension: Dimension) -> Option<f64> {
+        let Value::Text(text) = &node.value else { return self.quantity(node, dimension, &Range::ANY) };
+        match unit::parse_per_metre(text, dimension) {
+            Ok(value) => self.bounded(node, value, dimension),
+            Err(message) => self.fail(node, message),
+        }
+    }
+
+    fn rows(&mut self, node: &Node, columns: &[(Dimension, Range)]) -> Option<Datum> {
+        let Value::List(items) = &node.value else { return self.unexpected(node) };
+        let read: Vec<Option<Row>> = items.iter().map(|item| self.row(item, columns)).collect();
+        read.into_iter().collect::<Option<Vec<Row>>>().map(Datum::Rows)
+    }
+
+    fn row(&mut self, node: &Node, columns: &[(Dimension, Range)]) -> Option<Row> {
+        let items = match &node.value {
+            Value::List(items) if items.len() == columns.len() => items,
+            _ => return self.unexpected(node),
+        };
+        let read = items.iter().zip(columns).map(|(item, (dimension, range))| self.quantity(item, *dimension, range));
+        let read: Vec<Option<f64>> = read.collect();
+        Some(Row { origin: node.origin, numbers: read.into_iter().collect::<Option<_>>()? })
     }
 
     fn quantities(&mut self, node: &Node, dimension: Dimension, range: &Range, length: Option<usize>) -> Option<Datum> {

@@ -2,10 +2,10 @@
 
 use super::Kind::*;
 use super::Presence::{Default, Later, Optional, Required};
-use super::{Dimension as In, Group, Key, Kind, Presence, Range, Table};
+use super::{Dimension as In, Group, Key, Kind, Presence, Range, Table, body, loads};
 use std::ops::Bound::{Excluded, Included};
 
-const fn key(name: &'static str, kind: Kind, presence: Presence, doc: &'static str) -> Key {
+pub(super) const fn key(name: &'static str, kind: Kind, presence: Presence, doc: &'static str) -> Key {
     Key { name, kind, presence, doc }
 }
 
@@ -13,7 +13,7 @@ const fn later(name: &'static str, doc: &'static str) -> Key {
     key(name, Open, Later, doc)
 }
 
-const fn one_of(keys: &'static [&'static str], required: bool) -> Group {
+pub(super) const fn one_of(keys: &'static [&'static str], required: bool) -> Group {
     Group { keys, required }
 }
 
@@ -27,7 +27,7 @@ pub static ROOT: Table = Table {
         key("analysis", Kind::Table(&ANALYSIS), Required, "kind of the analysis and its time"),
         key("grid", Kind::Table(&GRID), Required, "the parametric grid"),
         key("material", Named(&MATERIAL), Required, "materials by name"),
-        key("body", Tables(&BODY), Required, "bodies made of material points"),
+        key("body", Tables(&body::BODY), Required, "bodies made of material points"),
         key("gravity", Kind::Table(&GRAVITY), Optional, "body force; absent: none"),
         key("boundary", Kind::Table(&BOUNDARY), Default("{}"), "supports at the faces of the grid"),
         key("stabilisation", Kind::Table(&STABILISATION), Optional, "against locking and oscillation; absent: none"),
@@ -35,12 +35,12 @@ pub static ROOT: Table = Table {
         key("output", Kind::Table(&OUTPUT), Optional, "frames for ParaView; absent: none"),
         key("history", Tables(&HISTORY), Optional, "columns of history.csv"),
         key("check", Tables(&CHECK), Optional, "bounds that are verified at the end"),
-        later("footing", "a rigid strip that moves down"),
-        later("prescribed", "motion of a face or segment"),
-        later("traction", "stress on the body's surface"),
-        later("point_load", "a force at a point"),
-        later("strength_reduction", "strength divided by a factor"),
-        later("initial", "stress at the start"),
+        key("footing", Kind::Table(&loads::FOOTING), Optional, "a rigid strip that moves"),
+        key("prescribed", Tables(&loads::PRESCRIBED), Optional, "motion of a face or segment"),
+        key("traction", Tables(&loads::TRACTION), Optional, "stress on the body's surface"),
+        key("point_load", Tables(&loads::POINT_LOAD), Optional, "a force at a point"),
+        key("strength_reduction", Kind::Table(&loads::REDUCTION), Optional, "strength divided by a factor"),
+        key("initial", Kind::Table(&loads::INITIAL), Optional, "stress at the start; absent: none"),
         later("stage", "staged loading"),
         later("profile", "strength with depth"),
     ],
@@ -87,14 +87,24 @@ static MATERIAL: Table = Table {
     doc: "A material by its name",
     keys: &[
         key("model", Choice(&["hencky", "mohr-coulomb", "tresca"], &[]), Required, "constitutive law"),
-        key("young", Profile(In::Stress, Range::POSITIVE), Required, "Young's modulus"),
+        key("young", Profile(In::Stress, Range::POSITIVE, &loads::STRESS_PROFILE), Required, "Young's modulus"),
         key("poisson", Quantity(In::Number, POISSON), Required, "Poisson's ratio"),
-        key("friction", Profile(In::Angle, BELOW_90), Optional, "friction angle (mohr-coulomb: required)"),
+        key(
+            "friction",
+            Profile(In::Angle, BELOW_90, &loads::ANGLE_PROFILE),
+            Optional,
+            "friction angle (mohr-coulomb: required)",
+        ),
         key("dilation", Quantity(In::Angle, BELOW_90), Optional, "dilation angle, at most friction; 0 unless given"),
-        key("cohesion", Profile(In::Stress, Range::NOT_NEGATIVE), Optional, "cohesion (elastic: none; else required)"),
+        key(
+            "cohesion",
+            Profile(In::Stress, Range::NOT_NEGATIVE, &loads::STRESS_PROFILE),
+            Optional,
+            "cohesion (elastic: none; else required)",
+        ),
         key("unit_weight", Quantity(In::UnitWeight, Range::POSITIVE), Optional, "density = unit_weight / 9.81 m/s2"),
         key("density", Quantity(In::Density, Range::POSITIVE), Optional, "neither: weightless, in dynamics an error"),
-        later("k0", "earth pressure coefficient of this material"),
+        key("k0", Quantity(In::Number, loads::COEFFICIENT), Optional, "horizontal over vertical stress at the start"),
     ],
     exclusive: &[one_of(&["unit_weight", "density"], false)],
 };
@@ -104,32 +114,8 @@ const POISSON: Range = Range {
     upper: Excluded(0.5),
     why: "at 0.5 the material is incompressible and its elastic stiffness singular",
 };
-const BELOW_90: Range = Range::of(Included(0.0), Excluded(90.0));
-
-static BODY: Table = Table {
-    header: "[[body]]",
-    doc: "A body made of material points",
-    keys: &[
-        key("material", Name, Required, "name of its material"),
-        key("box", Kind::Table(&BOX), Optional, "a rectangle"),
-        later("polygon", "a polygon"),
-        later("circle", "a circle"),
-        later("subtract", "what is cut out"),
-        key("points_per_cell", Count(1, 100), Required, "points along each axis of a cell"),
-        key("velocity", Pair(In::Velocity, Range::ANY), Optional, "at the start; absent: at rest"),
-    ],
-    exclusive: &[one_of(&["box", "polygon", "circle"], true)],
-};
-
-static BOX: Table = Table {
-    header: "box = { lower, upper }",
-    doc: "A rectangle along the axes; it may cut cells",
-    keys: &[
-        key("lower", Pair(In::Length, Range::ANY), Required, "lower corner"),
-        key("upper", Pair(In::Length, Range::ANY), Required, "upper corner"),
-    ],
-    exclusive: &[],
-};
+/// Friction and dilation angles, degrees.
+pub(crate) const BELOW_90: Range = Range::of(Included(0.0), Excluded(90.0));
 
 static GRAVITY: Table = Table {
     header: "[gravity]",
@@ -256,6 +242,7 @@ static HISTORY: Table = Table {
         key("percentile", Quantity(In::Number, PERCENT), Optional, "of runout: share of the points; 100 unless given"),
         key("face", Choice(&["left", "right", "bottom", "top"], &[]), Optional, "of reaction: the face"),
         key("at", Pair(In::Length, Range::ANY), Optional, "of a point's quantity: the point nearest at the start"),
+        key("box", Kind::Table(&body::BOX), Optional, "of pressure-noise: the points inside; all unless given"),
     ],
     exclusive: &[],
 };
@@ -274,8 +261,14 @@ const QUANTITY: Kind = Choice(
         "velocity",
         "stress",
         "stress-noise",
+        "pressure-noise",
+        "heave",
+        "footing-pressure",
+        "footing-force",
+        "penetration",
+        "slip",
     ],
-    &["heave", "footing-pressure", "footing-force", "penetration", "slip", "energy"],
+    &["energy"],
 );
 
 static CHECK: Table = Table {

@@ -1,17 +1,19 @@
 //! Bodies: their material, their place in the grid and the number of their points.
 
+use super::shape;
 use crate::case::Body;
 use crate::estimate::MOST_POINTS;
 use crate::grid::GridSpec;
 use crate::nearest::hint;
 use crate::record::Record;
+use crate::region::{self, Region, Window};
 use crate::report::{Report, shortened};
 use bsmpm::model::Regime;
 
 /// Bodies at most; every pair is tried for overlap.
 const MOST: usize = 10_000;
-/// Parts of a cell by which a body may reach beyond the grid: rounding.
-const ROUNDING: f64 = 1e-9;
+/// Pairs of edges that are tried for overlap at most.
+const MOST_WORK: usize = 10_000_000;
 
 /// All bodies in the order of the file; place and points are checked only if the grid is valid.
 pub(super) fn read_all(
@@ -22,7 +24,7 @@ pub(super) fn read_all(
 ) -> Option<Vec<Body>> {
     let records = root.records("body");
     if root.gives("body") && records.is_empty() {
-        root.error("body", "at least one [[body]] with a box is needed", report);
+        root.error("body", "at least one [[body]] is needed", report);
     }
     if records.len() > MOST {
         root.error("body", format!("{} bodies; at most {MOST} are possible", records.len()), report);
@@ -35,7 +37,9 @@ pub(super) fn read_all(
         root.error("body", format!("{points} material points in all; at most {MOST_POINTS} are possible"), report);
         return None;
     }
-    warn_of_overlap(&bodies, report);
+    if let Some(grid) = grid {
+        warn_of_overlap(&bodies, grid, report);
+    }
     Some(bodies)
 }
 
@@ -54,18 +58,14 @@ fn read(
     if points_per_cell == Some(1) {
         report.warn(format!("{}: 1 point per cell integrates too coarsely; take 2 or more", record.path));
     }
-    let shape = record.record("box")?;
-    let (lower, upper) = (shape.pair("lower")?, shape.pair("upper")?);
-    if lower[0] >= upper[0] || lower[1] >= upper[1] {
-        shape.error("upper", format!("{upper:?} is not above lower = {lower:?}: the body is empty"), report);
-        return None;
-    }
+    let region = shape::region(record, (grid, points_per_cell), report);
     let velocity = record.pair("velocity");
-    let body = Body { material: material?, lower, upper, points_per_cell: points_per_cell?, velocity };
-    if let Some(grid) = grid {
-        inside(&body, shape, grid, report)?;
-        if body.points(grid) == 0 {
-            shape.error("upper", "the body is thinner than 1e-9 of a cell: it has no points", report);
+    let body = Body { material: material?, region: region?, points_per_cell: points_per_cell?, velocity };
+    if grid.is_some_and(|grid| body.points(grid) == 0) {
+        let message = "the body is thinner than 1e-9 of a cell: it has no points";
+        match record.record("box") {
+            Some(record) => record.error("upper", message, report),
+            None => record.error(shape::key(record), message, report),
         }
     }
     Some(body)
@@ -82,37 +82,39 @@ fn material(record: &Record, root: &Record, report: &mut Report<'_>) -> Option<u
     found
 }
 
-fn inside(body: &Body, shape: &Record, grid: &GridSpec, report: &mut Report<'_>) -> Option<()> {
-    let (lower, upper) = (grid.lower(), grid.upper());
-    let mut within = true;
-    for axis in 0..2 {
-        let spacing = f64::EPSILON * lower[axis].abs().max(upper[axis].abs());
-        let slack = ROUNDING * grid.axes[axis].shortest() + 4.0 * spacing;
-        let name = ["x", "y"][axis];
-        if body.lower[axis] < lower[axis] - slack {
-            let message = format!("{} is outside the grid, which starts at {name} = {}", body.lower[axis], lower[axis]);
-            shape.error("lower", message, report);
-            within = false;
-        }
-        if body.upper[axis] > upper[axis] + slack {
-            let message = format!("{} is outside the grid, which ends at {name} = {}", body.upper[axis], upper[axis]);
-            shape.error("upper", message, report);
-            within = false;
-        }
-    }
-    within.then_some(())
-}
-
-fn warn_of_overlap(bodies: &[Body], report: &mut Report<'_>) {
-    let overlap = |a: &Body, b: &Body| {
-        (0..2).all(|axis| {
-            let common = a.upper[axis].min(b.upper[axis]) - a.lower[axis].max(b.lower[axis]);
-            let smaller = (a.upper[axis] - a.lower[axis]).min(b.upper[axis] - b.lower[axis]);
-            common > 1e-9 * smaller
-        })
-    };
+/// Tells of the first pair of bodies that have an area in common.
+fn warn_of_overlap(bodies: &[Body], grid: &GridSpec, report: &mut Report<'_>) {
+    let mut work = 0;
     let mut pairs = (0..bodies.len()).flat_map(|i| (i + 1..bodies.len()).map(move |j| (i, j)));
-    if let Some((i, j)) = pairs.find(|(i, j)| overlap(&bodies[*i], &bodies[*j])) {
+    if let Some((i, j)) = pairs.find(|(i, j)| overlap(&bodies[*i], &bodies[*j], grid, &mut work)) {
         report.warn(format!("body.{i} and body.{j} overlap: the common part holds the points of both"));
     }
+}
+
+/// Whether two bodies overlap by more than rounding; for shapes only as long as the `work` so far is bearable.
+fn overlap(a: &Body, b: &Body, grid: &GridSpec, work: &mut usize) -> bool {
+    let ([a_lower, a_upper], [b_lower, b_upper]) = (a.bounds(), b.bounds());
+    let origin = grid.lower();
+    let common = [0, 1].map(|axis| [a_lower[axis].max(b_lower[axis]), a_upper[axis].min(b_upper[axis])]);
+    let apart = |axis: usize| {
+        let smaller = (a_upper[axis] - a_lower[axis]).min(b_upper[axis] - b_lower[axis]);
+        common[axis][1] - common[axis][0] <= 1e-9 * smaller
+    };
+    if apart(0) || apart(1) {
+        return false;
+    }
+    if matches!((&a.region, &b.region), (Region::Box { .. }, Region::Box { .. })) {
+        return true;
+    }
+    let ((mut edges, of_a), (others, of_b)) = (a.region.edges(grid), b.region.edges(grid));
+    edges.extend(others.into_iter().map(|edge| edge.of(edge.shape + of_a)));
+    *work += edges.len() * edges.len();
+    if *work > MOST_WORK {
+        return false;
+    }
+    let [x, y] = [0, 1].map(|axis| common[axis].map(|end| end - origin[axis]));
+    let both = |inside: &[bool]| region::solid(&inside[..of_a]) && region::solid(&inside[of_a..]);
+    let mut area = 0.0;
+    region::sweep(&edges, of_a + of_b, &Window { x, y }, &both, &mut |slice| area += slice.area());
+    area > 1e-9 * a.area().min(b.area())
 }

@@ -1,6 +1,7 @@
 //! Histories and the checks of their columns.
 
-use crate::case::{Check, Face, History, Quantity};
+use super::strip::face;
+use crate::case::{Check, History, Quantity};
 use crate::grid::GridSpec;
 use crate::nearest::hint;
 use crate::record::Record;
@@ -26,7 +27,7 @@ pub(super) fn read_all(
     let mut taken = HashSet::from(["step".to_owned(), "time".to_owned()]);
     let mut histories = Vec::new();
     for record in records {
-        let Some(history) = read(record, (regime, grid), report) else { continue };
+        let Some(history) = read((root, record), (regime, grid), report) else { continue };
         if let Some(column) = history.columns().into_iter().find(|column| !taken.insert(column.name.clone())) {
             let message = format!("there is a column `{}` already; give this one another `name`", column.name);
             record.error("name", message, report);
@@ -37,7 +38,7 @@ pub(super) fn read_all(
 }
 
 fn read(
-    record: &Record,
+    (root, record): (&Record, &Record),
     (regime, grid): (Option<Regime>, Option<&GridSpec>),
     report: &mut Report<'_>,
 ) -> Option<History> {
@@ -46,9 +47,10 @@ fn read(
         "runout" => "percentile",
         "reaction" => "face",
         "displacement" | "velocity" | "stress" => "at",
+        "pressure-noise" => "box",
         _ => "",
     };
-    let others = ["percentile", "face", "at"].into_iter().filter(|key| *key != own);
+    let others = ["percentile", "face", "at", "box"].into_iter().filter(|key| *key != own);
     for key in others.filter(|key| record.gives(key)) {
         record.error(key, format!("has no meaning for quantity \"{word}\""), report);
     }
@@ -58,7 +60,16 @@ fn read(
     if regime == Some(Regime::QuasiStatic) && matches!(word, "velocity" | "momentum") {
         record.error("quantity", format!("there is no {word} in a quasi-static analysis"), report);
     }
-    let quantity = match word {
+    if matches!(word, "footing-pressure" | "footing-force" | "penetration" | "slip") && !root.gives("footing") {
+        record.error("quantity", format!("\"{word}\" is about the footing, and there is no [footing]"), report);
+    }
+    let quantity = quantity(word, record, grid, report)?;
+    let name = if record.gives("name") { record.text("name")? } else { word };
+    Some(History { quantity, name: name.to_owned(), scale: record.number("scale")? })
+}
+
+fn quantity(word: &str, record: &Record, grid: Option<&GridSpec>, report: &mut Report<'_>) -> Option<Quantity> {
+    Some(match word {
         "runout" => {
             let given = record.gives("percentile");
             Quantity::Runout { percentile: if given { record.number("percentile")? } else { 100.0 } }
@@ -72,14 +83,32 @@ fn read(
         "displacement" => Quantity::Displacement { at: at(record, grid, report)? },
         "velocity" => Quantity::Velocity { at: at(record, grid, report)? },
         "stress" => Quantity::Stress { at: at(record, grid, report)? },
+        "pressure-noise" if record.gives("box") => {
+            Quantity::PressureNoise { within: Some(within(record.record("box")?, grid, report)?) }
+        }
+        "pressure-noise" => Quantity::PressureNoise { within: None },
+        "heave" => Quantity::Heave,
+        "footing-pressure" => Quantity::FootingPressure,
+        "footing-force" => Quantity::FootingForce,
+        "penetration" => Quantity::Penetration,
+        "slip" => Quantity::Slip,
         _ => Quantity::StressNoise,
-    };
-    let name = if record.gives("name") { record.text("name")? } else { word };
-    Some(History { quantity, name: name.to_owned(), scale: record.number("scale")? })
+    })
 }
 
-fn face(word: &str) -> Face {
-    Face { axis: usize::from(matches!(word, "bottom" | "top")), upper: matches!(word, "right" | "top") }
+/// A box that has something in common with the grid.
+fn within(record: &Record, grid: Option<&GridSpec>, report: &mut Report<'_>) -> Option<[[f64; 2]; 2]> {
+    let (lower, upper) = (record.pair("lower")?, record.pair("upper")?);
+    if (0..2).any(|axis| lower[axis] >= upper[axis]) {
+        record.error("upper", format!("{upper:?} is not above lower = {lower:?}: the box is empty"), report);
+    }
+    if let Some(grid) = grid {
+        let (start, end) = (grid.lower(), grid.upper());
+        if (0..2).any(|axis| upper[axis] <= start[axis] || lower[axis] >= end[axis]) {
+            report.error(record.origin, &record.path, format!("it is outside the grid, {start:?} to {end:?}"));
+        }
+    }
+    Some([lower, upper])
 }
 
 fn at(record: &Record, grid: Option<&GridSpec>, report: &mut Report<'_>) -> Option<[f64; 2]> {
@@ -137,6 +166,7 @@ fn bound(key: &str, record: &Record, history: &History, report: &mut Report<'_>)
         "m" => Some(Dimension::Length),
         "m/s" => Some(Dimension::Velocity),
         "Pa" => Some(Dimension::Stress),
+        "N/m" => Some(Dimension::LineForce),
         _ => None,
     };
     if expected == Some(dimension) {

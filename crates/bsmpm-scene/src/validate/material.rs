@@ -1,17 +1,29 @@
 //! Materials and what is doubtful about their parameters.
 
 use super::STANDARD_GRAVITY;
-use crate::case::NamedMaterial;
+use crate::case::{Body, NamedMaterial};
+use crate::grid::GridSpec;
 use crate::record::Record;
 use crate::report::Report;
-use bsmpm::material::{Elastic, Hencky, Material, MohrCoulomb};
+use crate::schema::{BELOW_90, Range};
+use bsmpm::material::{Elastic, Graded, GradedStrength, Hencky, Material, MohrCoulomb, Profile};
 use bsmpm::model::Regime;
 
 /// Materials at most: a point holds its material's number in 16 bits.
 const MOST: usize = 65_536;
 
+/// What the rest of the case says to materials.
+#[derive(Clone, Copy)]
+pub(super) struct Around<'a> {
+    pub(super) regime: Option<Regime>,
+    pub(super) grid: Option<&'a GridSpec>,
+    pub(super) bodies: Option<&'a [Body]>,
+    /// strength reduction; 1: none
+    pub(super) factor: f64,
+}
+
 /// All materials in the order of the file.
-pub(super) fn read_all(root: &Record, regime: Option<Regime>, report: &mut Report<'_>) -> Option<Vec<NamedMaterial>> {
+pub(super) fn read_all(root: &Record, around: Around<'_>, report: &mut Report<'_>) -> Option<Vec<NamedMaterial>> {
     let named = root.named("material");
     if root.gives("material") && named.is_empty() {
         root.error("material", "at least one [material.NAME] is needed", report);
@@ -20,24 +32,132 @@ pub(super) fn read_all(root: &Record, regime: Option<Regime>, report: &mut Repor
         root.error("material", format!("{} materials; at most {MOST} are possible", named.len()), report);
         return None;
     }
-    let read: Vec<_> = named.iter().map(|(name, record)| read(name, record, regime, report)).collect();
-    read.into_iter().collect()
+    let read = named.iter().enumerate().map(|(number, named)| read(number, named, around, report));
+    let read: Vec<_> = read.collect();
+    let materials = read.into_iter().collect::<Option<Vec<_>>>()?;
+    if root.gives("strength_reduction") && materials.iter().all(|named| strength(&named.material, 0.0).is_none()) {
+        report.warn("strength_reduction: no material has strength: it does nothing");
+    }
+    Some(materials)
 }
 
-fn read(name: &str, record: &Record, regime: Option<Regime>, report: &mut Report<'_>) -> Option<NamedMaterial> {
-    let density = density(record, regime, report);
-    let law = law(record, report);
-    let (young, poisson) = (record.number("young"), record.number("poisson"));
-    warn_of_stiffness(record, young, poisson, report);
-    let elastic = Elastic { young: young?, poisson: poisson? };
-    let material = match law? {
-        None => Material::Hencky(Hencky { elastic }),
-        Some([friction, dilation, cohesion]) => {
-            let (friction, dilation) = (friction.to_radians(), dilation.to_radians());
-            Material::MohrCoulomb(MohrCoulomb::new(elastic, friction, dilation, cohesion))
-        }
+/// Cohesion (Pa), friction and dilation angle (rad) at a height, of a material that has them.
+pub(super) fn strength(material: &Material, height: f64) -> Option<[f64; 3]> {
+    match material.at(height).as_ref() {
+        Material::MohrCoulomb(law) => Some([law.cohesion(), law.friction(), law.dilation()]),
+        _ => None,
+    }
+}
+
+fn read(
+    number: usize,
+    (name, record): &(String, Record),
+    around: Around<'_>,
+    report: &mut Report<'_>,
+) -> Option<NamedMaterial> {
+    let density = density(record, around.regime, report);
+    let layer = Layer::of(number, around);
+    let law = law(record, layer.as_ref(), report);
+    let (young, poisson) = (profile(record, "young"), record.number("poisson"));
+    if let (Some(young), Some(layer)) = (&young, &layer) {
+        layer.check(record, ("young", &Range::POSITIVE), young, report);
+    }
+    warn_of_stiffness(record, young.map(|young| young.value), poisson, report);
+    let (young, poisson, law) = (young?, poisson?, law?);
+    let material = if is_graded(record) {
+        graded(young, poisson, law, (layer.as_ref()?, around.factor))
+    } else {
+        uniform(Elastic { young: young.value, poisson }, law, around.factor)
     };
-    Some(NamedMaterial { name: name.to_owned(), material, density: density? })
+    if let Some(layer) = layer.filter(|_| around.factor != 1.0) {
+        note_reduction(record, &material, &layer, around.factor, report);
+    }
+    Some(NamedMaterial { name: name.clone(), material, density: density? })
+}
+
+/// The plain law; `strength` is friction, dilation (degrees) and cohesion (Pa).
+fn uniform(elastic: Elastic, strength: Option<[Profile; 3]>, factor: f64) -> Material {
+    let Some([friction, dilation, cohesion]) = strength else { return Material::Hencky(Hencky { elastic }) };
+    let (friction, dilation) = (friction.value.to_radians(), dilation.value.to_radians());
+    Material::MohrCoulomb(MohrCoulomb::new(elastic, friction, dilation, cohesion.value).reduced(factor))
+}
+
+/// The law by height above the grid's lower corner.
+fn graded(young: Profile, poisson: f64, strength: Option<[Profile; 3]>, (layer, factor): (&Layer, f64)) -> Material {
+    let relative = |profile: Profile| Profile { at: profile.at - layer.base, ..profile };
+    let strength = strength.map(|[friction, dilation, cohesion]| GradedStrength {
+        friction: relative(radians(friction)),
+        dilation: dilation.value.to_radians(),
+        cohesion: relative(cohesion),
+        reduction: factor,
+    });
+    let heights = layer.heights.start - layer.base..layer.heights.end - layer.base;
+    Material::Graded(Graded::new(relative(young), poisson, strength, heights))
+}
+
+/// Heights (m, in the case's coordinates) between which bodies of a material lie; the grid's if there are none.
+struct Layer {
+    heights: std::ops::Range<f64>,
+    base: f64, // of the grid
+}
+
+impl Layer {
+    fn of(number: usize, around: Around<'_>) -> Option<Self> {
+        let (grid, bodies) = (around.grid?, around.bodies?);
+        let made = bodies.iter().filter(|body| body.material == number).map(Body::bounds);
+        let found = made.reduce(|[a, b], [c, d]| [[0.0, a[1].min(c[1])], [0.0, b[1].max(d[1])]]);
+        let [lower, upper] = found.unwrap_or([grid.lower(), grid.upper()]);
+        Some(Self { heights: lower[1]..upper[1], base: grid.lower()[1] })
+    }
+
+    /// An error where a parameter that varies leaves its range; what does not has been held against it already.
+    fn check(&self, record: &Record, (key, range): (&str, &Range), profile: &Profile, report: &mut Report<'_>) {
+        if profile.per_metre == 0.0 && range.contains(profile.value) {
+            return;
+        }
+        for y in [self.heights.start, self.heights.end] {
+            let value = profile.at(y);
+            if !range.contains(value) {
+                let message = format!(
+                    "is {value} at y = {y}, and bodies of this material reach there; allowed: {}",
+                    range.condition(key)
+                );
+                record.error(key, message, report);
+                return;
+            }
+        }
+    }
+}
+
+fn is_graded(record: &Record) -> bool {
+    ["young", "friction", "cohesion"].iter().any(|key| record.record(key).is_some())
+}
+
+/// The parameter in its own unit (degrees for angles) by the height in the case's coordinates.
+fn profile(record: &Record, key: &str) -> Option<Profile> {
+    let Some(table) = record.record(key) else { return record.number(key).map(Profile::constant) };
+    Some(Profile { value: table.number("value")?, at: table.number("at_y")?, per_metre: table.number("per_metre")? })
+}
+
+fn radians(profile: Profile) -> Profile {
+    Profile { value: profile.value.to_radians(), per_metre: profile.per_metre.to_radians(), ..profile }
+}
+
+/// Tells what strength is left, at the lowest and the highest place where it differs there.
+fn note_reduction(record: &Record, material: &Material, layer: &Layer, factor: f64, report: &mut Report<'_>) {
+    let at = |y: f64| {
+        let [cohesion, friction, dilation] = strength(material, y - layer.base)?;
+        let (friction, dilation) = (friction.to_degrees(), dilation.to_degrees());
+        Some(format!("c = {cohesion:.6} Pa, phi = {friction:.6} deg, psi = {dilation:.6} deg"))
+    };
+    let (Some(low), Some(high)) = (at(layer.heights.start), at(layer.heights.end)) else { return };
+    let value = if low == high {
+        low
+    } else {
+        format!("{low} at y = {}; {high} at y = {}", layer.heights.start, layer.heights.end)
+    };
+    let reason = format!("strength_reduction.factor = {factor}: c/F, atan(tan(phi)/F), psi at most the new phi");
+    report.note(&record.path, value, reason);
 }
 
 /// kg/m3; the outer option is `None` after an error.
@@ -67,7 +187,7 @@ fn density(record: &Record, regime: Option<Regime>, report: &mut Report<'_>) -> 
 }
 
 /// Friction, dilation (degrees) and cohesion (Pa), none of an elastic law; the outer option is `None` after an error.
-fn law(record: &Record, report: &mut Report<'_>) -> Option<Option<[f64; 3]>> {
+fn law(record: &Record, layer: Option<&Layer>, report: &mut Report<'_>) -> Option<Option<[Profile; 3]>> {
     let model = record.word("model")?;
     let (unused, required): (&[&str], &[&str]) = match model {
         "hencky" => (&["friction", "dilation", "cohesion"], &[]),
@@ -89,17 +209,28 @@ fn law(record: &Record, report: &mut Report<'_>) -> Option<Option<[f64; 3]>> {
     if model == "hencky" {
         return Some(None);
     }
-    let given = |key| if record.gives(key) { record.number(key) } else { Some(0.0) };
-    let (friction, dilation, cohesion) = (given("friction")?, given("dilation")?, record.number("cohesion")?);
-    if dilation > friction {
-        let message = format!("{dilation} is out of range; allowed: 0 <= dilation <= friction = {friction}");
+    let given = |key| if record.gives(key) { profile(record, key) } else { Some(Profile::constant(0.0)) };
+    let (friction, dilation, cohesion) = (given("friction")?, given("dilation")?, given("cohesion")?);
+    if let Some(layer) = layer {
+        layer.check(record, ("friction", &BELOW_90), &friction, report);
+        layer.check(record, ("cohesion", &Range::NOT_NEGATIVE), &cohesion, report);
+    }
+    let heights = layer.map_or(friction.at..friction.at, |layer| layer.heights.clone());
+    let (least, most) = friction.bounds(&heights);
+    if dilation.value > most {
+        let message = format!("{} is out of range; allowed: 0 <= dilation <= friction = {most}", dilation.value);
         record.error("dilation", message, report);
         return None;
     }
-    if friction == 0.0 && cohesion == 0.0 {
+    if dilation.value > least {
+        let path = record.path_of("dilation");
+        report
+            .warn(format!("{path}: {} is above the friction angle in places, and lowered to it there", dilation.value));
+    }
+    if most == 0.0 && cohesion.bounds(&heights).1 == 0.0 {
         report.warn(format!("{}: friction and cohesion are both 0: the material has no strength", record.path));
     }
-    if model == "mohr-coulomb" && !record.gives("dilation") {
+    if record.word("model") == Some("mohr-coulomb") && !record.gives("dilation") {
         report.note(record.path_of("dilation"), "0.0", "default: plastic flow without change of volume");
     }
     Some(Some([friction, dilation, cohesion]))

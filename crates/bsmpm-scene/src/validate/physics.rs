@@ -1,11 +1,16 @@
 //! What only the whole case shows: supports that hold it, and combinations that are doubtful.
 
-use crate::case::{Case, Support};
+use super::material::strength;
+use super::place;
+use super::strip::{moves, normal};
+use crate::case::{Base, Case, Prescribed, Site, Support};
 use crate::record::Record;
 use crate::report::Report;
-use bsmpm::material::Material;
 use bsmpm::model::Regime;
 use bsmpm::stabilisation::Stabilisation;
+
+/// Components of a normal below which it does not hold them.
+const ALONG: f64 = 1e-9;
 
 /// Errors and warnings about a case that is valid in its parts.
 pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
@@ -18,7 +23,7 @@ pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
     }
 }
 
-/// A quasi-static body that no face holds against a translation has no equilibrium: the stiffness is singular.
+/// A quasi-static body that nothing holds against a translation has no equilibrium: the stiffness is singular.
 fn held(case: &Case, record: &Record, report: &mut Report<'_>) {
     for (component, name) in ["x", "y"].into_iter().enumerate() {
         let holds = |axis: usize, upper: bool| match case.boundary[axis][usize::from(upper)] {
@@ -27,20 +32,38 @@ fn held(case: &Case, record: &Record, report: &mut Report<'_>) {
             Support::Free => false,
         };
         let mut faces = [(0, false), (0, true), (1, false), (1, true)].into_iter();
-        if !faces.any(|(axis, upper)| holds(axis, upper) && reached(case, axis, upper)) {
+        let by_face = faces.any(|(axis, upper)| holds(axis, upper) && reached(case, axis, upper));
+        if !by_face && !held_by_strip(case, component) {
             let message = format!(
-                "nothing holds the bodies along {name}: no fixed face or roller that a body reaches prescribes it, and a \
-                 quasi-static analysis is singular then"
+                "nothing holds the bodies along {name}: no fixed face or roller that a body reaches prescribes it, nor does \
+                 a strip that a body is at, and a quasi-static analysis is singular then"
             );
             report.error(record.place("boundary"), "boundary", message);
         }
     }
 }
 
+/// Whether the footing or a prescribed motion holds a component of a body.
+fn held_by_strip(case: &Case, component: usize) -> bool {
+    let by_segment = |base: Base, from: [f64; 2], to: [f64; 2]| {
+        let holds = base == Base::Rough || normal(from, to)[component].abs() > ALONG;
+        holds && place::occupied(&case.bodies, &case.grid, [from, to])
+    };
+    let by_motion = |prescribed: &Prescribed| match prescribed.site {
+        Site::Segment { from, to } => by_segment(prescribed.base, from, to),
+        Site::Face(face) => {
+            let holds = prescribed.base == Base::Rough || face.axis == component;
+            holds && reached(case, face.axis, face.upper)
+        }
+    };
+    case.footing.iter().any(|footing| by_segment(footing.base, footing.from, footing.to))
+        || case.prescribed.iter().any(by_motion)
+}
+
 /// Whether a body reaches into the cells along a face, and so has nodes on it.
 fn reached(case: &Case, axis: usize, upper: bool) -> bool {
     case.bodies.iter().any(|body| {
-        let cells = &body.extents(&case.grid)[axis].cells;
+        let cells = &body.occupied(&case.grid)[axis];
         if upper { cells.end == case.grid.axes[axis].cells() } else { cells.start == 0 }
     })
 }
@@ -54,17 +77,26 @@ fn warn_of_materials(case: &Case, report: &mut Report<'_>) {
     if case.gravity.is_some() && case.bodies.iter().all(|body| case.materials[body.material].density.is_none()) {
         report.warn("gravity: no body has mass: it does nothing");
     }
-    if case.analysis.regime == Regime::QuasiStatic && case.gravity.is_none() {
-        report.warn("nothing loads the bodies: there is no [gravity]");
+    if case.analysis.regime == Regime::QuasiStatic && !loaded(case) {
+        report.warn("nothing loads the bodies: there is no [gravity], no load, and nothing that moves");
     }
+}
+
+fn loaded(case: &Case) -> bool {
+    let pulls = |load: [f64; 2]| load != [0.0; 2];
+    case.gravity.is_some()
+        || case.footing.iter().any(|footing| moves(&footing.path))
+        || case.prescribed.iter().any(|prescribed| moves(&prescribed.path))
+        || case.tractions.iter().any(|traction| pulls(traction.stress))
+        || case.point_loads.iter().any(|load| pulls(load.force))
 }
 
 fn warn_of_locking(case: &Case, report: &mut Report<'_>) {
     for body in &case.bodies {
         let named = &case.materials[body.material];
         let poisson = named.material.elastic().poisson;
-        let reason = match named.material {
-            Material::MohrCoulomb(_) => "is plastic".to_owned(),
+        let reason = match strength(&named.material, 0.0) {
+            Some(_) => "is plastic".to_owned(),
             _ if poisson > 0.45 => format!("has poisson = {poisson} > 0.45"),
             _ => continue,
         };

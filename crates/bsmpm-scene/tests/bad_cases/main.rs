@@ -2,6 +2,7 @@
 //!
 //! A row changes one place of a valid case; the line expected is that of the change, moved where the row says so.
 
+mod loads;
 mod rows;
 mod texts;
 
@@ -82,6 +83,27 @@ fn rules_between_keys() {
 #[test]
 fn quasi_static_cases() {
     verify_all(STATIC, rows::QUASI_STATIC);
+}
+
+#[test]
+fn shapes() {
+    verify_all(DYNAMIC, loads::SHAPES);
+}
+
+#[test]
+fn layers_and_strength_reduction() {
+    verify_all(DYNAMIC, loads::LAYERS);
+}
+
+#[test]
+fn strips_and_loads() {
+    verify_all(DYNAMIC, loads::STRIPS);
+}
+
+#[test]
+fn initial_stress_and_histories() {
+    verify_all(DYNAMIC, loads::INITIAL);
+    verify_all(STATIC, loads::QUASI_STATIC);
 }
 
 #[test]

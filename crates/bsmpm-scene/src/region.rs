@@ -1,0 +1,206 @@
+//! What a body fills: a rectangle, or any shape of straight edges and arcs with others cut out of it.
+
+mod cells;
+mod edge;
+mod simple;
+mod sweep;
+
+pub(crate) use cells::{Part, Place, place};
+pub(crate) use edge::Edge;
+pub(crate) use simple::{Fault, area, bounds, fault};
+pub(crate) use sweep::{Window, solid, sweep};
+
+use crate::grid::{Axis, GridSpec};
+use cells::column;
+use std::ops::Range;
+use sweep::intervals;
+
+/// Edges of one body at most.
+pub(crate) const MOST_EDGES: usize = 10_000;
+/// Columns of cells that a body other than a box spans at most: its points are counted by column.
+const MOST_COLUMNS: usize = 2_000_000;
+/// Edges, times the cells that they cut, times the points along a cell: what a body's points may cost before they are
+/// refused, some ten seconds.
+const MOST_WORK: u128 = 4_000_000_000;
+
+/// What a body fills.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Region {
+    /// A rectangle along the axes.
+    Box {
+        /// m  lower corner, in the case's coordinates
+        lower: [f64; 2],
+        /// m  upper corner
+        upper: [f64; 2],
+    },
+    /// Another shape, or a shape with something cut out.
+    Outline(Outline),
+}
+
+/// A shape of straight edges and arcs, less others.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outline {
+    origin: [f64; 2], // m  the grid's lower corner, from which edges are measured
+    edges: Vec<Edge>, // those of shape 0, which is filled, and of the others, which are cut out
+    shapes: usize,
+    bounds: [[f64; 2]; 2], // m  in the case's coordinates
+    area: f64,
+    tally: Tally,
+}
+
+/// Points and cells of an outline, counted once.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Tally {
+    /// cells that hold points, per axis
+    pub(crate) occupied: [Range<usize>; 2],
+    /// of the first column in `occupied` and all later ones: number of the body's points before it; and of all
+    pub(crate) before: Vec<u64>,
+    /// cells that hold points
+    pub(crate) cells: u64,
+}
+
+impl Region {
+    /// Lower and upper corner of the smallest rectangle around it, m, in the case's coordinates; around the whole
+    /// shape where something is cut out.
+    pub fn bounds(&self) -> [[f64; 2]; 2] {
+        match self {
+            Self::Box { lower, upper } => [*lower, *upper],
+            Self::Outline(outline) => outline.bounds,
+        }
+    }
+
+    /// Area, m².
+    pub fn area(&self) -> f64 {
+        match self {
+            Self::Box { lower, upper } => (upper[0] - lower[0]) * (upper[1] - lower[1]),
+            Self::Outline(outline) => outline.area,
+        }
+    }
+
+    /// Length of the vertical ray above `at` (m, in the case's coordinates) inside it, m. A left side belongs to it, a
+    /// right one does not, so that a ray between two bodies counts once.
+    pub(crate) fn above(&self, at: [f64; 2]) -> f64 {
+        let length = |[lower, upper]: [f64; 2]| (upper - lower.max(at[1])).max(0.0);
+        self.vertical(at[0]).into_iter().map(length).sum()
+    }
+
+    /// Whether a place lies inside, m in the case's coordinates.
+    pub(crate) fn contains(&self, at: [f64; 2]) -> bool {
+        self.vertical(at[0]).iter().any(|[lower, upper]| *lower < at[1] && at[1] < *upper)
+    }
+
+    /// What it covers of the vertical line at `x`, in the case's coordinates, upwards.
+    fn vertical(&self, x: f64) -> Vec<[f64; 2]> {
+        match self {
+            Self::Box { lower, upper } if lower[0] <= x && x < upper[0] => vec![[lower[1], upper[1]]],
+            Self::Box { .. } => Vec::new(),
+            Self::Outline(outline) => {
+                let found = intervals(&outline.edges, outline.shapes, x - outline.origin[0]);
+                found.into_iter().map(|ends| ends.map(|y| y + outline.origin[1])).collect()
+            }
+        }
+    }
+
+    /// Its edges from the grid's lower corner.
+    pub(crate) fn edges(&self, grid: &GridSpec) -> (Vec<Edge>, usize) {
+        match self {
+            Self::Box { lower, upper } => (rectangle(*lower, *upper, grid.lower(), 0), 1),
+            Self::Outline(outline) => (outline.edges.clone(), outline.shapes),
+        }
+    }
+}
+
+impl Outline {
+    /// The shape within `bounds` (m, in the case's coordinates) and of `area` (m²), less what is cut out; `edges` from
+    /// the grid's lower corner. Says in words what makes it too costly.
+    pub(crate) fn new(
+        edges: Vec<Edge>,
+        shapes: usize,
+        (bounds, area): ([[f64; 2]; 2], f64),
+        (grid, points_per_cell): (&GridSpec, usize),
+    ) -> Result<Self, String> {
+        affordable(&edges, grid, points_per_cell)?;
+        let origin = grid.lower();
+        let mut outline = Self { origin, edges, shapes, bounds, area, tally: Tally::default() };
+        let columns = outline.columns(grid).len();
+        if columns > MOST_COLUMNS {
+            return Err(format!("it spans {columns} columns of cells; at most {MOST_COLUMNS} are possible"));
+        }
+        outline.count(grid, points_per_cell);
+        Ok(outline)
+    }
+
+    /// Counts points and cells column by column; where something is cut out, the area is that of all cells' parts.
+    fn count(&mut self, grid: &GridSpec, points_per_cell: usize) {
+        let (mut tally, mut total, mut area) = (Tally::default(), 0_u64, 0.0);
+        for i in self.columns(grid) {
+            let column = self.column(grid, points_per_cell, i);
+            area += column.area;
+            let Some(rows) = column.rows() else { continue };
+            if tally.before.is_empty() {
+                tally.occupied = [i..i, rows.clone()];
+            }
+            let [columns, all_rows] = &mut tally.occupied;
+            *all_rows = all_rows.start.min(rows.start)..all_rows.end.max(rows.end);
+            tally.before.extend(std::iter::repeat_n(total, i + 1 - columns.end));
+            columns.end = i + 1;
+            tally.cells += column.parts.iter().map(|part| part.rows().len() as u64).sum::<u64>();
+            total = column.parts.iter().fold(total, |sum, part| sum.saturating_add(part.points(points_per_cell)));
+        }
+        tally.before.push(total);
+        if self.shapes > 1 {
+            self.area = area;
+        }
+        self.tally = tally;
+    }
+
+    /// Columns of cells that it may reach into.
+    fn columns(&self, grid: &GridSpec) -> Range<usize> {
+        reached(&grid.axes[0], self.bounds.map(|corner| corner[0] - self.origin[0]))
+    }
+
+    pub(crate) fn tally(&self) -> &Tally {
+        &self.tally
+    }
+
+    /// The part of a column of cells.
+    pub(crate) fn column(&self, grid: &GridSpec, points_per_cell: usize, i: usize) -> cells::Column {
+        column(&self.edges, self.shapes, (grid, points_per_cell), i)
+    }
+}
+
+/// The edges of a rectangle, from `origin`.
+pub(crate) fn rectangle(lower: [f64; 2], upper: [f64; 2], origin: [f64; 2], shape: usize) -> Vec<Edge> {
+    polygon(&[lower, [upper[0], lower[1]], upper, [lower[0], upper[1]]], origin, shape)
+}
+
+/// The edges of a polygon, from `origin`.
+pub(crate) fn polygon(corners: &[[f64; 2]], origin: [f64; 2], shape: usize) -> Vec<Edge> {
+    let place = |k: usize| [0, 1].map(|axis| corners[k % corners.len()][axis] - origin[axis]);
+    (0..corners.len()).map(|k| Edge::line(place(k), place(k + 1), shape)).collect()
+}
+
+/// Cells along an axis that an interval (m from the first) touches, those at whose ends it ends too.
+fn reached(axis: &Axis, [lower, upper]: [f64; 2]) -> Range<usize> {
+    let start = axis.first_cell(|i| axis.breakpoint(i + 1) >= lower);
+    start..axis.first_cell(|i| axis.breakpoint(i) > upper).max(start)
+}
+
+fn affordable(edges: &[Edge], grid: &GridSpec, points_per_cell: usize) -> Result<(), String> {
+    if edges.len() > MOST_EDGES {
+        return Err(format!("{} edges in all; at most {MOST_EDGES} are possible", edges.len()));
+    }
+    let cut = |edge: &Edge| {
+        let [x, y] = [[edge.a[0], edge.b[0]], edge.heights()];
+        (reached(&grid.axes[0], x).len() + reached(&grid.axes[1], y).len()) as u128
+    };
+    let cells: u128 = edges.iter().map(cut).sum();
+    if cells * edges.len() as u128 * points_per_cell as u128 > MOST_WORK {
+        return Err(format!(
+            "{} edges cut about {cells} cells of {points_per_cell} x {points_per_cell} points, which would take too long; take \
+             fewer edges or larger cells",
+            edges.len()
+        ));
+    }
+    Ok(())
+}

@@ -1,0 +1,225 @@
+//! The lattice points of an outline in a column of cells, and the part of the area that each gets.
+
+use super::edge::Edge;
+use super::reached;
+use super::sweep::{Slice, Window, intervals, solid, sweep};
+use crate::grid::GridSpec;
+use std::ops::Range;
+
+/// Parts of a cell: less area makes no point, and a lattice point is not so near to an edge.
+const SLIVER: f64 = 1e-9;
+
+/// What an outline has in a column of cells.
+#[derive(Clone, Debug)]
+pub(crate) struct Column {
+    /// rows, upwards
+    pub(crate) parts: Vec<Part>,
+    /// m²
+    pub(crate) area: f64,
+}
+
+/// Some rows of a column.
+#[derive(Clone, Debug)]
+pub(crate) enum Part {
+    /// Cells that are covered as a whole.
+    Whole(Range<usize>),
+    /// A cell that the outline cuts, with its points.
+    Cut(usize, Vec<Place>),
+}
+
+/// A point's place (m, from the grid's lower corner) and area (m²).
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Place {
+    pub(crate) x: [f64; 2],
+    pub(crate) area: f64,
+}
+
+impl Column {
+    /// From the first to the last row with points.
+    pub(crate) fn rows(&self) -> Option<Range<usize>> {
+        let (first, last) = (self.parts.first()?, self.parts.last()?);
+        Some(first.rows().start..last.rows().end)
+    }
+}
+
+impl Part {
+    pub(crate) fn rows(&self) -> Range<usize> {
+        match self {
+            Self::Whole(rows) => rows.clone(),
+            Self::Cut(row, _) => *row..row + 1,
+        }
+    }
+
+    /// Number of its points.
+    pub(crate) fn points(&self, points_per_cell: usize) -> u64 {
+        match self {
+            Self::Whole(rows) => (rows.len() * points_per_cell * points_per_cell) as u64,
+            Self::Cut(_, places) => places.len() as u64,
+        }
+    }
+}
+
+/// Place of lattice point `k` of `n` between two ends.
+pub(crate) fn place([lower, upper]: [f64; 2], k: usize, n: usize) -> f64 {
+    lower + (upper - lower) * ((k as f64 + 0.5) / n as f64)
+}
+
+/// What shape 0 less the others has in column `i` of the grid with `n` points along each axis of a cell.
+pub(crate) fn column(edges: &[Edge], shapes: usize, (grid, n): (&GridSpec, usize), i: usize) -> Column {
+    let (across, up) = (&grid.axes[0], &grid.axes[1]);
+    let x = [across.breakpoint(i), across.breakpoint(i + 1)];
+    let near: Vec<Near> = edges.iter().filter_map(|edge| Some(Near { edge: *edge, span: edge.span(x)? })).collect();
+    let mut column = Column { parts: Vec::new(), area: 0.0 };
+    if near.is_empty() {
+        return column;
+    }
+    let strip = Strip::new(x, near, shapes, n);
+    let mut cut: Vec<Range<usize>> = strip.near.iter().map(|near| reached(up, near.span)).collect();
+    cut.sort_by_key(|rows| rows.start);
+    let mut next = 0;
+    for rows in cut {
+        if next < rows.start {
+            let y = [up.breakpoint(next), up.breakpoint(next + 1)];
+            if covers(&strip.middle, 0.5 * (y[0] + y[1])) {
+                column.area += (x[1] - x[0]) * (up.breakpoint(rows.start) - y[0]);
+                column.parts.push(Part::Whole(next..rows.start));
+            }
+        }
+        for row in rows.start.max(next)..rows.end {
+            let (places, area) = strip.cell([up.breakpoint(row), up.breakpoint(row + 1)]);
+            column.area += area;
+            if !places.is_empty() {
+                column.parts.push(Part::Cut(row, places));
+            }
+        }
+        next = next.max(rows.end);
+    }
+    column
+}
+
+fn covers(intervals: &[[f64; 2]], y: f64) -> bool {
+    intervals.iter().any(|[lower, upper]| *lower < y && y < *upper)
+}
+
+/// An edge and its heights in the column.
+#[derive(Clone, Copy, Debug)]
+struct Near {
+    edge: Edge,
+    span: [f64; 2],
+}
+
+/// A column of cells with the edges in it.
+struct Strip {
+    x: [f64; 2],
+    near: Vec<Near>,
+    shapes: usize,
+    n: usize,
+    lines: Vec<Vec<[f64; 2]>>, // covered parts of the lattice's vertical lines
+    middle: Vec<[f64; 2]>,     // of the line in the middle
+}
+
+/// Sums over the slices of a cell.
+#[derive(Clone, Copy, Debug, Default)]
+struct Sum {
+    area: f64,
+    moment: [f64; 2],
+    largest: f64,
+    within: [f64; 2], // middle of the largest slice
+}
+
+impl Sum {
+    fn add(&mut self, slice: &Slice) {
+        let (area, moment) = (slice.area(), slice.moment());
+        self.area += area;
+        self.moment = [self.moment[0] + moment[0], self.moment[1] + moment[1]];
+        if area > self.largest {
+            (self.largest, self.within) = (area, slice.middle);
+        }
+    }
+}
+
+impl Strip {
+    fn new(x: [f64; 2], near: Vec<Near>, shapes: usize, n: usize) -> Self {
+        let at = |x: f64| intervals(near.iter().map(|near| &near.edge), shapes, x);
+        let lines = (0..n).map(|k| at(place(x, k, n))).collect();
+        let middle = at(0.5 * (x[0] + x[1]));
+        Self { x, near, shapes, n, lines, middle }
+    }
+
+    /// Points of the cell between two heights, and the area that is covered of it.
+    ///
+    /// A point has the covered area of its own n-th of the cell along each axis; what is left of the others goes to the
+    /// nearest point of the cell. A cell without a lattice point inside has one point, at the centroid if that is inside.
+    fn cell(&self, y: [f64; 2]) -> (Vec<Place>, f64) {
+        let size = (self.x[1] - self.x[0]).min(y[1] - y[0]);
+        let sub = (self.x[1] - self.x[0]) * (y[1] - y[0]) / (self.n * self.n) as f64;
+        let (mut places, mut left) = (Vec::new(), Vec::new());
+        let mut sum = Sum::default();
+        for a in 0..self.n {
+            let edges = self.edges(part(self.x, a, self.n), y[1]);
+            for b in 0..self.n {
+                let window = Window { x: part(self.x, a, self.n), y: part(y, b, self.n) };
+                let x = [place(self.x, a, self.n), place(y, b, self.n)];
+                let mut area = self.covered(&edges, &window, &mut sum);
+                let covered = covers(&self.lines[a], x[1]);
+                if area.is_none() {
+                    area = covered.then_some(sub);
+                    sum.area += area.unwrap_or(0.0);
+                }
+                let Some(area) = area.filter(|area| *area > 0.0) else { continue };
+                let inside = covered && area > SLIVER * sub;
+                let clear = |near: &Near| near.span[1] < y[0] || near.edge.distance(x) > SLIVER * size;
+                if inside && edges.iter().all(clear) { &mut places } else { &mut left }.push(Place { x, area });
+            }
+        }
+        if places.is_empty() && sum.area > SLIVER * sub * (self.n * self.n) as f64 {
+            places.push(Place { x: self.within(&sum), area: sum.area });
+            return (places, sum.area);
+        }
+        left.iter().for_each(|left| give(&mut places, left));
+        (places, sum.area)
+    }
+
+    /// Edges at some x and not above a height.
+    fn edges(&self, x: [f64; 2], top: f64) -> Vec<Near> {
+        let here = |near: &&Near| near.span[0] <= top && near.edge.b[0] >= x[0] && near.edge.a[0] <= x[1];
+        self.near.iter().filter(here).copied().collect()
+    }
+
+    /// Covered area of a window that an edge touches, added to the cell's; none if no edge does.
+    fn covered(&self, near: &[Near], window: &Window, sum: &mut Sum) -> Option<f64> {
+        let touches = |near: &Near| {
+            let [low, high] = near.span;
+            low <= window.y[1]
+                && high >= window.y[0]
+                && near.edge.span(window.x).is_some_and(|[low, high]| low <= window.y[1] && high >= window.y[0])
+        };
+        if !near.iter().any(touches) {
+            return None;
+        }
+        let edges: Vec<Edge> = near.iter().map(|near| near.edge).collect();
+        let before = sum.area;
+        sweep(&edges, self.shapes, window, &solid, &mut |slice| sum.add(&slice));
+        Some((sum.area - before).min(window.area()))
+    }
+
+    /// A place inside what the sums are about.
+    fn within(&self, sum: &Sum) -> [f64; 2] {
+        let centroid = sum.moment.map(|moment| moment / sum.area);
+        let line = intervals(self.near.iter().map(|near| &near.edge), self.shapes, centroid[0]);
+        if covers(&line, centroid[1]) { centroid } else { sum.within }
+    }
+}
+
+/// Part `k` of `n` equal ones of an interval.
+fn part([lower, upper]: [f64; 2], k: usize, n: usize) -> [f64; 2] {
+    [k, k + 1].map(|k| if k == n { upper } else { lower + (upper - lower) * (k as f64 / n as f64) })
+}
+
+/// Gives the area of a place to the nearest of others, the first of several.
+fn give(places: &mut [Place], left: &Place) {
+    let distance = |place: &Place| (place.x[0] - left.x[0]).hypot(place.x[1] - left.x[1]);
+    if let Some(nearest) = places.iter_mut().min_by(|a, b| distance(a).total_cmp(&distance(b))) {
+        nearest.area += left.area;
+    }
+}

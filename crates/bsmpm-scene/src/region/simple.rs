@@ -1,0 +1,77 @@
+//! Whether a polygon is one: at least three corners, an area, and edges that meet at the corners only.
+
+/// What is wrong with a polygon.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Fault {
+    /// fewer than three corners
+    TooFew,
+    /// a corner and the next one are the same place
+    Repeated(usize, usize),
+    /// all corners lie on a line
+    Flat,
+    /// two edges, by their first corners, cross or touch
+    Crossing(usize, usize),
+}
+
+/// The first fault of a polygon, none if it is simple.
+pub(crate) fn fault(corners: &[[f64; 2]]) -> Option<Fault> {
+    let n = corners.len();
+    if n < 3 {
+        return Some(Fault::TooFew);
+    }
+    let next = |k: usize| (k + 1) % n;
+    if let Some(k) = (0..n).find(|&k| corners[k] == corners[next(k)]) {
+        return Some(Fault::Repeated(k, next(k)));
+    }
+    let [lower, upper] = bounds(corners);
+    let thinnest = 1e-12 * (upper[0] - lower[0]).hypot(upper[1] - lower[1]);
+    let (p, q) = (corners[0], *corners.iter().max_by(|a, b| far(corners[0], a).total_cmp(&far(corners[0], b)))?);
+    if corners.iter().all(|r| turn(p, q, *r).abs() <= thinnest * far(p, &q)) {
+        return Some(Fault::Flat);
+    }
+    let crossing = |i: usize, j: usize| {
+        let (p, q, r, s) = (corners[i], corners[next(i)], corners[j], corners[next(j)]);
+        match (next(i) == j, next(j) == i) {
+            (true, _) => turns_back(p, q, s),
+            (_, true) => turns_back(r, s, q),
+            _ => meet([p, q], [r, s]),
+        }
+    };
+    let mut pairs = (0..n).flat_map(|i| (i + 1..n).map(move |j| (i, j)));
+    pairs.find(|(i, j)| crossing(*i, *j)).map(|(i, j)| Fault::Crossing(i, j))
+}
+
+/// Lower and upper corner of the rectangle around places.
+pub(crate) fn bounds(corners: &[[f64; 2]]) -> [[f64; 2]; 2] {
+    let reduce = |start: f64, f: fn(f64, f64) -> f64| [0, 1].map(|axis| corners.iter().map(|c| c[axis]).fold(start, f));
+    [reduce(f64::INFINITY, f64::min), reduce(f64::NEG_INFINITY, f64::max)]
+}
+
+/// Area, whatever the orientation: `½ |Σ (x_k - x_0)(y_(k+1) - y_0) - (x_(k+1) - x_0)(y_k - y_0)|`.
+pub(crate) fn area(corners: &[[f64; 2]]) -> f64 {
+    let twice: f64 = corners.windows(2).map(|pair| turn(corners[0], pair[0], pair[1])).sum();
+    0.5 * twice.abs()
+}
+
+fn far(p: [f64; 2], q: &[f64; 2]) -> f64 {
+    (q[0] - p[0]).hypot(q[1] - p[1])
+}
+
+/// Twice the area of a triangle, positive if it turns to the left.
+fn turn(p: [f64; 2], q: [f64; 2], r: [f64; 2]) -> f64 {
+    (q[0] - p[0]) * (r[1] - p[1]) - (r[0] - p[0]) * (q[1] - p[1])
+}
+
+/// Whether the way from p to q goes back on itself to r.
+fn turns_back(p: [f64; 2], q: [f64; 2], r: [f64; 2]) -> bool {
+    let back = (q[0] - p[0]) * (r[0] - q[0]) + (q[1] - p[1]) * (r[1] - q[1]);
+    turn(p, q, r) == 0.0 && back < 0.0
+}
+
+/// Whether two segments have a place in common.
+fn meet([p, q]: [[f64; 2]; 2], [r, s]: [[f64; 2]; 2]) -> bool {
+    let apart =
+        |axis: usize| p[axis].max(q[axis]) < r[axis].min(s[axis]) || r[axis].max(s[axis]) < p[axis].min(q[axis]);
+    let aside = |a: f64, b: f64| (a > 0.0 && b > 0.0) || (a < 0.0 && b < 0.0);
+    !apart(0) && !apart(1) && !aside(turn(p, q, r), turn(p, q, s)) && !aside(turn(r, s, p), turn(r, s, q))
+}

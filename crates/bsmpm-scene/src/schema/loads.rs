@@ -1,0 +1,125 @@
+//! The tables of what acts on the bodies besides gravity, and of what varies with depth.
+
+use super::Kind::*;
+use super::Presence::{Default, Optional, Required};
+use super::tables::{key, one_of};
+use super::{Dimension as In, Kind, Range, Table};
+use std::ops::Bound::Included;
+
+const PLACE: Kind = Pair(In::Length, Range::ANY);
+const DISPLACEMENT: Kind = Pair(In::Length, Range::ANY);
+const VELOCITY: Kind = Pair(In::Velocity, Range::ANY);
+const PATH: Kind = Rows(&[(In::Time, Range::NOT_NEGATIVE), (In::Length, Range::ANY), (In::Length, Range::ANY)]);
+const RAMP: Kind = Quantity(In::Time, Range::NOT_NEGATIVE);
+/// Horizontal over vertical stress: from nothing to far beyond passive pressure.
+pub(super) const COEFFICIENT: Range = Range::of(Included(0.0), Included(100.0));
+
+pub(super) static FOOTING: Table = Table {
+    header: "[footing]",
+    doc: "A rigid strip that moves on a given way and holds the material at its base (section 3.3)",
+    keys: &[
+        key("from", PLACE, Required, "one end of its base at the start"),
+        key("to", PLACE, Required, "the other end"),
+        key("displacement", DISPLACEMENT, Optional, "reached at the end, linear in time"),
+        key("velocity", VELOCITY, Optional, "constant; quasi-static: m per unit of pseudo-time, numbers"),
+        key(
+            "path",
+            PATH,
+            Optional,
+            "rows [t, ux, uy], t increasing; linear between, 0 at time 0, constant after the last",
+        ),
+        key("base", Choice(&["smooth", "rough"], &[]), Default("\"smooth\""), "holds the normal component, or all"),
+    ],
+    exclusive: &[one_of(&["displacement", "velocity", "path"], true)],
+};
+
+pub(super) static PRESCRIBED: Table = Table {
+    header: "[[prescribed]]",
+    doc: "Motion of a face of the grid, or of a segment, which holds the material at it",
+    keys: &[
+        key("face", Choice(&["left", "right", "bottom", "top"], &[]), Optional, "the face; free in [boundary]"),
+        key("from", PLACE, Optional, "one end of a segment at the start"),
+        key("to", PLACE, Optional, "the other end"),
+        key("displacement", DISPLACEMENT, Optional, "reached at the end, linear in time"),
+        key("velocity", VELOCITY, Optional, "constant; quasi-static: m per unit of pseudo-time, numbers"),
+        key(
+            "path",
+            PATH,
+            Optional,
+            "rows [t, ux, uy], t increasing; linear between, 0 at time 0, constant after the last",
+        ),
+        key("components", Choice(&["all", "normal"], &[]), Default("\"all\""), "what is held"),
+    ],
+    exclusive: &[
+        one_of(&["face", "from"], true),
+        one_of(&["face", "to"], true),
+        one_of(&["displacement", "velocity", "path"], true),
+    ],
+};
+
+pub(super) static TRACTION: Table = Table {
+    header: "[[traction]]",
+    doc: "A load on a segment of a body's surface, which it follows",
+    keys: &[
+        key("from", PLACE, Required, "one end of the segment at the start"),
+        key("to", PLACE, Required, "the other end"),
+        key("stress", Pair(In::Stress, Range::ANY), Required, "force per area of the start, along x and y"),
+        key("ramp", RAMP, Default("0.0"), "time over which it grows; 0: at once"),
+    ],
+    exclusive: &[],
+};
+
+pub(super) static POINT_LOAD: Table = Table {
+    header: "[[point_load]]",
+    doc: "A force at a point of a body, which it follows",
+    keys: &[
+        key("at", PLACE, Required, "where at the start"),
+        key("force", Pair(In::LineForce, Range::ANY), Required, "along x and y, per metre of thickness"),
+        key("ramp", RAMP, Default("0.0"), "time over which it grows; 0: at once"),
+    ],
+    exclusive: &[],
+};
+
+pub(super) static REDUCTION: Table = Table {
+    header: "[strength_reduction]",
+    doc: "Strength of all materials divided by a factor: c/F, atan(tan(phi)/F), psi at most the new phi (section 3.2)",
+    keys: &[key("factor", Quantity(In::Number, Range::of(Included(0.1), Included(100.0))), Required, "the factor F")],
+    exclusive: &[],
+};
+
+pub(super) static INITIAL: Table = Table {
+    header: "[initial]",
+    doc: "Stress at the start, under the full gravity; displacements count from there",
+    keys: &[
+        key(
+            "k0",
+            Quantity(In::Number, COEFFICIENT),
+            Optional,
+            "weight of what lies above as vertical stress, k0 times it as horizontal; of materials without their own k0",
+        ),
+        key("gravity", Choice(&["elastic"], &[]), Optional, "elastic equilibrium under the loads at time 0 instead"),
+    ],
+    exclusive: &[one_of(&["k0", "gravity"], false)],
+};
+
+pub(super) static STRESS_PROFILE: Table = Table {
+    header: "{ value, at_y, per_metre }",
+    doc: "value + per_metre (at_y - y): linear everywhere, above at_y too; a point keeps what it has at the start",
+    keys: &[
+        key("value", Quantity(In::Stress, Range::ANY), Required, "at the height at_y"),
+        key("at_y", Quantity(In::Length, Range::ANY), Required, "the height"),
+        key("per_metre", Gradient(In::Stress), Required, "growth per metre of depth"),
+    ],
+    exclusive: &[],
+};
+
+pub(super) static ANGLE_PROFILE: Table = Table {
+    header: "{ value, at_y, per_metre }",
+    doc: "value + per_metre (at_y - y): linear everywhere, above at_y too; a point keeps what it has at the start",
+    keys: &[
+        key("value", Quantity(In::Angle, Range::ANY), Required, "at the height at_y"),
+        key("at_y", Quantity(In::Length, Range::ANY), Required, "the height"),
+        key("per_metre", Gradient(In::Angle), Required, "growth per metre of depth"),
+    ],
+    exclusive: &[],
+};

@@ -1,0 +1,154 @@
+//! Shapes of bodies and of what is cut out of them.
+
+use super::place;
+use crate::document::Origin;
+use crate::grid::GridSpec;
+use crate::record::Record;
+use crate::region::{self, Edge, Fault, Outline, Region};
+use crate::report::Report;
+
+/// A shape as it is written, m in the case's coordinates.
+#[derive(Clone, Debug)]
+enum Shape {
+    Box { lower: [f64; 2], upper: [f64; 2] },
+    Polygon(Vec<[f64; 2]>),
+    Circle { center: [f64; 2], radius: f64 },
+}
+
+impl Shape {
+    fn bounds(&self) -> [[f64; 2]; 2] {
+        match self {
+            Self::Box { lower, upper } => [*lower, *upper],
+            Self::Polygon(corners) => region::bounds(corners),
+            Self::Circle { center, radius } => [-radius, *radius].map(|reach| center.map(|x| x + reach)),
+        }
+    }
+
+    fn area(&self) -> f64 {
+        match self {
+            Self::Box { lower, upper } => (upper[0] - lower[0]) * (upper[1] - lower[1]),
+            Self::Polygon(corners) => region::area(corners),
+            Self::Circle { radius, .. } => std::f64::consts::PI * radius * radius,
+        }
+    }
+
+    fn edges(&self, origin: [f64; 2], number: usize) -> Vec<Edge> {
+        match self {
+            Self::Box { lower, upper } => region::rectangle(*lower, *upper, origin, number),
+            Self::Polygon(corners) => region::polygon(corners, origin, number),
+            Self::Circle { center, radius } => {
+                Edge::circle([0, 1].map(|axis| center[axis] - origin[axis]), *radius, number).to_vec()
+            }
+        }
+    }
+}
+
+/// What a body fills, with `points_per_cell` along an axis; place and size are checked only if the grid is valid.
+pub(super) fn region(
+    body: &Record,
+    (grid, points_per_cell): (Option<&GridSpec>, Option<usize>),
+    report: &mut Report<'_>,
+) -> Option<Region> {
+    let whole = read(body, report);
+    let cut: Option<Vec<Shape>> = body.records("subtract").iter().map(|record| read(record, report)).collect();
+    let (whole, cut) = (whole?, cut?);
+    if body.gives("subtract") && cut.len() != body.records("subtract").len() {
+        return None;
+    }
+    let grid = grid?;
+    inside(&whole, body, grid, report)?;
+    if let (Shape::Box { lower, upper }, true) = (&whole, cut.is_empty()) {
+        return Some(Region::Box { lower: *lower, upper: *upper });
+    }
+    let shapes = std::iter::once(&whole).chain(&cut).enumerate();
+    let edges = shapes.flat_map(|(number, shape)| shape.edges(grid.lower(), number)).collect();
+    match Outline::new(edges, 1 + cut.len(), (whole.bounds(), whole.area()), (grid, points_per_cell?)) {
+        Ok(outline) => Some(Region::Outline(outline)),
+        Err(message) => {
+            body.error(key(body), message, report);
+            None
+        }
+    }
+}
+
+/// The key that gives a body's or a cut's shape.
+pub(super) fn key(record: &Record) -> &'static str {
+    ["polygon", "circle"].into_iter().find(|key| record.gives(key)).unwrap_or("box")
+}
+
+fn read(record: &Record, report: &mut Report<'_>) -> Option<Shape> {
+    match key(record) {
+        "polygon" => polygon(record, report),
+        "circle" => {
+            let circle = record.record("circle")?;
+            Some(Shape::Circle { center: circle.pair("center")?, radius: circle.number("radius")? })
+        }
+        _ => {
+            let shape = record.record("box")?;
+            let (lower, upper) = (shape.pair("lower")?, shape.pair("upper")?);
+            if lower[0] >= upper[0] || lower[1] >= upper[1] {
+                shape.error("upper", format!("{upper:?} is not above lower = {lower:?}: the body is empty"), report);
+                return None;
+            }
+            Some(Shape::Box { lower, upper })
+        }
+    }
+}
+
+fn polygon(record: &Record, report: &mut Report<'_>) -> Option<Shape> {
+    let rows = record.rows("polygon")?;
+    let corners: Vec<[f64; 2]> = rows.iter().map(|row| [row.numbers[0], row.numbers[1]]).collect();
+    if corners.len() > region::MOST_EDGES {
+        let message = format!("{} corners; at most {} are possible", corners.len(), region::MOST_EDGES);
+        record.error("polygon", message, report);
+        return None;
+    }
+    let Some(fault) = region::fault(&corners) else { return Some(Shape::Polygon(corners)) };
+    let row = |k: usize| rows[k].origin;
+    let (origin, message): (Origin, String) = match fault {
+        Fault::TooFew => (record.place("polygon"), format!("{} corners; a polygon has three at least", corners.len())),
+        Fault::Repeated(last, 0) => {
+            (row(last), format!("the last corner {:?} repeats the first; a polygon closes by itself", corners[last]))
+        }
+        Fault::Repeated(_, k) => (row(k), format!("corner {k}, {:?}, repeats the one before (from 0)", corners[k])),
+        Fault::Flat => (record.place("polygon"), "all corners lie on a line: the area is zero".to_owned()),
+        Fault::Crossing(i, j) => {
+            let edge = |k: usize| format!("{:?} to {:?}", corners[k], corners[(k + 1) % corners.len()]);
+            (row(j), format!("the edge {} crosses or touches the edge {}", edge(j), edge(i)))
+        }
+    };
+    report.error(origin, &record.path_of("polygon"), message);
+    None
+}
+
+/// Errors about what lies outside the grid.
+fn inside(shape: &Shape, body: &Record, grid: &GridSpec, report: &mut Report<'_>) -> Option<()> {
+    let [lower, upper] = shape.bounds();
+    if place::beyond(grid, lower).is_none() && place::beyond(grid, upper).is_none() {
+        return Some(());
+    }
+    match shape {
+        Shape::Box { .. } => {
+            for (key, corner) in [("lower", lower), ("upper", upper)] {
+                let message = place::beyond(grid, corner);
+                message.into_iter().for_each(|message| {
+                    if let Some(shape) = body.record("box") {
+                        shape.error(key, message, report);
+                    }
+                });
+            }
+        }
+        Shape::Polygon(corners) => {
+            let outside = |(k, corner): (usize, &[f64; 2])| Some((k, place::beyond(grid, *corner)?));
+            if let Some((k, message)) = corners.iter().enumerate().find_map(outside) {
+                let origin = body.rows("polygon").map_or(body.place("polygon"), |rows| rows[k].origin);
+                report.error(origin, &body.path_of("polygon"), format!("corner {k} (from 0): {message}"));
+            }
+        }
+        Shape::Circle { .. } => {
+            let message = place::beyond(grid, lower).or(place::beyond(grid, upper)).unwrap_or_default();
+            body.error("circle", message, report);
+        }
+    }
+    None
+}

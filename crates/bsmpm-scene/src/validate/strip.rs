@@ -1,0 +1,187 @@
+//! The footing and prescribed motions.
+
+use super::place::{beyond, occupied};
+use crate::case::{Base, Body, Face, Footing, Path, Prescribed, Site, Support};
+use crate::grid::GridSpec;
+use crate::record::Record;
+use crate::report::Report;
+use std::collections::HashSet;
+
+/// Parts of a motion below which it does not count.
+const NOTHING: f64 = 1e-12;
+
+/// What the rest of the case says to a strip.
+#[derive(Clone, Copy)]
+pub(super) struct Around<'a> {
+    pub(super) grid: Option<&'a GridSpec>,
+    pub(super) bodies: Option<&'a [Body]>,
+    pub(super) boundary: Option<[[Support; 2]; 2]>,
+    pub(super) end: Option<f64>,
+}
+
+/// The footing, if there is one and it is right.
+pub(super) fn footing(root: &Record, around: Around<'_>, report: &mut Report<'_>) -> Option<Footing> {
+    let record = root.record("footing")?;
+    let path = path(record, around.end, report);
+    let ends = segment(record, around, report);
+    let (path, [from, to]) = (path?, ends?);
+    stays_inside(record, [from, to], &path, around, report);
+    let base = if record.word("base")? == "rough" { Base::Rough } else { Base::Smooth };
+    if base == Base::Smooth && normal_part(&path, from, to) <= NOTHING * size(&path) {
+        let message = "a smooth base holds its normal component only, and the motion has none";
+        record.error(motion(record), message, report);
+    }
+    Some(Footing { from, to, path, base })
+}
+
+/// All prescribed motions in the order of the file, without those that have an error.
+pub(super) fn prescribed(root: &Record, around: Around<'_>, report: &mut Report<'_>) -> Vec<Prescribed> {
+    let mut taken = HashSet::new();
+    let mut found = Vec::new();
+    for record in root.records("prescribed") {
+        let path = path(record, around.end, report);
+        let site = site(record, around, report);
+        let (Some(path), Some(site)) = (path, site) else { continue };
+        match site {
+            Site::Face(face) => {
+                inward(record, face, &path, report);
+                if !taken.insert(record.word("face")) {
+                    record.error("face", "its motion is prescribed already", report);
+                }
+            }
+            Site::Segment { from, to } => stays_inside(record, [from, to], &path, around, report),
+        }
+        let base = if record.word("components") == Some("normal") { Base::Smooth } else { Base::Rough };
+        found.push(Prescribed { site, path, base });
+    }
+    found
+}
+
+/// Name of a face.
+pub(super) fn face(word: &str) -> Face {
+    Face { axis: usize::from(matches!(word, "bottom" | "top")), upper: matches!(word, "right" | "top") }
+}
+
+/// A segment's ends inside the grid; warns if no body is there.
+pub(super) fn segment(record: &Record, around: Around<'_>, report: &mut Report<'_>) -> Option<[[f64; 2]; 2]> {
+    let (from, to) = (record.pair("from")?, record.pair("to")?);
+    if from == to {
+        record.error("to", format!("{to:?} is `from` too: the length is zero"), report);
+        return None;
+    }
+    let grid = around.grid?;
+    let mut inside = true;
+    for (key, at) in [("from", from), ("to", to)] {
+        if let Some(message) = beyond(grid, at) {
+            record.error(key, message, report);
+            inside = false;
+        }
+    }
+    if inside && around.bodies.is_some_and(|bodies| !occupied(bodies, grid, [from, to])) {
+        report.warn(format!("{}: no body is at {from:?} to {to:?} at the start", record.path));
+    }
+    inside.then_some([from, to])
+}
+
+fn site(record: &Record, around: Around<'_>, report: &mut Report<'_>) -> Option<Site> {
+    if !record.gives("face") {
+        let [from, to] = segment(record, around, report)?;
+        return Some(Site::Segment { from, to });
+    }
+    let word = record.word("face")?;
+    let face = face(word);
+    let support = around.boundary?[face.axis][usize::from(face.upper)];
+    if support != Support::Free {
+        let message = format!("[boundary] holds \"{word}\" too; leave it free there");
+        record.error("face", message, report);
+        return None;
+    }
+    Some(Site::Face(face))
+}
+
+/// The key that gives a motion.
+fn motion(record: &Record) -> &'static str {
+    ["displacement", "velocity"].into_iter().find(|key| record.gives(key)).unwrap_or("path")
+}
+
+fn path(record: &Record, end: Option<f64>, report: &mut Report<'_>) -> Option<Path> {
+    let rows = match motion(record) {
+        "displacement" => vec![(end?, record.pair("displacement")?)],
+        "velocity" => vec![(end?, record.pair("velocity")?.map(|v| v * end.unwrap_or(0.0)))],
+        _ => rows(record, end, report)?,
+    };
+    Some(Path { rows })
+}
+
+fn rows(record: &Record, end: Option<f64>, report: &mut Report<'_>) -> Option<Vec<(f64, [f64; 2])>> {
+    let written = record.rows("path")?;
+    let mut rows: Vec<(f64, [f64; 2])> = Vec::with_capacity(written.len());
+    for (k, row) in written.iter().enumerate() {
+        let (t, u) = (row.numbers[0], [row.numbers[1], row.numbers[2]]);
+        let key = record.path_of("path");
+        match rows.last() {
+            _ if k == 0 && t == 0.0 && u == [0.0; 2] => continue,
+            _ if k == 0 && t == 0.0 => {
+                report.error(row.origin, &key, format!("{u:?} at time 0; a path starts with [0.0, 0.0] there"));
+                return None;
+            }
+            Some((before, _)) if *before >= t => {
+                report.error(row.origin, &key, format!("t = {t} is not above {before}, that of the row before"));
+                return None;
+            }
+            None if t == 0.0 => {
+                report.error(row.origin, &key, "t = 0 is not above 0, that of the row before");
+                return None;
+            }
+            _ => rows.push((t, u)),
+        }
+    }
+    if rows.is_empty() {
+        record.error("path", "a path needs at least one row [t, ux, uy] with t > 0", report);
+        return None;
+    }
+    if let Some((t, _)) = rows.iter().find(|(t, _)| end.is_some_and(|end| *t > end)) {
+        report.warn(format!("{}: the row at t = {t} is beyond the end of the run", record.path_of("path")));
+    }
+    Some(rows)
+}
+
+/// Between its rows a path is straight, and the grid convex: the rows decide.
+fn stays_inside(record: &Record, ends: [[f64; 2]; 2], path: &Path, around: Around<'_>, report: &mut Report<'_>) {
+    let Some(grid) = around.grid else { return };
+    let at = |end: [f64; 2], u: [f64; 2]| [end[0] + u[0], end[1] + u[1]];
+    let beyond = |(t, u): &(f64, [f64; 2])| Some((*t, ends.into_iter().find_map(|end| beyond(grid, at(end, *u)))?));
+    if let Some((t, message)) = path.rows.iter().find_map(beyond) {
+        record.error(motion(record), format!("at t = {t} it has left the grid: {message}"), report);
+    }
+}
+
+fn inward(record: &Record, face: Face, path: &Path, report: &mut Report<'_>) {
+    let outward = |u: f64| if face.upper { u > 0.0 } else { u < 0.0 };
+    if let Some((t, u)) = path.rows.iter().find(|(_, u)| outward(u[face.axis])) {
+        let message = format!("at t = {t} the face has left the grid by {u:?}; it may move inward or along itself");
+        record.error(motion(record), message, report);
+    }
+}
+
+fn size(path: &Path) -> f64 {
+    path.rows.iter().map(|(_, u)| u[0].hypot(u[1])).fold(0.0, f64::max)
+}
+
+/// The largest motion normal to a base, m.
+fn normal_part(path: &Path, from: [f64; 2], to: [f64; 2]) -> f64 {
+    let normal = normal(from, to);
+    path.rows.iter().map(|(_, u)| (u[0] * normal[0] + u[1] * normal[1]).abs()).fold(0.0, f64::max)
+}
+
+/// Unit normal of a segment.
+pub(super) fn normal(from: [f64; 2], to: [f64; 2]) -> [f64; 2] {
+    let along = [to[0] - from[0], to[1] - from[1]];
+    let length = along[0].hypot(along[1]);
+    [-along[1] / length, along[0] / length]
+}
+
+/// Whether a path moves at all.
+pub(super) fn moves(path: &Path) -> bool {
+    size(path) > 0.0
+}

@@ -1,0 +1,261 @@
+//! Rows about shapes, layers, strips, loads and the stress at the start.
+
+use super::{Row, row};
+
+const BOX: &str = "box = { lower = [0.0, 0.0], upper = [4.0, 1.0] }";
+const POLYGON: &str = "polygon = [[2.5, 1.5], [3.75, 1.5], [\"3 m\", 2.5], [2.5, 2.5]]";
+const CIRCLE: &str = "circle = { center = [0.5, 2.0], radius = 0.4 }";
+
+/// Polygons, circles and what is cut out.
+pub const SHAPES: &[Row] = &[
+    row(POLYGON, "polygon = [[2.5, 1.5], [3.5, 1.5]]", "body.3.polygon", "2 corners; a polygon has three at least"),
+    row(POLYGON, "polygon = []", "body.3.polygon", "0 corners"),
+    row(POLYGON, "polygon = [1, 2, 3]", "body.3.polygon", "a list of rows, each [a length, a length], found 1"),
+    row(POLYGON, "polygon = [[1, 2], [1, 2, 3], [2, 2]]", "body.3.polygon", "found a list of 3"),
+    row(POLYGON, "polygon = [[1, 2], [1, \"2 s\"], [2, 2]]", "body.3.polygon", "`s` is a unit of time"),
+    row(POLYGON, "polygon = [[1, 2], [1, inf], [2, 2]]", "body.3.polygon", "no finite number"),
+    row(
+        POLYGON,
+        "polygon = [\n[2.5, 1.5],\n[3.5, 1.5],\n[3.5, 1.5],\n[3, 2]]",
+        "body.3.polygon",
+        "repeats the one before",
+    )
+    .down(3),
+    row(POLYGON, "polygon = [\n[2.5, 1.5],\n[3.5, 1.5],\n[3, 2],\n[2.5, 1.5]]", "body.3.polygon", "repeats the first")
+        .down(4),
+    row(POLYGON, "polygon = [[2.5, 1.5], [3.0, 2.0], [3.5, 2.5]]", "body.3.polygon", "the area is zero"),
+    row(
+        POLYGON,
+        "polygon = [\n[2.5, 1.5],\n[3.5, 2.5],\n[3.5, 1.5],\n[2.5, 2.5]]",
+        "body.3.polygon",
+        "crosses or touches",
+    )
+    .down(3),
+    row(POLYGON, "polygon = [[2, 1.5], [3, 1.5], [3, 2], [2.5, 1.5], [2, 2]]", "body.3.polygon", "crosses or touches"),
+    row(POLYGON, "polygon = [[2, 1.5], [3, 1.5], [2.5, 1.5], [2, 2]]", "body.3.polygon", "crosses or touches"),
+    row(
+        POLYGON,
+        "polygon = [\n[2.5, 1.5],\n[4.5, 1.5],\n[3, 2]]",
+        "body.3.polygon",
+        "4.5 is outside the grid, which ends at x = 4",
+    )
+    .down(2),
+    row(CIRCLE, "circle = { center = [0.5, 2.0], radius = 0 }", "body.4.circle.radius", "allowed: radius > 0"),
+    row(CIRCLE, "circle = { center = [0.5, 2.0] }", "body.4.circle.radius", "missing"),
+    row(
+        CIRCLE,
+        "circle = { center = [0.5, 2.0], radius = 0.6 }",
+        "body.4.circle",
+        "outside the grid, which starts at x = 0",
+    ),
+    row(
+        BOX,
+        "box = { lower = [0, 0], upper = [4, 1] }\ncircle = {}",
+        "body.0.circle",
+        "only one of box, polygon, circle",
+    )
+    .down(1),
+    row(
+        "{ circle = { center = [2.75",
+        "{ cirle = { center = [2.75",
+        "body.3.subtract.0.cirle",
+        "did you mean `circle`?",
+    ),
+    row("{ box = { lower = [3.0, 1.5], upper = [3.25, 1.75] } }", "{}", "body.3.subtract.1", "missing: one of box"),
+    row("{ box = { lower = [3.0, 1.5], upper = [3.25, 1.75] } }", "5", "body.3.subtract.1", "expected a table"),
+    row("upper = [3.25, 1.75]", "upper = [2.25, 1.75]", "body.3.subtract.1.box.upper", "is not above lower"),
+    row(
+        "lower = [3.0, 1.5], upper = [3.25, 1.75]",
+        "lower = [0, 0], upper = [4, 3]",
+        "body.3.polygon",
+        "it has no points",
+    )
+    .up(1),
+];
+
+/// Parameters by height, and strength reduction.
+pub const LAYERS: &[Row] = &[
+    row("\"0.5 deg/m\"", "\"0.5 deg\"", "material.till.friction.per_metre", "no unit per metre (deg/m, rad/m)"),
+    row("\"2 MPa/m\"", "\"2 kN/m3\"", "material.till.young.per_metre", "no unit per metre (Pa/m"),
+    row("\"2 MPa/m\"", "\"2 s/m\"", "material.till.young.per_metre", "`s` is a unit of time"),
+    row("\"2 MPa/m\"", "true", "material.till.young.per_metre", "a number (Pa/m) or a string with a unit (Pa/m, kPa/m"),
+    row("\"2 MPa/m\"", "\"2e30 MPa/m\"", "material.till.young.per_metre", "is out of range"),
+    row("at_y = 3, per_metre = 500", "per_metre = 500", "material.till.cohesion.at_y", "missing"),
+    row("at_y = 3, per_metre", "y = 3, per_metre", "material.till.cohesion.y", "unknown key `y`"),
+    row(
+        "per_metre = \"2 MPa/m\"",
+        "per_metre = \"-7 MPa/m\"",
+        "material.till.young",
+        "y = 1.5, and bodies of this material reach there; allowed: young > 0",
+    ),
+    row("value = \"1 kPa\", at_y = 3", "value = 0, at_y = 2", "material.till.cohesion", "is -250 at y = 2.5"),
+    row("value = 30, at_y", "value = 89.5, at_y", "material.till.friction", "is 90.25 at y = 1.5"),
+    row("value = 30, at_y", "value = -0.4, at_y", "material.till.friction", "is -0.15"),
+    row("dilation    = 0\n", "dilation = 31\n", "material.till.dilation", "<= friction = 30.75"),
+    row(
+        "poisson     = 0.2",
+        "poisson = { value = 0.2, at_y = 0, per_metre = 0 }",
+        "material.block.poisson",
+        "found a table",
+    ),
+    row("factor = 1.25", "factor = 0", "strength_reduction.factor", "allowed: 0.1 <= factor <= 100"),
+    row("factor = 1.25", "factor = 101", "strength_reduction.factor", "out of range"),
+    row("factor = 1.25", "factors = 1.25", "strength_reduction.factors", "did you mean `factor`?"),
+    row("factor = 1.25", "", "strength_reduction.factor", "missing").up(1),
+];
+
+/// The footing, prescribed motions, tractions and point loads.
+pub const STRIPS: &[Row] = &[
+    row("to   = [\"1.75 m\", 2.5]", "to = [1.25, 2.5]", "footing.to", "the length is zero"),
+    row("to   = [\"1.75 m\", 2.5]", "to = [5, 2.5]", "footing.to", "outside the grid, which ends at x = 4"),
+    row("from = [1.25, 2.5]", "from = [1.25, -2.5]", "footing.from", "outside the grid, which starts at y = 0"),
+    row("from = [1.25, 2.5]", "", "footing.from", "missing").up(1),
+    row(
+        "displacement = [0.0, \"-10 cm\"]",
+        "displacement = [0, -3]",
+        "footing.displacement",
+        "at t = 1 it has left the grid: -0.5 is",
+    ),
+    row(
+        "displacement = [0.0, \"-10 cm\"]",
+        "velocity = [0, 1]",
+        "footing.velocity",
+        "at t = 1 it has left the grid: 3.5 is",
+    ),
+    row(
+        "displacement = [0.0, \"-10 cm\"]",
+        "path = [[0.5, 0, -3], [1, 0, 0]]",
+        "footing.path",
+        "at t = 0.5 it has left",
+    ),
+    row("displacement = [0.0, \"-10 cm\"]", "", "footing", "missing: one of displacement, velocity, path").up(3),
+    row(
+        "displacement = [0.0, \"-10 cm\"]",
+        "displacement = [0, -1]\npath = [[1, 0, 0]]",
+        "footing.path",
+        "only one of",
+    )
+    .down(1),
+    row("displacement = [0.0, \"-10 cm\"]", "displacement = [0.1, 0]", "footing.displacement", "the motion has none"),
+    row("displacement = [0.0, \"-10 cm\"]", "displacement = [0.0, 0]", "footing.displacement", "the motion has none"),
+    row(
+        "displacement = [0.0, \"-10 cm\"]",
+        "displacement = [0.0, \"-1 m/s\"]",
+        "footing.displacement",
+        "expected a length",
+    ),
+    row("base = \"smooth\"", "base = \"slippery\"", "footing.base", "expected one of \"smooth\", \"rough\""),
+    row("[1.0, 0.0, 0.0]]", "\n[0.5, 0.0, 0.0]]", "prescribed.1.path", "t = 0.5 is not above 0.5").down(1),
+    row(
+        "[[\"0.5 s\", 0.0, -0.1], [1.0, 0.0, 0.0]]",
+        "[[0, 0, 0.1], [1, 0, 0]]",
+        "prescribed.1.path",
+        "starts with [0.0, 0.0]",
+    ),
+    row(
+        "[[\"0.5 s\", 0.0, -0.1], [1.0, 0.0, 0.0]]",
+        "[[0, 0, 0], [0, 0, 0]]",
+        "prescribed.1.path",
+        "t = 0 is not above 0",
+    ),
+    row("[[\"0.5 s\", 0.0, -0.1], [1.0, 0.0, 0.0]]", "[[0, 0, 0]]", "prescribed.1.path", "at least one row"),
+    row("[[\"0.5 s\", 0.0, -0.1], [1.0, 0.0, 0.0]]", "[[-1, 0, 0]]", "prescribed.1.path", "out of range"),
+    row(
+        "[[\"0.5 s\", 0.0, -0.1], [1.0, 0.0, 0.0]]",
+        "[[1, 0]]",
+        "prescribed.1.path",
+        "each [a time, a length, a length]",
+    ),
+    row("[[\"0.5 s\", 0.0, -0.1], [1.0, 0.0, 0.0]]", "[[1, 2, 0]]", "prescribed.1.path", "it has left the grid: 4.5"),
+    row("face = \"top\"", "face = \"left\"", "prescribed.0.face", "[boundary] holds \"left\" too"),
+    row("face = \"top\"", "face = \"up\"", "prescribed.0.face", "expected one of"),
+    row("face = \"top\"", "face = \"top\"\nfrom = [0, 1]", "prescribed.0.from", "only one of face, from").down(1),
+    row("face = \"top\"", "from = [0, 1]", "prescribed.0", "missing: one of face, to").up(1),
+    row("face = \"top\"", "", "prescribed.0", "missing: one of face, from").up(1),
+    row(
+        "velocity = [0.0, \"-10 mm/s\"]",
+        "velocity = [0.0, 0.1]",
+        "prescribed.0.velocity",
+        "it may move inward or along itself",
+    ),
+    row(
+        "components = \"normal\"",
+        "components = \"both\"",
+        "prescribed.0.components",
+        "expected one of \"all\", \"normal\"",
+    ),
+    row(
+        "[footing]",
+        "[[prescribed]]\nface = \"top\"\nvelocity = [0, 0]\n[footing]",
+        "prescribed.1.face",
+        "prescribed already",
+    )
+    .down(10),
+    row("to   = [1.0, 1.25]", "to = [9.0, 1.25]", "traction.0.to", "outside the grid"),
+    row("to   = [1.0, 1.25]", "to = [0.0, 1.25]", "traction.0.to", "the length is zero"),
+    row("stress = [0.0, \"-20 kPa\"]", "stress = [0.0, \"-20 kN/m\"]", "traction.0.stress", "expected a stress"),
+    row("stress = [0.0, \"-20 kPa\"]", "", "traction.0.stress", "missing").up(3),
+    row("at = [3.5, 1.25]", "at = [3.5, 3.25]", "point_load.0.at", "outside the grid, which ends at y = 3"),
+    row("\"-1 kN/m\"", "\"-1 kN\"", "point_load.0.force", "takes forces per metre (N/m, kN/m, MN/m)"),
+    row("\"-1 kN/m\"", "\"-1 kPa\"", "point_load.0.force", "expected a force per metre of thickness"),
+    row("ramp = \"0.5 s\"", "ramp = -1", "traction.0.ramp", "allowed: ramp >= 0"),
+];
+
+/// Stress at the start, and the histories of the footing and of the pressure.
+pub const INITIAL: &[Row] = &[
+    row("k0 = 0.5", "k0 = -0.5", "initial.k0", "0 <= k0 <= 100"),
+    row("k0 = 0.5", "k0 = 0.5\ngravity = \"elastic\"", "initial.gravity", "only one of k0, gravity").down(1),
+    row("k0 = 0.5", "gravity = \"plastic\"", "initial.gravity", "expected one of \"elastic\""),
+    row("k0 = 0.5", "", "initial", "missing: k0 (or one in [material.sand])").up(1),
+    row("k0 = 0.5", "gravity = \"elastic\"", "material.till.k0", "no meaning with initial.gravity").up(37),
+    row("[initial]\nk0 = 0.5\n", "", "material.till.k0", "no meaning without [initial]").up(36),
+    row("ramp = \"0 s\"", "ramp = \"0.1 s\"", "gravity.ramp", "gravity acts in full from the start then"),
+    row("-9.81]", "9.81]", "gravity.acceleration", "is not straight down"),
+    row("acceleration = [0.0", "acceleration = [0.1", "gravity.acceleration", "is not straight down"),
+    row("[gravity]\nacceleration = [0.0, -9.81]\nramp = \"0 s\"\n", "", "initial", "needs [gravity]").down(4),
+    row("upper = [\"2 m\", 1.0]", "upper = [\"-2 m\", 1.0]", "history.4.box.upper", "the box is empty"),
+    row(
+        "lower = [0.0, 0.0], upper = [\"2 m\"",
+        "lower = [9.0, 0.0], upper = [\"12 m\"",
+        "history.4.box",
+        "outside the grid",
+    ),
+    row(
+        "quantity = \"pressure-noise\"",
+        "quantity = \"heave\"\nname = \"h\"",
+        "history.4.box",
+        "no meaning for quantity \"heave\"",
+    )
+    .down(2),
+    row(
+        "quantity = \"footing-pressure\"",
+        "quantity = \"footing-presure\"",
+        "history.3.quantity",
+        "did you mean `footing-pressure`?",
+    ),
+    row("max      = \"0 kPa\"", "max = \"0 kN/m\"", "check.1.max", "takes a stress"),
+];
+
+/// Quasi-static cases.
+pub const QUASI_STATIC: &[Row] = &[
+    row(
+        "[output]",
+        "[[prescribed]]\nface = \"top\"\nvelocity = [0, \"-1 m/s\"]\n[output]",
+        "prescribed.0.velocity",
+        "m per unit of pseudo-time",
+    )
+    .down(2),
+    row(
+        "[output]",
+        "[[prescribed]]\nface = \"top\"\npath = [[\"1 s\", 0, 0]]\n[output]",
+        "prescribed.0.path",
+        "pseudo-time without unit",
+    )
+    .down(2),
+    row("[output]", "[[history]]\nquantity = \"slip\"\n[output]", "history.0.quantity", "there is no [footing]")
+        .down(1),
+    row("[output]", "[[history]]\nquantity = \"penetration\"\n[output]", "history.0.quantity", "there is no [footing]")
+        .down(1),
+    row("[output]", "[gravity]\nacceleration = [0, -9.81]\n[initial]\nk0 = 1\n[output]", "initial", "no body has any")
+        .down(2),
+];

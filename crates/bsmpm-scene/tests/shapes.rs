@@ -1,0 +1,304 @@
+//! Polygons, circles and what is cut out of them: areas add up, points lie inside, and none depends on the columns.
+
+use bsmpm_scene::{Body, Case, Error, Region, Seed, seed};
+use std::collections::HashSet;
+
+/// A case on `grid` with `bodies`, the keys of a body each, and `n` points per cell.
+fn try_case(grid: &str, bodies: &[&str], n: usize) -> Result<Case, Vec<Error>> {
+    let mut text = format!(
+        "geometry = \"plane-strain\"\n[analysis]\ntype = \"dynamic\"\nend = 1\ndt = 1\n[grid]\norder = \"linear\"\n{grid}\n\
+         [material.m]\nmodel = \"hencky\"\nyoung = 1e6\npoisson = 0.3\ndensity = 2000\n[gravity]\nacceleration = [0, -10]\n"
+    );
+    for body in bodies {
+        text += &format!("[[body]]\nmaterial = \"m\"\npoints_per_cell = {n}\n{body}\n");
+    }
+    Case::from_text("case.toml", &text, &[])
+}
+
+fn case(grid: &str, bodies: &[&str], n: usize) -> Case {
+    try_case(grid, bodies, n).unwrap_or_else(|errors| panic!("{bodies:?}\n{errors:#?}"))
+}
+
+const METRES: &str = "lower = [0, 0]\nupper = [40, 20]\ncell = 1";
+const ELSEWHERE: &str = "lower = [-3, 10]\nupper = [37, 31]\ncell = [0.3125, 0.7]";
+const GRADED: &str = "knots.x = [0, 0.1, 0.25, 0.5, 1, 2, 5, 9, 9.5, 40]\nknots.y = [0, 0.5, 0.9, 3, 7, 7.1, 20]";
+
+/// Everything that must hold of any case's points; the seeds, with positions in the case's coordinates.
+fn verify(case: &Case, tolerance: f64) -> Vec<Seed<2>> {
+    let columns = case.grid.axes[0].cells();
+    let mut seeds: Vec<Seed<2>> = seed(case, 0..columns).collect();
+    assert_eq!(seeds.len() as u64, case.points());
+    assert_eq!(case.points_by_column().iter().sum::<u64>(), case.points());
+    let ids: HashSet<u64> = seeds.iter().map(|seed| seed.id).collect();
+    assert!(ids.len() == seeds.len() && ids.iter().all(|id| *id < case.points()), "ids count from 0 without gaps");
+    let area: f64 = case.bodies.iter().map(Body::area).sum();
+    let sum: f64 = seeds.iter().map(|seed| seed.volume).sum();
+    assert!((sum / area - 1.0).abs() < tolerance, "{sum} {area}");
+    let mut parts = Vec::new();
+    for (column, count) in case.points_by_column().into_iter().enumerate() {
+        let part: Vec<Seed<2>> = seed(case, column..column + 1).collect();
+        assert_eq!(part.len() as u64, count, "column {column}");
+        parts.extend(part);
+    }
+    parts.sort_by_key(|seed| seed.id);
+    seeds.sort_by_key(|seed| seed.id);
+    assert_eq!(seeds, parts, "columns one by one give the same points");
+    for seed in &mut seeds {
+        assert!(seed.volume > 0.0 && (seed.mass / seed.volume / 2000.0 - 1.0).abs() < 1e-14, "{seed:?}");
+        seed.x += bsmpm::tensor::Vector::<2>::from(case.grid.lower());
+    }
+    seeds
+}
+
+/// Whether `at` lies inside a polygon: the angles under which its edges are seen add up to a whole turn.
+fn winds(corners: &[[f64; 2]], at: [f64; 2]) -> bool {
+    let seen = |k: usize| {
+        let corner = corners[k % corners.len()];
+        [corner[0] - at[0], corner[1] - at[1]]
+    };
+    let angle = |k: usize| {
+        let (p, q) = (seen(k), seen(k + 1));
+        (p[0] * q[1] - p[1] * q[0]).atan2(p[0] * q[0] + p[1] * q[1])
+    };
+    (0..corners.len()).map(angle).sum::<f64>().abs() > 1.0
+}
+
+fn shoelace(corners: &[[f64; 2]]) -> f64 {
+    let term = |k: usize| {
+        let from = |k: usize| [0, 1].map(|axis| corners[k % corners.len()][axis] - corners[0][axis]);
+        let (p, q) = (from(k), from(k + 1));
+        p[0] * q[1] - q[0] * p[1]
+    };
+    0.5 * (0..corners.len()).map(term).sum::<f64>().abs()
+}
+
+fn polygon(corners: &[[f64; 2]]) -> String {
+    format!("polygon = {corners:?}")
+}
+
+/// Numbers in [0, 1), always the same ones.
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+    }
+}
+
+/// A polygon that is seen whole from its middle: simple, and mostly not convex.
+fn star(random: &mut Random, middle: [f64; 2], size: f64) -> Vec<[f64; 2]> {
+    let n = 3 + (random.next() * 10.0) as usize;
+    let mut corners: Vec<[f64; 2]> = (0..n)
+        .map(|k| {
+            let angle = std::f64::consts::TAU * (k as f64 + 0.8 * random.next()) / n as f64;
+            let radius = size * (0.1 + 0.9 * random.next());
+            [middle[0] + radius * angle.cos(), middle[1] + radius * angle.sin()]
+        })
+        .collect();
+    if random.next() < 0.5 {
+        corners.reverse();
+    }
+    corners
+}
+
+#[test]
+fn slopes_of_the_paper() {
+    let a = "polygon = [[0, 0], [32, 0], [12, 10], [0, 10]]";
+    let seeds = verify(&case("lower = [0, 0]\nupper = [40, 12]\ncell = 1", &[a], 6), 1e-12);
+    assert_eq!(seeds.len(), 7920);
+    let b = "polygon = [[0, 0], [60, 0], [60, 5], [40, 5], [20, 15], [0, 15]]";
+    let case = case("lower = [0, 0]\nupper = [60, 17]\ncell = 1", &[b], 6);
+    assert_eq!((verify(&case, 1e-12).len(), case.bodies[0].area()), (21_600, 600.0));
+    assert_eq!(case.bodies[0].bounds(), [[0.0, 0.0], [60.0, 15.0]]);
+}
+
+#[test]
+fn points_lie_inside_and_areas_add_up() {
+    let mut random = Random(1);
+    let mut points = 0;
+    for round in 0..150 {
+        let (grid, middle) = [(METRES, [20.0, 10.0]), (ELSEWHERE, [14.0, 20.0]), (GRADED, [9.0, 9.5])][round % 3];
+        let corners = star(&mut random, middle, [9.0, 2.0, 0.4][round / 3 % 3]);
+        let case = case(grid, &[&polygon(&corners)], 1 + round % 5);
+        assert!((case.bodies[0].area() / shoelace(&corners) - 1.0).abs() < 1e-12);
+        for seed in verify(&case, 1e-11) {
+            assert!(winds(&corners, [seed.x[0], seed.x[1]]), "{seed:?} {corners:?}");
+            points += 1;
+        }
+    }
+    assert!(points > 10_000);
+}
+
+#[test]
+fn every_place_of_the_lattice_inside_is_a_point() {
+    let mut random = Random(2);
+    for n in 1..6_usize {
+        let corners = star(&mut random, [20.0, 10.0], 9.0);
+        let seeds = verify(&case(METRES, &[&polygon(&corners)], n), 1e-11);
+        let place = |k: usize| (k / n) as f64 + ((k % n) as f64 + 0.5) / n as f64;
+        let places = (0..40 * n).flat_map(|i| (0..20 * n).map(move |j| [place(i), place(j)]));
+        let inside: Vec<[f64; 2]> = places.filter(|at| winds(&corners, *at)).collect();
+        let near = |at: &[f64; 2]| seeds.iter().any(|s| (s.x[0] - at[0]).hypot(s.x[1] - at[1]) < 1e-12);
+        assert!(!inside.is_empty() && inside.iter().all(near));
+    }
+}
+
+#[test]
+fn orientation_and_first_corner_do_not_matter() {
+    let mut corners = star(&mut Random(3), [20.0, 10.0], 8.0);
+    let places = |corners: &[[f64; 2]]| {
+        let seeds = verify(&case(METRES, &[&polygon(corners)], 3), 1e-12);
+        seeds.iter().map(|seed| (seed.id, seed.x)).collect::<Vec<_>>()
+    };
+    let first = places(&corners);
+    corners.rotate_left(2);
+    assert_eq!(places(&corners), first);
+    corners.reverse();
+    assert_eq!(places(&corners), first);
+}
+
+#[test]
+fn a_polygon_along_the_cells_is_a_box() {
+    let whole = "box = { lower = [2, 1], upper = [7, 5] }";
+    let boxed = verify(&case(METRES, &[whole], 3), 1e-12);
+    let shaped = verify(&case(METRES, &["polygon = [[2, 1], [2, 5], [7, 5], [7, 1]]"], 3), 1e-12);
+    assert_eq!(boxed.len(), shaped.len());
+    for (a, b) in boxed.iter().zip(&shaped) {
+        assert!((a.id, a.x) == (b.id, b.x) && (a.volume - b.volume).abs() < 1e-15);
+    }
+    assert!(matches!(case(METRES, &[whole], 3).bodies[0].region, Region::Box { .. }));
+    let uncut = case(METRES, &[&format!("{whole}\nsubtract = []")], 3);
+    assert!(matches!(uncut.bodies[0].region, Region::Box { .. }));
+}
+
+#[test]
+fn circles_and_rings() {
+    let pi = std::f64::consts::PI;
+    for (n, center, radius) in
+        [(1, [10.0, 9.0], 4.0), (3, [10.3, 9.7], 0.3), (4, [5.123, 4.567], 4.5), (2, [5.0, 5.0], 5.0)]
+    {
+        let circle = format!("circle = {{ center = {center:?}, radius = {radius:?} }}");
+        let case = case(METRES, &[&circle], n);
+        assert!((case.bodies[0].area() / (pi * radius * radius) - 1.0).abs() < 1e-14);
+        for seed in verify(&case, 1e-12) {
+            assert!((seed.x[0] - center[0]).hypot(seed.x[1] - center[1]) < radius, "{seed:?}");
+        }
+    }
+    let ring =
+        "circle = { center = [20, 10], radius = 6 }\nsubtract = [{ circle = { center = [20, 10], radius = 2.5 } }]";
+    let case = case(METRES, &[ring], 3);
+    assert!((case.bodies[0].area() / (pi * (36.0 - 6.25)) - 1.0).abs() < 1e-12);
+    assert!(verify(&case, 1e-12).iter().all(|s| (2.5..6.0).contains(&(s.x[0] - 20.0).hypot(s.x[1] - 10.0))));
+}
+
+#[test]
+fn what_is_cut_out_is_gone_once() {
+    // Two cuts overlap each other, one reaches beyond the body, one shares its side, one misses it.
+    let body = "box = { lower = [2, 2], upper = [12, 12] }\nsubtract = [\n\
+        { box = { lower = [3, 3], upper = [6, 6] } }, { polygon = [[5, 5], [8, 5], [8, 8], [5, 8]] },\n\
+        { box = { lower = [11, 2.5], upper = [15, 4.25] } }, { polygon = [[2, 9], [4.5, 9], [2, 12]] },\n\
+        { circle = { center = [30, 10], radius = 5 } } ]";
+    let case = case(METRES, &[body], 4);
+    let expected = 100.0 - (9.0 + 9.0 - 1.0) - 1.75 - 0.5 * 2.5 * 3.0;
+    assert!((case.bodies[0].area() / expected - 1.0).abs() < 1e-13, "{}", case.bodies[0].area());
+    for seed in verify(&case, 1e-12) {
+        let [x, y] = [seed.x[0], seed.x[1]];
+        let within = |a: f64, b: f64, c: f64, d: f64| a < x && x < c && b < y && y < d;
+        assert!(within(2.0, 2.0, 12.0, 12.0) && !within(3.0, 3.0, 6.0, 6.0) && !within(5.0, 5.0, 8.0, 8.0));
+        assert!(!within(11.0, 2.5, 12.0, 4.25) && (y < 9.0 || (x - 2.0) / 2.5 + (y - 9.0) / 3.0 > 1.0));
+    }
+}
+
+#[test]
+fn random_cuts_against_counted_places() {
+    let mut random = Random(4);
+    for round in 0..20 {
+        let (whole, cut) = (star(&mut random, [20.0, 10.0], 9.0), star(&mut random, [22.0, 11.0], 6.0));
+        let body = format!("{}\nsubtract = [{{ {} }}]", polygon(&whole), polygon(&cut));
+        let case = case(METRES, &[&body], 3);
+        let n = 400;
+        let place = |k: usize| (k as f64 + 0.5) / 20.0;
+        let places = (0..2 * n).flat_map(|i| (0..n).map(move |j| [place(i), place(j)]));
+        let count = places.filter(|at| winds(&whole, *at) && !winds(&cut, *at)).count() as f64 / 400.0;
+        let area = case.bodies[0].area();
+        assert!((area - count).abs() < 0.01 * shoelace(&whole) + 0.05, "round {round}: {area} {count}");
+        let seeds = verify(&case, 1e-11);
+        assert!(seeds.iter().all(|s| winds(&whole, s.x.into()) && !winds(&cut, s.x.into())));
+    }
+}
+
+#[test]
+fn a_cell_without_a_place_inside_has_one_point() {
+    // A needle through the row between the lattice's places, and a sliver.
+    let seeds = verify(&case(METRES, &["polygon = [[1, 1.4], [9, 1.5], [1, 1.45]]"], 2), 1e-12);
+    assert_eq!(seeds.len(), 8);
+    let sliver = try_case(METRES, &["polygon = [[1, 1.4], [1.5, 1.4], [1.2, 1.400000001]]"], 2).unwrap_err();
+    assert!(sliver[0].message.contains("it has no points"), "{sliver:?}");
+    let gone = "box = { lower = [1, 1], upper = [2, 2] }\nsubtract = [{ box = { lower = [0, 0], upper = [3, 3] } }]";
+    assert!(try_case(METRES, &[gone], 2).unwrap_err()[0].message.contains("it has no points"));
+}
+
+#[test]
+fn bodies_that_only_seem_to_overlap() {
+    let warned = |a: &str, b: &str| {
+        let warnings = try_case(METRES, &[a, b], 2).unwrap().warnings;
+        warnings.iter().any(|warning| warning.contains("body.0 and body.1 overlap"))
+    };
+    let triangle = "polygon = [[1, 1], [9, 1], [1, 9]]";
+    assert!(!warned(triangle, "polygon = [[9, 1], [9, 9], [1, 9]]"));
+    assert!(warned(triangle, "polygon = [[8.9, 1], [9, 9], [1, 9]]"));
+    assert!(!warned(triangle, "box = { lower = [6, 6], upper = [9, 9] }"));
+    assert!(warned(triangle, "box = { lower = [2, 2], upper = [3, 3] }"));
+    let hole =
+        "circle = { center = [15, 10], radius = 5 }\nsubtract = [{ circle = { center = [15, 10], radius = 3 } }]";
+    assert!(!warned(hole, "circle = { center = [15, 10], radius = 3 }"));
+    assert!(warned(hole, "circle = { center = [15, 10], radius = 3.01 }"));
+}
+
+#[test]
+fn weight_above_a_place() {
+    let bodies = [
+        "box = { lower = [0, 1], upper = [4, 3] }",
+        "box = { lower = [4, 1], upper = [8, 2] }",
+        "polygon = [[0, 5], [4, 5], [4, 9]]",
+        "box = { lower = [10, 2], upper = [20, 12] }\nsubtract = [{ circle = { center = [15, 7], radius = 3 } }]",
+    ];
+    let case = case(METRES, &bodies, 2);
+    let rows = [
+        ([1.0, 1.0], 2.0 + 1.0),
+        ([1.0, 2.5], 0.5 + 1.0),
+        ([3.0, 3.5], 3.0),
+        ([3.0, 7.5], 0.5),
+        ([4.0, 1.0], 1.0),
+        ([15.0, 3.0], 10.0 - 6.0 - 1.0),
+        ([15.0, 7.0], 2.0),
+        ([18.0, 0.0], 10.0),
+        ([15.0, 12.0], 0.0),
+        ([30.0, 1.0], 0.0),
+    ];
+    for (at, length) in rows {
+        assert!((case.overburden(at) - 20_000.0 * length).abs() < 1e-9, "{at:?}: {}", case.overburden(at));
+    }
+    assert_eq!(Case { gravity: None, ..case }.overburden([1.0, 1.0]), 0.0);
+}
+
+#[test]
+fn outlines_that_would_take_too_long_are_refused_soon() {
+    let started = std::time::Instant::now();
+    let comb: Vec<[f64; 2]> = (0..2000)
+        .map(|k| [if k % 4 == 1 || k % 4 == 2 { 39.0 } else { 1.0 }, 1.0 + 0.004 * (k / 2) as f64])
+        .chain([[0.5, 18.0], [0.5, 0.5]])
+        .collect();
+    let fine = "lower = [0, 0]\nupper = [40, 20]\ncell = 0.002";
+    let errors = try_case(fine, &[&polygon(&comb)], 3).unwrap_err();
+    assert!(errors.iter().any(|error| error.message.contains("would take too long")), "{errors:?}");
+    assert!(try_case(METRES, &[&polygon(&comb)], 3).is_ok());
+    let many: Vec<String> = vec!["{ circle = { center = [1, 1], radius = 1 } }".to_owned(); 6000];
+    let body = format!("box = {{ lower = [1, 1], upper = [2, 2] }}\nsubtract = [{}]", many.join(", "));
+    let errors = try_case(METRES, &[&body], 3).unwrap_err();
+    assert!(errors[0].message.contains("12004 edges in all; at most 10000"), "{errors:?}");
+    let corners: Vec<[f64; 2]> = (0..20_000).map(|k| [f64::from(k), 0.0]).collect();
+    assert!(try_case(METRES, &[&polygon(&corners)], 3).unwrap_err()[0].message.contains("at most 10000"));
+    assert!(started.elapsed().as_secs() < 20, "{:?}", started.elapsed());
+}
