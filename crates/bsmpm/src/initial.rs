@@ -100,7 +100,7 @@ impl<const D: usize> Start<D> {
     fn of<K: Kinematics<D>>(model: &Model<K, D>, points: &Points<D>, halo: &dyn Halo) -> Result<Self, StepError> {
         let shape = agreed(halo, Shape::at(&model.grid, points), StepError::OtherRank)?;
         let nodes = Nodes::map(model, &shape, points, (0.0, 0.0), halo)?;
-        let grips = Grips::at(&model.boundary.strips, &points.surface, &model.grid, &nodes.active, (0.0, 0.0));
+        let grips = Grips::at(&model.boundary.strips, &points.surface, (&model.grid, &nodes.free), (0.0, 0.0));
         Ok(Self { shape, nodes, grips })
     }
 

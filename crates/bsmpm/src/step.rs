@@ -64,7 +64,7 @@ pub fn step<K: Kinematics<D>, const D: usize>(
 ) -> Result<Report, StepError> {
     let shape = agreed(halo, Shape::at(&model.grid, points), StepError::OtherRank)?; // (1)
     let nodes = Nodes::map(model, &shape, points, (t, dt), halo)?; // (2)
-    let grips = Grips::at(&model.boundary.strips, &points.surface, &model.grid, &nodes.active, (t, dt));
+    let grips = Grips::at(&model.boundary.strips, &points.surface, (&model.grid, &nodes.free), (t, dt));
     let scene = equilibrium::Scene { model, shape: &shape, nodes: &nodes, grips: &grips, points, halo };
     let found = equilibrium::find(&scene, guess, solver, counts)?; // (3)-(9)
     commit::check_inside(model, &shape, points, &found.u, halo)?;

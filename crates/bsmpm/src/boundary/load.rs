@@ -34,7 +34,7 @@ pub fn add_forces<const D: usize>(
     for (number, load) in loads.iter().enumerate() {
         let grown = if load.ramp > 0.0 { (t / load.ramp).clamp(0.0, 1.0) } else { 1.0 };
         for (point, x) in load.points.iter().zip(&surface.position[number]) {
-            if let Some(attachment) = Attachment::at(grid, &offsets, active, x) {
+            if let Some(attachment) = Attachment::at(grid, &offsets, |node| active[node], x) {
                 attachment.scatter(&offsets, &(load.traction * (grown * point.area)), &mut force);
                 applied[number] += 1.0;
             }
@@ -64,7 +64,7 @@ pub fn moved<const D: usize>(
     }
     let offsets = grid.offsets();
     let place = |x: &Vector<D>| {
-        let attachment = Attachment::at(grid, &offsets, active, x);
+        let attachment = Attachment::at(grid, &offsets, |node| active[node], x);
         attachment.map_or_else(Vector::zeros, |attachment| x + attachment.displacement::<D>(&offsets, u))
     };
     let mut position: Vec<Vec<Vector<D>>> =

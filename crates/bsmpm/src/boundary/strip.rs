@@ -66,7 +66,7 @@ pub struct Grips<const D: usize> {
 struct Held<const D: usize> {
     strip: usize,
     point: usize,
-    attachment: Attachment,
+    attachment: [Option<Attachment>; D], // per component: where a support holds all of its nodes, the strip does not
     area: f64,
     penalty: f64,
     normal: Option<Vector<D>>,
@@ -76,33 +76,72 @@ struct Held<const D: usize> {
 
 impl<const D: usize> Held<D> {
     /// The part of a vector that is held.
-    fn part(&self, vector: Vector<D>) -> Vector<D> {
-        held_part(self.normal.as_ref(), vector)
+    fn part(&self, mut vector: Vector<D>) -> Vector<D> {
+        for (component, attachment) in self.attachment.iter().enumerate() {
+            if attachment.is_none() {
+                vector[component] = 0.0;
+            }
+        }
+        match &self.normal {
+            Some(normal) => normal * normal.dot(&vector),
+            None => vector,
+        }
+    }
+
+    /// m  of the material at the point; zero in components that are not held.
+    fn displacement(&self, offsets: &[usize], u: &[f64]) -> Vector<D> {
+        let along = |component: usize| {
+            let attachment = self.attachment[component].as_ref();
+            attachment.map_or(0.0, |attachment| attachment.displacement::<D>(offsets, u)[component])
+        };
+        Vector::from_fn(|component, _| along(component))
     }
 
     /// m  what the material lags behind the strip.
     fn slip(&self, offsets: &[usize], u: &[f64]) -> Vector<D> {
-        self.part(self.motion - self.attachment.displacement::<D>(offsets, u))
+        self.part(self.motion - self.displacement(offsets, u))
     }
 
     /// Pa  on the body.
     fn traction(&self, offsets: &[usize], u: &[f64]) -> Vector<D> {
         self.carried + self.slip(offsets, u) * self.penalty
     }
-}
 
-fn held_part<const D: usize>(normal: Option<&Vector<D>>, vector: Vector<D>) -> Vector<D> {
-    normal.map_or(vector, |normal| normal * normal.dot(&vector))
+    /// Dense block of beta A N_a N_b in the held direction, over the nodes of the cell.
+    fn block(&self, size: usize) -> Option<(usize, Vec<f64>)> {
+        let first = self.attachment.iter().flatten().next()?.first_node();
+        let direction = |j: usize| {
+            let mut unit = Vector::zeros();
+            unit[j] = self.penalty * self.area;
+            self.part(unit)
+        };
+        let directions: [Vector<D>; D] = std::array::from_fn(direction);
+        let N = |row: usize| self.attachment[row % D].as_ref().map_or(0.0, |attachment| attachment.N()[row / D]);
+        let order = size * D;
+        let entry = |at: usize| N(at / order) * N(at % order) * directions[at % order % D][at / order % D];
+        Some((first, (0..order * order).map(entry).collect()))
+    }
 }
 
 impl<const D: usize> Grips<D> {
-    /// Attaches the strips at their places at time `t`, to move until `t + dt`.
-    pub fn at(strips: &[Strip<D>], surface: &Surface<D>, grid: &Grid<D>, active: &[bool], (t, dt): (f64, f64)) -> Self {
+    /// Attaches the strips at their places at time `t`, to move until `t + dt`, by the components that are `free`: where a
+    /// support of the grid holds a node, it stays the one that does.
+    pub fn at(
+        strips: &[Strip<D>],
+        surface: &Surface<D>,
+        (grid, free): (&Grid<D>, &[bool]),
+        (t, dt): (f64, f64),
+    ) -> Self {
         let (offsets, mut held) = (if strips.is_empty() { Vec::new() } else { grid.offsets() }, Vec::new());
         for (number, strip) in strips.iter().enumerate() {
             let (place, motion) = (strip.path.at(t), strip.path.at(t + dt) - strip.path.at(t));
             for (index, point) in strip.points.iter().enumerate() {
-                let Some(attachment) = Attachment::at(grid, &offsets, active, &(point.x + place)) else { continue };
+                let x = point.x + place;
+                let attachment =
+                    std::array::from_fn(|c| Attachment::at(grid, &offsets, |node: usize| free[node * D + c], &x));
+                if attachment.iter().all(Option::is_none) {
+                    continue;
+                }
                 held.push(Held {
                     strip: number,
                     point: index,
@@ -122,33 +161,27 @@ impl<const D: usize> Grips<D> {
     pub fn add_forces(&self, u: &[f64], out: &mut [f64]) {
         for held in &self.held {
             let force = held.traction(&self.offsets, u) * held.area;
-            held.attachment.scatter(&self.offsets, &force, out);
+            for (component, attachment) in held.attachment.iter().enumerate() {
+                let mut along = Vector::<D>::zeros();
+                along[component] = force[component];
+                if let Some(attachment) = attachment {
+                    attachment.scatter(&self.offsets, &along, out);
+                }
+            }
         }
     }
 
     /// Adds beta A N_a N_b, in the held direction, to the stiffness.
     pub fn assemble(&self, solver: &mut dyn LinearSolver) {
-        let size = self.offsets.len();
-        for held in &self.held {
-            let mut block = vec![0.0; (size * D).pow(2)];
-            let N = held.attachment.N();
-            let directions: [Vector<D>; D] = std::array::from_fn(|j| {
-                let mut unit = Vector::zeros();
-                unit[j] = held.penalty * held.area;
-                held.part(unit)
-            });
-            for (entry, value) in block.iter_mut().enumerate() {
-                let (row, column) = (entry / (size * D), entry % (size * D));
-                *value = N[row / D] * N[column / D] * directions[column % D][row % D];
-            }
-            solver.add(held.attachment.first_node(), &block);
+        for (first_node, block) in self.held.iter().filter_map(|held| held.block(self.offsets.len())) {
+            solver.add(first_node, &block);
         }
     }
 
     /// du . K du of the strips' stiffness on this rank, N m.
     pub fn energy(&self, du: &[f64]) -> f64 {
         let of = |held: &Held<D>| {
-            let moved = held.part(held.attachment.displacement::<D>(&self.offsets, du));
+            let moved = held.part(held.displacement(&self.offsets, du));
             held.penalty * held.area * moved.norm_squared()
         };
         self.held.iter().map(of).sum()

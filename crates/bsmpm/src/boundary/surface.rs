@@ -6,7 +6,7 @@ use crate::grid::shape::with_width;
 use crate::grid::{Grid, KnotVector};
 use crate::tensor::Vector;
 
-/// Share of a surface point's shape functions that active nodes must have: below it no material is near enough.
+/// Share of a surface point's shape functions that the nodes that count must have: below it no material is near enough.
 const NEAR: f64 = 0.25;
 
 /// A point of a surface with its share of the area.
@@ -49,23 +49,28 @@ pub struct Surface<const D: usize> {
     pub position: Vec<Vec<Vector<D>>>,
 }
 
-/// A surface point as the active nodes of its cell see it.
+/// A surface point as some nodes of its cell see it.
 #[derive(Clone, Debug)]
 pub struct Attachment {
     first_node: usize,
-    N: Vec<f64>, // of the cell's (q+1)^D nodes, zero at those without material, sum 1
+    N: Vec<f64>, // of the cell's (q+1)^D nodes, zero at those that do not count, sum 1
 }
 
 impl Attachment {
-    /// The point at `x`; `None` where another rank has its cell, or no material is near.
-    pub fn at<const D: usize>(grid: &Grid<D>, offsets: &[usize], active: &[bool], x: &Vector<D>) -> Option<Self> {
+    /// The point at `x`, by the nodes that count; `None` where another rank has its cell, or none of them is near.
+    pub fn at<const D: usize>(
+        grid: &Grid<D>,
+        offsets: &[usize],
+        counts: impl Fn(usize) -> bool,
+        x: &Vector<D>,
+    ) -> Option<Self> {
         let cell = grid.locate(x).filter(|cell| grid.columns().contains(&cell[0]))?;
         let first_node = grid.first_node(&cell);
         let rows: Vec<Vec<f64>> = (0..D).map(|axis| values(&grid.axes()[axis], x[axis], cell[axis])).collect();
         let width = grid.order() + 1;
         let along = |k: usize, axis: usize| k / width.pow((D - 1 - axis) as u32) % width;
         let product = |k: usize| (0..D).map(|axis| rows[axis][along(k, axis)]).product::<f64>();
-        let seen = |(k, offset): (usize, &usize)| if active[first_node + offset] { product(k) } else { 0.0 };
+        let seen = |(k, offset): (usize, &usize)| if counts(first_node + offset) { product(k) } else { 0.0 };
         let mut N: Vec<f64> = offsets.iter().enumerate().map(seen).collect();
         let sum: f64 = N.iter().sum();
         if sum < NEAR {
