@@ -89,7 +89,10 @@ impl Recorder {
             }
             Quantity::Runout { .. } => vec![self.lower[0] + observe::farthest(points, 0, halo)],
             Quantity::Front => vec![self.lower[0] + observe::front(&model.grid, points, halo)],
-            Quantity::Height => vec![self.lower[1] + observe::farthest(points, 1, halo)],
+            Quantity::Height { at_x: None } => vec![self.lower[1] + observe::farthest(points, 1, halo)],
+            Quantity::Height { at_x: Some(x) } => {
+                vec![self.lower[1] + observe::surface(&model.grid, points, x - self.lower[0], halo)]
+            }
             Quantity::MaxDisplacement => vec![observe::largest_displacement(points, halo)],
             Quantity::Mass => vec![observe::mass(points, halo)],
             Quantity::Momentum => observe::momentum(points, halo).as_slice().to_vec(),

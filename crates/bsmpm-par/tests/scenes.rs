@@ -126,7 +126,12 @@ fn the_footings_histories_are_true() {
     let weight = 20e3 * (8.0 * 3.0 + 7.0);
     let vertical = weight + 20e3 + 10e3;
     let pressure = last("footing-pressure");
-    assert!((last("reaction-y") / (vertical + 4.0 * pressure) - 1.0).abs() < 1e-3, "{} {}", last("reaction-y"), pressure);
+    assert!(
+        (last("reaction-y") / (vertical + 4.0 * pressure) - 1.0).abs() < 1e-3,
+        "{} {}",
+        last("reaction-y"),
+        pressure
+    );
     assert!(last("right-x") < 0.0, "the face pushes to the left");
     assert!(last("footing-force") > 0.0 && last("slip") < 1e-2);
     let initial = manifest.initial.expect("the stress at the start is told");
@@ -138,7 +143,8 @@ fn the_footings_histories_are_true() {
 #[test]
 fn nothing_moves_under_its_own_stress_at_the_start() {
     let rest = LOADED.split("[[prescribed]]").next().unwrap();
-    let case = format!("{rest}\n[[history]]\nquantity = \"max-displacement\"\n").replace("left   =", "right  = \"roller\"\nleft   =");
+    let case = format!("{rest}\n[[history]]\nquantity = \"max-displacement\"\n")
+        .replace("left   =", "right  = \"roller\"\nleft   =");
     let scratch = Scratch::with_case(&case);
     scratch.mpirun(2, &["case.toml", "-q"]).expect(0);
     let history = history(&scratch.path("case.out"));

@@ -4,7 +4,7 @@ use std::io::Write;
 
 use clap::{Parser, Subcommand};
 
-use crate::{Error, plot};
+use crate::{Error, compare, plot};
 
 /// Looks at what a run of bsmpm-par left.
 #[derive(Debug, Parser)]
@@ -20,9 +20,11 @@ pub struct Cli {
 pub enum Command {
     /// Draw the pictures of a run into its directory.
     Plot(plot::Arguments),
+    /// Draw one quantity of several runs in one picture, or print it as a table
+    Compare(Box<compare::Arguments>),
 }
 
-/// Carries out a command and prints what it made, one path a line.
+/// Carries out a command and prints what it made: tables, and pictures with one path a line.
 ///
 /// # Errors
 /// Those of the command; [`Error::exit_code`] is the program's.
@@ -33,6 +35,15 @@ pub fn run(cli: &Cli) -> Result<(), Error> {
                 // Where nobody listens there is nothing left to do.
                 let _ = writeln!(std::io::stdout(), "{}", picture.display());
             }
+        }
+        Command::Compare(arguments) => {
+            let made = compare::run(arguments)?;
+            for note in made.notes {
+                let _ = writeln!(std::io::stderr(), "bsmpm: {note}");
+            }
+            let table = made.table.unwrap_or_default();
+            let picture = made.picture.map(|path| format!("{}\n", path.display())).unwrap_or_default();
+            let _ = write!(std::io::stdout(), "{table}{picture}");
         }
     }
     Ok(())

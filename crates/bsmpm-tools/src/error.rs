@@ -19,6 +19,28 @@ pub enum Error {
         /// The directory.
         directory: PathBuf,
     },
+    /// The run has left no row of its histories yet.
+    #[error("the run in {} has left no row of history.csv yet", directory.display())]
+    NoRow {
+        /// The directory.
+        directory: PathBuf,
+    },
+    /// The histories do not hold the column that is wanted.
+    #[error("history.csv of {} has no column \"{column}\"; it has {known}", directory.display())]
+    NoColumn {
+        /// The directory.
+        directory: PathBuf,
+        /// What was wanted.
+        column: String,
+        /// The columns that there are.
+        known: String,
+    },
+    /// Options do not fit each other or the runs.
+    #[error("{reason}")]
+    Usage {
+        /// What does not fit.
+        reason: String,
+    },
     /// The frames do not hold the quantity that is wanted.
     #[error("the frames of {} have no field \"{field}\"", directory.display())]
     NoField {
@@ -57,11 +79,17 @@ pub enum Error {
 }
 
 impl Error {
-    /// The exit code of `bsmpm`: 66 for what is missing, 65 for a bad reference file, 70 for a fault of this program, else
+    /// The exit code of `bsmpm`: 2 for options that do not fit, 66 for what is missing, 65 for a bad reference file, 70 for a fault of this program, else
     /// that of the file's error.
     pub fn exit_code(&self) -> u8 {
         match self {
-            Self::NoRun { .. } | Self::Empty { .. } | Self::NoField { .. } | Self::NoReference { .. } => 66,
+            Self::Usage { .. } => 2,
+            Self::NoRun { .. }
+            | Self::Empty { .. }
+            | Self::NoRow { .. }
+            | Self::NoColumn { .. }
+            | Self::NoField { .. }
+            | Self::NoReference { .. } => 66,
             Self::BadReference { .. } => 65,
             Self::Drawing { .. } => 70,
             Self::File(error) => error.exit_code(),

@@ -5,7 +5,10 @@
 #![forbid(unsafe_code)]
 
 pub mod cli;
+pub mod compare;
 pub mod error;
+mod picture;
 pub mod plot;
+mod record;
 
 pub use error::Error;

@@ -1,28 +1,22 @@
-//! `bsmpm plot`: the pictures of a run. The files of the run are read in `record`; every picture has a module; they
-//! share a sheet of paper (`canvas`), axes (`layout`, `axes`, `ticks`), a legend (`legend`) and colours (`colour`).
+//! `bsmpm plot`: the pictures of a run, each in a module; which ones there are depends on what the case records and on
+//! whether inertia acts. The files of the run are read in `crate::record`.
 
 use std::path::PathBuf;
 
+use bsmpm_io::frame::Frame;
 use bsmpm_io::manifest::Status;
+use bsmpm_io::table::Columns;
 use clap::Args;
 
 use crate::Error;
+use crate::record::{Record, Regime};
 
-mod axes;
-mod bar;
 mod body;
-mod canvas;
-mod colour;
 mod convergence;
 mod curves;
 mod field;
-mod layout;
-mod legend;
-mod record;
 mod reference;
-mod splat;
 mod surface;
-mod ticks;
 
 pub use field::FieldName;
 
@@ -35,13 +29,15 @@ pub struct Arguments {
     /// case, or three]
     #[arg(long, value_delimiter = ',', value_parser = time)]
     pub times: Vec<f64>,
-    /// What colours the body
-    #[arg(long, value_enum, default_value_t = FieldName::StressYy)]
-    pub field: FieldName,
+    /// What colours the body [default: stress-yy, in quasi-static analyses also plastic-strain where
+    /// there is any]
+    #[arg(long, value_enum)]
+    pub field: Option<FieldName>,
     /// Ends of the colours, in the unit of the picture, so that runs can be compared [default: from the values]
     #[arg(long, value_name = "MIN,MAX", value_parser = ends, allow_hyphen_values = true)]
     pub range: Option<(f64, f64)>,
-    /// Points to compare with: a CSV file with columns `time,x,y` (free surface) or `time,<history>`
+    /// Points to compare with: a CSV file with columns `time,x,y` (free surface), `time,<history>` or
+    /// `penetration,<history>`
     #[arg(long, value_name = "FILE")]
     pub reference: Option<PathBuf>,
 }
@@ -49,7 +45,7 @@ pub struct Arguments {
 impl Arguments {
     /// All pictures of a run as its case wants them.
     pub fn of(directory: PathBuf) -> Self {
-        Self { directory, times: Vec::new(), field: FieldName::StressYy, range: None, reference: None }
+        Self { directory, times: Vec::new(), field: None, range: None, reference: None }
     }
 }
 
@@ -87,16 +83,42 @@ pub fn draw(arguments: &Arguments) -> Result<Vec<String>, Error> {
     pictures(arguments).map(|(_, names)| names)
 }
 
-fn pictures(arguments: &Arguments) -> Result<(record::Record, Vec<String>), Error> {
-    let record = record::Record::read(&arguments.directory)?;
+fn pictures(arguments: &Arguments) -> Result<(Record, Vec<String>), Error> {
+    let record = Record::read(&arguments.directory)?;
     let reference = arguments.reference.as_deref().map(reference::read).transpose()?;
     let frames = record.frames(&arguments.times)?;
     let mut names = Vec::new();
     if !frames.is_empty() {
-        names.extend(body::draw(&record, &frames, arguments.field, arguments.range)?);
-        names.push(surface::draw(&record, &frames, reference.as_ref())?);
+        // Given ends of the colours are those of the first field.
+        let ranges = [arguments.range].into_iter().chain(std::iter::repeat(None));
+        for (field, range) in fields(&record, &frames, arguments.field).into_iter().zip(ranges) {
+            names.extend(body::draw(&record, &frames, field, range)?);
+        }
+        if has_surface(&record, reference.as_ref()) {
+            names.push(surface::draw(&record, &frames, reference.as_ref())?);
+        }
     }
     names.extend(curves::draw(&record, reference.as_ref())?);
     names.extend(convergence::draw(&record)?);
     if names.is_empty() { Err(Error::Empty { directory: record.directory }) } else { Ok((record, names)) }
+}
+
+/// The wanted field, or those that show how a scene of this kind stands; the plastic strain only if there is any.
+fn fields(record: &Record, frames: &[Frame], wanted: Option<FieldName>) -> Vec<FieldName> {
+    match (wanted, record.regime()) {
+        (Some(field), _) => vec![field],
+        (None, Regime::Dynamic) => vec![FieldName::StressYy],
+        (None, Regime::QuasiStatic) => {
+            let strains: Option<Vec<_>> = frames.iter().map(|frame| FieldName::PlasticStrain.values(frame)).collect();
+            let has_strain = strains.is_some_and(|strains| strains.iter().flatten().any(|&strain| strain != 0.0));
+            let strain = has_strain.then_some(FieldName::PlasticStrain);
+            [FieldName::StressYy].into_iter().chain(strain).collect()
+        }
+    }
+}
+
+/// Whether the free surface tells something: where a body runs out, or there is one to compare with.
+fn has_surface(record: &Record, reference: Option<&Columns>) -> bool {
+    let is_measured = reference.is_some_and(|table| ["time", "x", "y"].iter().all(|name| table.get(name).is_some()));
+    record.regime() == Regime::Dynamic || !record.columns("runout").is_empty() || is_measured
 }

@@ -64,6 +64,17 @@ pub fn largest_displacement<const D: usize>(points: &Points<D>, halo: &dyn Halo)
     largest[0]
 }
 
+/// Largest coordinate along the last axis (m) of the points that lie within half a cell of `x` along axis 0 (m); 0 if
+/// there are none.
+pub fn surface<const D: usize>(grid: &Grid<D>, points: &Points<D>, x: f64, halo: &dyn Halo) -> f64 {
+    let axis = &grid.axes()[0];
+    let half = axis.cell_of(x).map_or(0.0, |cell| 0.5 * (axis.breakpoint(cell + 1) - axis.breakpoint(cell)));
+    let near = points.x.iter().filter(|at| (at[0] - x).abs() <= half);
+    let mut highest = [near.map(|at| at[D - 1]).fold(0.0, f64::max)];
+    halo.maximum(&mut highest);
+    highest[0]
+}
+
 /// Largest displacement of any point along the last axis, m; 0 if none has risen.
 pub fn heave<const D: usize>(points: &Points<D>, halo: &dyn Halo) -> f64 {
     let mut largest = [points.u.iter().map(|u| u[D - 1]).fold(0.0, f64::max)];

@@ -21,8 +21,11 @@ pub enum Quantity {
     },
     /// m  the farthest x in a cell of the lowest occupied row that is at least half filled
     Front,
-    /// m  the largest y of any point
-    Height,
+    /// m  the largest y of any point, or of those near an x; 0 where there are none
+    Height {
+        /// m  of the points within half a cell of this x; `None`: of all
+        at_x: Option<f64>,
+    },
     /// m  the largest displacement of any point
     MaxDisplacement,
     /// kg/m  of all points
@@ -102,7 +105,7 @@ impl Quantity {
         match self {
             Self::Runout { .. }
             | Self::Front
-            | Self::Height
+            | Self::Height { .. }
             | Self::MaxDisplacement
             | Self::Displacement { .. }
             | Self::Heave

@@ -241,6 +241,12 @@ static HISTORY: Table = Table {
         key("scale", Quantity(In::Number, Range::ANY), Default("1.0"), "multiplies"),
         key("percentile", Quantity(In::Number, PERCENT), Optional, "of runout: share of the points; 100 unless given"),
         key("face", Choice(&["left", "right", "bottom", "top"], &[]), Optional, "of reaction: the face"),
+        key(
+            "at_x",
+            Quantity(In::Length, Range::ANY),
+            Optional,
+            "of height: of the points within half a cell of this x",
+        ),
         key("at", Pair(In::Length, Range::ANY), Optional, "of a point's quantity: the point nearest at the start"),
         key("box", Kind::Table(&body::BOX), Optional, "of pressure-noise: the points inside; all unless given"),
     ],

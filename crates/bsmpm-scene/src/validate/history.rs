@@ -45,12 +45,13 @@ fn read(
     let word = record.word("quantity")?;
     let own = match word {
         "runout" => "percentile",
+        "height" => "at_x",
         "reaction" => "face",
         "displacement" | "velocity" | "stress" => "at",
         "pressure-noise" => "box",
         _ => "",
     };
-    let others = ["percentile", "face", "at", "box"].into_iter().filter(|key| *key != own);
+    let others = ["percentile", "face", "at", "at_x", "box"].into_iter().filter(|key| *key != own);
     for key in others.filter(|key| record.gives(key)) {
         record.error(key, format!("has no meaning for quantity \"{word}\""), report);
     }
@@ -75,7 +76,7 @@ fn quantity(word: &str, record: &Record, grid: Option<&GridSpec>, report: &mut R
             Quantity::Runout { percentile: if given { record.number("percentile")? } else { 100.0 } }
         }
         "front" => Quantity::Front,
-        "height" => Quantity::Height,
+        "height" => Quantity::Height { at_x: at_x(record, grid, report)? },
         "max-displacement" => Quantity::MaxDisplacement,
         "mass" => Quantity::Mass,
         "momentum" => Quantity::Momentum,
@@ -94,6 +95,19 @@ fn quantity(word: &str, record: &Record, grid: Option<&GridSpec>, report: &mut R
         "slip" => Quantity::Slip,
         _ => Quantity::StressNoise,
     })
+}
+
+/// The x of a height, if it has one; the outer option is `None` after an error.
+fn at_x(record: &Record, grid: Option<&GridSpec>, report: &mut Report<'_>) -> Option<Option<f64>> {
+    if !record.gives("at_x") {
+        return Some(None);
+    }
+    let x = record.number("at_x")?;
+    if let Some((lower, upper)) = grid.map(|grid| (grid.lower()[0], grid.upper()[0])).filter(|(a, b)| x < *a || x > *b)
+    {
+        record.error("at_x", format!("{x} is outside the grid, {lower} to {upper}"), report);
+    }
+    Some(Some(x))
 }
 
 /// A box that has something in common with the grid.

@@ -2,21 +2,19 @@
 
 use bsmpm_io::frame::Frame;
 
-use super::axes::{self, Axes, title};
-use super::bar::{self, Bar};
-use super::canvas::Canvas;
-use super::colour::{self, OUTLINE};
 use super::field::FieldName;
-use super::layout::{Layout, aspect};
-use super::record::{Record, short};
-use super::splat;
-use super::ticks::{padded, range};
 use crate::Error;
+use crate::picture::axes::{self, Axes, title};
+use crate::picture::bar::{self, Bar};
+use crate::picture::canvas::Canvas;
+use crate::picture::colour::{self, OUTLINE};
+use crate::picture::layout::{Layout, aspect};
+use crate::picture::splat;
+use crate::picture::ticks::range;
+use crate::record::{Record, Regime, short};
 
 const ABOVE: f64 = 130.0;
 const RIGHT: f64 = 60.0;
-/// The share of points whose values lie beyond each end of the range of colours, so that a few wild ones do not set it.
-const BEYOND: f64 = 0.005;
 
 /// Draws a picture for every frame, with the `wanted` range of colours or one from the values; returns their names.
 pub(super) fn draw(
@@ -28,7 +26,7 @@ pub(super) fn draw(
     let values: Option<Vec<_>> = frames.iter().map(|frame| field.values(frame)).collect();
     let missing = || Error::NoField { directory: record.directory.clone(), field: field.field() };
     let values = values.ok_or_else(missing)?;
-    let colours = wanted.unwrap_or_else(|| colour_range(&values));
+    let colours = wanted.unwrap_or_else(|| field.range(&values));
     let region = region(record, frames);
     let mut names = Vec::new();
     for (frame, values) in frames.iter().zip(&values) {
@@ -49,8 +47,14 @@ fn picture(record: &Record, frame: &Frame, values: &[f64], region: [(f64, f64); 
     title(&mut canvas, layout.width, &record.manifest.case.title, &record.moment(frame.time));
     let shades: Vec<_> = values.iter().map(|&value| colour::map(bar.share(value))).collect();
     let sizes = splat::sizes(frame, &record.manifest.case.geometry);
-    let inside = if record.manifest.grid.is_some() { window(record, &[]) } else { region };
-    splat::draw(&mut canvas, &axes, inside, (&frame.position, &sizes), &shades);
+    let ranges = if record.manifest.grid.is_some() { window(record, &[]) } else { region };
+    // What is thrown may leave the walls; what is pushed does not.
+    let walls = match record.regime() {
+        Regime::QuasiStatic if record.manifest.grid.is_some() => record.case.walls,
+        _ => Default::default(),
+    };
+    let inside = splat::Window { ranges, walls };
+    splat::draw(&mut canvas, &axes, &inside, (&frame.position, &sizes), &shades);
     outline(&mut canvas, &axes, record);
     axes.draw(&mut canvas, Some(("x", "m")), ("y", "m"));
     if lying {
@@ -59,16 +63,6 @@ fn picture(record: &Record, frame: &Frame, values: &[f64], region: [(f64, f64); 
         bar.upright(&mut canvas, &axes);
     }
     canvas
-}
-
-/// The range of colours: all values but the most extreme.
-fn colour_range(values: &[Vec<f64>]) -> (f64, f64) {
-    let mut all: Vec<f64> = values.iter().flatten().copied().filter(|value| value.is_finite()).collect();
-    all.sort_unstable_by(f64::total_cmp);
-    let at =
-        |share: f64| all.get((share * all.len().saturating_sub(1) as f64).round() as usize).copied().unwrap_or(0.0);
-    let (low, high) = (at(BEYOND), at(1.0 - BEYOND));
-    if high > low { (low, high) } else { padded(low, high, 0.0) }
 }
 
 /// The ranges of x and y where points can be: the grid's box, or without one that of all points.

@@ -2,13 +2,13 @@
 
 use bsmpm_io::table::Columns;
 
-use super::axes::{Axes, BELOW, LEFT, title};
-use super::canvas::Canvas;
-use super::colour;
-use super::legend::{self, Entry};
-use super::record::Record;
-use super::ticks::{padded, range};
 use crate::Error;
+use crate::picture::axes::{Axes, BELOW, LEFT, title};
+use crate::picture::canvas::Canvas;
+use crate::picture::colour;
+use crate::picture::legend::{self, Entry, Mark};
+use crate::picture::ticks::{padded, range};
+use crate::record::Record;
 
 const SHEET: (f64, f64) = (1600.0, 1100.0);
 const ABOVE: f64 = 115.0;
@@ -29,7 +29,7 @@ pub(super) fn draw(record: &Record) -> Result<Option<String>, Error> {
         time.iter().zip(dt).zip(cutbacks).filter(|(_, cuts)| **cuts > 0.0).map(|((&time, &dt), _)| (time, dt)).collect()
     });
 
-    let legend = Entry { name: "step that was cut back".to_owned(), colour: colour::line(1, 2), points: true };
+    let legend = Entry { name: "step that was cut back".to_owned(), colour: colour::line(1, 2), mark: Mark::Points };
     let legend: &[&Entry] = if cut.is_empty() { &[] } else { &[&legend] };
     let top = ABOVE + legend::height(legend, SHEET.0 - 80.0) + 20.0;
     let bottom = SHEET.1 - BELOW;

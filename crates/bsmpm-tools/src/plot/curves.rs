@@ -1,144 +1,190 @@
-//! Pictures of the histories: quantities against time, or against each other.
+//! Pictures of the histories: quantities against time, and the pressure of a footing against its penetration (Fig. 12 of
+//! the paper).
 
 use bsmpm_io::table::Columns;
 
-use super::axes::{Axes, BELOW, LEFT, title};
-use super::canvas::Canvas;
-use super::colour::{self, INK};
-use super::legend::{self, Entry};
-use super::record::Record;
-use super::ticks::{padded, range};
 use crate::Error;
+use crate::picture::chart::{Chart, Curve};
+use crate::picture::colour::{self, INK};
+use crate::picture::legend::{Entry, Mark};
+use crate::picture::ticks::range;
+use crate::record::{Record, Recorded};
 
-/// A picture that is drawn if the history has the columns for it.
+/// A picture that is drawn if the history has columns for it; those of another unit or scale get one of their
+/// own, the scaled ones last.
 struct Picture {
+    /// The file's name without its ending.
     file: &'static str,
     title: &'static str,
-    /// The column along the horizontal axis.
-    across: &'static str,
-    /// The columns along the vertical axis; each also as `name-...`, as a case may call a second one.
+    across: Across,
+    /// The quantities along the vertical axis that it is about.
     up: &'static [&'static str],
+    /// Those that are drawn with them.
+    beside: &'static [&'static str],
+    /// What they are together.
+    together: &'static str,
 }
 
-const PICTURES: [Picture; 3] = [
-    Picture { file: "runout.png", title: "Run-out", across: "time", up: &["runout", "front", "height"] },
-    Picture { file: "stress-noise.png", title: "Noise of the stress", across: "time", up: &["stress-noise"] },
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Across {
+    Time,
+    Penetration,
+}
+use Across::{Penetration, Time};
+
+const PICTURES: [Picture; 9] = [
+    Picture { beside: &["height"], together: "Length", ..Picture::of("runout", "Run-out", Time, &["runout", "front"]) },
+    Picture::of("height", "Height", Time, &["height"]),
     Picture {
-        file: "footing-pressure.png",
-        title: "Pressure on the footing",
-        across: "penetration",
-        up: &["footing-pressure"],
+        together: "Displacement",
+        ..Picture::of(
+            "displacement",
+            "Displacements",
+            Time,
+            &["max-displacement", "heave", "penetration", "displacement"],
+        )
     },
+    Picture::of("stress-noise", "Noise of the stress", Time, &["stress-noise"]),
+    Picture::of("pressure-noise", "Noise of the pressure", Time, &["pressure-noise"]),
+    Picture::of("footing-pressure", "Pressure on the footing", Penetration, &["footing-pressure"]),
+    Picture::of("footing-pressure-time", "Pressure on the footing", Time, &["footing-pressure"]),
+    Picture::of("footing-force", "Force on the footing", Time, &["footing-force"]),
+    Picture::of("slip", "Slip at the footing", Time, &["slip"]),
 ];
 
-const SHEET: (f64, f64) = (1600.0, 1000.0);
-const ABOVE: f64 = 115.0;
-const RIGHT: f64 = 60.0;
-
-/// One line of a picture, or the points of a reference.
-struct Curve {
-    entry: Entry,
-    unit: String,
-    places: Vec<(f64, f64)>,
+/// The horizontal axis of a picture.
+struct Axis<'a> {
+    /// The name of the column.
+    column: &'a str,
+    values: &'a [f64],
+    /// What the column's numbers are multiplied by.
+    factor: f64,
+    label: String,
+    unit: &'a str,
+    /// What the reader of the title should know of it.
+    note: String,
 }
 
-/// Draws every picture for which the history has columns; returns their names.
+/// Draws every picture for which the history has columns, none of them twice over one axis; returns their names.
 pub(super) fn draw(record: &Record, reference: Option<&Columns>) -> Result<Vec<String>, Error> {
-    let Some(history) = &record.history else { return Ok(Vec::new()) };
     let mut names = Vec::new();
+    let mut drawn: Vec<(&str, &str)> = Vec::new();
     for picture in &PICTURES {
-        let mut curves = picture.curves(history);
-        if curves.is_empty() {
-            continue;
+        let Some(axis) = picture.across.axis(record) else { continue };
+        for (index, columns) in picture.groups(record).iter().enumerate() {
+            let name = match index {
+                0 => format!("{}.png", picture.file),
+                _ => format!("{}-{}.png", picture.file, columns[0].name),
+            };
+            if columns.iter().any(|column| !drawn.contains(&(axis.column, column.name))) {
+                picture.draw(record, &axis, columns, reference, &name)?;
+                drawn.extend(columns.iter().map(|column| (axis.column, column.name)));
+                names.push(name);
+            }
         }
-        if let Some(reference) = reference {
-            picture.add_reference(&mut curves, reference);
-        }
-        picture.draw(record, history, &curves)?;
-        names.push(picture.file.to_owned());
     }
     Ok(names)
 }
 
-impl Picture {
-    fn curves(&self, history: &Columns) -> Vec<Curve> {
-        let Some(across) = history.get(self.across) else { return Vec::new() };
-        let is_wanted = |name: &str| {
-            let begins =
-                |wanted: &&str| name.strip_prefix(*wanted).is_some_and(|rest| rest.is_empty() || rest.starts_with('-'));
-            self.up.iter().any(begins)
-        };
-        let columns = || history.headings.iter().zip(&history.values).filter(|(heading, _)| is_wanted(&heading.name));
-        let count = columns().count();
-        let curve = |(index, (heading, values)): (usize, (&bsmpm_io::table::Column, &Vec<f64>))| Curve {
-            entry: Entry { name: heading.name.clone(), colour: colour::line(index, count), points: false },
-            unit: heading.unit.clone(),
-            places: across.iter().copied().zip(values.iter().copied()).collect(),
-        };
-        columns().enumerate().map(curve).filter(|curve| !curve.places.is_empty()).collect()
-    }
-
-    /// Adds the points of a reference whose columns bear the names of curves.
-    fn add_reference(&self, curves: &mut Vec<Curve>, reference: &Columns) {
-        let Some(across) = reference.get(self.across) else { return };
-        let mut points = Vec::new();
-        for curve in curves.iter() {
-            let Some(values) = reference.get(&curve.entry.name) else { continue };
-            points.push(Curve {
-                entry: Entry { name: format!("reference, {}", curve.entry.name), colour: INK, points: true },
-                unit: curve.unit.clone(),
-                places: across.iter().copied().zip(values.iter().copied()).collect(),
+impl Across {
+    fn axis(self, record: &Record) -> Option<Axis<'_>> {
+        if self == Time {
+            let (label, unit) = record.time_label();
+            let values = record.history.as_ref()?.get("time")?;
+            return Some(Axis {
+                column: "time",
+                values,
+                factor: 1.0,
+                label: label.to_owned(),
+                unit,
+                note: String::new(),
             });
         }
-        curves.extend(points);
+        let column = *record.columns("penetration").first()?;
+        // A strip that stays where it is has no such curve.
+        range(column.values.iter().copied()).filter(|range| range.1 > range.0)?;
+        let grid = record.manifest.grid.as_ref();
+        let width = grid.and_then(|grid| record.case.footing?.width(grid)).filter(|_| column.unit == "m");
+        let (label, unit) = match width {
+            Some(_) => ("Penetration z/B".to_owned(), "-"),
+            None => (column.label(), column.shown_unit()),
+        };
+        let note = width.map_or_else(String::new, |width| format!(", B = {width} m"));
+        let factor = width.map_or(1.0, |width| 1.0 / width);
+        Some(Axis { column: column.name, values: column.values, factor, label, unit, note })
+    }
+}
+
+impl Picture {
+    const fn of(file: &'static str, title: &'static str, across: Across, up: &'static [&'static str]) -> Self {
+        Self { file, title, across, up, beside: &[], together: title }
     }
 
-    fn draw(&self, record: &Record, history: &Columns, curves: &[Curve]) -> Result<(), Error> {
-        let mut entries: Vec<&Entry> = curves.iter().map(|curve| &curve.entry).collect();
-        if entries.len() == 1 {
-            // The axis says what a lonely line is.
-            entries.clear();
+    /// The columns that there are, those of one unit and scale together.
+    fn groups<'a>(&self, record: &'a Record) -> Vec<Vec<Recorded<'a>>> {
+        let recorded = |quantities: &[&str]| -> Vec<Recorded<'a>> {
+            let columns = quantities.iter().flat_map(|quantity| record.columns(quantity));
+            columns.filter(|column| !column.values.is_empty()).collect()
+        };
+        let mut columns = recorded(self.up);
+        if !columns.is_empty() {
+            columns.extend(recorded(self.beside));
         }
-        let top = ABOVE + legend::height(&entries, SHEET.0 - 80.0) + 20.0;
-        let places = || curves.iter().flat_map(|curve| &curve.places);
-        let x = range(places().map(|place| place.0)).unwrap_or((0.0, 1.0));
-        // Lengths and pressures are read from zero, which is drawn in unless it is far from all values.
-        let y = range(places().map(|place| place.1).chain([0.0])).unwrap_or((0.0, 1.0));
-        let y = padded(y.0, y.1, 0.06);
-        let y = if y.1 > 0.0 && places().all(|place| place.1 >= 0.0) { (0.0, y.1) } else { y };
-        let x = if x.1 > x.0 { x } else { padded(x.0, x.1, 0.0) };
-        let axes = Axes { left: LEFT, top, right: SHEET.0 - RIGHT, bottom: SHEET.1 - BELOW, x, y };
-        let mut canvas = Canvas::new(SHEET.0, SHEET.1);
-        title(&mut canvas, SHEET.0, &record.manifest.case.title, self.title);
-        legend::draw(&mut canvas, &entries, 40.0, ABOVE, SHEET.0 - 80.0);
-        axes.rules(&mut canvas);
-        for curve in curves {
-            if curve.entry.points {
-                curve.places.iter().for_each(|&place| canvas.disc(axes.place(place), 7.0, curve.entry.colour));
-            } else {
-                axes.line(&mut canvas, &curve.places, 3.5, curve.entry.colour);
+        let mut groups: Vec<Vec<Recorded>> = Vec::new();
+        for column in columns {
+            let is_alike = |group: &&mut Vec<Recorded>| (group[0].unit, group[0].scale) == (column.unit, column.scale);
+            match groups.iter_mut().find(is_alike) {
+                Some(group) => group.push(column),
+                None => groups.push(vec![column]),
             }
         }
-        let heading = capitalised(self.across);
-        let across = match self.across {
-            "time" => record.time_label(),
-            name => (heading.as_str(), history.unit(name).unwrap_or("-")),
+        groups.sort_by_key(|group| !group[0].scale.is_empty());
+        groups
+    }
+
+    fn draw(
+        &self,
+        record: &Record,
+        axis: &Axis,
+        columns: &[Recorded],
+        reference: Option<&Columns>,
+        name: &str,
+    ) -> Result<(), Error> {
+        let mut curves = Vec::new();
+        for (index, column) in columns.iter().enumerate() {
+            let entry =
+                Entry { name: column.name.to_owned(), colour: colour::line(index, columns.len()), mark: Mark::Line };
+            curves.push(Curve { entry, places: axis.places(axis.values, column.values) });
+        }
+        // The points of a reference whose columns bear the names of ours.
+        let referred = |name: &str| Some((reference?.get(axis.column)?, reference?.get(name)?));
+        for column in columns {
+            if let Some((across, values)) = referred(column.name) {
+                let name = format!("reference, {}", column.name);
+                let entry = Entry { name, colour: INK, mark: Mark::Points };
+                curves.push(Curve { entry, places: axis.places(across, values) });
+            }
+        }
+        let label = if let [only] = columns { only.label() } else { self.together.to_owned() };
+        // The axis says what a lonely line is.
+        let legend = if curves.len() == 1 { Vec::new() } else { curves.iter().map(|curve| &curve.entry).collect() };
+        let below = format!("{}{}", self.title, axis.note);
+        let title = &record.manifest.case.title;
+        let chart = Chart {
+            title,
+            below: &below,
+            x: (&axis.label, axis.unit),
+            y: (&label, columns[0].shown_unit()),
+            curves: &curves,
+            levels: &[],
+            legend,
         };
-        axes.draw(&mut canvas, Some(across), (&vertical(curves), &curves[0].unit));
-        canvas.save(&record.directory.join(self.file))
+        chart.draw().save(&record.directory.join(name))
     }
 }
 
-/// The label of the vertical axis: the quantity if it is one, else what lengths share.
-fn vertical(curves: &[Curve]) -> String {
-    let lines = curves.iter().filter(|curve| !curve.entry.points).count();
-    let name = if lines == 1 { curves[0].entry.name.as_str() } else { "length" };
-    capitalised(name)
-}
-
-/// A column's name as a heading: `stress-noise` becomes `Stress noise`.
-fn capitalised(name: &str) -> String {
-    let name = name.replace('-', " ");
-    let mut letters = name.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+impl Axis<'_> {
+    fn places(&self, across: &[f64], up: &[f64]) -> Vec<(f64, f64)> {
+        across.iter().map(|x| x * self.factor).zip(up.iter().copied()).collect()
+    }
 }

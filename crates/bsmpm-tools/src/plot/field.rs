@@ -3,6 +3,11 @@
 use bsmpm_io::frame::Frame;
 use clap::ValueEnum;
 
+use crate::picture::ticks::padded;
+
+/// The share of points whose values lie beyond each end of the range of colours, so that a few wild ones do not set it.
+const BEYOND: f64 = 0.005;
+
 /// A quantity of the points as pictures show it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum FieldName {
@@ -85,5 +90,20 @@ impl FieldName {
             Some(component) => values.map(|point| scale * point[component]).collect(),
             None => values.map(|point| scale * point.iter().map(|value| value * value).sum::<f64>().sqrt()).collect(),
         })
+    }
+
+    /// The range of colours: all values but the most extreme; lengths and strains begin at zero.
+    pub(super) fn range(self, values: &[Vec<f64>]) -> (f64, f64) {
+        let mut all: Vec<f64> = values.iter().flatten().copied().filter(|value| value.is_finite()).collect();
+        all.sort_unstable_by(f64::total_cmp);
+        let at =
+            |share: f64| all.get((share * all.len().saturating_sub(1) as f64).round() as usize).copied().unwrap_or(0.0);
+        let (low, high) = (at(BEYOND), at(1.0 - BEYOND));
+        match self {
+            Self::PlasticStrain | Self::Displacement | Self::Velocity if high > 0.0 => (0.0, high),
+            Self::PlasticStrain | Self::Displacement | Self::Velocity => (0.0, 1.0),
+            _ if high > low => (low, high),
+            _ => padded(low, high, 0.0),
+        }
     }
 }

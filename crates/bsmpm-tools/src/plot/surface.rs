@@ -3,16 +3,16 @@
 use bsmpm_io::frame::Frame;
 use bsmpm_io::table::Columns;
 
-use super::axes::{BELOW, title};
 use super::body::{outline, region};
-use super::canvas::Canvas;
-use super::colour::{self, INK, WHITE};
-use super::layout::Layout;
-use super::legend::{self, Entry};
-use super::record::Record;
-use super::splat;
-use super::ticks::range;
 use crate::Error;
+use crate::picture::axes::{BELOW, title};
+use crate::picture::canvas::Canvas;
+use crate::picture::colour::{self, INK, WHITE};
+use crate::picture::layout::Layout;
+use crate::picture::legend::{self, Entry, Mark};
+use crate::picture::splat;
+use crate::picture::ticks::range;
+use crate::record::Record;
 
 const ABOVE: f64 = 115.0;
 const RIGHT: f64 = 60.0;
@@ -96,12 +96,12 @@ fn entries(record: &Record, frames: &[Frame], reference: &[Group]) -> Vec<Entry>
     let line = |(index, frame): (usize, &Frame)| Entry {
         name: record.moment(frame.time),
         colour: colour::line(index, frames.len()),
-        points: false,
+        mark: Mark::Line,
     };
     let group = |group: &Group| Entry {
         name: format!("reference, {}", record.moment(group.time)),
         colour: group.colour,
-        points: true,
+        mark: Mark::Points,
     };
     frames.iter().enumerate().map(line).chain(reference.iter().map(group)).collect()
 }

@@ -1,6 +1,9 @@
-//! `bsmpm plot` on a run that never was.
+//! `bsmpm plot` and `bsmpm compare` on runs that never were.
 
 mod collapse;
+mod compare;
+mod quasi_static;
+mod still;
 
 use std::collections::HashSet;
 use std::fs::{self, File};

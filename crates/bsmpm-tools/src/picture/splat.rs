@@ -1,6 +1,6 @@
 //! Fills a body from its points: a dot of the sheet takes the colour of the nearest point, if one is near enough; then the
 //! rim is taken off again to where the body ends. So a body of few points or of many looks filled where it is stretched,
-//! keeps its size, and no point hides its neighbours.
+//! keeps its size, and no point hides its neighbours. At walls nothing is taken off.
 
 use std::collections::HashSet;
 
@@ -18,7 +18,7 @@ const SKIN: f64 = 0.5;
 const MARGIN: f64 = 600.0;
 
 /// The side of each point's share of the body, in m: from its volume in a plane of 1 m thickness, else the mean one.
-pub(super) fn sizes(frame: &Frame, geometry: &str) -> Vec<f64> {
+pub(crate) fn sizes(frame: &Frame, geometry: &str) -> Vec<f64> {
     match frame.real("volume", 1) {
         Some(volumes) if geometry == "plane-strain" => volumes.iter().map(|volume| volume.abs().sqrt()).collect(),
         _ => vec![spacing(&frame.position); frame.position.len()],
@@ -58,32 +58,68 @@ struct Nearest {
 
 const NOBODY: u32 = u32::MAX;
 
-/// Draws the part of a body that lies in `window`, the ranges of x and y in m, each point in its colour.
-pub(super) fn draw(
+/// The part of the plane where a body is drawn.
+pub(crate) struct Window {
+    /// m  the ranges of x and y
+    pub ranges: [(f64, f64); 2],
+    /// Whether the body is held at the lower and upper ends of the ranges: what comes near to such an end goes up to it.
+    pub walls: [[bool; 2]; 2],
+}
+
+/// Draws the part of a body that lies in `window`, each point in its colour.
+pub(crate) fn draw(
     canvas: &mut Canvas,
     axes: &Axes,
-    window: [(f64, f64); 2],
+    window: &Window,
     (points, sizes): (&[[f64; 3]], &[f64]),
     colours: &[Rgb],
 ) {
-    let [x, y] = window;
+    let [x, y] = window.ranges;
     let dots_per_metre = FINE as f64 * (axes.right - axes.left) / (axes.x.1 - axes.x.0);
     let dots = |size: &f64| (size * dots_per_metre).max(1.0);
-    let largest = sizes.iter().map(dots).fold(1.0, f64::max);
+    // Where the body is cut its points are small, but not their distances.
+    let usual = dots(&median(sizes));
+    let reach = |size: &f64| REACH * dots(size).max(usual);
+    let largest = sizes.iter().map(reach).fold(0.0, f64::max);
     let (lower, upper) = (fine(axes.place((x.0, y.1))), fine(axes.place((x.1, y.0))));
-    let mut nearest = Nearest::about(lower, upper, (REACH * largest).min(MARGIN));
+    let mut nearest = Nearest::about(lower, upper, largest.min(MARGIN));
     for (index, (point, size)) in points.iter().zip(sizes).enumerate() {
-        let (x, y) = axes.place((point[0], point[1]));
-        nearest.add(index as u32, FINE as f64 * x, FINE as f64 * y, REACH * dots(size));
+        let reach = reach(size);
+        for place in window.images([point[0], point[1]], reach / dots_per_metre) {
+            let (x, y) = axes.place(place);
+            nearest.add(index as u32, FINE as f64 * x, FINE as f64 * y, reach);
+        }
     }
     let outside = nearest.distance_to_nobody();
     for (at, (&(_, point), outside)) in nearest.dots.iter().zip(outside).enumerate() {
-        if point != NOBODY && f64::from(outside) > (REACH - SKIN) * dots(&sizes[point as usize]) {
+        let Some(size) = sizes.get(point as usize) else { continue };
+        if f64::from(outside) > reach(size) - SKIN * dots(size) {
             let place = (nearest.left + (at % nearest.width) as i32, nearest.top + (at / nearest.width) as i32);
             if (lower.0..upper.0).contains(&place.0) && (lower.1..upper.1).contains(&place.1) {
                 canvas.dot(place, colours[point as usize]);
             }
         }
+    }
+}
+
+/// The middle one of the sizes.
+fn median(sizes: &[f64]) -> f64 {
+    let mut sorted = sizes.to_vec();
+    sorted.sort_unstable_by(f64::total_cmp);
+    sorted.get(sorted.len() / 2).copied().unwrap_or(0.0)
+}
+
+impl Window {
+    /// A place and its mirror images behind the walls that it is nearer to than `reach`, m.
+    fn images(&self, place: [f64; 2], reach: f64) -> impl Iterator<Item = (f64, f64)> {
+        let along = |axis: usize| {
+            let (range, walls, at) = (self.ranges[axis], self.walls[axis], place[axis]);
+            let lower = (walls[0] && at - range.0 < reach).then_some(2.0 * range.0 - at);
+            let upper = (walls[1] && range.1 - at < reach).then_some(2.0 * range.1 - at);
+            [Some(at), lower, upper].into_iter().flatten()
+        };
+        let rows = along(1);
+        along(0).flat_map(move |x| rows.clone().map(move |y| (x, y)))
     }
 }
 

@@ -7,7 +7,7 @@ const NARROWEST: f64 = 1000.0;
 const HIGHEST: f64 = 1300.0;
 
 /// The parts of a sheet across; [`Layout::axes`] places them downward.
-pub(super) struct Layout {
+pub(crate) struct Layout {
     /// The sheet's width in pixels.
     pub width: f64,
     left: f64,
@@ -39,6 +39,6 @@ impl Layout {
 }
 
 /// The height of a region over its width.
-pub(super) fn aspect([x, y]: [(f64, f64); 2]) -> f64 {
+pub(crate) fn aspect([x, y]: [(f64, f64); 2]) -> f64 {
     (y.1 - y.0) / (x.1 - x.0)
 }

@@ -6,14 +6,14 @@ use super::colour::{self, INK};
 use super::ticks::Ticks;
 
 /// Room for an upright bar right of the axes, with its numbers and label.
-pub(super) const BESIDE: f64 = 240.0;
+pub(crate) const BESIDE: f64 = 240.0;
 /// Room for a lying bar below the axes' own labels.
-pub(super) const BELOW: f64 = 120.0;
+pub(crate) const BELOW: f64 = 120.0;
 const THICK: f64 = 30.0;
 const SHADES: usize = 512;
 
 /// A range of numbers that colours stand for.
-pub(super) struct Bar<'a> {
+pub(crate) struct Bar<'a> {
     pub range: (f64, f64),
     pub label: Label<'a>,
 }

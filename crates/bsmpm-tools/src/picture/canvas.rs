@@ -16,20 +16,20 @@ use super::colour::{Rgb, WHITE};
 use crate::Error;
 
 /// How many times finer than the saved picture the drawing is.
-pub(super) const FINE: usize = 3;
+pub(crate) const FINE: usize = 3;
 const FONT: &str = "DejaVu Sans";
 /// Plotters puts the top of a text half a size above the foot of its letters; a capital is .626 sizes high.
 const CAPITAL_CENTRE: f64 = 0.5 - 0.626 / 2.0;
 
 /// Where a text stands about its place; upright it is always centred on it.
 #[derive(Clone, Copy)]
-pub(super) enum Align {
+pub(crate) enum Align {
     Left,
     Centre,
     Right,
 }
 
-pub(super) struct Canvas {
+pub(crate) struct Canvas {
     width: usize,
     height: usize,
     pixels: Vec<u8>,
@@ -39,11 +39,6 @@ pub(super) struct Canvas {
 impl Canvas {
     /// A white sheet.
     pub fn new(width: f64, height: f64) -> Self {
-        static FONT_ONCE: Once = Once::new();
-        FONT_ONCE.call_once(|| {
-            // A font that could not be read shows itself as the failure of the first text.
-            let _ = register_font(FONT, FontStyle::Normal, include_bytes!("../../assets/DejaVuSans.ttf"));
-        });
         let (width, height) = (width.round() as usize, height.round() as usize);
         let pixels = vec![WHITE[0]; 3 * FINE * FINE * width * height];
         Self { width, height, pixels, failure: None }
@@ -163,16 +158,21 @@ impl Canvas {
 }
 
 /// The width of a text in pixels; 0 for one that cannot be drawn, which its drawing tells.
-pub(super) fn width(text: &str, size: f64) -> f64 {
+pub(crate) fn width(text: &str, size: f64) -> f64 {
     font(size).box_size(text).map_or(0.0, |(width, _)| f64::from(width) / FINE as f64)
 }
 
 /// The size, at most `size`, at which a text is no wider than `room`.
-pub(super) fn fitting(text: &str, size: f64, room: f64) -> f64 {
+pub(crate) fn fitting(text: &str, size: f64, room: f64) -> f64 {
     size.min(size * room / width(text, size).max(1.0))
 }
 
 fn font(size: f64) -> FontDesc<'static> {
+    static FONT_ONCE: Once = Once::new();
+    FONT_ONCE.call_once(|| {
+        // A font that could not be read shows itself as the failure of the first text.
+        let _ = register_font(FONT, FontStyle::Normal, include_bytes!("../../assets/DejaVuSans.ttf"));
+    });
     (FONT, size * FINE as f64).into_font()
 }
 
@@ -197,6 +197,6 @@ fn rgb([red, green, blue]: Rgb) -> RGBColor {
 }
 
 /// A place of the picture in dots of the fine drawing.
-pub(super) fn fine((x, y): (f64, f64)) -> (i32, i32) {
+pub(crate) fn fine((x, y): (f64, f64)) -> (i32, i32) {
     ((x * FINE as f64).round() as i32, (y * FINE as f64).round() as i32)
 }

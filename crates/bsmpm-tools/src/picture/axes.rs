@@ -5,21 +5,21 @@ use super::colour::{INK, RULE, Rgb};
 use super::ticks::Ticks;
 
 /// Sizes of letters in pixels, for a picture 1600 wide.
-pub(super) const TITLE: f64 = 34.0;
-pub(super) const LABEL: f64 = 30.0;
-pub(super) const NUMBER: f64 = 26.0;
+pub(crate) const TITLE: f64 = 34.0;
+pub(crate) const LABEL: f64 = 30.0;
+pub(crate) const NUMBER: f64 = 26.0;
 /// Room for the numbers and label left of, and below, the axes.
-pub(super) const LEFT: f64 = 170.0;
-pub(super) const BELOW: f64 = 105.0;
-pub(super) const TICK: f64 = 9.0;
-pub(super) const THIN: f64 = 1.7;
+pub(crate) const LEFT: f64 = 170.0;
+pub(crate) const BELOW: f64 = 105.0;
+pub(crate) const TICK: f64 = 9.0;
+pub(crate) const THIN: f64 = 1.7;
 
 /// A quantity and its unit.
-pub(super) type Label<'a> = (&'a str, &'a str);
+pub(crate) type Label<'a> = (&'a str, &'a str);
 
 /// A box of the sheet and the region of the plane that it shows.
 #[derive(Clone, Copy)]
-pub(super) struct Axes {
+pub(crate) struct Axes {
     /// Left, top, right and bottom edge in pixels.
     pub left: f64,
     pub top: f64,
@@ -102,8 +102,13 @@ impl Axes {
     }
 }
 
+/// A label in one piece: the quantity, and its unit if it has one.
+pub(crate) fn label(quantity: &str, unit: &str) -> String {
+    if unit.is_empty() || unit == "-" { quantity.to_owned() } else { format!("{quantity} ({unit})") }
+}
+
 /// The title of a picture: what was solved and, smaller, what is seen.
-pub(super) fn title(canvas: &mut Canvas, sheet: f64, text: &str, below: &str) {
+pub(crate) fn title(canvas: &mut Canvas, sheet: f64, text: &str, below: &str) {
     let size = fitting(text, TITLE, sheet - 60.0);
     canvas.text(text, (sheet / 2.0, 42.0), size, Align::Centre, INK);
     let size = fitting(below, LABEL, sheet - 60.0);

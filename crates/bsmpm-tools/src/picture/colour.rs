@@ -1,15 +1,15 @@
 //! The colours of all pictures.
 
 /// Red, green, blue.
-pub(super) type Rgb = [u8; 3];
+pub(crate) type Rgb = [u8; 3];
 
-pub(super) const WHITE: Rgb = [255, 255, 255];
+pub(crate) const WHITE: Rgb = [255, 255, 255];
 /// Text and axes.
-pub(super) const INK: Rgb = [30, 30, 30];
+pub(crate) const INK: Rgb = [30, 30, 30];
 /// What should stand back: the outline of the grid.
-pub(super) const OUTLINE: Rgb = [140, 140, 140];
+pub(crate) const OUTLINE: Rgb = [140, 140, 140];
 /// Lines across the picture at each tick.
-pub(super) const RULE: Rgb = [226, 226, 226];
+pub(crate) const RULE: Rgb = [226, 226, 226];
 
 /// Seven colours that also the colour-blind tell apart (Okabe and Ito, 2008), without yellow, which is lost on white.
 const LINES: [Rgb; 7] =
@@ -53,12 +53,12 @@ const VIRIDIS: [Rgb; 33] = [
 ];
 
 /// The colour of the line `index` out of `count`: distinct ones, or shades from first to last if they are too many.
-pub(super) fn line(index: usize, count: usize) -> Rgb {
+pub(crate) fn line(index: usize, count: usize) -> Rgb {
     if count <= LINES.len() { LINES[index % LINES.len()] } else { map(0.9 * index as f64 / (count - 1) as f64) }
 }
 
 /// The colour of a share between 0 and 1 of the range; what lies outside takes the colour of the end.
-pub(super) fn map(share: f64) -> Rgb {
+pub(crate) fn map(share: f64) -> Rgb {
     let place = share.clamp(0.0, 1.0) * (VIRIDIS.len() - 1) as f64;
     let below = (place as usize).min(VIRIDIS.len() - 2);
     let rest = place - below as f64;

@@ -1,7 +1,7 @@
 //! Round numbers for axes.
 
 /// The round numbers of an axis and how they are written.
-pub(super) struct Ticks {
+pub(crate) struct Ticks {
     pub values: Vec<f64>,
     /// What the numbers are divided by before they are written: a power of 1000.
     scale: f64,
@@ -48,6 +48,10 @@ impl Ticks {
     pub fn label(&self, quantity: &str, unit: &str) -> String {
         let power = POWERS.iter().find(|(power, _)| 10_f64.powi(*power) == self.scale).map_or("", |(_, text)| text);
         let unit = if unit == "-" { "" } else { unit };
+        let prefix = ["", "k", "M", "G"].into_iter().zip(["", "10³", "10⁶", "10⁹"]).find(|(_, text)| *text == power);
+        if let (Some((prefix, _)), true) = (prefix, unit.starts_with(['P', 'N'])) {
+            return format!("{quantity} ({prefix}{unit})");
+        }
         match (power.is_empty(), unit.is_empty()) {
             (true, true) => quantity.to_owned(),
             (true, false) => format!("{quantity} ({unit})"),
@@ -69,14 +73,14 @@ fn power_of(largest: f64) -> i32 {
 }
 
 /// A range with `share` of its length added at both ends; one of no length gets some.
-pub(super) fn padded(low: f64, high: f64, share: f64) -> (f64, f64) {
+pub(crate) fn padded(low: f64, high: f64, share: f64) -> (f64, f64) {
     let length = high - low;
     let room = if length > 1e-12 * high.abs().max(low.abs()) { share * length } else { high.abs().max(1e-9) / 2.0 };
     (low - room, high + room)
 }
 
 /// The smallest and largest of finite numbers, if there are any.
-pub(super) fn range(values: impl IntoIterator<Item = f64>) -> Option<(f64, f64)> {
+pub(crate) fn range(values: impl IntoIterator<Item = f64>) -> Option<(f64, f64)> {
     values.into_iter().filter(|value| value.is_finite()).fold(None, |range, value| match range {
         None => Some((value, value)),
         Some((low, high)) => Some((value.min(low), value.max(high))),
@@ -99,6 +103,8 @@ mod tests {
         assert_eq!(texts(0.0, 3e6, 3.0), ["0", "1", "2", "3"]);
         assert_eq!(Ticks::between(0.0, 2.5e-4, 5.0).label("Step", "s"), "Step (10⁻³ s)");
         assert_eq!(Ticks::between(0.0, 1.0, 5.0).label("Iterations", "-"), "Iterations");
+        assert_eq!(Ticks::between(0.0, 3e5, 5.0).label("Pressure", "Pa"), "Pressure (kPa)");
+        assert_eq!(Ticks::between(0.0, 3e6, 5.0).label("Force", "N/m"), "Force (MN/m)");
     }
 
     #[test]

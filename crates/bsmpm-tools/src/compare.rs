@@ -1,0 +1,152 @@
+//! `bsmpm compare`: one quantity of several runs in one picture, and as a table. What the runs give is in `runs`, points
+//! to compare with in `reference`, the table in `table`.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use crate::Error;
+use crate::picture::chart::{Chart, Curve};
+use crate::picture::colour::{self, INK};
+use crate::picture::legend::{Entry, Mark};
+
+mod reference;
+mod runs;
+mod table;
+
+pub use crate::picture::chart::Level;
+use runs::Runs;
+
+/// What to compare.
+#[derive(Clone, Debug, Args)]
+pub struct Arguments {
+    /// The output directories of the runs, which may go on or have stopped
+    #[arg(required = true, value_name = "DIR")]
+    pub directories: Vec<PathBuf>,
+    /// The column of history.csv along the horizontal axis, or the quantity that it records
+    #[arg(long, value_name = "COLUMN", default_value = "time")]
+    pub x: String,
+    /// The column of history.csv along the vertical axis, or the quantity that it records
+    #[arg(long, value_name = "COLUMN")]
+    pub y: String,
+    /// Multiplies the column along the horizontal axis
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = number, allow_hyphen_values = true)]
+    pub x_scale: f64,
+    /// Multiplies the column along the vertical axis
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = number, allow_hyphen_values = true)]
+    pub y_scale: f64,
+    /// Text at the horizontal axis [default: the column and its unit]
+    #[arg(long, value_name = "TEXT")]
+    pub x_label: Option<String>,
+    /// Text at the vertical axis [default: the column and its unit]
+    #[arg(long, value_name = "TEXT")]
+    pub y_label: Option<String>,
+    /// Text above the picture [default: the title of the cases, if they share one]
+    #[arg(long, value_name = "TEXT")]
+    pub title: Option<String>,
+    /// Name of a run, once for every DIR [default: its stabilisation where that tells the runs apart, else DIR]
+    #[arg(long = "label", value_name = "NAME")]
+    pub labels: Vec<String>,
+    /// A level across the picture; repeatable
+    #[arg(long = "line", value_name = "VALUE[=TEXT]", value_parser = level, allow_hyphen_values = true)]
+    pub lines: Vec<Level>,
+    /// Points to compare with, as they are seen in the picture: a CSV file with a line of names and columns x,y;
+    /// repeatable
+    #[arg(long = "reference", value_name = "FILE")]
+    pub references: Vec<PathBuf>,
+    /// Only the last row of every run; runs of one label are one curve
+    #[arg(long)]
+    pub last: bool,
+    /// The x of a run, once for every DIR, instead of a column
+    #[arg(
+        long = "x-value",
+        value_name = "V",
+        requires = "last",
+        conflicts_with = "x",
+        value_parser = number,
+        allow_hyphen_values = true
+    )]
+    pub x_values: Vec<f64>,
+    /// The picture [default: compare.png, or with --table none]
+    #[arg(short, long, value_name = "FILE.png")]
+    pub output: Option<PathBuf>,
+    /// Print the curves as a table
+    #[arg(long)]
+    pub table: bool,
+    /// The x of the table's rows, between which the runs are interpolated [default: round numbers, with --last all]
+    #[arg(
+        long,
+        value_name = "X,...",
+        requires = "table",
+        value_delimiter = ',',
+        value_parser = number,
+        allow_hyphen_values = true
+    )]
+    pub at: Vec<f64>,
+}
+
+fn number(text: &str) -> Result<f64, String> {
+    text.trim().parse().ok().filter(|number: &f64| number.is_finite()).ok_or_else(|| "a finite number".to_owned())
+}
+
+fn level(text: &str) -> Result<Level, String> {
+    let (value, text) = text.split_once('=').unwrap_or((text, ""));
+    Ok(Level { value: number(value)?, text: text.trim().trim_matches('"').to_owned() })
+}
+
+/// What was made of a comparison.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Made {
+    /// The picture.
+    pub picture: Option<PathBuf>,
+    /// The table, a line a row.
+    pub table: Option<String>,
+    /// What its reader should know: which runs have not come to their end.
+    pub notes: Vec<String>,
+}
+
+/// Draws the picture and sets the table, as far as they are wanted.
+///
+/// # Errors
+/// [`Error::NoRun`], [`Error::NoRow`] and [`Error::NoColumn`] for what a directory does not hold, [`Error::Usage`] for
+/// options that do not fit the runs or each other, the errors of references and files.
+pub fn run(arguments: &Arguments) -> Result<Made, Error> {
+    let runs = Runs::read(arguments)?;
+    let picture = match (&arguments.output, arguments.table) {
+        (Some(path), _) => Some(path.clone()),
+        (None, false) => Some(PathBuf::from("compare.png")),
+        (None, true) => None,
+    };
+    if let Some(path) = &picture {
+        draw(arguments, &runs, path)?;
+    }
+    let table = arguments.table.then(|| table::text(&runs, &arguments.at));
+    Ok(Made { picture, table, notes: runs.notes })
+}
+
+fn draw(arguments: &Arguments, runs: &Runs, path: &Path) -> Result<(), Error> {
+    let names = runs.labels();
+    let count = names.len() + arguments.references.len().saturating_sub(1);
+    let mark = if arguments.last { Mark::Both } else { Mark::Line };
+    let mut curves = Vec::new();
+    for (name, places) in &runs.curves {
+        let index = names.iter().position(|other| *other == name).unwrap_or(0);
+        let entry = Entry { name: name.clone(), colour: colour::line(index, count), mark };
+        curves.push(Curve { entry, places: places.clone() });
+    }
+    for (index, path) in arguments.references.iter().enumerate() {
+        let colour = if index == 0 { INK } else { colour::line(names.len() + index - 1, count) };
+        let (name, places) = reference::read(path)?;
+        curves.push(Curve { entry: Entry { name, colour, mark: Mark::Points }, places });
+    }
+    let mut legend: Vec<&Entry> = Vec::new();
+    for Curve { entry, .. } in &curves {
+        if !legend.iter().any(|other| (&other.name, other.colour) == (&entry.name, entry.colour)) {
+            legend.push(entry);
+        }
+    }
+    let x = (&*runs.x.0, &*runs.x.1);
+    let y = (&*runs.y.0, &*runs.y.1);
+    let chart = Chart { title: &runs.title, below: "", x, y, curves: &curves, levels: &arguments.lines, legend };
+    chart.draw().save(path)
+}

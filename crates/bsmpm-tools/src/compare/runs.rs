@@ -1,0 +1,174 @@
+//! The curves of the runs, with their names and those of the axes.
+
+use std::path::Path;
+
+use bsmpm_io::manifest::Status;
+
+use super::Arguments;
+use crate::Error;
+use crate::record::{Record, Recorded};
+
+/// The curves in the order of the command line.
+pub(super) struct Runs {
+    pub title: String,
+    /// Label and unit of the axes.
+    pub x: (String, String),
+    pub y: (String, String),
+    /// The label and the places of every curve.
+    pub curves: Vec<(String, Vec<(f64, f64)>)>,
+    /// Whether every place is a run of its own.
+    pub last: bool,
+    /// Which runs have not come to their end.
+    pub notes: Vec<String>,
+}
+
+impl Runs {
+    pub fn read(arguments: &Arguments) -> Result<Self, Error> {
+        let count = arguments.directories.len();
+        fits("--label", arguments.labels.len(), count)?;
+        fits("--x-value", arguments.x_values.len(), count)?;
+        let records: Vec<Record> =
+            arguments.directories.iter().map(|directory| Record::read(directory)).collect::<Result<_, _>>()?;
+        let columns = |name: &str| records.iter().map(|record| column(record, name)).collect::<Result<Vec<_>, _>>();
+        let up = columns(&arguments.y)?;
+        let y = axis(&records, &up, arguments.y_label.as_deref(), arguments.y_scale)?;
+        let labels = labels(arguments, &records);
+        let (x, across) = if arguments.x_values.is_empty() {
+            let across = columns(&arguments.x)?;
+            (axis(&records, &across, arguments.x_label.as_deref(), arguments.x_scale)?, Some(across))
+        } else {
+            ((arguments.x_label.clone().unwrap_or_default(), String::new()), None)
+        };
+        let mut curves: Vec<(String, Vec<(f64, f64)>)> = Vec::new();
+        for (index, label) in labels.into_iter().enumerate() {
+            let up: Vec<f64> = up[index].values.iter().map(|y| y * arguments.y_scale).collect();
+            let across = match &across {
+                Some(columns) => columns[index].values.iter().map(|x| x * arguments.x_scale).collect(),
+                None => vec![arguments.x_values[index]; up.len()],
+            };
+            let places: Vec<(f64, f64)> = across.into_iter().zip(up).collect();
+            if !arguments.last {
+                curves.push((label, places));
+                continue;
+            }
+            let last = places.last().copied();
+            match curves.iter_mut().find(|curve| curve.0 == label) {
+                Some(curve) => curve.1.extend(last),
+                None => curves.push((label, last.into_iter().collect())),
+            }
+        }
+        if arguments.last {
+            curves.iter_mut().for_each(|curve| curve.1.sort_by(|a, b| a.0.total_cmp(&b.0)));
+        }
+        let notes = records.iter().filter_map(note).collect();
+        Ok(Self { title: title(arguments, &records), x, y, curves, last: arguments.last, notes })
+    }
+
+    /// The labels without repetition.
+    pub fn labels(&self) -> Vec<&String> {
+        let mut labels: Vec<&String> = Vec::new();
+        for (label, _) in &self.curves {
+            if !labels.contains(&label) {
+                labels.push(label);
+            }
+        }
+        labels
+    }
+}
+
+/// An option that is given for all runs or not at all.
+fn fits(option: &str, given: usize, runs: usize) -> Result<(), Error> {
+    if given == 0 || given == runs {
+        return Ok(());
+    }
+    let reason = format!("{option} is given {given} times for {runs} directories; it is needed once for each");
+    Err(Error::Usage { reason })
+}
+
+/// The column `name` of a run's history, or the only one that records the quantity of that name.
+fn column<'a>(record: &'a Record, name: &str) -> Result<Recorded<'a>, Error> {
+    let directory = || record.directory.clone();
+    let history = record.history.as_ref().filter(|history| history.values.iter().any(|values| !values.is_empty()));
+    let history = history.ok_or_else(|| Error::NoRow { directory: directory() })?;
+    if let Some(column) = record.column(name) {
+        return Ok(column);
+    }
+    match record.columns(name)[..] {
+        [only] => Ok(only),
+        _ => {
+            let known: Vec<_> = history.headings.iter().map(|heading| heading.name.as_str()).collect();
+            Err(Error::NoColumn { directory: directory(), column: name.to_owned(), known: known.join(", ") })
+        }
+    }
+}
+
+/// The label and unit of an axis: as given, else those of the runs' columns, which must then share a unit.
+fn axis(records: &[Record], columns: &[Recorded], given: Option<&str>, factor: f64) -> Result<(String, String), Error> {
+    if let Some(label) = given {
+        return Ok((label.to_owned(), String::new()));
+    }
+    let first = columns[0];
+    if let Some((record, other)) = records.iter().zip(columns).find(|(_, column)| column.unit != first.unit) {
+        let (name, unit) = (first.name, first.unit);
+        let (here, there) = (records[0].directory.display(), record.directory.display());
+        let reason = format!(
+            "the column \"{name}\" is in \"{unit}\" in {here}, \"{}\" in \"{}\" in {there}; a label of the axis makes them \
+             one",
+            other.name, other.unit
+        );
+        return Err(Error::Usage { reason });
+    }
+    let (label, unit) = match first.name {
+        "time" => records[0].time_label(),
+        _ => (&*first.label(), first.shown_unit()),
+    };
+    let label = if factor == 1.0 { label.to_owned() } else { format!("{label} × {factor}").replace("× -", "× −") };
+    Ok((label, unit.to_owned()))
+}
+
+/// The names of the runs: as given; else their stabilisation if it tells them apart, or with `--last` groups them; else
+/// their directories.
+fn labels(arguments: &Arguments, records: &[Record]) -> Vec<String> {
+    if !arguments.labels.is_empty() {
+        return arguments.labels.clone();
+    }
+    let methods: Option<Vec<String>> = records.iter().map(|record| record.case.stabilisation.clone()).collect();
+    if let Some(methods) = methods.filter(|methods| arguments.last || (methods.len() > 1 && are_distinct(methods))) {
+        return methods;
+    }
+    let stems: Vec<String> = arguments.directories.iter().map(|directory| stem(directory)).collect();
+    if are_distinct(&stems) {
+        return stems;
+    }
+    arguments.directories.iter().map(|directory| directory.display().to_string()).collect()
+}
+
+fn are_distinct(names: &[String]) -> bool {
+    names.iter().enumerate().all(|(index, name)| !names[..index].contains(name))
+}
+
+/// The last part of a directory's path without the ending that runs have; other dots may be those of numbers.
+fn stem(directory: &Path) -> String {
+    let name = directory.file_name().map(|name| name.to_string_lossy().into_owned());
+    let name = name.unwrap_or_else(|| directory.display().to_string());
+    name.strip_suffix(".out").filter(|stem| !stem.is_empty()).unwrap_or(&name).to_owned()
+}
+
+/// How a run that has not come to its end stands.
+fn note(record: &Record) -> Option<String> {
+    let stands = match record.manifest.status {
+        Status::Finished => return None,
+        Status::Running => "is running",
+        Status::Stopped => "was stopped",
+        Status::Failed => "failed",
+    };
+    let last = record.column("time").and_then(|column| column.values.last().copied())?;
+    Some(format!("note: {} {stands}; its last row is at {}", record.directory.display(), record.moment(last)))
+}
+
+/// The title of the picture: as given, else that of the cases if they share one.
+fn title(arguments: &Arguments, records: &[Record]) -> String {
+    let titles = || records.iter().map(|record| &record.manifest.case.title);
+    let shared = titles().next().filter(|first| titles().all(|title| title == *first));
+    arguments.title.clone().or(shared.cloned()).unwrap_or_default()
+}

@@ -1,0 +1,195 @@
+//! What a run left, as the pictures need it: its files here, what its case says in `case`.
+
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+use bsmpm_io::directory::HISTORY;
+use bsmpm_io::frame::Frame;
+use bsmpm_io::frames::{Entry, read_collection};
+use bsmpm_io::manifest::Manifest;
+use bsmpm_io::steps::STEPS;
+use bsmpm_io::table::{self, Column, Columns};
+use bsmpm_io::vtu;
+
+use crate::Error;
+
+pub(crate) mod case;
+
+pub(crate) use case::{Case, Regime};
+
+/// The files of a run; those that are not there yet are none.
+pub(crate) struct Record {
+    pub directory: PathBuf,
+    pub manifest: Manifest,
+    pub case: Case,
+    entries: Vec<Entry>,
+    pub history: Option<Columns>,
+    pub steps: Option<Columns>,
+}
+
+impl Record {
+    pub fn read(directory: &Path) -> Result<Self, Error> {
+        let manifest = present(Manifest::read(directory))?;
+        let manifest = manifest.ok_or_else(|| Error::NoRun { directory: directory.to_owned() })?;
+        Ok(Self {
+            directory: directory.to_owned(),
+            case: Case::of(&manifest.case.text),
+            manifest,
+            entries: present(read_collection(directory))?.unwrap_or_default(),
+            history: present(table::read(&directory.join(HISTORY)))?,
+            steps: present(table::read(&directory.join(STEPS)))?,
+        })
+    }
+
+    /// Whether inertia acts: as the case says, else by the unit of time, which a quasi-static analysis does not have.
+    pub fn regime(&self) -> Regime {
+        let by_unit = || {
+            let unit = [&self.history, &self.steps].into_iter().flatten().find_map(|table| table.unit("time"));
+            if unit == Some("-") { Regime::QuasiStatic } else { Regime::Dynamic }
+        };
+        self.case.regime.unwrap_or_else(by_unit)
+    }
+
+    /// The column `name` of `history.csv`.
+    pub fn column(&self, name: &str) -> Option<Recorded<'_>> {
+        self.all_columns().find(|column| column.name == name)
+    }
+
+    /// The columns of `history.csv` that record a quantity, found by the case's `[[history]]` tables, or without such by name.
+    pub fn columns(&self, quantity: &str) -> Vec<Recorded<'_>> {
+        let is_wanted = |column: &Recorded| match self.history_of(column.name) {
+            Some(history) => history.quantity == quantity,
+            None => self.case.histories.is_empty() && case::bears(column.name, quantity),
+        };
+        self.all_columns().filter(is_wanted).collect()
+    }
+
+    fn all_columns(&self) -> impl Iterator<Item = Recorded<'_>> {
+        let columns = self.history.iter().flat_map(|table| table.headings.iter().zip(&table.values));
+        columns.map(|(Column { name, unit }, values)| {
+            let scale = self.history_of(name).map_or("", |history| &history.scale);
+            Recorded { name, unit, scale, values }
+        })
+    }
+
+    /// The case's table that a column comes from: of several names that it begins with, the longest.
+    fn history_of(&self, column: &str) -> Option<&case::History> {
+        self.case.histories.iter().filter(|history| history.has(column)).max_by_key(|history| history.name.len())
+    }
+
+    /// The axis label of time.
+    pub fn time_label(&self) -> (&'static str, &'static str) {
+        match self.regime() {
+            Regime::Dynamic => ("Time", "s"),
+            Regime::QuasiStatic => ("Pseudo-time", "-"),
+        }
+    }
+
+    /// A moment in words, for titles and legends.
+    pub fn moment(&self, time: f64) -> String {
+        match self.regime() {
+            Regime::Dynamic => format!("t = {} s", short(time)),
+            Regime::QuasiStatic => format!("pseudo-time {}", short(time)),
+        }
+    }
+
+    /// The frames nearest to the wanted times; without such, those of the case, or three that are evenly spread.
+    pub fn frames(&self, wanted: &[f64]) -> Result<Vec<Frame>, Error> {
+        let last = self.entries.len().saturating_sub(1);
+        let mut chosen: Vec<usize> = wanted.iter().filter_map(|&time| self.nearest(time)).collect();
+        if wanted.is_empty() {
+            let case = self.manifest.picture_times.iter();
+            chosen = case.filter_map(|&time| self.nearest(time).filter(|&index| self.is_at(index, time))).collect();
+        }
+        if chosen.is_empty() && !self.entries.is_empty() {
+            chosen = vec![last.div_ceil(3), (2 * last).div_ceil(3), last];
+        }
+        chosen.sort_unstable();
+        chosen.dedup();
+        chosen.iter().map(|&index| Ok(vtu::read(&self.directory.join(&self.entries[index].file))?)).collect()
+    }
+
+    fn nearest(&self, time: f64) -> Option<usize> {
+        let distance = |index: &usize| (self.entries[*index].time - time).abs();
+        (0..self.entries.len()).min_by(|a, b| distance(a).total_cmp(&distance(b)))
+    }
+
+    /// The case's times are hit exactly, but for rounding; one that a run has not reached has no frame.
+    fn is_at(&self, index: usize, time: f64) -> bool {
+        (self.entries[index].time - time).abs() <= 1e-6 * time.abs()
+    }
+}
+
+/// A column of `history.csv` that records a quantity of the case.
+#[derive(Clone, Copy)]
+pub(crate) struct Recorded<'a> {
+    pub name: &'a str,
+    pub unit: &'a str,
+    /// The factor that multiplies it, as the case writes it; empty for none.
+    pub scale: &'a str,
+    pub values: &'a [f64],
+}
+
+impl<'a> Recorded<'a> {
+    /// The label of an axis: `stress-noise` becomes `Stress noise`; a name of the case's own for what it has scaled is read as
+    /// a formula, `E_delta_over_gamma_H2` as `E δ/(γ H²)`.
+    pub fn label(&self) -> String {
+        if self.shown_unit() != self.unit {
+            return formula(self.name);
+        }
+        let name = self.name.replace(['-', '_'], " ");
+        let mut letters = name.chars();
+        letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+    }
+
+    /// The unit of an axis: a scaled column has one of the case's own, which is not known.
+    pub fn shown_unit(&self) -> &'a str {
+        if self.unit.starts_with("scaled ") { "-" } else { self.unit }
+    }
+}
+
+/// A name as a formula: factors between `_`, a fraction with `_over_`, Greek letters by their names.
+fn formula(name: &str) -> String {
+    let factor = |factor: &str| match factor {
+        "gamma" => "γ".to_owned(),
+        "delta" => "δ".to_owned(),
+        "sigma" => "σ".to_owned(),
+        _ => factor.strip_suffix('2').map_or_else(|| factor.to_owned(), |base| format!("{base}²")),
+    };
+    let product = |text: &str| text.split('_').map(factor).collect::<Vec<_>>().join(" ");
+    match name.split_once("_over_") {
+        Some((above, below)) if below.contains('_') => format!("{}/({})", product(above), product(below)),
+        Some((above, below)) => format!("{}/{}", product(above), product(below)),
+        None => product(name),
+    }
+}
+
+/// A file that is not there is none; other trouble with it is an error.
+fn present<T>(read: Result<T, bsmpm_io::Error>) -> Result<Option<T>, Error> {
+    match read {
+        Ok(found) => Ok(Some(found)),
+        Err(bsmpm_io::Error::File { source, .. })
+            if [ErrorKind::NotFound, ErrorKind::NotADirectory].contains(&source.kind()) =>
+        {
+            Ok(None)
+        }
+        Err(error) => Err(error.into()),
+    }
+}
+
+/// A time to six digits, without the noise that sums of steps leave at the end.
+pub(crate) fn short(time: f64) -> f64 {
+    format!("{time:.5e}").parse().unwrap_or(time)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::formula;
+
+    #[test]
+    fn names_are_read_as_formulas() {
+        assert_eq!(formula("p_over_c"), "p/c");
+        assert_eq!(formula("E_delta_over_gamma_H2"), "E δ/(γ H²)");
+        assert_eq!(formula("tip-x"), "tip-x");
+    }
+}
