@@ -125,7 +125,7 @@ impl Error {
     }
 
     /// For `map_err`: the system's error while `action` was done to the file `path`.
-    pub(crate) fn file(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Self {
+    pub fn file(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Self {
         move |source| Self::File { action, path: path.to_owned(), source }
     }
 

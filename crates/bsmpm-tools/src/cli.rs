@@ -4,7 +4,7 @@ use std::io::Write;
 
 use clap::{Parser, Subcommand};
 
-use crate::{Error, compare, plot};
+use crate::{Error, compare, plot, validate};
 
 /// Looks at what a run of bsmpm-par left.
 #[derive(Debug, Parser)]
@@ -22,6 +22,8 @@ pub enum Command {
     Plot(plot::Arguments),
     /// Draw one quantity of several runs in one picture, or print it as a table
     Compare(Box<compare::Arguments>),
+    /// Run the cases of a matrix and judge their histories against references
+    Validate(validate::Arguments),
 }
 
 /// Carries out a command and prints what it made: tables, and pictures with one path a line.
@@ -44,6 +46,15 @@ pub fn run(cli: &Cli) -> Result<(), Error> {
             let table = made.table.unwrap_or_default();
             let picture = made.picture.map(|path| format!("{}\n", path.display())).unwrap_or_default();
             let _ = write!(std::io::stdout(), "{table}{picture}");
+        }
+        Command::Validate(arguments) => {
+            let counts = validate::run(arguments, |part| {
+                let _ = writeln!(std::io::stdout(), "{part}");
+            })?;
+            let _ = writeln!(std::io::stdout(), "{} passed, {} failed", counts.passed, counts.failed);
+            if counts.failed > 0 {
+                return Err(Error::NotValid { failed: counts.failed });
+            }
         }
     }
     Ok(())

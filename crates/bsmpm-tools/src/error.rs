@@ -73,14 +73,29 @@ pub enum Error {
         /// What the library said.
         reason: String,
     },
+    /// Rows of a validation have failed.
+    #[error("{failed} row(s) of the validation failed")]
+    NotValid {
+        /// How many.
+        failed: usize,
+    },
+    /// The solver could not be started.
+    #[error("cannot start {program}: {source}")]
+    Launch {
+        /// The first word of the command.
+        program: String,
+        /// What the system said.
+        source: std::io::Error,
+    },
     /// A file of the run could not be read or a picture not be written.
     #[error(transparent)]
     File(#[from] bsmpm_io::Error),
 }
 
 impl Error {
-    /// The exit code of `bsmpm`: 2 for options that do not fit, 66 for what is missing, 65 for a bad reference file, 70 for a fault of this program, else
-    /// that of the file's error.
+    /// The exit code of `bsmpm`: 2 for options that do not fit, 66 for what is missing, 65 for a bad reference file, 77 for a
+    /// validation that failed, 74 for a solver that does not start, 70 for a fault of this program, else that of the file's
+    /// error.
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Usage { .. } => 2,
@@ -91,6 +106,8 @@ impl Error {
             | Self::NoField { .. }
             | Self::NoReference { .. } => 66,
             Self::BadReference { .. } => 65,
+            Self::NotValid { .. } => 77,
+            Self::Launch { .. } => 74,
             Self::Drawing { .. } => 70,
             Self::File(error) => error.exit_code(),
         }

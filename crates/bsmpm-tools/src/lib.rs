@@ -10,5 +10,6 @@ pub mod error;
 mod picture;
 pub mod plot;
 mod record;
+pub mod validate;
 
 pub use error::Error;

@@ -1,0 +1,154 @@
+//! `bsmpm validate`: runs the cases of a matrix and judges their histories against references. The matrix is read in
+//! `matrix`, the runs are made in `runs`, numbers are taken from them in `measure`, the table is set in `table`, curves are
+//! drawn in `figure`.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use crate::Error;
+
+mod figure;
+mod matrix;
+mod measure;
+mod runs;
+mod table;
+
+pub use matrix::Depth;
+use matrix::{Matrix, Study};
+use runs::{Launcher, Outcome};
+use table::{Row, Verdict};
+
+/// What to validate.
+#[derive(Clone, Debug, Args)]
+pub struct Arguments {
+    /// The matrix: a TOML file of studies with their runs, rows and figures
+    pub matrix: PathBuf,
+    /// Only what is marked as short
+    #[arg(long)]
+    pub short: bool,
+    /// Only studies whose title contains TEXT
+    #[arg(long, value_name = "TEXT")]
+    pub only: Option<String>,
+    /// Where everything is written
+    #[arg(short, long, value_name = "DIR", default_value = "target/validation")]
+    pub output: PathBuf,
+    /// Repeat runs that are there already
+    #[arg(long)]
+    pub force: bool,
+    /// The solver, with the launcher before it: words that bsmpm-par's arguments follow
+    #[arg(last = true, required = true, value_name = "COMMAND")]
+    pub command: Vec<String>,
+}
+
+/// Rows that passed and failed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Judged rows within their bounds.
+    pub passed: usize,
+    /// Judged rows outside of them, or without a result.
+    pub failed: usize,
+}
+
+/// Runs and judges the matrix; `told` gets each study's part of the table as soon as it is there.
+///
+/// # Errors
+/// A matrix that cannot be read; files that cannot be written. Runs that fail are rows that fail.
+pub fn run(arguments: &Arguments, mut told: impl FnMut(&str)) -> Result<Counts, Error> {
+    let matrix = Matrix::read(&arguments.matrix)?;
+    let base = arguments.matrix.parent().unwrap_or(Path::new(""));
+    make(&arguments.output)?;
+    let launcher = Launcher { command: &arguments.command, base, output: &arguments.output, force: arguments.force };
+    let wanted = |study: &&Study| arguments.only.as_ref().is_none_or(|part| study.title.contains(part));
+    let mut rows: Vec<Row> = Vec::new();
+    for study in matrix.study.iter().filter(wanted) {
+        let asked = |depth: Option<Depth>| !arguments.short || depth.unwrap_or(study.depth) == Depth::Short;
+        let chosen: Vec<_> = study.run.iter().filter(|run| asked(run.depth)).collect();
+        if chosen.is_empty() {
+            continue;
+        }
+        let mut outcomes = BTreeMap::new();
+        for run in chosen {
+            outcomes.insert(run.name.clone(), launcher.outcome(study, run)?);
+        }
+        let begin = rows.len();
+        rows.extend(study.row.iter().filter(|row| asked(row.depth)).map(|row| judged(study, row, &outcomes)));
+        told(&table::text(&study.title, &rows[begin..]));
+        write(&arguments.output.join("table.md"), &table::markdown(&rows))?;
+        write(&arguments.output.join("table.csv"), &table::csv(&rows))?;
+        for figure in &study.figure {
+            figure::draw(figure, &study.title, &outcomes, base, &arguments.output)?;
+        }
+        draw_bodies(study, &outcomes, &arguments.output)?;
+    }
+    let count = |verdict| rows.iter().filter(|row| row.verdict == verdict).count();
+    Ok(Counts { passed: count(Verdict::Passed), failed: count(Verdict::Failed) })
+}
+
+/// The number of a row and what it is worth.
+fn judged(study: &Study, row: &matrix::Row, outcomes: &BTreeMap<String, Outcome>) -> Row {
+    let found = measure::value(row, outcomes);
+    let mut remarks: Vec<String> = Vec::new();
+    let ours = match found {
+        Ok(measured) => {
+            remarks.extend(measured.remark);
+            Some(measured.value)
+        }
+        Err(reason) => {
+            remarks.push(reason);
+            None
+        }
+    };
+    let of_row: Vec<&Outcome> = row.runs().iter().filter_map(|name| outcomes.get(*name)).collect();
+    let failed = of_row.iter().find_map(|outcome| outcome.failure.clone());
+    let verdict = match (row.is_judged(), &failed, ours) {
+        (false, ..) => Verdict::Told,
+        (true, None, Some(ours)) if row.holds(ours) => Verdict::Passed,
+        _ => Verdict::Failed,
+    };
+    remarks.extend(failed);
+    remarks.extend(of_row.iter().filter_map(|outcome| outcome.stopped.clone()));
+    remarks.dedup();
+    Row {
+        study: study.title.clone(),
+        quantity: row.quantity.clone(),
+        reference: row.reference,
+        source: row.source.clone(),
+        ours,
+        wanted: row.wanted(),
+        verdict,
+        remark: remarks.join("; "),
+        cost: runs::Cost::of(&of_row),
+    }
+}
+
+/// The pictures of bodies that a study wants, beside the table.
+fn draw_bodies(study: &Study, outcomes: &BTreeMap<String, Outcome>, output: &Path) -> Result<(), Error> {
+    for plot in &study.plot {
+        let Some(outcome) = outcomes.get(&plot.run).filter(|outcome| outcome.history.is_some()) else { continue };
+        let arguments = crate::plot::Arguments {
+            times: plot.times.clone(),
+            field: Some(plot.field()?),
+            range: plot.range,
+            ..crate::plot::Arguments::of(outcome.directory.clone())
+        };
+        for name in crate::plot::draw(&arguments)?.iter().filter(|name| name.starts_with(&plot.field)) {
+            let to = output.join(format!("{}_{name}", plot.run));
+            let from = outcome.directory.join(name);
+            fs::copy(&from, &to).map_err(|source| Error::File(bsmpm_io::Error::file("copy", &from)(source)))?;
+        }
+    }
+    Ok(())
+}
+
+fn make(directory: &Path) -> Result<(), Error> {
+    fs::create_dir_all(directory).map_err(|source| Error::File(bsmpm_io::Error::file("make", directory)(source)))
+}
+
+fn write(path: &Path, text: &str) -> Result<(), Error> {
+    let written = fs::File::create(path).and_then(|mut file| file.write_all(text.as_bytes()));
+    written.map_err(|source| Error::File(bsmpm_io::Error::file("write", path)(source)))
+}

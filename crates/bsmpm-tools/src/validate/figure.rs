@@ -1,0 +1,60 @@
+//! Curves of several runs in one picture: what `bsmpm compare` draws.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use super::matrix::Figure;
+use super::runs::Outcome;
+use crate::Error;
+use crate::compare::{self, Level};
+
+/// Draws a figure of the runs that left something.
+pub(super) fn draw(
+    figure: &Figure,
+    title: &str,
+    outcomes: &BTreeMap<String, Outcome>,
+    base: &Path,
+    output: &Path,
+) -> Result<(), Error> {
+    let left = |name: &String| outcomes.get(name).filter(|outcome| outcome.history.is_some());
+    let (mut directories, mut labels, mut x_values) = (Vec::new(), Vec::new(), Vec::new());
+    for name in &figure.runs {
+        if let Some(outcome) = left(name) {
+            directories.push(outcome.directory.clone());
+            labels.push(name.clone());
+        }
+    }
+    for (label, names) in &figure.curves {
+        for (name, x) in names.iter().zip(&figure.x_values) {
+            // The last row of a run that stopped is no point of this curve.
+            if let Some(outcome) = left(name).filter(|outcome| outcome.stopped.is_none()) {
+                directories.push(outcome.directory.clone());
+                labels.push(label.clone());
+                x_values.push(*x);
+            }
+        }
+    }
+    if directories.is_empty() {
+        return Ok(());
+    }
+    let lines = figure.lines.iter().map(|(value, text)| Level { value: *value, text: text.clone() });
+    compare::run(&compare::Arguments {
+        directories,
+        x: figure.x.clone(),
+        y: figure.y.clone(),
+        x_scale: figure.x_scale,
+        y_scale: 1.0,
+        x_label: Some(figure.x_label.clone()),
+        y_label: Some(figure.y_label.clone()),
+        title: Some(title.to_owned()),
+        labels,
+        lines: lines.collect(),
+        references: figure.reference.iter().map(|file| base.join(file)).collect(),
+        last: !figure.curves.is_empty(),
+        x_values,
+        output: Some(output.join(&figure.file)),
+        table: false,
+        at: Vec::new(),
+    })
+    .map(|_| ())
+}
