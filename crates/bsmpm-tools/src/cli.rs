@@ -51,7 +51,11 @@ pub fn run(cli: &Cli) -> Result<(), Error> {
             let counts = validate::run(arguments, |part| {
                 let _ = writeln!(std::io::stdout(), "{part}");
             })?;
-            let _ = writeln!(std::io::stdout(), "{} passed, {} failed", counts.passed, counts.failed);
+            let known = match counts.known {
+                0 => String::new(),
+                rows => format!("{rows} row(s) fail as the matrix says\n"),
+            };
+            let _ = writeln!(std::io::stdout(), "\n{known}{} passed, {} failed", counts.passed, counts.failed);
             if counts.failed > 0 {
                 return Err(Error::NotValid { failed: counts.failed });
             }

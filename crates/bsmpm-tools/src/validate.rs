@@ -51,6 +51,8 @@ pub struct Counts {
     pub passed: usize,
     /// Judged rows outside of them, or without a result.
     pub failed: usize,
+    /// Those of which the matrix says that they fail, and why.
+    pub known: usize,
 }
 
 /// Runs and judges the matrix; `told` gets each study's part of the table as soon as it is there.
@@ -85,7 +87,7 @@ pub fn run(arguments: &Arguments, mut told: impl FnMut(&str)) -> Result<Counts, 
         draw_bodies(study, &outcomes, &arguments.output)?;
     }
     let count = |verdict| rows.iter().filter(|row| row.verdict == verdict).count();
-    Ok(Counts { passed: count(Verdict::Passed), failed: count(Verdict::Failed) })
+    Ok(Counts { passed: count(Verdict::Passed), failed: count(Verdict::Failed), known: count(Verdict::Known) })
 }
 
 /// The number of a row and what it is worth.
@@ -107,8 +109,12 @@ fn judged(study: &Study, row: &matrix::Row, outcomes: &BTreeMap<String, Outcome>
     let verdict = match (row.is_judged(), &failed, ours) {
         (false, ..) => Verdict::Told,
         (true, None, Some(ours)) if row.holds(ours) => Verdict::Passed,
+        _ if row.known.is_some() => Verdict::Known,
         _ => Verdict::Failed,
     };
+    if verdict == Verdict::Known {
+        remarks.extend(row.known.clone());
+    }
     remarks.extend(failed);
     remarks.extend(of_row.iter().filter_map(|outcome| outcome.stopped.clone()));
     remarks.dedup();

@@ -76,6 +76,8 @@ pub(super) struct Row {
     pub tolerance: Option<f64>,
     pub min: Option<f64>,
     pub max: Option<f64>,
+    /// why it is known to fail: it is told as a failure, but is none of the program's being worse than it was
+    pub known: Option<String>,
     pub run: Option<String>,
     pub column: Option<String>,
     /// time; the last row of the history unless given

@@ -7,10 +7,10 @@ use super::runs::Outcome;
 
 /// Relative distance at which two times are the same.
 const SAME: f64 = 1e-9;
-/// How much steeper than at the start a curve is after its kink.
-const STEEPER: f64 = 10.0;
-/// Rows of the straight line after the kink.
-const LAST: usize = 4;
+/// The branch after a kink: from this many times the elastic displacement ..
+const BENT: f64 = 5.0;
+/// .. to this many times; so early that the geometry has not changed yet.
+const FALLEN: f64 = 20.0;
 
 /// A number, and what its reader should know.
 #[derive(Clone, Debug, PartialEq)]
@@ -112,25 +112,28 @@ fn extrapolated(order: &Order, values: &[f64]) -> Result<Measured, String> {
     })
 }
 
-/// Where the straight line after the kink meets the elastic one, and in the remark where twice the elastic displacement is
-/// reached. A run that stopped before it bent gives the load at which it stopped.
+/// Where the straight line through the beginning of the branch after the kink meets the elastic one, and in the remark where
+/// twice the elastic displacement is reached. A run that ended before it bent gives the load at its end.
 fn failure(kink: &Kink, curve: &[(f64, f64)]) -> Result<Measured, String> {
     let elastic_end = curve.len() / 5;
-    if elastic_end < 2 || curve.len() < elastic_end + LAST {
+    if elastic_end < 2 {
         return Err("too few rows for a kink".into());
     }
-    let (first, end) = (curve[0], curve[elastic_end]);
-    let elastic = (end.1 - first.1) / (end.0 - first.0);
-    let on_line = |x: f64| first.1 + elastic * (x - first.0);
-    let twice = curve.iter().skip(1).find(|(x, y)| *y > first.1 + 2.0 * (on_line(*x) - first.1));
-    let (from, to) = (curve[curve.len() - LAST], curve[curve.len() - 1]);
+    let first = curve[0];
+    let elastic = (curve[elastic_end].1 - first.1) / (curve[elastic_end].0 - first.0);
+    let times = |many: f64| {
+        let beyond = |(x, y): &&(f64, f64)| *x > first.0 && y - first.1 > many * elastic * (x - first.0);
+        curve.iter().find(beyond).copied()
+    };
+    let doubled = times(2.0).map_or("never".to_owned(), |(x, _)| format!("{:.4}", x * kink.scale));
+    let last = curve[curve.len() - 1];
+    let branch = times(BENT).map(|from| (from, times(FALLEN).unwrap_or(last))).filter(|(from, to)| to.0 > from.0);
+    let Some((from, to)) = branch else {
+        let remark = format!("no kink before its end; twice the elastic displacement: {doubled}");
+        return Ok(Measured { value: last.0 * kink.scale, remark: Some(remark) });
+    };
     let steep = (to.1 - from.1) / (to.0 - from.0);
-    let doubled = twice.map_or("never".to_owned(), |(x, _)| format!("{:.4}", x * kink.scale));
-    if steep < STEEPER * elastic {
-        let remark = format!("no kink: stopped there; twice the elastic displacement: {doubled}");
-        return Ok(Measured { value: to.0 * kink.scale, remark: Some(remark) });
-    }
-    let meet = (to.1 - first.1 + elastic * first.0 - steep * to.0) / (elastic - steep);
+    let meet = (from.1 - first.1 + elastic * first.0 - steep * from.0) / (elastic - steep);
     Ok(Measured { value: meet * kink.scale, remark: Some(format!("twice the elastic displacement: {doubled}")) })
 }
 
@@ -160,6 +163,7 @@ mod tests {
             (0..=50).map(|k| f64::from(k) / 50.0).map(|x| (x, x + 100.0 * (x - 0.7).max(0.0))).collect();
         let found = failure(&kink, &curve).unwrap();
         assert!((found.value - 1.4).abs() < 1e-9, "{found:?}");
+        assert_eq!(found.remark.as_deref(), Some("twice the elastic displacement: 1.4400"));
         let straight: Vec<(f64, f64)> = (0..=50).map(|k| (f64::from(k) / 50.0, f64::from(k))).collect();
         let found = failure(&kink, &straight).unwrap();
         assert!(found.value == 2.0 && found.remark.unwrap().starts_with("no kink"));

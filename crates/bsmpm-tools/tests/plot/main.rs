@@ -1,9 +1,10 @@
-//! `bsmpm plot` and `bsmpm compare` on runs that never were.
+//! `bsmpm plot`, `bsmpm compare` and `bsmpm validate` on runs that never were.
 
 mod collapse;
 mod compare;
 mod quasi_static;
 mod still;
+mod validate;
 
 use std::collections::HashSet;
 use std::fs::{self, File};
