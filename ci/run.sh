@@ -50,6 +50,7 @@ gate "clippy" cargo clippy --workspace --all-targets -- -D warnings
 RUSTDOCFLAGS='-D warnings' gate "docs" cargo doc --workspace --no-deps --lib
 gate "tests" scripts/test
 gate "short cases, golden curves" scripts/golden --check
+gate "validation, short" scripts/validate --short
 
 printf '\n'
 printf '%s\n' "${summary[@]}"

@@ -71,6 +71,11 @@ impl Launcher<'_> {
         let log = directory.with_extension("log");
         let mut code = None;
         if self.force || !self.is_there(&directory, &case, &arguments) {
+            // What an older run left must not pass for this one's, should it die before it writes.
+            if directory.join(MANIFEST).exists() {
+                fs::remove_dir_all(&directory)
+                    .map_err(|source| Error::File(bsmpm_io::Error::file("delete", &directory)(source)))?;
+            }
             code = Some(self.make(&arguments, &log)?);
         }
         Ok(read(directory, &log, code, run.may_stop))
