@@ -22,14 +22,14 @@ fn every_shipped_case_is_valid() {
             let path = entry.unwrap().path();
             if path.is_dir() {
                 folders.push(path);
-            } else if path.extension().is_some_and(|extension| extension == "toml") {
+            } else if path.extension().is_some_and(|extension| extension == "toml") && !path.ends_with("matrix.toml") {
                 let case = read(&path);
                 assert!(case.warnings.is_empty(), "{}: {:?}", path.display(), case.warnings);
                 found += 1;
             }
         }
     }
-    assert!(found >= 3);
+    assert!(found >= 15);
 }
 
 #[test]
