@@ -4,6 +4,7 @@
 use std::io::Write;
 use std::process::ExitCode;
 
+use bsmpm_tools::Error;
 use bsmpm_tools::cli::{Cli, run};
 use clap::Parser;
 
@@ -11,7 +12,10 @@ fn main() -> ExitCode {
     match run(&Cli::parse()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            let _ = writeln!(std::io::stderr(), "bsmpm: {error}");
+            // The last line of a validation is its counts, for those who read them there.
+            if !matches!(error, Error::NotValid { .. }) {
+                let _ = writeln!(std::io::stderr(), "bsmpm: {error}");
+            }
             ExitCode::from(error.exit_code())
         }
     }

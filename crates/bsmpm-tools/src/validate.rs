@@ -1,16 +1,19 @@
 //! `bsmpm validate`: runs the cases of a matrix and judges their histories against references. The matrix is read in
-//! `matrix`, the runs are made in `runs`, numbers are taken from them in `measure`, the table is set in `table`, curves are
-//! drawn in `figure`.
+//! `matrix` and looked through in `check`, the runs are made in `runs`, numbers are taken from them in `measure` and
+//! `course`, the table is set in `table`, curves are drawn in `figure`.
 
 use std::collections::BTreeMap;
 use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 
 use crate::Error;
+use crate::plot::FieldName;
 
+mod check;
+mod course;
 mod figure;
 mod matrix;
 mod measure;
@@ -19,6 +22,7 @@ mod table;
 
 pub use matrix::Depth;
 use matrix::{Matrix, Study};
+use measure::Lack;
 use runs::{Launcher, Outcome};
 use table::{Row, Verdict};
 
@@ -49,7 +53,7 @@ pub struct Arguments {
 pub struct Counts {
     /// Judged rows within their bounds.
     pub passed: usize,
-    /// Judged rows outside of them, or without a result.
+    /// Judged rows outside of them, or without a result; figures that could not be drawn.
     pub failed: usize,
     /// Those of which the matrix says that they fail, and why.
     pub known: usize,
@@ -58,17 +62,23 @@ pub struct Counts {
 /// Runs and judges the matrix; `told` gets each study's part of the table as soon as it is there.
 ///
 /// # Errors
-/// A matrix that cannot be read; files that cannot be written. Runs that fail are rows that fail.
+/// A matrix that cannot be read; a solver that is not there; files that cannot be written. Runs that fail are rows that fail.
 pub fn run(arguments: &Arguments, mut told: impl FnMut(&str)) -> Result<Counts, Error> {
     let matrix = Matrix::read(&arguments.matrix)?;
+    // Before former runs are deleted for new ones that cannot be.
+    if let Some(solver) = arguments.command.last().filter(|solver| solver.contains('/') && !Path::new(solver).is_file())
+    {
+        return Err(Error::Launch { program: solver.clone(), source: std::io::ErrorKind::NotFound.into() });
+    }
     let base = arguments.matrix.parent().unwrap_or(Path::new(""));
     make(&arguments.output)?;
     let launcher = Launcher { command: &arguments.command, base, output: &arguments.output, force: arguments.force };
     let wanted = |study: &&Study| arguments.only.as_ref().is_none_or(|part| study.title.contains(part));
     let mut rows: Vec<Row> = Vec::new();
+    let mut undrawn = 0;
     for study in matrix.study.iter().filter(wanted) {
-        let asked = |depth: Option<Depth>| !arguments.short || depth.unwrap_or(study.depth) == Depth::Short;
-        let chosen: Vec<_> = study.run.iter().filter(|run| asked(run.depth)).collect();
+        let asked = |depth: Depth| !arguments.short || depth == Depth::Short;
+        let chosen: Vec<_> = study.run.iter().filter(|run| asked(study.depth_of(run))).collect();
         if chosen.is_empty() {
             continue;
         }
@@ -77,29 +87,50 @@ pub fn run(arguments: &Arguments, mut told: impl FnMut(&str)) -> Result<Counts, 
             outcomes.insert(run.name.clone(), launcher.outcome(study, run)?);
         }
         let begin = rows.len();
-        rows.extend(study.row.iter().filter(|row| asked(row.depth)).map(|row| judged(study, row, &outcomes)));
+        let is_asked = |row: &&matrix::Row| {
+            row.depth.is_none_or(asked) && row.runs().iter().all(|name| outcomes.contains_key(*name))
+        };
+        rows.extend(study.row.iter().filter(is_asked).map(|row| judged(study, row, &outcomes)));
         told(&table::text(&study.title, &rows[begin..]));
         write(&arguments.output.join("table.md"), &table::markdown(&rows))?;
         write(&arguments.output.join("table.csv"), &table::csv(&rows))?;
-        for figure in &study.figure {
-            figure::draw(figure, &study.title, &outcomes, base, &arguments.output)?;
+        for reason in draw(study, &outcomes, base, &arguments.output) {
+            undrawn += 1;
+            told(&format!("  {reason}"));
         }
-        draw_bodies(study, &outcomes, &arguments.output)?;
     }
-    let count = |verdict| rows.iter().filter(|row| row.verdict == verdict).count();
-    Ok(Counts { passed: count(Verdict::Passed), failed: count(Verdict::Failed), known: count(Verdict::Known) })
+    let count = |is: fn(Verdict) -> bool| rows.iter().filter(|row| is(row.verdict)).count();
+    Ok(Counts {
+        passed: count(|verdict| verdict == Verdict::Passed),
+        failed: count(Verdict::is_failure) + undrawn,
+        known: count(|verdict| verdict == Verdict::Known),
+    })
+}
+
+/// Draws what a study wants; what could not be drawn, and why, is no reason to leave the other studies.
+fn draw(study: &Study, outcomes: &BTreeMap<String, Outcome>, base: &Path, output: &Path) -> Vec<String> {
+    let figures = study.figure.iter().filter_map(|figure| {
+        let drawn = figure::draw(figure, &study.title, outcomes, base, output);
+        drawn.err().map(|error| format!("{} is not drawn: {error}", figure.file))
+    });
+    let bodies = study.plot.iter().filter_map(|plot| {
+        let drawn = draw_body(plot, outcomes, output);
+        drawn.err().map(|error| format!("{} of {} is not drawn: {error}", plot.field, plot.run))
+    });
+    figures.chain(bodies).collect()
 }
 
 /// The number of a row and what it is worth.
 fn judged(study: &Study, row: &matrix::Row, outcomes: &BTreeMap<String, Outcome>) -> Row {
     let found = measure::value(row, outcomes);
+    let is_missed = matches!(found, Err(Lack::NotReached(_)));
     let mut remarks: Vec<String> = Vec::new();
     let ours = match found {
         Ok(measured) => {
             remarks.extend(measured.remark);
             Some(measured.value)
         }
-        Err(reason) => {
+        Err(Lack::NotReached(reason) | Lack::Other(reason)) => {
             remarks.push(reason);
             None
         }
@@ -107,9 +138,13 @@ fn judged(study: &Study, row: &matrix::Row, outcomes: &BTreeMap<String, Outcome>
     let of_row: Vec<&Outcome> = row.runs().iter().filter_map(|name| outcomes.get(*name)).collect();
     let failed = of_row.iter().find_map(|outcome| outcome.failure.clone());
     let verdict = match (row.is_judged(), &failed, ours) {
+        (false, ..) if is_missed => Verdict::NotReached,
         (false, ..) => Verdict::Told,
+        // A run that broke is another failure than the one that is known.
+        (true, Some(_), _) => Verdict::Failed,
         (true, None, Some(ours)) if row.holds(ours) => Verdict::Passed,
         _ if row.known.is_some() => Verdict::Known,
+        _ if is_missed => Verdict::Missed,
         _ => Verdict::Failed,
     };
     if verdict == Verdict::Known {
@@ -127,25 +162,24 @@ fn judged(study: &Study, row: &matrix::Row, outcomes: &BTreeMap<String, Outcome>
         wanted: row.wanted(),
         verdict,
         remark: remarks.join("; "),
+        codes: runs::codes(&of_row),
         cost: runs::Cost::of(&of_row),
     }
 }
 
-/// The pictures of bodies that a study wants, beside the table.
-fn draw_bodies(study: &Study, outcomes: &BTreeMap<String, Outcome>, output: &Path) -> Result<(), Error> {
-    for plot in &study.plot {
-        let Some(outcome) = outcomes.get(&plot.run).filter(|outcome| outcome.history.is_some()) else { continue };
-        let arguments = crate::plot::Arguments {
-            times: plot.times.clone(),
-            field: Some(plot.field()?),
-            range: plot.range,
-            ..crate::plot::Arguments::of(outcome.directory.clone())
-        };
-        for name in crate::plot::draw(&arguments)?.iter().filter(|name| name.starts_with(&plot.field)) {
-            let to = output.join(format!("{}_{name}", plot.run));
-            let from = outcome.directory.join(name);
-            fs::copy(&from, &to).map_err(|source| Error::File(bsmpm_io::Error::file("copy", &from)(source)))?;
-        }
+/// The pictures of the body of a run, copied beside the table.
+fn draw_body(plot: &matrix::Plot, outcomes: &BTreeMap<String, Outcome>, output: &Path) -> Result<(), Error> {
+    let Some(outcome) = outcomes.get(&plot.run).filter(|outcome| outcome.has_rows()) else { return Ok(()) };
+    let arguments = crate::plot::Arguments {
+        times: plot.times.clone(),
+        field: FieldName::from_str(&plot.field, true).ok(),
+        range: plot.range,
+        ..crate::plot::Arguments::of(outcome.directory.clone())
+    };
+    for name in crate::plot::draw(&arguments)?.iter().filter(|name| name.starts_with(&plot.field)) {
+        let to = output.join(format!("{}_{name}", plot.run));
+        let from = outcome.directory.join(name);
+        fs::copy(&from, &to).map_err(|source| Error::File(bsmpm_io::Error::file("copy", &from)(source)))?;
     }
     Ok(())
 }

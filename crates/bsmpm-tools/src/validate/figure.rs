@@ -16,7 +16,7 @@ pub(super) fn draw(
     base: &Path,
     output: &Path,
 ) -> Result<(), Error> {
-    let left = |name: &String| outcomes.get(name).filter(|outcome| outcome.history.is_some());
+    let left = |name: &String| outcomes.get(name).filter(|outcome| outcome.has_rows());
     let (mut directories, mut labels, mut x_values) = (Vec::new(), Vec::new(), Vec::new());
     for name in &figure.runs {
         if let Some(outcome) = left(name) {
@@ -43,9 +43,9 @@ pub(super) fn draw(
         x: figure.x.clone(),
         y: figure.y.clone(),
         x_scale: figure.x_scale,
-        y_scale: 1.0,
-        x_label: Some(figure.x_label.clone()),
-        y_label: Some(figure.y_label.clone()),
+        y_scale: figure.y_scale,
+        x_label: figure.x_label.clone(),
+        y_label: figure.y_label.clone(),
         title: Some(title.to_owned()),
         labels,
         lines: lines.collect(),

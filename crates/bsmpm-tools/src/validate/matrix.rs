@@ -1,14 +1,13 @@
-//! The matrix as it is written: unknown keys are errors.
+//! The matrix as it is written: unknown keys are errors. Whether its parts fit each other is seen in `check`.
 
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-use clap::ValueEnum;
 use serde::Deserialize;
 
+use super::table::number;
 use crate::Error;
-use crate::plot::FieldName;
 
 /// When something is run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
@@ -55,6 +54,8 @@ pub(super) struct Study {
 #[serde(deny_unknown_fields)]
 pub(super) struct Run {
     pub name: String,
+    /// relative to the matrix; the study's unless given
+    pub case: Option<String>,
     #[serde(default)]
     pub set: Vec<String>,
     pub depth: Option<Depth>,
@@ -70,6 +71,7 @@ pub(super) struct Row {
     pub quantity: String,
     #[serde(default)]
     pub source: String,
+    /// that of its runs unless given
     pub depth: Option<Depth>,
     pub reference: Option<f64>,
     /// relative to the reference
@@ -82,10 +84,13 @@ pub(super) struct Row {
     pub column: Option<String>,
     /// time; the last row of the history unless given
     pub at: Option<f64>,
+    /// the place, or the window, by another column
+    #[serde(rename = "where")]
+    pub place: Option<Place>,
     #[serde(default)]
     pub operation: Operation,
-    #[serde(default = "one")]
-    pub scale: f64,
+    /// multiplies what is taken of the column
+    pub scale: Option<f64>,
     pub order: Option<Order>,
     pub extrapolated: Option<Order>,
     pub kink: Option<Kink>,
@@ -99,6 +104,19 @@ pub(super) enum Operation {
     Last,
     Max,
     Min,
+    /// weighted by the column of the window: an integral over it, divided by its length
+    Mean,
+}
+
+/// Where a column first reaches a value; or the part of the history from one value to another, whole where one is missing.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Place {
+    #[serde(default = "time")]
+    pub column: String,
+    pub value: Option<f64>,
+    pub from: Option<f64>,
+    pub to: Option<f64>,
 }
 
 /// The same quantity on several grids.
@@ -129,13 +147,16 @@ pub(super) struct Kink {
 #[serde(deny_unknown_fields)]
 pub(super) struct Figure {
     pub file: String,
-    #[serde(default)]
+    #[serde(default = "time")]
     pub x: String,
     pub y: String,
     #[serde(default = "one")]
     pub x_scale: f64,
-    pub x_label: String,
-    pub y_label: String,
+    #[serde(default = "one")]
+    pub y_scale: f64,
+    /// the columns and their units unless given
+    pub x_label: Option<String>,
+    pub y_label: Option<String>,
     #[serde(default)]
     pub runs: Vec<String>,
     /// runs of which each gives its last row, by the name of their curve
@@ -165,46 +186,24 @@ fn one() -> f64 {
     1.0
 }
 
+fn time() -> String {
+    "time".to_owned()
+}
+
 impl Matrix {
     pub fn read(path: &Path) -> Result<Self, Error> {
         let text = fs::read_to_string(path).map_err(|source| Error::NoReference { path: path.to_owned(), source })?;
         let bad = |reason: String| Error::BadReference { path: path.to_owned(), reason };
         let matrix: Self = toml::from_str(&text).map_err(|error| bad(error.to_string()))?;
-        matrix.study.iter().try_for_each(Study::check).map_err(bad)?;
+        matrix.check().map_err(bad)?;
         Ok(matrix)
     }
 }
 
 impl Study {
-    /// Every run that is named is there, and every row says what it takes.
-    fn check(&self) -> Result<(), String> {
-        let about = |row: &str, what: &str| format!("study \"{}\", \"{row}\": {what}", self.title);
-        let known = |name: &str| self.run.iter().any(|run| run.name == name);
-        for row in &self.row {
-            if let Some(name) = row.runs().into_iter().find(|name| !known(name)) {
-                return Err(about(&row.quantity, &format!("there is no run \"{name}\"")));
-            }
-            let ways = [row.column.is_some(), row.order.is_some(), row.extrapolated.is_some(), row.kink.is_some()];
-            if ways.iter().filter(|way| **way).count() != 1 || row.column.is_some() != row.run.is_some() {
-                return Err(about(&row.quantity, "one of run with column, order, extrapolated, kink is needed"));
-            }
-            if row.tolerance.is_some() && row.reference.is_none() {
-                return Err(about(&row.quantity, "a tolerance needs a reference"));
-            }
-            if let Some(order) = row
-                .order
-                .as_ref()
-                .or(row.extrapolated.as_ref())
-                .filter(|order| order.runs.len() != order.sizes.len() || order.runs.len() < 3)
-            {
-                return Err(about(&row.quantity, &format!("{} runs need as many sizes, at least 3", order.runs.len())));
-            }
-        }
-        let figures = self.figure.iter().flat_map(|figure| figure.runs.iter().chain(figure.curves.values().flatten()));
-        match figures.chain(self.plot.iter().map(|plot| &plot.run)).find(|name| !known(name)) {
-            Some(name) => Err(about("figure", &format!("there is no run \"{name}\""))),
-            None => Ok(()),
-        }
+    /// When a run is made.
+    pub fn depth_of(&self, run: &Run) -> Depth {
+        run.depth.unwrap_or(self.depth)
     }
 }
 
@@ -232,7 +231,7 @@ impl Row {
 
     /// The bounds in words.
     pub fn wanted(&self) -> String {
-        let tolerance = self.tolerance.map(|tolerance| format!("{} %", 100.0 * tolerance));
+        let tolerance = self.tolerance.map(|tolerance| format!("{} %", number(100.0 * tolerance)));
         let bounds = match (self.min, self.max) {
             (None, None) => None,
             (Some(min), None) => Some(format!(">= {min}")),
@@ -240,12 +239,5 @@ impl Row {
             (Some(min), Some(max)) => Some(format!("{min} to {max}")),
         };
         tolerance.into_iter().chain(bounds).collect::<Vec<_>>().join(", ")
-    }
-}
-
-impl Plot {
-    pub fn field(&self) -> Result<FieldName, Error> {
-        FieldName::from_str(&self.field, true)
-            .map_err(|_| Error::Usage { reason: format!("there is no field \"{}\" to plot", self.field) })
     }
 }

@@ -2,11 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use super::matrix::{Kink, Operation, Order, Row};
+use super::course::{Spot, mean, reached, window};
+use super::matrix::{Kink, Operation, Order, Place, Row};
 use super::runs::Outcome;
 
-/// Relative distance at which two times are the same.
-const SAME: f64 = 1e-9;
 /// The branch after a kink: from this many times the elastic displacement ..
 const BENT: f64 = 5.0;
 /// .. to this many times; so early that the geometry has not changed yet.
@@ -19,64 +18,118 @@ pub(super) struct Measured {
     pub remark: Option<String>,
 }
 
-/// The number of a row; `Err` says why there is none.
-pub(super) fn value(row: &Row, outcomes: &BTreeMap<String, Outcome>) -> Result<Measured, String> {
+/// Why there is no number.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Lack {
+    /// The run did not come so far.
+    NotReached(String),
+    Other(String),
+}
+
+impl From<String> for Lack {
+    fn from(reason: String) -> Self {
+        Self::Other(reason)
+    }
+}
+
+/// The number of a row, or why there is none.
+pub(super) fn value(row: &Row, outcomes: &BTreeMap<String, Outcome>) -> Result<Measured, Lack> {
     if let Some(order) = &row.order {
-        return observed_order(order, &values(order, outcomes)?);
+        return Ok(observed_order(order, &values(order, outcomes)?)?);
     }
     if let Some(order) = &row.extrapolated {
-        return extrapolated(order, &values(order, outcomes)?);
+        return Ok(extrapolated(order, &values(order, outcomes)?)?);
     }
     if let Some(kink) = &row.kink {
         let (x, y) = (column(outcomes, &kink.run, &kink.x)?, column(outcomes, &kink.run, &kink.y)?);
-        return failure(kink, &x.into_iter().zip(y).collect::<Vec<_>>());
+        return Ok(failure(kink, &x.into_iter().zip(y).collect::<Vec<_>>())?);
     }
     let (run, name) = (row.run.as_deref().unwrap_or_default(), row.column.as_deref().unwrap_or_default());
     let values = column(outcomes, run, name)?;
-    let value = match (row.operation, row.at) {
-        (Operation::Max, _) => values.into_iter().fold(f64::NEG_INFINITY, f64::max),
-        (Operation::Min, _) => values.into_iter().fold(f64::INFINITY, f64::min),
-        (Operation::Last, at) => at_time(outcomes, run, &values, at)?,
+    let value = match (row.operation, &row.place) {
+        (Operation::Last, Some(Place { column, value: Some(value), .. })) => {
+            spot(outcomes, run, column, *value)?.of(&values)
+        }
+        (Operation::Last, _) => at_time(outcomes, run, &values, row.at)?,
+        (operation, place) => over(operation, &part(outcomes, run, &values, place.as_ref())?),
     };
-    Ok(Measured { value: row.scale * value, remark: None })
+    Ok(Measured { value: row.scale.unwrap_or(1.0) * value, remark: None })
 }
 
 fn column(outcomes: &BTreeMap<String, Outcome>, run: &str, name: &str) -> Result<Vec<f64>, String> {
     let outcome = outcomes.get(run).ok_or_else(|| format!("{run} was not run"))?;
     let history = outcome.history.as_ref().ok_or_else(|| format!("{run} left no history"))?;
-    history.get(name).map(<[f64]>::to_vec).ok_or_else(|| format!("{run} has no column {name}"))
+    let values = history.get(name).ok_or_else(|| format!("{run} has no column {name}"))?;
+    if values.is_empty() { Err(format!("{run} has no row")) } else { Ok(values.to_vec()) }
 }
 
-/// The value at a time, between the rows linearly; without a time the last one.
-fn at_time(outcomes: &BTreeMap<String, Outcome>, run: &str, values: &[f64], at: Option<f64>) -> Result<f64, String> {
-    let times = column(outcomes, run, "time")?;
-    let Some(at) = at else { return values.last().copied().ok_or_else(|| format!("{run} has no row")) };
-    let next = times.partition_point(|time| *time < at * (1.0 - SAME));
-    match (next, times.get(next)) {
-        (_, None) => Err(format!("not reached: {run} came to {:.4}", times.last().copied().unwrap_or(0.0))),
-        (0, Some(_)) => Ok(values[0]),
-        (_, Some(time)) if (time - at).abs() <= SAME * at.abs() => Ok(values[next]),
-        (_, Some(time)) => {
-            let share = (at - times[next - 1]) / (time - times[next - 1]);
-            Ok(values[next - 1] + share * (values[next] - values[next - 1]))
-        }
+/// Where a column of a run first reaches a value.
+fn spot(outcomes: &BTreeMap<String, Outcome>, run: &str, name: &str, value: f64) -> Result<Spot, Lack> {
+    let across = column(outcomes, run, name)?;
+    reached(&across, value).ok_or_else(|| {
+        let last = across.last().copied().unwrap_or(f64::NAN);
+        Lack::NotReached(format!("not reached: {run} came to {name} {last:.4}"))
+    })
+}
+
+/// The part of a history that a window leaves: the other column, and the values.
+fn part(
+    outcomes: &BTreeMap<String, Outcome>,
+    run: &str,
+    values: &[f64],
+    place: Option<&Place>,
+) -> Result<Vec<(f64, f64)>, Lack> {
+    let name = place.map_or("time", |place| &place.column);
+    let end = |value: Option<f64>, row: usize| match value {
+        Some(value) => spot(outcomes, run, name, value),
+        None => Ok(Spot { row, share: 0.0 }),
+    };
+    let from = end(place.and_then(|place| place.from), 0)?;
+    let to = end(place.and_then(|place| place.to), values.len() - 1)?;
+    if (to.row, to.share) < (from.row, from.share) {
+        return Err(Lack::Other(format!("the window of {name} ends before it begins")));
+    }
+    Ok(window(&column(outcomes, run, name)?, values, from, to))
+}
+
+/// What an operation makes of a part of a history; no number of it may be missing.
+fn over(operation: Operation, part: &[(f64, f64)]) -> f64 {
+    let values = || part.iter().map(|(_, value)| *value);
+    if !values().all(f64::is_finite) {
+        return f64::NAN;
+    }
+    match operation {
+        Operation::Max => values().fold(f64::NEG_INFINITY, f64::max),
+        Operation::Min => values().fold(f64::INFINITY, f64::min),
+        Operation::Mean => mean(part),
+        Operation::Last => part.last().map_or(f64::NAN, |(_, value)| *value),
     }
 }
 
-fn values(order: &Order, outcomes: &BTreeMap<String, Outcome>) -> Result<Vec<f64>, String> {
+/// The value at a time; without a time the last one.
+fn at_time(outcomes: &BTreeMap<String, Outcome>, run: &str, values: &[f64], at: Option<f64>) -> Result<f64, Lack> {
+    match at {
+        Some(at) => Ok(spot(outcomes, run, "time", at)?.of(values)),
+        None => Ok(values.last().copied().ok_or_else(|| format!("{run} has no row"))?),
+    }
+}
+
+fn values(order: &Order, outcomes: &BTreeMap<String, Outcome>) -> Result<Vec<f64>, Lack> {
     order
         .runs
         .iter()
         .map(|run| {
-            if outcomes.get(run).is_some_and(|outcome| outcome.stopped.is_some()) {
-                return Err(format!("{run} stopped"));
+            // The last row of a run that stopped is not that of the others.
+            if order.at.is_none() && outcomes.get(run).is_some_and(|outcome| outcome.stopped.is_some()) {
+                return Err(Lack::NotReached(format!("not reached: {run} stopped")));
             }
             at_time(outcomes, run, &column(outcomes, run, &order.column)?, order.at)
         })
         .collect()
 }
 
-/// Slope of log error over log size: least squares over all sizes, and of the last two in the remark.
+/// Slope of log error over log size: least squares over all sizes; in the remark that of the last two, and the limit that the
+/// last three show.
 fn observed_order(order: &Order, values: &[f64]) -> Result<Measured, String> {
     let exact = order.exact.ok_or("an order needs `exact`")?;
     let places: Vec<(f64, f64)> =
@@ -90,7 +143,9 @@ fn observed_order(order: &Order, values: &[f64]) -> Result<Measured, String> {
     }
     let [.., before, last] = &places[..] else { return Err("an order needs two sizes".into()) };
     let pair = (before.1 - last.1) / (before.0 - last.0);
-    Ok(Measured { value: product / square, remark: Some(format!("last two sizes: {pair:.2}")) })
+    let limit = extrapolated(order, values).map_or_else(|reason| reason, |limit| format!("{:.4}", limit.value));
+    let remark = format!("last two sizes: {pair:.2}; limit of the last three: {limit}");
+    Ok(Measured { value: product / square, remark: Some(remark) })
 }
 
 /// Richardson's limit of the last three sizes, which must shrink by one ratio, with the order that they show.
@@ -120,7 +175,14 @@ fn failure(kink: &Kink, curve: &[(f64, f64)]) -> Result<Measured, String> {
         return Err("too few rows for a kink".into());
     }
     let first = curve[0];
+    // Settlements and the like go down: what counts is the way.
+    let sense = (curve[elastic_end].1 - first.1).signum();
+    let curve: Vec<(f64, f64)> = curve.iter().map(|(x, y)| (*x, sense * (y - first.1))).collect();
+    let first = curve[0];
     let elastic = (curve[elastic_end].1 - first.1) / (curve[elastic_end].0 - first.0);
+    if !(elastic.is_finite() && elastic > 0.0) {
+        return Err("no elastic beginning for a kink".into());
+    }
     let times = |many: f64| {
         let beyond = |(x, y): &&(f64, f64)| *x > first.0 && y - first.1 > many * elastic * (x - first.0);
         curve.iter().find(beyond).copied()
@@ -151,6 +213,8 @@ mod tests {
         let values: Vec<f64> = sizes.iter().map(|h: &f64| 5.0 + 3.0 * h.powf(1.5)).collect();
         let found = observed_order(&order(&sizes, Some(5.0)), &values).unwrap().value;
         assert!((found - 1.5).abs() < 1e-12);
+        let remark = observed_order(&order(&sizes, Some(5.0)), &values).unwrap().remark.unwrap();
+        assert_eq!(remark, "last two sizes: 1.50; limit of the last three: 5.0000");
         let limit = extrapolated(&order(&sizes, None), &values).unwrap().value;
         assert!((limit - 5.0).abs() < 1e-12);
         assert!(extrapolated(&order(&sizes, None), &[1.0, 2.0, 4.0]).is_err());
@@ -167,5 +231,8 @@ mod tests {
         let straight: Vec<(f64, f64)> = (0..=50).map(|k| (f64::from(k) / 50.0, f64::from(k))).collect();
         let found = failure(&kink, &straight).unwrap();
         assert!(found.value == 2.0 && found.remark.unwrap().starts_with("no kink"));
+        let settling: Vec<(f64, f64)> = curve.iter().map(|(x, y)| (*x, 3.0 - y)).collect();
+        assert!((failure(&kink, &settling).unwrap().value - 1.4).abs() < 1e-9);
+        assert!(failure(&kink, &[(0.0, 1.0); 20]).is_err());
     }
 }

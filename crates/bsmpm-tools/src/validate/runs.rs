@@ -3,7 +3,7 @@
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
-use std::time::SystemTime;
+use std::time::UNIX_EPOCH;
 
 use bsmpm_io::directory::HISTORY;
 use bsmpm_io::manifest::{MANIFEST, Manifest};
@@ -12,7 +12,8 @@ use bsmpm_io::table::{self, Columns};
 use super::matrix::{Run, Study};
 use crate::Error;
 
-/// Exit codes of bsmpm-par: done, a check of the case failed, no convergence, material left the grid.
+/// Exit codes of bsmpm-par: done, a check of the case failed, no convergence, material left the grid. Runs that ended with
+/// another one are made again.
 const DONE: u8 = 0;
 const CHECK: u8 = 77;
 const STOPS: [u8; 2] = [80, 81];
@@ -34,7 +35,16 @@ pub(super) struct Outcome {
     pub failure: Option<String>,
     /// why it is one although it did not come to its end
     pub stopped: Option<String>,
+    /// its exit code
+    pub code: u8,
     pub cost: Cost,
+}
+
+impl Outcome {
+    /// Whether its history holds anything.
+    pub fn has_rows(&self) -> bool {
+        self.history.as_ref().is_some_and(|history| history.values.iter().any(|values| !values.is_empty()))
+    }
 }
 
 /// What runs took.
@@ -61,39 +71,43 @@ impl Launcher<'_> {
     /// The outcome of a run, made now unless it is there.
     pub fn outcome(&self, study: &Study, run: &Run) -> Result<Outcome, Error> {
         let directory = self.output.join("runs").join(slug(&study.title)).join(format!("{}.out", run.name));
-        let case = self.base.join(&study.case);
+        let case = self.base.join(run.case.as_ref().unwrap_or(&study.case));
         let mut arguments = vec![case.display().to_string()];
         for set in study.set.iter().chain(&run.set) {
             arguments.extend(["--set".to_owned(), set.clone()]);
         }
         arguments.extend(["--quiet", "--force", "--output"].map(str::to_owned));
         arguments.push(directory.display().to_string());
-        let log = directory.with_extension("log");
+        // The name of a run may have dots itself, those of numbers; the directory's ending takes the place of one.
+        let (log, origin) = (directory.with_extension("log"), directory.with_extension("origin"));
+        let made_from = self.origin(&case, &arguments);
         let mut code = None;
-        if self.force || !self.is_there(&directory, &case, &arguments) {
+        if self.force || !is_there(&directory, &arguments, &origin, made_from.as_deref()) {
             // What an older run left must not pass for this one's, should it die before it writes.
             if directory.join(MANIFEST).exists() {
                 fs::remove_dir_all(&directory)
                     .map_err(|source| Error::File(bsmpm_io::Error::file("delete", &directory)(source)))?;
             }
+            if let Some(parent) = origin.parent() {
+                super::make(parent)?;
+            }
+            super::write(&origin, made_from.as_deref().unwrap_or_default())?;
             code = Some(self.make(&arguments, &log)?);
         }
         Ok(read(directory, &log, code, run.may_stop))
     }
 
-    /// Whether the same run has ended, after its case and the solver were last changed.
-    fn is_there(&self, directory: &Path, case: &Path, arguments: &[String]) -> bool {
-        let Ok(manifest) = Manifest::read(directory) else { return false };
-        let changed = |path: &Path| fs::metadata(path).and_then(|data| data.modified()).unwrap_or(SystemTime::now());
-        let made = changed(&directory.join(MANIFEST));
-        let solver = self.command.last().map_or(SystemTime::now(), |solver| changed(Path::new(solver)));
-        manifest.exit_code.is_some() && manifest.argv.ends_with(arguments) && made > solver && made > changed(case)
+    /// Everything that a run is made from, as it stands now: the solver, its arguments, the text of the case. None where a
+    /// part cannot be told, as of a solver that is not named by its path.
+    fn origin(&self, case: &Path, arguments: &[String]) -> Option<String> {
+        let text = fs::read_to_string(case).ok()?;
+        let solver = fs::metadata(self.command.last()?).ok()?;
+        let changed = solver.modified().ok()?.duration_since(UNIX_EPOCH).ok()?.as_nanos();
+        let command = [self.command, arguments].concat().join(" ");
+        Some(format!("{command}\nsolver: {} bytes, changed at {changed}\n\n{text}", solver.len()))
     }
 
     fn make(&self, arguments: &[String], log: &Path) -> Result<u8, Error> {
-        if let Some(parent) = log.parent() {
-            super::make(parent)?;
-        }
         let file = |source| Error::File(bsmpm_io::Error::file("write", log)(source));
         let out = File::create(log).map_err(file)?;
         let both = out.try_clone().map_err(file)?;
@@ -111,6 +125,14 @@ impl Launcher<'_> {
             .map_err(|source| Error::Launch { program: program.clone(), source })?;
         Ok(status.code().and_then(|code| u8::try_from(code).ok()).unwrap_or(u8::MAX))
     }
+}
+
+/// Whether the same run has ended there, made from what would be taken now.
+fn is_there(directory: &Path, arguments: &[String], origin: &Path, made_from: Option<&str>) -> bool {
+    let Ok(manifest) = Manifest::read(directory) else { return false };
+    let is_whole = manifest.exit_code.is_some_and(|code| [DONE, CHECK].contains(&code) || STOPS.contains(&code));
+    let is_same = made_from.is_some() && fs::read_to_string(origin).ok().as_deref() == made_from;
+    is_whole && is_same && manifest.argv.ends_with(arguments)
 }
 
 /// What stands in a run's directory; a launcher may hide the program's own exit code, which is in the manifest.
@@ -134,7 +156,16 @@ fn read(directory: PathBuf, log: &Path, code: Option<u8>, may_stop: bool) -> Out
         iterations: manifest.summary.iterations,
         seconds: manifest.timers.get("wall").copied().unwrap_or(0.0),
     });
-    Outcome { directory, history, failure, stopped, cost }
+    Outcome { directory, history, failure, stopped, code, cost }
+}
+
+/// The exit codes of runs, once if they are all the same.
+pub(super) fn codes(outcomes: &[&Outcome]) -> String {
+    let mut codes: Vec<String> = outcomes.iter().map(|outcome| outcome.code.to_string()).collect();
+    if codes.iter().all(|code| *code == codes[0]) {
+        codes.truncate(1);
+    }
+    codes.join(", ")
 }
 
 fn last_line(log: &Path) -> String {
@@ -143,7 +174,7 @@ fn last_line(log: &Path) -> String {
 }
 
 /// A title as the name of a directory.
-fn slug(title: &str) -> String {
+pub(super) fn slug(title: &str) -> String {
     let letters =
         title.chars().map(|c| if c.is_ascii_alphanumeric() || c == '.' { c.to_ascii_lowercase() } else { '-' });
     let joined: String = letters.collect();

@@ -7,10 +7,14 @@ use super::runs::Cost;
 pub(super) enum Verdict {
     Passed,
     Failed,
+    /// failed because a run did not come so far
+    Missed,
     /// failed, as the matrix says
     Known,
     /// not judged
     Told,
+    /// not judged, and without a number because a run did not come so far
+    NotReached,
 }
 
 /// A line of the table.
@@ -24,21 +28,30 @@ pub(super) struct Row {
     pub wanted: String,
     pub verdict: Verdict,
     pub remark: String,
+    /// exit codes of its runs, once if they are all the same
+    pub codes: String,
     pub cost: Cost,
 }
 
 impl Verdict {
+    /// Whether it fails the validation.
+    pub fn is_failure(self) -> bool {
+        matches!(self, Self::Failed | Self::Missed)
+    }
+
     fn word(self) -> &'static str {
         match self {
             Self::Passed => "pass",
             Self::Failed => "FAIL",
+            Self::Missed => "FAIL, not reached",
             Self::Known => "FAIL, known",
             Self::Told => "-",
+            Self::NotReached => "not reached",
         }
     }
 }
 
-const HEADINGS: [&str; 12] = [
+const HEADINGS: [&str; 13] = [
     "quantity",
     "reference",
     "source",
@@ -46,6 +59,7 @@ const HEADINGS: [&str; 12] = [
     "deviation",
     "allowed",
     "verdict",
+    "exit",
     "steps",
     "cuts",
     "iterations",
@@ -54,7 +68,7 @@ const HEADINGS: [&str; 12] = [
 ];
 
 impl Row {
-    fn cells(&self) -> [String; 12] {
+    fn cells(&self) -> [String; 13] {
         let deviation = self.ours.zip(self.reference).filter(|(_, reference)| *reference != 0.0);
         [
             self.quantity.clone(),
@@ -66,6 +80,7 @@ impl Row {
                 .unwrap_or_default(),
             self.wanted.clone(),
             self.verdict.word().to_owned(),
+            self.codes.clone(),
             self.cost.steps.to_string(),
             self.cost.cuts.to_string(),
             self.cost.iterations.to_string(),
@@ -76,14 +91,14 @@ impl Row {
 }
 
 /// Five digits, without an exponent where that is readable.
-fn number(value: f64) -> String {
+pub(super) fn number(value: f64) -> String {
     let rounded: f64 = format!("{value:.4e}").parse().unwrap_or(value);
     if rounded != 0.0 && !(1e-3..1e7).contains(&rounded.abs()) { format!("{rounded:e}") } else { rounded.to_string() }
 }
 
 /// A study for the screen, in columns.
 pub(super) fn text(title: &str, rows: &[Row]) -> String {
-    let shown = [0, 1, 3, 4, 5, 6, 10]; // sources and counts are in the files
+    let shown = [0, 1, 3, 4, 5, 6, 11]; // sources and counts are in the files
     let mut lines: Vec<Vec<String>> = vec![shown.iter().map(|&column| HEADINGS[column].to_owned()).collect()];
     lines.extend(rows.iter().map(|row| {
         let cells = row.cells();
@@ -146,6 +161,7 @@ mod tests {
             wanted: "5 %".into(),
             verdict,
             remark: "coarse".into(),
+            codes: "0".into(),
             cost: Cost { steps: 20, ..Cost::default() },
         };
         let rows = [row("p/c", Some(5.2), Verdict::Passed), row("longer", None, Verdict::Failed)];

@@ -4,20 +4,36 @@ use std::fs;
 use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
 use std::process::{Command, Output};
+use std::time::Duration;
 
 use crate::quasi_static::FOOTING;
 use crate::still::Still;
 
-/// A footing's run with its end at pseudo-time 1, and a solver that copies it and notes what it was asked for.
+/// The solver: it notes what it was asked for and hands out the run, as far as t = .475 where it is to stop.
+const STUB: &str = r#"#!/bin/sh
+echo "$@" >> calls.txt
+case "$*" in *explode*) echo 'it blew up'; exit 70;; esac
+for last; do :; done
+mkdir -p "$last" && cp -r made/. "$last" && cd "$last"
+arguments=$(printf '"%s",' "$@")
+sed -i "0,/\"still.toml\"/s|\"still.toml\"|${arguments%,}|" run.json
+case "$*" in *stop=*)
+    code=${*#*stop=}
+    code=${code%% *}
+    sed -i "s/\"exit_code\": 0/\"exit_code\": $code/" run.json
+    head -n 22 history.csv > part && mv part history.csv
+    exit "$code";;
+esac
+"#;
+
+/// A footing's run with its end at pseudo-time 1, and the solver that copies it.
 fn prepare(directory: &Path, matrix: &str) {
     if !directory.join("made").exists() {
         Still { method: "f-bar", steps: 40, spacing: 0.5, ..FOOTING }.write(&directory.join("made"), &[]).unwrap();
     }
     fs::write(directory.join("case.toml"), "title = \"stub\"\n").unwrap();
     fs::write(directory.join("matrix.toml"), matrix).unwrap();
-    let stub = "#!/bin/sh\necho \"$@\" >> calls.txt\ncase \"$*\" in *explode*) echo 'it blew up'; exit 70;; esac\n\
-                for last; do :; done\nmkdir -p \"$last\" && cp -r made/. \"$last\"\n";
-    fs::write(directory.join("solver"), stub).unwrap();
+    fs::write(directory.join("solver"), STUB).unwrap();
     fs::set_permissions(directory.join("solver"), fs::Permissions::from_mode(0o755)).unwrap();
 }
 
@@ -108,11 +124,15 @@ fn a_failed_row_and_a_failed_run_fail_the_validation() {
     prepare(dir.path(), MATRIX);
     let output = validate(dir.path(), &[]);
     assert_eq!((output.status.code(), printed(&output).lines().last()), (Some(77), Some("1 passed, 1 failed")));
+    // Together with the errors the counts are the last line, too.
+    assert!(output.stderr.is_empty(), "{output:?}");
     prepare(dir.path(), &MATRIX.replace("stabilisation.method=f-bar", "explode=1"));
     let output = validate(dir.path(), &["--short"]);
     let text = printed(&output);
     assert_eq!(output.status.code(), Some(77));
     assert!(text.contains("exit code 70") && text.contains("it blew up"), "{text}");
+    // What is known to be too deep is not known to blow up.
+    assert_eq!(text.lines().last(), Some("0 passed, 2 failed"));
 }
 
 #[test]
@@ -132,6 +152,17 @@ fn a_matrix_with_mistakes_is_refused_before_anything_runs() {
         ("run       = \"f-bar\"", "run       = \"g-bar\"", "there is no run \"g-bar\""),
         ("reference = 0.975", "", "a tolerance needs a reference"),
         ("column   = \"penetration\"\nmax", "max", "is needed"),
+        ("name  = \"fine\"", "name  = \"f-bar\"", "the same: f-bar"),
+        ("name  = \"fine\"", "name  = \"../fine\"", "no name of a directory"),
+        ("at        = 0.4875", "at = 0.5\noperation = \"mean\"", "take a window"),
+        ("at        = 0.4875", "at = 0.5\nwhere = { value = 0.5 }", "exclude each other"),
+        ("at        = 0.4875", "where = { column = \"time\" }", "needs a value"),
+        ("reference = 0.975", "reference = 0.0", "other than 0"),
+        ("max      = 0.1", "max      = 0.1\nmin = 0.2", "min is above its max"),
+        ("depth    = \"full\"\nmin", "depth = \"short\"\nmin", "its run \"fine\" is full"),
+        ("file    = \"curve.png\"", "file    = \"../curve.png\"", "ends with .png"),
+        ("runs    = [\"f-bar\"]", "curves = { \"f-bar\" = [\"f-bar\"] }\nx_values = [1.0, 2.0]", "has 1 runs"),
+        ("[[study.figure]]", "[[study.plot]]\nrun = \"fine\"\nfield = \"colour\"\n[[study.figure]]", "no field"),
     ] {
         prepare(dir.path(), &MATRIX.replacen(part, by, 1));
         let output = validate(dir.path(), &[]);
@@ -139,4 +170,132 @@ fn a_matrix_with_mistakes_is_refused_before_anything_runs() {
         assert!(output.status.code() == Some(65) && message.contains(told), "{output:?}");
         assert!(!dir.path().join("calls.txt").exists());
     }
+}
+
+const STOPPED: &str = r#"
+[[study]]
+title = "A footing that stops"
+case  = "nowhere.toml"
+depth = "short"
+
+[[study.run]]
+name     = "half"
+case     = "case.toml"
+set      = ["stop=80"]
+may_stop = true
+
+[[study.run]]
+name  = "whole"
+case  = "case.toml"
+depth = "full"
+
+[[study.row]]
+quantity  = "time where it is .5 deep"
+run       = "half"
+column    = "time"
+where     = { column = "penetration", value = 0.51 }
+reference = 0.255
+tolerance = 1e-9
+
+[[study.row]]
+quantity  = "mean depth"
+run       = "half"
+column    = "penetration"
+operation = "mean"
+where     = { from = 0.11, to = 0.31 }
+scale     = 10.0
+reference = 4.2
+tolerance = 1e-9
+
+[[study.row]]
+quantity = "deeper, told"
+run      = "half"
+column   = "p_over_c"
+at       = 0.5
+
+[[study.row]]
+quantity = "deeper, judged"
+run      = "half"
+column   = "p_over_c"
+where    = { column = "penetration", value = 1.0 }
+min      = 0.0
+
+[[study.row]]
+quantity  = "of a run that is not short"
+run       = "whole"
+column    = "penetration"
+operation = "max"
+max       = 0.1
+"#;
+
+#[test]
+fn rows_are_taken_from_a_run_as_far_as_it_came() {
+    let dir = tempfile::tempdir().unwrap();
+    prepare(dir.path(), STOPPED);
+    let output = validate(dir.path(), &["--short"]);
+    let text = printed(&output);
+    assert_eq!((output.status.code(), text.lines().last()), (Some(77), Some("2 passed, 1 failed")), "{text}");
+    let row = |quantity: &str| text.lines().find(|line| line.contains(quantity)).unwrap().to_owned();
+    assert!(row("mean depth").contains(" 4.2 "), "{text}");
+    assert!(row("deeper, told").contains(" none ") && row("deeper, told").contains(" not reached "), "{text}");
+    assert!(
+        row("deeper, judged").contains("FAIL, not reached") && row("judged").contains("penetration 0.95"),
+        "{text}"
+    );
+    assert!(row("deeper, told").contains("stopped at t = 0.4750"), "{text}");
+    let table = fs::read_to_string(dir.path().join("out/table.csv")).unwrap();
+    assert!(table.contains("\"pass\",\"80\""), "{table}");
+}
+
+#[test]
+fn runs_that_are_there_are_made_again_only_when_something_has_changed() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = |name: &str| dir.path().join(name);
+    prepare(dir.path(), MATRIX);
+    let calls = |options: &[&str]| {
+        let before = fs::read_to_string(path("calls.txt")).map_or(0, |text| text.lines().count());
+        validate(dir.path(), &[&["--short"], options].concat());
+        fs::read_to_string(path("calls.txt")).unwrap().lines().count() - before
+    };
+    assert_eq!((calls(&[]), calls(&[]), calls(&["--force"]), calls(&[])), (1, 0, 1, 0));
+    // By what stands in the case, not by when it was written.
+    let old = fs::metadata(path("case.toml")).unwrap().modified().unwrap() - Duration::from_secs(60);
+    fs::write(path("case.toml"), "title = \"stub\"\n").unwrap();
+    assert_eq!(calls(&[]), 0);
+    fs::write(path("case.toml"), "title = \"another\"\n").unwrap();
+    fs::File::options().write(true).open(path("case.toml")).unwrap().set_modified(old).unwrap();
+    assert_eq!((calls(&[]), calls(&[])), (1, 0));
+    // The solver is another one, or what it is told.
+    fs::File::options().write(true).open(path("solver")).unwrap().set_modified(old).unwrap();
+    assert_eq!((calls(&[]), calls(&[])), (1, 0));
+    fs::write(path("matrix.toml"), MATRIX.replace("background=1e-3", "background=1e-4")).unwrap();
+    assert_eq!((calls(&[]), calls(&[])), (1, 0));
+    // A run that was broken off.
+    let manifest = path("out/runs/a-footing/f-bar.out/run.json");
+    let text = fs::read_to_string(&manifest).unwrap();
+    fs::write(&manifest, text.replace("\"exit_code\": 0", "\"exit_code\": 75")).unwrap();
+    assert_eq!((calls(&[]), calls(&[])), (1, 0));
+    fs::write(&manifest, text.replace("\"exit_code\": 0", "\"exit_code\": null")).unwrap();
+    assert_eq!((calls(&[]), calls(&[])), (1, 0));
+    // Without a solver nothing is lost.
+    fs::rename(path("solver"), path("gone")).unwrap();
+    assert_eq!(validate(dir.path(), &["--short"]).status.code(), Some(74));
+    fs::rename(path("gone"), path("solver")).unwrap();
+    assert_eq!(calls(&[]), 0);
+}
+
+#[test]
+fn a_picture_that_cannot_be_drawn_leaves_the_other_studies_alone() {
+    let dir = tempfile::tempdir().unwrap();
+    let bad = MATRIX.replace("y       = \"p_over_c\"", "y = \"depth\"");
+    let good = MATRIX.replace("\"A footing\"", "\"Another\"").replace("curve.png", "other.png");
+    let body = "[[study.plot]]\nrun = \"f-bar\"\nfield = \"plastic-strain\"\ntimes = [1.0]\nrange = [0.0, 1.0]\n";
+    prepare(dir.path(), &format!("{bad}{good}{body}"));
+    let output = validate(dir.path(), &["--short"]);
+    let text = printed(&output);
+    assert!(text.contains("curve.png is not drawn: history.csv of") && text.contains("no column \"depth\""), "{text}");
+    assert_eq!((output.status.code(), text.lines().last()), (Some(77), Some("2 passed, 1 failed")), "{text}");
+    let out = dir.path().join("out");
+    assert!(!out.join("curve.png").exists() && out.join("other.png").exists());
+    assert!(out.join("f-bar_plastic-strain_1.png").exists(), "{:?}", fs::read_dir(&out).unwrap().collect::<Vec<_>>());
 }

@@ -75,17 +75,15 @@ struct Held<const D: usize> {
 }
 
 impl<const D: usize> Held<D> {
+    /// The components that the strip and no support holds.
+    fn own(&self, vector: Vector<D>) -> Vector<D> {
+        Vector::from_fn(|component, _| if self.attachment[component].is_some() { vector[component] } else { 0.0 })
+    }
+
     /// The part of a vector that is held.
-    fn part(&self, mut vector: Vector<D>) -> Vector<D> {
-        for (component, attachment) in self.attachment.iter().enumerate() {
-            if attachment.is_none() {
-                vector[component] = 0.0;
-            }
-        }
-        match &self.normal {
-            Some(normal) => normal * normal.dot(&vector),
-            None => vector,
-        }
+    fn part(&self, vector: Vector<D>) -> Vector<D> {
+        let own = self.own(vector);
+        self.normal.map_or(own, |normal| self.own(normal * normal.dot(&own)))
     }
 
     /// m  of the material at the point; zero in components that are not held.
@@ -104,7 +102,7 @@ impl<const D: usize> Held<D> {
 
     /// Pa  on the body.
     fn traction(&self, offsets: &[usize], u: &[f64]) -> Vector<D> {
-        self.carried + self.slip(offsets, u) * self.penalty
+        self.own(self.carried) + self.slip(offsets, u) * self.penalty
     }
 
     /// Dense block of beta A N_a N_b in the held direction, over the nodes of the cell.

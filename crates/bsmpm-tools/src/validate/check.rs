@@ -1,0 +1,164 @@
+//! Whether the parts of a matrix fit each other: what can be seen before anything runs is refused here, none of it after hours.
+
+use std::path::Path;
+
+use clap::ValueEnum;
+
+use super::matrix::{Depth, Figure, Matrix, Operation, Order, Place, Row, Study};
+use super::runs::slug;
+use crate::plot::FieldName;
+
+impl Matrix {
+    /// `Err` says what does not fit, and where.
+    pub fn check(&self) -> Result<(), String> {
+        self.study.iter().try_for_each(|study| {
+            study.check().map_err(|(part, reason)| format!("study \"{}\", {part}: {reason}", study.title))
+        })?;
+        // Runs and pictures of several studies share directories.
+        let titles = self.study.iter().map(|study| slug(&study.title));
+        let files = self.study.iter().flat_map(|study| &study.figure).map(|figure| figure.file.clone());
+        let plots = self.study.iter().flat_map(|study| &study.plot);
+        let plots = plots.map(|plot| format!("{} of {}", plot.field, plot.run));
+        distinct("studies' titles", titles)?;
+        distinct("figures", files)?;
+        distinct("plots", plots)
+    }
+}
+
+fn distinct(what: &str, names: impl Iterator<Item = String>) -> Result<(), String> {
+    let names: Vec<String> = names.collect();
+    let again = names.iter().enumerate().find(|(index, name)| names[..*index].contains(name));
+    again.map_or(Ok(()), |(_, name)| Err(format!("two {what} are the same: {name}")))
+}
+
+/// The part of a study, and what does not fit.
+type Misfit = (String, String);
+
+impl Study {
+    fn check(&self) -> Result<(), Misfit> {
+        let in_runs = |reason| ("runs".to_owned(), reason);
+        distinct("names", self.run.iter().map(|run| run.name.clone())).map_err(in_runs)?;
+        if let Some(run) = self.run.iter().find(|run| !is_file_name(&run.name)) {
+            return Err(in_runs(format!("\"{}\" is no name of a directory", run.name)));
+        }
+        for row in &self.row {
+            self.check_row(row).map_err(|reason| (format!("\"{}\"", row.quantity), reason))?;
+        }
+        for figure in &self.figure {
+            let about = |reason| (format!("figure \"{}\"", figure.file), reason);
+            self.are_known(figure.runs.iter().chain(figure.curves.values().flatten())).map_err(about)?;
+            figure.check().map_err(about)?;
+        }
+        for plot in &self.plot {
+            let about = |reason| (format!("plot of \"{}\"", plot.run), reason);
+            self.are_known([&plot.run]).map_err(about)?;
+            if FieldName::from_str(&plot.field, true).is_err() {
+                return Err(about(format!("there is no field \"{}\"", plot.field)));
+            }
+            if plot.range.is_some_and(|(lower, upper)| lower.partial_cmp(&upper) != Some(std::cmp::Ordering::Less)) {
+                return Err(about("the range begins above its end".to_owned()));
+            }
+        }
+        Ok(())
+    }
+
+    fn are_known<'a>(&self, names: impl IntoIterator<Item = &'a String>) -> Result<(), String> {
+        let unknown = names.into_iter().find(|name| !self.run.iter().any(|run| run.name == **name));
+        unknown.map_or(Ok(()), |name| Err(format!("there is no run \"{name}\"")))
+    }
+
+    fn check_row(&self, row: &Row) -> Result<(), String> {
+        let names: Vec<String> = row.runs().into_iter().map(str::to_owned).collect();
+        self.are_known(&names)?;
+        let full = |name: &&String| self.run.iter().any(|run| run.name == **name && self.depth_of(run) == Depth::Full);
+        if let Some(name) = names.iter().find(full).filter(|_| row.depth == Some(Depth::Short)) {
+            return Err(format!("it is short, its run \"{name}\" is full"));
+        }
+        let ways = [row.column.is_some(), row.order.is_some(), row.extrapolated.is_some(), row.kink.is_some()];
+        if ways.iter().filter(|way| **way).count() != 1 || row.column.is_some() != row.run.is_some() {
+            return Err("one of run with column, order, extrapolated, kink is needed".into());
+        }
+        row.check_bounds()?;
+        row.check_place()?;
+        if row.order.as_ref().is_some_and(|order| order.exact.is_none()) {
+            return Err("an order needs `exact`".into());
+        }
+        row.order.iter().chain(&row.extrapolated).try_for_each(Order::check)
+    }
+}
+
+/// A name in a directory, that leads nowhere else.
+fn is_file_name(name: &str) -> bool {
+    !name.starts_with('.') && Path::new(name).file_name().is_some_and(|last| last == name)
+}
+
+impl Row {
+    fn check_bounds(&self) -> Result<(), String> {
+        let numbers = [self.reference, self.tolerance, self.min, self.max, self.scale, self.at];
+        if numbers.into_iter().flatten().any(|number| !number.is_finite()) {
+            return Err("its numbers are not all finite".into());
+        }
+        match (self.tolerance, self.reference) {
+            (Some(tolerance), _) if tolerance < 0.0 => return Err("its tolerance is negative".into()),
+            (Some(_), None | Some(0.0)) => {
+                return Err("a tolerance needs a reference other than 0, to which it is relative".into());
+            }
+            _ => {}
+        }
+        match (self.min, self.max) {
+            (Some(min), Some(max)) if min > max => Err("its min is above its max".into()),
+            _ => Ok(()),
+        }
+    }
+
+    /// Nothing is said about the place that would not be heeded.
+    fn check_place(&self) -> Result<(), String> {
+        let is_last = self.operation == Operation::Last;
+        let says_where = self.at.is_some() || self.place.is_some() || self.scale.is_some() || !is_last;
+        if self.column.is_none() && says_where {
+            return Err("at, where, operation and scale belong to a row with a column".into());
+        }
+        match (&self.place, self.at) {
+            (Some(_), Some(_)) => Err("at and where exclude each other".into()),
+            (None, Some(_)) if !is_last => Err("at is one row: max, min and mean take a window, with where".into()),
+            (Some(Place { value: Some(_), from: None, to: None, .. }), _) if !is_last => {
+                Err("where has a value, which is one row: max, min and mean take a window, from and to".into())
+            }
+            (Some(Place { value: Some(_), from, to, .. }), _) if from.is_some() || to.is_some() => {
+                Err("where has a value or a window, not both".into())
+            }
+            (Some(Place { value: None, .. }), _) if is_last => {
+                Err("where needs a value, or a window an operation: max, min, mean".into())
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+impl Order {
+    fn check(&self) -> Result<(), String> {
+        if self.runs.len() != self.sizes.len() || self.runs.len() < 3 {
+            return Err(format!("{} runs need as many sizes, at least 3", self.runs.len()));
+        }
+        let shrink = self.sizes.windows(2).all(|pair| pair[1] < pair[0]) && self.sizes.iter().all(|size| *size > 0.0);
+        if shrink { Ok(()) } else { Err("the sizes go from coarse to fine and are positive".into()) }
+    }
+}
+
+impl Figure {
+    fn check(&self) -> Result<(), String> {
+        if !is_file_name(&self.file) || !self.file.ends_with(".png") {
+            return Err("its file is a name that ends with .png".into());
+        }
+        if self.runs.is_empty() == self.curves.is_empty() {
+            return Err("one of runs, curves is needed".into());
+        }
+        match self.curves.iter().find(|(_, runs)| runs.len() != self.x_values.len()) {
+            Some((name, runs)) => {
+                Err(format!("\"{name}\" has {} runs, x_values has {} numbers", runs.len(), self.x_values.len()))
+            }
+            None if self.curves.is_empty() && !self.x_values.is_empty() => Err("x_values belongs to curves".into()),
+            None => Ok(()),
+        }
+    }
+}
