@@ -27,7 +27,7 @@ const ROWS: [Row; 20] = [
     Row("material = \"soil\"", "material = \"sand\"", "body.0.material", "there is no [material.sand]", 0),
     Row("bottom = \"fixed\"\n", "", "boundary", "nothing holds the bodies along y", 1),
     Row("face = \"bottom\"", "face = \"botom\"", "history.1.face", "did you mean `bottom`?", 0),
-    Row("[gravity]", "[footing]", "footing", "", 0),
+    Row("[gravity]", "[stage]", "stage", "not available yet", 0),
 ];
 
 #[test]
