@@ -25,6 +25,7 @@ const FUNCTIONS: &[&str] = &[
     "Mat(Seq|MPI)AIJSetPreallocationCSR",
     "Mat(UpdateMPIAIJWithArray|SeqAIJGetArrayWrite|SeqAIJRestoreArrayWrite)",
     "Mat(NullSpaceCreateRigidBody|NullSpaceDestroy|SetNearNullSpace)",
+    "Mat(CreateShell|ShellGetContext|ShellSetOperation)",
     "KSP(Create|SetOperators|SetType|GetPC|SetOptionsPrefix|SetFromOptions|SetUp|Solve)",
     "KSP(GetTolerances|SetTolerances|SetNormType|SetInitialGuessNonzero)",
     "KSP(SetReusePreconditioner|GetConvergedReason|GetConvergedReasonString)",
@@ -42,7 +43,8 @@ const VARIABLES: &[&str] = &[
     "MAT_(SYMMETRIC|SYMMETRY_ETERNAL|SPD|SPD_ETERNAL)",
     "MAT_FINAL_ASSEMBLY",
     "KSP_NORM_.*",
-    "KSP_DIVERGED_PC_FAILED",
+    "KSP_DIVERGED_(PC_FAILED|ITS)",
+    "MATOP_MULT",
     "PC_(NOERROR|FACTOR_.*)",
 ];
 

@@ -5,9 +5,9 @@ use crate::stencil::{Numbering, Stencil};
 use crate::timers::Timers;
 use bsmpm::error::SolveError;
 use bsmpm::grid::Grid;
-use bsmpm::seam::{Halo, LinearSolver};
+use bsmpm::seam::{Halo, Krylov, LinearSolver, Symmetry};
 use mpi::collective::{CommunicatorCollectives, SystemOperation};
-use petsc_rs::{Ksp, Matrix, Petsc, Symmetry, Vector};
+use petsc_rs::{Ksp, Matrix, Petsc, Tolerances, Vector};
 use std::rc::Rc;
 
 /// Largest relative residual of a solution that is accepted, recomputed: direct solvers report success for NaN.
@@ -16,7 +16,7 @@ const TRUSTED: f64 = 1e-6;
 /// Defaults of the factorisation, given before the user's own options, which win. MUMPS: ordering by approximate minimum
 /// fill, of all that were tried the cheapest for plane grids, and twice the workspace that it estimates, which on
 /// several ranks is at times too little. Iterative methods: a tolerance whose solutions are trusted, unlike PETSc's 1e-5.
-const OPTIONS: [&str; 10] = [
+const OPTIONS: [&str; 18] = [
     "-ksp_rtol",
     "1e-10",
     "-mat_mumps_icntl_7",
@@ -27,7 +27,19 @@ const OPTIONS: [&str; 10] = [
     "2",
     "-redundant_mat_mumps_icntl_14",
     "100",
+    "-newton_ksp_gmres_restart",
+    "100",
+    "-newton_mat_mumps_icntl_14",
+    "100",
+    "-newton_redundant_mat_mumps_icntl_14",
+    "100",
+    "-newton_ksp_pc_side",
+    "right",
 ];
+/// Prefix of the options of Newton's linear systems.
+const NEWTON: &str = "newton_";
+/// Most products of one of them.
+const MOST_PRODUCTS: usize = 100;
 
 /// Method, preconditioner and factorising package by PETSc's names.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -47,21 +59,32 @@ impl Choice {
     pub fn options(&self) -> Vec<&str> {
         let mut options = OPTIONS.to_vec();
         if self.redundant {
-            options.extend(["-redundant_pc_type", &self.pc]);
+            options.extend(["-redundant_pc_type", &self.pc, "-newton_redundant_pc_type", "lu"]);
             if let Some(factor) = &self.factor {
                 options.extend(["-redundant_pc_factor_mat_solver_type", factor]);
+                options.extend(["-newton_redundant_pc_factor_mat_solver_type", factor]);
             }
         }
         options
     }
 
-    /// Tells a solver; what the options say goes before.
-    fn apply(&self, ksp: &mut Ksp<'_>) -> petsc_rs::Result<()> {
-        ksp.set_type(&self.ksp)?;
+    /// Tells a solver; what the options say goes before. A general matrix preconditions a Krylov method.
+    fn apply(&self, ksp: &mut Ksp<'_>, symmetry: Symmetry) -> petsc_rs::Result<()> {
+        let pc = match (symmetry, self.pc.as_str()) {
+            (Symmetry::General, "cholesky") => "lu",
+            (_, pc) => pc,
+        };
+        match symmetry {
+            Symmetry::Definite => ksp.set_type(&self.ksp)?,
+            Symmetry::General => {
+                ksp.set_options_prefix(NEWTON)?;
+                ksp.set_type("fgmres")?;
+            }
+        }
         if self.redundant {
             ksp.set_pc_type("redundant")?;
         } else {
-            ksp.set_pc_type(&self.pc)?;
+            ksp.set_pc_type(pc)?;
             if let Some(factor) = &self.factor {
                 ksp.set_factor_solver(factor)?;
             }
@@ -76,10 +99,10 @@ pub fn probe<'p>(petsc: &'p Petsc<'p>, choice: &Choice) -> petsc_rs::Result<()> 
     let own = [petsc.rank()];
     let mut matrix = Matrix::from_coo(petsc, 1, 1, &own, &own)?;
     matrix.set_values(&[1.0])?;
-    matrix.set_symmetry(Symmetry::PositiveDefinite)?;
+    matrix.set_symmetry(petsc_rs::Symmetry::PositiveDefinite)?;
     let mut ksp = Ksp::new(petsc)?;
     ksp.set_operator(&matrix)?;
-    choice.apply(&mut ksp)?;
+    choice.apply(&mut ksp, Symmetry::Definite)?;
     let (mut b, mut x) = (Vector::new(petsc, 1)?, Vector::new(petsc, 1)?);
     b.fill(1.0)?;
     ksp.set_up()?;
@@ -95,7 +118,8 @@ pub struct KspSolver<'p, const D: usize> {
     free: Vec<bool>,
     numbers: Numbering,
     own: usize, // unknowns of this rank
-    system: Option<System<'p>>,
+    definite: Option<System<'p>>,
+    general: Option<System<'p>>, // where Newton's method is used
     timers: Rc<Timers>,
 }
 
@@ -111,7 +135,8 @@ impl<'p, const D: usize> KspSolver<'p, D> {
     /// A solver for a window of the grid.
     pub fn new(petsc: &'p Petsc<'p>, choice: Choice, grid: &Grid<D>, halo: Rc<MpiHalo>, timers: Rc<Timers>) -> Self {
         let (stencil, free, numbers) = (Stencil::new(grid), Vec::new(), Vec::new());
-        Self { petsc, choice, halo, stencil, free, numbers, own: 0, system: None, timers }
+        let (definite, general) = (None, None);
+        Self { petsc, choice, halo, stencil, free, numbers, own: 0, definite, general, timers }
     }
 
     /// Numbers the free components: those of rank 0 first, by node; the same number on every rank that shares a node.
@@ -134,54 +159,67 @@ impl<'p, const D: usize> KspSolver<'p, D> {
     }
 
     /// Hands the values over; the pattern too, if the unknowns have changed.
-    fn build(&mut self) -> petsc_rs::Result<()> {
+    fn build(&mut self, symmetry: Symmetry) -> petsc_rs::Result<()> {
         let values = self.stencil.entries(&self.numbers);
-        let system = match &mut self.system {
+        let place = match symmetry {
+            Symmetry::Definite => &mut self.definite,
+            Symmetry::General => &mut self.general,
+        };
+        let system = match place {
             Some(system) => system,
-            none => none.insert(System::new(self.petsc, &self.choice, &self.stencil, &self.numbers, self.own)?),
+            none => none.insert(System::new(
+                (self.petsc, &self.choice, symmetry),
+                (&self.stencil, &self.numbers, self.own),
+            )?),
         };
         system.matrix.set_values(&values)?;
         system.ksp.set_operator(&system.matrix)?;
         system.ksp.set_up()
     }
 
-    fn solve_owned(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<usize, SolveError> {
+    /// Components of this rank's unknowns, in the order of their numbers.
+    fn unknowns(&self) -> Vec<usize> {
         let owned = self.halo.owned();
-        let unknowns: Vec<usize> = (owned.start * D..owned.end * D).filter(|&component| self.free[component]).collect();
-        let Some(system) = &mut self.system else {
-            return Err(SolveError::Failed("no matrix was assembled".into()));
-        };
-        let own: Vec<f64> = unknowns.iter().map(|&component| rhs[component]).collect();
-        let (iterations, x) = system.solve(&own)?;
-        solution.fill(0.0);
-        for (&component, value) in unknowns.iter().zip(x) {
-            solution[component] = value;
-        }
-        Ok(iterations)
+        (owned.start * D..owned.end * D).filter(|&component| self.free[component]).collect()
     }
+}
+
+/// Nodal array, known to all ranks that share a node, of the unknowns that the ranks own.
+fn spread<const D: usize>(halo: &MpiHalo, unknowns: &[usize], values: &[f64], nodal: &mut [f64]) {
+    nodal.fill(0.0);
+    for (&component, value) in unknowns.iter().zip(values) {
+        nodal[component] = *value;
+    }
+    halo.sum(nodal, D);
+}
+
+fn missing() -> SolveError {
+    SolveError::Failed("no matrix was assembled".into())
+}
+
+fn failed(error: petsc_rs::Error) -> SolveError {
+    SolveError::Failed(error.to_string())
 }
 
 impl<'p> System<'p> {
     fn new<const D: usize>(
-        petsc: &'p Petsc<'p>,
-        choice: &Choice,
-        stencil: &Stencil<D>,
-        numbers: &Numbering,
-        own: usize,
+        (petsc, choice, symmetry): (&'p Petsc<'p>, &Choice, Symmetry),
+        (stencil, numbers, own): (&Stencil<D>, &Numbering, usize),
     ) -> petsc_rs::Result<Self> {
         let places = stencil.coordinates(numbers);
         let mut matrix = Matrix::from_coo(petsc, own, 1, &places.rows, &places.columns)?;
-        matrix.set_symmetry(Symmetry::PositiveDefinite)?;
+        if symmetry == Symmetry::Definite {
+            matrix.set_symmetry(petsc_rs::Symmetry::PositiveDefinite)?;
+        }
         let mut ksp = Ksp::new(petsc)?;
         ksp.set_operator(&matrix)?;
-        choice.apply(&mut ksp)?;
+        choice.apply(&mut ksp, symmetry)?;
         let vector = || Vector::new(petsc, own);
         Ok(Self { matrix, ksp, b: vector()?, x: vector()?, r: vector()? })
     }
 
     /// Solution of this rank's unknowns, if it is finite and its recomputed residual small.
     fn solve(&mut self, rhs: &[f64]) -> Result<(usize, Vec<f64>), SolveError> {
-        let failed = |error: petsc_rs::Error| SolveError::Failed(error.to_string());
         self.b.copy_from(rhs).map_err(failed)?;
         let info = self.ksp.solve(&self.b, &mut self.x).map_err(failed)?;
         self.matrix.residual(&self.b, &self.x, &mut self.r).map_err(failed)?;
@@ -194,6 +232,27 @@ impl<'p> System<'p> {
         }
         Ok((info.iterations, self.x.read(<[f64]>::to_vec).map_err(failed)?))
     }
+
+    /// Solution of this rank's unknowns for an operator known by its product, and what it leaves.
+    fn solve_with(
+        &mut self,
+        product: &mut dyn FnMut(&[f64], &mut [f64]),
+        relative: f64,
+        rhs: &[f64],
+    ) -> Result<(Krylov, Vec<f64>), SolveError> {
+        self.b.copy_from(rhs).map_err(failed)?;
+        let tolerances = Tolerances { relative, absolute: 0.0, max_iterations: MOST_PRODUCTS };
+        self.ksp.set_tolerances(tolerances).map_err(failed)?;
+        let info = self.ksp.solve_with(product, &self.b, &mut self.x).map_err(failed)?;
+        let x = self.x.read(<[f64]>::to_vec).map_err(failed)?;
+        self.r.write(|r| product(&x, r)).map_err(failed)?;
+        self.r.add_scaled(-1.0, &self.b).map_err(failed)?;
+        let residual = self.r.norm().map_err(failed)? / self.b.norm().map_err(failed)?;
+        if !residual.is_finite() {
+            return Err(SolveError::NotFinite);
+        }
+        Ok((Krylov { iterations: info.iterations, residual }, x))
+    }
 }
 
 impl<const D: usize> LinearSolver for KspSolver<'_, D> {
@@ -202,7 +261,7 @@ impl<const D: usize> LinearSolver for KspSolver<'_, D> {
         self.halo.maximum(&mut changed);
         if changed[0] > 0.0 {
             self.number(free);
-            self.system = None;
+            (self.definite, self.general) = (None, None);
         }
         self.stencil.clear();
     }
@@ -219,17 +278,42 @@ impl<const D: usize> LinearSolver for KspSolver<'_, D> {
         }
     }
 
-    fn finish(&mut self) -> Result<(), SolveError> {
+    fn finish(&mut self, symmetry: Symmetry) -> Result<(), SolveError> {
         let timers = Rc::clone(&self.timers);
         let _timed = timers.time("factorisation");
-        self.build().map_err(|error| SolveError::Failed(error.to_string()))
+        self.build(symmetry).map_err(failed)
     }
 
     fn solve(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<usize, SolveError> {
         let timers = Rc::clone(&self.timers);
         let _timed = timers.time("linear solve");
-        let iterations = self.solve_owned(rhs, solution)?;
-        self.halo.sum(solution, D);
+        let unknowns = self.unknowns();
+        let own: Vec<f64> = unknowns.iter().map(|&component| rhs[component]).collect();
+        let (iterations, x) = self.definite.as_mut().ok_or_else(missing)?.solve(&own)?;
+        spread::<D>(&self.halo, &unknowns, &x, solution);
         Ok(iterations)
+    }
+
+    fn solve_with(
+        &mut self,
+        product: &mut dyn FnMut(&[f64], &mut [f64]),
+        relative: f64,
+        rhs: &[f64],
+        solution: &mut [f64],
+    ) -> Result<Krylov, SolveError> {
+        let timers = Rc::clone(&self.timers);
+        let _timed = timers.time("linear solve");
+        let (unknowns, halo) = (self.unknowns(), Rc::clone(&self.halo));
+        let own: Vec<f64> = unknowns.iter().map(|&component| rhs[component]).collect();
+        let (mut nodal, mut image) = (vec![0.0; rhs.len()], vec![0.0; rhs.len()]);
+        let mut on_unknowns = |x: &[f64], y: &mut [f64]| {
+            spread::<D>(&halo, &unknowns, x, &mut nodal);
+            product(&nodal, &mut image);
+            y.iter_mut().zip(&unknowns).for_each(|(y, &component)| *y = image[component]);
+        };
+        let system = self.general.as_mut().ok_or_else(missing)?;
+        let (krylov, x) = system.solve_with(&mut on_unknowns, relative, &own)?;
+        spread::<D>(&self.halo, &unknowns, &x, solution);
+        Ok(krylov)
     }
 }

@@ -13,7 +13,7 @@ use crate::setup;
 use crate::simulation::Simulation;
 use crate::timers::Timers;
 use bsmpm::control::{Accepted, Failure};
-use bsmpm::error::StepError;
+use bsmpm::error::{Measures, StepError};
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::seam::Halo;
 use bsmpm::step::Report;
@@ -228,9 +228,9 @@ impl<'p> Run<'p> {
             failure.dt
         ));
         if let Some(ledger) = &mut self.ledger {
-            let finite = |energy: &f64| Some(*energy).filter(|energy| energy.is_finite());
+            let finite = |measures: &Measures| Some(measures.energy).filter(|energy| energy.is_finite());
             let residuals = match last {
-                Some(StepError::NotConverged { energies, .. }) => energies.iter().map(finite).collect(),
+                Some(StepError::NotConverged { history, .. }) => history.iter().map(finite).collect(),
                 _ => Vec::new(),
             };
             ledger.attempts(failure.attempts.len() - 1, failure.counts);

@@ -13,10 +13,11 @@ use bsmpm::model::{Criteria, Gravity, Model, Weighting};
 use bsmpm::points::Points;
 use bsmpm::schedule::Schedule;
 use bsmpm::stabilisation::Stabilisation;
+use bsmpm::step::equilibrium::Nonlinear;
 use bsmpm::step::quasi_newton::QuasiNewton;
 use bsmpm::tensor::{Symmetric, Vector};
 use bsmpm_io::manifest;
-use bsmpm_scene::{Axis, Case, Every, Initial, Nonlinear, Regime};
+use bsmpm_scene::{Axis, Case, Every, Initial, Regime};
 use std::marker::PhantomData;
 
 /// The model of a plane-strain case over its whole grid.
@@ -45,9 +46,10 @@ pub fn model(case: &Case) -> Result<Model<PlaneStrain, 2>, GridError> {
             force: case.solver.force_tolerance,
             max_iterations: case.solver.max_iterations,
         },
-        quasi_newton: match case.solver.nonlinear {
-            Nonlinear::Auto => QuasiNewton::Multisecant,
-            Nonlinear::Broyden => QuasiNewton::Broyden,
+        nonlinear: match case.solver.nonlinear {
+            bsmpm_scene::Nonlinear::Auto => Nonlinear::Auto,
+            bsmpm_scene::Nonlinear::Broyden => Nonlinear::QuasiNewton(QuasiNewton::Broyden),
+            bsmpm_scene::Nonlinear::Newton => Nonlinear::Newton,
         },
         kinematics: PhantomData,
     })
@@ -143,9 +145,10 @@ pub fn choices(case: &Case, ranks: usize) -> Vec<manifest::Choice> {
         reason: reason.into(),
     };
     let mut choices = Vec::new();
-    if case.solver.nonlinear == Nonlinear::Auto {
-        let reason = "all recent secants on the elastic stiffness: half the iterations of Broyden's update";
-        choices.push(choice("solver.nonlinear", "multisecant", reason));
+    if case.solver.nonlinear == bsmpm_scene::Nonlinear::Auto {
+        let reason = "all recent secants on the elastic stiffness, half the iterations of Broyden's update; Newton's method with \
+                      the complete derivative where they stall; then shorter steps";
+        choices.push(choice("solver.nonlinear", "multisecant, newton", reason));
     }
     if linear(case, ranks).redundant {
         let reason = "solver.reproducible: every rank factorises the whole system, as a parallel factorisation need not \

@@ -212,10 +212,12 @@ pub struct Solver {
 /// The non-linear iteration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Nonlinear {
-    /// The controller's choice: all recent secants on the elastic stiffness, with cut steps.
+    /// The controller's choice: all recent secants on the elastic stiffness, Newton's method where they stall.
     Auto,
     /// The paper's rank-one update.
     Broyden,
+    /// Newton's method with the complete derivative.
+    Newton,
 }
 
 /// The linear solver by PETSc's own names, all of them known ones.

@@ -31,6 +31,15 @@ pub enum SolveError {
     Residual(f64),
 }
 
+/// How far an iteration was from equilibrium (step 9).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Measures {
+    /// |du . f| / |du_0 . f_0|
+    pub energy: f64,
+    /// |f_oob| / largest force
+    pub force: f64,
+}
+
 /// The node of a rank whose forces are the least balanced.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct WorstNode {
@@ -74,7 +83,7 @@ pub enum StepError {
     Inverted {
         /// Number of points over all ranks.
         count: u64,
-        /// Quasi-Newton iteration.
+        /// Iteration.
         iteration: usize,
         /// Id and position (m) of the first one on this rank, if any.
         first: Option<(u64, Vec<f64>)>,
@@ -88,8 +97,8 @@ pub enum StepError {
         energy: f64,
         /// |f_oob| / largest force.
         force: f64,
-        /// Energy measure of every iteration.
-        energies: Vec<f64>,
+        /// Both measures of every iteration.
+        history: Vec<Measures>,
         /// The worst node of this rank.
         worst: WorstNode,
     },

@@ -13,6 +13,12 @@ pub trait Kinematics<const D: usize>: Copy + Default + Send + Sync + 'static {
     /// dF-bar = (dJ-bar/dJ)^(1/dof) dF (Eq. 15), `ratio` = dJ-bar/dJ > 0; dof are the directions that the grid dilates.
     fn dilate(dF: &Tensor, ratio: f64) -> Tensor;
 
+    /// The part of a tensor that works on in-plane gradients: the adjoint of [`Kinematics::gradient`].
+    fn in_plane(tensor: &Tensor) -> Square<D>;
+
+    /// Spatial gradient of a unit of d ln(dJ-bar/dJ) under [`Kinematics::dilate`]: I / dof in the grid's directions.
+    fn dilation() -> Tensor;
+
     /// Trial b^e = dF-bar b^e dF-bar^T (Eqs 7, 19).
     fn push_forward(dF: &Tensor, b_e: &Symmetric) -> Symmetric {
         Symmetric::of(&(dF * b_e.full() * dF.transpose()))
@@ -32,6 +38,15 @@ impl Kinematics<2> for PlaneStrain {
     #[inline]
     fn gradient(grad: &Square<2>) -> Tensor {
         Tensor::new(grad[(0, 0)], grad[(0, 1)], 0.0, grad[(1, 0)], grad[(1, 1)], 0.0, 0.0, 0.0, 0.0)
+    }
+
+    #[inline]
+    fn in_plane(tensor: &Tensor) -> Square<2> {
+        tensor.fixed_view::<2, 2>(0, 0).into_owned()
+    }
+
+    fn dilation() -> Tensor {
+        Tensor::from_diagonal(&[0.5, 0.5, 0.0].into())
     }
 
     #[inline]
@@ -75,6 +90,15 @@ impl Kinematics<3> for Solid {
     #[inline]
     fn gradient(grad: &Square<3>) -> Tensor {
         *grad
+    }
+
+    #[inline]
+    fn in_plane(tensor: &Tensor) -> Square<3> {
+        *tensor
+    }
+
+    fn dilation() -> Tensor {
+        Tensor::identity() / 3.0
     }
 
     #[inline]

@@ -7,7 +7,7 @@ use crate::kinematics::Kinematics;
 use crate::material::{Material, MaterialError, Response};
 use crate::points::Points;
 use crate::stabilisation::Stabilisation;
-use crate::step::quasi_newton::QuasiNewton;
+use crate::step::equilibrium::Nonlinear;
 use crate::tensor::{Symmetric, Vector};
 use std::marker::PhantomData;
 
@@ -78,8 +78,8 @@ pub struct Model<K, const D: usize> {
     pub background: Option<Background>,
     /// Convergence.
     pub criteria: Criteria,
-    /// How directions are found.
-    pub quasi_newton: QuasiNewton,
+    /// How equilibrium is sought.
+    pub nonlinear: Nonlinear,
     /// The geometry, a type without data.
     pub kinematics: PhantomData<K>,
 }

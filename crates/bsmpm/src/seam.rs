@@ -44,10 +44,37 @@ pub trait LinearSolver {
     /// Adds to the diagonal, D numbers per local node; those of owned nodes count.
     fn add_diagonal(&mut self, diagonal: &[f64]);
     /// Completes and factorises the matrix.
-    fn finish(&mut self) -> Result<(), SolveError>;
+    fn finish(&mut self, symmetry: Symmetry) -> Result<(), SolveError>;
     /// Solves for a nodal right-hand side; the solution is zero at components that are not free, and right at
     /// ghost nodes too. Returns the linear iterations.
     fn solve(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<usize, SolveError>;
+    /// Solves for an operator known by its product (nodal arrays, zero where not free; collective), by a Krylov method
+    /// that the general matrix preconditions, to the residual `relative` to the right-hand side or as far as it gets.
+    fn solve_with(
+        &mut self,
+        product: &mut dyn FnMut(&[f64], &mut [f64]),
+        relative: f64,
+        rhs: &[f64],
+        solution: &mut [f64],
+    ) -> Result<Krylov, SolveError>;
+}
+
+/// What a matrix is factorised for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Symmetry {
+    /// symmetric and positive definite, for [`LinearSolver::solve`]
+    Definite,
+    /// neither, for [`LinearSolver::solve_with`]
+    General,
+}
+
+/// How a Krylov method ended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Krylov {
+    /// iterations, of one product each
+    pub iterations: usize,
+    /// |b - A x| / |b|, recomputed
+    pub residual: f64,
 }
 
 /// The halo of a run on one rank without MPI: unit tests and tools.

@@ -3,8 +3,11 @@
 pub mod broyden;
 pub mod commit;
 pub mod equilibrium;
+pub mod linearised;
 pub mod multisecant;
+pub mod newton;
 pub mod nodes;
+pub mod progress;
 pub mod quasi_newton;
 pub mod residual;
 pub mod stiffness;
@@ -18,24 +21,31 @@ use crate::kinematics::Kinematics;
 use crate::model::Model;
 use crate::points::Points;
 use crate::seam::{Halo, LinearSolver, agreed};
+use crate::step::equilibrium::Method;
 use crate::step::nodes::Nodes;
 
 /// Work of one or more attempts, failed ones included.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
-    /// quasi-Newton iterations
+    /// quasi-Newton and Newton iterations
     pub iterations: usize,
     /// evaluations of the residual
     pub evaluations: usize,
     /// iterations of the linear solver
     pub linear_iterations: usize,
+    /// products with the complete derivative
+    pub products: usize,
+    /// factorisations
+    pub factorisations: usize,
 }
 
 /// What an accepted step did.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Report {
-    /// quasi-Newton iterations from the guess that led to convergence
+    /// iterations from the guess that led to convergence
     pub iterations: usize,
+    /// the method that led to it
+    pub method: Method,
     /// force measure |f_oob| / largest force of the accepted state
     pub force: f64,
     /// nodes that carry material, over all ranks

@@ -6,6 +6,7 @@ use crate::error::{Error, Result, c_string, check, int, same_length, text};
 use crate::ffi;
 use crate::matrix::Matrix;
 use crate::petsc::Petsc;
+use crate::shell::Shell;
 use crate::vector::Vector;
 
 /// When an iteration ends: |r| <= max(relative |b|, absolute), or too many iterations (an `Err`).
@@ -35,7 +36,7 @@ pub enum NormType {
 /// How a solve ended well.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct SolveInfo {
-    /// KSPConvergedReason, > 0
+    /// KSPConvergedReason; > 0, or of a solve with too many iterations
     pub reason: i32,
     /// iterations done, 1 for a factorisation
     pub iterations: usize,
@@ -179,6 +180,39 @@ impl<'p> Ksp<'p> {
         // SAFETY: the handles are valid; the vectors have the operator's layout and are distinct.
         let outcome = check(unsafe { ffi::KSPSolve(self.raw, b.raw(), x.raw()) }).and_then(|()| self.verdict());
         self.conclude(outcome)
+    }
+
+    /// Solves A x = b for an operator known by its product, `apply(x, y)` setting y = A x on this rank's part, with the
+    /// preconditioner of the matrix of [`Ksp::set_operator`]; for Krylov methods. `apply` is called equally often on all
+    /// ranks. A solve that reaches its most iterations is `Ok` too: the caller looks at what is left. Collective.
+    pub fn solve_with(
+        &mut self,
+        apply: &mut dyn FnMut(&[f64], &mut [f64]),
+        b: &Vector,
+        x: &mut Vector,
+    ) -> Result<SolveInfo> {
+        let rows = self.operator_rows()?;
+        let checked = same_length("right-hand side", b.local_len(), rows)
+            .and_then(|()| same_length("solution", x.local_len(), rows));
+        self.petsc.agree(checked)?;
+        self.set_up()?;
+        let mut matrix = ptr::null_mut();
+        // SAFETY: the handle and the pointer are valid; the matrix stays PETSc's, and alive through the reference below.
+        check(unsafe { ffi::KSPGetOperators(self.raw, ptr::null_mut(), &mut matrix) })?;
+        let shell = Shell::new(self.petsc, rows, apply)?;
+        // SAFETY: all handles are valid; the preconditioner keeps its matrix and is not built again.
+        check(unsafe { ffi::KSPSetOperators(self.raw, shell.raw(), matrix) })?;
+        // SAFETY: the handles are valid; the vectors have the operator's layout and are distinct.
+        let outcome = check(unsafe { ffi::KSPSolve(self.raw, b.raw(), x.raw()) }).and_then(|()| self.verdict());
+        let outcome = match outcome {
+            Err(Error::Diverged { reason, iterations, .. }) if reason == ffi::KSP_DIVERGED_ITS => {
+                Ok(SolveInfo { reason, iterations })
+            }
+            other => other,
+        };
+        // SAFETY: as above; nothing refers to the shell any more when it ends.
+        let restored = check(unsafe { ffi::KSPSetOperators(self.raw, matrix, matrix) });
+        self.conclude(restored.and(outcome))
     }
 
     /// How the solve that has just returned ended.

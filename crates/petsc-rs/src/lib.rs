@@ -33,6 +33,7 @@ mod ksp;
 mod matrix;
 mod options;
 mod petsc;
+mod shell;
 mod vector;
 
 pub use error::{Error, Result};

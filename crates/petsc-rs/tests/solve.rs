@@ -24,6 +24,7 @@ const CHECKS: &[Check] = &[
     ("refused arguments are errors on every rank", refused),
     ("PETSc's errors are values and print nothing", silent),
     ("rigid body modes", rigid_body_modes),
+    ("an operator known by its product", product),
 ];
 
 fn main() {
@@ -224,6 +225,39 @@ fn iterative(petsc: &Petsc) -> Result<(), String> {
         Err(Error::Diverged { reason: -3, iterations: 2, name }) => expect(name == "DIVERGED_ITS", &name),
         other => Err(format!("too few iterations: {other:?}")),
     }
+}
+
+/// A = P + a term that couples every row with the first one of its rank, which P does not hold.
+fn product(petsc: &Petsc) -> Result<(), String> {
+    let matrix = poisson(petsc)?;
+    let times = |x: &[f64], y: &mut [f64]| {
+        let (mut from, mut to) = (Vector::new(petsc, LOCAL).unwrap(), Vector::new(petsc, LOCAL).unwrap());
+        from.copy_from(x).unwrap();
+        matrix.mult(&from, &mut to).unwrap();
+        to.copy_to(y).unwrap();
+        y.iter_mut().for_each(|y| *y += 0.1 * x[0]);
+    };
+    let wanted: Vec<f64> = (0..LOCAL).map(|i| 1.0 + (i as f64).sin()).collect();
+    let mut right = vec![0.0; LOCAL];
+    times(&wanted, &mut right);
+    let (mut b, mut x) = (Vector::new(petsc, LOCAL).map_err(text)?, Vector::new(petsc, LOCAL).map_err(text)?);
+    b.copy_from(&right).map_err(text)?;
+    let mut ksp = Ksp::new(petsc).map_err(text)?;
+    ksp.set_operator(&matrix).map_err(text)?;
+    ksp.set_type("fgmres").map_err(text)?;
+    ksp.set_pc_type("redundant").map_err(text)?;
+    let tight = Tolerances { relative: 1e-12, absolute: 0.0, max_iterations: 100 };
+    ksp.set_tolerances(tight).map_err(text)?;
+    let error = |x: &Vector| x.read(|x| x.iter().zip(&wanted).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max));
+    for _ in 0..2 {
+        let info = ksp.solve_with(&mut { times }, &b, &mut x).map_err(text)?;
+        expect(info.reason > 0 && info.iterations <= petsc.ranks() + 2, &format!("{info:?}"))?;
+        let worst = error(&x).map_err(text)?;
+        expect(worst < 1e-8, &format!("off by {worst:e}"))?;
+    }
+    ksp.set_tolerances(Tolerances { max_iterations: 1, ..tight }).map_err(text)?;
+    let info = ksp.solve_with(&mut { times }, &b, &mut x).map_err(text)?;
+    expect(info.reason < 0 && info.iterations == 1, &format!("stopped early: {info:?}"))
 }
 
 fn serial_cholesky(petsc: &Petsc) -> Result<(), String> {

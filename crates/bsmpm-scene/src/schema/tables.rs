@@ -158,9 +158,9 @@ static SOLVER: Table = Table {
     keys: &[
         key(
             "nonlinear",
-            Choice(&["auto", "broyden"], &["newton"]),
+            Choice(&["auto", "broyden", "newton"], &[]),
             Default("\"auto\""),
-            "auto: all recent secants on the elastic stiffness; broyden: the paper's update; steps cut",
+            "auto: all recent secants, newton where they stall; broyden: the paper's update; newton: the complete tangent",
         ),
         key("tolerance", Quantity(In::Number, FRACTION), Default("1e-8"), "energy measure"),
         key("force_tolerance", Quantity(In::Number, FRACTION), Default("1e-4"), "force measure; both must hold"),

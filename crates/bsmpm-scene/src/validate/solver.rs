@@ -16,7 +16,11 @@ pub(super) fn read(root: &Record, regime: Option<Regime>, report: &mut Report<'_
     };
     let linear = solver.record("linear").and_then(|linear| read_linear(linear, report));
     Some(Solver {
-        nonlinear: if solver.word("nonlinear")? == "broyden" { Nonlinear::Broyden } else { Nonlinear::Auto },
+        nonlinear: match solver.word("nonlinear")? {
+            "broyden" => Nonlinear::Broyden,
+            "newton" => Nonlinear::Newton,
+            _ => Nonlinear::Auto,
+        },
         tolerance: solver.number("tolerance")?,
         force_tolerance: solver.number("force_tolerance")?,
         max_iterations: usize::try_from(solver.count("max_iterations")?).ok()?,

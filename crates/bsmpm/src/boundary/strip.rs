@@ -105,6 +105,17 @@ impl<const D: usize> Held<D> {
         self.own(self.carried) + self.slip(offsets, u) * self.penalty
     }
 
+    /// Adds a force at the point to the nodes.
+    fn spread(&self, offsets: &[usize], force: &Vector<D>, out: &mut [f64]) {
+        for (component, attachment) in self.attachment.iter().enumerate() {
+            let mut along = Vector::<D>::zeros();
+            along[component] = force[component];
+            if let Some(attachment) = attachment {
+                attachment.scatter(offsets, &along, out);
+            }
+        }
+    }
+
     /// Dense block of beta A N_a N_b in the held direction, over the nodes of the cell.
     fn block(&self, size: usize) -> Option<(usize, Vec<f64>)> {
         let first = self.attachment.iter().flatten().next()?.first_node();
@@ -158,14 +169,15 @@ impl<const D: usize> Grips<D> {
     /// Adds the strips' forces on the body to the nodes; other ranks' parts are not yet in them.
     pub fn add_forces(&self, u: &[f64], out: &mut [f64]) {
         for held in &self.held {
-            let force = held.traction(&self.offsets, u) * held.area;
-            for (component, attachment) in held.attachment.iter().enumerate() {
-                let mut along = Vector::<D>::zeros();
-                along[component] = force[component];
-                if let Some(attachment) = attachment {
-                    attachment.scatter(&self.offsets, &along, out);
-                }
-            }
+            held.spread(&self.offsets, &(held.traction(&self.offsets, u) * held.area), out);
+        }
+    }
+
+    /// Adds the product of [`Grips::assemble`]'s stiffness with `v`; other ranks' parts are not yet in it.
+    pub fn multiply(&self, v: &[f64], out: &mut [f64]) {
+        for held in &self.held {
+            let force = held.part(held.displacement(&self.offsets, v)) * (held.penalty * held.area);
+            held.spread(&self.offsets, &force, out);
         }
     }
 

@@ -1,9 +1,17 @@
 //! Steps (6), (7): directions from one factorised stiffness K_0 and what the iteration has seen of the true one.
 
-use crate::error::SolveError;
+use crate::error::{SolveError, StepError};
+use crate::kinematics::Kinematics;
 use crate::seam::{Halo, LinearSolver, dots};
+use crate::step::Counts;
 use crate::step::broyden::Broyden;
+use crate::step::equilibrium::{Found, Method, Scene, evaluate};
 use crate::step::multisecant::Multisecant;
+use crate::step::progress::{Progress, first_energy, inverted};
+use crate::step::residual::Residual;
+
+/// Shortest part of a direction that is tried when points invert.
+const SHORTEST: f64 = 1.0 / 16.0;
 
 /// How the elastic stiffness is corrected from iteration to iteration.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -67,5 +75,83 @@ impl Secants {
             Self::Multisecant(secants) => secants.took(length),
             Self::Broyden(secants) => secants.took(length),
         }
+    }
+}
+
+/// An iteration that did not converge.
+#[derive(Clone, Debug)]
+pub struct Stopped {
+    /// why
+    pub error: StepError,
+    /// m, nodal  the displacement with the smallest out-of-balance force, if any was sound
+    pub best: Option<Vec<f64>>,
+}
+
+impl<E: Into<StepError>> From<E> for Stopped {
+    fn from(error: E) -> Self {
+        Self { error: error.into(), best: None }
+    }
+}
+
+/// Iterates from the displacement `u` with K_0 factorised, to the limit of iterations; unless `patient`, only as long
+/// as convergence is in reach.
+pub fn iterate<K: Kinematics<D>, const D: usize>(
+    scene: &Scene<'_, K, D>,
+    (method, patient): (QuasiNewton, bool),
+    mut u: Vec<f64>,
+    solver: &mut dyn LinearSolver,
+    counts: &mut Counts,
+    progress: &mut Progress,
+) -> Result<Found, Stopped> {
+    let mut secants = Secants::new(method);
+    let mut residual = evaluate(scene, &u, counts);
+    if !residual.balance.is_sound() {
+        return Err(inverted(scene, &residual, 0).into());
+    }
+    let (mut best, mut least) = (u.clone(), residual.balance.norm);
+    while progress.iterations() < scene.model.criteria.max_iterations && (patient || !progress.stalls()) {
+        if progress.is_balanced(&residual.balance) {
+            return Ok(Found::new(u, residual, progress, Method::QuasiNewton));
+        }
+        let direction = secants.direction::<D>(&residual.balance.f_oob, scene.halo, solver)?; // (6), (7)
+        counts.iterations += 1;
+        counts.linear_iterations += direction.linear_iterations;
+        if !progress.has_begun() {
+            progress.begin(first_energy(scene, &residual.balance.f_oob, &direction.du));
+        }
+        if progress.reaches(direction.energy, &residual.balance) {
+            return Ok(Found::new(u, residual, progress, Method::QuasiNewton)); // (9)
+        }
+        match advance(scene, &mut u, &direction.du, &mut residual, counts) {
+            Ok(length) => secants.took(length), // (8), (4), (5)
+            Err(inverted) => return Err(Stopped { error: inverted, best: Some(best) }),
+        }
+        if residual.balance.norm < least {
+            (least, best) = (residual.balance.norm, u.clone());
+        }
+    }
+    Err(Stopped { error: progress.failed(scene, &residual), best: Some(best) })
+}
+
+/// Step (8): takes the direction, or the first half, quarter, .. of it under which no point inverts.
+fn advance<K: Kinematics<D>, const D: usize>(
+    scene: &Scene<'_, K, D>,
+    u: &mut Vec<f64>,
+    du: &[f64],
+    residual: &mut Residual,
+    counts: &mut Counts,
+) -> Result<f64, StepError> {
+    let mut length = 1.0;
+    loop {
+        let next: Vec<f64> = u.iter().zip(du).map(|(u, du)| u + length * du).collect();
+        let found = evaluate(scene, &next, counts);
+        if found.balance.is_sound() {
+            (*u, *residual) = (next, found);
+            return Ok(length);
+        }
+        if length <= SHORTEST {
+            return Err(inverted(scene, &found, counts.iterations));
+        }
+        length *= 0.5;
     }
 }

@@ -6,7 +6,7 @@ use crate::grid::shape::Patch;
 use crate::grid::transfer;
 use crate::kinematics::Kinematics;
 use crate::material::Material;
-use crate::seam::LinearSolver;
+use crate::seam::{LinearSolver, Symmetry};
 use crate::step::equilibrium::Scene;
 use crate::tensor::{Square, Vector};
 
@@ -37,7 +37,7 @@ pub fn assemble<K: Kinematics<D>, const D: usize>(
         let diagonal: Vec<f64> = (0..nodes.free.len()).map(|c| inertia.factor() * nodes.weight[c / D]).collect();
         solver.add_diagonal(&diagonal);
     }
-    solver.finish()
+    solver.finish(Symmetry::Definite)
 }
 
 fn runs_of_one_material(patch: &Patch, material: &[u16]) -> Vec<std::ops::Range<usize>> {
@@ -94,7 +94,8 @@ fn add_elastic<K: Kinematics<D>, const D: usize>(moments: &[Square<D>], lame: (f
     }
 }
 
-fn add_background<const D: usize>(soft: &[f64], block: &mut [f64]) {
+/// Adds the scalar block of the background to every component of a patch's block.
+pub fn add_background<const D: usize>(soft: &[f64], block: &mut [f64]) {
     let size = soft.len().isqrt();
     for (entry, value) in soft.iter().enumerate() {
         let (a, b) = (entry / size, entry % size);

@@ -7,6 +7,7 @@ use crate::model::Model;
 use crate::points::Points;
 use crate::seam::Halo;
 use crate::stabilisation::Stabilisation;
+use crate::step::equilibrium::Scene;
 use crate::step::nodes::Nodes;
 use crate::tensor::{Symmetric, Tensor};
 
@@ -61,6 +62,27 @@ impl Trial {
         let nodal = nodes.average(shape, points, model.weighting, halo, |p| [dJ[p]]);
         transfer::to_points(shape, &nodal, |p, [dJ_bar]| dJ[p] = dJ_bar / dJ[p]);
         self.ratio = Some(dJ);
+    }
+
+    /// Whether F-bar acts.
+    pub fn is_averaged(&self) -> bool {
+        self.ratio.is_some()
+    }
+
+    /// d ln(dJ-bar/dJ) of every point for a change of dF with the spatial gradient l, from `trace` = tr l:
+    /// S[dJ tr l] / S[dJ] - tr l. `None` without F-bar.
+    pub fn dilation_rate<K: Kinematics<D>, const D: usize>(
+        &self,
+        scene: &Scene<'_, K, D>,
+        trace: &[f64],
+    ) -> Option<Vec<f64>> {
+        let ratio = self.ratio.as_ref()?;
+        let Scene { model, shape, nodes, points, halo, .. } = *scene;
+        let dJ: Vec<f64> = self.dF.iter().map(|dF| dF.determinant()).collect();
+        let nodal = nodes.average(shape, points, model.weighting, halo, |p| [dJ[p] * trace[p]]);
+        let mut rate = Vec::with_capacity(dJ.len());
+        transfer::to_points(shape, &nodal, |p, [mean]| rate.push(mean / (ratio[p] * dJ[p]) - trace[p]));
+        Some(rate)
     }
 
     /// Steps (4f)-(4i): trial b^e of point `p` under dF-bar, and the constitution's answer.

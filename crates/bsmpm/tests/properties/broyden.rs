@@ -2,7 +2,7 @@
 
 use crate::support::random::Random;
 use crate::support::solver::Skyline;
-use bsmpm::seam::{Alone, LinearSolver};
+use bsmpm::seam::{Alone, LinearSolver, Symmetry};
 use bsmpm::step::quasi_newton::{QuasiNewton, Secants};
 use nalgebra::{DMatrix, DVector};
 
@@ -18,7 +18,7 @@ fn factorised(K: &DMatrix<f64>) -> Skyline {
     let mut solver = Skyline::of_patches(1, (0..N).collect());
     solver.begin(&[true; N]);
     solver.add(0, K.transpose().as_slice());
-    solver.finish().unwrap();
+    solver.finish(Symmetry::Definite).unwrap();
     solver
 }
 

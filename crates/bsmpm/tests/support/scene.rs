@@ -11,7 +11,7 @@ use bsmpm::points::{Points, Seed};
 use bsmpm::schedule::Schedule;
 use bsmpm::seam::Alone;
 use bsmpm::stabilisation::Stabilisation;
-use bsmpm::step::quasi_newton::QuasiNewton;
+use bsmpm::step::equilibrium::Nonlinear;
 use bsmpm::tensor::Vector;
 use std::marker::PhantomData;
 use std::ops::Range;
@@ -48,7 +48,7 @@ impl<K: Kinematics<D>, const D: usize> Scene<K, D> {
             stabilisation: Stabilisation::None,
             background: None,
             criteria: Criteria { energy: 1e-14, force: 1e-10, max_iterations: 200 },
-            quasi_newton: QuasiNewton::default(),
+            nonlinear: Nonlinear::default(),
             kinematics: PhantomData,
         };
         Self { model, points: Points::from_seeds([], regime == Regime::Dynamic) }

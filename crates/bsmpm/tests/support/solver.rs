@@ -2,7 +2,8 @@
 
 use bsmpm::error::SolveError;
 use bsmpm::grid::Grid;
-use bsmpm::seam::LinearSolver;
+use bsmpm::seam::{Krylov, LinearSolver, Symmetry};
+use nalgebra::{DMatrix, DVector};
 
 /// Direct solver: L D L^T within the profile of the lower triangle. Without square roots its rounding does not depend
 /// on the unit of stiffness. Refuses a matrix that is not positive definite.
@@ -72,7 +73,10 @@ impl LinearSolver for Skyline {
         }
     }
 
-    fn finish(&mut self) -> Result<(), SolveError> {
+    fn finish(&mut self, symmetry: Symmetry) -> Result<(), SolveError> {
+        if symmetry == Symmetry::General {
+            return Ok(()); // the product is all that `solve_with` looks at
+        }
         let n = self.size();
         for i in 0..n {
             let (above, below) = self.entries.split_at_mut(i * n);
@@ -114,6 +118,30 @@ impl LinearSolver for Skyline {
         }
         Ok(1)
     }
+
+    /// Solves with the dense matrix of the product's columns: exact, whatever the operator is.
+    fn solve_with(
+        &mut self,
+        product: &mut dyn FnMut(&[f64], &mut [f64]),
+        _relative: f64,
+        rhs: &[f64],
+        solution: &mut [f64],
+    ) -> Result<Krylov, SolveError> {
+        let free: Vec<usize> = (0..rhs.len()).filter(|&c| self.number[c].is_some()).collect();
+        let (mut unit, mut image) = (vec![0.0; rhs.len()], vec![0.0; rhs.len()]);
+        let mut matrix = DMatrix::zeros(free.len(), free.len());
+        for (column, &c) in free.iter().enumerate() {
+            unit[c] = 1.0;
+            product(&unit, &mut image);
+            unit[c] = 0.0;
+            free.iter().enumerate().for_each(|(row, &c)| matrix[(row, column)] = image[c]);
+        }
+        let right = DVector::from_iterator(free.len(), free.iter().map(|&c| rhs[c]));
+        let x = matrix.lu().solve(&right).ok_or_else(|| SolveError::Failed("singular".into()))?;
+        solution.fill(0.0);
+        free.iter().zip(x.iter()).for_each(|(&c, x)| solution[c] = *x);
+        Ok(Krylov { iterations: free.len(), residual: 0.0 })
+    }
 }
 
 /// A solver that refuses to factorise a number of times before it works: steps fail on demand.
@@ -135,14 +163,23 @@ impl LinearSolver for Reluctant {
     fn add_diagonal(&mut self, diagonal: &[f64]) {
         self.solver.add_diagonal(diagonal);
     }
-    fn finish(&mut self) -> Result<(), SolveError> {
+    fn finish(&mut self, symmetry: Symmetry) -> Result<(), SolveError> {
         if self.refusals == 0 {
-            return self.solver.finish();
+            return self.solver.finish(symmetry);
         }
         self.refusals -= 1;
         Err(SolveError::Failed("refused by the test".into()))
     }
     fn solve(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<usize, SolveError> {
         self.solver.solve(rhs, solution)
+    }
+    fn solve_with(
+        &mut self,
+        product: &mut dyn FnMut(&[f64], &mut [f64]),
+        relative: f64,
+        rhs: &[f64],
+        solution: &mut [f64],
+    ) -> Result<Krylov, SolveError> {
+        self.solver.solve_with(product, relative, rhs, solution)
     }
 }

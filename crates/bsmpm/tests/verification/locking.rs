@@ -6,6 +6,7 @@ use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::{Criteria, Regime, Weighting};
 use bsmpm::observe::{largest_displacement, noise};
 use bsmpm::stabilisation::Stabilisation;
+use bsmpm::step::equilibrium::Nonlinear;
 use bsmpm::step::quasi_newton::QuasiNewton;
 
 /// A block of 6 x 6 cells with nu = .49 on a fixed base beside a wall, under its weight: noise of the vertical stress
@@ -24,7 +25,7 @@ fn pressed_by(quasi_newton: QuasiNewton, method: Stabilisation) -> (f64, f64, us
             .gravity(5.0, 4.0)
             .stabilised(method);
     scene.model.criteria = Criteria { energy: 1e-8, force: 1e-4, max_iterations: 200 };
-    scene.model.quasi_newton = quasi_newton;
+    scene.model.nonlinear = Nonlinear::QuasiNewton(quasi_newton);
     let (scene, steps) = scene.solved(1.0, 4.0);
     let halo = scene.halo();
     let noise = noise::stress_noise(&scene.model.grid, &scene.points, Weighting::Mass, 1, &halo).expect("inside");

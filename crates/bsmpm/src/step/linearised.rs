@@ -1,0 +1,153 @@
+//! Step (6) without approximation: the derivative of the out-of-balance force, for Newton's method.
+//!
+//! K v = sum_p V0 (dtau - tau l^T) dF^-T grad N + 4/dt^2 M v + background + strips, where l = (grad v) dF^-1, and dtau
+//! follows l-bar = l + (d ln(dJ-bar/dJ)) / dof I under F-bar, whose average couples points beyond a patch: the product
+//! is complete, the matrix that preconditions it leaves that term out.
+
+use crate::error::SolveError;
+use crate::grid::transfer;
+use crate::kinematics::Kinematics;
+use crate::seam::{LinearSolver, Symmetry};
+use crate::step::equilibrium::Scene;
+use crate::step::residual::Residual;
+use crate::step::stiffness::add_background;
+use crate::step::trial::Trial;
+use crate::tensor::{Square, Vector};
+
+/// The derivative at one displacement.
+pub struct Linearised<'a, K, const D: usize> {
+    scene: &'a Scene<'a, K, D>,
+    trial: &'a Trial,
+    /// N m  V0 d(tau dF^-T)/d(grad v), one unit gradient after the other
+    moduli: Vec<[[Square<D>; D]; D]>,
+    /// under F-bar
+    dilation: Option<Vec<Dilation<D>>>,
+}
+
+/// What F-bar adds at a point.
+struct Dilation<const D: usize> {
+    /// -  tr l per gradient: dF^-T
+    trace: Square<D>,
+    /// N m  V0 d(tau dF^-T) per unit of d ln(dJ-bar/dJ)
+    flux: Square<D>,
+}
+
+impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
+    /// The derivative where `residual` was evaluated; no point of it may have inverted.
+    pub fn at(scene: &'a Scene<'a, K, D>, residual: &'a Residual) -> Self {
+        let (trial, points) = (&residual.trial, scene.points);
+        let averaged = trial.is_averaged();
+        let mut moduli = Vec::with_capacity(points.len());
+        let mut dilation = averaged.then(|| Vec::with_capacity(points.len()));
+        for p in 0..points.len() {
+            let inverse = trial.dF[p].try_inverse();
+            let (Ok(response), Some(inverse)) = (trial.respond(scene.model, points, p), inverse) else {
+                moduli.push([[Square::zeros(); D]; D]); // cannot be: the residual has refused such a point
+                continue;
+            };
+            let (tau, tangent) = (response.tau().full(), response.tangent());
+            let unit = |k: usize, l: usize| {
+                let mut grad = Square::<D>::zeros();
+                grad[(k, l)] = 1.0;
+                let l = K::gradient(&grad) * inverse;
+                let change = tangent.apply(&l) - tau * l.transpose();
+                K::in_plane(&(change * inverse.transpose())) * points.volume[p]
+            };
+            moduli.push(std::array::from_fn(|k| std::array::from_fn(|l| unit(k, l))));
+            if let Some(dilation) = &mut dilation {
+                let change = tangent.apply(&K::dilation()) * inverse.transpose();
+                let flux = K::in_plane(&change) * points.volume[p];
+                dilation.push(Dilation { trace: K::in_plane(&inverse.transpose()), flux });
+            }
+        }
+        Self { scene, trial, moduli, dilation }
+    }
+
+    /// K v on nodal arrays, `v` zero where it is not free: one exchange with the neighbours, one more under F-bar.
+    pub fn multiply(&self, v: &[f64], out: &mut [f64]) {
+        let Scene { shape, nodes, halo, .. } = *self.scene;
+        let mut flux = Vec::with_capacity(self.moduli.len());
+        let mut trace = Vec::with_capacity(self.dilation.as_ref().map_or(0, Vec::len));
+        transfer::gradients(shape, v, |p, grad| {
+            flux.push(contract(&self.moduli[p], &grad));
+            if let Some(dilation) = &self.dilation {
+                trace.push(dilation[p].trace.dot(&grad));
+            }
+        });
+        if let (Some(dilation), Some(rates)) = (&self.dilation, self.trial.dilation_rate(self.scene, &trace)) {
+            for ((flux, dilation), rate) in flux.iter_mut().zip(dilation).zip(rates) {
+                *flux += dilation.flux * rate;
+            }
+        }
+        out.fill(0.0);
+        transfer::divergence(shape, out, |p| flux[p]);
+        if let Some(background) = &nodes.background {
+            background.multiply::<D>(shape, v, out);
+        }
+        self.scene.grips.multiply(v, out);
+        halo.sum(out, D);
+        if let Some(inertia) = &nodes.inertia {
+            for (component, (out, v)) in out.iter_mut().zip(v).enumerate() {
+                *out += inertia.factor() * nodes.weight[component / D] * v;
+            }
+        }
+        out.iter_mut().zip(&nodes.free).filter(|(_, free)| !**free).for_each(|(out, _)| *out = 0.0);
+    }
+
+    /// Assembles and factorises the matrix that preconditions the product: all of it but F-bar's coupling.
+    pub fn factorise(&self, solver: &mut dyn LinearSolver) -> Result<(), SolveError> {
+        let Scene { shape, nodes, .. } = *self.scene;
+        solver.begin(&nodes.free);
+        let size = shape.offsets().len();
+        let mut grad = [Vector::<D>::zeros(); 64];
+        let mut block = vec![0.0; (size * D).pow(2)];
+        for (number, patch) in shape.patches().iter().enumerate() {
+            block.fill(0.0);
+            for p in patch.points.clone() {
+                transfer::gradients_of(shape, p, &mut grad);
+                add_point(&self.moduli[p], &grad[..size], &mut block);
+            }
+            if let Some(soft) = nodes.background.as_ref().and_then(|background| background.of(number)) {
+                add_background::<D>(soft, &mut block);
+            }
+            solver.add(patch.first_node, &block);
+        }
+        self.scene.grips.assemble(solver);
+        if let Some(inertia) = &nodes.inertia {
+            let diagonal: Vec<f64> = (0..nodes.free.len()).map(|c| inertia.factor() * nodes.weight[c / D]).collect();
+            solver.add_diagonal(&diagonal);
+        }
+        solver.finish(Symmetry::General)
+    }
+}
+
+/// Change of the flux for a gradient: sum_kl moduli_kl grad_kl.
+#[inline]
+fn contract<const D: usize>(moduli: &[[Square<D>; D]; D], grad: &Square<D>) -> Square<D> {
+    let mut flux = Square::zeros();
+    for (k, row) in moduli.iter().enumerate() {
+        for (l, unit) in row.iter().enumerate() {
+            flux += unit * grad[(k, l)];
+        }
+    }
+    flux
+}
+
+/// Adds grad N_a . moduli . grad N_b of one point to the block of its patch.
+fn add_point<const D: usize>(moduli: &[[Square<D>; D]; D], grad: &[Vector<D>], block: &mut [f64]) {
+    let order = grad.len() * D;
+    for (b, grad_b) in grad.iter().enumerate() {
+        for (k, row) in moduli.iter().enumerate() {
+            let mut along = Square::<D>::zeros();
+            for (unit, component) in row.iter().zip(grad_b.iter()) {
+                along += unit * *component;
+            }
+            for (a, grad_a) in grad.iter().enumerate() {
+                let force = along * grad_a;
+                for i in 0..D {
+                    block[(a * D + i) * order + b * D + k] += force[i];
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,96 @@
+//! Newton's method with the complete derivative, solved by a Krylov method, and a line search: for the steps in which
+//! quasi-Newton iterations stall.
+
+use crate::error::{SolveError, StepError};
+use crate::kinematics::Kinematics;
+use crate::seam::{LinearSolver, dots};
+use crate::step::Counts;
+use crate::step::equilibrium::{Found, Method, Scene, evaluate};
+use crate::step::linearised::Linearised;
+use crate::step::progress::{Progress, first_energy, inverted};
+use crate::step::residual::Residual;
+
+/// Iterations after which a step is given up: near a solution five or six do.
+const MOST: usize = 30;
+/// Loosest and tightest relative residual of a direction; between them it follows the force measure, so that the
+/// convergence stays quadratic (Dembo, Eisenstat and Steihaug, 1982).
+const FORCING: (f64, f64) = (1e-10, 1e-3);
+/// Relative residual above which a direction is none.
+const USELESS: f64 = 0.5;
+/// Shortest part of a direction that is tried.
+const SHORTEST: f64 = 1.0 / 64.0;
+/// Part of the predicted decrease of the force that a step must bring (Armijo).
+const DECREASE: f64 = 1e-4;
+
+/// Iterates from the displacement `u`, whose measures continue in `progress`.
+pub fn iterate<K: Kinematics<D>, const D: usize>(
+    scene: &Scene<'_, K, D>,
+    mut u: Vec<f64>,
+    solver: &mut dyn LinearSolver,
+    counts: &mut Counts,
+    progress: &mut Progress,
+) -> Result<Found, StepError> {
+    let mut residual = evaluate(scene, &u, counts);
+    if !residual.balance.is_sound() {
+        return Err(inverted(scene, &residual, progress.iterations()));
+    }
+    for _ in 0..MOST {
+        if progress.is_balanced(&residual.balance) {
+            return Ok(Found::new(u, residual, progress, Method::Newton));
+        }
+        let du = direction(scene, &residual, solver, counts)?;
+        let f = &residual.balance.f_oob;
+        if !progress.has_begun() {
+            progress.begin(first_energy(scene, f, &du));
+        }
+        let energy = dots(scene.halo, D, &[(&du, f)])[0].abs();
+        if progress.reaches(energy, &residual.balance) {
+            return Ok(Found::new(u, residual, progress, Method::Newton));
+        }
+        match search(scene, &u, &du, &residual, counts) {
+            Some((next, found)) => (u, residual) = (next, found),
+            None => return Err(progress.failed(scene, &residual)),
+        }
+    }
+    Err(progress.failed(scene, &residual))
+}
+
+/// K du = f_oob with the complete K at this state.
+fn direction<K: Kinematics<D>, const D: usize>(
+    scene: &Scene<'_, K, D>,
+    residual: &Residual,
+    solver: &mut dyn LinearSolver,
+    counts: &mut Counts,
+) -> Result<Vec<f64>, StepError> {
+    let linearised = Linearised::at(scene, residual);
+    linearised.factorise(solver)?;
+    counts.factorisations += 1;
+    counts.iterations += 1;
+    let forcing = residual.balance.measure().clamp(FORCING.0, FORCING.1);
+    let mut du = vec![0.0; residual.balance.f_oob.len()];
+    let mut product = |v: &[f64], out: &mut [f64]| linearised.multiply(v, out);
+    let krylov = solver.solve_with(&mut product, forcing, &residual.balance.f_oob, &mut du)?;
+    counts.products += krylov.iterations + 1;
+    counts.linear_iterations += krylov.iterations;
+    if krylov.residual < USELESS { Ok(du) } else { Err(SolveError::Residual(krylov.residual).into()) }
+}
+
+/// The longest of the direction's first part, half, quarter, .. that lessens the out-of-balance force.
+fn search<K: Kinematics<D>, const D: usize>(
+    scene: &Scene<'_, K, D>,
+    u: &[f64],
+    du: &[f64],
+    residual: &Residual,
+    counts: &mut Counts,
+) -> Option<(Vec<f64>, Residual)> {
+    let mut length = 1.0;
+    while length >= SHORTEST {
+        let next: Vec<f64> = u.iter().zip(du).map(|(u, du)| u + length * du).collect();
+        let found = evaluate(scene, &next, counts);
+        if found.balance.is_sound() && found.balance.norm <= (1.0 - DECREASE * length) * residual.balance.norm {
+            return Some((next, found));
+        }
+        length *= 0.5;
+    }
+    None
+}

@@ -1,0 +1,138 @@
+//! Step (9): when an iteration has converged, and when it is not worth going on.
+//!
+//! The paper prints the same numerator and denominator; read |du_k . f_k| / |du_0 . f_0|. That product is no norm (it
+//! crosses zero while the forces are far from balanced), so the relative out-of-balance force must be small too.
+
+use crate::boundary::strip::Grips;
+use crate::error::{Measures, StepError, WorstNode};
+use crate::kinematics::Kinematics;
+use crate::model::Criteria;
+use crate::seam::dots;
+use crate::step::equilibrium::Scene;
+use crate::step::residual::{Balance, Residual};
+
+/// A first residual this much below the force tolerance needs no iteration: |du_0 . f_0| would only be noise.
+const ALREADY: f64 = 1e-2;
+/// Round-off of the internal force, relative to E h^(D-1) x 1 m^(3-D) per square root of an unknown.
+const ROUND_OFF: f64 = 1e-13;
+/// Round-off of the inertia, relative to |4/dt M v|: a few roundings.
+const CANCELLED: f64 = 4.0 * f64::EPSILON;
+/// Iterations over which the rate of convergence is taken.
+const WINDOW: usize = 20;
+/// Iterations that a quasi-Newton method may still need to be left going: about the cost of the exact iterations that
+/// would replace them.
+const PATIENCE: f64 = 60.0;
+
+/// Both measures over the iterations that started from one guess.
+#[derive(Clone, Debug)]
+pub struct Progress {
+    criteria: Criteria,
+    floor: f64,                // N  round-off of the forces
+    first_energy: Option<f64>, // N m  |du_0 . f_0|
+    history: Vec<Measures>,
+}
+
+impl Progress {
+    /// Nothing iterated yet.
+    pub fn new<K: Kinematics<D>, const D: usize>(scene: &Scene<'_, K, D>) -> Self {
+        let (criteria, floor) = (scene.model.criteria, round_off(scene));
+        Self { criteria, floor, first_energy: None, history: Vec::new() }
+    }
+
+    /// Whether a state is in equilibrium before any direction is known.
+    pub fn is_balanced(&self, balance: &Balance) -> bool {
+        let first = self.history.is_empty();
+        balance.norm <= self.floor || (first && balance.measure() <= ALREADY * self.criteria.force)
+    }
+
+    /// Whether any direction has been measured yet.
+    pub fn has_begun(&self) -> bool {
+        self.first_energy.is_some()
+    }
+
+    /// |du_0 . f_0|, which the later energies are measured by.
+    pub fn begin(&mut self, energy: f64) {
+        self.first_energy = Some(energy);
+    }
+
+    /// Takes the measures of a state and the direction found there; whether both criteria hold.
+    pub fn reaches(&mut self, energy: f64, balance: &Balance) -> bool {
+        let (energy, force) = (energy / self.first_energy.unwrap_or(f64::INFINITY), balance.measure());
+        self.history.push(Measures { energy, force });
+        energy < self.criteria.energy && force < self.criteria.force
+    }
+
+    /// Iterations measured.
+    pub fn iterations(&self) -> usize {
+        self.history.len()
+    }
+
+    /// Whether, at the rate of the last iterations, convergence is out of reach.
+    pub fn stalls(&self) -> bool {
+        let Some(before) = self.history.len().checked_sub(WINDOW) else { return false };
+        let excess = |range: std::ops::Range<usize>| {
+            self.history[range]
+                .iter()
+                .map(|m| (m.energy / self.criteria.energy).max(m.force / self.criteria.force))
+                .fold(f64::INFINITY, f64::min)
+        };
+        let (then, now) = (excess(0..before.max(1)), excess(0..self.history.len()));
+        let per_iteration = (then / now).ln() / WINDOW as f64;
+        now.ln() > PATIENCE * per_iteration
+    }
+
+    /// The error of an iteration that ended at `residual`.
+    pub fn failed<K, const D: usize>(&self, scene: &Scene<'_, K, D>, residual: &Residual) -> StepError {
+        StepError::NotConverged {
+            iterations: self.history.len(),
+            energy: self.history.last().map_or(f64::INFINITY, |measures| measures.energy),
+            force: residual.balance.measure(),
+            history: self.history.clone(),
+            worst: worst_node(scene, residual),
+        }
+    }
+}
+
+/// |du_0 . (f_0 - K_strips du_0)|: the energy of the first direction without that of the strips' penalty, which takes up
+/// their motion in it and would make the measure as much too lenient as the penalty is stiff.
+pub fn first_energy<K: Kinematics<D>, const D: usize>(scene: &Scene<'_, K, D>, f: &[f64], du: &[f64]) -> f64 {
+    let work = dots(scene.halo, D, &[(du, f)])[0];
+    if scene.model.boundary.strips.is_empty() {
+        return work.abs();
+    }
+    let mut penalty = [Grips::energy(scene.grips, du)];
+    scene.halo.reduce(&mut penalty);
+    (work - penalty[0]).abs()
+}
+
+/// The error of a state in which points have inverted.
+pub fn inverted<K, const D: usize>(scene: &Scene<'_, K, D>, residual: &Residual, iteration: usize) -> StepError {
+    let first = residual.first_inverted.map(|p| (scene.points.id[p], scene.points.x[p].as_slice().to_vec()));
+    StepError::Inverted { count: residual.balance.inverted, iteration, first }
+}
+
+/// Where the forces of this rank's own nodes are the least balanced.
+fn worst_node<K, const D: usize>(scene: &Scene<'_, K, D>, residual: &Residual) -> WorstNode {
+    let grid = &scene.model.grid;
+    let force =
+        |node: usize| residual.balance.f_oob[node * D..(node + 1) * D].iter().map(|f| f * f).sum::<f64>().sqrt();
+    let Some(worst) = scene.halo.owned().max_by(|&a, &b| force(a).total_cmp(&force(b))) else {
+        return WorstNode::default();
+    };
+    let place = grid.node_at(worst);
+    let x = (0..D).map(|axis| grid.axes()[axis].greville(place[axis])).collect();
+    let first = grid.columns().start * grid.layer_nodes();
+    WorstNode { number: (first + worst) as u64, x, force: force(worst) }
+}
+
+/// Out-of-balance force that is round-off, N: of the stiffest material, 1e-13 E_max h^(D-1) sqrt(n), or of the inertia,
+/// whose terms 4/dt^2 u and 4/dt v cancel when dt is tiny.
+fn round_off<K: Kinematics<D>, const D: usize>(scene: &Scene<'_, K, D>) -> f64 {
+    let edge = scene.model.grid.smallest_edge();
+    let nodes = scene.nodes;
+    let internal = ROUND_OFF * scene.model.stiffest() * edge.powi(D as i32 - 1) * (nodes.unknowns as f64).sqrt();
+    let Some(inertia) = &nodes.inertia else { return internal };
+    let pulse = |(c, v): (usize, &f64)| 4.0 / inertia.dt * nodes.weight[c / D] * v;
+    let pulse: Vec<f64> = inertia.v.iter().enumerate().map(pulse).collect();
+    internal.max(CANCELLED * dots(scene.halo, D, &[(&pulse, &pulse)])[0].sqrt())
+}
