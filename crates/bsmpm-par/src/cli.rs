@@ -7,8 +7,8 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 /// Beginnings of the PETSc options that may follow `--`: methods, preconditioners and their reports, no files.
-const PETSC_OPTIONS: [&str; 8] =
-    ["-ksp_", "-pc_", "-mg_", "-sub_", "-redundant_", "-mat_mumps_", "-mat_superlu_dist_", "-mat_cholmod_"];
+const PETSC_OPTIONS: [&str; 9] =
+    ["-ksp_", "-pc_", "-mg_", "-sub_", "-redundant_", "-newton_", "-mat_mumps_", "-mat_superlu_dist_", "-mat_cholmod_"];
 
 /// How a run is logged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

@@ -28,7 +28,7 @@ const OPTIONS: [&str; 18] = [
     "-redundant_mat_mumps_icntl_14",
     "100",
     "-newton_ksp_gmres_restart",
-    "100",
+    "300",
     "-newton_mat_mumps_icntl_14",
     "100",
     "-newton_redundant_mat_mumps_icntl_14",
@@ -39,7 +39,7 @@ const OPTIONS: [&str; 18] = [
 /// Prefix of the options of Newton's linear systems.
 const NEWTON: &str = "newton_";
 /// Most products of one of them.
-const MOST_PRODUCTS: usize = 100;
+const MOST_PRODUCTS: usize = 300;
 
 /// Method, preconditioner and factorising package by PETSc's names.
 #[derive(Clone, Debug, PartialEq, Eq)]
