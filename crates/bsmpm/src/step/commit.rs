@@ -43,7 +43,7 @@ pub fn check_inside<K: Kinematics<D>, const D: usize>(
 pub fn commit<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     shape: &Shape<D>,
-    nodes: &Nodes,
+    nodes: &Nodes<D>,
     found: Found,
     points: &mut Points<D>,
     halo: &dyn Halo,
@@ -60,6 +60,9 @@ pub fn commit<K: Kinematics<D>, const D: usize>(
         points.x[p] += Vector::from(du); // (11a)
         points.u[p] += Vector::from(du); // (11b)
     });
+    if model.stabilisation == Stabilisation::FBarZhao {
+        points.dilation = Some((0..points.len()).map(|p| trial.averaged(p)).collect());
+    }
     for (p, response) in responses.iter().enumerate() {
         points.F[p] = trial.dF[p] * points.F[p];
         points.sigma[p] = response.tau().scaled(1.0 / points.F[p].determinant());
@@ -87,7 +90,7 @@ fn move_with_inertia<const D: usize>(shape: &Shape<D>, inertia: &Inertia, u: &[f
 fn smooth_b_e<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     shape: &Shape<D>,
-    nodes: &Nodes,
+    nodes: &Nodes<D>,
     points: &mut Points<D>,
     halo: &dyn Halo,
 ) {
