@@ -33,7 +33,7 @@ pub struct Points<const D: usize> {
     pub volume: Vec<f64>,
     /// -  deformation gradient
     pub F: Vec<Tensor>,
-    /// -  elastic left Cauchy-Green tensor that the next step starts from (averaged under modified F-bar)
+    /// -  elastic left Cauchy-Green tensor that the next step starts from (smoothed under some F-bar methods)
     pub b_e: Vec<Symmetric>,
     /// Pa  Cauchy stress of the last converged step
     pub sigma: Vec<Symmetric>,

@@ -7,6 +7,7 @@ pub mod multisecant;
 pub mod nodes;
 pub mod quasi_newton;
 pub mod residual;
+pub mod smooth;
 pub mod stiffness;
 pub mod trial;
 
