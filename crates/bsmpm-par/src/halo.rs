@@ -93,6 +93,18 @@ impl Halo for MpiHalo {
         }
     }
 
+    fn max(&self, nodal: &mut [f64], width: usize) {
+        if self.shared.is_empty() {
+            return;
+        }
+        let _timed = self.timers.time("halo");
+        let incoming = self.receive(nodal, width);
+        for (part, (_, nodes)) in incoming.iter().zip(&self.shared) {
+            let own = &mut nodal[nodes.start * width..nodes.end * width];
+            own.iter_mut().zip(part).for_each(|(value, other)| *value = value.max(*other));
+        }
+    }
+
     fn reduce(&self, numbers: &mut [f64]) {
         let _timed = self.timers.time("reduction");
         let own = numbers.to_vec();

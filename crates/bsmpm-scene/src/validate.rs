@@ -154,7 +154,9 @@ fn stabilisation(record: &Record) -> Option<Stabilisation> {
     }
     Some(match record.record("stabilisation")?.word("method")? {
         "f-bar" => Stabilisation::FBar,
+        "f-bar-zhao" => Stabilisation::FBarZhao,
         "modified-f-bar" => Stabilisation::ModifiedFBar,
+        "consistent-f-bar" => Stabilisation::ConsistentFBar,
         _ => Stabilisation::None,
     })
 }

@@ -92,7 +92,7 @@ pub fn balance<K: Kinematics<D>, const D: usize>(
 /// Steps (1) and (2) at time 0, without motion.
 struct Start<const D: usize> {
     shape: Shape<D>,
-    nodes: Nodes,
+    nodes: Nodes<D>,
     grips: Grips<D>,
 }
 

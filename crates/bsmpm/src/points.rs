@@ -33,12 +33,14 @@ pub struct Points<const D: usize> {
     pub volume: Vec<f64>,
     /// -  deformation gradient
     pub F: Vec<Tensor>,
-    /// -  elastic left Cauchy-Green tensor that the next step starts from (averaged under modified F-bar)
+    /// -  elastic left Cauchy-Green tensor that the next step starts from (smoothed under some F-bar methods)
     pub b_e: Vec<Symmetric>,
     /// Pa  Cauchy stress of the last converged step
     pub sigma: Vec<Symmetric>,
     /// -  accumulated plastic strain
     pub eps_p: Vec<f64>,
+    /// -  S[J]/J of the last step, under Zhao's F-bar from its first step on; before that it is 1
+    pub dilation: Option<Vec<f64>>,
     /// what strips and loads carry on; no column: it is the same on every rank
     pub surface: Surface<D>,
 }
@@ -116,6 +118,9 @@ impl<const D: usize> Points<D> {
         if let Some(motion) = &mut self.motion {
             columns.push(&mut motion.v);
             columns.push(&mut motion.a);
+        }
+        if let Some(dilation) = &mut self.dilation {
+            columns.push(dilation);
         }
         columns
     }

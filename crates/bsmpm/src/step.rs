@@ -10,6 +10,7 @@ pub mod nodes;
 pub mod progress;
 pub mod quasi_newton;
 pub mod residual;
+pub mod smooth;
 pub mod stiffness;
 pub mod trial;
 

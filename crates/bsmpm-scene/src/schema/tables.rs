@@ -150,7 +150,7 @@ static STABILISATION: Table = Table {
     exclusive: &[],
 };
 
-const METHOD: Kind = Choice(&["none", "f-bar", "modified-f-bar"], &["f-bar-zhao", "consistent-f-bar"]);
+const METHOD: Kind = Choice(&["none", "f-bar", "f-bar-zhao", "modified-f-bar", "consistent-f-bar"], &[]);
 
 static SOLVER: Table = Table {
     header: "[solver]",

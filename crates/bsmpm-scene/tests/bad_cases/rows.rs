@@ -200,8 +200,6 @@ pub const QUASI_STATIC: &[Row] = &[
 pub const LATER: &[(&str, &str, &str)] = &[
     ("geometry = \"plane-strain\"", "geometry = \"axisymmetric\"", "geometry"),
     ("geometry = \"plane-strain\"", "geometry = \"solid\"", "geometry"),
-    ("method = \"f-bar\"", "method = \"f-bar-zhao\"", "stabilisation.method"),
-    ("method = \"f-bar\"", "method = \"consistent-f-bar\"", "stabilisation.method"),
     ("nonlinear        = \"auto\"", "nonlinear = \"newton\"", "solver.nonlinear"),
     ("format = \"vtu\"", "format = \"vtkhdf\"", "output.format"),
     ("format = \"vtu\"", "checkpoint = { keep = 2 }", "output.checkpoint"),

@@ -29,10 +29,15 @@ pub struct Shape<const D: usize> {
     rows: Vec<f64>, // per point and axis: q + 1 values, then q + 1 derivatives (1/m)
 }
 
-/// Runs `$body` with the constant `W` = q + 1, so that the loops over a patch's nodes are unrolled.
+/// Runs `$body` with the constant `W` = q + 1, so that the loops over a patch's nodes are unrolled; 1 is the degree
+/// below linear functions, constant in a cell.
 macro_rules! with_width {
     ($width:expr, $W:ident => $body:expr) => {
         match $width {
+            1 => {
+                const $W: usize = 1;
+                $body
+            }
             2 => {
                 const $W: usize = 2;
                 $body
@@ -82,6 +87,36 @@ impl<const D: usize> Shape<D> {
         }
         debug_assert!(self.patches.is_sorted_by(|a, b| a.cell < b.cell), "points must be sorted by cell");
         Ok(())
+    }
+
+    /// The splines of degree q - 1 on the same cells, at the same points.
+    ///
+    /// Function `a` of a cell is number `cell + a` in either degree, so that the lower ones are numbered as the first
+    /// q + (cells - 1) nodes along an axis, and nodal arrays and their exchange serve both.
+    pub fn lowered(&self, grid: &Grid<D>, points: &Points<D>) -> Self {
+        let width = self.width - 1;
+        let inside = |k: usize| (0..D).all(|axis| k / self.width.pow(axis as u32) % self.width < width);
+        let mut lower = Self {
+            width,
+            offsets: (0..self.offsets.len()).filter(|&k| inside(k)).map(|k| self.offsets[k]).collect(),
+            patches: self.patches.clone(),
+            rows: Vec::with_capacity(points.len() * 2 * D * width),
+        };
+        with_width!(width, W => lower.evaluate_lower::<W>(grid, points));
+        lower
+    }
+
+    fn evaluate_lower<const W: usize>(&mut self, grid: &Grid<D>, points: &Points<D>) {
+        for patch in &self.patches {
+            let cell = grid.cell_at(patch.cell);
+            for x in &points.x[patch.points.clone()] {
+                for axis in 0..D {
+                    let (N, dN) = grid.axes()[axis].basis::<W>(x[axis], cell[axis]);
+                    self.rows.extend_from_slice(&N);
+                    self.rows.extend_from_slice(&dN);
+                }
+            }
+        }
     }
 
     /// Functions per axis, q + 1.

@@ -103,15 +103,15 @@ impl KnotVector {
         Some(cell)
     }
 
-    /// The W = q + 1 functions of `cell` at `x` and their derivatives (Eqs 4-6): function `a` is number `cell + a`.
+    /// The W functions of `cell` at `x` and their derivatives (Eqs 4-6): function `a` is number `cell + a`.
     ///
-    /// N is dimensionless, dN/dx in 1/m. The Cox-de Boor recursion runs over the span's own functions only.
+    /// W - 1 is the degree, q or less: the open splines of a lower degree have the same knots, the ends repeated less
+    /// often. N is dimensionless, dN/dx in 1/m. The Cox-de Boor recursion runs over the span's own functions only.
     #[inline]
     pub fn basis<const W: usize>(&self, x: f64, cell: usize) -> ([f64; W], [f64; W]) {
-        debug_assert_eq!(W, self.order + 1);
-        let span = cell + self.order;
-        let knots = &self.knots[span + 1 - self.order..=span + self.order];
-        let q = W - 1;
+        debug_assert!((1..=self.order + 1).contains(&W));
+        let (span, q) = (cell + self.order, W - 1);
+        let knots = &self.knots[span + 1 - q..=span + q];
         let (mut N, mut lower) = ([0.0; W], [0.0; W]);
         N[0] = 1.0;
         for degree in 1..=q {

@@ -1,4 +1,4 @@
-//! The four passes between points and nodes (Eqs 1, 2 and steps 4a, 5a), patch by patch.
+//! The passes between points and nodes (Eqs 1, 2 and steps 4a, 5a), patch by patch.
 //!
 //! A patch gathers its (q+1)^D nodal values once, its points work on that small block, and what they scatter is summed
 //! in a block before it is added to the nodes: sums over points have one order, whatever the number of ranks a cell has
@@ -29,6 +29,23 @@ pub fn to_nodes<const D: usize, const C: usize>(
                 }
             }
             add(out, shape.offsets(), patch.first_node, &block);
+        }
+    });
+}
+
+/// Largest value of the points that a node sees: out_I = max(out_I, value_p) over the points with N_Ip > 0.
+pub fn largest_to_nodes<const D: usize>(shape: &Shape<D>, out: &mut [f64], value: impl Fn(usize) -> f64) {
+    with_width!(shape.width(), W => {
+        for patch in shape.patches() {
+            for p in patch.points.clone() {
+                let (support, value) = (shape.support::<W>(p), value(p));
+                for (k, offset) in shape.offsets().iter().enumerate() {
+                    if support.value(k) > 0.0 {
+                        let at_node = &mut out[patch.first_node + offset];
+                        *at_node = at_node.max(value);
+                    }
+                }
+            }
         }
     });
 }

@@ -1,7 +1,7 @@
 //! Steps (10), (11): grid kinematics, and the converged state saved into the points.
 //!
 //! The Cauchy stress that is kept comes from the converged tau; the b^e that the next step starts from is the averaged
-//! one under modified F-bar: the two differ, and the stress is the one in equilibrium.
+//! or filtered one under modified and consistent F-bar: the two differ, and the stress is the one in equilibrium.
 
 use crate::error::StepError;
 use crate::grid::{Shape, transfer};
@@ -12,7 +12,8 @@ use crate::seam::{Halo, agreed};
 use crate::stabilisation::Stabilisation;
 use crate::step::equilibrium::Found;
 use crate::step::nodes::{Inertia, Nodes};
-use crate::tensor::{Symmetric, Vector};
+use crate::step::smooth;
+use crate::tensor::Vector;
 
 /// Refuses a displacement that takes a point out of the grid; agreed by all ranks.
 pub fn check_inside<K: Kinematics<D>, const D: usize>(
@@ -43,7 +44,7 @@ pub fn check_inside<K: Kinematics<D>, const D: usize>(
 pub fn commit<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     shape: &Shape<D>,
-    nodes: &Nodes,
+    nodes: &Nodes<D>,
     found: Found,
     points: &mut Points<D>,
     halo: &dyn Halo,
@@ -60,14 +61,22 @@ pub fn commit<K: Kinematics<D>, const D: usize>(
         points.x[p] += Vector::from(du); // (11a)
         points.u[p] += Vector::from(du); // (11b)
     });
+    if model.stabilisation == Stabilisation::FBarZhao {
+        points.dilation = Some((0..points.len()).map(|p| trial.averaged(p)).collect());
+    }
     for (p, response) in responses.iter().enumerate() {
         points.F[p] = trial.dF[p] * points.F[p];
         points.sigma[p] = response.tau().scaled(1.0 / points.F[p].determinant());
         points.b_e[p] = response.b_e();
         points.eps_p[p] += response.plastic_increment();
     }
-    if model.stabilisation == Stabilisation::ModifiedFBar {
-        smooth_b_e(model, shape, nodes, points, halo);
+    match model.stabilisation {
+        Stabilisation::ModifiedFBar => smooth::average_b_e(model, shape, nodes, points, halo),
+        Stabilisation::ConsistentFBar => {
+            let flow: Vec<smooth::Flow> = responses.iter().map(smooth::Flow::of).collect();
+            smooth::filter_dilation(model, (shape, nodes), points, &flow, halo);
+        }
+        Stabilisation::None | Stabilisation::FBar | Stabilisation::FBarZhao => {}
     }
     Ok(u)
 }
@@ -81,16 +90,4 @@ fn move_with_inertia<const D: usize>(shape: &Shape<D>, inertia: &Inertia, u: &[f
         motion.v[p] += (motion.a[p] + a) * (0.5 * inertia.dt);
         motion.a[p] = a;
     });
-}
-
-/// Step (11e), Eq. 20: b^e_p <- sum_I N_Ip (1/m_I sum_p N_Ip m_p b^e_p).
-fn smooth_b_e<K: Kinematics<D>, const D: usize>(
-    model: &Model<K, D>,
-    shape: &Shape<D>,
-    nodes: &Nodes,
-    points: &mut Points<D>,
-    halo: &dyn Halo,
-) {
-    let nodal = nodes.average(shape, points, model.weighting, halo, |p| points.b_e[p].0);
-    transfer::to_points(shape, &nodal, |p, b_e| points.b_e[p] = Symmetric(b_e));
 }

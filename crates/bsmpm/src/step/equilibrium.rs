@@ -45,7 +45,7 @@ pub struct Scene<'a, K, const D: usize> {
     /// step (1)
     pub shape: &'a Shape<D>,
     /// step (2)
-    pub nodes: &'a Nodes,
+    pub nodes: &'a Nodes<D>,
     /// strips, attached to the nodes
     pub grips: &'a Grips<D>,
     /// state at t
@@ -144,7 +144,7 @@ fn search<K: Kinematics<D>, const D: usize>(
 }
 
 /// The guess where it is free, the prescribed values, zero elsewhere.
-fn admissible(nodes: &Nodes, guess: &[f64]) -> Vec<f64> {
+fn admissible<const D: usize>(nodes: &Nodes<D>, guess: &[f64]) -> Vec<f64> {
     let component = |(c, &value): (usize, &f64)| match nodes.prescribed[c] {
         Some(prescribed) => prescribed,
         None if nodes.free[c] => value,

@@ -8,6 +8,7 @@ use crate::kinematics::Kinematics;
 use crate::model::{Model, Regime, Weighting};
 use crate::points::Points;
 use crate::seam::Halo;
+use crate::stabilisation::Stabilisation;
 
 /// Nodes lighter than this fraction of the heaviest one have no velocity, acceleration or average: 1/m is never formed.
 const MASSLESS: f64 = 1e-14;
@@ -36,9 +37,17 @@ impl Inertia {
     }
 }
 
+/// The splines of degree q - 1 at the points, and what they weigh: they are numbered within the nodes (see
+/// [`Shape::lowered`]), and those that no point touches weigh nothing.
+#[derive(Clone, Debug)]
+struct Lower<const D: usize> {
+    shape: Shape<D>,
+    weight: Vec<f64>,
+}
+
 /// Nodal quantities of one step; flat arrays over the window's nodes, the same on every rank that shares a node.
 #[derive(Clone, Debug)]
-pub struct Nodes {
+pub struct Nodes<const D: usize> {
     /// kg (or m^D, see `Weighting`)  m_I = sum_p N_Ip m_p
     pub weight: Vec<f64>,
     /// present in dynamics; then `weight` is the mass
@@ -61,11 +70,13 @@ pub struct Nodes {
     pub massless_nodes: usize,
     /// weight at and below which a node counts as massless
     threshold: f64,
+    /// what dilations are averaged with under consistent F-bar
+    lower: Option<Lower<D>>,
 }
 
-impl Nodes {
+impl<const D: usize> Nodes<D> {
     /// Maps the points to the nodes for the step from `t` to `t + dt`. Fails if a load has lost its material.
-    pub fn map<K: Kinematics<D>, const D: usize>(
+    pub fn map<K: Kinematics<D>>(
         model: &Model<K, D>,
         shape: &Shape<D>,
         points: &Points<D>,
@@ -87,6 +98,11 @@ impl Nodes {
         let mut f_ext = external_force(model, shape, points, t + dt, &weight, halo);
         let window = (&model.grid, &active[..]);
         load::add_forces(&model.boundary.loads, &points.surface, window, t + dt, halo, &mut f_ext)?;
+        let lower = (model.stabilisation == Stabilisation::ConsistentFBar).then(|| {
+            let shape = shape.lowered(&model.grid, points);
+            let weight = scatter_weight(model.weighting, &shape, points, nodes, halo);
+            Lower { shape, weight }
+        });
         let mut mapped = Self {
             f_ext,
             prescribed: velocities.iter().map(|velocity| velocity.map(|v| v * dt)).collect(),
@@ -99,13 +115,14 @@ impl Nodes {
             threshold,
             weight,
             active,
+            lower,
         };
-        mapped.count::<D>(halo);
+        mapped.count(halo);
         Ok(mapped)
     }
 
     /// Nodal average a_I = 1/m_I sum_p N_Ip m_p a_p (Eqs 16, 17); zero at massless nodes.
-    pub fn average<const D: usize, const C: usize>(
+    pub fn average<const C: usize>(
         &self,
         shape: &Shape<D>,
         points: &Points<D>,
@@ -113,15 +130,30 @@ impl Nodes {
         halo: &dyn Halo,
         value: impl Fn(usize) -> [f64; C],
     ) -> Vec<f64> {
-        let mut nodal = vec![0.0; self.weight.len() * C];
-        let weights = weights(weighting, points);
-        transfer::to_nodes(shape, &mut nodal, |p| value(p).map(|v| weights[p] * v));
-        halo.sum(&mut nodal, C);
-        divide(&mut nodal, &self.weight, self.threshold);
-        nodal
+        average((shape, &self.weight, self.threshold), points, weighting, halo, value)
     }
 
-    fn count<const D: usize>(&mut self, halo: &dyn Halo) {
+    /// Mean of the points' dilations that F-bar puts into their place: S (Eqs 16-18), or S with the splines of degree
+    /// q - 1 under consistent F-bar.
+    pub fn mean_dilation(
+        &self,
+        shape: &Shape<D>,
+        points: &Points<D>,
+        weighting: Weighting,
+        halo: &dyn Halo,
+        value: impl Fn(usize) -> f64,
+    ) -> Vec<f64> {
+        let (shape, weight) = match &self.lower {
+            Some(lower) => (&lower.shape, &lower.weight),
+            None => (shape, &self.weight),
+        };
+        let nodal = average((shape, weight, self.threshold), points, weighting, halo, |p| [value(p)]);
+        let mut mean = vec![0.0; points.len()];
+        transfer::to_points(shape, &nodal, |p, [value]| mean[p] = value);
+        mean
+    }
+
+    fn count(&mut self, halo: &dyn Halo) {
         let owned = halo.owned();
         let count = |marks: &mut dyn Iterator<Item = bool>| marks.filter(|&mark| mark).count() as f64;
         let mut counts = [
@@ -132,6 +164,22 @@ impl Nodes {
         halo.reduce(&mut counts);
         [self.active_nodes, self.unknowns, self.massless_nodes] = counts.map(|count| count as usize);
     }
+}
+
+/// Averages at the nodes of functions `shape` with their weights; zero at and below `threshold`.
+fn average<const D: usize, const C: usize>(
+    (shape, weight, threshold): (&Shape<D>, &[f64], f64),
+    points: &Points<D>,
+    weighting: Weighting,
+    halo: &dyn Halo,
+    value: impl Fn(usize) -> [f64; C],
+) -> Vec<f64> {
+    let mut nodal = vec![0.0; weight.len() * C];
+    let weights = weights(weighting, points);
+    transfer::to_nodes(shape, &mut nodal, |p| value(p).map(|v| weights[p] * v));
+    halo.sum(&mut nodal, C);
+    divide(&mut nodal, weight, threshold);
+    nodal
 }
 
 fn weights<const D: usize>(weighting: Weighting, points: &Points<D>) -> &[f64] {

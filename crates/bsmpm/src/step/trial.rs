@@ -16,8 +16,17 @@ use crate::tensor::{Symmetric, Tensor};
 pub struct Trial {
     /// -  dF (step 4a)
     pub dF: Vec<Tensor>,
-    /// -  dJ-bar / dJ under F-bar (steps 4c, 4e)
-    ratio: Option<Vec<f64>>,
+    /// what F-bar averages
+    dilation: Option<Dilation>,
+}
+
+/// Dilation of every point and its average (steps 4c, 4e).
+#[derive(Clone, Debug)]
+struct Dilation {
+    /// -  w dJ: dJ, or J under Zhao's F-bar
+    own: Vec<f64>,
+    /// -  S[w dJ]
+    mean: Vec<f64>,
 }
 
 impl Trial {
@@ -26,42 +35,55 @@ impl Trial {
     pub fn of<K: Kinematics<D>, const D: usize>(
         model: &Model<K, D>,
         shape: &Shape<D>,
-        nodes: &Nodes,
+        nodes: &Nodes<D>,
         points: &Points<D>,
         u: &[f64],
         halo: &dyn Halo,
     ) -> Self {
-        let mut trial = Self { dF: Vec::with_capacity(points.len()), ratio: None };
-        let averaged = model.stabilisation != Stabilisation::None;
-        let mut dJ = Vec::with_capacity(if averaged { points.len() } else { 0 });
-        transfer::gradients(shape, u, |_, grad| {
-            let dF = Tensor::identity() + K::gradient(&grad);
-            let determinant = dF.determinant();
-            let sound = determinant > 0.0 && determinant.is_finite();
+        let averaged = model.stabilisation.averages();
+        let mut own = Vec::with_capacity(if averaged { points.len() } else { 0 });
+        let mut dF = Vec::with_capacity(points.len());
+        transfer::gradients(shape, u, |p, grad| {
+            let increment = Tensor::identity() + K::gradient(&grad);
+            let dJ = increment.determinant();
+            let sound = dJ > 0.0 && dJ.is_finite();
             if averaged {
-                dJ.push(if sound { determinant } else { 1.0 });
+                own.push(weight(model.stabilisation, points, p) * if sound { dJ } else { 1.0 });
             }
-            trial.dF.push(if sound { dF } else { Tensor::from_element(f64::NAN) });
+            dF.push(if sound { increment } else { Tensor::from_element(f64::NAN) });
         });
-        if averaged {
-            trial.average(model, shape, nodes, points, dJ, halo);
-        }
-        trial
+        let dilation = averaged.then(|| {
+            let mean = nodes.mean_dilation(shape, points, model.weighting, halo, |p| own[p]);
+            Dilation { own, mean }
+        });
+        Self { dF, dilation }
     }
 
-    /// Step (4e): dJ-bar_p = sum_I N_Ip (1/m_I sum_p N_Ip m_p dJ_p).
-    fn average<K: Kinematics<D>, const D: usize>(
-        &mut self,
-        model: &Model<K, D>,
-        shape: &Shape<D>,
-        nodes: &Nodes,
-        points: &Points<D>,
-        mut dJ: Vec<f64>,
-        halo: &dyn Halo,
-    ) {
-        let nodal = nodes.average(shape, points, model.weighting, halo, |p| [dJ[p]]);
-        transfer::to_points(shape, &nodal, |p, [dJ_bar]| dJ[p] = dJ_bar / dJ[p]);
-        self.ratio = Some(dJ);
+    /// ratio_p = kept_p S[w dJ]_p / (w_p dJ_p), which F-bar multiplies the dilation of point `p` with; 1 without F-bar.
+    #[inline]
+    pub fn ratio<const D: usize>(&self, points: &Points<D>, p: usize) -> f64 {
+        let kept = points.dilation.as_ref().map_or(1.0, |dilation| 1.0 / dilation[p]);
+        self.averaged(p) * kept
+    }
+
+    /// S[w dJ]_p / (w_p dJ_p): what is kept for the next step where J is averaged as a whole.
+    #[inline]
+    pub(super) fn averaged(&self, p: usize) -> f64 {
+        self.dilation.as_ref().map_or(1.0, |dilation| dilation.mean[p] / dilation.own[p])
+    }
+
+    /// Rate of ln ratio_p for a displacement whose spatial gradient has the trace `trace`_p at every point:
+    /// S[w dJ tr l]_p / S[w dJ]_p - tr l_p. `None` without F-bar; one exchange with the neighbours.
+    pub fn dilation_rate<K: Kinematics<D>, const D: usize>(
+        &self,
+        scene: &Scene<'_, K, D>,
+        trace: &[f64],
+    ) -> Option<Vec<f64>> {
+        let Dilation { own, mean } = self.dilation.as_ref()?;
+        let Scene { model, shape, nodes, points, halo, .. } = *scene;
+        let mut rate = nodes.mean_dilation(shape, points, model.weighting, halo, |p| own[p] * trace[p]);
+        rate.iter_mut().zip(mean).zip(trace).for_each(|((rate, mean), trace)| *rate = *rate / mean - trace);
+        Some(rate)
     }
 
     /// Whether F-bar acts.
@@ -93,10 +115,16 @@ impl Trial {
         points: &Points<D>,
         p: usize,
     ) -> Result<Response, MaterialError> {
-        let b_trial: Symmetric = match &self.ratio {
-            Some(ratio) => K::push_forward(&K::dilate(&self.dF[p], ratio[p]), &points.b_e[p]),
+        let b_trial: Symmetric = match &self.dilation {
+            Some(_) => K::push_forward(&K::dilate(&self.dF[p], self.ratio(points, p)), &points.b_e[p]),
             None => K::push_forward(&self.dF[p], &points.b_e[p]),
         };
         model.respond(points, p, &b_trial)
     }
+}
+
+/// w_p: J at the start of the step where the total J is averaged, else 1.
+#[inline]
+fn weight<const D: usize>(stabilisation: Stabilisation, points: &Points<D>, p: usize) -> f64 {
+    if stabilisation == Stabilisation::FBarZhao { points.F[p].determinant() } else { 1.0 }
 }

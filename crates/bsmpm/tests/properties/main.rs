@@ -4,6 +4,7 @@
 #![allow(non_snake_case)] // the paper's letters, as in the crate
 
 mod broyden;
+mod dilation;
 mod kinematics;
 mod observe;
 mod points;

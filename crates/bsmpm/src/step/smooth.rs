@@ -1,0 +1,70 @@
+//! Step (11e): smoothing of the elastic state that the next step starts from, once a converged step.
+
+use crate::grid::{Shape, transfer};
+use crate::material::Response;
+use crate::model::Model;
+use crate::points::Points;
+use crate::seam::Halo;
+use crate::step::nodes::Nodes;
+use crate::tensor::Symmetric;
+
+/// Plastic strain of a step, among neighbours, at which 63 % of the elastic dilation's fluctuation is filtered.
+const REFERENCE: f64 = 0.01;
+
+/// Eq. 20, modified F-bar: b^e_p <- sum_I N_Ip (1/m_I sum_p N_Ip m_p b^e_p).
+pub fn average_b_e<K, const D: usize>(
+    model: &Model<K, D>,
+    shape: &Shape<D>,
+    nodes: &Nodes<D>,
+    points: &mut Points<D>,
+    halo: &dyn Halo,
+) {
+    let nodal = nodes.average(shape, points, model.weighting, halo, |p| points.b_e[p].0);
+    transfer::to_points(shape, &nodal, |p, b_e| points.b_e[p] = Symmetric(b_e));
+}
+
+/// What the filter of consistent F-bar needs of a point's return.
+#[derive(Clone, Copy, Debug)]
+pub struct Flow {
+    /// -  size of the return, `Response::returned`
+    plastic: f64,
+    /// -  eps_v = 1/2 ln det b^e
+    dilation: f64,
+}
+
+impl Flow {
+    /// Of one response.
+    pub fn of(response: &Response) -> Self {
+        Self { plastic: response.returned(), dilation: response.dilation() }
+    }
+}
+
+/// Consistent F-bar: b^e_p <- exp(2/3 theta_p (S[eps_v]_p - eps_v,p)) b^e_p, theta_p = S[1 - exp(-x/0.01)]_p.
+///
+/// x_p = sum_I N_Ip chi_I interpolates the largest plastic increment among the points that a node sees. The work of a step
+/// grows with its plastic strain, so that the filters of two half steps are about that of the whole; where nothing flows
+/// within reach, theta = 0 and b^e stays bit by bit. The factor is a positive scalar on the whole tensor: 1/2 ln det b^e
+/// changes by theta (S[eps_v] - eps_v), the deviator of the elastic strain not at all.
+pub fn filter_dilation<K, const D: usize>(
+    model: &Model<K, D>,
+    (shape, nodes): (&Shape<D>, &Nodes<D>),
+    points: &mut Points<D>,
+    flow: &[Flow],
+    halo: &dyn Halo,
+) {
+    let mut largest = [flow.iter().map(|flow| flow.plastic).fold(0.0, f64::max)];
+    halo.maximum(&mut largest);
+    if largest[0] == 0.0 {
+        return;
+    }
+    let mut chi = vec![0.0; nodes.weight.len()];
+    transfer::largest_to_nodes(shape, &mut chi, |p| flow[p].plastic);
+    halo.max(&mut chi, 1);
+    let mut share = vec![0.0; points.len()];
+    transfer::to_points(shape, &chi, |p, [x]| share[p] = -(-x / REFERENCE).exp_m1());
+    let nodal = nodes.average(shape, points, model.weighting, halo, |p| [share[p], flow[p].dilation]);
+    transfer::to_points(shape, &nodal, |p, [theta, mean]| {
+        let change = theta * (mean - flow[p].dilation);
+        points.b_e[p] = points.b_e[p].scaled((2.0 / 3.0 * change).exp());
+    });
+}
