@@ -26,11 +26,19 @@ pub struct Step {
     pub active_nodes: u64,
     /// s  by the clock since the run began.
     pub wall: f64,
+    /// Newton iterations among those of the nonlinear solution; 0 where a quasi-Newton method found equilibrium.
+    pub newton_iterations: u64,
+    /// Evaluations of the out-of-balance force in all attempts.
+    pub evaluations: u64,
+    /// Products with the complete derivative in all attempts.
+    pub products: u64,
+    /// Factorisations in all attempts.
+    pub factorisations: u64,
 }
 
 impl Step {
     /// The file's columns; `time_unit` is `s`, or `-` for pseudo-time.
-    pub fn columns(time_unit: &str) -> [Column; 9] {
+    pub fn columns(time_unit: &str) -> [Column; 13] {
         [
             ("step", "-"),
             ("time", time_unit),
@@ -41,12 +49,16 @@ impl Step {
             ("cutbacks", "-"),
             ("active_nodes", "-"),
             ("wall", "s"),
+            ("newton_iterations", "-"),
+            ("evaluations", "-"),
+            ("products", "-"),
+            ("factorisations", "-"),
         ]
         .map(|(name, unit)| Column::new(name, unit))
     }
 
     /// The step as a row under [`Step::columns`].
-    pub fn cells(&self) -> [Cell; 9] {
+    pub fn cells(&self) -> [Cell; 13] {
         [
             Cell::Int(self.step),
             Cell::Float(self.time),
@@ -57,6 +69,10 @@ impl Step {
             Cell::Int(self.cutbacks),
             Cell::Int(self.active_nodes),
             Cell::Float(self.wall),
+            Cell::Int(self.newton_iterations),
+            Cell::Int(self.evaluations),
+            Cell::Int(self.products),
+            Cell::Int(self.factorisations),
         ]
     }
 }

@@ -167,10 +167,8 @@ impl<'p, const D: usize> KspSolver<'p, D> {
         };
         let system = match place {
             Some(system) => system,
-            none => none.insert(System::new(
-                (self.petsc, &self.choice, symmetry),
-                (&self.stencil, &self.numbers, self.own),
-            )?),
+            none => none
+                .insert(System::new((self.petsc, &self.choice, symmetry), (&self.stencil, &self.numbers, self.own))?),
         };
         system.matrix.set_values(&values)?;
         system.ksp.set_operator(&system.matrix)?;

@@ -8,6 +8,7 @@ use bsmpm::control::Accepted;
 use bsmpm::step::Counts;
 use bsmpm_io::Error;
 use bsmpm_io::directory::{Existing, HISTORY, OutputDirectory};
+use bsmpm_io::failure::{FAILURE, FailureReport};
 use bsmpm_io::frame::Frame;
 use bsmpm_io::frames::{COLLECTION, Frames};
 use bsmpm_io::manifest::{self, Check, Extent, Manifest, Status};
@@ -82,6 +83,7 @@ impl Ledger {
         let report = &accepted.report;
         self.manifest.summary.steps = number;
         self.attempts(accepted.rejected.len(), accepted.counts);
+        self.manifest.summary.newton_steps += u64::from(report.newton_iterations > 0);
         let slips = report.strips.iter().filter(|strip| strip.motion > 0.0).map(surfaces::relative_slip);
         let largest = slips.chain(self.manifest.summary.largest_slip).reduce(f64::max);
         self.manifest.summary.largest_slip = largest;
@@ -100,6 +102,10 @@ impl Ledger {
             cutbacks: accepted.rejected.len() as u64,
             active_nodes: report.active_nodes as u64,
             wall,
+            newton_iterations: report.newton_iterations as u64,
+            evaluations: accepted.counts.evaluations as u64,
+            products: accepted.counts.products as u64,
+            factorisations: accepted.counts.factorisations as u64,
         };
         self.steps.row(&row.cells())
     }
@@ -111,6 +117,8 @@ impl Ledger {
         summary.iterations += counts.iterations as u64;
         summary.linear_iterations += counts.linear_iterations as u64;
         summary.residual_evaluations += counts.evaluations as u64;
+        summary.products += counts.products as u64;
+        summary.factorisations += counts.factorisations as u64;
     }
 
     /// A frame; the manifest names it before it is there.
@@ -118,6 +126,19 @@ impl Ledger {
         self.manifest.name_output(&Frames::file(frame.step));
         self.manifest.write(self.directory.path())?;
         self.frames.write(frame)
+    }
+
+    /// `failure.json`, and what the manifest says of it.
+    pub fn failure(&mut self, report: &FailureReport) -> Result<(), Error> {
+        self.manifest.name_output(FAILURE);
+        self.manifest.failure = Some(manifest::Failure {
+            step: report.step,
+            time: report.time,
+            reason: report.attempts.last().cloned().unwrap_or_default(),
+            residuals: report.history.iter().map(|measures| measures.energy).collect(),
+            worst: report.worst.first().cloned(),
+        });
+        report.write(self.directory.path())
     }
 
     /// Notes how the run ended, and sizes and hashes of all files; writes the manifest for the last time.

@@ -5,7 +5,8 @@
 
 pub mod cli;
 pub mod exit;
-pub mod fault;
+mod failure;
+mod fault;
 pub mod gather;
 pub mod halo;
 pub mod ksp;

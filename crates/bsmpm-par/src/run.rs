@@ -2,6 +2,7 @@
 
 use crate::cli::Arguments;
 use crate::exit;
+use crate::failure;
 use crate::fault::Fault;
 use crate::gather;
 use crate::launch;
@@ -13,11 +14,11 @@ use crate::setup;
 use crate::simulation::Simulation;
 use crate::timers::Timers;
 use bsmpm::control::{Accepted, Failure};
-use bsmpm::error::{Measures, StepError};
+use bsmpm::error::StepError;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::seam::Halo;
 use bsmpm::step::Report;
-use bsmpm_io::manifest::{self, Status};
+use bsmpm_io::manifest::Status;
 use bsmpm_scene::{Case, Every};
 use mpi::collective::CommunicatorCollectives;
 use mpi::environment::Universe;
@@ -216,48 +217,24 @@ impl<'p> Run<'p> {
         let last = failure.attempts.last();
         let left = matches!(last, Some(StepError::Left { .. } | StepError::Outside { .. }));
         let code = launch::agree(&self.universe.world(), if left { exit::LEFT } else { exit::NO_CONVERGENCE });
-        let reason = last.map_or_else(String::new, ToString::to_string);
         let step = self.simulation.steps() + 1;
-        let worst = self.worst_place(last);
-        let place = worst.as_ref().map_or_else(String::new, |w| format!("; {} {} at {:?}", w.kind, w.id, w.position));
+        let report = failure::report(&self.universe.world(), failure, step, self.case.grid.lower());
+        let place = report.worst.first();
+        let place = place.map_or_else(String::new, |w| format!("; {} {} at {:?}", w.kind, w.id, w.position));
         self.log.failure(&format!(
-            "step {step} failed at t = {} after {} attempt(s), the last with dt = {:.3e}: {reason}{place}; the last \
-             converged state is saved",
+            "step {step} failed at t = {} after {} attempt(s), the last with dt = {:.3e}: {}{place}; the last converged \
+             state is saved, failure.json tells more",
             failure.t,
             failure.attempts.len(),
-            failure.dt
+            failure.dt,
+            report.attempts.last().map_or("", String::as_str)
         ));
-        if let Some(ledger) = &mut self.ledger {
-            let finite = |measures: &Measures| Some(measures.energy).filter(|energy| energy.is_finite());
-            let residuals = match last {
-                Some(StepError::NotConverged { history, .. }) => history.iter().map(finite).collect(),
-                _ => Vec::new(),
-            };
+        let written = self.ledger.as_mut().map_or(Ok(()), |ledger| {
             ledger.attempts(failure.attempts.len() - 1, failure.counts);
-            ledger.manifest().failure = Some(manifest::Failure { step, time: failure.t, reason, residuals, worst });
-        }
+            ledger.failure(&report)
+        });
+        self.require(written);
         self.end(Status::Failed, code)
-    }
-
-    /// The point or node that the error is about: of the points that ranks name the one with the smallest id, of the
-    /// nodes the one whose forces are the least balanced.
-    fn worst_place(&self, error: Option<&StepError>) -> Option<manifest::Worst> {
-        let world = self.universe.world();
-        let lower = self.case.grid.lower();
-        let (mut kind, mut own) = ("point", [f64::INFINITY; 4]); // order among the places, number, x, y
-        if let Some(StepError::NotConverged { worst, .. }) = error {
-            kind = "node";
-            if let [x, y] = worst.x[..] {
-                own = [-worst.force, worst.number as f64, lower[0] + x, lower[1] + y];
-            }
-        } else if let Some((id, x)) = error.and_then(StepError::point) {
-            own = [id as f64, id as f64, lower[0] + x[0], lower[1] + x[1]];
-        }
-        let mut all = vec![0.0_f64; own.len() * world.size().unsigned_abs() as usize];
-        world.all_gather_into(&own[..], &mut all[..]);
-        let named = all.chunks_exact(own.len()).filter(|place| place.iter().all(|number| number.is_finite()));
-        let worst = named.min_by(|a, b| a[0].total_cmp(&b[0]))?;
-        Some(manifest::Worst { kind: kind.into(), id: worst[1] as u64, position: worst[2..].to_vec() })
     }
 
     fn end(mut self, status: Status, code: u8) -> u8 {

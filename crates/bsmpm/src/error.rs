@@ -40,14 +40,14 @@ pub struct Measures {
     pub force: f64,
 }
 
-/// The node of a rank whose forces are the least balanced.
-#[derive(Clone, Debug, Default, PartialEq)]
+/// A node whose forces are badly balanced.
+#[derive(Clone, Debug, PartialEq)]
 pub struct WorstNode {
     /// Number over the whole grid, axis 0 slowest.
     pub number: u64,
     /// Its place from the grid's lower corner, m: the mean of the function's inner knots (Greville).
     pub x: Vec<f64>,
-    /// |f_oob| there, N; 0 if this rank owns no node.
+    /// |f_oob| there, N.
     pub force: f64,
 }
 
@@ -99,8 +99,8 @@ pub enum StepError {
         force: f64,
         /// Both measures of every iteration.
         history: Vec<Measures>,
-        /// The worst node of this rank.
-        worst: WorstNode,
+        /// The worst nodes of this rank, worst first.
+        worst: Vec<WorstNode>,
     },
     /// Another rank has the error; this rank's part was good.
     #[error("another rank could not make the step")]

@@ -22,7 +22,6 @@ use crate::kinematics::Kinematics;
 use crate::model::Model;
 use crate::points::Points;
 use crate::seam::{Halo, LinearSolver, agreed};
-use crate::step::equilibrium::Method;
 use crate::step::nodes::Nodes;
 
 /// Work of one or more attempts, failed ones included.
@@ -45,8 +44,8 @@ pub struct Counts {
 pub struct Report {
     /// iterations from the guess that led to convergence
     pub iterations: usize,
-    /// the method that led to it
-    pub method: Method,
+    /// Newton iterations among them; 0 where the quasi-Newton method got there
+    pub newton_iterations: usize,
     /// force measure |f_oob| / largest force of the accepted state
     pub force: f64,
     /// nodes that carry material, over all ranks

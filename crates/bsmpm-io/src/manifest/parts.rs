@@ -95,6 +95,15 @@ pub struct Summary {
     pub cutbacks: u64,
     /// Evaluations of the out-of-balance force.
     pub residual_evaluations: u64,
+    /// Products with the complete derivative, in Newton's method.
+    #[serde(default)]
+    pub products: u64,
+    /// Factorisations.
+    #[serde(default)]
+    pub factorisations: u64,
+    /// Steps in which Newton's method found equilibrium.
+    #[serde(default)]
+    pub newton_steps: u64,
     /// Largest slip of any rigid strip in a step, over its motion in that step; none without strips that move.
     #[serde(default)]
     pub largest_slip: Option<f64>,
@@ -163,7 +172,7 @@ pub struct Failure {
 
 impl Failure {
     pub(super) fn numbers(&self) -> impl Iterator<Item = f64> {
-        let place = self.worst.iter().flat_map(|worst| &worst.position).copied();
+        let place = self.worst.iter().flat_map(|worst| worst.position.iter().copied().chain(worst.force));
         self.residuals.iter().copied().flatten().chain(place).chain([self.time])
     }
 }
@@ -177,4 +186,7 @@ pub struct Worst {
     pub id: u64,
     /// m  where it was.
     pub position: Vec<f64>,
+    /// N  out of balance there, of a node.
+    #[serde(default)]
+    pub force: Option<f64>,
 }

@@ -23,7 +23,7 @@ fn manifest() -> Manifest {
         max: None,
         passed: false,
     });
-    let worst = Worst { kind: "node".into(), id: 7, position: vec![0.5, 0.25] };
+    let worst = Worst { kind: "node".into(), id: 7, position: vec![0.5, 0.25], force: Some(2.0) };
     let (residuals, reason) = (vec![Some(1.0), None], "no convergence".to_owned());
     manifest.failure = Some(Failure { step: 3, time: 0.1, reason, residuals, worst: Some(worst) });
     manifest

@@ -98,6 +98,10 @@ fn steps_fit_their_columns() {
         cutbacks: 1,
         active_nodes: 4000,
         wall: 0.25,
+        newton_iterations: 0,
+        evaluations: 0,
+        products: 0,
+        factorisations: 0,
     };
     table.row(&step.cells()).unwrap();
     let text = std::fs::read_to_string(&path).unwrap();

@@ -138,6 +138,10 @@ impl Collapse {
             cutbacks,
             active_nodes: 9000,
             wall: 0.2,
+            newton_iterations: 0,
+            evaluations: 0,
+            products: 0,
+            factorisations: 0,
         }
     }
 }

@@ -202,6 +202,10 @@ impl Still {
             cutbacks: 0,
             active_nodes: 900,
             wall: 0.2,
+            newton_iterations: 0,
+            evaluations: 0,
+            products: 0,
+            factorisations: 0,
         }
     }
 }

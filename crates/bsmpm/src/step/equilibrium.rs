@@ -28,16 +28,6 @@ pub enum Nonlinear {
     Newton,
 }
 
-/// The method that found equilibrium.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Method {
-    /// secants on the elastic stiffness
-    #[default]
-    QuasiNewton,
-    /// the complete derivative
-    Newton,
-}
-
 /// Everything that is fixed while a step is iterated.
 pub struct Scene<'a, K, const D: usize> {
     /// the scene
@@ -65,16 +55,16 @@ pub struct Found {
     pub reaction: Vec<f64>,
     iterations: usize,
     force: f64,
-    method: Method,
+    newton_iterations: usize,
     first_guess: bool,
 }
 
 impl Found {
-    /// The state that `method` reached.
-    pub fn new(u: Vec<f64>, residual: Residual, progress: &Progress, method: Method) -> Self {
+    /// The state that an iteration reached, after so many by Newton's method.
+    pub fn new(u: Vec<f64>, residual: Residual, progress: &Progress, newton_iterations: usize) -> Self {
         let (force, Residual { trial, balance, .. }) = (residual.balance.measure(), residual);
         let (iterations, reaction) = (progress.iterations(), balance.reaction);
-        Self { u, trial, reaction, iterations, force, method, first_guess: true }
+        Self { u, trial, reaction, iterations, force, newton_iterations, first_guess: true }
     }
 
     /// The step's numbers; one reduction for the supports' forces.
@@ -83,7 +73,7 @@ impl Found {
         Report {
             iterations: self.iterations,
             force: self.force,
-            method: self.method,
+            newton_iterations: self.newton_iterations,
             active_nodes: nodes.active_nodes,
             unknowns: nodes.unknowns,
             massless_nodes: nodes.massless_nodes,

@@ -5,7 +5,7 @@ use crate::error::{SolveError, StepError};
 use crate::kinematics::Kinematics;
 use crate::seam::{LinearSolver, dots};
 use crate::step::Counts;
-use crate::step::equilibrium::{Found, Method, Scene, evaluate};
+use crate::step::equilibrium::{Found, Scene, evaluate};
 use crate::step::linearised::Linearised;
 use crate::step::progress::{Progress, first_energy, inverted};
 use crate::step::residual::Residual;
@@ -34,9 +34,9 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
     if !residual.balance.is_sound() {
         return Err(inverted(scene, &residual, progress.iterations()));
     }
-    for _ in 0..MOST {
+    for iteration in 0..MOST {
         if progress.is_balanced(&residual.balance) {
-            return Ok(Found::new(u, residual, progress, Method::Newton));
+            return Ok(Found::new(u, residual, progress, iteration));
         }
         let du = direction(scene, &residual, solver, counts)?;
         let f = &residual.balance.f_oob;
@@ -45,7 +45,7 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
         }
         let energy = dots(scene.halo, D, &[(&du, f)])[0].abs();
         if progress.reaches(energy, &residual.balance) {
-            return Ok(Found::new(u, residual, progress, Method::Newton));
+            return Ok(Found::new(u, residual, progress, iteration + 1));
         }
         match search(scene, &u, &du, &residual, counts) {
             Some((next, found)) => (u, residual) = (next, found),

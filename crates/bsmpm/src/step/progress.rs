@@ -10,6 +10,7 @@ use crate::model::Criteria;
 use crate::seam::dots;
 use crate::step::equilibrium::Scene;
 use crate::step::residual::{Balance, Residual};
+use crate::tensor::Vector;
 
 /// A first residual this much below the force tolerance needs no iteration: |du_0 . f_0| would only be noise.
 const ALREADY: f64 = 1e-2;
@@ -22,6 +23,9 @@ const WINDOW: usize = 20;
 /// Iterations that a quasi-Newton method may still need to be left going: about the cost of the exact iterations that
 /// would replace them.
 const PATIENCE: f64 = 60.0;
+
+/// Nodes that an error names.
+const WORST: usize = 5;
 
 /// Both measures over the iterations that started from one guess.
 #[derive(Clone, Debug)]
@@ -88,7 +92,7 @@ impl Progress {
             energy: self.history.last().map_or(f64::INFINITY, |measures| measures.energy),
             force: residual.balance.measure(),
             history: self.history.clone(),
-            worst: worst_node(scene, residual),
+            worst: worst_nodes(scene, residual),
         }
     }
 }
@@ -111,18 +115,19 @@ pub fn inverted<K, const D: usize>(scene: &Scene<'_, K, D>, residual: &Residual,
     StepError::Inverted { count: residual.balance.inverted, iteration, first }
 }
 
-/// Where the forces of this rank's own nodes are the least balanced.
-fn worst_node<K, const D: usize>(scene: &Scene<'_, K, D>, residual: &Residual) -> WorstNode {
+/// This rank's own nodes whose forces are the least balanced, worst first.
+fn worst_nodes<K, const D: usize>(scene: &Scene<'_, K, D>, residual: &Residual) -> Vec<WorstNode> {
     let grid = &scene.model.grid;
-    let force =
-        |node: usize| residual.balance.f_oob[node * D..(node + 1) * D].iter().map(|f| f * f).sum::<f64>().sqrt();
-    let Some(worst) = scene.halo.owned().max_by(|&a, &b| force(a).total_cmp(&force(b))) else {
-        return WorstNode::default();
-    };
-    let place = grid.node_at(worst);
-    let x = (0..D).map(|axis| grid.axes()[axis].greville(place[axis])).collect();
+    let force = |node: usize| Vector::<D>::from_column_slice(&residual.balance.f_oob[node * D..][..D]).norm();
+    let mut nodes: Vec<usize> = scene.halo.owned().filter(|&node| force(node) > 0.0).collect();
+    nodes.sort_by(|&a, &b| force(b).total_cmp(&force(a)));
     let first = grid.columns().start * grid.layer_nodes();
-    WorstNode { number: (first + worst) as u64, x, force: force(worst) }
+    let told = |node: usize| {
+        let place = grid.node_at(node);
+        let x = (0..D).map(|axis| grid.axes()[axis].greville(place[axis])).collect();
+        WorstNode { number: (first + node) as u64, x, force: force(node) }
+    };
+    nodes.into_iter().take(WORST).map(told).collect()
 }
 
 /// Out-of-balance force that is round-off, N: of the stiffest material, 1e-13 E_max h^(D-1) sqrt(n), or of the inertia,

@@ -5,7 +5,7 @@ use crate::kinematics::Kinematics;
 use crate::seam::{Halo, LinearSolver, dots};
 use crate::step::Counts;
 use crate::step::broyden::Broyden;
-use crate::step::equilibrium::{Found, Method, Scene, evaluate};
+use crate::step::equilibrium::{Found, Scene, evaluate};
 use crate::step::multisecant::Multisecant;
 use crate::step::progress::{Progress, first_energy, inverted};
 use crate::step::residual::Residual;
@@ -111,7 +111,7 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
     let (mut best, mut least) = (u.clone(), residual.balance.norm);
     while progress.iterations() < scene.model.criteria.max_iterations && (patient || !progress.stalls()) {
         if progress.is_balanced(&residual.balance) {
-            return Ok(Found::new(u, residual, progress, Method::QuasiNewton));
+            return Ok(Found::new(u, residual, progress, 0));
         }
         let direction = secants.direction::<D>(&residual.balance.f_oob, scene.halo, solver)?; // (6), (7)
         counts.iterations += 1;
@@ -120,7 +120,7 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
             progress.begin(first_energy(scene, &residual.balance.f_oob, &direction.du));
         }
         if progress.reaches(direction.energy, &residual.balance) {
-            return Ok(Found::new(u, residual, progress, Method::QuasiNewton)); // (9)
+            return Ok(Found::new(u, residual, progress, 0)); // (9)
         }
         match advance(scene, &mut u, &direction.du, &mut residual, counts) {
             Ok(length) => secants.took(length), // (8), (4), (5)

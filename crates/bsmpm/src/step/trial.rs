@@ -88,23 +88,7 @@ impl Trial {
 
     /// Whether F-bar acts.
     pub fn is_averaged(&self) -> bool {
-        self.ratio.is_some()
-    }
-
-    /// d ln(dJ-bar/dJ) of every point for a change of dF with the spatial gradient l, from `trace` = tr l:
-    /// S[dJ tr l] / S[dJ] - tr l. `None` without F-bar.
-    pub fn dilation_rate<K: Kinematics<D>, const D: usize>(
-        &self,
-        scene: &Scene<'_, K, D>,
-        trace: &[f64],
-    ) -> Option<Vec<f64>> {
-        let ratio = self.ratio.as_ref()?;
-        let Scene { model, shape, nodes, points, halo, .. } = *scene;
-        let dJ: Vec<f64> = self.dF.iter().map(|dF| dF.determinant()).collect();
-        let nodal = nodes.average(shape, points, model.weighting, halo, |p| [dJ[p] * trace[p]]);
-        let mut rate = Vec::with_capacity(dJ.len());
-        transfer::to_points(shape, &nodal, |p, [mean]| rate.push(mean / (ratio[p] * dJ[p]) - trace[p]));
-        Some(rate)
+        self.dilation.is_some()
     }
 
     /// Steps (4f)-(4i): trial b^e of point `p` under dF-bar, and the constitution's answer.

@@ -1,0 +1,89 @@
+//! What is told of a step that failed: where it was worst on all ranks, and what may help.
+
+use bsmpm::control::Failure;
+use bsmpm::error::{SolveError, StepError};
+use bsmpm_io::failure::{FailureReport, Measures};
+use bsmpm_io::manifest::Worst;
+use mpi::topology::{Communicator, SimpleCommunicator};
+use mpi::traits::CommunicatorCollectives;
+
+/// Places told of one failure.
+const MOST_PLACES: usize = 10;
+
+/// The report of `failure` in step `step`, from all ranks; `lower` is the grid's lower corner. Collective.
+pub fn report(world: &SimpleCommunicator, failure: &Failure, step: u64, lower: [f64; 2]) -> FailureReport {
+    let last = failure.attempts.last();
+    let history = match last {
+        Some(StepError::NotConverged { history, .. }) => {
+            history.iter().map(|m| Measures::new(m.energy, m.force)).collect()
+        }
+        _ => Vec::new(),
+    };
+    FailureReport {
+        step,
+        time: failure.t,
+        dt: failure.dt,
+        attempts: failure.attempts.iter().map(ToString::to_string).collect(),
+        history,
+        worst: last.map_or_else(Vec::new, |error| worst(world, error, lower)),
+        advice: last.map_or_else(Vec::new, advice),
+    }
+}
+
+/// Order among the places, number, x and y, force or 0.
+type Place = [f64; 5];
+
+/// The nodes whose forces are the least balanced, or the points that the ranks name, of all ranks.
+fn worst(world: &SimpleCommunicator, error: &StepError, lower: [f64; 2]) -> Vec<Worst> {
+    let kind = if matches!(error, StepError::NotConverged { .. }) { "node" } else { "point" };
+    let mut own: Vec<Place> = match error {
+        StepError::NotConverged { worst, .. } => worst
+            .iter()
+            .map(|node| [-node.force, node.number as f64, lower[0] + node.x[0], lower[1] + node.x[1], node.force])
+            .collect(),
+        other => other
+            .point()
+            .map(|(id, x)| [id as f64, id as f64, lower[0] + x[0], lower[1] + x[1], 0.0])
+            .into_iter()
+            .collect(),
+    };
+    own.resize(MOST_PLACES, [f64::INFINITY; 5]);
+    let own: Vec<f64> = own.into_iter().flatten().collect();
+    let mut all = vec![0.0_f64; own.len() * world.size().unsigned_abs() as usize];
+    world.all_gather_into(&own[..], &mut all[..]);
+    let mut places: Vec<&[f64]> = all.chunks_exact(5).filter(|place| place.iter().all(|n| n.is_finite())).collect();
+    places.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let told = |place: &&[f64]| Worst {
+        kind: kind.into(),
+        id: place[1] as u64,
+        position: place[2..4].to_vec(),
+        force: (kind == "node").then_some(place[4]),
+    };
+    places.iter().take(MOST_PLACES).map(told).collect()
+}
+
+fn advice(error: &StepError) -> Vec<String> {
+    let lines: &[&str] = match error {
+        StepError::NotConverged { .. } => &[
+            "the load may be more than the body can carry: look at the displacements of the last frame, and at `bsmpm fos`",
+            "look at the worst nodes: next to nearly empty cells a larger [solver] background helps",
+            "more steps ([analysis] steps or dt), or a [stabilisation] where poisson is above .45 or the soil yields",
+        ],
+        StepError::Inverted { .. } => &[
+            "material turned inside out: more steps ([analysis] steps or dt), or a larger [solver] background",
+            "look at the points named: loose points at a free surface are the usual ones",
+        ],
+        StepError::Left { .. } | StepError::Outside { .. } => {
+            &["a larger grid, or a support at the face where points left"]
+        }
+        StepError::Unloaded { .. } => {
+            &["a load or strip has no material any more: look where it was in the last frame"]
+        }
+        StepError::Solve(SolveError::Failed(_) | SolveError::NotFinite | SolveError::Residual(_)) => &[
+            "is every body held? In a quasi-static analysis nothing else stops a rigid motion",
+            "another factorisation: [solver] linear = { factor = \"mumps\" }, and a larger [solver] background",
+        ],
+        StepError::Material { .. } | StepError::OtherRank => &["more steps ([analysis] steps or dt)"],
+    };
+    lines.iter().map(|line| (*line).to_owned()).collect()
+}
