@@ -125,6 +125,7 @@ fn the_full_case_in_si() {
     assert_eq!(case.bodies[2].velocity, Some([0.0, -1.0]));
     assert_eq!(case.boundary, [[Support::Roller; 2], [Support::Fixed, Support::Free]]);
     assert_eq!((case.solver.background, case.solver.background_cells), (0.0, Extent::Occupied));
+    assert_eq!(case.solver.background_kind, BackgroundKind::Laplacian);
     assert_eq!(case.output.times, [0.25, 0.75]);
     assert_eq!(case.histories[1].quantity, Quantity::Reaction { face: Face { axis: 1, upper: false } });
     let columns: Vec<String> = case.histories.iter().flat_map(|h| h.columns()).map(|c| c.name).collect();
@@ -151,8 +152,8 @@ fn the_full_case_in_si() {
 fn what_the_program_chooses_is_noted() {
     let case = valid(STATIC, &[]);
     let noted = |key: &str| case.notes.iter().find(|note| note.key == key).map(|note| note.value.as_str());
-    assert_eq!((noted("solver.background"), noted("solver.tolerance")), (Some("0.0001"), Some("1e-8")));
-    assert_eq!((case.solver.background, case.solver.linear.factor), (1e-4, Some("mumps")));
+    assert_eq!((noted("solver.background"), noted("solver.tolerance")), (Some("0.001"), Some("1e-8")));
+    assert_eq!((case.solver.background, case.solver.linear.factor), (1e-3, Some("mumps")));
     let case = valid(&STATIC.replace("end   = 1.0\n", ""), &[]);
     assert_eq!(case.analysis.end, 1.0);
     assert!(case.notes.iter().any(|note| note.key == "analysis.end"));

@@ -3,16 +3,22 @@
 use crate::case::{Linear, Nonlinear, Solver};
 use crate::record::Record;
 use crate::report::Report;
-use bsmpm::background::Extent;
+use bsmpm::background::{Extent, Kind};
 use bsmpm::model::Regime;
 
-/// The solver.
-pub(super) fn read(root: &Record, regime: Option<Regime>, report: &mut Report<'_>) -> Option<Solver> {
+/// The solver, for a grid of `order`.
+pub(super) fn read(
+    root: &Record,
+    regime: Option<Regime>,
+    order: Option<usize>,
+    report: &mut Report<'_>,
+) -> Option<Solver> {
     let solver = root.record("solver")?;
+    let kind = background_kind(solver, order, report);
     let background = if solver.gives("background") {
         solver.number("background")
     } else {
-        regime.map(|regime| default_background(regime, report))
+        regime.zip(kind).map(|(regime, kind)| default_background(regime, kind, report))
     };
     let linear = solver.record("linear").and_then(|linear| read_linear(linear, report));
     Some(Solver {
@@ -21,6 +27,7 @@ pub(super) fn read(root: &Record, regime: Option<Regime>, report: &mut Report<'_
         force_tolerance: solver.number("force_tolerance")?,
         max_iterations: usize::try_from(solver.count("max_iterations")?).ok()?,
         background: background?,
+        background_kind: kind?,
         background_cells: match solver.word("background_cells")? {
             "occupied" => Extent::Occupied,
             _ => Extent::PartlyFilled,
@@ -30,14 +37,39 @@ pub(super) fn read(root: &Record, regime: Option<Regime>, report: &mut Report<'_
     })
 }
 
-fn default_background(regime: Regime, report: &mut Report<'_>) -> f64 {
-    let (background, reason) = match regime {
-        Regime::Dynamic => (0.0, "inertia holds nearly empty cells in a dynamic analysis"),
-        Regime::QuasiStatic => (1e-4, "nothing else holds nearly empty cells in a quasi-static analysis"),
+/// What the background resists: curvature, of which linear functions have too little.
+fn background_kind(solver: &Record, order: Option<usize>, report: &mut Report<'_>) -> Option<Kind> {
+    const KEY: &str = "background_kind";
+    let linear = order? == 1;
+    if solver.gives(KEY) {
+        let kind = if solver.word(KEY)? == "curvature" { Kind::Curvature } else { Kind::Laplacian };
+        if linear && kind == Kind::Curvature {
+            let message = "functions of a linear grid have no curvature along an axis: nothing would hold nearly empty \
+                           cells; use \"laplacian\"";
+            solver.error(KEY, message, report);
+        }
+        return Some(kind);
+    }
+    let (kind, word, reason) = if linear {
+        (Kind::Laplacian, "laplacian", "functions of a linear grid have no curvature along an axis")
+    } else {
+        (Kind::Curvature, "curvature", "it leaves affine motions alone")
+    };
+    report.note(solver.path_of(KEY), word, reason);
+    Some(kind)
+}
+
+fn default_background(regime: Regime, kind: Kind, report: &mut Report<'_>) -> f64 {
+    let (background, reason) = match (regime, kind) {
+        (Regime::Dynamic, _) => (0.0, "inertia holds nearly empty cells in a dynamic analysis"),
+        (Regime::QuasiStatic, Kind::Curvature) => (1e-3, QUASI_STATIC),
+        (Regime::QuasiStatic, Kind::Laplacian) => (1e-4, QUASI_STATIC),
     };
     report.note("solver.background", format!("{background:?}"), reason);
     background
 }
+
+const QUASI_STATIC: &str = "nothing else holds nearly empty cells in a quasi-static analysis";
 
 fn read_linear(linear: &Record, report: &mut Report<'_>) -> Option<Linear> {
     let (ksp, pc) = (linear.word("ksp")?, linear.word("pc")?);
