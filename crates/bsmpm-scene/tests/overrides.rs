@@ -2,7 +2,9 @@
 
 use bsmpm::material::{Material, MohrCoulomb};
 use bsmpm::stabilisation::Stabilisation;
-use bsmpm_scene::{Axis, Base, Case, Error, Every, Extent, Face, Initial, Place, Quantity, Site, Support};
+use bsmpm_scene::{
+    Axis, BackgroundKind, Base, Case, Error, Every, Extent, Face, Initial, Place, Quantity, Site, Support,
+};
 
 const FULL: &str = include_str!("full.toml");
 const STATIC: &str = include_str!("bad_cases/static.toml");

@@ -89,12 +89,7 @@ impl Background {
 }
 
 /// Per patch: less than .75 of the cell is filled, and it holds a function at the body's edge.
-fn partly_filled<const D: usize>(
-    grid: &Grid<D>,
-    shape: &Shape<D>,
-    points: &Points<D>,
-    halo: &dyn Halo,
-) -> Vec<bool> {
+fn partly_filled<const D: usize>(grid: &Grid<D>, shape: &Shape<D>, points: &Points<D>, halo: &dyn Halo) -> Vec<bool> {
     let volume = |p: usize| points.volume[p] * points.F[p].determinant();
     let mut held = vec![0.0; grid.nodes()];
     transfer::to_nodes(shape, &mut held, |p| [volume(p)]);

@@ -14,12 +14,7 @@ pub(super) fn read(
     report: &mut Report<'_>,
 ) -> Option<Solver> {
     let solver = root.record("solver")?;
-    let kind = background_kind(solver, order, report);
-    let background = if solver.gives("background") {
-        solver.number("background")
-    } else {
-        regime.zip(kind).map(|(regime, kind)| default_background(regime, kind, report))
-    };
+    let (kind, background) = background(solver, regime, order, report);
     let linear = solver.record("linear").and_then(|linear| read_linear(linear, report));
     Some(Solver {
         nonlinear: if solver.word("nonlinear")? == "broyden" { Nonlinear::Broyden } else { Nonlinear::Auto },
@@ -37,25 +32,44 @@ pub(super) fn read(
     })
 }
 
-/// What the background resists: curvature, of which linear functions have too little.
-fn background_kind(solver: &Record, order: Option<usize>, report: &mut Report<'_>) -> Option<Kind> {
-    const KEY: &str = "background_kind";
-    let linear = order? == 1;
-    if solver.gives(KEY) {
-        let kind = if solver.word(KEY)? == "curvature" { Kind::Curvature } else { Kind::Laplacian };
-        if linear && kind == Kind::Curvature {
-            let message = "functions of a linear grid have no curvature along an axis: nothing would hold nearly empty \
-                           cells; use \"laplacian\"";
-            solver.error(KEY, message, report);
-        }
-        return Some(kind);
-    }
-    let (kind, word, reason) = if linear {
-        (Kind::Laplacian, "laplacian", "functions of a linear grid have no curvature along an axis")
+/// What the background resists, and its coefficient.
+fn background(
+    solver: &Record,
+    regime: Option<Regime>,
+    order: Option<usize>,
+    report: &mut Report<'_>,
+) -> (Option<Kind>, Option<f64>) {
+    let kind = background_kind(solver, order, report);
+    let coefficient = if solver.gives("background") {
+        solver.number("background")
     } else {
-        (Kind::Curvature, "curvature", "it leaves affine motions alone")
+        regime.zip(kind).map(|(regime, kind)| default_background(regime, kind, report))
     };
-    report.note(solver.path_of(KEY), word, reason);
+    if let (Some(kind), Some(true), false) = (kind, coefficient.map(|eps| eps > 0.0), solver.gives(KIND)) {
+        let (word, reason) = match kind {
+            Kind::Laplacian => ("laplacian", "functions of a linear grid have no curvature along an axis"),
+            Kind::Curvature => ("curvature", "it leaves affine motions alone"),
+        };
+        report.note(solver.path_of(KIND), word, reason);
+    }
+    (kind, coefficient)
+}
+
+const KIND: &str = "background_kind";
+
+/// Curvature unless the case wants the other one, or the grid is linear.
+fn background_kind(solver: &Record, order: Option<usize>, report: &mut Report<'_>) -> Option<Kind> {
+    let linear = order? == 1;
+    if !solver.gives(KIND) {
+        return Some(if linear { Kind::Laplacian } else { Kind::Curvature });
+    }
+    let kind = if solver.word(KIND)? == "curvature" { Kind::Curvature } else { Kind::Laplacian };
+    if linear && kind == Kind::Curvature {
+        let message = "functions of a linear grid have no curvature along an axis, so that nothing would hold nearly \
+                       empty cells; use \"laplacian\"";
+        solver.error(KIND, message, report);
+        return None;
+    }
     Some(kind)
 }
 

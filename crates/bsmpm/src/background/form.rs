@@ -48,9 +48,8 @@ impl<'a, const D: usize> Forms<'a, D> {
         let along = |k: usize, axis: usize| k / width.pow((D - 1 - axis) as u32) % width;
         for (entry, sum) in block.iter_mut().enumerate() {
             let (a, b) = (entry / nodes, entry % nodes);
-            let integral = |axis: usize| {
-                self.products[axis][cell[axis]][order(axis)][along(a, axis) * width + along(b, axis)]
-            };
+            let integral =
+                |axis: usize| self.products[axis][cell[axis]][order(axis)][along(a, axis) * width + along(b, axis)];
             *sum += factor * (0..D).map(integral).product::<f64>();
         }
     }
@@ -70,7 +69,7 @@ fn products<const W: usize>(axis: &KnotVector, cell: usize) -> Products {
         let ddN = std::array::from_fn(|a| (after[a] - before[a]) / (2.0 * half));
         for (sum, row) in sums.iter_mut().zip([N, dN, ddN]) {
             for (entry, value) in sum.iter_mut().enumerate() {
-                *value += weight * row[entry / W] * row[entry % W];
+                *value += weight * (row[entry / W] * row[entry % W]);
             }
         }
     }
