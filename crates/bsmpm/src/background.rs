@@ -2,8 +2,8 @@
 //!
 //! A point that enters an empty cell gives its farthest node a stiffness that vanishes faster than its force. The
 //! background ties such nodes to their neighbours; it acts on the step's increment u only, in residual and stiffness
-//! alike, linear in u. So it never accumulates stress, and a large rotation in many steps meets none of it. It is no
-//! part of the paper. A ghost penalty on the faces of cut cells (Burman 2010) has the same aim and reaches over two
+//! alike, linear in u. So it never accumulates stress, however far a body moves or turns in many steps: it is a drag,
+//! weaker in smaller steps. It is no part of the paper. A ghost penalty on the faces of cut cells (Burman 2010) has the same aim and reaches over two
 //! cells, q + 2 layers of nodes; the forms here stay within a cell, and need neither a wider matrix nor more exchange.
 
 mod form;
@@ -18,10 +18,12 @@ use form::Forms;
 /// What the background resists.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// eps E int |grad u|^2 dV: every deformation, and rotation.
+    /// eps E int |grad u|^2 dV: every deformation, and rotation. In all occupied cells it slows down what fails: a slope
+    /// far beyond its strength comes to rest in coarse steps, on half of its way.
     Laplacian,
     /// eps E int sum_ij h_i h_j (d2u / dx_i dx_j)^2 dV: how far a cell departs from the linear extrapolation of its
-    /// neighbours. An affine motion meets no resistance; a linear grid has next to nothing that it could hold.
+    /// neighbours. An affine motion of the step meets no resistance: no strain, and no rotation as far as it is linear
+    /// in space, so large ones too. On a linear grid only the mixed term is left, and holds next to nothing.
     Curvature,
 }
 
