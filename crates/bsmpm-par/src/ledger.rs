@@ -90,8 +90,12 @@ impl Ledger {
         let sizes = &mut self.manifest.sizes;
         sizes.insert("active_nodes".into(), report.active_nodes as u64);
         sizes.insert("unknowns".into(), report.unknowns as u64);
-        let massless = sizes.entry("most_massless_nodes".into()).or_default();
-        *massless = (*massless).max(report.massless_nodes as u64);
+        for (name, count) in
+            [("most_massless_nodes", report.massless_nodes), ("most_background_cells", report.background_cells)]
+        {
+            let most = sizes.entry(name.into()).or_default();
+            *most = (*most).max(count as u64);
+        }
         let row = Step {
             step: number,
             time: accepted.t,

@@ -39,8 +39,11 @@ pub fn model(case: &Case) -> Result<Model<PlaneStrain, 2>, GridError> {
         boundary: boundary(case, &grid),
         grid,
         stabilisation: case.stabilisation,
-        background: (case.solver.background > 0.0)
-            .then_some(Background { coefficient: case.solver.background, extent: case.solver.background_cells }),
+        background: (case.solver.background > 0.0).then_some(Background {
+            kind: case.solver.background_kind,
+            coefficient: case.solver.background,
+            extent: case.solver.background_cells,
+        }),
         criteria: Criteria {
             energy: case.solver.tolerance,
             force: case.solver.force_tolerance,

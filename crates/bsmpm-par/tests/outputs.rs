@@ -179,7 +179,9 @@ fn the_manifest_explains_a_finished_run() {
     );
     assert!(manifest.failure.is_none() && manifest.checkpoint.is_none() && manifest.warnings.is_empty());
     let background = manifest.choices.iter().find(|choice| choice.key == "solver.background").unwrap();
-    assert!(background.value == "0.0001" && background.reason.contains("quasi-static"), "{background:?}");
+    assert!(background.value == "0.001" && background.reason.contains("quasi-static"), "{background:?}");
+    let kind = manifest.choices.iter().find(|choice| choice.key == "solver.background_kind").unwrap();
+    assert!(kind.value == "curvature" && manifest.sizes.contains_key("most_background_cells"), "{kind:?}");
     let check = &manifest.checks[0];
     assert!(check.passed && check.value == history(&directory).get("height").unwrap().last().copied(), "{check:?}");
     complete(&directory, &manifest);

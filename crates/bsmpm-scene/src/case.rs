@@ -13,7 +13,7 @@ use crate::region::Region;
 use crate::report::Report;
 use crate::source::{Source, decode};
 use crate::{overrides, record, validate};
-use bsmpm::background::Extent;
+use bsmpm::background::{Extent, Kind};
 use bsmpm::material::Material;
 use bsmpm::model::Regime;
 use bsmpm::stabilisation::Stabilisation;
@@ -201,6 +201,8 @@ pub struct Solver {
     pub max_iterations: usize,
     /// -  coefficient of the soft background; 0: none
     pub background: f64,
+    /// What the background resists.
+    pub background_kind: Kind,
     /// Cells that get the background.
     pub background_cells: Extent,
     /// The linear solver.

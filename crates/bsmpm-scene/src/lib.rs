@@ -24,7 +24,7 @@ mod seed;
 mod source;
 mod validate;
 
-pub use bsmpm::background::Extent;
+pub use bsmpm::background::{Extent, Kind as BackgroundKind};
 pub use bsmpm::model::Regime;
 pub use bsmpm::points::Seed;
 pub use case::{

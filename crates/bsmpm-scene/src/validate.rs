@@ -45,7 +45,7 @@ pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Op
     let point_loads = load::point_loads(record, around, report);
     let initial = load::initial(record, (materials.as_deref(), made), gravity.as_ref(), report);
     let stabilisation = stabilisation(record);
-    let solver = solver::read(record, regime, report);
+    let solver = solver::read(record, regime, grid.as_ref().map(|grid| grid.order), report);
     let output = output::read(record, end, report);
     let histories = history::read_all(record, (regime, grid.as_ref()), report);
     let checks = history::checks(record, &histories, end, report);

@@ -2,7 +2,9 @@
 
 use bsmpm::material::{Material, MohrCoulomb};
 use bsmpm::stabilisation::Stabilisation;
-use bsmpm_scene::{Axis, Base, Case, Error, Every, Extent, Face, Initial, Place, Quantity, Site, Support};
+use bsmpm_scene::{
+    Axis, BackgroundKind, Base, Case, Error, Every, Extent, Face, Initial, Place, Quantity, Site, Support,
+};
 
 const FULL: &str = include_str!("full.toml");
 const STATIC: &str = include_str!("bad_cases/static.toml");
@@ -125,6 +127,7 @@ fn the_full_case_in_si() {
     assert_eq!(case.bodies[2].velocity, Some([0.0, -1.0]));
     assert_eq!(case.boundary, [[Support::Roller; 2], [Support::Fixed, Support::Free]]);
     assert_eq!((case.solver.background, case.solver.background_cells), (0.0, Extent::Occupied));
+    assert_eq!(case.solver.background_kind, BackgroundKind::Laplacian);
     assert_eq!(case.output.times, [0.25, 0.75]);
     assert_eq!(case.histories[1].quantity, Quantity::Reaction { face: Face { axis: 1, upper: false } });
     let columns: Vec<String> = case.histories.iter().flat_map(|h| h.columns()).map(|c| c.name).collect();
@@ -148,11 +151,33 @@ fn the_full_case_in_si() {
 }
 
 #[test]
+fn the_background_is_curvature_unless_the_grid_is_linear() {
+    let kind = |overrides: &[&str]| {
+        let solver = valid(STATIC, overrides).solver;
+        (solver.background_kind, solver.background, solver.background_cells)
+    };
+    let (curvature, laplacian) = (BackgroundKind::Curvature, BackgroundKind::Laplacian);
+    assert_eq!(kind(&["grid.order=quadratic"]), (curvature, 1e-3, Extent::PartlyFilled));
+    assert_eq!(kind(&["grid.order=cubic", "solver.background=0.5"]), (curvature, 0.5, Extent::PartlyFilled));
+    assert_eq!(kind(&["grid.order=linear"]), (laplacian, 1e-4, Extent::PartlyFilled));
+    let given = ["grid.order=quadratic", "solver.background_kind=laplacian", "solver.background_cells=occupied"];
+    assert_eq!(kind(&given), (laplacian, 1e-4, Extent::Occupied));
+    let errors = set(STATIC, &["grid.order=linear", "solver.background_kind=curvature"]).unwrap_err();
+    assert!(errors.len() == 1 && errors[0].message.contains("use \"laplacian\""), "{errors:?}");
+    let free = valid(FULL, &["solver.background=0"]);
+    assert!(free.notes.iter().all(|note| note.key != "solver.background_kind"), "there is none to speak of");
+}
+
+#[test]
 fn what_the_program_chooses_is_noted() {
     let case = valid(STATIC, &[]);
     let noted = |key: &str| case.notes.iter().find(|note| note.key == key).map(|note| note.value.as_str());
-    assert_eq!((noted("solver.background"), noted("solver.tolerance")), (Some("0.0001"), Some("1e-8")));
-    assert_eq!((case.solver.background, case.solver.linear.factor), (1e-4, Some("mumps")));
+    assert_eq!((noted("solver.background"), noted("solver.tolerance")), (Some("0.001"), Some("1e-8")));
+    assert_eq!((case.solver.background, case.solver.linear.factor), (1e-3, Some("mumps")));
+    assert_eq!(
+        (case.solver.background_kind, noted("solver.background_kind")),
+        (BackgroundKind::Curvature, Some("curvature"))
+    );
     let case = valid(&STATIC.replace("end   = 1.0\n", ""), &[]);
     assert_eq!(case.analysis.end, 1.0);
     assert!(case.notes.iter().any(|note| note.key == "analysis.end"));

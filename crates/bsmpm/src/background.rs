@@ -1,26 +1,46 @@
-//! A soft elastic background in occupied cells, against nodes that hold next to no material.
+//! A soft elastic background in nearly empty cells, where nodes hold next to no material.
 //!
 //! A point that enters an empty cell gives its farthest node a stiffness that vanishes faster than its force. The
-//! background adds eps E x (grid Laplacian) over occupied cells; it acts on the step's increment u, in residual and
-//! stiffness alike, so that it never accumulates stress. It is no part of the paper.
+//! background ties such nodes to their neighbours; it acts on the step's increment u only, in residual and stiffness
+//! alike, linear in u. So it never accumulates stress, however far a body moves or turns in many steps: it is a drag,
+//! weaker in smaller steps. It is no part of the paper. A ghost penalty on the faces of cut cells (Burman 2010) has the same aim and reaches over two
+//! cells, q + 2 layers of nodes; the forms here stay within a cell, and need neither a wider matrix nor more exchange.
+
+mod form;
 
 use crate::grid::shape::{Patch, Shape};
-use crate::grid::{Grid, KnotVector};
+use crate::grid::{Grid, transfer};
 use crate::material::Material;
 use crate::points::Points;
+use crate::seam::Halo;
+use form::Forms;
+
+/// What the background resists.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// eps E int |grad u|^2 dV: every deformation, and rotation. In all occupied cells it slows down what fails: a slope
+    /// far beyond its strength comes to rest in coarse steps, on half of its way.
+    Laplacian,
+    /// eps E int sum_ij h_i h_j (d2u / dx_i dx_j)^2 dV: how far a cell departs from the linear extrapolation of its
+    /// neighbours. An affine motion of the step meets no resistance: no strain, and no rotation as far as it is linear
+    /// in space, so large ones too. On a linear grid only the mixed term is left, and holds next to nothing.
+    Curvature,
+}
 
 /// Which occupied cells get the background.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Extent {
     /// All occupied cells.
     Occupied,
-    /// Cells whose points fill less than .75 of them.
+    /// Cells at the body's edge whose points fill less than .75 of them.
     PartlyFilled,
 }
 
-/// Coefficient and extent of the background.
+/// Form, coefficient and extent of the background.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Background {
+    /// the form
+    pub kind: Kind,
     /// -  fraction eps of the largest modulus in the cell
     pub coefficient: f64,
     /// the cells concerned
@@ -33,19 +53,24 @@ pub struct Blocks {
     cells: Vec<(usize, Vec<f64>)>, // patch number; Pa m^(D-2), row-major (q+1)^D square
 }
 
-/// Fill below which a cell counts as partly filled.
+/// Fill below which a cell counts as partly filled. Results hardly depend on it between .5 and .9.
 const FILLED: f64 = 0.75;
 
+/// Fill of a function's support below which the function lies at the body's edge. Points that stray between the cells
+/// of a sheared or stretched body leave single cells two thirds full in its middle, but no function half empty.
+const SUPPORTED: f64 = 0.5;
+
 impl Background {
-    /// Blocks eps E int_cell grad N_a . grad N_b dV of the cells concerned.
+    /// Blocks of the cells concerned, eps E times the form.
     pub fn blocks<const D: usize>(
         &self,
         grid: &Grid<D>,
         shape: &Shape<D>,
         points: &Points<D>,
         materials: &[Material],
+        halo: &dyn Halo,
     ) -> Blocks {
-        let tables: Vec<AxisTable> = grid.axes().iter().map(AxisTable::new).collect();
+        let forms = Forms::new(grid, self.kind);
         let modulus = |patch: &Patch| {
             let young = |p: usize| {
                 let material = &materials[usize::from(points.material[p])];
@@ -53,22 +78,31 @@ impl Background {
             };
             patch.points.clone().map(young).fold(0.0, f64::max)
         };
-        let concerned = |patch: &Patch| match self.extent {
-            Extent::Occupied => true,
-            Extent::PartlyFilled => {
-                let (_, size) = grid.cell_box(&grid.cell_at(patch.cell));
-                let held = patch.points.clone().map(|p| points.volume[p] * points.F[p].determinant());
-                held.sum::<f64>() < FILLED * size.product()
-            }
+        let concerned: Vec<bool> = match self.extent {
+            Extent::Occupied => vec![true; shape.patches().len()],
+            Extent::PartlyFilled => partly_filled(grid, shape, points, halo),
         };
-        let cells = shape.patches().iter().enumerate().filter(|(_, patch)| concerned(patch));
+        let cells = shape.patches().iter().enumerate().filter(|(number, _)| concerned[*number]);
         let block = |(number, patch): (usize, &Patch)| {
-            let laplacian = laplacian(&tables, &grid.cell_at(patch.cell), shape.width());
-            let factor = self.coefficient * modulus(patch);
-            (number, laplacian.into_iter().map(|entry| factor * entry).collect())
+            (number, forms.block(&grid.cell_at(patch.cell), self.coefficient * modulus(patch)))
         };
         Blocks { cells: cells.map(block).collect() }
     }
+}
+
+/// Per patch: less than .75 of the cell is filled, and it holds a function at the body's edge.
+fn partly_filled<const D: usize>(grid: &Grid<D>, shape: &Shape<D>, points: &Points<D>, halo: &dyn Halo) -> Vec<bool> {
+    let volume = |p: usize| points.volume[p] * points.F[p].determinant();
+    let mut held = vec![0.0; grid.nodes()];
+    transfer::to_nodes(shape, &mut held, |p| [volume(p)]);
+    halo.sum(&mut held, 1);
+    let at_the_edge = |node: usize| held[node] < SUPPORTED * grid.node_volume(node);
+    let concerned = |patch: &Patch| {
+        let (_, size) = grid.cell_box(&grid.cell_at(patch.cell));
+        patch.points.clone().map(volume).sum::<f64>() < FILLED * size.product()
+            && shape.offsets().iter().any(|offset| at_the_edge(patch.first_node + offset))
+    };
+    shape.patches().iter().map(concerned).collect()
 }
 
 impl Blocks {
@@ -86,69 +120,14 @@ impl Blocks {
         }
     }
 
+    /// Number of cells concerned, of this rank.
+    pub fn cells(&self) -> usize {
+        self.cells.len()
+    }
+
     /// Block of a patch by its number, if it has one.
     pub fn of(&self, patch: usize) -> Option<&[f64]> {
         let found = self.cells.binary_search_by_key(&patch, |(number, _)| *number).ok()?;
         Some(&self.cells[found].1)
     }
-}
-
-/// int N_a N_b and int N_a' N_b' over every cell of one axis.
-struct AxisTable {
-    mass: Vec<Vec<f64>>,
-    stiffness: Vec<Vec<f64>>,
-}
-
-impl AxisTable {
-    fn new(axis: &KnotVector) -> Self {
-        crate::grid::shape::with_width!(axis.order() + 1, W => Self::with::<W>(axis))
-    }
-
-    fn with<const W: usize>(axis: &KnotVector) -> Self {
-        let (mut mass, mut stiffness) = (Vec::new(), Vec::new());
-        for cell in 0..axis.cells() {
-            let (lower, upper) = (axis.breakpoint(cell), axis.breakpoint(cell + 1));
-            let (mut m, mut s) = (vec![0.0; W * W], vec![0.0; W * W]);
-            for (at, weight) in GAUSS {
-                let length = 0.5 * (upper - lower);
-                let (N, dN) = axis.basis::<W>(0.5 * (lower + upper) + at * length, cell);
-                for a in 0..W {
-                    for b in 0..W {
-                        m[a * W + b] += weight * length * N[a] * N[b];
-                        s[a * W + b] += weight * length * dN[a] * dN[b];
-                    }
-                }
-            }
-            mass.push(m);
-            stiffness.push(s);
-        }
-        Self { mass, stiffness }
-    }
-}
-
-/// Gauss-Legendre rule of four points on [-1, 1]: exact for products of two cubics.
-const GAUSS: [(f64, f64); 4] = [
-    (-0.861_136_311_594_052_6, 0.347_854_845_137_453_85),
-    (-0.339_981_043_584_856_3, 0.652_145_154_862_546_1),
-    (0.339_981_043_584_856_3, 0.652_145_154_862_546_1),
-    (0.861_136_311_594_052_6, 0.347_854_845_137_453_85),
-];
-
-/// int grad N_a . grad N_b over a cell: stiffness along one axis times mass along the others, summed over the axes.
-fn laplacian<const D: usize>(tables: &[AxisTable], cell: &[usize; D], width: usize) -> Vec<f64> {
-    let nodes = width.pow(D as u32);
-    let along = |k: usize, axis: usize| k / width.pow((D - 1 - axis) as u32) % width;
-    let mut block = vec![0.0; nodes * nodes];
-    for (entry, sum) in block.iter_mut().enumerate() {
-        let (a, b) = (entry / nodes, entry % nodes);
-        for derived in 0..D {
-            *sum += (0..D)
-                .map(|axis| {
-                    let table = if axis == derived { &tables[axis].stiffness } else { &tables[axis].mass };
-                    table[cell[axis]][along(a, axis) * width + along(b, axis)]
-                })
-                .product::<f64>();
-        }
-    }
-    block
 }

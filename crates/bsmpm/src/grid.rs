@@ -156,6 +156,12 @@ impl<const D: usize> Grid<D> {
         (lower, size)
     }
 
+    /// Integral of a node's function over the grid, m^D.
+    pub fn node_volume(&self, node: usize) -> f64 {
+        let node = self.node_at(node);
+        (0..D).map(|axis| self.axes[axis].integral(node[axis])).product()
+    }
+
     /// Smallest edge of any cell, m.
     pub fn smallest_edge(&self) -> f64 {
         self.axes.iter().map(KnotVector::smallest_cell).fold(f64::INFINITY, f64::min)

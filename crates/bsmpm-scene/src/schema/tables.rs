@@ -165,8 +165,14 @@ static SOLVER: Table = Table {
         key("tolerance", Quantity(In::Number, FRACTION), Default("1e-8"), "energy measure"),
         key("force_tolerance", Quantity(In::Number, FRACTION), Default("1e-4"), "force measure; both must hold"),
         key("max_iterations", Count(1, 100_000), Default("200"), "iterations of one attempt"),
-        key("background", Quantity(In::Number, UP_TO_1), Optional, "soft background; 1e-4 quasi-static, else 0"),
-        key("background_cells", CELLS, Default("\"occupied\""), "cells that get the background"),
+        key(
+            "background",
+            Quantity(In::Number, UP_TO_1),
+            Optional,
+            "soft background; quasi-static 1e-4 (curvature: 1e-3), dynamic 0",
+        ),
+        key("background_kind", BACKGROUND, Default("\"laplacian\""), "what it resists"),
+        key("background_cells", CELLS, Optional, "cells that get it; occupied (curvature: partly-filled)"),
         key("linear", Kind::Table(&LINEAR), Default("{}"), "the linear solver, by PETSc's names"),
         key(
             "reproducible",
@@ -180,6 +186,7 @@ static SOLVER: Table = Table {
 
 const FRACTION: Range = Range::of(Excluded(0.0), Excluded(1.0));
 const UP_TO_1: Range = Range::of(Included(0.0), Included(1.0));
+const BACKGROUND: Kind = Choice(&["laplacian", "curvature"], &[]);
 const CELLS: Kind = Choice(&["occupied", "partly-filled"], &[]);
 
 static LINEAR: Table = Table {

@@ -77,6 +77,11 @@ impl KnotVector {
         self.knots[i + 1..=i + self.order].iter().sum::<f64>() / self.order as f64
     }
 
+    /// Integral of function `i`: the length of its support over q + 1, m.
+    pub fn integral(&self, i: usize) -> f64 {
+        (self.knots[i + self.order + 1] - self.knots[i]) / (self.order + 1) as f64
+    }
+
     /// Shortest cell, m.
     pub fn smallest_cell(&self) -> f64 {
         (0..self.cells()).map(|i| self.breakpoint(i + 1) - self.breakpoint(i)).fold(f64::INFINITY, f64::min)

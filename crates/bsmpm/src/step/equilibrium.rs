@@ -77,6 +77,7 @@ impl Found {
             active_nodes: nodes.active_nodes,
             unknowns: nodes.unknowns,
             massless_nodes: nodes.massless_nodes,
+            background_cells: nodes.background_cells,
             first_guess: self.first_guess,
             reactions: scene.model.boundary.reactions(&scene.model.grid, &self.reaction, scene.halo),
             strips: Vec::new(),

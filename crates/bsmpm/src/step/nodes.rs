@@ -68,6 +68,8 @@ pub struct Nodes<const D: usize> {
     pub unknowns: usize,
     /// active nodes without mass, over all ranks
     pub massless_nodes: usize,
+    /// cells with the soft background, over all ranks
+    pub background_cells: usize,
     /// weight at and below which a node counts as massless
     threshold: f64,
     /// what dilations are averaged with under consistent F-bar
@@ -91,9 +93,9 @@ impl<const D: usize> Nodes<D> {
         let velocities = model.boundary.velocities(&model.grid);
         let inertia = (model.regime == Regime::Dynamic)
             .then(|| map_inertia(shape, points, &weight, threshold, &velocities, dt, halo));
-        let background = model.background.map(|soft| soft.blocks(&model.grid, shape, points, &model.materials));
-        let (active, stiff) = supported(shape, points, nodes, halo);
-        let unknown = |node: usize| active[node] && (weight[node] > threshold || stiff[node] || background.is_some());
+        let background = model.background.map(|soft| soft.blocks(&model.grid, shape, points, &model.materials, halo));
+        let (active, stiff) = supported(shape, points, background.as_ref(), nodes, halo);
+        let unknown = |node: usize| active[node] && (weight[node] > threshold || stiff[node]);
         let free = velocities.iter().enumerate().map(|(c, v)| v.is_none() && unknown(c / D)).collect();
         let mut f_ext = external_force(model, shape, points, t + dt, &weight, halo);
         let window = (&model.grid, &active[..]);
@@ -112,6 +114,7 @@ impl<const D: usize> Nodes<D> {
             active_nodes: 0,
             unknowns: 0,
             massless_nodes: 0,
+            background_cells: 0,
             threshold,
             weight,
             active,
@@ -160,9 +163,11 @@ impl<const D: usize> Nodes<D> {
             count(&mut self.active[owned.clone()].iter().copied()),
             count(&mut self.free[owned.start * D..owned.end * D].iter().copied()),
             count(&mut owned.map(|node| self.active[node] && self.weight[node] <= self.threshold)),
+            self.background.as_ref().map_or(0, Blocks::cells) as f64,
         ];
         halo.reduce(&mut counts);
-        [self.active_nodes, self.unknowns, self.massless_nodes] = counts.map(|count| count as usize);
+        [self.active_nodes, self.unknowns, self.massless_nodes, self.background_cells] =
+            counts.map(|count| count as usize);
     }
 }
 
@@ -231,27 +236,33 @@ fn map_inertia<const D: usize>(
     inertia
 }
 
-/// Per node: touched by an occupied cell, and: touched by a point with a gradient, so that its stiffness is positive.
+/// Per node: touched by an occupied cell, and: touched by a point with a gradient or by the background, so that its
+/// stiffness is positive.
 fn supported<const D: usize>(
     shape: &Shape<D>,
     points: &Points<D>,
+    background: Option<&Blocks>,
     nodes: usize,
     halo: &dyn Halo,
 ) -> (Vec<bool>, Vec<bool>) {
-    let mut touched = vec![0.0; nodes];
-    for patch in shape.patches() {
+    let mut touched = vec![0.0; 2 * nodes]; // by a cell, by the background
+    for (number, patch) in shape.patches().iter().enumerate() {
+        let soft = background.is_some_and(|blocks| blocks.of(number).is_some());
         for offset in shape.offsets() {
-            touched[patch.first_node + offset] = 1.0;
+            let marks = &mut touched[2 * (patch.first_node + offset)..][..2];
+            marks[0] = 1.0;
+            marks[1] += f64::from(u8::from(soft));
         }
     }
-    halo.sum(&mut touched, 1);
+    halo.sum(&mut touched, 2);
     let mut stiff = vec![0.0; nodes];
     transfer::squared_gradients(shape, &mut stiff, |p| points.volume[p]);
     halo.sum(&mut stiff, 1);
     let mut stiffest = [stiff.iter().copied().fold(0.0, f64::max)];
     halo.maximum(&mut stiffest);
     let above = MASSLESS * stiffest[0];
-    (touched.iter().map(|&t| t > 0.0).collect(), stiff.iter().map(|&s| s > above).collect())
+    let held = stiff.iter().zip(touched.chunks_exact(2)).map(|(&stiff, marks)| stiff > above || marks[1] > 0.0);
+    (touched.chunks_exact(2).map(|marks| marks[0] > 0.0).collect(), held.collect())
 }
 
 /// Body force (step 2d): sum_p N_Ip m_p g(t + dt).

@@ -3,6 +3,7 @@
 
 #![allow(non_snake_case)] // the paper's letters, as in the crate
 
+mod background;
 mod broyden;
 mod dilation;
 mod kinematics;

@@ -183,3 +183,71 @@ impl LinearSolver for Reluctant {
         self.solver.solve_with(product, relative, rhs, solution)
     }
 }
+
+/// The whole matrix, to look at its spectrum; it solves nothing.
+#[derive(Clone, Debug)]
+pub struct Dense {
+    components: usize,
+    offsets: Vec<usize>,
+    number: Vec<Option<usize>>, // of the unknown, per nodal component
+    matrix: DMatrix<f64>,
+}
+
+impl Dense {
+    /// For the systems of `grid`.
+    pub fn new<const D: usize>(grid: &Grid<D>) -> Self {
+        Self { components: D, offsets: grid.offsets(), number: Vec::new(), matrix: DMatrix::zeros(0, 0) }
+    }
+
+    /// Largest over smallest eigenvalue of the symmetric matrix: as it is, and scaled to a unit diagonal. Infinite if it
+    /// is not positive definite to rounding.
+    pub fn conditions(&self) -> [f64; 2] {
+        let diagonal = self.matrix.diagonal();
+        let scaled = self.matrix.map_with_location(|i, j, value| value / (diagonal[i] * diagonal[j]).sqrt());
+        [self.matrix.clone(), scaled].map(|matrix| {
+            let values = matrix.symmetric_eigenvalues();
+            if values.min() > 0.0 { values.max() / values.min() } else { f64::INFINITY }
+        })
+    }
+}
+
+impl LinearSolver for Dense {
+    fn begin(&mut self, free: &[bool]) {
+        let mut count = 0;
+        let numbered = free.iter().map(|&free| {
+            count += usize::from(free);
+            free.then(|| count - 1)
+        });
+        self.number = numbered.collect();
+        self.matrix = DMatrix::zeros(count, count);
+    }
+
+    fn add(&mut self, first_node: usize, block: &[f64]) {
+        let components = self.components;
+        let of_node = |&offset: &usize| (0..components).map(move |c| (first_node + offset) * components + c);
+        let unknowns: Vec<_> = self.offsets.iter().flat_map(of_node).map(|c| self.number[c]).collect();
+        for (row, values) in unknowns.iter().zip(block.chunks_exact(unknowns.len())) {
+            for (column, value) in unknowns.iter().zip(values) {
+                if let (Some(row), Some(column)) = (row, column) {
+                    self.matrix[(*row, *column)] += value;
+                }
+            }
+        }
+    }
+
+    fn add_diagonal(&mut self, diagonal: &[f64]) {
+        for (number, value) in self.number.iter().zip(diagonal) {
+            if let Some(row) = number {
+                self.matrix[(*row, *row)] += value;
+            }
+        }
+    }
+
+    fn finish(&mut self, _symmetry: Symmetry) -> Result<(), SolveError> {
+        Ok(())
+    }
+
+    fn solve(&mut self, _: &[f64], _: &mut [f64]) -> Result<usize, SolveError> {
+        Err(SolveError::Failed("it only holds the matrix".into()))
+    }
+}

@@ -6,6 +6,7 @@
 mod bar;
 mod column;
 mod dynamics;
+mod entering;
 mod geostatic;
 mod invariance;
 mod locking;

@@ -1,0 +1,85 @@
+//! The quadratic forms of the background over a cell, exact: products of one-dimensional integrals.
+
+use super::Kind;
+use crate::grid::shape::with_width;
+use crate::grid::{Grid, KnotVector};
+
+/// What all blocks of a kind need.
+pub(super) struct Forms<'a, const D: usize> {
+    grid: &'a Grid<D>,
+    kind: Kind,
+    products: [Vec<Products>; D], // per axis and cell
+}
+
+/// int N_a N_b, int N_a' N_b' and int N_a'' N_b'' over a cell of one axis, row-major (q + 1) square; m, 1/m, 1/m^3.
+type Products = [Vec<f64>; 3];
+
+impl<'a, const D: usize> Forms<'a, D> {
+    pub(super) fn new(grid: &'a Grid<D>, kind: Kind) -> Self {
+        let of_axis = |axis: &KnotVector| {
+            with_width!(axis.order() + 1, W => {
+                (0..axis.cells()).map(|cell| products::<W>(axis, cell)).collect()
+            })
+        };
+        Self { grid, kind, products: grid.axes().each_ref().map(of_axis) }
+    }
+
+    /// `factor` times the form of a cell, row-major (q + 1)^D square; m^(D-2) times the unit of the factor.
+    pub(super) fn block(&self, cell: &[usize; D], factor: f64) -> Vec<f64> {
+        let mut block = vec![0.0; self.grid.cell_nodes().pow(2)];
+        let size = self.grid.cell_box(cell).1;
+        for i in 0..D {
+            match self.kind {
+                Kind::Laplacian => self.add(cell, factor, |axis| usize::from(axis == i), &mut block),
+                Kind::Curvature => {
+                    for j in 0..D {
+                        let order = |axis| usize::from(axis == i) + usize::from(axis == j);
+                        self.add(cell, factor * size[i] * size[j], order, &mut block);
+                    }
+                }
+            }
+        }
+        block
+    }
+
+    /// Adds `factor` times the integral of the products of the functions' derivatives of `order(axis)` along each axis.
+    fn add(&self, cell: &[usize; D], factor: f64, order: impl Fn(usize) -> usize, block: &mut [f64]) {
+        let (width, nodes) = (self.grid.order() + 1, self.grid.cell_nodes());
+        let along = |k: usize, axis: usize| k / width.pow((D - 1 - axis) as u32) % width;
+        for (entry, sum) in block.iter_mut().enumerate() {
+            let (a, b) = (entry / nodes, entry % nodes);
+            let integral =
+                |axis: usize| self.products[axis][cell[axis]][order(axis)][along(a, axis) * width + along(b, axis)];
+            *sum += factor * (0..D).map(integral).product::<f64>();
+        }
+    }
+}
+
+fn products<const W: usize>(axis: &KnotVector, cell: usize) -> Products {
+    let (lower, upper) = (axis.breakpoint(cell), axis.breakpoint(cell + 1));
+    let (middle, half) = (0.5 * (lower + upper), 0.5 * (upper - lower));
+    // N' is at most quadratic in a cell: its central difference over any distance is N''.
+    let (behind, ahead) = (middle - half, middle + half);
+    let mut sums = [(); 3].map(|()| vec![0.0; W * W]);
+    for (at, weight) in GAUSS {
+        let (shift, weight) = (at * half, weight * half);
+        let (N, dN) = axis.basis::<W>(middle + shift, cell);
+        let slope = |x: f64| axis.basis::<W>(x + shift, cell).1;
+        let (before, after) = (slope(behind), slope(ahead));
+        let ddN = std::array::from_fn(|a| (after[a] - before[a]) / (2.0 * half));
+        for (sum, row) in sums.iter_mut().zip([N, dN, ddN]) {
+            for (entry, value) in sum.iter_mut().enumerate() {
+                *value += weight * (row[entry / W] * row[entry % W]);
+            }
+        }
+    }
+    sums
+}
+
+/// Gauss-Legendre rule of four points on [-1, 1]: exact for products of two cubics.
+const GAUSS: [(f64, f64); 4] = [
+    (-0.861_136_311_594_052_6, 0.347_854_845_137_453_85),
+    (-0.339_981_043_584_856_3, 0.652_145_154_862_546_1),
+    (0.339_981_043_584_856_3, 0.652_145_154_862_546_1),
+    (0.861_136_311_594_052_6, 0.347_854_845_137_453_85),
+];
