@@ -6,7 +6,7 @@
 
 use std::env;
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::thread;
 use std::time::Instant;
 
@@ -104,9 +104,11 @@ pub fn run(arguments: &Arguments, mut told: impl FnMut(&str)) -> Result<(String,
     })?;
     let mut report = Report::of(&subject, plan, &command, &curve, made);
     report.seconds = start.elapsed().as_secs_f64();
-    write(&output.join("fos.csv"), &report.csv())?;
-    let json = serde_json::to_string_pretty(&report).map_err(|error| Error::Usage { reason: error.to_string() })?;
-    write(&output.join("fos.json"), &(json + "\n"))?;
+    atomic::replace(&output.join("fos.csv"), |file| file.write_all(report.csv().as_bytes()))?;
+    atomic::replace(&output.join("fos.json"), |file| {
+        serde_json::to_writer_pretty(&mut *file, &report)?;
+        file.write_all(b"\n")
+    })?;
     let pictures = picture::draw(&report, &subject, &output)?;
     Ok((report.text(), pictures.iter().map(|name| output.join(name)).collect()))
 }
@@ -166,10 +168,6 @@ fn line(trial: &Trial) -> String {
         trial.seconds,
         early.unwrap_or_default()
     )
-}
-
-fn write(path: &Path, text: &str) -> Result<(), Error> {
-    Ok(atomic::replace(path, |file| file.write_all(text.as_bytes()))?)
 }
 
 #[cfg(test)]

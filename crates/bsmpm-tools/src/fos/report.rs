@@ -91,8 +91,7 @@ impl Report {
             state if curve.is_failed(kink.as_ref(), &state) => Verdict::Failed,
             _ => Verdict::Stable,
         };
-        let row =
-            |trial: Trial| Row { verdict: verdict(&trial), growth: curve.growth(&trial.state()), trial };
+        let row = |trial: Trial| Row { verdict: verdict(&trial), growth: curve.growth(&trial.state()), trial };
         let mut rows: Vec<Row> = trials.into_iter().map(row).collect();
         rows.sort_by(|a, b| a.trial.factor.total_cmp(&b.trial.factor));
         Self {
@@ -174,8 +173,8 @@ impl Verdict {
 }
 
 fn table(rows: &[Row], column: &str) -> String {
-    let headings =
-        ["factor", "verdict", column, "/ elastic", "plastic strain", "iterations", "cuts", "CPU s", "s"].map(str::to_owned);
+    let headings = ["factor", "verdict", column, "/ elastic", "plastic strain", "iterations", "cuts", "CPU s", "s"]
+        .map(str::to_owned);
     let cells = |row: &Row| {
         let Trial { factor, displacement, plastic_strain, iterations, cuts, cpu_seconds, seconds, .. } = &row.trial;
         [

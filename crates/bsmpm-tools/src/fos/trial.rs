@@ -83,8 +83,8 @@ impl Trials<'_> {
         let next = AtomicUsize::new(0);
         let made: Mutex<Vec<(usize, Result<Trial, Error>)>> = Mutex::new(Vec::new());
         let work = || {
-            while let Some((index, &factor)) = Some(next.fetch_add(1, Ordering::Relaxed))
-                .and_then(|index| Some((index, factors.get(index)?)))
+            while let Some((index, &factor)) =
+                Some(next.fetch_add(1, Ordering::Relaxed)).and_then(|index| Some((index, factors.get(index)?)))
             {
                 let trial = self.trial(factor);
                 if trial.is_err() {
@@ -115,20 +115,15 @@ impl Trials<'_> {
         let text = self.subject.text(factor)?;
         // The same text is the same trial, on whatever ranks; but not of another solver.
         let origin = self.solver.stamp().map(|stamp| format!("{stamp}\n\n{text}"));
-        let task =
-            Task { arguments: &arguments, directory: &directory, origin: origin.as_deref(), force: self.force };
+        let task = Task { arguments: &arguments, directory: &directory, origin: origin.as_deref(), force: self.force };
         let code = self.solver.perform(&task, |manifest| manifest.case.text == text)?;
         self.read(factor, &directory, within, code)
     }
 
     fn read(&self, factor: f64, directory: &Path, within: PathBuf, code: Option<u8>) -> Result<Trial, Error> {
         let ending = Ending::of(directory, code);
-        let broken = |reason: String| Error::Trial {
-            factor,
-            code: ending.code,
-            reason,
-            log: launch::beside(directory, "log"),
-        };
+        let broken =
+            |reason: String| Error::Trial { factor, code: ending.code, reason, log: launch::beside(directory, "log") };
         let manifest = match (&ending.manifest, ending.code) {
             (Some(manifest), DONE | CHECK | NO_CONVERGENCE | LEFT) => manifest,
             _ => return Err(broken(ending.reason.clone())),

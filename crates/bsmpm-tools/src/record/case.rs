@@ -64,7 +64,8 @@ impl Case {
             Some(DeValue::Array(list)) => list.iter().filter_map(|item| History::of(item.get_ref())).collect(),
             _ => Vec::new(),
         };
-        let reduction = table(root, "strength_reduction").and_then(|reduction| number(reduction.get("factor")?.get_ref()));
+        let reduction =
+            table(root, "strength_reduction").and_then(|reduction| number(reduction.get("factor")?.get_ref()));
         Self { regime, stabilisation, walls, footing: Footing::of(root), strength_reduction: reduction, histories }
     }
 }
@@ -186,7 +187,10 @@ mod tests {
     fn a_case_is_read() {
         let case = Case::of(HALF);
         assert_eq!((case.regime, case.stabilisation.as_deref()), (Some(Regime::QuasiStatic), Some("none")));
-        assert_eq!((case.strength_reduction, Case::of("strength_reduction.factor = 2").strength_reduction), (None, Some(2.0)));
+        assert_eq!(
+            (case.strength_reduction, Case::of("strength_reduction.factor = 2").strength_reduction),
+            (None, Some(2.0))
+        );
         assert_eq!(case.walls, [[true, true], [false, false]]);
         let [pressure, displacement] = &case.histories[..] else { panic!("{case:?}") };
         assert_eq!((&*pressure.name, &*pressure.scale), ("p_over_c", "5e-5"));

@@ -71,8 +71,7 @@ impl Launcher<'_> {
         arguments.extend(["--quiet", "--force", "--output"].map(str::to_owned));
         arguments.push(directory.display().to_string());
         let origin = self.origin(&case, &arguments);
-        let task =
-            Task { arguments: &arguments, directory: &directory, origin: origin.as_deref(), force: self.force };
+        let task = Task { arguments: &arguments, directory: &directory, origin: origin.as_deref(), force: self.force };
         let code = self.solver.perform(&task, |manifest| manifest.argv.ends_with(&arguments))?;
         Ok(read(directory, code, run.may_stop))
     }
