@@ -5,6 +5,7 @@
 //! on the way. What could be saved that way is taken from trials that run at the same time instead.
 
 use std::env;
+use std::fs;
 use std::io::Write;
 use std::path::PathBuf;
 use std::thread;
@@ -28,6 +29,8 @@ use search::{ELASTIC, GREATEST, Plan};
 use subject::Subject;
 use trial::{Trial, Trials};
 
+const JSON: &str = "fos.json";
+const CSV: &str = "fos.csv";
 /// Narrower bands would show the rounding of displacements.
 const NARROWEST: f64 = 1e-4;
 
@@ -92,6 +95,11 @@ pub fn run(arguments: &Arguments, mut told: impl FnMut(&str)) -> Result<(String,
     solver.check()?;
     let output = arguments.directory();
     launch::make(&output)?;
+    // Results of an older search must not pass for this one's, should it not come to its end.
+    let older = [JSON, CSV].iter().chain(&picture::NAMES).map(|name| output.join(name)).filter(|path| path.exists());
+    for path in older {
+        fs::remove_file(&path).map_err(|source| Error::File(bsmpm_io::Error::file("delete", &path)(source)))?;
+    }
     let trials = Trials { solver, subject: &subject, output: &output, force: arguments.force };
     let mut made: Vec<Trial> = Vec::new();
     let curve = search::search(plan, &mut |factors| {
@@ -104,8 +112,8 @@ pub fn run(arguments: &Arguments, mut told: impl FnMut(&str)) -> Result<(String,
     })?;
     let mut report = Report::of(&subject, plan, &command, &curve, made);
     report.seconds = start.elapsed().as_secs_f64();
-    atomic::replace(&output.join("fos.csv"), |file| file.write_all(report.csv().as_bytes()))?;
-    atomic::replace(&output.join("fos.json"), |file| {
+    atomic::replace(&output.join(CSV), |file| file.write_all(report.csv().as_bytes()))?;
+    atomic::replace(&output.join(JSON), |file| {
         serde_json::to_writer_pretty(&mut *file, &report)?;
         file.write_all(b"\n")
     })?;

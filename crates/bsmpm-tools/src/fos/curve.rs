@@ -140,8 +140,8 @@ impl Curve {
     pub fn kink(&self) -> Option<Kink> {
         let begin = (self.reaches(BENT)?, BENT * self.elastic);
         let farthest = || {
-            let known = self.states.iter().filter(|state| state.whole && self.growth(state) <= FALLEN);
-            let last = known.last().filter(|state| self.growth(state) >= SHORTEST * BENT)?;
+            let mut known = self.states.iter().filter(|state| state.whole && self.growth(state) <= FALLEN);
+            let last = known.next_back().filter(|state| self.growth(state) >= SHORTEST * BENT)?;
             Some((last.factor, last.displacement))
         };
         let end = self.reaches(FALLEN).map(|factor| (factor, FALLEN * self.elastic)).or_else(farthest)?;

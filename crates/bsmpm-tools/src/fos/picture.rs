@@ -24,15 +24,15 @@ const LINE: f64 = 3.0;
 const RELATIVE: &str = "Displacement / elastic displacement";
 /// What lies behind everything.
 const SHADE: Rgb = [253, 226, 190];
-/// Of the fields that show the mechanism.
-const MECHANISM: [(FieldName, &str); 2] =
-    [(FieldName::PlasticStrain, "plastic-strain"), (FieldName::Displacement, "displacement")];
+/// All pictures: the chart, and those of the fields that show the mechanism.
+pub(super) const NAMES: [&str; 3] = ["fos.png", "fos_plastic-strain.png", "fos_displacement.png"];
+const MECHANISM: [(FieldName, &str, &str); 2] =
+    [(FieldName::PlasticStrain, "plastic-strain_", NAMES[1]), (FieldName::Displacement, "displacement_", NAMES[2])];
 
 /// Draws `fos.png` and, where a trial has failed, the mechanism; returns their names in the output directory.
-pub(super) fn draw(report: &Report, subject: &Subject, output: &Path) -> Result<Vec<String>, Error> {
-    let name = "fos.png".to_owned();
-    Chart::of(report, label(report, subject, output)?).draw().save(&output.join(&name))?;
-    let mut names = vec![name];
+pub(super) fn draw(report: &Report, subject: &Subject, output: &Path) -> Result<Vec<&'static str>, Error> {
+    let mut names = vec![NAMES[0]];
+    Chart::of(report, label(report, subject, output)?).draw().save(&output.join(NAMES[0]))?;
     let failed = report.factor_of_safety.first_failed.and_then(|factor| report.at(factor));
     if let Some(row) = failed {
         names.extend(mechanism(&output.join(&row.trial.directory), subject.end, output)?);
@@ -41,17 +41,15 @@ pub(super) fn draw(report: &Report, subject: &Subject, output: &Path) -> Result<
 }
 
 /// The bodies of a trial at its end, copied beside the other results.
-fn mechanism(directory: &Path, end: f64, output: &Path) -> Result<Vec<String>, Error> {
+fn mechanism(directory: &Path, end: f64, output: &Path) -> Result<Vec<&'static str>, Error> {
     let mut names = Vec::new();
-    for (field, word) in MECHANISM {
+    for (field, beginning, name) in MECHANISM {
         let arguments = Arguments { times: vec![end], field: Some(field), ..Arguments::of(directory.to_owned()) };
         let drawn = plot::run(&arguments)?;
-        let is_body = |path: &&PathBuf| {
-            path.file_name().is_some_and(|name| name.to_string_lossy().starts_with(&format!("{word}_")))
-        };
+        let is_body =
+            |path: &&PathBuf| path.file_name().is_some_and(|name| name.to_string_lossy().starts_with(beginning));
         if let Some(from) = drawn.iter().find(is_body) {
-            let name = format!("fos_{word}.png");
-            fs::copy(from, output.join(&name))
+            fs::copy(from, output.join(name))
                 .map_err(|source| Error::File(bsmpm_io::Error::file("copy", from)(source)))?;
             names.push(name);
         }

@@ -66,7 +66,7 @@ pub(super) struct Report {
 impl Finding {
     fn of(criterion: &'static str, band: Band, estimate: Option<f64>) -> Self {
         let Band { last_stable, first_failed } = band;
-        Self { criterion, last_stable, first_failed, estimate: estimate.map(|factor| short(factor)) }
+        Self { criterion, last_stable, first_failed, estimate: estimate.map(short) }
     }
 
     /// The band and the estimate.

@@ -29,11 +29,14 @@ pub(super) struct Plan {
     pub jobs: usize,
 }
 
+/// Makes the trials of some factors.
+type Maker<'a> = dyn FnMut(&[f64]) -> Result<Vec<State>, Error> + 'a;
+
 /// A search under way; `trials` are made by a function, of whose factors none was tried before.
-struct Search<'a> {
+struct Search<'a, 'b> {
     plan: Plan,
     curve: Curve,
-    trials: &'a mut dyn FnMut(&[f64]) -> Result<Vec<State>, Error>,
+    trials: &'a mut Maker<'b>,
 }
 
 /// The curve with all trials that the plan needs.
@@ -41,7 +44,7 @@ struct Search<'a> {
 /// # Errors
 /// [`Error::NoStableState`] where the elastic body or that of the least factor finds no equilibrium or has failed, those of
 /// `trials`.
-pub(super) fn search(plan: Plan, trials: &mut dyn FnMut(&[f64]) -> Result<Vec<State>, Error>) -> Result<Curve, Error> {
+pub(super) fn search(plan: Plan, trials: &mut Maker<'_>) -> Result<Curve, Error> {
     let rungs = plan.rungs();
     let (first, others) = rungs.split_at(plan.jobs.saturating_sub(1).min(rungs.len()));
     let mut states = trials(&[&[ELASTIC], first].concat())?;
@@ -111,7 +114,7 @@ impl Plan {
     }
 }
 
-impl Search<'_> {
+impl Search<'_, '_> {
     fn try_all(&mut self, factors: &[f64]) -> Result<(), Error> {
         let states = (self.trials)(factors)?;
         self.curve.add(states);

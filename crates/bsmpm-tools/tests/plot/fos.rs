@@ -216,8 +216,10 @@ fn a_trial_without_equilibrium_is_a_result() {
 
 #[test]
 fn a_trial_that_breaks_ends_the_search_with_its_code() {
-    let bench = Bench::new(SLOPE, "kink=1.373 breaks=0.7");
-    let output = bench.fos(&[]);
+    let bench = Bench::new(SLOPE, "kink=1.373");
+    assert!(bench.fos(&[]).status.success());
+    bench.write("behaviour", "kink=1.373 breaks=0.7");
+    let output = bench.fos(&["--force"]);
     let said = text(&output.stderr);
     assert_eq!(output.status.code(), Some(70));
     assert!(said.contains("exit code 70: it broke") && !bench.path("slope.fos/fos.json").exists(), "{said}");
