@@ -4,9 +4,9 @@ use std::io::Write;
 
 use clap::{Parser, Subcommand};
 
-use crate::{Error, compare, plot, validate};
+use crate::{Error, compare, fos, plot, validate};
 
-/// Looks at what a run of bsmpm-par left.
+/// Starts runs of bsmpm-par, and looks at what they left.
 #[derive(Debug, Parser)]
 #[command(name = "bsmpm", version)]
 pub struct Cli {
@@ -24,6 +24,8 @@ pub enum Command {
     Compare(Box<compare::Arguments>),
     /// Run the cases of a matrix and judge their histories against references
     Validate(validate::Arguments),
+    /// Find the factor of safety of a case by strength reduction
+    Fos(fos::Arguments),
 }
 
 /// Carries out a command and prints what it made: tables, and pictures with one path a line.
@@ -58,6 +60,15 @@ pub fn run(cli: &Cli) -> Result<(), Error> {
             let _ = writeln!(std::io::stdout(), "\n{known}{} passed, {} failed", counts.passed, counts.failed);
             if counts.failed > 0 {
                 return Err(Error::NotValid { failed: counts.failed });
+            }
+        }
+        Command::Fos(arguments) => {
+            let (table, pictures) = fos::run(arguments, |line| {
+                let _ = writeln!(std::io::stderr(), "{line}");
+            })?;
+            let _ = write!(std::io::stdout(), "{table}");
+            for picture in pictures {
+                let _ = writeln!(std::io::stdout(), "{}", picture.display());
             }
         }
     }

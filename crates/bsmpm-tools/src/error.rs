@@ -79,6 +79,48 @@ pub enum Error {
         /// How many.
         failed: usize,
     },
+    /// The case file is not there or cannot be read.
+    #[error("cannot read the case {}: {source}", path.display())]
+    NoCase {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// The case has errors.
+    #[error("{}\n{}: {} error(s); nothing was run", errors.join("\n"), path.display(), errors.len())]
+    BadCase {
+        /// The file.
+        path: PathBuf,
+        /// Each with its place.
+        errors: Vec<String>,
+    },
+    /// The case has no factor of safety, or none that could be trusted.
+    #[error("{} has no factor of safety:\n  {}\nnothing was run", path.display(), reasons.join("\n  "))]
+    NoFactor {
+        /// The file.
+        path: PathBuf,
+        /// All of them.
+        reasons: Vec<String>,
+    },
+    /// No trial of a search found a stable state.
+    #[error("{reason}")]
+    NoStableState {
+        /// What was found, and what to try.
+        reason: String,
+    },
+    /// A trial of a search ended for a reason that has nothing to do with equilibrium.
+    #[error("the trial of the factor {factor} ended with exit code {code}: {reason} (whole in {})", log.display())]
+    Trial {
+        /// Its factor.
+        factor: f64,
+        /// Its exit code.
+        code: u8,
+        /// Its last word.
+        reason: String,
+        /// All its words.
+        log: PathBuf,
+    },
     /// The solver could not be started.
     #[error("cannot start {program}: {source}")]
     Launch {
@@ -93,9 +135,9 @@ pub enum Error {
 }
 
 impl Error {
-    /// The exit code of `bsmpm`: 2 for options that do not fit, 66 for what is missing, 65 for a bad reference file, 77 for a
-    /// validation that failed, 74 for a solver that does not start, 70 for a fault of this program, else that of the file's
-    /// error.
+    /// The exit code of `bsmpm`: 2 for options that do not fit, 66 for what is missing, 65 for a bad reference file or a case
+    /// that does not fit, 77 for a validation that failed, 74 for a solver that does not start, 80 where nothing stands, that
+    /// of a trial that broke, 70 for a fault of this program, else that of the file's error.
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Usage { .. } => 2,
@@ -104,8 +146,11 @@ impl Error {
             | Self::NoRow { .. }
             | Self::NoColumn { .. }
             | Self::NoField { .. }
-            | Self::NoReference { .. } => 66,
-            Self::BadReference { .. } => 65,
+            | Self::NoReference { .. }
+            | Self::NoCase { .. } => 66,
+            Self::BadReference { .. } | Self::BadCase { .. } | Self::NoFactor { .. } => 65,
+            Self::NoStableState { .. } => 80,
+            Self::Trial { code, .. } => *code,
             Self::NotValid { .. } => 77,
             Self::Launch { .. } => 74,
             Self::Drawing { .. } => 70,

@@ -7,6 +7,8 @@
 pub mod cli;
 pub mod compare;
 pub mod error;
+pub mod fos;
+mod launch;
 mod picture;
 pub mod plot;
 mod record;

@@ -10,6 +10,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 
 use crate::Error;
+use crate::launch::{self, Solver};
 use crate::plot::FieldName;
 
 mod check;
@@ -65,14 +66,11 @@ pub struct Counts {
 /// A matrix that cannot be read; a solver that is not there; files that cannot be written. Runs that fail are rows that fail.
 pub fn run(arguments: &Arguments, mut told: impl FnMut(&str)) -> Result<Counts, Error> {
     let matrix = Matrix::read(&arguments.matrix)?;
-    // Before former runs are deleted for new ones that cannot be.
-    if let Some(solver) = arguments.command.last().filter(|solver| solver.contains('/') && !Path::new(solver).is_file())
-    {
-        return Err(Error::Launch { program: solver.clone(), source: std::io::ErrorKind::NotFound.into() });
-    }
+    let solver = Solver { command: &arguments.command, jobs: 1 };
+    solver.check()?;
     let base = arguments.matrix.parent().unwrap_or(Path::new(""));
-    make(&arguments.output)?;
-    let launcher = Launcher { command: &arguments.command, base, output: &arguments.output, force: arguments.force };
+    launch::make(&arguments.output)?;
+    let launcher = Launcher { solver, base, output: &arguments.output, force: arguments.force };
     let wanted = |study: &&Study| arguments.only.as_ref().is_none_or(|part| study.title.contains(part));
     let mut rows: Vec<Row> = Vec::new();
     let mut undrawn = 0;
@@ -182,10 +180,6 @@ fn draw_body(plot: &matrix::Plot, outcomes: &BTreeMap<String, Outcome>, output: 
         fs::copy(&from, &to).map_err(|source| Error::File(bsmpm_io::Error::file("copy", &from)(source)))?;
     }
     Ok(())
-}
-
-fn make(directory: &Path) -> Result<(), Error> {
-    fs::create_dir_all(directory).map_err(|source| Error::File(bsmpm_io::Error::file("make", directory)(source)))
 }
 
 fn write(path: &Path, text: &str) -> Result<(), Error> {

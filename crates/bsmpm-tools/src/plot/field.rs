@@ -83,7 +83,7 @@ impl FieldName {
     }
 
     /// The quantity at every point of a frame, in the unit of [`FieldName::label`].
-    pub(super) fn values(self, frame: &Frame) -> Option<Vec<f64>> {
+    pub(crate) fn values(self, frame: &Frame) -> Option<Vec<f64>> {
         let Source { field, components, component, scale, .. } = self.source();
         let values = frame.real(field, components)?.chunks_exact(components);
         Some(match component {

@@ -15,6 +15,8 @@ pub(crate) struct Case {
     pub walls: [[bool; 2]; 2],
     /// The rigid strip.
     pub footing: Option<Footing>,
+    /// By which the strength is divided.
+    pub strength_reduction: Option<f64>,
     /// What it records, in its order.
     pub histories: Vec<History>,
 }
@@ -62,7 +64,9 @@ impl Case {
             Some(DeValue::Array(list)) => list.iter().filter_map(|item| History::of(item.get_ref())).collect(),
             _ => Vec::new(),
         };
-        Self { regime, stabilisation, walls, footing: Footing::of(root), histories }
+        let reduction =
+            table(root, "strength_reduction").and_then(|reduction| number(reduction.get("factor")?.get_ref()));
+        Self { regime, stabilisation, walls, footing: Footing::of(root), strength_reduction: reduction, histories }
     }
 }
 
@@ -129,19 +133,26 @@ fn word<'a>(table: Option<&'a DeTable>, key: &str) -> Option<&'a str> {
     }
 }
 
+fn number(value: &DeValue) -> Option<f64> {
+    let text = match value {
+        DeValue::Float(value) => value.as_str(),
+        DeValue::Integer(value) => value.as_str(),
+        _ => return None,
+    };
+    text.parse().ok().filter(|number: &f64| number.is_finite())
+}
+
 /// m  A length: a number, or a text with a unit.
 fn length(value: &DeValue) -> Option<f64> {
-    let number = |text: &str| text.trim().parse::<f64>().ok().filter(|number| number.is_finite());
     match value {
-        DeValue::Float(value) => number(value.as_str()),
-        DeValue::Integer(value) => number(value.as_str()),
         DeValue::String(text) => {
             let (digits, worth) = [("mm", 1e-3), ("cm", 1e-2), ("km", 1e3), ("m", 1.0), ("", 1.0)]
                 .into_iter()
                 .find_map(|(unit, worth)| Some((text.trim().strip_suffix(unit)?, worth)))?;
-            Some(number(digits)? * worth)
+            let number: f64 = digits.trim().parse().ok()?;
+            number.is_finite().then_some(number * worth)
         }
-        _ => None,
+        _ => number(value),
     }
 }
 
@@ -176,6 +187,10 @@ mod tests {
     fn a_case_is_read() {
         let case = Case::of(HALF);
         assert_eq!((case.regime, case.stabilisation.as_deref()), (Some(Regime::QuasiStatic), Some("none")));
+        assert_eq!(
+            (case.strength_reduction, Case::of("strength_reduction.factor = 2").strength_reduction),
+            (None, Some(2.0))
+        );
         assert_eq!(case.walls, [[true, true], [false, false]]);
         let [pressure, displacement] = &case.histories[..] else { panic!("{case:?}") };
         assert_eq!((&*pressure.name, &*pressure.scale), ("p_over_c", "5e-5"));

@@ -1,7 +1,8 @@
-//! `bsmpm plot`, `bsmpm compare` and `bsmpm validate` on runs that never were.
+//! `bsmpm plot`, `bsmpm compare`, `bsmpm validate` and `bsmpm fos` on runs that never were.
 
 mod collapse;
 mod compare;
+mod fos;
 mod quasi_static;
 mod still;
 mod validate;

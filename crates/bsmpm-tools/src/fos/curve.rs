@@ -1,0 +1,261 @@
+//! Displacement against the strength reduction factor, and the two ways to see failure in it: twice the elastic
+//! displacement, and the kink between the branch before failure and the one after it.
+
+/// Failure, coarsely: this many times the elastic displacement.
+pub(super) const DOUBLED: f64 = 2.0;
+/// The branch after failure: from this many times the elastic displacement ..
+pub(super) const BENT: f64 = 5.0;
+/// .. to this many times; so early that the geometry has not changed yet. The kinks of `bsmpm validate` are taken so, too.
+pub(super) const FALLEN: f64 = 20.0;
+/// Where the trials after the kink find no equilibrium: the end of the branch must show this many times BENT.
+const SHORTEST: f64 = 2.0;
+/// The branch before failure: up to this many times the elastic displacement.
+const STRAIGHT: f64 = 1.25;
+
+/// What a trial shows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct State {
+    /// by which the strength is divided
+    pub factor: f64,
+    /// the largest displacement, in the unit of the history; of the last equilibrium that was found
+    pub displacement: f64,
+    /// whether equilibrium was found under the whole load
+    pub whole: bool,
+}
+
+/// The trials in the order of their factors.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Curve {
+    /// the displacement of the elastic body
+    elastic: f64,
+    states: Vec<State>,
+}
+
+/// The greatest factor of stable trials, and the least one of failed trials above it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Band {
+    pub last_stable: Option<f64>,
+    pub first_failed: Option<f64>,
+}
+
+/// `displacement = at_zero + slope factor`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Line {
+    at_zero: f64,
+    slope: f64,
+}
+
+/// Where both branches meet.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Kink {
+    pub factor: f64,
+    pub before: Line,
+    pub after: Line,
+}
+
+impl Line {
+    fn through(a: (f64, f64), b: (f64, f64)) -> Self {
+        let slope = (b.1 - a.1) / (b.0 - a.0);
+        Self { at_zero: a.1 - slope * a.0, slope }
+    }
+
+    /// The line of least squares; level through a single place.
+    fn fitted(places: &[(f64, f64)]) -> Option<Self> {
+        let count = places.len() as f64;
+        let mean = places.iter().fold((0.0, 0.0), |sum, place| (sum.0 + place.0 / count, sum.1 + place.1 / count));
+        let product: f64 = places.iter().map(|place| (place.0 - mean.0) * (place.1 - mean.1)).sum();
+        let square: f64 = places.iter().map(|place| (place.0 - mean.0).powi(2)).sum();
+        let slope = if square > 0.0 { product / square } else { 0.0 };
+        (!places.is_empty()).then_some(Self { at_zero: mean.1 - slope * mean.0, slope })
+    }
+
+    /// The displacement at a factor.
+    pub fn at(&self, factor: f64) -> f64 {
+        self.at_zero + self.slope * factor
+    }
+
+    /// The factor of a displacement.
+    pub fn reaches(&self, displacement: f64) -> f64 {
+        (displacement - self.at_zero) / self.slope
+    }
+}
+
+impl Curve {
+    /// A curve without trials yet, of a body whose `elastic` displacement is positive.
+    pub fn new(elastic: f64) -> Self {
+        Self { elastic, states: Vec::new() }
+    }
+
+    pub fn add(&mut self, states: impl IntoIterator<Item = State>) {
+        self.states.extend(states);
+        self.states.sort_by(|a, b| a.factor.total_cmp(&b.factor));
+    }
+
+    pub fn elastic(&self) -> f64 {
+        self.elastic
+    }
+
+    pub fn states(&self) -> &[State] {
+        &self.states
+    }
+
+    /// The displacement over the elastic one.
+    pub fn growth(&self, state: &State) -> f64 {
+        state.displacement / self.elastic
+    }
+
+    fn is_beyond(&self, level: f64, state: &State) -> bool {
+        !state.whole || self.growth(state) > level
+    }
+
+    /// Between which factors the displacement grows beyond a level.
+    ///
+    /// A weaker body in equilibrium shows that a stronger one can stand (lower bound theorem), so the greatest factor below the
+    /// level counts, and failures before it do not.
+    pub fn crossing(&self, level: f64) -> Band {
+        self.band(|state| self.is_beyond(level, state))
+    }
+
+    fn band(&self, failed: impl Fn(&State) -> bool) -> Band {
+        let last_stable = self.states.iter().rev().find(|state| !failed(state)).map(|state| state.factor);
+        let mut above = self.states.iter().filter(|state| last_stable.is_none_or(|last| state.factor > last));
+        Band { last_stable, first_failed: above.next().map(|state| state.factor) }
+    }
+
+    /// The trial at a factor.
+    pub fn at(&self, factor: f64) -> Option<&State> {
+        self.states.iter().find(|state| state.factor == factor)
+    }
+
+    /// The factor where the displacement grows beyond a level, between whole trials linearly; none where there are none.
+    pub fn reaches(&self, level: f64) -> Option<f64> {
+        let band = self.crossing(level);
+        let (low, high) = (self.at(band.last_stable?)?, self.at(band.first_failed?).filter(|state| state.whole)?);
+        let share = (level * self.elastic - low.displacement) / (high.displacement - low.displacement);
+        Some(low.factor + share * (high.factor - low.factor))
+    }
+
+    /// Where the branch after failure, from [`BENT`] to [`FALLEN`], meets the one before it when both are continued. None
+    /// where no equilibrium shows a branch after failure.
+    pub fn kink(&self) -> Option<Kink> {
+        let begin = (self.reaches(BENT)?, BENT * self.elastic);
+        let farthest = || {
+            let mut known = self.states.iter().filter(|state| state.whole && self.growth(state) <= FALLEN);
+            let last = known.next_back().filter(|state| self.growth(state) >= SHORTEST * BENT)?;
+            Some((last.factor, last.displacement))
+        };
+        let end = self.reaches(FALLEN).map(|factor| (factor, FALLEN * self.elastic)).or_else(farthest)?;
+        let after = Line::through(begin, end);
+        let straight = self.states.iter().filter(|state| state.whole && self.growth(state) <= STRAIGHT);
+        let places: Vec<(f64, f64)> = straight.map(|state| (state.factor, state.displacement)).collect();
+        let before = Line::fitted(&places).unwrap_or(Line { at_zero: self.elastic, slope: 0.0 });
+        let factor = (before.at_zero - after.at_zero) / (after.slope - before.slope);
+        let is_one = end.0 > begin.0 && after.slope > before.slope && factor >= self.states.first()?.factor;
+        is_one.then_some(Kink { factor, before, after })
+    }
+
+    /// Whether a trial lies beyond the kink. Without a branch after failure: whether it found no equilibrium, or has grown so
+    /// far that it would be on it.
+    pub fn is_failed(&self, kink: Option<&Kink>, state: &State) -> bool {
+        match kink {
+            Some(kink) => state.factor > kink.factor,
+            None => self.is_beyond(BENT, state),
+        }
+    }
+
+    /// The trials before and after the kink.
+    pub fn kinked(&self) -> Band {
+        let kink = self.kink();
+        self.band(|state| !state.whole || self.is_failed(kink.as_ref(), state))
+    }
+
+    /// Trials that found no equilibrium although a weaker body did.
+    pub fn isolated(&self) -> Vec<f64> {
+        let last = self.crossing(DOUBLED).last_stable.unwrap_or(0.0);
+        self.states.iter().filter(|state| !state.whole && state.factor < last).map(|state| state.factor).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The curve of `displacement` over factors from `from` to `to`.
+    fn curve(from: f64, to: f64, step: f64, displacement: impl Fn(f64) -> f64) -> Curve {
+        let mut curve = Curve::new(1.0);
+        let count = ((to - from) / step).round() as usize;
+        let factors = (0..=count).map(|index| from + index as f64 * step);
+        curve.add(factors.map(|factor| State { factor, displacement: displacement(factor), whole: true }));
+        curve
+    }
+
+    fn near(found: Option<f64>, wanted: f64) -> bool {
+        found.is_some_and(|found| (found - wanted).abs() < 1e-9)
+    }
+
+    #[test]
+    fn a_sharp_kink_is_where_it_is() {
+        // The growth before it is 10 % per unit of the factor.
+        let curve = curve(0.5, 1.7, 0.02, |factor| 0.95 + 0.1 * factor + 100.0 * (factor - 1.373).max(0.0));
+        assert!(near(curve.kink().map(|kink| kink.factor), 1.373), "{:?}", curve.kink());
+        assert!(near(curve.kinked().last_stable, 1.36) && near(curve.kinked().first_failed, 1.38));
+        let doubled = (2.0 - 0.95 + 137.3) / 100.1;
+        assert!(near(curve.reaches(DOUBLED), doubled), "{:?}", curve.reaches(DOUBLED));
+    }
+
+    #[test]
+    fn a_smooth_growth_has_its_kink_where_the_branch_leads_back() {
+        // A parabola from 1.3 on, of which a chord between 5 and 20 leads back to where both square roots meet.
+        let curve = curve(0.5, 1.7, 0.005, |factor| 1.0 + 200.0 * (factor - 1.3).max(0.0).powi(2));
+        let (bent, fallen) = ((4.0_f64 / 200.0).sqrt(), (19.0_f64 / 200.0).sqrt());
+        let wanted = 1.3 + bent * fallen / (bent + fallen);
+        let found = curve.kink().unwrap().factor;
+        assert!((found - wanted).abs() < 2e-3, "{found} {wanted}");
+    }
+
+    #[test]
+    fn noise_moves_the_kink_by_no_more_than_itself() {
+        let mut sign = 1.0;
+        let mut curve = curve(0.5, 1.7, 0.02, |factor| 1.0 + 100.0 * (factor - 1.4).max(0.0));
+        for state in &mut curve.states {
+            sign = -sign;
+            state.displacement *= 1.0 + 0.04 * sign;
+        }
+        let found = curve.kink().unwrap().factor;
+        assert!((found - 1.4).abs() < 0.01, "{found}");
+    }
+
+    #[test]
+    fn all_stable_and_all_failed_have_one_end_only() {
+        let level = curve(0.5, 1.5, 0.1, |_| 1.1);
+        assert!(level.kink().is_none() && level.reaches(DOUBLED).is_none());
+        assert_eq!(level.kinked(), Band { last_stable: Some(1.5), first_failed: None });
+        let fallen = curve(0.5, 1.5, 0.1, |_| 30.0);
+        assert!(fallen.kink().is_none());
+        assert_eq!(fallen.crossing(DOUBLED), Band { last_stable: None, first_failed: Some(0.5) });
+        assert_eq!(fallen.kinked(), Band { last_stable: None, first_failed: Some(0.5) });
+    }
+
+    #[test]
+    fn a_failure_before_a_weaker_body_that_stands_is_not_the_slope_s() {
+        let mut curve = curve(0.5, 1.7, 0.02, |factor| 1.0 + 100.0 * (factor - 1.4).max(0.0));
+        curve.states[10] = State { displacement: 0.9, whole: false, ..curve.states[10] };
+        assert!(near(curve.kink().map(|kink| kink.factor), 1.4));
+        assert!(near(curve.crossing(DOUBLED).last_stable, 1.4) && near(curve.crossing(DOUBLED).first_failed, 1.42));
+        assert_eq!(curve.isolated(), [0.7]);
+    }
+
+    #[test]
+    fn without_equilibrium_after_failure_the_band_ends_there() {
+        let mut curve = curve(0.5, 1.7, 0.1, |_| 1.1);
+        curve.states.iter_mut().filter(|state| state.factor > 1.35).for_each(|state| state.whole = false);
+        assert!(curve.kink().is_none());
+        assert!(near(curve.kinked().last_stable, 1.3) && near(curve.kinked().first_failed, 1.4));
+        // A branch that breaks off is one if it is long enough.
+        let mut curve = self::curve(0.5, 1.7, 0.02, |factor| 1.0 + 100.0 * (factor - 1.4).max(0.0));
+        curve.states.iter_mut().filter(|state| state.factor > 1.55).for_each(|state| state.whole = false);
+        assert!(near(curve.kink().map(|kink| kink.factor), 1.4), "{:?}", curve.kink());
+        curve.states.iter_mut().filter(|state| state.factor > 1.45).for_each(|state| state.whole = false);
+        assert!(curve.kink().is_none());
+    }
+}

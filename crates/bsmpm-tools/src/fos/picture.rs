@@ -1,0 +1,160 @@
+//! Pictures of a search: displacement against the factor, with the band and the branches that meet in the kink; and the
+//! mechanism, as the first failed trial shows it.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use super::curve::{DOUBLED, FALLEN};
+use super::report::{Report, Row, Verdict};
+use super::subject::Subject;
+use crate::Error;
+use crate::picture::axes::{Axes, BELOW, LEFT, title};
+use crate::picture::canvas::Canvas;
+use crate::picture::colour::{self, INK, OUTLINE, Rgb};
+use crate::picture::legend::{self, Entry, Mark};
+use crate::picture::ticks::{padded, range};
+use crate::plot::{self, Arguments, FieldName};
+use crate::record::Record;
+
+const SHEET: (f64, f64) = (1600.0, 1000.0);
+const ABOVE: f64 = 115.0;
+const RIGHT: f64 = 60.0;
+const LINE: f64 = 3.0;
+/// The vertical axis where the case has no scale.
+const RELATIVE: &str = "Displacement / elastic displacement";
+/// What lies behind everything.
+const SHADE: Rgb = [253, 226, 190];
+/// All pictures: the chart, and those of the fields that show the mechanism.
+pub(super) const NAMES: [&str; 3] = ["fos.png", "fos_plastic-strain.png", "fos_displacement.png"];
+const MECHANISM: [(FieldName, &str, &str); 2] =
+    [(FieldName::PlasticStrain, "plastic-strain_", NAMES[1]), (FieldName::Displacement, "displacement_", NAMES[2])];
+
+/// Draws `fos.png` and, where a trial has failed, the mechanism; returns their names in the output directory.
+pub(super) fn draw(report: &Report, subject: &Subject, output: &Path) -> Result<Vec<&'static str>, Error> {
+    let mut names = vec![NAMES[0]];
+    Chart::of(report, label(report, subject, output)?).draw().save(&output.join(NAMES[0]))?;
+    let failed = report.factor_of_safety.first_failed.and_then(|factor| report.at(factor));
+    if let Some(row) = failed {
+        names.extend(mechanism(&output.join(&row.trial.directory), subject.end, output)?);
+    }
+    Ok(names)
+}
+
+/// The bodies of a trial at its end, copied beside the other results.
+fn mechanism(directory: &Path, end: f64, output: &Path) -> Result<Vec<&'static str>, Error> {
+    let mut names = Vec::new();
+    for (field, beginning, name) in MECHANISM {
+        let arguments = Arguments { times: vec![end], field: Some(field), ..Arguments::of(directory.to_owned()) };
+        let drawn = plot::run(&arguments)?;
+        let is_body =
+            |path: &&PathBuf| path.file_name().is_some_and(|name| name.to_string_lossy().starts_with(beginning));
+        if let Some(from) = drawn.iter().find(is_body) {
+            fs::copy(from, output.join(name))
+                .map_err(|source| Error::File(bsmpm_io::Error::file("copy", from)(source)))?;
+            names.push(name);
+        }
+    }
+    Ok(names)
+}
+
+/// What the vertical axis shows: the case's own quantity if it has a scale, else parts of the elastic displacement.
+fn label(report: &Report, subject: &Subject, output: &Path) -> Result<Option<String>, Error> {
+    let Some(row) = report.trials.first().filter(|_| subject.is_scaled) else { return Ok(None) };
+    let record = Record::read(&output.join(&row.trial.directory))?;
+    Ok(record.column(&subject.column).map(|column| column.label()))
+}
+
+/// The chart before it has axes.
+struct Chart<'a> {
+    report: &'a Report,
+    /// by which displacements are multiplied
+    scale: f64,
+    /// of the vertical axis
+    label: String,
+    /// the trials that are seen, in groups
+    groups: Vec<(Entry, Vec<(f64, f64)>)>,
+    /// the greatest factor that must be seen
+    farthest: f64,
+}
+
+impl<'a> Chart<'a> {
+    fn of(report: &'a Report, label: Option<String>) -> Self {
+        let scale = if label.is_some() { 1.0 } else { 1.0 / report.elastic_displacement };
+        let ends = [report.factor_of_safety.first_failed, report.kink.map(|kink| kink.after.reaches(fallen(report)))];
+        let farthest = ends.into_iter().flatten().fold(0.0, f64::max);
+        // Far beyond failure the displacements would leave no room for those before it.
+        let is_seen = |row: &&Row| {
+            farthest == 0.0
+                || (row.growth <= 1.05 * FALLEN && (row.verdict == Verdict::Stable || row.trial.factor <= farthest))
+        };
+        let places = |verdict: Verdict| {
+            let rows = report.trials.iter().filter(|row| row.verdict == verdict).filter(is_seen);
+            rows.map(|row| (row.trial.factor, scale * row.trial.displacement)).collect::<Vec<_>>()
+        };
+        let group = |name: &str, verdict: Verdict, colour: Rgb| {
+            (Entry { name: name.to_owned(), colour, mark: Mark::Points }, places(verdict))
+        };
+        let mut groups = vec![
+            group("stable", Verdict::Stable, colour::line(0, 3)),
+            group("failed", Verdict::Failed, colour::line(1, 3)),
+            group("no equilibrium: the last one that was found", Verdict::NoEquilibrium, INK),
+        ];
+        groups.retain(|(_, places)| !places.is_empty());
+        Self { report, scale, label: label.unwrap_or_else(|| RELATIVE.to_owned()), groups, farthest }
+    }
+
+    fn draw(&self) -> Canvas {
+        let level = Entry { name: "twice the elastic".to_owned(), colour: colour::line(2, 3), mark: Mark::Line };
+        let branches = Entry { name: "branches".to_owned(), colour: OUTLINE, mark: Mark::Line };
+        let lines = [Some(&level), self.report.kink.as_ref().map(|_| &branches)];
+        let entries: Vec<&Entry> =
+            self.groups.iter().map(|(entry, _)| entry).chain(lines.into_iter().flatten()).collect();
+        let axes = self.axes(ABOVE + legend::height(&entries, SHEET.0 - 80.0) + 20.0);
+        let mut canvas = Canvas::new(SHEET.0, SHEET.1);
+        let Report { factor_of_safety: band, conditions, .. } = self.report;
+        let below = format!("Factor of safety {}; {}", band.words(), conditions.lines()[0]);
+        title(&mut canvas, SHEET.0, &self.report.title, &below);
+        legend::draw(&mut canvas, &entries, 40.0, ABOVE, SHEET.0 - 80.0);
+        if let (Some(low), Some(high)) = (band.last_stable, band.first_failed) {
+            canvas.fill((axes.place((low, 0.0)).0, axes.top), (axes.place((high, 0.0)).0, axes.bottom), SHADE);
+        }
+        axes.rules(&mut canvas);
+        let doubled = DOUBLED * self.elastic();
+        axes.line(&mut canvas, &[(axes.x.0, doubled), (axes.x.1, doubled)], LINE / 2.0, level.colour);
+        self.draw_branches(&mut canvas, &axes);
+        for (entry, places) in &self.groups {
+            let places: Vec<_> = places.iter().map(|&place| axes.place(place)).collect();
+            entry.mark.draw(&mut canvas, &places, LINE, entry.colour);
+        }
+        axes.draw(&mut canvas, Some(("Strength reduction factor", "-")), (&self.label, "-"));
+        canvas
+    }
+
+    /// The elastic displacement as it is seen.
+    fn elastic(&self) -> f64 {
+        self.scale * self.report.elastic_displacement
+    }
+
+    fn axes(&self, top: f64) -> Axes {
+        let places = || self.groups.iter().flat_map(|(_, places)| places);
+        let farthest = Some(self.farthest).filter(|factor| *factor > 0.0);
+        let x = range(places().map(|place| place.0).chain(farthest)).unwrap_or((0.0, 1.0));
+        let high = places().map(|place| place.1).fold(DOUBLED * self.elastic(), f64::max);
+        let (x, y) = (padded(x.0, x.1, 0.03), (0.0, 1.06 * high));
+        Axes { left: LEFT, top, right: SHEET.0 - RIGHT, bottom: SHEET.1 - BELOW, x, y }
+    }
+
+    /// Both branches, from the left to where they meet, and up to the end of what is seen.
+    fn draw_branches(&self, canvas: &mut Canvas, axes: &Axes) {
+        let Some(kink) = &self.report.kink else { return };
+        let end = kink.after.reaches(fallen(self.report).min(axes.y.1 / self.scale));
+        let before = [axes.x.0, kink.factor].map(|factor| (factor, self.scale * kink.before.at(factor)));
+        let after = (end, self.scale * kink.after.at(end));
+        axes.line(canvas, &[before[0], before[1], after], LINE, OUTLINE);
+    }
+}
+
+/// The displacement at the end of the branch after failure.
+fn fallen(report: &Report) -> f64 {
+    FALLEN * report.elastic_displacement
+}

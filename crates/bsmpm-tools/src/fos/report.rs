@@ -1,0 +1,239 @@
+//! What a search found: judged trials, both factors with their bands, and the conditions; as text, CSV and JSON.
+
+use serde::Serialize;
+
+use super::curve::{Band, Curve, DOUBLED, Kink};
+use super::search::{ELASTIC, Plan};
+use super::subject::{Conditions, Subject};
+use super::trial::{End, Trial};
+use crate::record::short;
+
+/// A factor of safety by one criterion.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub(super) struct Finding {
+    pub criterion: &'static str,
+    pub last_stable: Option<f64>,
+    pub first_failed: Option<f64>,
+    /// within the band
+    pub estimate: Option<f64>,
+}
+
+/// How a trial is judged.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum Verdict {
+    /// the reference of the others
+    Elastic,
+    Stable,
+    /// beyond the kink
+    Failed,
+    /// no equilibrium under the whole load
+    NoEquilibrium,
+}
+
+/// A trial with what it is worth.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Row {
+    pub verdict: Verdict,
+    /// displacement over the elastic one
+    pub growth: f64,
+    #[serde(flatten)]
+    pub trial: Trial,
+}
+
+/// All of it.
+#[derive(Debug, Serialize)]
+pub(super) struct Report {
+    pub case: String,
+    pub title: String,
+    /// the one of the kink; where it shows none, the coarse one
+    pub factor_of_safety: Finding,
+    pub criteria: [Finding; 2],
+    /// the column of `history.csv` that is judged, and the displacement of the elastic body
+    pub column: String,
+    pub elastic_displacement: f64,
+    pub conditions: Conditions,
+    pub plan: Plan,
+    pub command: Vec<String>,
+    pub notes: Vec<String>,
+    pub trials: Vec<Row>,
+    /// s  by the clock, those of trials that were kept left out
+    pub seconds: f64,
+    #[serde(skip)]
+    pub kink: Option<Kink>,
+}
+
+impl Finding {
+    fn of(criterion: &'static str, band: Band, estimate: Option<f64>) -> Self {
+        let Band { last_stable, first_failed } = band;
+        Self { criterion, last_stable, first_failed, estimate: estimate.map(short) }
+    }
+
+    /// The band and the estimate.
+    pub fn words(&self) -> String {
+        let estimate = self.estimate.map_or_else(String::new, |estimate| format!(", estimate {estimate:.3}"));
+        match (self.last_stable, self.first_failed) {
+            (Some(low), Some(high)) => format!("{low} (stable) to {high} (failed){estimate}"),
+            (Some(low), None) => format!("above {low}: no failure up to there"),
+            _ => "none".to_owned(),
+        }
+    }
+}
+
+impl Report {
+    pub fn of(subject: &Subject, plan: Plan, command: &[String], curve: &Curve, trials: Vec<Trial>) -> Self {
+        let kink = curve.kink();
+        let by_kink = Finding::of("kink", curve.kinked(), kink.map(|kink| kink.factor));
+        let doubled = Finding::of("doubled", curve.crossing(DOUBLED), curve.reaches(DOUBLED));
+        let verdict = |trial: &Trial| match trial.state() {
+            state if state.factor == ELASTIC => Verdict::Elastic,
+            state if !state.whole => Verdict::NoEquilibrium,
+            state if curve.is_failed(kink.as_ref(), &state) => Verdict::Failed,
+            _ => Verdict::Stable,
+        };
+        let row = |trial: Trial| Row { verdict: verdict(&trial), growth: curve.growth(&trial.state()), trial };
+        let mut rows: Vec<Row> = trials.into_iter().map(row).collect();
+        rows.sort_by(|a, b| a.trial.factor.total_cmp(&b.trial.factor));
+        Self {
+            case: subject.path().display().to_string(),
+            title: subject.title.clone(),
+            factor_of_safety: by_kink,
+            criteria: [by_kink, doubled],
+            column: subject.column.clone(),
+            elastic_displacement: curve.elastic(),
+            conditions: subject.conditions.clone(),
+            plan,
+            command: command.to_vec(),
+            notes: notes(curve, kink.as_ref(), &rows, plan),
+            trials: rows,
+            seconds: 0.0,
+            kink,
+        }
+    }
+
+    /// The row of a factor.
+    pub fn at(&self, factor: f64) -> Option<&Row> {
+        self.trials.iter().find(|row| row.trial.factor == factor)
+    }
+
+    /// For the screen.
+    pub fn text(&self) -> String {
+        let [first, second] = self.conditions.lines();
+        let mut text = format!("{}\n{first}\n{second}\n\n{}", self.title, table(&self.trials, &self.column));
+        let [kink, doubled] = &self.criteria;
+        text += &format!("\nfactor of safety, by the kink:     {}\n", kink.words());
+        text += &format!("by twice the elastic displacement: {}\n", doubled.words());
+        self.notes.iter().for_each(|note| text += &format!("note: {note}\n"));
+        let cpu: f64 = self.trials.iter().map(|row| row.trial.cpu_seconds).sum();
+        let kept = self.trials.iter().filter(|row| row.trial.kept).count();
+        let kept = if kept > 0 { format!(", {kept} of them kept from before") } else { String::new() };
+        text + &format!(
+            "{} trials{kept}, {cpu:.1} CPU s; {:.1} s by the clock with {} at the same time\n",
+            self.trials.len(),
+            self.seconds,
+            self.plan.jobs
+        )
+    }
+
+    /// A row a trial.
+    pub fn csv(&self) -> String {
+        let mut made = format!(
+            "factor,verdict,{},growth,plastic_strain,load,steps,iterations,cuts,cpu_seconds,seconds\n",
+            self.column
+        );
+        made += "# -,-,as the case,-,-,-,-,-,-,s,s\n";
+        for Row { verdict, growth, trial } in &self.trials {
+            let load = trial.end.early().map_or(1.0, |(load, _)| load);
+            let strain = trial.plastic_strain.map_or_else(String::new, |strain| strain.to_string());
+            made += &format!(
+                "{},{},{},{growth},{strain},{load},{},{},{},{},{}\n",
+                trial.factor,
+                verdict.word(),
+                trial.displacement,
+                trial.steps,
+                trial.iterations,
+                trial.cuts,
+                trial.cpu_seconds,
+                trial.seconds
+            );
+        }
+        made
+    }
+}
+
+impl Verdict {
+    fn word(self) -> &'static str {
+        match self {
+            Self::Elastic => "elastic",
+            Self::Stable => "stable",
+            Self::Failed => "failed",
+            Self::NoEquilibrium => "no-equilibrium",
+        }
+    }
+}
+
+fn table(rows: &[Row], column: &str) -> String {
+    let headings = ["factor", "verdict", column, "/ elastic", "plastic strain", "iterations", "cuts", "CPU s", "s"]
+        .map(str::to_owned);
+    let cells = |row: &Row| {
+        let Trial { factor, displacement, plastic_strain, iterations, cuts, cpu_seconds, seconds, .. } = &row.trial;
+        [
+            factor.to_string(),
+            row.verdict.word().to_owned(),
+            format!("{displacement:.4e}"),
+            format!("{:.3}", row.growth),
+            plastic_strain.map_or_else(String::new, |strain| format!("{strain:.2e}")),
+            iterations.to_string(),
+            cuts.to_string(),
+            format!("{cpu_seconds:.2}"),
+            format!("{seconds:.2}"),
+        ]
+    };
+    let lines: Vec<[String; 9]> = [headings].into_iter().chain(rows.iter().map(cells)).collect();
+    let width = |column: usize| lines.iter().map(|line| line[column].chars().count()).max().unwrap_or(0);
+    let mut made = String::new();
+    for (index, line) in lines.iter().enumerate() {
+        let cells = line.iter().enumerate().map(|(column, cell)| format!("{cell:>width$}", width = width(column)));
+        made += &cells.collect::<Vec<_>>().join("  ");
+        let row = index.checked_sub(1).map(|row| &rows[row].trial);
+        if let Some((trial, (load, reason))) = row.and_then(|trial| Some((trial, trial.end.early()?))) {
+            let what = if matches!(trial.end, End::Left { .. }) { "left" } else { "stopped" };
+            made += &format!("  {what} at {load:.3} of the load: {reason}");
+        }
+        made.push('\n');
+    }
+    made
+}
+
+/// What the reader of the factor should know.
+fn notes(curve: &Curve, kink: Option<&Kink>, rows: &[Row], plan: Plan) -> Vec<String> {
+    let mut notes = Vec::new();
+    let coarse = curve.crossing(DOUBLED);
+    if coarse.first_failed.is_none() {
+        notes.push(format!("no failure up to the factor {}: a greater --to may find it", plan.to));
+    } else if kink.is_none() {
+        notes.push(
+            "no trial beyond failure shows a branch that could be continued back to the kink; the band is that of the first \
+             trial without equilibrium, or with five times the elastic displacement"
+                .to_owned(),
+        );
+    }
+    let isolated = curve.isolated();
+    if !isolated.is_empty() {
+        let factors: Vec<String> = isolated.iter().map(f64::to_string).collect();
+        notes.push(format!(
+            "no equilibrium was found at {}, though a weaker body stands: the solver's failure, not the body's; it does not \
+             count",
+            factors.join(", ")
+        ));
+    }
+    let first = coarse.first_failed.and_then(|factor| rows.iter().find(|row| row.trial.factor == factor));
+    if let Some(row) = first.filter(|row| row.verdict == Verdict::NoEquilibrium && row.growth <= DOUBLED) {
+        notes.push(format!(
+            "the first failure, at {}, found no equilibrium with {:.2} times the elastic displacement: more load steps or \
+             iterations may carry it further",
+            row.trial.factor, row.growth
+        ));
+    }
+    notes
+}

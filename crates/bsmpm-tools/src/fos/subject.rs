@@ -1,0 +1,225 @@
+//! The case whose factor of safety is wanted: whether it has one, and the conditions that belong to every such factor.
+
+use std::path::{Path, PathBuf};
+
+use bsmpm::material::Material;
+use bsmpm::model::Regime;
+use bsmpm_scene::{Axis, Case, Path as Motion, Quantity};
+use serde::Serialize;
+
+use crate::Error;
+use crate::record::Case as Told;
+
+/// The loosest tolerances with which a factor means anything: a study by finite elements found it 45.6 % too high with
+/// residuals of 1e-1, 2 % with 1e-2, and no difference from 1e-3 on.
+const LOOSEST: f64 = 1e-3;
+/// The key that the search sets.
+const FACTOR: &str = "strength_reduction.factor";
+/// What a trial is judged by.
+const QUANTITY: &str = "max-displacement";
+
+/// A case that can be searched.
+#[derive(Debug)]
+pub(super) struct Subject {
+    path: PathBuf,
+    bytes: Vec<u8>,
+    /// overrides of all trials
+    set: Vec<String>,
+    pub title: String,
+    /// pseudo-time
+    pub end: f64,
+    /// the column of the largest displacement
+    pub column: String,
+    /// whether the case records it with a scale of its own, as E δ/(γ H²)
+    pub is_scaled: bool,
+    pub conditions: Conditions,
+}
+
+/// What belongs to a factor of safety.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(super) struct Conditions {
+    /// m  the largest size of a cell along each axis
+    pub cell: [f64; 2],
+    /// of the B-splines
+    pub order: usize,
+    /// along each axis, of every body
+    pub points_per_cell: Vec<usize>,
+    pub stabilisation: String,
+    /// of the soft background, over Young's modulus
+    pub background: f64,
+    /// of the energy
+    pub tolerance: f64,
+    /// of the forces
+    pub force_tolerance: f64,
+    /// nominal load steps
+    pub steps: u64,
+    /// Pa  of every material, where it depends on the height the largest
+    pub young: Vec<f64>,
+}
+
+impl Subject {
+    /// The case at `path` with overrides, to be searched from the factor `from` on.
+    ///
+    /// # Errors
+    /// [`Error::NoCase`] for a file that cannot be read, [`Error::BadCase`] with all errors of the case,
+    /// [`Error::NoFactor`] with all reasons why it has no factor of safety, [`Error::Usage`] for overrides of the factor.
+    pub fn read(path: &Path, set: &[String], from: f64) -> Result<Self, Error> {
+        if set.iter().any(|set| set.trim_start().starts_with("strength_reduction")) {
+            return Err(Error::Usage { reason: format!("--set {FACTOR}: the factor is what the search sets") });
+        }
+        let bytes = bsmpm_scene::load(path).map_err(|source| Error::NoCase { path: path.to_owned(), source })?;
+        let mut set = set.to_vec();
+        let case = parsed(path, &bytes, &[&set[..], &[reduction(from)]].concat())?;
+        let reasons = refusals(&case);
+        if !reasons.is_empty() {
+            return Err(Error::NoFactor { path: path.to_owned(), reasons });
+        }
+        let mut recorded: Vec<_> =
+            case.histories.iter().filter(|history| history.quantity == Quantity::MaxDisplacement).collect();
+        recorded.sort_by_key(|history| history.scale == 1.0);
+        let column = recorded.first().map_or(QUANTITY, |history| &history.name).to_owned();
+        let is_scaled = recorded.first().is_some_and(|history| history.scale != 1.0);
+        if recorded.is_empty() {
+            set.push(format!("history.{}.quantity={QUANTITY}", case.histories.len()));
+        }
+        let (title, end, conditions) = (case.title.clone(), case.analysis.end, Conditions::of(&case));
+        Ok(Self { path: path.to_owned(), bytes, set, title, end, column, is_scaled, conditions })
+    }
+
+    /// The overrides of a trial.
+    pub fn overrides(&self, factor: f64) -> Vec<String> {
+        [&self.set[..], &[reduction(factor)]].concat()
+    }
+
+    /// The text of a trial's case as its `run.json` has it.
+    pub fn text(&self, factor: f64) -> Result<String, Error> {
+        parsed(&self.path, &self.bytes, &self.overrides(factor)).map(|case| case.text)
+    }
+
+    /// The case's file.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+}
+
+fn reduction(factor: f64) -> String {
+    format!("{FACTOR}={factor:?}")
+}
+
+fn parsed(path: &Path, bytes: &[u8], set: &[String]) -> Result<Case, Error> {
+    Case::from_bytes(&path.display().to_string(), bytes, set).map_err(|errors| Error::BadCase {
+        path: path.to_owned(),
+        errors: errors.iter().map(|error| format!("{error:#}")).collect(),
+    })
+}
+
+/// Why a case has no factor of safety, or none that could be trusted.
+fn refusals(case: &Case) -> Vec<String> {
+    let is_plastic = case.materials.iter().any(|named| is_plastic(&named.material));
+    let never_full = ramps(case).any(|ramp| ramp > case.analysis.end);
+    let reasons = [
+        (
+            case.analysis.regime == Regime::Dynamic,
+            "analysis.type = \"dynamic\": strength reduction looks for equilibrium; it needs a quasi-static analysis",
+        ),
+        (!is_plastic, "no material is plastic: there is no strength to be reduced"),
+        (!is_loaded(case), "nothing loads the body at `end`: no weight under gravity, no traction, no point load"),
+        (never_full, "a load grows beyond `end`: it never acts in full, and the factor would be that of a part of it"),
+        (
+            case.initial.is_some(),
+            "[initial]: displacements would not count from the start of the load, and so tell nothing of failure; let \
+             gravity grow from zero instead",
+        ),
+        (
+            is_moved(case),
+            "the case prescribes a motion: displacements would tell of that, and not of failure; use loads",
+        ),
+    ];
+    let found = reasons.into_iter().filter(|(holds, _)| *holds).map(|(_, reason)| reason.to_owned());
+    loose_tolerances(case).chain(found).collect()
+}
+
+fn loose_tolerances(case: &Case) -> impl Iterator<Item = String> {
+    let all = [("tolerance", case.solver.tolerance), ("force_tolerance", case.solver.force_tolerance)];
+    all.into_iter().filter(|(_, value)| *value > LOOSEST).map(|(key, value)| {
+        format!(
+            "solver.{key} = {value:e} is too loose for a factor that means anything: at most {LOOSEST:e} (a study by finite \
+             elements found 45.6 % too much with 1e-1, 2 % with 1e-2, nothing from 1e-3 on)"
+        )
+    })
+}
+
+fn is_moved(case: &Case) -> bool {
+    let moves = |path: &Motion| path.rows.iter().any(|(_, by)| *by != [0.0; 2]);
+    let footing = case.footing.iter().map(|footing| &footing.path);
+    footing.chain(case.prescribed.iter().map(|prescribed| &prescribed.path)).any(moves)
+}
+
+fn is_plastic(material: &Material) -> bool {
+    match material {
+        Material::Hencky(_) => false,
+        Material::Graded(graded) => is_plastic(&graded.at(0.0)),
+        _ => true,
+    }
+}
+
+fn is_loaded(case: &Case) -> bool {
+    let falls = case.gravity.as_ref().is_some_and(|gravity| gravity.acceleration != [0.0; 2]);
+    let weighs = case.bodies.iter().any(|body| case.materials[body.material].density.is_some());
+    let is_pushed = case.tractions.iter().any(|traction| traction.stress != [0.0; 2])
+        || case.point_loads.iter().any(|load| load.force != [0.0; 2]);
+    (falls && weighs) || is_pushed
+}
+
+fn ramps(case: &Case) -> impl Iterator<Item = f64> {
+    let gravity = case.gravity.iter().map(|gravity| gravity.ramp);
+    let tractions = case.tractions.iter().map(|traction| traction.ramp);
+    gravity.chain(tractions).chain(case.point_loads.iter().map(|load| load.ramp))
+}
+
+impl Conditions {
+    fn of(case: &Case) -> Self {
+        let largest = |axis: &Axis| (0..axis.cells()).map(|cell| axis.cell(cell)).fold(0.0, f64::max);
+        let mut points_per_cell: Vec<usize> = case.bodies.iter().map(|body| body.points_per_cell).collect();
+        points_per_cell.dedup();
+        Self {
+            cell: [largest(&case.grid.axes[0]), largest(&case.grid.axes[1])],
+            order: case.grid.order,
+            points_per_cell,
+            stabilisation: Told::of(&case.text).stabilisation.unwrap_or_else(|| "none".to_owned()),
+            background: case.solver.background,
+            tolerance: case.solver.tolerance,
+            force_tolerance: case.solver.force_tolerance,
+            steps: (case.analysis.end / case.analysis.dt).round() as u64,
+            young: case.materials.iter().map(|named| named.material.elastic().young).collect(),
+        }
+    }
+
+    /// Cells and points in words.
+    pub fn mesh(&self) -> String {
+        let [x, y] = self.cell.map(shown);
+        let cell = if x == y { format!("h = {x} m") } else { format!("h = {x} m x {y} m") };
+        let points: Vec<String> = self.points_per_cell.iter().map(|points| format!("{points} x {points}")).collect();
+        format!("{cell}, {} points a cell, order {}", points.join(" and "), self.order)
+    }
+
+    /// Everything in words.
+    pub fn lines(&self) -> [String; 2] {
+        let young: Vec<String> = self.young.iter().map(|young| shown(young * 1e-6)).collect();
+        [
+            format!("{}; {}; background {:e} E", self.mesh(), self.stabilisation, self.background),
+            format!(
+                "{} load steps; tolerances {:e} (energy), {:e} (forces); E = {} MPa",
+                self.steps,
+                self.tolerance,
+                self.force_tolerance,
+                young.join(", ")
+            ),
+        ]
+    }
+}
+
+/// A number without the noise that divisions leave at its end.
+fn shown(number: f64) -> String {
+    crate::record::short(number).to_string()
+}

@@ -1,0 +1,161 @@
+//! Runs of bsmpm-par as other commands start them: made now, or left as they are where nothing has changed since.
+
+use std::env;
+use std::fs::{self, File};
+use std::io::{ErrorKind, Write};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::time::UNIX_EPOCH;
+
+use bsmpm_io::atomic;
+use bsmpm_io::manifest::{MANIFEST, Manifest};
+
+use crate::Error;
+
+/// Exit codes of bsmpm-par: done, and a check of the case failed.
+pub(crate) const DONE: u8 = 0;
+pub(crate) const CHECK: u8 = 77;
+/// No convergence, and material left the grid: the run has ended early with its last state saved.
+pub(crate) const NO_CONVERGENCE: u8 = 80;
+pub(crate) const LEFT: u8 = 81;
+
+/// What keeps runs side by side from taking each other's cores: no threads in BLAS, no ranks bound to the same cores.
+/// Variables that are set already stay as they are.
+const SIDE_BY_SIDE: [(&str, &str); 5] = [
+    ("OMP_NUM_THREADS", "1"),
+    ("OPENBLAS_NUM_THREADS", "1"),
+    ("OMPI_MCA_hwloc_base_binding_policy", "none"),
+    ("OMPI_MCA_rmaps_base_oversubscribe", "1"),
+    ("PRTE_MCA_rmaps_default_mapping_policy", ":oversubscribe"),
+];
+
+/// The words that start the solver, which its arguments follow.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Solver<'a> {
+    /// The launcher, if any, and at the end bsmpm-par.
+    pub command: &'a [String],
+    /// Runs that are made at the same time.
+    pub jobs: usize,
+}
+
+/// A run that is wanted.
+pub(crate) struct Task<'a> {
+    /// Those of bsmpm-par.
+    pub arguments: &'a [String],
+    /// The directory that they name as the output.
+    pub directory: &'a Path,
+    /// Everything that the run is made from, as it stands now; none where a part cannot be told, and the run is made.
+    pub origin: Option<&'a str>,
+    /// Make it even if it is there.
+    pub force: bool,
+}
+
+/// How a run ended.
+pub(crate) struct Ending {
+    /// That of bsmpm-par; the launcher's where there is no manifest.
+    pub code: u8,
+    pub manifest: Option<Manifest>,
+    /// Why it ended early, or its last word.
+    pub reason: String,
+}
+
+impl Solver<'_> {
+    /// Whether a solver that is named by its path is there: to be seen before former runs are deleted for new ones.
+    pub fn check(&self) -> Result<(), Error> {
+        match self.command.last() {
+            Some(solver) if solver.contains('/') && !Path::new(solver).is_file() => {
+                Err(Error::Launch { program: solver.clone(), source: ErrorKind::NotFound.into() })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Which program it is: its size and when it changed last.
+    pub fn stamp(&self) -> Option<String> {
+        let solver = fs::metadata(found(self.command.last()?)?).ok()?;
+        let changed = solver.modified().ok()?.duration_since(UNIX_EPOCH).ok()?.as_nanos();
+        Some(format!("solver: {} bytes, changed at {changed}", solver.len()))
+    }
+
+    /// Makes the run unless it has ended there, made from what would be taken now, and `is_same` agrees; its exit code, none
+    /// if it was there.
+    pub fn perform(&self, task: &Task, is_same: impl Fn(&Manifest) -> bool) -> Result<Option<u8>, Error> {
+        if !task.force && task.is_there(is_same) {
+            return Ok(None);
+        }
+        // What an older run left must not pass for this one's, should it die before it writes.
+        if task.directory.join(MANIFEST).exists() {
+            let file = |source| Error::File(bsmpm_io::Error::file("delete", task.directory)(source));
+            fs::remove_dir_all(task.directory).map_err(file)?;
+        }
+        if let Some(parent) = task.directory.parent() {
+            make(parent)?;
+        }
+        atomic::replace(&beside(task.directory, "origin"), |file| {
+            file.write_all(task.origin.unwrap_or_default().as_bytes())
+        })?;
+        self.start(task.arguments, &beside(task.directory, "log")).map(Some)
+    }
+
+    fn start(&self, arguments: &[String], log: &Path) -> Result<u8, Error> {
+        let file = |source| Error::File(bsmpm_io::Error::file("write", log)(source));
+        let out = File::create(log).map_err(file)?;
+        let both = out.try_clone().map_err(file)?;
+        let (program, first) = self
+            .command
+            .split_first()
+            .ok_or_else(|| Error::Usage { reason: "the command that starts the solver is missing".to_owned() })?;
+        let mut command = Command::new(program);
+        if self.jobs > 1 {
+            command.envs(SIDE_BY_SIDE.into_iter().filter(|(name, _)| env::var_os(name).is_none()));
+        }
+        let command = command.args(first).args(arguments).stdin(Stdio::null()).stdout(out).stderr(both);
+        let status = command.status().map_err(|source| Error::Launch { program: program.clone(), source })?;
+        Ok(status.code().and_then(|code| u8::try_from(code).ok()).unwrap_or(u8::MAX))
+    }
+}
+
+impl Task<'_> {
+    fn is_there(&self, is_same: impl Fn(&Manifest) -> bool) -> bool {
+        let Ok(manifest) = Manifest::read(self.directory) else { return false };
+        let is_whole = manifest.exit_code.is_some_and(|code| [DONE, CHECK, NO_CONVERGENCE, LEFT].contains(&code));
+        let origin = fs::read_to_string(beside(self.directory, "origin")).ok();
+        is_whole && origin.is_some() && origin.as_deref() == self.origin && is_same(&manifest)
+    }
+}
+
+impl Ending {
+    /// That of the run in a directory; `code` is what its process ended with, if it was made now.
+    pub fn of(directory: &Path, code: Option<u8>) -> Self {
+        let manifest = Manifest::read(directory).ok();
+        // A launcher may hide the program's own exit code, which is in the manifest.
+        let own = manifest.as_ref().and_then(|manifest| manifest.exit_code);
+        let failure = manifest.as_ref().and_then(|manifest| manifest.failure.as_ref());
+        let reason = failure.map_or_else(|| last_line(directory), |failure| failure.reason.clone());
+        Self { code: own.or(code).unwrap_or(u8::MAX), manifest, reason }
+    }
+}
+
+/// A file of a run beside its directory, `NAME.out`. The name may have dots itself, those of numbers; the directory's
+/// ending takes the place of one.
+pub(crate) fn beside(directory: &Path, ending: &str) -> PathBuf {
+    directory.with_extension(ending)
+}
+
+/// A directory, with those above it.
+pub(crate) fn make(directory: &Path) -> Result<(), Error> {
+    fs::create_dir_all(directory).map_err(|source| Error::File(bsmpm_io::Error::file("make", directory)(source)))
+}
+
+/// The file of a program: as it is named, or in the folders of PATH.
+fn found(program: &str) -> Option<PathBuf> {
+    if program.contains('/') {
+        return Some(PathBuf::from(program));
+    }
+    env::split_paths(&env::var_os("PATH")?).map(|folder| folder.join(program)).find(|file| file.is_file())
+}
+
+fn last_line(directory: &Path) -> String {
+    let text = fs::read_to_string(beside(directory, "log")).unwrap_or_default();
+    text.lines().rev().find(|line| !line.trim().is_empty()).unwrap_or("it left no word").to_owned()
+}

@@ -1,0 +1,306 @@
+//! `bsmpm fos`, with a stub for the solver: this test program, which writes runs of a body that bends at a known factor.
+
+use std::env;
+use std::fs::{self, OpenOptions};
+use std::io::Write;
+use std::os::unix::fs::PermissionsExt;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use bsmpm_io::directory::{Existing, HISTORY, OutputDirectory};
+use bsmpm_io::frame::{Field, Frame};
+use bsmpm_io::frames::{COLLECTION, Frames};
+use bsmpm_io::manifest::{Case, Extent, Failure, Manifest, Status};
+use bsmpm_io::table::{Cell, Column, Table};
+use serde_json::Value;
+
+use crate::Picture;
+
+/// The variable that makes this program the solver; it names the folder where calls are noted.
+const STUB: &str = "BSMPM_TEST_FOS";
+const SLOPE: &str = include_str!("../../../../cases/short/slope_stability.toml");
+const SCALED: &str = "E_delta_over_gamma_H2";
+
+/// What the body of a stub does, as `KEY=NUMBER ...`: it bends at the factor `kink`, ends early from `stops` to `until` with
+/// `code`.
+fn behaviour(folder: &Path, key: &str, otherwise: f64) -> f64 {
+    let text = fs::read_to_string(folder.join("behaviour")).unwrap();
+    let value = text.split_whitespace().find_map(|word| word.strip_prefix(key)?.strip_prefix('='));
+    value.map_or(otherwise, |value| value.parse().unwrap())
+}
+
+/// No test of its own: the solver, when the variable says so.
+#[test]
+fn stub() {
+    let Some(folder) = env::var_os(STUB).map(PathBuf::from) else { return };
+    let arguments: Vec<String> = env::args().skip_while(|word| word != "--").skip(1).collect();
+    let after = |name: &str| {
+        let pairs = arguments.windows(2).filter(|pair| pair[0] == name);
+        pairs.map(|pair| pair[1].clone()).collect::<Vec<_>>()
+    };
+    let bytes = fs::read(&arguments[0]).unwrap();
+    let case = bsmpm_scene::Case::from_bytes(&arguments[0], &bytes, &after("--set")).unwrap();
+    let factor = case.strength_reduction.unwrap();
+    let mut calls = OpenOptions::new().create(true).append(true).open(folder.join("calls")).unwrap();
+    calls.write_all(format!("{factor}\n").as_bytes()).unwrap();
+    if factor > behaviour(&folder, "breaks", f64::INFINITY) {
+        eprintln!("it broke");
+        std::process::exit(70);
+    }
+    let growth = 1.0 + 0.05 * factor + 100.0 * (factor - behaviour(&folder, "kink", f64::INFINITY)).max(0.0);
+    let stops = behaviour(&folder, "stops", f64::INFINITY);
+    let code = match (stops..behaviour(&folder, "until", f64::INFINITY)).contains(&factor) {
+        true => behaviour(&folder, "code", 80.0) as u8,
+        false => 0,
+    };
+    let output = after("--output").remove(0);
+    write_run(&case, arguments.clone(), Path::new(&output), 7.5e-3 * growth, code);
+    std::process::exit(i32::from(code));
+}
+
+/// A run of one step whose largest displacement is that many metres.
+fn write_run(case: &bsmpm_scene::Case, argv: Vec<String>, directory: &Path, displacement: f64, code: u8) {
+    let told = Case::new("slope.toml", &case.title, "plane-strain", case.text.clone());
+    let mut manifest = Manifest::begin("0.1.0", argv, told);
+    manifest.grid = Some(Extent { lower: vec![0.0; 2], upper: vec![40.0, 12.0], cell: vec![1.0; 2] });
+    let directory = OutputDirectory::claim(directory, Existing::Delete, &manifest).unwrap();
+    let mut headings = vec![Column::new("step", ""), Column::new("time", "")];
+    let columns = case.histories.iter().flat_map(bsmpm_scene::History::columns);
+    headings.extend(columns.map(|column| Column::new(&column.name, &column.unit)));
+    let mut table = Table::create(&directory.path().join(HISTORY), &headings).unwrap();
+    let row = |step: u64, displacement: f64| -> Vec<Cell> {
+        let quantities = headings[2..].iter().map(|heading| match &*heading.name {
+            SCALED => Cell::Float(50.0 * displacement),
+            _ => Cell::Float(displacement),
+        });
+        [Cell::Int(step), Cell::Float(step as f64)].into_iter().chain(quantities).collect()
+    };
+    table.row(&row(0, 0.0)).unwrap();
+    table.row(&row(1, displacement)).unwrap();
+    let position: Vec<[f64; 3]> =
+        (0..100).map(|index| [f64::from(index % 10) + 0.5, f64::from(index / 10) + 0.5, 0.0]).collect();
+    let moved: Vec<f64> = position.iter().flat_map(|place| [displacement * place[1] / 10.0, 0.0, 0.0]).collect();
+    let strain: Vec<f64> = position.iter().map(|place| displacement * place[0] / 100.0).collect();
+    let fields = vec![
+        Field::real("displacement", 3, moved),
+        Field::real("plastic_strain", 1, strain),
+        Field::real("stress", 6, vec![0.0; 600]),
+    ];
+    let mut frames = Frames::create(directory.path()).unwrap();
+    frames.write(&Frame { step: 1, time: 1.0, position, fields }).unwrap();
+    [COLLECTION, HISTORY, &Frames::file(1)].iter().for_each(|name| manifest.name_output(name));
+    if code == 0 {
+        manifest.finish(Status::Finished, 0);
+    } else {
+        let reason = "no step converged".to_owned();
+        manifest.failure = Some(Failure { step: 2, time: 0.875, reason, residuals: Vec::new(), worst: None });
+        manifest.finish(Status::Failed, code);
+    }
+    manifest.write(directory.path()).unwrap();
+}
+
+struct Bench {
+    folder: tempfile::TempDir,
+}
+
+impl Bench {
+    fn new(case: &str, behaviour: &str) -> Self {
+        let bench = Self { folder: tempfile::tempdir().unwrap() };
+        bench.write("slope.toml", case);
+        bench.write("behaviour", behaviour);
+        let program = env::current_exe().unwrap();
+        bench.write(
+            "solver",
+            &format!("#!/bin/sh\nexec '{}' --exact fos::stub --nocapture -- \"$@\"\n", program.display()),
+        );
+        fs::set_permissions(bench.path("solver"), fs::Permissions::from_mode(0o755)).unwrap();
+        bench
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    fn write(&self, name: &str, text: &str) {
+        fs::write(self.path(name), text).unwrap();
+    }
+
+    fn fos(&self, options: &[&str]) -> Output {
+        let arguments = [&["fos", "slope.toml", "--jobs", "2"], options, &["--", "./solver"]].concat();
+        let mut command = Command::new(env!("CARGO_BIN_EXE_bsmpm"));
+        command.current_dir(self.folder.path()).env(STUB, self.folder.path()).args(arguments).output().unwrap()
+    }
+
+    fn calls(&self) -> usize {
+        fs::read_to_string(self.path("calls")).map_or(0, |text| text.lines().count())
+    }
+
+    fn found(&self) -> Value {
+        serde_json::from_str(&fs::read_to_string(self.path("slope.fos/fos.json")).unwrap()).unwrap()
+    }
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8(bytes.to_vec()).unwrap()
+}
+
+#[test]
+fn the_factor_is_found_and_written_with_its_conditions_and_pictures() {
+    let bench = Bench::new(SLOPE, "kink=1.373");
+    let output = bench.fos(&[]);
+    let said = text(&output.stdout);
+    assert!(output.status.success(), "{output:?}");
+    assert!(said.contains("h = 1 m, 3 x 3 points a cell, order 2; modified-f-bar; background 1e-4 E"), "{said}");
+    assert!(said.contains("10 load steps; tolerances 1e-8 (energy), 1e-4 (forces); E = 100 MPa"), "{said}");
+    let found = bench.found();
+    let factor = &found["factor_of_safety"];
+    let number = |key: &str| factor[key].as_f64().unwrap();
+    assert!(number("last_stable") <= 1.373 && 1.373 <= number("first_failed"), "{factor}");
+    assert!(number("first_failed") - number("last_stable") < 0.0201 && (number("estimate") - 1.373).abs() < 2e-3);
+    assert_eq!(found["criteria"][1]["criterion"], "doubled");
+    assert_eq!((&found["conditions"]["background"], &found["column"]), (&1e-4.into(), &SCALED.into()));
+    let trials = found["trials"].as_array().unwrap();
+    assert!(trials[0]["verdict"] == "elastic" && trials[0]["factor"] == 0.1 && trials[1]["status"] == "equilibrium");
+    assert!(trials.iter().all(|trial| trial["plastic_strain"].as_f64().unwrap() > 0.0));
+    let table = fs::read_to_string(bench.path("slope.fos/fos.csv")).unwrap();
+    assert_eq!((table.lines().count(), bench.calls()), (2 + trials.len(), trials.len()));
+    for name in ["fos.png", "fos_plastic-strain.png", "fos_displacement.png"] {
+        let path = bench.path("slope.fos").join(name);
+        assert!(said.contains(&format!("slope.fos/{name}")) && Picture::read(&path).colours() > 20, "{name}");
+    }
+}
+
+#[test]
+fn trials_that_are_there_are_kept_until_something_changes() {
+    let bench = Bench::new(SLOPE, "kink=1.373");
+    let made = |options: &[&str]| {
+        let before = bench.calls();
+        assert!(bench.fos(options).status.success());
+        bench.calls() - before
+    };
+    let all = made(&[]);
+    assert_eq!(made(&[]), 0);
+    // A narrower band takes what is there.
+    assert!((1..all).contains(&made(&["--width", "0.01"])));
+    // A trial that was broken off.
+    let manifest = bench.path("slope.fos/trials/0.5.out/run.json");
+    let whole = fs::read_to_string(&manifest).unwrap();
+    fs::write(&manifest, whole.replace("\"exit_code\": 0", "\"exit_code\": null")).unwrap();
+    assert_eq!((made(&[]), made(&[]), made(&["--force"])), (1, 0, all));
+    bench.write("slope.toml", &SLOPE.replace("cohesion    = \"10 kPa\"", "cohesion    = \"11 kPa\""));
+    assert_eq!((made(&[]), made(&["--set", "stabilisation.method=none"])), (all, all));
+}
+
+#[test]
+fn a_trial_without_equilibrium_is_a_result() {
+    for (code, status) in [(80, "no-equilibrium"), (81, "left")] {
+        let bench = Bench::new(SLOPE, &format!("stops=1.373 code={code}"));
+        let output = bench.fos(&[]);
+        assert!(output.status.success(), "{output:?}");
+        let said = text(&output.stdout);
+        assert!(said.contains("at 0.875 of the load: no step converged"), "{said}");
+        let found = bench.found();
+        let number = |key: &str| found["factor_of_safety"][key].as_f64().unwrap();
+        assert!(number("last_stable") < 1.373 && 1.373 <= number("first_failed"), "{found}");
+        assert!(found["factor_of_safety"]["estimate"].is_null());
+        let trials = found["trials"].as_array().unwrap();
+        assert!(trials.iter().any(|trial| trial["status"] == status && trial["load"] == 0.875), "{found}");
+        assert!(bench.path("slope.fos/fos_displacement.png").exists());
+    }
+    // In the middle, where a weaker body stands.
+    let bench = Bench::new(SLOPE, "kink=1.373 stops=0.7 until=0.8");
+    let output = bench.fos(&[]);
+    assert!(text(&output.stdout).contains("the solver's failure"), "{output:?}");
+    assert!((bench.found()["factor_of_safety"]["estimate"].as_f64().unwrap() - 1.373).abs() < 2e-3);
+}
+
+#[test]
+fn a_trial_that_breaks_ends_the_search_with_its_code() {
+    let bench = Bench::new(SLOPE, "kink=1.373");
+    assert!(bench.fos(&[]).status.success());
+    bench.write("behaviour", "kink=1.373 breaks=0.7");
+    let output = bench.fos(&["--force"]);
+    let said = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(70));
+    assert!(said.contains("exit code 70: it broke") && !bench.path("slope.fos/fos.json").exists(), "{said}");
+}
+
+#[test]
+fn a_body_that_never_stands_or_never_fails_is_told_so() {
+    let bench = Bench::new(SLOPE, "kink=0.3");
+    let output = bench.fos(&[]);
+    let said = text(&output.stderr);
+    assert!(output.status.code() == Some(80) && said.contains("try a smaller --from"), "{said}");
+    let bench = Bench::new(SLOPE, "kink=9");
+    let output = bench.fos(&["--to", "2"]);
+    let said = text(&output.stdout);
+    assert!(output.status.success() && said.contains("above 2: no failure up to there"), "{said}");
+    assert!(bench.found()["factor_of_safety"]["first_failed"].is_null());
+    assert!(bench.path("slope.fos/fos.png").exists() && !bench.path("slope.fos/fos_displacement.png").exists());
+}
+
+#[test]
+fn a_case_that_records_no_displacement_gets_it_recorded() {
+    let bare = SLOPE.split("[[history]]").next().unwrap();
+    let bench = Bench::new(bare, "kink=1.373");
+    assert!(bench.fos(&[]).status.success());
+    assert_eq!(bench.found()["column"], "max-displacement");
+    assert!((bench.found()["factor_of_safety"]["estimate"].as_f64().unwrap() - 1.373).abs() < 2e-3);
+}
+
+#[test]
+fn a_case_without_a_factor_of_safety_is_refused_before_anything_runs() {
+    let bench = Bench::new(SLOPE, "kink=1.373");
+    let strip = "footing={ from = [0.0, 10.0], to = [2.0, 10.0], displacement = [0.0, -0.1] }";
+    for (set, told) in [
+        (vec!["solver.tolerance=2e-3"], "solver.tolerance = 2e-3 is too loose"),
+        (vec!["solver.force_tolerance=1e-2"], "solver.force_tolerance = 1e-2 is too loose"),
+        (vec!["analysis.type=dynamic"], "needs a quasi-static analysis"),
+        (
+            vec!["material.soil={ model = \"hencky\", young = 1e8, poisson = 0.3, density = 2e3 }"],
+            "no material is plastic",
+        ),
+        (vec!["gravity.acceleration=[0.0, 0.0]"], "nothing loads the body"),
+        (vec!["gravity.ramp=2.0"], "grows beyond `end`"),
+        (vec!["initial.k0=0.5"], "[initial]"),
+        (vec![strip], "prescribes a motion"),
+        (vec!["grid.cel=1.0"], "grid.cel"),
+    ] {
+        let options: Vec<&str> = set.iter().flat_map(|set| ["--set", set]).collect();
+        let output = bench.fos(&options);
+        let said = text(&output.stderr);
+        assert!(output.status.code() == Some(65) && said.contains(told), "{set:?}: {output:?}");
+    }
+    let output = bench.fos(&["--set", "solver.tolerance=1e-2", "--set", "gravity.ramp=2.0"]);
+    assert_eq!(text(&output.stderr).lines().filter(|line| line.starts_with("  ")).count(), 2, "{output:?}");
+    fs::remove_file(bench.path("slope.toml")).unwrap();
+    assert_eq!(bench.fos(&[]).status.code(), Some(66));
+    assert!(bench.calls() == 0 && !bench.path("slope.fos").exists());
+}
+
+#[test]
+fn a_wrong_command_line_is_refused_with_2() {
+    let bench = Bench::new(SLOPE, "kink=1.373");
+    for options in [
+        &["--from", "2", "--to", "1"][..],
+        &["--from", "0.1"],
+        &["--to", "101"],
+        &["--to", "nan"],
+        &["--width", "0"],
+        &["--width", "5"],
+        &["--width", "wide"],
+        &["--set", "strength_reduction.factor=2"],
+        &["--set", "strength_reduction={factor = 2}"],
+        &["--unknown"],
+    ] {
+        assert_eq!(bench.fos(options).status.code(), Some(2), "{options:?}");
+    }
+    let without = |arguments: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_bsmpm"));
+        command.current_dir(bench.folder.path()).args(arguments).output().unwrap().status.code()
+    };
+    assert_eq!(without(&["fos"]), Some(2));
+    assert_eq!(without(&["fos", "slope.toml", "--jobs", "0"]), Some(2));
+    assert_eq!(without(&["fos", "slope.toml", "--", "./nowhere/bsmpm-par"]), Some(74));
+    assert_eq!(bench.calls(), 0);
+}
