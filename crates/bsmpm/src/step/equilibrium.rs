@@ -22,7 +22,7 @@ use crate::step::{Counts, Report};
 const ALREADY: f64 = 1e-2;
 /// Round-off of the internal force, relative to E h^(D-1) x 1 m^(3-D) per square root of an unknown.
 const ROUND_OFF: f64 = 1e-13;
-/// Round-off of the inertia, relative to |4/dt M v|: a few roundings.
+/// Round-off of the inertia, relative to |4/dt M v| (with numerical damping: its factor): a few roundings.
 const CANCELLED: f64 = 4.0 * f64::EPSILON;
 /// Shortest part of a direction that is tried when points invert.
 const SHORTEST: f64 = 1.0 / 16.0;
@@ -70,6 +70,7 @@ impl Found {
             first_guess: self.first_guess,
             reactions: scene.model.boundary.reactions(&scene.model.grid, &self.reaction, scene.halo),
             strips: Vec::new(),
+            energy: None,
         }
     }
 }
@@ -219,7 +220,7 @@ fn round_off<K: Kinematics<D>, const D: usize>(scene: &Scene<'_, K, D>) -> f64 {
     let nodes = scene.nodes;
     let internal = ROUND_OFF * scene.model.stiffest() * edge.powi(D as i32 - 1) * (nodes.unknowns as f64).sqrt();
     let Some(inertia) = &nodes.inertia else { return internal };
-    let pulse = |(c, v): (usize, &f64)| 4.0 / inertia.dt * nodes.weight[c / D] * v;
+    let pulse = |(c, v): (usize, &f64)| inertia.newmark.pulse(inertia.dt) * nodes.weight[c / D] * v;
     let pulse: Vec<f64> = inertia.v.iter().enumerate().map(pulse).collect();
     internal.max(CANCELLED * dots(scene.halo, D, &[(&pulse, &pulse)])[0].sqrt())
 }

@@ -126,7 +126,7 @@ impl Forces {
             let inertial = nodes
                 .inertia
                 .as_ref()
-                .map_or(0.0, |inertia| nodes.weight[component / D] * inertia.acceleration(component, u[component]));
+                .map_or(0.0, |inertia| nodes.weight[component / D] * inertia.acting(component, u[component]));
             let held = f_strips.get(component).copied().unwrap_or(0.0);
             let balance = nodes.f_ext[component] + held - f_int[component] - inertial;
             if nodes.free[component] {

@@ -11,6 +11,7 @@ use bsmpm::points::{Points, Seed};
 use bsmpm::schedule::Schedule;
 use bsmpm::seam::Alone;
 use bsmpm::stabilisation::Stabilisation;
+use bsmpm::step::newmark::Newmark;
 use bsmpm::step::quasi_newton::QuasiNewton;
 use bsmpm::tensor::Vector;
 use std::marker::PhantomData;
@@ -42,6 +43,7 @@ impl<K: Kinematics<D>, const D: usize> Scene<K, D> {
             grid: Grid::new(axes).expect("axes of one order"),
             materials: vec![material],
             regime,
+            newmark: Newmark::default(),
             weighting: Weighting::Mass,
             gravity: None,
             boundary: Boundary::default(),
@@ -49,6 +51,7 @@ impl<K: Kinematics<D>, const D: usize> Scene<K, D> {
             background: None,
             criteria: Criteria { energy: 1e-14, force: 1e-10, max_iterations: 200 },
             quasi_newton: QuasiNewton::default(),
+            balances_energy: false,
             kinematics: PhantomData,
         };
         Self { model, points: Points::from_seeds([], regime == Regime::Dynamic) }

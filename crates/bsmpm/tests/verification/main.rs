@@ -5,6 +5,7 @@
 
 mod bar;
 mod column;
+mod damping;
 mod dynamics;
 mod geostatic;
 mod invariance;
