@@ -16,7 +16,7 @@ use bsmpm::stabilisation::Stabilisation;
 use bsmpm::step::quasi_newton::QuasiNewton;
 use bsmpm::tensor::{Symmetric, Vector};
 use bsmpm_io::manifest;
-use bsmpm_scene::{Axis, Case, Every, Initial, Nonlinear, Regime};
+use bsmpm_scene::{Axis, Case, Every, Initial, Nonlinear, Quantity, Regime};
 use std::marker::PhantomData;
 
 /// The model of a plane-strain case over its whole grid.
@@ -30,6 +30,7 @@ pub fn model(case: &Case) -> Result<Model<PlaneStrain, 2>, GridError> {
     Ok(Model {
         materials: case.materials.iter().map(|named| named.material.clone()).collect(),
         regime: case.analysis.regime,
+        newmark: case.analysis.newmark,
         weighting: weighting(case),
         gravity: case
             .gravity
@@ -49,6 +50,7 @@ pub fn model(case: &Case) -> Result<Model<PlaneStrain, 2>, GridError> {
             Nonlinear::Auto => QuasiNewton::Multisecant,
             Nonlinear::Broyden => QuasiNewton::Broyden,
         },
+        balances_energy: case.histories.iter().any(|history| history.quantity == Quantity::Energy),
         kinematics: PhantomData,
     })
 }

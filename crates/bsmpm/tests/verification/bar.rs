@@ -8,7 +8,7 @@ use bsmpm::points::Points;
 use bsmpm::stabilisation::Stabilisation;
 use std::f64::consts::PI;
 
-const CELLS: usize = 20;
+pub const CELLS: usize = 20;
 const LENGTH: f64 = 25.0;
 const WAVE: f64 = 10.0; // m/s, sqrt(E / rho)
 pub const PERIOD: f64 = 10.0;

@@ -7,6 +7,7 @@ mod bar;
 mod column;
 mod damping;
 mod dynamics;
+mod energy;
 mod geostatic;
 mod invariance;
 mod locking;
