@@ -187,7 +187,11 @@ fn elastic<K: Kinematics<D>, const D: usize>(model: &Model<K, D>, points: &Point
 }
 
 /// Work of gravity by its mean, and half of what it has grown times u.
-fn gravity_work<K: Kinematics<D>, const D: usize>(scene: &Scene<'_, K, D>, u: &[f64], (t, dt): (f64, f64)) -> (f64, f64) {
+fn gravity_work<K: Kinematics<D>, const D: usize>(
+    scene: &Scene<'_, K, D>,
+    u: &[f64],
+    (t, dt): (f64, f64),
+) -> (f64, f64) {
     let Some(gravity) = &scene.model.gravity else { return (0.0, 0.0) };
     let mut moved = Vector::<D>::zeros(); // kg m
     transfer::to_points::<D, D>(scene.shape, u, |p, du| moved += Vector::from(du) * scene.points.mass[p]);

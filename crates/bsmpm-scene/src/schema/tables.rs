@@ -66,11 +66,7 @@ static ANALYSIS: Table = Table {
     exclusive: &[one_of(&["dt", "steps"], true), one_of(&["spectral_radius", "gamma"], false)],
 };
 
-const GAMMA: Range = Range {
-    lower: Included(0.5),
-    upper: Included(1.0),
-    why: "below 1/2 it gains energy",
-};
+const GAMMA: Range = Range { lower: Included(0.5), upper: Included(1.0), why: "below 1/2 it gains energy" };
 
 static GRID: Table = Table {
     header: "[grid]",

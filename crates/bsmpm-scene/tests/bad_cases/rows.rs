@@ -118,7 +118,8 @@ pub const RANGES: &[Row] = &[
 /// Rules between keys (I11 to I18, I20, I26).
 pub const RULES: &[Row] = &[
     row("dt   = \"10 ms\"", "dt = 0.01\nsteps = 5", "analysis.steps", "only one of dt, steps").down(1),
-    row("dt   = ", "spectral_radius = 1\ngamma = 0.5\ndt   = ", "analysis.gamma", "only one of spectral_radius").down(1),
+    row("dt   = ", "spectral_radius = 1\ngamma = 0.5\ndt   = ", "analysis.gamma", "only one of spectral_radius")
+        .down(1),
     row("dt   = \"10 ms\"\n", "", "analysis", "missing: one of dt, steps").up(3),
     row("end  = \"1 s\"\n", "", "analysis.end", "missing; a dynamic analysis").up(2),
     row("density  = \"2 t/m3\"", "density = 1\nunit_weight = 2", "material.sand.density", "only one of"),
