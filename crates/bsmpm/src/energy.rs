@@ -12,14 +12,16 @@
 //!   dead loads and of second order in dt else.
 //! - **plastic**: `Σ_p V0 τ : (ε_trial - εᵉ)`, backward Euler like the return.
 //! - **transfer** between points and nodes: `(T0 - ½ v_I0 · M v_I0) + (½ v_I1 · M v_I1 - T1)`, what PIC/FLIP loses on the way
-//!   there and back.
+//!   there and back; it can be negative, as the points' velocity grows by the accelerations that they keep for themselves,
+//!   the nodes' by the mapped ones.
 //! - **integration**: `(Σ_p V0 τ : (∇u dF⁻¹) - ΔE' - plastic) + (M ã · u - Δ(½ v_I · M v_I)) - ½ (f1 - f0) · u`: the work of the
 //!   internal forces less what became of it, the work of the inertia less the nodes' kinetic energy, and the difference
 //!   between the forces at the end, which are in balance, and the mean ones, by which external work is counted (gravity,
 //!   loads, strips). ΔE' is the change of E before the smoothing, ã the acceleration that the mass resists with. With
-//!   Newmark's 1/4, 1/2 `M (a0 + a1)/2 · u` is exactly the nodes' change, so that this part is of second order; numerical damping,
-//!   F-bar, backward Euler and the acceleration's way over the points appear here. In quasi-static analysis a load that
-//!   is applied at once does more work than the body stores: that difference, too.
+//!   Newmark's 1/4, 1/2 `M (a0 + a1)/2 · u` is exactly the nodes' change: elastic and without remapping, this part is of
+//!   second order in dt. Numerical damping, F-bar, backward Euler, and the difference between the forces at t on the new
+//!   grid and the mapped `M a0` appear here; in quasi-static analysis also what a load that is applied at once does more
+//!   than the body stores.
 //! - **smoothing**: E before less E after bᵉ is changed once the step has converged.
 //! - **background**: `u · B u`; the background forgets it after every step.
 //! - **penalty**: `Σ A (p0 + p1)/2 · (motion - u)`, by which material slips from strips.
