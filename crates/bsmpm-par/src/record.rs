@@ -1,6 +1,7 @@
 //! Rows of `history.csv`: the quantities that the case asks for, in the case's own coordinates.
 
 use crate::surfaces::{self, Gauge};
+use bsmpm::energy::{Books, Stored};
 use bsmpm::error::StepError;
 use bsmpm::kinematics::Kinematics;
 use bsmpm::model::Model;
@@ -20,6 +21,7 @@ pub struct Recorder {
     followed: Vec<Option<u64>>,
     reacting: Vec<Option<usize>>, // strip whose force a reaction is
     gauge: Option<Gauge>,
+    books: Option<Books>, // of energy, opened by the first row
     lower: Vector<2>,
 }
 
@@ -42,6 +44,7 @@ impl Recorder {
             followed: histories.iter().map(follow).collect(),
             reacting: histories.iter().map(react).collect(),
             gauge: Gauge::of(case),
+            books: None,
             lower,
         }
     }
@@ -54,12 +57,13 @@ impl Recorder {
 
     /// The row of the state at time `t`; `report` is that of the step that led to it, empty at the start.
     pub fn row<K: Kinematics<2>>(
-        &self,
+        &mut self,
         model: &Model<K, 2>,
         points: &Points<2>,
         (t, report): (f64, &Report),
         halo: &dyn Halo,
     ) -> Result<Vec<f64>, StepError> {
+        let energy = if model.balances_energy { self.energy(model, points, report, halo) } else { Vec::new() };
         let mut row = Vec::new();
         for (number, history) in self.histories.iter().enumerate() {
             let values = match &history.quantity {
@@ -67,6 +71,7 @@ impl Recorder {
                 Quantity::FootingPressure | Quantity::FootingForce | Quantity::Penetration | Quantity::Slip => {
                     vec![self.footing(&history.quantity, t, report)]
                 }
+                Quantity::Energy => energy.clone(),
                 quantity => self.values(quantity, self.followed[number], model, points, halo)?,
             };
             row.extend(values.iter().map(|value| history.scale * value));
@@ -119,8 +124,28 @@ impl Recorder {
             | Quantity::FootingPressure
             | Quantity::FootingForce
             | Quantity::Penetration
-            | Quantity::Slip => Vec::new(),
+            | Quantity::Slip
+            | Quantity::Energy => Vec::new(),
         })
+    }
+
+    /// Where the energy is and went, in the order of the quantity's columns, with the step of `report` entered.
+    fn energy<K: Kinematics<2>>(
+        &mut self,
+        model: &Model<K, 2>,
+        points: &Points<2>,
+        report: &Report,
+        halo: &dyn Halo,
+    ) -> Vec<f64> {
+        let now = Stored::of(model, points, halo);
+        let books = self.books.get_or_insert_with(|| Books::open(now));
+        if let Some(step) = report.energy {
+            books.flows += step;
+        }
+        let flows = books.flows;
+        let parts = [flows.transfer, flows.integration, flows.smoothing, flows.background, flows.penalty];
+        let whole = [now.kinetic, now.elastic, flows.plastic, flows.external, flows.numerical()];
+        whole.into_iter().chain(parts).chain([books.closure(now)]).collect()
     }
 
     /// A quantity of the footing; 0 without one, and before the first step.

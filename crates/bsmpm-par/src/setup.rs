@@ -17,7 +17,7 @@ use bsmpm::step::equilibrium::Nonlinear;
 use bsmpm::step::quasi_newton::QuasiNewton;
 use bsmpm::tensor::{Symmetric, Vector};
 use bsmpm_io::manifest;
-use bsmpm_scene::{Axis, Case, Every, Initial, Regime};
+use bsmpm_scene::{Axis, Case, Every, Initial, Quantity, Regime};
 use std::marker::PhantomData;
 
 /// The model of a plane-strain case over its whole grid.
@@ -31,6 +31,7 @@ pub fn model(case: &Case) -> Result<Model<PlaneStrain, 2>, GridError> {
     Ok(Model {
         materials: case.materials.iter().map(|named| named.material.clone()).collect(),
         regime: case.analysis.regime,
+        newmark: case.analysis.newmark,
         weighting: weighting(case),
         gravity: case
             .gravity
@@ -54,6 +55,7 @@ pub fn model(case: &Case) -> Result<Model<PlaneStrain, 2>, GridError> {
             bsmpm_scene::Nonlinear::Broyden => Nonlinear::QuasiNewton(QuasiNewton::Broyden),
             bsmpm_scene::Nonlinear::Newton => Nonlinear::Newton,
         },
+        balances_energy: case.histories.iter().any(|history| history.quantity == Quantity::Energy),
         kinematics: PhantomData,
     })
 }

@@ -17,6 +17,7 @@ use bsmpm::background::{Extent, Kind};
 use bsmpm::material::Material;
 use bsmpm::model::Regime;
 use bsmpm::stabilisation::Stabilisation;
+use bsmpm::step::newmark::Newmark;
 
 /// Everything that a run needs to know of what it solves.
 #[derive(Clone, Debug, PartialEq)]
@@ -118,6 +119,8 @@ pub struct Analysis {
     pub end: f64,
     /// s (quasi-static: pseudo-time)  nominal step; the step before a wanted time or the end is shortened
     pub dt: f64,
+    /// Time integration in dynamics.
+    pub newmark: Newmark,
 }
 
 /// A material and its name.

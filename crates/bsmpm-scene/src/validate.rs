@@ -17,6 +17,7 @@ use crate::record::Record;
 use crate::report::Report;
 use bsmpm::model::Regime;
 use bsmpm::stabilisation::Stabilisation;
+use bsmpm::step::newmark::Newmark;
 
 /// Steps of a run at most.
 const MOST_STEPS: f64 = 1e9;
@@ -112,7 +113,18 @@ fn analysis(record: &Record, regime: Option<Regime>, report: &mut Report<'_>) ->
         analysis.error("dt", message, report);
         return None;
     }
-    Some(Analysis { regime, end, dt })
+    Some(Analysis { regime, end, dt, newmark: newmark(analysis, regime, report)? })
+}
+
+/// Numerical damping, of which only a dynamic analysis can have any.
+fn newmark(analysis: &Record, regime: Regime, report: &mut Report<'_>) -> Option<Newmark> {
+    let given = ["spectral_radius", "gamma"].into_iter().find(|key| analysis.gives(key));
+    let Some(key) = given else { return Some(Newmark::default()) };
+    if regime == Regime::QuasiStatic {
+        analysis.error(key, "there is no inertia, and so no numerical damping, in a quasi-static analysis", report);
+    }
+    let value = analysis.number(key)?;
+    Some(if key == "gamma" { Newmark::of_gamma(value) } else { Newmark::of_spectral_radius(value) })
 }
 
 fn boundary(record: &Record) -> Option<[[Support; 2]; 2]> {

@@ -75,6 +75,11 @@ impl Moduli {
         tau.map(|t| (t - mean) / (2.0 * self.mu) + spherical)
     }
 
+    /// Energy per volume in J/m3: `½ λ tr(ε)² + μ ε : ε`.
+    fn energy(&self, eps: [f64; 3]) -> f64 {
+        0.5 * self.lambda * (eps[0] + eps[1] + eps[2]).powi(2) + self.mu * eps.iter().map(|e| e * e).sum::<f64>()
+    }
+
     /// `K = λ + ⅔ μ`.
     #[inline]
     fn bulk(&self) -> f64 {
@@ -133,6 +138,16 @@ impl Material {
             Self::MohrCoulomb(law) => law.project(moduli, trial),
         };
         Ok(Response::new(*b_trial, spectrum, moduli, returned))
+    }
+}
+
+impl Material {
+    /// Elastic energy per reference volume of the state `b_e`, J/m3; of a graded law through [`Material::at`] only.
+    ///
+    /// # Errors
+    /// When `b_e` is not finite or not positive definite.
+    pub fn elastic_energy(&self, b_e: &Symmetric) -> Result<f64, MaterialError> {
+        Ok(self.elastic().moduli().energy(Spectrum::of(b_e)?.eps))
     }
 }
 

@@ -8,13 +8,14 @@ use crate::material::{Material, MaterialError, Response};
 use crate::points::Points;
 use crate::stabilisation::Stabilisation;
 use crate::step::equilibrium::Nonlinear;
+use crate::step::newmark::Newmark;
 use crate::tensor::{Symmetric, Vector};
 use std::marker::PhantomData;
 
 /// Whether inertia acts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Regime {
-    /// Newmark's average acceleration (1/4, 1/2); time in s.
+    /// Inertia, integrated as the model's `newmark` says; time in s.
     Dynamic,
     /// No mass terms at all; time is a pseudo-time.
     QuasiStatic,
@@ -66,6 +67,8 @@ pub struct Model<K, const D: usize> {
     pub materials: Vec<Material>,
     /// Dynamic or quasi-static.
     pub regime: Regime,
+    /// Time integration in dynamics.
+    pub newmark: Newmark,
     /// Weights of the averages.
     pub weighting: Weighting,
     /// Body force, if any.
@@ -80,6 +83,8 @@ pub struct Model<K, const D: usize> {
     pub criteria: Criteria,
     /// How equilibrium is sought.
     pub nonlinear: Nonlinear,
+    /// Whether every step reports where its energy went.
+    pub balances_energy: bool,
     /// The geometry, a type without data.
     pub kinematics: PhantomData<K>,
 }
@@ -92,6 +97,12 @@ impl<K: Kinematics<D>, const D: usize> Model<K, D> {
             Material::Graded(law) => law.at(points.height(p)).respond(b_trial),
             uniform => uniform.respond(b_trial),
         }
+    }
+
+    /// Elastic energy of point `p` per reference volume in the state `b_e`, J/m3; not a number where that is no strain.
+    pub fn elastic_energy(&self, points: &Points<D>, p: usize, b_e: &Symmetric) -> f64 {
+        let material = self.materials[usize::from(points.material[p])].at(points.height(p));
+        material.elastic_energy(b_e).unwrap_or(f64::NAN)
     }
 
     /// Largest Young's modulus, Pa.

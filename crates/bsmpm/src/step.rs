@@ -5,6 +5,7 @@ pub mod commit;
 pub mod equilibrium;
 pub mod linearised;
 pub mod multisecant;
+pub mod newmark;
 pub mod newton;
 pub mod nodes;
 pub mod progress;
@@ -16,6 +17,7 @@ pub mod trial;
 
 use crate::boundary::strip::Grips;
 use crate::boundary::{StripReport, Surface, load};
+use crate::energy::{Draft, Flows};
 use crate::error::StepError;
 use crate::grid::Shape;
 use crate::kinematics::Kinematics;
@@ -62,6 +64,8 @@ pub struct Report {
     pub reactions: Vec<Vec<f64>>,
     /// what every rigid strip did
     pub strips: Vec<StripReport>,
+    /// J  where the energy went, if the model balances it
+    pub energy: Option<Flows>,
 }
 
 /// Steps the points from `t` to `t + dt`, starting from the nodal displacement `guess` (D numbers per node of the
@@ -86,7 +90,9 @@ pub fn step<K: Kinematics<D>, const D: usize>(
         traction,
         position: load::moved(&model.boundary.loads, &points.surface, (&model.grid, &nodes.active), &found.u, halo),
     };
+    let draft = model.balances_energy.then(|| Draft::of(&scene, &found, (t, dt)));
     *guess = commit::commit(model, &shape, &nodes, found, points, halo)?; // (10), (11)
+    let energy = draft.map(|draft| draft.close(model, points, &surface, halo));
     points.surface = surface;
-    Ok(report)
+    Ok(Report { energy, ..report })
 }

@@ -69,6 +69,8 @@ pub enum Quantity {
     Penetration,
     /// -  largest distance that the material has slipped from the footing in the step, over the footing's motion
     Slip,
+    /// J/m  where the energy is, and where it went since the start
+    Energy,
 }
 
 /// A face of the grid.
@@ -96,6 +98,19 @@ impl Quantity {
             Self::Momentum | Self::Reaction { .. } | Self::Displacement { .. } | Self::Velocity { .. } => &["-x", "-y"],
             Self::Stress { .. } => &["-xx", "-yy", "-zz", "-xy"],
             Self::StressNoise | Self::PressureNoise { .. } => &["-average", "-plane"],
+            Self::Energy => &[
+                "-kinetic",
+                "-elastic",
+                "-plastic",
+                "-external",
+                "-numerical",
+                "-transfer",
+                "-integration",
+                "-smoothing",
+                "-background",
+                "-penalty",
+                "-closure",
+            ],
             _ => &[""],
         }
     }
@@ -116,6 +131,7 @@ impl Quantity {
             Self::Velocity { .. } => "m/s",
             Self::Stress { .. } | Self::PressureNoise { .. } | Self::FootingPressure => "Pa",
             Self::StressNoise | Self::Slip => "-",
+            Self::Energy => "J/m",
         }
     }
 }

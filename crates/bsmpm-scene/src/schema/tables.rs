@@ -49,15 +49,24 @@ pub static ROOT: Table = Table {
 
 static ANALYSIS: Table = Table {
     header: "[analysis]",
-    doc: "Dynamic (Newmark 1/4, 1/2) or quasi-static (no inertia; time is a pseudo-time without unit)",
+    doc: "Dynamic (Newmark 1/4, 1/2 unless damped) or quasi-static (no inertia; time is a pseudo-time without unit)",
     keys: &[
         key("type", Choice(&["dynamic", "quasi-static"], &[]), Required, "whether inertia acts"),
         key("end", Quantity(In::Time, Range::POSITIVE), Optional, "end of the run; quasi-static: 1.0 unless given"),
         key("dt", Quantity(In::Time, Range::POSITIVE), Optional, "nominal step"),
         key("steps", Count(1, 1_000_000_000), Optional, "number of equal steps, instead of dt"),
+        key(
+            "spectral_radius",
+            Quantity(In::Number, UP_TO_1),
+            Optional,
+            "numerical damping of second order (WBZ-alpha): what is left at infinite frequency; 1 unless given: none",
+        ),
+        key("gamma", Quantity(In::Number, GAMMA), Optional, "Newmark's gamma instead: damping of first order"),
     ],
-    exclusive: &[one_of(&["dt", "steps"], true)],
+    exclusive: &[one_of(&["dt", "steps"], true), one_of(&["spectral_radius", "gamma"], false)],
 };
+
+const GAMMA: Range = Range { lower: Included(0.5), upper: Included(1.0), why: "below 1/2 it gains energy" };
 
 static GRID: Table = Table {
     header: "[grid]",
@@ -280,8 +289,9 @@ const QUANTITY: Kind = Choice(
         "footing-force",
         "penetration",
         "slip",
+        "energy",
     ],
-    &["energy"],
+    &[],
 );
 
 static CHECK: Table = Table {

@@ -93,6 +93,7 @@ fn quantity(word: &str, record: &Record, grid: Option<&GridSpec>, report: &mut R
         "footing-force" => Quantity::FootingForce,
         "penetration" => Quantity::Penetration,
         "slip" => Quantity::Slip,
+        "energy" => Quantity::Energy,
         _ => Quantity::StressNoise,
     })
 }

@@ -91,6 +91,9 @@ pub const RANGES: &[Row] = &[
     row("dt   = \"10 ms\"", "steps = 0", "analysis.steps", "allowed: 1 <= steps"),
     row("dt   = \"10 ms\"", "steps = 1000000000000", "analysis.steps", "allowed: 1 <= steps <= 1000000000"),
     row("dt   = \"10 ms\"", "steps = -1", "analysis.steps", "-1 is out of range"),
+    row("dt   = ", "spectral_radius = 1.1\ndt   = ", "analysis.spectral_radius", "0 <= spectral_radius <= 1"),
+    row("dt   = ", "spectral_radius = -0.1\ndt   = ", "analysis.spectral_radius", "-0.1 is out of range"),
+    row("dt   = ", "gamma = 0.4\ndt   = ", "analysis.gamma", "0.5 <= gamma <= 1 (below 1/2 it gains energy)"),
     row("points_per_cell = 3", "points_per_cell = 0", "body.0.points_per_cell", "1 <= points_per_cell <= 100"),
     row("points_per_cell = 3", "points_per_cell = 101", "body.0.points_per_cell", "1 <= points_per_cell <= 100"),
     row("-9.81]", "1e308]", "gravity.acceleration", "an acceleration is at most"),
@@ -116,6 +119,8 @@ pub const RANGES: &[Row] = &[
 /// Rules between keys (I11 to I18, I20, I26).
 pub const RULES: &[Row] = &[
     row("dt   = \"10 ms\"", "dt = 0.01\nsteps = 5", "analysis.steps", "only one of dt, steps").down(1),
+    row("dt   = ", "spectral_radius = 1\ngamma = 0.5\ndt   = ", "analysis.gamma", "only one of spectral_radius")
+        .down(1),
     row("dt   = \"10 ms\"\n", "", "analysis", "missing: one of dt, steps").up(3),
     row("end  = \"1 s\"\n", "", "analysis.end", "missing; a dynamic analysis").up(2),
     row("density  = \"2 t/m3\"", "density = 1\nunit_weight = 2", "material.sand.density", "only one of"),
@@ -187,6 +192,8 @@ pub const QUASI_STATIC: &[Row] = &[
     row("bottom = \"fixed\"", "top = \"fixed\"", "boundary", "no fixed face or roller that a body reaches").up(1),
     row("points_per_cell = 3", "points_per_cell = 3\nvelocity = [1, 0]", "body.0.velocity", "quasi-static").down(1),
     row("[output]", "[[history]]\nquantity = \"momentum\"\n[output]", "history.0.quantity", "no momentum").down(1),
+    row("steps = 4", "steps = 4\nspectral_radius = 0.8", "analysis.spectral_radius", "no inertia").down(1),
+    row("steps = 4", "steps = 4\ngamma = 0.6", "analysis.gamma", "no inertia").down(1),
     row("steps = 4", "steps = 4.5", "analysis.steps", "whole number"),
     row(
         "box = { lower = [0.0, 0.0], upper = [2.0, 1.0] }\npoints_per_cell = 3",
@@ -205,6 +212,5 @@ pub const LATER: &[(&str, &str, &str)] = &[
     ("format = \"vtu\"", "format = \"vtkhdf\"", "output.format"),
     ("format = \"vtu\"", "checkpoint = { keep = 2 }", "output.checkpoint"),
     ("[gravity]", "[[stage]]", "stage"),
-    ("quantity   = \"runout\"", "quantity = \"energy\"", "history.0.quantity"),
     ("[gravity]", "[profile.depth]", "profile"),
 ];

@@ -21,6 +21,8 @@ struct Picture {
     up: &'static [&'static str],
     /// Those that are drawn with them.
     beside: &'static [&'static str],
+    /// The endings of the columns that it is about, those that are zero throughout left out; empty: all columns.
+    parts: &'static [&'static str],
     /// What they are together.
     together: &'static str,
 }
@@ -32,7 +34,7 @@ enum Across {
 }
 use Across::{Penetration, Time};
 
-const PICTURES: [Picture; 9] = [
+const PICTURES: [Picture; 11] = [
     Picture { beside: &["height"], together: "Length", ..Picture::of("runout", "Run-out", Time, &["runout", "front"]) },
     Picture::of("height", "Height", Time, &["height"]),
     Picture {
@@ -50,6 +52,15 @@ const PICTURES: [Picture; 9] = [
     Picture::of("footing-pressure-time", "Pressure on the footing", Time, &["footing-pressure"]),
     Picture::of("footing-force", "Force on the footing", Time, &["footing-force"]),
     Picture::of("slip", "Slip at the footing", Time, &["slip"]),
+    Picture {
+        parts: &["-kinetic", "-elastic", "-plastic", "-external", "-numerical"],
+        ..Picture::of("energy", "Energy", Time, &["energy"])
+    },
+    Picture {
+        parts: &["-numerical", "-transfer", "-integration", "-smoothing", "-background", "-penalty", "-closure"],
+        together: "Energy",
+        ..Picture::of("energy-numerical", "Loss of the algorithm", Time, &["energy"])
+    },
 ];
 
 /// The horizontal axis of a picture.
@@ -117,14 +128,14 @@ impl Across {
 
 impl Picture {
     const fn of(file: &'static str, title: &'static str, across: Across, up: &'static [&'static str]) -> Self {
-        Self { file, title, across, up, beside: &[], together: title }
+        Self { file, title, across, up, beside: &[], parts: &[], together: title }
     }
 
     /// The columns that there are, those of one unit and scale together.
     fn groups<'a>(&self, record: &'a Record) -> Vec<Vec<Recorded<'a>>> {
         let recorded = |quantities: &[&str]| -> Vec<Recorded<'a>> {
             let columns = quantities.iter().flat_map(|quantity| record.columns(quantity));
-            columns.filter(|column| !column.values.is_empty()).collect()
+            columns.filter(|column| !column.values.is_empty() && self.is_about(column)).collect()
         };
         let mut columns = recorded(self.up);
         if !columns.is_empty() {
@@ -140,6 +151,11 @@ impl Picture {
         }
         groups.sort_by_key(|group| !group[0].scale.is_empty());
         groups
+    }
+
+    fn is_about(&self, column: &Recorded) -> bool {
+        let named = self.parts.iter().any(|part| column.name.ends_with(part));
+        self.parts.is_empty() || (named && column.values.iter().any(|value| *value != 0.0))
     }
 
     fn draw(

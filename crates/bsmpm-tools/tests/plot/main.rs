@@ -69,7 +69,7 @@ fn every_picture_of_a_run_is_drawn_and_named() {
         assert!(output.status.success(), "{output:?}");
         let printed = String::from_utf8(output.stdout).unwrap();
         let paths: Vec<PathBuf> = printed.lines().map(PathBuf::from).collect();
-        assert_eq!(paths.len(), 7);
+        assert_eq!(paths.len(), 9);
         for path in &paths {
             let picture = Picture::read(path);
             let height = picture.rows().len();
@@ -80,7 +80,7 @@ fn every_picture_of_a_run_is_drawn_and_named() {
         }
         let manifest = Manifest::read(dir.path()).unwrap();
         let named = manifest.outputs.iter().filter(|output| output.path.ends_with(".png")).count();
-        assert_eq!(named, 7);
+        assert_eq!(named, 9);
         OutputDirectory::claim(dir.path(), Existing::Delete, &manifest).unwrap();
         assert!(paths.iter().all(|path| !path.exists()));
     }

@@ -18,6 +18,13 @@ pub struct Load<const D: usize> {
     pub ramp: f64,
 }
 
+impl<const D: usize> Load<D> {
+    /// Share of the load that acts at time `t`.
+    fn grown(&self, t: f64) -> f64 {
+        if self.ramp > 0.0 { (t / self.ramp).clamp(0.0, 1.0) } else { 1.0 }
+    }
+}
+
 /// Nodal forces of all loads at time `t`, N, added to `f_ext`. Fails on all ranks if a load has lost its material.
 pub fn add_forces<const D: usize>(
     loads: &[Load<D>],
@@ -32,7 +39,7 @@ pub fn add_forces<const D: usize>(
     }
     let (offsets, mut applied, mut force) = (grid.offsets(), vec![0.0; loads.len()], vec![0.0; f_ext.len()]);
     for (number, load) in loads.iter().enumerate() {
-        let grown = if load.ramp > 0.0 { (t / load.ramp).clamp(0.0, 1.0) } else { 1.0 };
+        let grown = load.grown(t);
         for (point, x) in load.points.iter().zip(&surface.position[number]) {
             if let Some(attachment) = Attachment::at(grid, &offsets, |node| active[node], x) {
                 attachment.scatter(&offsets, &(load.traction * (grown * point.area)), &mut force);
@@ -71,4 +78,21 @@ pub fn moved<const D: usize>(
         surface.position.iter().map(|points| points.iter().map(place).collect()).collect();
     reduce(&mut position, halo);
     position
+}
+
+/// Work of all loads from `t` to `t + dt` by their mean, N m, and half of what they have grown times the displacement of
+/// their points, from one surface to the other.
+pub fn work<const D: usize>(
+    loads: &[Load<D>],
+    (before, after): (&Surface<D>, &Surface<D>),
+    (t, dt): (f64, f64),
+) -> (f64, f64) {
+    let mut sums = (0.0, 0.0);
+    for (number, load) in loads.iter().enumerate() {
+        let moved = load.points.iter().zip(&before.position[number]).zip(&after.position[number]);
+        let full: f64 = moved.map(|((point, from), to)| point.area * load.traction.dot(&(to - from))).sum();
+        sums.0 += 0.5 * (load.grown(t) + load.grown(t + dt)) * full;
+        sums.1 += 0.5 * (load.grown(t + dt) - load.grown(t)) * full;
+    }
+    sums
 }

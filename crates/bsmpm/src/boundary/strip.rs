@@ -55,6 +55,17 @@ pub struct StripReport {
     pub held: usize,
 }
 
+/// Work of strips in a step, by the mean of their tractions at its ends, N m.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct GripWork {
+    /// by the strips' motion
+    pub given: f64,
+    /// by the displacement of the material at them
+    pub taken: f64,
+    /// half of what the tractions have grown, times that displacement
+    pub grown: f64,
+}
+
 /// The strips' points of this rank in one step.
 #[derive(Clone, Debug)]
 pub struct Grips<const D: usize> {
@@ -195,6 +206,19 @@ impl<const D: usize> Grips<D> {
             held.penalty * held.area * moved.norm_squared()
         };
         self.held.iter().map(of).sum()
+    }
+
+    /// Work on this rank under the converged displacement `u`.
+    pub fn work(&self, u: &[f64]) -> GripWork {
+        let mut work = GripWork::default();
+        for held in &self.held {
+            let (before, after) = (held.own(held.carried), held.traction(&self.offsets, u));
+            let (moved, mean) = (held.displacement(&self.offsets, u), (before + after) * (0.5 * held.area));
+            work.given += mean.dot(&held.motion);
+            work.taken += mean.dot(&moved);
+            work.grown += 0.5 * held.area * (after - before).dot(&moved);
+        }
+        work
     }
 
     /// What every strip did under the converged displacement `u`, and the tractions that the next step starts from.

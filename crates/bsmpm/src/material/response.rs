@@ -84,6 +84,12 @@ impl Response {
         self.principal_eps_e().iter().sum()
     }
 
+    /// Plastic dissipation of this return per reference volume, J/m3: `τ : (ε_trial - εᵉ)`, zero if elastic.
+    pub fn dissipation(&self) -> f64 {
+        let (eps_e, eps) = (self.principal_eps_e(), self.trial.eps);
+        (0..3).map(|k| self.tau[k] * (eps[k] - eps_e[k])).sum()
+    }
+
     /// Principal Kirchhoff stress in Pa, descending.
     #[inline]
     pub fn principal_tau(&self) -> [f64; 3] {

@@ -81,13 +81,13 @@ pub fn commit<K: Kinematics<D>, const D: usize>(
     Ok(u)
 }
 
-/// Steps (10a), (11c), (11d): a_I by Newmark, a_p = sum_I N_Ip a_I, v_p += (a_p(t) + a_p(t+dt)) dt / 2.
+/// Steps (10a), (11c), (11d): a_I by Newmark, a_p = sum_I N_Ip a_I, v_p += dt ((1 - gamma) a_p(t) + gamma a_p(t+dt)).
 fn move_with_inertia<const D: usize>(shape: &Shape<D>, inertia: &Inertia, u: &[f64], points: &mut Points<D>) {
     let Some(motion) = &mut points.motion else { return };
     let a: Vec<f64> = u.iter().enumerate().map(|(c, &u)| inertia.acceleration(c, u)).collect();
     transfer::to_points::<D, D>(shape, &a, |p, a| {
         let a = Vector::from(a);
-        motion.v[p] += (motion.a[p] + a) * (0.5 * inertia.dt);
+        motion.v[p] += motion.a[p].zip_map(&a, |before, after| inertia.newmark.gained(inertia.dt, before, after));
         motion.a[p] = a;
     });
 }

@@ -81,6 +81,7 @@ impl Found {
             first_guess: self.first_guess,
             reactions: scene.model.boundary.reactions(&scene.model.grid, &self.reaction, scene.halo),
             strips: Vec::new(),
+            energy: None,
         }
     }
 }

@@ -9,11 +9,12 @@ use crate::model::{Model, Regime, Weighting};
 use crate::points::Points;
 use crate::seam::Halo;
 use crate::stabilisation::Stabilisation;
+use crate::step::newmark::Newmark;
 
 /// Nodes lighter than this fraction of the heaviest one have no velocity, acceleration or average: 1/m is never formed.
 const MASSLESS: f64 = 1e-14;
 
-/// Nodal velocity and acceleration at the start of the step, and Newmark's view of them.
+/// Nodal velocity and acceleration at the start of the step, and how they go on.
 #[derive(Clone, Debug)]
 pub struct Inertia {
     /// m/s, D numbers a node
@@ -22,18 +23,32 @@ pub struct Inertia {
     pub a: Vec<f64>,
     /// s  length of the step
     pub dt: f64,
+    /// time integration
+    pub newmark: Newmark,
 }
 
 impl Inertia {
-    /// Factor of the mass in the stiffness, 4/dt^2.
+    /// 1/s2  factor of the mass in the tangent of the out-of-balance force; 4/dt^2 without numerical damping.
     pub fn factor(&self) -> f64 {
-        4.0 / (self.dt * self.dt)
+        self.newmark.factor(self.dt)
     }
 
-    /// Acceleration of a component: 4/dt^2 u - 4/dt v - a (steps 5b, 10a).
+    /// m/s2  acceleration of a component at the end (steps 5b, 10a); 4/dt^2 u - 4/dt v - a without numerical damping.
     #[inline]
     pub fn acceleration(&self, component: usize, u: f64) -> f64 {
-        self.factor() * u - 4.0 / self.dt * self.v[component] - self.a[component]
+        self.newmark.acceleration(self.dt, u, (self.v[component], self.a[component]))
+    }
+
+    /// m/s2  what the mass of a component resists with: times the mass, its inertia in the balance of forces.
+    #[inline]
+    pub fn acting(&self, component: usize, u: f64) -> f64 {
+        self.newmark.acting(self.a[component], self.acceleration(component, u))
+    }
+
+    /// m/s  velocity of a component at the end (step 10b).
+    #[inline]
+    pub fn velocity(&self, component: usize, u: f64) -> f64 {
+        self.v[component] + self.newmark.gained(self.dt, self.a[component], self.acceleration(component, u))
     }
 }
 
@@ -92,7 +107,7 @@ impl<const D: usize> Nodes<D> {
         let threshold = MASSLESS * heaviest[0];
         let velocities = model.boundary.velocities(&model.grid);
         let inertia = (model.regime == Regime::Dynamic)
-            .then(|| map_inertia(shape, points, &weight, threshold, &velocities, dt, halo));
+            .then(|| map_inertia(shape, points, (&weight, threshold), &velocities, (dt, model.newmark), halo));
         let background = model.background.map(|soft| soft.blocks(&model.grid, shape, points, &model.materials, halo));
         let (active, stiff) = supported(shape, points, background.as_ref(), nodes, halo);
         let unknown = |node: usize| active[node] && (weight[node] > threshold || stiff[node]);
@@ -213,13 +228,12 @@ fn scatter_weight<const D: usize>(
 fn map_inertia<const D: usize>(
     shape: &Shape<D>,
     points: &Points<D>,
-    mass: &[f64],
-    threshold: f64,
+    (mass, threshold): (&[f64], f64),
     prescribed: &[Option<f64>],
-    dt: f64,
+    (dt, newmark): (f64, Newmark),
     halo: &dyn Halo,
 ) -> Inertia {
-    let mut inertia = Inertia { v: vec![0.0; mass.len() * D], a: vec![0.0; mass.len() * D], dt };
+    let mut inertia = Inertia { v: vec![0.0; mass.len() * D], a: vec![0.0; mass.len() * D], dt, newmark };
     if let Some(motion) = &points.motion {
         for (field, nodal) in [(&motion.v, &mut inertia.v), (&motion.a, &mut inertia.a)] {
             transfer::to_nodes::<D, D>(shape, nodal, |p| (field[p] * points.mass[p]).into());

@@ -16,7 +16,7 @@ use crate::tensor::Vector;
 const ALREADY: f64 = 1e-2;
 /// Round-off of the internal force, relative to E h^(D-1) x 1 m^(3-D) per square root of an unknown.
 const ROUND_OFF: f64 = 1e-13;
-/// Round-off of the inertia, relative to |4/dt M v|: a few roundings.
+/// Round-off of the inertia, relative to |4/dt M v| (with numerical damping: its factor): a few roundings.
 const CANCELLED: f64 = 4.0 * f64::EPSILON;
 /// Iterations over which the rate of convergence is taken.
 const WINDOW: usize = 20;
@@ -137,7 +137,7 @@ fn round_off<K: Kinematics<D>, const D: usize>(scene: &Scene<'_, K, D>) -> f64 {
     let nodes = scene.nodes;
     let internal = ROUND_OFF * scene.model.stiffest() * edge.powi(D as i32 - 1) * (nodes.unknowns as f64).sqrt();
     let Some(inertia) = &nodes.inertia else { return internal };
-    let pulse = |(c, v): (usize, &f64)| 4.0 / inertia.dt * nodes.weight[c / D] * v;
+    let pulse = |(c, v): (usize, &f64)| inertia.newmark.pulse(inertia.dt) * nodes.weight[c / D] * v;
     let pulse: Vec<f64> = inertia.v.iter().enumerate().map(pulse).collect();
     internal.max(CANCELLED * dots(scene.halo, D, &[(&pulse, &pulse)])[0].sqrt())
 }

@@ -20,7 +20,7 @@ pub struct Residual {
 /// Step (5b): what is out of balance at the nodes, with the norms that judge it.
 #[derive(Clone, Debug)]
 pub struct Balance {
-    /// N  f_ext + strips - f_int - M a - background, zero at components that are not free
+    /// N  f_ext + strips - f_int - M a - background (a: `Inertia::acting`), zero at components that are not free
     pub f_oob: Vec<f64>,
     /// N  force of the supports on the body, zero at components that are not prescribed
     pub reaction: Vec<f64>,
@@ -126,7 +126,7 @@ impl Forces {
             let inertial = nodes
                 .inertia
                 .as_ref()
-                .map_or(0.0, |inertia| nodes.weight[component / D] * inertia.acceleration(component, u[component]));
+                .map_or(0.0, |inertia| nodes.weight[component / D] * inertia.acting(component, u[component]));
             let held = f_strips.get(component).copied().unwrap_or(0.0);
             let balance = nodes.f_ext[component] + held - f_int[component] - inertial;
             if nodes.free[component] {

@@ -1,5 +1,5 @@
 //! Step (6): the elastic stiffness K_0 = 4/dt^2 M + sum_p V0 G^T D^e G at the start of the step, symmetric, with the
-//! soft background and the hold of strips. The quasi-Newton method stands for everything that it leaves out.
+//! soft background and the hold of strips; numerical damping changes the 4/dt^2. The quasi-Newton method stands for everything that it leaves out.
 
 use crate::error::SolveError;
 use crate::grid::shape::Patch;

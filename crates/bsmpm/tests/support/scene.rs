@@ -12,6 +12,7 @@ use bsmpm::schedule::Schedule;
 use bsmpm::seam::Alone;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::step::equilibrium::Nonlinear;
+use bsmpm::step::newmark::Newmark;
 use bsmpm::tensor::Vector;
 use std::marker::PhantomData;
 use std::ops::Range;
@@ -42,6 +43,7 @@ impl<K: Kinematics<D>, const D: usize> Scene<K, D> {
             grid: Grid::new(axes).expect("axes of one order"),
             materials: vec![material],
             regime,
+            newmark: Newmark::default(),
             weighting: Weighting::Mass,
             gravity: None,
             boundary: Boundary::default(),
@@ -49,6 +51,7 @@ impl<K: Kinematics<D>, const D: usize> Scene<K, D> {
             background: None,
             criteria: Criteria { energy: 1e-14, force: 1e-10, max_iterations: 200 },
             nonlinear: Nonlinear::default(),
+            balances_energy: false,
             kinematics: PhantomData,
         };
         Self { model, points: Points::from_seeds([], regime == Regime::Dynamic) }

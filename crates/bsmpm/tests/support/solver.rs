@@ -250,4 +250,14 @@ impl LinearSolver for Dense {
     fn solve(&mut self, _: &[f64], _: &mut [f64]) -> Result<usize, SolveError> {
         Err(SolveError::Failed("it only holds the matrix".into()))
     }
+
+    fn solve_with(
+        &mut self,
+        _: &mut dyn FnMut(&[f64], &mut [f64]),
+        _: f64,
+        _: &[f64],
+        _: &mut [f64],
+    ) -> Result<Krylov, SolveError> {
+        Err(SolveError::Failed("it only holds the matrix".into()))
+    }
 }

@@ -8,12 +8,12 @@ use bsmpm::points::Points;
 use bsmpm::stabilisation::Stabilisation;
 use std::f64::consts::PI;
 
-const CELLS: usize = 20;
+pub const CELLS: usize = 20;
 const LENGTH: f64 = 25.0;
 const WAVE: f64 = 10.0; // m/s, sqrt(E / rho)
-const PERIOD: f64 = 10.0;
+pub const PERIOD: f64 = 10.0;
 
-fn bar(method: Stabilisation) -> Scene<PlaneStrain, 2> {
+pub fn bar(method: Stabilisation) -> Scene<PlaneStrain, 2> {
     let h = LENGTH / CELLS as f64;
     let fixed = Support { axis: 0, upper: false, velocity: [Some(0.0), None] };
     let speed = |x: f64| 1e-3 * WAVE * (PI * x / (2.0 * LENGTH)).sin();

@@ -5,7 +5,9 @@
 
 mod bar;
 mod column;
+mod damping;
 mod dynamics;
+mod energy;
 mod entering;
 mod geostatic;
 mod invariance;
