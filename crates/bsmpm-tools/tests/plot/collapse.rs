@@ -108,7 +108,7 @@ impl Collapse {
         let mut columns = vec![Column::new("step", "-"), Column::new("time", "s")];
         columns.extend(lengths);
         columns.push(Column::new("stress-noise", "-"));
-        let energies = ["kinetic", "plastic", "numerical", "background"];
+        let energies = ["kinetic", "plastic", "numerical", "smoothing", "background"];
         columns.extend(energies.map(|part| Column::new(&format!("energy-{part}"), "J/m")));
         let mut history = Table::create(&directory.join(HISTORY), &columns)?;
         let mut steps = Table::create(&directory.join(STEPS), &Step::columns("s"))?;
@@ -119,7 +119,7 @@ impl Collapse {
             let runout = self.place([self.body[0], 0.0], progress)[0];
             let height = self.place([0.0, self.body[1]], progress)[1];
             let noise = 0.02 * progress * (1.5 + (step as f64 * 0.7).sin());
-            let energies = [progress * (1.0 - progress), progress, 0.1 * progress, 0.0];
+            let energies = [progress * (1.0 - progress), progress, 0.1 * progress, 0.1 * progress, 0.0];
             let lengths = [runout, 0.94 * runout, height, noise].into_iter();
             let cells: Vec<Cell> = lengths.chain(energies).map(Cell::Float).collect();
             history.row(&[&[Cell::Int(step), Cell::Float(time)], &cells[..]].concat())?;
