@@ -18,7 +18,7 @@ pub mod trial;
 use crate::boundary::strip::Grips;
 use crate::boundary::{StripReport, Surface, load};
 use crate::energy::{Draft, Flows};
-use crate::error::StepError;
+use crate::error::{Measures, StepError};
 use crate::grid::Shape;
 use crate::kinematics::Kinematics;
 use crate::model::Model;
@@ -48,6 +48,8 @@ pub struct Report {
     pub iterations: usize,
     /// Newton iterations among them; 0 where the quasi-Newton method got there
     pub newton_iterations: usize,
+    /// both measures of every iteration
+    pub history: Vec<Measures>,
     /// force measure |f_oob| / largest force of the accepted state
     pub force: f64,
     /// nodes that carry material, over all ranks

@@ -3,7 +3,7 @@
 //! The displacement that is accepted is the one whose forces were evaluated.
 
 use crate::boundary::strip::Grips;
-use crate::error::StepError;
+use crate::error::{Measures, StepError};
 use crate::grid::Shape;
 use crate::kinematics::Kinematics;
 use crate::model::Model;
@@ -11,7 +11,7 @@ use crate::points::Points;
 use crate::seam::{Halo, LinearSolver};
 use crate::step::nodes::Nodes;
 use crate::step::progress::Progress;
-use crate::step::quasi_newton::{self, QuasiNewton};
+use crate::step::quasi_newton::{self, QuasiNewton, Stopped};
 use crate::step::residual::Residual;
 use crate::step::trial::Trial;
 use crate::step::{Counts, Report, newton, stiffness};
@@ -53,7 +53,7 @@ pub struct Found {
     pub trial: Trial,
     /// N  force of the supports on the body, nodal
     pub reaction: Vec<f64>,
-    iterations: usize,
+    history: Vec<Measures>,
     force: f64,
     newton_iterations: usize,
     first_guess: bool,
@@ -63,15 +63,16 @@ impl Found {
     /// The state that an iteration reached, after so many by Newton's method.
     pub fn new(u: Vec<f64>, residual: Residual, progress: &Progress, newton_iterations: usize) -> Self {
         let (force, Residual { trial, balance, .. }) = (residual.balance.measure(), residual);
-        let (iterations, reaction) = (progress.iterations(), balance.reaction);
-        Self { u, trial, reaction, iterations, force, newton_iterations, first_guess: true }
+        let (history, reaction) = (progress.history().to_vec(), balance.reaction);
+        Self { u, trial, reaction, history, force, newton_iterations, first_guess: true }
     }
 
     /// The step's numbers; one reduction for the supports' forces.
     pub fn report<K: Kinematics<D>, const D: usize>(&self, scene: &Scene<'_, K, D>) -> Report {
         let nodes = scene.nodes;
         Report {
-            iterations: self.iterations,
+            iterations: self.history.len(),
+            history: self.history.clone(),
             force: self.force,
             newton_iterations: self.newton_iterations,
             active_nodes: nodes.active_nodes,
@@ -116,23 +117,42 @@ fn search<K: Kinematics<D>, const D: usize>(
 ) -> Result<Found, StepError> {
     let mut progress = Progress::new(scene);
     let secants = match method {
-        Nonlinear::Newton => return newton::iterate(scene, u, solver, counts, &mut progress),
+        Nonlinear::Newton => {
+            return newton::iterate(scene, u, solver, counts, &mut progress).map_err(|failure| failure.error);
+        }
         Nonlinear::QuasiNewton(secants) => secants,
         Nonlinear::Auto => QuasiNewton::Multisecant,
     };
+    let patient = method != Nonlinear::Auto;
+    let mut failure = match by_secants(scene, (secants, patient), u, (solver, counts), &mut progress) {
+        Ok(found) => return Ok(found),
+        Err(failure) => failure,
+    };
+    if let (Some(best), false) = (failure.best.take(), patient) {
+        failure = match newton::iterate(scene, best, solver, counts, &mut progress) {
+            Ok(found) => return Ok(found),
+            Err(failure) => failure,
+        };
+        if let Some(best) = failure.best.take() {
+            return by_secants(scene, (secants, true), best, (solver, counts), &mut progress).map_err(|f| f.error);
+        }
+    }
+    Err(failure.error)
+}
+
+/// Secants on the elastic stiffness of the step's start.
+fn by_secants<K: Kinematics<D>, const D: usize>(
+    scene: &Scene<'_, K, D>,
+    method: (QuasiNewton, bool),
+    u: Vec<f64>,
+    (solver, counts): (&mut dyn LinearSolver, &mut Counts),
+    progress: &mut Progress,
+) -> Result<Found, Stopped> {
     if scene.nodes.unknowns > 0 {
         stiffness::assemble(scene, solver)?;
         counts.factorisations += 1;
     }
-    let patient = method != Nonlinear::Auto;
-    let failure = match quasi_newton::iterate(scene, (secants, patient), u, solver, counts, &mut progress) {
-        Ok(found) => return Ok(found),
-        Err(failure) => failure,
-    };
-    match failure.best {
-        Some(best) if !patient => newton::iterate(scene, best, solver, counts, &mut progress),
-        _ => Err(failure.error),
-    }
+    quasi_newton::iterate(scene, method, u, solver, counts, progress)
 }
 
 /// The guess where it is free, the prescribed values, zero elsewhere.

@@ -8,6 +8,7 @@ use crate::step::Counts;
 use crate::step::equilibrium::{Found, Scene, evaluate};
 use crate::step::linearised::Linearised;
 use crate::step::progress::{Progress, first_energy, inverted};
+use crate::step::quasi_newton::Stopped;
 use crate::step::residual::Residual;
 
 /// Iterations after which a step is given up: near a solution five or six do.
@@ -29,10 +30,10 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
     solver: &mut dyn LinearSolver,
     counts: &mut Counts,
     progress: &mut Progress,
-) -> Result<Found, StepError> {
+) -> Result<Found, Stopped> {
     let mut residual = evaluate(scene, &u, counts);
     if !residual.balance.is_sound() {
-        return Err(inverted(scene, &residual, progress.iterations()));
+        return Err(inverted(scene, &residual, progress.iterations()).into());
     }
     for iteration in 0..MOST {
         if progress.is_balanced(&residual.balance) {
@@ -49,10 +50,10 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
         }
         match search(scene, &u, &du, &residual, counts) {
             Some((next, found)) => (u, residual) = (next, found),
-            None => return Err(progress.failed(scene, &residual)),
+            None => break,
         }
     }
-    Err(progress.failed(scene, &residual))
+    Err(Stopped { error: progress.failed(scene, &residual), best: Some(u) })
 }
 
 /// K du = f_oob with the complete K at this state.

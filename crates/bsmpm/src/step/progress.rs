@@ -66,6 +66,11 @@ impl Progress {
         energy < self.criteria.energy && force < self.criteria.force
     }
 
+    /// The measures so far.
+    pub fn history(&self) -> &[Measures] {
+        &self.history
+    }
+
     /// Iterations measured.
     pub fn iterations(&self) -> usize {
         self.history.len()

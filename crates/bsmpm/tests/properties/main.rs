@@ -7,6 +7,7 @@ mod background;
 mod broyden;
 mod dilation;
 mod kinematics;
+mod linearised;
 mod observe;
 mod points;
 mod rigid;

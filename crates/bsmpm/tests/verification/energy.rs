@@ -3,7 +3,7 @@
 
 use crate::bar::{PERIOD, bar};
 use crate::support::scene::{Scene, axis, hencky};
-use bsmpm::background::{Background, Extent};
+use bsmpm::background::{Background, Extent, Kind};
 use bsmpm::boundary::{Load, Path, Strip, Support, surface};
 use bsmpm::energy::{Books, Stored};
 use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
@@ -125,7 +125,8 @@ fn collapse(method: Stabilisation) -> Scene<PlaneStrain, 2> {
 fn a_collapse_with_friction_closes() {
     for method in [Stabilisation::FBar, Stabilisation::ModifiedFBar] {
         let mut scene = collapse(method);
-        scene.model.background = Some(Background { coefficient: 1e-4, extent: Extent::Occupied });
+        scene.model.background =
+            Some(Background { kind: Kind::Laplacian, coefficient: 1e-4, extent: Extent::Occupied });
         let course = kept(scene, 2e-3, 0.3);
         tell(&format!("{method:?}"), &course);
         let flows = course.books.flows;
@@ -144,7 +145,7 @@ fn footing(method: Stabilisation) -> Scene<PlaneStrain, 2> {
         .support(Support::fixed(1, false))
         .stabilised(method);
     scene.model.weighting = Weighting::Volume;
-    scene.model.background = Some(Background { coefficient: 1e-3, extent: Extent::Occupied });
+    scene.model.background = Some(Background { kind: Kind::Laplacian, coefficient: 1e-3, extent: Extent::Occupied });
     let points = surface::along(&scene.model.grid, &[0.0, 1.0].into(), &[0.5, 1.0].into(), 2);
     let path = Path { rows: vec![(1.0, [0.0, -0.05].into())] };
     scene.strip(Strip { points, normal: Some([0.0, 1.0].into()), path, penalty: 4e9 })

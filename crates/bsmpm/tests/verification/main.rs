@@ -12,6 +12,7 @@ mod entering;
 mod geostatic;
 mod invariance;
 mod locking;
+mod newton;
 mod oedometer;
 mod surfaces;
 
