@@ -7,21 +7,19 @@ use crate::support::{PROGRAM, Scratch};
 use crate::table::Found;
 use bsmpm::schedule::Schedule;
 use std::process::{Command, Stdio};
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
 const STEPS: usize = 100_000;
 
 const FLOOR: &str = "[gravity]\nacceleration = [0.0, -9.81]\n[boundary]\nbottom = \"roller\"\n";
 
-fn flight() -> &'static Run {
-    static RUN: OnceLock<Run> = OnceLock::new();
-    RUN.get_or_init(|| Run::of(&block([0.25, 0.0], STEPS, ""), 1, &[]))
+fn flight() -> Arc<Run> {
+    Run::of(&block([0.25, 0.0], STEPS, ""), 1, &[])
 }
 
-fn bounce() -> &'static Run {
-    static RUN: OnceLock<Run> = OnceLock::new();
-    RUN.get_or_init(|| Run::of(&block([0.0, 0.0], STEPS, FLOOR), 1, &[]))
+fn bounce() -> Arc<Run> {
+    Run::of(&block([0.0, 0.0], STEPS, FLOOR), 1, &[])
 }
 
 fn different_masses(run: &Run) -> Found {
@@ -34,12 +32,12 @@ fn different_masses(run: &Run) -> Found {
 
 /// Steps of the free flight whose total mass has other bits.
 pub fn mass_in_flight() -> Found {
-    different_masses(flight())
+    different_masses(&flight())
 }
 
 /// The same of the bouncing block.
 pub fn mass_in_bounce() -> Found {
-    different_masses(bounce())
+    different_masses(&bounce())
 }
 
 /// Largest drift of the momentum in free flight, relative.
@@ -75,7 +73,8 @@ fn growth() -> (f64, bool) {
             break ended;
         }
         let text = std::fs::read_to_string(&status).unwrap_or_default();
-        let memory = text.lines().find_map(|line| line.strip_prefix("VmRSS:")?.trim().strip_suffix(" kB")?.parse().ok());
+        let memory =
+            text.lines().find_map(|line| line.strip_prefix("VmRSS:")?.trim().strip_suffix(" kB")?.parse().ok());
         let open = std::fs::read_dir(&files).map_or(0, Iterator::count);
         samples.extend(memory.map(|memory: f64| (memory, open)));
     };
@@ -153,7 +152,7 @@ pub fn held(method: &str) -> Found {
 /// The footing to z/B = .1 with 8, 16, 32 and 64 steps: largest ratio of the change of p/c by a doubling to the change before;
 /// or a warning that results belong to their number of steps.
 pub fn step_count(method: &'static str) -> Found {
-    let runs = [8, 16, 32, 64].map(|steps| Run::of(&Footing { method, steps, ..Footing::default() }.text(), 2, &[]));
+    let runs = [8, 16, 32, 64].map(|steps| Run::of(&Footing { method, steps, ..Footing::default() }.text(), 1, &[]));
     if let Some(missing) = runs.iter().map(|run| run.found(|_| 0.0)).find(|found| !matches!(found, Found::Figure(..))) {
         return missing;
     }
@@ -167,7 +166,7 @@ pub fn step_count(method: &'static str) -> Found {
 /// The footing pushed to z = 2 B in 320 steps: noise of the pressure about planes at its end, over c.
 pub fn deep(method: &'static str) -> Found {
     let text = Footing { method, depth: 4.0, steps: 320, ..Footing::default() }.text();
-    Run::of(&text, 2, &[]).found(|run| {
+    Run::of(&text, 1, &[]).found(|run| {
         let p = Footing::factor(run.last("pressure"));
         Found::Figure(run.last("noise-plane") / 1e3, format!("p/c {p:.2}, {}", run.effort()))
     })

@@ -5,10 +5,20 @@ use crate::support::{Output, Scratch};
 use crate::table::Found;
 use bsmpm_io::frame::Frame;
 use bsmpm_io::manifest::Manifest;
+use std::collections::BTreeMap;
 use std::path::PathBuf;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// After this long a run counts as hanging, s.
 const PATIENCE: u64 = 900;
+
+/// Runs by what they were made from: several rows look at one.
+static RUNS: Mutex<BTreeMap<(String, usize, String), Arc<Run>>> = Mutex::new(BTreeMap::new());
+
+/// Forgets all runs and deletes what they left.
+pub fn forget() {
+    RUNS.lock().unwrap_or_else(PoisonError::into_inner).clear();
+}
 
 /// A run that has ended.
 pub struct Run {
@@ -17,8 +27,14 @@ pub struct Run {
 }
 
 impl Run {
-    /// Runs the text of a case on so many ranks, with further arguments.
-    pub fn of(text: &str, ranks: usize, further: &[&str]) -> Self {
+    /// The run of a case's text on so many ranks with further arguments, made now unless it is there.
+    pub fn of(text: &str, ranks: usize, further: &[&str]) -> Arc<Self> {
+        let key = (text.to_owned(), ranks, further.join(" "));
+        let mut runs = RUNS.lock().unwrap_or_else(PoisonError::into_inner);
+        Arc::clone(runs.entry(key).or_insert_with(|| Arc::new(Self::make(text, ranks, further))))
+    }
+
+    fn make(text: &str, ranks: usize, further: &[&str]) -> Self {
         let scratch = Scratch::with_case(text);
         let arguments = [&["case.toml", "-q"], further].concat();
         let output = scratch.job(Some(ranks), &arguments).within(PATIENCE).run();

@@ -170,10 +170,13 @@ impl Judged<'_> {
             Found::Figure(value, remark) => (number(*value), remark.clone()),
             Found::Told(0, reason) => ("warned".into(), reason.clone()),
             Found::Told(code, reason) => (format!("exit {code}"), reason.clone()),
-            Found::Broken(reason) => ("none".into(), reason.lines().take(3).collect::<Vec<_>>().join(" ")),
+            Found::Broken(reason) => {
+                ("none".into(), reason.lines().next().unwrap_or_default().chars().take(160).collect())
+            }
         };
         if let Some(why) = self.row.known {
-            remark = [remark, why.into()].iter().filter(|part| !part.is_empty()).cloned().collect::<Vec<_>>().join("; ");
+            remark =
+                [remark, why.into()].iter().filter(|part| !part.is_empty()).cloned().collect::<Vec<_>>().join("; ");
         }
         let refusal = if self.row.may_refuse { ", or told" } else { "" };
         let (id, what, verdict) = (self.row.id.to_owned(), self.row.what.to_owned(), self.verdict.word().to_owned());
