@@ -215,11 +215,11 @@ pub fn no_jump() -> f64 {
     worst
 }
 
-/// Relative error of Hencky strains of this size and half of it along the axes, E = 1, nu = 0; the rounding of b, which holds
-/// them as 1 + 2 eps, is part of it.
+/// Relative error of Hencky strains of this size along the axes, E = 1, nu = 0; the rounding of b, which holds them as
+/// 1 + 2 eps, is part of it.
 pub fn strain(size: f64) -> f64 {
     let material = hencky(1.0, 0.0);
-    let errors = [[size, -size, 0.5 * size], [-size, 0.5 * size, size]].map(|eps| {
+    let errors = [[size; 3], [size, -size, size], [-size; 3]].map(|eps| {
         let tau = respond(&material, &stretched(eps)).tau().0;
         largest(&[tau[0] - eps[0], tau[1] - eps[1], tau[2] - eps[2]]) / size
     });

@@ -12,11 +12,32 @@ const MODIFIED: &str = "modified-f-bar";
 const EDGE: &str = "at a free edge nodes have next to no stiffness; the background, which dynamics has not, mends it";
 const GRIP: &str = "a pulled strip lets go where points cross into the empty cell before it: its force goes to nodes that hold nothing";
 const START: &str = "points start with a = 0: the first step gains half of g dt, and the fall lags half a step behind";
+const NOISE_P: &str = "modified-f-bar does not reach it with two cells under the strip";
+const NOISE: &str = "4 u/dt^2 - 4 v/dt - a cancels, and a carries its round-off on from step to step";
+const FLIP: &str = "accelerations lose what the grid cannot hold when they go to it and back";
+const DIFFUSION: &str = "the paper's average of b^e is a diffusion per step";
+const LATE: &str = "an error of the step: 8, 7, 2 % between .5 and .0625 ms; motion starts half a step late";
 const C1: &str = "the splines are C1: strain cannot jump at an interface inside the grid";
 
 /// All rows.
 pub fn all() -> Vec<Row> {
-    let groups = [confined(), footings(), cohesionless(), returns(), strains(), edges(), counts(), tiny_steps(), huge_steps(), stiffness(), other_units(), motions(), nothing(), long_runs(), step_counts()];
+    let groups = [
+        confined(),
+        footings(),
+        cohesionless(),
+        returns(),
+        strains(),
+        edges(),
+        counts(),
+        tiny_steps(),
+        huge_steps(),
+        stiffness(),
+        other_units(),
+        motions(),
+        nothing(),
+        long_runs(),
+        step_counts(),
+    ];
     groups.into_iter().flatten().collect()
 }
 
@@ -25,10 +46,10 @@ pub fn all() -> Vec<Row> {
 fn confined() -> Vec<Row> {
     vec![
         row("N01", "nu = .49, confined column, none: height / l0, error", AtMost(5e-4), || incompressible::confined(0.49, Plain)),
-        row("N01", "nu = .499, the same, f-bar", AtMost(5e-4), || incompressible::confined(0.499, FBar)),
-        row("N01", "nu = .4999, the same, f-bar", AtMost(5e-4), || incompressible::confined(0.4999, FBar)),
-        row("N01", "nu = .4999, the same, modified-f-bar", AtMost(5e-4), || incompressible::confined(0.4999, ModifiedFBar)),
-        row("N01", "nu = .49999, the same, f-bar", AtMost(5e-4), || incompressible::confined(0.49999, FBar)),
+        row("N01", "nu = .499, the same, f-bar", AtMost(5e-4), || incompressible::confined(0.499, FBar)).or_refused(),
+        row("N01", "nu = .4999, the same, f-bar", AtMost(5e-4), || incompressible::confined(0.4999, FBar)).or_refused(),
+        row("N01", "nu = .4999, the same, modified-f-bar", AtMost(5e-4), || incompressible::confined(0.4999, ModifiedFBar)).or_refused(),
+        row("N01", "nu = .49999, the same, f-bar", AtMost(5e-4), || incompressible::confined(0.49999, FBar)).or_refused(),
         row("N01", "nu = .4999, cantilever, f-bar: deflection / that with .495 and the same E', - 1", AtMost(0.02), || incompressible::bending(0.4999, "f-bar")),
     ]
 }
@@ -45,7 +66,7 @@ fn footings() -> Vec<Row> {
         row("N01", "nu = .49999, the same, modified-f-bar", BEARING, || incompressible::footing(0.49999, MODIFIED)).or_refused().full(),
         row("N01", "nu = .49999, the same, f-bar", BEARING, || incompressible::footing(0.49999, "f-bar")).or_refused().full(),
         row("N01", "nu = .4999999, the same, modified-f-bar", BEARING, || incompressible::footing(0.499_999_9, MODIFIED)).or_refused().full(),
-        row("N01", "nu = .499, footing, modified-f-bar: noise of p about planes / mean |p|", AtMost(0.02), || incompressible::checkerboard(0.499, MODIFIED)),
+        row("N01", "nu = .499, footing, modified-f-bar: noise of p about planes / mean |p|", AtMost(0.02), || incompressible::checkerboard(0.499, MODIFIED)).fails(NOISE_P),
         row("N01", "nu = .499, footing, modified-f-bar: iterations / those with .3", Reported, || incompressible::iterations(0.499, MODIFIED)),
         row("N01", "nu = .49999: a warning", Reported, || incompressible::warned(0.49999)).or_refused(),
     ]
@@ -60,12 +81,12 @@ fn cohesionless() -> Vec<Row> {
         row("N02", "c = 0, nu = .4999, the same", AtMost(1e-4), || weak::resting(0.4999)).or_refused(),
         row("N02", "c = 1e-3 gamma H for 0, collapse to .1 s: change of the runout", AtMost(5e-3), || weak::little_cohesion(0.1)),
         row("N02", "the same to .607 s", AtMost(5e-3), || weak::little_cohesion(0.607)).full(),
-        row("N02", "c = 0, nu = .4999, first 20 steps of the collapse, none: u, change with dt / 2", AtMost(0.05), || weak::beginning(0.4999, 21.9, "none")).or_refused(),
-        row("N02", "the same, f-bar", AtMost(0.05), || weak::beginning(0.4999, 21.9, "f-bar")).or_refused(),
-        row("N02", "the same, modified-f-bar", AtMost(0.05), || weak::beginning(0.4999, 21.9, MODIFIED)).or_refused(),
+        row("N02", "c = 0, nu = .4999, first 20 steps of the collapse, none: u, change with dt / 2", AtMost(0.05), || weak::beginning(0.4999, 21.9, "none")).or_refused().full(),
+        row("N02", "c = 0, nu = .4999, f-bar: the same", AtMost(0.05), || weak::beginning(0.4999, 21.9, "f-bar")).or_refused(),
+        row("N02", "c = 0, nu = .4999, modified-f-bar: the same", AtMost(0.05), || weak::beginning(0.4999, 21.9, MODIFIED)).or_refused(),
         row("N02", "c = 0, phi = 45, first 20 steps of the collapse: u, change with dt / 2", AtMost(0.05), || weak::beginning(0.3, 45.0, MODIFIED)),
         row("N02", "c = 0, phi = 60, the same", AtMost(0.05), || weak::beginning(0.3, 60.0, MODIFIED)),
-        row("N02", "c = 0, phi = 89.9, the same", AtMost(0.05), || weak::beginning(0.3, 89.9, MODIFIED)).or_refused(),
+        row("N02", "c = 0, phi = 89.9, the same", AtMost(0.05), || weak::beginning(0.3, 89.9, MODIFIED)).or_refused().fails(LATE),
     ]
 }
 
@@ -138,7 +159,7 @@ fn tiny_steps() -> Vec<Row> {
         row("N09", "dt = 1e-9 s, the same", AtMost(1e-6), || steps::tiny(1e-9)),
         row("N09", "dt = .25 ms: acceleration noise / amplitude", AtMost(1e-6), || steps::acceleration_noise(2.5e-4)),
         row("N09", "dt = 1e-6 s: the same", AtMost(1e-6), || steps::acceleration_noise(1e-6)),
-        row("N09", "dt = 1e-9 s: the same", AtMost(1e-6), || steps::acceleration_noise(1e-9)),
+        row("N09", "dt = 1e-9 s: the same", AtMost(1e-6), || steps::acceleration_noise(1e-9)).fails(NOISE),
     ]
 }
 
@@ -227,8 +248,8 @@ fn long_runs() -> Vec<Row> {
         row("N18", "1e5 steps, bouncing block: steps with another total mass", Same, long::mass_in_bounce).full(),
         row("N18", "1e5 steps, bouncing block: highest rebound / height of fall", AtMost(1.0), long::rebound).full(),
         row("N18", "1e5 steps: growth of memory, kB / 1000 steps", AtMost(1.0), long::memory).full(),
-        row("N18", "1e5 steps, elastic bar: change of its energy", AtMost(1e-3), long::bar_change).full(),
-        row("N18", "1e5 steps, elastic bar: slope of its energy a step", AtMost(1e-9), long::bar_slope).full(),
+        row("N18", "1e5 steps, elastic bar: change of its energy", AtMost(1e-3), long::bar_change).full().fails(FLIP),
+        row("N18", "1e5 steps, elastic bar: slope of its energy a step", AtMost(1e-9), long::bar_slope).full().fails(FLIP),
         row("N18", "steps numbered around 2^31: error of their length", AtMost(1e-6), long::far_steps),
     ]
 }
@@ -239,7 +260,7 @@ fn step_counts() -> Vec<Row> {
     vec![
         row("N19", "1e4 steps at rest, none: creep / elastic settlement", AtMost(0.01), || long::held("none")).full(),
         row("N19", "1e4 steps at rest, f-bar: the same", AtMost(0.01), || long::held("f-bar")).full(),
-        row("N19", "1e4 steps at rest, modified-f-bar: the same", AtMost(0.01), || long::held(MODIFIED)).full(),
+        row("N19", "1e4 steps at rest, modified-f-bar: the same", AtMost(0.01), || long::held(MODIFIED)).full().fails(DIFFUSION),
         row("N20", "footing in 8, 16, 32, 64 steps, none: change by a doubling / the one before", AtMost(0.5), || long::step_count("none")).or_refused().full(),
         row("N20", "the same, f-bar", AtMost(0.5), || long::step_count("f-bar")).or_refused().full(),
         row("N20", "the same, modified-f-bar", AtMost(0.5), || long::step_count(MODIFIED)).or_refused().full(),

@@ -69,7 +69,8 @@ impl Run {
             .then(|| self.manifest().warnings.into_iter().find(|warning| warning.contains(part)));
         match (self.found(value), warned.flatten()) {
             (Found::Figure(value, _), Some(warning)) => {
-                Found::Told(0, format!("{} (figure {value:.3e})", first_sentence(&warning)))
+                let figure = if value.is_finite() { format!("; figure {value:.3}") } else { String::new() };
+                Found::Told(0, first_sentence(&warning) + &figure)
             }
             (found, _) => found,
         }
