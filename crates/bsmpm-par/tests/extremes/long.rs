@@ -165,7 +165,7 @@ pub fn step_count(method: &'static str) -> Found {
 
 /// The footing pushed to z = 2 B in 320 steps: noise of the pressure about planes at its end, over c.
 pub fn deep(method: &'static str) -> Found {
-    let text = Footing { method, depth: 4.0, steps: 320, ..Footing::default() }.text();
+    let text = Footing { method, depth: 4.0, steps: 320, top: 12.0, ..Footing::default() }.text();
     Run::of(&text, 1, &[]).found(|run| {
         let p = Footing::factor(run.last("pressure"));
         Found::Figure(run.last("noise-plane") / 1e3, format!("p/c {p:.2}, {}", run.effort()))

@@ -17,6 +17,7 @@ const NOISE: &str = "4 u/dt^2 - 4 v/dt - a cancels, and a carries its round-off 
 const FLIP: &str = "accelerations lose what the grid cannot hold when they go to it and back";
 const DIFFUSION: &str = "the paper's average of b^e is a diffusion per step";
 const LATE: &str = "an error of the step: 8, 7, 2 % between .5 and .0625 ms; motion starts half a step late";
+const SLOW: &str = "p/c changes by .1 to .3 % a doubling, and that falls by less than half each time";
 const C1: &str = "the splines are C1: strain cannot jump at an interface inside the grid";
 
 /// All rows.
@@ -261,8 +262,8 @@ fn step_counts() -> Vec<Row> {
         row("N19", "1e4 steps at rest, none: creep / elastic settlement", AtMost(0.01), || long::held("none")).full(),
         row("N19", "1e4 steps at rest, f-bar: the same", AtMost(0.01), || long::held("f-bar")).full(),
         row("N19", "1e4 steps at rest, modified-f-bar: the same", AtMost(0.01), || long::held(MODIFIED)).full().fails(DIFFUSION),
-        row("N20", "footing in 8, 16, 32, 64 steps, none: change by a doubling / the one before", AtMost(0.5), || long::step_count("none")).or_refused().full(),
-        row("N20", "the same, f-bar", AtMost(0.5), || long::step_count("f-bar")).or_refused().full(),
+        row("N20", "footing in 8, 16, 32, 64 steps, none: change by a doubling / the one before", AtMost(0.5), || long::step_count("none")).or_refused().full().fails(SLOW),
+        row("N20", "the same, f-bar", AtMost(0.5), || long::step_count("f-bar")).or_refused().full().fails(SLOW),
         row("N20", "the same, modified-f-bar", AtMost(0.5), || long::step_count(MODIFIED)).or_refused().full(),
         row("N21", "footing to z = 2 B, none: noise of p about planes / c", Reported, || long::deep("none")).or_refused().full(),
         row("N21", "the same, f-bar", Reported, || long::deep("f-bar")).or_refused().full(),

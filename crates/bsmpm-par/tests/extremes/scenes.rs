@@ -92,6 +92,8 @@ pub struct Footing {
     pub depth: f64,
     pub steps: usize,
     pub per_cell: usize,
+    /// m  the grid's upper end, above the ground at 5 m
+    pub top: f64,
     pub solver: &'static str,
     pub units: Units,
 }
@@ -99,7 +101,7 @@ pub struct Footing {
 impl Default for Footing {
     fn default() -> Self {
         let (depth, steps) = (0.2, 16);
-        Self { poisson: 0.495, method: "modified-f-bar", depth, steps, per_cell: 3, solver: "", units: SI }
+        Self { poisson: 0.495, method: "modified-f-bar", depth, steps, per_cell: 3, top: 7.0, solver: "", units: SI }
     }
 }
 
@@ -107,11 +109,11 @@ impl Footing {
     /// The text: 5 x 5 m of weightless clay, E/c = 100, under a strip 1 m wide beside the axis of symmetry.
     pub fn text(&self) -> String {
         let Self { poisson, method, per_cell, units, .. } = self;
-        let [zero, one, five, seven] = [0.0, 1.0, 5.0, 7.0].map(|x| units.place(x));
+        let [zero, one, five, top] = [0.0, 1.0, 5.0, self.top].map(|x| units.place(x));
         let (depth, cell) = (self.depth * units.length, 0.5 * units.length);
         format!(
             "geometry = \"plane-strain\"\n[analysis]\ntype = \"quasi-static\"\nsteps = {}\n\
-             [grid]\nlower = [{zero}, {zero}]\nupper = [{five}, {seven}]\ncell = {cell}\norder = \"quadratic\"\n\
+             [grid]\nlower = [{zero}, {zero}]\nupper = [{five}, {top}]\ncell = {cell}\norder = \"quadratic\"\n\
              [material.clay]\nmodel = \"tresca\"\nyoung = {}\npoisson = {poisson}\ncohesion = {}\n\
              [[body]]\nmaterial = \"clay\"\nbox = {{ lower = [{zero}, {zero}], upper = [{five}, {five}] }}\n\
              points_per_cell = {per_cell}\n[footing]\nfrom = [{zero}, {five}]\nto = [{one}, {five}]\n\
