@@ -51,6 +51,7 @@ RUSTDOCFLAGS='-D warnings' gate "docs" cargo doc --workspace --no-deps --lib
 gate "tests" scripts/test
 gate "short cases, golden curves" scripts/golden --check
 gate "validation, short" scripts/validate --short
+gate "extremes, short" scripts/extremes --short
 
 printf '\n'
 printf '%s\n' "${summary[@]}"

@@ -85,14 +85,18 @@ impl Multisecant {
 /// Solves the symmetric system of the products (lower triangle by rows) where its secants are independent.
 fn least_squares(products: &[Vec<f64>], right: &[f64]) -> Vec<f64> {
     let size = right.len();
-    let scale: Vec<f64> = (0..size).map(|i| products[i][i].abs().sqrt()).collect();
+    let unit = unit(products);
+    if unit == 0.0 {
+        return vec![0.0; size];
+    }
+    let scale: Vec<f64> = (0..size).map(|i| (products[i][i] / unit).abs().sqrt()).collect();
     let inverse = |i: usize| if scale[i] > 0.0 { 1.0 / scale[i] } else { 0.0 };
-    let matrix = DMatrix::from_fn(size, size, |i, j| products[i.max(j)][i.min(j)] * inverse(i) * inverse(j));
+    let matrix = DMatrix::from_fn(size, size, |i, j| products[i.max(j)][i.min(j)] / unit * inverse(i) * inverse(j));
     if matrix.iter().any(|entry| !entry.is_finite()) {
         return vec![0.0; size];
     }
     let SymmetricEigen { eigenvectors, eigenvalues } = SymmetricEigen::new(matrix);
-    let mut along = eigenvectors.tr_mul(&DVector::from_fn(size, |i, _| right[i] * inverse(i)));
+    let mut along = eigenvectors.tr_mul(&DVector::from_fn(size, |i, _| right[i] / unit * inverse(i)));
     let least = DEPENDENT * eigenvalues.amax();
     for (component, value) in along.iter_mut().zip(&eigenvalues) {
         *component = if *value > least { *component / value } else { 0.0 };
@@ -100,9 +104,29 @@ fn least_squares(products: &[Vec<f64>], right: &[f64]) -> Vec<f64> {
     (eigenvectors * along).iter().enumerate().map(|(i, weight)| weight * inverse(i)).collect()
 }
 
+/// The power of two (N m) of the largest diagonal product. Square roots round otherwise in other units: without unit, the
+/// same problem has the same bits in all units that differ by powers of two.
+fn unit(products: &[Vec<f64>]) -> f64 {
+    let largest = products.iter().enumerate().map(|(i, row)| row[i].abs()).fold(0.0, f64::max);
+    f64::from_bits(largest.to_bits() & f64::INFINITY.to_bits())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn other_units_of_energy_change_no_bit_of_the_weights() {
+        let products = [vec![4.3], vec![1.1, 3.7], vec![0.3, -0.9, 0.11]];
+        let weights = |unit: f64| {
+            let scaled: Vec<Vec<f64>> = products.iter().map(|row| row.iter().map(|p| p * unit).collect()).collect();
+            least_squares(&scaled, &[1.3 * unit, 0.7 * unit, -0.2 * unit])
+        };
+        let reference = weights(1.0);
+        for power in [-31, -10, 1, 7, 40] {
+            assert_eq!(weights(2.0_f64.powi(power)), reference);
+        }
+    }
 
     #[test]
     fn a_secant_that_repeats_another_does_no_harm() {
