@@ -1,7 +1,7 @@
 //! What F-bar multiplies the points' dilation with, and its linearisation (sections 2.3, 2.4).
 
 use crate::support::random::Random;
-use crate::support::scene::{Scene, axis, hencky};
+use crate::support::scene::{METHODS, Scene, axis, hencky};
 use bsmpm::boundary::strip::Grips;
 use bsmpm::grid::{KnotVector, Shape, transfer};
 use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
@@ -11,9 +11,6 @@ use bsmpm::step::equilibrium;
 use bsmpm::step::nodes::Nodes;
 use bsmpm::step::trial::Trial;
 use bsmpm::tensor::{Tensor, Vector};
-
-const METHODS: [Stabilisation; 4] =
-    [Stabilisation::FBar, Stabilisation::FBarZhao, Stabilisation::ModifiedFBar, Stabilisation::ConsistentFBar];
 
 /// Points of different mass at scattered places of a graded grid, deformed, with what Zhao's F-bar keeps.
 fn deformed<K: Kinematics<D>, const D: usize>(order: usize, method: Stabilisation) -> Scene<K, D> {
@@ -65,7 +62,7 @@ fn rate_error<K: Kinematics<D>, const D: usize>(order: usize, method: Stabilisat
 
 #[test]
 fn the_rate_of_the_ratio_is_its_derivative() {
-    for method in METHODS {
+    for method in METHODS.into_iter().filter(|method| method.averages()) {
         for order in 1..=3 {
             let errors = [rate_error::<PlaneStrain, 2>(order, method), rate_error::<Solid, 3>(order, method)];
             println!("{method:?}, order {order}: {errors:?}");

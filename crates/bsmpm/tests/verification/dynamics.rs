@@ -1,6 +1,6 @@
 //! Conservation and limits of the dynamic regime.
 
-use crate::support::scene::{Scene, axis, by_id, hencky};
+use crate::support::scene::{Scene, METHODS, axis, by_id, hencky};
 use bsmpm::boundary::Support;
 use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
 use bsmpm::model::Regime;
@@ -8,8 +8,6 @@ use bsmpm::observe;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::tensor::Vector;
 use std::collections::HashSet;
-
-const METHODS: [Stabilisation; 3] = [Stabilisation::None, Stabilisation::FBar, Stabilisation::ModifiedFBar];
 
 /// Two blocks that fly into each other; largest drift of the momentum relative to sum m |v|, and largest |sigma| / E.
 fn collision<K: Kinematics<D>, const D: usize>(method: Stabilisation, steps: usize) -> (f64, f64) {

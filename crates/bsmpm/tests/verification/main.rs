@@ -5,6 +5,7 @@
 
 mod bar;
 mod column;
+mod discs;
 mod dynamics;
 mod geostatic;
 mod invariance;
