@@ -8,9 +8,6 @@ use crate::seam::Halo;
 use crate::step::nodes::Nodes;
 use crate::tensor::Symmetric;
 
-/// Plastic strain of a step, among neighbours, at which 63 % of the elastic dilation's fluctuation is filtered.
-const REFERENCE: f64 = 0.01;
-
 /// Eq. 20, modified F-bar: b^e_p <- sum_I N_Ip (1/m_I sum_p N_Ip m_p b^e_p).
 pub fn average_b_e<K, const D: usize>(
     model: &Model<K, D>,
@@ -26,25 +23,34 @@ pub fn average_b_e<K, const D: usize>(
 /// What the filter of consistent F-bar needs of a point's return.
 #[derive(Clone, Copy, Debug)]
 pub struct Flow {
-    /// -  size of the return, `Response::returned`
+    /// -  |eps_trial - eps^e|, the plastic strain of the step with its dilation
     plastic: f64,
-    /// -  eps_v = 1/2 ln det b^e
+    /// -  |eps^e|
+    elastic: f64,
+    /// -  eps_v = tr eps^e = 1/2 ln det b^e
     dilation: f64,
 }
 
 impl Flow {
     /// Of one response.
     pub fn of(response: &Response) -> Self {
-        Self { plastic: response.returned(), dilation: response.dilation() }
+        let (trial, elastic) = (response.principal_eps_trial(), response.principal_eps_e());
+        let norm = |eps: [f64; 3]| eps.iter().map(|eps| eps * eps).sum::<f64>().sqrt();
+        Self {
+            plastic: norm(std::array::from_fn(|a| trial[a] - elastic[a])),
+            elastic: norm(elastic),
+            dilation: elastic.iter().sum(),
+        }
     }
 }
 
-/// Consistent F-bar: b^e_p <- exp(2/3 theta_p (S[eps_v]_p - eps_v,p)) b^e_p, theta_p = S[1 - exp(-x/0.01)]_p.
+/// Consistent F-bar: b^e_p <- exp(2/3 theta_p (S[eps_v]_p - eps_v,p)) b^e_p, theta_p = S[1 - exp(-x)]_p.
 ///
-/// x_p = sum_I N_Ip chi_I interpolates the largest plastic increment among the points that a node sees. The work of a step
-/// grows with its plastic strain, so that the filters of two half steps are about that of the whole; where nothing flows
-/// within reach, theta = 0 and b^e stays bit by bit. The factor is a positive scalar on the whole tensor: 1/2 ln det b^e
-/// changes by theta (S[eps_v] - eps_v), the deviator of the elastic strain not at all.
+/// x_p is the plastic over the elastic strain around the point: sum_I N_Ip max_I |eps_trial - eps^e| over sum_I N_Ip
+/// max_I |eps^e|, max_I among the points that node I sees. Flow as large as the elastic strain has renewed it, and with it
+/// goes the memory of its fluctuation; two half steps have the flow of the whole, so that the filter converges in the
+/// step size, and where nothing flows within reach b^e stays bit by bit. The factor is a positive scalar on the whole
+/// tensor: 1/2 ln det b^e changes by theta (S[eps_v] - eps_v), the deviator of the elastic strain not at all.
 pub fn filter_dilation<K, const D: usize>(
     model: &Model<K, D>,
     (shape, nodes): (&Shape<D>, &Nodes<D>),
@@ -52,16 +58,18 @@ pub fn filter_dilation<K, const D: usize>(
     flow: &[Flow],
     halo: &dyn Halo,
 ) {
-    let mut largest = [flow.iter().map(|flow| flow.plastic).fold(0.0, f64::max)];
-    halo.maximum(&mut largest);
-    if largest[0] == 0.0 {
+    let mut flowing = [flow.iter().map(|flow| flow.plastic).fold(0.0, f64::max)];
+    halo.maximum(&mut flowing);
+    if flowing[0] == 0.0 {
         return;
     }
-    let mut chi = vec![0.0; nodes.weight.len()];
-    transfer::largest_to_nodes(shape, &mut chi, |p| flow[p].plastic);
-    halo.max(&mut chi, 1);
+    let mut largest = vec![0.0; nodes.weight.len() * 2];
+    transfer::largest_to_nodes(shape, &mut largest, |p| [flow[p].plastic, flow[p].elastic]);
+    halo.max(&mut largest, 2);
     let mut share = vec![0.0; points.len()];
-    transfer::to_points(shape, &chi, |p, [x]| share[p] = -(-x / REFERENCE).exp_m1());
+    transfer::to_points(shape, &largest, |p, [plastic, elastic]| {
+        share[p] = if plastic > 0.0 { -(-plastic / elastic).exp_m1() } else { 0.0 };
+    });
     let nodal = nodes.average(shape, points, model.weighting, halo, |p| [share[p], flow[p].dilation]);
     transfer::to_points(shape, &nodal, |p, [theta, mean]| {
         let change = theta * (mean - flow[p].dilation);
