@@ -1,6 +1,6 @@
 //! Motion without deformation: free flight, crossing cells, and rigid rotation of the grid's field.
 
-use crate::support::scene::{Scene, METHODS, axis, hencky};
+use crate::support::scene::{METHODS, Scene, axis, hencky};
 use crate::support::solver::Skyline;
 use bsmpm::control::Stepper;
 use bsmpm::grid::Shape;

@@ -1,6 +1,6 @@
 //! Conservation and limits of the dynamic regime.
 
-use crate::support::scene::{Scene, METHODS, axis, by_id, hencky};
+use crate::support::scene::{METHODS, Scene, axis, by_id, hencky};
 use bsmpm::boundary::Support;
 use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
 use bsmpm::model::Regime;

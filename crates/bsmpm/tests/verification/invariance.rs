@@ -1,6 +1,6 @@
 //! What must not matter: side, axis, place and units; and what must hardly matter: the soft background.
 
-use crate::support::scene::{Scene, METHODS, axis, by_id, hencky};
+use crate::support::scene::{METHODS, Scene, axis, by_id, hencky};
 use bsmpm::background::{Background, Extent};
 use bsmpm::boundary::Support;
 use bsmpm::grid::KnotVector;

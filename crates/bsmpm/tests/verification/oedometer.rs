@@ -2,7 +2,7 @@
 //!
 //! In one step: afterwards the body no longer touches the face of the grid, which does not move with it.
 
-use crate::support::scene::{Scene, METHODS, axis, hencky};
+use crate::support::scene::{METHODS, Scene, axis, hencky};
 use bsmpm::boundary::Support;
 use bsmpm::control::Accepted;
 use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
