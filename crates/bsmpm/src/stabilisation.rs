@@ -27,7 +27,7 @@ pub enum Stabilisation {
     /// S1 is the locally lumped projection onto the degree below that Telikicherla and Moutsanidis (2024), arXiv
     /// 2407.03826, use for splines, here from point to point and twice: once leaves 40 % more noise in flowing sand. After
     /// a converged step (`step::smooth`) b^e <- exp(2/3 theta (S[eps_v] - eps_v)) b^e, eps_v = 1/2 ln det b^e, with theta
-    /// from 0, no flow, to 1, flow far beyond the elastic strain. Without flow it is an F-bar with S1 S1 for S, no more.
+    /// from 0, no flow, to 1, plastic strain far beyond .01 in the step. Without flow it is an F-bar with S1 S1 for S, no more.
     ConsistentFBar,
 }
 

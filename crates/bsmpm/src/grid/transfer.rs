@@ -33,21 +33,16 @@ pub fn to_nodes<const D: usize, const C: usize>(
     });
 }
 
-/// Largest values among the points that a node sees: out_I = max(out_I, value_p) over the points with N_Ip > 0, for each
-/// of `C` numbers a point.
-pub fn largest_to_nodes<const D: usize, const C: usize>(
-    shape: &Shape<D>,
-    out: &mut [f64],
-    value: impl Fn(usize) -> [f64; C],
-) {
+/// Largest value among the points that a node sees: out_I = max(out_I, value_p) over the points with N_Ip > 0.
+pub fn largest_to_nodes<const D: usize>(shape: &Shape<D>, out: &mut [f64], value: impl Fn(usize) -> f64) {
     with_width!(shape.width(), W => {
         for patch in shape.patches() {
             for p in patch.points.clone() {
                 let (support, value) = (shape.support::<W>(p), value(p));
                 for (k, offset) in shape.offsets().iter().enumerate() {
                     if support.value(k) > 0.0 {
-                        let at_node = &mut out[(patch.first_node + offset) * C..(patch.first_node + offset + 1) * C];
-                        at_node.iter_mut().zip(value).for_each(|(most, value)| *most = most.max(value));
+                        let at_node = &mut out[patch.first_node + offset];
+                        *at_node = at_node.max(value);
                     }
                 }
             }

@@ -23,10 +23,8 @@ pub fn average_b_e<K, const D: usize>(
 /// What the filter of consistent F-bar needs of a point's return.
 #[derive(Clone, Copy, Debug)]
 pub struct Flow {
-    /// -  |eps_trial - eps^e|, the plastic strain of the step with its dilation
+    /// -  sqrt(2/3) |eps_trial - eps^e|, the plastic strain of the step with its dilation
     plastic: f64,
-    /// -  |eps^e|
-    elastic: f64,
     /// -  eps_v = tr eps^e = 1/2 ln det b^e
     dilation: f64,
 }
@@ -35,22 +33,21 @@ impl Flow {
     /// Of one response.
     pub fn of(response: &Response) -> Self {
         let (trial, elastic) = (response.principal_eps_trial(), response.principal_eps_e());
-        let norm = |eps: [f64; 3]| eps.iter().map(|eps| eps * eps).sum::<f64>().sqrt();
-        Self {
-            plastic: norm(std::array::from_fn(|a| trial[a] - elastic[a])),
-            elastic: norm(elastic),
-            dilation: elastic.iter().sum(),
-        }
+        let squares: f64 = trial.iter().zip(elastic).map(|(trial, elastic)| (trial - elastic).powi(2)).sum();
+        Self { plastic: (2.0 / 3.0 * squares).sqrt(), dilation: elastic.iter().sum() }
     }
 }
 
-/// Consistent F-bar: b^e_p <- exp(2/3 theta_p (S[eps_v]_p - eps_v,p)) b^e_p, theta_p = S[1 - exp(-x)]_p.
+/// Plastic strain that takes 63 % of the fluctuation of the elastic dilation. It scales with how far points move among
+/// each other, not with the elastic strain: a filter of that scale follows the number of steps in flowing sand.
+const RENEWING: f64 = 0.01;
+
+/// Consistent F-bar: b^e_p <- exp(2/3 theta_p (S[eps_v]_p - eps_v,p)) b^e_p, theta_p = S[1 - exp(-x/0.01)]_p.
 ///
-/// x_p is the plastic over the elastic strain around the point: sum_I N_Ip max_I |eps_trial - eps^e| over sum_I N_Ip
-/// max_I |eps^e|, max_I among the points that node I sees. Flow as large as the elastic strain has renewed it, and with it
-/// goes the memory of its fluctuation; two half steps have the flow of the whole, so that the filter converges in the
-/// step size, and where nothing flows within reach b^e stays bit by bit. The factor is a positive scalar on the whole
-/// tensor: 1/2 ln det b^e changes by theta (S[eps_v] - eps_v), the deviator of the elastic strain not at all.
+/// x_p = sum_I N_Ip chi_I, chi_I the largest plastic strain of the step among the points that node I sees. Two half
+/// steps have the flow of the whole, so that the filter converges in the step size, and where nothing flows within reach
+/// b^e stays bit by bit. The factor is a positive scalar on the whole tensor: 1/2 ln det b^e changes by
+/// theta (S[eps_v] - eps_v), the deviator of the elastic strain not at all.
 pub fn filter_dilation<K, const D: usize>(
     model: &Model<K, D>,
     (shape, nodes): (&Shape<D>, &Nodes<D>),
@@ -63,13 +60,11 @@ pub fn filter_dilation<K, const D: usize>(
     if flowing[0] == 0.0 {
         return;
     }
-    let mut largest = vec![0.0; nodes.weight.len() * 2];
-    transfer::largest_to_nodes(shape, &mut largest, |p| [flow[p].plastic, flow[p].elastic]);
-    halo.max(&mut largest, 2);
+    let mut chi = vec![0.0; nodes.weight.len()];
+    transfer::largest_to_nodes(shape, &mut chi, |p| flow[p].plastic);
+    halo.max(&mut chi);
     let mut share = vec![0.0; points.len()];
-    transfer::to_points(shape, &largest, |p, [plastic, elastic]| {
-        share[p] = if plastic > 0.0 { -(-plastic / elastic).exp_m1() } else { 0.0 };
-    });
+    transfer::to_points(shape, &chi, |p, [x]| share[p] = -(-x / RENEWING).exp_m1());
     let nodal = nodes.average(shape, points, model.weighting, halo, |p| [share[p], flow[p].dilation]);
     transfer::to_points(shape, &nodal, |p, [theta, mean]| {
         let change = theta * (mean - flow[p].dilation);
