@@ -93,15 +93,14 @@ impl Halo for MpiHalo {
         }
     }
 
-    fn max(&self, nodal: &mut [f64], width: usize) {
+    fn max(&self, nodal: &mut [f64]) {
         if self.shared.is_empty() {
             return;
         }
         let _timed = self.timers.time("halo");
-        let incoming = self.receive(nodal, width);
+        let incoming = self.receive(nodal, 1);
         for (part, (_, nodes)) in incoming.iter().zip(&self.shared) {
-            let own = &mut nodal[nodes.start * width..nodes.end * width];
-            own.iter_mut().zip(part).for_each(|(value, other)| *value = value.max(*other));
+            nodal[nodes.clone()].iter_mut().zip(part).for_each(|(value, other)| *value = value.max(*other));
         }
     }
 

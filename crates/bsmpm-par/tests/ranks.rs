@@ -33,6 +33,26 @@ fn an_elastic_block_that_slides_from_slab_to_slab_is_the_same_on_1_2_3_and_4_ran
     agree(&Scratch::with_case(SLIDING_BLOCK), "case.toml", &[], &[1, 2, 3, 4], 1e-9);
 }
 
+/// Zhao's F-bar gives the points a state of its own, the consistent one exchanges functions of the degree below.
+#[test]
+fn the_block_is_the_same_on_1_2_3_and_4_ranks_with_every_f_bar() {
+    for method in ["f-bar-zhao", "consistent-f-bar"] {
+        let scratch = Scratch::with_case(&format!("{SLIDING_BLOCK}\n[stabilisation]\nmethod = \"{method}\"\n"));
+        agree(&scratch, "case.toml", &["--set", "analysis.end=0.02"], &[1, 2, 3, 4], 1e-9);
+    }
+}
+
+/// Plastic flow, whose largest values neighbours tell each other.
+#[test]
+fn the_filter_of_consistent_f_bar_is_the_same_on_1_2_and_3_ranks() {
+    let text = std::fs::read_to_string(shipped("short/column_collapse.toml")).unwrap();
+    let (case, _check) = text.split_once("[[check]]").unwrap();
+    let times = "times = [\"0.109 s\", \"0.235 s\", \"0.300 s\", \"0.351 s\", \"0.420 s\", \"0.607 s\"]";
+    let case = changed(&changed(case, times, ""), "modified-f-bar", "consistent-f-bar");
+    let scratch = Scratch::with_case(&case);
+    agree(&scratch, "case.toml", &["--set", "analysis.end=0.04"], &[1, 2, 3], 1e-9);
+}
+
 /// No point is lost or changed on its way, however the sum is made.
 #[test]
 fn the_total_mass_is_the_same_in_every_step_to_the_bit() {

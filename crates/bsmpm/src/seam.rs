@@ -11,8 +11,8 @@ pub trait Halo {
     fn owned(&self) -> Range<usize>;
     /// Adds the contributions of all ranks to the nodes that they share; all of them get the same sum.
     fn sum(&self, nodal: &mut [f64], width: usize);
-    /// Replaces the values of the nodes that ranks share by the largest of any of them.
-    fn max(&self, nodal: &mut [f64], width: usize);
+    /// Replaces the number (one a node) of every node that ranks share by the largest of theirs.
+    fn max(&self, nodal: &mut [f64]);
     /// Replaces each number by its sum over the ranks.
     fn reduce(&self, numbers: &mut [f64]);
     /// Replaces each number by its largest over the ranks.
@@ -91,7 +91,7 @@ impl Halo for Alone {
         0..self.nodes
     }
     fn sum(&self, _nodal: &mut [f64], _width: usize) {}
-    fn max(&self, _nodal: &mut [f64], _width: usize) {}
+    fn max(&self, _nodal: &mut [f64]) {}
     fn reduce(&self, _numbers: &mut [f64]) {}
     fn maximum(&self, _numbers: &mut [f64]) {}
 }

@@ -33,7 +33,7 @@ pub fn to_nodes<const D: usize, const C: usize>(
     });
 }
 
-/// Largest value of the points that a node sees: out_I = max(out_I, value_p) over the points with N_Ip > 0.
+/// Largest value among the points that a node sees: out_I = max(out_I, value_p) over the points with N_Ip > 0.
 pub fn largest_to_nodes<const D: usize>(shape: &Shape<D>, out: &mut [f64], value: impl Fn(usize) -> f64) {
     with_width!(shape.width(), W => {
         for patch in shape.patches() {

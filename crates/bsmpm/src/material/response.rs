@@ -72,18 +72,6 @@ impl Response {
         (2.0 * (a * a + b * b + c * c)).sqrt() / 3.0
     }
 
-    /// The size of the return, dilation included: `√(2/3) |ε_trial - εᵉ|`, zero if elastic.
-    pub fn returned(&self) -> f64 {
-        let (eps_e, eps) = (self.principal_eps_e(), self.trial.eps);
-        let squares: f64 = eps.iter().zip(eps_e).map(|(trial, elastic)| (trial - elastic).powi(2)).sum();
-        (2.0 / 3.0 * squares).sqrt()
-    }
-
-    /// Elastic logarithmic dilation after the return: `tr εᵉ = ½ ln det bᵉ`.
-    pub fn dilation(&self) -> f64 {
-        self.principal_eps_e().iter().sum()
-    }
-
     /// Plastic dissipation of this return per reference volume, J/m3: `τ : (ε_trial - εᵉ)`, zero if elastic.
     pub fn dissipation(&self) -> f64 {
         let (eps_e, eps) = (self.principal_eps_e(), self.trial.eps);

@@ -8,9 +8,6 @@ use crate::seam::Halo;
 use crate::step::nodes::Nodes;
 use crate::tensor::Symmetric;
 
-/// Plastic strain of a step, among neighbours, at which 63 % of the elastic dilation's fluctuation is filtered.
-const REFERENCE: f64 = 0.01;
-
 /// Eq. 20, modified F-bar: b^e_p <- sum_I N_Ip (1/m_I sum_p N_Ip m_p b^e_p).
 pub fn average_b_e<K, const D: usize>(
     model: &Model<K, D>,
@@ -26,25 +23,31 @@ pub fn average_b_e<K, const D: usize>(
 /// What the filter of consistent F-bar needs of a point's return.
 #[derive(Clone, Copy, Debug)]
 pub struct Flow {
-    /// -  size of the return, `Response::returned`
+    /// -  sqrt(2/3) |eps_trial - eps^e|, the plastic strain of the step with its dilation
     plastic: f64,
-    /// -  eps_v = 1/2 ln det b^e
+    /// -  eps_v = tr eps^e = 1/2 ln det b^e
     dilation: f64,
 }
 
 impl Flow {
     /// Of one response.
     pub fn of(response: &Response) -> Self {
-        Self { plastic: response.returned(), dilation: response.dilation() }
+        let (trial, elastic) = (response.principal_eps_trial(), response.principal_eps_e());
+        let squares: f64 = trial.iter().zip(elastic).map(|(trial, elastic)| (trial - elastic).powi(2)).sum();
+        Self { plastic: (2.0 / 3.0 * squares).sqrt(), dilation: elastic.iter().sum() }
     }
 }
 
+/// Plastic strain that takes 63 % of the fluctuation of the elastic dilation. It scales with how far points move among
+/// each other, not with the elastic strain: a filter of that scale follows the number of steps in flowing sand.
+const RENEWING: f64 = 0.01;
+
 /// Consistent F-bar: b^e_p <- exp(2/3 theta_p (S[eps_v]_p - eps_v,p)) b^e_p, theta_p = S[1 - exp(-x/0.01)]_p.
 ///
-/// x_p = sum_I N_Ip chi_I interpolates the largest plastic increment among the points that a node sees. The work of a step
-/// grows with its plastic strain, so that the filters of two half steps are about that of the whole; where nothing flows
-/// within reach, theta = 0 and b^e stays bit by bit. The factor is a positive scalar on the whole tensor: 1/2 ln det b^e
-/// changes by theta (S[eps_v] - eps_v), the deviator of the elastic strain not at all.
+/// x_p = sum_I N_Ip chi_I, chi_I the largest plastic strain of the step among the points that node I sees. Two half
+/// steps have the flow of the whole, so that the filter converges in the step size, and where nothing flows within reach
+/// b^e stays bit by bit. The factor is a positive scalar on the whole tensor: 1/2 ln det b^e changes by
+/// theta (S[eps_v] - eps_v), the deviator of the elastic strain not at all.
 pub fn filter_dilation<K, const D: usize>(
     model: &Model<K, D>,
     (shape, nodes): (&Shape<D>, &Nodes<D>),
@@ -52,16 +55,16 @@ pub fn filter_dilation<K, const D: usize>(
     flow: &[Flow],
     halo: &dyn Halo,
 ) {
-    let mut largest = [flow.iter().map(|flow| flow.plastic).fold(0.0, f64::max)];
-    halo.maximum(&mut largest);
-    if largest[0] == 0.0 {
+    let mut flowing = [flow.iter().map(|flow| flow.plastic).fold(0.0, f64::max)];
+    halo.maximum(&mut flowing);
+    if flowing[0] == 0.0 {
         return;
     }
     let mut chi = vec![0.0; nodes.weight.len()];
     transfer::largest_to_nodes(shape, &mut chi, |p| flow[p].plastic);
-    halo.max(&mut chi, 1);
+    halo.max(&mut chi);
     let mut share = vec![0.0; points.len()];
-    transfer::to_points(shape, &chi, |p, [x]| share[p] = -(-x / REFERENCE).exp_m1());
+    transfer::to_points(shape, &chi, |p, [x]| share[p] = -(-x / RENEWING).exp_m1());
     let nodal = nodes.average(shape, points, model.weighting, halo, |p| [share[p], flow[p].dilation]);
     transfer::to_points(shape, &nodal, |p, [theta, mean]| {
         let change = theta * (mean - flow[p].dilation);

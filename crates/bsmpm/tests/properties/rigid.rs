@@ -1,6 +1,6 @@
 //! Motion without deformation: free flight, crossing cells, and rigid rotation of the grid's field.
 
-use crate::support::scene::{Scene, axis, hencky};
+use crate::support::scene::{METHODS, Scene, axis, hencky};
 use crate::support::solver::Skyline;
 use bsmpm::control::Stepper;
 use bsmpm::grid::Shape;
@@ -12,8 +12,6 @@ use bsmpm::step::nodes::Nodes;
 use bsmpm::step::trial::Trial;
 use bsmpm::tensor::{Square, Symmetric, Vector};
 use nalgebra::Rotation2;
-
-const METHODS: [Stabilisation; 3] = [Stabilisation::None, Stabilisation::FBar, Stabilisation::ModifiedFBar];
 
 /// Young's modulus (Pa) of what flies: so soft that the round-off floor of the force, below which a step is accepted
 /// without an iteration, 1e-13 E h^(D-1) sqrt(n), changes v by less than 1e-12. With 100 Pa it allows 6e-12.

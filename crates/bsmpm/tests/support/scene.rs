@@ -17,6 +17,15 @@ use bsmpm::tensor::Vector;
 use std::marker::PhantomData;
 use std::ops::Range;
 
+/// Every method of section 2.3.
+pub const METHODS: [Stabilisation; 5] = [
+    Stabilisation::None,
+    Stabilisation::FBar,
+    Stabilisation::FBarZhao,
+    Stabilisation::ModifiedFBar,
+    Stabilisation::ConsistentFBar,
+];
+
 /// A model with its points.
 #[derive(Clone)]
 pub struct Scene<K, const D: usize> {
@@ -92,6 +101,13 @@ impl<K: Kinematics<D>, const D: usize> Scene<K, D> {
         let mut added = Points::from_seeds((0..total).map(seed), self.points.motion.is_some());
         append(&mut self.points, &mut added);
         self.points.sort_by_cell(&self.model.grid);
+        self
+    }
+
+    /// Keeps the points that `wanted` names by their place.
+    pub fn cut(mut self, wanted: impl Fn(&Vector<D>) -> bool) -> Self {
+        let kept: Vec<u32> = (0..self.points.len()).filter(|&p| wanted(&self.points.x[p])).map(|p| p as u32).collect();
+        self.points.columns().into_iter().for_each(|column| column.reorder(&kept));
         self
     }
 

@@ -1,6 +1,6 @@
 //! The axial bar of method.md 9: fixed at x = 0, E 100, rho 1, L 25, nu 0, a quarter sine of velocity, period 10.
 
-use crate::support::scene::{Scene, axis, hencky};
+use crate::support::scene::{METHODS, Scene, axis, hencky};
 use bsmpm::boundary::Support;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::Regime;
@@ -57,7 +57,7 @@ fn after_five_periods(method: Stabilisation, steps: usize) -> (f64, f64) {
 #[test]
 fn without_smoothing_the_bar_keeps_its_energy_and_period() {
     assert_eq!(4.0 * LENGTH / WAVE, PERIOD);
-    for method in [Stabilisation::None, Stabilisation::FBar] {
+    for method in METHODS.into_iter().filter(|&method| method != Stabilisation::ModifiedFBar) {
         let (left, period) = after_five_periods(method, 80);
         println!("{method:?}: energy {left:.5}, period {period:.4}");
         assert!((left - 0.9988).abs() <= 5e-4); // measured .99880, .99878
@@ -82,6 +82,15 @@ fn shorter_steps_keep_more_energy_without_smoothing() {
         let (left, _) = after_five_periods(Stabilisation::None, steps);
         println!("{steps} steps a period: energy {left:.5}");
         assert!((left - documented).abs() <= 5e-4); // measured .9955, .9994
+    }
+}
+
+#[test]
+fn consistent_f_bar_keeps_the_energy_however_many_steps_there_are() {
+    for steps in [80, 320] {
+        let (left, _) = after_five_periods(Stabilisation::ConsistentFBar, steps);
+        println!("ConsistentFBar, {steps} steps a period: energy {left:.5}");
+        assert!(left >= 0.995);
     }
 }
 

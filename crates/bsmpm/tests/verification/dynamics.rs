@@ -1,14 +1,12 @@
 //! Conservation and limits of the dynamic regime.
 
-use crate::support::scene::{Scene, axis, hencky};
+use crate::support::scene::{METHODS, Scene, axis, hencky};
 use bsmpm::boundary::Support;
 use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
 use bsmpm::model::Regime;
 use bsmpm::observe;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::tensor::Vector;
-
-const METHODS: [Stabilisation; 3] = [Stabilisation::None, Stabilisation::FBar, Stabilisation::ModifiedFBar];
 
 /// Two blocks that fly into each other; largest drift of the momentum relative to sum m |v|, and largest |sigma| / E.
 fn collision<K: Kinematics<D>, const D: usize>(method: Stabilisation, steps: usize) -> (f64, f64) {

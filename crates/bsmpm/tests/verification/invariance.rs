@@ -1,6 +1,6 @@
 //! What must not matter: side, axis, place and units; and what must hardly matter: the soft background.
 
-use crate::support::scene::{Scene, axis, by_id, hencky};
+use crate::support::scene::{METHODS, Scene, axis, by_id, hencky};
 use bsmpm::background::{Background, Extent, Kind};
 use bsmpm::boundary::Support;
 use bsmpm::grid::KnotVector;
@@ -9,8 +9,6 @@ use bsmpm::model::{Gravity, Regime};
 use bsmpm::points::Points;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::tensor::Vector;
-
-const METHODS: [Stabilisation; 3] = [Stabilisation::None, Stabilisation::FBar, Stabilisation::ModifiedFBar];
 
 /// Per id: position, velocity and stress, as numbers.
 fn rows(points: &Points<2>) -> Vec<Vec<f64>> {

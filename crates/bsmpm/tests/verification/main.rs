@@ -6,6 +6,7 @@
 mod bar;
 mod column;
 mod damping;
+mod discs;
 mod dynamics;
 mod energy;
 mod entering;

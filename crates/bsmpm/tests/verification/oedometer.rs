@@ -2,15 +2,13 @@
 //!
 //! In one step: afterwards the body no longer touches the face of the grid, which does not move with it.
 
-use crate::support::scene::{Scene, axis, hencky};
+use crate::support::scene::{METHODS, Scene, axis, hencky};
 use bsmpm::boundary::Support;
 use bsmpm::control::Accepted;
 use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
 use bsmpm::model::{Regime, Weighting};
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::tensor::Symmetric;
-
-const METHODS: [Stabilisation; 3] = [Stabilisation::None, Stabilisation::FBar, Stabilisation::ModifiedFBar];
 
 /// Compresses a body of `cells` cells along the last axis (and as many across as fit) to the length `l`.
 fn compressed<K: Kinematics<D>, const D: usize>(
