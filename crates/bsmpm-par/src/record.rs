@@ -9,7 +9,7 @@ use bsmpm::points::Points;
 use bsmpm::seam::Halo;
 use bsmpm::step::Report;
 use bsmpm::tensor::Vector;
-use bsmpm_scene::{Case, Face, History, Quantity};
+use bsmpm_scene::{Case, Face, GridSpec, History, Quantity};
 
 /// Place of the vertical normal stress among XX YY ZZ XY YZ XZ.
 const VERTICAL: usize = 1;
@@ -20,6 +20,7 @@ pub struct Recorder {
     followed: Vec<Option<u64>>,
     reacting: Vec<Option<usize>>, // strip whose force a reaction is
     gauge: Option<Gauge>,
+    grid: GridSpec,
     lower: Vector<2>,
 }
 
@@ -42,6 +43,7 @@ impl Recorder {
             followed: histories.iter().map(follow).collect(),
             reacting: histories.iter().map(react).collect(),
             gauge: Gauge::of(case),
+            grid: case.grid.clone(),
             lower,
         }
     }
@@ -91,7 +93,8 @@ impl Recorder {
             Quantity::Front => vec![self.lower[0] + observe::front(&model.grid, points, halo)],
             Quantity::Height { at_x: None } => vec![self.lower[1] + observe::farthest(points, 1, halo)],
             Quantity::Height { at_x: Some(x) } => {
-                vec![self.lower[1] + observe::surface(&model.grid, points, x - self.lower[0], halo)]
+                let [x, _] = self.grid.local([*x, self.lower[1]]);
+                vec![self.lower[1] + observe::surface(&model.grid, points, x, halo)]
             }
             Quantity::MaxDisplacement => vec![observe::largest_displacement(points, halo)],
             Quantity::Mass => vec![observe::mass(points, halo)],

@@ -152,6 +152,57 @@ fn nothing_moves_under_its_own_stress_at_the_start() {
     assert!(moved.iter().all(|&moved| moved < 1e-6), "{moved:?}"); // the layer settles by 2 cm under gravity
 }
 
+/// A weightless elastic block of 7 x 7 cells of .1 m between a roller and a face that moves; `lower` is the grid's left.
+fn platen(lower: f64, upper: f64) -> String {
+    format!(
+        r#"geometry = "plane-strain"
+[analysis]
+type  = "quasi-static"
+steps = 1
+[grid]
+lower = [{lower:?}, 0.0]
+upper = [{upper:?}, 0.7]
+cell  = 0.1
+order = "quadratic"
+[material.rubber]
+model   = "hencky"
+young   = "1 MPa"
+poisson = 0.0
+[[body]]
+material = "rubber"
+box = {{ lower = [{lower:?}, 0.0], upper = [{upper:?}, 0.7] }}
+points_per_cell = 2
+[boundary]
+bottom = "roller"
+left   = "roller"
+[[prescribed]]
+face = "right"
+displacement = [-0.02, 0.0]
+components = "normal"
+[[traction]]
+from = [{upper:?}, 0.1]
+to   = [{upper:?}, 0.6]
+stress = [0.0, -1.0]
+[[history]]
+quantity = "reaction"
+face = "left"
+"#
+    )
+}
+
+#[test]
+fn a_face_moves_the_body_wherever_the_grid_starts() {
+    // (lower + 7 h) - lower is above 7 h for the second grid, below it for the third, and equal for the first.
+    let places = [(0.0, 0.7), (-6.0, -5.3), (1.3, 2.0)];
+    let reactions = places.map(|(lower, upper)| {
+        let scratch = Scratch::with_case(&platen(lower, upper));
+        scratch.mpirun(1, &["case.toml", "-q"]).expect(0);
+        *history(&scratch.path("case.out")).get("reaction-x").unwrap().last().unwrap()
+    });
+    assert!(reactions[0] > 18e3, "E eps H = 20 kN/m at small strain: {reactions:?}");
+    assert!(reactions.iter().all(|reaction| (reaction / reactions[0] - 1.0).abs() < 1e-6), "{reactions:?}");
+}
+
 #[test]
 fn the_footing_on_clay_is_the_same_on_1_2_3_and_4_ranks() {
     let case = shipped("short/strip_footing.toml");

@@ -156,6 +156,15 @@ fn a_load_without_material_is_an_error() {
 }
 
 #[test]
+fn a_place_beyond_a_face_by_rounding_is_on_it() {
+    let scene = block([4, 4], 2);
+    let (grid, offsets) = (&scene.model.grid, scene.model.grid.offsets());
+    let found = |x: f64, y: f64| surface::Attachment::at(grid, &offsets, |_| true, &at(x, y)).is_some();
+    assert!(found(1.0, 2.0) && found(1.0 + 1e-15, 2.0 + 1e-14) && found(-1e-15, -1e-15));
+    assert!(!found(1.0 + 1e-6, 1.0) && !found(0.5, -1e-6));
+}
+
+#[test]
 fn a_path_is_linear_between_its_rows_and_stays_after_the_last() {
     let path = Path { rows: vec![(1.0, at(0.0, -2.0)), (2.0, at(1.0, -2.0))] };
     for (t, x, y) in
