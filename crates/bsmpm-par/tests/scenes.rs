@@ -241,10 +241,10 @@ fn a_weaker_slope_moves_more() {
 }
 
 #[test]
-fn a_load_whose_material_is_gone_is_told_and_ends_the_run() {
-    let case = changed(LOADED, "at    = [5.0, 4.5]", "at    = [5.0, 5.9]");
+fn a_load_that_starts_away_from_every_body_is_an_error_of_the_case() {
+    let case = changed(LOADED, "at    = [5.0, 4.5]", "at    = [5.0, 4.9]");
     let scratch = Scratch::with_case(&case);
     let output = scratch.mpirun(2, &["case.toml", "-q"]);
-    assert!(output.stderr.contains("lost"), "{output:#?}");
-    output.expect(80);
+    assert!(output.stderr.contains("no body is at [5.0, 4.9]"), "{output:#?}");
+    output.expect(65);
 }

@@ -165,6 +165,18 @@ fn a_place_beyond_a_face_by_rounding_is_on_it() {
 }
 
 #[test]
+fn the_reach_beyond_occupied_cells_is_that_of_the_documentation() {
+    for (order, reach) in [(1, 0.75), (2, 1.0 + 1.0 - 0.5_f64.sqrt()), (3, 1.85)] {
+        let scene = block([8, 8], order);
+        let (grid, offsets) = (&scene.model.grid, scene.model.grid.offsets());
+        let active = |node: usize| grid.node_at(node)[1] < 8 + order; // of the cells below y = 2 m
+        let found =
+            |cells: f64| surface::Attachment::at(grid, &offsets, active, &at(1.1, 2.0 + 0.25 * cells)).is_some();
+        assert!(found(reach - 0.01) && !found(reach + 0.01), "order {order}");
+    }
+}
+
+#[test]
 fn a_path_is_linear_between_its_rows_and_stays_after_the_last() {
     let path = Path { rows: vec![(1.0, at(0.0, -2.0)), (2.0, at(1.0, -2.0))] };
     for (t, x, y) in
