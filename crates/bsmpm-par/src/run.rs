@@ -1,5 +1,8 @@
 //! A run: step after step, what is written after each, and the ways in which it ends.
 
+mod failure;
+mod start;
+
 use crate::cli::Arguments;
 use crate::exit;
 use crate::fault::Fault;
@@ -11,17 +14,18 @@ use crate::machine;
 use crate::record::Recorder;
 use crate::setup;
 use crate::simulation::Simulation;
+use crate::surfaces;
 use crate::timers::Timers;
-use bsmpm::control::{Accepted, Failure};
-use bsmpm::error::{Measures, StepError};
+use bsmpm::control::Accepted;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::seam::Halo;
 use bsmpm::step::Report;
-use bsmpm_io::manifest::{self, Status};
+use bsmpm_io::manifest::Status;
 use bsmpm_scene::{Case, Every};
 use mpi::collective::CommunicatorCollectives;
 use mpi::environment::Universe;
 use mpi::topology::Communicator;
+use std::collections::BTreeSet;
 use std::rc::Rc;
 use std::time::Instant;
 
@@ -50,6 +54,7 @@ pub struct Run<'p> {
     start: Instant,
     frame_times: Vec<f64>,
     last_frame: Option<u64>,
+    told_strips: BTreeSet<usize>,
 }
 
 impl<'p> Run<'p> {
@@ -76,12 +81,15 @@ impl<'p> Run<'p> {
             start,
             frame_times,
             last_frame,
+            told_strips: BTreeSet::new(),
         }
     }
 
     /// Steps to the end of the case, or to what ends the run before; returns the exit code.
     pub fn until_the_end(mut self) -> u8 {
-        self.begin();
+        if let Err(error) = self.begin() {
+            return self.fail_at_start(&error);
+        }
         let mut slowest = 0.0_f64;
         loop {
             let step = self.simulation.steps() + 1;
@@ -102,33 +110,12 @@ impl<'p> Run<'p> {
         }
     }
 
-    fn begin(&mut self) {
-        let warn = |condition: bool, text: &str| condition.then(|| text.to_owned());
-        let slow = warn(
-            machine::has_reference_blas(),
-            "the BLAS in use is the reference one: factorisations take several times as long as with an optimised one \
-             (on Debian: libopenblas0-serial)",
-        );
+    /// A warning, told and kept.
+    fn warn(&mut self, warning: String) {
+        self.log.line("warning", &format!("warning: {warning}"));
         if let Some(ledger) = &mut self.ledger {
-            ledger.manifest().warnings.extend(slow);
-            for warning in ledger.manifest().warnings.clone() {
-                self.log.line("warning", &format!("warning: {warning}"));
-            }
+            ledger.manifest().warnings.push(warning);
         }
-        for note in &self.case.notes {
-            self.log.detail(&format!("{} = {}: {}", note.key, note.value, note.reason));
-        }
-        if let Some(start) = self.ledger.as_mut().and_then(|ledger| ledger.manifest().initial) {
-            self.log.line(
-                "initial",
-                &format!(
-                    "stress at the start: unbalance {:.2e} of the largest force, {} point(s) beyond yield",
-                    start.unbalance, start.yielding
-                ),
-            );
-        }
-        self.record(&Report::default());
-        self.frame();
     }
 
     fn accept(&mut self, accepted: &Accepted) {
@@ -139,6 +126,7 @@ impl<'p> Run<'p> {
         if step == 1 {
             self.tell_unused_options();
         }
+        self.tell_strips_without_material(accepted);
         self.record(&accepted.report);
         if self.wants_frame(accepted.t) {
             self.frame();
@@ -149,12 +137,20 @@ impl<'p> Run<'p> {
     fn tell_unused_options(&mut self) {
         let unused = self.simulation.unused_options();
         let given = |name: &String| self.arguments.petsc.iter().any(|option| option.strip_prefix('-') == Some(name));
-        for name in unused.iter().filter(|name| given(name)) {
+        let misspelt: Vec<String> = unused.into_iter().filter(given).collect();
+        for name in misspelt {
             let warning =
                 format!("the PETSc option -{name} was not used: it is misspelt, or the solver has no such part");
-            self.log.line("warning", &format!("warning: {warning}"));
-            if let Some(ledger) = &mut self.ledger {
-                ledger.manifest().warnings.push(warning);
+            self.warn(warning);
+        }
+    }
+
+    /// A strip that holds nothing does nothing, which no other number tells.
+    fn tell_strips_without_material(&mut self, accepted: &Accepted) {
+        for (number, _) in accepted.report.strips.iter().enumerate().filter(|(_, strip)| strip.held == 0) {
+            if self.told_strips.insert(number) {
+                let name = surfaces::name_of_strip(&self.case, number);
+                self.warn(format!("{name} holds nothing: at t = {} no free material is at it", accepted.t));
             }
         }
     }
@@ -210,54 +206,6 @@ impl<'p> Run<'p> {
         }
         run.simulation.halo.maximum(&mut failed);
         if failed[0] > 0.0 { run.end(Status::Failed, exit::CHECK) } else { run.end(Status::Finished, exit::DONE) }
-    }
-
-    fn fail(mut self, failure: &Failure) -> u8 {
-        let last = failure.attempts.last();
-        let left = matches!(last, Some(StepError::Left { .. } | StepError::Outside { .. }));
-        let code = launch::agree(&self.universe.world(), if left { exit::LEFT } else { exit::NO_CONVERGENCE });
-        let reason = last.map_or_else(String::new, ToString::to_string);
-        let step = self.simulation.steps() + 1;
-        let worst = self.worst_place(last);
-        let place = worst.as_ref().map_or_else(String::new, |w| format!("; {} {} at {:?}", w.kind, w.id, w.position));
-        self.log.failure(&format!(
-            "step {step} failed at t = {} after {} attempt(s), the last with dt = {:.3e}: {reason}{place}; the last \
-             converged state is saved",
-            failure.t,
-            failure.attempts.len(),
-            failure.dt
-        ));
-        if let Some(ledger) = &mut self.ledger {
-            let finite = |measures: &Measures| Some(measures.energy).filter(|energy| energy.is_finite());
-            let residuals = match last {
-                Some(StepError::NotConverged { history, .. }) => history.iter().map(finite).collect(),
-                _ => Vec::new(),
-            };
-            ledger.attempts(failure.attempts.len() - 1, failure.counts);
-            ledger.manifest().failure = Some(manifest::Failure { step, time: failure.t, reason, residuals, worst });
-        }
-        self.end(Status::Failed, code)
-    }
-
-    /// The point or node that the error is about: of the points that ranks name the one with the smallest id, of the
-    /// nodes the one whose forces are the least balanced.
-    fn worst_place(&self, error: Option<&StepError>) -> Option<manifest::Worst> {
-        let world = self.universe.world();
-        let lower = self.case.grid.lower();
-        let (mut kind, mut own) = ("point", [f64::INFINITY; 4]); // order among the places, number, x, y
-        if let Some(StepError::NotConverged { worst, .. }) = error {
-            kind = "node";
-            if let [x, y] = worst.x[..] {
-                own = [-worst.force, worst.number as f64, lower[0] + x, lower[1] + y];
-            }
-        } else if let Some((id, x)) = error.and_then(StepError::point) {
-            own = [id as f64, id as f64, lower[0] + x[0], lower[1] + x[1]];
-        }
-        let mut all = vec![0.0_f64; own.len() * world.size().unsigned_abs() as usize];
-        world.all_gather_into(&own[..], &mut all[..]);
-        let named = all.chunks_exact(own.len()).filter(|place| place.iter().all(|number| number.is_finite()));
-        let worst = named.min_by(|a, b| a[0].total_cmp(&b[0]))?;
-        Some(manifest::Worst { kind: kind.into(), id: worst[1] as u64, position: worst[2..].to_vec() })
     }
 
     fn end(mut self, status: Status, code: u8) -> u8 {

@@ -248,3 +248,21 @@ fn a_load_that_starts_away_from_every_body_is_an_error_of_the_case() {
     assert!(output.stderr.contains("no body is at [5.0, 4.9]"), "{output:#?}");
     output.expect(65);
 }
+
+#[test]
+fn a_load_whose_points_leave_the_grid_is_told_and_ends_the_run() {
+    // The block's top is drawn through the top of the grid half a cell above; its points are still below then.
+    let case = platen(0.0, 0.7)
+        .replace("upper = [0.7, 0.7]\ncell", "upper = [0.7, 0.8]\ncell")
+        .replace("steps = 1", "steps = 8")
+        .replace("displacement = [-0.02, 0.0]", "displacement = [0.0, 0.0]")
+        .replace("from = [0.7, 0.1]\nto   = [0.7, 0.6]", "from = [0.1, 0.7]\nto   = [0.6, 0.7]")
+        .replace("stress = [0.0, -1.0]", "stress = [0.0, 3e5]\nramp = 1.0");
+    let scratch = Scratch::with_case(&case);
+    let output = scratch.mpirun(2, &["case.toml", "-q"]);
+    assert!(output.stderr.contains("lost their material"), "{output:#?}");
+    output.expect(81);
+    let manifest = manifest(&scratch.path("case.out"));
+    let reason = manifest.failure.expect("the failure is kept").reason;
+    assert!(reason.contains("lost their material") && manifest.summary.steps > 0, "{reason}");
+}
