@@ -266,3 +266,21 @@ fn a_load_whose_points_leave_the_grid_is_told_and_ends_the_run() {
     let reason = manifest.failure.expect("the failure is kept").reason;
     assert!(reason.contains("lost their material") && manifest.summary.steps > 0, "{reason}");
 }
+
+#[test]
+fn a_start_that_is_out_of_balance_or_beyond_yield_is_warned_of() {
+    // Earth pressure at rest belongs to level ground: on the slope of this body it is off balance.
+    let weak = "model = \"mohr-coulomb\"\nfriction = 20\ndilation = 0\ncohesion = \"10 kPa\"";
+    let case = changed(&changed(LOADED, "model       = \"hencky\"", weak), "gravity = \"elastic\"", "k0 = 0.1");
+    let warnings = |case: &str| {
+        let scratch = Scratch::with_case(case);
+        scratch.mpirun(2, &["case.toml", "-q", "--max-steps", "1"]);
+        manifest(&scratch.path("case.out")).warnings
+    };
+    let told = |warnings: &[String], text: &str| warnings.iter().any(|warning| warning.contains(text));
+    let far = warnings(&changed(&case, "ramp   = 0.5", "ramp = 0.0"));
+    assert!(told(&far, "% of the largest force unbalanced") && told(&far, "beyond yield at"), "{far:?}");
+    assert!(told(&far, "traction.0: acts in full from time 0"), "{far:?}");
+    let near = warnings(LOADED);
+    assert!(!told(&near, "unbalanced") && !told(&near, "beyond yield") && !told(&near, "from time 0"), "{near:?}");
+}

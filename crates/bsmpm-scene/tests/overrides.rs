@@ -269,6 +269,8 @@ fn doubtful_cases_are_warned_of() {
         (FULL, "body.1.material=sand", "material.clay: no body"),
         (STATIC, "gravity={acceleration=[0, -9.81], ramp=5}", "never fully applied"),
         (FULL, "traction.0.ramp=5", "never acts in full"),
+        (FULL, "traction.0.ramp=0", "traction.0: acts in full from time 0"),
+        (FULL, "point_load.0.ramp=0", "point_load.0: acts in full from time 0"),
         (FULL, "prescribed.1.path.1.0=2", "prescribed.1.path: the row at t = 2 is beyond the end"),
         (FULL, "material.till.dilation=30.5", "above the friction angle in places"),
         (FULL, "body.3.polygon=[[2.5, 1.0], [3.75, 1.0], [3, 2.5], [2.5, 2.5]]", "overlap"),

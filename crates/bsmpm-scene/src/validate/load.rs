@@ -85,6 +85,20 @@ pub(super) fn initial(
     at_rest(root, record, bodies?, report).map(Initial::AtRest)
 }
 
+/// Warns of loads that act in full from the start: a state by k0 knows the weight alone.
+pub(super) fn sudden(tractions: &[Traction], loads: &[PointLoad], initial: Option<&Initial>, report: &mut Report<'_>) {
+    if !matches!(initial, Some(Initial::AtRest(_))) {
+        return;
+    }
+    let tractions = tractions.iter().map(|traction| ("traction", traction.ramp)).enumerate();
+    let loads = loads.iter().map(|load| ("point_load", load.ramp)).enumerate();
+    for (number, (name, _)) in tractions.chain(loads).filter(|(_, (_, ramp))| *ramp == 0.0) {
+        report.warn(format!(
+            "{name}.{number}: acts in full from time 0, and the stress at the start by k0 does not hold it; give it a ramp"
+        ));
+    }
+}
+
 /// Gravity must act from the start, on something.
 fn loaded(
     root: &Record,
