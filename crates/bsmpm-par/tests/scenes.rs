@@ -137,6 +137,7 @@ fn the_footings_histories_are_true() {
     let initial = manifest.initial.expect("the stress at the start is told");
     assert!(initial.unbalance < 1e-8 && initial.yielding == 0, "{initial:?}");
     assert!(manifest.summary.largest_slip.is_some_and(|slip| slip < 1e-2));
+    assert!(manifest.summary.largest_accumulated_slip.is_some_and(|slip| slip > 1e-6 && slip < 4e-3));
     assert!(manifest.choices.iter().any(|choice| choice.key == "penalty of rigid strips"));
 }
 
