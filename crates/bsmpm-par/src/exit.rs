@@ -20,5 +20,5 @@ pub const CHECK: u8 = 77;
 pub const WRONG_LAUNCH: u8 = 78;
 /// No convergence at the smallest step; the last converged state is saved.
 pub const NO_CONVERGENCE: u8 = 80;
-/// Material left the grid; the last converged state is saved.
+/// Material left the grid, or a load its material; the last converged state is saved.
 pub const LEFT: u8 = 81;

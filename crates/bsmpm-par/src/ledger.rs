@@ -87,6 +87,9 @@ impl Ledger {
         let slips = report.strips.iter().filter(|strip| strip.motion > 0.0).map(surfaces::relative_slip);
         let largest = slips.chain(self.manifest.summary.largest_slip).reduce(f64::max);
         self.manifest.summary.largest_slip = largest;
+        let accumulated = report.strips.iter().map(|strip| strip.accumulated);
+        let largest = accumulated.chain(self.manifest.summary.largest_accumulated_slip).reduce(f64::max);
+        self.manifest.summary.largest_accumulated_slip = largest;
         let sizes = &mut self.manifest.sizes;
         sizes.insert("active_nodes".into(), report.active_nodes as u64);
         sizes.insert("unknowns".into(), report.unknowns as u64);

@@ -5,7 +5,6 @@
 
 pub mod cli;
 pub mod exit;
-mod failure;
 mod fault;
 pub mod gather;
 pub mod halo;

@@ -94,14 +94,9 @@ fn solve(universe: &Universe, task: Task, slabs: Slabs) -> Result<u8, u8> {
     let timers = Rc::new(Timers::default());
     let points = setup::points(case, slabs.columns(rank));
     let seam = (universe, &petsc, choice);
-    let mut simulation = Simulation::new(seam, model, (slabs, points), setup::schedule(case), Rc::clone(&timers));
-    let start = setup::start(case, &mut simulation)
-        .map_err(|error| refuse(universe, exit::NO_CONVERGENCE, &format!("the stress at the start: {error}")))?;
+    let simulation = Simulation::new(seam, model, (slabs, points), setup::schedule(case), Rc::clone(&timers));
     let recorder = Recorder::new(case, &simulation.points, &*simulation.halo);
-    let mut ledger = open_ledger(universe, arguments, case, &recorder)?;
-    if let Some(ledger) = &mut ledger {
-        ledger.manifest().initial = start;
-    }
+    let ledger = open_ledger(universe, arguments, case, &recorder)?;
     let log = Log::new(rank == 0, arguments.quiet, arguments.verbose, arguments.log_format, case.analysis.end);
     let run = Run::new(universe, task, simulation, recorder, (ledger, log), timers);
     Ok(run.until_the_end())

@@ -10,7 +10,7 @@ use bsmpm::points::Points;
 use bsmpm::seam::Halo;
 use bsmpm::step::Report;
 use bsmpm::tensor::Vector;
-use bsmpm_scene::{Case, Face, History, Quantity};
+use bsmpm_scene::{Case, Face, GridSpec, History, Quantity};
 
 /// Place of the vertical normal stress among XX YY ZZ XY YZ XZ.
 const VERTICAL: usize = 1;
@@ -22,6 +22,7 @@ pub struct Recorder {
     reacting: Vec<Option<usize>>, // strip whose force a reaction is
     gauge: Option<Gauge>,
     books: Option<Books>, // of energy, opened by the first row
+    grid: GridSpec,
     lower: Vector<2>,
 }
 
@@ -45,6 +46,7 @@ impl Recorder {
             reacting: histories.iter().map(react).collect(),
             gauge: Gauge::of(case),
             books: None,
+            grid: case.grid.clone(),
             lower,
         }
     }
@@ -96,7 +98,8 @@ impl Recorder {
             Quantity::Front => vec![self.lower[0] + observe::front(&model.grid, points, halo)],
             Quantity::Height { at_x: None } => vec![self.lower[1] + observe::farthest(points, 1, halo)],
             Quantity::Height { at_x: Some(x) } => {
-                vec![self.lower[1] + observe::surface(&model.grid, points, x - self.lower[0], halo)]
+                let [x, _] = self.grid.local([*x, self.lower[1]]);
+                vec![self.lower[1] + observe::surface(&model.grid, points, x, halo)]
             }
             Quantity::MaxDisplacement => vec![observe::largest_displacement(points, halo)],
             Quantity::Mass => vec![observe::mass(points, halo)],

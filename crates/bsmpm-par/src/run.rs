@@ -1,8 +1,11 @@
 //! A run: step after step, what is written after each, and the ways in which it ends.
 
+mod diagnosis;
+mod failure;
+mod start;
+
 use crate::cli::Arguments;
 use crate::exit;
-use crate::failure;
 use crate::fault::Fault;
 use crate::gather;
 use crate::launch;
@@ -12,9 +15,9 @@ use crate::machine;
 use crate::record::Recorder;
 use crate::setup;
 use crate::simulation::Simulation;
+use crate::surfaces;
 use crate::timers::Timers;
-use bsmpm::control::{Accepted, Failure};
-use bsmpm::error::StepError;
+use bsmpm::control::Accepted;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::seam::Halo;
 use bsmpm::step::Report;
@@ -23,6 +26,7 @@ use bsmpm_scene::{Case, Every};
 use mpi::collective::CommunicatorCollectives;
 use mpi::environment::Universe;
 use mpi::topology::Communicator;
+use std::collections::BTreeSet;
 use std::rc::Rc;
 use std::time::Instant;
 
@@ -51,6 +55,7 @@ pub struct Run<'p> {
     start: Instant,
     frame_times: Vec<f64>,
     last_frame: Option<u64>,
+    told_strips: BTreeSet<usize>,
 }
 
 impl<'p> Run<'p> {
@@ -77,12 +82,15 @@ impl<'p> Run<'p> {
             start,
             frame_times,
             last_frame,
+            told_strips: BTreeSet::new(),
         }
     }
 
     /// Steps to the end of the case, or to what ends the run before; returns the exit code.
     pub fn until_the_end(mut self) -> u8 {
-        self.begin();
+        if let Err(error) = self.begin() {
+            return self.fail_at_start(error);
+        }
         let mut slowest = 0.0_f64;
         loop {
             let step = self.simulation.steps() + 1;
@@ -103,33 +111,12 @@ impl<'p> Run<'p> {
         }
     }
 
-    fn begin(&mut self) {
-        let warn = |condition: bool, text: &str| condition.then(|| text.to_owned());
-        let slow = warn(
-            machine::has_reference_blas(),
-            "the BLAS in use is the reference one: factorisations take several times as long as with an optimised one \
-             (on Debian: libopenblas0-serial)",
-        );
+    /// A warning, told and kept.
+    fn warn(&mut self, warning: String) {
+        self.log.line("warning", &format!("warning: {warning}"));
         if let Some(ledger) = &mut self.ledger {
-            ledger.manifest().warnings.extend(slow);
-            for warning in ledger.manifest().warnings.clone() {
-                self.log.line("warning", &format!("warning: {warning}"));
-            }
+            ledger.manifest().warnings.push(warning);
         }
-        for note in &self.case.notes {
-            self.log.detail(&format!("{} = {}: {}", note.key, note.value, note.reason));
-        }
-        if let Some(start) = self.ledger.as_mut().and_then(|ledger| ledger.manifest().initial) {
-            self.log.line(
-                "initial",
-                &format!(
-                    "stress at the start: unbalance {:.2e} of the largest force, {} point(s) beyond yield",
-                    start.unbalance, start.yielding
-                ),
-            );
-        }
-        self.record(&Report::default());
-        self.frame();
     }
 
     fn accept(&mut self, accepted: &Accepted) {
@@ -140,6 +127,7 @@ impl<'p> Run<'p> {
         if step == 1 {
             self.tell_unused_options();
         }
+        self.tell_strips_without_material(accepted);
         self.record(&accepted.report);
         if self.wants_frame(accepted.t) {
             self.frame();
@@ -150,12 +138,20 @@ impl<'p> Run<'p> {
     fn tell_unused_options(&mut self) {
         let unused = self.simulation.unused_options();
         let given = |name: &String| self.arguments.petsc.iter().any(|option| option.strip_prefix('-') == Some(name));
-        for name in unused.iter().filter(|name| given(name)) {
+        let misspelt: Vec<String> = unused.into_iter().filter(given).collect();
+        for name in misspelt {
             let warning =
                 format!("the PETSc option -{name} was not used: it is misspelt, or the solver has no such part");
-            self.log.line("warning", &format!("warning: {warning}"));
-            if let Some(ledger) = &mut self.ledger {
-                ledger.manifest().warnings.push(warning);
+            self.warn(warning);
+        }
+    }
+
+    /// A strip that holds nothing does nothing, which no other number tells.
+    fn tell_strips_without_material(&mut self, accepted: &Accepted) {
+        for (number, _) in accepted.report.strips.iter().enumerate().filter(|(_, strip)| strip.held == 0) {
+            if self.told_strips.insert(number) {
+                let name = surfaces::name_of_strip(&self.case, number);
+                self.warn(format!("{name} holds nothing: at t = {} no free material is at it", accepted.t));
             }
         }
     }
@@ -211,30 +207,6 @@ impl<'p> Run<'p> {
         }
         run.simulation.halo.maximum(&mut failed);
         if failed[0] > 0.0 { run.end(Status::Failed, exit::CHECK) } else { run.end(Status::Finished, exit::DONE) }
-    }
-
-    fn fail(mut self, failure: &Failure) -> u8 {
-        let last = failure.attempts.last();
-        let left = matches!(last, Some(StepError::Left { .. } | StepError::Outside { .. }));
-        let code = launch::agree(&self.universe.world(), if left { exit::LEFT } else { exit::NO_CONVERGENCE });
-        let step = self.simulation.steps() + 1;
-        let report = failure::report(&self.universe.world(), failure, step, self.case.grid.lower());
-        let place = report.worst.first();
-        let place = place.map_or_else(String::new, |w| format!("; {} {} at {:?}", w.kind, w.id, w.position));
-        self.log.failure(&format!(
-            "step {step} failed at t = {} after {} attempt(s), the last with dt = {:.3e}: {}{place}; the last converged \
-             state is saved, failure.json tells more",
-            failure.t,
-            failure.attempts.len(),
-            failure.dt,
-            report.attempts.last().map_or("", String::as_str)
-        ));
-        let written = self.ledger.as_mut().map_or(Ok(()), |ledger| {
-            ledger.attempts(failure.attempts.len() - 1, failure.counts);
-            ledger.failure(&report)
-        });
-        self.require(written);
-        self.end(Status::Failed, code)
     }
 
     fn end(mut self, status: Status, code: u8) -> u8 {

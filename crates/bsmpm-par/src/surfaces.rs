@@ -3,7 +3,7 @@
 use bsmpm::boundary::{Load, Path, Strip, StripReport, SurfacePoint, surface};
 use bsmpm::grid::Grid;
 use bsmpm::tensor::Vector;
-use bsmpm_scene::{Base, Case, Face, Prescribed, Site};
+use bsmpm_scene::{Base, Case, Face, Footing, Prescribed, Site};
 
 /// Stiffness of the penalty over E/h of the stiffest material and the smallest cell. The traction is carried from step to
 /// step, so that all slips together stay at p/beta: measured on the footing, 1e2 to 1e5 give the same pressure.
@@ -18,21 +18,15 @@ pub fn penalty(young: f64, edge: f64) -> f64 {
 
 /// Rigid strips: the footing first, then the prescribed motions in the order of the file.
 pub fn strips(case: &Case, grid: &Grid<2>, penalty: f64) -> Vec<Strip<2>> {
-    let lower = Vector::from(case.grid.lower());
-    let strip = |from: [f64; 2], to: [f64; 2], path: &bsmpm_scene::Path, base: Base| {
-        let (from, to) = (Vector::from(from) - lower, Vector::from(to) - lower);
-        Strip {
-            points: surface::along(grid, &from, &to, HELD),
-            normal: (base == Base::Smooth).then(|| normal(&from, &to)),
-            path: Path { rows: path.rows.iter().map(|(time, moved)| (*time, Vector::from(*moved))).collect() },
-            penalty,
-        }
+    let strip = |[from, to]: [Vector<2>; 2], path: &bsmpm_scene::Path, base: Base| Strip {
+        points: surface::along(grid, &from, &to, HELD),
+        normal: (base == Base::Smooth).then(|| normal(&from, &to)),
+        path: Path { rows: path.rows.iter().map(|(time, moved)| (*time, Vector::from(*moved))).collect() },
+        penalty,
     };
-    let footing = case.footing.iter().map(|footing| strip(footing.from, footing.to, &footing.path, footing.base));
-    let prescribed = case.prescribed.iter().map(|prescribed| {
-        let (from, to) = ends(case, prescribed);
-        strip(from, to, &prescribed.path, prescribed.base)
-    });
+    let footing = case.footing.iter().map(|footing| strip(base(case, footing), &footing.path, footing.base));
+    let prescribed =
+        case.prescribed.iter().map(|prescribed| strip(ends(case, prescribed), &prescribed.path, prescribed.base));
     footing.chain(prescribed).collect()
 }
 
@@ -42,10 +36,17 @@ pub fn strip_of_face(case: &Case, face: Face) -> Option<usize> {
     Some(found + usize::from(case.footing.is_some()))
 }
 
+/// What the case calls a strip.
+pub fn name_of_strip(case: &Case, strip: usize) -> String {
+    match strip.checked_sub(usize::from(case.footing.is_some())) {
+        None => "footing".into(),
+        Some(number) => format!("prescribed.{number}"),
+    }
+}
+
 /// Tractions, then point loads.
 pub fn loads(case: &Case, grid: &Grid<2>) -> Vec<Load<2>> {
-    let lower = Vector::from(case.grid.lower());
-    let place = |at: [f64; 2]| Vector::from(at) - lower;
+    let place = |at: [f64; 2]| Vector::from(case.grid.local(at));
     let across = case.bodies.iter().map(|body| body.points_per_cell).max().unwrap_or(1);
     let tractions = case.tractions.iter().map(|traction| Load {
         points: surface::along(grid, &place(traction.from), &place(traction.to), across),
@@ -60,14 +61,21 @@ pub fn loads(case: &Case, grid: &Grid<2>) -> Vec<Load<2>> {
     tractions.chain(forces).collect()
 }
 
-fn ends(case: &Case, prescribed: &Prescribed) -> ([f64; 2], [f64; 2]) {
+/// Ends of the footing's base, m from the grid's lower corner.
+fn base(case: &Case, footing: &Footing) -> [Vector<2>; 2] {
+    [footing.from, footing.to].map(|at| case.grid.local(at).into())
+}
+
+/// Ends of what is held, m from the grid's lower corner; a face is where the knots end.
+fn ends(case: &Case, prescribed: &Prescribed) -> [Vector<2>; 2] {
     match prescribed.site {
-        Site::Segment { from, to } => (from, to),
+        Site::Segment { from, to } => [from, to].map(|at| case.grid.local(at).into()),
         Site::Face(face) => {
-            let (mut from, mut to) = (case.grid.lower(), case.grid.upper());
-            let at = if face.upper { to[face.axis] } else { from[face.axis] };
+            let upper = [0, 1].map(|axis| case.grid.axes[axis].length());
+            let (mut from, mut to) = ([0.0; 2], upper);
+            let at = if face.upper { upper[face.axis] } else { 0.0 };
             (from[face.axis], to[face.axis]) = (at, at);
-            (from, to)
+            [from.into(), to.into()]
         }
     }
 }
@@ -92,7 +100,7 @@ impl Gauge {
     pub fn of(case: &Case) -> Option<Self> {
         let footing = case.footing.as_ref()?;
         let rows = footing.path.rows.iter().map(|(time, moved)| (*time, Vector::from(*moved))).collect();
-        let (from, to) = (Vector::from(footing.from), Vector::from(footing.to));
+        let [from, to] = base(case, footing);
         let down = Vector::<2>::new(0.0, -1.0);
         let path = Path { rows };
         let whole = path.at(case.analysis.end);

@@ -35,6 +35,12 @@ impl GridSpec {
     pub fn upper(&self) -> [f64; 2] {
         [0, 1].map(|axis| self.axes[axis].lower() + self.axes[axis].length())
     }
+
+    /// A place of the case from the grid's lower corner, m: in the closed grid to the last bit. Validation lets a place
+    /// miss the grid by rounding, and `(lower + n h) - lower` may be above `n h`, where there is no cell.
+    pub fn local(&self, at: [f64; 2]) -> [f64; 2] {
+        [0, 1].map(|axis| (at[axis] - self.axes[axis].lower()).clamp(0.0, self.axes[axis].length()))
+    }
 }
 
 impl Axis {

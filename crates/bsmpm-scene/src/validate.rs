@@ -45,6 +45,7 @@ pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Op
     let tractions = load::tractions(record, around, report);
     let point_loads = load::point_loads(record, around, report);
     let initial = load::initial(record, (materials.as_deref(), made), gravity.as_ref(), report);
+    load::sudden(&tractions, &point_loads, initial.as_ref(), report);
     let stabilisation = stabilisation(record);
     let solver = solver::read(record, regime, grid.as_ref().map(|grid| grid.order), report);
     let output = output::read(record, end, report);

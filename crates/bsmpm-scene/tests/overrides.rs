@@ -125,7 +125,7 @@ fn the_full_case_in_si() {
     assert_eq!((clay.friction(), clay.dilation(), clay.cohesion()), (0.0, 0.0, 1.6e4));
     assert!(matches!(case.materials[2].material, Material::Hencky(_)));
     assert_eq!(case.bodies[2].velocity, Some([0.0, -1.0]));
-    assert_eq!(case.boundary, [[Support::Roller; 2], [Support::Fixed, Support::Free]]);
+    assert_eq!(case.boundary, [[Support::Roller, Support::Free], [Support::Fixed; 2]]);
     assert_eq!((case.solver.background, case.solver.background_cells), (0.0, Extent::Occupied));
     assert_eq!(case.solver.background_kind, BackgroundKind::Laplacian);
     assert_eq!(case.output.times, [0.25, 0.75]);
@@ -192,7 +192,7 @@ fn strips_loads_and_initial_stress_arrive() {
     assert_eq!(valid(FULL, &[]).footing.unwrap().base, Base::Smooth);
     let bases: Vec<Base> = case.prescribed.iter().map(|prescribed| prescribed.base).collect();
     assert_eq!(bases, [Base::Smooth, Base::Rough]);
-    assert_eq!(case.prescribed[0].site, Site::Face(Face { axis: 1, upper: true }));
+    assert_eq!(case.prescribed[0].site, Site::Face(Face { axis: 0, upper: true }));
     assert_eq!(case.prescribed[0].path.rows, [(1.0, [0.0, -0.01])]);
     assert_eq!(case.prescribed[1].path.rows, [(0.5, [0.0, -0.1]), (1.0, [0.0, 0.0])]);
     assert_eq!((case.tractions[0].stress, case.tractions[0].ramp), ([0.0, -2e4], 0.5));
@@ -258,6 +258,20 @@ fn strips_hold_and_load_a_quasi_static_body() {
 }
 
 #[test]
+fn strips_and_loads_start_within_half_a_spacing_of_points() {
+    // The block's points are .25 m apart: its top is at 2.5 m. A strip may start with a part of it beyond the body.
+    let near = ["footing.from=[1.25, 2.62]", "footing.to=[1.75, 2.62]"];
+    assert!(valid(FULL, &near).warnings.is_empty());
+    assert!(valid(FULL, &["footing.from=[0.9, 2.5]", "footing.to=[2.3, 2.5]"]).warnings.is_empty());
+    for corner in ["[0.95, 2.55]", "[1.0, 2.5]", "[2.0, 2.5]", "[2.05, 2.45]", "[1.5, 2.25]"] {
+        assert!(valid(FULL, &[&format!("point_load.0.at={corner}")]).warnings.is_empty(), "{corner}");
+    }
+    for far in ["[0.85, 2.5]", "[1.0, 2.63]", "[2.1, 2.6]"] {
+        assert!(set(FULL, &[&format!("point_load.0.at={far}")]).is_err(), "{far}");
+    }
+}
+
+#[test]
 fn free_faces_move_outward() {
     let case = valid(STATIC, &["grid.upper=[2.5, 1.9]"]);
     assert_eq!(case.grid.upper(), [3.0, 2.0]);
@@ -280,12 +294,11 @@ fn doubtful_cases_are_warned_of() {
         (FULL, "body.1.material=sand", "material.clay: no body"),
         (STATIC, "gravity={acceleration=[0, -9.81], ramp=5}", "never fully applied"),
         (FULL, "traction.0.ramp=5", "never acts in full"),
-        (FULL, "traction.0={from=[0, 1.5], to=[0, 1.4], stress=[0, 1]}", "traction.0: no body is at"),
-        (FULL, "footing={from=[1, 2.8], to=[2, 2.8], velocity=[0, -1]}", "footing: no body is at"),
-        (FULL, "point_load.0.at=[1.5, 1.6]", "point_load.0: no body is at"),
+        (FULL, "traction.0.ramp=0", "traction.0: acts in full from time 0"),
+        (FULL, "point_load.0.ramp=0", "point_load.0: acts in full from time 0"),
         (FULL, "prescribed.1.path.1.0=2", "prescribed.1.path: the row at t = 2 is beyond the end"),
         (FULL, "material.till.dilation=30.5", "above the friction angle in places"),
-        (FULL, "body.3.polygon=[[2.5, 1.25], [3.75, 1.25], [2.5, 0.9]]", "overlap"),
+        (FULL, "body.3.polygon=[[2.5, 1.0], [3.75, 1.0], [3, 2.5], [2.5, 2.5]]", "overlap"),
         (STATIC, "strength_reduction.factor=2", "no material has strength"),
         (FULL, "output.every=5", "beyond the end"),
         (STATIC, "material.soil.poisson=0.46", "expect locking"),

@@ -107,6 +107,9 @@ pub struct Summary {
     /// Largest slip of any rigid strip in a step, over its motion in that step; none without strips that move.
     #[serde(default)]
     pub largest_slip: Option<f64>,
+    /// m  largest slip of any rigid strip in all steps together, also of strips that do not move; none without strips.
+    #[serde(default)]
+    pub largest_accumulated_slip: Option<f64>,
     /// s  of processor time, all ranks together.
     pub cpu_seconds: f64,
     /// bytes  the largest resident memory of each rank.

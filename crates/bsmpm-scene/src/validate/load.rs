@@ -1,6 +1,6 @@
 //! Tractions, point loads, and the stress at the start.
 
-use super::place::{beyond, occupied};
+use super::place::{along, at_body, beyond};
 use super::strip::{Around, segment};
 use crate::case::{Body, Gravity, Initial, NamedMaterial, PointLoad, Traction};
 use crate::record::Record;
@@ -10,6 +10,9 @@ use crate::report::Report;
 pub(super) fn tractions(root: &Record, around: Around<'_>, report: &mut Report<'_>) -> Vec<Traction> {
     let mut read = |record: &Record| {
         let ends = segment(record, around, report);
+        if let Some(ends) = ends {
+            acts_on_body(record, "from", along(ends), around, report);
+        }
         let ramp = ramp(record, around.end, report);
         let ([from, to], stress, ramp) = (ends?, record.pair("stress")?, ramp?);
         Some(Traction { from, to, stress, ramp })
@@ -24,12 +27,27 @@ pub(super) fn point_loads(root: &Record, around: Around<'_>, report: &mut Report
         let grid = around.grid?;
         if let Some(message) = beyond(grid, at) {
             record.error("at", message, report);
-        } else if around.bodies.is_some_and(|bodies| !occupied(bodies, grid, [at, at])) {
-            report.warn(format!("{}: no body is at {at:?} at the start", record.path));
+        } else {
+            acts_on_body(record, "at", std::iter::once(at), around, report);
         }
         Some(PointLoad { at, force: record.pair("force")?, ramp: ramp? })
     };
     root.records("point_load").iter().filter_map(&mut read).collect()
+}
+
+/// A load has a body under every part of it.
+fn acts_on_body(
+    record: &Record,
+    key: &str,
+    mut places: impl Iterator<Item = [f64; 2]>,
+    around: Around<'_>,
+    report: &mut Report<'_>,
+) {
+    let (Some(grid), Some(bodies)) = (around.grid, around.bodies) else { return };
+    if let Some(at) = places.find(|at| !at_body(bodies, grid, *at)) {
+        let message = format!("no body is at {at:?} at the start; allowed: half a spacing of points from one");
+        record.error(key, message, report);
+    }
 }
 
 fn ramp(record: &Record, end: Option<f64>, report: &mut Report<'_>) -> Option<f64> {
@@ -65,6 +83,20 @@ pub(super) fn initial(
         root.record("gravity")?.error("acceleration", message, report);
     }
     at_rest(root, record, bodies?, report).map(Initial::AtRest)
+}
+
+/// Warns of loads that act in full from the start: a state by k0 knows the weight alone.
+pub(super) fn sudden(tractions: &[Traction], loads: &[PointLoad], initial: Option<&Initial>, report: &mut Report<'_>) {
+    if !matches!(initial, Some(Initial::AtRest(_))) {
+        return;
+    }
+    let tractions = tractions.iter().map(|traction| ("traction", traction.ramp)).enumerate();
+    let loads = loads.iter().map(|load| ("point_load", load.ramp)).enumerate();
+    for (number, (name, _)) in tractions.chain(loads).filter(|(_, (_, ramp))| *ramp == 0.0) {
+        report.warn(format!(
+            "{name}.{number}: acts in full from time 0, and the stress at the start by k0 does not hold it; give it a ramp"
+        ));
+    }
 }
 
 /// Gravity must act from the start, on something.

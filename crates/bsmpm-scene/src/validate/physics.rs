@@ -47,7 +47,7 @@ fn held(case: &Case, record: &Record, report: &mut Report<'_>) {
 fn held_by_strip(case: &Case, component: usize) -> bool {
     let by_segment = |base: Base, from: [f64; 2], to: [f64; 2]| {
         let holds = base == Base::Rough || normal(from, to)[component].abs() > ALONG;
-        holds && place::occupied(&case.bodies, &case.grid, [from, to])
+        holds && place::along([from, to]).any(|at| place::at_body(&case.bodies, &case.grid, at))
     };
     let by_motion = |prescribed: &Prescribed| match prescribed.site {
         Site::Segment { from, to } => by_segment(prescribed.base, from, to),

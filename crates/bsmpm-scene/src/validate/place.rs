@@ -5,10 +5,12 @@ use crate::grid::GridSpec;
 
 /// Parts of a cell by which a place may lie beyond the grid: rounding.
 const ROUNDING: f64 = 1e-9;
-/// Parts of a cell from a line within which a body counts as being at it.
-const NEAR: f64 = 0.01;
 /// Places along a line at which bodies are looked for.
 const SAMPLES: usize = 101;
+/// Directions in which a body is looked for around a place.
+const DIRECTIONS: usize = 16;
+/// Parts of half the spacing of its points at which a body is looked for: a body may be thinner than that.
+const DISTANCES: [f64; 3] = [0.02, 0.5, 1.0];
 
 /// Says that a place lies outside the grid, if it does.
 pub(super) fn beyond(grid: &GridSpec, at: [f64; 2]) -> Option<String> {
@@ -25,14 +27,26 @@ pub(super) fn beyond(grid: &GridSpec, at: [f64; 2]) -> Option<String> {
     })
 }
 
-/// Whether some body lies at the line between two places, on either side of it.
-pub(super) fn occupied(bodies: &[Body], grid: &GridSpec, [from, to]: [[f64; 2]; 2]) -> bool {
-    let near = NEAR * grid.axes[0].shortest().min(grid.axes[1].shortest());
-    let sides = [[0.0, near], [0.0, -near], [near, 0.0], [-near, 0.0]];
-    let place = |k: usize| {
-        let part = k as f64 / (SAMPLES - 1) as f64;
+/// Places in the middles of equal pieces of a line.
+pub(super) fn along([from, to]: [[f64; 2]; 2]) -> impl Iterator<Item = [f64; 2]> {
+    (0..SAMPLES).map(move |k| {
+        let part = (k as f64 + 0.5) / SAMPLES as f64;
         [0, 1].map(|axis| from[axis] + part * (to[axis] - from[axis]))
-    };
-    let mut places = (0..SAMPLES).map(place).flat_map(|at| sides.map(|side| [at[0] + side[0], at[1] + side[1]]));
-    places.any(|at| bodies.iter().any(|body| body.region.contains(at)))
+    })
+}
+
+/// Whether some body is within half the spacing of its points of a place: the splines would carry a force over more than
+/// a cell of empty room.
+pub(super) fn at_body(bodies: &[Body], grid: &GridSpec, at: [f64; 2]) -> bool {
+    let shortest = grid.axes[0].shortest().min(grid.axes[1].shortest());
+    bodies.iter().any(|body| {
+        let half = 0.5 * shortest / body.points_per_cell as f64;
+        let around = |k: usize, part: f64| {
+            let (sin, cos) = (k as f64 * std::f64::consts::TAU / DIRECTIONS as f64).sin_cos();
+            [at[0] + part * half * cos, at[1] + part * half * sin]
+        };
+        let [lower, upper] = body.bounds();
+        let near = (0..2).all(|axis| at[axis] >= lower[axis] - half && at[axis] <= upper[axis] + half);
+        near && DISTANCES.iter().any(|part| (0..DIRECTIONS).any(|k| body.region.contains(around(k, *part))))
+    })
 }

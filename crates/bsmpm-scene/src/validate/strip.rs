@@ -1,6 +1,6 @@
 //! The footing and prescribed motions.
 
-use super::place::{beyond, occupied};
+use super::place::{along, at_body, beyond};
 use crate::case::{Base, Body, Face, Footing, Path, Prescribed, Site, Support};
 use crate::grid::GridSpec;
 use crate::record::Record;
@@ -24,6 +24,9 @@ pub(super) fn footing(root: &Record, around: Around<'_>, report: &mut Report<'_>
     let record = root.record("footing")?;
     let path = path(record, around.end, report);
     let ends = segment(record, around, report);
+    if let Some(ends) = ends {
+        starts_at_body(record, "from", ends, around, report);
+    }
     let (path, [from, to]) = (path?, ends?);
     stays_inside(record, [from, to], &path, around, report);
     let base = if record.word("base")? == "rough" { Base::Rough } else { Base::Smooth };
@@ -62,7 +65,7 @@ pub(super) fn face(word: &str) -> Face {
     Face { axis: usize::from(matches!(word, "bottom" | "top")), upper: matches!(word, "right" | "top") }
 }
 
-/// A segment's ends inside the grid; warns if no body is there.
+/// A segment's ends inside the grid.
 pub(super) fn segment(record: &Record, around: Around<'_>, report: &mut Report<'_>) -> Option<[[f64; 2]; 2]> {
     let (from, to) = (record.pair("from")?, record.pair("to")?);
     if from == to {
@@ -77,15 +80,24 @@ pub(super) fn segment(record: &Record, around: Around<'_>, report: &mut Report<'
             inside = false;
         }
     }
-    if inside && around.bodies.is_some_and(|bodies| !occupied(bodies, grid, [from, to])) {
-        report.warn(format!("{}: no body is at {from:?} to {to:?} at the start", record.path));
-    }
     inside.then_some([from, to])
+}
+
+/// A strip starts at a body, if only with a part of it.
+fn starts_at_body(record: &Record, key: &str, ends: [[f64; 2]; 2], around: Around<'_>, report: &mut Report<'_>) {
+    let (Some(grid), Some(bodies)) = (around.grid, around.bodies) else { return };
+    if !along(ends).any(|at| at_body(bodies, grid, at)) {
+        let [from, to] = ends;
+        let message =
+            format!("no body is at {from:?} to {to:?} at the start; allowed: half a spacing of points from one");
+        record.error(key, message, report);
+    }
 }
 
 fn site(record: &Record, around: Around<'_>, report: &mut Report<'_>) -> Option<Site> {
     if !record.gives("face") {
         let [from, to] = segment(record, around, report)?;
+        starts_at_body(record, "from", [from, to], around, report);
         return Some(Site::Segment { from, to });
     }
     let word = record.word("face")?;
@@ -96,6 +108,10 @@ fn site(record: &Record, around: Around<'_>, report: &mut Report<'_>) -> Option<
         record.error("face", message, report);
         return None;
     }
+    let (mut from, mut to) = (around.grid?.lower(), around.grid?.upper());
+    let at = if face.upper { to[face.axis] } else { from[face.axis] };
+    (from[face.axis], to[face.axis]) = (at, at);
+    starts_at_body(record, "face", [from, to], around, report);
     Some(Site::Face(face))
 }
 

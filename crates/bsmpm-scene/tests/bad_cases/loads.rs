@@ -4,6 +4,7 @@ use super::{Row, row};
 
 const BOX: &str = "box = { lower = [0.0, 0.0], upper = [4.0, 1.0] }";
 const POLYGON: &str = "polygon = [[2.5, 1.5], [3.75, 1.5], [\"3 m\", 2.5], [2.5, 2.5]]";
+const NOBODY: &str = "at the start; allowed: half a spacing of points from one";
 const CIRCLE: &str = "circle = { center = [0.5, 2.0], radius = 0.4 }";
 
 /// Polygons, circles and what is cut out.
@@ -167,14 +168,14 @@ pub const STRIPS: &[Row] = &[
         "each [a time, a length, a length]",
     ),
     row("[[\"0.5 s\", 0.0, -0.1], [1.0, 0.0, 0.0]]", "[[1, 2, 0]]", "prescribed.1.path", "it has left the grid: 4.5"),
-    row("face = \"top\"", "face = \"left\"", "prescribed.0.face", "[boundary] holds \"left\" too"),
-    row("face = \"top\"", "face = \"up\"", "prescribed.0.face", "expected one of"),
-    row("face = \"top\"", "face = \"top\"\nfrom = [0, 1]", "prescribed.0.from", "only one of face, from").down(1),
-    row("face = \"top\"", "from = [0, 1]", "prescribed.0", "missing: one of face, to").up(1),
-    row("face = \"top\"", "", "prescribed.0", "missing: one of face, from").up(1),
+    row("face = \"right\"", "face = \"left\"", "prescribed.0.face", "[boundary] holds \"left\" too"),
+    row("face = \"right\"", "face = \"up\"", "prescribed.0.face", "expected one of"),
+    row("face = \"right\"", "face = \"right\"\nfrom = [0, 1]", "prescribed.0.from", "only one of face, from").down(1),
+    row("face = \"right\"", "from = [0, 1]", "prescribed.0", "missing: one of face, to").up(1),
+    row("face = \"right\"", "", "prescribed.0", "missing: one of face, from").up(1),
     row(
         "velocity = [0.0, \"-10 mm/s\"]",
-        "velocity = [0.0, 0.1]",
+        "velocity = [0.1, 0.0]",
         "prescribed.0.velocity",
         "it may move inward or along itself",
     ),
@@ -186,7 +187,7 @@ pub const STRIPS: &[Row] = &[
     ),
     row(
         "[footing]",
-        "[[prescribed]]\nface = \"top\"\nvelocity = [0, 0]\n[footing]",
+        "[[prescribed]]\nface = \"right\"\nvelocity = [0, 0]\n[footing]",
         "prescribed.1.face",
         "prescribed already",
     )
@@ -199,6 +200,17 @@ pub const STRIPS: &[Row] = &[
     row("\"-1 kN/m\"", "\"-1 kN\"", "point_load.0.force", "takes forces per metre (N/m, kN/m, MN/m)"),
     row("\"-1 kN/m\"", "\"-1 kPa\"", "point_load.0.force", "expected a force per metre of thickness"),
     row("ramp = \"0.5 s\"", "ramp = -1", "traction.0.ramp", "allowed: ramp >= 0"),
+    // Points of the block are .25 m apart, those of sand .167 m and of clay .25 m.
+    row(
+        "from = [1.25, 2.5]\nto   = [\"1.75 m\", 2.5]",
+        "from = [1.25, 2.63]\nto = [1.75, 2.63]",
+        "footing.from",
+        NOBODY,
+    ),
+    row("from = [2.5, 2.5]\nto   = [3.0, 2.5]", "from = [2.5, 2.63]\nto = [3.0, 2.63]", "prescribed.1.from", NOBODY),
+    row("from = [0.0, 1.25]\nto   = [1.0, 1.25]", "from = [0.0, 1.4]\nto = [1.0, 1.4]", "traction.0.from", NOBODY),
+    row("to   = [1.0, 1.25]", "to = [1.0, 1.5]", "traction.0.from", "no body is at [0.").up(1),
+    row("at = [3.5, 1.25]", "at = [2.25, 1.45]", "point_load.0.at", NOBODY),
 ];
 
 /// Stress at the start, and the histories of the footing and of the pressure.

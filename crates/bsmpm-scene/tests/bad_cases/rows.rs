@@ -10,7 +10,7 @@ pub const LANGUAGE: &[Row] = &[
     row("title    =", "colour   =", "colour", "unknown key `colour`"),
     row("[gravity]", "[gravitation]", "gravitation", "unknown key"),
     row("[solver]", "[slover]", "slover", "did you mean `solver`?"),
-    row("top    = \"free\"", "upper = \"free\"", "boundary.upper", "known: left, right, bottom, top"),
+    row("top    = \"fixed\"", "upper = \"free\"", "boundary.upper", "known: left, right, bottom, top"),
     row("percentile = 99.9", "precentile = 99.9", "history.0.precentile", "did you mean `percentile`?"),
     row("ksp = \"preonly\",", "kps = \"preonly\",", "solver.linear.kps", "did you mean `ksp`?"),
     row("poisson  = 0.3", "poisson  = \"0.3\"", "material.sand.poisson", "expected a number, found \"0.3\""),
@@ -138,7 +138,7 @@ pub const RULES: &[Row] = &[
     ),
     row("lower = [0.0, \"0 m\"]\n", "", "grid.lower", "missing; it is needed with `cell`").up(1),
     row("upper = [4.0, 3.0]", "upper = [4.0, 0.0]", "grid.upper", "is not above lower"),
-    row("cell  = [0.5, \"50 cm\"]", "cell = [0.3, 0.5]", "grid.cell", "no whole number, and neither face is free"),
+    row("cell  = [0.5, \"50 cm\"]", "cell = [0.5, 0.7]", "grid.cell", "no whole number, and neither face is free"),
     row("friction = \"30 deg\"\n", "", "material.sand.friction", "model \"mohr-coulomb\" needs it").up(4),
     row("cohesion    = 2e4\n", "", "material.clay.cohesion", "model \"tresca\" needs it").up(4),
     row(
@@ -208,7 +208,6 @@ pub const QUASI_STATIC: &[Row] = &[
 pub const LATER: &[(&str, &str, &str)] = &[
     ("geometry = \"plane-strain\"", "geometry = \"axisymmetric\"", "geometry"),
     ("geometry = \"plane-strain\"", "geometry = \"solid\"", "geometry"),
-    ("nonlinear        = \"auto\"", "nonlinear = \"newton\"", "solver.nonlinear"),
     ("format = \"vtu\"", "format = \"vtkhdf\"", "output.format"),
     ("format = \"vtu\"", "checkpoint = { keep = 2 }", "output.checkpoint"),
     ("[gravity]", "[[stage]]", "stage"),

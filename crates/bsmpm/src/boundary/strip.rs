@@ -49,6 +49,8 @@ pub struct StripReport {
     pub force: Vec<f64>,
     /// m  largest distance that the material has slipped from it in the step
     pub slip: f64,
+    /// m  largest distance that the material has slipped from it in all steps together: held traction over the penalty
+    pub accumulated: f64,
     /// m  length of its motion in the step, as far as it is held
     pub motion: f64,
     /// points with material at them
@@ -227,12 +229,13 @@ impl<const D: usize> Grips<D> {
             return (Vec::new(), Vec::new());
         }
         let mut traction: Vec<Vec<Vector<D>>> = strips.iter().map(|s| vec![Vector::zeros(); s.points.len()]).collect();
-        let (mut held_count, mut longest) = (vec![0.0; strips.len()], vec![0.0; 2 * strips.len()]);
+        let (mut held_count, mut longest) = (vec![0.0; strips.len()], vec![0.0; 3 * strips.len()]);
         for held in &self.held {
             traction[held.strip][held.point] = held.traction(&self.offsets, u);
             held_count[held.strip] += 1.0;
             let (slip, motion) = (held.slip(&self.offsets, u).norm(), held.part(held.motion).norm());
-            for (most, length) in longest[2 * held.strip..].iter_mut().zip([slip, motion]) {
+            let accumulated = traction[held.strip][held.point].norm() / held.penalty;
+            for (most, length) in longest[3 * held.strip..].iter_mut().zip([slip, accumulated, motion]) {
                 *most = f64::max(*most, length);
             }
         }
@@ -242,8 +245,9 @@ impl<const D: usize> Grips<D> {
         let report = |number: usize| {
             let shares = strips[number].points.iter().zip(&traction[number]);
             let force = shares.fold(Vector::<D>::zeros(), |sum, (point, traction)| sum + traction * point.area);
-            let (slip, motion) = (longest[2 * number], longest[2 * number + 1]);
-            StripReport { force: force.as_slice().to_vec(), slip, motion, held: held_count[number] as usize }
+            let [slip, accumulated, motion] = [0, 1, 2].map(|k| longest[3 * number + k]);
+            let (force, held) = (force.as_slice().to_vec(), held_count[number] as usize);
+            StripReport { force, slip, accumulated, motion, held }
         };
         ((0..strips.len()).map(report).collect(), traction)
     }

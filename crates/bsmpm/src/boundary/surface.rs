@@ -7,7 +7,12 @@ use crate::grid::{Grid, KnotVector};
 use crate::tensor::Vector;
 
 /// Share of a surface point's shape functions that the nodes that count must have: below it no material is near enough.
+/// It sets the reach beyond the cells that hold points: .75, 1.29 and 1.85 cells for the orders 1, 2 and 3. With a much
+/// shorter one a strip would let go where the row of cells at it has emptied while the points below are still at its base.
 const NEAR: f64 = 0.25;
+/// Parts of a mean cell by which a surface point may lie outside the grid and still be on its face: rounding of what
+/// it has moved.
+const ROUNDING: f64 = 1e-6;
 
 /// A point of a surface with its share of the area.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -64,7 +69,8 @@ impl Attachment {
         counts: impl Fn(usize) -> bool,
         x: &Vector<D>,
     ) -> Option<Self> {
-        let cell = grid.locate(x).filter(|cell| grid.columns().contains(&cell[0]))?;
+        let x = on_grid(grid, x);
+        let cell = grid.locate(&x).filter(|cell| grid.columns().contains(&cell[0]))?;
         let first_node = grid.first_node(&cell);
         let rows: Vec<Vec<f64>> = (0..D).map(|axis| values(&grid.axes()[axis], x[axis], cell[axis])).collect();
         let width = grid.order() + 1;
@@ -109,6 +115,16 @@ impl Attachment {
             }
         }
     }
+}
+
+/// The place itself, or the place on the face that it has left by rounding.
+fn on_grid<const D: usize>(grid: &Grid<D>, x: &Vector<D>) -> Vector<D> {
+    Vector::from_fn(|axis, _| {
+        let knots = &grid.axes()[axis];
+        let inside = x[axis].clamp(0.0, knots.length());
+        let slack = ROUNDING * knots.length() / knots.cells() as f64;
+        if (x[axis] - inside).abs() <= slack { inside } else { x[axis] }
+    })
 }
 
 /// Values of the functions of a cell of one axis.

@@ -34,7 +34,7 @@ fn elastic_start<K: Kinematics<D>, const D: usize>(method: Stabilisation) {
     let (after, steps) = scene.clone().solved(1.0, 1.0);
     let moved = after.points.u.iter().map(|u| u.norm()).fold(0.0, f64::max);
     println!("{D}-D {method:?}: unbalance {:.1e}, stress off by {off:.1e} of 80, moved {moved:.1e} m", found.force);
-    assert!(found.force <= 1e-8 && found.yielding == 0 && off <= 3.0);
+    assert!(found.force <= 1e-8 && found.yielding == 0 && off <= 1.03); // 1.3 times the measured .79 of 80
     assert!(moved <= 1e-7 && steps.len() == 1);
 }
 
@@ -57,7 +57,7 @@ fn earth_pressure_at_rest_gives_back_its_stress_and_is_nearly_balanced() {
         assert!(off <= 1e-10, "{off}");
     }
     println!("unbalance {:.1e}", found.force);
-    assert!(found.force <= 2e-2); // the points' quadrature of linear stress
+    assert!(found.force <= 1e-2); // the points' quadrature of linear stress: measured 7.6e-3
 }
 
 #[test]
@@ -84,7 +84,7 @@ fn a_modulus_that_grows_with_depth_settles_by_the_integral() {
     let top = (0..scene.points.len()).max_by(|&a, &b| scene.points.x[a][1].total_cmp(&scene.points.x[b][1])).unwrap();
     let found = -scene.points.u[top][1];
     println!("settled {:.4} of the exact, {} iterations", found / exact, steps[0].report.iterations);
-    assert!((found / exact - 1.0).abs() <= 0.02);
+    assert!((found / exact - 1.0).abs() <= 6.3e-3); // measured 4.8e-3
     assert!(steps[0].report.iterations <= 3, "the stiffness knows the profile");
 }
 

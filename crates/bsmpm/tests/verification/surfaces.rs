@@ -52,15 +52,17 @@ fn surface_points_share_the_length_of_their_segment_cell_by_cell() {
 }
 
 #[test]
-fn a_platen_that_moves_in_many_steps_gives_the_exact_stress_across_cells() {
+fn a_platens_force_follows_the_exact_curve_across_cells_and_the_points_stress_less_closely() {
     // sigma = M ln(l)/l at l = .6: the platen crosses from one row of cells to the next, which a moving face cannot.
-    // F-bar averages over what little material a nearly empty row of cells holds: its force is off by 7 % where the platen
-    // has just left one.
-    for (method, rough, bound) in [(Stabilisation::None, false, 0.005), (Stabilisation::FBar, true, 0.1)] {
+    // F-bar averages over what little material a nearly empty row of cells holds: its force is off most where the platen
+    // has just left one. Bounds of force and of a point's stress, 1.3 times what was measured.
+    for (method, rough, [whole, local]) in
+        [(Stabilisation::None, false, [0.004, 0.14]), (Stabilisation::FBar, true, [0.095, 0.3])]
+    {
         let mut scene = pressed(block([4, 4], 2), 0.4, rough, 1e7).stabilised(method);
         let M = scene.model.materials[0].elastic().oedometric();
         let mut worst = 0.0_f64;
-        let mut slip = 0.0_f64;
+        let (mut slip, mut off) = (0.0, 0.0_f64);
         scene.march(0.05, 1.0, |points, accepted| {
             let l = 1.0 - 0.4 * accepted.t;
             let exact = M * l.ln() / l;
@@ -68,11 +70,11 @@ fn a_platen_that_moves_in_many_steps_gives_the_exact_stress_across_cells() {
             worst = worst.max(error);
             let report = &accepted.report.strips[0];
             slip += report.slip;
-            assert!((report.force[1] / exact - 1.0).abs() <= bound, "{} {}", report.force[1], exact);
+            off = off.max((report.force[1] / exact - 1.0).abs());
             assert!((report.force[1] + accepted.report.reactions[2][1]).abs() <= 1e-9 * exact.abs());
         });
-        println!("{method:?}: stress off by {worst:.1e}, slips of all steps {slip:.1e} m");
-        assert!(worst <= 2.0 * bound + 0.15 && slip <= 2e-4); // measured .11 without stabilisation
+        println!("{method:?}: force off by {off:.2e}, stress by {worst:.2e}, slips of all steps {slip:.2e} m");
+        assert!(off <= whole && worst <= local && slip <= 1.5e-4);
     }
 }
 
@@ -80,14 +82,16 @@ fn a_platen_that_moves_in_many_steps_gives_the_exact_stress_across_cells() {
 fn what_a_strip_has_slipped_in_all_steps_is_its_pressure_over_the_penalty() {
     for penalty in [1e5, 1e6, 1e7] {
         let mut scene = pressed(block([4, 4], 2), 0.1, false, penalty);
-        let mut slip = 0.0;
-        let mut last = 0.0;
+        let (mut slip, mut last, mut accumulated) = (0.0, 0.0_f64, 0.0);
         scene.march(0.1, 1.0, |_, accepted| {
             slip += accepted.report.strips[0].slip;
             last = -accepted.report.strips[0].force[1];
+            accumulated = accepted.report.strips[0].accumulated;
         });
-        println!("penalty {penalty:e}: slipped {slip:.3e} m, pressure / penalty {:.3e} m", last.abs() / penalty);
-        assert!((slip / (last.abs() / penalty) - 1.0).abs() <= 0.05); // the largest slip against the mean pressure
+        let ratios = [slip / (last.abs() / penalty) - 1.0, accumulated / slip - 1.0];
+        println!("penalty {penalty:e}: slipped {slip:.3e} m, off by {ratios:?}");
+        // The largest slip against the mean pressure, and the largest of all steps against the sum of the steps' largest.
+        assert!(ratios[0].abs() <= 1e-5 && ratios[1].abs() <= 1e-6);
     }
 }
 
@@ -101,11 +105,11 @@ fn a_cut_step_follows_the_same_path() {
     };
     let (coarse, fine) = (solved(0.25), solved(0.25 / 16.0));
     println!("force with 4 steps {coarse:.6}, with 64 {fine:.6}");
-    assert!((coarse / fine - 1.0).abs() <= 2e-3);
+    assert!((coarse / fine - 1.0).abs() <= 1.7e-3); // measured 1.3e-3
 }
 
 #[test]
-fn a_uniform_traction_gives_uniform_stress_and_follows_the_body() {
+fn a_uniform_traction_gives_uniform_stress_before_the_body_has_moved_and_follows_it() {
     let mut scene = block([4, 4], 2);
     scene.model.background = None;
     let points = surface::along(&scene.model.grid, &at(0.0, 1.0), &at(1.0, 1.0), 3);
@@ -125,8 +129,9 @@ fn a_uniform_traction_gives_uniform_stress_and_follows_the_body() {
     (0..100).for_each(|_| l = (-100.0 / M * l).exp());
     let top = scene.points.surface.position[0][0][1];
     println!("stress off by {first:.1e} in the first step, {last:.1e} in the last; top at {top:.6}, exact {l:.6}");
-    assert!(first <= 1e-10 && last <= 0.05);
-    assert!((top - l).abs() <= 2e-4);
+    // In the end the surface lies .27 of a cell inside its row, which the points do not fill.
+    assert!(first <= 1e-10 && last <= 0.06); // measured .046
+    assert!((top - l).abs() <= 2.5e-5); // measured 1.9e-5
 }
 
 #[test]
@@ -153,6 +158,27 @@ fn a_load_without_material_is_an_error() {
     let found = stepper.advance(&schedule, &scene.model, &mut scene.points, &halo, &mut solver);
     let attempts = found.and_then(Result::err).expect("a failure").attempts;
     assert!(matches!(attempts[..], [StepError::Unloaded { load: 0, points: 1 }]), "{attempts:?}");
+}
+
+#[test]
+fn a_place_beyond_a_face_by_rounding_is_on_it() {
+    let scene = block([4, 4], 2);
+    let (grid, offsets) = (&scene.model.grid, scene.model.grid.offsets());
+    let found = |x: f64, y: f64| surface::Attachment::at(grid, &offsets, |_| true, &at(x, y)).is_some();
+    assert!(found(1.0, 2.0) && found(1.0 + 1e-15, 2.0 + 1e-14) && found(-1e-15, -1e-15));
+    assert!(!found(1.0 + 1e-6, 1.0) && !found(0.5, -1e-6));
+}
+
+#[test]
+fn the_reach_beyond_occupied_cells_is_that_of_the_documentation() {
+    for (order, reach) in [(1, 0.75), (2, 1.0 + 1.0 - 0.5_f64.sqrt()), (3, 1.85)] {
+        let scene = block([8, 8], order);
+        let (grid, offsets) = (&scene.model.grid, scene.model.grid.offsets());
+        let active = |node: usize| grid.node_at(node)[1] < 8 + order; // of the cells below y = 2 m
+        let found =
+            |cells: f64| surface::Attachment::at(grid, &offsets, active, &at(1.1, 2.0 + 0.25 * cells)).is_some();
+        assert!(found(reach - 0.01) && !found(reach + 0.01), "order {order}");
+    }
 }
 
 #[test]

@@ -11,7 +11,7 @@ use mpi::traits::CommunicatorCollectives;
 const MOST_PLACES: usize = 10;
 
 /// The report of `failure` in step `step`, from all ranks; `lower` is the grid's lower corner. Collective.
-pub fn report(world: &SimpleCommunicator, failure: &Failure, step: u64, lower: [f64; 2]) -> FailureReport {
+pub(super) fn of(world: &SimpleCommunicator, failure: &Failure, step: u64, lower: [f64; 2]) -> FailureReport {
     let last = failure.attempts.last();
     let history = match last {
         Some(StepError::NotConverged { history, .. }) => {

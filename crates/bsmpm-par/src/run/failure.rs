@@ -1,0 +1,55 @@
+//! Steps that cannot be made: what is told, and the exit code.
+
+use super::{Run, diagnosis};
+use crate::exit;
+use crate::launch;
+use bsmpm::control::Failure;
+use bsmpm::error::StepError;
+use bsmpm::step::Counts;
+use bsmpm_io::manifest::Status;
+
+impl Run<'_> {
+    /// Ends the run after a step that failed.
+    pub(super) fn fail(mut self, failure: &Failure) -> u8 {
+        let told = format!(
+            "step {} failed at t = {} after {} attempt(s), the last with dt = {:.3e}",
+            self.simulation.steps() + 1,
+            failure.t,
+            failure.attempts.len(),
+            failure.dt
+        );
+        if let Some(ledger) = &mut self.ledger {
+            ledger.attempts(failure.attempts.len() - 1, failure.counts);
+        }
+        self.give_up(failure, (&told, "; the last converged state is saved, failure.json tells more"))
+    }
+
+    /// Ends the run whose points could not be given their stress at the start.
+    pub(super) fn fail_at_start(self, error: StepError) -> u8 {
+        let failure = Failure { t: 0.0, dt: 0.0, attempts: vec![error], counts: Counts::default() };
+        self.give_up(&failure, ("the stress at the start", "; failure.json tells more"))
+    }
+
+    fn give_up(mut self, failure: &Failure, (told, end): (&str, &str)) -> u8 {
+        let step = self.simulation.steps() + 1;
+        let code = launch::agree(&self.universe.world(), code_of(failure.attempts.last(), step));
+        let report = diagnosis::of(&self.universe.world(), failure, step, self.case.grid.lower());
+        let reason = report.attempts.last().map_or("", String::as_str);
+        let place = report.worst.first();
+        let place = place.map_or_else(String::new, |w| format!("; {} {} at {:?}", w.kind, w.id, w.position));
+        self.log.failure(&format!("{told}: {reason}{place}{end}"));
+        let written = self.ledger.as_mut().map_or(Ok(()), |ledger| ledger.failure(&report));
+        self.require(written);
+        self.end(Status::Failed, code)
+    }
+}
+
+/// The exit code of the error of a step. A load whose points have no material when the run starts is the case's error;
+/// later its material has left it.
+fn code_of(error: Option<&StepError>, step: u64) -> u8 {
+    match error {
+        Some(StepError::Unloaded { .. }) if step == 1 => exit::CASE,
+        Some(StepError::Unloaded { .. } | StepError::Left { .. } | StepError::Outside { .. }) => exit::LEFT,
+        _ => exit::NO_CONVERGENCE,
+    }
+}

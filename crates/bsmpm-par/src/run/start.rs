@@ -1,0 +1,66 @@
+//! What a run tells and does before its first step.
+
+use super::Run;
+use crate::machine;
+use crate::setup;
+use bsmpm::error::StepError;
+use bsmpm::step::Report;
+use bsmpm_io::manifest;
+
+/// Part of the largest force beyond which an out-of-balance stress at the start is warned of. Level ground by k0 leaves
+/// .8 % in four cells of depth: the points' quadrature of linear stress.
+const UNBALANCED: f64 = 0.02;
+
+impl Run<'_> {
+    /// Tells what is to be told, and gives the points their stress at the start. Fails on all ranks.
+    pub(super) fn begin(&mut self) -> Result<(), StepError> {
+        if let Some(ledger) = &mut self.ledger {
+            for warning in ledger.manifest().warnings.clone() {
+                self.log.line("warning", &format!("warning: {warning}"));
+            }
+        }
+        if machine::has_reference_blas() {
+            self.warn(
+                "the BLAS in use is the reference one: factorisations take several times as long as with an optimised one \
+                 (on Debian: libopenblas0-serial)"
+                    .into(),
+            );
+        }
+        for note in &self.case.notes {
+            self.log.detail(&format!("{} = {}: {}", note.key, note.value, note.reason));
+        }
+        if let Some(start) = setup::start(&self.case, &mut self.simulation)? {
+            self.tell_start(start);
+        }
+        self.record(&Report::default());
+        self.frame();
+        Ok(())
+    }
+
+    /// Tells how well the stress at the start is balanced, and warns where the first step will move the body by it.
+    fn tell_start(&mut self, start: manifest::Initial) {
+        if let Some(ledger) = &mut self.ledger {
+            ledger.manifest().initial = Some(start);
+        }
+        let manifest::Initial { unbalance, yielding } = start;
+        self.log.line(
+            "initial",
+            &format!(
+                "stress at the start: unbalance {unbalance:.2e} of the largest force, {yielding} point(s) beyond yield"
+            ),
+        );
+        if unbalance > UNBALANCED {
+            self.warn(format!(
+                "the stress at the start leaves {:.1} % of the largest force unbalanced: the first step moves the body by it \
+                 (k0 is for level ground and layers; gravity = \"elastic\" balances any shape)",
+                100.0 * unbalance
+            ));
+        }
+        if yielding > 0 {
+            self.warn(format!(
+                "the stress at the start is beyond yield at {yielding} point(s): the first step returns it to the yield \
+                 surface, and moves the body by what is lost"
+            ));
+        }
+    }
+}

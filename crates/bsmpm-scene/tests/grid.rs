@@ -1,0 +1,27 @@
+//! Places of a case from the grid's lower corner.
+
+use bsmpm_scene::{Axis, GridSpec};
+
+fn axis(lower: f64, cell: f64, cells: usize) -> Axis {
+    Axis::Uniform { lower, cell, cells }
+}
+
+#[test]
+fn a_place_on_a_face_has_a_cell_wherever_the_grid_starts() {
+    let mut missed = 0;
+    for tenths in -200..200 {
+        for cells in [1, 3, 7, 12, 29, 60] {
+            let (lower, cell) = (f64::from(tenths) / 10.0, 0.1);
+            let grid = GridSpec { axes: [axis(lower, cell, cells), axis(1.0 - lower, cell, cells)], order: 2 };
+            let length = cells as f64 * cell;
+            let written = f64::from(tenths + cells as i32) / 10.0; // as a person writes the face
+            for upper in [grid.upper()[0], written] {
+                missed += usize::from(upper - lower > length);
+                let found = grid.local([upper, grid.upper()[1]]);
+                assert!(found.iter().all(|x| *x <= length && *x >= length - 1e-13), "{lower} {cells}: {found:?}");
+            }
+            assert_eq!(grid.local(grid.lower()), [0.0; 2]);
+        }
+    }
+    assert!(missed > 100, "differences that miss the grid: {missed}");
+}
