@@ -115,7 +115,7 @@ fn parts<'a>(matrix: &'a Matrix, arguments: &Arguments) -> Result<Vec<Part<'a>>,
     let part = |study: &'a Study| {
         let runs: Vec<&Run> = study.run.iter().filter(|run| asked(study.depth_of(run))).collect();
         let is_run = |name: &&str| runs.iter().any(|run| run.name == **name);
-        let is_asked = |row: &&matrix::Row| row.depth.is_none_or(asked) && row.runs().iter().all(|name| is_run(name));
+        let is_asked = |row: &&matrix::Row| row.depth.is_none_or(asked) && row.runs().iter().all(is_run);
         let rows = study.row.iter().filter(is_asked).collect();
         Part { study, runs, rows }
     };

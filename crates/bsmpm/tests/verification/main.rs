@@ -10,6 +10,7 @@ mod geostatic;
 mod invariance;
 mod locking;
 mod oedometer;
+mod penalty;
 mod surfaces;
 
 #[path = "../support/mod.rs"]
