@@ -1,6 +1,6 @@
 //! `bsmpm validate`: runs the cases of a matrix and judges their histories against references. The matrix is read in
-//! `matrix` and looked through in `check`, the runs are made in `runs`, numbers are taken from them in `measure` and
-//! `course`, the table is set in `table`, curves are drawn in `figure`.
+//! `matrix` and looked through in `check`, the runs are made in `runs`, numbers are taken from them in `measure`, `course` and
+//! `kink`, the table is set in `table`, curves are drawn in `figure`.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -16,14 +16,15 @@ use crate::plot::FieldName;
 mod check;
 mod course;
 mod figure;
+mod kink;
 mod matrix;
 mod measure;
 mod runs;
 mod table;
 
 pub use matrix::Depth;
-use matrix::{Matrix, Study};
-use measure::Lack;
+use matrix::{Matrix, Run, Study};
+use measure::{Lack, Measured};
 use runs::{Launcher, Outcome};
 use table::{Row, Verdict};
 
@@ -60,35 +61,35 @@ pub struct Counts {
     pub known: usize,
 }
 
+/// A study as far as it is asked for.
+struct Part<'a> {
+    study: &'a Study,
+    runs: Vec<&'a Run>,
+    rows: Vec<&'a matrix::Row>,
+}
+
 /// Runs and judges the matrix; `told` gets each study's part of the table as soon as it is there.
 ///
 /// # Errors
-/// A matrix that cannot be read; a solver that is not there; files that cannot be written. Runs that fail are rows that fail.
+/// A matrix that cannot be read, or of which nothing that is asked for can fail; a solver that is not there; files that cannot
+/// be written. Runs that fail are rows that fail.
 pub fn run(arguments: &Arguments, mut told: impl FnMut(&str)) -> Result<Counts, Error> {
     let matrix = Matrix::read(&arguments.matrix)?;
+    let parts = parts(&matrix, arguments)?;
     let solver = Solver { command: &arguments.command, jobs: 1 };
-    solver.check()?;
+    solver.check()?; // before former runs are deleted for new ones that cannot be
     let base = arguments.matrix.parent().unwrap_or(Path::new(""));
     launch::make(&arguments.output)?;
     let launcher = Launcher { solver, base, output: &arguments.output, force: arguments.force };
-    let wanted = |study: &&Study| arguments.only.as_ref().is_none_or(|part| study.title.contains(part));
     let mut rows: Vec<Row> = Vec::new();
     let mut undrawn = 0;
-    for study in matrix.study.iter().filter(wanted) {
-        let asked = |depth: Depth| !arguments.short || depth == Depth::Short;
-        let chosen: Vec<_> = study.run.iter().filter(|run| asked(study.depth_of(run))).collect();
-        if chosen.is_empty() {
-            continue;
-        }
+    for Part { study, runs, rows: wanted } in parts {
         let mut outcomes = BTreeMap::new();
-        for run in chosen {
+        for run in runs {
             outcomes.insert(run.name.clone(), launcher.outcome(study, run)?);
         }
         let begin = rows.len();
-        let is_asked = |row: &&matrix::Row| {
-            row.depth.is_none_or(asked) && row.runs().iter().all(|name| outcomes.contains_key(*name))
-        };
-        rows.extend(study.row.iter().filter(is_asked).map(|row| judged(study, row, &outcomes)));
+        rows.extend(wanted.into_iter().map(|row| judged(study, row, &outcomes)));
         told(&table::text(&study.title, &rows[begin..]));
         write(&arguments.output.join("table.md"), &table::markdown(&rows))?;
         write(&arguments.output.join("table.csv"), &table::csv(&rows))?;
@@ -103,6 +104,29 @@ pub fn run(arguments: &Arguments, mut told: impl FnMut(&str)) -> Result<Counts, 
         failed: count(Verdict::is_failure) + undrawn,
         known: count(|verdict| verdict == Verdict::Known),
     })
+}
+
+/// What is asked for; a validation that judges nothing would pass whatever the program does.
+fn parts<'a>(matrix: &'a Matrix, arguments: &Arguments) -> Result<Vec<Part<'a>>, Error> {
+    let asked = |depth: Depth| !arguments.short || depth == Depth::Short;
+    let wanted = |study: &&Study| arguments.only.as_ref().is_none_or(|part| study.title.contains(part));
+    let part = |study: &'a Study| {
+        let runs: Vec<&Run> = study.run.iter().filter(|run| asked(study.depth_of(run))).collect();
+        let is_run = |name: &&str| runs.iter().any(|run| run.name == **name);
+        let is_asked = |row: &&matrix::Row| row.depth.is_none_or(asked) && row.runs().iter().all(is_run);
+        let rows = study.row.iter().filter(is_asked).collect();
+        Part { study, runs, rows }
+    };
+    let parts: Vec<Part<'a>> = matrix.study.iter().filter(wanted).map(part).collect();
+    if parts.iter().flat_map(|part| &part.rows).any(|row| row.is_judged()) {
+        return Ok(parts.into_iter().filter(|part| !part.runs.is_empty()).collect());
+    }
+    let depth = if arguments.short { "short " } else { "" };
+    let only =
+        arguments.only.as_ref().map_or(String::new(), |only| format!(" in a study whose title contains \"{only}\""));
+    let titles: Vec<&str> = matrix.study.iter().map(|study| study.title.as_str()).collect();
+    let reason = format!("no {depth}row is judged{only}; the studies are: {}", titles.join("; "));
+    Err(Error::Usage { reason })
 }
 
 /// Draws what a study wants; what could not be drawn, and why, is no reason to leave the other studies.
@@ -121,33 +145,15 @@ fn draw(study: &Study, outcomes: &BTreeMap<String, Outcome>, base: &Path, output
 /// The number of a row and what it is worth.
 fn judged(study: &Study, row: &matrix::Row, outcomes: &BTreeMap<String, Outcome>) -> Row {
     let found = measure::value(row, outcomes);
-    let is_missed = matches!(found, Err(Lack::NotReached(_)));
-    let mut remarks: Vec<String> = Vec::new();
-    let ours = match found {
-        Ok(measured) => {
-            remarks.extend(measured.remark);
-            Some(measured.value)
-        }
-        Err(Lack::NotReached(reason) | Lack::Other(reason)) => {
-            remarks.push(reason);
-            None
-        }
-    };
     let of_row: Vec<&Outcome> = row.runs().iter().filter_map(|name| outcomes.get(*name)).collect();
     let failed = of_row.iter().find_map(|outcome| outcome.failure.clone());
-    let verdict = match (row.is_judged(), &failed, ours) {
-        (false, ..) if is_missed => Verdict::NotReached,
-        (false, ..) => Verdict::Told,
-        // A run that broke is another failure than the one that is known.
-        (true, Some(_), _) => Verdict::Failed,
-        (true, None, Some(ours)) if row.holds(ours) => Verdict::Passed,
-        _ if row.known.is_some() => Verdict::Known,
-        _ if is_missed => Verdict::Missed,
-        _ => Verdict::Failed,
+    let verdict = verdict(row, &found, failed.is_some());
+    let (ours, remark) = match found {
+        Ok(measured) => (Some(measured.value), measured.remark),
+        Err(Lack::NotReached(reason) | Lack::Other(reason)) => (None, Some(reason)),
     };
-    if verdict == Verdict::Known {
-        remarks.extend(row.known.clone());
-    }
+    let mut remarks: Vec<String> = remark.into_iter().collect();
+    remarks.extend(row.known.iter().map(|known| format!("known to be {} to {}: {}", known.min, known.max, known.why)));
     remarks.extend(failed);
     remarks.extend(of_row.iter().filter_map(|outcome| outcome.stopped.clone()));
     remarks.dedup();
@@ -162,6 +168,20 @@ fn judged(study: &Study, row: &matrix::Row, outcomes: &BTreeMap<String, Outcome>
         remark: remarks.join("; "),
         codes: runs::codes(&of_row),
         cost: runs::Cost::of(&of_row),
+    }
+}
+
+/// How a row stands. A run that broke, or did not come so far, or a number elsewhere is another failure than the known one;
+/// and what is known to fail and does not has changed without the matrix.
+fn verdict(row: &matrix::Row, found: &Result<Measured, Lack>, is_broken: bool) -> Verdict {
+    match (found, &row.known) {
+        (Err(Lack::NotReached(_)), _) if !row.is_judged() => Verdict::NotReached,
+        _ if !row.is_judged() => Verdict::Told,
+        _ if is_broken => Verdict::Failed,
+        (Err(Lack::NotReached(_)), _) => Verdict::Missed,
+        (Ok(ours), known) if row.holds(ours.value) => known.as_ref().map_or(Verdict::Passed, |_| Verdict::Mended),
+        (Ok(ours), Some(known)) if (known.min..=known.max).contains(&ours.value) => Verdict::Known,
+        _ => Verdict::Failed,
     }
 }
 

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use clap::ValueEnum;
 
-use super::matrix::{Depth, Figure, Matrix, Operation, Order, Place, Row, Study};
+use super::matrix::{Depth, Figure, Kink, Known, Matrix, Operation, Order, Place, Row, Study};
 use super::runs::slug;
 use crate::plot::FieldName;
 
@@ -75,14 +75,16 @@ impl Study {
             return Err(format!("it is short, its run \"{name}\" is full"));
         }
         let ways = [row.column.is_some(), row.order.is_some(), row.extrapolated.is_some(), row.kink.is_some()];
-        if ways.iter().filter(|way| **way).count() != 1 || row.column.is_some() != row.run.is_some() {
-            return Err("one of run with column, order, extrapolated, kink is needed".into());
+        let is_single = row.column.is_some() || row.kink.is_some();
+        if ways.iter().filter(|way| **way).count() != 1 || is_single != row.run.is_some() {
+            return Err("one of run with column, run with kink, order, extrapolated is needed".into());
         }
         row.check_bounds()?;
         row.check_place()?;
         if row.order.as_ref().is_some_and(|order| order.exact.is_none()) {
             return Err("an order needs `exact`".into());
         }
+        row.kink.iter().try_for_each(Kink::check)?;
         row.order.iter().chain(&row.extrapolated).try_for_each(Order::check)
     }
 }
@@ -105,8 +107,12 @@ impl Row {
             }
             _ => {}
         }
-        match (self.min, self.max) {
-            (Some(min), Some(max)) if min > max => Err("its min is above its max".into()),
+        match (self.min, self.max, &self.known) {
+            (Some(min), Some(max), _) if min > max => Err("its min is above its max".into()),
+            (.., Some(_)) if !self.is_judged() => Err("it is known to fail, and cannot".into()),
+            (.., Some(Known { min, max, .. })) if !(min <= max && min.is_finite() && max.is_finite()) => {
+                Err("known needs a band: min and max, finite and in this order".into())
+            }
             _ => Ok(()),
         }
     }
@@ -119,6 +125,9 @@ impl Row {
             return Err("at, where, operation and scale belong to a row with a column".into());
         }
         match (&self.place, self.at) {
+            (place, at) if self.operation == Operation::Reach && (place.is_some() || at.is_some()) => {
+                Err("reach is the last row: neither at nor where".into())
+            }
             (Some(_), Some(_)) => Err("at and where exclude each other".into()),
             (None, Some(_)) if !is_last => Err("at is one row: max, min and mean take a window, with where".into()),
             (Some(Place { value: Some(_), from: None, to: None, .. }), _) if !is_last => {
@@ -140,8 +149,19 @@ impl Order {
         if self.runs.len() != self.sizes.len() || self.runs.len() < 3 {
             return Err(format!("{} runs need as many sizes, at least 3", self.runs.len()));
         }
+        if self.column.is_some() == self.kink.is_some() || (self.kink.is_some() && self.at.is_some()) {
+            return Err("one of column, at a time if at is given, and kink is needed".into());
+        }
+        self.kink.iter().try_for_each(Kink::check)?;
         let shrink = self.sizes.windows(2).all(|pair| pair[1] < pair[0]) && self.sizes.iter().all(|size| *size > 0.0);
         if shrink { Ok(()) } else { Err("the sizes go from coarse to fine and are positive".into()) }
+    }
+}
+
+impl Kink {
+    fn check(&self) -> Result<(), String> {
+        let is_sound = self.elastic.is_finite() && self.elastic != 0.0 && self.scale.is_finite();
+        if is_sound { Ok(()) } else { Err("a kink's `elastic` and `scale` are finite, the first one is not 0".into()) }
     }
 }
 

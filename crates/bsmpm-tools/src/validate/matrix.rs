@@ -78,8 +78,8 @@ pub(super) struct Row {
     pub tolerance: Option<f64>,
     pub min: Option<f64>,
     pub max: Option<f64>,
-    /// why it is known to fail: it is told as a failure, but is none of the program's being worse than it was
-    pub known: Option<String>,
+    /// a failure that is told, and is none of the validation's
+    pub known: Option<Known>,
     pub run: Option<String>,
     pub column: Option<String>,
     /// time; the last row of the history unless given
@@ -93,17 +93,32 @@ pub(super) struct Row {
     pub scale: Option<f64>,
     pub order: Option<Order>,
     pub extrapolated: Option<Order>,
+    /// of the run, in place of a column
     pub kink: Option<Kink>,
+}
+
+/// Why a row is known to fail, and the band in which its number lies as long as nothing else has changed.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Known {
+    pub why: String,
+    pub min: f64,
+    pub max: f64,
 }
 
 /// What is taken of a column.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum Operation {
+    /// of a run that came to its end
     #[default]
     Last,
+    /// the last row of a run wherever it ended: how far it came
+    Reach,
     Max,
     Min,
+    /// the largest less the smallest, over the mean: of a plateau it is small
+    Spread,
     /// weighted by the column of the window: an integral over it, divided by its length
     Mean,
 }
@@ -126,7 +141,9 @@ pub(super) struct Order {
     /// coarse to fine
     pub runs: Vec<String>,
     pub sizes: Vec<f64>,
-    pub column: String,
+    /// or the kink of each
+    pub column: Option<String>,
+    pub kink: Option<Kink>,
     pub at: Option<f64>,
     pub exact: Option<f64>,
 }
@@ -135,9 +152,10 @@ pub(super) struct Order {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Kink {
-    pub run: String,
     pub x: String,
     pub y: String,
+    /// x up to which it is straight: the elastic displacement is measured there
+    pub elastic: f64,
     #[serde(default = "one")]
     pub scale: f64,
 }
@@ -211,8 +229,7 @@ impl Row {
     /// The runs that it takes its number from.
     pub fn runs(&self) -> Vec<&str> {
         let orders = self.order.iter().chain(&self.extrapolated).flat_map(|order| &order.runs);
-        let single = self.run.iter().chain(self.kink.iter().map(|kink| &kink.run));
-        single.chain(orders).map(String::as_str).collect()
+        self.run.iter().chain(orders).map(String::as_str).collect()
     }
 
     /// Whether it can pass and fail.

@@ -1,15 +1,11 @@
-//! Numbers of histories: values, orders of convergence, extrapolations, failure loads.
+//! Numbers of histories: values, orders of convergence, extrapolations. Failure loads are found in `kink`.
 
 use std::collections::BTreeMap;
 
 use super::course::{Spot, mean, reached, window};
+use super::kink::failure;
 use super::matrix::{Kink, Operation, Order, Place, Row};
 use super::runs::Outcome;
-
-/// The branch after a kink: from this many times the elastic displacement ..
-const BENT: f64 = 5.0;
-/// .. to this many times; so early that the geometry has not changed yet.
-const FALLEN: f64 = 20.0;
 
 /// A number, and what its reader should know.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,17 +36,17 @@ pub(super) fn value(row: &Row, outcomes: &BTreeMap<String, Outcome>) -> Result<M
     if let Some(order) = &row.extrapolated {
         return Ok(extrapolated(order, &values(order, outcomes)?)?);
     }
+    let run = row.run.as_deref().unwrap_or_default();
     if let Some(kink) = &row.kink {
-        let (x, y) = (column(outcomes, &kink.run, &kink.x)?, column(outcomes, &kink.run, &kink.y)?);
-        return Ok(failure(kink, &x.into_iter().zip(y).collect::<Vec<_>>())?);
+        return Ok(failure(kink, &curve(outcomes, run, kink)?)?);
     }
-    let (run, name) = (row.run.as_deref().unwrap_or_default(), row.column.as_deref().unwrap_or_default());
-    let values = column(outcomes, run, name)?;
+    let values = column(outcomes, run, row.column.as_deref().unwrap_or_default())?;
     let value = match (row.operation, &row.place) {
         (Operation::Last, Some(Place { column, value: Some(value), .. })) => {
             spot(outcomes, run, column, *value)?.of(&values)
         }
         (Operation::Last, _) => at_time(outcomes, run, &values, row.at)?,
+        (Operation::Reach, _) => values[values.len() - 1],
         (operation, place) => over(operation, &part(outcomes, run, &values, place.as_ref())?),
     };
     Ok(Measured { value: row.scale.unwrap_or(1.0) * value, remark: None })
@@ -63,6 +59,19 @@ fn column(outcomes: &BTreeMap<String, Outcome>, run: &str, name: &str) -> Result
     if values.is_empty() { Err(format!("{run} has no row")) } else { Ok(values.to_vec()) }
 }
 
+/// The load-displacement curve of a run.
+fn curve(outcomes: &BTreeMap<String, Outcome>, run: &str, kink: &Kink) -> Result<Vec<(f64, f64)>, String> {
+    Ok(column(outcomes, run, &kink.x)?.into_iter().zip(column(outcomes, run, &kink.y)?).collect())
+}
+
+/// The last row of a run that stopped is not that of the others.
+fn ended(outcomes: &BTreeMap<String, Outcome>, run: &str) -> Result<(), Lack> {
+    match outcomes.get(run).is_some_and(|outcome| outcome.stopped.is_some()) {
+        true => Err(Lack::NotReached(format!("not reached: {run} stopped"))),
+        false => Ok(()),
+    }
+}
+
 /// Where a column of a run first reaches a value.
 fn spot(outcomes: &BTreeMap<String, Outcome>, run: &str, name: &str, value: f64) -> Result<Spot, Lack> {
     let across = column(outcomes, run, name)?;
@@ -72,7 +81,7 @@ fn spot(outcomes: &BTreeMap<String, Outcome>, run: &str, name: &str, value: f64)
     })
 }
 
-/// The part of a history that a window leaves: the other column, and the values.
+/// The part of a history that a window leaves, to the end of the run unless it says where: the other column, and the values.
 fn part(
     outcomes: &BTreeMap<String, Outcome>,
     run: &str,
@@ -85,7 +94,11 @@ fn part(
         None => Ok(Spot { row, share: 0.0 }),
     };
     let from = end(place.and_then(|place| place.from), 0)?;
-    let to = end(place.and_then(|place| place.to), values.len() - 1)?;
+    let to = place.and_then(|place| place.to);
+    if to.is_none() {
+        ended(outcomes, run)?;
+    }
+    let to = end(to, values.len() - 1)?;
     if (to.row, to.share) < (from.row, from.share) {
         return Err(Lack::Other(format!("the window of {name} ends before it begins")));
     }
@@ -101,31 +114,36 @@ fn over(operation: Operation, part: &[(f64, f64)]) -> f64 {
     match operation {
         Operation::Max => values().fold(f64::NEG_INFINITY, f64::max),
         Operation::Min => values().fold(f64::INFINITY, f64::min),
+        Operation::Spread => {
+            let largest = values().fold(f64::NEG_INFINITY, f64::max);
+            (largest - values().fold(f64::INFINITY, f64::min)) / mean(part).abs()
+        }
         Operation::Mean => mean(part),
-        Operation::Last => part.last().map_or(f64::NAN, |(_, value)| *value),
+        Operation::Last | Operation::Reach => part.last().map_or(f64::NAN, |(_, value)| *value),
     }
 }
 
-/// The value at a time; without a time the last one.
+/// The value at a time; without a time that at the end, which the run must have reached.
 fn at_time(outcomes: &BTreeMap<String, Outcome>, run: &str, values: &[f64], at: Option<f64>) -> Result<f64, Lack> {
     match at {
         Some(at) => Ok(spot(outcomes, run, "time", at)?.of(values)),
-        None => Ok(values.last().copied().ok_or_else(|| format!("{run} has no row"))?),
+        None => {
+            ended(outcomes, run)?;
+            Ok(values.last().copied().ok_or_else(|| format!("{run} has no row"))?)
+        }
     }
 }
 
+/// What an order or an extrapolation takes of each of its runs.
 fn values(order: &Order, outcomes: &BTreeMap<String, Outcome>) -> Result<Vec<f64>, Lack> {
-    order
-        .runs
-        .iter()
-        .map(|run| {
-            // The last row of a run that stopped is not that of the others.
-            if order.at.is_none() && outcomes.get(run).is_some_and(|outcome| outcome.stopped.is_some()) {
-                return Err(Lack::NotReached(format!("not reached: {run} stopped")));
-            }
-            at_time(outcomes, run, &column(outcomes, run, &order.column)?, order.at)
-        })
-        .collect()
+    let of_run = |run: &String| match &order.kink {
+        Some(kink) => Ok(failure(kink, &curve(outcomes, run, kink)?)?.value),
+        None => {
+            let name = order.column.as_deref().unwrap_or_default();
+            at_time(outcomes, run, &column(outcomes, run, name)?, order.at)
+        }
+    };
+    order.runs.iter().map(of_run).collect()
 }
 
 /// Slope of log error over log size: least squares over all sizes; in the remark that of the last two, and the limit that the
@@ -167,44 +185,12 @@ fn extrapolated(order: &Order, values: &[f64]) -> Result<Measured, String> {
     })
 }
 
-/// Where the straight line through the beginning of the branch after the kink meets the elastic one, and in the remark where
-/// twice the elastic displacement is reached. A run that ended before it bent gives the load at its end.
-fn failure(kink: &Kink, curve: &[(f64, f64)]) -> Result<Measured, String> {
-    let elastic_end = curve.len() / 5;
-    if elastic_end < 2 {
-        return Err("too few rows for a kink".into());
-    }
-    let first = curve[0];
-    // Settlements and the like go down: what counts is the way.
-    let sense = (curve[elastic_end].1 - first.1).signum();
-    let curve: Vec<(f64, f64)> = curve.iter().map(|(x, y)| (*x, sense * (y - first.1))).collect();
-    let first = curve[0];
-    let elastic = (curve[elastic_end].1 - first.1) / (curve[elastic_end].0 - first.0);
-    if !(elastic.is_finite() && elastic > 0.0) {
-        return Err("no elastic beginning for a kink".into());
-    }
-    let times = |many: f64| {
-        let beyond = |(x, y): &&(f64, f64)| *x > first.0 && y - first.1 > many * elastic * (x - first.0);
-        curve.iter().find(beyond).copied()
-    };
-    let doubled = times(2.0).map_or("never".to_owned(), |(x, _)| format!("{:.4}", x * kink.scale));
-    let last = curve[curve.len() - 1];
-    let branch = times(BENT).map(|from| (from, times(FALLEN).unwrap_or(last))).filter(|(from, to)| to.0 > from.0);
-    let Some((from, to)) = branch else {
-        let remark = format!("no kink before its end; twice the elastic displacement: {doubled}");
-        return Ok(Measured { value: last.0 * kink.scale, remark: Some(remark) });
-    };
-    let steep = (to.1 - from.1) / (to.0 - from.0);
-    let meet = (from.1 - first.1 + elastic * first.0 - steep * from.0) / (elastic - steep);
-    Ok(Measured { value: meet * kink.scale, remark: Some(format!("twice the elastic displacement: {doubled}")) })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     fn order(sizes: &[f64], exact: Option<f64>) -> Order {
-        Order { runs: Vec::new(), sizes: sizes.to_vec(), column: String::new(), at: None, exact }
+        Order { runs: Vec::new(), sizes: sizes.to_vec(), column: None, kink: None, at: None, exact }
     }
 
     #[test]
@@ -218,21 +204,5 @@ mod tests {
         let limit = extrapolated(&order(&sizes, None), &values).unwrap().value;
         assert!((limit - 5.0).abs() < 1e-12);
         assert!(extrapolated(&order(&sizes, None), &[1.0, 2.0, 4.0]).is_err());
-    }
-
-    #[test]
-    fn a_kink_is_where_both_lines_meet() {
-        let kink = Kink { run: String::new(), x: String::new(), y: String::new(), scale: 2.0 };
-        let curve: Vec<(f64, f64)> =
-            (0..=50).map(|k| f64::from(k) / 50.0).map(|x| (x, x + 100.0 * (x - 0.7).max(0.0))).collect();
-        let found = failure(&kink, &curve).unwrap();
-        assert!((found.value - 1.4).abs() < 1e-9, "{found:?}");
-        assert_eq!(found.remark.as_deref(), Some("twice the elastic displacement: 1.4400"));
-        let straight: Vec<(f64, f64)> = (0..=50).map(|k| (f64::from(k) / 50.0, f64::from(k))).collect();
-        let found = failure(&kink, &straight).unwrap();
-        assert!(found.value == 2.0 && found.remark.unwrap().starts_with("no kink"));
-        let settling: Vec<(f64, f64)> = curve.iter().map(|(x, y)| (*x, 3.0 - y)).collect();
-        assert!((failure(&kink, &settling).unwrap().value - 1.4).abs() < 1e-9);
-        assert!(failure(&kink, &[(0.0, 1.0); 20]).is_err());
     }
 }

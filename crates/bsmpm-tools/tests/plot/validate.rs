@@ -81,7 +81,7 @@ quantity = "too deep"
 run      = "f-bar"
 column   = "penetration"
 max      = 0.1
-known    = "it is meant to be"
+known    = { why = "it is meant to be", min = 1.9, max = 2.1 }
 
 [[study.row]]
 quantity = "of the fine run"
@@ -136,12 +136,47 @@ fn a_failed_row_and_a_failed_run_fail_the_validation() {
 }
 
 #[test]
+fn what_is_known_to_fail_fails_in_its_band_and_nowhere_else() {
+    let dir = tempfile::tempdir().unwrap();
+    for (part, by, last, told) in [
+        ("min = 1.9, max = 2.1", "min = 2.1, max = 2.2", "1 passed, 1 failed", " FAIL "),
+        ("min = 1.9, max = 2.1", "min = 1.0, max = 1.9", "1 passed, 1 failed", " FAIL "),
+        ("max      = 0.1", "max      = 2.0", "1 passed, 1 failed", "FAIL, holds now"),
+        ("column   = \"penetration\"\nmax", "column   = \"nothing\"\nmax", "1 passed, 1 failed", " FAIL "),
+        ("stabilisation.method=f-bar\"]", "stop=80\"]\nmay_stop = true", "1 passed, 1 failed", "FAIL, not reached"),
+    ] {
+        let matrix = MATRIX.replacen(part, by, 1).replace("0.4875\nreference = 0.975", "0.2\nreference = 0.4");
+        prepare(dir.path(), &matrix);
+        let text = printed(&validate(dir.path(), &["--short"]));
+        let row = text.lines().find(|line| line.contains("too deep")).unwrap();
+        assert!(row.contains(told) && text.lines().last() == Some(last), "{text}");
+    }
+}
+
+#[test]
 fn only_some_studies_are_run_when_asked() {
     let dir = tempfile::tempdir().unwrap();
-    prepare(dir.path(), MATRIX);
-    let output = validate(dir.path(), &["--only", "slope"]);
-    assert_eq!(printed(&output).trim(), "0 passed, 0 failed");
-    assert!(!dir.path().join("calls.txt").exists());
+    let other = MATRIX.replace("\"A footing\"", "\"Another\"").replace("curve.png", "other.png");
+    prepare(dir.path(), &format!("{MATRIX}{other}"));
+    let output = validate(dir.path(), &["--short", "--only", "Another"]);
+    assert_eq!(printed(&output).lines().last(), Some("1 passed, 0 failed"), "{output:?}");
+    assert_eq!(fs::read_to_string(dir.path().join("calls.txt")).unwrap().lines().count(), 1);
+}
+
+#[test]
+fn where_nothing_is_judged_nothing_passes() {
+    let dir = tempfile::tempdir().unwrap();
+    for (matrix, options) in [
+        (MATRIX.to_owned(), &["--only", "slope"][..]),
+        (MATRIX.replacen("depth = \"short\"", "depth = \"full\"", 1), &["--short"]),
+        (MATRIX.replace("tolerance", "#").replace("known ", "#").replace("max ", "#").replace("min ", "#"), &[]),
+    ] {
+        prepare(dir.path(), &matrix);
+        let output = validate(dir.path(), options);
+        let message = String::from_utf8(output.stderr.clone()).unwrap();
+        assert!(output.status.code() == Some(2) && message.contains("the studies are: A footing"), "{output:?}");
+        assert!(!dir.path().join("calls.txt").exists());
+    }
 }
 
 #[test]
@@ -159,6 +194,10 @@ fn a_matrix_with_mistakes_is_refused_before_anything_runs() {
         ("at        = 0.4875", "where = { column = \"time\" }", "needs a value"),
         ("reference = 0.975", "reference = 0.0", "other than 0"),
         ("max      = 0.1", "max      = 0.1\nmin = 0.2", "min is above its max"),
+        ("max      = 0.1", "", "known to fail, and cannot"),
+        ("min = 1.9,", "min = 2.9,", "known needs a band"),
+        ("max      = 0.1", "max = 0.1\noperation = \"reach\"\nat = 0.1", "neither at nor where"),
+        ("column   = \"penetration\"\nmax", "kink = { x = \"time\", y = \"p_over_c\", elastic = 0.0 }\nmax", "not 0"),
         ("depth    = \"full\"\nmin", "depth = \"short\"\nmin", "its run \"fine\" is full"),
         ("file    = \"curve.png\"", "file    = \"../curve.png\"", "ends with .png"),
         ("runs    = [\"f-bar\"]", "curves = { \"f-bar\" = [\"f-bar\"] }\nx_values = [1.0, 2.0]", "has 1 runs"),
@@ -221,6 +260,42 @@ where    = { column = "penetration", value = 1.0 }
 min      = 0.0
 
 [[study.row]]
+quantity  = "largest to its end"
+run       = "half"
+column    = "penetration"
+operation = "max"
+max       = 9.0
+
+[[study.row]]
+quantity = "at its end"
+run      = "half"
+column   = "penetration"
+max      = 9.0
+
+[[study.row]]
+quantity = "no kink"
+run      = "half"
+kink     = { x = "time", y = "penetration", elastic = 0.1 }
+max      = 9.0
+
+[[study.row]]
+quantity  = "where it stops"
+run       = "half"
+column    = "penetration"
+operation = "reach"
+min       = 2.0
+known     = { why = "it is a stub", min = 0.9, max = 1.0 }
+
+[[study.row]]
+quantity  = "how even it is"
+run       = "half"
+column    = "penetration"
+operation = "spread"
+where     = { from = 0.1, to = 0.2 }
+reference = 0.6666666667
+tolerance = 1e-9
+
+[[study.row]]
 quantity  = "of a run that is not short"
 run       = "whole"
 column    = "penetration"
@@ -234,7 +309,7 @@ fn rows_are_taken_from_a_run_as_far_as_it_came() {
     prepare(dir.path(), STOPPED);
     let output = validate(dir.path(), &["--short"]);
     let text = printed(&output);
-    assert_eq!((output.status.code(), text.lines().last()), (Some(77), Some("2 passed, 1 failed")), "{text}");
+    assert_eq!((output.status.code(), text.lines().last()), (Some(77), Some("3 passed, 4 failed")), "{text}");
     let row = |quantity: &str| text.lines().find(|line| line.contains(quantity)).unwrap().to_owned();
     assert!(row("mean depth").contains(" 4.2 "), "{text}");
     assert!(row("deeper, told").contains(" none ") && row("deeper, told").contains(" not reached "), "{text}");
@@ -243,6 +318,10 @@ fn rows_are_taken_from_a_run_as_far_as_it_came() {
         "{text}"
     );
     assert!(row("deeper, told").contains("stopped at t = 0.4750"), "{text}");
+    // What has no end tells nothing about the whole, and that a solver gives up is no failure load.
+    assert!(row("largest to its end").contains("FAIL, not reached") && row("at its end").contains("FAIL, not reached"));
+    assert!(row("no kink").contains("no kink before its end") && row("no kink").contains(" FAIL "), "{text}");
+    assert!(row("where it stops").contains("FAIL, known") && row("how even it is").contains(" pass "), "{text}");
     let table = fs::read_to_string(dir.path().join("out/table.csv")).unwrap();
     assert!(table.contains("\"pass\",\"80\""), "{table}");
 }

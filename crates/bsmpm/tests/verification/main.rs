@@ -15,6 +15,7 @@ mod invariance;
 mod locking;
 mod newton;
 mod oedometer;
+mod penalty;
 mod surfaces;
 
 #[path = "../support/mod.rs"]

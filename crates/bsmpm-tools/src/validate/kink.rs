@@ -1,0 +1,76 @@
+//! Failure loads: where a load-displacement curve bends away from its elastic beginning.
+
+use super::course::reached;
+use super::matrix::Kink;
+use super::measure::Measured;
+
+/// The branch after a kink: from this many times the elastic displacement ..
+const BENT: f64 = 5.0;
+/// .. to this many times; so early that the geometry has not changed yet.
+const FALLEN: f64 = 20.0;
+
+/// Where the straight line through the beginning of the branch after the kink meets the elastic one, and in the remark where
+/// twice the elastic displacement is reached. A curve that has not gone that far shows no failure, whatever has ended it:
+/// that a solver gives up is no collapse.
+pub(super) fn failure(kink: &Kink, curve: &[(f64, f64)]) -> Result<Measured, String> {
+    let (loads, moved): (Vec<f64>, Vec<f64>) = curve.iter().copied().unzip();
+    let end = reached(&loads, kink.elastic).ok_or("it ended within the elastic part")?;
+    let (&load, &place) = loads.first().zip(moved.first()).ok_or("no row for a kink")?;
+    // Settlements and the like go down: what counts is the way.
+    let sense = (end.of(&moved) - place).signum();
+    let curve: Vec<(f64, f64)> = curve.iter().map(|(x, y)| (*x - load, sense * (y - place))).collect();
+    let elastic = sense * (end.of(&moved) - place) / (kink.elastic - load);
+    if !(elastic.is_finite() && elastic > 0.0) {
+        return Err("no elastic beginning for a kink".into());
+    }
+    let beyond = |many: f64| curve.iter().find(|(x, y)| *x > 0.0 && *y > many * elastic * x).copied();
+    let said = |x: f64| (load + x) * kink.scale;
+    let doubled = beyond(2.0).map_or("never".to_owned(), |(x, _)| format!("{:.4}", said(x)));
+    let doubled = format!("twice the elastic displacement: {doubled}");
+    let (from, to) =
+        beyond(BENT).zip(beyond(FALLEN).or(curve.last().copied())).filter(|(from, to)| to.0 > from.0).ok_or_else(
+            || format!("no kink before its end at {:.4}; {doubled}", curve.last().map_or(load, |x| said(x.0))),
+        )?;
+    let steep = (to.1 - from.1) / (to.0 - from.0);
+    let meet = (from.1 - steep * from.0) / (elastic - steep);
+    Ok(Measured { value: said(meet), remark: Some(doubled) })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const KINK: Kink = Kink { x: String::new(), y: String::new(), elastic: 0.2, scale: 2.0 };
+
+    /// Straight, and a hundred times as soft from .7 on.
+    fn bent(loads: impl Iterator<Item = f64>) -> Vec<(f64, f64)> {
+        loads.map(|x| (x, x + 100.0 * (x - 0.7).max(0.0))).collect()
+    }
+
+    #[test]
+    fn a_kink_is_where_both_lines_meet() {
+        let curve = bent((0..=50).map(|k| f64::from(k) / 50.0));
+        let found = failure(&KINK, &curve).unwrap();
+        assert!((found.value - 1.4).abs() < 1e-9, "{found:?}");
+        assert_eq!(found.remark.as_deref(), Some("twice the elastic displacement: 1.4400"));
+        let settling: Vec<(f64, f64)> = curve.iter().map(|(x, y)| (*x, 3.0 - y)).collect();
+        assert!((failure(&KINK, &settling).unwrap().value - 1.4).abs() < 1e-9);
+    }
+
+    #[test]
+    fn the_number_of_rows_and_where_they_are_dense_do_not_count() {
+        // Steps that are cut near failure, and a run that ends soon after it.
+        let cut = bent((0..=13).map(|k| f64::from(k) / 20.0).chain((1..=150).map(|k| 0.65 + f64::from(k) / 1000.0)));
+        assert!((failure(&KINK, &cut).unwrap().value - 1.4).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_curve_that_ends_before_it_bends_shows_no_failure() {
+        let curve = bent((0..=36).map(|k| f64::from(k) / 50.0));
+        let reason = failure(&KINK, &curve).unwrap_err();
+        assert_eq!(reason, "no kink before its end at 1.4400; twice the elastic displacement: 1.4400");
+        assert!(failure(&KINK, &curve[..5]).unwrap_err().contains("elastic part"));
+        assert!(failure(&KINK, &[(0.0, 1.0), (0.5, 1.0)]).unwrap_err().contains("no elastic beginning"));
+        assert!(failure(&KINK, &[]).is_err());
+    }
+}
