@@ -88,7 +88,14 @@ fn failed(scratch: &Scratch, code: u8) -> bsmpm_io::manifest::Manifest {
 fn a_first_step_that_never_converges_ends_with_80_and_saves_the_start() {
     for ranks in [1, 2] {
         let scratch = Scratch::with_case(COLUMN);
-        let hard = ["--set", "solver.max_iterations=1", "--set", "solver.tolerance=1e-15"];
+        let hard = [
+            "--set",
+            "solver.nonlinear=broyden",
+            "--set",
+            "solver.max_iterations=1",
+            "--set",
+            "solver.tolerance=1e-15",
+        ];
         let output = scratch.mpirun(ranks, &[&["case.toml"], &hard[..]].concat()).expect(80);
         assert_eq!(output.count("bsmpm-par:"), 1, "{output:#?}");
         let manifest = failed(&scratch, 80);

@@ -10,6 +10,8 @@ use bsmpm::error::{SolveError, StepError};
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::Regime;
 use bsmpm::schedule::Schedule;
+use bsmpm::step::equilibrium::Nonlinear;
+use bsmpm::step::quasi_newton::QuasiNewton;
 
 /// A block settling on a fixed base.
 fn block(regime: Regime) -> Scene<PlaneStrain, 2> {
@@ -88,6 +90,7 @@ fn a_step_that_never_converges_fails_after_ten_halvings_and_leaves_the_points_bi
 fn too_few_iterations_are_a_failure_and_not_an_answer() {
     let mut scene = block(Regime::QuasiStatic);
     scene.model.criteria.max_iterations = 1;
+    scene.model.nonlinear = Nonlinear::QuasiNewton(QuasiNewton::Broyden);
     let before = scene.points.clone();
     let failure = run(&mut scene, &Schedule::new(1.0, 1.0, []), 0).unwrap_err();
     assert!(failure.attempts.iter().all(|error| matches!(error, StepError::NotConverged { iterations: 1, .. })));
