@@ -179,7 +179,7 @@ fn the_filter_smooths_the_elastic_dilation_where_the_material_flows_and_nothing_
     }
     println!("deviator changes by {changed:.1e}, fluctuation from {fluctuation:?}");
     assert!(changed <= 1e-15); // measured 2e-16
-    assert!(fluctuation[1] <= 0.2 * fluctuation[0]);
+    assert!(fluctuation[1] <= 0.2 * fluctuation[0]); // measured .11
 }
 
 #[test]
