@@ -151,32 +151,31 @@ fn the_full_case_in_si() {
 }
 
 #[test]
-fn the_background_is_curvature_unless_the_grid_is_linear() {
+fn the_background_is_the_laplacian_unless_the_case_wants_curvature() {
     let kind = |overrides: &[&str]| {
         let solver = valid(STATIC, overrides).solver;
         (solver.background_kind, solver.background, solver.background_cells)
     };
     let (curvature, laplacian) = (BackgroundKind::Curvature, BackgroundKind::Laplacian);
-    assert_eq!(kind(&["grid.order=quadratic"]), (curvature, 1e-3, Extent::PartlyFilled));
-    assert_eq!(kind(&["grid.order=cubic", "solver.background=0.5"]), (curvature, 0.5, Extent::PartlyFilled));
-    assert_eq!(kind(&["grid.order=linear"]), (laplacian, 1e-4, Extent::PartlyFilled));
-    let given = ["grid.order=quadratic", "solver.background_kind=laplacian", "solver.background_cells=occupied"];
-    assert_eq!(kind(&given), (laplacian, 1e-4, Extent::Occupied));
+    assert_eq!(kind(&["grid.order=linear"]), (laplacian, 1e-4, Extent::Occupied));
+    let curved = "solver.background_kind=curvature";
+    assert_eq!(kind(&["grid.order=quadratic", curved]), (curvature, 1e-3, Extent::PartlyFilled));
+    assert_eq!(kind(&["grid.order=cubic", curved, "solver.background=0.5"]), (curvature, 0.5, Extent::PartlyFilled));
+    let given = ["grid.order=quadratic", "solver.background_cells=partly-filled"];
+    assert_eq!(kind(&given), (laplacian, 1e-4, Extent::PartlyFilled));
     let errors = set(STATIC, &["grid.order=linear", "solver.background_kind=curvature"]).unwrap_err();
     assert!(errors.len() == 1 && errors[0].message.contains("use \"laplacian\""), "{errors:?}");
-    let free = valid(FULL, &["solver.background=0"]);
-    assert!(free.notes.iter().all(|note| note.key != "solver.background_kind"), "there is none to speak of");
 }
 
 #[test]
 fn what_the_program_chooses_is_noted() {
     let case = valid(STATIC, &[]);
     let noted = |key: &str| case.notes.iter().find(|note| note.key == key).map(|note| note.value.as_str());
-    assert_eq!((noted("solver.background"), noted("solver.tolerance")), (Some("0.001"), Some("1e-8")));
-    assert_eq!((case.solver.background, case.solver.linear.factor), (1e-3, Some("mumps")));
+    assert_eq!((noted("solver.background"), noted("solver.tolerance")), (Some("0.0001"), Some("1e-8")));
+    assert_eq!((case.solver.background, case.solver.linear.factor), (1e-4, Some("mumps")));
     assert_eq!(
         (case.solver.background_kind, noted("solver.background_kind")),
-        (BackgroundKind::Curvature, Some("curvature"))
+        (BackgroundKind::Laplacian, Some("\"laplacian\""))
     );
     let case = valid(&STATIC.replace("end   = 1.0\n", ""), &[]);
     assert_eq!(case.analysis.end, 1.0);

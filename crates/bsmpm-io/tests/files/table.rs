@@ -105,6 +105,7 @@ fn steps_fit_their_columns() {
     };
     table.row(&step.cells()).unwrap();
     let text = std::fs::read_to_string(&path).unwrap();
-    let names = "step,time,dt,iterations,residual,linear_iterations,cutbacks,active_nodes,wall\n";
-    assert_eq!(text, format!("{names}# -,s,s,-,-,-,-,-,s\n1,0.00025,0.00025,7,3e-9,0,1,4000,0.25\n"));
+    let names = "step,time,dt,iterations,residual,linear_iterations,cutbacks,active_nodes,wall,\
+                 newton_iterations,evaluations,products,factorisations\n";
+    assert_eq!(text, format!("{names}# -,s,s,-,-,-,-,-,s,-,-,-,-\n1,0.00025,0.00025,7,3e-9,0,1,4000,0.25,0,0,0,0\n"));
 }
