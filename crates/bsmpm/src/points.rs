@@ -39,7 +39,7 @@ pub struct Points<const D: usize> {
     pub sigma: Vec<Symmetric>,
     /// -  accumulated plastic strain
     pub eps_p: Vec<f64>,
-    /// -  S[J]/J of the last step, under Zhao's F-bar from its first step on; before that it is 1
+    /// -  S(J)/J of the last step, under Zhao's F-bar from its first step on; before that it is 1
     pub dilation: Option<Vec<f64>>,
     /// what strips and loads carry on; no column: it is the same on every rank
     pub surface: Surface<D>,

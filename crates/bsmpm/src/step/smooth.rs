@@ -42,12 +42,12 @@ impl Flow {
 /// each other, not with the elastic strain: a filter of that scale follows the number of steps in flowing sand.
 const RENEWING: f64 = 0.01;
 
-/// Consistent F-bar: b^e_p <- exp(2/3 theta_p (S[eps_v]_p - eps_v,p)) b^e_p, theta_p = S[1 - exp(-x/0.01)]_p.
+/// Consistent F-bar: b^e_p <- exp(2/3 theta_p (S(eps_v)_p - eps_v,p)) b^e_p, theta_p = S(1 - exp(-x/0.01))_p.
 ///
 /// x_p = sum_I N_Ip chi_I, chi_I the largest plastic strain of the step among the points that node I sees. Two half
 /// steps have the flow of the whole, so that the filter converges in the step size, and where nothing flows within reach
 /// b^e stays bit by bit. The factor is a positive scalar on the whole tensor: 1/2 ln det b^e changes by
-/// theta (S[eps_v] - eps_v), the deviator of the elastic strain not at all.
+/// theta (S(eps_v) - eps_v), the deviator of the elastic strain not at all.
 pub fn filter_dilation<K, const D: usize>(
     model: &Model<K, D>,
     (shape, nodes): (&Shape<D>, &Nodes<D>),

@@ -25,7 +25,7 @@ pub struct Trial {
 struct Dilation {
     /// -  w dJ: dJ, or J under Zhao's F-bar
     own: Vec<f64>,
-    /// -  S[w dJ]
+    /// -  S(w dJ)
     mean: Vec<f64>,
 }
 
@@ -59,21 +59,21 @@ impl Trial {
         Self { dF, dilation }
     }
 
-    /// ratio_p = kept_p S[w dJ]_p / (w_p dJ_p), which F-bar multiplies the dilation of point `p` with; 1 without F-bar.
+    /// ratio_p = kept_p S(w dJ)_p / (w_p dJ_p), which F-bar multiplies the dilation of point `p` with; 1 without F-bar.
     #[inline]
     pub fn ratio<const D: usize>(&self, points: &Points<D>, p: usize) -> f64 {
         let kept = points.dilation.as_ref().map_or(1.0, |dilation| 1.0 / dilation[p]);
         self.averaged(p) * kept
     }
 
-    /// S[w dJ]_p / (w_p dJ_p): what is kept for the next step where J is averaged as a whole.
+    /// S(w dJ)_p / (w_p dJ_p): what is kept for the next step where J is averaged as a whole.
     #[inline]
     pub(super) fn averaged(&self, p: usize) -> f64 {
         self.dilation.as_ref().map_or(1.0, |dilation| dilation.mean[p] / dilation.own[p])
     }
 
     /// Rate of ln ratio_p for a displacement whose spatial gradient has the trace `trace`_p at every point:
-    /// S[w dJ tr l]_p / S[w dJ]_p - tr l_p. `None` without F-bar; one exchange with the neighbours.
+    /// S(w dJ tr l)_p / S(w dJ)_p - tr l_p. `None` without F-bar; one exchange with the neighbours.
     pub fn dilation_rate<K: Kinematics<D>, const D: usize>(
         &self,
         scene: &Scene<'_, K, D>,
