@@ -151,8 +151,8 @@ impl<const D: usize> Nodes<D> {
         average((shape, &self.weight, self.threshold), points, weighting, halo, value)
     }
 
-    /// Mean of the points' dilations that F-bar puts into their place: S (Eqs 16-18), or, under consistent F-bar, S with
-    /// the splines of degree q - 1, twice.
+    /// Mean of the points' dilations that F-bar puts into their place: S (Eqs 16-18), or S with the splines of degree
+    /// q - 1 under consistent F-bar.
     pub fn mean_dilation(
         &self,
         shape: &Shape<D>,
@@ -161,15 +161,13 @@ impl<const D: usize> Nodes<D> {
         halo: &dyn Halo,
         value: impl Fn(usize) -> f64,
     ) -> Vec<f64> {
-        let mut mean: Vec<f64> = (0..points.len()).map(value).collect();
-        let (shape, weight, passes) = match &self.lower {
-            Some(lower) => (&lower.shape, &lower.weight, 2),
-            None => (shape, &self.weight, 1),
+        let (shape, weight) = match &self.lower {
+            Some(lower) => (&lower.shape, &lower.weight),
+            None => (shape, &self.weight),
         };
-        for _ in 0..passes {
-            let nodal = average((shape, weight, self.threshold), points, weighting, halo, |p| [mean[p]]);
-            transfer::to_points(shape, &nodal, |p, [value]| mean[p] = value);
-        }
+        let nodal = average((shape, weight, self.threshold), points, weighting, halo, |p| [value(p)]);
+        let mut mean = vec![0.0; points.len()];
+        transfer::to_points(shape, &nodal, |p, [value]| mean[p] = value);
         mean
     }
 

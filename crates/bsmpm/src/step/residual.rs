@@ -35,8 +35,8 @@ pub struct Balance {
 }
 
 impl Residual {
-    /// Evaluates the forces under `u`: one exchange with the neighbours, one more each for F-bar (two if it is the
-    /// consistent one) and strips, and one reduction.
+    /// Evaluates the forces under `u`: one exchange with the neighbours, one more each for F-bar and strips, and one
+    /// reduction.
     pub fn of<K: Kinematics<D>, const D: usize>(scene: &Scene<'_, K, D>, u: &[f64]) -> Self {
         let Scene { model, shape, nodes, points, halo, .. } = *scene;
         let trial = Trial::of(model, shape, nodes, points, u, halo);

@@ -73,7 +73,7 @@ impl Trial {
     }
 
     /// Rate of ln ratio_p for a displacement whose spatial gradient has the trace `trace`_p at every point:
-    /// S(w dJ tr l)_p / S(w dJ)_p - tr l_p. `None` without F-bar. Exchanges with the neighbours as F-bar does.
+    /// S(w dJ tr l)_p / S(w dJ)_p - tr l_p. `None` without F-bar; one exchange with the neighbours.
     pub fn dilation_rate<K: Kinematics<D>, const D: usize>(
         &self,
         scene: &Scene<'_, K, D>,

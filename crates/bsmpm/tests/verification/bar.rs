@@ -90,7 +90,7 @@ fn consistent_f_bar_keeps_the_energy_however_many_steps_there_are() {
     for steps in [80, 320] {
         let (left, _) = after_five_periods(Stabilisation::ConsistentFBar, steps);
         println!("ConsistentFBar, {steps} steps a period: energy {left:.5}");
-        assert!(left >= 0.995); // measured .99876, .99963
+        assert!(left >= 0.995); // measured .99878, .99964
     }
 }
 

@@ -47,7 +47,7 @@ fn discs_part_as_fast_with_short_steps_as_with_long_ones_unless_every_step_smoot
             println!("{method:?}: {found:.3?}");
             found
         });
-    assert!((consistent[0] - consistent[1]).abs() <= 0.05); // measured .784, .812
+    assert!((consistent[0] - consistent[1]).abs() <= 0.05); // measured .799, .822
     assert!(consistent.iter().zip(f_bar).all(|(found, f_bar)| (found - f_bar).abs() <= 0.03));
     assert!(modified[1] <= 0.1); // measured -.036
 }
