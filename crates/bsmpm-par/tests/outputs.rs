@@ -54,9 +54,10 @@ fn steps_tells_how_hard_each_step_was() {
     scratch.mpirun(2, &["case.toml", "-q"]).expect(0);
     let directory = scratch.path("case.out");
     let text = std::fs::read_to_string(directory.join("steps.csv")).unwrap();
-    let names = "step,time,dt,iterations,residual,linear_iterations,cutbacks,active_nodes,wall\n";
-    assert!(text.starts_with(&format!("{names}# -,s,s,-,-,-,-,-,s\n")), "{}", &text[..200]);
-    shortest(&rows(&directory.join("steps.csv")), &[0, 3, 5, 6, 7]);
+    let names = "step,time,dt,iterations,residual,linear_iterations,cutbacks,active_nodes,wall,\
+                 newton_iterations,evaluations,products,factorisations\n";
+    assert!(text.starts_with(&format!("{names}# -,s,s,-,-,-,-,-,s,-,-,-,-\n")), "{}", &text[..200]);
+    shortest(&rows(&directory.join("steps.csv")), &[0, 3, 5, 6, 7, 9, 10, 11, 12]);
     let (steps, history) = (steps(&directory), history(&directory));
     for name in ["step", "time"] {
         assert_eq!(steps.get(name).unwrap(), &history.get(name).unwrap()[1..]);
@@ -179,9 +180,9 @@ fn the_manifest_explains_a_finished_run() {
     );
     assert!(manifest.failure.is_none() && manifest.checkpoint.is_none() && manifest.warnings.is_empty());
     let background = manifest.choices.iter().find(|choice| choice.key == "solver.background").unwrap();
-    assert!(background.value == "0.001" && background.reason.contains("quasi-static"), "{background:?}");
+    assert!(background.value == "0.0001" && background.reason.contains("quasi-static"), "{background:?}");
     let kind = manifest.choices.iter().find(|choice| choice.key == "solver.background_kind").unwrap();
-    assert!(kind.value == "curvature" && manifest.sizes.contains_key("most_background_cells"), "{kind:?}");
+    assert!(kind.value == "\"laplacian\"" && manifest.sizes.contains_key("most_background_cells"), "{kind:?}");
     let check = &manifest.checks[0];
     assert!(check.passed && check.value == history(&directory).get("height").unwrap().last().copied(), "{check:?}");
     complete(&directory, &manifest);

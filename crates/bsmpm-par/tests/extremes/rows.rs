@@ -18,6 +18,7 @@ const FLIP: &str = "accelerations lose what the grid cannot hold when they go to
 const DIFFUSION: &str = "the paper's average of b^e is a diffusion per step";
 const LATE: &str = "an error of the step: 8, 7, 2 % between .5 and .0625 ms; motion starts half a step late";
 const SLOW: &str = "p/c changes by .1 to .3 % a doubling, and that falls by less than half each time";
+const BEYOND: &str = "the pressure at the base is 200 G, and against what F-bar averages out only G holds: Newton's method finds another equilibrium";
 const C1: &str = "the splines are C1: strain cannot jump at an interface inside the grid";
 
 /// All rows.
@@ -47,7 +48,7 @@ pub fn all() -> Vec<Row> {
 fn confined() -> Vec<Row> {
     vec![
         row("N01", "nu = .49, confined column, none: height / l0, error", AtMost(5e-4), || incompressible::confined(0.49, Plain)),
-        row("N01", "nu = .499, the same, f-bar", AtMost(5e-4), || incompressible::confined(0.499, FBar)).or_refused(),
+        row("N01", "nu = .499, the same, f-bar", AtMost(5e-4), || incompressible::confined(0.499, FBar)).or_refused().fails(BEYOND),
         row("N01", "nu = .4999, the same, f-bar", AtMost(5e-4), || incompressible::confined(0.4999, FBar)).or_refused(),
         row("N01", "nu = .4999, the same, modified-f-bar", AtMost(5e-4), || incompressible::confined(0.4999, ModifiedFBar)).or_refused(),
         row("N01", "nu = .49999, the same, f-bar", AtMost(5e-4), || incompressible::confined(0.49999, FBar)).or_refused(),
