@@ -8,10 +8,10 @@
 //! | --- | --- | --- |
 //! | (1) | shape functions and topology | [`grid::spline`], [`grid::shape`] |
 //! | (2) | points to nodes | [`step::nodes`] |
-//! | (3), (7)-(9) | quasi-Newton iteration, both convergence measures | [`step::equilibrium`], [`step::quasi_newton`] |
+//! | (3), (7)-(9) | quasi-Newton iteration, Newton's method where it stalls, both convergence measures | [`step::equilibrium`], [`step::quasi_newton`], [`step::newton`], [`step::progress`] |
 //! | (4) | trial deformation, F-bar | [`step::trial`] |
 //! | (5) | out-of-balance force | [`step::residual`] |
-//! | (6) | elastic stiffness K_0 | [`step::stiffness`] |
+//! | (6) | elastic stiffness K_0, complete derivative | [`step::stiffness`], [`step::linearised`] |
 //! | (10), (11) | grid kinematics, converged points | [`step::commit`] |
 //!
 //! [`boundary`] holds and loads the bodies, [`initial`] gives them stress at the start. [`control`] cuts and grows the steps so that a non-converged one is never accepted; [`seam`] holds the two traits
