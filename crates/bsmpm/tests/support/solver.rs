@@ -40,14 +40,20 @@ impl Skyline {
     }
 }
 
+/// Numbers the free components; their count.
+fn number(free: &[bool], numbers: &mut Vec<Option<usize>>) -> usize {
+    let mut count = 0;
+    let numbered = free.iter().map(|&free| {
+        count += usize::from(free);
+        free.then(|| count - 1)
+    });
+    *numbers = numbered.collect();
+    count
+}
+
 impl LinearSolver for Skyline {
     fn begin(&mut self, free: &[bool]) {
-        let mut count = 0;
-        let numbered = free.iter().map(|&free| {
-            count += usize::from(free);
-            free.then(|| count - 1)
-        });
-        self.number = numbered.collect();
+        let count = number(free, &mut self.number);
         self.first = (0..count).collect();
         self.entries = vec![0.0; count * count];
     }
@@ -213,12 +219,7 @@ impl Dense {
 
 impl LinearSolver for Dense {
     fn begin(&mut self, free: &[bool]) {
-        let mut count = 0;
-        let numbered = free.iter().map(|&free| {
-            count += usize::from(free);
-            free.then(|| count - 1)
-        });
-        self.number = numbered.collect();
+        let count = number(free, &mut self.number);
         self.matrix = DMatrix::zeros(count, count);
     }
 
