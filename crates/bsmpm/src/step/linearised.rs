@@ -10,7 +10,7 @@ use crate::kinematics::Kinematics;
 use crate::seam::{LinearSolver, Symmetry};
 use crate::step::equilibrium::Scene;
 use crate::step::residual::Residual;
-use crate::step::stiffness::add_background;
+use crate::step::stiffness::{add_background, complete};
 use crate::step::trial::Trial;
 use crate::tensor::{Square, Vector};
 
@@ -112,12 +112,7 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
             }
             solver.add(patch.first_node, &block);
         }
-        self.scene.grips.assemble(solver);
-        if let Some(inertia) = &nodes.inertia {
-            let diagonal: Vec<f64> = (0..nodes.free.len()).map(|c| inertia.factor() * nodes.weight[c / D]).collect();
-            solver.add_diagonal(&diagonal);
-        }
-        solver.finish(Symmetry::General)
+        complete(self.scene, solver, Symmetry::General)
     }
 }
 

@@ -3,7 +3,6 @@
 //! The paper prints the same numerator and denominator; read |du_k . f_k| / |du_0 . f_0|. That product is no norm (it
 //! crosses zero while the forces are far from balanced), so the relative out-of-balance force must be small too.
 
-use crate::boundary::strip::Grips;
 use crate::error::{Measures, StepError, WorstNode};
 use crate::kinematics::Kinematics;
 use crate::model::Criteria;
@@ -109,7 +108,7 @@ pub fn first_energy<K: Kinematics<D>, const D: usize>(scene: &Scene<'_, K, D>, f
     if scene.model.boundary.strips.is_empty() {
         return work.abs();
     }
-    let mut penalty = [Grips::energy(scene.grips, du)];
+    let mut penalty = [scene.grips.energy(du)];
     scene.halo.reduce(&mut penalty);
     (work - penalty[0]).abs()
 }

@@ -1,5 +1,6 @@
 //! Step (6): the elastic stiffness K_0 = 4/dt^2 M + sum_p V0 G^T D^e G at the start of the step, symmetric, with the
-//! soft background and the hold of strips; numerical damping changes the 4/dt^2. The quasi-Newton method stands for everything that it leaves out.
+//! soft background and the hold of strips; numerical damping changes the 4/dt^2. The quasi-Newton method stands for
+//! everything that it leaves out.
 
 use crate::error::SolveError;
 use crate::grid::shape::Patch;
@@ -32,12 +33,22 @@ pub fn assemble<K: Kinematics<D>, const D: usize>(
         }
         solver.add(patch.first_node, &block);
     }
+    complete(scene, solver, Symmetry::Definite)
+}
+
+/// Adds strips and inertia to a matrix whose patches are assembled, and factorises it.
+pub fn complete<K: Kinematics<D>, const D: usize>(
+    scene: &Scene<'_, K, D>,
+    solver: &mut dyn LinearSolver,
+    symmetry: Symmetry,
+) -> Result<(), SolveError> {
+    let nodes = scene.nodes;
     scene.grips.assemble(solver);
     if let Some(inertia) = &nodes.inertia {
         let diagonal: Vec<f64> = (0..nodes.free.len()).map(|c| inertia.factor() * nodes.weight[c / D]).collect();
         solver.add_diagonal(&diagonal);
     }
-    solver.finish(Symmetry::Definite)
+    solver.finish(symmetry)
 }
 
 fn runs_of_one_material(patch: &Patch, material: &[u16]) -> Vec<std::ops::Range<usize>> {
