@@ -2,6 +2,8 @@
 //!
 //! The bytes are counted from what the program holds and rounded to what runs took; `tests/shipped.rs` compares.
 
+use bsmpm::stabilisation::Stabilisation;
+
 use crate::case::Case;
 use crate::grid::GridSpec;
 
@@ -13,6 +15,8 @@ pub(crate) const MOST_POINTS: u128 = u32::MAX as u128;
 /// Bytes of a point: its state (about 270), shape functions (96), two trial states (160), response and buffers of its
 /// migration. Measured: 820, from 28,800 and 115,200 points in the same cells.
 const POINT: u128 = 820;
+/// Bytes of a point's functions of the degree below, which `consistent-f-bar` averages with.
+const LOWERED: u128 = 64;
 /// Bytes of a node's vectors: about a dozen, and twenty secants of three, all of two doubles.
 const VECTORS: u128 = (12 + 20 * 3) * 16;
 /// Bytes of an entry of the stiffness while the system is built: value, row and column, its place in the matrix, and
@@ -67,7 +71,8 @@ impl Case {
         let levels = u128::from((2 * occupied).max(2).ilog2());
         let direct = self.solver.linear.factor.is_some();
         let factor = if direct { 2 * occupied * levels * LEVEL } else { entries * 12 };
-        let bytes = u128::from(self.points()) * POINT + nodes * (stencil + VECTORS) + entries * ENTRY + factor;
+        let lowered = if self.stabilisation == Stabilisation::ConsistentFBar { LOWERED } else { 0 };
+        let bytes = u128::from(self.points()) * (POINT + lowered) + nodes * (stencil + VECTORS) + entries * ENTRY + factor;
         let repeated = if direct && self.solver.reproducible { factor + entries * REPEATED } else { 0 };
         let bounded = |number: u128| u64::try_from(number).unwrap_or(u64::MAX);
         Estimate {

@@ -15,6 +15,7 @@ use crate::plot::FieldName;
 
 mod check;
 mod course;
+mod expand;
 mod figure;
 mod kink;
 mod matrix;

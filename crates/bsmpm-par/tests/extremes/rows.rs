@@ -3,11 +3,12 @@
 use crate::table::Limit::{AtMost, Reported, Same, Within};
 use crate::table::{Row, row};
 use crate::{geometry, incompressible, long, materials, points, steps, units, weak};
-use bsmpm::stabilisation::Stabilisation::{FBar, ModifiedFBar, None as Plain};
+use bsmpm::stabilisation::Stabilisation::{ConsistentFBar, FBar, ModifiedFBar, None as Plain};
 
 /// Bearing capacity factors between which a footing's p/c must lie: Prandtl's and Meyerhof's.
 const BEARING: crate::table::Limit = Within(5.14, 8.28);
 const MODIFIED: &str = "modified-f-bar";
+const CONSISTENT: &str = "consistent-f-bar";
 
 const EDGE: &str = "at a free edge nodes have next to no stiffness; the background, which dynamics has not, mends it";
 const GRIP: &str = "a pulled strip lets go where points cross into the empty cell before it: its force goes to nodes that hold nothing";
@@ -51,6 +52,7 @@ fn confined() -> Vec<Row> {
         row("N01", "nu = .499, the same, f-bar", AtMost(5e-4), || incompressible::confined(0.499, FBar)).or_refused().fails(BEYOND),
         row("N01", "nu = .4999, the same, f-bar", AtMost(5e-4), || incompressible::confined(0.4999, FBar)).or_refused(),
         row("N01", "nu = .4999, the same, modified-f-bar", AtMost(5e-4), || incompressible::confined(0.4999, ModifiedFBar)).or_refused(),
+        row("N01", "nu = .4999, the same, consistent-f-bar", AtMost(5e-4), || incompressible::confined(0.4999, ConsistentFBar)).or_refused(),
         row("N01", "nu = .49999, the same, f-bar", AtMost(5e-4), || incompressible::confined(0.49999, FBar)).or_refused(),
         row("N01", "nu = .4999, cantilever, f-bar: deflection / that with .495 and the same E', - 1", AtMost(0.02), || incompressible::bending(0.4999, "f-bar")),
     ]
@@ -64,11 +66,14 @@ fn footings() -> Vec<Row> {
         row("N01", "nu = .49, the same", BEARING, || incompressible::footing(0.49, MODIFIED)),
         row("N01", "nu = .499, the same", BEARING, || incompressible::footing(0.499, MODIFIED)),
         row("N01", "nu = .4999, the same", BEARING, || incompressible::footing(0.4999, MODIFIED)).or_refused(),
+        row("N01", "nu = .3, the same, consistent-f-bar", BEARING, || incompressible::footing(0.3, CONSISTENT)),
+        row("N01", "nu = .4999, the same, consistent-f-bar", BEARING, || incompressible::footing(0.4999, CONSISTENT)).or_refused(),
         row("N01", "nu = .4999, the same, f-bar", BEARING, || incompressible::footing(0.4999, "f-bar")).or_refused().full(),
         row("N01", "nu = .49999, the same, modified-f-bar", BEARING, || incompressible::footing(0.49999, MODIFIED)).or_refused().full(),
         row("N01", "nu = .49999, the same, f-bar", BEARING, || incompressible::footing(0.49999, "f-bar")).or_refused().full(),
         row("N01", "nu = .4999999, the same, modified-f-bar", BEARING, || incompressible::footing(0.499_999_9, MODIFIED)).or_refused().full(),
         row("N01", "nu = .499, footing, modified-f-bar: noise of p about planes / mean |p|", AtMost(0.02), || incompressible::checkerboard(0.499, MODIFIED)).fails(NOISE_P),
+        row("N01", "nu = .499, footing, consistent-f-bar: noise of p about planes / mean |p|", AtMost(0.02), || incompressible::checkerboard(0.499, CONSISTENT)),
         row("N01", "nu = .499, footing, modified-f-bar: iterations / those with .3", Reported, || incompressible::iterations(0.499, MODIFIED)),
         row("N01", "nu = .49999: a warning", Reported, || incompressible::warned(0.49999)).or_refused(),
     ]
@@ -86,6 +91,7 @@ fn cohesionless() -> Vec<Row> {
         row("N02", "c = 0, nu = .4999, first 20 steps of the collapse, none: u, change with dt / 2", AtMost(0.05), || weak::beginning(0.4999, 21.9, "none")).or_refused().full(),
         row("N02", "c = 0, nu = .4999, f-bar: the same", AtMost(0.05), || weak::beginning(0.4999, 21.9, "f-bar")).or_refused(),
         row("N02", "c = 0, nu = .4999, modified-f-bar: the same", AtMost(0.05), || weak::beginning(0.4999, 21.9, MODIFIED)).or_refused(),
+        row("N02", "c = 0, nu = .4999, consistent-f-bar: the same", AtMost(0.05), || weak::beginning(0.4999, 21.9, CONSISTENT)).or_refused(),
         row("N02", "c = 0, phi = 45, first 20 steps of the collapse: u, change with dt / 2", AtMost(0.05), || weak::beginning(0.3, 45.0, MODIFIED)),
         row("N02", "c = 0, phi = 60, the same", AtMost(0.05), || weak::beginning(0.3, 60.0, MODIFIED)),
         row("N02", "c = 0, phi = 89.9, the same", AtMost(0.05), || weak::beginning(0.3, 89.9, MODIFIED)).or_refused().fails(LATE),
@@ -201,6 +207,7 @@ fn stiffness() -> Vec<Row> {
 fn other_units() -> Vec<Row> {
     vec![
         row("N13", "units x 2^n, collapse, modified-f-bar: numbers that differ", Same, || units::collapse(MODIFIED)),
+        row("N13", "units x 2^n, collapse, consistent-f-bar: the same", Same, || units::collapse(CONSISTENT)),
         row("N13", "units x 2^n, collapse, none: the same", Same, || units::collapse("none")),
         row("N13", "units x 2^n, footing, modified-f-bar: the same", Same, || units::footing(MODIFIED)),
         row("N13", "units x 2^n, footing, cg with jacobi: the same", Same, units::iterative),
@@ -263,11 +270,14 @@ fn step_counts() -> Vec<Row> {
         row("N19", "1e4 steps at rest, none: creep / elastic settlement", AtMost(0.01), || long::held("none")).full(),
         row("N19", "1e4 steps at rest, f-bar: the same", AtMost(0.01), || long::held("f-bar")).full(),
         row("N19", "1e4 steps at rest, modified-f-bar: the same", AtMost(0.01), || long::held(MODIFIED)).full().fails(DIFFUSION),
+        row("N19", "1e4 steps at rest, consistent-f-bar: the same", AtMost(0.01), || long::held(CONSISTENT)).full(),
         row("N20", "footing in 8, 16, 32, 64 steps, none: change by a doubling / the one before", AtMost(0.5), || long::step_count("none")).or_refused().full().fails(SLOW),
         row("N20", "the same, f-bar", AtMost(0.5), || long::step_count("f-bar")).or_refused().full().fails(SLOW),
         row("N20", "the same, modified-f-bar", AtMost(0.5), || long::step_count(MODIFIED)).or_refused().full(),
+        row("N20", "the same, consistent-f-bar", AtMost(0.5), || long::step_count(CONSISTENT)).or_refused().full(),
         row("N21", "footing to z = 2 B, none: noise of p about planes / c", Reported, || long::deep("none")).or_refused().full(),
         row("N21", "the same, f-bar", Reported, || long::deep("f-bar")).or_refused().full(),
         row("N21", "the same, modified-f-bar", Reported, || long::deep(MODIFIED)).or_refused().full(),
+        row("N21", "the same, consistent-f-bar", Reported, || long::deep(CONSISTENT)).or_refused().full(),
     ]
 }

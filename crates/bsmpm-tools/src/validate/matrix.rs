@@ -6,6 +6,7 @@ use std::path::Path;
 
 use serde::Deserialize;
 
+use super::expand::expand;
 use super::table::number;
 use crate::Error;
 
@@ -180,6 +181,8 @@ pub(super) struct Figure {
     /// runs of which each gives its last row, by the name of their curve
     #[serde(default)]
     pub curves: BTreeMap<String, Vec<String>>,
+    /// the same for curves whose runs are named alike
+    pub alike: Option<Alike>,
     /// x of the runs of every curve
     #[serde(default)]
     pub x_values: Vec<f64>,
@@ -187,6 +190,15 @@ pub(super) struct Figure {
     pub lines: Vec<(f64, String)>,
     /// relative to the matrix
     pub reference: Option<String>,
+}
+
+/// Curves with a run for each of the figure's `x_values`.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Alike {
+    pub curves: Vec<String>,
+    /// name of a run, with {curve} and {x} in it
+    pub run: String,
 }
 
 /// Pictures of the body of a run.
@@ -212,9 +224,24 @@ impl Matrix {
     pub fn read(path: &Path) -> Result<Self, Error> {
         let text = fs::read_to_string(path).map_err(|source| Error::NoReference { path: path.to_owned(), source })?;
         let bad = |reason: String| Error::BadReference { path: path.to_owned(), reason };
-        let matrix: Self = toml::from_str(&text).map_err(|error| bad(error.to_string()))?;
+        let mut written: toml::Table = toml::from_str(&text).map_err(|error| bad(error.to_string()))?;
+        expand(&mut written).map_err(bad)?;
+        let mut matrix: Self = written.try_into().map_err(|error: toml::de::Error| bad(error.to_string()))?;
+        matrix.study.iter_mut().flat_map(|study| &mut study.figure).for_each(Figure::name_runs);
         matrix.check().map_err(bad)?;
         Ok(matrix)
+    }
+}
+
+impl Figure {
+    /// Names the runs of curves that are named alike.
+    fn name_runs(&mut self) {
+        let Some(alike) = self.alike.take() else { return };
+        for curve in alike.curves {
+            let named = |x: &f64| alike.run.replace("{curve}", &curve).replace("{x}", &format!("{x:?}"));
+            let runs = self.x_values.iter().map(named).collect();
+            self.curves.insert(curve, runs);
+        }
     }
 }
 
