@@ -22,6 +22,10 @@ pub enum Method {
 impl Method {
     const ALL: [Self; 3] = [Self::Multisecant, Self::Broyden, Self::Newton];
 
+    fn of(word: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|method| method.word() == word)
+    }
+
     /// As the file writes it.
     pub fn word(self) -> &'static str {
         match self {
@@ -32,7 +36,8 @@ impl Method {
     }
 }
 
-/// One row: an iteration from the guess that led to convergence.
+/// One row: a state on the way from the guess that led to convergence, and the direction found there. The last state has no
+/// direction where its forces are balanced to round-off.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Iterate {
     /// The step's number.
@@ -41,9 +46,9 @@ pub struct Iterate {
     pub time: f64,
     /// The number of the iteration within the step; the first one, 1, is at the guess.
     pub iteration: u64,
-    /// What gave its direction.
-    pub method: Method,
-    /// The energy measure, which needs the direction; an empty cell where it is not finite.
+    /// What gave its direction; an empty cell without one.
+    pub method: Option<Method>,
+    /// The energy measure; an empty cell without a direction.
     pub energy: f64,
     /// The force measure.
     pub force: f64,
@@ -63,7 +68,7 @@ impl Iterate {
             Cell::Int(self.step),
             Cell::Float(self.time),
             Cell::Int(self.iteration),
-            Cell::Word(self.method.word()),
+            self.method.map_or(Cell::Empty, |method| Cell::Word(method.word())),
             measure(self.energy),
             measure(self.force),
         ]
@@ -77,7 +82,7 @@ impl Iterate {
             step: step.parse().ok()?,
             time: time.parse().ok()?,
             iteration: iteration.parse().ok()?,
-            method: Method::ALL.into_iter().find(|known| known.word() == method)?,
+            method: if method.is_empty() { None } else { Some(Method::of(method)?) },
             energy: measure(energy)?,
             force: measure(force)?,
         })

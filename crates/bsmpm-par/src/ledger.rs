@@ -131,14 +131,22 @@ impl Ledger {
     /// The rows of `residuals.csv`, if there is one.
     fn residuals(&mut self, step: u64, accepted: &Accepted) -> Result<(), Error> {
         let Some(table) = &mut self.residuals else { return Ok(()) };
-        let method = |method| match method {
-            Method::QuasiNewton(QuasiNewton::Multisecant) => residuals::Method::Multisecant,
-            Method::QuasiNewton(QuasiNewton::Broyden) => residuals::Method::Broyden,
-            Method::Newton => residuals::Method::Newton,
+        let report = &accepted.report;
+        let row = |iteration, method: Option<Method>, energy, force| {
+            let method = method.map(|method| match method {
+                Method::QuasiNewton(QuasiNewton::Multisecant) => residuals::Method::Multisecant,
+                Method::QuasiNewton(QuasiNewton::Broyden) => residuals::Method::Broyden,
+                Method::Newton => residuals::Method::Newton,
+            });
+            Iterate { step, time: accepted.t, iteration, method, energy, force }
         };
-        for (number, &Measures { energy, force, method: of }) in (1..).zip(&accepted.report.history) {
-            let row = Iterate { step, time: accepted.t, iteration: number, method: method(of), energy, force };
-            table.row(&row.cells())?;
+        let mut iteration = 0;
+        for &Measures { energy, force, method } in &report.history {
+            iteration += 1;
+            table.row(&row(iteration, Some(method), energy, force).cells())?;
+        }
+        if report.history.last().is_none_or(|last| last.force != report.force) {
+            table.row(&row(iteration + 1, None, f64::NAN, report.force).cells())?;
         }
         Ok(())
     }

@@ -4,7 +4,7 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use bsmpm_io::residuals::{self, Iterate, RESIDUALS};
+use bsmpm_io::residuals::{self, Iterate, Method, RESIDUALS};
 
 use super::{Arguments, Made, runs};
 use crate::Error;
@@ -21,8 +21,10 @@ const BETWEEN: f64 = 40.0;
 const LINE: f64 = 3.5;
 /// What stands right of a tolerance.
 const TOLERANCE: &str = "tolerance";
-/// How far the axes go beyond the first and last iteration.
-const BESIDE: f64 = 0.3;
+/// How far the axes go beyond the first and last iteration, as a share of their number: a disc's radius and a little more.
+const BESIDE: f64 = 0.02;
+/// What is left of a force of which an order is told.
+const LEAST: f64 = 0.9;
 /// The fewest iterations that are shown.
 const FEWEST: f64 = 3.0;
 
@@ -102,7 +104,8 @@ fn draw(courses: &[Course], (above, below): (&str, &str), path: &Path) -> Result
     let room = SHEET.0 - 80.0;
     let (top, bottom) = (ABOVE + legend::height(&legend, room) + 20.0, SHEET.1 - BELOW);
     let half = (bottom - top - BETWEEN) / 2.0;
-    let most = courses.iter().map(|course| course.iterates.len()).max().unwrap_or(0) as f64;
+    let most = (courses.iter().map(|course| course.iterates.len()).max().unwrap_or(0) as f64).max(FEWEST);
+    let x = (1.0 - BESIDE * most, most + BESIDE * most);
     let mut canvas = Canvas::new(SHEET.0, SHEET.1);
     title(&mut canvas, SHEET.0, above, below);
     legend::draw(&mut canvas, &legend, 40.0, ABOVE, room);
@@ -113,7 +116,7 @@ fn draw(courses: &[Course], (above, below): (&str, &str), path: &Path) -> Result
             top,
             right: SHEET.0 - width(TOLERANCE, NUMBER) - 40.0,
             bottom: top + half,
-            x: (1.0 - BESIDE, most.max(FEWEST) + BESIDE),
+            x,
             y: decades(
                 courses
                     .iter()
@@ -155,32 +158,32 @@ fn text(courses: &[Course], below: &str) -> String {
         for (index, iterate) in iterates.iter().enumerate() {
             let Iterate { iteration, energy, force, .. } = iterate;
             let order = order(&iterates[..=index]).map_or_else(|| "-".to_owned(), |order| format!("{order:.2}"));
-            let method = iterate.method.word();
-            let _ = writeln!(text, "{iteration:>9}  {method:>11}  {energy:>9.2e}  {force:>9.2e}  {order:>5}");
+            let method = iterate.method.map_or("-", Method::word);
+            let energy = if energy.is_nan() { "-".to_owned() } else { format!("{energy:.2e}") };
+            let _ = writeln!(text, "{iteration:>9}  {method:>11}  {energy:>9}  {force:>9.2e}  {order:>5}");
         }
     }
     text
 }
 
 /// The order at which the force measure f fell last: ln(f_k / f_k-1) / ln(f_k-1 / f_k-2), 2 for quadratic convergence. None
-/// where it has not fallen twice.
+/// where it has not fallen by [`LEAST`] twice: what is left then is noise.
 fn order(iterates: &[Iterate]) -> Option<f64> {
     let [.., before, last, now] = iterates else { return None };
     let (first, second) = ((last.force / before.force).ln(), (now.force / last.force).ln());
-    (first < 0.0 && second < 0.0 && second.is_finite()).then_some(second / first)
+    (first.max(second) < LEAST.ln() && second.is_finite()).then_some(second / first)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use bsmpm_io::residuals::Method;
 
     fn falling(forces: &[f64]) -> Vec<Iterate> {
         let row = |(&force, iteration)| Iterate {
             step: 1,
             time: 1.0,
             iteration,
-            method: Method::Newton,
+            method: Some(Method::Newton),
             energy: force * force,
             force,
         };
@@ -192,7 +195,9 @@ mod tests {
         let order = |forces: &[f64]| order(&falling(forces));
         assert!((order(&[1e-1, 1e-2, 1e-4]).unwrap() - 2.0).abs() < 1e-12);
         assert!((order(&[7.0, 1e-1, 1e-2, 1e-3]).unwrap() - 1.0).abs() < 1e-12);
-        for none in [&[1e-1, 1e-2][..], &[1e-2, 1e-1, 1e-3], &[1e-1, 1e-2, 1e-1], &[1e-1, 1e-2, 0.0]] {
+        for none in
+            [&[1e-1, 1e-2][..], &[1e-2, 1e-1, 1e-3], &[1e-1, 1e-2, 1e-1], &[1e-1, 0.099, 1e-3], &[1e-1, 1e-2, 0.0]]
+        {
             assert_eq!(order(none), None, "{none:?}");
         }
     }
