@@ -102,44 +102,43 @@ fn draw(courses: &[Course], (above, below): (&str, &str), path: &Path) -> Result
     let entries: Vec<Entry> = courses.iter().enumerate().map(entry).collect();
     let legend: Vec<&Entry> = entries.iter().collect();
     let room = SHEET.0 - 80.0;
-    let (top, bottom) = (ABOVE + legend::height(&legend, room) + 20.0, SHEET.1 - BELOW);
-    let half = (bottom - top - BETWEEN) / 2.0;
-    let most = (courses.iter().map(|course| course.iterates.len()).max().unwrap_or(0) as f64).max(FEWEST);
-    let x = (1.0 - BESIDE * most, most + BESIDE * most);
     let mut canvas = Canvas::new(SHEET.0, SHEET.1);
     title(&mut canvas, SHEET.0, above, below);
     legend::draw(&mut canvas, &legend, 40.0, ABOVE, room);
-    for (index, measure) in MEASURES.iter().enumerate() {
-        let (levels, top) = (tolerances(courses, index), top + index as f64 * (half + BETWEEN));
-        let axes = Axes {
-            left: LEFT,
-            top,
-            right: SHEET.0 - width(TOLERANCE, NUMBER) - 40.0,
-            bottom: top + half,
-            x,
-            y: decades(
-                courses
-                    .iter()
-                    .flat_map(|course| course.places(measure))
-                    .map(|place| place.1)
-                    .chain(levels.iter().copied()),
-            ),
-            scales: [Scale::Whole, Scale::Logarithmic],
-        };
-        axes.rules(&mut canvas);
-        for &level in &levels {
-            let at = axes.level(&mut canvas, level);
-            canvas.text(TOLERANCE, (axes.right + 14.0, at), NUMBER, Align::Left, INK);
-        }
-        for (course, entry) in courses.iter().zip(&entries) {
-            for run in course.places(measure).split(|place| place.1.is_nan()) {
-                let places: Vec<_> = run.iter().map(|&place| axes.place(place)).collect();
-                entry.mark.draw(&mut canvas, &places, LINE, entry.colour);
-            }
-        }
-        axes.draw(&mut canvas, (index == 1).then_some(("Iteration", "-")), (measure.name, "-"));
-    }
+    let (top, bottom) = (ABOVE + legend::height(&legend, room) + 20.0, SHEET.1 - BELOW);
+    let half = (bottom - top - BETWEEN) / 2.0;
+    draw_measure(&mut canvas, (courses, &entries), 0, (top, top + half));
+    draw_measure(&mut canvas, (courses, &entries), 1, (bottom - half, bottom));
     canvas.save(path)
+}
+
+/// The axes of one measure, between two heights of the sheet; the last ones bear the numbers of the iterations.
+fn draw_measure(canvas: &mut Canvas, (courses, entries): (&[Course], &[Entry]), index: usize, upright: (f64, f64)) {
+    let (measure, levels) = (&MEASURES[index], tolerances(courses, index));
+    let places: Vec<Vec<(f64, f64)>> = courses.iter().map(|course| course.places(measure)).collect();
+    let most = (places.iter().map(Vec::len).max().unwrap_or(0) as f64).max(FEWEST);
+    let axes = Axes {
+        left: LEFT,
+        top: upright.0,
+        right: SHEET.0 - width(TOLERANCE, NUMBER) - 40.0,
+        bottom: upright.1,
+        x: (1.0 - BESIDE * most, most + BESIDE * most),
+        y: decades(places.iter().flatten().map(|place| place.1).chain(levels.iter().copied())),
+        scales: [Scale::Whole, Scale::Logarithmic],
+    };
+    axes.rules(canvas);
+    for level in levels {
+        let at = axes.level(canvas, level);
+        canvas.text(TOLERANCE, (axes.right + 14.0, at), NUMBER, Align::Left, INK);
+    }
+    for (places, entry) in places.iter().zip(entries) {
+        for run in places.split(|place| place.1.is_nan()) {
+            let places: Vec<_> = run.iter().map(|&place| axes.place(place)).collect();
+            entry.mark.draw(canvas, &places, LINE, entry.colour);
+        }
+    }
+    let across = (index + 1 == MEASURES.len()).then_some(("Iteration", "-"));
+    axes.draw(canvas, across, (measure.name, "-"));
 }
 
 /// Whole powers of ten about positive numbers, with room for discs at the ends.
