@@ -7,12 +7,13 @@ use std::path::{Component, Path, PathBuf};
 use crate::Error;
 use crate::frames::COLLECTION;
 use crate::manifest::{MANIFEST, Manifest};
+use crate::residuals::RESIDUALS;
 use crate::steps::STEPS;
 
 /// The file of the histories.
 pub const HISTORY: &str = "history.csv";
 /// Files of a run that stand in the directory itself.
-const FILES: [&str; 5] = [MANIFEST, HISTORY, STEPS, COLLECTION, "frames.vtkhdf"];
+const FILES: [&str; 6] = [MANIFEST, HISTORY, STEPS, RESIDUALS, COLLECTION, "frames.vtkhdf"];
 /// Folders of a run.
 const FOLDERS: [&str; 2] = ["frames", "checkpoint"];
 /// How the names of all files end that a run writes; others are never deleted, whoever names them.

@@ -1,5 +1,5 @@
 //! What a run leaves in its output directory, and how it is read back: frames for ParaView ([`frame`], [`vtu`],
-//! [`frames`]), one row a step ([`table`], [`steps`]), the manifest `run.json` ([`manifest`]), `failure.json` ([`failure`]) and the
+//! [`frames`]), one row a step ([`table`], [`steps`]), one an iteration ([`residuals`]), the manifest `run.json` ([`manifest`]), `failure.json` ([`failure`]) and the
 //! directory itself ([`directory`]). Checkpoints are not here yet.
 //!
 //! Two promises hold for everything that is written: no number that is not finite ever reaches a file, and a file that is
@@ -13,6 +13,7 @@ pub mod failure;
 pub mod frame;
 pub mod frames;
 pub mod manifest;
+pub mod residuals;
 pub mod steps;
 pub mod table;
 pub mod utc;

@@ -31,6 +31,10 @@ pub enum Cell {
     Int(u64),
     /// A quantity, in the unit of its column.
     Float(f64),
+    /// One of the words that its column knows.
+    Word(&'static str),
+    /// Nothing.
+    Empty,
 }
 
 /// A table that grows by a row at a time.
@@ -79,6 +83,8 @@ impl Table {
     fn text(&self, column: &Column, cell: Cell, first: Cell) -> Result<String, Error> {
         match cell {
             Cell::Int(value) => Ok(value.to_string()),
+            Cell::Word(word) => Ok(word.to_owned()),
+            Cell::Empty => Ok(String::new()),
             Cell::Float(value) if value.is_finite() => Ok(format!("{value:?}")),
             Cell::Float(value) => {
                 let of_step = if let Cell::Int(step) = first { format!(" in step {step}") } else { String::new() };
@@ -132,9 +138,14 @@ impl Columns {
 /// # Errors
 /// [`Error::File`] when the system refuses, [`Error::Format`] with the line for anything but finite numbers.
 pub fn read(path: &Path) -> Result<Columns, Error> {
-    let text = fs::read_to_string(path).map_err(Error::file("read", path))?;
-    let whole = text.rfind('\n').map_or("", |end| &text[..end]);
-    parse(whole).map_err(|reason| Error::format(path, reason))
+    parse(&whole_lines(path)?).map_err(|reason| Error::format(path, reason))
+}
+
+/// The text of a file up to its last line break.
+pub(crate) fn whole_lines(path: &Path) -> Result<String, Error> {
+    let mut text = fs::read_to_string(path).map_err(Error::file("read", path))?;
+    text.truncate(text.rfind('\n').unwrap_or(0));
+    Ok(text)
 }
 
 /// Reads a table from text that is whole, as [`read`] does.

@@ -5,13 +5,17 @@ use crate::machine;
 use crate::setup;
 use crate::surfaces;
 use bsmpm::control::Accepted;
+use bsmpm::error::Measures;
 use bsmpm::step::Counts;
+use bsmpm::step::equilibrium::Method;
+use bsmpm::step::quasi_newton::QuasiNewton;
 use bsmpm_io::Error;
 use bsmpm_io::directory::{Existing, HISTORY, OutputDirectory};
 use bsmpm_io::failure::{FAILURE, FailureReport};
 use bsmpm_io::frame::Frame;
 use bsmpm_io::frames::{COLLECTION, Frames};
 use bsmpm_io::manifest::{self, Check, Extent, Manifest, Status};
+use bsmpm_io::residuals::{self, Iterate, RESIDUALS};
 use bsmpm_io::steps::{STEPS, Step};
 use bsmpm_io::table::{Cell, Column, Table};
 use bsmpm_scene::Case;
@@ -24,6 +28,7 @@ pub struct Ledger {
     columns: Vec<Column>,
     history: Table,
     steps: Table,
+    residuals: Option<Table>, // if the case asks for it
     frames: Frames,
     end: f64,
     dt: f64,
@@ -35,6 +40,9 @@ impl Ledger {
         let existing = if arguments.force { Existing::Delete } else { Existing::Refuse };
         let mut manifest = first_manifest(arguments, case, ranks);
         [HISTORY, STEPS, COLLECTION].iter().for_each(|file| manifest.name_output(file));
+        if case.output.residuals {
+            manifest.name_output(RESIDUALS);
+        }
         let directory = OutputDirectory::claim(&arguments.directory(), existing, &manifest)?;
         let time = match case.analysis.regime {
             Regime::Dynamic => "s",
@@ -43,7 +51,9 @@ impl Ledger {
         let path = directory.path().to_owned();
         let mut headings = vec![Column::new("step", "-"), Column::new("time", time)];
         headings.extend(columns.iter().cloned());
+        let residuals = case.output.residuals.then(|| Table::create(&path.join(RESIDUALS), &Iterate::columns(time)));
         Ok(Self {
+            residuals: residuals.transpose()?,
             history: Table::create(&path.join(HISTORY), &headings)?,
             steps: Table::create(&path.join(STEPS), &Step::columns(time))?,
             frames: Frames::create(&path)?,
@@ -78,7 +88,7 @@ impl Ledger {
         self.history.row(&cells)
     }
 
-    /// A row of `steps.csv`, and its share of the totals.
+    /// A row of `steps.csv`, its share of the totals, and the rows of its iterations where they are wanted.
     pub fn step(&mut self, number: u64, accepted: &Accepted, wall: f64) -> Result<(), Error> {
         let report = &accepted.report;
         self.manifest.summary.steps = number;
@@ -114,7 +124,31 @@ impl Ledger {
             products: accepted.counts.products as u64,
             factorisations: accepted.counts.factorisations as u64,
         };
-        self.steps.row(&row.cells())
+        self.steps.row(&row.cells())?;
+        self.residuals(number, accepted)
+    }
+
+    /// The rows of `residuals.csv`, if there is one.
+    fn residuals(&mut self, step: u64, accepted: &Accepted) -> Result<(), Error> {
+        let Some(table) = &mut self.residuals else { return Ok(()) };
+        let report = &accepted.report;
+        let row = |iteration, method: Option<Method>, energy, force| {
+            let method = method.map(|method| match method {
+                Method::QuasiNewton(QuasiNewton::Multisecant) => residuals::Method::Multisecant,
+                Method::QuasiNewton(QuasiNewton::Broyden) => residuals::Method::Broyden,
+                Method::Newton => residuals::Method::Newton,
+            });
+            Iterate { step, time: accepted.t, iteration, method, energy, force }
+        };
+        let mut iteration = 0;
+        for &Measures { energy, force, method } in &report.history {
+            iteration += 1;
+            table.row(&row(iteration, Some(method), energy, force).cells())?;
+        }
+        if report.history.last().is_none_or(|last| last.force != report.force) {
+            table.row(&row(iteration + 1, None, f64::NAN, report.force).cells())?;
+        }
+        Ok(())
     }
 
     /// Adds the work of attempts, of which so many led to a cut, to the totals.

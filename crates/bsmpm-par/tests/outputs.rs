@@ -3,6 +3,7 @@
 mod support;
 
 use bsmpm_io::manifest::{Manifest, Status};
+use bsmpm_io::residuals::{self, Method};
 use bsmpm_io::{frames, table};
 use std::path::Path;
 use support::cases::{COLUMN, SLIDING_BLOCK, changed};
@@ -74,6 +75,35 @@ fn steps_tells_how_hard_each_step_was() {
     assert_eq!(summary.linear_iterations as f64, steps.get("linear_iterations").unwrap().iter().sum::<f64>());
     assert!(summary.residual_evaluations >= summary.iterations && summary.cpu_seconds > 0.0);
     assert!(summary.peak_memory.len() == 2 && summary.peak_memory.iter().all(|bytes| *bytes > 1_000_000));
+}
+
+#[test]
+fn residuals_are_kept_on_request_until_both_criteria_hold() {
+    for (nonlinear, method) in [("newton", Method::Newton), ("auto", Method::Multisecant), ("broyden", Method::Broyden)]
+    {
+        let scratch = Scratch::with_case(SLIDING_BLOCK);
+        let nonlinear = format!("solver.nonlinear={nonlinear}");
+        scratch.mpirun(2, &["case.toml", "-q", "--set", "output.residuals=true", "--set", &nonlinear]).expect(0);
+        let directory = scratch.path("case.out");
+        assert!(manifest(&directory).outputs.iter().any(|output| output.path == "residuals.csv"));
+        let rows = residuals::read(&directory.join("residuals.csv")).unwrap();
+        let steps = steps(&directory);
+        for (index, step) in steps.get("step").unwrap().iter().enumerate() {
+            let of_step: Vec<_> = rows.iter().filter(|row| row.step as f64 == *step).collect();
+            assert!(of_step.iter().zip(1..).all(|(row, number)| row.iteration == number));
+            assert!(of_step.iter().all(|row| row.time == steps.get("time").unwrap()[index]));
+            let directions: Vec<_> = of_step.iter().filter_map(|row| row.method).collect();
+            assert_eq!(directions.len() as f64, steps.get("iterations").unwrap()[index]);
+            assert!(directions.iter().all(|found| *found == method));
+            let last = of_step.last().unwrap();
+            assert_eq!(last.force, steps.get("residual").unwrap()[index]);
+            assert!(last.force < 1e-4 && (last.energy < 1e-8 || last.method.is_none()), "{last:?}");
+        }
+        assert_eq!(rows.last().unwrap().step, 50);
+    }
+    let scratch = Scratch::with_case(SLIDING_BLOCK);
+    scratch.mpirun(1, &["case.toml", "-q", "--max-steps", "1"]).expect(75);
+    assert!(!scratch.path("case.out/residuals.csv").exists());
 }
 
 #[test]

@@ -236,7 +236,7 @@ pub struct Linear {
     pub factor: Option<&'static str>,
 }
 
-/// Frames for ParaView; without `every` and `times` there are none.
+/// What is written besides tables with a row a step; without `every` and `times` there are no frames.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Output {
     /// Regular frames, if any.
@@ -245,6 +245,8 @@ pub struct Output {
     pub times: Vec<f64>,
     /// Format of the frames.
     pub format: Format,
+    /// Whether the measures of every iteration are kept.
+    pub residuals: bool,
 }
 
 /// Distance of regular frames.

@@ -1,5 +1,5 @@
 //! `bsmpm compare`: one quantity of several runs in one picture, and as a table. What the runs give is in `runs`, points
-//! to compare with in `reference`, the table in `table`.
+//! to compare with in `reference`, the table in `table`; how a step of theirs converged, in `residuals`.
 
 use std::path::{Path, PathBuf};
 
@@ -11,11 +11,16 @@ use crate::picture::colour::{self, INK};
 use crate::picture::legend::{Entry, Mark};
 
 mod reference;
+mod residuals;
 mod runs;
 mod table;
 
 pub use crate::picture::chart::Level;
 use runs::Runs;
+
+/// Options that have no meaning for residuals.
+const OF_QUANTITIES: [&str; 11] =
+    ["x", "y", "x_scale", "y_scale", "x_label", "y_label", "lines", "references", "last", "x_values", "at"];
 
 /// What to compare.
 #[derive(Clone, Debug, Args)]
@@ -27,8 +32,12 @@ pub struct Arguments {
     #[arg(long, value_name = "COLUMN", default_value = "time")]
     pub x: String,
     /// The column of history.csv along the vertical axis, or the quantity that it records
-    #[arg(long, value_name = "COLUMN")]
-    pub y: String,
+    #[arg(long, value_name = "COLUMN", required_unless_present = "residuals")]
+    pub y: Option<String>,
+    /// Instead of a quantity: both measures of every iteration of this step, on logarithmic axes; from residuals.csv, which
+    /// `[output] residuals = true` writes
+    #[arg(long, value_name = "STEP", conflicts_with_all = OF_QUANTITIES)]
+    pub residuals: Option<u64>,
     /// Multiplies the column along the horizontal axis
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = number, allow_hyphen_values = true)]
     pub x_scale: f64,
@@ -85,6 +94,17 @@ pub struct Arguments {
     pub at: Vec<f64>,
 }
 
+impl Arguments {
+    /// Where the picture goes, if one is wanted.
+    fn picture(&self) -> Option<PathBuf> {
+        match (&self.output, self.table) {
+            (Some(path), _) => Some(path.clone()),
+            (None, false) => Some(PathBuf::from("compare.png")),
+            (None, true) => None,
+        }
+    }
+}
+
 fn number(text: &str) -> Result<f64, String> {
     text.trim().parse().ok().filter(|number: &f64| number.is_finite()).ok_or_else(|| "a finite number".to_owned())
 }
@@ -109,14 +129,14 @@ pub struct Made {
 ///
 /// # Errors
 /// [`Error::NoRun`], [`Error::NoRow`] and [`Error::NoColumn`] for what a directory does not hold, [`Error::Usage`] for
-/// options that do not fit the runs or each other, the errors of references and files.
+/// options that do not fit the runs or each other,
+/// [`Error::NoResiduals`] for a step that was not kept, the errors of references and files.
 pub fn run(arguments: &Arguments) -> Result<Made, Error> {
+    if let Some(step) = arguments.residuals {
+        return residuals::run(arguments, step);
+    }
     let runs = Runs::read(arguments)?;
-    let picture = match (&arguments.output, arguments.table) {
-        (Some(path), _) => Some(path.clone()),
-        (None, false) => Some(PathBuf::from("compare.png")),
-        (None, true) => None,
-    };
+    let picture = arguments.picture();
     if let Some(path) = &picture {
         draw(arguments, &runs, path)?;
     }

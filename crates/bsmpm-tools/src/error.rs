@@ -35,6 +35,14 @@ pub enum Error {
         /// The columns that there are.
         known: String,
     },
+    /// The iterations of the step that is wanted were not kept.
+    #[error("{} holds {reason}", directory.display())]
+    NoResiduals {
+        /// The directory.
+        directory: PathBuf,
+        /// What is missing.
+        reason: String,
+    },
     /// Options do not fit each other or the runs.
     #[error("{reason}")]
     Usage {
@@ -145,6 +153,7 @@ impl Error {
             | Self::Empty { .. }
             | Self::NoRow { .. }
             | Self::NoColumn { .. }
+            | Self::NoResiduals { .. }
             | Self::NoField { .. }
             | Self::NoReference { .. }
             | Self::NoCase { .. } => 66,

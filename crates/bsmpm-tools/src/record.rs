@@ -165,7 +165,7 @@ fn formula(name: &str) -> String {
 }
 
 /// A file that is not there is none; other trouble with it is an error.
-fn present<T>(read: Result<T, bsmpm_io::Error>) -> Result<Option<T>, Error> {
+pub(crate) fn present<T>(read: Result<T, bsmpm_io::Error>) -> Result<Option<T>, Error> {
     match read {
         Ok(found) => Ok(Some(found)),
         Err(bsmpm_io::Error::File { source, .. })

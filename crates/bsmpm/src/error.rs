@@ -1,6 +1,7 @@
 //! What can go wrong in the physics; every variant names the point, node or number concerned.
 
 use crate::material::MaterialError;
+use crate::step::equilibrium::Method;
 use thiserror::Error;
 
 /// A grid that cannot be built.
@@ -38,6 +39,8 @@ pub struct Measures {
     pub energy: f64,
     /// |f_oob| / largest force
     pub force: f64,
+    /// what gave du
+    pub method: Method,
 }
 
 /// A node whose forces are badly balanced.

@@ -56,7 +56,9 @@ fn of_many_that_claim_at_once_one_succeeds() {
 
 #[test]
 fn any_file_of_a_run_is_enough_to_refuse() {
-    for file in ["run.json", "history.csv", "steps.csv", "frames.pvd", "frames/a.vtu", "checkpoint/a.h5"] {
+    for file in
+        ["run.json", "history.csv", "steps.csv", "residuals.csv", "frames.pvd", "frames/a.vtu", "checkpoint/a.h5"]
+    {
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join(file);
         fs::create_dir_all(path.parent().unwrap()).unwrap();

@@ -3,6 +3,7 @@
 mod directory;
 mod frames;
 mod manifest;
+mod residuals;
 mod table;
 
 use std::path::Path;

@@ -237,12 +237,13 @@ const PACKAGES: Kind = Choice(&["mumps", "petsc", "superlu", "superlu_dist", "ch
 
 static OUTPUT: Table = Table {
     header: "[output]",
-    doc: "Frames for ParaView",
+    doc: "Frames for ParaView, and the residuals of every iteration",
     keys: &[
         key("every", Quantity(In::Time, Range::POSITIVE), Optional, "time between frames, hit exactly"),
         key("every_steps", Count(1, 1_000_000_000), Optional, "accepted steps between frames, instead of every"),
         key("times", List(In::Time, Range::POSITIVE), Optional, "further times of frames, hit exactly"),
         key("format", Choice(&["vtu"], &["vtkhdf"]), Default("\"vtu\""), "format of the frames"),
+        key("residuals", Flag, Default("false"), "whether residuals.csv has a row for every iteration"),
         later("checkpoint", "restart files"),
     ],
     exclusive: &[one_of(&["every", "every_steps"], false)],

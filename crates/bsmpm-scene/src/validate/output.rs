@@ -1,13 +1,13 @@
-//! Frames.
+//! Frames, and whether residuals are kept.
 
 use crate::case::{Every, Format, Output};
 use crate::record::Record;
 use crate::report::Report;
 
-/// The frames that are wanted; none without the table.
+/// What is wanted; nothing without the table.
 pub(super) fn read(root: &Record, end: Option<f64>, report: &mut Report<'_>) -> Option<Output> {
     if !root.gives("output") {
-        return Some(Output { every: None, times: Vec::new(), format: Format::default() });
+        return Some(Output { every: None, times: Vec::new(), format: Format::default(), residuals: false });
     }
     let output = root.record("output")?;
     let every = match (output.gives("every"), output.gives("every_steps")) {
@@ -30,5 +30,5 @@ pub(super) fn read(root: &Record, end: Option<f64>, report: &mut Report<'_>) -> 
     }
     times.sort_by(f64::total_cmp);
     times.dedup();
-    Some(Output { every, times, format: Format::Vtu })
+    Some(Output { every, times, format: Format::Vtu, residuals: output.flag("residuals")? })
 }

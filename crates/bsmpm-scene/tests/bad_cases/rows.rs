@@ -22,6 +22,7 @@ pub const LANGUAGE: &[Row] = &[
     row("title    = \"Every key", "title = \"Every\\nkey", "title", "without control characters"),
     row("geometry = \"plane-strain\"", "geometry = \"plane-stress\"", "geometry", "did you mean `plane-strain`?"),
     row("reproducible     = true", "reproducible = \"yes\"", "solver.reproducible", "expected true or false"),
+    row("residuals = true", "residuals = \"all\"", "output.residuals", "expected true or false"),
     row("reproducible     = true", "reproducible = 1", "solver.reproducible", "found 1"),
     row("max_iterations   = 200", "max_iterations = 200.0", "solver.max_iterations", "whole number from 1 to"),
     row("lower = [0.0, \"0 m\"]", "lower = [0.0]", "grid.lower", "a list of two"),

@@ -24,13 +24,10 @@ pub(super) struct Runs {
 
 impl Runs {
     pub fn read(arguments: &Arguments) -> Result<Self, Error> {
-        let count = arguments.directories.len();
-        fits("--label", arguments.labels.len(), count)?;
-        fits("--x-value", arguments.x_values.len(), count)?;
-        let records: Vec<Record> =
-            arguments.directories.iter().map(|directory| Record::read(directory)).collect::<Result<_, _>>()?;
+        fits("--x-value", arguments.x_values.len(), arguments.directories.len())?;
+        let records = records(arguments)?;
         let columns = |name: &str| records.iter().map(|record| column(record, name)).collect::<Result<Vec<_>, _>>();
-        let up = columns(&arguments.y)?;
+        let up = columns(arguments.y.as_deref().unwrap_or_default())?;
         let y = axis(&records, &up, arguments.y_label.as_deref(), arguments.y_scale)?;
         let labels = labels(arguments, &records);
         let (x, across) = if arguments.x_values.is_empty() {
@@ -74,6 +71,12 @@ impl Runs {
         }
         labels
     }
+}
+
+/// The runs, for each of which there is a name or for none.
+pub(super) fn records(arguments: &Arguments) -> Result<Vec<Record>, Error> {
+    fits("--label", arguments.labels.len(), arguments.directories.len())?;
+    arguments.directories.iter().map(|directory| Record::read(directory)).collect()
 }
 
 /// An option that is given for all runs or not at all.
@@ -128,7 +131,7 @@ fn axis(records: &[Record], columns: &[Recorded], given: Option<&str>, factor: f
 
 /// The names of the runs: as given; else their stabilisation if it tells them apart, or with `--last` groups them; else
 /// their directories.
-fn labels(arguments: &Arguments, records: &[Record]) -> Vec<String> {
+pub(super) fn labels(arguments: &Arguments, records: &[Record]) -> Vec<String> {
     if !arguments.labels.is_empty() {
         return arguments.labels.clone();
     }
@@ -167,7 +170,7 @@ fn note(record: &Record) -> Option<String> {
 }
 
 /// The title of the picture: as given, else that of the cases if they share one.
-fn title(arguments: &Arguments, records: &[Record]) -> String {
+pub(super) fn title(arguments: &Arguments, records: &[Record]) -> String {
     let titles = || records.iter().map(|record| &record.manifest.case.title);
     let shared = titles().next().filter(|first| titles().all(|title| title == *first));
     arguments.title.clone().or(shared.cloned()).unwrap_or_default()

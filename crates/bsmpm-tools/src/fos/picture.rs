@@ -8,7 +8,7 @@ use super::curve::{DOUBLED, FALLEN};
 use super::report::{Report, Row, Verdict};
 use super::subject::Subject;
 use crate::Error;
-use crate::picture::axes::{Axes, BELOW, LEFT, title};
+use crate::picture::axes::{Axes, BELOW, LEFT, LINEAR, title};
 use crate::picture::canvas::Canvas;
 use crate::picture::colour::{self, INK, OUTLINE, Rgb};
 use crate::picture::legend::{self, Entry, Mark};
@@ -141,7 +141,7 @@ impl<'a> Chart<'a> {
         let x = range(places().map(|place| place.0).chain(farthest)).unwrap_or((0.0, 1.0));
         let high = places().map(|place| place.1).fold(DOUBLED * self.elastic(), f64::max);
         let (x, y) = (padded(x.0, x.1, 0.03), (0.0, 1.06 * high));
-        Axes { left: LEFT, top, right: SHEET.0 - RIGHT, bottom: SHEET.1 - BELOW, x, y }
+        Axes { left: LEFT, top, right: SHEET.0 - RIGHT, bottom: SHEET.1 - BELOW, x, y, scales: LINEAR }
     }
 
     /// Both branches, from the left to where they meet, and up to the end of what is seen.

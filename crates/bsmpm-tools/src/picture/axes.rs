@@ -1,8 +1,8 @@
 //! Two axes with ticks and labels about a box of the sheet.
 
 use super::canvas::{Align, Canvas, fitting, width};
-use super::colour::{INK, RULE, Rgb};
-use super::ticks::Ticks;
+use super::colour::{INK, OUTLINE, RULE, Rgb};
+use super::ticks::{Scale, Ticks};
 
 /// Sizes of letters in pixels, for a picture 1600 wide.
 pub(crate) const TITLE: f64 = 34.0;
@@ -13,6 +13,8 @@ pub(crate) const LEFT: f64 = 170.0;
 pub(crate) const BELOW: f64 = 105.0;
 pub(crate) const TICK: f64 = 9.0;
 pub(crate) const THIN: f64 = 1.7;
+/// A dash and the gap after it.
+const DASH: (f64, f64) = (16.0, 10.0);
 
 /// A quantity and its unit.
 pub(crate) type Label<'a> = (&'a str, &'a str);
@@ -27,32 +29,36 @@ pub(crate) struct Axes {
     pub bottom: f64,
     pub x: (f64, f64),
     pub y: (f64, f64),
+    /// Of x and y.
+    pub scales: [Scale; 2],
 }
+
+/// Both axes linear.
+pub(crate) const LINEAR: [Scale; 2] = [Scale::Linear; 2];
 
 impl Axes {
     /// Where a place of the region lies on the sheet.
     pub fn place(&self, (x, y): (f64, f64)) -> (f64, f64) {
-        let across = (x - self.x.0) / (self.x.1 - self.x.0);
-        let up = (y - self.y.0) / (self.y.1 - self.y.0);
+        let (across, up) = (self.scales[0].share(x, self.x), self.scales[1].share(y, self.y));
         (self.left + across * (self.right - self.left), self.bottom - up * (self.bottom - self.top))
     }
 
     fn x_ticks(&self) -> Ticks {
-        Ticks::between(self.x.0, self.x.1, (self.right - self.left) / 150.0)
+        self.scales[0].ticks(self.x, (self.right - self.left) / 150.0)
     }
 
     fn y_ticks(&self) -> Ticks {
-        Ticks::between(self.y.0, self.y.1, (self.bottom - self.top) / 70.0)
+        self.scales[1].ticks(self.y, (self.bottom - self.top) / 70.0)
     }
 
     /// Faint lines across the box at each tick, to be drawn first.
     pub fn rules(&self, canvas: &mut Canvas) {
         for x in self.x_ticks().values {
-            let x = self.place((x, 0.0)).0;
+            let x = self.place((x, self.y.0)).0;
             canvas.fill((x - THIN / 2.0, self.top), (x + THIN / 2.0, self.bottom), RULE);
         }
         for y in self.y_ticks().values {
-            let y = self.place((0.0, y)).1;
+            let y = self.place((self.x.0, y)).1;
             canvas.fill((self.left, y - THIN / 2.0), (self.right, y + THIN / 2.0), RULE);
         }
     }
@@ -66,7 +72,7 @@ impl Axes {
         let ticks = self.y_ticks();
         let mut widest: f64 = 0.0;
         for &value in &ticks.values {
-            let at = self.place((0.0, value)).1;
+            let at = self.place((self.x.0, value)).1;
             let text = ticks.text(value);
             widest = widest.max(width(&text, NUMBER));
             canvas.fill((self.left - TICK, at - THIN / 2.0), (self.left, at + THIN / 2.0), INK);
@@ -82,7 +88,7 @@ impl Axes {
     fn draw_x(&self, canvas: &mut Canvas, label: Option<Label>) {
         let ticks = self.x_ticks();
         for &value in &ticks.values {
-            let at = self.place((value, 0.0)).0;
+            let at = self.place((value, self.y.0)).0;
             canvas.fill((at - THIN / 2.0, self.bottom), (at + THIN / 2.0, self.bottom + TICK), INK);
             if label.is_some() {
                 canvas.text(&ticks.text(value), (at, self.bottom + TICK + 22.0), NUMBER, Align::Centre, INK);
@@ -92,6 +98,17 @@ impl Axes {
             let centre = f64::midpoint(self.left, self.right);
             canvas.text(&ticks.label(quantity, unit), (centre, self.bottom + 72.0), LABEL, Align::Centre, INK);
         }
+    }
+
+    /// A dashed line across the box; returns its height on the sheet.
+    pub fn level(&self, canvas: &mut Canvas, value: f64) -> f64 {
+        let at = self.place((self.x.0, value)).1;
+        let mut x = self.left;
+        while x < self.right {
+            canvas.fill((x, at - 1.3), ((x + DASH.0).min(self.right), at + 1.3), OUTLINE);
+            x += DASH.0 + DASH.1;
+        }
+        at
     }
 
     /// A line through places of the region; a place that is not finite breaks it.

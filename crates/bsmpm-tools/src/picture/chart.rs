@@ -1,8 +1,8 @@
 //! Curves and points over one pair of axes, with levels across them.
 
-use super::axes::{Axes, BELOW, LEFT, Label, NUMBER, title};
+use super::axes::{Axes, BELOW, LEFT, LINEAR, Label, NUMBER, title};
 use super::canvas::{Align, Canvas, fitting, width};
-use super::colour::{INK, OUTLINE};
+use super::colour::INK;
 use super::legend::{self, Entry};
 use super::ticks::{padded, range};
 
@@ -13,7 +13,6 @@ const RIGHT: f64 = 60.0;
 const LINE: f64 = 3.5;
 /// The most room for the texts of levels, right of the axes.
 const WIDEST: f64 = 420.0;
-const DASH: (f64, f64) = (16.0, 10.0);
 
 /// Places, and how they are drawn and named.
 pub(crate) struct Curve {
@@ -52,7 +51,7 @@ impl Chart<'_> {
         let right = if texts > 0.0 { texts + 40.0 } else { RIGHT };
         let (x, y) = self.ranges();
         let top = above + legend::height(&self.legend, room) + 20.0;
-        let axes = Axes { left: LEFT, top, right: SHEET.0 - right, bottom: SHEET.1 - BELOW, x, y };
+        let axes = Axes { left: LEFT, top, right: SHEET.0 - right, bottom: SHEET.1 - BELOW, x, y, scales: LINEAR };
         let mut canvas = Canvas::new(SHEET.0, SHEET.1);
         title(&mut canvas, SHEET.0, self.title, self.below);
         legend::draw(&mut canvas, &self.legend, 40.0, above, room);
@@ -87,14 +86,7 @@ impl Chart<'_> {
     fn draw_levels(&self, canvas: &mut Canvas, axes: &Axes) {
         let mut texts: Vec<(f64, &str)> = Vec::new();
         for level in self.levels {
-            let at = axes.place((0.0, level.value)).1;
-            let mut x = axes.left;
-            while x < axes.right {
-                let end = (x + DASH.0).min(axes.right);
-                canvas.fill((x, at - 1.3), (end, at + 1.3), OUTLINE);
-                x += DASH.0 + DASH.1;
-            }
-            texts.push((at, &level.text));
+            texts.push((axes.level(canvas, level.value), &level.text));
         }
         texts.retain(|(_, text)| !text.is_empty());
         texts.sort_by(|a, b| a.0.total_cmp(&b.0));

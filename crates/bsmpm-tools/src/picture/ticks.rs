@@ -1,11 +1,48 @@
 //! Round numbers for axes.
 
+/// How numbers are spread along an axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Scale {
+    /// Evenly.
+    Linear,
+    /// Evenly, with ticks at whole numbers only.
+    Whole,
+    /// By their logarithms, with ticks at powers of ten; for positive numbers.
+    Logarithmic,
+}
+
+impl Scale {
+    /// Where a number lies between two others: 0 at `low`, 1 at `high`.
+    pub fn share(self, value: f64, (low, high): (f64, f64)) -> f64 {
+        match self {
+            Self::Linear | Self::Whole => (value - low) / (high - low),
+            Self::Logarithmic => (value / low).ln() / (high / low).ln(),
+        }
+    }
+
+    /// At most `count` ticks between two numbers, but at least two where so many are.
+    pub fn ticks(self, (low, high): (f64, f64), count: f64) -> Ticks {
+        match self {
+            Self::Linear => Ticks::between(low, high, count),
+            Self::Whole => Ticks::between(low, high, count.min(high - low)),
+            Self::Logarithmic => Ticks::powers(low, high, count),
+        }
+    }
+}
+
 /// The round numbers of an axis and how they are written.
 pub(crate) struct Ticks {
     pub values: Vec<f64>,
-    /// What the numbers are divided by before they are written: a power of 1000.
-    scale: f64,
-    decimals: usize,
+    form: Form,
+}
+
+/// How round numbers are written.
+#[derive(Clone, Copy)]
+enum Form {
+    /// Divided by a power of 1000.
+    Decimal { scale: f64, decimals: usize },
+    /// As powers of ten.
+    Power,
 }
 
 /// Powers of 1000 in the form that a unit takes.
@@ -34,19 +71,29 @@ impl Ticks {
         let values = (0..=steps).map(|i| (first + i as f64) * step + 0.0).collect();
         let scale = 10_f64.powi(power_of(low.abs().max(high.abs())));
         let decimals = (-(step / scale * 1.001).log10().floor()).clamp(0.0, 12.0) as usize;
-        Self { values, scale, decimals }
+        Self { values, form: Form::Decimal { scale, decimals } }
+    }
+
+    /// At most `count` powers of ten between two positive numbers, whose exponents are multiples of 1, 2, 3, ..
+    pub fn powers(low: f64, high: f64, count: f64) -> Self {
+        let (first, last) = ((low.log10() - 1e-6).ceil() as i32, (high.log10() + 1e-6).floor() as i32);
+        let stride = (f64::from(last - first) / count.max(1.0)).ceil().max(1.0) as i32;
+        let exponents = (first..=last).filter(|exponent| exponent % stride == 0);
+        Self { values: exponents.map(|exponent| 10_f64.powi(exponent)).collect(), form: Form::Power }
     }
 
     /// How a number of this axis is written.
     pub fn text(&self, value: f64) -> String {
-        let text = format!("{:.*}", self.decimals, value / self.scale);
+        let Form::Decimal { scale, decimals } = self.form else { return power_text(value) };
+        let text = format!("{:.*}", decimals, value / scale);
         let is_zero = text.trim_start_matches(['-', '0', '.']).is_empty();
         if is_zero { "0".to_owned() } else { text.replace('-', "−") }
     }
 
     /// The axis' label: the quantity with its unit, and the power of ten by which the numbers were divided.
     pub fn label(&self, quantity: &str, unit: &str) -> String {
-        let power = POWERS.iter().find(|(power, _)| 10_f64.powi(*power) == self.scale).map_or("", |(_, text)| text);
+        let scale = if let Form::Decimal { scale, .. } = self.form { scale } else { 1.0 };
+        let power = POWERS.iter().find(|(power, _)| 10_f64.powi(*power) == scale).map_or("", |(_, text)| text);
         let unit = if unit == "-" { "" } else { unit };
         let prefix = ["", "k", "M", "G"].into_iter().zip(["", "10³", "10⁶", "10⁹"]).find(|(_, text)| *text == power);
         if let (Some((prefix, _)), true) = (prefix, unit.starts_with(['P', 'N'])) {
@@ -59,6 +106,19 @@ impl Ticks {
             (false, false) => format!("{quantity} ({power} {unit})"),
         }
     }
+}
+
+/// A power of ten as such: `10⁻⁸`.
+fn power_text(value: f64) -> String {
+    let raised = |digit: char| match digit {
+        '-' => '⁻',
+        '1' => '¹',
+        '2' => '²',
+        '3' => '³',
+        other => other.to_digit(10).and_then(|digit| char::from_u32('⁰' as u32 + digit)).unwrap_or(other),
+    };
+    let exponent = format!("{:.0}", value.log10());
+    if exponent == "0" { "1".to_owned() } else { "10".chars().chain(exponent.chars().map(raised)).collect() }
 }
 
 /// The power of 1000, as one of ten, that brings numbers up to `largest` to a form without rows of zeros.
@@ -105,6 +165,20 @@ mod tests {
         assert_eq!(Ticks::between(0.0, 1.0, 5.0).label("Iterations", "-"), "Iterations");
         assert_eq!(Ticks::between(0.0, 3e5, 5.0).label("Pressure", "Pa"), "Pressure (kPa)");
         assert_eq!(Ticks::between(0.0, 3e6, 5.0).label("Force", "N/m"), "Force (MN/m)");
+    }
+
+    #[test]
+    fn logarithmic_axes_have_powers_of_ten_and_whole_ones_no_fractions() {
+        let texts = |scale: Scale, range, count| {
+            let ticks = scale.ticks(range, count);
+            ticks.values.iter().map(|&value| ticks.text(value)).collect::<Vec<_>>()
+        };
+        assert_eq!(texts(Scale::Logarithmic, (3e-4, 20.0), 9.0), ["10⁻³", "10⁻²", "10⁻¹", "1", "10¹"]);
+        assert_eq!(texts(Scale::Logarithmic, (1e-17, 3.0), 6.0), ["10⁻¹⁵", "10⁻¹²", "10⁻⁹", "10⁻⁶", "10⁻³", "1"]);
+        assert_eq!(texts(Scale::Whole, (0.8, 4.2), 9.0), ["1", "2", "3", "4"]);
+        assert_eq!(texts(Scale::Linear, (0.8, 2.2), 9.0)[0], "0.8");
+        let share = Scale::Logarithmic.share(1e-4, (1e-8, 1.0));
+        assert!((share - 0.5).abs() < 1e-14, "{share}");
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use bsmpm_io::table::Columns;
 
 use crate::Error;
-use crate::picture::axes::{Axes, BELOW, LEFT, title};
+use crate::picture::axes::{Axes, BELOW, LEFT, LINEAR, title};
 use crate::picture::canvas::Canvas;
 use crate::picture::colour;
 use crate::picture::legend::{self, Entry, Mark};
@@ -36,8 +36,8 @@ pub(super) fn draw(record: &Record) -> Result<Option<String>, Error> {
     let middle = f64::midpoint(top, bottom);
     let above = |values: &[f64]| (0.0, 1.08 * range(values.iter().copied()).map_or(1.0, |(_, high)| high.max(1e-300)));
     let (left, right) = (LEFT, SHEET.0 - RIGHT);
-    let upper = Axes { left, top, right, bottom: middle - BETWEEN / 2.0, x, y: above(iterations) };
-    let lower = Axes { left, top: middle + BETWEEN / 2.0, right, bottom, x, y: above(dt) };
+    let upper = Axes { left, top, right, bottom: middle - BETWEEN / 2.0, x, y: above(iterations), scales: LINEAR };
+    let lower = Axes { left, top: middle + BETWEEN / 2.0, right, bottom, x, y: above(dt), scales: LINEAR };
 
     let mut canvas = Canvas::new(SHEET.0, SHEET.1);
     title(&mut canvas, SHEET.0, &record.manifest.case.title, "Convergence of the steps");

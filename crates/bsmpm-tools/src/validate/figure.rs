@@ -41,7 +41,8 @@ pub(super) fn draw(
     compare::run(&compare::Arguments {
         directories,
         x: figure.x.clone(),
-        y: figure.y.clone(),
+        y: Some(figure.y.clone()),
+        residuals: None,
         x_scale: figure.x_scale,
         y_scale: figure.y_scale,
         x_label: figure.x_label.clone(),

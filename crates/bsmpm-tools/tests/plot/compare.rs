@@ -7,6 +7,8 @@ use std::process::{Command, Output};
 use crate::Picture;
 use crate::quasi_static::{FOOTING, SLOPE};
 use crate::still::Still;
+use bsmpm_io::residuals::{Iterate, Method, RESIDUALS};
+use bsmpm_io::table::Table;
 
 fn compare(directory: &Path, arguments: &[&str]) -> Output {
     let program = env!("CARGO_BIN_EXE_bsmpm");
@@ -107,6 +109,56 @@ fn last_rows_of_one_label_are_a_curve() {
     assert!(points.colours() > 20);
     let one = printed(dir.path(), &["f-bar_1.4", "--last", "--y", "E_delta_over_gamma_H2", "--table"]);
     assert_eq!(one, "E δ/(γ H²)\nPseudo-time  f-bar\n          1    100\n");
+}
+
+/// Step 7 of a run by Newton's method, and by secants until forces are balanced to round-off.
+fn iterated(directory: &Path) {
+    footings(directory);
+    let (newton, secants) = (Some(Method::Newton), Some(Method::Multisecant));
+    let courses = [
+        ("new.out", [(newton, 0.1), (newton, 1e-2), (newton, 1e-4)]),
+        ("old.out", [(secants, 0.1), (secants, 1e-2), (None, 1e-12)]),
+    ];
+    for (run, course) in courses {
+        let mut table = Table::create(&directory.join(run).join(RESIDUALS), &Iterate::columns("-")).unwrap();
+        for ((method, force), iteration) in course.into_iter().zip(1..) {
+            let energy = if method.is_some() { force * force } else { f64::NAN };
+            table.row(&Iterate { step: 7, time: 0.175, iteration, method, energy, force }.cells()).unwrap();
+        }
+    }
+}
+
+#[test]
+fn residuals_of_a_step_are_drawn_and_printed() {
+    let dir = tempfile::tempdir().unwrap();
+    iterated(dir.path());
+    let runs = ["new.out", "old.out", "--residuals", "7"];
+    let table = printed(dir.path(), &[&runs[..], &["--table", "--label", "Newton", "--label", "secants"]].concat());
+    let expected = "Step 7, pseudo-time 0.175\n\
+                    Newton\n\
+                    iteration       method     energy      force  order\n\
+                    \x20       1       newton    1.00e-2    1.00e-1      -\n\
+                    \x20       2       newton    1.00e-4    1.00e-2      -\n\
+                    \x20       3       newton    1.00e-8    1.00e-4   2.00\n\
+                    secants\n\
+                    iteration       method     energy      force  order\n\
+                    \x20       1  multisecant    1.00e-2    1.00e-1      -\n\
+                    \x20       2  multisecant    1.00e-4    1.00e-2      -\n\
+                    \x20       3            -          -   1.00e-12  10.00\n";
+    assert_eq!(table, expected);
+    assert_eq!(printed(dir.path(), &runs), "compare.png\n");
+    let both = Picture::read(&dir.path().join("compare.png"));
+    assert!(both.width == 1600 && both.rows().len() == 1250 && both.colours() > 20);
+    printed(dir.path(), &["new.out", "--residuals", "7"]);
+    assert_ne!(Picture::read(&dir.path().join("compare.png")).pixels, both.pixels);
+
+    let (code, message) = refused(dir.path(), &["new.out", "--residuals", "8"]);
+    assert_eq!((code, message.contains("step 8") && message.contains("step is 7")), (66, true), "{message}");
+    let (code, message) = refused(dir.path(), &["plain.out", "--residuals", "7"]);
+    assert_eq!((code, message.contains("[output] residuals = true")), (66, true), "{message}");
+    for option in [&["--y", "slip"][..], &["--last"], &["--line", "1"], &["--x-scale", "2"]] {
+        assert_eq!(refused(dir.path(), &[&runs[..], option].concat()).0, 2, "{option:?}");
+    }
 }
 
 #[test]

@@ -28,6 +28,15 @@ pub enum Nonlinear {
     Newton,
 }
 
+/// What gave the direction of one iteration.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Method {
+    /// Secants on the elastic stiffness.
+    QuasiNewton(QuasiNewton),
+    /// The complete derivative.
+    Newton,
+}
+
 /// Everything that is fixed while a step is iterated.
 pub struct Scene<'a, K, const D: usize> {
     /// the scene

@@ -5,7 +5,7 @@ use crate::error::{SolveError, StepError};
 use crate::kinematics::Kinematics;
 use crate::seam::{LinearSolver, dots};
 use crate::step::Counts;
-use crate::step::equilibrium::{Found, Scene, evaluate};
+use crate::step::equilibrium::{Found, Method, Scene, evaluate};
 use crate::step::linearised::Linearised;
 use crate::step::progress::{Progress, first_energy, inverted};
 use crate::step::quasi_newton::Stopped;
@@ -45,7 +45,7 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
             progress.begin(first_energy(scene, f, &du));
         }
         let energy = dots(scene.halo, D, &[(&du, f)])[0].abs();
-        if progress.reaches(energy, &residual.balance) {
+        if progress.reaches(Method::Newton, energy, &residual.balance) {
             return Ok(Found::new(u, residual, progress, iteration + 1));
         }
         match search(scene, &u, &du, &residual, counts) {

@@ -7,7 +7,7 @@ use crate::error::{Measures, StepError, WorstNode};
 use crate::kinematics::Kinematics;
 use crate::model::Criteria;
 use crate::seam::dots;
-use crate::step::equilibrium::Scene;
+use crate::step::equilibrium::{Method, Scene};
 use crate::step::residual::{Balance, Residual};
 use crate::tensor::Vector;
 
@@ -58,10 +58,10 @@ impl Progress {
         self.first_energy = Some(energy);
     }
 
-    /// Takes the measures of a state and the direction found there; whether both criteria hold.
-    pub fn reaches(&mut self, energy: f64, balance: &Balance) -> bool {
+    /// Takes the measures of a state and the direction that `method` found there; whether both criteria hold.
+    pub fn reaches(&mut self, method: Method, energy: f64, balance: &Balance) -> bool {
         let (energy, force) = (energy / self.first_energy.unwrap_or(f64::INFINITY), balance.measure());
-        self.history.push(Measures { energy, force });
+        self.history.push(Measures { energy, force, method });
         energy < self.criteria.energy && force < self.criteria.force
     }
 

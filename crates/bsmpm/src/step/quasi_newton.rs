@@ -5,7 +5,7 @@ use crate::kinematics::Kinematics;
 use crate::seam::{Halo, LinearSolver, dots};
 use crate::step::Counts;
 use crate::step::broyden::Broyden;
-use crate::step::equilibrium::{Found, Scene, evaluate};
+use crate::step::equilibrium::{Found, Method, Scene, evaluate};
 use crate::step::multisecant::Multisecant;
 use crate::step::progress::{Progress, first_energy, inverted};
 use crate::step::residual::Residual;
@@ -119,7 +119,7 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
         if !progress.has_begun() {
             progress.begin(first_energy(scene, &residual.balance.f_oob, &direction.du));
         }
-        if progress.reaches(direction.energy, &residual.balance) {
+        if progress.reaches(Method::QuasiNewton(method), direction.energy, &residual.balance) {
             return Ok(Found::new(u, residual, progress, 0)); // (9)
         }
         match advance(scene, &mut u, &direction.du, &mut residual, counts) {

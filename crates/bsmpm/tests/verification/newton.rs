@@ -9,7 +9,7 @@ use bsmpm::material::{Elastic, Material, MohrCoulomb};
 use bsmpm::model::{Criteria, Regime, Weighting};
 use bsmpm::observe::largest_displacement;
 use bsmpm::stabilisation::Stabilisation;
-use bsmpm::step::equilibrium::Nonlinear;
+use bsmpm::step::equilibrium::{Method, Nonlinear};
 
 type Plane = Scene<PlaneStrain, 2>;
 
@@ -38,6 +38,7 @@ fn the_force_falls_with_its_square() {
         let forces: Vec<f64> = last.report.history.iter().map(|measures| measures.force).collect();
         println!("{method:?}, step 10: {forces:?}");
         assert_eq!(last.report.newton_iterations, forces.len());
+        assert!(last.report.history.iter().all(|measures| measures.method == Method::Newton));
         assert!(forces.len() <= 8, "{} iterations", forces.len());
         // f_k+1 <= C f_k^2 once the plastic set no longer changes; measured C: 9.4, .09, 5.1.
         let [.., before, after] = forces[..] else { panic!("too few iterations") };

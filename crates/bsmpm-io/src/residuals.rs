@@ -1,0 +1,103 @@
+//! `residuals.csv`: how far from equilibrium every iteration of every accepted step was. Kept where the case asks for it.
+
+use std::path::Path;
+
+use crate::Error;
+use crate::table::{self, Cell, Column};
+
+/// The file's name.
+pub const RESIDUALS: &str = "residuals.csv";
+
+/// What gave the direction of an iteration.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Method {
+    /// All recent secants.
+    Multisecant,
+    /// Broyden's update.
+    Broyden,
+    /// The complete derivative.
+    Newton,
+}
+
+impl Method {
+    const ALL: [Self; 3] = [Self::Multisecant, Self::Broyden, Self::Newton];
+
+    fn of(word: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|method| method.word() == word)
+    }
+
+    /// As the file writes it.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Multisecant => "multisecant",
+            Self::Broyden => "broyden",
+            Self::Newton => "newton",
+        }
+    }
+}
+
+/// One row: a state on the way from the guess that led to convergence, and the direction found there. The last state has no
+/// direction where its forces are balanced to round-off.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Iterate {
+    /// The step's number.
+    pub step: u64,
+    /// s (pseudo-time in a quasi-static analysis)  at its end.
+    pub time: f64,
+    /// The number of the iteration within the step; the first one, 1, is at the guess.
+    pub iteration: u64,
+    /// What gave its direction; an empty cell without one.
+    pub method: Option<Method>,
+    /// The energy measure; an empty cell without a direction.
+    pub energy: f64,
+    /// The force measure.
+    pub force: f64,
+}
+
+impl Iterate {
+    /// The file's columns; `time_unit` is `s`, or `-` for pseudo-time.
+    pub fn columns(time_unit: &str) -> [Column; 6] {
+        [("step", "-"), ("time", time_unit), ("iteration", "-"), ("method", "-"), ("energy", "-"), ("force", "-")]
+            .map(|(name, unit)| Column::new(name, unit))
+    }
+
+    /// The iteration as a row under [`Iterate::columns`].
+    pub fn cells(&self) -> [Cell; 6] {
+        let measure = |value: f64| if value.is_finite() { Cell::Float(value) } else { Cell::Empty };
+        [
+            Cell::Int(self.step),
+            Cell::Float(self.time),
+            Cell::Int(self.iteration),
+            self.method.map_or(Cell::Empty, |method| Cell::Word(method.word())),
+            measure(self.energy),
+            measure(self.force),
+        ]
+    }
+
+    fn parse(line: &str) -> Option<Self> {
+        let cells: Vec<&str> = line.split(',').collect();
+        let [step, time, iteration, method, energy, force] = cells[..] else { return None };
+        let measure = |cell: &str| if cell.is_empty() { Some(f64::NAN) } else { cell.parse().ok() };
+        Some(Self {
+            step: step.parse().ok()?,
+            time: time.parse().ok()?,
+            iteration: iteration.parse().ok()?,
+            method: if method.is_empty() { None } else { Some(Method::of(method)?) },
+            energy: measure(energy)?,
+            force: measure(force)?,
+        })
+    }
+}
+
+/// Reads the rows; a last line without its end is one that is being written, and left out.
+///
+/// # Errors
+/// [`Error::File`] when the system refuses, [`Error::Format`] with the line for what is no row.
+pub fn read(path: &Path) -> Result<Vec<Iterate>, Error> {
+    let text = table::whole_lines(path)?;
+    let rows = text.lines().enumerate().skip(1).filter(|(_, line)| !line.starts_with('#'));
+    let row = |(index, line): (usize, &str)| {
+        Iterate::parse(line).ok_or_else(|| Error::format(path, format!("line {}: no row of residuals", index + 1)))
+    };
+    rows.map(row).collect()
+}

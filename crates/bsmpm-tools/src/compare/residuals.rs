@@ -1,0 +1,211 @@
+//! How the iterations of one step converged in several runs: both measures on logarithmic axes (Fig. 4 of the paper), and as
+//! a table. The rows are those of `residuals.csv`.
+
+use std::fmt::Write;
+use std::path::Path;
+
+use bsmpm_io::residuals::{self, Iterate, Method, RESIDUALS};
+
+use super::{Arguments, Made, runs};
+use crate::Error;
+use crate::picture::axes::{Axes, BELOW, LEFT, NUMBER, title};
+use crate::picture::canvas::{Align, Canvas, width};
+use crate::picture::colour::{self, INK};
+use crate::picture::legend::{self, Entry, Mark};
+use crate::picture::ticks::{Scale, range};
+use crate::record::{Record, present};
+
+const SHEET: (f64, f64) = (1600.0, 1250.0);
+const ABOVE: f64 = 115.0;
+const BETWEEN: f64 = 40.0;
+const LINE: f64 = 3.5;
+/// What stands right of a tolerance.
+const TOLERANCE: &str = "tolerance";
+/// How far the axes go beyond the first and last iteration, as a share of their number: a disc's radius and a little more.
+const BESIDE: f64 = 0.02;
+/// What is left of a force of which an order is told.
+const LEAST: f64 = 0.9;
+/// The fewest iterations that are shown.
+const FEWEST: f64 = 3.0;
+
+/// A measure of equilibrium: its name and its place in an iteration.
+struct Measure {
+    name: &'static str,
+    of: fn(&Iterate) -> f64,
+}
+
+const MEASURES: [Measure; 2] = [
+    Measure { name: "Energy measure", of: |iterate| iterate.energy },
+    Measure { name: "Force measure", of: |iterate| iterate.force },
+];
+
+/// The step of one run.
+struct Course {
+    label: String,
+    iterates: Vec<Iterate>,
+    /// Of both measures, if the case tells them.
+    tolerances: Option<[f64; 2]>,
+}
+
+/// Draws the picture and sets the table, as far as they are wanted.
+pub(super) fn run(arguments: &Arguments, step: u64) -> Result<Made, Error> {
+    let records = runs::records(arguments)?;
+    let labels = runs::labels(arguments, &records);
+    let course = |(label, record): (String, &Record)| Course::read(label, record, step);
+    let courses = labels.into_iter().zip(&records).map(course).collect::<Result<Vec<_>, _>>()?;
+    let moment = |index: usize| records[index].moment(courses[index].iterates[0].time);
+    let shared = (1..records.len()).all(|index| moment(index) == moment(0));
+    let below = if shared { format!("Step {step}, {}", moment(0)) } else { format!("Step {step}") };
+    let picture = arguments.picture();
+    if let Some(path) = &picture {
+        draw(&courses, (&runs::title(arguments, &records), &below), path)?;
+    }
+    Ok(Made { picture, table: arguments.table.then(|| text(&courses, &below)), notes: Vec::new() })
+}
+
+impl Course {
+    fn read(label: String, record: &Record, step: u64) -> Result<Self, Error> {
+        let missing = |reason| Error::NoResiduals { directory: record.directory.clone(), reason };
+        let all = present(residuals::read(&record.directory.join(RESIDUALS)))?;
+        let all = all.ok_or_else(|| missing("no residuals.csv: [output] residuals = true writes it".to_owned()))?;
+        let last = all.last().map_or(0, |iterate| iterate.step);
+        let iterates: Vec<Iterate> = all.into_iter().filter(|iterate| iterate.step == step).collect();
+        if iterates.is_empty() {
+            return Err(missing(format!("no iteration of step {step} in residuals.csv, whose last step is {last}")));
+        }
+        let case = bsmpm_scene::Case::from_text("case", &record.manifest.case.text, &[]).ok();
+        let tolerances = case.map(|case| [case.solver.tolerance, case.solver.force_tolerance]);
+        Ok(Self { label, iterates, tolerances })
+    }
+
+    /// Places on a logarithmic axis, where what is not positive breaks the line.
+    fn places(&self, measure: &Measure) -> Vec<(f64, f64)> {
+        let up = |iterate: &Iterate| Some((measure.of)(iterate)).filter(|value| *value > 0.0).unwrap_or(f64::NAN);
+        self.iterates.iter().map(|iterate| (iterate.iteration as f64, up(iterate))).collect()
+    }
+}
+
+/// Different tolerances of a measure, which all runs share as a rule.
+fn tolerances(courses: &[Course], measure: usize) -> Vec<f64> {
+    let mut all: Vec<f64> = courses.iter().filter_map(|course| Some(course.tolerances?[measure])).collect();
+    all.sort_by(f64::total_cmp);
+    all.dedup();
+    all
+}
+
+fn draw(courses: &[Course], (above, below): (&str, &str), path: &Path) -> Result<(), Error> {
+    let entry = |(index, course): (usize, &Course)| Entry {
+        name: course.label.clone(),
+        colour: colour::line(index, courses.len()),
+        mark: Mark::Both,
+    };
+    let entries: Vec<Entry> = courses.iter().enumerate().map(entry).collect();
+    let legend: Vec<&Entry> = entries.iter().collect();
+    let room = SHEET.0 - 80.0;
+    let mut canvas = Canvas::new(SHEET.0, SHEET.1);
+    title(&mut canvas, SHEET.0, above, below);
+    legend::draw(&mut canvas, &legend, 40.0, ABOVE, room);
+    let (top, bottom) = (ABOVE + legend::height(&legend, room) + 20.0, SHEET.1 - BELOW);
+    let half = (bottom - top - BETWEEN) / 2.0;
+    draw_measure(&mut canvas, (courses, &entries), 0, (top, top + half));
+    draw_measure(&mut canvas, (courses, &entries), 1, (bottom - half, bottom));
+    canvas.save(path)
+}
+
+/// The axes of one measure, between two heights of the sheet; the last ones bear the numbers of the iterations.
+fn draw_measure(canvas: &mut Canvas, (courses, entries): (&[Course], &[Entry]), index: usize, upright: (f64, f64)) {
+    let (measure, levels) = (&MEASURES[index], tolerances(courses, index));
+    let places: Vec<Vec<(f64, f64)>> = courses.iter().map(|course| course.places(measure)).collect();
+    let most = (places.iter().map(Vec::len).max().unwrap_or(0) as f64).max(FEWEST);
+    let axes = Axes {
+        left: LEFT,
+        top: upright.0,
+        right: SHEET.0 - width(TOLERANCE, NUMBER) - 40.0,
+        bottom: upright.1,
+        x: (1.0 - BESIDE * most, most + BESIDE * most),
+        y: decades(places.iter().flatten().map(|place| place.1).chain(levels.iter().copied())),
+        scales: [Scale::Whole, Scale::Logarithmic],
+    };
+    axes.rules(canvas);
+    for level in levels {
+        let at = axes.level(canvas, level);
+        canvas.text(TOLERANCE, (axes.right + 14.0, at), NUMBER, Align::Left, INK);
+    }
+    for (places, entry) in places.iter().zip(entries) {
+        for run in places.split(|place| place.1.is_nan()) {
+            let places: Vec<_> = run.iter().map(|&place| axes.place(place)).collect();
+            entry.mark.draw(canvas, &places, LINE, entry.colour);
+        }
+    }
+    let across = (index + 1 == MEASURES.len()).then_some(("Iteration", "-"));
+    axes.draw(canvas, across, (measure.name, "-"));
+}
+
+/// Whole powers of ten about positive numbers, with room for discs at the ends.
+fn decades(values: impl IntoIterator<Item = f64>) -> (f64, f64) {
+    let (low, high) = range(values).unwrap_or((0.1, 1.0));
+    let (low, high) = (low.log10().floor(), high.log10().ceil());
+    let room = 0.04 * (high - low).max(1.0);
+    (10_f64.powf(low - room), 10_f64.powf(high + room))
+}
+
+/// A block of rows for every run: both measures, and the order of convergence.
+fn text(courses: &[Course], below: &str) -> String {
+    let mut text = format!("{below}\n");
+    for Course { label, iterates, .. } in courses {
+        let _ = writeln!(text, "{label}\niteration       method     energy      force  order");
+        for (index, iterate) in iterates.iter().enumerate() {
+            let Iterate { iteration, energy, force, .. } = iterate;
+            let order = order(&iterates[..=index]).map_or_else(|| "-".to_owned(), |order| format!("{order:.2}"));
+            let method = iterate.method.map_or("-", Method::word);
+            let energy = if energy.is_nan() { "-".to_owned() } else { format!("{energy:.2e}") };
+            let _ = writeln!(text, "{iteration:>9}  {method:>11}  {energy:>9}  {force:>9.2e}  {order:>5}");
+        }
+    }
+    text
+}
+
+/// The order at which the force measure f fell last: ln(f_k / f_k-1) / ln(f_k-1 / f_k-2), 2 for quadratic convergence. None
+/// where it has not fallen by [`LEAST`] twice: what is left then is noise.
+fn order(iterates: &[Iterate]) -> Option<f64> {
+    let [.., before, last, now] = iterates else { return None };
+    let (first, second) = ((last.force / before.force).ln(), (now.force / last.force).ln());
+    (first.max(second) < LEAST.ln() && second.is_finite()).then_some(second / first)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn falling(forces: &[f64]) -> Vec<Iterate> {
+        let row = |(&force, iteration)| Iterate {
+            step: 1,
+            time: 1.0,
+            iteration,
+            method: Some(Method::Newton),
+            energy: force * force,
+            force,
+        };
+        forces.iter().zip(1..).map(row).collect()
+    }
+
+    #[test]
+    fn the_order_is_two_where_the_force_falls_with_its_square() {
+        let order = |forces: &[f64]| order(&falling(forces));
+        assert!((order(&[1e-1, 1e-2, 1e-4]).unwrap() - 2.0).abs() < 1e-12);
+        assert!((order(&[7.0, 1e-1, 1e-2, 1e-3]).unwrap() - 1.0).abs() < 1e-12);
+        for none in
+            [&[1e-1, 1e-2][..], &[1e-2, 1e-1, 1e-3], &[1e-1, 1e-2, 1e-1], &[1e-1, 0.099, 1e-3], &[1e-1, 1e-2, 0.0]]
+        {
+            assert_eq!(order(none), None, "{none:?}");
+        }
+    }
+
+    #[test]
+    fn axes_hold_whole_decades_and_a_little_more() {
+        let (low, high) = decades([3e-7, 0.4, f64::NAN]);
+        assert!((3e-8..1e-7).contains(&low) && (1.0..3.0).contains(&high), "{low} {high}");
+        assert!(decades([]).0 < decades([]).1);
+        assert!(decades([1.0]).0 < 1.0);
+    }
+}
