@@ -72,7 +72,8 @@ impl Case {
         let direct = self.solver.linear.factor.is_some();
         let factor = if direct { 2 * occupied * levels * LEVEL } else { entries * 12 };
         let lowered = if self.stabilisation == Stabilisation::ConsistentFBar { LOWERED } else { 0 };
-        let bytes = u128::from(self.points()) * (POINT + lowered) + nodes * (stencil + VECTORS) + entries * ENTRY + factor;
+        let bytes =
+            u128::from(self.points()) * (POINT + lowered) + nodes * (stencil + VECTORS) + entries * ENTRY + factor;
         let repeated = if direct && self.solver.reproducible { factor + entries * REPEATED } else { 0 };
         let bounded = |number: u128| u64::try_from(number).unwrap_or(u64::MAX);
         Estimate {

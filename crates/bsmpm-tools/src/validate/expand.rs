@@ -68,14 +68,20 @@ mod tests {
     #[test]
     fn every_choice_of_the_words_is_an_entry() {
         let each = "each = { method = [\"none\", \"f-bar\"], at = [0.1, 0.25] }";
-        let row = format!("row = [{{ {each}, quantity = \"z {{at}}, {{method}}\", at = \"{{at}}\", max = 1.0 }}, {{ max = 2.0 }}]");
+        let row = format!(
+            "row = [{{ {each}, quantity = \"z {{at}}, {{method}}\", at = \"{{at}}\", max = 1.0 }}, {{ max = 2.0 }}]"
+        );
         let matrix = expanded(&format!("[[study]]\ntitle = \"{{method}}\"\n{row}")).unwrap();
         let study = &matrix["study"][0];
         assert_eq!(study["title"].as_str(), Some("{method}"), "only entries are filled");
         let rows = study["row"].as_array().unwrap();
         assert_eq!(rows.len(), 5);
-        let told: Vec<_> = rows[..4].iter().map(|row| (row["quantity"].as_str().unwrap(), row["at"].as_float().unwrap())).collect();
-        assert_eq!(told, [("z 0.1, none", 0.1), ("z 0.1, f-bar", 0.1), ("z 0.25, none", 0.25), ("z 0.25, f-bar", 0.25)]);
+        let told: Vec<_> =
+            rows[..4].iter().map(|row| (row["quantity"].as_str().unwrap(), row["at"].as_float().unwrap())).collect();
+        assert_eq!(
+            told,
+            [("z 0.1, none", 0.1), ("z 0.1, f-bar", 0.1), ("z 0.25, none", 0.25), ("z 0.25, f-bar", 0.25)]
+        );
         assert!(rows[0].get("each").is_none() && rows[4]["max"].as_float() == Some(2.0));
     }
 
