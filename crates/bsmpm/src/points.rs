@@ -41,6 +41,8 @@ pub struct Points<const D: usize> {
     pub eps_p: Vec<f64>,
     /// -  S(J)/J of the last step, under Zhao's F-bar from its first step on; before that it is 1
     pub dilation: Option<Vec<f64>>,
+    /// -  logarithm of the volume that gapes, where a material closes its gaps, from its first step on; before that it is 0
+    pub gap: Option<Vec<f64>>,
     /// what strips and loads carry on; no column: it is the same on every rank
     pub surface: Surface<D>,
 }
@@ -121,6 +123,9 @@ impl<const D: usize> Points<D> {
         }
         if let Some(dilation) = &mut self.dilation {
             columns.push(dilation);
+        }
+        if let Some(gap) = &mut self.gap {
+            columns.push(gap);
         }
         columns
     }

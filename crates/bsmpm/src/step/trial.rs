@@ -103,7 +103,10 @@ impl Trial {
             Some(_) => K::push_forward(&K::dilate(&self.dF[p], self.ratio(points, p)), &points.b_e[p]),
             None => K::push_forward(&self.dF[p], &points.b_e[p]),
         };
-        model.respond(points, p, &b_trial)
+        match points.gap.as_ref().map_or(0.0, |gap| gap[p]) {
+            0.0 => model.respond(points, p, &b_trial),
+            gap => model.respond(points, p, &b_trial.scaled((2.0 / 3.0 * gap).exp())),
+        }
     }
 }
 
