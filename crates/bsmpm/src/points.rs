@@ -103,6 +103,12 @@ impl<const D: usize> Points<D> {
         self.x[p][D - 1] - self.u[p][D - 1]
     }
 
+    /// Logarithm of the volume that gapes at a point.
+    #[inline]
+    pub fn gap_of(&self, p: usize) -> f64 {
+        self.gap.as_ref().map_or(0.0, |gap| gap[p])
+    }
+
     /// Every array once: sorting, migration and checkpoints walk this list, so that a new state variable is one line.
     pub fn columns(&mut self) -> Vec<&mut dyn Column> {
         let mut columns: Vec<&mut dyn Column> = vec![

@@ -255,7 +255,8 @@ fn separation(
     let (Some("closing"), Some([friction, _, cohesion])) = (record.word("separation"), strength) else {
         return Separation::Forgotten;
     };
-    let bounds = |profile: &Profile| profile.bounds(&layer.map_or(profile.at..profile.at, |layer| layer.heights.clone()));
+    let bounds =
+        |profile: &Profile| profile.bounds(&layer.map_or(profile.at..profile.at, |layer| layer.heights.clone()));
     if bounds(friction).0 <= 0.0 || bounds(cohesion).1 > 0.0 {
         let message = "\"closing\" needs friction and no cohesion: a gap is what opens where the stress is zero";
         record.error("separation", message, report);

@@ -65,8 +65,6 @@ pub fn commit<K: Kinematics<D>, const D: usize>(
     if model.stabilisation == Stabilisation::FBarZhao {
         points.dilation = Some((0..points.len()).map(|p| trial.averaged(p)).collect());
     }
-    let gap_before = points.gap.take();
-    points.gap = gaps(model, points, &responses);
     for (p, response) in responses.iter().enumerate() {
         points.F[p] = trial.dF[p] * points.F[p];
         points.sigma[p] = response.tau().scaled(1.0 / points.F[p].determinant());
@@ -76,19 +74,21 @@ pub fn commit<K: Kinematics<D>, const D: usize>(
     match model.stabilisation {
         Stabilisation::ModifiedFBar => smooth::average_b_e(model, shape, nodes, points, halo),
         Stabilisation::ConsistentFBar => {
-            let flow: Vec<smooth::Flow> = 
-                responses.iter().enumerate().map(|(p, response)| smooth::Flow::of(response, gap_before.as_ref().map_or(0.0, |gap| gap[p]))).collect();
+            let flow_of = |(p, response)| smooth::Flow::of(response, points.gap_of(p));
+            let flow: Vec<smooth::Flow> = responses.iter().enumerate().map(flow_of).collect();
             smooth::filter_dilation(model, (shape, nodes), points, &flow, halo);
         }
         Stabilisation::None | Stabilisation::FBar | Stabilisation::FBarZhao => {}
     }
+    points.gap = gaps(model, points, &responses);
     Ok(u)
 }
 
 /// Gap of every point after the step, if some material closes its gaps.
 fn gaps<K, const D: usize>(model: &Model<K, D>, points: &Points<D>, responses: &[Response]) -> Option<Vec<f64>> {
     let closes: Vec<bool> = model.materials.iter().map(|law| law.separation() == Separation::Closing).collect();
-    let gap = |(response, material): (&Response, &u16)| if closes[usize::from(*material)] { response.gap() } else { 0.0 };
+    let gap =
+        |(response, material): (&Response, &u16)| if closes[usize::from(*material)] { response.gap() } else { 0.0 };
     closes.contains(&true).then(|| responses.iter().zip(&points.material).map(gap).collect())
 }
 
