@@ -155,7 +155,7 @@ pub const RULES: &[Row] = &[
         "no meaning in model \"hencky\"",
     )
     .down(1),
-    row("\"forgotten\"", "\"closed\"", "material.sand.separation", "did you mean `closing`?"),
+    row("\"forgotten\"", "\"closed\"", "material.sand.separation", "expected one of \"forgotten\", \"closing\""),
     row("\"forgotten\"", "\"closing\"", "material.sand.separation", "needs friction and no cohesion"),
     row(
         "cohesion    = 2e4",
