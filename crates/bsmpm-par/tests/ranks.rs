@@ -42,15 +42,18 @@ fn the_block_is_the_same_on_1_2_3_and_4_ranks_with_every_f_bar() {
     }
 }
 
-/// Plastic flow, whose largest values neighbours tell each other.
+/// Plastic flow, whose largest values neighbours tell each other, and gaps, which go along with the points.
 #[test]
-fn the_filter_of_consistent_f_bar_is_the_same_on_1_2_and_3_ranks() {
+fn the_filter_of_consistent_f_bar_and_gaps_are_the_same_on_1_2_and_3_ranks() {
     let text = std::fs::read_to_string(shipped("short/column_collapse.toml")).unwrap();
     let (case, _check) = text.split_once("[[check]]").unwrap();
     let times = "times = [\"0.109 s\", \"0.235 s\", \"0.300 s\", \"0.351 s\", \"0.420 s\", \"0.607 s\"]";
-    let case = changed(&case, times, "");
-    let scratch = Scratch::with_case(&case);
-    agree(&scratch, "case.toml", &["--set", "analysis.end=0.04"], &[1, 2, 3], 1e-9);
+    let case = changed(case, times, "");
+    let gaping = changed(&case, "cohesion    = 0.0", "cohesion    = 0.0\nseparation  = \"closing\"");
+    for case in [case, gaping] {
+        let scratch = Scratch::with_case(&case);
+        agree(&scratch, "case.toml", &["--set", "analysis.end=0.04"], &[1, 2, 3], 1e-9);
+    }
 }
 
 /// No point is lost or changed on its way, however the sum is made.

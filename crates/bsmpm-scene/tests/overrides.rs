@@ -1,6 +1,6 @@
 //! `--set KEY=VALUE`, and what a valid case becomes.
 
-use bsmpm::material::{Material, MohrCoulomb};
+use bsmpm::material::{Material, MohrCoulomb, Separation};
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm_scene::{
     Axis, BackgroundKind, Base, Case, Error, Every, Extent, Face, Initial, Place, Quantity, Site, Support,
@@ -234,6 +234,20 @@ fn layers_by_height_and_reduced_strength() {
         other => panic!("{other:?}"),
     };
     assert_eq!((case.strength_reduction, cohesion(3.0), cohesion(1.5)), (None, 2e3, 2750.0));
+}
+
+/// Also where friction varies with the height, and whatever the strength is divided by.
+#[test]
+fn a_material_without_cohesion_may_close_its_gaps() {
+    let separation = |case: &Case, material: usize| case.materials[material].material.separation();
+    let case = valid(FULL, &[]);
+    assert_eq!([0, 1, 2, 3].map(|material| separation(&case, material)), [Separation::Forgotten; 4]);
+    let sand = ["material.sand.cohesion=0", "material.sand.separation=closing"];
+    let till = ["material.till.cohesion=0", "material.till.separation=closing"];
+    let case = valid(FULL, &[sand, till].concat());
+    assert_eq!(case.strength_reduction, Some(1.25));
+    assert_eq!([0, 3].map(|material| separation(&case, material)), [Separation::Closing; 2]);
+    assert_eq!(case.materials[3].material.at(2.5).separation(), Separation::Closing);
 }
 
 #[test]

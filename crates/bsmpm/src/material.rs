@@ -13,7 +13,7 @@ mod tangent;
 
 pub use graded::{Graded, GradedStrength, Profile};
 pub use hencky::Hencky;
-pub use mohr_coulomb::MohrCoulomb;
+pub use mohr_coulomb::{MohrCoulomb, Separation};
 pub use response::{Region, Response};
 pub use tangent::Tangent;
 
@@ -121,6 +121,15 @@ impl Material {
     #[inline]
     pub fn relative_stiffness(&self, height: f64) -> f64 {
         if let Self::Graded(law) = self { law.relative_stiffness(height) } else { 1.0 }
+    }
+
+    /// What becomes of the volume that opens at the apex.
+    pub fn separation(&self) -> Separation {
+        match self {
+            Self::Hencky(_) => Separation::Forgotten,
+            Self::MohrCoulomb(law) => law.separation(),
+            Self::Graded(law) => law.separation(),
+        }
     }
 
     /// The response to a trial elastic left Cauchy-Green tensor, `b_trial = ΔF bᵉ ΔFᵀ` (Eq. 7); a graded law answers

@@ -41,6 +41,8 @@ pub struct Points<const D: usize> {
     pub eps_p: Vec<f64>,
     /// -  S(J)/J of the last step, under Zhao's F-bar from its first step on; before that it is 1
     pub dilation: Option<Vec<f64>>,
+    /// -  logarithm of the volume that gapes, where a material closes its gaps, from its first step on; before that it is 0
+    pub gap: Option<Vec<f64>>,
     /// what strips and loads carry on; no column: it is the same on every rank
     pub surface: Surface<D>,
 }
@@ -101,6 +103,12 @@ impl<const D: usize> Points<D> {
         self.x[p][D - 1] - self.u[p][D - 1]
     }
 
+    /// Logarithm of the volume that gapes at a point.
+    #[inline]
+    pub fn gap_of(&self, p: usize) -> f64 {
+        self.gap.as_ref().map_or(0.0, |gap| gap[p])
+    }
+
     /// Every array once: sorting, migration and checkpoints walk this list, so that a new state variable is one line.
     pub fn columns(&mut self) -> Vec<&mut dyn Column> {
         let mut columns: Vec<&mut dyn Column> = vec![
@@ -121,6 +129,9 @@ impl<const D: usize> Points<D> {
         }
         if let Some(dilation) = &mut self.dilation {
             columns.push(dilation);
+        }
+        if let Some(gap) = &mut self.gap {
+            columns.push(gap);
         }
         columns
     }

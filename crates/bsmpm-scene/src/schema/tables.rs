@@ -111,6 +111,12 @@ static MATERIAL: Table = Table {
             Optional,
             "cohesion (elastic: none; else required)",
         ),
+        key(
+            "separation",
+            Choice(&["forgotten", "closing"], &[]),
+            Optional,
+            "volume that opens where stress returns to the apex: plastic, or a gap that closes first; forgotten unless given",
+        ),
         key("unit_weight", Quantity(In::UnitWeight, Range::POSITIVE), Optional, "density = unit_weight / 9.81 m/s2"),
         key("density", Quantity(In::Density, Range::POSITIVE), Optional, "neither: weightless, in dynamics an error"),
         key("k0", Quantity(In::Number, loads::COEFFICIENT), Optional, "horizontal over vertical stress at the start"),

@@ -6,7 +6,7 @@ use crate::grid::GridSpec;
 use crate::record::Record;
 use crate::report::Report;
 use crate::schema::{BELOW_90, Range};
-use bsmpm::material::{Elastic, Graded, GradedStrength, Hencky, Material, MohrCoulomb, Profile};
+use bsmpm::material::{Elastic, Graded, GradedStrength, Hencky, Material, MohrCoulomb, Profile, Separation};
 use bsmpm::model::Regime;
 
 /// Materials at most: a point holds its material's number in 16 bits.
@@ -64,10 +64,11 @@ fn read(
     }
     warn_of_stiffness(record, young.map(|young| young.value), poisson, report);
     let (young, poisson, law) = (young?, poisson?, law?);
+    let separation = separation(record, law.as_ref(), layer.as_ref(), report);
     let material = if is_graded(record) {
-        graded(young, poisson, law, (layer.as_ref()?, around.factor))
+        graded(young, poisson, law, (layer.as_ref()?, around.factor, separation))
     } else {
-        uniform(Elastic { young: young.value, poisson }, law, around.factor)
+        uniform(Elastic { young: young.value, poisson }, law, (around.factor, separation))
     };
     if let Some(layer) = layer.filter(|_| around.factor != 1.0) {
         note_reduction(record, &material, &layer, around.factor, report);
@@ -76,20 +77,27 @@ fn read(
 }
 
 /// The plain law; `strength` is friction, dilation (degrees) and cohesion (Pa).
-fn uniform(elastic: Elastic, strength: Option<[Profile; 3]>, factor: f64) -> Material {
+fn uniform(elastic: Elastic, strength: Option<[Profile; 3]>, (factor, separation): (f64, Separation)) -> Material {
     let Some([friction, dilation, cohesion]) = strength else { return Material::Hencky(Hencky { elastic }) };
     let (friction, dilation) = (friction.value.to_radians(), dilation.value.to_radians());
-    Material::MohrCoulomb(MohrCoulomb::new(elastic, friction, dilation, cohesion.value).reduced(factor))
+    let law = MohrCoulomb::new(elastic, friction, dilation, cohesion.value);
+    Material::MohrCoulomb(law.separating(separation).reduced(factor))
 }
 
 /// The law by height above the grid's lower corner.
-fn graded(young: Profile, poisson: f64, strength: Option<[Profile; 3]>, (layer, factor): (&Layer, f64)) -> Material {
+fn graded(
+    young: Profile,
+    poisson: f64,
+    strength: Option<[Profile; 3]>,
+    (layer, factor, separation): (&Layer, f64, Separation),
+) -> Material {
     let relative = |profile: Profile| Profile { at: profile.at - layer.base, ..profile };
     let strength = strength.map(|[friction, dilation, cohesion]| GradedStrength {
         friction: relative(radians(friction)),
         dilation: dilation.value.to_radians(),
         cohesion: relative(cohesion),
         reduction: factor,
+        separation,
     });
     let heights = layer.heights.start - layer.base..layer.heights.end - layer.base;
     Material::Graded(Graded::new(relative(young), poisson, strength, heights))
@@ -190,8 +198,8 @@ fn density(record: &Record, regime: Option<Regime>, report: &mut Report<'_>) -> 
 fn law(record: &Record, layer: Option<&Layer>, report: &mut Report<'_>) -> Option<Option<[Profile; 3]>> {
     let model = record.word("model")?;
     let (unused, required): (&[&str], &[&str]) = match model {
-        "hencky" => (&["friction", "dilation", "cohesion"], &[]),
-        "tresca" => (&["friction", "dilation"], &["cohesion"]),
+        "hencky" => (&["friction", "dilation", "cohesion", "separation"], &[]),
+        "tresca" => (&["friction", "dilation", "separation"], &["cohesion"]),
         _ => (&[], &["friction", "cohesion"]),
     };
     let mut whole = true;
@@ -234,6 +242,26 @@ fn law(record: &Record, layer: Option<&Layer>, report: &mut Report<'_>) -> Optio
         report.note(record.path_of("dilation"), "0.0", "default: plastic flow without change of volume");
     }
     Some(Some([friction, dilation, cohesion]))
+}
+
+/// What becomes of the volume that opens at the apex. Only where that is free of stress can it be a gap: with cohesion
+/// it would pull with c cot phi until it has closed, and without friction there is no apex.
+fn separation(
+    record: &Record,
+    strength: Option<&[Profile; 3]>,
+    layer: Option<&Layer>,
+    report: &mut Report<'_>,
+) -> Separation {
+    let (Some("closing"), Some([friction, _, cohesion])) = (record.word("separation"), strength) else {
+        return Separation::Forgotten;
+    };
+    let bounds =
+        |profile: &Profile| profile.bounds(&layer.map_or(profile.at..profile.at, |layer| layer.heights.clone()));
+    if bounds(friction).0 <= 0.0 || bounds(cohesion).1 > 0.0 {
+        let message = "\"closing\" needs friction and no cohesion: a gap is what opens where the stress is zero";
+        record.error("separation", message, report);
+    }
+    Separation::Closing
 }
 
 /// Tresca's angles may be written if they are zero.

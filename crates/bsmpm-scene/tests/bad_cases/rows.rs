@@ -156,6 +156,23 @@ pub const RULES: &[Row] = &[
         "no meaning in model \"hencky\"",
     )
     .down(1),
+    row("\"forgotten\"", "\"closed\"", "material.sand.separation", "expected one of \"forgotten\", \"closing\""),
+    row("\"forgotten\"", "\"closing\"", "material.sand.separation", "needs friction and no cohesion"),
+    row(
+        "cohesion    = 2e4",
+        "cohesion = 2e4\nseparation = \"closing\"",
+        "material.clay.separation",
+        "no meaning in model",
+    )
+    .down(1),
+    row(
+        "poisson     = 0.2",
+        "poisson = 0.2\nseparation = \"closing\"",
+        "material.block.separation",
+        "no meaning in model",
+    )
+    .down(1),
+    row("k0          = 0.6", "separation = \"closing\"", "material.till.separation", "needs friction and no cohesion"),
     row(
         "material = \"sand\"",
         "material = \"snad\"",

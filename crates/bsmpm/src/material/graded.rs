@@ -2,7 +2,7 @@
 //!
 //! A point keeps the parameters of the height at which it was placed: they follow the material, not the place.
 
-use super::{Elastic, Hencky, Material, MohrCoulomb};
+use super::{Elastic, Hencky, Material, MohrCoulomb, Separation};
 use std::ops::Range;
 
 /// A parameter that grows linearly downwards: `value + per_metre (at - y)`.
@@ -46,6 +46,8 @@ pub struct GradedStrength {
     pub cohesion: Profile,
     /// -  strength reduction factor (section 3.2); 1: none
     pub reduction: f64,
+    /// what becomes of the volume that opens at the apex
+    pub separation: Separation,
 }
 
 /// An elastic or Mohr-Coulomb material whose parameters depend on the height.
@@ -74,6 +76,11 @@ impl Graded {
         self.young.at(height) / self.stiffest.young
     }
 
+    /// What becomes of the volume that opens at the apex.
+    pub(super) fn separation(&self) -> Separation {
+        self.strength.as_ref().map_or(Separation::Forgotten, |strength| strength.separation)
+    }
+
     /// The law at a height.
     pub fn at(&self, height: f64) -> Material {
         let elastic = Elastic { young: self.young.at(height), poisson: self.stiffest.poisson };
@@ -86,7 +93,7 @@ impl Graded {
                     strength.dilation.min(strength.friction.at(height)),
                     strength.cohesion.at(height),
                 );
-                Material::MohrCoulomb(law.reduced(strength.reduction))
+                Material::MohrCoulomb(law.separating(strength.separation).reduced(strength.reduction))
             }
         }
     }

@@ -12,8 +12,19 @@ pub struct MohrCoulomb {
     friction: f64,
     dilation: f64,
     cohesion: f64,
+    separation: Separation,
     flow: Flow,    // sin φ and sin ψ, which every response needs
     strength: f64, // Pa  c cos φ
+}
+
+/// What becomes of the volume that opens where the stress returns to the apex: the material has come apart.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Separation {
+    /// It is plastic and forgotten: the material resists at once when it is compressed again, however loose.
+    #[default]
+    Forgotten,
+    /// It is a gap that closes first: see [`Response::gap`](super::Response::gap).
+    Closing,
 }
 
 /// Principal stress after the return, where it lies, and the two sines its tangent needs.
@@ -93,7 +104,13 @@ impl MohrCoulomb {
     /// A law with friction angle 0 ≤ φ < π/2 (rad), dilation angle 0 ≤ ψ ≤ φ (rad) and cohesion c ≥ 0 (Pa).
     pub fn new(elastic: Elastic, friction: f64, dilation: f64, cohesion: f64) -> Self {
         let flow = Flow { sin_phi: friction.sin(), sin_psi: dilation.sin() };
-        Self { elastic, friction, dilation, cohesion, flow, strength: cohesion * friction.cos() }
+        let separation = Separation::default();
+        Self { elastic, friction, dilation, cohesion, separation, flow, strength: cohesion * friction.cos() }
+    }
+
+    /// The law with another answer to what comes apart.
+    pub fn separating(self, separation: Separation) -> Self {
+        Self { separation, ..self }
     }
 
     /// The law with its strength divided by `factor` (section 3.2): `c/SRF`, `atan(tan φ/SRF)`, `ψ_f = min(ψ, φ_f)`.
@@ -102,7 +119,8 @@ impl MohrCoulomb {
             return self;
         }
         let friction = (self.friction.tan() / factor).atan();
-        Self::new(self.elastic, friction, self.dilation.min(friction), self.cohesion / factor)
+        let reduced = Self::new(self.elastic, friction, self.dilation.min(friction), self.cohesion / factor);
+        reduced.separating(self.separation)
     }
 
     /// The elastic part.
@@ -123,6 +141,11 @@ impl MohrCoulomb {
     /// Cohesion c, Pa.
     pub fn cohesion(&self) -> f64 {
         self.cohesion
+    }
+
+    /// What becomes of the volume that opens at the apex.
+    pub fn separation(&self) -> Separation {
+        self.separation
     }
 
     /// Returns a descending trial stress to the yield surface, if it lies outside.

@@ -63,6 +63,20 @@ impl Response {
         self.region
     }
 
+    /// The gap that is open after the return, as a logarithm of volume: `g = tr ε_trial - tr εᵉ` at the apex, else 0.
+    ///
+    /// Material that keeps it is given `b_trial exp(⅔ g)` in the next step, `ε_trial + g/3 I`: it stays at the apex until
+    /// the gap has closed, and then resists at the volume at which it came apart: the volume correction of Klár et al.
+    /// (2016), "Drucker-Prager elastoplasticity for sand animation". g is constant during a step, so that the tangent
+    /// keeps its form. What ψ dilates on faces and edges is no gap, and where such flow goes on what gapes is filled.
+    pub fn gap(&self) -> f64 {
+        if self.region != Region::Apex {
+            return 0.0;
+        }
+        let sum = |eps: [f64; 3]| eps[0] + eps[1] + eps[2];
+        (sum(self.trial.eps) - sum(self.principal_eps_e())).max(0.0)
+    }
+
     /// The equivalent plastic strain of this return: `Δεᵖ = √(2/3) |dev(ε_trial - εᵉ)|`, zero if elastic.
     pub fn plastic_increment(&self) -> f64 {
         let (eps_e, eps) = (self.principal_eps_e(), self.trial.eps);

@@ -6,6 +6,7 @@
 use crate::error::StepError;
 use crate::grid::{Shape, transfer};
 use crate::kinematics::Kinematics;
+use crate::material::{Response, Separation};
 use crate::model::Model;
 use crate::points::Points;
 use crate::seam::{Halo, agreed};
@@ -73,12 +74,22 @@ pub fn commit<K: Kinematics<D>, const D: usize>(
     match model.stabilisation {
         Stabilisation::ModifiedFBar => smooth::average_b_e(model, shape, nodes, points, halo),
         Stabilisation::ConsistentFBar => {
-            let flow: Vec<smooth::Flow> = responses.iter().map(smooth::Flow::of).collect();
+            let flow_of = |(p, response)| smooth::Flow::of(response, points.gap_of(p));
+            let flow: Vec<smooth::Flow> = responses.iter().enumerate().map(flow_of).collect();
             smooth::filter_dilation(model, (shape, nodes), points, &flow, halo);
         }
         Stabilisation::None | Stabilisation::FBar | Stabilisation::FBarZhao => {}
     }
+    points.gap = gaps(model, points, &responses);
     Ok(u)
+}
+
+/// Gap of every point after the step, if some material closes its gaps.
+fn gaps<K, const D: usize>(model: &Model<K, D>, points: &Points<D>, responses: &[Response]) -> Option<Vec<f64>> {
+    let closes: Vec<bool> = model.materials.iter().map(|law| law.separation() == Separation::Closing).collect();
+    let gap =
+        |(response, material): (&Response, &u16)| if closes[usize::from(*material)] { response.gap() } else { 0.0 };
+    closes.contains(&true).then(|| responses.iter().zip(&points.material).map(gap).collect())
 }
 
 /// Steps (10a), (11c), (11d): a_I by Newmark, a_p = sum_I N_Ip a_I, v_p += dt ((1 - gamma) a_p(t) + gamma a_p(t+dt)).

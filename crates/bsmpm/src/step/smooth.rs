@@ -30,10 +30,11 @@ pub struct Flow {
 }
 
 impl Flow {
-    /// Of one response.
-    pub fn of(response: &Response) -> Self {
+    /// Of one response; `gap` is what gaped before the step, which is in its trial but did not flow in it.
+    pub fn of(response: &Response, gap: f64) -> Self {
         let (trial, elastic) = (response.principal_eps_trial(), response.principal_eps_e());
-        let squares: f64 = trial.iter().zip(elastic).map(|(trial, elastic)| (trial - elastic).powi(2)).sum();
+        let squares: f64 =
+            trial.iter().zip(elastic).map(|(trial, elastic)| (trial - gap / 3.0 - elastic).powi(2)).sum();
         Self { plastic: (2.0 / 3.0 * squares).sqrt(), dilation: elastic.iter().sum() }
     }
 }

@@ -91,7 +91,7 @@ impl Trial {
         self.dilation.is_some()
     }
 
-    /// Steps (4f)-(4i): trial b^e of point `p` under dF-bar, and the constitution's answer.
+    /// Steps (4f)-(4i): trial b^e of point `p` under dF-bar, widened by its gap, and the constitution's answer.
     #[inline]
     pub fn respond<K: Kinematics<D>, const D: usize>(
         &self,
@@ -103,7 +103,10 @@ impl Trial {
             Some(_) => K::push_forward(&K::dilate(&self.dF[p], self.ratio(points, p)), &points.b_e[p]),
             None => K::push_forward(&self.dF[p], &points.b_e[p]),
         };
-        model.respond(points, p, &b_trial)
+        match points.gap_of(p) {
+            0.0 => model.respond(points, p, &b_trial),
+            gap => model.respond(points, p, &b_trial.scaled((2.0 / 3.0 * gap).exp())),
+        }
     }
 }
 

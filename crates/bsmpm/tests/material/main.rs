@@ -3,6 +3,7 @@
 mod continuity;
 mod driver;
 mod eigen;
+mod gap;
 mod input;
 mod projection;
 mod random;

@@ -161,7 +161,7 @@ fn the_filter_smooths_the_elastic_dilation_where_the_material_flows_and_nothing_
     let mut flow = Vec::new();
     for p in 0..scene.points.len() {
         let response = scene.model.respond(&scene.points, p, &scene.points.b_e[p]).unwrap();
-        flow.push(smooth::Flow::of(&response));
+        flow.push(smooth::Flow::of(&response, 0.0));
         scene.points.b_e[p] = response.b_e();
     }
     let before = scene.points.b_e.clone();
@@ -191,7 +191,7 @@ fn without_flow_the_filter_leaves_every_bit() {
     let shape = Shape::at(&scene.model.grid, &scene.points).unwrap();
     let nodes = Nodes::map(&scene.model, &shape, &scene.points, (0.0, 1.0), &halo).expect("no loads");
     let respond = |p: usize| scene.model.respond(&before, p, &before.b_e[p]).unwrap();
-    let flow: Vec<_> = (0..before.len()).map(|p| smooth::Flow::of(&respond(p))).collect();
+    let flow: Vec<_> = (0..before.len()).map(|p| smooth::Flow::of(&respond(p), 0.0)).collect();
     smooth::filter_dilation(&scene.model, (&shape, &nodes), &mut scene.points, &flow, &halo);
     assert_eq!(scene.points, before);
 }

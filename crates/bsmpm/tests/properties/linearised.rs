@@ -7,8 +7,9 @@ use bsmpm::boundary::strip::Grips;
 use bsmpm::boundary::{Path, Strip, Support, surface};
 use bsmpm::grid::Shape;
 use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
-use bsmpm::material::{Elastic, Material, MohrCoulomb};
+use bsmpm::material::{Elastic, Material, MohrCoulomb, Region, Separation};
 use bsmpm::model::Regime;
+use bsmpm::points::Points;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::step::equilibrium;
 use bsmpm::step::linearised::Linearised;
@@ -99,4 +100,26 @@ fn strips_are_in_the_product() {
     let with = scene.clone().strip(Strip { points, normal: Some([0.0, 1.0].into()), path, penalty: 1e4 });
     let [(free, _), (held, _)] = [&scene, &with].map(product_error);
     assert!(free <= 1e-6 && held <= 1e-6, "{free:e} {held:e}");
+}
+
+/// Sand that gapes, some of it closing so far that it resists again.
+#[test]
+fn what_gapes_is_in_the_product() {
+    let sand = MohrCoulomb::new(Elastic { young: 1000.0, poisson: 0.3 }, 0.5, 0.0, 0.0);
+    for method in METHODS {
+        let mut scene = loaded::<PlaneStrain, 2>(method, Regime::Dynamic);
+        scene.model.materials = vec![Material::MohrCoulomb(sand.clone().separating(Separation::Closing))];
+        let mut random = Random::new(5);
+        scene.points.gap = Some((0..scene.points.len()).map(|_| 0.02 * random.unit()).collect());
+        let response = |p: usize, b_e: &Symmetric| scene.model.respond(&scene.points, p, b_e).unwrap();
+        let opened = |p: usize, gap: f64| response(p, &scene.points.b_e[p].scaled((2.0 / 3.0 * gap).exp()));
+        let gaps = scene.points.gap.as_ref().unwrap();
+        let open = (0..gaps.len()).filter(|&p| opened(p, gaps[p]).region() == Region::Apex).count();
+        assert!(open > 0 && open < gaps.len(), "{open} of {}", gaps.len());
+        let (error, _) = product_error(&scene);
+        println!("{method:?}: {error:e}");
+        assert!(error <= 1e-6, "{method:?}: {error:e}"); // central differences
+        let forgotten = Scene { model: scene.model.clone(), points: Points { gap: None, ..scene.points.clone() } };
+        assert_ne!(product_error(&forgotten).0, error, "the gap is seen");
+    }
 }

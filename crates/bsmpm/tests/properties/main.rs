@@ -6,6 +6,7 @@
 mod background;
 mod broyden;
 mod dilation;
+mod gap;
 mod kinematics;
 mod linearised;
 mod observe;

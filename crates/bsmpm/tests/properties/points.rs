@@ -28,6 +28,7 @@ fn varied(regime: Regime) -> Scene<PlaneStrain, 2> {
         }
     }
     points.dilation = (regime == Regime::QuasiStatic).then(|| random.array(points.len()));
+    points.gap = (regime == Regime::Dynamic).then(|| random.array(points.len()));
     points.sort_by_cell(&scene.model.grid);
     scene
 }
@@ -84,6 +85,7 @@ fn every_column_travels_through_a_message_bit_by_bit() {
         assert_eq!(message.len(), points.len() * points.bytes());
         let mut received = Points::<2>::from_seeds([], regime == Regime::Dynamic);
         received.dilation = points.dilation.as_ref().map(|_| Vec::new());
+        received.gap = points.gap.as_ref().map(|_| Vec::new());
         let mut rest = message.as_slice();
         while !rest.is_empty() {
             received.columns().into_iter().for_each(|column| column.take(&mut rest));
@@ -96,7 +98,7 @@ fn every_column_travels_through_a_message_bit_by_bit() {
 #[test]
 fn quasi_static_points_carry_no_motion() {
     let (mut dynamic, mut quasi_static) = (varied(Regime::Dynamic).points, varied(Regime::QuasiStatic).points);
-    quasi_static.dilation = None;
+    (quasi_static.dilation, dynamic.gap) = (None, None);
     assert!(quasi_static.motion.is_none());
     assert_eq!(dynamic.bytes() - quasi_static.bytes(), 4 * 8);
     assert_eq!(quasi_static.bytes(), 8 + 2 + 8 * (2 + 2 + 1 + 1 + 9 + 6 + 6 + 1));

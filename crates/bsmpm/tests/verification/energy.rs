@@ -7,7 +7,7 @@ use bsmpm::background::{Background, Extent, Kind};
 use bsmpm::boundary::{Load, Path, Strip, Support, surface};
 use bsmpm::energy::{Books, Stored};
 use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
-use bsmpm::material::{Elastic, Material, MohrCoulomb};
+use bsmpm::material::{Elastic, Material, MohrCoulomb, Separation};
 use bsmpm::model::{Regime, Weighting};
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::step::newmark::Newmark;
@@ -111,8 +111,8 @@ fn numerical_damping_is_a_loss_of_the_integration() {
 }
 
 /// A column of dry soil, 2 x 1 m of .25 m cells, that collapses on a rough base beside a smooth wall.
-fn collapse(method: Stabilisation) -> Scene<PlaneStrain, 2> {
-    let soil = MohrCoulomb::new(Elastic { young: 1e5, poisson: 0.3 }, 0.4, 0.0, 0.0);
+fn collapse(method: Stabilisation, separation: Separation) -> Scene<PlaneStrain, 2> {
+    let soil = MohrCoulomb::new(Elastic { young: 1e5, poisson: 0.3 }, 0.4, 0.0, 0.0).separating(separation);
     Scene::new([axis(0.25, 16, 2), axis(0.25, 6, 2)], Material::MohrCoulomb(soil), Regime::Dynamic)
         .body([0..4, 0..4], 2, 2000.0, |x| x * 0.0)
         .support(Support::roller(0, false))
@@ -123,8 +123,12 @@ fn collapse(method: Stabilisation) -> Scene<PlaneStrain, 2> {
 
 #[test]
 fn a_collapse_with_friction_closes() {
-    for method in [Stabilisation::FBar, Stabilisation::ModifiedFBar] {
-        let mut scene = collapse(method);
+    for (method, separation) in [
+        (Stabilisation::FBar, Separation::Forgotten),
+        (Stabilisation::ModifiedFBar, Separation::Forgotten),
+        (Stabilisation::ConsistentFBar, Separation::Closing),
+    ] {
+        let mut scene = collapse(method, separation);
         scene.model.background =
             Some(Background { kind: Kind::Laplacian, coefficient: 1e-4, extent: Extent::Occupied });
         let course = kept(scene, 2e-3, 0.3);

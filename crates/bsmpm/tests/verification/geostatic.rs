@@ -4,7 +4,7 @@ use crate::support::scene::{Scene, axis, hencky};
 use crate::support::solver::Skyline;
 use bsmpm::initial;
 use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
-use bsmpm::material::{Graded, GradedStrength, Material, Profile, Region};
+use bsmpm::material::{Graded, GradedStrength, Material, Profile, Region, Separation};
 use bsmpm::model::Regime;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::tensor::Symmetric;
@@ -95,6 +95,7 @@ fn strength_follows_the_height_at_which_a_point_was_placed() {
         dilation: 0.0,
         cohesion: Profile { value: 10.0, at: 4.0, per_metre: 5.0 },
         reduction: 2.0,
+        separation: Separation::Forgotten,
     };
     let law = Graded::new(Profile::constant(1e5), 0.3, Some(strength), 0.0..4.0);
     let scene = ground::<PlaneStrain, 2>(Material::Graded(law));

@@ -5,6 +5,7 @@ use bsmpm::background::{Background, Extent, Kind};
 use bsmpm::boundary::Support;
 use bsmpm::grid::KnotVector;
 use bsmpm::kinematics::PlaneStrain;
+use bsmpm::material::{Elastic, Material, MohrCoulomb, Separation};
 use bsmpm::model::{Gravity, Regime};
 use bsmpm::points::Points;
 use bsmpm::stabilisation::Stabilisation;
@@ -117,13 +118,17 @@ fn the_origin_of_the_axes_does_not_matter_and_neither_do_whole_cells() {
     assert!(worst <= 1e-11); // measured 9e-14
 }
 
-/// A block thrown at a wall with all data in other units, and its rows back in the first ones.
-fn in_units(length: f64, mass: f64, time: f64, method: Stabilisation) -> Vec<Vec<f64>> {
+/// A block thrown at a wall with all data in other units, and its rows back in the first ones; `material` of a stress.
+fn in_units(
+    [length, mass, time]: [f64; 3],
+    method: Stabilisation,
+    material: impl Fn(f64) -> Material,
+) -> Vec<Vec<f64>> {
     let stress = mass / (length * time * time);
     let speed = length / time;
     let mut scene = Scene::<PlaneStrain, 2>::new(
         [axis(0.5 * length, 8, 2), axis(0.5 * length, 5, 2)],
-        hencky(100.0 * stress, 0.3),
+        material(stress),
         Regime::Dynamic,
     )
     .body([2..5, 0..3], 2, mass / (length * length * length), |x| [-0.8 * speed, 0.1 * speed + 0.0 * x[0]].into())
@@ -138,13 +143,22 @@ fn in_units(length: f64, mass: f64, time: f64, method: Stabilisation) -> Vec<Vec
 
 #[test]
 fn powers_of_two_as_units_change_no_bit() {
-    for method in METHODS {
-        let reference = in_units(1.0, 1.0, 1.0, method);
-        for [length, mass, time] in [[10, 20, 5], [-7, 33, -12], [3, -50, 9]] {
-            let scaled = in_units(2.0_f64.powi(length), 2.0_f64.powi(mass), 2.0_f64.powi(time), method);
-            assert_eq!(scaled, reference, "{method:?}: 2^{length} m, 2^{mass} kg, 2^{time} s");
+    let rubber = |stress: f64| hencky(100.0 * stress, 0.3);
+    let sand = |stress: f64| {
+        let sand = MohrCoulomb::new(Elastic { young: 1e4 * stress, poisson: 0.3 }, 0.5, 0.0, 0.0);
+        Material::MohrCoulomb(sand.separating(Separation::Closing))
+    };
+    let check = |method, material: &dyn Fn(f64) -> Material| {
+        let reference = in_units([1.0; 3], method, material);
+        for powers in [[10, 20, 5], [-7, 33, -12], [3, -50, 9]] {
+            let scaled = in_units(powers.map(|power| 2.0_f64.powi(power)), method, material);
+            assert_eq!(scaled, reference, "{method:?}: 2^n m, kg, s with n = {powers:?}");
         }
+    };
+    for method in METHODS {
+        check(method, &rubber);
     }
+    check(Stabilisation::ConsistentFBar, &sand);
 }
 
 #[test]

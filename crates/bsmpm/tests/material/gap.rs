@@ -1,0 +1,66 @@
+//! Volume that opens at the apex: sand comes apart, and resists again where it came apart.
+
+use super::{mohr_coulomb, respond};
+use bsmpm::material::{Material, Region, Response};
+use bsmpm::tensor::Symmetric;
+
+/// A step of a point: its elastic state and gap, driven by the stretches of the axes.
+fn driven(material: &Material, (b_e, gap): (Symmetric, f64), stretch: [f64; 3]) -> Response {
+    let [x, y, z, ..] = b_e.0;
+    let open = (2.0 / 3.0 * gap).exp();
+    let [p, q, r] = stretch.map(|ratio| ratio * ratio * open);
+    respond(material, &Symmetric([x * p, y * q, z * r, 0.0, 0.0, 0.0]))
+}
+
+/// From rest apart to J = 1.5, in plane strain with shear on the way, back and into compression: without stress until J = 1,
+/// and then on the path of sand that has never come apart.
+#[test]
+fn sand_resists_again_at_the_volume_at_which_it_came_apart() {
+    let material = mohr_coulomb(1e4, 0.3, 30.0, 0.0, 0.0);
+    let shares = [[0.5, 0.5, 0.0], [1.4, -0.4, 0.0], [0.1, 0.9, 0.0]];
+    let up = (0..50).map(|step| 1.5_f64.ln() / 50.0 * if step < 25 { 1.2 } else { 0.8 });
+    let mut state = (Symmetric::IDENTITY, 0.0);
+    let mut volume = 0.0_f64;
+    for (step, change) in up.clone().chain(up.map(|change| -change)).enumerate() {
+        let found = driven(&material, state, shares[step % 3].map(|share| (share * change).exp()));
+        volume += change;
+        state = (found.b_e(), found.gap());
+        let closed = volume <= 1e-12;
+        assert!(closed || (found.region() == Region::Apex && found.principal_tau() == [0.0; 3]), "step {step}");
+        assert!((state.1 - volume.max(0.0)).abs() <= 1e-13, "step {step}: {} for {volume}", state.1);
+    }
+    assert!(state.1 <= 1e-13 && volume.abs() <= 1e-13);
+    let squeeze = |state| driven(&material, state, [0.99, 0.995, 1.0]);
+    let (again, virgin) = (squeeze(state), squeeze((Symmetric::IDENTITY, 0.0)));
+    assert_eq!(again.region(), virgin.region());
+    for (again, virgin) in again.principal_tau().into_iter().zip(virgin.principal_tau()) {
+        assert!((again - virgin).abs() <= 1e-10 * 1e4, "{again} for {virgin}");
+    }
+    let forgotten = squeeze((state.0, 0.0));
+    assert!(forgotten.principal_tau()[2] < 0.0 && squeeze((state.0, 0.1)).principal_tau() == [0.0; 3]);
+}
+
+/// One step that closes the gap and compresses by as much more: what is beyond closing is all that is elastic.
+#[test]
+fn a_step_across_the_closing_keeps_the_volume_beyond_it() {
+    let material = mohr_coulomb(1e4, 0.3, 30.0, 0.0, 0.0);
+    let change = |by: f64| [(0.5 * by).exp(), (0.5 * by).exp(), 1.0];
+    let open = driven(&material, (Symmetric::IDENTITY, 0.0), change(0.01));
+    let closed = driven(&material, (open.b_e(), open.gap()), change(-0.02));
+    let volume: f64 = closed.principal_eps_e().iter().sum();
+    assert!((volume + 0.01).abs() <= 1e-14 && closed.gap() == 0.0, "{volume}");
+}
+
+/// What shear dilates with psi > 0 off the apex is plastic, as ever.
+#[test]
+fn dilation_is_no_gap() {
+    let material = mohr_coulomb(1e4, 0.3, 30.0, 15.0, 0.0);
+    let mut state = (Symmetric::IDENTITY, 0.0);
+    state.0 = driven(&material, state, [0.99, 0.99, 0.99]).b_e();
+    for _ in 0..10 {
+        let found = driven(&material, state, [1.002, 0.998, 1.0]);
+        assert!(found.region() != Region::Elastic || found.plastic_increment() == 0.0);
+        assert!(found.region() != Region::Apex && found.gap() == 0.0);
+        state = (found.b_e(), found.gap());
+    }
+}
