@@ -102,6 +102,7 @@ impl Stepper {
                         StepError::Left { .. }
                             | StepError::Outside { .. }
                             | StepError::Unloaded { .. }
+                            | StepError::Material { .. }
                             | StepError::OtherRank
                     );
                     rejected.push(error);

@@ -91,8 +91,11 @@ pub enum StepError {
         /// Id and position (m) of the first one on this rank, if any.
         first: Option<(u64, Vec<f64>)>,
     },
-    /// The iteration limit was reached.
-    #[error("not converged after {iterations} iterations: energy measure {energy:.2e}, force measure {force:.2e}")]
+    /// The iteration limit was reached, or no direction led on.
+    #[error(
+        "not converged after {iterations} iterations: energy measure {energy:.2e}, force measure {force:.2e}{}",
+        unsolved.as_ref().map_or_else(String::new, |reason| format!("; no direction from there: {reason}"))
+    )]
     NotConverged {
         /// Iterations made.
         iterations: usize,
@@ -104,6 +107,8 @@ pub enum StepError {
         history: Vec<Measures>,
         /// The worst nodes of this rank, worst first.
         worst: Vec<WorstNode>,
+        /// Why there is no direction from the last state, if that ended it.
+        unsolved: Option<SolveError>,
     },
     /// Another rank has the error; this rank's part was good.
     #[error("another rank could not make the step")]

@@ -109,4 +109,16 @@ impl<K: Kinematics<D>, const D: usize> Model<K, D> {
     pub fn stiffest(&self) -> f64 {
         self.materials.iter().map(|m| m.elastic().young).fold(0.0, f64::max)
     }
+
+    /// Young's modulus of point `p`, Pa.
+    pub fn young(&self, points: &Points<D>, p: usize) -> f64 {
+        let material = &self.materials[usize::from(points.material[p])];
+        material.elastic().young * material.relative_stiffness(points.height(p))
+    }
+
+    /// Whether all points have one Young's modulus.
+    pub fn is_uniformly_stiff(&self) -> bool {
+        let uniform = |m: &Material| !matches!(m, Material::Graded(_)) && m.elastic().young == self.stiffest();
+        self.materials.iter().all(uniform)
+    }
 }

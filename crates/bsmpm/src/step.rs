@@ -11,6 +11,7 @@ pub mod nodes;
 pub mod progress;
 pub mod quasi_newton;
 pub mod residual;
+pub mod round_off;
 pub mod smooth;
 pub mod stiffness;
 pub mod trial;

@@ -13,7 +13,10 @@ const MOST_PLACES: usize = 10;
 /// The report of `failure` in step `step`, from all ranks; `lower` is the grid's lower corner. Collective.
 pub(super) fn of(world: &SimpleCommunicator, failure: &Failure, step: u64, lower: [f64; 2]) -> FailureReport {
     let last = failure.attempts.last();
-    let history = match last {
+    // The last attempt may have ended before it iterated; all ranks have the same kinds of errors.
+    let iterated = |error: &&StepError| matches!(error, StepError::NotConverged { .. });
+    let iterated = failure.attempts.iter().rev().find(iterated);
+    let history = match iterated {
         Some(StepError::NotConverged { history, .. }) => {
             history.iter().map(|m| Measures::new(m.energy, m.force)).collect()
         }
@@ -25,9 +28,14 @@ pub(super) fn of(world: &SimpleCommunicator, failure: &Failure, step: u64, lower
         dt: failure.dt,
         attempts: failure.attempts.iter().map(ToString::to_string).collect(),
         history,
-        worst: last.map_or_else(Vec::new, |error| worst(world, error, lower)),
+        worst: last.map_or_else(Vec::new, |error| worst(world, places_of(error, iterated), lower)),
         advice: last.map_or_else(Vec::new, advice),
     }
+}
+
+/// The error whose places are told: the last one, or where that names none the last that iterated.
+fn places_of<'a>(last: &'a StepError, iterated: Option<&'a StepError>) -> &'a StepError {
+    if matches!(last, StepError::Solve(_)) { iterated.unwrap_or(last) } else { last }
 }
 
 /// Order among the places, number, x and y, force or 0.

@@ -41,7 +41,7 @@ impl Run {
         Self { scratch, output }
     }
 
-    fn directory(&self) -> PathBuf {
+    pub fn directory(&self) -> PathBuf {
         self.scratch.path("case.out")
     }
 

@@ -3,6 +3,7 @@
 use crate::physics::scene::{Scene, axis, by_id, hencky};
 use crate::scenes::{Collapse, RODS, Soil, layers};
 use crate::solver::Run;
+use crate::support::results::steps;
 use crate::table::Found;
 use bsmpm::boundary::Support;
 use bsmpm::kinematics::PlaneStrain;
@@ -54,6 +55,16 @@ fn contrast(contrast: f64, is_airy: bool) -> (Arc<Run>, f64) {
 pub fn weight(ratio: f64, is_airy: bool) -> Found {
     let (run, weight) = contrast(ratio, is_airy);
     run.found(|run| Found::Figure((run.last("reaction-y") / weight - 1.0).abs(), run.effort()))
+}
+
+/// Largest force measure of an accepted step below layers of that contrast; the tolerance is 1e-8, round-off of the stiff
+/// layer may be more.
+pub fn balance(ratio: f64) -> Found {
+    let (run, _) = contrast(ratio, false);
+    run.found(|run| {
+        let residuals = steps(&run.directory()).get("residual").expect("residuals").to_vec();
+        Found::Figure(residuals.into_iter().fold(0.0, f64::max), run.effort())
+    })
 }
 
 /// Largest error of the vertical stress of points in the two cells at the interface, over the stress there.

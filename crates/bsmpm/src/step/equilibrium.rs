@@ -69,8 +69,9 @@ pub struct Found {
 }
 
 impl Found {
-    /// The state that an iteration reached, after so many by Newton's method.
-    pub fn new(u: Vec<f64>, residual: Residual, progress: &Progress, newton_iterations: usize) -> Self {
+    /// The state that an iteration reached.
+    pub fn new(u: Vec<f64>, residual: Residual, progress: &Progress) -> Self {
+        let newton_iterations = progress.by_newton();
         let (force, Residual { trial, balance, .. }) = (residual.balance.measure(), residual);
         let (history, reaction) = (progress.history().to_vec(), balance.reaction);
         Self { u, trial, reaction, history, force, newton_iterations, first_guess: true }

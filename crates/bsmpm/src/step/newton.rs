@@ -1,7 +1,7 @@
 //! Newton's method with the complete derivative, solved by a Krylov method, and a line search: for the steps in which
 //! quasi-Newton iterations stall.
 
-use crate::error::{SolveError, StepError};
+use crate::error::SolveError;
 use crate::kinematics::Kinematics;
 use crate::seam::{LinearSolver, dots};
 use crate::step::Counts;
@@ -35,25 +35,28 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
     if !residual.balance.is_sound() {
         return Err(inverted(scene, &residual, progress.iterations()).into());
     }
-    for iteration in 0..MOST {
-        if progress.is_balanced(&residual.balance) {
-            return Ok(Found::new(u, residual, progress, iteration));
+    for _ in 0..MOST {
+        if progress.is_balanced(&residual.balance, scene) {
+            return Ok(Found::new(u, residual, progress));
         }
-        let du = direction(scene, &residual, solver, counts)?;
+        let du = match direction(scene, &residual, solver, counts) {
+            Ok(du) => du,
+            Err(unsolved) => return Err(Stopped::without_direction(scene, (u, &residual), progress, unsolved)),
+        };
         let f = &residual.balance.f_oob;
         if !progress.has_begun() {
             progress.begin(first_energy(scene, f, &du));
         }
         let energy = dots(scene.halo, D, &[(&du, f)])[0].abs();
         if progress.reaches(Method::Newton, energy, &residual.balance) {
-            return Ok(Found::new(u, residual, progress, iteration + 1));
+            return Ok(Found::new(u, residual, progress));
         }
         match search(scene, &u, &du, &residual, counts) {
             Some((next, found)) => (u, residual) = (next, found),
             None => break,
         }
     }
-    Err(Stopped { error: progress.failed(scene, &residual), best: Some(u) })
+    Err(Stopped { error: progress.failed(scene, &residual, None), best: Some(u) })
 }
 
 /// K du = f_oob with the complete K at this state.
@@ -62,7 +65,7 @@ fn direction<K: Kinematics<D>, const D: usize>(
     residual: &Residual,
     solver: &mut dyn LinearSolver,
     counts: &mut Counts,
-) -> Result<Vec<f64>, StepError> {
+) -> Result<Vec<f64>, SolveError> {
     let linearised = Linearised::at(scene, residual);
     linearised.factorise(solver)?;
     counts.factorisations += 1;
@@ -73,7 +76,7 @@ fn direction<K: Kinematics<D>, const D: usize>(
     let krylov = solver.solve_with(&mut product, forcing, &residual.balance.f_oob, &mut du)?;
     counts.products += krylov.iterations + 1;
     counts.linear_iterations += krylov.iterations;
-    if krylov.residual < USELESS { Ok(du) } else { Err(SolveError::Residual(krylov.residual).into()) }
+    if krylov.residual < USELESS { Ok(du) } else { Err(SolveError::Residual(krylov.residual)) }
 }
 
 /// The longest of the direction's first part, half, quarter, .. that lessens the out-of-balance force.

@@ -3,20 +3,17 @@
 //! The paper prints the same numerator and denominator; read |du_k . f_k| / |du_0 . f_0|. That product is no norm (it
 //! crosses zero while the forces are far from balanced), so the relative out-of-balance force must be small too.
 
-use crate::error::{Measures, StepError, WorstNode};
+use crate::error::{Measures, SolveError, StepError, WorstNode};
 use crate::kinematics::Kinematics;
 use crate::model::Criteria;
 use crate::seam::dots;
 use crate::step::equilibrium::{Method, Scene};
 use crate::step::residual::{Balance, Residual};
+use crate::step::round_off::RoundOff;
 use crate::tensor::Vector;
 
-/// A first residual this much below the force tolerance needs no iteration: |du_0 . f_0| would only be noise.
+/// A first residual this much below the force tolerance needs no direction: |du_0 . f_0| would only be noise.
 const ALREADY: f64 = 1e-2;
-/// Round-off of the internal force, relative to E h^(D-1) x 1 m^(3-D) per square root of an unknown.
-const ROUND_OFF: f64 = 1e-13;
-/// Round-off of the inertia, relative to |4/dt M v| (with numerical damping: its factor): a few roundings.
-const CANCELLED: f64 = 4.0 * f64::EPSILON;
 /// Iterations over which the rate of convergence is taken.
 const WINDOW: usize = 20;
 /// Iterations that a quasi-Newton method may still need to be left going: about the cost of the exact iterations that
@@ -30,7 +27,7 @@ const WORST: usize = 5;
 #[derive(Clone, Debug)]
 pub struct Progress {
     criteria: Criteria,
-    floor: f64,                // N  round-off of the forces
+    round_off: RoundOff,
     first_energy: Option<f64>, // N m  |du_0 . f_0|
     history: Vec<Measures>,
 }
@@ -38,14 +35,15 @@ pub struct Progress {
 impl Progress {
     /// Nothing iterated yet.
     pub fn new<K: Kinematics<D>, const D: usize>(scene: &Scene<'_, K, D>) -> Self {
-        let (criteria, floor) = (scene.model.criteria, round_off(scene));
-        Self { criteria, floor, first_energy: None, history: Vec::new() }
+        let (criteria, round_off) = (scene.model.criteria, RoundOff::of(scene));
+        Self { criteria, round_off, first_energy: None, history: Vec::new() }
     }
 
-    /// Whether a state is in equilibrium before any direction is known.
-    pub fn is_balanced(&self, balance: &Balance) -> bool {
+    /// Whether a state is in equilibrium before any direction is known: a guess far below the force tolerance, or forces
+    /// that no node has further out of balance than by round-off.
+    pub fn is_balanced<K, const D: usize>(&self, balance: &Balance, scene: &Scene<'_, K, D>) -> bool {
         let first = self.history.is_empty();
-        balance.norm <= self.floor || (first && balance.measure() <= ALREADY * self.criteria.force)
+        (first && balance.measure() <= ALREADY * self.criteria.force) || self.round_off.covers(balance, scene)
     }
 
     /// Whether any direction has been measured yet.
@@ -89,14 +87,25 @@ impl Progress {
         now.ln() > PATIENCE * per_iteration
     }
 
-    /// The error of an iteration that ended at `residual`.
-    pub fn failed<K, const D: usize>(&self, scene: &Scene<'_, K, D>, residual: &Residual) -> StepError {
+    /// How many of the iterations were Newton's.
+    pub fn by_newton(&self) -> usize {
+        self.history.iter().filter(|measures| measures.method == Method::Newton).count()
+    }
+
+    /// The error of an iteration that ended at `residual`; `unsolved` where no direction was found there.
+    pub fn failed<K, const D: usize>(
+        &self,
+        scene: &Scene<'_, K, D>,
+        residual: &Residual,
+        unsolved: Option<SolveError>,
+    ) -> StepError {
         StepError::NotConverged {
             iterations: self.history.len(),
             energy: self.history.last().map_or(f64::INFINITY, |measures| measures.energy),
             force: residual.balance.measure(),
             history: self.history.clone(),
             worst: worst_nodes(scene, residual),
+            unsolved,
         }
     }
 }
@@ -132,16 +141,4 @@ fn worst_nodes<K, const D: usize>(scene: &Scene<'_, K, D>, residual: &Residual) 
         WorstNode { number: (first + node) as u64, x, force: force(node) }
     };
     nodes.into_iter().take(WORST).map(told).collect()
-}
-
-/// Out-of-balance force that is round-off, N: of the stiffest material, 1e-13 E_max h^(D-1) sqrt(n), or of the inertia,
-/// whose terms 4/dt^2 u and 4/dt v cancel when dt is tiny.
-fn round_off<K: Kinematics<D>, const D: usize>(scene: &Scene<'_, K, D>) -> f64 {
-    let edge = scene.model.grid.smallest_edge();
-    let nodes = scene.nodes;
-    let internal = ROUND_OFF * scene.model.stiffest() * edge.powi(D as i32 - 1) * (nodes.unknowns as f64).sqrt();
-    let Some(inertia) = &nodes.inertia else { return internal };
-    let pulse = |(c, v): (usize, &f64)| inertia.newmark.pulse(inertia.dt) * nodes.weight[c / D] * v;
-    let pulse: Vec<f64> = inertia.v.iter().enumerate().map(pulse).collect();
-    internal.max(CANCELLED * dots(scene.halo, D, &[(&pulse, &pulse)])[0].sqrt())
 }

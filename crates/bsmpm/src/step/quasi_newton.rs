@@ -87,6 +87,22 @@ pub struct Stopped {
     pub best: Option<Vec<f64>>,
 }
 
+impl Stopped {
+    /// An iteration whose linear system could not be solved at a state; where nothing was iterated before, the system itself
+    /// is at fault.
+    pub fn without_direction<K, const D: usize>(
+        scene: &Scene<'_, K, D>,
+        (best, residual): (Vec<f64>, &Residual),
+        progress: &Progress,
+        unsolved: SolveError,
+    ) -> Self {
+        if progress.iterations() == 0 {
+            return unsolved.into();
+        }
+        Self { error: progress.failed(scene, residual, Some(unsolved)), best: Some(best) }
+    }
+}
+
 impl<E: Into<StepError>> From<E> for Stopped {
     fn from(error: E) -> Self {
         Self { error: error.into(), best: None }
@@ -110,17 +126,20 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
     }
     let (mut best, mut least) = (u.clone(), residual.balance.norm);
     while progress.iterations() < scene.model.criteria.max_iterations && (patient || !progress.stalls()) {
-        if progress.is_balanced(&residual.balance) {
-            return Ok(Found::new(u, residual, progress, 0));
+        if progress.is_balanced(&residual.balance, scene) {
+            return Ok(Found::new(u, residual, progress));
         }
-        let direction = secants.direction::<D>(&residual.balance.f_oob, scene.halo, solver)?; // (6), (7)
+        let direction = match secants.direction::<D>(&residual.balance.f_oob, scene.halo, solver) {
+            Ok(direction) => direction, // (6), (7)
+            Err(unsolved) => return Err(Stopped::without_direction(scene, (best, &residual), progress, unsolved)),
+        };
         counts.iterations += 1;
         counts.linear_iterations += direction.linear_iterations;
         if !progress.has_begun() {
             progress.begin(first_energy(scene, &residual.balance.f_oob, &direction.du));
         }
         if progress.reaches(Method::QuasiNewton(method), direction.energy, &residual.balance) {
-            return Ok(Found::new(u, residual, progress, 0)); // (9)
+            return Ok(Found::new(u, residual, progress)); // (9)
         }
         match advance(scene, &mut u, &direction.du, &mut residual, counts) {
             Ok(length) => secants.took(length), // (8), (4), (5)
@@ -130,7 +149,7 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
             (least, best) = (residual.balance.norm, u.clone());
         }
     }
-    Err(Stopped { error: progress.failed(scene, &residual), best: Some(best) })
+    Err(Stopped { error: progress.failed(scene, &residual, None), best: Some(best) })
 }
 
 /// Step (8): takes the direction, or the first half, quarter, .. of it under which no point inverts.

@@ -126,6 +126,8 @@ fn a_collapse_with_friction_closes() {
     for (method, separation) in [
         (Stabilisation::FBar, Separation::Forgotten),
         (Stabilisation::ModifiedFBar, Separation::Forgotten),
+        (Stabilisation::FBarZhao, Separation::Forgotten),
+        (Stabilisation::ConsistentFBar, Separation::Forgotten),
         (Stabilisation::ConsistentFBar, Separation::Closing),
     ] {
         let mut scene = collapse(method, separation);

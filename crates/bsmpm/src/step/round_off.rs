@@ -1,0 +1,69 @@
+//! What out-of-balance force is round-off: below it no iteration can change a state, and no relative measure means anything.
+
+use crate::kinematics::Kinematics;
+use crate::seam::dots;
+use crate::step::equilibrium::Scene;
+use crate::step::residual::Balance;
+
+/// Round-off of the internal force, relative to E h^(D-1) x 1 m^(3-D).
+const INTERNAL: f64 = 1e-13;
+/// Round-off of the inertia, relative to |4/dt M v| (with numerical damping: its factor): a few roundings.
+const CANCELLED: f64 = 4.0 * f64::EPSILON;
+
+/// Round-off of the forces in one step. Each node has its own: the stiffest material of a scene must not excuse what is out
+/// of balance in the softest.
+#[derive(Clone, Debug)]
+pub struct RoundOff {
+    force: Vec<f64>, // N  1e-13 E h^(D-1), E the largest at the node, and of 4/dt^2 u and 4/dt v that cancel when dt is tiny
+    norm: f64,       // N  of all nodes
+}
+
+impl RoundOff {
+    /// Of the forces of a step, D numbers a node; one reduction, and one exchange where moduli differ.
+    pub fn of<K: Kinematics<D>, const D: usize>(scene: &Scene<'_, K, D>) -> Self {
+        let nodes = scene.nodes;
+        let area = scene.model.grid.smallest_edge().powi(D as i32 - 1);
+        let young = largest_moduli(scene);
+        let mut force: Vec<f64> = young.iter().flat_map(|young| [INTERNAL * young * area; D]).collect();
+        if let Some(inertia) = &nodes.inertia {
+            for (c, force) in force.iter_mut().enumerate() {
+                *force += CANCELLED * inertia.newmark.pulse(inertia.dt) * nodes.weight[c / D] * inertia.v[c].abs();
+            }
+        }
+        force.iter_mut().zip(&nodes.free).filter(|(_, free)| !**free).for_each(|(force, _)| *force = 0.0);
+        let norm = dots(scene.halo, D, &[(&force, &force)])[0].sqrt();
+        Self { force, norm }
+    }
+
+    /// Whether no node is further out of balance than by round-off. All ranks must ask; they share an exchange only where
+    /// the norm leaves a doubt.
+    pub fn covers<K, const D: usize>(&self, balance: &Balance, scene: &Scene<'_, K, D>) -> bool {
+        if balance.norm > self.norm {
+            return false;
+        }
+        let owned = scene.halo.owned();
+        let mut pairs = balance.f_oob.iter().zip(&self.force).skip(owned.start * D).take(owned.len() * D);
+        let mut beyond = [f64::from(u8::from(pairs.any(|(f, limit)| f.abs() > *limit)))];
+        scene.halo.maximum(&mut beyond);
+        beyond[0] == 0.0
+    }
+}
+
+/// Largest Young's modulus of the points in the cells of each node, Pa.
+fn largest_moduli<K: Kinematics<D>, const D: usize>(scene: &Scene<'_, K, D>) -> Vec<f64> {
+    let (model, shape, points) = (scene.model, scene.shape, scene.points);
+    let number = scene.nodes.weight.len();
+    if model.is_uniformly_stiff() {
+        return vec![model.stiffest(); number];
+    }
+    let mut moduli = vec![0.0_f64; number];
+    for patch in shape.patches() {
+        let young = patch.points.clone().map(|p| model.young(points, p)).fold(0.0, f64::max);
+        for offset in shape.offsets() {
+            let node = &mut moduli[patch.first_node + offset];
+            *node = node.max(young);
+        }
+    }
+    scene.halo.max(&mut moduli);
+    moduli
+}
