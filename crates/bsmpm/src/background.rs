@@ -1,4 +1,4 @@
-//! A soft elastic background in nearly empty cells, where nodes hold next to no material.
+//! A soft elastic background, for cells in which nodes hold next to no material.
 //!
 //! A point that enters an empty cell gives its farthest node a stiffness that vanishes faster than its force. The
 //! background ties such nodes to their neighbours; it acts on the step's increment u only, in residual and stiffness

@@ -13,6 +13,7 @@ const CONSISTENT: &str = "consistent-f-bar";
 const EDGE: &str = "at a free edge nodes have next to no stiffness; the background, which dynamics has not, mends it";
 const GRIP: &str = "a pulled strip lets go where points cross into the empty cell before it: its force goes to nodes that hold nothing";
 const START: &str = "points start with a = 0: the first step gains half of g dt, and the fall lags half a step behind";
+const SECANTS: &str = "809 for 261: the secants start from the elastic stiffness, which knows no F-bar";
 const NOISE_P: &str = "not reached with two cells under the strip";
 const NOISE: &str = "4 u/dt^2 - 4 v/dt - a cancels, and a carries its round-off on from step to step";
 const FLIP: &str = "accelerations lose what the grid cannot hold when they go to it and back";
@@ -74,7 +75,7 @@ fn footings() -> Vec<Row> {
         row("N01", "nu = .4999999, the same, modified-f-bar", BEARING, || incompressible::footing(0.499_999_9, MODIFIED)).or_refused().full(),
         row("N01", "nu = .499, footing, modified-f-bar: noise of p about planes / mean |p|", AtMost(0.02), || incompressible::checkerboard(0.499, MODIFIED)).fails(NOISE_P),
         row("N01", "nu = .499, footing, consistent-f-bar: noise of p about planes / mean |p|", AtMost(0.02), || incompressible::checkerboard(0.499, CONSISTENT)).fails(NOISE_P),
-        row("N01", "nu = .499, footing, modified-f-bar: iterations / those with .3", AtMost(3.0), || incompressible::iterations(0.499, MODIFIED)),
+        row("N01", "nu = .499, footing, modified-f-bar: iterations / those with .3", AtMost(3.0), || incompressible::iterations(0.499, MODIFIED)).fails(SECANTS),
         row("N01", "nu = .49999: a warning", Reported, || incompressible::warned(0.49999)).or_refused(),
     ]
 }
