@@ -150,7 +150,7 @@ fn the_factor_is_found_and_written_with_its_conditions_and_pictures() {
     let output = bench.fos(&[]);
     let said = text(&output.stdout);
     assert!(output.status.success(), "{output:?}");
-    assert!(said.contains("h = 1 m, 3 x 3 points a cell, order 2; modified-f-bar; background 1e-4 E"), "{said}");
+    assert!(said.contains("h = 1 m, 3 x 3 points a cell, order 2; consistent-f-bar; background 1e-4 E"), "{said}");
     assert!(said.contains("10 load steps; tolerances 1e-8 (energy), 1e-4 (forces); E = 100 MPa"), "{said}");
     let found = bench.found();
     let factor = &found["factor_of_safety"];
