@@ -105,6 +105,9 @@ pub enum StepError {
         /// The worst nodes of this rank, worst first.
         worst: Vec<WorstNode>,
     },
+    /// The step was given up on request, see [`Halo::is_interrupted`](crate::seam::Halo::is_interrupted).
+    #[error("given up on request")]
+    Interrupted,
     /// Another rank has the error; this rank's part was good.
     #[error("another rank could not make the step")]
     OtherRank,

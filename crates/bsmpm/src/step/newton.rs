@@ -39,6 +39,9 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
         if progress.is_balanced(&residual.balance) {
             return Ok(Found::new(u, residual, progress, iteration));
         }
+        if scene.halo.is_interrupted() {
+            return Err(StepError::Interrupted.into());
+        }
         let du = direction(scene, &residual, solver, counts)?;
         let f = &residual.balance.f_oob;
         if !progress.has_begun() {

@@ -113,6 +113,9 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
         if progress.is_balanced(&residual.balance) {
             return Ok(Found::new(u, residual, progress, 0));
         }
+        if scene.halo.is_interrupted() {
+            return Err(StepError::Interrupted.into());
+        }
         let direction = secants.direction::<D>(&residual.balance.f_oob, scene.halo, solver)?; // (6), (7)
         counts.iterations += 1;
         counts.linear_iterations += direction.linear_iterations;
