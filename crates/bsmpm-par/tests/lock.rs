@@ -12,8 +12,9 @@ use support::{Output, Running, Scratch};
 /// s  Far more than anything here takes.
 const HANGS: u64 = 120;
 
-/// A run that has begun to write.
+/// A run that has begun to write, in a new directory.
 fn under_way(scratch: &Scratch, ranks: Option<usize>) -> Running {
+    let _ = std::fs::remove_dir_all(scratch.path("case.out"));
     let mut running = scratch.job(ranks, &["case.toml", "--force"]).within(HANGS).start();
     running.until("its first step", || scratch.path("case.out/steps.csv").exists());
     running
