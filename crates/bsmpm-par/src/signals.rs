@@ -3,7 +3,7 @@
 //! USR1, TERM and INT: stop at the last converged state; a second TERM or INT: end at once. USR2: write a frame, go on.
 //! The handlers only set flags; [`MpiHalo`](crate::halo::MpiHalo) adds those to every sum over the ranks.
 
-use signal_hook::consts::{SIGINT, SIGPIPE, SIGTERM, SIGUSR1, SIGUSR2};
+use signal_hook::consts::{SIGINT, SIGTERM, SIGUSR1, SIGUSR2};
 use signal_hook::flag;
 use std::cell::Cell;
 use std::io;
@@ -23,7 +23,7 @@ pub struct Requests {
 }
 
 impl Requests {
-    /// Those of the signals that come from now on. To be called once, after PETSc has started: it resets SIGPIPE.
+    /// Those of the signals that come from now on. To be called once.
     pub fn of_signals() -> io::Result<Self> {
         let (requests, ending) = (Self::default(), Arc::new(AtomicBool::new(false)));
         for signal in [SIGTERM, SIGINT] {
@@ -34,8 +34,6 @@ impl Requests {
         }
         flag::register(SIGUSR1, Arc::clone(&requests.stop))?;
         flag::register(SIGUSR2, Arc::clone(&requests.frame))?;
-        // Where nobody listens any more, writing fails, and the run goes on.
-        flag::register(SIGPIPE, Arc::default())?;
         Ok(requests)
     }
 
