@@ -6,6 +6,7 @@ use std::path::{Component, Path, PathBuf};
 
 use crate::Error;
 use crate::frames::COLLECTION;
+use crate::lock::{Lock, Unseen};
 use crate::manifest::{MANIFEST, Manifest};
 use crate::residuals::RESIDUALS;
 use crate::steps::STEPS;
@@ -32,23 +33,25 @@ pub enum Existing {
 #[derive(Debug)]
 pub struct OutputDirectory {
     path: PathBuf,
+    lock: Lock,
 }
 
 impl OutputDirectory {
-    /// Makes the directory if need be and puts the run's first manifest there, which claims it: of several programs that
-    /// try at once, one succeeds.
+    /// Makes the directory if need be, holds it against other runs as long as this lives, and puts the run's first manifest
+    /// there: of several programs that try at once, one succeeds.
     ///
     /// # Errors
-    /// [`Error::Occupied`] by another run; with [`Existing::Delete`] only if there is a file of a run that no `run.json`
+    /// [`Error::Locked`] by a run that goes on, see [`Lock::take`]. [`Error::Occupied`] by another run; with [`Existing::Delete`] only if there is a file of a run that no `run.json`
     /// names. [`Error::UnsafeOutput`] if the older `run.json` names what no run of ours wrote: nothing is deleted then.
     /// [`Error::NotDirectory`], [`Error::Directory`] if the path is a file or cannot be made or written to.
-    pub fn claim(path: &Path, existing: Existing, first: &Manifest) -> Result<Self, Error> {
+    pub fn claim(path: &Path, existing: Existing, unseen: Unseen, first: &Manifest) -> Result<Self, Error> {
         let refused = |action| move |source| Error::Directory { action, path: path.to_owned(), source };
         match fs::metadata(path) {
             Ok(found) if !found.is_dir() => return Err(Error::NotDirectory { path: path.to_owned() }),
             Ok(_) => {}
             Err(_) => fs::create_dir_all(path).map_err(refused("create"))?,
         }
+        let lock = Lock::take(path, unseen)?;
         let held = run_files(path).map_err(refused("read"))?;
         match (held.first(), existing) {
             (None, _) => {}
@@ -62,7 +65,12 @@ impl OutputDirectory {
             (Some(_), Existing::Delete) => delete_run(path, &held)?,
         }
         first.write_first(path)?;
-        Ok(Self { path: path.to_owned() })
+        Ok(Self { path: path.to_owned(), lock })
+    }
+
+    /// Whose lock was taken over, and why, if there was one.
+    pub fn note(&self) -> Option<&str> {
+        self.lock.note()
     }
 
     /// Where it is.

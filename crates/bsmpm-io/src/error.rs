@@ -98,6 +98,16 @@ pub enum Error {
         /// What the user can do.
         advice: &'static str,
     },
+    /// Another run holds the output directory, or cannot be seen to be dead.
+    #[error("the output directory {} is held by {holder}: {advice}", path.display())]
+    Locked {
+        /// The directory.
+        path: PathBuf,
+        /// Process, host, job and time.
+        holder: String,
+        /// What the user can do.
+        advice: &'static str,
+    },
     /// A `run.json` names an output that this program would never have written there; nothing was deleted.
     #[error("run.json in {} names \"{name}\" as an output, which {reason}; nothing was deleted", path.display())]
     UnsafeOutput {
@@ -115,9 +125,11 @@ impl Error {
     /// finite, 70 for a caller's mistake, 74 for all other trouble with files.
     pub fn exit_code(&self) -> u8 {
         match self {
-            Self::Directory { .. } | Self::NotDirectory { .. } | Self::Occupied { .. } | Self::UnsafeOutput { .. } => {
-                73
-            }
+            Self::Directory { .. }
+            | Self::NotDirectory { .. }
+            | Self::Occupied { .. }
+            | Self::Locked { .. }
+            | Self::UnsafeOutput { .. } => 73,
             Self::PointNotFinite { .. } | Self::NotFinite { .. } => 81,
             Self::Length { .. } | Self::Name { .. } => 70,
             Self::File { .. } | Self::Format { .. } => 74,

@@ -1,6 +1,6 @@
 //! What a run leaves in its output directory, and how it is read back: frames for ParaView ([`frame`], [`vtu`],
 //! [`frames`]), one row a step ([`table`], [`steps`]), one an iteration ([`residuals`]), the manifest `run.json` ([`manifest`]), `failure.json` ([`failure`]) and the
-//! directory itself ([`directory`]). Checkpoints are not here yet.
+//! directory itself ([`directory`]), which a run that goes on holds alone ([`lock`]). Checkpoints are not here yet.
 //!
 //! Two promises hold for everything that is written: no number that is not finite ever reaches a file, and a file that is
 //! replaced is either the old or the new one, whenever the program is killed ([`atomic`]).
@@ -12,6 +12,7 @@ pub mod error;
 pub mod failure;
 pub mod frame;
 pub mod frames;
+pub mod lock;
 pub mod manifest;
 pub mod residuals;
 pub mod steps;

@@ -46,6 +46,9 @@ pub struct Arguments {
     /// Replace a run in the output directory: deletes the files that its run.json names
     #[arg(long, conflicts_with = "restart")]
     pub force: bool,
+    /// Take over the output directory's lock from a run that cannot be seen to be dead, e.g. on another host
+    #[arg(long)]
+    pub break_lock: bool,
     /// Go on from a checkpoint; not available yet
     #[arg(long, value_name = "auto|FILE")]
     pub restart: Option<String>,

@@ -1,5 +1,6 @@
 //! The exchange of nodal contributions: one message to and from every rank that shares node layers.
 
+use crate::signals::{Requests, WIDTH};
 use crate::slab::Slabs;
 use crate::timers::Timers;
 use bsmpm::grid::Grid;
@@ -17,22 +18,33 @@ pub struct MpiHalo {
     owned: Range<usize>,
     shared: Vec<(usize, Range<usize>)>, // rank and local nodes, ascending by rank
     timers: Rc<Timers>,
+    requests: Rc<Requests>,
 }
 
 impl MpiHalo {
-    /// The halo of this rank's window of `grid` under the cut `slabs`.
-    pub fn new<const D: usize>(world: SimpleCommunicator, slabs: &Slabs, grid: &Grid<D>, timers: Rc<Timers>) -> Self {
+    /// The halo of this rank's window of `grid` under the cut `slabs`; every sum carries the `requests` with it.
+    pub fn new<const D: usize>(
+        world: SimpleCommunicator,
+        slabs: &Slabs,
+        grid: &Grid<D>,
+        (timers, requests): (Rc<Timers>, Rc<Requests>),
+    ) -> Self {
         let rank = world.rank().unsigned_abs() as usize;
         let (q, size, first) = (grid.order(), grid.layer_nodes(), grid.layers().start);
         let nodes = |layers: Range<usize>| (layers.start - first) * size..(layers.end - first) * size;
         let owned = nodes(slabs.owned_layers(rank, q));
         let shared = slabs.shared(rank, q).into_iter().map(|(other, layers)| (other, nodes(layers))).collect();
-        Self { world, rank, owned, shared, timers }
+        Self { world, rank, owned, shared, timers, requests }
     }
 
     /// The ranks.
     pub fn world(&self) -> &SimpleCommunicator {
         &self.world
+    }
+
+    /// What is asked of the run from outside.
+    pub fn requests(&self) -> &Rc<Requests> {
+        &self.requests
     }
 
     /// What every sharing rank contributes to the shared nodes, in the order of `shared`.
@@ -106,14 +118,23 @@ impl Halo for MpiHalo {
 
     fn reduce(&self, numbers: &mut [f64]) {
         let _timed = self.timers.time("reduction");
-        let own = numbers.to_vec();
-        self.world.all_reduce_into(&own[..], numbers, SystemOperation::sum());
+        let own = [&*numbers, &self.requests.share()].concat();
+        let mut sums = vec![0.0; own.len()];
+        self.world.all_reduce_into(&own[..], &mut sums[..], SystemOperation::sum());
+        numbers.copy_from_slice(&sums[..numbers.len()]);
+        let mut requested = [0.0; WIDTH];
+        requested.copy_from_slice(&sums[numbers.len()..]);
+        self.requests.agree(requested);
     }
 
     fn maximum(&self, numbers: &mut [f64]) {
         let _timed = self.timers.time("reduction");
         let own = numbers.to_vec();
         self.world.all_reduce_into(&own[..], numbers, SystemOperation::max());
+    }
+
+    fn is_interrupted(&self) -> bool {
+        self.requests.stop()
     }
 }
 

@@ -1,6 +1,7 @@
 //! Start and end of the ranks: what MPI needs before it starts, and how a failure on one rank ends all of them.
 
 use crate::exit::{BUG, WRONG_LAUNCH};
+use bsmpm_io::lock;
 use mpi::collective::{CommunicatorCollectives, SystemOperation};
 use mpi::environment::Universe;
 use mpi::topology::{Communicator, SimpleCommunicator};
@@ -59,6 +60,7 @@ fn abort_on_panic() {
 /// Ends the job on all ranks with `code`, for failures that the other ranks do not know of. Prints `reason` once.
 pub fn end(world: &SimpleCommunicator, code: u8, reason: &dyn Display) -> ! {
     say(&format!("bsmpm-par: {reason}"));
+    lock::abandon();
     if mpi::environment::is_initialized() && !mpi::environment::is_finalized() {
         world.abort(i32::from(code));
     }

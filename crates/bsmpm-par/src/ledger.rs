@@ -14,6 +14,7 @@ use bsmpm_io::directory::{Existing, HISTORY, OutputDirectory};
 use bsmpm_io::failure::{FAILURE, FailureReport};
 use bsmpm_io::frame::Frame;
 use bsmpm_io::frames::{COLLECTION, Frames};
+use bsmpm_io::lock::Unseen;
 use bsmpm_io::manifest::{self, Check, Extent, Manifest, Status};
 use bsmpm_io::residuals::{self, Iterate, RESIDUALS};
 use bsmpm_io::steps::{STEPS, Step};
@@ -38,12 +39,14 @@ impl Ledger {
     /// Claims the output directory and opens the tables.
     pub fn open(arguments: &Arguments, case: &Case, ranks: usize, columns: Vec<Column>) -> Result<Self, Error> {
         let existing = if arguments.force { Existing::Delete } else { Existing::Refuse };
+        let unseen = if arguments.break_lock { Unseen::Break } else { Unseen::Respect };
         let mut manifest = first_manifest(arguments, case, ranks);
         [HISTORY, STEPS, COLLECTION].iter().for_each(|file| manifest.name_output(file));
         if case.output.residuals {
             manifest.name_output(RESIDUALS);
         }
-        let directory = OutputDirectory::claim(&arguments.directory(), existing, &manifest)?;
+        let directory = OutputDirectory::claim(&arguments.directory(), existing, unseen, &manifest)?;
+        manifest.warnings.extend(directory.note().map(str::to_owned));
         let time = match case.analysis.regime {
             Regime::Dynamic => "s",
             Regime::QuasiStatic => "-",

@@ -18,6 +18,7 @@ pub mod program;
 pub mod record;
 pub mod run;
 pub mod setup;
+pub mod signals;
 pub mod simulation;
 pub mod slab;
 pub mod source;

@@ -94,9 +94,13 @@ impl<'p> Run<'p> {
         let mut slowest = 0.0_f64;
         loop {
             let step = self.simulation.steps() + 1;
+            self.frame_on_request();
             let stop = self.arguments.max_steps.is_some_and(|most| step > most) || self.out_of_time(slowest);
             if stop && self.simulation.time() < self.case.analysis.end {
                 return self.end(Status::Stopped, exit::STOPPED);
+            }
+            if self.simulation.halo.is_interrupted() && self.simulation.time() < self.case.analysis.end {
+                return self.stop_on_request();
             }
             if let Some(fault) = self.fault {
                 fault.strike(self.rank(), step);
@@ -105,6 +109,7 @@ impl<'p> Run<'p> {
             match self.simulation.advance() {
                 None => return self.finish(),
                 Some(Ok(accepted)) => self.accept(&accepted),
+                Some(Err(failure)) if failure.is_interruption() => return self.stop_on_request(),
                 Some(Err(failure)) => return self.fail(&failure),
             }
             slowest = slowest.max(begin.elapsed().as_secs_f64());
@@ -191,6 +196,20 @@ impl<'p> Run<'p> {
         };
         self.require(written);
         self.last_frame = Some(step);
+    }
+
+    /// A frame of the last converged state, if a signal has asked for one that is not there yet.
+    fn frame_on_request(&mut self) {
+        if self.simulation.halo.requests().take_frame() && self.last_frame != Some(self.simulation.steps()) {
+            self.log.line("frame", "a frame is written, as a signal has asked");
+            self.frame();
+        }
+    }
+
+    /// Ends the run at the last converged state; the work of a step that was given up counts for nothing.
+    fn stop_on_request(self) -> u8 {
+        self.log.line("stop", "stopped by a signal; the last converged state is saved");
+        self.end(Status::Stopped, exit::STOPPED)
     }
 
     fn finish(self) -> u8 {

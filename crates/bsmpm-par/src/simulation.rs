@@ -3,6 +3,7 @@
 use crate::halo::MpiHalo;
 use crate::ksp::{Choice, KspSolver};
 use crate::migrate;
+use crate::signals::Requests;
 use crate::slab::{Slabs, imbalance};
 use crate::timers::Timers;
 use bsmpm::control::{Accepted, Failure, Stepper};
@@ -57,12 +58,13 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         mut model: Model<K, D>,
         (slabs, mut points): (Slabs, Points<D>),
         schedule: Schedule,
-        timers: Rc<Timers>,
+        (timers, requests): (Rc<Timers>, Rc<Requests>),
     ) -> Self {
         model.grid = model.grid.window(slabs.columns(petsc.rank()));
         points.sort_by_cell(&model.grid);
         points.surface = model.boundary.surface();
-        let halo = Rc::new(MpiHalo::new(universe.world(), &slabs, &model.grid, Rc::clone(&timers)));
+        let halo = MpiHalo::new(universe.world(), &slabs, &model.grid, (Rc::clone(&timers), requests));
+        let halo = Rc::new(halo);
         let solver = KspSolver::new(petsc, choice.clone(), &model.grid, Rc::clone(&halo), Rc::clone(&timers));
         let stepper = Stepper::new(model.grid.nodes() * D);
         let (halo, steps) = (halo, 0);
@@ -139,7 +141,8 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         self.model.grid = self.model.grid.window(slabs.columns(self.petsc.rank()));
         migrate::points(&world, &slabs, &self.model.grid, &mut self.points);
         self.slabs = slabs;
-        self.halo = Rc::new(MpiHalo::new(world, &self.slabs, &self.model.grid, Rc::clone(&self.timers)));
+        let shared = (Rc::clone(&self.timers), Rc::clone(self.halo.requests()));
+        self.halo = Rc::new(MpiHalo::new(world, &self.slabs, &self.model.grid, shared));
         let (halo, timers) = (Rc::clone(&self.halo), Rc::clone(&self.timers));
         self.solver = KspSolver::new(self.petsc, self.choice.clone(), &self.model.grid, halo, timers);
     }

@@ -8,6 +8,7 @@ use std::process::{Command, Stdio};
 use std::time::UNIX_EPOCH;
 
 use bsmpm_io::atomic;
+use bsmpm_io::lock::{Lock, Unseen};
 use bsmpm_io::manifest::{MANIFEST, Manifest};
 
 use crate::Error;
@@ -85,6 +86,8 @@ impl Solver<'_> {
         }
         // What an older run left must not pass for this one's, should it die before it writes.
         if task.directory.join(MANIFEST).exists() {
+            // Unless it goes on.
+            let _lock = Lock::take(task.directory, Unseen::Respect)?;
             let file = |source| Error::File(bsmpm_io::Error::file("delete", task.directory)(source));
             fs::remove_dir_all(task.directory).map_err(file)?;
         }

@@ -46,6 +46,13 @@ pub struct Failure {
     pub counts: Counts,
 }
 
+impl Failure {
+    /// Whether nothing has failed: the step was given up on request.
+    pub fn is_interruption(&self) -> bool {
+        self.attempts.last() == Some(&StepError::Interrupted)
+    }
+}
+
 /// Position within the current nominal step, and the state of the step-size control.
 #[derive(Clone, Debug)]
 pub struct Stepper {
@@ -85,6 +92,7 @@ impl Stepper {
         };
         self.nominal = Some((from, to));
         let (mut rejected, mut counts) = (Vec::new(), Counts::default());
+        let before = (self.cuts, self.easy);
         loop {
             let size = TICKS >> self.cuts;
             let end = if self.tick + size == TICKS { to } else { from + (to - from) * fraction(self.tick + size) };
@@ -95,6 +103,12 @@ impl Stepper {
                     (self.guess, self.guess_dt, self.t) = (guess, dt, end);
                     self.accept(size, report.first_guess && report.iterations * 2 <= model.criteria.max_iterations);
                     return Some(Ok(Accepted { t: end, dt, report, counts, rejected }));
+                }
+                Err(StepError::Interrupted) => {
+                    // As if it had never begun: who goes on from here later makes the same attempts.
+                    (self.cuts, self.easy) = before;
+                    rejected.push(StepError::Interrupted);
+                    return Some(Err(Failure { t: self.t, dt, attempts: rejected, counts }));
                 }
                 Err(error) => {
                     let hopeless = matches!(

@@ -110,6 +110,9 @@ pub enum StepError {
         /// Why there is no direction from the last state, if that ended it.
         unsolved: Option<SolveError>,
     },
+    /// The step was given up on request, see [`Halo::is_interrupted`](crate::seam::Halo::is_interrupted).
+    #[error("given up on request")]
+    Interrupted,
     /// Another rank has the error; this rank's part was good.
     #[error("another rank could not make the step")]
     OtherRank,

@@ -17,6 +17,11 @@ pub trait Halo {
     fn reduce(&self, numbers: &mut [f64]);
     /// Replaces each number by its largest over the ranks.
     fn maximum(&self, numbers: &mut [f64]);
+    /// Whether somebody outside wants the step to be given up. Changes in [`reduce`](Self::reduce) only, so that all ranks
+    /// see it between the same two reductions.
+    fn is_interrupted(&self) -> bool {
+        false
+    }
 }
 
 /// Dot products of nodal vectors (`width` numbers a node) over all nodes, each counted once, in one reduction.

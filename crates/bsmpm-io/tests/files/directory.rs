@@ -5,6 +5,7 @@ use std::path::Path;
 
 use bsmpm_io::Error;
 use bsmpm_io::directory::{Existing, OutputDirectory};
+use bsmpm_io::lock::Unseen;
 use bsmpm_io::manifest::{Case, Manifest};
 
 use crate::listing;
@@ -16,7 +17,7 @@ fn manifest(outputs: &[&str]) -> Manifest {
 }
 
 fn claim(path: &Path, existing: Existing) -> Result<OutputDirectory, Error> {
-    OutputDirectory::claim(path, existing, &manifest(&[]))
+    OutputDirectory::claim(path, existing, Unseen::Respect, &manifest(&[]))
 }
 
 /// A directory with a finished run and a file of the user's.

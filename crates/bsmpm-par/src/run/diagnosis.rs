@@ -92,6 +92,7 @@ fn advice(error: &StepError) -> Vec<String> {
             "another factorisation: [solver] linear = { factor = \"mumps\" }, and a larger [solver] background",
         ],
         StepError::Material { .. } | StepError::OtherRank => &["more steps ([analysis] steps or dt)"],
+        StepError::Interrupted => &[],
     };
     lines.iter().map(|line| (*line).to_owned()).collect()
 }

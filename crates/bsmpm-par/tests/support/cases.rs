@@ -96,6 +96,19 @@ quantity = "reaction"
 face = "bottom"
 "#;
 
+/// So many steps of the column that it ends when it is told to.
+pub fn endless() -> String {
+    changed(COLUMN, "steps = 5", "steps = 1000000")
+}
+
+/// A cut in clay under a weight that it can hardly bear, by many thousand iterations: its third step takes long.
+pub fn long_step() -> String {
+    let clay = changed(COLUMN, "model   = \"hencky\"", "model = \"tresca\"\ncohesion = \"6 kPa\"");
+    let cut = changed(&clay, "upper = [4.0, 4.0]", "upper = [2.0, 4.0]");
+    let fine = changed(&cut, "\"1 m\"", "\"40 mm\"");
+    changed(&fine, "steps = 5", "steps = 10\n\n[solver]\nnonlinear = \"broyden\"\nmax_iterations = 100000")
+}
+
 /// The text with one part replaced, which must be in it once.
 #[track_caller]
 pub fn changed(text: &str, part: &str, by: &str) -> String {

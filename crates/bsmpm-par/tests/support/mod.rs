@@ -6,7 +6,7 @@ pub mod cases;
 pub mod processes;
 pub mod results;
 
-pub use processes::Output;
+pub use processes::{Ears, Output, Running};
 
 use std::ffi::OsString;
 use std::os::unix::ffi::OsStringExt;
@@ -72,7 +72,7 @@ impl Scratch {
             arguments,
             variables: Vec::new(),
             patience: PATIENCE,
-            heard: true,
+            ears: Ears::Open,
         }
     }
 }
@@ -92,7 +92,7 @@ pub struct Job {
     arguments: Vec<OsString>,
     variables: Vec<(String, String)>,
     patience: Duration,
-    heard: bool,
+    ears: Ears,
 }
 
 impl Job {
@@ -116,12 +116,34 @@ impl Job {
 
     /// With streams that take nothing: every write to them fails.
     pub fn unheard(mut self) -> Self {
-        self.heard = false;
+        self.ears = Ears::Full;
+        self
+    }
+
+    /// With streams whose reader has gone away.
+    pub fn abandoned(mut self) -> Self {
+        self.ears = Ears::Gone;
         self
     }
 
     /// Runs to the end. Panics if that does not come, or if a process of the run outlives it.
     pub fn run(self) -> Output {
+        self.start().end()
+    }
+
+    /// Starts it when all others that were started so have ended.
+    pub fn start(self) -> Running {
+        let (ears, patience, variables) = (self.ears, self.patience, self.variables.clone());
+        processes::start(self.command(), &variables, ears, patience)
+    }
+
+    /// Starts it at once, beside a run that goes on.
+    pub fn start_beside(self) -> Running {
+        let (ears, patience, variables) = (self.ears, self.patience, self.variables.clone());
+        processes::start_beside(self.command(), &variables, ears, patience)
+    }
+
+    fn command(self) -> Command {
         let mut command = match self.ranks {
             None => Command::new(PROGRAM),
             Some(ranks) => {
@@ -131,6 +153,6 @@ impl Job {
             }
         };
         command.args(self.arguments).current_dir(self.directory);
-        processes::run(command, &self.variables, self.heard, self.patience)
+        command
     }
 }

@@ -1,11 +1,11 @@
-//! One run at a time, in a process group of its own, which never outlives its test.
+//! One run at a time unless a test wants more, in a process group of its own, which never outlives its test.
 
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
 use std::os::unix::process::CommandExt;
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 /// Set in every process of a run, so that it is found whatever its group or parent.
@@ -51,12 +51,48 @@ impl Output {
     }
 }
 
+/// Where what a run says goes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ears {
+    /// Into its [`Output`].
+    Open,
+    /// To `/dev/full`: every write fails.
+    Full,
+    /// Into a pipe that nobody reads any more: every write fails, and raises SIGPIPE.
+    Gone,
+}
+
+/// A run that goes on; it is killed with all its processes if it is dropped before its end.
+pub struct Running {
+    line: String,
+    child: Child,
+    mark: String,
+    stdout: File,
+    stderr: File,
+    started: Instant,
+    patience: Duration,
+    ended: bool,
+    _turn: Option<MutexGuard<'static, ()>>,
+}
+
 /// Runs a command to its end. Panics if that does not come within `patience`, or if a process outlives the run. What
 /// is said goes to `/dev/full` if nobody is to hear it.
-pub fn run(mut command: Command, variables: &[(String, String)], heard: bool, patience: Duration) -> Output {
-    let _turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
+pub fn run(command: Command, variables: &[(String, String)], heard: bool, patience: Duration) -> Output {
+    start(command, variables, if heard { Ears::Open } else { Ears::Full }, patience).end()
+}
+
+/// Starts a command when all runs that were started so before have ended.
+pub fn start(command: Command, variables: &[(String, String)], ears: Ears, patience: Duration) -> Running {
+    let turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
+    let mut running = start_beside(command, variables, ears, patience);
+    running._turn = Some(turn);
+    running
+}
+
+/// Starts a command at once, beside others.
+pub fn start_beside(mut command: Command, variables: &[(String, String)], ears: Ears, patience: Duration) -> Running {
     let mark = format!("{}-{}", std::process::id(), RUNS.fetch_add(1, Ordering::Relaxed));
-    let (mut stdout, mut stderr) = (tempfile::tempfile().unwrap(), tempfile::tempfile().unwrap());
+    let (stdout, stderr) = (tempfile::tempfile().unwrap(), tempfile::tempfile().unwrap());
     command.process_group(0);
     command.env("OMP_NUM_THREADS", "1").env(MARK, &mark);
     command.env("OMPI_ALLOW_RUN_AS_ROOT", "1").env("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1");
@@ -68,26 +104,88 @@ pub fn run(mut command: Command, variables: &[(String, String)], heard: bool, pa
         command.env_remove(name);
     }
     command.envs(variables.iter().map(|(name, value)| (name, value)));
-    let stream = |file: &File| if heard { file.try_clone() } else { File::options().write(true).open("/dev/full") };
-    command.stdin(Stdio::null()).stdout(stream(&stdout).unwrap()).stderr(stream(&stderr).unwrap());
-    let started = Instant::now();
-    let mut child = command.spawn().unwrap_or_else(|error| panic!("{command:?}: {error}"));
-    let status = wait(&mut child, patience);
-    let elapsed = started.elapsed();
-    if status.is_none() {
-        end_group(&mut child);
-    }
-    let left = survivors(&mark);
-    left.iter().for_each(|process| signal("KILL", process));
-    let output = Output {
-        code: status.and_then(|status| status.code()),
-        stdout: text(&mut stdout),
-        stderr: text(&mut stderr),
-        elapsed,
+    let stream = |file: &File| match ears {
+        Ears::Open => Stdio::from(file.try_clone().unwrap()),
+        Ears::Full => File::options().write(true).open("/dev/full").unwrap().into(),
+        Ears::Gone => std::io::pipe().unwrap().1.into(),
     };
-    assert!(status.is_some(), "hangs: {command:?}: {output:#?}");
-    assert!(left.is_empty(), "processes {left:?} outlive their run: {command:?}: {output:#?}");
-    output
+    command.stdin(Stdio::null()).stdout(stream(&stdout)).stderr(stream(&stderr));
+    let started = Instant::now();
+    let line = format!("{command:?}");
+    let child = command.spawn().unwrap_or_else(|error| panic!("{line}: {error}"));
+    Running { line, child, mark, stdout, stderr, started, patience, ended: false, _turn: None }
+}
+
+impl Running {
+    /// Waits until something holds. Panics if the run ends before, or if it takes longer than the run's patience.
+    #[track_caller]
+    pub fn until(&mut self, what: &str, mut holds: impl FnMut() -> bool) {
+        let started = Instant::now();
+        while !holds() {
+            let ended = self.child.try_wait().unwrap();
+            assert!(ended.is_none(), "ended before {what}: {}: {}", self.line, text(&mut self.stderr));
+            assert!(started.elapsed() < self.patience, "waits in vain for {what}: {}", self.line);
+            std::thread::sleep(Duration::from_millis(5));
+        }
+    }
+
+    /// Whether it has not ended yet.
+    pub fn goes_on(&mut self) -> bool {
+        self.child.try_wait().unwrap().is_none()
+    }
+
+    /// Sends a signal, e.g. `USR1`, to the command that was started.
+    pub fn signal(&self, name: &str) {
+        signal(name, &self.child.id().to_string());
+    }
+
+    /// Sends a signal to the process of one rank.
+    #[track_caller]
+    pub fn signal_rank(&self, name: &str, rank: usize) {
+        let process = rank_of(&self.mark, rank).unwrap_or_else(|| panic!("no rank {rank}: {}", self.line));
+        signal(name, &process);
+    }
+
+    /// Kills all of its processes at once.
+    pub fn kill(&self) {
+        marked(&mark_of(&self.mark)).iter().for_each(|process| signal("KILL", process));
+    }
+
+    /// Waits for the end. Panics if that does not come in time, or if a process outlives the run.
+    #[track_caller]
+    pub fn end(mut self) -> Output {
+        let status = wait(&mut self.child, self.patience);
+        let elapsed = self.started.elapsed();
+        let left = self.clear(status.is_none());
+        let output = Output {
+            code: status.and_then(|status| status.code()),
+            stdout: text(&mut self.stdout),
+            stderr: text(&mut self.stderr),
+            elapsed,
+        };
+        assert!(status.is_some(), "hangs: {}: {output:#?}", self.line);
+        assert!(left.is_empty(), "processes {left:?} outlive their run: {}: {output:#?}", self.line);
+        output
+    }
+
+    /// Leaves no process; those that had outlived the command.
+    fn clear(&mut self, hangs: bool) -> Vec<String> {
+        self.ended = true;
+        if hangs {
+            end_group(&mut self.child);
+        }
+        let left = survivors(&self.mark);
+        left.iter().for_each(|process| signal("KILL", process));
+        left
+    }
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        if !self.ended {
+            self.clear(true);
+        }
+    }
 }
 
 fn wait(child: &mut Child, patience: Duration) -> Option<ExitStatus> {
@@ -117,15 +215,32 @@ fn signal(name: &str, process: &str) {
 
 /// Processes of the run that are still there, after the moment that the system needs to take them away.
 fn survivors(mark: &str) -> Vec<String> {
-    let mark = format!("{MARK}={mark}\0");
+    let mark = mark_of(mark);
     let started = Instant::now();
     loop {
-        let left = marked(mark.as_bytes());
+        let left = marked(&mark);
         if left.is_empty() || started.elapsed() > Duration::from_secs(3) {
             return left;
         }
         std::thread::sleep(Duration::from_millis(20));
     }
+}
+
+/// What stands in the environment of a run's processes.
+fn mark_of(mark: &str) -> Vec<u8> {
+    format!("{MARK}={mark}\0").into_bytes()
+}
+
+/// Number of the process of one rank; without a launcher there is rank 0 only.
+fn rank_of(mark: &str, rank: usize) -> Option<String> {
+    let processes = marked(&mark_of(mark));
+    let is_rank = |process: &&String| {
+        let environment = std::fs::read(format!("/proc/{process}/environ")).unwrap_or_default();
+        let told = environment.split(|&byte| byte == 0).find_map(|entry| entry.strip_prefix(b"OMPI_COMM_WORLD_RANK="));
+        let name = std::fs::read_to_string(format!("/proc/{process}/comm")).unwrap_or_default();
+        name.trim() == "bsmpm-par" && told.unwrap_or(b"0") == rank.to_string().as_bytes()
+    };
+    processes.iter().find(is_rank).cloned()
 }
 
 /// Numbers of the living processes whose environment holds `mark`; a zombie has none.

@@ -6,6 +6,7 @@ use std::path::Path;
 use bsmpm_io::directory::{Existing, HISTORY, OutputDirectory};
 use bsmpm_io::frame::{Field, Frame, Values};
 use bsmpm_io::frames::{COLLECTION, Frames};
+use bsmpm_io::lock::Unseen;
 use bsmpm_io::manifest::{Case, Extent, Manifest, Status};
 use bsmpm_io::steps::{STEPS, Step};
 use bsmpm_io::table::{Cell, Column, Table};
@@ -37,7 +38,7 @@ impl Collapse {
         );
         manifest.picture_times = picture_times.to_vec();
         manifest.grid = Some(Extent { lower: vec![0.0; 2], upper: self.grid.to_vec(), cell: vec![self.cell; 2] });
-        let directory = OutputDirectory::claim(directory, Existing::Refuse, &manifest)?;
+        let directory = OutputDirectory::claim(directory, Existing::Refuse, Unseen::Respect, &manifest)?;
         let mut frames = Frames::create(directory.path())?;
         for index in 0..FRAMES {
             let frame = self.frame(index, volumes);

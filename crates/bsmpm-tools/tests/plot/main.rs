@@ -14,6 +14,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use bsmpm_io::directory::{Existing, OutputDirectory};
+use bsmpm_io::lock::Unseen;
 use bsmpm_io::manifest::Manifest;
 use bsmpm_tools::plot::{Arguments, draw, run};
 use collapse::Collapse;
@@ -81,7 +82,7 @@ fn every_picture_of_a_run_is_drawn_and_named() {
         let manifest = Manifest::read(dir.path()).unwrap();
         let named = manifest.outputs.iter().filter(|output| output.path.ends_with(".png")).count();
         assert_eq!(named, 9);
-        OutputDirectory::claim(dir.path(), Existing::Delete, &manifest).unwrap();
+        OutputDirectory::claim(dir.path(), Existing::Delete, Unseen::Respect, &manifest).unwrap();
         assert!(paths.iter().all(|path| !path.exists()));
     }
 }

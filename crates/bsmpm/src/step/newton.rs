@@ -1,7 +1,7 @@
 //! Newton's method with the complete derivative, solved by a Krylov method, and a line search: for the steps in which
 //! quasi-Newton iterations stall.
 
-use crate::error::SolveError;
+use crate::error::{SolveError, StepError};
 use crate::kinematics::Kinematics;
 use crate::seam::{LinearSolver, dots};
 use crate::step::Counts;
@@ -38,6 +38,9 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
     for _ in 0..MOST {
         if progress.is_balanced(&residual.balance, scene) {
             return Ok(Found::new(u, residual, progress));
+        }
+        if scene.halo.is_interrupted() {
+            return Err(StepError::Interrupted.into());
         }
         let du = match direction(scene, &residual, solver, counts) {
             Ok(du) => du,

@@ -129,6 +129,9 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
         if progress.is_balanced(&residual.balance, scene) {
             return Ok(Found::new(u, residual, progress));
         }
+        if scene.halo.is_interrupted() {
+            return Err(StepError::Interrupted.into());
+        }
         let direction = match secants.direction::<D>(&residual.balance.f_oob, scene.halo, solver) {
             Ok(direction) => direction, // (6), (7)
             Err(unsolved) => return Err(Stopped::without_direction(scene, (best, &residual), progress, unsolved)),

@@ -10,8 +10,11 @@ use bsmpm::error::{SolveError, StepError};
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::Regime;
 use bsmpm::schedule::Schedule;
+use bsmpm::seam::{Alone, Halo};
 use bsmpm::step::equilibrium::Nonlinear;
 use bsmpm::step::quasi_newton::QuasiNewton;
+use std::cell::Cell;
+use std::ops::Range;
 
 /// A block settling on a fixed base.
 fn block(regime: Regime) -> Scene<PlaneStrain, 2> {
@@ -126,4 +129,64 @@ fn a_step_that_turns_material_inside_out_is_cut_and_then_finds_equilibrium() {
 fn the_same_run_twice_is_the_same_bit_by_bit() {
     let run = || block(Regime::Dynamic).solved(0.1, 2.0).0.points;
     assert_eq!(run(), run());
+}
+
+/// One rank that is interrupted in the reduction of a number, and not again.
+struct Impatient {
+    halo: Alone,
+    reductions: Cell<usize>,
+    interrupted_in: usize,
+}
+
+impl Halo for Impatient {
+    fn owned(&self) -> Range<usize> {
+        self.halo.owned()
+    }
+    fn sum(&self, _nodal: &mut [f64], _width: usize) {}
+    fn max(&self, _nodal: &mut [f64]) {}
+    fn reduce(&self, _numbers: &mut [f64]) {
+        self.reductions.set(self.reductions.get() + 1);
+    }
+    fn maximum(&self, _numbers: &mut [f64]) {}
+    fn is_interrupted(&self) -> bool {
+        self.reductions.get() == self.interrupted_in
+    }
+}
+
+/// Whenever it is given up: the points are those before it, and the steps after it those of a run without.
+#[test]
+fn a_step_that_is_given_up_on_request_has_never_been() {
+    for nonlinear in [Nonlinear::Auto, Nonlinear::QuasiNewton(QuasiNewton::Broyden), Nonlinear::Newton] {
+        let (schedule, mut whole) = (Schedule::new(1.0, 2.0, []), block(Regime::Dynamic));
+        whole.model.nonlinear = nonlinear;
+        let mut given_up = 0;
+        for interrupted_in in 1..40 {
+            let mut scene = whole.clone();
+            let halo = Impatient { halo: scene.halo(), reductions: Cell::new(0), interrupted_in };
+            let mut solver = Reluctant { solver: Skyline::new(&scene.model.grid), refusals: 1 };
+            let mut stepper = Stepper::new(scene.model.grid.nodes() * 2);
+            let mut lengths = Vec::new();
+            loop {
+                let before = scene.points.clone();
+                match stepper.advance(&schedule, &scene.model, &mut scene.points, &halo, &mut solver) {
+                    None => break,
+                    Some(Ok(accepted)) => lengths.push(accepted.dt),
+                    Some(Err(failure)) => {
+                        assert!(failure.is_interruption(), "{:?}", failure.attempts);
+                        assert_eq!(scene.points, before);
+                        given_up += 1;
+                        // The fault of the step's first attempt repeats with it.
+                        halo.reductions.set(usize::MAX / 2);
+                        solver.refusals = usize::from(lengths.is_empty());
+                    }
+                }
+                scene.points.sort_by_cell(&scene.model.grid);
+            }
+            let mut expected = whole.clone();
+            let steps = run(&mut expected, &schedule, 1).unwrap();
+            assert_eq!(lengths, steps.iter().map(|step| step.dt).collect::<Vec<_>>());
+            assert_eq!(scene.points, expected.points);
+        }
+        assert!(given_up > 5, "{nonlinear:?}: {given_up}");
+    }
 }

@@ -1,0 +1,176 @@
+//! Who holds a lock: a process, told apart from later ones of the same number, and whether it is still there (Linux).
+
+use std::fmt::{self, Display, Formatter};
+use std::fs;
+use std::io::{self, Read};
+use std::os::unix::fs::MetadataExt;
+use std::path::Path;
+use std::time::SystemTime;
+
+use serde::{Deserialize, Serialize};
+
+use crate::utc::utc;
+
+/// Variables by which batch systems tell a job's number, which it keeps when it is started again.
+const JOBS: [&str; 3] = ["SLURM_JOB_ID", "PBS_JOBID", "LSB_JOBID"];
+/// bytes  More than any holder's text.
+const LONGEST: u64 = 4096;
+
+/// A process that holds a lock.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) struct Holder {
+    host: String,
+    boot: String,      // of the host's kernel
+    namespace: String, // in which `pid` counts
+    pid: u32,
+    started: Option<u64>, // ticks since `boot`: numbers of processes are used again
+    job: Option<String>,
+    since: String, // UTC
+}
+
+/// What has become of a holder.
+#[derive(Debug, PartialEq, Eq)]
+pub(super) enum Fate {
+    /// It is there.
+    Alive,
+    /// It is not, for this reason.
+    Gone(&'static str),
+    /// It cannot be told from here.
+    Unseen,
+}
+
+impl Holder {
+    pub fn this_process() -> Self {
+        let line = |path: &str| fs::read_to_string(path).unwrap_or_default().trim().to_owned();
+        let namespace = fs::read_link("/proc/self/ns/pid").unwrap_or_default();
+        let job = |name: &&str| std::env::var(name).ok().filter(|id| !id.is_empty()).map(|id| format!("{name}={id}"));
+        Self {
+            host: line("/proc/sys/kernel/hostname"),
+            boot: line("/proc/sys/kernel/random/boot_id"),
+            namespace: namespace.to_string_lossy().into_owned(),
+            pid: std::process::id(),
+            started: start_of(std::process::id()),
+            job: JOBS.iter().find_map(job),
+            since: utc(SystemTime::now()),
+        }
+    }
+
+    /// The holder that a file names; none in a file that is not whole, or none of ours.
+    pub fn read(file: &mut impl Read) -> io::Result<Option<Self>> {
+        let mut text = Vec::new();
+        file.take(LONGEST).read_to_end(&mut text)?;
+        Ok(serde_json::from_slice(&text).ok())
+    }
+
+    /// The text of a lock file.
+    pub fn text(&self) -> String {
+        let text = serde_json::to_string_pretty(self).expect("text and whole numbers can be written");
+        text + "\n"
+    }
+
+    /// What has become of this holder, seen by `own`; `owner` is the user to whom its file belongs.
+    pub fn fate(&self, own: &Self, owner: u32) -> Fate {
+        match self.seen_from(own, owner) {
+            Fate::Unseen if self.job.is_some() && self.job == own.job => Fate::Gone("this job has been started again"),
+            fate => fate,
+        }
+    }
+
+    fn seen_from(&self, own: &Self, owner: u32) -> Fate {
+        if self.host != own.host || self.started.is_none() || own.started.is_none() {
+            return Fate::Unseen;
+        }
+        if self.boot != own.boot {
+            return Fate::Gone("the host has been restarted since");
+        }
+        if self.namespace != own.namespace {
+            return Fate::Unseen; // another container, with processes of its own
+        }
+        match start_of(self.pid) {
+            start if start == self.started => Fate::Alive,
+            Some(_) => Fate::Gone("the process is gone, and another has its number"),
+            // Where /proc hides the processes of other users, theirs may be there.
+            None if fs::metadata("/proc/self").is_ok_and(|own| own.uid() == owner) => Fate::Gone("the process is gone"),
+            None => Fate::Unseen,
+        }
+    }
+}
+
+impl Display for Holder {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        write!(f, "process {} on host {}", self.pid, self.host)?;
+        if let Some(job) = &self.job {
+            write!(f, " ({job})")?;
+        }
+        write!(f, ", since {}", self.since)
+    }
+}
+
+/// When a process started, in ticks since the host did; none if it is gone, or dead and not yet taken away.
+fn start_of(pid: u32) -> Option<u64> {
+    let stat = fs::read_to_string(Path::new("/proc").join(pid.to_string()).join("stat")).ok()?;
+    // The name, in brackets, may hold anything; the state is the first field behind it, the start the 20th.
+    let mut fields = stat.rsplit_once(')')?.1.split_whitespace();
+    let state = fields.next()?;
+    if ["Z", "X"].contains(&state) { None } else { fields.nth(18)?.parse().ok() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn user() -> u32 {
+        fs::metadata("/proc/self").unwrap().uid()
+    }
+
+    #[test]
+    fn a_holder_is_read_back_from_its_text() {
+        let own = Holder::this_process();
+        assert_eq!(Holder::read(&mut own.text().as_bytes()).unwrap(), Some(own.clone()));
+        let half = &own.text().into_bytes()[..40];
+        assert_eq!(Holder::read(&mut &half[..]).unwrap(), None);
+        assert_eq!(Holder::read(&mut io::repeat(b' ')).unwrap(), None);
+    }
+
+    #[test]
+    fn this_process_lives_and_one_that_started_at_another_time_does_not() {
+        let own = Holder::this_process();
+        assert_eq!(own.fate(&own, user()), Fate::Alive);
+        let reused = Holder { started: own.started.map(|start| start + 1), ..own.clone() };
+        assert!(matches!(reused.fate(&own, user()), Fate::Gone(_)));
+        let earlier = Holder { boot: "another".into(), ..own.clone() };
+        assert!(matches!(earlier.fate(&own, user()), Fate::Gone(_)));
+    }
+
+    #[test]
+    fn a_dead_process_is_gone_also_before_its_parent_has_taken_it_away() {
+        let own = Holder::this_process();
+        let mut child = std::process::Command::new("sleep").arg("100").spawn().unwrap();
+        let started = start_of(child.id());
+        let holder = Holder { pid: child.id(), started, ..own.clone() };
+        assert_eq!(holder.fate(&own, user()), Fate::Alive);
+        child.kill().unwrap();
+        while start_of(child.id()).is_some() {
+            std::thread::yield_now();
+        }
+        assert!(matches!(holder.fate(&own, user()), Fate::Gone(_)), "a zombie");
+        child.wait().unwrap();
+        assert!(matches!(holder.fate(&own, user()), Fate::Gone(_)));
+        assert_eq!(holder.fate(&own, user() + 1), Fate::Unseen, "another user's may be hidden");
+    }
+
+    #[test]
+    fn what_is_elsewhere_is_unseen_unless_this_job_has_been_started_again() {
+        let own = Holder { job: Some("SLURM_JOB_ID=7".into()), ..Holder::this_process() };
+        for elsewhere in
+            [Holder { host: "other".into(), ..own.clone() }, Holder { namespace: "other".into(), ..own.clone() }]
+        {
+            assert!(matches!(elsewhere.fate(&own, user()), Fate::Gone(_)));
+            for job in [None, Some("SLURM_JOB_ID=8".to_owned())] {
+                assert_eq!(Holder { job, ..elsewhere.clone() }.fate(&own, user()), Fate::Unseen);
+            }
+            let jobless = Holder { job: None, ..own.clone() };
+            assert_eq!(Holder { job: None, ..elsewhere.clone() }.fate(&jobless, user()), Fate::Unseen);
+        }
+    }
+}

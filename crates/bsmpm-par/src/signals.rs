@@ -1,0 +1,80 @@
+//! What signals ask of a run, agreed by all ranks: one to a single rank is enough, and no extra message is sent.
+//!
+//! USR1, TERM and INT: stop at the last converged state; a second TERM or INT: end at once. USR2: write a frame, go on.
+//! The handlers only set flags; [`MpiHalo`](crate::halo::MpiHalo) adds those to every sum over the ranks.
+
+use signal_hook::consts::{SIGINT, SIGTERM, SIGUSR1, SIGUSR2};
+use signal_hook::flag;
+use std::cell::Cell;
+use std::io;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Numbers that the requests add to a reduction.
+pub const WIDTH: usize = 2;
+
+/// The requests of this rank, and those that all ranks know of.
+#[derive(Debug, Default)]
+pub struct Requests {
+    stop: Arc<AtomicBool>,
+    frame: Arc<AtomicBool>,
+    stop_agreed: Cell<bool>,
+    frame_agreed: Cell<bool>,
+}
+
+impl Requests {
+    /// Those of the signals that come from now on. To be called once.
+    pub fn of_signals() -> io::Result<Self> {
+        let (requests, ending) = (Self::default(), Arc::new(AtomicBool::new(false)));
+        for signal in [SIGTERM, SIGINT] {
+            // In this order: the first signal finds `ending` unset, the second one does what it does to any program.
+            flag::register_conditional_default(signal, Arc::clone(&ending))?;
+            flag::register(signal, Arc::clone(&ending))?;
+            flag::register(signal, Arc::clone(&requests.stop))?;
+        }
+        flag::register(SIGUSR1, Arc::clone(&requests.stop))?;
+        flag::register(SIGUSR2, Arc::clone(&requests.frame))?;
+        Ok(requests)
+    }
+
+    /// This rank's share of the next sum over the ranks.
+    pub fn share(&self) -> [f64; WIDTH] {
+        [self.stop.load(Ordering::Relaxed), self.frame.swap(false, Ordering::Relaxed)].map(f64::from)
+    }
+
+    /// Takes the sums of the ranks' shares.
+    pub fn agree(&self, [stop, frame]: [f64; WIDTH]) {
+        self.stop_agreed.set(self.stop_agreed.get() || stop > 0.0);
+        self.frame_agreed.set(self.frame_agreed.get() || frame > 0.0);
+    }
+
+    /// Whether the run is to stop.
+    pub fn stop(&self) -> bool {
+        self.stop_agreed.get()
+    }
+
+    /// Whether a frame is wanted; asked once, it is no longer.
+    pub fn take_frame(&self) -> bool {
+        self.frame_agreed.take()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_request_counts_once_it_has_been_summed_and_a_frame_is_wanted_once() {
+        let requests = Requests::default();
+        requests.agree(requests.share());
+        assert!(!requests.stop() && !requests.take_frame());
+        requests.frame.store(true, Ordering::Relaxed);
+        assert!(!requests.take_frame(), "the others do not know of it yet");
+        requests.agree(requests.share());
+        assert!(requests.take_frame() && !requests.take_frame());
+        // That of another rank, and later reductions in which nobody asks.
+        requests.agree([1.0, 0.0]);
+        requests.agree(requests.share());
+        assert!(requests.stop() && !requests.take_frame());
+    }
+}
