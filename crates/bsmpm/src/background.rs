@@ -72,10 +72,7 @@ impl Background {
     ) -> Blocks {
         let forms = Forms::new(grid, self.kind);
         let modulus = |patch: &Patch| {
-            let young = |p: usize| {
-                let material = &materials[usize::from(points.material[p])];
-                material.elastic().young * material.relative_stiffness(points.height(p))
-            };
+            let young = |p: usize| materials[usize::from(points.material[p])].young_at(points.height(p));
             patch.points.clone().map(young).fold(0.0, f64::max)
         };
         let concerned: Vec<bool> = match self.extent {

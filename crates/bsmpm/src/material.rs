@@ -123,6 +123,11 @@ impl Material {
         if let Self::Graded(law) = self { law.relative_stiffness(height) } else { 1.0 }
     }
 
+    /// Young's modulus at a height, Pa.
+    pub fn young_at(&self, height: f64) -> f64 {
+        self.elastic().young * self.relative_stiffness(height)
+    }
+
     /// What becomes of the volume that opens at the apex.
     pub fn separation(&self) -> Separation {
         match self {

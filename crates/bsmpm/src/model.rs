@@ -112,8 +112,7 @@ impl<K: Kinematics<D>, const D: usize> Model<K, D> {
 
     /// Young's modulus of point `p`, Pa.
     pub fn young(&self, points: &Points<D>, p: usize) -> f64 {
-        let material = &self.materials[usize::from(points.material[p])];
-        material.elastic().young * material.relative_stiffness(points.height(p))
+        self.materials[usize::from(points.material[p])].young_at(points.height(p))
     }
 
     /// Whether all points have one Young's modulus.
