@@ -54,7 +54,13 @@ fn write(
     let (rank, ranks) = (world.rank() as u64, world.size() as u64);
     // Unequal shares, and none at all for the last of several ranks.
     let cut = |rank: u64| if rank + 1 >= ranks { count } else { count * (rank * (rank + 1)) / (ranks * (ranks - 1)) };
-    let own = if ranks == 1 { 0..count } else if rank + 1 == ranks { count..count } else { cut(rank)..cut(rank + 1) };
+    let own = if ranks == 1 {
+        0..count
+    } else if rank + 1 == ranks {
+        count..count
+    } else {
+        cut(rank)..cut(rank + 1)
+    };
     let mut points = points(own, step);
     let store = (rank == 0).then(|| Store::open(Path::new(directory), 2).expect("a directory"));
     let facts = Facts {

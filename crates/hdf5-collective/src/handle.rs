@@ -6,8 +6,8 @@ use std::ptr;
 
 use hdf5_sys::h5::{H5_index_t, H5_iter_order_t, H5get_libversion, H5open, hsize_t};
 use hdf5_sys::h5d::{
-    H5D_fill_time_t, H5D_layout_t, H5Dcreate2, H5Dget_create_plist, H5Dget_space, H5Dget_type, H5Dopen2,
-    H5Dread, H5Dwrite,
+    H5D_fill_time_t, H5D_layout_t, H5Dcreate2, H5Dget_create_plist, H5Dget_space, H5Dget_type, H5Dopen2, H5Dread,
+    H5Dwrite,
 };
 use hdf5_sys::h5e::{H5E_DEFAULT, H5E_direction_t, H5E_error2_t, H5Eset_auto2, H5Ewalk2};
 use hdf5_sys::h5f::{H5F_ACC_RDONLY, H5F_ACC_TRUNC, H5Fclose, H5Fcreate, H5Fopen};
@@ -96,10 +96,10 @@ fn text(text: &str) -> Result<CString> {
 }
 
 fn path(path: &Path) -> Result<CString> {
-    text(path.to_str().ok_or_else(|| Error::Foreign {
-        item: path.display().to_string(),
-        reason: "is no UTF-8".to_owned(),
-    })?)
+    text(
+        path.to_str()
+            .ok_or_else(|| Error::Foreign { item: path.display().to_string(), reason: "is no UTF-8".to_owned() })?,
+    )
 }
 
 /// Starts the library: it prints nothing and loads no code.
@@ -243,7 +243,8 @@ impl Array {
     pub(crate) fn write(&self, (start, count, width): (u64, u64, u64), rows: &[u8]) -> Result<()> {
         assert_eq!(rows.len() as u64, count * width * self.number.bytes() as u64, "rows of another size");
         let action = "write an array";
-        let (memory, place) = (selection(&self.id, (0, count, width), true)?, selection(&self.id, (start, count, width), false)?);
+        let (memory, place) =
+            (selection(&self.id, (0, count, width), true)?, selection(&self.id, (start, count, width), false)?);
         // SAFETY: valid identifiers; the buffer has the bytes that the selection names, as asserted.
         unsafe {
             let transfer = Id::new(action, H5Pcreate(*H5P_CLS_DATASET_XFER))?;
@@ -258,11 +259,11 @@ impl Array {
         if count == 0 {
             return Ok(());
         }
-        let (memory, place) = (selection(&self.id, (0, count, width), true)?, selection(&self.id, (start, count, width), false)?);
+        let (memory, place) =
+            (selection(&self.id, (0, count, width), true)?, selection(&self.id, (start, count, width), false)?);
         // SAFETY: valid identifiers; the buffer has the bytes that the selection names, as asserted.
-        let read = unsafe {
-            H5Dread(self.id.0, kind(self.number), memory.0, place.0, H5P_DEFAULT, rows.as_mut_ptr().cast())
-        };
+        let read =
+            unsafe { H5Dread(self.id.0, kind(self.number), memory.0, place.0, H5P_DEFAULT, rows.as_mut_ptr().cast()) };
         check("read an array", read)
     }
 }

@@ -78,9 +78,8 @@ fn verify(path: &Path, record: &Record) -> Result<(), Error> {
 fn open(path: &Path) -> Result<(File, u64), Error> {
     let flags = OFlags::NONBLOCK.bits() as i32;
     let opened = OpenOptions::new().read(true).custom_flags(flags).open(path);
-    let (file, found) = opened
-        .and_then(|file| file.metadata().map(|found| (file, found)))
-        .map_err(|error| unreadable(path, &error))?;
+    let (file, found) =
+        opened.and_then(|file| file.metadata().map(|found| (file, found))).map_err(|error| unreadable(path, &error))?;
     if found.is_file() { Ok((file, found.len())) } else { Err(Error::checkpoint(path, "it is no plain file")) }
 }
 

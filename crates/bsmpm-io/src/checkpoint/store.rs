@@ -14,6 +14,8 @@ use super::record::{Array, Record, SCHEMA};
 use super::{FOLDER, file, stem, steps};
 use crate::Error;
 
+/// Rows of a chunk in the file.
+const CHUNK: u64 = 16_384;
 /// How the names of files begin that are not complete.
 const TEMPORARY: &str = ".tmp-";
 
@@ -214,11 +216,15 @@ impl Drop for Pending {
     }
 }
 
-/// Bytes of an HDF5 file with these arrays, rather too many: their rows, a share for each chunk's checksum and place in
-/// the index, for each array's header, and for the file's.
+/// Bytes of an HDF5 file with these arrays, rather too many: chunks of 16,384 rows, of which the last one is whole, too, a
+/// share for each chunk's checksum and place in the index, for each array's header, and for the file's.
 fn room(arrays: &[Array]) -> u64 {
-    let chunks = |array: &Array| array.rows / 16_384 + 1;
-    let own = |array: &Array| array.bytes().unwrap_or(u64::MAX).saturating_add(256 * chunks(array) + 8192);
+    let own = |array: &Array| {
+        let chunks = array.rows.div_ceil(CHUNK);
+        let rows = if chunks > 1 { chunks.saturating_mul(CHUNK) } else { array.rows };
+        let bytes = Array { rows, ..array.clone() }.bytes().unwrap_or(u64::MAX);
+        bytes.saturating_add(256 * chunks + 8192)
+    };
     arrays.iter().map(own).fold(1 << 14, u64::saturating_add)
 }
 

@@ -107,8 +107,9 @@ fn expected(
     let column = |(name, column): &(&'static str, &mut dyn Column)| {
         let (number, width) = form(&**column);
         let wanted = Shape { number, rows, width };
-        shape(name)
-            .and_then(|found| if found == wanted { Ok(found) } else { Err(format!("the array {name} is of another kind")) })
+        shape(name).and_then(|found| {
+            if found == wanted { Ok(found) } else { Err(format!("the array {name} is of another kind")) }
+        })
     };
     let shapes = columns.iter().map(column).collect::<Result<_, _>>()?;
     let text = Shape { number: hdf5_collective::Number::U8, width: 1, ..state };
