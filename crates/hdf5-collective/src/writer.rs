@@ -27,7 +27,7 @@ impl<'h> Writer<'h> {
     /// must be the same on all ranks. Returns its shape.
     ///
     /// # Errors
-    /// [`Error::Library`] when it cannot be made, [`Error::Torn`] when its rows cannot be written.
+    /// [`Error::Torn`] when it cannot be written, [`Error::Foreign`] when this rank has no whole rows.
     pub fn write(&mut self, name: &str, (number, width): (Number, u64), rows: &[u8]) -> Result<Shape> {
         let foreign = |reason: &str| Error::Foreign { item: format!("the array {name}"), reason: reason.to_owned() };
         let size = Shape { number, rows: 0, width }.row_bytes().filter(|&size| size > 0);
@@ -35,7 +35,8 @@ impl<'h> Writer<'h> {
         let count = (rows.len() / self.hdf5.agree(whole)?) as u64;
         let (start, total) = self.hdf5.place(count);
         let shape = Shape { number, rows: total, width };
-        let array = self.hdf5.agree(self.file.add(name, shape))?;
+        // Other ranks may wait within HDF5 for one that fails here, too.
+        let array = self.file.add(name, shape).map_err(|error| torn(name, &error))?;
         if total > 0 {
             array.write((start, count, width), rows).map_err(|error| torn(name, &error))?;
         }
