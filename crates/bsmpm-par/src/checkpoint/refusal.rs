@@ -48,6 +48,9 @@ pub(super) fn broadcast(world: &SimpleCommunicator, from: usize, mut bytes: Vec<
     let mut size = bytes.len() as u64;
     root.broadcast_into(&mut size);
     bytes.resize(size as usize, 0);
-    root.broadcast_into(&mut bytes[..]);
+    // The address of an empty Vec<u8> is 1, which Open MPI reads as MPI_IN_PLACE.
+    if size > 0 {
+        root.broadcast_into(&mut bytes[..]);
+    }
     bytes
 }
