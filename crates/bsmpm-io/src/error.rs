@@ -72,6 +72,24 @@ pub enum Error {
         /// What was found.
         reason: String,
     },
+    /// A checkpoint is damaged, or none that this program can go on from.
+    #[error("the checkpoint {} cannot be used: {reason}", path.display())]
+    Checkpoint {
+        /// The file that was looked at.
+        path: PathBuf,
+        /// What was found.
+        reason: String,
+    },
+    /// There is no room for a file; nothing was written.
+    #[error("no room for {}: it needs {needed} bytes, {available}; nothing was written", path.display())]
+    Space {
+        /// The file that was to be written.
+        path: PathBuf,
+        /// Bytes that it needs.
+        needed: u64,
+        /// What there is, in words.
+        available: String,
+    },
     /// The output directory cannot be made, opened or written to.
     #[error("cannot {action} the output directory {}: {source}", path.display())]
     Directory {
@@ -122,7 +140,7 @@ pub enum Error {
 
 impl Error {
     /// The exit code of a program that ends with this error: 73 for the output directory, 81 for numbers that are not
-    /// finite, 70 for a caller's mistake, 74 for all other trouble with files.
+    /// finite, 70 for a caller's mistake, 76 for a checkpoint that cannot be used, 74 for all other trouble with files.
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Directory { .. }
@@ -132,13 +150,18 @@ impl Error {
             | Self::UnsafeOutput { .. } => 73,
             Self::PointNotFinite { .. } | Self::NotFinite { .. } => 81,
             Self::Length { .. } | Self::Name { .. } => 70,
-            Self::File { .. } | Self::Format { .. } => 74,
+            Self::File { .. } | Self::Format { .. } | Self::Space { .. } => 74,
+            Self::Checkpoint { .. } => 76,
         }
     }
 
     /// For `map_err`: the system's error while `action` was done to the file `path`.
     pub fn file(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Self {
         move |source| Self::File { action, path: path.to_owned(), source }
+    }
+
+    pub(crate) fn checkpoint(path: &Path, reason: impl Into<String>) -> Self {
+        Self::Checkpoint { path: path.to_owned(), reason: reason.into() }
     }
 
     pub(crate) fn format(path: &Path, reason: impl Into<String>) -> Self {

@@ -12,8 +12,12 @@ pub const MISSING: u8 = 66;
 pub const BUG: u8 = 70;
 /// The case needs more memory than allowed.
 pub const MEMORY: u8 = 71;
+/// A file could not be written.
+pub const WRITE: u8 = 74;
 /// Stopped on request.
 pub const STOPPED: u8 = 75;
+/// A checkpoint cannot be used.
+pub const CHECKPOINT: u8 = 76;
 /// A check of the case failed.
 pub const CHECK: u8 = 77;
 /// N separate runs where one run on N ranks was meant.

@@ -3,6 +3,7 @@
 //! One program for any number of ranks; a single rank is a cut into one slab. `bsmpm` computes, this crate connects.
 #![deny(unsafe_code)]
 
+pub mod checkpoint;
 pub mod cli;
 pub mod exit;
 mod fault;

@@ -109,31 +109,48 @@ impl<const D: usize> Points<D> {
         self.gap.as_ref().map_or(0.0, |gap| gap[p])
     }
 
-    /// Every array once: sorting, migration and checkpoints walk this list, so that a new state variable is one line.
-    pub fn columns(&mut self) -> Vec<&mut dyn Column> {
-        let mut columns: Vec<&mut dyn Column> = vec![
-            &mut self.id,
-            &mut self.material,
-            &mut self.x,
-            &mut self.u,
-            &mut self.mass,
-            &mut self.volume,
-            &mut self.F,
-            &mut self.b_e,
-            &mut self.sigma,
-            &mut self.eps_p,
+    /// No points, with room for the columns of these names: those that a scene does without are there if they are named.
+    pub fn holding(names: &[&str]) -> Self {
+        let has = |name| names.contains(&name);
+        Self {
+            motion: has("v").then(Motion::default),
+            dilation: has("dilation").then(Vec::new),
+            gap: has("gap").then(Vec::new),
+            ..Self::default()
+        }
+    }
+
+    /// Every array once, by name: sorting, migration and checkpoints walk this list, so that a new state variable is one
+    /// line.
+    pub fn named_columns(&mut self) -> Vec<(&'static str, &mut dyn Column)> {
+        let mut columns: Vec<(&'static str, &mut dyn Column)> = vec![
+            ("id", &mut self.id),
+            ("material", &mut self.material),
+            ("x", &mut self.x),
+            ("u", &mut self.u),
+            ("mass", &mut self.mass),
+            ("volume", &mut self.volume),
+            ("F", &mut self.F),
+            ("b_e", &mut self.b_e),
+            ("sigma", &mut self.sigma),
+            ("eps_p", &mut self.eps_p),
         ];
         if let Some(motion) = &mut self.motion {
-            columns.push(&mut motion.v);
-            columns.push(&mut motion.a);
+            columns.push(("v", &mut motion.v));
+            columns.push(("a", &mut motion.a));
         }
         if let Some(dilation) = &mut self.dilation {
-            columns.push(dilation);
+            columns.push(("dilation", dilation));
         }
         if let Some(gap) = &mut self.gap {
-            columns.push(gap);
+            columns.push(("gap", gap));
         }
         columns
+    }
+
+    /// Every array once.
+    pub fn columns(&mut self) -> Vec<&mut dyn Column> {
+        self.named_columns().into_iter().map(|(_, column)| column).collect()
     }
 
     /// Bytes of one point.
@@ -161,8 +178,25 @@ impl<const D: usize> Points<D> {
     }
 }
 
+/// What a number of a column is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Number {
+    /// 16 bits without a sign.
+    U16,
+    /// 64 bits without a sign.
+    U64,
+    /// A float of double precision.
+    F64,
+}
+
 /// One array of the points, whatever it holds.
 pub trait Column {
+    /// What its numbers are.
+    fn number(&self) -> Number;
+    /// Numbers of one row.
+    fn width(&self) -> usize;
+    /// Number of rows.
+    fn rows(&self) -> usize;
     /// Bytes of one row.
     fn bytes(&self) -> usize;
     /// Keeps the rows `order`, in that order.
@@ -174,6 +208,15 @@ pub trait Column {
 }
 
 impl<T: Row> Column for Vec<T> {
+    fn number(&self) -> Number {
+        T::NUMBER
+    }
+    fn width(&self) -> usize {
+        T::WIDTH
+    }
+    fn rows(&self) -> usize {
+        self.len()
+    }
     fn bytes(&self) -> usize {
         T::BYTES
     }
@@ -192,14 +235,18 @@ impl<T: Row> Column for Vec<T> {
 
 /// A row that travels between ranks bit by bit.
 trait Row: Copy {
+    const NUMBER: Number;
+    const WIDTH: usize;
     const BYTES: usize;
     fn put(&self, message: &mut Vec<u8>);
     fn take(row: &[u8]) -> Self;
 }
 
 macro_rules! number_rows {
-    ($($number:ty),*) => {$(
+    ($($number:ty, $kind:ident);*) => {$(
         impl Row for $number {
+            const NUMBER: Number = Number::$kind;
+            const WIDTH: usize = 1;
             const BYTES: usize = size_of::<$number>();
             fn put(&self, message: &mut Vec<u8>) {
                 message.extend_from_slice(&self.to_le_bytes());
@@ -212,9 +259,11 @@ macro_rules! number_rows {
         }
     )*};
 }
-number_rows!(u16, u64, f64);
+number_rows!(u16, U16; u64, U64; f64, F64);
 
 impl<const R: usize, const C: usize> Row for SMatrix<f64, R, C> {
+    const NUMBER: Number = Number::F64;
+    const WIDTH: usize = R * C;
     const BYTES: usize = 8 * R * C;
     fn put(&self, message: &mut Vec<u8>) {
         self.iter().for_each(|entry| entry.put(message));
@@ -225,6 +274,8 @@ impl<const R: usize, const C: usize> Row for SMatrix<f64, R, C> {
 }
 
 impl Row for Symmetric {
+    const NUMBER: Number = Number::F64;
+    const WIDTH: usize = 6;
     const BYTES: usize = 48;
     fn put(&self, message: &mut Vec<u8>) {
         self.0.iter().for_each(|entry| entry.put(message));

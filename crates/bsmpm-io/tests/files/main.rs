@@ -1,5 +1,6 @@
 //! The files of a run: what is written is read back to the bit, and what must not be written leaves no trace.
 
+mod checkpoint;
 mod directory;
 mod frames;
 mod manifest;

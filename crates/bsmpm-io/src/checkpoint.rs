@@ -1,0 +1,44 @@
+//! Checkpoints: one HDF5 file each, and beside it a record that makes it count.
+//!
+//! `checkpoint/step_000001234.h5` holds the arrays, `step_000001234.json` the [`Record`]: size and BLAKE3 of the file, its
+//! arrays, what it belongs to. Without a valid record there is no checkpoint. A checkpoint is written under temporary
+//! names and comes into being with the last rename ([`Store::commit`]); what is good is never renamed or written to again.
+//! The hash finds every accident; it does not protect from someone who rewrites the record as well.
+
+mod find;
+mod record;
+mod store;
+
+pub use find::{Found, named, newest};
+pub use record::{Array, Number, Record, SCHEMA};
+pub use store::{Facts, Pending, Phase, Store};
+
+use std::path::{Path, PathBuf};
+
+/// The folder of the checkpoints in an output directory.
+pub const FOLDER: &str = "checkpoint";
+
+/// A checkpoint's name without its ending.
+fn stem(step: u64) -> String {
+    format!("step_{step:09}")
+}
+
+/// The step of a file that is named like a checkpoint's with this ending.
+fn step_of(name: &str, ending: &str) -> Option<u64> {
+    let step = name.strip_prefix("step_")?.strip_suffix(ending)?.parse().ok()?;
+    (name == format!("{}{ending}", stem(step))).then_some(step)
+}
+
+/// Steps of all files in a folder that are named like a checkpoint's with this ending, newest first.
+fn steps(folder: &Path, ending: &str) -> std::io::Result<Vec<u64>> {
+    let mut found = Vec::new();
+    for entry in std::fs::read_dir(folder)? {
+        found.extend(entry?.file_name().to_str().and_then(|name| step_of(name, ending)));
+    }
+    found.sort_unstable_by(|a, b| b.cmp(a));
+    Ok(found)
+}
+
+fn file(folder: &Path, step: u64, ending: &str) -> PathBuf {
+    folder.join(format!("{}{ending}", stem(step)))
+}

@@ -1,0 +1,268 @@
+//! Writing checkpoints so that a crash at any instant leaves a good one: the first rank's part.
+
+use std::fs::{self, File};
+use std::io::{self, ErrorKind, Write};
+use std::path::{Path, PathBuf};
+use std::process;
+
+use rustix::fs::{FallocateFlags, fallocate, statvfs};
+use rustix::io::Errno;
+use rustix::process::{Resource, getrlimit};
+
+use super::find::{Found, named};
+use super::record::{Array, Record, SCHEMA};
+use super::{FOLDER, file, stem, steps};
+use crate::Error;
+
+/// Rows of a chunk in the file.
+const CHUNK: u64 = 16_384;
+/// How the names of files begin that are not complete.
+const TEMPORARY: &str = ".tmp-";
+
+/// Where a crash may strike while a checkpoint is written, in this order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Phase {
+    /// The file is open and empty.
+    Opened,
+    /// Some arrays are written.
+    Midway,
+    /// All arrays are written.
+    Written,
+    /// The file is closed.
+    Closed,
+    /// It is on the disk.
+    Synced,
+    /// So is its record, still under a temporary name.
+    Recorded,
+    /// The file has its name, the record not yet.
+    Named,
+    /// Both have their names: from here on the checkpoint counts.
+    Committed,
+    /// The folder is on the disk; older checkpoints are about to be removed.
+    Kept,
+}
+
+impl Phase {
+    /// All of them, in order.
+    pub const ALL: [Self; 9] = [
+        Self::Opened,
+        Self::Midway,
+        Self::Written,
+        Self::Closed,
+        Self::Synced,
+        Self::Recorded,
+        Self::Named,
+        Self::Committed,
+        Self::Kept,
+    ];
+}
+
+/// What a record says beside the size and hash of the file.
+#[derive(Clone, Debug)]
+pub struct Facts {
+    /// The version of the program.
+    pub version: String,
+    /// BLAKE3 of the case's text, in hexadecimal.
+    pub case: String,
+    /// Ranks that write.
+    pub ranks: u32,
+    /// Steps that were made.
+    pub step: u64,
+    /// s or pseudo-time  that was reached.
+    pub time: f64,
+}
+
+/// The folder of a run's checkpoints, for the one process that writes there.
+#[derive(Debug)]
+pub struct Store {
+    folder: PathBuf,
+    keep: usize,
+}
+
+/// A checkpoint that is being written. What there is of it goes when this is dropped before it was committed.
+#[derive(Debug)]
+pub struct Pending {
+    step: u64,
+    path: PathBuf,
+    record: PathBuf,
+}
+
+impl Store {
+    /// Makes the folder in an output directory if need be, and removes what crashed writers left there. The newest `keep`
+    /// checkpoints will be kept, one at least.
+    ///
+    /// # Errors
+    /// [`Error::File`] when the system refuses.
+    pub fn open(directory: &Path, keep: usize) -> Result<Self, Error> {
+        let folder = directory.join(FOLDER);
+        fs::create_dir_all(&folder).map_err(Error::file("create", &folder))?;
+        for entry in fs::read_dir(&folder).map_err(Error::file("read", &folder))? {
+            let entry = entry.map_err(Error::file("read", &folder))?;
+            if entry.file_name().to_string_lossy().starts_with(TEMPORARY) {
+                fs::remove_file(entry.path()).map_err(Error::file("remove", &entry.path()))?;
+            }
+        }
+        sync(&folder)?;
+        Ok(Self { folder, keep: keep.max(1) })
+    }
+
+    /// Where it is.
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// The good checkpoint of a step, if there is one already; a damaged one of that step is taken out of the way.
+    ///
+    /// # Errors
+    /// [`Error::File`] when the system refuses.
+    pub fn existing(&self, step: u64) -> Result<Option<Found>, Error> {
+        let found = named(&file(&self.folder, step, ".h5")).ok();
+        if found.is_none() && remove(&file(&self.folder, step, ".json"))? {
+            sync(&self.folder)?;
+        }
+        Ok(found)
+    }
+
+    /// Begins the checkpoint of a step: an empty file at [`Pending::path`], on a disk that has room for these arrays.
+    ///
+    /// # Errors
+    /// [`Error::Space`] where it has not; [`Error::File`] when the system refuses otherwise. Nothing is left then.
+    pub fn begin(&self, step: u64, arrays: &[Array]) -> Result<Pending, Error> {
+        let name = |ending| self.folder.join(format!("{TEMPORARY}{}-{}{ending}", process::id(), stem(step)));
+        let pending = Pending { step, path: name(".h5"), record: name(".json") };
+        File::create(&pending.path).map_err(Error::file("create", &pending.path))?;
+        pending.reserve(arrays)?;
+        Ok(pending)
+    }
+
+    /// Makes a complete and closed file a checkpoint, and removes those beyond the newest few. `at` is told of every
+    /// phase from [`Phase::Closed`] on.
+    ///
+    /// # Errors
+    /// [`Error::File`] when the system refuses: the checkpoints of before are all there.
+    pub fn commit(
+        &self,
+        pending: Pending,
+        facts: &Facts,
+        arrays: Vec<Array>,
+        at: &dyn Fn(Phase),
+    ) -> Result<Found, Error> {
+        at(Phase::Closed);
+        let (bytes, blake3) = sync_and_hash(&pending.path).map_err(Error::file("write", &pending.path))?;
+        at(Phase::Synced);
+        let record = record(facts, arrays, (bytes, blake3));
+        write_record(&pending.record, &record).map_err(Error::file("write", &pending.record))?;
+        at(Phase::Recorded);
+        let place = |ending| file(&self.folder, pending.step, ending);
+        let found = Found { path: place(".h5"), record };
+        fs::rename(&pending.path, &found.path).map_err(Error::file("write", &found.path))?;
+        at(Phase::Named);
+        fs::rename(&pending.record, place(".json")).map_err(Error::file("write", &place(".json")))?;
+        at(Phase::Committed);
+        sync(&self.folder)?;
+        at(Phase::Kept);
+        self.purge(pending.step)?;
+        Ok(found)
+    }
+
+    /// Keeps the checkpoint of `newest` and those before it, as many as wanted. Records go first: one without its file
+    /// would be a damaged checkpoint, a file without its record is none.
+    fn purge(&self, newest: u64) -> Result<(), Error> {
+        let list = |ending| steps(&self.folder, ending).map_err(Error::file("read", &self.folder));
+        let older = list(".json")?.into_iter().filter(|&step| step <= newest);
+        let Some(last) = older.take(self.keep).last() else { return Ok(()) };
+        for ending in [".json", ".h5"] {
+            for step in list(ending)?.into_iter().filter(|&step| step < last) {
+                remove(&file(&self.folder, step, ending))?;
+            }
+            sync(&self.folder)?;
+        }
+        Ok(())
+    }
+}
+
+impl Pending {
+    /// The file that is to be filled.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Takes room on the disk for a file with these arrays: writers that find none may crash, or wait for each other.
+    ///
+    /// # Errors
+    /// [`Error::Space`] where there is none; [`Error::File`] when the system refuses otherwise.
+    pub fn reserve(&self, arrays: &[Array]) -> Result<(), Error> {
+        let needed = room(arrays);
+        let lacks = |available: String| Error::Space { path: self.path.clone(), needed, available };
+        // Beyond the limit the system would not refuse but end the process.
+        if let Some(limit) = getrlimit(Resource::Fsize).current.filter(|&limit| limit < needed) {
+            return Err(lacks(format!("files may have {limit}")));
+        }
+        let file = File::options().write(true).open(&self.path).map_err(Error::file("open", &self.path))?;
+        match fallocate(&file, FallocateFlags::empty(), 0, needed) {
+            // Not every file system can promise room.
+            Ok(()) | Err(Errno::OPNOTSUPP | Errno::NOSYS) => Ok(()),
+            Err(Errno::NOSPC | Errno::DQUOT | Errno::FBIG) => Err(lacks(free(&self.path))),
+            Err(error) => Err(Error::file("write", &self.path)(error.into())),
+        }
+    }
+}
+
+impl Drop for Pending {
+    fn drop(&mut self) {
+        // What was committed has other names by now.
+        let _ = fs::remove_file(&self.path);
+        let _ = fs::remove_file(&self.record);
+    }
+}
+
+/// Bytes of an HDF5 file with these arrays, rather too many: chunks of 16,384 rows, of which the last one is whole, too, a
+/// share for each chunk's checksum and place in the index, for each array's header, and for the file's.
+fn room(arrays: &[Array]) -> u64 {
+    let own = |array: &Array| {
+        let chunks = array.rows.div_ceil(CHUNK);
+        let rows = if chunks > 1 { chunks.saturating_mul(CHUNK) } else { array.rows };
+        let bytes = Array { rows, ..array.clone() }.bytes().unwrap_or(u64::MAX);
+        bytes.saturating_add(256 * chunks + 8192)
+    };
+    arrays.iter().map(own).fold(1 << 14, u64::saturating_add)
+}
+
+fn free(path: &Path) -> String {
+    let folder = path.parent().unwrap_or(path);
+    statvfs(folder).map_or_else(
+        |_| "more than there are".into(),
+        |found| format!("the disk has {} left", found.f_bavail * found.f_frsize),
+    )
+}
+
+fn record(facts: &Facts, arrays: Vec<Array>, (bytes, blake3): (u64, String)) -> Record {
+    let Facts { version, case, ranks, step, time } = facts.clone();
+    Record { schema: SCHEMA, version, step, time_bits: time.to_bits(), case, ranks, bytes, blake3, arrays }
+}
+
+fn sync_and_hash(path: &Path) -> io::Result<(u64, String)> {
+    let file = File::open(path)?;
+    file.sync_all()?;
+    let mut hasher = blake3::Hasher::new();
+    let bytes = hasher.update_reader(file)?.count();
+    Ok((bytes, hasher.finalize().to_hex().to_string()))
+}
+
+fn write_record(path: &Path, record: &Record) -> io::Result<()> {
+    let mut file = File::create(path)?;
+    file.write_all(record.text()?.as_bytes())?;
+    file.sync_all()
+}
+
+fn sync(folder: &Path) -> Result<(), Error> {
+    File::open(folder).and_then(|folder| folder.sync_all()).map_err(Error::file("write", folder))
+}
+
+/// Whether there was a file to be removed.
+fn remove(path: &Path) -> Result<bool, Error> {
+    match fs::remove_file(path) {
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(false),
+        removed => removed.map(|()| true).map_err(Error::file("remove", path)),
+    }
+}

@@ -1,0 +1,153 @@
+//! Writing a checkpoint.
+
+use super::refusal::{Refusal, agree, broadcast};
+use super::{STATE, form, named};
+use crate::{exit, launch};
+use bsmpm::points::{Column, Number};
+use bsmpm_io::checkpoint::{Array, Facts, Found, Pending, Phase, Store};
+use hdf5_collective::{Hdf5, Shape, Writer};
+use mpi::collective::{CommunicatorCollectives, SystemOperation};
+use mpi::topology::{Communicator, SimpleCommunicator};
+use std::ffi::OsStr;
+use std::os::unix::ffi::OsStrExt;
+use std::path::{Path, PathBuf};
+
+/// What a checkpoint holds: this rank's rows, and a text that is the same on all ranks.
+pub struct Contents<'a> {
+    /// The columns by name, all with as many rows as this rank has points.
+    pub columns: Vec<(&'static str, &'a mut dyn Column)>,
+    /// Everything else.
+    pub state: &'a [u8],
+}
+
+/// Writes the checkpoint of a step, and returns it on the first rank, which is the one with a store. One of that step that
+/// is good already is left as it is. `at` hears of every phase, those after [`Phase::Written`] on the first rank only.
+/// Collective.
+///
+/// When HDF5 fails with the file open, this ends the job on all ranks: it might crash in a normal exit, or leave ranks
+/// waiting.
+///
+/// # Errors
+/// The same on all ranks, with nothing left of the new checkpoint and all older ones good: no room (74), trouble with the
+/// file (74), a number that is not finite (81).
+pub fn write(
+    (hdf5, world): (&Hdf5<'_>, &SimpleCommunicator),
+    store: Option<&Store>,
+    facts: &Facts,
+    contents: &Contents<'_>,
+    at: &dyn Fn(Phase),
+) -> Result<Option<Found>, Refusal> {
+    agree(world, finite(facts.step, contents))?;
+    let arrays = arrays(world, contents);
+    let begun = store.map(|store| begin(store, facts.step, &arrays)).transpose();
+    let (existing, pending) = match agree(world, begun)? {
+        None => (None, None),
+        Some(Begun::Existing(found)) => (Some(found), None),
+        Some(Begun::Pending(pending)) => (None, Some(pending)),
+    };
+    let own = pending.as_ref().map_or_else(Vec::new, |pending| pending.path().as_os_str().as_bytes().to_vec());
+    let path = broadcast(world, 0, own);
+    if path.is_empty() {
+        return Ok(existing);
+    }
+    let path = PathBuf::from(OsStr::from_bytes(&path));
+    let fill = Fill { hdf5, world, path: &path, at };
+    fill.all(pending.as_ref(), &arrays, contents)?;
+    let committed = store.zip(pending).map(|(store, pending)| store.commit(pending, facts, arrays, at));
+    agree(world, committed.transpose().map_err(Refusal::from))
+}
+
+enum Begun {
+    Existing(Found),
+    Pending(Pending),
+}
+
+fn begin(store: &Store, step: u64, arrays: &[Array]) -> Result<Begun, Refusal> {
+    Ok(match store.existing(step)? {
+        Some(found) => Begun::Existing(found),
+        None => Begun::Pending(store.begin(step, arrays)?),
+    })
+}
+
+/// What the record will say of the arrays. Collective.
+fn arrays(world: &SimpleCommunicator, contents: &Contents<'_>) -> Vec<Array> {
+    let own: Vec<u64> = contents.columns.iter().map(|(_, column)| column.rows() as u64).collect();
+    let mut all = vec![0; own.len()];
+    world.all_reduce_into(&own[..], &mut all[..], SystemOperation::sum());
+    let shape = |(column, rows): (&dyn Column, u64)| {
+        let (number, width) = form(column);
+        Shape { number, rows, width }
+    };
+    let columns = contents.columns.iter().zip(all).map(|((name, column), rows)| named(name, shape((&**column, rows))));
+    let text = Shape { number: hdf5_collective::Number::U8, rows: contents.state.len() as u64, width: 1 };
+    columns.chain([named(STATE, text)]).collect()
+}
+
+/// No number that is not finite ever reaches a file.
+fn finite(step: u64, contents: &Contents<'_>) -> Result<(), Refusal> {
+    for (name, column) in contents.columns.iter().filter(|(_, column)| column.number() == Number::F64) {
+        let bytes = rows(&**column);
+        let numbers = bytes.chunks_exact(8).map(|bytes| f64::from_le_bytes(bytes.try_into().unwrap_or_default()));
+        if let Some((at, value)) = numbers.enumerate().find(|(_, value)| !value.is_finite()) {
+            let point = at / column.width();
+            let reason = format!("no checkpoint of step {step}: {name} of this rank's point {point} is {value}");
+            return Err(Refusal::new(exit::LEFT, reason));
+        }
+    }
+    Ok(())
+}
+
+/// All rows of a column in little-endian bytes.
+fn rows(column: &dyn Column) -> Vec<u8> {
+    let mut bytes = Vec::with_capacity(column.rows() * column.bytes());
+    (0..column.rows()).for_each(|p| column.put(p, &mut bytes));
+    bytes
+}
+
+/// The file while it is filled.
+struct Fill<'a> {
+    hdf5: &'a Hdf5<'a>,
+    world: &'a SimpleCommunicator,
+    path: &'a Path,
+    at: &'a dyn Fn(Phase),
+}
+
+impl Fill<'_> {
+    fn all(&self, pending: Option<&Pending>, arrays: &[Array], contents: &Contents<'_>) -> Result<(), Refusal> {
+        let created = Writer::create(self.hdf5, self.path);
+        let mut writer = created.map_err(|error| Refusal::new(exit::WRITE, self.reason(&error)))?;
+        // HDF5 has emptied the file, and given the room back.
+        let reserved = pending.map_or(Ok(()), |pending| pending.reserve(arrays));
+        agree(self.world, reserved.map_err(Refusal::from)).unwrap_or_else(|refusal| self.end(&refusal.reason));
+        (self.at)(Phase::Opened);
+        let filled = self.columns(&mut writer, contents).and_then(|()| {
+            (self.at)(Phase::Written);
+            writer.close()
+        });
+        filled.unwrap_or_else(|error| self.end(&self.reason(&error)));
+        Ok(())
+    }
+
+    fn columns(&self, writer: &mut Writer<'_>, contents: &Contents<'_>) -> hdf5_collective::Result<()> {
+        let half = contents.columns.len() / 2;
+        for (index, (name, column)) in contents.columns.iter().enumerate() {
+            if index == half {
+                (self.at)(Phase::Midway);
+            }
+            writer.write(name, form(&**column), &rows(&**column))?;
+        }
+        let text = if self.world.rank() == 0 { contents.state } else { &[] };
+        writer.write(STATE, (hdf5_collective::Number::U8, 1), text).map(|_| ())
+    }
+
+    fn reason(&self, error: &hdf5_collective::Error) -> String {
+        format!("cannot write {}: {error}", self.path.display())
+    }
+
+    /// Removes the file and ends the job.
+    fn end(&self, reason: &str) -> ! {
+        // Another rank may have been faster.
+        let _ = std::fs::remove_file(self.path);
+        launch::end(self.world, exit::WRITE, &reason)
+    }
+}
