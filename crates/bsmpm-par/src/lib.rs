@@ -17,6 +17,7 @@ pub mod machine;
 pub mod migrate;
 pub mod program;
 pub mod record;
+pub mod restart;
 pub mod run;
 pub mod setup;
 pub mod signals;

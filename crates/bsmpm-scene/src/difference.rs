@@ -161,10 +161,10 @@ mod tests {
 
     #[test]
     fn the_key_and_both_values_are_told() {
-        assert_eq!(told("poisson = 0.3", "poisson = 0.35"), [(
-            "material.soil.poisson was 0.3, and is 0.35".into(),
-            false
-        )]);
+        assert_eq!(
+            told("poisson = 0.3", "poisson = 0.35"),
+            [("material.soil.poisson was 0.3, and is 0.35".into(), false)]
+        );
         let found = told("[material.soil]", "[material.clay]");
         assert!(found.contains(&("material.soil.young was 5840000.0, and is not given".into(), false)), "{found:?}");
         assert_eq!(told("cell = 0.1", "cell = 0.05").len(), 1);

@@ -29,9 +29,9 @@ pub use bsmpm::background::{Extent, Kind as BackgroundKind};
 pub use bsmpm::model::Regime;
 pub use bsmpm::points::Seed;
 pub use case::{
-    Analysis, Base, Body, Case, Check, Checkpoint, Choice, Column, Every, Face, Footing, Format, Geometry, Gravity, History,
-    Initial, Linear, NamedMaterial, Nonlinear, Output, Path, PointLoad, Prescribed, Quantity, Site, Solver, Support,
-    Traction,
+    Analysis, Base, Body, Case, Check, Checkpoint, Choice, Column, Every, Face, Footing, Format, Geometry, Gravity,
+    History, Initial, Linear, NamedMaterial, Nonlinear, Output, Path, PointLoad, Prescribed, Quantity, Site, Solver,
+    Support, Traction,
 };
 pub use difference::{Difference, differences};
 pub use error::{Error, Place};

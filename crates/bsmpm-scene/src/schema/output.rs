@@ -15,7 +15,12 @@ pub(super) static OUTPUT: Table = Table {
         key("times", List(In::Time, Range::POSITIVE), Optional, "further times of frames, hit exactly"),
         key("format", Choice(&["vtu"], &["vtkhdf"]), Default("\"vtu\""), "format of the frames"),
         key("residuals", Flag, Default("false"), "whether residuals.csv has a row for every iteration"),
-        key("checkpoint", Kind::Table(&CHECKPOINT), Optional, "when restart files are written, besides at every early stop"),
+        key(
+            "checkpoint",
+            Kind::Table(&CHECKPOINT),
+            Optional,
+            "when restart files are written, besides at every early stop",
+        ),
     ],
     exclusive: &[one_of(&["every", "every_steps"], false)],
 };

@@ -8,7 +8,13 @@ use crate::report::Report;
 pub(super) fn read(root: &Record, end: Option<f64>, report: &mut Report<'_>) -> Option<Output> {
     if !root.gives("output") {
         let checkpoint = Checkpoint::default();
-        return Some(Output { every: None, times: Vec::new(), format: Format::default(), residuals: false, checkpoint });
+        return Some(Output {
+            every: None,
+            times: Vec::new(),
+            format: Format::default(),
+            residuals: false,
+            checkpoint,
+        });
     }
     let output = root.record("output")?;
     let every = match (output.gives("every"), output.gives("every_steps")) {
@@ -31,7 +37,8 @@ pub(super) fn read(root: &Record, end: Option<f64>, report: &mut Report<'_>) -> 
     }
     times.sort_by(f64::total_cmp);
     times.dedup();
-    let checkpoint = if output.gives("checkpoint") { checkpoint(output.record("checkpoint")?)? } else { Checkpoint::default() };
+    let checkpoint =
+        if output.gives("checkpoint") { checkpoint(output.record("checkpoint")?)? } else { Checkpoint::default() };
     Some(Output { every, times, format: Format::Vtu, residuals: output.flag("residuals")?, checkpoint })
 }
 

@@ -64,7 +64,9 @@ fn write_run(case: &bsmpm_scene::Case, argv: Vec<String>, directory: &Path, disp
     let told = Case::new("slope.toml", &case.title, "plane-strain", case.text.clone());
     let mut manifest = Manifest::begin("0.1.0", argv, told);
     manifest.grid = Some(Extent { lower: vec![0.0; 2], upper: vec![40.0, 12.0], cell: vec![1.0; 2] });
-    let directory = OutputDirectory::claim(directory, Existing::Delete, Unseen::Respect, &manifest).unwrap();
+    let directory = OutputDirectory::hold(directory, Unseen::Respect)
+        .and_then(|held| held.claim(Existing::Delete, &manifest))
+        .unwrap();
     let mut headings = vec![Column::new("step", ""), Column::new("time", "")];
     let columns = case.histories.iter().flat_map(bsmpm_scene::History::columns);
     headings.extend(columns.map(|column| Column::new(&column.name, &column.unit)));
