@@ -52,6 +52,7 @@ gate "tests" scripts/test
 gate "short cases, golden curves" scripts/golden --check
 gate "validation, short" scripts/validate --short
 gate "extremes, short" scripts/extremes --short
+gate "faults, short" scripts/faults --short
 
 printf '\n'
 printf '%s\n' "${summary[@]}"

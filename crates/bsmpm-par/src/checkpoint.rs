@@ -4,12 +4,14 @@
 
 mod read;
 mod refusal;
+mod sense;
 mod state;
 mod write;
 
 pub use read::{Opened, Wanted, find};
 pub use refusal::Refusal;
 pub(crate) use refusal::{agree, broadcast};
+pub(crate) use sense::require;
 pub(crate) use state::pairs;
 pub use state::{BooksForm, Files, RecordState, State};
 pub use write::{Contents, write};

@@ -7,12 +7,15 @@ use mpi::environment::Universe;
 use mpi::topology::{Communicator, SimpleCommunicator};
 use std::fmt::Display;
 use std::io::Write;
+use std::sync::OnceLock;
+use std::time::{Duration, Instant};
 
 /// Variables by which a launcher tells a process how many ranks it started.
 const LAUNCHED: [&str; 4] = ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_SIZE", "SLURM_STEP_NUM_TASKS"];
 
 /// Starts MPI; from here on a panic on any rank ends the job. `Err` holds the exit code.
 pub fn start() -> Result<Universe, u8> {
+    age();
     if !LAUNCHED.iter().any(|name| std::env::var_os(name).is_some()) {
         prepare_single_rank();
     }
@@ -85,4 +88,11 @@ pub fn count(world: &SimpleCommunicator, holds: bool) -> usize {
     let mut sum = 0_u32;
     world.all_reduce_into(&u32::from(holds), &mut sum, SystemOperation::sum());
     sum as usize
+}
+
+/// How long this process has been there: what a limit of time is compared with, so that starting libraries, making points
+/// and reading a checkpoint count, too.
+pub fn age() -> Duration {
+    static BEGUN: OnceLock<Instant> = OnceLock::new();
+    BEGUN.get_or_init(Instant::now).elapsed()
 }

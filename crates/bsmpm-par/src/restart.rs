@@ -1,6 +1,6 @@
 //! Whether a run begins or goes on, and from what.
 
-use crate::checkpoint::{Opened, Refusal, State, Wanted, agree, broadcast, find};
+use crate::checkpoint::{self, Opened, Refusal, State, Wanted, agree, broadcast, find};
 use crate::cli::{Arguments, Restart};
 use crate::exit;
 use crate::migrate;
@@ -193,6 +193,7 @@ impl Resumed<'_> {
         let names: Vec<&str> = self.found.record.arrays.iter().map(|array| array.name.as_str()).collect();
         let mut points = Points::holding(&names);
         self.opened.points(points.named_columns())?;
+        checkpoint::require(&world, &self.found.path, &mut points, &model.grid, model.materials.len())?;
         let slabs =
             self.slabs(universe, &model.grid, &points).ok_or_else(|| foreign("its slabs are not of this grid"))?;
         let rank = world.rank().unsigned_abs() as usize;
@@ -207,6 +208,8 @@ impl Resumed<'_> {
             return Err(foreign("its surfaces are not of this case"));
         }
         let guess = self.opened.guess(slabs.layers(rank, window.order()), window.layer_nodes() * 2)?;
+        let is_finite = guess.iter().all(|value| value.is_finite());
+        agree(&world, if is_finite { Ok(()) } else { Err(foreign("a nodal displacement is not finite")) })?;
         let stepper = Stepper::resume(guess, self.state.progress, schedule);
         Ok((slabs, points, stepper.ok_or_else(|| foreign("its step control is in no state it can be in"))?))
     }

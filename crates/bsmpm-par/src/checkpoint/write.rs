@@ -92,10 +92,7 @@ fn arrays(world: &SimpleCommunicator, contents: &Contents<'_>) -> Vec<Array> {
 /// No number that is not finite ever reaches a file.
 fn finite(step: u64, contents: &Contents<'_>) -> Result<(), Refusal> {
     for (name, column) in contents.columns.iter().filter(|(_, column)| column.number() == Number::F64) {
-        let bytes = rows(&**column);
-        let numbers = bytes.chunks_exact(8).map(|bytes| f64::from_le_bytes(bytes.try_into().unwrap_or_default()));
-        if let Some((at, value)) = numbers.enumerate().find(|(_, value)| !value.is_finite()) {
-            let point = at / column.width();
+        if let Some((point, value)) = infinite(&**column) {
             let reason = format!("no checkpoint of step {step}: {name} of this rank's point {point} is {value}");
             return Err(Refusal::new(exit::LEFT, reason));
         }
@@ -106,6 +103,14 @@ fn finite(step: u64, contents: &Contents<'_>) -> Result<(), Refusal> {
             Err(Refusal::new(exit::LEFT, format!("no checkpoint of step {step}: a nodal displacement is {value}")))
         }
     }
+}
+
+/// The first row of a column of floats that holds a number which is not finite, and that number.
+pub(super) fn infinite(column: &dyn Column) -> Option<(usize, f64)> {
+    let bytes = rows(column);
+    let mut numbers = bytes.chunks_exact(8).map(|bytes| f64::from_le_bytes(bytes.try_into().unwrap_or_default()));
+    let at = numbers.clone().position(|value| !value.is_finite())?;
+    Some((at / column.width(), numbers.nth(at)?))
 }
 
 /// All rows of a column in little-endian bytes.

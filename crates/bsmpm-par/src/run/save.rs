@@ -38,7 +38,7 @@ impl Run<'_> {
     /// What is due, if a step may take as long as the `slowest` (s) so far and half as long again.
     pub(super) fn due(&self, slowest: f64) -> Due {
         let (steps, wanted) = (self.simulation.steps(), &self.case.output.checkpoint);
-        let end = self.start.elapsed().as_secs_f64() + 1.5 * slowest + 3.0 * self.saving.cost;
+        let end = launch::age().as_secs_f64() + 1.5 * slowest + 3.0 * self.saving.cost;
         let mut clock = [end, self.saving.last.elapsed().as_secs_f64()];
         self.simulation.halo.maximum(&mut clock);
         let counted = wanted.every_steps.is_some_and(|every| steps > 0 && steps.is_multiple_of(every));

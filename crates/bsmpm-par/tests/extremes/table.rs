@@ -1,16 +1,19 @@
 //! A row of the extremes: what it measures, what it may give, and how it is printed.
 
-use std::panic::{AssertUnwindSafe, catch_unwind};
+pub use crate::support::driver::Depth;
+use crate::support::driver::{Column, Judged, Verdict, caught, first_line, number, numbers, words};
 use std::time::Instant;
 
-/// When a row is measured.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Depth {
-    /// always
-    Short,
-    /// in the full run only: it takes its time
-    Full,
-}
+/// The columns of the table.
+pub const COLUMNS: [Column; 7] = [
+    words("row", 3),
+    words("what", 82),
+    numbers("figure", 10),
+    words("bound", 20),
+    words("verdict", 14),
+    numbers("s", 6),
+    words("remark", 0),
+];
 
 /// What a figure may be.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -85,21 +88,33 @@ impl Row {
     }
 
     /// Measures and judges.
-    pub fn judge(&self) -> Judged<'_> {
+    pub fn judge(&self) -> Judged {
         let started = Instant::now();
-        let found = catch_unwind(AssertUnwindSafe(|| (self.measure)())).unwrap_or_else(|panic| {
-            let text = panic.downcast_ref::<String>().cloned();
-            Found::Broken(text.or_else(|| panic.downcast_ref::<&str>().map(|&text| text.into())).unwrap_or_default())
-        });
-        let verdict = match (self.passes(&found), self.known) {
-            (true, None) => Verdict::Passed,
-            (true, Some(_)) => Verdict::Mended,
-            (false, None) => Verdict::Failing,
-            // What is known is a wrong number or a refusal, not a crash.
-            (false, Some(_)) if matches!(found, Found::Broken(_)) => Verdict::Failing,
-            (false, Some(_)) => Verdict::Known,
+        let found = caught(|| (self.measure)()).unwrap_or_else(Found::Broken);
+        let crashed = matches!(found, Found::Broken(_));
+        let verdict = Verdict::of(self.passes(&found), self.known.is_some(), crashed);
+        Judged { cells: self.cells(&found, verdict, started.elapsed().as_secs_f64()).into(), verdict }
+    }
+
+    /// row, what, figure, bound, verdict, seconds, remark
+    fn cells(&self, found: &Found, verdict: Verdict, seconds: f64) -> [String; 7] {
+        let limit = match self.limit {
+            Limit::AtMost(most) => format!("<= {}", number(most)),
+            Limit::Within(least, most) => format!("{} .. {}", number(least), number(most)),
+            Limit::Same => "same bits".into(),
+            Limit::Reported => "reported".into(),
         };
-        Judged { row: self, found, verdict, seconds: started.elapsed().as_secs_f64() }
+        let (figure, remark) = match found {
+            Found::Figure(value, remark) => (number(*value), remark.clone()),
+            Found::Told(0, reason) => ("warned".into(), reason.clone()),
+            Found::Told(code, reason) => (format!("exit {code}"), reason.clone()),
+            Found::Broken(reason) => ("none".into(), first_line(reason)),
+        };
+        let remarks = [remark.as_str(), self.known.unwrap_or_default()].map(str::to_owned);
+        let remark = remarks.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join("; ");
+        let refusal = if self.may_refuse { ", or told" } else { "" };
+        let (id, what, verdict) = (self.id.to_owned(), self.what.to_owned(), verdict.word().to_owned());
+        [id, what, figure, limit + refusal, verdict, format!("{seconds:.1}"), remark]
     }
 
     fn passes(&self, found: &Found) -> bool {
@@ -115,105 +130,4 @@ impl Row {
             Found::Broken(_) => false,
         }
     }
-}
-
-/// How a row stands.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Verdict {
-    Passed,
-    Failing,
-    /// fails as declared
-    Known,
-    /// passes although it is declared as failing: the declaration is to be mended
-    Mended,
-}
-
-impl Verdict {
-    /// Whether it fails the run.
-    pub fn is_failure(self) -> bool {
-        matches!(self, Self::Failing | Self::Mended)
-    }
-
-    /// Whether it fails as declared.
-    pub fn is_known(self) -> bool {
-        self == Self::Known
-    }
-
-    fn word(self) -> &'static str {
-        match self {
-            Self::Passed => "pass",
-            Self::Failing => "FAILING",
-            Self::Known => "FAILING, known",
-            Self::Mended => "passes, declared as failing",
-        }
-    }
-}
-
-/// A row with what came of it.
-pub struct Judged<'a> {
-    row: &'a Row,
-    found: Found,
-    pub verdict: Verdict,
-    seconds: f64,
-}
-
-impl Judged<'_> {
-    /// id, what, figure, bound, verdict, seconds, remark
-    fn cells(&self) -> [String; 7] {
-        let limit = match self.row.limit {
-            Limit::AtMost(most) => format!("<= {}", number(most)),
-            Limit::Within(least, most) => format!("{} .. {}", number(least), number(most)),
-            Limit::Same => "same bits".into(),
-            Limit::Reported => "reported".into(),
-        };
-        let (figure, mut remark) = match &self.found {
-            Found::Figure(value, remark) => (number(*value), remark.clone()),
-            Found::Told(0, reason) => ("warned".into(), reason.clone()),
-            Found::Told(code, reason) => (format!("exit {code}"), reason.clone()),
-            Found::Broken(reason) => {
-                ("none".into(), reason.lines().next().unwrap_or_default().chars().take(160).collect())
-            }
-        };
-        if let Some(why) = self.row.known {
-            remark =
-                [remark, why.into()].iter().filter(|part| !part.is_empty()).cloned().collect::<Vec<_>>().join("; ");
-        }
-        let refusal = if self.row.may_refuse { ", or told" } else { "" };
-        let (id, what, verdict) = (self.row.id.to_owned(), self.row.what.to_owned(), self.verdict.word().to_owned());
-        [id, what, figure, limit + refusal, verdict, format!("{:.1}", self.seconds), remark]
-    }
-
-    /// For the screen.
-    pub fn line(&self) -> String {
-        aligned(&self.cells())
-    }
-}
-
-fn aligned([id, what, figure, limit, verdict, seconds, remark]: &[String; 7]) -> String {
-    let line = format!("{id:<3}  {what:<82}  {figure:>10}  {limit:<20}  {verdict:<14}  {seconds:>6}  {remark}");
-    line.trim_end().to_owned()
-}
-
-const HEADINGS: [&str; 7] = ["row", "what", "figure", "bound", "verdict", "s", "remark"];
-
-/// The first line of the table on the screen.
-pub fn heading() -> String {
-    aligned(&HEADINGS.map(str::to_owned))
-}
-
-/// All rows, for a document.
-pub fn markdown(rows: &[Judged<'_>]) -> String {
-    let line = |cells: [String; 7]| format!("| {} |\n", cells.map(|cell| cell.replace('|', "\\|")).join(" | "));
-    let rows: String = rows.iter().map(|row| line(row.cells())).collect();
-    format!("{}|{}\n{rows}", line(HEADINGS.map(str::to_owned)), " --- |".repeat(HEADINGS.len()))
-}
-
-/// Three digits, without an exponent where that is readable.
-fn number(value: f64) -> String {
-    if value != 0.0 && !(1e-2..1e5).contains(&value.abs()) {
-        return format!("{value:.1e}");
-    }
-    let digits = (3 - value.abs().max(1.0).log10().floor() as i32).max(0) as usize;
-    let text = format!("{value:.digits$}");
-    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }

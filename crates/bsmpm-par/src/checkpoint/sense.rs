@@ -1,0 +1,77 @@
+//! What the points of a checkpoint must be before anything is computed with them. Hashes find every accident; this is for
+//! files that were written as they are, by another program or by a fault of this one.
+
+use super::refusal::{Refusal, agree};
+use super::write::infinite;
+use crate::exit;
+use bsmpm::grid::Grid;
+use bsmpm::points::{Column, Number, Points};
+use mpi::collective::{CommunicatorCollectives, SystemOperation};
+use mpi::topology::SimpleCommunicator;
+use std::path::Path;
+
+/// Bits of a word.
+const WORD: u64 = u64::BITS as u64;
+
+/// Refuses points that cannot be a state of a run in this grid with so many materials. Collective.
+///
+/// # Errors
+/// The same on all ranks (76): what is wrong with which point.
+pub fn require(
+    world: &SimpleCommunicator,
+    file: &Path,
+    points: &mut Points<2>,
+    grid: &Grid<2>,
+    materials: usize,
+) -> Result<(), Refusal> {
+    let refused =
+        |reason| Refusal::new(exit::CHECKPOINT, format!("the checkpoint {} cannot be used: {reason}", file.display()));
+    agree(world, finite(points).and_then(|()| possible(points, grid, materials)).map_err(refused))?;
+    agree(world, once(world, &points.id).map_err(refused))
+}
+
+fn finite(points: &mut Points<2>) -> Result<(), String> {
+    let real = |column: &dyn Column| column.number() == Number::F64;
+    let found = points.named_columns().into_iter().filter(|(_, column)| real(&**column)).find_map(|(name, column)| {
+        let (p, value) = infinite(&*column)?;
+        Some((name, p, value))
+    });
+    let told = |(name, p, value): (&str, usize, f64)| format!("{name} of point {} is {value}", points.id[p]);
+    found.map_or(Ok(()), |found| Err(told(found)))
+}
+
+fn possible(points: &Points<2>, grid: &Grid<2>, materials: usize) -> Result<(), String> {
+    for p in 0..points.len() {
+        let wrong = if usize::from(points.material[p]) >= materials {
+            "its material is none of the case"
+        } else if grid.locate(&points.x[p]).is_none() {
+            "its position x is outside the grid"
+        } else if points.mass[p] < 0.0 {
+            "its mass is negative"
+        } else if points.volume[p] <= 0.0 {
+            "its volume is not positive"
+        } else if points.F[p].determinant() <= 0.0 {
+            "det F is not positive"
+        } else {
+            continue;
+        };
+        return Err(format!("point {}: {wrong}", points.id[p]));
+    }
+    Ok(())
+}
+
+/// Every number from 0 on once: a bit for each. Collective; `Err` on all ranks or none.
+fn once(world: &SimpleCommunicator, ids: &[u64]) -> Result<(), String> {
+    let (own, mut all) = (ids.len() as u64, 0_u64);
+    world.all_reduce_into(&own, &mut all, SystemOperation::sum());
+    let mut seen = vec![0_u64; all.div_ceil(WORD).max(1) as usize];
+    for &id in ids.iter().filter(|&&id| id < all) {
+        seen[(id / WORD) as usize] |= 1 << (id % WORD);
+    }
+    let mut seen_by_all = vec![0; seen.len()];
+    world.all_reduce_into(&seen[..], &mut seen_by_all[..], SystemOperation::bitwise_or());
+    let bit = |id: u64| seen_by_all[(id / WORD) as usize] >> (id % WORD) & 1;
+    // As many points as numbers: if none is missing, none is there twice.
+    let missing = (0..all).find(|&id| bit(id) == 0);
+    missing.map_or(Ok(()), |id| Err(format!("it has {all} points, but none is point {id}: another is there twice")))
+}

@@ -1,0 +1,119 @@
+//! Signals and limits of time: the run stops with all that it has made, and goes on as if nothing had been.
+
+use crate::ground::{Ground, INTERVAL, results, same, spread};
+use crate::support::Running;
+use crate::support::results::manifest;
+use crate::table::{Tried, trials};
+use bsmpm_io::manifest::Status;
+use std::time::Instant;
+
+/// Sends something that is to stop the run with that code; the seconds until it has stopped. No step is made twice then.
+fn stopped(ground: &Ground, (index, code): (usize, i32), send: impl Fn(&Running), variables: &[(&str, &str)]) -> f64 {
+    let whole = ground.whole(2);
+    let trial = ground.trial(2);
+    let step = 1 + (spread(index, 4) * 0.6 * whole.steps as f64) as u64;
+    let running = trial.under_way(step, spread(index, 5), variables);
+    let begun = Instant::now();
+    send(&running);
+    running.end().expect(code);
+    let seconds = begun.elapsed().as_secs_f64();
+    let left = manifest(&trial.directory());
+    assert_eq!((left.status, left.exit_code), (Status::Stopped, Some(75)));
+    assert_eq!(trial.becomes(&whole), 0, "steps are lost");
+    seconds
+}
+
+/// USR1 to the launcher.
+pub fn usr1(ground: &Ground, count: usize) -> Tried {
+    let tried = trials(count, |index| stopped(ground, (index, 75), |running| running.signal("USR1"), &[]));
+    tried.figure(|seconds| format!("stopped after {seconds} s at most"))
+}
+
+/// USR1 to one rank only.
+pub fn usr1_to_a_rank(ground: &Ground, count: usize) -> Tried {
+    let one = |index| stopped(ground, (index, 75), |running: &Running| running.signal_rank("USR1", index % 2), &[]);
+    trials(count, one).figure(|seconds| format!("stopped after {seconds} s at most"))
+}
+
+/// USR2, after which the run goes on; there is a frame more.
+pub fn usr2(ground: &Ground, count: usize) -> Tried {
+    let whole = ground.whole(2);
+    let tried = trials(count, |index| {
+        let trial = ground.trial(2);
+        let step = 1 + (spread(index, 6) * 0.8 * whole.steps as f64) as u64;
+        let running = trial.under_way(step, spread(index, 7), &[]);
+        running.signal("USR2");
+        running.end().expect(0);
+        let found = results(&trial.directory());
+        same(&found, &whole.results);
+        trial.is_clean();
+        (found.len() - whole.results.len()) as f64
+    });
+    tried.figure(|frames| format!("{frames} frame more at most"))
+}
+
+/// TERM to mpirun, which gives the ranks a long time: they stop in order. Its own code is 1.
+pub fn term(ground: &Ground, count: usize) -> Tried {
+    let patient = [("OMPI_MCA_odls_base_sigkill_timeout", "30")];
+    let tried = trials(count, |index| stopped(ground, (index, 1), |running| running.signal("TERM"), &patient));
+    tried.figure(|seconds| format!("stopped after {seconds} s at most"))
+}
+
+/// TERM to mpirun as it is: it may kill the ranks a second later.
+pub fn term_in_a_hurry(ground: &Ground, count: usize) -> Tried {
+    let hasty = [("OMPI_MCA_odls_base_sigkill_timeout", "1")];
+    abrupt(ground, count, &hasty, |running| running.signal("TERM"))
+}
+
+/// Two TERM to mpirun.
+pub fn term_twice(ground: &Ground, count: usize) -> Tried {
+    let hasty = [("OMPI_MCA_odls_base_sigkill_timeout", "1")];
+    abrupt(ground, count, &hasty, |running| {
+        running.signal("TERM");
+        running.signal("TERM");
+    })
+}
+
+fn abrupt(ground: &Ground, count: usize, variables: &[(&str, &str)], send: impl Fn(&Running)) -> Tried {
+    let whole = ground.whole(2);
+    let tried = trials(count, |index| {
+        let trial = ground.trial(2);
+        let step = (spread(index, 8) * 0.9 * whole.steps as f64) as u64;
+        let running = trial.under_way(step, spread(index, 9), variables);
+        let begun = Instant::now();
+        send(&running);
+        running.end();
+        let seconds = begun.elapsed().as_secs_f64();
+        let lost = trial.becomes(&whole);
+        assert!(lost <= INTERVAL, "{lost} steps are lost");
+        seconds
+    });
+    tried.figure(|seconds| format!("gone after {seconds} s at most"))
+}
+
+/// A limit of time, again and again until the end: each time the job is over before its limit, and the time that it takes
+/// to launch a program which does nothing.
+pub fn max_wall(ground: &Ground, count: usize) -> Tried {
+    let whole = ground.whole(2);
+    let launching = ground.trial(2).scratch.mpirun(2, &["--version"]).expect(0).elapsed.as_secs_f64();
+    let limit = (whole.seconds / 3.0).ceil().max(2.0);
+    let mut jobs = 0;
+    let tried = trials(count, |_| {
+        let trial = ground.trial(2);
+        let mut most = 0.0_f64;
+        loop {
+            let output = trial.start(&["--max-wall", &format!("00:00:{limit:02}")], &[]).end();
+            jobs += 1;
+            if output.code == Some(0) {
+                break;
+            }
+            let seconds = output.elapsed.as_secs_f64();
+            output.expect(75);
+            assert!(seconds <= limit + launching, "{seconds} s, of which {launching} s to launch it");
+            most = most.max(seconds);
+        }
+        trial.becomes(&whole);
+        most
+    });
+    tried.figure(|seconds| format!("limit {limit} s, {jobs} jobs, {seconds} s at most"))
+}
