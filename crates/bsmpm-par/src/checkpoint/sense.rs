@@ -68,7 +68,7 @@ fn once(world: &SimpleCommunicator, ids: &[u64]) -> Result<(), String> {
     for &id in ids.iter().filter(|&&id| id < all) {
         seen[(id / WORD) as usize] |= 1 << (id % WORD);
     }
-    let mut seen_by_all = vec![0; seen.len()];
+    let mut seen_by_all = vec![0_u64; seen.len()];
     world.all_reduce_into(&seen[..], &mut seen_by_all[..], SystemOperation::bitwise_or());
     let bit = |id: u64| seen_by_all[(id / WORD) as usize] >> (id % WORD) & 1;
     // As many points as numbers: if none is missing, none is there twice.
