@@ -85,22 +85,15 @@ pub struct Row {
     pub what: &'static str,
     /// trials of the short run, of which there may be none, and of the full one
     trials: [usize; 2],
-    /// why it fails at present
-    known: Option<&'static str>,
     measure: fn(&Ground, usize) -> Tried,
 }
 
 /// A row with its trials in the short and in the full run.
 pub fn row(id: &'static str, what: &'static str, trials: [usize; 2], measure: fn(&Ground, usize) -> Tried) -> Row {
-    Row { id, what, trials, known: None, measure }
+    Row { id, what, trials, measure }
 }
 
 impl Row {
-    /// It fails at present, and why.
-    pub fn fails(self, why: &'static str) -> Self {
-        Self { known: Some(why), ..self }
-    }
-
     pub fn depth(&self) -> Depth {
         if self.trials[0] == 0 { Depth::Full } else { Depth::Short }
     }
@@ -113,12 +106,10 @@ impl Row {
             Err(words) => (Tried { tried: 1, remark: first_line(&words), ..Tried::default() }, true),
         };
         let passes = tried.passed == tried.tried;
-        let verdict = Verdict::of(passes, self.known.is_some(), crashed);
+        let verdict = Verdict::of(passes, false, crashed);
         let word = if tried.tried == 0 { "not tried" } else { verdict.word() };
-        let remarks = [tried.remark.as_str(), self.known.unwrap_or_default()].map(str::to_owned);
-        let remark = remarks.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join("; ");
         let (count, passed) = (tried.tried.to_string(), tried.passed.to_string());
-        let cells = [self.id.into(), self.what.into(), count, passed, tried.figure, word.into(), remark];
+        let cells = [self.id.into(), self.what.into(), count, passed, tried.figure, word.into(), tried.remark];
         Judged { cells: cells.into(), verdict }
     }
 }
