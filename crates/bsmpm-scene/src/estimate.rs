@@ -30,6 +30,9 @@ const LEVEL: u128 = 20 * 8;
 /// Bytes of a process that has next to nothing to solve: libraries and buffers of MPI and PETSc. Measured: 47.8e6.
 const PROCESS: u64 = 48_000_000;
 
+/// Unknowns of a rank below which it mostly waits for others, in two dimensions.
+const FEWEST: u128 = 1000;
+
 /// Sizes that follow from a case; unknowns are bounded from above, since empty cells have none. Empty cells do cost
 /// memory: vectors and the stencils of the stiffness are held for every node of the grid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,6 +45,8 @@ pub struct Estimate {
     pub unknowns: u64,
     /// Material points.
     pub points: u64,
+    /// Ranks that have something to do: at least a thousand unknowns each, and a column of cells.
+    pub useful_ranks: u64,
     /// Memory of the case, bytes, however many ranks share it: points, nodes, stiffness and its factor, where the bodies
     /// are at the start. Not what each rank adds, see [`Estimate::bytes_on`].
     pub bytes: u64,
@@ -81,6 +86,7 @@ impl Case {
             nodes: bounded(nodes),
             unknowns: bounded(2 * nodes),
             points: self.points(),
+            useful_ranks: bounded((2 * occupied / FEWEST).clamp(1, self.grid.axes[0].cells() as u128)),
             bytes: bounded(bytes),
             repeated: bounded(repeated),
         }
