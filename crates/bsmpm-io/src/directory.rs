@@ -43,7 +43,8 @@ impl OutputDirectory {
     /// # Errors
     /// [`Error::Locked`] by a run that goes on, see [`Lock::take`]. [`Error::Occupied`] by another run; with [`Existing::Delete`] only if there is a file of a run that no `run.json`
     /// names. [`Error::UnsafeOutput`] if the older `run.json` names what no run of ours wrote: nothing is deleted then.
-    /// [`Error::NotDirectory`], [`Error::Directory`] if the path is a file or cannot be made or written to.
+    /// [`Error::NotDirectory`], [`Error::Directory`] if the path is a file or cannot be made or written to, or if a link stands
+    /// where one of the run's folders belongs.
     pub fn claim(path: &Path, existing: Existing, unseen: Unseen, first: &Manifest) -> Result<Self, Error> {
         let refused = |action| move |source| Error::Directory { action, path: path.to_owned(), source };
         match fs::metadata(path) {
@@ -52,6 +53,10 @@ impl OutputDirectory {
             Err(_) => fs::create_dir_all(path).map_err(refused("create"))?,
         }
         let lock = Lock::take(path, unseen)?;
+        // A link there would lead what is written out of the directory.
+        if let Some(folder) = FOLDERS.iter().map(|folder| path.join(folder)).find(|folder| is_no_folder(folder)) {
+            return Err(Error::NotDirectory { path: folder });
+        }
         let held = run_files(path).map_err(refused("read"))?;
         match (held.first(), existing) {
             (None, _) => {}
@@ -105,6 +110,11 @@ fn run_files(directory: &Path) -> io::Result<Vec<String>> {
 /// Whether there is anything of that name, be it a link that leads nowhere.
 fn exists(path: &Path) -> bool {
     fs::symlink_metadata(path).is_ok()
+}
+
+/// Whether something stands there that is no folder itself, be it a link to one.
+fn is_no_folder(path: &Path) -> bool {
+    fs::symlink_metadata(path).is_ok_and(|found| !found.is_dir())
 }
 
 /// Deletes the outputs that the directory's `run.json` names, then itself. All are looked at before the first is deleted.

@@ -160,7 +160,7 @@ fn i02_i07_every_value_that_the_schema_refuses_is_refused_at_its_place() {
         for written in written::all(&base).iter().filter(|written| written.is_entry) {
             let span = &written.value;
             let own = &base[span.clone()];
-            let negated = if own.starts_with('"') { format!("\"-{}", &own[1..]) } else { format!("-{own}") };
+            let negated = own.strip_prefix('"').map_or(format!("-{own}"), |quoted| format!("\"-{quoted}"));
             for put in VALUES.iter().copied().chain([negated.as_str()]) {
                 let text = format!("{}{put}{}", &base[..span.start], &base[span.end..]);
                 if VALUES.contains(&put) && written.fits.refuses(put) {
