@@ -1,5 +1,5 @@
 //! Input that means harm, or is as large as if it did: sizes, names, files that are none, and what libraries would read
-//! behind the program's back (reliability.md I19 to I23, F37, S1, S3).
+//! behind the program's back (reliability.md I19 to I23, F37, S1 to S3).
 
 use crate::support::Scratch;
 use crate::support::cases::{COLUMN, changed};
@@ -209,6 +209,30 @@ fn s1_a_link_in_the_place_of_a_folder_of_the_run_is_refused_with_73() {
         assert_eq!(output.count("bsmpm-par:"), 1, "{output:#?}");
         assert_eq!(crate::support::entries(&scratch.path("elsewhere")), [""; 0]);
     }
+}
+
+/// Nothing in a case can start a program where no program is ever started.
+#[test]
+fn s2_the_solver_starts_no_process() {
+    let crates = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
+    let names = ["bsmpm", "bsmpm-scene", "bsmpm-io", "bsmpm-par", "petsc-rs", "hdf5-collective"];
+    let mut folders: Vec<_> = names.map(|name| crates.join(name).join("src")).into();
+    let mut seen = 0;
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+                continue;
+            }
+            let text = std::fs::read_to_string(&path).unwrap();
+            let text = text.split("#[cfg(test)]").next().unwrap();
+            let starts = ["process::Command", "Command::new", "libc::system", "execv", "posix_spawn"];
+            assert!(!starts.iter().any(|start| text.contains(start)), "{}", path.display());
+            seen += 1;
+        }
+    }
+    assert!(seen > 100, "{seen}");
 }
 
 /// The variables and files that PETSc and HDF5 read: none may write, load or start anything.
