@@ -12,6 +12,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 const GIB: f64 = (1_u64 << 30) as f64;
+/// Bytes that OpenBLAS reserves for its buffers. Where a limit of the process refuses them, it asks again for ever.
+const RESERVED: u64 = 1 << 27;
 
 /// Memory that a case would need, and that there is less of.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -31,8 +33,8 @@ enum Limit {
     Free,
     /// of the ranks of a host: memory.max, or memory.limit_in_bytes, of the control group
     Group,
-    /// of each rank: ulimit -v
-    AddressSpace,
+    /// of each rank: what ulimit -v and -d leave to it
+    Process,
 }
 
 impl Display for Shortage {
@@ -41,11 +43,10 @@ impl Display for Shortage {
         write!(f, "the case needs about {needed:.3} GiB ")?;
         match self.by {
             Limit::Asked => write!(f, "on {} rank(s), more than --max-memory allows: {allowed:.3} GiB", self.ranks),
-            Limit::AddressSpace => write!(
-                f,
-                "on each of {} rank(s), and the address space of a process is limited to {allowed:.3} GiB (ulimit -v)",
-                self.ranks
-            ),
+            Limit::Process => {
+                let each = format!("on each of {} rank(s)", self.ranks);
+                write!(f, "{each}, and the limits of a process (ulimit -v, -d) leave it {allowed:.3} GiB")
+            }
             Limit::Free | Limit::Group => {
                 let what = if self.by == Limit::Free { "are available" } else { "are allowed by its control group" };
                 write!(
@@ -66,9 +67,10 @@ pub fn admit(world: &SimpleCommunicator, arguments: &Arguments, case: &Case) -> 
     let here = world.split_shared(world.rank()).size().unsigned_abs() as usize;
     let mut code = exit::DONE;
     if world.rank() == 0 {
-        let limits = arguments.max_memory.map_or_else(of_host, |asked| vec![(Limit::Asked, asked)]);
         let needed = case.estimate().bytes_on(ranks);
-        match limits.into_iter().find_map(|limit| short(needed, (ranks, here), limit)) {
+        let limits = limits(arguments.max_memory).into_iter();
+        let bounded = limits.filter_map(|(by, bytes)| Some((by, bytes?)));
+        match { bounded }.find_map(|limit| short(needed, (ranks, here), limit)) {
             Some(shortage) if arguments.check && shortage.by != Limit::Asked => say(&format!("warning: {shortage}")),
             Some(shortage) => {
                 say(&format!("bsmpm-par: {shortage}; nothing was run or written"));
@@ -86,29 +88,36 @@ fn short(needed: u64, (ranks, here): (usize, usize), (by, allowed): (Limit, u64)
     let each = needed / ranks as u64;
     let (needed, ranks) = match by {
         Limit::Asked => (needed, ranks),
-        Limit::AddressSpace => (each, ranks),
+        Limit::Process => (each, ranks),
         Limit::Free | Limit::Group => (each * here as u64, here),
     };
     (needed > allowed).then_some(Shortage { needed, ranks, allowed, by })
 }
 
-/// What this host and its control groups tell.
-fn of_host() -> Vec<(Limit, u64)> {
+/// What was asked for, or what this host and its control groups tell; and what the process's own limits do.
+fn limits(asked: Option<u64>) -> Vec<(Limit, Option<u64>)> {
     let read = |path: &str| fs::read_to_string(path).unwrap_or_default();
-    let free = available(&read("/proc/meminfo")).map(|bytes| (Limit::Free, bytes));
-    let group = group(Path::new("/sys/fs/cgroup"), &read("/proc/self/cgroup")).map(|bytes| (Limit::Group, bytes));
-    let space = address_space(&read("/proc/self/limits")).map(|bytes| (Limit::AddressSpace, bytes));
-    [space, group, free].into_iter().flatten().collect()
+    let process = (Limit::Process, left(&read("/proc/self/limits"), &read("/proc/self/status")));
+    if asked.is_some() {
+        return vec![(Limit::Asked, asked), process];
+    }
+    let group = group(Path::new("/sys/fs/cgroup"), &read("/proc/self/cgroup"));
+    vec![(Limit::Group, group), (Limit::Free, kilobytes(&read("/proc/meminfo"), "MemAvailable:")), process]
 }
 
-fn available(meminfo: &str) -> Option<u64> {
-    let line = meminfo.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
+fn kilobytes(text: &str, name: &str) -> Option<u64> {
+    let line = text.lines().find_map(|line| line.strip_prefix(name))?;
     Some(line.split_whitespace().next()?.parse::<u64>().ok()? * 1024)
 }
 
-fn address_space(limits: &str) -> Option<u64> {
-    let line = limits.lines().find_map(|line| line.strip_prefix("Max address space"))?;
-    line.split_whitespace().next()?.parse().ok() // none where it is "unlimited"
+/// What the limits of address space and of data leave to a process besides what it has and what its BLAS reserves.
+fn left(limits: &str, status: &str) -> Option<u64> {
+    let of = |name: &str, size: &str| {
+        let line = limits.lines().find_map(|line| line.strip_prefix(name))?;
+        let limit = line.split_whitespace().next()?.parse::<u64>().ok()?; // none where it is "unlimited"
+        Some(limit.saturating_sub(kilobytes(status, size).unwrap_or(0) + RESERVED))
+    };
+    [of("Max address space", "VmSize:"), of("Max data size", "VmData:")].into_iter().flatten().min()
 }
 
 /// The least limit of the process's control groups of either version and of those around them; `membership` is
@@ -135,12 +144,17 @@ mod tests {
 
     #[test]
     fn what_the_system_tells_is_read() {
-        assert_eq!(available("MemTotal: 5 kB\nMemAvailable:   22661120 kB\n"), Some(22_661_120 * 1024));
+        let memory = "MemTotal: 5 kB\nMemAvailable:   22661120 kB\n";
+        assert_eq!(kilobytes(memory, "MemAvailable:"), Some(22_661_120 * 1024));
         let limits =
-            |limit: &str| format!("Max locked memory 1 1 bytes\nMax address space         {limit}  unlimited  bytes\n");
-        assert_eq!(address_space(&limits("614400000")), Some(614_400_000));
-        assert_eq!(address_space(&limits("unlimited")), None);
-        assert_eq!((available(""), address_space("")), (None, None));
+            |data: &str, space: &str| format!("Max data size  {data} 1 bytes\nMax address space  {space} 1 bytes\n");
+        let status = "VmSize:\t  1000 kB\nVmData:\t 500 kB\n";
+        let rest = |limit: u64, size: u64| Some(limit - 1024 * size - RESERVED);
+        assert_eq!(left(&limits("unlimited", "614400000"), status), rest(614_400_000, 1000));
+        assert_eq!(left(&limits("300000000", "614400000"), status), rest(300_000_000, 500));
+        assert_eq!(left(&limits("unlimited", "unlimited"), status), None);
+        assert_eq!(left(&limits("1000", "unlimited"), status), Some(0));
+        assert_eq!((kilobytes("", "VmSize:"), left("", "")), (None, None));
     }
 
     #[test]
@@ -166,7 +180,7 @@ mod tests {
         let is_short = |limit| short(4 << 30, ranks, limit).is_some();
         assert!(is_short((Limit::Asked, 3 << 30)) && !is_short((Limit::Asked, 4 << 30)));
         assert!(is_short((Limit::Free, 1 << 30)) && !is_short((Limit::Group, 2 << 30)));
-        assert!(is_short((Limit::AddressSpace, 1 << 29)) && !is_short((Limit::AddressSpace, 1 << 30)));
+        assert!(is_short((Limit::Process, 1 << 29)) && !is_short((Limit::Process, 1 << 30)));
         let said = short(4 << 30, ranks, (Limit::Free, 1 << 30)).unwrap().to_string();
         assert!(
             said.contains("about 2.000 GiB for the 2 rank(s) of this host, where 1.000 GiB are available"),
