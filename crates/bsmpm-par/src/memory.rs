@@ -68,9 +68,8 @@ pub fn admit(world: &SimpleCommunicator, arguments: &Arguments, case: &Case) -> 
     let mut code = exit::DONE;
     if world.rank() == 0 {
         let needed = case.estimate().bytes_on(ranks);
-        let limits = limits(arguments.max_memory).into_iter();
-        let bounded = limits.filter_map(|(by, bytes)| Some((by, bytes?)));
-        match { bounded }.find_map(|limit| short(needed, (ranks, here), limit)) {
+        let mut limits = limits(arguments.max_memory).into_iter().filter_map(|(by, bytes)| Some((by, bytes?)));
+        match limits.find_map(|limit| short(needed, (ranks, here), limit)) {
             Some(shortage) if arguments.check && shortage.by != Limit::Asked => say(&format!("warning: {shortage}")),
             Some(shortage) => {
                 say(&format!("bsmpm-par: {shortage}; nothing was run or written"));
