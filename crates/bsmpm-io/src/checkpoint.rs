@@ -18,6 +18,11 @@ use std::path::{Path, PathBuf};
 /// The folder of the checkpoints in an output directory.
 pub const FOLDER: &str = "checkpoint";
 
+/// The files of the checkpoint of a step, relative to the output directory.
+pub fn names(step: u64) -> [String; 2] {
+    [".h5", ".json"].map(|ending| format!("{FOLDER}/{}{ending}", stem(step)))
+}
+
 /// A checkpoint's name without its ending.
 fn stem(step: u64) -> String {
     format!("step_{step:09}")

@@ -33,54 +33,95 @@ pub enum Existing {
 #[derive(Debug)]
 pub struct OutputDirectory {
     path: PathBuf,
-    lock: Lock,
+    lock: Option<Lock>, // until this is dropped
+    idle: bool,         // made for a run that has not begun
 }
 
 impl OutputDirectory {
-    /// Makes the directory if need be, holds it against other runs as long as this lives, and puts the run's first manifest
-    /// there: of several programs that try at once, one succeeds.
+    /// Makes the directory if need be, and holds it against other runs as long as this lives: of several programs that try
+    /// at once, one succeeds.
     ///
     /// # Errors
-    /// [`Error::Locked`] by a run that goes on, see [`Lock::take`]. [`Error::Occupied`] by another run; with [`Existing::Delete`] only if there is a file of a run that no `run.json`
-    /// names. [`Error::UnsafeOutput`] if the older `run.json` names what no run of ours wrote: nothing is deleted then.
-    /// [`Error::NotDirectory`], [`Error::Directory`] if the path is a file or cannot be made or written to, or if a link stands
-    /// where one of the run's folders belongs.
-    pub fn claim(path: &Path, existing: Existing, unseen: Unseen, first: &Manifest) -> Result<Self, Error> {
+    /// [`Error::Locked`] by a run that goes on, see [`Lock::take`]. [`Error::NotDirectory`], [`Error::Directory`] if the path
+    /// is a file or cannot be made or written to, or if a link stands where one of the run's folders belongs.
+    pub fn hold(path: &Path, unseen: Unseen) -> Result<Self, Error> {
         let refused = |action| move |source| Error::Directory { action, path: path.to_owned(), source };
-        match fs::metadata(path) {
+        let idle = match fs::metadata(path) {
             Ok(found) if !found.is_dir() => return Err(Error::NotDirectory { path: path.to_owned() }),
-            Ok(_) => {}
-            Err(_) => fs::create_dir_all(path).map_err(refused("create"))?,
-        }
-        let lock = Lock::take(path, unseen)?;
+            Ok(_) => false,
+            Err(_) => fs::create_dir_all(path).map(|()| true).map_err(refused("create"))?,
+        };
+        let lock = Some(Lock::take(path, unseen)?);
         // A link there would lead what is written out of the directory.
         if let Some(folder) = FOLDERS.iter().map(|folder| path.join(folder)).find(|folder| is_no_folder(folder)) {
             return Err(Error::NotDirectory { path: folder });
         }
+        Ok(Self { path: path.to_owned(), lock, idle })
+    }
+
+    /// Puts the first manifest of a new run there.
+    ///
+    /// # Errors
+    /// [`Error::Occupied`] by another run; with [`Existing::Delete`] only if there is a file of a run that no `run.json`
+    /// names. [`Error::UnsafeOutput`] if the older `run.json` names what no run of ours wrote: nothing is deleted then.
+    /// [`Error::Directory`] if it cannot be written to.
+    pub fn claim(mut self, existing: Existing, first: &Manifest) -> Result<Self, Error> {
+        let path = &self.path;
+        let refused = |action| move |source| Error::Directory { action, path: path.clone(), source };
         let held = run_files(path).map_err(refused("read"))?;
         match (held.first(), existing) {
             (None, _) => {}
             (Some(found), Existing::Refuse) => {
-                return Err(occupied(
-                    path,
-                    found,
-                    "give another with -o, or --force to delete what its run.json names",
-                ));
+                let advice = "give another with -o, --restart auto to go on with it, or --force to delete what its run.json names";
+                return Err(occupied(path, found, advice));
             }
             (Some(_), Existing::Delete) => delete_run(path, &held)?,
         }
         first.write_first(path)?;
-        Ok(Self { path: path.to_owned(), lock })
+        self.idle = false;
+        Ok(self)
+    }
+
+    /// The run that is there, if any.
+    ///
+    /// # Errors
+    /// Those of [`Manifest::read`].
+    pub fn run(&self) -> Result<Option<Manifest>, Error> {
+        if exists(&self.path.join(MANIFEST)) { Manifest::read(&self.path).map(Some) } else { Ok(None) }
+    }
+
+    /// Makes the run that is there go on as `manifest` says: what its `run.json` names and the manifest does not goes.
+    ///
+    /// # Errors
+    /// As [`OutputDirectory::claim`].
+    pub fn go_on(mut self, manifest: &Manifest) -> Result<Self, Error> {
+        let before = self.run()?.map_or_else(Vec::new, |run| run.outputs);
+        let kept = |name: &str| manifest.outputs.iter().any(|output| output.path == name);
+        let doomed = doomed(&self.path, before.iter().map(|output| &*output.path).filter(|name| !kept(name)))?;
+        manifest.write(&self.path)?;
+        delete(&doomed)?;
+        self.idle = false;
+        Ok(self)
     }
 
     /// Whose lock was taken over, and why, if there was one.
     pub fn note(&self) -> Option<&str> {
-        self.lock.note()
+        self.lock.as_ref()?.note()
     }
 
     /// Where it is.
     pub fn path(&self) -> &Path {
         &self.path
+    }
+}
+
+impl Drop for OutputDirectory {
+    fn drop(&mut self) {
+        self.lock = None;
+        if self.idle {
+            // Only if nobody else has put anything there.
+            let _ = fs::remove_dir(&self.path);
+        }
     }
 }
 
@@ -127,24 +168,32 @@ fn delete_run(directory: &Path, held: &[String]) -> Result<(), Error> {
         ));
     }
     let manifest = Manifest::read(directory)?;
-    let mut doomed = Vec::new();
-    for output in &manifest.outputs {
-        let unsafe_output =
-            |reason| Error::UnsafeOutput { path: directory.to_owned(), name: output.path.clone(), reason };
-        if inspect(directory, &output.path).map_err(unsafe_output)? {
-            doomed.push(directory.join(&output.path));
-        }
-    }
+    let mut doomed = doomed(directory, manifest.outputs.iter().map(|output| &*output.path))?;
     let named = |file: &String| file == MANIFEST || manifest.outputs.iter().any(|output| output.path == *file);
     if let Some(other) = held.iter().find(|file| !named(file)) {
         return Err(occupied(directory, other, "its run.json does not name it; delete it by hand or give another -o"));
     }
     // The manifest goes last: whatever interrupts this, it still names what is left.
     doomed.push(directory.join(MANIFEST));
-    for path in doomed {
-        fs::remove_file(&path).map_err(|source| Error::Directory { action: "empty", path: path.clone(), source })?;
+    delete(&doomed)
+}
+
+/// Those of the named outputs that are there, if all of them may be deleted.
+fn doomed<'a>(directory: &Path, names: impl Iterator<Item = &'a str>) -> Result<Vec<PathBuf>, Error> {
+    let mut doomed = Vec::new();
+    for name in names {
+        let unsafe_output = |reason| Error::UnsafeOutput { path: directory.to_owned(), name: name.to_owned(), reason };
+        if inspect(directory, name).map_err(unsafe_output)? {
+            doomed.push(directory.join(name));
+        }
     }
-    Ok(())
+    Ok(doomed)
+}
+
+fn delete(doomed: &[PathBuf]) -> Result<(), Error> {
+    let refused = |path: &PathBuf| fs::remove_file(path).map_err(|source| (path.clone(), source));
+    let deleted = doomed.iter().try_for_each(refused);
+    deleted.map_err(|(path, source)| Error::Directory { action: "empty", path, source })
 }
 
 /// Whether an output that a `run.json` names is there to be deleted, or why it must not be.

@@ -4,6 +4,8 @@ use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+use serde::{Deserialize, Serialize};
+
 use crate::directory::is_plain_relative;
 use crate::frame::Frame;
 use crate::xml::tags;
@@ -13,7 +15,7 @@ use crate::{Error, atomic, vtu};
 pub const COLLECTION: &str = "frames.pvd";
 
 /// One line of the list of frames.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Entry {
     /// s, or the pseudo-time of a quasi-static analysis.
     pub time: f64,
@@ -37,6 +39,18 @@ impl Frames {
         let folder = directory.join("frames");
         fs::create_dir_all(&folder).map_err(Error::file("create", &folder))?;
         Ok(Self { directory: directory.to_owned(), entries: Vec::new() })
+    }
+
+    /// Goes on with the frames of a run, those of `entries` that are there, and lists them anew.
+    ///
+    /// # Errors
+    /// [`Error::File`] when the folder cannot be made or the list not written.
+    pub fn resume(directory: &Path, entries: Vec<Entry>) -> Result<Self, Error> {
+        let mut frames = Self::create(directory)?;
+        frames.entries = entries;
+        frames.entries.retain(|entry| is_plain_relative(&entry.file) && directory.join(&entry.file).is_file());
+        write_collection(&directory.join(COLLECTION), &frames.entries)?;
+        Ok(frames)
     }
 
     /// Where the frame of a step is written, relative to the output directory: for the manifest, which must name an

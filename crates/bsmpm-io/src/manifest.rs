@@ -14,7 +14,7 @@ use crate::{Error, atomic};
 
 pub mod parts;
 
-pub use parts::{Case, Check, Choice, Extent, Failure, Initial, Output, Status, Summary, Worst};
+pub use parts::{Case, Check, Choice, Extent, Failure, Initial, Output, Restart, Status, Summary, Worst};
 
 /// The manifest's file.
 pub const MANIFEST: &str = "run.json";
@@ -79,6 +79,9 @@ pub struct Manifest {
     pub outputs: Vec<Output>,
     /// The newest good checkpoint, relative to the directory.
     pub checkpoint: Option<String>,
+    /// Where the run went on after it had stopped, first one first.
+    #[serde(default)]
+    pub restarts: Vec<Restart>,
     /// Why the run ended early.
     pub failure: Option<Failure>,
 }
@@ -109,6 +112,7 @@ impl Manifest {
             checks: Vec::new(),
             outputs: Vec::new(),
             checkpoint: None,
+            restarts: Vec::new(),
             failure: None,
         }
     }

@@ -2,8 +2,10 @@
 //! rows. Each row is in the file before the next step begins.
 
 use std::fs::{self, File};
-use std::io::Write;
+use std::io::{Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
 
 use crate::Error;
 
@@ -37,12 +39,22 @@ pub enum Cell {
     Empty,
 }
 
+/// How far a table has come: what must stand in it for a run to go on from here.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Mark {
+    /// Bytes of its file.
+    pub bytes: u64,
+    /// Their BLAKE3, in hexadecimal.
+    pub blake3: String,
+}
+
 /// A table that grows by a row at a time.
 #[derive(Debug)]
 pub struct Table {
     path: PathBuf,
     file: File,
     columns: Vec<Column>,
+    hasher: Box<blake3::Hasher>, // of all that is in the file
 }
 
 impl Table {
@@ -53,11 +65,51 @@ impl Table {
     /// [`Error::File`] when the file is there already or cannot be made.
     pub fn create(path: &Path, columns: &[Column]) -> Result<Self, Error> {
         check_headings(path, columns)?;
-        let join = |part: fn(&Column) -> &str| columns.iter().map(part).collect::<Vec<_>>().join(",");
-        let heading = format!("{}\n# {}\n", join(|column| &column.name), join(|column| &column.unit));
-        let mut file = File::create_new(path).map_err(Error::file("create", path))?;
-        file.write_all(heading.as_bytes()).map_err(Error::file("write", path))?;
-        Ok(Self { path: path.to_owned(), file, columns: columns.to_vec() })
+        let file = File::create_new(path).map_err(Error::file("create", path))?;
+        let (path, columns) = (path.to_owned(), columns.to_vec());
+        let mut table = Self { path, file, hasher: Box::default(), columns };
+        let heading = heading(&table.columns);
+        table.append(&heading)?;
+        Ok(table)
+    }
+
+    /// Goes on with a file that had come to `mark`: what was written later is cut off.
+    ///
+    /// # Errors
+    /// [`Error::Format`] if the file is shorter or its beginning another one, or if it has other columns: it is left as it
+    /// is. [`Error::File`] when the system refuses.
+    pub fn resume(path: &Path, columns: &[Column], mark: &Mark) -> Result<Self, Error> {
+        check_headings(path, columns)?;
+        let mut file = File::options().read(true).write(true).open(path).map_err(Error::file("open", path))?;
+        let mut hasher = Box::<blake3::Hasher>::default();
+        let begun = heading(columns);
+        let mut first = vec![0; begun.len()];
+        let headed = file.read_exact(&mut first).is_ok() && first == begun.as_bytes();
+        let hashed = file.rewind().and_then(|()| {
+            hasher.update_reader((&mut file).take(mark.bytes))?;
+            file.seek(SeekFrom::Start(mark.bytes))
+        });
+        hashed.map_err(Error::file("read", path))?;
+        if !headed || hasher.count() != mark.bytes || hasher.finalize().to_hex().as_str() != mark.blake3 {
+            let reason = format!("its first {} bytes are not those that the run had written", mark.bytes);
+            return Err(Error::format(path, reason));
+        }
+        file.set_len(mark.bytes).map_err(Error::file("write", path))?;
+        Ok(Self { path: path.to_owned(), file, columns: columns.to_vec(), hasher })
+    }
+
+    /// Where the table stands now. All of it is on the disk then.
+    ///
+    /// # Errors
+    /// [`Error::File`] when the system refuses.
+    pub fn mark(&self) -> Result<Mark, Error> {
+        self.file.sync_all().map_err(Error::file("write", &self.path))?;
+        Ok(Mark { bytes: self.hasher.count(), blake3: self.hasher.finalize().to_hex().to_string() })
+    }
+
+    fn append(&mut self, text: &str) -> Result<(), Error> {
+        self.hasher.update(text.as_bytes());
+        self.file.write_all(text.as_bytes()).map_err(Error::file("write", &self.path))
     }
 
     /// Adds a row, floats in the shortest form that reads back to the same bits. The row goes to the system whole.
@@ -77,7 +129,7 @@ impl Table {
             line += &self.text(column, *cell, cells[0])?;
         }
         line.push('\n');
-        self.file.write_all(line.as_bytes()).map_err(Error::file("write", &self.path))
+        self.append(&line)
     }
 
     fn text(&self, column: &Column, cell: Cell, first: Cell) -> Result<String, Error> {
@@ -93,6 +145,12 @@ impl Table {
             }
         }
     }
+}
+
+/// The two heading lines.
+fn heading(columns: &[Column]) -> String {
+    let join = |part: fn(&Column) -> &str| columns.iter().map(part).collect::<Vec<_>>().join(",");
+    format!("{}\n# {}\n", join(|column| &column.name), join(|column| &column.unit))
 }
 
 fn check_headings(path: &Path, columns: &[Column]) -> Result<(), Error> {

@@ -1,12 +1,17 @@
-//! Checkpoints on all ranks: the columns of the points, a slice of rows each, and a text of everything that is the same
-//! everywhere. What makes a file a checkpoint is `bsmpm_io::checkpoint`'s part; what is in the text is the caller's.
+//! Checkpoints on all ranks: the columns of the points and the nodal displacement of the last step, a slice of rows each,
+//! and a text of everything that is the same everywhere, the [`State`]. What makes a file a checkpoint is
+//! `bsmpm_io::checkpoint`'s part.
 
 mod read;
 mod refusal;
+mod state;
 mod write;
 
-pub use read::{Wanted, find, read};
+pub use read::{Opened, Wanted, find};
 pub use refusal::Refusal;
+pub(crate) use refusal::{agree, broadcast};
+pub(crate) use state::pairs;
+pub use state::{BooksForm, Files, RecordState, State};
 pub use write::{Contents, write};
 
 use bsmpm::points::Column;
@@ -15,6 +20,8 @@ use hdf5_collective::Shape;
 
 /// The array that holds the text.
 const STATE: &str = "state";
+/// The array of the nodal displacement of the last converged step, a row for each layer of nodes.
+const GUESS: &str = "guess";
 
 /// How a column stands in the file: what its numbers are, and how many of them make a row.
 fn form(column: &dyn Column) -> (hdf5_collective::Number, u64) {

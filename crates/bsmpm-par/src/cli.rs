@@ -22,6 +22,21 @@ pub enum LogFormat {
     Json,
 }
 
+/// What a run goes on from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Restart {
+    /// The newest good checkpoint, if there is one.
+    Auto,
+    /// This checkpoint and no other.
+    From(PathBuf),
+}
+
+impl From<&str> for Restart {
+    fn from(text: &str) -> Self {
+        if text == "auto" { Self::Auto } else { Self::From(text.into()) }
+    }
+}
+
 /// Form of the frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum FrameFormat {
@@ -52,9 +67,9 @@ pub struct Arguments {
     /// Take over the output directory's lock from a run that cannot be seen to be dead, e.g. on another host
     #[arg(long)]
     pub break_lock: bool,
-    /// Go on from a checkpoint; not available yet
+    /// Go on from the newest good checkpoint in the output directory, or start where there is none; or from this one only
     #[arg(long, value_name = "auto|FILE")]
-    pub restart: Option<String>,
+    pub restart: Option<Restart>,
     /// Stop when the run's step number reaches N (exit 75; 0 if the end was reached)
     #[arg(long, value_name = "N")]
     pub max_steps: Option<u64>,
@@ -104,9 +119,6 @@ impl Arguments {
     }
 
     fn admissible(&self) -> Result<(), String> {
-        if self.restart.is_some() {
-            return Err("--restart is not available yet: this version writes no checkpoints".into());
-        }
         if self.frames == FrameFormat::Vtkhdf {
             return Err("--frames vtkhdf is not available yet; use vtu".into());
         }

@@ -12,6 +12,8 @@ pub const MISSING: u8 = 66;
 pub const BUG: u8 = 70;
 /// The case needs more memory than allowed.
 pub const MEMORY: u8 = 71;
+/// Restarts come to nothing.
+pub const STALLED: u8 = 72;
 /// A file could not be written.
 pub const WRITE: u8 = 74;
 /// Stopped on request.

@@ -1,33 +1,63 @@
-//! A fault on demand, in every build: `BSMPM_FAULT=panic:rank=R,step=N` panics on rank R when step N begins.
+//! Faults on demand, in every build, so that what is tested is what is shipped: `BSMPM_FAULT=panic:rank=R,step=N` panics
+//! on rank R when step N begins; `BSMPM_FAULT=kill:phase=P,step=N` kills the rank that writes the checkpoint of step N in
+//! its phase P (opened, midway, ...).
+
+use bsmpm_io::checkpoint::Phase;
 
 /// The fault that the environment asks for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Fault {
-    rank: usize,
+    place: Place,
     step: u64,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Place {
+    Rank(usize),
+    Phase(Phase),
 }
 
 impl Fault {
     /// Reads this rank's `BSMPM_FAULT` for a run on so many ranks; `Err` says what is wrong with it.
     pub fn from_environment(ranks: usize) -> Result<Option<Self>, String> {
         let Some(text) = std::env::var_os("BSMPM_FAULT") else { return Ok(None) };
-        let fault = Self::parse(&text.to_string_lossy())?;
-        if fault.rank < ranks { Ok(Some(fault)) } else { Err(format!("BSMPM_FAULT: there are {ranks} ranks only")) }
+        match Self::parse(&text.to_string_lossy())? {
+            Self { place: Place::Rank(rank), .. } if rank >= ranks => {
+                Err(format!("BSMPM_FAULT: there are {ranks} ranks only"))
+            }
+            fault => Ok(Some(fault)),
+        }
     }
 
     fn parse(text: &str) -> Result<Self, String> {
-        let wrong = || format!("BSMPM_FAULT={text}: expected panic:rank=R,step=N");
-        let places = text.strip_prefix("panic:").ok_or_else(wrong)?;
-        let (rank, step) = places.split_once(',').ok_or_else(wrong)?;
-        let number = |part: &str, key: &str| part.strip_prefix(key)?.parse().ok();
-        let rank: u64 = number(rank, "rank=").ok_or_else(wrong)?;
-        Ok(Self { rank: rank as usize, step: number(step, "step=").ok_or_else(wrong)? })
+        let read = || {
+            let (kind, places) = text.split_once(':')?;
+            let (place, step) = places.split_once(',')?;
+            let place = match kind {
+                "panic" => Place::Rank(place.strip_prefix("rank=")?.parse().ok()?),
+                "kill" => Place::Phase(phase(place.strip_prefix("phase=")?)?),
+                _ => return None,
+            };
+            Some(Self { place, step: step.strip_prefix("step=")?.parse().ok()? })
+        };
+        read().ok_or_else(|| format!("BSMPM_FAULT={text}: expected panic:rank=R,step=N or kill:phase=P,step=N"))
     }
 
     /// Panics if this is the rank and the step.
     pub fn strike(self, rank: usize, step: u64) {
-        assert!((rank, step) != (self.rank, self.step), "injected by BSMPM_FAULT at step {step}");
+        assert!((Place::Rank(rank), step) != (self.place, self.step), "injected by BSMPM_FAULT at step {step}");
     }
+
+    /// Kills the process, with no chance to clean up, if it writes the checkpoint of this step and is in this phase.
+    pub fn strike_in(self, writes: bool, step: u64, phase: Phase) {
+        if writes && (Place::Phase(phase), step) == (self.place, self.step) {
+            let _ = signal_hook::low_level::raise(signal_hook::consts::SIGKILL);
+        }
+    }
+}
+
+fn phase(name: &str) -> Option<Phase> {
+    Phase::ALL.into_iter().find(|phase| format!("{phase:?}").to_lowercase() == name)
 }
 
 #[cfg(test)]
@@ -35,10 +65,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_fault_names_rank_and_step() {
-        assert_eq!(Fault::parse("panic:rank=1,step=20"), Ok(Fault { rank: 1, step: 20 }));
+    fn a_fault_names_rank_or_phase_and_step() {
+        assert_eq!(Fault::parse("panic:rank=1,step=20"), Ok(Fault { place: Place::Rank(1), step: 20 }));
+        let fault = Fault { place: Place::Phase(Phase::Midway), step: 4 };
+        assert_eq!(Fault::parse("kill:phase=midway,step=4"), Ok(fault));
         for wrong in ["", "panic", "panic:rank=1", "panic:step=1,rank=2", "panic:rank=x,step=1", "hang:rank=1,step=2"] {
             assert!(Fault::parse(wrong).is_err(), "{wrong}");
         }
+        assert!(Fault::parse("kill:phase=never,step=1").is_err() && Fault::parse("kill:rank=1,step=1").is_err());
     }
 }

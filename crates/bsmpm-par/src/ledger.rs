@@ -1,8 +1,9 @@
-//! Files of a run, written by rank 0: manifest, histories, steps and frames.
+//! Files of a run, written by rank 0: manifest, histories, steps, frames, and which checkpoints there are.
+
+mod first;
+mod restart;
 
 use crate::cli::Arguments;
-use crate::machine;
-use crate::setup;
 use crate::surfaces;
 use bsmpm::control::Accepted;
 use bsmpm::error::Measures;
@@ -10,12 +11,12 @@ use bsmpm::step::Counts;
 use bsmpm::step::equilibrium::Method;
 use bsmpm::step::quasi_newton::QuasiNewton;
 use bsmpm_io::Error;
+use bsmpm_io::checkpoint::Store;
 use bsmpm_io::directory::{Existing, HISTORY, OutputDirectory};
 use bsmpm_io::failure::{FAILURE, FailureReport};
 use bsmpm_io::frame::Frame;
 use bsmpm_io::frames::{COLLECTION, Frames};
-use bsmpm_io::lock::Unseen;
-use bsmpm_io::manifest::{self, Check, Extent, Manifest, Status};
+use bsmpm_io::manifest::{self, Manifest, Status};
 use bsmpm_io::residuals::{self, Iterate, RESIDUALS};
 use bsmpm_io::steps::{STEPS, Step};
 use bsmpm_io::table::{Cell, Column, Table};
@@ -31,35 +32,58 @@ pub struct Ledger {
     steps: Table,
     residuals: Option<Table>, // if the case asks for it
     frames: Frames,
+    store: Option<Store>, // once there is a checkpoint
+    keep: u64,
     end: f64,
     dt: f64,
 }
 
-impl Ledger {
-    /// Claims the output directory and opens the tables.
-    pub fn open(arguments: &Arguments, case: &Case, ranks: usize, columns: Vec<Column>) -> Result<Self, Error> {
-        let existing = if arguments.force { Existing::Delete } else { Existing::Refuse };
-        let unseen = if arguments.break_lock { Unseen::Break } else { Unseen::Respect };
-        let mut manifest = first_manifest(arguments, case, ranks);
-        [HISTORY, STEPS, COLLECTION].iter().for_each(|file| manifest.name_output(file));
-        if case.output.residuals {
-            manifest.name_output(RESIDUALS);
-        }
-        let directory = OutputDirectory::claim(&arguments.directory(), existing, unseen, &manifest)?;
-        manifest.warnings.extend(directory.note().map(str::to_owned));
+/// Headings of the tables.
+struct Headings {
+    history: Vec<Column>,
+    steps: Vec<Column>,
+    residuals: Option<Vec<Column>>, // if the case asks for them
+}
+
+impl Headings {
+    fn of(case: &Case, columns: &[Column]) -> Self {
         let time = match case.analysis.regime {
             Regime::Dynamic => "s",
             Regime::QuasiStatic => "-",
         };
-        let path = directory.path().to_owned();
-        let mut headings = vec![Column::new("step", "-"), Column::new("time", time)];
-        headings.extend(columns.iter().cloned());
-        let residuals = case.output.residuals.then(|| Table::create(&path.join(RESIDUALS), &Iterate::columns(time)));
+        let mut history = vec![Column::new("step", "-"), Column::new("time", time)];
+        history.extend(columns.iter().cloned());
+        let residuals = case.output.residuals.then(|| Iterate::columns(time).into());
+        Self { history, steps: Step::columns(time).into(), residuals }
+    }
+}
+
+impl Ledger {
+    /// A new run in a directory that is held.
+    pub fn open(
+        held: OutputDirectory,
+        existing: Existing,
+        (arguments, case): (&Arguments, &Case),
+        ranks: usize,
+        columns: Vec<Column>,
+    ) -> Result<Self, Error> {
+        let mut manifest = first::manifest(arguments, case, ranks);
+        [HISTORY, STEPS, COLLECTION].iter().for_each(|file| manifest.name_output(file));
+        if case.output.residuals {
+            manifest.name_output(RESIDUALS);
+        }
+        manifest.warnings.extend(held.note().map(str::to_owned));
+        let directory = held.claim(existing, &manifest)?;
+        let headings = Headings::of(case, &columns);
+        let path = directory.path();
+        let residuals = headings.residuals.map(|headings| Table::create(&path.join(RESIDUALS), &headings));
         Ok(Self {
             residuals: residuals.transpose()?,
-            history: Table::create(&path.join(HISTORY), &headings)?,
-            steps: Table::create(&path.join(STEPS), &Step::columns(time))?,
-            frames: Frames::create(&path)?,
+            history: Table::create(&path.join(HISTORY), &headings.history)?,
+            steps: Table::create(&path.join(STEPS), &headings.steps)?,
+            frames: Frames::create(path)?,
+            store: None,
+            keep: case.output.checkpoint.keep,
             end: case.analysis.end,
             dt: case.analysis.dt,
             directory,
@@ -201,65 +225,4 @@ impl Ledger {
         }
         self.manifest.checks.iter().all(|check| check.passed)
     }
-}
-
-fn first_manifest(arguments: &Arguments, case: &Case, ranks: usize) -> Manifest {
-    let file = arguments.case.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let described = manifest::Case::new(&file, &case.title, "plane-strain", case.text.clone());
-    let mut manifest = Manifest::begin(
-        env!("CARGO_PKG_VERSION"),
-        std::env::args_os().map(|argument| argument.to_string_lossy().into_owned()).collect(),
-        described,
-    );
-    let axes = &case.grid.axes;
-    let longest = |axis: &bsmpm_scene::Axis| (0..axis.cells()).map(|i| axis.cell(i)).fold(0.0, f64::max);
-    manifest.ranks = ranks as u32;
-    manifest.grid = Some(Extent {
-        lower: case.grid.lower().to_vec(),
-        upper: case.grid.upper().to_vec(),
-        cell: axes.iter().map(longest).collect(),
-    });
-    let estimate = case.estimate();
-    manifest.sizes = [("points", estimate.points), ("cells", estimate.cells), ("nodes", estimate.nodes)]
-        .map(|(k, v)| (k.into(), v))
-        .into();
-    manifest.picture_times = picture_times(case);
-    manifest.choices = case
-        .notes
-        .iter()
-        .map(|note| manifest::Choice { key: note.key.clone(), value: note.value.clone(), reason: note.reason.clone() })
-        .collect();
-    manifest.choices.extend(setup::choices(case, ranks));
-    manifest.warnings = setup::warnings(case);
-    manifest.versions = versions();
-    let check = |check: &bsmpm_scene::Check| Check {
-        quantity: check.quantity.clone(),
-        at: Some(check.at),
-        value: None,
-        min: check.min,
-        max: check.max,
-        passed: false,
-    };
-    manifest.checks = case.checks.iter().map(check).collect();
-    manifest
-}
-
-fn picture_times(case: &Case) -> Vec<f64> {
-    if case.output.times.is_empty() {
-        setup::frame_times(case).last().copied().into_iter().collect()
-    } else {
-        case.output.times.clone()
-    }
-}
-
-fn versions() -> std::collections::BTreeMap<String, String> {
-    let (major, minor, subminor) = petsc_rs::version();
-    let mpi = mpi::environment::library_version().unwrap_or_default();
-    [
-        ("petsc", format!("{major}.{minor}.{subminor}, {}-bit indices", petsc_rs::petsc_int_bits())),
-        ("mpi", mpi.split(',').next().unwrap_or_default().trim().to_owned()),
-        ("blas", machine::blas().unwrap_or_else(|| "unknown".into())),
-    ]
-    .map(|(name, version)| (name.to_owned(), version))
-    .into()
 }

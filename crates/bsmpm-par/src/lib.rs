@@ -18,6 +18,7 @@ pub mod memory;
 pub mod migrate;
 pub mod program;
 pub mod record;
+pub mod restart;
 pub mod run;
 pub mod setup;
 pub mod signals;

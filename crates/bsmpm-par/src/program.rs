@@ -1,22 +1,18 @@
 //! From the command line to a run that is ready: every way to be refused before anything is written.
 
+mod begin;
+
 use crate::cli::Arguments;
 use crate::exit;
 use crate::fault::Fault;
 use crate::ksp;
 use crate::launch;
-use crate::ledger::Ledger;
-use crate::log::Log;
-use crate::record::Recorder;
-use crate::run::{Run, Task};
+use crate::run::Task;
 use crate::setup;
 use crate::signals::Requests;
-use crate::simulation::Simulation;
 use crate::slab::Slabs;
 use crate::source;
-use crate::timers::Timers;
-use bsmpm_scene::Case;
-use mpi::collective::Root;
+use hdf5_collective::Hdf5;
 use mpi::environment::Universe;
 use mpi::topology::Communicator;
 use petsc_rs::Petsc;
@@ -83,8 +79,6 @@ fn agreed<T>(universe: &Universe, code: u8, mine: Result<T, String>) -> Result<T
 
 fn solve(universe: &Universe, task: Task, slabs: Slabs) -> Result<u8, u8> {
     let Task { case, arguments, .. } = &task;
-    let rank = universe.world().rank().unsigned_abs() as usize;
-    let model = setup::model(case).map_err(|error| refuse(universe, exit::CASE, &error.to_string()))?;
     let choice = setup::linear(case, universe.world().size().unsigned_abs() as usize);
     let own = arguments.petsc.iter().map(String::as_str);
     let options: Vec<&str> = choice.options().into_iter().chain(own).collect();
@@ -92,39 +86,9 @@ fn solve(universe: &Universe, task: Task, slabs: Slabs) -> Result<u8, u8> {
     let petsc = agreed(universe, exit::BUG, petsc)?;
     let probed = ksp::probe(&petsc, &choice).map_err(|error| format!("the linear solver cannot be used: {error}"));
     agreed(universe, exit::CASE, probed)?;
+    let hdf5 = Hdf5::initialize(universe).map_err(|error| format!("HDF5 could not be started: {error}"));
+    let hdf5 = agreed(universe, exit::BUG, hdf5)?;
     let requests = Requests::of_signals().map_err(|error| format!("signals cannot be handled: {error}"));
     let requests = Rc::new(agreed(universe, exit::BUG, requests)?);
-    let timers = Rc::new(Timers::default());
-    let points = setup::points(case, slabs.columns(rank));
-    let seam = (universe, &petsc, choice);
-    let shared = (Rc::clone(&timers), requests);
-    let simulation = Simulation::new(seam, model, (slabs, points), setup::schedule(case), shared);
-    let recorder = Recorder::new(case, &simulation.points, &*simulation.halo);
-    let ledger = open_ledger(universe, arguments, case, &recorder)?;
-    let log = Log::new(rank == 0, arguments.quiet, arguments.verbose, arguments.log_format, case.analysis.end);
-    let run = Run::new(universe, task, simulation, recorder, (ledger, log), timers);
-    Ok(run.until_the_end())
-}
-
-/// Rank 0 claims the directory; all ranks learn the outcome.
-fn open_ledger(
-    universe: &Universe,
-    arguments: &Arguments,
-    case: &Case,
-    recorder: &Recorder,
-) -> Result<Option<Ledger>, u8> {
-    let world = universe.world();
-    let mut refused = 0_u8;
-    let ledger = (world.rank() == 0)
-        .then(|| Ledger::open(arguments, case, world.size().unsigned_abs() as usize, recorder.columns()))
-        .and_then(|opened| {
-            opened
-                .map_err(|error| {
-                    launch::say(&format!("bsmpm-par: {error}"));
-                    refused = error.exit_code();
-                })
-                .ok()
-        });
-    world.process_at_rank(0).broadcast_into(&mut refused);
-    if refused == 0 { Ok(ledger) } else { Err(refused) }
+    begin::run((universe, &hdf5), (&petsc, choice), task, slabs, requests)
 }

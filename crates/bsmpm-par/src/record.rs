@@ -1,5 +1,6 @@
 //! Rows of `history.csv`: the quantities that the case asks for, in the case's own coordinates.
 
+use crate::checkpoint::{BooksForm, RecordState};
 use crate::surfaces::{self, Gauge};
 use bsmpm::energy::{Books, Stored};
 use bsmpm::error::StepError;
@@ -36,19 +37,35 @@ impl Recorder {
             }
             _ => None,
         };
+        let followed = histories.iter().map(follow).collect();
+        let state = RecordState { followed, books: None };
+        Self::of(case, state)
+    }
+
+    /// Goes on with what another one had found; `None` if it was one of other histories.
+    pub fn resume(case: &Case, state: &RecordState) -> Option<Self> {
+        (state.followed.len() == case.histories.len()).then(|| Self::of(case, state.clone()))
+    }
+
+    fn of(case: &Case, state: RecordState) -> Self {
         let react = |history: &History| match history.quantity {
             Quantity::Reaction { face } => surfaces::strip_of_face(case, face),
             _ => None,
         };
         Self {
-            histories: histories.clone(),
-            followed: histories.iter().map(follow).collect(),
-            reacting: histories.iter().map(react).collect(),
+            histories: case.histories.clone(),
+            followed: state.followed,
+            reacting: case.histories.iter().map(react).collect(),
             gauge: Gauge::of(case),
-            books: None,
+            books: state.books.map(|BooksForm(books)| books),
             grid: case.grid.clone(),
-            lower,
+            lower: Vector::from(case.grid.lower()),
         }
+    }
+
+    /// What must be known to go on.
+    pub fn state(&self) -> RecordState {
+        RecordState { followed: self.followed.clone(), books: self.books.map(BooksForm) }
     }
 
     /// Heading and unit of every column.

@@ -1,7 +1,9 @@
 //! A run: step after step, what is written after each, and the ways in which it ends.
 
 mod diagnosis;
+mod end;
 mod failure;
+mod save;
 mod start;
 
 use crate::cli::Arguments;
@@ -11,7 +13,6 @@ use crate::gather;
 use crate::launch;
 use crate::ledger::Ledger;
 use crate::log::Log;
-use crate::machine;
 use crate::record::Recorder;
 use crate::setup;
 use crate::simulation::Simulation;
@@ -23,10 +24,11 @@ use bsmpm::seam::Halo;
 use bsmpm::step::Report;
 use bsmpm_io::manifest::Status;
 use bsmpm_scene::{Case, Every};
-use mpi::collective::CommunicatorCollectives;
+use hdf5_collective::Hdf5;
 use mpi::environment::Universe;
 use mpi::topology::Communicator;
-use std::collections::BTreeSet;
+use save::Saving;
+use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;
 use std::time::Instant;
 
@@ -56,19 +58,38 @@ pub struct Run<'p> {
     frame_times: Vec<f64>,
     last_frame: Option<u64>,
     told_strips: BTreeSet<usize>,
+    hdf5: &'p Hdf5<'p>,
+    saving: Saving,
+    before: Before,
+}
+
+/// What of a run was there before this program went on with it.
+#[derive(Debug, Default)]
+pub struct Before {
+    /// whether anything was
+    pub resumed: bool,
+    /// step of the newest frame
+    pub last_frame: Option<u64>,
+    /// strips of which it was told that they hold nothing
+    pub told_strips: BTreeSet<usize>,
+    /// s  by phase; on rank 0
+    pub timers: BTreeMap<String, f64>,
+    /// s  of processor time; on rank 0
+    pub cpu_seconds: f64,
 }
 
 impl<'p> Run<'p> {
-    /// A run at its start, which is now.
+    /// A run at its start, or where it goes on, which is now.
     pub fn new(
-        universe: &'p Universe,
+        (universe, hdf5): (&'p Universe, &'p Hdf5<'p>),
         Task { case, arguments, fault }: Task,
-        simulation: Simulation<'p, PlaneStrain, 2>,
-        recorder: Recorder,
+        (simulation, recorder): (Simulation<'p, PlaneStrain, 2>, Recorder),
         (ledger, log): (Option<Ledger>, Log),
         timers: Rc<Timers>,
+        mut before: Before,
     ) -> Self {
-        let (start, frame_times, last_frame) = (Instant::now(), setup::frame_times(&case), None);
+        let (start, frame_times, last_frame) = (Instant::now(), setup::frame_times(&case), before.last_frame);
+        let saving = Saving::new(before.resumed.then(|| simulation.steps()));
         Self {
             universe,
             case,
@@ -82,7 +103,10 @@ impl<'p> Run<'p> {
             start,
             frame_times,
             last_frame,
-            told_strips: BTreeSet::new(),
+            told_strips: std::mem::take(&mut before.told_strips),
+            hdf5,
+            saving,
+            before,
         }
     }
 
@@ -94,13 +118,16 @@ impl<'p> Run<'p> {
         let mut slowest = 0.0_f64;
         loop {
             let step = self.simulation.steps() + 1;
-            self.frame_on_request();
-            let stop = self.arguments.max_steps.is_some_and(|most| step > most) || self.out_of_time(slowest);
-            if stop && self.simulation.time() < self.case.analysis.end {
+            let due = self.due(slowest);
+            if due.stop && self.simulation.time() < self.case.analysis.end {
                 return self.end(Status::Stopped, exit::STOPPED);
             }
             if self.simulation.halo.is_interrupted() && self.simulation.time() < self.case.analysis.end {
                 return self.stop_on_request();
+            }
+            self.save_on_request();
+            if due.checkpoint {
+                self.checkpoint();
             }
             if let Some(fault) = self.fault {
                 fault.strike(self.rank(), step);
@@ -125,7 +152,7 @@ impl<'p> Run<'p> {
     }
 
     fn accept(&mut self, accepted: &Accepted) {
-        let (step, wall) = (self.simulation.steps(), self.start.elapsed().as_secs_f64());
+        let (step, wall) = (self.simulation.steps(), self.wall());
         self.log.step(step, accepted, wall);
         let written = self.ledger.as_mut().map_or(Ok(()), |ledger| ledger.step(step, accepted, wall));
         self.require(written);
@@ -198,92 +225,16 @@ impl<'p> Run<'p> {
         self.last_frame = Some(step);
     }
 
-    /// A frame of the last converged state, if a signal has asked for one that is not there yet.
-    fn frame_on_request(&mut self) {
-        if self.simulation.halo.requests().take_frame() && self.last_frame != Some(self.simulation.steps()) {
-            self.log.line("frame", "a frame is written, as a signal has asked");
-            self.frame();
-        }
-    }
-
-    /// Ends the run at the last converged state; the work of a step that was given up counts for nothing.
-    fn stop_on_request(self) -> u8 {
-        self.log.line("stop", "stopped by a signal; the last converged state is saved");
-        self.end(Status::Stopped, exit::STOPPED)
-    }
-
-    fn finish(self) -> u8 {
-        let mut failed = [0.0];
-        let mut run = self;
-        if let Some(ledger) = &mut run.ledger {
-            failed[0] = f64::from(!ledger.judge());
-            for check in ledger.manifest().checks.iter().filter(|check| !check.passed) {
-                run.log.failure(&format!(
-                    "check failed: {} = {:?}, wanted {:?} to {:?}",
-                    check.quantity, check.value, check.min, check.max
-                ));
-            }
-        }
-        run.simulation.halo.maximum(&mut failed);
-        if failed[0] > 0.0 { run.end(Status::Failed, exit::CHECK) } else { run.end(Status::Finished, exit::DONE) }
-    }
-
-    fn end(mut self, status: Status, code: u8) -> u8 {
-        if self.last_frame != Some(self.simulation.steps()) {
-            self.frame();
-        }
-        let world = self.universe.world();
-        let (cpu, memory) = (machine::cpu_seconds(), machine::peak_memory());
-        let mut all_memory = vec![0_u64; world.size().unsigned_abs() as usize];
-        world.all_gather_into(&memory, &mut all_memory[..]);
-        let mut total = [cpu];
-        self.simulation.halo.reduce(&mut total);
-        let written = match &mut self.ledger {
-            Some(ledger) => {
-                let manifest = ledger.manifest();
-                manifest.summary.cpu_seconds = total[0];
-                manifest.summary.peak_memory = all_memory;
-                manifest.timers = self.timers.seconds().into_iter().map(|(k, v)| (k.to_owned(), v)).collect();
-                manifest.timers.insert("wall".into(), self.start.elapsed().as_secs_f64());
-                ledger.close(status, code)
-            }
-            None => Ok(()),
-        };
-        self.require(written);
-        self.log.finish();
-        self.summarise(status);
-        code
-    }
-
-    fn summarise(&mut self, status: Status) {
-        let Some(ledger) = &mut self.ledger else { return };
-        let summary = ledger.manifest().summary.clone();
-        let text = format!(
-            "{status:?} at t = {}: {} steps, {} iterations, {} cuts, {:.1} s by the clock, {:.1} CPU s, {:.0} MiB on the largest rank; written to {}",
-            self.simulation.time(),
-            summary.steps,
-            summary.iterations,
-            summary.cutbacks,
-            self.start.elapsed().as_secs_f64(),
-            summary.cpu_seconds,
-            summary.peak_memory.iter().max().copied().unwrap_or(0) as f64 / 1_048_576.0,
-            ledger.path().display()
-        );
-        self.log.line("end", &text);
-    }
-
-    fn out_of_time(&self, slowest: f64) -> bool {
-        let Some(limit) = self.arguments.max_wall else { return false };
-        let mut needed = [self.start.elapsed().as_secs_f64() + 1.5 * slowest];
-        self.simulation.halo.maximum(&mut needed);
-        needed[0] > limit.as_secs_f64()
-    }
-
     /// Ends the job if rank 0 could not write: the other ranks do not know of it.
     fn require(&self, written: Result<(), bsmpm_io::Error>) {
         if let Err(error) = written {
             launch::end(&self.universe.world(), error.exit_code(), &error);
         }
+    }
+
+    /// s  since the run began, without the time between its parts.
+    fn wall(&self) -> f64 {
+        self.before.timers.get("wall").copied().unwrap_or(0.0) + self.start.elapsed().as_secs_f64()
     }
 
     fn rank(&self) -> usize {

@@ -1,6 +1,6 @@
 //! What signals ask of a run, agreed by all ranks: one to a single rank is enough, and no extra message is sent.
 //!
-//! USR1, TERM and INT: stop at the last converged state; a second TERM or INT: end at once. USR2: write a frame, go on.
+//! USR1, TERM and INT: stop at the last converged state; a second TERM or INT: end at once. USR2: write a frame and a checkpoint, go on.
 //! The handlers only set flags; [`MpiHalo`](crate::halo::MpiHalo) adds those to every sum over the ranks.
 
 use signal_hook::consts::{SIGINT, SIGTERM, SIGUSR1, SIGUSR2};
@@ -17,9 +17,9 @@ pub const WIDTH: usize = 2;
 #[derive(Debug, Default)]
 pub struct Requests {
     stop: Arc<AtomicBool>,
-    frame: Arc<AtomicBool>,
+    save: Arc<AtomicBool>,
     stop_agreed: Cell<bool>,
-    frame_agreed: Cell<bool>,
+    save_agreed: Cell<bool>,
 }
 
 impl Requests {
@@ -33,19 +33,19 @@ impl Requests {
             flag::register(signal, Arc::clone(&requests.stop))?;
         }
         flag::register(SIGUSR1, Arc::clone(&requests.stop))?;
-        flag::register(SIGUSR2, Arc::clone(&requests.frame))?;
+        flag::register(SIGUSR2, Arc::clone(&requests.save))?;
         Ok(requests)
     }
 
     /// This rank's share of the next sum over the ranks.
     pub fn share(&self) -> [f64; WIDTH] {
-        [self.stop.load(Ordering::Relaxed), self.frame.swap(false, Ordering::Relaxed)].map(f64::from)
+        [self.stop.load(Ordering::Relaxed), self.save.swap(false, Ordering::Relaxed)].map(f64::from)
     }
 
     /// Takes the sums of the ranks' shares.
-    pub fn agree(&self, [stop, frame]: [f64; WIDTH]) {
+    pub fn agree(&self, [stop, save]: [f64; WIDTH]) {
         self.stop_agreed.set(self.stop_agreed.get() || stop > 0.0);
-        self.frame_agreed.set(self.frame_agreed.get() || frame > 0.0);
+        self.save_agreed.set(self.save_agreed.get() || save > 0.0);
     }
 
     /// Whether the run is to stop.
@@ -53,9 +53,9 @@ impl Requests {
         self.stop_agreed.get()
     }
 
-    /// Whether a frame is wanted; asked once, it is no longer.
-    pub fn take_frame(&self) -> bool {
-        self.frame_agreed.take()
+    /// Whether a frame and a checkpoint are wanted; asked once, they are no longer.
+    pub fn take_save(&self) -> bool {
+        self.save_agreed.take()
     }
 }
 
@@ -64,17 +64,17 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_request_counts_once_it_has_been_summed_and_a_frame_is_wanted_once() {
+    fn a_request_counts_once_it_has_been_summed_and_a_save_is_wanted_once() {
         let requests = Requests::default();
         requests.agree(requests.share());
-        assert!(!requests.stop() && !requests.take_frame());
-        requests.frame.store(true, Ordering::Relaxed);
-        assert!(!requests.take_frame(), "the others do not know of it yet");
+        assert!(!requests.stop() && !requests.take_save());
+        requests.save.store(true, Ordering::Relaxed);
+        assert!(!requests.take_save(), "the others do not know of it yet");
         requests.agree(requests.share());
-        assert!(requests.take_frame() && !requests.take_frame());
+        assert!(requests.take_save() && !requests.take_save());
         // That of another rank, and later reductions in which nobody asks.
         requests.agree([1.0, 0.0]);
         requests.agree(requests.share());
-        assert!(requests.stop() && !requests.take_frame());
+        assert!(requests.stop() && !requests.take_save());
     }
 }

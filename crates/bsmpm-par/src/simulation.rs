@@ -6,12 +6,14 @@ use crate::migrate;
 use crate::signals::Requests;
 use crate::slab::{Slabs, imbalance};
 use crate::timers::Timers;
-use bsmpm::control::{Accepted, Failure, Stepper};
+use bsmpm::boundary::Surface;
+use bsmpm::control::{Accepted, Failure, Progress, Stepper};
 use bsmpm::error::StepError;
+use bsmpm::grid::Grid;
 use bsmpm::initial::{self, Equilibrium};
 use bsmpm::kinematics::Kinematics;
 use bsmpm::model::Model;
-use bsmpm::points::Points;
+use bsmpm::points::{Column, Points};
 use bsmpm::schedule::Schedule;
 use bsmpm::seam::Halo;
 use bsmpm::tensor::{Symmetric, Vector};
@@ -82,6 +84,30 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         initial::balance(&self.model, &self.points, &*self.halo)
     }
 
+    /// Puts the run where another one stood after `steps` steps; the points are there already.
+    pub fn resume(&mut self, steps: u64, stepper: Stepper, surface: Surface<D>) {
+        (self.steps, self.stepper, self.points.surface) = (steps, stepper, surface);
+    }
+
+    /// The step control.
+    pub fn progress(&self) -> Progress {
+        self.stepper.progress()
+    }
+
+    /// Everything that is large and must be kept to go on: the points' columns, and the nodal displacement of the layers
+    /// that this rank owns, from which the next step starts, with the numbers of a layer.
+    #[allow(clippy::type_complexity)]
+    pub fn arrays(&mut self) -> (Vec<(&'static str, &mut dyn Column)>, (&[f64], usize)) {
+        let owned = self.halo.owned();
+        let guess = &self.stepper.guess[owned.start * D..owned.end * D];
+        (self.points.named_columns(), (guess, self.model.grid.layer_nodes() * D))
+    }
+
+    /// The cut of the grid.
+    pub fn slabs(&self) -> &Slabs {
+        &self.slabs
+    }
+
     /// Time of the last converged state.
     pub fn time(&self) -> f64 {
         self.stepper.time()
@@ -118,12 +144,7 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
     /// Cuts the grid anew where the points have moved away from the present cut: a rule of counts and of the step's
     /// number only, so that a run repeats.
     fn balance(&mut self) {
-        let mut counts = vec![0.0; self.model.grid.axes()[0].cells()];
-        for x in &self.points.x {
-            if let Some(cell) = self.model.grid.locate(x) {
-                counts[cell[0]] += 1.0;
-            }
-        }
+        let mut counts = points_by_column(&self.model.grid, &self.points);
         self.halo.reduce(&mut counts);
         let load = |slabs: &Slabs| {
             let loads: Vec<f64> = (0..slabs.ranks()).map(|rank| counts[slabs.columns(rank)].iter().sum()).collect();
@@ -146,4 +167,13 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         let (halo, timers) = (Rc::clone(&self.halo), Rc::clone(&self.timers));
         self.solver = KspSolver::new(self.petsc, self.choice.clone(), &self.model.grid, halo, timers);
     }
+}
+
+/// Points of this rank in every column of cells of the whole grid.
+pub fn points_by_column<const D: usize>(grid: &Grid<D>, points: &Points<D>) -> Vec<f64> {
+    let mut counts = vec![0.0; grid.axes()[0].cells()];
+    for cell in points.x.iter().filter_map(|x| grid.locate(x)) {
+        counts[cell[0]] += 1.0;
+    }
+    counts
 }

@@ -36,6 +36,17 @@ impl Slabs {
         Some(Self { bounds })
     }
 
+    /// Slabs that begin at given columns; `None` if they are not one for each rank, all with cells, of the whole grid.
+    pub fn new(bounds: Vec<usize>, ranks: usize, columns: usize) -> Option<Self> {
+        let whole = bounds.len() == ranks + 1 && bounds[0] == 0 && bounds[ranks] == columns;
+        (whole && bounds.is_sorted_by(|a, b| a < b)).then_some(Self { bounds })
+    }
+
+    /// Columns at which they begin, and the number of columns last.
+    pub fn bounds(&self) -> &[usize] {
+        &self.bounds
+    }
+
     /// Number of slabs.
     pub fn ranks(&self) -> usize {
         self.bounds.len() - 1

@@ -247,6 +247,28 @@ pub struct Output {
     pub format: Format,
     /// Whether the measures of every iteration are kept.
     pub residuals: bool,
+    /// When restart files are written.
+    pub checkpoint: Checkpoint,
+}
+
+/// When restart files are written, besides where a run stops early.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Checkpoint {
+    /// s  by the clock between two
+    pub wall: f64,
+    /// Accepted steps between two, if they count at all.
+    pub every_steps: Option<u64>,
+    /// How many are kept, the newest ones.
+    pub keep: u64,
+    /// Whether one is written at the end of the case.
+    pub at_end: bool,
+}
+
+impl Default for Checkpoint {
+    /// Without a word of it in the case: nothing in short runs, at most a quarter of an hour is lost of long ones.
+    fn default() -> Self {
+        Self { wall: 900.0, every_steps: None, keep: 2, at_end: false }
+    }
 }
 
 /// Distance of regular frames.

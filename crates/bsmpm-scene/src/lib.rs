@@ -11,6 +11,7 @@ pub mod schema;
 pub mod unit;
 
 mod case;
+mod difference;
 mod document;
 mod error;
 mod estimate;
@@ -28,10 +29,11 @@ pub use bsmpm::background::{Extent, Kind as BackgroundKind};
 pub use bsmpm::model::Regime;
 pub use bsmpm::points::Seed;
 pub use case::{
-    Analysis, Base, Body, Case, Check, Choice, Column, Every, Face, Footing, Format, Geometry, Gravity, History,
-    Initial, Linear, NamedMaterial, Nonlinear, Output, Path, PointLoad, Prescribed, Quantity, Site, Solver, Support,
-    Traction,
+    Analysis, Base, Body, Case, Check, Checkpoint, Choice, Column, Every, Face, Footing, Format, Geometry, Gravity,
+    History, Initial, Linear, NamedMaterial, Nonlinear, Output, Path, PointLoad, Prescribed, Quantity, Site, Solver,
+    Support, Traction,
 };
+pub use difference::{Difference, differences};
 pub use error::{Error, Place};
 pub use estimate::Estimate;
 pub use grid::{Axis, GridSpec};

@@ -222,6 +222,11 @@ impl Record {
         self.field(key)?.datum.as_ref()
     }
 
+    /// Every key that has a value, and the value.
+    pub(crate) fn all(&self) -> impl Iterator<Item = (&'static str, &Datum)> {
+        self.fields.iter().filter_map(|field| field.datum.as_ref().map(|datum| (field.key, datum)))
+    }
+
     /// Whether the file gives the key, even with a wrong value.
     pub(crate) fn gives(&self, key: &str) -> bool {
         self.field(key).is_some_and(|field| field.written)

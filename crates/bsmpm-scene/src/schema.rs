@@ -4,6 +4,7 @@
 
 mod body;
 mod loads;
+mod output;
 mod tables;
 
 pub use crate::unit::Dimension;

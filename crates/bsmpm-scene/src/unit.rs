@@ -11,8 +11,10 @@ pub enum Dimension {
     Number,
     /// m
     Length,
-    /// s
+    /// s  of the analysis
     Time,
+    /// s  by the clock on the wall
+    Duration,
     /// Pa
     Stress,
     /// kg/m3
@@ -78,7 +80,7 @@ impl Dimension {
         match self {
             Self::Number => 1e100,
             Self::Length | Self::Density | Self::Velocity => 1e9,
-            Self::Time | Self::Acceleration => 1e12,
+            Self::Time | Self::Duration | Self::Acceleration => 1e12,
             Self::Stress | Self::LineForce => 1e18,
             Self::UnitWeight => 1e10,
             Self::Angle => 1e6,
@@ -97,6 +99,7 @@ impl fmt::Display for Dimension {
             Self::Number => "a pure number",
             Self::Length => "a length",
             Self::Time => "a time",
+            Self::Duration => "a time by the clock",
             Self::Stress => "a stress",
             Self::Density => "a density",
             Self::UnitWeight => "a unit weight",
@@ -114,7 +117,7 @@ impl fmt::Display for Dimension {
 /// In words: no number, no unit, an unknown unit, a unit of another dimension, or a number that no double holds.
 pub fn parse(text: &str, expected: Dimension) -> Result<f64, String> {
     let (value, found) = parse_any(text, Some(expected))?;
-    if found == expected {
+    if found == expected || (found, expected) == (Dimension::Time, Dimension::Duration) {
         return Ok(value);
     }
     let unit = split(text).map_or("", |(_, unit)| unit);
@@ -210,6 +213,7 @@ fn split(text: &str) -> Option<(&str, &str)> {
 }
 
 fn table(dimension: Dimension) -> &'static [(&'static str, Worth)] {
+    let dimension = if dimension == Dimension::Duration { Dimension::Time } else { dimension };
     UNITS.iter().find(|(known, _)| *known == dimension).map_or(&[], |(_, units)| *units)
 }
 

@@ -2,7 +2,8 @@
 //! `search`, trials are made in `trial` and judged in `curve`, results are set in `report` and drawn in `picture`.
 //!
 //! Loading soil is path dependent, so every trial carries its load from zero: a state of another strength is no state
-//! on the way. What could be saved that way is taken from trials that run at the same time instead.
+//! on the way. What could be saved that way is taken from trials that run at the same time instead: `guess` tells which ones
+//! the search may ask for next, `jobs` runs them. They shorten the search and change nothing else in it.
 
 use std::env;
 use std::fs;
@@ -18,6 +19,8 @@ use crate::Error;
 use crate::launch::{self, Solver};
 
 mod curve;
+mod guess;
+mod jobs;
 mod picture;
 mod report;
 mod search;
@@ -45,6 +48,10 @@ trial without equilibrium counts as failed. The elastic displacement is that of 
 DIR gets fos.json, fos.csv, fos.png (displacement against factor), fos_plastic-strain.png and fos_displacement.png (the first
 failed trial), and trials/. Trials that are there and were made from the same case by the same solver are kept.
 
+The factors follow from the trials alone, as if each were made after the other. With --jobs above 1 those that may be asked
+for next are begun in advance; they count only if they are asked for, so the result is the same for any N. One that cannot
+be asked for any more gets TERM, which COMMAND must pass on, as mpirun and srun do; trials/ may hold more than the table.
+
 Exit codes: 0 found, or stable up to TO (it says so); 2 command line; 65 the case has errors or no factor of safety; 66 no
 such case; 80 no stable state was found; that of a trial that broke, as 70, 71, 73, 74.
 
@@ -63,7 +70,7 @@ pub struct Arguments {
     /// The width of the bands
     #[arg(long, value_name = "WIDTH", default_value_t = 0.02)]
     pub width: f64,
-    /// Trials at the same time [default: the cores, divided by the launcher's ranks]
+    /// Trials at the same time; the result is the same for any N [default: the cores, divided by the launcher's ranks]
     #[arg(long, value_name = "N")]
     pub jobs: Option<usize>,
     /// Override one key of the case, as for bsmpm-par; repeatable
@@ -89,8 +96,9 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments, mut told: impl FnMut(&str)) -> Result<(String, Vec<PathBuf>), Error> {
     let start = Instant::now();
     let command = if arguments.command.is_empty() { vec![own_solver()] } else { arguments.command.clone() };
-    let plan = arguments.plan(&command)?;
-    let solver = Solver { command: &command, jobs: plan.jobs };
+    let (plan, jobs) = (arguments.plan()?, arguments.jobs(&command)?);
+    // Whatever the number of jobs: threads in BLAS would sum in another order.
+    let solver = Solver { command: &command, side_by_side: true };
     let subject = Subject::read(&arguments.case, &arguments.set, plan.from)?;
     solver.check()?;
     let output = arguments.directory();
@@ -101,16 +109,9 @@ pub fn run(arguments: &Arguments, mut told: impl FnMut(&str)) -> Result<(String,
         fs::remove_file(&path).map_err(|source| Error::File(bsmpm_io::Error::file("delete", &path)(source)))?;
     }
     let trials = Trials { solver, subject: &subject, output: &output, force: arguments.force };
-    let mut made: Vec<Trial> = Vec::new();
-    let curve = search::search(plan, &mut |factors| {
-        let states = trials.make(factors)?;
-        for trial in &states {
-            told(&line(trial));
-        }
-        made.extend(states.iter().cloned());
-        Ok(states.iter().map(Trial::state).collect())
-    })?;
+    let (curve, made) = jobs::find(plan, jobs, &trials, |trial| told(&line(trial)))?;
     let mut report = Report::of(&subject, plan, &command, &curve, made);
+    report.jobs = jobs;
     report.seconds = start.elapsed().as_secs_f64();
     atomic::replace(&output.join(CSV), |file| file.write_all(report.csv().as_bytes()))?;
     atomic::replace(&output.join(JSON), |file| {
@@ -122,7 +123,7 @@ pub fn run(arguments: &Arguments, mut told: impl FnMut(&str)) -> Result<(String,
 }
 
 impl Arguments {
-    fn plan(&self, command: &[String]) -> Result<Plan, Error> {
+    fn plan(&self) -> Result<Plan, Error> {
         let usage = |reason: String| Err(Error::Usage { reason });
         let Self { from, to, width, .. } = *self;
         // Written so that what is no number is refused, too.
@@ -132,12 +133,15 @@ impl Arguments {
         if !(NARROWEST <= width && width <= to - from) {
             return usage(format!("--width {width}: allowed is {NARROWEST} <= WIDTH <= TO - FROM"));
         }
+        Ok(Plan { from, to, width })
+    }
+
+    fn jobs(&self, command: &[String]) -> Result<usize, Error> {
         if self.jobs == Some(0) {
-            return usage("--jobs 0: at least one trial runs at a time".to_owned());
+            return Err(Error::Usage { reason: "--jobs 0: at least one trial runs at a time".to_owned() });
         }
         let cores = thread::available_parallelism().map_or(1, usize::from);
-        let jobs = self.jobs.unwrap_or_else(|| (cores / ranks(command)).max(1));
-        Ok(Plan { from, to, width, jobs })
+        Ok(self.jobs.unwrap_or_else(|| (cores / ranks(command)).max(1)))
     }
 
     fn directory(&self) -> PathBuf {

@@ -13,6 +13,10 @@ use bsmpm_io::manifest::{MANIFEST, Manifest};
 
 use crate::Error;
 
+mod stop;
+
+pub(crate) use stop::Stop;
+
 /// Exit codes of bsmpm-par: done, and a check of the case failed.
 pub(crate) const DONE: u8 = 0;
 pub(crate) const CHECK: u8 = 77;
@@ -35,8 +39,8 @@ const SIDE_BY_SIDE: [(&str, &str); 5] = [
 pub(crate) struct Solver<'a> {
     /// The launcher, if any, and at the end bsmpm-par.
     pub command: &'a [String],
-    /// Runs that are made at the same time.
-    pub jobs: usize,
+    /// Whether runs may be made at the same time.
+    pub side_by_side: bool,
 }
 
 /// A run that is wanted.
@@ -81,9 +85,14 @@ impl Solver<'_> {
     /// Makes the run unless it has ended there, made from what would be taken now, and `is_same` agrees; its exit code, none
     /// if it was there.
     pub fn perform(&self, task: &Task, is_same: impl Fn(&Manifest) -> bool) -> Result<Option<u8>, Error> {
-        if !task.force && task.is_there(is_same) {
+        if task.is_there(is_same) {
             return Ok(None);
         }
+        self.make(task, &Stop::default()).map(Some)
+    }
+
+    /// Makes the run, whatever is there; its exit code. `stop` may end it early.
+    pub fn make(&self, task: &Task, stop: &Stop) -> Result<u8, Error> {
         // What an older run left must not pass for this one's, should it die before it writes.
         if task.directory.join(MANIFEST).exists() {
             // Unless it goes on.
@@ -97,10 +106,10 @@ impl Solver<'_> {
         atomic::replace(&beside(task.directory, "origin"), |file| {
             file.write_all(task.origin.unwrap_or_default().as_bytes())
         })?;
-        self.start(task.arguments, &beside(task.directory, "log")).map(Some)
+        self.start(task.arguments, &beside(task.directory, "log"), stop)
     }
 
-    fn start(&self, arguments: &[String], log: &Path) -> Result<u8, Error> {
+    fn start(&self, arguments: &[String], log: &Path, stop: &Stop) -> Result<u8, Error> {
         let file = |source| Error::File(bsmpm_io::Error::file("write", log)(source));
         let out = File::create(log).map_err(file)?;
         let both = out.try_clone().map_err(file)?;
@@ -109,17 +118,22 @@ impl Solver<'_> {
             .split_first()
             .ok_or_else(|| Error::Usage { reason: "the command that starts the solver is missing".to_owned() })?;
         let mut command = Command::new(program);
-        if self.jobs > 1 {
+        if self.side_by_side {
             command.envs(SIDE_BY_SIDE.into_iter().filter(|(name, _)| env::var_os(name).is_none()));
         }
         let command = command.args(first).args(arguments).stdin(Stdio::null()).stdout(out).stderr(both);
-        let status = command.status().map_err(|source| Error::Launch { program: program.clone(), source })?;
+        let status = stop.status(command).map_err(|source| Error::Launch { program: program.clone(), source })?;
         Ok(status.code().and_then(|code| u8::try_from(code).ok()).unwrap_or(u8::MAX))
     }
 }
 
 impl Task<'_> {
-    fn is_there(&self, is_same: impl Fn(&Manifest) -> bool) -> bool {
+    /// Whether the run has ended there, made from what would be taken now, and `is_same` agrees; never if it is to be made
+    /// again.
+    pub fn is_there(&self, is_same: impl Fn(&Manifest) -> bool) -> bool {
+        if self.force {
+            return false;
+        }
         let Ok(manifest) = Manifest::read(self.directory) else { return false };
         let is_whole = manifest.exit_code.is_some_and(|code| [DONE, CHECK, NO_CONVERGENCE, LEFT].contains(&code));
         let origin = fs::read_to_string(beside(self.directory, "origin")).ok();

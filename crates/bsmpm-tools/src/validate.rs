@@ -77,7 +77,7 @@ struct Part<'a> {
 pub fn run(arguments: &Arguments, mut told: impl FnMut(&str)) -> Result<Counts, Error> {
     let matrix = Matrix::read(&arguments.matrix)?;
     let parts = parts(&matrix, arguments)?;
-    let solver = Solver { command: &arguments.command, jobs: 1 };
+    let solver = Solver { command: &arguments.command, side_by_side: false };
     solver.check()?; // before former runs are deleted for new ones that cannot be
     let base = arguments.matrix.parent().unwrap_or(Path::new(""));
     launch::make(&arguments.output)?;

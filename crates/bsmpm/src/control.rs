@@ -53,28 +53,59 @@ impl Failure {
     }
 }
 
+/// Where the step control stands between two steps: all that it must know to go on.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Progress {
+    /// s  time of the last converged state
+    pub t: f64,
+    /// s  length of the last converged step; 0 before the first
+    pub guess_dt: f64,
+    /// s  start and end of the nominal step under way, if any
+    pub nominal: Option<(f64, f64)>,
+    /// ticks of it that are done
+    pub tick: u32,
+    /// halvings of it
+    pub cuts: u32,
+    /// easy steps in a row
+    pub easy: u32,
+}
+
 /// Position within the current nominal step, and the state of the step-size control.
 #[derive(Clone, Debug)]
 pub struct Stepper {
     /// m  nodal displacement of the last converged step, D numbers per node of the window
     pub guess: Vec<f64>,
-    guess_dt: f64,
-    t: f64,
-    nominal: Option<(f64, f64)>,
-    tick: u32,
-    cuts: u32,
-    easy: u32,
+    at: Progress,
 }
 
 impl Stepper {
     /// At time 0, with no displacement to start from.
     pub fn new(unknowns: usize) -> Self {
-        Self { guess: vec![0.0; unknowns], guess_dt: 0.0, t: 0.0, nominal: None, tick: 0, cuts: 0, easy: 0 }
+        Self { guess: vec![0.0; unknowns], at: Progress::default() }
+    }
+
+    /// Where another one stood; `None` where none can have stood. A nominal step whose end `schedule` no longer has is
+    /// given up for those that it has.
+    pub fn resume(guess: Vec<f64>, mut at: Progress, schedule: &Schedule) -> Option<Self> {
+        let times = [at.t, at.guess_dt].into_iter().chain(at.nominal.into_iter().flat_map(|(from, to)| [from, to]));
+        let sound = times.clone().all(f64::is_finite) && at.cuts <= MOST_CUTS && at.tick < TICKS;
+        if !sound || !at.tick.is_multiple_of(TICKS >> at.cuts) {
+            return None;
+        }
+        if at.nominal.is_some_and(|(from, to)| schedule.next(from) != Some(to)) {
+            (at.nominal, at.tick) = (None, 0);
+        }
+        Some(Self { guess, at })
+    }
+
+    /// Where it stands.
+    pub fn progress(&self) -> Progress {
+        self.at
     }
 
     /// s  time of the last converged state.
     pub fn time(&self) -> f64 {
-        self.t
+        self.at.t
     }
 
     /// Makes one accepted step towards the end of `schedule`; `None` if the end is reached.
@@ -86,29 +117,30 @@ impl Stepper {
         halo: &dyn Halo,
         solver: &mut dyn LinearSolver,
     ) -> Option<Result<Accepted, Failure>> {
-        let (from, to) = match self.nominal {
+        let (from, to) = match self.at.nominal {
             Some(nominal) => nominal,
-            None => (self.t, schedule.next(self.t)?),
+            None => (self.at.t, schedule.next(self.at.t)?),
         };
-        self.nominal = Some((from, to));
+        self.at.nominal = Some((from, to));
         let (mut rejected, mut counts) = (Vec::new(), Counts::default());
-        let before = (self.cuts, self.easy);
+        let before = (self.at.cuts, self.at.easy);
         loop {
-            let size = TICKS >> self.cuts;
-            let end = if self.tick + size == TICKS { to } else { from + (to - from) * fraction(self.tick + size) };
-            let dt = end - self.t;
+            let size = TICKS >> self.at.cuts;
+            let end =
+                if self.at.tick + size == TICKS { to } else { from + (to - from) * fraction(self.at.tick + size) };
+            let dt = end - self.at.t;
             let mut guess = self.scaled_guess(dt);
-            match step(model, points, &mut guess, (self.t, dt), (halo, solver), &mut counts) {
+            match step(model, points, &mut guess, (self.at.t, dt), (halo, solver), &mut counts) {
                 Ok(report) => {
-                    (self.guess, self.guess_dt, self.t) = (guess, dt, end);
+                    (self.guess, self.at.guess_dt, self.at.t) = (guess, dt, end);
                     self.accept(size, report.first_guess && report.iterations * 2 <= model.criteria.max_iterations);
                     return Some(Ok(Accepted { t: end, dt, report, counts, rejected }));
                 }
                 Err(StepError::Interrupted) => {
                     // As if it had never begun: who goes on from here later makes the same attempts.
-                    (self.cuts, self.easy) = before;
+                    (self.at.cuts, self.at.easy) = before;
                     rejected.push(StepError::Interrupted);
-                    return Some(Err(Failure { t: self.t, dt, attempts: rejected, counts }));
+                    return Some(Err(Failure { t: self.at.t, dt, attempts: rejected, counts }));
                 }
                 Err(error) => {
                     let hopeless = matches!(
@@ -120,11 +152,13 @@ impl Stepper {
                             | StepError::OtherRank
                     );
                     rejected.push(error);
-                    if hopeless || self.cuts == MOST_CUTS {
-                        return Some(Err(Failure { t: self.t, dt, attempts: rejected, counts }));
+                    if hopeless || self.at.cuts == MOST_CUTS {
+                        // Who goes on from here, with another nominal step, starts as this one did.
+                        (self.at.cuts, self.at.easy) = before;
+                        return Some(Err(Failure { t: self.at.t, dt, attempts: rejected, counts }));
                     }
-                    self.cuts += 1;
-                    self.easy = 0;
+                    self.at.cuts += 1;
+                    self.at.easy = 0;
                 }
             }
         }
@@ -132,22 +166,22 @@ impl Stepper {
 
     /// The last displacement, scaled by the ratio of the steps (step 3b).
     fn scaled_guess(&self, dt: f64) -> Vec<f64> {
-        if self.guess_dt == 0.0 {
+        if self.at.guess_dt == 0.0 {
             return vec![0.0; self.guess.len()];
         }
-        let ratio = dt / self.guess_dt;
+        let ratio = dt / self.at.guess_dt;
         self.guess.iter().map(|u| ratio * u).collect()
     }
 
     fn accept(&mut self, size: u32, easy: bool) {
-        self.tick += size;
-        self.easy = if easy { self.easy + 1 } else { 0 };
-        if self.tick == TICKS {
-            (self.tick, self.nominal) = (0, None);
+        self.at.tick += size;
+        self.at.easy = if easy { self.at.easy + 1 } else { 0 };
+        if self.at.tick == TICKS {
+            (self.at.tick, self.at.nominal) = (0, None);
         }
-        if self.cuts > 0 && self.easy >= EASY && self.tick.is_multiple_of(2 * size) {
-            self.cuts -= 1;
-            self.easy = 0;
+        if self.at.cuts > 0 && self.at.easy >= EASY && self.at.tick.is_multiple_of(2 * size) {
+            self.at.cuts -= 1;
+            self.at.easy = 0;
         }
     }
 }

@@ -46,12 +46,12 @@ impl<'h> Reader<'h> {
         self.hdf5.agree(self.rows(name, shape, rows))
     }
 
-    /// All rows of an array, on every rank.
+    /// Some rows of an array, others on every rank if need be, in little-endian bytes.
     ///
     /// # Errors
-    /// As [`Reader::share`].
-    pub fn whole(&self, name: &str, shape: Shape) -> Result<Vec<u8>> {
-        self.hdf5.agree(self.rows(name, shape, 0..shape.rows))
+    /// As [`Reader::share`]; [`Error::Foreign`] for rows that the array does not have.
+    pub fn range(&self, name: &str, shape: Shape, rows: Range<u64>) -> Result<Vec<u8>> {
+        self.hdf5.agree(self.rows(name, shape, rows))
     }
 
     fn rows(&self, name: &str, shape: Shape, rows: Range<u64>) -> Result<Vec<u8>> {
@@ -59,6 +59,9 @@ impl<'h> Reader<'h> {
         let (array, found) = self.file.array(name)?;
         if found != shape {
             return Err(foreign("has another shape than expected"));
+        }
+        if rows.start > rows.end || rows.end > shape.rows {
+            return Err(foreign("has fewer rows than expected"));
         }
         let count = rows.end - rows.start;
         let size = shape.row_bytes().zip(usize::try_from(count).ok()).and_then(|(size, count)| size.checked_mul(count));

@@ -158,6 +158,23 @@ impl Output {
     }
 }
 
+/// Where and how a run went on.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Restart {
+    /// The checkpoint's file.
+    pub checkpoint: String,
+    /// Steps that were made before.
+    pub step: u64,
+    /// Processes that wrote it.
+    pub ranks_before: u32,
+    /// Processes that went on.
+    pub ranks: u32,
+    /// When, RFC 3339 in UTC.
+    pub start: String,
+    /// Keys of the case that had changed, with both values.
+    pub changed: Vec<String>,
+}
+
 /// Why a run ended early.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Failure {

@@ -17,7 +17,7 @@ fn manifest(outputs: &[&str]) -> Manifest {
 }
 
 fn claim(path: &Path, existing: Existing) -> Result<OutputDirectory, Error> {
-    OutputDirectory::claim(path, existing, Unseen::Respect, &manifest(&[]))
+    OutputDirectory::hold(path, Unseen::Respect).and_then(|held| held.claim(existing, &manifest(&[])))
 }
 
 /// A directory with a finished run and a file of the user's.

@@ -1,15 +1,16 @@
 //! Finding and reading a checkpoint, on any number of ranks.
 
 use super::refusal::{Refusal, agree, broadcast};
-use super::{STATE, form, named};
+use super::{GUESS, STATE, form, named};
 use crate::exit;
 use bsmpm::points::Column;
 use bsmpm_io::checkpoint::{self, Found, Record};
 use hdf5_collective::{Hdf5, Reader, Shape};
 use mpi::topology::{Communicator, SimpleCommunicator};
 use std::ffi::OsString;
+use std::ops::Range;
 use std::os::unix::ffi::{OsStrExt, OsStringExt};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Which checkpoint is to be gone on from.
 #[derive(Clone, Copy, Debug)]
@@ -48,70 +49,116 @@ fn look(wanted: Wanted<'_>) -> Result<(Option<Found>, Vec<String>), Refusal> {
     })
 }
 
-/// Reads an equal share of the rows of every column, in the order of the ranks, behind those that the columns hold, and
-/// returns the text. Collective.
-///
-/// # Errors
-/// The same on all ranks (76): the file holds other arrays than its record says or than are wanted, or cannot be read.
-pub fn read(
-    (hdf5, world): (&Hdf5<'_>, &SimpleCommunicator),
-    found: &Found,
-    columns: Vec<(&'static str, &mut dyn Column)>,
-) -> Result<Vec<u8>, Refusal> {
-    let refused = |reason: String| {
-        Refusal::new(exit::CHECKPOINT, format!("the checkpoint {} cannot be used: {reason}", found.path.display()))
-    };
-    let library = |error: hdf5_collective::Error| refused(error.to_string());
-    let reader = Reader::open(hdf5, &found.path).map_err(library);
-    let reader = agree(world, reader)?;
-    let arrays = reader.arrays().map_err(library);
-    let arrays = agree(world, arrays.and_then(|arrays| expected(&arrays, found, &columns).map_err(refused)))?;
-    for ((name, column), shape) in columns.into_iter().zip(arrays.columns) {
-        let bytes = agree(world, reader.share(name, shape).map_err(library))?;
-        let mut rest = &bytes[..];
-        while !rest.is_empty() {
-            column.take(&mut rest);
+/// A checkpoint whose arrays are those of its record.
+pub struct Opened<'h> {
+    reader: Reader<'h>,
+    world: SimpleCommunicator,
+    arrays: Vec<(String, Shape)>,
+    path: PathBuf,
+}
+
+impl<'h> Opened<'h> {
+    /// Opens a checkpoint that was found. Collective.
+    ///
+    /// # Errors
+    /// The same on all ranks (76): the file holds other arrays than its record says, or cannot be read.
+    pub fn new((hdf5, world): (&'h Hdf5<'h>, SimpleCommunicator), found: &Found) -> Result<Self, Refusal> {
+        let refused = |reason: String| refused(&found.path, &reason);
+        let library = |error: hdf5_collective::Error| refused(error.to_string());
+        let reader = agree(&world, Reader::open(hdf5, &found.path).map_err(library))?;
+        let arrays = reader.arrays().map_err(library);
+        let arrays = agree(&world, arrays.and_then(|arrays| recorded(arrays, found).map_err(refused)))?;
+        Ok(Self { reader, world, arrays, path: found.path.clone() })
+    }
+
+    /// The text. Collective.
+    ///
+    /// # Errors
+    /// The same on all ranks (76): it is no text, or cannot be read.
+    pub fn state(&self) -> Result<Vec<u8>, Refusal> {
+        let text = |rows| Shape { number: hdf5_collective::Number::U8, rows, width: 1 };
+        let shape = self.shape(STATE, |found| text(found.rows))?;
+        self.read(self.reader.range(STATE, shape, 0..shape.rows))
+    }
+
+    /// An equal share of the rows of every column of the points, in the order of the ranks, behind those that the columns
+    /// hold. Collective.
+    ///
+    /// # Errors
+    /// The same on all ranks (76): the file holds other columns than are wanted, or they cannot be read.
+    pub fn points(&self, columns: Vec<(&'static str, &mut dyn Column)>) -> Result<(), Refusal> {
+        let held = self.arrays.iter().filter(|(name, _)| ![STATE, GUESS].contains(&name.as_str()));
+        if held.count() != columns.len() {
+            let names: Vec<&str> = self.arrays.iter().map(|(name, _)| name.as_str()).collect();
+            let reason = format!("it holds the arrays {}, which are not those that are needed", names.join(", "));
+            return Err(refused(&self.path, &reason));
+        }
+        let rows = self.rows(columns.first().map_or(STATE, |(name, _)| name))?;
+        for (name, column) in columns {
+            let (number, width) = form(column);
+            let shape = self.shape(name, |_| Shape { number, rows, width })?;
+            let bytes = self.read(self.reader.share(name, shape))?;
+            let mut rest = &bytes[..];
+            while !rest.is_empty() {
+                column.take(&mut rest);
+            }
+        }
+        Ok(())
+    }
+
+    /// Rows of the nodal displacement from which the next step starts, `width` numbers each. Collective.
+    ///
+    /// # Errors
+    /// The same on all ranks (76): they are not there, or cannot be read.
+    pub fn guess(&self, rows: Range<usize>, width: usize) -> Result<Vec<f64>, Refusal> {
+        let number = hdf5_collective::Number::F64;
+        let shape = self.shape(GUESS, |found| Shape { number, rows: found.rows, width: width as u64 })?;
+        let bytes = self.read(self.reader.range(GUESS, shape, rows.start as u64..rows.end as u64))?;
+        Ok(bytes.chunks_exact(8).map(|bytes| f64::from_le_bytes(bytes.try_into().unwrap_or_default())).collect())
+    }
+
+    /// Closes the file. Collective.
+    ///
+    /// # Errors
+    /// The same on all ranks (76) if HDF5 cannot.
+    pub fn close(self) -> Result<(), Refusal> {
+        let Self { reader, world, path, .. } = self;
+        agree(&world, reader.close().map_err(|error| refused(&path, &error.to_string())))
+    }
+
+    fn read(&self, read: hdf5_collective::Result<Vec<u8>>) -> Result<Vec<u8>, Refusal> {
+        agree(&self.world, read.map_err(|error| refused(&self.path, &error.to_string())))
+    }
+
+    fn find(&self, name: &str) -> Result<Shape, Refusal> {
+        let found = self.arrays.iter().find(|(held, _)| held == name).map(|&(_, shape)| shape);
+        found.ok_or_else(|| refused(&self.path, &format!("it holds no array {name}")))
+    }
+
+    fn rows(&self, name: &str) -> Result<u64, Refusal> {
+        self.find(name).map(|shape| shape.rows)
+    }
+
+    /// The shape of an array, if it is the one that is wanted.
+    fn shape(&self, name: &str, wanted: impl Fn(Shape) -> Shape) -> Result<Shape, Refusal> {
+        let found = self.find(name)?;
+        if found == wanted(found) {
+            Ok(found)
+        } else {
+            Err(refused(&self.path, &format!("the array {name} is of another kind")))
         }
     }
-    let state = agree(world, reader.whole(STATE, arrays.state).map_err(library))?;
-    agree(world, reader.close().map_err(library))?;
-    Ok(state)
 }
 
-/// Shapes of the arrays of a file that are to be read.
-struct Expected {
-    columns: Vec<Shape>,
-    state: Shape,
+fn refused(path: &Path, reason: &str) -> Refusal {
+    Refusal::new(exit::CHECKPOINT, format!("the checkpoint {} cannot be used: {reason}", path.display()))
 }
 
-/// The file's arrays are those of the record, and the columns are all of them but the text.
-fn expected(
-    arrays: &[(String, Shape)],
-    found: &Found,
-    columns: &[(&'static str, &mut dyn Column)],
-) -> Result<Expected, String> {
+/// The file's arrays, if they are those of the record.
+fn recorded(arrays: Vec<(String, Shape)>, found: &Found) -> Result<Vec<(String, Shape)>, String> {
     let recorded = |(name, shape): &&(String, Shape)| found.record.array(name) == Some(&named(name, *shape));
     if let Some((name, _)) = arrays.iter().find(|array| !recorded(array)) {
         return Err(format!("the array {name} is not as its record says"));
     }
-    if arrays.len() != found.record.arrays.len() || arrays.len() != columns.len() + 1 {
-        let names: Vec<&str> = arrays.iter().map(|(name, _)| name.as_str()).collect();
-        return Err(format!("it holds the arrays {}, which are not those that are needed", names.join(", ")));
-    }
-    let shape = |name: &str| {
-        let array = arrays.iter().find(|(held, _)| held == name);
-        array.map(|&(_, shape)| shape).ok_or_else(|| format!("it holds no array {name}"))
-    };
-    let state = shape(STATE)?;
-    let rows = columns.first().map_or(Ok(0), |(name, _)| shape(name).map(|shape| shape.rows))?;
-    let column = |(name, column): &(&'static str, &mut dyn Column)| {
-        let (number, width) = form(&**column);
-        let wanted = Shape { number, rows, width };
-        shape(name).and_then(|found| {
-            if found == wanted { Ok(found) } else { Err(format!("the array {name} is of another kind")) }
-        })
-    };
-    let shapes = columns.iter().map(column).collect::<Result<_, _>>()?;
-    let text = Shape { number: hdf5_collective::Number::U8, width: 1, ..state };
-    if state == text { Ok(Expected { columns: shapes, state }) } else { Err(format!("the array {STATE} is no text")) }
+    if arrays.len() == found.record.arrays.len() { Ok(arrays) } else { Err("arrays of its record are missing".into()) }
 }

@@ -26,13 +26,13 @@ impl From<bsmpm_io::Error> for Refusal {
 }
 
 impl Refusal {
-    pub(super) fn new(code: u8, reason: impl Into<String>) -> Self {
+    pub(crate) fn new(code: u8, reason: impl Into<String>) -> Self {
         Self { code, reason: reason.into() }
     }
 }
 
 /// The outcome of this rank where all are good, else the refusal of the first rank that has one. Collective.
-pub(super) fn agree<T>(world: &SimpleCommunicator, mine: Result<T, Refusal>) -> Result<T, Refusal> {
+pub(crate) fn agree<T>(world: &SimpleCommunicator, mine: Result<T, Refusal>) -> Result<T, Refusal> {
     let own = mine.as_ref().err().map_or(0, |refusal| refusal.code.max(1));
     let mut codes = vec![0_u8; world.size().unsigned_abs() as usize];
     world.all_gather_into(&own, &mut codes[..]);
@@ -43,7 +43,7 @@ pub(super) fn agree<T>(world: &SimpleCommunicator, mine: Result<T, Refusal>) -> 
 }
 
 /// The bytes of one rank on all. Collective.
-pub(super) fn broadcast(world: &SimpleCommunicator, from: usize, mut bytes: Vec<u8>) -> Vec<u8> {
+pub(crate) fn broadcast(world: &SimpleCommunicator, from: usize, mut bytes: Vec<u8>) -> Vec<u8> {
     let root = world.process_at_rank(from as i32);
     let mut size = bytes.len() as u64;
     root.broadcast_into(&mut size);

@@ -1,7 +1,7 @@
 //! Writing a checkpoint.
 
 use super::refusal::{Refusal, agree, broadcast};
-use super::{STATE, form, named};
+use super::{GUESS, STATE, form, named};
 use crate::{exit, launch};
 use bsmpm::points::{Column, Number};
 use bsmpm_io::checkpoint::{Array, Facts, Found, Pending, Phase, Store};
@@ -16,6 +16,8 @@ use std::path::{Path, PathBuf};
 pub struct Contents<'a> {
     /// The columns by name, all with as many rows as this rank has points.
     pub columns: Vec<(&'static str, &'a mut dyn Column)>,
+    /// The nodal displacement of the layers that this rank owns, m, and how many numbers a layer has.
+    pub guess: (&'a [f64], usize),
     /// Everything else.
     pub state: &'a [u8],
 }
@@ -71,16 +73,20 @@ fn begin(store: &Store, step: u64, arrays: &[Array]) -> Result<Begun, Refusal> {
 
 /// What the record will say of the arrays. Collective.
 fn arrays(world: &SimpleCommunicator, contents: &Contents<'_>) -> Vec<Array> {
-    let own: Vec<u64> = contents.columns.iter().map(|(_, column)| column.rows() as u64).collect();
+    let mut own: Vec<u64> = contents.columns.iter().map(|(_, column)| column.rows() as u64).collect();
+    let (guess, width) = contents.guess;
+    own.push((guess.len() / width) as u64);
     let mut all = vec![0; own.len()];
     world.all_reduce_into(&own[..], &mut all[..], SystemOperation::sum());
+    let layers = all.pop().unwrap_or_default();
     let shape = |(column, rows): (&dyn Column, u64)| {
         let (number, width) = form(column);
         Shape { number, rows, width }
     };
     let columns = contents.columns.iter().zip(all).map(|((name, column), rows)| named(name, shape((&**column, rows))));
     let text = Shape { number: hdf5_collective::Number::U8, rows: contents.state.len() as u64, width: 1 };
-    columns.chain([named(STATE, text)]).collect()
+    let guess = Shape { number: hdf5_collective::Number::F64, rows: layers, width: width as u64 };
+    columns.chain([named(GUESS, guess), named(STATE, text)]).collect()
 }
 
 /// No number that is not finite ever reaches a file.
@@ -94,7 +100,12 @@ fn finite(step: u64, contents: &Contents<'_>) -> Result<(), Refusal> {
             return Err(Refusal::new(exit::LEFT, reason));
         }
     }
-    Ok(())
+    match contents.guess.0.iter().find(|value| !value.is_finite()) {
+        None => Ok(()),
+        Some(value) => {
+            Err(Refusal::new(exit::LEFT, format!("no checkpoint of step {step}: a nodal displacement is {value}")))
+        }
+    }
 }
 
 /// All rows of a column in little-endian bytes.
@@ -136,6 +147,9 @@ impl Fill<'_> {
             }
             writer.write(name, form(&**column), &rows(&**column))?;
         }
+        let (guess, width) = contents.guess;
+        let bytes: Vec<u8> = guess.iter().flat_map(|value| value.to_le_bytes()).collect();
+        writer.write(GUESS, (hdf5_collective::Number::F64, width as u64), &bytes)?;
         let text = if self.world.rank() == 0 { contents.state } else { &[] };
         writer.write(STATE, (hdf5_collective::Number::U8, 1), text).map(|_| ())
     }

@@ -21,16 +21,19 @@ impl Run<'_> {
         if let Some(ledger) = &mut self.ledger {
             ledger.attempts(failure.attempts.len() - 1, failure.counts);
         }
-        self.give_up(failure, (&told, "; the last converged state is saved, failure.json tells more"))
+        let (run, code) =
+            self.give_up(failure, (&told, "; the last converged state is saved, failure.json tells more"));
+        run.end(Status::Failed, code)
     }
 
     /// Ends the run whose points could not be given their stress at the start.
     pub(super) fn fail_at_start(self, error: StepError) -> u8 {
         let failure = Failure { t: 0.0, dt: 0.0, attempts: vec![error], counts: Counts::default() };
-        self.give_up(&failure, ("the stress at the start", "; failure.json tells more"))
+        let (run, code) = self.give_up(&failure, ("the stress at the start", "; failure.json tells more"));
+        run.close(Status::Failed, code)
     }
 
-    fn give_up(mut self, failure: &Failure, (told, end): (&str, &str)) -> u8 {
+    fn give_up(mut self, failure: &Failure, (told, end): (&str, &str)) -> (Self, u8) {
         let step = self.simulation.steps() + 1;
         let code = launch::agree(&self.universe.world(), code_of(failure.attempts.last(), step));
         let report = diagnosis::of(&self.universe.world(), failure, step, self.case.grid.lower());
@@ -40,7 +43,7 @@ impl Run<'_> {
         self.log.failure(&format!("{told}: {reason}{place}{end}"));
         let written = self.ledger.as_mut().map_or(Ok(()), |ledger| ledger.failure(&report));
         self.require(written);
-        self.end(Status::Failed, code)
+        (self, code)
     }
 }
 

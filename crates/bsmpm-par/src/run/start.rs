@@ -29,6 +29,11 @@ impl Run<'_> {
         for note in &self.case.notes {
             self.log.detail(&format!("{} = {}: {}", note.key, note.value, note.reason));
         }
+        if self.before.resumed {
+            let (step, time) = (self.simulation.steps(), self.simulation.time());
+            self.log.line("restart", &format!("goes on from step {step}, t = {time}"));
+            return Ok(());
+        }
         if let Some(start) = setup::start(&self.case, &mut self.simulation)? {
             self.tell_start(start);
         }

@@ -2,7 +2,7 @@
 
 use super::Kind::*;
 use super::Presence::{Default, Later, Optional, Required};
-use super::{Dimension as In, Group, Key, Kind, Presence, Range, Table, body, loads};
+use super::{Dimension as In, Group, Key, Kind, Presence, Range, Table, body, loads, output};
 use std::ops::Bound::{Excluded, Included};
 
 pub(super) const fn key(name: &'static str, kind: Kind, presence: Presence, doc: &'static str) -> Key {
@@ -32,9 +32,9 @@ pub static ROOT: Table = Table {
         key("boundary", Kind::Table(&BOUNDARY), Default("{}"), "supports at the faces of the grid"),
         key("stabilisation", Kind::Table(&STABILISATION), Optional, "against locking and oscillation; absent: none"),
         key("solver", Kind::Table(&SOLVER), Default("{}"), "the non-linear iteration and the linear solver"),
-        key("output", Kind::Table(&OUTPUT), Optional, "frames for ParaView; absent: none"),
-        key("history", Tables(&HISTORY), Optional, "columns of history.csv"),
-        key("check", Tables(&CHECK), Optional, "bounds that are verified at the end"),
+        key("output", Kind::Table(&output::OUTPUT), Optional, "frames for ParaView; absent: none"),
+        key("history", Tables(&output::HISTORY), Optional, "columns of history.csv"),
+        key("check", Tables(&output::CHECK), Optional, "bounds that are verified at the end"),
         key("footing", Kind::Table(&loads::FOOTING), Optional, "a rigid strip that moves"),
         key("prescribed", Tables(&loads::PRESCRIBED), Optional, "motion of a face or segment"),
         key("traction", Tables(&loads::TRACTION), Optional, "stress on the body's surface"),
@@ -240,75 +240,3 @@ const PRECONDITIONERS: Kind = Choice(
     &[],
 );
 const PACKAGES: Kind = Choice(&["mumps", "petsc", "superlu", "superlu_dist", "cholmod", "umfpack"], &[]);
-
-static OUTPUT: Table = Table {
-    header: "[output]",
-    doc: "Frames for ParaView, and the residuals of every iteration",
-    keys: &[
-        key("every", Quantity(In::Time, Range::POSITIVE), Optional, "time between frames, hit exactly"),
-        key("every_steps", Count(1, 1_000_000_000), Optional, "accepted steps between frames, instead of every"),
-        key("times", List(In::Time, Range::POSITIVE), Optional, "further times of frames, hit exactly"),
-        key("format", Choice(&["vtu"], &["vtkhdf"]), Default("\"vtu\""), "format of the frames"),
-        key("residuals", Flag, Default("false"), "whether residuals.csv has a row for every iteration"),
-        later("checkpoint", "restart files"),
-    ],
-    exclusive: &[one_of(&["every", "every_steps"], false)],
-};
-
-static HISTORY: Table = Table {
-    header: "[[history]]",
-    doc: "One column of history.csv, or several",
-    keys: &[
-        key("quantity", QUANTITY, Required, "what is recorded every step"),
-        key("name", Name, Optional, "name of the column; the quantity's unless given"),
-        key("scale", Quantity(In::Number, Range::ANY), Default("1.0"), "multiplies"),
-        key("percentile", Quantity(In::Number, PERCENT), Optional, "of runout: share of the points; 100 unless given"),
-        key("face", Choice(&["left", "right", "bottom", "top"], &[]), Optional, "of reaction: the face"),
-        key(
-            "at_x",
-            Quantity(In::Length, Range::ANY),
-            Optional,
-            "of height: of the points within half a cell of this x",
-        ),
-        key("at", Pair(In::Length, Range::ANY), Optional, "of a point's quantity: the point nearest at the start"),
-        key("box", Kind::Table(&body::BOX), Optional, "of pressure-noise: the points inside; all unless given"),
-    ],
-    exclusive: &[],
-};
-
-const PERCENT: Range = Range::of(Excluded(0.0), Included(100.0));
-const QUANTITY: Kind = Choice(
-    &[
-        "runout",
-        "front",
-        "height",
-        "max-displacement",
-        "mass",
-        "momentum",
-        "reaction",
-        "displacement",
-        "velocity",
-        "stress",
-        "stress-noise",
-        "pressure-noise",
-        "heave",
-        "footing-pressure",
-        "footing-force",
-        "penetration",
-        "slip",
-        "energy",
-    ],
-    &[],
-);
-
-static CHECK: Table = Table {
-    header: "[[check]]",
-    doc: "Bounds of a history column, verified at the end",
-    keys: &[
-        key("quantity", Name, Required, "a column of the history"),
-        key("at", Quantity(In::Time, Range::POSITIVE), Optional, "time, hit exactly; the end unless given"),
-        key("min", Measure, Optional, "least value"),
-        key("max", Measure, Optional, "largest value"),
-    ],
-    exclusive: &[],
-};

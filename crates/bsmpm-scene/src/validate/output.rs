@@ -1,13 +1,20 @@
-//! Frames, and whether residuals are kept.
+//! Frames, residuals and restart files.
 
-use crate::case::{Every, Format, Output};
+use crate::case::{Checkpoint, Every, Format, Output};
 use crate::record::Record;
 use crate::report::Report;
 
 /// What is wanted; nothing without the table.
 pub(super) fn read(root: &Record, end: Option<f64>, report: &mut Report<'_>) -> Option<Output> {
     if !root.gives("output") {
-        return Some(Output { every: None, times: Vec::new(), format: Format::default(), residuals: false });
+        let checkpoint = Checkpoint::default();
+        return Some(Output {
+            every: None,
+            times: Vec::new(),
+            format: Format::default(),
+            residuals: false,
+            checkpoint,
+        });
     }
     let output = root.record("output")?;
     let every = match (output.gives("every"), output.gives("every_steps")) {
@@ -30,5 +37,12 @@ pub(super) fn read(root: &Record, end: Option<f64>, report: &mut Report<'_>) -> 
     }
     times.sort_by(f64::total_cmp);
     times.dedup();
-    Some(Output { every, times, format: Format::Vtu, residuals: output.flag("residuals")? })
+    let checkpoint =
+        if output.gives("checkpoint") { checkpoint(output.record("checkpoint")?)? } else { Checkpoint::default() };
+    Some(Output { every, times, format: Format::Vtu, residuals: output.flag("residuals")?, checkpoint })
+}
+
+fn checkpoint(table: &Record) -> Option<Checkpoint> {
+    let every_steps = if table.gives("every_steps") { Some(table.count("every_steps")?) } else { None };
+    Some(Checkpoint { wall: table.number("wall")?, every_steps, keep: table.count("keep")?, at_end: true })
 }

@@ -55,6 +55,10 @@ pub const LANGUAGE: &[Row] = &[
     row("title    = \"Every", "title    = Every", "", "no valid TOML: missing opening quote"),
     row("upper = [4.0, 3.0]", "upper = [4.0, 3.0", "", "no valid TOML").down(1),
     row("type = \"dynamic\"", "type = \"dynamic", "", "no valid TOML"),
+    row("format = \"vtu\"", "checkpoint = { keep = 0 }", "output.checkpoint.keep", "1 <= keep <= 1000"),
+    row("format = \"vtu\"", "checkpoint = { wall = \"15 m\" }", "output.checkpoint.wall", "a time by the clock"),
+    row("format = \"vtu\"", "checkpoint = { wall = 0 }", "output.checkpoint.wall", "wall > 0"),
+    row("format = \"vtu\"", "checkpoint = 500", "output.checkpoint", "a table, checkpoint = {"),
 ];
 
 /// Numbers out of range (I07 to I10, I15, I18, I25).
@@ -227,7 +231,6 @@ pub const LATER: &[(&str, &str, &str)] = &[
     ("geometry = \"plane-strain\"", "geometry = \"axisymmetric\"", "geometry"),
     ("geometry = \"plane-strain\"", "geometry = \"solid\"", "geometry"),
     ("format = \"vtu\"", "format = \"vtkhdf\"", "output.format"),
-    ("format = \"vtu\"", "checkpoint = { keep = 2 }", "output.checkpoint"),
     ("[gravity]", "[[stage]]", "stage"),
     ("[gravity]", "[profile.depth]", "profile"),
 ];

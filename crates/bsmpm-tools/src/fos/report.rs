@@ -57,6 +57,8 @@ pub(super) struct Report {
     pub command: Vec<String>,
     pub notes: Vec<String>,
     pub trials: Vec<Row>,
+    /// trials at the same time; they change the clock only
+    pub jobs: usize,
     /// s  by the clock, those of trials that were kept left out
     pub seconds: f64,
     #[serde(skip)]
@@ -106,6 +108,7 @@ impl Report {
             command: command.to_vec(),
             notes: notes(curve, kink.as_ref(), &rows, plan),
             trials: rows,
+            jobs: 1,
             seconds: 0.0,
             kink,
         }
@@ -131,7 +134,7 @@ impl Report {
             "{} trials{kept}, {cpu:.1} CPU s; {:.1} s by the clock with {} at the same time\n",
             self.trials.len(),
             self.seconds,
-            self.plan.jobs
+            self.jobs
         )
     }
 

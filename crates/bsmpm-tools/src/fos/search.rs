@@ -25,51 +25,51 @@ pub(super) struct Plan {
     pub to: f64,
     /// The width of the bands.
     pub width: f64,
-    /// Trials at the same time.
-    pub jobs: usize,
 }
 
-/// Makes the trials of some factors.
-type Maker<'a> = dyn FnMut(&[f64]) -> Result<Vec<State>, Error> + 'a;
+/// Why a search goes no further.
+#[derive(Debug)]
+pub(super) enum Halt {
+    /// It needs the trial of this factor, for which it has not asked before.
+    Needs(f64),
+    /// No further trial would help.
+    Over(Error),
+}
 
-/// A search under way; `trials` are made by a function, of whose factors none was tried before.
+/// What is known of the trial of a factor, as far as it is.
+type Known<'a> = dyn FnMut(f64) -> Option<State> + 'a;
+
+/// A search as far as trials are known.
 struct Search<'a, 'b> {
     plan: Plan,
     curve: Curve,
-    trials: &'a mut Maker<'b>,
+    known: &'a mut Known<'b>,
 }
 
-/// The curve with all trials that the plan needs.
+/// The curve with all trials that the plan needs. It follows from the trials alone, which are asked for one after the other,
+/// each once; asked again with more of them, the search takes the same way to where it was.
 ///
 /// # Errors
-/// [`Error::NoStableState`] where the elastic body or that of the least factor finds no equilibrium or has failed, those of
-/// `trials`.
-pub(super) fn search(plan: Plan, trials: &mut Maker<'_>) -> Result<Curve, Error> {
-    let rungs = plan.rungs();
-    let (first, others) = rungs.split_at(plan.jobs.saturating_sub(1).min(rungs.len()));
-    let mut states = trials(&[&[ELASTIC], first].concat())?;
-    let elastic = states.remove(0);
+/// [`Halt::Needs`] at the first trial that is not known; [`Error::NoStableState`] where the elastic body or that of the least
+/// factor finds no equilibrium or has failed.
+pub(super) fn search(plan: Plan, known: &mut Known<'_>) -> Result<Curve, Halt> {
+    let over = |reason: String| Halt::Over(Error::NoStableState { reason });
+    let elastic = known(ELASTIC).ok_or(Halt::Needs(ELASTIC))?;
     if !(elastic.whole && elastic.displacement.is_finite() && elastic.displacement > 0.0) {
-        return Err(Error::NoStableState {
-            reason: format!(
-                "even with {} times its strength the body finds no equilibrium under its load, or does not move: look at \
-                 that trial, and at the case's supports, load steps and [solver] max_iterations",
-                1.0 / ELASTIC
-            ),
-        });
+        return Err(over(format!(
+            "even with {} times its strength the body finds no equilibrium under its load, or does not move: look at that \
+             trial, and at the case's supports, load steps and [solver] max_iterations",
+            1.0 / ELASTIC
+        )));
     }
-    let mut curve = Curve::new(elastic.displacement);
-    curve.add(states);
-    let mut search = Search { plan, curve, trials };
-    search.climb(others)?;
+    let mut search = Search { plan, curve: Curve::new(elastic.displacement), known };
+    search.climb()?;
     if search.curve.crossing(DOUBLED).last_stable.is_none() {
-        return Err(Error::NoStableState {
-            reason: format!(
-                "no stable state was found down to the factor {}: try a smaller --from, or look at the trial of that factor \
-                 for what fails: the body, or the solver ([solver] max_iterations, more load steps)",
-                plan.from
-            ),
-        });
+        return Err(over(format!(
+            "no stable state was found down to the factor {}: try a smaller --from, or look at the trial of that factor for \
+             what fails: the body, or the solver ([solver] max_iterations, more load steps)",
+            plan.from
+        )));
     }
     search.close_in(DOUBLED, plan.width)?;
     for (level, width) in [(BENT, plan.width), (FALLEN, COARSER * plan.width)] {
@@ -81,12 +81,11 @@ pub(super) fn search(plan: Plan, trials: &mut Maker<'_>) -> Result<Curve, Error>
 }
 
 impl Plan {
-    /// From the least to the greatest factor, as many in every round as run at the same time.
+    /// From the least to the greatest factor.
     fn rungs(&self) -> Vec<f64> {
-        let ratio = RUNG.powf(1.0 / self.jobs as f64);
         let mut rungs = vec![self.from];
         for power in 1.. {
-            let next = self.rounded(self.from * ratio.powi(power));
+            let next = self.rounded(self.from * RUNG.powi(power));
             if next >= self.to - 0.5 * self.width {
                 break;
             }
@@ -103,31 +102,27 @@ impl Plan {
         ((factor * unit).round() / unit).clamp(self.from, self.to)
     }
 
-    /// Factors between two others that leave gaps of at least the width, as many as run at the same time.
-    fn between(&self, low: f64, high: f64, width: f64) -> Vec<f64> {
-        let gaps = ((high - low) / width * (1.0 - 1e-9)).ceil() as usize;
-        let count = self.jobs.min(gaps.saturating_sub(1));
-        let place = |index: usize| self.rounded(low + (high - low) * index as f64 / (count + 1) as f64);
-        let mut factors: Vec<f64> = (1..=count).map(place).filter(|&factor| low < factor && factor < high).collect();
-        factors.dedup();
-        factors
+    /// The factor in the middle between two others that are farther apart than the width.
+    fn between(&self, low: f64, high: f64, width: f64) -> Option<f64> {
+        let middle = self.rounded(low + (high - low) / 2.0);
+        (high - low > width * (1.0 + 1e-9) && low < middle && middle < high).then_some(middle)
     }
 }
 
 impl Search<'_, '_> {
-    fn try_all(&mut self, factors: &[f64]) -> Result<(), Error> {
-        let states = (self.trials)(factors)?;
-        self.curve.add(states);
+    fn ask(&mut self, factor: f64) -> Result<(), Halt> {
+        let state = (self.known)(factor).ok_or(Halt::Needs(factor))?;
+        self.curve.add([state]);
         Ok(())
     }
 
     /// Up the ladder to where the body has failed: its displacement has doubled, or the solver has given up twice running.
-    fn climb(&mut self, rungs: &[f64]) -> Result<(), Error> {
-        for round in rungs.chunks(self.plan.jobs) {
+    fn climb(&mut self) -> Result<(), Halt> {
+        for rung in self.plan.rungs() {
             if self.has_failed() {
                 break;
             }
-            self.try_all(round)?;
+            self.ask(rung)?;
         }
         Ok(())
     }
@@ -139,14 +134,10 @@ impl Search<'_, '_> {
     }
 
     /// Trials until the place where the displacement grows beyond a level is known to a width.
-    fn close_in(&mut self, level: f64, width: f64) -> Result<(), Error> {
+    fn close_in(&mut self, level: f64, width: f64) -> Result<(), Halt> {
         while let Band { last_stable: Some(low), first_failed: Some(high) } = self.curve.crossing(level) {
-            let factors = self.plan.between(low, high, width);
-            let factors = if factors.is_empty() { self.doubted(high).into_iter().collect() } else { factors };
-            if factors.is_empty() {
-                break;
-            }
-            self.try_all(&factors)?;
+            let Some(factor) = self.plan.between(low, high, width).or_else(|| self.doubted(high)) else { break };
+            self.ask(factor)?;
         }
         Ok(())
     }
@@ -161,102 +152,101 @@ impl Search<'_, '_> {
     }
 
     /// Trials of growing factors until one is beyond a level.
-    fn go_beyond(&mut self, level: f64) -> Result<(), Error> {
+    fn go_beyond(&mut self, level: f64) -> Result<(), Halt> {
         let mut stride = COARSER * self.plan.width;
         while let Band { last_stable: Some(top), first_failed: None } = self.curve.crossing(level) {
-            let steps = (1..=self.plan.jobs).map(|step| self.plan.rounded(top + stride * step as f64));
-            let mut factors: Vec<f64> = steps.filter(|&factor| factor > top).collect();
-            factors.dedup();
-            if factors.is_empty() || self.curve.crossing(DOUBLED).first_failed.is_none() {
+            let factor = self.plan.rounded(top + stride);
+            if factor <= top || self.curve.crossing(DOUBLED).first_failed.is_none() {
                 break;
             }
-            self.try_all(&factors)?;
+            self.ask(factor)?;
             stride *= COARSER;
         }
         Ok(())
     }
 
     /// Trials until the kink lies in a band that is narrow enough.
-    fn refine(&mut self) -> Result<(), Error> {
+    fn refine(&mut self) -> Result<(), Halt> {
         for _ in 0..ROUNDS {
             let Band { last_stable: Some(low), first_failed: Some(high) } = self.curve.kinked() else { break };
-            let factors = self.plan.between(low, high, self.plan.width);
-            if factors.is_empty() {
-                break;
-            }
-            self.try_all(&factors)?;
+            let Some(factor) = self.plan.between(low, high, self.plan.width) else { break };
+            self.ask(factor)?;
         }
         Ok(())
     }
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
 
-    /// Trials of a body by a formula, and the factors in the order in which they were tried.
-    fn searched(plan: Plan, state: impl Fn(f64) -> (f64, bool)) -> (Result<Curve, Error>, Vec<f64>, Vec<usize>) {
-        let (mut tried, mut rounds) = (Vec::new(), Vec::new());
-        let curve = search(plan, &mut |factors: &[f64]| {
-            tried.extend_from_slice(factors);
-            rounds.push(factors.len());
-            Ok(factors
-                .iter()
-                .map(|&factor| {
-                    let (displacement, whole) = state(factor);
-                    State { factor, displacement, whole }
-                })
-                .collect())
+    /// A search of a body by a formula, and the factors in the order in which they were asked for.
+    pub fn searched(plan: Plan, state: impl Fn(f64) -> (f64, bool)) -> (Result<Curve, Error>, Vec<f64>) {
+        let mut asked = Vec::new();
+        let curve = search(plan, &mut |factor| {
+            asked.push(factor);
+            let (displacement, whole) = state(factor);
+            Some(State { factor, displacement, whole })
         });
-        (curve, tried, rounds)
+        let curve = curve.map_err(|halt| match halt {
+            Halt::Needs(factor) => panic!("{factor} is known"),
+            Halt::Over(error) => error,
+        });
+        (curve, asked)
     }
 
-    const PLAN: Plan = Plan { from: 0.5, to: 3.0, width: 0.02, jobs: 1 };
+    pub const PLAN: Plan = Plan { from: 0.5, to: 3.0, width: 0.02 };
 
-    fn hockey(kink: f64) -> impl Fn(f64) -> (f64, bool) {
+    /// The displacement of a body that bends at a factor, always in equilibrium.
+    pub fn hockey(kink: f64) -> impl Fn(f64) -> (f64, bool) {
         move |factor| (2.0 * (1.0 + 100.0 * (factor - kink).max(0.0)), true)
     }
 
     #[test]
-    fn the_kink_is_found_to_the_width_whatever_the_number_of_jobs() {
-        for jobs in [1, 2, 3, 8] {
-            for kink in [0.55, 0.998, 1.373, 1.7, 2.6] {
-                let (curve, tried, rounds) = searched(Plan { jobs, ..PLAN }, hockey(kink));
-                let curve = curve.unwrap();
-                for band in [curve.kinked(), curve.crossing(DOUBLED)] {
-                    let (low, high) = (band.last_stable.unwrap(), band.first_failed.unwrap());
-                    assert!(high - low <= PLAN.width + 1e-9, "{band:?}");
-                }
-                let found = curve.kink().unwrap().factor;
-                assert!((found - kink).abs() < 0.005, "{found} {kink}");
-                let band = curve.kinked();
-                assert!(band.last_stable.unwrap() <= found && found < band.first_failed.unwrap());
-                let mut distinct = tried.clone();
-                distinct.sort_by(f64::total_cmp);
-                distinct.dedup();
-                assert_eq!(distinct.len(), tried.len(), "{tried:?}");
-                assert!(tried.iter().all(|&factor| factor == ELASTIC || (0.5..=3.0).contains(&factor)));
-                assert!(rounds.iter().all(|&round| round <= jobs) && tried.len() <= 24 + 6 * jobs, "{tried:?}");
+    fn the_kink_is_found_to_the_width() {
+        for kink in [0.55, 0.998, 1.373, 1.7, 2.6] {
+            let (curve, asked) = searched(PLAN, hockey(kink));
+            let curve = curve.unwrap();
+            for band in [curve.kinked(), curve.crossing(DOUBLED)] {
+                let (low, high) = (band.last_stable.unwrap(), band.first_failed.unwrap());
+                assert!(high - low <= PLAN.width + 1e-9, "{band:?}");
             }
+            let found = curve.kink().unwrap().factor;
+            assert!((found - kink).abs() < 0.005, "{found} {kink}");
+            let band = curve.kinked();
+            assert!(band.last_stable.unwrap() <= found && found < band.first_failed.unwrap());
+            let mut distinct = asked.clone();
+            distinct.sort_by(f64::total_cmp);
+            distinct.dedup();
+            assert_eq!(distinct.len(), asked.len(), "{asked:?}");
+            assert!(asked.iter().all(|&factor| factor == ELASTIC || (0.5..=3.0).contains(&factor)));
+            assert!(asked.len() <= 24, "{asked:?}");
         }
     }
 
     #[test]
-    fn more_jobs_take_fewer_rounds() {
-        let rounds = |jobs| searched(Plan { jobs, ..PLAN }, hockey(1.373)).2.len();
-        assert!(rounds(2) < rounds(1) && rounds(4) < rounds(2), "{} {} {}", rounds(1), rounds(2), rounds(4));
+    fn a_search_halts_at_the_first_trial_that_is_not_known_and_goes_the_same_way_again() {
+        let (whole, asked) = searched(PLAN, hockey(1.373));
+        for (count, &next) in asked.iter().enumerate() {
+            let known = |factor| asked[..count].contains(&factor).then(|| hockey(1.373)(factor));
+            let halt = search(PLAN, &mut |factor| {
+                known(factor).map(|(displacement, whole)| State { factor, displacement, whole })
+            });
+            assert!(matches!(halt, Err(Halt::Needs(factor)) if factor == next), "{next} {halt:?}");
+        }
+        assert_eq!(searched(PLAN, hockey(1.373)).0.unwrap(), whole.unwrap());
     }
 
     #[test]
     fn a_body_that_stands_to_the_end_is_not_tried_further() {
-        let (curve, tried, _) = searched(PLAN, hockey(5.0));
+        let (curve, tried) = searched(PLAN, hockey(5.0));
         assert_eq!(curve.unwrap().crossing(DOUBLED), Band { last_stable: Some(3.0), first_failed: None });
         assert_eq!(tried, [0.1, 0.5, 0.625, 0.781, 0.977, 1.221, 1.526, 1.907, 2.384, 2.98, 3.0]);
     }
 
     #[test]
     fn without_any_stable_state_the_search_says_what_to_try() {
-        let (none, tried, _) = searched(PLAN, hockey(0.3));
+        let (none, tried) = searched(PLAN, hockey(0.3));
         let error = none.unwrap_err();
         assert!(error.exit_code() == 80 && error.to_string().contains("--from"), "{error}");
         assert_eq!(tried, [0.1, 0.5]);
@@ -269,19 +259,17 @@ mod tests {
 
     #[test]
     fn a_body_without_equilibrium_after_failure_has_its_band_there() {
-        for jobs in [1, 2] {
-            let (curve, ..) = searched(Plan { jobs, ..PLAN }, |factor| (1.0, factor < 1.373));
-            let band = curve.unwrap().kinked();
-            let (low, high) = (band.last_stable.unwrap(), band.first_failed.unwrap());
-            assert!(low < 1.373 && 1.373 <= high && high - low <= PLAN.width + 1e-9, "{band:?}");
-        }
+        let (curve, _) = searched(PLAN, |factor| (1.0, factor < 1.373));
+        let band = curve.unwrap().kinked();
+        let (low, high) = (band.last_stable.unwrap(), band.first_failed.unwrap());
+        assert!(low < 1.373 && 1.373 <= high && high - low <= PLAN.width + 1e-9, "{band:?}");
     }
 
     #[test]
     fn a_solver_that_fails_once_does_not_end_the_search() {
         // About a rung of the ladder, and where the search closes in.
         for (from, to) in [(1.22, 1.23), (1.36, 1.365), (0.77, 0.79)] {
-            let (curve, tried, _) = searched(PLAN, |factor| {
+            let (curve, tried) = searched(PLAN, |factor| {
                 let (displacement, _) = hockey(1.4)(factor);
                 (displacement, !(from..to).contains(&factor))
             });

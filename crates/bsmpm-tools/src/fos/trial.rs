@@ -1,16 +1,14 @@
-//! Trials: runs of the case with reduced strength, several at the same time, and what each of them gave.
+//! Trials: runs of the case with reduced strength, and what each of them gave.
 
 use std::path::{Path, PathBuf};
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::thread;
 
 use serde::Serialize;
 
 use super::curve::State;
+use super::jobs::Source;
 use super::subject::Subject;
 use crate::Error;
-use crate::launch::{self, CHECK, DONE, Ending, LEFT, NO_CONVERGENCE, Solver, Task};
+use crate::launch::{self, CHECK, DONE, Ending, LEFT, NO_CONVERGENCE, Solver, Stop, Task};
 use crate::plot::FieldName;
 use crate::record::Record;
 
@@ -73,37 +71,50 @@ impl End {
     }
 }
 
-impl Trials<'_> {
-    /// The trials of some factors, in their order.
-    ///
-    /// # Errors
-    /// [`Error::Trial`] for one that ended neither in equilibrium nor for the want of it, once those that had begun are done;
-    /// [`Error::Launch`], and the errors of files.
-    pub fn make(&self, factors: &[f64]) -> Result<Vec<Trial>, Error> {
-        let next = AtomicUsize::new(0);
-        let made: Mutex<Vec<(usize, Result<Trial, Error>)>> = Mutex::new(Vec::new());
-        let work = || {
-            while let Some((index, &factor)) =
-                Some(next.fetch_add(1, Ordering::Relaxed)).and_then(|index| Some((index, factors.get(index)?)))
-            {
-                let trial = self.trial(factor);
-                if trial.is_err() {
-                    next.store(factors.len(), Ordering::Relaxed);
-                }
-                made.lock().unwrap_or_else(std::sync::PoisonError::into_inner).push((index, trial));
-            }
-        };
-        thread::scope(|scope| {
-            for _ in 0..self.solver.jobs.min(factors.len()) {
-                scope.spawn(work);
-            }
-        });
-        let mut made = made.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
-        made.sort_by_key(|(index, _)| *index);
-        made.into_iter().map(|(_, trial)| trial).collect()
+/// What a trial is made from.
+struct Order {
+    arguments: Vec<String>,
+    /// relative to the output directory
+    within: PathBuf,
+    directory: PathBuf,
+    /// of the case as its `run.json` has it
+    text: String,
+    origin: Option<String>,
+}
+
+impl Order {
+    fn task(&self, force: bool) -> Task<'_> {
+        Task { arguments: &self.arguments, directory: &self.directory, origin: self.origin.as_deref(), force }
+    }
+}
+
+impl Source for Trials<'_> {
+    type Trial = Trial;
+
+    fn kept(&self, factor: f64) -> Result<Option<Trial>, Error> {
+        let order = self.order(factor)?;
+        if !order.task(self.force).is_there(|manifest| manifest.case.text == order.text) {
+            return Ok(None);
+        }
+        self.read(factor, &order.directory, order.within, None).map(Some)
     }
 
-    fn trial(&self, factor: f64) -> Result<Trial, Error> {
+    /// # Errors
+    /// [`Error::Trial`] for one that ended neither in equilibrium nor for the want of it; [`Error::Launch`], and the errors of
+    /// files.
+    fn make(&self, factor: f64, stop: &Stop) -> Result<Trial, Error> {
+        let order = self.order(factor)?;
+        let code = self.solver.make(&order.task(self.force), stop)?;
+        self.read(factor, &order.directory, order.within, Some(code))
+    }
+
+    fn state(trial: &Trial) -> State {
+        trial.state()
+    }
+}
+
+impl Trials<'_> {
+    fn order(&self, factor: f64) -> Result<Order, Error> {
         let within = Path::new("trials").join(format!("{factor}.out"));
         let directory = self.output.join(&within);
         let mut arguments = vec![self.subject.path().display().to_string()];
@@ -115,9 +126,7 @@ impl Trials<'_> {
         let text = self.subject.text(factor)?;
         // The same text is the same trial, on whatever ranks; but not of another solver.
         let origin = self.solver.stamp().map(|stamp| format!("{stamp}\n\n{text}"));
-        let task = Task { arguments: &arguments, directory: &directory, origin: origin.as_deref(), force: self.force };
-        let code = self.solver.perform(&task, |manifest| manifest.case.text == text)?;
-        self.read(factor, &directory, within, code)
+        Ok(Order { arguments, within, directory, text, origin })
     }
 
     fn read(&self, factor: f64, directory: &Path, within: PathBuf, code: Option<u8>) -> Result<Trial, Error> {

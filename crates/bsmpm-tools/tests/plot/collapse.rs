@@ -38,7 +38,8 @@ impl Collapse {
         );
         manifest.picture_times = picture_times.to_vec();
         manifest.grid = Some(Extent { lower: vec![0.0; 2], upper: self.grid.to_vec(), cell: vec![self.cell; 2] });
-        let directory = OutputDirectory::claim(directory, Existing::Refuse, Unseen::Respect, &manifest)?;
+        let directory = OutputDirectory::hold(directory, Unseen::Respect)
+            .and_then(|held| held.claim(Existing::Refuse, &manifest))?;
         let mut frames = Frames::create(directory.path())?;
         for index in 0..FRAMES {
             let frame = self.frame(index, volumes);

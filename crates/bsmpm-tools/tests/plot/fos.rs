@@ -1,5 +1,7 @@
 //! `bsmpm fos`, with a stub for the solver: this test program, which writes runs of a body that bends at a known factor.
 
+mod trials;
+
 use std::env;
 use std::fs::{self, OpenOptions};
 use std::io::Write;
@@ -64,7 +66,9 @@ fn write_run(case: &bsmpm_scene::Case, argv: Vec<String>, directory: &Path, disp
     let told = Case::new("slope.toml", &case.title, "plane-strain", case.text.clone());
     let mut manifest = Manifest::begin("0.1.0", argv, told);
     manifest.grid = Some(Extent { lower: vec![0.0; 2], upper: vec![40.0, 12.0], cell: vec![1.0; 2] });
-    let directory = OutputDirectory::claim(directory, Existing::Delete, Unseen::Respect, &manifest).unwrap();
+    let directory = OutputDirectory::hold(directory, Unseen::Respect)
+        .and_then(|held| held.claim(Existing::Delete, &manifest))
+        .unwrap();
     let mut headings = vec![Column::new("step", ""), Column::new("time", "")];
     let columns = case.histories.iter().flat_map(bsmpm_scene::History::columns);
     headings.extend(columns.map(|column| Column::new(&column.name, &column.unit)));
@@ -127,7 +131,11 @@ impl Bench {
     }
 
     fn fos(&self, options: &[&str]) -> Output {
-        let arguments = [&["fos", "slope.toml", "--jobs", "2"], options, &["--", "./solver"]].concat();
+        self.fos_with("2", options)
+    }
+
+    fn fos_with(&self, jobs: &str, options: &[&str]) -> Output {
+        let arguments = [&["fos", "slope.toml", "--jobs", jobs], options, &["--", "./solver"]].concat();
         let mut command = Command::new(env!("CARGO_BIN_EXE_bsmpm"));
         command.current_dir(self.folder.path()).env(STUB, self.folder.path()).args(arguments).output().unwrap()
     }
@@ -148,7 +156,7 @@ fn text(bytes: &[u8]) -> String {
 #[test]
 fn the_factor_is_found_and_written_with_its_conditions_and_pictures() {
     let bench = Bench::new(SLOPE, "kink=1.373");
-    let output = bench.fos(&[]);
+    let output = bench.fos_with("1", &[]);
     let said = text(&output.stdout);
     assert!(output.status.success(), "{output:?}");
     assert!(said.contains("h = 1 m, 3 x 3 points a cell, order 2; consistent-f-bar; background 1e-4 E"), "{said}");
@@ -169,27 +177,6 @@ fn the_factor_is_found_and_written_with_its_conditions_and_pictures() {
         let path = bench.path("slope.fos").join(name);
         assert!(said.contains(&format!("slope.fos/{name}")) && Picture::read(&path).colours() > 20, "{name}");
     }
-}
-
-#[test]
-fn trials_that_are_there_are_kept_until_something_changes() {
-    let bench = Bench::new(SLOPE, "kink=1.373");
-    let made = |options: &[&str]| {
-        let before = bench.calls();
-        assert!(bench.fos(options).status.success());
-        bench.calls() - before
-    };
-    let all = made(&[]);
-    assert_eq!(made(&[]), 0);
-    // A narrower band takes what is there.
-    assert!((1..all).contains(&made(&["--width", "0.01"])));
-    // A trial that was broken off.
-    let manifest = bench.path("slope.fos/trials/0.5.out/run.json");
-    let whole = fs::read_to_string(&manifest).unwrap();
-    fs::write(&manifest, whole.replace("\"exit_code\": 0", "\"exit_code\": null")).unwrap();
-    assert_eq!((made(&[]), made(&[]), made(&["--force"])), (1, 0, all));
-    bench.write("slope.toml", &SLOPE.replace("cohesion    = \"10 kPa\"", "cohesion    = \"11 kPa\""));
-    assert_eq!((made(&[]), made(&["--set", "stabilisation.method=none"])), (all, all));
 }
 
 #[test]

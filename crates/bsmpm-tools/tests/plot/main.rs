@@ -82,7 +82,9 @@ fn every_picture_of_a_run_is_drawn_and_named() {
         let manifest = Manifest::read(dir.path()).unwrap();
         let named = manifest.outputs.iter().filter(|output| output.path.ends_with(".png")).count();
         assert_eq!(named, 9);
-        OutputDirectory::claim(dir.path(), Existing::Delete, Unseen::Respect, &manifest).unwrap();
+        OutputDirectory::hold(dir.path(), Unseen::Respect)
+            .and_then(|held| held.claim(Existing::Delete, &manifest))
+            .unwrap();
         assert!(paths.iter().all(|path| !path.exists()));
     }
 }

@@ -47,7 +47,8 @@ impl Still {
         let mut manifest = Manifest::begin("0.1.0", vec!["bsmpm-par".to_owned(), "still.toml".to_owned()], case);
         manifest.picture_times = picture_times.to_vec();
         manifest.grid = Some(Extent { lower: vec![0.0; 2], upper: upper.to_vec(), cell: vec![2.0 * self.spacing; 2] });
-        let directory = OutputDirectory::claim(directory, Existing::Refuse, Unseen::Respect, &manifest)?;
+        let directory = OutputDirectory::hold(directory, Unseen::Respect)
+            .and_then(|held| held.claim(Existing::Refuse, &manifest))?;
         let mut frames = Frames::create(directory.path())?;
         for step in (0..=self.steps).step_by(STEPS_PER_FRAME as usize) {
             manifest.name_output(&Frames::file(step));

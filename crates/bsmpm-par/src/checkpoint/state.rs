@@ -1,0 +1,141 @@
+//! What a checkpoint says in words and single numbers: everything that is no array of the points or nodes.
+
+use super::Refusal;
+use crate::exit;
+use bsmpm::boundary::Surface;
+use bsmpm::control::Progress;
+use bsmpm::energy::{Books, Flows};
+use bsmpm::tensor::Vector;
+use bsmpm_io::frames::Entry;
+use bsmpm_io::manifest::Manifest;
+use bsmpm_io::table::Mark;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
+use std::path::Path;
+
+/// The state of a run between two steps, besides the arrays; the same on all ranks.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct State {
+    /// Accepted steps.
+    pub steps: u64,
+    /// Where the slabs begin, and the number of columns of cells last.
+    pub slabs: Vec<usize>,
+    /// The step control.
+    #[serde(with = "ProgressForm")]
+    pub progress: Progress,
+    /// Pa  traction of every strip at its points.
+    pub traction: Vec<Vec<[f64; 2]>>,
+    /// m  position of every load's points.
+    pub position: Vec<Vec<[f64; 2]>>,
+    /// What the histories go on from.
+    pub record: RecordState,
+    /// Strips of which it was told that they hold nothing.
+    pub told_strips: BTreeSet<usize>,
+    /// The step of the newest frame.
+    pub last_frame: Option<u64>,
+    /// The files.
+    pub files: Files,
+}
+
+/// Points that histories follow, and the books of energy.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RecordState {
+    /// For every history the number of the point that it follows, if it does.
+    pub followed: Vec<Option<u64>>,
+    /// J  kinetic and elastic energy at the start, and all flows since; none without an energy history.
+    pub books: Option<BooksForm>,
+}
+
+/// How far the files of a run have come.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Files {
+    /// The manifest.
+    pub manifest: Manifest,
+    /// `history.csv`.
+    pub history: Mark,
+    /// `steps.csv`.
+    pub steps: Mark,
+    /// `residuals.csv`, if there is one.
+    pub residuals: Option<Mark>,
+    /// The frames.
+    pub frames: Vec<Entry>,
+}
+
+impl State {
+    /// As text, if it reads back as it is: a number that is not finite would not.
+    ///
+    /// # Errors
+    /// The number that is not finite, or none was found and the text is wrong (81).
+    pub fn text(&self) -> Result<Vec<u8>, Refusal> {
+        let text = serde_json::to_vec(self).map_err(|error| error.to_string());
+        let whole = text.and_then(|text| match serde_json::from_slice::<Self>(&text) {
+            Ok(read) if read == *self => Ok(text),
+            Ok(_) => Err("it reads back otherwise".into()),
+            Err(error) => Err(error.to_string()),
+        });
+        let lost = |reason: String| format!("no checkpoint of step {}: its state cannot be told: {reason}", self.steps);
+        whole.map_err(|reason| Refusal::new(exit::LEFT, lost(reason)))
+    }
+
+    /// What a checkpoint's text says.
+    ///
+    /// # Errors
+    /// It is no such text (76).
+    pub fn parse(path: &Path, text: &[u8]) -> Result<Self, Refusal> {
+        serde_json::from_slice(text).map_err(|error| {
+            Refusal::new(exit::CHECKPOINT, format!("the checkpoint {} cannot be used: {error}", path.display()))
+        })
+    }
+
+    /// The surfaces.
+    pub fn surface(&self) -> Surface<2> {
+        let vectors = |lists: &[Vec<[f64; 2]>]| -> Vec<Vec<Vector<2>>> {
+            lists.iter().map(|list| list.iter().map(|&pair| Vector::from(pair)).collect()).collect()
+        };
+        Surface { traction: vectors(&self.traction), position: vectors(&self.position) }
+    }
+}
+
+/// The components of the vectors of all strips or loads.
+pub(crate) fn pairs(lists: &[Vec<Vector<2>>]) -> Vec<Vec<[f64; 2]>> {
+    lists.iter().map(|list| list.iter().map(|&vector| vector.into()).collect()).collect()
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(remote = "Progress", deny_unknown_fields)]
+struct ProgressForm {
+    t: f64,
+    guess_dt: f64,
+    nominal: Option<(f64, f64)>,
+    tick: u32,
+    cuts: u32,
+    easy: u32,
+}
+
+/// [`Books`] in a checkpoint.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct BooksForm(#[serde(with = "BooksFields")] pub Books);
+
+#[derive(Serialize, Deserialize)]
+#[serde(remote = "Books", deny_unknown_fields)]
+struct BooksFields {
+    start: f64,
+    #[serde(with = "FlowsFields")]
+    flows: Flows,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(remote = "Flows", deny_unknown_fields)]
+struct FlowsFields {
+    external: f64,
+    plastic: f64,
+    transfer: f64,
+    integration: f64,
+    smoothing: f64,
+    background: f64,
+    penalty: f64,
+}

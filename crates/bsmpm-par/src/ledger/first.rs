@@ -1,0 +1,69 @@
+//! What the manifest says before the first step.
+
+use crate::cli::Arguments;
+use crate::machine;
+use crate::setup;
+use bsmpm_io::manifest::{self, Check, Extent, Manifest};
+use bsmpm_scene::Case;
+
+/// The manifest of a new run of a case.
+pub(super) fn manifest(arguments: &Arguments, case: &Case, ranks: usize) -> Manifest {
+    let file = arguments.case.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let described = manifest::Case::new(&file, &case.title, "plane-strain", case.text.clone());
+    let mut manifest = Manifest::begin(
+        env!("CARGO_PKG_VERSION"),
+        std::env::args_os().map(|argument| argument.to_string_lossy().into_owned()).collect(),
+        described,
+    );
+    let axes = &case.grid.axes;
+    let longest = |axis: &bsmpm_scene::Axis| (0..axis.cells()).map(|i| axis.cell(i)).fold(0.0, f64::max);
+    manifest.ranks = ranks as u32;
+    manifest.grid = Some(Extent {
+        lower: case.grid.lower().to_vec(),
+        upper: case.grid.upper().to_vec(),
+        cell: axes.iter().map(longest).collect(),
+    });
+    let estimate = case.estimate();
+    manifest.sizes = [("points", estimate.points), ("cells", estimate.cells), ("nodes", estimate.nodes)]
+        .map(|(k, v)| (k.into(), v))
+        .into();
+    manifest.picture_times = picture_times(case);
+    manifest.choices = case
+        .notes
+        .iter()
+        .map(|note| manifest::Choice { key: note.key.clone(), value: note.value.clone(), reason: note.reason.clone() })
+        .collect();
+    manifest.choices.extend(setup::choices(case, ranks));
+    manifest.warnings = setup::warnings(case);
+    manifest.versions = versions();
+    let check = |check: &bsmpm_scene::Check| Check {
+        quantity: check.quantity.clone(),
+        at: Some(check.at),
+        value: None,
+        min: check.min,
+        max: check.max,
+        passed: false,
+    };
+    manifest.checks = case.checks.iter().map(check).collect();
+    manifest
+}
+
+fn picture_times(case: &Case) -> Vec<f64> {
+    if case.output.times.is_empty() {
+        setup::frame_times(case).last().copied().into_iter().collect()
+    } else {
+        case.output.times.clone()
+    }
+}
+
+fn versions() -> std::collections::BTreeMap<String, String> {
+    let (major, minor, subminor) = petsc_rs::version();
+    let mpi = mpi::environment::library_version().unwrap_or_default();
+    [
+        ("petsc", format!("{major}.{minor}.{subminor}, {}-bit indices", petsc_rs::petsc_int_bits())),
+        ("mpi", mpi.split(',').next().unwrap_or_default().trim().to_owned()),
+        ("blas", machine::blas().unwrap_or_else(|| "unknown".into())),
+    ]
+    .map(|(name, version)| (name.to_owned(), version))
+    .into()
+}

@@ -1,0 +1,149 @@
+//! Going on with a run's files, and what a checkpoint must know of them.
+
+use super::{Headings, Ledger, first};
+use crate::checkpoint::Files;
+use crate::cli::Arguments;
+use crate::restart::Resumed;
+use bsmpm_io::Error;
+use bsmpm_io::checkpoint::{self, Found, Store};
+use bsmpm_io::directory::{Existing, HISTORY, OutputDirectory};
+use bsmpm_io::frames::Frames;
+use bsmpm_io::manifest::{Manifest, Restart};
+use bsmpm_io::residuals::RESIDUALS;
+use bsmpm_io::steps::STEPS;
+use bsmpm_io::table::{Column, Mark, Table};
+use bsmpm_scene::Case;
+use std::fs;
+use std::path::Path;
+
+impl Ledger {
+    /// Goes on with the files of a run as they were at a checkpoint: what was written later goes. From a checkpoint in
+    /// another directory a new run begins there with the older one's rows.
+    pub fn resume(
+        held: OutputDirectory,
+        (arguments, case): (&Arguments, &Case),
+        ranks: usize,
+        columns: Vec<Column>,
+        resumed: &Resumed<'_>,
+    ) -> Result<Self, Error> {
+        let files = &resumed.state.files;
+        let mut manifest = manifest(first::manifest(arguments, case, ranks), resumed);
+        manifest.warnings.extend(held.note().map(str::to_owned));
+        let here = held.path().to_owned();
+        let directory = if resumed.is_in(&here) {
+            held.go_on(&manifest)?
+        } else {
+            manifest.outputs.retain(|output| !output.path.contains('/'));
+            let directory = held.claim(Existing::Refuse, &manifest)?;
+            resumed.directory().map_or(Ok(()), |there| copy_tables(&there, &here))?;
+            directory
+        };
+        let headings = Headings::of(case, &columns);
+        let mut table = |name: &str, headings: &[Column], mark: &Mark| {
+            let path = here.join(name);
+            if path.exists() {
+                return Table::resume(&path, headings, mark);
+            }
+            let first = resumed.state.steps + 1;
+            manifest.warnings.push(format!("{name} of the steps before is not there: it begins with step {first}"));
+            Table::create(&path, headings)
+        };
+        let residuals = headings.residuals.zip(files.residuals.as_ref());
+        Ok(Self {
+            residuals: residuals.map(|(headings, mark)| table(RESIDUALS, &headings, mark)).transpose()?,
+            history: table(HISTORY, &headings.history, &files.history)?,
+            steps: table(STEPS, &headings.steps, &files.steps)?,
+            frames: Frames::resume(&here, files.frames.clone())?,
+            store: None,
+            keep: case.output.checkpoint.keep,
+            end: case.analysis.end,
+            dt: case.analysis.dt,
+            directory,
+            manifest,
+            columns,
+        })
+    }
+
+    /// How far the files have come; all of them are on the disk then. The manifest is written with the names of the
+    /// checkpoint of that step.
+    pub fn files(&mut self, step: u64) -> Result<Files, Error> {
+        checkpoint::names(step).iter().for_each(|name| self.manifest.name_output(name));
+        self.manifest.write(self.directory.path())?;
+        Ok(Files {
+            manifest: self.manifest.clone(),
+            history: self.history.mark()?,
+            steps: self.steps.mark()?,
+            residuals: self.residuals.as_ref().map(Table::mark).transpose()?,
+            frames: self.frames.entries().to_vec(),
+        })
+    }
+
+    /// Where checkpoints go; made when the first one is written.
+    pub fn store(&mut self) -> Result<&Store, Error> {
+        let keep = usize::try_from(self.keep).unwrap_or(usize::MAX);
+        match &mut self.store {
+            Some(store) => Ok(store),
+            none => Ok(none.insert(Store::open(self.directory.path(), keep)?)),
+        }
+    }
+
+    /// Notes a checkpoint in the manifest, which names those no longer that are gone.
+    pub fn checkpointed(&mut self, found: &Found) -> Result<(), Error> {
+        let path = self.directory.path();
+        let folder = format!("{}/", checkpoint::FOLDER);
+        self.manifest.outputs.retain(|output| !output.path.starts_with(&folder) || path.join(&output.path).exists());
+        self.manifest.checkpoint = found.path.strip_prefix(path).ok().map(|path| path.to_string_lossy().into_owned());
+        self.manifest.write(path)
+    }
+}
+
+/// The manifest of a run that goes on: the new one, with all that the older one has counted.
+fn manifest(new: Manifest, resumed: &Resumed<'_>) -> Manifest {
+    let old = resumed.state.files.manifest.clone();
+    let mut checks = new.checks.clone();
+    for check in &mut checks {
+        let same = old.checks.iter().find(|past| past.quantity == check.quantity && past.at == check.at);
+        check.value = same.and_then(|past| past.value);
+    }
+    let mut warnings = old.warnings;
+    warnings.extend(new.warnings.iter().filter(|warning| !warnings.contains(warning)).cloned().collect::<Vec<_>>());
+    warnings.extend(resumed.warnings.iter().cloned());
+    let mut sizes = old.sizes;
+    sizes.extend(new.sizes.clone());
+    let path = &resumed.found.path;
+    let checkpoint = resumed.directory().and_then(|there| path.strip_prefix(there).ok().map(Path::to_owned));
+    let checkpoint = checkpoint.as_ref().unwrap_or(path).to_string_lossy().into_owned();
+    let mut restarts = resumed.restarts.clone();
+    restarts.push(Restart {
+        checkpoint: checkpoint.clone(),
+        step: resumed.state.steps,
+        ranks_before: old.ranks,
+        ranks: new.ranks,
+        start: new.start.clone(),
+        changed: resumed.changed.clone(),
+    });
+    Manifest {
+        start: old.start,
+        timers: old.timers,
+        summary: old.summary,
+        initial: old.initial,
+        outputs: old.outputs,
+        checkpoint: Some(checkpoint),
+        restarts,
+        warnings,
+        sizes,
+        checks,
+        ..new
+    }
+}
+
+/// Copies the tables of a run to a directory that has none.
+fn copy_tables(from: &Path, to: &Path) -> Result<(), Error> {
+    for name in [HISTORY, STEPS, RESIDUALS] {
+        let (from, to) = (from.join(name), to.join(name));
+        if from.is_file() {
+            fs::copy(&from, &to).map_err(Error::file("copy", &from))?;
+        }
+    }
+    Ok(())
+}

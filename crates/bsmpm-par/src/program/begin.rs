@@ -1,0 +1,121 @@
+//! The beginning of a run: from its case, or from a checkpoint.
+
+use super::refuse;
+use crate::checkpoint::{Refusal, agree};
+use crate::cli::Arguments;
+use crate::exit;
+use crate::ksp::Choice;
+use crate::ledger::Ledger;
+use crate::log::Log;
+use crate::record::Recorder;
+use crate::restart::{self, Resumed, Start};
+use crate::run::{Before, Run, Task};
+use crate::setup;
+use crate::signals::Requests;
+use crate::simulation::Simulation;
+use crate::slab::Slabs;
+use crate::timers::Timers;
+use bsmpm::kinematics::PlaneStrain;
+use bsmpm_io::directory::OutputDirectory;
+use bsmpm_io::lock::Unseen;
+use bsmpm_io::table::Column;
+use hdf5_collective::Hdf5;
+use mpi::environment::Universe;
+use mpi::topology::Communicator;
+use petsc_rs::Petsc;
+use std::rc::Rc;
+
+/// Runs the task with the libraries that have started; `Err` holds the exit code, and rank 0 has said why.
+pub(super) fn run(
+    (universe, hdf5): (&Universe, &Hdf5<'_>),
+    (petsc, choice): (&Petsc<'_>, Choice),
+    task: Task,
+    slabs: Slabs,
+    requests: Rc<Requests>,
+) -> Result<u8, u8> {
+    let refused = |refusal: Refusal| refuse(universe, refusal.code, &refusal.reason);
+    let Task { case, arguments, .. } = &task;
+    let held = hold(universe, arguments).map_err(refused)?;
+    let start = restart::plan((hdf5, universe), held.as_ref(), arguments, case).map_err(refused)?;
+    if matches!(start, Start::Complete) {
+        return Ok(refuse(universe, exit::DONE, &format!("{} is complete already", arguments.directory().display())));
+    }
+    let timers = Rc::new(Timers::default());
+    let seam = (universe, petsc, choice);
+    let scene = scene(seam, case, slabs, &start, (Rc::clone(&timers), requests)).map_err(refused)?;
+    let before = before(&start);
+    let ledger = ledger(universe, held, (arguments, case), scene.1.columns(), &start).map_err(refused)?;
+    if let Start::Resumed(resumed) = start {
+        resumed.close().map_err(refused)?;
+    }
+    let speaks = universe.world().rank() == 0;
+    let log = Log::new(speaks, arguments.quiet, arguments.verbose, arguments.log_format, case.analysis.end);
+    Ok(Run::new((universe, hdf5), task, scene, (ledger, log), timers, before).until_the_end())
+}
+
+/// The output directory, on rank 0, which from now on is nobody else's. Collective.
+fn hold(universe: &Universe, arguments: &Arguments) -> Result<Option<OutputDirectory>, Refusal> {
+    let world = universe.world();
+    let unseen = if arguments.break_lock { Unseen::Break } else { Unseen::Respect };
+    let held = (world.rank() == 0).then(|| OutputDirectory::hold(&arguments.directory(), unseen));
+    agree(&world, held.transpose().map_err(Refusal::from))
+}
+
+type Scene<'p> = (Simulation<'p, PlaneStrain, 2>, Recorder);
+
+/// The points, on the ranks of their slabs, and what is recorded of them. Collective.
+fn scene<'p>(
+    seam: (&'p Universe, &'p Petsc<'p>, Choice),
+    case: &bsmpm_scene::Case,
+    slabs: Slabs,
+    start: &Start<'_>,
+    shared: (Rc<Timers>, Rc<Requests>),
+) -> Result<Scene<'p>, Refusal> {
+    let universe = seam.0;
+    let model = setup::model(case).map_err(|error| Refusal::new(exit::CASE, error.to_string()))?;
+    let schedule = setup::schedule(case);
+    if let Start::Resumed(resumed) = start {
+        let (slabs, points, stepper) = resumed.read(universe, &model, &schedule)?;
+        let surface = points.surface.clone();
+        let mut simulation = Simulation::new(seam, model, (slabs, points), schedule, shared);
+        simulation.resume(resumed.state.steps, stepper, surface);
+        let recorder = Recorder::resume(case, &resumed.state.record);
+        let foreign = || Refusal::new(exit::CHECKPOINT, "the checkpoint is of a run with other histories");
+        return Ok((simulation, recorder.ok_or_else(foreign)?));
+    }
+    let points = setup::points(case, slabs.columns(universe.world().rank().unsigned_abs() as usize));
+    let simulation = Simulation::new(seam, model, (slabs, points), schedule, shared);
+    let recorder = Recorder::new(case, &simulation.points, &*simulation.halo);
+    Ok((simulation, recorder))
+}
+
+/// What there was before.
+fn before(start: &Start<'_>) -> Before {
+    let Start::Resumed(resumed) = start else { return Before::default() };
+    let Resumed { state, .. } = &**resumed;
+    Before {
+        resumed: true,
+        last_frame: state.last_frame,
+        told_strips: state.told_strips.clone(),
+        timers: state.files.manifest.timers.clone(),
+        cpu_seconds: state.files.manifest.summary.cpu_seconds,
+    }
+}
+
+/// The files, on rank 0. Collective.
+fn ledger(
+    universe: &Universe,
+    held: Option<OutputDirectory>,
+    (arguments, case): (&Arguments, &bsmpm_scene::Case),
+    columns: Vec<Column>,
+    start: &Start<'_>,
+) -> Result<Option<Ledger>, Refusal> {
+    let world = universe.world();
+    let ranks = world.size().unsigned_abs() as usize;
+    let opened = held.map(|held| match start {
+        Start::New(existing) => Ledger::open(held, *existing, (arguments, case), ranks, columns),
+        Start::Resumed(resumed) => Ledger::resume(held, (arguments, case), ranks, columns, resumed),
+        Start::Complete => unreachable!("such a run does not begin"),
+    });
+    agree(&world, opened.transpose().map_err(Refusal::from))
+}

@@ -1,0 +1,94 @@
+//! The ends of a run.
+
+use super::Run;
+use crate::exit;
+use crate::machine;
+use bsmpm::seam::Halo;
+use bsmpm_io::manifest::Status;
+use mpi::collective::CommunicatorCollectives;
+use mpi::topology::Communicator;
+
+impl Run<'_> {
+    /// Ends the run at the last converged state; the work of a step that was given up counts for nothing.
+    pub(super) fn stop_on_request(self) -> u8 {
+        self.log.line("stop", "stopped by a signal; the last converged state is saved");
+        self.end(Status::Stopped, exit::STOPPED)
+    }
+
+    /// Ends a run that came to the end of the case.
+    pub(super) fn finish(self) -> u8 {
+        let mut failed = [0.0];
+        let mut run = self;
+        if let Some(ledger) = &mut run.ledger {
+            failed[0] = f64::from(!ledger.judge());
+            for check in ledger.manifest().checks.iter().filter(|check| !check.passed) {
+                run.log.failure(&format!(
+                    "check failed: {} = {:?}, wanted {:?} to {:?}",
+                    check.quantity, check.value, check.min, check.max
+                ));
+            }
+        }
+        run.simulation.halo.maximum(&mut failed);
+        let (status, code) = match failed[0] > 0.0 {
+            true => (Status::Failed, exit::CHECK),
+            false => (Status::Finished, exit::DONE),
+        };
+        if run.case.output.checkpoint.at_end { run.end(status, code) } else { run.close(status, code) }
+    }
+
+    /// Ends the run with a frame and a checkpoint of the last converged state.
+    pub(super) fn end(mut self, status: Status, code: u8) -> u8 {
+        self.frame_if_new();
+        self.checkpoint();
+        self.close(status, code)
+    }
+
+    /// Ends the run with a frame.
+    pub(super) fn close(mut self, status: Status, code: u8) -> u8 {
+        self.frame_if_new();
+        self.account();
+        let written = self.ledger.as_mut().map_or(Ok(()), |ledger| ledger.close(status, code));
+        self.require(written);
+        self.log.finish();
+        self.summarise(status);
+        code
+    }
+
+    /// Tells the manifest what the run has cost so far. Collective.
+    pub(super) fn account(&mut self) {
+        let world = self.universe.world();
+        let (cpu, memory) = (machine::cpu_seconds(), machine::peak_memory());
+        let mut all_memory = vec![0_u64; world.size().unsigned_abs() as usize];
+        world.all_gather_into(&memory, &mut all_memory[..]);
+        let mut total = [cpu];
+        self.simulation.halo.reduce(&mut total);
+        let wall = self.wall();
+        let Some(ledger) = &mut self.ledger else { return };
+        let manifest = ledger.manifest();
+        manifest.summary.cpu_seconds = self.before.cpu_seconds + total[0];
+        manifest.summary.peak_memory = all_memory;
+        manifest.timers = self.before.timers.clone();
+        for (phase, seconds) in self.timers.seconds() {
+            *manifest.timers.entry(phase.to_owned()).or_default() += seconds;
+        }
+        manifest.timers.insert("wall".into(), wall);
+    }
+
+    fn summarise(&mut self, status: Status) {
+        let wall = self.wall();
+        let Some(ledger) = &mut self.ledger else { return };
+        let summary = ledger.manifest().summary.clone();
+        let text = format!(
+            "{status:?} at t = {}: {} steps, {} iterations, {} cuts, {:.1} s by the clock, {:.1} CPU s, {:.0} MiB on the largest rank; written to {}",
+            self.simulation.time(),
+            summary.steps,
+            summary.iterations,
+            summary.cutbacks,
+            wall,
+            summary.cpu_seconds,
+            summary.peak_memory.iter().max().copied().unwrap_or(0) as f64 / 1_048_576.0,
+            ledger.path().display()
+        );
+        self.log.line("end", &text);
+    }
+}

@@ -1,0 +1,140 @@
+//! Checkpoints and frames of the last converged state: when they are due, and what is in them.
+
+use super::Run;
+use crate::checkpoint::{self, Contents, Refusal, State, pairs};
+use crate::launch;
+use bsmpm::seam::Halo;
+use bsmpm_io::checkpoint::{Facts, Found, Phase};
+use bsmpm_io::manifest::Status;
+use mpi::topology::Communicator;
+use std::rc::Rc;
+use std::time::Instant;
+
+/// When the last checkpoint was written, and what it cost.
+#[derive(Debug)]
+pub struct Saving {
+    newest: Option<u64>, // step
+    last: Instant,
+    cost: f64, // s
+}
+
+impl Saving {
+    /// At the start of a run, which has the checkpoint of that step.
+    pub fn new(newest: Option<u64>) -> Self {
+        Self { newest, last: Instant::now(), cost: 0.0 }
+    }
+}
+
+/// What is to be done before the next step; the same on all ranks.
+#[derive(Clone, Copy, Debug)]
+pub struct Due {
+    /// stop
+    pub stop: bool,
+    /// write a checkpoint
+    pub checkpoint: bool,
+}
+
+impl Run<'_> {
+    /// What is due, if a step may take as long as the `slowest` (s) so far and half as long again.
+    pub(super) fn due(&self, slowest: f64) -> Due {
+        let (steps, wanted) = (self.simulation.steps(), &self.case.output.checkpoint);
+        let end = self.start.elapsed().as_secs_f64() + 1.5 * slowest + 3.0 * self.saving.cost;
+        let mut clock = [end, self.saving.last.elapsed().as_secs_f64()];
+        self.simulation.halo.maximum(&mut clock);
+        let counted = wanted.every_steps.is_some_and(|every| steps > 0 && steps.is_multiple_of(every));
+        Due {
+            stop: self.arguments.max_steps.is_some_and(|most| steps >= most)
+                || self.arguments.max_wall.is_some_and(|limit| clock[0] > limit.as_secs_f64()),
+            checkpoint: counted || clock[1] > wanted.wall,
+        }
+    }
+
+    /// A frame and a checkpoint, if a signal has asked for them.
+    pub(super) fn save_on_request(&mut self) {
+        if self.simulation.halo.requests().take_save() {
+            self.log.line("save", "a frame and a checkpoint are written, as a signal has asked");
+            self.frame_if_new();
+            self.checkpoint();
+        }
+    }
+
+    /// A frame, if there is none of this state.
+    pub(super) fn frame_if_new(&mut self) {
+        if self.last_frame != Some(self.simulation.steps()) {
+            self.frame();
+        }
+    }
+
+    /// A checkpoint, if there is none of this state; ends the job where it cannot be written. Collective.
+    pub(super) fn checkpoint(&mut self) {
+        let step = self.simulation.steps();
+        if self.saving.newest == Some(step) {
+            return;
+        }
+        let timers = Rc::clone(&self.timers);
+        let _timed = timers.time("checkpoints");
+        let begin = Instant::now();
+        self.account();
+        let found = self.write_checkpoint(step).unwrap_or_else(|refusal| self.lose(&refusal));
+        if let (Some(found), Some(ledger)) = (found, &mut self.ledger) {
+            let mebibytes = found.record.bytes as f64 / 1_048_576.0;
+            let written = ledger.checkpointed(&found);
+            let seconds = begin.elapsed().as_secs_f64();
+            self.log.line("checkpoint", &format!("checkpoint of step {step}: {mebibytes:.1} MiB in {seconds:.2} s"));
+            self.require(written);
+        }
+        self.saving = Saving { newest: Some(step), last: Instant::now(), cost: begin.elapsed().as_secs_f64() };
+    }
+
+    fn write_checkpoint(&mut self, step: u64) -> Result<Option<Found>, Refusal> {
+        let world = self.universe.world();
+        let text = checkpoint::agree(&world, self.state(step))?;
+        let text = checkpoint::broadcast(&world, 0, text);
+        let case = self.ledger.as_mut().map_or_else(String::new, |ledger| ledger.manifest().case.blake3.clone());
+        let facts = Facts {
+            version: env!("CARGO_PKG_VERSION").into(),
+            case,
+            ranks: world.size().unsigned_abs(),
+            step,
+            time: self.simulation.time(),
+        };
+        let store = self.ledger.as_mut().map(super::Ledger::store).transpose().map_err(Refusal::from);
+        let store = checkpoint::agree(&world, store)?;
+        let (fault, writes) = (self.fault, world.rank() == 0);
+        let strike = |phase: Phase| fault.iter().for_each(|fault| fault.strike_in(writes, step, phase));
+        let (columns, guess) = self.simulation.arrays();
+        let contents = Contents { columns, guess, state: &text };
+        checkpoint::write((self.hdf5, &world), store, &facts, &contents, &strike)
+    }
+
+    /// The text of a checkpoint; nothing on ranks without files.
+    fn state(&mut self, step: u64) -> Result<Vec<u8>, Refusal> {
+        let Some(ledger) = &mut self.ledger else { return Ok(Vec::new()) };
+        let (simulation, surface) = (&self.simulation, &self.simulation.points.surface);
+        let state = State {
+            steps: step,
+            slabs: simulation.slabs().bounds().to_vec(),
+            progress: simulation.progress(),
+            traction: pairs(&surface.traction),
+            position: pairs(&surface.position),
+            record: self.recorder.state(),
+            told_strips: self.told_strips.clone(),
+            last_frame: self.last_frame,
+            files: ledger.files(step)?,
+        };
+        state.text()
+    }
+
+    /// Ends the job after a checkpoint that could not be written; the older ones are good.
+    fn lose(&mut self, refusal: &Refusal) -> ! {
+        if let Some(ledger) = &mut self.ledger {
+            // On a full disk this cannot be written, either.
+            let _ = ledger.close(Status::Failed, refusal.code);
+            launch::end(&self.universe.world(), refusal.code, refusal);
+        }
+        // The first rank ends the job.
+        loop {
+            std::thread::park();
+        }
+    }
+}
