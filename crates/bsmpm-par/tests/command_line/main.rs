@@ -2,6 +2,7 @@
 
 mod bad_cases;
 mod directory;
+mod hostile;
 mod log;
 mod petsc_options;
 
