@@ -2,7 +2,7 @@
 
 use crate::support::driver::Depth;
 use crate::support::results::{manifest, steps};
-use crate::support::{Job, Output, PROGRAM, Running, Scratch, entries, processes, shipped};
+use crate::support::{Job, PROGRAM, Running, Scratch, entries, processes, shipped};
 use bsmpm_io::manifest::{Manifest, Status};
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -130,11 +130,17 @@ impl Trial {
         manifest(&self.directory()).restarts.last().map_or(0, |restart| restart.step)
     }
 
+    /// Asserts that its manifest has a warning once; `-q` keeps them from the log.
+    #[track_caller]
+    pub fn has_warned(&self, words: &str) {
+        let warnings = manifest(&self.directory()).warnings;
+        assert_eq!(warnings.iter().filter(|warning| warning.contains(words)).count(), 1, "{words:?}: {warnings:?}");
+    }
+
     /// Lets it go on to its end, at once.
-    pub fn finish(&self) -> Output {
-        let output = self.start(&[], &[]).end().expect(0);
+    pub fn finish(&self) {
+        self.start(&[], &[]).end().expect(0);
         self.is_clean();
-        output
     }
 
     /// Lets it go on to its end, which is the uninterrupted run's to the bit; the steps that it had to make again.

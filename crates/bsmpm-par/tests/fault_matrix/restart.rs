@@ -106,7 +106,8 @@ pub fn other_ranks(ground: &Ground, _: usize) -> Tried {
         let (before, after) = ways[index];
         let mut trial = ground.stopped(before, whole.steps / 2);
         trial.ranks = after;
-        trial.finish().says_once(&format!("restart on {after} rank(s) of a checkpoint of {before}"));
+        trial.finish();
+        trial.has_warned(&format!("restart on {after} rank(s) of a checkpoint of {before}"));
         let found = differences(&last_frame(&trial.directory()), &last_frame(&whole.scratch.path("run")));
         let (name, largest) = found.into_iter().max_by(|a, b| a.1.total_cmp(&b.1)).unwrap();
         told.push(format!("{before} -> {after}: {largest:.0e} ({name})"));

@@ -20,7 +20,7 @@ pub fn all() -> Vec<Row> {
         row("F09", "USR1 to mpirun at any instant; no step is lost, B", [2, 20], signals::usr1),
         row("F10", "USR1 to one rank; no step is lost, B", [1, 10], signals::usr1_to_a_rank),
         row("F11", "USR2: a frame and a checkpoint; B but for the frames", [1, 5], signals::usr2),
-        row("F12", "TERM to mpirun that waits; no step is lost, B", [1, 10], signals::term),
+        row("F12", "TERM to mpirun that leaves the time; no step is lost, B", [0, 10], signals::term),
         row("F12", "TERM to mpirun that kills after a second; B", [1, 10], signals::term_in_a_hurry),
         row("F13", "TERM to mpirun twice; B", [1, 5], signals::term_twice),
         row("F14", "--max-wall, again and again to the end; B", [1, 10], signals::max_wall),

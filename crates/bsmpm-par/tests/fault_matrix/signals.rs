@@ -8,11 +8,10 @@ use bsmpm_io::manifest::Status;
 use std::time::Instant;
 
 /// Sends something that is to stop the run with that code; the seconds until it has stopped. No step is made twice then.
-fn stopped(ground: &Ground, (index, code): (usize, i32), send: impl Fn(&Running), variables: &[(&str, &str)]) -> f64 {
+fn stopped(ground: &Ground, (step, code): (u64, i32), send: impl Fn(&Running), variables: &[(&str, &str)]) -> f64 {
     let whole = ground.whole(2);
     let trial = ground.trial(2);
-    let step = 1 + (spread(index, 4) * 0.6 * whole.steps as f64) as u64;
-    let running = trial.under_way(step, spread(index, 5), variables);
+    let running = trial.under_way(step, spread(step as usize, 5), variables);
     let begun = Instant::now();
     send(&running);
     running.end().expect(code);
@@ -23,15 +22,24 @@ fn stopped(ground: &Ground, (index, code): (usize, i32), send: impl Fn(&Running)
     seconds
 }
 
+/// A step in the first part of the run, so that it is not over when the signal arrives.
+fn any_step(ground: &Ground, index: usize) -> u64 {
+    1 + (spread(index, 4) * 0.6 * ground.whole(2).steps as f64) as u64
+}
+
 /// USR1 to the launcher.
 pub fn usr1(ground: &Ground, count: usize) -> Tried {
-    let tried = trials(count, |index| stopped(ground, (index, 75), |running| running.signal("USR1"), &[]));
+    let one = |index| stopped(ground, (any_step(ground, index), 75), |running: &Running| running.signal("USR1"), &[]);
+    let tried = trials(count, one);
     tried.figure(|seconds| format!("stopped after {seconds} s at most"))
 }
 
 /// USR1 to one rank only.
 pub fn usr1_to_a_rank(ground: &Ground, count: usize) -> Tried {
-    let one = |index| stopped(ground, (index, 75), |running: &Running| running.signal_rank("USR1", index % 2), &[]);
+    let one = |index| {
+        let send = |running: &Running| running.signal_rank("USR1", index % 2);
+        stopped(ground, (any_step(ground, index), 75), send, &[])
+    };
     trials(count, one).figure(|seconds| format!("stopped after {seconds} s at most"))
 }
 
@@ -52,10 +60,12 @@ pub fn usr2(ground: &Ground, count: usize) -> Tried {
     tried.figure(|frames| format!("{frames} frame more at most"))
 }
 
-/// TERM to mpirun, which gives the ranks a long time: they stop in order. Its own code is 1.
+/// TERM to mpirun where it leaves the time: it waits two seconds before it tells the ranks, and two more before it kills
+/// them. Its own code is 1.
 pub fn term(ground: &Ground, count: usize) -> Tried {
-    let patient = [("OMPI_MCA_odls_base_sigkill_timeout", "30")];
-    let tried = trials(count, |index| stopped(ground, (index, 1), |running| running.signal("TERM"), &patient));
+    let patient = [("OMPI_MCA_odls_base_sigkill_timeout", "2")];
+    let soon = |index| 1 + (spread(index, 17) * 4.0) as u64;
+    let tried = trials(count, |index| stopped(ground, (soon(index), 1), |running| running.signal("TERM"), &patient));
     tried.figure(|seconds| format!("stopped after {seconds} s at most"))
 }
 
