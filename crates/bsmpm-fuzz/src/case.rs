@@ -6,7 +6,7 @@ use bsmpm_scene::{Case, Error, seed};
 const SEPARATOR: u8 = 0x1e;
 /// Overrides at most.
 const OVERRIDES: usize = 8;
-/// Points, and columns of cells, beyond which none are made.
+/// Points, cells, and columns of cells, beyond which none are made.
 const MOST: u64 = 4096;
 
 /// A case file, then overrides.
@@ -30,6 +30,9 @@ fn accepted(case: &Case) {
     let columns = case.grid.axes[0].cells();
     if estimate.points > MOST || columns as u64 > MOST {
         return;
+    }
+    if estimate.cells <= MOST {
+        crate::setup::model(case).expect("a model of what is accepted");
     }
     let by_column = case.points_by_column();
     assert_eq!((by_column.len(), by_column.iter().sum()), (columns, estimate.points));
