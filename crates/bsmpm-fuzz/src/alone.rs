@@ -70,14 +70,7 @@ pub mod simulation {
         /// One attempt at one step from `t` on.
         pub fn step(&mut self, t: f64, dt: f64) -> Result<Report, StepError> {
             let mut counts = Counts::default();
-            step(
-                &self.model,
-                &mut self.points,
-                &mut self.guess,
-                (t, dt),
-                (&self.halo, &mut self.solver),
-                &mut counts,
-            )
+            step(&self.model, &mut self.points, &mut self.guess, (t, dt), (&self.halo, &mut self.solver), &mut counts)
         }
     }
 

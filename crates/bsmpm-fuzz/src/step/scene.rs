@@ -69,7 +69,7 @@ fn analysis(u: &mut Unstructured<'_>, text: &mut String) -> Result<bool> {
 
 fn grid(u: &mut Unstructured<'_>, text: &mut String) -> Result<Grid> {
     let order = quoted(u, &["linear", "quadratic", "cubic"])?;
-    let cells = [u.int_in_range(1..=4_u8)?, u.int_in_range(1..=4_u8)?];
+    let cells = [u.int_in_range(1..=3_u8)?, u.int_in_range(1..=3_u8)?];
     let h = *u.choose(&[1.0, 0.125, 2.5e-3, 64.0])?;
     let lower = *u.choose(&[[0.0, 0.0], [-3.0, 7.0], [1e6, -1e6]])?;
     let mut upper = [0, 1].map(|axis| lower[axis] + h * f64::from(cells[axis]));
@@ -208,7 +208,7 @@ fn solver(u: &mut Unstructured<'_>, text: &mut String) -> Result<()> {
     let methods = ["none", "f-bar", "f-bar-zhao", "modified-f-bar", "consistent-f-bar"];
     line(text, &format!("[stabilisation]\nmethod = \"{}\"", quoted(u, &methods)?));
     let nonlinear = quoted(u, &["auto", "broyden", "newton"])?;
-    line(text, &format!("[solver]\nnonlinear = \"{nonlinear}\"\nmax_iterations = {}", u.int_in_range(1..=24)?));
+    line(text, &format!("[solver]\nnonlinear = \"{nonlinear}\"\nmax_iterations = {}", u.int_in_range(1..=16)?));
     if u.arbitrary()? {
         let tolerances = [size(u, -12.0, -1.0)?, size(u, -9.0, -1.0)?];
         line(text, &format!("tolerance = {:?}\nforce_tolerance = {:?}", tolerances[0], tolerances[1]));

@@ -16,7 +16,10 @@ fn corpus(target: &Target) -> Vec<(String, Vec<u8>)> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("corpus").join(target.name);
     let entries = std::fs::read_dir(&folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
     let read = |entry: std::fs::DirEntry| {
-        (entry.file_name().to_string_lossy().into_owned(), std::fs::read(entry.path()).expect("a file that can be read"))
+        (
+            entry.file_name().to_string_lossy().into_owned(),
+            std::fs::read(entry.path()).expect("a file that can be read"),
+        )
     };
     let mut files: Vec<_> = entries.map(|entry| read(entry.expect("a folder that can be read"))).collect();
     files.sort();
