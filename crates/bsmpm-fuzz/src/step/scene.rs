@@ -25,18 +25,28 @@ impl Grid {
     }
 }
 
+/// Where the stress at the start comes from.
+#[derive(Clone, Copy, PartialEq)]
+enum Start {
+    Nothing,
+    AtRest,
+    Elastic,
+}
+
 /// The whole case.
 pub fn text(u: &mut Unstructured<'_>) -> Result<String> {
     let mut text = String::from("geometry = \"plane-strain\"\n");
     let dynamic = analysis(u, &mut text)?;
     let grid = grid(u, &mut text)?;
+    let start = *u.choose(&[Start::Nothing, Start::Nothing, Start::AtRest, Start::Elastic])?;
     let materials = u.int_in_range(1..=2)?;
     for number in 0..materials {
-        material(u, number, dynamic, &mut text)?;
+        material(u, number, (dynamic, start), &mut text)?;
     }
     bodies(u, &grid, materials, &mut text)?;
     let faces = boundary(u, &mut text)?;
-    forces(u, &grid, &mut text)?;
+    gravity(u, start, &mut text)?;
+    loads(u, &grid, &mut text)?;
     strips(u, &grid, faces, &mut text)?;
     solver(u, &mut text)?;
     Ok(text)
@@ -91,7 +101,7 @@ fn grid(u: &mut Unstructured<'_>, text: &mut String) -> Result<Grid> {
     Ok(Grid { lower, upper, h })
 }
 
-fn material(u: &mut Unstructured<'_>, number: usize, dynamic: bool, text: &mut String) -> Result<()> {
+fn material(u: &mut Unstructured<'_>, number: usize, (dynamic, start): (bool, Start), text: &mut String) -> Result<()> {
     let model = quoted(u, &["hencky", "mohr-coulomb", "tresca"])?;
     let poisson = if u.ratio(1, 8)? { 0.5 - size(u, -9.0, -1.0)? } else { between(u, -0.5, 0.499)? };
     let young = size(u, 0.0, 11.0)?;
@@ -102,21 +112,22 @@ fn material(u: &mut Unstructured<'_>, number: usize, dynamic: bool, text: &mut S
     } else {
         line(text, &format!("young = {young:?}"));
     }
+    let closing = model == "mohr-coulomb" && u.arbitrary()?;
     if model != "hencky" {
-        let cohesion = if u.ratio(1, 4)? { 0.0 } else { young * size(u, -8.0, 0.0)? };
+        let cohesion = if closing || u.ratio(1, 4)? { 0.0 } else { young * size(u, -8.0, 0.0)? };
         line(text, &format!("cohesion = {cohesion:?}"));
-        if u.arbitrary()? {
-            line(text, "separation = \"closing\"");
-        }
+    }
+    if closing {
+        line(text, "separation = \"closing\"");
     }
     if model == "mohr-coulomb" {
-        let friction = between(u, 0.0, 60.0)?;
+        let friction = between(u, if closing { 1.0 } else { 0.0 }, 60.0)?;
         line(text, &format!("friction = {friction:?}\ndilation = {:?}", friction * between(u, 0.0, 1.0)?));
     }
     if dynamic || u.ratio(3, 4)? {
         line(text, &format!("density = {:?}", size(u, 0.0, 5.0)?));
     }
-    if u.ratio(1, 8)? {
+    if start == Start::AtRest && u.ratio(1, 4)? {
         line(text, &format!("k0 = {:?}", between(u, 0.0, 3.0)?));
     }
     Ok(())
@@ -155,19 +166,29 @@ fn boundary(u: &mut Unstructured<'_>, text: &mut String) -> Result<[bool; 4]> {
     Ok(free)
 }
 
-/// Gravity, loads, and the stress at the start.
-fn forces(u: &mut Unstructured<'_>, grid: &Grid, text: &mut String) -> Result<()> {
-    let ramp = |u: &mut Unstructured<'_>| if u.arbitrary()? { Ok(0.0) } else { size(u, -6.0, 3.0) };
-    if u.ratio(3, 4)? {
-        let across = if u.ratio(1, 4)? { signed(u, -3.0, 2.0)? } else { 0.0 };
-        let (down, ramp) = (signed(u, -1.0, 2.5)?, ramp(u)?);
-        line(text, &format!("[gravity]\nacceleration = [{across:?}, {down:?}]\nramp = {ramp:?}"));
-        match u.int_in_range(0..=3)? {
-            0 => line(text, &format!("[initial]\nk0 = {:?}", between(u, 0.0, 3.0)?)),
-            1 => line(text, "[initial]\ngravity = \"elastic\""),
-            _ => {}
-        }
+fn ramp(u: &mut Unstructured<'_>) -> Result<f64> {
+    if u.arbitrary()? { Ok(0.0) } else { size(u, -6.0, 3.0) }
+}
+
+/// Gravity, and the stress at the start that belongs to it.
+fn gravity(u: &mut Unstructured<'_>, start: Start, text: &mut String) -> Result<()> {
+    if start == Start::Nothing && u.ratio(1, 4)? {
+        return Ok(());
     }
+    let across = if start != Start::AtRest && u.ratio(1, 4)? { signed(u, -3.0, 2.0)? } else { 0.0 };
+    let down = if start == Start::AtRest { -size(u, -1.0, 2.5)? } else { signed(u, -1.0, 2.5)? };
+    let ramp = if start == Start::Nothing { ramp(u)? } else { 0.0 };
+    line(text, &format!("[gravity]\nacceleration = [{across:?}, {down:?}]\nramp = {ramp:?}"));
+    match start {
+        Start::Nothing => {}
+        Start::AtRest => line(text, &format!("[initial]\nk0 = {:?}", between(u, 0.0, 3.0)?)),
+        Start::Elastic => line(text, "[initial]\ngravity = \"elastic\""),
+    }
+    Ok(())
+}
+
+/// A traction, a point load, a reduction of strength.
+fn loads(u: &mut Unstructured<'_>, grid: &Grid, text: &mut String) -> Result<()> {
     if u.ratio(1, 6)? {
         let stress = [signed(u, 0.0, 9.0)?, signed(u, 0.0, 9.0)?];
         let (from, to, ramp) = (grid.place(u)?, grid.place(u)?, ramp(u)?);
