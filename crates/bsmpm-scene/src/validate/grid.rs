@@ -8,6 +8,8 @@ use crate::report::Report;
 
 /// Parts of a cell by which a length may miss a whole number of cells.
 const WHOLE: f64 = 1e-9;
+/// Shortest cell, m: no case comes near, and products of a few such lengths and of their inverses stay far within f64.
+const SHORTEST: f64 = 1e-50;
 const NAMES: [&str; 2] = ["x", "y"];
 
 /// The grid, once the supports of its faces are known.
@@ -26,8 +28,23 @@ pub(super) fn read(root: &Record, boundary: Option<[[Support; 2]; 2]>, report: &
         report.error(grid.place("cell"), &grid.path_of("cell"), message);
         return None;
     }
+    bounded(&spec, grid, report)?;
     warn_of_rounding(&spec, report);
     Some(spec)
+}
+
+/// An error for cells with which nobody can compute: breakpoints may be one when counted from the first.
+fn bounded(spec: &GridSpec, grid: &Record, report: &mut Report<'_>) -> Option<()> {
+    for (axis, name) in spec.axes.iter().zip(NAMES) {
+        let cell = axis.shortest();
+        if cell < SHORTEST {
+            let key = if grid.gives("knots") { "knots" } else { "cell" };
+            let message = format!("the shortest cell along {name} is {cell:e} m; allowed: cell >= {SHORTEST:e} m");
+            grid.error(key, message, report);
+            return None;
+        }
+    }
+    Some(())
 }
 
 fn graded(grid: &Record, report: &mut Report<'_>) -> Option<[Axis; 2]> {
