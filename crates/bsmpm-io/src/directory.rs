@@ -43,7 +43,7 @@ impl OutputDirectory {
     ///
     /// # Errors
     /// [`Error::Locked`] by a run that goes on, see [`Lock::take`]. [`Error::NotDirectory`], [`Error::Directory`] if the path
-    /// is a file or cannot be made or written to.
+    /// is a file or cannot be made or written to, or if a link stands where one of the run's folders belongs.
     pub fn hold(path: &Path, unseen: Unseen) -> Result<Self, Error> {
         let refused = |action| move |source| Error::Directory { action, path: path.to_owned(), source };
         let idle = match fs::metadata(path) {
@@ -51,7 +51,12 @@ impl OutputDirectory {
             Ok(_) => false,
             Err(_) => fs::create_dir_all(path).map(|()| true).map_err(refused("create"))?,
         };
-        Ok(Self { path: path.to_owned(), lock: Some(Lock::take(path, unseen)?), idle })
+        let lock = Some(Lock::take(path, unseen)?);
+        // A link there would lead what is written out of the directory.
+        if let Some(folder) = FOLDERS.iter().map(|folder| path.join(folder)).find(|folder| is_no_folder(folder)) {
+            return Err(Error::NotDirectory { path: folder });
+        }
+        Ok(Self { path: path.to_owned(), lock, idle })
     }
 
     /// Puts the first manifest of a new run there.
@@ -146,6 +151,11 @@ fn run_files(directory: &Path) -> io::Result<Vec<String>> {
 /// Whether there is anything of that name, be it a link that leads nowhere.
 fn exists(path: &Path) -> bool {
     fs::symlink_metadata(path).is_ok()
+}
+
+/// Whether something stands there that is no folder itself, be it a link to one.
+fn is_no_folder(path: &Path) -> bool {
+    fs::symlink_metadata(path).is_ok_and(|found| !found.is_dir())
 }
 
 /// Deletes the outputs that the directory's `run.json` names, then itself. All are looked at before the first is deleted.

@@ -73,12 +73,27 @@ impl Table {
         Ok(table)
     }
 
+    /// Whether a file can be gone on with from `mark`; it is left as it is.
+    ///
+    /// # Errors
+    /// [`Error::Format`] if the file is shorter or its beginning another one, or if it has other columns; [`Error::File`] when
+    /// the system refuses.
+    pub fn verify(path: &Path, columns: &[Column], mark: &Mark) -> Result<(), Error> {
+        Self::reach(path, columns, mark).map(|_| ())
+    }
+
     /// Goes on with a file that had come to `mark`: what was written later is cut off.
     ///
     /// # Errors
-    /// [`Error::Format`] if the file is shorter or its beginning another one, or if it has other columns: it is left as it
-    /// is. [`Error::File`] when the system refuses.
+    /// Those of [`Table::verify`]; the file is as it was then.
     pub fn resume(path: &Path, columns: &[Column], mark: &Mark) -> Result<Self, Error> {
+        let table = Self::reach(path, columns, mark)?;
+        table.file.set_len(mark.bytes).map_err(Error::file("write", path))?;
+        Ok(table)
+    }
+
+    /// The table at the mark, whatever comes after it.
+    fn reach(path: &Path, columns: &[Column], mark: &Mark) -> Result<Self, Error> {
         check_headings(path, columns)?;
         let mut file = File::options().read(true).write(true).open(path).map_err(Error::file("open", path))?;
         let mut hasher = Box::<blake3::Hasher>::default();
@@ -94,7 +109,6 @@ impl Table {
             let reason = format!("its first {} bytes are not those that the run had written", mark.bytes);
             return Err(Error::format(path, reason));
         }
-        file.set_len(mark.bytes).map_err(Error::file("write", path))?;
         Ok(Self { path: path.to_owned(), file, columns: columns.to_vec(), hasher })
     }
 

@@ -7,7 +7,7 @@
 use bsmpm::points::{Points, Seed};
 use bsmpm::tensor::{Symmetric, Tensor, Vector};
 use bsmpm_io::checkpoint::{Facts, Phase, Store};
-use bsmpm_par::checkpoint::{self, Contents, Refusal, Wanted};
+use bsmpm_par::checkpoint::{self, Contents, Opened, Refusal, Wanted};
 use bsmpm_par::launch;
 use hdf5_collective::Hdf5;
 use mpi::environment::Universe;
@@ -71,7 +71,8 @@ fn write(
         time: step as f64 / 3.0,
     };
     let state = state(step);
-    let contents = Contents { columns: points.named_columns(), state: state.as_bytes() };
+    let guess = guess(rank, step);
+    let contents = Contents { columns: points.named_columns(), guess: (&guess, WIDTH), state: state.as_bytes() };
     let strike = |now: Phase| {
         if rank == 0 && phase.is_some_and(|phase| phase == format!("{now:?}")) {
             std::process::abort();
@@ -92,7 +93,14 @@ fn read(universe: &Universe, hdf5: &Hdf5<'_>, wanted: Wanted<'_>, count: u64) ->
     };
     let names: Vec<&str> = found.record.arrays.iter().map(|array| array.name.as_str()).collect();
     let mut held = Points::<2>::holding(&names);
-    let text = checkpoint::read((hdf5, &world), &found, held.named_columns())?;
+    let opened = Opened::new((hdf5, universe.world()), &found)?;
+    let text = opened.state()?;
+    opened.points(held.named_columns())?;
+    for rank in 0..u64::from(found.record.ranks) {
+        let at = (2 * rank) as usize;
+        assert_eq!(opened.guess(at..at + 2, WIDTH)?, guess(rank, found.record.step), "another displacement");
+    }
+    opened.close()?;
     let (rank, ranks) = (world.rank() as u64, world.size() as u64);
     let start = |rank: u64| rank * (count / ranks) + rank.min(count % ranks);
     assert_eq!(held, points(start(rank)..start(rank + 1), found.record.step), "other points");
@@ -101,6 +109,14 @@ fn read(universe: &Universe, hdf5: &Hdf5<'_>, wanted: Wanted<'_>, count: u64) ->
         launch::say(&format!("good: step {} of {} ranks", found.record.step, found.record.ranks));
     }
     Ok(())
+}
+
+/// Numbers of a layer of nodes.
+const WIDTH: usize = 6;
+
+/// Two layers of nodes of a rank.
+fn guess(rank: u64, step: u64) -> Vec<f64> {
+    (0..2 * WIDTH as u64).map(|at| ((rank * 100 + at) as f64).cos() * step as f64).collect()
 }
 
 fn state(step: u64) -> String {

@@ -10,6 +10,9 @@ use std::time::Duration;
 const PETSC_OPTIONS: [&str; 9] =
     ["-ksp_", "-pc_", "-mg_", "-sub_", "-redundant_", "-newton_", "-mat_mumps_", "-mat_superlu_dist_", "-mat_cholmod_"];
 
+/// Parts of names that do none the less: code of other languages is loaded, a server started, factors put into files.
+const PETSC_REFUSED: [&str; 5] = ["python", "matlab", "saws", "_ooc", "mumps_icntl_22"];
+
 /// How a run is logged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum LogFormat {
@@ -79,7 +82,7 @@ pub struct Arguments {
     /// Cores of each rank; more than one is not available yet
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub threads: u32,
-    /// Refuse a case that would need more memory, e.g. 16GiB (exit 71)
+    /// Refuse a case that would need more memory on all ranks, e.g. 16GiB (exit 71) [default: what the first rank's host has]
     #[arg(long, value_name = "SIZE", value_parser = size)]
     pub max_memory: Option<u64>,
     /// No log lines
@@ -139,12 +142,16 @@ impl Arguments {
 fn petsc_options(options: &[String]) -> Result<(), String> {
     for option in options {
         let is_name = option.starts_with('-') && option.parse::<f64>().is_err();
-        let allowed = option == "-log_view" || PETSC_OPTIONS.iter().any(|beginning| option.starts_with(beginning));
+        let begins = option == "-log_view" || PETSC_OPTIONS.iter().any(|beginning| option.starts_with(beginning));
+        let allowed = begins && !PETSC_REFUSED.iter().any(|part| option.contains(part));
         if is_name && !allowed {
             return Err(format!(
                 "{option} is not among the PETSc options that may be given: {}",
                 PETSC_OPTIONS.join("* ")
             ));
+        }
+        if !is_name && PETSC_REFUSED.contains(&option.as_str()) {
+            return Err(format!("{option}: PETSc options must not load code"));
         }
         if !is_name && option.contains([':', '/']) {
             return Err(format!("{option}: PETSc options must not name files"));
@@ -196,7 +203,10 @@ mod tests {
         assert!(!refused(&["-ksp_type", "cg", "-pc_type", "gamg", "-log_view", "-ksp_rtol", "1e-12"]));
         assert!(refused(&["-log_view", ":pwned"]));
         assert!(refused(&["-log_view", "pwned"]));
-        assert!(refused(&["-options_file", "x"]));
+        assert!(refused(&["-options_file", "x"]) && refused(&["-dll_append", "x"]) && refused(&["-dll_prepend", "x"]));
+        assert!(refused(&["-pc_type", "python"]) && refused(&["-ksp_python_type", "x.y"]));
+        assert!(refused(&["-mat_mumps_icntl_22", "1"]) && refused(&["-redundant_mat_mumps_ooc_tmpdir", "x"]));
+        assert!(!refused(&["-mat_mumps_icntl_14", "200"]) && !refused(&["-ksp_max_it", "-1"]));
         assert!(refused(&["-ksp_monitor", "ascii:pwned"]));
         assert!(refused(&["-ksp_view_mat", "binary"]));
         assert!(refused(&["-on_error_attach_debugger"]));

@@ -1,5 +1,9 @@
 //! The linear system on PETSc: numbering of the unknowns, assembly, factorisation, and solutions that are checked.
 
+mod choice;
+
+pub use choice::{Choice, probe};
+
 use crate::halo::MpiHalo;
 use crate::stencil::{Numbering, Stencil};
 use crate::timers::Timers;
@@ -13,101 +17,8 @@ use std::rc::Rc;
 /// Largest relative residual of a solution that is accepted, recomputed: direct solvers report success for NaN.
 const TRUSTED: f64 = 1e-6;
 
-/// Defaults of the factorisation, given before the user's own options, which win. MUMPS: ordering by approximate minimum
-/// fill, of all that were tried the cheapest for plane grids, and twice the workspace that it estimates, which on
-/// several ranks is at times too little. Iterative methods: a tolerance whose solutions are trusted, unlike PETSc's 1e-5.
-const OPTIONS: [&str; 18] = [
-    "-ksp_rtol",
-    "1e-10",
-    "-mat_mumps_icntl_7",
-    "2",
-    "-mat_mumps_icntl_14",
-    "100",
-    "-redundant_mat_mumps_icntl_7",
-    "2",
-    "-redundant_mat_mumps_icntl_14",
-    "100",
-    "-newton_ksp_gmres_restart",
-    "300",
-    "-newton_mat_mumps_icntl_14",
-    "100",
-    "-newton_redundant_mat_mumps_icntl_14",
-    "100",
-    "-newton_ksp_pc_side",
-    "right",
-];
-/// Prefix of the options of Newton's linear systems.
-const NEWTON: &str = "newton_";
 /// Most products of one of them.
 const MOST_PRODUCTS: usize = 300;
-
-/// Method, preconditioner and factorising package by PETSc's names.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Choice {
-    /// KSPType, e.g. `preonly`, `cg`
-    pub ksp: String,
-    /// PCType, e.g. `cholesky`, `gamg`
-    pub pc: String,
-    /// MatSolverType of a factorisation, e.g. `mumps`
-    pub factor: Option<String>,
-    /// every rank factorises the whole system by itself: a parallel factorisation need not repeat to the bit
-    pub redundant: bool,
-}
-
-impl Choice {
-    /// Options that PETSc must start with, before the user's own.
-    pub fn options(&self) -> Vec<&str> {
-        let mut options = OPTIONS.to_vec();
-        if self.redundant {
-            options.extend(["-redundant_pc_type", &self.pc, "-newton_redundant_pc_type", "lu"]);
-            if let Some(factor) = &self.factor {
-                options.extend(["-redundant_pc_factor_mat_solver_type", factor]);
-                options.extend(["-newton_redundant_pc_factor_mat_solver_type", factor]);
-            }
-        }
-        options
-    }
-
-    /// Tells a solver; what the options say goes before. A general matrix preconditions a Krylov method.
-    fn apply(&self, ksp: &mut Ksp<'_>, symmetry: Symmetry) -> petsc_rs::Result<()> {
-        let pc = match (symmetry, self.pc.as_str()) {
-            (Symmetry::General, "cholesky") => "lu",
-            (_, pc) => pc,
-        };
-        match symmetry {
-            Symmetry::Definite => ksp.set_type(&self.ksp)?,
-            Symmetry::General => {
-                ksp.set_options_prefix(NEWTON)?;
-                ksp.set_type("fgmres")?;
-            }
-        }
-        if self.redundant {
-            ksp.set_pc_type("redundant")?;
-        } else {
-            ksp.set_pc_type(pc)?;
-            if let Some(factor) = &self.factor {
-                ksp.set_factor_solver(factor)?;
-            }
-        }
-        ksp.set_from_options()
-    }
-}
-
-/// Solves a system of one unknown a rank as `choice` and the options say: what PETSc does not know or have shows before
-/// a run begins. Collective.
-pub fn probe<'p>(petsc: &'p Petsc<'p>, choice: &Choice) -> petsc_rs::Result<()> {
-    let own = [petsc.rank()];
-    let mut matrix = Matrix::from_coo(petsc, 1, 1, &own, &own)?;
-    matrix.set_values(&[1.0])?;
-    matrix.set_symmetry(petsc_rs::Symmetry::PositiveDefinite)?;
-    let mut ksp = Ksp::new(petsc)?;
-    ksp.set_operator(&matrix)?;
-    choice.apply(&mut ksp, Symmetry::Definite)?;
-    let (mut b, mut x) = (Vector::new(petsc, 1)?, Vector::new(petsc, 1)?);
-    b.fill(1.0)?;
-    ksp.set_up()?;
-    ksp.solve(&b, &mut x).map(|_| ())
-}
 
 /// The linear solver of a run: one matrix, rebuilt every step; pattern and analysis are kept while the unknowns stay.
 pub struct KspSolver<'p, const D: usize> {

@@ -14,6 +14,7 @@ pub mod launch;
 pub mod ledger;
 pub mod log;
 pub mod machine;
+pub mod memory;
 pub mod migrate;
 pub mod program;
 pub mod record;

@@ -43,11 +43,6 @@ fn prepare(universe: &Universe) -> Result<Option<(Task, Slabs)>, u8> {
     let arguments = Arguments::read(speaks)?;
     let fault = agreed(universe, exit::USAGE, Fault::from_environment(ranks))?;
     let case = source::read(&world, &arguments)?;
-    let needed = case.estimate().bytes_on(ranks);
-    if arguments.max_memory.is_some_and(|limit| needed > limit) {
-        let reason = format!("the case needs about {needed} bytes, more than --max-memory allows");
-        return Err(refuse(universe, exit::MEMORY, &reason));
-    }
     let Some(slabs) = setup::slabs(&case, ranks) else {
         let columns = case.grid.axes[0].cells();
         let reason =

@@ -3,12 +3,13 @@
 use crate::cli::Arguments;
 use crate::exit::{CASE, MISSING};
 use crate::launch::say;
+use crate::memory;
 use crate::setup;
 use bsmpm_scene::Case;
 use mpi::collective::Root;
 use mpi::topology::{Communicator, SimpleCommunicator};
 
-/// The valid case of the command line; `Err` holds the exit code, and rank 0 has said why.
+/// The valid case of the command line, for which there is enough memory; `Err` holds the exit code, and rank 0 has said why.
 pub fn read(world: &SimpleCommunicator, arguments: &Arguments) -> Result<Case, u8> {
     let speaks = world.rank() == 0;
     let name = arguments.case.display().to_string();
@@ -16,14 +17,16 @@ pub fn read(world: &SimpleCommunicator, arguments: &Arguments) -> Result<Case, u
         bsmpm_scene::load(&arguments.case).map_err(|error| say(&format!("bsmpm-par: {name}: {error}"))).ok()
     })
     .ok_or(MISSING)?;
-    Case::from_bytes(&name, &bytes, &arguments.set).map_err(|errors| {
+    let case = Case::from_bytes(&name, &bytes, &arguments.set).map_err(|errors| {
         if speaks {
             errors.iter().for_each(|error| say(&format!("{error:#}")));
             let plural = if errors.len() == 1 { "error" } else { "errors" };
             say(&format!("bsmpm-par: {name}: {} {plural}; nothing was run or written", errors.len()));
         }
         CASE
-    })
+    })?;
+    memory::admit(world, arguments, &case)?;
+    Ok(case)
 }
 
 /// Bytes that rank 0 may have; `None` everywhere if it has none.
@@ -53,7 +56,7 @@ pub fn describe(case: &Case, ranks: usize) -> String {
             "memory           about {} MiB on each of {ranks} rank(s)",
             estimate.bytes_on(ranks) / ranks as u64 / 1_048_576 + 1
         ),
-        format!("ranks            at most {}", case.grid.axes[0].cells()),
+        format!("ranks            at most {}, of use about {}", case.grid.axes[0].cells(), estimate.useful_ranks),
         format!("nominal steps    {}", setup::nominal_steps(case)),
     ];
     let told = case.notes.iter().map(|note| format!("{} = {} ({})", note.key, note.value, note.reason));

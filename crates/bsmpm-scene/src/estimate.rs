@@ -4,7 +4,7 @@
 
 use bsmpm::stabilisation::Stabilisation;
 
-use crate::case::Case;
+use crate::case::{Case, Nonlinear, Solver};
 use crate::grid::GridSpec;
 
 /// Largest number of cells, unknowns and matrix rows: PETSc's and MPI's counts are 32-bit here.
@@ -12,23 +12,37 @@ pub(crate) const MOST_UNKNOWNS: u128 = i32::MAX as u128;
 /// Largest number of points: they are sorted by 32-bit numbers.
 pub(crate) const MOST_POINTS: u128 = u32::MAX as u128;
 
-/// Bytes of a point: its state (about 270), shape functions (96), two trial states (160), response and buffers of its
-/// migration. Measured: 820, from 28,800 and 115,200 points in the same cells.
-const POINT: u128 = 820;
+/// Bytes of a point that are always there: its state (about 270), shape functions (96), trial states and their answers.
+/// Measured, as all that follows, in the runs of `tests/shipped.rs`.
+const POINT: u128 = 600;
 /// Bytes of a point's functions of the degree below, which `consistent-f-bar` averages with.
 const LOWERED: u128 = 64;
+/// Bytes of a point while a step is saved and a frame written; not there while the system is built.
+const SAVED: u128 = 380;
+/// Bytes of a point where the first of several ranks gathers the frames.
+const GATHERED: u128 = 220;
 /// Bytes of a node's vectors: about a dozen, and twenty secants of three, all of two doubles.
 const VECTORS: u128 = (12 + 20 * 3) * 16;
-/// Bytes of an entry of the stiffness while the system is built: value, row and column, its place in the matrix, and
-/// what the factorisation copies. An assumption that fits the measured sums.
+/// Bytes of an entry of the stiffness: matrix, value, place in the matrix and what the factorisation, or
+/// another preconditioner, copies.
 const ENTRY: u128 = 36;
-/// The part of [`ENTRY`] that every rank has for itself where all factorise the whole system: matrix and copy of it.
-const REPEATED: u128 = 20;
-/// Bytes of the factor per unknown and level of a nested dissection: 10 doubles, and as many of workspace. Measured: 18
-/// to 24 doubles on 3,444 and 13,284 nodes of quadratic functions.
-const LEVEL: u128 = 20 * 8;
-/// Bytes of a process that has next to nothing to solve: libraries and buffers of MPI and PETSc. Measured: 47.8e6.
-const PROCESS: u64 = 48_000_000;
+/// Bytes of an entry while the system is built; not there while a step is saved.
+const BUILT: u128 = 44;
+/// Bytes of an entry that every further rank holds where all factorise the whole system: it is sent, collected and copied.
+const REPEATED: u128 = 60;
+/// Bytes of a symmetric factor per unknown and level of a nested dissection: 13 doubles with their workspace. A general
+/// one has twice of it.
+const LEVEL: u128 = 13 * 8;
+/// Bytes of an unknown in the Krylov space of Newton's directions: two doubles for each of a hundred products.
+const KRYLOV: u128 = 100 * 16;
+/// Percent of Newton's system that `auto` counts: it is made only where the secants stall, and then beside the other, so
+/// that without it this is too much and with it too little, both by less than a half.
+const PERHAPS: u128 = 60;
+/// Bytes of a process that has next to nothing to solve: libraries and buffers of MPI and PETSc.
+const PROCESS: u64 = 47_000_000;
+
+/// Unknowns of a rank below which it mostly waits for others, in two dimensions.
+const FEWEST: u128 = 1000;
 
 /// Sizes that follow from a case; unknowns are bounded from above, since empty cells have none. Empty cells do cost
 /// memory: vectors and the stencils of the stiffness are held for every node of the grid.
@@ -42,47 +56,79 @@ pub struct Estimate {
     pub unknowns: u64,
     /// Material points.
     pub points: u64,
+    /// Ranks that have something to do: at least a thousand unknowns each, and a column of cells.
+    pub useful_ranks: u64,
     /// Memory of the case, bytes, however many ranks share it: points, nodes, stiffness and its factor, where the bodies
     /// are at the start. Not what each rank adds, see [`Estimate::bytes_on`].
     pub bytes: u64,
-    /// Bytes of this that every further rank holds again: the system, where each factorises the whole.
+    /// Bytes that every further rank adds: the system again, where each factorises the whole.
     pub repeated: u64,
+    /// Bytes that are added by there being several ranks: the points of a frame, gathered.
+    pub gathered: u64,
 }
 
 impl Estimate {
-    /// Memory of all of `ranks` ranks together, bytes, their libraries included. Within .85 to 1.1 of the peaks that
-    /// were measured on one and two ranks; bodies that spread take more.
+    /// Memory of all of `ranks` ranks together, bytes, their libraries included. Within .8 to 1.5 of the peaks that were
+    /// measured on one to three ranks; bodies that spread take more.
     pub fn bytes_on(&self, ranks: usize) -> u64 {
         let ranks = ranks as u64;
         let further = self.repeated.saturating_mul(ranks.saturating_sub(1));
-        self.bytes.saturating_add(PROCESS.saturating_mul(ranks)).saturating_add(further)
+        let gathered = if ranks > 1 { self.gathered } else { 0 };
+        self.bytes.saturating_add(PROCESS.saturating_mul(ranks)).saturating_add(further).saturating_add(gathered)
+    }
+}
+
+/// Linear systems of a step: the elastic stiffness of the secants, and the general one of Newton's directions.
+struct Systems {
+    /// bytes
+    held: u128,
+    /// bytes that every further rank holds again
+    repeated: u128,
+}
+
+impl Systems {
+    /// `entries` of the stiffness of so many `unknowns`.
+    fn of(solver: &Solver, unknowns: u128, entries: u128) -> Self {
+        let direct = solver.linear.factor.is_some();
+        let levels = u128::from(unknowns.max(2).ilog2());
+        let factor = if direct { unknowns * levels * LEVEL } else { 0 };
+        let again = u128::from(direct && solver.reproducible);
+        let elastic = [entries * ENTRY + factor, again * (entries * REPEATED + factor)];
+        let general = [entries * ENTRY + 2 * factor + unknowns * KRYLOV, again * (entries * REPEATED + 2 * factor)];
+        let percent = match solver.nonlinear {
+            Nonlinear::Broyden => [100, 0],
+            Nonlinear::Newton => [0, 100],
+            Nonlinear::Auto => [100, PERHAPS],
+        };
+        let [held, repeated] = [0, 1].map(|k| (percent[0] * elastic[k] + percent[1] * general[k]) / 100);
+        Self { held, repeated }
     }
 }
 
 impl Case {
     /// Sizes of the case.
     pub fn estimate(&self) -> Estimate {
-        let nodes = nodes(&self.grid);
+        let (nodes, points) = (nodes(&self.grid), u128::from(self.points()));
         let places = (2 * self.grid.order as u128 + 1).pow(2);
         // The stencil of the stiffness: per place 2 x 2 doubles and an index of two bytes, and the list's head.
         let stencil = places * (4 * 8 + 2) + 24;
         let occupied = occupied_nodes(self).min(nodes);
         let entries = 2 * occupied * 2 * places;
-        let levels = u128::from((2 * occupied).max(2).ilog2());
-        let direct = self.solver.linear.factor.is_some();
-        let factor = if direct { 2 * occupied * levels * LEVEL } else { entries * 12 };
+        let systems = Systems::of(&self.solver, 2 * occupied, entries);
         let lowered = if self.stabilisation == Stabilisation::ConsistentFBar { LOWERED } else { 0 };
-        let bytes =
-            u128::from(self.points()) * (POINT + lowered) + nodes * (stencil + VECTORS) + entries * ENTRY + factor;
-        let repeated = if direct && self.solver.reproducible { factor + entries * REPEATED } else { 0 };
+        let passing = (entries * BUILT).max(points * SAVED);
+        let bytes = points * (POINT + lowered) + nodes * (stencil + VECTORS) + systems.held + passing;
+        let has_frames = self.output.every.is_some() || !self.output.times.is_empty();
         let bounded = |number: u128| u64::try_from(number).unwrap_or(u64::MAX);
         Estimate {
             cells: bounded(cells(&self.grid)),
             nodes: bounded(nodes),
             unknowns: bounded(2 * nodes),
             points: self.points(),
+            useful_ranks: bounded((2 * occupied / FEWEST).clamp(1, self.grid.axes[0].cells() as u128)),
             bytes: bounded(bytes),
-            repeated: bounded(repeated),
+            repeated: bounded(systems.repeated),
+            gathered: bounded(if has_frames { points * GATHERED } else { 0 }),
         }
     }
 }

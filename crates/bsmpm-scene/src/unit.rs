@@ -86,6 +86,11 @@ impl Dimension {
             Self::Angle => 1e6,
         }
     }
+
+    /// Smallest magnitude of what must not be zero that is taken for meant: what is divided by it stays finite.
+    pub fn least(self) -> f64 {
+        1.0 / self.limit()
+    }
 }
 
 impl fmt::Display for Dimension {

@@ -1,10 +1,11 @@
 //! The command line of `bsmpm`.
 
 use std::io::Write;
+use std::path::Path;
 
 use clap::{Parser, Subcommand};
 
-use crate::{Error, compare, fos, plot, validate};
+use crate::{Error, compare, fos, plot, slurm, validate};
 
 /// Starts runs of bsmpm-par, and looks at what they left.
 #[derive(Debug, Parser)]
@@ -26,6 +27,8 @@ pub enum Command {
     Validate(validate::Arguments),
     /// Find the factor of safety of a case by strength reduction
     Fos(fos::Arguments),
+    /// Write a job script for Slurm that queues itself again until the case is done
+    Slurm(slurm::Arguments),
 }
 
 /// Carries out a command and prints what it made: tables, and pictures with one path a line.
@@ -70,6 +73,15 @@ pub fn run(cli: &Cli) -> Result<(), Error> {
             for picture in pictures {
                 let _ = writeln!(std::io::stdout(), "{}", picture.display());
             }
+        }
+        Command::Slurm(arguments) => {
+            let script = slurm::run(arguments, |line| {
+                let _ = writeln!(std::io::stderr(), "warning: {line}");
+            })?;
+            // Half a script must not pass for one.
+            let failed = bsmpm_io::Error::file("write", Path::new("the standard output"));
+            let mut stdout = std::io::stdout();
+            stdout.write_all(&script.unwrap_or_default()).and_then(|()| stdout.flush()).map_err(failed)?;
         }
     }
     Ok(())

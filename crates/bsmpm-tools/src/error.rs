@@ -1,6 +1,6 @@
 //! What can go wrong in a command, with the exit code that it means.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
@@ -143,6 +143,11 @@ pub enum Error {
 }
 
 impl Error {
+    /// That of a case with errors.
+    pub(crate) fn bad_case(path: &Path, errors: &[bsmpm_scene::Error]) -> Self {
+        Self::BadCase { path: path.to_owned(), errors: errors.iter().map(|error| format!("{error:#}")).collect() }
+    }
+
     /// The exit code of `bsmpm`: 2 for options that do not fit, 66 for what is missing, 65 for a bad reference file or a case
     /// that does not fit, 77 for a validation that failed, 74 for a solver that does not start, 80 where nothing stands, that
     /// of a trial that broke, 70 for a fault of this program, else that of the file's error.

@@ -12,6 +12,7 @@ mod launch;
 mod picture;
 pub mod plot;
 mod record;
+pub mod slurm;
 pub mod validate;
 
 pub use error::Error;

@@ -3,6 +3,7 @@
 pub mod broyden;
 pub mod commit;
 pub mod equilibrium;
+pub mod inertia;
 pub mod linearised;
 pub mod multisecant;
 pub mod newmark;

@@ -1,14 +1,13 @@
 //! HDF5's C functions behind handles that close themselves: the crate's unsafe code, all of it.
 
+mod array;
+
 use std::ffi::{CStr, CString, c_int, c_uint, c_void};
 use std::path::Path;
 use std::ptr;
 
 use hdf5_sys::h5::{H5_index_t, H5_iter_order_t, H5get_libversion, H5open, hsize_t};
-use hdf5_sys::h5d::{
-    H5D_fill_time_t, H5D_layout_t, H5Dcreate2, H5Dget_create_plist, H5Dget_space, H5Dget_type, H5Dopen2, H5Dread,
-    H5Dwrite,
-};
+use hdf5_sys::h5d::{H5D_fill_time_t, H5Dcreate2, H5Dopen2};
 use hdf5_sys::h5e::{H5E_DEFAULT, H5E_direction_t, H5E_error2_t, H5Eset_auto2, H5Ewalk2};
 use hdf5_sys::h5f::{H5F_ACC_RDONLY, H5F_ACC_TRUNC, H5Fclose, H5Fcreate, H5Fopen};
 use hdf5_sys::h5g::{H5G_info_t, H5Gget_info};
@@ -16,19 +15,16 @@ use hdf5_sys::h5i::{H5I_type_t, H5Idec_ref, H5Iget_type, hid_t};
 use hdf5_sys::h5l::{H5L_info1_t, H5L_type_t, H5Lget_info1, H5Lget_name_by_idx};
 use hdf5_sys::h5o::{H5Oclose, H5Oopen};
 use hdf5_sys::h5p::{
-    H5FD_mpio_xfer_t, H5P_CLS_DATASET_CREATE, H5P_CLS_DATASET_XFER, H5P_CLS_FILE_ACCESS, H5P_DEFAULT, H5Pcreate,
-    H5Pget_external_count, H5Pget_filter2, H5Pget_layout, H5Pget_nfilters, H5Pset_chunk, H5Pset_dxpl_mpio,
-    H5Pset_fapl_mpio, H5Pset_fill_time, H5Pset_fletcher32, H5Pset_obj_track_times,
+    H5P_CLS_DATASET_CREATE, H5P_CLS_FILE_ACCESS, H5P_DEFAULT, H5Pcreate, H5Pset_chunk, H5Pset_fapl_mpio,
+    H5Pset_fill_time, H5Pset_fletcher32, H5Pset_obj_track_times,
 };
 use hdf5_sys::h5pl::H5PLset_loading_state;
-use hdf5_sys::h5s::{
-    H5S_seloper_t, H5Screate_simple, H5Sget_simple_extent_dims, H5Sget_simple_extent_ndims, H5Sselect_hyperslab,
-    H5Sselect_none,
-};
-use hdf5_sys::h5t::{H5T_IEEE_F64LE, H5T_STD_U8LE, H5T_STD_U16LE, H5T_STD_U64LE, H5Tequal};
-use hdf5_sys::h5z::H5Z_FILTER_FLETCHER32;
+use hdf5_sys::h5t::{H5T_IEEE_F64LE, H5T_STD_U8LE, H5T_STD_U16LE, H5T_STD_U64LE};
 use mpi::raw::AsRaw;
 use mpi::topology::SimpleCommunicator;
+
+pub(crate) use array::Array;
+use array::{extent, number, space, strange_storage};
 
 use crate::error::{Error, Result};
 use crate::shape::{Number, Shape};
@@ -56,12 +52,6 @@ impl Drop for Id {
 
 /// An open file. It is never closed by itself: closing is collective, and after a failed write it may crash.
 pub(crate) struct File(hid_t);
-
-/// An open array of a file.
-pub(crate) struct Array {
-    id: Id,
-    number: Number,
-}
 
 fn check(action: &str, code: c_int) -> Result<()> {
     if code < 0 { Err(failed(action)) } else { Ok(()) }
@@ -236,106 +226,4 @@ impl File {
         }
         Ok((Array { id, number }, Shape { number, rows, width }))
     }
-}
-
-impl Array {
-    /// Writes the rows from `start` on; all ranks together, also those without a row.
-    pub(crate) fn write(&self, (start, count, width): (u64, u64, u64), rows: &[u8]) -> Result<()> {
-        assert_eq!(rows.len() as u64, count * width * self.number.bytes() as u64, "rows of another size");
-        let action = "write an array";
-        let (memory, place) =
-            (selection(&self.id, (0, count, width), true)?, selection(&self.id, (start, count, width), false)?);
-        // SAFETY: valid identifiers; the buffer has the bytes that the selection names, as asserted.
-        unsafe {
-            let transfer = Id::new(action, H5Pcreate(*H5P_CLS_DATASET_XFER))?;
-            check(action, H5Pset_dxpl_mpio(transfer.0, H5FD_mpio_xfer_t::H5FD_MPIO_COLLECTIVE))?;
-            check(action, H5Dwrite(self.id.0, kind(self.number), memory.0, place.0, transfer.0, rows.as_ptr().cast()))
-        }
-    }
-
-    /// Reads the rows from `start` on into a buffer of their size; each rank for itself.
-    pub(crate) fn read(&self, (start, count, width): (u64, u64, u64), rows: &mut [u8]) -> Result<()> {
-        assert_eq!(rows.len() as u64, count * width * self.number.bytes() as u64, "rows of another size");
-        if count == 0 {
-            return Ok(());
-        }
-        let (memory, place) =
-            (selection(&self.id, (0, count, width), true)?, selection(&self.id, (start, count, width), false)?);
-        // SAFETY: valid identifiers; the buffer has the bytes that the selection names, as asserted.
-        let read =
-            unsafe { H5Dread(self.id.0, kind(self.number), memory.0, place.0, H5P_DEFAULT, rows.as_mut_ptr().cast()) };
-        check("read an array", read)
-    }
-}
-
-fn space(dims: [hsize_t; 2]) -> Result<Id> {
-    // SAFETY: two dimensions, which HDF5 copies; null stands for the same as the largest.
-    Id::new("make a data space", unsafe { H5Screate_simple(2, dims.as_ptr(), ptr::null()) })
-}
-
-/// The rows from `start` on, in memory or in the file; nothing where there are none.
-fn selection(array: &Id, (start, count, width): (u64, u64, u64), in_memory: bool) -> Result<Id> {
-    let action = "select rows";
-    // SAFETY: an open array or a new space, and arrays of two numbers.
-    unsafe {
-        let chosen = if in_memory { space([count.max(1), width])? } else { Id::new(action, H5Dget_space(array.0))? };
-        if count == 0 {
-            check(action, H5Sselect_none(chosen.0))?;
-        } else {
-            let (from, size): ([hsize_t; 2], [hsize_t; 2]) = ([start, 0], [count, width]);
-            let (set, each) = (H5S_seloper_t::H5S_SELECT_SET, ptr::null());
-            check(action, H5Sselect_hyperslab(chosen.0, set, from.as_ptr(), each, size.as_ptr(), each))?;
-        }
-        Ok(chosen)
-    }
-}
-
-/// Rows and width; none for another number of dimensions.
-fn extent(array: &Id) -> Result<Option<[u64; 2]>> {
-    let action = "read an array's size";
-    let mut dims: [hsize_t; 2] = [0; 2];
-    // SAFETY: an open array; as many dimensions are read as there is room for.
-    unsafe {
-        let space = Id::new(action, H5Dget_space(array.0))?;
-        if H5Sget_simple_extent_ndims(space.0) != 2 {
-            return Ok(None);
-        }
-        check(action, H5Sget_simple_extent_dims(space.0, dims.as_mut_ptr(), ptr::null_mut()))?;
-    }
-    Ok(Some(dims))
-}
-
-fn number(array: &Id) -> Result<Option<Number>> {
-    // SAFETY: an open array, and types that live as long as the library.
-    unsafe {
-        let found = Id::new("read an array's type", H5Dget_type(array.0))?;
-        Ok(Number::ALL.into_iter().find(|&number| H5Tequal(found.0, kind(number)) > 0))
-    }
-}
-
-/// What an array's storage has that this library never makes: files beside it, views of other arrays, other filters.
-fn strange_storage(array: &Id, rows: u64) -> Result<Option<&'static str>> {
-    // SAFETY: an open array and its property list; null where a result is not wanted.
-    unsafe {
-        let list = Id::new("read an array's storage", H5Dget_create_plist(array.0))?;
-        // The number of files makes sense for contiguous storage only; there are none elsewhere.
-        if H5Pget_external_count(list.0) > 0 {
-            return Ok(Some("lies in other files"));
-        }
-        let wanted = if rows == 0 { H5D_layout_t::H5D_CONTIGUOUS } else { H5D_layout_t::H5D_CHUNKED };
-        if H5Pget_layout(list.0) != wanted {
-            return Ok(Some("is stored in another way than ours"));
-        }
-        if H5Pget_nfilters(list.0) != c_int::from(rows > 0) {
-            return Ok(Some("has other filters than a checksum"));
-        }
-        let (mut flags, mut values, null) = (0, 0, ptr::null_mut());
-        if rows > 0
-            && H5Pget_filter2(list.0, 0, &raw mut flags, &raw mut values, null, 0, ptr::null_mut(), ptr::null_mut())
-                != H5Z_FILTER_FLETCHER32
-        {
-            return Ok(Some("has another filter than a checksum"));
-        }
-    }
-    Ok(None)
 }

@@ -135,3 +135,32 @@ fn a_path_that_is_a_file_is_refused() {
     assert!(matches!(&error, Error::Directory { action: "create", .. }), "{error}");
     assert_eq!(error.exit_code(), 73);
 }
+
+#[test]
+fn a_directory_that_was_only_held_is_as_if_it_had_never_been() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("new.out");
+    drop(OutputDirectory::hold(&path, Unseen::Respect).unwrap());
+    assert!(!path.exists());
+    let held = OutputDirectory::hold(&path, Unseen::Respect).unwrap();
+    fs::write(path.join("notes.txt"), "").unwrap();
+    drop(held);
+    assert_eq!(listing(&path), ["notes.txt"]);
+    assert_eq!(OutputDirectory::hold(&path, Unseen::Respect).unwrap().run().unwrap(), None);
+}
+
+#[test]
+fn a_run_that_goes_on_loses_what_was_written_since_and_nothing_else() {
+    let dir = run();
+    let held = || OutputDirectory::hold(dir.path(), Unseen::Respect).unwrap();
+    assert!(held().run().unwrap().is_some());
+    held().go_on(&manifest(&["history.csv", "frames.pvd"])).unwrap();
+    assert_eq!(
+        listing(dir.path()),
+        ["frames.pvd", "frames/notes.txt", "history.csv", "mine.csv", "notes.txt", "run.json"]
+    );
+    manifest(&["history.csv", "../mine.csv"]).write(dir.path()).unwrap();
+    let error = held().go_on(&manifest(&["history.csv"])).unwrap_err();
+    assert!(matches!(error, Error::UnsafeOutput { .. }));
+    assert!(dir.path().join("mine.csv").exists());
+}

@@ -131,3 +131,18 @@ fn a_list_that_leads_out_of_the_directory_is_refused() {
         assert!(matches!(read_collection(dir.path()), Err(Error::Format { .. })), "{file}");
     }
 }
+
+#[test]
+fn the_list_goes_on_with_the_frames_that_are_there() {
+    let dir = tempfile::tempdir().unwrap();
+    let mut frames = Frames::create(dir.path()).unwrap();
+    for step in 0..4 {
+        frames.write(&Frame { step, time: step as f64, ..frame(2) }).unwrap();
+    }
+    let entries = frames.entries().to_vec();
+    std::fs::remove_file(dir.path().join(Frames::file(1))).unwrap();
+    let mut again = Frames::resume(dir.path(), entries[..3].to_vec()).unwrap();
+    assert_eq!(read_collection(dir.path()).unwrap(), [entries[0].clone(), entries[2].clone()]);
+    again.write(&Frame { step: 3, time: 3.0, ..frame(2) }).unwrap();
+    assert_eq!(again.entries().len(), 3);
+}

@@ -109,3 +109,44 @@ fn steps_fit_their_columns() {
                  newton_iterations,evaluations,products,factorisations\n";
     assert_eq!(text, format!("{names}# -,s,s,-,-,-,-,-,s,-,-,-,-\n1,0.00025,0.00025,7,3e-9,0,1,4000,0.25,0,0,0,0\n"));
 }
+
+#[test]
+fn a_table_goes_on_from_a_mark_and_loses_what_came_later() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("history.csv");
+    let row = |step: u64| [Cell::Int(step), Cell::Float(0.1 * step as f64), Cell::Float(0.0)];
+    let mut table = Table::create(&path, &columns()).unwrap();
+    table.row(&row(0)).unwrap();
+    let mark = table.mark().unwrap();
+    let marked = std::fs::read(&path).unwrap();
+    table.row(&row(1)).unwrap();
+    let whole = std::fs::read(&path).unwrap();
+    let whole_mark = table.mark().unwrap();
+    // A row of which a crash has left one half.
+    std::fs::write(&path, [&whole[..], b"2,0.2"].concat()).unwrap();
+    let mut again = Table::resume(&path, &columns(), &mark).unwrap();
+    assert_eq!(std::fs::read(&path).unwrap(), marked);
+    again.row(&row(1)).unwrap();
+    assert_eq!(std::fs::read(&path).unwrap(), whole);
+    assert_eq!(again.mark().unwrap(), whole_mark);
+}
+
+#[test]
+fn a_table_that_is_not_the_marked_one_is_refused_and_stays() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("history.csv");
+    let mut table = Table::create(&path, &columns()).unwrap();
+    table.row(&[Cell::Int(0), Cell::Float(0.0), Cell::Float(1.5)]).unwrap();
+    let mark = table.mark().unwrap();
+    let whole = std::fs::read(&path).unwrap();
+    let mut other = whole.clone();
+    other[whole.len() - 2] ^= 1;
+    for found in [&whole[..whole.len() - 1], &other, b""] {
+        std::fs::write(&path, found).unwrap();
+        assert!(matches!(Table::resume(&path, &columns(), &mark), Err(Error::Format { .. })));
+        assert_eq!(std::fs::read(&path).unwrap(), found);
+    }
+    std::fs::write(&path, &whole).unwrap();
+    assert!(matches!(Table::resume(&path, &columns()[..2], &mark), Err(Error::Format { .. })), "other columns");
+    assert!(Table::resume(&path, &columns(), &mark).is_ok());
+}

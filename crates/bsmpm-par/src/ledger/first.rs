@@ -59,9 +59,11 @@ fn picture_times(case: &Case) -> Vec<f64> {
 fn versions() -> std::collections::BTreeMap<String, String> {
     let (major, minor, subminor) = petsc_rs::version();
     let mpi = mpi::environment::library_version().unwrap_or_default();
+    let hdf5 = hdf5_collective::version();
     [
         ("petsc", format!("{major}.{minor}.{subminor}, {}-bit indices", petsc_rs::petsc_int_bits())),
         ("mpi", mpi.split(',').next().unwrap_or_default().trim().to_owned()),
+        ("hdf5", format!("{}.{}.{}", hdf5.0, hdf5.1, hdf5.2)),
         ("blas", machine::blas().unwrap_or_else(|| "unknown".into())),
     ]
     .map(|(name, version)| (name.to_owned(), version))

@@ -30,7 +30,9 @@ impl Ledger {
         let mut manifest = manifest(first::manifest(arguments, case, ranks), resumed);
         manifest.warnings.extend(held.note().map(str::to_owned));
         let here = held.path().to_owned();
+        let headings = Headings::of(case, &columns);
         let directory = if resumed.is_in(&here) {
+            headings.verify(&here, files)?;
             held.go_on(&manifest)?
         } else {
             manifest.outputs.retain(|output| !output.path.contains('/'));
@@ -38,7 +40,6 @@ impl Ledger {
             resumed.directory().map_or(Ok(()), |there| copy_tables(&there, &here))?;
             directory
         };
-        let headings = Headings::of(case, &columns);
         let mut table = |name: &str, headings: &[Column], mark: &Mark| {
             let path = here.join(name);
             if path.exists() {
@@ -94,6 +95,22 @@ impl Ledger {
         self.manifest.outputs.retain(|output| !output.path.starts_with(&folder) || path.join(&output.path).exists());
         self.manifest.checkpoint = found.path.strip_prefix(path).ok().map(|path| path.to_string_lossy().into_owned());
         self.manifest.write(path)
+    }
+}
+
+impl Headings {
+    /// Nothing of a run is touched whose tables are not those of the checkpoint.
+    fn verify(&self, directory: &Path, files: &Files) -> Result<(), Error> {
+        let marked =
+            [(HISTORY, Some(&self.history), Some(&files.history)), (STEPS, Some(&self.steps), Some(&files.steps))];
+        let residuals = (RESIDUALS, self.residuals.as_ref(), files.residuals.as_ref());
+        for (name, headings, mark) in marked.into_iter().chain([residuals]) {
+            let path = directory.join(name);
+            if let (Some(headings), Some(mark), true) = (headings, mark, path.exists()) {
+                Table::verify(&path, headings, mark)?;
+            }
+        }
+        Ok(())
     }
 }
 

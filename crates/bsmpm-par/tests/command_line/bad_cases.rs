@@ -20,7 +20,7 @@ const ROWS: [Row; 20] = [
     Row("steps = 5", "steps = 5\nend = \"1 s\"", "analysis.end", "pseudo-time without unit", 0),
     Row("order = \"quadratic\"", "order = \"quartic\"", "grid.order", "quartic", 0),
     Row("cell  = \"1 m\"", "cell = 0", "grid.cell", "allowed: cell > 0", 0),
-    Row("cell  = \"1 m\"", "cell = [1, 1e-300]", "grid.cell", "cells along y", 0),
+    Row("cell  = \"1 m\"", "cell = [1, 1e-9]", "grid.cell", "cells along y", 0),
     Row("cell  = \"1 m\"", "cell = 0.3", "grid.cell", "no whole number", 0),
     Row("upper = [4.0, 4.0]", "upper = [4.0, 6.0]", "body.0.box.upper", "outside the grid", 0),
     Row("upper = [4.0, 4.0]", "upper = [4.0, 0.0]", "body.0.box.upper", "the body is empty", 0),

@@ -55,8 +55,8 @@ fn log_view_reports_to_the_terminal() {
 }
 
 #[test]
-fn options_that_write_or_read_files_or_start_programs_are_refused_once_with_2() {
-    let refused: [&[&str]; 11] = [
+fn s4_options_that_write_or_read_files_or_start_programs_are_refused_once_with_2() {
+    let refused: [&[&str]; 17] = [
         &["-log_view", ":pwned"],
         &["-log_view", "pwned"],
         &["-log_trace", "pwned"],
@@ -68,6 +68,12 @@ fn options_that_write_or_read_files_or_start_programs_are_refused_once_with_2() 
         &["-ksp_view", ":pwned"],
         &["-ksp_view_mat", "binary"],
         &["-ksp_view_rhs", "hdf5"],
+        &["-dll_append", "pwned"],
+        &["-dll_prepend", "pwned"],
+        &["-pc_python_type", "pwned.Pwned"],
+        &["-mat_mumps_icntl_22", "1"],
+        &["-mat_mumps_ooc_tmpdir", "pwned"],
+        &["-ksp_monitor_solution", "vtk"],
     ];
     for options in refused {
         let scratch = Scratch::with_case(COLUMN);

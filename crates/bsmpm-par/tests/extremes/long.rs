@@ -57,10 +57,10 @@ pub fn rebound() -> Found {
     })
 }
 
-/// Growth of the resident memory (kB per 1000 steps) over the last four fifths of the flight, and whether the number of open
-/// files changed there.
-fn growth() -> (f64, bool) {
-    let scratch = Scratch::with_case(&block([0.25, 0.0], STEPS, ""));
+/// Growth of the resident memory (kB per 1000 steps) over the last four fifths of a flight with that speed (m/s), and whether
+/// the number of open files changed there.
+fn growth(speed: f64) -> (f64, bool) {
+    let scratch = Scratch::with_case(&block([speed, 0.0], STEPS, ""));
     let mut command = Command::new(PROGRAM);
     command.args(["case.toml", "-q"]).current_dir(scratch.path("")).stdin(Stdio::null()).stderr(Stdio::null());
     let mut child = command.spawn().expect("the program starts");
@@ -86,9 +86,9 @@ fn growth() -> (f64, bool) {
     (1e3 * (last - first) / steps, steady.iter().any(|(_, open)| *open != steady[0].1))
 }
 
-/// Growth of the resident memory in the flight, kB per 1000 steps.
-pub fn memory() -> Found {
-    let (slope, changes) = growth();
+/// Growth of the resident memory in a flight with that speed (m/s), kB per 1000 steps.
+pub fn memory(speed: f64) -> Found {
+    let (slope, changes) = growth(speed);
     Found::Figure(slope, if changes { "open files change".into() } else { "open files constant".into() })
 }
 

@@ -19,7 +19,10 @@ const NOISE: &str = "4 u/dt^2 - 4 v/dt - a cancels, and a carries its round-off 
 const FLIP: &str = "accelerations lose what the grid cannot hold when they go to it and back";
 const DIFFUSION: &str = "the paper's average of b^e is a diffusion per step";
 const LATE: &str = "an error of the step: 8, 7, 2 % between .5 and .0625 ms; motion starts half a step late";
-const SLOW: &str = "p/c changes by .1 to .3 % a doubling, and that falls by less than half each time";
+const LOOSE: &str = "the farthest point has come loose, and slides on where its neighbours stick";
+const COARSE: &str = "an error of integration in time: a fall of .1 s in steps of 5 to 10 ms";
+const HEAP: &str = "0 at rest; the matrix is made anew with every cell that is entered, and the heap frays, ever more slowly; nothing is lost";
+const SLOW: &str = "p/c changes by .1 to .4 % a doubling, and that falls by less than half each time";
 const BEYOND: &str = "the pressure at the base is 200 G, and against what F-bar averages out only G holds: Newton's method finds another equilibrium";
 const C1: &str = "the splines are C1: strain cannot jump at an interface inside the grid";
 
@@ -88,7 +91,7 @@ fn cohesionless() -> Vec<Row> {
         row("N02", "c = 0, column at rest: error of its base's reaction", AtMost(1e-4), || weak::resting(0.3)),
         row("N02", "c = 0, nu = .4999, the same", AtMost(1e-4), || weak::resting(0.4999)).or_refused(),
         row("N02", "c = 1e-3 gamma H for 0, collapse to .1 s: change of the runout", AtMost(5e-3), || weak::little_cohesion(0.1)),
-        row("N02", "the same to .607 s", AtMost(5e-3), || weak::little_cohesion(0.607)).full(),
+        row("N02", "the same to .607 s", AtMost(5e-3), || weak::little_cohesion(0.607)).full().fails(LOOSE),
         row("N02", "c = 0, nu = .4999, first 20 steps of the collapse, none: u, change with dt / 2", AtMost(0.05), || weak::beginning(0.4999, 21.9, "none")).or_refused().full(),
         row("N02", "c = 0, nu = .4999, f-bar: the same", AtMost(0.05), || weak::beginning(0.4999, 21.9, "f-bar")).or_refused(),
         row("N02", "c = 0, nu = .4999, modified-f-bar: the same", AtMost(0.05), || weak::beginning(0.4999, 21.9, MODIFIED)).or_refused(),
@@ -181,9 +184,9 @@ fn huge_steps() -> Vec<Row> {
         row("N10", "dt = 1e3 s, 200 steps: ringing of the last 100 / of the first", AtMost(1.0), || steps::ringing(1e3)),
         row("N10", "dt = 10 ms, collapse to .1 s: way of the front, error", AtMost(0.05), || steps::collapse(0.01, 0.1)).or_refused().fails(START),
         row("N10", "dt = 50 ms, the same", AtMost(0.05), || steps::collapse(0.05, 0.1)).or_refused().fails(START),
-        row("N10", "dt = 10 ms, collapse to .607 s: the same", AtMost(0.05), || steps::collapse(0.01, 0.607)).or_refused().full(),
-        row("N10", "dt = 50 ms, the same", AtMost(0.05), || steps::collapse(0.05, 0.607)).or_refused().full(),
-        row("N10", "dt = 1000 ms, collapse to 1 s: the same", AtMost(0.05), || steps::collapse(1.0, 1.0)).or_refused().full(),
+        row("N10", "dt = 10 ms, collapse to .607 s: the same", AtMost(0.05), || steps::collapse(0.01, 0.607)).or_refused().full().fails(COARSE),
+        row("N10", "dt = 50 ms, the same", AtMost(0.05), || steps::collapse(0.05, 0.607)).or_refused().full().fails(COARSE),
+        row("N10", "dt = 1000 ms, collapse to 1 s: the same", AtMost(0.05), || steps::collapse(1.0, 1.0)).or_refused().full().fails(COARSE),
     ]
 }
 
@@ -259,7 +262,8 @@ fn long_runs() -> Vec<Row> {
         row("N18", "1e5 steps, flight: drift of the momentum", AtMost(1e-10), long::momentum).full(),
         row("N18", "1e5 steps, bouncing block: steps with another total mass", Same, long::mass_in_bounce).full(),
         row("N18", "1e5 steps, bouncing block: highest rebound / height of fall", AtMost(1.0), long::rebound).full(),
-        row("N18", "1e5 steps: growth of memory, kB / 1000 steps", AtMost(1.0), long::memory).full(),
+        row("N18", "1e5 steps, at rest: growth of memory, kB / 1000 steps", AtMost(1.0), || long::memory(0.0)).full(),
+        row("N18", "1e5 steps, flight through 50 cells: the same", AtMost(1.0), || long::memory(0.25)).full().fails(HEAP),
         row("N18", "1e5 steps, elastic bar: change of its energy", AtMost(1e-3), long::bar_change).full().fails(FLIP),
         row("N18", "1e5 steps, elastic bar: slope of its energy a step", AtMost(1e-9), long::bar_slope).full().fails(FLIP),
         row("N18", "steps numbered around 2^31: error of their length", AtMost(1e-6), long::far_steps),
@@ -277,7 +281,7 @@ fn step_counts() -> Vec<Row> {
         row("N20", "footing in 8, 16, 32, 64 steps, none: change by a doubling / the one before", AtMost(0.5), || long::step_count("none")).or_refused().full().fails(SLOW),
         row("N20", "the same, f-bar", AtMost(0.5), || long::step_count("f-bar")).or_refused().full().fails(SLOW),
         row("N20", "the same, modified-f-bar", AtMost(0.5), || long::step_count(MODIFIED)).or_refused().full(),
-        row("N20", "the same, consistent-f-bar", AtMost(0.5), || long::step_count(CONSISTENT)).or_refused().full(),
+        row("N20", "the same, consistent-f-bar", AtMost(0.5), || long::step_count(CONSISTENT)).or_refused().full().fails(SLOW),
         row("N21", "footing to z = 2 B, none: noise of p about planes / c", Reported, || long::deep("none")).or_refused().full(),
         row("N21", "the same, f-bar", Reported, || long::deep("f-bar")).or_refused().full(),
         row("N21", "the same, modified-f-bar", Reported, || long::deep(MODIFIED)).or_refused().full(),

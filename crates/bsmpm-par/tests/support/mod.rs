@@ -73,6 +73,7 @@ impl Scratch {
             variables: Vec::new(),
             patience: PATIENCE,
             ears: Ears::Open,
+            limit: None,
         }
     }
 }
@@ -93,9 +94,16 @@ pub struct Job {
     variables: Vec<(String, String)>,
     patience: Duration,
     ears: Ears,
+    limit: Option<String>,
 }
 
 impl Job {
+    /// With a limit that the shell sets in every rank, e.g. `-v 600000`.
+    pub fn limited(mut self, limit: &str) -> Self {
+        self.limit = Some(limit.to_owned());
+        self
+    }
+
     /// With an environment variable.
     pub fn variable(mut self, name: &str, value: &str) -> Self {
         self.variables.push((name.to_owned(), value.to_owned()));
@@ -144,15 +152,17 @@ impl Job {
     }
 
     fn command(self) -> Command {
+        let shell = self.limit.map(|limit| format!("ulimit {limit} && exec \"$0\" \"$@\""));
+        let words = shell.iter().flat_map(|line| ["sh", "-c", line]).chain([PROGRAM]).collect::<Vec<_>>();
         let mut command = match self.ranks {
-            None => Command::new(PROGRAM),
+            None => Command::new(words[0]),
             Some(ranks) => {
                 let mut launcher = Command::new("mpirun");
-                launcher.args(["-q", "--oversubscribe", "-n", &ranks.to_string(), PROGRAM]);
+                launcher.args(["-q", "--oversubscribe", "-n", &ranks.to_string(), words[0]]);
                 launcher
             }
         };
-        command.args(self.arguments).current_dir(self.directory);
+        command.args(&words[1..]).args(self.arguments).current_dir(self.directory);
         command
     }
 }

@@ -89,6 +89,12 @@ impl Reader<'_, '_> {
             let allowed = range.condition(self.name);
             return self.fail(node, format!("{} is out of range; allowed: {allowed}{why}", node.show()));
         }
+        let divides = dimension == Dimension::Time || !range.contains(0.0);
+        if divides && value != 0.0 && value.abs() < dimension.least() {
+            let least = dimension.least();
+            return self
+                .fail(node, format!("{} is out of range; {dimension} is at least {least:e} in SI", node.show()));
+        }
         self.bounded(node, value, dimension)
     }
 

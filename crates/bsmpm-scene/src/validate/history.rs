@@ -64,6 +64,9 @@ fn read(
     if matches!(word, "footing-pressure" | "footing-force" | "penetration" | "slip") && !root.gives("footing") {
         record.error("quantity", format!("\"{word}\" is about the footing, and there is no [footing]"), report);
     }
+    if record.number("scale") == Some(0.0) {
+        record.error("scale", "0 is out of range: the column would be zero; allowed: any scale but 0", report);
+    }
     let quantity = quantity(word, record, grid, report)?;
     let name = if record.gives("name") { record.text("name")? } else { word };
     Some(History { quantity, name: name.to_owned(), scale: record.number("scale")? })

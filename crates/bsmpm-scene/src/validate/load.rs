@@ -15,6 +15,7 @@ pub(super) fn tractions(root: &Record, around: Around<'_>, report: &mut Report<'
         }
         let ramp = ramp(record, around.end, report);
         let ([from, to], stress, ramp) = (ends?, record.pair("stress")?, ramp?);
+        warn_of_nothing(record, "stress", stress, report);
         Some(Traction { from, to, stress, ramp })
     };
     root.records("traction").iter().filter_map(&mut read).collect()
@@ -30,9 +31,17 @@ pub(super) fn point_loads(root: &Record, around: Around<'_>, report: &mut Report
         } else {
             acts_on_body(record, "at", std::iter::once(at), around, report);
         }
-        Some(PointLoad { at, force: record.pair("force")?, ramp: ramp? })
+        let force = record.pair("force")?;
+        warn_of_nothing(record, "force", force, report);
+        Some(PointLoad { at, force, ramp: ramp? })
     };
     root.records("point_load").iter().filter_map(&mut read).collect()
+}
+
+fn warn_of_nothing(record: &Record, key: &str, load: [f64; 2], report: &mut Report<'_>) {
+    if load == [0.0; 2] {
+        report.warn(format!("{}: zero: it does nothing", record.path_of(key)));
+    }
 }
 
 /// A load has a body under every part of it.

@@ -17,9 +17,26 @@ pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
     if case.analysis.regime == Regime::QuasiStatic {
         held(case, record, report);
     }
+    too_soon(case, record, report);
     warn_of_materials(case, report);
     if case.stabilisation == Stabilisation::None && !record.gives("stabilisation") {
         warn_of_locking(case, report);
+    }
+}
+
+/// Times that lie so near to the start that no step ends there.
+fn too_soon(case: &Case, record: &Record, report: &mut Report<'_>) {
+    let least = 1e-6 * case.analysis.dt;
+    let message = |time: f64| format!("{time} is no step away from the start; allowed: at least 1e-6 dt = {least}");
+    if let (Some(time), Some(output)) = (case.output.times.first(), record.record("output"))
+        && *time <= least
+    {
+        output.error("times", message(*time), report);
+    }
+    for (check, record) in case.checks.iter().zip(record.records("check")) {
+        if check.at <= least {
+            record.error("at", message(check.at), report);
+        }
     }
 }
 

@@ -3,6 +3,7 @@
 //! A row changes one place of a valid case; the line expected is that of the change, moved where the row says so.
 
 mod loads;
+mod matrix;
 mod rows;
 mod texts;
 

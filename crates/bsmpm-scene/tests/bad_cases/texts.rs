@@ -18,7 +18,7 @@ fn utf16(text: &str, little: bool) -> Vec<u8> {
 }
 
 #[test]
-fn no_text_of_a_case() {
+fn i05_i06_no_text_of_a_case() {
     only(b"", "the file is empty");
     only(b"\xef\xbb\xbf", "the file is empty");
     only(b"# nothing but a comment\n", "the file is empty");
@@ -31,7 +31,7 @@ fn no_text_of_a_case() {
 }
 
 #[test]
-fn line_ends_and_byte_order_marks_do_not_matter() {
+fn i06_line_ends_and_byte_order_marks_do_not_matter() {
     let plain = Case::from_text("case.toml", DYNAMIC, &[]).unwrap();
     for text in [DYNAMIC.replace('\n', "\r\n"), format!("\u{feff}{DYNAMIC}")] {
         let other = Case::from_text("case.toml", &text, &[]).unwrap();
@@ -43,7 +43,7 @@ fn line_ends_and_byte_order_marks_do_not_matter() {
 }
 
 #[test]
-fn large_and_deep_files_are_refused_soon() {
+fn i21_large_and_deep_files_are_refused_soon() {
     let many: String = (0..60_000).map(|i| format!("k{i} = {i}\n")).collect();
     let started = std::time::Instant::now();
     let errors = refuse(many.as_bytes());
@@ -90,7 +90,7 @@ fn nothing_printed_can_move_the_cursor() {
 }
 
 #[test]
-fn counts_are_bounded_before_anything_is_made() {
+fn i20_counts_are_bounded_before_anything_is_made() {
     let set = |values: &[&str]| {
         let overrides: Vec<String> = values.iter().map(ToString::to_string).collect();
         Case::from_text("case.toml", STATIC, &overrides)

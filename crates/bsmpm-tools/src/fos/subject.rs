@@ -107,10 +107,7 @@ fn reduction(factor: f64) -> String {
 }
 
 fn parsed(path: &Path, bytes: &[u8], set: &[String]) -> Result<Case, Error> {
-    Case::from_bytes(&path.display().to_string(), bytes, set).map_err(|errors| Error::BadCase {
-        path: path.to_owned(),
-        errors: errors.iter().map(|error| format!("{error:#}")).collect(),
-    })
+    Case::from_bytes(&path.display().to_string(), bytes, set).map_err(|errors| Error::bad_case(path, &errors))
 }
 
 /// Why a case has no factor of safety, or none that could be trusted.

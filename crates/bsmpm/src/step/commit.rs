@@ -12,7 +12,8 @@ use crate::points::Points;
 use crate::seam::{Halo, agreed};
 use crate::stabilisation::Stabilisation;
 use crate::step::equilibrium::Found;
-use crate::step::nodes::{Inertia, Nodes};
+use crate::step::inertia::Inertia;
+use crate::step::nodes::Nodes;
 use crate::step::smooth;
 use crate::tensor::Vector;
 

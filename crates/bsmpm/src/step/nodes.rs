@@ -9,48 +9,10 @@ use crate::model::{Model, Regime, Weighting};
 use crate::points::Points;
 use crate::seam::Halo;
 use crate::stabilisation::Stabilisation;
-use crate::step::newmark::Newmark;
+use crate::step::inertia::{self, Inertia};
 
 /// Nodes lighter than this fraction of the heaviest one have no velocity, acceleration or average: 1/m is never formed.
 const MASSLESS: f64 = 1e-14;
-
-/// Nodal velocity and acceleration at the start of the step, and how they go on.
-#[derive(Clone, Debug)]
-pub struct Inertia {
-    /// m/s, D numbers a node
-    pub v: Vec<f64>,
-    /// m/s2, D numbers a node
-    pub a: Vec<f64>,
-    /// s  length of the step
-    pub dt: f64,
-    /// time integration
-    pub newmark: Newmark,
-}
-
-impl Inertia {
-    /// 1/s2  factor of the mass in the tangent of the out-of-balance force; 4/dt^2 without numerical damping.
-    pub fn factor(&self) -> f64 {
-        self.newmark.factor(self.dt)
-    }
-
-    /// m/s2  acceleration of a component at the end (steps 5b, 10a); 4/dt^2 u - 4/dt v - a without numerical damping.
-    #[inline]
-    pub fn acceleration(&self, component: usize, u: f64) -> f64 {
-        self.newmark.acceleration(self.dt, u, (self.v[component], self.a[component]))
-    }
-
-    /// m/s2  what the mass of a component resists with: times the mass, its inertia in the balance of forces.
-    #[inline]
-    pub fn acting(&self, component: usize, u: f64) -> f64 {
-        self.newmark.acting(self.a[component], self.acceleration(component, u))
-    }
-
-    /// m/s  velocity of a component at the end (step 10b).
-    #[inline]
-    pub fn velocity(&self, component: usize, u: f64) -> f64 {
-        self.v[component] + self.newmark.gained(self.dt, self.a[component], self.acceleration(component, u))
-    }
-}
 
 /// The splines of degree q - 1 at the points, and what they weigh: they are numbered within the nodes (see
 /// [`Shape::lowered`]), and those that no point touches weigh nothing.
@@ -107,7 +69,7 @@ impl<const D: usize> Nodes<D> {
         let threshold = MASSLESS * heaviest[0];
         let velocities = model.boundary.velocities(&model.grid);
         let inertia = (model.regime == Regime::Dynamic)
-            .then(|| map_inertia(shape, points, (&weight, threshold), &velocities, (dt, model.newmark), halo));
+            .then(|| inertia::map(shape, points, (&weight, threshold), &velocities, (dt, model.newmark), halo));
         let background = model.background.map(|soft| soft.blocks(&model.grid, shape, points, &model.materials, halo));
         let (active, stiff) = supported(shape, points, background.as_ref(), nodes, halo);
         let unknown = |node: usize| active[node] && (weight[node] > threshold || stiff[node]);
@@ -223,33 +185,6 @@ fn scatter_weight<const D: usize>(
     weight
 }
 
-/// v_I and a_I (steps 2b, 2c). Where a motion is prescribed, the node already has it: else Newmark's formula would turn
-/// the points' velocity near a wall into an acceleration of the wall.
-fn map_inertia<const D: usize>(
-    shape: &Shape<D>,
-    points: &Points<D>,
-    (mass, threshold): (&[f64], f64),
-    prescribed: &[Option<f64>],
-    (dt, newmark): (f64, Newmark),
-    halo: &dyn Halo,
-) -> Inertia {
-    let mut inertia = Inertia { v: vec![0.0; mass.len() * D], a: vec![0.0; mass.len() * D], dt, newmark };
-    if let Some(motion) = &points.motion {
-        for (field, nodal) in [(&motion.v, &mut inertia.v), (&motion.a, &mut inertia.a)] {
-            transfer::to_nodes::<D, D>(shape, nodal, |p| (field[p] * points.mass[p]).into());
-            halo.sum(nodal, D);
-            divide(nodal, mass, threshold);
-        }
-    }
-    for (component, velocity) in prescribed.iter().enumerate() {
-        if let Some(velocity) = velocity {
-            inertia.v[component] = *velocity;
-            inertia.a[component] = 0.0;
-        }
-    }
-    inertia
-}
-
 /// Per node: touched by an occupied cell, and: touched by a point with a gradient or by the background, so that its
 /// stiffness is positive.
 fn supported<const D: usize>(
@@ -307,7 +242,7 @@ fn external_force<K: Kinematics<D>, const D: usize>(
     f_ext
 }
 
-fn divide(nodal: &mut [f64], weight: &[f64], threshold: f64) {
+pub(super) fn divide(nodal: &mut [f64], weight: &[f64], threshold: f64) {
     let width = nodal.len() / weight.len();
     for (values, &weight) in nodal.chunks_exact_mut(width).zip(weight) {
         let inverse = if weight > threshold { 1.0 / weight } else { 0.0 };

@@ -1,0 +1,98 @@
+//! Which solver is wanted, and how PETSc is told.
+
+use bsmpm::seam::Symmetry;
+use petsc_rs::{Ksp, Matrix, Petsc, Vector};
+
+/// Defaults of the factorisation, given before the user's own options, which win. MUMPS: ordering by approximate minimum
+/// fill, of all that were tried the cheapest for plane grids, and twice the workspace that it estimates, which on
+/// several ranks is at times too little. Iterative methods: a tolerance whose solutions are trusted, unlike PETSc's 1e-5.
+const OPTIONS: [&str; 18] = [
+    "-ksp_rtol",
+    "1e-10",
+    "-mat_mumps_icntl_7",
+    "2",
+    "-mat_mumps_icntl_14",
+    "100",
+    "-redundant_mat_mumps_icntl_7",
+    "2",
+    "-redundant_mat_mumps_icntl_14",
+    "100",
+    "-newton_ksp_gmres_restart",
+    "300",
+    "-newton_mat_mumps_icntl_14",
+    "100",
+    "-newton_redundant_mat_mumps_icntl_14",
+    "100",
+    "-newton_ksp_pc_side",
+    "right",
+];
+/// Prefix of the options of Newton's linear systems.
+const NEWTON: &str = "newton_";
+
+/// Method, preconditioner and factorising package by PETSc's names.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Choice {
+    /// KSPType, e.g. `preonly`, `cg`
+    pub ksp: String,
+    /// PCType, e.g. `cholesky`, `gamg`
+    pub pc: String,
+    /// MatSolverType of a factorisation, e.g. `mumps`
+    pub factor: Option<String>,
+    /// every rank factorises the whole system by itself: a parallel factorisation need not repeat to the bit
+    pub redundant: bool,
+}
+
+impl Choice {
+    /// Options that PETSc must start with, before the user's own.
+    pub fn options(&self) -> Vec<&str> {
+        let mut options = OPTIONS.to_vec();
+        if self.redundant {
+            options.extend(["-redundant_pc_type", &self.pc, "-newton_redundant_pc_type", "lu"]);
+            if let Some(factor) = &self.factor {
+                options.extend(["-redundant_pc_factor_mat_solver_type", factor]);
+                options.extend(["-newton_redundant_pc_factor_mat_solver_type", factor]);
+            }
+        }
+        options
+    }
+
+    /// Tells a solver; what the options say goes before. A general matrix preconditions a Krylov method.
+    pub(super) fn apply(&self, ksp: &mut Ksp<'_>, symmetry: Symmetry) -> petsc_rs::Result<()> {
+        let pc = match (symmetry, self.pc.as_str()) {
+            (Symmetry::General, "cholesky") => "lu",
+            (_, pc) => pc,
+        };
+        match symmetry {
+            Symmetry::Definite => ksp.set_type(&self.ksp)?,
+            Symmetry::General => {
+                ksp.set_options_prefix(NEWTON)?;
+                ksp.set_type("fgmres")?;
+            }
+        }
+        if self.redundant {
+            ksp.set_pc_type("redundant")?;
+        } else {
+            ksp.set_pc_type(pc)?;
+            if let Some(factor) = &self.factor {
+                ksp.set_factor_solver(factor)?;
+            }
+        }
+        ksp.set_from_options()
+    }
+}
+
+/// Solves a system of one unknown a rank as `choice` and the options say: what PETSc does not know or have shows before
+/// a run begins. Collective.
+pub fn probe<'p>(petsc: &'p Petsc<'p>, choice: &Choice) -> petsc_rs::Result<()> {
+    let own = [petsc.rank()];
+    let mut matrix = Matrix::from_coo(petsc, 1, 1, &own, &own)?;
+    matrix.set_values(&[1.0])?;
+    matrix.set_symmetry(petsc_rs::Symmetry::PositiveDefinite)?;
+    let mut ksp = Ksp::new(petsc)?;
+    ksp.set_operator(&matrix)?;
+    choice.apply(&mut ksp, Symmetry::Definite)?;
+    let (mut b, mut x) = (Vector::new(petsc, 1)?, Vector::new(petsc, 1)?);
+    b.fill(1.0)?;
+    ksp.set_up()?;
+    ksp.solve(&b, &mut x).map(|_| ())
+}

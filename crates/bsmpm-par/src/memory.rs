@@ -1,0 +1,189 @@
+//! Whether a case fits into memory: its estimate against what the command line or this host allows, before anything is
+//! allocated. Linux tells; elsewhere only the command line does.
+
+use crate::cli::Arguments;
+use crate::exit;
+use crate::launch::say;
+use bsmpm_scene::Case;
+use mpi::collective::Root;
+use mpi::topology::{Communicator, SimpleCommunicator};
+use std::fmt::{self, Display};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+const GIB: f64 = (1_u64 << 30) as f64;
+/// Bytes that OpenBLAS reserves for its buffers. Where a limit of the process refuses them, it asks again for ever.
+const RESERVED: u64 = 1 << 27;
+
+/// Memory that a case would need, and that there is less of.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Shortage {
+    needed: u64,
+    ranks: usize,
+    allowed: u64,
+    by: Limit,
+}
+
+/// What bounds the memory of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Limit {
+    /// of all ranks: `--max-memory`
+    Asked,
+    /// of the ranks of a host: MemAvailable
+    Free,
+    /// of the ranks of a host: memory.max, or memory.limit_in_bytes, of the control group
+    Group,
+    /// of each rank: what ulimit -v and -d leave to it
+    Process,
+}
+
+impl Display for Shortage {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (needed, allowed) = (self.needed as f64 / GIB, self.allowed as f64 / GIB);
+        write!(f, "the case needs about {needed:.3} GiB ")?;
+        match self.by {
+            Limit::Asked => write!(f, "on {} rank(s), more than --max-memory allows: {allowed:.3} GiB", self.ranks),
+            Limit::Process => {
+                let each = format!("on each of {} rank(s)", self.ranks);
+                write!(f, "{each}, and the limits of a process (ulimit -v, -d) leave it {allowed:.3} GiB")
+            }
+            Limit::Free | Limit::Group => {
+                let what = if self.by == Limit::Free { "are available" } else { "are allowed by its control group" };
+                write!(
+                    f,
+                    "for the {} rank(s) of this host, where {allowed:.3} GiB {what}; --max-memory SIZE would take the place \
+                     of what the host says",
+                    self.ranks
+                )
+            }
+        }
+    }
+}
+
+/// Refuses a case that needs more than the first rank's host or the command line allows, which that rank says; `Err` holds
+/// the exit code, the same on all ranks. What is only checked may be meant for another host. Collective.
+pub fn admit(world: &SimpleCommunicator, arguments: &Arguments, case: &Case) -> Result<(), u8> {
+    let ranks = world.size().unsigned_abs() as usize;
+    let here = world.split_shared(world.rank()).size().unsigned_abs() as usize;
+    let mut code = exit::DONE;
+    if world.rank() == 0 {
+        let needed = case.estimate().bytes_on(ranks);
+        let mut limits = limits(arguments.max_memory).into_iter().filter_map(|(by, bytes)| Some((by, bytes?)));
+        match limits.find_map(|limit| short(needed, (ranks, here), limit)) {
+            Some(shortage) if arguments.check && shortage.by != Limit::Asked => say(&format!("warning: {shortage}")),
+            Some(shortage) => {
+                say(&format!("bsmpm-par: {shortage}; nothing was run or written"));
+                code = exit::MEMORY;
+            }
+            None => {}
+        }
+    }
+    world.process_at_rank(0).broadcast_into(&mut code);
+    if code == exit::DONE { Ok(()) } else { Err(code) }
+}
+
+/// `ranks` in all and `here`, on this host.
+fn short(needed: u64, (ranks, here): (usize, usize), (by, allowed): (Limit, u64)) -> Option<Shortage> {
+    let each = needed / ranks as u64;
+    let (needed, ranks) = match by {
+        Limit::Asked => (needed, ranks),
+        Limit::Process => (each, ranks),
+        Limit::Free | Limit::Group => (each * here as u64, here),
+    };
+    (needed > allowed).then_some(Shortage { needed, ranks, allowed, by })
+}
+
+/// What was asked for, or what this host and its control groups tell; and what the process's own limits do.
+fn limits(asked: Option<u64>) -> Vec<(Limit, Option<u64>)> {
+    let read = |path: &str| fs::read_to_string(path).unwrap_or_default();
+    let process = (Limit::Process, left(&read("/proc/self/limits"), &read("/proc/self/status")));
+    if asked.is_some() {
+        return vec![(Limit::Asked, asked), process];
+    }
+    let group = group(Path::new("/sys/fs/cgroup"), &read("/proc/self/cgroup"));
+    vec![(Limit::Group, group), (Limit::Free, kilobytes(&read("/proc/meminfo"), "MemAvailable:")), process]
+}
+
+fn kilobytes(text: &str, name: &str) -> Option<u64> {
+    let line = text.lines().find_map(|line| line.strip_prefix(name))?;
+    Some(line.split_whitespace().next()?.parse::<u64>().ok()? * 1024)
+}
+
+/// What the limits of address space and of data leave to a process besides what it has and what its BLAS reserves.
+fn left(limits: &str, status: &str) -> Option<u64> {
+    let of = |name: &str, size: &str| {
+        let line = limits.lines().find_map(|line| line.strip_prefix(name))?;
+        let limit = line.split_whitespace().next()?.parse::<u64>().ok()?; // none where it is "unlimited"
+        Some(limit.saturating_sub(kilobytes(status, size).unwrap_or(0) + RESERVED))
+    };
+    [of("Max address space", "VmSize:"), of("Max data size", "VmData:")].into_iter().flatten().min()
+}
+
+/// The least limit of the process's control groups of either version and of those around them; `membership` is
+/// /proc/self/cgroup. In a container its own group may be what is mounted.
+fn group(mounted: &Path, membership: &str) -> Option<u64> {
+    let of_line = |line: &str| {
+        let mut parts = line.splitn(3, ':').skip(1);
+        let (controllers, path) = (parts.next()?, parts.next()?);
+        let (below, file): (&[&str], _) = match controllers {
+            "" => (&["", "unified"], "memory.max"),
+            named if named.split(',').any(|name| name == "memory") => (&["memory"], "memory.limit_in_bytes"),
+            _ => return None,
+        };
+        let own = PathBuf::from(path.trim_start_matches('/'));
+        let files = below.iter().flat_map(|below| own.ancestors().map(move |group| mounted.join(below).join(group)));
+        files.filter_map(|group| fs::read_to_string(group.join(file)).ok()?.trim().parse::<u64>().ok()).min()
+    };
+    membership.lines().filter_map(of_line).min()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_the_system_tells_is_read() {
+        let memory = "MemTotal: 5 kB\nMemAvailable:   22661120 kB\n";
+        assert_eq!(kilobytes(memory, "MemAvailable:"), Some(22_661_120 * 1024));
+        let limits =
+            |data: &str, space: &str| format!("Max data size  {data} 1 bytes\nMax address space  {space} 1 bytes\n");
+        let status = "VmSize:\t  1000 kB\nVmData:\t 500 kB\n";
+        let rest = |limit: u64, size: u64| Some(limit - 1024 * size - RESERVED);
+        assert_eq!(left(&limits("unlimited", "614400000"), status), rest(614_400_000, 1000));
+        assert_eq!(left(&limits("300000000", "614400000"), status), rest(300_000_000, 500));
+        assert_eq!(left(&limits("unlimited", "unlimited"), status), None);
+        assert_eq!(left(&limits("1000", "unlimited"), status), Some(0));
+        assert_eq!((kilobytes("", "VmSize:"), left("", "")), (None, None));
+    }
+
+    #[test]
+    fn the_least_limit_of_all_control_groups_around_holds() {
+        let mounted = tempfile::tempdir().unwrap();
+        let put = |path: &str, text: &str| {
+            let path = mounted.path().join(path);
+            fs::create_dir_all(path.parent().unwrap()).unwrap();
+            fs::write(path, text).unwrap();
+        };
+        put("job/step/memory.max", "max\n");
+        put("job/memory.max", "4000000000\n");
+        assert_eq!(group(mounted.path(), "0::/job/step\n"), Some(4_000_000_000));
+        put("memory/slurm/job/memory.limit_in_bytes", "3000000000\n");
+        assert_eq!(group(mounted.path(), "4:memory:/slurm/job\n0::/job/step\n"), Some(3_000_000_000));
+        assert_eq!(group(mounted.path(), "4:cpu:/slurm/job\n"), None);
+        assert_eq!(group(mounted.path(), "nonsense"), None);
+    }
+
+    #[test]
+    fn each_limit_is_held_against_what_it_bounds() {
+        let ranks = (4, 2);
+        let is_short = |limit| short(4 << 30, ranks, limit).is_some();
+        assert!(is_short((Limit::Asked, 3 << 30)) && !is_short((Limit::Asked, 4 << 30)));
+        assert!(is_short((Limit::Free, 1 << 30)) && !is_short((Limit::Group, 2 << 30)));
+        assert!(is_short((Limit::Process, 1 << 29)) && !is_short((Limit::Process, 1 << 30)));
+        let said = short(4 << 30, ranks, (Limit::Free, 1 << 30)).unwrap().to_string();
+        assert!(
+            said.contains("about 2.000 GiB for the 2 rank(s) of this host, where 1.000 GiB are available"),
+            "{said}"
+        );
+    }
+}

@@ -1,0 +1,195 @@
+//! Going on from checkpoints: on as many ranks to the bit, on others within tolerances, and never with another case.
+
+mod support;
+
+use bsmpm_io::manifest::Status;
+use std::path::Path;
+use support::cases::{COLUMN, SLIDING_BLOCK};
+use support::results::{all_frames, differences, history, last_frame, manifest, steps};
+use support::{Scratch, entries};
+
+/// Restart files after every fifth step, all of them kept.
+const OFTEN: &str = "output.checkpoint={every_steps=5,keep=100}";
+
+/// All rows of a run's tables but the seconds that they tell, and the bytes of its last frame.
+fn results(directory: &Path) -> (String, String, Vec<u8>) {
+    let text = |name: &str| std::fs::read_to_string(directory.join(name)).unwrap();
+    let steps = text("steps.csv");
+    let seconds = steps.lines().next().unwrap().split(',').position(|name| name == "wall").unwrap();
+    let untimed = |line: &str| {
+        let cells = line.split(',').enumerate().filter(|(column, _)| *column != seconds);
+        cells.map(|(_, cell)| cell).collect::<Vec<_>>().join(",")
+    };
+    let frame = format!("frames/step_{:09}.vtu", last_frame(directory).step);
+    let frame = std::fs::read(directory.join(frame)).unwrap();
+    (text("history.csv"), steps.lines().map(untimed).collect::<Vec<_>>().join("\n"), frame)
+}
+
+#[test]
+fn a_run_that_was_stopped_goes_on_to_the_bit() {
+    for ranks in [1, 2, 3, 4] {
+        let scratch = Scratch::with_case(SLIDING_BLOCK);
+        scratch.mpirun(ranks, &["case.toml", "-q", "-o", "whole"]).expect(0);
+        for stop in ["0", "7", "20"] {
+            let part = ["case.toml", "-q", "-o", "part", "--restart", "auto"];
+            scratch.mpirun(ranks, &[&part[..], &["--max-steps", stop]].concat()).expect(75);
+            scratch.mpirun(ranks, &part).expect(0);
+            assert!(results(&scratch.path("whole")) == results(&scratch.path("part")), "{ranks} ranks, step {stop}");
+            let (whole, part) = (manifest(&scratch.path("whole")), manifest(&scratch.path("part")));
+            assert_eq!(part.restarts.len(), 1);
+            assert_eq!(whole.summary.iterations, part.summary.iterations);
+            assert_eq!(part.status, Status::Finished);
+            std::fs::remove_dir_all(scratch.path("part")).unwrap();
+        }
+    }
+}
+
+#[test]
+fn of_a_chain_of_restarts_every_step_is_there_once() {
+    let scratch = Scratch::with_case(SLIDING_BLOCK);
+    scratch.mpirun(2, &["case.toml", "-q", "-o", "whole"]).expect(0);
+    let number = manifest(&scratch.path("whole")).summary.steps;
+    for stop in (3..number).step_by(3) {
+        let stop = stop.to_string();
+        scratch.mpirun(2, &["case.toml", "-q", "-o", "part", "--restart", "auto", "--max-steps", &stop]).expect(75);
+    }
+    scratch.mpirun(2, &["case.toml", "-q", "-o", "part", "--restart", "auto"]).expect(0);
+    assert!(results(&scratch.path("whole")) == results(&scratch.path("part")));
+    let listed: Vec<u64> = all_frames(&scratch.path("part")).iter().map(|frame| frame.step).collect();
+    assert!(listed.is_sorted_by(|a, b| a < b), "{listed:?}");
+    let every = steps(&scratch.path("part")).get("step").unwrap().to_vec();
+    assert_eq!(every, (1..=number).map(|step| step as f64).collect::<Vec<_>>());
+}
+
+#[test]
+fn on_other_ranks_it_goes_on_within_tolerances_and_says_so() {
+    let scratch = Scratch::with_case(SLIDING_BLOCK);
+    scratch.mpirun(2, &["case.toml", "-q", "-o", "whole"]).expect(0);
+    let whole = last_frame(&scratch.path("whole"));
+    for (first, then) in [(2, 1), (1, 3), (4, 2)] {
+        let part = ["case.toml", "-o", "part"];
+        scratch.mpirun(first, &[&part[..], &["-q", "--max-steps", "12"]].concat()).expect(75);
+        let output = scratch.mpirun(then, &[&part[..], &["--restart", "auto"]].concat()).expect(0);
+        output.says_once(&format!("restart on {then} rank(s) of a checkpoint of {first}"));
+        for (name, difference) in differences(&last_frame(&scratch.path("part")), &whole) {
+            assert!(difference < 1e-9, "{first} -> {then}: {name} differs by {difference:e}");
+        }
+        std::fs::remove_dir_all(scratch.path("part")).unwrap();
+    }
+}
+
+#[test]
+fn a_checkpoint_that_is_named_is_gone_back_to_and_what_came_later_is_forgotten() {
+    let scratch = Scratch::with_case(SLIDING_BLOCK);
+    let run = ["case.toml", "-q", "--set", OFTEN];
+    scratch.mpirun(2, &[&run[..], &["-o", "whole"]].concat()).expect(0);
+    scratch.mpirun(2, &[&run[..], &["-o", "part"]].concat()).expect(0);
+    let back = ["--restart", "part/checkpoint/step_000000010.h5"];
+    scratch.mpirun(2, &[&run[..], &["-o", "part", "--max-steps", "10"], &back].concat()).expect(75);
+    let checkpoints = ["step_000000005", "step_000000010"].map(|name| [format!("{name}.h5"), format!("{name}.json")]);
+    assert_eq!(entries(&scratch.path("part/checkpoint")), checkpoints.as_flattened());
+    assert_eq!(*history(&scratch.path("part")).get("step").unwrap().last().unwrap(), 10.0);
+    assert!(all_frames(&scratch.path("part")).iter().all(|frame| frame.step <= 10));
+    scratch.mpirun(2, &[&run[..], &["-o", "part", "--restart", "auto"]].concat()).expect(0);
+    assert!(results(&scratch.path("whole")) == results(&scratch.path("part")));
+    // In another directory it is a run of its own, with the rows of the older one.
+    scratch.mpirun(2, &[&run[..], &["-o", "other"], &back].concat()).expect(0);
+    assert!(results(&scratch.path("whole")) == results(&scratch.path("other")));
+}
+
+#[test]
+fn restart_auto_starts_what_was_not_begun_and_leaves_alone_what_is_complete() {
+    let scratch = Scratch::with_case(COLUMN);
+    let run = ["case.toml", "-q", "--restart", "auto"];
+    scratch.mpirun(2, &run).expect(0);
+    let before = std::fs::read(scratch.path("case.out/run.json")).unwrap();
+    scratch.mpirun(2, &run).expect(0).says_once("case.out is complete already");
+    scratch.mpirun(1, &run).expect(0).says_once("case.out is complete already");
+    assert_eq!(std::fs::read(scratch.path("case.out/run.json")).unwrap(), before);
+}
+
+#[test]
+fn another_case_is_refused_by_the_keys_that_differ_and_nothing_is_touched() {
+    let scratch = Scratch::with_case(SLIDING_BLOCK);
+    scratch.mpirun(2, &["case.toml", "-q", "--max-steps", "5"]).expect(75);
+    let content = || {
+        ["run.json", "history.csv", "steps.csv"].map(|name| std::fs::read(scratch.path("case.out").join(name)).unwrap())
+    };
+    let (before, listed) = (content(), entries(&scratch.path("case.out/checkpoint")));
+    let file = "case.out/checkpoint/step_000000005.h5";
+    for restart in ["auto", file] {
+        let other = ["case.toml", "--set", "body.0.points_per_cell=3", "--restart", restart];
+        let output = scratch.mpirun(2, &other).expect(76);
+        output.says_once("body.0.points_per_cell was ");
+        assert!(output.said().contains(", and is 3"), "{output:#?}");
+    }
+    assert_eq!((content(), entries(&scratch.path("case.out/checkpoint"))), (before, listed));
+    scratch.mpirun(2, &["case.toml", "--restart", "nowhere.h5", "-o", "new"]).expect(76).says_once("nowhere.json");
+    assert!(!scratch.path("new").exists());
+}
+
+#[test]
+fn a_run_goes_on_with_a_later_end_and_says_what_has_changed() {
+    let scratch = Scratch::with_case(SLIDING_BLOCK);
+    let end = at_end(&scratch);
+    let run = ["case.toml", "--set", OFTEN, "-o", "part"];
+    scratch.mpirun(2, &[&run[..], &["-q"]].concat()).expect(0);
+    let later = format!("analysis.end={}", 1.5 * end);
+    let output = scratch.mpirun(2, &[&run[..], &["--set", &later, "--restart", "auto"]].concat()).expect(0);
+    output.says_once("since the checkpoint, analysis.end was");
+    scratch.mpirun(2, &["case.toml", "-q", "-o", "whole", "--set", &later]).expect(0);
+    let (part, whole) = (history(&scratch.path("part")), history(&scratch.path("whole")));
+    assert_eq!(part.get("time").unwrap().last(), whole.get("time").unwrap().last());
+    let changed = &manifest(&scratch.path("part")).restarts[0].changed;
+    assert!(changed.len() == 1 && changed[0].starts_with("analysis.end was"), "{changed:?}");
+}
+
+/// The end of the sliding block's case.
+fn at_end(scratch: &Scratch) -> f64 {
+    scratch.mpirun(1, &["case.toml", "-q", "-o", "short"]).expect(0);
+    *history(&scratch.path("short")).get("time").unwrap().last().unwrap()
+}
+
+#[test]
+fn restarts_that_come_to_nothing_end_with_72() {
+    let scratch = Scratch::with_case(SLIDING_BLOCK);
+    let run = ["case.toml", "-q", "--restart", "auto", "--max-steps", "5"];
+    for _ in 0..4 {
+        scratch.mpirun(2, &run).expect(75);
+    }
+    scratch.mpirun(2, &run).expect(72).says_once("3 restarts in a row");
+    scratch.mpirun(2, &["case.toml", "-q", "--restart", "case.out/checkpoint/step_000000005.h5"]).expect(0);
+}
+
+#[test]
+fn a_table_that_was_changed_since_is_not_gone_on_with() {
+    let scratch = Scratch::with_case(SLIDING_BLOCK);
+    scratch.mpirun(2, &["case.toml", "-q", "--max-steps", "5"]).expect(75);
+    let path = scratch.path("case.out/history.csv");
+    let text = std::fs::read_to_string(&path).unwrap();
+    std::fs::write(&path, text.replacen(',', ";", 1)).unwrap();
+    let manifest = std::fs::read(scratch.path("case.out/run.json")).unwrap();
+    let output = scratch.mpirun(2, &["case.toml", "-q", "--restart", "auto"]).expect(74);
+    output.says_once("bytes are not those that the run had written");
+    assert_eq!(std::fs::read(scratch.path("case.out/run.json")).unwrap(), manifest, "nothing was touched");
+    std::fs::remove_file(&path).unwrap();
+    let output = scratch.mpirun(2, &["case.toml", "--restart", "auto"]).expect(0);
+    output.says_once("history.csv of the steps before is not there: it begins with step 6");
+    assert_eq!(history(&scratch.path("case.out")).get("step").unwrap()[0], 6.0);
+}
+
+#[test]
+fn the_clock_can_ask_for_checkpoints_and_they_change_nothing() {
+    let scratch = Scratch::with_case(SLIDING_BLOCK);
+    scratch.mpirun(2, &["case.toml", "-q", "-o", "never"]).expect(0);
+    assert!(!scratch.path("never/checkpoint").exists(), "nothing is written where nothing is asked for");
+    for (name, wanted) in
+        [("clock", "{wall=\"1 us\",keep=3}"), ("steps", "{every_steps=1}"), ("seventh", "{every_steps=7}")]
+    {
+        let set = format!("output.checkpoint={wanted}");
+        scratch.mpirun(2, &["case.toml", "-q", "-o", name, "--set", &set]).expect(0);
+        assert!(results(&scratch.path(name)) == results(&scratch.path("never")), "{name}");
+        let kept = entries(&scratch.path(name).join("checkpoint")).len();
+        assert_eq!(kept, if name == "clock" { 6 } else { 4 });
+    }
+}

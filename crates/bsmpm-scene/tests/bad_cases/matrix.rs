@@ -1,0 +1,345 @@
+//! The bad inputs of reliability.md, row by row. What has a table or a test of its own is named where it stands: I02 and I07
+//! for every key of the schema in `mutation`, I05, I06, I21 and the bounds of I20 in `texts`; I19, I22, I23 and the memory
+//! of I20 belong to the program, `bsmpm-par/tests/command_line`.
+
+use super::{DYNAMIC, Row, STATIC, row, verify};
+use bsmpm_scene::Case;
+
+/// A row of the matrix, and what the cases are that it names.
+struct Input {
+    id: &'static str,
+    refused: &'static [Row],
+    /// refused in quasi-static analysis
+    refused_static: &'static [Row],
+    /// part of the dynamic base, what it becomes, and what is warned of; nothing where the text is empty
+    taken: &'static [(&'static str, &'static str, &'static str)],
+}
+
+const NONE: Input = Input { id: "", refused: &[], refused_static: &[], taken: &[] };
+
+const YOUNG: &str = "\"20 MPa\"";
+const POISSON: &str = "poisson  = 0.3";
+const YOUNG_KEY: &str = "material.sand.young";
+
+const MATRIX: &[Input] = &[
+    Input {
+        id: "I01",
+        refused: &[row(
+            POISSON,
+            "poison = 0.3",
+            "material.sand.poison",
+            "unknown key `poison` in [material.NAME]; did you mean `poisson`?",
+        )],
+        ..NONE
+    },
+    Input {
+        id: "I03",
+        refused: &[row(
+            "young    = \"20 MPa\"\n",
+            "",
+            YOUNG_KEY,
+            "missing; it is a number (Pa) or a string with a unit",
+        )
+        .up(2)],
+        ..NONE
+    },
+    Input {
+        id: "I04",
+        refused: &[row(POISSON, "poisson = 0.3\npoisson = 0.3", "", "no valid TOML: duplicate key").down(1)],
+        ..NONE
+    },
+    Input {
+        id: "I08",
+        refused: &[
+            row(YOUNG, "0", YOUNG_KEY, "0 is out of range; allowed: young > 0"),
+            row(YOUNG, "\"-20 MPa\"", YOUNG_KEY, "\"-20 MPa\" is out of range; allowed: young > 0"),
+            row(YOUNG, "1e-30", YOUNG_KEY, "1e-30 is out of range; a stress is at least 1e-18 in SI"),
+            row("\"2 t/m3\"", "-2000", "material.sand.density", "-2000 is out of range; allowed: density > 0"),
+            row("\"2 t/m3\"", "5e-324", "material.sand.density", "a density is at least 1e-9 in SI"),
+            row("\"10 ms\"", "-0.01", "analysis.dt", "-0.01 is out of range; allowed: dt > 0"),
+            row("\"10 ms\"", "0.0", "analysis.dt", "0.0 is out of range; allowed: dt > 0"),
+            row("[0.5, \"50 cm\"]", "[0.5, 0]", "grid.cell", "0 is out of range; allowed: cell > 0"),
+            row("[0.5, \"50 cm\"]", "[0.5, \"-50 cm\"]", "grid.cell", "\"-50 cm\" is out of range; allowed: cell > 0"),
+        ],
+        ..NONE
+    },
+    Input {
+        id: "I09",
+        refused: &[
+            row(
+                POISSON,
+                "poisson = 0.5",
+                "material.sand.poisson",
+                "0.5 is out of range; allowed: -1 < poisson < 0.5 (at 0.5",
+            ),
+            row(POISSON, "poisson = 0.5000001", "material.sand.poisson", "allowed: -1 < poisson < 0.5"),
+            row(POISSON, "poisson = -1", "material.sand.poisson", "-1 is out of range"),
+            row(POISSON, "poisson = -1.5", "material.sand.poisson", "-1.5 is out of range"),
+        ],
+        taken: &[
+            (POISSON, "poisson = 0.49995", "material.sand: poisson = 0.49995 is nearly incompressible"),
+            (POISSON, "poisson = 0.4999", ""),
+            (POISSON, "poisson = -0.99", ""),
+        ],
+        ..NONE
+    },
+    Input {
+        id: "I10",
+        refused: &[
+            row("\"30 deg\"", "-1", "material.sand.friction", "-1 is out of range; allowed: 0 <= friction < 90"),
+            row("\"30 deg\"", "90", "material.sand.friction", "90 is out of range; allowed: 0 <= friction < 90"),
+            row(
+                "dilation = 5",
+                "dilation = 30.1",
+                "material.sand.dilation",
+                "30.1 is out of range; allowed: 0 <= dilation <= friction = 30",
+            ),
+            row("dilation = 5", "dilation = -1", "material.sand.dilation", "-1 is out of range"),
+            row("\"1 kPa\"", "\"-1 kPa\"", "material.sand.cohesion", "allowed: cohesion >= 0"),
+        ],
+        taken: &[
+            (
+                "cohesion    = 2e4",
+                "cohesion = 0",
+                "material.clay: friction and cohesion are both 0: the material has no strength",
+            ),
+            ("cohesion = \"1 kPa\"", "cohesion = 0", ""),
+        ],
+        ..NONE
+    },
+    Input {
+        id: "I11",
+        refused: &[
+            row(
+                "upper = [4.0, 1.0] }",
+                "upper = [0.0, 1.0] }",
+                "body.0.box.upper",
+                "is not above lower = [0.0, 0.0]: the body is empty",
+            ),
+            row("upper = [4.0, 1.0] }", "upper = [4.0, 1e-12] }", "body.0.box.upper", "it has no points"),
+            row("radius = 0.4", "radius = -0.4", "body.4.circle.radius", "allowed: radius > 0"),
+        ],
+        refused_static: &[row("[[body]]\nmaterial", "[[bodies]]\nmaterial", "bodies", "unknown key `bodies`")],
+        ..NONE
+    },
+    Input {
+        id: "I12",
+        refused: &[
+            row(
+                "upper = [4.0, 1.0] }",
+                "upper = [4.0, 3.5] }",
+                "body.0.box.upper",
+                "3.5 is outside the grid, which ends at y = 3",
+            ),
+            row(
+                "center = [0.5, 2.0]",
+                "center = [0.3, 2.0]",
+                "body.4.circle",
+                "is outside the grid, which starts at x = 0",
+            ),
+        ],
+        ..NONE
+    },
+    Input {
+        id: "I13",
+        refused: &[
+            row(
+                "[0.5, \"50 cm\"]",
+                "[0.5, 0.7]",
+                "grid.cell",
+                "along y is no whole number, and neither face is free to move; e.g. cell = 0.75",
+            ),
+            row("upper = [4.0, 3.0]", "upper = [4.0, 0.0]", "grid.upper", "is not above lower"),
+            row("upper = [4.0, 3.0]", "upper = [-4.0, 3.0]", "grid.upper", "is not above lower"),
+        ],
+        taken: &[("cell  = [0.5, \"50 cm\"]", "cell = [4, 3]", "")],
+        ..NONE
+    },
+    Input {
+        id: "I14",
+        taken: &[("lower = [0.0, 1.0], upper", "lower = [0.0, 0.9], upper", "body.0 and body.1 overlap")],
+        ..NONE
+    },
+    Input {
+        id: "I15",
+        refused: &[
+            row(
+                "points_per_cell = 3",
+                "points_per_cell = 0",
+                "body.0.points_per_cell",
+                "0 is out of range; allowed: 1 <= points_per_cell <= 100",
+            ),
+            row("points_per_cell = 3", "points_per_cell = 101", "body.0.points_per_cell", "101 is out of range"),
+            row("points_per_cell = 3", "points_per_cell = [2, 3]", "body.0.points_per_cell", "found a list of 2"),
+            row("points_per_cell = 3", "points_per_cell = 2.5", "body.0.points_per_cell", "found 2.5"),
+        ],
+        taken: &[
+            ("points_per_cell = 3", "points_per_cell = 1", "1 point per cell integrates too coarsely"),
+            ("points_per_cell = 3", "points_per_cell = 100", ""),
+        ],
+        ..NONE
+    },
+    Input {
+        id: "I16",
+        refused: &[
+            row("top    = \"fixed\"", "up = \"fixed\"", "boundary.up", "unknown key `up` in [boundary]"),
+            row("face = \"right\"", "face = \"rigth\"", "prescribed.0.face", "did you mean `right`?"),
+            row(
+                "face = \"right\"",
+                "face = \"top\"",
+                "prescribed.0.face",
+                "[boundary] holds \"top\" too; leave it free there",
+            ),
+        ],
+        refused_static: &[
+            row("bottom = \"fixed\"", "", "boundary", "nothing holds the bodies along x").up(1),
+            row("bottom = \"fixed\"", "bottom = \"roller\"", "boundary", "a quasi-static analysis is singular then")
+                .up(1),
+        ],
+        ..NONE
+    },
+    Input {
+        id: "I17",
+        refused: &[
+            row(
+                "[[\"0.5 s\", 0.0, -0.1], [1.0, 0.0, 0.0]]",
+                "[[1.0, 0, 0], [0.5, 0, 0]]",
+                "prescribed.1.path",
+                "t = 0.5 is not above 1, that of the row before",
+            ),
+            row(
+                "[[\"0.5 s\", 0.0, -0.1], [1.0, 0.0, 0.0]]",
+                "[]",
+                "prescribed.1.path",
+                "a path needs at least one row [t, ux, uy] with t > 0",
+            ),
+            row("[[\"0.5 s\", 0.0, -0.1], [1.0, 0.0, 0.0]]", "[[0, 0, 0]]", "prescribed.1.path", "at least one row"),
+            row(
+                "[[\"0.5 s\", 0.0, -0.1], [1.0, 0.0, 0.0]]",
+                "[[1.0, 0, nan]]",
+                "prescribed.1.path",
+                "nan is no finite number",
+            ),
+            row(
+                "[[\"0.5 s\", 0.0, -0.1], [1.0, 0.0, 0.0]]",
+                "[[1e-300, 0, 0]]",
+                "prescribed.1.path",
+                "a time is at least 1e-12 in SI",
+            ),
+        ],
+        taken: &[("[[\"0.5 s\", 0.0, -0.1], [1.0, 0.0, 0.0]]", "[[1.0, 0.0, -0.1]]", "")],
+        ..NONE
+    },
+    Input {
+        id: "I18",
+        refused: &[
+            row("end  = \"1 s\"", "end = \"-1 s\"", "analysis.end", "\"-1 s\" is out of range; allowed: end > 0"),
+            row("\"10 ms\"", "1.5", "analysis.dt", "1.5 is out of range; allowed: dt <= end = 1"),
+            row(
+                "dt   = \"10 ms\"",
+                "steps = 0",
+                "analysis.steps",
+                "0 is out of range; allowed: 1 <= steps <= 1000000000",
+            ),
+            row("dt   = \"10 ms\"", "steps = 1_000_000_000_000", "analysis.steps", "1000000000000 is out of range"),
+            row("\"10 ms\"", "1e-12", "analysis.dt", "1.000e12 steps to the end; at most 1e9 are possible"),
+            row("every  = \"0.1 s\"", "every = 0", "output.every", "0 is out of range; allowed: every > 0"),
+            row("times  = [\"0.25 s\", 0.75]", "times = [1e-9]", "output.times", "allowed: at least 1e-6 dt"),
+            row("at       = \"0.5 s\"", "at = 1e-9", "check.0.at", "allowed: at least 1e-6 dt"),
+        ],
+        taken: &[
+            ("dt   = \"10 ms\"", "steps = 1", ""),
+            ("every  = \"0.1 s\"", "every = 3", "output.every: 3 is beyond the end"),
+        ],
+        ..NONE
+    },
+    Input {
+        id: "I20",
+        refused: &[
+            row(
+                "[0.5, \"50 cm\"]",
+                "[4e-6, 3e-6]",
+                "grid.cell",
+                "1000000000000 cells and 2000008000008 unknowns; at most 2147483647",
+            ),
+            row("[0.5, \"50 cm\"]", "[1e-9, 1e-9]", "grid.cell", "cells along x; at most 2147483647 are possible"),
+            row(
+                "upper = [4.0, 3.0]",
+                "upper = [9223372036854775807, 3.0]",
+                "grid.upper",
+                "is out of range; a length is at most 1e9 in SI",
+            ),
+            row("[0.5, \"50 cm\"]", "[1e-4, 1e-4]", "grid.cell", "1200000000 cells and 2400280008 unknowns"),
+        ],
+        ..NONE
+    },
+    Input {
+        id: "I24",
+        refused: &[
+            row(
+                "factor = 1.25",
+                "factor = -1.25",
+                "strength_reduction.factor",
+                "-1.25 is out of range; allowed: 0.1 <= factor <= 100",
+            ),
+            row("factor = 1.25", "factor = 0", "strength_reduction.factor", "0 is out of range"),
+        ],
+        ..NONE
+    },
+    Input {
+        id: "I25",
+        refused: &[
+            row(
+                "-9.81]",
+                "-1e308]",
+                "gravity.acceleration",
+                "-1e308 is out of range; an acceleration is at most 1e12 in SI",
+            ),
+            row("\"2 t/m3\"", "1e308", "material.sand.density", "a density is at most 1e9 in SI"),
+        ],
+        taken: &[("-9.81]", "-1e12]", ""), ("density  = \"2 t/m3\"", "density = 1e9", "is unusual: check the unit")],
+        ..NONE
+    },
+    Input {
+        id: "I26",
+        refused: &[row(
+            "density  = \"2 t/m3\"",
+            "unit_weight = 2e4\ndensity = 2000",
+            "material.sand.density",
+            "`unit_weight` is given too; only one of",
+        )
+        .down(1)],
+        taken: &[
+            (YOUNG, "20", "material.sand: young = 2e1 Pa = 2e-2 kPa is unusual: check the unit"),
+            (YOUNG, "\"20000 GPa\"", "check the unit"),
+            (
+                "\"18 kN/m3\"",
+                "18",
+                "material.clay: a density of 1.834862 kg/m3 (unit weight 0.018000 kN/m3) is unusual",
+            ),
+        ],
+        ..NONE
+    },
+];
+
+#[test]
+fn i01_to_i26_every_row_of_the_matrix() {
+    let mut failed = Vec::new();
+    for input in MATRIX {
+        let refused = input.refused.iter().map(|row| verify(DYNAMIC, row));
+        let refused = refused.chain(input.refused_static.iter().map(|row| verify(STATIC, row)));
+        let taken = input.taken.iter().map(|taken| take(*taken));
+        failed.extend(refused.chain(taken).filter_map(Result::err).map(|error| format!("{}: {error}", input.id)));
+    }
+    assert!(failed.is_empty(), "{}", failed.join("\n"));
+}
+
+fn take((part, by, says): (&str, &str, &str)) -> Result<(), String> {
+    if DYNAMIC.matches(part).count() == 0 {
+        return Err(format!("`{part}` is not in the base"));
+    }
+    let case = Case::from_text("case.toml", &DYNAMIC.replacen(part, by, 1), &[]);
+    let warnings = case.map_err(|errors| format!("`{by}`: {errors:#?}"))?.warnings;
+    let fits = if says.is_empty() { warnings.is_empty() } else { warnings.iter().any(|told| told.contains(says)) };
+    if fits { Ok(()) } else { Err(format!("`{by}`: `{says}` is not what is warned of: {warnings:?}")) }
+}

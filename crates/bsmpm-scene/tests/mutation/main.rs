@@ -1,0 +1,229 @@
+//! Every key of the schema removed, renamed, retyped and set to extreme values (reliability.md, bad input): what the schema
+//! refuses is refused at its place, the rest gives a case or errors; never a panic.
+
+mod written;
+
+use bsmpm_scene::schema::{Kind, Presence, ROOT, Table};
+use bsmpm_scene::{Case, Error, Place, seed};
+use std::collections::HashSet;
+use written::{STRESS, Written};
+
+const FULL: &str = include_str!("../full.toml");
+const STATIC: &str = include_str!("../bad_cases/static.toml");
+
+/// Values that a key may be given by mistake.
+const VALUES: [&str; 22] = [
+    "nan",
+    "+nan",
+    "inf",
+    "-inf",
+    "-0.0",
+    "0",
+    "-1",
+    "0.5",
+    "1e308",
+    "-1e308",
+    "5e-324",
+    "9223372036854775807",
+    "-9223372036854775808",
+    "99999999999999999999999",
+    "true",
+    "\"\"",
+    "\"abc\"",
+    STRESS,
+    "[]",
+    "[1, 2, 3]",
+    "{}",
+    "1979-05-27",
+];
+
+/// Changes of [`FULL`] to what excludes what is there.
+const OTHERWISE: [&[(&str, &str)]; 5] = [
+    &[
+        ("dt   = \"10 ms\"", "steps = 100\nspectral_radius = 0.8"),
+        ("every  = \"0.1 s\"", "every_steps = 20\ncheckpoint = { wall = \"10 min\", every_steps = 50, keep = 3 }"),
+        ("quantity = \"heave\"", "quantity = \"height\"\nat_x = 1.0"),
+    ],
+    &[
+        ("dt   = \"10 ms\"", "dt = 0.01\ngamma = 0.6"),
+        ("cell  = [0.5, \"50 cm\"]", "knots = { x = [0, 0.5, 1.5, \"4 m\"], y = [0, 1, 2, 3] }"),
+    ],
+    &[("\nk0 = 0.5", "\ngravity = \"elastic\""), ("k0          = 0.6\n", "")],
+    &[
+        ("displacement = [0.0, \"-10 cm\"]", "velocity = [0.0, -0.1]"),
+        ("velocity = [0.0, \"-10 mm/s\"]", "displacement = [-0.1, 0.0]"),
+        (
+            "{ circle = { center = [2.75, 2.0], radius = \"10 cm\" } }",
+            "{ polygon = [[2.6, 1.6], [2.9, 1.6], [2.9, 1.9]] }",
+        ),
+    ],
+    &[("displacement = [0.0, \"-10 cm\"]", "path = [[0.5, 0.0, -0.1], [\"1 s\", 0.0, \"-20 cm\"]]")],
+];
+
+fn bases() -> Vec<String> {
+    let mut bases = vec![FULL.to_owned(), STATIC.to_owned()];
+    for changes in OTHERWISE {
+        let mut text = FULL.to_owned();
+        for (part, by) in changes {
+            assert_eq!(text.matches(part).count(), 1, "{part}");
+            text = text.replacen(part, by, 1);
+        }
+        bases.push(text);
+    }
+    bases
+}
+
+/// The case, if it is one: then it can be counted and its points made. Errors must have a place, but for tables that are
+/// missing altogether.
+fn read(text: &str) -> Result<Case, Vec<Error>> {
+    let case = Case::from_text("case.toml", text, &[]).inspect_err(|errors| {
+        assert!(!errors.is_empty());
+        for error in errors {
+            assert!(!error.message.is_empty() && !format!("{error:#}").is_empty());
+            let is_whole = error.place == Place::File && (error.key.is_empty() || ROOT.key(&error.key).is_some());
+            assert!(is_whole || matches!(error.place, Place::Line { .. }), "{error}");
+        }
+    })?;
+    let counted: u64 = case.points_by_column().iter().sum();
+    assert!(case.estimate().points == case.points() && case.points() == counted && counted > 0);
+    for point in seed(&case, 0..case.grid.axes[0].cells()).take(20) {
+        assert!(point.volume > 0.0 && point.mass >= 0.0 && (point.x.norm() + point.v.norm() + point.mass).is_finite());
+    }
+    Ok(case)
+}
+
+fn line(text: &str, at: usize) -> usize {
+    1 + text[..at].matches('\n').count()
+}
+
+/// An error about this key or an item of it, in this line.
+#[track_caller]
+fn refuses(text: &str, path: &str, says: &str, line: Option<usize>) {
+    let errors = read(text).err().unwrap_or_default();
+    let fits = |error: &Error| {
+        let placed = line.is_none_or(|line| matches!(error.place, Place::Line { line: found, .. } if found == line));
+        let about = error.key == path || error.key.strip_prefix(path).is_some_and(|item| item.starts_with('.'));
+        placed && about && error.message.contains(says)
+    };
+    let told: Vec<String> = errors.iter().map(ToString::to_string).collect();
+    assert!(errors.iter().any(fits), "{path}, line {line:?}: ..{says}.. is not among {told:#?}");
+}
+
+/// The text without an entry, and without the comma that it leaves in an inline table.
+fn without(text: &str, written: &Written) -> String {
+    let (start, end) = (written.name.as_ref().unwrap().start, written.value.end);
+    let (before, after) = (&text[..start], &text[end..]);
+    match (after.strip_prefix(','), before.trim_end().strip_suffix(',')) {
+        (Some(after), _) => format!("{before}{after}"),
+        (None, Some(before)) => format!("{before}{after}"),
+        (None, None) => format!("{before}{after}"),
+    }
+}
+
+#[test]
+fn the_bases_hold_every_key_of_the_schema() {
+    let mut held = HashSet::new();
+    for base in bases() {
+        read(&base).unwrap_or_else(|errors| panic!("{errors:#?}"));
+        held.extend(written::all(&base).iter().map(|written| written.of));
+    }
+    for table in ROOT.all() {
+        for key in table.keys.iter().filter(|key| key.presence != Presence::Later) {
+            assert!(held.contains(&(table.header, key.name)), "no base has {} of {}", key.name, table.header);
+        }
+    }
+}
+
+#[test]
+fn every_key_renamed_is_unknown_and_every_key_removed_is_missed_if_it_must_be_there() {
+    for base in bases() {
+        for written in written::all(&base) {
+            let Some(name) = &written.name else { continue };
+            let renamed = format!("{}qqq{}", &base[..name.end], &base[name.end..]);
+            refuses(&renamed, &format!("{}qqq", written.path), "unknown key", Some(line(&base, name.start)));
+            if !written.is_entry {
+                continue;
+            }
+            let removed = without(&base, &written);
+            match written.presence {
+                Presence::Required => refuses(&removed, &written.path, "missing", None),
+                _ => _ = read(&removed),
+            }
+        }
+    }
+}
+
+#[test]
+fn i02_i07_every_value_that_the_schema_refuses_is_refused_at_its_place() {
+    let (mut accepted, mut refused) = (0, 0);
+    for base in bases() {
+        for written in written::all(&base).iter().filter(|written| written.is_entry) {
+            let span = &written.value;
+            let own = &base[span.clone()];
+            let negated = own.strip_prefix('"').map_or(format!("-{own}"), |quoted| format!("\"-{quoted}"));
+            for put in VALUES.iter().copied().chain([negated.as_str()]) {
+                let text = format!("{}{put}{}", &base[..span.start], &base[span.end..]);
+                if VALUES.contains(&put) && written.fits.refuses(put) {
+                    refuses(&text, &written.path, "", Some(line(&base, span.start)));
+                    refused += 1;
+                } else {
+                    accepted += u32::from(read(&text).is_ok());
+                }
+            }
+        }
+    }
+    assert!(refused > 20_000 && accepted > 300, "{accepted} accepted, {refused} refused");
+}
+
+#[test]
+fn every_table_and_every_cut_of_the_text() {
+    for header in FULL.lines().filter(|line| line.starts_with('[')) {
+        _ = read(&FULL.replacen(header, "", 1));
+        _ = read(&FULL.replacen(header, "[x]", 1));
+        _ = read(&FULL.replacen(header, &format!("[{header}]"), 1));
+        _ = read(&format!("{FULL}\n{header}\n"));
+    }
+    for end in (0..FULL.len()).step_by(3) {
+        _ = read(&FULL[..end]);
+        _ = read(&format!("{}{}", &FULL[..end], &FULL[(end + 7).min(FULL.len())..]));
+    }
+}
+
+#[test]
+fn overrides_of_every_key_of_the_schema() {
+    fn paths(table: &'static Table, path: &str, found: &mut Vec<String>) {
+        for key in table.keys {
+            let path = format!("{path}{}", key.name);
+            match &key.kind {
+                Kind::Table(below) => paths(below, &format!("{path}."), found),
+                Kind::Named(below) => paths(below, &format!("{path}.sand."), found),
+                Kind::Tables(below) => paths(below, &format!("{path}.0."), found),
+                _ => {}
+            }
+            found.push(path);
+        }
+    }
+    let mut found = Vec::new();
+    paths(&ROOT, "", &mut found);
+    assert!(found.len() > 80, "{found:?}");
+    for path in &found {
+        for value in VALUES.iter().chain(&["5 mm", "free", "a.b=c", "", "[", "\"", "'x"]) {
+            for suffix in ["", ".0", ".x", ".5.y", ".."] {
+                _ = Case::from_text("case.toml", FULL, &[format!("{path}{suffix}={value}")]);
+            }
+        }
+    }
+}
+
+#[test]
+fn the_schema_is_sound() {
+    for table in ROOT.all() {
+        for key in table.keys {
+            assert!(!key.doc.is_empty() && table.key(key.name).is_some_and(|first| std::ptr::eq(first, key)));
+            assert_eq!(key.presence == Presence::Later, matches!(key.kind, Kind::Open), "{}", key.name);
+        }
+        for group in table.exclusive {
+            assert!(group.keys.iter().all(|key| table.key(key).is_some()), "{:?}", group.keys);
+        }
+    }
+}
