@@ -5,11 +5,10 @@ use crate::estimate::{self, MOST_UNKNOWNS};
 use crate::grid::{Axis, GridSpec};
 use crate::record::Record;
 use crate::report::Report;
+use crate::unit::Dimension;
 
 /// Parts of a cell by which a length may miss a whole number of cells.
 const WHOLE: f64 = 1e-9;
-/// Shortest cell, m: no case comes near, and products of a few such lengths and of their inverses stay far within f64.
-const SHORTEST: f64 = 1e-50;
 const NAMES: [&str; 2] = ["x", "y"];
 
 /// The grid, once the supports of its faces are known.
@@ -33,13 +32,14 @@ pub(super) fn read(root: &Record, boundary: Option<[[Support; 2]; 2]>, report: &
     Some(spec)
 }
 
-/// An error for cells with which nobody can compute: breakpoints may be one when counted from the first.
+/// An error for breakpoints that are next to one when counted from the first.
 fn bounded(spec: &GridSpec, grid: &Record, report: &mut Report<'_>) -> Option<()> {
+    let least = Dimension::Length.least();
     for (axis, name) in spec.axes.iter().zip(NAMES) {
         let cell = axis.shortest();
-        if cell < SHORTEST {
+        if cell < least {
             let key = if grid.gives("knots") { "knots" } else { "cell" };
-            let message = format!("the shortest cell along {name} is {cell:e} m; allowed: cell >= {SHORTEST:e} m");
+            let message = format!("the shortest cell along {name} is {cell:e} m; a length is at least {least:e} in SI");
             grid.error(key, message, report);
             return None;
         }
