@@ -10,7 +10,7 @@ pub enum GridError {
     /// The order is not linear, quadratic or cubic.
     #[error("B-splines of order {0} are not supported (1, 2 or 3)")]
     Order(usize),
-    /// Breakpoints are not finite and increasing, or there is no cell.
+    /// Breakpoints are not finite and increasing, also when counted from the first, or there is no cell.
     #[error("the breakpoints of an axis must be finite, increasing and at least two")]
     Breakpoints,
     /// The axes have different orders.

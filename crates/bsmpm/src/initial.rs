@@ -74,17 +74,22 @@ pub fn set_elastic<K: Kinematics<D>, const D: usize>(
     Ok(())
 }
 
-/// Equilibrium of the points as they are, under the loads at time 0.
+/// Equilibrium of the points as they are, under the loads at time 0. Fails on all ranks if a point has no response, as its
+/// strain is beyond all bounds.
 pub fn balance<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     points: &Points<D>,
     halo: &dyn Halo,
 ) -> Result<Equilibrium, StepError> {
     let model = &Model { regime: Regime::QuasiStatic, ..model.clone() };
+    let yields = |p: usize| match model.respond(points, p, &points.b_e[p]) {
+        Ok(response) => Ok(u32::from(response.region() != Region::Elastic)),
+        Err(source) => Err(StepError::Material { id: points.id[p], source }),
+    };
+    let counted = (0..points.len()).try_fold(0.0, |sum, p| Ok(sum + f64::from(yields(p)?)));
+    let mut yielding = [agreed(halo, counted, StepError::OtherRank)?];
     let start = Start::of(model, points, halo)?;
     let residual = Residual::of(&start.scene(model, points, halo), &vec![0.0; model.grid.nodes() * D]);
-    let yields = |p: &usize| model.respond(points, *p, &points.b_e[*p]).is_ok_and(|r| r.region() != Region::Elastic);
-    let mut yielding = [(0..points.len()).filter(yields).count() as f64];
     halo.reduce(&mut yielding);
     Ok(Equilibrium { force: residual.balance.measure(), yielding: yielding[0] as u64 })
 }

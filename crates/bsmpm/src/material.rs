@@ -171,7 +171,7 @@ pub enum MaterialError {
     /// A component of the trial tensor is NaN, infinite or beyond 1e100.
     #[error("the trial elastic left Cauchy-Green tensor is not finite: {0:?}")]
     NotFinite([f64; 6]),
-    /// An eigenvalue of the trial tensor is not positive: the step has turned the material inside out.
+    /// An eigenvalue of the trial tensor is not positive, or below 1e-100: the step has turned the material inside out.
     #[error("the trial elastic left Cauchy-Green tensor is not positive definite: smallest eigenvalue {0:e}")]
     NotPositive(f64),
 }

@@ -5,6 +5,7 @@ use crate::estimate::{self, MOST_UNKNOWNS};
 use crate::grid::{Axis, GridSpec};
 use crate::record::Record;
 use crate::report::Report;
+use crate::unit::Dimension;
 
 /// Parts of a cell by which a length may miss a whole number of cells.
 const WHOLE: f64 = 1e-9;
@@ -26,8 +27,24 @@ pub(super) fn read(root: &Record, boundary: Option<[[Support; 2]; 2]>, report: &
         report.error(grid.place("cell"), &grid.path_of("cell"), message);
         return None;
     }
+    bounded(&spec, grid, report)?;
     warn_of_rounding(&spec, report);
     Some(spec)
+}
+
+/// An error for breakpoints that are next to one when counted from the first.
+fn bounded(spec: &GridSpec, grid: &Record, report: &mut Report<'_>) -> Option<()> {
+    let least = Dimension::Length.least();
+    for (axis, name) in spec.axes.iter().zip(NAMES) {
+        let cell = axis.shortest();
+        if cell < least {
+            let key = if grid.gives("knots") { "knots" } else { "cell" };
+            let message = format!("the shortest cell along {name} is {cell:e} m; a length is at least {least:e} in SI");
+            grid.error(key, message, report);
+            return None;
+        }
+    }
+    Some(())
 }
 
 fn graded(grid: &Record, report: &mut Report<'_>) -> Option<[Axis; 2]> {

@@ -134,6 +134,18 @@ pub const RULES: &[Row] = &[
     row("cell  = [0.5, \"50 cm\"]", "cell = 0.5\nknots.x = [0, 1]", "grid.knots", "only one of cell, knots").down(1),
     row("cell  = [0.5, \"50 cm\"]", "knots.x = [0, 1, 1, 4]\nknots.y = [0, 3]", "grid.knots.x", "must increase"),
     row("cell  = [0.5, \"50 cm\"]", "knots.y = [0, 3]\nknots.x = [0]", "grid.knots.x", "at least two").down(1),
+    row(
+        "cell  = [0.5, \"50 cm\"]",
+        "knots.x = [0, 1e-51, 4]\nknots.y = [0, 3]",
+        "grid.knots",
+        "shortest cell along x is 1e-51",
+    ),
+    row(
+        "cell  = [0.5, \"50 cm\"]",
+        "knots.x = [0, 4]\nknots.y = [-1e9, 3, 3.00000001]",
+        "grid.knots",
+        "shortest cell along y is 0e0",
+    ),
     row("cell  = [0.5, \"50 cm\"]", "knots.x = [0, 4]\nknots.y = [0, nan]", "grid.knots.y", "no finite").down(1),
     row(
         "upper = [4.0, 3.0]\ncell  = [0.5, \"50 cm\"]",

@@ -7,6 +7,9 @@ use crate::error::GridError;
 
 /// Largest supported order.
 pub const MAX_ORDER: usize = 3;
+/// Shortest cell and longest axis, m: volumes, and products of slopes, stay within f64.
+const SHORTEST: f64 = 1e-100;
+const LONGEST: f64 = 1e100;
 
 /// An open knot vector: breakpoints from 0 to the length of the axis, the end knots q + 1 times (Eq. 3).
 #[derive(Clone, Debug, PartialEq)]
@@ -25,19 +28,20 @@ impl KnotVector {
         Ok(axis)
     }
 
-    /// Cells between increasing `breakpoints` (m), counted from the first. Fails as [`KnotVector::uniform`] does.
+    /// Cells between increasing `breakpoints` (m), counted from the first. Fails as [`KnotVector::uniform`] does, also where
+    /// the distances from the first one do not tell two of them apart.
     pub fn graded(breakpoints: &[f64], order: usize) -> Result<Self, GridError> {
         if !(1..=MAX_ORDER).contains(&order) {
             return Err(GridError::Order(order));
         }
-        let increasing = breakpoints.windows(2).all(|pair| pair[1] > pair[0]);
-        if breakpoints.len() < 2 || !increasing || breakpoints.iter().any(|x| !x.is_finite()) {
-            return Err(GridError::Breakpoints);
-        }
-        let from = breakpoints[0];
-        let length = breakpoints[breakpoints.len() - 1] - from;
+        let &[from, .., last] = breakpoints else { return Err(GridError::Breakpoints) };
+        let length = last - from;
         let mut knots = vec![0.0; order];
         knots.extend(breakpoints.iter().map(|x| x - from));
+        let increasing = knots[order..].windows(2).all(|pair| pair[1] - pair[0] >= SHORTEST);
+        if !increasing || length.is_nan() || length > LONGEST {
+            return Err(GridError::Breakpoints);
+        }
         knots.extend(std::iter::repeat_n(length, order));
         Ok(Self { order, knots, inverse_cell: None })
     }

@@ -51,8 +51,12 @@ impl Response {
         if self.region == Region::Elastic {
             return self.b_trial;
         }
+        let eps_e = self.principal_eps_e();
+        if eps_e[0] > 1.0 || eps_e[2] < -1.0 {
+            return assemble(eps_e.map(|e| (2.0 * e).exp()), &self.trial.axis);
+        }
         // b - I is assembled, which is accurate relative to the strain where that is small.
-        let mut b = assemble(self.principal_eps_e().map(|e| (2.0 * e).exp_m1()), &self.trial.axis);
+        let mut b = assemble(eps_e.map(|e| (2.0 * e).exp_m1()), &self.trial.axis);
         b.0[..3].iter_mut().for_each(|c| *c += 1.0);
         b
     }

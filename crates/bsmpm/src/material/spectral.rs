@@ -9,6 +9,8 @@ use crate::tensor::Symmetric;
 
 /// Beyond this, squares would overflow; b is without unit, and no meaningful one comes near.
 const LARGEST: f64 = 1e100;
+/// Below this an eigenvalue counts as none: its inverse, and the squares of that, would overflow.
+const SMALLEST: f64 = 1e-100;
 /// Sweeps of the cyclic Jacobi iteration; it converges quadratically, in 3 to 5.
 const SWEEPS: usize = 12;
 
@@ -108,7 +110,7 @@ impl Principal {
     #[inline]
     fn of(start: f64, gain: f64, axis: [f64; 3]) -> Result<Self, MaterialError> {
         let b = start + gain;
-        if b <= 0.0 {
+        if b < SMALLEST {
             return Err(MaterialError::NotPositive(b));
         }
         let kept = b - start;

@@ -26,6 +26,7 @@ fn not_positive_definite() {
         [1.0, 1.0, 1.0, 1.1, 0.0, 0.0],
         [1.0, 1.0, 1.0, 0.0, 1.1, 0.0],
         [1.0, 1.0, 1.0, 0.9, -0.9, 0.9],
+        [1.0, 1.0, 1e-101, 0.0, 0.0, 0.0],
     ];
     for b in indefinite {
         let found = hencky(1.0, 0.3).respond(&Symmetric(b));

@@ -94,3 +94,17 @@ fn every_region_is_visited() {
         assert!(seen[..4].iter().all(|n| *n > 20) && (seen[4] > 20) == has_apex, "{friction}: {seen:?}");
     }
 }
+
+/// bᵉ keeps its digits however far it is from the identity: the stress that belongs to it is the returned one.
+#[test]
+fn states_of_large_strain_keep_their_digits() {
+    let mut random = Random::new(14);
+    for _ in 0..10_000 {
+        let material = mohr_coulomb(1e3, 0.3, 0.0, 0.0, 1.0);
+        let volume = 30.0 * random.signed();
+        let response = respond(&material, &random.trial(-3.0, 0.0).scaled(volume.exp()));
+        let again = respond(&material, &response.b_e());
+        let change = difference(&again.tau(), &response.tau());
+        assert!(change <= 1e-12 * largest(&response.tau().0).max(1.0), "{change:e} at {response:?}");
+    }
+}

@@ -190,4 +190,8 @@ fn what_is_no_axis_is_refused() {
     assert!(bad.iter().all(|breakpoints| KnotVector::graded(breakpoints, 2).is_err()));
     assert!(KnotVector::uniform(-1.0, 3, 2).is_err() && KnotVector::uniform(f64::NAN, 3, 2).is_err());
     assert!(KnotVector::uniform(1.0, 0, 2).is_err());
+    // Increasing, but not when counted from the first; cells and axes whose volumes f64 cannot hold.
+    let lost: [&[f64]; 4] = [&[-1e17, 1.0, 1.5], &[0.0, 5e-324], &[0.0, 1e-101], &[-1e308, 1e308]];
+    assert!(lost.iter().all(|breakpoints| KnotVector::graded(breakpoints, 2).is_err()));
+    assert!(KnotVector::uniform(1e-101, 3, 2).is_err() && KnotVector::uniform(1e100, 2, 2).is_err());
 }

@@ -2,6 +2,7 @@
 
 use crate::support::scene::{Scene, axis, hencky};
 use crate::support::solver::Skyline;
+use bsmpm::error::StepError;
 use bsmpm::initial;
 use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
 use bsmpm::material::{Graded, GradedStrength, Material, Profile, Region, Separation};
@@ -70,6 +71,15 @@ fn a_state_beyond_yield_is_counted() {
     });
     let found = initial::balance(&scene.model, &scene.points, &scene.halo()).expect("forces");
     assert_eq!(found.yielding, scene.points.len() as u64 / 2);
+}
+
+#[test]
+fn a_stress_whose_strain_has_no_response_is_an_error() {
+    // 80 Pa at the bottom against E = 1e-2 Pa: strains of thousands, whose b no f64 holds.
+    let mut scene = ground::<PlaneStrain, 2>(hencky(1e-2, 0.3));
+    initial::set_stress(&scene.model, &mut scene.points, |_, x| Symmetric([1.0; 6]).scaled(-20.0 * (4.0 - x[1])));
+    let found = initial::balance(&scene.model, &scene.points, &scene.halo());
+    assert!(matches!(found, Err(StepError::Material { .. })), "{found:?}");
 }
 
 #[test]

@@ -1,0 +1,61 @@
+//! Fuzz targets: what may come from outside, or from the fuzzer's choice of numbers, never panics, never yields what is not
+//! finite, and keeps the promises of the crate that it goes to.
+//!
+//! A target is a plain function of bytes. `tests/replay.rs` runs all of them on stable Rust, on the committed corpora and
+//! on some thousand mutations; `scripts/fuzz` runs them under libFuzzer.
+#![forbid(unsafe_code)]
+// As in `bsmpm`: N, dN and F are what the paper calls so.
+#![allow(non_snake_case)]
+
+mod alone;
+mod case;
+mod draw;
+mod manifest;
+mod material;
+mod record;
+mod spline;
+mod step;
+mod table;
+
+/// A direct solver for one rank; the physics' tests have other doubles there.
+#[allow(dead_code)]
+#[path = "../../bsmpm/tests/support/solver.rs"]
+mod solver;
+
+// The program's own way from a case to a model stands with the ranks, although it needs none: it is compiled here with
+// doubles of the two modules that do.
+use alone::{ksp, simulation};
+#[allow(dead_code)] // what only the program asks of it
+#[path = "../../bsmpm-par/src/setup.rs"]
+mod setup;
+#[allow(dead_code)]
+#[path = "../../bsmpm-par/src/slab.rs"]
+mod slab;
+#[allow(dead_code)]
+#[path = "../../bsmpm-par/src/surfaces.rs"]
+mod surfaces;
+
+/// What is fuzzed, by its name.
+#[derive(Clone, Copy, Debug)]
+pub struct Target {
+    /// Its name, and that of its corpus.
+    pub name: &'static str,
+    /// Panics where a promise is broken.
+    pub run: fn(&[u8]),
+}
+
+/// All targets.
+pub const TARGETS: [Target; 7] = [
+    Target { name: "case", run: case::target },
+    Target { name: "record", run: record::target },
+    Target { name: "manifest", run: manifest::target },
+    Target { name: "table", run: table::target },
+    Target { name: "step", run: step::target },
+    Target { name: "material", run: material::target },
+    Target { name: "spline", run: spline::target },
+];
+
+/// The target of that name.
+pub fn named(name: &str) -> Option<Target> {
+    TARGETS.into_iter().find(|target| target.name == name)
+}

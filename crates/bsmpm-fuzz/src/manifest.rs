@@ -1,0 +1,27 @@
+//! `run.json`: any file is a manifest or an error, and a manifest that was read says the same when it is written again.
+
+use bsmpm_io::manifest::{MANIFEST, Manifest};
+use std::fs;
+use std::path::Path;
+use tempfile::TempDir;
+
+thread_local! {
+    static FOLDER: TempDir = TempDir::new().expect("a folder for temporary files");
+}
+
+/// The bytes of the file.
+pub fn target(data: &[u8]) {
+    FOLDER.with(|folder| try_file(folder.path(), data));
+}
+
+fn try_file(folder: &Path, data: &[u8]) {
+    let write = |bytes: &[u8]| fs::write(folder.join(MANIFEST), bytes).expect("room for a file");
+    write(data);
+    match Manifest::read(folder) {
+        Ok(manifest) => {
+            write(&serde_json::to_vec_pretty(&manifest).expect("a manifest is JSON"));
+            assert_eq!(Manifest::read(folder).expect("what was read once"), manifest);
+        }
+        Err(error) => assert!(!error.to_string().is_empty()),
+    }
+}

@@ -1,0 +1,128 @@
+//! The return mapping (section 2.2): any trial state and any parameters that a case may have give a finite response or a
+//! typed error, on or inside the yield surface, that a second return leaves alone.
+
+use crate::draw;
+use arbitrary::{Result, Unstructured};
+use bsmpm::material::{Elastic, Graded, GradedStrength, Hencky, Material, MohrCoulomb, Profile, Response, Separation};
+use bsmpm::tensor::{Symmetric, Tensor};
+use nalgebra::{Rotation3, Vector3};
+
+/// Violation of yield, and change by a second return, over the size of the stress.
+const SAME: f64 = 1e-8;
+/// Ratio of the eigenvalues of b up to which its components tell them all apart.
+const CONDITION: f64 = 1e10;
+/// Strain up to which b can be written down with all digits.
+const LARGEST: f64 = 100.0;
+
+/// A law, then trial states.
+pub fn target(data: &[u8]) {
+    // What the bytes are too few for is no input.
+    let _ = draw(&mut Unstructured::new(data));
+}
+
+fn draw(u: &mut Unstructured<'_>) -> Result<()> {
+    let material = material(u)?;
+    while !u.is_empty() {
+        let trial = trial(u)?;
+        match material.respond(&trial) {
+            Ok(response) => check(&material, &trial, &response),
+            Err(error) => assert!(!error.to_string().is_empty()),
+        }
+    }
+    Ok(())
+}
+
+/// What [`bsmpm_scene`] admits: E > 0, -1 < ν < ½, 0 ≤ ψ ≤ φ < 90°, c ≥ 0, a strength reduction of 0.1 to 100.
+fn material(u: &mut Unstructured<'_>) -> Result<Material> {
+    let elastic = Elastic { young: draw::size(u, -12.0, 20.0)?, poisson: poisson(u)? };
+    let friction = draw::between(u, 0.0, 89.999)?.to_radians() * if u.ratio(1, 8)? { 1e-9 } else { 1.0 };
+    let dilation = friction * draw::fraction(u)?;
+    let cohesion = if u.ratio(1, 4)? { 0.0 } else { draw::size(u, -12.0, 20.0)? };
+    let separation = if u.arbitrary()? { Separation::Forgotten } else { Separation::Closing };
+    let reduction = if u.arbitrary()? { 1.0 } else { draw::size(u, -1.0, 2.0)? };
+    Ok(match u.int_in_range(0..=7)? {
+        0 => Material::Hencky(Hencky { elastic }),
+        1 => {
+            let [young, friction, cohesion] = [elastic.young, friction, cohesion].map(Profile::constant);
+            let strength = GradedStrength { friction, dilation, cohesion, reduction, separation };
+            Graded::new(young, elastic.poisson, Some(strength), 0.0..1.0).at(draw::fraction(u)?)
+        }
+        _ => {
+            let law = MohrCoulomb::new(elastic, friction, dilation, cohesion);
+            Material::MohrCoulomb(law.separating(separation).reduced(reduction))
+        }
+    })
+}
+
+/// Anywhere between -1 and ½, or near an end.
+fn poisson(u: &mut Unstructured<'_>) -> Result<f64> {
+    Ok(match u.int_in_range(0..=3)? {
+        0 => 0.5 - draw::size(u, -15.0, -1.0)?,
+        1 => -1.0 + draw::size(u, -15.0, -1.0)?,
+        _ => draw::between(u, -0.999, 0.499)?,
+    })
+}
+
+/// Principal strains in turned axes, or any six components.
+fn trial(u: &mut Unstructured<'_>) -> Result<Symmetric> {
+    Ok(match u.int_in_range(0..=7)? {
+        0 => Symmetric([(); 6].map(|()| draw::bits(u).unwrap_or(0.0))),
+        1 => Symmetric([(); 6].map(|()| draw::signed(u, -12.0, 12.0).unwrap_or(0.0))),
+        kind => {
+            let size = draw::size(u, -12.0, 1.5)?;
+            let mut stretch = || Ok((2.0 * size * draw::between(u, -1.0, 1.0)?).exp());
+            let stretches = Vector3::new(stretch()?, stretch()?, stretch()?);
+            let turn = |u: &mut Unstructured<'_>| draw::between(u, -3.2, 3.2);
+            let plane = kind < 5;
+            let [x, y] = if plane { [0.0; 2] } else { [turn(u)?, turn(u)?] };
+            let q = Rotation3::new(Vector3::new(x, y, turn(u)?)).into_inner();
+            Symmetric::of(&(q * Tensor::from_diagonal(&stretches) * q.transpose()))
+        }
+    })
+}
+
+fn check(material: &Material, trial: &Symmetric, response: &Response) {
+    let (tau, b_e) = (response.tau(), response.b_e());
+    let told = || format!("{material:?} at {trial:?}: {response:?}");
+    let principal = response.principal_tau();
+    let increments = [response.gap(), response.plastic_increment(), response.dissipation()];
+    let numbers = tau.0.iter().chain(&b_e.0).chain(&principal).chain(&increments);
+    assert!(numbers.into_iter().all(|number| number.is_finite()), "not finite: {}", told());
+    assert!(principal[0] >= principal[1] && principal[1] >= principal[2], "order: {}", told());
+    assert!(increments[0] >= 0.0 && increments[1] >= 0.0, "sign: {}", told());
+    let tangent = response.linearise(&Tensor::new(0.3, -0.2, 0.1, 0.5, -0.4, 0.2, 0.1, 0.0, 0.6));
+    assert!(tangent.iter().all(|number| number.is_finite()), "tangent: {}", told());
+    let scale = yield_scale(material, principal);
+    assert!(yield_function(material, principal) <= SAME * scale, "yield: {}", told());
+    second_return(material, response, scale);
+}
+
+/// `f = (τ₁ - τ₃) + (τ₁ + τ₃) sin φ - 2 c cos φ`, Pa.
+fn yield_function(material: &Material, [first, _, third]: [f64; 3]) -> f64 {
+    let Material::MohrCoulomb(law) = material else { return f64::NEG_INFINITY };
+    (first - third) + (first + third) * law.friction().sin() - 2.0 * law.cohesion() * law.friction().cos()
+}
+
+/// Size of the terms of f, Pa.
+fn yield_scale(material: &Material, [first, second, third]: [f64; 3]) -> f64 {
+    let strength = if let Material::MohrCoulomb(law) = material { law.cohesion() * law.friction().cos() } else { 0.0 };
+    first.abs() + second.abs() + third.abs() + 2.0 * strength
+}
+
+/// A second return changes no more than rounding: of b's components, and of the inverse elasticity where ν is near an end.
+fn second_return(material: &Material, response: &Response, scale: f64) {
+    let eps = response.principal_eps_e();
+    let condition = (2.0 * (eps[0] - eps[2])).exp();
+    if condition > CONDITION || eps[0].abs().max(eps[2].abs()) > LARGEST {
+        return;
+    }
+    let again = material.respond(&response.b_e());
+    let again = again.unwrap_or_else(|error| panic!("{error} after a return of {material:?}: {response:?}"));
+    let (lambda, mu) = material.elastic().lame();
+    let bulk = material.elastic().young / (3.0 - 6.0 * material.elastic().poisson);
+    let elasticity = (lambda.abs() / mu).max(mu / bulk);
+    let rounding = 32.0 * f64::EPSILON * (condition * (3.0 * lambda.abs() + 2.0 * mu) + elasticity * scale);
+    let (before, after) = (response.principal_tau(), again.principal_tau());
+    let change = (0..3).map(|k| (before[k] - after[k]).abs()).fold(0.0, f64::max);
+    assert!(change <= SAME * scale + rounding, "{material:?}: {response:?} became {again:?}, {change:e} {rounding:e}");
+}

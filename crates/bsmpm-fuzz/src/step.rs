@@ -1,0 +1,72 @@
+//! Steps of any valid tiny case: each ends with finite points in the grid, or with a typed error and nothing changed.
+
+mod scene;
+
+use crate::alone::simulation::Simulation;
+use crate::setup;
+use arbitrary::Unstructured;
+use bsmpm::grid::Grid;
+use bsmpm::points::Points;
+use bsmpm_scene::Case;
+
+/// Points at most.
+const POINTS: u64 = 64;
+/// Steps: the second begins with what the first has left.
+const STEPS: usize = 2;
+
+/// The choices of a case.
+pub fn target(data: &[u8]) {
+    // What the bytes are too few for is no input.
+    let Ok(text) = scene::text(&mut Unstructured::new(data)) else { return };
+    let Ok(case) = Case::from_text("case.toml", &text, &[]) else { return };
+    if case.points() <= POINTS {
+        try_steps(&case);
+    }
+}
+
+fn try_steps(case: &Case) {
+    let told = || format!("in\n{}", case.text);
+    let model = setup::model(case).unwrap_or_else(|error| panic!("{error} {}", told()));
+    let points = setup::points(case, 0..case.grid.axes[0].cells());
+    let mut run = Simulation::new(model, points);
+    if setup::start(case, &mut run).is_err() {
+        return;
+    }
+    check(&run.points, &run.model.grid, &told);
+    let schedule = setup::schedule(case);
+    let mut t = 0.0;
+    for _ in 0..STEPS {
+        let Some(end) = schedule.next(t) else { return };
+        let before = (run.points.clone(), run.guess.clone());
+        match run.step(t, end - t) {
+            Ok(report) => {
+                assert!(report.force.is_finite() && run.guess.iter().all(|u| u.is_finite()), "{report:?} {}", told());
+                check(&run.points, &run.model.grid, &told);
+                assert_eq!((&run.points.id, &run.points.mass), (&before.0.id, &before.0.mass));
+                run.points.sort_by_cell(&run.model.grid);
+            }
+            Err(error) => {
+                assert!(!error.to_string().is_empty());
+                assert!((&run.points, &run.guess) == (&before.0, &before.1), "{error} left traces {}", told());
+                return;
+            }
+        }
+        t = end;
+    }
+}
+
+/// All numbers finite, no point outside the grid or inside out.
+fn check(points: &Points<2>, grid: &Grid<2>, told: &dyn Fn() -> String) {
+    let mut points = points.clone();
+    for (name, column) in points.named_columns() {
+        if column.number() == bsmpm::points::Number::F64 {
+            let mut bytes = Vec::new();
+            (0..column.rows()).for_each(|p| column.put(p, &mut bytes));
+            let numbers = bytes.chunks_exact(8).map(|bytes| f64::from_le_bytes(bytes.try_into().expect("eight")));
+            assert!(numbers.into_iter().all(f64::is_finite), "{name} is not finite {}", told());
+        }
+    }
+    assert!(points.x.iter().all(|x| grid.locate(x).is_some()), "outside {}", told());
+    assert!(points.F.iter().all(|F| F.determinant() > 0.0), "inside out {}", told());
+    assert!(points.eps_p.iter().all(|eps_p| *eps_p >= 0.0), "negative plastic strain {}", told());
+}

@@ -1,0 +1,247 @@
+//! Bytes to the text of a tiny case: most are valid, and every table of the language that acts on a step may be there.
+
+use crate::draw::{between, signed, size};
+use arbitrary::{Result, Unstructured};
+use std::fmt::Write;
+
+/// The grid that the rest is placed on.
+struct Grid {
+    lower: [f64; 2],
+    upper: [f64; 2],
+    h: f64,
+}
+
+impl Grid {
+    /// A place in eighths of the grid, ends included.
+    fn place(&self, u: &mut Unstructured<'_>) -> Result<[f64; 2]> {
+        let mut part = || Ok(f64::from(u.int_in_range(0..=8_u8)?) / 8.0);
+        let parts = [part()?, part()?];
+        Ok([0, 1].map(|axis| self.lower[axis] + parts[axis] * (self.upper[axis] - self.lower[axis])))
+    }
+
+    /// A motion up to some cells.
+    fn motion(&self, u: &mut Unstructured<'_>) -> Result<[f64; 2]> {
+        Ok([signed(u, -9.0, 0.5)? * self.h, signed(u, -9.0, 0.5)? * self.h])
+    }
+}
+
+/// Where the stress at the start comes from.
+#[derive(Clone, Copy, PartialEq)]
+enum Start {
+    Nothing,
+    AtRest,
+    Elastic,
+}
+
+/// The whole case.
+pub fn text(u: &mut Unstructured<'_>) -> Result<String> {
+    let mut text = String::from("geometry = \"plane-strain\"\n");
+    let dynamic = analysis(u, &mut text)?;
+    let grid = grid(u, &mut text)?;
+    let start = *u.choose(&[Start::Nothing, Start::Nothing, Start::AtRest, Start::Elastic])?;
+    let materials = u.int_in_range(1..=2)?;
+    for number in 0..materials {
+        material(u, number, (dynamic, start), &mut text)?;
+    }
+    bodies(u, &grid, materials, &mut text)?;
+    let faces = boundary(u, &mut text)?;
+    gravity(u, start, &mut text)?;
+    loads(u, &grid, &mut text)?;
+    strips(u, &grid, faces, &mut text)?;
+    solver(u, &mut text)?;
+    Ok(text)
+}
+
+/// Adds a line.
+fn line(text: &mut String, line: &str) {
+    text.push_str(line);
+    text.push('\n');
+}
+
+fn quoted<'a>(u: &mut Unstructured<'_>, words: &[&'a str]) -> Result<&'a str> {
+    u.choose(words).copied()
+}
+
+fn analysis(u: &mut Unstructured<'_>, text: &mut String) -> Result<bool> {
+    let dynamic = u.arbitrary()?;
+    let (kind, steps) = (if dynamic { "dynamic" } else { "quasi-static" }, u.int_in_range(1..=4)?);
+    line(text, &format!("analysis = {{ type = \"{kind}\", end = {:?}, steps = {steps} ", size(u, -6.0, 3.0)?));
+    text.pop();
+    match u.int_in_range(0..=3)? {
+        0 if dynamic => write!(text, ", spectral_radius = {:?}", between(u, 0.0, 1.0)?),
+        1 if dynamic => write!(text, ", gamma = {:?}", between(u, 0.5, 1.0)?),
+        _ => Ok(()),
+    }
+    .expect("a string takes all");
+    line(text, " }");
+    Ok(dynamic)
+}
+
+fn grid(u: &mut Unstructured<'_>, text: &mut String) -> Result<Grid> {
+    let order = quoted(u, &["linear", "quadratic", "cubic"])?;
+    let cells = [u.int_in_range(1..=3_u8)?, u.int_in_range(1..=3_u8)?];
+    let h = *u.choose(&[1.0, 0.125, 2.5e-3, 64.0])?;
+    let lower = *u.choose(&[[0.0, 0.0], [-3.0, 7.0], [1e6, -1e6]])?;
+    let mut upper = [0, 1].map(|axis| lower[axis] + h * f64::from(cells[axis]));
+    if u.ratio(1, 4)? {
+        let mut axis = |axis: usize| {
+            let mut knots = vec![lower[axis]];
+            for _ in 0..cells[axis] {
+                knots.push(knots[knots.len() - 1] + h * size(u, -1.5, 0.5)?);
+            }
+            Ok(knots)
+        };
+        let knots = [axis(0)?, axis(1)?];
+        upper = [0, 1].map(|axis| knots[axis][knots[axis].len() - 1]);
+        let [x, y] = knots;
+        line(text, &format!("grid = {{ knots = {{ x = {x:?}, y = {y:?} }}, order = \"{order}\" }}"));
+    } else {
+        line(text, &format!("grid = {{ lower = {lower:?}, upper = {upper:?}, cell = {h:?}, order = \"{order}\" }}"));
+    }
+    Ok(Grid { lower, upper, h })
+}
+
+fn material(u: &mut Unstructured<'_>, number: usize, (dynamic, start): (bool, Start), text: &mut String) -> Result<()> {
+    let model = quoted(u, &["hencky", "mohr-coulomb", "tresca"])?;
+    let poisson = if u.ratio(1, 8)? { 0.5 - size(u, -9.0, -1.0)? } else { between(u, -0.5, 0.499)? };
+    let young = size(u, 0.0, 11.0)?;
+    line(text, &format!("[material.m{number}]\nmodel = \"{model}\"\npoisson = {poisson:?}"));
+    if u.ratio(1, 6)? {
+        let growth = young * signed(u, -4.0, 0.0)?;
+        line(text, &format!("young = {{ value = {young:?}, at_y = 0.0, per_metre = {growth:?} }}"));
+    } else {
+        line(text, &format!("young = {young:?}"));
+    }
+    let closing = model == "mohr-coulomb" && u.arbitrary()?;
+    if model != "hencky" {
+        let cohesion = if closing || u.ratio(1, 4)? { 0.0 } else { young * size(u, -8.0, 0.0)? };
+        line(text, &format!("cohesion = {cohesion:?}"));
+    }
+    if closing {
+        line(text, "separation = \"closing\"");
+    }
+    if model == "mohr-coulomb" {
+        let friction = between(u, if closing { 1.0 } else { 0.0 }, 60.0)?;
+        line(text, &format!("friction = {friction:?}\ndilation = {:?}", friction * between(u, 0.0, 1.0)?));
+    }
+    if dynamic || u.ratio(3, 4)? {
+        line(text, &format!("density = {:?}", size(u, 0.0, 5.0)?));
+    }
+    if start == Start::AtRest && u.ratio(1, 4)? {
+        line(text, &format!("k0 = {:?}", between(u, 0.0, 3.0)?));
+    }
+    Ok(())
+}
+
+fn bodies(u: &mut Unstructured<'_>, grid: &Grid, materials: usize, text: &mut String) -> Result<()> {
+    for _ in 0..u.int_in_range(1..=2)? {
+        let (material, points) = (u.int_in_range(0..=materials - 1)?, u.int_in_range(1..=4_u8)?);
+        line(text, &format!("[[body]]\nmaterial = \"m{material}\"\npoints_per_cell = {points}"));
+        let [a, b] = [grid.place(u)?, grid.place(u)?];
+        match u.int_in_range(0..=7)? {
+            0 => line(text, &format!("polygon = [{a:?}, {b:?}, {:?}]", grid.place(u)?)),
+            1 => line(text, &format!("circle = {{ center = {a:?}, radius = {:?} }}", grid.h * size(u, -1.0, 0.5)?)),
+            _ => {
+                let lower = [a[0].min(b[0]), a[1].min(b[1])];
+                let upper = [a[0].max(b[0]), a[1].max(b[1])];
+                line(text, &format!("box = {{ lower = {lower:?}, upper = {upper:?} }}"));
+            }
+        }
+        if u.ratio(1, 4)? {
+            line(text, &format!("velocity = [{:?}, {:?}]", signed(u, -3.0, 3.0)?, signed(u, -3.0, 3.0)?));
+        }
+    }
+    Ok(())
+}
+
+/// The supports; whether each face of left, right, bottom, top is free.
+fn boundary(u: &mut Unstructured<'_>, text: &mut String) -> Result<[bool; 4]> {
+    line(text, "[boundary]");
+    let mut free = [false; 4];
+    for (face, free) in ["left", "right", "bottom", "top"].into_iter().zip(&mut free) {
+        let support = quoted(u, &["fixed", "roller", "free"])?;
+        *free = support == "free";
+        line(text, &format!("{face} = \"{support}\""));
+    }
+    Ok(free)
+}
+
+fn ramp(u: &mut Unstructured<'_>) -> Result<f64> {
+    if u.arbitrary()? { Ok(0.0) } else { size(u, -6.0, 3.0) }
+}
+
+/// Gravity, and the stress at the start that belongs to it.
+fn gravity(u: &mut Unstructured<'_>, start: Start, text: &mut String) -> Result<()> {
+    if start == Start::Nothing && u.ratio(1, 4)? {
+        return Ok(());
+    }
+    let across = if start != Start::AtRest && u.ratio(1, 4)? { signed(u, -3.0, 2.0)? } else { 0.0 };
+    let down = if start == Start::AtRest { -size(u, -1.0, 2.5)? } else { signed(u, -1.0, 2.5)? };
+    let ramp = if start == Start::Nothing { ramp(u)? } else { 0.0 };
+    line(text, &format!("[gravity]\nacceleration = [{across:?}, {down:?}]\nramp = {ramp:?}"));
+    match start {
+        Start::Nothing => {}
+        Start::AtRest => line(text, &format!("[initial]\nk0 = {:?}", between(u, 0.0, 3.0)?)),
+        Start::Elastic => line(text, "[initial]\ngravity = \"elastic\""),
+    }
+    Ok(())
+}
+
+/// A traction, a point load, a reduction of strength.
+fn loads(u: &mut Unstructured<'_>, grid: &Grid, text: &mut String) -> Result<()> {
+    if u.ratio(1, 6)? {
+        let stress = [signed(u, 0.0, 9.0)?, signed(u, 0.0, 9.0)?];
+        let (from, to, ramp) = (grid.place(u)?, grid.place(u)?, ramp(u)?);
+        line(text, &format!("[[traction]]\nfrom = {from:?}\nto = {to:?}\nstress = {stress:?}\nramp = {ramp:?}"));
+    }
+    if u.ratio(1, 6)? {
+        let (at, force) = (grid.place(u)?, [signed(u, 0.0, 9.0)?, signed(u, 0.0, 9.0)?]);
+        line(text, &format!("[[point_load]]\nat = {at:?}\nforce = {force:?}\nramp = {:?}", ramp(u)?));
+    }
+    if u.ratio(1, 8)? {
+        line(text, &format!("[strength_reduction]\nfactor = {:?}", between(u, 0.1, 5.0)?));
+    }
+    Ok(())
+}
+
+/// A footing, and a face or segment that moves.
+fn strips(u: &mut Unstructured<'_>, grid: &Grid, free: [bool; 4], text: &mut String) -> Result<()> {
+    let segment = |u: &mut Unstructured<'_>| Ok(format!("from = {:?}\nto = {:?}", grid.place(u)?, grid.place(u)?));
+    if u.ratio(1, 4)? {
+        let (segment, base, moved) = (segment(u)?, quoted(u, &["smooth", "rough"])?, grid.motion(u)?);
+        line(text, &format!("[footing]\n{segment}\ndisplacement = {moved:?}\nbase = \"{base}\""));
+    }
+    if u.ratio(1, 6)? {
+        let number = u.int_in_range(0..=3)?;
+        let site = if free[number] {
+            format!("face = \"{}\"", ["left", "right", "bottom", "top"][number])
+        } else {
+            segment(u)?
+        };
+        let (way, components) = (quoted(u, &["displacement", "velocity"])?, quoted(u, &["all", "normal"])?);
+        line(text, &format!("[[prescribed]]\n{site}\n{way} = {:?}\ncomponents = \"{components}\"", grid.motion(u)?));
+    }
+    Ok(())
+}
+
+/// Stabilisation and iteration; few iterations, so that many cases are tried.
+fn solver(u: &mut Unstructured<'_>, text: &mut String) -> Result<()> {
+    let methods = ["none", "f-bar", "f-bar-zhao", "modified-f-bar", "consistent-f-bar"];
+    line(text, &format!("[stabilisation]\nmethod = \"{}\"", quoted(u, &methods)?));
+    let nonlinear = quoted(u, &["auto", "broyden", "newton"])?;
+    line(text, &format!("[solver]\nnonlinear = \"{nonlinear}\"\nmax_iterations = {}", u.int_in_range(1..=16)?));
+    if u.arbitrary()? {
+        let tolerances = [size(u, -12.0, -1.0)?, size(u, -9.0, -1.0)?];
+        line(text, &format!("tolerance = {:?}\nforce_tolerance = {:?}", tolerances[0], tolerances[1]));
+    }
+    if u.arbitrary()? {
+        let kind = quoted(u, &["laplacian", "curvature"])?;
+        let cells = quoted(u, &["occupied", "partly-filled"])?;
+        line(text, &format!("background = {:?}", if u.ratio(1, 4)? { 0.0 } else { size(u, -9.0, 0.0)? }));
+        line(text, &format!("background_kind = \"{kind}\"\nbackground_cells = \"{cells}\""));
+    }
+    if u.ratio(1, 4)? {
+        line(text, "[[history]]\nquantity = \"energy\"");
+    }
+    Ok(())
+}
