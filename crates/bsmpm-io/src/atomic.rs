@@ -15,11 +15,18 @@ use crate::Error;
 /// [`Error::File`] with the system's error; the temporary file is removed and an older `path` stays as it was.
 pub fn replace(path: &Path, fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> Result<(), Error> {
     let temporary = temporary(path);
-    let result = write_synced(&temporary, fill).and_then(|()| fs::rename(&temporary, path));
+    let result =
+        write_synced(&temporary, fill).and_then(|()| fs::rename(&temporary, path)).and_then(|()| sync_folder(path));
     result.map_err(|source| {
         let _ = fs::remove_file(&temporary);
         Error::File { action: "write", path: path.to_owned(), source }
     })
+}
+
+/// Puts the entry of a file in its folder on the disk.
+pub(crate) fn sync_folder(path: &Path) -> io::Result<()> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    File::open(folder)?.sync_all()
 }
 
 fn write_synced(path: &Path, fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> io::Result<()> {

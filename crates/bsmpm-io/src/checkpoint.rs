@@ -11,7 +11,7 @@ mod store;
 
 pub use find::{Found, named, newest};
 pub use record::{Array, Number, Record, SCHEMA};
-pub use store::{Facts, Pending, Phase, Store};
+pub use store::{Facts, Pending, Phase, Store, forget_beyond};
 
 use std::path::{Path, PathBuf};
 

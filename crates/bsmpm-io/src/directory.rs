@@ -77,7 +77,11 @@ impl OutputDirectory {
             }
             (Some(_), Existing::Delete) => delete_run(path, &held)?,
         }
-        first.write_first(path)?;
+        let refused = |error| match error {
+            Error::File { source, .. } => Error::Directory { action: "claim", path: path.clone(), source },
+            other => other,
+        };
+        first.write(path).map_err(refused)?;
         self.idle = false;
         Ok(self)
     }
@@ -98,8 +102,9 @@ impl OutputDirectory {
         let before = self.run()?.map_or_else(Vec::new, |run| run.outputs);
         let kept = |name: &str| manifest.outputs.iter().any(|output| output.path == name);
         let doomed = doomed(&self.path, before.iter().map(|output| &*output.path).filter(|name| !kept(name)))?;
-        manifest.write(&self.path)?;
+        // What is left half deleted is still named by the older manifest.
         delete(&doomed)?;
+        manifest.write(&self.path)?;
         self.idle = false;
         Ok(self)
     }

@@ -2,7 +2,7 @@
 //! a reader finds a good one at any moment.
 
 use std::collections::BTreeMap;
-use std::fs::{self, File};
+use std::fs;
 use std::io::{self, Write};
 use std::path::Path;
 use std::time::SystemTime;
@@ -147,21 +147,6 @@ impl Manifest {
         let path = directory.join(MANIFEST);
         self.check(&path)?;
         atomic::replace(&path, |file| self.print(file))
-    }
-
-    /// Writes `run.json` where there is none: of several programs that try at once, one succeeds.
-    pub(crate) fn write_first(&self, directory: &Path) -> Result<(), Error> {
-        let path = directory.join(MANIFEST);
-        self.check(&path)?;
-        let refused = |source| Error::Directory { action: "claim", path: directory.to_owned(), source };
-        let mut file = File::create_new(&path).map_err(refused)?;
-        let mut text = Vec::new();
-        let written = self.print(&mut text).and_then(|()| file.write_all(&text));
-        written.map_err(|source| {
-            // It is ours, and half of it would only block the directory.
-            let _ = fs::remove_file(&path);
-            refused(source)
-        })
     }
 
     fn print(&self, file: &mut impl Write) -> io::Result<()> {

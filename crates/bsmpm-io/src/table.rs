@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use crate::Error;
+use crate::{Error, atomic};
 
 /// The heading of one column.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -66,6 +66,7 @@ impl Table {
     pub fn create(path: &Path, columns: &[Column]) -> Result<Self, Error> {
         check_headings(path, columns)?;
         let file = File::create_new(path).map_err(Error::file("create", path))?;
+        atomic::sync_folder(path).map_err(Error::file("create", path))?;
         let (path, columns) = (path.to_owned(), columns.to_vec());
         let mut table = Self { path, file, hasher: Box::default(), columns };
         let heading = heading(&table.columns);

@@ -2,6 +2,11 @@
 
 use std::time::{SystemTime, UNIX_EPOCH};
 
+/// The present time, see [`utc`].
+pub fn now() -> String {
+    utc(SystemTime::now())
+}
+
 /// A time as RFC 3339 writes it, to the second: `2026-11-21T02:44:53Z`. Times before 1970 become its first second.
 pub fn utc(time: SystemTime) -> String {
     let seconds = time.duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs());

@@ -3,7 +3,10 @@
 mod first;
 mod restart;
 
+pub(crate) use first::versions;
+
 use crate::cli::Arguments;
+use crate::restart::Beginning;
 use crate::surfaces;
 use bsmpm::control::Accepted;
 use bsmpm::error::Measures;
@@ -12,7 +15,7 @@ use bsmpm::step::equilibrium::Method;
 use bsmpm::step::quasi_newton::QuasiNewton;
 use bsmpm_io::Error;
 use bsmpm_io::checkpoint::Store;
-use bsmpm_io::directory::{Existing, HISTORY, OutputDirectory};
+use bsmpm_io::directory::{HISTORY, OutputDirectory};
 use bsmpm_io::failure::{FAILURE, FailureReport};
 use bsmpm_io::frame::Frame;
 use bsmpm_io::frames::{COLLECTION, Frames};
@@ -33,6 +36,8 @@ pub struct Ledger {
     residuals: Option<Table>, // if the case asks for it
     frames: Frames,
     store: Option<Store>, // once there is a checkpoint
+    news: Vec<String>,    // warnings of this start
+    has_gaps: bool,       // a table was begun anew
     keep: u64,
     end: f64,
     dt: f64,
@@ -62,7 +67,7 @@ impl Ledger {
     /// A new run in a directory that is held.
     pub fn open(
         held: OutputDirectory,
-        existing: Existing,
+        beginning: &Beginning,
         (arguments, case): (&Arguments, &Case),
         ranks: usize,
         columns: Vec<Column>,
@@ -72,8 +77,9 @@ impl Ledger {
         if case.output.residuals {
             manifest.name_output(RESIDUALS);
         }
-        manifest.warnings.extend(held.note().map(str::to_owned));
-        let directory = held.claim(existing, &manifest)?;
+        manifest.warnings.extend(held.note().map(str::to_owned).into_iter().chain(beginning.warnings.clone()));
+        manifest.restarts.clone_from(&beginning.restarts);
+        let directory = held.claim(beginning.existing, &manifest)?;
         let headings = Headings::of(case, &columns);
         let path = directory.path();
         let residuals = headings.residuals.map(|headings| Table::create(&path.join(RESIDUALS), &headings));
@@ -83,6 +89,8 @@ impl Ledger {
             steps: Table::create(&path.join(STEPS), &headings.steps)?,
             frames: Frames::create(path)?,
             store: None,
+            news: manifest.warnings.clone(),
+            has_gaps: false,
             keep: case.output.checkpoint.keep,
             end: case.analysis.end,
             dt: case.analysis.dt,
@@ -90,6 +98,23 @@ impl Ledger {
             manifest,
             columns,
         })
+    }
+
+    /// Warnings of this start, which are still to be told.
+    pub fn news(&mut self) -> Vec<String> {
+        std::mem::take(&mut self.news)
+    }
+
+    /// Whether a table lacks the steps before.
+    pub fn has_gaps(&self) -> bool {
+        self.has_gaps
+    }
+
+    /// Notes, if that is possible, that the run ends because its files could not be written.
+    pub fn abandon(&mut self, exit_code: u8) {
+        self.manifest.finish(Status::Failed, exit_code);
+        // On a full disk this cannot be written, either.
+        let _ = self.manifest.write(self.directory.path());
     }
 
     /// What `run.json` says; written when the next file is.

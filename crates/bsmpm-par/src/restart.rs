@@ -1,5 +1,7 @@
 //! Whether a run begins or goes on, and from what.
 
+mod there;
+
 use crate::checkpoint::{self, Opened, Refusal, State, Wanted, agree, broadcast, find};
 use crate::cli::{Arguments, Restart};
 use crate::exit;
@@ -14,25 +16,40 @@ use bsmpm::points::Points;
 use bsmpm::schedule::Schedule;
 use bsmpm_io::checkpoint::{FOLDER, Found};
 use bsmpm_io::directory::{Existing, OutputDirectory};
-use bsmpm_io::manifest::{self, Manifest, Status};
-use bsmpm_scene::{Case, Difference};
+use bsmpm_io::manifest;
+use bsmpm_scene::Case;
 use hdf5_collective::Hdf5;
 use mpi::collective::{CommunicatorCollectives, SystemOperation};
 use mpi::environment::Universe;
 use mpi::topology::Communicator;
 use std::path::{Path, PathBuf};
-
-/// Restarts in a row from one step after which no more is tried: the loop of a batch system would have no end.
-const MOST_FUTILE: usize = 3;
+use there::There;
 
 /// How a run starts.
 pub enum Start<'h> {
     /// From the case.
-    New(Existing),
+    New(Beginning),
     /// From a checkpoint.
     Resumed(Box<Resumed<'h>>),
-    /// Not at all: the case's end was reached before.
-    Complete,
+    /// Not at all: the case's end was reached before, with that exit code.
+    Complete(u8),
+}
+
+/// What a run that starts from its case finds.
+#[derive(Clone, Debug)]
+pub struct Beginning {
+    /// What becomes of a run that is there.
+    pub existing: Existing,
+    /// How often it has been started before, on the first rank.
+    pub restarts: Vec<manifest::Restart>,
+    /// What is to be told, on the first rank.
+    pub warnings: Vec<String>,
+}
+
+impl Default for Beginning {
+    fn default() -> Self {
+        Self { existing: Existing::Delete, restarts: Vec::new(), warnings: Vec::new() }
+    }
 }
 
 /// A checkpoint from which a run goes on.
@@ -63,98 +80,47 @@ pub fn plan<'h>(
 ) -> Result<Start<'h>, Refusal> {
     let world = universe.world();
     let Some(restart) = &arguments.restart else {
-        return Ok(Start::New(if arguments.force { Existing::Delete } else { Existing::Refuse }));
+        let existing = if arguments.force { Existing::Delete } else { Existing::Refuse };
+        return Ok(Start::New(Beginning { existing, ..Beginning::default() }));
     };
     let run = agree(&world, held.map_or(Ok(None), OutputDirectory::run).map_err(Refusal::from))?;
     let (found, passed_over) = match restart {
         Restart::From(file) => find(&world, Wanted::Named(file))?,
         Restart::Auto => {
-            let there = agree(&world, held.map_or(Ok(There::Unfinished), |_| there(run.as_ref(), case)))?;
-            match There::ALL[usize::from(broadcast(&world, 0, vec![there as u8])[0])] {
-                There::Nothing => return Ok(Start::New(Existing::Refuse)),
-                There::Complete => return Ok(Start::Complete),
+            let there = agree(&world, held.map_or(Ok(There::Unfinished), |_| there::look(run.as_ref(), case)))?;
+            match There::of(broadcast(&world, 0, there.bytes())) {
+                There::Nothing => {
+                    return Ok(Start::New(Beginning { existing: Existing::Refuse, ..Beginning::default() }));
+                }
+                There::Complete(code) => return Ok(Start::Complete(code)),
                 There::Unfinished => find(&world, Wanted::Newest(&arguments.directory().join(FOLDER)))?,
             }
         }
     };
     let Some(found) = found else {
-        // With the bad checkpoints the rows of the run would go, too.
-        let none = passed_over.first().map_or(Ok(()), |bad| Err(Refusal::new(exit::CHECKPOINT, bad.clone())));
-        return agree(&world, none).map(|()| Start::New(Existing::Delete));
+        let anew =
+            held.map_or_else(|| Ok(Beginning::default()), |_| there::anew(run.as_ref(), &passed_over, world.size()));
+        return agree(&world, anew).map(Start::New);
     };
     let restarts = run.map_or_else(Vec::new, |run| run.restarts);
-    let hopeless = if *restart == Restart::Auto { futile(&restarts, found.record.step) } else { Ok(()) };
+    let hopeless = if *restart == Restart::Auto { there::futile(&restarts, found.record.step) } else { Ok(()) };
     agree(&world, hopeless)?;
     let opened = Opened::new((hdf5, universe.world()), &found)?;
     let state = State::parse(&found.path, &opened.state()?)?;
     let past = &state.files.manifest;
-    let changed = admissible(&format!("the checkpoint {}", found.path.display()), past, case)?;
+    let changed = there::admissible(&format!("the checkpoint {}", found.path.display()), past, case)?;
+    let changed: Vec<String> = changed.iter().map(ToString::to_string).collect();
+    let (t, end) = (state.progress.t, case.analysis.end);
+    if t > end {
+        let reason =
+            format!("the checkpoint {} is at t = {t}, beyond the end of the case, {end}", found.path.display());
+        return Err(Refusal::new(exit::CHECKPOINT, reason));
+    }
     let mut warnings: Vec<String> =
         passed_over.into_iter().map(|bad| format!("{bad}; an older checkpoint is used")).collect();
-    warnings.extend(other_machine(past, world.size().unsigned_abs(), &found));
+    warnings.extend(there::other_machine(past, world.size().unsigned_abs(), &found));
     warnings.extend(changed.iter().map(|change| format!("since the checkpoint, {change}")));
     Ok(Start::Resumed(Box::new(Resumed { found, state, changed, warnings, restarts, opened })))
-}
-
-/// What a directory holds, as the first rank sees it.
-#[derive(Clone, Copy)]
-enum There {
-    Nothing,
-    Complete,
-    Unfinished,
-}
-
-impl There {
-    const ALL: [Self; 3] = [Self::Nothing, Self::Complete, Self::Unfinished];
-}
-
-fn there(run: Option<&Manifest>, case: &Case) -> Result<There, Refusal> {
-    let Some(run) = run else { return Ok(There::Nothing) };
-    let changed = admissible("the run in the output directory", run, case)?;
-    let further = changed.iter().any(|change| change.starts_with("analysis.end"));
-    Ok(if run.status == Status::Finished && !further { There::Complete } else { There::Unfinished })
-}
-
-/// The keys that differ between a case and what was run, if a run may go on with all of them changed.
-fn admissible(what: &str, past: &Manifest, case: &Case) -> Result<Vec<String>, Refusal> {
-    let refused = |reason: String| Refusal::new(exit::CHECKPOINT, format!("{what} {reason}"));
-    let differences = bsmpm_scene::differences(&past.case.text, &case.text);
-    let differences = differences.map_err(|_| refused("is of a case that this version does not know".into()))?;
-    let (free, bound): (Vec<Difference>, Vec<Difference>) =
-        differences.into_iter().partition(|difference| difference.may_change);
-    let told = |list: &[Difference]| list.iter().map(ToString::to_string).collect::<Vec<_>>();
-    if bound.is_empty() {
-        Ok(told(&free))
-    } else {
-        Err(refused(format!("is of another case: {}", told(&bound).join("; "))))
-    }
-}
-
-fn futile(restarts: &[manifest::Restart], step: u64) -> Result<(), Refusal> {
-    let same = restarts.iter().rev().take_while(|restart| restart.step == step).count();
-    if same < MOST_FUTILE {
-        return Ok(());
-    }
-    let reason = format!(
-        "{same} restarts in a row came to no checkpoint beyond step {step}; --restart with that checkpoint's file tries again"
-    );
-    Err(Refusal::new(exit::STALLED, reason))
-}
-
-/// Why the run will not repeat to the bit, if so.
-fn other_machine(past: &Manifest, ranks: u32, found: &Found) -> Vec<String> {
-    let mut reasons = Vec::new();
-    if found.record.ranks != ranks {
-        let before = found.record.ranks;
-        reasons.push(format!(
-            "restart on {ranks} rank(s) of a checkpoint of {before}: it agrees within tolerances, not to the bit"
-        ));
-    }
-    let version = env!("CARGO_PKG_VERSION");
-    if past.version != version {
-        reasons.push(format!("restart by version {version} of a checkpoint by {}", past.version));
-    }
-    reasons
 }
 
 impl Resumed<'_> {

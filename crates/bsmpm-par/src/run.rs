@@ -68,6 +68,8 @@ pub struct Run<'p> {
 pub struct Before {
     /// whether anything was
     pub resumed: bool,
+    /// whether that was in another directory
+    pub is_branch: bool,
     /// step of the newest frame
     pub last_frame: Option<u64>,
     /// strips of which it was told that they hold nothing
@@ -89,7 +91,9 @@ impl<'p> Run<'p> {
         mut before: Before,
     ) -> Self {
         let (start, frame_times, last_frame) = (Instant::now(), setup::frame_times(&case), before.last_frame);
-        let saving = Saving::new(before.resumed.then(|| simulation.steps()));
+        let has_gaps = ledger.as_ref().is_some_and(Ledger::has_gaps);
+        let newest = (before.resumed && !before.is_branch).then(|| simulation.steps());
+        let saving = Saving::new(newest, before.is_branch || has_gaps, simulation.steps());
         Self {
             universe,
             case,
@@ -125,9 +129,9 @@ impl<'p> Run<'p> {
             if self.simulation.halo.is_interrupted() && self.simulation.time() < self.case.analysis.end {
                 return self.stop_on_request();
             }
-            self.save_on_request();
-            if due.checkpoint {
-                self.checkpoint();
+            let saved = if due.checkpoint { self.checkpoint() } else { Ok(()) };
+            if let Err(code) = saved.and_then(|()| self.save_on_request()) {
+                return code;
             }
             if let Some(fault) = self.fault {
                 fault.strike(self.rank(), step);
@@ -146,7 +150,9 @@ impl<'p> Run<'p> {
     /// A warning, told and kept.
     fn warn(&mut self, warning: String) {
         self.log.line("warning", &format!("warning: {warning}"));
-        if let Some(ledger) = &mut self.ledger {
+        if let Some(ledger) = &mut self.ledger
+            && !ledger.manifest().warnings.contains(&warning)
+        {
             ledger.manifest().warnings.push(warning);
         }
     }
@@ -156,7 +162,7 @@ impl<'p> Run<'p> {
         self.log.step(step, accepted, wall);
         let written = self.ledger.as_mut().map_or(Ok(()), |ledger| ledger.step(step, accepted, wall));
         self.require(written);
-        if step == 1 {
+        if self.saving.is_first(step) {
             self.tell_unused_options();
         }
         self.tell_strips_without_material(accepted);

@@ -193,3 +193,76 @@ fn the_clock_can_ask_for_checkpoints_and_they_change_nothing() {
         assert_eq!(kept, if name == "clock" { 6 } else { 4 });
     }
 }
+
+const CLAY: &str = "[material.clay]\nmodel = \"hencky\"\nyoung = 1e6\npoisson = 0.3\ndensity = 2000\n\n[[body]]";
+
+#[test]
+fn materials_in_another_order_are_another_case() {
+    let scratch = Scratch::with_case(&SLIDING_BLOCK.replacen("[[body]]", CLAY, 1));
+    scratch.mpirun(2, &["case.toml", "-q", "--max-steps", "5"]).expect(75);
+    let clay = CLAY.strip_suffix("[[body]]").unwrap();
+    scratch.write("case.toml", SLIDING_BLOCK.replacen("[material.rubber]", &format!("{clay}[material.rubber]"), 1));
+    let output = scratch.mpirun(2, &["case.toml", "-q", "--restart", "auto"]).expect(76);
+    output.says_once("material was rubber, clay, and is clay, rubber");
+}
+
+#[test]
+fn a_run_that_has_ended_is_never_begun_anew_by_itself() {
+    let scratch = Scratch::with_case(SLIDING_BLOCK);
+    scratch.mpirun(2, &["case.toml", "-q"]).expect(0);
+    let before = std::fs::read(scratch.path("case.out/history.csv")).unwrap();
+    let further = ["case.toml", "-q", "--set", "analysis.end=0.06", "--restart", "auto"];
+    scratch.mpirun(2, &further).expect(76).says_once("has finished and left no checkpoint");
+    let shorter = ["case.toml", "-q", "--set", "analysis.end=0.04", "--restart", "auto"];
+    scratch.mpirun(2, &shorter).expect(0).says_once("is complete already");
+    assert_eq!(std::fs::read(scratch.path("case.out/history.csv")).unwrap(), before);
+    // Nor is one whose checks failed, which is complete with its own code.
+    let check = ["--set", "check.0.quantity=runout", "--set", "check.0.max=0.1", "-o", "checked"];
+    scratch.mpirun(2, &[&["case.toml", "-q"][..], &check].concat()).expect(77);
+    scratch
+        .mpirun(2, &[&["case.toml", "-q", "--restart", "auto"][..], &check].concat())
+        .expect(77)
+        .says_once("complete already");
+}
+
+#[test]
+fn a_run_that_is_killed_before_its_first_checkpoint_starts_again_but_not_for_ever() {
+    let scratch = Scratch::with_case(SLIDING_BLOCK);
+    let run =
+        |fault: &str| scratch.job(Some(2), &["case.toml", "--restart", "auto"]).variable("BSMPM_FAULT", fault).run();
+    run("panic:rank=1,step=5").expect(70);
+    for _ in 0..3 {
+        run("panic:rank=1,step=5").expect(70).says_once("it starts again from the case");
+    }
+    run("panic:rank=1,step=500").expect(72).says_once("3 restarts in a row");
+    let output = scratch.mpirun(2, &["case.toml", "--force"]).expect(0);
+    assert_eq!(output.count("starts again"), 0);
+}
+
+#[test]
+fn a_branch_in_another_directory_has_a_checkpoint_of_its_own_at_once() {
+    let scratch = Scratch::with_case(SLIDING_BLOCK);
+    scratch.mpirun(2, &["case.toml", "-q", "-o", "a", "--max-steps", "5"]).expect(75);
+    let branch = ["case.toml", "-q", "-o", "b", "--restart"];
+    let from = ["a/checkpoint/step_000000005.h5", "--max-steps", "5"];
+    scratch.mpirun(2, &[&branch[..], &from].concat()).expect(75);
+    assert_eq!(entries(&scratch.path("b/checkpoint")), ["step_000000005.h5", "step_000000005.json"]);
+    scratch.mpirun(2, &[&branch[..], &["auto"]].concat()).expect(0);
+    assert_eq!(history(&scratch.path("b")).get("step").unwrap()[0], 0.0, "the rows of before are there");
+    let beyond = ["-o", "c", "--set", "analysis.end=0.001", "--restart", "a/checkpoint/step_000000005.h5"];
+    scratch.mpirun(2, &[&["case.toml", "-q"][..], &beyond].concat()).expect(76).says_once("beyond the end of the case");
+}
+
+#[test]
+fn a_failure_that_was_mended_is_no_longer_told() {
+    let scratch = Scratch::with_case(SLIDING_BLOCK);
+    scratch.mpirun(2, &["case.toml", "-q", "--set", OFTEN, "--max-steps", "5"]).expect(75);
+    let stuck =
+        ["case.toml", "-q", "--set", OFTEN, "--set", "solver.max_iterations=1", "--set", "solver.nonlinear=newton"];
+    scratch.mpirun(2, &[&stuck[..], &["--restart", "auto"]].concat()).expect(80);
+    assert!(scratch.path("case.out/failure.json").exists());
+    scratch.mpirun(2, &["case.toml", "-q", "--set", OFTEN, "--restart", "auto"]).expect(0);
+    assert!(!scratch.path("case.out/failure.json").exists());
+    let manifest = manifest(&scratch.path("case.out"));
+    assert!(manifest.failure.is_none() && manifest.outputs.iter().all(|output| output.path != "failure.json"));
+}

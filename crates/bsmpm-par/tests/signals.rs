@@ -107,7 +107,7 @@ fn a_step_that_takes_long_is_given_up() {
 }
 
 #[test]
-fn usr2_writes_a_frame_and_changes_nothing_else() {
+fn usr2_writes_a_frame_and_a_checkpoint_and_changes_nothing_else() {
     let scratch = Scratch::with_case(&endless());
     for (ranks, to) in [(None, To::Launcher), (Some(2), To::Launcher), (Some(2), To::Rank(1))] {
         let mut running = under_way(&scratch, ranks);
@@ -120,8 +120,9 @@ fn usr2_writes_a_frame_and_changes_nothing_else() {
         to.send("USR1", &running);
         let output = running.end().expect(75);
         stopped(&scratch);
-        let (directory, count) = (scratch.path("case.out"), output.count("a frame is written"));
+        let (directory, count) = (scratch.path("case.out"), output.count("a frame and a checkpoint are written"));
         assert_eq!(all_frames(&directory).len(), 2 + count, "start, on request, end: {output:#?}");
+        assert_eq!(output.count("checkpoint of step"), 1 + count, "on request, end: {output:#?}");
         let interrupted = history(&directory);
         let last = interrupted.get("step").unwrap().last().unwrap().to_string();
         let whole = ["case.toml", "-q", "-o", "whole", "--force", "--max-steps", &last];

@@ -108,7 +108,8 @@ fn collect(record: &Record, values: &mut BTreeMap<String, Value>) {
             }
             Datum::Named(named) => {
                 named.iter().for_each(|(_, inner)| collect(inner, values));
-                continue;
+                // Their order, too: it is the points' number for them.
+                named.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>().join(", ")
             }
             Datum::Records(inner) => {
                 inner.iter().for_each(|inner| collect(inner, values));
@@ -168,6 +169,21 @@ mod tests {
         let found = told("[material.soil]", "[material.clay]");
         assert!(found.contains(&("material.soil.young was 5840000.0, and is not given".into(), false)), "{found:?}");
         assert_eq!(told("cell = 0.1", "cell = 0.05").len(), 1);
+    }
+
+    #[test]
+    fn the_order_of_materials_is_that_of_the_points_numbers() {
+        let clay = "[material.clay]\nmodel = \"hencky\"\nyoung = 1e6\npoisson = 0.3\ndensity = 2000.0\n";
+        let (soil_first, clay_first) = (
+            CASE.replace("[[body]]", &format!("{clay}[[body]]")),
+            CASE.replace("[material.soil]", &format!("{clay}[material.soil]")),
+        );
+        let found = differences(&soil_first, &clay_first).unwrap();
+        assert_eq!(found.len(), 1);
+        assert_eq!(
+            (found[0].to_string().as_str(), found[0].may_change),
+            ("material was soil, clay, and is clay, soil", false)
+        );
     }
 
     #[test]

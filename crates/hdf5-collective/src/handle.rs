@@ -9,7 +9,7 @@ use std::ptr;
 use hdf5_sys::h5::{H5_index_t, H5_iter_order_t, H5get_libversion, H5open, hsize_t};
 use hdf5_sys::h5d::{H5D_fill_time_t, H5Dcreate2, H5Dopen2};
 use hdf5_sys::h5e::{H5E_DEFAULT, H5E_direction_t, H5E_error2_t, H5Eset_auto2, H5Ewalk2};
-use hdf5_sys::h5f::{H5F_ACC_RDONLY, H5F_ACC_TRUNC, H5Fclose, H5Fcreate, H5Fopen};
+use hdf5_sys::h5f::{H5F_ACC_RDONLY, H5F_ACC_TRUNC, H5F_scope_t, H5Fclose, H5Fcreate, H5Fflush, H5Fopen};
 use hdf5_sys::h5g::{H5G_info_t, H5Gget_info};
 use hdf5_sys::h5i::{H5I_type_t, H5Idec_ref, H5Iget_type, hid_t};
 use hdf5_sys::h5l::{H5L_info1_t, H5L_type_t, H5Lget_info1, H5Lget_name_by_idx};
@@ -153,6 +153,8 @@ impl File {
 
     /// Closes the file; its arrays must be closed.
     pub(crate) fn close(self) -> Result<()> {
+        // SAFETY: open. Every rank's part goes to the disk, not only what the first one's system holds.
+        check("write the file", unsafe { H5Fflush(self.0, H5F_scope_t::H5F_SCOPE_GLOBAL) })?;
         // SAFETY: open, and closed only here.
         check("close the file", unsafe { H5Fclose(self.0) })
     }

@@ -103,6 +103,7 @@ impl Store {
             }
         }
         sync(&folder)?;
+        sync(directory)?;
         Ok(Self { folder, keep: keep.max(1) })
     }
 
@@ -111,12 +112,15 @@ impl Store {
         &self.folder
     }
 
-    /// The good checkpoint of a step, if there is one already; a damaged one of that step is taken out of the way.
+    /// The good checkpoint of a step, if there is one of this case and as many ranks already; another one of that step is
+    /// taken out of the way.
     ///
     /// # Errors
     /// [`Error::File`] when the system refuses.
-    pub fn existing(&self, step: u64) -> Result<Option<Found>, Error> {
-        let found = named(&file(&self.folder, step, ".h5")).ok();
+    pub fn existing(&self, facts: &Facts) -> Result<Option<Found>, Error> {
+        let step = facts.step;
+        let same = |found: &Found| found.record.case == facts.case && found.record.ranks == facts.ranks;
+        let found = named(&file(&self.folder, step, ".h5")).ok().filter(same);
         if found.is_none() && remove(&file(&self.folder, step, ".json"))? {
             sync(&self.folder)?;
         }
@@ -161,7 +165,8 @@ impl Store {
         at(Phase::Committed);
         sync(&self.folder)?;
         at(Phase::Kept);
-        self.purge(pending.step)?;
+        // The checkpoint is good: what could not be removed now is removed after the next one.
+        let _ = self.purge(pending.step);
         Ok(found)
     }
 
@@ -179,6 +184,22 @@ impl Store {
         }
         Ok(())
     }
+}
+
+/// Removes what is named like a checkpoint of a later step than this one, good or not: records first.
+///
+/// # Errors
+/// [`Error::File`] when the system refuses.
+pub fn forget_beyond(directory: &Path, step: u64) -> Result<(), Error> {
+    let folder = directory.join(FOLDER);
+    for ending in [".json", ".h5"] {
+        let there = steps(&folder, ending).map_err(Error::file("read", &folder))?;
+        for later in there.into_iter().filter(|&later| later > step) {
+            remove(&file(&folder, later, ending))?;
+        }
+        sync(&folder)?;
+    }
+    Ok(())
 }
 
 impl Pending {

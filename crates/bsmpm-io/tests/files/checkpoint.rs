@@ -59,7 +59,7 @@ fn a_checkpoint_is_found_again_as_it_was_written_and_the_newest_few_are_kept() {
     assert_eq!(checkpoint::named(&written[1].path.with_extension("json")).unwrap(), written[1]);
     let names = ["step_000000012.h5", "step_000000012.json", "step_1000000007.h5", "step_1000000007.json"];
     assert_eq!(super::listing(store.folder()), names);
-    assert_eq!(store.existing(12).unwrap().as_ref(), Some(&written[1]));
+    assert_eq!(store.existing(&facts(12)).unwrap().as_ref(), Some(&written[1]));
 }
 
 #[test]
@@ -229,7 +229,26 @@ fn a_damaged_checkpoint_of_the_same_step_makes_way() {
     let (directory, path) = one();
     let store = store(directory.path(), 2);
     fs::write(&path, "damaged").unwrap();
-    assert_eq!(store.existing(7).unwrap(), None);
+    assert_eq!(store.existing(&facts(7)).unwrap(), None);
     let found = write(&store, 7, &|_| ()).unwrap();
     assert_eq!(checkpoint::newest(store.folder()).unwrap().0, Some(found));
+}
+
+#[test]
+fn a_checkpoint_of_another_case_or_of_other_ranks_makes_way_too() {
+    for other in [Facts { case: "bad".into(), ..facts(7) }, Facts { ranks: 3, ..facts(7) }] {
+        let (directory, _path) = one();
+        assert_eq!(store(directory.path(), 2).existing(&other).unwrap(), None);
+        assert_eq!(checkpoint::newest(&directory.path().join("checkpoint")).unwrap().0, None);
+    }
+}
+
+#[test]
+fn what_is_later_than_a_step_is_forgotten() {
+    let directory = tempfile::tempdir().unwrap();
+    let store = store(directory.path(), 10);
+    let written: Vec<Found> = [3, 12, 20].map(|step| write(&store, step, &|_| ()).unwrap()).into();
+    fs::write(&written[2].path, "damaged").unwrap();
+    checkpoint::forget_beyond(directory.path(), 3).unwrap();
+    assert_eq!(super::listing(store.folder()), ["step_000000003.h5", "step_000000003.json"]);
 }

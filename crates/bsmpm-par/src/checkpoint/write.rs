@@ -41,7 +41,7 @@ pub fn write(
 ) -> Result<Option<Found>, Refusal> {
     agree(world, finite(facts.step, contents))?;
     let arrays = arrays(world, contents);
-    let begun = store.map(|store| begin(store, facts.step, &arrays)).transpose();
+    let begun = store.map(|store| begin(store, facts, &arrays)).transpose();
     let (existing, pending) = match agree(world, begun)? {
         None => (None, None),
         Some(Begun::Existing(found)) => (Some(found), None),
@@ -64,10 +64,10 @@ enum Begun {
     Pending(Pending),
 }
 
-fn begin(store: &Store, step: u64, arrays: &[Array]) -> Result<Begun, Refusal> {
-    Ok(match store.existing(step)? {
+fn begin(store: &Store, facts: &Facts, arrays: &[Array]) -> Result<Begun, Refusal> {
+    Ok(match store.existing(facts)? {
         Some(found) => Begun::Existing(found),
-        None => Begun::Pending(store.begin(step, arrays)?),
+        None => Begun::Pending(store.begin(facts.step, arrays)?),
     })
 }
 

@@ -56,7 +56,8 @@ fn picture_times(case: &Case) -> Vec<f64> {
     }
 }
 
-fn versions() -> std::collections::BTreeMap<String, String> {
+/// Versions of the libraries in use, by name.
+pub(crate) fn versions() -> std::collections::BTreeMap<String, String> {
     let (major, minor, subminor) = petsc_rs::version();
     let mpi = mpi::environment::library_version().unwrap_or_default();
     let hdf5 = hdf5_collective::version();

@@ -7,6 +7,7 @@ use crate::restart::Resumed;
 use bsmpm_io::Error;
 use bsmpm_io::checkpoint::{self, Found, Store};
 use bsmpm_io::directory::{Existing, HISTORY, OutputDirectory};
+use bsmpm_io::failure::FAILURE;
 use bsmpm_io::frames::Frames;
 use bsmpm_io::manifest::{Manifest, Restart};
 use bsmpm_io::residuals::RESIDUALS;
@@ -26,36 +27,37 @@ impl Ledger {
         columns: Vec<Column>,
         resumed: &Resumed<'_>,
     ) -> Result<Self, Error> {
-        let files = &resumed.state.files;
-        let mut manifest = manifest(first::manifest(arguments, case, ranks), resumed);
-        manifest.warnings.extend(held.note().map(str::to_owned));
         let here = held.path().to_owned();
+        let (mut manifest, mut news) = manifest(first::manifest(arguments, case, ranks), resumed);
+        news.extend(held.note().map(str::to_owned));
         let headings = Headings::of(case, &columns);
-        let directory = if resumed.is_in(&here) {
-            headings.verify(&here, files)?;
-            held.go_on(&manifest)?
-        } else {
-            manifest.outputs.retain(|output| !output.path.contains('/'));
-            let directory = held.claim(Existing::Refuse, &manifest)?;
-            resumed.directory().map_or(Ok(()), |there| copy_tables(&there, &here))?;
-            directory
-        };
+        let directory = claim(held, &headings, &mut manifest, resumed)?;
+        let files = &resumed.state.files;
+        let mut has_gaps = false;
         let mut table = |name: &str, headings: &[Column], mark: &Mark| {
             let path = here.join(name);
             if path.exists() {
                 return Table::resume(&path, headings, mark);
             }
             let first = resumed.state.steps + 1;
-            manifest.warnings.push(format!("{name} of the steps before is not there: it begins with step {first}"));
+            has_gaps = true;
+            news.push(format!("{name} of the steps before is not there: it begins with step {first}"));
             Table::create(&path, headings)
         };
-        let residuals = headings.residuals.zip(files.residuals.as_ref());
+        let residuals = headings.residuals.as_ref().zip(files.residuals.as_ref());
+        let residuals = residuals.map(|(headings, mark)| table(RESIDUALS, headings, mark)).transpose()?;
+        let history = table(HISTORY, &headings.history, &files.history)?;
+        let steps = table(STEPS, &headings.steps, &files.steps)?;
+        let older = manifest.warnings.clone();
+        manifest.warnings.extend(news.iter().filter(|warning| !older.contains(warning)).cloned());
         Ok(Self {
-            residuals: residuals.map(|(headings, mark)| table(RESIDUALS, &headings, mark)).transpose()?,
-            history: table(HISTORY, &headings.history, &files.history)?,
-            steps: table(STEPS, &headings.steps, &files.steps)?,
+            residuals,
+            history,
+            steps,
             frames: Frames::resume(&here, files.frames.clone())?,
             store: None,
+            news,
+            has_gaps,
             keep: case.output.checkpoint.keep,
             end: case.analysis.end,
             dt: case.analysis.dt,
@@ -114,17 +116,39 @@ impl Headings {
     }
 }
 
-/// The manifest of a run that goes on: the new one, with all that the older one has counted.
-fn manifest(new: Manifest, resumed: &Resumed<'_>) -> Manifest {
+/// Makes a directory that of the run that goes on, with its tables as far as they were: nothing is touched before they were
+/// found to be the ones of the checkpoint. Files that were written later go.
+fn claim(
+    held: OutputDirectory,
+    headings: &Headings,
+    manifest: &mut Manifest,
+    resumed: &Resumed<'_>,
+) -> Result<OutputDirectory, Error> {
+    let here = held.path().to_owned();
+    if resumed.is_in(&here) {
+        headings.verify(&here, &resumed.state.files)?;
+        checkpoint::forget_beyond(&here, resumed.state.steps)?;
+        return held.go_on(manifest);
+    }
+    let there = resumed.directory();
+    there.as_ref().map_or(Ok(()), |there| headings.verify(there, &resumed.state.files))?;
+    manifest.outputs.retain(|output| !output.path.contains('/'));
+    let directory = held.claim(Existing::Refuse, manifest)?;
+    there.map_or(Ok(()), |there| copy_tables(&there, &here))?;
+    Ok(directory)
+}
+
+/// The manifest of a run that goes on, the new one with all that the older one has counted and warned of; and the warnings
+/// of this start.
+fn manifest(new: Manifest, resumed: &Resumed<'_>) -> (Manifest, Vec<String>) {
     let old = resumed.state.files.manifest.clone();
     let mut checks = new.checks.clone();
     for check in &mut checks {
         let same = old.checks.iter().find(|past| past.quantity == check.quantity && past.at == check.at);
         check.value = same.and_then(|past| past.value);
     }
-    let mut warnings = old.warnings;
-    warnings.extend(new.warnings.iter().filter(|warning| !warnings.contains(warning)).cloned().collect::<Vec<_>>());
-    warnings.extend(resumed.warnings.iter().cloned());
+    let news = new.warnings.iter().filter(|warning| !old.warnings.contains(warning)).chain(&resumed.warnings);
+    let news: Vec<String> = news.cloned().collect();
     let mut sizes = old.sizes;
     sizes.extend(new.sizes.clone());
     let path = &resumed.found.path;
@@ -139,19 +163,22 @@ fn manifest(new: Manifest, resumed: &Resumed<'_>) -> Manifest {
         start: new.start.clone(),
         changed: resumed.changed.clone(),
     });
-    Manifest {
+    let mut outputs = old.outputs;
+    outputs.retain(|output| output.path != FAILURE);
+    let manifest = Manifest {
         start: old.start,
         timers: old.timers,
         summary: old.summary,
         initial: old.initial,
-        outputs: old.outputs,
+        outputs,
         checkpoint: Some(checkpoint),
         restarts,
-        warnings,
+        warnings: old.warnings,
         sizes,
         checks,
         ..new
-    }
+    };
+    (manifest, news)
 }
 
 /// Copies the tables of a run to a directory that has none.

@@ -23,6 +23,7 @@ use hdf5_collective::Hdf5;
 use mpi::environment::Universe;
 use mpi::topology::Communicator;
 use petsc_rs::Petsc;
+use std::path::Path;
 use std::rc::Rc;
 
 /// Runs the task with the libraries that have started; `Err` holds the exit code, and rank 0 has said why.
@@ -37,13 +38,13 @@ pub(super) fn run(
     let Task { case, arguments, .. } = &task;
     let held = hold(universe, arguments).map_err(refused)?;
     let start = restart::plan((hdf5, universe), held.as_ref(), arguments, case).map_err(refused)?;
-    if matches!(start, Start::Complete) {
-        return Ok(refuse(universe, exit::DONE, &format!("{} is complete already", arguments.directory().display())));
+    if let Start::Complete(code) = start {
+        return Ok(refuse(universe, code, &format!("{} is complete already", arguments.directory().display())));
     }
     let timers = Rc::new(Timers::default());
     let seam = (universe, petsc, choice);
     let scene = scene(seam, case, slabs, &start, (Rc::clone(&timers), requests)).map_err(refused)?;
-    let before = before(&start);
+    let before = before(&start, &arguments.directory());
     let ledger = ledger(universe, held, (arguments, case), scene.1.columns(), &start).map_err(refused)?;
     if let Start::Resumed(resumed) = start {
         resumed.close().map_err(refused)?;
@@ -90,11 +91,12 @@ fn scene<'p>(
 }
 
 /// What there was before.
-fn before(start: &Start<'_>) -> Before {
+fn before(start: &Start<'_>, directory: &Path) -> Before {
     let Start::Resumed(resumed) = start else { return Before::default() };
     let Resumed { state, .. } = &**resumed;
     Before {
         resumed: true,
+        is_branch: !resumed.is_in(directory),
         last_frame: state.last_frame,
         told_strips: state.told_strips.clone(),
         timers: state.files.manifest.timers.clone(),
@@ -113,9 +115,9 @@ fn ledger(
     let world = universe.world();
     let ranks = world.size().unsigned_abs() as usize;
     let opened = held.map(|held| match start {
-        Start::New(existing) => Ledger::open(held, *existing, (arguments, case), ranks, columns),
+        Start::New(beginning) => Ledger::open(held, beginning, (arguments, case), ranks, columns),
         Start::Resumed(resumed) => Ledger::resume(held, (arguments, case), ranks, columns, resumed),
-        Start::Complete => unreachable!("such a run does not begin"),
+        Start::Complete(_) => unreachable!("such a run does not begin"),
     });
     agree(&world, opened.transpose().map_err(Refusal::from))
 }

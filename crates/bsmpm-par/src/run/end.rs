@@ -39,8 +39,10 @@ impl Run<'_> {
     /// Ends the run with a frame and a checkpoint of the last converged state.
     pub(super) fn end(mut self, status: Status, code: u8) -> u8 {
         self.frame_if_new();
-        self.checkpoint();
-        self.close(status, code)
+        match self.checkpoint() {
+            Ok(()) => self.close(status, code),
+            Err(code) => code,
+        }
     }
 
     /// Ends the run with a frame.

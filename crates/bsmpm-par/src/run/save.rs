@@ -5,7 +5,6 @@ use crate::checkpoint::{self, Contents, Refusal, State, pairs};
 use crate::launch;
 use bsmpm::seam::Halo;
 use bsmpm_io::checkpoint::{Facts, Found, Phase};
-use bsmpm_io::manifest::Status;
 use mpi::topology::Communicator;
 use std::rc::Rc;
 use std::time::Instant;
@@ -14,14 +13,22 @@ use std::time::Instant;
 #[derive(Debug)]
 pub struct Saving {
     newest: Option<u64>, // step
+    soon: bool,          // what there is cannot be gone on from as it should
+    first: u64,          // steps when this program began
     last: Instant,
     cost: f64, // s
 }
 
 impl Saving {
-    /// At the start of a run, which has the checkpoint of that step.
-    pub fn new(newest: Option<u64>) -> Self {
-        Self { newest, last: Instant::now(), cost: 0.0 }
+    /// At the start of a run after `first` steps, whose newest checkpoint is of that step; another one is wanted soon if
+    /// the directory has none, or none that fits its tables.
+    pub fn new(newest: Option<u64>, soon: bool, first: u64) -> Self {
+        Self { newest, soon, first, last: Instant::now(), cost: 0.0 }
+    }
+
+    /// Whether this is the first step that this program has made.
+    pub fn is_first(&self, step: u64) -> bool {
+        step == self.first + 1
     }
 }
 
@@ -39,23 +46,26 @@ impl Run<'_> {
     pub(super) fn due(&self, slowest: f64) -> Due {
         let (steps, wanted) = (self.simulation.steps(), &self.case.output.checkpoint);
         let end = launch::age().as_secs_f64() + 1.5 * slowest + 3.0 * self.saving.cost;
-        let mut clock = [end, self.saving.last.elapsed().as_secs_f64()];
+        // Only the first rank knows the tables.
+        let soon = self.saving.soon && self.saving.newest != Some(steps);
+        let mut clock = [end, self.saving.last.elapsed().as_secs_f64(), f64::from(soon)];
         self.simulation.halo.maximum(&mut clock);
         let counted = wanted.every_steps.is_some_and(|every| steps > 0 && steps.is_multiple_of(every));
         Due {
             stop: self.arguments.max_steps.is_some_and(|most| steps >= most)
                 || self.arguments.max_wall.is_some_and(|limit| clock[0] > limit.as_secs_f64()),
-            checkpoint: counted || clock[1] > wanted.wall,
+            checkpoint: counted || clock[1] > wanted.wall || clock[2] > 0.0,
         }
     }
 
     /// A frame and a checkpoint, if a signal has asked for them.
-    pub(super) fn save_on_request(&mut self) {
-        if self.simulation.halo.requests().take_save() {
-            self.log.line("save", "a frame and a checkpoint are written, as a signal has asked");
-            self.frame_if_new();
-            self.checkpoint();
+    pub(super) fn save_on_request(&mut self) -> Result<(), u8> {
+        if !self.simulation.halo.requests().take_save() {
+            return Ok(());
         }
+        self.log.line("save", "a frame and a checkpoint are written, as a signal has asked");
+        self.frame_if_new();
+        self.checkpoint()
     }
 
     /// A frame, if there is none of this state.
@@ -65,17 +75,17 @@ impl Run<'_> {
         }
     }
 
-    /// A checkpoint, if there is none of this state; ends the job where it cannot be written. Collective.
-    pub(super) fn checkpoint(&mut self) {
+    /// A checkpoint, if there is none of this state; the exit code where it cannot be written. Collective.
+    pub(super) fn checkpoint(&mut self) -> Result<(), u8> {
         let step = self.simulation.steps();
         if self.saving.newest == Some(step) {
-            return;
+            return Ok(());
         }
         let timers = Rc::clone(&self.timers);
         let _timed = timers.time("checkpoints");
         let begin = Instant::now();
         self.account();
-        let found = self.write_checkpoint(step).unwrap_or_else(|refusal| self.lose(&refusal));
+        let found = self.write_checkpoint(step).map_err(|refusal| self.lose(&refusal))?;
         if let (Some(found), Some(ledger)) = (found, &mut self.ledger) {
             let mebibytes = found.record.bytes as f64 / 1_048_576.0;
             let written = ledger.checkpointed(&found);
@@ -83,7 +93,9 @@ impl Run<'_> {
             self.log.line("checkpoint", &format!("checkpoint of step {step}: {mebibytes:.1} MiB in {seconds:.2} s"));
             self.require(written);
         }
-        self.saving = Saving { newest: Some(step), last: Instant::now(), cost: begin.elapsed().as_secs_f64() };
+        let (last, cost, first) = (Instant::now(), begin.elapsed().as_secs_f64(), self.saving.first);
+        self.saving = Saving { newest: Some(step), soon: false, first, last, cost };
+        Ok(())
     }
 
     fn write_checkpoint(&mut self, step: u64) -> Result<Option<Found>, Refusal> {
@@ -125,16 +137,12 @@ impl Run<'_> {
         state.text()
     }
 
-    /// Ends the job after a checkpoint that could not be written; the older ones are good.
-    fn lose(&mut self, refusal: &Refusal) -> ! {
+    /// Tells that a checkpoint could not be written, the older ones being good; all ranks know why.
+    fn lose(&mut self, refusal: &Refusal) -> u8 {
+        self.log.failure(&refusal.reason);
         if let Some(ledger) = &mut self.ledger {
-            // On a full disk this cannot be written, either.
-            let _ = ledger.close(Status::Failed, refusal.code);
-            launch::end(&self.universe.world(), refusal.code, refusal);
+            ledger.abandon(refusal.code);
         }
-        // The first rank ends the job.
-        loop {
-            std::thread::park();
-        }
+        refusal.code
     }
 }

@@ -15,7 +15,7 @@ impl Run<'_> {
     /// Tells what is to be told, and gives the points their stress at the start. Fails on all ranks.
     pub(super) fn begin(&mut self) -> Result<(), StepError> {
         if let Some(ledger) = &mut self.ledger {
-            for warning in ledger.manifest().warnings.clone() {
+            for warning in ledger.news() {
                 self.log.line("warning", &format!("warning: {warning}"));
             }
         }

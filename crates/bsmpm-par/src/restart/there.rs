@@ -1,0 +1,138 @@
+//! What a directory holds before `--restart auto`, as the first rank sees it, and what may be gone on with.
+
+use super::Beginning;
+use crate::checkpoint::Refusal;
+use crate::exit;
+use crate::ledger;
+use bsmpm_io::checkpoint::Found;
+use bsmpm_io::directory::Existing;
+use bsmpm_io::manifest::{Manifest, Restart, Status};
+use bsmpm_scene::{Case, Difference};
+
+/// Restarts in a row from one step after which no more is tried: the loop of a batch system would have no end.
+const MOST_FUTILE: usize = 3;
+
+/// The run in a directory.
+#[derive(Clone, Copy)]
+pub(super) enum There {
+    Nothing,
+    Unfinished,
+    /// with its exit code
+    Complete(u8),
+}
+
+impl There {
+    pub(super) fn bytes(self) -> Vec<u8> {
+        match self {
+            Self::Nothing => vec![0],
+            Self::Unfinished => vec![1],
+            Self::Complete(code) => vec![2, code],
+        }
+    }
+
+    pub(super) fn of(bytes: Vec<u8>) -> Self {
+        match bytes[..] {
+            [2, code] => Self::Complete(code),
+            [0] => Self::Nothing,
+            _ => Self::Unfinished,
+        }
+    }
+}
+
+/// What there is to go on with. A run whose checks failed came to its end, too: it would fail them again.
+pub(super) fn look(run: Option<&Manifest>, case: &Case) -> Result<There, Refusal> {
+    let Some(run) = run else { return Ok(There::Nothing) };
+    let changed = admissible("the run in the output directory", run, case)?;
+    let further = changed.iter().any(|change| change.key == "analysis.end" && is_later(change));
+    let ended = match (run.status, run.exit_code) {
+        (Status::Finished, _) => Some(exit::DONE),
+        (Status::Failed, Some(exit::CHECK)) => Some(exit::CHECK),
+        _ => None,
+    };
+    Ok(ended.filter(|_| !further).map_or(There::Unfinished, There::Complete))
+}
+
+fn is_later(change: &Difference) -> bool {
+    let number = |text: &Option<String>| text.as_ref().and_then(|text| text.parse::<f64>().ok());
+    number(&change.was).zip(number(&change.is)).is_none_or(|(was, is)| is > was)
+}
+
+/// How a run begins anew in whose directory there is no checkpoint: only if it was killed before it had one, so that
+/// nothing is deleted that had been kept.
+pub(super) fn anew(run: Option<&Manifest>, passed_over: &[String], ranks: i32) -> Result<Beginning, Refusal> {
+    let refused = |reason: String| Err(Refusal::new(exit::CHECKPOINT, reason));
+    if let Some(bad) = passed_over.first() {
+        return refused(bad.clone());
+    }
+    let Some(run) = run else { return Ok(Beginning::default()) };
+    if let Some(gone) = &run.checkpoint {
+        return refused(format!("the checkpoint {gone}, which run.json names, is gone; --force starts the run anew"));
+    }
+    if run.status != Status::Running && run.exit_code != Some(exit::WRITE) {
+        let told = format!("{:?}", run.status).to_lowercase();
+        return refused(format!(
+            "the run in the output directory has {told} and left no checkpoint to go on from; --force starts it anew"
+        ));
+    }
+    futile(&run.restarts, 0)?;
+    let ranks = ranks.unsigned_abs();
+    let restart = Restart {
+        checkpoint: String::new(),
+        step: 0,
+        ranks_before: run.ranks,
+        ranks,
+        start: bsmpm_io::utc::now(),
+        changed: Vec::new(),
+    };
+    Ok(Beginning {
+        existing: Existing::Delete,
+        restarts: run.restarts.iter().cloned().chain([restart]).collect(),
+        warnings: vec![
+            "the run that is there was killed before its first checkpoint: it starts again from the case".into(),
+        ],
+    })
+}
+
+/// The keys that differ between a case and what was run, if a run may go on with all of them changed.
+pub(super) fn admissible(what: &str, past: &Manifest, case: &Case) -> Result<Vec<Difference>, Refusal> {
+    let refused = |reason: String| Refusal::new(exit::CHECKPOINT, format!("{what} {reason}"));
+    let differences = bsmpm_scene::differences(&past.case.text, &case.text);
+    let differences = differences.map_err(|_| refused("is of a case that this version does not know".into()))?;
+    let bound: Vec<String> =
+        differences.iter().filter(|difference| !difference.may_change).map(ToString::to_string).collect();
+    if bound.is_empty() { Ok(differences) } else { Err(refused(format!("is of another case: {}", bound.join("; ")))) }
+}
+
+/// Whether the last restarts were all from this step.
+pub(super) fn futile(restarts: &[Restart], step: u64) -> Result<(), Refusal> {
+    let same = restarts.iter().rev().take_while(|restart| restart.step == step).count();
+    if same < MOST_FUTILE {
+        return Ok(());
+    }
+    let reason = format!(
+        "{same} restarts in a row came to no checkpoint beyond step {step}; --restart with a checkpoint's file, or --force, \
+         tries again"
+    );
+    Err(Refusal::new(exit::STALLED, reason))
+}
+
+/// Why the run will not repeat to the bit, if so.
+pub(super) fn other_machine(past: &Manifest, ranks: u32, found: &Found) -> Vec<String> {
+    let mut reasons = Vec::new();
+    if found.record.ranks != ranks {
+        let before = found.record.ranks;
+        reasons.push(format!(
+            "restart on {ranks} rank(s) of a checkpoint of {before}: it agrees within tolerances, not to the bit"
+        ));
+    }
+    let version = env!("CARGO_PKG_VERSION");
+    if past.version != version {
+        reasons.push(format!("restart by version {version} of a checkpoint by {}", past.version));
+    }
+    for (library, now) in ledger::versions() {
+        if let Some(before) = past.versions.get(&library).filter(|before| **before != now) {
+            reasons.push(format!("restart with {library} {now} of a checkpoint with {before}"));
+        }
+    }
+    reasons
+}
