@@ -15,13 +15,13 @@ use std::time::Instant;
 pub struct Saving {
     newest: Option<u64>, // step
     last: Instant,
-    cost: f64, // s
+    cost: f64, // s; until there is one, the time that it took to start
 }
 
 impl Saving {
     /// At the start of a run, which has the checkpoint of that step.
     pub fn new(newest: Option<u64>) -> Self {
-        Self { newest, last: Instant::now(), cost: 0.0 }
+        Self { newest, last: Instant::now(), cost: launch::age().as_secs_f64() }
     }
 }
 
