@@ -16,14 +16,14 @@ pub struct Saving {
     soon: bool,          // what there is cannot be gone on from as it should
     first: u64,          // steps when this program began
     last: Instant,
-    cost: f64, // s
+    cost: f64, // s; until there is one, the time that it took to start
 }
 
 impl Saving {
     /// At the start of a run after `first` steps, whose newest checkpoint is of that step; another one is wanted soon if
     /// the directory has none, or none that fits its tables.
     pub fn new(newest: Option<u64>, soon: bool, first: u64) -> Self {
-        Self { newest, soon, first, last: Instant::now(), cost: 0.0 }
+        Self { newest, soon, first, last: Instant::now(), cost: launch::age().as_secs_f64() }
     }
 
     /// Whether this is the first step that this program has made.

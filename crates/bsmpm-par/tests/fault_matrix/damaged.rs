@@ -97,53 +97,51 @@ fn pipe(path: &Path) {
 }
 
 /// What is no checkpoint of ours.
+const FOREIGN: [&str; 10] = [
+    "HDF5 without a record",
+    "text",
+    "directory",
+    "nothing",
+    "pipe",
+    "pipe for a record",
+    "device",
+    "device for a record",
+    "circle of links",
+    "record of another file",
+];
+
+/// Something of that kind, beside the good checkpoint of a run.
+fn stranger(trial: &Trial, kind: &str) -> PathBuf {
+    let good = trial.checkpoint(NEWEST);
+    let file = trial.scratch.path(&format!("{}.h5", kind.replace(' ', "-")));
+    let record = file.with_extension("json");
+    let copy = |from: &Path, to: &Path| {
+        std::fs::copy(from, to).unwrap();
+    };
+    match kind {
+        "nothing" => {}
+        "text" => std::fs::write(&file, "0 1 2\n").unwrap(),
+        "directory" => std::fs::create_dir(&file).unwrap(),
+        "pipe" => pipe(&file),
+        "device" => symlink("/dev/zero", &file).unwrap(),
+        "circle of links" => symlink(&file, &file).unwrap(),
+        "record of another file" => copy(&trial.checkpoint("step_000000005.h5"), &file),
+        _ => copy(&good, &file),
+    }
+    match kind {
+        "nothing" | "HDF5 without a record" => {}
+        "pipe for a record" => pipe(&record),
+        "device for a record" => symlink("/dev/zero", &record).unwrap(),
+        // What stands in the place of the arrays has the good one's record.
+        _ => copy(&good.with_extension("json"), &record),
+    }
+    file
+}
+
+/// Each of them, by name.
 pub fn foreign(ground: &Ground, _: usize) -> Tried {
     let trial = ground.stopped(1, 10);
-    let good = trial.checkpoint(NEWEST);
-    let at = |name: &str| trial.scratch.path(name);
-    let make = |kind: &str| -> PathBuf {
-        let file = at(&format!("{}.h5", kind.replace(' ', "-")));
-        match kind {
-            "HDF5 without a record" => drop(std::fs::copy(&good, &file)),
-            "text" => std::fs::write(&file, "0 1 2\n").unwrap(),
-            "directory" => std::fs::create_dir(&file).unwrap(),
-            "nothing" => {}
-            "pipe" => pipe(&file),
-            "pipe for a record" => {
-                std::fs::copy(&good, &file).unwrap();
-                pipe(&file.with_extension("json"));
-            }
-            "device" => symlink("/dev/zero", &file).unwrap(),
-            "device for a record" => {
-                std::fs::copy(&good, &file).unwrap();
-                symlink("/dev/zero", file.with_extension("json")).unwrap();
-            }
-            "circle of links" => symlink(&file, &file).unwrap(),
-            "record of another file" => {
-                std::fs::copy(trial.checkpoint("step_000000005.h5"), &file).unwrap();
-                drop(std::fs::copy(good.with_extension("json"), file.with_extension("json")));
-            }
-            _ => unreachable!("{kind}"),
-        }
-        // What stands in the place of the arrays has the good one's record.
-        if ["text", "directory", "pipe", "device", "circle of links"].contains(&kind) {
-            std::fs::copy(good.with_extension("json"), file.with_extension("json")).unwrap();
-        }
-        file
-    };
-    let kinds = [
-        "HDF5 without a record",
-        "text",
-        "directory",
-        "nothing",
-        "pipe",
-        "pipe for a record",
-        "device",
-        "device for a record",
-        "circle of links",
-        "record of another file",
-    ];
-    let tried = trials(kinds.len(), |index| refused(&trial, &make(kinds[index]), "cannot be used"));
+    let tried = trials(FOREIGN.len(), |index| refused(&trial, &stranger(&trial, FOREIGN[index]), "cannot be used"));
     tried.figure(|seconds| format!("76 after {seconds} s at most"))
 }
 

@@ -1,8 +1,8 @@
 //! The strip footing, killed ten times, on 2, 3 and 1 ranks in turn: its pressure against the uninterrupted run's.
 
 use crate::ground::{Ground, spread};
-use crate::support::results::{history, manifest, steps};
-use crate::support::{Scratch, shipped};
+use crate::support::results::{history, manifest};
+use crate::support::{Job, Scratch, shipped};
 use crate::table::{Tried, trials};
 use bsmpm_io::table::Columns;
 use std::fmt::Write;
@@ -26,46 +26,56 @@ fn write(whole: &Columns, killed: &Columns) {
     std::fs::write(folder.join("killed_footing.csv"), text).unwrap();
 }
 
-/// Runs it both ways.
-pub fn killed(_: &Ground, _: usize) -> Tried {
-    let case = shipped("short/strip_footing.toml");
-    let mut told = String::new();
-    let tried = trials(1, |_| {
-        let scratch = Scratch::new();
+/// Runs of the case in a directory of their own.
+struct Runs {
+    case: String,
+    scratch: Scratch,
+}
+
+impl Runs {
+    fn job(&self, name: &str, ranks: usize) -> Job {
         let often = "output.checkpoint={every_steps=5}";
-        let run = |name: &str, ranks: usize| {
-            let arguments = [case.to_str().unwrap(), "-q", "-o", name, "--restart", "auto", "--set", often];
-            scratch.job(Some(ranks), &arguments).within(600)
-        };
-        run("whole", 2).run().expect(0);
-        let directory = scratch.path("killed");
-        let made = || std::fs::read_to_string(directory.join("steps.csv")).map_or(0, |text| text.lines().count());
+        let arguments = [&*self.case, "-q", "-o", name, "--restart", "auto", "--set", often];
+        self.scratch.job(Some(ranks), &arguments).within(600)
+    }
+
+    /// Kills it again and again; the steps that it had made each time.
+    fn killed(&self, name: &str) -> Vec<usize> {
+        let table = self.scratch.path(name).join("steps.csv");
+        let made = || std::fs::read_to_string(&table).map_or(0, |text| text.lines().count().saturating_sub(2));
         let mut at = Vec::new();
         for time in 0..TIMES {
-            let mut running = run("killed", [2, 3, 1][time % 3]).start();
-            // Later and later, and always before the 160th step.
-            let step = 15 * time + (15.0 * spread(time, 16)) as usize;
-            running.until("the step", || made() >= step + 2);
-            at.push(made() - 2);
+            let mut running = self.job(name, [2, 3, 1][time % 3]).start();
+            // Later and later, after the first checkpoint and before the 160th step.
+            let step = 6 + 15 * time + (14.0 * spread(time, 16)) as usize;
+            running.until("the step", || made() >= step);
+            at.push(made());
             running.kill();
             running.end();
         }
-        run("killed", [2, 3, 1][TIMES % 3]).run().expect(0);
-        let (whole, killed) = (history(&scratch.path("whole")), history(&directory));
+        self.job(name, [2, 3, 1][TIMES % 3]).run().expect(0);
+        at
+    }
+}
+
+/// Runs it both ways.
+pub fn killed(_: &Ground, _: usize) -> Tried {
+    let mut told = String::new();
+    let tried = trials(1, |_| {
+        let case = shipped("short/strip_footing.toml").to_str().unwrap().to_owned();
+        let runs = Runs { case, scratch: Scratch::new() };
+        runs.job("whole", 2).run().expect(0);
+        let at = runs.killed("killed");
+        let directories = ["whole", "killed"].map(|name| runs.scratch.path(name));
+        let [whole, killed] = directories.each_ref().map(|directory| history(directory));
         assert_eq!(killed.get("time"), whole.get("time"), "each step once");
         write(&whole, &killed);
         let [one, other] = [&whole, &killed].map(|columns| columns.get("p_over_c").unwrap());
         let largest = one.iter().fold(0.0_f64, |most, p| most.max(p.abs()));
         let difference = one.iter().zip(other).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs())) / largest;
-        let restarts = &manifest(&directory).restarts;
-        let ranks: Vec<String> = restarts.iter().map(|restart| restart.ranks.to_string()).collect();
-        let iterations = |name: &str| steps(&scratch.path(name)).get("iterations").unwrap().iter().sum::<f64>();
-        told = format!(
-            "killed at steps {at:?}; on 2, then {} ranks; {} iterations for {}; p/c to {largest:.2}",
-            ranks.join(", "),
-            iterations("killed"),
-            iterations("whole")
-        );
+        let ranks: Vec<String> =
+            manifest(&directories[1]).restarts.iter().map(|restart| restart.ranks.to_string()).collect();
+        told = format!("killed after steps {at:?}; went on on {} ranks; p/c to {largest:.2}", ranks.join(", "));
         assert!(difference <= TOLERATED, "{difference:e}: {told}");
         difference
     });

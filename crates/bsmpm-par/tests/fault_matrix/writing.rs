@@ -212,13 +212,13 @@ pub fn order(ground: &Ground, _: usize) -> Tried {
     tried.figure(|_| "file, record, names, folder synced in this order".into())
 }
 
-/// A disk that takes a fifth of a second for each sync.
+/// A disk that takes a twentieth of a second for each sync.
 pub fn slow(ground: &Ground, _: usize) -> Tried {
     let whole = ground.whole(1);
     let mut share = 0.0;
     let tried = trials(1, |_| {
         let trial = ground.trial(1);
-        let slow = ["-e", "trace=fsync,fdatasync", "-e", "inject=fsync,fdatasync:delay_exit=200000"];
+        let slow = ["-e", "trace=fsync,fdatasync", "-e", "inject=fsync,fdatasync:delay_exit=50000"];
         traced(&trial, &slow).expect("strace");
         same(&results(&trial.directory()), &whole.results);
         let timers = manifest(&trial.directory()).timers;
