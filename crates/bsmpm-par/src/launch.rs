@@ -37,10 +37,17 @@ pub fn start() -> Result<Universe, u8> {
     Ok(universe)
 }
 
-/// Without a launcher Open MPI would start a daemon and look for a network; one rank needs neither.
+/// Without a launcher Open MPI would start a daemon and look for a network; one rank needs neither. Its folder for the
+/// processes of a node would be shared by all such runs, and go with the first that ends.
 #[allow(unsafe_code)]
 fn prepare_single_rank() {
-    for (name, value) in [("OMPI_MCA_ess_singleton_isolated", "1"), ("OMPI_MCA_pml", "ob1"), ("OMPI_MCA_btl", "self")] {
+    let alone = [
+        ("OMPI_MCA_ess_singleton_isolated", "1"),
+        ("OMPI_MCA_orte_create_session_dirs", "0"),
+        ("OMPI_MCA_pml", "ob1"),
+        ("OMPI_MCA_btl", "self"),
+    ];
+    for (name, value) in alone {
         if std::env::var_os(name).is_none() {
             // SAFETY: called first thing in `main`, before any other thread exists.
             unsafe { std::env::set_var(name, value) };

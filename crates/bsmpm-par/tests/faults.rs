@@ -75,7 +75,7 @@ fn failed(scratch: &Scratch, code: u8) -> bsmpm_io::manifest::Manifest {
     all_finite(&directory);
     let manifest = manifest(&directory);
     assert_eq!((manifest.status, manifest.exit_code), (Status::Failed, Some(code)));
-    assert_eq!(manifest.checkpoint, None);
+    assert_eq!(manifest.checkpoint, Some(format!("checkpoint/step_{:09}.h5", manifest.summary.steps)));
     let failure = manifest.failure.as_ref().expect("a failure");
     let times = history(&directory).get("time").unwrap().to_vec();
     let (frames, last) = (all_frames(&directory), *times.last().unwrap());
