@@ -21,7 +21,7 @@ pub fn all() -> Vec<Row> {
         row("F10", "USR1 to one rank; no step is lost, B", [1, 10], signals::usr1_to_a_rank),
         row("F11", "USR2: a frame and a checkpoint; B but for the frames", [1, 5], signals::usr2),
         row("F12", "TERM to mpirun that leaves the time; no step is lost, B", [0, 10], signals::term),
-        row("F12", "TERM to mpirun that kills after a second; B", [1, 10], signals::term_in_a_hurry),
+        row("F12", "TERM to mpirun that kills at once; B", [1, 10], signals::term_in_a_hurry),
         row("F13", "TERM to mpirun twice; B", [1, 5], signals::term_twice),
         row("F14", "--max-wall, again and again to the end; B", [1, 10], signals::max_wall),
         row("F15", "a chain of restarts, 6 steps each; B", [1, 1], restart::chain),

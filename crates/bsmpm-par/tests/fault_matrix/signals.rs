@@ -61,24 +61,23 @@ pub fn usr2(ground: &Ground, count: usize) -> Tried {
     tried.figure(|frames| format!("{frames} frame more at most"))
 }
 
-/// TERM to mpirun where it leaves the time: it waits two seconds before it tells the ranks, and two more before it kills
-/// them. Its own code is 1.
+/// TERM to mpirun where it leaves the time: it waits a second before it tells the ranks, and another before it kills them. Its own code is 1.
 pub fn term(ground: &Ground, count: usize) -> Tried {
-    let patient = [("OMPI_MCA_odls_base_sigkill_timeout", "2")];
+    let patient = [("OMPI_MCA_odls_base_sigkill_timeout", "1")];
     let soon = |index| 1 + (spread(index, 17) * 4.0) as u64;
     let tried = trials(count, |index| stopped(ground, (soon(index), 1), |running| running.signal("TERM"), &patient));
     tried.figure(|seconds| format!("stopped after {seconds} s at most"))
 }
 
-/// TERM to mpirun as it is: it may kill the ranks a second later.
+/// TERM to mpirun that kills the ranks at once.
 pub fn term_in_a_hurry(ground: &Ground, count: usize) -> Tried {
-    let hasty = [("OMPI_MCA_odls_base_sigkill_timeout", "1")];
+    let hasty = [("OMPI_MCA_odls_base_sigkill_timeout", "0")];
     abrupt(ground, count, &hasty, |running| running.signal("TERM"))
 }
 
 /// Two TERM to mpirun.
 pub fn term_twice(ground: &Ground, count: usize) -> Tried {
-    let hasty = [("OMPI_MCA_odls_base_sigkill_timeout", "1")];
+    let hasty = [("OMPI_MCA_odls_base_sigkill_timeout", "0")];
     abrupt(ground, count, &hasty, |running| {
         running.signal("TERM");
         running.signal("TERM");
