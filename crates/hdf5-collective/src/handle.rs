@@ -3,6 +3,7 @@
 mod array;
 
 use std::ffi::{CStr, CString, c_int, c_uint, c_void};
+use std::os::unix::ffi::OsStrExt;
 use std::path::Path;
 use std::ptr;
 
@@ -86,10 +87,8 @@ fn text(text: &str) -> Result<CString> {
 }
 
 fn path(path: &Path) -> Result<CString> {
-    text(
-        path.to_str()
-            .ok_or_else(|| Error::Foreign { item: path.display().to_string(), reason: "is no UTF-8".to_owned() })?,
-    )
+    let foreign = |_| Error::Foreign { item: path.display().to_string(), reason: "holds a NUL".to_owned() };
+    CString::new(path.as_os_str().as_bytes()).map_err(foreign)
 }
 
 /// Starts the library: it prints nothing and loads no code.
