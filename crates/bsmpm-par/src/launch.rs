@@ -16,9 +16,7 @@ const LAUNCHED: [&str; 4] = ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_SIZE", "S
 /// Starts MPI; from here on a panic on any rank ends the job. `Err` holds the exit code.
 pub fn start() -> Result<Universe, u8> {
     age();
-    if !LAUNCHED.iter().any(|name| std::env::var_os(name).is_some()) {
-        prepare_single_rank();
-    }
+    prepare(!LAUNCHED.iter().any(|name| std::env::var_os(name).is_some()));
     let Some((universe, _)) = mpi::initialize_with_threading(mpi::Threading::Funneled) else {
         say("bsmpm-par: MPI could not be started");
         return Err(BUG);
@@ -37,21 +35,26 @@ pub fn start() -> Result<Universe, u8> {
     Ok(universe)
 }
 
-/// Without a launcher Open MPI would start a daemon and look for a network; one rank needs neither. Its folder for the
-/// processes of a node would be shared by all such runs, and go with the first that ends.
+/// Settings of Open MPI for every run. Files have no pointer that ranks share: Open MPI's would fill a buffer of fixed size
+/// with long names.
+const ALWAYS: [(&str, &str); 1] = [("OMPI_MCA_sharedfp", "individual")];
+
+/// Settings without a launcher. Open MPI would start a daemon and look for a network; one rank needs neither. Its folder for
+/// the processes of a node would be shared by all such runs, and go with the first that ends.
+const ALONE: [(&str, &str); 4] = [
+    ("OMPI_MCA_ess_singleton_isolated", "1"),
+    ("OMPI_MCA_orte_create_session_dirs", "0"),
+    ("OMPI_MCA_pml", "ob1"),
+    ("OMPI_MCA_btl", "self"),
+];
+
+/// Sets what the environment has not set by itself.
 #[allow(unsafe_code)]
-fn prepare_single_rank() {
-    let alone = [
-        ("OMPI_MCA_ess_singleton_isolated", "1"),
-        ("OMPI_MCA_orte_create_session_dirs", "0"),
-        ("OMPI_MCA_pml", "ob1"),
-        ("OMPI_MCA_btl", "self"),
-    ];
-    for (name, value) in alone {
-        if std::env::var_os(name).is_none() {
-            // SAFETY: called first thing in `main`, before any other thread exists.
-            unsafe { std::env::set_var(name, value) };
-        }
+fn prepare(alone: bool) {
+    let settings = ALWAYS.iter().chain(ALONE.iter().filter(|_| alone));
+    for (name, value) in settings.filter(|(name, _)| std::env::var_os(name).is_none()) {
+        // SAFETY: called first thing in `main`, before any other thread exists.
+        unsafe { std::env::set_var(name, value) };
     }
 }
 
