@@ -48,7 +48,7 @@ pub struct Beginning {
 
 impl Default for Beginning {
     fn default() -> Self {
-        Self { existing: Existing::Delete, restarts: Vec::new(), warnings: Vec::new() }
+        Self { existing: Existing::Refuse, restarts: Vec::new(), warnings: Vec::new() }
     }
 }
 
@@ -89,9 +89,7 @@ pub fn plan<'h>(
         Restart::Auto => {
             let there = agree(&world, held.map_or(Ok(There::Unfinished), |_| there::look(run.as_ref(), case)))?;
             match There::of(broadcast(&world, 0, there.bytes())) {
-                There::Nothing => {
-                    return Ok(Start::New(Beginning { existing: Existing::Refuse, ..Beginning::default() }));
-                }
+                There::Nothing => return Ok(Start::New(Beginning::default())),
                 There::Complete(code) => return Ok(Start::Complete(code)),
                 There::Unfinished => find(&world, Wanted::Newest(&arguments.directory().join(FOLDER)))?,
             }
