@@ -79,8 +79,8 @@ pub struct Arguments {
     /// Form of the frames
     #[arg(long, value_name = "FORMAT", default_value = "vtu")]
     pub frames: FrameFormat,
-    /// Cores of each rank; more than one is not available yet
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    /// Cores of each rank, for the work on its points
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1024))]
     pub threads: u32,
     /// Refuse a case that would need more memory on all ranks, e.g. 16GiB (exit 71) [default: what the first rank's host has]
     #[arg(long, value_name = "SIZE", value_parser = size)]
@@ -121,9 +121,6 @@ impl Arguments {
     fn admissible(&self) -> Result<(), String> {
         if self.frames == FrameFormat::Vtkhdf {
             return Err("--frames vtkhdf is not available yet; use vtu".into());
-        }
-        if self.threads != 1 {
-            return Err("--threads: more than one core of a rank is not available yet; start more ranks".into());
         }
         petsc_options(&self.petsc)
     }

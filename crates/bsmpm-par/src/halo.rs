@@ -1,9 +1,13 @@
 //! The exchange of nodal contributions: one message to and from every rank that shares node layers.
+//!
+//! Ranks exchange what single columns of cells contribute to the layers that they share, and add it in the order of the
+//! columns, so that sums have the same bits on any number of ranks: q (q+1)/2 layers a neighbour in place of q.
 
 use crate::signals::{Requests, WIDTH};
-use crate::slab::Slabs;
+use crate::slab::{SharedLayer, Slabs, intersection};
 use crate::timers::Timers;
-use bsmpm::grid::Grid;
+use bsmpm::exact::{Exact, WORDS};
+use bsmpm::grid::{Contributions, Grid};
 use bsmpm::seam::Halo;
 use mpi::collective::{CommunicatorCollectives, SystemOperation};
 use mpi::point_to_point::{Destination, Source};
@@ -16,9 +20,18 @@ pub struct MpiHalo {
     world: SimpleCommunicator,
     rank: usize,
     owned: Range<usize>,
-    shared: Vec<(usize, Range<usize>)>, // rank and local nodes, ascending by rank
+    layer_nodes: usize,
+    neighbours: Vec<Neighbour>, // ascending by rank
     timers: Rc<Timers>,
     requests: Rc<Requests>,
+}
+
+/// A rank that shares layers of nodes with this one.
+struct Neighbour {
+    rank: usize,
+    nodes: Range<usize>, // the shared ones, of the window
+    owned: Range<usize>, // those of them that it owns
+    layers: Vec<SharedLayer>,
 }
 
 impl MpiHalo {
@@ -32,9 +45,15 @@ impl MpiHalo {
         let rank = world.rank().unsigned_abs() as usize;
         let (q, size, first) = (grid.order(), grid.layer_nodes(), grid.layers().start);
         let nodes = |layers: Range<usize>| (layers.start - first) * size..(layers.end - first) * size;
+        let neighbour = |(other, layers): (usize, Range<usize>)| Neighbour {
+            rank: other,
+            nodes: nodes(layers.clone()),
+            owned: nodes(intersection(&layers, &slabs.owned_layers(other, q))),
+            layers: slabs.shared_layers((rank, other), q),
+        };
         let owned = nodes(slabs.owned_layers(rank, q));
-        let shared = slabs.shared(rank, q).into_iter().map(|(other, layers)| (other, nodes(layers))).collect();
-        Self { world, rank, owned, shared, timers, requests }
+        let neighbours = slabs.shared(rank, q).into_iter().map(neighbour).collect();
+        Self { world, rank, owned, layer_nodes: size, neighbours, timers, requests }
     }
 
     /// The ranks.
@@ -47,25 +66,23 @@ impl MpiHalo {
         &self.requests
     }
 
-    /// What every sharing rank contributes to the shared nodes, in the order of `shared`.
-    fn receive(&self, nodal: &[f64], width: usize) -> Vec<Vec<f64>> {
-        let mut incoming: Vec<Vec<f64>> = self.shared.iter().map(|(_, nodes)| vec![0.0; nodes.len() * width]).collect();
+    /// Gives every neighbour its message and returns theirs, of the given lengths, in the order of the neighbours.
+    fn exchange(&self, outgoing: &[Vec<f64>], lengths: impl Fn(&Neighbour) -> usize) -> Vec<Vec<f64>> {
+        let mut incoming: Vec<Vec<f64>> = self.neighbours.iter().map(|other| vec![0.0; lengths(other)]).collect();
         mpi::request::scope(|scope| {
             let receives: Vec<_> = self
-                .shared
+                .neighbours
                 .iter()
                 .zip(&mut incoming)
-                .map(|((other, _), part)| {
-                    self.world.process_at_rank(*other as i32).immediate_receive_into(scope, &mut part[..])
+                .map(|(other, part)| {
+                    self.world.process_at_rank(other.rank as i32).immediate_receive_into(scope, &mut part[..])
                 })
                 .collect();
             let sends: Vec<_> = self
-                .shared
+                .neighbours
                 .iter()
-                .map(|(other, nodes)| {
-                    let part = &nodal[nodes.start * width..nodes.end * width];
-                    self.world.process_at_rank(*other as i32).immediate_send(scope, part)
-                })
+                .zip(outgoing)
+                .map(|(other, part)| self.world.process_at_rank(other.rank as i32).immediate_send(scope, &part[..]))
                 .collect();
             receives.into_iter().for_each(|request| {
                 let _ = request.wait();
@@ -78,41 +95,89 @@ impl MpiHalo {
     }
 }
 
+/// What the columns of this rank contribute to the layers shared with another one: layer after layer, column after column.
+fn pieces(contributions: &Contributions, layers: &[SharedLayer], layer: usize) -> Vec<f64> {
+    let mut message = Vec::new();
+    for shared in layers {
+        for column in shared.own.clone() {
+            match contributions.of(column, shared.layer) {
+                Some(sums) => message.extend_from_slice(sums),
+                None => message.resize(message.len() + layer, 0.0),
+            }
+        }
+    }
+    message
+}
+
+/// Adds such pieces of another rank to the nodal array.
+fn add_pieces(message: &[f64], layers: &[SharedLayer], layer: usize, nodal: &mut [f64]) {
+    let mut pieces = message.chunks_exact(layer);
+    for shared in layers {
+        let nodes = &mut nodal[shared.layer * layer..(shared.layer + 1) * layer];
+        for piece in pieces.by_ref().take(shared.theirs) {
+            nodes.iter_mut().zip(piece).for_each(|(total, sum)| *total += sum);
+        }
+    }
+}
+
 impl Halo for MpiHalo {
     fn owned(&self) -> Range<usize> {
         self.owned.clone()
     }
 
-    fn sum(&self, nodal: &mut [f64], width: usize) {
-        if self.shared.is_empty() {
+    fn layer_nodes(&self) -> usize {
+        self.layer_nodes
+    }
+
+    fn sum(&self, contributions: &Contributions) -> Vec<f64> {
+        let _timed = self.timers.time("halo");
+        let layer = self.layer_nodes * contributions.width();
+        let outgoing: Vec<_> =
+            self.neighbours.iter().map(|other| pieces(contributions, &other.layers, layer)).collect();
+        let incoming = self.exchange(&outgoing, |other| {
+            other.layers.iter().map(|shared| shared.theirs).sum::<usize>() * layer
+        });
+        // The columns of lower ranks lie before this rank's: every layer adds its columns in their order.
+        let mut nodal = contributions.nodal();
+        let lower = self.neighbours.partition_point(|other| other.rank < self.rank);
+        let (before, after) = incoming.split_at(lower);
+        for (part, other) in before.iter().zip(&self.neighbours) {
+            add_pieces(part, &other.layers, layer, &mut nodal);
+        }
+        contributions.add_to(&mut nodal);
+        for (part, other) in after.iter().zip(&self.neighbours[lower..]) {
+            add_pieces(part, &other.layers, layer, &mut nodal);
+        }
+        nodal
+    }
+
+    fn share(&self, nodal: &mut [f64], width: usize) {
+        if self.neighbours.is_empty() {
             return;
         }
         let _timed = self.timers.time("halo");
-        let incoming = self.receive(nodal, width);
-        let own: Vec<Vec<f64>> =
-            self.shared.iter().map(|(_, nodes)| nodal[nodes.start * width..nodes.end * width].to_vec()).collect();
-        // Every sharing rank adds the same numbers in the order of the ranks: all of them get the same bits.
-        for (_, nodes) in &self.shared {
-            nodal[nodes.start * width..nodes.end * width].fill(0.0);
-        }
-        let lower = self.shared.partition_point(|(other, _)| *other < self.rank);
-        for (part, (_, nodes)) in incoming[..lower].iter().zip(&self.shared) {
-            add(part, &mut nodal[nodes.start * width..nodes.end * width]);
-        }
-        self.add_own(&own, nodal, width);
-        for (part, (_, nodes)) in incoming[lower..].iter().zip(&self.shared[lower..]) {
-            add(part, &mut nodal[nodes.start * width..nodes.end * width]);
+        let mine = |other: &Neighbour| intersection(&other.nodes, &self.owned);
+        let outgoing: Vec<_> = self
+            .neighbours
+            .iter()
+            .map(|other| nodal[mine(other).start * width..mine(other).end * width].to_vec())
+            .collect();
+        let incoming = self.exchange(&outgoing, |other| other.owned.len() * width);
+        for (part, other) in incoming.iter().zip(&self.neighbours) {
+            nodal[other.owned.start * width..other.owned.end * width].copy_from_slice(part);
         }
     }
 
-    fn max(&self, nodal: &mut [f64]) {
-        if self.shared.is_empty() {
+    fn max(&self, nodal: &mut [f64], width: usize) {
+        if self.neighbours.is_empty() {
             return;
         }
         let _timed = self.timers.time("halo");
-        let incoming = self.receive(nodal, 1);
-        for (part, (_, nodes)) in incoming.iter().zip(&self.shared) {
-            nodal[nodes.clone()].iter_mut().zip(part).for_each(|(value, other)| *value = value.max(*other));
+        let place = |other: &Neighbour| other.nodes.start * width..other.nodes.end * width;
+        let outgoing: Vec<_> = self.neighbours.iter().map(|other| nodal[place(other)].to_vec()).collect();
+        let incoming = self.exchange(&outgoing, |other| other.nodes.len() * width);
+        for (part, other) in incoming.iter().zip(&self.neighbours) {
+            nodal[place(other)].iter_mut().zip(part).for_each(|(value, other)| *value = value.max(*other));
         }
     }
 
@@ -127,6 +192,17 @@ impl Halo for MpiHalo {
         self.requests.agree(requested);
     }
 
+    fn total(&self, sums: &[Exact]) -> Vec<f64> {
+        let _timed = self.timers.time("reduction");
+        let mut own: Vec<i64> = sums.iter().flat_map(|sum| sum.words()).copied().collect();
+        own.extend(self.requests.share().map(|count| count as i64));
+        let mut all = vec![0; own.len()];
+        self.world.all_reduce_into(&own[..], &mut all[..], SystemOperation::sum());
+        let (words, requested) = all.split_at(sums.len() * WORDS);
+        self.requests.agree(std::array::from_fn(|k| requested[k] as f64));
+        words.chunks_exact(WORDS).map(|words| Exact::of_words(words).value()).collect()
+    }
+
     fn maximum(&self, numbers: &mut [f64]) {
         let _timed = self.timers.time("reduction");
         let own = numbers.to_vec();
@@ -136,22 +212,4 @@ impl Halo for MpiHalo {
     fn is_interrupted(&self) -> bool {
         self.requests.stop()
     }
-}
-
-impl MpiHalo {
-    /// Adds this rank's own contribution once to every shared node, whichever and however many ranks share it.
-    fn add_own(&self, own: &[Vec<f64>], nodal: &mut [f64], width: usize) {
-        let mut done: Vec<Range<usize>> = Vec::new();
-        for (part, (_, nodes)) in own.iter().zip(&self.shared) {
-            for node in nodes.clone().filter(|node| !done.iter().any(|range| range.contains(node))) {
-                let at = (node - nodes.start) * width;
-                add(&part[at..at + width], &mut nodal[node * width..(node + 1) * width]);
-            }
-            done.push(nodes.clone());
-        }
-    }
-}
-
-fn add(part: &[f64], nodal: &mut [f64]) {
-    nodal.iter_mut().zip(part).for_each(|(total, contribution)| *total += contribution);
 }

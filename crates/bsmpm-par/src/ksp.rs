@@ -64,7 +64,7 @@ impl<'p, const D: usize> KspSolver<'p, D> {
             next += 1;
             numbers[component] = next as f64;
         }
-        self.halo.sum(&mut numbers, D);
+        self.halo.share(&mut numbers, D);
         self.numbers = numbers.iter().map(|&number| (number > 0.0).then(|| number as usize - 1)).collect();
         self.free = free.to_vec();
     }
@@ -99,7 +99,7 @@ fn spread<const D: usize>(halo: &MpiHalo, unknowns: &[usize], values: &[f64], no
     for (&component, value) in unknowns.iter().zip(values) {
         nodal[component] = *value;
     }
-    halo.sum(nodal, D);
+    halo.share(nodal, D);
 }
 
 fn missing() -> SolveError {

@@ -72,6 +72,12 @@ fn agreed<T>(universe: &Universe, code: u8, mine: Result<T, String>) -> Result<T
     mine.map_err(|_| failed).and_then(|good| if failed == 0 { Ok(good) } else { Err(failed) })
 }
 
+/// The threads that share the points of this rank; its own one is the first of them, so that one is none more.
+fn start_threads(count: u32) -> Result<(), String> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(count as usize).use_current_thread();
+    pool.build_global().map_err(|error| format!("{count} threads could not be started: {error}"))
+}
+
 fn solve(universe: &Universe, task: Task, slabs: Slabs) -> Result<u8, u8> {
     let Task { case, arguments, .. } = &task;
     let choice = setup::linear(case, universe.world().size().unsigned_abs() as usize);
@@ -81,6 +87,7 @@ fn solve(universe: &Universe, task: Task, slabs: Slabs) -> Result<u8, u8> {
     let petsc = agreed(universe, exit::BUG, petsc)?;
     let probed = ksp::probe(&petsc, &choice).map_err(|error| format!("the linear solver cannot be used: {error}"));
     agreed(universe, exit::CASE, probed)?;
+    agreed(universe, exit::BUG, start_threads(arguments.threads))?;
     let hdf5 = Hdf5::initialize(universe).map_err(|error| format!("HDF5 could not be started: {error}"));
     let hdf5 = agreed(universe, exit::BUG, hdf5)?;
     let requests = Requests::of_signals().map_err(|error| format!("signals cannot be handled: {error}"));

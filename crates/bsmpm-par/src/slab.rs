@@ -82,6 +82,34 @@ impl Slabs {
             .filter(|(_, layers)| !layers.is_empty())
             .collect()
     }
+
+    /// Layers that a rank shares with another one, ascending, and which columns of either touch them.
+    pub fn shared_layers(&self, (rank, other): (usize, usize), q: usize) -> Vec<SharedLayer> {
+        let first = self.bounds[rank];
+        let touching = |rank: usize, layer: usize| {
+            intersection(&self.columns(rank), &(layer.saturating_sub(q)..layer + 1))
+        };
+        let shared = |layer: usize| {
+            let own = touching(rank, layer);
+            SharedLayer {
+                layer: layer - first,
+                own: own.start - first..own.end - first,
+                theirs: touching(other, layer).len(),
+            }
+        };
+        intersection(&self.layers(rank, q), &self.layers(other, q)).map(shared).collect()
+    }
+}
+
+/// A layer of nodes that two ranks share, as one of them sees it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SharedLayer {
+    /// layer of its window
+    pub layer: usize,
+    /// columns of its window that touch the layer
+    pub own: Range<usize>,
+    /// number of columns of the other rank that do
+    pub theirs: usize,
 }
 
 /// The common part of two ranges; empty if there is none.
@@ -124,6 +152,25 @@ mod tests {
             }
         }
         assert_eq!(slabs.shared(0, 3).len(), 3);
+    }
+
+    #[test]
+    fn the_columns_that_touch_a_layer_are_those_of_the_ranks_that_share_it() {
+        for (bounds, q) in [(vec![0, 4, 9], 2), (vec![0, 1, 2, 5], 3), (vec![0, 3, 4], 1)] {
+            let (ranks, columns) = (bounds.len() - 1, bounds[bounds.len() - 1]);
+            let slabs = Slabs::new(bounds, ranks, columns).unwrap();
+            for rank in 0..ranks {
+                for layer in slabs.layers(rank, q) {
+                    let own = intersection(&slabs.columns(rank), &(layer.saturating_sub(q)..layer + 1)).len();
+                    let others = (0..ranks).filter(|&other| other != rank).map(|other| {
+                        let layers = slabs.shared_layers((rank, other), q);
+                        let shared = layers.iter().find(|shared| shared.layer + slabs.bounds[rank] == layer);
+                        shared.map_or(0, |shared| shared.theirs)
+                    });
+                    assert_eq!(own + others.sum::<usize>(), (layer + 1).min(columns) - layer.saturating_sub(q));
+                }
+            }
+        }
     }
 
     #[test]

@@ -9,7 +9,7 @@
 mod form;
 
 use crate::grid::shape::{Patch, Shape};
-use crate::grid::{Grid, transfer};
+use crate::grid::{Contributions, Grid, transfer};
 use crate::material::Material;
 use crate::points::Points;
 use crate::seam::Halo;
@@ -90,9 +90,7 @@ impl Background {
 /// Per patch: less than .75 of the cell is filled, and it holds a function at the body's edge.
 fn partly_filled<const D: usize>(grid: &Grid<D>, shape: &Shape<D>, points: &Points<D>, halo: &dyn Halo) -> Vec<bool> {
     let volume = |p: usize| points.volume[p] * points.F[p].determinant();
-    let mut held = vec![0.0; grid.nodes()];
-    transfer::to_nodes(shape, &mut held, |p| [volume(p)]);
-    halo.sum(&mut held, 1);
+    let held = halo.sum(&transfer::to_nodes(shape, |p| [volume(p)]));
     let at_the_edge = |node: usize| held[node] < SUPPORTED * grid.node_volume(node);
     let concerned = |patch: &Patch| {
         let (_, size) = grid.cell_box(&grid.cell_at(patch.cell));
@@ -103,14 +101,15 @@ fn partly_filled<const D: usize>(grid: &Grid<D>, shape: &Shape<D>, points: &Poin
 }
 
 impl Blocks {
-    /// f += B u on the nodal arrays (D numbers a node).
-    pub fn multiply<const D: usize>(&self, shape: &Shape<D>, u: &[f64], f: &mut [f64]) {
+    /// f += B u (D numbers a node).
+    pub fn multiply<const D: usize>(&self, shape: &Shape<D>, u: &[f64], f: &mut Contributions) {
         for (number, block) in &self.cells {
             let first = shape.patches()[*number].first_node;
+            let f = f.patch(first);
             for (row, a) in block.chunks_exact(shape.offsets().len()).zip(shape.offsets()) {
                 for (entry, b) in row.iter().zip(shape.offsets()) {
                     for component in 0..D {
-                        f[(first + a) * D + component] += entry * u[(first + b) * D + component];
+                        f[a * D + component] += entry * u[(first + b) * D + component];
                     }
                 }
             }

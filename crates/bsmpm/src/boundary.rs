@@ -8,6 +8,7 @@ pub use load::Load;
 pub use strip::{Path, Strip, StripReport};
 pub use surface::{Surface, SurfacePoint};
 
+use crate::exact::Exact;
 use crate::grid::Grid;
 use crate::seam::Halo;
 use crate::tensor::Vector;
@@ -77,17 +78,16 @@ impl<const D: usize> Boundary<D> {
     pub fn reactions(&self, grid: &Grid<D>, reaction: &[f64], halo: &dyn Halo) -> Vec<Vec<f64>> {
         let owned = halo.owned();
         let mut counted = vec![false; reaction.len()];
-        let mut sums = vec![0.0; self.supports.len() * D];
+        let mut sums = vec![Exact::default(); self.supports.len() * D];
         for (support, sum) in self.supports.iter().zip(sums.chunks_exact_mut(D)).rev() {
             for node in grid.face_nodes(support.axis, support.upper) {
                 for component in (0..D).filter(|&component| support.velocity[component].is_some()) {
                     if !std::mem::replace(&mut counted[node * D + component], true) && owned.contains(&node) {
-                        sum[component] += reaction[node * D + component];
+                        sum[component].add(reaction[node * D + component]);
                     }
                 }
             }
         }
-        halo.reduce(&mut sums);
-        sums.chunks_exact(D).map(<[f64]>::to_vec).collect()
+        halo.total(&sums).chunks_exact(D).map(<[f64]>::to_vec).collect()
     }
 }

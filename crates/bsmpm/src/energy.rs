@@ -30,33 +30,34 @@
 //! Supports that do not move, and strips at rest, do no work. In J (plane strain: per metre).
 
 use crate::boundary::{Surface, load};
-use crate::grid::transfer;
+use crate::exact::Exact;
+use crate::grid::{Contributions, transfer};
 use crate::kinematics::Kinematics;
 use crate::model::Model;
 use crate::points::Points;
-use crate::seam::Halo;
+use crate::seam::{Halo, over_layers};
 use crate::step::equilibrium::{Found, Scene};
 use crate::step::nodes::Nodes;
 use crate::tensor::{Square, Vector};
-use std::ops::{AddAssign, Range};
+use std::ops::AddAssign;
 
 /// Energy that went somewhere in a step, or in all steps so far, J; see the module.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Flows {
+pub struct Flows<T = f64> {
     /// work of gravity, loads and what moves
-    pub external: f64,
+    pub external: T,
     /// dissipated by plastic flow
-    pub plastic: f64,
+    pub plastic: T,
     /// lost between points and nodes
-    pub transfer: f64,
+    pub transfer: T,
     /// lost by integration in time and along the strain
-    pub integration: f64,
+    pub integration: T,
     /// lost by the smoothing of the elastic strain
-    pub smoothing: f64,
+    pub smoothing: T,
     /// lost to the soft background
-    pub background: f64,
+    pub background: T,
     /// lost between strips and material
-    pub penalty: f64,
+    pub penalty: T,
 }
 
 impl Flows {
@@ -64,8 +65,10 @@ impl Flows {
     pub fn numerical(&self) -> f64 {
         self.transfer + self.integration + self.smoothing + self.background + self.penalty
     }
+}
 
-    fn each(&mut self) -> [&mut f64; 7] {
+impl<T> Flows<T> {
+    fn each(&mut self) -> [&mut T; 7] {
         let Self { external, plastic, transfer, integration, smoothing, background, penalty } = self;
         [external, plastic, transfer, integration, smoothing, background, penalty]
     }
@@ -89,8 +92,7 @@ pub struct Stored {
 impl Stored {
     /// Of the points of all ranks.
     pub fn of<K: Kinematics<D>, const D: usize>(model: &Model<K, D>, points: &Points<D>, halo: &dyn Halo) -> Self {
-        let mut sums = [kinetic(points), elastic(model, points)];
-        halo.reduce(&mut sums);
+        let sums = halo.total(&[kinetic(points), elastic(model, points)]);
         Self { kinetic: sums[0], elastic: sums[1] }
     }
 }
@@ -118,40 +120,39 @@ impl Books {
 }
 
 /// The flows of a step on this rank, before its state is saved into the points.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Draft {
-    flows: Flows,
+    flows: Flows<Exact>,
     t: f64,
     dt: f64,
 }
 
 impl Draft {
     /// Everything but what the points are in the end. A point without response leaves no number: its step fails.
-    pub fn of<K: Kinematics<D>, const D: usize>(scene: &Scene<'_, K, D>, found: &Found, (t, dt): (f64, f64)) -> Self {
+    pub fn of<K: Kinematics<D>, const D: usize>(
+        scene: &Scene<'_, K, D>,
+        found: &Found<D>,
+        (t, dt): (f64, f64),
+    ) -> Self {
         let Scene { model, shape, nodes, grips, points, halo } = *scene;
         let u = &found.u[..];
-        let owned = halo.owned().start * D..halo.owned().end * D;
-        let supports: f64 = owned.clone().map(|c| found.reaction[c] * u[c]).sum();
-        let (gravity, gravity_grown) = gravity_work(scene, u, (t, dt));
+        let mut flows = Flows::<Exact>::default();
+        flows.external = over_layers(halo, D, |c| found.reaction[c] * u[c]);
+        add_gravity(&mut flows, scene, u, (t, dt));
         let strips = grips.work(u);
-        let internal = internal_work(scene, found);
-        let inertia = inertia_work::<D>(nodes, u, owned);
-        let background = nodes.background.as_ref().map_or(0.0, |blocks| {
-            let mut force = vec![0.0; u.len()];
+        flows.external += &strips.given;
+        flows.integration -= &strips.grown;
+        flows.penalty = strips.given;
+        flows.penalty -= &strips.taken;
+        add_internal(&mut flows, scene, found);
+        flows.integration += &elastic(model, points);
+        flows.transfer = kinetic(points);
+        add_inertia(&mut flows, (nodes, halo), u);
+        if let Some(blocks) = &nodes.background {
+            let mut force = Contributions::none(&model.grid, D, Vec::new());
             blocks.multiply::<D>(shape, u, &mut force);
-            force.iter().zip(u).map(|(f, u)| f * u).sum()
-        });
-        let flows = Flows {
-            external: gravity + strips.given + supports,
-            plastic: internal.plastic,
-            transfer: kinetic(points) + (inertia.after - inertia.before),
-            integration: (internal.work - (internal.elastic - elastic(model, points)) - internal.plastic)
-                + (inertia.work - (inertia.after - inertia.before))
-                - (gravity_grown + strips.grown),
-            smoothing: internal.elastic,
-            background,
-            penalty: strips.given - strips.taken,
-        };
+            flows.background = force.dot(u);
+        }
         Self { flows, t, dt }
     }
 
@@ -164,11 +165,11 @@ impl Draft {
         surface: &Surface<D>,
         halo: &dyn Halo,
     ) -> Flows {
-        let Self { mut flows, t, dt } = self;
-        flows.transfer -= kinetic(points);
-        flows.smoothing -= elastic(model, points);
-        let mut sums = flows.each().map(|flow| *flow);
-        halo.reduce(&mut sums);
+        let Self { flows: mut own, t, dt } = self;
+        own.transfer -= &kinetic(points);
+        own.smoothing -= &elastic(model, points);
+        let mut flows = Flows::default();
+        let sums = halo.total(&own.each().map(|flow| flow.clone()));
         flows.each().into_iter().zip(sums).for_each(|(flow, sum)| *flow = sum);
         // The loads' points are the same on every rank.
         let (loads, loads_grown) = load::work(&model.boundary.loads, (&points.surface, surface), (t, dt));
@@ -178,68 +179,60 @@ impl Draft {
     }
 }
 
-fn kinetic<const D: usize>(points: &Points<D>) -> f64 {
-    let Some(motion) = &points.motion else { return 0.0 };
-    motion.v.iter().zip(&points.mass).map(|(v, mass)| 0.5 * mass * v.norm_squared()).sum()
+fn kinetic<const D: usize>(points: &Points<D>) -> Exact {
+    let Some(motion) = &points.motion else { return Exact::ZERO };
+    motion.v.iter().zip(&points.mass).map(|(v, mass)| 0.5 * mass * v.norm_squared()).collect()
 }
 
 /// A state that is no strain has no energy: not a number, like the step that led to it.
-fn elastic<K: Kinematics<D>, const D: usize>(model: &Model<K, D>, points: &Points<D>) -> f64 {
-    (0..points.len()).map(|p| points.volume[p] * model.elastic_energy(points, p, &points.b_e[p])).sum()
+fn elastic<K: Kinematics<D>, const D: usize>(model: &Model<K, D>, points: &Points<D>) -> Exact {
+    (0..points.len()).map(|p| points.volume[p] * model.elastic_energy(points, p, &points.b_e[p])).collect()
 }
 
 /// Work of gravity by its mean, and half of what it has grown times u.
-fn gravity_work<K: Kinematics<D>, const D: usize>(
+fn add_gravity<K: Kinematics<D>, const D: usize>(
+    flows: &mut Flows<Exact>,
     scene: &Scene<'_, K, D>,
     u: &[f64],
     (t, dt): (f64, f64),
-) -> (f64, f64) {
-    let Some(gravity) = &scene.model.gravity else { return (0.0, 0.0) };
-    let mut moved = Vector::<D>::zeros(); // kg m
-    transfer::to_points::<D, D>(scene.shape, u, |p, du| moved += Vector::from(du) * scene.points.mass[p]);
+) {
+    let Some(gravity) = &scene.model.gravity else { return };
     let (before, after) = (gravity.at(t), gravity.at(t + dt));
-    (0.5 * (before + after).dot(&moved), 0.5 * (after - before).dot(&moved))
+    let moved = transfer::to_points::<D, D, _>(scene.shape, u, |p, du| Vector::from(du) * scene.points.mass[p]);
+    flows.external.extend(moved.iter().map(|moved| 0.5 * (before + after).dot(moved)));
+    flows.integration.extend(moved.iter().map(|moved| -0.5 * (after - before).dot(moved)));
 }
 
 /// Work of the points' stress, and what became of it before any smoothing.
-struct Internal {
-    work: f64,
-    plastic: f64,
-    elastic: f64,
-}
-
-fn internal_work<K: Kinematics<D>, const D: usize>(scene: &Scene<'_, K, D>, found: &Found) -> Internal {
+fn add_internal<K: Kinematics<D>, const D: usize>(
+    flows: &mut Flows<Exact>,
+    scene: &Scene<'_, K, D>,
+    found: &Found<D>,
+) {
     let Scene { model, shape, points, .. } = *scene;
-    let mut sums = Internal { work: 0.0, plastic: 0.0, elastic: 0.0 };
-    transfer::gradients(shape, &found.u, |p, grad: Square<D>| {
+    let balance_of = |p: usize, grad: Square<D>| {
         let volume = points.volume[p];
-        let Ok(response) = found.trial.respond(model, points, p) else {
-            sums.work = f64::NAN;
-            return;
-        };
-        sums.work += volume * K::flux(&response.tau(), &found.trial.dF[p]).dot(&grad);
-        sums.plastic += volume * response.dissipation();
-        sums.elastic += volume * model.elastic_energy(points, p, &response.b_e());
-    });
-    sums
+        let Ok(response) = found.trial.respond(model, points, p) else { return [f64::NAN; 3] };
+        let work = volume * K::flux(&response.tau(), &found.trial.dF::<K>(p)).dot(&grad);
+        let elastic = volume * model.elastic_energy(points, p, &response.b_e());
+        [work, volume * response.dissipation(), elastic]
+    };
+    for [work, plastic, elastic] in transfer::gradients(shape, &found.u, balance_of) {
+        flows.plastic.add(plastic);
+        flows.smoothing.add(elastic);
+        flows.integration.extend([work, -elastic, -plastic]);
+    }
 }
 
 /// Work of the inertia, and the kinetic energy of this rank's own nodes at both ends of the step.
-#[derive(Default)]
-struct Inertial {
-    work: f64,
-    before: f64,
-    after: f64,
-}
-
-fn inertia_work<const D: usize>(nodes: &Nodes<D>, u: &[f64], owned: Range<usize>) -> Inertial {
-    let mut sums = Inertial::default();
-    let Some(inertia) = &nodes.inertia else { return sums };
-    for component in owned {
-        let (mass, u) = (nodes.weight[component / D], u[component]);
-        sums.work += mass * inertia.acting(component, u) * u;
-        sums.before += 0.5 * mass * inertia.v[component].powi(2);
-        sums.after += 0.5 * mass * inertia.velocity(component, u).powi(2);
-    }
-    sums
+fn add_inertia<const D: usize>(flows: &mut Flows<Exact>, (nodes, halo): (&Nodes<D>, &dyn Halo), u: &[f64]) {
+    let Some(inertia) = &nodes.inertia else { return };
+    let mass = |c: usize| nodes.weight[c / D];
+    let before = over_layers(halo, D, |c| 0.5 * mass(c) * inertia.v[c].powi(2));
+    let after = over_layers(halo, D, |c| 0.5 * mass(c) * inertia.velocity(c, u[c]).powi(2));
+    flows.transfer += &after;
+    flows.transfer -= &before;
+    flows.integration += &over_layers(halo, D, |c| mass(c) * inertia.acting(c, u[c]) * u[c]);
+    flows.integration -= &after;
+    flows.integration += &before;
 }

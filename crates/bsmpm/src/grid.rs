@@ -2,10 +2,12 @@
 //!
 //! Positions are relative to the grid's lower corner: at 1e6 m an increment of 1e-9 m would lose 5 % of itself.
 
+pub mod contributions;
 pub mod shape;
 pub mod spline;
 pub mod transfer;
 
+pub use contributions::Contributions;
 pub use shape::Shape;
 pub use spline::KnotVector;
 

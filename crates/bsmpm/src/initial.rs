@@ -63,7 +63,7 @@ pub fn set_elastic<K: Kinematics<D>, const D: usize>(
         }
         solver.solve(&residual.f_oob, &mut du)?;
         u.iter_mut().zip(&du).for_each(|(u, du)| *u += du);
-        transfer::gradients(&start.shape, &u, |p, grad| strains[p] = Symmetric::of(&K::gradient(&grad)));
+        strains = transfer::gradients(&start.shape, &u, |_, grad| Symmetric::of(&K::gradient(&grad)));
     }
     let (_, traction) = start.grips.conclude(&model.boundary.strips, &u, halo);
     points.surface.traction = traction;
@@ -120,13 +120,11 @@ fn elastic_residual<K: Kinematics<D>, const D: usize>(
     strains: &[Symmetric],
     u: &[f64],
 ) -> Balance {
-    let mut f_int = vec![0.0; u.len()];
-    transfer::divergence(scene.shape, &mut f_int, |p| {
+    let f_int = transfer::divergence(scene.shape, |p| {
         let tau = stress_of(&elastic_at(scene.model, scene.points, p), &strains[p]);
         K::flux(&tau, &Tensor::identity()) * scene.points.volume[p]
     });
-    scene.halo.sum(&mut f_int, D);
-    Balance::of(scene, u, &f_int, 0)
+    Balance::of(scene, u, &scene.halo.sum(&f_int), 0)
 }
 
 fn elastic_at<K: Kinematics<D>, const D: usize>(model: &Model<K, D>, points: &Points<D>, p: usize) -> Elastic {

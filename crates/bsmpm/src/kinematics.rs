@@ -7,6 +7,9 @@ pub trait Kinematics<const D: usize>: Copy + Default + Send + Sync + 'static {
     /// Displacement gradient as a tensor, from the in-plane gradient du_i/dx_j.
     fn gradient(grad: &Square<D>) -> Tensor;
 
+    /// dJ = det(I + grad), -; out of the grid's directions nothing stretches.
+    fn jacobian(grad: &Square<D>) -> f64;
+
     /// In-plane part of V0 tau dF^-T: times grad N_I it is the internal force of a point at node I (step 5a).
     fn flux(tau: &Symmetric, dF: &Tensor) -> Square<D>;
 
@@ -35,6 +38,11 @@ pub trait Kinematics<const D: usize>: Copy + Default + Send + Sync + 'static {
 pub struct PlaneStrain;
 
 impl Kinematics<2> for PlaneStrain {
+    #[inline]
+    fn jacobian(grad: &Square<2>) -> f64 {
+        (Square::<2>::identity() + grad).determinant()
+    }
+
     #[inline]
     fn gradient(grad: &Square<2>) -> Tensor {
         Tensor::new(grad[(0, 0)], grad[(0, 1)], 0.0, grad[(1, 0)], grad[(1, 1)], 0.0, 0.0, 0.0, 0.0)
@@ -87,6 +95,11 @@ impl Kinematics<2> for PlaneStrain {
 pub struct Solid;
 
 impl Kinematics<3> for Solid {
+    #[inline]
+    fn jacobian(grad: &Square<3>) -> f64 {
+        (Square::<3>::identity() + grad).determinant()
+    }
+
     #[inline]
     fn gradient(grad: &Square<3>) -> Tensor {
         *grad

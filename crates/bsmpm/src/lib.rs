@@ -26,6 +26,7 @@ pub mod boundary;
 pub mod control;
 pub mod energy;
 pub mod error;
+pub mod exact;
 pub mod grid;
 pub mod initial;
 pub mod kinematics;

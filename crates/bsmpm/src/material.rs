@@ -53,7 +53,7 @@ impl Elastic {
 }
 
 /// The Lamé constants, in Pa.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 struct Moduli {
     lambda: f64,
     mu: f64,
@@ -142,14 +142,20 @@ impl Material {
     ///
     /// # Errors
     /// When `b_trial` has a component that is not finite, or an eigenvalue that is not positive.
-    #[inline]
+    // Always inlined: who wants the stress only does not pay for the rest of the response.
+    #[inline(always)]
     pub fn respond(&self, b_trial: &Symmetric) -> Result<Response, MaterialError> {
         let spectrum = Spectrum::of(b_trial)?;
-        let moduli = self.elastic().moduli();
-        let trial = moduli.stress(spectrum.eps);
-        let returned = match self {
-            Self::Hencky(_) | Self::Graded(_) => Return::elastic(trial),
-            Self::MohrCoulomb(law) => law.project(moduli, trial),
+        let (moduli, returned) = match self {
+            Self::Hencky(Hencky { elastic }) => {
+                let moduli = elastic.moduli();
+                (moduli, Return::elastic(moduli.stress(spectrum.eps)))
+            }
+            Self::MohrCoulomb(law) => (law.moduli(), law.project(law.moduli().stress(spectrum.eps))),
+            Self::Graded(law) => {
+                let moduli = law.stiffest().moduli();
+                (moduli, Return::elastic(moduli.stress(spectrum.eps)))
+            }
         };
         Ok(Response::new(*b_trial, spectrum, moduli, returned))
     }

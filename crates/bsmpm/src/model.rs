@@ -91,10 +91,10 @@ pub struct Model<K, const D: usize> {
 
 impl<K: Kinematics<D>, const D: usize> Model<K, D> {
     /// The constitution's answer to the trial b^e of point `p`.
-    #[inline]
+    #[inline(always)]
     pub fn respond(&self, points: &Points<D>, p: usize, b_trial: &Symmetric) -> Result<Response, MaterialError> {
         match &self.materials[usize::from(points.material[p])] {
-            Material::Graded(law) => law.at(points.height(p)).respond(b_trial),
+            Material::Graded(law) => law.respond(points.height(p), b_trial),
             uniform => uniform.respond(b_trial),
         }
     }

@@ -2,6 +2,7 @@
 
 pub mod noise;
 
+use crate::exact::Exact;
 use crate::grid::Grid;
 use crate::points::Points;
 use crate::seam::Halo;
@@ -82,39 +83,16 @@ pub fn heave<const D: usize>(points: &Points<D>, halo: &dyn Halo) -> f64 {
     largest[0]
 }
 
-/// Bits of a word of a mass: sums of 2^32 words are still exact.
-const WORD: f64 = (1_u64 << 20) as f64;
-
-/// Total mass, kg: the same bits however the points are distributed and ordered. Every mass is cut into three words of
-/// 20 bits below a common power of two, whose sums are whole numbers without rounding.
+/// Total mass, kg: the same bits however the points are distributed and ordered.
 pub fn mass<const D: usize>(points: &Points<D>, halo: &dyn Halo) -> f64 {
-    let mut heaviest = [points.mass.iter().copied().fold(0.0, f64::max)];
-    halo.maximum(&mut heaviest);
-    if heaviest[0] == 0.0 {
-        return 0.0;
-    }
-    let unit = heaviest[0].log2().ceil().exp2();
-    let mut words = [0.0; 3];
-    for mass in &points.mass {
-        let mut rest = mass / unit;
-        for word in &mut words {
-            rest *= WORD;
-            *word += rest.floor();
-            rest -= rest.floor();
-        }
-    }
-    halo.reduce(&mut words);
-    words.iter().rev().fold(0.0, |sum, word| (sum + word) / WORD) * unit
+    halo.total(&[points.mass.iter().copied().collect()])[0]
 }
 
 /// Total momentum, kg m/s; zero in quasi-static scenes.
 pub fn momentum<const D: usize>(points: &Points<D>, halo: &dyn Halo) -> Vector<D> {
-    let mut sum = Vector::<D>::zeros();
-    if let Some(motion) = &points.motion {
-        motion.v.iter().zip(&points.mass).for_each(|(v, mass)| sum += v * *mass);
-    }
-    halo.reduce(sum.as_mut_slice());
-    sum
+    let Some(motion) = &points.motion else { return Vector::zeros() };
+    let along = |c: usize| motion.v.iter().zip(&points.mass).map(|(v, mass)| v[c] * mass).collect();
+    Vector::from_vec(halo.total(&(0..D).map(along).collect::<Vec<Exact>>()))
 }
 
 /// Id of the point nearest to `at` (m, from the grid's lower corner); of equally near ones the smallest id.

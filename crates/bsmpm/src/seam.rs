@@ -3,22 +3,31 @@
 //! Nodal arrays are flat: `width` numbers per local node of the window, node after node.
 
 use crate::error::SolveError;
+use crate::exact::Exact;
+use crate::grid::Contributions;
 use std::ops::Range;
 
 /// Exchange of nodal contributions between slabs, and reductions over all ranks.
 pub trait Halo {
     /// Local nodes that this rank owns: every node of the grid has exactly one owner.
     fn owned(&self) -> Range<usize>;
-    /// Adds the contributions of all ranks to the nodes that they share; all of them get the same sum.
-    fn sum(&self, nodal: &mut [f64], width: usize);
-    /// Replaces the number (one a node) of every node that ranks share by the largest of theirs.
-    fn max(&self, nodal: &mut [f64]);
-    /// Replaces each number by its sum over the ranks.
+    /// Nodes of a layer: every rank owns whole layers, whose sums do not depend on the cut.
+    fn layer_nodes(&self) -> usize;
+    /// Nodal sums of what the columns of all ranks contribute, right at ghost nodes too: the same bits on any number of
+    /// ranks.
+    fn sum(&self, contributions: &Contributions) -> Vec<f64>;
+    /// Replaces the numbers of every node that ranks share by those of its owner.
+    fn share(&self, nodal: &mut [f64], width: usize);
+    /// Replaces each number of the nodes that ranks share by the largest of theirs.
+    fn max(&self, nodal: &mut [f64], width: usize);
+    /// Replaces each number by its sum over the ranks. For counts and what one rank alone has, which are exact.
     fn reduce(&self, numbers: &mut [f64]);
+    /// The values of sums over all ranks: the same bits on any number of ranks.
+    fn total(&self, sums: &[Exact]) -> Vec<f64>;
     /// Replaces each number by its largest over the ranks.
     fn maximum(&self, numbers: &mut [f64]);
-    /// Whether somebody outside wants the step to be given up. Changes in [`reduce`](Self::reduce) only, so that all ranks
-    /// see it between the same two reductions.
+    /// Whether somebody outside wants the step to be given up. Changes in [`reduce`](Self::reduce) and
+    /// [`total`](Self::total) only, so that all ranks see it between the same two reductions.
     fn is_interrupted(&self) -> bool {
         false
     }
@@ -26,12 +35,15 @@ pub trait Halo {
 
 /// Dot products of nodal vectors (`width` numbers a node) over all nodes, each counted once, in one reduction.
 pub fn dots(halo: &dyn Halo, width: usize, pairs: &[(&[f64], &[f64])]) -> Vec<f64> {
-    let owned = halo.owned();
-    let range = owned.start * width..owned.end * width;
-    let mut sums: Vec<f64> =
-        pairs.iter().map(|(a, b)| a[range.clone()].iter().zip(&b[range.clone()]).map(|(a, b)| a * b).sum()).collect();
-    halo.reduce(&mut sums);
-    sums
+    let dot = |(a, b): &(&[f64], &[f64])| over_layers(halo, width, |c| a[c] * b[c]);
+    halo.total(&pairs.iter().map(dot).collect::<Vec<_>>())
+}
+
+/// Sum over the components of this rank's own nodes, `width` a node: plainly within a layer, exactly over the layers.
+pub fn over_layers(halo: &dyn Halo, width: usize, term: impl Fn(usize) -> f64) -> Exact {
+    let (owned, layer) = (halo.owned(), halo.layer_nodes() * width);
+    let layers = (owned.start * width..owned.end * width).step_by(layer.max(1));
+    layers.map(|first| (first..first + layer).map(&term).sum::<f64>()).collect()
 }
 
 /// The outcome of this rank, or `other` where only another rank failed: nobody goes on while another has returned.
@@ -40,7 +52,6 @@ pub fn agreed<T, E>(halo: &dyn Halo, mine: Result<T, E>, other: E) -> Result<T, 
     halo.maximum(&mut failed);
     if failed[0] > 0.0 { mine.and(Err(other)) } else { mine }
 }
-
 /// A distributed sparse system whose matrix is summed from dense patch blocks.
 pub trait LinearSolver {
     /// Starts a matrix whose unknowns are the components marked `free` (D per local node, equal on all ranks that
@@ -95,8 +106,17 @@ impl Halo for Alone {
     fn owned(&self) -> Range<usize> {
         0..self.nodes
     }
-    fn sum(&self, _nodal: &mut [f64], _width: usize) {}
-    fn max(&self, _nodal: &mut [f64]) {}
+    fn layer_nodes(&self) -> usize {
+        self.nodes
+    }
+    fn sum(&self, contributions: &Contributions) -> Vec<f64> {
+        contributions.alone()
+    }
+    fn share(&self, _nodal: &mut [f64], _width: usize) {}
+    fn max(&self, _nodal: &mut [f64], _width: usize) {}
     fn reduce(&self, _numbers: &mut [f64]) {}
+    fn total(&self, sums: &[Exact]) -> Vec<f64> {
+        sums.iter().map(Exact::value).collect()
+    }
     fn maximum(&self, _numbers: &mut [f64]) {}
 }

@@ -3,7 +3,7 @@
 use super::strip::reduce;
 use super::surface::{Attachment, Surface, SurfacePoint};
 use crate::error::StepError;
-use crate::grid::Grid;
+use crate::grid::{Contributions, Grid};
 use crate::seam::Halo;
 use crate::tensor::Vector;
 
@@ -37,7 +37,8 @@ pub fn add_forces<const D: usize>(
     if loads.is_empty() {
         return Ok(());
     }
-    let (offsets, mut applied, mut force) = (grid.offsets(), vec![0.0; loads.len()], vec![0.0; f_ext.len()]);
+    let (offsets, mut applied) = (grid.offsets(), vec![0.0; loads.len()]);
+    let mut force = Contributions::none(grid, D, Vec::new());
     for (number, load) in loads.iter().enumerate() {
         let grown = load.grown(t);
         for (point, x) in load.points.iter().zip(&surface.position[number]) {
@@ -53,8 +54,7 @@ pub fn add_forces<const D: usize>(
         let points = loads[load].points.len() - applied[load] as usize;
         return Err(StepError::Unloaded { load, points });
     }
-    halo.sum(&mut force, D);
-    f_ext.iter_mut().zip(force).for_each(|(sum, force)| *sum += force);
+    f_ext.iter_mut().zip(halo.sum(&force)).for_each(|(sum, force)| *sum += force);
     Ok(())
 }
 

@@ -5,7 +5,8 @@
 //! in all steps together is then p / beta, so that a moderate penalty does. The hold is bilateral.
 
 use super::surface::{Attachment, Surface, SurfacePoint};
-use crate::grid::Grid;
+use crate::exact::Exact;
+use crate::grid::{Contributions, Grid};
 use crate::seam::{Halo, LinearSolver};
 use crate::tensor::Vector;
 
@@ -58,14 +59,14 @@ pub struct StripReport {
 }
 
 /// Work of strips in a step, by the mean of their tractions at its ends, N m.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct GripWork {
     /// by the strips' motion
-    pub given: f64,
+    pub given: Exact,
     /// by the displacement of the material at them
-    pub taken: f64,
+    pub taken: Exact,
     /// half of what the tractions have grown, times that displacement
-    pub grown: f64,
+    pub grown: Exact,
 }
 
 /// The strips' points of this rank in one step.
@@ -119,7 +120,7 @@ impl<const D: usize> Held<D> {
     }
 
     /// Adds a force at the point to the nodes.
-    fn spread(&self, offsets: &[usize], force: &Vector<D>, out: &mut [f64]) {
+    fn spread(&self, offsets: &[usize], force: &Vector<D>, out: &mut Contributions) {
         for (component, attachment) in self.attachment.iter().enumerate() {
             let mut along = Vector::<D>::zeros();
             along[component] = force[component];
@@ -180,14 +181,14 @@ impl<const D: usize> Grips<D> {
     }
 
     /// Adds the strips' forces on the body to the nodes; other ranks' parts are not yet in them.
-    pub fn add_forces(&self, u: &[f64], out: &mut [f64]) {
+    pub fn add_forces(&self, u: &[f64], out: &mut Contributions) {
         for held in &self.held {
             held.spread(&self.offsets, &(held.traction(&self.offsets, u) * held.area), out);
         }
     }
 
     /// Adds the product of [`Grips::assemble`]'s stiffness with `v`; other ranks' parts are not yet in it.
-    pub fn multiply(&self, v: &[f64], out: &mut [f64]) {
+    pub fn multiply(&self, v: &[f64], out: &mut Contributions) {
         for held in &self.held {
             let force = held.part(held.displacement(&self.offsets, v)) * (held.penalty * held.area);
             held.spread(&self.offsets, &force, out);
@@ -202,12 +203,12 @@ impl<const D: usize> Grips<D> {
     }
 
     /// du . K du of the strips' stiffness on this rank, N m.
-    pub fn energy(&self, du: &[f64]) -> f64 {
+    pub fn energy(&self, du: &[f64]) -> Exact {
         let of = |held: &Held<D>| {
             let moved = held.part(held.displacement(&self.offsets, du));
             held.penalty * held.area * moved.norm_squared()
         };
-        self.held.iter().map(of).sum()
+        self.held.iter().map(of).collect()
     }
 
     /// Work on this rank under the converged displacement `u`.
@@ -216,9 +217,9 @@ impl<const D: usize> Grips<D> {
         for held in &self.held {
             let (before, after) = (held.own(held.carried), held.traction(&self.offsets, u));
             let (moved, mean) = (held.displacement(&self.offsets, u), (before + after) * (0.5 * held.area));
-            work.given += mean.dot(&held.motion);
-            work.taken += mean.dot(&moved);
-            work.grown += 0.5 * held.area * (after - before).dot(&moved);
+            work.given.add(mean.dot(&held.motion));
+            work.taken.add(mean.dot(&moved));
+            work.grown.add(0.5 * held.area * (after - before).dot(&moved));
         }
         work
     }

@@ -3,7 +3,7 @@
 //! They are few and the same on every rank; each is worked on by the rank whose slab it lies in.
 
 use crate::grid::shape::with_width;
-use crate::grid::{Grid, KnotVector};
+use crate::grid::{Contributions, Grid, KnotVector};
 use crate::tensor::Vector;
 
 /// Share of a surface point's shape functions that the nodes that count must have: below it no material is near enough.
@@ -108,10 +108,11 @@ impl Attachment {
     }
 
     /// out_I += N_I force.
-    pub fn scatter<const D: usize>(&self, offsets: &[usize], force: &Vector<D>, out: &mut [f64]) {
+    pub fn scatter<const D: usize>(&self, offsets: &[usize], force: &Vector<D>, out: &mut Contributions) {
+        let out = out.patch(self.first_node);
         for (N, offset) in self.N.iter().zip(offsets) {
             for component in 0..D {
-                out[(self.first_node + offset) * D + component] += N * force[component];
+                out[offset * D + component] += N * force[component];
             }
         }
     }

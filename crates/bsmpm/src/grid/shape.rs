@@ -20,13 +20,27 @@ pub struct Patch {
     pub points: Range<usize>,
 }
 
+/// An occupied column of cells with its patches: what one thread works on, and what one sum of a layer comes from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Column {
+    /// column of the window
+    pub column: usize,
+    /// its patches
+    pub patches: Range<usize>,
+    /// their points
+    pub points: Range<usize>,
+}
+
 /// Shape functions of all points at the start of a step.
 #[derive(Clone, Debug)]
 pub struct Shape<const D: usize> {
     width: usize,
     offsets: Vec<usize>,
     patches: Vec<Patch>,
-    rows: Vec<f64>, // per point and axis: q + 1 values, then q + 1 derivatives (1/m)
+    columns: Vec<Column>,
+    extent: (usize, usize, usize), // layers that a column touches, nodes of a layer, of the window
+    rows: Vec<f64>, // per point and axis: q + 1 values, then q + 1 derivatives (1/m) but for lowered functions
+    stride: usize,  // numbers of a row
 }
 
 /// Runs `$body` with the constant `W` = q + 1, so that the loops over a patch's nodes are unrolled; 1 is the degree
@@ -63,9 +77,13 @@ impl<const D: usize> Shape<D> {
             width,
             offsets: grid.offsets(),
             patches: Vec::new(),
+            columns: Vec::new(),
+            extent: (width, grid.layer_nodes(), grid.nodes()),
             rows: Vec::with_capacity(points.len() * 2 * D * width),
+            stride: 2 * width,
         };
         with_width!(width, W => shape.evaluate::<W>(grid, points))?;
+        shape.columns = columns(&shape.patches, grid.column_cells());
         Ok(shape)
     }
 
@@ -89,7 +107,7 @@ impl<const D: usize> Shape<D> {
         Ok(())
     }
 
-    /// The splines of degree q - 1 on the same cells, at the same points.
+    /// The splines of degree q - 1 on the same cells, at the same points: their values only.
     ///
     /// Function `a` of a cell is number `cell + a` in either degree, so that the lower ones are numbered as the first
     /// q + (cells - 1) nodes along an axis, and nodal arrays and their exchange serve both.
@@ -100,7 +118,10 @@ impl<const D: usize> Shape<D> {
             width,
             offsets: (0..self.offsets.len()).filter(|&k| inside(k)).map(|k| self.offsets[k]).collect(),
             patches: self.patches.clone(),
-            rows: Vec::with_capacity(points.len() * 2 * D * width),
+            columns: self.columns.clone(),
+            extent: self.extent,
+            rows: Vec::with_capacity(points.len() * D * width),
+            stride: width,
         };
         with_width!(width, W => lower.evaluate_lower::<W>(grid, points));
         lower
@@ -111,9 +132,8 @@ impl<const D: usize> Shape<D> {
             let cell = grid.cell_at(patch.cell);
             for x in &points.x[patch.points.clone()] {
                 for axis in 0..D {
-                    let (N, dN) = grid.axes()[axis].basis::<W>(x[axis], cell[axis]);
+                    let (N, _) = grid.axes()[axis].basis::<W>(x[axis], cell[axis]);
                     self.rows.extend_from_slice(&N);
-                    self.rows.extend_from_slice(&dN);
                 }
             }
         }
@@ -129,6 +149,16 @@ impl<const D: usize> Shape<D> {
         &self.patches
     }
 
+    /// Occupied columns of cells in ascending order.
+    pub(crate) fn columns(&self) -> &[Column] {
+        &self.columns
+    }
+
+    /// Layers of nodes that a column touches, nodes of a layer, nodes of the window.
+    pub(crate) fn extent(&self) -> (usize, usize, usize) {
+        self.extent
+    }
+
     /// Offsets of a patch's nodes from its first one.
     pub fn offsets(&self) -> &[usize] {
         &self.offsets
@@ -136,7 +166,7 @@ impl<const D: usize> Shape<D> {
 
     /// Number of points.
     pub fn len(&self) -> usize {
-        self.rows.len() / (2 * D * self.width)
+        self.rows.len() / (D * self.stride)
     }
 
     /// Whether there is no point.
@@ -148,7 +178,23 @@ impl<const D: usize> Shape<D> {
     #[inline(always)]
     pub(crate) fn support<const W: usize>(&self, p: usize) -> Support<'_, D, W> {
         let size = 2 * D * W;
+        debug_assert_eq!(self.stride, 2 * W, "lowered functions have values only");
         Support { rows: &self.rows[p * size..(p + 1) * size] }
+    }
+
+    /// Rows of values of point `p`, the first of each axis at its multiple of the stride.
+    #[inline(always)]
+    pub(crate) fn values<const W: usize>(&self, p: usize) -> Values<'_, D, W> {
+        let size = D * self.stride;
+        Values { rows: &self.rows[p * size..(p + 1) * size], stride: self.stride }
+    }
+
+    /// N_Ip of every node of point `p`, axis 0 slowest; for tests.
+    pub fn values_of(&self, p: usize) -> Vec<f64> {
+        with_width!(self.width, W => {
+            let support = self.values::<W>(p);
+            (0..W.pow(D as u32)).map(|k| support.value(k)).collect()
+        })
     }
 
     /// N_Ip and grad N_Ip of every node of point `p`, axis 0 slowest; for tests and observations, not for hot loops.
@@ -157,6 +203,40 @@ impl<const D: usize> Shape<D> {
             let support = self.support::<W>(p);
             (0..W.pow(D as u32)).map(|k| (support.value(k), support.gradient(k))).collect()
         })
+    }
+}
+
+/// Patches by columns of `cells` cells.
+fn columns(patches: &[Patch], cells: usize) -> Vec<Column> {
+    let mut columns: Vec<Column> = Vec::new();
+    for (number, patch) in patches.iter().enumerate() {
+        let of_patch = patch.cell / cells;
+        match columns.last_mut() {
+            Some(last) if last.column == of_patch => {
+                (last.patches.end, last.points.end) = (number + 1, patch.points.end);
+            }
+            _ => columns.push(Column { column: of_patch, patches: number..number + 1, points: patch.points.clone() }),
+        }
+    }
+    columns
+}
+
+/// One point's values: D rows of W.
+#[derive(Clone, Copy)]
+pub(crate) struct Values<'a, const D: usize, const W: usize> {
+    rows: &'a [f64],
+    stride: usize,
+}
+
+impl<const D: usize, const W: usize> Values<'_, D, W> {
+    /// N_Ip of local node `k`.
+    #[inline(always)]
+    pub fn value(&self, k: usize) -> f64 {
+        let mut product = 1.0;
+        for axis in 0..D {
+            product *= self.rows[self.stride * axis + k / W.pow((D - 1 - axis) as u32) % W];
+        }
+        product
     }
 }
 

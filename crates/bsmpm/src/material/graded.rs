@@ -2,7 +2,8 @@
 //!
 //! A point keeps the parameters of the height at which it was placed: they follow the material, not the place.
 
-use super::{Elastic, Hencky, Material, MohrCoulomb, Separation};
+use super::{Elastic, Hencky, Material, MaterialError, MohrCoulomb, Response, Separation};
+use crate::tensor::Symmetric;
 use std::ops::Range;
 
 /// A parameter that grows linearly downwards: `value + per_metre (at - y)`.
@@ -79,6 +80,12 @@ impl Graded {
     /// What becomes of the volume that opens at the apex.
     pub(super) fn separation(&self) -> Separation {
         self.strength.as_ref().map_or(Separation::Forgotten, |strength| strength.separation)
+    }
+
+    /// The response of a point that was placed at a height, m; see [`Material::respond`].
+    #[inline(never)]
+    pub fn respond(&self, height: f64, b_trial: &Symmetric) -> Result<Response, MaterialError> {
+        self.at(height).respond(b_trial)
     }
 
     /// The law at a height.

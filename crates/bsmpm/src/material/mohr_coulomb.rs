@@ -13,8 +13,12 @@ pub struct MohrCoulomb {
     dilation: f64,
     cohesion: f64,
     separation: Separation,
-    flow: Flow,    // sin φ and sin ψ, which every response needs
+    // What every response needs, formed once:
+    moduli: Moduli,
+    flow: Flow,    // sin φ and sin ψ
     strength: f64, // Pa  c cos φ
+    shift: f64,    // Pa  τ₁ at yield where τ₃ = 0
+    slope: f64,    // 1/Pa  ½/(λ sin φ sin ψ + μ (1 + sin φ sin ψ)), multiplier over excess of a return to a face
 }
 
 /// What becomes of the volume that opens where the stress returns to the apex: the material has come apart.
@@ -104,8 +108,20 @@ impl MohrCoulomb {
     /// A law with friction angle 0 ≤ φ < π/2 (rad), dilation angle 0 ≤ ψ ≤ φ (rad) and cohesion c ≥ 0 (Pa).
     pub fn new(elastic: Elastic, friction: f64, dilation: f64, cohesion: f64) -> Self {
         let flow = Flow { sin_phi: friction.sin(), sin_psi: dilation.sin() };
-        let separation = Separation::default();
-        Self { elastic, friction, dilation, cohesion, separation, flow, strength: cohesion * friction.cos() }
+        let (moduli, product) = (elastic.moduli(), flow.sin_phi * flow.sin_psi);
+        let strength = cohesion * friction.cos();
+        Self {
+            elastic,
+            friction,
+            dilation,
+            cohesion,
+            separation: Separation::default(),
+            moduli,
+            flow,
+            strength,
+            shift: 2.0 * strength / (1.0 + flow.sin_phi),
+            slope: 0.5 / (moduli.lambda * product + moduli.mu * (1.0 + product)),
+        }
     }
 
     /// The law with another answer to what comes apart.
@@ -121,6 +137,12 @@ impl MohrCoulomb {
         let friction = (self.friction.tan() / factor).atan();
         let reduced = Self::new(self.elastic, friction, self.dilation.min(friction), self.cohesion / factor);
         reduced.separating(self.separation)
+    }
+
+    /// The Lamé constants.
+    #[inline]
+    pub(super) fn moduli(&self) -> Moduli {
+        self.moduli
     }
 
     /// The elastic part.
@@ -153,33 +175,31 @@ impl MohrCoulomb {
     /// τ₁ is always taken from τ₃ by f = 0, so the result satisfies yield and order to the last digits even where it
     /// is much smaller than the trial.
     #[inline]
-    pub(super) fn project(&self, moduli: Moduli, trial: [f64; 3]) -> Return {
-        let Self { flow, strength, .. } = *self;
+    pub(super) fn project(&self, trial: [f64; 3]) -> Return {
+        let Self { moduli, flow, strength, shift, .. } = *self;
         let sin_phi = flow.sin_phi;
         let excess = (trial[0] - trial[2]) + (trial[0] + trial[2]) * sin_phi - 2.0 * strength;
         if excess <= 0.0 {
             return Return::elastic(trial);
         }
-        let shift = 2.0 * strength / (1.0 + sin_phi);
-        let (tau, region) = face(flow, moduli, trial, excess, shift)
+        let (tau, region) = self
+            .face(trial, excess)
             .or_else(|| edge(flow, moduli, trial, shift))
             .unwrap_or_else(|| ([strength / sin_phi; 3], Region::Apex));
         Return { tau, region, flow }
     }
-}
 
-/// Return along `τ = τ_trial - Δγ D m`, `Δγ = f/(4λ sin φ sin ψ + 4μ(1 + sin φ sin ψ))`; none if it breaks the order.
-#[inline]
-fn face(flow: Flow, moduli: Moduli, trial: [f64; 3], excess: f64, shift: f64) -> Option<([f64; 3], Region)> {
-    let Flow { sin_phi, sin_psi } = flow;
-    let Moduli { lambda, mu } = moduli;
-    let product = sin_phi * sin_psi;
-    let half = 0.5 * excess / (lambda * product + mu * (1.0 + product));
-    let second = trial[1] - half * lambda * sin_psi;
-    let third = trial[2] - half * (lambda * sin_psi - mu * (1.0 - sin_psi));
-    let first = flow.ratio() * third + shift;
-    // Beyond the apex f = 0 and the order exclude each other, so this test covers the apex too.
-    (first >= second && second >= third).then_some(([first, second, third], Region::Face))
+    /// Return along `τ = τ_trial - Δγ D m`, `Δγ = f/(4λ sin φ sin ψ + 4μ(1 + sin φ sin ψ))`; none if it breaks the order.
+    #[inline]
+    fn face(&self, trial: [f64; 3], excess: f64) -> Option<([f64; 3], Region)> {
+        let (Moduli { lambda, mu }, sin_psi) = (self.moduli, self.flow.sin_psi);
+        let half = self.slope * excess;
+        let second = trial[1] - half * lambda * sin_psi;
+        let third = trial[2] - half * (lambda * sin_psi - mu * (1.0 - sin_psi));
+        let first = self.flow.ratio() * third + self.shift;
+        // Beyond the apex f = 0 and the order exclude each other, so this test covers the apex too.
+        (first >= second && second >= third).then_some(([first, second, third], Region::Face))
+    }
 }
 
 /// Return to the edge that the face return crosses first; none if that is beyond the apex (never when sin φ = 0).

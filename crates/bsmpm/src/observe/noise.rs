@@ -5,7 +5,8 @@
 
 use crate::error::StepError;
 use crate::grid::shape::Patch;
-use crate::grid::{Grid, Shape, transfer};
+use crate::exact::Exact;
+use crate::grid::{Contributions, Grid, Shape, transfer};
 use crate::model::Weighting;
 use crate::points::Points;
 use crate::seam::{Halo, agreed};
@@ -67,30 +68,30 @@ impl Squares {
         grid: &Grid<D>,
         points: &Points<D>,
         weighting: Weighting,
-        stress: &impl Fn(usize) -> f64,
+        stress: &(impl Fn(usize) -> f64 + Sync),
         window: Option<[Vector<D>; 2]>,
         halo: &dyn Halo,
     ) -> Result<Self, StepError> {
         let shape = agreed(halo, Shape::at(grid, points), StepError::OtherRank)?;
-        let average = averaged(grid, &shape, points, weighting, stress, halo);
+        let average = averaged(&shape, points, weighting, stress, halo);
         let planes = planes(grid, &shape, points, stress, halo);
         let counts = |x: &Vector<D>| {
             window.is_none_or(|[lower, upper]| (0..D).all(|axis| (lower[axis]..=upper[axis]).contains(&x[axis])))
         };
-        let mut sums = [0.0; 4];
+        let mut sums = [const { Exact::ZERO }; 4];
         for (patch, plane) in shape.patches().iter().zip(&planes) {
             let cell = grid.cell_at(patch.cell);
             for p in patch.points.clone().filter(|&p| counts(&points.x[p])) {
                 let terms = terms(grid, &cell, &points.x[p]);
                 let on_plane: f64 = plane.iter().zip(&terms).map(|(a, b)| a * b).sum();
-                sums[0] += 1.0;
-                sums[1] += stress(p).abs();
-                sums[2] += (stress(p) - average[p]).powi(2);
-                sums[3] += (stress(p) - on_plane).powi(2);
+                sums[0].add(1.0);
+                sums[1].add(stress(p).abs());
+                sums[2].add((stress(p) - average[p]).powi(2));
+                sums[3].add((stress(p) - on_plane).powi(2));
             }
         }
-        halo.reduce(&mut sums);
-        let [count, absolute, average, plane] = sums;
+        let sums = halo.total(&sums);
+        let [count, absolute, average, plane] = [0, 1, 2, 3].map(|k| sums[k]);
         let mean = |sum: f64| if count > 0.0 { sum / count } else { 0.0 };
         Ok(Self { mean: mean(absolute), average: mean(average), plane: mean(plane) })
     }
@@ -101,25 +102,20 @@ impl Squares {
 }
 
 fn averaged<const D: usize>(
-    grid: &Grid<D>,
     shape: &Shape<D>,
     points: &Points<D>,
     weighting: Weighting,
-    stress: &impl Fn(usize) -> f64,
+    stress: &(impl Fn(usize) -> f64 + Sync),
     halo: &dyn Halo,
 ) -> Vec<f64> {
     let weights = match weighting {
         Weighting::Mass => &points.mass,
         Weighting::Volume => &points.volume,
     };
-    let mut nodal = vec![0.0; grid.nodes() * 2];
-    transfer::to_nodes(shape, &mut nodal, |p| [weights[p], weights[p] * stress(p)]);
-    halo.sum(&mut nodal, 2);
+    let nodal = halo.sum(&transfer::to_nodes(shape, |p| [weights[p], weights[p] * stress(p)]));
     let mean = |pair: &[f64]| if pair[0] > 0.0 { pair[1] / pair[0] } else { 0.0 };
     let nodal: Vec<f64> = nodal.chunks_exact(2).map(mean).collect();
-    let mut average = vec![0.0; points.len()];
-    transfer::to_points(shape, &nodal, |p, [value]| average[p] = value);
-    average
+    transfer::to_points(shape, &nodal, |_, [average]| average)
 }
 
 /// Terms 1, x, y, .. of a plane, about the middle of `cell` and in units of it.
@@ -140,24 +136,23 @@ fn planes<const D: usize>(
     grid: &Grid<D>,
     shape: &Shape<D>,
     points: &Points<D>,
-    stress: &impl Fn(usize) -> f64,
+    stress: &(impl Fn(usize) -> f64 + Sync),
     halo: &dyn Halo,
 ) -> Vec<[f64; MOST]> {
     let middle = grid.order() / 2;
-    let mut sums = vec![0.0; grid.nodes() * WIDTH];
+    let mut sums = Contributions::none(grid, WIDTH, Vec::new());
     for patch in shape.patches() {
         for offset in shape.offsets() {
-            let node = patch.first_node + offset;
-            let of_node = grid.node_at(node);
+            let of_node = grid.node_at(patch.first_node + offset);
             let cell =
                 std::array::from_fn(|axis| of_node[axis].saturating_sub(middle).min(grid.axes()[axis].cells() - 1));
-            let sum = &mut sums[node * WIDTH..(node + 1) * WIDTH];
+            let sum = &mut sums.patch(patch.first_node)[offset * WIDTH..(offset + 1) * WIDTH];
             for p in patch.points.clone() {
                 add_moments(&terms(grid, &cell, &points.x[p]), stress(p), sum);
             }
         }
     }
-    halo.sum(&mut sums, WIDTH);
+    let sums = halo.sum(&sums);
     let middle_offset = shape.offsets()[(0..D).fold(0, |k, _| k * shape.width() + middle)];
     let plane = |patch: &Patch| {
         let node = patch.first_node + middle_offset;

@@ -16,6 +16,7 @@ use crate::step::inertia::Inertia;
 use crate::step::nodes::Nodes;
 use crate::step::smooth;
 use crate::tensor::Vector;
+use rayon::prelude::*;
 
 /// Refuses a displacement that takes a point out of the grid; agreed by all ranks.
 pub fn check_inside<K: Kinematics<D>, const D: usize>(
@@ -25,17 +26,14 @@ pub fn check_inside<K: Kinematics<D>, const D: usize>(
     u: &[f64],
     halo: &dyn Halo,
 ) -> Result<(), StepError> {
-    let (mut count, mut first) = (0_u64, None);
-    transfer::to_points::<D, D>(shape, u, |p, du| {
+    let leaves = transfer::to_points::<D, D, _>(shape, u, |p, du| {
         let x = points.x[p] + Vector::from(du);
-        if model.grid.locate(&x).is_none() {
-            count += 1;
-            first.get_or_insert_with(|| (points.id[p], x.as_slice().to_vec()));
-        }
+        model.grid.locate(&x).is_none().then_some((p, x))
     });
-    let mut counts = [count as f64];
+    let mut counts = [leaves.iter().flatten().count() as f64];
     halo.reduce(&mut counts);
     if counts[0] > 0.0 {
+        let first = leaves.into_iter().flatten().next().map(|(p, x)| (points.id[p], x.as_slice().to_vec()));
         return Err(StepError::Left { count: counts[0] as u64, first });
     }
     Ok(())
@@ -47,27 +45,28 @@ pub fn commit<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     shape: &Shape<D>,
     nodes: &Nodes<D>,
-    found: Found,
+    found: Found<D>,
     points: &mut Points<D>,
     halo: &dyn Halo,
 ) -> Result<Vec<f64>, StepError> {
     let Found { u, trial, .. } = found;
     let respond =
         |p: usize| trial.respond(model, points, p).map_err(|source| StepError::Material { id: points.id[p], source });
-    let responses: Result<Vec<_>, _> = (0..points.len()).map(respond).collect();
+    let responses: Result<Vec<_>, _> = (0..points.len()).into_par_iter().map(respond).collect();
     let responses = agreed(halo, responses, StepError::OtherRank)?;
     if let Some(inertia) = &nodes.inertia {
         move_with_inertia(shape, inertia, &u, points);
     }
-    transfer::to_points::<D, D>(shape, &u, |p, du| {
-        points.x[p] += Vector::from(du); // (11a)
-        points.u[p] += Vector::from(du); // (11b)
-    });
+    let du = transfer::to_points::<D, D, _>(shape, &u, |_, du| Vector::from(du));
+    for (p, du) in du.into_iter().enumerate() {
+        points.x[p] += du; // (11a)
+        points.u[p] += du; // (11b)
+    }
     if model.stabilisation == Stabilisation::FBarZhao {
-        points.dilation = Some((0..points.len()).map(|p| trial.averaged(p)).collect());
+        points.dilation = Some((0..points.len()).map(|p| trial.averaged(model, points, p)).collect());
     }
     for (p, response) in responses.iter().enumerate() {
-        points.F[p] = trial.dF[p] * points.F[p];
+        points.F[p] = trial.dF::<K>(p) * points.F[p];
         points.sigma[p] = response.tau().scaled(1.0 / points.F[p].determinant());
         points.b_e[p] = response.b_e();
         points.eps_p[p] += response.plastic_increment();
@@ -97,9 +96,9 @@ fn gaps<K, const D: usize>(model: &Model<K, D>, points: &Points<D>, responses: &
 fn move_with_inertia<const D: usize>(shape: &Shape<D>, inertia: &Inertia, u: &[f64], points: &mut Points<D>) {
     let Some(motion) = &mut points.motion else { return };
     let a: Vec<f64> = u.iter().enumerate().map(|(c, &u)| inertia.acceleration(c, u)).collect();
-    transfer::to_points::<D, D>(shape, &a, |p, a| {
-        let a = Vector::from(a);
+    let a = transfer::to_points::<D, D, _>(shape, &a, |_, a| Vector::from(a));
+    for (p, a) in a.into_iter().enumerate() {
         motion.v[p] += motion.a[p].zip_map(&a, |before, after| inertia.newmark.gained(inertia.dt, before, after));
         motion.a[p] = a;
-    });
+    }
 }

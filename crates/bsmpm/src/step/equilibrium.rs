@@ -55,11 +55,11 @@ pub struct Scene<'a, K, const D: usize> {
 
 /// A converged displacement.
 #[derive(Clone, Debug)]
-pub struct Found {
+pub struct Found<const D: usize> {
     /// m, nodal
     pub u: Vec<f64>,
     /// deformation under `u`
-    pub trial: Trial,
+    pub trial: Trial<D>,
     /// N  force of the supports on the body, nodal
     pub reaction: Vec<f64>,
     history: Vec<Measures>,
@@ -68,9 +68,9 @@ pub struct Found {
     first_guess: bool,
 }
 
-impl Found {
+impl<const D: usize> Found<D> {
     /// The state that an iteration reached.
-    pub fn new(u: Vec<f64>, residual: Residual, progress: &Progress) -> Self {
+    pub fn new(u: Vec<f64>, residual: Residual<D>, progress: &Progress) -> Self {
         let newton_iterations = progress.by_newton();
         let (force, Residual { trial, balance, .. }) = (residual.balance.measure(), residual);
         let (history, reaction) = (progress.history().to_vec(), balance.reaction);
@@ -78,7 +78,7 @@ impl Found {
     }
 
     /// The step's numbers; one reduction for the supports' forces.
-    pub fn report<K: Kinematics<D>, const D: usize>(&self, scene: &Scene<'_, K, D>) -> Report {
+    pub fn report<K: Kinematics<D>>(&self, scene: &Scene<'_, K, D>) -> Report {
         let nodes = scene.nodes;
         Report {
             iterations: self.history.len(),
@@ -103,7 +103,7 @@ pub fn find<K: Kinematics<D>, const D: usize>(
     guess: &[f64],
     solver: &mut dyn LinearSolver,
     counts: &mut Counts,
-) -> Result<Found, StepError> {
+) -> Result<Found<D>, StepError> {
     let (last, zero) = (admissible(scene.nodes, guess), admissible(scene.nodes, &vec![0.0; guess.len()]));
     let mut differs = [f64::from(u8::from(last != zero))];
     scene.halo.maximum(&mut differs);
@@ -124,7 +124,7 @@ fn search<K: Kinematics<D>, const D: usize>(
     method: Nonlinear,
     u: Vec<f64>,
     (solver, counts): (&mut dyn LinearSolver, &mut Counts),
-) -> Result<Found, StepError> {
+) -> Result<Found<D>, StepError> {
     let mut progress = Progress::new(scene);
     let secants = match method {
         Nonlinear::Newton => {
@@ -157,7 +157,7 @@ fn by_secants<K: Kinematics<D>, const D: usize>(
     u: Vec<f64>,
     (solver, counts): (&mut dyn LinearSolver, &mut Counts),
     progress: &mut Progress,
-) -> Result<Found, Stopped> {
+) -> Result<Found<D>, Stopped> {
     if scene.nodes.unknowns > 0 {
         stiffness::assemble(scene, solver)?;
         counts.factorisations += 1;
@@ -176,7 +176,7 @@ fn admissible<const D: usize>(nodes: &Nodes<D>, guess: &[f64]) -> Vec<f64> {
 }
 
 /// The forces under `u`, counted.
-pub fn evaluate<K: Kinematics<D>, const D: usize>(scene: &Scene<'_, K, D>, u: &[f64], counts: &mut Counts) -> Residual {
+pub fn evaluate<K: Kinematics<D>, const D: usize>(scene: &Scene<'_, K, D>, u: &[f64], counts: &mut Counts) -> Residual<D> {
     counts.evaluations += 1;
     Residual::of(scene, u)
 }

@@ -57,8 +57,7 @@ pub(super) fn map<const D: usize>(
     let mut inertia = Inertia { v: vec![0.0; mass.len() * D], a: vec![0.0; mass.len() * D], dt, newmark };
     if let Some(motion) = &points.motion {
         for (field, nodal) in [(&motion.v, &mut inertia.v), (&motion.a, &mut inertia.a)] {
-            transfer::to_nodes::<D, D>(shape, nodal, |p| (field[p] * points.mass[p]).into());
-            halo.sum(nodal, D);
+            *nodal = halo.sum(&transfer::to_nodes::<D, D>(shape, |p| (field[p] * points.mass[p]).into()));
             divide(nodal, mass, threshold);
         }
     }

@@ -17,7 +17,7 @@ use crate::tensor::{Square, Vector};
 /// The derivative at one displacement.
 pub struct Linearised<'a, K, const D: usize> {
     scene: &'a Scene<'a, K, D>,
-    trial: &'a Trial,
+    trial: &'a Trial<D>,
     /// N m  V0 d(tau dF^-T)/d(grad v), one unit gradient after the other
     moduli: Vec<[[Square<D>; D]; D]>,
     /// under F-bar
@@ -34,13 +34,14 @@ struct Dilation<const D: usize> {
 
 impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
     /// The derivative where `residual` was evaluated; no point of it may have inverted.
-    pub fn at(scene: &'a Scene<'a, K, D>, residual: &'a Residual) -> Self {
+    pub fn at(scene: &'a Scene<'a, K, D>, residual: &'a Residual<D>) -> Self {
         let (trial, points) = (&residual.trial, scene.points);
         let averaged = trial.is_averaged();
         let mut moduli = Vec::with_capacity(points.len());
         let mut dilation = averaged.then(|| Vec::with_capacity(points.len()));
         for p in 0..points.len() {
-            let inverse = trial.dF[p].try_inverse();
+            let dF = trial.dF::<K>(p);
+            let inverse = dF.try_inverse();
             let (Ok(response), Some(inverse)) = (trial.respond(scene.model, points, p), inverse) else {
                 moduli.push([[Square::zeros(); D]; D]); // cannot be: the residual has refused such a point
                 continue;
@@ -66,26 +67,21 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
     /// K v on nodal arrays, `v` zero where it is not free: one exchange with the neighbours, one more under F-bar.
     pub fn multiply(&self, v: &[f64], out: &mut [f64]) {
         let Scene { shape, nodes, halo, .. } = *self.scene;
-        let mut flux = Vec::with_capacity(self.moduli.len());
-        let mut trace = Vec::with_capacity(self.dilation.as_ref().map_or(0, Vec::len));
-        transfer::gradients(shape, v, |p, grad| {
-            flux.push(contract(&self.moduli[p], &grad));
-            if let Some(dilation) = &self.dilation {
-                trace.push(dilation[p].trace.dot(&grad));
-            }
+        let grad = transfer::gradients(shape, v, |_, grad| grad);
+        let rate = self.dilation.as_ref().and_then(|dilation| {
+            let trace: Vec<f64> = dilation.iter().zip(&grad).map(|(at, grad)| at.trace.dot(grad)).collect();
+            Some((dilation, self.trial.dilation_rate(self.scene, &trace)?))
         });
-        if let (Some(dilation), Some(rates)) = (&self.dilation, self.trial.dilation_rate(self.scene, &trace)) {
-            for ((flux, dilation), rate) in flux.iter_mut().zip(dilation).zip(rates) {
-                *flux += dilation.flux * rate;
-            }
-        }
-        out.fill(0.0);
-        transfer::divergence(shape, out, |p| flux[p]);
+        let moduli = &self.moduli;
+        let mut force = transfer::divergence(shape, |p| {
+            let flux = contract(&moduli[p], &grad[p]);
+            rate.as_ref().map_or(flux, |(dilation, rate)| flux + dilation[p].flux * rate[p])
+        });
         if let Some(background) = &nodes.background {
-            background.multiply::<D>(shape, v, out);
+            background.multiply::<D>(shape, v, &mut force);
         }
-        self.scene.grips.multiply(v, out);
-        halo.sum(out, D);
+        self.scene.grips.multiply(v, &mut force);
+        out.copy_from_slice(&halo.sum(&force));
         if let Some(inertia) = &nodes.inertia {
             for (component, (out, v)) in out.iter_mut().zip(v).enumerate() {
                 *out += inertia.factor() * nodes.weight[component / D] * v;

@@ -30,7 +30,7 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
     solver: &mut dyn LinearSolver,
     counts: &mut Counts,
     progress: &mut Progress,
-) -> Result<Found, Stopped> {
+) -> Result<Found<D>, Stopped> {
     let mut residual = evaluate(scene, &u, counts);
     if !residual.balance.is_sound() {
         return Err(inverted(scene, &residual, progress.iterations()).into());
@@ -65,7 +65,7 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
 /// K du = f_oob with the complete K at this state.
 fn direction<K: Kinematics<D>, const D: usize>(
     scene: &Scene<'_, K, D>,
-    residual: &Residual,
+    residual: &Residual<D>,
     solver: &mut dyn LinearSolver,
     counts: &mut Counts,
 ) -> Result<Vec<f64>, SolveError> {
@@ -87,9 +87,9 @@ fn search<K: Kinematics<D>, const D: usize>(
     scene: &Scene<'_, K, D>,
     u: &[f64],
     du: &[f64],
-    residual: &Residual,
+    residual: &Residual<D>,
     counts: &mut Counts,
-) -> Option<(Vec<f64>, Residual)> {
+) -> Option<(Vec<f64>, Residual<D>)> {
     let mut length = 1.0;
     while length >= SHORTEST {
         let next: Vec<f64> = u.iter().zip(du).map(|(u, du)| u + length * du).collect();

@@ -63,7 +63,7 @@ impl<const D: usize> Nodes<D> {
         halo: &dyn Halo,
     ) -> Result<Self, StepError> {
         let nodes = model.grid.nodes();
-        let weight = scatter_weight(model.weighting, shape, points, nodes, halo);
+        let weight = scatter_weight(model.weighting, shape, points, halo);
         let mut heaviest = [weight.iter().copied().fold(0.0, f64::max)];
         halo.maximum(&mut heaviest);
         let threshold = MASSLESS * heaviest[0];
@@ -79,7 +79,7 @@ impl<const D: usize> Nodes<D> {
         load::add_forces(&model.boundary.loads, &points.surface, window, t + dt, halo, &mut f_ext)?;
         let lower = (model.stabilisation == Stabilisation::ConsistentFBar).then(|| {
             let shape = shape.lowered(&model.grid, points);
-            let weight = scatter_weight(model.weighting, &shape, points, nodes, halo);
+            let weight = scatter_weight(model.weighting, &shape, points, halo);
             Lower { shape, weight }
         });
         let mut mapped = Self {
@@ -108,7 +108,7 @@ impl<const D: usize> Nodes<D> {
         points: &Points<D>,
         weighting: Weighting,
         halo: &dyn Halo,
-        value: impl Fn(usize) -> [f64; C],
+        value: impl Fn(usize) -> [f64; C] + Sync,
     ) -> Vec<f64> {
         average((shape, &self.weight, self.threshold), points, weighting, halo, value)
     }
@@ -121,16 +121,14 @@ impl<const D: usize> Nodes<D> {
         points: &Points<D>,
         weighting: Weighting,
         halo: &dyn Halo,
-        value: impl Fn(usize) -> f64,
+        value: impl Fn(usize) -> f64 + Sync,
     ) -> Vec<f64> {
         let (shape, weight) = match &self.lower {
             Some(lower) => (&lower.shape, &lower.weight),
             None => (shape, &self.weight),
         };
         let nodal = average((shape, weight, self.threshold), points, weighting, halo, |p| [value(p)]);
-        let mut mean = vec![0.0; points.len()];
-        transfer::to_points(shape, &nodal, |p, [value]| mean[p] = value);
-        mean
+        transfer::to_points(shape, &nodal, |_, [mean]| mean)
     }
 
     fn count(&mut self, halo: &dyn Halo) {
@@ -154,12 +152,10 @@ fn average<const D: usize, const C: usize>(
     points: &Points<D>,
     weighting: Weighting,
     halo: &dyn Halo,
-    value: impl Fn(usize) -> [f64; C],
+    value: impl Fn(usize) -> [f64; C] + Sync,
 ) -> Vec<f64> {
-    let mut nodal = vec![0.0; weight.len() * C];
     let weights = weights(weighting, points);
-    transfer::to_nodes(shape, &mut nodal, |p| value(p).map(|v| weights[p] * v));
-    halo.sum(&mut nodal, C);
+    let mut nodal = halo.sum(&transfer::to_nodes(shape, |p| value(p).map(|v| weights[p] * v)));
     divide(&mut nodal, weight, threshold);
     nodal
 }
@@ -175,14 +171,10 @@ fn scatter_weight<const D: usize>(
     weighting: Weighting,
     shape: &Shape<D>,
     points: &Points<D>,
-    nodes: usize,
     halo: &dyn Halo,
 ) -> Vec<f64> {
     let weights = weights(weighting, points);
-    let mut weight = vec![0.0; nodes];
-    transfer::to_nodes(shape, &mut weight, |p| [weights[p]]);
-    halo.sum(&mut weight, 1);
-    weight
+    halo.sum(&transfer::to_nodes(shape, |p| [weights[p]]))
 }
 
 /// Per node: touched by an occupied cell, and: touched by a point with a gradient or by the background, so that its
@@ -194,19 +186,17 @@ fn supported<const D: usize>(
     nodes: usize,
     halo: &dyn Halo,
 ) -> (Vec<bool>, Vec<bool>) {
-    let mut touched = vec![0.0; 2 * nodes]; // by a cell, by the background
+    let mut touched = vec![0.0_f64; 2 * nodes]; // by a cell, by the background
     for (number, patch) in shape.patches().iter().enumerate() {
         let soft = background.is_some_and(|blocks| blocks.of(number).is_some());
         for offset in shape.offsets() {
             let marks = &mut touched[2 * (patch.first_node + offset)..][..2];
             marks[0] = 1.0;
-            marks[1] += f64::from(u8::from(soft));
+            marks[1] = marks[1].max(f64::from(u8::from(soft)));
         }
     }
-    halo.sum(&mut touched, 2);
-    let mut stiff = vec![0.0; nodes];
-    transfer::squared_gradients(shape, &mut stiff, |p| points.volume[p]);
-    halo.sum(&mut stiff, 1);
+    halo.max(&mut touched, 2);
+    let stiff = halo.sum(&transfer::squared_gradients(shape, |p| points.volume[p]));
     let mut stiffest = [stiff.iter().copied().fold(0.0, f64::max)];
     halo.maximum(&mut stiffest);
     let above = MASSLESS * stiffest[0];
@@ -229,7 +219,7 @@ fn external_force<K: Kinematics<D>, const D: usize>(
     let mass = match model.weighting {
         Weighting::Mass => weight,
         Weighting::Volume => {
-            own = scatter_weight(Weighting::Mass, shape, points, weight.len(), halo);
+            own = scatter_weight(Weighting::Mass, shape, points, halo);
             &own
         }
     };

@@ -96,7 +96,7 @@ impl Progress {
     pub fn failed<K, const D: usize>(
         &self,
         scene: &Scene<'_, K, D>,
-        residual: &Residual,
+        residual: &Residual<D>,
         unsolved: Option<SolveError>,
     ) -> StepError {
         StepError::NotConverged {
@@ -117,19 +117,18 @@ pub fn first_energy<K: Kinematics<D>, const D: usize>(scene: &Scene<'_, K, D>, f
     if scene.model.boundary.strips.is_empty() {
         return work.abs();
     }
-    let mut penalty = [scene.grips.energy(du)];
-    scene.halo.reduce(&mut penalty);
+    let penalty = scene.halo.total(&[scene.grips.energy(du)]);
     (work - penalty[0]).abs()
 }
 
 /// The error of a state in which points have inverted.
-pub fn inverted<K, const D: usize>(scene: &Scene<'_, K, D>, residual: &Residual, iteration: usize) -> StepError {
+pub fn inverted<K, const D: usize>(scene: &Scene<'_, K, D>, residual: &Residual<D>, iteration: usize) -> StepError {
     let first = residual.first_inverted.map(|p| (scene.points.id[p], scene.points.x[p].as_slice().to_vec()));
     StepError::Inverted { count: residual.balance.inverted, iteration, first }
 }
 
 /// This rank's own nodes whose forces are the least balanced, worst first.
-fn worst_nodes<K, const D: usize>(scene: &Scene<'_, K, D>, residual: &Residual) -> Vec<WorstNode> {
+fn worst_nodes<K, const D: usize>(scene: &Scene<'_, K, D>, residual: &Residual<D>) -> Vec<WorstNode> {
     let grid = &scene.model.grid;
     let force = |node: usize| Vector::<D>::from_column_slice(&residual.balance.f_oob[node * D..][..D]).norm();
     let mut nodes: Vec<usize> = scene.halo.owned().filter(|&node| force(node) > 0.0).collect();

@@ -92,7 +92,7 @@ impl Stopped {
     /// is at fault.
     pub fn without_direction<K, const D: usize>(
         scene: &Scene<'_, K, D>,
-        (best, residual): (Vec<f64>, &Residual),
+        (best, residual): (Vec<f64>, &Residual<D>),
         progress: &Progress,
         unsolved: SolveError,
     ) -> Self {
@@ -118,7 +118,7 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
     solver: &mut dyn LinearSolver,
     counts: &mut Counts,
     progress: &mut Progress,
-) -> Result<Found, Stopped> {
+) -> Result<Found<D>, Stopped> {
     let mut secants = Secants::new(method);
     let mut residual = evaluate(scene, &u, counts);
     if !residual.balance.is_sound() {
@@ -160,7 +160,7 @@ fn advance<K: Kinematics<D>, const D: usize>(
     scene: &Scene<'_, K, D>,
     u: &mut Vec<f64>,
     du: &[f64],
-    residual: &mut Residual,
+    residual: &mut Residual<D>,
     counts: &mut Counts,
 ) -> Result<f64, StepError> {
     let mut length = 1.0;

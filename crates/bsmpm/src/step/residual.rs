@@ -1,16 +1,20 @@
 //! Step (5): internal force, inertia and the out-of-balance force.
 
-use crate::grid::transfer;
+use crate::exact::Exact;
+use crate::grid::{Contributions, transfer};
 use crate::kinematics::Kinematics;
+use crate::seam::over_layers;
 use crate::step::equilibrium::Scene;
 use crate::step::trial::Trial;
 use crate::tensor::Square;
+use std::sync::atomic::Ordering::Relaxed;
+use std::sync::atomic::{AtomicU64, AtomicUsize};
 
 /// Forces of the points under a nodal displacement, balanced at the nodes.
 #[derive(Clone, Debug)]
-pub struct Residual {
+pub struct Residual<const D: usize> {
     /// deformation that they follow from
-    pub trial: Trial,
+    pub trial: Trial<D>,
     /// the nodes
     pub balance: Balance,
     /// the first point of this rank that inverted or is not finite
@@ -34,27 +38,27 @@ pub struct Balance {
     finite: bool,
 }
 
-impl Residual {
+impl<const D: usize> Residual<D> {
     /// Evaluates the forces under `u`: one exchange with the neighbours, one more each for F-bar and strips, and one
     /// reduction.
-    pub fn of<K: Kinematics<D>, const D: usize>(scene: &Scene<'_, K, D>, u: &[f64]) -> Self {
+    pub fn of<K: Kinematics<D>>(scene: &Scene<'_, K, D>, u: &[f64]) -> Self {
         let Scene { model, shape, nodes, points, halo, .. } = *scene;
         let trial = Trial::of(model, shape, nodes, points, u, halo);
-        let (mut inverted, mut first_inverted) = (0_u64, None);
-        let mut f_int = vec![0.0; u.len()];
-        transfer::divergence(shape, &mut f_int, |p| match trial.respond(model, points, p) {
-            Ok(response) => K::flux(&response.tau(), &trial.dF[p]) * points.volume[p],
+        let (inverted, first_inverted) = (AtomicU64::new(0), AtomicUsize::new(usize::MAX));
+        let mut f_int = transfer::divergence(shape, |p| match trial.respond(model, points, p) {
+            Ok(response) => K::flux(&response.tau(), &trial.dF::<K>(p)) * points.volume[p],
             Err(_) => {
-                inverted += 1;
-                first_inverted.get_or_insert(p);
+                inverted.fetch_add(1, Relaxed);
+                first_inverted.fetch_min(p, Relaxed);
                 Square::zeros()
             }
         });
         if let Some(background) = &nodes.background {
             background.multiply::<D>(shape, u, &mut f_int);
         }
-        halo.sum(&mut f_int, D);
-        Self { trial, balance: Balance::of(scene, u, &f_int, inverted), first_inverted }
+        let balance = Balance::of(scene, u, &halo.sum(&f_int), inverted.into_inner());
+        let first_inverted = Some(first_inverted.into_inner()).filter(|&p| p < points.len());
+        Self { trial, balance, first_inverted }
     }
 }
 
@@ -66,15 +70,23 @@ impl Balance {
         f_int: &[f64],
         inverted: u64,
     ) -> Self {
-        let mut f_strips = vec![0.0; if scene.model.boundary.strips.is_empty() { 0 } else { u.len() }];
-        if !f_strips.is_empty() {
-            scene.grips.add_forces(u, &mut f_strips);
-            scene.halo.sum(&mut f_strips, D);
+        let mut f_strips = Vec::new();
+        if !scene.model.boundary.strips.is_empty() {
+            let mut held = Contributions::none(&scene.model.grid, D, Vec::new());
+            scene.grips.add_forces(u, &mut held);
+            f_strips = scene.halo.sum(&held);
         }
         let forces = Forces::of(scene, u, f_int, &f_strips);
-        let mut sums =
-            [inverted as f64, forces.unbalanced, forces.external, forces.internal, forces.inertial, forces.supporting];
-        scene.halo.reduce(&mut sums);
+        let squares = |force: &[f64]| over_layers(scene.halo, D, |c| force[c].powi(2));
+        let supporting = |c: usize| forces.reaction[c].powi(2) + f_strips.get(c).copied().unwrap_or(0.0).powi(2);
+        let sums = scene.halo.total(&[
+            std::iter::once(inverted as f64).collect(),
+            squares(&forces.f_oob),
+            over_active(scene, |c| scene.nodes.f_ext[c].powi(2)),
+            over_active(scene, |c| f_int[c].powi(2)),
+            over_layers(scene.halo, D, |c| forces.inertial.get(c).map_or(0.0, |inertial| inertial.powi(2))),
+            over_active(scene, supporting),
+        ]);
         Self {
             f_oob: forces.f_oob,
             reaction: forces.reaction,
@@ -96,16 +108,16 @@ impl Balance {
     }
 }
 
-/// Step (5b) with the squared norms of its terms over this rank's own nodes.
-#[derive(Default)]
+/// Sum over the components of this rank's own active nodes.
+fn over_active<K, const D: usize>(scene: &Scene<'_, K, D>, term: impl Fn(usize) -> f64) -> Exact {
+    over_layers(scene.halo, D, |c| if scene.nodes.active[c / D] { term(c) } else { 0.0 })
+}
+
+/// Step (5b) at the nodes of the window.
 struct Forces {
     f_oob: Vec<f64>,
     reaction: Vec<f64>,
-    unbalanced: f64,
-    external: f64,
-    internal: f64,
-    inertial: f64,
-    supporting: f64,
+    inertial: Vec<f64>, // empty without inertia
 }
 
 impl Forces {
@@ -116,30 +128,19 @@ impl Forces {
         f_strips: &[f64],
     ) -> Self {
         let nodes = scene.nodes;
-        let owned = scene.halo.owned();
-        let owned = owned.start * D..owned.end * D;
-        let mut forces = Self { f_oob: vec![0.0; u.len()], reaction: vec![0.0; u.len()], ..Self::default() };
-        for component in 0..u.len() {
-            if !nodes.active[component / D] {
-                continue;
-            }
-            let inertial = nodes
-                .inertia
-                .as_ref()
-                .map_or(0.0, |inertia| nodes.weight[component / D] * inertia.acting(component, u[component]));
+        let mut forces = Self { f_oob: vec![0.0; u.len()], reaction: vec![0.0; u.len()], inertial: Vec::new() };
+        if let Some(inertia) = &nodes.inertia {
+            let of = |c: usize| if nodes.active[c / D] { nodes.weight[c / D] * inertia.acting(c, u[c]) } else { 0.0 };
+            forces.inertial = (0..u.len()).map(of).collect();
+        }
+        for component in (0..u.len()).filter(|component| nodes.active[component / D]) {
+            let inertial = forces.inertial.get(component).copied().unwrap_or(0.0);
             let held = f_strips.get(component).copied().unwrap_or(0.0);
             let balance = nodes.f_ext[component] + held - f_int[component] - inertial;
             if nodes.free[component] {
                 forces.f_oob[component] = balance;
             } else if nodes.prescribed[component].is_some() {
                 forces.reaction[component] = -balance;
-            }
-            if owned.contains(&component) {
-                forces.external += nodes.f_ext[component].powi(2);
-                forces.internal += f_int[component].powi(2);
-                forces.inertial += inertial.powi(2);
-                forces.unbalanced += forces.f_oob[component].powi(2);
-                forces.supporting += forces.reaction[component].powi(2) + held.powi(2);
             }
         }
         forces

@@ -64,6 +64,6 @@ fn largest_moduli<K: Kinematics<D>, const D: usize>(scene: &Scene<'_, K, D>) -> 
             *node = node.max(young);
         }
     }
-    scene.halo.max(&mut moduli);
+    scene.halo.max(&mut moduli, 1);
     moduli
 }

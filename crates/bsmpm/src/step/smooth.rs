@@ -17,7 +17,7 @@ pub fn average_b_e<K, const D: usize>(
     halo: &dyn Halo,
 ) {
     let nodal = nodes.average(shape, points, model.weighting, halo, |p| points.b_e[p].0);
-    transfer::to_points(shape, &nodal, |p, b_e| points.b_e[p] = Symmetric(b_e));
+    points.b_e = transfer::to_points(shape, &nodal, |_, b_e| Symmetric(b_e));
 }
 
 /// What the filter of consistent F-bar needs of a point's return.
@@ -63,12 +63,12 @@ pub fn filter_dilation<K, const D: usize>(
     }
     let mut chi = vec![0.0; nodes.weight.len()];
     transfer::largest_to_nodes(shape, &mut chi, |p| flow[p].plastic);
-    halo.max(&mut chi);
-    let mut share = vec![0.0; points.len()];
-    transfer::to_points(shape, &chi, |p, [x]| share[p] = -(-x / RENEWING).exp_m1());
+    halo.max(&mut chi, 1);
+    let share = transfer::to_points(shape, &chi, |_, [x]| -(-x / RENEWING).exp_m1());
     let nodal = nodes.average(shape, points, model.weighting, halo, |p| [share[p], flow[p].dilation]);
-    transfer::to_points(shape, &nodal, |p, [theta, mean]| {
+    let b_e = &points.b_e;
+    points.b_e = transfer::to_points(shape, &nodal, |p, [theta, mean]| {
         let change = theta * (mean - flow[p].dilation);
-        points.b_e[p] = points.b_e[p].scaled((2.0 / 3.0 * change).exp());
+        b_e[p].scaled((2.0 / 3.0 * change).exp())
     });
 }

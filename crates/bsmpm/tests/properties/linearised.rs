@@ -145,7 +145,7 @@ fn curvature(cohesion: f64, size: f64) -> ([f64; 2], usize) {
         || -> Vec<f64> { nodes.free.iter().map(|&free| if free { size * random.signed() } else { 0.0 }).collect() };
     let (u, v) = (free(), free());
     let at = |s: f64| Residual::of(&pieces, &u.iter().zip(&v).map(|(u, v)| u + s * v).collect::<Vec<_>>());
-    let regions = |residual: &Residual| -> Vec<Region> {
+    let regions = |residual: &Residual<2>| -> Vec<Region> {
         (0..points.len()).map(|p| residual.trial.respond(model, points, p).unwrap().region()).collect()
     };
     let start = at(0.0);

@@ -7,6 +7,8 @@ use crate::support::solver::{Reluctant, Skyline};
 use bsmpm::boundary::Support;
 use bsmpm::control::{Accepted, Failure, Stepper};
 use bsmpm::error::{SolveError, StepError};
+use bsmpm::exact::Exact;
+use bsmpm::grid::Contributions;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::Regime;
 use bsmpm::schedule::Schedule;
@@ -142,10 +144,20 @@ impl Halo for Impatient {
     fn owned(&self) -> Range<usize> {
         self.halo.owned()
     }
-    fn sum(&self, _nodal: &mut [f64], _width: usize) {}
-    fn max(&self, _nodal: &mut [f64]) {}
+    fn layer_nodes(&self) -> usize {
+        self.halo.layer_nodes()
+    }
+    fn sum(&self, contributions: &Contributions) -> Vec<f64> {
+        self.halo.sum(contributions)
+    }
+    fn share(&self, _nodal: &mut [f64], _width: usize) {}
+    fn max(&self, _nodal: &mut [f64], _width: usize) {}
     fn reduce(&self, _numbers: &mut [f64]) {
         self.reductions.set(self.reductions.get() + 1);
+    }
+    fn total(&self, sums: &[Exact]) -> Vec<f64> {
+        self.reductions.set(self.reductions.get() + 1);
+        self.halo.total(sums)
     }
     fn maximum(&self, _numbers: &mut [f64]) {}
     fn is_interrupted(&self) -> bool {

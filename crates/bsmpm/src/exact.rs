@@ -1,0 +1,176 @@
+//! Sums of floats without rounding: the same bits in whatever order, by however many ranks and threads they are formed.
+//!
+//! A number is a whole multiple of 2^-1074. Its significand is cut at multiples of 32 bits and added to whole numbers of 64
+//! bits (a long accumulator: Kulisch and Miranker, 1986; small superaccumulator: Neal, 2015), which ranks add up one by one.
+//! Nothing is rounded before [`Exact::value`].
+
+use std::ops::{AddAssign, SubAssign};
+
+/// Digits of 32 bits between the smallest and the largest float, with room for 2^31 of them.
+const DIGITS: usize = 68;
+/// Whole numbers that a sum is made of: what ranks add up.
+pub const WORDS: usize = DIGITS + 1;
+/// Bits of a digit.
+const BITS: u32 = 32;
+
+/// A sum that has not been rounded; of up to 2^31 floats.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Exact {
+    words: [i64; WORDS], // the digits, each with its own sign, and how many floats were no number or infinite
+}
+
+impl Default for Exact {
+    fn default() -> Self {
+        Self::ZERO
+    }
+}
+
+impl Exact {
+    /// No terms.
+    pub const ZERO: Self = Self { words: [0; WORDS] };
+
+    /// Adds a float.
+    #[inline]
+    pub fn add(&mut self, number: f64) {
+        let bits = number.to_bits();
+        let exponent = (bits >> 52) as u32 & 0x7ff;
+        if exponent == 0x7ff {
+            self.words[DIGITS] += 1;
+            return;
+        }
+        let fraction = bits & ((1 << 52) - 1);
+        // A normal number is (2^52 + fraction) 2^(exponent - 1) units, one below the normal ones fraction units.
+        let (significand, shift) = if exponent == 0 { (fraction, 0) } else { (fraction | 1 << 52, exponent - 1) };
+        let (digit, spread) = ((shift / BITS) as usize, u128::from(significand) << (shift % BITS));
+        let sign = if number.is_sign_negative() { -1 } else { 1 };
+        for (k, word) in self.words[digit..digit + 3].iter_mut().enumerate() {
+            *word += sign * i64::from((spread >> (BITS * k as u32)) as u32);
+        }
+    }
+
+    /// The sum, rounded once, to within a unit in the last place; not a number if a term was none or infinite.
+    pub fn value(&self) -> f64 {
+        if self.words[DIGITS] != 0 {
+            return f64::NAN;
+        }
+        let mut digits = [0_i64; DIGITS];
+        let mut carry = 0;
+        for (digit, word) in digits.iter_mut().zip(&self.words) {
+            let sum = word + carry;
+            (*digit, carry) = (sum & 0xffff_ffff, sum >> BITS);
+        }
+        if carry < 0 {
+            return -self.negated().value();
+        }
+        // The highest digit that is not zero and the two behind it hold 65 bits at least.
+        let Some(top) = digits.iter().rposition(|&digit| digit != 0) else { return 0.0 };
+        let leading = (0..3).rev().fold(0_u128, |sum, k| {
+            let place = (top + k).checked_sub(2);
+            sum << BITS | place.map_or(0, |place| digits[place] as u128)
+        });
+        let exponent = (top as i32 - 2) * BITS as i32 - 1074;
+        // Two factors, as 2^exponent itself may lie below the floats.
+        leading as f64 * 2.0_f64.powi(exponent / 2) * 2.0_f64.powi(exponent - exponent / 2)
+    }
+
+    fn negated(&self) -> Self {
+        let mut negated = Self::ZERO;
+        negated -= self;
+        negated
+    }
+
+    /// The whole numbers, to be added to those of other ranks.
+    pub fn words(&self) -> &[i64; WORDS] {
+        &self.words
+    }
+
+    /// The sum of which these are the words.
+    ///
+    /// # Panics
+    /// If there are not [`WORDS`] of them.
+    pub fn of_words(words: &[i64]) -> Self {
+        Self { words: words.try_into().expect("as many words as a sum has") }
+    }
+}
+
+impl AddAssign<&Exact> for Exact {
+    fn add_assign(&mut self, other: &Exact) {
+        self.words.iter_mut().zip(&other.words).for_each(|(sum, word)| *sum += word);
+    }
+}
+
+impl SubAssign<&Exact> for Exact {
+    fn sub_assign(&mut self, other: &Exact) {
+        self.words[..DIGITS].iter_mut().zip(&other.words).for_each(|(sum, word)| *sum -= word);
+        self.words[DIGITS] += other.words[DIGITS]; // what is no number stays none
+    }
+}
+
+impl Extend<f64> for Exact {
+    fn extend<I: IntoIterator<Item = f64>>(&mut self, numbers: I) {
+        numbers.into_iter().for_each(|number| self.add(number));
+    }
+}
+
+impl FromIterator<f64> for Exact {
+    fn from_iter<I: IntoIterator<Item = f64>>(numbers: I) -> Self {
+        let mut sum = Self::default();
+        sum.extend(numbers);
+        sum
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn value(numbers: &[f64]) -> f64 {
+        numbers.iter().copied().collect::<Exact>().value()
+    }
+
+    #[test]
+    fn single_floats_come_back_as_they_are() {
+        let edges = [0.0, 1.0, -1.0, 0.1, -3.7e-200, f64::MAX, f64::MIN, f64::MIN_POSITIVE, 5e-324, -5e-324, 4.1e-311];
+        for number in edges {
+            assert_eq!(value(&[number]), number, "{number:e}");
+        }
+    }
+
+    #[test]
+    fn what_cancels_leaves_what_is_left() {
+        assert_eq!(value(&[1e300, 1.0, -1e300]), 1.0);
+        assert_eq!(value(&[1e-300, 1e16, 1.0, -1e16, -1.0]), 1e-300);
+        assert_eq!(value(&[0.1, 0.2, -0.1, -0.2]), 0.0);
+        assert_eq!(value(&[-1e16, -1.0, 1e16]), -1.0);
+    }
+
+    #[test]
+    fn the_order_and_the_parts_change_no_bit() {
+        let mut seed = 7_u64;
+        let mut random = || {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            let mantissa = (seed >> 11) as f64 / (1_u64 << 53) as f64 - 0.5;
+            mantissa * 2.0_f64.powi((seed % 120) as i32 - 60)
+        };
+        let numbers: Vec<f64> = (0..5000).map(|_| random()).collect();
+        let whole: Exact = numbers.iter().copied().collect();
+        let backwards: Exact = numbers.iter().rev().copied().collect();
+        let mut parts = [0; WORDS];
+        for part in numbers.chunks(617) {
+            let part: Exact = part.iter().copied().collect();
+            parts.iter_mut().zip(part.words()).for_each(|(sum, word)| *sum += word);
+        }
+        assert_eq!(whole, backwards);
+        assert_eq!(whole, Exact::of_words(&parts));
+        let plain: f64 = numbers.iter().sum();
+        let size: f64 = numbers.iter().map(|number| number.abs()).sum();
+        assert!((whole.value() - plain).abs() <= 1e-12 * size);
+    }
+
+    #[test]
+    fn no_number_stays_none() {
+        assert!(value(&[1.0, f64::NAN]).is_nan());
+        assert!(value(&[f64::INFINITY, f64::NEG_INFINITY]).is_nan());
+        assert!(value(&[f64::MAX, f64::MAX]).is_infinite());
+    }
+}

@@ -1,0 +1,101 @@
+//! What the columns of cells contribute to their nodes, each column for itself, so that sums do not depend on the cut.
+//!
+//! A layer of nodes gets contributions from q + 1 columns at most. They are added in the order of the columns, whichever
+//! rank has them: a nodal sum has the same bits on any number of ranks and threads. A column's contribution is the sum of
+//! its patches in their order, a patch's that of its points.
+
+use super::Grid;
+use crate::exact::Exact;
+
+/// Contributions of the columns of this rank, `width` numbers a node; see the module.
+#[derive(Clone, Debug)]
+pub struct Contributions {
+    columns: Vec<usize>, // of the window, ascending, that contribute at all
+    sums: Vec<f64>,      // column, layer 0..=q behind it, node of the layer, number
+    layers: usize,       // q + 1
+    layer: usize,        // numbers of a layer
+    width: usize,
+    nodes: usize,
+}
+
+impl Contributions {
+    /// None, by the `columns` (ascending) of a window.
+    pub fn none<const D: usize>(grid: &Grid<D>, width: usize, columns: Vec<usize>) -> Self {
+        Self::zeros((grid.order() + 1, grid.layer_nodes(), grid.nodes()), width, columns)
+    }
+
+    pub(super) fn zeros(
+        (layers, layer_nodes, nodes): (usize, usize, usize),
+        width: usize,
+        columns: Vec<usize>,
+    ) -> Self {
+        let layer = layer_nodes * width;
+        Self { sums: vec![0.0; columns.len() * layers * layer], columns, layers, layer, width, nodes }
+    }
+
+    /// Numbers a node.
+    pub fn width(&self) -> usize {
+        self.width
+    }
+
+    /// Numbers of one column.
+    pub(super) fn column_size(&self) -> usize {
+        self.layers * self.layer
+    }
+
+    /// The sums of all columns, one after the other.
+    pub(super) fn columns_mut(&mut self) -> impl Iterator<Item = &mut [f64]> {
+        let size = self.column_size();
+        self.sums.chunks_exact_mut(size)
+    }
+
+    /// The numbers of a cell's nodes and those behind them, to be indexed by the grid's offsets times the width; a column
+    /// that has not contributed before begins with zeros.
+    pub fn patch(&mut self, first_node: usize) -> &mut [f64] {
+        let column = first_node * self.width / self.layer;
+        let size = self.column_size();
+        let place = self.columns.binary_search(&column).unwrap_or_else(|place| {
+            self.columns.insert(place, column);
+            self.sums.splice(place * size..place * size, std::iter::repeat_n(0.0, size));
+            place
+        });
+        let within = first_node * self.width - column * self.layer;
+        &mut self.sums[place * size + within..(place + 1) * size]
+    }
+
+    /// What a column of the window contributes to a layer of its nodes; `None` if nothing.
+    pub fn of(&self, column: usize, layer: usize) -> Option<&[f64]> {
+        let place = self.columns.binary_search(&column).ok()?;
+        let at = (place * self.layers + layer.checked_sub(column)?) * self.layer;
+        (layer - column < self.layers).then(|| &self.sums[at..at + self.layer])
+    }
+
+    /// Adds what the columns of this rank contribute to the nodal array of the window.
+    pub fn add_to(&self, nodal: &mut [f64]) {
+        for (&column, sums) in self.columns.iter().zip(self.sums.chunks_exact(self.column_size().max(1))) {
+            let nodes = &mut nodal[column * self.layer..column * self.layer + sums.len()];
+            nodes.iter_mut().zip(sums).for_each(|(total, sum)| *total += sum);
+        }
+    }
+
+    /// Product with a nodal array of the window: what forces that contribute work on a displacement.
+    pub fn dot(&self, nodal: &[f64]) -> Exact {
+        let of = |(&column, sums): (&usize, &[f64])| {
+            let nodes = &nodal[column * self.layer..column * self.layer + sums.len()];
+            nodes.iter().zip(sums).map(|(value, sum)| value * sum).sum::<f64>()
+        };
+        self.columns.iter().zip(self.sums.chunks_exact(self.column_size().max(1))).map(of).collect()
+    }
+
+    /// Zeros for the nodes of the window.
+    pub fn nodal(&self) -> Vec<f64> {
+        vec![0.0; self.nodes * self.width]
+    }
+
+    /// The nodal array where no other rank contributes.
+    pub fn alone(&self) -> Vec<f64> {
+        let mut nodal = self.nodal();
+        self.add_to(&mut nodal);
+        nodal
+    }
+}
