@@ -181,7 +181,8 @@ mod tests {
         for k in -999..=999 {
             let strain = 1e-4 * f64::from(k);
             let found = Principal::of(1.0, strain, [0.0; 3]).ok().map_or(f64::NAN, |principal| principal.eps);
-            assert!((found - 0.5 * strain.ln_1p()).abs() <= 2.5e-16 * found.abs(), "{strain}: {found:e}");
+            // A unit in the last place of either.
+            assert!((found - 0.5 * strain.ln_1p()).abs() <= 4.5e-16 * found.abs(), "{strain}: {found:e}");
         }
     }
 

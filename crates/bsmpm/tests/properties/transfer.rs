@@ -5,8 +5,10 @@ use crate::support::scene::{Scene, axis, hencky};
 use bsmpm::grid::{KnotVector, Shape, transfer};
 use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
 use bsmpm::model::{Gravity, Regime};
+use bsmpm::points::Points;
 use bsmpm::step::nodes::Nodes;
 use bsmpm::tensor::{Square, Vector};
+use std::ops::Range;
 
 /// A body of scattered points of different mass with velocities, in a graded grid.
 fn scattered<K: Kinematics<D>, const D: usize>(order: usize) -> Scene<K, D> {
@@ -139,4 +141,60 @@ fn squared_gradients_are_the_trace_of_the_moment() {
         }
     }
     assert!(found.iter().zip(&expected).all(|(a, b)| (a - b).abs() <= 1e-13 * b.abs()));
+}
+
+/// Sums of the windows of any cut, each layer adding its columns in their order, are those of the whole grid to the bit.
+fn sums_of_windows<K: Kinematics<D>, const D: usize>(order: usize) {
+    let scene = scattered::<K, D>(order);
+    let (grid, all) = (&scene.model.grid, 0..scene.model.grid.columns().end);
+    let force = |p: usize, points: &Points<D>| Square::<D>::from_element(points.mass[p]) + points.F[p].fixed_view::<D, D>(0, 0);
+    let of_window = |columns: Range<usize>| {
+        let window = grid.window(columns.clone());
+        let mut points = scene.points.clone();
+        let column = |p: usize| grid.locate(&scene.points.x[p]).expect("inside")[0];
+        let inside: Vec<u32> = (0..points.len()).filter(|&p| columns.contains(&column(p))).map(|p| p as u32).collect();
+        points.columns().into_iter().for_each(|array| array.reorder(&inside));
+        points.sort_by_cell(&window);
+        let shape = Shape::at(&window, &points).unwrap();
+        (columns.start, transfer::divergence(&shape, |p| force(p, &points)))
+    };
+    let (_, whole) = of_window(all.clone());
+    let whole = whole.alone();
+    let layer = grid.layer_nodes() * D;
+    for cut in all.start + 1..all.end {
+        let parts = [of_window(all.start..cut), of_window(cut..all.end)];
+        for number in 0..grid.layers().len() {
+            let mut sum = vec![0.0; layer];
+            for (first, part) in &parts {
+                for column in 0..all.end - first {
+                    let found = (number >= *first).then(|| part.of(column, number - first)).flatten();
+                    sum.iter_mut().zip(found.unwrap_or(&[])).for_each(|(sum, value)| *sum += value);
+                }
+            }
+            assert_eq!(sum, whole[number * layer..(number + 1) * layer], "layer {number}, cut {cut}, order {order}");
+        }
+    }
+}
+
+#[test]
+fn nodal_sums_do_not_depend_on_the_cut() {
+    for order in 1..=3 {
+        sums_of_windows::<PlaneStrain, 2>(order);
+        sums_of_windows::<Solid, 3>(order);
+    }
+}
+
+#[test]
+fn nodal_sums_do_not_depend_on_the_number_of_threads() {
+    let scene = scattered::<PlaneStrain, 2>(2);
+    let shape = Shape::at(&scene.model.grid, &scene.points).unwrap();
+    let sums = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads start");
+        pool.install(|| {
+            let nodal = transfer::to_nodes(&shape, |p| [scene.points.mass[p]]).alone();
+            (transfer::to_points::<2, 1, _>(&shape, &nodal, |_, [mean]| mean), nodal)
+        })
+    };
+    assert_eq!(sums(1), sums(2));
+    assert_eq!(sums(1), sums(5));
 }
