@@ -1,0 +1,69 @@
+//! What a step's inner iteration allocates: arrays a pass, nothing a point.
+
+#[path = "../support/mod.rs"]
+#[allow(dead_code)]
+mod support;
+
+use bsmpm::boundary::strip::Grips;
+use bsmpm::grid::Shape;
+use bsmpm::kinematics::PlaneStrain;
+use bsmpm::model::Regime;
+use bsmpm::stabilisation::Stabilisation;
+use bsmpm::step::equilibrium;
+use bsmpm::step::nodes::Nodes;
+use bsmpm::step::residual::Residual;
+use bsmpm::tensor::Vector;
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+use support::scene::{METHODS, Scene, axis, hencky};
+
+/// The system's allocator, counting.
+struct Counting;
+
+static COUNT: AtomicUsize = AtomicUsize::new(0);
+
+// SAFETY: every call goes to the system's allocator unchanged; the count is no memory of it.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        COUNT.fetch_add(1, Relaxed);
+        // SAFETY: the caller's promises are those that the system's allocator asks for.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, place: *mut u8, layout: Layout) {
+        // SAFETY: as above.
+        unsafe { System.dealloc(place, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+/// Allocations of one evaluation of the residual, with `per_axis`^2 points a cell.
+fn allocations(per_axis: usize, method: Stabilisation) -> usize {
+    let scene = Scene::<PlaneStrain, 2>::new([axis(1.0, 12, 2), axis(1.0, 6, 2)], hencky(100.0, 0.3), Regime::Dynamic)
+        .body([1..9, 0..5], per_axis, 1.0, |_| Vector::zeros())
+        .gravity(9.81, 0.0)
+        .stabilised(method);
+    let (model, points, halo) = (&scene.model, &scene.points, scene.halo());
+    let shape = Shape::at(&model.grid, points).expect("points in the grid");
+    let nodes = Nodes::map(model, &shape, points, (0.0, 0.1), &halo).expect("no loads");
+    let grips = Grips::at(&[], &points.surface, (&model.grid, &nodes.free), (0.0, 0.1));
+    let pieces = equilibrium::Scene { model, shape: &shape, nodes: &nodes, grips: &grips, points, halo: &halo };
+    let u: Vec<f64> = (0..model.grid.nodes() * 2).map(|c| 1e-3 * (c as f64).sin()).collect();
+    let evaluate = || Residual::of(&pieces, &u).balance.norm;
+    assert!(evaluate() > 0.0);
+    let before = COUNT.load(Relaxed);
+    let _ = evaluate();
+    COUNT.load(Relaxed) - before
+}
+
+#[test]
+fn an_iteration_allocates_as_often_whatever_the_number_of_points() {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread starts");
+    for method in METHODS {
+        let counts = pool.install(|| [1, 2, 6].map(|per_axis| allocations(per_axis, method)));
+        println!("{method:?}: {counts:?}");
+        assert!(counts[0] == counts[1] && counts[1] == counts[2] && counts[0] < 40, "{method:?}: {counts:?}");
+    }
+}
