@@ -1,0 +1,121 @@
+//! The passes of a step, each by itself, on the points of a state.
+
+use bsmpm::boundary::strip::Grips;
+use bsmpm::error::{SolveError, StepError};
+use bsmpm::grid::{Shape, transfer};
+use bsmpm::kinematics::{Kinematics, PlaneStrain};
+use bsmpm::model::Model;
+use bsmpm::points::Points;
+use bsmpm::seam::{Halo, Krylov, LinearSolver, Symmetry};
+use bsmpm::step::equilibrium::Scene;
+use bsmpm::step::nodes::Nodes;
+use bsmpm::step::residual::Residual;
+use bsmpm::step::stiffness;
+use bsmpm::step::trial::Trial;
+use std::hint::black_box;
+use std::time::Instant;
+
+/// Shortest time of one call among those that fit into so many seconds, three at least, s.
+pub fn shortest(seconds: f64, mut call: impl FnMut()) -> f64 {
+    let (begin, mut shortest, mut calls) = (Instant::now(), f64::INFINITY, 0);
+    while calls < 3 || begin.elapsed().as_secs_f64() < seconds {
+        let start = Instant::now();
+        call();
+        shortest = shortest.min(start.elapsed().as_secs_f64());
+        calls += 1;
+    }
+    shortest
+}
+
+/// A state to measure.
+pub struct Bench<'a> {
+    pub model: &'a Model<PlaneStrain, 2>,
+    pub points: &'a Points<2>,
+    pub halo: &'a dyn Halo,
+    /// s  time and step
+    pub times: (f64, f64),
+    /// s  for each phase
+    pub seconds: f64,
+}
+
+impl Bench<'_> {
+    /// Prints a row for every phase.
+    pub fn run(&self, solver: &mut dyn LinearSolver) -> Result<(), StepError> {
+        let Self { model, points, halo, times, .. } = *self;
+        let shape = Shape::at(&model.grid, points)?;
+        let nodes = Nodes::map(model, &shape, points, times, halo)?;
+        let grips = Grips::at(&model.boundary.strips, &points.surface, (&model.grid, &nodes.free), times);
+        let scene = Scene { model, shape: &shape, nodes: &nodes, grips: &grips, points, halo };
+        let u: Vec<f64> = nodes.prescribed.iter().map(|prescribed| prescribed.unwrap_or(0.0)).collect();
+        self.row("(1) shape functions, sorting apart", true, || drop(black_box(Shape::at(&model.grid, points))));
+        self.row("(2) points to nodes", true, || drop(black_box(Nodes::map(model, &shape, points, times, halo))));
+        self.row("(4a) gather of grad u", false, || drop(black_box(transfer::gradients(&shape, &u, |_, grad| grad))));
+        if model.stabilisation.averages() {
+            self.row("(4c-e) average of F-bar", false, || {
+                drop(black_box(nodes.mean_dilation(&shape, points, model.weighting, halo, |_| 1.0)));
+            });
+        }
+        let trial = Trial::of(model, &shape, &nodes, points, &u, halo);
+        self.row("(4f-i) constitution", false, || {
+            for p in 0..points.len() {
+                let _ = black_box(trial.respond(model, points, p).map(|response| response.tau()));
+            }
+        });
+        self.row("(5a) scatter of the internal force", false, || {
+            drop(black_box(transfer::divergence(&shape, |p| PlaneStrain::flux(&points.sigma[p], &points.F[p]))));
+        });
+        self.row("(4), (5) whole residual, with balance and sums", false, || drop(black_box(Residual::of(&scene, &u))));
+        self.row("(6) stiffness of the patches", true, || drop(black_box(stiffness::assemble(&scene, &mut Nowhere))));
+        self.row("(6) stiffness, assembled and factorised", true, || {
+            drop(black_box(stiffness::assemble(&scene, solver)));
+        });
+        let (f, mut w) = (Residual::of(&scene, &u).balance.f_oob, u.clone());
+        self.row("(7) solution", false, || drop(black_box(solver.solve(&f, &mut w))));
+        Ok(())
+    }
+
+    fn row(&self, what: &str, once: bool, call: impl FnMut()) {
+        let time = shortest(self.seconds, call) / self.points.len() as f64;
+        let how_often = if once { "once a step" } else { "every iteration" };
+        println!("| {what} | {:.1} | {how_often} |", time * 1e9);
+    }
+}
+
+/// Bytes of a point at rest, and with its shape functions and one trial state.
+pub fn bytes(mut points: Points<2>, model: &Model<PlaneStrain, 2>) -> Result<String, StepError> {
+    let (rest, width) = (points.bytes(), model.grid.order() + 1);
+    let averaged = model.stabilisation.averages();
+    let lowered = model.stabilisation == bsmpm::stabilisation::Stabilisation::ConsistentFBar;
+    let shape = 8 * (2 * 2 * width + if lowered { 2 * (width - 1) } else { 0 });
+    // Two trial states: that of the iteration, and the next one while it is judged.
+    let trial = 2 * 8 * (4 + usize::from(averaged));
+    Ok(format!("{rest}; {}", rest + shape + trial))
+}
+
+/// A solver that forgets what it is given.
+struct Nowhere;
+
+impl LinearSolver for Nowhere {
+    fn begin(&mut self, _free: &[bool]) {}
+    fn add(&mut self, _first_node: usize, block: &[f64]) {
+        black_box(block);
+    }
+    fn add_diagonal(&mut self, diagonal: &[f64]) {
+        black_box(diagonal);
+    }
+    fn finish(&mut self, _symmetry: Symmetry) -> Result<(), SolveError> {
+        Ok(())
+    }
+    fn solve(&mut self, _rhs: &[f64], _solution: &mut [f64]) -> Result<usize, SolveError> {
+        Ok(0)
+    }
+    fn solve_with(
+        &mut self,
+        _product: &mut dyn FnMut(&[f64], &mut [f64]),
+        _relative: f64,
+        _rhs: &[f64],
+        _solution: &mut [f64],
+    ) -> Result<Krylov, SolveError> {
+        Ok(Krylov { iterations: 0, residual: 0.0 })
+    }
+}

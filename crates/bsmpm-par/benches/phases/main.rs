@@ -1,0 +1,88 @@
+//! What a step costs, phase by phase, from a state in mid-flow: `scripts/bench` prints it.
+//!
+//! `phases CASE CHECKPOINT SECONDS [--set KEY=VALUE]...`, on one rank, SECONDS for each phase: nanoseconds per point of every pass, of factorisation and solution, and
+//! bytes per point, beside the memory bandwidth and the arithmetic that the core reaches in the same minute.
+
+mod kernels;
+mod machine;
+
+use bsmpm::kinematics::PlaneStrain;
+use bsmpm::model::Model;
+use bsmpm::points::Points;
+use bsmpm_par::checkpoint::{self, Opened, Wanted};
+use bsmpm_par::halo::MpiHalo;
+use bsmpm_par::ksp::KspSolver;
+use bsmpm_par::signals::Requests;
+use bsmpm_par::slab::Slabs;
+use bsmpm_par::timers::Timers;
+use bsmpm_par::{launch, setup};
+use bsmpm_scene::Case;
+use hdf5_collective::Hdf5;
+use mpi::environment::Universe;
+use petsc_rs::Petsc;
+use std::error::Error;
+use std::path::Path;
+use std::process::ExitCode;
+use std::rc::Rc;
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).filter(|argument| argument != "--bench").collect();
+    let [case, checkpoint, seconds, rest @ ..] = &arguments[..] else {
+        // `cargo bench` and `cargo test --benches` start it without a case: there is nothing to measure.
+        println!("usage: phases CASE CHECKPOINT SECONDS [--set KEY=VALUE]...");
+        return ExitCode::SUCCESS;
+    };
+    let set: Vec<String> = rest.iter().filter(|argument| *argument != "--set").cloned().collect();
+    let Ok(universe) = launch::start() else { return ExitCode::FAILURE };
+    let seconds = seconds.parse().map_err(Into::into);
+    match seconds.and_then(|seconds| measure(&universe, (case, &set), checkpoint, seconds)) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("phases: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// The points of a checkpoint, sorted, and its time.
+fn state(universe: &Universe, path: &Path, model: &Model<PlaneStrain, 2>) -> Result<(Points<2>, f64), Box<dyn Error>> {
+    let hdf5 = Hdf5::initialize(universe)?;
+    let refused = |refusal: checkpoint::Refusal| refusal.reason;
+    let (found, _) = checkpoint::find(&universe.world(), Wanted::Named(path)).map_err(refused)?;
+    let found = found.ok_or("there is no checkpoint")?;
+    let names: Vec<&str> = found.record.arrays.iter().map(|array| array.name.as_str()).collect();
+    let mut points = Points::holding(&names);
+    let opened = Opened::new((&hdf5, universe.world()), &found).map_err(refused)?;
+    opened.points(points.named_columns()).map_err(refused)?;
+    opened.close().map_err(refused)?;
+    points.surface = model.boundary.surface();
+    points.sort_by_cell(&model.grid);
+    Ok((points, found.record.time()))
+}
+
+fn measure(
+    universe: &Universe,
+    (case, set): (&str, &[String]),
+    path: &str,
+    seconds: f64,
+) -> Result<(), Box<dyn Error>> {
+    rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build_global()?;
+    let text = bsmpm_scene::load(Path::new(case))?;
+    let case = Case::from_bytes(case, &text, set).map_err(|errors| format!("{errors:?}"))?;
+    let model = setup::model(&case)?;
+    let (points, time) = state(universe, Path::new(path), &model)?;
+    let slabs = Slabs::new(vec![0, model.grid.columns().end], 1, model.grid.columns().end).ok_or("no columns")?;
+    let (timers, requests) = (Rc::new(Timers::default()), Rc::new(Requests::default()));
+    let halo = Rc::new(MpiHalo::new(universe.world(), &slabs, &model.grid, (Rc::clone(&timers), requests)));
+    let choice = setup::linear(&case, 1);
+    let petsc = Petsc::initialize(universe, &choice.options())?;
+    let mut solver = KspSolver::new(&petsc, choice, &model.grid, Rc::clone(&halo), timers);
+    println!("| {} points, {:.4} s | ns per point | of a step with one iteration |", points.len(), time);
+    println!("| --- | --- | --- |");
+    let bench = kernels::Bench { model: &model, points: &points, halo: &*halo, times: (time, case.analysis.dt), seconds };
+    bench.run(&mut solver)?;
+    println!("| bytes of a point; with its shape functions and a trial state | {} |", kernels::bytes(points, &model)?);
+    let (triad, multiply_add) = (machine::triad(seconds), machine::multiply_add(seconds));
+    println!("| triad, GB/s; dependent-free multiply-add, GFlop/s | {triad:.1}; {multiply_add:.1} | |");
+    Ok(())
+}
