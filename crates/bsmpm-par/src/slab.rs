@@ -9,6 +9,7 @@ use std::ops::Range;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Slabs {
     bounds: Vec<usize>,
+    beyond: usize, // further layers of a window
 }
 
 impl Slabs {
@@ -33,13 +34,19 @@ impl Slabs {
             bounds.push(column);
         }
         bounds.push(cost.len());
-        Some(Self { bounds })
+        Some(Self { bounds, beyond: 0 })
     }
 
     /// Slabs that begin at given columns; `None` if they are not one for each rank, all with cells, of the whole grid.
     pub fn new(bounds: Vec<usize>, ranks: usize, columns: usize) -> Option<Self> {
         let whole = bounds.len() == ranks + 1 && bounds[0] == 0 && bounds[ranks] == columns;
-        (whole && bounds.is_sorted_by(|a, b| a < b)).then_some(Self { bounds })
+        (whole && bounds.is_sorted_by(|a, b| a < b)).then_some(Self { bounds, beyond: 0 })
+    }
+
+    /// The same slabs, whose windows hold `beyond` layers of nodes past those that their cells touch, as those of
+    /// [`Grid::reaching`](bsmpm::grid::Grid::reaching) do.
+    pub fn reaching(self, beyond: usize) -> Self {
+        Self { beyond, ..self }
     }
 
     /// Columns at which they begin, and the number of columns last.
@@ -62,9 +69,10 @@ impl Slabs {
         self.bounds.partition_point(|&bound| bound <= column).clamp(1, self.ranks()) - 1
     }
 
-    /// Node layers that the cells of a rank touch, for splines of order `q`.
+    /// Node layers in the window of a rank: those that its cells touch, for splines of order `q`, and those beyond.
     pub fn layers(&self, rank: usize, q: usize) -> Range<usize> {
-        self.bounds[rank]..self.bounds[rank + 1] + q
+        let end = (self.bounds[rank + 1] + self.beyond).min(self.bounds[self.ranks()]);
+        self.bounds[rank]..end + q
     }
 
     /// Node layers that a rank owns.

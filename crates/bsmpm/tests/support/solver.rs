@@ -71,6 +71,17 @@ impl LinearSolver for Skyline {
         }
     }
 
+    fn add_among(&mut self, nodes: &[usize], block: &[f64]) {
+        for c in 0..self.components {
+            for (entry, value) in block.iter().enumerate() {
+                let [a, b] = [entry / nodes.len(), entry % nodes.len()].map(|k| nodes[k] * self.components + c);
+                if let (Some(row), Some(column)) = (self.number[a], self.number[b]) {
+                    self.add_entry(row, column, *value);
+                }
+            }
+        }
+    }
+
     fn add_diagonal(&mut self, diagonal: &[f64]) {
         for (component, value) in diagonal.iter().enumerate() {
             if let Some(row) = self.number[component] {
@@ -166,6 +177,9 @@ impl LinearSolver for Reluctant {
     fn add(&mut self, first_node: usize, block: &[f64]) {
         self.solver.add(first_node, block);
     }
+    fn add_among(&mut self, nodes: &[usize], block: &[f64]) {
+        self.solver.add_among(nodes, block);
+    }
     fn add_diagonal(&mut self, diagonal: &[f64]) {
         self.solver.add_diagonal(diagonal);
     }
@@ -231,6 +245,17 @@ impl LinearSolver for Dense {
             for (column, value) in unknowns.iter().zip(values) {
                 if let (Some(row), Some(column)) = (row, column) {
                     self.matrix[(*row, *column)] += value;
+                }
+            }
+        }
+    }
+
+    fn add_among(&mut self, nodes: &[usize], block: &[f64]) {
+        for c in 0..self.components {
+            for (entry, value) in block.iter().enumerate() {
+                let [a, b] = [entry / nodes.len(), entry % nodes.len()].map(|k| nodes[k] * self.components + c);
+                if let (Some(row), Some(column)) = (self.number[a], self.number[b]) {
+                    self.matrix[(row, column)] += value;
                 }
             }
         }

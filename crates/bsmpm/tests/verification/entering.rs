@@ -110,3 +110,17 @@ fn curvature_bounds_the_condition_however_little_enters_a_cell() {
         assert!(found[3][0] <= 0.02 * found[1][0]);
     }
 }
+
+#[test]
+fn ghost_experiment() {
+    let ghost = |c| Some(Background { kind: Kind::Laplacian, coefficient: c, extent: Extent::Occupied });
+    let laplacian: f64 = std::env::var("LAPLACIAN").ok().and_then(|v| v.parse().ok()).unwrap_or(1e-300);
+    for k in [2, 3, 4, 6, 8, 10, 12, 15] {
+        let [plain, scaled] = condition(EDGE + H * 10.0_f64.powi(-k), ghost(laplacian));
+        println!("1e-{k:<6} {plain:.2e} {scaled:.2e}");
+    }
+    if std::env::var("STRESS").is_ok() {
+        let [crossing, entering] = changes(ghost(laplacian));
+        println!("inner stress changes by {crossing:.2e} across the cell, {entering:.2e} just entering it");
+    }
+}
