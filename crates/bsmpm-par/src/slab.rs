@@ -135,6 +135,14 @@ mod tests {
     }
 
     #[test]
+    fn windows_that_reach_beyond_their_cells_end_with_the_grid() {
+        let slabs = Slabs::new(vec![0, 2, 3, 5], 3, 5).unwrap().reaching(1);
+        assert_eq!([0, 1, 2].map(|rank| slabs.layers(rank, 2)), [0..5, 2..6, 3..7]);
+        assert_eq!([0, 1, 2].map(|rank| slabs.owned_layers(rank, 2)), [0..2, 2..3, 3..7]);
+        assert_eq!(slabs.shared(0, 2), [(1, 2..5), (2, 3..5)]);
+    }
+
+    #[test]
     fn the_cut_follows_the_cost_and_leaves_no_rank_without_a_column() {
         let mut cost = vec![36.0; 80];
         cost.extend(vec![0.0; 140]);

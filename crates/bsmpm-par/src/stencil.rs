@@ -20,9 +20,9 @@ pub struct Stencil<const D: usize> {
 /// The places of a stencil: those of a box that lie at most q nodes off along every axis but one.
 #[derive(Clone, Debug)]
 struct Places<const D: usize> {
-    functions: [usize; D], // nodes along each axis
-    half: isize,           // of the box: q, and the layers beyond
-    place: Vec<usize>,     // by number in the box; those without a place are never asked for
+    functions: [usize; D],   // nodes along each axis
+    half: isize,             // of the box: q, and the layers beyond
+    place: Vec<usize>,       // by number in the box; those without a place are never asked for
     within: Vec<[isize; D]>, // of every place
 }
 
@@ -83,7 +83,8 @@ impl<const D: usize> Stencil<D> {
     /// Zero stencils over a window.
     pub fn new(grid: &Grid<D>) -> Self {
         let places = Places::new(grid);
-        let flat = |step: &[isize; D]| (1..D).fold(step[0], |sum, axis| sum * places.functions[axis] as isize + step[axis]);
+        let flat =
+            |step: &[isize; D]| (1..D).fold(step[0], |sum, axis| sum * places.functions[axis] as isize + step[axis]);
         let reach: Vec<isize> = places.within.iter().map(flat).collect();
         let (width, patch) = (grid.order() + 1, grid.cell_nodes());
         let at = |k: usize| std::array::from_fn(|axis| k / width.pow((D - 1 - axis) as u32) % width);

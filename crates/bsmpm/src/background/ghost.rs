@@ -70,9 +70,7 @@ impl Faces {
 
     /// The nodes of all faces, those of several as often.
     pub(super) fn nodes(&self) -> impl Iterator<Item = usize> {
-        self.faces
-            .iter()
-            .flat_map(|face| self.offsets[face.normal].iter().map(move |offset| face.first_node + offset))
+        self.faces.iter().flat_map(|face| self.offsets[face.normal].iter().map(move |offset| face.first_node + offset))
     }
 
     /// f += B u on the nodal arrays (D numbers a node).

@@ -219,6 +219,11 @@ impl Dense {
         Self { components: D, offsets: grid.offsets(), number: Vec::new(), matrix: DMatrix::zeros(0, 0) }
     }
 
+    /// Entry of two nodal components; zero where one of them is no unknown.
+    pub fn entry(&self, row: usize, column: usize) -> f64 {
+        self.number[row].zip(self.number[column]).map_or(0.0, |at| self.matrix[at])
+    }
+
     /// Largest over smallest eigenvalue of the symmetric matrix: as it is, and scaled to a unit diagonal. Infinite if it
     /// is not positive definite to rounding.
     pub fn conditions(&self) -> [f64; 2] {
