@@ -4,7 +4,7 @@ mod support;
 
 use bsmpm_io::manifest::Status;
 use std::path::Path;
-use support::cases::{COLUMN, SLIDING_BLOCK};
+use support::cases::{COLUMN, SLIDING_BLOCK, changed};
 use support::results::{all_frames, differences, history, last_frame, manifest, steps};
 use support::{Scratch, entries};
 

@@ -137,7 +137,7 @@ fn concerned(F: [[f64; 2]; 2], extent: Extent) -> Vec<[usize; 2]> {
     let patches = shape.patches().iter().enumerate();
     let cells = patches.filter(|(number, _)| found.of(*number).is_some()).map(|(_, patch)| grid.cell_at(patch.cell));
     let cells: Vec<_> = cells.collect();
-    assert_eq!(cells.len(), found.cells());
+    assert_eq!(cells.len(), found.count());
     cells
 }
 

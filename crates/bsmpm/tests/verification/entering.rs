@@ -76,7 +76,7 @@ fn a_body_whose_edge_enters_a_cell_by_next_to_nothing_has_the_same_stress_inside
         ("no background", None, 0.0125),            // measured 9.7e-3, 1.1e-2
         ("laplacian, 1e-4", laplacian(1e-4), 0.01), // measured 6.0e-3, 5.2e-3
         ("curvature, 1e-3", curvature(1e-3), 0.01), // measured 9.6e-3, 5.4e-3
-        ("ghost penalty, 1e-4", ghost(1e-4), 0.01),
+        ("ghost penalty, 1e-4", ghost(1e-4), 0.01), // measured 6.0e-3, 5.5e-3
     ] {
         let [crossing, entering] = changes(background);
         println!("{name}: inner stress changes by {crossing:.2e} across the cell, {entering:.2e} just entering it");
@@ -119,10 +119,11 @@ fn curvature_bounds_the_condition_however_little_enters_a_cell() {
 #[test]
 fn the_ghost_penalty_bounds_the_condition_however_little_enters_a_cell() {
     for k in [2, 3, 4, 6, 8, 10, 12, 15] {
-        // Measured 2.6e6, 2.6e5, 2.7e4 and 3.9e3: some 26 / gamma, whatever delta is, a third of the Laplacian's.
+        // Measured 2.6e6, 2.6e5, 2.7e4 and 3.9e3: some 26 / gamma, whatever delta is, a third of the Laplacian's. Scaled at
+        // most 88, where a smaller coefficient leaves a hundredth of a cell to what is in it.
         for coefficient in [1e-5, 1e-4, 1e-3, 1e-2] {
             let [plain, scaled] = condition(EDGE + H * 10.0_f64.powi(-k), ghost(coefficient));
-            assert!(plain <= 40.0 / coefficient && scaled <= 80.0, "1e-{k}, {coefficient}: {plain:.1e} {scaled:.1e}");
+            assert!(plain <= 40.0 / coefficient && scaled <= 100.0, "1e-{k}, {coefficient}: {plain:.1e} {scaled:.1e}");
         }
     }
 }
