@@ -28,7 +28,9 @@ pub enum Kind {
     /// in space, so large ones too. On a linear grid only the mixed term is left, and holds next to nothing.
     Curvature,
     /// gamma E h^(2q-1) int_F [d^q u / dn^q]^2 dA on faces between cells: how far the polynomials of two cells differ. A
-    /// polynomial of degree q meets no resistance. The matrix has nearly twice the entries in a plane.
+    /// polynomial of degree q meets no resistance. Better conditioned than the Laplacian with the same coefficient, and less
+    /// of a drag on what has failed; in fine cells stiffer before failure where it is as robust. The matrix has nearly
+    /// twice the entries in a plane. In partly filled cells only, it does not hold what has gone far.
     GhostPenalty,
 }
 
