@@ -84,6 +84,9 @@ pub mod simulation {
         fn add(&mut self, first_node: usize, block: &[f64]) {
             self.0.add(first_node, block);
         }
+        fn add_among(&mut self, nodes: &[usize], block: &[f64]) {
+            self.0.add_among(nodes, block);
+        }
         fn add_diagonal(&mut self, diagonal: &[f64]) {
             self.0.add_diagonal(diagonal);
         }

@@ -179,6 +179,10 @@ impl<const D: usize> LinearSolver for KspSolver<'_, D> {
         self.stencil.add(first_node, block);
     }
 
+    fn add_among(&mut self, nodes: &[usize], block: &[f64]) {
+        self.stencil.add_among(nodes, block);
+    }
+
     fn add_diagonal(&mut self, diagonal: &[f64]) {
         for node in self.halo.owned() {
             for component in 0..D {

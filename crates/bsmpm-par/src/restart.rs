@@ -182,13 +182,14 @@ impl Resumed<'_> {
     fn slabs(&self, universe: &Universe, grid: &Grid<2>, points: &Points<2>) -> Option<Slabs> {
         let (world, columns) = (universe.world(), grid.axes()[0].cells());
         let ranks = world.size().unsigned_abs() as usize;
+        let reaching = |slabs: Slabs| slabs.reaching(grid.beyond());
         if self.found.record.ranks as usize == ranks {
-            return Slabs::new(self.state.slabs.clone(), ranks, columns);
+            return Slabs::new(self.state.slabs.clone(), ranks, columns).map(reaching);
         }
         let own = points_by_column(grid, points);
         let mut counts = vec![0.0; own.len()];
         world.all_reduce_into(&own[..], &mut counts[..], SystemOperation::sum());
-        Slabs::cut(&counts, ranks)
+        Slabs::cut(&counts, ranks).map(reaching)
     }
 
     /// Closes the checkpoint. Collective.

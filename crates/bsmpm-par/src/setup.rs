@@ -27,7 +27,13 @@ pub fn model(case: &Case) -> Result<Model<PlaneStrain, 2>, GridError> {
         Axis::Uniform { cell, cells, .. } => KnotVector::uniform(*cell, *cells, order),
         Axis::Graded(breakpoints) => KnotVector::graded(breakpoints, order),
     };
-    let grid = Grid::new([axis(&case.grid.axes[0])?, axis(&case.grid.axes[1])?])?;
+    let background = (case.solver.background > 0.0).then_some(Background {
+        kind: case.solver.background_kind,
+        coefficient: case.solver.background,
+        extent: case.solver.background_cells,
+    });
+    let beyond = background.map_or(0, |background| background.kind.beyond());
+    let grid = Grid::new([axis(&case.grid.axes[0])?, axis(&case.grid.axes[1])?])?.reaching(beyond);
     Ok(Model {
         materials: case.materials.iter().map(|named| named.material.clone()).collect(),
         regime: case.analysis.regime,
@@ -40,11 +46,7 @@ pub fn model(case: &Case) -> Result<Model<PlaneStrain, 2>, GridError> {
         boundary: boundary(case, &grid),
         grid,
         stabilisation: case.stabilisation,
-        background: (case.solver.background > 0.0).then_some(Background {
-            kind: case.solver.background_kind,
-            coefficient: case.solver.background,
-            extent: case.solver.background_cells,
-        }),
+        background,
         criteria: Criteria {
             energy: case.solver.tolerance,
             force: case.solver.force_tolerance,

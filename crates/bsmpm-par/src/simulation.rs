@@ -63,6 +63,7 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         (timers, requests): (Rc<Timers>, Rc<Requests>),
     ) -> Self {
         model.grid = model.grid.window(slabs.columns(petsc.rank()));
+        let slabs = slabs.reaching(model.grid.beyond());
         points.sort_by_cell(&model.grid);
         points.surface = model.boundary.surface();
         let halo = MpiHalo::new(universe.world(), &slabs, &model.grid, (Rc::clone(&timers), requests));
@@ -151,6 +152,7 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
             imbalance(loads.into_iter())
         };
         let Some(better) = Slabs::cut(&counts, self.slabs.ranks()) else { return };
+        let better = better.reaching(self.model.grid.beyond());
         if load(&self.slabs) > TOLERATED * load(&better) {
             self.recut(better);
         }

@@ -9,6 +9,7 @@ use std::ops::Range;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Slabs {
     bounds: Vec<usize>,
+    beyond: usize, // further layers of a window
 }
 
 impl Slabs {
@@ -33,13 +34,19 @@ impl Slabs {
             bounds.push(column);
         }
         bounds.push(cost.len());
-        Some(Self { bounds })
+        Some(Self { bounds, beyond: 0 })
     }
 
     /// Slabs that begin at given columns; `None` if they are not one for each rank, all with cells, of the whole grid.
     pub fn new(bounds: Vec<usize>, ranks: usize, columns: usize) -> Option<Self> {
         let whole = bounds.len() == ranks + 1 && bounds[0] == 0 && bounds[ranks] == columns;
-        (whole && bounds.is_sorted_by(|a, b| a < b)).then_some(Self { bounds })
+        (whole && bounds.is_sorted_by(|a, b| a < b)).then_some(Self { bounds, beyond: 0 })
+    }
+
+    /// The same slabs, whose windows hold `beyond` layers of nodes past those that their cells touch, as those of
+    /// [`Grid::reaching`](bsmpm::grid::Grid::reaching) do.
+    pub fn reaching(self, beyond: usize) -> Self {
+        Self { beyond, ..self }
     }
 
     /// Columns at which they begin, and the number of columns last.
@@ -62,9 +69,10 @@ impl Slabs {
         self.bounds.partition_point(|&bound| bound <= column).clamp(1, self.ranks()) - 1
     }
 
-    /// Node layers that the cells of a rank touch, for splines of order `q`.
+    /// Node layers in the window of a rank: those that its cells touch, for splines of order `q`, and those beyond.
     pub fn layers(&self, rank: usize, q: usize) -> Range<usize> {
-        self.bounds[rank]..self.bounds[rank + 1] + q
+        let end = (self.bounds[rank + 1] + self.beyond).min(self.bounds[self.ranks()]);
+        self.bounds[rank]..end + q
     }
 
     /// Node layers that a rank owns.
@@ -85,9 +93,9 @@ impl Slabs {
 
     /// Layers that a rank shares with another one, ascending, and which columns of either touch them.
     pub fn shared_layers(&self, (rank, other): (usize, usize), q: usize) -> Vec<SharedLayer> {
-        let first = self.bounds[rank];
+        let (first, reach) = (self.bounds[rank], q + self.beyond);
         let touching = |rank: usize, layer: usize| {
-            intersection(&self.columns(rank), &(layer.saturating_sub(q)..layer + 1))
+            intersection(&self.columns(rank), &(layer.saturating_sub(reach)..layer + 1))
         };
         let shared = |layer: usize| {
             let own = touching(rank, layer);
@@ -156,21 +164,31 @@ mod tests {
 
     #[test]
     fn the_columns_that_touch_a_layer_are_those_of_the_ranks_that_share_it() {
-        for (bounds, q) in [(vec![0, 4, 9], 2), (vec![0, 1, 2, 5], 3), (vec![0, 3, 4], 1)] {
+        let cuts = [(vec![0, 4, 9], 2, 0), (vec![0, 1, 2, 5], 3, 0), (vec![0, 3, 4], 1, 0), (vec![0, 2, 3, 6], 2, 1)];
+        for (bounds, q, beyond) in cuts {
             let (ranks, columns) = (bounds.len() - 1, bounds[bounds.len() - 1]);
-            let slabs = Slabs::new(bounds, ranks, columns).unwrap();
+            let slabs = Slabs::new(bounds, ranks, columns).unwrap().reaching(beyond);
             for rank in 0..ranks {
                 for layer in slabs.layers(rank, q) {
-                    let own = intersection(&slabs.columns(rank), &(layer.saturating_sub(q)..layer + 1)).len();
+                    let touching = layer.saturating_sub(q + beyond)..layer + 1;
+                    let own = intersection(&slabs.columns(rank), &touching).len();
                     let others = (0..ranks).filter(|&other| other != rank).map(|other| {
                         let layers = slabs.shared_layers((rank, other), q);
                         let shared = layers.iter().find(|shared| shared.layer + slabs.bounds[rank] == layer);
                         shared.map_or(0, |shared| shared.theirs)
                     });
-                    assert_eq!(own + others.sum::<usize>(), (layer + 1).min(columns) - layer.saturating_sub(q));
+                    assert_eq!(own + others.sum::<usize>(), intersection(&(0..columns), &touching).len());
                 }
             }
         }
+    }
+
+    #[test]
+    fn windows_that_reach_beyond_their_cells_end_with_the_grid() {
+        let slabs = Slabs::new(vec![0, 2, 3, 5], 3, 5).unwrap().reaching(1);
+        assert_eq!([0, 1, 2].map(|rank| slabs.layers(rank, 2)), [0..5, 2..6, 3..7]);
+        assert_eq!([0, 1, 2].map(|rank| slabs.owned_layers(rank, 2)), [0..2, 2..3, 3..7]);
+        assert_eq!(slabs.shared(0, 2), [(1, 2..5), (2, 3..5)]);
     }
 
     #[test]

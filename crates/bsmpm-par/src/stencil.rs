@@ -1,18 +1,29 @@
 //! The stiffness of one window as node stencils, and its entries as PETSc wants them: plain data, without MPI or PETSc.
 //!
-//! A node couples with the (2q+1)^D nodes around it. Blocks of patches are summed into that fixed stencil, so that every
+//! A node couples with the (2q+1)^D nodes around it, and where the window reaches beyond its cells with those a layer
+//! further along one axis. Blocks of patches are summed into that fixed stencil, so that every
 //! rank hands each of its coordinates over once; rows of ghost nodes are completed by their owner.
 
-use bsmpm::grid::Grid;
+use bsmpm::grid::{Grid, KnotVector};
 
 /// Stencils of all nodes of a window: D x D blocks of a node with each node of its stencil.
 #[derive(Clone, Debug)]
 pub struct Stencil<const D: usize> {
+    places: Places<D>,
     reach: Vec<isize>,    // offset in local nodes of every stencil place, ascending
     slot: Vec<usize>,     // stencil place of patch node b as seen from patch node a
     offsets: Vec<usize>,  // of a patch's nodes
     values: Vec<f64>,     // node, place, row, column
     valid: Vec<Vec<u16>>, // per node the places that lie in the grid
+}
+
+/// The places of a stencil: those of a box that lie at most q nodes off along every axis but one.
+#[derive(Clone, Debug)]
+struct Places<const D: usize> {
+    functions: [usize; D],   // nodes along each axis
+    half: isize,             // of the box: q, and the layers beyond
+    place: Vec<usize>,       // by number in the box; those without a place are never asked for
+    within: Vec<[isize; D]>, // of every place
 }
 
 /// Global number of every nodal component of a window, `None` where it is no unknown.
@@ -27,41 +38,74 @@ pub struct Coordinates {
     pub columns: Vec<usize>,
 }
 
+impl<const D: usize> Places<D> {
+    fn new(grid: &Grid<D>) -> Self {
+        let q = grid.order() as isize;
+        let half = q + grid.beyond() as isize;
+        let side = 2 * half + 1;
+        let along = |number: isize, axis: usize| number / side.pow((D - 1 - axis) as u32) % side - half;
+        let (mut place, mut within) = (Vec::new(), Vec::new());
+        for number in 0..side.pow(D as u32) {
+            let at: [isize; D] = std::array::from_fn(|axis| along(number, axis));
+            place.push(within.len());
+            if at.iter().filter(|step| step.abs() > q).count() <= 1 {
+                within.push(at);
+            }
+        }
+        let functions = grid.axes().each_ref().map(KnotVector::functions);
+        Self { functions, half, place, within }
+    }
+
+    /// Number of a node in a box as wide along every axis as the grid's; differences of two are those of their places.
+    fn number(&self, at: [usize; D]) -> usize {
+        let side = 2 * self.half as usize + 1;
+        at.into_iter().fold(0, |number, step| number * side + step)
+    }
+
+    /// The node along each axis, from the window's first layer, of a local index.
+    fn node(&self, mut index: usize) -> [usize; D] {
+        let mut node = [0; D];
+        for axis in (1..D).rev() {
+            node[axis] = index % self.functions[axis];
+            index /= self.functions[axis];
+        }
+        node[0] = index;
+        node
+    }
+
+    /// The place of node number `b` as seen from node number `a`.
+    fn of(&self, a: usize, b: usize) -> usize {
+        self.place[b + self.number([self.half as usize; D]) - a]
+    }
+}
+
 impl<const D: usize> Stencil<D> {
     /// Zero stencils over a window.
     pub fn new(grid: &Grid<D>) -> Self {
-        let q = grid.order() as isize;
-        let side = 2 * q + 1;
-        let places = side.pow(D as u32);
-        let along = |place: isize, axis: usize| place / side.pow((D - 1 - axis) as u32) % side - q;
-        let functions: Vec<isize> = grid.axes().iter().map(|axis| axis.functions() as isize).collect();
-        let flat = |step: &dyn Fn(usize) -> isize| (1..D).fold(step(0), |sum, axis| sum * functions[axis] + step(axis));
-        let reach: Vec<isize> = (0..places).map(|place| flat(&|axis| along(place, axis))).collect();
-        let width = q as usize + 1;
-        let patch = grid.cell_nodes();
-        let at = |k: usize, axis: usize| (k / width.pow((D - 1 - axis) as u32) % width) as isize;
-        let slot = (0..patch * patch)
-            .map(|pair| {
-                let (a, b) = (pair / patch, pair % patch);
-                (0..D).fold(0, |place, axis| place * side + at(b, axis) - at(a, axis) + q) as usize
-            })
-            .collect();
+        let places = Places::new(grid);
+        let flat =
+            |step: &[isize; D]| (1..D).fold(step[0], |sum, axis| sum * places.functions[axis] as isize + step[axis]);
+        let reach: Vec<isize> = places.within.iter().map(flat).collect();
+        let (width, patch) = (grid.order() + 1, grid.cell_nodes());
+        let at = |k: usize| std::array::from_fn(|axis| k / width.pow((D - 1 - axis) as u32) % width);
+        let number = |k: usize| places.number(at(k));
+        let slot = (0..patch * patch).map(|pair| places.of(number(pair / patch), number(pair % patch))).collect();
         let layers = grid.layers();
-        let inside = |node: &[usize; D], place: isize| {
+        let inside = |node: &[usize; D], step: &[isize; D]| {
             (0..D).all(|axis| {
-                let (lower, upper) =
-                    if axis == 0 { (layers.start as isize, layers.end as isize) } else { (0, functions[axis]) };
-                (lower..upper).contains(&(node[axis] as isize + along(place, axis)))
+                let range = if axis == 0 { layers.clone() } else { 0..places.functions[axis] };
+                node[axis].checked_add_signed(step[axis]).is_some_and(|other| range.contains(&other))
             })
         };
         let valid = (0..grid.nodes())
             .map(|node| {
                 let node = grid.node_at(node);
-                (0..places).filter(|&place| inside(&node, place)).map(|place| place as u16).collect()
+                let steps = places.within.iter().enumerate();
+                steps.filter(|(_, step)| inside(&node, step)).map(|(place, _)| place as u16).collect()
             })
             .collect();
-        let values = vec![0.0; grid.nodes() * places as usize * D * D];
-        Self { reach, slot, offsets: grid.offsets(), values, valid }
+        let values = vec![0.0; grid.nodes() * reach.len() * D * D];
+        Self { places, reach, slot, offsets: grid.offsets(), values, valid }
     }
 
     /// Sets all blocks to zero.
@@ -86,6 +130,20 @@ impl<const D: usize> Stencil<D> {
                     for (value, entry) in self.values[at + i * D..][..D].iter_mut().zip(row) {
                         *value += entry;
                     }
+                }
+            }
+        }
+    }
+
+    /// Adds a scalar block, equal for every component, among `nodes`.
+    pub fn add_among(&mut self, nodes: &[usize], block: &[f64]) {
+        let width = self.width();
+        let numbers: Vec<usize> = nodes.iter().map(|&node| self.places.number(self.places.node(node))).collect();
+        for ((node, a), row) in nodes.iter().zip(&numbers).zip(block.chunks_exact(nodes.len())) {
+            for (b, entry) in numbers.iter().zip(row) {
+                let at = node * width + self.places.of(*a, *b) * D * D;
+                for i in 0..D {
+                    self.values[at + i * D + i] += entry;
                 }
             }
         }
@@ -136,7 +194,6 @@ impl<const D: usize> Stencil<D> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use bsmpm::grid::KnotVector;
 
     fn grid() -> Grid<2> {
         Grid::new([KnotVector::uniform(1.0, 4, 2).unwrap(), KnotVector::uniform(1.0, 3, 2).unwrap()]).unwrap()
@@ -162,6 +219,34 @@ mod tests {
         let mut found = vec![0.0; size * size];
         for ((row, column), value) in places.rows.iter().zip(&places.columns).zip(values) {
             assert_eq!(std::mem::replace(&mut found[row * size + column], value), 0.0, "each pair stands once");
+        }
+        assert_eq!(found, dense);
+    }
+
+    /// Faces between all cells, with every node of the two cells that a face of the ghost penalty has.
+    #[test]
+    fn entries_hold_the_sum_of_the_blocks_of_faces() {
+        let grid = grid().reaching(1);
+        let size = grid.nodes();
+        let (mut stencil, mut dense) = (Stencil::new(&grid), vec![0.0; size * size]);
+        for (cell, across) in [([0, 0], 3), ([2, 1], 3), ([1, 1], 4)] {
+            let first = grid.first_node(&cell);
+            let nodes: Vec<usize> = (0..12).map(|k| first + k / across * 5 + k % across).collect();
+            let block: Vec<f64> = (0..144).map(|entry| ((entry * 7 + cell[0] * 13) % 31) as f64).collect();
+            stencil.add_among(&nodes, &block);
+            for (entry, value) in block.iter().enumerate() {
+                dense[nodes[entry / 12] * size + nodes[entry % 12]] += value;
+            }
+        }
+        let numbers: Numbering = (0..2 * size).map(Some).collect();
+        let (places, values) = (stencil.coordinates(&numbers), stencil.entries(&numbers));
+        let mut found = vec![0.0; size * size];
+        for ((row, column), value) in places.rows.iter().zip(&places.columns).zip(values) {
+            if row % 2 == column % 2 {
+                found[row / 2 * size + column / 2] += 0.5 * value;
+            } else {
+                assert_eq!(value, 0.0);
+            }
         }
         assert_eq!(found, dense);
     }

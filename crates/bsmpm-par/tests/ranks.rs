@@ -129,6 +129,21 @@ fn slabs_thinner_than_the_splines_reach_work_for_every_order() {
     }
 }
 
+/// The ghost penalty ties nodes over the faces between slabs: of a body that crosses them, of slabs that are thinner than
+/// the splines reach, and of the quasi-static matrix, which nothing else completes.
+#[test]
+fn the_ghost_penalty_is_the_same_on_1_2_3_and_4_ranks() {
+    let ghost = ["--set", "solver.background_kind=ghost-penalty", "--set", "solver.background=1e-2"];
+    let sliding = Scratch::with_case(SLIDING_BLOCK);
+    agree(&sliding, "case.toml", &[&ghost[..], &["--set", "analysis.end=0.02"]].concat(), &[1, 2, 3, 4], 1e-9);
+    let case = shipped("short/self_weight_column.toml");
+    for order in ["linear", "quadratic", "cubic"] {
+        let order = format!("grid.order={order}");
+        let further = [&ghost[..], &["--set", &order]].concat();
+        agree(&Scratch::new(), case.to_str().unwrap(), &further, &[1, 2, 4], 1e-9);
+    }
+}
+
 #[test]
 fn ranks_without_points_take_part() {
     let scratch = Scratch::with_case(&changed(SLIDING_BLOCK, "upper = [0.5, 0.2]", "upper = [0.2, 0.2]"));

@@ -4,7 +4,7 @@ mod support;
 
 use bsmpm_io::manifest::Status;
 use std::path::Path;
-use support::cases::{COLUMN, SLIDING_BLOCK};
+use support::cases::{COLUMN, SLIDING_BLOCK, changed};
 use support::results::{all_frames, differences, history, last_frame, manifest, steps};
 use support::{Scratch, entries};
 
@@ -63,10 +63,22 @@ fn of_a_chain_of_restarts_every_step_is_there_once() {
 
 #[test]
 fn on_other_ranks_it_goes_on_within_tolerances_and_says_so() {
-    let scratch = Scratch::with_case(SLIDING_BLOCK);
+    goes_on_on_other_ranks(SLIDING_BLOCK, &[(2, 1), (1, 3), (4, 2)]);
+}
+
+/// Its windows hold a layer more of the displacement from which a step starts.
+#[test]
+fn with_the_ghost_penalty_it_goes_on_on_other_ranks_too() {
+    let solver = "[solver]\nbackground_kind = \"ghost-penalty\"\nbackground = 1e-4\n";
+    goes_on_on_other_ranks(&changed(SLIDING_BLOCK, "[solver]\n", solver), &[(2, 3), (4, 2)]);
+}
+
+#[track_caller]
+fn goes_on_on_other_ranks(case: &str, ranks: &[(usize, usize)]) {
+    let scratch = Scratch::with_case(case);
     scratch.mpirun(2, &["case.toml", "-q", "-o", "whole"]).expect(0);
     let whole = last_frame(&scratch.path("whole"));
-    for (first, then) in [(2, 1), (1, 3), (4, 2)] {
+    for &(first, then) in ranks {
         let part = ["case.toml", "-o", "part"];
         scratch.mpirun(first, &[&part[..], &["-q", "--max-steps", "12"]].concat()).expect(75);
         let output = scratch.mpirun(then, &[&part[..], &["--restart", "auto"]].concat()).expect(0);

@@ -151,7 +151,7 @@ fn the_full_case_in_si() {
 }
 
 #[test]
-fn the_background_is_the_laplacian_unless_the_case_wants_curvature() {
+fn the_background_is_the_laplacian_unless_the_case_wants_another() {
     let kind = |overrides: &[&str]| {
         let solver = valid(STATIC, overrides).solver;
         (solver.background_kind, solver.background, solver.background_cells)
@@ -161,6 +161,10 @@ fn the_background_is_the_laplacian_unless_the_case_wants_curvature() {
     let curved = "solver.background_kind=curvature";
     assert_eq!(kind(&["grid.order=quadratic", curved]), (curvature, 1e-3, Extent::PartlyFilled));
     assert_eq!(kind(&["grid.order=cubic", curved, "solver.background=0.5"]), (curvature, 0.5, Extent::PartlyFilled));
+    let ghost = "solver.background_kind=ghost-penalty";
+    for order in ["grid.order=linear", "grid.order=quadratic"] {
+        assert_eq!(kind(&[order, ghost]), (BackgroundKind::GhostPenalty, 1e-4, Extent::Occupied));
+    }
     let given = ["grid.order=quadratic", "solver.background_cells=partly-filled"];
     assert_eq!(kind(&given), (laplacian, 1e-4, Extent::PartlyFilled));
     let errors = set(STATIC, &["grid.order=linear", "solver.background_kind=curvature"]).unwrap_err();

@@ -23,6 +23,7 @@ use std::ops::Range;
 pub struct Grid<const D: usize> {
     axes: [KnotVector; D],
     columns: Range<usize>,
+    beyond: usize, // further layers of nodes in a window
 }
 
 impl<const D: usize> Grid<D> {
@@ -33,13 +34,24 @@ impl<const D: usize> Grid<D> {
             return Err(GridError::MixedOrders);
         }
         let columns = 0..axes[0].cells();
-        Ok(Self { axes, columns })
+        Ok(Self { axes, columns, beyond: 0 })
+    }
+
+    /// The same grid, whose windows hold `beyond` layers of nodes past those that their cells touch, as far as there are
+    /// any: for what couples the cells of two windows.
+    pub fn reaching(self, beyond: usize) -> Self {
+        Self { beyond, ..self }
+    }
+
+    /// Layers of nodes that a window holds past those that its cells touch.
+    pub fn beyond(&self) -> usize {
+        self.beyond
     }
 
     /// The same grid seen through the cells `columns` along axis 0.
     pub fn window(&self, columns: Range<usize>) -> Self {
         debug_assert!(columns.start < columns.end && columns.end <= self.axes[0].cells());
-        Self { axes: self.axes.clone(), columns }
+        Self { axes: self.axes.clone(), columns, beyond: self.beyond }
     }
 
     /// Knot vectors, one per axis.
@@ -57,9 +69,16 @@ impl<const D: usize> Grid<D> {
         self.axes[0].order()
     }
 
-    /// Layers of nodes along axis 0 that the window's cells touch; the last q are shared with the next slab.
+    /// Layers of nodes along axis 0 that the window holds: those that its cells touch, of which the last q are shared with
+    /// the next slab, and those beyond.
     pub fn layers(&self) -> Range<usize> {
-        self.columns.start..self.columns.end + self.order()
+        let end = self.columns.end + self.order() + self.beyond;
+        self.columns.start..end.min(self.axes[0].functions())
+    }
+
+    /// Layers of nodes that a column of cells contributes to: those that it touches, and those beyond.
+    pub fn column_layers(&self) -> usize {
+        self.order() + 1 + self.beyond
     }
 
     /// Nodes of one layer across axis 0.

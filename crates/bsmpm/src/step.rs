@@ -60,7 +60,7 @@ pub struct Report {
     pub unknowns: usize,
     /// active nodes without mass, whose velocity and averages count as zero
     pub massless_nodes: usize,
-    /// cells with the soft background, over all ranks
+    /// cells (ghost penalty: faces) with the soft background, over all ranks
     pub background_cells: usize,
     /// whether the first guess of the displacement led to convergence
     pub first_guess: bool,

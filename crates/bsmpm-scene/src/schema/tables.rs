@@ -201,7 +201,7 @@ static SOLVER: Table = Table {
 
 const FRACTION: Range = Range::of(Excluded(0.0), Excluded(1.0));
 const UP_TO_1: Range = Range::of(Included(0.0), Included(1.0));
-const BACKGROUND: Kind = Choice(&["laplacian", "curvature"], &[]);
+const BACKGROUND: Kind = Choice(&["laplacian", "ghost-penalty", "curvature"], &[]);
 const CELLS: Kind = Choice(&["occupied", "partly-filled"], &[]);
 
 static LINEAR: Table = Table {

@@ -62,7 +62,11 @@ fn cells(solver: &Record, kind: Kind) -> Option<Extent> {
 /// What the case wants the background to resist.
 fn background_kind(solver: &Record, order: Option<usize>, report: &mut Report<'_>) -> Option<Kind> {
     let linear = order? == 1;
-    let kind = if solver.word(KIND)? == "curvature" { Kind::Curvature } else { Kind::Laplacian };
+    let kind = match solver.word(KIND)? {
+        "curvature" => Kind::Curvature,
+        "ghost-penalty" => Kind::GhostPenalty,
+        _ => Kind::Laplacian,
+    };
     if linear && kind == Kind::Curvature {
         let message = "functions of a linear grid have no curvature along an axis, so that nothing would hold nearly \
                        empty cells; use \"laplacian\"";
@@ -78,7 +82,7 @@ fn default_background(regime: Regime, kind: Kind, report: &mut Report<'_>) -> f6
     let (background, reason) = match (regime, kind) {
         (Regime::Dynamic, _) => (0.0, "inertia holds nearly empty cells in a dynamic analysis"),
         (Regime::QuasiStatic, Kind::Curvature) => (1e-3, QUASI_STATIC),
-        (Regime::QuasiStatic, Kind::Laplacian) => (1e-4, QUASI_STATIC),
+        (Regime::QuasiStatic, Kind::Laplacian | Kind::GhostPenalty) => (1e-4, QUASI_STATIC),
     };
     report.note("solver.background", format!("{background:?}"), reason);
     background

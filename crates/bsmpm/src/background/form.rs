@@ -1,27 +1,30 @@
 //! The quadratic forms of the background over a cell, exact: products of one-dimensional integrals.
 
-use super::Kind;
 use crate::grid::shape::with_width;
 use crate::grid::{Grid, KnotVector};
 
-/// What all blocks of a kind need.
+/// A form within a cell.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Form {
+    /// int |grad u|^2 dV
+    Laplacian,
+    /// int sum_ij h_i h_j (d2u / dx_i dx_j)^2 dV
+    Curvature,
+}
+
+/// What all blocks of a form need.
 pub(super) struct Forms<'a, const D: usize> {
     grid: &'a Grid<D>,
-    kind: Kind,
+    form: Form,
     products: [Vec<Products>; D], // per axis and cell
 }
 
 /// int N_a N_b, int N_a' N_b' and int N_a'' N_b'' over a cell of one axis, row-major (q + 1) square; m, 1/m, 1/m^3.
-type Products = [Vec<f64>; 3];
+pub(super) type Products = [Vec<f64>; 3];
 
 impl<'a, const D: usize> Forms<'a, D> {
-    pub(super) fn new(grid: &'a Grid<D>, kind: Kind) -> Self {
-        let of_axis = |axis: &KnotVector| {
-            with_width!(axis.order() + 1, W => {
-                (0..axis.cells()).map(|cell| products::<W>(axis, cell)).collect()
-            })
-        };
-        Self { grid, kind, products: grid.axes().each_ref().map(of_axis) }
+    pub(super) fn new(grid: &'a Grid<D>, form: Form) -> Self {
+        Self { grid, form, products: products(grid) }
     }
 
     /// `factor` times the form of a cell, row-major (q + 1)^D square; m^(D-2) times the unit of the factor.
@@ -29,9 +32,9 @@ impl<'a, const D: usize> Forms<'a, D> {
         let mut block = vec![0.0; self.grid.cell_nodes().pow(2)];
         let size = self.grid.cell_box(cell).1;
         for i in 0..D {
-            match self.kind {
-                Kind::Laplacian => self.add(cell, factor, |axis| usize::from(axis == i), &mut block),
-                Kind::Curvature => {
+            match self.form {
+                Form::Laplacian => self.add(cell, factor, |axis| usize::from(axis == i), &mut block),
+                Form::Curvature => {
                     for j in 0..D {
                         let order = |axis| usize::from(axis == i) + usize::from(axis == j);
                         self.add(cell, factor * size[i] * size[j], order, &mut block);
@@ -55,7 +58,17 @@ impl<'a, const D: usize> Forms<'a, D> {
     }
 }
 
-fn products<const W: usize>(axis: &KnotVector, cell: usize) -> Products {
+/// The integrals of every cell of every axis.
+pub(super) fn products<const D: usize>(grid: &Grid<D>) -> [Vec<Products>; D] {
+    let of_axis = |axis: &KnotVector| {
+        with_width!(axis.order() + 1, W => {
+            (0..axis.cells()).map(|cell| of_cell::<W>(axis, cell)).collect()
+        })
+    };
+    grid.axes().each_ref().map(of_axis)
+}
+
+fn of_cell<const W: usize>(axis: &KnotVector, cell: usize) -> Products {
     let (lower, upper) = (axis.breakpoint(cell), axis.breakpoint(cell + 1));
     let (middle, half) = (0.5 * (lower + upper), 0.5 * (upper - lower));
     // N' is at most quadratic in a cell: its central difference over any distance is N''.

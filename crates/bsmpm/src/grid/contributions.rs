@@ -11,8 +11,8 @@ use crate::exact::Exact;
 #[derive(Clone, Debug)]
 pub struct Contributions {
     columns: Vec<usize>, // of the window, ascending, that contribute at all
-    sums: Vec<f64>,      // column, layer 0..=q behind it, node of the layer, number
-    layers: usize,       // q + 1
+    sums: Vec<f64>,      // column, layer from it on, node of the layer, number
+    layers: usize,       // that a column reaches, q + 1 and those beyond
     layer: usize,        // numbers of a layer
     width: usize,
     nodes: usize,
@@ -21,7 +21,7 @@ pub struct Contributions {
 impl Contributions {
     /// None, by the `columns` (ascending) of a window.
     pub fn none<const D: usize>(grid: &Grid<D>, width: usize, columns: Vec<usize>) -> Self {
-        Self::zeros((grid.order() + 1, grid.layer_nodes(), grid.nodes()), width, columns)
+        Self::zeros((grid.column_layers(), grid.layer_nodes(), grid.nodes()), width, columns)
     }
 
     pub(super) fn zeros(
@@ -73,16 +73,15 @@ impl Contributions {
     /// Adds what the columns of this rank contribute to the nodal array of the window.
     pub fn add_to(&self, nodal: &mut [f64]) {
         for (&column, sums) in self.columns.iter().zip(self.sums.chunks_exact(self.column_size().max(1))) {
-            let nodes = &mut nodal[column * self.layer..column * self.layer + sums.len()];
-            nodes.iter_mut().zip(sums).for_each(|(total, sum)| *total += sum);
+            // Past the window's last layer there is nothing: only columns that couple with others reach so far.
+            nodal[column * self.layer..].iter_mut().zip(sums).for_each(|(total, sum)| *total += sum);
         }
     }
 
     /// Product with a nodal array of the window: what forces that contribute work on a displacement.
     pub fn dot(&self, nodal: &[f64]) -> Exact {
         let of = |(&column, sums): (&usize, &[f64])| {
-            let nodes = &nodal[column * self.layer..column * self.layer + sums.len()];
-            nodes.iter().zip(sums).map(|(value, sum)| value * sum).sum::<f64>()
+            nodal[column * self.layer..].iter().zip(sums).map(|(value, sum)| value * sum).sum::<f64>()
         };
         self.columns.iter().zip(self.sums.chunks_exact(self.column_size().max(1))).map(of).collect()
     }

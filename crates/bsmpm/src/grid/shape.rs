@@ -78,7 +78,7 @@ impl<const D: usize> Shape<D> {
             offsets: grid.offsets(),
             patches: Vec::new(),
             columns: Vec::new(),
-            extent: (width, grid.layer_nodes(), grid.nodes()),
+            extent: (grid.column_layers(), grid.layer_nodes(), grid.nodes()),
             rows: Vec::with_capacity(points.len() * 2 * D * width),
             stride: 2 * width,
         };

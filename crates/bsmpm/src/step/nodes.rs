@@ -45,7 +45,7 @@ pub struct Nodes<const D: usize> {
     pub unknowns: usize,
     /// active nodes without mass, over all ranks
     pub massless_nodes: usize,
-    /// cells with the soft background, over all ranks
+    /// cells (ghost penalty: faces) with the soft background, over all ranks
     pub background_cells: usize,
     /// weight at and below which a node counts as massless
     threshold: f64,
@@ -138,7 +138,7 @@ impl<const D: usize> Nodes<D> {
             count(&mut self.active[owned.clone()].iter().copied()),
             count(&mut self.free[owned.start * D..owned.end * D].iter().copied()),
             count(&mut owned.map(|node| self.active[node] && self.weight[node] <= self.threshold)),
-            self.background.as_ref().map_or(0, Blocks::cells) as f64,
+            self.background.as_ref().map_or(0, Blocks::count) as f64,
         ];
         halo.reduce(&mut counts);
         [self.active_nodes, self.unknowns, self.massless_nodes, self.background_cells] =
@@ -194,6 +194,9 @@ fn supported<const D: usize>(
             marks[0] = 1.0;
             marks[1] = marks[1].max(f64::from(u8::from(soft)));
         }
+    }
+    for node in background.into_iter().flat_map(Blocks::face_nodes) {
+        touched[2 * node + 1] = 1.0;
     }
     halo.max(&mut touched, 2);
     let stiff = halo.sum(&transfer::squared_gradients(shape, |p| points.volume[p]));

@@ -36,7 +36,7 @@ pub fn assemble<K: Kinematics<D>, const D: usize>(
     complete(scene, solver, Symmetry::Definite)
 }
 
-/// Adds strips and inertia to a matrix whose patches are assembled, and factorises it.
+/// Adds strips, faces of the background and inertia to a matrix whose patches are assembled, and factorises it.
 pub fn complete<K: Kinematics<D>, const D: usize>(
     scene: &Scene<'_, K, D>,
     solver: &mut dyn LinearSolver,
@@ -44,6 +44,9 @@ pub fn complete<K: Kinematics<D>, const D: usize>(
 ) -> Result<(), SolveError> {
     let nodes = scene.nodes;
     scene.grips.assemble(solver);
+    if let Some(background) = &nodes.background {
+        background.assemble(solver);
+    }
     if let Some(inertia) = &nodes.inertia {
         let diagonal: Vec<f64> = (0..nodes.free.len()).map(|c| inertia.factor() * nodes.weight[c / D]).collect();
         solver.add_diagonal(&diagonal);

@@ -101,7 +101,7 @@ fn curvature_of_quadratic_fields_is_exact() {
 }
 
 #[test]
-fn both_forms_are_free_of_scale() {
+fn both_forms_within_cells_are_free_of_scale() {
     for kind in [Kind::Laplacian, Kind::Curvature] {
         for order in 1..=3 {
             let of = |h: f64| blocks::<PlaneStrain, 2>([axis(h, 4, order), axis(3.0 * h, 3, order)], kind).1;
@@ -137,7 +137,7 @@ fn concerned(F: [[f64; 2]; 2], extent: Extent) -> Vec<[usize; 2]> {
     let patches = shape.patches().iter().enumerate();
     let cells = patches.filter(|(number, _)| found.of(*number).is_some()).map(|(_, patch)| grid.cell_at(patch.cell));
     let cells: Vec<_> = cells.collect();
-    assert_eq!(cells.len(), found.cells());
+    assert_eq!(cells.len(), found.count());
     cells
 }
 

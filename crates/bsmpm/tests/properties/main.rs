@@ -7,6 +7,7 @@ mod background;
 mod broyden;
 mod dilation;
 mod gap;
+mod ghost;
 mod kinematics;
 mod linearised;
 mod observe;

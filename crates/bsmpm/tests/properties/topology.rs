@@ -116,6 +116,8 @@ fn cell_and_node_numbers_are_inverse_to_each_other() {
     }
     assert_eq!((whole.nodes(), whole.window(2..4).nodes()), (7 * 5 * 4, 4 * 5 * 4));
     assert_eq!(whole.window(2..4).layers(), 2..6);
+    let reaching = whole.clone().reaching(1);
+    assert_eq!([2..4, 3..5].map(|columns| reaching.window(columns).layers()), [2..7, 3..7]);
 }
 
 #[test]

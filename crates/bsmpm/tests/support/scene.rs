@@ -1,6 +1,7 @@
 //! Small scenes in any dimension: a grid, elastic bodies of whole cells, points placed n^D per cell.
 
 use super::solver::Skyline;
+use bsmpm::background::Background;
 use bsmpm::boundary::{Boundary, Load, Strip, Support};
 use bsmpm::control::{Accepted, Stepper};
 use bsmpm::grid::{Grid, KnotVector};
@@ -142,6 +143,13 @@ impl<K: Kinematics<D>, const D: usize> Scene<K, D> {
         let mut acceleration = Vector::zeros();
         acceleration[D - 1] = -g;
         self.model.gravity = Some(Gravity { acceleration, ramp });
+        self
+    }
+
+    /// A background, and a grid that reaches as far as it.
+    pub fn background(mut self, background: Option<Background>) -> Self {
+        self.model.grid = self.model.grid.reaching(background.map_or(0, |background| background.kind.beyond()));
+        self.model.background = background;
         self
     }
 

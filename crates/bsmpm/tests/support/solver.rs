@@ -71,6 +71,17 @@ impl LinearSolver for Skyline {
         }
     }
 
+    fn add_among(&mut self, nodes: &[usize], block: &[f64]) {
+        for c in 0..self.components {
+            for (entry, value) in block.iter().enumerate() {
+                let [a, b] = [entry / nodes.len(), entry % nodes.len()].map(|k| nodes[k] * self.components + c);
+                if let (Some(row), Some(column)) = (self.number[a], self.number[b]) {
+                    self.add_entry(row, column, *value);
+                }
+            }
+        }
+    }
+
     fn add_diagonal(&mut self, diagonal: &[f64]) {
         for (component, value) in diagonal.iter().enumerate() {
             if let Some(row) = self.number[component] {
@@ -166,6 +177,9 @@ impl LinearSolver for Reluctant {
     fn add(&mut self, first_node: usize, block: &[f64]) {
         self.solver.add(first_node, block);
     }
+    fn add_among(&mut self, nodes: &[usize], block: &[f64]) {
+        self.solver.add_among(nodes, block);
+    }
     fn add_diagonal(&mut self, diagonal: &[f64]) {
         self.solver.add_diagonal(diagonal);
     }
@@ -205,6 +219,11 @@ impl Dense {
         Self { components: D, offsets: grid.offsets(), number: Vec::new(), matrix: DMatrix::zeros(0, 0) }
     }
 
+    /// Entry of two nodal components; zero where one of them is no unknown.
+    pub fn entry(&self, row: usize, column: usize) -> f64 {
+        self.number[row].zip(self.number[column]).map_or(0.0, |at| self.matrix[at])
+    }
+
     /// Largest over smallest eigenvalue of the symmetric matrix: as it is, and scaled to a unit diagonal. Infinite if it
     /// is not positive definite to rounding.
     pub fn conditions(&self) -> [f64; 2] {
@@ -231,6 +250,17 @@ impl LinearSolver for Dense {
             for (column, value) in unknowns.iter().zip(values) {
                 if let (Some(row), Some(column)) = (row, column) {
                     self.matrix[(*row, *column)] += value;
+                }
+            }
+        }
+    }
+
+    fn add_among(&mut self, nodes: &[usize], block: &[f64]) {
+        for c in 0..self.components {
+            for (entry, value) in block.iter().enumerate() {
+                let [a, b] = [entry / nodes.len(), entry % nodes.len()].map(|k| nodes[k] * self.components + c);
+                if let (Some(row), Some(column)) = (self.number[a], self.number[b]) {
+                    self.matrix[(row, column)] += value;
                 }
             }
         }

@@ -24,8 +24,8 @@ fn block(shift: f64, background: Option<Background>, regime: Regime) -> (Scene<P
     let mut scene = Scene::<PlaneStrain, 2>::new([axis(H, 12, 2), axis(H, 5, 2)], hencky(100.0, 0.3), regime)
         .body([2..10, 0..4], 3, 1.0, |x| x * 0.0)
         .support(Support::fixed(1, false))
-        .gravity(2.0, 0.0);
-    scene.model.background = background;
+        .gravity(2.0, 0.0)
+        .background(background);
     let inside = |x: &Vector<2>| (x[0] - 1.5).abs() < 0.5 && (x[1] - 0.5).abs() < 0.25;
     let points = &mut scene.points;
     let inner = (0..points.len()).filter(|&p| inside(&points.x[p])).map(|p| points.id[p]).collect();
@@ -40,6 +40,10 @@ fn curvature(coefficient: f64) -> Option<Background> {
 
 fn laplacian(coefficient: f64) -> Option<Background> {
     Some(Background { kind: Kind::Laplacian, coefficient, extent: Extent::PartlyFilled })
+}
+
+fn ghost(coefficient: f64) -> Option<Background> {
+    Some(Background { kind: Kind::GhostPenalty, coefficient, extent: Extent::Occupied })
 }
 
 /// Vertical stress of the inner points, by id, of the settled block.
@@ -72,6 +76,7 @@ fn a_body_whose_edge_enters_a_cell_by_next_to_nothing_has_the_same_stress_inside
         ("no background", None, 0.0125),            // measured 9.7e-3, 1.1e-2
         ("laplacian, 1e-4", laplacian(1e-4), 0.01), // measured 6.0e-3, 5.2e-3
         ("curvature, 1e-3", curvature(1e-3), 0.01), // measured 9.6e-3, 5.4e-3
+        ("ghost penalty, 1e-4", ghost(1e-4), 0.01), // measured 6.0e-3, 5.5e-3
     ] {
         let [crossing, entering] = changes(background);
         println!("{name}: inner stress changes by {crossing:.2e} across the cell, {entering:.2e} just entering it");
@@ -108,5 +113,17 @@ fn curvature_bounds_the_condition_however_little_enters_a_cell() {
             assert!(*plain <= 10.0 / coefficient && *scaled <= 80.0);
         }
         assert!(found[3][0] <= 0.02 * found[1][0]);
+    }
+}
+
+#[test]
+fn the_ghost_penalty_bounds_the_condition_however_little_enters_a_cell() {
+    for k in [2, 3, 4, 6, 8, 10, 12, 15] {
+        // Measured 2.6e6, 2.6e5, 2.7e4 and 3.9e3: some 26 / gamma, whatever delta is, a third of the Laplacian's. Scaled at
+        // most 88, where a smaller coefficient leaves a hundredth of a cell to what is in it.
+        for coefficient in [1e-5, 1e-4, 1e-3, 1e-2] {
+            let [plain, scaled] = condition(EDGE + H * 10.0_f64.powi(-k), ghost(coefficient));
+            assert!(plain <= 40.0 / coefficient && scaled <= 100.0, "1e-{k}, {coefficient}: {plain:.1e} {scaled:.1e}");
+        }
     }
 }
