@@ -87,11 +87,12 @@ struct Systems {
 }
 
 impl Systems {
-    /// `entries` of the stiffness of so many `unknowns`.
-    fn of(solver: &Solver, unknowns: u128, entries: u128) -> Self {
+    /// `entries` of the stiffness of so many `unknowns`, which reach layers of nodes `beyond` those of a cell: separators
+    /// are wider by as much, and the factor with them, by a half of quadratic splines' for each.
+    fn of(solver: &Solver, unknowns: u128, entries: u128, beyond: u128) -> Self {
         let direct = solver.linear.factor.is_some();
         let levels = u128::from(unknowns.max(2).ilog2());
-        let factor = if direct { unknowns * levels * LEVEL } else { 0 };
+        let factor = if direct { unknowns * levels * LEVEL * (2 + beyond) / 2 } else { 0 };
         let again = u128::from(direct && solver.reproducible);
         let elastic = [entries * ENTRY + factor, again * (entries * REPEATED + factor)];
         let general = [entries * ENTRY + 2 * factor + unknowns * KRYLOV, again * (entries * REPEATED + 2 * factor)];
@@ -109,12 +110,12 @@ impl Case {
     /// Sizes of the case.
     pub fn estimate(&self) -> Estimate {
         let (nodes, points) = (nodes(&self.grid), u128::from(self.points()));
-        let places = (2 * self.grid.order as u128 + 1).pow(2);
+        let places = places(self);
         // The stencil of the stiffness: per place 2 x 2 doubles and an index of two bytes, and the list's head.
         let stencil = places * (4 * 8 + 2) + 24;
         let occupied = occupied_nodes(self).min(nodes);
         let entries = 2 * occupied * 2 * places;
-        let systems = Systems::of(&self.solver, 2 * occupied, entries);
+        let systems = Systems::of(&self.solver, 2 * occupied, entries, beyond(&self.solver));
         let lowered = if self.stabilisation == Stabilisation::ConsistentFBar { LOWERED } else { 0 };
         let passing = (entries * BUILT).max(points * SAVED);
         let bytes = points * (POINT + lowered) + nodes * (stencil + VECTORS) + systems.held + passing;
@@ -141,6 +142,17 @@ pub(crate) fn cells(grid: &GridSpec) -> u128 {
 /// Nodes of the grid.
 pub(crate) fn nodes(grid: &GridSpec) -> u128 {
     grid.axes.iter().map(|axis| (axis.cells() + grid.order) as u128).product()
+}
+
+/// Layers of nodes, beyond those of a cell, with which a node is coupled along an axis.
+fn beyond(solver: &Solver) -> u128 {
+    if solver.background > 0.0 { solver.background_kind.beyond() as u128 } else { 0 }
+}
+
+/// Nodes with which a node is coupled: those of the cells around it, and of the layers beyond along each axis.
+fn places(case: &Case) -> u128 {
+    let side = 2 * case.grid.order as u128 + 1;
+    side.pow(2) + 4 * side * beyond(&case.solver)
 }
 
 /// Nodes that the bodies' cells touch at the start: exact for boxes, and for shapes without holes or bays.

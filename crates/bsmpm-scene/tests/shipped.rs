@@ -137,6 +137,46 @@ const MEASURED: &[(&str, &[&str], usize, f64)] = &[
     ("short/strip_footing", &["grid.cell=0.05", "body.0.points_per_cell=2"], 3, 500.1e6),
     ("slope_foundation", &["grid.cell=0.25", "body.0.points_per_cell=6"], 1, 459.8e6),
     ("short/strip_footing", &["grid.cell=0.05", "body.0.points_per_cell=4", "output.every_steps=100000"], 1, 313.9e6),
+    (
+        "short/strip_footing",
+        &["grid.cell=0.05", "body.0.points_per_cell=3", "solver.background_kind=ghost-penalty"],
+        1,
+        344.1e6,
+    ),
+    (
+        "short/strip_footing",
+        &["grid.cell=0.1", "body.0.points_per_cell=3", "solver.background_kind=ghost-penalty"],
+        2,
+        221.4e6,
+    ),
+    (
+        "short/strip_footing",
+        &[
+            "grid.cell=0.05",
+            "body.0.points_per_cell=3",
+            "solver.nonlinear=newton",
+            "solver.background_kind=ghost-penalty",
+        ],
+        1,
+        431.8e6,
+    ),
+    (
+        "short/slope_stability",
+        &["grid.cell=0.125", "body.0.points_per_cell=2", "solver.background_kind=ghost-penalty"],
+        1,
+        411.0e6,
+    ),
+    (
+        "short/slope_stability",
+        &[
+            "grid.cell=0.125",
+            "body.0.points_per_cell=2",
+            "solver.nonlinear=newton",
+            "solver.background_kind=ghost-penalty",
+        ],
+        1,
+        511.7e6,
+    ),
     // By secants and, where they stalled, Newton's method.
     ("short/strip_footing", &["grid.cell=0.1", "body.0.points_per_cell=2", "analysis.steps=40"], 1, 128.3e6),
     ("short/strip_footing", &["grid.cell=0.1", "body.0.points_per_cell=1"], 1, 126.8e6),
