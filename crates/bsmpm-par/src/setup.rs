@@ -130,6 +130,7 @@ pub fn linear(case: &Case, ranks: usize) -> Choice {
     let linear = &case.solver.linear;
     let direct = ["cholesky", "lu"].contains(&linear.pc);
     Choice {
+        dissection: std::env::var_os("BSMPM_PETSC").is_none(),
         ksp: linear.ksp.into(),
         pc: linear.pc.into(),
         factor: linear.factor.map(Into::into),

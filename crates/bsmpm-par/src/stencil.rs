@@ -98,10 +98,33 @@ impl<const D: usize> Stencil<D> {
         self.values[at] += value;
     }
 
-    /// Coordinates of all entries between components that have a number.
-    pub fn coordinates(&self, numbers: &Numbering) -> Coordinates {
+    /// A component's row: the first component of every node that it couples with, and the entries there.
+    pub fn row(&self, component: usize) -> impl Iterator<Item = (usize, &[f64])> {
+        let (node, i) = (component / D, component % D);
+        self.valid[node].iter().map(move |&place| {
+            let other = node.wrapping_add_signed(self.reach[usize::from(place)]);
+            let at = node * self.width() + (usize::from(place) * D + i) * D;
+            (other * D, &self.values[at..at + D])
+        })
+    }
+
+    /// y = A x of the components marked `free`, as far as this window's blocks go; `x` is zero at the others.
+    pub fn multiply(&self, free: &[bool], x: &[f64], y: &mut [f64]) {
+        for (component, y) in y.iter_mut().enumerate() {
+            *y = 0.0;
+            if free[component] {
+                for (other, values) in self.row(component) {
+                    *y += values.iter().zip(&x[other..other + D]).map(|(a, x)| a * x).sum::<f64>();
+                }
+            }
+        }
+    }
+
+    /// Coordinates of all entries between `free` components that have a number; others with a number are on the diagonal
+    /// only.
+    pub fn coordinates(&self, numbers: &Numbering, free: &[bool]) -> Coordinates {
         let mut coordinates = Coordinates::default();
-        self.walk(numbers, |row, column, _| {
+        self.walk(numbers, free, |row, column, _| {
             coordinates.rows.push(row);
             coordinates.columns.push(column);
         });
@@ -109,14 +132,14 @@ impl<const D: usize> Stencil<D> {
     }
 
     /// Values of the entries in the order of [`Stencil::coordinates`].
-    pub fn entries(&self, numbers: &Numbering) -> Vec<f64> {
+    pub fn entries(&self, numbers: &Numbering, free: &[bool]) -> Vec<f64> {
         let mut values = Vec::new();
-        self.walk(numbers, |_, _, at| values.push(self.values[at]));
+        self.walk(numbers, free, |_, _, at| values.push(self.values[at]));
         values
     }
 
     /// Visits every entry with its global row and column and its place in `values`.
-    fn walk(&self, numbers: &Numbering, mut visit: impl FnMut(usize, usize, usize)) {
+    fn walk(&self, numbers: &Numbering, free: &[bool], mut visit: impl FnMut(usize, usize, usize)) {
         for (component, row) in numbers.iter().enumerate() {
             let Some(row) = row else { continue };
             let (node, i) = (component / D, component % D);
@@ -124,7 +147,8 @@ impl<const D: usize> Stencil<D> {
                 let other = node.wrapping_add_signed(self.reach[usize::from(place)]);
                 let at = node * self.width() + (usize::from(place) * D + i) * D;
                 for j in 0..D {
-                    if let Some(column) = numbers[other * D + j] {
+                    let coupled = other * D + j == component || free[component] && free[other * D + j];
+                    if let Some(column) = numbers[other * D + j].filter(|_| coupled) {
                         visit(*row, column, at + j);
                     }
                 }
@@ -158,7 +182,7 @@ mod tests {
             }
         }
         let numbers: Numbering = (0..size).map(Some).collect();
-        let (places, values) = (stencil.coordinates(&numbers), stencil.entries(&numbers));
+        let (places, values) = (stencil.coordinates(&numbers, &[true; SIZE]), stencil.entries(&numbers, &[true; SIZE]));
         let mut found = vec![0.0; size * size];
         for ((row, column), value) in places.rows.iter().zip(&places.columns).zip(values) {
             assert_eq!(std::mem::replace(&mut found[row * size + column], value), 0.0, "each pair stands once");
