@@ -24,7 +24,9 @@ fn main() -> ExitCode {
         Err(code) => return code.into(),
     };
     let arguments: Vec<String> = std::env::args().collect();
-    let [_, method, nu, cells, further @ ..] = &arguments[..] else { panic!("solvers METHOD NU CELLS [PETSc options]") };
+    let [_, method, nu, cells, further @ ..] = &arguments[..] else {
+        panic!("solvers METHOD NU CELLS [PETSc options]")
+    };
     let nu: f64 = nu.parse().expect("Poisson's ratio");
     let cells: usize = cells.parse().expect("cells along an edge");
     let choice = match method.as_str() {

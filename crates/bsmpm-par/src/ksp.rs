@@ -2,6 +2,7 @@
 
 mod choice;
 mod dissection;
+mod system;
 
 pub use choice::{Choice, probe};
 
@@ -11,16 +12,11 @@ use crate::timers::Timers;
 use bsmpm::error::SolveError;
 use bsmpm::grid::Grid;
 use bsmpm::seam::{Halo, Krylov, LinearSolver, Symmetry, agreed};
-use mpi::collective::{CommunicatorCollectives, SystemOperation};
-use petsc_rs::{Ksp, Matrix, Petsc, Tolerances, Vector};
 use dissection::Dissection;
+use mpi::collective::{CommunicatorCollectives, SystemOperation};
+use petsc_rs::{Matrix, Petsc};
 use std::rc::Rc;
-
-/// Largest relative residual of a solution that is accepted, recomputed: direct solvers report success for NaN.
-const TRUSTED: f64 = 1e-6;
-
-/// Most products of one of them.
-const MOST_PRODUCTS: usize = 300;
+use system::{System, failed, trusted};
 
 /// The linear solver of a run: one matrix, rebuilt every step; pattern and analysis are kept while the unknowns stay.
 pub struct KspSolver<'p, const D: usize> {
@@ -32,27 +28,20 @@ pub struct KspSolver<'p, const D: usize> {
     free: Vec<bool>,
     numbers: Numbering, // empty before PETSc needs it
     own: usize,         // unknowns of this rank
-    direct: Option<Dissection>,
+    direct: Dissection,
+    planned: bool, // for the present unknowns
     definite: Option<System<'p>>,
     general: Option<System<'p>>, // where Newton's method is used
     timers: Rc<Timers>,
-}
-
-struct System<'p> {
-    matrix: Matrix<'p>,
-    ksp: Ksp<'p>,
-    b: Vector<'p>,
-    x: Vector<'p>,
-    r: Vector<'p>,
 }
 
 impl<'p, const D: usize> KspSolver<'p, D> {
     /// A solver for a window of the grid.
     pub fn new(petsc: &'p Petsc<'p>, choice: Choice, grid: &Grid<D>, halo: Rc<MpiHalo>, timers: Rc<Timers>) -> Self {
         let (stencil, free, numbers) = (Stencil::new(grid), Vec::new(), Vec::new());
-        let (direct, definite, general) = (None, None, None);
+        let (direct, planned, definite, general) = (Dissection::default(), false, None, None);
         let grid = grid.clone();
-        Self { petsc, choice, halo, grid, stencil, free, numbers, own: 0, direct, definite, general, timers }
+        Self { petsc, choice, halo, grid, stencil, free, numbers, own: 0, direct, planned, definite, general, timers }
     }
 
     /// Numbers the free components: those of rank 0 first, by node; the same number on every rank that shares a node.
@@ -105,25 +94,27 @@ impl<'p, const D: usize> KspSolver<'p, D> {
     /// Factorises without PETSc.
     fn factorise(&mut self) -> Result<(), SolveError> {
         let world = self.halo.world();
-        let direct = match &mut self.direct {
-            Some(direct) => direct,
-            none => {
-                let mut bounds = vec![0; self.petsc.ranks()];
-                world.all_gather_into(&self.grid.columns().start, &mut bounds[..]);
-                bounds.push(self.grid.axes()[0].cells());
-                none.insert(Dissection::new(world, (&bounds, self.petsc.rank()), &self.grid, &self.free))
-            }
-        };
-        let good = direct.factorise(world, &self.stencil);
-        let pivot = |what: &str| SolveError::Failed(format!("a pivot {what} is not positive: the stiffness is not definite"));
+        if !self.planned {
+            let mut bounds = vec![0; self.petsc.ranks()];
+            world.all_gather_into(&self.grid.columns().start, &mut bounds[..]);
+            bounds.push(self.grid.axes()[0].cells());
+            self.direct.plan(world, (&bounds, self.petsc.rank()), &self.grid, &self.free);
+            self.planned = true;
+        }
+        let good = self.direct.factorise(world, &self.stencil);
+        let pivot =
+            |what: &str| SolveError::Failed(format!("a pivot {what} is not positive: the stiffness is not definite"));
         agreed(&*self.halo, if good { Ok(()) } else { Err(pivot("here")) }, pivot("of another rank"))
     }
 
     /// The solution by the factorisation, if it is finite and its recomputed residual small.
     fn solve_directly(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<usize, SolveError> {
+        if !self.planned {
+            return Err(missing());
+        }
         let owned = self.halo.owned();
         let owned = owned.start * D..owned.end * D;
-        self.direct.as_mut().ok_or_else(missing)?.solve(self.halo.world(), owned.clone(), rhs, solution);
+        self.direct.solve(self.halo.world(), owned.clone(), rhs, solution);
         let mut image = vec![0.0; rhs.len()];
         self.stencil.multiply(&self.free, solution, &mut image);
         self.halo.sum(&mut image, D);
@@ -172,72 +163,8 @@ fn spread<const D: usize>(halo: &MpiHalo, unknowns: &[usize], values: &[f64], no
     halo.sum(nodal, D);
 }
 
-/// Refuses a solution whose residual has the norm `left`, of a right-hand side with the norm `right`.
-fn trusted(left: f64, right: f64) -> Result<(), SolveError> {
-    if !left.is_finite() {
-        return Err(SolveError::NotFinite);
-    }
-    if left > TRUSTED * right {
-        return Err(SolveError::Residual(left / right));
-    }
-    Ok(())
-}
-
 fn missing() -> SolveError {
     SolveError::Failed("no matrix was assembled".into())
-}
-
-fn failed(error: petsc_rs::Error) -> SolveError {
-    SolveError::Failed(error.to_string())
-}
-
-impl<'p> System<'p> {
-    fn new(
-        petsc: &'p Petsc<'p>,
-        (choice, symmetry): (&Choice, Symmetry),
-        mut matrix: Matrix<'p>,
-    ) -> petsc_rs::Result<Self> {
-        if symmetry == Symmetry::Definite {
-            matrix.set_symmetry(petsc_rs::Symmetry::PositiveDefinite)?;
-        }
-        let mut ksp = Ksp::new(petsc)?;
-        ksp.set_operator(&matrix)?;
-        choice.apply(&mut ksp, symmetry)?;
-        let vector = || Vector::new(petsc, matrix.local_rows());
-        let (b, x, r) = (vector()?, vector()?, vector()?);
-        Ok(Self { matrix, ksp, b, x, r })
-    }
-
-    /// Solution of this rank's unknowns, if it is finite and its recomputed residual small.
-    fn solve(&mut self, rhs: &[f64]) -> Result<(usize, Vec<f64>), SolveError> {
-        self.b.copy_from(rhs).map_err(failed)?;
-        let info = self.ksp.solve(&self.b, &mut self.x).map_err(failed)?;
-        self.matrix.residual(&self.b, &self.x, &mut self.r).map_err(failed)?;
-        let (left, right) = (self.r.norm().map_err(failed)?, self.b.norm().map_err(failed)?);
-        trusted(left, right)?;
-        Ok((info.iterations, self.x.read(<[f64]>::to_vec).map_err(failed)?))
-    }
-
-    /// Solution of this rank's unknowns for an operator known by its product, and what it leaves.
-    fn solve_with(
-        &mut self,
-        product: &mut dyn FnMut(&[f64], &mut [f64]),
-        relative: f64,
-        rhs: &[f64],
-    ) -> Result<(Krylov, Vec<f64>), SolveError> {
-        self.b.copy_from(rhs).map_err(failed)?;
-        let tolerances = Tolerances { relative, absolute: 0.0, max_iterations: MOST_PRODUCTS };
-        self.ksp.set_tolerances(tolerances).map_err(failed)?;
-        let info = self.ksp.solve_with(product, &self.b, &mut self.x).map_err(failed)?;
-        let x = self.x.read(<[f64]>::to_vec).map_err(failed)?;
-        self.r.write(|r| product(&x, r)).map_err(failed)?;
-        self.r.add_scaled(-1.0, &self.b).map_err(failed)?;
-        let residual = self.r.norm().map_err(failed)? / self.b.norm().map_err(failed)?;
-        if !residual.is_finite() {
-            return Err(SolveError::NotFinite);
-        }
-        Ok((Krylov { iterations: info.iterations, residual }, x))
-    }
 }
 
 impl<const D: usize> LinearSolver for KspSolver<'_, D> {
@@ -246,7 +173,7 @@ impl<const D: usize> LinearSolver for KspSolver<'_, D> {
         self.halo.maximum(&mut changed);
         if changed[0] > 0.0 {
             (self.free, self.numbers) = (free.to_vec(), Numbering::new());
-            (self.direct, self.definite, self.general) = (None, None, None);
+            (self.planned, self.definite, self.general) = (false, None, None);
         }
         self.stencil.clear();
     }

@@ -181,13 +181,18 @@ mod tests {
                 dense[component(entry / 18) * size + component(entry % 18)] += value;
             }
         }
-        let numbers: Numbering = (0..size).map(Some).collect();
-        let (places, values) = (stencil.coordinates(&numbers, &[true; SIZE]), stencil.entries(&numbers, &[true; SIZE]));
+        let (numbers, free): (Numbering, _) = ((0..size).map(Some).collect(), vec![true; size]);
+        let (places, values) = (stencil.coordinates(&numbers, &free), stencil.entries(&numbers, &free));
         let mut found = vec![0.0; size * size];
         for ((row, column), value) in places.rows.iter().zip(&places.columns).zip(values) {
             assert_eq!(std::mem::replace(&mut found[row * size + column], value), 0.0, "each pair stands once");
         }
         assert_eq!(found, dense);
+        let x: Vec<f64> = (0..size).map(|component| ((component * 5) % 13) as f64).collect();
+        let mut y = vec![f64::NAN; size];
+        stencil.multiply(&free, &x, &mut y);
+        let row = |row: usize| x.iter().zip(&dense[row * size..]).map(|(x, a)| a * x).sum::<f64>();
+        assert_eq!(y, (0..size).map(row).collect::<Vec<_>>(), "whole numbers are exact");
     }
 
     #[test]
@@ -196,8 +201,22 @@ mod tests {
         let stencil = Stencil::new(&grid);
         let numbers: Numbering =
             (0..grid.nodes() * 2).map(|component| (component % 2 == 0).then_some(component / 2)).collect();
-        let places = stencil.coordinates(&numbers);
-        assert_eq!(places.rows.len(), stencil.entries(&numbers).len());
+        let free: Vec<bool> = numbers.iter().map(Option::is_some).collect();
+        let places = stencil.coordinates(&numbers, &free);
+        assert_eq!(places.rows.len(), stencil.entries(&numbers, &free).len());
         assert!(places.rows.iter().chain(&places.columns).all(|&number| number < grid.nodes()));
+    }
+
+    #[test]
+    fn held_components_with_a_number_stand_on_the_diagonal_only() {
+        let grid = grid();
+        let stencil = Stencil::new(&grid);
+        let numbers: Numbering = (0..grid.nodes() * 2).map(Some).collect();
+        let free: Vec<bool> = (0..grid.nodes() * 2).map(|component| component % 3 > 0).collect();
+        let places = stencil.coordinates(&numbers, &free);
+        let pairs: Vec<_> = places.rows.iter().zip(&places.columns).collect();
+        let held = pairs.iter().filter(|(row, column)| !free[**row] || !free[**column]);
+        assert!(held.clone().all(|(row, column)| row == column));
+        assert_eq!(held.count(), free.iter().filter(|&&free| !free).count());
     }
 }

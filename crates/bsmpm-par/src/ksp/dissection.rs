@@ -8,6 +8,8 @@
 mod front;
 mod ladder;
 mod plan;
+#[cfg(test)]
+mod tests;
 
 use crate::stencil::Stencil;
 use bsmpm::grid::Grid;
@@ -15,41 +17,44 @@ use ladder::{Ladder, Link, add_packed, pack};
 use plan::{NONE, Part, Plan};
 use std::ops::Range;
 
-/// A factorisation of one slab's share of the matrix.
+/// A factorisation of one slab's share of the matrix. Its memory is kept when the unknowns change, as they do in most
+/// steps of a flow.
+#[derive(Default)]
 pub struct Dissection {
     plan: Plan,
-    columns: Vec<f64>,
+    columns: Vec<f64>, // of the factor, part after part
     ladder: Ladder,
-    work: Vec<f64>,
+    matrix: Vec<f64>, // of the front in work
+    work: Vec<f64>,   // a vector by elimination numbers
 }
 
 impl Dissection {
-    /// The plan for the `free` components of the window of `rank`, the ranks' slabs beginning at the columns `bounds`, the
+    /// Plans for the `free` components of the window of `rank`, the ranks' slabs beginning at the columns `bounds`, the
     /// last of which is the grid's end. Collective.
-    pub fn new<const D: usize>(
+    pub fn plan<const D: usize>(
+        &mut self,
         link: &dyn Link,
         (bounds, rank): (&[usize], usize),
         grid: &Grid<D>,
         free: &[bool],
-    ) -> Self {
+    ) {
         let (q, layers) = (grid.order(), grid.layers());
         // Layers that no other slab touches, from the window's first.
         let start = if rank == 0 { 0 } else { q };
         let end = if rank + 2 == bounds.len() { layers.len() } else { grid.columns().len() };
         let counts = std::array::from_fn(|axis| if axis == 0 { layers.len() } else { grid.axes()[axis].functions() });
-        let plan = Plan::new::<D>(counts, q, start..end.max(start), free);
+        self.plan = Plan::new::<D>(counts, q, start..end.max(start), free);
         let layer = grid.layer_nodes() * D;
-        let shared = plan.shared().iter().map(|&component| layers.start * layer + component as usize).collect();
-        let ladder = Ladder::new(link, &ladder::rungs(bounds, q, rank), shared, layer);
-        Self { plan, columns: Vec::new(), ladder, work: Vec::new() }
+        let shared = self.plan.shared().iter().map(|&component| layers.start * layer + component as usize).collect();
+        self.ladder = Ladder::new(link, &ladder::rungs(bounds, q, rank), shared, layer);
     }
 
     /// Factorises; `false` where a pivot of this rank was not positive and finite. Collective.
     pub fn factorise<const D: usize>(&mut self, link: &dyn Link, stencil: &Stencil<D>) -> bool {
-        let Self { plan, columns, ladder, .. } = self;
+        let Self { plan, columns, ladder, matrix, .. } = self;
         columns.clear();
         columns.resize(plan.entries(), 0.0);
-        let (mut stack, mut matrix) = (Vec::new(), Vec::new());
+        let mut stack = Vec::new();
         let mut places = vec![0; plan.order.len()];
         let mut good = true;
         for part in &plan.parts {
@@ -57,15 +62,15 @@ impl Dissection {
             let (columns, order) = (&mut columns[part.panel()], part.rim.len());
             matrix.clear();
             matrix.resize(order * order, 0.0);
-            take(plan, part, (stencil, &places), columns, &mut matrix);
+            take(plan, part, (stencil, &places), columns, matrix);
             for _ in 0..part.children {
                 let (child, packed): (&Part, Vec<f64>) = stack.pop().expect("children come right before their parent");
                 let rim: Vec<usize> = child.rim.iter().map(|&number| places[number as usize]).collect();
-                add_packed(&packed, &rim, (columns, part.own.len()), &mut matrix);
+                add_packed(&packed, &rim, (columns, part.own.len()), matrix);
             }
             good &= front::factorise(columns, part.rows());
-            front::subtract_from_rest(columns, part.rows(), &mut matrix);
-            stack.push((part, pack(&matrix, order)));
+            front::subtract_from_rest(columns, part.rows(), matrix);
+            stack.push((part, pack(matrix, order)));
         }
         let (_, rest) = stack.pop().expect("a plan has a last part");
         ladder.factorise(link, rest) && good
@@ -74,7 +79,7 @@ impl Dissection {
     /// Solves for the nodal right-hand side whose `owned` components are this rank's, with the last factorisation; the
     /// solution is right at all nodes of the window. Collective.
     pub fn solve(&mut self, link: &dyn Link, owned: Range<usize>, rhs: &[f64], solution: &mut [f64]) {
-        let Self { plan, columns, ladder, work } = self;
+        let Self { plan, columns, ladder, work, .. } = self;
         let own = |component: usize| if owned.contains(&component) { rhs[component] } else { 0.0 };
         work.clear();
         work.extend(plan.order.iter().map(|&component| own(component as usize)));

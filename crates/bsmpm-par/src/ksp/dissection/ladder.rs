@@ -72,6 +72,7 @@ struct Joint {
 }
 
 /// The rungs of a rank with their fronts.
+#[derive(Default)]
 pub struct Ladder {
     joints: Vec<Joint>,
     hand: Option<usize>,
@@ -150,11 +151,7 @@ impl Ladder {
 
 impl Joint {
     /// Of this rank's group and that of `from`, each with its components; what is not eliminated `here` is left.
-    fn new(
-        from: usize,
-        (mine, theirs): (Vec<usize>, Vec<usize>),
-        here: impl Fn(usize) -> bool,
-    ) -> (Self, Vec<usize>) {
+    fn new(from: usize, (mine, theirs): (Vec<usize>, Vec<usize>), here: impl Fn(usize) -> bool) -> (Self, Vec<usize>) {
         let mut all = [&mine[..], &theirs[..]].concat();
         let key = |&component: &usize| (!here(component), component);
         all.sort_unstable_by_key(key);

@@ -101,7 +101,8 @@ impl<const D: usize> Cutter<'_, D> {
     /// Eliminates the unknowns of a box; `false` if it has none.
     fn cut(&mut self, region: [Range<usize>; D]) -> bool {
         let Some((region, unknowns)) = self.tight(&region) else { return false };
-        let (axis, length) = region.iter().map(|range| range.len()).enumerate().max_by_key(|(_, length)| *length).unwrap();
+        let (axis, length) =
+            region.iter().map(|range| range.len()).enumerate().max_by_key(|(_, length)| *length).unwrap();
         if unknowns <= LEAF || length < self.order + 2 {
             let all = self.components(&region);
             self.part(all, region, 0);
