@@ -66,6 +66,20 @@ impl MpiHalo {
         &self.requests
     }
 
+    /// Adds what the other ranks have at the nodes that they share with this one.
+    pub fn add_shared(&self, nodal: &mut [f64], width: usize) {
+        if self.neighbours.is_empty() {
+            return;
+        }
+        let _timed = self.timers.time("halo");
+        let place = |other: &Neighbour| other.nodes.start * width..other.nodes.end * width;
+        let outgoing: Vec<_> = self.neighbours.iter().map(|other| nodal[place(other)].to_vec()).collect();
+        let incoming = self.exchange(&outgoing, |other| other.nodes.len() * width);
+        for (part, other) in incoming.iter().zip(&self.neighbours) {
+            nodal[place(other)].iter_mut().zip(part).for_each(|(total, other)| *total += other);
+        }
+    }
+
     /// Gives every neighbour its message and returns theirs, of the given lengths, in the order of the neighbours.
     fn exchange(&self, outgoing: &[Vec<f64>], lengths: impl Fn(&Neighbour) -> usize) -> Vec<Vec<f64>> {
         let mut incoming: Vec<Vec<f64>> = self.neighbours.iter().map(|other| vec![0.0; lengths(other)]).collect();

@@ -1,6 +1,8 @@
 //! The linear system on PETSc: numbering of the unknowns, assembly, factorisation, and solutions that are checked.
 
 mod choice;
+mod dissection;
+mod system;
 
 pub use choice::{Choice, probe};
 
@@ -9,88 +11,147 @@ use crate::stencil::{Numbering, Stencil};
 use crate::timers::Timers;
 use bsmpm::error::SolveError;
 use bsmpm::grid::Grid;
-use bsmpm::seam::{Halo, Krylov, LinearSolver, Symmetry};
+use bsmpm::seam::{Halo, Krylov, LinearSolver, Symmetry, agreed};
+use dissection::Dissection;
 use mpi::collective::{CommunicatorCollectives, SystemOperation};
-use petsc_rs::{Ksp, Matrix, Petsc, Tolerances, Vector};
+use petsc_rs::{Matrix, Petsc};
 use std::rc::Rc;
-
-/// Largest relative residual of a solution that is accepted, recomputed: direct solvers report success for NaN.
-const TRUSTED: f64 = 1e-6;
-
-/// Most products of one of them.
-const MOST_PRODUCTS: usize = 300;
+use system::{System, failed, trusted};
 
 /// The linear solver of a run: one matrix, rebuilt every step; pattern and analysis are kept while the unknowns stay.
 pub struct KspSolver<'p, const D: usize> {
     petsc: &'p Petsc<'p>,
     choice: Choice,
     halo: Rc<MpiHalo>,
+    grid: Grid<D>,
     stencil: Stencil<D>,
     free: Vec<bool>,
-    numbers: Numbering,
-    own: usize, // unknowns of this rank
+    numbers: Numbering, // empty before PETSc needs it
+    own: usize,         // unknowns of this rank
+    direct: Dissection,
+    planned: bool, // for the present unknowns
     definite: Option<System<'p>>,
     general: Option<System<'p>>, // where Newton's method is used
     timers: Rc<Timers>,
-}
-
-struct System<'p> {
-    matrix: Matrix<'p>,
-    ksp: Ksp<'p>,
-    b: Vector<'p>,
-    x: Vector<'p>,
-    r: Vector<'p>,
 }
 
 impl<'p, const D: usize> KspSolver<'p, D> {
     /// A solver for a window of the grid.
     pub fn new(petsc: &'p Petsc<'p>, choice: Choice, grid: &Grid<D>, halo: Rc<MpiHalo>, timers: Rc<Timers>) -> Self {
         let (stencil, free, numbers) = (Stencil::new(grid), Vec::new(), Vec::new());
-        let (definite, general) = (None, None);
-        Self { petsc, choice, halo, stencil, free, numbers, own: 0, definite, general, timers }
+        let (direct, planned, definite, general) = (Dissection::default(), false, None, None);
+        let grid = grid.clone();
+        Self { petsc, choice, halo, grid, stencil, free, numbers, own: 0, direct, planned, definite, general, timers }
     }
 
     /// Numbers the free components: those of rank 0 first, by node; the same number on every rank that shares a node.
-    fn number(&mut self, free: &[bool]) {
+    fn number(&mut self) {
+        let free = &self.free;
         let owned = self.halo.owned();
         let owned = owned.start * D..owned.end * D;
-        self.own = free[owned.clone()].iter().filter(|&&free| free).count();
+        let numbered = numbered::<D>(&self.choice, free);
+        self.own = owned.clone().filter(|&component| numbered(component)).count();
         let count = self.own as u64;
         let mut before = 0_u64;
         self.halo.world().exclusive_scan_into(&count, &mut before, SystemOperation::sum());
         let mut next = if self.petsc.rank() == 0 { 0 } else { before };
         let mut numbers = vec![0.0; free.len()]; // one more than the number: 0 is none
-        for component in owned.filter(|&component| free[component]) {
+        for component in owned.filter(|&component| numbered(component)) {
             next += 1;
             numbers[component] = next as f64;
         }
         self.halo.share(&mut numbers, D);
         self.numbers = numbers.iter().map(|&number| (number > 0.0).then(|| number as usize - 1)).collect();
-        self.free = free.to_vec();
     }
 
     /// Hands the values over; the pattern too, if the unknowns have changed.
     fn build(&mut self, symmetry: Symmetry) -> petsc_rs::Result<()> {
-        let values = self.stencil.entries(&self.numbers);
+        if self.numbers.len() != self.free.len() {
+            self.number();
+        }
+        let values = self.stencil.entries(&self.numbers, &self.free);
         let place = match symmetry {
             Symmetry::Definite => &mut self.definite,
             Symmetry::General => &mut self.general,
         };
         let system = match place {
             Some(system) => system,
-            none => none
-                .insert(System::new((self.petsc, &self.choice, symmetry), (&self.stencil, &self.numbers, self.own))?),
+            none => {
+                let places = self.stencil.coordinates(&self.numbers, &self.free);
+                let block = if self.choice.whole_nodes() { D } else { 1 };
+                let mut matrix = Matrix::from_coo(self.petsc, self.own, block, &places.rows, &places.columns)?;
+                if block > 1 {
+                    matrix.set_rigid_body_modes(&places_of(&self.grid, &self.halo, &self.numbers))?;
+                }
+                none.insert(System::new(self.petsc, (&self.choice, symmetry), matrix)?)
+            }
         };
         system.matrix.set_values(&values)?;
         system.ksp.set_operator(&system.matrix)?;
         system.ksp.set_up()
     }
 
+    /// Factorises without PETSc.
+    fn factorise(&mut self) -> Result<(), SolveError> {
+        let world = self.halo.world();
+        if !self.planned {
+            let mut bounds = vec![0; self.petsc.ranks()];
+            world.all_gather_into(&self.grid.columns().start, &mut bounds[..]);
+            bounds.push(self.grid.axes()[0].cells());
+            self.direct.plan(world, (&bounds, self.petsc.rank()), &self.grid, &self.free);
+            self.planned = true;
+        }
+        let good = self.direct.factorise(world, &self.stencil);
+        let pivot =
+            |what: &str| SolveError::Failed(format!("a pivot {what} is not positive: the stiffness is not definite"));
+        agreed(&*self.halo, if good { Ok(()) } else { Err(pivot("here")) }, pivot("of another rank"))
+    }
+
+    /// The solution by the factorisation, if it is finite and its recomputed residual small.
+    fn solve_directly(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<usize, SolveError> {
+        if !self.planned {
+            return Err(missing());
+        }
+        let owned = self.halo.owned();
+        let owned = owned.start * D..owned.end * D;
+        self.direct.solve(self.halo.world(), owned.clone(), rhs, solution);
+        let mut image = vec![0.0; rhs.len()];
+        self.stencil.multiply(&self.free, solution, &mut image);
+        self.halo.add_shared(&mut image, D);
+        let mut norms = [0.0; 2];
+        for component in owned.filter(|&component| self.free[component]) {
+            norms[0] += (rhs[component] - image[component]).powi(2);
+            norms[1] += rhs[component].powi(2);
+        }
+        self.halo.reduce(&mut norms);
+        let [left, right] = norms.map(f64::sqrt);
+        trusted(left, right).map(|()| 1)
+    }
+
     /// Components of this rank's unknowns, in the order of their numbers.
     fn unknowns(&self) -> Vec<usize> {
         let owned = self.halo.owned();
-        (owned.start * D..owned.end * D).filter(|&component| self.free[component]).collect()
+        (owned.start * D..owned.end * D).filter(|&component| self.numbers[component].is_some()).collect()
     }
+}
+
+/// Which components of a window have a row: the free ones, or all of the nodes that have a free one.
+fn numbered<const D: usize>(choice: &Choice, free: &[bool]) -> impl Fn(usize) -> bool {
+    let whole = choice.whole_nodes();
+    move |component| {
+        if whole { free[component / D * D..][..D].contains(&true) } else { free[component] }
+    }
+}
+
+/// Where the nodes with rows of this rank are, m: the splines' coefficients there (Greville) give linear fields exactly.
+fn places_of<const D: usize>(grid: &Grid<D>, halo: &MpiHalo, numbers: &Numbering) -> Vec<f64> {
+    let with_rows = halo.owned().filter(|node| numbers[node * D].is_some());
+    with_rows
+        .flat_map(|node| {
+            let node = grid.node_at(node);
+            (0..D).map(move |axis| grid.axes()[axis].greville(node[axis]))
+        })
+        .collect()
 }
 
 /// Nodal array, known to all ranks that share a node, of the unknowns that the ranks own.
@@ -106,71 +167,13 @@ fn missing() -> SolveError {
     SolveError::Failed("no matrix was assembled".into())
 }
 
-fn failed(error: petsc_rs::Error) -> SolveError {
-    SolveError::Failed(error.to_string())
-}
-
-impl<'p> System<'p> {
-    fn new<const D: usize>(
-        (petsc, choice, symmetry): (&'p Petsc<'p>, &Choice, Symmetry),
-        (stencil, numbers, own): (&Stencil<D>, &Numbering, usize),
-    ) -> petsc_rs::Result<Self> {
-        let places = stencil.coordinates(numbers);
-        let mut matrix = Matrix::from_coo(petsc, own, 1, &places.rows, &places.columns)?;
-        if symmetry == Symmetry::Definite {
-            matrix.set_symmetry(petsc_rs::Symmetry::PositiveDefinite)?;
-        }
-        let mut ksp = Ksp::new(petsc)?;
-        ksp.set_operator(&matrix)?;
-        choice.apply(&mut ksp, symmetry)?;
-        let vector = || Vector::new(petsc, own);
-        Ok(Self { matrix, ksp, b: vector()?, x: vector()?, r: vector()? })
-    }
-
-    /// Solution of this rank's unknowns, if it is finite and its recomputed residual small.
-    fn solve(&mut self, rhs: &[f64]) -> Result<(usize, Vec<f64>), SolveError> {
-        self.b.copy_from(rhs).map_err(failed)?;
-        let info = self.ksp.solve(&self.b, &mut self.x).map_err(failed)?;
-        self.matrix.residual(&self.b, &self.x, &mut self.r).map_err(failed)?;
-        let (left, right) = (self.r.norm().map_err(failed)?, self.b.norm().map_err(failed)?);
-        if !left.is_finite() {
-            return Err(SolveError::NotFinite);
-        }
-        if left > TRUSTED * right {
-            return Err(SolveError::Residual(left / right));
-        }
-        Ok((info.iterations, self.x.read(<[f64]>::to_vec).map_err(failed)?))
-    }
-
-    /// Solution of this rank's unknowns for an operator known by its product, and what it leaves.
-    fn solve_with(
-        &mut self,
-        product: &mut dyn FnMut(&[f64], &mut [f64]),
-        relative: f64,
-        rhs: &[f64],
-    ) -> Result<(Krylov, Vec<f64>), SolveError> {
-        self.b.copy_from(rhs).map_err(failed)?;
-        let tolerances = Tolerances { relative, absolute: 0.0, max_iterations: MOST_PRODUCTS };
-        self.ksp.set_tolerances(tolerances).map_err(failed)?;
-        let info = self.ksp.solve_with(product, &self.b, &mut self.x).map_err(failed)?;
-        let x = self.x.read(<[f64]>::to_vec).map_err(failed)?;
-        self.r.write(|r| product(&x, r)).map_err(failed)?;
-        self.r.add_scaled(-1.0, &self.b).map_err(failed)?;
-        let residual = self.r.norm().map_err(failed)? / self.b.norm().map_err(failed)?;
-        if !residual.is_finite() {
-            return Err(SolveError::NotFinite);
-        }
-        Ok((Krylov { iterations: info.iterations, residual }, x))
-    }
-}
-
 impl<const D: usize> LinearSolver for KspSolver<'_, D> {
     fn begin(&mut self, free: &[bool]) {
         let mut changed = [f64::from(self.free != free)];
         self.halo.maximum(&mut changed);
         if changed[0] > 0.0 {
-            self.number(free);
-            (self.definite, self.general) = (None, None);
+            (self.free, self.numbers) = (free.to_vec(), Numbering::new());
+            (self.planned, self.definite, self.general) = (false, None, None);
         }
         self.stencil.clear();
     }
@@ -194,14 +197,20 @@ impl<const D: usize> LinearSolver for KspSolver<'_, D> {
     fn finish(&mut self, symmetry: Symmetry) -> Result<(), SolveError> {
         let timers = Rc::clone(&self.timers);
         let _timed = timers.time("factorisation");
+        if symmetry == Symmetry::Definite && self.choice.dissection {
+            return self.factorise();
+        }
         self.build(symmetry).map_err(failed)
     }
 
     fn solve(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<usize, SolveError> {
         let timers = Rc::clone(&self.timers);
         let _timed = timers.time("linear solve");
+        if self.choice.dissection {
+            return self.solve_directly(rhs, solution);
+        }
         let unknowns = self.unknowns();
-        let own: Vec<f64> = unknowns.iter().map(|&component| rhs[component]).collect();
+        let own: Vec<f64> = unknowns.iter().map(|&at| if self.free[at] { rhs[at] } else { 0.0 }).collect();
         let (iterations, x) = self.definite.as_mut().ok_or_else(missing)?.solve(&own)?;
         spread::<D>(&self.halo, &unknowns, &x, solution);
         Ok(iterations)
@@ -217,12 +226,16 @@ impl<const D: usize> LinearSolver for KspSolver<'_, D> {
         let timers = Rc::clone(&self.timers);
         let _timed = timers.time("linear solve");
         let (unknowns, halo) = (self.unknowns(), Rc::clone(&self.halo));
-        let own: Vec<f64> = unknowns.iter().map(|&component| rhs[component]).collect();
+        let own: Vec<f64> = unknowns.iter().map(|&at| if self.free[at] { rhs[at] } else { 0.0 }).collect();
         let (mut nodal, mut image) = (vec![0.0; rhs.len()], vec![0.0; rhs.len()]);
+        let free = &self.free;
         let mut on_unknowns = |x: &[f64], y: &mut [f64]| {
             spread::<D>(&halo, &unknowns, x, &mut nodal);
+            nodal.iter_mut().zip(free).for_each(|(value, &free)| *value *= f64::from(u8::from(free)));
             product(&nodal, &mut image);
-            y.iter_mut().zip(&unknowns).for_each(|(y, &component)| *y = image[component]);
+            for ((y, x), &component) in y.iter_mut().zip(x).zip(&unknowns) {
+                *y = if free[component] { image[component] } else { *x };
+            }
         };
         let system = self.general.as_mut().ok_or_else(missing)?;
         let (krylov, x) = system.solve_with(&mut on_unknowns, relative, &own)?;

@@ -52,7 +52,7 @@ fn prepare(universe: &Universe) -> Result<Option<(Task, Slabs)>, u8> {
     if arguments.check {
         if speaks {
             // A closed stdout is no reason to fail.
-            let _ = writeln!(std::io::stdout(), "{}", source::describe(&case, ranks));
+            let _ = writeln!(std::io::stdout(), "{}", source::describe(&case, ranks, &arguments.petsc));
         }
         return Ok(None);
     }
@@ -80,7 +80,8 @@ fn start_threads(count: u32) -> Result<(), String> {
 
 fn solve(universe: &Universe, task: Task, slabs: Slabs) -> Result<u8, u8> {
     let Task { case, arguments, .. } = &task;
-    let choice = setup::linear(case, universe.world().size().unsigned_abs() as usize);
+    let ranks = universe.world().size().unsigned_abs() as usize;
+    let choice = setup::linear(case, ranks, &arguments.petsc);
     let own = arguments.petsc.iter().map(String::as_str);
     let options: Vec<&str> = choice.options().into_iter().chain(own).collect();
     let petsc = Petsc::initialize(universe, &options).map_err(|error| format!("PETSc could not be started: {error}"));

@@ -127,16 +127,29 @@ pub fn frame_times(case: &Case) -> Vec<f64> {
     times
 }
 
-/// The linear solver by PETSc's names.
-pub fn linear(case: &Case, ranks: usize) -> Choice {
+/// The linear solver of a run on so many ranks with further `options` of PETSc.
+pub fn linear(case: &Case, ranks: usize, options: &[String]) -> Choice {
     let linear = &case.solver.linear;
     let direct = ["cholesky", "lu"].contains(&linear.pc);
+    let dissection = linear.factor == Some(DISSECTION);
     Choice {
+        dissection: dissection && !options.iter().any(|option| decides(option)),
         ksp: linear.ksp.into(),
         pc: linear.pc.into(),
-        factor: linear.factor.map(Into::into),
+        factor: linear.factor.map(|package| if dissection { "mumps" } else { package }.into()),
         redundant: case.solver.reproducible && direct && ranks > 1,
     }
+}
+
+/// The factorisation that is this program's own; PETSc and MUMPS do instead of it what it does not: general matrices.
+const DISSECTION: &str = "dissection";
+
+/// Whether an option of PETSc says how definite systems are solved: all but those of Newton's and the report of times.
+fn decides(option: &str) -> bool {
+    option.starts_with('-')
+        && option.parse::<f64>().is_err()
+        && !option.starts_with("-newton_")
+        && option != "-log_view"
 }
 
 /// Nominal number of steps.
@@ -144,8 +157,8 @@ pub fn nominal_steps(case: &Case) -> u64 {
     (case.analysis.end / case.analysis.dt - 1e-6).ceil() as u64
 }
 
-/// What the program chooses by itself in a run on so many ranks.
-pub fn choices(case: &Case, ranks: usize) -> Vec<manifest::Choice> {
+/// What the program chooses by itself in a run on so many ranks with further `options` of PETSc.
+pub fn choices(case: &Case, ranks: usize, options: &[String]) -> Vec<manifest::Choice> {
     let choice = |key: &str, value: &str, reason: &str| manifest::Choice {
         key: key.into(),
         value: value.into(),
@@ -157,15 +170,7 @@ pub fn choices(case: &Case, ranks: usize) -> Vec<manifest::Choice> {
                       the complete derivative where they stall; then shorter steps";
         choices.push(choice("solver.nonlinear", "multisecant, newton", reason));
     }
-    if linear(case, ranks).redundant {
-        let reason = "solver.reproducible: every rank factorises the whole system, as a parallel factorisation need not \
-                      repeat to the bit";
-        choices.push(choice("solver.linear.pc", "redundant", reason));
-    }
-    if case.solver.linear.factor == Some("mumps") {
-        choices.push(choice("mat_mumps_icntl_7", "2", "ordering by minimum fill, the cheapest for plane grids"));
-        choices.push(choice("mat_mumps_icntl_14", "100", "the estimated workspace is at times too little"));
-    }
+    choices.extend(linear_choices(case, &linear(case, ranks, options)));
     if weighting(case) == Weighting::Volume {
         choices.push(choice("weights of averages", "volume", "some material is weightless"));
     }
@@ -180,6 +185,30 @@ pub fn choices(case: &Case, ranks: usize) -> Vec<manifest::Choice> {
         choices.push(choice("smoothing length", &format!("{length:.3e} m"), &reason));
     }
     choices
+}
+
+/// What the linear solver is chosen for.
+fn linear_choices(case: &Case, linear: &Choice) -> Vec<manifest::Choice> {
+    let newton = case.solver.nonlinear != bsmpm_scene::Nonlinear::Broyden;
+    let mut rows = Vec::new();
+    if case.solver.linear.factor == Some(DISSECTION) && !linear.dissection {
+        rows.push(("solver.linear.factor", "mumps", "options after -- say how PETSc solves"));
+    }
+    if linear.redundant && (newton || !linear.dissection) {
+        let reason = "solver.reproducible: every rank factorises the whole system, as a parallel factorisation need not \
+                      repeat to the bit";
+        rows.push((if linear.dissection { "newton_pc_type" } else { "solver.linear.pc" }, "redundant", reason));
+    }
+    if linear.factor.as_deref() == Some("mumps") && !linear.dissection {
+        rows.push(("mat_mumps_icntl_7", "2", "ordering by minimum fill, the cheapest for plane grids"));
+        rows.push(("mat_mumps_icntl_14", "100", "the estimated workspace is at times too little"));
+    }
+    let owned = |(key, value, reason): (&str, &str, &str)| manifest::Choice {
+        key: key.into(),
+        value: value.into(),
+        reason: reason.into(),
+    };
+    rows.into_iter().map(owned).collect()
 }
 
 /// Warnings of the case, and of what the program makes of it.

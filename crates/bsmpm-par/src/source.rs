@@ -44,7 +44,7 @@ fn broadcast(world: &SimpleCommunicator, bytes: impl FnOnce() -> Option<Vec<u8>>
 }
 
 /// What `--check` prints: sizes, choices and warnings.
-pub fn describe(case: &Case, ranks: usize) -> String {
+pub fn describe(case: &Case, ranks: usize, options: &[String]) -> String {
     let estimate = case.estimate();
     let mut lines = vec![
         case.title.clone(),
@@ -60,7 +60,7 @@ pub fn describe(case: &Case, ranks: usize) -> String {
         format!("nominal steps    {}", setup::nominal_steps(case)),
     ];
     let told = case.notes.iter().map(|note| format!("{} = {} ({})", note.key, note.value, note.reason));
-    let chosen = setup::choices(case, ranks);
+    let chosen = setup::choices(case, ranks, options);
     lines.extend(
         told.chain(chosen.iter().map(|choice| format!("{} = {} ({})", choice.key, choice.value, choice.reason))),
     );

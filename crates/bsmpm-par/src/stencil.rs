@@ -156,10 +156,33 @@ impl<const D: usize> Stencil<D> {
         self.values[at] += value;
     }
 
-    /// Coordinates of all entries between components that have a number.
-    pub fn coordinates(&self, numbers: &Numbering) -> Coordinates {
+    /// A component's row: the first component of every node that it couples with, and the entries there.
+    pub fn row(&self, component: usize) -> impl Iterator<Item = (usize, &[f64])> {
+        let (node, i) = (component / D, component % D);
+        self.valid[node].iter().map(move |&place| {
+            let other = node.wrapping_add_signed(self.reach[usize::from(place)]);
+            let at = node * self.width() + (usize::from(place) * D + i) * D;
+            (other * D, &self.values[at..at + D])
+        })
+    }
+
+    /// y = A x of the components marked `free`, as far as this window's blocks go; `x` is zero at the others.
+    pub fn multiply(&self, free: &[bool], x: &[f64], y: &mut [f64]) {
+        for (component, y) in y.iter_mut().enumerate() {
+            *y = 0.0;
+            if free[component] {
+                for (other, values) in self.row(component) {
+                    *y += values.iter().zip(&x[other..other + D]).map(|(a, x)| a * x).sum::<f64>();
+                }
+            }
+        }
+    }
+
+    /// Coordinates of all entries between `free` components that have a number; others with a number are on the diagonal
+    /// only.
+    pub fn coordinates(&self, numbers: &Numbering, free: &[bool]) -> Coordinates {
         let mut coordinates = Coordinates::default();
-        self.walk(numbers, |row, column, _| {
+        self.walk(numbers, free, |row, column, _| {
             coordinates.rows.push(row);
             coordinates.columns.push(column);
         });
@@ -167,14 +190,14 @@ impl<const D: usize> Stencil<D> {
     }
 
     /// Values of the entries in the order of [`Stencil::coordinates`].
-    pub fn entries(&self, numbers: &Numbering) -> Vec<f64> {
+    pub fn entries(&self, numbers: &Numbering, free: &[bool]) -> Vec<f64> {
         let mut values = Vec::new();
-        self.walk(numbers, |_, _, at| values.push(self.values[at]));
+        self.walk(numbers, free, |_, _, at| values.push(self.values[at]));
         values
     }
 
     /// Visits every entry with its global row and column and its place in `values`.
-    fn walk(&self, numbers: &Numbering, mut visit: impl FnMut(usize, usize, usize)) {
+    fn walk(&self, numbers: &Numbering, free: &[bool], mut visit: impl FnMut(usize, usize, usize)) {
         for (component, row) in numbers.iter().enumerate() {
             let Some(row) = row else { continue };
             let (node, i) = (component / D, component % D);
@@ -182,7 +205,8 @@ impl<const D: usize> Stencil<D> {
                 let other = node.wrapping_add_signed(self.reach[usize::from(place)]);
                 let at = node * self.width() + (usize::from(place) * D + i) * D;
                 for j in 0..D {
-                    if let Some(column) = numbers[other * D + j] {
+                    let coupled = other * D + j == component || free[component] && free[other * D + j];
+                    if let Some(column) = numbers[other * D + j].filter(|_| coupled) {
                         visit(*row, column, at + j);
                     }
                 }
@@ -214,13 +238,18 @@ mod tests {
                 dense[component(entry / 18) * size + component(entry % 18)] += value;
             }
         }
-        let numbers: Numbering = (0..size).map(Some).collect();
-        let (places, values) = (stencil.coordinates(&numbers), stencil.entries(&numbers));
+        let (numbers, free): (Numbering, _) = ((0..size).map(Some).collect(), vec![true; size]);
+        let (places, values) = (stencil.coordinates(&numbers, &free), stencil.entries(&numbers, &free));
         let mut found = vec![0.0; size * size];
         for ((row, column), value) in places.rows.iter().zip(&places.columns).zip(values) {
             assert_eq!(std::mem::replace(&mut found[row * size + column], value), 0.0, "each pair stands once");
         }
         assert_eq!(found, dense);
+        let x: Vec<f64> = (0..size).map(|component| ((component * 5) % 13) as f64).collect();
+        let mut y = vec![f64::NAN; size];
+        stencil.multiply(&free, &x, &mut y);
+        let row = |row: usize| x.iter().zip(&dense[row * size..]).map(|(x, a)| a * x).sum::<f64>();
+        assert_eq!(y, (0..size).map(row).collect::<Vec<_>>(), "whole numbers are exact");
     }
 
     /// Faces between all cells, with every node of the two cells that a face of the ghost penalty has.
@@ -238,8 +267,8 @@ mod tests {
                 dense[nodes[entry / 12] * size + nodes[entry % 12]] += value;
             }
         }
-        let numbers: Numbering = (0..2 * size).map(Some).collect();
-        let (places, values) = (stencil.coordinates(&numbers), stencil.entries(&numbers));
+        let (numbers, free): (Numbering, _) = ((0..2 * size).map(Some).collect(), vec![true; 2 * size]);
+        let (places, values) = (stencil.coordinates(&numbers, &free), stencil.entries(&numbers, &free));
         let mut found = vec![0.0; size * size];
         for ((row, column), value) in places.rows.iter().zip(&places.columns).zip(values) {
             if row % 2 == column % 2 {
@@ -257,8 +286,22 @@ mod tests {
         let stencil = Stencil::new(&grid);
         let numbers: Numbering =
             (0..grid.nodes() * 2).map(|component| (component % 2 == 0).then_some(component / 2)).collect();
-        let places = stencil.coordinates(&numbers);
-        assert_eq!(places.rows.len(), stencil.entries(&numbers).len());
+        let free: Vec<bool> = numbers.iter().map(Option::is_some).collect();
+        let places = stencil.coordinates(&numbers, &free);
+        assert_eq!(places.rows.len(), stencil.entries(&numbers, &free).len());
         assert!(places.rows.iter().chain(&places.columns).all(|&number| number < grid.nodes()));
+    }
+
+    #[test]
+    fn held_components_with_a_number_stand_on_the_diagonal_only() {
+        let grid = grid();
+        let stencil = Stencil::new(&grid);
+        let numbers: Numbering = (0..grid.nodes() * 2).map(Some).collect();
+        let free: Vec<bool> = (0..grid.nodes() * 2).map(|component| component % 3 > 0).collect();
+        let places = stencil.coordinates(&numbers, &free);
+        let pairs: Vec<_> = places.rows.iter().zip(&places.columns).collect();
+        let held = pairs.iter().filter(|(row, column)| !free[**row] || !free[**column]);
+        assert!(held.clone().all(|(row, column)| row == column));
+        assert_eq!(held.count(), free.iter().filter(|&&free| !free).count());
     }
 }

@@ -232,7 +232,7 @@ pub struct Linear {
     pub ksp: &'static str,
     /// Preconditioner, or direct solver.
     pub pc: &'static str,
-    /// Package of a direct solver; `None` for other preconditioners.
+    /// Package of a direct solver, or `dissection`, which is this program's own; `None` for other preconditioners.
     pub factor: Option<&'static str>,
 }
 

@@ -33,6 +33,8 @@ const REPEATED: u128 = 60;
 /// Bytes of a symmetric factor per unknown and level of a nested dissection: 13 doubles with their workspace. A general
 /// one has twice of it.
 const LEVEL: u128 = 13 * 8;
+/// The same of a factorisation by dissection, which holds nothing else of the system.
+const FRONT: u128 = 18 * 8;
 /// Bytes of an unknown in the Krylov space of Newton's directions: two doubles for each of a hundred products.
 const KRYLOV: u128 = 100 * 16;
 /// Percent of Newton's system that `auto` counts: it is made only where the secants stall, and then beside the other, so
@@ -84,6 +86,8 @@ struct Systems {
     held: u128,
     /// bytes that every further rank holds again
     repeated: u128,
+    /// bytes while they are built
+    built: u128,
 }
 
 impl Systems {
@@ -94,15 +98,23 @@ impl Systems {
         let levels = u128::from(unknowns.max(2).ilog2());
         let factor = if direct { unknowns * levels * LEVEL * (2 + beyond) / 2 } else { 0 };
         let again = u128::from(direct && solver.reproducible);
-        let elastic = [entries * ENTRY + factor, again * (entries * REPEATED + factor)];
-        let general = [entries * ENTRY + 2 * factor + unknowns * KRYLOV, again * (entries * REPEATED + 2 * factor)];
+        let elastic = if solver.linear.factor == Some("dissection") {
+            [unknowns * levels * FRONT, 0, 0]
+        } else {
+            [entries * ENTRY + factor, again * (entries * REPEATED + factor), entries * BUILT]
+        };
+        let krylov = unknowns * KRYLOV;
+        let repeated = again * (entries * REPEATED + 2 * factor);
+        let general = [entries * ENTRY + 2 * factor + krylov, repeated, entries * BUILT];
         let percent = match solver.nonlinear {
             Nonlinear::Broyden => [100, 0],
             Nonlinear::Newton => [0, 100],
             Nonlinear::Auto => [100, PERHAPS],
         };
-        let [held, repeated] = [0, 1].map(|k| (percent[0] * elastic[k] + percent[1] * general[k]) / 100);
-        Self { held, repeated }
+        let part = |k: usize| [percent[0] * elastic[k] / 100, percent[1] * general[k] / 100];
+        let [held, repeated] = [0, 1].map(|k| part(k).iter().sum());
+        let built = part(2).into_iter().fold(0, u128::max);
+        Self { held, repeated, built }
     }
 }
 
@@ -117,7 +129,7 @@ impl Case {
         let entries = 2 * occupied * 2 * places;
         let systems = Systems::of(&self.solver, 2 * occupied, entries, beyond(&self.solver));
         let lowered = if self.stabilisation == Stabilisation::ConsistentFBar { LOWERED } else { 0 };
-        let passing = (entries * BUILT).max(points * SAVED);
+        let passing = systems.built.max(points * SAVED);
         let bytes = points * (POINT + lowered) + nodes * (stencil + VECTORS) + systems.held + passing;
         let has_frames = self.output.every.is_some() || !self.output.times.is_empty();
         let bounded = |number: u128| u64::try_from(number).unwrap_or(u64::MAX);

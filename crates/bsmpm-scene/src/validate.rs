@@ -47,7 +47,7 @@ pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Op
     let initial = load::initial(record, (materials.as_deref(), made), gravity.as_ref(), report);
     load::sudden(&tractions, &point_loads, initial.as_ref(), report);
     let stabilisation = stabilisation(record);
-    let solver = solver::read(record, regime, grid.as_ref().map(|grid| grid.order), report);
+    let solver = solver::read(record, regime, (grid.as_ref(), materials.as_deref()), report);
     let output = output::read(record, end, report);
     let histories = history::read_all(record, (regime, grid.as_ref()), report);
     let checks = history::checks(record, &histories, end, report);

@@ -171,12 +171,44 @@ fn the_background_is_the_laplacian_unless_the_case_wants_another() {
     assert!(errors.len() == 1 && errors[0].message.contains("use \"laplacian\""), "{errors:?}");
 }
 
+/// Twelve million unknowns.
+const LARGE: &str = "grid.cell=0.8 mm";
+
+#[test]
+fn the_linear_solver_that_is_left_open_is_chosen_by_size_and_explained() {
+    let chosen = |changes: &[&str]| {
+        let case = valid(STATIC, changes);
+        let reason = |key: &str| case.notes.iter().find(|note| note.key == key).map(|note| note.reason.clone());
+        let linear = &case.solver.linear;
+        ((linear.ksp, linear.pc, linear.factor), reason("solver.linear.pc"))
+    };
+    let direct = ("preonly", "cholesky", Some("dissection"));
+    assert_eq!(chosen(&["solver.linear.factor=mumps"]).0, ("preonly", "cholesky", Some("mumps")));
+    assert_eq!(chosen(&["solver.linear.ksp=preonly"]).0, direct);
+    assert_eq!(chosen(&["solver.linear={ksp=\"auto\", pc=\"auto\"}"]).0, direct);
+    assert_eq!(chosen(&["solver.linear.pc=hypre"]), (("cg", "hypre", None), None));
+    assert_eq!(chosen(&["solver.linear.ksp=cg"]).0, ("cg", "cholesky", Some("mumps")));
+    let (found, reason) = chosen(&[]);
+    assert!(found == direct && reason.is_some_and(|reason| reason.contains("costs least")));
+    let (found, reason) = chosen(&[LARGE]);
+    assert!(found == ("cg", "gamg", None) && reason.is_some_and(|reason| reason.contains("more than 10000000")));
+    let (found, reason) = chosen(&[LARGE, "material.soil.poisson=0.46"]);
+    assert!(found == direct && reason.is_some_and(|reason| reason.contains("Poisson")));
+    assert_eq!(chosen(&[LARGE, "solver.linear.ksp=preonly"]).0, direct);
+    for wrong in
+        ["solver.linear={pc=\"lu\", factor=\"dissection\"}", "solver.linear={ksp=\"cg\", factor=\"dissection\"}"]
+    {
+        let errors = set(STATIC, &[wrong]).unwrap_err();
+        assert!(errors.len() == 1 && errors[0].key == "solver.linear.factor", "{errors:?}");
+    }
+}
+
 #[test]
 fn what_the_program_chooses_is_noted() {
     let case = valid(STATIC, &[]);
     let noted = |key: &str| case.notes.iter().find(|note| note.key == key).map(|note| note.value.as_str());
     assert_eq!((noted("solver.background"), noted("solver.tolerance")), (Some("0.0001"), Some("1e-8")));
-    assert_eq!((case.solver.background, case.solver.linear.factor), (1e-4, Some("mumps")));
+    assert_eq!((case.solver.background, case.solver.linear.factor), (1e-4, Some("dissection")));
     assert_eq!(
         (case.solver.background_kind, noted("solver.background_kind")),
         (BackgroundKind::Laplacian, Some("\"laplacian\""))

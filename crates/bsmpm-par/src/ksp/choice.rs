@@ -32,6 +32,8 @@ const NEWTON: &str = "newton_";
 /// Method, preconditioner and factorising package by PETSc's names.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Choice {
+    /// definite systems are solved by nested dissection of the grid, without PETSc
+    pub dissection: bool,
     /// KSPType, e.g. `preonly`, `cg`
     pub ksp: String,
     /// PCType, e.g. `cholesky`, `gamg`
@@ -54,6 +56,11 @@ impl Choice {
             }
         }
         options
+    }
+
+    /// Whether nodes keep all their components, held ones too: multigrid wants blocks and the rigid-body modes.
+    pub fn whole_nodes(&self) -> bool {
+        ["gamg", "ml", "hypre"].contains(&self.pc.as_str())
     }
 
     /// Tells a solver; what the options say goes before. A general matrix preconditions a Krylov method.

@@ -33,7 +33,7 @@ pub(super) fn manifest(arguments: &Arguments, case: &Case, ranks: usize) -> Mani
         .iter()
         .map(|note| manifest::Choice { key: note.key.clone(), value: note.value.clone(), reason: note.reason.clone() })
         .collect();
-    manifest.choices.extend(setup::choices(case, ranks));
+    manifest.choices.extend(setup::choices(case, ranks, &arguments.petsc));
     manifest.warnings = setup::warnings(case);
     manifest.versions = versions();
     let check = |check: &bsmpm_scene::Check| Check {

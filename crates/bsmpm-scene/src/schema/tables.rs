@@ -193,7 +193,7 @@ static SOLVER: Table = Table {
             "reproducible",
             Flag,
             Default("true"),
-            "the same bits in every run on as many ranks: each factorises the whole system by itself",
+            "the same bits in every run on as many ranks; PETSc's direct solvers then factorise the whole system on each",
         ),
     ],
     exclusive: &[],
@@ -210,18 +210,24 @@ static LINEAR: Table = Table {
     keys: &[
         key(
             "ksp",
-            Choice(&["preonly", "cg", "minres", "gmres", "fgmres", "bcgs"], &[]),
-            Default("\"preonly\""),
-            "method",
+            Choice(&["auto", "preonly", "cg", "minres", "gmres", "fgmres", "bcgs"], &[]),
+            Optional,
+            "method; auto, unless given: what the preconditioner needs",
         ),
-        key("pc", PRECONDITIONERS, Default("\"cholesky\""), "preconditioner or direct solver"),
-        key("factor", PACKAGES, Optional, "package of a direct solver; mumps unless given"),
+        key(
+            "pc",
+            PRECONDITIONERS,
+            Optional,
+            "preconditioner or direct solver; auto, unless given: cholesky, or gamg of very many unknowns",
+        ),
+        key("factor", PACKAGES, Optional, "package of a direct solver; dissection (cholesky) or mumps unless given"),
     ],
     exclusive: &[],
 };
 
 const PRECONDITIONERS: Kind = Choice(
     &[
+        "auto",
         "cholesky",
         "lu",
         "redundant",
@@ -239,4 +245,4 @@ const PRECONDITIONERS: Kind = Choice(
     ],
     &[],
 );
-const PACKAGES: Kind = Choice(&["mumps", "petsc", "superlu", "superlu_dist", "cholmod", "umfpack"], &[]);
+const PACKAGES: Kind = Choice(&["dissection", "mumps", "petsc", "superlu", "superlu_dist", "cholmod", "umfpack"], &[]);

@@ -1,21 +1,25 @@
 //! The solver's settings and their defaults that depend on the analysis.
 
-use crate::case::{Linear, Nonlinear, Solver};
+use crate::case::{Linear, NamedMaterial, Nonlinear, Solver};
+use crate::estimate;
+use crate::grid::GridSpec;
 use crate::record::Record;
 use crate::report::Report;
 use bsmpm::background::{Extent, Kind};
 use bsmpm::model::Regime;
 
-/// The solver, for a grid of `order`.
+/// The solver, for a grid and its materials.
 pub(super) fn read(
     root: &Record,
     regime: Option<Regime>,
-    order: Option<usize>,
+    (grid, materials): (Option<&GridSpec>, Option<&[NamedMaterial]>),
     report: &mut Report<'_>,
 ) -> Option<Solver> {
     let solver = root.record("solver")?;
-    let (kind, background) = background(solver, regime, order, report);
-    let linear = solver.record("linear").and_then(|linear| read_linear(linear, report));
+    let (kind, background) = background(solver, regime, grid.map(|grid| grid.order), report);
+    let poisson = materials.unwrap_or_default().iter().map(|material| material.material.elastic().poisson);
+    let size = (2 * grid.map_or(0, estimate::nodes), poisson.fold(0.0, f64::max));
+    let linear = solver.record("linear").and_then(|linear| read_linear(linear, size, report));
     Some(Solver {
         nonlinear: match solver.word("nonlinear")? {
             "broyden" => Nonlinear::Broyden,
@@ -90,23 +94,48 @@ fn default_background(regime: Regime, kind: Kind, report: &mut Report<'_>) -> f6
 
 const QUASI_STATIC: &str = "nothing else holds nearly empty cells in a quasi-static analysis";
 
-fn read_linear(linear: &Record, report: &mut Report<'_>) -> Option<Linear> {
-    let (ksp, pc) = (linear.word("ksp")?, linear.word("pc")?);
-    if linear.gives("factor") && linear.word("factor").is_none() {
+/// Unknowns from which multigrid is taken by itself: a factor of so many has about 40 GB.
+const MANY: u128 = 10_000_000;
+
+/// Poisson's ratio up to which it is: multigrid's iterations grow from 22 at .3 to 124 at .495 and 900 at .4999.
+const COMPRESSIBLE: f64 = 0.45;
+
+/// The linear solver for up to so many unknowns of materials with Poisson's ratios up to `poisson`.
+fn read_linear(linear: &Record, (unknowns, poisson): (u128, f64), report: &mut Report<'_>) -> Option<Linear> {
+    let many = unknowns > MANY && poisson <= COMPRESSIBLE;
+    if ["ksp", "pc", "factor"].iter().any(|key| linear.gives(key) && linear.word(key).is_none()) {
         return None;
     }
+    let word = |key: &str| linear.word(key).unwrap_or("auto");
+    let (ksp, factor) = (word("ksp"), linear.word("factor"));
+    let pc = match word("pc") {
+        // Nothing else asks for a factorisation.
+        "auto" if many && ksp != "preonly" && factor.is_none() => "gamg",
+        "auto" => "cholesky",
+        pc => pc,
+    };
     let direct = matches!(pc, "cholesky" | "lu");
+    let ksp = match ksp {
+        "auto" if direct || pc == "redundant" => "preonly",
+        "auto" => "cg",
+        ksp => ksp,
+    };
     if ksp == "preonly" && !direct && pc != "redundant" {
         let message = format!("\"preonly\" solves with a direct pc (cholesky, lu, redundant) only, not with \"{pc}\"");
         linear.error("ksp", message, report);
         return None;
     }
-    let factor = match (direct, linear.word("factor")) {
+    let dissects = ksp == "preonly" && pc == "cholesky";
+    if factor == Some("dissection") && !dissects {
+        let message =
+            format!("\"dissection\" is a \"preonly\" \"cholesky\", neither \"{ksp}\" nor \"{pc}\" can use it");
+        linear.error("factor", message, report);
+        return None;
+    }
+    let factor = match (direct, factor) {
         (true, Some(factor)) => Some(factor),
-        (true, None) => {
-            report.note(linear.path_of("factor"), "mumps", "the default package of a direct solver");
-            Some("mumps")
-        }
+        (true, None) if dissects => Some("dissection"),
+        (true, None) => Some("mumps"),
         (false, Some(factor)) => {
             report.warn(format!(
                 "{}: \"{factor}\" is not used: pc = \"{pc}\" is no direct solver",
@@ -116,5 +145,32 @@ fn read_linear(linear: &Record, report: &mut Report<'_>) -> Option<Linear> {
         }
         (false, None) => None,
     };
-    Some(Linear { ksp, pc, factor })
+    let found = Linear { ksp, pc, factor };
+    explain(linear, &found, (unknowns, many), report);
+    Some(found)
+}
+
+/// Notes what the case has left open, and why it is what it is.
+fn explain(linear: &Record, found: &Linear, (unknowns, many): (u128, bool), report: &mut Report<'_>) {
+    let open = |key: &str| linear.word(key).is_none_or(|word| word == "auto");
+    if open("pc") {
+        let reason = match (found.pc, unknowns > MANY && !many) {
+            ("gamg", _) => format!("up to {unknowns} unknowns, more than {MANY}: a factor costs more than iterations"),
+            (_, false) => {
+                format!("up to {unknowns} unknowns: below {MANY} a factor kept for a step's iterations costs least")
+            }
+            (_, true) => format!(
+                "up to {unknowns} unknowns, but multigrid iterates for long above a Poisson's ratio of {COMPRESSIBLE}"
+            ),
+        };
+        report.note(linear.path_of("pc"), found.pc, reason);
+    }
+    if let (Some(factor), true) = (found.factor, open("factor")) {
+        let reason = if factor == "dissection" {
+            "nested dissection of the grid: shared between the ranks, repeats to the bit, no analysis of a graph"
+        } else {
+            "the default package of PETSc's direct solvers"
+        };
+        report.note(linear.path_of("factor"), factor, reason);
+    }
 }

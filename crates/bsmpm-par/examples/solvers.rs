@@ -1,0 +1,121 @@
+//! Measures linear solvers on the elastic stiffness of a square in plane strain, fully populated, its base and left side
+//! on rollers: CPU seconds of the slowest rank, as the README's table has them.
+//!
+//! `mpirun -n 2 solvers direct|mumps|redundant|gamg NU CELLS [PETSc options]`
+
+use bsmpm::grid::{Grid, KnotVector};
+use bsmpm::seam::{Halo, LinearSolver, Symmetry};
+use bsmpm_par::halo::MpiHalo;
+use bsmpm_par::ksp::{Choice, KspSolver};
+use bsmpm_par::launch;
+use bsmpm_par::signals::Requests;
+use bsmpm_par::slab::Slabs;
+use bsmpm_par::timers::Timers;
+use petsc_rs::Petsc;
+use std::process::ExitCode;
+use std::rc::Rc;
+
+/// Solves whose mean is told.
+const SOLVES: usize = 5;
+
+fn main() -> ExitCode {
+    let universe = match launch::start() {
+        Ok(universe) => universe,
+        Err(code) => return code.into(),
+    };
+    let arguments: Vec<String> = std::env::args().collect();
+    let [_, method, nu, cells, further @ ..] = &arguments[..] else {
+        panic!("solvers METHOD NU CELLS [PETSc options]")
+    };
+    let nu: f64 = nu.parse().expect("Poisson's ratio");
+    let cells: usize = cells.parse().expect("cells along an edge");
+    let choice = match method.as_str() {
+        "gamg" => choice(method, "cg", "gamg", None),
+        "mumps" | "redundant" => choice(method, "preonly", "cholesky", Some("mumps".into())),
+        _ => choice(method, "preonly", "cholesky", None),
+    };
+    let options: Vec<&str> = choice.options().into_iter().chain(further.iter().map(String::as_str)).collect();
+    let petsc = Petsc::initialize(&universe, &options).expect("PETSc starts");
+    let slabs = Slabs::cut(&vec![1.0; cells], petsc.ranks()).expect("fewer ranks than columns");
+    let axis = || KnotVector::uniform(1.0 / cells as f64, cells, 2).expect("an axis");
+    let grid = Grid::new([axis(), axis()]).expect("a grid").window(slabs.columns(petsc.rank()));
+    let timers = Rc::new(Timers::default());
+    let shared = (Rc::clone(&timers), Rc::new(Requests::of_signals().expect("signals")));
+    let halo = Rc::new(MpiHalo::new(universe.world(), &slabs, &grid, shared));
+    let mut solver = KspSolver::new(&petsc, choice, &grid, Rc::clone(&halo), timers);
+    measure(&mut solver, &grid, &*halo, nu, &format!("{method} {nu} {cells} x{}", petsc.ranks()));
+    ExitCode::SUCCESS
+}
+
+fn choice(method: &str, ksp: &str, pc: &str, factor: Option<String>) -> Choice {
+    let (dissection, redundant) = (method == "direct", method == "redundant");
+    Choice { dissection, ksp: ksp.into(), pc: pc.into(), factor, redundant }
+}
+
+fn measure(solver: &mut dyn LinearSolver, grid: &Grid<2>, halo: &dyn Halo, nu: f64, name: &str) {
+    let free: Vec<bool> = (0..grid.nodes() * 2).map(|c| grid.node_at(c / 2)[c % 2] > 0).collect();
+    let blocks: Vec<Vec<f64>> = (0..grid.cells()).map(|cell| stiffness(grid, cell, nu)).collect();
+    let mut spent = Vec::new();
+    for _ in 0..2 {
+        let mut start = 0.0;
+        solver.begin(&free);
+        for (cell, block) in blocks.iter().enumerate() {
+            solver.add(grid.first_node(&grid.cell_at(cell)), block);
+        }
+        start += cpu_seconds();
+        solver.finish(Symmetry::Definite).expect("a factorisation");
+        spent.push(cpu_seconds() - start);
+    }
+    let before = grid.layers().start * grid.layer_nodes() * 2;
+    let rhs: Vec<f64> = (0..free.len())
+        .map(|c| if free[c] { ((before + c) as f64 * 0.618).sin() + f64::from(u8::from(c % 2 == 1)) } else { 0.0 })
+        .collect();
+    let (mut x, mut iterations) = (vec![0.0; free.len()], 0);
+    let start = cpu_seconds();
+    for _ in 0..SOLVES {
+        iterations = solver.solve(&rhs, &mut x).expect("a solution");
+    }
+    spent.push((cpu_seconds() - start) / SOLVES as f64);
+    let mut unknowns = [halo.owned().flat_map(|node| [2 * node, 2 * node + 1]).filter(|&c| free[c]).count() as f64];
+    halo.reduce(&mut unknowns);
+    halo.maximum(&mut spent);
+    let memory = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let peak = memory.lines().find(|line| line.starts_with("VmHWM")).unwrap_or_default();
+    if before == 0 {
+        let [first, again, solve] = spent[..] else { unreachable!() };
+        println!(
+            "{name}: {} unknowns, first {first:.4}, again {again:.4}, solve {solve:.4} s, {iterations} iterations {peak}",
+            unknowns[0]
+        );
+    }
+}
+
+/// Elastic stiffness of a full cell, E = 1 Pa, by 3 x 3 Gauss points.
+fn stiffness(grid: &Grid<2>, cell: usize, nu: f64) -> Vec<f64> {
+    let (lame, shear) = (nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), 0.5 / (1.0 + nu));
+    let gauss = [(-0.6_f64.sqrt(), 5.0 / 9.0), (0.0, 8.0 / 9.0), (0.6_f64.sqrt(), 5.0 / 9.0)];
+    let at = grid.cell_at(cell);
+    let (corner, size) = grid.cell_box(&at);
+    let mut block = vec![0.0; 18 * 18];
+    for ((x, wx), (y, wy)) in gauss.iter().flat_map(|x| gauss.iter().map(move |y| (x, y))) {
+        let place = [corner[0] + size[0] * (1.0 + x) / 2.0, corner[1] + size[1] * (1.0 + y) / 2.0];
+        let (nx, dx) = grid.axes()[0].basis::<3>(place[0], at[0]);
+        let (ny, dy) = grid.axes()[1].basis::<3>(place[1], at[1]);
+        let grad = |a: usize| [dx[a / 3] * ny[a % 3], nx[a / 3] * dy[a % 3]];
+        let weight = wx * wy * size[0] * size[1] / 4.0;
+        for (entry, value) in block.iter_mut().enumerate() {
+            let (row, column) = (entry / 18, entry % 18);
+            let (a, b, i, j) = (grad(row / 2), grad(column / 2), row % 2, column % 2);
+            let inner = if i == j { a[0] * b[0] + a[1] * b[1] } else { 0.0 };
+            *value += weight * (lame * a[i] * b[j] + shear * (inner + a[j] * b[i]));
+        }
+    }
+    block
+}
+
+/// CPU time of this process, s.
+fn cpu_seconds() -> f64 {
+    let text = std::fs::read_to_string("/proc/self/schedstat").expect("/proc/self/schedstat");
+    let nanoseconds: f64 = text.split(' ').next().and_then(|number| number.parse().ok()).expect("a number");
+    nanoseconds * 1e-9
+}

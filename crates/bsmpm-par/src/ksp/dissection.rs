@@ -1,0 +1,130 @@
+//! A direct solver for symmetric positive definite systems on slabs: nested dissection of the grid, dense fronts.
+//!
+//! Every rank eliminates what only its own slab touches (multifrontal Cholesky factorisation, Duff and Reid 1983, ACM
+//! Trans. Math. Softw. 9, 302-325), then neighbours pair up. Order, schedule and sums depend on the free components and
+//! the cut only: the same bits in every run on as many ranks, and no rank holds more than its share. The order comes from
+//! the grid's box of nodes, so that unknowns that come or go cost no analysis of a graph.
+
+mod front;
+mod ladder;
+mod plan;
+#[cfg(test)]
+mod tests;
+
+use crate::stencil::Stencil;
+use bsmpm::grid::Grid;
+use ladder::{Ladder, Link, add_packed, pack};
+use plan::{NONE, Part, Plan};
+use std::ops::Range;
+
+/// A factorisation of one slab's share of the matrix. Its memory is kept when the unknowns change, as they do in most
+/// steps of a flow.
+#[derive(Default)]
+pub struct Dissection {
+    plan: Plan,
+    columns: Vec<f64>, // of the factor, part after part
+    ladder: Ladder,
+    matrix: Vec<f64>, // of the front in work
+    work: Vec<f64>,   // a vector by elimination numbers
+}
+
+impl Dissection {
+    /// Plans for the `free` components of the window of `rank`, the ranks' slabs beginning at the columns `bounds`, the
+    /// last of which is the grid's end. Collective.
+    pub fn plan<const D: usize>(
+        &mut self,
+        link: &dyn Link,
+        (bounds, rank): (&[usize], usize),
+        grid: &Grid<D>,
+        free: &[bool],
+    ) {
+        // How far nodes couple.
+        let (q, layers) = (grid.order() + grid.beyond(), grid.layers());
+        // Layers that no other slab touches, from the window's first.
+        let start = if rank == 0 { 0 } else { q };
+        let end = if rank + 2 == bounds.len() { layers.len() } else { grid.columns().len() };
+        let counts = std::array::from_fn(|axis| if axis == 0 { layers.len() } else { grid.axes()[axis].functions() });
+        self.plan = Plan::new::<D>(counts, q, start..end.max(start), free);
+        let layer = grid.layer_nodes() * D;
+        let shared = self.plan.shared().iter().map(|&component| layers.start * layer + component as usize).collect();
+        self.ladder = Ladder::new(link, &ladder::rungs(bounds, q, rank), shared, layer);
+    }
+
+    /// Factorises; `false` where a pivot of this rank was not positive and finite. Collective.
+    pub fn factorise<const D: usize>(&mut self, link: &dyn Link, stencil: &Stencil<D>) -> bool {
+        let Self { plan, columns, ladder, matrix, .. } = self;
+        columns.clear();
+        columns.resize(plan.entries(), 0.0);
+        let mut stack = Vec::new();
+        let mut places = vec![0; plan.order.len()];
+        let mut good = true;
+        for part in &plan.parts {
+            (0..).zip(plan.front(part)).for_each(|(place, number)| places[number] = place);
+            let (columns, order) = (&mut columns[part.panel()], part.rim.len());
+            matrix.clear();
+            matrix.resize(order * order, 0.0);
+            take(plan, part, (stencil, &places), columns, matrix);
+            for _ in 0..part.children {
+                let (child, packed): (&Part, Vec<f64>) = stack.pop().expect("children come right before their parent");
+                let rim: Vec<usize> = child.rim.iter().map(|&number| places[number as usize]).collect();
+                add_packed(&packed, &rim, (columns, part.own.len()), matrix);
+            }
+            good &= front::factorise(columns, part.rows());
+            front::subtract_from_rest(columns, part.rows(), matrix);
+            stack.push((part, pack(matrix, order)));
+        }
+        let (_, rest) = stack.pop().expect("a plan has a last part");
+        ladder.factorise(link, rest) && good
+    }
+
+    /// Solves for the nodal right-hand side whose `owned` components are this rank's, with the last factorisation; the
+    /// solution is right at all nodes of the window. Collective.
+    pub fn solve(&mut self, link: &dyn Link, owned: Range<usize>, rhs: &[f64], solution: &mut [f64]) {
+        let Self { plan, columns, ladder, work, .. } = self;
+        let own = |component: usize| if owned.contains(&component) { rhs[component] } else { 0.0 };
+        work.clear();
+        work.extend(plan.order.iter().map(|&component| own(component as usize)));
+        let mut x = Vec::new();
+        for part in &plan.parts {
+            x.clear();
+            x.extend_from_slice(&work[part.own.clone()]);
+            x.resize(part.rows(), 0.0);
+            front::forward(&columns[part.panel()], part.rows(), &mut x);
+            work[part.own.clone()].copy_from_slice(&x[..part.own.len()]);
+            part.rim.iter().zip(&x[part.own.len()..]).for_each(|(&number, taken)| work[number as usize] += taken);
+        }
+        ladder.solve(link, &mut work[plan.eliminated()..]);
+        for part in plan.parts.iter().rev() {
+            x.clear();
+            x.extend(plan.front(part).map(|number| work[number]));
+            front::backward(&columns[part.panel()], part.rows(), &mut x);
+            work[part.own.clone()].copy_from_slice(&x[..part.own.len()]);
+        }
+        solution.fill(0.0);
+        plan.order.iter().zip(&*work).for_each(|(&component, value)| solution[component as usize] = *value);
+    }
+}
+
+/// Adds the matrix's own entries of a part: its rows against what is eliminated later; of the last part, what it shares.
+fn take<const D: usize>(
+    plan: &Plan,
+    part: &Part,
+    (stencil, places): (&Stencil<D>, &[usize]),
+    columns: &mut [f64],
+    matrix: &mut [f64],
+) {
+    let (own, rows, order) = (part.own.len(), part.rows(), part.rim.len());
+    let last = own == 0;
+    let numbers = if last { plan.eliminated()..plan.order.len() } else { part.own.clone() };
+    for number in numbers {
+        let place = places[number];
+        let target = if last { &mut matrix[place * order..][..order] } else { &mut columns[place * rows..][..rows] };
+        for (component, values) in stencil.row(plan.order[number] as usize) {
+            for (value, &other) in values.iter().zip(&plan.number[component..component + D]) {
+                if other != NONE && other as usize >= number {
+                    target[places[other as usize]] += value;
+                }
+            }
+        }
+    }
+}

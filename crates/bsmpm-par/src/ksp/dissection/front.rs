@@ -1,0 +1,145 @@
+//! Dense kernels of a front: Cholesky factorisation of its first columns, what they leave to the rest, and the triangular
+//! solves with them. Column-major, lower triangle; what stands above the diagonal is never read.
+
+use nalgebra::{Dyn, MatrixView, MatrixViewMut};
+
+/// Columns that are factorised together: few enough for the second-level cache, many enough for a matrix product.
+const WIDTH: usize = 32;
+
+/// L of the columns `a` of a symmetric matrix, `rows` long, in place. `false` where a pivot is not positive and finite.
+pub fn factorise(a: &mut [f64], rows: usize) -> bool {
+    let columns = if rows == 0 { 0 } else { a.len() / rows };
+    (0..columns).step_by(WIDTH).all(|start| {
+        let width = WIDTH.min(columns - start);
+        let (done, rest) = a.split_at_mut(start * rows);
+        let block = &mut rest[..width * rows];
+        subtract_product(done, (rows, start), start, &mut block[start..], (rows, width));
+        factorise_block(block, rows, start)
+    })
+}
+
+/// Subtracts from the matrix `target` of order rows - columns what the factorised columns `l` take from it.
+pub fn subtract_from_rest(l: &[f64], rows: usize, target: &mut [f64]) {
+    let columns = if rows == 0 { 0 } else { l.len() / rows };
+    let order = rows - columns;
+    for start in (0..order).step_by(2 * WIDTH) {
+        let width = (2 * WIDTH).min(order - start);
+        let block = &mut target[start * order + start..];
+        subtract_product(l, (rows, columns), columns + start, block, (order, width));
+    }
+}
+
+/// C -= L_below L_at^T: rows from `first` on of the columns `l`, times the `width` rows that begin there.
+fn subtract_product(l: &[f64], (rows, columns): (usize, usize), first: usize, c: &mut [f64], target: (usize, usize)) {
+    let (stride, width) = target;
+    if columns == 0 || first == rows {
+        return;
+    }
+    let below = Dyn(rows - first);
+    let factor = MatrixView::from_slice_with_strides_generic(&l[first..], below, Dyn(columns), Dyn(1), Dyn(rows));
+    let turned = MatrixView::from_slice_with_strides_generic(&l[first..], Dyn(columns), Dyn(width), Dyn(rows), Dyn(1));
+    let mut c = MatrixViewMut::from_slice_with_strides_generic(c, below, Dyn(width), Dyn(1), Dyn(stride));
+    c.gemm(-1.0, &factor, &turned, 1.0);
+}
+
+/// The columns from `start` on, from which all earlier ones have been subtracted.
+fn factorise_block(block: &mut [f64], rows: usize, start: usize) -> bool {
+    (0..block.len() / rows).all(|c| {
+        let (done, column) = block.split_at_mut(c * rows);
+        let first = start + c;
+        let column = &mut column[first..rows];
+        for group in done.chunks(4 * rows) {
+            subtract_columns(group, rows, first, column);
+        }
+        let pivot = column[0];
+        let good = pivot > 0.0 && pivot.is_finite();
+        let scale = 1.0 / pivot.sqrt();
+        column.iter_mut().for_each(|value| *value *= scale);
+        good
+    })
+}
+
+/// Subtracts up to four columns, each times its own entry in the row `first`, from `target`, which begins at that row.
+fn subtract_columns(columns: &[f64], rows: usize, first: usize, target: &mut [f64]) {
+    let by = |column: usize| columns[column * rows + first];
+    if columns.len() == 4 * rows {
+        subtract_four(columns, rows, first, [by(0), by(1), by(2), by(3)], target);
+    } else {
+        for (column, values) in columns.chunks_exact(rows).enumerate() {
+            let factor = by(column);
+            target.iter_mut().zip(&values[first..]).for_each(|(value, l)| *value -= factor * l);
+        }
+    }
+}
+
+/// target -= the rows from `first` on of four columns, times four factors.
+fn subtract_four(columns: &[f64], rows: usize, first: usize, by: [f64; 4], target: &mut [f64]) {
+    let column = |column: usize| &columns[column * rows + first..(column + 1) * rows];
+    let pairs = column(0).iter().zip(column(1)).zip(column(2).iter().zip(column(3)));
+    for (value, ((a, b), (c, d))) in target.iter_mut().zip(pairs) {
+        *value -= (by[0] * a + by[1] * b) + (by[2] * c + by[3] * d);
+    }
+}
+
+/// Solves with the factorised columns `l` for the first entries of `x`, and takes their part from the others.
+pub fn forward(l: &[f64], rows: usize, x: &mut [f64]) {
+    for (group, columns) in l.chunks(4 * rows.max(1)).enumerate() {
+        let (start, width) = (4 * group, columns.len() / rows);
+        for c in 0..width {
+            let column = &columns[c * rows..][..rows];
+            x[start + c] /= column[start + c];
+            let solved = x[start + c];
+            (start + c + 1..start + width).for_each(|row| x[row] -= solved * column[row]);
+        }
+        if width == 4 {
+            let (solved, rest) = x.split_at_mut(start + 4);
+            let by = [solved[start], solved[start + 1], solved[start + 2], solved[start + 3]];
+            subtract_four(columns, rows, start + 4, by, rest);
+        } else {
+            for (c, column) in columns.chunks_exact(rows).enumerate() {
+                let (solved, rest) = x.split_at_mut(start + width);
+                let by = solved[start + c];
+                rest.iter_mut().zip(&column[start + width..]).for_each(|(value, l)| *value -= by * l);
+            }
+        }
+    }
+}
+
+/// Solves with the transpose of the columns `l` for the first entries of `x`; the others are known.
+pub fn backward(l: &[f64], rows: usize, x: &mut [f64]) {
+    for (group, columns) in l.chunks(4 * rows.max(1)).enumerate().rev() {
+        let (start, width) = (4 * group, columns.len() / rows);
+        let below = start + width;
+        let mut taken = [0.0; 4];
+        if width == 4 {
+            taken = four_products(columns, rows, below, &x[below..]);
+        } else {
+            for (taken, column) in taken.iter_mut().zip(columns.chunks_exact(rows)) {
+                *taken = column[below..].iter().zip(&x[below..]).map(|(l, x)| l * x).sum();
+            }
+        }
+        for c in (0..width).rev() {
+            let column = &columns[c * rows..][..rows];
+            let inner: f64 = (start + c + 1..below).map(|row| column[row] * x[row]).sum();
+            x[start + c] = (x[start + c] - taken[c] - inner) / column[start + c];
+        }
+    }
+}
+
+/// Scalar products of the rows from `first` on of four columns with `x`, in four interleaved sums each.
+fn four_products(columns: &[f64], rows: usize, first: usize, x: &[f64]) -> [f64; 4] {
+    let mut sums = [[0.0; 4]; 4];
+    let column = |column: usize| &columns[column * rows + first..(column + 1) * rows];
+    let [a, b, c, d] = [0, 1, 2, 3].map(|k| column(k).chunks_exact(4));
+    let whole = x.chunks_exact(4);
+    let (from, tail) = (x.len() - whole.remainder().len(), whole.remainder());
+    for (x, ((a, b), (c, d))) in whole.zip(a.zip(b).zip(c.zip(d))) {
+        for (sums, values) in sums.iter_mut().zip([a, b, c, d]) {
+            (0..4).for_each(|lane| sums[lane] += values[lane] * x[lane]);
+        }
+    }
+    std::array::from_fn(|k| {
+        let rest: f64 = column(k)[from..].iter().zip(tail).map(|(l, x)| l * x).sum();
+        (sums[k][0] + sums[k][1]) + (sums[k][2] + sums[k][3]) + rest
+    })
+}

@@ -1,0 +1,227 @@
+//! Order of elimination of one slab's unknowns: nested dissection of its box of nodes, without MPI or numbers.
+//!
+//! Splines of order q couple nodes up to q apart, so that q layers of nodes cut a box in two. Nodes that other slabs
+//! touch too come last. George, A. (1973), SIAM J. Numer. Anal. 10, 345-363; Liu, J. W. H. (1992), SIAM Rev. 34, 82-109.
+
+use std::ops::Range;
+
+/// Unknowns of a box below which cutting costs more than it saves, by trial between 32 and 192 on plane grids.
+const LEAF: usize = 96;
+
+/// Elimination number of a component that is no unknown.
+pub const NONE: u32 = u32::MAX;
+
+/// Unknowns that are eliminated together.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Part {
+    /// elimination numbers
+    pub own: Range<usize>,
+    /// elimination numbers of what they and all that was eliminated below them couple with, ascending
+    pub rim: Vec<u32>,
+    /// parts right before this one (and theirs) that hand their rest to it
+    pub children: usize,
+    /// where its columns begin among those of all parts
+    pub columns: usize,
+}
+
+impl Part {
+    /// Order of its front.
+    pub fn rows(&self) -> usize {
+        self.own.len() + self.rim.len()
+    }
+
+    /// Place of its columns.
+    pub fn panel(&self) -> Range<usize> {
+        self.columns..self.columns + self.own.len() * self.rows()
+    }
+}
+
+/// The order, children before parents. The last part eliminates nothing: its rim is what other slabs touch.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Plan {
+    /// component by elimination number; those of the last part's rim last, ascending
+    pub order: Vec<u32>,
+    /// elimination number by component, or [`NONE`]
+    pub number: Vec<u32>,
+    /// parts
+    pub parts: Vec<Part>,
+}
+
+/// The box of nodes that is cut up.
+struct Cutter<'a, const D: usize> {
+    counts: [usize; D], // nodes of the window along each axis
+    order: usize,       // of the splines
+    free: &'a [bool],
+    plan: Plan,
+    boxes: Vec<[Range<usize>; D]>, // of each part with all that lies below it
+}
+
+impl Plan {
+    /// Plan for the `free` components of a window of `counts` nodes, of which no other slab touches the layers `inner`.
+    pub fn new<const D: usize>(counts: [usize; D], order: usize, inner: Range<usize>, free: &[bool]) -> Self {
+        let plan = Plan { number: vec![NONE; free.len()], ..Plan::default() };
+        let mut cutter = Cutter { counts, order, free, plan, boxes: Vec::new() };
+        let mut whole = counts.map(|count| 0..count);
+        whole[0] = inner.clone();
+        let children = usize::from(cutter.cut(whole));
+        let layer = free.len() / counts[0].max(1);
+        let shared = (0..inner.start * layer).chain(inner.end.max(inner.start) * layer..free.len());
+        cutter.number(shared.collect());
+        cutter.rims();
+        let Cutter { mut plan, .. } = cutter;
+        let eliminated = plan.parts.last().map_or(0, |part| part.own.end);
+        let columns = plan.parts.last().map_or(0, |part| part.panel().end);
+        let rim = (eliminated as u32..plan.order.len() as u32).collect();
+        plan.parts.push(Part { own: eliminated..eliminated, rim, children, columns });
+        plan
+    }
+
+    /// Numbers of the columns of all parts together.
+    pub fn entries(&self) -> usize {
+        self.parts.last().map_or(0, |part| part.columns)
+    }
+
+    /// Unknowns that only this slab touches.
+    pub fn eliminated(&self) -> usize {
+        self.parts.last().map_or(0, |part| part.own.end)
+    }
+
+    /// Components that other slabs touch too.
+    pub fn shared(&self) -> &[u32] {
+        &self.order[self.eliminated()..]
+    }
+
+    /// Elimination numbers of the rows of a part's front.
+    pub fn front<'a>(&self, part: &'a Part) -> impl Iterator<Item = usize> + use<'a> {
+        part.own.clone().chain(part.rim.iter().map(|&number| number as usize))
+    }
+}
+
+impl<const D: usize> Cutter<'_, D> {
+    /// Eliminates the unknowns of a box; `false` if it has none.
+    fn cut(&mut self, region: [Range<usize>; D]) -> bool {
+        let Some((region, unknowns)) = self.tight(&region) else { return false };
+        let (axis, length) =
+            region.iter().map(|range| range.len()).enumerate().max_by_key(|(_, length)| *length).unwrap();
+        if unknowns <= LEAF || length < self.order + 2 {
+            let all = self.components(&region);
+            self.part(all, region, 0);
+            return true;
+        }
+        let middle = self.middle(&region, axis);
+        let piece = |along: Range<usize>| {
+            let mut piece = region.clone();
+            piece[axis] = along;
+            piece
+        };
+        let left = self.cut(piece(region[axis].start..middle));
+        let right = self.cut(piece(middle + self.order..region[axis].end));
+        let separator = self.components(&piece(middle..middle + self.order));
+        self.part(separator, region, usize::from(left) + usize::from(right));
+        true
+    }
+
+    /// The smallest box around the unknowns of a box, and their number; `None` if there are none.
+    fn tight(&self, region: &[Range<usize>; D]) -> Option<([Range<usize>; D], usize)> {
+        let (mut least, mut most, mut count) = ([usize::MAX; D], [0; D], 0);
+        each_node(region, |node| {
+            let free = self.unknowns(self.index(&node)).count();
+            if free > 0 {
+                count += free;
+                for axis in 0..D {
+                    (least[axis], most[axis]) = (least[axis].min(node[axis]), most[axis].max(node[axis] + 1));
+                }
+            }
+        });
+        (count > 0).then(|| (std::array::from_fn(|axis| least[axis]..most[axis]), count))
+    }
+
+    /// First of the layers across `axis` that leave about as many unknowns before as behind them.
+    fn middle(&self, region: &[Range<usize>; D], axis: usize) -> usize {
+        let start = region[axis].start;
+        let mut layers = vec![0; region[axis].len()];
+        each_node(region, |node| layers[node[axis] - start] += self.unknowns(self.index(&node)).count());
+        let (mut before, mut behind) = (layers[0], layers[1 + self.order..].iter().sum::<usize>());
+        let mut at = 1;
+        while at + self.order + 1 < layers.len() && before < behind {
+            before += layers[at];
+            behind -= layers[at + self.order];
+            at += 1;
+        }
+        start + at
+    }
+
+    /// Index of a node of the window.
+    fn index(&self, node: &[usize; D]) -> usize {
+        (0..D).fold(0, |index, axis| index * self.counts[axis] + node[axis])
+    }
+
+    fn unknowns(&self, node: usize) -> impl Iterator<Item = usize> + '_ {
+        (node * D..(node + 1) * D).filter(|&component| self.free[component])
+    }
+
+    fn components(&self, region: &[Range<usize>; D]) -> Vec<usize> {
+        let mut components = Vec::new();
+        each_node(region, |node| components.extend(self.unknowns(self.index(&node))));
+        components
+    }
+
+    fn part(&mut self, components: Vec<usize>, region: [Range<usize>; D], children: usize) {
+        let start = self.plan.order.len();
+        self.number(components);
+        self.plan.parts.push(Part { own: start..self.plan.order.len(), rim: Vec::new(), children, columns: 0 });
+        self.boxes.push(region);
+    }
+
+    /// Gives the unknowns among `components` the next numbers.
+    fn number(&mut self, components: Vec<usize>) {
+        for component in components.into_iter().filter(|&component| self.free[component]) {
+            self.plan.number[component] = self.plan.order.len() as u32;
+            self.plan.order.push(component as u32);
+        }
+    }
+
+    /// The rims: unknowns within the splines' reach of a part's box. All of them come later, as q layers part the boxes.
+    fn rims(&mut self) {
+        let mut columns = 0;
+        for (part, region) in (0..).zip(&self.boxes) {
+            let around: [Range<usize>; D] = std::array::from_fn(|axis| {
+                let (start, end) = (region[axis].start, region[axis].end);
+                start.saturating_sub(self.order)..(end + self.order).min(self.counts[axis])
+            });
+            let mut rim = Vec::new();
+            each_node(&around, |node| {
+                if !(0..D).all(|axis| region[axis].contains(&node[axis])) {
+                    rim.extend(self.unknowns(self.index(&node)).map(|component| self.plan.number[component]));
+                }
+            });
+            rim.sort_unstable();
+            let part: &mut Part = &mut self.plan.parts[part];
+            (part.rim, part.columns) = (rim, columns);
+            columns = part.panel().end;
+        }
+    }
+}
+
+/// Visits the nodes of a box, axis 0 slowest.
+fn each_node<const D: usize>(region: &[Range<usize>; D], mut visit: impl FnMut([usize; D])) {
+    if region.iter().any(Range::is_empty) {
+        return;
+    }
+    let mut node: [usize; D] = std::array::from_fn(|axis| region[axis].start);
+    loop {
+        visit(node);
+        let mut axis = D;
+        loop {
+            if axis == 0 {
+                return;
+            }
+            axis -= 1;
+            node[axis] += 1;
+            if node[axis] < region[axis].end {
+                break;
+            }
+            node[axis] = region[axis].start;
+        }
+    }
+}

@@ -1,0 +1,304 @@
+//! Ranks are threads here: the same code, with channels instead of MPI.
+
+use super::ladder::{Link, Rung, rungs};
+use super::plan::{NONE, Part, Plan};
+use super::{Dissection, front};
+use crate::slab::Slabs;
+use crate::stencil::Stencil;
+use bsmpm::grid::{Grid, KnotVector};
+use nalgebra::{DMatrix, DVector};
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::time::Duration;
+
+/// A number in 0..1 that looks random.
+fn noise(seed: usize) -> f64 {
+    let mixed = (seed as u64 + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+    let mixed = (mixed ^ (mixed >> 29)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    ((mixed ^ (mixed >> 32)) >> 11) as f64 / (1_u64 << 53) as f64
+}
+
+#[test]
+fn a_front_is_factorised_and_solved_as_a_dense_matrix() {
+    for (rows, own) in [(1, 1), (3, 2), (5, 5), (40, 33), (70, 64), (131, 67), (20, 0)] {
+        let random = DMatrix::from_fn(rows, rows, |i, j| noise(i * rows + j) - 0.5);
+        let matrix = &random * random.transpose() + DMatrix::identity(rows, rows);
+        let factor = matrix.clone().cholesky().unwrap().l();
+        let mut columns = matrix.columns(0, own).clone_owned();
+        assert!(front::factorise(columns.as_mut_slice(), rows));
+        let lower = |m: &DMatrix<f64>| m.lower_triangle();
+        let close = |a: &DMatrix<f64>, b: &DMatrix<f64>| (a - b).amax() < 1e-11 * matrix.amax();
+        assert!(close(&lower(&columns), &lower(&factor.columns(0, own).clone_owned())), "{rows} {own}");
+        let mut rest = matrix.view((own, own), (rows - own, rows - own)).clone_owned();
+        front::subtract_from_rest(columns.as_slice(), rows, rest.as_mut_slice());
+        let corner = factor.view((own, own), (rows - own, rows - own));
+        assert!(rows == own || close(&lower(&rest), &lower(&(corner * corner.transpose()))), "{rows} {own}");
+        // With the rest eliminated too, the two solves give the solution of the whole.
+        let b = DVector::from_fn(rows, |i, _| noise(i) - 0.3);
+        let mut x = b.clone();
+        front::forward(columns.as_slice(), rows, x.as_mut_slice());
+        let mut below = x.rows_mut(own, rows - own);
+        if own < rows {
+            below.copy_from(&(corner * corner.transpose()).cholesky().unwrap().solve(&below));
+        }
+        front::backward(columns.as_slice(), rows, x.as_mut_slice());
+        assert!((&matrix * &x - &b).amax() < 1e-10 * b.amax(), "{rows} {own}");
+    }
+}
+
+#[test]
+fn a_pivot_that_is_not_positive_and_finite_is_told() {
+    for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let mut matrix = DMatrix::identity(40, 40);
+        matrix[(37, 37)] = bad;
+        assert!(!front::factorise(matrix.as_mut_slice(), 40), "{bad}");
+    }
+}
+
+/// The front of every part holds all that its unknowns couple with and all that its children leave.
+#[test]
+fn every_unknown_is_eliminated_once_and_before_what_it_is_told() {
+    fn check<const D: usize>(counts: [usize; D], q: usize, inner: std::ops::Range<usize>, filled: f64) {
+        let nodes: usize = counts.iter().product();
+        let free: Vec<bool> = (0..nodes * D).map(|component| noise(component) < filled).collect();
+        let plan = Plan::new(counts, q, inner.clone(), &free);
+        assert_eq!(plan.order.len(), free.iter().filter(|&&free| free).count());
+        assert!((0..plan.order.len()).all(|number| plan.number[plan.order[number] as usize] as usize == number));
+        let layer = nodes * D / counts[0];
+        assert!(plan.shared().iter().all(|&component| !inner.contains(&(component as usize / layer))));
+        let at = |mut node: usize| {
+            let mut place = [0; D];
+            for axis in (0..D).rev() {
+                (place[axis], node) = (node % counts[axis], node / counts[axis]);
+            }
+            place
+        };
+        let (mut next, mut stack): (usize, Vec<&Part>) = (0, Vec::new());
+        for part in &plan.parts {
+            assert_eq!(part.own.start, next);
+            next = part.own.end;
+            assert!(part.rim.is_sorted_by(|a, b| a < b) && part.rim.iter().all(|&number| number as usize >= next));
+            let holds = |number: usize| part.own.contains(&number) || part.rim.contains(&(number as u32));
+            for number in part.own.clone() {
+                let node = at(plan.order[number] as usize / D);
+                for (component, &other) in plan.number.iter().enumerate().filter(|(_, other)| **other != NONE) {
+                    let place = at(component / D);
+                    let near = (0..D).all(|axis| node[axis].abs_diff(place[axis]) <= q);
+                    assert!(!near || (other as usize) < number || holds(other as usize));
+                }
+            }
+            for child in stack.split_off(stack.len() - part.children) {
+                assert!(child.rim.iter().all(|&number| holds(number as usize)));
+            }
+            stack.push(part);
+        }
+        assert!(stack.len() == 1 && next == plan.eliminated());
+    }
+    check([30, 14], 2, 2..28, 0.9);
+    check([9, 40], 1, 0..9, 0.5);
+    check([26, 20], 3, 3..3, 1.0);
+    check([12, 12], 2, 0..10, 0.02);
+    check([7, 6, 5], 1, 1..6, 0.8);
+    check([5, 4], 2, 0..5, 0.0);
+}
+
+#[test]
+fn every_shared_layer_is_eliminated_once_where_all_that_touch_it_have_met() {
+    for (bounds, q) in
+        [(vec![0, 5], 2), (vec![0, 1, 2, 3, 4], 3), (vec![0, 9, 10, 11, 30, 31], 2), ((0..=16).collect(), 2)]
+    {
+        let ranks = bounds.len() - 1;
+        let (mut eliminated, mut handed) = (Vec::new(), 0);
+        for rank in 0..ranks {
+            let steps = rungs(&bounds, q, rank);
+            for (index, step) in steps.iter().enumerate() {
+                match step {
+                    Rung::Join { from, layers } => {
+                        let hands = rungs(&bounds, q, *from);
+                        assert_eq!(hands.last(), Some(&Rung::Hand { to: rank }));
+                        eliminated.extend(layers.clone());
+                    }
+                    Rung::Hand { .. } => {
+                        handed += 1;
+                        assert_eq!(index + 1, steps.len());
+                    }
+                }
+            }
+        }
+        let touched = |layer: usize| (0..ranks).filter(|&r| bounds[r] <= layer && layer < bounds[r + 1] + q).count();
+        let shared: Vec<usize> = (0..bounds[ranks] + q).filter(|&layer| touched(layer) > 1).collect();
+        eliminated.sort_unstable();
+        assert_eq!((eliminated, handed), (shared, ranks - 1), "{bounds:?}");
+    }
+}
+
+/// Channels to and from every rank.
+struct Wire {
+    to: Vec<Sender<Vec<f64>>>,
+    from: Vec<Receiver<Vec<f64>>>,
+    delay: usize,
+}
+
+impl Link for Wire {
+    fn send(&self, to: usize, numbers: &[f64]) {
+        std::thread::sleep(Duration::from_micros((noise(self.delay + to + numbers.len()) * 2000.0) as u64));
+        self.to[to].send(numbers.to_vec()).unwrap();
+    }
+
+    fn receive(&self, from: usize) -> Vec<f64> {
+        self.from[from].recv().unwrap()
+    }
+}
+
+fn wires(ranks: usize, delay: usize) -> Vec<Wire> {
+    let mut wires: Vec<Wire> =
+        (0..ranks).map(|rank| Wire { to: Vec::new(), from: Vec::new(), delay: delay * (rank + 1) }).collect();
+    for from in 0..ranks {
+        for to in 0..ranks {
+            let (sender, receiver) = channel();
+            wires[from].to.push(sender);
+            wires[to].from.push(receiver);
+        }
+    }
+    wires
+}
+
+/// A made-up system on a grid, of which some cells are empty and some components held.
+struct System {
+    grid: Grid<2>,
+    slabs: Slabs,
+}
+
+impl System {
+    fn new([columns, rows]: [usize; 2], order: usize, bounds: &[usize]) -> Self {
+        let axis = |cells| KnotVector::uniform(1.0, cells, order).unwrap();
+        let slabs = Slabs::new(bounds.to_vec(), bounds.len() - 1, columns).unwrap();
+        Self { grid: Grid::new([axis(columns), axis(rows)]).unwrap(), slabs }
+    }
+
+    /// Positive definite block of a cell, or none.
+    fn block(&self, cell: usize) -> Option<DMatrix<f64>> {
+        let size = self.grid.cell_nodes() * 2;
+        let g = DMatrix::from_fn(size, size, |i, j| noise((cell * size + i) * size + j) - 0.5);
+        (noise(cell) < 0.9).then(|| &g * g.transpose() + 0.1 * DMatrix::identity(size, size))
+    }
+
+    /// Nodes of a cell of the whole grid.
+    fn nodes(&self, cell: usize) -> Vec<usize> {
+        let first = self.grid.first_node(&self.grid.cell_at(cell));
+        self.grid.offsets().iter().map(|offset| first + offset).collect()
+    }
+
+    fn free(&self) -> Vec<bool> {
+        let mut free = vec![false; self.grid.nodes() * 2];
+        for cell in (0..self.grid.cells()).filter(|&cell| self.block(cell).is_some()) {
+            self.nodes(cell)
+                .into_iter()
+                .flat_map(|node| [2 * node, 2 * node + 1])
+                .for_each(|c| free[c] = noise(c) < 0.95);
+        }
+        free
+    }
+
+    fn rhs(&self) -> Vec<f64> {
+        (0..self.grid.nodes() * 2).map(|component| noise(component) - 0.5).collect()
+    }
+
+    fn dense_solution(&self) -> Vec<f64> {
+        let free = self.free();
+        let size = free.len();
+        let mut matrix = DMatrix::identity(size, size);
+        free.iter().enumerate().filter(|(_, free)| **free).for_each(|(c, _)| matrix[(c, c)] = 0.0);
+        for (cell, block) in (0..self.grid.cells()).filter_map(|cell| Some((cell, self.block(cell)?))) {
+            let components: Vec<usize> =
+                self.nodes(cell).into_iter().flat_map(|node| [2 * node, 2 * node + 1]).collect();
+            for (i, &row) in components.iter().enumerate().filter(|(_, row)| free[**row]) {
+                for (j, &column) in components.iter().enumerate().filter(|(_, column)| free[**column]) {
+                    matrix[(row, column)] += block[(i, j)];
+                }
+            }
+        }
+        let rhs = self.rhs().into_iter().zip(&free).map(|(value, &free)| if free { value } else { 0.0 });
+        matrix.cholesky().unwrap().solve(&DVector::from_iterator(size, rhs)).as_slice().to_vec()
+    }
+
+    /// What `rank` finds at the nodes of its window, after a first factorisation of another matrix.
+    fn solution(&self, rank: usize, wire: &Wire) -> Vec<f64> {
+        let grid = self.grid.window(self.slabs.columns(rank));
+        let per_layer = grid.layer_nodes() * 2;
+        let window = grid.layers().start * per_layer..grid.layers().end * per_layer;
+        let free = &self.free()[window.clone()];
+        let mut direct = Dissection::default();
+        direct.plan(wire, (self.slabs.bounds(), rank), &grid, free);
+        let mut stencil = Stencil::new(&grid);
+        for scale in [3.0, 1.0] {
+            stencil.clear();
+            for cell in 0..grid.cells() {
+                let at = grid.cell_at(cell);
+                if let Some(block) = self.block(self.grid.cell_index(&at)) {
+                    stencil.add(grid.first_node(&at), (block * scale).as_slice());
+                }
+            }
+            assert!(direct.factorise(wire, &stencil));
+        }
+        let owned = self.slabs.owned_layers(rank, grid.order());
+        let start = grid.layers().start;
+        let owned = (owned.start - start) * per_layer..(owned.end - start) * per_layer;
+        let mut solution = vec![f64::NAN; window.len()];
+        direct.solve(wire, owned, &self.rhs()[window], &mut solution);
+        solution
+    }
+
+    /// Solutions of all ranks, whose messages take their time.
+    fn solutions(&self, delay: usize) -> Vec<Vec<f64>> {
+        let ranks = self.slabs.ranks();
+        std::thread::scope(|scope| {
+            let threads: Vec<_> = wires(ranks, delay)
+                .into_iter()
+                .enumerate()
+                .map(|(rank, wire)| scope.spawn(move || self.solution(rank, &wire)))
+                .collect();
+            threads.into_iter().map(|thread| thread.join().unwrap()).collect()
+        })
+    }
+}
+
+/// Slabs of all sorts: one, equal ones, thinner than the splines reach, and more than the binary tree has leaves.
+#[test]
+fn slabs_find_the_solution_of_the_dense_matrix() {
+    let cases: [([usize; 2], usize, &[usize]); 7] = [
+        ([12, 7], 2, &[0, 12]),
+        ([12, 7], 2, &[0, 6, 12]),
+        ([12, 5], 2, &[0, 4, 5, 6, 12]),
+        ([6, 4], 3, &[0, 1, 2, 3, 4, 5, 6]),
+        ([9, 6], 1, &[0, 3, 5, 9]),
+        ([14, 3], 2, &[0, 3, 6, 8, 10, 14]),
+        ([4, 12], 2, &[0, 1, 4]),
+    ];
+    for (cells, order, bounds) in cases {
+        let system = System::new(cells, order, bounds);
+        let dense = system.dense_solution();
+        let scale = dense.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+        for (rank, found) in system.solutions(0).into_iter().enumerate() {
+            let layer = system.grid.layer_nodes() * 2;
+            let expected = &dense[system.slabs.layers(rank, order).start * layer..][..found.len()];
+            let error = found.iter().zip(expected).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
+            assert!(error < 1e-9 * scale, "{cells:?} {order} {bounds:?}: {error:e} of {scale:e}");
+        }
+    }
+}
+
+#[test]
+fn solutions_repeat_to_the_bit_however_late_messages_are_and_agree_where_slabs_meet() {
+    let system = System::new([15, 6], 2, &[0, 4, 7, 8, 15]);
+    let bits = |delay| -> Vec<Vec<u64>> {
+        system.solutions(delay).iter().map(|x| x.iter().map(|value| value.to_bits()).collect()).collect()
+    };
+    let first = bits(1);
+    assert!((2..6).all(|delay| bits(delay) == first));
+    let layer = system.grid.layer_nodes() * 2;
+    for rank in 0..3 {
+        let (own, next) = (system.slabs.layers(rank, 2), system.slabs.layers(rank + 1, 2));
+        let common = (own.end - next.start) * layer;
+        assert_eq!(first[rank][first[rank].len() - common..], first[rank + 1][..common]);
+    }
+}

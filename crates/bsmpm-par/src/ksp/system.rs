@@ -1,0 +1,87 @@
+//! A linear system of PETSc, and which of its solutions are accepted.
+
+use super::choice::Choice;
+use bsmpm::error::SolveError;
+use bsmpm::seam::{Krylov, Symmetry};
+use petsc_rs::{Ksp, Matrix, Petsc, Tolerances, Vector};
+
+/// Largest relative residual of a solution that is accepted, recomputed: direct solvers report success for NaN.
+const TRUSTED: f64 = 1e-6;
+
+/// Most products of one of them.
+const MOST_PRODUCTS: usize = 300;
+
+/// A matrix with its solver.
+pub(super) struct System<'p> {
+    pub(super) matrix: Matrix<'p>,
+    pub(super) ksp: Ksp<'p>,
+    b: Vector<'p>,
+    x: Vector<'p>,
+    r: Vector<'p>,
+}
+
+impl<'p> System<'p> {
+    /// The system of a matrix, to be solved as `choice` and the options say. Collective.
+    pub(super) fn new(
+        petsc: &'p Petsc<'p>,
+        (choice, symmetry): (&Choice, Symmetry),
+        mut matrix: Matrix<'p>,
+    ) -> petsc_rs::Result<Self> {
+        if symmetry == Symmetry::Definite {
+            matrix.set_symmetry(petsc_rs::Symmetry::PositiveDefinite)?;
+        }
+        let mut ksp = Ksp::new(petsc)?;
+        ksp.set_operator(&matrix)?;
+        choice.apply(&mut ksp, symmetry)?;
+        let vector = || Vector::new(petsc, matrix.local_rows());
+        let (b, x, r) = (vector()?, vector()?, vector()?);
+        Ok(Self { matrix, ksp, b, x, r })
+    }
+
+    /// Solution of this rank's unknowns, if it is finite and its recomputed residual small.
+    pub(super) fn solve(&mut self, rhs: &[f64]) -> Result<(usize, Vec<f64>), SolveError> {
+        self.b.copy_from(rhs).map_err(failed)?;
+        let info = self.ksp.solve(&self.b, &mut self.x).map_err(failed)?;
+        self.matrix.residual(&self.b, &self.x, &mut self.r).map_err(failed)?;
+        let (left, right) = (self.r.norm().map_err(failed)?, self.b.norm().map_err(failed)?);
+        trusted(left, right)?;
+        Ok((info.iterations, self.x.read(<[f64]>::to_vec).map_err(failed)?))
+    }
+
+    /// Solution of this rank's unknowns for an operator known by its product, and what it leaves.
+    pub(super) fn solve_with(
+        &mut self,
+        product: &mut dyn FnMut(&[f64], &mut [f64]),
+        relative: f64,
+        rhs: &[f64],
+    ) -> Result<(Krylov, Vec<f64>), SolveError> {
+        self.b.copy_from(rhs).map_err(failed)?;
+        let tolerances = Tolerances { relative, absolute: 0.0, max_iterations: MOST_PRODUCTS };
+        self.ksp.set_tolerances(tolerances).map_err(failed)?;
+        let info = self.ksp.solve_with(product, &self.b, &mut self.x).map_err(failed)?;
+        let x = self.x.read(<[f64]>::to_vec).map_err(failed)?;
+        self.r.write(|r| product(&x, r)).map_err(failed)?;
+        self.r.add_scaled(-1.0, &self.b).map_err(failed)?;
+        let residual = self.r.norm().map_err(failed)? / self.b.norm().map_err(failed)?;
+        if !residual.is_finite() {
+            return Err(SolveError::NotFinite);
+        }
+        Ok((Krylov { iterations: info.iterations, residual }, x))
+    }
+}
+
+/// Refuses a solution whose residual has the norm `left`, of a right-hand side with the norm `right`.
+pub(super) fn trusted(left: f64, right: f64) -> Result<(), SolveError> {
+    if !left.is_finite() {
+        return Err(SolveError::NotFinite);
+    }
+    if left > TRUSTED * right {
+        return Err(SolveError::Residual(left / right));
+    }
+    Ok(())
+}
+
+/// An error of PETSc.
+pub(super) fn failed(error: petsc_rs::Error) -> SolveError {
+    SolveError::Failed(error.to_string())
+}
