@@ -3,6 +3,7 @@
 use crate::signals::{Requests, WIDTH};
 use crate::slab::Slabs;
 use crate::timers::Timers;
+use crate::traffic::Kind;
 use bsmpm::grid::Grid;
 use bsmpm::seam::Halo;
 use mpi::collective::{CommunicatorCollectives, SystemOperation};
@@ -88,6 +89,7 @@ impl Halo for MpiHalo {
             return;
         }
         let _timed = self.timers.time("halo");
+        self.count(Kind::HaloSum, width);
         let incoming = self.receive(nodal, width);
         let own: Vec<Vec<f64>> =
             self.shared.iter().map(|(_, nodes)| nodal[nodes.start * width..nodes.end * width].to_vec()).collect();
@@ -110,6 +112,7 @@ impl Halo for MpiHalo {
             return;
         }
         let _timed = self.timers.time("halo");
+        self.count(Kind::HaloMax, 1);
         let incoming = self.receive(nodal, 1);
         for (part, (_, nodes)) in incoming.iter().zip(&self.shared) {
             nodal[nodes.clone()].iter_mut().zip(part).for_each(|(value, other)| *value = value.max(*other));
@@ -119,6 +122,7 @@ impl Halo for MpiHalo {
     fn reduce(&self, numbers: &mut [f64]) {
         let _timed = self.timers.time("reduction");
         let own = [&*numbers, &self.requests.share()].concat();
+        self.timers.traffic().count(Kind::Reduction, 0, size_of_val(&own[..]));
         let mut sums = vec![0.0; own.len()];
         self.world.all_reduce_into(&own[..], &mut sums[..], SystemOperation::sum());
         numbers.copy_from_slice(&sums[..numbers.len()]);
@@ -130,6 +134,7 @@ impl Halo for MpiHalo {
     fn maximum(&self, numbers: &mut [f64]) {
         let _timed = self.timers.time("reduction");
         let own = numbers.to_vec();
+        self.timers.traffic().count(Kind::Reduction, 0, size_of_val(&own[..]));
         self.world.all_reduce_into(&own[..], numbers, SystemOperation::max());
     }
 
@@ -139,6 +144,12 @@ impl Halo for MpiHalo {
 }
 
 impl MpiHalo {
+    /// Counts one exchange of `width` numbers a node.
+    fn count(&self, kind: Kind, width: usize) {
+        let nodes: usize = self.shared.iter().map(|(_, nodes)| nodes.len()).sum();
+        self.timers.traffic().count(kind, self.shared.len(), nodes * width * size_of::<f64>());
+    }
+
     /// Adds this rank's own contribution once to every shared node, whichever and however many ranks share it.
     fn add_own(&self, own: &[Vec<f64>], nodal: &mut [f64], width: usize) {
         let mut done: Vec<Range<usize>> = Vec::new();

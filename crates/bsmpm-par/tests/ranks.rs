@@ -147,7 +147,7 @@ fn more_ranks_than_columns_of_cells_are_refused_with_the_most_that_are_possible(
 
 /// Plastic flow amplifies round-off, so that only the result that matters is compared.
 #[test]
-fn the_collapse_runs_out_as_far_on_1_2_3_and_4_ranks() {
+fn the_collapse_runs_out_as_far_on_1_2_3_and_4_ranks_whose_slabs_follow_it() {
     let text = std::fs::read_to_string(shipped("short/column_collapse.toml")).unwrap();
     let (case, _check) = text.split_once("[[check]]").unwrap();
     let times = "times = [\"0.109 s\", \"0.235 s\", \"0.300 s\", \"0.351 s\", \"0.420 s\", \"0.607 s\"]";
