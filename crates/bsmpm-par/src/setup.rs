@@ -108,7 +108,7 @@ pub fn start(
 /// The first cut of the grid: about equal loads. `None` with more ranks than columns.
 pub fn slabs(case: &Case, ranks: usize) -> Option<Slabs> {
     let counts: Vec<f64> = case.points_by_column().into_iter().map(|count| count as f64).collect();
-    let layer_nodes = case.grid.axes[1].cells() + case.grid.order as usize;
+    let layer_nodes = case.grid.axes[1].cells() + case.grid.order;
     Slabs::cut(&load::by_column(&counts, layer_nodes), ranks)
 }
 
