@@ -14,7 +14,9 @@ use crate::{Error, atomic};
 
 pub mod parts;
 
-pub use parts::{Case, Check, Choice, Extent, Failure, Initial, Output, Restart, Status, Summary, Worst};
+pub use parts::{
+    Balance, Case, Check, Choice, Communication, Extent, Failure, Initial, Output, Restart, Status, Summary, Worst,
+};
 
 /// The manifest's file.
 pub const MANIFEST: &str = "run.json";
@@ -65,6 +67,12 @@ pub struct Manifest {
     /// s  by the clock, by phase.
     #[serde(default)]
     pub timers: BTreeMap<String, f64>,
+    /// What the ranks told each other, by kind.
+    #[serde(default)]
+    pub communication: BTreeMap<String, Communication>,
+    /// How evenly the work lay on them; none on one rank.
+    #[serde(default)]
+    pub balance: Option<Balance>,
     /// Totals of the run so far.
     #[serde(default)]
     pub summary: Summary,
@@ -107,6 +115,8 @@ impl Manifest {
             start: utc(SystemTime::now()),
             end: None,
             timers: BTreeMap::new(),
+            communication: BTreeMap::new(),
+            balance: None,
             summary: Summary::default(),
             initial: None,
             checks: Vec::new(),
@@ -173,7 +183,9 @@ impl Manifest {
         });
         let failure = self.failure.iter().flat_map(Failure::numbers).map(|value| ("failure".to_owned(), value));
         let cpu = [("summary.cpu_seconds".to_owned(), self.summary.cpu_seconds)];
-        timers.chain(times).chain(grid).chain(checks).chain(failure).chain(cpu)
+        let balance = self.balance.iter().flat_map(|balance| [balance.mean, balance.largest]);
+        let balance = balance.map(|value| ("balance".to_owned(), value));
+        timers.chain(times).chain(grid).chain(checks).chain(failure).chain(cpu).chain(balance)
     }
 
     /// Reads the `run.json` of `directory`.

@@ -34,11 +34,19 @@ pub struct Step {
     pub products: u64,
     /// Factorisations in all attempts.
     pub factorisations: u64,
+    /// Reductions over all ranks, in all attempts and the exchange of points after them.
+    pub reductions: u64,
+    /// Messages between ranks there, of all ranks together, without the linear solver's own.
+    pub messages: u64,
+    /// Bytes of these messages.
+    pub bytes: u64,
+    /// Largest load of a rank over the mean.
+    pub imbalance: f64,
 }
 
 impl Step {
     /// The file's columns; `time_unit` is `s`, or `-` for pseudo-time.
-    pub fn columns(time_unit: &str) -> [Column; 13] {
+    pub fn columns(time_unit: &str) -> [Column; 17] {
         [
             ("step", "-"),
             ("time", time_unit),
@@ -53,12 +61,16 @@ impl Step {
             ("evaluations", "-"),
             ("products", "-"),
             ("factorisations", "-"),
+            ("reductions", "-"),
+            ("messages", "-"),
+            ("bytes", "-"),
+            ("imbalance", "-"),
         ]
         .map(|(name, unit)| Column::new(name, unit))
     }
 
     /// The step as a row under [`Step::columns`].
-    pub fn cells(&self) -> [Cell; 13] {
+    pub fn cells(&self) -> [Cell; 17] {
         [
             Cell::Int(self.step),
             Cell::Float(self.time),
@@ -73,6 +85,10 @@ impl Step {
             Cell::Int(self.evaluations),
             Cell::Int(self.products),
             Cell::Int(self.factorisations),
+            Cell::Int(self.reductions),
+            Cell::Int(self.messages),
+            Cell::Int(self.bytes),
+            Cell::Float(self.imbalance),
         ]
     }
 }

@@ -6,6 +6,7 @@
 use crate::signals::{Requests, WIDTH};
 use crate::slab::{SharedLayer, Slabs, intersection};
 use crate::timers::Timers;
+use crate::traffic::Kind;
 use bsmpm::exact::{Exact, WORDS};
 use bsmpm::grid::{Contributions, Grid};
 use bsmpm::seam::Halo;
@@ -74,14 +75,21 @@ impl MpiHalo {
         let _timed = self.timers.time("halo");
         let place = |other: &Neighbour| other.nodes.start * width..other.nodes.end * width;
         let outgoing: Vec<_> = self.neighbours.iter().map(|other| nodal[place(other)].to_vec()).collect();
-        let incoming = self.exchange(&outgoing, |other| other.nodes.len() * width);
+        let incoming = self.exchange(Kind::HaloSum, &outgoing, |other| other.nodes.len() * width);
         for (part, other) in incoming.iter().zip(&self.neighbours) {
             nodal[place(other)].iter_mut().zip(part).for_each(|(total, other)| *total += other);
         }
     }
 
     /// Gives every neighbour its message and returns theirs, of the given lengths, in the order of the neighbours.
-    fn exchange(&self, outgoing: &[Vec<f64>], lengths: impl Fn(&Neighbour) -> usize) -> Vec<Vec<f64>> {
+    fn exchange(
+        &self,
+        kind: Kind,
+        outgoing: &[Vec<f64>],
+        lengths: impl Fn(&Neighbour) -> usize,
+    ) -> Vec<Vec<f64>> {
+        let bytes = outgoing.iter().map(|part| size_of_val(&part[..])).sum();
+        self.timers.traffic().count(kind, outgoing.len(), bytes);
         let mut incoming: Vec<Vec<f64>> = self.neighbours.iter().map(|other| vec![0.0; lengths(other)]).collect();
         mpi::request::scope(|scope| {
             let receives: Vec<_> = self
@@ -144,11 +152,14 @@ impl Halo for MpiHalo {
     }
 
     fn sum(&self, contributions: &Contributions) -> Vec<f64> {
+        if self.neighbours.is_empty() {
+            return contributions.alone();
+        }
         let _timed = self.timers.time("halo");
         let layer = self.layer_nodes * contributions.width();
         let outgoing: Vec<_> =
             self.neighbours.iter().map(|other| pieces(contributions, &other.layers, layer)).collect();
-        let incoming = self.exchange(&outgoing, |other| {
+        let incoming = self.exchange(Kind::HaloSum, &outgoing, |other| {
             other.layers.iter().map(|shared| shared.theirs).sum::<usize>() * layer
         });
         // The columns of lower ranks lie before this rank's: every layer adds its columns in their order.
@@ -176,7 +187,7 @@ impl Halo for MpiHalo {
             .iter()
             .map(|other| nodal[mine(other).start * width..mine(other).end * width].to_vec())
             .collect();
-        let incoming = self.exchange(&outgoing, |other| other.owned.len() * width);
+        let incoming = self.exchange(Kind::HaloShare, &outgoing, |other| other.owned.len() * width);
         for (part, other) in incoming.iter().zip(&self.neighbours) {
             nodal[other.owned.start * width..other.owned.end * width].copy_from_slice(part);
         }
@@ -189,7 +200,7 @@ impl Halo for MpiHalo {
         let _timed = self.timers.time("halo");
         let place = |other: &Neighbour| other.nodes.start * width..other.nodes.end * width;
         let outgoing: Vec<_> = self.neighbours.iter().map(|other| nodal[place(other)].to_vec()).collect();
-        let incoming = self.exchange(&outgoing, |other| other.nodes.len() * width);
+        let incoming = self.exchange(Kind::HaloMax, &outgoing, |other| other.nodes.len() * width);
         for (part, other) in incoming.iter().zip(&self.neighbours) {
             nodal[place(other)].iter_mut().zip(part).for_each(|(value, other)| *value = value.max(*other));
         }
@@ -198,6 +209,7 @@ impl Halo for MpiHalo {
     fn reduce(&self, numbers: &mut [f64]) {
         let _timed = self.timers.time("reduction");
         let own = [&*numbers, &self.requests.share()].concat();
+        self.timers.traffic().count(Kind::Reduction, 0, size_of_val(&own[..]));
         let mut sums = vec![0.0; own.len()];
         self.world.all_reduce_into(&own[..], &mut sums[..], SystemOperation::sum());
         numbers.copy_from_slice(&sums[..numbers.len()]);
@@ -210,6 +222,7 @@ impl Halo for MpiHalo {
         let _timed = self.timers.time("reduction");
         let mut own: Vec<i64> = sums.iter().flat_map(|sum| sum.words()).copied().collect();
         own.extend(self.requests.share().map(|count| count as i64));
+        self.timers.traffic().count(Kind::Reduction, 0, size_of_val(&own[..]));
         let mut all = vec![0; own.len()];
         self.world.all_reduce_into(&own[..], &mut all[..], SystemOperation::sum());
         let (words, requested) = all.split_at(sums.len() * WORDS);
@@ -220,6 +233,7 @@ impl Halo for MpiHalo {
     fn maximum(&self, numbers: &mut [f64]) {
         let _timed = self.timers.time("reduction");
         let own = numbers.to_vec();
+        self.timers.traffic().count(Kind::Reduction, 0, size_of_val(&own[..]));
         self.world.all_reduce_into(&own[..], numbers, SystemOperation::max());
     }
 

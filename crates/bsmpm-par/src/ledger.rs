@@ -7,6 +7,7 @@ pub(crate) use first::versions;
 
 use crate::cli::Arguments;
 use crate::restart::Beginning;
+use crate::simulation::Cost;
 use crate::surfaces;
 use bsmpm::control::Accepted;
 use bsmpm::error::Measures;
@@ -141,10 +142,13 @@ impl Ledger {
     }
 
     /// A row of `steps.csv`, its share of the totals, and the rows of its iterations where they are wanted.
-    pub fn step(&mut self, number: u64, accepted: &Accepted, wall: f64) -> Result<(), Error> {
+    pub fn step(&mut self, number: u64, accepted: &Accepted, (cost, wall): (Cost, f64)) -> Result<(), Error> {
         let report = &accepted.report;
         self.manifest.summary.steps = number;
         self.attempts(accepted.rejected.len(), accepted.counts);
+        if self.manifest.ranks > 1 {
+            self.manifest.balance.get_or_insert_default().enter(cost.imbalance, cost.is_cut_anew);
+        }
         self.manifest.summary.newton_steps += u64::from(report.newton_iterations > 0);
         let slips = report.strips.iter().filter(|strip| strip.motion > 0.0).map(surfaces::relative_slip);
         let largest = slips.chain(self.manifest.summary.largest_slip).reduce(f64::max);
@@ -175,6 +179,10 @@ impl Ledger {
             evaluations: accepted.counts.evaluations as u64,
             products: accepted.counts.products as u64,
             factorisations: accepted.counts.factorisations as u64,
+            reductions: cost.reductions,
+            messages: cost.messages,
+            bytes: cost.bytes,
+            imbalance: cost.imbalance,
         };
         self.steps.row(&row.cells())?;
         self.residuals(number, accepted)

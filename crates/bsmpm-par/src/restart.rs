@@ -5,9 +5,10 @@ mod there;
 use crate::checkpoint::{self, Opened, Refusal, State, Wanted, agree, broadcast, find};
 use crate::cli::{Arguments, Restart};
 use crate::exit;
+use crate::load;
 use crate::migrate;
-use crate::simulation::points_by_column;
 use crate::slab::Slabs;
+use crate::traffic::Traffic;
 use bsmpm::control::Stepper;
 use bsmpm::grid::Grid;
 use bsmpm::kinematics::PlaneStrain;
@@ -162,7 +163,7 @@ impl Resumed<'_> {
             self.slabs(universe, &model.grid, &points).ok_or_else(|| foreign("its slabs are not of this grid"))?;
         let rank = world.rank().unsigned_abs() as usize;
         let window = model.grid.window(slabs.columns(rank));
-        migrate::points(&world, &slabs, &window, &mut points);
+        migrate::points((&world, &Traffic::default()), &slabs, &window, &mut points);
         points.surface = self.state.surface();
         let surface = model.boundary.surface();
         let sizes = |lists: &[Vec<_>]| lists.iter().map(Vec::len).collect::<Vec<_>>();
@@ -178,7 +179,7 @@ impl Resumed<'_> {
         Ok((slabs, points, stepper.ok_or_else(|| foreign("its step control is in no state it can be in"))?))
     }
 
-    /// The cut of the grid: as it was, or on another number of ranks one with about equal numbers of points.
+    /// The cut of the grid: as it was, or on another number of ranks one into about equal loads.
     fn slabs(&self, universe: &Universe, grid: &Grid<2>, points: &Points<2>) -> Option<Slabs> {
         let (world, columns) = (universe.world(), grid.axes()[0].cells());
         let ranks = world.size().unsigned_abs() as usize;
@@ -186,10 +187,10 @@ impl Resumed<'_> {
         if self.found.record.ranks as usize == ranks {
             return Slabs::new(self.state.slabs.clone(), ranks, columns).map(reaching);
         }
-        let own = points_by_column(grid, points);
+        let own = load::points_by_column(grid, points);
         let mut counts = vec![0.0; own.len()];
         world.all_reduce_into(&own[..], &mut counts[..], SystemOperation::sum());
-        Slabs::cut(&counts, ranks).map(reaching)
+        Slabs::cut(&load::by_column(&counts, grid.layer_nodes()), ranks).map(reaching)
     }
 
     /// Closes the checkpoint. Collective.

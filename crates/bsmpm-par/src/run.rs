@@ -22,7 +22,7 @@ use bsmpm::control::Accepted;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::seam::Halo;
 use bsmpm::step::Report;
-use bsmpm_io::manifest::Status;
+use bsmpm_io::manifest::{Communication, Status};
 use bsmpm_scene::{Case, Every};
 use hdf5_collective::Hdf5;
 use mpi::environment::Universe;
@@ -76,6 +76,8 @@ pub struct Before {
     pub told_strips: BTreeSet<usize>,
     /// s  by phase; on rank 0
     pub timers: BTreeMap<String, f64>,
+    /// what the ranks had told each other, by kind; on rank 0
+    pub communication: BTreeMap<String, Communication>,
     /// s  of processor time; on rank 0
     pub cpu_seconds: f64,
 }
@@ -160,7 +162,8 @@ impl<'p> Run<'p> {
     fn accept(&mut self, accepted: &Accepted) {
         let (step, wall) = (self.simulation.steps(), self.wall());
         self.log.step(step, accepted, wall);
-        let written = self.ledger.as_mut().map_or(Ok(()), |ledger| ledger.step(step, accepted, wall));
+        let written =
+            self.ledger.as_mut().map_or(Ok(()), |ledger| ledger.step(step, accepted, (self.simulation.cost(), wall)));
         self.require(written);
         if self.saving.is_first(step) {
             self.tell_unused_options();

@@ -1,6 +1,7 @@
 //! From a valid case to a model and its points: the only place where the case's words become the physics' types.
 
 use crate::ksp::Choice;
+use crate::load;
 use crate::simulation::{Simulation, StartStress};
 use crate::slab::Slabs;
 use crate::surfaces;
@@ -106,9 +107,11 @@ pub fn start(
     Ok(Some(manifest::Initial { unbalance: found.force, yielding: found.yielding }))
 }
 
-/// The first cut of the grid: about equal numbers of points. `None` with more ranks than columns.
+/// The first cut of the grid: about equal loads. `None` with more ranks than columns.
 pub fn slabs(case: &Case, ranks: usize) -> Option<Slabs> {
-    Slabs::cut(&case.points_by_column().into_iter().map(|count| count as f64).collect::<Vec<_>>(), ranks)
+    let counts: Vec<f64> = case.points_by_column().into_iter().map(|count| count as f64).collect();
+    let layer_nodes = case.grid.axes[1].cells() + case.grid.order;
+    Slabs::cut(&load::by_column(&counts, layer_nodes), ranks)
 }
 
 /// Steps and the times that they must hit: frames, pictures and checks.

@@ -2,14 +2,15 @@
 
 use crate::halo::MpiHalo;
 use crate::ksp::{Choice, KspSolver};
+use crate::load;
 use crate::migrate;
 use crate::signals::Requests;
-use crate::slab::{Slabs, imbalance};
+use crate::slab::Slabs;
 use crate::timers::Timers;
+use crate::traffic::{Counts, Kind};
 use bsmpm::boundary::Surface;
 use bsmpm::control::{Accepted, Failure, Progress, Stepper};
 use bsmpm::error::StepError;
-use bsmpm::grid::Grid;
 use bsmpm::initial::{self, Equilibrium};
 use bsmpm::kinematics::Kinematics;
 use bsmpm::model::Model;
@@ -23,8 +24,6 @@ use std::rc::Rc;
 
 /// Steps between two looks at the balance.
 const LOOK: u64 = 10;
-/// Largest load over the mean, relative to the best possible cut, that is left alone.
-const TOLERATED: f64 = 1.05;
 
 /// The stress of the points at the start.
 pub enum StartStress<'a, const D: usize> {
@@ -32,6 +31,21 @@ pub enum StartStress<'a, const D: usize> {
     Given(&'a dyn Fn(u16, &Vector<D>) -> Symmetric),
     /// linear elastic equilibrium
     Elastic,
+}
+
+/// What a step cost besides its iterations; the same on all ranks.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Cost {
+    /// reductions over all ranks
+    pub reductions: u64,
+    /// messages between ranks, of all ranks together
+    pub messages: u64,
+    /// bytes of them
+    pub bytes: u64,
+    /// largest load of a rank over the mean, while the step was made
+    pub imbalance: f64,
+    /// whether the grid was cut anew after it
+    pub is_cut_anew: bool,
 }
 
 /// The distributed state of a run.
@@ -50,6 +64,7 @@ pub struct Simulation<'p, K, const D: usize> {
     stepper: Stepper,
     solver: KspSolver<'p, D>,
     steps: u64,
+    cost: Cost, // of the last step
     timers: Rc<Timers>,
 }
 
@@ -70,8 +85,8 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         let halo = Rc::new(halo);
         let solver = KspSolver::new(petsc, choice.clone(), &model.grid, Rc::clone(&halo), Rc::clone(&timers));
         let stepper = Stepper::new(model.grid.nodes() * D);
-        let (halo, steps) = (halo, 0);
-        Self { model, points, halo, universe, petsc, choice, slabs, schedule, stepper, solver, steps, timers }
+        let (steps, cost) = (0, Cost::default());
+        Self { model, points, halo, universe, petsc, choice, slabs, schedule, stepper, solver, steps, cost, timers }
     }
 
     /// Gives the points a stress at the start, see [`initial`], and tells how well it is balanced.
@@ -124,58 +139,79 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         self.steps
     }
 
+    /// What the last accepted step cost.
+    pub fn cost(&self) -> Cost {
+        self.cost
+    }
+
     /// One accepted step, after which every point is on the rank of its slab; `None` at the end.
     pub fn advance(&mut self) -> Option<Result<Accepted, Failure>> {
+        let (before, load) =
+            (self.timers.traffic().counts(), load::of_rank(self.points.len(), self.model.grid.nodes()));
         let outcome = {
             let _timed = self.timers.time("step");
             self.stepper.advance(&self.schedule, &self.model, &mut self.points, &*self.halo, &mut self.solver)?
         };
-        if outcome.is_ok() {
+        if let Ok(accepted) = &outcome {
             self.steps += 1;
             let timers = Rc::clone(&self.timers);
             let _timed = timers.time("migration");
-            migrate::points(self.halo.world(), &self.slabs, &self.model.grid, &mut self.points);
-            if self.slabs.ranks() > 1 && self.steps.is_multiple_of(LOOK) {
-                self.balance();
-            }
+            let exchange = (self.halo.world(), timers.traffic());
+            migrate::points(exchange, &self.slabs, &self.model.grid, &mut self.points);
+            let looks = self.slabs.ranks() > 1 && self.steps.is_multiple_of(LOOK);
+            let is_cut_anew = looks && self.balance(accepted.counts.evaluations as u64);
+            self.cost = Cost { is_cut_anew, ..self.count(before, load) };
         }
         Some(outcome)
     }
 
-    /// Cuts the grid anew where the points have moved away from the present cut: a rule of counts and of the step's
-    /// number only, so that a run repeats.
-    fn balance(&mut self) {
-        let mut counts = points_by_column(&self.model.grid, &self.points);
-        self.halo.reduce(&mut counts);
-        let load = |slabs: &Slabs| {
-            let loads: Vec<f64> = (0..slabs.ranks()).map(|rank| counts[slabs.columns(rank)].iter().sum()).collect();
-            imbalance(loads.into_iter())
-        };
-        let Some(better) = Slabs::cut(&counts, self.slabs.ranks()) else { return };
-        let better = better.reaching(self.model.grid.beyond());
-        if load(&self.slabs) > TOLERATED * load(&better) {
-            self.recut(better);
+    /// What has been told since `before` by all ranks, and how even this one's `load` and the others' are; one reduction.
+    fn count(&self, before: Counts, load: f64) -> Cost {
+        let told = self.timers.traffic().counts().since(&before);
+        let mut numbers = vec![0.0; 2 + self.slabs.ranks()];
+        numbers[..2].copy_from_slice(&told.sent().map(|count| count as f64));
+        numbers[2 + self.petsc.rank()] = load;
+        self.halo.reduce(&mut numbers);
+        Cost {
+            reductions: told.of(Kind::Reduction).calls + 1,
+            messages: numbers[0] as u64,
+            bytes: numbers[1] as u64,
+            imbalance: load::imbalance(&numbers[2..]),
+            is_cut_anew: false,
         }
     }
 
+    /// Cuts the grid anew where the points have moved away from the present cut so far that it pays in as many steps as
+    /// there are to the next look, of so many evaluations each: a rule of counts only, so that a run repeats.
+    fn balance(&mut self, evaluations: u64) -> bool {
+        let grid = &self.model.grid;
+        let mut counts = load::points_by_column(grid, &self.points);
+        self.halo.reduce(&mut counts);
+        let most = |slabs: &Slabs| {
+            let loads = load::of_slabs(&counts, slabs, (grid.layer_nodes(), grid.order()));
+            loads.into_iter().fold(0.0, f64::max)
+        };
+        let better = Slabs::cut(&load::by_column(&counts, grid.layer_nodes()), self.slabs.ranks());
+        let better = better.map(|slabs| slabs.reaching(grid.beyond()));
+        let Some(better) = better.filter(|better| load::pays(most(&self.slabs), most(better), LOOK * evaluations))
+        else {
+            return false;
+        };
+        self.recut(better);
+        true
+    }
+
     fn recut(&mut self, slabs: Slabs) {
+        let timers = Rc::clone(&self.timers);
         let world = self.universe.world();
-        self.stepper.guess = migrate::nodal(&world, (&self.slabs, &slabs), &self.model.grid, &self.stepper.guess, D);
+        self.stepper.guess =
+            migrate::nodal((&world, timers.traffic()), (&self.slabs, &slabs), &self.model.grid, &self.stepper.guess, D);
         self.model.grid = self.model.grid.window(slabs.columns(self.petsc.rank()));
-        migrate::points(&world, &slabs, &self.model.grid, &mut self.points);
+        migrate::points((&world, timers.traffic()), &slabs, &self.model.grid, &mut self.points);
         self.slabs = slabs;
-        let shared = (Rc::clone(&self.timers), Rc::clone(self.halo.requests()));
+        let shared = (Rc::clone(&timers), Rc::clone(self.halo.requests()));
         self.halo = Rc::new(MpiHalo::new(world, &self.slabs, &self.model.grid, shared));
-        let (halo, timers) = (Rc::clone(&self.halo), Rc::clone(&self.timers));
+        let halo = Rc::clone(&self.halo);
         self.solver = KspSolver::new(self.petsc, self.choice.clone(), &self.model.grid, halo, timers);
     }
-}
-
-/// Points of this rank in every column of cells of the whole grid.
-pub fn points_by_column<const D: usize>(grid: &Grid<D>, points: &Points<D>) -> Vec<f64> {
-    let mut counts = vec![0.0; grid.axes()[0].cells()];
-    for cell in points.x.iter().filter_map(|x| grid.locate(x)) {
-        counts[cell[0]] += 1.0;
-    }
-    counts
 }

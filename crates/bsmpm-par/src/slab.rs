@@ -5,6 +5,9 @@
 
 use std::ops::Range;
 
+/// Halvings of the interval in which the least largest cost lies: to the last bit of a float.
+const BISECTIONS: usize = 60;
+
 /// Columns at which the slabs begin, and the number of columns last.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Slabs {
@@ -13,25 +16,38 @@ pub struct Slabs {
 }
 
 impl Slabs {
-    /// Cuts columns of given cost into `ranks` slabs of about equal cost, each at least one column wide.
-    /// `None` if there are fewer columns than ranks.
+    /// Cuts columns of given cost into slabs, each at least one column wide, whose largest cost is as small as it can be
+    /// and whose bounds are, within that, near equal shares. `None` if there are fewer columns than ranks.
     pub fn cut(cost: &[f64], ranks: usize) -> Option<Self> {
         if cost.len() < ranks {
             return None;
         }
-        let total: f64 = cost.iter().sum();
-        let (mut bounds, mut column, mut before) = (vec![0], 0, 0.0);
-        for rank in 1..ranks {
-            let wanted = total * rank as f64 / ranks as f64;
-            let last = cost.len() - (ranks - rank);
-            let mut taken = 0;
-            // A column goes to the slab in which more than half of it lies, as long as the others keep one each.
-            while column < last && (taken == 0 || before + 0.5 * cost[column] < wanted) {
-                before += cost[column];
-                column += 1;
-                taken += 1;
+        let before: Vec<f64> = std::iter::once(0.0)
+            .chain(cost.iter().scan(0.0, |sum, cost| {
+                *sum += cost;
+                Some(*sum)
+            }))
+            .collect();
+        let total = before[cost.len()];
+        let middle: Vec<f64> = before.windows(2).map(|pair| 0.5 * (pair[0] + pair[1])).collect();
+        let (mut low, mut high) = (0.0, total);
+        let mut first = earliest(&before, ranks, total)?;
+        for _ in 0..BISECTIONS {
+            let most = 0.5 * (low + high);
+            match earliest(&before, ranks, most) {
+                Some(found) => (high, first) = (most, found),
+                None => low = most,
             }
-            bounds.push(column);
+        }
+        let mut bounds = vec![0];
+        for rank in 1..ranks {
+            let start = bounds[rank - 1];
+            let reach = before.partition_point(|sum| sum - before[start] <= high) - 1;
+            let wanted = total * rank as f64 / ranks as f64;
+            // A column goes to the slab in which more than half of it lies.
+            let fair = middle.partition_point(|sum| *sum < wanted);
+            let least = first[rank].max(start + 1);
+            bounds.push(fair.clamp(least, reach.min(cost.len() - (ranks - rank)).max(least)));
         }
         bounds.push(cost.len());
         Some(Self { bounds, beyond: 0 })
@@ -126,11 +142,19 @@ pub fn intersection(a: &Range<usize>, b: &Range<usize>) -> Range<usize> {
     start..a.end.min(b.end).max(start)
 }
 
-/// Largest load over the mean.
-pub fn imbalance(loads: impl Iterator<Item = f64> + Clone) -> f64 {
-    let count = loads.clone().count() as f64;
-    let (most, sum) = loads.fold((0.0_f64, 0.0), |(most, sum), load| (most.max(load), sum + load));
-    if sum > 0.0 { most * count / sum } else { 1.0 }
+/// First column at which each slab can begin if none costs more than `most`; `before` are the costs before each column,
+/// and the whole one. `None` if there is no such cut.
+fn earliest(before: &[f64], ranks: usize, most: f64) -> Option<Vec<usize>> {
+    let mut first = vec![0; ranks];
+    let mut end = before.len() - 1;
+    for rank in (0..ranks).rev() {
+        first[rank] = before.partition_point(|sum| before[end] - sum > most).max(rank);
+        if first[rank] >= end {
+            return None;
+        }
+        end = first[rank];
+    }
+    (end == 0).then_some(first)
 }
 
 #[cfg(test)]
@@ -203,8 +227,21 @@ mod tests {
     }
 
     #[test]
-    fn imbalance_is_the_largest_load_over_the_mean() {
-        assert_eq!(imbalance([1.0, 3.0].into_iter()), 1.5);
-        assert_eq!(imbalance([0.0, 0.0].into_iter()), 1.0);
+    fn no_other_cut_has_a_smaller_largest_cost() {
+        let most = |slabs: &Slabs, cost: &[f64]| {
+            (0..3).map(|rank| cost[slabs.columns(rank)].iter().sum::<f64>()).fold(0.0, f64::max)
+        };
+        let costs = [
+            [1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0],
+            [9.0, 1.0, 1.0, 7.0, 0.5, 3.0, 2.0],
+            [0.0, 0.0, 4.0, 5.0, 4.0, 0.0, 1.0],
+        ];
+        for cost in costs {
+            let found = most(&Slabs::cut(&cost, 3).unwrap(), &cost);
+            for bounds in (1..6).flat_map(|first| (first + 1..7).map(move |second| vec![0, first, second, 7])) {
+                assert!(found <= most(&Slabs::new(bounds, 3, 7).unwrap(), &cost));
+            }
+        }
+        assert_eq!(Slabs::cut(&[1.0; 10], 4).unwrap().bounds, [0, 2, 5, 7, 10]);
     }
 }

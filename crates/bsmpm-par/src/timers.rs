@@ -1,13 +1,15 @@
-//! Wall-clock seconds by phase: what `run.json` tells of where a run's time went.
+//! Wall-clock seconds by phase, and counts of communication: what `run.json` tells of where a run's time went.
 
+use crate::traffic::Traffic;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::time::Instant;
 
-/// Seconds and calls of every phase; the physics, which knows no clock, is what remains of the steps.
+/// Seconds of every phase; the physics, which knows no clock, is what remains of the steps.
 #[derive(Debug, Default)]
 pub struct Timers {
     seconds: RefCell<BTreeMap<&'static str, f64>>,
+    traffic: Traffic,
 }
 
 /// Adds to its phase when dropped.
@@ -26,6 +28,11 @@ impl Timers {
     /// Seconds by phase so far.
     pub fn seconds(&self) -> BTreeMap<&'static str, f64> {
         self.seconds.borrow().clone()
+    }
+
+    /// The counter of what this rank tells the others.
+    pub fn traffic(&self) -> &Traffic {
+        &self.traffic
     }
 }
 

@@ -56,9 +56,9 @@ fn steps_tells_how_hard_each_step_was() {
     let directory = scratch.path("case.out");
     let text = std::fs::read_to_string(directory.join("steps.csv")).unwrap();
     let names = "step,time,dt,iterations,residual,linear_iterations,cutbacks,active_nodes,wall,\
-                 newton_iterations,evaluations,products,factorisations\n";
-    assert!(text.starts_with(&format!("{names}# -,s,s,-,-,-,-,-,s,-,-,-,-\n")), "{}", &text[..200]);
-    shortest(&rows(&directory.join("steps.csv")), &[0, 3, 5, 6, 7, 9, 10, 11, 12]);
+                 newton_iterations,evaluations,products,factorisations,reductions,messages,bytes,imbalance\n";
+    assert!(text.starts_with(&format!("{names}# -,s,s,-,-,-,-,-,s,-,-,-,-,-,-,-,-\n")), "{}", &text[..200]);
+    shortest(&rows(&directory.join("steps.csv")), &[0, 3, 5, 6, 7, 9, 10, 11, 12, 13, 14, 15]);
     let (steps, history) = (steps(&directory), history(&directory));
     for name in ["step", "time"] {
         assert_eq!(steps.get(name).unwrap(), &history.get(name).unwrap()[1..]);
@@ -75,6 +75,33 @@ fn steps_tells_how_hard_each_step_was() {
     assert_eq!(summary.linear_iterations as f64, steps.get("linear_iterations").unwrap().iter().sum::<f64>());
     assert!(summary.residual_evaluations >= summary.iterations && summary.cpu_seconds > 0.0);
     assert!(summary.peak_memory.len() == 2 && summary.peak_memory.iter().all(|bytes| *bytes > 1_000_000));
+}
+
+/// Two slabs share one set of layers: every exchange is one message each way.
+#[test]
+fn what_the_ranks_tell_each_other_is_counted() {
+    let scratch = Scratch::with_case(SLIDING_BLOCK);
+    for ranks in [1, 2] {
+        scratch.mpirun(ranks, &["case.toml", "-q", "--force"]).expect(0);
+        let (steps, manifest) = (steps(&scratch.path("case.out")), manifest(&scratch.path("case.out")));
+        let total = |name: &str| steps.get(name).unwrap().iter().sum::<f64>();
+        let [sums, reductions, moves] = ["halo sum", "reduction", "migration"].map(|kind| manifest.communication[kind]);
+        assert!(total("reductions") > 2.0 * total("iterations") && reductions.calls as f64 >= total("reductions"));
+        assert_eq!(reductions.messages, 0);
+        if ranks == 1 {
+            assert_eq!((sums.messages, moves.messages, total("messages"), manifest.balance), (0, 0, 0.0, None));
+            continue;
+        }
+        assert!(sums.calls > 2 * manifest.summary.iterations);
+        assert_eq!((sums.messages, sums.most_messages), (2 * sums.calls, sums.calls));
+        assert!(sums.bytes >= 8 * sums.messages && sums.most_bytes == sums.bytes / 2);
+        assert!(moves.messages > 0 && moves.calls >= 50, "{moves:?}");
+        let all = sums.messages + moves.messages + manifest.communication["halo max"].messages;
+        assert!(total("messages") > 0.5 * all as f64 && total("messages") <= all as f64);
+        let (balance, imbalance) = (manifest.balance.unwrap(), steps.get("imbalance").unwrap());
+        assert!((balance.mean - total("imbalance") / 50.0).abs() < 1e-12 && balance.steps == 50);
+        assert_eq!(balance.largest, imbalance.iter().copied().fold(0.0, f64::max));
+    }
 }
 
 #[test]

@@ -173,9 +173,10 @@ fn more_ranks_than_columns_of_cells_are_refused_with_the_most_that_are_possible(
     assert_eq!(scratch.entries(), [""; 0]);
 }
 
-/// Plastic flow amplifies round-off, so that only the result that matters is compared.
+/// Plastic flow amplifies round-off, so that only the result that matters is compared. Slabs that stayed as they are at
+/// first would be uneven to 1.36 on four ranks.
 #[test]
-fn the_collapse_runs_out_as_far_on_1_2_3_and_4_ranks() {
+fn the_collapse_runs_out_as_far_on_1_2_3_and_4_ranks_whose_slabs_follow_it() {
     let text = std::fs::read_to_string(shipped("short/column_collapse.toml")).unwrap();
     let (case, _check) = text.split_once("[[check]]").unwrap();
     let times = "times = [\"0.109 s\", \"0.235 s\", \"0.300 s\", \"0.351 s\", \"0.420 s\", \"0.607 s\"]";
@@ -185,6 +186,9 @@ fn the_collapse_runs_out_as_far_on_1_2_3_and_4_ranks() {
         let directory = format!("{ranks}.out");
         // Four ranks on two cores take their time when others want those too.
         scratch.job(Some(ranks), &["case.toml", "-q", "-o", &directory]).within(240).run().expect(0);
+        if let Some(balance) = manifest(&scratch.path(&directory)).balance {
+            assert!(balance.mean <= 1.1 && (balance.cuts > 0 || ranks < 4), "{balance:?} on {ranks} ranks");
+        }
         let history = history(&scratch.path(&directory));
         *history.get("runout").unwrap().last().unwrap()
     });

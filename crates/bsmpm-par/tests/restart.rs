@@ -11,13 +11,14 @@ use support::{Scratch, entries};
 /// Restart files after every fifth step, all of them kept.
 const OFTEN: &str = "output.checkpoint={every_steps=5,keep=100}";
 
-/// All rows of a run's tables but the seconds that they tell, and the bytes of its last frame.
+/// All rows of a run's tables but the seconds and messages that they tell (who goes on numbers the unknowns anew), and the
+/// bytes of its last frame.
 fn results(directory: &Path) -> (String, String, Vec<u8>) {
     let text = |name: &str| std::fs::read_to_string(directory.join(name)).unwrap();
     let steps = text("steps.csv");
-    let seconds = steps.lines().next().unwrap().split(',').position(|name| name == "wall").unwrap();
+    let names: Vec<&str> = steps.lines().next().unwrap().split(',').collect();
     let untimed = |line: &str| {
-        let cells = line.split(',').enumerate().filter(|(column, _)| *column != seconds);
+        let cells = names.iter().zip(line.split(',')).filter(|(name, _)| !["wall", "messages", "bytes"].contains(name));
         cells.map(|(_, cell)| cell).collect::<Vec<_>>().join(",")
     };
     let frame = format!("frames/step_{:09}.vtu", last_frame(directory).step);

@@ -116,6 +116,44 @@ pub struct Summary {
     pub peak_memory: Vec<u64>,
 }
 
+/// What the ranks told each other in one way, over the run.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Communication {
+    /// Exchanges or reductions that every rank took part in.
+    pub calls: u64,
+    /// Messages to another rank, of all ranks; a reduction counts none.
+    pub messages: u64,
+    /// Bytes of them; of reductions, those of the numbers that every rank puts in.
+    pub bytes: u64,
+    /// Messages of the rank that sent the most.
+    pub most_messages: u64,
+    /// Bytes of the rank that sent the most.
+    pub most_bytes: u64,
+}
+
+/// How evenly the work lay on the ranks, over the steps.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Balance {
+    /// Steps that are counted.
+    pub steps: u64,
+    /// Mean over them of the largest load over the mean load.
+    pub mean: f64,
+    /// The largest of them.
+    pub largest: f64,
+    /// How often the grid was cut anew.
+    pub cuts: u64,
+}
+
+impl Balance {
+    /// Counts one step more.
+    pub fn enter(&mut self, imbalance: f64, is_cut_anew: bool) {
+        self.steps += 1;
+        self.mean += (imbalance - self.mean) / self.steps as f64;
+        self.largest = self.largest.max(imbalance);
+        self.cuts += u64::from(is_cut_anew);
+    }
+}
+
 /// One `[[check]]` of the case and what came of it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Check {

@@ -102,12 +102,21 @@ fn steps_fit_their_columns() {
         evaluations: 0,
         products: 0,
         factorisations: 0,
+        reductions: 90,
+        messages: 30,
+        bytes: 48000,
+        imbalance: 1.25,
     };
     table.row(&step.cells()).unwrap();
     let text = std::fs::read_to_string(&path).unwrap();
     let names = "step,time,dt,iterations,residual,linear_iterations,cutbacks,active_nodes,wall,\
-                 newton_iterations,evaluations,products,factorisations\n";
-    assert_eq!(text, format!("{names}# -,s,s,-,-,-,-,-,s,-,-,-,-\n1,0.00025,0.00025,7,3e-9,0,1,4000,0.25,0,0,0,0\n"));
+                 newton_iterations,evaluations,products,factorisations,reductions,messages,bytes,imbalance\n";
+    assert_eq!(
+        text,
+        format!(
+            "{names}# -,s,s,-,-,-,-,-,s,-,-,-,-,-,-,-,-\n1,0.00025,0.00025,7,3e-9,0,1,4000,0.25,0,0,0,0,90,30,48000,1.25\n"
+        )
+    );
 }
 
 #[test]

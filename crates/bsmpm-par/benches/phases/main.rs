@@ -74,7 +74,7 @@ fn measure(
     let slabs = Slabs::new(vec![0, model.grid.columns().end], 1, model.grid.columns().end).ok_or("no columns")?;
     let (timers, requests) = (Rc::new(Timers::default()), Rc::new(Requests::default()));
     let halo = Rc::new(MpiHalo::new(universe.world(), &slabs, &model.grid, (Rc::clone(&timers), requests)));
-    let choice = setup::linear(&case, 1);
+    let choice = setup::linear(&case, 1, &[]);
     let petsc = Petsc::initialize(universe, &choice.options())?;
     let mut solver = KspSolver::new(&petsc, choice, &model.grid, Rc::clone(&halo), timers);
     println!("| {} points, {:.4} s | ns per point | of a step with one iteration |", points.len(), time);

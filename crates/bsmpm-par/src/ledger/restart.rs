@@ -168,6 +168,8 @@ fn manifest(new: Manifest, resumed: &Resumed<'_>) -> (Manifest, Vec<String>) {
     let manifest = Manifest {
         start: old.start,
         timers: old.timers,
+        communication: old.communication,
+        balance: old.balance,
         summary: old.summary,
         initial: old.initial,
         outputs,

@@ -100,6 +100,7 @@ fn before(start: &Start<'_>, directory: &Path) -> Before {
         last_frame: state.last_frame,
         told_strips: state.told_strips.clone(),
         timers: state.files.manifest.timers.clone(),
+        communication: state.files.manifest.communication.clone(),
         cpu_seconds: state.files.manifest.summary.cpu_seconds,
     }
 }

@@ -3,10 +3,12 @@
 use super::Run;
 use crate::exit;
 use crate::machine;
+use crate::traffic::Kind;
 use bsmpm::seam::Halo;
-use bsmpm_io::manifest::Status;
+use bsmpm_io::manifest::{Communication, Status};
 use mpi::collective::CommunicatorCollectives;
 use mpi::topology::Communicator;
+use std::collections::BTreeMap;
 
 impl Run<'_> {
     /// Ends the run at the last converged state; the work of a step that was given up counts for nothing.
@@ -62,14 +64,17 @@ impl Run<'_> {
         let (cpu, memory) = (machine::cpu_seconds(), machine::peak_memory());
         let mut all_memory = vec![0_u64; world.size().unsigned_abs() as usize];
         world.all_gather_into(&memory, &mut all_memory[..]);
-        let mut total = [cpu];
+        let own: Vec<f64> = self.timers.traffic().counts().numbers().collect();
+        let (mut total, mut most) = ([&[cpu], &own[..]].concat(), own);
         self.simulation.halo.reduce(&mut total);
+        self.simulation.halo.maximum(&mut most);
         let wall = self.wall();
         let Some(ledger) = &mut self.ledger else { return };
         let manifest = ledger.manifest();
         manifest.summary.cpu_seconds = self.before.cpu_seconds + total[0];
         manifest.summary.peak_memory = all_memory;
         manifest.timers = self.before.timers.clone();
+        manifest.communication = communication(&self.before.communication, &total[1..], &most);
         for (phase, seconds) in self.timers.seconds() {
             *manifest.timers.entry(phase.to_owned()).or_default() += seconds;
         }
@@ -93,4 +98,23 @@ impl Run<'_> {
         );
         self.log.line("end", &text);
     }
+}
+
+/// What the ranks have told each other `before` and since then, of which the sums over the ranks are known and the largest.
+fn communication(
+    before: &BTreeMap<String, Communication>,
+    sums: &[f64],
+    largest: &[f64],
+) -> BTreeMap<String, Communication> {
+    let numbers = sums.chunks_exact(3).zip(largest.chunks_exact(3));
+    let with = |(kind, (sum, most)): (Kind, (&[f64], &[f64]))| {
+        let mut all = before.get(kind.name()).copied().unwrap_or_default();
+        all.calls += most[0] as u64;
+        all.messages += sum[1] as u64;
+        all.bytes += sum[2] as u64;
+        all.most_messages += most[1] as u64;
+        all.most_bytes += most[2] as u64;
+        (kind.name().to_owned(), all)
+    };
+    Kind::ALL.into_iter().zip(numbers).map(with).collect()
 }

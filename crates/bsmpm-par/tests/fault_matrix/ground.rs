@@ -183,16 +183,18 @@ fn copy_all(from: &Path, to: &Path) {
     }
 }
 
-/// Everything that must be the same: histories, steps but for the seconds that they took, frames, the state at the end.
+/// Everything that must be the same: histories, steps but for the seconds and messages that they took (who goes on
+/// numbers the unknowns anew), frames, the state at the end.
 pub fn results(directory: &Path) -> Results {
     let read = |name: &str| (name.to_owned(), std::fs::read(directory.join(name)).unwrap());
     let mut results: Results = ["history.csv", LIST].map(read).into();
     let frames = entries(&directory.join("frames"));
     results.extend(frames.iter().map(|name| read(&format!("frames/{name}"))));
     let steps = steps(directory);
-    let untimed: Vec<_> =
-        steps.headings.iter().zip(&steps.values).filter(|(column, _)| column.name != "wall").collect();
-    results.insert("steps.csv but for wall".into(), format!("{untimed:?}").into_bytes());
+    let cost = ["wall", "messages", "bytes"];
+    let columns = steps.headings.iter().zip(&steps.values);
+    let free: Vec<_> = columns.filter(|(column, _)| !cost.contains(&column.name.as_str())).collect();
+    results.insert("steps.csv but for its cost".into(), format!("{free:?}").into_bytes());
     if let Some(checkpoint) = manifest(directory).checkpoint {
         results.insert("checkpoint".into(), arrays(&directory.join(checkpoint)).into_bytes());
     }

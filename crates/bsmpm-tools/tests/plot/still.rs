@@ -208,6 +208,10 @@ impl Still {
             evaluations: 0,
             products: 0,
             factorisations: 0,
+            reductions: 0,
+            messages: 0,
+            bytes: 0,
+            imbalance: 1.0,
         }
     }
 }

@@ -1,0 +1,123 @@
+//! What this rank tells the others, by kind: counts, which tell how a run would scale where a clock cannot.
+//!
+//! The linear solver's own messages, which are PETSc's, are not among them.
+
+use std::cell::Cell;
+
+/// Kinds of communication.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// contributions to shared nodes, summed
+    HaloSum,
+    /// numbers of shared nodes of which the largest counts
+    HaloMax,
+    /// numbers of shared nodes that their owner has
+    HaloShare,
+    /// numbers combined over all ranks
+    Reduction,
+    /// points and nodal values that change their rank
+    Migration,
+}
+
+impl Kind {
+    /// All of them, in the order of [`Counts`].
+    pub const ALL: [Self; 5] = [Self::HaloSum, Self::HaloMax, Self::HaloShare, Self::Reduction, Self::Migration];
+
+    /// Its name in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::HaloSum => "halo sum",
+            Self::HaloMax => "halo max",
+            Self::HaloShare => "halo share",
+            Self::Reduction => "reduction",
+            Self::Migration => "migration",
+        }
+    }
+}
+
+/// What one rank did of one kind.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Count {
+    /// exchanges or reductions that it took part in
+    pub calls: u64,
+    /// messages that it sent to another rank; a reduction counts none
+    pub messages: u64,
+    /// bytes of them; of a reduction, those of its own numbers
+    pub bytes: u64,
+}
+
+/// What one rank did, by kind.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts([Count; 5]);
+
+impl Counts {
+    /// Those of one kind.
+    pub fn of(&self, kind: Kind) -> Count {
+        self.0[kind as usize]
+    }
+
+    /// Messages to other ranks and their bytes, of all kinds.
+    pub fn sent(&self) -> [u64; 2] {
+        let exchanges = [Kind::HaloSum, Kind::HaloMax, Kind::HaloShare, Kind::Migration].map(|kind| self.of(kind));
+        [exchanges.iter().map(|count| count.messages).sum(), exchanges.iter().map(|count| count.bytes).sum()]
+    }
+
+    /// What has been added since `before`.
+    pub fn since(&self, before: &Self) -> Self {
+        Self(Kind::ALL.map(|kind| {
+            let (now, then) = (self.of(kind), before.of(kind));
+            Count {
+                calls: now.calls - then.calls,
+                messages: now.messages - then.messages,
+                bytes: now.bytes - then.bytes,
+            }
+        }))
+    }
+
+    /// Calls, messages and bytes of every kind, one after the other.
+    pub fn numbers(&self) -> impl Iterator<Item = f64> {
+        self.0.into_iter().flat_map(|count| [count.calls, count.messages, count.bytes].map(|number| number as f64))
+    }
+}
+
+/// The counter of a rank.
+#[derive(Debug, Default)]
+pub struct Traffic(Cell<Counts>);
+
+impl Traffic {
+    /// Counts one call with so many messages of so many bytes in all.
+    pub fn count(&self, kind: Kind, messages: usize, bytes: usize) {
+        let mut counts = self.0.get();
+        let count = &mut counts.0[kind as usize];
+        count.calls += 1;
+        count.messages += messages as u64;
+        count.bytes += bytes as u64;
+        self.0.set(counts);
+    }
+
+    /// Everything so far.
+    pub fn counts(&self) -> Counts {
+        self.0.get()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_kind_is_counted_for_itself_and_reductions_send_no_messages() {
+        let traffic = Traffic::default();
+        traffic.count(Kind::HaloSum, 2, 160);
+        let before = traffic.counts();
+        traffic.count(Kind::HaloSum, 2, 80);
+        traffic.count(Kind::Reduction, 0, 24);
+        traffic.count(Kind::Migration, 1, 500);
+        let counts = traffic.counts();
+        assert_eq!(counts.of(Kind::HaloSum), Count { calls: 2, messages: 4, bytes: 240 });
+        assert_eq!((counts.sent(), counts.since(&before).sent()), ([5, 740], [3, 580]));
+        assert_eq!(counts.since(&before).of(Kind::Reduction).calls, 1);
+        let numbers: Vec<f64> = counts.numbers().collect();
+        assert_eq!(numbers, [2.0, 4.0, 240.0, 0.0, 0.0, 0.0, 1.0, 0.0, 24.0, 1.0, 1.0, 500.0]);
+    }
+}
