@@ -136,6 +136,10 @@ impl Halo for MpiHalo {
     fn is_interrupted(&self) -> bool {
         self.requests.stop()
     }
+
+    fn rejects(&self) -> bool {
+        self.requests.take_rejection()
+    }
 }
 
 impl MpiHalo {

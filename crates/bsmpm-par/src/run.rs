@@ -136,15 +136,27 @@ impl<'p> Run<'p> {
             if let Some(fault) = self.fault {
                 fault.strike(self.rank(), step);
             }
+            if due.reject {
+                self.simulation.halo.requests().reject_next();
+            }
             let begin = Instant::now();
             match self.simulation.advance() {
                 None => return self.finish(),
                 Some(Ok(accepted)) => self.accept(&accepted),
-                Some(Err(failure)) if failure.is_interruption() => return self.stop_on_request(),
+                Some(Err(failure)) if failure.is_interruption() && self.simulation.halo.is_interrupted() => {
+                    return self.stop_on_request();
+                }
+                Some(Err(failure)) if failure.is_interruption() => self.make_again(step),
                 Some(Err(failure)) => return self.fail(&failure),
             }
             slowest = slowest.max(begin.elapsed().as_secs_f64());
         }
+    }
+
+    /// A step was given up by a fault on demand, which strikes once.
+    fn make_again(&mut self, step: u64) {
+        self.fault = None;
+        self.warn(format!("step {step} converged and was rejected, as BSMPM_FAULT wants; it is made again"));
     }
 
     /// A warning, told and kept.

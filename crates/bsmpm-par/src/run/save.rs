@@ -39,6 +39,8 @@ pub struct Due {
     pub stop: bool,
     /// write a checkpoint
     pub checkpoint: bool,
+    /// make the step twice
+    pub reject: bool,
 }
 
 impl Run<'_> {
@@ -48,13 +50,16 @@ impl Run<'_> {
         let end = launch::age().as_secs_f64() + 1.5 * slowest + 3.0 * self.saving.cost;
         // Only the first rank knows the tables.
         let soon = self.saving.soon && self.saving.newest != Some(steps);
-        let mut clock = [end, self.saving.last.elapsed().as_secs_f64(), f64::from(soon)];
+        // Nor need every rank have the environment of the one that was given a fault.
+        let reject = self.fault.is_some_and(|fault| fault.rejects(steps + 1));
+        let mut clock = [end, self.saving.last.elapsed().as_secs_f64(), f64::from(soon), f64::from(reject)];
         self.simulation.halo.maximum(&mut clock);
         let counted = wanted.every_steps.is_some_and(|every| steps > 0 && steps.is_multiple_of(every));
         Due {
             stop: self.arguments.max_steps.is_some_and(|most| steps >= most)
                 || self.arguments.max_wall.is_some_and(|limit| clock[0] > limit.as_secs_f64()),
             checkpoint: counted || clock[1] > wanted.wall || clock[2] > 0.0,
+            reject: clock[3] > 0.0,
         }
     }
 

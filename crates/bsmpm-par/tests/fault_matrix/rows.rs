@@ -1,7 +1,7 @@
 //! Every row of the faults: its number in the project's list, how it is brought about, and how often: `[short, full]`.
 
 use crate::table::{Row, row};
-use crate::{damaged, events, footing, kills, places, restart, signals, writing};
+use crate::{damaged, events, footing, kills, places, rejected, restart, signals, writing};
 
 /// All rows. B: everything that the run leaves is the uninterrupted run's to the bit.
 #[rustfmt::skip] // a row is a line
@@ -28,6 +28,9 @@ pub fn all() -> Vec<Row> {
         row("F16", "the short cases, stopped half way and after step 2; B", [12, 160], restart::recover_short),
         row("F16", "the cases of the validation, the same", [0, 12], restart::recover_validation),
         row("F16", "the paper's cases, the same", [0, 4], restart::recover_paper),
+        row("F17", "a step that has converged is rejected and made again; B", [4, 20], rejected::footing),
+        row("F17", "the short cases, the step half way rejected; B", [12, 160], rejected::short),
+        row("F17", "the cases of the validation, the same", [0, 12], rejected::validation),
         row("F18", "the interval of checkpoints changes no bit; B", [1, 1], restart::intervals),
         row("F19", "restart on another number of ranks", [1, 1], restart::other_ranks),
         row("F20", "repeated with ranks that are stopped and let go; B", [1, 10], restart::repeated),
