@@ -14,6 +14,7 @@ use crate::setup;
 use crate::signals::Requests;
 use crate::simulation::Simulation;
 use crate::slab::Slabs;
+use crate::space;
 use crate::timers::Timers;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm_io::directory::OutputDirectory;
@@ -37,13 +38,15 @@ pub(super) fn run(
     let refused = |refusal: Refusal| refuse(universe, refusal.code, &refusal.reason);
     let Task { case, arguments, .. } = &task;
     let held = hold(universe, arguments).map_err(refused)?;
-    let start = restart::plan((hdf5, universe), held.as_ref(), arguments, case).map_err(refused)?;
+    let mut start = restart::plan((hdf5, universe), held.as_ref(), arguments, case).map_err(refused)?;
     if let Start::Complete(code) = start {
         return Ok(refuse(universe, code, &format!("{} is complete already", arguments.directory().display())));
     }
     let timers = Rc::new(Timers::default());
     let seam = (universe, petsc, choice);
-    let scene = scene(seam, case, slabs, &start, (Rc::clone(&timers), requests)).map_err(refused)?;
+    let mut scene = scene(seam, case, slabs, &start, (Rc::clone(&timers), requests)).map_err(refused)?;
+    let told = space::admit(&universe.world(), held.as_ref(), (arguments, case), &mut scene.0).map_err(refused)?;
+    start.warn(told);
     let before = before(&start, &arguments.directory());
     let ledger = ledger(universe, held, (arguments, case), scene.1.columns(), &start).map_err(refused)?;
     if let Start::Resumed(resumed) = start {
