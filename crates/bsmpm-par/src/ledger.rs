@@ -216,9 +216,11 @@ impl Ledger {
 
     /// A frame; the manifest names it before it is there.
     pub fn frame(&mut self, frame: &Frame) -> Result<(), Error> {
-        self.manifest.name_output(&Frames::file(frame.step));
+        let file = Frames::file(frame.step);
+        self.manifest.name_output(&file);
         self.manifest.write(self.directory.path())?;
-        self.frames.write(frame)
+        self.frames.write(frame)?;
+        self.manifest.complete(self.directory.path(), &file)
     }
 
     /// `failure.json`, and what the manifest says of it.

@@ -19,6 +19,7 @@ use crate::simulation::Simulation;
 use crate::surfaces;
 use crate::timers::Timers;
 use bsmpm::control::Accepted;
+use bsmpm::error::StepError;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::seam::Halo;
 use bsmpm::step::Report;
@@ -116,8 +117,10 @@ impl<'p> Run<'p> {
 
     /// Steps to the end of the case, or to what ends the run before; returns the exit code.
     pub fn until_the_end(mut self) -> u8 {
-        if let Err(error) = self.begin() {
-            return self.fail_at_start(error);
+        match self.begin() {
+            Ok(()) => {}
+            Err(StepError::Interrupted) => return self.stop_at_start(),
+            Err(error) => return self.fail_at_start(error),
         }
         let mut slowest = 0.0_f64;
         loop {
@@ -232,6 +235,7 @@ impl<'p> Run<'p> {
     fn frame(&mut self) {
         let timers = Rc::clone(&self.timers);
         let _timed = timers.time("frames");
+        let begin = Instant::now();
         let (step, time) = (self.simulation.steps(), self.simulation.time());
         let frame =
             gather::frame(&self.universe.world(), &self.simulation.points, self.case.grid.lower(), (step, time));
@@ -241,11 +245,15 @@ impl<'p> Run<'p> {
         };
         self.require(written);
         self.last_frame = Some(step);
+        self.saving.frame_took(begin.elapsed());
     }
 
     /// Ends the job if rank 0 could not write: the other ranks do not know of it.
-    fn require(&self, written: Result<(), bsmpm_io::Error>) {
+    fn require(&mut self, written: Result<(), bsmpm_io::Error>) {
         if let Err(error) = written {
+            if let Some(ledger) = &mut self.ledger {
+                ledger.abandon(error.exit_code());
+            }
             launch::end(&self.universe.world(), error.exit_code(), &error);
         }
     }
