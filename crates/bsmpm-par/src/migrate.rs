@@ -4,9 +4,12 @@ use crate::slab::{Slabs, intersection};
 use bsmpm::grid::Grid;
 use bsmpm::points::Points;
 use mpi::collective::CommunicatorCollectives;
-use mpi::datatype::{Partition, PartitionMut};
+use mpi::point_to_point::{Destination, Source};
 use mpi::topology::{Communicator, SimpleCommunicator};
 use std::ops::Range;
+
+/// bytes  Most that one message has: MPI counts in 32 bits.
+const BLOCK: usize = 1 << 30;
 
 /// Sends every point to the rank whose slab it is in, and sorts by cell. `grid` is the window under `slabs`.
 pub fn points<const D: usize>(world: &SimpleCommunicator, slabs: &Slabs, grid: &Grid<D>, points: &mut Points<D>) {
@@ -28,7 +31,7 @@ pub fn points<const D: usize>(world: &SimpleCommunicator, slabs: &Slabs, grid: &
     }
     // Messages are column by column: every column then takes its rows from the message in one run.
     let point_bytes = points.bytes();
-    for message in exchange(world, &outgoing) {
+    for message in exchange(world, outgoing, BLOCK) {
         let arrivals = message.len() / point_bytes;
         let mut rest = &message[..];
         for column in points.columns() {
@@ -61,7 +64,7 @@ pub fn nodal<const D: usize>(
     let window = new.layers(rank, q);
     let mut moved = vec![0.0; window.len() * size];
     // Layers of a rank that sends nothing may begin beyond the window.
-    for (other, message) in exchange(world, &outgoing).into_iter().enumerate().filter(|(_, m)| !m.is_empty()) {
+    for (other, message) in exchange(world, outgoing, BLOCK).into_iter().enumerate().filter(|(_, m)| !m.is_empty()) {
         let layers = intersection(&old.owned_layers(other, q), &window);
         let to = layers.start.saturating_sub(window.start) * size;
         for (slot, bytes) in moved[to..].iter_mut().zip(message.chunks_exact(8)) {
@@ -71,30 +74,32 @@ pub fn nodal<const D: usize>(
     moved
 }
 
-/// Sends message `r` to rank `r` and returns those received, by rank.
-fn exchange(world: &SimpleCommunicator, outgoing: &[Vec<u8>]) -> Vec<Vec<u8>> {
-    let sizes: Vec<i32> =
-        outgoing.iter().map(|message| i32::try_from(message.len()).expect("one message stays below 2 GiB")).collect();
-    let mut incoming = vec![0_i32; sizes.len()];
-    world.all_to_all_into(&sizes[..], &mut incoming[..]);
-    // One byte more than is sent: the address of an empty Vec<u8> is 1, which Open MPI reads as MPI_IN_PLACE.
-    let flat: Vec<u8> = outgoing.iter().flatten().copied().chain([0]).collect();
-    let mut received = vec![0_u8; 1 + incoming.iter().map(|&size| size as usize).sum::<usize>()];
-    let starts = |sizes: &[i32]| -> Vec<i32> {
-        sizes.iter().scan(0, |at, size| Some(std::mem::replace(at, *at + size))).collect()
-    };
-    {
-        let send = Partition::new(&flat[..], &sizes[..], starts(&sizes));
-        let mut receive = PartitionMut::new(&mut received[..], &incoming[..], starts(&incoming));
-        world.all_to_all_varcount_into(&send, &mut receive);
-    }
-    let mut rest = &received[..];
+/// Sends message `r` to rank `r` and returns those received, by rank. Longer messages than a `block` go in several.
+/// Collective.
+pub fn exchange(world: &SimpleCommunicator, mut outgoing: Vec<Vec<u8>>, block: usize) -> Vec<Vec<u8>> {
+    let own = std::mem::take(&mut outgoing[world.rank().unsigned_abs() as usize]);
+    let sizes: Vec<u64> = outgoing.iter().map(|message| message.len() as u64).collect();
+    let mut coming = vec![0_u64; sizes.len()];
+    world.all_to_all_into(&sizes[..], &mut coming[..]);
+    let mut incoming: Vec<Vec<u8>> = coming.iter().map(|&size| vec![0; size as usize]).collect();
+    mpi::request::scope(|scope| {
+        let mut receives = Vec::new();
+        for (other, message) in incoming.iter_mut().enumerate() {
+            let other = world.process_at_rank(other as i32);
+            receives.extend(message.chunks_mut(block).map(|part| other.immediate_receive_into(scope, part)));
+        }
+        let mut sends = Vec::new();
+        for (other, message) in outgoing.iter().enumerate() {
+            let other = world.process_at_rank(other as i32);
+            sends.extend(message.chunks(block).map(|part| other.immediate_send(scope, part)));
+        }
+        receives.into_iter().for_each(|request| {
+            let _ = request.wait();
+        });
+        sends.into_iter().for_each(|request| {
+            let _ = request.wait();
+        });
+    });
+    incoming[world.rank().unsigned_abs() as usize] = own;
     incoming
-        .iter()
-        .map(|&size| {
-            let (message, tail) = rest.split_at(size as usize);
-            rest = tail;
-            message.to_vec()
-        })
-        .collect()
 }
