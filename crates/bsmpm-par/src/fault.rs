@@ -78,7 +78,15 @@ mod tests {
         let fault = Fault { place: Place::Phase(Phase::Midway), step: 4 };
         assert_eq!(Fault::parse("kill:phase=midway,step=4"), Ok(fault));
         assert_eq!(Fault::parse("reject:step=7"), Ok(Fault { place: Place::Convergence, step: 7 }));
-        for wrong in ["reject:rank=1,step=2", "", "panic", "panic:rank=1", "panic:step=1,rank=2", "panic:rank=x,step=1", "hang:rank=1,step=2"] {
+        for wrong in [
+            "reject:rank=1,step=2",
+            "",
+            "panic",
+            "panic:rank=1",
+            "panic:step=1,rank=2",
+            "panic:rank=x,step=1",
+            "hang:rank=1,step=2",
+        ] {
             assert!(Fault::parse(wrong).is_err(), "{wrong}");
         }
         assert!(Fault::parse("kill:phase=never,step=1").is_err() && Fault::parse("kill:rank=1,step=1").is_err());
