@@ -32,7 +32,7 @@ fn accepted(case: &Case) {
         return;
     }
     if estimate.cells <= MOST {
-        crate::setup::model(case).expect("a model of what is accepted");
+        bsmpm_scene::model::model(case).expect("a model of what is accepted");
     }
     let by_column = case.points_by_column();
     assert_eq!((by_column.len(), by_column.iter().sum()), (columns, estimate.points));

@@ -22,19 +22,6 @@ mod table;
 #[path = "../../bsmpm/tests/support/solver.rs"]
 mod solver;
 
-// The program's own way from a case to a model stands with the ranks, although it needs none: it is compiled here with
-// doubles of the two modules that do.
-use alone::{ksp, simulation};
-#[allow(dead_code)] // what only the program asks of it
-#[path = "../../bsmpm-par/src/setup.rs"]
-mod setup;
-#[allow(dead_code)]
-#[path = "../../bsmpm-par/src/slab.rs"]
-mod slab;
-#[allow(dead_code)]
-#[path = "../../bsmpm-par/src/surfaces.rs"]
-mod surfaces;
-
 /// What is fuzzed, by its name.
 #[derive(Clone, Copy, Debug)]
 pub struct Target {

@@ -2,12 +2,11 @@
 
 mod scene;
 
-use crate::alone::simulation::Simulation;
-use crate::setup;
+use crate::alone::Simulation;
 use arbitrary::Unstructured;
 use bsmpm::grid::Grid;
 use bsmpm::points::Points;
-use bsmpm_scene::Case;
+use bsmpm_scene::{Case, model};
 
 /// Points at most.
 const POINTS: u64 = 64;
@@ -26,14 +25,14 @@ pub fn target(data: &[u8]) {
 
 fn try_steps(case: &Case) {
     let told = || format!("in\n{}", case.text);
-    let model = setup::model(case).unwrap_or_else(|error| panic!("{error} {}", told()));
-    let points = setup::points(case, 0..case.grid.axes[0].cells());
-    let mut run = Simulation::new(model, points);
-    if setup::start(case, &mut run).is_err() {
+    let scene = model::model(case).unwrap_or_else(|error| panic!("{error} {}", told()));
+    let points = model::points(case, 0..case.grid.axes[0].cells());
+    let mut run = Simulation::new(scene, points);
+    if run.start(case).is_err() {
         return;
     }
     check(&run.points, &run.model.grid, &told);
-    let schedule = setup::schedule(case);
+    let schedule = model::schedule(case);
     let mut t = 0.0;
     for _ in 0..STEPS {
         let Some(end) = schedule.next(t) else { return };

@@ -23,6 +23,11 @@ pub fn names(step: u64) -> [String; 2] {
     [".h5", ".json"].map(|ending| format!("{FOLDER}/{}{ending}", stem(step)))
 }
 
+/// How many checkpoints an output directory holds, good or not.
+pub fn count(directory: &Path) -> usize {
+    steps(&directory.join(FOLDER), ".json").map_or(0, |steps| steps.len())
+}
+
 /// A checkpoint's name without its ending.
 fn stem(step: u64) -> String {
     format!("step_{step:09}")

@@ -141,7 +141,17 @@ impl Manifest {
         }
     }
 
-    /// Notes the size and hash of every named output as it now stands in `directory`; one that is not there has none.
+    /// Notes the size and hash of a named output that is complete, so that the end of the run need not read it again.
+    ///
+    /// # Errors
+    /// [`Error::File`] when the file cannot be read.
+    pub fn complete(&mut self, directory: &Path, path: &str) -> Result<(), Error> {
+        let output = self.outputs.iter_mut().find(|output| output.path == path);
+        output.map_or(Ok(()), |output| output.complete(directory))
+    }
+
+    /// Notes the size and hash of every named output as it now stands in `directory`; one that is not there has none, and
+    /// one that was complete and has kept its size is not read again.
     ///
     /// # Errors
     /// [`Error::File`] when a file cannot be read.

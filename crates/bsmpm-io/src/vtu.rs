@@ -31,6 +31,17 @@ pub fn write(path: &Path, frame: &Frame) -> Result<(), Error> {
     })
 }
 
+/// Bytes that each point of frames with these fields takes; a head of some kilobytes comes with them.
+pub fn point_bytes(fields: &[Field]) -> u64 {
+    let number = |values: &Values| match values {
+        Values::F64(_) | Values::U64(_) => 8,
+        Values::U16(_) => 2,
+    };
+    let numbers: usize = fields.iter().map(|field| field.components * number(&field.values)).sum();
+    let [place, cell] = [3 * size_of::<f64>(), 2 * size_of::<i64>() + size_of::<u8>()];
+    (numbers + place + cell) as u64
+}
+
 fn write_head(file: &mut impl Write, frame: &Frame, offset: &mut usize) -> io::Result<()> {
     let points = frame.position.len();
     let mut data = arrays(frame);

@@ -14,6 +14,7 @@ pub(crate) use refusal::{agree, broadcast};
 pub(crate) use sense::require;
 pub(crate) use state::pairs;
 pub use state::{BooksForm, Files, RecordState, State};
+pub(crate) use write::room;
 pub use write::{Contents, write};
 
 use bsmpm::points::Column;

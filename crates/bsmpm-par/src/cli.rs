@@ -85,6 +85,9 @@ pub struct Arguments {
     /// Refuse a case that would need more memory on all ranks, e.g. 16GiB (exit 71) [default: what the first rank's host has]
     #[arg(long, value_name = "SIZE", value_parser = size)]
     pub max_memory: Option<u64>,
+    /// Refuse a run whose frames and checkpoints may not fit on the disk (exit 74), instead of warning
+    #[arg(long)]
+    pub strict_space: bool,
     /// No log lines
     #[arg(short, long, conflicts_with = "verbose")]
     pub quiet: bool,

@@ -1,6 +1,6 @@
 //! Faults on demand, in every build, so that what is tested is what is shipped: `BSMPM_FAULT=panic:rank=R,step=N` panics
 //! on rank R when step N begins; `BSMPM_FAULT=kill:phase=P,step=N` kills the rank that writes the checkpoint of step N in
-//! its phase P (opened, midway, ...).
+//! its phase P (opened, midway, ...); `BSMPM_FAULT=reject:step=N` gives step N up when it has converged, and makes it again.
 
 use bsmpm_io::checkpoint::Phase;
 
@@ -15,6 +15,7 @@ pub struct Fault {
 enum Place {
     Rank(usize),
     Phase(Phase),
+    Convergence,
 }
 
 impl Fault {
@@ -32,15 +33,22 @@ impl Fault {
     fn parse(text: &str) -> Result<Self, String> {
         let read = || {
             let (kind, places) = text.split_once(':')?;
-            let (place, step) = places.split_once(',')?;
+            let (place, step) = places.rsplit_once(',').unwrap_or(("", places));
             let place = match kind {
                 "panic" => Place::Rank(place.strip_prefix("rank=")?.parse().ok()?),
                 "kill" => Place::Phase(phase(place.strip_prefix("phase=")?)?),
+                "reject" if place.is_empty() => Place::Convergence,
                 _ => return None,
             };
             Some(Self { place, step: step.strip_prefix("step=")?.parse().ok()? })
         };
-        read().ok_or_else(|| format!("BSMPM_FAULT={text}: expected panic:rank=R,step=N or kill:phase=P,step=N"))
+        let forms = "expected panic:rank=R,step=N, kill:phase=P,step=N or reject:step=N";
+        read().ok_or_else(|| format!("BSMPM_FAULT={text}: {forms}"))
+    }
+
+    /// Whether this step is to be rejected when it has converged.
+    pub fn rejects(self, step: u64) -> bool {
+        (Place::Convergence, step) == (self.place, self.step)
     }
 
     /// Panics if this is the rank and the step.
@@ -69,7 +77,16 @@ mod tests {
         assert_eq!(Fault::parse("panic:rank=1,step=20"), Ok(Fault { place: Place::Rank(1), step: 20 }));
         let fault = Fault { place: Place::Phase(Phase::Midway), step: 4 };
         assert_eq!(Fault::parse("kill:phase=midway,step=4"), Ok(fault));
-        for wrong in ["", "panic", "panic:rank=1", "panic:step=1,rank=2", "panic:rank=x,step=1", "hang:rank=1,step=2"] {
+        assert_eq!(Fault::parse("reject:step=7"), Ok(Fault { place: Place::Convergence, step: 7 }));
+        for wrong in [
+            "reject:rank=1,step=2",
+            "",
+            "panic",
+            "panic:rank=1",
+            "panic:step=1,rank=2",
+            "panic:rank=x,step=1",
+            "hang:rank=1,step=2",
+        ] {
             assert!(Fault::parse(wrong).is_err(), "{wrong}");
         }
         assert!(Fault::parse("kill:phase=never,step=1").is_err() && Fault::parse("kill:rank=1,step=1").is_err());

@@ -2,6 +2,7 @@
 
 use bsmpm::points::Points;
 use bsmpm_io::frame::{Field, Frame, Values};
+use bsmpm_io::vtu;
 use mpi::collective::Root;
 use mpi::datatype::PartitionMut;
 use mpi::topology::{Communicator, SimpleCommunicator};
@@ -36,6 +37,13 @@ pub fn frame(
         frame.fields.retain(|field| field.name != "velocity");
     }
     Some(frame)
+}
+
+/// Bytes that a point takes in a frame's file.
+pub fn point_bytes(dynamic: bool) -> u64 {
+    let mut frame = unpack(&[], [0.0; 2], (0, 0.0));
+    frame.fields.retain(|field| dynamic || field.name != "velocity");
+    vtu::point_bytes(&frame.fields)
 }
 
 fn pack(points: &Points<2>) -> Vec<f64> {

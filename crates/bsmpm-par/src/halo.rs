@@ -82,12 +82,7 @@ impl MpiHalo {
     }
 
     /// Gives every neighbour its message and returns theirs, of the given lengths, in the order of the neighbours.
-    fn exchange(
-        &self,
-        kind: Kind,
-        outgoing: &[Vec<f64>],
-        lengths: impl Fn(&Neighbour) -> usize,
-    ) -> Vec<Vec<f64>> {
+    fn exchange(&self, kind: Kind, outgoing: &[Vec<f64>], lengths: impl Fn(&Neighbour) -> usize) -> Vec<Vec<f64>> {
         let bytes = outgoing.iter().map(|part| size_of_val(&part[..])).sum();
         self.timers.traffic().count(kind, outgoing.len(), bytes);
         let mut incoming: Vec<Vec<f64>> = self.neighbours.iter().map(|other| vec![0.0; lengths(other)]).collect();
@@ -239,5 +234,9 @@ impl Halo for MpiHalo {
 
     fn is_interrupted(&self) -> bool {
         self.requests.stop()
+    }
+
+    fn rejects(&self) -> bool {
+        self.requests.take_rejection()
     }
 }

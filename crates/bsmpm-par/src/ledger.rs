@@ -8,7 +8,6 @@ pub(crate) use first::versions;
 use crate::cli::Arguments;
 use crate::restart::Beginning;
 use crate::simulation::Cost;
-use crate::surfaces;
 use bsmpm::control::Accepted;
 use bsmpm::error::Measures;
 use bsmpm::step::Counts;
@@ -26,6 +25,7 @@ use bsmpm_io::steps::{STEPS, Step};
 use bsmpm_io::table::{Cell, Column, Table};
 use bsmpm_scene::Case;
 use bsmpm_scene::Regime;
+use bsmpm_scene::surfaces;
 
 /// The open files of a run, and what its manifest will say.
 pub struct Ledger {
@@ -224,9 +224,11 @@ impl Ledger {
 
     /// A frame; the manifest names it before it is there.
     pub fn frame(&mut self, frame: &Frame) -> Result<(), Error> {
-        self.manifest.name_output(&Frames::file(frame.step));
+        let file = Frames::file(frame.step);
+        self.manifest.name_output(&file);
         self.manifest.write(self.directory.path())?;
-        self.frames.write(frame)
+        self.frames.write(frame)?;
+        self.manifest.complete(self.directory.path(), &file)
     }
 
     /// `failure.json`, and what the manifest says of it.

@@ -27,7 +27,7 @@ pub mod signals;
 pub mod simulation;
 pub mod slab;
 pub mod source;
+mod space;
 pub mod stencil;
-pub mod surfaces;
 pub mod timers;
 pub mod traffic;

@@ -34,7 +34,7 @@ pub fn points<const D: usize>(
         }
     }
     let point_bytes = points.bytes();
-    for (_, message) in exchange((world, traffic), &outgoing) {
+    for (_, message) in exchange((world, traffic), &outgoing, MESSAGE) {
         let arrivals = message.len() / point_bytes;
         let mut rest = &message[..];
         for column in points.columns() {
@@ -67,7 +67,7 @@ pub fn nodal<const D: usize>(
         }
     }
     let receive = receive.into_iter().filter(|(other, _)| *other != rank);
-    for ((_, message), (_, layers)) in exchange((world, traffic), &outgoing).iter().zip(receive) {
+    for ((_, message), (_, layers)) in exchange((world, traffic), &outgoing, MESSAGE).iter().zip(receive) {
         let slots = &mut moved[(layers.start - window.start) * size..];
         for (slot, bytes) in slots.iter_mut().zip(message.chunks_exact(8)) {
             *slot = f64::from_le_bytes(bytes.try_into().unwrap_or_default());
@@ -76,8 +76,13 @@ pub fn nodal<const D: usize>(
     moved
 }
 
-/// Sends every rank its message, and returns those received; both ascending by rank and without empty ones. Collective.
-fn exchange((world, traffic): (&SimpleCommunicator, &Traffic), outgoing: &[(usize, Vec<u8>)]) -> Vec<(usize, Vec<u8>)> {
+/// Sends every rank its message, and returns those received; both ascending by rank and without empty ones. Longer messages
+/// than a `block` of bytes go in several. Collective.
+pub fn exchange(
+    (world, traffic): (&SimpleCommunicator, &Traffic),
+    outgoing: &[(usize, Vec<u8>)],
+    block: usize,
+) -> Vec<(usize, Vec<u8>)> {
     let mut sizes = vec![0_u64; world.size().unsigned_abs() as usize];
     let mut expected = sizes.clone();
     outgoing.iter().for_each(|(other, message)| sizes[*other] = message.len() as u64);
@@ -85,19 +90,19 @@ fn exchange((world, traffic): (&SimpleCommunicator, &Traffic), outgoing: &[(usiz
     let expected = expected.into_iter().enumerate().filter(|(_, size)| *size > 0);
     let mut incoming: Vec<(usize, Vec<u8>)> =
         expected.map(|(other, size)| (other, vec![0; usize::try_from(size).unwrap_or(usize::MAX)])).collect();
-    let messages = outgoing.iter().map(|(_, message)| message.len().div_ceil(MESSAGE)).sum();
+    let messages = outgoing.iter().map(|(_, message)| message.len().div_ceil(block)).sum();
     traffic.count(Kind::Migration, messages, outgoing.iter().map(|(_, message)| message.len()).sum());
     // Messages between two ranks do not overtake each other.
     mpi::request::scope(|scope| {
         let mut receives = Vec::new();
         for (other, message) in &mut incoming {
             let other = world.process_at_rank(*other as i32);
-            receives.extend(message.chunks_mut(MESSAGE).map(|part| other.immediate_receive_into(scope, part)));
+            receives.extend(message.chunks_mut(block).map(|part| other.immediate_receive_into(scope, part)));
         }
         let mut sends = Vec::with_capacity(messages);
         for (other, message) in outgoing {
             let other = world.process_at_rank(*other as i32);
-            sends.extend(message.chunks(MESSAGE).map(|part| other.immediate_send(scope, part)));
+            sends.extend(message.chunks(block).map(|part| other.immediate_send(scope, part)));
         }
         receives.into_iter().for_each(|request| {
             let _ = request.wait();

@@ -1,7 +1,6 @@
 //! Rows of `history.csv`: the quantities that the case asks for, in the case's own coordinates.
 
 use crate::checkpoint::{BooksForm, RecordState};
-use crate::surfaces::{self, Gauge};
 use bsmpm::energy::{Books, Stored};
 use bsmpm::error::StepError;
 use bsmpm::kinematics::Kinematics;
@@ -11,6 +10,7 @@ use bsmpm::points::Points;
 use bsmpm::seam::Halo;
 use bsmpm::step::Report;
 use bsmpm::tensor::Vector;
+use bsmpm_scene::surfaces::{self, Gauge};
 use bsmpm_scene::{Case, Face, GridSpec, History, Quantity};
 
 /// Place of the vertical normal stress among XX YY ZZ XY YZ XZ.
@@ -98,6 +98,7 @@ impl Recorder {
         Ok(row)
     }
 
+    /// A quantity of all points.
     fn values<K: Kinematics<2>>(
         &self,
         quantity: &Quantity,
@@ -106,46 +107,28 @@ impl Recorder {
         points: &Points<2>,
         halo: &dyn Halo,
     ) -> Result<Vec<f64>, StepError> {
-        let id = followed.unwrap_or(u64::MAX);
+        let [left, bottom] = self.lower.into();
         Ok(match quantity {
             Quantity::Runout { percentile } if *percentile < 100.0 => {
-                vec![self.lower[0] + observe::percentile(points, 0, *percentile, halo)]
+                vec![left + observe::percentile(points, 0, *percentile, halo)]
             }
-            Quantity::Runout { .. } => vec![self.lower[0] + observe::farthest(points, 0, halo)],
-            Quantity::Front => vec![self.lower[0] + observe::front(&model.grid, points, halo)],
-            Quantity::Height { at_x: None } => vec![self.lower[1] + observe::farthest(points, 1, halo)],
+            Quantity::Runout { .. } => vec![left + observe::farthest(points, 0, halo)],
+            Quantity::Front => vec![left + observe::front(&model.grid, points, halo)],
+            Quantity::Height { at_x: None } => vec![bottom + observe::farthest(points, 1, halo)],
             Quantity::Height { at_x: Some(x) } => {
-                let [x, _] = self.grid.local([*x, self.lower[1]]);
-                vec![self.lower[1] + observe::surface(&model.grid, points, x, halo)]
+                let [x, _] = self.grid.local([*x, bottom]);
+                vec![bottom + observe::surface(&model.grid, points, x, halo)]
             }
             Quantity::MaxDisplacement => vec![observe::largest_displacement(points, halo)],
             Quantity::Mass => vec![observe::mass(points, halo)],
             Quantity::Momentum => observe::momentum(points, halo).as_slice().to_vec(),
-            Quantity::Displacement { .. } => observe::at_point(points, id, halo, |p| points.u[p].into()).to_vec(),
-            Quantity::Velocity { .. } => {
-                let velocity = |p: usize| points.motion.as_ref().map_or([0.0; 2], |motion| motion.v[p].into());
-                observe::at_point(points, id, halo, velocity).to_vec()
-            }
-            Quantity::Stress { .. } => {
-                let [xx, yy, zz, xy, ..] = observe::at_point(points, id, halo, |p| points.sigma[p].0);
-                vec![xx, yy, zz, xy]
-            }
-            Quantity::StressNoise => {
-                let noise = noise::stress_noise(&model.grid, points, model.weighting, VERTICAL, halo)?;
-                vec![noise.about_average, noise.about_plane]
-            }
+            Quantity::Heave => vec![observe::heave(points, halo)],
+            Quantity::StressNoise => both(noise::stress_noise(&model.grid, points, model.weighting, VERTICAL, halo)?),
             Quantity::PressureNoise { within } => {
                 let window = within.map(|corners| corners.map(|corner| Vector::from(corner) - self.lower));
-                let noise = noise::pressure_noise(&model.grid, points, model.weighting, window, halo)?;
-                vec![noise.about_average, noise.about_plane]
+                both(noise::pressure_noise(&model.grid, points, model.weighting, window, halo)?)
             }
-            Quantity::Heave => vec![observe::heave(points, halo)],
-            Quantity::Reaction { .. }
-            | Quantity::FootingPressure
-            | Quantity::FootingForce
-            | Quantity::Penetration
-            | Quantity::Slip
-            | Quantity::Energy => Vec::new(),
+            quantity => at_followed(quantity, followed.unwrap_or(u64::MAX), points, halo),
         })
     }
 
@@ -188,5 +171,20 @@ impl Recorder {
         let supports = model.boundary.supports.iter().zip(&report.reactions);
         let mut at_face = supports.filter(|(support, _)| support.axis == face.axis && support.upper == face.upper);
         at_face.next().map_or_else(|| vec![0.0; 2], |(_, force)| force.clone())
+    }
+}
+
+fn both(noise: noise::Noise) -> Vec<f64> {
+    vec![noise.about_average, noise.about_plane]
+}
+
+/// A quantity of the point `id`; of other quantities there is none.
+fn at_followed(quantity: &Quantity, id: u64, points: &Points<2>, halo: &dyn Halo) -> Vec<f64> {
+    let velocity = |p: usize| points.motion.as_ref().map_or([0.0; 2], |motion| motion.v[p].into());
+    match quantity {
+        Quantity::Displacement { .. } => observe::at_point(points, id, halo, |p| points.u[p].into()).to_vec(),
+        Quantity::Velocity { .. } => observe::at_point(points, id, halo, velocity).to_vec(),
+        Quantity::Stress { .. } => observe::at_point(points, id, halo, |p| points.sigma[p].0)[..4].to_vec(),
+        _ => Vec::new(),
     }
 }

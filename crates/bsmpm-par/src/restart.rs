@@ -36,6 +36,17 @@ pub enum Start<'h> {
     Complete(u8),
 }
 
+impl Start<'_> {
+    /// Adds a warning of this start, on the first rank.
+    pub fn warn(&mut self, warning: Option<String>) {
+        match self {
+            Self::New(beginning) => beginning.warnings.extend(warning),
+            Self::Resumed(resumed) => resumed.warnings.extend(warning),
+            Self::Complete(_) => {}
+        }
+    }
+}
+
 /// What a run that starts from its case finds.
 #[derive(Clone, Debug)]
 pub struct Beginning {
@@ -85,16 +96,19 @@ pub fn plan<'h>(
         return Ok(Start::New(Beginning { existing, ..Beginning::default() }));
     };
     let run = agree(&world, held.map_or(Ok(None), OutputDirectory::run).map_err(Refusal::from))?;
+    let auto = *restart == Restart::Auto;
+    if auto {
+        let there = agree(&world, held.map_or(Ok(There::Unfinished), |_| there::look(run.as_ref(), case)))?;
+        match There::of(broadcast(&world, 0, there.bytes())) {
+            There::Nothing => return Ok(Start::New(Beginning::default())),
+            There::Complete(code) => return Ok(Start::Complete(code)),
+            There::Unfinished => {}
+        }
+    }
+    let folder = arguments.directory().join(FOLDER);
     let (found, passed_over) = match restart {
         Restart::From(file) => find(&world, Wanted::Named(file))?,
-        Restart::Auto => {
-            let there = agree(&world, held.map_or(Ok(There::Unfinished), |_| there::look(run.as_ref(), case)))?;
-            match There::of(broadcast(&world, 0, there.bytes())) {
-                There::Nothing => return Ok(Start::New(Beginning::default())),
-                There::Complete(code) => return Ok(Start::Complete(code)),
-                There::Unfinished => find(&world, Wanted::Newest(&arguments.directory().join(FOLDER)))?,
-            }
-        }
+        Restart::Auto => find(&world, Wanted::Newest(&folder))?,
     };
     let Some(found) = found else {
         let anew =
@@ -102,8 +116,17 @@ pub fn plan<'h>(
         return agree(&world, anew).map(Start::New);
     };
     let restarts = run.map_or_else(Vec::new, |run| run.restarts);
-    let hopeless = if *restart == Restart::Auto { there::futile(&restarts, found.record.step) } else { Ok(()) };
-    agree(&world, hopeless)?;
+    agree(&world, if auto { there::futile(&restarts, found.record.step) } else { Ok(()) })?;
+    resume((hdf5, universe), found, (passed_over, restarts), case)
+}
+
+/// Opens a checkpoint that was found, `passed_over` what is wrong with newer ones, if it is of that case. Collective.
+fn resume<'h>(
+    (hdf5, universe): (&'h Hdf5<'h>, &Universe),
+    found: Found,
+    (passed_over, restarts): (Vec<String>, Vec<manifest::Restart>),
+    case: &Case,
+) -> Result<Start<'h>, Refusal> {
     let opened = Opened::new((hdf5, universe.world()), &found)?;
     let state = State::parse(&found.path, &opened.state()?)?;
     let past = &state.files.manifest;
@@ -117,7 +140,7 @@ pub fn plan<'h>(
     }
     let mut warnings: Vec<String> =
         passed_over.into_iter().map(|bad| format!("{bad}; an older checkpoint is used")).collect();
-    warnings.extend(there::other_machine(past, world.size().unsigned_abs(), &found));
+    warnings.extend(there::other_machine(past, universe.world().size().unsigned_abs(), &found));
     warnings.extend(changed.iter().map(|change| format!("since the checkpoint, {change}")));
     Ok(Start::Resumed(Box::new(Resumed { found, state, changed, warnings, restarts, opened })))
 }

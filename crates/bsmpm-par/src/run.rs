@@ -14,11 +14,10 @@ use crate::launch;
 use crate::ledger::Ledger;
 use crate::log::Log;
 use crate::record::Recorder;
-use crate::setup;
 use crate::simulation::Simulation;
-use crate::surfaces;
 use crate::timers::Timers;
 use bsmpm::control::Accepted;
+use bsmpm::error::StepError;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::seam::Halo;
 use bsmpm::step::Report;
@@ -92,7 +91,8 @@ impl<'p> Run<'p> {
         timers: Rc<Timers>,
         mut before: Before,
     ) -> Self {
-        let (start, frame_times, last_frame) = (Instant::now(), setup::frame_times(&case), before.last_frame);
+        let (start, frame_times, last_frame) =
+            (Instant::now(), bsmpm_scene::model::frame_times(&case), before.last_frame);
         let has_gaps = ledger.as_ref().is_some_and(Ledger::has_gaps);
         let newest = (before.resumed && !before.is_branch).then(|| simulation.steps());
         let saving = Saving::new(newest, before.is_branch || has_gaps, simulation.steps());
@@ -118,8 +118,10 @@ impl<'p> Run<'p> {
 
     /// Steps to the end of the case, or to what ends the run before; returns the exit code.
     pub fn until_the_end(mut self) -> u8 {
-        if let Err(error) = self.begin() {
-            return self.fail_at_start(error);
+        match self.begin() {
+            Ok(()) => {}
+            Err(StepError::Interrupted) => return self.stop_at_start(),
+            Err(error) => return self.fail_at_start(error),
         }
         let mut slowest = 0.0_f64;
         loop {
@@ -138,15 +140,27 @@ impl<'p> Run<'p> {
             if let Some(fault) = self.fault {
                 fault.strike(self.rank(), step);
             }
+            if due.reject {
+                self.simulation.halo.requests().reject_next();
+            }
             let begin = Instant::now();
             match self.simulation.advance() {
                 None => return self.finish(),
                 Some(Ok(accepted)) => self.accept(&accepted),
-                Some(Err(failure)) if failure.is_interruption() => return self.stop_on_request(),
+                Some(Err(failure)) if failure.is_interruption() && self.simulation.halo.is_interrupted() => {
+                    return self.stop_on_request();
+                }
+                Some(Err(failure)) if failure.is_interruption() => self.make_again(step),
                 Some(Err(failure)) => return self.fail(&failure),
             }
             slowest = slowest.max(begin.elapsed().as_secs_f64());
         }
+    }
+
+    /// A step was given up by a fault on demand, which strikes once.
+    fn make_again(&mut self, step: u64) {
+        self.fault = None;
+        self.warn(format!("step {step} converged and was rejected, as BSMPM_FAULT wants; it is made again"));
     }
 
     /// A warning, told and kept.
@@ -191,7 +205,7 @@ impl<'p> Run<'p> {
     fn tell_strips_without_material(&mut self, accepted: &Accepted) {
         for (number, _) in accepted.report.strips.iter().enumerate().filter(|(_, strip)| strip.held == 0) {
             if self.told_strips.insert(number) {
-                let name = surfaces::name_of_strip(&self.case, number);
+                let name = bsmpm_scene::surfaces::name_of_strip(&self.case, number);
                 self.warn(format!("{name} holds nothing: at t = {} no free material is at it", accepted.t));
             }
         }
@@ -223,6 +237,7 @@ impl<'p> Run<'p> {
     fn frame(&mut self) {
         let timers = Rc::clone(&self.timers);
         let _timed = timers.time("frames");
+        let begin = Instant::now();
         let (step, time) = (self.simulation.steps(), self.simulation.time());
         let frame =
             gather::frame(&self.universe.world(), &self.simulation.points, self.case.grid.lower(), (step, time));
@@ -232,11 +247,15 @@ impl<'p> Run<'p> {
         };
         self.require(written);
         self.last_frame = Some(step);
+        self.saving.frame_took(begin.elapsed());
     }
 
     /// Ends the job if rank 0 could not write: the other ranks do not know of it.
-    fn require(&self, written: Result<(), bsmpm_io::Error>) {
+    fn require(&mut self, written: Result<(), bsmpm_io::Error>) {
         if let Err(error) = written {
+            if let Some(ledger) = &mut self.ledger {
+                ledger.abandon(error.exit_code());
+            }
             launch::end(&self.universe.world(), error.exit_code(), &error);
         }
     }

@@ -1,108 +1,28 @@
-//! From a valid case to a model and its points: the only place where the case's words become the physics' types.
+//! What a run needs of its case beside the model: the first cut, the linear solver, what is told of it in the manifest.
 
 use crate::ksp::Choice;
 use crate::load;
 use crate::simulation::{Simulation, StartStress};
 use crate::slab::Slabs;
-use crate::surfaces;
-use bsmpm::background::Background;
-use bsmpm::boundary::{Boundary, Support};
-use bsmpm::error::{GridError, StepError};
-use bsmpm::grid::{Grid, KnotVector};
+use bsmpm::error::StepError;
 use bsmpm::kinematics::PlaneStrain;
-use bsmpm::model::{Criteria, Gravity, Model, Weighting};
-use bsmpm::points::Points;
-use bsmpm::schedule::Schedule;
+use bsmpm::model::Weighting;
 use bsmpm::stabilisation::Stabilisation;
-use bsmpm::step::equilibrium::Nonlinear;
-use bsmpm::step::quasi_newton::QuasiNewton;
-use bsmpm::tensor::{Symmetric, Vector};
 use bsmpm_io::manifest;
-use bsmpm_scene::{Axis, Case, Every, Initial, Quantity, Regime};
-use std::marker::PhantomData;
-
-/// The model of a plane-strain case over its whole grid.
-pub fn model(case: &Case) -> Result<Model<PlaneStrain, 2>, GridError> {
-    let order = case.grid.order;
-    let axis = |axis: &Axis| match axis {
-        Axis::Uniform { cell, cells, .. } => KnotVector::uniform(*cell, *cells, order),
-        Axis::Graded(breakpoints) => KnotVector::graded(breakpoints, order),
-    };
-    let background = (case.solver.background > 0.0).then_some(Background {
-        kind: case.solver.background_kind,
-        coefficient: case.solver.background,
-        extent: case.solver.background_cells,
-    });
-    let beyond = background.map_or(0, |background| background.kind.beyond());
-    let grid = Grid::new([axis(&case.grid.axes[0])?, axis(&case.grid.axes[1])?])?.reaching(beyond);
-    Ok(Model {
-        materials: case.materials.iter().map(|named| named.material.clone()).collect(),
-        regime: case.analysis.regime,
-        newmark: case.analysis.newmark,
-        weighting: weighting(case),
-        gravity: case
-            .gravity
-            .as_ref()
-            .map(|gravity| Gravity { acceleration: gravity.acceleration.into(), ramp: gravity.ramp }),
-        boundary: boundary(case, &grid),
-        grid,
-        stabilisation: case.stabilisation,
-        background,
-        criteria: Criteria {
-            energy: case.solver.tolerance,
-            force: case.solver.force_tolerance,
-            max_iterations: case.solver.max_iterations,
-        },
-        nonlinear: match case.solver.nonlinear {
-            bsmpm_scene::Nonlinear::Auto => Nonlinear::Auto,
-            bsmpm_scene::Nonlinear::Broyden => Nonlinear::QuasiNewton(QuasiNewton::Broyden),
-            bsmpm_scene::Nonlinear::Newton => Nonlinear::Newton,
-        },
-        balances_energy: case.histories.iter().any(|history| history.quantity == Quantity::Energy),
-        kinematics: PhantomData,
-    })
-}
-
-fn boundary(case: &Case, grid: &Grid<2>) -> Boundary<2> {
-    let mut supports = Vec::new();
-    for (axis, faces) in case.boundary.iter().enumerate() {
-        for (upper, support) in [false, true].into_iter().zip(faces) {
-            match support {
-                bsmpm_scene::Support::Fixed => supports.push(Support::fixed(axis, upper)),
-                bsmpm_scene::Support::Roller => supports.push(Support::roller(axis, upper)),
-                bsmpm_scene::Support::Free => {}
-            }
-        }
-    }
-    Boundary { supports, strips: surfaces::strips(case, grid, penalty(case)), loads: surfaces::loads(case, grid) }
-}
-
-/// Penalty of the rigid strips, Pa/m.
-fn penalty(case: &Case) -> f64 {
-    let stiffest = case.materials.iter().map(|named| named.material.elastic().young).fold(0.0, f64::max);
-    surfaces::penalty(stiffest, case.grid.axes.iter().map(Axis::shortest).fold(f64::INFINITY, f64::min))
-}
-
-/// The points of the columns of one slab.
-pub fn points(case: &Case, columns: std::ops::Range<usize>) -> Points<2> {
-    Points::from_seeds(bsmpm_scene::seed(case, columns), case.analysis.regime == Regime::Dynamic)
-}
+use bsmpm_scene::model::{at_rest, penalty, weighting};
+use bsmpm_scene::{Axis, Case, Initial};
 
 /// Gives the points the stress that the case wants at the start, and tells how well it is balanced.
 pub fn start(
     case: &Case,
     simulation: &mut Simulation<'_, PlaneStrain, 2>,
 ) -> Result<Option<manifest::Initial>, StepError> {
-    let lower = case.grid.lower();
-    let at_rest = |k0: &[f64], material: u16, x: &Vector<2>| {
-        let vertical = -case.overburden([lower[0] + x[0], lower[1] + x[1]]);
-        let horizontal = k0[usize::from(material)] * vertical;
-        Symmetric([horizontal, vertical, horizontal, 0.0, 0.0, 0.0])
-    };
     let found = match &case.initial {
         None => return Ok(None),
         Some(Initial::Elastic) => simulation.stress(StartStress::Elastic)?,
-        Some(Initial::AtRest(k0)) => simulation.stress(StartStress::Given(&|material, x| at_rest(k0, material, x)))?,
+        Some(Initial::AtRest(k0)) => {
+            simulation.stress(StartStress::Given(&|material, x| at_rest(case, k0, material, x)))?
+        }
     };
     Ok(Some(manifest::Initial { unbalance: found.force, yielding: found.yielding }))
 }
@@ -112,22 +32,6 @@ pub fn slabs(case: &Case, ranks: usize) -> Option<Slabs> {
     let counts: Vec<f64> = case.points_by_column().into_iter().map(|count| count as f64).collect();
     let layer_nodes = case.grid.axes[1].cells() + case.grid.order;
     Slabs::cut(&load::by_column(&counts, layer_nodes), ranks)
-}
-
-/// Steps and the times that they must hit: frames, pictures and checks.
-pub fn schedule(case: &Case) -> Schedule {
-    let checks = case.checks.iter().map(|check| check.at);
-    Schedule::new(case.analysis.dt, case.analysis.end, frame_times(case).into_iter().chain(checks))
-}
-
-/// Times at which a frame is wanted, apart from the start, the end and every so many steps.
-pub fn frame_times(case: &Case) -> Vec<f64> {
-    let mut times = case.output.times.clone();
-    if let Some(Every::Time(every)) = case.output.every {
-        let count = (case.analysis.end / every).floor() as u64;
-        times.extend((1..=count).map(|k| k as f64 * every));
-    }
-    times
 }
 
 /// The linear solver of a run on so many ranks with further `options` of PETSc.
@@ -243,9 +147,4 @@ fn smoothing(case: &Case, steps: u64) -> Option<(f64, f64)> {
     });
     let length = (steps as f64 * (case.grid.order as f64 + 1.0) / 6.0).sqrt() * h;
     Some((length, edges.fold(f64::INFINITY, f64::min)))
-}
-
-fn weighting(case: &Case) -> Weighting {
-    let all_have_mass = case.bodies.iter().all(|body| case.materials[body.material].density.is_some());
-    if all_have_mass { Weighting::Mass } else { Weighting::Volume }
 }

@@ -20,6 +20,7 @@ pub struct Requests {
     save: Arc<AtomicBool>,
     stop_agreed: Cell<bool>,
     save_agreed: Cell<bool>,
+    reject: Cell<bool>, // no signal, but a fault that all ranks know of
 }
 
 impl Requests {
@@ -51,6 +52,16 @@ impl Requests {
     /// Whether the run is to stop.
     pub fn stop(&self) -> bool {
         self.stop_agreed.get()
+    }
+
+    /// Wants the next step that converges to be given up.
+    pub fn reject_next(&self) {
+        self.reject.set(true);
+    }
+
+    /// Whether a step that has converged is to be given up; asked once, the next one is not.
+    pub fn take_rejection(&self) -> bool {
+        self.reject.take()
     }
 
     /// Whether a frame and a checkpoint are wanted; asked once, they are no longer.

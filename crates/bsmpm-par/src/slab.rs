@@ -110,9 +110,8 @@ impl Slabs {
     /// Layers that a rank shares with another one, ascending, and which columns of either touch them.
     pub fn shared_layers(&self, (rank, other): (usize, usize), q: usize) -> Vec<SharedLayer> {
         let (first, reach) = (self.bounds[rank], q + self.beyond);
-        let touching = |rank: usize, layer: usize| {
-            intersection(&self.columns(rank), &(layer.saturating_sub(reach)..layer + 1))
-        };
+        let touching =
+            |rank: usize, layer: usize| intersection(&self.columns(rank), &(layer.saturating_sub(reach)..layer + 1));
         let shared = |layer: usize| {
             let own = touching(rank, layer);
             SharedLayer {

@@ -2,26 +2,19 @@
 
 mod support;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 use support::processes::{self, Output};
-use support::{PROGRAM, Scratch, entries};
+use support::{Scratch, entries, example};
 
 /// Points enough for several chunks, the last of them not full.
 const MANY: &str = "40000";
 const FEW: &str = "50";
 
-/// The example, built together with the tests.
-fn program() -> PathBuf {
-    let program = Path::new(PROGRAM).with_file_name("examples").join("checkpoints");
-    assert!(program.is_file(), "cargo build --example checkpoints, with the profile of this test, makes {program:?}");
-    program
-}
-
 fn run(ranks: usize, arguments: &[&str]) -> Output {
     let mut launcher = Command::new("mpirun");
-    launcher.args(["-q", "--oversubscribe", "-n", &ranks.to_string()]).arg(program()).args(arguments);
+    launcher.args(["-q", "--oversubscribe", "-n", &ranks.to_string()]).arg(example("checkpoints")).args(arguments);
     processes::run(launcher, &[], true, Duration::from_secs(120))
 }
 
@@ -88,7 +81,7 @@ fn a_killed_writer_always_leaves_a_good_checkpoint() {
     let directory = at(&scratch, "");
     run(1, &["write", &directory, MANY, "1"]).expect(0);
     for time in 0..times {
-        let mut command = Command::new(program());
+        let mut command = Command::new(example("checkpoints"));
         command.args(["storm", &directory, MANY]).env("OMP_NUM_THREADS", "1").stdin(Stdio::null());
         // Killed processes leave MPI's files; other runs must not stumble over them.
         command.env("TMPDIR", scratch.path(""));
@@ -188,7 +181,8 @@ fn on_a_full_disk_nothing_is_written_and_the_older_checkpoint_stays() {
 fn where_files_must_not_grow_nothing_is_written_and_the_older_checkpoint_stays() {
     let scratch = Scratch::new();
     run(2, &["write", &at(&scratch, ""), FEW, "1"]).expect(0);
-    let limited = format!("ulimit -f 12000; exec {} write {} {MANY} 2", program().display(), at(&scratch, ""));
+    let limited =
+        format!("ulimit -f 12000; exec {} write {} {MANY} 2", example("checkpoints").display(), at(&scratch, ""));
     let mut alone = Command::new("bash");
     alone.args(["-c", &limited]);
     let output = processes::run(alone, &[], true, Duration::from_secs(60)).expect(74);

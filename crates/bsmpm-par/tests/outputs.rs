@@ -205,6 +205,7 @@ fn complete(directory: &Path, manifest: &Manifest) {
     there.sort();
     assert_eq!(named, there);
     let mut sealed = manifest.clone();
+    sealed.outputs.iter_mut().for_each(|output| (output.bytes, output.blake3) = (None, None));
     sealed.seal(directory).unwrap();
     assert_eq!(sealed.outputs, manifest.outputs, "sizes and hashes are those of the files");
     assert!(manifest.outputs.iter().all(|output| output.blake3.is_some()));

@@ -3,9 +3,11 @@
 mod support;
 
 use std::collections::BTreeSet;
+use std::process::Command;
+use std::time::Duration;
 use support::cases::{SLIDING_BLOCK, changed};
 use support::results::{all_frames, differences, history, last_frame, manifest};
-use support::{Scratch, shipped};
+use support::{Scratch, example, processes, shipped};
 
 /// Asserts that the last frames of runs on these numbers of ranks agree with the first one's to `tolerance`, relative to
 /// the largest number of each field.
@@ -53,6 +55,16 @@ fn the_filter_of_consistent_f_bar_and_gaps_are_the_same_on_1_2_and_3_ranks() {
     for case in [case, gaping] {
         let scratch = Scratch::with_case(&case);
         agree(&scratch, "case.toml", &["--set", "analysis.end=0.04"], &[1, 2, 3], 1e-9);
+    }
+}
+
+/// MPI counts in 32 bits: what is longer goes in blocks, here of some bytes.
+#[test]
+fn messages_longer_than_a_block_arrive_whole_on_1_2_3_and_4_ranks() {
+    for (ranks, block) in [(1, "16"), (2, "1"), (3, "7"), (4, "4096")] {
+        let mut launcher = Command::new("mpirun");
+        launcher.args(["-q", "--oversubscribe", "-n", &ranks.to_string()]).arg(example("exchange")).arg(block);
+        processes::run(launcher, &[], true, Duration::from_secs(120)).expect(0);
     }
 }
 

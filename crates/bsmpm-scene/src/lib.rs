@@ -7,7 +7,9 @@
 //! bounded count per column of cells of a body that is no box.
 #![forbid(unsafe_code)]
 
+pub mod model;
 pub mod schema;
+pub mod surfaces;
 pub mod unit;
 
 mod case;

@@ -204,11 +204,7 @@ fn add_gravity<K: Kinematics<D>, const D: usize>(
 }
 
 /// Work of the points' stress, and what became of it before any smoothing.
-fn add_internal<K: Kinematics<D>, const D: usize>(
-    flows: &mut Flows<Exact>,
-    scene: &Scene<'_, K, D>,
-    found: &Found<D>,
-) {
+fn add_internal<K: Kinematics<D>, const D: usize>(flows: &mut Flows<Exact>, scene: &Scene<'_, K, D>, found: &Found<D>) {
     let Scene { model, shape, points, .. } = *scene;
     let balance_of = |p: usize, grad: Square<D>| {
         let volume = points.volume[p];

@@ -43,7 +43,7 @@ pub fn set_stress<K: Kinematics<D>, const D: usize>(
 }
 
 /// Gives every point the stress of linear elastic equilibrium under the loads at time 0. Fails if the system cannot be
-/// solved, or a load has no material.
+/// solved, a load has no material, or somebody wants it to be given up.
 pub fn set_elastic<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     points: &mut Points<D>,
@@ -60,6 +60,9 @@ pub fn set_elastic<K: Kinematics<D>, const D: usize>(
         let residual = elastic_residual(&scene, &strains, &u);
         if residual.measure() <= BALANCED {
             break;
+        }
+        if halo.is_interrupted() {
+            return Err(StepError::Interrupted);
         }
         solver.solve(&residual.f_oob, &mut du)?;
         u.iter_mut().zip(&du).for_each(|(u, du)| *u += du);

@@ -31,6 +31,11 @@ pub trait Halo {
     fn is_interrupted(&self) -> bool {
         false
     }
+    /// Whether a step that has converged is to be given up all the same, on all ranks: what shows that an attempt leaves no
+    /// trace.
+    fn rejects(&self) -> bool {
+        false
+    }
 }
 
 /// Dot products of nodal vectors (`width` numbers a node) over all nodes, each counted once, in one reduction.

@@ -95,6 +95,9 @@ pub fn step<K: Kinematics<D>, const D: usize>(
         position: load::moved(&model.boundary.loads, &points.surface, (&model.grid, &nodes.active), &found.u, halo),
     };
     let draft = model.balances_energy.then(|| Draft::of(&scene, &found, (t, dt)));
+    if halo.rejects() {
+        return Err(StepError::Interrupted);
+    }
     *guess = commit::commit(model, &shape, &nodes, found, points, halo)?; // (10), (11)
     let energy = draft.map(|draft| draft.close(model, points, &surface, halo));
     points.surface = surface;

@@ -28,10 +28,8 @@ pub(crate) use array::Array;
 use array::{extent, number, space, strange_storage};
 
 use crate::error::{Error, Result};
-use crate::shape::{Number, Shape};
+use crate::shape::{CHUNK, Number, Shape};
 
-/// Rows of a chunk.
-const CHUNK: u64 = 16_384;
 /// Bytes of the longest name of an array, its end included.
 const NAME: usize = 256;
 

@@ -19,5 +19,5 @@ mod writer;
 pub use error::{Error, Result};
 pub use library::{Hdf5, version};
 pub use reader::Reader;
-pub use shape::{Number, Shape};
+pub use shape::{Number, Shape, room};
 pub use writer::Writer;

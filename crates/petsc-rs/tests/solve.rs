@@ -5,6 +5,7 @@ mod support;
 
 use mpi::environment::Universe;
 use petsc_rs::{Error, Ksp, Matrix, NormType, Petsc, Symmetry, Tolerances, Vector};
+use support::classes::classes;
 use support::{Captured, enter_directory_with_petscrc, prepare_environment};
 
 /// Rows on each rank.
@@ -21,6 +22,7 @@ const CHECKS: &[Check] = &[
     ("PETSc's own Cholesky", serial_cholesky),
     ("a singular matrix is an error, and leaves no trace", singular),
     ("NaN on the right-hand side", not_a_number),
+    ("every kind of failure has its class", classes),
     ("refused arguments are errors on every rank", refused),
     ("PETSc's errors are values and print nothing", silent),
     ("rigid body modes", rigid_body_modes),

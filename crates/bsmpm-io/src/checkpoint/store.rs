@@ -5,17 +5,15 @@ use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::process;
 
-use rustix::fs::{FallocateFlags, fallocate, statvfs};
+use rustix::fs::{FallocateFlags, fallocate};
 use rustix::io::Errno;
 use rustix::process::{Resource, getrlimit};
 
 use super::find::{Found, named};
 use super::record::{Array, Record, SCHEMA};
 use super::{FOLDER, file, stem, steps};
-use crate::Error;
+use crate::{Error, disk};
 
-/// Rows of a chunk in the file.
-const CHUNK: u64 = 16_384;
 /// How the names of files begin that are not complete.
 const TEMPORARY: &str = ".tmp-";
 
@@ -127,15 +125,15 @@ impl Store {
         Ok(found)
     }
 
-    /// Begins the checkpoint of a step: an empty file at [`Pending::path`], on a disk that has room for these arrays.
+    /// Begins the checkpoint of a step: an empty file at [`Pending::path`], on a disk that has room for so many bytes.
     ///
     /// # Errors
     /// [`Error::Space`] where it has not; [`Error::File`] when the system refuses otherwise. Nothing is left then.
-    pub fn begin(&self, step: u64, arrays: &[Array]) -> Result<Pending, Error> {
+    pub fn begin(&self, step: u64, bytes: u64) -> Result<Pending, Error> {
         let name = |ending| self.folder.join(format!("{TEMPORARY}{}-{}{ending}", process::id(), stem(step)));
         let pending = Pending { step, path: name(".h5"), record: name(".json") };
         File::create(&pending.path).map_err(Error::file("create", &pending.path))?;
-        pending.reserve(arrays)?;
+        pending.reserve(bytes)?;
         Ok(pending)
     }
 
@@ -208,12 +206,11 @@ impl Pending {
         &self.path
     }
 
-    /// Takes room on the disk for a file with these arrays: writers that find none may crash, or wait for each other.
+    /// Takes room on the disk for a file of so many bytes: writers that find none may crash, or wait for each other.
     ///
     /// # Errors
     /// [`Error::Space`] where there is none; [`Error::File`] when the system refuses otherwise.
-    pub fn reserve(&self, arrays: &[Array]) -> Result<(), Error> {
-        let needed = room(arrays);
+    pub fn reserve(&self, needed: u64) -> Result<(), Error> {
         let lacks = |available: String| Error::Space { path: self.path.clone(), needed, available };
         // Beyond the limit the system would not refuse but end the process.
         if let Some(limit) = getrlimit(Resource::Fsize).current.filter(|&limit| limit < needed) {
@@ -237,24 +234,9 @@ impl Drop for Pending {
     }
 }
 
-/// Bytes of an HDF5 file with these arrays, rather too many: chunks of 16,384 rows, of which the last one is whole, too, a
-/// share for each chunk's checksum and place in the index, for each array's header, and for the file's.
-fn room(arrays: &[Array]) -> u64 {
-    let own = |array: &Array| {
-        let chunks = array.rows.div_ceil(CHUNK);
-        let rows = if chunks > 1 { chunks.saturating_mul(CHUNK) } else { array.rows };
-        let bytes = Array { rows, ..array.clone() }.bytes().unwrap_or(u64::MAX);
-        bytes.saturating_add(256 * chunks + 8192)
-    };
-    arrays.iter().map(own).fold(1 << 14, u64::saturating_add)
-}
-
 fn free(path: &Path) -> String {
     let folder = path.parent().unwrap_or(path);
-    statvfs(folder).map_or_else(
-        |_| "more than there are".into(),
-        |found| format!("the disk has {} left", found.f_bavail * found.f_frsize),
-    )
+    disk::free(folder).map_or_else(|_| "more than there are".into(), |bytes| format!("the disk has {bytes} left"))
 }
 
 fn record(facts: &Facts, arrays: Vec<Array>, (bytes, blake3): (u64, String)) -> Record {

@@ -13,6 +13,8 @@ use crate::utc::utc;
 
 /// Variables by which batch systems tell a job's number, which it keeps when it is started again.
 const JOBS: [&str; 3] = ["SLURM_JOB_ID", "PBS_JOBID", "LSB_JOBID"];
+/// By which Slurm tells how often a job has been started again; the steps of one start share it.
+const RESTARTS: &str = "SLURM_RESTART_COUNT";
 /// bytes  More than any holder's text.
 const LONGEST: u64 = 4096;
 
@@ -25,6 +27,8 @@ pub(super) struct Holder {
     pid: u32,
     started: Option<u64>, // ticks since `boot`: numbers of processes are used again
     job: Option<String>,
+    #[serde(default)]
+    restarts: u64, // of the job
     since: String, // UTC
 }
 
@@ -51,6 +55,7 @@ impl Holder {
             pid: std::process::id(),
             started: start_of(std::process::id()),
             job: JOBS.iter().find_map(job),
+            restarts: std::env::var(RESTARTS).ok().and_then(|count| count.parse().ok()).unwrap_or(0),
             since: utc(SystemTime::now()),
         }
     }
@@ -71,9 +76,16 @@ impl Holder {
     /// What has become of this holder, seen by `own`; `owner` is the user to whom its file belongs.
     pub fn fate(&self, own: &Self, owner: u32) -> Fate {
         match self.seen_from(own, owner) {
-            Fate::Unseen if self.job.is_some() && self.job == own.job => Fate::Gone("this job has been started again"),
+            Fate::Unseen if self.was_started_again(own) => Fate::Gone("this job has been started again"),
             fate => fate,
         }
+    }
+
+    /// Whether `own` is of a later start of this holder's job. Slurm counts the starts; of others it is believed that a job
+    /// does not run itself twice in one directory.
+    fn was_started_again(&self, own: &Self) -> bool {
+        let counted = self.job.as_ref().is_some_and(|job| job.starts_with(JOBS[0]));
+        self.job.is_some() && self.job == own.job && (!counted || own.restarts > self.restarts)
     }
 
     fn seen_from(&self, own: &Self, owner: u32) -> Fate {
@@ -161,11 +173,17 @@ mod tests {
 
     #[test]
     fn what_is_elsewhere_is_unseen_unless_this_job_has_been_started_again() {
-        let own = Holder { job: Some("SLURM_JOB_ID=7".into()), ..Holder::this_process() };
+        let own = Holder { job: Some("SLURM_JOB_ID=7".into()), restarts: 1, ..Holder::this_process() };
+        let before = Holder { restarts: 0, ..own.clone() };
         for elsewhere in
-            [Holder { host: "other".into(), ..own.clone() }, Holder { namespace: "other".into(), ..own.clone() }]
+            [Holder { host: "other".into(), ..before.clone() }, Holder { namespace: "other".into(), ..before.clone() }]
         {
             assert!(matches!(elsewhere.fate(&own, user()), Fate::Gone(_)));
+            // Another step of the same start, which may go on.
+            assert_eq!(Holder { restarts: 1, ..elsewhere.clone() }.fate(&own, user()), Fate::Unseen);
+            let uncounted = Some("PBS_JOBID=7".to_owned());
+            let [then, now] = [&elsewhere, &own].map(|holder| Holder { job: uncounted.clone(), ..holder.clone() });
+            assert!(matches!(Holder { restarts: 1, ..then }.fate(&now, user()), Fate::Gone(_)));
             for job in [None, Some("SLURM_JOB_ID=8".to_owned())] {
                 assert_eq!(Holder { job, ..elsewhere.clone() }.fate(&own, user()), Fate::Unseen);
             }

@@ -52,6 +52,20 @@ fn a_frame_reads_back_to_the_bit() {
 }
 
 #[test]
+fn the_bytes_of_a_point_are_those_that_a_frame_grows_by() {
+    let dir = tempfile::tempdir().unwrap();
+    let size = |points: usize| {
+        let path = dir.path().join("frame.vtu");
+        vtu::write(&path, &frame(points)).unwrap();
+        std::fs::metadata(&path).unwrap().len()
+    };
+    // As many digits in both heads.
+    let grown = size(2000) - size(1000);
+    let head = grown.abs_diff(1000 * vtu::point_bytes(&frame(0).fields));
+    assert!(head < 32, "{head} bytes of longer offsets");
+}
+
+#[test]
 fn a_number_that_is_not_finite_is_named_and_nothing_is_written() {
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join("bad.vtu");

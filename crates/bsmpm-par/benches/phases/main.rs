@@ -69,7 +69,7 @@ fn measure(
     rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build_global()?;
     let text = bsmpm_scene::load(Path::new(case))?;
     let case = Case::from_bytes(case, &text, set).map_err(|errors| format!("{errors:?}"))?;
-    let model = setup::model(&case)?;
+    let model = bsmpm_scene::model::model(&case)?;
     let (points, time) = state(universe, Path::new(path), &model)?;
     let slabs = Slabs::new(vec![0, model.grid.columns().end], 1, model.grid.columns().end).ok_or("no columns")?;
     let (timers, requests) = (Rc::new(Timers::default()), Rc::new(Requests::default()));
@@ -79,7 +79,8 @@ fn measure(
     let mut solver = KspSolver::new(&petsc, choice, &model.grid, Rc::clone(&halo), timers);
     println!("| {} points, {:.4} s | ns per point | of a step with one iteration |", points.len(), time);
     println!("| --- | --- | --- |");
-    let bench = kernels::Bench { model: &model, points: &points, halo: &*halo, times: (time, case.analysis.dt), seconds };
+    let bench =
+        kernels::Bench { model: &model, points: &points, halo: &*halo, times: (time, case.analysis.dt), seconds };
     bench.run(&mut solver)?;
     println!("| bytes of a point; with its shape functions and a trial state | {} |", kernels::bytes(points, &model)?);
     let (triad, multiply_add) = (machine::triad(seconds), machine::multiply_add(seconds));

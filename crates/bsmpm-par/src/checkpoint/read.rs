@@ -65,6 +65,7 @@ impl<'h> Opened<'h> {
     pub fn new((hdf5, world): (&'h Hdf5<'h>, SimpleCommunicator), found: &Found) -> Result<Self, Refusal> {
         let refused = |reason: String| refused(&found.path, &reason);
         let library = |error: hdf5_collective::Error| refused(error.to_string());
+        visible(&world, found)?;
         let reader = agree(&world, Reader::open(hdf5, &found.path).map_err(library))?;
         let arrays = reader.arrays().map_err(library);
         let arrays = agree(&world, arrays.and_then(|arrays| recorded(arrays, found).map_err(refused)))?;
@@ -148,6 +149,18 @@ impl<'h> Opened<'h> {
             Err(refused(&self.path, &format!("the array {name} is of another kind")))
         }
     }
+}
+
+/// Refuses a file that not all ranks see as the first one has: the library would wait for a rank that cannot open it, or
+/// each would read another. Collective.
+fn visible(world: &SimpleCommunicator, found: &Found) -> Result<(), Refusal> {
+    let size = std::fs::File::open(&found.path).and_then(|file| file.metadata()).map(|there| there.len());
+    let own = match size {
+        Ok(bytes) if bytes == found.record.bytes => Ok(()),
+        Ok(bytes) => Err(format!("rank {} sees {bytes} bytes, its record says {}", world.rank(), found.record.bytes)),
+        Err(error) => Err(format!("rank {} cannot read it: {error}", world.rank())),
+    };
+    agree(world, own.map_err(|reason| refused(&found.path, &reason)))
 }
 
 fn refused(path: &Path, reason: &str) -> Refusal {

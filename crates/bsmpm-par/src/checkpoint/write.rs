@@ -4,7 +4,7 @@ use super::refusal::{Refusal, agree, broadcast};
 use super::{GUESS, STATE, form, named};
 use crate::{exit, launch};
 use bsmpm::points::{Column, Number};
-use bsmpm_io::checkpoint::{Array, Facts, Found, Pending, Phase, Store};
+use bsmpm_io::checkpoint::{Facts, Found, Pending, Phase, Store};
 use hdf5_collective::{Hdf5, Shape, Writer};
 use mpi::collective::{CommunicatorCollectives, SystemOperation};
 use mpi::topology::{Communicator, SimpleCommunicator};
@@ -40,8 +40,9 @@ pub fn write(
     at: &dyn Fn(Phase),
 ) -> Result<Option<Found>, Refusal> {
     agree(world, finite(facts.step, contents))?;
-    let arrays = arrays(world, contents);
-    let begun = store.map(|store| begin(store, facts, &arrays)).transpose();
+    let shapes = shapes(world, contents);
+    let room = hdf5_collective::room(shapes.iter().map(|&(_, shape)| shape));
+    let begun = store.map(|store| begin(store, facts, room)).transpose();
     let (existing, pending) = match agree(world, begun)? {
         None => (None, None),
         Some(Begun::Existing(found)) => (Some(found), None),
@@ -53,8 +54,10 @@ pub fn write(
         return Ok(existing);
     }
     let path = PathBuf::from(OsStr::from_bytes(&path));
+    visible(world, &path)?;
     let fill = Fill { hdf5, world, path: &path, at };
-    fill.all(pending.as_ref(), &arrays, contents)?;
+    fill.all(pending.as_ref(), room, contents)?;
+    let arrays = shapes.into_iter().map(|(name, shape)| named(name, shape)).collect();
     let committed = store.zip(pending).map(|(store, pending)| store.commit(pending, facts, arrays, at));
     agree(world, committed.transpose().map_err(Refusal::from))
 }
@@ -64,15 +67,20 @@ enum Begun {
     Pending(Pending),
 }
 
-fn begin(store: &Store, facts: &Facts, arrays: &[Array]) -> Result<Begun, Refusal> {
+fn begin(store: &Store, facts: &Facts, room: u64) -> Result<Begun, Refusal> {
     Ok(match store.existing(facts)? {
         Some(found) => Begun::Existing(found),
-        None => Begun::Pending(store.begin(facts.step, arrays)?),
+        None => Begun::Pending(store.begin(facts.step, room)?),
     })
 }
 
-/// What the record will say of the arrays. Collective.
-fn arrays(world: &SimpleCommunicator, contents: &Contents<'_>) -> Vec<Array> {
+/// Bytes of a checkpoint with these contents, rather too many. Collective.
+pub(crate) fn room(world: &SimpleCommunicator, contents: &Contents<'_>) -> u64 {
+    hdf5_collective::room(shapes(world, contents).into_iter().map(|(_, shape)| shape))
+}
+
+/// The arrays of all ranks. Collective.
+fn shapes(world: &SimpleCommunicator, contents: &Contents<'_>) -> Vec<(&'static str, Shape)> {
     let mut own: Vec<u64> = contents.columns.iter().map(|(_, column)| column.rows() as u64).collect();
     let (guess, width) = contents.guess;
     own.push((guess.len() / width) as u64);
@@ -83,10 +91,21 @@ fn arrays(world: &SimpleCommunicator, contents: &Contents<'_>) -> Vec<Array> {
         let (number, width) = form(column);
         Shape { number, rows, width }
     };
-    let columns = contents.columns.iter().zip(all).map(|((name, column), rows)| named(name, shape((&**column, rows))));
+    let columns = contents.columns.iter().zip(all).map(|((name, column), rows)| (*name, shape((&**column, rows))));
     let text = Shape { number: hdf5_collective::Number::U8, rows: contents.state.len() as u64, width: 1 };
     let guess = Shape { number: hdf5_collective::Number::F64, rows: layers, width: width as u64 };
-    columns.chain([named(GUESS, guess), named(STATE, text)]).collect()
+    columns.chain([(GUESS, guess), (STATE, text)]).collect()
+}
+
+/// Refuses a file that not all ranks see: the library would wait for a rank that cannot open it, or each host would fill
+/// one of its own. Collective.
+fn visible(world: &SimpleCommunicator, path: &Path) -> Result<(), Refusal> {
+    let opened = std::fs::File::options().write(true).open(path);
+    let told = |error: std::io::Error| {
+        let (rank, path) = (world.rank(), path.display());
+        format!("rank {rank} cannot write {path}: {error}; the output directory must be one that all ranks share")
+    };
+    agree(world, opened.map(|_| ()).map_err(|error| Refusal::new(exit::WRITE, told(error))))
 }
 
 /// No number that is not finite ever reaches a file.
@@ -129,11 +148,11 @@ struct Fill<'a> {
 }
 
 impl Fill<'_> {
-    fn all(&self, pending: Option<&Pending>, arrays: &[Array], contents: &Contents<'_>) -> Result<(), Refusal> {
+    fn all(&self, pending: Option<&Pending>, room: u64, contents: &Contents<'_>) -> Result<(), Refusal> {
         let created = Writer::create(self.hdf5, self.path);
         let mut writer = created.map_err(|error| Refusal::new(exit::WRITE, self.reason(&error)))?;
         // HDF5 has emptied the file, and given the room back.
-        let reserved = pending.map_or(Ok(()), |pending| pending.reserve(arrays));
+        let reserved = pending.map_or(Ok(()), |pending| pending.reserve(room));
         agree(self.world, reserved.map_err(Refusal::from)).unwrap_or_else(|refusal| self.end(&refusal.reason));
         (self.at)(Phase::Opened);
         let filled = self.columns(&mut writer, contents).and_then(|()| {

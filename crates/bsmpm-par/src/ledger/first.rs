@@ -50,7 +50,7 @@ pub(super) fn manifest(arguments: &Arguments, case: &Case, ranks: usize) -> Mani
 
 fn picture_times(case: &Case) -> Vec<f64> {
     if case.output.times.is_empty() {
-        setup::frame_times(case).last().copied().into_iter().collect()
+        bsmpm_scene::model::frame_times(case).last().copied().into_iter().collect()
     } else {
         case.output.times.clone()
     }

@@ -1,7 +1,7 @@
 //! Going on with a run's files, and what a checkpoint must know of them.
 
 use super::{Headings, Ledger, first};
-use crate::checkpoint::Files;
+use crate::checkpoint::{Files, State};
 use crate::cli::Arguments;
 use crate::restart::Resumed;
 use bsmpm_io::Error;
@@ -32,32 +32,18 @@ impl Ledger {
         news.extend(held.note().map(str::to_owned));
         let headings = Headings::of(case, &columns);
         let directory = claim(held, &headings, &mut manifest, resumed)?;
-        let files = &resumed.state.files;
-        let mut has_gaps = false;
-        let mut table = |name: &str, headings: &[Column], mark: &Mark| {
-            let path = here.join(name);
-            if path.exists() {
-                return Table::resume(&path, headings, mark);
-            }
-            let first = resumed.state.steps + 1;
-            has_gaps = true;
-            news.push(format!("{name} of the steps before is not there: it begins with step {first}"));
-            Table::create(&path, headings)
-        };
-        let residuals = headings.residuals.as_ref().zip(files.residuals.as_ref());
-        let residuals = residuals.map(|(headings, mark)| table(RESIDUALS, headings, mark)).transpose()?;
-        let history = table(HISTORY, &headings.history, &files.history)?;
-        let steps = table(STEPS, &headings.steps, &files.steps)?;
+        let known = news.len();
+        let tables = headings.resume(&here, &resumed.state, &mut news)?;
         let older = manifest.warnings.clone();
         manifest.warnings.extend(news.iter().filter(|warning| !older.contains(warning)).cloned());
         Ok(Self {
-            residuals,
-            history,
-            steps,
-            frames: Frames::resume(&here, files.frames.clone())?,
+            residuals: tables.residuals,
+            history: tables.history,
+            steps: tables.steps,
+            frames: Frames::resume(&here, resumed.state.files.frames.clone())?,
             store: None,
+            has_gaps: news.len() > known,
             news,
-            has_gaps,
             keep: case.output.checkpoint.keep,
             end: case.analysis.end,
             dt: case.analysis.dt,
@@ -95,12 +81,43 @@ impl Ledger {
         let path = self.directory.path();
         let folder = format!("{}/", checkpoint::FOLDER);
         self.manifest.outputs.retain(|output| !output.path.starts_with(&folder) || path.join(&output.path).exists());
-        self.manifest.checkpoint = found.path.strip_prefix(path).ok().map(|path| path.to_string_lossy().into_owned());
+        let name = found.path.strip_prefix(path).ok().map(|path| path.to_string_lossy().into_owned());
+        for output in self.manifest.outputs.iter_mut().filter(|output| Some(&output.path) == name.as_ref()) {
+            (output.bytes, output.blake3) = (Some(found.record.bytes), Some(found.record.blake3.clone()));
+        }
+        self.manifest.checkpoint = name;
         self.manifest.write(path)
     }
 }
 
+/// The tables of a run that goes on.
+struct Tables {
+    history: Table,
+    steps: Table,
+    residuals: Option<Table>,
+}
+
 impl Headings {
+    /// The tables as far as they were; one that is not there begins anew, which is told in the `news`.
+    fn resume(&self, directory: &Path, state: &State, news: &mut Vec<String>) -> Result<Tables, Error> {
+        let mut table = |name: &str, headings: &[Column], mark: &Mark| {
+            let path = directory.join(name);
+            if path.exists() {
+                return Table::resume(&path, headings, mark);
+            }
+            let first = state.steps + 1;
+            news.push(format!("{name} of the steps before is not there: it begins with step {first}"));
+            Table::create(&path, headings)
+        };
+        let files = &state.files;
+        let residuals = self.residuals.as_ref().zip(files.residuals.as_ref());
+        Ok(Tables {
+            residuals: residuals.map(|(headings, mark)| table(RESIDUALS, headings, mark)).transpose()?,
+            history: table(HISTORY, &self.history, &files.history)?,
+            steps: table(STEPS, &self.steps, &files.steps)?,
+        })
+    }
+
     /// Nothing of a run is touched whose tables are not those of the checkpoint.
     fn verify(&self, directory: &Path, files: &Files) -> Result<(), Error> {
         let marked =

@@ -10,15 +10,16 @@ use crate::log::Log;
 use crate::record::Recorder;
 use crate::restart::{self, Resumed, Start};
 use crate::run::{Before, Run, Task};
-use crate::setup;
 use crate::signals::Requests;
 use crate::simulation::Simulation;
 use crate::slab::Slabs;
+use crate::space;
 use crate::timers::Timers;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm_io::directory::OutputDirectory;
 use bsmpm_io::lock::Unseen;
 use bsmpm_io::table::Column;
+use bsmpm_scene::model::{model, points, schedule};
 use hdf5_collective::Hdf5;
 use mpi::environment::Universe;
 use mpi::topology::Communicator;
@@ -37,13 +38,15 @@ pub(super) fn run(
     let refused = |refusal: Refusal| refuse(universe, refusal.code, &refusal.reason);
     let Task { case, arguments, .. } = &task;
     let held = hold(universe, arguments).map_err(refused)?;
-    let start = restart::plan((hdf5, universe), held.as_ref(), arguments, case).map_err(refused)?;
+    let mut start = restart::plan((hdf5, universe), held.as_ref(), arguments, case).map_err(refused)?;
     if let Start::Complete(code) = start {
         return Ok(refuse(universe, code, &format!("{} is complete already", arguments.directory().display())));
     }
     let timers = Rc::new(Timers::default());
     let seam = (universe, petsc, choice);
-    let scene = scene(seam, case, slabs, &start, (Rc::clone(&timers), requests)).map_err(refused)?;
+    let mut scene = scene(seam, case, slabs, &start, (Rc::clone(&timers), requests)).map_err(refused)?;
+    let told = space::admit(&universe.world(), held.as_ref(), (arguments, case), &mut scene.0).map_err(refused)?;
+    start.warn(told);
     let before = before(&start, &arguments.directory());
     let ledger = ledger(universe, held, (arguments, case), scene.1.columns(), &start).map_err(refused)?;
     if let Start::Resumed(resumed) = start {
@@ -73,8 +76,8 @@ fn scene<'p>(
     shared: (Rc<Timers>, Rc<Requests>),
 ) -> Result<Scene<'p>, Refusal> {
     let universe = seam.0;
-    let model = setup::model(case).map_err(|error| Refusal::new(exit::CASE, error.to_string()))?;
-    let schedule = setup::schedule(case);
+    let model = model(case).map_err(|error| Refusal::new(exit::CASE, error.to_string()))?;
+    let schedule = schedule(case);
     if let Start::Resumed(resumed) = start {
         let (slabs, points, stepper) = resumed.read(universe, &model, &schedule)?;
         let surface = points.surface.clone();
@@ -84,7 +87,7 @@ fn scene<'p>(
         let foreign = || Refusal::new(exit::CHECKPOINT, "the checkpoint is of a run with other histories");
         return Ok((simulation, recorder.ok_or_else(foreign)?));
     }
-    let points = setup::points(case, slabs.columns(universe.world().rank().unsigned_abs() as usize));
+    let points = points(case, slabs.columns(universe.world().rank().unsigned_abs() as usize));
     let simulation = Simulation::new(seam, model, (slabs, points), schedule, shared);
     let recorder = Recorder::new(case, &simulation.points, &*simulation.halo);
     Ok((simulation, recorder))

@@ -57,8 +57,8 @@ fn is_later(change: &Difference) -> bool {
     number(&change.was).zip(number(&change.is)).is_none_or(|(was, is)| is > was)
 }
 
-/// How a run begins anew in whose directory there is no checkpoint: only if it was killed before it had one, so that
-/// nothing is deleted that had been kept.
+/// How a run begins anew in whose directory there is no checkpoint: only if it was killed or stopped before it had one, so
+/// that nothing is deleted that had been kept.
 pub(super) fn anew(run: Option<&Manifest>, passed_over: &[String], ranks: i32) -> Result<Beginning, Refusal> {
     let refused = |reason: String| Err(Refusal::new(exit::CHECKPOINT, reason));
     if let Some(bad) = passed_over.first() {
@@ -68,7 +68,9 @@ pub(super) fn anew(run: Option<&Manifest>, passed_over: &[String], ranks: i32) -
     if let Some(gone) = &run.checkpoint {
         return refused(format!("the checkpoint {gone}, which run.json names, is gone; --force starts the run anew"));
     }
-    if run.status != Status::Running && run.exit_code != Some(exit::WRITE) {
+    // One that was stopped has a checkpoint, unless that was before it had found its first state.
+    let kept_nothing = [Some(exit::WRITE), Some(exit::STOPPED)].contains(&run.exit_code);
+    if run.status != Status::Running && !kept_nothing {
         let told = format!("{:?}", run.status).to_lowercase();
         return refused(format!(
             "the run in the output directory has {told} and left no checkpoint to go on from; --force starts it anew"
@@ -87,9 +89,7 @@ pub(super) fn anew(run: Option<&Manifest>, passed_over: &[String], ranks: i32) -
     Ok(Beginning {
         existing: Existing::Delete,
         restarts: run.restarts.iter().cloned().chain([restart]).collect(),
-        warnings: vec![
-            "the run that is there was killed before its first checkpoint: it starts again from the case".into(),
-        ],
+        warnings: vec!["the run that is there ended before its first checkpoint: it starts again from the case".into()],
     })
 }
 

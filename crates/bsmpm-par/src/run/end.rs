@@ -17,6 +17,14 @@ impl Run<'_> {
         self.end(Status::Stopped, exit::STOPPED)
     }
 
+    /// Ends the run before it has a state to go on from: it starts anew.
+    pub(super) fn stop_at_start(mut self) -> u8 {
+        self.log.line("stop", "stopped by a signal before the stress at the start was found; nothing is saved");
+        let written = self.ledger.as_mut().map_or(Ok(()), |ledger| ledger.close(Status::Stopped, exit::STOPPED));
+        self.require(written);
+        exit::STOPPED
+    }
+
     /// Ends a run that came to the end of the case.
     pub(super) fn finish(self) -> u8 {
         let mut failed = [0.0];

@@ -7,23 +7,29 @@ use bsmpm::seam::Halo;
 use bsmpm_io::checkpoint::{Facts, Found, Phase};
 use mpi::topology::Communicator;
 use std::rc::Rc;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
-/// When the last checkpoint was written, and what it cost.
-#[derive(Debug)]
+/// When the last checkpoint was written, and what it and the frames cost.
+#[derive(Clone, Copy, Debug)]
 pub struct Saving {
     newest: Option<u64>, // step
     soon: bool,          // what there is cannot be gone on from as it should
     first: u64,          // steps when this program began
     last: Instant,
-    cost: f64, // s; until there is one, the time that it took to start
+    cost: f64,  // s; until there is one, the time that it took to start
+    frame: f64, // s  that the slowest frame took
 }
 
 impl Saving {
     /// At the start of a run after `first` steps, whose newest checkpoint is of that step; another one is wanted soon if
     /// the directory has none, or none that fits its tables.
     pub fn new(newest: Option<u64>, soon: bool, first: u64) -> Self {
-        Self { newest, soon, first, last: Instant::now(), cost: launch::age().as_secs_f64() }
+        Self { newest, soon, first, last: Instant::now(), cost: launch::age().as_secs_f64(), frame: 0.0 }
+    }
+
+    /// Notes what a frame took.
+    pub fn frame_took(&mut self, time: Duration) {
+        self.frame = self.frame.max(time.as_secs_f64());
     }
 
     /// Whether this is the first step that this program has made.
@@ -39,22 +45,27 @@ pub struct Due {
     pub stop: bool,
     /// write a checkpoint
     pub checkpoint: bool,
+    /// make the step twice
+    pub reject: bool,
 }
 
 impl Run<'_> {
     /// What is due, if a step may take as long as the `slowest` (s) so far and half as long again.
     pub(super) fn due(&self, slowest: f64) -> Due {
         let (steps, wanted) = (self.simulation.steps(), &self.case.output.checkpoint);
-        let end = launch::age().as_secs_f64() + 1.5 * slowest + 3.0 * self.saving.cost;
+        let end = launch::age().as_secs_f64() + 1.5 * slowest + 3.0 * self.saving.cost + 1.5 * self.saving.frame;
         // Only the first rank knows the tables.
         let soon = self.saving.soon && self.saving.newest != Some(steps);
-        let mut clock = [end, self.saving.last.elapsed().as_secs_f64(), f64::from(soon)];
+        // Nor need every rank have the environment of the one that was given a fault.
+        let reject = self.fault.is_some_and(|fault| fault.rejects(steps + 1));
+        let mut clock = [end, self.saving.last.elapsed().as_secs_f64(), f64::from(soon), f64::from(reject)];
         self.simulation.halo.maximum(&mut clock);
         let counted = wanted.every_steps.is_some_and(|every| steps > 0 && steps.is_multiple_of(every));
         Due {
             stop: self.arguments.max_steps.is_some_and(|most| steps >= most)
                 || self.arguments.max_wall.is_some_and(|limit| clock[0] > limit.as_secs_f64()),
             checkpoint: counted || clock[1] > wanted.wall || clock[2] > 0.0,
+            reject: clock[3] > 0.0,
         }
     }
 
@@ -93,8 +104,8 @@ impl Run<'_> {
             self.log.line("checkpoint", &format!("checkpoint of step {step}: {mebibytes:.1} MiB in {seconds:.2} s"));
             self.require(written);
         }
-        let (last, cost, first) = (Instant::now(), begin.elapsed().as_secs_f64(), self.saving.first);
-        self.saving = Saving { newest: Some(step), soon: false, first, last, cost };
+        let (last, cost) = (Instant::now(), begin.elapsed().as_secs_f64());
+        self.saving = Saving { newest: Some(step), soon: false, last, cost, ..self.saving };
         Ok(())
     }
 

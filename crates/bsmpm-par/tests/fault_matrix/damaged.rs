@@ -1,7 +1,7 @@
 //! Checkpoints that are damaged, foreign or hostile: refused by name, passed over by `auto`.
 
-use crate::ground::{Ground, Trial, example, spread};
-use crate::support::processes;
+use crate::ground::{Ground, Trial, spread};
+use crate::support::{example, processes};
 use crate::table::{Tried, trials};
 use std::os::unix::fs::symlink;
 use std::path::{Path, PathBuf};

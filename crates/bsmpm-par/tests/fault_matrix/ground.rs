@@ -2,7 +2,7 @@
 
 use crate::support::driver::Depth;
 use crate::support::results::{manifest, steps};
-use crate::support::{Job, PROGRAM, Running, Scratch, entries, processes, shipped};
+use crate::support::{Job, Running, Scratch, entries, example, processes, shipped};
 use bsmpm_io::manifest::{Manifest, Status};
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -231,13 +231,6 @@ fn arrays(file: &Path) -> String {
     let mut command = Command::new(example("arrays"));
     command.arg(file);
     processes::start_beside(command, &[], crate::support::Ears::Open, Duration::from_secs(HANGS)).end().expect(0).stdout
-}
-
-/// An example, built together with the tests.
-pub fn example(name: &str) -> PathBuf {
-    let program = Path::new(PROGRAM).with_file_name("examples").join(name);
-    assert!(program.is_file(), "cargo build --release --examples makes {program:?}");
-    program
 }
 
 /// Numbers between 0 and 1 that fill the interval evenly, others for each `salt`.

@@ -2,6 +2,7 @@
 
 use crate::ground::{Ground, RUN, results, same};
 use crate::support::cases::{SLIDING_BLOCK, changed};
+use crate::support::results::manifest;
 use crate::support::{Ears, PROGRAM, Scratch, processes, shipped};
 use crate::table::{Tried, trials};
 use std::fs::{Permissions, set_permissions};
@@ -149,19 +150,57 @@ pub fn unheard(ground: &Ground, _: usize) -> Tried {
     tried.figure(|_| "a full disk, a reader that is gone: B".into())
 }
 
-/// The clock that limits a run must not be one that people set.
-pub fn clock(_: &Ground, _: usize) -> Tried {
-    let sources = [include_str!("../../src/run/save.rs"), include_str!("../../src/launch.rs")];
+/// A library whose clocks, those that people set, are a day ahead or behind, and change that all the time.
+const SET_CLOCKS: &str = r#"#define _GNU_SOURCE
+#include <dlfcn.h>
+#include <sys/time.h>
+#include <time.h>
+static long jump(void) { static unsigned calls; return ++calls / 20 % 2 ? 86400 : -86400; }
+int clock_gettime(clockid_t id, struct timespec *t) {
+    int (*real)(clockid_t, struct timespec *) = (int (*)(clockid_t, struct timespec *))dlsym(RTLD_NEXT, "clock_gettime");
+    int code = real(id, t);
+    if (id == CLOCK_REALTIME || id == CLOCK_REALTIME_COARSE) t->tv_sec += jump();
+    return code;
+}
+int gettimeofday(struct timeval *t, void *zone) {
+    struct timespec now;
+    clock_gettime(CLOCK_REALTIME, &now);
+    t->tv_sec = now.tv_sec, t->tv_usec = now.tv_nsec / 1000;
+    return 0;
+}
+time_t time(time_t *t) {
+    struct timespec now;
+    clock_gettime(CLOCK_REALTIME, &now);
+    if (t) *t = now.tv_sec;
+    return now.tv_sec;
+}
+"#;
+
+/// The clock that limits a run is not one that people set.
+pub fn clock(ground: &Ground, _: usize) -> Tried {
+    let trial = ground.trial(1);
+    let library = trial.scratch.path("clocks.so");
+    trial.scratch.write("clocks.c", SET_CLOCKS);
+    let mut compiler = Command::new("cc");
+    compiler.args(["-shared", "-fPIC", "clocks.c", "-o", "clocks.so", "-ldl"]).current_dir(trial.scratch.path(""));
+    if !compiler.status().is_ok_and(|status| status.success()) {
+        return Tried::not("no C compiler");
+    }
+    let whole = ground.whole(1);
     let tried = trials(1, |_| {
-        assert!(
-            sources[0].contains("launch::age()") && sources[0].contains("max_wall"),
-            "where the limit is looked at"
-        );
-        assert!(sources[1].contains("OnceLock<Instant>"), "what it is compared with");
-        assert!(sources.iter().all(|source| !source.contains("SystemTime")), "a clock that may jump");
+        let mut command = Command::new(PROGRAM);
+        command.args(["case.toml", "-q", "-o", RUN, "--restart", "auto", "--max-wall", "00:10:00"]);
+        command.current_dir(trial.scratch.path("")).env("LD_PRELOAD", &library);
+        let output = processes::start_beside(command, &[], Ears::Open, Duration::from_secs(120)).end().expect(0);
+        same(&results(&trial.directory()), &whole.results);
+        let found = manifest(&trial.directory());
+        let today = bsmpm_io::utc::now();
+        assert_ne!(found.start[..10], today[..10], "the clock was set");
+        let (wall, elapsed) = (found.timers["wall"], output.elapsed.as_secs_f64());
+        assert!((0.0..=elapsed).contains(&wall), "run.json tells {wall} s of {elapsed}");
         0.0
     });
-    tried.figure(|_| "Instant only".into()).remark("read in the source; no clock was set")
+    tried.figure(|_| "days ahead and behind: no limit reached, B".into())
 }
 
 /// Material that leaves the grid: 81 with a checkpoint, from which it leaves again.

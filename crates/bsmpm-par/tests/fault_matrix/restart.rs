@@ -27,7 +27,7 @@ pub fn chain(ground: &Ground, _: usize) -> Tried {
 }
 
 /// What a run of any case left.
-fn left(scratch: &Scratch, name: &str) -> Results {
+pub fn left(scratch: &Scratch, name: &str) -> Results {
     results(&scratch.path(name))
 }
 
@@ -60,7 +60,7 @@ fn recovered(cases: &[PathBuf], most: u64) -> Tried {
     tried.figure(|_| format!("{} cases", cases.len())).remark(&format!("steps: {}", told.join(", ")))
 }
 
-fn cases(folder: &str) -> Vec<PathBuf> {
+pub fn cases(folder: &str) -> Vec<PathBuf> {
     let entries = std::fs::read_dir(shipped(folder)).unwrap().map(|entry| entry.unwrap().path());
     let is_case =
         |path: &PathBuf| path.extension().is_some_and(|ending| ending == "toml") && !path.ends_with("matrix.toml");

@@ -1,7 +1,7 @@
 //! Every row of the faults: its number in the project's list, how it is brought about, and how often: `[short, full]`.
 
 use crate::table::{Row, row};
-use crate::{damaged, events, footing, kills, places, restart, signals, writing};
+use crate::{apart, damaged, events, footing, kills, places, rejected, restart, signals, solver, writing};
 
 /// All rows. B: everything that the run leaves is the uninterrupted run's to the bit.
 #[rustfmt::skip] // a row is a line
@@ -17,6 +17,7 @@ pub fn all() -> Vec<Row> {
         row("F06", "full disk under a checkpoint; B", [1, 10], writing::full_disk),
         row("F06", "files must not grow as large as a checkpoint; B", [1, 5], writing::small_files),
         row("F07", "full disk under the frames; B", [1, 5], writing::full_frames),
+        row("F08", "a disk too small for what is to come", [1, 1], writing::foreseen),
         row("F09", "USR1 to mpirun at any instant; no step is lost, B", [2, 20], signals::usr1),
         row("F10", "USR1 to one rank; no step is lost, B", [1, 10], signals::usr1_to_a_rank),
         row("F11", "USR2: a frame and a checkpoint; B but for the frames", [1, 5], signals::usr2),
@@ -28,6 +29,9 @@ pub fn all() -> Vec<Row> {
         row("F16", "the short cases, stopped half way and after step 2; B", [12, 160], restart::recover_short),
         row("F16", "the cases of the validation, the same", [0, 12], restart::recover_validation),
         row("F16", "the paper's cases, the same", [0, 4], restart::recover_paper),
+        row("F17", "a step that has converged is rejected and made again; B", [4, 20], rejected::footing),
+        row("F17", "the short cases, the step half way rejected; B", [12, 160], rejected::short),
+        row("F17", "the cases of the validation, the same", [0, 12], rejected::validation),
         row("F18", "the interval of checkpoints changes no bit; B", [1, 1], restart::intervals),
         row("F19", "restart on another number of ranks", [1, 1], restart::other_ranks),
         row("F20", "repeated with ranks that are stopped and let go; B", [1, 10], restart::repeated),
@@ -43,12 +47,15 @@ pub fn all() -> Vec<Row> {
         row("F28", "a second run in the same directory", [1, 5], places::second_run),
         row("F29", "the lock of a run that was killed on another host", [1, 2], places::stale_lock),
         row("F30", "panic on the first and on the last rank; B", [2, 10], kills::panic),
+        row("F31", "files that one rank cannot see", [1, 1], apart::files),
+        row("F32", "linear solves that diverge", [1, 1], solver::diverging),
         row("F33", "no convergence: 80, and from there on", [1, 1], restart::no_convergence),
+        row("F34", "material is turned inside out", [1, 1], solver::folded),
         row("F35", "a point leaves the grid: 81, and --restart auto in a loop", [1, 1], places::left),
         row("F36", "ranks without points; more ranks than columns of cells", [1, 1], places::idle_ranks),
         row("F37", "more memory than there may be", [1, 1], places::memory),
         row("F38", "nobody listens", [1, 1], places::unheard),
-        row("F39", "clocks that jump", [1, 1], places::clock),
+        row("F39", "clocks that jump; B", [1, 1], places::clock),
         row("F40", "a slow disk; B", [1, 1], writing::slow),
         row("all", "strip footing killed ten times, on 2, 3, 1, 2, ... ranks: p/c", [0, 1], footing::killed),
     ]

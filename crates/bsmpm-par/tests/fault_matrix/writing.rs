@@ -1,8 +1,8 @@
 //! Checkpoints while they are written: order on the disk, full disks, slow disks, a writer that is killed all the time.
 
-use crate::ground::{Ground, INTERVAL, RUN, Trial, example, results, same, same_but_for_frames, spread};
+use crate::ground::{Ground, INTERVAL, RUN, Trial, results, same, same_but_for_frames, spread};
 use crate::support::results::manifest;
-use crate::support::{Ears, PROGRAM, Scratch, entries, processes};
+use crate::support::{Ears, PROGRAM, Scratch, entries, example, processes};
 use crate::table::{Tried, trials};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -112,6 +112,46 @@ pub fn full_disk(ground: &Ground, count: usize) -> Tried {
     tried.figure(|_| "74 with bytes needed and left; then B".into())
 }
 
+/// A disk that is seen to be too small before the first step; what is told that the run may need, over what it takes.
+pub fn foreseen(ground: &Ground, _: usize) -> Tried {
+    let whole = ground.whole(2);
+    let (frame, checkpoint) = sizes(ground);
+    let frames = whole.results.keys().filter(|name| name.ends_with(".vtu")).count() as u64;
+    let takes = frames * frame + 3 * checkpoint;
+    if Disk::new(Scratch::new().path("disk"), 1 << 20).is_none() {
+        return Tried::not("no right to mount a disk");
+    }
+    let told = "the run may write ";
+    let tried = trials(3, |index| {
+        let trial = ground.trial(2);
+        let room = if index == 2 { 2 * takes } else { takes - checkpoint };
+        let disk = Disk::new(trial.directory(), room).expect("a disk");
+        let short = ["--max-steps", "2", "--strict-space"];
+        match index {
+            0 => {
+                let output = trial.start(&short, &[]).end().expect(74);
+                output.says_once(told);
+                assert_eq!(entries(&trial.directory()), [""; 0]);
+                let mebibytes = output.said().split_once(told).unwrap().1.split_once(' ').unwrap().0.parse::<f64>();
+                let ratio = mebibytes.unwrap() * f64::from(1 << 20) / takes as f64;
+                assert!((0.95..1.5).contains(&ratio), "{ratio}");
+                return ratio;
+            }
+            1 => {
+                trial.start(&short[..2], &[]).end().expect(75);
+                trial.has_warned(told);
+            }
+            _ => {
+                trial.start(&short, &[]).end().expect(75);
+                assert!(!manifest(&trial.directory()).warnings.iter().any(|warning| warning.contains(told)));
+            }
+        }
+        drop(disk);
+        0.0
+    });
+    tried.figure(|ratio| format!("warned; --strict-space: 74; estimate {ratio} of what it takes"))
+}
+
 /// Files that must not grow as large as a checkpoint.
 pub fn small_files(ground: &Ground, count: usize) -> Tried {
     let whole = ground.whole(2);
@@ -143,6 +183,7 @@ pub fn full_frames(ground: &Ground, count: usize) -> Tried {
         let disk = Disk::new(trial.directory().join("frames"), room).expect("a disk");
         let output = trial.start(&[], &[]).end().expect(74);
         assert!(output.said().contains("frames/"), "{output:?}");
+        assert_eq!(manifest(&trial.directory()).exit_code, Some(74), "run.json tells how it ended");
         let frames = entries(&trial.directory().join("frames"));
         assert!(frames.iter().all(|name| size(&disk.0.join(name)) > 100_000), "half a frame: {frames:?}");
         disk.grow();
@@ -215,14 +256,15 @@ pub fn order(ground: &Ground, _: usize) -> Tried {
 /// A disk that takes a twentieth of a second for each sync.
 pub fn slow(ground: &Ground, _: usize) -> Tried {
     let whole = ground.whole(1);
-    let mut share = 0.0;
+    let trial = ground.trial(1);
+    let slow = ["-e", "trace=fsync,fdatasync", "-e", "inject=fsync,fdatasync:delay_exit=50000"];
+    if traced(&trial, &slow).is_none() {
+        return Tried::not("no strace");
+    }
     let tried = trials(1, |_| {
-        let trial = ground.trial(1);
-        let slow = ["-e", "trace=fsync,fdatasync", "-e", "inject=fsync,fdatasync:delay_exit=50000"];
-        traced(&trial, &slow).expect("strace");
         same(&results(&trial.directory()), &whole.results);
         let timers = manifest(&trial.directory()).timers;
-        share = timers.get("checkpoints").copied().unwrap_or_default();
+        let share = timers.get("checkpoints").copied().unwrap_or_default();
         assert!(share > 1.0, "run.json tells {share} s of checkpoints");
         share
     });

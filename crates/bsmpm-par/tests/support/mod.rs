@@ -26,6 +26,13 @@ pub fn shipped(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases").join(name)
 }
 
+/// An example, built together with the tests.
+pub fn example(name: &str) -> PathBuf {
+    let program = Path::new(PROGRAM).with_file_name("examples").join(name);
+    assert!(program.is_file(), "cargo build --examples, with the profile of this test, makes {program:?}");
+    program
+}
+
 /// A directory in which runs are started; it goes with everything in it.
 pub struct Scratch(tempfile::TempDir);
 

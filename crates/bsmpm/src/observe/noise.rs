@@ -4,8 +4,8 @@
 //! nothing of S.
 
 use crate::error::StepError;
-use crate::grid::shape::Patch;
 use crate::exact::Exact;
+use crate::grid::shape::Patch;
 use crate::grid::{Contributions, Grid, Shape, transfer};
 use crate::model::Weighting;
 use crate::points::Points;

@@ -176,7 +176,11 @@ fn admissible<const D: usize>(nodes: &Nodes<D>, guess: &[f64]) -> Vec<f64> {
 }
 
 /// The forces under `u`, counted.
-pub fn evaluate<K: Kinematics<D>, const D: usize>(scene: &Scene<'_, K, D>, u: &[f64], counts: &mut Counts) -> Residual<D> {
+pub fn evaluate<K: Kinematics<D>, const D: usize>(
+    scene: &Scene<'_, K, D>,
+    u: &[f64],
+    counts: &mut Counts,
+) -> Residual<D> {
     counts.evaluations += 1;
     Residual::of(scene, u)
 }

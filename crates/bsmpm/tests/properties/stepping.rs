@@ -9,6 +9,7 @@ use bsmpm::control::{Accepted, Failure, Stepper};
 use bsmpm::error::{SolveError, StepError};
 use bsmpm::exact::Exact;
 use bsmpm::grid::Contributions;
+use bsmpm::initial;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::Regime;
 use bsmpm::schedule::Schedule;
@@ -138,6 +139,7 @@ struct Impatient {
     halo: Alone,
     reductions: Cell<usize>,
     interrupted_in: usize,
+    convinced: Cell<bool>, // else it gives the next step up that has converged
 }
 
 impl Halo for Impatient {
@@ -163,6 +165,13 @@ impl Halo for Impatient {
     fn is_interrupted(&self) -> bool {
         self.reductions.get() == self.interrupted_in
     }
+    fn rejects(&self) -> bool {
+        !self.convinced.replace(true)
+    }
+}
+
+fn impatient(scene: &Scene<PlaneStrain, 2>, interrupted_in: usize) -> Impatient {
+    Impatient { halo: scene.halo(), reductions: Cell::new(0), interrupted_in, convinced: Cell::new(true) }
 }
 
 /// Whenever it is given up: the points are those before it, and the steps after it those of a run without.
@@ -174,7 +183,7 @@ fn a_step_that_is_given_up_on_request_has_never_been() {
         let mut given_up = 0;
         for interrupted_in in 1..40 {
             let mut scene = whole.clone();
-            let halo = Impatient { halo: scene.halo(), reductions: Cell::new(0), interrupted_in };
+            let halo = impatient(&scene, interrupted_in);
             let mut solver = Reluctant { solver: Skyline::new(&scene.model.grid), refusals: 1 };
             let mut stepper = Stepper::new(scene.model.grid.nodes() * 2);
             let mut lengths = Vec::new();
@@ -201,4 +210,51 @@ fn a_step_that_is_given_up_on_request_has_never_been() {
         }
         assert!(given_up > 5, "{nonlinear:?}: {given_up}");
     }
+}
+
+/// Steps of all methods, each given up once when it has converged.
+#[test]
+fn a_converged_step_that_is_rejected_has_never_been() {
+    for nonlinear in [Nonlinear::Auto, Nonlinear::QuasiNewton(QuasiNewton::Broyden), Nonlinear::Newton] {
+        let (schedule, mut scene) = (Schedule::new(1.0, 4.0, []), block(Regime::Dynamic));
+        scene.model.nonlinear = nonlinear;
+        let mut expected = scene.clone();
+        let halo = impatient(&scene, usize::MAX);
+        let mut solver = Reluctant { solver: Skyline::new(&scene.model.grid), refusals: 0 };
+        let mut stepper = Stepper::new(scene.model.grid.nodes() * 2);
+        loop {
+            halo.convinced.set(false);
+            let before = scene.points.clone();
+            match stepper.advance(&schedule, &scene.model, &mut scene.points, &halo, &mut solver) {
+                None => break,
+                found => assert!(found.unwrap().is_err_and(|failure| failure.is_interruption()), "rejected"),
+            }
+            assert_eq!(scene.points, before);
+            stepper.advance(&schedule, &scene.model, &mut scene.points, &halo, &mut solver).unwrap().unwrap();
+            scene.points.sort_by_cell(&scene.model.grid);
+        }
+        assert_eq!(run(&mut expected, &schedule, 0).unwrap().len(), 4);
+        assert_eq!(scene.points, expected.points);
+    }
+}
+
+#[test]
+fn a_start_that_is_given_up_on_request_leaves_the_points_as_they_are() {
+    let mut scene = block(Regime::QuasiStatic);
+    scene.model.gravity.as_mut().unwrap().ramp = 0.0;
+    let before = scene.points.clone();
+    let mut given_up = 0;
+    for interrupted_in in 1..20 {
+        let (halo, mut solver) = (impatient(&scene, interrupted_in), Skyline::new(&scene.model.grid));
+        let mut points = before.clone();
+        match initial::set_elastic(&scene.model, &mut points, (&halo, &mut solver)) {
+            Ok(()) => assert_ne!(points, before),
+            Err(error) => {
+                assert_eq!(error, StepError::Interrupted);
+                assert_eq!(points, before);
+                given_up += 1;
+            }
+        }
+    }
+    assert!(given_up > 0);
 }

@@ -39,7 +39,8 @@ fn adjointness<K: Kinematics<D>, const D: usize>(order: usize) -> (f64, f64) {
     let mut random = Random::new(11);
     let u = random.array(grid.nodes() * D);
     let P: Vec<Square<D>> = (0..n).map(|_| random.square()).collect();
-    let at_points: Vec<f64> = transfer::gradients(&shape, &u, |_, gradient| gradient).iter().flatten().copied().collect();
+    let at_points: Vec<f64> =
+        transfer::gradients(&shape, &u, |_, gradient| gradient).iter().flatten().copied().collect();
     let flat: Vec<f64> = P.iter().flat_map(|P| P.iter().copied()).collect();
     let f = transfer::divergence(&shape, |p| P[p]).alone();
     let ((gathered, scale), (scattered, _)) = (dot(&at_points, &flat), dot(&u, &f));
@@ -147,7 +148,8 @@ fn squared_gradients_are_the_trace_of_the_moment() {
 fn sums_of_windows<K: Kinematics<D>, const D: usize>(order: usize) {
     let scene = scattered::<K, D>(order);
     let (grid, all) = (&scene.model.grid, 0..scene.model.grid.columns().end);
-    let force = |p: usize, points: &Points<D>| Square::<D>::from_element(points.mass[p]) + points.F[p].fixed_view::<D, D>(0, 0);
+    let force =
+        |p: usize, points: &Points<D>| Square::<D>::from_element(points.mass[p]) + points.F[p].fixed_view::<D, D>(0, 0);
     let of_window = |columns: Range<usize>| {
         let window = grid.window(columns.clone());
         let mut points = scene.points.clone();

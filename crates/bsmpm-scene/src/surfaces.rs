@@ -1,9 +1,9 @@
 //! Strips and loads of a case as the physics wants them, and the footing's gauges.
 
+use crate::{Base, Case, Face, Footing, Prescribed, Site};
 use bsmpm::boundary::{Load, Path, Strip, StripReport, SurfacePoint, surface};
 use bsmpm::grid::Grid;
 use bsmpm::tensor::Vector;
-use bsmpm_scene::{Base, Case, Face, Footing, Prescribed, Site};
 
 /// Stiffness of the penalty over E/h of the stiffest material and the smallest cell. The traction is carried from step to
 /// step, so that all slips together stay at p/beta: measured on the footing, 1e2 to 1e5 give the same pressure.
@@ -18,7 +18,7 @@ pub fn penalty(young: f64, edge: f64) -> f64 {
 
 /// Rigid strips: the footing first, then the prescribed motions in the order of the file.
 pub fn strips(case: &Case, grid: &Grid<2>, penalty: f64) -> Vec<Strip<2>> {
-    let strip = |[from, to]: [Vector<2>; 2], path: &bsmpm_scene::Path, base: Base| Strip {
+    let strip = |[from, to]: [Vector<2>; 2], path: &crate::Path, base: Base| Strip {
         points: surface::along(grid, &from, &to, HELD),
         normal: (base == Base::Smooth).then(|| normal(&from, &to)),
         path: Path { rows: path.rows.iter().map(|(time, moved)| (*time, Vector::from(*moved))).collect() },

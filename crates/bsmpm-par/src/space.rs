@@ -1,0 +1,110 @@
+//! Whether the disk has room for the checkpoints and frames that a run is about to write. Its tables are small beside
+//! them; quotas are not seen.
+
+use crate::checkpoint::{self, Contents, Refusal, agree};
+use crate::cli::Arguments;
+use crate::simulation::Simulation;
+use crate::{exit, gather};
+use bsmpm::kinematics::PlaneStrain;
+use bsmpm_io::directory::OutputDirectory;
+use bsmpm_io::{checkpoint as kept, disk};
+use bsmpm_scene::{Case, Every, Regime};
+use mpi::collective::{CommunicatorCollectives, SystemOperation};
+use mpi::topology::SimpleCommunicator;
+
+/// Bytes of a frame's head, and of its line in the list.
+const HEAD: u64 = 4096;
+/// Bytes of what a checkpoint holds in words, and of its record.
+const WORDS: u64 = 1 << 16;
+const MIB: f64 = (1_u64 << 20) as f64;
+
+/// What a run may write from here on.
+struct Need {
+    frames: u64,
+    frame: u64, // bytes
+    checkpoints: u64,
+    checkpoint: u64, // bytes
+}
+
+/// A warning for the first rank where its disk has less room than the run may need, or with `--strict-space` the refusal
+/// (74). Collective.
+pub fn admit(
+    world: &SimpleCommunicator,
+    held: Option<&OutputDirectory>,
+    (arguments, case): (&Arguments, &Case),
+    simulation: &mut Simulation<'_, PlaneStrain, 2>,
+) -> Result<Option<String>, Refusal> {
+    let need = Need::of(world, held, case, simulation);
+    let shortage = held.and_then(|held| need.shortage(held, arguments.force));
+    let strict = |told: String| Refusal::new(exit::WRITE, format!("{told}; nothing was run"));
+    let told = match shortage {
+        Some(told) if arguments.strict_space => Err(strict(told)),
+        told => Ok(told),
+    };
+    agree(world, told)
+}
+
+impl Need {
+    fn of(
+        world: &SimpleCommunicator,
+        held: Option<&OutputDirectory>,
+        case: &Case,
+        simulation: &mut Simulation<'_, PlaneStrain, 2>,
+    ) -> Self {
+        let (own, mut points) = (simulation.points.len() as u64, 0_u64);
+        world.all_reduce_into(&own, &mut points, SystemOperation::sum());
+        let (time, begun) = (simulation.time(), simulation.steps() > 0);
+        let (columns, guess) = simulation.arrays();
+        let room = checkpoint::room(world, &Contents { columns, guess, state: &[] });
+        let there = held.map_or(0, |held| kept::count(held.path()) as u64);
+        Self {
+            frames: frames(case, time, begun),
+            frame: HEAD + points * gather::point_bytes(case.analysis.regime == Regime::Dynamic),
+            // A new one is whole before the oldest goes.
+            checkpoints: (case.output.checkpoint.keep.max(1) + 1).saturating_sub(there),
+            checkpoint: WORDS + room,
+        }
+    }
+
+    fn bytes(&self) -> u64 {
+        let frames = self.frames.saturating_mul(self.frame);
+        frames.saturating_add(self.checkpoints.saturating_mul(self.checkpoint))
+    }
+
+    /// What is to be told if there is less.
+    fn shortage(&self, held: &OutputDirectory, emptied: bool) -> Option<String> {
+        // A system that cannot tell is no reason to say anything.
+        let free = disk::free(held.path()).ok()? + if emptied { doomed(held) } else { 0 };
+        let mebibytes = |bytes: u64| bytes as f64 / MIB;
+        (free < self.bytes()).then(|| {
+            format!(
+                "the disk of {} has {:.1} MiB left, and the run may write {:.1} MiB: {} frame(s) of {:.1} MiB, {} checkpoint(s) \
+                 of {:.1} MiB at a time",
+                held.path().display(),
+                mebibytes(free),
+                mebibytes(self.bytes()),
+                self.frames,
+                mebibytes(self.frame),
+                self.checkpoints,
+                mebibytes(self.checkpoint)
+            )
+        })
+    }
+}
+
+/// Frames from `time` on, those at the start and at the end included.
+fn frames(case: &Case, time: f64, begun: bool) -> u64 {
+    let timed = bsmpm_scene::model::frame_times(case).into_iter().filter(|&wanted| wanted > time).count() as u64;
+    let counted = match case.output.every {
+        Some(Every::Steps(every)) => ((case.analysis.end - time) / case.analysis.dt) as u64 / every,
+        _ => 0,
+    };
+    timed + counted + 1 + u64::from(!begun)
+}
+
+/// Bytes of the run that `--force` is about to delete.
+fn doomed(held: &OutputDirectory) -> u64 {
+    let outputs = held.run().ok().flatten().map_or_else(Vec::new, |run| run.outputs);
+    let sizes = outputs.iter().filter_map(|output| held.path().join(&output.path).metadata().ok());
+    sizes.map(|found| found.len()).sum()
+}

@@ -1,0 +1,113 @@
+//! From a valid case to the physics' model, its points and its steps: the only place where the case's words become types
+//! of crate `bsmpm`.
+
+use crate::{Axis, Case, Every, Quantity, Regime, surfaces};
+use bsmpm::background::Background;
+use bsmpm::boundary::{Boundary, Support};
+use bsmpm::error::GridError;
+use bsmpm::grid::{Grid, KnotVector};
+use bsmpm::kinematics::PlaneStrain;
+use bsmpm::model::{Criteria, Gravity, Model, Weighting};
+use bsmpm::points::Points;
+use bsmpm::schedule::Schedule;
+use bsmpm::step::equilibrium::Nonlinear;
+use bsmpm::step::quasi_newton::QuasiNewton;
+use bsmpm::tensor::{Symmetric, Vector};
+use std::marker::PhantomData;
+
+/// The model of a plane-strain case over its whole grid.
+pub fn model(case: &Case) -> Result<Model<PlaneStrain, 2>, GridError> {
+    let order = case.grid.order;
+    let axis = |axis: &Axis| match axis {
+        Axis::Uniform { cell, cells, .. } => KnotVector::uniform(*cell, *cells, order),
+        Axis::Graded(breakpoints) => KnotVector::graded(breakpoints, order),
+    };
+    let background = (case.solver.background > 0.0).then_some(Background {
+        kind: case.solver.background_kind,
+        coefficient: case.solver.background,
+        extent: case.solver.background_cells,
+    });
+    let beyond = background.map_or(0, |background| background.kind.beyond());
+    let grid = Grid::new([axis(&case.grid.axes[0])?, axis(&case.grid.axes[1])?])?.reaching(beyond);
+    Ok(Model {
+        materials: case.materials.iter().map(|named| named.material.clone()).collect(),
+        regime: case.analysis.regime,
+        newmark: case.analysis.newmark,
+        weighting: weighting(case),
+        gravity: case
+            .gravity
+            .as_ref()
+            .map(|gravity| Gravity { acceleration: gravity.acceleration.into(), ramp: gravity.ramp }),
+        boundary: boundary(case, &grid),
+        grid,
+        stabilisation: case.stabilisation,
+        background,
+        criteria: Criteria {
+            energy: case.solver.tolerance,
+            force: case.solver.force_tolerance,
+            max_iterations: case.solver.max_iterations,
+        },
+        nonlinear: match case.solver.nonlinear {
+            crate::Nonlinear::Auto => Nonlinear::Auto,
+            crate::Nonlinear::Broyden => Nonlinear::QuasiNewton(QuasiNewton::Broyden),
+            crate::Nonlinear::Newton => Nonlinear::Newton,
+        },
+        balances_energy: case.histories.iter().any(|history| history.quantity == Quantity::Energy),
+        kinematics: PhantomData,
+    })
+}
+
+fn boundary(case: &Case, grid: &Grid<2>) -> Boundary<2> {
+    let mut supports = Vec::new();
+    for (axis, faces) in case.boundary.iter().enumerate() {
+        for (upper, support) in [false, true].into_iter().zip(faces) {
+            match support {
+                crate::Support::Fixed => supports.push(Support::fixed(axis, upper)),
+                crate::Support::Roller => supports.push(Support::roller(axis, upper)),
+                crate::Support::Free => {}
+            }
+        }
+    }
+    Boundary { supports, strips: surfaces::strips(case, grid, penalty(case)), loads: surfaces::loads(case, grid) }
+}
+
+/// Penalty of the rigid strips, Pa/m.
+pub fn penalty(case: &Case) -> f64 {
+    let stiffest = case.materials.iter().map(|named| named.material.elastic().young).fold(0.0, f64::max);
+    surfaces::penalty(stiffest, case.grid.axes.iter().map(Axis::shortest).fold(f64::INFINITY, f64::min))
+}
+
+/// The points of the columns of one slab.
+pub fn points(case: &Case, columns: std::ops::Range<usize>) -> Points<2> {
+    Points::from_seeds(crate::seed(case, columns), case.analysis.regime == Regime::Dynamic)
+}
+
+/// Stress of ground at rest, Pa, at `x` (m, from the grid's lower corner); `k0` by material.
+pub fn at_rest(case: &Case, k0: &[f64], material: u16, x: &Vector<2>) -> Symmetric {
+    let lower = case.grid.lower();
+    let vertical = -case.overburden([lower[0] + x[0], lower[1] + x[1]]);
+    let horizontal = k0[usize::from(material)] * vertical;
+    Symmetric([horizontal, vertical, horizontal, 0.0, 0.0, 0.0])
+}
+
+/// Steps and the times that they must hit: frames, pictures and checks.
+pub fn schedule(case: &Case) -> Schedule {
+    let checks = case.checks.iter().map(|check| check.at);
+    Schedule::new(case.analysis.dt, case.analysis.end, frame_times(case).into_iter().chain(checks))
+}
+
+/// Times at which a frame is wanted, apart from the start, the end and every so many steps.
+pub fn frame_times(case: &Case) -> Vec<f64> {
+    let mut times = case.output.times.clone();
+    if let Some(Every::Time(every)) = case.output.every {
+        let count = (case.analysis.end / every).floor() as u64;
+        times.extend((1..=count).map(|k| k as f64 * every));
+    }
+    times
+}
+
+/// What averages are weighted with: mass, or volume where some material has none.
+pub fn weighting(case: &Case) -> Weighting {
+    let all_have_mass = case.bodies.iter().all(|body| case.materials[body.material].density.is_some());
+    if all_have_mass { Weighting::Mass } else { Weighting::Volume }
+}
