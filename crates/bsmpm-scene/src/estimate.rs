@@ -39,7 +39,7 @@ const FRONT: u128 = 18 * 8;
 const KRYLOV: u128 = 100 * 16;
 /// Percent of Newton's system that `auto` counts: it is made only where the secants stall, and then beside the other, so
 /// that without it this is too much and with it too little, both by less than a half.
-const PERHAPS: u128 = 60;
+const PERHAPS: u128 = 50;
 /// Bytes of a process that has next to nothing to solve: libraries and buffers of MPI and PETSc.
 const PROCESS: u64 = 47_000_000;
 

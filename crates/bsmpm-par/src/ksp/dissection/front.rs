@@ -8,7 +8,7 @@ const WIDTH: usize = 32;
 
 /// L of the columns `a` of a symmetric matrix, `rows` long, in place. `false` where a pivot is not positive and finite.
 pub fn factorise(a: &mut [f64], rows: usize) -> bool {
-    let columns = if rows == 0 { 0 } else { a.len() / rows };
+    let columns = a.len().checked_div(rows).unwrap_or(0);
     (0..columns).step_by(WIDTH).all(|start| {
         let width = WIDTH.min(columns - start);
         let (done, rest) = a.split_at_mut(start * rows);
@@ -20,7 +20,7 @@ pub fn factorise(a: &mut [f64], rows: usize) -> bool {
 
 /// Subtracts from the matrix `target` of order rows - columns what the factorised columns `l` take from it.
 pub fn subtract_from_rest(l: &[f64], rows: usize, target: &mut [f64]) {
-    let columns = if rows == 0 { 0 } else { l.len() / rows };
+    let columns = l.len().checked_div(rows).unwrap_or(0);
     let order = rows - columns;
     for start in (0..order).step_by(2 * WIDTH) {
         let width = (2 * WIDTH).min(order - start);

@@ -172,7 +172,7 @@ pub fn pack(matrix: &[f64], n: usize) -> Vec<f64> {
 /// Adds a packed triangle whose rows stand at `places` of a front: `own` columns, and the rest's matrix.
 pub fn add_packed(packed: &[f64], places: &[usize], (columns, own): (&mut [f64], usize), rest: &mut [f64]) {
     let mut start = 0;
-    let rows = if own == 0 { 0 } else { columns.len() / own };
+    let rows = columns.len().checked_div(own).unwrap_or(0);
     let order = rest.len().isqrt();
     for (column, &place) in places.iter().enumerate() {
         let length = places.len() - column;
