@@ -38,7 +38,9 @@ pub struct KspSolver<'p, const D: usize> {
 impl<'p, const D: usize> KspSolver<'p, D> {
     /// A solver for a window of the grid.
     pub fn new(petsc: &'p Petsc<'p>, choice: Choice, grid: &Grid<D>, halo: Rc<MpiHalo>, timers: Rc<Timers>) -> Self {
-        let (stencil, free, numbers) = (Stencil::new(grid), Vec::new(), Vec::new());
+        // The dissection adds what the slabs have in an order of its own.
+        let stencil = if choice.dissection { Stencil::new(grid) } else { Stencil::by_columns(grid, halo.owned()) };
+        let (free, numbers) = (Vec::new(), Vec::new());
         let (direct, planned, definite, general) = (Dissection::default(), false, None, None);
         let grid = grid.clone();
         Self { petsc, choice, halo, grid, stencil, free, numbers, own: 0, direct, planned, definite, general, timers }
@@ -69,6 +71,8 @@ impl<'p, const D: usize> KspSolver<'p, D> {
         if self.numbers.len() != self.free.len() {
             self.number();
         }
+        let halo = Rc::clone(&self.halo);
+        self.stencil.complete(|sums| halo.sum(sums));
         let values = self.stencil.entries(&self.numbers, &self.free);
         let place = match symmetry {
             Symmetry::Definite => &mut self.definite,

@@ -2,9 +2,11 @@
 //!
 //! A node couples with the (2q+1)^D nodes around it, and where the window reaches beyond its cells with those a layer
 //! further along one axis. Blocks of patches are summed into that fixed stencil, so that every
-//! rank hands each of its coordinates over once; rows of ghost nodes are completed by their owner.
+//! rank hands each of its coordinates over once; rows of ghost nodes are completed by their owner, in whatever order, or by
+//! columns of cells in the order of these.
 
-use bsmpm::grid::{Grid, KnotVector};
+use bsmpm::grid::{Contributions, Grid, KnotVector};
+use std::ops::Range;
 
 /// Stencils of all nodes of a window: D x D blocks of a node with each node of its stencil.
 #[derive(Clone, Debug)]
@@ -15,6 +17,16 @@ pub struct Stencil<const D: usize> {
     offsets: Vec<usize>,  // of a patch's nodes
     values: Vec<f64>,     // node, place, row, column
     valid: Vec<Vec<u16>>, // per node the places that lie in the grid
+    columns: Option<Columns>,
+}
+
+/// Sums by columns of cells, whose rows one rank completes: see [`Stencil::by_columns`].
+#[derive(Clone, Debug)]
+struct Columns {
+    none: Contributions,
+    sums: Contributions,
+    diagonal: Vec<f64>,
+    rows: Range<usize>, // components that this rank hands over
 }
 
 /// The places of a stencil: those of a box that lie at most q nodes off along every axis but one.
@@ -105,12 +117,53 @@ impl<const D: usize> Stencil<D> {
             })
             .collect();
         let values = vec![0.0; grid.nodes() * reach.len() * D * D];
-        Self { places, reach, slot, offsets: grid.offsets(), values, valid }
+        Self { places, reach, slot, offsets: grid.offsets(), values, valid, columns: None }
+    }
+
+    /// Zero stencils whose sums do not depend on the cut: the columns of cells add to a row in their order, whichever rank
+    /// has them, and its owner hands it over. `owned` nodes of the window are this rank's. Takes q + 1 times the memory.
+    pub fn by_columns(grid: &Grid<D>, owned: Range<usize>) -> Self {
+        let stencil = Self::new(grid);
+        let none = Contributions::none(grid, stencil.width(), Vec::new());
+        let (sums, diagonal) = (none.clone(), vec![0.0; grid.nodes() * D]);
+        let columns = Columns { none, sums, diagonal, rows: owned.start * D..owned.end * D };
+        Self { columns: Some(columns), ..stencil }
+    }
+
+    /// Completes sums by columns, by what `total` makes of those of all ranks.
+    pub fn complete(&mut self, total: impl FnOnce(&Contributions) -> Vec<f64>) {
+        let Some(columns) = &self.columns else { return };
+        self.values = total(&columns.sums);
+        let diagonal = columns.diagonal.clone();
+        for (at, value) in diagonal.into_iter().enumerate() {
+            *self.diagonal(at / D, at % D) += value;
+        }
     }
 
     /// Sets all blocks to zero.
     pub fn clear(&mut self) {
-        self.values.fill(0.0);
+        match &mut self.columns {
+            Some(columns) => {
+                columns.sums = columns.none.clone();
+                columns.diagonal.fill(0.0);
+            }
+            None => self.values.fill(0.0),
+        }
+    }
+
+    /// The values from node `first` on, in which a cell or a face that begins there is summed.
+    fn from(&mut self, first: usize) -> &mut [f64] {
+        let width = self.width();
+        match &mut self.columns {
+            Some(columns) => columns.sums.patch(first),
+            None => &mut self.values[first * width..],
+        }
+    }
+
+    fn diagonal(&mut self, node: usize, component: usize) -> &mut f64 {
+        let middle = self.reach.len() / 2;
+        let at = node * self.width() + (middle * D + component) * D + component;
+        &mut self.values[at]
     }
 
     fn width(&self) -> usize {
@@ -119,31 +172,37 @@ impl<const D: usize> Stencil<D> {
 
     /// Adds the dense block of the patch whose first node is `first`.
     pub fn add(&mut self, first: usize, block: &[f64]) {
-        let patch = self.offsets.len();
-        let width = self.width();
+        let (patch, width) = (self.offsets.len(), self.width());
+        let (offsets, slot) = (std::mem::take(&mut self.offsets), std::mem::take(&mut self.slot));
+        let values = self.from(first);
         for a in 0..patch {
-            let node = (first + self.offsets[a]) * width;
+            let node = offsets[a] * width;
             for b in 0..patch {
-                let at = node + self.slot[a * patch + b] * D * D;
+                let at = node + slot[a * patch + b] * D * D;
                 for i in 0..D {
                     let row = &block[(a * D + i) * patch * D + b * D..][..D];
-                    for (value, entry) in self.values[at + i * D..][..D].iter_mut().zip(row) {
+                    for (value, entry) in values[at + i * D..][..D].iter_mut().zip(row) {
                         *value += entry;
                     }
                 }
             }
         }
+        (self.offsets, self.slot) = (offsets, slot);
     }
 
     /// Adds a scalar block, equal for every component, among `nodes`.
     pub fn add_among(&mut self, nodes: &[usize], block: &[f64]) {
-        let width = self.width();
+        let (width, first) = (self.width(), nodes[0]);
         let numbers: Vec<usize> = nodes.iter().map(|&node| self.places.number(self.places.node(node))).collect();
-        for ((node, a), row) in nodes.iter().zip(&numbers).zip(block.chunks_exact(nodes.len())) {
-            for (b, entry) in numbers.iter().zip(row) {
-                let at = node * width + self.places.of(*a, *b) * D * D;
+        let pairs = numbers.iter().flat_map(|a| numbers.iter().map(|b| self.places.of(*a, *b) * D * D));
+        let places: Vec<usize> = pairs.collect();
+        let values = self.from(first);
+        for ((node, places), row) in
+            nodes.iter().zip(places.chunks_exact(nodes.len())).zip(block.chunks_exact(nodes.len()))
+        {
+            for (place, entry) in places.iter().zip(row) {
                 for i in 0..D {
-                    self.values[at + i * D + i] += entry;
+                    values[(node - first) * width + place + i * D + i] += entry;
                 }
             }
         }
@@ -151,9 +210,10 @@ impl<const D: usize> Stencil<D> {
 
     /// Adds to the diagonal entry of a component of `node`.
     pub fn add_diagonal(&mut self, node: usize, component: usize, value: f64) {
-        let middle = self.reach.len() / 2;
-        let at = node * self.width() + (middle * D + component) * D + component;
-        self.values[at] += value;
+        match &mut self.columns {
+            Some(columns) => columns.diagonal[node * D + component] += value,
+            None => *self.diagonal(node, component) += value,
+        }
     }
 
     /// A component's row: the first component of every node that it couples with, and the entries there.
@@ -198,8 +258,9 @@ impl<const D: usize> Stencil<D> {
 
     /// Visits every entry with its global row and column and its place in `values`.
     fn walk(&self, numbers: &Numbering, free: &[bool], mut visit: impl FnMut(usize, usize, usize)) {
-        for (component, row) in numbers.iter().enumerate() {
-            let Some(row) = row else { continue };
+        let rows = self.columns.as_ref().map_or(0..numbers.len(), |columns| columns.rows.clone());
+        for component in rows {
+            let Some(row) = &numbers[component] else { continue };
             let (node, i) = (component / D, component % D);
             for &place in &self.valid[node] {
                 let other = node.wrapping_add_signed(self.reach[usize::from(place)]);
@@ -278,6 +339,38 @@ mod tests {
             }
         }
         assert_eq!(found, dense);
+    }
+
+    /// Two windows of a grid, each with its cells, give the rows of the whole to the bit.
+    #[test]
+    fn sums_by_columns_do_not_depend_on_the_cut() {
+        let (grid, cut) = (grid(), 2);
+        let stencil = |columns: Range<usize>| {
+            let window = grid.window(columns.clone());
+            let mut stencil = Stencil::by_columns(&window, 0..window.nodes());
+            for cell in 0..window.cells() {
+                let cell = window.cell_at(cell);
+                let value = |entry: usize| 1.0 / (entry + 7 * cell[0] + 3 * cell[1] + 1) as f64;
+                let block: Vec<f64> = (0..18 * 18).map(value).collect();
+                stencil.add(window.first_node(&cell), &block);
+            }
+            stencil
+        };
+        let mut whole = stencil(0..4);
+        whole.complete(Contributions::alone);
+        let parts = [stencil(0..cut), stencil(cut..4)];
+        let layer = grid.layer_nodes() * whole.width();
+        for number in 0..grid.layers().len() {
+            let mut sum = vec![0.0; layer];
+            for (first, part) in [0, cut].into_iter().zip(&parts) {
+                let sums = &part.columns.as_ref().expect("by columns").sums;
+                for column in 0..4 - first {
+                    let found = (number >= first).then(|| sums.of(column, number - first)).flatten();
+                    sum.iter_mut().zip(found.unwrap_or(&[])).for_each(|(sum, value)| *sum += value);
+                }
+            }
+            assert_eq!(sum, whole.values[number * layer..(number + 1) * layer], "layer {number}");
+        }
     }
 
     #[test]

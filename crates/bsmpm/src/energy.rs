@@ -136,8 +136,8 @@ impl Draft {
     ) -> Self {
         let Scene { model, shape, nodes, grips, points, halo } = *scene;
         let u = &found.u[..];
-        let mut flows = Flows::<Exact>::default();
-        flows.external = over_layers(halo, D, |c| found.reaction[c] * u[c]);
+        let supports = over_layers(halo, D, |c| found.reaction[c] * u[c]);
+        let mut flows = Flows { external: supports, ..Flows::<Exact>::default() };
         add_gravity(&mut flows, scene, u, (t, dt));
         let strips = grips.work(u);
         flows.external += &strips.given;

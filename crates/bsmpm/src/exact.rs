@@ -101,8 +101,10 @@ impl AddAssign<&Exact> for Exact {
 
 impl SubAssign<&Exact> for Exact {
     fn sub_assign(&mut self, other: &Exact) {
-        self.words[..DIGITS].iter_mut().zip(&other.words).for_each(|(sum, word)| *sum -= word);
-        self.words[DIGITS] += other.words[DIGITS]; // what is no number stays none
+        // What is no number stays none.
+        let none = self.words[DIGITS].max(other.words[DIGITS]);
+        self.words.iter_mut().zip(&other.words).for_each(|(sum, word)| *sum -= word);
+        self.words[DIGITS] = none;
     }
 }
 

@@ -1,7 +1,6 @@
 //! What a step's inner iteration allocates: arrays a pass, nothing a point.
 
 #[path = "../support/mod.rs"]
-#[allow(dead_code)]
 mod support;
 
 use bsmpm::boundary::strip::Grips;
