@@ -186,7 +186,7 @@ fn more_ranks_than_columns_of_cells_are_refused_with_the_most_that_are_possible(
 }
 
 /// Plastic flow amplifies round-off, so that only the result that matters is compared. Slabs that stayed as they are at
-/// first would be uneven to 1.36 on four ranks.
+/// first would be uneven to 1.37 on four ranks over the whole run.
 #[test]
 fn the_collapse_runs_out_as_far_on_1_2_3_and_4_ranks_whose_slabs_follow_it() {
     let text = std::fs::read_to_string(shipped("short/column_collapse.toml")).unwrap();
