@@ -26,7 +26,7 @@ struct Columns {
     none: Contributions,
     sums: Contributions,
     diagonal: Vec<f64>,
-    rows: Range<usize>, // components that this rank hands over
+    owned: Range<usize>, // nodes of this rank
 }
 
 /// The places of a stencil: those of a box that lie at most q nodes off along every axis but one.
@@ -121,12 +121,13 @@ impl<const D: usize> Stencil<D> {
     }
 
     /// Zero stencils whose sums do not depend on the cut: the columns of cells add to a row in their order, whichever rank
-    /// has them, and its owner hands it over. `owned` nodes of the window are this rank's. Takes q + 1 times the memory.
+    /// has them. An entry is handed over once, by the owner of the lower one of its two nodes, whose window holds both. `owned`
+    /// nodes of the window are this rank's. Takes q + 1 times the memory.
     pub fn by_columns(grid: &Grid<D>, owned: Range<usize>) -> Self {
         let stencil = Self::new(grid);
         let none = Contributions::none(grid, stencil.width(), Vec::new());
         let (sums, diagonal) = (none.clone(), vec![0.0; grid.nodes() * D]);
-        let columns = Columns { none, sums, diagonal, rows: owned.start * D..owned.end * D };
+        let columns = Columns { none, sums, diagonal, owned };
         Self { columns: Some(columns), ..stencil }
     }
 
@@ -258,12 +259,15 @@ impl<const D: usize> Stencil<D> {
 
     /// Visits every entry with its global row and column and its place in `values`.
     fn walk(&self, numbers: &Numbering, free: &[bool], mut visit: impl FnMut(usize, usize, usize)) {
-        let rows = self.columns.as_ref().map_or(0..numbers.len(), |columns| columns.rows.clone());
-        for component in rows {
-            let Some(row) = &numbers[component] else { continue };
+        let handed = |a: usize, b: usize| self.columns.as_ref().is_none_or(|columns| columns.owned.contains(&a.min(b)));
+        for (component, row) in numbers.iter().enumerate() {
+            let Some(row) = row else { continue };
             let (node, i) = (component / D, component % D);
             for &place in &self.valid[node] {
                 let other = node.wrapping_add_signed(self.reach[usize::from(place)]);
+                if !handed(node, other) {
+                    continue;
+                }
                 let at = node * self.width() + (usize::from(place) * D + i) * D;
                 for j in 0..D {
                     let coupled = other * D + j == component || free[component] && free[other * D + j];
