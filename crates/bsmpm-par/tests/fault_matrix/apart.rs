@@ -31,21 +31,23 @@ fn may() -> bool {
     probe.status().is_ok_and(|status| status.success())
 }
 
+/// What one rank does not see, how many ranks there are and which one it is, the exit code, and what is said once.
+const WAYS: [(&str, (usize, usize), i32, &str); 5] = [
+    ("auto", (2, 1), 76, "rank 1 cannot read it"),
+    ("named", (3, 1), 76, "rank 1 cannot read it"),
+    ("case", (2, 0), 66, "kept/case.toml"),
+    ("case", (2, 1), 75, ""),
+    ("directory", (2, 1), 74, "rank 1 cannot write"),
+];
+
 /// The checkpoint, by name and by auto, the case, and the directory itself, each unreadable on one rank.
 pub fn files(ground: &Ground, _: usize) -> Tried {
     if !may() {
         return Tried::not("no right to mount");
     }
     let whole = ground.whole(2);
-    let ways: [(&str, (usize, usize), i32); 5] = [
-        ("auto", (2, 1), 76),
-        ("named", (3, 1), 76),
-        ("case", (2, 0), 66),
-        ("case", (2, 1), 75),
-        ("directory", (2, 1), 74),
-    ];
-    let tried = trials(ways.len(), |index| {
-        let (way, ranks, code) = ways[index];
+    let tried = trials(WAYS.len(), |index| {
+        let (way, ranks, code, words) = WAYS[index];
         let trial = if ["auto", "named"].contains(&way) { ground.stopped(2, 10) } else { ground.trial(2) };
         std::fs::create_dir(trial.scratch.path("kept")).unwrap();
         trial.scratch.write("kept/case.toml", ground.text());
@@ -60,11 +62,8 @@ pub fn files(ground: &Ground, _: usize) -> Tried {
         let arguments = ["kept/case.toml", "-q", "-o", RUN, "--restart", from, "--max-steps", "12"];
         let output = start(&trial, ranks, folder, &arguments).expect(code);
         let seconds = output.elapsed.as_secs_f64();
-        match code {
-            76 => output.says_once(&format!("rank {} cannot read it", ranks.1)),
-            74 => output.says_once("rank 1 cannot write"),
-            66 => output.says_once("kept/case.toml"),
-            _ => {}
+        if !words.is_empty() {
+            output.says_once(words);
         }
         // Those that are refused end at once; the others make some steps.
         assert!(seconds < SOON || code == 75, "{seconds} s");
