@@ -44,7 +44,8 @@ pub fn linear(case: &Case, ranks: usize, options: &[String]) -> Choice {
         ksp: linear.ksp.into(),
         pc: linear.pc.into(),
         factor: linear.factor.map(|package| if dissection { "mumps" } else { package }.into()),
-        redundant: case.solver.reproducible && direct && ranks > 1,
+        // On one rank, too, where the matrix goes to PETSc: the same factorisation, bit by bit, on any number of ranks.
+        redundant: case.solver.reproducible && direct && (ranks > 1 || !dissection),
     }
 }
 

@@ -124,6 +124,37 @@ fn a_run_repeats_to_the_bit_on_as_many_ranks() {
     }
 }
 
+/// What the arguments leave, on so many ranks: tables and last frame as bytes.
+fn left(scratch: &Scratch, ranks: usize, arguments: &[&str], step: usize) -> (Vec<u8>, Vec<u8>) {
+    scratch.mpirun(ranks, arguments).expect(75);
+    let read = |name: &str| std::fs::read(scratch.path("case.out").join(name)).unwrap();
+    (read("history.csv"), read(&format!("frames/step_{step:09}.vtu")))
+}
+
+/// Nodal sums, reductions and the stiffness do not depend on the cut; with one factorisation of the whole, nothing does.
+#[test]
+fn where_all_ranks_factorise_the_whole_the_collapse_has_the_same_bits_on_1_2_3_and_4_ranks() {
+    let scratch = Scratch::with_case(&std::fs::read_to_string(shipped("short/column_collapse.toml")).unwrap());
+    let mumps = "solver.linear={ksp=\"preonly\",pc=\"cholesky\",factor=\"mumps\"}";
+    let arguments = ["case.toml", "-q", "--force", "--max-steps", "120", "--set", mumps];
+    let runs = [1, 2, 3, 4].map(|ranks| left(&scratch, ranks, &arguments, 120));
+    assert_eq!(manifest(&scratch.path("case.out")).summary.counts.products, 0, "Newton's method has PETSc's sums");
+    assert!(runs[1..].iter().all(|run| *run == runs[0]));
+}
+
+#[test]
+fn the_number_of_threads_changes_no_bit() {
+    let scratch = Scratch::with_case(&std::fs::read_to_string(shipped("short/column_collapse.toml")).unwrap());
+    let run = |threads: &str| {
+        let arguments = ["case.toml", "-q", "--force", "--max-steps", "60", "--threads", threads];
+        let left = left(&scratch, 2, &arguments, 60);
+        assert_eq!(manifest(&scratch.path("case.out")).threads.to_string(), threads);
+        left
+    };
+    let one = run("1");
+    assert!(one == run("2") && one == run("3"));
+}
+
 #[test]
 fn petscs_factorisations_whole_on_every_rank_and_shared_give_the_same() {
     let case = shipped("short/self_weight_column.toml");

@@ -17,7 +17,7 @@ pub(super) fn manifest(arguments: &Arguments, case: &Case, ranks: usize) -> Mani
     );
     let axes = &case.grid.axes;
     let longest = |axis: &bsmpm_scene::Axis| (0..axis.cells()).map(|i| axis.cell(i)).fold(0.0, f64::max);
-    manifest.ranks = ranks as u32;
+    (manifest.ranks, manifest.threads) = (ranks as u32, arguments.threads);
     manifest.grid = Some(Extent {
         lower: case.grid.lower().to_vec(),
         upper: case.grid.upper().to_vec(),
