@@ -78,7 +78,7 @@ pub fn choices(case: &Case, ranks: usize, options: &[String]) -> Vec<manifest::C
                       the complete derivative where they stall; then shorter steps";
         choices.push(choice("solver.nonlinear", "multisecant, newton", reason));
     }
-    choices.extend(linear_choices(case, &linear(case, ranks, options)));
+    choices.extend(linear_choices(case, &linear(case, ranks, options), ranks));
     if weighting(case) == Weighting::Volume {
         choices.push(choice("weights of averages", "volume", "some material is weightless"));
     }
@@ -96,7 +96,7 @@ pub fn choices(case: &Case, ranks: usize, options: &[String]) -> Vec<manifest::C
 }
 
 /// What the linear solver is chosen for.
-fn linear_choices(case: &Case, linear: &Choice) -> Vec<manifest::Choice> {
+fn linear_choices(case: &Case, linear: &Choice, ranks: usize) -> Vec<manifest::Choice> {
     let newton = case.solver.nonlinear != bsmpm_scene::Nonlinear::Broyden;
     let mut rows = Vec::new();
     if case.solver.linear.factor == Some(DISSECTION) && !linear.dissection {
@@ -106,6 +106,9 @@ fn linear_choices(case: &Case, linear: &Choice) -> Vec<manifest::Choice> {
         let reason = "solver.reproducible: every rank factorises the whole system, as a parallel factorisation need not \
                       repeat to the bit";
         rows.push((if linear.dissection { "newton_pc_type" } else { "solver.linear.pc" }, "redundant", reason));
+    }
+    if case.solver.reproducible && ranks > 1 && linear.whole_nodes() {
+        rows.push(("solver.reproducible", "false", "multigrid on several ranks need not repeat to the bit"));
     }
     if linear.factor.as_deref() == Some("mumps") && !linear.dissection {
         rows.push(("mat_mumps_icntl_7", "2", "ordering by minimum fill, the cheapest for plane grids"));

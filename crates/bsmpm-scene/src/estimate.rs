@@ -38,7 +38,7 @@ const FRONT: u128 = 18 * 8;
 /// Bytes of an unknown in the Krylov space of Newton's directions: two doubles for each of a hundred products.
 const KRYLOV: u128 = 100 * 16;
 /// Percent of Newton's system that `auto` counts: it is made only where the secants stall, and then beside the other, so
-/// that without it this is too much and with it too little, both by less than a half.
+/// that without it this is too much and with it too little: up to 1.6 and down to .67 of what runs took.
 const PERHAPS: u128 = 50;
 /// Bytes of a process that has next to nothing to solve: libraries and buffers of MPI and PETSc.
 const PROCESS: u64 = 47_000_000;
@@ -70,7 +70,7 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// Memory of all of `ranks` ranks together, bytes, their libraries included. Within .8 to 1.5 of the peaks that were
+    /// Memory of all of `ranks` ranks together, bytes, their libraries included. Within .65 to 1.65 of the peaks that were
     /// measured on one to three ranks; bodies that spread take more.
     pub fn bytes_on(&self, ranks: usize) -> u64 {
         let ranks = ranks as u64;

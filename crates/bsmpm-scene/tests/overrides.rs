@@ -191,10 +191,13 @@ fn the_linear_solver_that_is_left_open_is_chosen_by_size_and_explained() {
     let (found, reason) = chosen(&[]);
     assert!(found == direct && reason.is_some_and(|reason| reason.contains("costs least")));
     let (found, reason) = chosen(&[LARGE]);
+    assert!(found == direct && reason.is_some_and(|reason| reason.contains("repeat to the bit")));
+    let any = "solver.reproducible=false";
+    let (found, reason) = chosen(&[LARGE, any]);
     assert!(found == ("cg", "gamg", None) && reason.is_some_and(|reason| reason.contains("more than 10000000")));
-    let (found, reason) = chosen(&[LARGE, "material.soil.poisson=0.46"]);
+    let (found, reason) = chosen(&[LARGE, any, "material.soil.poisson=0.46"]);
     assert!(found == direct && reason.is_some_and(|reason| reason.contains("Poisson")));
-    assert_eq!(chosen(&[LARGE, "solver.linear.ksp=preonly"]).0, direct);
+    assert_eq!(chosen(&[LARGE, any, "solver.linear.ksp=preonly"]).0, direct);
     for wrong in
         ["solver.linear={pc=\"lu\", factor=\"dissection\"}", "solver.linear={ksp=\"cg\", factor=\"dissection\"}"]
     {

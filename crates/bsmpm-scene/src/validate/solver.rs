@@ -18,7 +18,8 @@ pub(super) fn read(
     let solver = root.record("solver")?;
     let (kind, background) = background(solver, regime, grid.map(|grid| grid.order), report);
     let poisson = materials.unwrap_or_default().iter().map(|material| material.material.elastic().poisson);
-    let size = (2 * grid.map_or(0, estimate::nodes), poisson.fold(0.0, f64::max));
+    let unknowns = 2 * grid.map_or(0, estimate::nodes);
+    let size = Size { unknowns, poisson: poisson.fold(0.0, f64::max), reproducible: solver.flag("reproducible")? };
     let linear = solver.record("linear").and_then(|linear| read_linear(linear, size, report));
     Some(Solver {
         nonlinear: match solver.word("nonlinear")? {
@@ -33,7 +34,7 @@ pub(super) fn read(
         background_kind: kind?,
         background_cells: cells(solver, kind?)?,
         linear: linear?,
-        reproducible: solver.flag("reproducible")?,
+        reproducible: size.reproducible,
     })
 }
 
@@ -96,13 +97,32 @@ const QUASI_STATIC: &str = "nothing else holds nearly empty cells in a quasi-sta
 
 /// Unknowns from which multigrid is taken by itself: a factor of so many has about 40 GB.
 const MANY: u128 = 10_000_000;
-
 /// Poisson's ratio up to which it is: multigrid's iterations grow from 22 at .3 to 124 at .495 and 900 at .4999.
 const COMPRESSIBLE: f64 = 0.45;
 
-/// The linear solver for up to so many unknowns of materials with Poisson's ratios up to `poisson`.
-fn read_linear(linear: &Record, (unknowns, poisson): (u128, f64), report: &mut Report<'_>) -> Option<Linear> {
-    let many = unknowns > MANY && poisson <= COMPRESSIBLE;
+/// What the linear solver is chosen by.
+#[derive(Clone, Copy)]
+struct Size {
+    unknowns: u128,
+    poisson: f64, // largest
+    reproducible: bool,
+}
+
+impl Size {
+    /// Why multigrid is not taken by itself, if it is not.
+    fn against_multigrid(self) -> Option<String> {
+        let up_to = format!("up to {} unknowns", self.unknowns);
+        if self.unknowns <= MANY {
+            return Some(format!("{up_to}: below {MANY} a factor kept for a step's iterations costs least"));
+        }
+        if self.poisson > COMPRESSIBLE {
+            return Some(format!("{up_to}, but multigrid iterates for long above a Poisson's ratio of {COMPRESSIBLE}"));
+        }
+        self.reproducible.then(|| format!("{up_to}, but multigrid need not repeat to the bit: solver.reproducible"))
+    }
+}
+
+fn read_linear(linear: &Record, size: Size, report: &mut Report<'_>) -> Option<Linear> {
     if ["ksp", "pc", "factor"].iter().any(|key| linear.gives(key) && linear.word(key).is_none()) {
         return None;
     }
@@ -110,7 +130,7 @@ fn read_linear(linear: &Record, (unknowns, poisson): (u128, f64), report: &mut R
     let (ksp, factor) = (word("ksp"), linear.word("factor"));
     let pc = match word("pc") {
         // Nothing else asks for a factorisation.
-        "auto" if many && ksp != "preonly" && factor.is_none() => "gamg",
+        "auto" if size.against_multigrid().is_none() && ksp != "preonly" && factor.is_none() => "gamg",
         "auto" => "cholesky",
         pc => pc,
     };
@@ -146,22 +166,21 @@ fn read_linear(linear: &Record, (unknowns, poisson): (u128, f64), report: &mut R
         (false, None) => None,
     };
     let found = Linear { ksp, pc, factor };
-    explain(linear, &found, (unknowns, many), report);
+    explain(linear, &found, size, report);
     Some(found)
 }
 
 /// Notes what the case has left open, and why it is what it is.
-fn explain(linear: &Record, found: &Linear, (unknowns, many): (u128, bool), report: &mut Report<'_>) {
+fn explain(linear: &Record, found: &Linear, size: Size, report: &mut Report<'_>) {
     let open = |key: &str| linear.word(key).is_none_or(|word| word == "auto");
     if open("pc") {
-        let reason = match (found.pc, unknowns > MANY && !many) {
-            ("gamg", _) => format!("up to {unknowns} unknowns, more than {MANY}: a factor costs more than iterations"),
-            (_, false) => {
-                format!("up to {unknowns} unknowns: below {MANY} a factor kept for a step's iterations costs least")
-            }
-            (_, true) => format!(
-                "up to {unknowns} unknowns, but multigrid iterates for long above a Poisson's ratio of {COMPRESSIBLE}"
-            ),
+        let many =
+            || format!("up to {} unknowns, more than {MANY}: a factor costs more than iterations", size.unknowns);
+        let asked = || "\"preonly\" or a factor is asked for".to_owned();
+        let reason = match (found.pc, size.against_multigrid()) {
+            ("gamg", _) => many(),
+            (_, Some(reason)) => reason,
+            (_, None) => asked(),
         };
         report.note(linear.path_of("pc"), found.pc, reason);
     }
