@@ -36,17 +36,20 @@ struct Last {
 }
 
 impl Multisecant {
-    /// Direction du from w = K_0^-1 f, `D` components a node.
-    pub fn correct<const D: usize>(&mut self, w: Vec<f64>, f: &[f64], halo: &dyn Halo) -> Vec<f64> {
+    /// Direction du from w = K_0^-1 f, `D` components a node, and du . f: one reduction for everything.
+    pub fn correct<const D: usize>(&mut self, w: Vec<f64>, f: &[f64], halo: &dyn Halo) -> (Vec<f64>, f64) {
         self.learn(&w, f);
+        let Products { right, along, mut energy } = self.products::<D>((&w, f), halo);
         let mut du = w.clone();
-        for (weight, secant) in self.weights::<D>(f, halo).into_iter().zip(&self.secants) {
+        for (j, weight) in least_squares(&self.products, &right).into_iter().enumerate() {
+            let secant = &self.secants[j];
             for (du, (s, dw)) in du.iter_mut().zip(secant.s.iter().zip(&secant.dw)) {
                 *du -= weight * (s + dw);
             }
+            energy -= weight * (along[j] + right[j]);
         }
         self.last = Some(Last { s: du.clone(), w, f: f.to_vec() });
-        du
+        (du, energy)
     }
 
     /// Tells how much of the last direction was taken: 1 for a full step.
@@ -70,16 +73,31 @@ impl Multisecant {
         }
     }
 
-    /// Weights g of the secants, from one reduction; rows of `products` are completed on the way.
-    fn weights<const D: usize>(&mut self, f: &[f64], halo: &dyn Halo) -> Vec<f64> {
-        let Some(newest) = self.secants.last() else { return Vec::new() };
-        let among = self.secants.iter().map(|secant| (newest.dw.as_slice(), secant.df.as_slice()));
+    /// Products with the present force, from one reduction; rows of `products` are completed on the way.
+    fn products<const D: usize>(&mut self, (w, f): (&[f64], &[f64]), halo: &dyn Halo) -> Products {
+        let count = self.secants.len();
+        let newest = self.secants.last();
+        let among = newest.into_iter().flat_map(|newest| {
+            self.secants.iter().map(move |secant| (newest.dw.as_slice(), secant.df.as_slice()))
+        });
         let with_f = self.secants.iter().map(|secant| (secant.dw.as_slice(), f));
-        let mut row = dots(halo, D, &among.chain(with_f).collect::<Vec<_>>());
-        let right = row.split_off(self.secants.len());
-        self.products.push(row);
-        least_squares(&self.products, &right)
+        let along = self.secants.iter().map(|secant| (secant.s.as_slice(), f));
+        let mut row = dots(halo, D, &among.chain(with_f).chain(along).chain([(w, f)]).collect::<Vec<_>>());
+        let energy = row.split_off(3 * count)[0];
+        let along = row.split_off(2 * count);
+        let right = row.split_off(count);
+        if count > 0 {
+            self.products.push(row);
+        }
+        Products { right, along, energy }
     }
+}
+
+/// Products of the secants with the force f, N m.
+struct Products {
+    right: Vec<f64>, // dw_j . f
+    along: Vec<f64>, // s_j . f
+    energy: f64,     // w . f
 }
 
 /// Solves the symmetric system of the products (lower triangle by rows) where its secants are independent.

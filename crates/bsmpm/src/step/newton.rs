@@ -47,11 +47,11 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
             Err(unsolved) => return Err(Stopped::without_direction(scene, (u, &residual), progress, unsolved)),
         };
         let f = &residual.balance.f_oob;
+        let energy = dots(scene.halo, D, &[(&du, f)])[0];
         if !progress.has_begun() {
-            progress.begin(first_energy(scene, f, &du));
+            progress.begin(first_energy(scene, &du, energy));
         }
-        let energy = dots(scene.halo, D, &[(&du, f)])[0].abs();
-        if progress.reaches(Method::Newton, energy, &residual.balance) {
+        if progress.reaches(Method::Newton, energy.abs(), &residual.balance) {
             return Ok(Found::new(u, residual, progress));
         }
         match search(scene, &u, &du, &residual, counts) {

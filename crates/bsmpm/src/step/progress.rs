@@ -6,7 +6,6 @@
 use crate::error::{Measures, SolveError, StepError, WorstNode};
 use crate::kinematics::Kinematics;
 use crate::model::Criteria;
-use crate::seam::dots;
 use crate::step::equilibrium::{Method, Scene};
 use crate::step::residual::{Balance, Residual};
 use crate::step::round_off::RoundOff;
@@ -111,9 +110,8 @@ impl Progress {
 }
 
 /// |du_0 . (f_0 - K_strips du_0)|: the energy of the first direction without that of the strips' penalty, which takes up
-/// their motion in it and would make the measure as much too lenient as the penalty is stiff.
-pub fn first_energy<K: Kinematics<D>, const D: usize>(scene: &Scene<'_, K, D>, f: &[f64], du: &[f64]) -> f64 {
-    let work = dots(scene.halo, D, &[(du, f)])[0];
+/// their motion in it and would make the measure as much too lenient as the penalty is stiff. `work`: du_0 . f_0.
+pub fn first_energy<K: Kinematics<D>, const D: usize>(scene: &Scene<'_, K, D>, du: &[f64], work: f64) -> f64 {
     if scene.model.boundary.strips.is_empty() {
         return work.abs();
     }

@@ -28,7 +28,7 @@ pub enum QuasiNewton {
 pub struct Direction {
     /// m, nodal
     pub du: Vec<f64>,
-    /// |du . f|, N m
+    /// du . f, N m
     pub energy: f64,
     /// iterations of the linear solver
     pub linear_iterations: usize,
@@ -61,11 +61,14 @@ impl Secants {
     ) -> Result<Direction, SolveError> {
         let mut w = vec![0.0; f.len()];
         let linear_iterations = solver.solve(f, &mut w)?;
-        let du = match self {
+        let (du, energy) = match self {
             Self::Multisecant(secants) => secants.correct::<D>(w, f, halo),
-            Self::Broyden(secants) => secants.correct::<D>(w, halo),
+            Self::Broyden(secants) => {
+                let du = secants.correct::<D>(w, halo);
+                let energy = dots(halo, D, &[(&du, f)])[0];
+                (du, energy)
+            }
         };
-        let energy = dots(halo, D, &[(&du, f)])[0].abs();
         Ok(Direction { du, energy, linear_iterations })
     }
 
@@ -139,9 +142,9 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
         counts.iterations += 1;
         counts.linear_iterations += direction.linear_iterations;
         if !progress.has_begun() {
-            progress.begin(first_energy(scene, &residual.balance.f_oob, &direction.du));
+            progress.begin(first_energy(scene, &direction.du, direction.energy));
         }
-        if progress.reaches(Method::QuasiNewton(method), direction.energy, &residual.balance) {
+        if progress.reaches(Method::QuasiNewton(method), direction.energy.abs(), &residual.balance) {
             return Ok(Found::new(u, residual, progress)); // (9)
         }
         match advance(scene, &mut u, &direction.du, &mut residual, counts) {
