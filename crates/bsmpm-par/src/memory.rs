@@ -67,9 +67,17 @@ pub fn admit(world: &SimpleCommunicator, arguments: &Arguments, case: &Case) -> 
     let here = world.split_shared(world.rank()).size().unsigned_abs() as usize;
     let mut code = exit::DONE;
     if world.rank() == 0 {
-        let needed = case.estimate().bytes_on(ranks);
-        let mut limits = limits(arguments.max_memory).into_iter().filter_map(|(by, bytes)| Some((by, bytes?)));
-        match limits.find_map(|limit| short(needed, (ranks, here), limit)) {
+        let (estimate, limits) = (case.estimate(), limits(arguments.max_memory));
+        let shortage = |needed: u64| {
+            let mut limits = limits.iter().filter_map(|&(by, bytes)| Some((by, bytes?)));
+            limits.find_map(|limit| short(needed, (ranks, here), limit))
+        };
+        if let (None, Some(shortage)) =
+            (shortage(estimate.bytes_on(ranks)), shortage(estimate.bytes_with_newton_on(ranks)))
+        {
+            say(&format!("warning: should a step need Newton's method, {shortage}"));
+        }
+        match shortage(estimate.bytes_on(ranks)) {
             Some(shortage) if arguments.check && shortage.by != Limit::Asked => say(&format!("warning: {shortage}")),
             Some(shortage) => {
                 say(&format!("bsmpm-par: {shortage}; nothing was run or written"));

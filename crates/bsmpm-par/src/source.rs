@@ -46,16 +46,18 @@ fn broadcast(world: &SimpleCommunicator, bytes: impl FnOnce() -> Option<Vec<u8>>
 /// What `--check` prints: sizes, choices and warnings.
 pub fn describe(case: &Case, ranks: usize, options: &[String]) -> String {
     let estimate = case.estimate();
+    let each = |bytes: u64| bytes / ranks as u64 / 1_048_576 + 1;
+    let newton = match estimate.newton {
+        0 => String::new(),
+        _ => format!("; {} once a step needs Newton's method", each(estimate.bytes_with_newton_on(ranks))),
+    };
     let mut lines = vec![
         case.title.clone(),
         format!("points           {}", estimate.points),
         format!("cells            {}", estimate.cells),
         format!("nodes            {}", estimate.nodes),
         format!("unknowns         at most {}", estimate.unknowns),
-        format!(
-            "memory           about {} MiB on each of {ranks} rank(s)",
-            estimate.bytes_on(ranks) / ranks as u64 / 1_048_576 + 1
-        ),
+        format!("memory           about {} MiB on each of {ranks} rank(s){newton}", each(estimate.bytes_on(ranks))),
         format!("ranks            at most {}, of use about {}", case.grid.axes[0].cells(), estimate.useful_ranks),
         format!("nominal steps    {}", setup::nominal_steps(case)),
     ];

@@ -36,7 +36,7 @@ fn f37_the_estimate_is_near_the_measured_peak() {
         let ratio = estimate / peak;
         let row = format!("{ratio:.2} = {:.1} / {:.1} MB: {name} {overrides:?} on {ranks}", estimate / 1e6, peak / 1e6);
         println!("{row}");
-        if !(0.65..1.65).contains(&ratio) {
+        if !(0.8..1.5).contains(&ratio) {
             failed.push(row);
         }
     }

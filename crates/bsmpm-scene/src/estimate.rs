@@ -37,9 +37,6 @@ const LEVEL: u128 = 13 * 8;
 const FRONT: u128 = 18 * 8;
 /// Bytes of an unknown in the Krylov space of Newton's directions: two doubles for each of a hundred products.
 const KRYLOV: u128 = 100 * 16;
-/// Percent of Newton's system that `auto` counts: it is made only where the secants stall, and then beside the other, so
-/// that without it this is too much and with it too little: up to 1.6 and down to .67 of what runs took.
-const PERHAPS: u128 = 50;
 /// Bytes of a process that has next to nothing to solve: libraries and buffers of MPI and PETSc.
 const PROCESS: u64 = 47_000_000;
 
@@ -67,16 +64,26 @@ pub struct Estimate {
     pub repeated: u64,
     /// Bytes that are added by there being several ranks: the points of a frame, gathered.
     pub gathered: u64,
+    /// Bytes that Newton's system adds once a step needs it, where `auto` makes it only then.
+    pub newton: u64,
+    /// Bytes of that system that every further rank adds.
+    pub newton_repeated: u64,
 }
 
 impl Estimate {
-    /// Memory of all of `ranks` ranks together, bytes, their libraries included. Within .65 to 1.65 of the peaks that were
-    /// measured on one to three ranks; bodies that spread take more.
+    /// Memory of all of `ranks` ranks together, bytes, their libraries included, as long as `auto` needs no Newton's method.
+    /// Within .8 to 1.5 of the peaks that were measured on one to three ranks; bodies that spread take more.
     pub fn bytes_on(&self, ranks: usize) -> u64 {
         let ranks = ranks as u64;
         let further = self.repeated.saturating_mul(ranks.saturating_sub(1));
         let gathered = if ranks > 1 { self.gathered } else { 0 };
         self.bytes.saturating_add(PROCESS.saturating_mul(ranks)).saturating_add(further).saturating_add(gathered)
+    }
+
+    /// The same once Newton's method is needed.
+    pub fn bytes_with_newton_on(&self, ranks: usize) -> u64 {
+        let further = self.newton_repeated.saturating_mul((ranks as u64).saturating_sub(1));
+        self.bytes_on(ranks).saturating_add(self.newton).saturating_add(further)
     }
 }
 
@@ -88,6 +95,8 @@ struct Systems {
     repeated: u128,
     /// bytes while they are built
     built: u128,
+    /// bytes of the general one, and those that every further rank holds again, where it is made only if a step needs it
+    perhaps: [u128; 2],
 }
 
 impl Systems {
@@ -106,15 +115,9 @@ impl Systems {
         let krylov = unknowns * KRYLOV;
         let repeated = again * (entries * REPEATED + 2 * factor);
         let general = [entries * ENTRY + 2 * factor + krylov, repeated, entries * BUILT];
-        let percent = match solver.nonlinear {
-            Nonlinear::Broyden => [100, 0],
-            Nonlinear::Newton => [0, 100],
-            Nonlinear::Auto => [100, PERHAPS],
-        };
-        let part = |k: usize| [percent[0] * elastic[k] / 100, percent[1] * general[k] / 100];
-        let [held, repeated] = [0, 1].map(|k| part(k).iter().sum());
-        let built = part(2).into_iter().fold(0, u128::max);
-        Self { held, repeated, built }
+        let [held, repeated, built] = if solver.nonlinear == Nonlinear::Newton { general } else { elastic };
+        let perhaps = if solver.nonlinear == Nonlinear::Auto { [general[0], general[1]] } else { [0; 2] };
+        Self { held, repeated, built, perhaps }
     }
 }
 
@@ -142,6 +145,8 @@ impl Case {
             bytes: bounded(bytes),
             repeated: bounded(systems.repeated),
             gathered: bounded(if has_frames { points * GATHERED } else { 0 }),
+            newton: bounded(systems.perhaps[0]),
+            newton_repeated: bounded(systems.perhaps[1]),
         }
     }
 }

@@ -77,9 +77,9 @@ impl Multisecant {
     fn products<const D: usize>(&mut self, (w, f): (&[f64], &[f64]), halo: &dyn Halo) -> Products {
         let count = self.secants.len();
         let newest = self.secants.last();
-        let among = newest.into_iter().flat_map(|newest| {
-            self.secants.iter().map(move |secant| (newest.dw.as_slice(), secant.df.as_slice()))
-        });
+        let among = newest
+            .into_iter()
+            .flat_map(|newest| self.secants.iter().map(move |secant| (newest.dw.as_slice(), secant.df.as_slice())));
         let with_f = self.secants.iter().map(|secant| (secant.dw.as_slice(), f));
         let along = self.secants.iter().map(|secant| (secant.s.as_slice(), f));
         let mut row = dots(halo, D, &among.chain(with_f).chain(along).chain([(w, f)]).collect::<Vec<_>>());
