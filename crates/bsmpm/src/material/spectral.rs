@@ -111,8 +111,9 @@ impl Principal {
     /// `ε = artanh(e/(2 + e))`, e = b - 1 without the rounding of b; as a series where soils are, else by the logarithm.
     #[inline]
     fn of(start: f64, gain: f64, axis: [f64; 3]) -> Result<Self, MaterialError> {
-        let (b, strain) = (start + gain, (start - 1.0) + gain);
-        if strain.abs() < NEAR {
+        let b = start + gain;
+        if (b - 1.0).abs() < NEAR {
+            let strain = (start - 1.0) + gain;
             return Ok(Self { b, eps: artanh(strain / (2.0 + strain)), axis });
         }
         if b < SMALLEST {
@@ -184,6 +185,11 @@ mod tests {
             // A unit in the last place of either.
             assert!((found - 0.5 * strain.ln_1p()).abs() <= 4.5e-16 * found.abs(), "{strain}: {found:e}");
         }
+    }
+
+    #[test]
+    fn an_eigenvalue_that_cancels_is_none_however_large_the_terms() {
+        assert!(matches!(Principal::of(2.6e27, -2.6e27, [0.0; 3]), Err(MaterialError::NotPositive(_))));
     }
 
     #[test]
