@@ -50,9 +50,11 @@ pub fn commit<K: Kinematics<D>, const D: usize>(
     halo: &dyn Halo,
 ) -> Result<Vec<f64>, StepError> {
     let Found { u, trial, .. } = found;
-    let respond =
-        |p: usize| trial.respond(model, points, p).map_err(|source| StepError::Material { id: points.id[p], source });
-    let responses: Result<Vec<_>, _> = (0..points.len()).into_par_iter().map(respond).collect();
+    // Collected as they come, and only then taken apart: one array, whatever the number of threads.
+    let answers: Vec<_> = (0..points.len()).into_par_iter().map(|p| trial.respond(model, points, p)).collect();
+    let failed = |(p, source)| StepError::Material { id: points.id[p], source };
+    let responses: Result<Vec<_>, _> =
+        answers.into_iter().enumerate().map(|(p, answer)| answer.map_err(|source| failed((p, source)))).collect();
     let responses = agreed(halo, responses, StepError::OtherRank)?;
     if let Some(inertia) = &nodes.inertia {
         move_with_inertia(shape, inertia, &u, points);
