@@ -35,6 +35,30 @@ struct Neighbour {
     layers: Vec<SharedLayer>,
 }
 
+/// Messages of numbers from rank to rank, which arrive in the order in which they were sent.
+pub trait Link {
+    /// Sends to a rank.
+    fn send(&self, to: usize, numbers: &[f64]);
+    /// What a rank has sent.
+    fn receive(&self, from: usize) -> Vec<f64>;
+}
+
+/// The ranks of a halo, whose messages are counted.
+pub struct Ranks<'a> {
+    halo: &'a MpiHalo,
+}
+
+impl Link for Ranks<'_> {
+    fn send(&self, to: usize, numbers: &[f64]) {
+        self.halo.timers.traffic().count(Kind::Factor, 1, size_of_val(numbers));
+        self.halo.world.process_at_rank(to as i32).send(numbers);
+    }
+
+    fn receive(&self, from: usize) -> Vec<f64> {
+        self.halo.world.process_at_rank(from as i32).receive_vec().0
+    }
+}
+
 impl MpiHalo {
     /// The halo of this rank's window of `grid` under the cut `slabs`; every sum carries the `requests` with it.
     pub fn new<const D: usize>(
@@ -62,6 +86,11 @@ impl MpiHalo {
         &self.world
     }
 
+    /// The ranks, to be sent numbers one by one.
+    pub fn link(&self) -> Ranks<'_> {
+        Ranks { halo: self }
+    }
+
     /// What is asked of the run from outside.
     pub fn requests(&self) -> &Rc<Requests> {
         &self.requests
@@ -69,15 +98,20 @@ impl MpiHalo {
 
     /// Adds what the other ranks have at the nodes that they share with this one.
     pub fn add_shared(&self, nodal: &mut [f64], width: usize) {
+        self.combine(Kind::HaloSum, nodal, width, |own, other| own + other);
+    }
+
+    /// Combines the numbers of every shared node with those of the ranks that share it.
+    fn combine(&self, kind: Kind, nodal: &mut [f64], width: usize, both: impl Fn(f64, f64) -> f64) {
         if self.neighbours.is_empty() {
             return;
         }
         let _timed = self.timers.time("halo");
         let place = |other: &Neighbour| other.nodes.start * width..other.nodes.end * width;
         let outgoing: Vec<_> = self.neighbours.iter().map(|other| nodal[place(other)].to_vec()).collect();
-        let incoming = self.exchange(Kind::HaloSum, &outgoing, |other| other.nodes.len() * width);
+        let incoming = self.exchange(kind, &outgoing, |other| other.nodes.len() * width);
         for (part, other) in incoming.iter().zip(&self.neighbours) {
-            nodal[place(other)].iter_mut().zip(part).for_each(|(total, other)| *total += other);
+            nodal[place(other)].iter_mut().zip(part).for_each(|(own, other)| *own = both(*own, *other));
         }
     }
 
@@ -189,16 +223,7 @@ impl Halo for MpiHalo {
     }
 
     fn max(&self, nodal: &mut [f64], width: usize) {
-        if self.neighbours.is_empty() {
-            return;
-        }
-        let _timed = self.timers.time("halo");
-        let place = |other: &Neighbour| other.nodes.start * width..other.nodes.end * width;
-        let outgoing: Vec<_> = self.neighbours.iter().map(|other| nodal[place(other)].to_vec()).collect();
-        let incoming = self.exchange(Kind::HaloMax, &outgoing, |other| other.nodes.len() * width);
-        for (part, other) in incoming.iter().zip(&self.neighbours) {
-            nodal[place(other)].iter_mut().zip(part).for_each(|(value, other)| *value = value.max(*other));
-        }
+        self.combine(Kind::HaloMax, nodal, width, f64::max);
     }
 
     fn reduce(&self, numbers: &mut [f64]) {

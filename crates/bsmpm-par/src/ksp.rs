@@ -11,7 +11,7 @@ use crate::stencil::{Numbering, Stencil};
 use crate::timers::Timers;
 use bsmpm::error::SolveError;
 use bsmpm::grid::Grid;
-use bsmpm::seam::{Halo, Krylov, LinearSolver, Symmetry, agreed};
+use bsmpm::seam::{Halo, Krylov, LinearSolver, Symmetry, agreed, over_layers};
 use dissection::Dissection;
 use mpi::collective::{CommunicatorCollectives, SystemOperation};
 use petsc_rs::{Matrix, Petsc};
@@ -38,8 +38,9 @@ pub struct KspSolver<'p, const D: usize> {
 impl<'p, const D: usize> KspSolver<'p, D> {
     /// A solver for a window of the grid.
     pub fn new(petsc: &'p Petsc<'p>, choice: Choice, grid: &Grid<D>, halo: Rc<MpiHalo>, timers: Rc<Timers>) -> Self {
-        // The dissection adds what the slabs have in an order of its own.
-        let stencil = if choice.dissection { Stencil::new(grid) } else { Stencil::by_columns(grid, halo.owned()) };
+        // Where every rank factorises the whole, the same bits on any number of ranks; else sums depend on the cut anyway.
+        let whole = choice.redundant && !choice.dissection;
+        let stencil = if whole { Stencil::by_columns(grid, halo.owned()) } else { Stencil::new(grid) };
         let (free, numbers) = (Vec::new(), Vec::new());
         let (direct, planned, definite, general) = (Dissection::default(), false, None, None);
         let grid = grid.clone();
@@ -97,15 +98,16 @@ impl<'p, const D: usize> KspSolver<'p, D> {
 
     /// Factorises without PETSc.
     fn factorise(&mut self) -> Result<(), SolveError> {
-        let world = self.halo.world();
+        let halo = Rc::clone(&self.halo);
+        let (world, link) = (halo.world(), halo.link());
         if !self.planned {
             let mut bounds = vec![0; self.petsc.ranks()];
             world.all_gather_into(&self.grid.columns().start, &mut bounds[..]);
             bounds.push(self.grid.axes()[0].cells());
-            self.direct.plan(world, (&bounds, self.petsc.rank()), &self.grid, &self.free);
+            self.direct.plan(&link, (&bounds, self.petsc.rank()), &self.grid, &self.free);
             self.planned = true;
         }
-        let good = self.direct.factorise(world, &self.stencil);
+        let good = self.direct.factorise(&link, &self.stencil);
         let pivot =
             |what: &str| SolveError::Failed(format!("a pivot {what} is not positive: the stiffness is not definite"));
         agreed(&*self.halo, if good { Ok(()) } else { Err(pivot("here")) }, pivot("of another rank"))
@@ -118,18 +120,15 @@ impl<'p, const D: usize> KspSolver<'p, D> {
         }
         let owned = self.halo.owned();
         let owned = owned.start * D..owned.end * D;
-        self.direct.solve(self.halo.world(), owned.clone(), rhs, solution);
+        self.direct.solve(&self.halo.link(), owned, rhs, solution);
         let mut image = vec![0.0; rhs.len()];
         self.stencil.multiply(&self.free, solution, &mut image);
         self.halo.add_shared(&mut image, D);
-        let mut norms = [0.0; 2];
-        for component in owned.filter(|&component| self.free[component]) {
-            norms[0] += (rhs[component] - image[component]).powi(2);
-            norms[1] += rhs[component].powi(2);
-        }
-        self.halo.reduce(&mut norms);
-        let [left, right] = norms.map(f64::sqrt);
-        trusted(left, right).map(|()| 1)
+        let square = |component: usize, value: f64| if self.free[component] { value * value } else { 0.0 };
+        let left = over_layers(&*self.halo, D, |c| square(c, rhs[c] - image[c]));
+        let right = over_layers(&*self.halo, D, |c| square(c, rhs[c]));
+        let norms = self.halo.total(&[left, right]);
+        trusted(norms[0].sqrt(), norms[1].sqrt()).map(|()| 1)
     }
 
     /// Components of this rank's unknowns, in the order of their numbers.

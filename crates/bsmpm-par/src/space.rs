@@ -34,7 +34,7 @@ pub fn admit(
     (arguments, case): (&Arguments, &Case),
     simulation: &mut Simulation<'_, PlaneStrain, 2>,
 ) -> Result<Option<String>, Refusal> {
-    let need = Need::of(world, held, case, simulation);
+    let need = Need::of(world, (held, arguments.force), case, simulation);
     let shortage = held.and_then(|held| need.shortage(held, arguments.force));
     let strict = |told: String| Refusal::new(exit::WRITE, format!("{told}; nothing was run"));
     let told = match shortage {
@@ -47,7 +47,7 @@ pub fn admit(
 impl Need {
     fn of(
         world: &SimpleCommunicator,
-        held: Option<&OutputDirectory>,
+        (held, emptied): (Option<&OutputDirectory>, bool),
         case: &Case,
         simulation: &mut Simulation<'_, PlaneStrain, 2>,
     ) -> Self {
@@ -56,7 +56,8 @@ impl Need {
         let (time, begun) = (simulation.time(), simulation.steps() > 0);
         let (columns, guess) = simulation.arrays();
         let room = checkpoint::room(world, &Contents { columns, guess, state: &[] });
-        let there = held.map_or(0, |held| kept::count(held.path()) as u64);
+        // What is to be deleted counts as free, not as there.
+        let there = held.filter(|_| !emptied).map_or(0, |held| kept::count(held.path()) as u64);
         Self {
             frames: frames(case, time, begun),
             frame: HEAD + points * gather::point_bytes(case.analysis.regime == Regime::Dynamic),

@@ -153,7 +153,7 @@ impl<const D: usize> Stencil<D> {
     }
 
     /// The values from node `first` on, in which a cell or a face that begins there is summed.
-    fn from(&mut self, first: usize) -> &mut [f64] {
+    fn values_from(&mut self, first: usize) -> &mut [f64] {
         let width = self.width();
         match &mut self.columns {
             Some(columns) => columns.sums.patch(first),
@@ -175,7 +175,7 @@ impl<const D: usize> Stencil<D> {
     pub fn add(&mut self, first: usize, block: &[f64]) {
         let (patch, width) = (self.offsets.len(), self.width());
         let (offsets, slot) = (std::mem::take(&mut self.offsets), std::mem::take(&mut self.slot));
-        let values = self.from(first);
+        let values = self.values_from(first);
         for a in 0..patch {
             let node = offsets[a] * width;
             for b in 0..patch {
@@ -197,7 +197,7 @@ impl<const D: usize> Stencil<D> {
         let numbers: Vec<usize> = nodes.iter().map(|&node| self.places.number(self.places.node(node))).collect();
         let pairs = numbers.iter().flat_map(|a| numbers.iter().map(|b| self.places.of(*a, *b) * D * D));
         let places: Vec<usize> = pairs.collect();
-        let values = self.from(first);
+        let values = self.values_from(first);
         for ((node, places), row) in
             nodes.iter().zip(places.chunks_exact(nodes.len())).zip(block.chunks_exact(nodes.len()))
         {

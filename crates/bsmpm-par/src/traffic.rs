@@ -1,6 +1,6 @@
 //! What this rank tells the others, by kind: counts, which tell how a run would scale where a clock cannot.
 //!
-//! The linear solver's own messages, which are PETSc's, are not among them.
+//! What PETSc tells by itself is not among them.
 
 use std::cell::Cell;
 
@@ -13,6 +13,8 @@ pub enum Kind {
     HaloMax,
     /// numbers of shared nodes that their owner has
     HaloShare,
+    /// what slabs share of a factorisation by dissection, and of its solutions
+    Factor,
     /// numbers combined over all ranks
     Reduction,
     /// points and nodal values that change their rank
@@ -21,7 +23,8 @@ pub enum Kind {
 
 impl Kind {
     /// All of them, in the order of [`Counts`].
-    pub const ALL: [Self; 5] = [Self::HaloSum, Self::HaloMax, Self::HaloShare, Self::Reduction, Self::Migration];
+    pub const ALL: [Self; 6] =
+        [Self::HaloSum, Self::HaloMax, Self::HaloShare, Self::Factor, Self::Reduction, Self::Migration];
 
     /// Its name in files.
     pub fn name(self) -> &'static str {
@@ -29,6 +32,7 @@ impl Kind {
             Self::HaloSum => "halo sum",
             Self::HaloMax => "halo max",
             Self::HaloShare => "halo share",
+            Self::Factor => "factor",
             Self::Reduction => "reduction",
             Self::Migration => "migration",
         }
@@ -48,7 +52,7 @@ pub struct Count {
 
 /// What one rank did, by kind.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Counts([Count; 5]);
+pub struct Counts([Count; 6]);
 
 impl Counts {
     /// Those of one kind.
@@ -58,7 +62,8 @@ impl Counts {
 
     /// Messages to other ranks and their bytes, of all kinds.
     pub fn sent(&self) -> [u64; 2] {
-        let exchanges = [Kind::HaloSum, Kind::HaloMax, Kind::HaloShare, Kind::Migration].map(|kind| self.of(kind));
+        let exchanges =
+            [Kind::HaloSum, Kind::HaloMax, Kind::HaloShare, Kind::Factor, Kind::Migration].map(|kind| self.of(kind));
         [exchanges.iter().map(|count| count.messages).sum(), exchanges.iter().map(|count| count.bytes).sum()]
     }
 

@@ -142,6 +142,19 @@ fn where_all_ranks_factorise_the_whole_the_collapse_has_the_same_bits_on_1_2_3_a
     assert!(runs[1..].iter().all(|run| *run == runs[0]));
 }
 
+/// Strips, the ghost penalty, whose faces lie between the cells of two ranks, and cubic splines.
+#[test]
+fn where_all_ranks_factorise_the_whole_the_footing_has_the_same_bits_on_1_2_3_and_4_ranks() {
+    let scratch = Scratch::with_case(&std::fs::read_to_string(shipped("short/strip_footing.toml")).unwrap());
+    let mumps = "solver.linear={ksp=\"preonly\",pc=\"cholesky\",factor=\"mumps\"}";
+    for further in ["solver.background_kind=ghost-penalty", "grid.order=cubic"] {
+        let set = ["--set", mumps, "--set", "solver.nonlinear=broyden", "--set", further];
+        let arguments = [&["case.toml", "-q", "--force", "--max-steps", "3"], &set[..]].concat();
+        let runs = [1, 2, 3, 4].map(|ranks| left(&scratch, ranks, &arguments, 3));
+        assert!(runs[1..].iter().all(|run| *run == runs[0]), "{further}");
+    }
+}
+
 #[test]
 fn the_number_of_threads_changes_no_bit() {
     let scratch = Scratch::with_case(&std::fs::read_to_string(shipped("short/column_collapse.toml")).unwrap());

@@ -9,8 +9,8 @@ use crate::grid::GridSpec;
 
 /// Largest number of cells, unknowns and matrix rows: PETSc's and MPI's counts are 32-bit here.
 pub(crate) const MOST_UNKNOWNS: u128 = i32::MAX as u128;
-/// Largest number of points: they are sorted by 32-bit numbers.
-pub(crate) const MOST_POINTS: u128 = u32::MAX as u128;
+/// Largest number of points: they are sorted by 32-bit numbers, and exact sums have room for 2^31 terms.
+pub(crate) const MOST_POINTS: u128 = i32::MAX as u128;
 
 /// Bytes of a point that are always there: its state (about 270), shape functions (96), trial states and their answers.
 /// Measured, as all that follows, in the runs of `tests/shipped.rs`.

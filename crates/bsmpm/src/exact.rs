@@ -48,7 +48,7 @@ impl Exact {
         }
     }
 
-    /// The sum, rounded once, to within a unit in the last place; not a number if a term was none or infinite.
+    /// The sum, to within a unit in the last place; not a number if a term was none or infinite.
     pub fn value(&self) -> f64 {
         if self.words[DIGITS] != 0 {
             return f64::NAN;

@@ -39,14 +39,19 @@ pub struct Bench<'a> {
 }
 
 impl Bench<'_> {
-    /// Prints a row for every phase.
-    pub fn run(&self, solver: &mut dyn LinearSolver) -> Result<(), StepError> {
+    /// Prints a row for every phase, under the displacement `guess` (m, nodal) of the last step: what flowed then flows on.
+    pub fn run(&self, guess: &[f64], solver: &mut dyn LinearSolver) -> Result<(), StepError> {
         let Self { model, points, halo, times, .. } = *self;
         let shape = Shape::at(&model.grid, points)?;
         let nodes = Nodes::map(model, &shape, points, times, halo)?;
         let grips = Grips::at(&model.boundary.strips, &points.surface, (&model.grid, &nodes.free), times);
         let scene = Scene { model, shape: &shape, nodes: &nodes, grips: &grips, points, halo };
-        let u: Vec<f64> = nodes.prescribed.iter().map(|prescribed| prescribed.unwrap_or(0.0)).collect();
+        let along = |(c, &guess): (usize, &f64)| match nodes.prescribed[c] {
+            Some(prescribed) => prescribed,
+            None if nodes.free[c] => guess,
+            None => 0.0,
+        };
+        let u: Vec<f64> = guess.iter().enumerate().map(along).collect();
         self.row("(1) shape functions, sorting apart", true, || drop(black_box(Shape::at(&model.grid, points))));
         self.row("(2) points to nodes", true, || drop(black_box(Nodes::map(model, &shape, points, times, halo))));
         self.row("(4a) gather of grad u", false, || drop(black_box(transfer::gradients(&shape, &u, |_, grad| grad))));

@@ -44,8 +44,11 @@ fn main() -> ExitCode {
     }
 }
 
-/// The points of a checkpoint, sorted, and its time.
-fn state(universe: &Universe, path: &Path, model: &Model<PlaneStrain, 2>) -> Result<(Points<2>, f64), Box<dyn Error>> {
+/// A state of a run: its points, sorted, the nodal displacement of its last step (m), and its time (s).
+type State = (Points<2>, Vec<f64>, f64);
+
+/// What a checkpoint holds.
+fn state(universe: &Universe, path: &Path, model: &Model<PlaneStrain, 2>) -> Result<State, Box<dyn Error>> {
     let hdf5 = Hdf5::initialize(universe)?;
     let refused = |refusal: checkpoint::Refusal| refusal.reason;
     let (found, _) = checkpoint::find(&universe.world(), Wanted::Named(path)).map_err(refused)?;
@@ -54,10 +57,11 @@ fn state(universe: &Universe, path: &Path, model: &Model<PlaneStrain, 2>) -> Res
     let mut points = Points::holding(&names);
     let opened = Opened::new((&hdf5, universe.world()), &found).map_err(refused)?;
     opened.points(points.named_columns()).map_err(refused)?;
+    let guess = opened.guess(model.grid.layers(), model.grid.layer_nodes() * 2).map_err(refused)?;
     opened.close().map_err(refused)?;
     points.surface = model.boundary.surface();
     points.sort_by_cell(&model.grid);
-    Ok((points, found.record.time()))
+    Ok((points, guess, found.record.time()))
 }
 
 fn measure(
@@ -70,7 +74,7 @@ fn measure(
     let text = bsmpm_scene::load(Path::new(case))?;
     let case = Case::from_bytes(case, &text, set).map_err(|errors| format!("{errors:?}"))?;
     let model = bsmpm_scene::model::model(&case)?;
-    let (points, time) = state(universe, Path::new(path), &model)?;
+    let (points, guess, time) = state(universe, Path::new(path), &model)?;
     let slabs = Slabs::new(vec![0, model.grid.columns().end], 1, model.grid.columns().end).ok_or("no columns")?;
     let (timers, requests) = (Rc::new(Timers::default()), Rc::new(Requests::default()));
     let halo = Rc::new(MpiHalo::new(universe.world(), &slabs, &model.grid, (Rc::clone(&timers), requests)));
@@ -81,7 +85,7 @@ fn measure(
     println!("| --- | --- | --- |");
     let bench =
         kernels::Bench { model: &model, points: &points, halo: &*halo, times: (time, case.analysis.dt), seconds };
-    bench.run(&mut solver)?;
+    bench.run(&guess, &mut solver)?;
     println!("| bytes of a point; with its shape functions and a trial state | {} |", kernels::bytes(points, &model)?);
     let (triad, multiply_add) = (machine::triad(seconds), machine::multiply_add(seconds));
     println!("| triad, GB/s; dependent-free multiply-add, GFlop/s | {triad:.1}; {multiply_add:.1} | |");

@@ -2,7 +2,8 @@
 //!
 //! Every rank eliminates what only its own slab touches (multifrontal Cholesky factorisation, Duff and Reid 1983, ACM
 //! Trans. Math. Softw. 9, 302-325), then neighbours pair up. Order, schedule and sums depend on the free components and
-//! the cut only: the same bits in every run on as many ranks, and no rank holds more than its share. The order comes from
+//! the cut only: the same bits in every run on as many ranks. A rank holds the factor of its slab, and the lowest rank of the
+//! slabs that a cut parts a dense front of that cut: on the first rank log2 P of them, which does not fall with the ranks. The order comes from
 //! the grid's box of nodes, so that unknowns that come or go cost no analysis of a graph.
 
 mod front;
@@ -11,9 +12,10 @@ mod plan;
 #[cfg(test)]
 mod tests;
 
+use crate::halo::Link;
 use crate::stencil::Stencil;
 use bsmpm::grid::Grid;
-use ladder::{Ladder, Link, add_packed, pack};
+use ladder::{Ladder, add_packed, pack};
 use plan::{NONE, Part, Plan};
 use std::ops::Range;
 

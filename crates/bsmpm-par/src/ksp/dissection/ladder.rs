@@ -2,27 +2,8 @@
 //! front on the lowest rank of the slabs that it parts; which rank does what when is fixed, so that all sums repeat.
 
 use super::front;
-use mpi::point_to_point::{Destination, Source};
-use mpi::topology::{Communicator, SimpleCommunicator};
+use crate::halo::Link;
 use std::ops::Range;
-
-/// Messages of numbers from rank to rank, which arrive in the order in which they were sent.
-pub trait Link {
-    /// Sends to a rank.
-    fn send(&self, to: usize, numbers: &[f64]);
-    /// What a rank has sent.
-    fn receive(&self, from: usize) -> Vec<f64>;
-}
-
-impl Link for SimpleCommunicator {
-    fn send(&self, to: usize, numbers: &[f64]) {
-        self.process_at_rank(to as i32).send(numbers);
-    }
-
-    fn receive(&self, from: usize) -> Vec<f64> {
-        self.process_at_rank(from as i32).receive_vec().0
-    }
-}
 
 /// What a rank does at one level of the pairing.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -1,8 +1,9 @@
 //! Ranks are threads here: the same code, with channels instead of MPI.
 
-use super::ladder::{Link, Rung, rungs};
+use super::ladder::{Rung, rungs};
 use super::plan::{NONE, Part, Plan};
 use super::{Dissection, front};
+use crate::halo::Link;
 use crate::slab::Slabs;
 use crate::stencil::Stencil;
 use bsmpm::grid::{Grid, KnotVector};
