@@ -107,7 +107,9 @@ impl<'p, const D: usize> KspSolver<'p, D> {
             self.direct.plan(&link, (&bounds, self.petsc.rank()), &self.grid, &self.free);
             self.planned = true;
         }
-        let good = self.direct.factorise(&link, &self.stencil);
+        let mut largest = [self.stencil.largest_diagonal()];
+        halo.maximum(&mut largest);
+        let good = self.direct.factorise(&link, &self.stencil, largest[0]);
         let pivot =
             |what: &str| SolveError::Failed(format!("a pivot {what} is not positive: the stiffness is not definite"));
         agreed(&*self.halo, if good { Ok(()) } else { Err(pivot("here")) }, pivot("of another rank"))

@@ -217,6 +217,16 @@ impl<const D: usize> Stencil<D> {
         }
     }
 
+    /// Largest entry on the diagonal of this window's blocks.
+    pub fn largest_diagonal(&self) -> f64 {
+        let (middle, width) = (self.reach.len() / 2, self.width());
+        let entry = |component: usize| {
+            let (node, i) = (component / D, component % D);
+            self.values[node * width + (middle * D + i) * D + i]
+        };
+        (0..self.valid.len() * D).map(entry).fold(0.0, f64::max)
+    }
+
     /// A component's row: the first component of every node that it couples with, and the entries there.
     pub fn row(&self, component: usize) -> impl Iterator<Item = (usize, &[f64])> {
         let (node, i) = (component / D, component % D);

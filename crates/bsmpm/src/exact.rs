@@ -48,7 +48,7 @@ impl Exact {
         }
     }
 
-    /// The sum, to within a unit in the last place; not a number if a term was none or infinite.
+    /// The sum, rounded to the nearest float, so that other units by powers of two change no digit; not a number if a term was none or infinite.
     pub fn value(&self) -> f64 {
         if self.words[DIGITS] != 0 {
             return f64::NAN;
@@ -68,6 +68,9 @@ impl Exact {
             let place = (top + k).checked_sub(2);
             sum << BITS | place.map_or(0, |place| digits[place] as u128)
         });
+        // What is left out decides where the rest lies half way between two floats.
+        let rest = digits[..top.saturating_sub(2)].iter().any(|&digit| digit != 0);
+        let leading = leading | u128::from(rest);
         let exponent = (top as i32 - 2) * BITS as i32 - 1074;
         // Two factors, as 2^exponent itself may lie below the floats.
         leading as f64 * 2.0_f64.powi(exponent / 2) * 2.0_f64.powi(exponent - exponent / 2)
@@ -167,6 +170,20 @@ mod tests {
         let plain: f64 = numbers.iter().sum();
         let size: f64 = numbers.iter().map(|number| number.abs()).sum();
         assert!((whole.value() - plain).abs() <= 1e-12 * size);
+    }
+
+    #[test]
+    fn a_power_of_two_changes_no_digit() {
+        let numbers: Vec<f64> = (1..400).map(|k| (f64::from(k) * 0.37).sin() / f64::from(k * k)).collect();
+        let sum = value(&numbers);
+        for power in -200..200 {
+            let unit = 2.0_f64.powi(power);
+            let scaled: Vec<f64> = numbers.iter().map(|number| number * unit).collect();
+            assert_eq!(value(&scaled), sum * unit, "2^{power}");
+        }
+        // Half way but for the smallest rest, whose digit is far below.
+        assert_eq!(value(&[1.0, f64::EPSILON / 2.0, 1e-200]), 1.0 + f64::EPSILON);
+        assert_eq!(value(&[1.0, f64::EPSILON / 2.0]), 1.0);
     }
 
     #[test]

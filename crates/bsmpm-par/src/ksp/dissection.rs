@@ -28,6 +28,7 @@ pub struct Dissection {
     ladder: Ladder,
     matrix: Vec<f64>, // of the front in work
     work: Vec<f64>,   // a vector by elimination numbers
+    scale: f64,       // a power of two that the matrix is multiplied with
 }
 
 impl Dissection {
@@ -52,9 +53,12 @@ impl Dissection {
         self.ladder = Ladder::new(link, &ladder::rungs(bounds, q, rank), shared, layer);
     }
 
-    /// Factorises; `false` where a pivot of this rank was not positive and finite. Collective.
-    pub fn factorise<const D: usize>(&mut self, link: &dyn Link, stencil: &Stencil<D>) -> bool {
-        let Self { plan, columns, ladder, matrix, .. } = self;
+    /// Factorises; `false` where a pivot of this rank was not positive and finite. `largest` is about the largest number of
+    /// the matrix: without its power of two, square roots round alike in all units that differ by powers of two. Collective.
+    pub fn factorise<const D: usize>(&mut self, link: &dyn Link, stencil: &Stencil<D>, largest: f64) -> bool {
+        let unit = f64::from_bits(largest.to_bits() & f64::INFINITY.to_bits());
+        self.scale = if unit.is_normal() { 1.0 / unit } else { 1.0 };
+        let Self { plan, columns, ladder, matrix, scale, .. } = self;
         columns.clear();
         columns.resize(plan.entries(), 0.0);
         let mut stack = Vec::new();
@@ -65,7 +69,7 @@ impl Dissection {
             let (columns, order) = (&mut columns[part.panel()], part.rim.len());
             matrix.clear();
             matrix.resize(order * order, 0.0);
-            take(plan, part, (stencil, &places), columns, matrix);
+            take(plan, part, (stencil, &places, *scale), columns, matrix);
             for _ in 0..part.children {
                 let (child, packed): (&Part, Vec<f64>) = stack.pop().expect("children come right before their parent");
                 let rim: Vec<usize> = child.rim.iter().map(|&number| places[number as usize]).collect();
@@ -82,8 +86,8 @@ impl Dissection {
     /// Solves for the nodal right-hand side whose `owned` components are this rank's, with the last factorisation; the
     /// solution is right at all nodes of the window. Collective.
     pub fn solve(&mut self, link: &dyn Link, owned: Range<usize>, rhs: &[f64], solution: &mut [f64]) {
-        let Self { plan, columns, ladder, work, .. } = self;
-        let own = |component: usize| if owned.contains(&component) { rhs[component] } else { 0.0 };
+        let Self { plan, columns, ladder, work, scale, .. } = self;
+        let own = |component: usize| if owned.contains(&component) { rhs[component] * *scale } else { 0.0 };
         work.clear();
         work.extend(plan.order.iter().map(|&component| own(component as usize)));
         let mut x = Vec::new();
@@ -111,7 +115,7 @@ impl Dissection {
 fn take<const D: usize>(
     plan: &Plan,
     part: &Part,
-    (stencil, places): (&Stencil<D>, &[usize]),
+    (stencil, places, scale): (&Stencil<D>, &[usize], f64),
     columns: &mut [f64],
     matrix: &mut [f64],
 ) {
@@ -124,7 +128,7 @@ fn take<const D: usize>(
         for (component, values) in stencil.row(plan.order[number] as usize) {
             for (value, &other) in values.iter().zip(&plan.number[component..component + D]) {
                 if other != NONE && other as usize >= number {
-                    target[places[other as usize]] += value;
+                    target[places[other as usize]] += value * scale;
                 }
             }
         }

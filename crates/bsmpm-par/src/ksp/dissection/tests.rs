@@ -239,7 +239,7 @@ impl System {
                     stencil.add(grid.first_node(&at), (block * scale).as_slice());
                 }
             }
-            assert!(direct.factorise(wire, &stencil));
+            assert!(direct.factorise(wire, &stencil, 3.0));
         }
         let owned = self.slabs.owned_layers(rank, grid.order());
         let start = grid.layers().start;
