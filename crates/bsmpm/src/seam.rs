@@ -57,6 +57,7 @@ pub fn agreed<T, E>(halo: &dyn Halo, mine: Result<T, E>, other: E) -> Result<T, 
     halo.maximum(&mut failed);
     if failed[0] > 0.0 { mine.and(Err(other)) } else { mine }
 }
+
 /// A distributed sparse system whose matrix is summed from dense patch blocks.
 pub trait LinearSolver {
     /// Starts a matrix whose unknowns are the components marked `free` (D per local node, equal on all ranks that
