@@ -1,7 +1,7 @@
 //! The stiffness of one window as node stencils, and its entries as PETSc wants them: plain data, without MPI or PETSc.
 //!
-//! A node couples with the (2q+1)^D nodes around it, and where the window reaches beyond its cells with those a layer
-//! further along one axis. Blocks of patches are summed into that fixed stencil, so that every
+//! A node couples with the (2q+1)^D nodes around it, and with those a layer further where the window reaches beyond its cells.
+//! Blocks of patches are summed into that fixed stencil, so that every
 //! rank hands each of its coordinates over once; rows of ghost nodes are completed by their owner, in whatever order, or by
 //! columns of cells in the order of these.
 
@@ -29,12 +29,11 @@ struct Columns {
     owned: Range<usize>, // nodes of this rank
 }
 
-/// The places of a stencil: those of a box that lie at most q nodes off along every axis but one.
+/// The places of a stencil: a box of nodes.
 #[derive(Clone, Debug)]
 struct Places<const D: usize> {
     functions: [usize; D],   // nodes along each axis
     half: isize,             // of the box: q, and the layers beyond
-    place: Vec<usize>,       // by number in the box; those without a place are never asked for
     within: Vec<[isize; D]>, // of every place
 }
 
@@ -56,16 +55,10 @@ impl<const D: usize> Places<D> {
         let half = q + grid.beyond() as isize;
         let side = 2 * half + 1;
         let along = |number: isize, axis: usize| number / side.pow((D - 1 - axis) as u32) % side - half;
-        let (mut place, mut within) = (Vec::new(), Vec::new());
-        for number in 0..side.pow(D as u32) {
-            let at: [isize; D] = std::array::from_fn(|axis| along(number, axis));
-            place.push(within.len());
-            if at.iter().filter(|step| step.abs() > q).count() <= 1 {
-                within.push(at);
-            }
-        }
+        let within =
+            (0..side.pow(D as u32)).map(|number| std::array::from_fn(|axis| along(number, axis))).collect();
         let functions = grid.axes().each_ref().map(KnotVector::functions);
-        Self { functions, half, place, within }
+        Self { functions, half, within }
     }
 
     /// Number of a node in a box as wide along every axis as the grid's; differences of two are those of their places.
@@ -87,7 +80,7 @@ impl<const D: usize> Places<D> {
 
     /// The place of node number `b` as seen from node number `a`.
     fn of(&self, a: usize, b: usize) -> usize {
-        self.place[b + self.number([self.half as usize; D]) - a]
+        b + self.number([self.half as usize; D]) - a
     }
 }
 
@@ -191,19 +184,19 @@ impl<const D: usize> Stencil<D> {
         (self.offsets, self.slot) = (offsets, slot);
     }
 
-    /// Adds a scalar block, equal for every component, among `nodes`.
+    /// Adds the dense block of `nodes`, the lowest first.
     pub fn add_among(&mut self, nodes: &[usize], block: &[f64]) {
-        let (width, first) = (self.width(), nodes[0]);
+        let (width, first, order) = (self.width(), nodes[0], nodes.len() * D);
         let numbers: Vec<usize> = nodes.iter().map(|&node| self.places.number(self.places.node(node))).collect();
         let pairs = numbers.iter().flat_map(|a| numbers.iter().map(|b| self.places.of(*a, *b) * D * D));
         let places: Vec<usize> = pairs.collect();
         let values = self.values_from(first);
-        for ((node, places), row) in
-            nodes.iter().zip(places.chunks_exact(nodes.len())).zip(block.chunks_exact(nodes.len()))
-        {
-            for (place, entry) in places.iter().zip(row) {
+        for (a, node) in nodes.iter().enumerate() {
+            for (b, place) in places[a * nodes.len()..][..nodes.len()].iter().enumerate() {
+                let at = (node - first) * width + place;
                 for i in 0..D {
-                    values[(node - first) * width + place + i * D + i] += entry;
+                    let row = &block[(a * D + i) * order + b * D..][..D];
+                    values[at + i * D..][..D].iter_mut().zip(row).for_each(|(value, entry)| *value += entry);
                 }
             }
         }
@@ -327,30 +320,27 @@ mod tests {
         assert_eq!(y, (0..size).map(row).collect::<Vec<_>>(), "whole numbers are exact");
     }
 
-    /// Faces between all cells, with every node of the two cells that a face of the ghost penalty has.
+    /// Faces between cells, with every node of the two cells that a face of the ghost penalty has.
     #[test]
     fn entries_hold_the_sum_of_the_blocks_of_faces() {
         let grid = grid().reaching(1);
-        let size = grid.nodes();
+        let size = grid.nodes() * 2;
         let (mut stencil, mut dense) = (Stencil::new(&grid), vec![0.0; size * size]);
         for (cell, across) in [([0, 0], 3), ([2, 1], 3), ([1, 1], 4)] {
             let first = grid.first_node(&cell);
             let nodes: Vec<usize> = (0..12).map(|k| first + k / across * 5 + k % across).collect();
-            let block: Vec<f64> = (0..144).map(|entry| ((entry * 7 + cell[0] * 13) % 31) as f64).collect();
+            let block: Vec<f64> = (0..24 * 24).map(|entry| ((entry * 7 + cell[0] * 13) % 31) as f64).collect();
             stencil.add_among(&nodes, &block);
+            let component = |k: usize| nodes[k / 2] * 2 + k % 2;
             for (entry, value) in block.iter().enumerate() {
-                dense[nodes[entry / 12] * size + nodes[entry % 12]] += value;
+                dense[component(entry / 24) * size + component(entry % 24)] += value;
             }
         }
-        let (numbers, free): (Numbering, _) = ((0..2 * size).map(Some).collect(), vec![true; 2 * size]);
+        let (numbers, free): (Numbering, _) = ((0..size).map(Some).collect(), vec![true; size]);
         let (places, values) = (stencil.coordinates(&numbers, &free), stencil.entries(&numbers, &free));
         let mut found = vec![0.0; size * size];
         for ((row, column), value) in places.rows.iter().zip(&places.columns).zip(values) {
-            if row % 2 == column % 2 {
-                found[row / 2 * size + column / 2] += 0.5 * value;
-            } else {
-                assert_eq!(value, 0.0);
-            }
+            found[row * size + column] += value;
         }
         assert_eq!(found, dense);
     }

@@ -189,6 +189,12 @@ impl<const D: usize> Shape<D> {
         Values { rows: &self.rows[p * size..(p + 1) * size], stride: self.stride }
     }
 
+    /// N_Ip of node `k` of the patch of point `p`, axis 0 slowest.
+    #[inline]
+    pub(crate) fn value(&self, p: usize, k: usize) -> f64 {
+        with_width!(self.width, W => self.values::<W>(p).value(k))
+    }
+
     /// N_Ip of every node of point `p`, axis 0 slowest; for tests.
     pub fn values_of(&self, p: usize) -> Vec<f64> {
         with_width!(self.width, W => {

@@ -14,12 +14,15 @@ use crate::step::stiffness::{add_background, complete};
 use crate::step::trial::Trial;
 use crate::tensor::{Square, Vector};
 
+/// Flux for every unit gradient: element (k, l) for du_k/dx_l = 1.
+pub type Moduli<const D: usize> = [[Square<D>; D]; D];
+
 /// The derivative at one displacement.
 pub struct Linearised<'a, K, const D: usize> {
     scene: &'a Scene<'a, K, D>,
     trial: &'a Trial<D>,
     /// N m  V0 d(tau dF^-T)/d(grad v), one unit gradient after the other
-    moduli: Vec<[[Square<D>; D]; D]>,
+    moduli: Vec<Moduli<D>>,
     /// under F-bar
     dilation: Option<Vec<Dilation<D>>>,
 }
@@ -101,7 +104,7 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
             block.fill(0.0);
             for p in patch.points.clone() {
                 transfer::gradients_of(shape, p, &mut grad);
-                add_point(&self.moduli[p], &grad[..size], &mut block);
+                add_point(&self.moduli[p], &grad[..size], Pairs::All, &mut block);
             }
             if let Some(soft) = nodes.background.as_ref().and_then(|background| background.of(number)) {
                 add_background::<D>(soft, &mut block);
@@ -114,7 +117,7 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
 
 /// Change of the flux for a gradient: sum_kl moduli_kl grad_kl.
 #[inline]
-fn contract<const D: usize>(moduli: &[[Square<D>; D]; D], grad: &Square<D>) -> Square<D> {
+fn contract<const D: usize>(moduli: &Moduli<D>, grad: &Square<D>) -> Square<D> {
     let mut flux = Square::zeros();
     for (k, row) in moduli.iter().enumerate() {
         for (l, unit) in row.iter().enumerate() {
@@ -124,16 +127,26 @@ fn contract<const D: usize>(moduli: &[[Square<D>; D]; D], grad: &Square<D>) -> S
     flux
 }
 
+/// Node pairs (a, b) of a patch.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Pairs {
+    /// All.
+    All,
+    /// Those with a <= b.
+    Upper,
+}
+
 /// Adds grad N_a . moduli . grad N_b of one point to the block of its patch.
-fn add_point<const D: usize>(moduli: &[[Square<D>; D]; D], grad: &[Vector<D>], block: &mut [f64]) {
+pub fn add_point<const D: usize>(moduli: &Moduli<D>, grad: &[Vector<D>], pairs: Pairs, block: &mut [f64]) {
     let order = grad.len() * D;
     for (b, grad_b) in grad.iter().enumerate() {
+        let rows = if pairs == Pairs::All { grad.len() } else { b + 1 };
         for (k, row) in moduli.iter().enumerate() {
             let mut along = Square::<D>::zeros();
             for (unit, component) in row.iter().zip(grad_b.iter()) {
                 along += unit * *component;
             }
-            for (a, grad_a) in grad.iter().enumerate() {
+            for (a, grad_a) in grad[..rows].iter().enumerate() {
                 let force = along * grad_a;
                 for i in 0..D {
                     block[(a * D + i) * order + b * D + k] += force[i];

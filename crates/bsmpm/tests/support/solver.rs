@@ -59,24 +59,18 @@ impl LinearSolver for Skyline {
     }
 
     fn add(&mut self, first_node: usize, block: &[f64]) {
+        let nodes: Vec<usize> = self.offsets.iter().map(|offset| first_node + offset).collect();
+        self.add_among(&nodes, block);
+    }
+
+    fn add_among(&mut self, nodes: &[usize], block: &[f64]) {
         let components = self.components;
-        let of_node = |&offset: &usize| (0..components).map(move |c| (first_node + offset) * components + c);
-        let unknowns: Vec<_> = self.offsets.iter().flat_map(of_node).map(|c| self.number[c]).collect();
+        let of_node = |&node: &usize| (0..components).map(move |c| node * components + c);
+        let unknowns: Vec<_> = nodes.iter().flat_map(of_node).map(|c| self.number[c]).collect();
         for (row, values) in unknowns.iter().zip(block.chunks_exact(unknowns.len())) {
             for (column, value) in unknowns.iter().zip(values) {
                 if let (Some(row), Some(column)) = (row, column) {
                     self.add_entry(*row, *column, *value);
-                }
-            }
-        }
-    }
-
-    fn add_among(&mut self, nodes: &[usize], block: &[f64]) {
-        for c in 0..self.components {
-            for (entry, value) in block.iter().enumerate() {
-                let [a, b] = [entry / nodes.len(), entry % nodes.len()].map(|k| nodes[k] * self.components + c);
-                if let (Some(row), Some(column)) = (self.number[a], self.number[b]) {
-                    self.add_entry(row, column, *value);
                 }
             }
         }
@@ -243,24 +237,18 @@ impl LinearSolver for Dense {
     }
 
     fn add(&mut self, first_node: usize, block: &[f64]) {
+        let nodes: Vec<usize> = self.offsets.iter().map(|offset| first_node + offset).collect();
+        self.add_among(&nodes, block);
+    }
+
+    fn add_among(&mut self, nodes: &[usize], block: &[f64]) {
         let components = self.components;
-        let of_node = |&offset: &usize| (0..components).map(move |c| (first_node + offset) * components + c);
-        let unknowns: Vec<_> = self.offsets.iter().flat_map(of_node).map(|c| self.number[c]).collect();
+        let of_node = |&node: &usize| (0..components).map(move |c| node * components + c);
+        let unknowns: Vec<_> = nodes.iter().flat_map(of_node).map(|c| self.number[c]).collect();
         for (row, values) in unknowns.iter().zip(block.chunks_exact(unknowns.len())) {
             for (column, value) in unknowns.iter().zip(values) {
                 if let (Some(row), Some(column)) = (row, column) {
                     self.matrix[(*row, *column)] += value;
-                }
-            }
-        }
-    }
-
-    fn add_among(&mut self, nodes: &[usize], block: &[f64]) {
-        for c in 0..self.components {
-            for (entry, value) in block.iter().enumerate() {
-                let [a, b] = [entry / nodes.len(), entry % nodes.len()].map(|k| nodes[k] * self.components + c);
-                if let (Some(row), Some(column)) = (self.number[a], self.number[b]) {
-                    self.matrix[(row, column)] += value;
                 }
             }
         }
