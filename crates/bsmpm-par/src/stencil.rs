@@ -5,18 +5,23 @@
 //! rank hands each of its coordinates over once; rows of ghost nodes are completed by their owner, in whatever order, or by
 //! columns of cells in the order of these.
 
-use bsmpm::grid::{Contributions, Grid, KnotVector};
+mod places;
+
+use bsmpm::grid::{Contributions, Grid};
+use places::Places;
 use std::ops::Range;
+
+/// Row of a node that has none.
+const NONE: usize = usize::MAX;
 
 /// Stencils of all nodes of a window: D x D blocks of a node with each node of its stencil.
 #[derive(Clone, Debug)]
 pub struct Stencil<const D: usize> {
     places: Places<D>,
-    reach: Vec<isize>,    // offset in local nodes of every stencil place, ascending
-    slot: Vec<usize>,     // stencil place of patch node b as seen from patch node a
-    offsets: Vec<usize>,  // of a patch's nodes
-    values: Vec<f64>,     // node, place, row, column
-    valid: Vec<Vec<u16>>, // per node the places that lie in the grid
+    slot: Vec<usize>,    // stencil place of patch node b as seen from patch node a
+    offsets: Vec<usize>, // of a patch's nodes
+    rows: Vec<usize>,    // of every node, or NONE
+    values: Vec<f64>,    // row, place, row and column of the block
     columns: Option<Columns>,
 }
 
@@ -27,14 +32,6 @@ struct Columns {
     sums: Contributions,
     diagonal: Vec<f64>,
     owned: Range<usize>, // nodes of this rank
-}
-
-/// The places of a stencil: a box of nodes.
-#[derive(Clone, Debug)]
-struct Places<const D: usize> {
-    functions: [usize; D],   // nodes along each axis
-    half: isize,             // of the box: q, and the layers beyond
-    within: Vec<[isize; D]>, // of every place
 }
 
 /// Global number of every nodal component of a window, `None` where it is no unknown.
@@ -49,68 +46,33 @@ pub struct Coordinates {
     pub columns: Vec<usize>,
 }
 
-impl<const D: usize> Places<D> {
-    fn new(grid: &Grid<D>) -> Self {
-        let q = grid.order() as isize;
-        let half = q + grid.beyond() as isize;
-        let side = 2 * half + 1;
-        let along = |number: isize, axis: usize| number / side.pow((D - 1 - axis) as u32) % side - half;
-        let within =
-            (0..side.pow(D as u32)).map(|number| std::array::from_fn(|axis| along(number, axis))).collect();
-        let functions = grid.axes().each_ref().map(KnotVector::functions);
-        Self { functions, half, within }
-    }
-
-    /// Number of a node in a box as wide along every axis as the grid's; differences of two are those of their places.
-    fn number(&self, at: [usize; D]) -> usize {
-        let side = 2 * self.half as usize + 1;
-        at.into_iter().fold(0, |number, step| number * side + step)
-    }
-
-    /// The node along each axis, from the window's first layer, of a local index.
-    fn node(&self, mut index: usize) -> [usize; D] {
-        let mut node = [0; D];
-        for axis in (1..D).rev() {
-            node[axis] = index % self.functions[axis];
-            index /= self.functions[axis];
-        }
-        node[0] = index;
-        node
-    }
-
-    /// The place of node number `b` as seen from node number `a`.
-    fn of(&self, a: usize, b: usize) -> usize {
-        b + self.number([self.half as usize; D]) - a
-    }
-}
-
 impl<const D: usize> Stencil<D> {
-    /// Zero stencils over a window.
+    /// Zero stencils over a window, of all nodes.
     pub fn new(grid: &Grid<D>) -> Self {
         let places = Places::new(grid);
-        let flat =
-            |step: &[isize; D]| (1..D).fold(step[0], |sum, axis| sum * places.functions[axis] as isize + step[axis]);
-        let reach: Vec<isize> = places.within.iter().map(flat).collect();
         let (width, patch) = (grid.order() + 1, grid.cell_nodes());
         let at = |k: usize| std::array::from_fn(|axis| k / width.pow((D - 1 - axis) as u32) % width);
         let number = |k: usize| places.number(at(k));
         let slot = (0..patch * patch).map(|pair| places.of(number(pair / patch), number(pair % patch))).collect();
-        let layers = grid.layers();
-        let inside = |node: &[usize; D], step: &[isize; D]| {
-            (0..D).all(|axis| {
-                let range = if axis == 0 { layers.clone() } else { 0..places.functions[axis] };
-                node[axis].checked_add_signed(step[axis]).is_some_and(|other| range.contains(&other))
-            })
+        let mut stencil =
+            Self { places, slot, offsets: grid.offsets(), rows: Vec::new(), values: Vec::new(), columns: None };
+        stencil.keep(grid.nodes(), |_| true);
+        stencil
+    }
+
+    /// Keeps the stencils of these of the window's nodes only: others take no memory, and what is added to them is lost. Sums by
+    /// columns keep all.
+    pub fn keep(&mut self, nodes: usize, kept: impl Fn(usize) -> bool) {
+        let mut count = 0;
+        let mut next = || {
+            count += 1;
+            count - 1
         };
-        let valid = (0..grid.nodes())
-            .map(|node| {
-                let node = grid.node_at(node);
-                let steps = places.within.iter().enumerate();
-                steps.filter(|(_, step)| inside(&node, step)).map(|(place, _)| place as u16).collect()
-            })
-            .collect();
-        let values = vec![0.0; grid.nodes() * reach.len() * D * D];
-        Self { places, reach, slot, offsets: grid.offsets(), values, valid, columns: None }
+        let all = self.columns.is_some();
+        self.rows = (0..nodes).map(|node| if all || kept(node) { next() } else { NONE }).collect();
+        self.values.clear();
+        self.values.resize(count * self.width(), 0.0);
+        self.values.shrink_to(2 * self.values.len());
     }
 
     /// Zero stencils whose sums do not depend on the cut: the columns of cells add to a row in their order, whichever rank
@@ -130,7 +92,7 @@ impl<const D: usize> Stencil<D> {
         self.values = total(&columns.sums);
         let diagonal = columns.diagonal.clone();
         for (at, value) in diagonal.into_iter().enumerate() {
-            *self.diagonal(at / D, at % D) += value;
+            self.diagonal(at / D, at % D).into_iter().for_each(|entry| *entry += value);
         }
     }
 
@@ -145,58 +107,46 @@ impl<const D: usize> Stencil<D> {
         }
     }
 
-    /// The values from node `first` on, in which a cell or a face that begins there is summed.
-    fn values_from(&mut self, first: usize) -> &mut [f64] {
-        let width = self.width();
-        match &mut self.columns {
-            Some(columns) => columns.sums.patch(first),
-            None => &mut self.values[first * width..],
-        }
-    }
-
-    fn diagonal(&mut self, node: usize, component: usize) -> &mut f64 {
-        let middle = self.reach.len() / 2;
-        let at = node * self.width() + (middle * D + component) * D + component;
-        &mut self.values[at]
+    fn diagonal(&mut self, node: usize, component: usize) -> Option<&mut f64> {
+        let row = self.rows[node];
+        let at = (self.places.count() / 2 * D + component) * D + component;
+        (row != NONE).then(|| row * self.width() + at).map(|at| &mut self.values[at])
     }
 
     fn width(&self) -> usize {
-        self.reach.len() * D * D
+        self.places.count() * D * D
     }
 
     /// Adds the dense block of the patch whose first node is `first`.
     pub fn add(&mut self, first: usize, block: &[f64]) {
-        let (patch, width) = (self.offsets.len(), self.width());
         let (offsets, slot) = (std::mem::take(&mut self.offsets), std::mem::take(&mut self.slot));
-        let values = self.values_from(first);
-        for a in 0..patch {
-            let node = offsets[a] * width;
-            for b in 0..patch {
-                let at = node + slot[a * patch + b] * D * D;
-                for i in 0..D {
-                    let row = &block[(a * D + i) * patch * D + b * D..][..D];
-                    for (value, entry) in values[at + i * D..][..D].iter_mut().zip(row) {
-                        *value += entry;
-                    }
-                }
-            }
-        }
+        self.add_blocks(first, &offsets, &slot, block);
         (self.offsets, self.slot) = (offsets, slot);
     }
 
     /// Adds the dense block of `nodes`, the lowest first.
     pub fn add_among(&mut self, nodes: &[usize], block: &[f64]) {
-        let (width, first, order) = (self.width(), nodes[0], nodes.len() * D);
-        let numbers: Vec<usize> = nodes.iter().map(|&node| self.places.number(self.places.node(node))).collect();
-        let pairs = numbers.iter().flat_map(|a| numbers.iter().map(|b| self.places.of(*a, *b) * D * D));
-        let places: Vec<usize> = pairs.collect();
-        let values = self.values_from(first);
-        for (a, node) in nodes.iter().enumerate() {
-            for (b, place) in places[a * nodes.len()..][..nodes.len()].iter().enumerate() {
-                let at = (node - first) * width + place;
+        let numbers: Vec<usize> = nodes.iter().map(|&node| self.places.number_of(node)).collect();
+        let slot: Vec<usize> =
+            numbers.iter().flat_map(|a| numbers.iter().map(|b| self.places.of(*a, *b))).collect();
+        let offsets: Vec<usize> = nodes.iter().map(|node| node - nodes[0]).collect();
+        self.add_blocks(nodes[0], &offsets, &slot, block);
+    }
+
+    /// Adds the dense block of the nodes at `offsets` from `first`, which see each other at the places `slot`.
+    fn add_blocks(&mut self, first: usize, offsets: &[usize], slot: &[usize], block: &[f64]) {
+        let (width, count) = (self.width(), offsets.len());
+        for (a, offset) in offsets.iter().enumerate() {
+            let values = match &mut self.columns {
+                Some(columns) => &mut columns.sums.patch(first)[offset * width..(offset + 1) * width],
+                None if self.rows[first + offset] == NONE => continue,
+                None => &mut self.values[self.rows[first + offset] * width..][..width],
+            };
+            for (b, place) in slot[a * count..(a + 1) * count].iter().enumerate() {
                 for i in 0..D {
-                    let row = &block[(a * D + i) * order + b * D..][..D];
-                    values[at + i * D..][..D].iter_mut().zip(row).for_each(|(value, entry)| *value += entry);
+                    let row = &block[(a * D + i) * count * D + b * D..][..D];
+                    let at = (place * D + i) * D;
+                    values[at..at + D].iter_mut().zip(row).for_each(|(value, entry)| *value += entry);
                 }
             }
         }
@@ -206,26 +156,25 @@ impl<const D: usize> Stencil<D> {
     pub fn add_diagonal(&mut self, node: usize, component: usize, value: f64) {
         match &mut self.columns {
             Some(columns) => columns.diagonal[node * D + component] += value,
-            None => *self.diagonal(node, component) += value,
+            None => self.diagonal(node, component).into_iter().for_each(|entry| *entry += value),
         }
     }
 
     /// Largest entry on the diagonal of this window's blocks.
     pub fn largest_diagonal(&self) -> f64 {
-        let (middle, width) = (self.reach.len() / 2, self.width());
-        let entry = |component: usize| {
-            let (node, i) = (component / D, component % D);
-            self.values[node * width + (middle * D + i) * D + i]
-        };
-        (0..self.valid.len() * D).map(entry).fold(0.0, f64::max)
+        let middle = self.places.count() / 2;
+        let entries = |row: &[f64]| (0..D).map(|i| row[(middle * D + i) * D + i]).fold(0.0, f64::max);
+        self.values.chunks_exact(self.width()).map(entries).fold(0.0, f64::max)
     }
 
-    /// A component's row: the first component of every node that it couples with, and the entries there.
+    /// A component's row: the first component of every node that it couples with, and the entries there; nothing for a node
+    /// without a stencil.
     pub fn row(&self, component: usize) -> impl Iterator<Item = (usize, &[f64])> {
         let (node, i) = (component / D, component % D);
-        self.valid[node].iter().map(move |&place| {
-            let other = node.wrapping_add_signed(self.reach[usize::from(place)]);
-            let at = node * self.width() + (usize::from(place) * D + i) * D;
+        let row = self.rows[node];
+        let places = (row != NONE).then(|| self.places.around(node)).into_iter().flatten();
+        places.map(move |(place, other)| {
+            let at = row * self.width() + (place * D + i) * D;
             (other * D, &self.values[at..at + D])
         })
     }
@@ -266,12 +215,14 @@ impl<const D: usize> Stencil<D> {
         for (component, row) in numbers.iter().enumerate() {
             let Some(row) = row else { continue };
             let (node, i) = (component / D, component % D);
-            for &place in &self.valid[node] {
-                let other = node.wrapping_add_signed(self.reach[usize::from(place)]);
+            if self.rows[node] == NONE {
+                continue;
+            }
+            for (place, other) in self.places.around(node) {
                 if !handed(node, other) {
                     continue;
                 }
-                let at = node * self.width() + (usize::from(place) * D + i) * D;
+                let at = self.rows[node] * self.width() + (place * D + i) * D;
                 for j in 0..D {
                     let coupled = other * D + j == component || free[component] && free[other * D + j];
                     if let Some(column) = numbers[other * D + j].filter(|_| coupled) {
@@ -286,6 +237,7 @@ impl<const D: usize> Stencil<D> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use bsmpm::grid::KnotVector;
 
     fn grid() -> Grid<2> {
         Grid::new([KnotVector::uniform(1.0, 4, 2).unwrap(), KnotVector::uniform(1.0, 3, 2).unwrap()]).unwrap()
@@ -387,6 +339,27 @@ mod tests {
         let places = stencil.coordinates(&numbers, &free);
         assert_eq!(places.rows.len(), stencil.entries(&numbers, &free).len());
         assert!(places.rows.iter().chain(&places.columns).all(|&number| number < grid.nodes()));
+    }
+
+    #[test]
+    fn nodes_that_are_not_kept_take_no_memory_and_change_no_row() {
+        let grid = grid();
+        let add = |stencil: &mut Stencil<2>| {
+            for cell in 0..grid.cells() {
+                let block: Vec<f64> = (0..18 * 18).map(|entry| ((entry * 7 + cell * 13) % 31) as f64).collect();
+                stencil.add(grid.first_node(&grid.cell_at(cell)), &block);
+            }
+        };
+        let (mut whole, kept) = (Stencil::new(&grid), |node: usize| node % 3 > 0);
+        let mut some = whole.clone();
+        some.keep(grid.nodes(), kept);
+        add(&mut whole);
+        add(&mut some);
+        for component in 0..2 * grid.nodes() {
+            let expected: Vec<_> = if kept(component / 2) { whole.row(component).collect() } else { Vec::new() };
+            assert_eq!(some.row(component).collect::<Vec<_>>(), expected);
+        }
+        assert_eq!(some.values.len() * grid.nodes(), whole.values.len() * (0..grid.nodes()).filter(|&n| kept(n)).count());
     }
 
     #[test]

@@ -165,7 +165,7 @@ fn average<const D: usize, const C: usize>(
     nodal
 }
 
-fn weights<const D: usize>(weighting: Weighting, points: &Points<D>) -> &[f64] {
+pub(super) fn weights<const D: usize>(weighting: Weighting, points: &Points<D>) -> &[f64] {
     match weighting {
         Weighting::Mass => &points.mass,
         Weighting::Volume => &points.volume,

@@ -12,7 +12,7 @@ use crate::material::Stiffness;
 use crate::model::Model;
 use crate::points::Points;
 use crate::seam::{LinearSolver, Symmetry};
-use crate::step::coupling::{Coupling, Dilations};
+use crate::step::coupling::{Coupling, Dilations, Raised, Share};
 use crate::step::equilibrium::Scene;
 use crate::step::nodes::Nodes;
 use crate::step::linearised::{Moduli, Pairs, add_point};
@@ -29,17 +29,18 @@ pub fn assemble<K: Kinematics<D>, const D: usize>(
 ) -> Result<(), SolveError> {
     let Scene { model, shape, nodes, points, halo, .. } = *scene;
     solver.begin(&nodes.free);
-    let mut coupling = at.and_then(|_| Coupling::of(&model.grid, nodes));
-    let state = State { model, shape, nodes, points, at, coupled: coupling.is_some() };
+    let mut coupling = at.and_then(|_| Coupling::of(&model.grid, nodes, Raised::Along));
     // Threads work on a column each; what they found is added in the order of the patches.
-    for columns in shape.columns().chunks(rayon::current_num_threads()) {
+    let threads = rayon::current_num_threads();
+    for columns in shape.columns().chunks(threads) {
+        let state = State { model, shape, nodes, points, at, coupling: coupling.as_ref() };
         let of_column = |column: &Column| column.patches.clone().map(|patch| state.part(patch)).collect();
         let parts: Vec<Vec<Part>> = columns.par_iter().map(of_column).collect();
         let patches = columns.iter().flat_map(|column| &shape.patches()[column.patches.clone()]);
         for (patch, part) in patches.zip(parts.into_iter().flatten()) {
             solver.add(patch.first_node, &part.block);
             if let (Some(coupling), Some(dilations)) = (&mut coupling, &part.dilations) {
-                coupling.add(patch.first_node, dilations);
+                coupling.add::<D>(patch.first_node, dilations);
             }
         }
     }
@@ -64,16 +65,17 @@ struct State<'a, K, const D: usize> {
     nodes: &'a Nodes<D>,
     points: &'a Points<D>,
     at: Option<&'a Trial<D>>,
-    coupled: bool,
+    coupling: Option<&'a Coupling>,
 }
 
 impl<K: Kinematics<D>, const D: usize> State<'_, K, D> {
     fn part(&self, number: usize) -> Part {
-        let Self { model, shape, nodes, points, at, coupled } = *self;
+        let Self { model, shape, nodes, points, at, coupling } = *self;
+        let coupled = coupling.is_some();
         let patch = &shape.patches()[number];
         let size = shape.offsets().len();
         let mut block = vec![0.0; (size * D).pow(2)];
-        let mut dilations = coupled.then(|| Dilations::of_patch(nodes, size));
+        let mut dilations = coupling.map(Coupling::of_patch::<D>);
         let mut moments = vec![Square::<D>::zeros(); size * size];
         let mut grad = [Vector::<D>::zeros(); 64];
         let grad = &mut grad[..size];
@@ -100,7 +102,9 @@ impl<K: Kinematics<D>, const D: usize> State<'_, K, D> {
                     }
                 };
                 if let Some(dilations) = &mut dilations {
-                    dilations.add::<K, D>(nodes, p, (volume, bulk), grad);
+                    let mut dilation = [Vector::<D>::zeros(); 64];
+                    dilation.iter_mut().zip(&*grad).for_each(|(dilation, grad)| *dilation = grad * volume);
+                    dilations.add(nodes, p, &Share { weight: volume, bulk, dilation: &dilation[..size], force: &[] });
                 }
             }
             let lambda = if coupled { -2.0 * mu * averaged } else { lambda };
@@ -131,7 +135,14 @@ fn of_point<K: Kinematics<D>, const D: usize>(stiffness: &Stiffness, volume: f64
         };
         K::in_plane(&stress) * volume
     };
-    (std::array::from_fn(|k| std::array::from_fn(|l| unit(k, l))), bulk)
+    let mut moduli = [[Square::zeros(); D]; D];
+    for k in 0..D {
+        for l in k..D {
+            moduli[k][l] = unit(k, l);
+            moduli[l][k] = moduli[k][l]; // it sees the strain only
+        }
+    }
+    (moduli, bulk)
 }
 
 /// Adds strips, faces of the background and inertia to a matrix whose patches are assembled, and factorises it.

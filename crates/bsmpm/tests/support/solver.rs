@@ -218,6 +218,14 @@ impl Dense {
         self.number[row].zip(self.number[column]).map_or(0.0, |at| self.matrix[at])
     }
 
+    /// Product with a nodal array, zero where it is not free.
+    pub fn multiply(&self, x: &[f64]) -> Vec<f64> {
+        let free = |(number, x): (&Option<usize>, &f64)| number.map(|_| *x);
+        let x = DVector::from_iterator(self.matrix.nrows(), self.number.iter().zip(x).filter_map(free));
+        let image = &self.matrix * x;
+        self.number.iter().map(|number| number.map_or(0.0, |row| image[row])).collect()
+    }
+
     /// Largest over smallest eigenvalue of the symmetric matrix: as it is, and scaled to a unit diagonal. Infinite if it
     /// is not positive definite to rounding.
     pub fn conditions(&self) -> [f64; 2] {
