@@ -181,13 +181,19 @@ impl<const D: usize> Stencil<D> {
 
     /// y = A x of the components marked `free`, as far as this window's blocks go; `x` is zero at the others.
     pub fn multiply(&self, free: &[bool], x: &[f64], y: &mut [f64]) {
-        for (component, y) in y.iter_mut().enumerate() {
-            *y = 0.0;
-            if free[component] {
-                for (other, values) in self.row(component) {
-                    *y += values.iter().zip(&x[other..other + D]).map(|(a, x)| a * x).sum::<f64>();
+        let nodes = self.rows.iter().zip(y.chunks_exact_mut(D).zip(free.chunks_exact(D))).enumerate();
+        for (node, (&row, (y, free))) in nodes {
+            let mut image = [0.0; D];
+            if row != NONE {
+                let values = &self.values[row * self.width()..][..self.width()];
+                for (place, other) in self.places.around(node) {
+                    let (block, x) = (&values[place * D * D..][..D * D], &x[other * D..][..D]);
+                    for i in 0..D {
+                        image[i] += (0..D).map(|j| block[i * D + j] * x[j]).sum::<f64>();
+                    }
                 }
             }
+            (0..D).for_each(|i| y[i] = if free[i] { image[i] } else { 0.0 });
         }
     }
 
