@@ -1,22 +1,27 @@
 //! The stiffness of one window as node stencils, and its entries as PETSc wants them: plain data, without MPI or PETSc.
 //!
-//! A node couples with the (2q+1)^D nodes around it, and where the window reaches beyond its cells with those a layer
-//! further along one axis. Blocks of patches are summed into that fixed stencil, so that every
+//! A node couples with the (2q+1)^D nodes around it, and with those a layer further where the window reaches beyond its cells.
+//! Blocks of patches are summed into that fixed stencil, so that every
 //! rank hands each of its coordinates over once; rows of ghost nodes are completed by their owner, in whatever order, or by
 //! columns of cells in the order of these.
 
-use bsmpm::grid::{Contributions, Grid, KnotVector};
+mod places;
+
+use bsmpm::grid::{Contributions, Grid};
+use places::Places;
 use std::ops::Range;
+
+/// Row of a node that has none.
+const NONE: usize = usize::MAX;
 
 /// Stencils of all nodes of a window: D x D blocks of a node with each node of its stencil.
 #[derive(Clone, Debug)]
 pub struct Stencil<const D: usize> {
     places: Places<D>,
-    reach: Vec<isize>,    // offset in local nodes of every stencil place, ascending
-    slot: Vec<usize>,     // stencil place of patch node b as seen from patch node a
-    offsets: Vec<usize>,  // of a patch's nodes
-    values: Vec<f64>,     // node, place, row, column
-    valid: Vec<Vec<u16>>, // per node the places that lie in the grid
+    slot: Vec<usize>,    // stencil place of patch node b as seen from patch node a
+    offsets: Vec<usize>, // of a patch's nodes
+    rows: Vec<usize>,    // of every node, or NONE
+    values: Vec<f64>,    // row, place, row and column of the block
     columns: Option<Columns>,
 }
 
@@ -27,15 +32,6 @@ struct Columns {
     sums: Contributions,
     diagonal: Vec<f64>,
     owned: Range<usize>, // nodes of this rank
-}
-
-/// The places of a stencil: those of a box that lie at most q nodes off along every axis but one.
-#[derive(Clone, Debug)]
-struct Places<const D: usize> {
-    functions: [usize; D],   // nodes along each axis
-    half: isize,             // of the box: q, and the layers beyond
-    place: Vec<usize>,       // by number in the box; those without a place are never asked for
-    within: Vec<[isize; D]>, // of every place
 }
 
 /// Global number of every nodal component of a window, `None` where it is no unknown.
@@ -50,74 +46,33 @@ pub struct Coordinates {
     pub columns: Vec<usize>,
 }
 
-impl<const D: usize> Places<D> {
-    fn new(grid: &Grid<D>) -> Self {
-        let q = grid.order() as isize;
-        let half = q + grid.beyond() as isize;
-        let side = 2 * half + 1;
-        let along = |number: isize, axis: usize| number / side.pow((D - 1 - axis) as u32) % side - half;
-        let (mut place, mut within) = (Vec::new(), Vec::new());
-        for number in 0..side.pow(D as u32) {
-            let at: [isize; D] = std::array::from_fn(|axis| along(number, axis));
-            place.push(within.len());
-            if at.iter().filter(|step| step.abs() > q).count() <= 1 {
-                within.push(at);
-            }
-        }
-        let functions = grid.axes().each_ref().map(KnotVector::functions);
-        Self { functions, half, place, within }
-    }
-
-    /// Number of a node in a box as wide along every axis as the grid's; differences of two are those of their places.
-    fn number(&self, at: [usize; D]) -> usize {
-        let side = 2 * self.half as usize + 1;
-        at.into_iter().fold(0, |number, step| number * side + step)
-    }
-
-    /// The node along each axis, from the window's first layer, of a local index.
-    fn node(&self, mut index: usize) -> [usize; D] {
-        let mut node = [0; D];
-        for axis in (1..D).rev() {
-            node[axis] = index % self.functions[axis];
-            index /= self.functions[axis];
-        }
-        node[0] = index;
-        node
-    }
-
-    /// The place of node number `b` as seen from node number `a`.
-    fn of(&self, a: usize, b: usize) -> usize {
-        self.place[b + self.number([self.half as usize; D]) - a]
-    }
-}
-
 impl<const D: usize> Stencil<D> {
-    /// Zero stencils over a window.
+    /// Zero stencils over a window, of all nodes.
     pub fn new(grid: &Grid<D>) -> Self {
         let places = Places::new(grid);
-        let flat =
-            |step: &[isize; D]| (1..D).fold(step[0], |sum, axis| sum * places.functions[axis] as isize + step[axis]);
-        let reach: Vec<isize> = places.within.iter().map(flat).collect();
         let (width, patch) = (grid.order() + 1, grid.cell_nodes());
         let at = |k: usize| std::array::from_fn(|axis| k / width.pow((D - 1 - axis) as u32) % width);
         let number = |k: usize| places.number(at(k));
         let slot = (0..patch * patch).map(|pair| places.of(number(pair / patch), number(pair % patch))).collect();
-        let layers = grid.layers();
-        let inside = |node: &[usize; D], step: &[isize; D]| {
-            (0..D).all(|axis| {
-                let range = if axis == 0 { layers.clone() } else { 0..places.functions[axis] };
-                node[axis].checked_add_signed(step[axis]).is_some_and(|other| range.contains(&other))
-            })
+        let mut stencil =
+            Self { places, slot, offsets: grid.offsets(), rows: Vec::new(), values: Vec::new(), columns: None };
+        stencil.keep(grid.nodes(), |_| true);
+        stencil
+    }
+
+    /// Keeps the stencils of these of the window's nodes only: others take no memory, and what is added to them is lost. Sums by
+    /// columns keep all.
+    pub fn keep(&mut self, nodes: usize, kept: impl Fn(usize) -> bool) {
+        let mut count = 0;
+        let mut next = || {
+            count += 1;
+            count - 1
         };
-        let valid = (0..grid.nodes())
-            .map(|node| {
-                let node = grid.node_at(node);
-                let steps = places.within.iter().enumerate();
-                steps.filter(|(_, step)| inside(&node, step)).map(|(place, _)| place as u16).collect()
-            })
-            .collect();
-        let values = vec![0.0; grid.nodes() * reach.len() * D * D];
-        Self { places, reach, slot, offsets: grid.offsets(), values, valid, columns: None }
+        let all = self.columns.is_some();
+        self.rows = (0..nodes).map(|node| if all || kept(node) { next() } else { NONE }).collect();
+        self.values.clear();
+        self.values.resize(count * self.width(), 0.0);
+        self.values.shrink_to(2 * self.values.len());
     }
 
     /// Zero stencils whose sums do not depend on the cut: the columns of cells add to a row in their order, whichever rank
@@ -137,7 +92,7 @@ impl<const D: usize> Stencil<D> {
         self.values = total(&columns.sums);
         let diagonal = columns.diagonal.clone();
         for (at, value) in diagonal.into_iter().enumerate() {
-            *self.diagonal(at / D, at % D) += value;
+            self.diagonal(at / D, at % D).into_iter().for_each(|entry| *entry += value);
         }
     }
 
@@ -152,58 +107,46 @@ impl<const D: usize> Stencil<D> {
         }
     }
 
-    /// The values from node `first` on, in which a cell or a face that begins there is summed.
-    fn values_from(&mut self, first: usize) -> &mut [f64] {
-        let width = self.width();
-        match &mut self.columns {
-            Some(columns) => columns.sums.patch(first),
-            None => &mut self.values[first * width..],
-        }
-    }
-
-    fn diagonal(&mut self, node: usize, component: usize) -> &mut f64 {
-        let middle = self.reach.len() / 2;
-        let at = node * self.width() + (middle * D + component) * D + component;
-        &mut self.values[at]
+    fn diagonal(&mut self, node: usize, component: usize) -> Option<&mut f64> {
+        let row = self.rows[node];
+        let at = (self.places.count() / 2 * D + component) * D + component;
+        (row != NONE).then(|| row * self.width() + at).map(|at| &mut self.values[at])
     }
 
     fn width(&self) -> usize {
-        self.reach.len() * D * D
+        self.places.count() * D * D
     }
 
     /// Adds the dense block of the patch whose first node is `first`.
     pub fn add(&mut self, first: usize, block: &[f64]) {
-        let (patch, width) = (self.offsets.len(), self.width());
         let (offsets, slot) = (std::mem::take(&mut self.offsets), std::mem::take(&mut self.slot));
-        let values = self.values_from(first);
-        for a in 0..patch {
-            let node = offsets[a] * width;
-            for b in 0..patch {
-                let at = node + slot[a * patch + b] * D * D;
-                for i in 0..D {
-                    let row = &block[(a * D + i) * patch * D + b * D..][..D];
-                    for (value, entry) in values[at + i * D..][..D].iter_mut().zip(row) {
-                        *value += entry;
-                    }
-                }
-            }
-        }
+        self.add_blocks(first, &offsets, &slot, block);
         (self.offsets, self.slot) = (offsets, slot);
     }
 
-    /// Adds a scalar block, equal for every component, among `nodes`.
+    /// Adds the dense block of `nodes`, the lowest first.
     pub fn add_among(&mut self, nodes: &[usize], block: &[f64]) {
-        let (width, first) = (self.width(), nodes[0]);
-        let numbers: Vec<usize> = nodes.iter().map(|&node| self.places.number(self.places.node(node))).collect();
-        let pairs = numbers.iter().flat_map(|a| numbers.iter().map(|b| self.places.of(*a, *b) * D * D));
-        let places: Vec<usize> = pairs.collect();
-        let values = self.values_from(first);
-        for ((node, places), row) in
-            nodes.iter().zip(places.chunks_exact(nodes.len())).zip(block.chunks_exact(nodes.len()))
-        {
-            for (place, entry) in places.iter().zip(row) {
+        let numbers: Vec<usize> = nodes.iter().map(|&node| self.places.number_of(node)).collect();
+        let slot: Vec<usize> =
+            numbers.iter().flat_map(|a| numbers.iter().map(|b| self.places.of(*a, *b))).collect();
+        let offsets: Vec<usize> = nodes.iter().map(|node| node - nodes[0]).collect();
+        self.add_blocks(nodes[0], &offsets, &slot, block);
+    }
+
+    /// Adds the dense block of the nodes at `offsets` from `first`, which see each other at the places `slot`.
+    fn add_blocks(&mut self, first: usize, offsets: &[usize], slot: &[usize], block: &[f64]) {
+        let (width, count) = (self.width(), offsets.len());
+        for (a, offset) in offsets.iter().enumerate() {
+            let values = match &mut self.columns {
+                Some(columns) => &mut columns.sums.patch(first)[offset * width..(offset + 1) * width],
+                None if self.rows[first + offset] == NONE => continue,
+                None => &mut self.values[self.rows[first + offset] * width..][..width],
+            };
+            for (b, place) in slot[a * count..(a + 1) * count].iter().enumerate() {
                 for i in 0..D {
-                    values[(node - first) * width + place + i * D + i] += entry;
+                    let row = &block[(a * D + i) * count * D + b * D..][..D];
+                    let at = (place * D + i) * D;
+                    values[at..at + D].iter_mut().zip(row).for_each(|(value, entry)| *value += entry);
                 }
             }
         }
@@ -213,39 +156,44 @@ impl<const D: usize> Stencil<D> {
     pub fn add_diagonal(&mut self, node: usize, component: usize, value: f64) {
         match &mut self.columns {
             Some(columns) => columns.diagonal[node * D + component] += value,
-            None => *self.diagonal(node, component) += value,
+            None => self.diagonal(node, component).into_iter().for_each(|entry| *entry += value),
         }
     }
 
     /// Largest entry on the diagonal of this window's blocks.
     pub fn largest_diagonal(&self) -> f64 {
-        let (middle, width) = (self.reach.len() / 2, self.width());
-        let entry = |component: usize| {
-            let (node, i) = (component / D, component % D);
-            self.values[node * width + (middle * D + i) * D + i]
-        };
-        (0..self.valid.len() * D).map(entry).fold(0.0, f64::max)
+        let middle = self.places.count() / 2;
+        let entries = |row: &[f64]| (0..D).map(|i| row[(middle * D + i) * D + i]).fold(0.0, f64::max);
+        self.values.chunks_exact(self.width()).map(entries).fold(0.0, f64::max)
     }
 
-    /// A component's row: the first component of every node that it couples with, and the entries there.
+    /// A component's row: the first component of every node that it couples with, and the entries there; nothing for a node
+    /// without a stencil.
     pub fn row(&self, component: usize) -> impl Iterator<Item = (usize, &[f64])> {
         let (node, i) = (component / D, component % D);
-        self.valid[node].iter().map(move |&place| {
-            let other = node.wrapping_add_signed(self.reach[usize::from(place)]);
-            let at = node * self.width() + (usize::from(place) * D + i) * D;
+        let row = self.rows[node];
+        let places = (row != NONE).then(|| self.places.around(node)).into_iter().flatten();
+        places.map(move |(place, other)| {
+            let at = row * self.width() + (place * D + i) * D;
             (other * D, &self.values[at..at + D])
         })
     }
 
     /// y = A x of the components marked `free`, as far as this window's blocks go; `x` is zero at the others.
     pub fn multiply(&self, free: &[bool], x: &[f64], y: &mut [f64]) {
-        for (component, y) in y.iter_mut().enumerate() {
-            *y = 0.0;
-            if free[component] {
-                for (other, values) in self.row(component) {
-                    *y += values.iter().zip(&x[other..other + D]).map(|(a, x)| a * x).sum::<f64>();
+        let nodes = self.rows.iter().zip(y.chunks_exact_mut(D).zip(free.chunks_exact(D))).enumerate();
+        for (node, (&row, (y, free))) in nodes {
+            let mut image = [0.0; D];
+            if row != NONE {
+                let values = &self.values[row * self.width()..][..self.width()];
+                for (place, other) in self.places.around(node) {
+                    let (block, x) = (&values[place * D * D..][..D * D], &x[other * D..][..D]);
+                    for i in 0..D {
+                        image[i] += (0..D).map(|j| block[i * D + j] * x[j]).sum::<f64>();
+                    }
                 }
             }
+            (0..D).for_each(|i| y[i] = if free[i] { image[i] } else { 0.0 });
         }
     }
 
@@ -273,12 +221,14 @@ impl<const D: usize> Stencil<D> {
         for (component, row) in numbers.iter().enumerate() {
             let Some(row) = row else { continue };
             let (node, i) = (component / D, component % D);
-            for &place in &self.valid[node] {
-                let other = node.wrapping_add_signed(self.reach[usize::from(place)]);
+            if self.rows[node] == NONE {
+                continue;
+            }
+            for (place, other) in self.places.around(node) {
                 if !handed(node, other) {
                     continue;
                 }
-                let at = node * self.width() + (usize::from(place) * D + i) * D;
+                let at = self.rows[node] * self.width() + (place * D + i) * D;
                 for j in 0..D {
                     let coupled = other * D + j == component || free[component] && free[other * D + j];
                     if let Some(column) = numbers[other * D + j].filter(|_| coupled) {
@@ -293,6 +243,7 @@ impl<const D: usize> Stencil<D> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use bsmpm::grid::KnotVector;
 
     fn grid() -> Grid<2> {
         Grid::new([KnotVector::uniform(1.0, 4, 2).unwrap(), KnotVector::uniform(1.0, 3, 2).unwrap()]).unwrap()
@@ -327,30 +278,27 @@ mod tests {
         assert_eq!(y, (0..size).map(row).collect::<Vec<_>>(), "whole numbers are exact");
     }
 
-    /// Faces between all cells, with every node of the two cells that a face of the ghost penalty has.
+    /// Faces between cells, with every node of the two cells that a face of the ghost penalty has.
     #[test]
     fn entries_hold_the_sum_of_the_blocks_of_faces() {
         let grid = grid().reaching(1);
-        let size = grid.nodes();
+        let size = grid.nodes() * 2;
         let (mut stencil, mut dense) = (Stencil::new(&grid), vec![0.0; size * size]);
         for (cell, across) in [([0, 0], 3), ([2, 1], 3), ([1, 1], 4)] {
             let first = grid.first_node(&cell);
             let nodes: Vec<usize> = (0..12).map(|k| first + k / across * 5 + k % across).collect();
-            let block: Vec<f64> = (0..144).map(|entry| ((entry * 7 + cell[0] * 13) % 31) as f64).collect();
+            let block: Vec<f64> = (0..24 * 24).map(|entry| ((entry * 7 + cell[0] * 13) % 31) as f64).collect();
             stencil.add_among(&nodes, &block);
+            let component = |k: usize| nodes[k / 2] * 2 + k % 2;
             for (entry, value) in block.iter().enumerate() {
-                dense[nodes[entry / 12] * size + nodes[entry % 12]] += value;
+                dense[component(entry / 24) * size + component(entry % 24)] += value;
             }
         }
-        let (numbers, free): (Numbering, _) = ((0..2 * size).map(Some).collect(), vec![true; 2 * size]);
+        let (numbers, free): (Numbering, _) = ((0..size).map(Some).collect(), vec![true; size]);
         let (places, values) = (stencil.coordinates(&numbers, &free), stencil.entries(&numbers, &free));
         let mut found = vec![0.0; size * size];
         for ((row, column), value) in places.rows.iter().zip(&places.columns).zip(values) {
-            if row % 2 == column % 2 {
-                found[row / 2 * size + column / 2] += 0.5 * value;
-            } else {
-                assert_eq!(value, 0.0);
-            }
+            found[row * size + column] += value;
         }
         assert_eq!(found, dense);
     }
@@ -397,6 +345,27 @@ mod tests {
         let places = stencil.coordinates(&numbers, &free);
         assert_eq!(places.rows.len(), stencil.entries(&numbers, &free).len());
         assert!(places.rows.iter().chain(&places.columns).all(|&number| number < grid.nodes()));
+    }
+
+    #[test]
+    fn nodes_that_are_not_kept_take_no_memory_and_change_no_row() {
+        let grid = grid();
+        let add = |stencil: &mut Stencil<2>| {
+            for cell in 0..grid.cells() {
+                let block: Vec<f64> = (0..18 * 18).map(|entry| ((entry * 7 + cell * 13) % 31) as f64).collect();
+                stencil.add(grid.first_node(&grid.cell_at(cell)), &block);
+            }
+        };
+        let (mut whole, kept) = (Stencil::new(&grid), |node: usize| node % 3 > 0);
+        let mut some = whole.clone();
+        some.keep(grid.nodes(), kept);
+        add(&mut whole);
+        add(&mut some);
+        for component in 0..2 * grid.nodes() {
+            let expected: Vec<_> = if kept(component / 2) { whole.row(component).collect() } else { Vec::new() };
+            assert_eq!(some.row(component).collect::<Vec<_>>(), expected);
+        }
+        assert_eq!(some.values.len() * grid.nodes(), whole.values.len() * (0..grid.nodes()).filter(|&n| kept(n)).count());
     }
 
     #[test]

@@ -152,8 +152,8 @@ impl Blocks {
     }
 
     /// Adds what is no part of a patch's block to a matrix.
-    pub fn assemble(&self, solver: &mut dyn LinearSolver) {
-        self.faces.assemble(solver);
+    pub fn assemble<const D: usize>(&self, solver: &mut dyn LinearSolver) {
+        self.faces.assemble::<D>(solver);
     }
 
     /// Block of a patch by its number, if it has one.

@@ -52,7 +52,7 @@ pub fn set_elastic<K: Kinematics<D>, const D: usize>(
     let model = &Model { regime: Regime::QuasiStatic, ..model.clone() };
     let start = Start::of(model, points, halo)?;
     let scene = start.scene(model, points, halo);
-    stiffness::assemble(&scene, solver)?;
+    stiffness::assemble(&scene, None, solver)?;
     let mut u = vec![0.0; model.grid.nodes() * D];
     let mut du = u.clone();
     let mut strains = vec![Symmetric::default(); points.len()];

@@ -9,12 +9,14 @@ mod hencky;
 mod mohr_coulomb;
 mod response;
 mod spectral;
+mod stiffness;
 mod tangent;
 
 pub use graded::{Graded, GradedStrength, Profile};
 pub use hencky::Hencky;
 pub use mohr_coulomb::{MohrCoulomb, Separation};
 pub use response::{Region, Response};
+pub use stiffness::Stiffness;
 pub use tangent::Tangent;
 
 use crate::tensor::Symmetric;

@@ -32,6 +32,12 @@ pub enum Stabilisation {
 }
 
 impl Stabilisation {
+    /// Layers of nodes that its stiffness needs beyond those of the cells of a window of splines of the `order`, see
+    /// [`Grid::reaching`](crate::grid::Grid::reaching): the functions of degree q - 1 span q cells.
+    pub fn beyond(self, order: usize) -> usize {
+        if self == Self::ConsistentFBar { order - 1 } else { 0 }
+    }
+
     /// Whether dilations are averaged at all.
     pub fn averages(self) -> bool {
         self != Self::None

@@ -2,6 +2,7 @@
 
 pub mod broyden;
 pub mod commit;
+mod coupling;
 pub mod equilibrium;
 pub mod inertia;
 pub mod linearised;

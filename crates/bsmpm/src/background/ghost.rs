@@ -97,12 +97,12 @@ impl Faces {
     }
 
     /// Adds B to a matrix.
-    pub(super) fn assemble(&self, solver: &mut dyn LinearSolver) {
+    pub(super) fn assemble<const D: usize>(&self, solver: &mut dyn LinearSolver) {
         let (mut nodes, mut block) = (Vec::new(), Vec::new());
         for face in &self.faces {
             nodes.clear();
             nodes.extend(self.offsets[face.normal].iter().map(|offset| face.first_node + offset));
-            face.fill(&mut block);
+            face.fill::<D>(&mut block);
             solver.add_among(&nodes, &block);
         }
     }
@@ -129,13 +129,17 @@ impl Face {
         self.mass.len().isqrt()
     }
 
-    /// The scalar block of the face, row-major square.
-    fn fill(&self, block: &mut Vec<f64>) {
-        let width = self.width();
+    /// The block of the face, row-major square: equal for every component, which do not couple.
+    fn fill<const D: usize>(&self, block: &mut Vec<f64>) {
+        let (width, layers) = (self.width(), self.jump.len());
+        let order = layers * width * D;
         block.clear();
-        for a in &self.jump {
-            for row in self.mass.chunks_exact(width) {
-                block.extend(self.jump.iter().flat_map(|b| row.iter().map(move |mass| a * b * mass)));
+        block.resize(order * order, 0.0);
+        for (a, row) in block.chunks_exact_mut(order * D).enumerate() {
+            let (jump, mass) = (self.jump[a / width], &self.mass[a % width * width..][..width]);
+            for b in 0..layers * width {
+                let value = jump * self.jump[b / width] * mass[b % width];
+                (0..D).for_each(|c| row[c * order + b * D + c] = value);
             }
         }
     }

@@ -189,6 +189,15 @@ impl<const D: usize> Shape<D> {
         Values { rows: &self.rows[p * size..(p + 1) * size], stride: self.stride }
     }
 
+    /// N_Ip of every node of point `p`, axis 0 slowest, for sums over a patch.
+    #[inline]
+    pub(crate) fn values_into(&self, p: usize, out: &mut [f64]) {
+        with_width!(self.width, W => {
+            let support = self.values::<W>(p);
+            out.iter_mut().enumerate().for_each(|(k, value)| *value = support.value(k));
+        });
+    }
+
     /// N_Ip of every node of point `p`, axis 0 slowest; for tests.
     pub fn values_of(&self, p: usize) -> Vec<f64> {
         with_width!(self.width, W => {

@@ -19,7 +19,7 @@ pub struct Tangent {
 }
 
 /// Pairs of axes, in the order of [`Tangent`]'s chords.
-const PAIRS: [(usize, usize); 3] = [(0, 1), (1, 2), (0, 2)];
+pub(super) const PAIRS: [(usize, usize); 3] = [(0, 1), (1, 2), (0, 2)];
 
 impl Tangent {
     pub(super) fn of(response: &Response) -> Self {
@@ -46,7 +46,7 @@ impl Tangent {
 }
 
 /// `∂τ_A/∂ε_B`: D, on the face `D - (D m)(D n)ᵀ/(n · D m)`, on an edge of direction a `a qᵀ/(q · C a)`, at the apex zero.
-fn principal(response: &Response) -> Tensor {
+pub(super) fn principal(response: &Response) -> Tensor {
     let (moduli, flow) = (response.moduli, response.flow);
     let elastic = Tensor::from_element(moduli.lambda) + Tensor::identity() * (2.0 * moduli.mu);
     match response.region() {
@@ -75,13 +75,17 @@ fn principal(response: &Response) -> Tensor {
 /// `(D11 - D12 - D21 + D22)/(4 b)` gives there. The bounds keep rounding of a tiny gap inside.
 fn chord(response: &Response, a: usize, b: usize) -> f64 {
     let trial = &response.trial;
-    let (shear, gap) = (2.0 * response.moduli.mu, trial.eps[a] - trial.eps[b]);
-    let slope = match response.region() {
+    let x = (trial.b[a] - trial.b[b]) / trial.b[b];
+    let log = if x == 0.0 { 1.0 } else { x.ln_1p() / x };
+    slope(response, a, b) * log / (2.0 * trial.b[b])
+}
+
+/// `(τ_A - τ_B)/(ε_A - ε_B)` in Pa: see [`chord`].
+pub(super) fn slope(response: &Response, a: usize, b: usize) -> f64 {
+    let (shear, gap) = (2.0 * response.moduli.mu, response.trial.eps[a] - response.trial.eps[b]);
+    match response.region() {
         Region::Elastic => shear,
         _ if gap > 0.0 => ((response.tau[a] - response.tau[b]) / gap).max(0.0).min(shear),
         _ => 0.0,
-    };
-    let x = (trial.b[a] - trial.b[b]) / trial.b[b];
-    let log = if x == 0.0 { 1.0 } else { x.ln_1p() / x };
-    slope * log / (2.0 * trial.b[b])
+    }
 }

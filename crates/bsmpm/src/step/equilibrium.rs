@@ -10,7 +10,7 @@ use crate::model::Model;
 use crate::points::Points;
 use crate::seam::{Halo, LinearSolver};
 use crate::step::nodes::Nodes;
-use crate::step::progress::Progress;
+use crate::step::progress::{Progress, inverted};
 use crate::step::quasi_newton::{self, QuasiNewton, Stopped};
 use crate::step::residual::Residual;
 use crate::step::trial::Trial;
@@ -150,7 +150,7 @@ fn search<K: Kinematics<D>, const D: usize>(
     Err(failure.error)
 }
 
-/// Secants on the elastic stiffness of the step's start.
+/// Secants on the stiffness at the first guess; on the elastic one where that is of no use.
 fn by_secants<K: Kinematics<D>, const D: usize>(
     scene: &Scene<'_, K, D>,
     method: (QuasiNewton, bool),
@@ -158,11 +158,15 @@ fn by_secants<K: Kinematics<D>, const D: usize>(
     (solver, counts): (&mut dyn LinearSolver, &mut Counts),
     progress: &mut Progress,
 ) -> Result<Found<D>, Stopped> {
+    let residual = evaluate(scene, &u, counts);
+    if !residual.balance.is_sound() {
+        return Err(inverted(scene, &residual, progress.iterations()).into());
+    }
     if scene.nodes.unknowns > 0 {
-        stiffness::assemble(scene, solver)?;
+        stiffness::assemble(scene, Some(&residual.trial), solver)?;
         counts.factorisations += 1;
     }
-    quasi_newton::iterate(scene, method, u, solver, counts, progress)
+    quasi_newton::iterate(scene, method, (u, residual), solver, counts, progress)
 }
 
 /// The guess where it is free, the prescribed values, zero elsewhere.

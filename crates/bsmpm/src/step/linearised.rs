@@ -2,24 +2,29 @@
 //!
 //! K v = sum_p V0 (dtau - tau l^T) dF^-T grad N + 4/dt^2 M v + background + strips, where l = (grad v) dF^-1, and dtau
 //! follows l-bar = l + (d ln(dJ-bar/dJ)) / dof I under F-bar, whose average couples points beyond a patch: the product
-//! is complete, the matrix that preconditions it leaves that term out.
+//! is complete, the matrix that preconditions it has that term under consistent F-bar only.
 
 use crate::error::SolveError;
 use crate::grid::transfer;
 use crate::kinematics::Kinematics;
 use crate::seam::{LinearSolver, Symmetry};
+use crate::step::coupling::{Coupling, Dilations, Raised, Share};
 use crate::step::equilibrium::Scene;
+use crate::step::nodes::weights;
 use crate::step::residual::Residual;
 use crate::step::stiffness::{add_background, complete};
 use crate::step::trial::Trial;
 use crate::tensor::{Square, Vector};
+
+/// Flux for every unit gradient: element (k, l) for du_k/dx_l = 1.
+pub type Moduli<const D: usize> = [[Square<D>; D]; D];
 
 /// The derivative at one displacement.
 pub struct Linearised<'a, K, const D: usize> {
     scene: &'a Scene<'a, K, D>,
     trial: &'a Trial<D>,
     /// N m  V0 d(tau dF^-T)/d(grad v), one unit gradient after the other
-    moduli: Vec<[[Square<D>; D]; D]>,
+    moduli: Vec<Moduli<D>>,
     /// under F-bar
     dilation: Option<Vec<Dilation<D>>>,
 }
@@ -90,31 +95,62 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
         out.iter_mut().zip(&nodes.free).filter(|(_, free)| !**free).for_each(|(out, _)| *out = 0.0);
     }
 
-    /// Assembles and factorises the matrix that preconditions the product: all of it but F-bar's coupling.
+    /// Assembles and factorises the matrix that preconditions the product: all of it, but for F-bar's average where that
+    /// reaches farther than the matrix. One exchange with the neighbours where it does not.
     pub fn factorise(&self, solver: &mut dyn LinearSolver) -> Result<(), SolveError> {
         let Scene { shape, nodes, .. } = *self.scene;
         solver.begin(&nodes.free);
         let size = shape.offsets().len();
         let mut grad = [Vector::<D>::zeros(); 64];
+        let grad = &mut grad[..size];
         let mut block = vec![0.0; (size * D).pow(2)];
+        let mut coupling = Coupling::of(&self.scene.model.grid, nodes, Raised::Own);
         for (number, patch) in shape.patches().iter().enumerate() {
             block.fill(0.0);
+            let mut dilations = coupling.as_ref().map(Coupling::of_patch::<D>);
             for p in patch.points.clone() {
-                transfer::gradients_of(shape, p, &mut grad);
-                add_point(&self.moduli[p], &grad[..size], &mut block);
+                transfer::gradients_of(shape, p, grad);
+                match &mut dilations {
+                    Some(dilations) => self.add_coupled(p, grad, (dilations, &mut block)),
+                    None => add_point(&self.moduli[p], grad, Pairs::All, &mut block),
+                }
+            }
+            if let (Some(coupling), Some(dilations)) = (&mut coupling, &dilations) {
+                coupling.add::<D>(patch.first_node, dilations);
             }
             if let Some(soft) = nodes.background.as_ref().and_then(|background| background.of(number)) {
                 add_background::<D>(soft, &mut block);
             }
             solver.add(patch.first_node, &block);
         }
+        if let Some(coupling) = coupling {
+            coupling.assemble(&self.scene.model.grid, self.scene.halo, solver);
+        }
         complete(self.scene, solver, Symmetry::General)
+    }
+
+    /// Adds point `p`, whose dilation is averaged: flux_p (S(w dJ tr l)_p / S(w dJ)_p - tr l_p) besides its moduli.
+    fn add_coupled(&self, p: usize, grad: &[Vector<D>], (dilations, block): (&mut Dilations, &mut [f64])) {
+        let Scene { model, nodes, points, .. } = *self.scene;
+        let Some(Dilation { trace, flux }) = self.dilation.as_ref().map(|dilation| &dilation[p]) else { return };
+        let own = |k: usize, l: usize| self.moduli[p][k][l] - flux * trace[(k, l)];
+        let moduli = std::array::from_fn(|k| std::array::from_fn(|l| own(k, l)));
+        add_point(&moduli, grad, Pairs::All, block);
+        let weight = weights(model.weighting, points)[p];
+        let (dilated, mean) = self.trial.means(model, points, p);
+        let [mut dilation, mut force] = [[Vector::<D>::zeros(); 64]; 2];
+        for ((dilation, force), grad) in dilation.iter_mut().zip(&mut force).zip(grad) {
+            *dilation = trace * grad * (weight * dilated);
+            *force = flux * grad / mean;
+        }
+        let (dilation, force) = (&dilation[..grad.len()], &force[..grad.len()]);
+        dilations.add(nodes, p, &Share { weight, bulk: 0.0, dilation, force });
     }
 }
 
 /// Change of the flux for a gradient: sum_kl moduli_kl grad_kl.
 #[inline]
-fn contract<const D: usize>(moduli: &[[Square<D>; D]; D], grad: &Square<D>) -> Square<D> {
+fn contract<const D: usize>(moduli: &Moduli<D>, grad: &Square<D>) -> Square<D> {
     let mut flux = Square::zeros();
     for (k, row) in moduli.iter().enumerate() {
         for (l, unit) in row.iter().enumerate() {
@@ -124,16 +160,26 @@ fn contract<const D: usize>(moduli: &[[Square<D>; D]; D], grad: &Square<D>) -> S
     flux
 }
 
+/// Node pairs (a, b) of a patch.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Pairs {
+    /// All.
+    All,
+    /// Those with a <= b.
+    Upper,
+}
+
 /// Adds grad N_a . moduli . grad N_b of one point to the block of its patch.
-fn add_point<const D: usize>(moduli: &[[Square<D>; D]; D], grad: &[Vector<D>], block: &mut [f64]) {
+pub fn add_point<const D: usize>(moduli: &Moduli<D>, grad: &[Vector<D>], pairs: Pairs, block: &mut [f64]) {
     let order = grad.len() * D;
     for (b, grad_b) in grad.iter().enumerate() {
+        let rows = if pairs == Pairs::All { grad.len() } else { b + 1 };
         for (k, row) in moduli.iter().enumerate() {
             let mut along = Square::<D>::zeros();
             for (unit, component) in row.iter().zip(grad_b.iter()) {
                 along += unit * *component;
             }
-            for (a, grad_a) in grad.iter().enumerate() {
+            for (a, grad_a) in grad[..rows].iter().enumerate() {
                 let force = along * grad_a;
                 for i in 0..D {
                     block[(a * D + i) * order + b * D + k] += force[i];

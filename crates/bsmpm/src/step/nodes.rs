@@ -113,6 +113,11 @@ impl<const D: usize> Nodes<D> {
         average((shape, &self.weight, self.threshold), points, weighting, halo, value)
     }
 
+    /// The splines of degree q - 1 that dilations are averaged with, under consistent F-bar.
+    pub fn lowered(&self) -> Option<&Shape<D>> {
+        self.lower.as_ref().map(|lower| &lower.shape)
+    }
+
     /// Mean of the points' dilations that F-bar puts into their place: S (Eqs 16-18), or S with the splines of degree
     /// q - 1 under consistent F-bar.
     pub fn mean_dilation(
@@ -160,7 +165,7 @@ fn average<const D: usize, const C: usize>(
     nodal
 }
 
-fn weights<const D: usize>(weighting: Weighting, points: &Points<D>) -> &[f64] {
+pub(super) fn weights<const D: usize>(weighting: Weighting, points: &Points<D>) -> &[f64] {
     match weighting {
         Weighting::Mass => &points.mass,
         Weighting::Volume => &points.volume,

@@ -112,21 +112,17 @@ impl<E: Into<StepError>> From<E> for Stopped {
     }
 }
 
-/// Iterates from the displacement `u` with K_0 factorised, to the limit of iterations; unless `patient`, only as long
+/// Iterates from the displacement `u` and its `residual` with K_0 factorised, to the limit of iterations; unless `patient`, only as long
 /// as convergence is in reach.
 pub fn iterate<K: Kinematics<D>, const D: usize>(
     scene: &Scene<'_, K, D>,
     (method, patient): (QuasiNewton, bool),
-    mut u: Vec<f64>,
+    (mut u, mut residual): (Vec<f64>, Residual<D>),
     solver: &mut dyn LinearSolver,
     counts: &mut Counts,
     progress: &mut Progress,
 ) -> Result<Found<D>, Stopped> {
     let mut secants = Secants::new(method);
-    let mut residual = evaluate(scene, &u, counts);
-    if !residual.balance.is_sound() {
-        return Err(inverted(scene, &residual, 0).into());
-    }
     let (mut best, mut least) = (u.clone(), residual.balance.norm);
     while progress.iterations() < scene.model.criteria.max_iterations && (patient || !progress.stalls()) {
         if progress.is_balanced(&residual.balance, scene) {

@@ -1,39 +1,148 @@
-//! Step (6): the elastic stiffness K_0 = 4/dt^2 M + sum_p V0 G^T D^e G at the start of the step, symmetric, with the
-//! soft background and the hold of strips; numerical damping changes the 4/dt^2. The quasi-Newton method stands for
-//! everything that it leaves out.
+//! Step (6): the stiffness K_0 that is factorised once a step, symmetric and positive definite:
+//! K_0 = 4/dt^2 M + sum_p V0 G^T D_p G + F-bar's average + background + strips; numerical damping changes the 4/dt^2.
+//!
+//! D_p is the elastic D^e, or where the step's first guess yields a positive stand-in for the tangent there. The
+//! quasi-Newton method stands for everything that K_0 leaves out.
 
 use crate::error::SolveError;
-use crate::grid::shape::Patch;
-use crate::grid::transfer;
+use crate::grid::shape::{Column, Patch};
+use crate::grid::{Shape, transfer};
 use crate::kinematics::Kinematics;
-use crate::material::Material;
+use crate::material::Stiffness;
+use crate::model::Model;
+use crate::points::Points;
 use crate::seam::{LinearSolver, Symmetry};
+use crate::step::coupling::{Coupling, Dilations, Raised, Share};
 use crate::step::equilibrium::Scene;
-use crate::tensor::{Square, Vector};
+use crate::step::nodes::Nodes;
+use crate::step::linearised::{Moduli, Pairs, add_point};
+use crate::step::trial::Trial;
+use crate::tensor::{Square, Tensor, Vector};
+use rayon::prelude::*;
 
-/// Assembles K_0 patch by patch into `solver` and factorises it.
+/// Assembles K_0 patch by patch into `solver` and factorises it: at the state `at`, or, without any, of elastic material
+/// whose dilation is not averaged. One exchange with the neighbours where the average couples patches.
 pub fn assemble<K: Kinematics<D>, const D: usize>(
     scene: &Scene<'_, K, D>,
+    at: Option<&Trial<D>>,
     solver: &mut dyn LinearSolver,
 ) -> Result<(), SolveError> {
-    let nodes = scene.nodes;
+    let Scene { model, shape, nodes, points, halo, .. } = *scene;
     solver.begin(&nodes.free);
-    let size = scene.shape.offsets().len();
-    let mut moments = vec![Square::<D>::zeros(); size * size];
-    let mut block = vec![0.0; (size * D).pow(2)];
-    for (number, patch) in scene.shape.patches().iter().enumerate() {
-        block.fill(0.0);
-        for run in runs_of_one_material(patch, &scene.points.material) {
-            let material = &scene.model.materials[usize::from(scene.points.material[run.start])];
-            accumulate(scene, run, material, &mut moments);
-            add_elastic::<K, D>(&moments, material.elastic().lame(), &mut block);
+    let mut coupling = at.and_then(|_| Coupling::of(&model.grid, nodes, Raised::Along));
+    // Threads work on a column each; what they found is added in the order of the patches.
+    let threads = rayon::current_num_threads();
+    for columns in shape.columns().chunks(threads) {
+        let state = State { model, shape, nodes, points, at, coupling: coupling.as_ref() };
+        let of_column = |column: &Column| column.patches.clone().map(|patch| state.part(patch)).collect();
+        let parts: Vec<Vec<Part>> = columns.par_iter().map(of_column).collect();
+        let patches = columns.iter().flat_map(|column| &shape.patches()[column.patches.clone()]);
+        for (patch, part) in patches.zip(parts.into_iter().flatten()) {
+            solver.add(patch.first_node, &part.block);
+            if let (Some(coupling), Some(dilations)) = (&mut coupling, &part.dilations) {
+                coupling.add::<D>(patch.first_node, dilations);
+            }
         }
+    }
+    if let Some(coupling) = coupling {
+        coupling.assemble(&model.grid, halo, solver);
+    }
+    complete(scene, solver, Symmetry::Definite)
+}
+
+/// What one patch contributes.
+struct Part {
+    /// N/m  row-major square, D unknowns a node
+    block: Vec<f64>,
+    /// dilations of its points, where their average couples it with others
+    dilations: Option<Dilations>,
+}
+
+/// What the parts are made of.
+struct State<'a, K, const D: usize> {
+    model: &'a Model<K, D>,
+    shape: &'a Shape<D>,
+    nodes: &'a Nodes<D>,
+    points: &'a Points<D>,
+    at: Option<&'a Trial<D>>,
+    coupling: Option<&'a Coupling>,
+}
+
+impl<K: Kinematics<D>, const D: usize> State<'_, K, D> {
+    fn part(&self, number: usize) -> Part {
+        let Self { model, shape, nodes, points, at, coupling } = *self;
+        let coupled = coupling.is_some();
+        let patch = &shape.patches()[number];
+        let size = shape.offsets().len();
+        let mut block = vec![0.0; (size * D).pow(2)];
+        let mut dilations = coupling.map(Coupling::of_patch::<D>);
+        let mut moments = vec![Square::<D>::zeros(); size * size];
+        let mut grad = [Vector::<D>::zeros(); 64];
+        let grad = &mut grad[..size];
+        for run in runs_of_one_material(patch, &points.material) {
+            moments.fill(Square::zeros());
+            let material = &model.materials[usize::from(points.material[run.start])];
+            let (lambda, mu) = material.elastic().lame();
+            // What F-bar averages of isotropic stiffness is lambda + 2 mu/dof times the dilation; the rest has -2 mu/dof.
+            let averaged = K::dilation().norm_squared();
+            for p in run {
+                transfer::gradients_of(shape, p, grad);
+                let volume = points.volume[p];
+                let yielding = at.and_then(|trial| trial.respond(model, points, p).ok()?.yielding());
+                let bulk = match yielding {
+                    Some(stiffness) => {
+                        let (moduli, bulk) = of_point::<K, D>(&stiffness, volume, coupled);
+                        add_point(&moduli, grad, Pairs::Upper, &mut block);
+                        bulk
+                    }
+                    None => {
+                        let relative = material.relative_stiffness(points.height(p));
+                        accumulate(volume * relative, grad, &mut moments);
+                        (lambda + 2.0 * mu * averaged) * relative
+                    }
+                };
+                if let Some(dilations) = &mut dilations {
+                    let mut dilation = [Vector::<D>::zeros(); 64];
+                    dilation.iter_mut().zip(&*grad).for_each(|(dilation, grad)| *dilation = grad * volume);
+                    dilations.add(nodes, p, &Share { weight: volume, bulk, dilation: &dilation[..size], force: &[] });
+                }
+            }
+            let lambda = if coupled { -2.0 * mu * averaged } else { lambda };
+            add_elastic::<K, D>(&moments, (lambda, mu), &mut block);
+        }
+        mirror(size * D, &mut block);
         if let Some(soft) = nodes.background.as_ref().and_then(|background| background.of(number)) {
             add_background::<D>(soft, &mut block);
         }
-        solver.add(patch.first_node, &block);
+        Part { block, dilations }
     }
-    complete(scene, solver, Symmetry::Definite)
+}
+
+/// V0 D_p of a point that yields, one unit gradient after the other, and its stiffness against dilation in Pa; where that is
+/// `averaged` it is no part of the first.
+fn of_point<K: Kinematics<D>, const D: usize>(stiffness: &Stiffness, volume: f64, averaged: bool) -> (Moduli<D>, f64) {
+    let dilation = K::dilation();
+    let bulk = stiffness.apply(&dilation).dot(&dilation);
+    let unit = |k: usize, l: usize| {
+        let mut grad = Square::<D>::zeros();
+        grad[(k, l)] = 1.0;
+        let l = K::gradient(&grad);
+        let stress = if averaged {
+            let stress = stiffness.apply(&(l - dilation * l.trace()));
+            stress - Tensor::identity() * stress.dot(&dilation)
+        } else {
+            stiffness.apply(&l)
+        };
+        K::in_plane(&stress) * volume
+    };
+    let mut moduli = [[Square::zeros(); D]; D];
+    for k in 0..D {
+        for l in k..D {
+            moduli[k][l] = unit(k, l);
+            moduli[l][k] = moduli[k][l]; // it sees the strain only
+        }
+    }
+    (moduli, bulk)
 }
 
 /// Adds strips, faces of the background and inertia to a matrix whose patches are assembled, and factorises it.
@@ -45,7 +154,7 @@ pub fn complete<K: Kinematics<D>, const D: usize>(
     let nodes = scene.nodes;
     scene.grips.assemble(solver);
     if let Some(background) = &nodes.background {
-        background.assemble(solver);
+        background.assemble::<D>(solver);
     }
     if let Some(inertia) = &nodes.inertia {
         let diagonal: Vec<f64> = (0..nodes.free.len()).map(|c| inertia.factor() * nodes.weight[c / D]).collect();
@@ -65,32 +174,22 @@ fn runs_of_one_material(patch: &Patch, material: &[u16]) -> Vec<std::ops::Range<
         .collect()
 }
 
-/// T_ab = sum_p V0 grad N_a (x) grad N_b for a <= b, weighted with the stiffness relative to the material's.
-fn accumulate<K: Kinematics<D>, const D: usize>(
-    scene: &Scene<'_, K, D>,
-    points: std::ops::Range<usize>,
-    material: &Material,
-    moments: &mut [Square<D>],
-) {
-    let size = scene.shape.offsets().len();
-    let mut grad = [Vector::<D>::zeros(); 64];
-    moments.fill(Square::zeros());
-    for p in points {
-        transfer::gradients_of(scene.shape, p, &mut grad);
-        let volume = scene.points.volume[p] * material.relative_stiffness(scene.points.height(p));
-        for a in 0..size {
-            let weighted = grad[a] * volume;
-            for (moment, other) in moments[a * size + a..(a + 1) * size].iter_mut().zip(&grad[a..size]) {
-                for j in 0..D {
-                    for i in 0..D {
-                        moment[(i, j)] += weighted[i] * other[j];
-                    }
+/// Adds V0 grad N_a (x) grad N_b for a <= b to the moments, `volume` weighted with the stiffness relative to the material's.
+fn accumulate<const D: usize>(volume: f64, grad: &[Vector<D>], moments: &mut [Square<D>]) {
+    let size = grad.len();
+    for a in 0..size {
+        let weighted = grad[a] * volume;
+        for (moment, other) in moments[a * size + a..(a + 1) * size].iter_mut().zip(&grad[a..]) {
+            for j in 0..D {
+                for i in 0..D {
+                    moment[(i, j)] += weighted[i] * other[j];
                 }
             }
         }
     }
 }
 
+/// Adds the elastic stiffness of node pairs a <= b.
 fn add_elastic<K: Kinematics<D>, const D: usize>(moments: &[Square<D>], lame: (f64, f64), block: &mut [f64]) {
     let size = moments.len().isqrt();
     for a in 0..size {
@@ -99,11 +198,17 @@ fn add_elastic<K: Kinematics<D>, const D: usize>(moments: &[Square<D>], lame: (f
             for i in 0..D {
                 for j in 0..D {
                     block[(a * D + i) * size * D + b * D + j] += pair[(i, j)];
-                    if a != b {
-                        block[(b * D + j) * size * D + a * D + i] += pair[(i, j)];
-                    }
                 }
             }
+        }
+    }
+}
+
+/// Completes a symmetric matrix of `order` rows whose node pairs a <= b are filled.
+fn mirror(order: usize, block: &mut [f64]) {
+    for row in 0..order {
+        for column in 0..row {
+            block[row * order + column] = block[column * order + row];
         }
     }
 }

@@ -70,6 +70,11 @@ impl<const D: usize> Trial<D> {
         self.mean.as_ref().map_or(1.0, |mean| mean[p] / self.own(model, points, p))
     }
 
+    /// w dJ and S(w dJ) of point `p`; 1 for the latter without F-bar.
+    pub(super) fn means<K: Kinematics<D>>(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> (f64, f64) {
+        (self.own(model, points, p), self.mean.as_ref().map_or(1.0, |mean| mean[p]))
+    }
+
     /// Rate of ln ratio_p for a displacement whose spatial gradient has the trace `trace`_p at every point:
     /// S(w dJ tr l)_p / S(w dJ)_p - tr l_p. `None` without F-bar; one exchange with the neighbours.
     pub fn dilation_rate<K: Kinematics<D>>(&self, scene: &Scene<'_, K, D>, trace: &[f64]) -> Option<Vec<f64>> {

@@ -8,6 +8,7 @@ mod input;
 mod projection;
 mod random;
 mod reference;
+mod stiffness;
 mod tangent;
 mod yield_surface;
 

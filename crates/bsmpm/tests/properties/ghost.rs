@@ -139,7 +139,7 @@ fn the_matrix_is_that_of_the_product() {
     let faces = Faces::<2>::of::<PlaneStrain>([graded(2), axis(0.25, 3, 2)], Extent::Occupied);
     let mut matrix = Dense::new(&faces.grid);
     matrix.begin(&vec![true; 2 * faces.grid.nodes()]);
-    faces.blocks.assemble(&mut matrix);
+    faces.blocks.assemble::<2>(&mut matrix);
     let mut u = vec![0.0; faces.grid.nodes()];
     let largest = (0..u.len()).map(|node| matrix.entry(2 * node, 2 * node)).fold(0.0, f64::max);
     for column in 0..u.len() {

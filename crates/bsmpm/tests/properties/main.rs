@@ -14,6 +14,7 @@ mod observe;
 mod points;
 mod rigid;
 mod spline;
+mod stiffness;
 mod stepping;
 mod topology;
 mod transfer;

@@ -148,14 +148,20 @@ impl<K: Kinematics<D>, const D: usize> Scene<K, D> {
 
     /// A background, and a grid that reaches as far as it.
     pub fn background(mut self, background: Option<Background>) -> Self {
-        self.model.grid = self.model.grid.reaching(background.map_or(0, |background| background.kind.beyond()));
         self.model.background = background;
-        self
+        self.reaching()
     }
 
-    /// Another method of section 2.3.
+    /// Another method of section 2.3, and a grid that reaches as far as its stiffness.
     pub fn stabilised(mut self, stabilisation: Stabilisation) -> Self {
         self.model.stabilisation = stabilisation;
+        self.reaching()
+    }
+
+    fn reaching(mut self) -> Self {
+        let Model { grid, background, stabilisation, .. } = self.model.clone();
+        let beyond = background.map_or(0, |background| background.kind.beyond());
+        self.model.grid = grid.clone().reaching(beyond.max(stabilisation.beyond(grid.order())));
         self
     }
 

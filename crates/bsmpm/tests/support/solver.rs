@@ -59,24 +59,18 @@ impl LinearSolver for Skyline {
     }
 
     fn add(&mut self, first_node: usize, block: &[f64]) {
+        let nodes: Vec<usize> = self.offsets.iter().map(|offset| first_node + offset).collect();
+        self.add_among(&nodes, block);
+    }
+
+    fn add_among(&mut self, nodes: &[usize], block: &[f64]) {
         let components = self.components;
-        let of_node = |&offset: &usize| (0..components).map(move |c| (first_node + offset) * components + c);
-        let unknowns: Vec<_> = self.offsets.iter().flat_map(of_node).map(|c| self.number[c]).collect();
+        let of_node = |&node: &usize| (0..components).map(move |c| node * components + c);
+        let unknowns: Vec<_> = nodes.iter().flat_map(of_node).map(|c| self.number[c]).collect();
         for (row, values) in unknowns.iter().zip(block.chunks_exact(unknowns.len())) {
             for (column, value) in unknowns.iter().zip(values) {
                 if let (Some(row), Some(column)) = (row, column) {
                     self.add_entry(*row, *column, *value);
-                }
-            }
-        }
-    }
-
-    fn add_among(&mut self, nodes: &[usize], block: &[f64]) {
-        for c in 0..self.components {
-            for (entry, value) in block.iter().enumerate() {
-                let [a, b] = [entry / nodes.len(), entry % nodes.len()].map(|k| nodes[k] * self.components + c);
-                if let (Some(row), Some(column)) = (self.number[a], self.number[b]) {
-                    self.add_entry(row, column, *value);
                 }
             }
         }
@@ -224,6 +218,14 @@ impl Dense {
         self.number[row].zip(self.number[column]).map_or(0.0, |at| self.matrix[at])
     }
 
+    /// Product with a nodal array, zero where it is not free.
+    pub fn multiply(&self, x: &[f64]) -> Vec<f64> {
+        let free = |(number, x): (&Option<usize>, &f64)| number.map(|_| *x);
+        let x = DVector::from_iterator(self.matrix.nrows(), self.number.iter().zip(x).filter_map(free));
+        let image = &self.matrix * x;
+        self.number.iter().map(|number| number.map_or(0.0, |row| image[row])).collect()
+    }
+
     /// Largest over smallest eigenvalue of the symmetric matrix: as it is, and scaled to a unit diagonal. Infinite if it
     /// is not positive definite to rounding.
     pub fn conditions(&self) -> [f64; 2] {
@@ -243,24 +245,18 @@ impl LinearSolver for Dense {
     }
 
     fn add(&mut self, first_node: usize, block: &[f64]) {
+        let nodes: Vec<usize> = self.offsets.iter().map(|offset| first_node + offset).collect();
+        self.add_among(&nodes, block);
+    }
+
+    fn add_among(&mut self, nodes: &[usize], block: &[f64]) {
         let components = self.components;
-        let of_node = |&offset: &usize| (0..components).map(move |c| (first_node + offset) * components + c);
-        let unknowns: Vec<_> = self.offsets.iter().flat_map(of_node).map(|c| self.number[c]).collect();
+        let of_node = |&node: &usize| (0..components).map(move |c| node * components + c);
+        let unknowns: Vec<_> = nodes.iter().flat_map(of_node).map(|c| self.number[c]).collect();
         for (row, values) in unknowns.iter().zip(block.chunks_exact(unknowns.len())) {
             for (column, value) in unknowns.iter().zip(values) {
                 if let (Some(row), Some(column)) = (row, column) {
                     self.matrix[(*row, *column)] += value;
-                }
-            }
-        }
-    }
-
-    fn add_among(&mut self, nodes: &[usize], block: &[f64]) {
-        for c in 0..self.components {
-            for (entry, value) in block.iter().enumerate() {
-                let [a, b] = [entry / nodes.len(), entry % nodes.len()].map(|k| nodes[k] * self.components + c);
-                if let (Some(row), Some(column)) = (self.number[a], self.number[b]) {
-                    self.matrix[(row, column)] += value;
                 }
             }
         }

@@ -93,7 +93,7 @@ fn condition(shift: f64, background: Option<Background>) -> [f64; 2] {
     let grips = Grips::at(&[], &points.surface, (&model.grid, &nodes.free), (0.0, 1.0));
     let mut stiffness = Dense::new(&model.grid);
     let scene = equilibrium::Scene { model, shape: &shape, nodes: &nodes, grips: &grips, points, halo };
-    stiffness::assemble(&scene, &mut stiffness).expect("a matrix");
+    stiffness::assemble(&scene, None, &mut stiffness).expect("a matrix");
     stiffness.conditions()
 }
 

@@ -1,0 +1,83 @@
+//! Where the nodes lie that a node couples with: a box of places around it, cut off by the window's faces.
+
+use bsmpm::grid::{Grid, KnotVector};
+use std::collections::HashMap;
+
+/// The places of the stencils of a window.
+#[derive(Clone, Debug)]
+pub(super) struct Places<const D: usize> {
+    functions: [usize; D], // nodes along each axis
+    half: usize,           // of the box: q, and the layers beyond
+    reach: Vec<isize>,     // offset in local nodes of every place, ascending
+    inside: Vec<Vec<u16>>, // places that lie in the window, for every way of being near its faces
+    kind: Vec<u16>,        // of every node: which of those
+}
+
+impl<const D: usize> Places<D> {
+    pub fn new(grid: &Grid<D>) -> Self {
+        let half = grid.order() + grid.beyond();
+        let side = 2 * half + 1;
+        let mut functions = grid.axes().each_ref().map(KnotVector::functions);
+        functions[0] = grid.layers().len();
+        let within: Vec<[isize; D]> = (0..side.pow(D as u32))
+            .map(|place| digits(place, &[side; D]).map(|step| step as isize - half as isize))
+            .collect();
+        let flat = |step: &[isize; D]| (1..D).fold(step[0], |sum, axis| sum * functions[axis] as isize + step[axis]);
+        let reach = within.iter().map(flat).collect();
+        let (mut kinds, mut inside) = (HashMap::new(), Vec::new());
+        let kind = (0..grid.nodes()).map(|node| {
+            let node = digits(node, &functions);
+            let room: [[usize; 2]; D] =
+                std::array::from_fn(|axis| [node[axis], functions[axis] - 1 - node[axis]].map(|nodes| nodes.min(half)));
+            *kinds.entry(room).or_insert_with(|| {
+                let fits = |step: &[isize; D]| {
+                    (0..D).all(|axis| step[axis].unsigned_abs() <= room[axis][usize::from(step[axis] > 0)])
+                };
+                let places = within.iter().enumerate().filter(|(_, step)| fits(step));
+                inside.push(places.map(|(place, _)| place as u16).collect());
+                (inside.len() - 1) as u16
+            })
+        });
+        let kind = kind.collect();
+        Self { functions, half, reach, inside, kind }
+    }
+
+    /// Places of a stencil.
+    pub fn count(&self) -> usize {
+        self.reach.len()
+    }
+
+    /// The places of `node` that lie in the window, each with its node.
+    pub fn around(&self, node: usize) -> impl Iterator<Item = (usize, usize)> {
+        self.inside[usize::from(self.kind[node])].iter().map(move |&place| {
+            let place = usize::from(place);
+            (place, node.wrapping_add_signed(self.reach[place]))
+        })
+    }
+
+    /// Number of a node in a box as wide along every axis as a stencil's; differences of two are those of their places.
+    pub fn number(&self, at: [usize; D]) -> usize {
+        at.into_iter().fold(0, |number, step| number * (2 * self.half + 1) + step)
+    }
+
+    /// The same of a node of the window.
+    pub fn number_of(&self, node: usize) -> usize {
+        self.number(digits(node, &self.functions))
+    }
+
+    /// The place of node number `b` as seen from node number `a`.
+    pub fn of(&self, a: usize, b: usize) -> usize {
+        b + self.number([self.half; D]) - a
+    }
+}
+
+/// A number by the digits of these bases, the first of which leads and takes what is left.
+fn digits<const D: usize>(mut number: usize, bases: &[usize; D]) -> [usize; D] {
+    let mut digits = [0; D];
+    for axis in (1..D).rev() {
+        digits[axis] = number % bases[axis];
+        number /= bases[axis];
+    }
+    digits[0] = number;
+    digits
+}

@@ -1,0 +1,67 @@
+//! The stiffness that stands for the tangent in the factorised matrix: symmetric, positive, and the tangent where that is so.
+
+use super::{REGIONS, Region, hencky, mohr_coulomb, respond};
+use crate::random::Random;
+use bsmpm::material::{Response, Stiffness};
+use bsmpm::tensor::Tensor;
+
+/// Share of the elastic stiffness in it.
+const ELASTIC: f64 = 0.03;
+
+/// All six unit strains.
+fn units() -> Vec<Tensor> {
+    let unit = |k: usize, l: usize| Tensor::from_fn(|i, j| f64::from(u8::from((i, j) == (k, l) || (i, j) == (l, k))));
+    [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2)].map(|(k, l)| unit(k, l)).to_vec()
+}
+
+/// As a 6 x 6 matrix on unit strains: what stress works on them.
+fn matrix(stiffness: &Stiffness) -> nalgebra::SMatrix<f64, 6, 6> {
+    let units = units();
+    nalgebra::SMatrix::from_fn(|a, b| units[a].dot(&stiffness.apply(&units[b])))
+}
+
+/// What plasticity leaves of Young's modulus 1000 in the softest direction: the least the share may be of it.
+#[test]
+fn it_is_symmetric_and_positive_in_every_region() {
+    let mut random = Random::new(51);
+    let (mut seen, mut least) = ([0; 5], f64::INFINITY);
+    for _ in 0..20_000 {
+        let friction = random.pick(&[0.0, 20.0, 45.0, 60.0, 89.0]);
+        let (dilation, poisson) = (friction * random.pick(&[0.0, 0.5, 1.0]), random.pick(&[-0.5, 0.0, 0.3, 0.499]));
+        let found = respond(&mohr_coulomb(1e3, poisson, friction, dilation, 1.0), &random.trial(-2.5, -0.7));
+        seen[REGIONS.iter().position(|region| *region == found.region()).unwrap()] += 1;
+        let Some(stiffness) = found.yielding() else {
+            assert_eq!(found.region(), Region::Elastic);
+            continue;
+        };
+        let matrix = matrix(&stiffness);
+        assert!((matrix - matrix.transpose()).amax() <= 1e-12 * matrix.amax());
+        // Shear is 2 mu on tensor strains, bulk 3 K: the smaller one of both, in the units of the matrix.
+        let elastic = (1e3 / (1.0 + poisson)).min(1e3 / (1.0 - 2.0 * poisson));
+        least = least.min(matrix.symmetric_eigenvalues().min() / elastic);
+    }
+    println!("{REGIONS:?}: {seen:?}, least {least}");
+    assert!(seen.iter().all(|count| *count > 200), "{seen:?}");
+    assert!(least >= ELASTIC * (1.0 - 1e-9), "{least}");
+}
+
+/// Tresca's flow is associated and keeps the volume: nothing has to be left out, and but for the elastic share and the
+/// strain's own size the stiffness is the tangent.
+#[test]
+fn of_tresca_it_is_the_tangent() {
+    let (material, elastic) = (mohr_coulomb(1e3, 0.3, 0.0, 0.0, 1e-5), hencky(1e3, 0.3));
+    let (mut random, mut worst, mut seen) = (Random::new(52), 0.0_f64, 0);
+    for _ in 0..2_000 {
+        let b = random.trial(-7.0, -6.0);
+        let found: Response = respond(&material, &b);
+        let Some(stiffness) = found.yielding() else { continue };
+        seen += 1;
+        let undamaged = respond(&elastic, &b);
+        for l in units() {
+            let expected = found.linearise(&l) * (1.0 - ELASTIC) + undamaged.linearise(&l) * ELASTIC;
+            worst = worst.max((stiffness.apply(&l) - expected).amax() / 1e3);
+        }
+    }
+    println!("{seen} points, {worst:e}");
+    assert!(seen > 200 && worst <= 1e-11, "{seen}: {worst:e}"); // the square of strains of 1e-6; measured 4e-14
+}

@@ -1,0 +1,107 @@
+//! Step (6): the factorised stiffness K_0 against the complete derivative.
+
+use crate::support::random::Random;
+use crate::support::scene::{Scene, axis};
+use crate::support::solver::Dense;
+use bsmpm::boundary::Support;
+use bsmpm::boundary::strip::Grips;
+use bsmpm::grid::Shape;
+use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
+use bsmpm::material::{Elastic, Material, MohrCoulomb};
+use bsmpm::model::Regime;
+use bsmpm::stabilisation::Stabilisation;
+use bsmpm::step::equilibrium;
+use bsmpm::step::linearised::Linearised;
+use bsmpm::step::nodes::Nodes;
+use bsmpm::step::residual::Residual;
+use bsmpm::step::stiffness;
+use bsmpm::tensor::Vector;
+
+/// Nearly incompressible soil on a fixed base, without stress, its points off the lattice.
+fn body<K: Kinematics<D>, const D: usize>(order: usize, cohesion: f64) -> Scene<K, D> {
+    let soil = MohrCoulomb::new(Elastic { young: 1000.0, poisson: 0.49 }, 0.5, 0.1, cohesion);
+    let axes = std::array::from_fn(|k| axis(1.0, if k == 0 { 4 } else { 3 }, order));
+    let scene = Scene::<K, D>::new(axes, Material::MohrCoulomb(soil), Regime::Dynamic);
+    let cells = std::array::from_fn(|k| 0..if k == 0 { 3 } else { 2 });
+    let mut scene = scene
+        .stabilised(Stabilisation::ConsistentFBar)
+        .body(cells, 3, 1.0, |_| Vector::zeros())
+        .support(Support::fixed(D - 1, false));
+    let mut random = Random::new(3);
+    scene.points.x.iter_mut().for_each(|x| *x += random.vector::<D>() * 0.02);
+    scene.points.sort_by_cell(&scene.model.grid);
+    scene
+}
+
+/// K_0 at the displacement `u` times the free part of a nodal array, the complete derivative times it, and K_0 itself.
+fn products<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>, size: f64) -> ([Vec<f64>; 2], Dense) {
+    let (model, points, halo) = (&scene.model, &scene.points, scene.halo());
+    let shape = Shape::at(&model.grid, points).unwrap();
+    let nodes = Nodes::map(model, &shape, points, (0.0, 0.01), &halo).expect("no loads");
+    let grips = Grips::at(&[], &points.surface, (&model.grid, &nodes.free), (0.0, 0.01));
+    let pieces = equilibrium::Scene { model, shape: &shape, nodes: &nodes, grips: &grips, points, halo: &halo };
+    let mut random = Random::new(11);
+    let mut free = |size: f64| -> Vec<f64> {
+        nodes.free.iter().map(|&free| if free { size * random.signed() } else { 0.0 }).collect()
+    };
+    let (u, v) = (free(size), free(1.0));
+    let residual = Residual::of(&pieces, &u);
+    let mut matrix = Dense::new(&model.grid);
+    stiffness::assemble(&pieces, Some(&residual.trial), &mut matrix).expect("a matrix");
+    let mut product = vec![0.0; v.len()];
+    Linearised::at(&pieces, &residual).multiply(&v, &mut product);
+    ([matrix.multiply(&v), product], matrix)
+}
+
+/// F-bar's average included, which reaches over q cells.
+fn is_the_derivative_of_elastic_material<K: Kinematics<D>, const D: usize>(order: usize) {
+    let ([image, product], _) = products(&body::<K, D>(order, 1e6), 0.0);
+    let size = product.iter().fold(0.0_f64, |size, force| size.max(force.abs()));
+    let error = image.iter().zip(&product).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / size;
+    println!("{D} dimensions, order {order}: {error:e}");
+    assert!(size > 0.0 && error <= 1e-12, "order {order}: {error:e}"); // measured 1e-15
+}
+
+#[test]
+fn the_factorised_stiffness_is_the_derivative_of_elastic_material() {
+    for order in [1, 2, 3] {
+        is_the_derivative_of_elastic_material::<PlaneStrain, 2>(order);
+    }
+    is_the_derivative_of_elastic_material::<Solid, 3>(2);
+}
+
+#[test]
+fn it_is_positive_where_everything_yields() {
+    for size in [1e-4, 1e-2] {
+        let (_, matrix) = products(&body::<PlaneStrain, 2>(2, 1e-3), size);
+        let [plain, _] = matrix.conditions();
+        assert!(plain.is_finite(), "{size}: {plain:e}");
+    }
+}
+
+/// The general matrix of Newton's method, which yields, is deformed and is averaged: it is the product.
+#[test]
+fn the_general_matrix_is_the_complete_derivative() {
+    for order in [1, 2, 3] {
+        let scene = body::<PlaneStrain, 2>(order, 1e-1);
+        let (model, points, halo) = (&scene.model, &scene.points, scene.halo());
+        let shape = Shape::at(&model.grid, points).unwrap();
+        let nodes = Nodes::map(model, &shape, points, (0.0, 0.01), &halo).expect("no loads");
+        let grips = Grips::at(&[], &points.surface, (&model.grid, &nodes.free), (0.0, 0.01));
+        let pieces = equilibrium::Scene { model, shape: &shape, nodes: &nodes, grips: &grips, points, halo: &halo };
+        let mut random = Random::new(13);
+        let mut free = |size: f64| -> Vec<f64> {
+            nodes.free.iter().map(|&free| if free { size * random.signed() } else { 0.0 }).collect()
+        };
+        let (u, v) = (free(0.01), free(1.0));
+        let residual = Residual::of(&pieces, &u);
+        let derivative = Linearised::at(&pieces, &residual);
+        let (mut matrix, mut product) = (Dense::new(&model.grid), vec![0.0; v.len()]);
+        derivative.factorise(&mut matrix).expect("a matrix");
+        derivative.multiply(&v, &mut product);
+        let size = product.iter().fold(0.0_f64, |size, force| size.max(force.abs()));
+        let error = matrix.multiply(&v).iter().zip(&product).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / size;
+        println!("order {order}: {error:e}");
+        assert!(size > 0.0 && error <= 1e-12, "order {order}: {error:e}"); // measured 1e-15
+    }
+}
