@@ -117,6 +117,12 @@ pub enum Error {
         /// What was found, and what to try.
         reason: String,
     },
+    /// No run of several came to its end.
+    #[error("no run came to its end; {} says why", table.display())]
+    NoResult {
+        /// The table of them.
+        table: PathBuf,
+    },
     /// A trial of a search ended for a reason that has nothing to do with equilibrium.
     #[error("the trial of the factor {factor} ended with exit code {code}: {reason} (whole in {})", log.display())]
     Trial {
@@ -163,7 +169,7 @@ impl Error {
             | Self::NoReference { .. }
             | Self::NoCase { .. } => 66,
             Self::BadReference { .. } | Self::BadCase { .. } | Self::NoFactor { .. } => 65,
-            Self::NoStableState { .. } => 80,
+            Self::NoStableState { .. } | Self::NoResult { .. } => 80,
             Self::Trial { code, .. } => *code,
             Self::NotValid { .. } => 77,
             Self::Launch { .. } => 74,
