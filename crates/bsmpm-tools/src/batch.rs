@@ -67,8 +67,7 @@ impl Batch<'_> {
             arguments.extend(["--max-wall".to_owned(), clock(limit.as_secs())]);
         }
         let origin = self.origin(order);
-        let task =
-            Task { arguments: &arguments, directory: &directory, origin: origin.as_deref(), force: self.force };
+        let task = Task { arguments: &arguments, directory: &directory, origin: origin.as_deref(), force: self.force };
         if task.is_there(|manifest| manifest.case.text == order.case.text) {
             return Outcome::read(&directory, None);
         }

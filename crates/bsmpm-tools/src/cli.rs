@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Parser, Subcommand};
 
-use crate::{Error, compare, fos, plot, slurm, sweep, validate};
+use crate::{Error, compare, fos, plot, slurm, sweep, validate, verify_case};
 
 /// Starts runs of bsmpm-par, and looks at what they left.
 #[derive(Debug, Parser)]
@@ -29,6 +29,8 @@ pub enum Command {
     Fos(fos::Arguments),
     /// Vary settings of a case and weigh the error of its results against their cost
     Sweep(Box<sweep::Arguments>),
+    /// Run a case on three grids: observed order, extrapolated values, grid convergence index
+    VerifyCase(verify_case::Arguments),
     /// Write a job script for Slurm that queues itself again until the case is done
     Slurm(slurm::Arguments),
 }
@@ -75,6 +77,12 @@ pub fn run(cli: &Cli) -> Result<(), Error> {
         }
         Command::Sweep(arguments) => {
             let (table, files) = sweep::run(arguments, |line| {
+                let _ = writeln!(std::io::stderr(), "{line}");
+            })?;
+            print(&table, &files);
+        }
+        Command::VerifyCase(arguments) => {
+            let (table, files) = verify_case::run(arguments, |line| {
                 let _ = writeln!(std::io::stderr(), "{line}");
             })?;
             print(&table, &files);

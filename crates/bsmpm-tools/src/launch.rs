@@ -119,7 +119,8 @@ impl Solver<'_> {
     pub fn advance(&self, task: &Task) -> Result<u8, Error> {
         let (goes_on, stop) = (task.is_broken_off(), Stop::default());
         let how = if goes_on { &["--restart", "auto"][..] } else { &["--force"] };
-        let arguments: Vec<String> = task.arguments.iter().cloned().chain(how.iter().map(|&word| word.into())).collect();
+        let arguments: Vec<String> =
+            task.arguments.iter().cloned().chain(how.iter().map(|&word| word.into())).collect();
         if goes_on {
             return self.start(&arguments, &beside(task.directory, "log"), &stop);
         }

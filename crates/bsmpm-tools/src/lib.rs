@@ -18,5 +18,6 @@ mod record;
 pub mod slurm;
 pub mod sweep;
 pub mod validate;
+pub mod verify_case;
 
 pub use error::Error;

@@ -25,6 +25,8 @@ mod study;
 mod write;
 
 use axes::Axis;
+pub(crate) use axes::split;
+pub(crate) use quantity::Part;
 use quantity::{FACTOR, Quantity};
 use reference::{Reference, Values};
 use report::{Parts, Report};
@@ -117,7 +119,8 @@ pub(crate) fn ranks(text: &str) -> Result<usize, String> {
 
 /// HH:MM:SS
 pub(crate) fn wall(text: &str) -> Result<Duration, String> {
-    let parts: Option<Vec<u64>> = text.split(':').map(|part| part.parse().ok().filter(|part| *part < 100_000)).collect();
+    let parts: Option<Vec<u64>> =
+        text.split(':').map(|part| part.parse().ok().filter(|part| *part < 100_000)).collect();
     match parts.as_deref() {
         Some(&[hours, minutes, seconds]) if minutes < 60 && seconds < 60 && hours + minutes + seconds > 0 => {
             Ok(Duration::from_secs(3600 * hours + 60 * minutes + seconds))
@@ -186,7 +189,8 @@ pub fn run(arguments: &Arguments, mut told: impl FnMut(&str)) -> Result<(String,
 impl Arguments {
     fn plan(&self) -> Result<Plan, Error> {
         let usage = |reason: String| Error::Usage { reason };
-        let axes: Vec<Axis> = self.vary.iter().map(|text| Axis::parse(text)).collect::<Result<_, _>>().map_err(usage)?;
+        let axes: Vec<Axis> =
+            self.vary.iter().map(|text| Axis::parse(text)).collect::<Result<_, _>>().map_err(usage)?;
         let quantities: Vec<Quantity> =
             self.quantity.iter().map(|text| Quantity::parse(text)).collect::<Result<_, _>>().map_err(usage)?;
         let settings = axes::settings(&axes, self.one_at_a_time).map_err(usage)?;
@@ -208,7 +212,9 @@ impl Arguments {
             return match (quantities, self.max_wall) {
                 ([only], None) if only.name == FACTOR => Ok(()),
                 (_, Some(_)) => usage(format!("--max-wall: not with --quantity {FACTOR}")),
-                _ => usage(format!("--quantity {FACTOR}: alone and without a time, for it takes the place of the runs")),
+                _ => {
+                    usage(format!("--quantity {FACTOR}: alone and without a time, for it takes the place of the runs"))
+                }
             };
         }
         let columns: Vec<String> =
@@ -272,8 +278,7 @@ fn refused(point: &Point, batch: &Batch, ranks: usize) -> Option<Outcome> {
 fn measured(quantities: &[Quantity], mut outcomes: Vec<Outcome>) -> (Vec<Option<Values>>, Vec<Outcome>) {
     let of = |outcome: &mut Outcome| -> Option<Values> {
         let history = outcome.history.as_ref().filter(|_| outcome.state == State::Done)?;
-        let found: Vec<Result<Vec<f64>, String>> =
-            quantities.iter().map(|quantity| quantity.values(history)).collect();
+        let found: Vec<Result<Vec<f64>, String>> = quantities.iter().map(|quantity| quantity.values(history)).collect();
         let missing = found.iter().find_map(|found| found.as_ref().err().cloned());
         outcome.reason = missing.unwrap_or_default();
         Some(found.into_iter().map(Result::ok).collect())

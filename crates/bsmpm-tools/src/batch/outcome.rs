@@ -93,7 +93,12 @@ impl Outcome {
             cuts: manifest.summary.cutbacks,
         });
         let history = table::read(&directory.join(HISTORY)).ok();
-        let reason = if state == State::Done { String::new() } else { reason };
+        let time = || history.as_ref().and_then(|history| history.get("time")?.last().copied()).unwrap_or(0.0);
+        let reason = match state {
+            State::Done => String::new(),
+            State::Stopped => format!("at time {}", crate::record::short(time())),
+            _ => reason,
+        };
         Self { state, code: Some(code), reason, history, cost, kept, directory: Some(directory.to_owned()) }
     }
 
@@ -110,7 +115,8 @@ impl Outcome {
 
     /// How it stands, in a few words for a table.
     pub fn words(&self) -> String {
-        let code = self.code.filter(|_| self.state != State::Done).map_or_else(String::new, |code| format!(" ({code})"));
+        let code =
+            self.code.filter(|_| self.state != State::Done).map_or_else(String::new, |code| format!(" ({code})"));
         format!("{}{code}", self.state.word())
     }
 }

@@ -103,7 +103,8 @@ mod tests {
         assert_eq!(results, (0..12).map(|index| 10 * index).collect::<Vec<_>>());
         assert!(jobs == 2 && memory <= 25, "{jobs} {memory}");
         let (_, began, jobs, _) = run(&loads, Limits { jobs: 1, memory: u64::MAX });
-        let sorted: Vec<usize> = (0..12).rev().map(|work| (0..12).find(|index| index * 7 % 12 == work).unwrap()).collect();
+        let sorted: Vec<usize> =
+            (0..12).rev().map(|work| (0..12).find(|index| index * 7 % 12 == work).unwrap()).collect();
         assert_eq!((began, jobs), (sorted, 1));
     }
 

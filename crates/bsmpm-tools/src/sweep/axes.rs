@@ -30,7 +30,7 @@ impl Axis {
 }
 
 /// The parts between the commas that stand in no bracket, brace or quote.
-pub(super) fn split(text: &str) -> Vec<String> {
+pub(crate) fn split(text: &str) -> Vec<String> {
     let (mut parts, mut depth, mut quote) = (vec![String::new()], 0_usize, None);
     for c in text.chars() {
         match (c, quote) {

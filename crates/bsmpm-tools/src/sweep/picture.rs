@@ -58,7 +58,9 @@ pub(super) fn draw(report: &Report, quantity: usize, path: &Path) -> Result<bool
     title(&mut canvas, SHEET.0, &report.title, &below);
     legend::draw(&mut canvas, &entries, 40.0, ABOVE, room);
     axes.rules(&mut canvas);
-    axes.level(&mut canvas, 100.0 * report.within);
+    let level = axes.level(&mut canvas, 100.0 * report.within);
+    let good = format!("{} %", 100.0 * report.within);
+    canvas.text(&good, (axes.left + 12.0, level - 20.0), NUMBER, Align::Left, OUTLINE);
     let on_sheet = |(cost, error): (f64, f64)| axes.place((cost, 100.0 * error));
     let marked = |canvas: &mut Canvas, entry: &Entry, places: Vec<(f64, f64)>| {
         let places: Vec<_> = places.into_iter().map(on_sheet).collect();
@@ -74,7 +76,7 @@ pub(super) fn draw(report: &Report, quantity: usize, path: &Path) -> Result<bool
 }
 
 /// Runs that have a place, the cheapest first.
-fn sorted<'a>(report: &'a Report, place: impl Fn(&Row) -> Option<(f64, f64)>) -> Vec<(&'a Row, (f64, f64))> {
+fn sorted(report: &Report, place: impl Fn(&Row) -> Option<(f64, f64)>) -> Vec<(&Row, (f64, f64))> {
     let mut found: Vec<_> = report.runs.iter().filter_map(|row| Some((row, place(row)?))).collect();
     found.sort_by(|a, b| a.1.0.total_cmp(&b.1.0));
     found
@@ -85,12 +87,7 @@ fn against(report: &Report) -> &str {
 }
 
 /// Numbers at the points of the front, lower left where nothing else can be, and what they mean beside the axes.
-fn names(
-    canvas: &mut Canvas,
-    axes: &Axes,
-    front: &[(&Row, (f64, f64))],
-    on_sheet: &dyn Fn((f64, f64)) -> (f64, f64),
-) {
+fn names(canvas: &mut Canvas, axes: &Axes, front: &[(&Row, (f64, f64))], on_sheet: &dyn Fn((f64, f64)) -> (f64, f64)) {
     let (left, wide) = (axes.right + 24.0, NAMES - 44.0);
     let gap = GAP.min((axes.bottom - axes.top) / front.len().max(1) as f64);
     for (index, (row, place)) in front.iter().enumerate() {

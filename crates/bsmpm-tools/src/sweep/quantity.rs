@@ -19,7 +19,7 @@ pub(super) struct Quantity {
 
 /// A column at a time; at the end without one.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Part {
+pub(crate) struct Part {
     pub column: String,
     /// s or pseudo-time
     pub at: Option<f64>,
@@ -28,7 +28,8 @@ pub(super) struct Part {
 impl Quantity {
     /// `NAME[@TIME],...`; a name without a time takes that of the next one that has it.
     pub fn parse(text: &str) -> Result<Self, String> {
-        let wrong = |why: &str| format!("--quantity {text}: {why}; expected NAME[@TIME], or several with commas between");
+        let wrong =
+            |why: &str| format!("--quantity {text}: {why}; expected NAME[@TIME], or several with commas between");
         let mut parts = Vec::new();
         for part in text.split(',').rev() {
             let (column, at) = match part.split_once('@') {

@@ -55,7 +55,9 @@ impl Reference {
         let parts: usize = quantities.iter().map(|quantity| quantity.parts.len()).sum();
         match self {
             Self::Finest | Self::Extrapolated => Ok(()),
-            Self::Numbers(numbers) if numbers.len() == parts && numbers.iter().all(|number| number.is_finite()) => Ok(()),
+            Self::Numbers(numbers) if numbers.len() == parts && numbers.iter().all(|number| number.is_finite()) => {
+                Ok(())
+            }
             Self::Numbers(numbers) => Err(Error::Usage {
                 reason: format!("--reference: {} number(s), but the quantities have {parts} part(s)", numbers.len()),
             }),
@@ -89,9 +91,11 @@ impl Reference {
 fn elsewhere(directory: &Path, quantities: &[Quantity]) -> Result<Vec<Vec<f64>>, Error> {
     let history = table::read(&directory.join(HISTORY))?;
     let of = |quantity: &Quantity| quantity.values(&history);
-    quantities.iter().map(of).collect::<Result<_, _>>().map_err(|reason| Error::Usage {
-        reason: format!("--reference {}: {reason}", directory.display()),
-    })
+    quantities
+        .iter()
+        .map(of)
+        .collect::<Result<_, _>>()
+        .map_err(|reason| Error::Usage { reason: format!("--reference {}: {reason}", directory.display()) })
 }
 
 /// The finest run that has finished.
@@ -105,7 +109,12 @@ fn finest(quantities: &[Quantity], points: &[Point], values: &[Option<Values>]) 
         let what = "none: no run has finished".to_owned();
         return Found { what, values: vec![None; quantities.len()], run: None, notes: Vec::new() };
     };
-    Found { what: format!("the finest run that has finished: {}", points[index].name()), values, run: Some(index), notes: Vec::new() }
+    Found {
+        what: format!("the finest run that has finished: {}", points[index].name()),
+        values,
+        run: Some(index),
+        notes: Vec::new(),
+    }
 }
 
 /// From the three smallest cells of the runs that differ from the finest one in them alone.

@@ -88,7 +88,8 @@ impl Report {
         for (index, quantity) in quantities.iter().enumerate() {
             let places: Vec<_> = runs.iter().map(|row| row.place(&[index])).collect();
             // That the reference has no error says nothing of what it is worth.
-            let others: Vec<_> = places.iter().zip(&runs).map(|(place, row)| place.filter(|_| !row.is_reference)).collect();
+            let others: Vec<_> =
+                places.iter().zip(&runs).map(|(place, row)| place.filter(|_| !row.is_reference)).collect();
             front(&others).into_iter().zip(&mut runs).for_each(|(is_best, row)| row.on_front.push(is_best));
             best.push((Some(quantity.name.clone()), cheapest(&places, within)));
         }
@@ -221,7 +222,8 @@ impl Row {
     }
 
     fn remark(&self) -> String {
-        let code = self.code.filter(|_| self.state != State::Done).map_or_else(String::new, |code| format!(" ({code})"));
+        let code =
+            self.code.filter(|_| self.state != State::Done).map_or_else(String::new, |code| format!(" ({code})"));
         let marks = [(self.is_baseline, "baseline"), (self.is_reference, "reference"), (self.kept, "kept")];
         let marks = marks.iter().filter(|(is, _)| *is).map(|(_, mark)| format!(", {mark}")).collect::<String>();
         let reason = if self.reason.is_empty() { String::new() } else { format!(": {}", self.reason) };

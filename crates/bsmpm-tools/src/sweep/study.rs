@@ -192,7 +192,10 @@ pub(super) mod tests {
     fn the_case_s_own_values_are_told_and_are_one_run() {
         let points = points(&["grid.cell=10 mm,5 mm", "solver.tolerance=1e-8,1e-6"], true, &[]).unwrap();
         let names: Vec<String> = points.iter().map(Point::name).collect();
-        assert_eq!(names, ["cell 10 mm, tolerance default", "cell 5 mm, tolerance default", "cell 10 mm, tolerance 1e-6"]);
+        assert_eq!(
+            names,
+            ["cell 10 mm, tolerance default", "cell 5 mm, tolerance default", "cell 10 mm, tolerance 1e-6"]
+        );
     }
 
     #[test]

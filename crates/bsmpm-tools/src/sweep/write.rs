@@ -58,12 +58,7 @@ fn in_table(
 }
 
 /// In a table whose keys are names of the author's choice.
-fn in_named(
-    named: &mut dyn TableLike,
-    schema: &'static Schema,
-    parts: &[&str],
-    value: &Value,
-) -> Result<(), String> {
+fn in_named(named: &mut dyn TableLike, schema: &'static Schema, parts: &[&str], value: &Value) -> Result<(), String> {
     let (name, rest) = parts.split_first().ok_or("no name")?;
     if *name == EACH {
         return named.iter_mut().try_for_each(|(_, item)| in_item(item, Some(schema), rest, value));
