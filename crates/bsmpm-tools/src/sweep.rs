@@ -1,4 +1,5 @@
-//! `bsmpm sweep`: what accuracy costs on a case. Settings are made in `axes`, become runs in `study`, which `crate::batch`
+//! `bsmpm sweep`: what accuracy costs on a case. What was asked for is looked through in `plan`: settings are made in `axes` and
+//! become runs in `study`, which `crate::batch`
 //! makes, or searches of a factor of safety in `safety`; numbers are taken from them in `quantity`, held against a `reference`,
 //! and weighed against their cost in `front`; `report` and `picture` tell, `write` writes a setting back as a case file.
 
@@ -17,6 +18,7 @@ use crate::launch::{self, Solver, command};
 mod axes;
 mod front;
 mod picture;
+mod plan;
 mod quantity;
 mod reference;
 mod report;
@@ -24,13 +26,13 @@ mod safety;
 mod study;
 mod write;
 
-use axes::Axis;
 pub(crate) use axes::split;
+use plan::Plan;
 pub(crate) use quantity::Part;
-use quantity::{FACTOR, Quantity};
-use reference::{Reference, Values};
+use quantity::Quantity;
+use reference::Values;
 use report::{Parts, Report};
-use study::{Point, Study};
+use study::Point;
 
 const JSON: &str = "sweep.json";
 const CSV: &str = "sweep.csv";
@@ -129,16 +131,6 @@ pub(crate) fn wall(text: &str) -> Result<Duration, String> {
     }
 }
 
-/// What is swept, before anything runs.
-struct Plan {
-    bytes: Vec<u8>,
-    own: Case,
-    axes: Vec<Axis>,
-    quantities: Vec<Quantity>,
-    reference: Reference,
-    points: Vec<Point>,
-}
-
 /// Sweeps; `told` gets a line for every run as soon as it is there. Returns the text for the screen, and the files.
 ///
 /// # Errors
@@ -184,59 +176,6 @@ pub fn run(arguments: &Arguments, mut told: impl FnMut(&str)) -> Result<(String,
         }
     }
     Ok((text, files))
-}
-
-impl Arguments {
-    fn plan(&self) -> Result<Plan, Error> {
-        let usage = |reason: String| Error::Usage { reason };
-        let axes: Vec<Axis> =
-            self.vary.iter().map(|text| Axis::parse(text)).collect::<Result<_, _>>().map_err(usage)?;
-        let quantities: Vec<Quantity> =
-            self.quantity.iter().map(|text| Quantity::parse(text)).collect::<Result<_, _>>().map_err(usage)?;
-        let settings = axes::settings(&axes, self.one_at_a_time).map_err(usage)?;
-        let bytes = batch::load(&self.case)?;
-        let own = Case::from_bytes(&self.case.display().to_string(), &bytes, &self.set)
-            .map_err(|errors| Error::bad_case(&self.case, &errors))?;
-        self.look_through(&quantities, &own)?;
-        let reference = Reference::parse(&self.reference);
-        reference.check(&quantities)?;
-        let study = Study { path: &self.case, bytes: &bytes, set: &self.set, axes: &axes };
-        let points = study.points(&settings, &self.baseline.as_deref().map_or_else(Vec::new, axes::split))?;
-        Ok(Plan { bytes, own, axes, quantities, reference, points })
-    }
-
-    /// Whether the case records what is wanted.
-    fn look_through(&self, quantities: &[Quantity], case: &Case) -> Result<(), Error> {
-        let usage = |reason: String| Err(Error::Usage { reason });
-        if quantities.iter().any(Quantity::is_factor) {
-            return match (quantities, self.max_wall) {
-                ([only], None) if only.name == FACTOR => Ok(()),
-                (_, Some(_)) => usage(format!("--max-wall: not with --quantity {FACTOR}")),
-                _ => {
-                    usage(format!("--quantity {FACTOR}: alone and without a time, for it takes the place of the runs"))
-                }
-            };
-        }
-        let columns: Vec<String> =
-            case.histories.iter().flat_map(bsmpm_scene::History::columns).map(|column| column.name).collect();
-        let parts = quantities.iter().flat_map(|quantity| &quantity.parts);
-        match parts.into_iter().find(|part| !columns.contains(&part.column)) {
-            Some(part) => usage(format!(
-                "--quantity {}: the case has no [[history]] of that name; it has {}, and there is {FACTOR}",
-                part.column,
-                columns.join(", ")
-            )),
-            None => Ok(()),
-        }
-    }
-
-    fn directory(&self) -> PathBuf {
-        self.output.clone().unwrap_or_else(|| {
-            let mut name = self.case.file_stem().unwrap_or_default().to_owned();
-            name.push(".sweep");
-            PathBuf::from(name)
-        })
-    }
 }
 
 /// What became of every point: those that could be begun were.
