@@ -11,7 +11,7 @@ use serde_json::Value;
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_bsmpm-par");
 const COLUMN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../cases/short/column_collapse.toml");
-const SHORT: [&str; 4] = ["--set", "analysis.end=0.02", "--set", "check=[]"];
+const SHORT: [&str; 6] = ["--set", "analysis.end=0.02", "--set", "check=[]", "--set", "output.times=[0.02]"];
 
 #[derive(Parser)]
 struct Sweep {
