@@ -172,6 +172,7 @@ fn limit(h: [f64; 3], f: [f64; 3]) -> (f64, String) {
 
 #[cfg(test)]
 mod tests {
+    use super::super::study::tests::points;
     use super::*;
 
     #[test]
@@ -195,5 +196,29 @@ mod tests {
         assert!(value == 1.4 && words.contains("do not converge"), "{words}");
         let (value, words) = limit([1.0, 2.0, 4.0], [1.1, 1.0, 1.4]);
         assert!(value == 1.1 && words.contains("oscillate"), "{words}");
+    }
+
+    #[test]
+    fn the_finest_run_that_finished_is_the_reference_or_what_its_cells_tend_to() {
+        let vary = ["grid.cell=10 mm,5 mm,2.5 mm", "body.0.points_per_cell=2,3"];
+        let points = points(&vary, false, &[]).unwrap();
+        let quantity = [Quantity::parse("a").unwrap()];
+        // 5 + 1e3 h of three points a cell; what fewer points give is of no matter, and the finest run of all failed.
+        let value = |a: f64| Some(vec![Some(vec![a])]);
+        let values = [value(1.0), value(15.0), value(2.0), value(10.0), value(3.0), value(7.5)];
+        let found =
+            |reference: &Reference, values: &[Option<Values>]| reference.find(&quantity, &points, values).unwrap();
+        assert_eq!(found(&Reference::Finest, &values).run, Some(5));
+        let limit = found(&Reference::Extrapolated, &values);
+        assert!((limit.values[0].as_ref().unwrap()[0] - 5.0).abs() < 1e-9 && limit.run.is_none(), "{limit:?}");
+        let mut fewer = values.clone();
+        fewer[5] = None;
+        let limit = found(&Reference::Extrapolated, &fewer);
+        assert_eq!((limit.run, limit.values[0].clone()), (None, Some(vec![3.0])), "{limit:?}");
+        fewer[0] = None;
+        let limit = found(&Reference::Extrapolated, &fewer);
+        assert!(limit.run == Some(4) && limit.notes[0].contains("three are needed"), "{limit:?}");
+        let nothing = found(&Reference::Finest, &vec![None; 6]);
+        assert!(nothing.run.is_none() && nothing.values == [None]);
     }
 }

@@ -164,7 +164,9 @@ impl Report {
             }
             let Cost { cpu_seconds, wall_seconds, peak_memory, iterations, .. } = row.cost;
             cells.extend([format!("{cpu_seconds:.2}"), format!("{wall_seconds:.2}")]);
-            cells.extend([format!("{:.0}", peak_memory as f64 / 1048576.0), iterations.to_string(), row.remark()]);
+            // That of a search of a factor is not known.
+            let memory = if peak_memory > 0 { format!("{:.0}", peak_memory as f64 / 1048576.0) } else { String::new() };
+            cells.extend([memory, iterations.to_string(), row.remark()]);
             lines.push(cells);
         }
         let last = lines[0].len() - 1;
@@ -253,5 +255,70 @@ fn row(point: &Point, outcome: &Outcome, values: Option<&Values>, quantities: &[
         kept: outcome.kept,
         cost: outcome.cost,
         directory: outcome.directory.as_ref().map(|directory| directory.display().to_string()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::reference::Reference;
+    use super::super::study::tests::points;
+    use super::*;
+
+    /// A sweep over two sizes of cells and two numbers of points, of which one run failed.
+    fn report(within: f64) -> Report {
+        let points = points(&["grid.cell=10 mm,5 mm", "body.*.points_per_cell=2,3"], false, &[]).unwrap();
+        let quantities = ["a", "b,c@0.5"].map(|text| Quantity::parse(text).unwrap());
+        let value = |a: f64| Some(vec![Some(vec![a]), Some(vec![2.0 * a, 3.0])]);
+        let values = [value(1.1), None, value(1.03), value(1.0)];
+        let outcome = |(cpu_seconds, value): (f64, &Option<Values>)| {
+            let state = if value.is_some() { State::Done } else { State::NoConvergence };
+            let reason = if value.is_some() { String::new() } else { "no, it said".to_owned() };
+            Outcome { cost: Cost { cpu_seconds, ..Cost::default() }, ..Outcome::never(state, reason) }
+        };
+        let outcomes: Vec<Outcome> = [4.0, 5.0, 16.0, 32.0].into_iter().zip(&values).map(outcome).collect();
+        let found = Reference::Finest.find(&quantities, &points, &values).unwrap();
+        let parts = Parts {
+            case: "case.toml".into(),
+            title: "A case".into(),
+            command: &[],
+            axes: vec!["grid.cell".into(), "body.*.points_per_cell".into()],
+            quantities: &quantities,
+            points: &points,
+            outcomes: &outcomes,
+            within,
+        };
+        Report::of(parts, &values, found)
+    }
+
+    #[test]
+    fn the_cheapest_good_run_is_told_with_its_cost() {
+        let report = report(0.05);
+        assert!(report.runs[3].is_reference && report.runs[0].is_baseline);
+        let on_front: Vec<bool> = report.runs.iter().map(|row| row.on_front[0]).collect();
+        assert_eq!(on_front, [true, false, true, false]);
+        assert_eq!(report.cheapest.iter().map(|best| best.run).collect::<Vec<_>>(), [Some(2); 3]);
+        assert_eq!(report.cheapest[2].ratio, Some(4.0));
+        let text = report.text();
+        assert!(
+            text.contains("within 5 % of all quantities: cell 5 mm, points_per_cell 2; 16.00 CPU s, 4.000 of"),
+            "{text}"
+        );
+        assert!(text.contains("no-convergence: no, it said"), "{text}");
+        assert!(self::report(0.001).text().contains("(the reference itself)"));
+    }
+
+    #[test]
+    fn a_row_of_the_table_for_programs_is_a_run() {
+        let csv = report(0.05).csv();
+        let lines: Vec<&str> = csv.lines().collect();
+        assert!(
+            lines[0].starts_with("grid.cell,body.*.points_per_cell,state,code,a,error a,on_front a,\"b,c@0.5 [0]\"")
+        );
+        assert!(lines[3].starts_with("5 mm,2,done,,1.03,0.03"), "{csv}");
+        assert!(
+            lines[2].ends_with(",false,false,,\"no, it said\"")
+                && lines[2].contains("no-convergence,,,,false,,,,false")
+        );
+        assert_eq!(lines.len(), 5);
     }
 }

@@ -148,7 +148,7 @@ mod tests {
         {
             assert_eq!(grids(options).err().unwrap().exit_code(), 2, "{options:?}");
         }
-        let knots = ["--set", "grid.knots.x=[0.0, 0.3, 0.55]", "--set", "grid.knots.y=[0.0, 0.05, 0.2]"];
+        let knots = ["--set", "grid.knots.x=[0.0, 0.3, 0.55]", "--set", "grid.knots.y=[0.0, 0.05, 0.1025]"];
         assert_eq!(grids(&knots).err().unwrap().exit_code(), 2);
     }
 }
