@@ -159,6 +159,31 @@ fn the_cheapest_setting_is_written_back_as_a_case_that_passes() {
 }
 
 #[test]
+fn runs_that_would_not_fit_are_not_begun() {
+    let bench = Bench::new();
+    let output = bench.path("sweep");
+    let words = [
+        "sweep",
+        COLUMN,
+        "--vary",
+        "grid.cell=10 mm",
+        "--quantity",
+        "runout",
+        "--max-memory",
+        "1MB",
+        "--output",
+        output.to_str().unwrap(),
+        "--",
+        PROGRAM,
+    ];
+    let error = sweep::run(&Sweep::parse_from(words).arguments, |line| panic!("{line}")).unwrap_err();
+    assert_eq!(error.exit_code(), 80);
+    let table = fs::read_to_string(output.join("sweep.csv")).unwrap();
+    assert!(table.lines().nth(1).is_some_and(|row| row.starts_with("10 mm,memory,") && row.contains("it needs about")));
+    assert!(!output.join("runs").exists());
+}
+
+#[test]
 fn three_grids_tell_an_order_or_why_there_is_none() {
     let bench = Bench::new();
     let output = bench.path("verify");

@@ -1,7 +1,7 @@
-//! `bsmpm sweep`: what accuracy costs on a case. What was asked for is looked through in `plan`: settings are made in `axes` and
-//! become runs in `study`, which `crate::batch`
-//! makes, or searches of a factor of safety in `safety`; numbers are taken from them in `quantity`, held against a `reference`,
-//! and weighed against their cost in `front`; `report` and `picture` tell, `write` writes a setting back as a case file.
+//! `bsmpm sweep`: what accuracy costs on a case. What was asked for is looked through in `plan`: settings are made in `axes`
+//! and become runs in `study`, which `crate::batch` makes, or searches of a factor of safety in `safety`. Numbers are taken
+//! from them in `quantity`, held against a `reference`, and weighed against their cost in `front`; `report` and `picture`
+//! tell, `write` writes a setting back as a case file.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -189,7 +189,8 @@ fn outcomes(batch: &Batch, plan: &Plan, ranks: usize, told: &mut dyn FnMut(&str)
         ended += 1;
         let kept = if outcome.kept { ", kept" } else { "" };
         let (name, cpu) = (plan.points[wanted[index]].name(), outcome.cost.cpu_seconds);
-        told(&format!("{ended}/{count}  {name}: {}, {cpu:.1} CPU s{kept} {}", outcome.words(), outcome.reason));
+        let line = format!("{ended}/{count}  {name}: {}, {cpu:.1} CPU s{kept} {}", outcome.words(), outcome.reason);
+        told(line.trim_end());
     };
     let made = if plan.quantities.iter().any(Quantity::is_factor) {
         batch.with(&orders, ranks, |order| safety::outcome(batch, order), &mut tell)

@@ -116,7 +116,7 @@ pub fn run(arguments: &Arguments, mut told: impl FnMut(&str)) -> Result<(String,
     let batch = Batch { solver, path, output: &output, limits, max_wall, force };
     let outcomes = batch.run(&grids.orders, ranks, |index, outcome| {
         let (h, cpu) = (grids.sizes[index], outcome.cost.cpu_seconds);
-        told(&format!("cells of {h} m: {}, {cpu:.1} CPU s {}", outcome.words(), outcome.reason));
+        told(format!("cells of {h} m: {}, {cpu:.1} CPU s {}", outcome.words(), outcome.reason).trim_end());
     });
     for (outcome, h) in outcomes.iter().zip(grids.sizes) {
         ended(outcome, h)?;
