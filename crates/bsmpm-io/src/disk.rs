@@ -1,4 +1,4 @@
-//! What the file system of a directory has left.
+//! Bytes: what the file system of a directory has left, and numbers of them as people write them.
 
 use std::io;
 use std::path::Path;
@@ -12,4 +12,26 @@ use rustix::fs::statvfs;
 pub fn free(folder: &Path) -> io::Result<u64> {
     let found = statvfs(folder)?;
     Ok(found.f_bavail.saturating_mul(found.f_frsize))
+}
+
+/// A number of bytes, as `800MB` or `16GiB`.
+///
+/// # Errors
+/// Says in words that the text is none.
+pub fn size(text: &str) -> Result<u64, String> {
+    let wrong = || format!("{text} is no size; expected e.g. 800MB, 16GiB");
+    let split = text.find(|c: char| c.is_ascii_alphabetic()).unwrap_or(text.len());
+    let number: f64 = text[..split].trim().parse().map_err(|_| wrong())?;
+    let factor = match text[split..].trim() {
+        "" | "B" => 1.0,
+        "kB" => 1e3,
+        "MB" => 1e6,
+        "GB" => 1e9,
+        "KiB" => 1024.0,
+        "MiB" => 1024.0 * 1024.0,
+        "GiB" => 1024.0 * 1024.0 * 1024.0,
+        _ => return Err(wrong()),
+    };
+    let bytes = number * factor;
+    if (1.0..1e18).contains(&bytes) { Ok(bytes as u64) } else { Err(wrong()) }
 }

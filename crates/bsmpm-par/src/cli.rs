@@ -2,6 +2,7 @@
 
 use crate::exit::USAGE;
 use crate::launch::say;
+use bsmpm_io::disk::size;
 use clap::{Parser, ValueEnum};
 use std::path::PathBuf;
 use std::time::Duration;
@@ -172,24 +173,6 @@ fn wall(text: &str) -> Result<Duration, String> {
         }
         _ => Err(wrong()),
     }
-}
-
-fn size(text: &str) -> Result<u64, String> {
-    let wrong = || format!("{text} is no size; expected e.g. 800MB, 16GiB");
-    let split = text.find(|c: char| c.is_ascii_alphabetic()).unwrap_or(text.len());
-    let number: f64 = text[..split].trim().parse().map_err(|_| wrong())?;
-    let factor = match text[split..].trim() {
-        "" | "B" => 1.0,
-        "kB" => 1e3,
-        "MB" => 1e6,
-        "GB" => 1e9,
-        "KiB" => 1024.0,
-        "MiB" => 1024.0 * 1024.0,
-        "GiB" => 1024.0 * 1024.0 * 1024.0,
-        _ => return Err(wrong()),
-    };
-    let bytes = number * factor;
-    if (1.0..1e18).contains(&bytes) { Ok(bytes as u64) } else { Err(wrong()) }
 }
 
 #[cfg(test)]

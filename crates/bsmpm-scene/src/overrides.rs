@@ -7,6 +7,9 @@ use crate::schema::{Kind, ROOT, Table as Schema};
 /// Parts of a key path at most; no key lies deeper.
 const DEEPEST: usize = 7;
 
+/// In the place of an index, or of a name: all that are there.
+const EACH: &str = "*";
+
 /// Merges the overrides into the document in their order; a later one wins.
 pub(crate) fn apply(document: &mut Table, overrides: &[String], report: &mut Report<'_>) {
     for (number, text) in overrides.iter().enumerate() {
@@ -80,6 +83,10 @@ impl Setting<'_> {
     /// In a table whose keys are names of the author's choice.
     fn in_named(&mut self, named: &mut Table, schema: &'static Schema, depth: usize) -> Result<(), String> {
         let name = self.parts[depth];
+        if depth + 1 < self.parts.len() && name == EACH {
+            let mut entries = named.entries.iter_mut();
+            return entries.try_for_each(|entry| self.in_value(&mut entry.node, Some(schema), depth + 1));
+        }
         if depth + 1 < self.parts.len()
             && let Some(entry) = named.get_mut(name)
         {
@@ -94,12 +101,14 @@ impl Setting<'_> {
         match &mut node.value {
             Value::Table(table) => self.in_table(table, schema, depth),
             Value::List(items) => {
-                let length = items.len();
+                let (length, last) = (items.len(), depth + 1 == self.parts.len());
+                if part == EACH && length > 0 && !last {
+                    return items.iter_mut().try_for_each(|item| self.in_value(item, schema, depth + 1));
+                }
                 let index: usize = part.parse().map_err(|_| format!("`{}` is no index of a list", shortened(part)))?;
                 if index > length {
                     return Err(format!("index {index} is beyond the list of {length}"));
                 }
-                let last = depth + 1 == self.parts.len();
                 if index == length {
                     let value = if last { self.node.value.clone() } else { Value::Table(Table::default()) };
                     items.push(Node { origin: self.origin, value });

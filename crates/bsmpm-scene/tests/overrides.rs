@@ -43,6 +43,17 @@ fn lists_are_reached_by_index_and_absent_tables_are_made() {
 }
 
 #[test]
+fn a_star_is_every_item_of_a_list_and_every_name() {
+    let case = valid(FULL, &["body.*.points_per_cell=5", "material.*.poisson=0.25", "body.1.points_per_cell=3"]);
+    let points: Vec<usize> = case.bodies.iter().map(|body| body.points_per_cell).collect();
+    assert_eq!(points, [5, 3, 5, 5, 5]);
+    assert!(case.materials.iter().all(|named| named.material.elastic().poisson == 0.25));
+    for (text, change) in [(FULL, "body.*=3"), (STATIC, "traction.*.ramp=1"), (FULL, "grid.*=1")] {
+        assert!(set(text, &[change]).is_err(), "{change}");
+    }
+}
+
+#[test]
 fn one_of_two_exclusive_keys_removes_the_other() {
     assert_eq!(valid(FULL, &["analysis.steps=4"]).analysis.dt, 0.25);
     assert_eq!(valid(STATIC, &["analysis.dt=0.5"]).analysis.dt, 0.5);

@@ -1,11 +1,11 @@
 //! The command line of `bsmpm`.
 
 use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use clap::{Parser, Subcommand};
 
-use crate::{Error, compare, fos, plot, slurm, validate};
+use crate::{Error, compare, fos, plot, slurm, sweep, validate, verify_case};
 
 /// Starts runs of bsmpm-par, and looks at what they left.
 #[derive(Debug, Parser)]
@@ -27,6 +27,10 @@ pub enum Command {
     Validate(validate::Arguments),
     /// Find the factor of safety of a case by strength reduction
     Fos(fos::Arguments),
+    /// Vary settings of a case and weigh the error of its results against their cost
+    Sweep(Box<sweep::Arguments>),
+    /// Run a case on three grids: observed order, extrapolated values, grid convergence index
+    VerifyCase(verify_case::Arguments),
     /// Write a job script for Slurm that queues itself again until the case is done
     Slurm(slurm::Arguments),
 }
@@ -69,10 +73,19 @@ pub fn run(cli: &Cli) -> Result<(), Error> {
             let (table, pictures) = fos::run(arguments, |line| {
                 let _ = writeln!(std::io::stderr(), "{line}");
             })?;
-            let _ = write!(std::io::stdout(), "{table}");
-            for picture in pictures {
-                let _ = writeln!(std::io::stdout(), "{}", picture.display());
-            }
+            print(&table, &pictures);
+        }
+        Command::Sweep(arguments) => {
+            let (table, files) = sweep::run(arguments, |line| {
+                let _ = writeln!(std::io::stderr(), "{line}");
+            })?;
+            print(&table, &files);
+        }
+        Command::VerifyCase(arguments) => {
+            let (table, files) = verify_case::run(arguments, |line| {
+                let _ = writeln!(std::io::stderr(), "{line}");
+            })?;
+            print(&table, &files);
         }
         Command::Slurm(arguments) => {
             let script = slurm::run(arguments, |line| {
@@ -85,4 +98,14 @@ pub fn run(cli: &Cli) -> Result<(), Error> {
         }
     }
     Ok(())
+}
+
+/// A table, and files with one path a line.
+fn print(table: &str, files: &[PathBuf]) {
+    let mut stdout = std::io::stdout();
+    // Where nobody listens there is nothing left to do.
+    let _ = write!(stdout, "{table}");
+    for file in files {
+        let _ = writeln!(stdout, "{}", file.display());
+    }
 }

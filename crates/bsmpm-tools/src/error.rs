@@ -117,6 +117,22 @@ pub enum Error {
         /// What was found, and what to try.
         reason: String,
     },
+    /// No run of several came to its end.
+    #[error("no run came to its end; {} says why", table.display())]
+    NoResult {
+        /// The table of them.
+        table: PathBuf,
+    },
+    /// A run that is needed did not come to its end.
+    #[error("the run with {what} ended with exit code {code}: {reason}")]
+    Run {
+        /// Which one.
+        what: String,
+        /// Its exit code.
+        code: u8,
+        /// Its last word.
+        reason: String,
+    },
     /// A trial of a search ended for a reason that has nothing to do with equilibrium.
     #[error("the trial of the factor {factor} ended with exit code {code}: {reason} (whole in {})", log.display())]
     Trial {
@@ -163,8 +179,8 @@ impl Error {
             | Self::NoReference { .. }
             | Self::NoCase { .. } => 66,
             Self::BadReference { .. } | Self::BadCase { .. } | Self::NoFactor { .. } => 65,
-            Self::NoStableState { .. } => 80,
-            Self::Trial { code, .. } => *code,
+            Self::NoStableState { .. } | Self::NoResult { .. } => 80,
+            Self::Trial { code, .. } | Self::Run { code, .. } => *code,
             Self::NotValid { .. } => 77,
             Self::Launch { .. } => 74,
             Self::Drawing { .. } => 70,

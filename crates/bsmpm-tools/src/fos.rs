@@ -5,18 +5,16 @@
 //! on the way. What could be saved that way is taken from trials that run at the same time instead: `guess` tells which ones
 //! the search may ask for next, `jobs` runs them. They shorten the search and change nothing else in it.
 
-use std::env;
 use std::fs;
 use std::io::Write;
 use std::path::PathBuf;
-use std::thread;
 use std::time::Instant;
 
 use bsmpm_io::atomic;
 use clap::Args;
 
 use crate::Error;
-use crate::launch::{self, Solver};
+use crate::launch::{self, Solver, command};
 
 mod curve;
 mod guess;
@@ -88,15 +86,55 @@ pub struct Arguments {
     pub command: Vec<String>,
 }
 
+/// What a search found, for other commands.
+pub(crate) struct Found {
+    /// By the kink: the estimate, or where there is none the middle of the band.
+    pub factor: Option<f64>,
+    /// s  of processor time, all trials together
+    pub cpu_seconds: f64,
+    /// s  by the clock, those of trials that were there left out
+    pub seconds: f64,
+    pub steps: u64,
+    pub iterations: u64,
+    pub cuts: u64,
+    /// Whether every trial was there.
+    pub kept: bool,
+}
+
 /// Searches; `told` gets a line for every trial as soon as it is there. Returns the table and the written pictures.
 ///
 /// # Errors
 /// Those of the command line and the case before anything runs; [`Error::NoStableState`]; [`Error::Trial`] for a trial that
 /// broke; the errors of files.
-pub fn run(arguments: &Arguments, mut told: impl FnMut(&str)) -> Result<(String, Vec<PathBuf>), Error> {
+pub fn run(arguments: &Arguments, told: impl FnMut(&str)) -> Result<(String, Vec<PathBuf>), Error> {
+    let (report, subject) = found(arguments, told)?;
+    let output = arguments.directory();
+    let pictures = picture::draw(&report, &subject, &output)?;
+    Ok((report.text(), pictures.iter().map(|name| output.join(name)).collect()))
+}
+
+/// The same without words and pictures.
+pub(crate) fn factor(arguments: &Arguments) -> Result<Found, Error> {
+    let (report, _) = found(arguments, |_| ())?;
+    let trials = || report.trials.iter().map(|row| &row.trial);
+    let finding = report.factor_of_safety;
+    let middle = || Some(f64::midpoint(finding.last_stable?, finding.first_failed?));
+    Ok(Found {
+        factor: finding.estimate.or_else(middle),
+        cpu_seconds: trials().map(|trial| trial.cpu_seconds).sum(),
+        seconds: report.seconds,
+        steps: trials().map(|trial| trial.steps).sum(),
+        iterations: trials().map(|trial| trial.iterations).sum(),
+        cuts: trials().map(|trial| trial.cuts).sum(),
+        kept: trials().all(|trial| trial.kept),
+    })
+}
+
+/// The search, written as tables.
+fn found(arguments: &Arguments, mut told: impl FnMut(&str)) -> Result<(Report, Subject), Error> {
     let start = Instant::now();
-    let command = if arguments.command.is_empty() { vec![own_solver()] } else { arguments.command.clone() };
-    let (plan, jobs) = (arguments.plan()?, arguments.jobs(&command)?);
+    let command = command::words(&arguments.command, 1);
+    let (plan, jobs) = (arguments.plan()?, command::jobs(arguments.jobs, &command)?);
     // Whatever the number of jobs: threads in BLAS would sum in another order.
     let solver = Solver { command: &command, side_by_side: true };
     let subject = Subject::read(&arguments.case, &arguments.set, plan.from)?;
@@ -118,8 +156,7 @@ pub fn run(arguments: &Arguments, mut told: impl FnMut(&str)) -> Result<(String,
         serde_json::to_writer_pretty(&mut *file, &report)?;
         file.write_all(b"\n")
     })?;
-    let pictures = picture::draw(&report, &subject, &output)?;
-    Ok((report.text(), pictures.iter().map(|name| output.join(name)).collect()))
+    Ok((report, subject))
 }
 
 impl Arguments {
@@ -136,14 +173,6 @@ impl Arguments {
         Ok(Plan { from, to, width })
     }
 
-    fn jobs(&self, command: &[String]) -> Result<usize, Error> {
-        if self.jobs == Some(0) {
-            return Err(Error::Usage { reason: "--jobs 0: at least one trial runs at a time".to_owned() });
-        }
-        let cores = thread::available_parallelism().map_or(1, usize::from);
-        Ok(self.jobs.unwrap_or_else(|| (cores / ranks(command)).max(1)))
-    }
-
     fn directory(&self) -> PathBuf {
         self.output.clone().unwrap_or_else(|| {
             let mut name = self.case.file_stem().unwrap_or_default().to_owned();
@@ -151,22 +180,6 @@ impl Arguments {
             PathBuf::from(name)
         })
     }
-}
-
-/// The solver beside this program; where there is none, that of PATH.
-fn own_solver() -> String {
-    let name = "bsmpm-par";
-    let beside = env::current_exe().ok().and_then(|program| Some(program.parent()?.join(name)));
-    beside.filter(|solver| solver.is_file()).map_or_else(|| name.to_owned(), |solver| solver.display().to_string())
-}
-
-/// The ranks that a launcher is asked for: the number after -n, -np, -c or --ntasks; one where it does not say.
-fn ranks(command: &[String]) -> usize {
-    let launcher = &command[..command.len().saturating_sub(1)];
-    let options = ["-n", "-np", "-c", "--np", "--ntasks"];
-    let after = launcher.windows(2).find(|pair| options.contains(&&*pair[0])).map(|pair| &*pair[1]);
-    let joined = || launcher.iter().find_map(|word| word.strip_prefix("--ntasks=").or(word.strip_prefix("-n")));
-    after.or_else(joined).and_then(|number| number.parse().ok()).filter(|&ranks| ranks > 0).unwrap_or(1)
 }
 
 fn line(trial: &Trial) -> String {
@@ -180,17 +193,4 @@ fn line(trial: &Trial) -> String {
         trial.seconds,
         early.unwrap_or_default()
     )
-}
-
-#[cfg(test)]
-mod tests {
-    use super::ranks;
-
-    #[test]
-    fn the_launcher_s_ranks_are_read() {
-        let of = |command: &str| ranks(&command.split(' ').map(str::to_owned).collect::<Vec<_>>());
-        assert_eq!((of("bsmpm-par"), of("mpirun -n 2 bsmpm-par"), of("mpirun -np 4 ./bsmpm-par")), (1, 2, 4));
-        assert_eq!((of("srun --ntasks=8 bsmpm-par"), of("srun -n3 bsmpm-par"), of("srun bsmpm-par")), (8, 3, 1));
-        assert_eq!((of("mpirun -n 0 bsmpm-par"), of("mpirun -n x bsmpm-par")), (1, 1));
-    }
 }

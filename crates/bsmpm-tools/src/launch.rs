@@ -13,6 +13,7 @@ use bsmpm_io::manifest::{MANIFEST, Manifest};
 
 use crate::Error;
 
+pub(crate) mod command;
 mod stop;
 
 pub(crate) use stop::Stop;
@@ -20,6 +21,10 @@ pub(crate) use stop::Stop;
 /// Exit codes of bsmpm-par: done, and a check of the case failed.
 pub(crate) const DONE: u8 = 0;
 pub(crate) const CHECK: u8 = 77;
+/// Not begun: too little memory, restarts that come to nothing, a directory or a checkpoint that cannot be used.
+const REFUSED: [u8; 4] = [71, 72, 73, 76];
+/// Stopped on request, to be gone on with.
+pub(crate) const STOPPED: u8 = 75;
 /// No convergence, and material left the grid: the run has ended early with its last state saved.
 pub(crate) const NO_CONVERGENCE: u8 = 80;
 pub(crate) const LEFT: u8 = 81;
@@ -109,6 +114,19 @@ impl Solver<'_> {
         self.start(task.arguments, &beside(task.directory, "log"), stop)
     }
 
+    /// Goes on with the run if it was stopped or killed and is made from what would be taken now, else makes it; its exit code.
+    /// The arguments leave to this what becomes of what is there.
+    pub fn advance(&self, task: &Task) -> Result<u8, Error> {
+        let (goes_on, stop) = (task.is_broken_off(), Stop::default());
+        let how = if goes_on { &["--restart", "auto"][..] } else { &["--force"] };
+        let arguments: Vec<String> =
+            task.arguments.iter().cloned().chain(how.iter().map(|&word| word.into())).collect();
+        if goes_on {
+            return self.start(&arguments, &beside(task.directory, "log"), &stop);
+        }
+        self.make(&Task { arguments: &arguments, ..*task }, &stop)
+    }
+
     fn start(&self, arguments: &[String], log: &Path, stop: &Stop) -> Result<u8, Error> {
         let file = |source| Error::File(bsmpm_io::Error::file("write", log)(source));
         let out = File::create(log).map_err(file)?;
@@ -131,13 +149,22 @@ impl Task<'_> {
     /// Whether the run has ended there, made from what would be taken now, and `is_same` agrees; never if it is to be made
     /// again.
     pub fn is_there(&self, is_same: impl Fn(&Manifest) -> bool) -> bool {
-        if self.force {
-            return false;
-        }
-        let Ok(manifest) = Manifest::read(self.directory) else { return false };
-        let is_whole = manifest.exit_code.is_some_and(|code| [DONE, CHECK, NO_CONVERGENCE, LEFT].contains(&code));
-        let origin = fs::read_to_string(beside(self.directory, "origin")).ok();
-        is_whole && origin.is_some() && origin.as_deref() == self.origin && is_same(&manifest)
+        self.before().is_some_and(|manifest| {
+            let is_whole = manifest.exit_code.is_some_and(|code| [DONE, CHECK, NO_CONVERGENCE, LEFT].contains(&code));
+            is_whole && is_same(&manifest)
+        })
+    }
+
+    /// Whether the run was stopped, or killed, before its end.
+    fn is_broken_off(&self) -> bool {
+        self.before().is_some_and(|manifest| manifest.exit_code.is_none_or(|code| code == STOPPED))
+    }
+
+    /// What is there from before, if it counts and was made from what would be taken now.
+    fn before(&self) -> Option<Manifest> {
+        let manifest = Manifest::read(self.directory).ok().filter(|_| !self.force)?;
+        let origin = fs::read_to_string(beside(self.directory, "origin")).ok()?;
+        (self.origin == Some(&*origin)).then_some(manifest)
     }
 }
 
@@ -145,8 +172,10 @@ impl Ending {
     /// That of the run in a directory; `code` is what its process ended with, if it was made now.
     pub fn of(directory: &Path, code: Option<u8>) -> Self {
         let manifest = Manifest::read(directory).ok();
-        // A launcher may hide the program's own exit code, which is in the manifest.
-        let own = manifest.as_ref().and_then(|manifest| manifest.exit_code);
+        // A launcher may hide the program's own exit code, which is in the manifest; but not where the run was refused and the
+        // manifest is that of before.
+        let refused = code.filter(|code| REFUSED.contains(code));
+        let own = refused.or(manifest.as_ref().and_then(|manifest| manifest.exit_code));
         let failure = manifest.as_ref().and_then(|manifest| manifest.failure.as_ref());
         let reason = failure.map_or_else(|| last_line(directory), |failure| failure.reason.clone());
         Self { code: own.or(code).unwrap_or(u8::MAX), manifest, reason }

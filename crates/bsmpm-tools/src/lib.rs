@@ -4,15 +4,20 @@
 //! Each command is a module with its arguments and one function that carries it out; [`cli`] lists them.
 #![forbid(unsafe_code)]
 
+mod batch;
 pub mod cli;
+mod columns;
 pub mod compare;
 pub mod error;
 pub mod fos;
+mod grid_convergence;
 mod launch;
 mod picture;
 pub mod plot;
 mod record;
 pub mod slurm;
+pub mod sweep;
 pub mod validate;
+pub mod verify_case;
 
 pub use error::Error;

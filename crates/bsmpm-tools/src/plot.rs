@@ -49,7 +49,8 @@ impl Arguments {
     }
 }
 
-fn time(text: &str) -> Result<f64, String> {
+/// A time, as `0.607 s` or a number.
+pub(crate) fn time(text: &str) -> Result<f64, String> {
     let number = text.trim().trim_end_matches('s').trim_end();
     let time: f64 = number.parse().map_err(|_| "a time is a number of seconds".to_owned())?;
     if time.is_finite() { Ok(time) } else { Err("a time is finite".to_owned()) }

@@ -170,7 +170,7 @@ fn quoted(word: &[u8]) -> Vec<u8> {
 }
 
 /// HH:MM:SS
-fn clock(seconds: u64) -> String {
+pub(crate) fn clock(seconds: u64) -> String {
     format!("{:02}:{:02}:{:02}", seconds / 3600, seconds / 60 % 60, seconds % 60)
 }
 

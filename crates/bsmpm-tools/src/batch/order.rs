@@ -1,0 +1,74 @@
+//! What a run of a batch is made from: the case with its settings, valid and with a name of its own.
+
+use std::path::Path;
+
+use bsmpm_io::manifest;
+use bsmpm_scene::{Axis, Case};
+
+use super::Load;
+
+/// Characters of the settings in the name of a directory; what is longer is told apart by the hash.
+const LONGEST: usize = 80;
+/// Digits of the hash there.
+const DIGITS: usize = 8;
+
+/// A run that is wanted.
+#[derive(Clone, Debug)]
+pub(crate) struct Order {
+    /// Overrides, `KEY=VALUE`.
+    pub set: Vec<String>,
+    /// What they make of the case.
+    pub case: Case,
+    /// Of its directory: the settings that it is named by, and a part of the case's hash.
+    pub name: String,
+}
+
+impl Order {
+    /// The case with overrides, named by the last `named` of them.
+    ///
+    /// # Errors
+    /// All errors of the case, a line each.
+    pub fn read(path: &Path, bytes: &[u8], set: Vec<String>, named: usize) -> Result<Self, Vec<String>> {
+        let case = Case::from_bytes(&path.display().to_string(), bytes, &set)
+            .map_err(|errors| errors.iter().map(ToString::to_string).collect::<Vec<_>>())?;
+        let hash = manifest::Case::new("", "", "", case.text.clone()).blake3;
+        let settings = &set[set.len().saturating_sub(named)..];
+        let name = format!("{}{}", slug(settings), &hash[..DIGITS]);
+        Ok(Self { set, case, name })
+    }
+
+    /// What it takes of the machine.
+    pub fn load(&self, ranks: usize) -> Load {
+        let steps = self.case.analysis.end / self.case.analysis.dt;
+        Load { memory: self.case.estimate().bytes_on(ranks), work: self.case.points() as f64 * steps }
+    }
+
+    /// m  the size of its cells: the root of the largest area of one.
+    pub fn cell(&self) -> f64 {
+        let largest = |axis: &Axis| (0..axis.cells()).map(|cell| axis.cell(cell)).fold(0.0, f64::max);
+        self.case.grid.axes.iter().map(largest).product::<f64>().sqrt()
+    }
+}
+
+/// The settings as part of a file's name: the last part of each key, and its value, without what shells would take amiss.
+fn slug(settings: &[String]) -> String {
+    let mut made = String::new();
+    for (key, value) in settings.iter().filter_map(|set| set.split_once('=')) {
+        let part = format!("{}-{}_", key.rsplit('.').next().unwrap_or(key), value);
+        let kept = part.chars().filter(|c| !c.is_whitespace() && *c != '"');
+        made.extend(kept.map(|c| if c.is_ascii_alphanumeric() || "._-".contains(c) { c } else { '-' }));
+    }
+    if made.len() > LONGEST { String::new() } else { made }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::slug;
+
+    #[test]
+    fn names_are_plain() {
+        let settings = ["grid.cell=\"10 mm\"".to_owned(), "body.*.points_per_cell = 3".to_owned()];
+        assert_eq!(slug(&settings), "cell-10mm_points_per_cell-3_");
+        assert_eq!(slug(&[]), "");
+    }
+}

@@ -1,0 +1,281 @@
+//! `bsmpm sweep`: what accuracy costs on a case. What was asked for is looked through in `plan`: settings are made in `axes`
+//! and become runs in `study`, which `crate::batch` makes, or searches of a factor of safety in `safety`. Numbers are taken
+//! from them in `quantity`, held against a `reference`, and weighed against their cost in `front`; `report` and `picture`
+//! tell, `write` writes a setting back as a case file.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use bsmpm_io::{atomic, disk};
+use bsmpm_scene::Case;
+use clap::Args;
+
+use crate::Error;
+use crate::batch::{self, Batch, Limits, Order, Outcome, State};
+use crate::launch::{self, Solver, command};
+
+mod axes;
+mod front;
+mod picture;
+mod plan;
+mod quantity;
+mod reference;
+mod report;
+mod safety;
+mod study;
+mod write;
+
+pub(crate) use axes::split;
+use plan::Plan;
+pub(crate) use quantity::Part;
+use quantity::Quantity;
+use reference::Values;
+use report::{Parts, Report};
+use study::Point;
+
+const JSON: &str = "sweep.json";
+const CSV: &str = "sweep.csv";
+
+/// What to vary, and what to look at.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "\
+Every combination of the values is a run, or with --one-at-a-time the case as it is and each value by itself. The case as it is,
+or --baseline, is always among them. Settings that the case refuses, runs that fail and runs that would not fit into memory are
+told in the table and end nothing else. Finished runs are kept while their case, solver and launcher are the same; one that
+was stopped or killed goes on from its checkpoint.
+
+A quantity is a column of history.csv at a time, linear between steps, or at the end. Several names count together: the root
+of the mean square of their relative differences; a name without a time takes that of the next one. factor-of-safety runs
+`bsmpm fos` in the place of each run. The cost is processor seconds, of all ranks.
+
+DIR gets sweep.csv, sweep.json, a picture of error against cost for each quantity, and runs/.
+
+Exit codes: 0 done, whatever the runs gave; 2 command line; 65 the case as it is has errors; 66 no such case; 80 no run came to
+its end.
+
+Examples:
+  bsmpm sweep case.toml --vary grid.cell=20mm,10mm,5mm --vary body.*.points_per_cell=2,3,4 --quantity runout@0.607
+  bsmpm sweep slope.toml --vary grid.cell=2m,1m,0.5m --quantity factor-of-safety --within 1% --write best.toml")]
+pub struct Arguments {
+    /// The case file
+    pub case: PathBuf,
+    /// A key of the case, as --set takes it, with its values; `*` is every item of a list; repeatable
+    #[arg(long, value_name = "KEY=V1,V2,...", required = true)]
+    pub vary: Vec<String>,
+    /// One value at a time, all else as the case has it, instead of every combination
+    #[arg(long)]
+    pub one_at_a_time: bool,
+    /// What is looked at; repeatable
+    #[arg(long, value_name = "NAME[@TIME],...", required = true)]
+    pub quantity: Vec<String>,
+    /// What errors are measured against: finest, extrapolated (over the cells' sizes), the directory of a run, or numbers
+    #[arg(long, value_name = "REFERENCE", default_value = "finest")]
+    pub reference: String,
+    /// The error that is good enough
+    #[arg(long, value_name = "SHARE", default_value = "2%", value_parser = share)]
+    pub within: f64,
+    /// What costs are compared with [default: the case as it is]
+    #[arg(long, value_name = "KEY=VALUE,...")]
+    pub baseline: Option<String>,
+    /// Write the cheapest setting that is good enough, by all quantities, as a case file
+    #[arg(long, value_name = "FILE")]
+    pub write: Option<PathBuf>,
+    /// Runs at the same time [default: the cores, divided by the ranks]
+    #[arg(long, value_name = "N")]
+    pub jobs: Option<usize>,
+    /// Ranks of each run, started by mpirun
+    #[arg(long, value_name = "R", default_value_t = 1, value_parser = ranks, conflicts_with = "command")]
+    pub ranks: usize,
+    /// What the runs at the same time may take together, by their estimates, e.g. 16GiB [default: what the machine has free]
+    #[arg(long, value_name = "SIZE", value_parser = disk::size)]
+    pub max_memory: Option<u64>,
+    /// Stop each run after so much time by the clock; asked for again it goes on
+    #[arg(long, value_name = "HH:MM:SS", value_parser = wall)]
+    pub max_wall: Option<Duration>,
+    /// Override one key of the case in all runs, as for bsmpm-par; repeatable
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
+    /// Where everything is written [default: the case's stem with .sweep, in the working directory]
+    #[arg(short, long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
+    /// Repeat runs that are there already
+    #[arg(long)]
+    pub force: bool,
+    /// The solver, with the launcher before it: words that bsmpm-par's arguments follow [default: the bsmpm-par beside this
+    /// program, or that of PATH]
+    #[arg(last = true, value_name = "COMMAND")]
+    pub command: Vec<String>,
+}
+
+/// A share, as `2%` or `0.02`.
+fn share(text: &str) -> Result<f64, String> {
+    let (number, unit) = text.trim().strip_suffix('%').map_or((text, 1.0), |number| (number, 0.01));
+    let share = number.trim().parse().map(|number: f64| unit * number);
+    share.ok().filter(|share| *share > 0.0 && share.is_finite()).ok_or_else(|| "a share, e.g. 2% or 0.02".to_owned())
+}
+
+pub(crate) fn ranks(text: &str) -> Result<usize, String> {
+    text.parse().ok().filter(|ranks| (1..=100_000).contains(ranks)).ok_or_else(|| "a number from 1 on".to_owned())
+}
+
+/// HH:MM:SS
+pub(crate) fn wall(text: &str) -> Result<Duration, String> {
+    let parts: Option<Vec<u64>> =
+        text.split(':').map(|part| part.parse().ok().filter(|part| *part < 100_000)).collect();
+    match parts.as_deref() {
+        Some(&[hours, minutes, seconds]) if minutes < 60 && seconds < 60 && hours + minutes + seconds > 0 => {
+            Ok(Duration::from_secs(3600 * hours + 60 * minutes + seconds))
+        }
+        _ => Err(format!("{text} is no time; expected HH:MM:SS")),
+    }
+}
+
+/// Sweeps; `told` gets a line for every run as soon as it is there. Returns the text for the screen, and the files.
+///
+/// # Errors
+/// Those of the command line and the case before anything runs; [`Error::NoResult`] if no run came to its end; those of files.
+pub fn run(arguments: &Arguments, mut told: impl FnMut(&str)) -> Result<(String, Vec<PathBuf>), Error> {
+    let command = command::words(&arguments.command, arguments.ranks);
+    let jobs = command::jobs(arguments.jobs, &command)?;
+    let plan = arguments.plan()?;
+    let solver = Solver { command: &command, side_by_side: true };
+    solver.check()?;
+    let output = arguments.directory();
+    launch::make(&output)?;
+    let limits = Limits { jobs, memory: batch::memory(arguments.max_memory) };
+    let (path, max_wall, force) = (&*arguments.case, arguments.max_wall, arguments.force);
+    let batch = Batch { solver, path, output: &output, limits, max_wall, force };
+    let outcomes = outcomes(&batch, &plan, command::ranks(&command), &mut told);
+    let (values, outcomes) = measured(&plan.quantities, outcomes);
+    let reference = plan.reference.find(&plan.quantities, &plan.points, &values)?;
+    let parts = Parts {
+        case: path.display().to_string(),
+        title: plan.own.title.clone(),
+        command: &command,
+        axes: plan.axes.iter().map(|axis| axis.key.clone()).collect(),
+        quantities: &plan.quantities,
+        points: &plan.points,
+        outcomes: &outcomes,
+        within: arguments.within,
+    };
+    let report = Report::of(parts, &values, reference);
+    let mut files = tables(&report, &output)?;
+    files.extend(pictures(&report, &output)?);
+    if !report.has_result() {
+        return Err(Error::NoResult { table: output.join(CSV) });
+    }
+    let mut text = report.text();
+    if let Some(file) = &arguments.write {
+        match report.best() {
+            Some(row) => {
+                written_back(&plan.bytes, &row.set, file)?;
+                files.push(file.clone());
+            }
+            None => text += &format!("{} is not written: no setting is good enough\n", file.display()),
+        }
+    }
+    Ok((text, files))
+}
+
+/// What became of every point: those that could be begun were.
+fn outcomes(batch: &Batch, plan: &Plan, ranks: usize, told: &mut dyn FnMut(&str)) -> Vec<Outcome> {
+    let mut outcomes: Vec<Option<Outcome>> = plan.points.iter().map(|point| refused(point, batch, ranks)).collect();
+    let wanted: Vec<usize> = (0..outcomes.len()).filter(|&index| outcomes[index].is_none()).collect();
+    let orders: Vec<Order> =
+        wanted.iter().filter_map(|&index| plan.points[index].order.as_ref().ok()).cloned().collect();
+    let (count, mut ended) = (orders.len(), 0);
+    let mut tell = |index: usize, outcome: &Outcome| {
+        ended += 1;
+        let kept = if outcome.kept { ", kept" } else { "" };
+        let (name, cpu) = (plan.points[wanted[index]].name(), outcome.cost.cpu_seconds);
+        let line = format!("{ended}/{count}  {name}: {}, {cpu:.1} CPU s{kept} {}", outcome.words(), outcome.reason);
+        told(line.trim_end());
+    };
+    let made = if plan.quantities.iter().any(Quantity::is_factor) {
+        batch.with(&orders, ranks, |order| safety::outcome(batch, order), &mut tell)
+    } else {
+        batch.run(&orders, ranks, &mut tell)
+    };
+    wanted.iter().zip(made).for_each(|(&index, outcome)| outcomes[index] = Some(outcome));
+    outcomes.into_iter().flatten().collect()
+}
+
+/// Why a point is not begun, if it is not.
+fn refused(point: &Point, batch: &Batch, ranks: usize) -> Option<Outcome> {
+    match &point.order {
+        Err(errors) => Some(Outcome::never(State::Invalid, errors.join("\n"))),
+        Ok(order) => {
+            let (needed, allowed) = (order.load(ranks).memory, batch.limits.memory);
+            let mib = |bytes: u64| bytes as f64 / 1048576.0;
+            let reason = || format!("it needs about {:.0} MiB of {:.0} MiB", mib(needed), mib(allowed));
+            (needed > allowed).then(|| Outcome::never(State::Memory, reason()))
+        }
+    }
+}
+
+/// The quantities of the runs that came to their end; where one is missing, the outcome says why.
+fn measured(quantities: &[Quantity], mut outcomes: Vec<Outcome>) -> (Vec<Option<Values>>, Vec<Outcome>) {
+    let of = |outcome: &mut Outcome| -> Option<Values> {
+        let history = outcome.history.as_ref().filter(|_| outcome.state == State::Done)?;
+        let found: Vec<Result<Vec<f64>, String>> = quantities.iter().map(|quantity| quantity.values(history)).collect();
+        let missing = found.iter().find_map(|found| found.as_ref().err().cloned());
+        outcome.reason = missing.unwrap_or_default();
+        Some(found.into_iter().map(Result::ok).collect())
+    };
+    let values = outcomes.iter_mut().map(of).collect();
+    (values, outcomes)
+}
+
+fn tables(report: &Report, output: &Path) -> Result<Vec<PathBuf>, Error> {
+    let (csv, json) = (output.join(CSV), output.join(JSON));
+    atomic::replace(&csv, |file| file.write_all(report.csv().as_bytes()))?;
+    atomic::replace(&json, |file| {
+        serde_json::to_writer_pretty(&mut *file, report)?;
+        file.write_all(b"\n")
+    })?;
+    Ok(vec![csv, json])
+}
+
+/// A picture for each quantity that has errors.
+fn pictures(report: &Report, output: &Path) -> Result<Vec<PathBuf>, Error> {
+    let plain = |c: char| if c.is_ascii_alphanumeric() || ".-_".contains(c) { c } else { '-' };
+    let mut drawn = Vec::new();
+    for (index, name) in report.quantities.iter().enumerate() {
+        let name: String = if report.quantities.len() > 1 { format!("_{name}") } else { String::new() };
+        let path = output.join(format!("sweep{}.png", name.chars().map(plain).collect::<String>()));
+        if picture::draw(report, index, &path)? {
+            drawn.push(path);
+        }
+    }
+    Ok(drawn)
+}
+
+/// Writes the case with overrides; it is the case that was run, or it is not written.
+fn written_back(bytes: &[u8], set: &[String], file: &Path) -> Result<(), Error> {
+    let usage = |reason: String| Error::Usage { reason: format!("--write {}: {reason}", file.display()) };
+    let original = String::from_utf8_lossy(bytes);
+    let text = write::text(&original, set).map_err(usage)?;
+    let name = file.display().to_string();
+    Case::from_text(&name, &text, &[]).map_err(|errors| Error::bad_case(file, &errors))?;
+    let run = Case::from_bytes(&name, bytes, set).map_err(|errors| Error::bad_case(file, &errors))?;
+    let differences = bsmpm_scene::differences(&run.text, &text).map_err(|errors| Error::bad_case(file, &errors))?;
+    if let Some(difference) = differences.first() {
+        return Err(usage(format!("the text would be another case than the run: {difference}")));
+    }
+    Ok(atomic::replace(file, |file| file.write_all(text.as_bytes()))?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shares_and_times_are_read() {
+        assert_eq!((share("2%"), share("0.05"), share(" 2.5 %")), (Ok(0.02), Ok(0.05), Ok(0.025)));
+        assert!(["", "x", "-1%", "0", "inf", "nan"].iter().all(|text| share(text).is_err()));
+        assert_eq!((wall("01:02:03"), wall("0:0:5")), (Ok(Duration::from_secs(3723)), Ok(Duration::from_secs(5))));
+        assert!(["", "5", "0:0:0", "0:60:0", "a:b:c", "1:2:3:4"].iter().all(|text| wall(text).is_err()));
+        assert!(ranks("0").is_err() && ranks("4") == Ok(4));
+    }
+}

@@ -1,0 +1,76 @@
+//! What a sweep is to do, looked through before anything runs.
+
+use std::path::PathBuf;
+
+use bsmpm_scene::Case;
+
+use super::Arguments;
+use super::axes::{self, Axis};
+use super::quantity::{FACTOR, Quantity};
+use super::reference::Reference;
+use super::study::{Point, Study};
+use crate::Error;
+use crate::batch;
+
+/// What is swept, before anything runs.
+pub(super) struct Plan {
+    pub bytes: Vec<u8>,
+    pub own: Case,
+    pub axes: Vec<Axis>,
+    pub quantities: Vec<Quantity>,
+    pub reference: Reference,
+    pub points: Vec<Point>,
+}
+
+impl Arguments {
+    pub(super) fn plan(&self) -> Result<Plan, Error> {
+        let usage = |reason: String| Error::Usage { reason };
+        let axes: Vec<Axis> =
+            self.vary.iter().map(|text| Axis::parse(text)).collect::<Result<_, _>>().map_err(usage)?;
+        let quantities: Vec<Quantity> =
+            self.quantity.iter().map(|text| Quantity::parse(text)).collect::<Result<_, _>>().map_err(usage)?;
+        let settings = axes::settings(&axes, self.one_at_a_time).map_err(usage)?;
+        let bytes = batch::load(&self.case)?;
+        let own = Case::from_bytes(&self.case.display().to_string(), &bytes, &self.set)
+            .map_err(|errors| Error::bad_case(&self.case, &errors))?;
+        self.look_through(&quantities, &own)?;
+        let reference = Reference::parse(&self.reference);
+        reference.check(&quantities)?;
+        let study = Study { path: &self.case, bytes: &bytes, set: &self.set, axes: &axes };
+        let points = study.points(&settings, &self.baseline.as_deref().map_or_else(Vec::new, axes::split))?;
+        Ok(Plan { bytes, own, axes, quantities, reference, points })
+    }
+
+    /// Whether the case records what is wanted.
+    fn look_through(&self, quantities: &[Quantity], case: &Case) -> Result<(), Error> {
+        let usage = |reason: String| Err(Error::Usage { reason });
+        if quantities.iter().any(Quantity::is_factor) {
+            return match (quantities, self.max_wall) {
+                ([only], None) if only.name == FACTOR => Ok(()),
+                (_, Some(_)) => usage(format!("--max-wall: not with --quantity {FACTOR}")),
+                _ => {
+                    usage(format!("--quantity {FACTOR}: alone and without a time, for it takes the place of the runs"))
+                }
+            };
+        }
+        let columns: Vec<String> =
+            case.histories.iter().flat_map(bsmpm_scene::History::columns).map(|column| column.name).collect();
+        let parts = quantities.iter().flat_map(|quantity| &quantity.parts);
+        match parts.into_iter().find(|part| !columns.contains(&part.column)) {
+            Some(part) => usage(format!(
+                "--quantity {}: the case has no [[history]] of that name; it has {}, and there is {FACTOR}",
+                part.column,
+                columns.join(", ")
+            )),
+            None => Ok(()),
+        }
+    }
+
+    pub(super) fn directory(&self) -> PathBuf {
+        self.output.clone().unwrap_or_else(|| {
+            let mut name = self.case.file_stem().unwrap_or_default().to_owned();
+            name.push(".sweep");
+            PathBuf::from(name)
+        })
+    }
+}

@@ -1,0 +1,224 @@
+//! What errors are measured against: a run of the sweep, Richardson's extrapolation of some of them, a run elsewhere, numbers.
+
+use std::path::{Path, PathBuf};
+
+use bsmpm_io::directory::HISTORY;
+use bsmpm_io::table;
+use serde::Serialize;
+
+use super::axes::split;
+use super::quantity::Quantity;
+use super::study::Point;
+use crate::Error;
+use crate::grid_convergence::{Course, Index};
+
+/// What was asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Reference {
+    Finest,
+    Extrapolated,
+    Run(PathBuf),
+    /// for all parts of all quantities, in their order
+    Numbers(Vec<f64>),
+}
+
+/// What it is.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(super) struct Found {
+    /// In words.
+    pub what: String,
+    /// For each quantity those of its parts; none where there are none.
+    pub values: Vec<Option<Vec<f64>>>,
+    /// The run of the sweep that it is; its own error is zero and says nothing.
+    pub run: Option<usize>,
+    /// What the reader should know of it.
+    pub notes: Vec<String>,
+}
+
+/// Values of a run of the sweep: for each quantity those of its parts.
+pub(super) type Values = Vec<Option<Vec<f64>>>;
+
+impl Reference {
+    /// `finest`, `extrapolated`, a number for each part, or the directory of a run.
+    pub fn parse(text: &str) -> Self {
+        let numbers: Option<Vec<f64>> = split(text).iter().map(|part| part.parse().ok()).collect();
+        match (text, numbers) {
+            ("finest", _) => Self::Finest,
+            ("extrapolated", _) => Self::Extrapolated,
+            (_, Some(numbers)) => Self::Numbers(numbers),
+            _ => Self::Run(PathBuf::from(text)),
+        }
+    }
+
+    /// What can be seen to be wrong before anything runs.
+    pub fn check(&self, quantities: &[Quantity]) -> Result<(), Error> {
+        let parts: usize = quantities.iter().map(|quantity| quantity.parts.len()).sum();
+        match self {
+            Self::Finest | Self::Extrapolated => Ok(()),
+            Self::Numbers(numbers) if numbers.len() == parts && numbers.iter().all(|number| number.is_finite()) => {
+                Ok(())
+            }
+            Self::Numbers(numbers) => Err(Error::Usage {
+                reason: format!("--reference: {} number(s), but the quantities have {parts} part(s)", numbers.len()),
+            }),
+            Self::Run(directory) => elsewhere(directory, quantities).map(|_| ()),
+        }
+    }
+
+    /// The reference among runs of which those without values did not finish.
+    ///
+    /// # Errors
+    /// Those of a run elsewhere that does not have the quantities.
+    pub fn find(&self, quantities: &[Quantity], points: &[Point], values: &[Option<Values>]) -> Result<Found, Error> {
+        match self {
+            Self::Finest => Ok(finest(quantities, points, values)),
+            Self::Extrapolated => Ok(extrapolated(quantities, points, values)),
+            Self::Run(directory) => {
+                let values = elsewhere(directory, quantities)?.into_iter().map(Some).collect();
+                Ok(Found { what: format!("the run in {}", directory.display()), values, run: None, notes: Vec::new() })
+            }
+            Self::Numbers(numbers) => {
+                let mut numbers = numbers.iter().copied();
+                let of = |quantity: &Quantity| Some(numbers.by_ref().take(quantity.parts.len()).collect());
+                let values = quantities.iter().map(of).collect();
+                Ok(Found { what: "the numbers given".to_owned(), values, run: None, notes: Vec::new() })
+            }
+        }
+    }
+}
+
+/// The quantities of a run that is not of the sweep.
+fn elsewhere(directory: &Path, quantities: &[Quantity]) -> Result<Vec<Vec<f64>>, Error> {
+    let history = table::read(&directory.join(HISTORY))?;
+    let of = |quantity: &Quantity| quantity.values(&history);
+    quantities
+        .iter()
+        .map(of)
+        .collect::<Result<_, _>>()
+        .map_err(|reason| Error::Usage { reason: format!("--reference {}: {reason}", directory.display()) })
+}
+
+/// The finest run that has finished.
+fn best(points: &[Point], values: &[Option<Values>]) -> Option<usize> {
+    let there = (0..points.len()).filter(|&index| values[index].is_some());
+    there.max_by(|&a, &b| points[a].fineness().partial_cmp(&points[b].fineness()).unwrap_or(std::cmp::Ordering::Equal))
+}
+
+fn finest(quantities: &[Quantity], points: &[Point], values: &[Option<Values>]) -> Found {
+    let Some((index, values)) = best(points, values).and_then(|index| Some((index, values[index].clone()?))) else {
+        let what = "none: no run has finished".to_owned();
+        return Found { what, values: vec![None; quantities.len()], run: None, notes: Vec::new() };
+    };
+    Found {
+        what: format!("the finest run that has finished: {}", points[index].name()),
+        values,
+        run: Some(index),
+        notes: Vec::new(),
+    }
+}
+
+/// From the three smallest cells of the runs that differ from the finest one in them alone.
+fn extrapolated(quantities: &[Quantity], points: &[Point], values: &[Option<Values>]) -> Found {
+    let mut found = finest(quantities, points, values);
+    let Some(run) = found.run else { return found };
+    let same = |index: &usize| points[*index].differs_in_cells_only(&points[run]);
+    let mut series: Vec<(f64, &Values)> = (0..points.len())
+        .filter(same)
+        .filter_map(|index| Some((points[index].cell()?, values[index].as_ref()?)))
+        .collect();
+    series.sort_by(|a, b| a.0.total_cmp(&b.0));
+    series.dedup_by(|a, b| a.0 == b.0);
+    let [first, second, third, ..] = series[..] else {
+        let sizes = series.len();
+        found.notes.push(format!(
+            "no extrapolation: {sizes} size(s) of cells with all else as in the finest run, three are needed; errors are \
+             against the finest run"
+        ));
+        return found;
+    };
+    let h = [first.0, second.0, third.0];
+    found.what = format!("extrapolated from cells of {} m, {} m and {} m", h[0], h[1], h[2]);
+    found.run = None;
+    for (index, quantity) in quantities.iter().enumerate() {
+        let of = |values: &Values, part: usize| values[index].as_ref().map_or(f64::NAN, |values| values[part]);
+        let mut limits = Vec::new();
+        for part in 0..quantity.parts.len() {
+            let f = [of(first.1, part), of(second.1, part), of(third.1, part)];
+            let limit = limit(h, f);
+            found.notes.push(format!("{}: {}", quantity.parts[part].words(), limit.1));
+            limits.push(limit.0);
+        }
+        found.values[index] = Some(limits);
+    }
+    found
+}
+
+/// The limit of three values, or the finest one where they show none; and in words which.
+fn limit(h: [f64; 3], f: [f64; 3]) -> (f64, String) {
+    let index = Index::of(h, f);
+    match (index.extrapolated, index.order, index.course) {
+        (Some(limit), Some(order), _) => (limit, format!("order {order:.2}, limit {limit:.6}")),
+        (_, _, Course::Unchanged) => (f[0], format!("the two finest agree: {}", f[0])),
+        (_, _, course) => {
+            let word = match course {
+                Course::Oscillatory => "oscillate",
+                Course::OscillatoryDiverging => "oscillate and diverge",
+                _ => "do not converge",
+            };
+            (f[0], format!("{}, {}, {} {word}: no limit; the finest value is the reference", f[2], f[1], f[0]))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::study::tests::points;
+    use super::*;
+
+    #[test]
+    fn references_are_read() {
+        assert_eq!(Reference::parse("finest"), Reference::Finest);
+        assert_eq!(Reference::parse("extrapolated"), Reference::Extrapolated);
+        assert_eq!(Reference::parse("0.45, 1e-3"), Reference::Numbers(vec![0.45, 1e-3]));
+        assert_eq!(Reference::parse("run.out"), Reference::Run("run.out".into()));
+        let quantity = [Quantity::parse("a,b").unwrap()];
+        assert!(Reference::Numbers(vec![1.0, 2.0]).check(&quantity).is_ok());
+        assert!(Reference::Numbers(vec![1.0]).check(&quantity).is_err());
+        assert!(Reference::Numbers(vec![1.0, f64::NAN]).check(&quantity).is_err());
+        assert!(Reference::Run("nowhere".into()).check(&quantity).is_err());
+    }
+
+    #[test]
+    fn a_limit_is_taken_only_where_there_is_one() {
+        let (value, words) = limit([1.0, 2.0, 4.0], [1.1, 1.2, 1.4]);
+        assert!((value - 1.0).abs() < 1e-12 && words.contains("order 1.00"), "{words}");
+        let (value, words) = limit([1.0, 2.0, 4.0], [1.4, 1.2, 1.1]);
+        assert!(value == 1.4 && words.contains("do not converge"), "{words}");
+        let (value, words) = limit([1.0, 2.0, 4.0], [1.1, 1.0, 1.4]);
+        assert!(value == 1.1 && words.contains("oscillate"), "{words}");
+    }
+
+    #[test]
+    fn the_finest_run_that_finished_is_the_reference_or_what_its_cells_tend_to() {
+        let vary = ["grid.cell=10 mm,5 mm,2.5 mm", "body.0.points_per_cell=2,3"];
+        let points = points(&vary, false, &[]).unwrap();
+        let quantity = [Quantity::parse("a").unwrap()];
+        // 5 + 1e3 h of three points a cell; what fewer points give is of no matter, and the finest run of all failed.
+        let value = |a: f64| Some(vec![Some(vec![a])]);
+        let values = [value(1.0), value(15.0), value(2.0), value(10.0), value(3.0), value(7.5)];
+        let found =
+            |reference: &Reference, values: &[Option<Values>]| reference.find(&quantity, &points, values).unwrap();
+        assert_eq!(found(&Reference::Finest, &values).run, Some(5));
+        let limit = found(&Reference::Extrapolated, &values);
+        assert!((limit.values[0].as_ref().unwrap()[0] - 5.0).abs() < 1e-9 && limit.run.is_none(), "{limit:?}");
+        let mut fewer = values.clone();
+        fewer[5] = None;
+        let limit = found(&Reference::Extrapolated, &fewer);
+        assert_eq!((limit.run, limit.values[0].clone()), (None, Some(vec![3.0])), "{limit:?}");
+        fewer[0] = None;
+        let limit = found(&Reference::Extrapolated, &fewer);
+        assert!(limit.run == Some(4) && limit.notes[0].contains("three are needed"), "{limit:?}");
+        let nothing = found(&Reference::Finest, &vec![None; 6]);
+        assert!(nothing.run.is_none() && nothing.values == [None]);
+    }
+}

@@ -1,0 +1,324 @@
+//! What a sweep found: runs with their errors and costs, fronts, and the cheapest settings that are good enough; as text, CSV
+//! and JSON.
+
+use serde::Serialize;
+
+use super::front::{cheapest, front};
+use super::quantity::Quantity;
+use super::reference::{Found, Values};
+use super::study::Point;
+use crate::batch::{Cost, Outcome, State};
+use crate::columns::{Align, aligned, csv};
+
+/// A run with what it is worth.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Row {
+    /// The settings in words.
+    pub name: String,
+    /// Those of the axes.
+    pub settings: Vec<String>,
+    /// Overrides of the case.
+    pub set: Vec<String>,
+    pub state: State,
+    pub code: Option<u8>,
+    pub reason: String,
+    /// For each quantity its parts.
+    pub values: Vec<Option<Vec<f64>>>,
+    /// For each quantity, relative.
+    pub errors: Vec<Option<f64>>,
+    /// For each quantity.
+    pub on_front: Vec<bool>,
+    pub is_baseline: bool,
+    pub is_reference: bool,
+    pub kept: bool,
+    #[serde(flatten)]
+    pub cost: Cost,
+    pub directory: Option<String>,
+}
+
+/// The cheapest run that is good enough.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(super) struct Cheapest {
+    /// The quantity; none for all of them together.
+    pub quantity: Option<String>,
+    pub run: Option<usize>,
+    /// Its cost over that of the baseline.
+    pub ratio: Option<f64>,
+}
+
+/// All of it.
+#[derive(Debug, Serialize)]
+pub(super) struct Report {
+    pub case: String,
+    pub title: String,
+    pub command: Vec<String>,
+    pub axes: Vec<String>,
+    pub quantities: Vec<String>,
+    pub reference: Found,
+    /// The error that is good enough.
+    pub within: f64,
+    pub runs: Vec<Row>,
+    /// By quantity, and where there are several at last by all.
+    pub cheapest: Vec<Cheapest>,
+    #[serde(skip)]
+    pub heads: Vec<String>,
+}
+
+/// What a report is made of.
+pub(super) struct Parts<'a> {
+    pub case: String,
+    pub title: String,
+    pub command: &'a [String],
+    pub axes: Vec<String>,
+    pub quantities: &'a [Quantity],
+    pub points: &'a [Point],
+    pub outcomes: &'a [Outcome],
+    pub within: f64,
+}
+
+impl Report {
+    pub fn of(parts: Parts, values: &[Option<Values>], reference: Found) -> Self {
+        let Parts { quantities, points, outcomes, within, .. } = parts;
+        let row = |index: usize| row(&points[index], &outcomes[index], values[index].as_ref(), quantities, &reference);
+        let mut runs: Vec<Row> = (0..points.len()).map(row).collect();
+        for (index, row) in runs.iter_mut().enumerate() {
+            row.is_reference = reference.run == Some(index);
+        }
+        let mut best = Vec::new();
+        for (index, quantity) in quantities.iter().enumerate() {
+            let places: Vec<_> = runs.iter().map(|row| row.place(&[index])).collect();
+            // That the reference has no error says nothing of what it is worth.
+            let others: Vec<_> =
+                places.iter().zip(&runs).map(|(place, row)| place.filter(|_| !row.is_reference)).collect();
+            front(&others).into_iter().zip(&mut runs).for_each(|(is_best, row)| row.on_front.push(is_best));
+            best.push((Some(quantity.name.clone()), cheapest(&places, within)));
+        }
+        if quantities.len() > 1 {
+            let all: Vec<usize> = (0..quantities.len()).collect();
+            let places: Vec<_> = runs.iter().map(|row| row.place(&all)).collect();
+            best.push((None, cheapest(&places, within)));
+        }
+        let baseline = runs.iter().find(|row| row.is_baseline && row.state == State::Done);
+        let baseline = baseline.map(|row| row.cost.cpu_seconds).filter(|cost| *cost > 0.0);
+        let ratio = |run: Option<usize>| Some(runs[run?].cost.cpu_seconds / baseline?);
+        let cheapest = best.into_iter().map(|(quantity, run)| Cheapest { quantity, run, ratio: ratio(run) }).collect();
+        Self {
+            case: parts.case,
+            title: parts.title,
+            command: parts.command.to_vec(),
+            heads: parts.axes.iter().map(|key| super::study::short(key, &parts.axes).to_owned()).collect(),
+            axes: parts.axes,
+            quantities: quantities.iter().map(|quantity| quantity.name.clone()).collect(),
+            reference,
+            within,
+            runs,
+            cheapest,
+        }
+    }
+
+    /// The run that is the cheapest by all quantities.
+    pub fn best(&self) -> Option<&Row> {
+        self.cheapest.last().and_then(|cheapest| cheapest.run).map(|run| &self.runs[run])
+    }
+
+    /// Whether any run has come to its end.
+    pub fn has_result(&self) -> bool {
+        self.runs.iter().any(|row| row.state == State::Done)
+    }
+
+    /// For the screen.
+    pub fn text(&self) -> String {
+        let mut text = format!("{}\nreference: {}\n", self.title, self.reference.what);
+        self.reference.notes.iter().for_each(|note| text += &format!("  {note}\n"));
+        text += &format!("\n{}\n", self.table());
+        for Cheapest { quantity, run, ratio } in &self.cheapest {
+            let percent = 100.0 * self.within;
+            let of = quantity.as_deref().map_or("all quantities".to_owned(), |name| format!("the {name}"));
+            text += &match run.map(|run| &self.runs[run]) {
+                None => format!("no setting is within {percent} % of {of}\n"),
+                Some(row) => {
+                    let ratio = ratio.map_or_else(String::new, |ratio| format!(", {ratio:.3} of the baseline's"));
+                    let only = if row.is_reference { " (the reference itself)" } else { "" };
+                    let cost = row.cost.cpu_seconds;
+                    format!("cheapest within {percent} % of {of}: {}{only}; {cost:.2} CPU s{ratio}\n", row.name)
+                }
+            };
+        }
+        let cpu: f64 = self.runs.iter().map(|row| row.cost.cpu_seconds).sum();
+        let kept = self.runs.iter().filter(|row| row.kept).count();
+        text + &format!("{} runs, {kept} of them kept from before, {cpu:.1} CPU s\n", self.runs.len())
+    }
+
+    fn table(&self) -> String {
+        let mut headings = self.heads.clone();
+        headings.extend(self.quantities.iter().flat_map(|name| [name.clone(), "error".to_owned()]));
+        headings.extend(["CPU s", "s", "MiB", "iterations", "state"].map(str::to_owned));
+        let mut lines = vec![headings];
+        for row in &self.runs {
+            let mut cells = row.settings.clone();
+            for (index, values) in row.values.iter().enumerate() {
+                let values = values.iter().flatten().map(|value| format!("{value:.5}"));
+                cells.push(values.collect::<Vec<_>>().join(" "));
+                let mark = if row.on_front[index] { " *" } else { "" };
+                cells.push(row.errors[index].map_or_else(String::new, |error| format!("{:.3} %{mark}", 100.0 * error)));
+            }
+            let Cost { cpu_seconds, wall_seconds, peak_memory, iterations, .. } = row.cost;
+            cells.extend([format!("{cpu_seconds:.2}"), format!("{wall_seconds:.2}")]);
+            // That of a search of a factor is not known.
+            let memory = if peak_memory > 0 { format!("{:.0}", peak_memory as f64 / 1048576.0) } else { String::new() };
+            cells.extend([memory, iterations.to_string(), row.remark()]);
+            lines.push(cells);
+        }
+        let last = lines[0].len() - 1;
+        aligned(&lines, |column| if column < self.heads.len() || column == last { Align::Left } else { Align::Right })
+            + "*: on the front of cost and error, to which no other run is cheaper and better\n"
+    }
+
+    /// A row a run.
+    pub fn csv(&self) -> String {
+        let mut headings = self.axes.clone();
+        headings.extend(["state", "code"].map(str::to_owned));
+        for (quantity, of) in self.quantities.iter().zip(0..) {
+            let parts = self.reference_parts(of);
+            let part = |index: usize| if parts > 1 { format!("{quantity} [{index}]") } else { quantity.clone() };
+            headings.extend((0..parts).map(part));
+            headings.extend([format!("error {quantity}"), format!("on_front {quantity}")]);
+        }
+        headings.extend(
+            ["cpu_seconds", "wall_seconds", "peak_memory_bytes", "steps", "iterations", "cuts"].map(str::to_owned),
+        );
+        headings.extend(["baseline", "reference", "directory", "reason"].map(str::to_owned));
+        let mut lines = vec![headings];
+        lines.extend(self.runs.iter().map(|row| self.csv_row(row)));
+        csv(&lines)
+    }
+
+    fn csv_row(&self, row: &Row) -> Vec<String> {
+        let number = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
+        let mut cells = row.settings.clone();
+        cells.extend([row.state.word().to_owned(), row.code.map_or_else(String::new, |code| code.to_string())]);
+        for (index, values) in row.values.iter().enumerate() {
+            let part = |part: usize| number(values.as_ref().and_then(|values| values.get(part).copied()));
+            cells.extend((0..self.reference_parts(index)).map(part));
+            cells.extend([number(row.errors[index]), row.on_front[index].to_string()]);
+        }
+        let Cost { cpu_seconds, wall_seconds, peak_memory, steps, iterations, cuts } = row.cost;
+        cells.extend([cpu_seconds.to_string(), wall_seconds.to_string()]);
+        cells.extend([peak_memory, steps, iterations, cuts].map(|count| count.to_string()));
+        cells.extend([row.is_baseline, row.is_reference].map(|flag| flag.to_string()));
+        cells.extend([row.directory.clone().unwrap_or_default(), row.reason.clone()]);
+        cells
+    }
+
+    /// The number of parts of a quantity.
+    fn reference_parts(&self, quantity: usize) -> usize {
+        self.quantities[quantity].split(',').count()
+    }
+}
+
+impl Row {
+    /// Cost and the largest error of some quantities; none without them.
+    pub fn place(&self, quantities: &[usize]) -> Option<(f64, f64)> {
+        let errors: Option<Vec<f64>> = quantities.iter().map(|&index| self.errors[index]).collect();
+        Some((self.cost.cpu_seconds, errors?.into_iter().fold(0.0, f64::max)))
+    }
+
+    fn remark(&self) -> String {
+        let code =
+            self.code.filter(|_| self.state != State::Done).map_or_else(String::new, |code| format!(" ({code})"));
+        let marks = [(self.is_baseline, "baseline"), (self.is_reference, "reference"), (self.kept, "kept")];
+        let marks = marks.iter().filter(|(is, _)| *is).map(|(_, mark)| format!(", {mark}")).collect::<String>();
+        let reason = if self.reason.is_empty() { String::new() } else { format!(": {}", self.reason) };
+        format!("{}{code}{marks}{reason}", self.state.word())
+    }
+}
+
+fn row(point: &Point, outcome: &Outcome, values: Option<&Values>, quantities: &[Quantity], found: &Found) -> Row {
+    let none = vec![None; quantities.len()];
+    let values = values.unwrap_or(&none).clone();
+    let error = |index: usize| {
+        let (values, reference) = (values[index].as_ref()?, found.values[index].as_ref()?);
+        quantities[index].error(values, reference)
+    };
+    Row {
+        name: point.name(),
+        settings: point.values.clone(),
+        set: point.order.as_ref().map_or_else(|_| Vec::new(), |order| order.set.clone()),
+        state: outcome.state,
+        code: outcome.code,
+        reason: outcome.reason.lines().next().unwrap_or_default().to_owned(),
+        errors: (0..quantities.len()).map(error).collect(),
+        values,
+        on_front: Vec::new(),
+        is_baseline: point.is_baseline,
+        is_reference: false,
+        kept: outcome.kept,
+        cost: outcome.cost,
+        directory: outcome.directory.as_ref().map(|directory| directory.display().to_string()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::reference::Reference;
+    use super::super::study::tests::points;
+    use super::*;
+
+    /// A sweep over two sizes of cells and two numbers of points, of which one run failed.
+    fn report(within: f64) -> Report {
+        let points = points(&["grid.cell=10 mm,5 mm", "body.*.points_per_cell=2,3"], false, &[]).unwrap();
+        let quantities = ["a", "b,c@0.5"].map(|text| Quantity::parse(text).unwrap());
+        let value = |a: f64| Some(vec![Some(vec![a]), Some(vec![2.0 * a, 3.0])]);
+        let values = [value(1.1), None, value(1.03), value(1.0)];
+        let outcome = |(cpu_seconds, value): (f64, &Option<Values>)| {
+            let state = if value.is_some() { State::Done } else { State::NoConvergence };
+            let reason = if value.is_some() { String::new() } else { "no, it said".to_owned() };
+            Outcome { cost: Cost { cpu_seconds, ..Cost::default() }, ..Outcome::never(state, reason) }
+        };
+        let outcomes: Vec<Outcome> = [4.0, 5.0, 16.0, 32.0].into_iter().zip(&values).map(outcome).collect();
+        let found = Reference::Finest.find(&quantities, &points, &values).unwrap();
+        let parts = Parts {
+            case: "case.toml".into(),
+            title: "A case".into(),
+            command: &[],
+            axes: vec!["grid.cell".into(), "body.*.points_per_cell".into()],
+            quantities: &quantities,
+            points: &points,
+            outcomes: &outcomes,
+            within,
+        };
+        Report::of(parts, &values, found)
+    }
+
+    #[test]
+    fn the_cheapest_good_run_is_told_with_its_cost() {
+        let report = report(0.05);
+        assert!(report.runs[3].is_reference && report.runs[0].is_baseline);
+        let on_front: Vec<bool> = report.runs.iter().map(|row| row.on_front[0]).collect();
+        assert_eq!(on_front, [true, false, true, false]);
+        assert_eq!(report.cheapest.iter().map(|best| best.run).collect::<Vec<_>>(), [Some(2); 3]);
+        assert_eq!(report.cheapest[2].ratio, Some(4.0));
+        let text = report.text();
+        assert!(
+            text.contains("within 5 % of all quantities: cell 5 mm, points_per_cell 2; 16.00 CPU s, 4.000 of"),
+            "{text}"
+        );
+        assert!(text.contains("no-convergence: no, it said"), "{text}");
+        assert!(self::report(0.001).text().contains("(the reference itself)"));
+    }
+
+    #[test]
+    fn a_row_of_the_table_for_programs_is_a_run() {
+        let csv = report(0.05).csv();
+        let lines: Vec<&str> = csv.lines().collect();
+        assert!(
+            lines[0].starts_with("grid.cell,body.*.points_per_cell,state,code,a,error a,on_front a,\"b,c@0.5 [0]\"")
+        );
+        assert!(lines[3].starts_with("5 mm,2,done,,1.03,0.03"), "{csv}");
+        assert!(
+            lines[2].ends_with(",false,false,,\"no, it said\"")
+                && lines[2].contains("no-convergence,,,,false,,,,false")
+        );
+        assert_eq!(lines.len(), 5);
+    }
+}

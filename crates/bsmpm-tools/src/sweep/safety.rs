@@ -1,0 +1,69 @@
+//! A factor of safety in the place of a run: `bsmpm fos` of the case with the settings of one.
+
+use std::path::PathBuf;
+
+use bsmpm_io::table::{Column, Columns};
+
+use super::quantity::FACTOR;
+use crate::Error;
+use crate::batch::{Batch, Cost, Order, Outcome, State};
+use crate::fos;
+
+/// The width of its band; the estimate is finer.
+const WIDTH: f64 = 0.02;
+/// Between which factors it is looked for.
+const RANGE: [f64; 2] = [0.5, 3.0];
+
+/// The outcome of a search: a history of one row with the factor.
+pub(super) fn outcome(batch: &Batch, order: &Order) -> Outcome {
+    let directory = batch.output.join("runs").join(format!("{}.fos", order.name));
+    let arguments = fos::Arguments {
+        case: batch.path.to_owned(),
+        from: RANGE[0],
+        to: RANGE[1],
+        width: WIDTH,
+        jobs: Some(1),
+        set: order.set.clone(),
+        output: Some(directory.clone()),
+        force: batch.force,
+        command: batch.solver.command.to_vec(),
+    };
+    match fos::factor(&arguments) {
+        Ok(found) => of(found, directory),
+        Err(error) => {
+            let state = match error {
+                Error::NoStableState { .. } => State::NoConvergence,
+                Error::NoFactor { .. } => State::Invalid,
+                _ => State::Broken,
+            };
+            let reason = error.to_string().lines().map(str::trim).collect::<Vec<_>>().join(" ");
+            Outcome { code: Some(error.exit_code()), ..Outcome::never(state, reason) }
+        }
+    }
+}
+
+fn of(found: fos::Found, directory: PathBuf) -> Outcome {
+    let cost = Cost {
+        cpu_seconds: found.cpu_seconds,
+        wall_seconds: found.seconds,
+        peak_memory: 0,
+        steps: found.steps,
+        iterations: found.iterations,
+        cuts: found.cuts,
+    };
+    let Some(factor) = found.factor else {
+        let reason = format!("no failure up to the factor {}", RANGE[1]);
+        return Outcome { cost, directory: Some(directory), ..Outcome::never(State::Broken, reason) };
+    };
+    let headings = ["time", FACTOR].map(|name| Column::new(name, "-")).to_vec();
+    let history = Some(Columns { headings, values: vec![vec![1.0], vec![factor]] });
+    Outcome {
+        state: State::Done,
+        code: Some(0),
+        reason: String::new(),
+        history,
+        cost,
+        kept: found.kept,
+        directory: Some(directory),
+    }
+}

@@ -1,0 +1,154 @@
+//! `bsmpm verify-case`: how far a case is from the limit of ever smaller cells. Three grids are made in `grids` and run by
+//! `crate::batch`, what they say of each quantity is found in `crate::grid_convergence` and told in `report`.
+
+use std::io::Write;
+use std::path::PathBuf;
+use std::time::Duration;
+
+use bsmpm_io::{atomic, disk};
+use clap::{Args, ValueEnum};
+
+use crate::Error;
+use crate::batch::{self, Batch, Limits, Outcome, State};
+use crate::launch::{self, Solver, command};
+use crate::plot;
+use crate::sweep;
+
+mod grids;
+mod report;
+
+use grids::Grids;
+use report::Report;
+
+const JSON: &str = "verify.json";
+const CSV: &str = "verify.csv";
+
+/// What becomes of the time step on other grids.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum TimeStep {
+    /// It stays: what differs between the grids is their error alone, and that of time is the same in all.
+    Kept,
+    /// It shrinks as the cells do: the order is that of both errors together.
+    Refined,
+}
+
+/// Which case, and which grids.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "\
+The points of a cell stay as they are, so that they are refined with the grid. The time step stays, too, unless --time-step
+refined: the difference between the grids is then the error of the grid alone, and the step's error is in none of the
+figures. With modified-f-bar results belong to the number of steps, so keep it.
+
+For every column of history.csv at each time: the course of the three values, the observed order, Richardson's extrapolated
+value and the grid convergence index with the safety factor 1.25 (Roache, 1994; Celik et al., 2008), also where the ratios of
+the cells differ. Values that oscillate, diverge, or show an order that the method does not have are called so: then the band
+says little, and a finer grid is needed.
+
+DIR gets verify.csv, verify.json and runs/. Finished runs are kept, as by `bsmpm sweep`.
+
+Exit codes: 0 done, whatever the figures say; 2 command line; 65 the case has errors, or not on one of the grids; 66 no such
+case; that of a run that did not come to its end.
+
+Examples:
+  bsmpm verify-case case.toml --at 0.235 --at 0.607
+  bsmpm verify-case case.toml --refine-only --ratio 1.5 --time-step refined -- mpirun -n 2 bsmpm-par")]
+pub struct Arguments {
+    /// The case file
+    pub case: PathBuf,
+    /// Each grid's cells over those of the next finer one
+    #[arg(long, value_name = "R", default_value_t = 2.0)]
+    pub ratio: f64,
+    /// The case's own grid is the coarsest of the three, not the middle one
+    #[arg(long)]
+    pub refine_only: bool,
+    /// The cells of the three grids instead, in any order, e.g. "10 mm,7.5 mm,5 mm"; lengths
+    #[arg(long, value_name = "H1,H2,H3", conflicts_with_all = ["ratio", "refine_only"])]
+    pub cells: Option<String>,
+    /// What becomes of the time step
+    #[arg(long, value_enum, default_value_t = TimeStep::Kept)]
+    pub time_step: TimeStep,
+    /// Times besides the end; repeatable
+    #[arg(long, value_name = "TIME", value_delimiter = ',', value_parser = plot::time)]
+    pub at: Vec<f64>,
+    /// Runs at the same time [default: the cores, divided by the ranks]
+    #[arg(long, value_name = "N")]
+    pub jobs: Option<usize>,
+    /// Ranks of each run, started by mpirun
+    #[arg(long, value_name = "R", default_value_t = 1, value_parser = sweep::ranks, conflicts_with = "command")]
+    pub ranks: usize,
+    /// What the runs at the same time may take together, e.g. 16GiB [default: what the machine has free]
+    #[arg(long, value_name = "SIZE", value_parser = disk::size)]
+    pub max_memory: Option<u64>,
+    /// Stop each run after so much time by the clock; asked for again it goes on
+    #[arg(long, value_name = "HH:MM:SS", value_parser = sweep::wall)]
+    pub max_wall: Option<Duration>,
+    /// Override one key of the case in all runs, as for bsmpm-par; repeatable
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
+    /// Where everything is written [default: the case's stem with .verify, in the working directory]
+    #[arg(short, long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
+    /// Repeat runs that are there already
+    #[arg(long)]
+    pub force: bool,
+    /// The solver, with the launcher before it: words that bsmpm-par's arguments follow [default: the bsmpm-par beside this
+    /// program, or that of PATH]
+    #[arg(last = true, value_name = "COMMAND")]
+    pub command: Vec<String>,
+}
+
+/// Verifies; `told` gets a line for every run as soon as it is there. Returns the text for the screen, and the files.
+///
+/// # Errors
+/// Those of the command line and of the case on each grid before anything runs; [`Error::Run`] for a run that did not come
+/// to its end; those of files.
+pub fn run(arguments: &Arguments, mut told: impl FnMut(&str)) -> Result<(String, Vec<PathBuf>), Error> {
+    let command = command::words(&arguments.command, arguments.ranks);
+    let (jobs, ranks) = (command::jobs(arguments.jobs, &command)?, command::ranks(&command));
+    let bytes = batch::load(&arguments.case)?;
+    let grids = Grids::of(arguments, &bytes)?;
+    let solver = Solver { command: &command, side_by_side: true };
+    solver.check()?;
+    let output = arguments.directory();
+    launch::make(&output)?;
+    let limits = Limits { jobs, memory: batch::memory(arguments.max_memory) };
+    let (path, max_wall, force) = (&*arguments.case, arguments.max_wall, arguments.force);
+    let batch = Batch { solver, path, output: &output, limits, max_wall, force };
+    let outcomes = batch.run(&grids.orders, ranks, |index, outcome| {
+        let (h, cpu) = (grids.sizes[index], outcome.cost.cpu_seconds);
+        told(format!("cells of {h} m: {}, {cpu:.1} CPU s {}", outcome.words(), outcome.reason).trim_end());
+    });
+    for (outcome, h) in outcomes.iter().zip(grids.sizes) {
+        ended(outcome, h)?;
+    }
+    let report = Report::of(arguments, &grids, &outcomes)?;
+    let (csv, json) = (output.join(CSV), output.join(JSON));
+    atomic::replace(&csv, |file| file.write_all(report.csv().as_bytes()))?;
+    atomic::replace(&json, |file| {
+        serde_json::to_writer_pretty(&mut *file, &report)?;
+        file.write_all(b"\n")
+    })?;
+    Ok((report.text(), vec![csv, json]))
+}
+
+/// Three grids are needed; two show no order.
+fn ended(outcome: &Outcome, h: f64) -> Result<(), Error> {
+    match outcome.state {
+        State::Done => Ok(()),
+        _ => Err(Error::Run {
+            what: format!("cells of {h} m"),
+            code: outcome.code.unwrap_or(70),
+            reason: outcome.reason.clone(),
+        }),
+    }
+}
+
+impl Arguments {
+    fn directory(&self) -> PathBuf {
+        self.output.clone().unwrap_or_else(|| {
+            let mut name = self.case.file_stem().unwrap_or_default().to_owned();
+            name.push(".verify");
+            PathBuf::from(name)
+        })
+    }
+}

@@ -1,0 +1,213 @@
+//! What the three grids say of each quantity, in words and figures.
+
+use bsmpm_io::table::Columns;
+use serde::Serialize;
+
+use super::grids::Grids;
+use super::{Arguments, TimeStep};
+use crate::Error;
+use crate::batch::{Cost, Outcome};
+use crate::columns::{Align, aligned, csv};
+use crate::grid_convergence::{Course, Index};
+use crate::record::short;
+use crate::sweep::Part;
+
+/// Orders below it converge too slowly for the next term of the series to be small.
+const SLOWEST: f64 = 0.5;
+/// How near to one the ratio of the indices must be.
+const NEAR: f64 = 0.1;
+
+/// A quantity at a time.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Row {
+    pub quantity: String,
+    pub unit: String,
+    /// s or pseudo-time; none for the end
+    pub time: Option<f64>,
+    /// On the finest grid first.
+    pub values: [f64; 3],
+    #[serde(flatten)]
+    pub index: Index,
+    /// What the figures are worth.
+    pub verdict: String,
+}
+
+/// All of it.
+#[derive(Debug, Serialize)]
+pub(super) struct Report {
+    pub case: String,
+    pub title: String,
+    /// m  the finest first
+    pub cells: [f64; 3],
+    pub points_per_cell: Vec<usize>,
+    pub time_step: &'static str,
+    /// s or pseudo-time, of each grid
+    pub steps: [f64; 3],
+    pub rows: Vec<Row>,
+    pub costs: Vec<Cost>,
+    pub directories: Vec<String>,
+}
+
+impl Report {
+    /// # Errors
+    /// [`Error::Usage`] for a time that a run has no row about, or for a case that records nothing.
+    pub fn of(arguments: &Arguments, grids: &Grids, outcomes: &[Outcome]) -> Result<Self, Error> {
+        let histories: Vec<&Columns> = outcomes.iter().filter_map(|outcome| outcome.history.as_ref()).collect();
+        let [fine, middle, coarse] = histories[..] else {
+            return Err(Error::Usage { reason: "a run has left no history: the case needs a [[history]]".to_owned() });
+        };
+        let mut rows = Vec::new();
+        for time in arguments.at.iter().copied().map(Some).chain([None]) {
+            for heading in fine.headings.iter().filter(|heading| !["step", "time"].contains(&&*heading.name)) {
+                let part = Part { column: heading.name.clone(), at: time };
+                let value = |history: &Columns| part.value(history).map_err(|reason| Error::Usage { reason });
+                let values = [value(fine)?, value(middle)?, value(coarse)?];
+                let index = Index::of(grids.sizes, values);
+                let verdict = verdict(&index, grids.own.grid.order);
+                rows.push(Row {
+                    quantity: heading.name.clone(),
+                    unit: heading.unit.clone(),
+                    time,
+                    values,
+                    index,
+                    verdict,
+                });
+            }
+        }
+        let step = |index: usize| grids.orders[index].case.analysis.dt;
+        let directories = outcomes.iter().filter_map(|outcome| outcome.directory.as_ref());
+        Ok(Self {
+            case: arguments.case.display().to_string(),
+            title: grids.own.title.clone(),
+            cells: grids.sizes,
+            points_per_cell: grids.own.bodies.iter().map(|body| body.points_per_cell).collect(),
+            time_step: if arguments.time_step == TimeStep::Kept { "kept" } else { "refined" },
+            steps: [step(0), step(1), step(2)],
+            rows,
+            costs: outcomes.iter().map(|outcome| outcome.cost).collect(),
+            directories: directories.map(|directory| directory.display().to_string()).collect(),
+        })
+    }
+
+    /// For the screen.
+    pub fn text(&self) -> String {
+        let [h1, h2, h3] = self.cells.map(short);
+        let mut lines = vec![
+            ["quantity", "time", "coarse", "middle", "fine", "order", "extrapolated", "GCI %", "GCI ratio", "verdict"]
+                .map(str::to_owned)
+                .to_vec(),
+        ];
+        for row in &self.rows {
+            let [f1, f2, f3] = row.values.map(|value| short(value).to_string());
+            let index = &row.index;
+            let digits = |value: Option<f64>, digits: usize| value.map_or("-".to_owned(), |v| format!("{v:.digits$}"));
+            lines.push(vec![
+                row.quantity.clone(),
+                row.time.map_or_else(|| "end".to_owned(), |time| time.to_string()),
+                f3,
+                f2,
+                f1,
+                digits(index.order, 2),
+                index.extrapolated.map_or("-".to_owned(), |value| short(value).to_string()),
+                digits(index.fine.map(|band| 100.0 * band), 3),
+                digits(index.ratio, 3),
+                row.verdict.clone(),
+            ]);
+        }
+        let last = lines[0].len() - 1;
+        let table = aligned(&lines, |column| if column == 0 || column == last { Align::Left } else { Align::Right });
+        let cpu: f64 = self.costs.iter().map(|cost| cost.cpu_seconds).sum();
+        let steps = self.steps.map(short).map(|step| step.to_string()).join(", ");
+        let why = match self.time_step {
+            "kept" => "the step's error is the same in all and in none of the figures",
+            _ => "orders are those of the grid's and the step's error together",
+        };
+        format!(
+            "{}\ncells of {h3}, {h2} and {h1} m, points per cell kept; steps {} ({steps}, the finest grid first): {why}\n\n\
+             {table}\nGCI: 1.25 |change| / |value| / (r^order - 1), the band about the value on the fine grid.\n{cpu:.1} CPU s\n",
+            self.title, self.time_step
+        )
+    }
+
+    /// A row a quantity and time.
+    pub fn csv(&self) -> String {
+        let headings = [
+            "quantity",
+            "unit",
+            "time",
+            "h_fine",
+            "h_middle",
+            "h_coarse",
+            "fine",
+            "middle",
+            "coarse",
+            "course",
+            "order",
+            "extrapolated",
+            "gci_fine",
+            "gci_coarse",
+            "gci_ratio",
+            "verdict",
+        ];
+        let mut lines = vec![headings.map(str::to_owned).to_vec()];
+        let number = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
+        for Row { quantity, unit, time, values, index, verdict } in &self.rows {
+            let mut cells =
+                vec![quantity.clone(), unit.clone(), time.map_or("end".to_owned(), |time| time.to_string())];
+            cells.extend(self.cells.iter().chain(values).map(f64::to_string));
+            cells.push(index.course.word().to_owned());
+            cells.extend([index.order, index.extrapolated, index.fine, index.coarse, index.ratio].map(number));
+            cells.push(verdict.clone());
+            lines.push(cells);
+        }
+        csv(&lines)
+    }
+}
+
+/// What the figures are worth, for splines of a degree: the highest order of any quantity is twice that of the space.
+fn verdict(index: &Index, degree: usize) -> String {
+    let highest = 2.0 * (degree + 1) as f64;
+    let off = index.ratio.is_some_and(|ratio| (ratio - 1.0).abs() > NEAR);
+    match (index.course, index.order) {
+        (Course::Unchanged, _) => "does not depend on the grid".to_owned(),
+        (Course::Diverging, _) => "DIVERGES: the finer the grids, the larger the differences; no band".to_owned(),
+        (Course::OscillatoryDiverging, _) => "OSCILLATES AND DIVERGES: no band".to_owned(),
+        (Course::Oscillatory, _) => "oscillates: the band is a guess, and there is no extrapolated value".to_owned(),
+        (Course::Monotone, Some(order)) if order < SLOWEST => {
+            format!("not asymptotic: order {order:.2} is below {SLOWEST}; the extrapolated value may be far off")
+        }
+        (Course::Monotone, Some(order)) if order > highest => {
+            format!(
+                "not asymptotic: order {order:.2} is above any that the method has ({highest}); the band is too narrow"
+            )
+        }
+        (Course::Monotone, Some(_)) if off => {
+            "not asymptotic: the bands of both pairs of grids do not agree (GCI ratio)".to_owned()
+        }
+        (Course::Monotone, Some(_)) => "converges".to_owned(),
+        (Course::Monotone, None) => "differences too uneven for an order; no band".to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_course_has_its_words() {
+        let h = [1.0, 2.0, 4.0];
+        for (values, words) in [
+            ([1.01, 1.02, 1.04], "converges"),
+            ([1.0, 1.0, 1.0], "does not depend"),
+            ([1.0, 1.1, 1.15], "DIVERGES"),
+            ([1.0, 1.1, 1.05], "OSCILLATES AND"),
+            ([1.0, 1.1, 0.9], "oscillates"),
+            ([1.1, 1.2, 1.31], "below 0.5"),
+            ([1.0, 1.0001, 1.1], "above any"),
+            ([1.0, 2.0, 6.0], "GCI ratio"),
+        ] {
+            let verdict = verdict(&Index::of(h, values), 2);
+            assert!(verdict.contains(words), "{values:?}: {verdict}");
+        }
+    }
+}
