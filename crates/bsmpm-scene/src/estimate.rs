@@ -108,7 +108,7 @@ impl Systems {
         let factor = if direct { unknowns * levels * LEVEL * (2 + beyond) / 2 } else { 0 };
         let again = u128::from(direct && solver.reproducible);
         let elastic = if solver.linear.factor == Some("dissection") {
-            [unknowns * levels * FRONT, 0, 0]
+            [unknowns * levels * FRONT * (2 + beyond) / 2, 0, 0]
         } else {
             [entries * ENTRY + factor, again * (entries * REPEATED + factor), entries * BUILT]
         };
@@ -126,14 +126,14 @@ impl Case {
     pub fn estimate(&self) -> Estimate {
         let (nodes, points) = (nodes(&self.grid), u128::from(self.points()));
         let places = places(self);
-        // The stencil of the stiffness: per place 2 x 2 doubles and an index of two bytes, and the list's head.
-        let stencil = places * (4 * 8 + 2) + 24;
+        // The stencil of the stiffness: 2 x 2 doubles a place; of every node where it stands, and of which kind it is.
+        let (stencil, every) = (places * 4 * 8, 8 + 2);
         let occupied = occupied_nodes(self).min(nodes);
         let entries = 2 * occupied * 2 * places;
-        let systems = Systems::of(&self.solver, 2 * occupied, entries, beyond(&self.solver));
+        let systems = Systems::of(&self.solver, 2 * occupied, entries, beyond(self));
         let lowered = if self.stabilisation == Stabilisation::ConsistentFBar { LOWERED } else { 0 };
         let passing = systems.built.max(points * SAVED);
-        let bytes = points * (POINT + lowered) + nodes * (stencil + VECTORS) + systems.held + passing;
+        let bytes = points * (POINT + lowered) + occupied * stencil + nodes * (every + VECTORS) + systems.held + passing;
         let has_frames = self.output.every.is_some() || !self.output.times.is_empty();
         let bounded = |number: u128| u64::try_from(number).unwrap_or(u64::MAX);
         Estimate {
@@ -162,14 +162,14 @@ pub(crate) fn nodes(grid: &GridSpec) -> u128 {
 }
 
 /// Layers of nodes, beyond those of a cell, with which a node is coupled along an axis.
-fn beyond(solver: &Solver) -> u128 {
-    if solver.background > 0.0 { solver.background_kind.beyond() as u128 } else { 0 }
+fn beyond(case: &Case) -> u128 {
+    let background = if case.solver.background > 0.0 { case.solver.background_kind.beyond() } else { 0 };
+    background.max(case.stabilisation.beyond(case.grid.order)) as u128
 }
 
-/// Nodes with which a node is coupled: those of the cells around it, and of the layers beyond along each axis.
+/// Nodes with which a node is coupled: those of the cells around it, and of the layers beyond.
 fn places(case: &Case) -> u128 {
-    let side = 2 * case.grid.order as u128 + 1;
-    side.pow(2) + 4 * side * beyond(&case.solver)
+    (2 * (case.grid.order as u128 + beyond(case)) + 1).pow(2)
 }
 
 /// Nodes that the bodies' cells touch at the start: exact for boxes, and for shapes without holes or bays.
