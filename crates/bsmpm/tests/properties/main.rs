@@ -8,6 +8,7 @@ mod broyden;
 mod dilation;
 mod gap;
 mod ghost;
+mod indicators;
 mod kinematics;
 mod linearised;
 mod observe;
