@@ -5,7 +5,7 @@ use std::path::Path;
 
 use clap::{Parser, Subcommand};
 
-use crate::{Error, compare, fos, plot, slurm, validate};
+use crate::{Error, compare, estimate, fos, plot, slurm, validate};
 
 /// Starts runs of bsmpm-par, and looks at what they left.
 #[derive(Debug, Parser)]
@@ -27,6 +27,8 @@ pub enum Command {
     Validate(validate::Arguments),
     /// Find the factor of safety of a case by strength reduction
     Fos(fos::Arguments),
+    /// Tell what a case will cost before it is run: time, memory, disk
+    Estimate(Box<estimate::Arguments>),
     /// Write a job script for Slurm that queues itself again until the case is done
     Slurm(slurm::Arguments),
 }
@@ -73,6 +75,12 @@ pub fn run(cli: &Cli) -> Result<(), Error> {
             for picture in pictures {
                 let _ = writeln!(std::io::stdout(), "{}", picture.display());
             }
+        }
+        Command::Estimate(arguments) => {
+            let told = estimate::run(arguments, |line| {
+                let _ = writeln!(std::io::stderr(), "{line}");
+            })?;
+            let _ = write!(std::io::stdout(), "{told}");
         }
         Command::Slurm(arguments) => {
             let script = slurm::run(arguments, |line| {

@@ -154,14 +154,14 @@ impl Arguments {
 }
 
 /// The solver beside this program; where there is none, that of PATH.
-fn own_solver() -> String {
+pub(crate) fn own_solver() -> String {
     let name = "bsmpm-par";
     let beside = env::current_exe().ok().and_then(|program| Some(program.parent()?.join(name)));
     beside.filter(|solver| solver.is_file()).map_or_else(|| name.to_owned(), |solver| solver.display().to_string())
 }
 
 /// The ranks that a launcher is asked for: the number after -n, -np, -c or --ntasks; one where it does not say.
-fn ranks(command: &[String]) -> usize {
+pub(crate) fn ranks(command: &[String]) -> usize {
     let launcher = &command[..command.len().saturating_sub(1)];
     let options = ["-n", "-np", "-c", "--np", "--ntasks"];
     let after = launcher.windows(2).find(|pair| options.contains(&&*pair[0])).map(|pair| &*pair[1]);

@@ -7,6 +7,7 @@
 pub mod cli;
 pub mod compare;
 pub mod error;
+pub mod estimate;
 pub mod fos;
 mod launch;
 mod picture;
