@@ -22,7 +22,7 @@ const DEFECT: [f64; 2] = [0.2, 0.8];
 /// Usual number of points in an inner cell: fewer than 2 x 2 integrate too little, and no number is too many.
 const POINTS: [f64; 2] = [3.0, 1e3];
 /// Usual noise of the pressure about its average and about planes.
-const NOISE: [f64; 2] = [0.2, 0.3];
+const NOISE: [f64; 2] = [0.25, 0.3];
 /// Usual closure of energy, and usual numerical loss.
 const ENERGY: [f64; 2] = [1e-4, 0.1];
 /// Part of the thinnest body along which smoothing is usual: of all strain in every step, and of the elastic dilation in
