@@ -12,8 +12,10 @@ use serde::{Deserialize, Serialize};
 use crate::utc::utc;
 use crate::{Error, atomic};
 
+mod indicator;
 pub mod parts;
 
+pub use indicator::Indicator;
 pub use parts::{
     Balance, Case, Check, Choice, Communication, Extent, Failure, Initial, Output, Restart, Status, Summary, Worst,
 };
@@ -76,6 +78,9 @@ pub struct Manifest {
     /// Totals of the run so far.
     #[serde(default)]
     pub summary: Summary,
+    /// Measures of how far the run can be trusted, by name, once it has ended; of what the scene contains.
+    #[serde(default)]
+    pub indicators: BTreeMap<String, Indicator>,
     /// How the state at the start was balanced, if the case gives it a stress.
     #[serde(default)]
     pub initial: Option<Initial>,
@@ -118,6 +123,7 @@ impl Manifest {
             communication: BTreeMap::new(),
             balance: None,
             summary: Summary::default(),
+            indicators: BTreeMap::new(),
             initial: None,
             checks: Vec::new(),
             outputs: Vec::new(),
@@ -195,7 +201,11 @@ impl Manifest {
         let cpu = [("summary.cpu_seconds".to_owned(), self.summary.cpu_seconds)];
         let balance = self.balance.iter().flat_map(|balance| [balance.mean, balance.largest]);
         let balance = balance.map(|value| ("balance".to_owned(), value));
-        timers.chain(times).chain(grid).chain(checks).chain(failure).chain(cpu).chain(balance)
+        let indicators = self
+            .indicators
+            .iter()
+            .flat_map(|(name, indicator)| indicator.numbers().map(|value| (format!("indicators.{name}"), value)));
+        timers.chain(times).chain(grid).chain(checks).chain(failure).chain(cpu).chain(balance).chain(indicators)
     }
 
     /// Reads the `run.json` of `directory`.

@@ -10,9 +10,9 @@ use crate::restart::Beginning;
 use crate::simulation::Cost;
 use bsmpm::control::Accepted;
 use bsmpm::error::Measures;
-use bsmpm::step::Counts;
 use bsmpm::step::equilibrium::Method;
 use bsmpm::step::quasi_newton::QuasiNewton;
+use bsmpm::step::{Counts, Report};
 use bsmpm_io::Error;
 use bsmpm_io::checkpoint::Store;
 use bsmpm_io::directory::{HISTORY, OutputDirectory};
@@ -42,6 +42,7 @@ pub struct Ledger {
     keep: u64,
     end: f64,
     dt: f64,
+    criteria: [f64; 2], // of the force and of the energy measure
 }
 
 /// Headings of the tables.
@@ -95,6 +96,7 @@ impl Ledger {
             keep: case.output.checkpoint.keep,
             end: case.analysis.end,
             dt: case.analysis.dt,
+            criteria: [case.solver.force_tolerance, case.solver.tolerance],
             directory,
             manifest,
             columns,
@@ -150,6 +152,7 @@ impl Ledger {
             self.manifest.balance.get_or_insert_default().enter(cost.imbalance, cost.is_cut_anew);
         }
         self.manifest.summary.newton_steps += u64::from(report.newton_iterations > 0);
+        self.measures(report);
         let slips = report.strips.iter().filter(|strip| strip.motion > 0.0).map(surfaces::relative_slip);
         let largest = slips.chain(self.manifest.summary.largest_slip).reduce(f64::max);
         self.manifest.summary.largest_slip = largest;
@@ -186,6 +189,22 @@ impl Ledger {
         };
         self.steps.row(&row.cells())?;
         self.residuals(number, accepted)
+    }
+
+    /// What a step tells of how far its state can be trusted. A state without a direction from it was accepted as balanced to
+    /// round-off, or far below the tolerance.
+    fn measures(&mut self, report: &Report) {
+        let [force, energy] = self.criteria;
+        let summary = &mut self.manifest.summary;
+        if let Some(passes) = &mut summary.smoothing_passes {
+            *passes += report.smoothed;
+        }
+        if let Some(last) = report.history.last().filter(|last| last.force == report.force) {
+            let larger =
+                |so_far: &mut Option<f64>, ratio: f64| *so_far = Some(so_far.map_or(ratio, |so| so.max(ratio)));
+            larger(&mut summary.largest_force_measure, last.force / force);
+            larger(&mut summary.largest_energy_measure, last.energy / energy);
+        }
     }
 
     /// The rows of `residuals.csv`, if there is one.

@@ -9,6 +9,7 @@ pub mod exit;
 mod fault;
 pub mod gather;
 pub mod halo;
+pub mod indicators;
 pub mod ksp;
 pub mod launch;
 pub mod ledger;

@@ -68,6 +68,11 @@ impl Recorder {
         RecordState { followed: self.followed.clone(), books: self.books.map(BooksForm) }
     }
 
+    /// The books of energy, if they are kept.
+    pub fn books(&self) -> Option<&Books> {
+        self.books.as_ref()
+    }
+
     /// Heading and unit of every column.
     pub fn columns(&self) -> Vec<bsmpm_io::table::Column> {
         let columns = self.histories.iter().flat_map(History::columns);

@@ -8,6 +8,7 @@ use bsmpm::error::StepError;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::Weighting;
 use bsmpm::stabilisation::Stabilisation;
+use bsmpm::step::smooth;
 use bsmpm_io::manifest;
 use bsmpm_scene::model::{at_rest, penalty, weighting};
 use bsmpm_scene::{Axis, Case, Initial};
@@ -143,12 +144,20 @@ fn smoothing(case: &Case, steps: u64) -> Option<(f64, f64)> {
     if case.stabilisation != Stabilisation::ModifiedFBar {
         return None;
     }
+    Some((smoothing_length(case, steps as f64), thinnest(case)))
+}
+
+/// Length (m) along which so many passes of smoothing reach in the largest cells.
+pub fn smoothing_length(case: &Case, passes: f64) -> f64 {
     let longest = |axis: &Axis| (0..axis.cells()).map(|i| axis.cell(i)).fold(0.0, f64::max);
-    let h = case.grid.axes.iter().map(longest).fold(0.0, f64::max);
+    smooth::length(case.grid.order, case.grid.axes.iter().map(longest).fold(0.0, f64::max), passes)
+}
+
+/// Smallest edge (m) of the box around any body.
+pub fn thinnest(case: &Case) -> f64 {
     let edges = case.bodies.iter().flat_map(|body| {
         let [lower, upper] = body.bounds();
         [0, 1].map(|axis| upper[axis] - lower[axis])
     });
-    let length = (steps as f64 * (case.grid.order as f64 + 1.0) / 6.0).sqrt() * h;
-    Some((length, edges.fold(f64::INFINITY, f64::min)))
+    edges.fold(f64::INFINITY, f64::min)
 }

@@ -127,8 +127,7 @@ impl<const D: usize> Stencil<D> {
     /// Adds the dense block of `nodes`, the lowest first.
     pub fn add_among(&mut self, nodes: &[usize], block: &[f64]) {
         let numbers: Vec<usize> = nodes.iter().map(|&node| self.places.number_of(node)).collect();
-        let slot: Vec<usize> =
-            numbers.iter().flat_map(|a| numbers.iter().map(|b| self.places.of(*a, *b))).collect();
+        let slot: Vec<usize> = numbers.iter().flat_map(|a| numbers.iter().map(|b| self.places.of(*a, *b))).collect();
         let offsets: Vec<usize> = nodes.iter().map(|node| node - nodes[0]).collect();
         self.add_blocks(nodes[0], &offsets, &slot, block);
     }
@@ -365,7 +364,10 @@ mod tests {
             let expected: Vec<_> = if kept(component / 2) { whole.row(component).collect() } else { Vec::new() };
             assert_eq!(some.row(component).collect::<Vec<_>>(), expected);
         }
-        assert_eq!(some.values.len() * grid.nodes(), whole.values.len() * (0..grid.nodes()).filter(|&n| kept(n)).count());
+        assert_eq!(
+            some.values.len() * grid.nodes(),
+            whole.values.len() * (0..grid.nodes()).filter(|&n| kept(n)).count()
+        );
     }
 
     #[test]

@@ -53,6 +53,10 @@ pub struct Estimate {
     pub nodes: u64,
     /// Nodal components, supported ones included.
     pub unknowns: u64,
+    /// Nodal components that the bodies' cells touch at the start.
+    pub active: u64,
+    /// Entries of the stiffness among those.
+    pub entries: u64,
     /// Material points.
     pub points: u64,
     /// Ranks that have something to do: at least a thousand unknowns each, and a column of cells.
@@ -133,13 +137,16 @@ impl Case {
         let systems = Systems::of(&self.solver, 2 * occupied, entries, beyond(self));
         let lowered = if self.stabilisation == Stabilisation::ConsistentFBar { LOWERED } else { 0 };
         let passing = systems.built.max(points * SAVED);
-        let bytes = points * (POINT + lowered) + occupied * stencil + nodes * (every + VECTORS) + systems.held + passing;
+        let bytes =
+            points * (POINT + lowered) + occupied * stencil + nodes * (every + VECTORS) + systems.held + passing;
         let has_frames = self.output.every.is_some() || !self.output.times.is_empty();
         let bounded = |number: u128| u64::try_from(number).unwrap_or(u64::MAX);
         Estimate {
             cells: bounded(cells(&self.grid)),
             nodes: bounded(nodes),
             unknowns: bounded(2 * nodes),
+            active: bounded(2 * occupied),
+            entries: bounded(entries),
             points: self.points(),
             useful_ranks: bounded((2 * occupied / FEWEST).clamp(1, self.grid.axes[0].cells() as u128)),
             bytes: bounded(bytes),

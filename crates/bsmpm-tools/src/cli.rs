@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Parser, Subcommand};
 
-use crate::{Error, compare, fos, plot, slurm, sweep, validate, verify_case};
+use crate::{Error, compare, estimate, fos, plot, slurm, sweep, validate, verify_case};
 
 /// Starts runs of bsmpm-par, and looks at what they left.
 #[derive(Debug, Parser)]
@@ -31,6 +31,8 @@ pub enum Command {
     Sweep(Box<sweep::Arguments>),
     /// Run a case on three grids: observed order, extrapolated values, grid convergence index
     VerifyCase(verify_case::Arguments),
+    /// Tell what a case will cost before it is run: time, memory, disk
+    Estimate(Box<estimate::Arguments>),
     /// Write a job script for Slurm that queues itself again until the case is done
     Slurm(slurm::Arguments),
 }
@@ -86,6 +88,12 @@ pub fn run(cli: &Cli) -> Result<(), Error> {
                 let _ = writeln!(std::io::stderr(), "{line}");
             })?;
             print(&table, &files);
+        }
+        Command::Estimate(arguments) => {
+            let told = estimate::run(arguments, |line| {
+                let _ = writeln!(std::io::stderr(), "{line}");
+            })?;
+            let _ = write!(std::io::stdout(), "{told}");
         }
         Command::Slurm(arguments) => {
             let script = slurm::run(arguments, |line| {

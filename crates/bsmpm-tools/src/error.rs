@@ -145,6 +145,14 @@ pub enum Error {
         /// All its words.
         log: PathBuf,
     },
+    /// A probe of an estimate ended for a reason that no estimate can be made from.
+    #[error("the first steps of the case ended with exit code {code}: {reason}")]
+    Probe {
+        /// The exit code.
+        code: u8,
+        /// Its last word.
+        reason: String,
+    },
     /// The solver could not be started.
     #[error("cannot start {program}: {source}")]
     Launch {
@@ -166,7 +174,7 @@ impl Error {
 
     /// The exit code of `bsmpm`: 2 for options that do not fit, 66 for what is missing, 65 for a bad reference file or a case
     /// that does not fit, 77 for a validation that failed, 74 for a solver that does not start, 80 where nothing stands, that
-    /// of a trial that broke, 70 for a fault of this program, else that of the file's error.
+    /// of a trial or probe that broke, 70 for a fault of this program, else that of the file's error.
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Usage { .. } => 2,
@@ -180,7 +188,7 @@ impl Error {
             | Self::NoCase { .. } => 66,
             Self::BadReference { .. } | Self::BadCase { .. } | Self::NoFactor { .. } => 65,
             Self::NoStableState { .. } | Self::NoResult { .. } => 80,
-            Self::Trial { code, .. } | Self::Run { code, .. } => *code,
+            Self::Trial { code, .. } | Self::Run { code, .. } | Self::Probe { code, .. } => *code,
             Self::NotValid { .. } => 77,
             Self::Launch { .. } => 74,
             Self::Drawing { .. } => 70,

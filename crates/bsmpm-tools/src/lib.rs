@@ -9,6 +9,7 @@ pub mod cli;
 mod columns;
 pub mod compare;
 pub mod error;
+pub mod estimate;
 pub mod fos;
 mod grid_convergence;
 mod launch;

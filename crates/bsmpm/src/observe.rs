@@ -1,6 +1,7 @@
 //! What a history records: numbers of the whole body, the same on every rank.
 
 pub mod noise;
+pub mod quadrature;
 
 use crate::exact::Exact;
 use crate::grid::Grid;

@@ -27,6 +27,7 @@ use crate::kinematics::Kinematics;
 use crate::model::Model;
 use crate::points::Points;
 use crate::seam::{Halo, LinearSolver, agreed};
+use crate::step::commit::Committed;
 use crate::step::nodes::Nodes;
 
 /// Work of one or more attempts, failed ones included.
@@ -71,6 +72,8 @@ pub struct Report {
     pub strips: Vec<StripReport>,
     /// J  where the energy went, if the model balances it
     pub energy: Option<Flows>,
+    /// share of a pass of S by which the elastic state was smoothed, mean over the points
+    pub smoothed: f64,
 }
 
 /// Steps the points from `t` to `t + dt`, starting from the nodal displacement `guess` (D numbers per node of the
@@ -99,8 +102,9 @@ pub fn step<K: Kinematics<D>, const D: usize>(
     if halo.rejects() {
         return Err(StepError::Interrupted);
     }
-    *guess = commit::commit(model, &shape, &nodes, found, points, halo)?; // (10), (11)
+    let Committed { u, smoothed } = commit::commit(model, &shape, &nodes, found, points, halo)?; // (10), (11)
+    *guess = u;
     let energy = draft.map(|draft| draft.close(model, points, &surface, halo));
     points.surface = surface;
-    Ok(Report { energy, ..report })
+    Ok(Report { energy, smoothed, ..report })
 }

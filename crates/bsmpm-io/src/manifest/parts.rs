@@ -110,6 +110,15 @@ pub struct Summary {
     /// m  largest slip of any rigid strip in all steps together, also of strips that do not move; none without strips.
     #[serde(default)]
     pub largest_accumulated_slip: Option<f64>,
+    /// Largest force measure of a state that was accepted by it, over its tolerance; none while there is no such state.
+    #[serde(default)]
+    pub largest_force_measure: Option<f64>,
+    /// The same of the energy measure.
+    #[serde(default)]
+    pub largest_energy_measure: Option<f64>,
+    /// Passes of smoothing of the elastic state, each counted by the mean share of the points that it had; none without.
+    #[serde(default)]
+    pub smoothing_passes: Option<f64>,
     /// s  of processor time, all ranks together.
     pub cpu_seconds: f64,
     /// bytes  the largest resident memory of each rank.

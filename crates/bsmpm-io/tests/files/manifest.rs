@@ -1,7 +1,7 @@
 //! The manifest.
 
 use bsmpm_io::Error;
-use bsmpm_io::manifest::{Case, Check, Choice, Extent, Failure, Manifest, Status, Worst};
+use bsmpm_io::manifest::{Case, Check, Choice, Extent, Failure, Indicator, Manifest, Status, Worst};
 
 use crate::listing;
 
@@ -23,6 +23,7 @@ fn manifest() -> Manifest {
         max: None,
         passed: false,
     });
+    manifest.indicators.insert("slip".into(), Indicator::new(0.02, "-", "slip over motion", [0.0, 0.01]));
     let worst = Worst { kind: "node".into(), id: 7, position: vec![0.5, 0.25], force: Some(2.0) };
     let (residuals, reason) = (vec![Some(1.0), None], "no convergence".to_owned());
     manifest.failure = Some(Failure { step: 3, time: 0.1, reason, residuals, worst: Some(worst) });

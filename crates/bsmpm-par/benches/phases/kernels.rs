@@ -70,7 +70,9 @@ impl Bench<'_> {
             drop(black_box(transfer::divergence(&shape, |p| PlaneStrain::flux(&points.sigma[p], &points.F[p]))));
         });
         self.row("(4), (5) whole residual, with balance and sums", false, || drop(black_box(Residual::of(&scene, &u))));
-        self.row("(6) stiffness of the patches", true, || drop(black_box(stiffness::assemble(&scene, Some(&trial), &mut Nowhere))));
+        self.row("(6) stiffness of the patches", true, || {
+            drop(black_box(stiffness::assemble(&scene, Some(&trial), &mut Nowhere)))
+        });
         self.row("(6) stiffness, assembled and factorised", true, || {
             drop(black_box(stiffness::assemble(&scene, Some(&trial), solver)));
         });

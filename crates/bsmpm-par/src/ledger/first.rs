@@ -3,6 +3,7 @@
 use crate::cli::Arguments;
 use crate::machine;
 use crate::setup;
+use bsmpm::stabilisation::Stabilisation;
 use bsmpm_io::manifest::{self, Check, Extent, Manifest};
 use bsmpm_scene::Case;
 
@@ -36,6 +37,8 @@ pub(super) fn manifest(arguments: &Arguments, case: &Case, ranks: usize) -> Mani
     manifest.choices.extend(setup::choices(case, ranks, &arguments.petsc));
     manifest.warnings = setup::warnings(case);
     manifest.versions = versions();
+    let smooths = [Stabilisation::ModifiedFBar, Stabilisation::ConsistentFBar].contains(&case.stabilisation);
+    manifest.summary.smoothing_passes = smooths.then_some(0.0);
     let check = |check: &bsmpm_scene::Check| Check {
         quantity: check.quantity.clone(),
         at: Some(check.at),

@@ -47,6 +47,7 @@ impl Ledger {
             keep: case.output.checkpoint.keep,
             end: case.analysis.end,
             dt: case.analysis.dt,
+            criteria: [case.solver.force_tolerance, case.solver.tolerance],
             directory,
             manifest,
             columns,

@@ -2,13 +2,17 @@
 
 use super::Run;
 use crate::exit;
+use crate::indicators::{self, State};
+use crate::launch;
 use crate::machine;
+use crate::simulation::Simulation;
 use crate::traffic::Kind;
 use bsmpm::seam::Halo;
 use bsmpm_io::manifest::{Communication, Status};
 use mpi::collective::CommunicatorCollectives;
 use mpi::topology::Communicator;
 use std::collections::BTreeMap;
+use std::rc::Rc;
 
 impl Run<'_> {
     /// Ends the run at the last converged state; the work of a step that was given up counts for nothing.
@@ -58,12 +62,32 @@ impl Run<'_> {
     /// Ends the run with a frame.
     pub(super) fn close(mut self, status: Status, code: u8) -> u8 {
         self.frame_if_new();
+        self.judge_itself();
         self.account();
         let written = self.ledger.as_mut().map_or(Ok(()), |ledger| ledger.close(status, code));
         self.require(written);
         self.log.finish();
         self.summarise(status);
         code
+    }
+
+    /// Tells the manifest how far the run can be trusted, if it has made a step. Collective.
+    fn judge_itself(&mut self) {
+        if self.simulation.steps() == 0 {
+            return;
+        }
+        let timers = Rc::clone(&self.timers);
+        let _timed = timers.time("indicators");
+        let Simulation { model, points, halo, .. } = &self.simulation;
+        match State::of((model, points), &self.recorder, &**halo) {
+            Ok(state) => {
+                if let Some(ledger) = &mut self.ledger {
+                    let manifest = ledger.manifest();
+                    manifest.indicators = state.indicators(&self.case, &manifest.summary);
+                }
+            }
+            Err(error) => launch::end(&self.universe.world(), exit::BUG, &error),
+        }
     }
 
     /// Tells the manifest what the run has cost so far. Collective.
@@ -93,6 +117,8 @@ impl Run<'_> {
         let wall = self.wall();
         let Some(ledger) = &mut self.ledger else { return };
         let summary = ledger.manifest().summary.clone();
+        let (all, unusual) = indicators::told(&ledger.manifest().indicators);
+        let judged = !ledger.manifest().indicators.is_empty();
         let text = format!(
             "{status:?} at t = {}: {} steps, {} iterations, {} cuts, {:.1} s by the clock, {:.1} CPU s, {:.0} MiB on the largest rank; written to {}",
             self.simulation.time(),
@@ -105,6 +131,10 @@ impl Run<'_> {
             ledger.path().display()
         );
         self.log.line("end", &text);
+        if judged {
+            self.log.line("indicators", &all);
+        }
+        unusual.iter().for_each(|line| self.log.line("indicator", &format!("unusual: {line}")));
     }
 }
 

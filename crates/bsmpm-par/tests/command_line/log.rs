@@ -16,7 +16,7 @@ fn every_step_is_one_line_on_stderr_from_one_rank() {
         let output = scratch.mpirun(ranks, &["case.toml"]).expect(0);
         assert_eq!(steps_told(&output), [1, 2, 3, 4, 5], "{output:#?}");
         assert_eq!(output.stdout, "");
-        assert_eq!(output.stderr.lines().count(), 6, "five steps and the end: {output:#?}");
+        assert_eq!(output.stderr.lines().count(), 7, "five steps, the end and the indicators: {output:#?}");
         assert!(!output.stderr.contains('\u{1b}') && !output.stderr.contains('\r'), "no bar without a terminal");
     }
 }

@@ -15,7 +15,7 @@ pub(crate) fn words(given: &[String], ranks: usize) -> Vec<String> {
 }
 
 /// The solver beside this program; where there is none, that of PATH.
-fn own_solver() -> String {
+pub(crate) fn own_solver() -> String {
     let name = "bsmpm-par";
     let beside = env::current_exe().ok().and_then(|program| Some(program.parent()?.join(name)));
     beside.filter(|solver| solver.is_file()).map_or_else(|| name.to_owned(), |solver| solver.display().to_string())

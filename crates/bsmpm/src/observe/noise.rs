@@ -52,8 +52,23 @@ pub fn pressure_noise<const D: usize>(
     window: Option<[Vector<D>; 2]>,
     halo: &dyn Halo,
 ) -> Result<Noise, StepError> {
-    let pressure = |p: usize| -points.sigma[p].0[..3].iter().sum::<f64>() / 3.0;
-    Ok(Squares::of(grid, points, weighting, &pressure, window, halo)?.noise(1.0))
+    Ok(Squares::of(grid, points, weighting, &|p| pressure(points, p), window, halo)?.noise(1.0))
+}
+
+/// Noise of the pressure over all points, relative to the mean of its magnitude; zero without pressure.
+pub fn relative_pressure_noise<const D: usize>(
+    grid: &Grid<D>,
+    points: &Points<D>,
+    weighting: Weighting,
+    halo: &dyn Halo,
+) -> Result<Noise, StepError> {
+    let squares = Squares::of(grid, points, weighting, &|p| pressure(points, p), None, halo)?;
+    Ok(if squares.mean == 0.0 { Noise::default() } else { squares.noise(squares.mean) })
+}
+
+/// -tr(sigma)/3 of a point, Pa.
+fn pressure<const D: usize>(points: &Points<D>, p: usize) -> f64 {
+    -points.sigma[p].0[..3].iter().sum::<f64>() / 3.0
 }
 
 /// Means over the points of a stress and of its squared distances from its smooth parts.

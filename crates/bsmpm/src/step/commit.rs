@@ -39,7 +39,15 @@ pub fn check_inside<K: Kinematics<D>, const D: usize>(
     Ok(())
 }
 
-/// Saves the converged step into the points and returns its nodal displacement. Fails, before any point has changed,
+/// What a saved step leaves besides the points.
+pub struct Committed {
+    /// m  its nodal displacement
+    pub u: Vec<f64>,
+    /// share of a pass of S by which the elastic state was smoothed afterwards, mean over the points; 0 if it was not
+    pub smoothed: f64,
+}
+
+/// Saves the converged step into the points. Fails, before any point has changed,
 /// if the constitution refuses a state that it answered during the iteration.
 pub fn commit<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
@@ -48,7 +56,7 @@ pub fn commit<K: Kinematics<D>, const D: usize>(
     found: Found<D>,
     points: &mut Points<D>,
     halo: &dyn Halo,
-) -> Result<Vec<f64>, StepError> {
+) -> Result<Committed, StepError> {
     let Found { u, trial, .. } = found;
     // Collected as they come, and only then taken apart: one array, whatever the number of threads.
     let answers: Vec<_> = (0..points.len()).into_par_iter().map(|p| trial.respond(model, points, p)).collect();
@@ -73,17 +81,20 @@ pub fn commit<K: Kinematics<D>, const D: usize>(
         points.b_e[p] = response.b_e();
         points.eps_p[p] += response.plastic_increment();
     }
-    match model.stabilisation {
-        Stabilisation::ModifiedFBar => smooth::average_b_e(model, shape, nodes, points, halo),
+    let smoothed = match model.stabilisation {
+        Stabilisation::ModifiedFBar => {
+            smooth::average_b_e(model, shape, nodes, points, halo);
+            1.0
+        }
         Stabilisation::ConsistentFBar => {
             let flow_of = |(p, response)| smooth::Flow::of(response, points.gap_of(p));
             let flow: Vec<smooth::Flow> = responses.iter().enumerate().map(flow_of).collect();
-            smooth::filter_dilation(model, (shape, nodes), points, &flow, halo);
+            smooth::filter_dilation(model, (shape, nodes), points, &flow, halo)
         }
-        Stabilisation::None | Stabilisation::FBar | Stabilisation::FBarZhao => {}
-    }
+        Stabilisation::None | Stabilisation::FBar | Stabilisation::FBarZhao => 0.0,
+    };
     points.gap = gaps(model, points, &responses);
-    Ok(u)
+    Ok(Committed { u, smoothed })
 }
 
 /// Gap of every point after the step, if some material closes its gaps.

@@ -130,7 +130,9 @@ impl Coupling {
             if weight <= 0.0 || !is_ours(function) {
                 continue;
             }
-            (nodes.clear(), g.clear(), f.clear());
+            nodes.clear();
+            g.clear();
+            f.clear();
             let (dilation, force) = numbers[HEAD..].split_at(self.side.pow(D as u32) * D);
             for (place, along) in dilation.chunks_exact(D).enumerate() {
                 if let Some(node) = self.node(grid, (function, degree), place) {
@@ -148,12 +150,11 @@ impl Coupling {
 
     /// The node of the window at a place of a function's g; `None` where there is none.
     fn node<const D: usize>(&self, grid: &Grid<D>, (function, degree): (usize, usize), place: usize) -> Option<usize> {
-        let at = grid.node_at(function);
         let first = grid.layers().start;
         let mut node = 0;
-        for axis in 0..D {
+        for (axis, at) in grid.node_at(function).into_iter().enumerate() {
             let step = place / self.side.pow((D - 1 - axis) as u32) % self.side;
-            let along = (at[axis] + step).checked_sub(degree).filter(|&n| n < grid.axes()[axis].functions())?;
+            let along = (at + step).checked_sub(degree).filter(|&n| n < grid.axes()[axis].functions())?;
             node = match axis {
                 0 => along.checked_sub(first).filter(|&n| n < grid.layers().len())?,
                 _ => node * grid.axes()[axis].functions() + along,

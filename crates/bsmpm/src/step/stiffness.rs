@@ -14,8 +14,8 @@ use crate::points::Points;
 use crate::seam::{LinearSolver, Symmetry};
 use crate::step::coupling::{Coupling, Dilations, Raised, Share};
 use crate::step::equilibrium::Scene;
-use crate::step::nodes::Nodes;
 use crate::step::linearised::{Moduli, Pairs, add_point};
+use crate::step::nodes::Nodes;
 use crate::step::trial::Trial;
 use crate::tensor::{Square, Tensor, Vector};
 use rayon::prelude::*;
@@ -135,13 +135,10 @@ fn of_point<K: Kinematics<D>, const D: usize>(stiffness: &Stiffness, volume: f64
         };
         K::in_plane(&stress) * volume
     };
-    let mut moduli = [[Square::zeros(); D]; D];
-    for k in 0..D {
-        for l in k..D {
-            moduli[k][l] = unit(k, l);
-            moduli[l][k] = moduli[k][l]; // it sees the strain only
-        }
-    }
+    // It sees the strain only: unit (k, l) is unit (l, k).
+    let units: [[Square<D>; D]; D] =
+        std::array::from_fn(|k| std::array::from_fn(|l| if l < k { Square::zeros() } else { unit(k, l) }));
+    let moduli = std::array::from_fn(|k| std::array::from_fn(|l| units[k.min(l)][k.max(l)]));
     (moduli, bulk)
 }
 

@@ -8,14 +8,15 @@ mod broyden;
 mod dilation;
 mod gap;
 mod ghost;
+mod indicators;
 mod kinematics;
 mod linearised;
 mod observe;
 mod points;
 mod rigid;
 mod spline;
-mod stiffness;
 mod stepping;
+mod stiffness;
 mod topology;
 mod transfer;
 

@@ -1,0 +1,149 @@
+//! Cheap measures of how far a run can be trusted, taken once at its end: what they are, and which values are usual.
+//!
+//! The ranges are those of the shipped cases, coarse and fine, with methods that are known to be good; see the README.
+
+use crate::record::Recorder;
+use crate::setup;
+use bsmpm::energy::Stored;
+use bsmpm::error::StepError;
+use bsmpm::kinematics::Kinematics;
+use bsmpm::model::Model;
+use bsmpm::observe::noise::{Noise, relative_pressure_noise};
+use bsmpm::observe::quadrature::{self, Defect};
+use bsmpm::points::Points;
+use bsmpm::seam::Halo;
+use bsmpm::stabilisation::Stabilisation;
+use bsmpm_io::manifest::{Indicator, Summary};
+use bsmpm_scene::Case;
+use std::collections::BTreeMap;
+
+/// Usual root mean square, and usual largest one, of the quadrature defect.
+const DEFECT: [f64; 2] = [0.2, 0.8];
+/// Usual number of points in an inner cell: fewer than 2 x 2 integrate too little, and no number is too many.
+const POINTS: [f64; 2] = [3.0, 1e3];
+/// Usual noise of the pressure about its average and about planes.
+const NOISE: [f64; 2] = [0.25, 0.3];
+/// Usual closure of energy, and usual numerical loss.
+const ENERGY: [f64; 2] = [1e-4, 0.1];
+/// Part of the thinnest body along which smoothing is usual: of all strain in every step, and of the elastic dilation in
+/// proportion to plastic flow, which renews it.
+const SMOOTHED: [f64; 2] = [0.1, 1.5];
+/// Usual slip of a strip in a step over its motion.
+const SLIP: f64 = 0.01;
+
+/// What the state at the end tells.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct State {
+    defect: Option<Defect>,
+    noise: Noise,
+    energy: Option<Energy>,
+}
+
+/// Energy that is not accounted for, and that the algorithm lost, over the largest energy.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Energy {
+    closure: f64,
+    loss: f64,
+}
+
+impl State {
+    /// Of the points of all ranks. Collective; the same on all.
+    pub fn of<K: Kinematics<2>>(
+        (model, points): (&Model<K, 2>, &Points<2>),
+        recorder: &Recorder,
+        halo: &dyn Halo,
+    ) -> Result<Self, StepError> {
+        let defect = quadrature::defect(&model.grid, points, halo);
+        let noise = relative_pressure_noise(&model.grid, points, model.weighting, halo)?;
+        let energy = recorder.books().map(|books| {
+            let now = Stored::of(model, points, halo);
+            let numbers = [books.flows.external.abs(), books.flows.plastic, books.start, now.kinetic + now.elastic];
+            let largest = numbers.into_iter().fold(f64::MIN_POSITIVE, f64::max);
+            Energy { closure: books.closure(now).abs() / largest, loss: books.flows.numerical() / largest }
+        });
+        Ok(Self { defect, noise, energy })
+    }
+
+    /// The indicators of a run of a case, by name: of what is in it.
+    pub fn indicators(&self, case: &Case, summary: &Summary) -> BTreeMap<String, Indicator> {
+        let mut all = self.rows();
+        let measures =
+            [("force-measure", summary.largest_force_measure), ("energy-measure", summary.largest_energy_measure)];
+        for (name, value) in measures {
+            let meaning = "largest of a step that was accepted by it, over its tolerance";
+            all.extend(value.map(|value| (name, Indicator::new(value, "-", meaning, [0.0, 1.0]))));
+        }
+        let slip = summary.largest_slip.map(|value| {
+            ("slip", Indicator::new(value, "-", "largest slip of a strip in a step, over its motion", [0.0, SLIP]))
+        });
+        let smoothed = summary.smoothing_passes.map(|passes| ("smoothing-length", smoothing(case, passes)));
+        all.extend(slip.into_iter().chain(smoothed));
+        // JSON has no other numbers.
+        all.retain(|(_, indicator)| indicator.value.is_finite());
+        all.into_iter().map(|(name, indicator)| (name.to_owned(), indicator)).collect()
+    }
+
+    /// Those of the state alone.
+    fn rows(&self) -> Vec<(&'static str, Indicator)> {
+        let row = |name, value, meaning, most| (name, Indicator::new(value, "-", meaning, [0.0, most]));
+        let mut rows = vec![
+            row(
+                "pressure-noise-average",
+                self.noise.about_average,
+                "RMS of the points' pressure about its average over the grid, over its mean magnitude",
+                NOISE[0],
+            ),
+            row(
+                "pressure-noise-plane",
+                self.noise.about_plane,
+                "the same about the least-squares plane through the cell and its neighbours",
+                NOISE[1],
+            ),
+        ];
+        if let Some(defect) = self.defect {
+            let meaning = "RMS over inner cells of the volume of a cell's points over that of the cell, less 1";
+            rows.push(row("quadrature-defect", defect.rms, meaning, DEFECT[0]));
+            rows.push(row("quadrature-defect-largest", defect.largest, "the largest of them", DEFECT[1]));
+            let meaning = "mean number of points in inner cells";
+            rows.push(("points-per-cell", Indicator::new(defect.points, "-", meaning, POINTS)));
+        }
+        if let Some(energy) = self.energy {
+            let meaning = "energy that is not accounted for, over the largest energy";
+            rows.push(row("energy-closure", energy.closure, meaning, ENERGY[0]));
+            let meaning = "energy that the algorithm lost (negative: made), over the largest energy";
+            let usual = [-ENERGY[1], ENERGY[1]];
+            rows.push(("energy-loss", Indicator::new(energy.loss, "-", meaning, usual)));
+        }
+        rows
+    }
+}
+
+/// How far so many passes of smoothing have reached.
+fn smoothing(case: &Case, passes: f64) -> Indicator {
+    let (meaning, part) = match case.stabilisation {
+        Stabilisation::ConsistentFBar => (
+            "along which the elastic dilation was smoothed in all steps together, by the share of plastic flow, mean over the \
+             points; usual: up to 1.5 of the thinnest body",
+            SMOOTHED[1],
+        ),
+        _ => (
+            "along which the elastic strain was smoothed in all steps together, once in each; usual: up to a tenth of the \
+             thinnest body",
+            SMOOTHED[0],
+        ),
+    };
+    Indicator::new(setup::smoothing_length(case, passes), "m", meaning, [0.0, part * setup::thinnest(case)])
+}
+
+/// All of them in a line, and a line on each that is unusual.
+pub fn told(indicators: &BTreeMap<String, Indicator>) -> (String, Vec<String>) {
+    let number = |value: f64| format!("{value:.2e}");
+    let unit =
+        |indicator: &Indicator| if indicator.unit == "-" { String::new() } else { format!(" {}", indicator.unit) };
+    let all = indicators.iter().map(|(name, found)| format!("{name} {}{}", number(found.value), unit(found)));
+    let unusual = indicators.iter().filter(|(_, found)| found.unusual).map(|(name, found)| {
+        let [least, most] = found.usual.map(number);
+        format!("{name} is {}{}, usually {least} to {most}: {}", number(found.value), unit(found), found.meaning)
+    });
+    (format!("indicators: {}", all.collect::<Vec<_>>().join(", ")), unusual.collect())
+}

@@ -1,0 +1,34 @@
+//! `bsmpm estimate` with this program, of a case that has run.
+
+mod support;
+
+use bsmpm_tools::estimate::{Arguments, run};
+use serde_json::Value;
+use support::{Scratch, shipped};
+
+#[test]
+fn the_short_footing_is_estimated_beside_its_run() {
+    let (scratch, case) = (Scratch::new(), shipped("short/strip_footing.toml"));
+    scratch.direct(&[case.to_str().unwrap(), "-q", "-o", "run.out"]).expect(0);
+    let arguments = Arguments {
+        case,
+        ranks: None,
+        no_probe: false,
+        budget: 60.0,
+        against: Some(scratch.path("run.out")),
+        json: true,
+        set: Vec::new(),
+        command: vec![support::PROGRAM.to_owned()],
+    };
+    let mut told = Vec::new();
+    let found: Value = serde_json::from_str(&run(&arguments, |line| told.push(line.to_owned())).unwrap()).unwrap();
+    assert!(told.iter().any(|line| line.starts_with("cells 2 times")), "{told:?}");
+    let number = |path: &str| found.pointer(path).and_then(Value::as_f64).unwrap_or_else(|| panic!("{path}: {found}"));
+    // Counts, which no other program's load changes: measured 1.03 of them; the band that is told is 1.5.
+    assert!((1.0 / 1.5..1.5).contains(&(number("/work/evaluations") / number("/actual/evaluations"))), "{found}");
+    assert_eq!((number("/points"), number("/work/steps")), (number("/actual/points"), number("/actual/steps")));
+    assert!((1.0 / 1.5..1.5).contains(&(number("/memory_per_rank/0") / number("/actual/memory"))), "{found}");
+    assert!((1.0 / 1.2..1.2).contains(&(number("/disk") / number("/actual/disk"))), "{found}");
+    // Seconds are those of a machine that others use, too.
+    assert!(number("/ratio") > 0.0 && number("/cpu_seconds/low") < number("/cpu_seconds/high"));
+}

@@ -1,0 +1,127 @@
+//! `bsmpm estimate`: what a case will cost. Sizes follow from the case (`sizes`); what a unit of work costs, from the case's
+//! first steps; how much work there is, from coarse forms of it over all its time (`probe`, `coarse`, `growth`), for
+//! iterations change as material yields. Without probes both come from what runs took elsewhere (`stored`), scaled by how
+//! fast this machine is (`kernel`). The result is set in `report`, beside a finished run in `against`.
+
+use std::path::{Path, PathBuf};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use bsmpm_scene::Case;
+use clap::Args;
+
+use crate::Error;
+use crate::launch::command;
+
+mod against;
+mod coarse;
+mod growth;
+mod kernel;
+mod probe;
+mod report;
+mod sizes;
+mod stored;
+mod work;
+
+use report::Report;
+
+/// What to estimate, and how.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "\
+The case's first steps are run to learn what a unit of work costs; coarse forms of it (cells of 16, 8, 4 and 2 times the size, as
+far as bodies have two of them and the time for probes allows) are run over all its time to learn how much work there is.
+Nothing is left of these runs; while they go on, a frame or two and a checkpoint of the case lie in the folder for temporary files
+(TMPDIR). Seconds are processor seconds, and by the clock those of a machine that nobody else uses.
+
+--against DIR sets what a run of the case in DIR has taken beside the estimate, made for as many ranks unless --ranks is given.
+
+Exit codes: 0 estimated; 2 command line; 65 the case has errors; 66 no such case, or no run in DIR; 74 the solver does not start;
+that of the first steps if they fail, as 71, 80, 81.
+
+Examples:
+  bsmpm estimate cases/column_collapse.toml --ranks 2
+  bsmpm estimate case.toml --no-probe --json
+  bsmpm estimate case.toml --against case.out")]
+pub struct Arguments {
+    /// The case file
+    pub case: PathBuf,
+    /// Ranks of the run [default: 1]
+    #[arg(short = 'n', long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub ranks: Option<u32>,
+    /// Run nothing: take what runs took elsewhere, scaled by the speed of this machine
+    #[arg(long, conflicts_with = "budget")]
+    pub no_probe: bool,
+    /// Seconds by the clock that probes may take, about
+    #[arg(long, value_name = "SECONDS", default_value_t = 60.0)]
+    pub budget: f64,
+    /// The directory of a run that has ended, to compare with
+    #[arg(long, value_name = "DIR")]
+    pub against: Option<PathBuf>,
+    /// Print JSON
+    #[arg(long)]
+    pub json: bool,
+    /// Override one key of the case, as for bsmpm-par; repeatable
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
+    /// The solver on one rank: the word or words that bsmpm-par's arguments follow [default: the bsmpm-par beside this program,
+    /// or that of PATH; on several ranks after mpirun -n N]
+    #[arg(last = true, value_name = "COMMAND")]
+    pub command: Vec<String>,
+}
+
+/// Estimates; `told` gets a line for every probe. Returns what is to be printed.
+///
+/// # Errors
+/// Those of the command line and the case before anything runs; [`Error::Probe`] if the first steps fail; those of files.
+pub fn run(arguments: &Arguments, mut told: impl FnMut(&str)) -> Result<String, Error> {
+    if !(arguments.budget.is_finite() && arguments.budget > 0.0) {
+        return Err(Error::Usage { reason: format!("--budget {}: expected some seconds", arguments.budget) });
+    }
+    let case = read(&arguments.case, &arguments.set)?;
+    let actual = arguments.against.as_deref().map(against::read).transpose()?;
+    let ranks = arguments.ranks.or(actual.as_ref().map(|actual| actual.ranks)).unwrap_or(1) as usize;
+    let most = case.grid.axes[0].cells();
+    if ranks > most {
+        let reason = format!("{ranks} ranks: the grid has {most} columns of cells, so at most {most} ranks");
+        return Err(Error::Usage { reason });
+    }
+    let speed = kernel::speed();
+    let guess = stored::guess(&case, speed);
+    let found = if arguments.no_probe {
+        guess
+    } else {
+        let plan = probe::Plan { case: &case, ranks: arguments.probed(ranks), command: &arguments.command() };
+        probe::estimate(&plan, &guess, deadline(arguments.budget), &mut told)?
+    };
+    let mut report = Report::of(&arguments.case, &case, ranks, (speed, &found));
+    if let Some(actual) = actual {
+        if actual.text != case.text {
+            told("warning: the run is of another text of the case, or of other overrides");
+        }
+        report.compare(&actual);
+    }
+    Ok(if arguments.json { report.json() } else { report.text() })
+}
+
+/// The case at `path` with overrides.
+fn read(path: &Path, set: &[String]) -> Result<Case, Error> {
+    let bytes = bsmpm_scene::load(path).map_err(|source| Error::NoCase { path: path.to_owned(), source })?;
+    Case::from_bytes(&path.display().to_string(), &bytes, set).map_err(|errors| Error::bad_case(path, &errors))
+}
+
+fn deadline(budget: f64) -> Instant {
+    // More than a year is no limit, and may be more than a clock can tell.
+    Instant::now() + Duration::from_secs_f64(budget.min(3e7))
+}
+
+impl Arguments {
+    fn command(&self) -> Vec<String> {
+        if self.command.is_empty() { vec![command::own_solver()] } else { self.command.clone() }
+    }
+
+    /// Ranks on which the first steps are run: as many as wanted, if this machine has the cores and starts them itself.
+    fn probed(&self, ranks: usize) -> usize {
+        let cores = thread::available_parallelism().map_or(1, usize::from);
+        if self.command.is_empty() && ranks <= cores { ranks } else { 1 }
+    }
+}

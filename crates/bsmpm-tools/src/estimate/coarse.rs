@@ -1,0 +1,90 @@
+//! Coarse forms of a case: larger cells, no more points in them than iterations need, and nothing that is written.
+
+use bsmpm_scene::{Axis, Case};
+use toml::{Table, Value};
+
+/// Points along each axis of a cell: more make a step dearer, and hardly change how many iterations it takes.
+const POINTS: i64 = 3;
+/// Cells across the thinnest body below which a form tells nothing.
+const FEWEST: f64 = 2.0;
+/// Cells of coarse forms over the case's own, the coarsest first.
+pub(super) const FACTORS: [usize; 4] = [16, 8, 4, 2];
+
+/// The text of a form with cells that many times as long; none where it would be too coarse, or no valid case.
+pub(super) fn text(case: &Case, factor: usize) -> Option<String> {
+    let longest = |axis: &Axis| (0..axis.cells()).map(|i| axis.cell(i)).fold(0.0, f64::max);
+    let cells = |body: &bsmpm_scene::Body| {
+        let [lower, upper] = body.bounds();
+        let across = |axis: usize| (upper[axis] - lower[axis]) / (factor as f64 * longest(&case.grid.axes[axis]));
+        across(0).min(across(1))
+    };
+    if case.bodies.iter().map(cells).fold(f64::INFINITY, f64::min) < FEWEST {
+        return None;
+    }
+    let mut table: Table = case.text.parse().ok()?;
+    for key in ["output", "history", "check"] {
+        table.remove(key);
+    }
+    let grid = table.get_mut("grid")?.as_table_mut()?;
+    for key in ["lower", "upper", "cell"] {
+        grid.remove(key);
+    }
+    let knots = ["x", "y"].into_iter().zip(&case.grid.axes).map(|(name, axis)| (name.to_owned(), knots(axis, factor)));
+    grid.insert("knots".to_owned(), Value::Table(knots.collect()));
+    for body in table.get_mut("body")?.as_array_mut()? {
+        let points = body.get_mut("points_per_cell")?;
+        *points = Value::Integer(points.as_integer()?.min(POINTS));
+    }
+    let text = table.to_string();
+    Case::from_text("coarse form", &text, &[]).ok().map(|_| text)
+}
+
+/// Every so many breakpoints, and the last; a rest of less than half a cell goes to the one before.
+fn knots(axis: &Axis, factor: usize) -> Value {
+    let cells = axis.cells();
+    let mut kept: Vec<usize> = (0..=cells).step_by(factor).collect();
+    let rest = cells % factor;
+    if rest > 0 && 2 * rest < factor && kept.len() > 1 {
+        kept.pop();
+    }
+    if rest > 0 {
+        kept.push(cells);
+    }
+    Value::Array(kept.into_iter().map(|i| Value::Float(axis.lower() + axis.breakpoint(i))).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const COLUMN: &str = include_str!("../../../../cases/short/column_collapse.toml");
+    const FOOTING: &str = include_str!("../../../../cases/short/strip_footing.toml");
+
+    #[test]
+    fn forms_have_the_same_body_in_larger_cells_as_long_as_it_has_two_across() {
+        for text in [COLUMN, FOOTING] {
+            let case = Case::from_text("case", text, &[]).unwrap();
+            let coarse = Case::from_text("coarse", &super::text(&case, 2).unwrap(), &[]).unwrap();
+            assert!(
+                coarse.grid.axes[0].cells() == case.grid.axes[0].cells().div_ceil(2) && coarse.histories.is_empty()
+            );
+            let apart = (0..2).map(|axis| (coarse.grid.upper()[axis] - case.grid.upper()[axis]).abs());
+            assert!(apart.fold(0.0, f64::max) <= 1e-12);
+            assert_eq!(coarse.bodies[0].area(), case.bodies[0].area());
+            assert!(super::text(&case, 4).is_some() && super::text(&case, 8).is_none());
+        }
+    }
+
+    #[test]
+    fn a_rest_of_cells_makes_one_more_or_a_longer_one() {
+        let lengths = |cells: usize, factor: usize| {
+            let value = knots(&Axis::Uniform { lower: 1.0, cell: 1.0, cells }, factor);
+            let at: Vec<f64> = value.as_array().unwrap().iter().map(|x| x.as_float().unwrap()).collect();
+            at.windows(2).map(|pair| pair[1] - pair[0]).collect::<Vec<_>>()
+        };
+        assert_eq!(lengths(8, 4), [4.0, 4.0]);
+        assert_eq!(lengths(9, 4), [4.0, 5.0]);
+        assert_eq!(lengths(11, 4), [4.0, 4.0, 3.0]);
+        assert_eq!(lengths(1, 4), [1.0]);
+    }
+}

@@ -1,0 +1,254 @@
+//! Runs that an estimate is made from, in a folder that goes with them: the start of the case, its first steps, and coarse
+//! forms of it over all its time.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use bsmpm_io::checkpoint::FOLDER;
+use bsmpm_io::manifest::Manifest;
+use bsmpm_io::steps::STEPS;
+use bsmpm_io::table;
+use bsmpm_scene::Case;
+use tempfile::TempDir;
+
+use super::coarse::{self, FACTORS};
+use super::growth::{self, Level};
+use super::sizes::Bytes;
+use super::stored::{self, Found};
+use super::work::Work;
+use crate::Error;
+use crate::launch::{CHECK, DONE, Ending, Solver, Stop, Task};
+
+/// The exit code of a run that stopped as it was asked to.
+const STOPPED: u8 = 75;
+/// Part of the time for probes that the first steps may take, and part of the case's steps.
+const FIRST: [f64; 2] = [0.25, 0.2];
+/// Steps that are made at least, if the case has them.
+const LEAST: f64 = 3.0;
+/// s  of processor time below which its account, in hundredths, is too coarse to be trusted.
+const TRUSTED: f64 = 0.1;
+/// How many times longer a form takes than the one with cells twice as large: four times the cells, and more iterations.
+const FINER: f64 = 6.0;
+/// Part of the case's time that a form must reach to count.
+const REACHED: f64 = 0.5;
+/// Factor within which the time is expected, by the number of coarse forms.
+const BANDS: [f64; 3] = [3.0, 1.75, 1.5];
+/// Part of the iterations' work beyond which Newton's method makes it doubtful, as other cells may need it in most steps or in
+/// none; and the factor then.
+const NEWTON: [f64; 2] = [0.1, 4.0];
+
+/// What is to be probed.
+pub(super) struct Plan<'a> {
+    pub case: &'a Case,
+    /// of the case's first steps
+    pub ranks: usize,
+    /// the solver
+    pub command: &'a [String],
+}
+
+/// A step.
+#[derive(Clone, Copy)]
+struct Row {
+    /// s or pseudo-time  at its end
+    time: f64,
+    active_nodes: f64,
+    work: Work,
+}
+
+/// What a run left.
+struct Run {
+    code: u8,
+    reason: String,
+    manifest: Option<Manifest>,
+    rows: Vec<Row>,
+    directory: PathBuf,
+}
+
+impl Run {
+    fn cpu(&self) -> f64 {
+        self.manifest.as_ref().map_or(0.0, |manifest| manifest.summary.cpu_seconds)
+    }
+
+    /// s  by the clock of phases that have timers
+    fn clock(&self, phases: &[&str]) -> f64 {
+        let timers = self.manifest.iter().flat_map(|manifest| &manifest.timers);
+        timers.filter(|(phase, _)| phases.contains(&phase.as_str())).map(|(_, seconds)| seconds).sum()
+    }
+
+    fn work(&self) -> Work {
+        self.rows.iter().map(|row| row.work).fold(Work::default(), |sum, work| sum.with(&work))
+    }
+
+    /// Bytes of the largest file in one of its folders.
+    fn bytes(&self, folder: &str) -> Option<u64> {
+        let files = fs::read_dir(self.directory.join(folder)).ok()?;
+        files.filter_map(|file| Some(file.ok()?.metadata().ok()?.len())).max()
+    }
+}
+
+/// Estimates from probes that end at about the deadline; `guess` is what they are planned by.
+///
+/// # Errors
+/// [`Error::Probe`] if the case's own first steps fail; [`Error::Launch`]; those of the folder.
+pub(super) fn estimate(
+    plan: &Plan,
+    guess: &Found,
+    deadline: Instant,
+    told: &mut dyn FnMut(&str),
+) -> Result<Found, Error> {
+    let folder = tempfile::Builder::new().prefix("bsmpm-estimate-").tempdir();
+    let folder = folder.map_err(|source| Error::File(bsmpm_io::Error::file("make", &std::env::temp_dir())(source)))?;
+    let probes = Probes { plan, folder, deadline };
+    let start = probes.of_case("start", 0.0)?;
+    let wanted = FIRST[0] * probes.left() * guess.work.steps / (guess.unit * guess.work.units());
+    let most = (FIRST[1] * guess.work.steps).max(LEAST);
+    let first = probes.of_case("first", wanted.min(most).max(1.0).floor())?;
+    let measured = measured(guess, (&start, &first));
+    let made = first.work();
+    told(&format!(
+        "first steps: {} with {} evaluations on {} rank(s), {:.2} CPU s besides {:.2} of the start",
+        made.steps,
+        made.evaluations,
+        plan.ranks,
+        (first.cpu() - start.cpu()).max(0.0),
+        start.cpu()
+    ));
+    let until = first.rows.last().map_or(0.0, |row| row.time);
+    let levels = probes.levels(guess, until, told)?;
+    let (work, basis) = match growth::extrapolate(&levels, plan.case.analysis.regime, made.iterations()) {
+        Some(work) => (work, format!("first steps of the case, and {} coarse form(s) over all its time", levels.len())),
+        None if made.steps > 0.0 => (
+            made.times(guess.work.steps / made.steps),
+            "first steps of the case alone: later ones may take more".to_owned(),
+        ),
+        None => (guess.work, "the start of the case alone: no step ended in time".to_owned()),
+    };
+    let spread = levels.last().map_or(1.0, |level| stored::spread(plan.case, measured.unknowns, level.spread));
+    let unit = measured.unit * spread;
+    let newton = levels.iter().map(|level| level.work.newton_part()).fold(made.newton_part(), f64::max);
+    let band = if newton > NEWTON[0] { NEWTON[1] } else { BANDS[levels.len().min(BANDS.len() - 1)] };
+    Ok(Found { work, unit, basis, band, ..measured })
+}
+
+/// What the case's own start and first steps tell of what a unit of work, a frame and the files cost.
+fn measured(guess: &Found, (start, first): (&Run, &Run)) -> Found {
+    let frame = guess.frame.min(start.clock(&["frames"]));
+    let (taken, units) = (first.cpu() - start.cpu() - frame, first.work().units());
+    let clock = first.clock(&["step", "migration", "histories"]);
+    let unit = match units > 0.0 {
+        true if taken >= TRUSTED => taken / units,
+        // No more than what passed by the clock.
+        true if clock > 0.0 => guess.unit.min(clock / units),
+        _ => guess.unit,
+    };
+    let bytes = Bytes {
+        frame: start.bytes("frames").unwrap_or(guess.bytes.frame),
+        checkpoint: start.bytes(FOLDER).unwrap_or(guess.bytes.checkpoint),
+        ..guess.bytes
+    };
+    let unknowns = first.manifest.as_ref().and_then(|manifest| manifest.sizes.get("unknowns").copied());
+    Found { unit, start: start.cpu(), frame, bytes, unknowns, ..guess.clone() }
+}
+
+struct Probes<'a> {
+    plan: &'a Plan<'a>,
+    folder: TempDir,
+    deadline: Instant,
+}
+
+impl Probes<'_> {
+    /// s  until the deadline
+    fn left(&self) -> f64 {
+        self.deadline.saturating_duration_since(Instant::now()).as_secs_f64()
+    }
+
+    /// So many steps of the case itself.
+    fn of_case(&self, name: &str, steps: f64) -> Result<Run, Error> {
+        let most = format!("{steps:.0}");
+        let run = self.run(name, &self.plan.case.text, &["--max-steps", &most], self.plan.ranks)?;
+        match run.code {
+            DONE | CHECK | STOPPED if run.manifest.is_some() => Ok(run),
+            code => Err(Error::Probe { code, reason: run.reason }),
+        }
+    }
+
+    /// Coarse forms, the finest one last; `until` is how far the case's first steps came.
+    fn levels(&self, guess: &Found, until: f64, told: &mut dyn FnMut(&str)) -> Result<Vec<Level>, Error> {
+        let mut levels = Vec::new();
+        let mut taken = None;
+        for factor in FACTORS {
+            let expected = taken.map_or(guess.unit * guess.work.units() / (factor * factor) as f64, |s: f64| FINER * s);
+            if expected > self.left() {
+                break;
+            }
+            let Some(text) = coarse::text(self.plan.case, factor) else { continue };
+            let begin = Instant::now();
+            let run = self.run(&format!("cells{factor}"), &text, &[], 1)?;
+            taken = Some(begin.elapsed().as_secs_f64());
+            let level = level(factor, &run, (until, self.plan.case.analysis.end));
+            told(&match &level {
+                Some(level) => format!(
+                    "cells {factor} times as large: {:.0} evaluations in {:.0} steps, {:.2} CPU s",
+                    level.work.evaluations,
+                    level.work.steps,
+                    run.cpu()
+                ),
+                None => format!("cells {factor} times as large: ended early ({}), of no use", run.reason),
+            });
+            levels.extend(level);
+        }
+        Ok(levels)
+    }
+
+    /// A run on so many ranks, to the deadline at most.
+    fn run(&self, name: &str, text: &str, further: &[&str], ranks: usize) -> Result<Run, Error> {
+        let folder = self.folder.path();
+        let (case, directory) = (folder.join(format!("{name}.toml")), folder.join(format!("{name}.out")));
+        fs::write(&case, text).map_err(|source| Error::File(bsmpm_io::Error::file("write", &case)(source)))?;
+        let mut arguments = vec![case.display().to_string(), "--output".to_owned(), directory.display().to_string()];
+        arguments.extend(further.iter().map(|&word| word.to_owned()));
+        // A start takes a second or two of what may be the whole time.
+        let wall = self.left().ceil().max(2.0) as u64;
+        let clock = format!("{:02}:{:02}:{:02}", wall / 3600, wall / 60 % 60, wall % 60);
+        arguments.extend(["--max-wall".to_owned(), clock]);
+        let command = if ranks == 1 { self.plan.command.to_vec() } else { on_ranks(ranks, self.plan.command) };
+        let solver = Solver { command: &command, side_by_side: true };
+        solver.check()?;
+        let task = Task { arguments: &arguments, directory: &directory, origin: None, force: true };
+        let code = solver.make(&task, &Stop::default())?;
+        let Ending { code, manifest, reason } = Ending::of(&directory, Some(code));
+        Ok(Run { code, manifest, reason, rows: rows(&directory), directory })
+    }
+}
+
+fn on_ranks(ranks: usize, command: &[String]) -> Vec<String> {
+    let launcher = ["mpirun".to_owned(), "-n".to_owned(), ranks.to_string()];
+    [&launcher[..], command].concat()
+}
+
+/// The steps of a run; none where it left no table.
+fn rows(directory: &Path) -> Vec<Row> {
+    let Ok(columns) = table::read(&directory.join(STEPS)) else { return Vec::new() };
+    let column = |name: &str| columns.get(name).unwrap_or_default();
+    let names = ["time", "active_nodes", "evaluations", "products", "factorisations", "cutbacks"];
+    let columns = names.map(column);
+    let length = columns.iter().map(|column| column.len()).min().unwrap_or(0);
+    let row = |k: usize| {
+        let [time, active_nodes, evaluations, products, factorisations, cutbacks] = columns.map(|column| column[k]);
+        let newton = (factorisations - 1.0 - cutbacks).max(0.0);
+        Row { time, active_nodes, work: Work { steps: 1.0, evaluations, products, newton } }
+    };
+    (0..length).map(row).collect()
+}
+
+/// What a coarse form tells, if it came far enough; the work of what it did not reach is taken as even.
+fn level(factor: usize, run: &Run, (until, end): (f64, f64)) -> Option<Level> {
+    let reached = run.rows.last()?.time / end;
+    let first = run.rows.partition_point(|row| row.time <= until * (1.0 + 1e-9));
+    let early = run.rows[..first].iter().map(|row| row.work.iterations()).sum();
+    let mean = |rows: &[Row]| rows.iter().map(|row| row.active_nodes).sum::<f64>() / rows.len() as f64;
+    let (all, before) = (mean(&run.rows), mean(&run.rows[..first.max(1)]));
+    let spread = if before > 0.0 { all / before } else { 1.0 };
+    (reached >= REACHED).then(|| Level { factor, work: run.work().times(1.0 / reached), early, spread })
+}

@@ -1,0 +1,105 @@
+//! How well the points fill the cells: equal-weight quadrature is exact where the volumes of a cell's points add up to it.
+
+use crate::exact::Exact;
+use crate::grid::Grid;
+use crate::points::Points;
+use crate::seam::Halo;
+
+/// Cells along each axis of the neighbourhood that makes a cell interior: itself and one on either side.
+const SIDE: usize = 3;
+
+/// `sum_p V_p / V_cell - 1` over the interior cells.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Defect {
+    /// cells that count
+    pub cells: u64,
+    /// mean number of points in them
+    pub points: f64,
+    /// root of their mean square
+    pub rms: f64,
+    /// largest magnitude
+    pub largest: f64,
+}
+
+/// Defect of the points' current volumes V_p = J_p V0_p over the cells all of whose neighbours (3^D - 1, as far as the grid
+/// has them) hold points, too; none where no cell is interior. The points must be sorted by cell: then it has the same
+/// bits on any number of ranks.
+pub fn defect<const D: usize>(grid: &Grid<D>, points: &Points<D>, halo: &dyn Halo) -> Option<Defect> {
+    let (mut held, mut counts) = (vec![0.0; grid.cells()], vec![0_u32; grid.cells()]);
+    for p in 0..points.len() {
+        if let Some(cell) = grid.locate(&points.x[p]) {
+            held[grid.cell_index(&cell)] += points.volume[p] * points.F[p].determinant();
+            counts[grid.cell_index(&cell)] += 1;
+        }
+    }
+    let occupied = Occupied::of(grid, &held, halo);
+    let (mut squares, mut largest, mut numbers) = (Exact::ZERO, [0.0_f64], [0.0; 2]);
+    for (index, volume) in held.iter().enumerate() {
+        let cell = grid.cell_at(index);
+        if *volume > 0.0 && occupied.surround(&cell) {
+            let defect = volume / grid.cell_box(&cell).1.product() - 1.0;
+            squares.add(defect * defect);
+            largest[0] = largest[0].max(defect.abs());
+            numbers = [numbers[0] + 1.0, numbers[1] + f64::from(counts[index])];
+        }
+    }
+    halo.reduce(&mut numbers);
+    halo.maximum(&mut largest);
+    let squares = halo.total(&[squares])[0];
+    let [cells, held] = numbers;
+    (cells > 0.0).then(|| Defect {
+        cells: cells as u64,
+        points: held / cells,
+        rms: (squares / cells).sqrt(),
+        largest: largest[0],
+    })
+}
+
+/// Which cells hold points, those beside this rank's columns included.
+struct Occupied<'a, const D: usize> {
+    grid: &'a Grid<D>,
+    marks: Vec<f64>, // per node: whether the cell of its number does, and whether the one before that along axis 0 does
+}
+
+impl<'a, const D: usize> Occupied<'a, D> {
+    /// Neighbouring slabs share layers of nodes, not of cells: a cell is noted at the node of its own number, which the rank
+    /// before sees, and at the next one, which the rank behind sees.
+    fn of(grid: &'a Grid<D>, held: &[f64], halo: &dyn Halo) -> Self {
+        let mut occupied = Self { grid, marks: vec![0.0; 2 * grid.nodes()] };
+        for (index, _) in held.iter().enumerate().filter(|(_, volume)| **volume > 0.0) {
+            let cell = grid.cell_at(index);
+            for behind in [0, 1] {
+                let place = occupied.place(&cell, behind);
+                occupied.marks[place] = 1.0;
+            }
+        }
+        halo.max(&mut occupied.marks, 2);
+        occupied
+    }
+
+    fn place(&self, cell: &[usize; D], behind: usize) -> usize {
+        let mut node = *cell;
+        node[0] += behind;
+        2 * self.grid.first_node(&node) + behind
+    }
+
+    fn has(&self, cell: &[usize; D]) -> bool {
+        let behind = usize::from(cell[0] < self.grid.columns().start);
+        self.marks[self.place(cell, behind)] > 0.0
+    }
+
+    /// Whether all neighbours that the grid has hold points.
+    fn surround(&self, cell: &[usize; D]) -> bool {
+        (0..SIDE.pow(D as u32)).all(|k| {
+            let mut neighbour = *cell;
+            for (axis, at) in neighbour.iter_mut().enumerate() {
+                let moved = *at + k / SIDE.pow(axis as u32) % SIDE;
+                match moved.checked_sub(1) {
+                    Some(inside) if inside < self.grid.axes()[axis].cells() => *at = inside,
+                    _ => return true,
+                }
+            }
+            self.has(&neighbour)
+        })
+    }
+}

@@ -1,0 +1,100 @@
+//! Measures of how far a run can be trusted, on states whose answer is known.
+
+use crate::support::scene::{Scene, axis, hencky};
+use bsmpm::grid::{Shape, transfer};
+use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
+use bsmpm::model::{Regime, Weighting};
+use bsmpm::observe::noise::relative_pressure_noise;
+use bsmpm::observe::quadrature::{Defect, defect};
+use bsmpm::step::nodes::Nodes;
+use bsmpm::step::smooth;
+use bsmpm::tensor::{Tensor, Vector};
+
+/// Cells of .5 m, 6 along each axis, of which `cells` hold 2^D points each.
+fn block<K: Kinematics<D>, const D: usize>(order: usize, cells: std::ops::Range<usize>) -> Scene<K, D> {
+    let axes = std::array::from_fn(|_| axis(0.5, 6, order));
+    let cells = std::array::from_fn(|_| cells.clone());
+    Scene::new(axes, hencky(1.0, 0.3), Regime::QuasiStatic).body(cells, 2, 3.0, |x| x * 0.0)
+}
+
+fn of<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>) -> Option<Defect> {
+    defect(&scene.model.grid, &scene.points, &scene.halo())
+}
+
+fn exact(cells: u64, points: f64) -> Defect {
+    Defect { cells, points, rms: 0.0, largest: 0.0 }
+}
+
+#[test]
+fn cells_are_interior_where_all_neighbours_that_the_grid_has_hold_points() {
+    for order in 1..=3 {
+        assert_eq!(of(&block::<PlaneStrain, 2>(order, 1..5)), Some(exact(4, 4.0)));
+        // Faces of the grid are no surface.
+        assert_eq!(of(&block::<PlaneStrain, 2>(order, 0..6)), Some(exact(36, 4.0)));
+        assert_eq!(of(&block::<PlaneStrain, 2>(order, 0..3)), Some(exact(4, 4.0)));
+        assert_eq!(of(&block::<PlaneStrain, 2>(order, 2..4)), None);
+    }
+    assert_eq!(of(&block::<Solid, 3>(2, 1..5)), Some(exact(8, 8.0)));
+}
+
+#[test]
+fn the_defect_is_that_of_the_points_present_volumes() {
+    let mut scene = block::<PlaneStrain, 2>(2, 1..5);
+    // One of four points of the interior cell (2, 2) has grown to twice its area, one of cell (3, 3) is lost.
+    let at = |scene: &Scene<PlaneStrain, 2>, x: [f64; 2]| {
+        scene.points.x.iter().position(|found| (found - Vector::from(x)).norm() < 1e-12).unwrap()
+    };
+    let grown = at(&scene, [1.125, 1.125]);
+    scene.points.F[grown] = Tensor::from_diagonal(&[2.0, 1.0, 1.0].into());
+    let lost = at(&scene, [1.875, 1.875]);
+    scene.points.volume[lost] = 0.0;
+    let found = of(&scene).unwrap();
+    assert_eq!((found.cells, found.largest), (4, 0.25));
+    assert!((found.rms - (2.0 * 0.25_f64.powi(2) / 4.0).sqrt()).abs() <= 1e-15);
+}
+
+#[test]
+fn the_noise_of_the_pressure_has_no_unit() {
+    let mut scene = block::<PlaneStrain, 2>(2, 0..6);
+    let noise = |scene: &Scene<PlaneStrain, 2>| {
+        relative_pressure_noise(&scene.model.grid, &scene.points, Weighting::Mass, &scene.halo()).unwrap()
+    };
+    assert_eq!(noise(&scene).about_plane, 0.0);
+    // A checkerboard of points: 1 +- .5, times any stress.
+    for unit in [1.0, 1e6] {
+        for p in 0..scene.points.len() {
+            let place = (scene.points.x[p] / 0.25).map(|x| x as i64);
+            let sign = if (place[0] + place[1]) % 2 == 0 { 1.0 } else { -1.0 };
+            scene.points.sigma[p].0 = [-unit * (1.0 + 0.5 * sign); 6];
+        }
+        let found = noise(&scene);
+        assert!((found.about_plane - 0.5).abs() <= 0.01 && (found.about_average - 0.5).abs() <= 0.05, "{found:?}");
+    }
+}
+
+/// What the formula says of a pass, measured on S itself: the variance of its kernel is that by which S x^2 exceeds x^2.
+#[test]
+fn a_pass_of_smoothing_has_the_variance_of_its_formula() {
+    for order in 1..=3 {
+        let axes = [axis(0.5, 16, order), axis(0.5, 1, order)];
+        let scene = Scene::<PlaneStrain, 2>::new(axes, hencky(1.0, 0.3), Regime::QuasiStatic).body(
+            [0..16, 0..1],
+            12,
+            1.0,
+            |x| x * 0.0,
+        );
+        let (points, halo) = (&scene.points, scene.halo());
+        let shape = Shape::at(&scene.model.grid, points).unwrap();
+        let nodes = Nodes::map(&scene.model, &shape, points, (0.0, 1.0), &halo).unwrap();
+        let nodal = nodes.average(&shape, points, Weighting::Mass, &halo, |p| [points.x[p][0].powi(2)]);
+        let spread = transfer::to_points(&shape, &nodal, |p, [mean]| mean - points.x[p][0].powi(2));
+        let inner = (0..points.len()).filter(|&p| (3.0..5.0).contains(&points.x[p][0]));
+        let variances: Vec<f64> = inner.map(|p| spread[p]).collect();
+        let variance = variances.iter().sum::<f64>() / variances.len() as f64;
+        let formula = smooth::length(order, 0.5, 1.0).powi(2);
+        println!("order {order}: variance {variance}, formula {formula}");
+        // 12 points a cell in place of an integral.
+        assert!((variance / formula - 1.0).abs() <= 0.01);
+        assert!((smooth::length(order, 0.5, 9.0) - 3.0 * formula.sqrt()).abs() <= 1e-15);
+    }
+}
