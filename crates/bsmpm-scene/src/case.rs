@@ -217,7 +217,7 @@ pub struct Solver {
 /// The non-linear iteration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Nonlinear {
-    /// The controller's choice: all recent secants on the elastic stiffness, Newton's method where they stall.
+    /// The controller's choice: all recent secants on the stiffness at a step's first guess, Newton's method where they stall.
     Auto,
     /// The paper's rank-one update.
     Broyden,

@@ -91,7 +91,7 @@ impl Estimate {
     }
 }
 
-/// Linear systems of a step: the elastic stiffness of the secants, and the general one of Newton's directions.
+/// Linear systems of a step: the stiffness that the secants correct, and the general one of Newton's directions.
 struct Systems {
     /// bytes
     held: u128,

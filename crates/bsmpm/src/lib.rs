@@ -11,7 +11,7 @@
 //! | (3), (7)-(9) | quasi-Newton iteration, Newton's method where it stalls, both convergence measures | [`step::equilibrium`], [`step::quasi_newton`], [`step::newton`], [`step::progress`], [`step::round_off`] |
 //! | (4) | trial deformation, F-bar | [`step::trial`] |
 //! | (5) | out-of-balance force | [`step::residual`] |
-//! | (6) | elastic stiffness K_0, complete derivative | [`step::stiffness`], [`step::linearised`] |
+//! | (6) | stiffness K_0 at the first guess, complete derivative | [`step::stiffness`], [`step::linearised`] |
 //! | (10), (11) | grid kinematics, converged points | [`step::commit`] |
 //!
 //! [`boundary`] holds and loads the bodies, [`initial`] gives them stress at the start. [`control`] cuts and grows the

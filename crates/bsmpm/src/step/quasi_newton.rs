@@ -13,7 +13,7 @@ use crate::step::residual::Residual;
 /// Shortest part of a direction that is tried when points invert.
 const SHORTEST: f64 = 1.0 / 16.0;
 
-/// How the elastic stiffness is corrected from iteration to iteration.
+/// How the stiffness K_0 is corrected from iteration to iteration.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum QuasiNewton {
     /// All recent secants in the least-squares sense (Anderson, 1965).
@@ -112,8 +112,8 @@ impl<E: Into<StepError>> From<E> for Stopped {
     }
 }
 
-/// Iterates from the displacement `u` and its `residual` with K_0 factorised, to the limit of iterations; unless `patient`, only as long
-/// as convergence is in reach.
+/// Iterates from the displacement `u` and its `residual` with K_0 factorised, to the limit of iterations; unless
+/// `patient`, only as long as convergence is in reach.
 pub fn iterate<K: Kinematics<D>, const D: usize>(
     scene: &Scene<'_, K, D>,
     (method, patient): (QuasiNewton, bool),
