@@ -30,11 +30,11 @@ const ENTRY: u128 = 36;
 const BUILT: u128 = 44;
 /// Bytes of an entry that every further rank holds where all factorise the whole system: it is sent, collected and copied.
 const REPEATED: u128 = 60;
-/// Bytes of a symmetric factor per unknown and level of a nested dissection: 13 doubles with their workspace. A general
+/// Bytes of a symmetric factor per unknown and level of a nested dissection: 15 doubles with their workspace. A general
 /// one has twice of it.
-const LEVEL: u128 = 13 * 8;
+const LEVEL: u128 = 15 * 8;
 /// The same of a factorisation by dissection, which holds nothing else of the system.
-const FRONT: u128 = 18 * 8;
+const FRONT: u128 = 22 * 8;
 /// Bytes of an unknown in the Krylov space of Newton's directions: two doubles for each of a hundred products.
 const KRYLOV: u128 = 100 * 16;
 /// Bytes of a process that has next to nothing to solve: libraries and buffers of MPI and PETSc.
@@ -104,15 +104,15 @@ struct Systems {
 }
 
 impl Systems {
-    /// `entries` of the stiffness of so many `unknowns`, which reach layers of nodes `beyond` those of a cell: separators
-    /// are wider by as much, and the factor with them, by a half of quadratic splines' for each.
-    fn of(solver: &Solver, unknowns: u128, entries: u128, beyond: u128) -> Self {
+    /// `entries` of the stiffness of so many `unknowns`, which couples layers of nodes up to `reach` apart: separators are as
+    /// wide, in which the constants are those of quadratic splines.
+    fn of(solver: &Solver, unknowns: u128, entries: u128, reach: u128) -> Self {
         let direct = solver.linear.factor.is_some();
         let levels = u128::from(unknowns.max(2).ilog2());
-        let factor = if direct { unknowns * levels * LEVEL * (2 + beyond) / 2 } else { 0 };
+        let factor = if direct { unknowns * levels * LEVEL * reach / 2 } else { 0 };
         let again = u128::from(direct && solver.reproducible);
         let elastic = if solver.linear.factor == Some("dissection") {
-            [unknowns * levels * FRONT * (2 + beyond) / 2, 0, 0]
+            [unknowns * levels * FRONT * reach.pow(2) / 4, 0, 0]
         } else {
             [entries * ENTRY + factor, again * (entries * REPEATED + factor), entries * BUILT]
         };
@@ -134,7 +134,7 @@ impl Case {
         let (stencil, every) = (places * 4 * 8, 8 + 2);
         let occupied = occupied_nodes(self).min(nodes);
         let entries = 2 * occupied * 2 * places;
-        let systems = Systems::of(&self.solver, 2 * occupied, entries, beyond(self));
+        let systems = Systems::of(&self.solver, 2 * occupied, entries, self.grid.order as u128 + beyond(self));
         let lowered = if self.stabilisation == Stabilisation::ConsistentFBar { LOWERED } else { 0 };
         let passing = systems.built.max(points * SAVED);
         let bytes =

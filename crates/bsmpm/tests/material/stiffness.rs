@@ -6,7 +6,7 @@ use bsmpm::material::{Response, Stiffness};
 use bsmpm::tensor::Tensor;
 
 /// Share of the elastic stiffness in it.
-const ELASTIC: f64 = 0.03;
+const ELASTIC: f64 = 0.1;
 
 /// All six unit strains.
 fn units() -> Vec<Tensor> {
