@@ -13,7 +13,7 @@ const CONSISTENT: &str = "consistent-f-bar";
 const EDGE: &str = "at a free edge nodes have next to no stiffness; the background, which dynamics has not, mends it";
 const GRIP: &str = "a pulled strip lets go where points cross into the empty cell before it: its force goes to nodes that hold nothing";
 const START: &str = "points start with a = 0: the first step gains half of g dt, and the fall lags half a step behind";
-const SECANTS: &str = "809 for 261: the secants start from the elastic stiffness, which knows no F-bar";
+const SECANTS: &str = "864 for 225: the stiffness knows the average of consistent F-bar only";
 const NOISE_P: &str = "not reached with two cells under the strip";
 const NOISE: &str = "4 u/dt^2 - 4 v/dt - a cancels, and a carries its round-off on from step to step";
 const FLIP: &str = "accelerations lose what the grid cannot hold when they go to it and back";
@@ -23,6 +23,7 @@ const LOOSE: &str = "the farthest point has come loose, and slides on where its 
 const COARSE: &str = "an error of integration in time: a fall of .1 s in steps of 5 to 10 ms";
 const HEAP: &str = "0 at rest; the matrix is made anew with every cell that is entered, and the heap frays, ever more slowly; nothing is lost";
 const SLOW: &str = "p/c changes by .1 to .4 % a doubling, and that falls by less than half each time";
+const BEYOND: &str = "the pressure at the base is 200 G, and against what F-bar averages out only G holds: Newton's method finds another equilibrium";
 const C1: &str = "the splines are C1: strain cannot jump at an interface inside the grid";
 
 /// All rows.
@@ -52,7 +53,7 @@ pub fn all() -> Vec<Row> {
 fn confined() -> Vec<Row> {
     vec![
         row("N01", "nu = .49, confined column, none: height / l0, error", AtMost(5e-4), || incompressible::confined(0.49, Plain)),
-        row("N01", "nu = .499, the same, f-bar", AtMost(5e-4), || incompressible::confined(0.499, FBar)).or_refused(),
+        row("N01", "nu = .499, the same, f-bar", AtMost(5e-4), || incompressible::confined(0.499, FBar)).or_refused().fails(BEYOND),
         row("N01", "nu = .4999, the same, f-bar", AtMost(5e-4), || incompressible::confined(0.4999, FBar)).or_refused(),
         row("N01", "nu = .4999, the same, modified-f-bar", AtMost(5e-4), || incompressible::confined(0.4999, ModifiedFBar)).or_refused(),
         row("N01", "nu = .4999, the same, consistent-f-bar", AtMost(5e-4), || incompressible::confined(0.4999, ConsistentFBar)).or_refused(),
