@@ -179,7 +179,7 @@ impl<const D: usize> LinearSolver for KspSolver<'_, D> {
         if changed[0] > 0.0 {
             (self.free, self.numbers) = (free.to_vec(), Numbering::new());
             (self.planned, self.definite, self.general) = (false, None, None);
-            self.stencil.keep(free.len() / D, |node| free[node * D..(node + 1) * D].contains(&true));
+            self.stencil.keep(|node| free[node * D..(node + 1) * D].contains(&true));
         }
         self.stencil.clear();
     }

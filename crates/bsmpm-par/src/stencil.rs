@@ -47,29 +47,27 @@ pub struct Coordinates {
 }
 
 impl<const D: usize> Stencil<D> {
-    /// Zero stencils over a window, of all nodes.
+    /// Stencils over a window, of no node yet: see [`Stencil::keep`].
     pub fn new(grid: &Grid<D>) -> Self {
         let places = Places::new(grid);
         let (width, patch) = (grid.order() + 1, grid.cell_nodes());
         let at = |k: usize| std::array::from_fn(|axis| k / width.pow((D - 1 - axis) as u32) % width);
         let number = |k: usize| places.number(at(k));
         let slot = (0..patch * patch).map(|pair| places.of(number(pair / patch), number(pair % patch))).collect();
-        let mut stencil =
-            Self { places, slot, offsets: grid.offsets(), rows: Vec::new(), values: Vec::new(), columns: None };
-        stencil.keep(grid.nodes(), |_| true);
-        stencil
+        let (offsets, rows, values) = (grid.offsets(), vec![NONE; grid.nodes()], Vec::new());
+        Self { places, slot, offsets, rows, values, columns: None }
     }
 
-    /// Keeps the stencils of these of the window's nodes only: others take no memory, and what is added to them is lost. Sums by
+    /// Zero stencils of these of the window's nodes only: others take no memory, and what is added to them is lost. Sums by
     /// columns keep all.
-    pub fn keep(&mut self, nodes: usize, kept: impl Fn(usize) -> bool) {
+    pub fn keep(&mut self, kept: impl Fn(usize) -> bool) {
         let mut count = 0;
         let mut next = || {
             count += 1;
             count - 1
         };
         let all = self.columns.is_some();
-        self.rows = (0..nodes).map(|node| if all || kept(node) { next() } else { NONE }).collect();
+        self.rows = (0..self.rows.len()).map(|node| if all || kept(node) { next() } else { NONE }).collect();
         self.values.clear();
         self.values.resize(count * self.width(), 0.0);
         self.values.shrink_to(2 * self.values.len());
@@ -83,7 +81,9 @@ impl<const D: usize> Stencil<D> {
         let none = Contributions::none(grid, stencil.width(), Vec::new());
         let (sums, diagonal) = (none.clone(), vec![0.0; grid.nodes() * D]);
         let columns = Columns { none, sums, diagonal, owned };
-        Self { columns: Some(columns), ..stencil }
+        let mut stencil = Self { columns: Some(columns), ..stencil };
+        stencil.keep(|_| true);
+        stencil
     }
 
     /// Completes sums by columns, by what `total` makes of those of all ranks.
@@ -248,12 +248,19 @@ mod tests {
         Grid::new([KnotVector::uniform(1.0, 4, 2).unwrap(), KnotVector::uniform(1.0, 3, 2).unwrap()]).unwrap()
     }
 
+    /// Stencils of all nodes.
+    fn all(grid: &Grid<2>) -> Stencil<2> {
+        let mut stencil = Stencil::new(grid);
+        stencil.keep(|_| true);
+        stencil
+    }
+
     /// Dense sum of the same blocks, the plain way.
     #[test]
     fn entries_hold_the_sum_of_the_patch_blocks() {
         let grid = grid();
         let size = grid.nodes() * 2;
-        let (mut stencil, mut dense) = (Stencil::new(&grid), vec![0.0; size * size]);
+        let (mut stencil, mut dense) = (all(&grid), vec![0.0; size * size]);
         for cell in 0..grid.cells() {
             let first = grid.first_node(&grid.cell_at(cell));
             let block: Vec<f64> = (0..18 * 18).map(|entry| ((entry * 7 + cell * 13) % 31) as f64).collect();
@@ -282,7 +289,7 @@ mod tests {
     fn entries_hold_the_sum_of_the_blocks_of_faces() {
         let grid = grid().reaching(1);
         let size = grid.nodes() * 2;
-        let (mut stencil, mut dense) = (Stencil::new(&grid), vec![0.0; size * size]);
+        let (mut stencil, mut dense) = (all(&grid), vec![0.0; size * size]);
         for (cell, across) in [([0, 0], 3), ([2, 1], 3), ([1, 1], 4)] {
             let first = grid.first_node(&cell);
             let nodes: Vec<usize> = (0..12).map(|k| first + k / across * 5 + k % across).collect();
@@ -337,7 +344,7 @@ mod tests {
     #[test]
     fn components_without_a_number_have_neither_row_nor_column() {
         let grid = grid();
-        let stencil = Stencil::new(&grid);
+        let stencil = all(&grid);
         let numbers: Numbering =
             (0..grid.nodes() * 2).map(|component| (component % 2 == 0).then_some(component / 2)).collect();
         let free: Vec<bool> = numbers.iter().map(Option::is_some).collect();
@@ -355,9 +362,9 @@ mod tests {
                 stencil.add(grid.first_node(&grid.cell_at(cell)), &block);
             }
         };
-        let (mut whole, kept) = (Stencil::new(&grid), |node: usize| !node.is_multiple_of(3));
+        let (mut whole, kept) = (all(&grid), |node: usize| !node.is_multiple_of(3));
         let mut some = whole.clone();
-        some.keep(grid.nodes(), kept);
+        some.keep(kept);
         add(&mut whole);
         add(&mut some);
         for component in 0..2 * grid.nodes() {
@@ -373,7 +380,7 @@ mod tests {
     #[test]
     fn held_components_with_a_number_stand_on_the_diagonal_only() {
         let grid = grid();
-        let stencil = Stencil::new(&grid);
+        let stencil = all(&grid);
         let numbers: Numbering = (0..grid.nodes() * 2).map(Some).collect();
         let free: Vec<bool> = (0..grid.nodes() * 2).map(|component| component % 3 > 0).collect();
         let places = stencil.coordinates(&numbers, &free);

@@ -88,7 +88,8 @@ fn course(h: [f64; 3], f: [f64; 3]) -> Course {
     if fine.abs() <= NOISE * scale {
         return Course::Unchanged;
     }
-    let has_same_sign = coarse / fine > 0.0;
+    // Where only the finest grid differs, nothing has begun to converge.
+    let has_same_sign = coarse.abs() <= NOISE * scale || coarse / fine > 0.0;
     match (has_same_sign, (coarse / fine).abs() > growth(h, 0.0, has_same_sign)) {
         (true, true) => Course::Monotone,
         (false, true) => Course::Oscillatory,

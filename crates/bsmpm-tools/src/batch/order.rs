@@ -40,7 +40,7 @@ impl Order {
     /// What it takes of the machine.
     pub fn load(&self, ranks: usize) -> Load {
         let steps = self.case.analysis.end / self.case.analysis.dt;
-        Load { memory: self.case.estimate().bytes_on(ranks), work: self.case.points() as f64 * steps }
+        Load { memory: self.case.estimate().bytes_with_newton_on(ranks), work: self.case.points() as f64 * steps }
     }
 
     /// m  the size of its cells: the root of the largest area of one.

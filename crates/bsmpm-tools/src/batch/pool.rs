@@ -1,5 +1,6 @@
 //! Several things at a time, as many as there are cores and memory for; it knows no runs.
 
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::mpsc;
 use std::thread;
 
@@ -42,12 +43,15 @@ pub(crate) fn all<T: Send>(
                 running.push(index);
                 let sender = sender.clone();
                 scope.spawn(move || {
+                    let result = catch_unwind(AssertUnwindSafe(|| work(index)));
                     // Nobody listens where the caller has given up.
-                    let _ = sender.send((index, work(index)));
+                    let _ = sender.send((index, result));
                 });
             }
             let (index, result) = receiver.recv().expect("the other end is held here");
             running.retain(|&other| other != index);
+            // A fault of the program ends all of it, once the runs under way have ended.
+            let result = result.unwrap_or_else(|fault| resume_unwind(fault));
             told(index, &result);
             made[index] = Some(result);
         }

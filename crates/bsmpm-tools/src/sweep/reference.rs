@@ -138,7 +138,7 @@ fn extrapolated(quantities: &[Quantity], points: &[Point], values: &[Option<Valu
     };
     let h = [first.0, second.0, third.0];
     found.what = format!("extrapolated from cells of {} m, {} m and {} m", h[0], h[1], h[2]);
-    found.run = None;
+    let finest = found.run.take();
     for (index, quantity) in quantities.iter().enumerate() {
         let of = |values: &Values, part: usize| values[index].as_ref().map_or(f64::NAN, |values| values[part]);
         let mut limits = Vec::new();
@@ -147,6 +147,9 @@ fn extrapolated(quantities: &[Quantity], points: &[Point], values: &[Option<Valu
             let limit = limit(h, f);
             found.notes.push(format!("{}: {}", quantity.parts[part].words(), limit.1));
             limits.push(limit.0);
+            if limit.0 == f[0] {
+                found.run = finest; // its own value is the reference: it has no error to be judged by
+            }
         }
         found.values[index] = Some(limits);
     }
@@ -214,7 +217,7 @@ mod tests {
         let mut fewer = values.clone();
         fewer[5] = None;
         let limit = found(&Reference::Extrapolated, &fewer);
-        assert_eq!((limit.run, limit.values[0].clone()), (None, Some(vec![3.0])), "{limit:?}");
+        assert_eq!((limit.run, limit.values[0].clone()), (Some(4), Some(vec![3.0])), "{limit:?}");
         fewer[0] = None;
         let limit = found(&Reference::Extrapolated, &fewer);
         assert!(limit.run == Some(4) && limit.notes[0].contains("three are needed"), "{limit:?}");

@@ -163,7 +163,7 @@ fn by_secants<K: Kinematics<D>, const D: usize>(
     if !residual.balance.is_sound() {
         return Err(inverted(scene, &residual, progress.iterations()).into());
     }
-    if scene.nodes.unknowns > 0 {
+    if scene.nodes.unknowns > 0 && !progress.is_balanced(&residual.balance, scene) {
         stiffness::assemble(scene, Some(&residual.trial), solver)?;
         counts.factorisations += 1;
     }

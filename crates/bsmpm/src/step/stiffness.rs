@@ -1,5 +1,6 @@
-//! Step (6): the stiffness K_0 that is factorised once a step, symmetric and positive definite:
-//! K_0 = 4/dt^2 M + sum_p V0 G^T D_p G + F-bar's average + background + strips; numerical damping changes the 4/dt^2.
+//! Step (6): the stiffness K_0 that the quasi-Newton method starts from, at the state it starts from, symmetric and without
+//! negative eigenvalues; definite with inertia, or where supports, points enough in a cell or the background leave no
+//! motion free: K_0 = 4/dt^2 M + sum_p V0 G^T D_p G + F-bar's average + background + strips; numerical damping changes the 4/dt^2.
 //!
 //! D_p is the elastic D^e, or where the step's first guess yields a positive stand-in for the tangent there. The
 //! quasi-Newton method stands for everything that K_0 leaves out.

@@ -4,13 +4,19 @@ use super::{REGIONS, Region, hencky, mohr_coulomb, respond};
 use crate::random::Random;
 use bsmpm::material::{Response, Stiffness};
 use bsmpm::tensor::Tensor;
+use std::f64::consts::FRAC_1_SQRT_2;
 
 /// Share of the elastic stiffness in it.
 const ELASTIC: f64 = 0.1;
 
+/// 1, or 1/sqrt(2) for shear, where `of` holds: unit strains have a norm of 1.
+fn unit_of(of: bool, shear: bool) -> f64 {
+    f64::from(u8::from(of)) * if shear { FRAC_1_SQRT_2 } else { 1.0 }
+}
+
 /// All six unit strains.
 fn units() -> Vec<Tensor> {
-    let unit = |k: usize, l: usize| Tensor::from_fn(|i, j| f64::from(u8::from((i, j) == (k, l) || (i, j) == (l, k))));
+    let unit = |k: usize, l: usize| Tensor::from_fn(|i, j| unit_of((i, j) == (k, l) || (i, j) == (l, k), k != l));
     [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2)].map(|(k, l)| unit(k, l)).to_vec()
 }
 
@@ -20,7 +26,7 @@ fn matrix(stiffness: &Stiffness) -> nalgebra::SMatrix<f64, 6, 6> {
     nalgebra::SMatrix::from_fn(|a, b| units[a].dot(&stiffness.apply(&units[b])))
 }
 
-/// What plasticity leaves of Young's modulus 1000 in the softest direction: the least the share may be of it.
+/// Its smallest eigenvalue is the share of that of the elastic stiffness at least.
 #[test]
 fn it_is_symmetric_and_positive_in_every_region() {
     let mut random = Random::new(51);
@@ -36,7 +42,7 @@ fn it_is_symmetric_and_positive_in_every_region() {
         };
         let matrix = matrix(&stiffness);
         assert!((matrix - matrix.transpose()).amax() <= 1e-12 * matrix.amax());
-        // Shear is 2 mu on tensor strains, bulk 3 K: the smaller one of both, in the units of the matrix.
+        // 2 mu of shear, 3 K of bulk: the smaller one.
         let elastic = (1e3 / (1.0 + poisson)).min(1e3 / (1.0 - 2.0 * poisson));
         least = least.min(matrix.symmetric_eigenvalues().min() / elastic);
     }

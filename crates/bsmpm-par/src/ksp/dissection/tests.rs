@@ -231,6 +231,7 @@ impl System {
         let mut direct = Dissection::default();
         direct.plan(wire, (self.slabs.bounds(), rank), &grid, free);
         let mut stencil = Stencil::new(&grid);
+        stencil.keep(|_| true);
         for scale in [3.0, 1.0] {
             stencil.clear();
             for cell in 0..grid.cells() {
