@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use std::process::Command;
 use std::time::Duration;
 use support::cases::{SLIDING_BLOCK, changed};
-use support::results::{all_frames, differences, history, last_frame, manifest};
+use support::results::{all_frames, differences, history, last_frame, manifest, steps};
 use support::{Scratch, example, processes, shipped};
 
 /// Asserts that the last frames of runs on these numbers of ranks agree with the first one's to `tolerance`, relative to
@@ -152,6 +152,28 @@ fn where_all_ranks_factorise_the_whole_the_footing_has_the_same_bits_on_1_2_3_an
         let arguments = [&["case.toml", "-q", "--force", "--max-steps", "3"], &set[..]].concat();
         let runs = [1, 2, 3, 4].map(|ranks| left(&scratch, ranks, &arguments, 3));
         assert!(runs[1..].iter().all(|run| *run == runs[0]), "{further}");
+    }
+}
+
+/// Any stiffness leads to the same state, but only the same one in as many iterations, to the same rest. Here dilations couple
+/// 2 q layers of nodes, which slabs of one column are much thinner than.
+#[test]
+fn the_stiffness_is_the_same_on_1_3_and_10_ranks_of_one_column_each() {
+    let scratch = Scratch::with_case(&std::fs::read_to_string(shipped("short/strip_footing.toml")).unwrap());
+    let shared = "solver.linear={ksp=\"preonly\",pc=\"cholesky\",factor=\"mumps\"}";
+    for further in [&["grid.order=quadratic"][..], &["grid.order=cubic"], &[shared, "solver.reproducible=false"]] {
+        let set: Vec<&str> = further.iter().flat_map(|key| ["--set", key]).collect();
+        let arguments = [&["case.toml", "-q", "--force", "--max-steps", "3"], &set[..]].concat();
+        let found = [1, 3, 10].map(|ranks| {
+            scratch.mpirun(ranks, &arguments).expect(75);
+            let steps = steps(&scratch.path("case.out"));
+            ["iterations", "residual"].map(|name| steps.get(name).unwrap().to_vec())
+        });
+        for [iterations, residual] in &found[1..] {
+            assert_eq!(*iterations, found[0][0], "{further:?}");
+            let close = |(a, b): (&f64, &f64)| (a - b).abs() <= 1e-5 * b; // round-off, through a dozen iterations
+            assert!(residual.iter().zip(&found[0][1]).all(close), "{further:?}: {residual:?} for {:?}", found[0][1]);
+        }
     }
 }
 

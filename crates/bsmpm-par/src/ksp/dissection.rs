@@ -120,7 +120,8 @@ fn take<const D: usize>(
     matrix: &mut [f64],
 ) {
     let (own, rows, order) = (part.own.len(), part.rows(), part.rim.len());
-    let last = own == 0;
+    // Between two bodies a separator may be without unknowns, too.
+    let last = plan.parts.last().is_some_and(|last| std::ptr::eq(last, part));
     let numbers = if last { plan.eliminated()..plan.order.len() } else { part.own.clone() };
     for number in numbers {
         let place = places[number];

@@ -15,6 +15,9 @@ use std::f64::consts::FRAC_1_SQRT_2;
 /// 10,842, 9,197, 8,700; slope at SRF 1.5 241, 176, 159, 152; but six steps of half a cell each of the footing with cells of
 /// .025 m took, with Newton's method in most of them, 89, 112 and 200 CPU s with .3, .1 and .03.
 const ELASTIC: f64 = 0.1;
+/// Plastic strain of a response below which it counts as elastic: what rests on the yield surface is beyond it by round-off or
+/// not, and the stiffness should not depend on that.
+const FLOW: f64 = 1e-10;
 /// 1/sqrt(6)
 const FRAC_1_SQRT_6: f64 = 0.408_248_290_463_863;
 /// Orthonormal principal strains without volume.
@@ -67,10 +70,14 @@ impl Stiffness {
 }
 
 impl Response {
-    /// The stiffness of a response that yields, for use with many gradients; `None` where it is the elastic one.
+    /// The stiffness of a response that yields, for use with many gradients; `None` where it is the elastic one, or as good as.
     #[inline]
     pub fn yielding(&self) -> Option<Stiffness> {
-        (self.region() != Region::Elastic).then(|| Stiffness::of(self))
+        if self.region() == Region::Elastic {
+            return None;
+        }
+        let (trial, elastic) = (self.principal_eps_trial(), self.principal_eps_e());
+        (0..3).any(|k| (trial[k] - elastic[k]).abs() > FLOW).then(|| Stiffness::of(self))
     }
 }
 
