@@ -44,7 +44,7 @@ impl Dissection {
         // How far nodes couple.
         let (q, layers) = (grid.order() + grid.beyond(), grid.layers());
         // Layers that no other slab touches, from the window's first.
-        let start = if rank == 0 { 0 } else { q };
+        let start = if rank == 0 { 0 } else { q.min(layers.len()) };
         let end = if rank + 2 == bounds.len() { layers.len() } else { grid.columns().len() };
         let counts = std::array::from_fn(|axis| if axis == 0 { layers.len() } else { grid.axes()[axis].functions() });
         self.plan = Plan::new::<D>(counts, q, start..end.max(start), free);
