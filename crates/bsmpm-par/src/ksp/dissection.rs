@@ -119,7 +119,7 @@ fn take<const D: usize>(
     columns: &mut [f64],
     matrix: &mut [f64],
 ) {
-    let (own, rows, order) = (part.own.len(), part.rows(), part.rim.len());
+    let (rows, order) = (part.rows(), part.rim.len());
     // Between two bodies a separator may be without unknowns, too.
     let last = plan.parts.last().is_some_and(|last| std::ptr::eq(last, part));
     let numbers = if last { plan.eliminated()..plan.order.len() } else { part.own.clone() };
