@@ -10,10 +10,12 @@ use crate::Error;
 use crate::launch::{Solver, Task};
 use crate::slurm::clock;
 
+mod options;
 mod order;
 mod outcome;
 mod pool;
 
+pub use options::Options;
 pub(crate) use order::Order;
 pub(crate) use outcome::{Cost, Outcome, State};
 pub(crate) use pool::{Limits, Load};
@@ -84,7 +86,7 @@ impl Batch<'_> {
 }
 
 /// Bytes that runs side by side may take together: what is asked for, or what this machine has free, if it can be told.
-pub(crate) fn memory(asked: Option<u64>) -> u64 {
+fn memory(asked: Option<u64>) -> u64 {
     let free = || {
         let text = fs::read_to_string("/proc/meminfo").ok()?;
         let line = text.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;

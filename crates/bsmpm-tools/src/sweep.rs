@@ -5,15 +5,14 @@
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::time::Duration;
 
-use bsmpm_io::{atomic, disk};
+use bsmpm_io::atomic;
 use bsmpm_scene::Case;
 use clap::Args;
 
 use crate::Error;
-use crate::batch::{self, Batch, Limits, Order, Outcome, State};
-use crate::launch::{self, Solver, command};
+use crate::batch::{Batch, Options, Order, Outcome, State};
+use crate::launch::command;
 
 mod axes;
 mod front;
@@ -81,31 +80,9 @@ pub struct Arguments {
     /// Write the cheapest setting that is good enough, by all quantities, as a case file
     #[arg(long, value_name = "FILE")]
     pub write: Option<PathBuf>,
-    /// Runs at the same time [default: the cores, divided by the ranks]
-    #[arg(long, value_name = "N")]
-    pub jobs: Option<usize>,
-    /// Ranks of each run, started by mpirun
-    #[arg(long, value_name = "R", default_value_t = 1, value_parser = ranks, conflicts_with = "command")]
-    pub ranks: usize,
-    /// What the runs at the same time may take together, by their estimates, e.g. 16GiB [default: what the machine has free]
-    #[arg(long, value_name = "SIZE", value_parser = disk::size)]
-    pub max_memory: Option<u64>,
-    /// Stop each run after so much time by the clock; asked for again it goes on
-    #[arg(long, value_name = "HH:MM:SS", value_parser = wall)]
-    pub max_wall: Option<Duration>,
-    /// Override one key of the case in all runs, as for bsmpm-par; repeatable
-    #[arg(long, value_name = "KEY=VALUE")]
-    pub set: Vec<String>,
-    /// Where everything is written [default: the case's stem with .sweep, in the working directory]
-    #[arg(short, long, value_name = "DIR")]
-    pub output: Option<PathBuf>,
-    /// Repeat runs that are there already
-    #[arg(long)]
-    pub force: bool,
-    /// The solver, with the launcher before it: words that bsmpm-par's arguments follow [default: the bsmpm-par beside this
-    /// program, or that of PATH]
-    #[arg(last = true, value_name = "COMMAND")]
-    pub command: Vec<String>,
+    /// How the runs are made.
+    #[command(flatten)]
+    pub options: Options,
 }
 
 /// A share, as `2%` or `0.02`.
@@ -115,37 +92,14 @@ fn share(text: &str) -> Result<f64, String> {
     share.ok().filter(|share| *share > 0.0 && share.is_finite()).ok_or_else(|| "a share, e.g. 2% or 0.02".to_owned())
 }
 
-pub(crate) fn ranks(text: &str) -> Result<usize, String> {
-    text.parse().ok().filter(|ranks| (1..=100_000).contains(ranks)).ok_or_else(|| "a number from 1 on".to_owned())
-}
-
-/// HH:MM:SS
-pub(crate) fn wall(text: &str) -> Result<Duration, String> {
-    let parts: Option<Vec<u64>> =
-        text.split(':').map(|part| part.parse().ok().filter(|part| *part < 100_000)).collect();
-    match parts.as_deref() {
-        Some(&[hours, minutes, seconds]) if minutes < 60 && seconds < 60 && hours + minutes + seconds > 0 => {
-            Ok(Duration::from_secs(3600 * hours + 60 * minutes + seconds))
-        }
-        _ => Err(format!("{text} is no time; expected HH:MM:SS")),
-    }
-}
-
 /// Sweeps; `told` gets a line for every run as soon as it is there. Returns the text for the screen, and the files.
 ///
 /// # Errors
 /// Those of the command line and the case before anything runs; [`Error::NoResult`] if no run came to its end; those of files.
 pub fn run(arguments: &Arguments, mut told: impl FnMut(&str)) -> Result<(String, Vec<PathBuf>), Error> {
-    let command = command::words(&arguments.command, arguments.ranks);
-    let jobs = command::jobs(arguments.jobs, &command)?;
-    let plan = arguments.plan()?;
-    let solver = Solver { command: &command, side_by_side: true };
-    solver.check()?;
-    let output = arguments.directory();
-    launch::make(&output)?;
-    let limits = Limits { jobs, memory: batch::memory(arguments.max_memory) };
-    let (path, max_wall, force) = (&*arguments.case, arguments.max_wall, arguments.force);
-    let batch = Batch { solver, path, output: &output, limits, max_wall, force };
+    let (plan, options, path) = (arguments.plan()?, &arguments.options, &*arguments.case);
+    let (command, output) = (options.words(), options.directory(path, ".sweep"));
+    let batch = options.batch(&command, path, &output)?;
     let outcomes = outcomes(&batch, &plan, command::ranks(&command), &mut told);
     let (values, outcomes) = measured(&plan.quantities, outcomes);
     let reference = plan.reference.find(&plan.quantities, &plan.points, &values)?;
@@ -271,11 +225,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn shares_and_times_are_read() {
+    fn shares_are_read() {
         assert_eq!((share("2%"), share("0.05"), share(" 2.5 %")), (Ok(0.02), Ok(0.05), Ok(0.025)));
         assert!(["", "x", "-1%", "0", "inf", "nan"].iter().all(|text| share(text).is_err()));
-        assert_eq!((wall("01:02:03"), wall("0:0:5")), (Ok(Duration::from_secs(3723)), Ok(Duration::from_secs(5))));
-        assert!(["", "5", "0:0:0", "0:60:0", "a:b:c", "1:2:3:4"].iter().all(|text| wall(text).is_err()));
-        assert!(ranks("0").is_err() && ranks("4") == Ok(4));
     }
 }

@@ -3,16 +3,14 @@
 
 use std::io::Write;
 use std::path::PathBuf;
-use std::time::Duration;
 
-use bsmpm_io::{atomic, disk};
+use bsmpm_io::atomic;
 use clap::{Args, ValueEnum};
 
 use crate::Error;
-use crate::batch::{self, Batch, Limits, Outcome, State};
-use crate::launch::{self, Solver, command};
+use crate::batch::{self, Options, Outcome, State};
+use crate::launch::command;
 use crate::plot;
-use crate::sweep;
 
 mod grids;
 mod report;
@@ -70,31 +68,9 @@ pub struct Arguments {
     /// Times besides the end; repeatable
     #[arg(long, value_name = "TIME", value_delimiter = ',', value_parser = plot::time)]
     pub at: Vec<f64>,
-    /// Runs at the same time [default: the cores, divided by the ranks]
-    #[arg(long, value_name = "N")]
-    pub jobs: Option<usize>,
-    /// Ranks of each run, started by mpirun
-    #[arg(long, value_name = "R", default_value_t = 1, value_parser = sweep::ranks, conflicts_with = "command")]
-    pub ranks: usize,
-    /// What the runs at the same time may take together, e.g. 16GiB [default: what the machine has free]
-    #[arg(long, value_name = "SIZE", value_parser = disk::size)]
-    pub max_memory: Option<u64>,
-    /// Stop each run after so much time by the clock; asked for again it goes on
-    #[arg(long, value_name = "HH:MM:SS", value_parser = sweep::wall)]
-    pub max_wall: Option<Duration>,
-    /// Override one key of the case in all runs, as for bsmpm-par; repeatable
-    #[arg(long, value_name = "KEY=VALUE")]
-    pub set: Vec<String>,
-    /// Where everything is written [default: the case's stem with .verify, in the working directory]
-    #[arg(short, long, value_name = "DIR")]
-    pub output: Option<PathBuf>,
-    /// Repeat runs that are there already
-    #[arg(long)]
-    pub force: bool,
-    /// The solver, with the launcher before it: words that bsmpm-par's arguments follow [default: the bsmpm-par beside this
-    /// program, or that of PATH]
-    #[arg(last = true, value_name = "COMMAND")]
-    pub command: Vec<String>,
+    /// How the runs are made.
+    #[command(flatten)]
+    pub options: Options,
 }
 
 /// Verifies; `told` gets a line for every run as soon as it is there. Returns the text for the screen, and the files.
@@ -103,18 +79,12 @@ pub struct Arguments {
 /// Those of the command line and of the case on each grid before anything runs; [`Error::Run`] for a run that did not come
 /// to its end; those of files.
 pub fn run(arguments: &Arguments, mut told: impl FnMut(&str)) -> Result<(String, Vec<PathBuf>), Error> {
-    let command = command::words(&arguments.command, arguments.ranks);
-    let (jobs, ranks) = (command::jobs(arguments.jobs, &command)?, command::ranks(&command));
-    let bytes = batch::load(&arguments.case)?;
+    let (options, path) = (&arguments.options, &*arguments.case);
+    let (command, output) = (options.words(), options.directory(path, ".verify"));
+    let bytes = batch::load(path)?;
     let grids = Grids::of(arguments, &bytes)?;
-    let solver = Solver { command: &command, side_by_side: true };
-    solver.check()?;
-    let output = arguments.directory();
-    launch::make(&output)?;
-    let limits = Limits { jobs, memory: batch::memory(arguments.max_memory) };
-    let (path, max_wall, force) = (&*arguments.case, arguments.max_wall, arguments.force);
-    let batch = Batch { solver, path, output: &output, limits, max_wall, force };
-    let outcomes = batch.run(&grids.orders, ranks, |index, outcome| {
+    let batch = options.batch(&command, path, &output)?;
+    let outcomes = batch.run(&grids.orders, command::ranks(&command), |index, outcome| {
         let (h, cpu) = (grids.sizes[index], outcome.cost.cpu_seconds);
         told(format!("cells of {h} m: {}, {cpu:.1} CPU s {}", outcome.words(), outcome.reason).trim_end());
     });
@@ -140,15 +110,5 @@ fn ended(outcome: &Outcome, h: f64) -> Result<(), Error> {
             code: outcome.code.unwrap_or(70),
             reason: outcome.reason.clone(),
         }),
-    }
-}
-
-impl Arguments {
-    fn directory(&self) -> PathBuf {
-        self.output.clone().unwrap_or_else(|| {
-            let mut name = self.case.file_stem().unwrap_or_default().to_owned();
-            name.push(".verify");
-            PathBuf::from(name)
-        })
     }
 }

@@ -1,7 +1,5 @@
 //! What a sweep is to do, looked through before anything runs.
 
-use std::path::PathBuf;
-
 use bsmpm_scene::Case;
 
 use super::Arguments;
@@ -31,12 +29,12 @@ impl Arguments {
             self.quantity.iter().map(|text| Quantity::parse(text)).collect::<Result<_, _>>().map_err(usage)?;
         let settings = axes::settings(&axes, self.one_at_a_time).map_err(usage)?;
         let bytes = batch::load(&self.case)?;
-        let own = Case::from_bytes(&self.case.display().to_string(), &bytes, &self.set)
+        let own = Case::from_bytes(&self.case.display().to_string(), &bytes, &self.options.set)
             .map_err(|errors| Error::bad_case(&self.case, &errors))?;
         self.look_through(&quantities, &own)?;
         let reference = Reference::parse(&self.reference);
         reference.check(&quantities)?;
-        let study = Study { path: &self.case, bytes: &bytes, set: &self.set, axes: &axes };
+        let study = Study { path: &self.case, bytes: &bytes, set: &self.options.set, axes: &axes };
         let points = study.points(&settings, &self.baseline.as_deref().map_or_else(Vec::new, axes::split))?;
         Ok(Plan { bytes, own, axes, quantities, reference, points })
     }
@@ -45,7 +43,7 @@ impl Arguments {
     fn look_through(&self, quantities: &[Quantity], case: &Case) -> Result<(), Error> {
         let usage = |reason: String| Err(Error::Usage { reason });
         if quantities.iter().any(Quantity::is_factor) {
-            return match (quantities, self.max_wall) {
+            return match (quantities, self.options.max_wall) {
                 ([only], None) if only.name == FACTOR => Ok(()),
                 (_, Some(_)) => usage(format!("--max-wall: not with --quantity {FACTOR}")),
                 _ => {
@@ -64,13 +62,5 @@ impl Arguments {
             )),
             None => Ok(()),
         }
-    }
-
-    pub(super) fn directory(&self) -> PathBuf {
-        self.output.clone().unwrap_or_else(|| {
-            let mut name = self.case.file_stem().unwrap_or_default().to_owned();
-            name.push(".sweep");
-            PathBuf::from(name)
-        })
     }
 }

@@ -26,13 +26,13 @@ impl Grids {
     /// the case cannot have, with all of their errors.
     pub fn of(arguments: &Arguments, bytes: &[u8]) -> Result<Self, Error> {
         let path = &arguments.case;
-        let own = Case::from_bytes(&path.display().to_string(), bytes, &arguments.set)
+        let own = Case::from_bytes(&path.display().to_string(), bytes, &arguments.options.set)
             .map_err(|errors| Error::bad_case(path, &errors))?;
         let cell = cell(&own)?;
         let cells = arguments.cells(cell)?;
         let (mut orders, mut errors) = (Vec::new(), Vec::new());
         for value in &cells {
-            let mut set = arguments.set.clone();
+            let mut set = arguments.options.set.clone();
             set.push(format!("grid.cell={value}"));
             match Order::read(path, bytes, set.clone(), 1) {
                 Ok(order) => orders.push(arguments.timed(order, (bytes, set), &own, cell)?),
