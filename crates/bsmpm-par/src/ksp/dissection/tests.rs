@@ -167,20 +167,22 @@ fn wires(ranks: usize, delay: usize) -> Vec<Wire> {
 struct System {
     grid: Grid<2>,
     slabs: Slabs,
+    gap: std::ops::Range<usize>, // columns of empty cells
 }
 
 impl System {
     fn new([columns, rows]: [usize; 2], order: usize, bounds: &[usize]) -> Self {
         let axis = |cells| KnotVector::uniform(1.0, cells, order).unwrap();
         let slabs = Slabs::new(bounds.to_vec(), bounds.len() - 1, columns).unwrap();
-        Self { grid: Grid::new([axis(columns), axis(rows)]).unwrap(), slabs }
+        Self { grid: Grid::new([axis(columns), axis(rows)]).unwrap(), slabs, gap: 0..0 }
     }
 
     /// Positive definite block of a cell, or none.
     fn block(&self, cell: usize) -> Option<DMatrix<f64>> {
         let size = self.grid.cell_nodes() * 2;
         let g = DMatrix::from_fn(size, size, |i, j| noise((cell * size + i) * size + j) - 0.5);
-        (noise(cell) < 0.9).then(|| &g * g.transpose() + 0.1 * DMatrix::identity(size, size))
+        let empty = noise(cell) >= 0.9 || self.gap.contains(&self.grid.cell_at(cell)[0]);
+        (!empty).then(|| &g * g.transpose() + 0.1 * DMatrix::identity(size, size))
     }
 
     /// Nodes of a cell of the whole grid.
@@ -250,6 +252,18 @@ impl System {
         solution
     }
 
+    /// Holds the ranks' solutions against the dense one.
+    fn is_solved(&self) {
+        let dense = self.dense_solution();
+        let scale = dense.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+        for (rank, found) in self.solutions(0).into_iter().enumerate() {
+            let layer = self.grid.layer_nodes() * 2;
+            let expected = &dense[self.slabs.layers(rank, self.grid.order()).start * layer..][..found.len()];
+            let error = found.iter().zip(expected).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
+            assert!(error < 1e-9 * scale, "{:?} {:?}: {error:e} of {scale:e}", self.grid, self.slabs);
+        }
+    }
+
     /// Solutions of all ranks, whose messages take their time.
     fn solutions(&self, delay: usize) -> Vec<Vec<f64>> {
         let ranks = self.slabs.ranks();
@@ -277,15 +291,20 @@ fn slabs_find_the_solution_of_the_dense_matrix() {
         ([4, 12], 2, &[0, 1, 4]),
     ];
     for (cells, order, bounds) in cases {
-        let system = System::new(cells, order, bounds);
-        let dense = system.dense_solution();
-        let scale = dense.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
-        for (rank, found) in system.solutions(0).into_iter().enumerate() {
-            let layer = system.grid.layer_nodes() * 2;
-            let expected = &dense[system.slabs.layers(rank, order).start * layer..][..found.len()];
-            let error = found.iter().zip(expected).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
-            assert!(error < 1e-9 * scale, "{cells:?} {order} {bounds:?}: {error:e} of {scale:e}");
-        }
+        System::new(cells, order, bounds).is_solved();
+    }
+}
+
+/// Between two bodies a separator may hold nothing.
+#[test]
+fn bodies_apart_find_the_solution_of_the_dense_matrix() {
+    for bounds in [&[0, 22][..], &[0, 9, 11, 22]] {
+        let system = System { gap: 8..14, ..System::new([22, 7], 2, bounds) };
+        let counts = std::array::from_fn(|axis| system.grid.axes()[axis].functions());
+        let plan = Plan::new::<2>(counts, 2, 0..counts[0], &system.free());
+        let (_, parts) = plan.parts.split_last().unwrap();
+        assert!(parts.iter().any(|part| part.own.is_empty() && part.children == 2), "a separator without unknowns");
+        system.is_solved();
     }
 }
 
