@@ -31,7 +31,7 @@ pub enum Nonlinear {
 /// What gave the direction of one iteration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
-    /// Secants on the stiffness at the first guess.
+    /// Secants on the stiffness at `u`, where they start.
     QuasiNewton(QuasiNewton),
     /// The complete derivative.
     Newton,
@@ -151,7 +151,7 @@ fn search<K: Kinematics<D>, const D: usize>(
     Err(failure.error)
 }
 
-/// Secants on the stiffness at the first guess.
+/// Secants on the stiffness at `u`, where they start.
 fn by_secants<K: Kinematics<D>, const D: usize>(
     scene: &Scene<'_, K, D>,
     method: (QuasiNewton, bool),

@@ -2,8 +2,8 @@
 //! negative eigenvalues; definite with inertia, or where supports, points enough in a cell or the background leave no
 //! motion free: K_0 = 4/dt^2 M + sum_p V0 G^T D_p G + F-bar's average + background + strips; numerical damping changes the 4/dt^2.
 //!
-//! D_p is the elastic D^e, or where the step's first guess yields a positive stand-in for the tangent there. The
-//! quasi-Newton method stands for everything that K_0 leaves out.
+//! D_p is the elastic D^e, or where that state yields a positive stand-in for the tangent there. The quasi-Newton method
+//! stands for everything that K_0 leaves out.
 
 use crate::error::SolveError;
 use crate::grid::shape::{Column, Patch};
@@ -20,6 +20,9 @@ use crate::step::nodes::Nodes;
 use crate::step::trial::Trial;
 use crate::tensor::{Square, Tensor, Vector};
 use rayon::prelude::*;
+
+/// Nodes of a point, at most: cubic splines in three dimensions.
+const MOST: usize = 64;
 
 /// Assembles K_0 patch by patch into `solver` and factorises it: at the state `at`, or, without any, of elastic material
 /// whose dilation is not averaged. One exchange with the neighbours where the average couples patches.
@@ -71,51 +74,54 @@ struct State<'a, K, const D: usize> {
 
 impl<K: Kinematics<D>, const D: usize> State<'_, K, D> {
     fn part(&self, number: usize) -> Part {
-        let Self { model, shape, nodes, points, at, coupling } = *self;
-        let coupled = coupling.is_some();
+        let Self { model, shape, points, coupling, .. } = *self;
         let patch = &shape.patches()[number];
         let size = shape.offsets().len();
-        let mut block = vec![0.0; (size * D).pow(2)];
-        let mut dilations = coupling.map(Coupling::of_patch::<D>);
+        let mut part = Part { block: vec![0.0; (size * D).pow(2)], dilations: coupling.map(Coupling::of_patch::<D>) };
         let mut moments = vec![Square::<D>::zeros(); size * size];
-        let mut grad = [Vector::<D>::zeros(); 64];
-        let grad = &mut grad[..size];
+        let mut grad = [Vector::zeros(); MOST];
         for run in runs_of_one_material(patch, &points.material) {
             moments.fill(Square::zeros());
             let material = &model.materials[usize::from(points.material[run.start])];
             let (lambda, mu) = material.elastic().lame();
             // What F-bar averages of isotropic stiffness is lambda + 2 mu/dof times the dilation; the rest has -2 mu/dof.
-            let averaged = K::dilation().norm_squared();
+            let averaged = 2.0 * mu * K::dilation().norm_squared();
             for p in run {
-                transfer::gradients_of(shape, p, grad);
-                let volume = points.volume[p];
-                let yielding = at.and_then(|trial| trial.respond(model, points, p).ok()?.yielding());
-                let bulk = match yielding {
-                    Some(stiffness) => {
-                        let (moduli, bulk) = of_point::<K, D>(&stiffness, volume, coupled);
-                        add_point(&moduli, grad, Pairs::Upper, &mut block);
-                        bulk
-                    }
-                    None => {
-                        let relative = material.relative_stiffness(points.height(p));
-                        accumulate(volume * relative, grad, &mut moments);
-                        (lambda + 2.0 * mu * averaged) * relative
-                    }
-                };
-                if let Some(dilations) = &mut dilations {
-                    let mut dilation = [Vector::<D>::zeros(); 64];
-                    dilation.iter_mut().zip(&*grad).for_each(|(dilation, grad)| *dilation = grad * volume);
-                    dilations.add(nodes, p, &Share { weight: volume, bulk, dilation: &dilation[..size], force: &[] });
-                }
+                self.add((p, &mut grad[..size]), lambda + averaged, &mut moments, &mut part);
             }
-            let lambda = if coupled { -2.0 * mu * averaged } else { lambda };
-            add_elastic::<K, D>(&moments, (lambda, mu), &mut block);
+            let lambda = if coupling.is_some() { -averaged } else { lambda };
+            add_elastic::<K, D>(&moments, (lambda, mu), &mut part.block);
         }
-        mirror(size * D, &mut block);
-        if let Some(soft) = nodes.background.as_ref().and_then(|background| background.of(number)) {
-            add_background::<D>(soft, &mut block);
+        mirror(size * D, &mut part.block);
+        if let Some(soft) = self.nodes.background.as_ref().and_then(|background| background.of(number)) {
+            add_background::<D>(soft, &mut part.block);
         }
-        Part { block, dilations }
+        part
+    }
+
+    /// Adds a point: to the `moments` of its material where it is elastic, and where it yields to the block; its dilation,
+    /// against which elastic material has the stiffness `bulk` in Pa, where that is averaged. `grad` is room to work.
+    fn add(&self, (p, grad): (usize, &mut [Vector<D>]), bulk: f64, moments: &mut [Square<D>], part: &mut Part) {
+        let Self { model, shape, nodes, points, at, coupling } = *self;
+        transfer::gradients_of(shape, p, grad);
+        let volume = points.volume[p];
+        let bulk = match at.and_then(|trial| trial.respond(model, points, p).ok()?.yielding()) {
+            Some(stiffness) => {
+                let (moduli, bulk) = of_point::<K, D>(&stiffness, volume, coupling.is_some());
+                add_point(&moduli, grad, Pairs::Upper, &mut part.block);
+                bulk
+            }
+            None => {
+                let material = &model.materials[usize::from(points.material[p])];
+                let relative = material.relative_stiffness(points.height(p));
+                accumulate(volume * relative, grad, moments);
+                bulk * relative
+            }
+        };
+        if let Some(dilations) = &mut part.dilations {
+            grad.iter_mut().for_each(|grad| *grad *= volume);
+            dilations.add(nodes, p, &Share { weight: volume, bulk, dilation: grad, force: &[] });
+        }
     }
 }
 
