@@ -12,7 +12,7 @@ use crate::grid::GridSpec;
 use crate::region::Region;
 use crate::report::Report;
 use crate::source::{Source, decode};
-use crate::{overrides, record, validate};
+use crate::{overrides, preset, record, validate};
 use bsmpm::background::{Extent, Kind};
 use bsmpm::material::Material;
 use bsmpm::model::Regime;
@@ -64,7 +64,7 @@ pub struct Case {
     pub warnings: Vec<String>,
     /// What the program chose by itself.
     pub notes: Vec<Choice>,
-    /// The case as it is run: the file's text, or with overrides the same content written anew.
+    /// The case as it is run: the file's text, or with overrides or a preset the same content, complete, written anew.
     pub text: String,
 }
 
@@ -94,8 +94,9 @@ impl Case {
             report.error(document::Origin::Nowhere, "", "the file is empty: it holds no key of a case");
             return Err(report.into_errors());
         }
+        let filled = preset::fill(&mut document, (&source, overrides), &mut report);
         let record = record::read(&document, &mut report);
-        let effective = if overrides.is_empty() { text.to_owned() } else { document.to_toml() };
+        let effective = if overrides.is_empty() && !filled { text.to_owned() } else { document.to_toml() };
         match validate::case(&record, effective, &mut report) {
             Some(case) if !report.failed() => Ok(case),
             _ => Err(report.into_errors()),

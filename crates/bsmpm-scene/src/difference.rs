@@ -2,6 +2,7 @@
 
 use crate::document;
 use crate::error::Error;
+use crate::preset;
 use crate::record::{self, Datum, Record};
 use crate::report::Report;
 use crate::source::Source;
@@ -9,8 +10,10 @@ use std::collections::BTreeMap;
 use std::fmt;
 
 /// Keys with which a run may go on changed: they say how far, how finely and how it is told, not what is solved.
-const FREE: [&str; 12] = [
+const FREE: [&str; 13] = [
     "title",
+    // What it stands for counts, key by key.
+    "accuracy",
     "analysis.dt",
     "analysis.steps",
     "solver.nonlinear",
@@ -89,7 +92,8 @@ struct Value {
 fn values(text: &str) -> Result<BTreeMap<String, Value>, Vec<Error>> {
     let source = Source::new("case", text);
     let mut report = Report::new(&source, &[]);
-    let document = document::parse(&source, &mut report);
+    let mut document = document::parse(&source, &mut report);
+    preset::fill(&mut document, (&source, &[]), &mut report);
     let record = record::read(&document, &mut report);
     if report.failed() {
         return Err(report.into_errors());

@@ -22,7 +22,7 @@ use bsmpm::step::newmark::Newmark;
 /// Steps of a run at most.
 const MOST_STEPS: f64 = 1e9;
 /// m/s2  by which a unit weight is divided, whatever the scene's gravity is.
-const STANDARD_GRAVITY: f64 = 9.81;
+pub(crate) const STANDARD_GRAVITY: f64 = 9.81;
 /// Relative difference from it that the rounded components of an inclined gravity may have.
 const NEARLY_STANDARD: f64 = 1e-6;
 

@@ -68,7 +68,8 @@ pub struct Arguments {
     /// What is looked at; repeatable
     #[arg(long, value_name = "NAME[@TIME],...", required = true)]
     pub quantity: Vec<String>,
-    /// What errors are measured against: finest, extrapolated (over the cells' sizes), the directory of a run, or numbers
+    /// What errors are measured against: finest, baseline, extrapolated (over the cells' sizes), the directory of a run,
+    /// or numbers
     #[arg(long, value_name = "REFERENCE", default_value = "finest")]
     pub reference: String,
     /// The error that is good enough

@@ -3,6 +3,7 @@
 use super::Kind::*;
 use super::Presence::{Default, Later, Optional, Required};
 use super::{Dimension as In, Group, Key, Kind, Presence, Range, Table, body, loads, output};
+use crate::preset;
 use std::ops::Bound::{Excluded, Included};
 
 pub(super) const fn key(name: &'static str, kind: Kind, presence: Presence, doc: &'static str) -> Key {
@@ -24,6 +25,7 @@ pub static ROOT: Table = Table {
     keys: &[
         key("title", Text(200), Optional, "what the case is, in a line"),
         key("geometry", Choice(&["plane-strain"], &["axisymmetric", "solid"]), Required, "kind of the geometry"),
+        key("accuracy", Choice(&preset::NAMES, &[]), Optional, "cells, points, steps, tolerances that are not given"),
         key("analysis", Kind::Table(&ANALYSIS), Required, "kind of the analysis and its time"),
         key("grid", Kind::Table(&GRID), Required, "the parametric grid"),
         key("material", Named(&MATERIAL), Required, "materials by name"),

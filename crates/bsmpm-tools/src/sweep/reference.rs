@@ -15,6 +15,7 @@ use crate::grid_convergence::{Course, Index};
 /// What was asked for.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Reference {
+    Baseline,
     Finest,
     Extrapolated,
     Run(PathBuf),
@@ -39,10 +40,11 @@ pub(super) struct Found {
 pub(super) type Values = Vec<Option<Vec<f64>>>;
 
 impl Reference {
-    /// `finest`, `extrapolated`, a number for each part, or the directory of a run.
+    /// `baseline`, `finest`, `extrapolated`, a number for each part, or the directory of a run.
     pub fn parse(text: &str) -> Self {
         let numbers: Option<Vec<f64>> = split(text).iter().map(|part| part.parse().ok()).collect();
         match (text, numbers) {
+            ("baseline", _) => Self::Baseline,
             ("finest", _) => Self::Finest,
             ("extrapolated", _) => Self::Extrapolated,
             (_, Some(numbers)) => Self::Numbers(numbers),
@@ -54,7 +56,7 @@ impl Reference {
     pub fn check(&self, quantities: &[Quantity]) -> Result<(), Error> {
         let parts: usize = quantities.iter().map(|quantity| quantity.parts.len()).sum();
         match self {
-            Self::Finest | Self::Extrapolated => Ok(()),
+            Self::Baseline | Self::Finest | Self::Extrapolated => Ok(()),
             Self::Numbers(numbers) if numbers.len() == parts && numbers.iter().all(|number| number.is_finite()) => {
                 Ok(())
             }
@@ -71,6 +73,7 @@ impl Reference {
     /// Those of a run elsewhere that does not have the quantities.
     pub fn find(&self, quantities: &[Quantity], points: &[Point], values: &[Option<Values>]) -> Result<Found, Error> {
         match self {
+            Self::Baseline => Ok(baseline(quantities, points, values)),
             Self::Finest => Ok(finest(quantities, points, values)),
             Self::Extrapolated => Ok(extrapolated(quantities, points, values)),
             Self::Run(directory) => {
@@ -104,17 +107,28 @@ fn best(points: &[Point], values: &[Option<Values>]) -> Option<usize> {
     there.max_by(|&a, &b| points[a].fineness().partial_cmp(&points[b].fineness()).unwrap_or(std::cmp::Ordering::Equal))
 }
 
+fn baseline(quantities: &[Quantity], points: &[Point], values: &[Option<Values>]) -> Found {
+    let index = points.iter().position(|point| point.is_baseline);
+    of_run(index, "the baseline", quantities, points, values)
+}
+
 fn finest(quantities: &[Quantity], points: &[Point], values: &[Option<Values>]) -> Found {
-    let Some((index, values)) = best(points, values).and_then(|index| Some((index, values[index].clone()?))) else {
-        let what = "none: no run has finished".to_owned();
+    of_run(best(points, values), "the finest run that has finished", quantities, points, values)
+}
+
+/// A run of the sweep as the reference, if it has finished.
+fn of_run(
+    index: Option<usize>,
+    what: &str,
+    quantities: &[Quantity],
+    points: &[Point],
+    values: &[Option<Values>],
+) -> Found {
+    let Some((index, values)) = index.and_then(|index| Some((index, values[index].clone()?))) else {
+        let what = format!("none: {what} is not there");
         return Found { what, values: vec![None; quantities.len()], run: None, notes: Vec::new() };
     };
-    Found {
-        what: format!("the finest run that has finished: {}", points[index].name()),
-        values,
-        run: Some(index),
-        notes: Vec::new(),
-    }
+    Found { what: format!("{what}: {}", points[index].name()), values, run: Some(index), notes: Vec::new() }
 }
 
 /// From the three smallest cells of the runs that differ from the finest one in them alone.
@@ -180,6 +194,7 @@ mod tests {
 
     #[test]
     fn references_are_read() {
+        assert_eq!(Reference::parse("baseline"), Reference::Baseline);
         assert_eq!(Reference::parse("finest"), Reference::Finest);
         assert_eq!(Reference::parse("extrapolated"), Reference::Extrapolated);
         assert_eq!(Reference::parse("0.45, 1e-3"), Reference::Numbers(vec![0.45, 1e-3]));
@@ -212,6 +227,8 @@ mod tests {
         let found =
             |reference: &Reference, values: &[Option<Values>]| reference.find(&quantity, &points, values).unwrap();
         assert_eq!(found(&Reference::Finest, &values).run, Some(5));
+        let own = points.iter().position(|point| point.is_baseline);
+        assert!(own == Some(0) && found(&Reference::Baseline, &values).run == own);
         let limit = found(&Reference::Extrapolated, &values);
         assert!((limit.values[0].as_ref().unwrap()[0] - 5.0).abs() < 1e-9 && limit.run.is_none(), "{limit:?}");
         let mut fewer = values.clone();
@@ -219,6 +236,8 @@ mod tests {
         let limit = found(&Reference::Extrapolated, &fewer);
         assert_eq!((limit.run, limit.values[0].clone()), (Some(4), Some(vec![3.0])), "{limit:?}");
         fewer[0] = None;
+        let none = found(&Reference::Baseline, &fewer);
+        assert!(none.run.is_none() && none.what == "none: the baseline is not there", "{none:?}");
         let limit = found(&Reference::Extrapolated, &fewer);
         assert!(limit.run == Some(4) && limit.notes[0].contains("three are needed"), "{limit:?}");
         let nothing = found(&Reference::Finest, &vec![None; 6]);

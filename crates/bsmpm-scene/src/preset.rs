@@ -1,0 +1,165 @@
+//! `accuracy = "draft" | "standard" | "reference"`: what a case leaves out of its discretisation is filled in before it is
+//! held against the schema, so that all that follows sees ordinary keys, and any key given by hand wins.
+//!
+//! The presets are defined here and nowhere else. What they cost and how far they are off, on column, slope and footing, is
+//! measured by `scripts/presets` and stands in the README.
+
+mod scene;
+
+use crate::document::{self, Entry, Node, Origin, Table, Value};
+use crate::record;
+use crate::report::Report;
+use crate::source::Source;
+use scene::Scene;
+
+/// The key.
+const ACCURACY: &str = "accuracy";
+/// Its words, coarsest first.
+pub(crate) const NAMES: [&str; 3] = ["draft", "standard", "reference"];
+
+/// A discretisation in terms of what a scene is made of.
+struct Preset {
+    /// Cells along the shorter side of the rectangle around all bodies.
+    across: f64,
+    /// Cells along the shortest strip or loaded segment: the finer of both counts.
+    along: f64,
+    /// Points along each axis of a cell.
+    points: u64,
+    /// Cells that a shear wave crosses in a step of dynamics.
+    crossed: f64,
+    /// Part of a cell that what is moved may move in a quasi-static step.
+    advance: f64,
+    /// Quasi-static steps at least.
+    steps: f64,
+    /// Energy and force measure of convergence, TOML.
+    tolerances: [&'static str; 2],
+}
+
+/// As [`NAMES`].
+const PRESETS: [Preset; 3] = [
+    Preset {
+        across: 10.0,
+        along: 4.0,
+        points: 2,
+        crossed: 4.0,
+        advance: 0.25,
+        steps: 10.0,
+        tolerances: ["1e-6", "1e-3"],
+    },
+    Preset {
+        across: 20.0,
+        along: 8.0,
+        points: 3,
+        crossed: 4.0,
+        advance: 0.25,
+        steps: 10.0,
+        tolerances: ["1e-8", "1e-4"],
+    },
+    Preset {
+        across: 40.0,
+        along: 16.0,
+        points: 4,
+        crossed: 2.0,
+        advance: 0.125,
+        steps: 20.0,
+        tolerances: ["1e-10", "1e-5"],
+    },
+];
+
+/// Of every preset: splines of this order, and where a material could lock this against it.
+const ORDER: &str = "\"quadratic\"";
+const METHOD: &str = "\"consistent-f-bar\"";
+
+/// Fills in what the document's `accuracy` stands for, if it has one; whether anything was. What cannot be told from
+/// the rest of the case stays absent, and is missed when the document is read.
+pub(crate) fn fill(
+    document: &mut Table,
+    (source, overrides): (&Source<'_>, &[String]),
+    report: &mut Report<'_>,
+) -> bool {
+    let Some((name, origin)) = chosen(document) else { return false };
+    let preset = &PRESETS[NAMES.iter().position(|known| *known == name).unwrap_or_default()];
+    // Its errors are told when the filled document is read.
+    let record = record::read(document, &mut Report::new(source, overrides));
+    let scene = Scene::of(&record);
+    let mut filling = Filling { document, origin, name, report, filled: false };
+    filling.put("grid", &["order"], ORDER, "");
+    if let Some((cell, why)) = scene.cell(preset) {
+        filling.put("grid", &["cell", "knots"], &cell, &why);
+    }
+    filling.points(preset.points);
+    // The cells that a case gives by hand count, too.
+    if let Some((steps, why)) = scene.steps(preset) {
+        filling.put("analysis", &["steps", "dt"], &steps.to_string(), &why);
+    }
+    if let Some(why) = scene.locks() {
+        filling.put("stabilisation", &["method"], METHOD, why);
+    }
+    let [energy, force] = preset.tolerances;
+    filling.put("solver", &["tolerance"], energy, "");
+    filling.put("solver", &["force_tolerance"], force, "");
+    filling.filled
+}
+
+/// The word that the case gives, if it is one of them, and its place.
+fn chosen(document: &Table) -> Option<(&'static str, Origin)> {
+    let entry = document.get(ACCURACY)?;
+    let Value::Text(text) = &entry.node.value else { return None };
+    Some((NAMES.into_iter().find(|name| name == text)?, entry.node.origin))
+}
+
+/// A document on its way to be complete.
+struct Filling<'a, 'r> {
+    document: &'a mut Table,
+    origin: Origin,
+    name: &'static str,
+    report: &'a mut Report<'r>,
+    filled: bool,
+}
+
+impl Filling<'_, '_> {
+    /// Gives the first of these keys of a table the value, unless one of them is given.
+    fn put(&mut self, table: &str, keys: &[&str], value: &str, why: &str) {
+        let origin = self.origin;
+        if self.document.get(table).is_none() {
+            let node = Node { origin, value: Value::Table(Table::default()) };
+            self.document.entries.push(Entry { key: table.to_owned(), origin, node });
+        }
+        let Some(Entry { node: Node { value: Value::Table(inner), .. }, .. }) = self.document.get_mut(table) else {
+            return;
+        };
+        if keys.iter().all(|key| inner.get(key).is_none()) && insert(inner, keys[0], value, origin) {
+            self.tell(&format!("{table}.{}", keys[0]), value, why);
+        }
+    }
+
+    /// Gives every body that has none its points.
+    fn points(&mut self, points: u64) {
+        const KEY: &str = "points_per_cell";
+        let (origin, value) = (self.origin, points.to_string());
+        let Some(Entry { node: Node { value: Value::List(bodies), .. }, .. }) = self.document.get_mut("body") else {
+            return;
+        };
+        let mut any = false;
+        for body in bodies {
+            if let Value::Table(body) = &mut body.value {
+                any |= body.get(KEY).is_none() && insert(body, KEY, &value, origin);
+            }
+        }
+        if any {
+            self.tell(&format!("body.*.{KEY}"), &value, "of bodies without their own");
+        }
+    }
+
+    fn tell(&mut self, key: &str, value: &str, why: &str) {
+        self.filled = true;
+        let colon = if why.is_empty() { "" } else { ": " };
+        self.report.note(key, value, format!("accuracy = \"{}\"{colon}{why}", self.name));
+    }
+}
+
+fn insert(table: &mut Table, key: &str, value: &str, origin: Origin) -> bool {
+    let Ok(node) = document::parse_value(value, origin) else { return false };
+    table.entries.push(Entry { key: key.to_owned(), origin, node });
+    true
+}
