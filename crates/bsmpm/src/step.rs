@@ -17,6 +17,7 @@ pub mod round_off;
 pub mod smooth;
 pub mod stiffness;
 pub mod trial;
+pub mod unknowns;
 
 use crate::boundary::strip::Grips;
 use crate::boundary::{StripReport, Surface, load};

@@ -5,7 +5,8 @@
 //! dw_i . df_j, which need no product with K_0. On a linear problem that is as good as GMRES, where Broyden's update
 //! may take twice the iterations.
 
-use crate::seam::{Halo, dots};
+use crate::seam::Halo;
+use crate::step::unknowns::Unknowns;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 /// Secants that are kept: older ones tell little of a plastic state that has changed.
@@ -13,9 +14,10 @@ const MOST: usize = 20;
 /// Eigenvalues of the scaled products below this part of the largest are round-off: their secants repeat others.
 const DEPENDENT: f64 = 1e-12;
 
-/// Steps of this iteration and what they changed.
-#[derive(Clone, Debug, Default)]
+/// Steps of this iteration and what they changed, in packed vectors.
+#[derive(Clone, Debug)]
 pub struct Multisecant {
+    unknowns: Unknowns,
     secants: Vec<Secant>,
     products: Vec<Vec<f64>>, // N m  dw_i . df_j for j <= i
     last: Option<Last>,
@@ -23,7 +25,7 @@ pub struct Multisecant {
 
 #[derive(Clone, Debug)]
 struct Secant {
-    s: Vec<f64>,
+    both: Vec<f64>, // s + dw
     dw: Vec<f64>,
     df: Vec<f64>,
 }
@@ -36,20 +38,24 @@ struct Last {
 }
 
 impl Multisecant {
-    /// Direction du from w = K_0^-1 f, `D` components a node, and du . f: one reduction for everything.
-    pub fn correct<const D: usize>(&mut self, w: Vec<f64>, f: &[f64], halo: &dyn Halo) -> (Vec<f64>, f64) {
-        self.learn(&w, f);
-        let Products { right, along, mut energy } = self.products::<D>((&w, f), halo);
+    /// Nothing seen yet.
+    pub fn new(unknowns: Unknowns) -> Self {
+        Self { unknowns, secants: Vec::new(), products: Vec::new(), last: None }
+    }
+
+    /// Turns the nodal w = K_0^-1 f into the direction du, and tells du . f: one reduction for everything.
+    pub fn correct(&mut self, nodal_w: &mut [f64], f: &[f64], halo: &dyn Halo) -> f64 {
+        let (w, f) = (self.unknowns.packed(nodal_w), self.unknowns.packed(f));
+        self.learn(&w, &f);
+        let Products { right, both, mut energy } = self.products((&w, &f), halo);
         let mut du = w.clone();
-        for (j, weight) in least_squares(&self.products, &right).into_iter().enumerate() {
-            let secant = &self.secants[j];
-            for (du, (s, dw)) in du.iter_mut().zip(secant.s.iter().zip(&secant.dw)) {
-                *du -= weight * (s + dw);
-            }
-            energy -= weight * (along[j] + right[j]);
+        for ((weight, secant), both) in least_squares(&self.products, &right).into_iter().zip(&self.secants).zip(both) {
+            du.iter_mut().zip(&secant.both).for_each(|(du, both)| *du -= weight * both);
+            energy -= weight * both;
         }
-        self.last = Some(Last { s: du.clone(), w, f: f.to_vec() });
-        (du, energy)
+        self.unknowns.unpack(&du, nodal_w);
+        self.last = Some(Last { s: du, w, f });
+        energy
     }
 
     /// Tells how much of the last direction was taken: 1 for a full step.
@@ -62,8 +68,10 @@ impl Multisecant {
     /// Adds the secant of the last step, and forgets the oldest one if there are too many.
     fn learn(&mut self, w: &[f64], f: &[f64]) {
         let Some(last) = self.last.take() else { return };
-        let change = |now: &[f64], before: &[f64]| now.iter().zip(before).map(|(a, b)| a - b).collect();
-        self.secants.push(Secant { s: last.s, dw: change(w, &last.w), df: change(f, &last.f) });
+        let change = |now: &[f64], before: &[f64]| -> Vec<f64> { now.iter().zip(before).map(|(a, b)| a - b).collect() };
+        let (dw, df) = (change(w, &last.w), change(f, &last.f));
+        let both = last.s.iter().zip(&dw).map(|(s, dw)| s + dw).collect();
+        self.secants.push(Secant { both, dw, df });
         if self.secants.len() > MOST {
             self.secants.remove(0);
             self.products.remove(0);
@@ -74,29 +82,30 @@ impl Multisecant {
     }
 
     /// Products with the present force, from one reduction; rows of `products` are completed on the way.
-    fn products<const D: usize>(&mut self, (w, f): (&[f64], &[f64]), halo: &dyn Halo) -> Products {
-        let count = self.secants.len();
-        let newest = self.secants.last();
-        let among = newest
-            .into_iter()
-            .flat_map(|newest| self.secants.iter().map(move |secant| (newest.dw.as_slice(), secant.df.as_slice())));
-        let with_f = self.secants.iter().map(|secant| (secant.dw.as_slice(), f));
-        let along = self.secants.iter().map(|secant| (secant.s.as_slice(), f));
-        let mut row = dots(halo, D, &among.chain(with_f).chain(along).chain([(w, f)]).collect::<Vec<_>>());
+    fn products(&mut self, (w, f): (&[f64], &[f64]), halo: &dyn Halo) -> Products {
+        let Self { unknowns, secants, .. } = self;
+        let count = secants.len();
+        let newest = secants.last();
+        let among =
+            newest.into_iter().flat_map(|newest| secants.iter().map(|secant| unknowns.dot(&newest.dw, &secant.df)));
+        let with_f = secants.iter().map(|secant| unknowns.dot(&secant.dw, f));
+        let both = secants.iter().map(|secant| unknowns.dot(&secant.both, f));
+        let sums: Vec<_> = among.chain(with_f).chain(both).chain([unknowns.dot(w, f)]).collect();
+        let mut row = halo.total(&sums);
         let energy = row.split_off(3 * count)[0];
-        let along = row.split_off(2 * count);
+        let both = row.split_off(2 * count);
         let right = row.split_off(count);
         if count > 0 {
             self.products.push(row);
         }
-        Products { right, along, energy }
+        Products { right, both, energy }
     }
 }
 
 /// Products of the secants with the force f, N m.
 struct Products {
     right: Vec<f64>, // dw_j . f
-    along: Vec<f64>, // s_j . f
+    both: Vec<f64>,  // (s_j + dw_j) . f
     energy: f64,     // w . f
 }
 

@@ -9,6 +9,7 @@ use crate::step::equilibrium::{Found, Method, Scene, evaluate};
 use crate::step::multisecant::Multisecant;
 use crate::step::progress::{Progress, first_energy, inverted};
 use crate::step::residual::Residual;
+use crate::step::unknowns::Unknowns;
 
 /// Shortest part of a direction that is tried when points invert.
 const SHORTEST: f64 = 1.0 / 16.0;
@@ -44,10 +45,10 @@ pub enum Secants {
 }
 
 impl Secants {
-    /// Nothing seen yet.
-    pub fn new(method: QuasiNewton) -> Self {
+    /// Nothing seen yet of a system whose unknowns are the `free` components, `D` a node.
+    pub fn new<const D: usize>(method: QuasiNewton, free: &[bool], halo: &dyn Halo) -> Self {
         match method {
-            QuasiNewton::Multisecant => Self::Multisecant(Multisecant::default()),
+            QuasiNewton::Multisecant => Self::Multisecant(Multisecant::new(Unknowns::of::<D>(free, halo))),
             QuasiNewton::Broyden => Self::Broyden(Broyden::default()),
         }
     }
@@ -62,7 +63,10 @@ impl Secants {
         let mut w = vec![0.0; f.len()];
         let linear_iterations = solver.solve(f, &mut w)?;
         let (du, energy) = match self {
-            Self::Multisecant(secants) => secants.correct::<D>(w, f, halo),
+            Self::Multisecant(secants) => {
+                let energy = secants.correct(&mut w, f, halo);
+                (w, energy)
+            }
             Self::Broyden(secants) => {
                 let du = secants.correct::<D>(w, halo);
                 let energy = dots(halo, D, &[(&du, f)])[0];
@@ -122,7 +126,7 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
     counts: &mut Counts,
     progress: &mut Progress,
 ) -> Result<Found<D>, Stopped> {
-    let mut secants = Secants::new(method);
+    let mut secants = Secants::new::<D>(method, &scene.nodes.free, scene.halo);
     let (mut best, mut least) = (u.clone(), residual.balance.norm);
     while progress.iterations() < scene.model.criteria.max_iterations && (patient || !progress.stalls()) {
         if progress.is_balanced(&residual.balance, scene) {

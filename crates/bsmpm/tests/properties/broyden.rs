@@ -33,7 +33,8 @@ fn updated(K: &DMatrix<f64>, (f_old, f_new): (&DVector<f64>, &DVector<f64>), d: 
 fn worst_difference(lengths: &[f64], seed: u64) -> f64 {
     let mut random = Random::new(seed);
     let mut K = stiffness(&mut random);
-    let (mut solver, halo, mut broyden) = (factorised(&K), Alone { nodes: N }, Secants::new(QuasiNewton::Broyden));
+    let (mut solver, halo) = (factorised(&K), Alone { nodes: N });
+    let mut broyden = Secants::new::<1>(QuasiNewton::Broyden, &[true; N], &halo);
     let mut f = DVector::from_vec(random.array(N));
     let mut worst = 0.0_f64;
     for &a in lengths {
@@ -80,7 +81,8 @@ fn shortened_steps_agree_with_the_dense_update() {
 fn a_nearly_singular_update_drops_the_history() {
     let mut random = Random::new(2);
     let K = stiffness(&mut random);
-    let (mut solver, halo, mut broyden) = (factorised(&K), Alone { nodes: N }, Secants::new(QuasiNewton::Broyden));
+    let (mut solver, halo) = (factorised(&K), Alone { nodes: N });
+    let mut broyden = Secants::new::<1>(QuasiNewton::Broyden, &[true; N], &halo);
     let f = random.array(N);
     let plain = broyden.direction::<1>(&f, &halo, &mut solver).unwrap().du;
     broyden.took(1.0);

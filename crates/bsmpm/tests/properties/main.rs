@@ -11,6 +11,7 @@ mod ghost;
 mod indicators;
 mod kinematics;
 mod linearised;
+mod multisecant;
 mod observe;
 mod points;
 mod rigid;

@@ -1,0 +1,73 @@
+//! All secants at once on linear problems, where they are as good as GMRES, and vectors of the unknowns alone.
+
+use crate::support::random::Random;
+use crate::support::solver::Skyline;
+use bsmpm::seam::{Alone, LinearSolver, Symmetry, dots};
+use bsmpm::step::quasi_newton::{QuasiNewton, Secants};
+use bsmpm::step::unknowns::Unknowns;
+use nalgebra::{DMatrix, DVector};
+
+const NODES: usize = 9;
+const SIZE: usize = 2 * NODES;
+
+/// Components held here and there, and a whole node.
+fn free() -> [bool; SIZE] {
+    std::array::from_fn(|c| ![0, 3, 8, 9, 17].contains(&c))
+}
+
+fn zero_where_held(vector: &DVector<f64>) -> DVector<f64> {
+    DVector::from_fn(SIZE, |c, _| if free()[c] { vector[c] } else { 0.0 })
+}
+
+/// A symmetric positive matrix whose rows and columns of held components are those of the identity.
+fn matrix(random: &mut Random, spread: f64) -> DMatrix<f64> {
+    let A = DMatrix::from_fn(SIZE, SIZE, |_, _| spread * random.signed());
+    let full = &A * A.transpose() / SIZE as f64 + DMatrix::identity(SIZE, SIZE);
+    let both = |i: usize, j: usize| free()[i] && free()[j];
+    DMatrix::from_fn(SIZE, SIZE, |i, j| if both(i, j) { full[(i, j)] } else { f64::from(u8::from(i == j)) })
+}
+
+#[test]
+fn a_linear_problem_takes_one_direction_more_than_it_has_unknowns_whatever_is_factorised() {
+    let unknowns = free().iter().filter(|free| **free).count();
+    for seed in 0..10 {
+        let mut random = Random::new(seed);
+        let (K, K_0) = (matrix(&mut random, 2.0), matrix(&mut random, 0.5));
+        let halo = Alone { nodes: NODES };
+        let mut solver = Skyline::of_patches(2, (0..NODES).collect());
+        solver.begin(&free());
+        solver.add(0, K_0.as_slice());
+        solver.finish(Symmetry::Definite).unwrap();
+        let mut secants = Secants::new::<2>(QuasiNewton::Multisecant, &free(), &halo);
+        let (b, mut u) = (zero_where_held(&DVector::from_vec(random.array(SIZE))), DVector::zeros(SIZE));
+        let mut norms = vec![b.norm()];
+        for _ in 0..=unknowns {
+            let f = zero_where_held(&(&b - &K * &u));
+            let found = secants.direction::<2>(f.as_slice(), &halo, &mut solver).unwrap();
+            let du = DVector::from_vec(found.du);
+            assert_eq!(zero_where_held(&du), du);
+            assert!((found.energy - du.dot(&f)).abs() <= 1e-10 * du.norm() * f.norm());
+            secants.took(1.0);
+            u += du;
+            norms.push(zero_where_held(&(&b - &K * &u)).norm());
+        }
+        let (first, last) = (norms[0], norms[norms.len() - 1]);
+        assert!(last <= 1e-8 * first && norms[2] > 1e-3 * first, "{norms:?}");
+    }
+}
+
+#[test]
+fn packed_vectors_have_the_products_of_nodal_ones_and_come_back() {
+    let mut random = Random::new(4);
+    let halo = Alone { nodes: NODES };
+    let unknowns = Unknowns::of::<2>(&free(), &halo);
+    let vector = |random: &mut Random| zero_where_held(&DVector::from_vec(random.array(SIZE)));
+    let (a, b) = (vector(&mut random), vector(&mut random));
+    let (packed_a, packed_b) = (unknowns.packed(a.as_slice()), unknowns.packed(b.as_slice()));
+    assert_eq!(packed_a.len(), free().iter().filter(|free| **free).count());
+    let whole = dots(&halo, 2, &[(a.as_slice(), b.as_slice())])[0];
+    assert!((unknowns.dot(&packed_a, &packed_b).value() - whole).abs() <= 1e-14);
+    let mut nodal = vec![0.0; SIZE];
+    unknowns.unpack(&packed_a, &mut nodal);
+    assert_eq!(nodal, a.as_slice());
+}
