@@ -57,7 +57,7 @@ const PRESETS: [Preset; 3] = [
     },
     Preset {
         across: 40.0,
-        along: 16.0,
+        along: 12.0,
         points: 4,
         crossed: 2.0,
         advance: 0.125,
