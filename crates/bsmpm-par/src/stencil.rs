@@ -127,7 +127,10 @@ impl<const D: usize> Stencil<D> {
     /// Adds the dense block of `nodes`, the lowest first.
     pub fn add_among(&mut self, nodes: &[usize], block: &[f64]) {
         let numbers: Vec<usize> = nodes.iter().map(|&node| self.places.number_of(node)).collect();
-        let slot: Vec<usize> = numbers.iter().flat_map(|a| numbers.iter().map(|b| self.places.of(*a, *b))).collect();
+        let mut slot = Vec::with_capacity(block.len() / (D * D));
+        for a in &numbers {
+            slot.extend(numbers.iter().map(|b| self.places.of(*a, *b)));
+        }
         let offsets: Vec<usize> = nodes.iter().map(|node| node - nodes[0]).collect();
         self.add_blocks(nodes[0], &offsets, &slot, block);
     }

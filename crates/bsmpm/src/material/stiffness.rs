@@ -7,7 +7,7 @@
 
 use super::tangent::{PAIRS, principal, slope};
 use super::{Region, Response};
-use crate::tensor::Tensor;
+use crate::tensor::{Square, Tensor};
 use std::f64::consts::FRAC_1_SQRT_2;
 
 /// Share of the elastic stiffness. Without any, a guess that yields where the solution does not sends the first direction far
@@ -57,15 +57,30 @@ impl Stiffness {
         }
     }
 
-    /// The change of stress in Pa for a displacement gradient `l`: `D_AB ε_BB` and `2 G_AB ε_AB`, ε its symmetric part.
-    pub fn apply(&self, l: &Tensor) -> Tensor {
-        let strain = self.axes * (0.5 * (l + l.transpose())) * self.axes.transpose();
-        let mut stress = Tensor::from_diagonal(&(self.principal * strain.diagonal()));
-        for ((a, b), shear) in PAIRS.into_iter().zip(self.shear) {
-            stress[(a, b)] = 2.0 * shear * strain[(a, b)];
-            stress[(b, a)] = stress[(a, b)];
+    /// The change of stress in Pa for a displacement gradient of a grid's dimension, one unit gradient after the other: in
+    /// the axes of b `D_AB ε_BB` and `2 G_AB ε_AB`, ε its symmetric part. `seen` is what the grid sees of a stress, the
+    /// adjoint of what makes its gradient a tensor.
+    ///
+    /// `Σ D_AB v_A ⊗ v_B + Σ G_AB w_AB ⊗ w_AB`, v_A what it sees of `n_A n_Aᵀ`, w_AB of `n_A n_Bᵀ + n_B n_Aᵀ`: so that no
+    /// unit has to be turned to the axes of b and its stress back.
+    #[inline(always)]
+    pub fn moduli<const D: usize>(&self, seen: impl Fn(&Tensor) -> Square<D>) -> [[Square<D>; D]; D] {
+        let n = |a: usize, i: usize| self.axes[(a, i)];
+        let dyad = |a: usize| seen(&Tensor::from_fn(|i, j| n(a, i) * n(a, j)));
+        let pair = |(a, b): (usize, usize)| seen(&Tensor::from_fn(|i, j| n(a, i) * n(b, j) + n(b, i) * n(a, j)));
+        let (v, w) = ([dyad(0), dyad(1), dyad(2)], [pair(PAIRS[0]), pair(PAIRS[1]), pair(PAIRS[2])]);
+        let mut moduli = [[Square::zeros(); D]; D];
+        for m in 0..3 {
+            let [a, b, c] = [self.principal[(m, 0)], self.principal[(m, 1)], self.principal[(m, 2)]];
+            let (stress, shear) = (v[0] * a + v[1] * b + v[2] * c, w[m] * self.shear[m]);
+            for k in 0..D {
+                for l in k..D {
+                    moduli[k][l] += stress * v[m][(k, l)] + shear * w[m][(k, l)];
+                    moduli[l][k] = moduli[k][l];
+                }
+            }
         }
-        self.axes.transpose() * stress * self.axes
+        moduli
     }
 }
 

@@ -63,12 +63,14 @@ impl Dilations {
         let mut values = [0.0; 27];
         let values = &mut values[..lower.offsets().len()];
         lower.values_into(p, values);
-        for (numbers, A) in self.numbers.chunks_exact_mut(self.of_function).zip(values) {
-            numbers[0] += *A * share.weight;
-            numbers[1] += *A * share.weight * share.bulk;
-            for (sums, vector) in numbers[HEAD..].chunks_exact_mut(D).zip(share.dilation.iter().chain(share.force)) {
-                for i in 0..D {
-                    sums[i] += *A * vector[i];
+        for (h, A) in values.iter().enumerate() {
+            let (head, sums) = self.numbers[h * self.of_function..][..self.of_function].split_at_mut(HEAD);
+            head[0] += *A * share.weight;
+            head[1] += *A * share.weight * share.bulk;
+            let (dilation, force) = sums.split_at_mut(share.dilation.len() * D);
+            for (sums, vectors) in [(dilation, share.dilation), (force, share.force)] {
+                for (sums, vector) in sums.chunks_exact_mut(D).zip(vectors) {
+                    (0..D).for_each(|i| sums[i] += *A * vector[i]);
                 }
             }
         }
@@ -143,7 +145,10 @@ impl Coupling {
             }
             let factor = if self.raised == Raised::Own { 1.0 } else { bulk / weight };
             block.clear();
-            block.extend(f.iter().flat_map(|f| g.iter().map(move |g| factor / weight * f * g)));
+            for f in &f {
+                let scaled = factor / weight * f;
+                block.extend(g.iter().map(|g| scaled * g));
+            }
             solver.add_among(&nodes, &block);
         }
     }

@@ -172,17 +172,17 @@ pub enum Pairs {
 /// Adds grad N_a . moduli . grad N_b of one point to the block of its patch.
 pub fn add_point<const D: usize>(moduli: &Moduli<D>, grad: &[Vector<D>], pairs: Pairs, block: &mut [f64]) {
     let order = grad.len() * D;
-    for (b, grad_b) in grad.iter().enumerate() {
-        let rows = if pairs == Pairs::All { grad.len() } else { b + 1 };
-        for (k, row) in moduli.iter().enumerate() {
-            let mut along = Square::<D>::zeros();
-            for (unit, component) in row.iter().zip(grad_b.iter()) {
-                along += unit * *component;
-            }
-            for (a, grad_a) in grad[..rows].iter().enumerate() {
-                let force = along * grad_a;
-                for i in 0..D {
-                    block[(a * D + i) * order + b * D + k] += force[i];
+    for (a, grad_a) in grad.iter().enumerate() {
+        // Along the rows, so that nodes b follow each other in memory: D numbers of each row for one product.
+        let first = if pairs == Pairs::All { 0 } else { a };
+        for i in 0..D {
+            let row = &mut block[(a * D + i) * order..][..order];
+            let along: [[f64; D]; D] = std::array::from_fn(|l| {
+                std::array::from_fn(|k| (0..D).map(|j| moduli[k][l][(i, j)] * grad_a[j]).sum())
+            });
+            for (entries, grad_b) in row[first * D..].chunks_exact_mut(D).zip(&grad[first..]) {
+                for k in 0..D {
+                    entries[k] += (0..D).map(|l| along[l][k] * grad_b[l]).sum::<f64>();
                 }
             }
         }

@@ -80,6 +80,8 @@ impl<K: Kinematics<D>, const D: usize> State<'_, K, D> {
         let mut part = Part { block: vec![0.0; (size * D).pow(2)], dilations: coupling.map(Coupling::of_patch::<D>) };
         let mut moments = vec![Square::<D>::zeros(); size * size];
         let mut grad = [Vector::zeros(); MOST];
+        // Responses follow each other, so that what one has to wait for passes with the next one.
+        let yielding: Vec<Option<Stiffness>> = patch.points.clone().map(|p| self.yielding(p)).collect();
         for run in runs_of_one_material(patch, &points.material) {
             moments.fill(Square::zeros());
             let material = &model.materials[usize::from(points.material[run.start])];
@@ -87,7 +89,8 @@ impl<K: Kinematics<D>, const D: usize> State<'_, K, D> {
             // What F-bar averages of isotropic stiffness is lambda + 2 mu/dof times the dilation; the rest has -2 mu/dof.
             let averaged = 2.0 * mu * K::dilation().norm_squared();
             for p in run {
-                self.add((p, &mut grad[..size]), lambda + averaged, &mut moments, &mut part);
+                let stiffness = yielding[p - patch.points.start].as_ref();
+                self.add((p, &mut grad[..size]), (stiffness, lambda + averaged), &mut moments, &mut part);
             }
             let lambda = if coupling.is_some() { -averaged } else { lambda };
             add_elastic::<K, D>(&moments, (lambda, mu), &mut part.block);
@@ -99,15 +102,28 @@ impl<K: Kinematics<D>, const D: usize> State<'_, K, D> {
         part
     }
 
-    /// Adds a point: to the `moments` of its material where it is elastic, and where it yields to the block; its dilation,
-    /// against which elastic material has the stiffness `bulk` in Pa, where that is averaged. `grad` is room to work.
-    fn add(&self, (p, grad): (usize, &mut [Vector<D>]), bulk: f64, moments: &mut [Square<D>], part: &mut Part) {
-        let Self { model, shape, nodes, points, at, coupling } = *self;
+    /// The stiffness of point `p` where the state yields.
+    #[inline(always)]
+    fn yielding(&self, p: usize) -> Option<Stiffness> {
+        self.at?.respond(self.model, self.points, p).ok()?.yielding()
+    }
+
+    /// Adds a point: to the `moments` of its material where it is elastic, and where it yields with a stiffness of its own
+    /// to the block; its dilation, against which elastic material has the stiffness `bulk` in Pa, where that is averaged.
+    /// `grad` is room to work.
+    fn add(
+        &self,
+        (p, grad): (usize, &mut [Vector<D>]),
+        (stiffness, bulk): (Option<&Stiffness>, f64),
+        moments: &mut [Square<D>],
+        part: &mut Part,
+    ) {
+        let Self { model, shape, nodes, points, coupling, .. } = *self;
         transfer::gradients_of(shape, p, grad);
         let volume = points.volume[p];
-        let bulk = match at.and_then(|trial| trial.respond(model, points, p).ok()?.yielding()) {
+        let bulk = match stiffness {
             Some(stiffness) => {
-                let (moduli, bulk) = of_point::<K, D>(&stiffness, volume, coupling.is_some());
+                let (moduli, bulk) = of_point::<K, D>(stiffness, volume, coupling.is_some());
                 add_point(&moduli, grad, Pairs::Upper, &mut part.block);
                 bulk
             }
@@ -127,26 +143,17 @@ impl<K: Kinematics<D>, const D: usize> State<'_, K, D> {
 
 /// V0 D_p of a point that yields, one unit gradient after the other, and its stiffness against dilation in Pa; where that is
 /// `averaged` it is no part of the first.
+#[inline]
 fn of_point<K: Kinematics<D>, const D: usize>(stiffness: &Stiffness, volume: f64, averaged: bool) -> (Moduli<D>, f64) {
-    let dilation = K::dilation();
-    let bulk = stiffness.apply(&dilation).dot(&dilation);
-    let unit = |k: usize, l: usize| {
-        let mut grad = Square::<D>::zeros();
-        grad[(k, l)] = 1.0;
-        let l = K::gradient(&grad);
-        let stress = if averaged {
-            let stress = stiffness.apply(&(l - dilation * l.trace()));
-            stress - Tensor::identity() * stress.dot(&dilation)
-        } else {
-            stiffness.apply(&l)
-        };
-        K::in_plane(&stress) * volume
-    };
-    // It sees the strain only: unit (k, l) is unit (l, k).
-    let units: [[Square<D>; D]; D] =
-        std::array::from_fn(|k| std::array::from_fn(|l| if l < k { Square::zeros() } else { unit(k, l) }));
-    let moduli = std::array::from_fn(|k| std::array::from_fn(|l| units[k.min(l)][k.max(l)]));
-    (moduli, bulk)
+    let dilation = K::dilation().diagonal();
+    let works = |stress: &Tensor| stress.diagonal().dot(&dilation);
+    let [[bulk]] = stiffness.moduli(|stress| Square::<1>::new(works(stress)));
+    let mut moduli = stiffness.moduli(|stress| {
+        let mean = if averaged { works(stress) } else { 0.0 };
+        K::in_plane(&(stress - Tensor::identity() * mean))
+    });
+    moduli.iter_mut().flatten().for_each(|unit| *unit *= volume);
+    (moduli, bulk.x)
 }
 
 /// Adds strips, faces of the background and inertia to a matrix whose patches are assembled, and factorises it.
