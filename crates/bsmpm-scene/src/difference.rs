@@ -10,10 +10,8 @@ use std::collections::BTreeMap;
 use std::fmt;
 
 /// Keys with which a run may go on changed: they say how far, how finely and how it is told, not what is solved.
-const FREE: [&str; 13] = [
+const FREE: [&str; 12] = [
     "title",
-    // What it stands for counts, key by key.
-    "accuracy",
     "analysis.dt",
     "analysis.steps",
     "solver.nonlinear",

@@ -1,8 +1,8 @@
 //! `accuracy = "draft" | "standard" | "reference"`: what a case leaves out of its discretisation is filled in before it is
 //! held against the schema, so that all that follows sees ordinary keys, and any key given by hand wins.
 //!
-//! The presets are defined here and nowhere else. What they cost and how far they are off, on column, slope and footing, is
-//! measured by `scripts/presets` and stands in the README.
+//! The presets are defined here and nowhere else. What they cost on column, slope and footing, and what they give beside the
+//! paper's own discretisation, is measured by `scripts/presets` and stands in the README.
 
 mod scene;
 
@@ -66,6 +66,9 @@ const PRESETS: [Preset; 3] = [
     },
 ];
 
+/// Cells across the thinnest body below which a warning is told.
+const FEWEST: f64 = 2.0;
+
 /// Of every preset: splines of this order, and where a material could lock this against it.
 const ORDER: &str = "\"quadratic\"";
 const METHOD: &str = "\"consistent-f-bar\"";
@@ -84,12 +87,15 @@ pub(crate) fn fill(
     let scene = Scene::of(&record);
     let mut filling = Filling { document, origin, name, report, filled: false };
     filling.put("grid", &["order"], ORDER, "");
-    if let Some((cell, why)) = scene.cell(preset) {
-        filling.put("grid", &["cell", "knots"], &cell, &why);
+    let cells = scene.cells(preset);
+    if let Some(cells) = &cells
+        && filling.put("grid", &["cell", "knots"], &cells.value, &cells.why)
+    {
+        filling.doubt(cells.edge, scene.thinnest());
     }
     filling.points(preset.points);
     // The cells that a case gives by hand count, too.
-    if let Some((steps, why)) = scene.steps(preset) {
+    if let Some((steps, why)) = scene.steps(preset, cells.map(|cells| cells.edge)) {
         filling.put("analysis", &["steps", "dt"], &steps.to_string(), &why);
     }
     if let Some(why) = scene.locks() {
@@ -98,7 +104,13 @@ pub(crate) fn fill(
     let [energy, force] = preset.tolerances;
     filling.put("solver", &["tolerance"], energy, "");
     filling.put("solver", &["force_tolerance"], force, "");
-    filling.filled
+    let filled = filling.filled;
+    if !filled {
+        report.warn(format!("{ACCURACY}: every key that it stands for is given; it does nothing"));
+    }
+    // The document is complete: under another word it would still be this case.
+    document.entries.retain(|entry| entry.key != ACCURACY);
+    filled
 }
 
 /// The word that the case gives, if it is one of them, and its place.
@@ -118,18 +130,30 @@ struct Filling<'a, 'r> {
 }
 
 impl Filling<'_, '_> {
-    /// Gives the first of these keys of a table the value, unless one of them is given.
-    fn put(&mut self, table: &str, keys: &[&str], value: &str, why: &str) {
+    /// Gives the first of these keys of a table the value, unless one of them is given; whether it did.
+    fn put(&mut self, table: &str, keys: &[&str], value: &str, why: &str) -> bool {
         let origin = self.origin;
         if self.document.get(table).is_none() {
             let node = Node { origin, value: Value::Table(Table::default()) };
             self.document.entries.push(Entry { key: table.to_owned(), origin, node });
         }
         let Some(Entry { node: Node { value: Value::Table(inner), .. }, .. }) = self.document.get_mut(table) else {
-            return;
+            return false;
         };
-        if keys.iter().all(|key| inner.get(key).is_none()) && insert(inner, keys[0], value, origin) {
+        let put = keys.iter().all(|key| inner.get(key).is_none()) && insert(inner, keys[0], value, origin);
+        if put {
             self.tell(&format!("{table}.{}", keys[0]), value, why);
+        }
+        put
+    }
+
+    /// Warns of cells (m) that are too wide for the thinnest body.
+    fn doubt(&mut self, cell: f64, thinnest: Option<f64>) {
+        if let Some(side) = thinnest.filter(|side| *side < FEWEST * cell) {
+            let name = self.name;
+            self.report.warn(format!(
+                "{ACCURACY}: the cells of {cell} m of \"{name}\" are fewer than {FEWEST} across a body of {side} m; give grid.cell"
+            ));
         }
     }
 

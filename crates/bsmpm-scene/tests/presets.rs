@@ -56,10 +56,20 @@ fn steps_follow_the_shear_wave_the_motion_or_the_least_number() {
     assert!((column.analysis.dt / graded.analysis.dt - 2.0_f64.sqrt()).abs() < 0.01);
     let steps = |case: &Case| (case.analysis.end / case.analysis.dt).round();
     assert_eq!(steps(&valid(SLOPE, &["accuracy=draft"])), 10.0);
-    // 2 m down in quarters of cells of .25 m; a path there and back is twice as long.
+    // 2 m down in quarters of cells of .25 m; the fastest part of a path counts, up to the end.
     assert_eq!(steps(&valid(FOOTING, &["accuracy=draft"])), 32.0);
     let path = "footing.path=[[0.5, 0.0, -2.0], [1.0, 0.0, 0.0]]";
     assert_eq!(steps(&valid(FOOTING, &["accuracy=draft", path])), 64.0);
+    let early = "footing.path=[[0.1, 0.0, -2.0], [0.9, 0.0, -2.0], [1.0, 0.0, -2.1]]";
+    assert_eq!(steps(&valid(FOOTING, &["accuracy=draft", early])), 320.0);
+    let late = "footing.path=[[1.0, 0.0, -2.0], [1.1, 0.0, -9.0]]";
+    assert_eq!(steps(&valid(FOOTING, &["accuracy=draft", late])), 32.0);
+    // What no body is made of does not count.
+    let unused = [
+        "accuracy=draft",
+        "material.steel={ model = \"tresca\", young = 2e11, poisson = 0.3, cohesion = 1e8, density = 7800.0 }",
+    ];
+    assert_eq!(valid(COLUMN, &unused).analysis.dt, valid(COLUMN, &unused[..1]).analysis.dt);
     assert_eq!(steps(&valid(FOOTING, &["accuracy=draft", "footing.velocity=[0.0, -1.0]"])), 16.0);
 }
 
@@ -99,8 +109,10 @@ fn the_effective_text_is_complete_and_stays_the_same() {
         let case = valid(text, &[]);
         let again = valid(&case.text, &[]);
         assert_eq!((&again.text, &again.grid, &again.analysis), (&case.text, &case.grid, &case.analysis));
-        let complete = valid(&case.text.replace("accuracy = \"standard\"\n", ""), &[]);
-        assert_eq!((&complete.grid, &complete.analysis, &complete.bodies), (&case.grid, &case.analysis, &case.bodies));
+        assert!(!case.text.contains("accuracy") && case.warnings.is_empty(), "{}", case.text);
+        // Under another word it would be the same case, and says so.
+        let other = valid(&case.text, &["accuracy=draft"]);
+        assert!(other.grid == case.grid && other.warnings[0].contains("it does nothing"), "{:?}", other.warnings);
         assert_eq!(differences(text, &case.text).unwrap(), []);
         assert!(!differences(text, &text.replace("standard", "draft")).unwrap().is_empty());
     }
@@ -117,6 +129,16 @@ fn cells_fit_between_faces_that_stay() {
     let moved = "prescribed.0={ face = \"top\", displacement = [0.0, -0.01], components = \"normal\" }";
     let case = valid(COLUMN, &[moved, "grid.upper=[0.55, 0.1]", "body.0.box.upper=[0.55, 0.1]"]);
     assert_eq!(case.grid.axes[1].cells(), 20);
+}
+
+#[test]
+fn cells_too_wide_for_a_body_are_warned_of() {
+    let lining = "body.1={ material = \"rods\", box = { lower = [0.3, 0.0], upper = [0.315, 0.1] } }";
+    let warned = |word: &str| {
+        let case = valid(COLUMN, &[&format!("accuracy={word}"), lining]);
+        case.warnings.iter().any(|warning| warning.contains("fewer than 2 across a body of 0.015"))
+    };
+    assert!(warned("draft") && !warned("standard"));
 }
 
 #[test]

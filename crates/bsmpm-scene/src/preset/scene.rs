@@ -5,6 +5,15 @@ use crate::record::Record;
 use crate::region;
 use crate::validate::STANDARD_GRAVITY;
 
+/// Cells that a preset chooses.
+pub(super) struct Cells {
+    /// TOML
+    pub value: String,
+    /// m  the shorter edge
+    pub edge: f64,
+    pub why: String,
+}
+
 /// Poisson's ratio above which elastic material is taken to lock.
 const NEARLY_INCOMPRESSIBLE: f64 = 0.45;
 /// Steps at most that are filled in: more are the author's to ask for.
@@ -20,8 +29,8 @@ impl<'a> Scene<'a> {
         Self { root }
     }
 
-    /// Edge of the cells as TOML, and why. Along an axis between two faces that stay they come out whole.
-    pub(super) fn cell(&self, preset: &Preset) -> Option<(String, String)> {
+    /// The cells. Along an axis between two faces that stay they come out whole.
+    pub(super) fn cells(&self, preset: &Preset) -> Option<Cells> {
         let (size, why) = self.size(preset)?;
         let (grid, boundary) = (self.root.record("grid")?, self.root.record("boundary")?);
         let (lower, upper) = (grid.pair("lower")?, grid.pair("upper")?);
@@ -36,7 +45,13 @@ impl<'a> Scene<'a> {
         let [x, y] = [edge(0), edge(1)];
         let sound = |edge: f64| edge > 0.0 && edge.is_finite();
         let value = if x == y { format!("{x:?}") } else { format!("[{x:?}, {y:?}]") };
-        (sound(x) && sound(y)).then_some((value, why))
+        (sound(x) && sound(y)).then_some(Cells { value, edge: x.min(y), why })
+    }
+
+    /// m  the shorter side of the thinnest body's rectangle
+    pub(super) fn thinnest(&self) -> Option<f64> {
+        let side = |[lower, upper]: [[f64; 2]; 2]| (upper[0] - lower[0]).min(upper[1] - lower[1]);
+        self.root.records("body").iter().filter_map(around).map(side).reduce(f64::min)
     }
 
     /// m  what the preset wants, and why
@@ -51,10 +66,10 @@ impl<'a> Scene<'a> {
         })
     }
 
-    /// Number of steps, and why.
-    pub(super) fn steps(&self, preset: &Preset) -> Option<(u64, String)> {
+    /// Number of steps for cells whose shorter edge is `chosen` (m), unless the case gives its own, and why.
+    pub(super) fn steps(&self, preset: &Preset, chosen: Option<f64>) -> Option<(u64, String)> {
         let analysis = self.root.record("analysis")?;
-        let cell = self.shortest().or_else(|| self.size(preset).map(|(size, _)| size))?;
+        let cell = self.shortest().or(chosen)?;
         let (steps, why) = if analysis.word("type")? == "dynamic" {
             let crossed = preset.crossed;
             (
@@ -62,9 +77,9 @@ impl<'a> Scene<'a> {
                 format!("a shear wave crosses {crossed} cells in each"),
             )
         } else {
-            let (steps, advance) = (self.travel() / (preset.advance * cell), preset.advance);
+            let (steps, advance) = (self.fastest() / (preset.advance * cell), preset.advance);
             if steps > preset.steps {
-                (steps, format!("what is moved moves {advance} cells in each"))
+                (steps, format!("what is moved moves {advance} cells in each at most"))
             } else {
                 (preset.steps, "so many at least".to_owned())
             }
@@ -76,13 +91,12 @@ impl<'a> Scene<'a> {
 
     /// What there is to lock, if any.
     pub(super) fn locks(&self) -> Option<&'static str> {
-        let materials = || self.root.named("material").iter().map(|(_, material)| material);
-        if materials().any(|material| material.word("model").is_some_and(|model| model != "hencky")) {
+        if self.materials().any(|material| material.word("model").is_some_and(|model| model != "hencky")) {
             return Some("plastic material locks without");
         }
         let stiff =
             |material: &Record| material.number("poisson").is_some_and(|poisson| poisson > NEARLY_INCOMPRESSIBLE);
-        materials().any(stiff).then_some("nearly incompressible material locks without")
+        self.materials().any(stiff).then_some("nearly incompressible material locks without")
     }
 
     /// m  corners of the rectangle around all bodies, whatever is cut out of them
@@ -110,34 +124,43 @@ impl<'a> Scene<'a> {
         axes.flat_map(|axis| axis.windows(2).map(|pair| pair[1] - pair[0])).reduce(f64::min).filter(|edge| *edge > 0.0)
     }
 
-    /// m  the longest way of what is moved
-    fn travel(&self) -> f64 {
+    /// m  what is moved at its fastest would come so far in the whole run
+    fn fastest(&self) -> f64 {
         let end = self.root.record("analysis").and_then(|analysis| analysis.number("end")).unwrap_or(1.0);
+        let norm = |[x, y]: [f64; 2]| x.hypot(y);
         let way = |record: &Record| -> f64 {
-            let norm = |[x, y]: [f64; 2]| x.hypot(y);
-            let rows = record.rows("path").unwrap_or_default();
-            // A path may come back: its ways add up.
-            let points = std::iter::once([0.0; 2]).chain(rows.iter().map(|row| [row.numbers[1], row.numbers[2]]));
-            let along: Vec<[f64; 2]> = points.collect();
-            let path: f64 = along.windows(2).map(|pair| norm([pair[1][0] - pair[0][0], pair[1][1] - pair[0][1]])).sum();
-            let straight = record.pair("displacement").map_or(0.0, norm);
-            path + straight + record.pair("velocity").map_or(0.0, norm) * end
+            let rows = record.rows("path").unwrap_or_default().iter().map(|row| &row.numbers[..]);
+            let places: Vec<&[f64]> = std::iter::once(&[0.0; 3][..]).chain(rows).collect();
+            let speed = |pair: &[&[f64]]| {
+                let [t, x, y] = [0, 1, 2].map(|k| pair[1][k] - pair[0][k]);
+                if t > 0.0 && pair[0][0] < end { norm([x, y]) / t } else { 0.0 }
+            };
+            let path = places.windows(2).map(speed).fold(0.0, f64::max) * end;
+            let steady = record.pair("velocity").map_or(0.0, norm) * end;
+            path + steady + record.pair("displacement").map_or(0.0, norm)
         };
         let moved = self.root.record("footing").into_iter().chain(self.root.records("prescribed"));
         moved.map(way).fold(0.0, f64::max)
     }
 
+    /// Materials that bodies are made of.
+    fn materials(&self) -> impl Iterator<Item = &Record> {
+        let bodies = self.root.records("body");
+        let is_used = move |name: &str| bodies.iter().any(|body| body.text("material") == Some(name));
+        self.root.named("material").iter().filter(move |(name, _)| is_used(name)).map(|(_, material)| material)
+    }
+
     /// m/s  fastest shear wave in the bodies' materials, at the stiffest height
     fn shear_wave(&self) -> Option<f64> {
         let [lower, upper] = self.bounds()?;
-        let speed = |(_, material): &(String, Record)| {
+        let speed = |material: &Record| {
             let density =
                 material.number("density").or_else(|| Some(material.number("unit_weight")? / STANDARD_GRAVITY))?;
             let young =
                 material.number("young").or_else(|| stiffest(material.record("young")?, [lower[1], upper[1]]))?;
             Some((young / (2.0 * (1.0 + material.number("poisson")?)) / density).sqrt())
         };
-        self.root.named("material").iter().filter_map(speed).filter(|speed| speed.is_finite()).reduce(f64::max)
+        self.materials().filter_map(speed).filter(|speed| speed.is_finite()).reduce(f64::max)
     }
 }
 

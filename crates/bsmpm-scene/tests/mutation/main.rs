@@ -150,6 +150,9 @@ fn every_key_renamed_is_unknown_and_every_key_removed_is_missed_if_it_must_be_th
                 base.contains("\naccuracy = ") && ["points_per_cell", "order", "method"].contains(&written.of.1);
             match written.presence {
                 Presence::Required if !is_filled => refuses(&removed, &written.path, "missing", None),
+                Presence::Required => {
+                    _ = read(&removed).unwrap_or_else(|errors| panic!("{}: {errors:?}", written.path))
+                }
                 _ => _ = read(&removed),
             }
         }

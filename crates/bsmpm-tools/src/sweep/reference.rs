@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use bsmpm_io::directory::HISTORY;
+use bsmpm_io::manifest::{Manifest, Status};
 use bsmpm_io::table;
 use serde::Serialize;
 
@@ -92,13 +93,14 @@ impl Reference {
 
 /// The quantities of a run that is not of the sweep.
 fn elsewhere(directory: &Path, quantities: &[Quantity]) -> Result<Vec<Vec<f64>>, Error> {
+    let refused = |reason: &str| Error::Usage { reason: format!("--reference {}: {reason}", directory.display()) };
+    let manifest = Manifest::read(directory).map_err(|error| refused(&error.to_string()))?;
+    if manifest.status == Status::Running || manifest.status == Status::Stopped {
+        return Err(refused("the run has not come to its end"));
+    }
     let history = table::read(&directory.join(HISTORY))?;
     let of = |quantity: &Quantity| quantity.values(&history);
-    quantities
-        .iter()
-        .map(of)
-        .collect::<Result<_, _>>()
-        .map_err(|reason| Error::Usage { reason: format!("--reference {}: {reason}", directory.display()) })
+    quantities.iter().map(of).collect::<Result<_, _>>().map_err(|reason| refused(&reason))
 }
 
 /// The finest run that has finished.

@@ -82,10 +82,12 @@ impl Arguments {
         own: &Case,
         cell: [f64; 2],
     ) -> Result<Order, Error> {
-        if self.time_step == TimeStep::Kept {
-            return Ok(order);
-        }
-        let step = own.analysis.dt * order.cell() / (cell[0] * cell[1]).sqrt();
+        let step = match self.time_step {
+            // Steps that a preset chooses would follow the cells.
+            TimeStep::Kept if order.case.analysis.dt == own.analysis.dt => return Ok(order),
+            TimeStep::Kept => own.analysis.dt,
+            TimeStep::Refined => own.analysis.dt * order.cell() / (cell[0] * cell[1]).sqrt(),
+        };
         set.push(format!("analysis.dt={step:?}"));
         Order::read(&self.case, bytes, set, 2).map_err(|errors| Error::BadCase { path: self.case.clone(), errors })
     }
@@ -109,6 +111,15 @@ mod tests {
     use super::*;
 
     const COLUMN: &str = include_str!("../../../../cases/short/column_collapse.toml");
+    const PRESET: &str = include_str!("../../../../cases/presets/column_collapse.toml");
+
+    #[test]
+    fn the_step_of_a_preset_is_kept_too() {
+        let line = Line::parse_from(["verify-case", "case.toml"]);
+        let grids = Grids::of(&line.arguments, PRESET.as_bytes()).unwrap();
+        let steps: Vec<f64> = grids.orders.iter().map(|order| order.case.analysis.dt).collect();
+        assert!(steps.iter().all(|dt| *dt == steps[0]) && grids.sizes[0] != grids.sizes[1], "{steps:?}");
+    }
 
     #[derive(Parser)]
     struct Line {

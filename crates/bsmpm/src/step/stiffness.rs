@@ -234,3 +234,41 @@ pub fn add_background<const D: usize>(soft: &[f64], block: &mut [f64]) {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kinematics::PlaneStrain;
+    use crate::material::{Elastic, Material, MohrCoulomb};
+    use crate::tensor::Symmetric;
+
+    /// One unit gradient after the other, each turned into a stress by the three-dimensional moduli: averaged, without the
+    /// part of its dilation, and without what the stress works on it.
+    #[test]
+    fn moduli_of_a_point_are_those_of_unit_gradients_averaged_or_not() {
+        let law = MohrCoulomb::new(Elastic { young: 1e3, poisson: 0.3 }, 0.4, 0.1, 1.0);
+        let b = Symmetric([1.02, 0.96, 0.99, 0.015, 0.0, 0.0]);
+        let stiffness = Material::MohrCoulomb(law).respond(&b).unwrap().yielding().expect("it yields");
+        let whole = stiffness.moduli(|stress: &Tensor| *stress);
+        let apply = |l: &Tensor| -> Tensor { (0..9).map(|at| whole[at / 3][at % 3] * l[(at / 3, at % 3)]).sum() };
+        let (volume, dilation) = (0.7, <PlaneStrain as Kinematics<2>>::dilation());
+        let expected_bulk = apply(&dilation).dot(&dilation);
+        for averaged in [false, true] {
+            let (moduli, bulk) = of_point::<PlaneStrain, 2>(&stiffness, volume, averaged);
+            assert!((bulk - expected_bulk).abs() <= 1e-12 * expected_bulk);
+            for (k, l) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+                let unit = Square::<2>::from_fn(|i, j| f64::from(u8::from((i, j) == (k, l))));
+                let mut strain = PlaneStrain::gradient(&unit);
+                if averaged {
+                    strain -= dilation * strain.trace();
+                }
+                let mut stress = apply(&strain);
+                if averaged {
+                    stress -= Tensor::identity() * stress.dot(&dilation);
+                }
+                let expected = <PlaneStrain as Kinematics<2>>::in_plane(&stress) * volume;
+                assert!((moduli[k][l] - expected).amax() <= 1e-10 * 1e3, "{averaged} {k}{l}: {expected}");
+            }
+        }
+    }
+}

@@ -2,7 +2,9 @@
 
 use crate::support::random::Random;
 use crate::support::solver::Skyline;
-use bsmpm::seam::{Alone, LinearSolver, Symmetry, dots};
+use bsmpm::exact::Exact;
+use bsmpm::grid::Contributions;
+use bsmpm::seam::{Alone, Halo, LinearSolver, Symmetry, dots};
 use bsmpm::step::quasi_newton::{QuasiNewton, Secants};
 use bsmpm::step::unknowns::Unknowns;
 use nalgebra::{DMatrix, DVector};
@@ -70,4 +72,36 @@ fn packed_vectors_have_the_products_of_nodal_ones_and_come_back() {
     let mut nodal = vec![0.0; SIZE];
     unknowns.unpack(&packed_a, &mut nodal);
     assert_eq!(nodal, a.as_slice());
+}
+
+/// A rank with three layers of three nodes, of which the middle one is its own.
+struct Between;
+
+impl Halo for Between {
+    fn owned(&self) -> std::ops::Range<usize> {
+        3..6
+    }
+    fn layer_nodes(&self) -> usize {
+        3
+    }
+    fn sum(&self, contributions: &Contributions) -> Vec<f64> {
+        contributions.alone()
+    }
+    fn share(&self, _: &mut [f64], _: usize) {}
+    fn max(&self, _: &mut [f64], _: usize) {}
+    fn reduce(&self, _: &mut [f64]) {}
+    fn total(&self, sums: &[Exact]) -> Vec<f64> {
+        sums.iter().map(Exact::value).collect()
+    }
+    fn maximum(&self, _: &mut [f64]) {}
+}
+
+#[test]
+fn ghosts_do_not_count_twice() {
+    let mut random = Random::new(5);
+    let (a, b) = (random.array(SIZE), random.array(SIZE));
+    let unknowns = Unknowns::of::<2>(&free(), &Between);
+    let own: f64 = (6..12).filter(|&c| free()[c]).map(|c| a[c] * b[c]).sum();
+    let found = unknowns.dot(&unknowns.packed(&a), &unknowns.packed(&b)).value();
+    assert!((found - own).abs() <= 1e-14 && own.abs() > 1e-3, "{found} {own}");
 }
