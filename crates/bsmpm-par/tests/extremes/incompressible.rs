@@ -18,8 +18,30 @@ const SETTLED: f64 = 0.853_305_216_7;
 /// Error of the height of a confined column of 20 cells, gravity in ten steps, over its length; or the physics' reason, which
 /// the program would end with 80 for.
 pub fn confined(poisson: f64, method: Stabilisation) -> Found {
+    column(poisson, method, 1.0)
+}
+
+/// The largest error of so many columns that differ by round-off alone, where it decides what is found; told if all are.
+pub fn confined_by_round_off(poisson: f64, method: Stabilisation, columns: i32) -> Found {
+    let mut worst = None;
+    for k in 0..columns {
+        let found = column(poisson, method, 1.0 + f64::from(k) * 1e-13);
+        worst = match (worst, found) {
+            (Some(Found::Figure(before, told)), Found::Figure(now, _)) if before >= now => {
+                Some(Found::Figure(before, told))
+            }
+            (Some(before @ Found::Figure(..)), Found::Told(..)) => Some(before),
+            (Some(before @ Found::Broken(_)), _) => Some(before),
+            (_, found) => Some(found),
+        };
+    }
+    worst.unwrap_or_else(|| Found::Broken("no columns".to_owned()))
+}
+
+/// A column with Young's modulus times `factor`.
+fn column(poisson: f64, method: Stabilisation, factor: f64) -> Found {
     let (cells, h) = (20, 0.05);
-    let young = (1.0 + poisson) * (1.0 - 2.0 * poisson) / (1.0 - poisson);
+    let young = factor * (1.0 + poisson) * (1.0 - 2.0 * poisson) / (1.0 - poisson);
     let mut scene =
         Scene::<PlaneStrain, 2>::new([axis(h, 1, 2), axis(h, cells, 2)], hencky(young, poisson), Regime::QuasiStatic)
             .body([0..1, 0..cells], 3, 1.0, |x| x * 0.0)
