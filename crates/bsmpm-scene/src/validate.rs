@@ -25,6 +25,8 @@ const MOST_STEPS: f64 = 1e9;
 pub(crate) const STANDARD_GRAVITY: f64 = 9.81;
 /// Relative difference from it that the rounded components of an inclined gravity may have.
 const NEARLY_STANDARD: f64 = 1e-6;
+/// Poisson's ratio above which elastic material is taken to lock.
+pub(crate) const NEARLY_INCOMPRESSIBLE: f64 = 0.45;
 
 /// The case that `record` describes; `text` is what was read. `None` after an error.
 pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Option<Case> {

@@ -3,7 +3,7 @@
 use super::Preset;
 use crate::record::Record;
 use crate::region;
-use crate::validate::STANDARD_GRAVITY;
+use crate::validate::{NEARLY_INCOMPRESSIBLE, STANDARD_GRAVITY};
 
 /// Cells that a preset chooses.
 pub(super) struct Cells {
@@ -14,8 +14,6 @@ pub(super) struct Cells {
     pub why: String,
 }
 
-/// Poisson's ratio above which elastic material is taken to lock.
-const NEARLY_INCOMPRESSIBLE: f64 = 0.45;
 /// Steps at most that are filled in: more are the author's to ask for.
 const MOST_STEPS: f64 = 1e8;
 

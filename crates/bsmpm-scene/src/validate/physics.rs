@@ -1,5 +1,6 @@
 //! What only the whole case shows: supports that hold it, and combinations that are doubtful.
 
+use super::NEARLY_INCOMPRESSIBLE;
 use super::material::strength;
 use super::place;
 use super::strip::{moves, normal};
@@ -114,7 +115,7 @@ fn warn_of_locking(case: &Case, report: &mut Report<'_>) {
         let poisson = named.material.elastic().poisson;
         let reason = match strength(&named.material, 0.0) {
             Some(_) => "is plastic".to_owned(),
-            _ if poisson > 0.45 => format!("has poisson = {poisson} > 0.45"),
+            _ if poisson > NEARLY_INCOMPRESSIBLE => format!("has poisson = {poisson} > {NEARLY_INCOMPRESSIBLE}"),
             _ => continue,
         };
         report.warn(format!(

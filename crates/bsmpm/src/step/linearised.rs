@@ -101,7 +101,7 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
         let Scene { shape, nodes, .. } = *self.scene;
         solver.begin(&nodes.free);
         let size = shape.offsets().len();
-        let mut grad = [Vector::<D>::zeros(); 64];
+        let mut grad = [Vector::<D>::zeros(); MOST];
         let grad = &mut grad[..size];
         let mut block = vec![0.0; (size * D).pow(2)];
         let mut coupling = Coupling::of(&self.scene.model.grid, nodes, Raised::Own);
@@ -138,7 +138,7 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
         add_point(&moduli, grad, Pairs::All, block);
         let weight = weights(model.weighting, points)[p];
         let (dilated, mean) = self.trial.means(model, points, p);
-        let [mut dilation, mut force] = [[Vector::<D>::zeros(); 64]; 2];
+        let [mut dilation, mut force] = [[Vector::<D>::zeros(); MOST]; 2];
         for ((dilation, force), grad) in dilation.iter_mut().zip(&mut force).zip(grad) {
             *dilation = trace * grad * (weight * dilated);
             *force = flux * grad / mean;
@@ -159,6 +159,9 @@ fn contract<const D: usize>(moduli: &Moduli<D>, grad: &Square<D>) -> Square<D> {
     }
     flux
 }
+
+/// Nodes of a point, at most: cubic splines in three dimensions.
+pub const MOST: usize = 64;
 
 /// Node pairs (a, b) of a patch.
 #[derive(Clone, Copy, PartialEq, Eq)]

@@ -15,14 +15,11 @@ use crate::points::Points;
 use crate::seam::{LinearSolver, Symmetry};
 use crate::step::coupling::{Coupling, Dilations, Raised, Share};
 use crate::step::equilibrium::Scene;
-use crate::step::linearised::{Moduli, Pairs, add_point};
+use crate::step::linearised::{MOST, Moduli, Pairs, add_point};
 use crate::step::nodes::Nodes;
 use crate::step::trial::Trial;
 use crate::tensor::{Square, Tensor, Vector};
 use rayon::prelude::*;
-
-/// Nodes of a point, at most: cubic splines in three dimensions.
-const MOST: usize = 64;
 
 /// Assembles K_0 patch by patch into `solver` and factorises it: at the state `at`, or, without any, of elastic material
 /// whose dilation is not averaged. One exchange with the neighbours where the average couples patches.
@@ -80,7 +77,7 @@ impl<K: Kinematics<D>, const D: usize> State<'_, K, D> {
         let mut part = Part { block: vec![0.0; (size * D).pow(2)], dilations: coupling.map(Coupling::of_patch::<D>) };
         let mut moments = vec![Square::<D>::zeros(); size * size];
         let mut grad = [Vector::zeros(); MOST];
-        // Responses follow each other, so that what one has to wait for passes with the next one.
+        // All of them first: responses of neighbours do not wait for each other.
         let yielding: Vec<Option<Stiffness>> = patch.points.clone().map(|p| self.yielding(p)).collect();
         for run in runs_of_one_material(patch, &points.material) {
             moments.fill(Square::zeros());
