@@ -40,7 +40,8 @@ fn print(universe: &Universe, file: &Path) -> Result<(), Refusal> {
         println!("{name} {}", blake3::hash(&bytes));
     }
     let guess = found.record.array("guess").expect("the nodal displacement");
-    let guess = opened.guess(0..guess.rows as usize, guess.width as usize)?;
+    let layers = 0..guess.rows as usize;
+    let guess = opened.guess(&layers, &layers, guess.width as usize)?;
     let bytes: Vec<u8> = guess.iter().flat_map(|value| value.to_le_bytes()).collect();
     println!("guess {}", blake3::hash(&bytes));
     let state = State::parse(&found.path, &opened.state()?)?;

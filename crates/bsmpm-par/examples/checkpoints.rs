@@ -96,9 +96,14 @@ fn read(universe: &Universe, hdf5: &Hdf5<'_>, wanted: Wanted<'_>, count: u64) ->
     let opened = Opened::new((hdf5, universe.world()), &found)?;
     let text = opened.state()?;
     opened.points(held.named_columns())?;
+    let layers = 0..2 * found.record.ranks as usize;
     for rank in 0..u64::from(found.record.ranks) {
         let at = (2 * rank) as usize;
-        assert_eq!(opened.guess(at..at + 2, WIDTH)?, guess(rank, found.record.step), "another displacement");
+        assert_eq!(
+            opened.guess(&layers, &(at..at + 2), WIDTH)?,
+            guess(rank, found.record.step),
+            "another displacement"
+        );
     }
     opened.close()?;
     let (rank, ranks) = (world.rank() as u64, world.size() as u64);

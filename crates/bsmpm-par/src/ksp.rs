@@ -103,7 +103,7 @@ impl<'p, const D: usize> KspSolver<'p, D> {
         if !self.planned {
             let mut bounds = vec![0; self.petsc.ranks()];
             world.all_gather_into(&self.grid.columns().start, &mut bounds[..]);
-            bounds.push(self.grid.axes()[0].cells());
+            bounds.push(self.grid.room()[0].end);
             self.direct.plan(&link, (&bounds, self.petsc.rank()), &self.grid, &self.free);
             self.planned = true;
         }

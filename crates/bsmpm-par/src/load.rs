@@ -17,13 +17,21 @@ const NODE: f64 = 0.45;
 /// evaluation takes .53 ms.
 const PRICE: f64 = 6.0;
 
-/// Points of this rank in every column of cells of the whole grid.
+/// Points of this rank in every column of cells of the grid's room.
 pub fn points_by_column<const D: usize>(grid: &Grid<D>, points: &Points<D>) -> Vec<f64> {
-    let mut counts = vec![0.0; grid.axes()[0].cells()];
-    for cell in points.x.iter().filter_map(|x| grid.locate(x)) {
-        counts[cell[0]] += 1.0;
+    let room = &grid.room()[0];
+    let mut counts = vec![0.0; room.len()];
+    for column in points.x.iter().filter_map(|x| grid.axes()[0].cell_of(x[0])).filter(|column| room.contains(column)) {
+        counts[column - room.start] += 1.0;
     }
     counts
+}
+
+/// The cut of the grid's room into about equal loads, with so many points of all ranks in every column; `None` with more
+/// ranks than columns.
+pub fn cut<const D: usize>(grid: &Grid<D>, points: &[f64], ranks: usize) -> Option<Slabs> {
+    let slabs = Slabs::cut(&by_column(points, grid.layer_nodes()), ranks)?;
+    Some(slabs.from(grid.room()[0].start).reaching(grid.beyond()))
 }
 
 /// Work of every column with so many points, and with the nodes of one layer.
@@ -38,8 +46,11 @@ pub fn of_rank(points: usize, nodes: usize) -> f64 {
 
 /// Work of every rank under a cut of columns with so many points, for splines of order `q`.
 pub fn of_slabs(points: &[f64], slabs: &Slabs, (layer_nodes, q): (usize, usize)) -> Vec<f64> {
-    let nodes = |rank: usize| slabs.layers(rank, q).len() * layer_nodes;
-    let held = |rank: usize| points[slabs.columns(rank)].iter().sum::<f64>() as usize;
+    let (nodes, first) = (|rank: usize| slabs.layers(rank, q).len() * layer_nodes, slabs.bounds()[0]);
+    let held = |rank: usize| {
+        let columns = slabs.columns(rank);
+        points[columns.start - first..columns.end - first].iter().sum::<f64>() as usize
+    };
     (0..slabs.ranks()).map(|rank| of_rank(held(rank), nodes(rank))).collect()
 }
 
@@ -68,8 +79,9 @@ mod tests {
     #[test]
     fn the_loads_of_slabs_are_those_of_the_ranks_that_hold_them() {
         let counts = [36.0, 0.0, 12.0, 8.0];
-        let slabs = Slabs::new(vec![0, 1, 4], 2, 4).unwrap();
+        let slabs = Slabs::new(vec![0, 1, 4], 2, 0..4).unwrap();
         assert_eq!(of_slabs(&counts, &slabs, (5, 2)), [of_rank(36, 15), of_rank(20, 25)]);
+        assert_eq!(of_slabs(&counts, &slabs.clone().from(3), (5, 2)), [of_rank(36, 15), of_rank(20, 25)]);
         // Each window has the ghost layers besides its columns.
         let columns = by_column(&counts, 5);
         assert_eq!(columns[0] + of_rank(0, 10), of_rank(36, 15));

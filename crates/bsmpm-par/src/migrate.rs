@@ -44,7 +44,20 @@ pub fn points<const D: usize>(
     points.sort_by_cell(grid);
 }
 
-/// Nodal values (`width` a node) under the old cut, moved to the windows of the new one.
+/// Nodal values (`width` a node) of a window of `old`, as a window of `new` with the same columns' layers has them: what
+/// lies outside the old room is zero.
+pub fn across<const D: usize>(old: &Grid<D>, new: &Grid<D>, values: &[f64], width: usize) -> Vec<f64> {
+    let mut room = new.room().clone();
+    room[0] = old.room()[0].clone();
+    let new = new.within(room).window(old.columns());
+    let value = |node: usize| {
+        let held = old.node_index(&new.node_at(node));
+        (0..width).map(move |number| held.map_or(0.0, |node| values[node * width + number]))
+    };
+    (0..new.nodes()).flat_map(value).collect()
+}
+
+/// Nodal values (`width` a node) under the old cut, moved to the windows of the new one; zero where there was none.
 pub fn nodal<const D: usize>(
     (world, traffic): (&SimpleCommunicator, &Traffic),
     (old, new): (&Slabs, &Slabs),

@@ -35,7 +35,7 @@ impl PointPlan {
 pub struct LayerPlan {
     /// what this rank tells, itself included, ascending by rank
     pub send: Vec<(usize, Range<usize>)>,
-    /// what it is told, ascending by rank: together its new window, each layer once
+    /// what it is told, ascending by rank: together what of its new window there was before, each layer once
     pub receive: Vec<(usize, Range<usize>)>,
 }
 
@@ -70,7 +70,7 @@ mod tests {
 
     #[test]
     fn each_new_window_is_told_every_layer_once_by_its_old_owner() {
-        let cut = |bounds: [usize; 5]| Slabs::new(bounds.to_vec(), 4, 12).unwrap();
+        let cut = |bounds: [usize; 5]| Slabs::new(bounds.to_vec(), 4, 0..12).unwrap();
         for (old, new) in CUTS.iter().flat_map(|old| CUTS.map(|new| (cut(*old), cut(new)))) {
             for (rank, q) in (0..4).flat_map(|rank| [1, 2, 3].map(|q| (rank, q))) {
                 let plan = LayerPlan::new((&old, &new), rank, q);
@@ -87,8 +87,17 @@ mod tests {
     }
 
     #[test]
+    fn layers_that_were_in_no_window_before_are_told_by_nobody() {
+        let (old, new) = (Slabs::new(vec![4, 6, 8], 2, 4..8), Slabs::new(vec![2, 5, 12], 2, 2..12));
+        let (old, new) = (old.unwrap(), new.unwrap());
+        let [first, last] = [0, 1].map(|rank| LayerPlan::new((&old, &new), rank, 2));
+        assert_eq!((first.receive, last.receive), (vec![(0, 4..6), (1, 6..7)], vec![(0, 5..6), (1, 6..10)]));
+        assert_eq!((first.send, last.send), (vec![(0, 4..6), (1, 5..6)], vec![(0, 6..7), (1, 6..10)]));
+    }
+
+    #[test]
     fn a_cut_that_stays_moves_only_what_neighbours_share() {
-        let slabs = Slabs::new(vec![0, 3, 6, 9, 12], 4, 12).unwrap();
+        let slabs = Slabs::new(vec![0, 3, 6, 9, 12], 4, 0..12).unwrap();
         let plan = LayerPlan::new((&slabs, &slabs), 1, 2);
         assert_eq!(plan.send, [(0, 3..5), (1, 3..6)]);
         assert_eq!(plan.receive, [(1, 3..6), (2, 6..8)]);

@@ -9,8 +9,8 @@ use crate::ksp;
 use crate::launch;
 use crate::run::Task;
 use crate::setup;
+use crate::setup::Cut;
 use crate::signals::Requests;
-use crate::slab::Slabs;
 use crate::source;
 use hdf5_collective::Hdf5;
 use mpi::environment::Universe;
@@ -37,13 +37,13 @@ fn refuse(universe: &Universe, code: u8, reason: &str) -> u8 {
 }
 
 /// What is to be run, `None` if it was only to be checked; `Err` holds the exit code, and rank 0 has said why.
-fn prepare(universe: &Universe) -> Result<Option<(Task, Slabs)>, u8> {
+fn prepare(universe: &Universe) -> Result<Option<(Task, Cut)>, u8> {
     let world = universe.world();
     let (speaks, ranks) = (world.rank() == 0, world.size().unsigned_abs() as usize);
     let arguments = Arguments::read(speaks)?;
     let fault = agreed(universe, exit::USAGE, Fault::from_environment(ranks))?;
     let case = source::read(&world, &arguments)?;
-    let Some(slabs) = setup::slabs(&case, ranks) else {
+    let Some(cut) = setup::cut(&case, ranks) else {
         let columns = case.grid.axes[0].cells();
         let reason =
             format!("{ranks} ranks are too many: the grid has {columns} columns of cells, so at most {columns} ranks");
@@ -56,7 +56,7 @@ fn prepare(universe: &Universe) -> Result<Option<(Task, Slabs)>, u8> {
         }
         return Ok(None);
     }
-    Ok(Some((Task { case, arguments, fault }, slabs)))
+    Ok(Some((Task { case, arguments, fault }, cut)))
 }
 
 /// The outcome of this rank, if it is good on all; else the exit code, and the ranks that know a reason have said it.
@@ -78,7 +78,7 @@ fn start_threads(count: u32) -> Result<(), String> {
     pool.build_global().map_err(|error| format!("{count} threads could not be started: {error}"))
 }
 
-fn solve(universe: &Universe, task: Task, slabs: Slabs) -> Result<u8, u8> {
+fn solve(universe: &Universe, task: Task, cut: Cut) -> Result<u8, u8> {
     let Task { case, arguments, .. } = &task;
     let ranks = universe.world().size().unsigned_abs() as usize;
     let choice = setup::linear(case, ranks, &arguments.petsc);
@@ -93,5 +93,5 @@ fn solve(universe: &Universe, task: Task, slabs: Slabs) -> Result<u8, u8> {
     let hdf5 = agreed(universe, exit::BUG, hdf5)?;
     let requests = Requests::of_signals().map_err(|error| format!("signals cannot be handled: {error}"));
     let requests = Rc::new(agreed(universe, exit::BUG, requests)?);
-    begin::run((universe, &hdf5), (&petsc, choice), task, slabs, requests)
+    begin::run((universe, &hdf5), (&petsc, choice), task, cut, requests)
 }

@@ -161,14 +161,15 @@ impl Resumed<'_> {
         folder.ends_with(FOLDER).then(|| folder.parent().map(Path::to_owned))?
     }
 
-    /// Reads the points and the nodal displacement, each rank what lies in its slab. Collective.
+    /// Reads the points and the nodal displacement, each rank what lies in its slab; the model's grid gets the room that the
+    /// run had. Collective.
     ///
     /// # Errors
     /// The same on all ranks (76): they are not those of this case.
     pub fn read(
         &self,
         universe: &Universe,
-        model: &Model<PlaneStrain, 2>,
+        model: &mut Model<PlaneStrain, 2>,
         schedule: &Schedule,
     ) -> Result<(Slabs, Points<2>, Stepper), Refusal> {
         let world = universe.world();
@@ -182,6 +183,8 @@ impl Resumed<'_> {
         let mut points = Points::holding(&names);
         self.opened.points(points.named_columns())?;
         checkpoint::require(&world, &self.found.path, &mut points, &model.grid, model.materials.len())?;
+        let held = self.state.within(&model.grid).ok_or_else(|| foreign("its room is not of this grid"))?;
+        model.grid = held.with_columns(world.size().unsigned_abs() as usize);
         let slabs =
             self.slabs(universe, &model.grid, &points).ok_or_else(|| foreign("its slabs are not of this grid"))?;
         let rank = world.rank().unsigned_abs() as usize;
@@ -195,7 +198,7 @@ impl Resumed<'_> {
         if !same {
             return Err(foreign("its surfaces are not of this case"));
         }
-        let guess = self.opened.guess(slabs.layers(rank, window.order()), window.layer_nodes() * 2)?;
+        let guess = self.opened.guess(&held.layers(), &window.layers(), window.layer_nodes() * 2)?;
         let is_finite = guess.iter().all(|value| value.is_finite());
         agree(&world, if is_finite { Ok(()) } else { Err(foreign("a nodal displacement is not finite")) })?;
         let stepper = Stepper::resume(guess, self.state.progress, schedule);
@@ -204,16 +207,16 @@ impl Resumed<'_> {
 
     /// The cut of the grid: as it was, or on another number of ranks one into about equal loads.
     fn slabs(&self, universe: &Universe, grid: &Grid<2>, points: &Points<2>) -> Option<Slabs> {
-        let (world, columns) = (universe.world(), grid.axes()[0].cells());
+        let world = universe.world();
         let ranks = world.size().unsigned_abs() as usize;
-        let reaching = |slabs: Slabs| slabs.reaching(grid.beyond());
         if self.found.record.ranks as usize == ranks {
-            return Slabs::new(self.state.slabs.clone(), ranks, columns).map(reaching);
+            let slabs = Slabs::new(self.state.slabs.clone(), ranks, grid.room()[0].clone());
+            return slabs.map(|slabs| slabs.reaching(grid.beyond()));
         }
         let own = load::points_by_column(grid, points);
         let mut counts = vec![0.0; own.len()];
         world.all_reduce_into(&own[..], &mut counts[..], SystemOperation::sum());
-        Slabs::cut(&load::by_column(&counts, grid.layer_nodes()), ranks).map(reaching)
+        load::cut(grid, &counts, ranks)
     }
 
     /// Closes the checkpoint. Collective.

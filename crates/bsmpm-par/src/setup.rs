@@ -12,6 +12,10 @@ use bsmpm::step::smooth;
 use bsmpm_io::manifest;
 use bsmpm_scene::model::{at_rest, penalty, weighting};
 use bsmpm_scene::{Axis, Case, Initial};
+use std::ops::Range;
+
+/// Cells along each axis that the ranks together see ([`bsmpm::grid::room`]), and how they share them.
+pub type Cut = ([Range<usize>; 2], Slabs);
 
 /// Gives the points the stress that the case wants at the start, and tells how well it is balanced.
 pub fn start(
@@ -28,11 +32,14 @@ pub fn start(
     Ok(Some(manifest::Initial { unbalance: found.force, yielding: found.yielding }))
 }
 
-/// The first cut of the grid: about equal loads. `None` with more ranks than columns.
-pub fn slabs(case: &Case, ranks: usize) -> Option<Slabs> {
-    let counts: Vec<f64> = case.points_by_column().into_iter().map(|count| count as f64).collect();
-    let layer_nodes = case.grid.axes[1].cells() + case.grid.order;
-    Slabs::cut(&load::by_column(&counts, layer_nodes), ranks)
+/// The room that the bodies have in the grid at the start, and its first cut: about equal loads. `None` with more ranks
+/// than columns.
+pub fn cut(case: &Case, ranks: usize) -> Option<Cut> {
+    let room = case.room(ranks);
+    let counts: Vec<f64> = case.points_by_column()[room[0].clone()].iter().map(|&count| count as f64).collect();
+    let layer_nodes = room[1].len() + case.grid.order;
+    let slabs = Slabs::cut(&load::by_column(&counts, layer_nodes), ranks)?.from(room[0].start);
+    Some((room, slabs))
 }
 
 /// The linear solver of a run on so many ranks with further `options` of PETSc.

@@ -11,6 +11,7 @@ use crate::traffic::{Counts, Kind};
 use bsmpm::boundary::Surface;
 use bsmpm::control::{Accepted, Failure, Progress, Stepper};
 use bsmpm::error::StepError;
+use bsmpm::grid::Grid;
 use bsmpm::initial::{self, Equilibrium};
 use bsmpm::kinematics::Kinematics;
 use bsmpm::model::Model;
@@ -69,7 +70,7 @@ pub struct Simulation<'p, K, const D: usize> {
 }
 
 impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
-    /// A run at time 0. `model` has the whole grid as its window, `points` are those of this rank's slab.
+    /// A run at time 0. `model` has the whole room of its grid as its window, `points` are those of this rank's slab.
     pub fn new(
         (universe, petsc, choice): (&'p Universe, &'p Petsc<'p>, Choice),
         mut model: Model<K, D>,
@@ -160,25 +161,35 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
             migrate::points(exchange, &self.slabs, &self.model.grid, &mut self.points);
             let looks = self.slabs.ranks() > 1 && self.steps.is_multiple_of(LOOK);
             let is_cut_anew = looks && self.balance(accepted.counts.evaluations as u64);
-            self.cost = Cost { is_cut_anew, ..self.count(before, load) };
+            let (mut cost, has_room) = self.count(before, load);
+            if !has_room {
+                self.make_room();
+                (cost, _) = self.count(before, load);
+            }
+            self.cost = Cost { is_cut_anew: is_cut_anew || !has_room, ..cost };
         }
         Some(outcome)
     }
 
-    /// What has been told since `before` by all ranks, and how even this one's `load` and the others' are; one reduction.
-    fn count(&self, before: Counts, load: f64) -> Cost {
+    /// What has been told since `before` by all ranks, and how even this one's `load` and the others' are; and whether
+    /// the grid has room for the points of all. One reduction.
+    fn count(&self, before: Counts, load: f64) -> (Cost, bool) {
         let told = self.timers.traffic().counts().since(&before);
-        let mut numbers = vec![0.0; 2 + self.slabs.ranks()];
+        let grid = &self.model.grid;
+        let lacks_room = grid.occupied(&self.points).is_some_and(|occupied| !grid.has_room(&occupied));
+        let mut numbers = vec![0.0; 3 + self.slabs.ranks()];
         numbers[..2].copy_from_slice(&told.sent().map(|count| count as f64));
-        numbers[2 + self.petsc.rank()] = load;
+        numbers[2] = f64::from(u8::from(lacks_room));
+        numbers[3 + self.petsc.rank()] = load;
         self.halo.reduce(&mut numbers);
-        Cost {
+        let cost = Cost {
             reductions: told.of(Kind::Reduction).calls + 1,
             messages: numbers[0] as u64,
             bytes: numbers[1] as u64,
-            imbalance: load::imbalance(&numbers[2..]),
+            imbalance: load::imbalance(&numbers[3..]),
             is_cut_anew: false,
-        }
+        };
+        (cost, numbers[2] == 0.0)
     }
 
     /// Cuts the grid anew where the points have moved away from the present cut so far that it pays in as many steps as
@@ -191,22 +202,37 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
             let loads = load::of_slabs(&counts, slabs, (grid.layer_nodes(), grid.order()));
             loads.into_iter().fold(0.0, f64::max)
         };
-        let better = Slabs::cut(&load::by_column(&counts, grid.layer_nodes()), self.slabs.ranks());
-        let better = better.map(|slabs| slabs.reaching(grid.beyond()));
+        let better = load::cut(grid, &counts, self.slabs.ranks());
         let Some(better) = better.filter(|better| load::pays(most(&self.slabs), most(better), LOOK * evaluations))
         else {
             return false;
         };
-        self.recut(better);
+        self.recut(self.model.grid.clone(), better);
         true
     }
 
-    fn recut(&mut self, slabs: Slabs) {
+    /// Makes room for the points of all ranks, and cuts it anew.
+    fn make_room(&mut self) {
+        let occupied = self.model.grid.occupied(&self.points);
+        let ends = occupied.map(|ranges| ranges.map(|range| [-(range.start as f64), range.end as f64]));
+        let mut ends = ends.unwrap_or([[f64::NEG_INFINITY; 2]; D]);
+        self.halo.maximum(ends.as_flattened_mut());
+        let occupied = ends.map(|[start, end]| -start as usize..end as usize);
+        let grid = self.model.grid.with_room(&occupied, self.slabs.ranks());
+        let mut counts = load::points_by_column(&grid, &self.points);
+        self.halo.reduce(&mut counts);
+        if let Some(slabs) = load::cut(&grid, &counts, self.slabs.ranks()) {
+            self.recut(grid, slabs);
+        }
+    }
+
+    /// Goes over to a room and its cut.
+    fn recut(&mut self, grid: Grid<D>, slabs: Slabs) {
         let timers = Rc::clone(&self.timers);
         let world = self.universe.world();
-        self.stepper.guess =
-            migrate::nodal((&world, timers.traffic()), (&self.slabs, &slabs), &self.model.grid, &self.stepper.guess, D);
-        self.model.grid = self.model.grid.window(slabs.columns(self.petsc.rank()));
+        let guess = migrate::across(&self.model.grid, &grid, &self.stepper.guess, D);
+        self.stepper.guess = migrate::nodal((&world, timers.traffic()), (&self.slabs, &slabs), &grid, &guess, D);
+        self.model.grid = grid.window(slabs.columns(self.petsc.rank()));
         migrate::points((&world, timers.traffic()), &slabs, &self.model.grid, &mut self.points);
         self.slabs = slabs;
         let shared = (Rc::clone(&timers), Rc::clone(self.halo.requests()));

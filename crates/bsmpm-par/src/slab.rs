@@ -53,10 +53,16 @@ impl Slabs {
         Some(Self { bounds, beyond: 0 })
     }
 
-    /// Slabs that begin at given columns; `None` if they are not one for each rank, all with cells, of the whole grid.
-    pub fn new(bounds: Vec<usize>, ranks: usize, columns: usize) -> Option<Self> {
-        let whole = bounds.len() == ranks + 1 && bounds[0] == 0 && bounds[ranks] == columns;
+    /// Slabs that begin at given columns; `None` if they are not one for each rank, all with cells, of all `columns` of the
+    /// grid's room.
+    pub fn new(bounds: Vec<usize>, ranks: usize, columns: Range<usize>) -> Option<Self> {
+        let whole = bounds.len() == ranks + 1 && bounds[0] == columns.start && bounds[ranks] == columns.end;
         (whole && bounds.is_sorted_by(|a, b| a < b)).then_some(Self { bounds, beyond: 0 })
+    }
+
+    /// The same slabs of columns of which the first is number `first`.
+    pub fn from(self, first: usize) -> Self {
+        Self { bounds: self.bounds.iter().map(|bound| bound + first).collect(), ..self }
     }
 
     /// The same slabs, whose windows hold `beyond` layers of nodes past those that their cells touch, as those of
@@ -80,7 +86,7 @@ impl Slabs {
         self.bounds[rank]..self.bounds[rank + 1]
     }
 
-    /// The rank whose slab holds a column.
+    /// The rank whose slab holds a column; past either end of them all, the rank there.
     pub fn owner(&self, column: usize) -> usize {
         self.bounds.partition_point(|&bound| bound <= column).clamp(1, self.ranks()) - 1
     }
@@ -190,7 +196,7 @@ mod tests {
         let cuts = [(vec![0, 4, 9], 2, 0), (vec![0, 1, 2, 5], 3, 0), (vec![0, 3, 4], 1, 0), (vec![0, 2, 3, 6], 2, 1)];
         for (bounds, q, beyond) in cuts {
             let (ranks, columns) = (bounds.len() - 1, bounds[bounds.len() - 1]);
-            let slabs = Slabs::new(bounds, ranks, columns).unwrap().reaching(beyond);
+            let slabs = Slabs::new(bounds, ranks, 0..columns).unwrap().reaching(beyond);
             for rank in 0..ranks {
                 for layer in slabs.layers(rank, q) {
                     let touching = layer.saturating_sub(q + beyond)..layer + 1;
@@ -208,7 +214,7 @@ mod tests {
 
     #[test]
     fn windows_that_reach_beyond_their_cells_end_with_the_grid() {
-        let slabs = Slabs::new(vec![0, 2, 3, 5], 3, 5).unwrap().reaching(1);
+        let slabs = Slabs::new(vec![0, 2, 3, 5], 3, 0..5).unwrap().reaching(1);
         assert_eq!([0, 1, 2].map(|rank| slabs.layers(rank, 2)), [0..5, 2..6, 3..7]);
         assert_eq!([0, 1, 2].map(|rank| slabs.owned_layers(rank, 2)), [0..2, 2..3, 3..7]);
         assert_eq!(slabs.shared(0, 2), [(1, 2..5), (2, 3..5)]);
@@ -222,6 +228,7 @@ mod tests {
         assert_eq!(slabs.columns(0), 0..40);
         let slabs = Slabs::cut(&[0.0, 0.0, 5.0], 3).unwrap();
         assert_eq!(slabs.bounds, [0, 1, 2, 3]);
+        assert_eq!(slabs.from(7).bounds, [7, 8, 9, 10]);
         assert_eq!(Slabs::cut(&[1.0; 2], 3), None);
     }
 
@@ -238,7 +245,7 @@ mod tests {
         for cost in costs {
             let found = most(&Slabs::cut(&cost, 3).unwrap(), &cost);
             for bounds in (1..6).flat_map(|first| (first + 1..7).map(move |second| vec![0, first, second, 7])) {
-                assert!(found <= most(&Slabs::new(bounds, 3, 7).unwrap(), &cost));
+                assert!(found <= most(&Slabs::new(bounds, 3, 0..7).unwrap(), &cost));
             }
         }
         assert_eq!(Slabs::cut(&[1.0; 10], 4).unwrap().bounds, [0, 2, 5, 7, 10]);

@@ -2,10 +2,11 @@
 //!
 //! The bytes are counted from what the program holds and rounded to what runs took; `tests/shipped.rs` compares.
 
-use bsmpm::stabilisation::Stabilisation;
-
 use crate::case::{Case, Nonlinear, Solver};
-use crate::grid::GridSpec;
+use crate::grid::{Axis, GridSpec};
+use bsmpm::grid::room;
+use bsmpm::stabilisation::Stabilisation;
+use std::ops::Range;
 
 /// Largest number of cells, unknowns and matrix rows: PETSc's and MPI's counts are 32-bit here.
 pub(crate) const MOST_UNKNOWNS: u128 = i32::MAX as u128;
@@ -43,8 +44,8 @@ const PROCESS: u64 = 47_000_000;
 /// Unknowns of a rank below which it mostly waits for others, in two dimensions.
 const FEWEST: u128 = 1000;
 
-/// Sizes that follow from a case; unknowns are bounded from above, since empty cells have none. Empty cells do cost
-/// memory: vectors and the stencils of the stiffness are held for every node of the grid.
+/// Sizes that follow from a case; unknowns are bounded from above, since empty cells have none. Vectors are held for the
+/// nodes of the room that the bodies have, however large the grid is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Estimate {
     /// Cells of the grid.
@@ -126,6 +127,24 @@ impl Systems {
 }
 
 impl Case {
+    /// Layers of nodes, beyond those of a cell, with which a node is coupled along an axis.
+    pub(crate) fn beyond(&self) -> usize {
+        let background = if self.solver.background > 0.0 { self.solver.background_kind.beyond() } else { 0 };
+        background.max(self.stabilisation.beyond(self.grid.order))
+    }
+
+    /// Cells along each axis for which a run holds nodes at the start, see [`bsmpm::grid::room`]: at least so many
+    /// `columns`.
+    pub fn room(&self, columns: usize) -> [Range<usize>; 2] {
+        let around = |a: [Range<usize>; 2], b: [Range<usize>; 2]| {
+            std::array::from_fn(|axis| a[axis].start.min(b[axis].start)..a[axis].end.max(b[axis].end))
+        };
+        let cells = self.grid.axes.each_ref().map(Axis::cells);
+        let occupied = self.bodies.iter().map(|body| body.occupied(&self.grid)).reduce(around);
+        let occupied = occupied.unwrap_or_else(|| cells.map(|cells| 0..cells));
+        room::around(&occupied, cells, (self.grid.order, self.beyond()), columns)
+    }
+
     /// Sizes of the case.
     pub fn estimate(&self) -> Estimate {
         let (nodes, points) = (nodes(&self.grid), u128::from(self.points()));
@@ -134,11 +153,14 @@ impl Case {
         let (stencil, every) = (places * 4 * 8, 8 + 2);
         let occupied = occupied_nodes(self).min(nodes);
         let entries = 2 * occupied * 2 * places;
-        let systems = Systems::of(&self.solver, 2 * occupied, entries, self.grid.order as u128 + beyond(self));
+        let systems = Systems::of(&self.solver, 2 * occupied, entries, self.grid.order as u128 + self.beyond() as u128);
         let lowered = if self.stabilisation == Stabilisation::ConsistentFBar { LOWERED } else { 0 };
         let passing = systems.built.max(points * SAVED);
-        let bytes =
-            points * (POINT + lowered) + occupied * stencil + nodes * (every + VECTORS) + systems.held + passing;
+        let bytes = points * (POINT + lowered)
+            + occupied * stencil
+            + room_nodes(self) * (every + VECTORS)
+            + systems.held
+            + passing;
         let has_frames = self.output.every.is_some() || !self.output.times.is_empty();
         let bounded = |number: u128| u64::try_from(number).unwrap_or(u64::MAX);
         Estimate {
@@ -168,15 +190,14 @@ pub(crate) fn nodes(grid: &GridSpec) -> u128 {
     grid.axes.iter().map(|axis| (axis.cells() + grid.order) as u128).product()
 }
 
-/// Layers of nodes, beyond those of a cell, with which a node is coupled along an axis.
-fn beyond(case: &Case) -> u128 {
-    let background = if case.solver.background > 0.0 { case.solver.background_kind.beyond() } else { 0 };
-    background.max(case.stabilisation.beyond(case.grid.order)) as u128
-}
-
 /// Nodes with which a node is coupled: those of the cells around it, and of the layers beyond.
 fn places(case: &Case) -> u128 {
-    (2 * (case.grid.order as u128 + beyond(case)) + 1).pow(2)
+    (2 * (case.grid.order as u128 + case.beyond() as u128) + 1).pow(2)
+}
+
+/// Nodes of the room that the bodies have at the start.
+fn room_nodes(case: &Case) -> u128 {
+    case.room(1).iter().map(|cells| (cells.len() + case.grid.order) as u128).product()
 }
 
 /// Nodes that the bodies' cells touch at the start: exact for boxes, and for shapes without holes or bays.

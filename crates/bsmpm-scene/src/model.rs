@@ -27,8 +27,7 @@ pub fn model(case: &Case) -> Result<Model<PlaneStrain, 2>, GridError> {
         coefficient: case.solver.background,
         extent: case.solver.background_cells,
     });
-    let beyond = background.map_or(0, |background| background.kind.beyond()).max(case.stabilisation.beyond(order));
-    let grid = Grid::new([axis(&case.grid.axes[0])?, axis(&case.grid.axes[1])?])?.reaching(beyond);
+    let grid = Grid::new([axis(&case.grid.axes[0])?, axis(&case.grid.axes[1])?])?.reaching(case.beyond());
     Ok(Model {
         materials: case.materials.iter().map(|named| named.material.clone()).collect(),
         regime: case.analysis.regime,

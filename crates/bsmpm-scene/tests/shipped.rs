@@ -99,6 +99,8 @@ const MEASURED: &[(&str, &[&str], usize, f64)] = &[
         250.0e6,
     ),
     ("column_collapse", &[], 1, 182.6e6),
+    ("column_collapse", &["grid.upper=[11,0.205]"], 1, 167.3e6),
+    ("column_collapse", &["grid.upper=[11,0.205]"], 2, 235.4e6),
     ("column_collapse", &["solver.nonlinear=newton"], 1, 230.9e6),
     ("column_collapse", &["grid.order=cubic", "body.0.points_per_cell=3"], 1, 161.4e6),
     ("column_collapse", &["grid.order=linear", "body.0.points_per_cell=3"], 1, 87.7e6),

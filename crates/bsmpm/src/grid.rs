@@ -3,6 +3,7 @@
 //! Positions are relative to the grid's lower corner: at 1e6 m an increment of 1e-9 m would lose 5 % of itself.
 
 pub mod contributions;
+pub mod room;
 pub mod shape;
 pub mod spline;
 pub mod transfer;
@@ -15,13 +16,15 @@ use crate::error::GridError;
 use crate::tensor::Vector;
 use std::ops::Range;
 
-/// A tensor product of open knot vectors, of which this rank sees the cells of some columns.
+/// A tensor product of open knot vectors, of which the ranks together see the cells of a [`room`] around the points, and
+/// this rank those of some columns of it.
 ///
 /// Axis 0 is the slowest in every numbering, so that the nodes of a slab of columns are one contiguous block.
 /// Node and cell indices are local to the window unless said otherwise.
 #[derive(Clone, Debug)]
 pub struct Grid<const D: usize> {
     axes: [KnotVector; D],
+    room: [Range<usize>; D],
     columns: Range<usize>,
     beyond: usize, // further layers of nodes in a window
 }
@@ -33,8 +36,8 @@ impl<const D: usize> Grid<D> {
         if axes.iter().any(|axis| axis.order() != order) {
             return Err(GridError::MixedOrders);
         }
-        let columns = 0..axes[0].cells();
-        Ok(Self { axes, columns, beyond: 0 })
+        let room = axes.each_ref().map(|axis| 0..axis.cells());
+        Ok(Self { columns: room[0].clone(), axes, room, beyond: 0 })
     }
 
     /// The same grid, whose windows hold `beyond` layers of nodes past those that their cells touch, as far as there are
@@ -48,15 +51,27 @@ impl<const D: usize> Grid<D> {
         self.beyond
     }
 
+    /// The same grid of which only the cells of a box are seen (from and to, along each axis), by all ranks together; the
+    /// window is all of it.
+    pub fn within(&self, room: [Range<usize>; D]) -> Self {
+        debug_assert!((0..D).all(|axis| !room[axis].is_empty() && room[axis].end <= self.axes[axis].cells()));
+        Self { axes: self.axes.clone(), columns: room[0].clone(), room, beyond: self.beyond }
+    }
+
     /// The same grid seen through the cells `columns` along axis 0.
     pub fn window(&self, columns: Range<usize>) -> Self {
-        debug_assert!(columns.start < columns.end && columns.end <= self.axes[0].cells());
-        Self { axes: self.axes.clone(), columns, beyond: self.beyond }
+        debug_assert!(!columns.is_empty() && self.room[0].start <= columns.start && columns.end <= self.room[0].end);
+        Self { columns, ..self.clone() }
     }
 
     /// Knot vectors, one per axis.
     pub fn axes(&self) -> &[KnotVector; D] {
         &self.axes
+    }
+
+    /// What all ranks together see: cells along each axis.
+    pub fn room(&self) -> &[Range<usize>; D] {
+        &self.room
     }
 
     /// The window: cells along axis 0.
@@ -72,8 +87,13 @@ impl<const D: usize> Grid<D> {
     /// Layers of nodes along axis 0 that the window holds: those that its cells touch, of which the last q are shared with
     /// the next slab, and those beyond.
     pub fn layers(&self) -> Range<usize> {
-        let end = self.columns.end + self.order() + self.beyond;
-        self.columns.start..end.min(self.axes[0].functions())
+        let end = (self.columns.end + self.beyond).min(self.room[0].end);
+        self.columns.start..end + self.order()
+    }
+
+    /// Nodes of the window along an axis.
+    pub fn nodes_along(&self, axis: usize) -> usize {
+        if axis == 0 { self.layers().len() } else { self.room[axis].len() + self.order() }
     }
 
     /// Layers of nodes that a column of cells contributes to: those that it touches, and those beyond.
@@ -83,12 +103,12 @@ impl<const D: usize> Grid<D> {
 
     /// Nodes of one layer across axis 0.
     pub fn layer_nodes(&self) -> usize {
-        self.axes[1..].iter().map(KnotVector::functions).product()
+        (1..D).map(|axis| self.nodes_along(axis)).product()
     }
 
     /// Cells of one column across axis 0.
     pub fn column_cells(&self) -> usize {
-        self.axes[1..].iter().map(KnotVector::cells).product()
+        self.room[1..].iter().map(Range::len).product()
     }
 
     /// Nodes in the window.
@@ -115,18 +135,25 @@ impl<const D: usize> Grid<D> {
         Some(cell)
     }
 
-    /// Local index of a cell given along each axis; its column must lie in the window.
+    /// Whether a cell (global, along each axis) lies in the window.
+    #[inline]
+    pub fn holds(&self, cell: &[usize; D]) -> bool {
+        self.columns.contains(&cell[0]) && (1..D).all(|axis| self.room[axis].contains(&cell[axis]))
+    }
+
+    /// Local index of a cell given along each axis, which must lie in the window.
+    #[inline]
     pub fn cell_index(&self, cell: &[usize; D]) -> usize {
         let start = cell[0] - self.columns.start;
-        (1..D).fold(start, |index, axis| index * self.axes[axis].cells() + cell[axis])
+        (1..D).fold(start, |index, axis| index * self.room[axis].len() + cell[axis] - self.room[axis].start)
     }
 
     /// Cell along each axis (global) of a local index.
     pub fn cell_at(&self, mut index: usize) -> [usize; D] {
         let mut cell = [0; D];
         for axis in (1..D).rev() {
-            cell[axis] = index % self.axes[axis].cells();
-            index /= self.axes[axis].cells();
+            cell[axis] = self.room[axis].start + index % self.room[axis].len();
+            index /= self.room[axis].len();
         }
         cell[0] = index + self.columns.start;
         cell
@@ -135,7 +162,7 @@ impl<const D: usize> Grid<D> {
     /// Local index of the first of a cell's (q+1)^D nodes; the others stand at [`Grid::offsets`] from it.
     pub fn first_node(&self, cell: &[usize; D]) -> usize {
         let start = cell[0] - self.columns.start;
-        (1..D).fold(start, |index, axis| index * self.axes[axis].functions() + cell[axis])
+        (1..D).fold(start, |index, axis| index * self.nodes_along(axis) + cell[axis] - self.room[axis].start)
     }
 
     /// Offsets of a cell's nodes from its first one, axis 0 slowest: the paper's p2N, which is the same for all cells.
@@ -145,8 +172,8 @@ impl<const D: usize> Grid<D> {
             .map(|k| {
                 (0..D).fold(0, |offset, axis| {
                     let a = k / width.pow((D - 1 - axis) as u32) % width;
-                    let functions = if axis == 0 { 1 } else { self.axes[axis].functions() };
-                    offset * functions + a
+                    let along = if axis == 0 { 1 } else { self.nodes_along(axis) };
+                    offset * along + a
                 })
             })
             .collect()
@@ -163,11 +190,26 @@ impl<const D: usize> Grid<D> {
     pub fn node_at(&self, mut index: usize) -> [usize; D] {
         let mut node = [0; D];
         for axis in (1..D).rev() {
-            node[axis] = index % self.axes[axis].functions();
-            index /= self.axes[axis].functions();
+            node[axis] = self.room[axis].start + index % self.nodes_along(axis);
+            index /= self.nodes_along(axis);
         }
         node[0] = index + self.columns.start;
         node
+    }
+
+    /// Local index of a node given along each axis (global); `None` outside the window.
+    pub fn node_index(&self, node: &[usize; D]) -> Option<usize> {
+        let first = self.node_at(0);
+        (0..D).try_fold(0, |index, axis| {
+            let along = node[axis].checked_sub(first[axis]).filter(|&along| along < self.nodes_along(axis))?;
+            Some(index * self.nodes_along(axis) + along)
+        })
+    }
+
+    /// Number of a node (local) among those of the whole grid.
+    pub fn number_of(&self, node: usize) -> usize {
+        let node = self.node_at(node);
+        (1..D).fold(node[0], |number, axis| number * self.axes[axis].functions() + node[axis])
     }
 
     /// Lower corner and edge lengths of a cell, m.

@@ -161,9 +161,8 @@ impl<const D: usize> Points<D> {
     /// Sorts by (cell, id), the canonical order: neither migration nor restart then matters to any sum over points.
     /// Points outside the window keep the end.
     pub fn sort_by_cell(&mut self, grid: &Grid<D>) {
-        let columns = grid.columns();
         let key = |p: usize| match grid.locate(&self.x[p]) {
-            Some(cell) if columns.contains(&cell[0]) => (grid.cell_index(&cell), self.id[p]),
+            Some(cell) if grid.holds(&cell) => (grid.cell_index(&cell), self.id[p]),
             _ => (usize::MAX, self.id[p]),
         };
         let keys: Vec<(usize, u64)> = (0..self.len()).map(key).collect();

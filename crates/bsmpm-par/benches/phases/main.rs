@@ -48,7 +48,7 @@ fn main() -> ExitCode {
 type State = (Points<2>, Vec<f64>, f64);
 
 /// What a checkpoint holds.
-fn state(universe: &Universe, path: &Path, model: &Model<PlaneStrain, 2>) -> Result<State, Box<dyn Error>> {
+fn state(universe: &Universe, path: &Path, model: &mut Model<PlaneStrain, 2>) -> Result<State, Box<dyn Error>> {
     let hdf5 = Hdf5::initialize(universe)?;
     let refused = |refusal: checkpoint::Refusal| refusal.reason;
     let (found, _) = checkpoint::find(&universe.world(), Wanted::Named(path)).map_err(refused)?;
@@ -57,7 +57,10 @@ fn state(universe: &Universe, path: &Path, model: &Model<PlaneStrain, 2>) -> Res
     let mut points = Points::holding(&names);
     let opened = Opened::new((&hdf5, universe.world()), &found).map_err(refused)?;
     opened.points(points.named_columns()).map_err(refused)?;
-    let guess = opened.guess(model.grid.layers(), model.grid.layer_nodes() * 2).map_err(refused)?;
+    let state = opened.state().and_then(|text| checkpoint::State::parse(path, &text)).map_err(refused)?;
+    model.grid = state.within(&model.grid).ok_or("the checkpoint is of another grid")?;
+    let layers = model.grid.layers();
+    let guess = opened.guess(&layers, &layers, model.grid.layer_nodes() * 2).map_err(refused)?;
     opened.close().map_err(refused)?;
     points.surface = model.boundary.surface();
     points.sort_by_cell(&model.grid);
@@ -73,9 +76,10 @@ fn measure(
     rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build_global()?;
     let text = bsmpm_scene::load(Path::new(case))?;
     let case = Case::from_bytes(case, &text, set).map_err(|errors| format!("{errors:?}"))?;
-    let model = bsmpm_scene::model::model(&case)?;
-    let (points, guess, time) = state(universe, Path::new(path), &model)?;
-    let slabs = Slabs::new(vec![0, model.grid.columns().end], 1, model.grid.columns().end).ok_or("no columns")?;
+    let mut model = bsmpm_scene::model::model(&case)?;
+    let (points, guess, time) = state(universe, Path::new(path), &mut model)?;
+    let columns = model.grid.columns();
+    let slabs = Slabs::new(vec![columns.start, columns.end], 1, columns).ok_or("no columns")?;
     let (timers, requests) = (Rc::new(Timers::default()), Rc::new(Requests::default()));
     let halo = Rc::new(MpiHalo::new(universe.world(), &slabs, &model.grid, (Rc::clone(&timers), requests)));
     let choice = setup::linear(&case, 1, &[]);

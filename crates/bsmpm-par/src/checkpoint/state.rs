@@ -5,6 +5,7 @@ use crate::exit;
 use bsmpm::boundary::Surface;
 use bsmpm::control::Progress;
 use bsmpm::energy::{Books, Flows};
+use bsmpm::grid::Grid;
 use bsmpm::tensor::Vector;
 use bsmpm_io::frames::Entry;
 use bsmpm_io::manifest::Manifest;
@@ -19,8 +20,11 @@ use std::path::Path;
 pub struct State {
     /// Accepted steps.
     pub steps: u64,
-    /// Where the slabs begin, and the number of columns of cells last.
+    /// Where the slabs begin, and where the columns of the grid's room end.
     pub slabs: Vec<usize>,
+    /// The room, cells from and to along each axis; none of a run that kept the whole grid.
+    #[serde(default)]
+    pub room: Option<[[usize; 2]; 2]>,
     /// The step control.
     #[serde(with = "ProgressForm")]
     pub progress: Progress,
@@ -88,6 +92,13 @@ impl State {
         serde_json::from_slice(text).map_err(|error| {
             Refusal::new(exit::CHECKPOINT, format!("the checkpoint {} cannot be used: {error}", path.display()))
         })
+    }
+
+    /// The grid with the room that the run had; `None` if it is no part of that grid.
+    pub fn within(&self, grid: &Grid<2>) -> Option<Grid<2>> {
+        let Some(room) = self.room else { return Some(grid.clone()) };
+        let fits = |axis: usize| room[axis][0] < room[axis][1] && room[axis][1] <= grid.axes()[axis].cells();
+        (fits(0) && fits(1)).then(|| grid.within(room.map(|[start, end]| start..end)))
     }
 
     /// The surfaces.

@@ -33,7 +33,7 @@ pub struct Dissection {
 
 impl Dissection {
     /// Plans for the `free` components of the window of `rank`, the ranks' slabs beginning at the columns `bounds`, the
-    /// last of which is the grid's end. Collective.
+    /// last of which is the end of the grid's room. Collective.
     pub fn plan<const D: usize>(
         &mut self,
         link: &dyn Link,
@@ -46,7 +46,7 @@ impl Dissection {
         // Layers that no other slab touches, from the window's first.
         let start = if rank == 0 { 0 } else { q.min(layers.len()) };
         let end = if rank + 2 == bounds.len() { layers.len() } else { grid.columns().len() };
-        let counts = std::array::from_fn(|axis| if axis == 0 { layers.len() } else { grid.axes()[axis].functions() });
+        let counts = std::array::from_fn(|axis| grid.nodes_along(axis));
         self.plan = Plan::new::<D>(counts, q, start..end.max(start), free);
         let layer = grid.layer_nodes() * D;
         let shared = self.plan.shared().iter().map(|&component| layers.start * layer + component as usize).collect();

@@ -10,9 +10,9 @@ use crate::log::Log;
 use crate::record::Recorder;
 use crate::restart::{self, Resumed, Start};
 use crate::run::{Before, Run, Task};
+use crate::setup::Cut;
 use crate::signals::Requests;
 use crate::simulation::Simulation;
-use crate::slab::Slabs;
 use crate::space;
 use crate::timers::Timers;
 use bsmpm::kinematics::PlaneStrain;
@@ -32,7 +32,7 @@ pub(super) fn run(
     (universe, hdf5): (&Universe, &Hdf5<'_>),
     (petsc, choice): (&Petsc<'_>, Choice),
     task: Task,
-    slabs: Slabs,
+    cut: Cut,
     requests: Rc<Requests>,
 ) -> Result<u8, u8> {
     let refused = |refusal: Refusal| refuse(universe, refusal.code, &refusal.reason);
@@ -44,7 +44,7 @@ pub(super) fn run(
     }
     let timers = Rc::new(Timers::default());
     let seam = (universe, petsc, choice);
-    let mut scene = scene(seam, case, slabs, &start, (Rc::clone(&timers), requests)).map_err(refused)?;
+    let mut scene = scene(seam, case, cut, &start, (Rc::clone(&timers), requests)).map_err(refused)?;
     let told = space::admit(&universe.world(), held.as_ref(), (arguments, case), &mut scene.0).map_err(refused)?;
     start.warn(told);
     let before = before(&start, &arguments.directory());
@@ -71,15 +71,15 @@ type Scene<'p> = (Simulation<'p, PlaneStrain, 2>, Recorder);
 fn scene<'p>(
     seam: (&'p Universe, &'p Petsc<'p>, Choice),
     case: &bsmpm_scene::Case,
-    slabs: Slabs,
+    (room, slabs): Cut,
     start: &Start<'_>,
     shared: (Rc<Timers>, Rc<Requests>),
 ) -> Result<Scene<'p>, Refusal> {
     let universe = seam.0;
-    let model = model(case).map_err(|error| Refusal::new(exit::CASE, error.to_string()))?;
+    let mut model = model(case).map_err(|error| Refusal::new(exit::CASE, error.to_string()))?;
     let schedule = schedule(case);
     if let Start::Resumed(resumed) = start {
-        let (slabs, points, stepper) = resumed.read(universe, &model, &schedule)?;
+        let (slabs, points, stepper) = resumed.read(universe, &mut model, &schedule)?;
         let surface = points.surface.clone();
         let mut simulation = Simulation::new(seam, model, (slabs, points), schedule, shared);
         simulation.resume(resumed.state.steps, stepper, surface);
@@ -87,6 +87,7 @@ fn scene<'p>(
         let foreign = || Refusal::new(exit::CHECKPOINT, "the checkpoint is of a run with other histories");
         return Ok((simulation, recorder.ok_or_else(foreign)?));
     }
+    model.grid = model.grid.within(room);
     let points = points(case, slabs.columns(universe.world().rank().unsigned_abs() as usize));
     let simulation = Simulation::new(seam, model, (slabs, points), schedule, shared);
     let recorder = Recorder::new(case, &simulation.points, &*simulation.halo);

@@ -137,6 +137,7 @@ impl Run<'_> {
         let state = State {
             steps: step,
             slabs: simulation.slabs().bounds().to_vec(),
+            room: Some(simulation.model.grid.room().clone().map(|range| [range.start, range.end])),
             progress: simulation.progress(),
             traction: pairs(&surface.traction),
             position: pairs(&surface.position),

@@ -1,12 +1,12 @@
 //! Where the nodes lie that a node couples with: a box of places around it, cut off by the window's faces.
 
-use bsmpm::grid::{Grid, KnotVector};
+use bsmpm::grid::Grid;
 use std::collections::HashMap;
 
 /// The places of the stencils of a window.
 #[derive(Clone, Debug)]
 pub(super) struct Places<const D: usize> {
-    functions: [usize; D], // nodes along each axis
+    functions: [usize; D], // nodes of the window along each axis
     half: usize,           // of the box: q, and the layers beyond
     reach: Vec<isize>,     // offset in local nodes of every place, ascending
     inside: Vec<Vec<u16>>, // places that lie in the window, for every way of being near its faces
@@ -17,8 +17,7 @@ impl<const D: usize> Places<D> {
     pub fn new(grid: &Grid<D>) -> Self {
         let half = grid.order() + grid.beyond();
         let side = 2 * half + 1;
-        let mut functions = grid.axes().each_ref().map(KnotVector::functions);
-        functions[0] = grid.layers().len();
+        let functions = std::array::from_fn(|axis| grid.nodes_along(axis));
         let within: Vec<[isize; D]> = (0..side.pow(D as u32))
             .map(|place| digits(place, &[side; D]).map(|step| step as isize - half as isize))
             .collect();

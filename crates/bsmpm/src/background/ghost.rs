@@ -152,7 +152,7 @@ fn along<const D: usize>(grid: &Grid<D>) -> usize {
 
 /// Offsets of a face's nodes from its first one: the layers along the normal first, then the other axes in their order.
 fn offsets<const D: usize>(grid: &Grid<D>, normal: usize) -> Vec<usize> {
-    let stride = |axis: usize| grid.axes()[axis + 1..].iter().map(KnotVector::functions).product::<usize>();
+    let stride = |axis: usize| (axis + 1..D).map(|axis| grid.nodes_along(axis)).product::<usize>();
     let mut offsets: Vec<usize> = (0..grid.order() + 2).map(|layer| layer * stride(normal)).collect();
     for axis in (0..D).filter(|&axis| axis != normal) {
         let further = |offset: usize| (0..=grid.order()).map(move |node| offset + node * stride(axis));

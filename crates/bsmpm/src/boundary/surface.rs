@@ -70,7 +70,7 @@ impl Attachment {
         x: &Vector<D>,
     ) -> Option<Self> {
         let x = on_grid(grid, x);
-        let cell = grid.locate(&x).filter(|cell| grid.columns().contains(&cell[0]))?;
+        let cell = grid.locate(&x).filter(|cell| grid.holds(cell))?;
         let first_node = grid.first_node(&cell);
         let rows: Vec<Vec<f64>> = (0..D).map(|axis| values(&grid.axes()[axis], x[axis], cell[axis])).collect();
         let width = grid.order() + 1;

@@ -88,10 +88,9 @@ impl<const D: usize> Shape<D> {
     }
 
     fn evaluate<const W: usize>(&mut self, grid: &Grid<D>, points: &Points<D>) -> Result<(), StepError> {
-        let columns = grid.columns();
         for (p, x) in points.x.iter().enumerate() {
             let outside = || StepError::Outside { id: points.id[p], x: x.as_slice().to_vec() };
-            let located = grid.locate(x).filter(|cell| columns.contains(&cell[0])).ok_or_else(outside)?;
+            let located = grid.locate(x).filter(|cell| grid.holds(cell)).ok_or_else(outside)?;
             let cell = grid.cell_index(&located);
             match self.patches.last_mut() {
                 Some(patch) if patch.cell == cell => patch.points.end = p + 1,

@@ -155,17 +155,11 @@ impl Coupling {
 
     /// The node of the window at a place of a function's g; `None` where there is none.
     fn node<const D: usize>(&self, grid: &Grid<D>, (function, degree): (usize, usize), place: usize) -> Option<usize> {
-        let first = grid.layers().start;
-        let mut node = 0;
-        for (axis, at) in grid.node_at(function).into_iter().enumerate() {
-            let step = place / self.side.pow((D - 1 - axis) as u32) % self.side;
-            let along = (at + step).checked_sub(degree).filter(|&n| n < grid.axes()[axis].functions())?;
-            node = match axis {
-                0 => along.checked_sub(first).filter(|&n| n < grid.layers().len())?,
-                _ => node * grid.axes()[axis].functions() + along,
-            };
+        let mut node = grid.node_at(function);
+        for (axis, at) in node.iter_mut().enumerate() {
+            *at = (*at + place / self.side.pow((D - 1 - axis) as u32) % self.side).checked_sub(degree)?;
         }
-        Some(node)
+        grid.node_index(&node)
     }
 }
 

@@ -131,11 +131,10 @@ fn worst_nodes<K, const D: usize>(scene: &Scene<'_, K, D>, residual: &Residual<D
     let force = |node: usize| Vector::<D>::from_column_slice(&residual.balance.f_oob[node * D..][..D]).norm();
     let mut nodes: Vec<usize> = scene.halo.owned().filter(|&node| force(node) > 0.0).collect();
     nodes.sort_by(|&a, &b| force(b).total_cmp(&force(a)));
-    let first = grid.columns().start * grid.layer_nodes();
     let told = |node: usize| {
         let place = grid.node_at(node);
         let x = (0..D).map(|axis| grid.axes()[axis].greville(place[axis])).collect();
-        WorstNode { number: (first + node) as u64, x, force: force(node) }
+        WorstNode { number: grid.number_of(node) as u64, x, force: force(node) }
     };
     nodes.into_iter().take(WORST).map(told).collect()
 }

@@ -173,7 +173,7 @@ struct System {
 impl System {
     fn new([columns, rows]: [usize; 2], order: usize, bounds: &[usize]) -> Self {
         let axis = |cells| KnotVector::uniform(1.0, cells, order).unwrap();
-        let slabs = Slabs::new(bounds.to_vec(), bounds.len() - 1, columns).unwrap();
+        let slabs = Slabs::new(bounds.to_vec(), bounds.len() - 1, 0..columns).unwrap();
         Self { grid: Grid::new([axis(columns), axis(rows)]).unwrap(), slabs, gap: 0..0 }
     }
 

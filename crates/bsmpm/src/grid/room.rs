@@ -1,0 +1,102 @@
+//! The part of the grid around the points: only its cells and nodes are stored, however large the grid is.
+//!
+//! A scene's grid has room for all that may come to pass; at any time most of it is empty. What is kept reaches further
+//! than the points do by what they couple with, and by a part of their own extent, so that it is seldom fitted anew.
+//! Results do not depend on it, to the bit: nodes that no point touches have no unknowns and add zeros to sums.
+
+use super::{Grid, KnotVector};
+use crate::points::Points;
+use std::ops::Range;
+
+/// Part of the points' extent by which the room reaches further on either side than it must.
+const SLACK: usize = 8;
+
+impl<const D: usize> Grid<D> {
+    /// Cells (global, along each axis) of a box around the points; `None` without points. They must lie in the grid.
+    pub fn occupied(&self, points: &Points<D>) -> Option<[Range<usize>; D]> {
+        let mut found = std::array::from_fn(|_| 0..0);
+        for (axis, range) in found.iter_mut().enumerate() {
+            let along = points.x.iter().map(|x| x[axis]);
+            let (least, most) = along.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)));
+            *range = self.axes()[axis].cell_of(least)?..self.axes()[axis].cell_of(most)? + 1;
+        }
+        Some(found)
+    }
+
+    /// Whether all that points in the cells `occupied` couple with lies in the room.
+    pub fn has_room(&self, occupied: &[Range<usize>; D]) -> bool {
+        let couples = coupled(self.order(), self.beyond());
+        (0..D).all(|axis| {
+            let needed = wider(&occupied[axis], couples, self.axes()[axis].cells());
+            self.room()[axis].start <= needed.start && needed.end <= self.room()[axis].end
+        })
+    }
+
+    /// The same grid with room for points in the cells `occupied`, and at least so many columns.
+    pub fn with_room(&self, occupied: &[Range<usize>; D], columns: usize) -> Self {
+        let cells = self.axes().each_ref().map(KnotVector::cells);
+        self.within(around(occupied, cells, (self.order(), self.beyond()), columns))
+    }
+
+    /// The same grid with at least so many columns in its room.
+    pub fn with_columns(&self, columns: usize) -> Self {
+        let mut room = self.room().clone();
+        room[0] = at_least(columns, &room[0], self.axes()[0].cells());
+        self.within(room)
+    }
+}
+
+/// Room for points in the cells `occupied` of a grid of so many `cells` along each axis, for splines of an order and
+/// `beyond` further layers that are coupled: as large as the grid at most, and at least so many columns, if it has them.
+pub fn around<const D: usize>(
+    occupied: &[Range<usize>; D],
+    cells: [usize; D],
+    (order, beyond): (usize, usize),
+    columns: usize,
+) -> [Range<usize>; D] {
+    let mut room: [Range<usize>; D] = std::array::from_fn(|axis| {
+        let slack = (occupied[axis].len() / SLACK).max(order);
+        wider(&occupied[axis], coupled(order, beyond) + slack, cells[axis])
+    });
+    room[0] = at_least(columns, &room[0], cells[0]);
+    room
+}
+
+/// A range of cells made as long as wanted, as far as there are cells.
+fn at_least(wanted: usize, range: &Range<usize>, cells: usize) -> Range<usize> {
+    let end = (range.end + wanted.saturating_sub(range.len())).min(cells);
+    range.start.min(end.saturating_sub(wanted))..end
+}
+
+/// Cells by which the room must reach further than the points: surfaces see the material whose functions reach their
+/// cell, q away, and some sums couple layers beyond.
+fn coupled(order: usize, beyond: usize) -> usize {
+    order + beyond
+}
+
+fn wider(range: &Range<usize>, by: usize, cells: usize) -> Range<usize> {
+    range.start.saturating_sub(by)..(range.end + by).min(cells)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_room_is_as_wide_as_what_is_coupled_and_a_part_of_the_extent() {
+        assert_eq!(around(&[100..164, 3..5], [1000, 1000], (2, 1), 1), [89..175, 0..10]);
+        assert_eq!(around(&[1..9, 0..20], [12, 20], (3, 0), 1), [0..12, 0..20]);
+    }
+
+    #[test]
+    fn there_is_a_column_for_every_rank_if_the_grid_has_one() {
+        let columns = |from: usize, to: usize, wanted: usize| {
+            let [columns, rows] = around(&[from..to, 3..4], [100, 8], (1, 0), wanted);
+            assert_eq!(rows, 1..6);
+            columns
+        };
+        assert_eq!(columns(50, 51, 30), 48..78);
+        assert_eq!(columns(97, 99, 30), 70..100);
+        assert_eq!(columns(97, 99, 200), 0..100);
+    }
+}
