@@ -17,6 +17,16 @@ pub struct Frame {
     pub fields: Vec<Field>,
 }
 
+/// A frame whose points come part by part, so that nobody needs to hold all of them.
+pub struct Parts<'a> {
+    /// Step, time and fields; without points.
+    pub head: Frame,
+    /// How many points come.
+    pub points: usize,
+    /// The next points, with the same step, time and fields; `None` after the last ones.
+    pub next: &'a mut dyn FnMut() -> Option<Frame>,
+}
+
 /// One quantity of all points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Field {
@@ -70,6 +80,18 @@ impl Frame {
             Values::F64(values) => Some(values),
             _ => None,
         }
+    }
+
+    /// The same without its points.
+    pub fn without_points(&self) -> Self {
+        let none = |values: &Values| match values {
+            Values::F64(_) => Values::F64(Vec::new()),
+            Values::U64(_) => Values::U64(Vec::new()),
+            Values::U16(_) => Values::U16(Vec::new()),
+        };
+        let fields = self.fields.iter();
+        let fields = fields.map(|field| Field { values: none(&field.values), name: field.name.clone(), ..*field });
+        Self { position: Vec::new(), fields: fields.collect(), ..*self }
     }
 
     /// Whether the frame may be written to `path`.

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use crate::directory::is_plain_relative;
-use crate::frame::Frame;
+use crate::frame::{Frame, Parts};
 use crate::xml::tags;
 use crate::{Error, atomic, vtu};
 
@@ -64,8 +64,22 @@ impl Frames {
     /// # Errors
     /// Those of [`vtu::write`]; the list then names the frames before only.
     pub fn write(&mut self, frame: &Frame) -> Result<(), Error> {
+        vtu::write(&self.directory.join(Self::file(frame.step)), frame)?;
+        self.list(frame)
+    }
+
+    /// The same of a frame whose points come part by part.
+    ///
+    /// # Errors
+    /// Those of [`vtu::write_parts`]; the list then names the frames before only.
+    pub fn write_parts(&mut self, parts: Parts<'_>) -> Result<(), Error> {
+        let head = parts.head.clone();
+        vtu::write_parts(&self.directory.join(Self::file(head.step)), parts)?;
+        self.list(&head)
+    }
+
+    fn list(&mut self, frame: &Frame) -> Result<(), Error> {
         let file = Self::file(frame.step);
-        vtu::write(&self.directory.join(&file), frame)?;
         self.entries.retain(|entry| entry.file != file);
         self.entries.push(Entry { time: frame.time, file });
         write_collection(&self.directory.join(COLLECTION), &self.entries)

@@ -1,62 +1,105 @@
 //! One frame as a VTK unstructured grid: a vertex cell per point, raw appended binary, little endian, file version 1.0
 //! (every ParaView since 4 opens it). [`read`] reads back what [`write()`] wrote, not every `.vtu` of the world.
 
-use std::io::{self, Write};
+use std::io::{self, Seek, SeekFrom, Write};
 use std::path::Path;
 
 use crate::Error;
 use crate::atomic;
-use crate::frame::{Field, Frame, Values};
+use crate::frame::{Field, Frame, Parts, Values};
 
 pub use crate::vtu_read::read;
 
 /// Names of the components of a symmetric tensor, in the order in which they are stored.
 const SYMMETRIC: [&str; 6] = ["XX", "YY", "ZZ", "XY", "YZ", "XZ"];
 const VTK_VERTEX: u8 = 1;
+/// Bytes of the length that goes before an array.
+const LENGTH: u64 = size_of::<u64>() as u64;
 
 /// Writes `frame` to the file `path`, replacing it in one go.
 ///
 /// # Errors
-/// Those of [`Frame::check`], before anything is written; [`Error::File`] when the system refuses.
+/// Those of [`Frame::check`]; [`Error::File`] when the system refuses. An older file then stays as it was.
 pub fn write(path: &Path, frame: &Frame) -> Result<(), Error> {
     frame.check(path)?;
-    atomic::replace(path, |file| {
-        let mut offset = 0;
-        write_head(file, frame, &mut offset)?;
-        file.write_all(b"  <AppendedData encoding=\"raw\">\n_")?;
-        for data in arrays(frame) {
-            data.write(file)?;
-        }
-        file.write_all(b"\n  </AppendedData>\n</VTKFile>\n")
-    })
+    let mut left = Some(frame.clone());
+    write_parts(path, Parts { head: frame.without_points(), points: frame.position.len(), next: &mut || left.take() })
 }
 
-/// Bytes that each point of frames with these fields takes; a head of some kilobytes comes with them.
-pub fn point_bytes(fields: &[Field]) -> u64 {
-    let number = |values: &Values| match values {
-        Values::F64(_) | Values::U64(_) => 8,
-        Values::U16(_) => 2,
+/// Writes a frame to the file `path` as its points come, replacing it in one go: the same bytes, whatever the parts.
+///
+/// # Errors
+/// As [`write()`]; [`Error::Length`] if not so many points come as were told.
+pub fn write_parts(path: &Path, parts: Parts<'_>) -> Result<(), Error> {
+    parts.head.check(path)?;
+    let mut refused = None;
+    let written = atomic::replace(path, |file| fill(file, path, parts, &mut refused));
+    refused.map_or(written, Err)
+}
+
+fn fill(
+    file: &mut (impl Write + Seek),
+    path: &Path,
+    Parts { head, points, next }: Parts<'_>,
+    refused: &mut Option<Error>,
+) -> io::Result<()> {
+    let mut places = Vec::new(); // of every array in the file, behind its length
+    write_head(file, &head, points, &mut places)?;
+    file.write_all(b"  <AppendedData encoding=\"raw\">\n_")?;
+    let start = file.stream_position()?;
+    let mut given = 0;
+    let mut wrong = |error: Error| {
+        *refused = Some(error);
+        io::Error::other("refused")
     };
-    let numbers: usize = fields.iter().map(|field| field.components * number(&field.values)).sum();
-    let [place, cell] = [3 * size_of::<f64>(), 2 * size_of::<i64>() + size_of::<u8>()];
-    (numbers + place + cell) as u64
+    while let Some(part) = next() {
+        part.check(path).map_err(&mut wrong)?;
+        let count = part.position.len();
+        if given + count <= points {
+            for (data, place) in arrays(&part, given).zip(&places) {
+                file.seek(SeekFrom::Start(start + place + (given * data.point_bytes()) as u64))?;
+                data.write(file)?;
+            }
+        }
+        given += count;
+    }
+    if given != points {
+        let item = "a frame".to_owned();
+        return Err(wrong(Error::Length { path: path.to_owned(), item, expected: points, found: given }));
+    }
+    let mut end = 0;
+    for (data, place) in arrays(&head, 0).zip(&places) {
+        let bytes = (points * data.point_bytes()) as u64;
+        file.seek(SeekFrom::Start(start + place - LENGTH))?;
+        file.write_all(&bytes.to_le_bytes())?;
+        end = start + place + bytes;
+    }
+    file.seek(SeekFrom::Start(end))?;
+    file.write_all(b"\n  </AppendedData>\n</VTKFile>\n")
 }
 
-fn write_head(file: &mut impl Write, frame: &Frame, offset: &mut usize) -> io::Result<()> {
-    let points = frame.position.len();
-    let mut data = arrays(frame);
+/// Bytes that each point of frames with the fields of `frame` takes; a head of some kilobytes comes with them.
+pub fn point_bytes(frame: &Frame) -> u64 {
+    arrays(frame, 0).map(|data| data.point_bytes() as u64).sum()
+}
+
+/// The text, and where the numbers of each array begin from where their bytes do.
+fn write_head(file: &mut impl Write, head: &Frame, points: usize, places: &mut Vec<u64>) -> io::Result<()> {
+    let mut data = arrays(head, 0);
+    let mut offset = 0;
     let mut array = |file: &mut dyn Write, name: &str, components: usize| {
         let data = data.next().ok_or_else(|| io::Error::other("more arrays announced than written"))?;
-        write_array(file, name, components, data.kind(), *offset)?;
-        *offset += size_of::<u64>() + data.bytes();
+        write_array(file, name, components, data.kind(), offset)?;
+        places.push(offset as u64 + LENGTH);
+        offset += LENGTH as usize + points * data.point_bytes();
         io::Result::Ok(())
     };
     writeln!(file, "<?xml version=\"1.0\"?>")?;
     let order = "byte_order=\"LittleEndian\" header_type=\"UInt64\"";
     writeln!(file, "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" {order}>\n  <UnstructuredGrid>")?;
-    write_moment(file, frame)?;
+    write_moment(file, head)?;
     writeln!(file, "    <Piece NumberOfPoints=\"{points}\" NumberOfCells=\"{points}\">\n      <PointData>")?;
-    for Field { name, components, .. } in &frame.fields {
+    for Field { name, components, .. } in &head.fields {
         array(file, name, *components)?;
     }
     writeln!(file, "      </PointData>\n      <Points>")?;
@@ -88,19 +131,26 @@ fn write_array(file: &mut dyn Write, name: &str, components: usize, kind: &str, 
     writeln!(file, " format=\"appended\" offset=\"{offset}\"/>")
 }
 
-/// The arrays in the order of the file: fields, places, then the three that make each point a cell.
-fn arrays(frame: &Frame) -> impl Iterator<Item = Data<'_>> {
+/// The arrays in the order of the file: fields, places, then the three that make each point a cell, the first one's number
+/// being `first`.
+fn arrays(frame: &Frame, first: usize) -> impl Iterator<Item = Data<'_>> {
     let points = frame.position.len();
-    let fields = frame.fields.iter().map(|field| match &field.values {
-        Values::F64(values) => Data::F64(values),
-        Values::U64(values) => Data::U64(values),
-        Values::U16(values) => Data::U16(values),
-    });
-    let cells = [Data::Count { first: 0, points }, Data::Count { first: 1, points }, Data::Vertices { points }];
-    fields.chain([Data::F64(frame.position.as_flattened())]).chain(cells)
+    let fields =
+        frame.fields.iter().map(|field| Data { components: field.components, numbers: (&field.values).into() });
+    let place = Numbers::F64(frame.position.as_flattened());
+    let count = |first: usize| Numbers::Count { first: first as i64, points };
+    let cells = [count(first), count(first + 1), Numbers::Vertices { points }];
+    let cells = cells.map(|numbers| Data { components: 1, numbers });
+    fields.chain([Data { components: 3, numbers: place }]).chain(cells)
 }
 
-enum Data<'a> {
+/// One array of the file.
+struct Data<'a> {
+    components: usize,
+    numbers: Numbers<'a>,
+}
+
+enum Numbers<'a> {
     F64(&'a [f64]),
     U64(&'a [u64]),
     U16(&'a [u16]),
@@ -114,37 +164,46 @@ enum Data<'a> {
     },
 }
 
+impl<'a> From<&'a Values> for Numbers<'a> {
+    fn from(values: &'a Values) -> Self {
+        match values {
+            Values::F64(values) => Self::F64(values),
+            Values::U64(values) => Self::U64(values),
+            Values::U16(values) => Self::U16(values),
+        }
+    }
+}
+
 impl Data<'_> {
     fn kind(&self) -> &'static str {
-        match self {
-            Self::F64(_) => "Float64",
-            Self::U64(_) => "UInt64",
-            Self::U16(_) => "UInt16",
-            Self::Count { .. } => "Int64",
-            Self::Vertices { .. } => "UInt8",
+        match self.numbers {
+            Numbers::F64(_) => "Float64",
+            Numbers::U64(_) => "UInt64",
+            Numbers::U16(_) => "UInt16",
+            Numbers::Count { .. } => "Int64",
+            Numbers::Vertices { .. } => "UInt8",
         }
     }
 
-    fn bytes(&self) -> usize {
-        match self {
-            Self::F64(values) => size_of_val(*values),
-            Self::U64(values) => size_of_val(*values),
-            Self::U16(values) => size_of_val(*values),
-            Self::Count { points, .. } => points * size_of::<i64>(),
-            Self::Vertices { points } => *points,
-        }
+    /// Bytes of a point.
+    fn point_bytes(&self) -> usize {
+        let number = match self.numbers {
+            Numbers::F64(_) | Numbers::U64(_) | Numbers::Count { .. } => 8,
+            Numbers::U16(_) => 2,
+            Numbers::Vertices { .. } => 1,
+        };
+        self.components * number
     }
 
     fn write(&self, file: &mut impl Write) -> io::Result<()> {
-        file.write_all(&(self.bytes() as u64).to_le_bytes())?;
-        match self {
-            Self::F64(values) => values.iter().try_for_each(|value| file.write_all(&value.to_le_bytes())),
-            Self::U64(values) => values.iter().try_for_each(|value| file.write_all(&value.to_le_bytes())),
-            Self::U16(values) => values.iter().try_for_each(|value| file.write_all(&value.to_le_bytes())),
-            Self::Count { first, points } => {
-                (*first..first + *points as i64).try_for_each(|value| file.write_all(&value.to_le_bytes()))
+        match self.numbers {
+            Numbers::F64(values) => values.iter().try_for_each(|value| file.write_all(&value.to_le_bytes())),
+            Numbers::U64(values) => values.iter().try_for_each(|value| file.write_all(&value.to_le_bytes())),
+            Numbers::U16(values) => values.iter().try_for_each(|value| file.write_all(&value.to_le_bytes())),
+            Numbers::Count { first, points } => {
+                (first..first + points as i64).try_for_each(|value| file.write_all(&value.to_le_bytes()))
             }
-            Self::Vertices { points } => (0..*points).try_for_each(|_| file.write_all(&[VTK_VERTEX])),
+            Numbers::Vertices { points } => (0..points).try_for_each(|_| file.write_all(&[VTK_VERTEX])),
         }
     }
 }

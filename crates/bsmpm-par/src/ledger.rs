@@ -17,7 +17,7 @@ use bsmpm_io::Error;
 use bsmpm_io::checkpoint::Store;
 use bsmpm_io::directory::{HISTORY, OutputDirectory};
 use bsmpm_io::failure::{FAILURE, FailureReport};
-use bsmpm_io::frame::Frame;
+use bsmpm_io::frame::Parts;
 use bsmpm_io::frames::{COLLECTION, Frames};
 use bsmpm_io::manifest::{self, Manifest, Status};
 use bsmpm_io::residuals::{self, Iterate, RESIDUALS};
@@ -242,11 +242,11 @@ impl Ledger {
     }
 
     /// A frame; the manifest names it before it is there.
-    pub fn frame(&mut self, frame: &Frame) -> Result<(), Error> {
-        let file = Frames::file(frame.step);
+    pub fn frame(&mut self, parts: Parts<'_>) -> Result<(), Error> {
+        let file = Frames::file(parts.head.step);
         self.manifest.name_output(&file);
         self.manifest.write(self.directory.path())?;
-        self.frames.write(frame)?;
+        self.frames.write_parts(parts)?;
         self.manifest.complete(self.directory.path(), &file)
     }
 

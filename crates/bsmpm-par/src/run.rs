@@ -9,7 +9,7 @@ mod start;
 use crate::cli::Arguments;
 use crate::exit;
 use crate::fault::Fault;
-use crate::gather;
+use crate::gather::Gathering;
 use crate::launch;
 use crate::ledger::Ledger;
 use crate::log::Log;
@@ -21,6 +21,7 @@ use bsmpm::error::StepError;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::seam::Halo;
 use bsmpm::step::Report;
+use bsmpm_io::frame::Parts;
 use bsmpm_io::manifest::{Communication, Status};
 use bsmpm_scene::{Case, Every};
 use hdf5_collective::Hdf5;
@@ -239,11 +240,17 @@ impl<'p> Run<'p> {
         let _timed = timers.time("frames");
         let begin = Instant::now();
         let (step, time) = (self.simulation.steps(), self.simulation.time());
-        let frame =
-            gather::frame(&self.universe.world(), &self.simulation.points, self.case.grid.lower(), (step, time));
-        let written = match (&mut self.ledger, frame) {
-            (Some(ledger), Some(frame)) => ledger.frame(&frame),
-            _ => Ok(()),
+        let world = self.universe.world();
+        let mut frame = Gathering::new(&world, &self.simulation.points, self.case.grid.lower(), (step, time));
+        let written = match &mut self.ledger {
+            Some(ledger) => {
+                let (head, points) = (frame.head(), frame.points());
+                ledger.frame(Parts { head, points, next: &mut || frame.block() })
+            }
+            None => {
+                while frame.block().is_some() {}
+                Ok(())
+            }
         };
         self.require(written);
         self.last_frame = Some(step);

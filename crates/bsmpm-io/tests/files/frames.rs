@@ -1,10 +1,11 @@
 //! Frames and their list.
 
-use bsmpm_io::frame::{Field, Frame, Values};
+use bsmpm_io::frame::{Field, Frame, Parts, Values};
 use bsmpm_io::frames::{Frames, read_collection};
 use bsmpm_io::{Error, vtu};
 
 use crate::listing;
+use std::path::Path;
 
 /// Numbers whose bits a careless writer would lose.
 const DELICATE: [f64; 6] = [0.1 + 0.2, -0.0, 5e-324, f64::MAX, 1.0 / 3.0, -1e-7];
@@ -51,6 +52,56 @@ fn a_frame_reads_back_to_the_bit() {
     }
 }
 
+/// The points `range` of a frame.
+fn part(frame: &Frame, range: std::ops::Range<usize>) -> Frame {
+    let mut part = frame.without_points();
+    part.position = frame.position[range.clone()].to_vec();
+    for (to, from) in part.fields.iter_mut().zip(&frame.fields) {
+        let numbers = range.start * from.components..range.end * from.components;
+        to.values = match &from.values {
+            Values::F64(values) => Values::F64(values[numbers].to_vec()),
+            Values::U64(values) => Values::U64(values[numbers].to_vec()),
+            Values::U16(values) => Values::U16(values[numbers].to_vec()),
+        };
+    }
+    part
+}
+
+/// Writes `told` points of which `frame` has `parts`.
+fn write_parts(path: &Path, frame: &Frame, told: usize, parts: &[std::ops::Range<usize>]) -> Result<(), Error> {
+    let mut parts = parts.iter().map(|range| part(frame, range.clone()));
+    vtu::write_parts(path, Parts { head: frame.without_points(), points: told, next: &mut || parts.next() })
+}
+
+#[test]
+fn a_frame_has_the_same_bytes_in_whatever_parts_it_comes() {
+    let dir = tempfile::tempdir().unwrap();
+    let (whole, apart) = (dir.path().join("whole.vtu"), dir.path().join("apart.vtu"));
+    let frame = frame(1000);
+    vtu::write(&whole, &frame).unwrap();
+    for parts in [&[0..1, 1..1, 1..999, 999..1000][..], &[0..333, 333..666, 666..1000]] {
+        write_parts(&apart, &frame, 1000, parts).unwrap();
+        assert!(std::fs::read(&whole).unwrap() == std::fs::read(&apart).unwrap(), "{parts:?}");
+    }
+}
+
+#[test]
+fn a_frame_of_other_than_the_told_points_replaces_nothing() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("frame.vtu");
+    vtu::write(&path, &frame(3)).unwrap();
+    let before = std::fs::read(&path).unwrap();
+    for (told, parts) in [(9, [0..4, 4..8]), (9, [0..5, 5..10]), (0, [0..1, 1..2])] {
+        let refused = write_parts(&path, &frame(10), told, &parts).unwrap_err();
+        assert!(matches!(refused, Error::Length { expected, .. } if expected == told), "{refused}");
+    }
+    let mut bad = frame(10);
+    bad.position[7][0] = f64::NAN;
+    assert!(matches!(write_parts(&path, &bad, 10, &[0..5, 5..10]), Err(Error::PointNotFinite { .. })));
+    assert_eq!(std::fs::read(&path).unwrap(), before);
+    assert_eq!(listing(dir.path()), ["frame.vtu"]);
+}
+
 #[test]
 fn the_bytes_of_a_point_are_those_that_a_frame_grows_by() {
     let dir = tempfile::tempdir().unwrap();
@@ -61,7 +112,7 @@ fn the_bytes_of_a_point_are_those_that_a_frame_grows_by() {
     };
     // As many digits in both heads.
     let grown = size(2000) - size(1000);
-    let head = grown.abs_diff(1000 * vtu::point_bytes(&frame(0).fields));
+    let head = grown.abs_diff(1000 * vtu::point_bytes(&frame(0)));
     assert!(head < 32, "{head} bytes of longer offsets");
 }
 
