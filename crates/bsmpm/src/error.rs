@@ -110,6 +110,15 @@ pub enum StepError {
         /// Why there is no direction from the last state, if that ended it.
         unsolved: Option<SolveError>,
     },
+    /// The iteration came near a static equilibrium of elastic material along a direction of negative second-order work: it
+    /// is not stable, and round-off decides where an iteration goes from there.
+    #[error("unstable equilibrium: the second-order work of iteration {iteration} is {work:.2e} N m")]
+    Unstable {
+        /// Iteration.
+        iteration: usize,
+        /// du . (f_old - f_new) along its direction, N m.
+        work: f64,
+    },
     /// The step was given up on request, see [`Halo::is_interrupted`](crate::seam::Halo::is_interrupted).
     #[error("given up on request")]
     Interrupted,
@@ -130,6 +139,12 @@ pub enum StepError {
 }
 
 impl StepError {
+    /// Whether no other guess of the displacement can mend a step of this length: an unstable equilibrium is one whatever
+    /// leads there.
+    pub fn is_final(&self) -> bool {
+        matches!(self, Self::Interrupted | Self::Unstable { .. })
+    }
+
     /// Id and position (m, from the grid's lower corner) of a point of this rank that the error is about.
     pub fn point(&self) -> Option<(u64, &[f64])> {
         match self {

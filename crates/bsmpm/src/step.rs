@@ -15,6 +15,7 @@ pub mod quasi_newton;
 pub mod residual;
 pub mod round_off;
 pub mod smooth;
+pub mod stability;
 pub mod stiffness;
 pub mod trial;
 pub mod unknowns;

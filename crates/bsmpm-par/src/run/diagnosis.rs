@@ -77,6 +77,10 @@ fn advice(error: &StepError) -> Vec<String> {
             "look at the worst nodes: next to nearly empty cells a larger [solver] background helps",
             "more steps ([analysis] steps or dt), or a [stabilisation] where poisson is above .45 or the soil yields",
         ],
+        StepError::Unstable { .. } => &[
+            "nearly incompressible material under a pressure of several times its shear modulus: more points_per_cell",
+            "where the body itself buckles, a dynamic analysis follows it",
+        ],
         StepError::Inverted { .. } => &[
             "material turned inside out: more steps ([analysis] steps or dt), or a larger [solver] background",
             "look at the points named: loose points at a free surface are the usual ones",

@@ -110,7 +110,7 @@ pub fn find<K: Kinematics<D>, const D: usize>(
     scene.halo.maximum(&mut differs);
     let method = scene.model.nonlinear;
     match search(scene, method, last, (solver, counts)) {
-        Err(error) if error != StepError::Interrupted && differs[0] > 0.0 => {
+        Err(error) if !error.is_final() && differs[0] > 0.0 => {
             let method = if method == Nonlinear::Auto { Nonlinear::Newton } else { method };
             let found = search(scene, method, zero, (solver, counts))?;
             Ok(Found { first_guess: false, ..found })

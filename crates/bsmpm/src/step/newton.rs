@@ -10,6 +10,7 @@ use crate::step::linearised::Linearised;
 use crate::step::progress::{Progress, first_energy, inverted};
 use crate::step::quasi_newton::Stopped;
 use crate::step::residual::Residual;
+use crate::step::stability::{self, Move};
 
 /// Iterations after which a step is given up: near a solution five or six do.
 const MOST: usize = 30;
@@ -55,7 +56,11 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
             return Ok(Found::new(u, residual, progress));
         }
         match search(scene, &u, &du, &residual, counts) {
-            Some((next, found)) => (u, residual) = (next, found),
+            Some((next, found)) => {
+                let made = Move { du: &du, energy, measure: residual.balance.measure() };
+                stability::check(scene, progress, made, &found)?;
+                (u, residual) = (next, found);
+            }
             None => break,
         }
     }

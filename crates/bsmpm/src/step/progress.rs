@@ -45,6 +45,11 @@ impl Progress {
         (first && balance.measure() <= ALREADY * self.criteria.force) || self.round_off.covers(balance, scene)
     }
 
+    /// Norm of what is round-off in the forces, N.
+    pub fn round_off(&self) -> f64 {
+        self.round_off.norm()
+    }
+
     /// Whether any direction has been measured yet.
     pub fn has_begun(&self) -> bool {
         self.first_energy.is_some()

@@ -35,6 +35,11 @@ impl RoundOff {
         Self { force, norm }
     }
 
+    /// Norm of the round-off of all nodes' forces, N.
+    pub fn norm(&self) -> f64 {
+        self.norm
+    }
+
     /// Whether no node is further out of balance than by round-off. All ranks must ask; they share an exchange only where
     /// the norm leaves a doubt.
     pub fn covers<K, const D: usize>(&self, balance: &Balance, scene: &Scene<'_, K, D>) -> bool {

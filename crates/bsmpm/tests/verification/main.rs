@@ -16,6 +16,7 @@ mod locking;
 mod newton;
 mod oedometer;
 mod penalty;
+mod stability;
 mod surfaces;
 
 #[path = "../support/mod.rs"]
