@@ -23,7 +23,6 @@ const LOOSE: &str = "the farthest point has come loose, and slides on where its 
 const COARSE: &str = "an error of integration in time: a fall of .1 s in steps of 5 to 10 ms";
 const HEAP: &str = "0 at rest; the matrix is made anew with every cell that is entered, and the heap frays, ever more slowly; nothing is lost";
 const SLOW: &str = "p/c changes by .1 to .4 % a doubling, and that falls by less than half each time";
-const BEYOND: &str = "the pressure at the base is 200 G, and against what F-bar averages out only G holds: Newton's method finds another equilibrium";
 const C1: &str = "the splines are C1: strain cannot jump at an interface inside the grid";
 
 /// All rows.
@@ -53,7 +52,7 @@ pub fn all() -> Vec<Row> {
 fn confined() -> Vec<Row> {
     vec![
         row("N01", "nu = .49, confined column, none: height / l0, error", AtMost(5e-4), || incompressible::confined(0.49, Plain)),
-        row("N01", "nu = .499, f-bar: the worst of 16 that differ by round-off", AtMost(5e-4), || incompressible::confined_by_round_off(0.499, FBar, 16)).or_refused().fails(BEYOND),
+        row("N01", "nu = .499, f-bar: the worst of 16 that differ by round-off", AtMost(5e-4), || incompressible::confined_by_round_off(0.499, FBar, 16)).or_refused(),
         row("N01", "nu = .4999, the same, f-bar", AtMost(5e-4), || incompressible::confined(0.4999, FBar)).or_refused(),
         row("N01", "nu = .4999, the same, modified-f-bar", AtMost(5e-4), || incompressible::confined(0.4999, ModifiedFBar)).or_refused(),
         row("N01", "nu = .4999, the same, consistent-f-bar", AtMost(5e-4), || incompressible::confined(0.4999, ConsistentFBar)).or_refused(),
