@@ -74,7 +74,7 @@ const ORDER: &str = "\"quadratic\"";
 const METHOD: &str = "\"consistent-f-bar\"";
 
 /// Fills in what the document's `accuracy` stands for, if it has one; whether anything was. What cannot be told from
-/// the rest of the case stays absent, and is missed when the document is read.
+/// the rest of the case is an error, which says what it would follow from.
 pub(crate) fn fill(
     document: &mut Table,
     (source, overrides): (&Source<'_>, &[String]),
@@ -88,15 +88,21 @@ pub(crate) fn fill(
     let mut filling = Filling { document, origin, name, report, filled: false };
     filling.put("grid", &["order"], ORDER, "");
     let cells = scene.cells(preset);
-    if let Some(cells) = &cells
-        && filling.put("grid", &["cell", "knots"], &cells.value, &cells.why)
-    {
-        filling.doubt(cells.edge, scene.thinnest());
+    match &cells {
+        Some(cells) => {
+            if filling.put("grid", &["cell", "knots"], &cells.value, &cells.why) {
+                filling.doubt(cells.edge, scene.thinnest());
+            }
+        }
+        None => filling.miss("grid", &["cell", "knots"], scene::CELLS),
     }
     filling.points(preset.points);
     // The cells that a case gives by hand count, too.
-    if let Some((steps, why)) = scene.steps(preset, cells.map(|cells| cells.edge)) {
-        filling.put("analysis", &["steps", "dt"], &steps.to_string(), &why);
+    match scene.steps(preset, cells.map(|cells| cells.edge)) {
+        Some((steps, why)) => {
+            filling.put("analysis", &["steps", "dt"], &steps.to_string(), &why);
+        }
+        None => filling.miss("analysis", &["steps", "dt"], scene::STEPS),
     }
     if let Some(why) = scene.locks() {
         filling.put("stabilisation", &["method"], METHOD, why);
@@ -145,6 +151,18 @@ impl Filling<'_, '_> {
             self.tell(&format!("{table}.{}", keys[0]), value, why);
         }
         put
+    }
+
+    /// Tells what the first of these keys of a table would follow from, unless one of them is given.
+    fn miss(&mut self, table: &str, keys: &[&str], basis: &str) {
+        let given = |table: &Table| keys.iter().any(|key| table.get(key).is_some());
+        match self.document.get(table) {
+            Some(Entry { node: Node { value: Value::Table(table), .. }, .. }) if given(table) => {}
+            _ => {
+                let reason = format!("\"{}\" cannot choose {table}.{}, which follows from {basis}", self.name, keys[0]);
+                self.report.error(self.origin, ACCURACY, reason);
+            }
+        }
     }
 
     /// Warns of cells (m) that are too wide for the thinnest body.

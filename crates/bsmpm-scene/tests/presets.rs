@@ -155,6 +155,25 @@ fn elastic_soil_that_does_not_lock_gets_no_stabilisation() {
     assert_eq!((elastic(0.3), elastic(0.49)), (Stabilisation::None, Stabilisation::ConsistentFBar));
 }
 
+/// What a word cannot choose it tells, with what that would follow from; what is given needs no choice.
+#[test]
+fn what_cannot_be_chosen_is_told_at_the_word() {
+    let told = |text: &str, overrides: &[&str]| {
+        let errors = read(text, overrides).unwrap_err();
+        let own = errors.into_iter().filter(|error| error.key == "accuracy");
+        own.map(|error| error.message).collect::<Vec<String>>()
+    };
+    let weightless = COLUMN.replace("unit_weight = \"20.4 kN/m3\"\n", "");
+    assert_ne!(weightless, COLUMN);
+    let [steps] = &told(&weightless, &[])[..] else { panic!("one error") };
+    assert!(steps.contains("cannot choose analysis.steps") && steps.contains("density"), "{steps}");
+    assert_eq!(told(&weightless, &["analysis.dt=1e-3"]), [""; 0]);
+    let bodiless = COLUMN.replace("box = { lower = [0.0, 0.0], upper = [0.2, 0.1] }\n", "");
+    assert_ne!(bodiless, COLUMN);
+    let both = told(&bodiless, &[]);
+    assert!(both.len() == 2 && both[0].contains("cannot choose grid.cell"), "{both:?}");
+}
+
 /// Errors of what was filled in stand at the word; what cannot be filled in is missed as ever.
 #[test]
 fn errors_have_a_place() {

@@ -14,6 +14,13 @@ pub(super) struct Cells {
     pub why: String,
 }
 
+/// What cells follow from.
+pub(super) const CELLS: &str = "the size of the bodies, or the length of the shortest strip or loaded segment, and the grid's \
+                                corners";
+/// What steps follow from.
+pub(super) const STEPS: &str = "the cells and, in dynamics, `end` and young, poisson and density of the bodies' materials, in \
+                                statics from what is moved; 1e8 at most";
+
 /// Steps at most that are filled in: more are the author's to ask for.
 const MOST_STEPS: f64 = 1e8;
 
