@@ -1,17 +1,15 @@
 //! What the work of a rank is measured by: counts, never a clock, so that a run repeats.
 //!
-//! Fitted to the processor seconds of 846 steps of three ranks (column of 3,200 points, 5 mm cells, 2 x 2 points a cell),
-//! without those in messages and in the linear solver: 252 ns a point and 112 ns a node of the window in one evaluation
-//! explain 80 % of their spread. A point that yields costs 11 ns more, and an occupied cell nothing that its points do
-//! not: with both, no more is explained, so neither counts. By points alone the cut was even to 1.04 in their numbers and
-//! to 1.34 in seconds, as one rank has most of the empty grid.
+//! Two fits to runs of many sizes on one rank (`scripts/scaling`) say that a node of the window costs .95 and 1.07 of what a
+//! point does in an evaluation, everything included. A point that yields costs 4 % more, and an occupied cell nothing that its
+//! points do not, so neither counts.
 
 use crate::slab::Slabs;
 use bsmpm::grid::Grid;
 use bsmpm::points::Points;
 
 /// Work of a node of the window in an evaluation, in that of a point.
-const NODE: f64 = 0.45;
+const NODE: f64 = 1.0;
 /// Work of a new cut on every rank, in evaluations. Measured with 3,200 points on two ranks: 1.0 ms for moving points and
 /// nodal values, and in the 57 % of steps that would have kept it, 3.7 ms for the linear solver's new pattern; an
 /// evaluation takes .53 ms.

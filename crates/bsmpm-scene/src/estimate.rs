@@ -20,8 +20,6 @@ const POINT: u128 = 600;
 const LOWERED: u128 = 64;
 /// Bytes of a point while a step is saved and a frame written; not there while the system is built.
 const SAVED: u128 = 380;
-/// Bytes of a point where the first of several ranks gathers the frames.
-const GATHERED: u128 = 220;
 /// Bytes of a node's vectors: about a dozen, and twenty secants of three, all of two doubles.
 const VECTORS: u128 = (12 + 20 * 3) * 16;
 /// Bytes of an entry of the stiffness: matrix, value, place in the matrix and what the factorisation, or
@@ -67,8 +65,6 @@ pub struct Estimate {
     pub bytes: u64,
     /// Bytes that every further rank adds: the system again, where each factorises the whole.
     pub repeated: u64,
-    /// Bytes that are added by there being several ranks: the points of a frame, gathered.
-    pub gathered: u64,
     /// Bytes that Newton's system adds once a step needs it, where `auto` makes it only then.
     pub newton: u64,
     /// Bytes of that system that every further rank adds.
@@ -81,8 +77,7 @@ impl Estimate {
     pub fn bytes_on(&self, ranks: usize) -> u64 {
         let ranks = ranks as u64;
         let further = self.repeated.saturating_mul(ranks.saturating_sub(1));
-        let gathered = if ranks > 1 { self.gathered } else { 0 };
-        self.bytes.saturating_add(PROCESS.saturating_mul(ranks)).saturating_add(further).saturating_add(gathered)
+        self.bytes.saturating_add(PROCESS.saturating_mul(ranks)).saturating_add(further)
     }
 
     /// The same once Newton's method is needed.
@@ -161,7 +156,6 @@ impl Case {
             + room_nodes(self) * (every + VECTORS)
             + systems.held
             + passing;
-        let has_frames = self.output.every.is_some() || !self.output.times.is_empty();
         let bounded = |number: u128| u64::try_from(number).unwrap_or(u64::MAX);
         Estimate {
             cells: bounded(cells(&self.grid)),
@@ -173,7 +167,6 @@ impl Case {
             useful_ranks: bounded((2 * occupied / FEWEST).clamp(1, self.grid.axes[0].cells() as u128)),
             bytes: bounded(bytes),
             repeated: bounded(systems.repeated),
-            gathered: bounded(if has_frames { points * GATHERED } else { 0 }),
             newton: bounded(systems.perhaps[0]),
             newton_repeated: bounded(systems.perhaps[1]),
         }
