@@ -1,8 +1,8 @@
 //! What the work of a rank is measured by: counts, never a clock, so that a run repeats.
 //!
 //! Two fits to runs of many sizes on one rank (`scripts/scaling`) say that a node of the window costs .95 and 1.07 of what a
-//! point does in an evaluation, everything included. A point that yields costs 4 % more, and an occupied cell nothing that its
-//! points do not, so neither counts.
+//! point does in an evaluation, everything included. A point that yields cost 4 % more in an earlier fit, and an occupied
+//! cell nothing that its points did not, so neither counts.
 
 use crate::slab::Slabs;
 use bsmpm::grid::Grid;

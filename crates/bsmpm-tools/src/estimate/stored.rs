@@ -12,7 +12,7 @@ use super::work::Work;
 const POINT: f64 = 0.134e-6;
 const UNKNOWN: f64 = 0.25e-6;
 /// Evaluations of a step: elastic; dynamic; quasi-static and plastic.
-const EVALUATIONS: [f64; 3] = [4.0, 16.0, 35.0];
+const EVALUATIONS: [f64; 3] = [4.0, 16.0, 25.0];
 /// s  that a run takes before its first step.
 const START: f64 = 0.08;
 /// s  of a frame, and of each of its points.
