@@ -54,6 +54,9 @@ fn fill(
     };
     while let Some(part) = next() {
         part.check(path).map_err(&mut wrong)?;
+        if part.without_points() != head {
+            return Err(io::Error::other("a part of another frame"));
+        }
         let count = part.position.len();
         if given + count <= points {
             for (data, place) in arrays(&part, given).zip(&places) {

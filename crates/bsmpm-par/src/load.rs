@@ -29,7 +29,7 @@ pub fn points_by_column<const D: usize>(grid: &Grid<D>, points: &Points<D>) -> V
 /// ranks than columns.
 pub fn cut<const D: usize>(grid: &Grid<D>, points: &[f64], ranks: usize) -> Option<Slabs> {
     let slabs = Slabs::cut(&by_column(points, grid.layer_nodes()), ranks)?;
-    Some(slabs.from(grid.room()[0].start).reaching(grid.beyond()))
+    Some(slabs.starting_at(grid.room()[0].start).reaching(grid.beyond()))
 }
 
 /// Work of every column with so many points, and with the nodes of one layer.
@@ -79,7 +79,7 @@ mod tests {
         let counts = [36.0, 0.0, 12.0, 8.0];
         let slabs = Slabs::new(vec![0, 1, 4], 2, 0..4).unwrap();
         assert_eq!(of_slabs(&counts, &slabs, (5, 2)), [of_rank(36, 15), of_rank(20, 25)]);
-        assert_eq!(of_slabs(&counts, &slabs.clone().from(3), (5, 2)), [of_rank(36, 15), of_rank(20, 25)]);
+        assert_eq!(of_slabs(&counts, &slabs.clone().starting_at(3), (5, 2)), [of_rank(36, 15), of_rank(20, 25)]);
         // Each window has the ghost layers besides its columns.
         let columns = by_column(&counts, 5);
         assert_eq!(columns[0] + of_rank(0, 10), of_rank(36, 15));

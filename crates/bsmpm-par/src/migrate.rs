@@ -126,3 +126,29 @@ pub fn exchange(
     });
     incoming
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bsmpm::grid::KnotVector;
+
+    #[test]
+    fn nodal_values_keep_their_places_in_a_wider_and_a_narrower_room() {
+        let axis = |cells| KnotVector::uniform(1.0, cells, 2).unwrap();
+        let whole = Grid::new([axis(12), axis(9), axis(7)]).unwrap();
+        let old = whole.within([2..9, 3..7, 0..5]).window(4..6);
+        let value = |grid: &Grid<3>, node: usize| 1.0 + grid.number_of(node) as f64;
+        let values: Vec<f64> = (0..old.nodes()).flat_map(|node| [value(&old, node), -value(&old, node)]).collect();
+        for room in [[0..12, 0..9, 0..7], [3..8, 4..6, 2..3], [1..11, 2..6, 1..6]] {
+            let new = whole.within(room);
+            let moved = across(&old, &new, &values, 2);
+            let layers = new.within([2..9, new.room()[1].clone(), new.room()[2].clone()]).window(4..6);
+            assert_eq!(moved.len(), 2 * layers.nodes());
+            for (node, pair) in moved.chunks_exact(2).enumerate() {
+                let held = old.node_index(&layers.node_at(node)).is_some();
+                let expected = if held { value(&layers, node) } else { 0.0 };
+                assert_eq!(pair, [expected, -expected], "{:?}", layers.node_at(node));
+            }
+        }
+    }
+}

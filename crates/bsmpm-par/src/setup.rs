@@ -38,7 +38,7 @@ pub fn cut(case: &Case, ranks: usize) -> Option<Cut> {
     let room = case.room(ranks);
     let counts: Vec<f64> = case.points_by_column()[room[0].clone()].iter().map(|&count| count as f64).collect();
     let layer_nodes = room[1].len() + case.grid.order;
-    let slabs = Slabs::cut(&load::by_column(&counts, layer_nodes), ranks)?.from(room[0].start);
+    let slabs = Slabs::cut(&load::by_column(&counts, layer_nodes), ranks)?.starting_at(room[0].start);
     Some((room, slabs))
 }
 

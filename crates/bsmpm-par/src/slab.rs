@@ -61,7 +61,7 @@ impl Slabs {
     }
 
     /// The same slabs of columns of which the first is number `first`.
-    pub fn from(self, first: usize) -> Self {
+    pub fn starting_at(self, first: usize) -> Self {
         Self { bounds: self.bounds.iter().map(|bound| bound + first).collect(), ..self }
     }
 
@@ -228,7 +228,7 @@ mod tests {
         assert_eq!(slabs.columns(0), 0..40);
         let slabs = Slabs::cut(&[0.0, 0.0, 5.0], 3).unwrap();
         assert_eq!(slabs.bounds, [0, 1, 2, 3]);
-        assert_eq!(slabs.from(7).bounds, [7, 8, 9, 10]);
+        assert_eq!(slabs.starting_at(7).bounds, [7, 8, 9, 10]);
         assert_eq!(Slabs::cut(&[1.0; 2], 3), None);
     }
 

@@ -98,11 +98,12 @@ pub(crate) fn fill(
     }
     filling.points(preset.points);
     // The cells that a case gives by hand count, too.
-    match scene.steps(preset, cells.map(|cells| cells.edge)) {
+    match scene.steps(preset, cells.as_ref().map(|cells| cells.edge)) {
         Some((steps, why)) => {
             filling.put("analysis", &["steps", "dt"], &steps.to_string(), &why);
         }
-        None => filling.miss("analysis", &["steps", "dt"], scene::STEPS),
+        None if cells.is_some() => filling.miss("analysis", &["steps", "dt"], scene::STEPS),
+        None => {} // told already
     }
     if let Some(why) = scene.locks() {
         filling.put("stabilisation", &["method"], METHOD, why);

@@ -22,7 +22,7 @@ pub struct State {
     pub steps: u64,
     /// Where the slabs begin, and where the columns of the grid's room end.
     pub slabs: Vec<usize>,
-    /// The room, cells from and to along each axis; none of a run that kept the whole grid.
+    /// The room, cells from and to along each axis; none of a run by a version that kept the whole grid, which then stays.
     #[serde(default)]
     pub room: Option<[[usize; 2]; 2]>,
     /// The step control.

@@ -15,11 +15,11 @@ pub(super) struct Cells {
 }
 
 /// What cells follow from.
-pub(super) const CELLS: &str = "the size of the bodies, or the length of the shortest strip or loaded segment, and the grid's \
-                                corners";
+pub(super) const CELLS: &str = "the size of the bodies, or the length of the shortest strip or loaded segment, the grid's corners \
+                                and [boundary]";
 /// What steps follow from.
-pub(super) const STEPS: &str = "the cells and, in dynamics, `end` and young, poisson and density of the bodies' materials, in \
-                                statics from what is moved; 1e8 at most";
+pub(super) const STEPS: &str = "`type`, the cells and, in dynamics, `end` and young, poisson and density of the bodies' \
+                                materials, in statics what is moved; 1e8 at most";
 
 /// Steps at most that are filled in: more are the author's to ask for.
 const MOST_STEPS: f64 = 1e8;

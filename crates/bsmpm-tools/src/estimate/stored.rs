@@ -11,7 +11,7 @@ use super::work::Work;
 /// s  of a unit of work, for each point and for each unknown.
 const POINT: f64 = 0.134e-6;
 const UNKNOWN: f64 = 0.25e-6;
-/// Evaluations of a step: elastic; dynamic; quasi-static and plastic.
+/// Evaluations of a step: elastic; dynamic; quasi-static and plastic, between those of slopes (9 to 20) and footings (38).
 const EVALUATIONS: [f64; 3] = [4.0, 16.0, 25.0];
 /// s  that a run takes before its first step.
 const START: f64 = 0.08;

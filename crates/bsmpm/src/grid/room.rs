@@ -2,7 +2,7 @@
 //!
 //! A scene's grid has room for all that may come to pass; at any time most of it is empty. What is kept reaches further
 //! than the points do by what they couple with, and by a part of their own extent, so that it is seldom fitted anew.
-//! Results do not depend on it, to the bit: nodes that no point touches have no unknowns and add zeros to sums.
+//! Nodes that no point touches have no unknowns and add zeros to sums: under one cut results do not depend on it, to the bit.
 
 use super::{Grid, KnotVector};
 use crate::points::Points;
@@ -86,6 +86,38 @@ mod tests {
     fn the_room_is_as_wide_as_what_is_coupled_and_a_part_of_the_extent() {
         assert_eq!(around(&[100..164, 3..5], [1000, 1000], (2, 1), 1), [89..175, 0..10]);
         assert_eq!(around(&[1..9, 0..20], [12, 20], (3, 0), 1), [0..12, 0..20]);
+    }
+
+    /// A plane grid of 40 x 20 cells.
+    fn plane(beyond: usize) -> Grid<2> {
+        let axis = |cells| KnotVector::uniform(1.0, cells, 2).unwrap();
+        Grid::new([axis(40), axis(20)]).unwrap().reaching(beyond)
+    }
+
+    #[test]
+    fn the_room_ends_where_points_couple_with_what_lies_outside() {
+        let grid = plane(1).within([10..30, 5..20]);
+        assert!(grid.has_room(&[13..27, 8..18])); // the upper end is the grid's
+        for beyond in [[12..27, 8..18], [13..28, 8..18], [13..27, 7..18]] {
+            assert!(!grid.has_room(&beyond), "{beyond:?}");
+        }
+        let made = grid.with_room(&[12..28, 7..18], 1);
+        assert!(made.has_room(&[12..28, 7..18]) && made.room() != grid.room());
+    }
+
+    #[test]
+    fn nodes_and_cells_of_a_room_are_those_of_the_grid() {
+        let whole = plane(0);
+        let part = whole.within([10..30, 5..12]).window(14..20);
+        for node in 0..part.nodes() {
+            let at = part.node_at(node);
+            assert_eq!((part.node_index(&at), part.number_of(node)), (Some(node), whole.node_index(&at).unwrap()));
+        }
+        assert!((0..part.cells()).all(|cell| part.cell_index(&part.cell_at(cell)) == cell));
+        let held = (0..whole.nodes()).filter(|&node| part.node_index(&whole.node_at(node)).is_some()).count();
+        assert_eq!((held, part.nodes()), (8 * 9, 8 * 9));
+        let held = (0..whole.cells()).filter(|&cell| part.holds(&whole.cell_at(cell))).count();
+        assert_eq!((held, part.cells()), (6 * 7, 6 * 7));
     }
 
     #[test]

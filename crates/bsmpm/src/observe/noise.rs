@@ -157,14 +157,17 @@ fn planes<const D: usize>(
     let middle = grid.order() / 2;
     let mut sums = Contributions::none(grid, WIDTH, Vec::new());
     for patch in shape.patches() {
+        let own = grid.cell_at(patch.cell);
+        let mut moments = [0.0; WIDTH];
+        for p in patch.points.clone() {
+            add_moments(&terms(grid, &own, &points.x[p]), stress(p), &mut moments);
+        }
+        let sums = sums.patch(patch.first_node);
         for offset in shape.offsets() {
             let of_node = grid.node_at(patch.first_node + offset);
             let cell =
                 std::array::from_fn(|axis| of_node[axis].saturating_sub(middle).min(grid.axes()[axis].cells() - 1));
-            let sum = &mut sums.patch(patch.first_node)[offset * WIDTH..(offset + 1) * WIDTH];
-            for p in patch.points.clone() {
-                add_moments(&terms(grid, &cell, &points.x[p]), stress(p), sum);
-            }
+            add_moved(&moments, &between(grid, (&own, &cell)), &mut sums[offset * WIDTH..(offset + 1) * WIDTH]);
         }
     }
     let sums = halo.sum(&sums);
@@ -174,6 +177,27 @@ fn planes<const D: usize>(
         fit::<D>(&sums[node * WIDTH..(node + 1) * WIDTH])
     };
     shape.patches().iter().map(plane).collect()
+}
+
+/// Scale and shift by which the [`terms`] of one cell become those of another: t' = scale t + shift.
+fn between<const D: usize>(grid: &Grid<D>, (from, to): (&[usize; D], &[usize; D])) -> [[f64; 2]; MOST] {
+    let ((lower, size), (other, length)) = (grid.cell_box(from), grid.cell_box(to));
+    let mut change = [[1.0, 0.0]; MOST];
+    for axis in 0..D {
+        let shift = (lower[axis] - other[axis] + 0.5 * size[axis]) / length[axis] - 0.5;
+        change[axis + 1] = [size[axis] / length[axis], shift];
+    }
+    change
+}
+
+/// Adds the moments of points to those of a cell with other terms: sums of products of t' follow from those of t.
+fn add_moved(own: &[f64; WIDTH], change: &[[f64; 2]; MOST], sum: &mut [f64]) {
+    for (i, [a, d]) in change.iter().enumerate() {
+        for (j, [b, e]) in change.iter().enumerate() {
+            sum[i * MOST + j] += a * (b * own[i * MOST + j] + e * own[i * MOST]) + d * (b * own[j] + e * own[0]);
+        }
+        sum[MOST * MOST + i] += a * own[MOST * MOST + i] + d * own[MOST * MOST];
+    }
 }
 
 fn add_moments(t: &[f64; MOST], stress: f64, sum: &mut [f64]) {

@@ -10,7 +10,7 @@ use crate::step::linearised::Linearised;
 use crate::step::progress::{Progress, first_energy, inverted};
 use crate::step::quasi_newton::Stopped;
 use crate::step::residual::Residual;
-use crate::step::stability::{self, Move};
+use crate::step::stability;
 
 /// Iterations after which a step is given up: near a solution five or six do.
 const MOST: usize = 30;
@@ -55,14 +55,10 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
         if progress.reaches(Method::Newton, energy.abs(), &residual.balance) {
             return Ok(Found::new(u, residual, progress));
         }
-        match search(scene, &u, &du, &residual, counts) {
-            Some((next, found)) => {
-                let made = Move { du: &du, energy, measure: residual.balance.measure() };
-                stability::check(scene, progress, made, &found)?;
-                (u, residual) = (next, found);
-            }
-            None => break,
-        }
+        let work = stability::work(scene, &du, &residual.balance);
+        let Some((next, found)) = search(scene, &u, &du, &residual, counts) else { break };
+        stability::check(scene, progress, (&du, work), &found.balance)?;
+        (u, residual) = (next, found);
     }
     Err(Stopped { error: progress.failed(scene, &residual, None), best: Some(u) })
 }

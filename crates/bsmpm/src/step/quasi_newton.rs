@@ -9,7 +9,7 @@ use crate::step::equilibrium::{Found, Method, Scene, evaluate};
 use crate::step::multisecant::Multisecant;
 use crate::step::progress::{Progress, first_energy, inverted};
 use crate::step::residual::Residual;
-use crate::step::stability::{self, Move};
+use crate::step::stability;
 use crate::step::unknowns::Unknowns;
 
 /// Shortest part of a direction that is tried when points invert.
@@ -148,12 +148,12 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
         if progress.reaches(Method::QuasiNewton(method), direction.energy.abs(), &residual.balance) {
             return Ok(Found::new(u, residual, progress)); // (9)
         }
-        let made = Move { du: &direction.du, energy: direction.energy, measure: residual.balance.measure() };
+        let work = stability::work(scene, &direction.du, &residual.balance);
         match advance(scene, &mut u, &direction.du, &mut residual, counts) {
             Ok(length) => secants.took(length), // (8), (4), (5)
             Err(inverted) => return Err(Stopped { error: inverted, best: Some(best) }),
         }
-        stability::check(scene, progress, made, &residual)?;
+        stability::check(scene, progress, (&direction.du, work), &residual.balance)?;
         if residual.balance.norm < least {
             (least, best) = (residual.balance.norm, u.clone());
         }
