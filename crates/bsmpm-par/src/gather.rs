@@ -10,8 +10,8 @@ use mpi::topology::{Communicator, SimpleCommunicator};
 
 /// Numbers of a point on its way to rank 0: id, material, x 2, u 2, v 2, sigma 6, plastic strain, volume.
 const WIDTH: usize = 16;
-/// Ids of a block: 8 MB of numbers on their way.
-const BLOCK: u64 = 1 << 16;
+/// Ids of a block: 2 MB of numbers on their way.
+const BLOCK: u64 = 1 << 14;
 
 /// The frame of the present state, on its way to rank 0.
 pub struct Gathering<'a> {

@@ -177,18 +177,18 @@ fn the_stiffness_is_the_same_on_1_3_and_10_ranks_of_one_column_each() {
     }
 }
 
-/// Points come to the first rank in blocks of 65,536 ids, of which ranks have any part.
+/// Points come to the first rank in blocks of 16,384 ids, of which ranks have any part.
 #[test]
 fn frames_of_several_blocks_have_the_same_bytes_on_1_2_and_3_ranks() {
     let scratch = Scratch::with_case(&std::fs::read_to_string(shipped("short/column_collapse.toml")).unwrap());
-    let arguments = ["case.toml", "-q", "--force", "--max-steps", "1", "--set", "body.0.points_per_cell=26"];
+    let arguments = ["case.toml", "-q", "--force", "--max-steps", "1", "--set", "body.0.points_per_cell=13"];
     let frames = [1, 2, 3].map(|ranks| {
         scratch.mpirun(ranks, &arguments).expect(75);
         std::fs::read(scratch.path("case.out/frames/step_000000000.vtu")).unwrap()
     });
     assert!(frames[1..].iter().all(|frame| *frame == frames[0]));
     let ids: Vec<u64> = ids(&all_frames(&scratch.path("case.out"))[0]);
-    assert_eq!(ids, (0..135_200).collect::<Vec<_>>());
+    assert_eq!(ids, (0..33_800).collect::<Vec<_>>());
 }
 
 #[test]
