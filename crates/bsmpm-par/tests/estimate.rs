@@ -10,10 +10,11 @@ use support::{Scratch, shipped};
 fn the_short_footing_is_estimated_beside_its_run() {
     let (scratch, case) = (Scratch::new(), shipped("short/strip_footing.toml"));
     scratch.direct(&[case.to_str().unwrap(), "-q", "-o", "run.out"]).expect(0);
-    let arguments = Arguments {
+    let mut arguments = Arguments {
         case,
         ranks: None,
         no_probe: false,
+        no_whole: true,
         budget: 60.0,
         against: Some(scratch.path("run.out")),
         json: true,
@@ -34,4 +35,11 @@ fn the_short_footing_is_estimated_beside_its_run() {
     assert!((1.0 / 1.2..1.2).contains(&(number("disk") / number("actual/disk"))), "{found}");
     // Seconds are those of a machine that others use, too.
     assert!(number("ratio") > 0.0 && number("cpu_seconds/low") < number("cpu_seconds/high"));
+
+    // A case that takes next to nothing is run whole: then there is no doubt of its work.
+    arguments.no_whole = false;
+    let found: Value = serde_json::from_str(&run(&arguments, |line| told.push(line.to_owned())).unwrap()).unwrap();
+    assert!(told.last().is_some_and(|line| line.starts_with("the whole case: ")), "{told:?}");
+    let evaluations = ["/work/evaluations", "/actual/evaluations"].map(|at| found.pointer(at).and_then(Value::as_f64));
+    assert!(evaluations[0].is_some() && evaluations[0] == evaluations[1], "{evaluations:?}");
 }

@@ -1,6 +1,6 @@
 //! `bsmpm estimate`: what a case will cost. Sizes follow from the case (`sizes`); what a unit of work costs, from the case's
 //! first steps; how much work there is, from coarse forms of it over all its time (`probe`, `coarse`, `growth`), for
-//! iterations change as material yields. Without probes both come from what runs took elsewhere (`stored`), scaled by how
+//! iterations change as material yields; a case that takes no longer than probes may is run whole. Without probes both come from what runs took elsewhere (`stored`), scaled by how
 //! fast this machine is (`kernel`). The result is set in `report`, beside a finished run in `against`.
 
 use std::path::{Path, PathBuf};
@@ -29,9 +29,10 @@ use report::Report;
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "\
 The case's first steps are run to learn what a unit of work costs; coarse forms of it (cells of 16, 8, 4 and 2 times the size, as
-far as bodies have two of them and the time for probes allows) are run over all its time to learn how much work there is.
-Nothing is left of these runs; while they go on, a frame or two and a checkpoint of the case lie in the folder for temporary files
-(TMPDIR). Seconds are processor seconds, and by the clock those of a machine that nobody else uses.
+far as bodies have two of them and the time for probes allows) are run over all its time to learn how much work there is. A case
+that seems to take a quarter of that time at most is then run whole: whether its steps need Newton's method no coarse form can
+tell. Nothing is left of these runs; while they go on, frames (at most a gigabyte) and a checkpoint of the case lie in the folder
+for temporary files (TMPDIR). Seconds are processor seconds, and by the clock those of a machine that nobody else uses.
 
 --against DIR sets what a run of the case in DIR has taken beside the estimate, made for as many ranks unless --ranks is given.
 
@@ -51,6 +52,9 @@ pub struct Arguments {
     /// Run nothing: take what runs took elsewhere, scaled by the speed of this machine
     #[arg(long, conflicts_with = "budget")]
     pub no_probe: bool,
+    /// Never run the whole case, however little it seems to take
+    #[arg(long, conflicts_with = "no_probe")]
+    pub no_whole: bool,
     /// Seconds by the clock that probes may take, about
     #[arg(long, value_name = "SECONDS", default_value_t = 60.0)]
     pub budget: f64,
@@ -90,7 +94,8 @@ pub fn run(arguments: &Arguments, mut told: impl FnMut(&str)) -> Result<String, 
     let found = if arguments.no_probe {
         guess
     } else {
-        let plan = probe::Plan { case: &case, ranks: arguments.probed(ranks), command: &arguments.command() };
+        let (ranks, command) = (arguments.probed(ranks), &arguments.command()[..]);
+        let plan = probe::Plan { case: &case, ranks, command, may_be_whole: !arguments.no_whole };
         probe::estimate(&plan, &guess, deadline(arguments.budget), &mut told)?
     };
     let mut report = Report::of(&arguments.case, &case, ranks, (speed, &found));

@@ -1,5 +1,5 @@
-//! Runs that an estimate is made from, in a folder that goes with them: the start of the case, its first steps, and coarse
-//! forms of it over all its time.
+//! Runs that an estimate is made from, in a folder that goes with them: the start of the case, its first steps, coarse
+//! forms of it over all its time, and the whole case where that takes no longer than they may.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -14,7 +14,7 @@ use tempfile::TempDir;
 
 use super::coarse::{self, FACTORS};
 use super::growth::{self, Level};
-use super::sizes::Bytes;
+use super::sizes::{self, Bytes};
 use super::stored::{self, Found};
 use super::work::Work;
 use crate::Error;
@@ -38,6 +38,10 @@ const BANDS: [f64; 3] = [3.0, 1.75, 1.5];
 /// none; and the factor then.
 const NEWTON: [f64; 2] = [0.1, 4.0];
 
+/// Part of the time that is left for probes that the whole case may take at most to be run, and bytes of its frames; the factor then.
+const WHOLE: (f64, u64) = (0.25, 1_000_000_000);
+const SURE: f64 = 1.25;
+
 /// What is to be probed.
 pub(super) struct Plan<'a> {
     pub case: &'a Case,
@@ -45,6 +49,8 @@ pub(super) struct Plan<'a> {
     pub ranks: usize,
     /// the solver
     pub command: &'a [String],
+    /// whether the case may be run whole
+    pub may_be_whole: bool,
 }
 
 /// A step.
@@ -128,7 +134,9 @@ pub(super) fn estimate(
     let unit = measured.unit * spread;
     let newton = levels.iter().map(|level| level.work.newton_part()).fold(made.newton_part(), f64::max);
     let band = if newton > NEWTON[0] { NEWTON[1] } else { BANDS[levels.len().min(BANDS.len() - 1)] };
-    Ok(Found { work, unit, basis, band, ..measured })
+    let found = Found { work, unit, basis, band, ..measured };
+    let whole = probes.whole(&found, told)?;
+    Ok(whole.unwrap_or(found))
 }
 
 /// What the case's own start and first steps tell of what a unit of work, a frame and the files cost.
@@ -199,6 +207,33 @@ impl Probes<'_> {
             levels.extend(level);
         }
         Ok(levels)
+    }
+
+    /// What the whole case takes, if that is expected to be little.
+    fn whole(&self, expected: &Found, told: &mut dyn FnMut(&str)) -> Result<Option<Found>, Error> {
+        let case = self.plan.case;
+        let frames = sizes::frames(case, expected.work.steps);
+        let (part, bytes) = WHOLE;
+        let is_little = self.plan.may_be_whole
+            && expected.seconds(frames) * expected.band <= part * self.left()
+            && frames.saturating_mul(expected.bytes.frame) <= bytes;
+        if !is_little {
+            return Ok(None);
+        }
+        let run = self.run("whole", &case.text, &[], self.plan.ranks)?;
+        let (work, taken) = (run.work(), run.cpu() - expected.start - expected.frame * frames.saturating_sub(1) as f64);
+        if !matches!(run.code, DONE | CHECK) || work.units() <= 0.0 {
+            told(&format!("the whole case: ended early ({}), of no use", run.reason));
+            return Ok(None);
+        }
+        told(&format!(
+            "the whole case: {} evaluations in {} steps, {:.2} CPU s",
+            work.evaluations,
+            work.steps,
+            run.cpu()
+        ));
+        let basis = "the whole case, which takes no longer than probes may".to_owned();
+        Ok(Some(Found { work, unit: taken.max(0.0) / work.units(), band: SURE, basis, ..expected.clone() }))
     }
 
     /// A run on so many ranks, to the deadline at most.
