@@ -38,7 +38,7 @@ fn the_sliding_block_has_the_same_bits_in_a_grid_ten_times_as_long_and_as_high_o
 }
 
 /// A grid of 14 columns is held whole from the start, one of 20 is not: there the block outruns its room in the first steps.
-/// Its wall is four cells off at the end, as far as functions near a wall are others.
+/// After 24 steps two empty cells are left to the wall of the short one: the block touches no function that a wall changes.
 #[test]
 fn a_room_that_is_made_anew_has_the_bits_of_a_grid_that_is_held_whole() {
     let scratch = Scratch::with_case(SLIDING_BLOCK);
