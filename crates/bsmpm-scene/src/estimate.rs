@@ -18,7 +18,7 @@ pub(crate) const MOST_POINTS: u128 = i32::MAX as u128;
 const POINT: u128 = 600;
 /// Bytes of a point's functions of the degree below, which `consistent-f-bar` averages with.
 const LOWERED: u128 = 64;
-/// Bytes of a point while a step is saved and a frame written; not there while the system is built.
+/// Bytes of a point while a step is saved; not there while the system is built.
 const SAVED: u128 = 380;
 /// Bytes of a node's vectors: about a dozen, and twenty secants of three, all of two doubles.
 const VECTORS: u128 = (12 + 20 * 3) * 16;

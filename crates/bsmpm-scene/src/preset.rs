@@ -102,7 +102,9 @@ pub(crate) fn fill(
         Some((steps, why)) => {
             filling.put("analysis", &["steps", "dt"], &steps.to_string(), &why);
         }
-        None if cells.is_some() => filling.miss("analysis", &["steps", "dt"], scene::STEPS),
+        None if cells.is_some() || scene.shortest().is_some() => {
+            filling.miss("analysis", &["steps", "dt"], scene::STEPS)
+        }
         None => {} // told already
     }
     if let Some(why) = scene.locks() {

@@ -119,7 +119,7 @@ impl<'a> Scene<'a> {
     }
 
     /// m  shortest edge of the cells that the case gives, if it does
-    fn shortest(&self) -> Option<f64> {
+    pub(super) fn shortest(&self) -> Option<f64> {
         let grid = self.root.record("grid")?;
         if let Some(cell) = grid.numbers("cell") {
             return cell.iter().copied().reduce(f64::min);

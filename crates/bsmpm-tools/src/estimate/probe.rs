@@ -38,8 +38,9 @@ const BANDS: [f64; 3] = [3.0, 1.75, 1.5];
 /// none; and the factor then.
 const NEWTON: [f64; 2] = [0.1, 4.0];
 
-/// Part of the time that is left for probes that the whole case may take at most to be run, and bytes of its frames; the factor then.
+/// Part of the time left for probes that the whole case may take at most to be run, and bytes of its frames at most.
 const WHOLE: (f64, u64) = (0.25, 1_000_000_000);
+/// Factor within which the time of a case that was run whole is expected again.
 const SURE: f64 = 1.25;
 
 /// What is to be probed.

@@ -55,7 +55,7 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
         if progress.reaches(Method::Newton, energy.abs(), &residual.balance) {
             return Ok(Found::new(u, residual, progress));
         }
-        let work = stability::work(scene, &du, &residual.balance);
+        let work = stability::tells(scene, &residual.balance).then_some(energy);
         let Some((next, found)) = search(scene, &u, &du, &residual, counts) else { break };
         stability::check(scene, progress, (&du, work), &found.balance)?;
         (u, residual) = (next, found);

@@ -148,7 +148,9 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
         if progress.reaches(Method::QuasiNewton(method), direction.energy.abs(), &residual.balance) {
             return Ok(Found::new(u, residual, progress)); // (9)
         }
-        let work = stability::work(scene, &direction.du, &residual.balance);
+        // The direction's own energy is a sum of products with secants, whose round-off is another.
+        let work = stability::tells(scene, &residual.balance)
+            .then(|| dots(scene.halo, D, &[(&direction.du, &residual.balance.f_oob)])[0]);
         match advance(scene, &mut u, &direction.du, &mut residual, counts) {
             Ok(length) => secants.took(length), // (8), (4), (5)
             Err(inverted) => return Err(Stopped { error: inverted, best: Some(best) }),

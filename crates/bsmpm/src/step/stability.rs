@@ -27,16 +27,15 @@ use crate::step::residual::Balance;
 /// Force measure below which a state counts as near equilibrium: farther off a step may pass several equilibria.
 const NEAR: f64 = 1e-3;
 
-/// Work of a direction against the out-of-balance force before the direction is taken, N m; `None` where nothing follows
-/// from it: far from equilibrium, in dynamics, where inertia decides where an unstable body goes, and without symmetry. One
-/// reduction where something does.
-pub fn work<K: Kinematics<D>, const D: usize>(scene: &Scene<'_, K, D>, du: &[f64], before: &Balance) -> Option<f64> {
-    let counts = before.measure() < NEAR && scene.nodes.inertia.is_none() && is_symmetric(scene.model);
-    counts.then(|| dots(scene.halo, D, &[(du, &before.f_oob)])[0])
+/// Whether anything follows from the work of a direction that is taken at this state: not far from equilibrium, nor in
+/// dynamics, where inertia decides where an unstable body goes, nor without symmetry.
+pub fn tells<K, const D: usize>(scene: &Scene<'_, K, D>, before: &Balance) -> bool {
+    before.measure() < NEAR && scene.nodes.inertia.is_none() && is_symmetric(scene.model)
 }
 
 /// Refuses a direction du (m, nodal; how much of it was taken changes no sign) near static equilibrium whose second-order
-/// work is negative beyond round-off: `work` before it was taken, the forces `after`. Agreed by all ranks; one reduction.
+/// work is negative beyond round-off: `work` is du . f_oob before it was taken, N m, where that [`tells`] anything; `after` are
+/// the forces then. Agreed by all ranks; one reduction.
 pub fn check<K: Kinematics<D>, const D: usize>(
     scene: &Scene<'_, K, D>,
     progress: &Progress,
