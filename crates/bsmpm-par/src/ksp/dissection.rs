@@ -2,19 +2,23 @@
 //!
 //! Every rank eliminates what only its own slab touches (multifrontal Cholesky factorisation, Duff and Reid 1983, ACM
 //! Trans. Math. Softw. 9, 302-325), then neighbours pair up. Order, schedule and sums depend on the free components and
-//! the cut only: the same bits in every run on as many ranks. A rank holds the factor of its slab, and the lowest rank of the
-//! slabs that a cut parts a dense front of that cut: on the first rank log2 P of them, which does not fall with the ranks. The order comes from
-//! the grid's box of nodes, so that unknowns that come or go cost no analysis of a graph.
+//! the cut only: the same bits in every run on as many ranks. A rank holds the factor of its slab and, but for the first one, a
+//! dense front of one cut, which does not become smaller with more ranks. The order comes from the grid's box of nodes, so
+//! that unknowns that come or go cost no analysis of a graph.
 
+mod factor;
 mod front;
 mod ladder;
 mod plan;
 #[cfg(test)]
 mod tests;
 
+pub use factor::Precision;
+
 use crate::halo::Link;
 use crate::stencil::Stencil;
 use bsmpm::grid::Grid;
+use factor::Factor;
 use ladder::{Ladder, add_packed, pack};
 use plan::{NONE, Part, Plan};
 use std::ops::Range;
@@ -24,11 +28,12 @@ use std::ops::Range;
 #[derive(Default)]
 pub struct Dissection {
     plan: Plan,
-    columns: Vec<f64>, // of the factor, part after part
+    factor: Factor, // part after part
     ladder: Ladder,
-    matrix: Vec<f64>, // of the front in work
-    work: Vec<f64>,   // a vector by elimination numbers
-    scale: f64,       // a power of two that the matrix is multiplied with
+    columns: Vec<f64>, // of the front in work
+    matrix: Vec<f64>,  // what it leaves
+    work: Vec<f64>,    // a vector by elimination numbers
+    scale: f64,        // a power of two that the matrix is multiplied with
 }
 
 impl Dissection {
@@ -49,24 +54,32 @@ impl Dissection {
         let counts = std::array::from_fn(|axis| grid.nodes_along(axis));
         self.plan = Plan::new::<D>(counts, q, start..end.max(start), free);
         let layer = grid.layer_nodes() * D;
-        let shared = self.plan.shared().iter().map(|&component| layers.start * layer + component as usize).collect();
-        self.ladder = Ladder::new(link, &ladder::rungs(bounds, q, rank), shared, layer);
+        let whole = |&component: &u32| layers.start * layer + component as usize;
+        let shared: Vec<usize> = self.plan.shared().iter().map(whole).collect();
+        self.ladder = Ladder::new(link, (rank, ladder::role(bounds, q, rank)), &shared, layer);
     }
 
     /// Factorises; `false` where a pivot of this rank was not positive and finite. `largest` is about the largest number of
     /// the matrix: without its power of two, square roots round alike in all units that differ by powers of two. Collective.
-    pub fn factorise<const D: usize>(&mut self, link: &dyn Link, stencil: &Stencil<D>, largest: f64) -> bool {
+    pub fn factorise<const D: usize>(
+        &mut self,
+        link: &dyn Link,
+        precision: Precision,
+        stencil: &Stencil<D>,
+        largest: f64,
+    ) -> bool {
         let unit = f64::from_bits(largest.to_bits() & f64::INFINITY.to_bits());
         self.scale = if unit.is_normal() { 1.0 / unit } else { 1.0 };
-        let Self { plan, columns, ladder, matrix, scale, .. } = self;
-        columns.clear();
-        columns.resize(plan.entries(), 0.0);
+        let Self { plan, factor, ladder, columns, matrix, scale, .. } = self;
+        factor.restart(precision, plan.entries());
         let mut stack = Vec::new();
         let mut places = vec![0; plan.order.len()];
         let mut good = true;
         for part in &plan.parts {
             (0..).zip(plan.front(part)).for_each(|(place, number)| places[number] = place);
-            let (columns, order) = (&mut columns[part.panel()], part.rim.len());
+            let order = part.rim.len();
+            columns.clear();
+            columns.resize(part.own.len() * part.rows(), 0.0);
             matrix.clear();
             matrix.resize(order * order, 0.0);
             take(plan, part, (stencil, &places, *scale), columns, matrix);
@@ -77,16 +90,17 @@ impl Dissection {
             }
             good &= front::factorise(columns, part.rows());
             front::subtract_from_rest(columns, part.rows(), matrix);
+            factor.keep(columns, part.rows());
             stack.push((part, pack(matrix, order)));
         }
         let (_, rest) = stack.pop().expect("a plan has a last part");
-        ladder.factorise(link, rest) && good
+        ladder.factorise(link, precision, rest) && good
     }
 
     /// Solves for the nodal right-hand side whose `owned` components are this rank's, with the last factorisation; the
     /// solution is right at all nodes of the window. Collective.
     pub fn solve(&mut self, link: &dyn Link, owned: Range<usize>, rhs: &[f64], solution: &mut [f64]) {
-        let Self { plan, columns, ladder, work, scale, .. } = self;
+        let Self { plan, factor, ladder, work, scale, .. } = self;
         let own = |component: usize| if owned.contains(&component) { rhs[component] * *scale } else { 0.0 };
         work.clear();
         work.extend(plan.order.iter().map(|&component| own(component as usize)));
@@ -95,7 +109,7 @@ impl Dissection {
             x.clear();
             x.extend_from_slice(&work[part.own.clone()]);
             x.resize(part.rows(), 0.0);
-            front::forward(&columns[part.panel()], part.rows(), &mut x);
+            factor.forward(part.start, part.shape(), &mut x);
             work[part.own.clone()].copy_from_slice(&x[..part.own.len()]);
             part.rim.iter().zip(&x[part.own.len()..]).for_each(|(&number, taken)| work[number as usize] += taken);
         }
@@ -103,7 +117,7 @@ impl Dissection {
         for part in plan.parts.iter().rev() {
             x.clear();
             x.extend(plan.front(part).map(|number| work[number]));
-            front::backward(&columns[part.panel()], part.rows(), &mut x);
+            factor.backward(part.start, part.shape(), &mut x);
             work[part.own.clone()].copy_from_slice(&x[..part.own.len()]);
         }
         solution.fill(0.0);

@@ -1,5 +1,5 @@
-//! Dense kernels of a front: Cholesky factorisation of its first columns, what they leave to the rest, and the triangular
-//! solves with them. Column-major, lower triangle; what stands above the diagonal is never read.
+//! Dense kernels of a front: Cholesky factorisation of its first columns, and what they leave to the rest. Column-major,
+//! lower triangle; what stands above the diagonal is never read.
 
 use nalgebra::{Dyn, MatrixView, MatrixViewMut};
 
@@ -79,67 +79,4 @@ fn subtract_four(columns: &[f64], rows: usize, first: usize, by: [f64; 4], targe
     for (value, ((a, b), (c, d))) in target.iter_mut().zip(pairs) {
         *value -= (by[0] * a + by[1] * b) + (by[2] * c + by[3] * d);
     }
-}
-
-/// Solves with the factorised columns `l` for the first entries of `x`, and takes their part from the others.
-pub fn forward(l: &[f64], rows: usize, x: &mut [f64]) {
-    for (group, columns) in l.chunks(4 * rows.max(1)).enumerate() {
-        let (start, width) = (4 * group, columns.len() / rows);
-        for c in 0..width {
-            let column = &columns[c * rows..][..rows];
-            x[start + c] /= column[start + c];
-            let solved = x[start + c];
-            (start + c + 1..start + width).for_each(|row| x[row] -= solved * column[row]);
-        }
-        if width == 4 {
-            let (solved, rest) = x.split_at_mut(start + 4);
-            let by = [solved[start], solved[start + 1], solved[start + 2], solved[start + 3]];
-            subtract_four(columns, rows, start + 4, by, rest);
-        } else {
-            for (c, column) in columns.chunks_exact(rows).enumerate() {
-                let (solved, rest) = x.split_at_mut(start + width);
-                let by = solved[start + c];
-                rest.iter_mut().zip(&column[start + width..]).for_each(|(value, l)| *value -= by * l);
-            }
-        }
-    }
-}
-
-/// Solves with the transpose of the columns `l` for the first entries of `x`; the others are known.
-pub fn backward(l: &[f64], rows: usize, x: &mut [f64]) {
-    for (group, columns) in l.chunks(4 * rows.max(1)).enumerate().rev() {
-        let (start, width) = (4 * group, columns.len() / rows);
-        let below = start + width;
-        let mut taken = [0.0; 4];
-        if width == 4 {
-            taken = four_products(columns, rows, below, &x[below..]);
-        } else {
-            for (taken, column) in taken.iter_mut().zip(columns.chunks_exact(rows)) {
-                *taken = column[below..].iter().zip(&x[below..]).map(|(l, x)| l * x).sum();
-            }
-        }
-        for c in (0..width).rev() {
-            let column = &columns[c * rows..][..rows];
-            let inner: f64 = (start + c + 1..below).map(|row| column[row] * x[row]).sum();
-            x[start + c] = (x[start + c] - taken[c] - inner) / column[start + c];
-        }
-    }
-}
-
-/// Scalar products of the rows from `first` on of four columns with `x`, in four interleaved sums each.
-fn four_products(columns: &[f64], rows: usize, first: usize, x: &[f64]) -> [f64; 4] {
-    let mut sums = [[0.0; 4]; 4];
-    let column = |column: usize| &columns[column * rows + first..(column + 1) * rows];
-    let [a, b, c, d] = [0, 1, 2, 3].map(|k| column(k).chunks_exact(4));
-    let whole = x.chunks_exact(4);
-    let (from, tail) = (x.len() - whole.remainder().len(), whole.remainder());
-    for (x, ((a, b), (c, d))) in whole.zip(a.zip(b).zip(c.zip(d))) {
-        for (sums, values) in sums.iter_mut().zip([a, b, c, d]) {
-            (0..4).for_each(|lane| sums[lane] += values[lane] * x[lane]);
-        }
-    }
-    std::array::from_fn(|k| {
-        let rest: f64 = column(k)[from..].iter().zip(tail).map(|(l, x)| l * x).sum();
-        (sums[k][0] + sums[k][1]) + (sums[k][2] + sums[k][3]) + rest
-    })
 }

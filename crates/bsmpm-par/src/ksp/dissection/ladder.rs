@@ -1,147 +1,183 @@
 //! Elimination of what slabs share: pairs of neighbours, pairs of pairs, up to all ranks. What a cut couples is a dense
-//! front on the lowest rank of the slabs that it parts; which rank does what when is fixed, so that all sums repeat.
+//! front, and every rank but the first has one of them; which rank does what when is fixed, so that all sums repeat.
 
+use super::factor::{self, Factor, Precision};
 use super::front;
 use crate::halo::Link;
 use std::ops::Range;
 
-/// What a rank does at one level of the pairing.
+/// What a rank does in the pairing, from the slabs upwards.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Role {
+    /// the rank, itself perhaps, that joins its slab with others; none if it is alone
+    pub joined_by: Option<usize>,
+    /// the two groups that it joins; the first rank joins none
+    pub join: Option<Join>,
+}
+
+/// Two groups of slabs that become one.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Rung {
-    /// joins the group of the rank `from`, and eliminates the node layers that only the two of them touch
-    Join {
-        /// the other group's lowest rank
-        from: usize,
-        /// layers of the grid
-        layers: Range<usize>,
-    },
-    /// hands over to the lowest rank of the other group; the last thing it does
-    Hand {
-        /// that rank
-        to: usize,
-    },
+pub struct Join {
+    /// the ranks, itself perhaps, from which it hears of the lower and of the upper group
+    pub from: [usize; 2],
+    /// the node layers of the grid that only the two of them touch
+    pub layers: Range<usize>,
+    /// the rank that joins them with others; none for the last two
+    pub joined_by: Option<usize>,
 }
 
-/// What `rank` does from the pairs of slabs upwards, for slabs that begin at `bounds` and splines of order `q`.
-pub fn rungs(bounds: &[usize], q: usize, rank: usize) -> Vec<Rung> {
-    let (mut lower, mut upper, last) = (0, bounds.len() - 1, bounds.len() - 1);
-    let mut rungs = Vec::new();
-    while upper - lower > 1 {
-        let middle = usize::midpoint(lower, upper);
-        if rank == lower {
+/// The rank that holds what a group of ranks leaves: the first of its upper half, which is that of no other group.
+fn holder(group: &Range<usize>) -> usize {
+    usize::midpoint(group.start, group.end)
+}
+
+/// The role of `rank`, for slabs that begin at `bounds` and splines of order `q`.
+pub fn role(bounds: &[usize], q: usize, rank: usize) -> Role {
+    let last = bounds.len() - 1;
+    let (mut group, mut role) = (0..last, Role::default());
+    while group.len() > 1 {
+        let middle = holder(&group);
+        if rank == middle {
             // A layer is touched by the slabs that begin at or before it and end less than q before it.
-            let start = bounds[middle].max(if lower > 0 { bounds[lower] + q } else { 0 });
-            let end = (bounds[middle] + q).min(if upper < last { bounds[upper] } else { usize::MAX });
-            rungs.push(Rung::Join { from: middle, layers: start..end.max(start) });
-        } else if rank == middle {
-            rungs.push(Rung::Hand { to: lower });
+            let start = bounds[middle].max(if group.start > 0 { bounds[group.start] + q } else { 0 });
+            let end = (bounds[middle] + q).min(if group.end < last { bounds[group.end] } else { usize::MAX });
+            let from = [holder(&(group.start..middle)), holder(&(middle..group.end))];
+            role.join = Some(Join { from, layers: start..end.max(start), joined_by: role.joined_by });
         }
-        if rank < middle { upper = middle } else { lower = middle }
+        role.joined_by = Some(middle);
+        group = if rank < middle { group.start..middle } else { middle..group.end };
     }
-    rungs.reverse();
-    rungs
+    role
 }
 
-/// Two groups of slabs that became one.
+/// The dense front of a cut.
 struct Joint {
-    from: usize,
+    role: Join,
     rows: usize,
-    mine: Vec<usize>,   // places of the components of this rank's group
-    theirs: Vec<usize>, // of the other's
-    columns: Vec<f64>,  // of the factor
     own: usize,
+    places: [Vec<usize>; 2], // of the components of either group
+    factor: Factor,
 }
 
-/// The rungs of a rank with their fronts.
+/// A rank in the pairing, with its front.
 #[derive(Default)]
 pub struct Ladder {
-    joints: Vec<Joint>,
-    hand: Option<usize>,
+    rank: usize,
+    joined_by: Option<usize>,
+    joint: Option<Joint>,
 }
 
 impl Ladder {
-    /// The fronts for a rank whose slab leaves the `shared` components of the whole grid, ascending, of which `layer` make
+    /// The front of the `rank` whose slab leaves the `shared` components of the whole grid, ascending, of which `layer` make
     /// a layer of nodes. Collective.
-    pub fn new(link: &dyn Link, rungs: &[Rung], mut shared: Vec<usize>, layer: usize) -> Self {
-        let (mut joints, mut hand) = (Vec::new(), None);
-        for rung in rungs {
-            match rung {
-                Rung::Join { from, layers } => {
-                    let others = link.receive(*from).into_iter().map(|component| component as usize).collect();
-                    let (joint, left) = Joint::new(*from, (shared, others), |at| layers.contains(&(at / layer)));
-                    joints.push(joint);
-                    shared = left;
-                }
-                Rung::Hand { to } => {
-                    let numbers: Vec<f64> = shared.iter().map(|&component| component as f64).collect();
-                    link.send(*to, &numbers);
-                    hand = Some(*to);
-                }
-            }
+    pub fn new(link: &dyn Link, (rank, role): (usize, Role), shared: &[usize], layer: usize) -> Self {
+        let mut ladder = Self { rank, joined_by: role.joined_by, joint: None };
+        let slab: Vec<f64> = shared.iter().map(|&component| component as f64).collect();
+        let slab = ladder.hand(link, ladder.joined_by, slab);
+        if let Some(role) = role.join {
+            let groups = ladder.hear(link, role.from, slab);
+            let groups = groups.map(|group| group.into_iter().map(|component| component as usize).collect());
+            let (joint, left) = Joint::new(role, &groups, layer);
+            let left = left.iter().map(|&component| component as f64).collect();
+            ladder.hand(link, joint.role.joined_by, left);
+            ladder.joint = Some(joint);
         }
-        Self { joints, hand }
+        ladder
     }
 
     /// Factorises, given what this rank's slab leaves, packed. `false` where a pivot was not positive. Collective.
-    pub fn factorise(&mut self, link: &dyn Link, mut packed: Vec<f64>) -> bool {
-        let mut good = true;
-        for joint in &mut self.joints {
-            let (others, order) = (link.receive(joint.from), joint.rows - joint.own);
-            joint.columns.clear();
-            joint.columns.resize(joint.own * joint.rows, 0.0);
-            let mut rest = vec![0.0; order * order];
-            for (places, packed) in [(&joint.mine, &packed), (&joint.theirs, &others)] {
-                add_packed(packed, places, (&mut joint.columns, joint.own), &mut rest);
-            }
-            good &= front::factorise(&mut joint.columns, joint.rows);
-            front::subtract_from_rest(&joint.columns, joint.rows, &mut rest);
-            packed = pack(&rest, order);
-        }
-        if let Some(to) = self.hand {
-            link.send(to, &packed);
-        }
+    pub fn factorise(&mut self, link: &dyn Link, precision: Precision, packed: Vec<f64>) -> bool {
+        let packed = self.hand(link, self.joined_by, packed);
+        let Some(from) = self.joint.as_ref().map(|joint| joint.role.from) else { return true };
+        let groups = self.hear(link, from, packed);
+        let Some(joint) = &mut self.joint else { return true };
+        let (good, left) = joint.factorise(precision, groups);
+        let joined_by = joint.role.joined_by;
+        self.hand(link, joined_by, left);
         good
     }
 
     /// Solves for what the slabs share: `x` holds what this rank's slab leaves of the right-hand side, then the solution
     /// there. Collective.
     pub fn solve(&self, link: &dyn Link, x: &mut [f64]) {
-        let (mut left, mut fronts) = (x.to_vec(), Vec::new());
-        for joint in &self.joints {
-            let (others, mut all) = (link.receive(joint.from), vec![0.0; joint.rows]);
-            joint.mine.iter().zip(&left).for_each(|(&place, value)| all[place] += value);
-            joint.theirs.iter().zip(&others).for_each(|(&place, value)| all[place] += value);
-            front::forward(&joint.columns, joint.rows, &mut all);
-            left = all[joint.own..].to_vec();
-            fronts.push(all);
+        let mut slab = self.hand(link, self.joined_by, x.to_vec());
+        if let Some(joint) = &self.joint {
+            let Join { from, joined_by, .. } = &joint.role;
+            let mut all = joint.forward(&self.hear(link, *from, slab.take()));
+            let left = self.hand(link, *joined_by, all[joint.own..].to_vec());
+            if let (Some(by), None) = (joined_by, left) {
+                all[joint.own..].copy_from_slice(&link.receive(*by));
+            }
+            for (&of, solution) in from.iter().zip(joint.backward(all)) {
+                slab = self.hand(link, Some(of), solution).or(slab);
+            }
         }
-        if let Some(to) = self.hand {
-            link.send(to, &left);
-            left = link.receive(to);
+        match (slab, self.joined_by) {
+            (Some(slab), _) => x.copy_from_slice(&slab),
+            (None, Some(by)) => x.copy_from_slice(&link.receive(by)),
+            (None, None) => {}
         }
-        for (joint, mut all) in self.joints.iter().zip(fronts).rev() {
-            all[joint.own..].copy_from_slice(&left);
-            front::backward(&joint.columns, joint.rows, &mut all);
-            let others: Vec<f64> = joint.theirs.iter().map(|&place| all[place]).collect();
-            link.send(joint.from, &others);
-            left = joint.mine.iter().map(|&place| all[place]).collect();
+    }
+
+    /// Sends to another rank; what is for this rank, or nobody, comes back.
+    fn hand(&self, link: &dyn Link, to: Option<usize>, numbers: Vec<f64>) -> Option<Vec<f64>> {
+        match to {
+            Some(to) if to != self.rank => {
+                link.send(to, &numbers);
+                None
+            }
+            _ => Some(numbers),
         }
-        x.copy_from_slice(&left);
+    }
+
+    /// What two ranks have sent, one of which may be this one, with `own`.
+    fn hear(&self, link: &dyn Link, from: [usize; 2], mut own: Option<Vec<f64>>) -> [Vec<f64>; 2] {
+        from.map(|of| if of == self.rank { own.take().unwrap_or_default() } else { link.receive(of) })
     }
 }
 
 impl Joint {
-    /// Of this rank's group and that of `from`, each with its components; what is not eliminated `here` is left.
-    fn new(from: usize, (mine, theirs): (Vec<usize>, Vec<usize>), here: impl Fn(usize) -> bool) -> (Self, Vec<usize>) {
-        let mut all = [&mine[..], &theirs[..]].concat();
-        let key = |&component: &usize| (!here(component), component);
+    /// Of two groups with their components; what is not eliminated here is left.
+    fn new(role: Join, groups: &[Vec<usize>; 2], layer: usize) -> (Self, Vec<usize>) {
+        let mut all = groups.concat();
+        let key = |&component: &usize| (!role.layers.contains(&(component / layer)), component);
         all.sort_unstable_by_key(key);
         all.dedup();
-        let own = all.partition_point(|&component| here(component));
+        let own = all.partition_point(|component| !key(component).0);
         let place = |component: &usize| all.partition_point(|other| key(other) < key(component));
-        let (mine, theirs) = (mine.iter().map(place).collect(), theirs.iter().map(place).collect());
-        let joint = Self { from, rows: all.len(), mine, theirs, columns: Vec::new(), own };
-        (joint, all.split_off(own))
+        let places = [0, 1].map(|group: usize| groups[group].iter().map(place).collect());
+        let left = all[own..].to_vec();
+        (Self { rows: all.len(), own, places, factor: Factor::default(), role }, left)
+    }
+
+    /// Factorises the front of what the groups leave, packed; whether all pivots were positive, and what is left, packed.
+    fn factorise(&mut self, precision: Precision, groups: [Vec<f64>; 2]) -> (bool, Vec<f64>) {
+        let order = self.rows - self.own;
+        let (mut columns, mut rest) = (vec![0.0; self.own * self.rows], vec![0.0; order * order]);
+        for (places, packed) in self.places.iter().zip(groups) {
+            add_packed(&packed, places, (&mut columns, self.own), &mut rest);
+        }
+        let good = front::factorise(&mut columns, self.rows);
+        front::subtract_from_rest(&columns, self.rows, &mut rest);
+        self.factor.restart(precision, factor::entries(self.rows, self.own));
+        self.factor.keep(&columns, self.rows);
+        (good, pack(&rest, order))
+    }
+
+    /// The right-hand side of the front, with its own unknowns eliminated.
+    fn forward(&self, groups: &[Vec<f64>; 2]) -> Vec<f64> {
+        let mut all = vec![0.0; self.rows];
+        for (places, values) in self.places.iter().zip(groups) {
+            places.iter().zip(values).for_each(|(&place, value)| all[place] += value);
+        }
+        self.factor.forward(0, (self.rows, self.own), &mut all);
+        all
+    }
+
+    /// The solution of either group, from that of what is left.
+    fn backward(&self, mut all: Vec<f64>) -> [Vec<f64>; 2] {
+        self.factor.backward(0, (self.rows, self.own), &mut all);
+        [0, 1].map(|group: usize| self.places[group].iter().map(|&place| all[place]).collect())
     }
 }
 

@@ -3,6 +3,7 @@
 //! Splines of order q couple nodes up to q apart, so that q layers of nodes cut a box in two. Nodes that other slabs
 //! touch too come last. George, A. (1973), SIAM J. Numer. Anal. 10, 345-363; Liu, J. W. H. (1992), SIAM Rev. 34, 82-109.
 
+use super::factor;
 use std::ops::Range;
 
 /// Unknowns of a box below which cutting costs more than it saves, by trial between 32 and 192 on plane grids.
@@ -20,8 +21,8 @@ pub struct Part {
     pub rim: Vec<u32>,
     /// parts right before this one (and theirs) that hand their rest to it
     pub children: usize,
-    /// where its columns begin among those of all parts
-    pub columns: usize,
+    /// where its columns begin among the numbers of the factor
+    pub start: usize,
 }
 
 impl Part {
@@ -30,9 +31,14 @@ impl Part {
         self.own.len() + self.rim.len()
     }
 
-    /// Place of its columns.
-    pub fn panel(&self) -> Range<usize> {
-        self.columns..self.columns + self.own.len() * self.rows()
+    /// Order of its front, and columns that are factorised.
+    pub fn shape(&self) -> (usize, usize) {
+        (self.rows(), self.own.len())
+    }
+
+    /// Where the columns of the next part begin.
+    fn end(&self) -> usize {
+        self.start + factor::entries(self.rows(), self.own.len())
     }
 }
 
@@ -70,15 +76,15 @@ impl Plan {
         cutter.rims();
         let Cutter { mut plan, .. } = cutter;
         let eliminated = plan.parts.last().map_or(0, |part| part.own.end);
-        let columns = plan.parts.last().map_or(0, |part| part.panel().end);
+        let start = plan.parts.last().map_or(0, Part::end);
         let rim = (eliminated as u32..plan.order.len() as u32).collect();
-        plan.parts.push(Part { own: eliminated..eliminated, rim, children, columns });
+        plan.parts.push(Part { own: eliminated..eliminated, rim, children, start });
         plan
     }
 
-    /// Numbers of the columns of all parts together.
+    /// Numbers of the factor, all parts together.
     pub fn entries(&self) -> usize {
-        self.parts.last().map_or(0, |part| part.columns)
+        self.parts.last().map_or(0, |part| part.start)
     }
 
     /// Unknowns that only this slab touches.
@@ -169,7 +175,7 @@ impl<const D: usize> Cutter<'_, D> {
     fn part(&mut self, components: Vec<usize>, region: [Range<usize>; D], children: usize) {
         let start = self.plan.order.len();
         self.number(components);
-        self.plan.parts.push(Part { own: start..self.plan.order.len(), rim: Vec::new(), children, columns: 0 });
+        self.plan.parts.push(Part { own: start..self.plan.order.len(), rim: Vec::new(), children, start: 0 });
         self.boxes.push(region);
     }
 
@@ -183,7 +189,7 @@ impl<const D: usize> Cutter<'_, D> {
 
     /// The rims: unknowns within the splines' reach of a part's box. All of them come later, as q layers part the boxes.
     fn rims(&mut self) {
-        let mut columns = 0;
+        let mut start = 0;
         for (part, region) in (0..).zip(&self.boxes) {
             let around: [Range<usize>; D] = std::array::from_fn(|axis| {
                 let (start, end) = (region[axis].start, region[axis].end);
@@ -197,8 +203,8 @@ impl<const D: usize> Cutter<'_, D> {
             });
             rim.sort_unstable();
             let part: &mut Part = &mut self.plan.parts[part];
-            (part.rim, part.columns) = (rim, columns);
-            columns = part.panel().end;
+            (part.rim, part.start) = (rim, start);
+            start = part.end();
         }
     }
 }
