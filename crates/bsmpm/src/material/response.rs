@@ -1,7 +1,7 @@
 //! What a material answers: principal values and axes (section 2.2); tensors and the tangent are formed on demand.
 
 use super::mohr_coulomb::{Flow, Return};
-use super::spectral::{Spectrum, assemble};
+use super::spectral::Spectrum;
 use super::{Moduli, Tangent};
 use crate::tensor::{Symmetric, Tensor};
 
@@ -41,7 +41,7 @@ impl Response {
     /// Kirchhoff stress in Pa: `τ = Σ_A τ_A n_A ⊗ n_A` (Eq. 10).
     #[inline]
     pub fn tau(&self) -> Symmetric {
-        assemble(self.tau, &self.trial.axis)
+        self.trial.assemble(self.tau)
     }
 
     /// The elastic left Cauchy-Green tensor after the return: `bᵉ = Σ_A exp(2 εᵉ_A) n_A ⊗ n_A`.
@@ -53,10 +53,10 @@ impl Response {
         }
         let eps_e = self.principal_eps_e();
         if eps_e[0] > 1.0 || eps_e[2] < -1.0 {
-            return assemble(eps_e.map(|e| (2.0 * e).exp()), &self.trial.axis);
+            return self.trial.assemble(eps_e.map(|e| (2.0 * e).exp()));
         }
         // b - I is assembled, which is accurate relative to the strain where that is small.
-        let mut b = assemble(eps_e.map(|e| (2.0 * e).exp_m1()), &self.trial.axis);
+        let mut b = self.trial.assemble(eps_e.map(|e| (2.0 * e).exp_m1()));
         b.0[..3].iter_mut().for_each(|c| *c += 1.0);
         b
     }

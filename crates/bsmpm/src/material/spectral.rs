@@ -23,8 +23,17 @@ pub(super) struct Spectrum {
     pub b: [f64; 3],
     /// (-)  principal Hencky strains
     pub eps: [f64; 3],
-    /// (-)  unit eigenvectors, one a row
-    pub axis: [[f64; 3]; 3],
+    order: [usize; 3], // axis of each of them
+    axes: Axes,
+}
+
+/// Unit eigenvectors.
+#[derive(Clone, Copy, Debug)]
+enum Axes {
+    /// x and y turned about z by the angle of this tangent
+    Plane { tan: f64 },
+    /// one a row
+    Solid([[f64; 3]; 3]),
 }
 
 impl Spectrum {
@@ -41,11 +50,9 @@ impl Spectrum {
 
     #[inline(always)]
     fn plane([xx, yy, zz]: [f64; 3], xy: f64) -> Result<Self, MaterialError> {
-        let Turn { tan, cos, sin } = Turn::of(0.5 * (xx - yy), xy);
+        let tan = tangent(0.5 * (xx - yy), xy);
         let gain = tan * xy;
-        let (x, y, z) = ([cos, sin, 0.0], [-sin, cos, 0.0], [0.0, 0.0, 1.0]);
-        let (x, y) = (Principal::of(xx, gain, x)?, Principal::of(yy, -gain, y)?);
-        Ok(Self::sorted([x, y, Principal::of(zz, 0.0, z)?]))
+        Self::sorted([(xx, gain), (yy, -gain), (zz, 0.0)], Axes::Plane { tan })
     }
 
     fn solid(b: &Symmetric) -> Result<Self, MaterialError> {
@@ -62,64 +69,90 @@ impl Spectrum {
                 break;
             }
             for (p, q, k) in [(0, 1, 2), (1, 2, 0), (0, 2, 1)] {
-                let turn = Turn::of(0.5 * ((start[p] - start[q]) + (gain[p] - gain[q])), off[k]);
-                gain[p] += turn.tan * off[k];
-                gain[q] -= turn.tan * off[k];
+                let tan = tangent(0.5 * ((start[p] - start[q]) + (gain[p] - gain[q])), off[k]);
+                gain[p] += tan * off[k];
+                gain[q] -= tan * off[k];
                 off[k] = 0.0;
+                let turn = Turn::by(tan);
                 (off[q], off[p]) = turn.apply(off[q], off[p]);
                 let pair = [0, 1, 2].map(|i| turn.apply(axis[p][i], axis[q][i]));
                 (axis[p], axis[q]) = (pair.map(|x| x.0), pair.map(|x| x.1));
             }
         }
-        let principal = |k: usize| Principal::of(start[k], gain[k], axis[k]);
-        Ok(Self::sorted([principal(0)?, principal(1)?, principal(2)?]))
+        Self::sorted([0, 1, 2].map(|k| (start[k], gain[k])), Axes::Solid(axis))
     }
 
-    /// Ranks by comparisons without branches, which random points would mispredict.
+    /// Ranks the eigenvalues, sums of a component of b and a gain, by comparisons without branches, which random points would
+    /// mispredict.
     #[inline(always)]
-    fn sorted(p: [Principal; 3]) -> Self {
-        let below = |i: usize, j: usize| usize::from(p[i].eps < p[j].eps);
+    fn sorted([x, y, z]: [(f64, f64); 3], axes: Axes) -> Result<Self, MaterialError> {
+        let principal = [Principal::of(x.0, x.1)?, Principal::of(y.0, y.1)?, Principal::of(z.0, z.1)?];
+        let below = |i: usize, j: usize| usize::from(principal[i].eps < principal[j].eps);
         let (a, b, c) = (below(0, 1), below(1, 2), below(0, 2));
         let mut order = [0; 3];
         order[a + c] = 0;
         order[1 - a + b] = 1;
         order[2 - b - c] = 2;
-        let sorted = order.map(|k| p[k]);
-        Self { b: sorted.map(|p| p.b), eps: sorted.map(|p| p.eps), axis: sorted.map(|p| p.axis) }
+        Ok(Self { b: order.map(|k| principal[k].b), eps: order.map(|k| principal[k].eps), order, axes })
+    }
+
+    /// The tensor that has the principal values `s`, descending as those of b, on the same axes: exactly isotropic if they are
+    /// equal.
+    #[inline(always)]
+    pub fn assemble(&self, s: [f64; 3]) -> Symmetric {
+        match &self.axes {
+            Axes::Plane { tan } => {
+                let mut along = [0.0; 3];
+                (0..3).for_each(|k| along[self.order[k]] = s[k]);
+                let ([x, y, z], square) = (along, 1.0 / (1.0 + tan * tan));
+                let moved = (x - y) * square;
+                Symmetric([y + moved, x - moved, z, tan * moved, 0.0, 0.0])
+            }
+            Axes::Solid(_) => self.assemble_solid(s),
+        }
+    }
+
+    /// `s₂ I + (s₁ - s₂) n₁ ⊗ n₁ + (s₃ - s₂) n₃ ⊗ n₃`.
+    fn assemble_solid(&self, s: [f64; 3]) -> Symmetric {
+        let ((first, third), [a, _, c]) = ((s[0] - s[1], s[2] - s[1]), self.axis());
+        let at = |i: usize, j: usize| first * (a[i] * a[j]) + third * (c[i] * c[j]);
+        let spherical = s[1];
+        Symmetric([spherical + at(0, 0), spherical + at(1, 1), spherical + at(2, 2), at(0, 1), at(1, 2), at(0, 2)])
+    }
+
+    /// Unit eigenvectors, one a row, in the order of the values.
+    pub fn axis(&self) -> [[f64; 3]; 3] {
+        let axes = match self.axes {
+            Axes::Plane { tan } => {
+                let Turn { cos, sin } = Turn::by(tan);
+                [[cos, sin, 0.0], [-sin, cos, 0.0], [0.0, 0.0, 1.0]]
+            }
+            Axes::Solid(axes) => axes,
+        };
+        self.order.map(|k| axes[k])
     }
 }
 
-/// `s₂ I + (s₁ - s₂) n₁ ⊗ n₁ + (s₃ - s₂) n₃ ⊗ n₃`: the tensor of given principal values, exactly isotropic if they are equal.
-#[inline]
-pub(super) fn assemble(values: [f64; 3], axis: &[[f64; 3]; 3]) -> Symmetric {
-    let (first, third) = (values[0] - values[1], values[2] - values[1]);
-    let [a, _, c] = axis;
-    let at = |i: usize, j: usize| first * (a[i] * a[j]) + third * (c[i] * c[j]);
-    let spherical = values[1];
-    Symmetric([spherical + at(0, 0), spherical + at(1, 1), spherical + at(2, 2), at(0, 1), at(1, 2), at(0, 2)])
-}
-
-/// An eigenvalue, its Hencky strain and its axis.
+/// An eigenvalue and its Hencky strain.
 #[derive(Clone, Copy)]
 struct Principal {
     b: f64,
     eps: f64,
-    axis: [f64; 3],
 }
 
 impl Principal {
     /// `ε = artanh(e/(2 + e))`, e = b - 1 without the rounding of b; as a series where soils are, else by the logarithm.
     #[inline]
-    fn of(start: f64, gain: f64, axis: [f64; 3]) -> Result<Self, MaterialError> {
+    fn of(start: f64, gain: f64) -> Result<Self, MaterialError> {
         let b = start + gain;
         if (b - 1.0).abs() < NEAR {
             let strain = (start - 1.0) + gain;
-            return Ok(Self { b, eps: artanh(strain / (2.0 + strain)), axis });
+            return Ok(Self { b, eps: artanh(strain / (2.0 + strain)) });
         }
         if b < SMALLEST {
             return Err(MaterialError::NotPositive(b));
         }
-        Ok(Self { b, eps: logarithm(b, start, gain), axis })
+        Ok(Self { b, eps: logarithm(b, start, gain) })
     }
 }
 
@@ -139,24 +172,26 @@ fn artanh(z: f64) -> f64 {
     z + z * s * (1.0 / 3.0 + s * (1.0 / 5.0 + s * (1.0 / 7.0 + s * (1.0 / 9.0 + s * tail))))
 }
 
-/// The smaller of the two rotations that make a pair of axes principal.
+/// `tan θ = g/(d ± √(d² + g²))` of the smaller of the two rotations that make a pair of axes principal, for half the
+/// difference d of the diagonal and the coupling g, the sign that of d.
+#[inline(always)]
+fn tangent(half: f64, coupling: f64) -> f64 {
+    let sum = half.abs() + (half * half + coupling * coupling).sqrt();
+    if sum > 0.0 { coupling / sum.copysign(half) } else { 0.0 }
+}
+
+/// A rotation of a pair of axes.
 struct Turn {
-    tan: f64,
     cos: f64,
     sin: f64,
 }
 
 impl Turn {
-    /// `tan θ = g/(d ± √(d² + g²))` for half the difference d of the diagonal and the coupling g, the sign that of d.
-    #[inline]
-    fn of(half: f64, coupling: f64) -> Self {
-        let sum = half.abs() + (half * half + coupling * coupling).sqrt();
-        let tan = if sum > 0.0 { coupling / sum.copysign(half) } else { 0.0 };
+    fn by(tan: f64) -> Self {
         let cos = 1.0 / (1.0 + tan * tan).sqrt();
-        Self { tan, cos, sin: tan * cos }
+        Self { cos, sin: tan * cos }
     }
 
-    #[inline]
     fn apply(&self, p: f64, q: f64) -> (f64, f64) {
         (self.cos * p + self.sin * q, self.cos * q - self.sin * p)
     }
@@ -171,8 +206,8 @@ mod tests {
         let q = Rotation3::new(turn).into_inner();
         let b = Symmetric::of(&(q * nalgebra::Matrix3::from_diagonal(&values.into()) * q.transpose()));
         let found = Spectrum::of(&b).unwrap();
-        let again = assemble(found.b, &found.axis);
-        let strain = assemble(found.eps.map(|e| (2.0 * e).exp()), &found.axis);
+        let again = found.assemble(found.b);
+        let strain = found.assemble(found.eps.map(|e| (2.0 * e).exp()));
         let worst = |t: Symmetric| (0..6).map(|i| (t.0[i] - b.0[i]).abs()).fold(0.0, f64::max);
         worst(again).max(worst(strain)) / values[0]
     }
@@ -181,7 +216,7 @@ mod tests {
     fn the_series_is_the_logarithm() {
         for k in -999..=999 {
             let strain = 1e-4 * f64::from(k);
-            let found = Principal::of(1.0, strain, [0.0; 3]).ok().map_or(f64::NAN, |principal| principal.eps);
+            let found = Principal::of(1.0, strain).ok().map_or(f64::NAN, |principal| principal.eps);
             // A unit in the last place of either.
             assert!((found - 0.5 * strain.ln_1p()).abs() <= 4.5e-16 * found.abs(), "{strain}: {found:e}");
         }
@@ -189,7 +224,7 @@ mod tests {
 
     #[test]
     fn an_eigenvalue_that_cancels_is_none_however_large_the_terms() {
-        assert!(matches!(Principal::of(2.6e27, -2.6e27, [0.0; 3]), Err(MaterialError::NotPositive(_))));
+        assert!(matches!(Principal::of(2.6e27, -2.6e27), Err(MaterialError::NotPositive(_))));
     }
 
     #[test]

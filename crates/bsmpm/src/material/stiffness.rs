@@ -50,8 +50,9 @@ impl Stiffness {
             let mixed = first[i] * second[j] + second[i] * first[j];
             bulk + a * first[i] * first[j] + b * second[i] * second[j] + c * mixed
         };
+        let axis = response.trial.axis();
         Self {
-            axes: Tensor::from_fn(|i, j| response.trial.axis[i][j]),
+            axes: Tensor::from_fn(|i, j| axis[i][j]),
             principal: Tensor::from_fn(entry),
             shear: PAIRS.map(|(a, b)| plastic(0.5 * slope(response, a, b), moduli.mu)),
         }

@@ -23,7 +23,7 @@ pub(super) const PAIRS: [(usize, usize); 3] = [(0, 1), (1, 2), (0, 2)];
 
 impl Tangent {
     pub(super) fn of(response: &Response) -> Self {
-        let axis = &response.trial.axis;
+        let axis = response.trial.axis();
         Self {
             axes: Tensor::from_fn(|i, j| axis[i][j]),
             b: response.trial.b,
