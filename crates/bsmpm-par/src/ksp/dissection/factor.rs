@@ -106,84 +106,73 @@ impl Number for f64 {
     }
 }
 
+/// Groups of columns one after another, and of each its rows from the diagonal on.
 fn keep<T: Number>(columns: &[f64], rows: usize, numbers: &mut Vec<T>) {
-    for (column, values) in columns.chunks_exact(rows.max(1)).enumerate() {
-        numbers.extend(values[column - column % GROUP..].iter().map(|&value| T::of(value)));
+    for (group, columns) in columns.chunks(GROUP * rows.max(1)).enumerate() {
+        for row in GROUP * group..rows {
+            numbers.extend(columns[row..].iter().step_by(rows).map(|&value| T::of(value)));
+        }
     }
 }
 
-/// The groups of the columns `l` of a front of order `rows`: their first column, and the group.
-fn groups<T>(mut l: &[T], (rows, columns): (usize, usize)) -> impl Iterator<Item = (usize, &[T])> {
-    (0..columns).step_by(GROUP).map(move |start| {
-        let (group, rest) = l.split_at((rows - start) * GROUP.min(columns - start));
+/// Calls `$solve` with the numbers of columns of a group as a constant.
+macro_rules! with_columns {
+    ($columns:expr, $solve:ident($($argument:expr),*)) => {
+        match $columns {
+            1 => $solve::<1, _>($($argument),*),
+            2 => $solve::<2, _>($($argument),*),
+            3 => $solve::<3, _>($($argument),*),
+            _ => $solve::<GROUP, _>($($argument),*),
+        }
+    };
+}
+
+fn forward<T: Number>(mut l: &[T], (rows, columns): (usize, usize), x: &mut [f64]) {
+    for start in (0..columns).step_by(GROUP) {
+        let width = GROUP.min(columns - start);
+        let (group, rest) = l.split_at((rows - start) * width);
         l = rest;
-        (start, group)
-    })
-}
-
-fn forward<T: Number>(l: &[T], (rows, columns): (usize, usize), x: &mut [f64]) {
-    for (start, group) in groups(l, (rows, columns)) {
-        let (rows, x) = (rows - start, &mut x[start..]);
-        let width = group.len() / rows;
-        let (solved, rest) = x.split_at_mut(width);
-        for (c, column) in group.chunks_exact(rows).enumerate() {
-            solved[c] /= column[c].double();
-            (c + 1..width).for_each(|row| solved[row] -= solved[c] * column[row].double());
-        }
-        if let (&[a, b, c, d], Some(columns)) = (&*solved, four(group, rows)) {
-            let [p, q, r, s] = columns;
-            for (value, ((p, q), (r, s))) in rest.iter_mut().zip(p.iter().zip(q).zip(r.iter().zip(s))) {
-                *value -= (a * p.double() + b * q.double()) + (c * r.double() + d * s.double());
-            }
-        } else {
-            for (by, column) in solved.iter().zip(group.chunks_exact(rows)) {
-                rest.iter_mut().zip(&column[width..]).for_each(|(value, l)| *value -= by * l.double());
-            }
-        }
+        with_columns!(width, forward_group(group, &mut x[start..]));
     }
 }
 
-fn backward<T: Number>(l: &[T], (rows, columns): (usize, usize), x: &mut [f64]) {
-    let mut end = l.len();
+fn backward<T: Number>(mut l: &[T], (rows, columns): (usize, usize), x: &mut [f64]) {
     for start in (0..columns).step_by(GROUP).rev() {
-        let (rows, width) = (rows - start, GROUP.min(columns - start));
-        let group = &l[end - rows * width..end];
-        end -= rows * width;
-        let (unsolved, below) = x[start..].split_at_mut(width);
-        let mut taken = [0.0; GROUP];
-        if let Some(columns) = four(group, rows) {
-            taken = four_products(columns, below);
-        } else {
-            for (taken, column) in taken.iter_mut().zip(group.chunks_exact(rows)) {
-                *taken = column[width..].iter().zip(&*below).map(|(l, x)| l.double() * x).sum();
-            }
-        }
-        for c in (0..width).rev() {
-            let column = &group[c * rows..][..width];
-            let inner: f64 = (c + 1..width).map(|row| column[row].double() * unsolved[row]).sum();
-            unsolved[c] = (unsolved[c] - taken[c] - inner) / column[c].double();
-        }
+        let width = GROUP.min(columns - start);
+        let (rest, group) = l.split_at(l.len() - (rows - start) * width);
+        l = rest;
+        with_columns!(width, backward_group(group, &mut x[start..]));
     }
 }
 
-/// The columns of a whole group below its diagonal block.
-fn four<T>(group: &[T], rows: usize) -> Option<[&[T]; GROUP]> {
-    (group.len() == GROUP * rows).then(|| std::array::from_fn(|c| &group[c * rows + GROUP..(c + 1) * rows]))
+fn forward_group<const W: usize, T: Number>(l: &[T], x: &mut [f64]) {
+    let (diagonal, below) = l.as_chunks::<W>().0.split_at(W);
+    let (own, others) = x.split_at_mut(W);
+    for c in 0..W {
+        (0..c).for_each(|k| own[c] -= diagonal[c][k].double() * own[k]);
+        own[c] /= diagonal[c][c].double();
+    }
+    let solved: [f64; W] = std::array::from_fn(|c| own[c]);
+    for (x, l) in others.iter_mut().zip(below) {
+        *x -= (0..W).map(|c| l[c].double() * solved[c]).sum::<f64>();
+    }
 }
 
-/// Scalar products of four columns with `x`, in four interleaved sums each.
-fn four_products<T: Number>(columns: [&[T]; GROUP], x: &[f64]) -> [f64; GROUP] {
-    let mut sums = [[0.0; 4]; GROUP];
-    let [a, b, c, d] = columns.map(|column| column.chunks_exact(4));
-    let whole = x.chunks_exact(4);
-    let (from, tail) = (x.len() - whole.remainder().len(), whole.remainder());
-    for (x, ((a, b), (c, d))) in whole.zip(a.zip(b).zip(c.zip(d))) {
-        for (sums, values) in sums.iter_mut().zip([a, b, c, d]) {
-            (0..4).for_each(|lane| sums[lane] += values[lane].double() * x[lane]);
-        }
+fn backward_group<const W: usize, T: Number>(l: &[T], x: &mut [f64]) {
+    let (diagonal, below) = l.as_chunks::<W>().0.split_at(W);
+    let (own, others) = x.split_at_mut(W);
+    // Two sums a column, so that one row need not wait for the other.
+    let mut sums = [[0.0; W]; 2];
+    let ((pairs, last), (x_pairs, x_last)) = (below.as_chunks::<2>(), others.as_chunks::<2>());
+    for (l, x) in pairs.iter().zip(x_pairs) {
+        (0..W).for_each(|c| sums[0][c] += l[0][c].double() * x[0]);
+        (0..W).for_each(|c| sums[1][c] += l[1][c].double() * x[1]);
     }
-    std::array::from_fn(|k| {
-        let rest: f64 = columns[k][from..].iter().zip(tail).map(|(l, x)| l.double() * x).sum();
-        (sums[k][0] + sums[k][1]) + (sums[k][2] + sums[k][3]) + rest
-    })
+    for (l, x) in last.iter().zip(x_last) {
+        (0..W).for_each(|c| sums[0][c] += l[c].double() * x);
+    }
+    for c in (0..W).rev() {
+        let inner: f64 = (c + 1..W).map(|row| diagonal[row][c].double() * own[row]).sum();
+        own[c] = (own[c] - (sums[0][c] + sums[1][c]) - inner) / diagonal[c][c].double();
+    }
 }
