@@ -140,12 +140,17 @@ fn points(ids: std::ops::Range<u64>, step: u64) -> Points<2> {
         mass: number(id, 3),
         v: vector(id, 4),
     };
+    let in_plane = |id, first| {
+        let couples = |row, column| (row == 2) != (column == 2);
+        let entry = |row, column| number(id, first + (3 * row + column) as u64);
+        Tensor::from_fn(|row, column| if couples(row, column) { 0.0 } else { entry(row, column) })
+    };
     let mut points = Points::from_seeds(ids.clone().map(seed), true);
     for (p, id) in ids.clone().enumerate() {
         points.u[p] = vector(id, 6);
-        points.F[p] = Tensor::from_fn(|row, column| number(id, (8 + 3 * row + column) as u64));
-        points.b_e[p] = Symmetric(std::array::from_fn(|at| number(id, 20 + at as u64)));
-        points.sigma[p] = Symmetric(std::array::from_fn(|at| number(id, 30 + at as u64)));
+        points.F.set(p, in_plane(id, 8));
+        points.b_e.set(p, Symmetric::of(&in_plane(id, 17)));
+        points.sigma.set(p, Symmetric::of(&in_plane(id, 26)));
         points.eps_p[p] = number(id, 40);
     }
     points.gap = Some(ids.map(|id| number(id, 41)).collect());

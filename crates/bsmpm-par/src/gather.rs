@@ -83,8 +83,8 @@ impl<'a> Gathering<'a> {
             rows.extend(points.x[p].iter());
             rows.extend(points.u[p].iter());
             rows.extend(velocity);
-            rows.extend(points.sigma[p].0);
-            rows.extend([points.eps_p[p], points.volume[p] * points.F[p].determinant()]);
+            rows.extend(points.sigma.at(p).0);
+            rows.extend([points.eps_p[p], points.volume[p] * points.F.at(p).determinant()]);
         }
         self.gone += count;
         rows

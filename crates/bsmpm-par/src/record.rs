@@ -189,7 +189,7 @@ fn at_followed(quantity: &Quantity, id: u64, points: &Points<2>, halo: &dyn Halo
     match quantity {
         Quantity::Displacement { .. } => observe::at_point(points, id, halo, |p| points.u[p].into()).to_vec(),
         Quantity::Velocity { .. } => observe::at_point(points, id, halo, velocity).to_vec(),
-        Quantity::Stress { .. } => observe::at_point(points, id, halo, |p| points.sigma[p].0)[..4].to_vec(),
+        Quantity::Stress { .. } => observe::at_point(points, id, halo, |p| points.sigma.at(p).0)[..4].to_vec(),
         _ => Vec::new(),
     }
 }

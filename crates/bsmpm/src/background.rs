@@ -113,7 +113,7 @@ impl Background {
 
 /// Per patch: less than .75 of the cell is filled, and it holds a function at the body's edge.
 fn partly_filled<const D: usize>(grid: &Grid<D>, shape: &Shape<D>, points: &Points<D>, halo: &dyn Halo) -> Vec<bool> {
-    let volume = |p: usize| points.volume[p] * points.F[p].determinant();
+    let volume = |p: usize| points.volume[p] * points.F.at(p).determinant();
     let held = halo.sum(&transfer::to_nodes(shape, |p| [volume(p)]));
     let at_the_edge = |node: usize| held[node] < SUPPORTED * grid.node_volume(node);
     let concerned = |patch: &Patch| {

@@ -186,7 +186,7 @@ fn kinetic<const D: usize>(points: &Points<D>) -> Exact {
 
 /// A state that is no strain has no energy: not a number, like the step that led to it.
 fn elastic<K: Kinematics<D>, const D: usize>(model: &Model<K, D>, points: &Points<D>) -> Exact {
-    (0..points.len()).map(|p| points.volume[p] * model.elastic_energy(points, p, &points.b_e[p])).collect()
+    (0..points.len()).map(|p| points.volume[p] * model.elastic_energy(points, p, &points.b_e.at(p))).collect()
 }
 
 /// Work of gravity by its mean, and half of what it has grown times u.

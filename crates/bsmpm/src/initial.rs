@@ -85,7 +85,7 @@ pub fn balance<K: Kinematics<D>, const D: usize>(
     halo: &dyn Halo,
 ) -> Result<Equilibrium, StepError> {
     let model = &Model { regime: Regime::QuasiStatic, ..model.clone() };
-    let yields = |p: usize| match model.respond(points, p, &points.b_e[p]) {
+    let yields = |p: usize| match model.respond(points, p, &points.b_e.at(p)) {
         Ok(response) => Ok(u32::from(response.region() != Region::Elastic)),
         Err(source) => Err(StepError::Material { id: points.id[p], source }),
     };
@@ -155,6 +155,6 @@ fn strain_of(elastic: &Elastic, stress: &Symmetric) -> Symmetric {
 fn set<const D: usize>(points: &mut Points<D>, p: usize, sigma: Symmetric, strain: &Symmetric) {
     let spectrum = strain.full().symmetric_eigen();
     let stretches = Tensor::from_diagonal(&spectrum.eigenvalues.map(|eps| (2.0 * eps).exp()));
-    points.b_e[p] = Symmetric::of(&(spectrum.eigenvectors * stretches * spectrum.eigenvectors.transpose()));
-    points.sigma[p] = sigma;
+    points.b_e.set(p, Symmetric::of(&(spectrum.eigenvectors * stretches * spectrum.eigenvectors.transpose())));
+    points.sigma.set(p, sigma);
 }

@@ -46,7 +46,7 @@ pub fn front<const D: usize>(grid: &Grid<D>, points: &Points<D>, halo: &dyn Halo
     for p in (0..points.len()).filter(|&p| row_of(p) as f64 == row) {
         if let Some(cell) = grid.locate(&points.x[p]) {
             let (volume, farthest) = &mut held[grid.cell_index(&cell)];
-            *volume += points.volume[p] * points.F[p].determinant();
+            *volume += points.volume[p] * points.F.at(p).determinant();
             *farthest = farthest.max(points.x[p][0]);
         }
     }

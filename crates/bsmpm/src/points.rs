@@ -1,9 +1,14 @@
 //! Material points: the permanent state, one array per quantity, sorted by cell.
 
+mod column;
+mod held;
+
+pub use column::{Column, Number};
+pub use held::{Components, Held};
+
 use crate::boundary::Surface;
 use crate::grid::Grid;
 use crate::tensor::{Symmetric, Tensor, Vector};
-use nalgebra::SMatrix;
 
 /// Velocity and acceleration; absent in quasi-static scenes.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -32,11 +37,11 @@ pub struct Points<const D: usize> {
     /// m^D  reference volume V0; the current one is det F V0
     pub volume: Vec<f64>,
     /// -  deformation gradient
-    pub F: Vec<Tensor>,
+    pub F: Held<D, Tensor>,
     /// -  elastic left Cauchy-Green tensor that the next step starts from (smoothed under some F-bar methods)
-    pub b_e: Vec<Symmetric>,
+    pub b_e: Held<D, Symmetric>,
     /// Pa  Cauchy stress of the last converged step
-    pub sigma: Vec<Symmetric>,
+    pub sigma: Held<D, Symmetric>,
     /// -  accumulated plastic strain
     pub eps_p: Vec<f64>,
     /// -  S(J)/J of the last step, under Zhao's F-bar from its first step on; before that it is 1
@@ -153,9 +158,14 @@ impl<const D: usize> Points<D> {
         self.named_columns().into_iter().map(|(_, column)| column).collect()
     }
 
-    /// Bytes of one point.
+    /// Bytes of one point in a message.
     pub fn bytes(&mut self) -> usize {
         self.columns().iter().map(|column| column.bytes()).sum()
+    }
+
+    /// Bytes of one point in memory: fewer where the dimension leaves components out, see [`Held`].
+    pub fn memory(&mut self) -> usize {
+        self.columns().iter().map(|column| column.memory()).sum()
     }
 
     /// Sorts by (cell, id), the canonical order: neither migration nor restart then matters to any sum over points.
@@ -174,116 +184,5 @@ impl<const D: usize> Points<D> {
         for column in self.columns() {
             column.reorder(&order);
         }
-    }
-}
-
-/// What a number of a column is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Number {
-    /// 16 bits without a sign.
-    U16,
-    /// 64 bits without a sign.
-    U64,
-    /// A float of double precision.
-    F64,
-}
-
-/// One array of the points, whatever it holds.
-pub trait Column {
-    /// What its numbers are.
-    fn number(&self) -> Number;
-    /// Numbers of one row.
-    fn width(&self) -> usize;
-    /// Number of rows.
-    fn rows(&self) -> usize;
-    /// Bytes of one row.
-    fn bytes(&self) -> usize;
-    /// Keeps the rows `order`, in that order.
-    fn reorder(&mut self, order: &[u32]);
-    /// Appends row `p` to a message.
-    fn put(&self, p: usize, message: &mut Vec<u8>);
-    /// Adds the row that `message` begins with, and moves past it; the message must hold it.
-    fn take(&mut self, message: &mut &[u8]);
-}
-
-impl<T: Row> Column for Vec<T> {
-    fn number(&self) -> Number {
-        T::NUMBER
-    }
-    fn width(&self) -> usize {
-        T::WIDTH
-    }
-    fn rows(&self) -> usize {
-        self.len()
-    }
-    fn bytes(&self) -> usize {
-        T::BYTES
-    }
-    fn reorder(&mut self, order: &[u32]) {
-        *self = order.iter().map(|&p| self[p as usize]).collect();
-    }
-    fn put(&self, p: usize, message: &mut Vec<u8>) {
-        self[p].put(message);
-    }
-    fn take(&mut self, message: &mut &[u8]) {
-        let (row, rest) = message.split_at(T::BYTES);
-        self.push(T::take(row));
-        *message = rest;
-    }
-}
-
-/// A row that travels between ranks bit by bit.
-trait Row: Copy {
-    const NUMBER: Number;
-    const WIDTH: usize;
-    const BYTES: usize;
-    fn put(&self, message: &mut Vec<u8>);
-    fn take(row: &[u8]) -> Self;
-}
-
-macro_rules! number_rows {
-    ($($number:ty, $kind:ident);*) => {$(
-        impl Row for $number {
-            const NUMBER: Number = Number::$kind;
-            const WIDTH: usize = 1;
-            const BYTES: usize = size_of::<$number>();
-            fn put(&self, message: &mut Vec<u8>) {
-                message.extend_from_slice(&self.to_le_bytes());
-            }
-            fn take(row: &[u8]) -> Self {
-                let mut bytes = [0; Self::BYTES];
-                bytes.copy_from_slice(row);
-                Self::from_le_bytes(bytes)
-            }
-        }
-    )*};
-}
-number_rows!(u16, U16; u64, U64; f64, F64);
-
-impl<const R: usize, const C: usize> Row for SMatrix<f64, R, C> {
-    const NUMBER: Number = Number::F64;
-    const WIDTH: usize = R * C;
-    const BYTES: usize = 8 * R * C;
-    fn put(&self, message: &mut Vec<u8>) {
-        self.iter().for_each(|entry| entry.put(message));
-    }
-    fn take(row: &[u8]) -> Self {
-        Self::from_iterator(row.chunks_exact(8).map(f64::take))
-    }
-}
-
-impl Row for Symmetric {
-    const NUMBER: Number = Number::F64;
-    const WIDTH: usize = 6;
-    const BYTES: usize = 48;
-    fn put(&self, message: &mut Vec<u8>) {
-        self.0.iter().for_each(|entry| entry.put(message));
-    }
-    fn take(row: &[u8]) -> Self {
-        let mut components = [0.0; 6];
-        for (component, bytes) in components.iter_mut().zip(row.chunks_exact(8)) {
-            *component = f64::take(bytes);
-        }
-        Self(components)
     }
 }

@@ -67,7 +67,7 @@ impl Bench<'_> {
             }
         });
         self.row("(5a) scatter of the internal force", false, || {
-            drop(black_box(transfer::divergence(&shape, |p| PlaneStrain::flux(&points.sigma[p], &points.F[p]))));
+            drop(black_box(transfer::divergence(&shape, |p| PlaneStrain::flux(&points.sigma.at(p), &points.F.at(p)))));
         });
         self.row("(4), (5) whole residual, with balance and sums", false, || drop(black_box(Residual::of(&scene, &u))));
         self.row("(6) stiffness of the patches", true, || {
@@ -90,7 +90,7 @@ impl Bench<'_> {
 
 /// Bytes of a point at rest, and with its shape functions and one trial state.
 pub fn bytes(mut points: Points<2>, model: &Model<PlaneStrain, 2>) -> Result<String, StepError> {
-    let (rest, width) = (points.bytes(), model.grid.order() + 1);
+    let (rest, width) = (points.memory(), model.grid.order() + 1);
     let averaged = model.stabilisation.averages();
     let lowered = model.stabilisation == bsmpm::stabilisation::Stabilisation::ConsistentFBar;
     let shape = 8 * (2 * 2 * width + if lowered { 2 * (width - 1) } else { 0 });

@@ -87,7 +87,8 @@ impl<'h> Opened<'h> {
     /// hold. Collective.
     ///
     /// # Errors
-    /// The same on all ranks (76): the file holds other columns than are wanted, or they cannot be read.
+    /// The same on all ranks (76): the file holds other columns than are wanted, or numbers that the columns leave out; or
+    /// they cannot be read.
     pub fn points(&self, columns: Vec<(&'static str, &mut dyn Column)>) -> Result<(), Refusal> {
         let held = self.arrays.iter().filter(|(name, _)| ![STATE, GUESS].contains(&name.as_str()));
         if held.count() != columns.len() {
@@ -100,6 +101,9 @@ impl<'h> Opened<'h> {
             let (number, width) = form(column);
             let shape = self.shape(name, |_| Shape { number, rows, width })?;
             let bytes = self.read(self.reader.share(name, shape))?;
+            let fits = bytes.chunks_exact(column.bytes()).all(|row| column.fits(row));
+            let strange = || refused(&self.path, &format!("the array {name} has components out of the plane"));
+            agree(&self.world, fits.then_some(()).ok_or_else(strange))?;
             let mut rest = &bytes[..];
             while !rest.is_empty() {
                 column.take(&mut rest);

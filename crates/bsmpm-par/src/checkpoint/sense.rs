@@ -50,7 +50,7 @@ fn possible(points: &Points<2>, grid: &Grid<2>, materials: usize) -> Result<(), 
             "its mass is negative"
         } else if points.volume[p] <= 0.0 {
             "its volume is not positive"
-        } else if points.F[p].determinant() <= 0.0 {
+        } else if points.F.at(p).determinant() <= 0.0 {
             "det F is not positive"
         } else {
             continue;

@@ -39,7 +39,7 @@ fn inner_stress(shift: f64, background: f64) -> Vec<f64> {
     points.x.iter_mut().for_each(|x| x[0] += shift);
     points.sort_by_cell(&scene.model.grid);
     let points = scene.solved(1.0, 1.0).0.points;
-    by_id(&points).into_iter().filter(|&p| inner.contains(&points.id[p])).map(|p| points.sigma[p].0[1]).collect()
+    by_id(&points).into_iter().filter(|&p| inner.contains(&points.id[p])).map(|p| points.sigma.at(p).0[1]).collect()
 }
 
 /// Largest change of the inner stress over all these shifts (in cells), relative.
@@ -128,11 +128,11 @@ fn thrown(is_mirrored: bool, is_swapped: bool, method: Stabilisation) -> Points<
 
 /// Largest difference of position (m) and stress (over E) between points and the images of others, found by place.
 fn apart(points: &Points<2>, others: &Points<2>, image: impl Fn([f64; 2], [f64; 6]) -> ([f64; 2], [f64; 6])) -> f64 {
-    let images: Vec<_> = (0..others.len()).map(|p| image(others.x[p].into(), others.sigma[p].0)).collect();
+    let images: Vec<_> = (0..others.len()).map(|p| image(others.x[p].into(), others.sigma.at(p).0)).collect();
     let of = |p: usize| {
         let distance = |x: &[f64; 2]| (points.x[p] - Vector::from(*x)).norm();
         let (x, sigma) = images.iter().min_by(|a, b| distance(&a.0).total_cmp(&distance(&b.0))).expect("points");
-        let stress = points.sigma[p].0.iter().zip(sigma).map(|(a, b)| (a - b).abs() / 100.0);
+        let stress = points.sigma.at(p).0.into_iter().zip(sigma).map(|(a, b)| (a - b).abs() / 100.0);
         stress.fold(distance(x), f64::max)
     };
     (0..points.len()).map(of).fold(0.0, f64::max)
@@ -197,7 +197,7 @@ fn flight(order: usize) -> (f64, f64) {
             let id = points.id[p] as usize;
             change = change.max((v - last[id]).amax());
             last[id] = *v;
-            stress = points.sigma[p].0.iter().fold(stress, |most, s| most.max(s.abs() / young));
+            stress = points.sigma.at(p).0.iter().fold(stress, |most, s| most.max(s.abs() / young));
         }
     });
     (change, stress)
@@ -229,7 +229,7 @@ fn shortened(order: usize) -> f64 {
     .gravity(load, 20.0);
     scene.march(1.0, 20.0, |_, _| ());
     let points = &scene.points;
-    let error = |p: usize| (points.sigma[p].0[1] + load * (1.0 - points.height(p))).abs();
+    let error = |p: usize| (points.sigma.at(p).0[1] + load * (1.0 - points.height(p))).abs();
     (0..points.len()).map(error).sum::<f64>() / points.len() as f64 / load
 }
 

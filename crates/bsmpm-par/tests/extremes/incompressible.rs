@@ -57,7 +57,7 @@ fn column(poisson: f64, method: Stabilisation, factor: f64) -> Found {
     }
     let points = &scene.points;
     let top = (0..points.len()).max_by(|&a, &b| points.x[a][1].total_cmp(&points.x[b][1])).expect("points");
-    Found::from((points.x[top][1] + h / 6.0 * points.F[top][(1, 1)] - SETTLED).abs())
+    Found::from((points.x[top][1] + h / 6.0 * points.F.at(top)[(1, 1)] - SETTLED).abs())
 }
 
 /// Ten steps; fails where the program would.

@@ -56,7 +56,7 @@ fn column(per_cell: usize) -> (f64, f64) {
             .gravity(load, 0.0);
     scene.march(1.0, 1.0, |_, _| ());
     let points = &scene.points;
-    let error = |p: usize| (points.sigma[p].0[1] + load * (1.0 - points.height(p))).abs();
+    let error = |p: usize| (points.sigma.at(p).0[1] + load * (1.0 - points.height(p))).abs();
     let mean = (0..points.len()).map(error).sum::<f64>() / points.len() as f64 / load;
     (mean, started.elapsed().as_secs_f64() / points.len() as f64)
 }

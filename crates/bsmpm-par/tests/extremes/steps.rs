@@ -35,7 +35,7 @@ pub fn bar() -> Scene<PlaneStrain, 2> {
 pub fn energy(points: &Points<2>) -> f64 {
     let v = &points.motion.as_ref().expect("dynamic").v;
     let of = |p: usize| {
-        let b = points.b_e[p].full().symmetric_eigenvalues();
+        let b = points.b_e.at(p).full().symmetric_eigenvalues();
         let squares: f64 = b.iter().map(|b| (0.5 * b.ln()).powi(2)).sum();
         0.5 * points.mass[p] * v[p].norm_squared() + 50.0 * points.volume[p] * squares
     };

@@ -92,7 +92,7 @@ fn settled(gravity: f64, young: f64) -> Vec<f64> {
             .gravity(gravity, 2.0);
     scene.march(1.0, 2.0, |_, _| ());
     let points = &scene.points;
-    let row = |p: usize| points.u[p].iter().copied().chain(points.sigma[p].0.map(|s| s / young)).collect::<Vec<_>>();
+    let row = |p: usize| points.u[p].iter().copied().chain(points.sigma.at(p).0.map(|s| s / young)).collect::<Vec<_>>();
     by_id(points).into_iter().flat_map(row).collect()
 }
 

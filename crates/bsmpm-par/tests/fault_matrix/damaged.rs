@@ -194,7 +194,7 @@ const FORGED: [(&str, &str, &str); 18] = [
 ];
 
 /// One number of an array, as 64 bits, with what is told of it.
-const NUMBERS: [(&str, usize, u64, &str); 12] = [
+const NUMBERS: [(&str, usize, u64, &str); 16] = [
     ("id", 7, 8, "is there twice"),
     ("id", 7, 1 << 40, "is there twice"),
     ("id", 0, u64::MAX, "is there twice"),
@@ -202,11 +202,15 @@ const NUMBERS: [(&str, usize, u64, &str); 12] = [
     ("x", 11, f64::NAN.to_bits(), "x of point"),
     ("x", 10, 1e9_f64.to_bits(), "outside the grid"),
     ("x", 10, (-1.0_f64).to_bits(), "outside the grid"),
-    ("sigma", 5, f64::INFINITY.to_bits(), "sigma of point"),
+    ("sigma", 3, f64::INFINITY.to_bits(), "sigma of point"),
+    ("sigma", 5, f64::INFINITY.to_bits(), "sigma has components out of the plane"),
     ("guess", 5, f64::NAN.to_bits(), "a nodal displacement is not finite"),
     ("mass", 2, (-1.0_f64).to_bits(), "its mass is negative"),
     ("volume", 2, 0, "its volume is not positive"),
     ("F", 0, (-1.0_f64).to_bits(), "det F is not positive"),
+    ("F", 14, 1e-3_f64.to_bits(), "F has components out of the plane"),
+    ("b_e", 10, f64::NAN.to_bits(), "b_e has components out of the plane"),
+    ("b_e", 4, 1e-300_f64.to_bits(), "b_e has components out of the plane"),
 ];
 
 /// Files that HDF5 reads but nobody of ours wrote, with records that are true.

@@ -39,7 +39,7 @@ pub fn stress_noise<const D: usize>(
     component: usize,
     halo: &dyn Halo,
 ) -> Result<Noise, StepError> {
-    let squares = Squares::of(grid, points, weighting, &|p| points.sigma[p].0[component], None, halo)?;
+    let squares = Squares::of(grid, points, weighting, &|p| points.sigma.at(p).0[component], None, halo)?;
     Ok(if squares.mean == 0.0 { Noise::default() } else { squares.noise(squares.mean) })
 }
 
@@ -68,7 +68,7 @@ pub fn relative_pressure_noise<const D: usize>(
 
 /// -tr(sigma)/3 of a point, Pa.
 fn pressure<const D: usize>(points: &Points<D>, p: usize) -> f64 {
-    -points.sigma[p].0[..3].iter().sum::<f64>() / 3.0
+    -points.sigma.at(p).0[..3].iter().sum::<f64>() / 3.0
 }
 
 /// Means over the points of a stress and of its squared distances from its smooth parts.

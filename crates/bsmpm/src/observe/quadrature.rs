@@ -28,7 +28,7 @@ pub fn defect<const D: usize>(grid: &Grid<D>, points: &Points<D>, halo: &dyn Hal
     let (mut held, mut counts) = (vec![0.0; grid.cells()], vec![0_u32; grid.cells()]);
     for p in 0..points.len() {
         if let Some(cell) = grid.locate(&points.x[p]) {
-            held[grid.cell_index(&cell)] += points.volume[p] * points.F[p].determinant();
+            held[grid.cell_index(&cell)] += points.volume[p] * points.F.at(p).determinant();
             counts[grid.cell_index(&cell)] += 1;
         }
     }

@@ -76,9 +76,10 @@ pub fn commit<K: Kinematics<D>, const D: usize>(
         points.dilation = Some((0..points.len()).map(|p| trial.averaged(model, points, p)).collect());
     }
     for (p, response) in responses.iter().enumerate() {
-        points.F[p] = trial.dF::<K>(p) * points.F[p];
-        points.sigma[p] = response.tau().scaled(1.0 / points.F[p].determinant());
-        points.b_e[p] = response.b_e();
+        let F = trial.dF::<K>(p) * points.F.at(p);
+        points.F.set(p, F);
+        points.sigma.set(p, response.tau().scaled(1.0 / F.determinant()));
+        points.b_e.set(p, response.b_e());
         points.eps_p[p] += response.plastic_increment();
     }
     let smoothed = match model.stabilisation {

@@ -29,8 +29,8 @@ pub fn average_b_e<K, const D: usize>(
     points: &mut Points<D>,
     halo: &dyn Halo,
 ) {
-    let nodal = nodes.average(shape, points, model.weighting, halo, |p| points.b_e[p].0);
-    points.b_e = transfer::to_points(shape, &nodal, |_, b_e| Symmetric(b_e));
+    let nodal = nodes.average(shape, points, model.weighting, halo, |p| points.b_e.at(p).0);
+    points.b_e = transfer::to_points(shape, &nodal, |_, b_e| Symmetric(b_e)).into_iter().collect();
 }
 
 /// What the filter of consistent F-bar needs of a point's return.
@@ -82,11 +82,11 @@ pub fn filter_dilation<K, const D: usize>(
     let b_e = &points.b_e;
     let filtered = transfer::to_points(shape, &nodal, |p, [theta, mean]| {
         let change = theta * (mean - flow[p].dilation);
-        (b_e[p].scaled((2.0 / 3.0 * change).exp()), theta)
+        (b_e.at(p).scaled((2.0 / 3.0 * change).exp()), theta)
     });
     let (mut shares, mut count) = (Exact::ZERO, Exact::ZERO);
     for (p, (b_e, theta)) in filtered.into_iter().enumerate() {
-        points.b_e[p] = b_e;
+        points.b_e.set(p, b_e);
         shares.add(theta);
         count.add(1.0);
     }

@@ -101,8 +101,8 @@ impl<const D: usize> Trial<D> {
     ) -> Result<Response, MaterialError> {
         let dF = self.dF::<K>(p);
         let b_trial: Symmetric = match &self.mean {
-            Some(_) => K::push_forward(&K::dilate(&dF, self.ratio(model, points, p)), &points.b_e[p]),
-            None => K::push_forward(&dF, &points.b_e[p]),
+            Some(_) => K::push_forward(&K::dilate(&dF, self.ratio(model, points, p)), &points.b_e.at(p)),
+            None => K::push_forward(&dF, &points.b_e.at(p)),
         };
         match points.gap_of(p) {
             0.0 => model.respond(points, p, &b_trial),
@@ -114,5 +114,5 @@ impl<const D: usize> Trial<D> {
 /// w_p: J at the start of the step where the total J is averaged, else 1.
 #[inline]
 fn weight<const D: usize>(stabilisation: Stabilisation, points: &Points<D>, p: usize) -> f64 {
-    if stabilisation == Stabilisation::FBarZhao { points.F[p].determinant() } else { 1.0 }
+    if stabilisation == Stabilisation::FBarZhao { points.F.at(p).determinant() } else { 1.0 }
 }

@@ -127,7 +127,7 @@ fn concerned(F: [[f64; 2]; 2], extent: Extent) -> Vec<[usize; 2]> {
         let from = points.x[p] - corner;
         points.x[p] =
             corner + Vector::<2>::new(F[0][0] * from[0] + F[0][1] * from[1], F[1][0] * from[0] + F[1][1] * from[1]);
-        points.F[p] = Tensor::new(F[0][0], F[0][1], 0.0, F[1][0], F[1][1], 0.0, 0.0, 0.0, 1.0);
+        points.F.set(p, Tensor::new(F[0][0], F[0][1], 0.0, F[1][0], F[1][1], 0.0, 0.0, 0.0, 1.0));
     }
     scene.points.sort_by_cell(&scene.model.grid);
     let (grid, points) = (&scene.model.grid, &scene.points);

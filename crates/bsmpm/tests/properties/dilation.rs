@@ -26,7 +26,7 @@ fn deformed<K: Kinematics<D>, const D: usize>(order: usize, method: Stabilisatio
     for p in 0..points.len() {
         points.x[p] += random.vector::<D>() * 0.01;
         points.mass[p] *= 1.0 + 0.5 * random.signed();
-        points.F[p] = Tensor::identity() * (1.0 + 0.1 * random.signed());
+        points.F.set(p, Tensor::identity() * (1.0 + 0.1 * random.signed()));
     }
     points.dilation =
         (method == Stabilisation::FBarZhao).then(|| random.array(points.len()).iter().map(|r| 1.0 + 0.1 * r).collect());
@@ -139,7 +139,7 @@ fn flowing(spread: f64) -> Scene<PlaneStrain, 2> {
         let volume = spread * random.signed();
         let shear = if scene.points.x[p][0] < 4.0 { 0.05 } else { 1e-4 };
         let b = |eps: f64| (2.0 * eps).exp();
-        scene.points.b_e[p] = Symmetric([b(volume + shear), b(volume - shear), b(volume), 0.0, 0.0, 0.0]);
+        scene.points.b_e.set(p, Symmetric([b(volume + shear), b(volume - shear), b(volume), 0.0, 0.0, 0.0]));
     }
     scene
 }
@@ -159,21 +159,21 @@ fn the_filter_smooths_the_elastic_dilation_where_the_material_flows_and_nothing_
     let nodes = Nodes::map(&scene.model, &shape, &scene.points, (0.0, 1.0), &halo).expect("no loads");
     let mut flow = Vec::new();
     for p in 0..scene.points.len() {
-        let response = scene.model.respond(&scene.points, p, &scene.points.b_e[p]).unwrap();
+        let response = scene.model.respond(&scene.points, p, &scene.points.b_e.at(p)).unwrap();
         flow.push(smooth::Flow::of(&response, 0.0));
-        scene.points.b_e[p] = response.b_e();
+        scene.points.b_e.set(p, response.b_e());
     }
     let before = scene.points.b_e.clone();
     let share = smooth::filter_dilation(&scene.model, (&shape, &nodes), &mut scene.points, &flow, &halo);
     assert!(share > 0.0 && share < 1.0, "{share}");
     let (mut changed, mut fluctuation) = (0.0_f64, [0.0, 0.0]);
     for (p, b_e) in before.iter().enumerate() {
-        let ((volume, deviator), (filtered, kept)) = (strain(b_e), strain(&scene.points.b_e[p]));
+        let ((volume, deviator), (filtered, kept)) = (strain(&b_e), strain(&scene.points.b_e.at(p)));
         changed = (0..3).map(|k| (deviator[k] - kept[k]).abs()).fold(changed, f64::max);
         match scene.points.x[p][0] {
             x if x < 4.0 => fluctuation = [fluctuation[0] + volume.powi(2), fluctuation[1] + filtered.powi(2)],
             // A flowing point is seen two cells off, and its share two more.
-            x if x > 9.0 => assert_eq!(scene.points.b_e[p], *b_e),
+            x if x > 9.0 => assert_eq!(scene.points.b_e.at(p), b_e),
             _ => (),
         }
     }
@@ -190,7 +190,7 @@ fn without_flow_the_filter_leaves_every_bit() {
     let halo = scene.halo();
     let shape = Shape::at(&scene.model.grid, &scene.points).unwrap();
     let nodes = Nodes::map(&scene.model, &shape, &scene.points, (0.0, 1.0), &halo).expect("no loads");
-    let respond = |p: usize| scene.model.respond(&before, p, &before.b_e[p]).unwrap();
+    let respond = |p: usize| scene.model.respond(&before, p, &before.b_e.at(p)).unwrap();
     let flow: Vec<_> = (0..before.len()).map(|p| smooth::Flow::of(&respond(p), 0.0)).collect();
     let share = smooth::filter_dilation(&scene.model, (&shape, &nodes), &mut scene.points, &flow, &halo);
     assert_eq!((share, scene.points), (0.0, before));

@@ -19,8 +19,8 @@ fn thrown(separation: Separation) -> Scene<PlaneStrain, 2> {
 
 /// `ln J - tr εᵉ - gap`, the volume that is forgotten.
 fn forgotten(points: &Points<2>, p: usize) -> f64 {
-    let elastic = 0.5 * points.b_e[p].full().determinant().ln();
-    points.F[p].determinant().ln() - elastic - points.gap.as_ref().map_or(0.0, |gap| gap[p])
+    let elastic = 0.5 * points.b_e.at(p).full().determinant().ln();
+    points.F.at(p).determinant().ln() - elastic - points.gap.as_ref().map_or(0.0, |gap| gap[p])
 }
 
 #[test]
@@ -29,7 +29,7 @@ fn no_volume_is_forgotten_where_gaps_close() {
     let (mut worst, mut most, mut left) = (0.0_f64, 0, 0);
     scene.march(2e-3, 0.5, |points, _| {
         let gap = points.gap.as_ref().expect("a material closes its gaps");
-        assert!((0..points.len()).all(|p| gap[p] >= 0.0 && (gap[p] == 0.0 || points.sigma[p].0 == [0.0; 6])));
+        assert!((0..points.len()).all(|p| gap[p] >= 0.0 && (gap[p] == 0.0 || points.sigma.at(p).0 == [0.0; 6])));
         worst = (0..points.len()).map(|p| forgotten(points, p).abs()).fold(worst, f64::max);
         left = gap.iter().filter(|gap| **gap > 1e-3).count();
         most = most.max(left);

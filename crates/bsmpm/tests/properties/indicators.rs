@@ -8,7 +8,7 @@ use bsmpm::observe::noise::relative_pressure_noise;
 use bsmpm::observe::quadrature::{Defect, defect};
 use bsmpm::step::nodes::Nodes;
 use bsmpm::step::smooth;
-use bsmpm::tensor::{Tensor, Vector};
+use bsmpm::tensor::{Symmetric, Tensor, Vector};
 
 /// Cells of .5 m, 6 along each axis, of which `cells` hold 2^D points each.
 fn block<K: Kinematics<D>, const D: usize>(order: usize, cells: std::ops::Range<usize>) -> Scene<K, D> {
@@ -45,7 +45,7 @@ fn the_defect_is_that_of_the_points_present_volumes() {
         scene.points.x.iter().position(|found| (found - Vector::from(x)).norm() < 1e-12).unwrap()
     };
     let grown = at(&scene, [1.125, 1.125]);
-    scene.points.F[grown] = Tensor::from_diagonal(&[2.0, 1.0, 1.0].into());
+    scene.points.F.set(grown, Tensor::from_diagonal(&[2.0, 1.0, 1.0].into()));
     let lost = at(&scene, [1.875, 1.875]);
     scene.points.volume[lost] = 0.0;
     let found = of(&scene).unwrap();
@@ -65,7 +65,8 @@ fn the_noise_of_the_pressure_has_no_unit() {
         for p in 0..scene.points.len() {
             let place = (scene.points.x[p] / 0.25).map(|x| x as i64);
             let sign = if (place[0] + place[1]) % 2 == 0 { 1.0 } else { -1.0 };
-            scene.points.sigma[p].0 = [-unit * (1.0 + 0.5 * sign); 6];
+            let [normal, shear] = [-unit * (1.0 + 0.5 * sign); 2];
+            scene.points.sigma.set(p, Symmetric([normal, normal, normal, shear, 0.0, 0.0]));
         }
         let found = noise(&scene);
         assert!((found.about_plane - 0.5).abs() <= 0.01 && (found.about_average - 0.5).abs() <= 0.05, "{found:?}");

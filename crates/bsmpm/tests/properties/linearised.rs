@@ -37,11 +37,8 @@ fn loaded<K: Kinematics<D>, const D: usize>(method: Stabilisation, regime: Regim
     for p in 0..scene.points.len() {
         scene.points.x[p] += random.vector::<D>() * 0.02;
         let strain: Vec<f64> = random.array(6).iter().map(|r| 0.01 * r).collect();
-        let b_e = Tensor::from_diagonal_element(0.995) + Symmetric(std::array::from_fn(|c| strain[c])).full();
-        scene.points.b_e[p] = Symmetric::of(&b_e);
-        if D == 2 {
-            scene.points.b_e[p].0[4..].fill(0.0);
-        }
+        let strain = Symmetric(std::array::from_fn(|c| if D == 2 && c > 3 { 0.0 } else { strain[c] }));
+        scene.points.b_e.set(p, Symmetric::of(&(Tensor::from_diagonal_element(0.995) + strain.full())));
     }
     scene.points.sort_by_cell(&scene.model.grid);
     scene
@@ -112,7 +109,7 @@ fn what_gapes_is_in_the_product() {
         let mut random = Random::new(5);
         scene.points.gap = Some((0..scene.points.len()).map(|_| 0.02 * random.unit()).collect());
         let response = |p: usize, b_e: &Symmetric| scene.model.respond(&scene.points, p, b_e).unwrap();
-        let opened = |p: usize, gap: f64| response(p, &scene.points.b_e[p].scaled((2.0 / 3.0 * gap).exp()));
+        let opened = |p: usize, gap: f64| response(p, &scene.points.b_e.at(p).scaled((2.0 / 3.0 * gap).exp()));
         let gaps = scene.points.gap.as_ref().unwrap();
         let open = (0..gaps.len()).filter(|&p| opened(p, gaps[p]).region() == Region::Apex).count();
         assert!(open > 0 && open < gaps.len(), "{open} of {}", gaps.len());
@@ -132,9 +129,9 @@ fn curvature(cohesion: f64, size: f64) -> ([f64; 2], usize) {
     let law = MohrCoulomb::new(Elastic { young: 1000.0, poisson: 0.3 }, 0.5, 0.0, cohesion);
     (scene.model.materials, scene.model.background) = (vec![Material::MohrCoulomb(law)], None);
     let mut random = Random::new(7);
-    for b_e in &mut scene.points.b_e {
+    for p in 0..scene.points.len() {
         let [xx, yy, zz, xy] = [6.0, -12.0, -3.0, 0.0].map(|mean| size * (mean + random.signed()));
-        *b_e = Symmetric([1.0 + xx, 1.0 + yy, 1.0 + zz, xy, 0.0, 0.0]);
+        scene.points.b_e.set(p, Symmetric([1.0 + xx, 1.0 + yy, 1.0 + zz, xy, 0.0, 0.0]));
     }
     let (model, points, halo) = (&scene.model, &scene.points, scene.halo());
     let shape = Shape::at(&model.grid, points).unwrap();

@@ -5,7 +5,7 @@ use bsmpm::boundary::Support;
 use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
 use bsmpm::model::{Regime, Weighting};
 use bsmpm::observe::{farthest, front, mass, nearest, noise::stress_noise, percentile};
-use bsmpm::tensor::Vector;
+use bsmpm::tensor::{Symmetric, Vector};
 
 /// A block of 4^D cells, one cell off the lower corner.
 fn block<K: Kinematics<D>, const D: usize>(order: usize) -> Scene<K, D> {
@@ -21,9 +21,10 @@ fn noise_of_a_linear_field<K: Kinematics<D>, const D: usize>() -> (f64, f64) {
     let mut scene = block::<K, D>(2);
     let field = |x: &Vector<D>| 1.0 + x.iter().enumerate().map(|(k, x)| (k as f64 + 0.3) * x).sum::<f64>();
     let points = &mut scene.points;
-    (0..points.len()).for_each(|p| points.sigma[p].0[1] = field(&points.x[p]));
+    let stress = |yy: f64| Symmetric([0.0, yy, 0.0, 0.0, 0.0, 0.0]);
+    (0..points.len()).for_each(|p| points.sigma.set(p, stress(field(&points.x[p]))));
     let linear = stress_noise(&scene.model.grid, &scene.points, Weighting::Mass, 1, &scene.halo()).unwrap();
-    scene.points.sigma.iter_mut().for_each(|sigma| sigma.0[1] = -7.1);
+    scene.points.sigma.fill(stress(-7.1));
     let uniform = stress_noise(&scene.model.grid, &scene.points, Weighting::Volume, 1, &scene.halo()).unwrap();
     (linear.about_plane, uniform.about_average.max(uniform.about_plane))
 }

@@ -1,27 +1,34 @@
-//! The columns of the points: canonical order, and bit by bit through a message.
+//! The columns of the points: canonical order, bit by bit through a message, and what they take in memory.
 
 use crate::support::random::Random;
 use crate::support::scene::{Scene, axis, hencky};
-use bsmpm::kinematics::PlaneStrain;
+use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
 use bsmpm::model::Regime;
-use bsmpm::points::Points;
+use bsmpm::points::{Column, Held, Points};
 use bsmpm::tensor::{Symmetric, Tensor};
 
+/// A tensor whose every number is different, but for those that couple a plane with its normal.
+fn tensor<const D: usize>(random: &mut Random) -> Tensor {
+    let couples = |row, column| D == 2 && (row == 2) != (column == 2);
+    Tensor::from_fn(|row, column| if couples(row, column) { 0.0 } else { random.signed() })
+}
+
 /// Points whose every number is different, also NaN-free extremes.
-fn varied(regime: Regime) -> Scene<PlaneStrain, 2> {
+fn varied<K: Kinematics<D>, const D: usize>(regime: Regime) -> Scene<K, D> {
     let mut random = Random::new(1);
-    let mut scene = Scene::new([axis(0.5, 6, 2), axis(0.25, 4, 2)], hencky(1.0, 0.2), regime);
-    scene = scene.body([1..5, 0..3], 3, 2.0, |x| x * 0.7);
+    let axes = std::array::from_fn(|k| if k == 0 { axis(0.5, 6, 2) } else { axis(0.25, 4, 2) });
+    let mut scene = Scene::<K, D>::new(axes, hencky(1.0, 0.2), regime);
+    scene = scene.body(std::array::from_fn(|k| if k == 0 { 1..5 } else { 0..3 }), 3, 2.0, |x| x * 0.7);
     let points = &mut scene.points;
     for p in 0..points.len() {
-        points.x[p] += random.vector::<2>() * 0.05;
-        points.u[p] = random.vector::<2>() * 1e-200;
+        points.x[p] += random.vector::<D>() * 0.05;
+        points.u[p] = random.vector::<D>() * 1e-200;
         points.material[p] = (random.unit() * 65535.0) as u16;
         points.mass[p] *= random.unit();
         points.volume[p] *= random.unit();
-        points.F[p] = Tensor::from_fn(|_, _| random.signed());
-        points.b_e[p] = Symmetric(std::array::from_fn(|_| random.signed()));
-        points.sigma[p] = Symmetric(std::array::from_fn(|_| 1e200 * random.signed()));
+        points.F.set(p, tensor::<D>(&mut random));
+        points.b_e.set(p, Symmetric::of(&tensor::<D>(&mut random)));
+        points.sigma.set(p, Symmetric::of(&tensor::<D>(&mut random)).scaled(1e200));
         points.eps_p[p] = -0.0;
         if let Some(motion) = &mut points.motion {
             motion.a[p] = random.vector();
@@ -33,7 +40,7 @@ fn varied(regime: Regime) -> Scene<PlaneStrain, 2> {
     scene
 }
 
-fn shuffled(points: &Points<2>, seed: u64) -> Points<2> {
+fn shuffled<const D: usize>(points: &Points<D>, seed: u64) -> Points<D> {
     let mut random = Random::new(seed);
     let mut order: Vec<u32> = (0..points.len() as u32).collect();
     for i in (1..order.len()).rev() {
@@ -44,10 +51,9 @@ fn shuffled(points: &Points<2>, seed: u64) -> Points<2> {
     points
 }
 
-#[test]
-fn sorting_is_canonical_whatever_the_order_before() {
+fn sorted_again<K: Kinematics<D>, const D: usize>() {
     for regime in [Regime::Dynamic, Regime::QuasiStatic] {
-        let scene = varied(regime);
+        let scene = varied::<K, D>(regime);
         for seed in 0..10 {
             let mut points = shuffled(&scene.points, seed);
             assert_ne!(points, scene.points);
@@ -58,8 +64,14 @@ fn sorting_is_canonical_whatever_the_order_before() {
 }
 
 #[test]
+fn sorting_is_canonical_whatever_the_order_before() {
+    sorted_again::<PlaneStrain, 2>();
+    sorted_again::<Solid, 3>();
+}
+
+#[test]
 fn sorted_points_ascend_by_cell_then_id_and_those_outside_the_window_come_last() {
-    let scene = varied(Regime::Dynamic);
+    let scene = varied::<PlaneStrain, 2>(Regime::Dynamic);
     let window = scene.model.grid.window(2..4);
     let mut points = shuffled(&scene.points, 3);
     points.x[0][0] = -1.0;
@@ -73,17 +85,18 @@ fn sorted_points_ascend_by_cell_then_id_and_those_outside_the_window_come_last()
     assert!(keys[0].0 == 0 && keys[keys.len() - 1].0 == usize::MAX);
 }
 
-#[test]
-fn every_column_travels_through_a_message_bit_by_bit() {
+fn sent<K: Kinematics<D>, const D: usize>() {
     for regime in [Regime::Dynamic, Regime::QuasiStatic] {
-        let mut points = varied(regime).points;
-        points.sigma[0].0[0] = f64::MIN_POSITIVE / 8.0; // subnormal
+        let mut points = varied::<K, D>(regime).points;
+        let mut sigma = points.sigma.at(0);
+        sigma.0[0] = f64::MIN_POSITIVE / 8.0; // subnormal
+        points.sigma.set(0, sigma);
         let mut message = Vec::new();
         for p in 0..points.len() {
             points.columns().iter().for_each(|column| column.put(p, &mut message));
         }
         assert_eq!(message.len(), points.len() * points.bytes());
-        let mut received = Points::<2>::from_seeds([], regime == Regime::Dynamic);
+        let mut received = Points::<D>::from_seeds([], regime == Regime::Dynamic);
         received.dilation = points.dilation.as_ref().map(|_| Vec::new());
         received.gap = points.gap.as_ref().map(|_| Vec::new());
         let mut rest = message.as_slice();
@@ -96,10 +109,61 @@ fn every_column_travels_through_a_message_bit_by_bit() {
 }
 
 #[test]
+fn every_column_travels_through_a_message_bit_by_bit() {
+    sent::<PlaneStrain, 2>();
+    sent::<Solid, 3>();
+}
+
+fn bytes_of(numbers: &[f64]) -> Vec<u8> {
+    numbers.iter().flat_map(|number| number.to_le_bytes()).collect()
+}
+
+/// A row of a message is the whole tensor in every dimension; what a plane does not hold is not taken for nothing.
+#[test]
+fn rows_are_whole_tensors_and_a_plane_refuses_what_leaves_it() {
+    let F = Tensor::new(1.1, 0.2, 0.0, 0.3, 1.4, 0.0, 0.0, 0.0, 1.5);
+    let sigma = Symmetric([-1.0, -2.0, -3.0, 0.4, 0.0, 0.0]);
+    let (plane, solid) = (Held::<2, Tensor>::from_iter([F; 3]), Held::<3, Tensor>::from_iter([F; 3]));
+    let (mut of_plane, mut of_solid) = (Vec::new(), Vec::new());
+    plane.put(1, &mut of_plane);
+    solid.put(1, &mut of_solid);
+    assert_eq!((&of_plane, &of_solid), (&bytes_of(F.as_slice()), &bytes_of(F.as_slice())));
+    let symmetric = Held::<2, Symmetric>::from_iter([sigma]);
+    let mut of_symmetric = Vec::new();
+    symmetric.put(0, &mut of_symmetric);
+    assert_eq!(of_symmetric, bytes_of(&sigma.0));
+    for strange in [1e-300, f64::NAN, -0.0] {
+        for place in [2, 5, 6, 7] {
+            let mut other = F;
+            other[place] = strange;
+            let row = bytes_of(other.as_slice());
+            assert_eq!((plane.fits(&row), solid.fits(&row)), (strange == 0.0, true), "{strange} at {place}");
+        }
+        for place in [4, 5] {
+            let mut other = sigma;
+            other.0[place] = strange;
+            assert_eq!(symmetric.fits(&bytes_of(&other.0)), strange == 0.0, "{strange} at {place}");
+        }
+    }
+    assert!(plane.fits(&of_plane) && symmetric.fits(&of_symmetric));
+}
+
+#[test]
 fn quasi_static_points_carry_no_motion() {
-    let (mut dynamic, mut quasi_static) = (varied(Regime::Dynamic).points, varied(Regime::QuasiStatic).points);
+    let of = |regime| varied::<PlaneStrain, 2>(regime).points;
+    let (mut dynamic, mut quasi_static) = (of(Regime::Dynamic), of(Regime::QuasiStatic));
     (quasi_static.dilation, dynamic.gap) = (None, None);
     assert!(quasi_static.motion.is_none());
     assert_eq!(dynamic.bytes() - quasi_static.bytes(), 4 * 8);
+    assert_eq!(dynamic.memory() - quasi_static.memory(), 4 * 8);
     assert_eq!(quasi_static.bytes(), 8 + 2 + 8 * (2 + 2 + 1 + 1 + 9 + 6 + 6 + 1));
+}
+
+#[test]
+fn in_memory_a_plane_has_no_components_that_couple_it_with_its_normal() {
+    let mut plane = Points::<2>::from_seeds([], false);
+    assert_eq!(plane.memory(), 8 + 2 + 8 * (2 + 2 + 1 + 1 + 5 + 4 + 4 + 1));
+    assert_eq!(plane.bytes() - plane.memory(), 64);
+    let mut solid = Points::<3>::from_seeds([], true);
+    assert_eq!(solid.memory(), solid.bytes());
 }

@@ -148,8 +148,9 @@ fn squared_gradients_are_the_trace_of_the_moment() {
 fn sums_of_windows<K: Kinematics<D>, const D: usize>(order: usize) {
     let scene = scattered::<K, D>(order);
     let (grid, all) = (&scene.model.grid, 0..scene.model.grid.columns().end);
-    let force =
-        |p: usize, points: &Points<D>| Square::<D>::from_element(points.mass[p]) + points.F[p].fixed_view::<D, D>(0, 0);
+    let force = |p: usize, points: &Points<D>| {
+        Square::<D>::from_element(points.mass[p]) + points.F.at(p).fixed_view::<D, D>(0, 0)
+    };
     let of_window = |columns: Range<usize>| {
         let window = grid.window(columns.clone());
         let mut points = scene.points.clone();

@@ -30,7 +30,7 @@ pub fn bar(method: Stabilisation) -> Scene<PlaneStrain, 2> {
 fn energy(points: &Points<2>) -> f64 {
     let v = &points.motion.as_ref().expect("dynamic").v;
     let of = |p: usize| {
-        let b = points.b_e[p].full().symmetric_eigenvalues();
+        let b = points.b_e.at(p).full().symmetric_eigenvalues();
         let squares: f64 = b.iter().map(|b| (0.5 * b.ln()).powi(2)).sum();
         0.5 * points.mass[p] * v[p].norm_squared() + 0.5 * points.volume[p] * 100.0 * squares
     };

@@ -33,7 +33,7 @@ impl<K: Kinematics<D>, const D: usize> Scene<K, D> {
     fn stress_error(&self, S: f64) -> [f64; 2] {
         let points = &self.points;
         let exact = |p: usize| -S * (1.0 - (points.x[p][D - 1] - points.u[p][D - 1]));
-        let error = |p: usize| points.sigma[p].0[D - 1] - exact(p);
+        let error = |p: usize| points.sigma.at(p).0[D - 1] - exact(p);
         let mean: f64 = (0..points.len()).map(|p| points.volume[p] * error(p).abs()).sum();
         [mean / points.volume.iter().sum::<f64>() / S, rms(points, error) / rms(points, exact)]
     }
@@ -43,7 +43,7 @@ impl<K: Kinematics<D>, const D: usize> Scene<K, D> {
         let points = &self.points;
         let y = |p: &usize| points.x[*p][D - 1];
         let top = (0..points.len()).max_by(|a, b| y(a).total_cmp(&y(b))).expect("points");
-        points.x[top][D - 1] + 0.5 * spacing * points.F[top][(D - 1, D - 1)]
+        points.x[top][D - 1] + 0.5 * spacing * points.F.at(top)[(D - 1, D - 1)]
     }
 }
 

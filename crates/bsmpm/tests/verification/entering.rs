@@ -52,7 +52,7 @@ fn inner_stress(shift: f64, background: Option<Background>) -> Vec<f64> {
     let (scene, steps) = scene.solved(1.0, 1.0);
     assert!(steps.iter().all(|step| step.rejected.is_empty()));
     let points = &scene.points;
-    by_id(points).into_iter().filter(|&p| inner.contains(&points.id[p])).map(|p| points.sigma[p].0[1]).collect()
+    by_id(points).into_iter().filter(|&p| inner.contains(&points.id[p])).map(|p| points.sigma.at(p).0[1]).collect()
 }
 
 /// Largest change of the inner stress over the largest stress: translated across a cell, and just entering one.

@@ -30,7 +30,7 @@ fn elastic_start<K: Kinematics<D>, const D: usize>(method: Stabilisation) {
     initial::set_elastic(&scene.model, &mut scene.points, (&halo, &mut solver)).expect("an elastic state");
     let found = initial::balance(&scene.model, &scene.points, &halo).expect("forces");
     assert_eq!((&scene.points.x, &scene.points.F), (&before.x, &before.F));
-    let stress = |p: usize| scene.points.sigma[p].0[D - 1] + 20.0 * (4.0 - scene.points.x[p][D - 1]);
+    let stress = |p: usize| scene.points.sigma.at(p).0[D - 1] + 20.0 * (4.0 - scene.points.x[p][D - 1]);
     let off = (0..scene.points.len()).map(|p| stress(p).abs()).fold(0.0, f64::max);
     let (after, steps) = scene.clone().solved(1.0, 1.0);
     let moved = after.points.u.iter().map(|u| u.norm()).fold(0.0, f64::max);
@@ -53,8 +53,8 @@ fn earth_pressure_at_rest_gives_back_its_stress_and_is_nearly_balanced() {
     initial::set_stress(&scene.model, &mut scene.points, |_, x| at_rest(x[1]));
     let found = initial::balance(&scene.model, &scene.points, &scene.halo()).expect("forces");
     for p in 0..scene.points.len() {
-        let tau = scene.model.respond(&scene.points, p, &scene.points.b_e[p]).expect("a response").tau();
-        let off = tau.0.iter().zip(scene.points.sigma[p].0).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let tau = scene.model.respond(&scene.points, p, &scene.points.b_e.at(p)).expect("a response").tau();
+        let off = tau.0.iter().zip(scene.points.sigma.at(p).0).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         assert!(off <= 1e-10, "{off}");
     }
     println!("unbalance {:.1e}", found.force);

@@ -16,7 +16,7 @@ fn rows(points: &Points<2>) -> Vec<Vec<f64>> {
     let row = |p: usize| {
         let mut row = points.x[p].as_slice().to_vec();
         row.extend(points.motion.iter().flat_map(|motion| motion.v[p].as_slice().to_vec()));
-        row.extend(points.sigma[p].0);
+        row.extend(points.sigma.at(p).0);
         row
     };
     by_id(points).into_iter().map(row).collect()
@@ -45,13 +45,13 @@ fn a_mirrored_scene_has_the_mirrored_result() {
         let (left, right) = (run(false), run(true));
         let mirrored = |x: &Vector<2>| Vector::<2>::new(4.0 - x[0], x[1]);
         let mut worst = 0.0_f64;
-        for (x, sigma) in right.x.iter().zip(&right.sigma) {
+        for (x, sigma) in right.x.iter().zip(right.sigma.iter()) {
             let partner = (0..left.len())
                 .min_by(|&a, &b| (mirrored(x) - left.x[a]).norm().total_cmp(&(mirrored(x) - left.x[b]).norm()))
                 .unwrap();
             worst = worst.max((mirrored(x) - left.x[partner]).amax());
             for (k, sign) in [1.0, 1.0, 1.0, -1.0].iter().enumerate() {
-                worst = worst.max((sigma.0[k] - sign * left.sigma[partner].0[k]).abs() / 100.0);
+                worst = worst.max((sigma.0[k] - sign * left.sigma.at(partner).0[k]).abs() / 100.0);
             }
         }
         println!("{method:?}: worst difference {worst:.1e} (m, E)");

@@ -34,7 +34,7 @@ fn errors<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>, l: f64) -> f64 
     let (lambda, _) = elastic.lame();
     let (vertical, lateral) = (elastic.oedometric() * l.ln() / l, lambda * l.ln() / l);
     let of = |p: usize| {
-        let sigma = scene.points.sigma[p].0;
+        let sigma = scene.points.sigma.at(p).0;
         (0..3).map(|k| (sigma[k] - if k == D - 1 { vertical } else { lateral }).abs()).fold(0.0, f64::max)
     };
     (0..scene.points.len()).map(of).fold(0.0, f64::max) / vertical.abs()

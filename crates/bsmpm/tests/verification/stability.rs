@@ -108,6 +108,6 @@ fn a_column_that_bears_its_pressure_is_not_refused() {
     assert!(failure.is_none());
     let points = &scene.points;
     let top = (0..points.len()).max_by(|&a, &b| points.x[a][1].total_cmp(&points.x[b][1])).expect("points");
-    let height = points.x[top][1] + 0.05 / 6.0 * points.F[top][(1, 1)];
+    let height = points.x[top][1] + 0.05 / 6.0 * points.F.at(top)[(1, 1)];
     assert!((height - 0.853_305_216_7).abs() <= 2e-3, "{height}"); // measured 9.4e-4
 }

@@ -1,0 +1,158 @@
+//! The columns of the points as sorting, migration and checkpoints see them: rows of bytes, whatever they hold.
+
+use super::held::{Components, Held};
+use crate::tensor::Symmetric;
+use nalgebra::SMatrix;
+
+/// What a number of a column is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Number {
+    /// 16 bits without a sign.
+    U16,
+    /// 64 bits without a sign.
+    U64,
+    /// A float of double precision.
+    F64,
+}
+
+/// One array of the points, whatever it holds.
+pub trait Column {
+    /// What its numbers are.
+    fn number(&self) -> Number;
+    /// Numbers of one row.
+    fn width(&self) -> usize;
+    /// Number of rows.
+    fn rows(&self) -> usize;
+    /// Bytes of one row in a message or a file, which do not depend on the dimension.
+    fn bytes(&self) -> usize;
+    /// Bytes of one row in memory.
+    fn memory(&self) -> usize;
+    /// Whether a row of a message or a file can be taken without loss: everything that is not held is zero.
+    fn fits(&self, row: &[u8]) -> bool;
+    /// Keeps the rows `order`, in that order.
+    fn reorder(&mut self, order: &[u32]);
+    /// Appends row `p` to a message.
+    fn put(&self, p: usize, message: &mut Vec<u8>);
+    /// Adds the row that `message` begins with, and moves past it; the message must hold it.
+    fn take(&mut self, message: &mut &[u8]);
+}
+
+impl<T: Row> Column for Vec<T> {
+    fn number(&self) -> Number {
+        T::NUMBER
+    }
+    fn width(&self) -> usize {
+        T::WIDTH
+    }
+    fn rows(&self) -> usize {
+        self.len()
+    }
+    fn bytes(&self) -> usize {
+        T::BYTES
+    }
+    fn memory(&self) -> usize {
+        size_of::<T>()
+    }
+    fn fits(&self, _row: &[u8]) -> bool {
+        true
+    }
+    fn reorder(&mut self, order: &[u32]) {
+        *self = order.iter().map(|&p| self[p as usize]).collect();
+    }
+    fn put(&self, p: usize, message: &mut Vec<u8>) {
+        self[p].put(message);
+    }
+    fn take(&mut self, message: &mut &[u8]) {
+        let (row, rest) = message.split_at(T::BYTES);
+        self.push(T::take(row));
+        *message = rest;
+    }
+}
+
+impl<const D: usize, T: Row + Components> Column for Held<D, T> {
+    fn number(&self) -> Number {
+        T::NUMBER
+    }
+    fn width(&self) -> usize {
+        T::WIDTH
+    }
+    fn rows(&self) -> usize {
+        self.len()
+    }
+    fn bytes(&self) -> usize {
+        T::BYTES
+    }
+    fn memory(&self) -> usize {
+        Self::memory_of_one()
+    }
+    fn fits(&self, row: &[u8]) -> bool {
+        Self::holds(&T::take(row))
+    }
+    fn reorder(&mut self, order: &[u32]) {
+        *self = order.iter().map(|&p| self.at(p as usize)).collect();
+    }
+    fn put(&self, p: usize, message: &mut Vec<u8>) {
+        self.at(p).put(message);
+    }
+    fn take(&mut self, message: &mut &[u8]) {
+        let (row, rest) = message.split_at(T::BYTES);
+        self.push(T::take(row));
+        *message = rest;
+    }
+}
+
+/// A row that travels between ranks bit by bit.
+trait Row: Copy {
+    const NUMBER: Number;
+    const WIDTH: usize;
+    const BYTES: usize;
+    fn put(&self, message: &mut Vec<u8>);
+    fn take(row: &[u8]) -> Self;
+}
+
+macro_rules! number_rows {
+    ($($number:ty, $kind:ident);*) => {$(
+        impl Row for $number {
+            const NUMBER: Number = Number::$kind;
+            const WIDTH: usize = 1;
+            const BYTES: usize = size_of::<$number>();
+            fn put(&self, message: &mut Vec<u8>) {
+                message.extend_from_slice(&self.to_le_bytes());
+            }
+            fn take(row: &[u8]) -> Self {
+                let mut bytes = [0; Self::BYTES];
+                bytes.copy_from_slice(row);
+                Self::from_le_bytes(bytes)
+            }
+        }
+    )*};
+}
+number_rows!(u16, U16; u64, U64; f64, F64);
+
+impl<const R: usize, const C: usize> Row for SMatrix<f64, R, C> {
+    const NUMBER: Number = Number::F64;
+    const WIDTH: usize = R * C;
+    const BYTES: usize = 8 * R * C;
+    fn put(&self, message: &mut Vec<u8>) {
+        self.iter().for_each(|entry| entry.put(message));
+    }
+    fn take(row: &[u8]) -> Self {
+        Self::from_iterator(row.chunks_exact(8).map(f64::take))
+    }
+}
+
+impl Row for Symmetric {
+    const NUMBER: Number = Number::F64;
+    const WIDTH: usize = 6;
+    const BYTES: usize = 48;
+    fn put(&self, message: &mut Vec<u8>) {
+        self.0.iter().for_each(|entry| entry.put(message));
+    }
+    fn take(row: &[u8]) -> Self {
+        let mut components = [0.0; 6];
+        for (component, bytes) in components.iter_mut().zip(row.chunks_exact(8)) {
+            *component = f64::take(bytes);
+        }
+        Self(components)
+    }
+}
