@@ -13,9 +13,9 @@ pub(crate) const MOST_UNKNOWNS: u128 = i32::MAX as u128;
 /// Largest number of points: they are sorted by 32-bit numbers, and exact sums have room for 2^31 terms.
 pub(crate) const MOST_POINTS: u128 = i32::MAX as u128;
 
-/// Bytes of a point that are always there: its state (about 270), shape functions (96), trial states and their answers.
-/// Measured, as all that follows, in the runs of `tests/shipped.rs`.
-const POINT: u128 = 600;
+/// Bytes of a point that are always there: its state in a plane (about 200), shape functions (96), trial states and their
+/// answers. Measured, as all that follows, in the runs of `tests/shipped.rs`.
+const POINT: u128 = 536;
 /// Bytes of a point's functions of the degree below, which `consistent-f-bar` averages with.
 const LOWERED: u128 = 64;
 /// Bytes of a point while a step is saved; not there while the system is built.
