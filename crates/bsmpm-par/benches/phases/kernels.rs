@@ -88,7 +88,7 @@ impl Bench<'_> {
     }
 }
 
-/// Bytes of a point at rest, and with its shape functions and one trial state.
+/// Bytes of a point in memory at rest, and with its shape functions and two trial states.
 pub fn bytes(mut points: Points<2>, model: &Model<PlaneStrain, 2>) -> Result<String, StepError> {
     let (rest, width) = (points.memory(), model.grid.order() + 1);
     let averaged = model.stabilisation.averages();
