@@ -29,7 +29,8 @@ pub struct Equilibrium {
     pub yielding: u64,
 }
 
-/// Gives every point the Cauchy stress `sigma(material, x)`, Pa; x in m from the grid's lower corner.
+/// Gives every point the Cauchy stress `sigma(material, x)`, Pa, in a plane without components that couple it with its
+/// normal; x in m from the grid's lower corner.
 pub fn set_stress<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     points: &mut Points<D>,
