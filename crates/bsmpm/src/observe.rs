@@ -37,13 +37,14 @@ pub fn percentile<const D: usize>(points: &Points<D>, axis: usize, percentile: f
 /// The body's front (m): the farthest point in the farthest cell of the lowest occupied row that the points' volume
 /// fills at least half. A few loose points run ahead of it. Rows count along the last axis, the front along axis 0.
 pub fn front<const D: usize>(grid: &Grid<D>, points: &Points<D>, halo: &dyn Halo) -> f64 {
-    let row_of = |p: usize| grid.axes()[D - 1].cell_of(points.x[p][D - 1]).unwrap_or(0);
-    let lowest = (0..points.len()).map(|p| -(row_of(p) as f64)).fold(f64::NEG_INFINITY, f64::max);
-    let mut lowest = [lowest];
+    let rows = &grid.axes()[D - 1];
+    let mut lowest = [points.x.iter().map(|x| -x[D - 1]).fold(f64::NEG_INFINITY, f64::max)];
     halo.maximum(&mut lowest);
-    let row = -lowest[0];
+    let row = rows.cell_of(-lowest[0]).unwrap_or(0);
+    let above = rows.breakpoint(row + 1);
     let mut held = vec![(0.0, 0.0_f64); grid.cells()];
-    for p in (0..points.len()).filter(|&p| row_of(p) as f64 == row) {
+    for p in (0..points.len()).filter(|&p| points.x[p][D - 1] <= above && rows.cell_of(points.x[p][D - 1]) == Some(row))
+    {
         if let Some(cell) = grid.locate(&points.x[p]) {
             let (volume, farthest) = &mut held[grid.cell_index(&cell)];
             *volume += points.volume[p] * points.F.at(p).determinant();

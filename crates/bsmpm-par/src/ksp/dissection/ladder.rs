@@ -183,7 +183,9 @@ impl Joint {
 
 /// The lower triangle of a matrix of order `n`, by columns.
 pub fn pack(matrix: &[f64], n: usize) -> Vec<f64> {
-    (0..n).flat_map(|column| &matrix[column * n + column..(column + 1) * n]).copied().collect()
+    let mut packed = Vec::with_capacity(n * (n + 1) / 2);
+    (0..n).for_each(|column| packed.extend_from_slice(&matrix[column * n + column..(column + 1) * n]));
+    packed
 }
 
 /// Adds a packed triangle whose rows stand at `places` of a front: `own` columns, and the rest's matrix.

@@ -7,7 +7,7 @@ use super::factor;
 use std::ops::Range;
 
 /// Unknowns of a box below which cutting costs more than it saves, by trial between 32 and 192 on plane grids.
-const LEAF: usize = 96;
+const LEAF: usize = 64;
 
 /// Elimination number of a component that is no unknown.
 pub const NONE: u32 = u32::MAX;
