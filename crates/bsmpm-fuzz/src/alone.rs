@@ -6,7 +6,7 @@ use bsmpm::initial;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::Model;
 use bsmpm::points::Points;
-use bsmpm::seam::{Alone, Krylov, LinearSolver, Symmetry};
+use bsmpm::seam::{Alone, Krylov, LinearSolver, Solved, Symmetry};
 use bsmpm::step::{Counts, Report, step};
 use bsmpm_scene::{Case, Initial, model};
 
@@ -72,9 +72,9 @@ impl LinearSolver for Trusted {
     fn finish(&mut self, symmetry: Symmetry) -> Result<(), SolveError> {
         self.0.finish(symmetry)
     }
-    fn solve(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<usize, SolveError> {
-        let iterations = self.0.solve(rhs, solution)?;
-        finite(solution).map(|()| iterations)
+    fn solve(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<Solved, SolveError> {
+        let solved = self.0.solve(rhs, solution)?;
+        finite(solution).map(|()| solved)
     }
     fn solve_with(
         &mut self,

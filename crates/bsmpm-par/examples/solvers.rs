@@ -16,7 +16,7 @@ use std::process::ExitCode;
 use std::rc::Rc;
 
 /// Solves whose mean is told.
-const SOLVES: usize = 5;
+const SOLVES: usize = 50;
 
 fn main() -> ExitCode {
     let universe = match launch::start() {
@@ -70,10 +70,13 @@ fn measure(solver: &mut dyn LinearSolver, grid: &Grid<2>, halo: &dyn Halo, nu: f
     let rhs: Vec<f64> = (0..free.len())
         .map(|c| if free[c] { ((before + c) as f64 * 0.618).sin() + f64::from(u8::from(c % 2 == 1)) } else { 0.0 })
         .collect();
-    let (mut x, mut iterations) = (vec![0.0; free.len()], 0);
+    let mut x = vec![0.0; free.len()];
+    let start = cpu_seconds();
+    let first = solver.solve(&rhs, &mut x).expect("a solution");
+    spent.push(cpu_seconds() - start);
     let start = cpu_seconds();
     for _ in 0..SOLVES {
-        iterations = solver.solve(&rhs, &mut x).expect("a solution");
+        solver.solve(&rhs, &mut x).expect("a solution");
     }
     spent.push((cpu_seconds() - start) / SOLVES as f64);
     let mut unknowns = [halo.owned().flat_map(|node| [2 * node, 2 * node + 1]).filter(|&c| free[c]).count() as f64];
@@ -82,10 +85,14 @@ fn measure(solver: &mut dyn LinearSolver, grid: &Grid<2>, halo: &dyn Halo, nu: f
     let memory = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let peak = memory.lines().find(|line| line.starts_with("VmHWM")).unwrap_or_default();
     if before == 0 {
-        let [first, again, solve] = spent[..] else { unreachable!() };
+        let [factor, again, trial, solve] = spent[..] else { unreachable!() };
         println!(
-            "{name}: {} unknowns, first {first:.4}, again {again:.4}, solve {solve:.4} s, {iterations} iterations {peak}",
-            unknowns[0]
+            "{name}: {} unknowns, first {factor:.4}, again {again:.4}, first solution {trial:.4} s ({} factorisations more, \
+             leaves {:.1e}), solve {solve:.4} s, {} iterations {peak}",
+            unknowns[0],
+            first.factorisations,
+            first.residual.unwrap_or(f64::NAN),
+            first.iterations
         );
     }
 }

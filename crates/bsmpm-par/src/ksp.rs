@@ -1,6 +1,8 @@
-//! The linear system on PETSc: numbering of the unknowns, assembly, factorisation, and solutions that are checked.
+//! The linear system: assembly, factorisation without PETSc or on it, with numbers of the unknowns, and solutions that are
+//! checked: PETSc's all, a factor's first one.
 
 mod choice;
+mod direct;
 mod dissection;
 mod system;
 
@@ -11,16 +13,13 @@ use crate::stencil::{Numbering, Stencil};
 use crate::timers::Timers;
 use bsmpm::error::SolveError;
 use bsmpm::grid::Grid;
-use bsmpm::seam::{Halo, Krylov, LinearSolver, Symmetry, agreed, over_layers};
+use bsmpm::seam::{Halo, Krylov, LinearSolver, Solved, Symmetry};
+use direct::Factor;
 use dissection::{Dissection, Precision};
 use mpi::collective::{CommunicatorCollectives, SystemOperation};
 use petsc_rs::{Matrix, Petsc};
 use std::rc::Rc;
-use system::{System, failed, trusted};
-
-/// Largest relative residual of a solution by a factor of single precision, which a quasi-Newton direction can do with. It is
-/// 1e-7 in dynamics; in statics about 1e-9 n/(1 - 2 nu), n the unknowns of a body in one piece.
-const NEAR: f64 = 1e-2;
+use system::{System, failed};
 
 /// The linear solver of a run: one matrix, rebuilt every step; pattern and analysis are kept while the unknowns stay.
 pub struct KspSolver<'p, const D: usize> {
@@ -34,7 +33,7 @@ pub struct KspSolver<'p, const D: usize> {
     own: usize,         // unknowns of this rank
     direct: Dissection,
     planned: bool, // for the present unknowns
-    tried: bool,   // the factorisation has solved a system
+    factor: Factor,
     definite: Option<System<'p>>,
     general: Option<System<'p>>, // where Newton's method is used
     timers: Rc<Timers>,
@@ -48,7 +47,7 @@ impl<'p, const D: usize> KspSolver<'p, D> {
         let stencil = if whole { Stencil::by_columns(grid, halo.owned()) } else { Stencil::new(grid) };
         let (free, numbers) = (Vec::new(), Vec::new());
         let (direct, definite, general) = (Dissection::default(), None, None);
-        let (planned, tried, grid) = (false, false, grid.clone());
+        let (planned, factor, grid) = (false, Factor::Missing, grid.clone());
         Self {
             petsc,
             choice,
@@ -60,7 +59,7 @@ impl<'p, const D: usize> KspSolver<'p, D> {
             own: 0,
             direct,
             planned,
-            tried,
+            factor,
             definite,
             general,
             timers,
@@ -116,61 +115,6 @@ impl<'p, const D: usize> KspSolver<'p, D> {
         system.ksp.set_up()
     }
 
-    /// Factorises without PETSc.
-    fn factorise(&mut self, precision: Precision) -> Result<(), SolveError> {
-        let halo = Rc::clone(&self.halo);
-        let (world, link) = (halo.world(), halo.link());
-        if !self.planned {
-            let mut bounds = vec![0; self.petsc.ranks()];
-            world.all_gather_into(&self.grid.columns().start, &mut bounds[..]);
-            bounds.push(self.grid.room()[0].end);
-            self.direct.plan(&link, (&bounds, self.petsc.rank()), &self.grid, &self.free);
-            self.planned = true;
-        }
-        let mut largest = [self.stencil.largest_diagonal()];
-        halo.maximum(&mut largest);
-        let good = self.direct.factorise(&link, precision, &self.stencil, largest[0]);
-        self.tried = false;
-        let pivot =
-            |what: &str| SolveError::Failed(format!("a pivot {what} is not positive: the stiffness is not definite"));
-        agreed(&*self.halo, if good { Ok(()) } else { Err(pivot("here")) }, pivot("of another rank"))
-    }
-
-    /// The solution by the factorisation. The first one tries it: if it is not near, a factor of double precision is
-    /// made, whose solution must be.
-    fn solve_directly(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<usize, SolveError> {
-        if !self.planned {
-            return Err(missing());
-        }
-        let owned = self.halo.owned();
-        let owned = owned.start * D..owned.end * D;
-        self.direct.solve(&self.halo.link(), owned.clone(), rhs, solution);
-        if self.tried {
-            return Ok(1);
-        }
-        let mut norms = self.norms(rhs, solution);
-        if !norms.0.is_finite() || norms.0 > NEAR * norms.1 {
-            self.factorise(Precision::Double)?;
-            self.direct.solve(&self.halo.link(), owned, rhs, solution);
-            norms = self.norms(rhs, solution);
-            trusted(norms.0, norms.1)?;
-        }
-        self.tried = norms.1 > 0.0;
-        Ok(1)
-    }
-
-    /// Norms of the residual that a solution leaves, recomputed, and of the right-hand side.
-    fn norms(&self, rhs: &[f64], solution: &[f64]) -> (f64, f64) {
-        let mut image = vec![0.0; rhs.len()];
-        self.stencil.multiply(&self.free, solution, &mut image);
-        self.halo.add_shared(&mut image, D);
-        let square = |component: usize, value: f64| if self.free[component] { value * value } else { 0.0 };
-        let left = over_layers(&*self.halo, D, |c| square(c, rhs[c] - image[c]));
-        let right = over_layers(&*self.halo, D, |c| square(c, rhs[c]));
-        let squares = self.halo.total(&[left, right]);
-        (squares[0].sqrt(), squares[1].sqrt())
-    }
-
     /// Components of this rank's unknowns, in the order of their numbers.
     fn unknowns(&self) -> Vec<usize> {
         let owned = self.halo.owned();
@@ -219,6 +163,7 @@ impl<const D: usize> LinearSolver for KspSolver<'_, D> {
             (self.planned, self.definite, self.general) = (false, None, None);
             self.stencil.keep(|node| free[node * D..(node + 1) * D].contains(&true));
         }
+        self.factor = Factor::Missing;
         self.stencil.clear();
     }
 
@@ -239,25 +184,25 @@ impl<const D: usize> LinearSolver for KspSolver<'_, D> {
     }
 
     fn finish(&mut self, symmetry: Symmetry) -> Result<(), SolveError> {
-        let timers = Rc::clone(&self.timers);
-        let _timed = timers.time("factorisation");
         if symmetry == Symmetry::Definite && self.choice.dissection {
             return self.factorise(Precision::Single);
         }
+        let timers = Rc::clone(&self.timers);
+        let _timed = timers.time("factorisation");
         self.build(symmetry).map_err(failed)
     }
 
-    fn solve(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<usize, SolveError> {
-        let timers = Rc::clone(&self.timers);
-        let _timed = timers.time("linear solve");
+    fn solve(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<Solved, SolveError> {
         if self.choice.dissection {
             return self.solve_directly(rhs, solution);
         }
+        let timers = Rc::clone(&self.timers);
+        let _timed = timers.time("linear solve");
         let unknowns = self.unknowns();
         let own: Vec<f64> = unknowns.iter().map(|&at| if self.free[at] { rhs[at] } else { 0.0 }).collect();
         let (iterations, x) = self.definite.as_mut().ok_or_else(missing)?.solve(&own)?;
         spread::<D>(&self.halo, &unknowns, &x, solution);
-        Ok(iterations)
+        Ok(Solved { iterations, ..Solved::default() })
     }
 
     fn solve_with(

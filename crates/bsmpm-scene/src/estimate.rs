@@ -33,7 +33,7 @@ const REPEATED: u128 = 60;
 /// one has twice of it.
 const LEVEL: u128 = 15 * 8;
 /// The same of a factorisation by dissection, which holds nothing else of the system.
-const FRONT: u128 = 22 * 8;
+const FRONT: u128 = 12 * 8;
 /// Bytes of an unknown in the Krylov space of Newton's directions: two doubles for each of a hundred products.
 const KRYLOV: u128 = 100 * 16;
 /// Bytes of a process that has next to nothing to solve: libraries and buffers of MPI and PETSc.

@@ -73,8 +73,9 @@ pub trait LinearSolver {
     /// Completes and factorises the matrix.
     fn finish(&mut self, symmetry: Symmetry) -> Result<(), SolveError>;
     /// Solves for a nodal right-hand side; the solution is zero at components that are not free, and right at
-    /// ghost nodes too. Returns the linear iterations.
-    fn solve(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<usize, SolveError>;
+    /// ghost nodes too. It is a direction, the same linear function of all right-hand sides up to round-off, and no
+    /// answer: what it leaves of the first one after [`LinearSolver::finish`] is a hundredth of it at most.
+    fn solve(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<Solved, SolveError>;
     /// Solves for an operator known by its product (nodal arrays, zero where not free; collective), by a Krylov method
     /// that the general matrix preconditions, to the residual `relative` to the right-hand side or as far as it gets.
     fn solve_with(
@@ -93,6 +94,17 @@ pub enum Symmetry {
     Definite,
     /// neither, for [`LinearSolver::solve_with`]
     General,
+}
+
+/// What a solution took.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Solved {
+    /// iterations of the linear solver
+    pub iterations: usize,
+    /// further factorisations, as the first one did not do
+    pub factorisations: usize,
+    /// |b - A x| / |b|, where it was computed
+    pub residual: Option<f64>,
 }
 
 /// How a Krylov method ended.

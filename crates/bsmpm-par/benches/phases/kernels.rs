@@ -6,7 +6,7 @@ use bsmpm::grid::{Shape, transfer};
 use bsmpm::kinematics::{Kinematics, PlaneStrain};
 use bsmpm::model::Model;
 use bsmpm::points::Points;
-use bsmpm::seam::{Halo, Krylov, LinearSolver, Symmetry};
+use bsmpm::seam::{Halo, Krylov, LinearSolver, Solved, Symmetry};
 use bsmpm::step::equilibrium::Scene;
 use bsmpm::step::nodes::Nodes;
 use bsmpm::step::residual::Residual;
@@ -116,8 +116,8 @@ impl LinearSolver for Nowhere {
     fn finish(&mut self, _symmetry: Symmetry) -> Result<(), SolveError> {
         Ok(())
     }
-    fn solve(&mut self, _rhs: &[f64], _solution: &mut [f64]) -> Result<usize, SolveError> {
-        Ok(0)
+    fn solve(&mut self, _rhs: &[f64], _solution: &mut [f64]) -> Result<Solved, SolveError> {
+        Ok(Solved::default())
     }
     fn solve_with(
         &mut self,

@@ -104,9 +104,10 @@ impl Spectrum {
             Axes::Plane { tan } => {
                 let mut along = [0.0; 3];
                 (0..3).for_each(|k| along[self.order[k]] = s[k]);
-                let ([x, y, z], square) = (along, 1.0 / (1.0 + tan * tan));
-                let moved = (x - y) * square;
-                Symmetric([y + moved, x - moved, z, tan * moved, 0.0, 0.0])
+                let [x, y, z] = along;
+                let shear = tan * (x - y) / (1.0 + tan * tan);
+                let moved = tan * shear;
+                Symmetric([x - moved, y + moved, z, shear, 0.0, 0.0])
             }
             Axes::Solid(_) => self.assemble_solid(s),
         }

@@ -2,7 +2,7 @@
 
 use crate::error::{SolveError, StepError};
 use crate::kinematics::Kinematics;
-use crate::seam::{Halo, LinearSolver, dots};
+use crate::seam::{Halo, LinearSolver, Solved, dots};
 use crate::step::Counts;
 use crate::step::broyden::Broyden;
 use crate::step::equilibrium::{Found, Method, Scene, evaluate};
@@ -25,15 +25,15 @@ pub enum QuasiNewton {
     Broyden,
 }
 
-/// A direction and the linear iterations that it took.
+/// A direction and what it took.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Direction {
     /// m, nodal
     pub du: Vec<f64>,
     /// du . f, N m
     pub energy: f64,
-    /// iterations of the linear solver
-    pub linear_iterations: usize,
+    /// what the solution with K_0 took
+    pub solved: Solved,
 }
 
 /// The state of one iteration; both methods cost one solve with K_0 a direction.
@@ -62,7 +62,7 @@ impl Secants {
         solver: &mut dyn LinearSolver,
     ) -> Result<Direction, SolveError> {
         let mut w = vec![0.0; f.len()];
-        let linear_iterations = solver.solve(f, &mut w)?;
+        let solved = solver.solve(f, &mut w)?;
         let (du, energy) = match self {
             Self::Multisecant(secants) => {
                 let energy = secants.correct(&mut w, f, halo);
@@ -74,7 +74,7 @@ impl Secants {
                 (du, energy)
             }
         };
-        Ok(Direction { du, energy, linear_iterations })
+        Ok(Direction { du, energy, solved })
     }
 
     /// Tells how much of the last direction was taken: 1 for a full step.
@@ -141,7 +141,8 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
             Err(unsolved) => return Err(Stopped::without_direction(scene, (best, &residual), progress, unsolved)),
         };
         counts.iterations += 1;
-        counts.linear_iterations += direction.linear_iterations;
+        counts.linear_iterations += direction.solved.iterations;
+        counts.factorisations += direction.solved.factorisations;
         if !progress.has_begun() {
             progress.begin(first_energy(scene, &direction.du, direction.energy));
         }

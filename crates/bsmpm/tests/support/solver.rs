@@ -2,7 +2,7 @@
 
 use bsmpm::error::SolveError;
 use bsmpm::grid::Grid;
-use bsmpm::seam::{Krylov, LinearSolver, Symmetry};
+use bsmpm::seam::{Krylov, LinearSolver, Solved, Symmetry};
 use nalgebra::{DMatrix, DVector};
 
 /// Direct solver: L D L^T within the profile of the lower triangle. Without square roots its rounding does not depend
@@ -109,7 +109,7 @@ impl LinearSolver for Skyline {
         Ok(())
     }
 
-    fn solve(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<usize, SolveError> {
+    fn solve(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<Solved, SolveError> {
         let n = self.size();
         let pick = |(number, value): (&Option<usize>, &f64)| number.map(|_| *value);
         let mut x: Vec<f64> = self.number.iter().zip(rhs).filter_map(pick).collect();
@@ -127,7 +127,7 @@ impl LinearSolver for Skyline {
         for (number, value) in self.number.iter().zip(solution) {
             *value = number.map_or(0.0, |i| x[i]);
         }
-        Ok(1)
+        Ok(Solved { iterations: 1, ..Solved::default() })
     }
 
     /// Solves with the dense matrix of the product's columns: exact, whatever the operator is.
@@ -184,7 +184,7 @@ impl LinearSolver for Reluctant {
         self.refusals -= 1;
         Err(SolveError::Failed("refused by the test".into()))
     }
-    fn solve(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<usize, SolveError> {
+    fn solve(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<Solved, SolveError> {
         self.solver.solve(rhs, solution)
     }
     fn solve_with(
@@ -274,7 +274,7 @@ impl LinearSolver for Dense {
         Ok(())
     }
 
-    fn solve(&mut self, _: &[f64], _: &mut [f64]) -> Result<usize, SolveError> {
+    fn solve(&mut self, _: &[f64], _: &mut [f64]) -> Result<Solved, SolveError> {
         Err(SolveError::Failed("it only holds the matrix".into()))
     }
 

@@ -8,10 +8,9 @@
 const GROUP: usize = 4;
 
 /// What a number of a factor is kept in.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Precision {
     /// 32 bits
-    #[default]
     Single,
     /// 64 bits
     Double,
@@ -106,7 +105,8 @@ impl Number for f64 {
     }
 }
 
-/// Groups of columns one after another, and of each its rows from the diagonal on.
+/// Groups of columns one after another, and of each its rows from the first diagonal entry on; what stands above the diagonal
+/// is copied, too, and not read.
 fn keep<T: Number>(columns: &[f64], rows: usize, numbers: &mut Vec<T>) {
     for (group, columns) in columns.chunks(GROUP * rows.max(1)).enumerate() {
         for row in GROUP * group..rows {

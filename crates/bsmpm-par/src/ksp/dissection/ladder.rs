@@ -52,7 +52,7 @@ pub fn role(bounds: &[usize], q: usize, rank: usize) -> Role {
 
 /// The dense front of a cut.
 struct Joint {
-    role: Join,
+    join: Join,
     rows: usize,
     own: usize,
     places: [Vec<usize>; 2], // of the components of either group
@@ -74,12 +74,12 @@ impl Ladder {
         let mut ladder = Self { rank, joined_by: role.joined_by, joint: None };
         let slab: Vec<f64> = shared.iter().map(|&component| component as f64).collect();
         let slab = ladder.hand(link, ladder.joined_by, slab);
-        if let Some(role) = role.join {
-            let groups = ladder.hear(link, role.from, slab);
+        if let Some(join) = role.join {
+            let groups = ladder.hear(link, join.from, slab);
             let groups = groups.map(|group| group.into_iter().map(|component| component as usize).collect());
-            let (joint, left) = Joint::new(role, &groups, layer);
+            let (joint, left) = Joint::new(join, &groups, layer);
             let left = left.iter().map(|&component| component as f64).collect();
-            ladder.hand(link, joint.role.joined_by, left);
+            ladder.hand(link, joint.join.joined_by, left);
             ladder.joint = Some(joint);
         }
         ladder
@@ -88,11 +88,11 @@ impl Ladder {
     /// Factorises, given what this rank's slab leaves, packed. `false` where a pivot was not positive. Collective.
     pub fn factorise(&mut self, link: &dyn Link, precision: Precision, packed: Vec<f64>) -> bool {
         let packed = self.hand(link, self.joined_by, packed);
-        let Some(from) = self.joint.as_ref().map(|joint| joint.role.from) else { return true };
+        let Some(from) = self.joint.as_ref().map(|joint| joint.join.from) else { return true };
         let groups = self.hear(link, from, packed);
         let Some(joint) = &mut self.joint else { return true };
         let (good, left) = joint.factorise(precision, groups);
-        let joined_by = joint.role.joined_by;
+        let joined_by = joint.join.joined_by;
         self.hand(link, joined_by, left);
         good
     }
@@ -102,10 +102,10 @@ impl Ladder {
     pub fn solve(&self, link: &dyn Link, x: &mut [f64]) {
         let mut slab = self.hand(link, self.joined_by, x.to_vec());
         if let Some(joint) = &self.joint {
-            let Join { from, joined_by, .. } = &joint.role;
+            let Join { from, joined_by, .. } = &joint.join;
             let mut all = joint.forward(&self.hear(link, *from, slab.take()));
-            let left = self.hand(link, *joined_by, all[joint.own..].to_vec());
-            if let (Some(by), None) = (joined_by, left) {
+            if let Some(by) = joined_by {
+                link.send(*by, &all[joint.own..]);
                 all[joint.own..].copy_from_slice(&link.receive(*by));
             }
             for (&of, solution) in from.iter().zip(joint.backward(all)) {
@@ -138,16 +138,16 @@ impl Ladder {
 
 impl Joint {
     /// Of two groups with their components; what is not eliminated here is left.
-    fn new(role: Join, groups: &[Vec<usize>; 2], layer: usize) -> (Self, Vec<usize>) {
+    fn new(join: Join, groups: &[Vec<usize>; 2], layer: usize) -> (Self, Vec<usize>) {
         let mut all = groups.concat();
-        let key = |&component: &usize| (!role.layers.contains(&(component / layer)), component);
+        let key = |&component: &usize| (!join.layers.contains(&(component / layer)), component);
         all.sort_unstable_by_key(key);
         all.dedup();
         let own = all.partition_point(|component| !key(component).0);
         let place = |component: &usize| all.partition_point(|other| key(other) < key(component));
         let places = [0, 1].map(|group: usize| groups[group].iter().map(place).collect());
         let left = all[own..].to_vec();
-        (Self { rows: all.len(), own, places, factor: Factor::default(), role }, left)
+        (Self { rows: all.len(), own, places, factor: Factor::default(), join }, left)
     }
 
     /// Factorises the front of what the groups leave, packed; whether all pivots were positive, and what is left, packed.
