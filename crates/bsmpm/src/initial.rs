@@ -7,7 +7,7 @@ use crate::grid::{Shape, transfer};
 use crate::kinematics::Kinematics;
 use crate::material::{Elastic, Region};
 use crate::model::{Model, Regime};
-use crate::points::Points;
+use crate::points::{Held, Points};
 use crate::seam::{Halo, LinearSolver, agreed};
 use crate::step::equilibrium::Scene;
 use crate::step::nodes::Nodes;
@@ -38,6 +38,7 @@ pub fn set_stress<K: Kinematics<D>, const D: usize>(
 ) {
     for p in 0..points.len() {
         let stress = sigma(points.material[p], &points.x[p]);
+        assert!(Held::<D, Symmetric>::holds(&stress), "a stress at the start leaves the plane: {stress:?}");
         let strain = strain_of(&elastic_at(model, points, p), &stress);
         set(points, p, stress, &strain);
     }
