@@ -87,7 +87,8 @@ impl<const D: usize, T: Components> Held<D, T> {
         others.all(|(_, &number)| number == 0.0)
     }
 
-    /// Whether nothing is lost with what is not held: it is zero, or what is held is not finite either, which no step takes.
+    /// Whether nothing is lost with what is not held: it is zero, or what is held is not finite either, which no step
+    /// takes.
     fn tells_all(tensor: &T) -> bool {
         Self::holds(tensor) || Self::PLACES.iter().any(|&place| !tensor.numbers()[place].is_finite())
     }
