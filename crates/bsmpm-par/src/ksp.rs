@@ -1,6 +1,5 @@
 //! The linear system: assembly, factorisation without PETSc or on it, with numbers of the unknowns, and solutions that
-//! are
-//! checked: PETSc's all, a factor's first one.
+//! are checked: PETSc's all, a factor's first one.
 
 mod choice;
 mod direct;

@@ -3,10 +3,8 @@
 //! Every rank eliminates what only its own slab touches (multifrontal Cholesky factorisation, Duff and Reid 1983, ACM
 //! Trans. Math. Softw. 9, 302-325), then neighbours pair up. Order, schedule and sums depend on the free components and
 //! the cut only: the same bits in every run on as many ranks. A rank holds the factor of its slab and, but for the
-//! first one, a
-//! dense front of one cut, which does not become smaller with more ranks. The order comes from the grid's box of
-//! nodes, so
-//! that unknowns that come or go cost no analysis of a graph.
+//! first one, a dense front of one cut, which does not become smaller with more ranks. The order comes from the grid's
+//! box of nodes, so that unknowns that come or go cost no analysis of a graph.
 
 mod factor;
 mod front;
@@ -62,9 +60,8 @@ impl Dissection {
     }
 
     /// Factorises; `false` where a pivot of this rank was not positive and finite. `largest` is about the largest
-    /// number of
-    /// the matrix: without its power of two, square roots round alike in all units that differ by powers of two.
-    /// Collective.
+    /// number of the matrix: without its power of two, square roots round alike in all units that differ by powers of
+    /// two. Collective.
     pub fn factorise<const D: usize>(
         &mut self,
         link: &dyn Link,

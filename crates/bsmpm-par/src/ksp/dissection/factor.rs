@@ -1,9 +1,8 @@
 //! Factorised columns as they are kept, and the triangular solves with them.
 //!
 //! A solution reads every number twice and does little else, so that memory decides how long it takes: four columns at
-//! a time are
-//! kept from their first diagonal entry on, in single precision where that is enough. Products and sums are of double
-//! precision, so that a solution is a linear function of the right-hand side, that of a stiffness near by.
+//! a time are kept from their first diagonal entry on, in single precision where that is enough. Products and sums are
+//! of double precision, so that a solution is a linear function of the right-hand side, that of a stiffness near by.
 
 /// Columns that are kept, and worked on, together.
 const GROUP: usize = 4;
@@ -56,8 +55,7 @@ impl Factor {
     }
 
     /// Solves with `columns` of a front of order `rows`, which begin at the number `start`, for the first entries of
-    /// `x`, and
-    /// takes their part from the others.
+    /// `x`, and takes their part from the others.
     pub fn forward(&self, start: usize, (rows, columns): (usize, usize), x: &mut [f64]) {
         let range = start..start + entries(rows, columns);
         match self {
@@ -108,8 +106,7 @@ impl Number for f64 {
 }
 
 /// Groups of columns one after another, and of each its rows from the first diagonal entry on; what stands above the
-/// diagonal
-/// is copied, too, and not read.
+/// diagonal is copied, too, and not read.
 fn keep<T: Number>(columns: &[f64], rows: usize, numbers: &mut Vec<T>) {
     for (group, columns) in columns.chunks(GROUP * rows.max(1)).enumerate() {
         for row in GROUP * group..rows {

@@ -68,9 +68,8 @@ pub struct Ladder {
 }
 
 impl Ladder {
-    /// The front of the `rank` whose slab leaves the `shared` components of the whole grid, ascending, of which
-    /// `layer` make
-    /// a layer of nodes. Collective.
+    /// The front of the `rank` whose slab leaves the `shared` components of the whole grid, ascending, of which `layer`
+    /// make a layer of nodes. Collective.
     pub fn new(link: &dyn Link, (rank, role): (usize, Role), shared: &[usize], layer: usize) -> Self {
         let mut ladder = Self { rank, joined_by: role.joined_by, joint: None };
         let slab: Vec<f64> = shared.iter().map(|&component| component as f64).collect();
