@@ -14,7 +14,7 @@ use crate::timers::Timers;
 use bsmpm::error::SolveError;
 use bsmpm::grid::Grid;
 use bsmpm::seam::{Halo, Krylov, LinearSolver, Solved, Symmetry};
-use direct::Factor;
+use direct::Standing;
 use dissection::{Dissection, Precision};
 use mpi::collective::{CommunicatorCollectives, SystemOperation};
 use petsc_rs::{Matrix, Petsc};
@@ -32,8 +32,8 @@ pub struct KspSolver<'p, const D: usize> {
     numbers: Numbering, // empty before PETSc needs it
     own: usize,         // unknowns of this rank
     direct: Dissection,
-    planned: bool, // for the present unknowns
-    factor: Factor,
+    planned: bool,      // for the present unknowns
+    standing: Standing, // of the factorisation without PETSc
     definite: Option<System<'p>>,
     general: Option<System<'p>>, // where Newton's method is used
     timers: Rc<Timers>,
@@ -47,7 +47,7 @@ impl<'p, const D: usize> KspSolver<'p, D> {
         let stencil = if whole { Stencil::by_columns(grid, halo.owned()) } else { Stencil::new(grid) };
         let (free, numbers) = (Vec::new(), Vec::new());
         let (direct, definite, general) = (Dissection::default(), None, None);
-        let (planned, factor, grid) = (false, Factor::Missing, grid.clone());
+        let (planned, standing, grid) = (false, Standing::Missing, grid.clone());
         Self {
             petsc,
             choice,
@@ -59,7 +59,7 @@ impl<'p, const D: usize> KspSolver<'p, D> {
             own: 0,
             direct,
             planned,
-            factor,
+            standing,
             definite,
             general,
             timers,
@@ -163,7 +163,7 @@ impl<const D: usize> LinearSolver for KspSolver<'_, D> {
             (self.planned, self.definite, self.general) = (false, None, None);
             self.stencil.keep(|node| free[node * D..(node + 1) * D].contains(&true));
         }
-        self.factor = Factor::Missing;
+        self.standing = Standing::Missing;
         self.stencil.clear();
     }
 

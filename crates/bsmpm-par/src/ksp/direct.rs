@@ -16,7 +16,7 @@ const NEAR: f64 = 1e-2;
 
 /// What is known of the factorisation without PETSc.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Factor {
+pub(super) enum Standing {
     /// there is none of the present matrix
     Missing,
     /// it has not solved a system yet
@@ -40,7 +40,7 @@ impl<const D: usize> KspSolver<'_, D> {
         let mut largest = [self.stencil.largest_diagonal()];
         halo.maximum(&mut largest);
         let good = self.direct.factorise(&link, precision, &self.stencil, largest[0]);
-        self.factor = Factor::Untried;
+        self.standing = Standing::Untried;
         let pivot =
             |what: &str| SolveError::Failed(format!("a pivot {what} is not positive: the stiffness is not definite"));
         agreed(&*self.halo, if good { Ok(()) } else { Err(pivot("here")) }, pivot("of another rank"))
@@ -52,11 +52,11 @@ impl<const D: usize> KspSolver<'_, D> {
         let owned = self.halo.owned();
         let owned = owned.start * D..owned.end * D;
         let mut solved = Solved { iterations: 1, ..Solved::default() };
-        if self.factor == Factor::Missing {
+        if self.standing == Standing::Missing {
             return Err(missing());
         }
         self.timed_solution(owned.clone(), rhs, solution);
-        if self.factor == Factor::Tried {
+        if self.standing == Standing::Tried {
             return Ok(solved);
         }
         let (mut left, right) = self.norms(rhs, solution);
@@ -71,7 +71,7 @@ impl<const D: usize> KspSolver<'_, D> {
             trusted(left, right)?;
         }
         if right > 0.0 {
-            (self.factor, solved.residual) = (Factor::Tried, Some(left / right));
+            (self.standing, solved.residual) = (Standing::Tried, Some(left / right));
         }
         Ok(solved)
     }

@@ -88,12 +88,10 @@ impl Ladder {
     /// Factorises, given what this rank's slab leaves, packed. `false` where a pivot was not positive. Collective.
     pub fn factorise(&mut self, link: &dyn Link, precision: Precision, packed: Vec<f64>) -> bool {
         let packed = self.hand(link, self.joined_by, packed);
-        let Some(from) = self.joint.as_ref().map(|joint| joint.join.from) else { return true };
-        let groups = self.hear(link, from, packed);
-        let Some(joint) = &mut self.joint else { return true };
-        let (good, left) = joint.factorise(precision, groups);
-        let joined_by = joint.join.joined_by;
-        self.hand(link, joined_by, left);
+        let Some(mut joint) = self.joint.take() else { return true };
+        let (good, left) = joint.factorise(precision, self.hear(link, joint.join.from, packed));
+        self.hand(link, joint.join.joined_by, left);
+        self.joint = Some(joint);
         good
     }
 
