@@ -18,7 +18,7 @@ use bsmpm::schedule::Schedule;
 use bsmpm_io::checkpoint::{FOLDER, Found};
 use bsmpm_io::directory::{Existing, OutputDirectory};
 use bsmpm_io::manifest;
-use bsmpm_scene::Case;
+use bsmpm_scene::{Case, Line};
 use hdf5_collective::Hdf5;
 use mpi::collective::{CommunicatorCollectives, SystemOperation};
 use mpi::environment::Universe;
@@ -159,6 +159,21 @@ impl Resumed<'_> {
     pub fn directory(&self) -> Option<PathBuf> {
         let folder = self.found.path.parent()?;
         folder.ends_with(FOLDER).then(|| folder.parent().map(Path::to_owned))?
+    }
+
+    /// The repeated breakpoints of the run's grid: what the program places by itself may have been other, or nothing.
+    ///
+    /// # Errors
+    /// The same on all ranks (76): they are not of this case.
+    pub fn lines(&self, case: &Case) -> Result<[Vec<Line>; 2], Refusal> {
+        let foreign = || {
+            let path = self.found.path.display();
+            Refusal::new(
+                exit::CHECKPOINT,
+                format!("the checkpoint {path} cannot be used: its grid lines are not of this grid"),
+            )
+        };
+        self.state.lines(&case.grid).ok_or_else(foreign)
     }
 
     /// Reads the points and the nodal displacement, each rank what lies in its slab; the model's grid gets the room that the

@@ -2,8 +2,8 @@
 //!
 //! The bytes are counted from what the program holds and rounded to what runs took; `tests/shipped.rs` compares.
 
-use crate::case::{Case, Nonlinear, Solver};
-use crate::grid::{Axis, GridSpec};
+use crate::case::{Body, Case, Nonlinear, Solver};
+use crate::grid::GridSpec;
 use bsmpm::grid::room;
 use bsmpm::stabilisation::Stabilisation;
 use std::ops::Range;
@@ -128,14 +128,18 @@ impl Case {
         background.max(self.stabilisation.beyond(self.grid.order))
     }
 
-    /// Cells along each axis for which a run holds nodes at the start, see [`bsmpm::grid::room`]: at least so many
+    /// Knot spans along each axis for which a run holds nodes at the start, see [`bsmpm::grid::room`]: at least so many
     /// `columns`.
     pub fn room(&self, columns: usize) -> [Range<usize>; 2] {
         let around = |a: [Range<usize>; 2], b: [Range<usize>; 2]| {
             std::array::from_fn(|axis| a[axis].start.min(b[axis].start)..a[axis].end.max(b[axis].end))
         };
-        let cells = self.grid.axes.each_ref().map(Axis::cells);
-        let occupied = self.bodies.iter().map(|body| body.occupied(&self.grid)).reduce(around);
+        let cells = [0, 1].map(|axis| self.grid.spans(axis));
+        let spans = |body: &Body| {
+            let [x, y] = body.occupied(&self.grid);
+            [self.grid.spans_of(0, &x), self.grid.spans_of(1, &y)]
+        };
+        let occupied = self.bodies.iter().map(spans).reduce(around);
         let occupied = occupied.unwrap_or_else(|| cells.map(|cells| 0..cells));
         room::around(&occupied, cells, (self.grid.order, self.beyond()), columns)
     }
@@ -164,7 +168,7 @@ impl Case {
             active: bounded(2 * occupied),
             entries: bounded(entries),
             points: self.points(),
-            useful_ranks: bounded((2 * occupied / FEWEST).clamp(1, self.grid.axes[0].cells() as u128)),
+            useful_ranks: bounded((2 * occupied / FEWEST).clamp(1, self.grid.spans(0) as u128)),
             bytes: bounded(bytes),
             repeated: bounded(systems.repeated),
             newton: bounded(systems.perhaps[0]),
@@ -180,7 +184,7 @@ pub(crate) fn cells(grid: &GridSpec) -> u128 {
 
 /// Nodes of the grid.
 pub(crate) fn nodes(grid: &GridSpec) -> u128 {
-    grid.axes.iter().map(|axis| (axis.cells() + grid.order) as u128).product()
+    [0, 1].iter().map(|&axis| (grid.spans(axis) + grid.order) as u128).product()
 }
 
 /// Nodes with which a node is coupled: those of the cells around it, and of the layers beyond.
@@ -196,9 +200,12 @@ fn room_nodes(case: &Case) -> u128 {
 /// Nodes that the bodies' cells touch at the start: exact for boxes, and for shapes without holes or bays.
 fn occupied_nodes(case: &Case) -> u128 {
     let order = case.grid.order as u128;
-    let of_body = |body: &crate::case::Body| -> u128 {
-        let [columns, rows] = body.occupied(&case.grid).map(|cells| cells.len() as u128);
-        body.cells(&case.grid) + order * (columns + rows + order)
+    let of_body = |body: &Body| -> u128 {
+        let cells = body.occupied(&case.grid);
+        let further = |axis: usize| case.grid.spans_of(axis, &cells[axis]).len() - cells[axis].len();
+        let [columns, rows] = [0, 1].map(|axis| cells[axis].len() as u128);
+        let repeated = further(0) as u128 * rows + further(1) as u128 * columns;
+        body.cells(&case.grid) + repeated + order * (columns + rows + order)
     };
     case.bodies.iter().map(of_body).sum()
 }

@@ -1,4 +1,9 @@
 //! The grid of a case, cells described but not stored where they are equal.
+//!
+//! The cells here are those that have a length. The knot vectors of the physics count the spans between knots, among them
+//! those without length between the copies of a repeated breakpoint.
+
+use std::ops::Range;
 
 /// The parametric grid.
 #[derive(Clone, Debug, PartialEq)]
@@ -7,6 +12,17 @@ pub struct GridSpec {
     pub axes: [Axis; 2],
     /// Order of the B-splines, 1 to 3.
     pub order: usize,
+    /// Repeated inner breakpoints along x and y, in ascending order.
+    pub lines: [Vec<Line>; 2],
+}
+
+/// A grid line across which the splines of order q are less smooth: with `multiplicity` m, q - m derivatives are continuous.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Line {
+    /// Number of the breakpoint along its axis.
+    pub breakpoint: usize,
+    /// How often it stands in the knot vector, 2 to q.
+    pub multiplicity: usize,
 }
 
 /// Cells along one axis.
@@ -34,6 +50,38 @@ impl GridSpec {
     /// Upper corner, m.
     pub fn upper(&self) -> [f64; 2] {
         [0, 1].map(|axis| self.axes[axis].lower() + self.axes[axis].length())
+    }
+
+    /// Knot spans along an axis: its cells, and those without length between the copies of a breakpoint.
+    pub fn spans(&self, axis: usize) -> usize {
+        self.span(axis, self.axes[axis].cells())
+    }
+
+    /// Number of a cell's knot span along an axis.
+    pub fn span(&self, axis: usize, cell: usize) -> usize {
+        let before = self.lines[axis].iter().take_while(|line| line.breakpoint <= cell);
+        cell + before.map(|line| line.multiplicity - 1).sum::<usize>()
+    }
+
+    /// Knot spans of some cells along an axis, and those between them.
+    pub fn spans_of(&self, axis: usize, cells: &Range<usize>) -> Range<usize> {
+        if cells.is_empty() {
+            return self.span(axis, cells.start)..self.span(axis, cells.start);
+        }
+        self.span(axis, cells.start)..self.span(axis, cells.end - 1) + 1
+    }
+
+    /// Cells along an axis whose knot span lies in a range.
+    pub(crate) fn cells_in(&self, axis: usize, spans: &Range<usize>) -> Range<usize> {
+        let first = |from: usize| self.axes[axis].first_cell(|cell| self.span(axis, cell) >= from);
+        first(spans.start)..first(spans.end)
+    }
+
+    /// Breakpoints along an axis, m from the first, each as often as it stands in the knot vector.
+    pub(crate) fn repeated(&self, axis: usize) -> Vec<f64> {
+        let copies = |i: usize| self.lines[axis].iter().find(|line| line.breakpoint == i).map_or(1, |l| l.multiplicity);
+        let of = |i: usize| std::iter::repeat_n(self.axes[axis].breakpoint(i), copies(i));
+        (0..=self.axes[axis].cells()).flat_map(of).collect()
     }
 
     /// A place of the case from the grid's lower corner, m: in the closed grid to the last bit. Validation lets a place

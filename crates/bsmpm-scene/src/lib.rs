@@ -39,7 +39,7 @@ pub use case::{
 pub use difference::{Difference, differences};
 pub use error::{Error, Place};
 pub use estimate::Estimate;
-pub use grid::{Axis, GridSpec};
+pub use grid::{Axis, GridSpec, Line};
 pub use region::{Outline, Region};
 pub use seed::seed;
 pub use source::{MAX_BYTES, load};

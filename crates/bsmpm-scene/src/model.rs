@@ -17,17 +17,12 @@ use std::marker::PhantomData;
 
 /// The model of a plane-strain case over its whole grid.
 pub fn model(case: &Case) -> Result<Model<PlaneStrain, 2>, GridError> {
-    let order = case.grid.order;
-    let axis = |axis: &Axis| match axis {
-        Axis::Uniform { cell, cells, .. } => KnotVector::uniform(*cell, *cells, order),
-        Axis::Graded(breakpoints) => KnotVector::graded(breakpoints, order),
-    };
     let background = (case.solver.background > 0.0).then_some(Background {
         kind: case.solver.background_kind,
         coefficient: case.solver.background,
         extent: case.solver.background_cells,
     });
-    let grid = Grid::new([axis(&case.grid.axes[0])?, axis(&case.grid.axes[1])?])?.reaching(case.beyond());
+    let grid = grid(case)?;
     Ok(Model {
         materials: case.materials.iter().map(|named| named.material.clone()).collect(),
         regime: case.analysis.regime,
@@ -56,6 +51,18 @@ pub fn model(case: &Case) -> Result<Model<PlaneStrain, 2>, GridError> {
     })
 }
 
+/// The grid of a case.
+fn grid(case: &Case) -> Result<Grid<2>, GridError> {
+    let order = case.grid.order;
+    let knots = |axis: usize| match &case.grid.axes[axis] {
+        Axis::Uniform { cell, cells, .. } if case.grid.lines[axis].is_empty() => {
+            KnotVector::uniform(*cell, *cells, order)
+        }
+        _ => KnotVector::graded(&case.grid.repeated(axis), order),
+    };
+    Ok(Grid::new([knots(0)?, knots(1)?])?.reaching(case.beyond()))
+}
+
 fn boundary(case: &Case, grid: &Grid<2>) -> Boundary<2> {
     let mut supports = Vec::new();
     for (axis, faces) in case.boundary.iter().enumerate() {
@@ -76,9 +83,9 @@ pub fn penalty(case: &Case) -> f64 {
     surfaces::penalty(stiffest, case.grid.axes.iter().map(Axis::shortest).fold(f64::INFINITY, f64::min))
 }
 
-/// The points of the columns of one slab.
+/// The points of the columns of one slab, by the numbers of the physics' grid.
 pub fn points(case: &Case, columns: std::ops::Range<usize>) -> Points<2> {
-    Points::from_seeds(crate::seed(case, columns), case.analysis.regime == Regime::Dynamic)
+    Points::from_seeds(crate::seed(case, case.grid.cells_in(0, &columns)), case.analysis.regime == Regime::Dynamic)
 }
 
 /// Stress of ground at rest, Pa, at `x` (m, from the grid's lower corner); `k0` by material.

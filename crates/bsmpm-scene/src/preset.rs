@@ -90,7 +90,7 @@ pub(crate) fn fill(
     let cells = scene.cells(preset);
     match &cells {
         Some(cells) => {
-            if filling.put("grid", &["cell", "knots"], &cells.value, &cells.why) {
+            if filling.put("grid", &cells.keys, &cells.value, &cells.why) {
                 filling.doubt(cells.edge, scene.thinnest());
             }
         }

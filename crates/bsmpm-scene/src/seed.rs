@@ -75,8 +75,15 @@ impl Case {
         self.bodies.iter().map(|body| body.points(&self.grid)).sum::<u128>().try_into().unwrap_or(u64::MAX)
     }
 
-    /// Number of material points in every column of cells along axis 0, without making them.
+    /// Number of material points in every column of knot spans along axis 0, without making them.
     pub fn points_by_column(&self) -> Vec<u64> {
+        let of_cells = self.points_by_cells();
+        let mut counts = vec![0; self.grid.spans(0)];
+        of_cells.into_iter().enumerate().for_each(|(cell, count)| counts[self.grid.span(0, cell)] = count);
+        counts
+    }
+
+    fn points_by_cells(&self) -> Vec<u64> {
         let mut counts = vec![0; self.grid.axes[0].cells()];
         for body in &self.bodies {
             let [across, up] = body.occupied(&self.grid);

@@ -3,6 +3,7 @@
 mod body;
 mod grid;
 mod history;
+mod lines;
 mod load;
 mod material;
 mod output;
@@ -53,7 +54,7 @@ pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Op
     let output = output::read(record, end, report);
     let histories = history::read_all(record, (regime, grid.as_ref()), report);
     let checks = history::checks(record, &histories, end, report);
-    let case = Case {
+    let mut case = Case {
         title: record.text("title").unwrap_or_default().to_owned(),
         geometry: record.word("geometry").map(|_| Geometry::PlaneStrain)?,
         analysis: analysis?,
@@ -80,6 +81,7 @@ pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Op
     if report.failed() {
         return None;
     }
+    lines::place(&mut case, record, report);
     physics::check(&case, record, report);
     Some(Case { warnings: std::mem::take(&mut report.warnings), notes: std::mem::take(&mut report.notes), ..case })
 }

@@ -12,7 +12,11 @@ fn a_place_on_a_face_has_a_cell_wherever_the_grid_starts() {
     for tenths in -200..200 {
         for cells in [1, 3, 7, 12, 29, 60] {
             let (lower, cell) = (f64::from(tenths) / 10.0, 0.1);
-            let grid = GridSpec { axes: [axis(lower, cell, cells), axis(1.0 - lower, cell, cells)], order: 2 };
+            let grid = GridSpec {
+                axes: [axis(lower, cell, cells), axis(1.0 - lower, cell, cells)],
+                order: 2,
+                lines: Default::default(),
+            };
             let length = cells as f64 * cell;
             let written = f64::from(tenths + cells as i32) / 10.0; // as a person writes the face
             for upper in [grid.upper()[0], written] {

@@ -236,7 +236,7 @@ fn what_the_program_chooses_is_noted() {
 fn strips_loads_and_initial_stress_arrive() {
     let case = valid(FULL, &["footing.base=\"rough\""]);
     let footing = case.footing.unwrap();
-    assert_eq!((footing.from, footing.to, footing.base), ([1.25, 2.5], [1.75, 2.5], Base::Rough));
+    assert_eq!((footing.from, footing.to, footing.base), ([1.0, 2.5], [2.0, 2.5], Base::Rough));
     assert_eq!(footing.path.rows, [(1.0, [0.0, -0.1])]);
     assert_eq!(valid(FULL, &[]).footing.unwrap().base, Base::Smooth);
     let bases: Vec<Base> = case.prescribed.iter().map(|prescribed| prescribed.base).collect();

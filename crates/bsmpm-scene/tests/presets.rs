@@ -188,3 +188,20 @@ fn errors_have_a_place() {
     let errors = read(&without, &[]).unwrap_err();
     assert!(errors.iter().any(|error| error.message.contains("missing: one of cell, knots")), "{errors:?}");
 }
+
+#[test]
+fn cells_are_moved_to_where_strips_end_and_materials_meet() {
+    // Cells of .25 m from 0; the strip begins at .3 m and ends at 1.3 m.
+    let aside = "footing.from=[0.3, 5.0]";
+    let moved = valid(FOOTING, &["accuracy=draft", aside, "footing.to=[1.3, 5.0]"]);
+    let x = &moved.grid.axes[0];
+    let is_line = |wanted: f64| (0..=x.cells()).any(|i| (x.breakpoint(i) - wanted).abs() < 1e-12);
+    assert!(is_line(0.3) && is_line(1.3));
+    let cells: Vec<f64> = (0..x.cells()).map(|i| x.cell(i)).collect();
+    assert!(cells.iter().all(|cell| (0.5..=1.5).contains(&(cell / 0.25))), "{cells:?}");
+    assert_eq!(moved.grid.lines[0].len(), 2);
+    assert!(moved.warnings.is_empty(), "{:?}", moved.warnings);
+    // By hand, nothing is moved, and it is told.
+    let by_hand = valid(FOOTING, &["accuracy=draft", aside, "footing.to=[1.3, 5.0]", "grid.cell=0.25"]);
+    assert!(by_hand.warnings.iter().any(|told| told.contains("lies inside a cell")), "{:?}", by_hand.warnings);
+}

@@ -130,6 +130,11 @@ impl Material {
         self.elastic().young * self.relative_stiffness(height)
     }
 
+    /// Whether parameters depend on the height.
+    pub fn is_graded(&self) -> bool {
+        matches!(self, Self::Graded(_))
+    }
+
     /// What becomes of the volume that opens at the apex.
     pub fn separation(&self) -> Separation {
         match self {

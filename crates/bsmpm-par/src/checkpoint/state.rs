@@ -10,6 +10,7 @@ use bsmpm::tensor::Vector;
 use bsmpm_io::frames::Entry;
 use bsmpm_io::manifest::Manifest;
 use bsmpm_io::table::Mark;
+use bsmpm_scene::{GridSpec, Line};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -25,6 +26,9 @@ pub struct State {
     /// The room, cells from and to along each axis; none of a run by a version that kept the whole grid, which then stays.
     #[serde(default)]
     pub room: Option<[[usize; 2]; 2]>,
+    /// Repeated breakpoints along each axis, with how often they stand; none of a run by a version that had none.
+    #[serde(default)]
+    pub lines: [Vec<[usize; 2]>; 2],
     /// The step control.
     #[serde(with = "ProgressForm")]
     pub progress: Progress,
@@ -92,6 +96,17 @@ impl State {
         serde_json::from_slice(text).map_err(|error| {
             Refusal::new(exit::CHECKPOINT, format!("the checkpoint {} cannot be used: {error}", path.display()))
         })
+    }
+
+    /// The repeated breakpoints of the run's grid; `None` if they are not of a grid like this one.
+    pub fn lines(&self, grid: &GridSpec) -> Option<[Vec<Line>; 2]> {
+        let fits = |axis: usize| {
+            let inner = 1..grid.axes[axis].cells();
+            let sound = |line: &[usize; 2]| inner.contains(&line[0]) && (2..=grid.order).contains(&line[1]);
+            self.lines[axis].iter().all(sound) && self.lines[axis].is_sorted_by(|a, b| a[0] < b[0])
+        };
+        let line = |&[breakpoint, multiplicity]: &[usize; 2]| Line { breakpoint, multiplicity };
+        (fits(0) && fits(1)).then(|| self.lines.each_ref().map(|lines| lines.iter().map(line).collect()))
     }
 
     /// The grid with the room that the run had; `None` if it is no part of that grid.

@@ -31,14 +31,17 @@ use std::rc::Rc;
 pub(super) fn run(
     (universe, hdf5): (&Universe, &Hdf5<'_>),
     (petsc, choice): (&Petsc<'_>, Choice),
-    task: Task,
+    mut task: Task,
     cut: Cut,
     requests: Rc<Requests>,
 ) -> Result<u8, u8> {
     let refused = |refusal: Refusal| refuse(universe, refusal.code, &refusal.reason);
+    let held = hold(universe, &task.arguments).map_err(refused)?;
+    let mut start = restart::plan((hdf5, universe), held.as_ref(), &task.arguments, &task.case).map_err(refused)?;
+    if let Start::Resumed(resumed) = &start {
+        task.case.grid.lines = resumed.lines(&task.case).map_err(refused)?;
+    }
     let Task { case, arguments, .. } = &task;
-    let held = hold(universe, arguments).map_err(refused)?;
-    let mut start = restart::plan((hdf5, universe), held.as_ref(), arguments, case).map_err(refused)?;
     if let Start::Complete(code) = start {
         return Ok(refuse(universe, code, &format!("{} is complete already", arguments.directory().display())));
     }

@@ -137,6 +137,12 @@ impl Run<'_> {
         let state = State {
             steps: step,
             slabs: simulation.slabs().bounds().to_vec(),
+            lines: self
+                .case
+                .grid
+                .lines
+                .each_ref()
+                .map(|lines| lines.iter().map(|line| [line.breakpoint, line.multiplicity]).collect()),
             room: Some(simulation.model.grid.room().clone().map(|range| [range.start, range.end])),
             progress: simulation.progress(),
             traction: pairs(&surface.traction),

@@ -7,6 +7,8 @@ use crate::validate::{NEARLY_INCOMPRESSIBLE, STANDARD_GRAVITY};
 
 /// Cells that a preset chooses.
 pub(super) struct Cells {
+    /// the key that says so, and its rival
+    pub keys: [&'static str; 2],
     /// TOML
     pub value: String,
     /// m  the shorter edge
@@ -49,8 +51,42 @@ impl<'a> Scene<'a> {
         };
         let [x, y] = [edge(0), edge(1)];
         let sound = |edge: f64| edge > 0.0 && edge.is_finite();
-        let value = if x == y { format!("{x:?}") } else { format!("[{x:?}, {y:?}]") };
-        (sound(x) && sound(y)).then_some(Cells { value, edge: x.min(y), why })
+        if !sound(x) || !sound(y) {
+            return None;
+        }
+        let wanted = self.wanted();
+        let on_line = |axis: usize, edge: f64| {
+            let off = |at: &f64| ((at - lower[axis]) / edge - ((at - lower[axis]) / edge).round()).abs();
+            let inside = |at: &&f64| (lower[axis]..=upper[axis]).contains(*at);
+            wanted[axis].iter().filter(inside).all(|at| off(at) <= ON_LINE)
+        };
+        if on_line(0, x) && on_line(1, y) {
+            let value = if x == y { format!("{x:?}") } else { format!("[{x:?}, {y:?}]") };
+            return Some(Cells { keys: ["cell", "knots"], value, edge: x.min(y), why });
+        }
+        let knots = [0, 1].map(|axis| knots([lower[axis], upper[axis]], [x, y][axis], &wanted[axis]));
+        let shortest = |knots: &Vec<f64>| knots.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
+        let edge = shortest(&knots[0]).min(shortest(&knots[1]));
+        let why = format!("{why}, moved by up to half a cell to where materials meet and strips and loads end");
+        let value = format!("{{ x = {:?}, y = {:?} }}", knots[0], knots[1]);
+        (edge > 0.0).then_some(Cells { keys: ["knots", "cell"], value, edge, why })
+    }
+
+    /// m  places along x and y at which a grid line is wanted: ends of strips and loaded segments, then sides of bodies, if
+    /// these are of several materials.
+    fn wanted(&self) -> [Vec<f64>; 2] {
+        let mut wanted = [Vec::new(), Vec::new()];
+        for [from, to] in self.segments() {
+            let along = [0, 1].into_iter().find(|&axis| from[1 - axis] == to[1 - axis]);
+            along.into_iter().for_each(|axis| wanted[axis].extend([from[axis], to[axis]]));
+        }
+        if self.materials().count() > 1 {
+            for (a, b) in self.root.records("body").iter().flat_map(sides) {
+                let across = [0, 1].into_iter().find(|&axis| a[axis] == b[axis]);
+                across.into_iter().for_each(|axis| wanted[axis].push(a[axis]));
+            }
+        }
+        wanted
     }
 
     /// m  the shorter side of the thinnest body's rectangle
@@ -167,6 +203,41 @@ impl<'a> Scene<'a> {
         };
         self.materials().filter_map(speed).filter(|speed| speed.is_finite()).reduce(f64::max)
     }
+}
+
+/// Parts of a cell by which a place may miss a grid line: rounding.
+const ON_LINE: f64 = 1e-6;
+
+/// m  breakpoints from the one end of an axis to the other, about `cell` apart, with one at every wanted place that is half a
+/// cell from those before it in the list, and from the ends.
+fn knots([lower, upper]: [f64; 2], cell: f64, wanted: &[f64]) -> Vec<f64> {
+    let mut fixed = vec![lower, upper];
+    for &at in wanted.iter().filter(|at| (lower..=upper).contains(*at)) {
+        if fixed.iter().all(|other| (at - other).abs() >= 0.5 * cell) {
+            fixed.push(at);
+        }
+    }
+    fixed.sort_by(f64::total_cmp);
+    let mut knots = vec![lower];
+    for pair in fixed.windows(2) {
+        let cells = ((pair[1] - pair[0]) / cell).round().max(1.0) as usize;
+        let inner = (1..cells).map(|k| pair[0] + (pair[1] - pair[0]) * (k as f64 / cells as f64));
+        knots.extend(inner.chain([pair[1]]));
+    }
+    knots
+}
+
+/// m  ends of the straight sides of a body
+fn sides(body: &Record) -> Vec<([f64; 2], [f64; 2])> {
+    let corners: Vec<[f64; 2]> = match (body.record("box"), body.rows("polygon")) {
+        (Some(shape), _) => {
+            let (Some(lower), Some(upper)) = (shape.pair("lower"), shape.pair("upper")) else { return Vec::new() };
+            vec![lower, [upper[0], lower[1]], upper, [lower[0], upper[1]]]
+        }
+        (None, Some(rows)) => rows.iter().map(|row| [row.numbers[0], row.numbers[1]]).collect(),
+        (None, None) => Vec::new(),
+    };
+    (0..corners.len()).map(|k| (corners[k], corners[(k + 1) % corners.len()])).collect()
 }
 
 /// m  corners of a body's rectangle

@@ -79,13 +79,20 @@ static GRID: Table = Table {
         key("cell", Either(In::Length, Range::POSITIVE), Optional, "edge of the cells, or [hx, hy]"),
         key("knots", Kind::Table(&KNOTS), Optional, "explicit breakpoints instead of cell"),
         key("order", Choice(&["linear", "quadratic", "cubic"], &[]), Required, "order of the B-splines"),
+        key(
+            "c0_lines",
+            Choice(&["automatic", "none"], &[]),
+            Default("\"automatic\""),
+            "grid lines across which strains may jump: where bodies of unlike stiffness or density meet, and at the ends of \
+             strips and loaded segments; none: only breakpoints that knots repeats",
+        ),
     ],
     exclusive: &[one_of(&["cell", "knots"], true)],
 };
 
 static KNOTS: Table = Table {
     header: "[grid.knots]",
-    doc: "Breakpoints between the cells, increasing",
+    doc: "Breakpoints between the cells, increasing; one that stands m times has order - m continuous derivatives",
     keys: &[
         key("x", List(In::Length, Range::ANY), Required, "breakpoints along x"),
         key("y", List(In::Length, Range::ANY), Required, "breakpoints along y"),

@@ -2,7 +2,7 @@
 
 use crate::case::Support;
 use crate::estimate::{self, MOST_UNKNOWNS};
-use crate::grid::{Axis, GridSpec};
+use crate::grid::{Axis, GridSpec, Line};
 use crate::record::Record;
 use crate::report::Report;
 use crate::unit::Dimension;
@@ -19,8 +19,12 @@ pub(super) fn read(root: &Record, boundary: Option<[[Support; 2]; 2]>, report: &
         Some("cubic") => 3,
         _ => 2,
     };
-    let axes = if grid.gives("knots") { graded(grid, report) } else { uniform(grid, boundary?, report) }?;
-    let spec = GridSpec { axes, order };
+    let (axes, lines) = if grid.gives("knots") {
+        graded(grid, order, report)?
+    } else {
+        (uniform(grid, boundary?, report)?, [Vec::new(), Vec::new()])
+    };
+    let spec = GridSpec { axes, order, lines };
     let (cells, unknowns) = (estimate::cells(&spec), 2 * estimate::nodes(&spec));
     if cells > MOST_UNKNOWNS || unknowns > MOST_UNKNOWNS {
         let message = format!("{cells} cells and {unknowns} unknowns; at most {MOST_UNKNOWNS} of each are possible");
@@ -47,25 +51,40 @@ fn bounded(spec: &GridSpec, grid: &Record, report: &mut Report<'_>) -> Option<()
     Some(())
 }
 
-fn graded(grid: &Record, report: &mut Report<'_>) -> Option<[Axis; 2]> {
+/// Breakpoints as written; equal ones are copies of one.
+fn graded(grid: &Record, order: usize, report: &mut Report<'_>) -> Option<([Axis; 2], [Vec<Line>; 2])> {
     let knots = grid.record("knots")?;
     let mut axis = |number: usize| {
         let name = NAMES[number];
-        let breakpoints = knots.numbers(name)?;
+        let copies: Vec<&[f64]> = knots.numbers(name)?.chunk_by(|a, b| a == b).collect();
+        let breakpoints: Vec<f64> = copies.iter().map(|copies| copies[0]).collect();
         if breakpoints.len() < 2 || breakpoints.windows(2).any(|pair| pair[1] <= pair[0]) {
-            knots.error(name, "breakpoints must increase, and be at least two", report);
+            knots.error(name, "breakpoints must increase, and be at least two; a repeated one stands in a row", report);
             return None;
         }
+        let (last, most) = (copies.len() - 1, |i: usize| if i == 0 || i == copies.len() - 1 { 1 } else { order });
+        if let Some(torn) = (0..=last).find(|&i| copies[i].len() > most(i)) {
+            let message = format!(
+                "{} stands {} times; an inner breakpoint may stand up to as often as the order, here {order}, the ends once",
+                breakpoints[torn],
+                copies[torn].len()
+            );
+            knots.error(name, message, report);
+            return None;
+        }
+        let repeated = copies.iter().enumerate().filter(|(_, copies)| copies.len() > 1);
+        let lines = repeated.map(|(breakpoint, copies)| Line { breakpoint, multiplicity: copies.len() }).collect();
         for (key, end) in [("lower", breakpoints[0]), ("upper", breakpoints[breakpoints.len() - 1])] {
             if let Some(corner) = grid.pair(key).filter(|corner| corner[number] != end) {
                 let message = format!("{} differs from the breakpoints of {name}, which end at {end}", corner[number]);
                 grid.error(key, message, report);
             }
         }
-        Some(Axis::Graded(breakpoints.to_vec()))
+        Some((Axis::Graded(breakpoints), lines))
     };
     let (x, y) = (axis(0), axis(1));
-    Some([x?, y?])
+    let ((x, of_x), (y, of_y)) = (x?, y?);
+    Some(([x, y], [of_x, of_y]))
 }
 
 fn uniform(grid: &Record, boundary: [[Support; 2]; 2], report: &mut Report<'_>) -> Option<[Axis; 2]> {

@@ -107,10 +107,10 @@ pub const LAYERS: &[Row] = &[
 
 /// The footing, prescribed motions, tractions and point loads.
 pub const STRIPS: &[Row] = &[
-    row("to   = [\"1.75 m\", 2.5]", "to = [1.25, 2.5]", "footing.to", "the length is zero"),
-    row("to   = [\"1.75 m\", 2.5]", "to = [5, 2.5]", "footing.to", "outside the grid, which ends at x = 4"),
-    row("from = [1.25, 2.5]", "from = [1.25, -2.5]", "footing.from", "outside the grid, which starts at y = 0"),
-    row("from = [1.25, 2.5]", "", "footing.from", "missing").up(1),
+    row("to   = [\"2 m\", 2.5]", "to = [1.0, 2.5]", "footing.to", "the length is zero"),
+    row("to   = [\"2 m\", 2.5]", "to = [5, 2.5]", "footing.to", "outside the grid, which ends at x = 4"),
+    row("from = [1.0, 2.5]", "from = [1.0, -2.5]", "footing.from", "outside the grid, which starts at y = 0"),
+    row("from = [1.0, 2.5]", "", "footing.from", "missing").up(1),
     row(
         "displacement = [0.0, \"-10 cm\"]",
         "displacement = [0, -3]",
@@ -201,12 +201,7 @@ pub const STRIPS: &[Row] = &[
     row("\"-1 kN/m\"", "\"-1 kPa\"", "point_load.0.force", "expected a force per metre of thickness"),
     row("ramp = \"0.5 s\"", "ramp = -1", "traction.0.ramp", "allowed: ramp >= 0"),
     // Points of the block are .25 m apart, those of sand .167 m and of clay .25 m.
-    row(
-        "from = [1.25, 2.5]\nto   = [\"1.75 m\", 2.5]",
-        "from = [1.25, 2.63]\nto = [1.75, 2.63]",
-        "footing.from",
-        NOBODY,
-    ),
+    row("from = [1.0, 2.5]\nto   = [\"2 m\", 2.5]", "from = [1.25, 2.63]\nto = [1.75, 2.63]", "footing.from", NOBODY),
     row("from = [2.5, 2.5]\nto   = [3.0, 2.5]", "from = [2.5, 2.63]\nto = [3.0, 2.63]", "prescribed.1.from", NOBODY),
     row("from = [0.0, 1.25]\nto   = [1.0, 1.25]", "from = [0.0, 1.4]\nto = [1.0, 1.4]", "traction.0.from", NOBODY),
     row("to   = [1.0, 1.25]", "to = [1.0, 1.5]", "traction.0.from", "no body is at [0.").up(1),

@@ -149,10 +149,17 @@ const MATRIX: &[Input] = &[
                 "grid.cell",
                 "along y is no whole number, and neither face is free to move; e.g. cell = 0.75",
             ),
+            row(
+                "cell  = [0.5, \"50 cm\"]",
+                "cell = [4, 3]",
+                "footing.to",
+                "it would hold that cell and its neighbours",
+            )
+            .down(76),
             row("upper = [4.0, 3.0]", "upper = [4.0, 0.0]", "grid.upper", "is not above lower"),
             row("upper = [4.0, 3.0]", "upper = [-4.0, 3.0]", "grid.upper", "is not above lower"),
         ],
-        taken: &[("cell  = [0.5, \"50 cm\"]", "cell = [4, 3]", "")],
+        taken: &[("cell  = [0.5, \"50 cm\"]", "cell = [1, 3]", "meet inside cells")],
         ..NONE
     },
     Input {

@@ -132,7 +132,11 @@ pub const RULES: &[Row] = &[
     row("density  = \"2 t/m3\"", "", "material.sand", "a dynamic analysis needs mass").up(7),
     row("format = \"vtu\"", "every_steps = 5", "output.every_steps", "`every` is given too"),
     row("cell  = [0.5, \"50 cm\"]", "cell = 0.5\nknots.x = [0, 1]", "grid.knots", "only one of cell, knots").down(1),
-    row("cell  = [0.5, \"50 cm\"]", "knots.x = [0, 1, 1, 4]\nknots.y = [0, 3]", "grid.knots.x", "must increase"),
+    row("cell  = [0.5, \"50 cm\"]", "knots.x = [0, 2, 1, 4]\nknots.y = [0, 3]", "grid.knots.x", "must increase"),
+    row("cell  = [0.5, \"50 cm\"]", "knots.x = [0, 1, 2, 1, 4]\nknots.y = [0, 3]", "grid.knots.x", "stands in a row"),
+    row("cell  = [0.5, \"50 cm\"]", "knots.x = [0, 1, 1, 1, 4]\nknots.y = [0, 3]", "grid.knots.x", "1 stands 3 times"),
+    row("cell  = [0.5, \"50 cm\"]", "knots.x = [0, 1, 4]\nknots.y = [0, 0, 3]", "grid.knots.y", "the ends once")
+        .down(1),
     row("cell  = [0.5, \"50 cm\"]", "knots.y = [0, 3]\nknots.x = [0]", "grid.knots.x", "at least two").down(1),
     row(
         "cell  = [0.5, \"50 cm\"]",

@@ -69,6 +69,9 @@ pub(super) fn products<const D: usize>(grid: &Grid<D>) -> [Vec<Products>; D] {
 }
 
 fn of_cell<const W: usize>(axis: &KnotVector, cell: usize) -> Products {
+    if !axis.has_length(cell) {
+        return [(); 3].map(|()| vec![0.0; W * W]);
+    }
     let (lower, upper) = (axis.breakpoint(cell), axis.breakpoint(cell + 1));
     let (middle, half) = (0.5 * (lower + upper), 0.5 * (upper - lower));
     // N' is at most quadratic in a cell: its central difference over any distance is N''.

@@ -2,7 +2,8 @@
 //!
 //! Splines of degree q join their cells with q - 1 continuous derivatives: the jump of the q-th along the normal is all
 //! that tells the polynomials of two cells apart, so that a polynomial of degree q meets no resistance. A face has q + 2
-//! nodes along its normal and q + 1 along it, one more than a cell; its cells may be those of two ranks.
+//! nodes along its normal and q + 1 along it, one more than a cell; its cells may be those of two ranks. Where a repeated
+//! breakpoint lies between two cells there is no face: strains may jump there.
 
 use super::form::{Products, products};
 use crate::grid::shape::{Patch, Shape};

@@ -2,6 +2,10 @@
 //!
 //! Appendix A evaluates all functions and keeps those that are not zero. Here the span is found directly and all q+1
 //! functions of the span are kept: on a knot N = 0 while dN/dx != 0, and those must not be dropped.
+//!
+//! A breakpoint of multiplicity m stands m times: there the functions have q - m continuous derivatives, and with m = q
+//! strains may jump. Between its copies lie m - 1 cells without length, which hold no point; so function `a` of cell `c`
+//! is number `c + a` whatever the multiplicities are, and all that counts nodes by cells need not know of them.
 
 use crate::error::GridError;
 
@@ -11,7 +15,8 @@ pub const MAX_ORDER: usize = 3;
 const SHORTEST: f64 = 1e-100;
 const LONGEST: f64 = 1e100;
 
-/// An open knot vector: breakpoints from 0 to the length of the axis, the end knots q + 1 times (Eq. 3).
+/// An open knot vector: breakpoints from 0 to the length of the axis, the end knots q + 1 times (Eq. 3), the others up
+/// to q times.
 #[derive(Clone, Debug, PartialEq)]
 pub struct KnotVector {
     order: usize,
@@ -28,8 +33,8 @@ impl KnotVector {
         Ok(axis)
     }
 
-    /// Cells between increasing `breakpoints` (m), counted from the first. Fails as [`KnotVector::uniform`] does, also where
-    /// the distances from the first one do not tell two of them apart.
+    /// Cells between `breakpoints` (m), counted from the first, which do not decrease; an inner one may stand up to q times.
+    /// Fails as [`KnotVector::uniform`] does, also where the distances from the first one are too short.
     pub fn graded(breakpoints: &[f64], order: usize) -> Result<Self, GridError> {
         if !(1..=MAX_ORDER).contains(&order) {
             return Err(GridError::Order(order));
@@ -38,11 +43,18 @@ impl KnotVector {
         let length = last - from;
         let mut knots = vec![0.0; order];
         knots.extend(breakpoints.iter().map(|x| x - from));
-        let increasing = knots[order..].windows(2).all(|pair| pair[1] - pair[0] >= SHORTEST);
+        let apart = |pair: &[f64]| pair[1] - pair[0] >= SHORTEST;
+        let equal = |pair: &[f64]| pair[1] == pair[0];
+        let increasing = knots[order..].windows(2).all(|pair| apart(pair) || equal(pair));
         if !increasing || length.is_nan() || length > LONGEST {
             return Err(GridError::Breakpoints);
         }
         knots.extend(std::iter::repeat_n(length, order));
+        // One copy more than q, or of an end, would tear the axis apart.
+        let torn = |copies: &[f64]| copies[0] == copies[order];
+        if (1..knots.len() - order - 1).any(|i| torn(&knots[i..=i + order])) {
+            return Err(GridError::Breakpoints);
+        }
         Ok(Self { order, knots, inverse_cell: None })
     }
 
@@ -56,7 +68,7 @@ impl KnotVector {
         self.knots[i]
     }
 
-    /// Number of cells (patches).
+    /// Number of cells (patches), those without length between the copies of a breakpoint included.
     pub fn cells(&self) -> usize {
         self.knots.len() - 1 - 2 * self.order
     }
@@ -64,6 +76,11 @@ impl KnotVector {
     /// Number n of functions: cells + q.
     pub fn functions(&self) -> usize {
         self.cells() + self.order
+    }
+
+    /// Whether a cell has a length: else it lies between two copies of a breakpoint, and holds no point.
+    pub fn has_length(&self, cell: usize) -> bool {
+        self.breakpoint(cell) < self.breakpoint(cell + 1)
     }
 
     /// Breakpoint `i`, from 0 to the number of cells (m).
@@ -86,12 +103,14 @@ impl KnotVector {
         (self.knots[i + self.order + 1] - self.knots[i]) / (self.order + 1) as f64
     }
 
-    /// Shortest cell, m.
+    /// Shortest cell that has a length, m.
     pub fn smallest_cell(&self) -> f64 {
-        (0..self.cells()).map(|i| self.breakpoint(i + 1) - self.breakpoint(i)).fold(f64::INFINITY, f64::min)
+        let lengths = (0..self.cells()).map(|i| self.breakpoint(i + 1) - self.breakpoint(i));
+        lengths.filter(|length| *length > 0.0).fold(f64::INFINITY, f64::min)
     }
 
-    /// The cell that holds `x`; the last one is closed, so that x = length has shape functions. `None` outside.
+    /// The cell that holds `x`, one that has a length; the last one is closed, so that x = length has shape functions.
+    /// `None` outside.
     #[inline]
     pub fn cell_of(&self, x: f64) -> Option<usize> {
         if !(0.0..=self.length()).contains(&x) {

@@ -146,7 +146,8 @@ fn terms<const D: usize>(grid: &Grid<D>, cell: &[usize; D], x: &Vector<D>) -> [f
 /// Coefficients of the least-squares plane of every patch.
 ///
 /// Sums of t t^T and t sigma are taken at every node over the points in its support, so that one exchange gives every
-/// cell the points of its neighbours on other ranks. A node belongs to the cell whose middle node it is.
+/// cell the points of its neighbours on other ranks. A node belongs to the cell whose middle node it is, if that has a
+/// length. Where a stress may jump, at a breakpoint repeated q times, no function reaches across.
 fn planes<const D: usize>(
     grid: &Grid<D>,
     shape: &Shape<D>,
@@ -167,6 +168,9 @@ fn planes<const D: usize>(
             let of_node = grid.node_at(patch.first_node + offset);
             let cell =
                 std::array::from_fn(|axis| of_node[axis].saturating_sub(middle).min(grid.axes()[axis].cells() - 1));
+            if !(0..D).all(|axis| grid.axes()[axis].has_length(cell[axis])) {
+                continue;
+            }
             add_moved(&moments, &between(grid, (&own, &cell)), &mut sums[offset * WIDTH..(offset + 1) * WIDTH]);
         }
     }

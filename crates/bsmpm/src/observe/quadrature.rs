@@ -58,33 +58,35 @@ pub fn defect<const D: usize>(grid: &Grid<D>, points: &Points<D>, halo: &dyn Hal
 /// Which cells hold points, those beside this rank's columns included.
 struct Occupied<'a, const D: usize> {
     grid: &'a Grid<D>,
-    marks: Vec<f64>, // per node: whether the cell of its number does, and whether the one before that along axis 0 does
+    width: usize,
+    marks: Vec<f64>, // per node: whether the cell k before that of its number along axis 0 holds points, k from 0 to q
 }
 
 impl<'a, const D: usize> Occupied<'a, D> {
     /// Neighbouring slabs share layers of nodes, not of cells: a cell is noted at the node of its own number, which the rank
-    /// before sees, and at the next one, which the rank behind sees.
+    /// before sees, and at the q next ones, which the rank behind sees.
     fn of(grid: &'a Grid<D>, held: &[f64], halo: &dyn Halo) -> Self {
-        let mut occupied = Self { grid, marks: vec![0.0; 2 * grid.nodes()] };
+        let width = grid.order() + 1;
+        let mut occupied = Self { grid, width, marks: vec![0.0; width * grid.nodes()] };
         for (index, _) in held.iter().enumerate().filter(|(_, volume)| **volume > 0.0) {
             let cell = grid.cell_at(index);
-            for behind in [0, 1] {
+            for behind in 0..width {
                 let place = occupied.place(&cell, behind);
                 occupied.marks[place] = 1.0;
             }
         }
-        halo.max(&mut occupied.marks, 2);
+        halo.max(&mut occupied.marks, width);
         occupied
     }
 
     fn place(&self, cell: &[usize; D], behind: usize) -> usize {
         let mut node = *cell;
         node[0] += behind;
-        2 * self.grid.first_node(&node) + behind
+        self.width * self.grid.first_node(&node) + behind
     }
 
     fn has(&self, cell: &[usize; D]) -> bool {
-        let behind = usize::from(cell[0] < self.grid.columns().start);
+        let behind = self.grid.columns().start.saturating_sub(cell[0]);
         self.marks[self.place(cell, behind)] > 0.0
     }
 
@@ -93,13 +95,24 @@ impl<'a, const D: usize> Occupied<'a, D> {
         (0..SIDE.pow(D as u32)).all(|k| {
             let mut neighbour = *cell;
             for (axis, at) in neighbour.iter_mut().enumerate() {
-                let moved = *at + k / SIDE.pow(axis as u32) % SIDE;
-                match moved.checked_sub(1) {
-                    Some(inside) if inside < self.grid.axes()[axis].cells() => *at = inside,
-                    _ => return true,
+                match self.beside(axis, *at, k / SIDE.pow(axis as u32) % SIDE) {
+                    Some(inside) => *at = inside,
+                    None => return true,
                 }
             }
             self.has(&neighbour)
         })
+    }
+
+    /// The cell before (0), itself (1) or the one after (2) along an axis, of those that have a length; up to q away, as the
+    /// copies of a breakpoint are q at most.
+    fn beside(&self, axis: usize, cell: usize, side: usize) -> Option<usize> {
+        let axis = &self.grid.axes()[axis];
+        let has_length = |at: &usize| axis.has_length(*at);
+        match side {
+            0 => (0..cell).rev().find(has_length),
+            1 => Some(cell),
+            _ => (cell + 1..axis.cells()).find(has_length),
+        }
     }
 }

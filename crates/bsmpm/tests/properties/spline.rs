@@ -3,12 +3,49 @@
 use crate::support::random::Random;
 use bsmpm::grid::KnotVector;
 
-/// Uniform and graded axes, one cell, many cells, cells of very different length.
+/// Uniform and graded axes, one cell, many cells, cells of very different length, breakpoints of every multiplicity.
 fn axes(order: usize) -> Vec<KnotVector> {
     let graded: [&[f64]; 3] = [&[0.0, 0.1, 0.4, 1.0, 1.1, 3.0], &[0.0, 1e-3, 1.0], &[0.0, 2.0]];
     let uniform = [(1.0, 1), (0.1, 7), (1.0 / 3.0, 40)];
     let uniform = uniform.map(|(cell, cells)| KnotVector::uniform(cell, cells, order).unwrap());
-    uniform.into_iter().chain(graded.map(|knots| KnotVector::graded(knots, order).unwrap())).collect()
+    let repeated = (1..=order).map(|copies| KnotVector::graded(&repeated(copies), order).unwrap());
+    uniform.into_iter().chain(graded.map(|knots| KnotVector::graded(knots, order).unwrap())).chain(repeated).collect()
+}
+
+/// Breakpoints of which two neighbours and a later one stand so many times.
+fn repeated(copies: usize) -> Vec<f64> {
+    let times = |x: f64| if [0.3, 0.4, 1.0].contains(&x) { copies } else { 1 };
+    [0.0, 0.3, 0.4, 0.7, 1.0, 1.6].into_iter().flat_map(|x| vec![x; times(x)]).collect()
+}
+
+#[test]
+fn a_breakpoint_of_multiplicity_m_leaves_q_less_m_derivatives_continuous() {
+    // Behind and before a knot, by how much the functions and their slopes jump, in units of the cell.
+    let jumps = |axis: &KnotVector, x: f64| {
+        let (before, after) = (all(axis, x.next_down()), all(axis, x));
+        let largest = |of: fn(&(f64, f64)) -> f64| {
+            before.iter().zip(&after).map(|(a, b)| (of(a) - of(b)).abs()).fold(0.0, f64::max)
+        };
+        (largest(|f| f.0), largest(|f| f.1))
+    };
+    for order in 1..=3 {
+        for copies in 1..=order {
+            let axis = KnotVector::graded(&repeated(copies), order).unwrap();
+            assert_eq!(axis.functions(), 5 + 3 * (copies - 1) + order);
+            assert_eq!((0..axis.cells()).filter(|&cell| axis.has_length(cell)).count(), 5);
+            for x in [0.3, 0.4, 1.0] {
+                let (value, slope) = jumps(&axis, x);
+                assert!(value < 1e-13, "order {order}, {copies} copies at {x}: {value:e}");
+                assert_eq!(slope > 1.0, copies == order, "order {order}, {copies} copies at {x}: {slope:e}");
+                // With q copies one function alone is left on the line, as at the ends of an open knot vector.
+                let on_line = all(&axis, x).iter().filter(|f| f.0 > 1e-12).count();
+                assert_eq!(on_line == 1, copies == order);
+            }
+        }
+        for torn in [repeated(order + 1), vec![0.0, 0.0, 1.0], vec![0.0, 1.0, 1.0]] {
+            assert!(KnotVector::graded(&torn, order).is_err(), "{torn:?}");
+        }
+    }
 }
 
 /// Points inside, on every knot, one step of f64 to either side of it, and both ends.

@@ -1,0 +1,294 @@
+//! C0 lines: grid lines across which strains may jump, placed where they do.
+//!
+//! A spline with continuous slopes cannot hold a jump of strain: about three cells on either side ring. Strains jump
+//! where materials of unlike stiffness meet, and are singular at the ends of strips and loaded segments, which without a
+//! line would hold or load all that the splines reach, a cell further. `cases/results/stabilisation.md` has the figures.
+
+use crate::case::{Case, Path, Site};
+use crate::grid::Line;
+use crate::record::Record;
+use crate::region::Edge;
+use crate::report::Report;
+use std::collections::BTreeMap;
+
+/// Parts of a cell by which a place may miss a grid line: rounding.
+const ROUNDING: f64 = 1e-6;
+/// Places along an edge at which both sides are looked at.
+const SAMPLES: usize = 33;
+/// Parts of the shortest cell by which a place lies beside an edge, and beyond an end.
+const BESIDE: f64 = 1e-3;
+const BEYOND: f64 = 0.25;
+/// Relative difference of two moduli, Poisson's ratios or densities that is none: they were computed.
+const EQUAL: f64 = 1e-9;
+/// Ratio of two moduli from which an interface inside cells is warned of.
+const UNLIKE: f64 = 1.5;
+const NAMES: [&str; 2] = ["x", "y"];
+
+/// Adds the lines to a case's grid, tells where and why, and warns of places where none can be.
+pub(super) fn place(case: &mut Case, record: &Record, report: &mut Report<'_>) {
+    if case.grid.order == 1 {
+        return; // Every grid line is one.
+    }
+    let mut found = Found::default();
+    interfaces(case, &mut found);
+    segments(case, &mut found);
+    for (table, number, message) in std::mem::take(&mut found.narrow) {
+        let of = record.records(table).get(number).or_else(|| record.record(table));
+        of.into_iter().for_each(|record| record.error("to", &message, report));
+    }
+    let lines = std::mem::take(&mut found.lines);
+    if record.record("grid").and_then(|grid| grid.word("c0_lines")) == Some("none") {
+        if let Some(((axis, line), reason)) = lines.iter().find(|((axis, line), _)| !has(case, *axis, *line)) {
+            let at = coordinate(case, *axis, *line);
+            let name = NAMES[*axis];
+            report.warn(format!(
+                "grid.c0_lines: with \"none\" the splines cannot follow the jump of strain at {name} = {at} ({reason}): stress \
+                 is wrong by tens of per cent within about three cells, and a strip holds a cell more than its length"
+            ));
+        }
+    } else {
+        for ((axis, line), reason) in lines {
+            insert(case, axis, line);
+            let at = format!("{} = {}", NAMES[axis], coordinate(case, axis, line));
+            report.note("grid.c0_lines", at, reason);
+        }
+    }
+    found.doubts.into_values().for_each(|doubt| report.warn(doubt));
+}
+
+/// Lines by axis and breakpoint with their reasons, and what cannot be on one.
+#[derive(Default)]
+struct Found {
+    lines: BTreeMap<(usize, usize), String>,
+    doubts: BTreeMap<String, String>,
+    narrow: Vec<(&'static str, usize, String)>,
+}
+
+fn coordinate(case: &Case, axis: usize, line: usize) -> f64 {
+    let axis = &case.grid.axes[axis];
+    axis.lower() + axis.breakpoint(line)
+}
+
+fn has(case: &Case, axis: usize, line: usize) -> bool {
+    case.grid.lines[axis].iter().any(|own| own.breakpoint == line && own.multiplicity == case.grid.order)
+}
+
+fn insert(case: &mut Case, axis: usize, breakpoint: usize) {
+    let (lines, multiplicity) = (&mut case.grid.lines[axis], case.grid.order);
+    match lines.binary_search_by_key(&breakpoint, |line| line.breakpoint) {
+        Ok(at) => lines[at].multiplicity = multiplicity,
+        Err(at) => lines.insert(at, Line { breakpoint, multiplicity }),
+    }
+}
+
+/// The grid line at `x` (m from the first) along an axis, if there is one.
+fn grid_line(case: &Case, axis: usize, x: f64) -> Option<usize> {
+    let axis = &case.grid.axes[axis];
+    let after = axis.first_cell(|i| axis.breakpoint(i + 1) >= x);
+    let near = |i: &usize| (axis.breakpoint(*i) - x).abs() <= ROUNDING * axis.shortest();
+    [after, after + 1].into_iter().filter(|i| *i <= axis.cells()).find(near)
+}
+
+/// Where bodies of unlike stiffness or density meet.
+fn interfaces(case: &Case, found: &mut Found) {
+    let used: Vec<usize> = case.bodies.iter().map(|body| body.material).collect();
+    if used.iter().all(|material| differ(case, (used[0], *material), None).is_none()) {
+        return;
+    }
+    for body in &case.bodies {
+        for edge in body.region.edges(&case.grid).0 {
+            let axis = [0, 1].into_iter().find(|&axis| edge.is_along(1 - axis));
+            let line = axis.and_then(|axis| Some((axis, grid_line(case, axis, edge.a[axis])?)));
+            let known = |line: &(usize, usize)| {
+                found.lines.contains_key(line) || line.1 == 0 || line.1 == case.grid.axes[line.0].cells()
+            };
+            if line.as_ref().is_some_and(known) {
+                continue;
+            }
+            let Some((at, pair, ratio)) = unlike(case, &edge) else { continue };
+            let [a, b] = [pair.0, pair.1].map(|material| &case.materials[material].name);
+            match line {
+                Some(line) => {
+                    found.lines.insert(line, format!("{a} and {b} meet there, and strains jump"));
+                }
+                None if ratio >= UNLIKE => {
+                    let told = format!(
+                        "material.{a} and material.{b} meet inside cells, first at {at:?}: the splines cannot follow the jump of \
+                         strain there, and stress is wrong by tens of per cent within about three cells; where the interface \
+                         is straight along an axis, put a grid line on it"
+                    );
+                    found.doubts.entry(format!("{a} {b}")).or_insert(told);
+                }
+                None => {}
+            }
+        }
+    }
+}
+
+/// The first place along an edge with unlike materials on both sides, which they are, and the ratio of their moduli.
+fn unlike(case: &Case, edge: &Edge) -> Option<([f64; 2], (usize, usize), f64)> {
+    let (lower, axes) = (case.grid.lower(), &case.grid.axes);
+    let aside = BESIDE * axes[0].shortest().min(axes[1].shortest());
+    let normal = usize::from(!edge.is_along(1)); // aside along x of a vertical edge, else along y
+    (0..SAMPLES).find_map(|k| {
+        let part = (k as f64 + 0.5) / SAMPLES as f64;
+        let x = edge.a[0] + part * (edge.b[0] - edge.a[0]);
+        let y = if normal == 0 { edge.a[1] + part * (edge.b[1] - edge.a[1]) } else { edge.y(x) };
+        let at = [lower[0] + x, lower[1] + y];
+        let beside = |shift: f64| {
+            let mut place = at;
+            place[normal] += shift;
+            case.bodies.iter().find(|body| body.region.contains(place)).map(|body| body.material)
+        };
+        let pair = (beside(-aside)?, beside(aside)?);
+        differ(case, pair, Some(y)).map(|ratio| (at, pair, ratio))
+    })
+}
+
+/// Whether two materials differ in stiffness or density, at a height (m from the grid's lower corner) or anywhere: the
+/// ratio of their moduli.
+fn differ(case: &Case, (a, b): (usize, usize), height: Option<f64>) -> Option<f64> {
+    if a == b {
+        return None;
+    }
+    let [a, b] = [a, b].map(|material| &case.materials[material]);
+    let apart = |a: f64, b: f64| (a - b).abs() > EQUAL * a.abs().max(b.abs());
+    let young =
+        [a, b].map(|named| height.map_or(named.material.elastic().young, |height| named.material.young_at(height)));
+    let graded = height.is_none() && [a, b].iter().any(|named| named.material.is_graded());
+    let poisson = [a, b].map(|named| named.material.elastic().poisson);
+    let density = [a, b].map(|named| named.density.unwrap_or(0.0));
+    let differs = graded || [young, poisson, density].iter().any(|pair| apart(pair[0], pair[1]));
+    differs.then(|| young[0].max(young[1]) / young[0].min(young[1]))
+}
+
+/// A strip or a loaded segment.
+struct Segment<'a> {
+    name: String,
+    table: (&'static str, usize),
+    ends: [[f64; 2]; 2],
+    path: Option<&'a Path>,
+}
+
+impl Segment<'_> {
+    /// Whether it stays where it is along an axis.
+    fn stays(&self, axis: usize) -> bool {
+        self.path.is_none_or(|path| path.rows.iter().all(|(_, moved)| moved[axis] == 0.0))
+    }
+}
+
+fn all_segments(case: &Case) -> Vec<Segment<'_>> {
+    let footing = case.footing.iter().map(|footing| Segment {
+        name: "footing".into(),
+        table: ("footing", 0),
+        ends: [footing.from, footing.to],
+        path: Some(&footing.path),
+    });
+    let prescribed = case.prescribed.iter().enumerate().filter_map(|(number, prescribed)| match prescribed.site {
+        Site::Segment { from, to } => Some(Segment {
+            name: format!("prescribed.{number}"),
+            table: ("prescribed", number),
+            ends: [from, to],
+            path: Some(&prescribed.path),
+        }),
+        Site::Face(_) => None,
+    });
+    let tractions = case.tractions.iter().enumerate().map(|(number, traction)| Segment {
+        name: format!("traction.{number}"),
+        table: ("traction", number),
+        ends: [traction.from, traction.to],
+        path: None,
+    });
+    footing.chain(prescribed).chain(tractions).collect()
+}
+
+/// Ends of strips and loaded segments beyond which the surface goes on, and walls with material on both sides.
+fn segments(case: &Case, found: &mut Found) {
+    for segment in all_segments(case) {
+        let Some(along) = [0, 1].into_iter().find(|&axis| segment.ends[0][1 - axis] == segment.ends[1][1 - axis])
+        else {
+            continue;
+        };
+        for (at, other) in [(segment.ends[0], segment.ends[1]), (segment.ends[1], segment.ends[0])] {
+            end(case, &segment, (along, at, at[along] - other[along]), found);
+        }
+        wall(case, &segment, 1 - along, found);
+    }
+}
+
+/// The line through one end of a segment along an axis; `outward` is the direction away from the other end.
+fn end(case: &Case, segment: &Segment<'_>, (along, at, outward): (usize, [f64; 2], f64), found: &mut Found) {
+    let (axis, name) = (&case.grid.axes[along], &segment.name);
+    let mut beyond = at;
+    beyond[along] += outward.signum() * BEYOND * axis.shortest();
+    if !has_material(case, beyond, 1 - along) {
+        return;
+    }
+    let reason = format!("an end of {name}, where strains are singular");
+    match grid_line(case, along, at[along] - axis.lower()) {
+        Some(line) if line == 0 || line == axis.cells() => {}
+        Some(line) if segment.stays(along) => {
+            found.lines.entry((along, line)).or_insert(reason);
+        }
+        _ if segment.path.is_none() => {}
+        Some(_) => {
+            let told = format!(
+                "{name}: it moves along itself, and its ends leave the grid lines on which they would be sharp: it holds what \
+                 the splines reach, up to a cell more than its length, and its force is high by as much"
+            );
+            found.doubts.entry(name.clone()).or_insert(told);
+        }
+        None if outward.abs() < axis.shortest() => {
+            let message = format!(
+                "the strip is {} m long and ends inside a cell of {} m: it would hold that cell and its neighbours; take \
+                 smaller cells, or a grid line at {} = {}",
+                outward.abs(),
+                axis.shortest(),
+                NAMES[along],
+                at[along]
+            );
+            found.narrow.push((segment.table.0, segment.table.1, message));
+        }
+        None => {
+            let told = format!(
+                "{name}: the end at {} = {} lies inside a cell: the strip holds what the splines reach, up to a cell more than \
+                 its length, and its force is high by as much; put a grid line there, by grid.cell or [grid.knots]",
+                NAMES[along], at[along]
+            );
+            found.doubts.entry(name.clone()).or_insert(told);
+        }
+    }
+}
+
+/// The line along a segment that stays on it, with material on both sides.
+fn wall(case: &Case, segment: &Segment<'_>, normal: usize, found: &mut Found) {
+    let axis = &case.grid.axes[normal];
+    let place = segment.ends[0][normal];
+    if segment.path.is_none() || !segment.stays(normal) {
+        return;
+    }
+    let Some(line) = grid_line(case, normal, place - axis.lower()).filter(|line| (1..axis.cells()).contains(line))
+    else {
+        return;
+    };
+    let [from, to] = segment.ends;
+    let beside = |shift: f64| {
+        let mut middle = [0, 1].map(|k| 0.5 * (from[k] + to[k]));
+        middle[normal] += shift * BEYOND * axis.shortest();
+        case.bodies.iter().any(|body| body.region.contains(middle))
+    };
+    if beside(-1.0) && beside(1.0) {
+        let reason = format!("{} holds material on both sides of it", segment.name);
+        found.lines.entry((normal, line)).or_insert(reason);
+    }
+}
+
+/// Whether a body is at a place on its surface, on one side or the other.
+fn has_material(case: &Case, at: [f64; 2], normal: usize) -> bool {
+    let aside = BESIDE * case.grid.axes[normal].shortest();
+    [-aside, aside].into_iter().any(|shift| {
+        let mut place = at;
+        place[normal] += shift;
+        case.bodies.iter().any(|body| body.region.contains(place))
+    })
+}

@@ -1,0 +1,141 @@
+//! C0 lines: where a case gets them, why, and what cannot have one.
+
+use bsmpm_scene::{Case, Line, model};
+
+const LAYERS: &str = r#"
+    geometry = "plane-strain"
+    [analysis]
+    type = "quasi-static"
+    steps = 4
+    [grid]
+    lower = [0.0, 0.0]
+    upper = [8.0, 6.0]
+    cell  = 0.5
+    order = "quadratic"
+    [material.soft]
+    model = "tresca"
+    young = 1e6
+    poisson = 0.3
+    cohesion = 1e3
+    density = 2000.0
+    [material.stiff]
+    model = "hencky"
+    young = 1e7
+    poisson = 0.3
+    density = 2000.0
+    [[body]]
+    material = "soft"
+    box = { lower = [0.0, 0.0], upper = [8.0, 2.0] }
+    points_per_cell = 2
+    [[body]]
+    material = "stiff"
+    box = { lower = [0.0, 2.0], upper = [8.0, 4.0] }
+    points_per_cell = 2
+    [gravity]
+    acceleration = [0.0, -9.81]
+    [boundary]
+    bottom = "fixed"
+    left = "roller"
+    right = "roller"
+    [stabilisation]
+    method = "consistent-f-bar"
+"#;
+const STRIP: &str = "[footing]\nfrom = [3.0, 4.0]\nto = [5.0, 4.0]\ndisplacement = [0.0, -0.1]\nbase = \"rough\"\n";
+
+fn case(text: &str) -> Case {
+    Case::from_text("case.toml", text, &[]).unwrap_or_else(|errors| panic!("{errors:#?}\n{text}"))
+}
+
+/// Lines along x and y by breakpoint, and the notes and warnings about them.
+fn lines(text: &str) -> ([Vec<usize>; 2], Vec<String>, Vec<String>) {
+    let case = case(text);
+    let notes = case.notes.iter().filter(|note| note.key == "grid.c0_lines" && note.value.contains('='));
+    let notes = notes.map(|note| format!("{} ({})", note.value, note.reason)).collect();
+    let order = case.grid.order;
+    let breakpoint = |line: &Line| {
+        assert_eq!(line.multiplicity, order);
+        line.breakpoint
+    };
+    (case.grid.lines.each_ref().map(|lines| lines.iter().map(breakpoint).collect()), notes, case.warnings)
+}
+
+#[test]
+fn layers_of_unlike_stiffness_or_density_meet_on_a_line() {
+    let (found, notes, warnings) = lines(LAYERS);
+    assert_eq!(found, [vec![], vec![4]]);
+    assert_eq!(notes, ["y = 2 (soft and stiff meet there, and strains jump)"]);
+    assert!(warnings.is_empty(), "{warnings:?}");
+    let alike = LAYERS.replace("young = 1e7", "young = 1e6");
+    assert_eq!(lines(&alike).0, [vec![], vec![]], "strength alone makes no jump of strain");
+    let heavy = alike.replacen("density = 2000.0", "density = 1000.0", 1);
+    assert_eq!(lines(&heavy).0, [vec![], vec![4]]);
+    let block = LAYERS.replace("[0.0, 2.0], upper = [8.0, 4.0]", "[2.0, 2.0], upper = [4.0, 4.0]");
+    assert_eq!(lines(&block).0, [vec![], vec![4]], "beside the block there is nothing");
+    let apart = LAYERS.replace("lower = [0.0, 2.0], upper = [8.0, 4.0]", "lower = [0.0, 2.5], upper = [8.0, 4.0]");
+    assert_eq!(lines(&apart).0, [vec![], vec![]], "they do not touch");
+    let linear = LAYERS.replace("quadratic", "linear");
+    assert_eq!(lines(&linear).0, [vec![], vec![]], "every line of a linear grid is one");
+}
+
+#[test]
+fn an_interface_inside_cells_is_warned_of() {
+    let inside = LAYERS.replace("[8.0, 2.0]", "[8.0, 2.2]").replace("lower = [0.0, 2.0]", "lower = [0.0, 2.2]");
+    let (found, _, warnings) = lines(&inside);
+    assert_eq!(found, [vec![], vec![]]);
+    assert!(warnings.len() == 1 && warnings[0].contains("meet inside cells"), "{warnings:?}");
+    let sloping = LAYERS
+        .replace("box = { lower = [0.0, 0.0], upper = [8.0, 2.0] }", "polygon = [[0, 0], [8, 0], [8, 3], [0, 2]]")
+        .replace("box = { lower = [0.0, 2.0], upper = [8.0, 4.0] }", "polygon = [[0, 2], [8, 3], [8, 4], [0, 4]]");
+    assert!(lines(&sloping).2.iter().any(|told| told.contains("meet inside cells")));
+    assert!(lines(&sloping.replace("young = 1e7", "young = 1.2e6")).2.is_empty());
+    // Without automatic lines the same is told of the line that there might be.
+    let none = LAYERS.replace("order = \"quadratic\"", "order = \"quadratic\"\nc0_lines = \"none\"");
+    let (found, _, warnings) = lines(&none);
+    assert_eq!(found, [vec![], vec![]]);
+    assert!(warnings.iter().any(|told| told.contains("c0_lines") && told.contains("y = 2")), "{warnings:?}");
+}
+
+#[test]
+fn strips_and_loads_end_on_lines_where_the_surface_goes_on() {
+    let alike = LAYERS.replace("young = 1e7", "young = 1e6");
+    let strip = format!("{alike}{STRIP}");
+    let (found, notes, warnings) = lines(&strip);
+    assert_eq!(found, [vec![6, 10], vec![]]);
+    assert!(notes.iter().all(|note| note.contains("an end of footing")), "{notes:?}");
+    assert!(warnings.is_empty(), "{warnings:?}");
+    // Half of it at the axis of symmetry, and a strip over the whole surface.
+    assert_eq!(lines(&strip.replace("from = [3.0, 4.0]", "from = [0.0, 4.0]")).0, [vec![10], vec![]]);
+    let over_all = strip.replace("[3.0, 4.0]", "[0.0, 4.0]").replace("[5.0, 4.0]", "[8.0, 4.0]");
+    assert_eq!(lines(&over_all).0, [vec![], vec![]]);
+    let told = |text: &str, says: &str| {
+        let (found, _, warnings) = lines(text);
+        assert!(warnings.iter().any(|told| told.contains(says)), "{says}: {warnings:?}");
+        found
+    };
+    let inside = strip.replace("to = [5.0, 4.0]", "to = [5.2, 4.0]");
+    assert_eq!(told(&inside, "the end at x = 5.2 lies inside a cell"), [vec![6], vec![]]);
+    let narrow = strip.replace("from = [3.0, 4.0]", "from = [4.7, 4.0]").replace("[5.0, 4.0]", "[4.9, 4.0]");
+    let errors = Case::from_text("case.toml", &narrow, &[]).expect_err("it is narrower than a cell");
+    assert!(errors.iter().any(|e| e.key == "footing.to" && e.message.contains("inside a cell of 0.5 m")), "{errors:?}");
+    let sliding = strip.replace("[0.0, -0.1]", "[0.3, -0.1]");
+    assert_eq!(told(&sliding, "moves along itself"), [vec![], vec![]]);
+    let load = "[[traction]]\nfrom = [2.0, 4.0]\nto = [4.0, 4.0]\nstress = [0.0, -1e3]\nramp = 1.0\n";
+    assert_eq!(lines(&format!("{alike}{load}")).0, [vec![4, 8], vec![]]);
+}
+
+#[test]
+fn knots_may_be_repeated_by_hand() {
+    let knots = "knots = { x = [0, 2, 2, 4, 6, 8], y = [0, 1, 2, 3, 4, 4, 5, 6] }";
+    let text = LAYERS
+        .replace("lower = [0.0, 0.0]\n    upper = [8.0, 6.0]\n    cell  = 0.5", knots)
+        .replace("young = 1e7", "young = 1e6");
+    let case = case(&text);
+    let line = |breakpoint| Line { breakpoint, multiplicity: 2 };
+    assert_eq!(case.grid.lines, [vec![line(1)], vec![line(4)]]);
+    let model = model::model(&case).unwrap();
+    assert_eq!(model.grid.axes().each_ref().map(|axis| axis.functions()), [4 + 1 + 2, 6 + 1 + 2]);
+    // The points of a slab are those of its cells with a length: columns 1 and 3 of 5 hold none and a cell's.
+    let count = |columns| model::points(&case, columns).len();
+    assert_eq!([count(0..1), count(1..2), count(2..3), count(0..5)], [16, 0, 16, 64]);
+    assert_eq!(case.points_by_column(), [16, 0, 16, 16, 16]);
+}
