@@ -210,7 +210,12 @@ impl Resumed<'_> {
         let sizes = |lists: &[Vec<_>]| lists.iter().map(Vec::len).collect::<Vec<_>>();
         let same = sizes(&points.surface.traction) == sizes(&surface.traction)
             && sizes(&points.surface.position) == sizes(&surface.position);
-        if !same {
+        let anchors = &points.surface.anchors;
+        let lengths = |lists: &[Vec<u64>]| lists.iter().map(Vec::len).collect::<Vec<_>>();
+        let anchored = (anchors.strips.is_empty() && anchors.loads.is_empty())
+            || (lengths(&anchors.strips) == sizes(&surface.traction)
+                && lengths(&anchors.loads) == sizes(&surface.position));
+        if !same || !anchored {
             return Err(foreign("its surfaces are not of this case"));
         }
         let guess = self.opened.guess(&held.layers(), &window.layers(), window.layer_nodes() * 2)?;

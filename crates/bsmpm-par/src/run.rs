@@ -202,12 +202,25 @@ impl<'p> Run<'p> {
         }
     }
 
-    /// A strip that holds nothing does nothing, which no other number tells.
+    /// A strip that holds nothing, or no longer the material that it held, does nothing of what it is there for, which no
+    /// other number tells.
     fn tell_strips_without_material(&mut self, accepted: &Accepted) {
-        for (number, _) in accepted.report.strips.iter().enumerate().filter(|(_, strip)| strip.held == 0) {
+        for (number, strip) in accepted.report.strips.iter().enumerate() {
+            let points = self.simulation.model.boundary.strips[number].points.len();
+            let (name, t) = (bsmpm_scene::surfaces::name_of_strip(&self.case, number), accepted.t);
+            let told = if strip.held == 0 {
+                format!("{name} holds nothing: at t = {t} no free material is at it")
+            } else if 2 * strip.left_behind > points {
+                format!(
+                    "{name} has let go: at t = {t} most of it is more than half a cell ahead of the material that it held at the \
+                     start, and its force is no longer that of a strip that holds; smaller cells and more points_per_cell \
+                     hold longer, and soil that must not be pulled wants a motion without it"
+                )
+            } else {
+                continue;
+            };
             if self.told_strips.insert(number) {
-                let name = bsmpm_scene::surfaces::name_of_strip(&self.case, number);
-                self.warn(format!("{name} holds nothing: at t = {} no free material is at it", accepted.t));
+                self.warn(told);
             }
         }
     }

@@ -1,9 +1,11 @@
 //! What holds and loads the bodies: supports at the faces of the grid, rigid strips, tractions and point loads.
 
+pub mod anchor;
 pub mod load;
 pub mod strip;
 pub mod surface;
 
+pub use anchor::Anchors;
 pub use load::Load;
 pub use strip::{Path, Strip, StripReport};
 pub use surface::{Surface, SurfacePoint};
@@ -56,6 +58,7 @@ impl<const D: usize> Boundary<D> {
         Surface {
             traction: self.strips.iter().map(at_rest).collect(),
             position: self.loads.iter().map(|load| load.points.iter().map(|point| point.x).collect()).collect(),
+            anchors: Anchors::default(),
         }
     }
 

@@ -21,7 +21,7 @@ pub mod trial;
 pub mod unknowns;
 
 use crate::boundary::strip::Grips;
-use crate::boundary::{StripReport, Surface, load};
+use crate::boundary::{Anchors, StripReport, Surface, load};
 use crate::energy::{Draft, Flows};
 use crate::error::{Measures, StepError};
 use crate::grid::Shape;
@@ -95,11 +95,10 @@ pub fn step<K: Kinematics<D>, const D: usize>(
     let found = equilibrium::find(&scene, guess, solver, counts)?; // (3)-(9)
     commit::check_inside(model, &shape, points, &found.u, halo)?;
     let (strips, traction) = grips.conclude(&model.boundary.strips, &found.u, halo);
-    let report = Report { strips, ..found.report(&scene) };
-    let surface = Surface {
-        traction,
-        position: load::moved(&model.boundary.loads, &points.surface, (&model.grid, &nodes.active), &found.u, halo),
-    };
+    let mut report = Report { strips, ..found.report(&scene) };
+    let anchors = Anchors::of(&model.boundary, points, halo);
+    let position = load::moved(&model.boundary.loads, &points.surface, (&model.grid, &nodes.active), &found.u, halo);
+    let mut surface = Surface { traction, position, anchors };
     let draft = model.balances_energy.then(|| Draft::of(&scene, &found, (t, dt)));
     if halo.rejects() {
         return Err(StepError::Interrupted);
@@ -107,6 +106,12 @@ pub fn step<K: Kinematics<D>, const D: usize>(
     let Committed { u, smoothed } = commit::commit(model, &shape, &nodes, found, points, halo)?; // (10), (11)
     *guess = u;
     let energy = draft.map(|draft| draft.close(model, points, &surface, halo));
+    let places = surface.anchors.places(&model.boundary, points, halo);
+    let reach = 0.5 * model.grid.smallest_edge();
+    for (number, strip) in model.boundary.strips.iter().enumerate() {
+        report.strips[number].left_behind = places.left_behind(number, strip, t + dt, reach);
+    }
+    surface.position = places.loads;
     points.surface = surface;
     Ok(Report { energy, smoothed, ..report })
 }

@@ -2,7 +2,7 @@
 
 use super::Refusal;
 use crate::exit;
-use bsmpm::boundary::Surface;
+use bsmpm::boundary::{Anchors, Surface};
 use bsmpm::control::Progress;
 use bsmpm::energy::{Books, Flows};
 use bsmpm::grid::Grid;
@@ -36,6 +36,10 @@ pub struct State {
     pub traction: Vec<Vec<[f64; 2]>>,
     /// m  position of every load's points.
     pub position: Vec<Vec<[f64; 2]>>,
+    /// Ids of the points that the points of strips, and those of loads, are anchored to; none of a run by a version that had
+    /// none, or before the first step.
+    #[serde(default)]
+    pub anchors: [Vec<Vec<u64>>; 2],
     /// What the histories go on from.
     pub record: RecordState,
     /// Strips of which it was told that they hold nothing.
@@ -121,7 +125,9 @@ impl State {
         let vectors = |lists: &[Vec<[f64; 2]>]| -> Vec<Vec<Vector<2>>> {
             lists.iter().map(|list| list.iter().map(|&pair| Vector::from(pair)).collect()).collect()
         };
-        Surface { traction: vectors(&self.traction), position: vectors(&self.position) }
+        let [strips, loads] = self.anchors.clone();
+        let anchors = Anchors { strips, loads };
+        Surface { traction: vectors(&self.traction), position: vectors(&self.position), anchors }
     }
 }
 

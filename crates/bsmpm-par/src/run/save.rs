@@ -146,6 +146,7 @@ impl Run<'_> {
             room: Some(simulation.model.grid.room().clone().map(|range| [range.start, range.end])),
             progress: simulation.progress(),
             traction: pairs(&surface.traction),
+            anchors: [surface.anchors.strips.clone(), surface.anchors.loads.clone()],
             position: pairs(&surface.position),
             record: self.recorder.state(),
             told_strips: self.told_strips.clone(),

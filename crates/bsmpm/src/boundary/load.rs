@@ -58,7 +58,8 @@ pub fn add_forces<const D: usize>(
     Ok(())
 }
 
-/// Positions of all loads' points after the converged displacement `u`, m.
+/// Positions that all loads' points would have after the converged displacement `u`, m, moved by the nodes that their forces
+/// act on: what the work of a load is of.
 pub fn moved<const D: usize>(
     loads: &[Load<D>],
     surface: &Surface<D>,

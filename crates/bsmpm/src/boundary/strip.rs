@@ -56,6 +56,8 @@ pub struct StripReport {
     pub motion: f64,
     /// points with material at them
     pub held: usize,
+    /// points that are more than half a cell ahead of the material that they held at the start
+    pub left_behind: usize,
 }
 
 /// Work of strips in a step, by the mean of their tractions at its ends, N m.
@@ -248,7 +250,7 @@ impl<const D: usize> Grips<D> {
             let force = shares.fold(Vector::<D>::zeros(), |sum, (point, traction)| sum + traction * point.area);
             let [slip, accumulated, motion] = [0, 1, 2].map(|k| longest[3 * number + k]);
             let (force, held) = (force.as_slice().to_vec(), held_count[number] as usize);
-            StripReport { force, slip, accumulated, motion, held }
+            StripReport { force, slip, accumulated, motion, held, left_behind: 0 }
         };
         ((0..strips.len()).map(report).collect(), traction)
     }

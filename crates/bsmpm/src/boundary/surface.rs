@@ -2,6 +2,7 @@
 //!
 //! They are few and the same on every rank; each is worked on by the rank whose slab it lies in.
 
+use super::Anchors;
 use crate::grid::shape::with_width;
 use crate::grid::{Contributions, Grid, KnotVector};
 use crate::tensor::Vector;
@@ -50,8 +51,10 @@ pub fn along(grid: &Grid<2>, from: &Vector<2>, to: &Vector<2>, count: usize) -> 
 pub struct Surface<const D: usize> {
     /// Pa  traction of every strip on the body at its points, in the last converged state
     pub traction: Vec<Vec<Vector<D>>>,
-    /// m  position of every load's points, which move with the body
+    /// m  position of every load's points, which move with the material that they are anchored to
     pub position: Vec<Vec<Vector<D>>>,
+    /// that material
+    pub anchors: Anchors,
 }
 
 /// A surface point as some nodes of its cell see it.

@@ -135,6 +135,23 @@ fn a_uniform_traction_gives_uniform_stress_before_the_body_has_moved_and_follows
 }
 
 #[test]
+fn a_load_stays_on_the_surface_of_a_column_that_is_compressed_by_a_third() {
+    let mut scene = block([2, 8], 2);
+    let points = surface::along(&scene.model.grid, &at(0.0, 2.0), &at(0.5, 2.0), 3);
+    let M = scene.model.materials[0].elastic().oedometric();
+    // tau = M ln l = sigma l under a dead load: l = 2/3 at the end.
+    let pressure = -1.5 * (2.0_f64 / 3.0).ln() * M;
+    scene = scene.load(Load { points, traction: at(0.0, -pressure), ramp: 1.0 });
+    scene.march(1.0 / 64.0, 1.0, |_, _| {});
+    let heights = scene.points.surface.position[0].iter().map(|x| x[1]);
+    let (lowest, highest) = heights.fold((f64::INFINITY, 0.0), |(a, b), y| (f64::min(a, y), f64::max(b, y)));
+    println!("the load lies between {lowest:.5} and {highest:.5}, exact {:.5}", 4.0 / 3.0);
+    let top = scene.points.x.iter().map(|x| x[1]).fold(0.0, f64::max);
+    assert!(lowest > top, "a load below the top row of points, {top}");
+    assert!((lowest * 0.75 - 1.0).abs() <= 6e-3 && (highest * 0.75 - 1.0).abs() <= 6e-3); // measured 3.6e-3, 4.0e-3
+}
+
+#[test]
 fn a_point_load_is_carried_by_the_supports_and_its_work_is_positive() {
     let load = Load { points: vec![SurfacePoint { x: at(0.5, 1.0), area: 1.0 }], traction: at(3.0, -20.0), ramp: 0.0 };
     let mut scene = block([4, 4], 2).load(load);
