@@ -88,7 +88,7 @@ pub fn choices(case: &Case, ranks: usize, options: &[String]) -> Vec<manifest::C
     }
     choices.extend(linear_choices(case, &linear(case, ranks, options), ranks));
     if weighting(case) == Weighting::Volume {
-        choices.push(choice("weights of averages", "volume", "some material is weightless"));
+        choices.push(choice("weights of averages", "volume", "materials differ in density, or some have none"));
     }
     if case.footing.is_some() || !case.prescribed.is_empty() {
         let reason = "E of the stiffest material over the smallest cell, times a factor; the traction is carried from step \

@@ -1,15 +1,17 @@
 //! From a valid case to the physics' model, its points and its steps: the only place where the case's words become types
 //! of crate `bsmpm`.
 
-use crate::{Axis, Case, Every, Quantity, Regime, surfaces};
+use crate::{Axis, Case, Every, NamedMaterial, Quantity, Regime, surfaces};
 use bsmpm::background::Background;
 use bsmpm::boundary::{Boundary, Support};
 use bsmpm::error::GridError;
 use bsmpm::grid::{Grid, KnotVector};
 use bsmpm::kinematics::PlaneStrain;
+use bsmpm::material::Material;
 use bsmpm::model::{Criteria, Gravity, Model, Weighting};
 use bsmpm::points::Points;
 use bsmpm::schedule::Schedule;
+use bsmpm::stabilisation::Groups;
 use bsmpm::step::equilibrium::Nonlinear;
 use bsmpm::step::quasi_newton::QuasiNewton;
 use bsmpm::tensor::{Symmetric, Vector};
@@ -35,6 +37,7 @@ pub fn model(case: &Case) -> Result<Model<PlaneStrain, 2>, GridError> {
         boundary: boundary(case, &grid),
         grid,
         stabilisation: case.stabilisation,
+        groups: groups(case),
         background,
         criteria: Criteria {
             energy: case.solver.tolerance,
@@ -112,8 +115,20 @@ pub fn frame_times(case: &Case) -> Vec<f64> {
     times
 }
 
-/// What averages are weighted with: mass, or volume where some material has none.
+/// Materials of one stiffness: what an average over the grid may mix. One that depends on the height is alike to itself.
+pub fn groups(case: &Case) -> Groups {
+    let kind = |named: &NamedMaterial| {
+        let graded = if let Material::Graded(_) = &named.material { Some(named.name.clone()) } else { None };
+        (named.material.elastic().clone(), graded)
+    };
+    Groups::of_alike(&case.materials.iter().map(kind).collect::<Vec<_>>())
+}
+
+/// What averages are weighted with: mass, or volume where materials differ in density or some have none.
 pub fn weighting(case: &Case) -> Weighting {
-    let all_have_mass = case.bodies.iter().all(|body| case.materials[body.material].density.is_some());
-    if all_have_mass { Weighting::Mass } else { Weighting::Volume }
+    let mut densities = case.bodies.iter().map(|body| case.materials[body.material].density);
+    match densities.next() {
+        Some(Some(first)) if densities.all(|density| density == Some(first)) => Weighting::Mass,
+        _ => Weighting::Volume,
+    }
 }

@@ -17,6 +17,11 @@ fn valid(text: &str, overrides: &[&str]) -> Case {
     set(text, overrides).unwrap_or_else(|errors| panic!("{overrides:?}: {errors:#?}"))
 }
 
+/// Warnings but those of the stiff block on soft ground.
+fn doubts(text: &str, overrides: &[&str]) -> Vec<String> {
+    valid(text, overrides).warnings.into_iter().filter(|told| !told.contains("meet and differ")).collect()
+}
+
 #[test]
 fn values_arrive_as_toml_bare_words_and_units() {
     assert_eq!(valid(FULL, &["grid.cell=0.25"]).grid.axes[0].cells(), 16);
@@ -158,7 +163,8 @@ fn the_full_case_in_si() {
     assert_eq!(columns, expected);
     assert_eq!(case.histories[4].quantity, Quantity::PressureNoise { within: Some([[0.0, 0.0], [2.0, 1.0]]) });
     assert_eq!((case.checks[0].at, case.checks[0].max, case.checks[1].at), (0.5, Some(4.0), 1.0));
-    assert!(case.warnings.is_empty(), "{:?}", case.warnings);
+    let meet = |told: &String| told.contains("meet and differ in young"); // its stiff block lies on soft ground
+    assert!(case.warnings.iter().all(meet), "{:?}", case.warnings);
 }
 
 #[test]
@@ -324,10 +330,10 @@ fn strips_hold_and_load_a_quasi_static_body() {
 fn strips_and_loads_start_within_half_a_spacing_of_points() {
     // The block's points are .25 m apart: its top is at 2.5 m. A strip may start with a part of it beyond the body.
     let near = ["footing.from=[1.25, 2.62]", "footing.to=[1.75, 2.62]"];
-    assert!(valid(FULL, &near).warnings.is_empty());
-    assert!(valid(FULL, &["footing.from=[0.9, 2.5]", "footing.to=[2.3, 2.5]"]).warnings.is_empty());
+    assert!(doubts(FULL, &near).is_empty());
+    assert!(doubts(FULL, &["footing.from=[0.9, 2.5]", "footing.to=[2.3, 2.5]"]).is_empty());
     for corner in ["[0.95, 2.55]", "[1.0, 2.5]", "[2.0, 2.5]", "[2.05, 2.45]", "[1.5, 2.25]"] {
-        assert!(valid(FULL, &[&format!("point_load.0.at={corner}")]).warnings.is_empty(), "{corner}");
+        assert!(doubts(FULL, &[&format!("point_load.0.at={corner}")]).is_empty(), "{corner}");
     }
     for far in ["[0.85, 2.5]", "[1.0, 2.63]", "[2.1, 2.6]"] {
         assert!(set(FULL, &[&format!("point_load.0.at={far}")]).is_err(), "{far}");

@@ -3,10 +3,11 @@
 use crate::background::Background;
 use crate::boundary::Boundary;
 use crate::grid::Grid;
+use crate::grid::transfer::Grouped;
 use crate::kinematics::Kinematics;
 use crate::material::{Material, MaterialError, Response};
 use crate::points::Points;
-use crate::stabilisation::Stabilisation;
+use crate::stabilisation::{Groups, Stabilisation};
 use crate::step::equilibrium::Nonlinear;
 use crate::step::newmark::Newmark;
 use crate::tensor::{Symmetric, Vector};
@@ -22,11 +23,13 @@ pub enum Regime {
 }
 
 /// What the averages of Eqs 16-20 are weighted with.
+///
+/// Where the density is the same everywhere both are one; where it is not, dilations are averaged better by volume.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Weighting {
     /// The points' mass, as in the paper.
     Mass,
-    /// The points' reference volume, where a scene has weightless material.
+    /// The points' reference volume, where a scene has materials of different density, or weightless ones.
     Volume,
 }
 
@@ -77,6 +80,8 @@ pub struct Model<K, const D: usize> {
     pub boundary: Boundary<D>,
     /// Section 2.3.
     pub stabilisation: Stabilisation,
+    /// Materials that averages may mix.
+    pub groups: Groups,
     /// Soft background in nearly empty cells, if any.
     pub background: Option<Background>,
     /// Convergence.
@@ -119,5 +124,17 @@ impl<K: Kinematics<D>, const D: usize> Model<K, D> {
     pub fn is_uniformly_stiff(&self) -> bool {
         let uniform = |m: &Material| !matches!(m, Material::Graded(_)) && m.elastic().young == self.stiffest();
         self.materials.iter().all(uniform)
+    }
+}
+
+impl<K, const D: usize> Model<K, D> {
+    /// What the nodes' own weights are made of: mass in dynamics.
+    pub fn inertial_weighting(&self) -> Weighting {
+        if self.regime == Regime::Dynamic { Weighting::Mass } else { self.weighting }
+    }
+
+    /// The points in the groups that averages may mix.
+    pub fn grouped<'a>(&'a self, points: &'a Points<D>) -> Grouped<'a> {
+        Grouped::by(&self.groups, &points.material)
     }
 }

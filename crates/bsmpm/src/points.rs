@@ -44,7 +44,7 @@ pub struct Points<const D: usize> {
     pub sigma: Held<D, Symmetric>,
     /// -  accumulated plastic strain
     pub eps_p: Vec<f64>,
-    /// -  S(J)/J of the last step, under Zhao's F-bar from its first step on; before that it is 1
+    /// -  J-bar/J, J-bar the dilation that the stress has felt, under F-bar from its first step on; before that it is 1
     pub dilation: Option<Vec<f64>>,
     /// -  logarithm of the volume that gapes, where a material closes its gaps, from its first step on; before that it is 0
     pub gap: Option<Vec<f64>>,
@@ -112,6 +112,12 @@ impl<const D: usize> Points<D> {
     #[inline]
     pub fn gap_of(&self, p: usize) -> f64 {
         self.gap.as_ref().map_or(0.0, |gap| gap[p])
+    }
+
+    /// J-bar/J of a point.
+    #[inline]
+    pub fn dilation_of(&self, p: usize) -> f64 {
+        self.dilation.as_ref().map_or(1.0, |dilation| dilation[p])
     }
 
     /// No points, with room for the columns of these names: those that a scene does without are there if they are named.

@@ -57,7 +57,7 @@ impl Bench<'_> {
         self.row("(4a) gather of grad u", false, || drop(black_box(transfer::gradients(&shape, &u, |_, grad| grad))));
         if model.stabilisation.averages() {
             self.row("(4c-e) average of F-bar", false, || {
-                drop(black_box(nodes.mean_dilation(&shape, points, model.weighting, halo, |_| 1.0)));
+                drop(black_box(nodes.mean_dilation(model, (&shape, points), halo, |_| 1.0)));
             });
         }
         let trial = Trial::of(model, &shape, &nodes, points, &u, halo);

@@ -6,11 +6,53 @@
 
 use super::contributions::Contributions;
 use super::shape::{Column, Patch, Shape, with_width};
+use crate::stabilisation::Groups;
 use crate::tensor::{Square, Vector};
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Largest number of nodes of a patch: (3 + 1)^3.
 const MOST_NODES: usize = 64;
+
+/// Points in groups, whose nodal values stand side by side: numbers of group g at place g of a node.
+#[derive(Clone, Copy)]
+pub struct Grouped<'a> {
+    by: Option<(&'a Groups, &'a [u16])>, // with the materials of the points; several groups
+}
+
+impl<'a> Grouped<'a> {
+    /// All points in one group.
+    pub const NOT: Self = Self { by: None };
+
+    /// Points of these materials.
+    pub fn by(groups: &'a Groups, material: &'a [u16]) -> Self {
+        Self { by: (groups.count() > 1).then_some((groups, material)) }
+    }
+
+    /// Number of groups.
+    pub fn count(&self) -> usize {
+        self.by.map_or(1, |(groups, _)| groups.count())
+    }
+
+    /// Group of point `p`.
+    #[inline]
+    pub fn of(&self, p: usize) -> usize {
+        self.by.map_or(0, |(groups, material)| groups.of(material[p]))
+    }
+
+    /// Points of a patch in runs of one group, each with its group.
+    #[inline]
+    fn runs(&self, points: Range<usize>) -> impl Iterator<Item = (usize, Range<usize>)> {
+        let mut start = points.start;
+        std::iter::from_fn(move || {
+            let first = start;
+            let group = (first < points.end).then(|| self.of(first))?;
+            let differs = |p: &usize| self.of(*p) != group;
+            start = self.by.and_then(|_| (first..points.end).find(differs)).unwrap_or(points.end);
+            Some((group, first..start))
+        })
+    }
+}
 
 /// Numbers of a patch's nodes.
 type Block<const C: usize> = [[f64; C]; MOST_NODES];
@@ -20,8 +62,17 @@ pub fn to_nodes<const D: usize, const C: usize>(
     shape: &Shape<D>,
     value: impl Fn(usize) -> [f64; C] + Sync,
 ) -> Contributions {
-    with_width!(shape.width(), W => scatter(shape, |patch, block: &mut Block<C>| {
-        for p in patch.points.clone() {
+    to_nodes_grouped(shape, Grouped::NOT, value)
+}
+
+/// [`to_nodes`] of every group by itself.
+pub fn to_nodes_grouped<const D: usize, const C: usize>(
+    shape: &Shape<D>,
+    grouped: Grouped<'_>,
+    value: impl Fn(usize) -> [f64; C] + Sync,
+) -> Contributions {
+    with_width!(shape.width(), W => scatter(shape, grouped, |points, block: &mut Block<C>| {
+        for p in points {
             let (support, value) = (shape.values::<W>(p), value(p));
             for (k, sums) in block[..const { W.pow(D as u32) }].iter_mut().enumerate() {
                 let N = support.value(k);
@@ -33,15 +84,21 @@ pub fn to_nodes<const D: usize, const C: usize>(
     }))
 }
 
-/// Largest value among the points that a node sees: out_I = max(out_I, value_p) over the points with N_Ip > 0.
-pub fn largest_to_nodes<const D: usize>(shape: &Shape<D>, out: &mut [f64], value: impl Fn(usize) -> f64) {
+/// Largest value among the points of a group that a node sees: out_I = max(out_I, value_p) over those with N_Ip > 0.
+pub fn largest_to_nodes<const D: usize>(
+    shape: &Shape<D>,
+    grouped: Grouped<'_>,
+    out: &mut [f64],
+    value: impl Fn(usize) -> f64,
+) {
+    let count = grouped.count();
     with_width!(shape.width(), W => {
         for patch in shape.patches() {
             for p in patch.points.clone() {
                 let (support, value) = (shape.values::<W>(p), value(p));
                 for (k, offset) in shape.offsets().iter().enumerate() {
                     if support.value(k) > 0.0 {
-                        let at_node = &mut out[patch.first_node + offset];
+                        let at_node = &mut out[(patch.first_node + offset) * count + grouped.of(p)];
                         *at_node = at_node.max(value);
                     }
                 }
@@ -56,18 +113,30 @@ pub fn to_points<const D: usize, const C: usize, T: Send>(
     nodal: &[f64],
     found: impl Fn(usize, [f64; C]) -> T + Sync,
 ) -> Vec<T> {
+    to_points_grouped(shape, Grouped::NOT, nodal, found)
+}
+
+/// [`to_points`] from the nodal values of each point's group.
+pub fn to_points_grouped<const D: usize, const C: usize, T: Send>(
+    shape: &Shape<D>,
+    grouped: Grouped<'_>,
+    nodal: &[f64],
+    found: impl Fn(usize, [f64; C]) -> T + Sync,
+) -> Vec<T> {
     with_width!(shape.width(), W => at_points(shape, |patch, out: &mut Vec<T>| {
-        let block: Block<C> = gather(nodal, shape.offsets(), patch.first_node);
-        for p in patch.points.clone() {
-            let support = shape.values::<W>(p);
-            let mut value = [0.0; C];
-            for (k, at_node) in block[..const { W.pow(D as u32) }].iter().enumerate() {
-                let N = support.value(k);
-                for c in 0..C {
-                    value[c] += N * at_node[c];
+        for (group, points) in grouped.runs(patch.points.clone()) {
+            let block: Block<C> = gather(nodal, shape.offsets(), patch.first_node, (group, grouped.count()));
+            for p in points {
+                let support = shape.values::<W>(p);
+                let mut value = [0.0; C];
+                for (k, at_node) in block[..const { W.pow(D as u32) }].iter().enumerate() {
+                    let N = support.value(k);
+                    for c in 0..C {
+                        value[c] += N * at_node[c];
+                    }
                 }
+                out.push(found(p, value));
             }
-            out.push(found(p, value));
         }
     }))
 }
@@ -79,7 +148,7 @@ pub fn gradients<const D: usize, T: Send>(
     found: impl Fn(usize, Square<D>) -> T + Sync,
 ) -> Vec<T> {
     with_width!(shape.width(), W => at_points(shape, |patch, out: &mut Vec<T>| {
-        let block: Block<D> = gather(u, shape.offsets(), patch.first_node);
+        let block: Block<D> = gather(u, shape.offsets(), patch.first_node, (0, 1));
         for p in patch.points.clone() {
             let support = shape.support::<W>(p);
             let mut gradient = Square::<D>::zeros();
@@ -98,8 +167,8 @@ pub fn gradients<const D: usize, T: Send>(
 
 /// Scatter with gradients, the adjoint of [`gradients`]: sum_p flux_p grad N_Ip (step 5a).
 pub fn divergence<const D: usize>(shape: &Shape<D>, flux: impl Fn(usize) -> Square<D> + Sync) -> Contributions {
-    with_width!(shape.width(), W => scatter(shape, |patch, block: &mut Block<D>| {
-        for p in patch.points.clone() {
+    with_width!(shape.width(), W => scatter(shape, Grouped::NOT, |points, block: &mut Block<D>| {
+        for p in points {
             let (support, flux) = (shape.support::<W>(p), flux(p));
             for (k, sums) in block[..const { W.pow(D as u32) }].iter_mut().enumerate() {
                 let grad = support.gradient(k);
@@ -115,8 +184,8 @@ pub fn divergence<const D: usize>(shape: &Shape<D>, flux: impl Fn(usize) -> Squa
 
 /// Scatter of squared gradients: sum_p weight_p |grad N_Ip|^2; tells nodes that have stiffness but no mass.
 pub fn squared_gradients<const D: usize>(shape: &Shape<D>, weight: impl Fn(usize) -> f64 + Sync) -> Contributions {
-    with_width!(shape.width(), W => scatter(shape, |patch, block: &mut Block<1>| {
-        for p in patch.points.clone() {
+    with_width!(shape.width(), W => scatter(shape, Grouped::NOT, |points, block: &mut Block<1>| {
+        for p in points {
             let (support, weight) = (shape.support::<W>(p), weight(p));
             for (k, sum) in block[..const { W.pow(D as u32) }].iter_mut().enumerate() {
                 sum[0] += weight * support.gradient(k).norm_squared();
@@ -136,20 +205,24 @@ pub(crate) fn gradients_of<const D: usize>(shape: &Shape<D>, p: usize, out: &mut
     });
 }
 
-/// What the patches contribute, each by filling a block of zeros.
+/// What the patches contribute, the points of every group by filling a block of zeros.
 fn scatter<const D: usize, const C: usize>(
     shape: &Shape<D>,
-    fill: impl Fn(&Patch, &mut Block<C>) + Sync,
+    grouped: Grouped<'_>,
+    fill: impl Fn(Range<usize>, &mut Block<C>) + Sync,
 ) -> Contributions {
+    let count = grouped.count();
     let columns = shape.columns().iter().map(|column| column.column).collect();
-    let mut contributions = Contributions::zeros(shape.extent(), C, columns);
+    let mut contributions = Contributions::zeros(shape.extent(), count * C, columns);
     let work: Vec<(&Column, &mut [f64])> = shape.columns().iter().zip(contributions.columns_mut()).collect();
     work.into_par_iter().for_each(|(column, sums)| {
         let first = column.column * shape.extent().1;
         for patch in &shape.patches()[column.patches.clone()] {
-            let mut block = [[0.0; C]; MOST_NODES];
-            fill(patch, &mut block);
-            add(sums, shape.offsets(), patch.first_node - first, &block);
+            for (group, points) in grouped.runs(patch.points.clone()) {
+                let mut block = [[0.0; C]; MOST_NODES];
+                fill(points, &mut block);
+                add(sums, shape.offsets(), patch.first_node - first, (group, count), &block);
+            }
         }
     });
     contributions
@@ -170,17 +243,23 @@ fn at_points<const D: usize, T: Send>(shape: &Shape<D>, work: impl Fn(&Patch, &m
     shape.columns().par_iter().flat_map_iter(of_column).collect()
 }
 
-fn gather<const C: usize>(nodal: &[f64], offsets: &[usize], first: usize) -> Block<C> {
+fn gather<const C: usize>(nodal: &[f64], offsets: &[usize], first: usize, (group, groups): (usize, usize)) -> Block<C> {
     let mut block = [[0.0; C]; MOST_NODES];
     for (at_node, offset) in block.iter_mut().zip(offsets) {
-        at_node.copy_from_slice(&nodal[(first + offset) * C..(first + offset + 1) * C]);
+        at_node.copy_from_slice(&nodal[((first + offset) * groups + group) * C..][..C]);
     }
     block
 }
 
-fn add<const C: usize>(nodal: &mut [f64], offsets: &[usize], first: usize, block: &Block<C>) {
+fn add<const C: usize>(
+    nodal: &mut [f64],
+    offsets: &[usize],
+    first: usize,
+    (group, groups): (usize, usize),
+    block: &Block<C>,
+) {
     for (sums, offset) in block.iter().zip(offsets) {
-        let at_node = &mut nodal[(first + offset) * C..(first + offset + 1) * C];
+        let at_node = &mut nodal[((first + offset) * groups + group) * C..][..C];
         for (total, sum) in at_node.iter_mut().zip(sums) {
             *total += sum;
         }

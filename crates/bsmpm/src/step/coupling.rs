@@ -9,6 +9,7 @@
 //! nu = .495, 7,662 iterations without it and 3,383 with it.
 
 use crate::grid::{Contributions, Grid};
+use crate::model::Model;
 use crate::seam::{Halo, LinearSolver};
 use crate::step::nodes::Nodes;
 use crate::tensor::Vector;
@@ -22,10 +23,10 @@ pub enum Raised {
     Own,
 }
 
-/// Sums of all functions h.
+/// Sums of all functions h, of every group of materials that the average does not mix.
 pub struct Coupling {
-    /// per function its head, W and kappa_h W, and g of the nodes that its cells touch; f of them, if it is its own
-    sums: Contributions,
+    /// per group and function its head, W and kappa_h W, and g of the nodes that its cells touch; f of them, if it is its own
+    sums: Vec<Contributions>,
     /// of the functions of a cell
     offsets: Vec<usize>,
     /// place in g of node k of a cell, per function of the cell
@@ -38,14 +39,17 @@ pub struct Coupling {
 /// Numbers of a function before g and f.
 const HEAD: usize = 2;
 
-/// The same of one patch: per function of the cell its head, and g and f of the cell's nodes.
+/// The same of one patch: per group and function of the cell its head, and g and f of the cell's nodes.
 pub struct Dilations {
     numbers: Vec<f64>,
+    of_group: usize,
     of_function: usize,
 }
 
 /// A point in the sums of its functions.
 pub struct Share<'a, const D: usize> {
+    /// group of its material
+    pub group: usize,
     /// w of the point: m3, or kg
     pub weight: f64,
     /// kappa of the point, Pa; of no use where the force is its own
@@ -63,8 +67,9 @@ impl Dilations {
         let mut values = [0.0; 27];
         let values = &mut values[..lower.offsets().len()];
         lower.values_into(p, values);
-        for (h, A) in values.iter().enumerate() {
-            let (head, sums) = self.numbers[h * self.of_function..][..self.of_function].split_at_mut(HEAD);
+        let functions = self.numbers[share.group * self.of_group..].chunks_exact_mut(self.of_function);
+        for (A, numbers) in values.iter().zip(functions) {
+            let (head, sums) = numbers.split_at_mut(HEAD);
             head[0] += *A * share.weight;
             head[1] += *A * share.weight * share.bulk;
             let (dilation, force) = sums.split_at_mut(share.dilation.len() * D);
@@ -80,7 +85,8 @@ impl Dilations {
 impl Coupling {
     /// No sums yet; `None` where dilations are not averaged by functions of a lower degree, or windows do not reach as far
     /// as these couple ([`Grid::reaching`]).
-    pub fn of<const D: usize>(grid: &Grid<D>, nodes: &Nodes<D>, raised: Raised) -> Option<Self> {
+    pub fn of<K, const D: usize>(model: &Model<K, D>, nodes: &Nodes<D>, raised: Raised) -> Option<Self> {
+        let grid = &model.grid;
         let lower = nodes.lowered().filter(|_| grid.beyond() + 1 >= grid.order())?;
         let (degree, width) = (lower.width() - 1, lower.width() + 1);
         let side = width + degree;
@@ -91,37 +97,57 @@ impl Coupling {
         };
         let functions = lower.offsets().len();
         let places = (0..functions).map(|h| (0..width.pow(D as u32)).map(|node| place(h, node)).collect()).collect();
-        let sums = Contributions::none(grid, HEAD + raised.vectors() * side.pow(D as u32) * D, Vec::new());
+        let none = || Contributions::none(grid, HEAD + raised.vectors() * side.pow(D as u32) * D, Vec::new());
+        let sums = (0..model.groups.count()).map(|_| none()).collect();
         Some(Self { sums, offsets: lower.offsets().to_vec(), places, side, raised })
     }
 
     /// Zeros for one patch.
     pub fn of_patch<const D: usize>(&self) -> Dilations {
         let of_function = HEAD + self.raised.vectors() * self.places[0].len() * D;
-        Dilations { numbers: vec![0.0; self.offsets.len() * of_function], of_function }
+        let of_group = self.offsets.len() * of_function;
+        Dilations { numbers: vec![0.0; self.sums.len() * of_group], of_group, of_function }
     }
 
     /// Adds what the patch whose first node is `first` contributes.
     pub fn add<const D: usize>(&mut self, first: usize, dilations: &Dilations) {
-        let width = self.sums.width();
         let (of_patch, of_all) = (self.places[0].len() * D, self.side.pow(D as u32) * D);
-        let sums = self.sums.patch(first);
-        let functions = dilations.numbers.chunks_exact(dilations.of_function);
-        for ((numbers, offset), places) in functions.zip(&self.offsets).zip(&self.places) {
-            let sums = &mut sums[offset * width..(offset + 1) * width];
-            sums.iter_mut().zip(&numbers[..HEAD]).for_each(|(sum, number)| *sum += number);
-            for (sums, vectors) in sums[HEAD..].chunks_exact_mut(of_all).zip(numbers[HEAD..].chunks_exact(of_patch)) {
-                for (place, vector) in places.iter().zip(vectors.chunks_exact(D)) {
-                    sums[place * D..(place + 1) * D].iter_mut().zip(vector).for_each(|(sum, value)| *sum += value);
+        for (sums, numbers) in self.sums.iter_mut().zip(dilations.numbers.chunks_exact(dilations.of_group)) {
+            let functions = numbers.chunks_exact(dilations.of_function);
+            if functions.clone().all(|numbers| numbers[0] == 0.0) {
+                continue; // no point of the group
+            }
+            let width = sums.width();
+            let sums = sums.patch(first);
+            for ((numbers, offset), places) in functions.zip(&self.offsets).zip(&self.places) {
+                let sums = &mut sums[offset * width..(offset + 1) * width];
+                sums.iter_mut().zip(&numbers[..HEAD]).for_each(|(sum, number)| *sum += number);
+                let vectors = numbers[HEAD..].chunks_exact(of_patch);
+                for (sums, vectors) in sums[HEAD..].chunks_exact_mut(of_all).zip(vectors) {
+                    for (place, vector) in places.iter().zip(vectors.chunks_exact(D)) {
+                        let sums = &mut sums[place * D..(place + 1) * D];
+                        sums.iter_mut().zip(vector).for_each(|(sum, value)| *sum += value);
+                    }
                 }
             }
         }
     }
 
-    /// Adds the products to a matrix, each on the rank that owns the first of its nodes. One exchange with the neighbours.
+    /// Adds the products to a matrix, each on the rank that owns the first of its nodes. One exchange with the neighbours for
+    /// every group.
     pub fn assemble<const D: usize>(&self, grid: &Grid<D>, halo: &dyn Halo, solver: &mut dyn LinearSolver) {
-        let (width, degree) = (self.sums.width(), grid.order() - 1);
-        let sums = halo.sum(&self.sums);
+        self.sums.iter().for_each(|sums| self.assemble_group(sums, grid, halo, solver));
+    }
+
+    fn assemble_group<const D: usize>(
+        &self,
+        sums: &Contributions,
+        grid: &Grid<D>,
+        halo: &dyn Halo,
+        solver: &mut dyn LinearSolver,
+    ) {
+        let (width, degree) = (sums.width(), grid.order() - 1);
+        let sums = halo.sum(sums);
         let is_ours = |function: usize| {
             let layer = grid.node_at(function)[0].saturating_sub(degree).checked_sub(grid.layers().start);
             layer.is_some_and(|layer| halo.owned().contains(&(layer * grid.layer_nodes())))

@@ -104,7 +104,7 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
         let mut grad = [Vector::<D>::zeros(); MOST];
         let grad = &mut grad[..size];
         let mut block = vec![0.0; (size * D).pow(2)];
-        let mut coupling = Coupling::of(&self.scene.model.grid, nodes, Raised::Own);
+        let mut coupling = Coupling::of(self.scene.model, nodes, Raised::Own);
         for (number, patch) in shape.patches().iter().enumerate() {
             block.fill(0.0);
             let mut dilations = coupling.as_ref().map(Coupling::of_patch::<D>);
@@ -144,7 +144,8 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
             *force = flux * grad / mean;
         }
         let (dilation, force) = (&dilation[..grad.len()], &force[..grad.len()]);
-        dilations.add(nodes, p, &Share { weight, bulk: 0.0, dilation, force });
+        let group = model.groups.of(points.material[p]);
+        dilations.add(nodes, p, &Share { group, weight, bulk: 0.0, dilation, force });
     }
 }
 

@@ -14,18 +14,22 @@ use crate::step::inertia::{self, Inertia};
 /// Nodes lighter than this fraction of the heaviest one have no velocity, acceleration or average: 1/m is never formed.
 const MASSLESS: f64 = 1e-14;
 
-/// The splines of degree q - 1 at the points, and what they weigh: they are numbered within the nodes (see
-/// [`Shape::lowered`]), and those that no point touches weigh nothing.
+/// What averages run over: weights of every group of materials.
 #[derive(Clone, Debug)]
-struct Lower<const D: usize> {
-    shape: Shape<D>,
-    weight: Vec<f64>,
+struct Averages<const D: usize> {
+    /// m^D (or kg)  of the nodes; `None`: those that the nodes have
+    weight: Option<Vec<f64>>,
+    /// weight at and below which a node has no average
+    threshold: f64,
+    /// of dilations under consistent F-bar: the splines of degree q - 1 at the points, and what they weigh; they are numbered
+    /// within the nodes (see [`Shape::lowered`]), and those that no point touches weigh nothing
+    lower: Option<(Shape<D>, Vec<f64>)>,
 }
 
 /// Nodal quantities of one step; flat arrays over the window's nodes, the same on every rank that shares a node.
 #[derive(Clone, Debug)]
 pub struct Nodes<const D: usize> {
-    /// kg (or m^D, see `Weighting`)  m_I = sum_p N_Ip m_p
+    /// kg (or m^D, see `Model::inertial_weighting`)  m_I = sum_p N_Ip m_p
     pub weight: Vec<f64>,
     /// present in dynamics; then `weight` is the mass
     pub inertia: Option<Inertia>,
@@ -49,8 +53,7 @@ pub struct Nodes<const D: usize> {
     pub background_cells: usize,
     /// weight at and below which a node counts as massless
     threshold: f64,
-    /// what dilations are averaged with under consistent F-bar
-    lower: Option<Lower<D>>,
+    averages: Averages<D>,
 }
 
 impl<const D: usize> Nodes<D> {
@@ -63,10 +66,9 @@ impl<const D: usize> Nodes<D> {
         halo: &dyn Halo,
     ) -> Result<Self, StepError> {
         let nodes = model.grid.nodes();
-        let weight = scatter_weight(model.weighting, shape, points, halo);
-        let mut heaviest = [weight.iter().copied().fold(0.0, f64::max)];
-        halo.maximum(&mut heaviest);
-        let threshold = MASSLESS * heaviest[0];
+        let weighting = model.inertial_weighting();
+        let weight = scatter_weight(weighting, shape, points, halo);
+        let threshold = threshold(&weight, halo);
         let velocities = model.boundary.velocities(&model.grid);
         let inertia = (model.regime == Regime::Dynamic)
             .then(|| inertia::map(shape, points, (&weight, threshold), &velocities, (dt, model.newmark), halo));
@@ -74,14 +76,10 @@ impl<const D: usize> Nodes<D> {
         let (active, stiff) = supported(shape, points, background.as_ref(), nodes, halo);
         let unknown = |node: usize| active[node] && (weight[node] > threshold || stiff[node]);
         let free = velocities.iter().enumerate().map(|(c, v)| v.is_none() && unknown(c / D)).collect();
-        let mut f_ext = external_force(model, shape, points, t + dt, &weight, halo);
+        let mut f_ext = external_force((model, shape, points), t + dt, (weighting, &weight), halo);
         let window = (&model.grid, &active[..]);
         load::add_forces(&model.boundary.loads, &points.surface, window, t + dt, halo, &mut f_ext)?;
-        let lower = (model.stabilisation == Stabilisation::ConsistentFBar).then(|| {
-            let shape = shape.lowered(&model.grid, points);
-            let weight = scatter_weight(model.weighting, &shape, points, halo);
-            Lower { shape, weight }
-        });
+        let averages = Averages::of(model, (shape, points), threshold, halo);
         let mut mapped = Self {
             f_ext,
             prescribed: velocities.iter().map(|velocity| velocity.map(|v| v * dt)).collect(),
@@ -95,45 +93,62 @@ impl<const D: usize> Nodes<D> {
             threshold,
             weight,
             active,
-            lower,
+            averages,
         };
         mapped.count(halo);
         Ok(mapped)
     }
 
-    /// Nodal average a_I = 1/m_I sum_p N_Ip m_p a_p (Eqs 16, 17); zero at massless nodes.
-    pub fn average<const C: usize>(
+    /// What `found` makes of S(a)_p = sum_I N_Ip a_I, for every point: a_I = 1/m_I sum_p N_Ip m_p a_p (Eqs 16, 17), zero at
+    /// massless nodes, both sums over the points of one group of materials.
+    pub fn average<K, const C: usize, T: Send>(
         &self,
-        shape: &Shape<D>,
-        points: &Points<D>,
-        weighting: Weighting,
+        model: &Model<K, D>,
+        (shape, points): (&Shape<D>, &Points<D>),
         halo: &dyn Halo,
         value: impl Fn(usize) -> [f64; C] + Sync,
-    ) -> Vec<f64> {
-        average((shape, &self.weight, self.threshold), points, weighting, halo, value)
+        found: impl Fn(usize, [f64; C]) -> T + Sync,
+    ) -> Vec<T> {
+        let weight = self.averages.weight.as_ref().unwrap_or(&self.weight);
+        self.average_with(model, (shape, weight), points, halo, value, found)
     }
 
     /// The splines of degree q - 1 that dilations are averaged with, under consistent F-bar.
     pub fn lowered(&self) -> Option<&Shape<D>> {
-        self.lower.as_ref().map(|lower| &lower.shape)
+        self.averages.lower.as_ref().map(|(shape, _)| shape)
     }
 
     /// Mean of the points' dilations that F-bar puts into their place: S (Eqs 16-18), or S with the splines of degree
     /// q - 1 under consistent F-bar.
-    pub fn mean_dilation(
+    pub fn mean_dilation<K>(
         &self,
-        shape: &Shape<D>,
-        points: &Points<D>,
-        weighting: Weighting,
+        model: &Model<K, D>,
+        (shape, points): (&Shape<D>, &Points<D>),
         halo: &dyn Halo,
         value: impl Fn(usize) -> f64 + Sync,
     ) -> Vec<f64> {
-        let (shape, weight) = match &self.lower {
-            Some(lower) => (&lower.shape, &lower.weight),
-            None => (shape, &self.weight),
-        };
-        let nodal = average((shape, weight, self.threshold), points, weighting, halo, |p| [value(p)]);
-        transfer::to_points(shape, &nodal, |_, [mean]| mean)
+        let (value, found) = (|p| [value(p)], |_, [mean]: [f64; 1]| mean);
+        match &self.averages.lower {
+            Some((lower, weight)) => self.average_with(model, (lower, weight), points, halo, value, found),
+            None => self.average(model, (shape, points), halo, value, found),
+        }
+    }
+
+    /// With functions `shape` and their weights; zero where these are at most the threshold.
+    fn average_with<K, const C: usize, T: Send>(
+        &self,
+        model: &Model<K, D>,
+        (shape, weight): (&Shape<D>, &[f64]),
+        points: &Points<D>,
+        halo: &dyn Halo,
+        value: impl Fn(usize) -> [f64; C] + Sync,
+        found: impl Fn(usize, [f64; C]) -> T + Sync,
+    ) -> Vec<T> {
+        let (weights, grouped) = (weights(model.weighting, points), model.grouped(points));
+        let weighted = |p: usize| value(p).map(|v| weights[p] * v);
+        let mut nodal = halo.sum(&transfer::to_nodes_grouped(shape, grouped, weighted));
+        divide(&mut nodal, weight, self.averages.threshold);
+        transfer::to_points_grouped(shape, grouped, &nodal, found)
     }
 
     fn count(&mut self, halo: &dyn Halo) {
@@ -151,18 +166,24 @@ impl<const D: usize> Nodes<D> {
     }
 }
 
-/// Averages at the nodes of functions `shape` with their weights; zero at and below `threshold`.
-fn average<const D: usize, const C: usize>(
-    (shape, weight, threshold): (&Shape<D>, &[f64], f64),
-    points: &Points<D>,
-    weighting: Weighting,
-    halo: &dyn Halo,
-    value: impl Fn(usize) -> [f64; C] + Sync,
-) -> Vec<f64> {
-    let weights = weights(weighting, points);
-    let mut nodal = halo.sum(&transfer::to_nodes(shape, |p| value(p).map(|v| weights[p] * v)));
-    divide(&mut nodal, weight, threshold);
-    nodal
+impl<const D: usize> Averages<D> {
+    /// `threshold` is that of the nodes' own weights.
+    fn of<K>(model: &Model<K, D>, (shape, points): (&Shape<D>, &Points<D>), threshold: f64, halo: &dyn Halo) -> Self {
+        let (weights, grouped) = (weights(model.weighting, points), model.grouped(points));
+        let weight = |shape: &Shape<D>| halo.sum(&transfer::to_nodes_grouped(shape, grouped, |p| [weights[p]]));
+        let lowered = || {
+            let lower = shape.lowered(&model.grid, points);
+            let weight = weight(&lower);
+            (lower, weight)
+        };
+        let own = grouped.count() > 1 || model.weighting != model.inertial_weighting();
+        let of_nodes = (model.stabilisation.averages() && own).then(|| weight(shape));
+        Self {
+            threshold: of_nodes.as_ref().map_or(threshold, |weight| self::threshold(weight, halo)),
+            weight: of_nodes,
+            lower: (model.stabilisation == Stabilisation::ConsistentFBar).then(lowered),
+        }
+    }
 }
 
 pub(super) fn weights<const D: usize>(weighting: Weighting, points: &Points<D>) -> &[f64] {
@@ -214,17 +235,15 @@ fn supported<const D: usize>(
 
 /// Body force (step 2d): sum_p N_Ip m_p g(t + dt).
 fn external_force<K: Kinematics<D>, const D: usize>(
-    model: &Model<K, D>,
-    shape: &Shape<D>,
-    points: &Points<D>,
+    (model, shape, points): (&Model<K, D>, &Shape<D>, &Points<D>),
     t: f64,
-    weight: &[f64],
+    (weighting, weight): (Weighting, &[f64]),
     halo: &dyn Halo,
 ) -> Vec<f64> {
     let mut f_ext = vec![0.0; weight.len() * D];
     let Some(gravity) = &model.gravity else { return f_ext };
     let own;
-    let mass = match model.weighting {
+    let mass = match weighting {
         Weighting::Mass => weight,
         Weighting::Volume => {
             own = scatter_weight(Weighting::Mass, shape, points, halo);
@@ -238,6 +257,13 @@ fn external_force<K: Kinematics<D>, const D: usize>(
         }
     }
     f_ext
+}
+
+/// Weight at and below which a node counts as massless.
+fn threshold(weight: &[f64], halo: &dyn Halo) -> f64 {
+    let mut heaviest = [weight.iter().copied().fold(0.0, f64::max)];
+    halo.maximum(&mut heaviest);
+    MASSLESS * heaviest[0]
 }
 
 pub(super) fn divide(nodal: &mut [f64], weight: &[f64], threshold: f64) {

@@ -10,7 +10,7 @@ use crate::exact::Exact;
 use crate::grid::{Shape, transfer};
 use crate::material::Response;
 use crate::model::Model;
-use crate::points::Points;
+use crate::points::{Held, Points};
 use crate::seam::Halo;
 use crate::step::nodes::Nodes;
 use crate::tensor::Symmetric;
@@ -29,8 +29,15 @@ pub fn average_b_e<K, const D: usize>(
     points: &mut Points<D>,
     halo: &dyn Halo,
 ) {
-    let nodal = nodes.average(shape, points, model.weighting, halo, |p| points.b_e.at(p).0);
-    points.b_e = transfer::to_points(shape, &nodal, |_, b_e| Symmetric(b_e)).into_iter().collect();
+    let b_e = &points.b_e;
+    let averaged = nodes.average(model, (shape, points), halo, |p| b_e.at(p).0, |_, b_e| Symmetric(b_e));
+    let averaged: Held<D, Symmetric> = averaged.into_iter().collect();
+    if let Some(dilation) = &mut points.dilation {
+        for ((dilation, after), before) in dilation.iter_mut().zip(averaged.iter()).zip(points.b_e.iter()) {
+            *dilation *= (after.full().determinant() / before.full().determinant()).sqrt();
+        }
+    }
+    points.b_e = averaged;
 }
 
 /// What the filter of consistent F-bar needs of a point's return.
@@ -58,7 +65,8 @@ const RENEWING: f64 = 0.01;
 
 /// Consistent F-bar: b^e_p <- exp(2/3 theta_p (S(eps_v)_p - eps_v,p)) b^e_p, theta_p = S(1 - exp(-x/0.01))_p.
 ///
-/// x_p = sum_I N_Ip chi_I, chi_I the largest plastic strain of the step among the points that node I sees. Two half
+/// x_p = sum_I N_Ip chi_I, chi_I the largest plastic strain of the step among the points that node I sees, of those groups
+/// of materials by themselves that averages do not mix. Two half
 /// steps have the flow of the whole, so that the filter converges in the step size, and where nothing flows within reach
 /// b^e stays bit by bit. The factor is a positive scalar on the whole tensor: 1/2 ln det b^e changes by
 /// theta (S(eps_v) - eps_v), the deviator of the elastic strain not at all. Returns the mean of theta over all points.
@@ -74,19 +82,23 @@ pub fn filter_dilation<K, const D: usize>(
     if flowing[0] == 0.0 {
         return 0.0;
     }
-    let mut chi = vec![0.0; nodes.weight.len()];
-    transfer::largest_to_nodes(shape, &mut chi, |p| flow[p].plastic);
-    halo.max(&mut chi, 1);
-    let share = transfer::to_points(shape, &chi, |_, [x]| -(-x / RENEWING).exp_m1());
-    let nodal = nodes.average(shape, points, model.weighting, halo, |p| [share[p], flow[p].dilation]);
+    let grouped = model.grouped(points);
+    let mut chi = vec![0.0; nodes.weight.len() * grouped.count()];
+    transfer::largest_to_nodes(shape, grouped, &mut chi, |p| flow[p].plastic);
+    halo.max(&mut chi, grouped.count());
+    let share = transfer::to_points_grouped(shape, grouped, &chi, |_, [x]| -(-x / RENEWING).exp_m1());
     let b_e = &points.b_e;
-    let filtered = transfer::to_points(shape, &nodal, |p, [theta, mean]| {
+    let filter = |p: usize, [theta, mean]: [f64; 2]| {
         let change = theta * (mean - flow[p].dilation);
-        (b_e.at(p).scaled((2.0 / 3.0 * change).exp()), theta)
-    });
+        (b_e.at(p).scaled((2.0 / 3.0 * change).exp()), theta, change)
+    };
+    let filtered = nodes.average(model, (shape, points), halo, |p| [share[p], flow[p].dilation], filter);
     let (mut shares, mut count) = (Exact::ZERO, Exact::ZERO);
-    for (p, (b_e, theta)) in filtered.into_iter().enumerate() {
+    for (p, (b_e, theta, change)) in filtered.into_iter().enumerate() {
         points.b_e.set(p, b_e);
+        if let Some(dilation) = &mut points.dilation {
+            dilation[p] *= change.exp();
+        }
         shares.add(theta);
         count.add(1.0);
     }

@@ -30,7 +30,7 @@ pub fn assemble<K: Kinematics<D>, const D: usize>(
 ) -> Result<(), SolveError> {
     let Scene { model, shape, nodes, points, halo, .. } = *scene;
     solver.begin(&nodes.free);
-    let mut coupling = at.and_then(|_| Coupling::of(&model.grid, nodes, Raised::Along));
+    let mut coupling = at.and_then(|_| Coupling::of(model, nodes, Raised::Along));
     // Threads work on a column each; what they found is added in the order of the patches.
     let threads = rayon::current_num_threads();
     for columns in shape.columns().chunks(threads) {
@@ -133,7 +133,8 @@ impl<K: Kinematics<D>, const D: usize> State<'_, K, D> {
         };
         if let Some(dilations) = &mut part.dilations {
             grad.iter_mut().for_each(|grad| *grad *= volume);
-            dilations.add(nodes, p, &Share { weight: volume, bulk, dilation: grad, force: &[] });
+            let group = model.groups.of(points.material[p]);
+            dilations.add(nodes, p, &Share { group, weight: volume, bulk, dilation: grad, force: &[] });
         }
     }
 }

@@ -40,8 +40,7 @@ impl<const D: usize> Trial<D> {
             inverted if inverted.is_nan() => weight(model.stabilisation, points, p), // no other point shall suffer for it
             own => own,
         };
-        let mean =
-            model.stabilisation.averages().then(|| nodes.mean_dilation(shape, points, model.weighting, halo, own));
+        let mean = model.stabilisation.averages().then(|| nodes.mean_dilation(model, (shape, points), halo, own));
         Self { mean, ..trial }
     }
 
@@ -60,13 +59,18 @@ impl<const D: usize> Trial<D> {
     /// ratio_p = kept_p S(w dJ)_p / (w_p dJ_p), which F-bar multiplies the dilation of point `p` with; 1 without F-bar.
     #[inline]
     pub fn ratio<K: Kinematics<D>>(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> f64 {
-        let kept = points.dilation.as_ref().map_or(1.0, |dilation| 1.0 / dilation[p]);
-        self.averaged(model, points, p) * kept
+        self.averaged(model, points, p) * (1.0 / kept(model.stabilisation, points, p))
     }
 
-    /// S(w dJ)_p / (w_p dJ_p): what is kept for the next step where J is averaged as a whole.
+    /// J-bar/J of point `p` at the end of the step.
+    pub(super) fn dilation<K: Kinematics<D>>(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> f64 {
+        let before = if model.stabilisation == Stabilisation::FBarZhao { 1.0 } else { points.dilation_of(p) };
+        self.averaged(model, points, p) * before
+    }
+
+    /// S(w dJ)_p / (w_p dJ_p).
     #[inline]
-    pub(super) fn averaged<K: Kinematics<D>>(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> f64 {
+    fn averaged<K: Kinematics<D>>(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> f64 {
         self.mean.as_ref().map_or(1.0, |mean| mean[p] / self.own(model, points, p))
     }
 
@@ -81,7 +85,7 @@ impl<const D: usize> Trial<D> {
         let mean = self.mean.as_ref()?;
         let Scene { model, shape, nodes, points, halo, .. } = *scene;
         let own = |p: usize| self.own(model, points, p) * trace[p];
-        let mut rate = nodes.mean_dilation(shape, points, model.weighting, halo, own);
+        let mut rate = nodes.mean_dilation(model, (shape, points), halo, own);
         rate.iter_mut().zip(mean).zip(trace).for_each(|((rate, mean), trace)| *rate = *rate / mean - trace);
         Some(rate)
     }
@@ -109,6 +113,12 @@ impl<const D: usize> Trial<D> {
             gap => model.respond(points, p, &b_trial.scaled((2.0 / 3.0 * gap).exp())),
         }
     }
+}
+
+/// J-bar/J at the start of the step where the total J is averaged, else 1.
+#[inline]
+fn kept<const D: usize>(stabilisation: Stabilisation, points: &Points<D>, p: usize) -> f64 {
+    if stabilisation == Stabilisation::FBarZhao { points.dilation_of(p) } else { 1.0 }
 }
 
 /// w_p: J at the start of the step where the total J is averaged, else 1.

@@ -1,7 +1,7 @@
 //! Measures of how far a run can be trusted, on states whose answer is known.
 
 use crate::support::scene::{Scene, axis, hencky};
-use bsmpm::grid::{Shape, transfer};
+use bsmpm::grid::Shape;
 use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
 use bsmpm::model::{Regime, Weighting};
 use bsmpm::observe::noise::relative_pressure_noise;
@@ -87,8 +87,9 @@ fn a_pass_of_smoothing_has_the_variance_of_its_formula() {
         let (points, halo) = (&scene.points, scene.halo());
         let shape = Shape::at(&scene.model.grid, points).unwrap();
         let nodes = Nodes::map(&scene.model, &shape, points, (0.0, 1.0), &halo).unwrap();
-        let nodal = nodes.average(&shape, points, Weighting::Mass, &halo, |p| [points.x[p][0].powi(2)]);
-        let spread = transfer::to_points(&shape, &nodal, |p, [mean]| mean - points.x[p][0].powi(2));
+        let square = |p: usize| points.x[p][0].powi(2);
+        let spread =
+            nodes.average(&scene.model, (&shape, points), &halo, |p| [square(p)], |p, [mean]| mean - square(p));
         let inner = (0..points.len()).filter(|&p| (3.0..5.0).contains(&points.x[p][0]));
         let variances: Vec<f64> = inner.map(|p| spread[p]).collect();
         let variance = variances.iter().sum::<f64>() / variances.len() as f64;

@@ -89,6 +89,19 @@ fn the_product_is_the_derivative_of_the_forces() {
     }
 }
 
+/// Two materials that meet inside cells, each averaged by itself.
+#[test]
+fn averages_of_two_materials_are_in_the_product() {
+    for method in METHODS {
+        let stiff = MohrCoulomb::new(Elastic { young: 1e5, poisson: 0.2 }, 0.3, 0.0, 50.0);
+        let scene = loaded::<PlaneStrain, 2>(method, Regime::Dynamic);
+        let scene = scene.with(Material::MohrCoulomb(stiff), |x| x[0] > 0.4 + 0.5 * x[1]);
+        let (error, _) = product_error(&scene);
+        println!("{method:?}: {error:e}");
+        assert!(error <= 1e-6, "{method:?}: {error:e}"); // central differences
+    }
+}
+
 #[test]
 fn strips_are_in_the_product() {
     let scene = loaded::<PlaneStrain, 2>(Stabilisation::FBar, Regime::QuasiStatic);

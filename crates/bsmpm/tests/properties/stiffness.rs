@@ -93,6 +93,22 @@ fn the_factorised_stiffness_is_the_derivative_of_elastic_material() {
     is_the_derivative_of_elastic_material::<Solid, 3>(2);
 }
 
+/// Each averaged by itself: no function sees a mean of two stiffnesses.
+#[test]
+fn it_is_the_derivative_of_two_elastic_materials_that_meet_inside_cells() {
+    let stiff = MohrCoulomb::new(Elastic { young: 1e5, poisson: 0.3 }, 0.5, 0.1, 1e8);
+    for order in [1, 2, 3] {
+        let scene = body::<PlaneStrain, 2>(order, 1e6, Regime::Dynamic)
+            .with(Material::MohrCoulomb(stiff.clone()), |x| x[0] > 0.4 + 0.5 * x[1]);
+        for kind in [Kind::Factorised, Kind::General] {
+            let (_, image, product) = products(&scene, 0.0, kind);
+            let error = error(&image, &product);
+            println!("order {order}: {error:e}");
+            assert!(error <= 1e-12, "order {order}: {error:e}"); // measured 1e-15
+        }
+    }
+}
+
 #[test]
 fn it_is_positive_where_everything_yields() {
     let condition = |cohesion: f64| {

@@ -11,7 +11,7 @@ use bsmpm::model::{Criteria, Gravity, Model, Regime, Weighting};
 use bsmpm::points::{Points, Seed};
 use bsmpm::schedule::Schedule;
 use bsmpm::seam::Alone;
-use bsmpm::stabilisation::Stabilisation;
+use bsmpm::stabilisation::{Groups, Stabilisation};
 use bsmpm::step::equilibrium::Nonlinear;
 use bsmpm::step::newmark::Newmark;
 use bsmpm::tensor::Vector;
@@ -58,6 +58,7 @@ impl<K: Kinematics<D>, const D: usize> Scene<K, D> {
             gravity: None,
             boundary: Boundary::default(),
             stabilisation: Stabilisation::None,
+            groups: Groups::default(),
             background: None,
             criteria: Criteria { energy: 1e-14, force: 1e-10, max_iterations: 200 },
             nonlinear: Nonlinear::default(),
@@ -102,6 +103,16 @@ impl<K: Kinematics<D>, const D: usize> Scene<K, D> {
         let mut added = Points::from_seeds((0..total).map(seed), self.points.motion.is_some());
         append(&mut self.points, &mut added);
         self.points.sort_by_cell(&self.model.grid);
+        self
+    }
+
+    /// Gives the points that `stiff` names by their place a second material, whose dilation averages do not mix with the first.
+    pub fn with(mut self, second: Material, stiff: impl Fn(&Vector<D>) -> bool) -> Self {
+        self.model.materials.push(second);
+        self.model.groups = Groups::of_alike(&[false, true]);
+        for (material, x) in self.points.material.iter_mut().zip(&self.points.x) {
+            *material = u16::from(stiff(x));
+        }
         self
     }
 

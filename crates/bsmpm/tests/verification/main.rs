@@ -4,6 +4,7 @@
 #![allow(non_snake_case)] // the paper's letters, as in the crate
 
 mod bar;
+mod cauchy;
 mod column;
 mod damping;
 mod discs;
@@ -11,6 +12,7 @@ mod dynamics;
 mod energy;
 mod entering;
 mod geostatic;
+mod interface;
 mod invariance;
 mod locking;
 mod newton;
