@@ -38,6 +38,7 @@ use crate::points::Points;
 use crate::seam::{Halo, over_layers};
 use crate::step::equilibrium::{Found, Scene};
 use crate::step::nodes::Nodes;
+use crate::step::variational::Pressures;
 use crate::tensor::{Square, Vector};
 use std::ops::AddAssign;
 
@@ -206,10 +207,12 @@ fn add_gravity<K: Kinematics<D>, const D: usize>(
 /// Work of the points' stress, and what became of it before any smoothing.
 fn add_internal<K: Kinematics<D>, const D: usize>(flows: &mut Flows<Exact>, scene: &Scene<'_, K, D>, found: &Found<D>) {
     let Scene { model, shape, points, .. } = *scene;
+    let pressures = Pressures::of(scene, &found.trial);
     let balance_of = |p: usize, grad: Square<D>| {
         let volume = points.volume[p];
         let Ok(response) = found.trial.respond(model, points, p) else { return [f64::NAN; 3] };
-        let work = volume * K::flux(&response.tau(), &found.trial.dF::<K>(p)).dot(&grad);
+        let tau = pressures.acting::<K, D>(p, volume, response.tau());
+        let work = volume * K::flux(&tau, &found.trial.dF::<K>(p)).dot(&grad);
         let elastic = volume * model.elastic_energy(points, p, &response.b_e());
         [work, volume * response.dissipation(), elastic]
     };

@@ -135,6 +135,15 @@ impl Material {
         matches!(self, Self::Graded(_))
     }
 
+    /// Dilation angle, rad.
+    pub fn dilation(&self) -> f64 {
+        match self {
+            Self::Hencky(_) => 0.0,
+            Self::MohrCoulomb(law) => law.dilation(),
+            Self::Graded(law) => law.dilation(),
+        }
+    }
+
     /// What becomes of the volume that opens at the apex.
     pub fn separation(&self) -> Separation {
         match self {

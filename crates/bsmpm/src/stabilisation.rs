@@ -32,6 +32,7 @@ pub enum Stabilisation {
     /// 2407.03826, use for splines, here from point to point. Twice S1 would leave 28 % less noise in flowing sand, but then
     /// dilatant slopes find no equilibrium. After a converged step (`step::smooth`) b^e <- exp(2/3 theta (S(eps_v) - eps_v))
     /// b^e, eps_v = 1/2 ln det b^e, with theta from 0, no flow, to 1. Without flow it is an F-bar with S1 for S, no more.
+    /// In dilatant material its force is the adjoint of its stress, see `step::variational`.
     ConsistentFBar,
 }
 

@@ -19,6 +19,7 @@ pub mod stability;
 pub mod stiffness;
 pub mod trial;
 pub mod unknowns;
+pub mod variational;
 
 use crate::boundary::strip::Grips;
 use crate::boundary::{Anchors, StripReport, Surface, load};

@@ -82,6 +82,11 @@ impl Graded {
         self.strength.as_ref().map_or(Separation::Forgotten, |strength| strength.separation)
     }
 
+    /// Dilation angle, rad; elastic material has none.
+    pub(super) fn dilation(&self) -> f64 {
+        self.strength.as_ref().map_or(0.0, |strength| strength.dilation)
+    }
+
     /// The response of a point that was placed at a height, m; see [`Material::respond`].
     #[inline(never)]
     pub fn respond(&self, height: f64, b_trial: &Symmetric) -> Result<Response, MaterialError> {

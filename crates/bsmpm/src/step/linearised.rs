@@ -7,6 +7,7 @@
 use crate::error::SolveError;
 use crate::grid::transfer;
 use crate::kinematics::Kinematics;
+use crate::material::Tangent;
 use crate::seam::{LinearSolver, Symmetry};
 use crate::step::coupling::{Coupling, Dilations, Raised, Share};
 use crate::step::equilibrium::Scene;
@@ -14,7 +15,8 @@ use crate::step::nodes::weights;
 use crate::step::residual::Residual;
 use crate::step::stiffness::{add_background, complete};
 use crate::step::trial::Trial;
-use crate::tensor::{Square, Vector};
+use crate::step::variational::{Adjoint, Pressures, transposed, works};
+use crate::tensor::{Square, Tensor, Vector};
 
 /// Flux for every unit gradient: element (k, l) for du_k/dx_l = 1.
 pub type Moduli<const D: usize> = [[Square<D>; D]; D];
@@ -27,6 +29,16 @@ pub struct Linearised<'a, K, const D: usize> {
     moduli: Vec<Moduli<D>>,
     /// under F-bar
     dilation: Option<Vec<Dilation<D>>>,
+    /// under consistent F-bar in dilatant material; of all points
+    adjoint: Option<(Adjoint, Vec<Pressure<D>>)>,
+}
+
+/// What the adjoint force adds at a point: its pressure is that of an average.
+struct Pressure<const D: usize> {
+    /// J  d(V0 tau : I / dof) per gradient, and per unit of d ln(dJ-bar/dJ)
+    raised: (Square<D>, f64),
+    /// J  V0 tau : I / dof of the point itself
+    own: f64,
 }
 
 /// What F-bar adds at a point.
@@ -37,6 +49,18 @@ struct Dilation<const D: usize> {
     flux: Square<D>,
 }
 
+impl<const D: usize> Pressure<D> {
+    /// Of a point with a tangent, dF^-1 and tau.
+    fn of<K: Kinematics<D>>((tangent, inverse): (&Tangent, &Tensor), tau: &Tensor, volume: f64) -> Self {
+        let by_gradient = Square::<D>::from_fn(|k, l| {
+            let unit = Square::<D>::from_fn(|i, j| f64::from(u8::from((i, j) == (k, l))));
+            volume * works::<K, D>(&tangent.apply(&(K::gradient(&unit) * inverse)))
+        });
+        let by_rate = volume * works::<K, D>(&tangent.apply(&K::dilation()));
+        Self { raised: (by_gradient, by_rate), own: volume * works::<K, D>(tau) }
+    }
+}
+
 impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
     /// The derivative where `residual` was evaluated; no point of it may have inverted.
     pub fn at(scene: &'a Scene<'a, K, D>, residual: &'a Residual<D>) -> Self {
@@ -44,6 +68,8 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
         let averaged = trial.is_averaged();
         let mut moduli = Vec::with_capacity(points.len());
         let mut dilation = averaged.then(|| Vec::with_capacity(points.len()));
+        let pressures = Pressures::of(scene, trial);
+        let mut adjoint = Adjoint::of(scene.model).map(|adjoint| (adjoint, Vec::with_capacity(points.len())));
         for p in 0..points.len() {
             let dF = trial.dF::<K>(p);
             let inverse = dF.try_inverse();
@@ -56,17 +82,29 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
                 let mut grad = Square::<D>::zeros();
                 grad[(k, l)] = 1.0;
                 let l = K::gradient(&grad) * inverse;
-                let change = tangent.apply(&l) - tau * l.transpose();
+                let mut change = tangent.apply(&l) - tau * l.transpose();
+                if let Some(pressure) = pressures.at(p) {
+                    let (pressure, own) = (pressure / points.volume[p], works::<K, D>(&tau));
+                    change -= l.transpose() * (pressure - own);
+                    change += Tensor::identity() * (pressure * l.trace() - works::<K, D>(&tangent.apply(&l)));
+                }
                 K::in_plane(&(change * inverse.transpose())) * points.volume[p]
             };
             moduli.push(std::array::from_fn(|k| std::array::from_fn(|l| unit(k, l))));
             if let Some(dilation) = &mut dilation {
-                let change = tangent.apply(&K::dilation()) * inverse.transpose();
+                let mut change = tangent.apply(&K::dilation());
+                if let Some((_, at)) = &mut adjoint {
+                    at.push(Pressure::of::<K>((&tangent, &inverse), &tau, points.volume[p]));
+                }
+                if pressures.at(p).is_some() {
+                    change -= Tensor::identity() * works::<K, D>(&change);
+                }
+                let change = change * inverse.transpose();
                 let flux = K::in_plane(&change) * points.volume[p];
                 dilation.push(Dilation { trace: K::in_plane(&inverse.transpose()), flux });
             }
         }
-        Self { scene, trial, moduli, dilation }
+        Self { scene, trial, moduli, dilation, adjoint }
     }
 
     /// K v on nodal arrays, `v` zero where it is not free: one exchange with the neighbours, one more under F-bar.
@@ -78,9 +116,20 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
             Some((dilation, self.trial.dilation_rate(self.scene, &trace)?))
         });
         let moduli = &self.moduli;
+        let pressed = rate.as_ref().and_then(|(dilation, rate)| {
+            let (adjoint, at) = self.adjoint.as_ref()?;
+            let raised = |p: usize| {
+                let Pressure { raised: (by_gradient, by_rate), own } = &at[p];
+                let (_, mean) = self.trial.means(self.scene.model, self.scene.points, p);
+                let grown = own * (rate[p] + dilation[p].trace.dot(&grad[p]));
+                (by_gradient.dot(&grad[p]) + by_rate * rate[p] - grown) / mean
+            };
+            Some((dilation, transposed(self.scene, adjoint, self.trial, raised)))
+        });
         let mut force = transfer::divergence(shape, |p| {
             let flux = contract(&moduli[p], &grad[p]);
-            rate.as_ref().map_or(flux, |(dilation, rate)| flux + dilation[p].flux * rate[p])
+            let flux = rate.as_ref().map_or(flux, |(dilation, rate)| flux + dilation[p].flux * rate[p]);
+            pressed.as_ref().map_or(flux, |(dilation, pressed)| flux + dilation[p].trace * pressed[p])
         });
         if let Some(background) = &nodes.background {
             background.multiply::<D>(shape, v, &mut force);
@@ -112,7 +161,7 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
                 transfer::gradients_of(shape, p, grad);
                 match &mut dilations {
                     Some(dilations) => self.add_coupled(p, grad, (dilations, &mut block)),
-                    None => add_point(&self.moduli[p], grad, Pairs::All, &mut block),
+                    None => add_point(&self.narrow(p).0, grad, Pairs::All, &mut block),
                 }
             }
             if let (Some(coupling), Some(dilations)) = (&mut coupling, &dilations) {
@@ -129,11 +178,25 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
         complete(self.scene, solver, Symmetry::General)
     }
 
+    /// Moduli of point `p`, and its flux per unit of d ln(dJ-bar/dJ), of a force that is not the adjoint: that one reaches twice
+    /// as far as a matrix.
+    fn narrow(&self, p: usize) -> (Moduli<D>, Square<D>) {
+        let flux = self.dilation.as_ref().map_or_else(Square::zeros, |dilation| dilation[p].flux);
+        let has = |(adjoint, _): &&(Adjoint, _)| adjoint.has(self.scene.model, self.scene.points, p);
+        let (Some((_, at)), Some(dilation)) = (self.adjoint.as_ref().filter(has), &self.dilation) else {
+            return (self.moduli[p], flux);
+        };
+        let (Dilation { trace, .. }, Pressure { raised: (by_gradient, by_rate), .. }) = (&dilation[p], &at[p]);
+        let unit = |k: usize, l: usize| self.moduli[p][k][l] + trace * by_gradient[(k, l)];
+        (std::array::from_fn(|k| std::array::from_fn(|l| unit(k, l))), flux + trace * *by_rate)
+    }
+
     /// Adds point `p`, whose dilation is averaged: flux_p (S(w dJ tr l)_p / S(w dJ)_p - tr l_p) besides its moduli.
     fn add_coupled(&self, p: usize, grad: &[Vector<D>], (dilations, block): (&mut Dilations, &mut [f64])) {
         let Scene { model, nodes, points, .. } = *self.scene;
-        let Some(Dilation { trace, flux }) = self.dilation.as_ref().map(|dilation| &dilation[p]) else { return };
-        let own = |k: usize, l: usize| self.moduli[p][k][l] - flux * trace[(k, l)];
+        let Some(Dilation { trace, .. }) = self.dilation.as_ref().map(|dilation| &dilation[p]) else { return };
+        let (narrow, flux) = self.narrow(p);
+        let own = |k: usize, l: usize| narrow[k][l] - flux * trace[(k, l)];
         let moduli = std::array::from_fn(|k| std::array::from_fn(|l| own(k, l)));
         add_point(&moduli, grad, Pairs::All, block);
         let weight = weights(model.weighting, points)[p];

@@ -6,6 +6,7 @@ use crate::kinematics::Kinematics;
 use crate::seam::over_layers;
 use crate::step::equilibrium::Scene;
 use crate::step::trial::Trial;
+use crate::step::variational::Pressures;
 use crate::tensor::Square;
 use std::sync::atomic::Ordering::Relaxed;
 use std::sync::atomic::{AtomicU64, AtomicUsize};
@@ -39,14 +40,18 @@ pub struct Balance {
 }
 
 impl<const D: usize> Residual<D> {
-    /// Evaluates the forces under `u`: one exchange with the neighbours, one more each for F-bar and strips, and one
+    /// Evaluates the forces under `u`: one exchange with the neighbours, one more each for F-bar, its adjoint and strips, and one
     /// reduction.
     pub fn of<K: Kinematics<D>>(scene: &Scene<'_, K, D>, u: &[f64]) -> Self {
         let Scene { model, shape, nodes, points, halo, .. } = *scene;
         let trial = Trial::of(model, shape, nodes, points, u, halo);
         let (inverted, first_inverted) = (AtomicU64::new(0), AtomicUsize::new(usize::MAX));
+        let pressures = Pressures::of(scene, &trial);
         let mut f_int = transfer::divergence(shape, |p| match trial.respond(model, points, p) {
-            Ok(response) => K::flux(&response.tau(), &trial.dF::<K>(p)) * points.volume[p],
+            Ok(response) => {
+                let tau = pressures.acting::<K, D>(p, points.volume[p], response.tau());
+                K::flux(&tau, &trial.dF::<K>(p)) * points.volume[p]
+            }
             Err(_) => {
                 inverted.fetch_add(1, Relaxed);
                 first_inverted.fetch_min(p, Relaxed);

@@ -102,6 +102,23 @@ fn averages_of_two_materials_are_in_the_product() {
     }
 }
 
+/// Dilatant soil, alone and beside some whose force is not the adjoint of its stress.
+#[test]
+fn adjoint_forces_are_in_the_product() {
+    let dilatant = MohrCoulomb::new(Elastic { young: 1000.0, poisson: 0.3 }, 0.5, 0.4, 1.0);
+    for regime in [Regime::QuasiStatic, Regime::Dynamic] {
+        let dilatant = Material::MohrCoulomb(dilatant.clone());
+        let mut plane = loaded::<PlaneStrain, 2>(Stabilisation::ConsistentFBar, regime);
+        let two = plane.clone().with(dilatant.clone(), |x| x[0] > 0.4 + 0.5 * x[1]);
+        plane.model.materials = vec![dilatant.clone()];
+        let mut solid = loaded::<Solid, 3>(Stabilisation::ConsistentFBar, regime);
+        solid.model.materials = vec![dilatant];
+        let errors = [product_error(&plane).0, product_error(&two).0, product_error(&solid).0];
+        println!("{regime:?}: {errors:?}");
+        assert!(errors.iter().all(|&error| error <= 1e-6), "{errors:?}"); // central differences
+    }
+}
+
 #[test]
 fn strips_are_in_the_product() {
     let scene = loaded::<PlaneStrain, 2>(Stabilisation::FBar, Regime::QuasiStatic);
