@@ -23,13 +23,16 @@ pub struct FailureReport {
     pub attempts: Vec<String>,
     /// Both measures of every iteration of the last attempt.
     pub history: Vec<Measures>,
+    /// What both had to fall below; none where nothing was iterated.
+    #[serde(default)]
+    pub tolerances: Option<Measures>,
     /// The worst nodes or points of all ranks, worst first.
     pub worst: Vec<Worst>,
     /// What may help.
     pub advice: Vec<String>,
 }
 
-/// How far an iteration was from equilibrium.
+/// How far an iteration was from equilibrium, or how far it may be.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Measures {
     /// The energy measure.

@@ -192,14 +192,15 @@ impl Ledger {
     }
 
     /// What a step tells of how far its state can be trusted. A state without a direction from it was accepted as balanced to
-    /// round-off, or far below the tolerance.
+    /// round-off, or far below the tolerance; one that settled, by its forces alone.
     fn measures(&mut self, report: &Report) {
         let [force, energy] = self.criteria;
         let summary = &mut self.manifest.summary;
         if let Some(passes) = &mut summary.smoothing_passes {
             *passes += report.smoothed;
         }
-        if let Some(last) = report.history.last().filter(|last| last.force == report.force) {
+        summary.settled_steps += u64::from(report.settled);
+        if let Some(last) = report.history.last().filter(|last| !report.settled && last.force == report.force) {
             let larger =
                 |so_far: &mut Option<f64>, ratio: f64| *so_far = Some(so_far.map_or(ratio, |so| so.max(ratio)));
             larger(&mut summary.largest_force_measure, last.force / force);

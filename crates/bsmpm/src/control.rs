@@ -145,8 +145,7 @@ impl Stepper {
                 Err(error) => {
                     let hopeless = matches!(
                         error,
-                        StepError::Left { .. }
-                            | StepError::Outside { .. }
+                        StepError::Outside { .. }
                             | StepError::Unloaded { .. }
                             | StepError::Material { .. }
                             | StepError::OtherRank

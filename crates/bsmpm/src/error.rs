@@ -1,6 +1,7 @@
 //! What can go wrong in the physics; every variant names the point, node or number concerned.
 
 use crate::material::MaterialError;
+use crate::model::Criteria;
 use crate::step::equilibrium::Method;
 use thiserror::Error;
 
@@ -37,7 +38,7 @@ pub enum SolveError {
 pub struct Measures {
     /// |du . f| / |du_0 . f_0|
     pub energy: f64,
-    /// |f_oob| / largest force
+    /// |f_oob| / largest force, of all nodes or of one material's own: the larger one
     pub force: f64,
     /// what gave du
     pub method: Method,
@@ -93,7 +94,9 @@ pub enum StepError {
     },
     /// The iteration limit was reached, or no direction led on.
     #[error(
-        "not converged after {iterations} iterations: energy measure {energy:.2e}, force measure {force:.2e}{}",
+        "not converged after {iterations} iterations{}: {}{}",
+        if *iterations < criteria.max_iterations { "" } else { ", their limit" },
+        criteria.judged(*energy, (*force, *material)),
         unsolved.as_ref().map_or_else(String::new, |reason| format!("; no direction from there: {reason}"))
     )]
     NotConverged {
@@ -101,8 +104,12 @@ pub enum StepError {
         iterations: usize,
         /// |du . f| / |du_0 . f_0|.
         energy: f64,
-        /// |f_oob| / largest force.
+        /// |f_oob| / largest force, of all nodes or of one material's own: the larger one.
         force: f64,
+        /// Number of that material; `None` where it is that of all nodes.
+        material: Option<usize>,
+        /// What was asked for.
+        criteria: Criteria,
         /// Both measures of every iteration.
         history: Vec<Measures>,
         /// The worst nodes of this rank, worst first.

@@ -55,10 +55,23 @@ impl<const D: usize> Gravity<D> {
 pub struct Criteria {
     /// |du_k . f_k| / |du_0 . f_0| (step 9)
     pub energy: f64,
-    /// |f_oob| / max(|f_ext|, |f_int|, |M a|, |reaction|): the energy product alone is no norm
+    /// |f_oob| / max(|f_ext|, |f_int|, |M a|, |reaction|): the energy product alone is no norm. Of all nodes, and of those that
+    /// one material alone touches
     pub force: f64,
     /// quasi-Newton iterations of one attempt
     pub max_iterations: usize,
+}
+
+impl Criteria {
+    /// Both measures beside their tolerances, in words; the force measure with the number of the material that it is of.
+    pub fn judged(&self, energy: f64, (force, material): (f64, Option<usize>)) -> String {
+        let against = |measure: f64, tolerance: f64| {
+            let side = if measure < tolerance { "within" } else { "above" };
+            format!("{measure:.2e}, {side} its tolerance {tolerance:e}")
+        };
+        let of = material.map_or_else(String::new, |material| format!(" of material {material} alone"));
+        format!("energy measure {}; force measure{of} {}", against(energy, self.energy), against(force, self.force))
+    }
 }
 
 /// A scene, ready to be stepped.

@@ -1,5 +1,6 @@
 //! One load step, t -> t + dt: section 2.4 of the paper, numbered as there.
 
+pub mod apart;
 pub mod broyden;
 pub mod commit;
 mod coupling;
@@ -67,6 +68,8 @@ pub struct Report {
     pub massless_nodes: usize,
     /// cells (ghost penalty: faces) with the soft background, over all ranks
     pub background_cells: usize,
+    /// whether the forces alone decided: the methods led on no further, and forces balanced far below their tolerance
+    pub settled: bool,
     /// whether the first guess of the displacement led to convergence
     pub first_guess: bool,
     /// N  force of every support on the body, by component, in the order of the model's supports

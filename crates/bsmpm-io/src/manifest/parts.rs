@@ -104,13 +104,17 @@ pub struct Summary {
     /// Steps in which Newton's method found equilibrium.
     #[serde(default)]
     pub newton_steps: u64,
+    /// Steps whose forces alone decided: they balanced ten times better than asked, where no method led on and the energy
+    /// measure did not hold.
+    #[serde(default)]
+    pub settled_steps: u64,
     /// Largest slip of any rigid strip in a step, over its motion in that step; none without strips that move.
     #[serde(default)]
     pub largest_slip: Option<f64>,
     /// m  largest slip of any rigid strip in all steps together, also of strips that do not move; none without strips.
     #[serde(default)]
     pub largest_accumulated_slip: Option<f64>,
-    /// Largest force measure of a state that was accepted by it, over its tolerance; none while there is no such state.
+    /// Largest force measure of a state that was accepted by both measures, over its tolerance; none while there is no such state.
     #[serde(default)]
     pub largest_force_measure: Option<f64>,
     /// The same of the energy measure.

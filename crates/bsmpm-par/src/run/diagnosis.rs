@@ -2,25 +2,29 @@
 
 use bsmpm::control::Failure;
 use bsmpm::error::{SolveError, StepError};
+use bsmpm::model::Criteria;
 use bsmpm_io::failure::{FailureReport, Measures};
 use bsmpm_io::manifest::Worst;
+use bsmpm_scene::Case;
 use mpi::topology::{Communicator, SimpleCommunicator};
 use mpi::traits::CommunicatorCollectives;
 
 /// Places told of one failure.
 const MOST_PLACES: usize = 10;
 
-/// The report of `failure` in step `step`, from all ranks; `lower` is the grid's lower corner. Collective.
-pub(super) fn of(world: &SimpleCommunicator, failure: &Failure, step: u64, lower: [f64; 2]) -> FailureReport {
+/// The report of `failure` in step `step` of a case, from all ranks. Collective.
+pub(super) fn of(world: &SimpleCommunicator, failure: &Failure, step: u64, case: &Case) -> FailureReport {
+    let lower = case.grid.lower();
     let last = failure.attempts.last();
     // The last attempt may have ended before it iterated; all ranks have the same kinds of errors.
     let iterated = |error: &&StepError| matches!(error, StepError::NotConverged { .. });
     let iterated = failure.attempts.iter().rev().find(iterated);
-    let history = match iterated {
-        Some(StepError::NotConverged { history, .. }) => {
-            history.iter().map(|m| Measures::new(m.energy, m.force)).collect()
-        }
-        _ => Vec::new(),
+    let (history, tolerances) = match iterated {
+        Some(StepError::NotConverged { history, criteria, .. }) => (
+            history.iter().map(|m| Measures::new(m.energy, m.force)).collect(),
+            Some(Measures::new(criteria.energy, criteria.force)),
+        ),
+        _ => (Vec::new(), None),
     };
     FailureReport {
         step,
@@ -28,8 +32,9 @@ pub(super) fn of(world: &SimpleCommunicator, failure: &Failure, step: u64, lower
         dt: failure.dt,
         attempts: failure.attempts.iter().map(ToString::to_string).collect(),
         history,
+        tolerances,
         worst: last.map_or_else(Vec::new, |error| worst(world, places_of(error, iterated), lower)),
-        advice: last.map_or_else(Vec::new, advice),
+        advice: last.map_or_else(Vec::new, |error| advice(error, case)),
     }
 }
 
@@ -70,13 +75,12 @@ fn worst(world: &SimpleCommunicator, error: &StepError, lower: [f64; 2]) -> Vec<
     places.iter().take(MOST_PLACES).map(told).collect()
 }
 
-fn advice(error: &StepError) -> Vec<String> {
+fn advice(error: &StepError, case: &Case) -> Vec<String> {
     let lines: &[&str] = match error {
-        StepError::NotConverged { .. } => &[
-            "the load may be more than the body can carry: look at the displacements of the last frame, and at `bsmpm fos`",
-            "look at the worst nodes: next to nearly empty cells a larger [solver] background helps",
-            "more steps ([analysis] steps or dt), or a [stabilisation] where poisson is above .45 or the soil yields",
-        ],
+        StepError::NotConverged { iterations, energy, force, material, criteria, .. } => {
+            let name = material.map(|number| case.materials[number].name.as_str());
+            return not_converged(*iterations, (*energy, *force), name, criteria);
+        }
         StepError::Unstable { .. } => &[
             "nearly incompressible material under a pressure of several times its shear modulus: more points_per_cell",
             "where the body itself buckles, a dynamic analysis follows it",
@@ -86,7 +90,7 @@ fn advice(error: &StepError) -> Vec<String> {
             "look at the points named: loose points at a free surface are the usual ones",
         ],
         StepError::Left { .. } | StepError::Outside { .. } => {
-            &["a larger grid, or a support at the face where points left"]
+            &["a larger grid, or a support at the face where points left; steps down to 1/1024 threw them out as well"]
         }
         StepError::Unloaded { .. } => {
             &["a load or strip has no material any more: look where it was in the last frame"]
@@ -99,4 +103,42 @@ fn advice(error: &StepError) -> Vec<String> {
         StepError::Interrupted => &[],
     };
     lines.iter().map(|line| (*line).to_owned()).collect()
+}
+
+/// What to try where both measures did not fall below their tolerances; `material`: the one that the force measure is of.
+fn not_converged(
+    iterations: usize,
+    (energy, force): (f64, f64),
+    material: Option<&str>,
+    criteria: &Criteria,
+) -> Vec<String> {
+    let mut lines = Vec::new();
+    if force < criteria.force {
+        lines.push(format!(
+            "forces balance within [solver] force_tolerance = {:e}, but each direction still works (energy measure {energy:.1e}): \
+             the body yields nearly as a whole; more steps, or a [solver] tolerance above the {:e} of now where that work is small",
+            criteria.force, criteria.energy
+        ));
+    }
+    if let (true, Some(name)) = (force >= criteria.force, material) {
+        lines.push(format!(
+            "the forces of material \"{name}\" do not balance by its own scale ([solver] force_tolerance = {:e}): look at that body",
+            criteria.force
+        ));
+    }
+    if iterations >= criteria.max_iterations {
+        lines.push(format!(
+            "a larger [solver] max_iterations than {}, if the measures still fell",
+            criteria.max_iterations
+        ));
+    }
+    lines.extend(
+        [
+            "the load may be more than the body can carry: look at the displacements of the last frame, and at `bsmpm fos`",
+            "look at the worst nodes: next to nearly empty cells a larger [solver] background helps",
+            "more steps ([analysis] steps or dt), or a [stabilisation] where poisson is above .45 or the soil yields",
+        ]
+        .map(str::to_owned),
+    );
+    lines
 }

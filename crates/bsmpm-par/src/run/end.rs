@@ -131,6 +131,14 @@ impl Run<'_> {
             ledger.path().display()
         );
         self.log.line("end", &text);
+        if summary.settled_steps > 0 {
+            let text = format!(
+                "{} steps were accepted by their forces alone, balanced ten times better than asked: no method led on to the \
+                 energy tolerance, as where the body yields as a whole; more steps, or a background, may",
+                summary.settled_steps
+            );
+            self.log.line("settled", &text);
+        }
         if judged {
             self.log.line("indicators", &all);
         }

@@ -36,11 +36,12 @@ impl Run<'_> {
     fn give_up(mut self, failure: &Failure, (told, end): (&str, &str)) -> (Self, u8) {
         let step = self.simulation.steps() + 1;
         let code = launch::agree(&self.universe.world(), code_of(failure.attempts.last(), step));
-        let report = diagnosis::of(&self.universe.world(), failure, step, self.case.grid.lower());
+        let report = diagnosis::of(&self.universe.world(), failure, step, &self.case);
         let reason = report.attempts.last().map_or("", String::as_str);
         let place = report.worst.first();
         let place = place.map_or_else(String::new, |w| format!("; {} {} at {:?}", w.kind, w.id, w.position));
-        self.log.failure(&format!("{told}: {reason}{place}{end}"));
+        let advice = report.advice.first().map_or_else(String::new, |advice| format!("; try: {advice}"));
+        self.log.failure(&format!("{told}: {reason}{place}{advice}{end}"));
         let written = self.ledger.as_mut().map_or(Ok(()), |ledger| ledger.failure(&report));
         self.require(written);
         (self, code)

@@ -1,6 +1,9 @@
 //! Steps (3), (7)-(9): how equilibrium is sought: from which guess, by which method, and what comes after a failure.
 //!
-//! The displacement that is accepted is the one whose forces were evaluated.
+//! The displacement that is accepted is the one whose forces were evaluated. Where Newton's method leads on no further, or the
+//! only method that was wanted, a state whose forces balance far below their tolerance is accepted although its energy
+//! measure is not small: that is relative to the energy of the first direction, which is next to nothing where a step begins
+//! nearly balanced. No step that meets both criteria is judged by this.
 
 use crate::boundary::strip::Grips;
 use crate::error::{Measures, StepError};
@@ -65,6 +68,7 @@ pub struct Found<const D: usize> {
     history: Vec<Measures>,
     force: f64,
     newton_iterations: usize,
+    settled: bool,
     first_guess: bool,
 }
 
@@ -72,9 +76,9 @@ impl<const D: usize> Found<D> {
     /// The state that an iteration reached.
     pub fn new(u: Vec<f64>, residual: Residual<D>, progress: &Progress) -> Self {
         let newton_iterations = progress.by_newton();
-        let (force, Residual { trial, balance, .. }) = (residual.balance.measure(), residual);
+        let (force, Residual { trial, balance, .. }) = (progress.measure(&residual.balance), residual);
         let (history, reaction) = (progress.history().to_vec(), balance.reaction);
-        Self { u, trial, reaction, history, force, newton_iterations, first_guess: true }
+        Self { u, trial, reaction, history, force, newton_iterations, settled: false, first_guess: true }
     }
 
     /// The step's numbers; one reduction for the supports' forces.
@@ -89,6 +93,7 @@ impl<const D: usize> Found<D> {
             unknowns: nodes.unknowns,
             massless_nodes: nodes.massless_nodes,
             background_cells: nodes.background_cells,
+            settled: self.settled,
             first_guess: self.first_guess,
             reactions: scene.model.boundary.reactions(&scene.model.grid, &self.reaction, scene.halo),
             strips: Vec::new(),
@@ -129,7 +134,10 @@ fn search<K: Kinematics<D>, const D: usize>(
     let mut progress = Progress::new(scene);
     let secants = match method {
         Nonlinear::Newton => {
-            return newton::iterate(scene, u, solver, counts, &mut progress).map_err(|failure| failure.error);
+            let found = newton::iterate(scene, u, solver, counts, &mut progress);
+            return found
+                .or_else(|failure| settled(scene, failure, counts, &progress))
+                .map_err(|failure| failure.error);
         }
         Nonlinear::QuasiNewton(secants) => secants,
         Nonlinear::Auto => QuasiNewton::Multisecant,
@@ -140,15 +148,34 @@ fn search<K: Kinematics<D>, const D: usize>(
         Err(failure) => failure,
     };
     if let (Some(best), false) = (failure.best.take(), patient) {
-        failure = match newton::iterate(scene, best, solver, counts, &mut progress) {
+        let found = newton::iterate(scene, best, solver, counts, &mut progress);
+        failure = match found.or_else(|failure| settled(scene, failure, counts, &progress)) {
             Ok(found) => return Ok(found),
             Err(failure) => failure,
         };
         if let Some(best) = failure.best.take() {
-            return by_secants(scene, (secants, true), best, (solver, counts), &mut progress).map_err(|f| f.error);
+            failure = match by_secants(scene, (secants, true), best, (solver, counts), &mut progress) {
+                Ok(found) => return Ok(found),
+                Err(failure) => failure,
+            };
         }
     }
-    Err(failure.error)
+    settled(scene, failure, counts, &progress).map_err(|failure| failure.error)
+}
+
+/// The first state of an iteration that led on no further whose forces balance far below their tolerance.
+fn settled<K: Kinematics<D>, const D: usize>(
+    scene: &Scene<'_, K, D>,
+    failure: Stopped,
+    counts: &mut Counts,
+    progress: &Progress,
+) -> Result<Found<D>, Stopped> {
+    if failure.error.is_final() {
+        return Err(failure);
+    }
+    let Some(u) = progress.settled() else { return Err(failure) };
+    let residual = evaluate(scene, u, counts);
+    Ok(Found { settled: true, ..Found::new(u.clone(), residual, progress) })
 }
 
 /// Secants on the stiffness at `u`, where they start.

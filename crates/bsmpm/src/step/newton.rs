@@ -52,7 +52,7 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
         if !progress.has_begun() {
             progress.begin(first_energy(scene, &du, energy));
         }
-        if progress.reaches(Method::Newton, energy.abs(), &residual.balance) {
+        if progress.reaches(Method::Newton, energy.abs(), (&u, &residual.balance)) {
             return Ok(Found::new(u, residual, progress));
         }
         let work = stability::tells(scene, &residual.balance).then_some(energy);

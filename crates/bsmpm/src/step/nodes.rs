@@ -9,6 +9,7 @@ use crate::model::{Model, Regime, Weighting};
 use crate::points::Points;
 use crate::seam::Halo;
 use crate::stabilisation::Stabilisation;
+use crate::step::apart::Apart;
 use crate::step::inertia::{self, Inertia};
 
 /// Nodes lighter than this fraction of the heaviest one have no velocity, acceleration or average: 1/m is never formed.
@@ -41,6 +42,8 @@ pub struct Nodes<const D: usize> {
     pub free: Vec<bool>,
     /// per node: supported by an occupied cell
     pub active: Vec<bool>,
+    /// nodes of one material alone, in a scene of several
+    pub apart: Option<Apart>,
     /// soft background of the step
     pub background: Option<Blocks>,
     /// active nodes, over all ranks
@@ -80,7 +83,9 @@ impl<const D: usize> Nodes<D> {
         let window = (&model.grid, &active[..]);
         load::add_forces(&model.boundary.loads, &points.surface, window, t + dt, halo, &mut f_ext)?;
         let averages = Averages::of(model, (shape, points), threshold, halo);
+        let apart = Apart::of(model.materials.len(), shape, points, nodes, halo);
         let mut mapped = Self {
+            apart,
             f_ext,
             prescribed: velocities.iter().map(|velocity| velocity.map(|v| v * dt)).collect(),
             inertia,

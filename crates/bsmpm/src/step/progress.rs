@@ -13,6 +13,9 @@ use crate::tensor::Vector;
 
 /// A first residual this much below the force tolerance needs no direction: |du_0 . f_0| would only be noise.
 const ALREADY: f64 = 1e-2;
+/// Forces this much below their tolerance are enough where no method leads on: the states of steps that meet both criteria
+/// have such forces (.01 to .07 of the tolerance in a wall's active wedge, .5 at most), so that none is balanced worse.
+const SETTLED: f64 = 1e-1;
 /// Iterations over which the rate of convergence is taken.
 const WINDOW: usize = 20;
 /// Iterations that a quasi-Newton method may still need to be left going: about the cost of the exact iterations that
@@ -29,20 +32,32 @@ pub struct Progress {
     round_off: RoundOff,
     first_energy: Option<f64>, // N m  |du_0 . f_0|
     history: Vec<Measures>,
+    settled: Option<Vec<f64>>, // m, nodal
 }
 
 impl Progress {
     /// Nothing iterated yet.
     pub fn new<K: Kinematics<D>, const D: usize>(scene: &Scene<'_, K, D>) -> Self {
         let (criteria, round_off) = (scene.model.criteria, RoundOff::of(scene));
-        Self { criteria, round_off, first_energy: None, history: Vec::new() }
+        Self { criteria, round_off, first_energy: None, history: Vec::new(), settled: None }
     }
 
     /// Whether a state is in equilibrium before any direction is known: a guess far below the force tolerance, or forces
     /// that no node has further out of balance than by round-off.
     pub fn is_balanced<K, const D: usize>(&self, balance: &Balance, scene: &Scene<'_, K, D>) -> bool {
-        let first = self.history.is_empty();
-        (first && balance.measure() <= ALREADY * self.criteria.force) || self.round_off.covers(balance, scene)
+        (self.history.is_empty() && self.measure(balance) <= ALREADY * self.criteria.force)
+            || self.round_off.covers(balance, scene)
+    }
+
+    /// The first state whose forces balanced far below their tolerance, m, nodal: later ones only wander from it where the
+    /// stiffness is next to singular.
+    pub fn settled(&self) -> Option<&Vec<f64>> {
+        self.settled.as_ref()
+    }
+
+    /// The force measure: the largest of the whole and of every material.
+    pub fn measure(&self, balance: &Balance) -> f64 {
+        self.round_off.measure(balance).0
     }
 
     /// Norm of what is round-off in the forces, N.
@@ -60,10 +75,13 @@ impl Progress {
         self.first_energy = Some(energy);
     }
 
-    /// Takes the measures of a state and the direction that `method` found there; whether both criteria hold.
-    pub fn reaches(&mut self, method: Method, energy: f64, balance: &Balance) -> bool {
-        let (energy, force) = (energy / self.first_energy.unwrap_or(f64::INFINITY), balance.measure());
+    /// Takes the measures of a state `u` and the direction that `method` found there; whether both criteria hold.
+    pub fn reaches(&mut self, method: Method, energy: f64, (u, balance): (&[f64], &Balance)) -> bool {
+        let (energy, force) = (energy / self.first_energy.unwrap_or(f64::INFINITY), self.measure(balance));
         self.history.push(Measures { energy, force, method });
+        if self.settled.is_none() && force <= SETTLED * self.criteria.force {
+            self.settled = Some(u.to_vec());
+        }
         energy < self.criteria.energy && force < self.criteria.force
     }
 
@@ -103,10 +121,13 @@ impl Progress {
         residual: &Residual<D>,
         unsolved: Option<SolveError>,
     ) -> StepError {
+        let (force, material) = self.round_off.measure(&residual.balance);
         StepError::NotConverged {
             iterations: self.history.len(),
             energy: self.history.last().map_or(f64::INFINITY, |measures| measures.energy),
-            force: residual.balance.measure(),
+            force,
+            material,
+            criteria: self.criteria,
             history: self.history.clone(),
             worst: worst_nodes(scene, residual),
             unsolved,

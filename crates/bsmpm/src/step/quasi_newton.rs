@@ -146,7 +146,7 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
         if !progress.has_begun() {
             progress.begin(first_energy(scene, &direction.du, direction.energy));
         }
-        if progress.reaches(Method::QuasiNewton(method), direction.energy.abs(), &residual.balance) {
+        if progress.reaches(Method::QuasiNewton(method), direction.energy.abs(), (&u, &residual.balance)) {
             return Ok(Found::new(u, residual, progress)); // (9)
         }
         // The direction's own energy is a sum of products with secants, whose round-off is another.

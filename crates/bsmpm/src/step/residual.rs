@@ -33,6 +33,8 @@ pub struct Balance {
     pub norm: f64,
     /// N  max(|f_ext|, |f_int|, |M a|, |reaction, strips|)
     pub scale: f64,
+    /// N  the same two of each material's own nodes; empty in a scene of one material
+    pub apart: Vec<[f64; 2]>,
     /// points inverted or not finite, over all ranks
     pub inverted: u64,
     /// no norm overflowed
@@ -84,25 +86,36 @@ impl Balance {
         let forces = Forces::of(scene, u, f_int, &f_strips);
         let squares = |force: &[f64]| over_layers(scene.halo, D, |c| force[c].powi(2));
         let supporting = |c: usize| forces.reaction[c].powi(2) + f_strips.get(c).copied().unwrap_or(0.0).powi(2);
-        let sums = scene.halo.total(&[
+        let whole = [
             std::iter::once(inverted as f64).collect(),
             squares(&forces.f_oob),
             over_active(scene, |c| scene.nodes.f_ext[c].powi(2)),
             over_active(scene, |c| f_int[c].powi(2)),
             over_layers(scene.halo, D, |c| forces.inertial.get(c).map_or(0.0, |inertial| inertial.powi(2))),
             over_active(scene, supporting),
-        ]);
+        ];
+        let kinds = whole.len() - 1;
+        let terms = |c: usize| {
+            let inertial = forces.inertial.get(c).map_or(0.0, |inertial| inertial.powi(2));
+            [forces.f_oob[c].powi(2), scene.nodes.f_ext[c].powi(2), f_int[c].powi(2), inertial, supporting(c)]
+        };
+        let apart = scene.nodes.apart.as_ref().map_or_else(Vec::new, |apart| apart.sums(scene.halo, D, terms));
+        let sums = scene.halo.total(&[&whole[..], &apart].concat());
+        let (sums, apart) = sums.split_at(whole.len());
+        let norms = |sums: &[f64]| [sums[0], sums[1..].iter().copied().fold(0.0, f64::max)].map(f64::sqrt);
+        let [norm, scale] = norms(&sums[1..]);
         Self {
             f_oob: forces.f_oob,
             reaction: forces.reaction,
-            norm: sums[1].sqrt(),
-            scale: sums[2..].iter().copied().fold(0.0, f64::max).sqrt(),
+            norm,
+            scale,
+            apart: apart.chunks_exact(kinds).map(norms).collect(),
             inverted: sums[0] as u64,
             finite: sums.iter().all(|sum| sum.is_finite()),
         }
     }
 
-    /// |f_oob| / largest force; zero where no force acts at all.
+    /// |f_oob| / largest force, of all nodes; zero where no force acts at all.
     pub fn measure(&self) -> f64 {
         if self.norm == 0.0 { 0.0 } else { self.norm / self.scale }
     }

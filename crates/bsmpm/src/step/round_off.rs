@@ -1,7 +1,7 @@
 //! What out-of-balance force is round-off: below it no iteration can change a state, and no relative measure means anything.
 
 use crate::kinematics::Kinematics;
-use crate::seam::dots;
+use crate::seam::over_layers;
 use crate::step::equilibrium::Scene;
 use crate::step::residual::Balance;
 
@@ -16,6 +16,7 @@ const CANCELLED: f64 = 4.0 * f64::EPSILON;
 pub struct RoundOff {
     force: Vec<f64>, // N  1e-13 E h^(D-1), E the largest at the node, and of 4/dt^2 u and 4/dt v that cancel when dt is tiny
     norm: f64,       // N  of all nodes
+    apart: Vec<f64>, // N  of each material's own nodes; empty in a scene of one material
 }
 
 impl RoundOff {
@@ -31,13 +32,27 @@ impl RoundOff {
             }
         }
         force.iter_mut().zip(&nodes.free).filter(|(_, free)| !**free).for_each(|(force, _)| *force = 0.0);
-        let norm = dots(scene.halo, D, &[(&force, &force)])[0].sqrt();
-        Self { force, norm }
+        let square = |c: usize| force[c].powi(2);
+        let mut sums = vec![over_layers(scene.halo, D, square)];
+        sums.extend(nodes.apart.iter().flat_map(|apart| apart.sums(scene.halo, D, |c| [square(c)])));
+        let sums = scene.halo.total(&sums);
+        let (norm, apart) = (sums[0].sqrt(), sums[1..].iter().map(|sum| sum.sqrt()).collect());
+        Self { force, norm, apart }
     }
 
     /// Norm of the round-off of all nodes' forces, N.
     pub fn norm(&self) -> f64 {
         self.norm
+    }
+
+    /// The force measure: the larger of |f_oob| / largest force of all nodes and that of any material's own nodes, where it is
+    /// not round-off; with the number of the material that it is of.
+    pub fn measure(&self, balance: &Balance) -> (f64, Option<usize>) {
+        let parts = balance.apart.iter().zip(&self.apart).enumerate();
+        let apart = parts
+            .filter(|(_, ([norm, _], round_off))| norm > round_off)
+            .map(|(material, ([norm, scale], _))| (norm / scale, Some(material)));
+        apart.fold((balance.measure(), None), |most, part| if part.0 > most.0 { part } else { most })
     }
 
     /// Whether no node is further out of balance than by round-off. All ranks must ask; they share an exchange only where

@@ -104,16 +104,30 @@ fn too_few_iterations_are_a_failure_and_not_an_answer() {
 }
 
 #[test]
-fn a_point_that_leaves_the_grid_ends_the_run_at_once_with_the_points_unchanged() {
+fn a_point_that_leaves_the_grid_whatever_the_step_ends_the_run_with_the_points_unchanged() {
     let mut scene = block(Regime::Dynamic);
     scene.model.gravity = None;
     scene.model.boundary.supports.clear();
     scene.points.motion.as_mut().unwrap().v.iter_mut().for_each(|v| *v = [-1.0, 0.0].into());
     let before = scene.points.clone();
-    let failure = run(&mut scene, &Schedule::new(1.0, 1.0, []), 0).unwrap_err();
-    assert_eq!(failure.attempts.len(), 1);
-    assert!(matches!(failure.attempts[0], StepError::Left { count: 16, first: Some((0, _)) }));
+    // Even the smallest step takes the first column of points, 0.125 m from the face, beyond it.
+    let failure = run(&mut scene, &Schedule::new(1024.0, 1024.0, []), 0).unwrap_err();
+    assert_eq!((failure.t, failure.dt, failure.attempts.len()), (0.0, 1.0, 11));
+    assert!(failure.attempts.iter().all(|error| matches!(error, StepError::Left { count: 16, first: Some((0, _)) })));
     assert_eq!(scene.points, before);
+}
+
+/// At 1 m/s they are there after 0.125 s.
+#[test]
+fn a_step_that_throws_points_out_of_the_grid_is_cut_and_ends_where_they_are_about_to_leave() {
+    let mut scene = block(Regime::Dynamic);
+    scene.model.gravity = None;
+    scene.model.boundary.supports.clear();
+    scene.points.motion.as_mut().unwrap().v.iter_mut().for_each(|v| *v = [-1.0, 0.0].into());
+    let failure = run(&mut scene, &Schedule::new(1.0, 1.0, []), 0).unwrap_err();
+    assert!((0.125 - 2.0 / 1024.0..=0.125).contains(&failure.t) && failure.dt == 1.0 / 1024.0, "{failure:?}");
+    assert!(failure.attempts.iter().all(|error| matches!(error, StepError::Left { .. })));
+    assert!(scene.points.x.iter().all(|x| x[0] >= 0.0) && scene.points.x[0][0] < 2.0 / 1024.0);
 }
 
 #[test]

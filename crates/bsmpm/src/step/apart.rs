@@ -1,0 +1,63 @@
+//! Nodes that a single material touches. One scale for the forces of all would let a heavy body excuse what is out of balance
+//! in a light one, so the force measure is taken of each material's own nodes, too.
+//!
+//! Nodes where materials meet belong to none: there the forces of the heavier one act. Bodies of one material share a scale.
+
+use crate::exact::Exact;
+use crate::grid::Shape;
+use crate::points::Points;
+use crate::seam::Halo;
+
+/// Which nodes are a material's own, in a scene of several.
+#[derive(Clone, Debug)]
+pub struct Apart {
+    /// number of materials
+    pub materials: usize,
+    of: Vec<Option<u16>>, // per node of the window
+}
+
+impl Apart {
+    /// Of `nodes` nodes, the same on all ranks; one exchange. `None` where there is one material only.
+    pub fn of<const D: usize>(
+        materials: usize,
+        shape: &Shape<D>,
+        points: &Points<D>,
+        nodes: usize,
+        halo: &dyn Halo,
+    ) -> Option<Self> {
+        if materials < 2 {
+            return None;
+        }
+        // The largest of the materials' numbers, and of them taken from zero, which is the smallest.
+        let mut ends = vec![f64::NEG_INFINITY; 2 * nodes];
+        for patch in shape.patches() {
+            let of = &points.material[patch.points.clone()];
+            let (Some(&least), Some(&most)) = (of.iter().min(), of.iter().max()) else { continue };
+            for offset in shape.offsets() {
+                let ends = &mut ends[2 * (patch.first_node + offset)..][..2];
+                (ends[0], ends[1]) = (ends[0].max(f64::from(most)), ends[1].max(-f64::from(least)));
+            }
+        }
+        halo.max(&mut ends, 2);
+        let of = ends.chunks_exact(2).map(|ends| (ends[0] == -ends[1]).then_some(ends[0] as u16)).collect();
+        Some(Self { materials, of })
+    }
+
+    /// For each material, sums over the components of this rank's own nodes that are the material's alone, `width` a node;
+    /// all of one material behind each other. Formed like [`over_layers`](crate::seam::over_layers).
+    pub fn sums<const N: usize>(&self, halo: &dyn Halo, width: usize, terms: impl Fn(usize) -> [f64; N]) -> Vec<Exact> {
+        let (owned, layer) = (halo.owned(), halo.layer_nodes().max(1));
+        let mut sums = vec![Exact::ZERO; self.materials * N];
+        for first in owned.clone().step_by(layer) {
+            let mut plain = vec![[0.0; N]; self.materials];
+            for node in first..first + layer {
+                let Some(material) = self.of[node] else { continue };
+                for c in node * width..(node + 1) * width {
+                    plain[usize::from(material)].iter_mut().zip(terms(c)).for_each(|(sum, term)| *sum += term);
+                }
+            }
+            sums.iter_mut().zip(plain.iter().flatten()).for_each(|(sum, plain)| sum.add(*plain));
+        }
+        sums
+    }
+}
