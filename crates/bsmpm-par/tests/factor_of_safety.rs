@@ -8,10 +8,14 @@ use serde_json::Value;
 const CASES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../cases");
 
 fn search(case: &str, set: &[&str], jobs: usize, output: &Path) -> (Value, usize) {
+    between((1.0, 2.0), case, set, jobs, output)
+}
+
+fn between((from, to): (f64, f64), case: &str, set: &[&str], jobs: usize, output: &Path) -> (Value, usize) {
     let arguments = Arguments {
         case: Path::new(CASES).join(case),
-        from: 1.0,
-        to: 2.0,
+        from,
+        to,
         width: 0.05,
         jobs: Some(jobs),
         set: set.iter().map(|&set| set.to_owned()).collect(),
@@ -60,4 +64,35 @@ fn the_number_of_jobs_does_not_change_a_digit() {
         let other = found(jobs);
         assert!(other == alone, "{jobs} jobs: {} {}", other.0, alone.0);
     }
+}
+
+fn estimate(found: &Value) -> f64 {
+    found["factor_of_safety"]["estimate"].as_f64().unwrap_or_else(|| panic!("{found}"))
+}
+
+/// With E = 10 MPa the displacement of 20 times the elastic one is a third of the slope's height. Geometry that flattens
+/// under it moved the factor by .011 between E and 10 E.
+#[test]
+fn the_factor_of_acads_1a_does_not_depend_on_the_stiffness() {
+    let of = |young: &str| {
+        let dir = tempfile::tempdir().unwrap();
+        let set = [format!("material.soil.young={young}"), "grid.cell=2.5".to_owned()];
+        let set: Vec<&str> = set.iter().map(String::as_str).collect();
+        let (found, _) = between((0.8, 1.4), "validation/acads_1a.toml", &set, 2, dir.path());
+        (estimate(&found), found["conditions"]["stiffness"].as_f64().unwrap())
+    };
+    let [(soft, times), (stiff, none)] = ["1e7", "1e9"].map(of);
+    assert!(times > 10.0 && none == 1.0, "{times} {none}");
+    assert!((soft - stiff).abs() < 0.01, "{soft} {stiff}");
+}
+
+/// Its reference failed while it was the body of ten times the strength, whose fill had a friction angle of 80.2 degrees.
+#[test]
+fn an_embankment_on_clay_whose_weight_comes_at_once_has_a_factor() {
+    let dir = tempfile::tempdir().unwrap();
+    let (found, _) = search("validation/embankment.toml", &["gravity.ramp=0.0"], 2, dir.path());
+    let (found, notes) = (estimate(&found), found["notes"].to_string());
+    // Bishop's simplified circles: 1.428.
+    assert!((found / 1.428 - 1.0).abs() < 0.05, "{found}");
+    assert!(notes.contains("gravity comes at once"), "{notes}");
 }

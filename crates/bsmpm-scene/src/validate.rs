@@ -39,7 +39,8 @@ pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Op
     let bodies = body::read_all(record, grid.as_ref(), regime, report);
     let factor = record.record("strength_reduction").and_then(|reduction| reduction.number("factor"));
     let (placed, made) = (grid.as_ref(), bodies.as_deref());
-    let around = material::Around { regime, grid: placed, bodies: made, factor: factor.unwrap_or(1.0) };
+    let reduction = material::Reduction::of(record);
+    let around = material::Around { regime, grid: placed, bodies: made, reduction };
     let materials = material::read_all(record, around, report);
     let gravity = gravity(record, end, report);
     let around = strip::Around { grid: placed, bodies: made, boundary, end };

@@ -292,6 +292,26 @@ fn layers_by_height_and_reduced_strength() {
     assert_eq!((case.strength_reduction, cohesion(3.0), cohesion(1.5)), (None, 2e3, 2750.0));
 }
 
+/// What a search for the factor of safety takes as its reference: the same stiffness, and no strength.
+#[test]
+fn strength_reduction_makes_every_material_elastic_and_stiffer() {
+    let set = ["strength_reduction.elastic=true", "strength_reduction.stiffness=20"];
+    let (own, case) = (valid(FULL, &[]), valid(FULL, &set));
+    let is_elastic = |material: &Material| matches!(material, Material::Hencky(_));
+    for (own, made) in own.materials.iter().zip(&case.materials) {
+        for height in [2.5, 3.0, 4.0] {
+            let (own, made) = (own.material.at(height), made.material.at(height));
+            assert!(is_elastic(&made), "{made:?}");
+            let (own, made) = (own.elastic(), made.elastic());
+            assert!((made.young / (20.0 * own.young) - 1.0).abs() < 1e-14 && made.poisson == own.poisson);
+        }
+    }
+    assert!(!own.materials.iter().all(|named| is_elastic(&named.material.at(3.0))));
+    assert!(case.warnings.iter().all(|warning| !warning.contains("no material has strength")));
+    let note = case.notes.iter().find(|note| note.key == "material.clay").unwrap();
+    assert!(note.value.contains("young x 20, elastic"), "{note:?}");
+}
+
 /// Also where friction varies with the height, and whatever the strength is divided by.
 #[test]
 fn a_material_without_cohesion_may_close_its_gaps() {

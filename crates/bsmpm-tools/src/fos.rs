@@ -26,7 +26,7 @@ mod subject;
 mod trial;
 
 use report::Report;
-use search::{ELASTIC, GREATEST, Plan};
+use search::{GREATEST, LEAST, Plan};
 use subject::Subject;
 use trial::{Trial, Trials};
 
@@ -41,7 +41,12 @@ const NARROWEST: f64 = 1e-4;
 Every trial is the case with [strength_reduction] factor = F, loaded from zero. Its largest displacement tells: the factor
 of safety is where the branch after failure (5 to 20 times the elastic displacement), continued back, meets the branch
 before it; coarsely, where the elastic displacement has doubled. Both are printed as bands [last stable, first failed]. A
-trial without equilibrium counts as failed. The elastic displacement is that of the factor 0.1.
+trial without equilibrium counts as failed. The elastic displacement is that of the trial 0: every material by its elastic
+law, without strength that could limit the stress.
+
+The factor belongs to the body as it is drawn, and does not depend on its stiffness: where the load would strain it by more
+than 0.2 %, the trials' Young's moduli are multiplied until it does not, and displacements told as if they had not been.
+Gravity that comes at once is grown over the whole run. The notes say so.
 
 DIR gets fos.json, fos.csv, fos.png (displacement against factor), fos_plastic-strain.png and fos_displacement.png (the first
 failed trial), and trials/. Trials that are there and were made from the same case by the same solver are kept.
@@ -164,8 +169,8 @@ impl Arguments {
         let usage = |reason: String| Err(Error::Usage { reason });
         let Self { from, to, width, .. } = *self;
         // Written so that what is no number is refused, too.
-        if !(ELASTIC < from && from < to && to <= GREATEST) {
-            return usage(format!("--from {from} --to {to}: allowed is {ELASTIC} < FROM < TO <= {GREATEST}"));
+        if !(LEAST < from && from < to && to <= GREATEST) {
+            return usage(format!("--from {from} --to {to}: allowed is {LEAST} < FROM < TO <= {GREATEST}"));
         }
         if !(NARROWEST <= width && width <= to - from) {
             return usage(format!("--width {width}: allowed is {NARROWEST} <= WIDTH <= TO - FROM"));

@@ -83,7 +83,16 @@ pub(super) static POINT_LOAD: Table = Table {
 pub(super) static REDUCTION: Table = Table {
     header: "[strength_reduction]",
     doc: "Strength of all materials divided by a factor: c/F, atan(tan(phi)/F), psi at most the new phi (section 3.2)",
-    keys: &[key("factor", Quantity(In::Number, Range::of(Included(0.1), Included(100.0))), Required, "the factor F")],
+    keys: &[
+        key("factor", Quantity(In::Number, Range::of(Included(0.1), Included(100.0))), Required, "the factor F"),
+        key("elastic", Flag, Default("false"), "strength without bound instead: every material by its elastic law"),
+        key(
+            "stiffness",
+            Quantity(In::Number, Range::POSITIVE),
+            Default("1.0"),
+            "Young's moduli times this, of all materials",
+        ),
+    ],
     exclusive: &[],
 };
 

@@ -18,8 +18,28 @@ pub(super) struct Around<'a> {
     pub(super) regime: Option<Regime>,
     pub(super) grid: Option<&'a GridSpec>,
     pub(super) bodies: Option<&'a [Body]>,
-    /// strength reduction; 1: none
-    pub(super) factor: f64,
+    pub(super) reduction: Reduction,
+}
+
+/// What [strength_reduction] makes of every material.
+#[derive(Clone, Copy)]
+pub(super) struct Reduction {
+    /// that strength is divided by; 1: none
+    factor: f64,
+    /// no strength limits the stress
+    elastic: bool,
+    /// that Young's modulus is multiplied by
+    stiffness: f64,
+}
+
+impl Reduction {
+    /// That of the case; without the table none.
+    pub(super) fn of(root: &Record) -> Self {
+        let table = root.record("strength_reduction");
+        let number = |key| table.and_then(|table| table.number(key)).unwrap_or(1.0);
+        let elastic = table.and_then(|table| table.flag("elastic")).unwrap_or(false);
+        Self { factor: number("factor"), elastic, stiffness: number("stiffness") }
+    }
 }
 
 /// All materials in the order of the file.
@@ -35,7 +55,8 @@ pub(super) fn read_all(root: &Record, around: Around<'_>, report: &mut Report<'_
     let read = named.iter().enumerate().map(|(number, named)| read(number, named, around, report));
     let read: Vec<_> = read.collect();
     let materials = read.into_iter().collect::<Option<Vec<_>>>()?;
-    if root.gives("strength_reduction") && materials.iter().all(|named| strength(&named.material, 0.0).is_none()) {
+    let is_limited = |named: &NamedMaterial| strength(&named.material, 0.0).is_some();
+    if root.gives("strength_reduction") && !around.reduction.elastic && !materials.iter().any(is_limited) {
         report.warn("strength_reduction: no material has strength: it does nothing");
     }
     Some(materials)
@@ -63,15 +84,21 @@ fn read(
         layer.check(record, ("young", &Range::POSITIVE), young, report);
     }
     warn_of_stiffness(record, young.map(|young| young.value), poisson, report);
-    let (young, poisson, law) = (young?, poisson?, law?);
+    let Reduction { factor, elastic, stiffness } = around.reduction;
+    let (young, poisson, law) = (young?, poisson?, law?.filter(|_| !elastic));
+    let young = Profile { value: stiffness * young.value, per_metre: stiffness * young.per_metre, ..young };
+    if elastic || stiffness != 1.0 {
+        let value = format!("young x {stiffness}{}", if elastic { ", elastic" } else { "" });
+        report.note(&record.path, value, "strength_reduction.elastic and .stiffness");
+    }
     let separation = separation(record, law.as_ref(), layer.as_ref(), report);
     let material = if is_graded(record) {
-        graded(young, poisson, law, (layer.as_ref()?, around.factor, separation))
+        graded(young, poisson, law, (layer.as_ref()?, factor, separation))
     } else {
-        uniform(Elastic { young: young.value, poisson }, law, (around.factor, separation))
+        uniform(Elastic { young: young.value, poisson }, law, (factor, separation))
     };
-    if let Some(layer) = layer.filter(|_| around.factor != 1.0) {
-        note_reduction(record, &material, &layer, around.factor, report);
+    if let Some(layer) = layer.filter(|_| factor != 1.0) {
+        note_reduction(record, &material, &layer, factor, report);
     }
     Some(NamedMaterial { name: name.clone(), material, density: density? })
 }

@@ -106,7 +106,7 @@ impl Report {
             conditions: subject.conditions.clone(),
             plan,
             command: command.to_vec(),
-            notes: notes(curve, kink.as_ref(), &rows, plan),
+            notes: [subject.notes(), notes(curve, kink.as_ref(), &rows, plan)].concat(),
             trials: rows,
             jobs: 1,
             seconds: 0.0,

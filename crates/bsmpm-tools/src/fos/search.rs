@@ -6,8 +6,11 @@ use serde::Serialize;
 use super::curve::{BENT, Band, Curve, DOUBLED, FALLEN, State};
 use crate::Error;
 
-/// Strength is multiplied by ten to see the elastic displacement. The least factor that a case may have.
-pub(super) const ELASTIC: f64 = 0.1;
+/// The factor of the body that shows the elastic displacement: its materials follow their elastic laws, without strength
+/// that could limit the stress.
+pub(super) const ELASTIC: f64 = 0.0;
+/// The least factor that a case may have.
+pub(super) const LEAST: f64 = 0.1;
 /// The greatest one.
 pub(super) const GREATEST: f64 = 100.0;
 /// From one round of the ladder to the next. Trials before failure are cheap, those far beyond it cost many times as much.
@@ -56,11 +59,12 @@ pub(super) fn search(plan: Plan, known: &mut Known<'_>) -> Result<Curve, Halt> {
     let over = |reason: String| Halt::Over(Error::NoStableState { reason });
     let elastic = known(ELASTIC).ok_or(Halt::Needs(ELASTIC))?;
     if !(elastic.whole && elastic.displacement.is_finite() && elastic.displacement > 0.0) {
-        return Err(over(format!(
-            "even with {} times its strength the body finds no equilibrium under its load, or does not move: look at that \
-             trial, and at the case's supports, load steps and [solver] max_iterations",
-            1.0 / ELASTIC
-        )));
+        return Err(over(
+            "even as an elastic body, without strength that could limit the stress, it finds no equilibrium under its load, \
+             or does not move: look at that trial (trials/0.out), at the case's supports, and at its loads, which must not \
+             come at once (ramp); more load steps and [solver] max_iterations help"
+                .to_owned(),
+        ));
     }
     let mut search = Search { plan, curve: Curve::new(elastic.displacement), known };
     search.climb()?;
@@ -241,7 +245,7 @@ pub(super) mod tests {
     fn a_body_that_stands_to_the_end_is_not_tried_further() {
         let (curve, tried) = searched(PLAN, hockey(5.0));
         assert_eq!(curve.unwrap().crossing(DOUBLED), Band { last_stable: Some(3.0), first_failed: None });
-        assert_eq!(tried, [0.1, 0.5, 0.625, 0.781, 0.977, 1.221, 1.526, 1.907, 2.384, 2.98, 3.0]);
+        assert_eq!(tried, [ELASTIC, 0.5, 0.625, 0.781, 0.977, 1.221, 1.526, 1.907, 2.384, 2.98, 3.0]);
     }
 
     #[test]
@@ -249,7 +253,7 @@ pub(super) mod tests {
         let (none, tried) = searched(PLAN, hockey(0.3));
         let error = none.unwrap_err();
         assert!(error.exit_code() == 80 && error.to_string().contains("--from"), "{error}");
-        assert_eq!(tried, [0.1, 0.5]);
+        assert_eq!(tried, [ELASTIC, 0.5]);
         let (none, ..) = searched(PLAN, |_| (1.0, false));
         assert!(none.unwrap_err().to_string().contains("no equilibrium"));
         // A weightless body.

@@ -7,6 +7,7 @@ use bsmpm::model::Regime;
 use bsmpm_scene::{Axis, Case, Path as Motion, Quantity};
 use serde::Serialize;
 
+use super::search::{ELASTIC, LEAST};
 use crate::Error;
 use crate::record::Case as Told;
 
@@ -15,6 +16,11 @@ use crate::record::Case as Told;
 const LOOSEST: f64 = 1e-3;
 /// The key that the search sets.
 const FACTOR: &str = "strength_reduction.factor";
+/// Strain by which a load may change the geometry: (weight of the body's height + traction)/E. Beyond, the branch after
+/// failure, up to 20 times the elastic displacement, is flattened by the body's settling, and with it the factor.
+const SMALL: f64 = 2e-3;
+/// Stiffening by less is none.
+const UNCHANGED: f64 = 1.01;
 /// What a trial is judged by.
 const QUANTITY: &str = "max-displacement";
 
@@ -30,6 +36,8 @@ pub(super) struct Subject {
     pub end: f64,
     /// the column of the largest displacement
     pub column: String,
+    /// whether gravity, which the case lets come at once, is grown over the run
+    is_grown: bool,
     /// whether the case records it with a scale of its own, as E δ/(γ H²)
     pub is_scaled: bool,
     pub conditions: Conditions,
@@ -55,6 +63,8 @@ pub(super) struct Conditions {
     pub steps: u64,
     /// Pa  of every material, where it depends on the height the largest
     pub young: Vec<f64>,
+    /// by which the trials multiply all of them
+    pub stiffness: f64,
 }
 
 impl Subject {
@@ -69,7 +79,7 @@ impl Subject {
         }
         let bytes = bsmpm_scene::load(path).map_err(|source| Error::NoCase { path: path.to_owned(), source })?;
         let mut set = set.to_vec();
-        let case = parsed(path, &bytes, &[&set[..], &[reduction(from)]].concat())?;
+        let case = parsed(path, &bytes, &[&set[..], &reduction(from, 1.0)].concat())?;
         let reasons = refusals(&case);
         if !reasons.is_empty() {
             return Err(Error::NoFactor { path: path.to_owned(), reasons });
@@ -83,12 +93,32 @@ impl Subject {
             set.push(format!("history.{}.quantity={QUANTITY}", case.histories.len()));
         }
         let (title, end, conditions) = (case.title.clone(), case.analysis.end, Conditions::of(&case));
-        Ok(Self { path: path.to_owned(), bytes, set, title, end, column, is_scaled, conditions })
+        let is_grown = case.gravity.as_ref().is_some_and(|gravity| gravity.ramp == 0.0);
+        if is_grown {
+            set.push(format!("gravity.ramp={end:?}"));
+        }
+        Ok(Self { path: path.to_owned(), bytes, set, title, end, column, is_grown, is_scaled, conditions })
     }
 
     /// The overrides of a trial.
     pub fn overrides(&self, factor: f64) -> Vec<String> {
-        [&self.set[..], &[reduction(factor)]].concat()
+        [&self.set[..], &reduction(factor, self.conditions.stiffness)].concat()
+    }
+
+    /// What was done to the case that its reader should know.
+    pub fn notes(&self) -> Vec<String> {
+        let stiffness = self.conditions.stiffness;
+        let stiffened = (stiffness != 1.0).then(|| {
+            format!(
+                "the trials have {stiffness} times the case's stiffness, so that the geometry stays as drawn; displacements \
+                 are told as of its own"
+            )
+        });
+        let grown = self.is_grown.then(|| {
+            "gravity comes at once in the case (gravity.ramp = 0); here it grows over the whole run (gravity.ramp = end)"
+                .to_owned()
+        });
+        stiffened.into_iter().chain(grown).collect()
     }
 
     /// The text of a trial's case as its `run.json` has it.
@@ -102,8 +132,35 @@ impl Subject {
     }
 }
 
-fn reduction(factor: f64) -> String {
-    format!("{FACTOR}={factor:?}")
+/// The overrides of a factor, and of a stiffness.
+fn reduction(factor: f64, stiffness: f64) -> Vec<String> {
+    let mut set = vec![format!("{FACTOR}={:?}", factor.max(LEAST))];
+    if factor == ELASTIC {
+        set.push("strength_reduction.elastic=true".to_owned());
+    }
+    if stiffness != 1.0 {
+        set.push(format!("strength_reduction.stiffness={stiffness:?}"));
+    }
+    set
+}
+
+/// What Young's moduli must be multiplied with so that the load strains no body by more than [`SMALL`], to three digits.
+fn stiffness(case: &Case) -> f64 {
+    let heights = case.bodies.iter().map(|body| [body.bounds()[0][1], body.bounds()[1][1]]);
+    let [low, high] = heights.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], [c, d]| [a.min(c), b.max(d)]);
+    let base = case.grid.lower()[1];
+    let of_body = |body: &bsmpm_scene::Body| {
+        let material = &case.materials[body.material].material;
+        let at = |y: f64| material.at(y - base).elastic().young;
+        at(body.bounds()[0][1]).min(at(body.bounds()[1][1]))
+    };
+    let softest = case.bodies.iter().map(of_body).fold(f64::INFINITY, f64::min);
+    let densities = case.bodies.iter().filter_map(|body| case.materials[body.material].density);
+    let gravity = case.gravity.as_ref().map_or(0.0, |gravity| gravity.acceleration[0].hypot(gravity.acceleration[1]));
+    let weight = densities.fold(0.0, f64::max) * gravity * (high - low);
+    let tractions = case.tractions.iter().map(|traction| traction.stress[0].hypot(traction.stress[1]));
+    let needed = (weight + tractions.fold(0.0, f64::max)) / softest / SMALL;
+    if needed < UNCHANGED { 1.0 } else { format!("{needed:.2e}").parse().unwrap_or(needed) }
 }
 
 fn parsed(path: &Path, bytes: &[u8], set: &[String]) -> Result<Case, Error> {
@@ -189,6 +246,7 @@ impl Conditions {
             force_tolerance: case.solver.force_tolerance,
             steps: (case.analysis.end / case.analysis.dt).round() as u64,
             young: case.materials.iter().map(|named| named.material.elastic().young).collect(),
+            stiffness: stiffness(case),
         }
     }
 
@@ -206,11 +264,12 @@ impl Conditions {
         [
             format!("{}; {}; background {:e} E", self.mesh(), self.stabilisation, self.background),
             format!(
-                "{} load steps; tolerances {:e} (energy), {:e} (forces); E = {} MPa",
+                "{} load steps; tolerances {:e} (energy), {:e} (forces); E = {} MPa{}",
                 self.steps,
                 self.tolerance,
                 self.force_tolerance,
-                young.join(", ")
+                young.join(", "),
+                if self.stiffness == 1.0 { String::new() } else { format!(", times {}", self.stiffness) }
             ),
         ]
     }

@@ -30,7 +30,7 @@ pub(super) struct Trial {
     pub factor: f64,
     #[serde(flatten)]
     pub end: End,
-    /// the largest one, in the unit of the case's history; at the end of the load that was reached
+    /// the largest one, in the unit of the case's history, as of its own stiffness; at the end of the load that was reached
     pub displacement: f64,
     /// the largest accumulated one of any point; none where no frame holds it
     pub plastic_strain: Option<f64>,
@@ -140,6 +140,7 @@ impl Trials<'_> {
         let record = Record::read(directory)?;
         let last = record.column(&self.subject.column).and_then(|column| column.values.last().copied());
         let displacement = last.ok_or_else(|| broken("it left no displacement".to_owned()))?;
+        let displacement = displacement * self.subject.conditions.stiffness;
         let load = manifest.failure.as_ref().map_or(0.0, |failure| failure.time / self.subject.end);
         let end = match ending.code {
             NO_CONVERGENCE => End::NoEquilibrium { load, reason: ending.reason.clone() },

@@ -169,7 +169,7 @@ fn the_factor_is_found_and_written_with_its_conditions_and_pictures() {
     assert_eq!(found["criteria"][1]["criterion"], "doubled");
     assert_eq!((&found["conditions"]["background"], &found["column"]), (&1e-4.into(), &SCALED.into()));
     let trials = found["trials"].as_array().unwrap();
-    assert!(trials[0]["verdict"] == "elastic" && trials[0]["factor"] == 0.1 && trials[1]["status"] == "equilibrium");
+    assert!(trials[0]["verdict"] == "elastic" && trials[0]["factor"] == 0.0 && trials[1]["status"] == "equilibrium");
     assert!(trials.iter().all(|trial| trial["plastic_strain"].as_f64().unwrap() > 0.0));
     let table = fs::read_to_string(bench.path("slope.fos/fos.csv")).unwrap();
     assert_eq!((table.lines().count(), bench.calls()), (2 + trials.len(), trials.len()));
@@ -234,6 +234,34 @@ fn a_case_that_records_no_displacement_gets_it_recorded() {
     assert!(bench.fos(&[]).status.success());
     assert_eq!(bench.found()["column"], "max-displacement");
     assert!((bench.found()["factor_of_safety"]["estimate"].as_f64().unwrap() - 1.373).abs() < 2e-3);
+}
+
+#[test]
+fn weight_that_comes_at_once_and_soft_soil_are_mended_and_told() {
+    let of = |set: &[&str]| {
+        let bench = Bench::new(SLOPE, "kink=1.373");
+        let options: Vec<&str> = set.iter().flat_map(|set| ["--set", *set]).collect();
+        let output = bench.fos(&options);
+        assert!(output.status.success(), "{output:?}");
+        let run = fs::read_to_string(bench.path("slope.fos/trials/0.out/run.json")).unwrap();
+        (text(&output.stdout), bench.found(), run)
+    };
+    let (said, as_it_is, run) = of(&[]);
+    assert!(!said.contains("stiffness") && !said.contains("at once"), "{said}");
+    assert!(as_it_is["conditions"]["stiffness"] == 1.0 && run.contains("elastic = true"), "{run}");
+    let (said, found, run) = of(&["gravity.ramp=0.0"]);
+    assert!(said.contains("note: gravity comes at once in the case") && run.contains("ramp = 1.0"), "{said} {run}");
+    assert_eq!(found["elastic_displacement"], as_it_is["elastic_displacement"]);
+    // The weight of 10 m over E: .2 % as it is, 2 % with a tenth of E.
+    let (said, found, run) = of(&["material.soil.young=1e7"]);
+    assert!(
+        said.contains("note: the trials have 10 times the case's stiffness") && said.contains("E = 10 MPa, times 10")
+    );
+    assert!(found["conditions"]["stiffness"] == 10.0 && run.contains("stiffness = 10.0"), "{run}");
+    // The stub moves as far whatever the stiffness: told as of the case's own it is ten times that.
+    let displacement = |found: &Value| found["elastic_displacement"].as_f64().unwrap();
+    assert!((displacement(&found) / displacement(&as_it_is) - 10.0).abs() < 1e-12);
+    assert_eq!(found["factor_of_safety"], as_it_is["factor_of_safety"]);
 }
 
 #[test]

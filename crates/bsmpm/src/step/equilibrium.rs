@@ -1,9 +1,9 @@
 //! Steps (3), (7)-(9): how equilibrium is sought: from which guess, by which method, and what comes after a failure.
 //!
-//! The displacement that is accepted is the one whose forces were evaluated. Where Newton's method leads on no further, or the
-//! only method that was wanted, a state whose forces balance far below their tolerance is accepted although its energy
-//! measure is not small: that is relative to the energy of the first direction, which is next to nothing where a step begins
-//! nearly balanced. No step that meets both criteria is judged by this.
+//! The displacement that is accepted is the one whose forces were evaluated. Where Newton's method leads on no further, a
+//! state whose forces balance far below their tolerance is accepted although its energy measure is not small: that is
+//! relative to the energy of the first direction, which is next to nothing where a step begins nearly balanced. No step that
+//! meets both criteria is judged by this.
 
 use crate::boundary::strip::Grips;
 use crate::error::{Measures, StepError};
@@ -160,7 +160,9 @@ fn search<K: Kinematics<D>, const D: usize>(
             };
         }
     }
-    settled(scene, failure, counts, &progress).map_err(|failure| failure.error)
+    // Secants alone that come to their limit might have gone on.
+    let found = if patient { Err(failure) } else { settled(scene, failure, counts, &progress) };
+    found.map_err(|failure| failure.error)
 }
 
 /// The first state of an iteration that led on no further whose forces balance far below their tolerance.
