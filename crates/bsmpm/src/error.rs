@@ -109,7 +109,7 @@ pub enum StepError {
         /// Number of that material; `None` where it is that of all nodes.
         material: Option<usize>,
         /// What was asked for.
-        criteria: Criteria,
+        criteria: Box<Criteria>,
         /// Both measures of every iteration.
         history: Vec<Measures>,
         /// The worst nodes of this rank, worst first.

@@ -113,23 +113,23 @@ fn not_converged(
     criteria: &Criteria,
 ) -> Vec<String> {
     let mut lines = Vec::new();
-    if force < criteria.force {
-        lines.push(format!(
-            "forces balance within [solver] force_tolerance = {:e}, but each direction still works (energy measure {energy:.1e}): \
-             the body yields nearly as a whole; more steps, or a [solver] tolerance above the {:e} of now where that work is small",
-            criteria.force, criteria.energy
-        ));
-    }
-    if let (true, Some(name)) = (force >= criteria.force, material) {
-        lines.push(format!(
-            "the forces of material \"{name}\" do not balance by its own scale ([solver] force_tolerance = {:e}): look at that body",
-            criteria.force
-        ));
-    }
     if iterations >= criteria.max_iterations {
         lines.push(format!(
             "a larger [solver] max_iterations than {}, if the measures still fell",
             criteria.max_iterations
+        ));
+    }
+    if force < criteria.force {
+        lines.push(format!(
+            "more steps, or a [solver] tolerance above the {:e} of now: forces balance within force_tolerance = {:e}, but each \
+             direction still works (energy measure {energy:.1e}), as where the body yields as a whole",
+            criteria.energy, criteria.force
+        ));
+    }
+    if let (true, Some(name)) = (force >= criteria.force, material) {
+        lines.push(format!(
+            "look at the body of \"{name}\": its forces alone do not balance within [solver] force_tolerance = {:e}",
+            criteria.force
         ));
     }
     lines.extend(

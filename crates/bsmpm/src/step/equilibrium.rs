@@ -137,7 +137,7 @@ fn search<K: Kinematics<D>, const D: usize>(
             let found = newton::iterate(scene, u, solver, counts, &mut progress);
             return found
                 .or_else(|failure| settled(scene, failure, counts, &progress))
-                .map_err(|failure| failure.error);
+                .map_err(|failure| *failure.error);
         }
         Nonlinear::QuasiNewton(secants) => secants,
         Nonlinear::Auto => QuasiNewton::Multisecant,
@@ -162,7 +162,7 @@ fn search<K: Kinematics<D>, const D: usize>(
     }
     // Secants alone that come to their limit might have gone on.
     let found = if patient { Err(failure) } else { settled(scene, failure, counts, &progress) };
-    found.map_err(|failure| failure.error)
+    found.map_err(|failure| *failure.error)
 }
 
 /// The first state of an iteration that led on no further whose forces balance far below their tolerance.

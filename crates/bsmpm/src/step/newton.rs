@@ -60,7 +60,7 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
         stability::check(scene, progress, (&du, work), &found.balance)?;
         (u, residual) = (next, found);
     }
-    Err(Stopped { error: progress.failed(scene, &residual, None), best: Some(u) })
+    Err(Stopped { error: Box::new(progress.failed(scene, &residual, None)), best: Some(u) })
 }
 
 /// K du = f_oob with the complete K at this state.

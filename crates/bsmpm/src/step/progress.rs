@@ -127,7 +127,7 @@ impl Progress {
             energy: self.history.last().map_or(f64::INFINITY, |measures| measures.energy),
             force,
             material,
-            criteria: self.criteria,
+            criteria: Box::new(self.criteria),
             history: self.history.clone(),
             worst: worst_nodes(scene, residual),
             unsolved,

@@ -90,7 +90,7 @@ impl Secants {
 #[derive(Clone, Debug)]
 pub struct Stopped {
     /// why
-    pub error: StepError,
+    pub error: Box<StepError>,
     /// m, nodal  the displacement with the smallest out-of-balance force, if any was sound
     pub best: Option<Vec<f64>>,
 }
@@ -107,13 +107,13 @@ impl Stopped {
         if progress.iterations() == 0 {
             return unsolved.into();
         }
-        Self { error: progress.failed(scene, residual, Some(unsolved)), best: Some(best) }
+        Self { error: Box::new(progress.failed(scene, residual, Some(unsolved))), best: Some(best) }
     }
 }
 
 impl<E: Into<StepError>> From<E> for Stopped {
     fn from(error: E) -> Self {
-        Self { error: error.into(), best: None }
+        Self { error: Box::new(error.into()), best: None }
     }
 }
 
@@ -154,14 +154,14 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
             .then(|| dots(scene.halo, D, &[(&direction.du, &residual.balance.f_oob)])[0]);
         match advance(scene, &mut u, &direction.du, &mut residual, counts) {
             Ok(length) => secants.took(length), // (8), (4), (5)
-            Err(inverted) => return Err(Stopped { error: inverted, best: Some(best) }),
+            Err(inverted) => return Err(Stopped { error: Box::new(inverted), best: Some(best) }),
         }
         stability::check(scene, progress, (&direction.du, work), &residual.balance)?;
         if residual.balance.norm < least {
             (least, best) = (residual.balance.norm, u.clone());
         }
     }
-    Err(Stopped { error: progress.failed(scene, &residual, None), best: Some(best) })
+    Err(Stopped { error: Box::new(progress.failed(scene, &residual, None)), best: Some(best) })
 }
 
 /// Step (8): takes the direction, or the first half, quarter, .. of it under which no point inverts.
