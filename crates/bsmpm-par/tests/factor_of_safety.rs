@@ -70,8 +70,8 @@ fn estimate(found: &Value) -> f64 {
     found["factor_of_safety"]["estimate"].as_f64().unwrap_or_else(|| panic!("{found}"))
 }
 
-/// With E = 10 MPa the displacement of 20 times the elastic one is a third of the slope's height. Geometry that flattens
-/// under it moved the factor by .011 between E and 10 E.
+/// With E = 10 MPa the displacement of 20 times the elastic one is a third of the slope's height, and geometry that flattens
+/// under it lowers the factor: with cells of 1.25 m .981 without stiffer trials, .994 with them, .993 with 1,000 MPa.
 #[test]
 fn the_factor_of_acads_1a_does_not_depend_on_the_stiffness() {
     let of = |young: &str| {
@@ -86,7 +86,8 @@ fn the_factor_of_acads_1a_does_not_depend_on_the_stiffness() {
     assert!((soft - stiff).abs() < 0.01, "{soft} {stiff}");
 }
 
-/// Its reference failed while it was the body of ten times the strength, whose fill had a friction angle of 80.2 degrees.
+/// The reference is elastic: with ten times the strength for it the fill had a friction angle of 80.2 degrees without dilation,
+/// with which not every embankment finds equilibrium. The program found 1.472 with a band of .02, 1.468 at `standard`.
 #[test]
 fn an_embankment_on_clay_whose_weight_comes_at_once_has_a_factor() {
     let dir = tempfile::tempdir().unwrap();
