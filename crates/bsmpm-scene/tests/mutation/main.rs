@@ -49,7 +49,11 @@ const OTHERWISE: [&[(&str, &str)]; 6] = [
         ("dt   = \"10 ms\"", "dt = 0.01\ngamma = 0.6"),
         ("cell  = [0.5, \"50 cm\"]", "knots = { x = [0, 0.5, 1.5, \"4 m\"], y = [0, 1, 2, 3] }"),
     ],
-    &[("\nk0 = 0.5", "\ngravity = \"elastic\""), ("k0          = 0.6\n", "")],
+    &[
+        ("\nk0 = 0.5", "\ngravity = \"elastic\""),
+        ("k0          = 0.6\n", ""),
+        ("factor = 1.25", "factor = 1.25\nelastic = false\nstiffness = 1.5"),
+    ],
     &[
         ("displacement = [0.0, \"-10 cm\"]", "velocity = [0.0, -0.1]"),
         ("velocity = [0.0, \"-10 mm/s\"]", "displacement = [-0.1, 0.0]"),
