@@ -24,7 +24,7 @@ pub const CHECKPOINT: u8 = 76;
 pub const CHECK: u8 = 77;
 /// N separate runs where one run on N ranks was meant.
 pub const WRONG_LAUNCH: u8 = 78;
-/// No convergence at the smallest step; the last converged state is saved.
+/// No convergence at the smallest step, or energy that no work explains; the last converged state is saved.
 pub const NO_CONVERGENCE: u8 = 80;
 /// Material left the grid, or a load its material; the last converged state is saved.
 pub const LEFT: u8 = 81;

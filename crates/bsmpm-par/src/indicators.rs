@@ -4,7 +4,7 @@
 
 use crate::record::Recorder;
 use crate::setup;
-use bsmpm::energy::Stored;
+use bsmpm::energy::{Budget, Stored};
 use bsmpm::error::StepError;
 use bsmpm::kinematics::Kinematics;
 use bsmpm::model::Model;
@@ -25,6 +25,8 @@ const POINTS: [f64; 2] = [3.0, 1e3];
 const NOISE: [f64; 2] = [0.25, 0.3];
 /// Usual closure of energy, and usual numerical loss.
 const ENERGY: [f64; 2] = [1e-4, 0.1];
+/// Usual growth of energy beyond the work done; the run ends at .05.
+const GROWTH: f64 = 0.02;
 /// Part of the thinnest body along which smoothing is usual: of all strain in every step, and of the elastic dilation in
 /// proportion to plastic flow, which renews it.
 const SMOOTHED: [f64; 2] = [0.1, 1.5];
@@ -37,6 +39,7 @@ pub struct State {
     defect: Option<Defect>,
     noise: Noise,
     energy: Option<Energy>,
+    growth: Option<f64>,
 }
 
 /// Energy that is not accounted for, and that the algorithm lost, over the largest energy.
@@ -50,7 +53,7 @@ impl State {
     /// Of the points of all ranks. Collective; the same on all.
     pub fn of<K: Kinematics<2>>(
         (model, points): (&Model<K, 2>, &Points<2>),
-        recorder: &Recorder,
+        (recorder, budget): (&Recorder, Option<Budget>),
         halo: &dyn Halo,
     ) -> Result<Self, StepError> {
         let defect = quadrature::defect(&model.grid, points, halo);
@@ -61,7 +64,7 @@ impl State {
             let largest = numbers.into_iter().fold(f64::MIN_POSITIVE, f64::max);
             Energy { closure: books.closure(now).abs() / largest, loss: books.flows.numerical() / largest }
         });
-        Ok(Self { defect, noise, energy })
+        Ok(Self { defect, noise, energy, growth: budget.map(|budget| budget.growth) })
     }
 
     /// The indicators of a run of a case, by name: of what is in it.
@@ -113,6 +116,11 @@ impl State {
             let meaning = "energy that the algorithm lost (negative: made), over the largest energy";
             let usual = [-ENERGY[1], ENERGY[1]];
             rows.push(("energy-loss", Indicator::new(energy.loss, "-", meaning, usual)));
+        }
+        if let Some(growth) = self.growth {
+            let meaning = "largest excess of kinetic, elastic and dissipated energy over that of the start and all work \
+                           since, over the largest energy: another [stabilisation], or a smaller dilation";
+            rows.push(row("energy-growth", growth, meaning, GROWTH));
         }
         rows
     }

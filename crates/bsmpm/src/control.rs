@@ -3,9 +3,10 @@
 //! A nominal step is divided into 1024 ticks; attempts are powers of two of them, on the binary subdivision of the
 //! nominal step, so that the step's end is always met and a cut step is a refinement, not another path.
 
+use crate::energy::{Budget, Stored};
 use crate::error::StepError;
 use crate::kinematics::Kinematics;
-use crate::model::Model;
+use crate::model::{Model, Regime};
 use crate::points::Points;
 use crate::schedule::Schedule;
 use crate::seam::{Halo, LinearSolver};
@@ -68,6 +69,8 @@ pub struct Progress {
     pub cuts: u32,
     /// easy steps in a row
     pub easy: u32,
+    /// J  bound on the energy, in dynamics, from the first step on
+    pub budget: Option<Budget>,
 }
 
 /// Position within the current nominal step, and the state of the step-size control.
@@ -88,7 +91,8 @@ impl Stepper {
     /// given up for those that it has.
     pub fn resume(guess: Vec<f64>, mut at: Progress, schedule: &Schedule) -> Option<Self> {
         let times = [at.t, at.guess_dt].into_iter().chain(at.nominal.into_iter().flat_map(|(from, to)| [from, to]));
-        let sound = times.clone().all(f64::is_finite) && at.cuts <= MOST_CUTS && at.tick < TICKS;
+        let budget = at.budget.map_or([0.0; 5], |budget| budget.numbers());
+        let sound = times.chain(budget).all(f64::is_finite) && at.cuts <= MOST_CUTS && at.tick < TICKS;
         if !sound || !at.tick.is_multiple_of(TICKS >> at.cuts) {
             return None;
         }
@@ -108,7 +112,8 @@ impl Stepper {
         self.at.t
     }
 
-    /// Makes one accepted step towards the end of `schedule`; `None` if the end is reached.
+    /// Makes one accepted step towards the end of `schedule`; `None` if the end is reached. Fails before it if the steps so
+    /// far have made energy.
     pub fn advance<K: Kinematics<D>, const D: usize>(
         &mut self,
         schedule: &Schedule,
@@ -117,11 +122,18 @@ impl Stepper {
         halo: &dyn Halo,
         solver: &mut dyn LinearSolver,
     ) -> Option<Result<Accepted, Failure>> {
+        if let Err(made) = self.at.budget.map_or(Ok(()), |budget| budget.require()) {
+            let counts = Counts::default();
+            return Some(Err(Failure { t: self.at.t, dt: self.at.guess_dt, attempts: vec![made], counts }));
+        }
         let (from, to) = match self.at.nominal {
             Some(nominal) => nominal,
             None => (self.at.t, schedule.next(self.at.t)?),
         };
         self.at.nominal = Some((from, to));
+        if model.regime == Regime::Dynamic && self.at.budget.is_none() {
+            self.at.budget = Some(Budget::open(Stored::of(model, points, halo)));
+        }
         let (mut rejected, mut counts) = (Vec::new(), Counts::default());
         let before = (self.at.cuts, self.at.easy);
         loop {
@@ -133,6 +145,9 @@ impl Stepper {
             match step(model, points, &mut guess, (self.at.t, dt), (halo, solver), &mut counts) {
                 Ok(report) => {
                     (self.guess, self.at.guess_dt, self.at.t) = (guess, dt, end);
+                    if let (Some(budget), Some(turnover)) = (&mut self.at.budget, &report.turnover) {
+                        budget.enter(turnover);
+                    }
                     self.accept(size, report.first_guess && report.iterations * 2 <= model.criteria.max_iterations);
                     return Some(Ok(Accepted { t: end, dt, report, counts, rejected }));
                 }

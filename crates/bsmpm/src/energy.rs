@@ -8,11 +8,12 @@
 //! In a step from t (0) to t + dt (1) with the nodal displacement u, M the nodal mass, v_I and a_I the nodes' motion:
 //!
 //! - **external**: `Σ_p m_p (g0 + g1)/2 · Δu_p` of gravity, `Σ A (q0 + q1)/2 · Δx` of tractions and point loads, `Σ A (p0 + p1)/2 ·
-//!   motion` of rigid strips, and `r1 · u` of supports of the grid that move. The mean force of a step: its work is exact for
-//!   dead loads and of second order in dt else.
+//!   motion` of rigid strips, `r1 · u` of supports of the grid that move, and the blow `v · M (v - v_p)` with which those
+//!   meet material that the points bring along with v_p. The mean force of a step: its work is exact for dead loads and of
+//!   second order in dt else.
 //! - **plastic**: `Σ_p V0 τ : (ε_trial - εᵉ)`, backward Euler like the return.
-//! - **transfer** between points and nodes: `(T0 - ½ v_I0 · M v_I0) + (½ v_I1 · M v_I1 - T1)`, what PIC/FLIP loses on the way
-//!   there and back; it can be negative, as the points' velocity grows by the accelerations that they keep for themselves,
+//! - **transfer** between points and nodes: `(T0 - ½ v_I0 · M v_I0) + (½ v_I1 · M v_I1 - T1)` and what the blow did, what
+//!   PIC/FLIP loses on the way there and back; it can be negative, as the points' velocity grows by the accelerations that they keep for themselves,
 //!   the nodes' by the mapped ones.
 //! - **integration**: `(Σ_p V0 τ : (∇u dF⁻¹) - ΔE' - plastic) + (M ã · u - Δ(½ v_I · M v_I)) - ½ (f1 - f0) · u`: the work of the
 //!   internal forces less what became of it, the work of the inertia less the nodes' kinetic energy, and the difference
@@ -28,11 +29,18 @@
 //!
 //! **closure** is then the work of what is out of balance, `f_oob · u`, that of the iteration's tolerance, and round-off.
 //! Supports that do not move, and strips at rest, do no work. In J (plane strain: per metre).
+//!
+//! Every dynamic run keeps the part of the books that costs nothing, see [`Budget`].
+
+mod budget;
+
+pub use budget::{Budget, Turnover};
 
 use crate::boundary::{Surface, load};
 use crate::exact::Exact;
 use crate::grid::{Contributions, transfer};
 use crate::kinematics::Kinematics;
+use crate::material::Response;
 use crate::model::Model;
 use crate::points::Points;
 use crate::seam::{Halo, over_layers};
@@ -124,59 +132,101 @@ impl Books {
 #[derive(Clone, Debug)]
 pub struct Draft {
     flows: Flows<Exact>,
+    elastic: Exact,
     t: f64,
     dt: f64,
 }
 
 impl Draft {
-    /// Everything but what the points are in the end. A point without response leaves no number: its step fails.
+    /// Everything but what the points are in the end; of a model that does not balance its energy only what a [`Budget`] is
+    /// made of.
     pub fn of<K: Kinematics<D>, const D: usize>(
         scene: &Scene<'_, K, D>,
-        found: &Found<D>,
+        (found, responses): (&Found<D>, &[Response]),
         (t, dt): (f64, f64),
     ) -> Self {
-        let Scene { model, shape, nodes, grips, points, halo } = *scene;
+        let Scene { model, nodes, grips, points, halo, .. } = *scene;
         let u = &found.u[..];
         let supports = over_layers(halo, D, |c| found.reaction[c] * u[c]);
         let mut flows = Flows { external: supports, ..Flows::<Exact>::default() };
+        if let Some(inertia) = nodes.inertia.as_ref().filter(|inertia| !inertia.struck.is_empty()) {
+            let blow = over_layers(halo, D, |c| nodes.weight[c / D] * inertia.struck[c]);
+            flows.external += &blow;
+            flows.transfer = blow;
+        }
         add_gravity(&mut flows, scene, u, (t, dt));
         let strips = grips.work(u);
         flows.external += &strips.given;
         flows.integration -= &strips.grown;
         flows.penalty = strips.given;
         flows.penalty -= &strips.taken;
-        add_internal(&mut flows, scene, found);
+        let volumes = || responses.iter().zip(&points.volume);
+        flows.plastic = volumes().map(|(response, volume)| volume * response.dissipation()).collect();
+        let elastic = volumes().map(|(response, volume)| volume * response.elastic_energy()).collect();
+        let mut draft = Self { flows, elastic, t, dt };
+        if model.balances_energy {
+            draft.add_losses(scene, (found, responses));
+        }
+        draft
+    }
+
+    /// Where the rest of the energy went.
+    fn add_losses<K: Kinematics<D>, const D: usize>(
+        &mut self,
+        scene: &Scene<'_, K, D>,
+        (found, responses): (&Found<D>, &[Response]),
+    ) {
+        let Scene { model, shape, nodes, points, halo, .. } = *scene;
+        let (flows, u) = (&mut self.flows, &found.u[..]);
+        let pressures = Pressures::of(scene, &found.trial);
+        let work_of = |p: usize, grad: Square<D>| {
+            let tau = pressures.acting::<K, D>(p, points.volume[p], responses[p].tau());
+            points.volume[p] * K::flux(&tau, &found.trial.dF::<K>(p)).dot(&grad)
+        };
+        flows.integration.extend(transfer::gradients(shape, u, work_of));
+        flows.integration -= &flows.plastic;
+        flows.integration -= &self.elastic;
         flows.integration += &elastic(model, points);
-        flows.transfer = kinetic(points);
-        add_inertia(&mut flows, (nodes, halo), u);
+        flows.smoothing += &self.elastic;
+        flows.transfer += &kinetic(points);
+        add_inertia(flows, (nodes, halo), u);
         if let Some(blocks) = &nodes.background {
             let mut force = Contributions::none(&model.grid, D, Vec::new());
             blocks.multiply::<D>(shape, u, &mut force);
             flows.background = force.dot(u);
         }
-        Self { flows, t, dt }
     }
 
-    /// The flows of the step on all ranks, whose state is now in the points; `surface` is that of the end of the step, the
-    /// points still have that of its start.
+    /// The flows of the step on all ranks, if the model balances its energy, and the turnover. Its state is now in the
+    /// points; `surface` is that of the end of the step, the points still have that of its start.
     pub fn close<K: Kinematics<D>, const D: usize>(
         self,
         model: &Model<K, D>,
         points: &Points<D>,
         surface: &Surface<D>,
         halo: &dyn Halo,
-    ) -> Flows {
-        let Self { flows: mut own, t, dt } = self;
-        own.transfer -= &kinetic(points);
-        own.smoothing -= &elastic(model, points);
-        let mut flows = Flows::default();
-        let sums = halo.total(&own.each().map(|flow| flow.clone()));
-        flows.each().into_iter().zip(sums).for_each(|(flow, sum)| *flow = sum);
+    ) -> (Option<Flows>, Turnover) {
+        let Self { flows: mut own, elastic: strained, t, dt } = self;
+        let moving = kinetic(points);
+        let mut sums = vec![own.external.clone(), own.plastic.clone(), moving.clone(), strained];
+        if model.balances_energy {
+            own.transfer -= &moving;
+            own.smoothing -= &elastic(model, points);
+            sums.extend(own.each().map(|flow| flow.clone()));
+        }
+        let sums = halo.total(&sums);
         // The loads' points are the same on every rank.
         let (loads, loads_grown) = load::work(&model.boundary.loads, (&points.surface, surface), (t, dt));
-        flows.external += loads;
-        flows.integration -= loads_grown;
-        flows
+        let stored = Stored { kinetic: sums[2], elastic: sums[3] };
+        let turnover = Turnover { external: sums[0] + loads, plastic: sums[1], stored };
+        let flows = model.balances_energy.then(|| {
+            let mut flows = Flows::default();
+            flows.each().into_iter().zip(&sums[4..]).for_each(|(flow, sum)| *flow = *sum);
+            flows.external += loads;
+            flows.integration -= loads_grown;
+            flows
+        });
+        (flows, turnover)
     }
 }
 
@@ -202,25 +252,6 @@ fn add_gravity<K: Kinematics<D>, const D: usize>(
     let moved = transfer::to_points::<D, D, _>(scene.shape, u, |p, du| Vector::from(du) * scene.points.mass[p]);
     flows.external.extend(moved.iter().map(|moved| 0.5 * (before + after).dot(moved)));
     flows.integration.extend(moved.iter().map(|moved| -0.5 * (after - before).dot(moved)));
-}
-
-/// Work of the points' stress, and what became of it before any smoothing.
-fn add_internal<K: Kinematics<D>, const D: usize>(flows: &mut Flows<Exact>, scene: &Scene<'_, K, D>, found: &Found<D>) {
-    let Scene { model, shape, points, .. } = *scene;
-    let pressures = Pressures::of(scene, &found.trial);
-    let balance_of = |p: usize, grad: Square<D>| {
-        let volume = points.volume[p];
-        let Ok(response) = found.trial.respond(model, points, p) else { return [f64::NAN; 3] };
-        let tau = pressures.acting::<K, D>(p, volume, response.tau());
-        let work = volume * K::flux(&tau, &found.trial.dF::<K>(p)).dot(&grad);
-        let elastic = volume * model.elastic_energy(points, p, &response.b_e());
-        [work, volume * response.dissipation(), elastic]
-    };
-    for [work, plastic, elastic] in transfer::gradients(shape, &found.u, balance_of) {
-        flows.plastic.add(plastic);
-        flows.smoothing.add(elastic);
-        flows.integration.extend([work, -elastic, -plastic]);
-    }
 }
 
 /// Work of the inertia, and the kinetic energy of this rank's own nodes at both ends of the step.

@@ -126,6 +126,19 @@ pub enum StepError {
         /// du . (f_old - f_new) along its direction, N m.
         work: f64,
     },
+    /// The steps so far have made energy: the run is wrong, though each of them is in equilibrium.
+    #[error(
+        "energy made: what moves, strains and is dissipated exceeds the {given:.3e} J of the start and of all work since by \
+         {:.1} % of the largest energy (bound {:.0} %)", 100.0 * growth, 100.0 * slack
+    )]
+    EnergyMade {
+        /// Largest excess over the largest energy.
+        growth: f64,
+        /// Energy at the start and work of gravity, loads and what moves since, J.
+        given: f64,
+        /// Bound of `growth`.
+        slack: f64,
+    },
     /// The step was given up on request, see [`Halo::is_interrupted`](crate::seam::Halo::is_interrupted).
     #[error("given up on request")]
     Interrupted,

@@ -24,14 +24,16 @@ pub mod variational;
 
 use crate::boundary::strip::Grips;
 use crate::boundary::{Anchors, StripReport, Surface, load};
-use crate::energy::{Draft, Flows};
+use crate::energy::{Draft, Flows, Turnover};
 use crate::error::{Measures, StepError};
 use crate::grid::Shape;
+use crate::initial;
 use crate::kinematics::Kinematics;
-use crate::model::Model;
+use crate::model::{Model, Regime};
 use crate::points::Points;
 use crate::seam::{Halo, LinearSolver, agreed};
 use crate::step::commit::Committed;
+use crate::step::newmark::Newmark;
 use crate::step::nodes::Nodes;
 
 /// Work of one or more attempts, failed ones included.
@@ -78,6 +80,8 @@ pub struct Report {
     pub strips: Vec<StripReport>,
     /// J  where the energy went, if the model balances it
     pub energy: Option<Flows>,
+    /// J  what bounds the energy, in dynamics and where the model balances it
+    pub turnover: Option<Turnover>,
     /// share of a pass of S by which the elastic state was smoothed, mean over the points
     pub smoothed: f64,
 }
@@ -93,7 +97,12 @@ pub fn step<K: Kinematics<D>, const D: usize>(
     counts: &mut Counts,
 ) -> Result<Report, StepError> {
     let shape = agreed(halo, Shape::at(&model.grid, points), StepError::OtherRank)?; // (1)
-    let nodes = Nodes::map(model, &shape, points, (t, dt), halo)?; // (2)
+    let mut nodes = Nodes::map(model, &shape, points, (t, dt), halo)?; // (2)
+    if let Some(inertia) = nodes.inertia.as_mut().filter(|_| t == 0.0)
+        && initial::balance(model, points, halo)?.force > model.criteria.force
+    {
+        inertia.newmark = Newmark::of_the_end();
+    }
     let grips = Grips::at(&model.boundary.strips, &points.surface, (&model.grid, &nodes.free), (t, dt));
     let scene = equilibrium::Scene { model, shape: &shape, nodes: &nodes, grips: &grips, points, halo };
     let found = equilibrium::find(&scene, guess, solver, counts)?; // (3)-(9)
@@ -103,13 +112,15 @@ pub fn step<K: Kinematics<D>, const D: usize>(
     let anchors = Anchors::of(&model.boundary, points, halo);
     let position = load::moved(&model.boundary.loads, &points.surface, (&model.grid, &nodes.active), &found.u, halo);
     let mut surface = Surface { traction, position, anchors };
-    let draft = model.balances_energy.then(|| Draft::of(&scene, &found, (t, dt)));
+    let responses = commit::responses(model, &found.trial, points, halo)?;
+    let accounts = model.balances_energy || model.regime == Regime::Dynamic;
+    let draft = accounts.then(|| Draft::of(&scene, (&found, &responses), (t, dt)));
     if halo.rejects() {
         return Err(StepError::Interrupted);
     }
-    let Committed { u, smoothed } = commit::commit(model, &shape, &nodes, found, points, halo)?; // (10), (11)
+    let Committed { u, smoothed } = commit::commit(model, (&shape, &nodes), (found, &responses), points, halo); // (10), (11)
     *guess = u;
-    let energy = draft.map(|draft| draft.close(model, points, &surface, halo));
+    let account = draft.map(|draft| draft.close(model, points, &surface, halo));
     let places = surface.anchors.places(&model.boundary, points, halo);
     let reach = 0.5 * model.grid.smallest_edge();
     for (number, strip) in model.boundary.strips.iter().enumerate() {
@@ -117,5 +128,6 @@ pub fn step<K: Kinematics<D>, const D: usize>(
     }
     surface.position = places.loads;
     points.surface = surface;
-    Ok(Report { energy, smoothed, ..report })
+    let (energy, turnover) = account.map_or((None, None), |(flows, turnover)| (flows, Some(turnover)));
+    Ok(Report { energy, turnover, smoothed, ..report })
 }

@@ -4,7 +4,7 @@ use super::Refusal;
 use crate::exit;
 use bsmpm::boundary::{Anchors, Surface};
 use bsmpm::control::Progress;
-use bsmpm::energy::{Books, Flows};
+use bsmpm::energy::{Books, Budget, Flows};
 use bsmpm::grid::Grid;
 use bsmpm::tensor::Vector;
 use bsmpm_io::frames::Entry;
@@ -145,6 +145,36 @@ struct ProgressForm {
     tick: u32,
     cuts: u32,
     easy: u32,
+    #[serde(default, with = "budget")]
+    budget: Option<Budget>,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(remote = "Budget", deny_unknown_fields)]
+struct BudgetFields {
+    start: f64,
+    external: f64,
+    plastic: f64,
+    largest: f64,
+    growth: f64,
+}
+
+/// [`Budget`] in a checkpoint; none in quasi-static analysis, and of a version that kept none.
+mod budget {
+    use super::{Budget, BudgetFields};
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    #[derive(Serialize, Deserialize)]
+    #[serde(transparent)]
+    struct Form(#[serde(with = "BudgetFields")] Budget);
+
+    pub(super) fn serialize<S: Serializer>(budget: &Option<Budget>, serializer: S) -> Result<S::Ok, S::Error> {
+        budget.map(Form).serialize(serializer)
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Budget>, D::Error> {
+        Ok(Option::<Form>::deserialize(deserializer)?.map(|Form(budget)| budget))
+    }
 }
 
 /// [`Books`] in a checkpoint.
@@ -170,4 +200,25 @@ struct FlowsFields {
     smoothing: f64,
     background: f64,
     penalty: f64,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[derive(Debug, PartialEq, Serialize, Deserialize)]
+    #[serde(transparent)]
+    struct Form(#[serde(with = "ProgressForm")] Progress);
+
+    #[test]
+    fn step_control_reads_back_and_that_of_a_version_without_a_budget_is_read() {
+        let budget = Budget { start: 0.1, external: 1.0 / 3.0, plastic: 2e-17, largest: 1e3, growth: 0.01 };
+        let kept = Form(Progress { t: 0.3, budget: Some(budget), ..Progress::default() });
+        let text = serde_json::to_string(&kept).unwrap();
+        assert_eq!(serde_json::from_str::<Form>(&text).unwrap(), kept);
+        let old = r#"{"t":0.3,"guess_dt":0.0,"nominal":null,"tick":0,"cuts":0,"easy":0}"#;
+        assert_eq!(serde_json::from_str::<Form>(old).unwrap(), Form(Progress { t: 0.3, ..Progress::default() }));
+        let unknown = old.replace("easy", "hard");
+        assert!(serde_json::from_str::<Form>(&unknown).is_err());
+    }
 }

@@ -85,6 +85,12 @@ fn advice(error: &StepError, case: &Case) -> Vec<String> {
             "nearly incompressible material under a pressure of several times its shear modulus: more points_per_cell",
             "where the body itself buckles, a dynamic analysis follows it",
         ],
+        StepError::EnergyMade { .. } => &[
+            "another [stabilisation]: f-bar, modified-f-bar and f-bar-zhao make energy where material flows without \
+             strength or dilates, consistent-f-bar less, none none",
+            "a smaller dilation, or some friction; see where it begins: [[history]] quantity = \"energy\", and the frames",
+            "the state that is saved is wrong, too: do not go on from it",
+        ],
         StepError::Inverted { .. } => &[
             "material turned inside out: more steps ([analysis] steps or dt), or a larger [solver] background",
             "look at the points named: loose points at a free surface are the usual ones",

@@ -79,7 +79,7 @@ impl Run<'_> {
         let timers = Rc::clone(&self.timers);
         let _timed = timers.time("indicators");
         let Simulation { model, points, halo, .. } = &self.simulation;
-        match State::of((model, points), &self.recorder, &**halo) {
+        match State::of((model, points), (&self.recorder, self.simulation.progress().budget), &**halo) {
             Ok(state) => {
                 if let Some(ledger) = &mut self.ledger {
                     let manifest = ledger.manifest();

@@ -11,13 +11,18 @@ use bsmpm_io::manifest::Status;
 impl Run<'_> {
     /// Ends the run after a step that failed.
     pub(super) fn fail(mut self, failure: &Failure) -> u8 {
-        let told = format!(
-            "step {} failed at t = {} after {} attempt(s), the last with dt = {:.3e}",
-            self.simulation.steps() + 1,
-            failure.t,
-            failure.attempts.len(),
-            failure.dt
-        );
+        let told = match failure.attempts.last() {
+            Some(StepError::EnergyMade { .. }) => {
+                format!("ended after step {} at t = {}", self.simulation.steps(), failure.t)
+            }
+            _ => format!(
+                "step {} failed at t = {} after {} attempt(s), the last with dt = {:.3e}",
+                self.simulation.steps() + 1,
+                failure.t,
+                failure.attempts.len(),
+                failure.dt
+            ),
+        };
         if let Some(ledger) = &mut self.ledger {
             ledger.attempts(failure.attempts.len() - 1, failure.counts);
         }

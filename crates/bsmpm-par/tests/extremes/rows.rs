@@ -12,13 +12,12 @@ const CONSISTENT: &str = "consistent-f-bar";
 
 const EDGE: &str = "at a free edge nodes have next to no stiffness; the background, which dynamics has not, mends it";
 const GRIP: &str = "a pulled strip lets go where points cross into the empty cell before it: its force goes to nodes that hold nothing";
-const START: &str = "points start with a = 0: the first step gains half of g dt, and the fall lags half a step behind";
 const SECANTS: &str = "864 for 225: the stiffness knows the average of consistent F-bar only";
 const NOISE_P: &str = "not reached with two cells under the strip";
 const NOISE: &str = "4 u/dt^2 - 4 v/dt - a cancels, and a carries its round-off on from step to step";
 const FLIP: &str = "accelerations lose what the grid cannot hold when they go to it and back";
 const DIFFUSION: &str = "the paper's average of b^e is a diffusion per step";
-const LATE: &str = "an error of the step: 8, 7, 2 % between .5 and .0625 ms; motion starts half a step late";
+const LATE: &str = "an error of the step: 8, 7, 2 % between .5 and .0625 ms";
 const LOOSE: &str = "the farthest point has come loose, and slides on where its neighbours stick";
 const COARSE: &str = "an error of integration in time: a fall of .1 s in steps of 5 to 10 ms";
 const SLOW: &str = "p/c changes by .1 to .4 % a doubling, and that falls by less than half each time";
@@ -180,8 +179,8 @@ fn huge_steps() -> Vec<Row> {
         row("N10", "dt = 1e3 s, settling block: distance from the static state", AtMost(1e-6), || steps::huge(1e3)),
         row("N10", "dt = 1e6 s: the same", AtMost(1e-6), || steps::huge(1e6)),
         row("N10", "dt = 1e3 s, 200 steps: ringing of the last 100 / of the first", AtMost(1.0), || steps::ringing(1e3)),
-        row("N10", "dt = 10 ms, collapse to .1 s: way of the front, error", AtMost(0.05), || steps::collapse(0.01, 0.1)).or_refused().fails(START),
-        row("N10", "dt = 50 ms, the same", AtMost(0.05), || steps::collapse(0.05, 0.1)).or_refused().fails(START),
+        row("N10", "dt = 10 ms, collapse to .1 s: way of the front, error", AtMost(0.05), || steps::collapse(0.01, 0.1)).or_refused(),
+        row("N10", "dt = 50 ms, the same", AtMost(0.05), || steps::collapse(0.05, 0.1)).or_refused(),
         row("N10", "dt = 10 ms, collapse to .607 s: the same", AtMost(0.05), || steps::collapse(0.01, 0.607)).or_refused().full(),
         row("N10", "dt = 50 ms, the same", AtMost(0.05), || steps::collapse(0.05, 0.607)).or_refused().full(),
         row("N10", "dt = 1000 ms, collapse to 1 s: the same", AtMost(0.05), || steps::collapse(1.0, 1.0)).or_refused().full().fails(COARSE),

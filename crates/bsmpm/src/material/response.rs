@@ -96,6 +96,11 @@ impl Response {
         (0..3).map(|k| self.tau[k] * (eps[k] - eps_e[k])).sum()
     }
 
+    /// Elastic energy per reference volume after the return, J/m3: `½ λ tr(εᵉ)² + μ εᵉ : εᵉ`.
+    pub fn elastic_energy(&self) -> f64 {
+        self.moduli.energy(self.principal_eps_e())
+    }
+
     /// Principal Kirchhoff stress in Pa, descending.
     #[inline]
     pub fn principal_tau(&self) -> [f64; 3] {

@@ -19,6 +19,7 @@ use crate::step::equilibrium::Found;
 use crate::step::inertia::Inertia;
 use crate::step::nodes::Nodes;
 use crate::step::smooth;
+use crate::step::trial::Trial;
 use crate::tensor::Vector;
 use rayon::prelude::*;
 
@@ -51,23 +52,31 @@ pub struct Committed {
     pub smoothed: f64,
 }
 
-/// Saves the converged step into the points. Fails, before any point has changed,
-/// if the constitution refuses a state that it answered during the iteration.
-pub fn commit<K: Kinematics<D>, const D: usize>(
+/// The constitution's answers to the converged step. Fails on all ranks if it refuses a state that it answered during the
+/// iteration.
+pub fn responses<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
-    shape: &Shape<D>,
-    nodes: &Nodes<D>,
-    found: Found<D>,
-    points: &mut Points<D>,
+    trial: &Trial<D>,
+    points: &Points<D>,
     halo: &dyn Halo,
-) -> Result<Committed, StepError> {
-    let Found { u, trial, .. } = found;
+) -> Result<Vec<Response>, StepError> {
     // Collected as they come, and only then taken apart: one array, whatever the number of threads.
     let answers: Vec<_> = (0..points.len()).into_par_iter().map(|p| trial.respond(model, points, p)).collect();
     let failed = |(p, source)| StepError::Material { id: points.id[p], source };
     let responses: Result<Vec<_>, _> =
         answers.into_iter().enumerate().map(|(p, answer)| answer.map_err(|source| failed((p, source)))).collect();
-    let responses = agreed(halo, responses, StepError::OtherRank)?;
+    agreed(halo, responses, StepError::OtherRank)
+}
+
+/// Saves the converged step, which the constitution has answered so, into the points.
+pub fn commit<K: Kinematics<D>, const D: usize>(
+    model: &Model<K, D>,
+    (shape, nodes): (&Shape<D>, &Nodes<D>),
+    (found, responses): (Found<D>, &[Response]),
+    points: &mut Points<D>,
+    halo: &dyn Halo,
+) -> Committed {
+    let Found { u, trial, .. } = found;
     if let Some(inertia) = &nodes.inertia {
         move_with_inertia(shape, inertia, &u, points);
     }
@@ -98,8 +107,8 @@ pub fn commit<K: Kinematics<D>, const D: usize>(
         }
         Stabilisation::None | Stabilisation::FBar | Stabilisation::FBarZhao => 0.0,
     };
-    points.gap = gaps(model, points, &responses);
-    Ok(Committed { u, smoothed })
+    points.gap = gaps(model, points, responses);
+    Committed { u, smoothed }
 }
 
 /// Gap of every point after the step, if some material closes its gaps.

@@ -98,6 +98,7 @@ impl<const D: usize> Found<D> {
             reactions: scene.model.boundary.reactions(&scene.model.grid, &self.reaction, scene.halo),
             strips: Vec::new(),
             energy: None,
+            turnover: None,
             smoothed: 0.0,
         }
     }

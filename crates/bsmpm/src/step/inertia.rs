@@ -13,6 +13,9 @@ pub struct Inertia {
     pub v: Vec<f64>,
     /// m/s2, D numbers a node
     pub a: Vec<f64>,
+    /// m2/s2  per component and mass, what a motion that is prescribed works on material that comes with another velocity:
+    /// the velocity times its jump; empty where nothing moves
+    pub struck: Vec<f64>,
     /// s  length of the step
     pub dt: f64,
     /// time integration
@@ -54,12 +57,17 @@ pub(super) fn map<const D: usize>(
     (dt, newmark): (f64, Newmark),
     halo: &dyn Halo,
 ) -> Inertia {
-    let mut inertia = Inertia { v: vec![0.0; mass.len() * D], a: vec![0.0; mass.len() * D], dt, newmark };
+    let mut inertia =
+        Inertia { v: vec![0.0; mass.len() * D], a: vec![0.0; mass.len() * D], struck: Vec::new(), dt, newmark };
     if let Some(motion) = &points.motion {
         for (field, nodal) in [(&motion.v, &mut inertia.v), (&motion.a, &mut inertia.a)] {
             *nodal = halo.sum(&transfer::to_nodes::<D, D>(shape, |p| (field[p] * points.mass[p]).into()));
             divide(nodal, mass, threshold);
         }
+    }
+    if prescribed.iter().flatten().any(|&velocity| velocity != 0.0) {
+        let jump = |(prescribed, v): (&Option<f64>, &f64)| prescribed.map_or(0.0, |velocity| velocity * (velocity - v));
+        inertia.struck = prescribed.iter().zip(&inertia.v).map(jump).collect();
     }
     for (component, velocity) in prescribed.iter().enumerate() {
         if let Some(velocity) = velocity {

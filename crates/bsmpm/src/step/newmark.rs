@@ -2,7 +2,8 @@
 //!
 //! `u = dt v + dt² ((1/2 - β) a + β a')`, `v' = v + dt ((1 - γ) a + γ a')`; balance at the end of the step with the inertia
 //! `M ((1 - α) a' + α a)` (Wood, Bossak and Zienkiewicz, 1980; here α as in Chung and Hulbert, 1993). In this method a at the
-//! start of a step is what the points give the nodes, not what the last step left there.
+//! start of a step is what the points give the nodes, not what the last step left there. A first step under a force
+//! that acts at once has β = 1/2, γ = 1.
 
 /// Parameters of the family; the paper's are α = 0, β = 1/4, γ = 1/2.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,6 +30,13 @@ impl Newmark {
     /// Newmark's own damping, γ in [1/2, 1]: `β = (γ + 1/2)²/4`, α = 0; of first order unless γ = 1/2.
     pub fn of_gamma(gamma: f64) -> Self {
         Self { alpha: 0.0, beta: 0.25 * (gamma + 0.5).powi(2), gamma }
+    }
+
+    /// β = 1/2, γ = 1: nothing depends on a at the start of the step, and a constant acceleration is exact. For a first step
+    /// under a force that acts at once: the points' a = 0 there would let it come half a step late. `M a = f` at the start
+    /// instead makes what is stiff swing about its equilibrium in steps that do not resolve it, where this one damps it.
+    pub fn of_the_end() -> Self {
+        Self { alpha: 0.0, beta: 0.5, gamma: 1.0 }
     }
 
     /// 1/s2  what multiplies u in a': `1/(β dt²)`.

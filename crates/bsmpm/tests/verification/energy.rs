@@ -3,12 +3,16 @@
 
 use crate::bar::{PERIOD, bar};
 use crate::support::scene::{Scene, axis, hencky};
+use crate::support::solver::Skyline;
 use bsmpm::background::{Background, Extent, Kind};
 use bsmpm::boundary::{Load, Path, Strip, Support, surface};
+use bsmpm::control::Stepper;
 use bsmpm::energy::{Books, Stored};
+use bsmpm::error::StepError;
 use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
 use bsmpm::material::{Elastic, Material, MohrCoulomb, Separation};
-use bsmpm::model::{Regime, Weighting};
+use bsmpm::model::{Gravity, Regime, Weighting};
+use bsmpm::schedule::Schedule;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::step::newmark::Newmark;
 use bsmpm::tensor::Vector;
@@ -41,6 +45,8 @@ fn kept<K: Kinematics<D>, const D: usize>(mut scene: Scene<K, D>, dt: f64, end: 
         let step = accepted.report.energy.expect("the model balances energy");
         assert!(step.plastic >= 0.0, "plastic flow dissipates: {step:?}");
         course.books.flows += step;
+        let turnover = accepted.report.turnover.expect("whatever balances energy has it");
+        assert_eq!((turnover.external, turnover.plastic), (step.external, step.plastic));
         course.stored = Stored::of(&model, points, &halo);
         let Course { books, stored, .. } = course;
         let energies = [stored.kinetic, stored.elastic, books.flows.plastic, books.flows.external.abs()];
@@ -139,6 +145,38 @@ fn a_collapse_with_friction_closes() {
         assert!(course.relative() <= 1e-8); // measured 8.7e-12, 1.5e-12
         assert!(flows.plastic >= 0.1 * flows.external && flows.background > 0.0);
         assert!(course.stored.kinetic > 0.0 && flows.external > 0.0);
+    }
+}
+
+#[test]
+fn a_method_that_makes_energy_exceeds_the_budget_and_no_other() {
+    let soil = |friction: f64, dilation: f64| {
+        Material::MohrCoulomb(MohrCoulomb::new(Elastic { young: 5e7, poisson: 0.3 }, friction, dilation, 0.0))
+    };
+    for (method, material, makes) in [
+        (Stabilisation::None, soil(0.4, 0.0), false),
+        (Stabilisation::None, soil(0.4, 0.4), false),
+        (Stabilisation::None, soil(0.0, 0.0), false),
+        (Stabilisation::ConsistentFBar, soil(0.4, 0.0), false),
+        (Stabilisation::ModifiedFBar, soil(0.4, 0.0), false),
+        (Stabilisation::FBar, soil(0.4, 0.4), true),
+        (Stabilisation::FBarZhao, soil(0.4, 0.4), true),
+    ] {
+        let mut scene = collapse(method, Separation::Forgotten);
+        scene.model.materials = vec![material];
+        scene.model.gravity = Some(Gravity { acceleration: [0.0, -10.0].into(), ramp: 0.0 });
+        let (schedule, halo) = (Schedule::new(2e-3, 0.14, []), scene.halo());
+        let (mut solver, mut stepper) = (Skyline::new(&scene.model.grid), Stepper::new(scene.model.grid.nodes() * 2));
+        let ended = loop {
+            match stepper.advance(&schedule, &scene.model, &mut scene.points, &halo, &mut solver) {
+                Some(Ok(_)) => scene.points.sort_by_cell(&scene.model.grid),
+                Some(Err(failure)) => break failure.attempts.last().cloned(),
+                None => break None,
+            }
+        };
+        println!("{method:?}: {:?} at {}, {:?}", ended, stepper.time(), stepper.progress().budget);
+        assert_eq!(matches!(ended, Some(StepError::EnergyMade { .. })), makes);
+        assert!(makes || ended.is_none());
     }
 }
 
