@@ -12,6 +12,7 @@ use crate::seam::{Halo, LinearSolver, agreed};
 use crate::step::equilibrium::Scene;
 use crate::step::nodes::Nodes;
 use crate::step::residual::{Balance, Residual};
+use crate::step::round_off::RoundOff;
 use crate::step::stiffness;
 use crate::tensor::{Symmetric, Tensor, Vector};
 
@@ -97,6 +98,19 @@ pub fn balance<K: Kinematics<D>, const D: usize>(
     let residual = Residual::of(&start.scene(model, points, halo), &vec![0.0; model.grid.nodes() * D]);
     halo.reduce(&mut yielding);
     Ok(Equilibrium { force: residual.balance.measure(), yielding: yielding[0] as u64 })
+}
+
+/// Whether forces at time 0 are out of balance, by more than the tolerance and round-off.
+pub fn is_pushed<K: Kinematics<D>, const D: usize>(
+    model: &Model<K, D>,
+    points: &Points<D>,
+    halo: &dyn Halo,
+) -> Result<bool, StepError> {
+    let model = &Model { regime: Regime::QuasiStatic, ..model.clone() };
+    let start = Start::of(model, points, halo)?;
+    let scene = start.scene(model, points, halo);
+    let balance = Residual::of(&scene, &vec![0.0; model.grid.nodes() * D]).balance;
+    Ok(balance.measure() > model.criteria.force && !RoundOff::of(&scene).covers(&balance, &scene))
 }
 
 /// Steps (1) and (2) at time 0, without motion.

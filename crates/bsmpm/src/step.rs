@@ -99,7 +99,7 @@ pub fn step<K: Kinematics<D>, const D: usize>(
     let shape = agreed(halo, Shape::at(&model.grid, points), StepError::OtherRank)?; // (1)
     let mut nodes = Nodes::map(model, &shape, points, (t, dt), halo)?; // (2)
     if let Some(inertia) = nodes.inertia.as_mut().filter(|_| t == 0.0)
-        && initial::balance(model, points, halo)?.force > model.criteria.force
+        && initial::is_pushed(model, points, halo)?
     {
         inertia.newmark = Newmark::of_the_end();
     }
