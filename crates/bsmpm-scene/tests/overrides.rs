@@ -399,6 +399,10 @@ fn doubtful_cases_are_warned_of() {
         let warnings = valid(text, &[change]).warnings;
         assert!(warnings.iter().any(|warning| warning.contains(says)), "{change}: {warnings:?}");
     }
+    let of_cubic =
+        |points: &str| valid(FULL, &["grid.order=cubic", &format!("body.*.points_per_cell={points}")]).warnings;
+    let warned = |points: &str| of_cubic(points).iter().any(|warning| warning.contains("cubic splines too coarsely"));
+    assert!(warned("2") && !warned("3"));
     let plastic = FULL.replace("[stabilisation]\nmethod = \"f-bar\"", "");
     assert!(valid(&plastic, &[]).warnings.iter().any(|warning| warning.contains("material.sand is plastic")));
 }

@@ -58,6 +58,13 @@ fn read(
     if points_per_cell == Some(1) {
         report.warn(format!("{}: 1 point per cell integrates too coarsely; take 2 or more", record.path));
     }
+    if points_per_cell == Some(2) && grid.is_some_and(|grid| grid.order == 3) {
+        report.warn(format!(
+            "{}: 2 points per cell integrate cubic splines too coarsely: they find no stable equilibrium once points have \
+             moved on by cells; take 3 or more, or order = \"quadratic\"",
+            record.path
+        ));
+    }
     let region = shape::region(record, (grid, points_per_cell), report);
     let velocity = record.pair("velocity");
     let body = Body { material: material?, region: region?, points_per_cell: points_per_cell?, velocity };
