@@ -21,6 +21,10 @@ use std::collections::BTreeMap;
 const DEFECT: [f64; 2] = [0.2, 0.8];
 /// Usual number of points in an inner cell: fewer than 2 x 2 integrate too little, and no number is too many.
 const POINTS: [f64; 2] = [3.0, 1e3];
+/// Usual compression with fewer points along an axis of a cell than so many: an elastic bar on 64 cells that its weight
+/// compresses by 1, 5, 9, 15, 28 and 52 % has a mean error of its stress of .006, .3, .8, 1.0, 1.0 and .6 % with 2, .4 and .3 %
+/// at 28 and 52 % with 3, .2 and .07 % at 52 % with 4 and 6 points.
+const COMPRESSION: (usize, f64) = (4, 0.1);
 /// Usual noise of the pressure about its average and about planes.
 const NOISE: [f64; 2] = [0.25, 0.3];
 /// Usual closure of energy, and usual numerical loss.
@@ -37,6 +41,7 @@ const SLIP: f64 = 0.01;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct State {
     defect: Option<Defect>,
+    compression: f64,
     noise: Noise,
     energy: Option<Energy>,
     growth: Option<f64>,
@@ -57,6 +62,7 @@ impl State {
         halo: &dyn Halo,
     ) -> Result<Self, StepError> {
         let defect = quadrature::defect(&model.grid, points, halo);
+        let compression = quadrature::compression(points, model.materials.len(), halo);
         let noise = relative_pressure_noise(&model.grid, points, model.weighting, halo)?;
         let energy = recorder.books().map(|books| {
             let now = Stored::of(model, points, halo);
@@ -64,7 +70,7 @@ impl State {
             let largest = numbers.into_iter().fold(f64::MIN_POSITIVE, f64::max);
             Energy { closure: books.closure(now).abs() / largest, loss: books.flows.numerical() / largest }
         });
-        Ok(Self { defect, noise, energy, growth: budget.map(|budget| budget.growth) })
+        Ok(Self { defect, compression, noise, energy, growth: budget.map(|budget| budget.growth) })
     }
 
     /// The indicators of a run of a case, by name: of what is in it.
@@ -76,6 +82,12 @@ impl State {
             let meaning = "largest of a step that was accepted by it, over its tolerance";
             all.extend(value.map(|value| (name, Indicator::new(value, "-", meaning, [0.0, 1.0]))));
         }
+        let (enough, most) = COMPRESSION;
+        let coarse = case.bodies.iter().any(|body| body.points_per_cell < enough);
+        let meaning = "part of its volume that the most compressed material has lost: with fewer than 4 points_per_cell stress \
+                       is wrong by up to 1 %, however fine the cells";
+        let usual = [0.0, if coarse { most } else { 1.0 }];
+        all.push(("compression", Indicator::new(self.compression, "-", meaning, usual)));
         let slip = summary.largest_slip.map(|value| {
             ("slip", Indicator::new(value, "-", "largest slip of a strip in a step, over its motion", [0.0, SLIP]))
         });

@@ -55,6 +55,21 @@ pub fn defect<const D: usize>(grid: &Grid<D>, points: &Points<D>, halo: &dyn Hal
     })
 }
 
+/// Part of its volume that the material of the points which has lost most, the mean of each over its points, has lost: equal
+/// weights integrate the worse the farther points have moved against each other and the cells. The same bits on any number
+/// of ranks.
+pub fn compression<const D: usize>(points: &Points<D>, materials: usize, halo: &dyn Halo) -> f64 {
+    let mut volumes = vec![Exact::ZERO; 2 * materials];
+    for p in 0..points.len() {
+        let at = 2 * usize::from(points.material[p]);
+        volumes[at].add(points.volume[p]);
+        volumes[at + 1].add(points.volume[p] * points.F.at(p).determinant());
+    }
+    let volumes = halo.total(&volumes);
+    let lost = |pair: &[f64]| if pair[0] > 0.0 { 1.0 - pair[1] / pair[0] } else { 0.0 };
+    volumes.chunks_exact(2).map(lost).fold(0.0, f64::max)
+}
+
 /// Which cells hold points, those beside this rank's columns included.
 struct Occupied<'a, const D: usize> {
     grid: &'a Grid<D>,

@@ -5,7 +5,7 @@ use bsmpm::grid::Shape;
 use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
 use bsmpm::model::{Regime, Weighting};
 use bsmpm::observe::noise::relative_pressure_noise;
-use bsmpm::observe::quadrature::{Defect, defect};
+use bsmpm::observe::quadrature::{Defect, compression, defect};
 use bsmpm::step::nodes::Nodes;
 use bsmpm::step::smooth;
 use bsmpm::tensor::{Symmetric, Tensor, Vector};
@@ -51,6 +51,21 @@ fn the_defect_is_that_of_the_points_present_volumes() {
     let found = of(&scene).unwrap();
     assert_eq!((found.cells, found.largest), (4, 0.25));
     assert!((found.rms - (2.0 * 0.25_f64.powi(2) / 4.0).sqrt()).abs() <= 1e-15);
+}
+
+#[test]
+fn compression_is_that_of_the_material_that_has_lost_most_of_its_volume() {
+    let mut scene = block::<PlaneStrain, 2>(2, 0..2);
+    let halo = scene.halo();
+    assert_eq!(compression(&scene.points, 2, &halo), 0.0);
+    // Half of the points are of another material and shrink to .8; one of the first material grows to twice its area.
+    for p in 0..scene.points.len() {
+        scene.points.material[p] = u16::from(p % 2 == 1);
+        let stretch = if p % 2 == 1 { 0.8 } else { 1.0 };
+        scene.points.F.set(p, Tensor::from_diagonal(&[stretch, 1.0, 1.0].into()));
+    }
+    scene.points.F.set(0, Tensor::from_diagonal(&[2.0, 1.0, 1.0].into()));
+    assert!((compression(&scene.points, 2, &halo) - 0.2).abs() <= 1e-15);
 }
 
 #[test]
