@@ -2,6 +2,8 @@
 //!
 //! The ranges are those of the shipped cases, coarse and fine, with methods that are known to be good; see the README.
 
+mod advice;
+
 use crate::record::Recorder;
 use crate::setup;
 use bsmpm::energy::{Budget, Stored};
@@ -14,7 +16,7 @@ use bsmpm::points::Points;
 use bsmpm::seam::Halo;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm_io::manifest::{Indicator, Summary};
-use bsmpm_scene::Case;
+use bsmpm_scene::{Axis, Case};
 use std::collections::BTreeMap;
 
 /// Usual root mean square, and usual largest one, of the quadrature defect.
@@ -36,6 +38,13 @@ const GROWTH: f64 = 0.02;
 const SMOOTHED: [f64; 2] = [0.1, 1.5];
 /// Usual slip of a strip in a step over its motion.
 const SLIP: f64 = 0.01;
+
+/// Part of the largest reaction with which the face of a grid usually pulls.
+const PULL: f64 = 0.05;
+/// Largest cells by which a front usually goes back.
+const SETBACK: f64 = 1.0;
+/// Part of the internal forces' work that a background usually takes.
+const BACKGROUND: f64 = 0.02;
 
 /// What the state at the end tells.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -92,10 +101,11 @@ impl State {
             ("slip", Indicator::new(value, "-", "largest slip of a strip in a step, over its motion", [0.0, SLIP]))
         });
         let smoothed = summary.smoothing_passes.map(|passes| ("smoothing-length", smoothing(case, passes)));
-        all.extend(slip.into_iter().chain(smoothed));
+        all.extend(slip.into_iter().chain(smoothed).chain(course(case, summary)));
         // JSON has no other numbers.
         all.retain(|(_, indicator)| indicator.value.is_finite());
-        all.into_iter().map(|(name, indicator)| (name.to_owned(), indicator)).collect()
+        let advising = |(name, indicator): (&str, Indicator)| (name.to_owned(), indicator.advising(advice::of(name)));
+        all.into_iter().map(advising).collect()
     }
 
     /// Those of the state alone.
@@ -138,6 +148,26 @@ impl State {
     }
 }
 
+/// Those of all steps together that need no more than their totals.
+fn course(case: &Case, summary: &Summary) -> impl Iterator<Item = (&'static str, Indicator)> {
+    let longest = |axis: &Axis| (0..axis.cells()).map(|i| axis.cell(i)).fold(0.0, f64::max);
+    let share = |part: f64, whole: f64| if part == 0.0 { 0.0 } else { part / whole };
+    let pull = summary.largest_pull.zip(summary.largest_reaction).map(|(pull, largest)| {
+        let meaning =
+            "largest force with which a face of the grid pulled the body, over the largest reaction of a face";
+        ("support-pull", Indicator::new(share(pull, largest), "-", meaning, [0.0, PULL]))
+    });
+    let setback = summary.largest_front_setback.map(|setback| {
+        let meaning = "the farthest that the front went back behind its farthest place";
+        ("front-setback", Indicator::new(setback, "m", meaning, [0.0, SETBACK * longest(&case.grid.axes[0])]))
+    });
+    let background = summary.background_work.zip(summary.internal_work).map(|(soft, all)| {
+        let meaning = "work done on the soft background, over that of all internal forces, of all steps";
+        ("background-work", Indicator::new(share(soft, all), "-", meaning, [0.0, BACKGROUND]))
+    });
+    [pull, setback, background].into_iter().flatten()
+}
+
 /// How far so many passes of smoothing have reached.
 fn smoothing(case: &Case, passes: f64) -> Indicator {
     let (meaning, part) = match case.stabilisation {
@@ -163,7 +193,9 @@ pub fn told(indicators: &BTreeMap<String, Indicator>) -> (String, Vec<String>) {
     let all = indicators.iter().map(|(name, found)| format!("{name} {}{}", number(found.value), unit(found)));
     let unusual = indicators.iter().filter(|(_, found)| found.unusual).map(|(name, found)| {
         let [least, most] = found.usual.map(number);
-        format!("{name} is {}{}, usually {least} to {most}: {}", number(found.value), unit(found), found.meaning)
+        let advice = if found.advice.is_empty() { String::new() } else { format!("; {}", found.advice) };
+        let value = number(found.value);
+        format!("{name} is {value}{}, usually {least} to {most}: {}{advice}", unit(found), found.meaning)
     });
     (format!("indicators: {}", all.collect::<Vec<_>>().join(", ")), unusual.collect())
 }

@@ -42,7 +42,8 @@ pub struct Ledger {
     keep: u64,
     end: f64,
     dt: f64,
-    criteria: [f64; 2], // of the force and of the energy measure
+    criteria: [f64; 2],       // of the force and of the energy measure
+    faces: Vec<(usize, f64)>, // of every support, the axis it is normal to, and the sign of its push along it
 }
 
 /// Headings of the tables.
@@ -97,6 +98,7 @@ impl Ledger {
             end: case.analysis.end,
             dt: case.analysis.dt,
             criteria: [case.solver.force_tolerance, case.solver.tolerance],
+            faces: bsmpm_scene::model::faces(case),
             directory,
             manifest,
             columns,
@@ -153,6 +155,7 @@ impl Ledger {
         }
         self.manifest.summary.newton_steps += u64::from(report.newton_iterations > 0);
         self.measures(report);
+        self.reactions(report);
         let slips = report.strips.iter().filter(|strip| strip.motion > 0.0).map(surfaces::relative_slip);
         let largest = slips.chain(self.manifest.summary.largest_slip).reduce(f64::max);
         self.manifest.summary.largest_slip = largest;
@@ -200,12 +203,36 @@ impl Ledger {
             *passes += report.smoothed;
         }
         summary.settled_steps += u64::from(report.settled);
+        if let Some([soft, all]) = report.background {
+            summary.background_work = Some(summary.background_work.unwrap_or(0.0) + soft);
+            summary.internal_work = Some(summary.internal_work.unwrap_or(0.0) + all.abs());
+        }
         if let Some(last) = report.history.last().filter(|last| !report.settled && last.force == report.force) {
             let larger =
                 |so_far: &mut Option<f64>, ratio: f64| *so_far = Some(so_far.map_or(ratio, |so| so.max(ratio)));
             larger(&mut summary.largest_force_measure, last.force / force);
             larger(&mut summary.largest_energy_measure, last.energy / energy);
         }
+    }
+
+    /// The largest forces of the supports: supports hold both ways, which soil at a wall does not.
+    fn reactions(&mut self, report: &Report) {
+        let summary = &mut self.manifest.summary;
+        for (&(axis, push), force) in self.faces.iter().zip(&report.reactions) {
+            let (size, pull) = (force.iter().map(|f| f * f).sum::<f64>().sqrt(), (-push * force[axis]).max(0.0));
+            summary.largest_reaction = Some(summary.largest_reaction.map_or(size, |so_far| so_far.max(size)));
+            summary.largest_pull = Some(summary.largest_pull.map_or(pull, |so_far| so_far.max(pull)));
+        }
+    }
+
+    /// Where the body's front is, m, and how far it is behind the farthest one.
+    pub fn front(&mut self, front: f64) {
+        let summary = &mut self.manifest.summary;
+        let farthest = summary.farthest_front.map_or(front, |so_far| so_far.max(front));
+        summary.farthest_front = Some(farthest);
+        let setback = farthest - front;
+        summary.largest_front_setback =
+            Some(summary.largest_front_setback.map_or(setback, |so_far| so_far.max(setback)));
     }
 
     /// The rows of `residuals.csv`, if there is one.

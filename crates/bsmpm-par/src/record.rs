@@ -79,6 +79,13 @@ impl Recorder {
         columns.map(|column| bsmpm_io::table::Column::new(&column.name, &column.unit)).collect()
     }
 
+    /// The body's front (m) in a row, if it is recorded.
+    pub fn front(&self, row: &[f64]) -> Option<f64> {
+        let at = self.histories.iter().position(|history| history.quantity == Quantity::Front)?;
+        let column: usize = self.histories[..at].iter().map(|history| history.columns().len()).sum();
+        Some(row.get(column)? / self.histories[at].scale).filter(|front| front.is_finite())
+    }
+
     /// The row of the state at time `t`; `report` is that of the step that led to it, empty at the start.
     pub fn row<K: Kinematics<2>>(
         &mut self,
@@ -133,7 +140,7 @@ impl Recorder {
                 let window = within.map(|corners| corners.map(|corner| Vector::from(corner) - self.lower));
                 both(noise::pressure_noise(&model.grid, points, model.weighting, window, halo)?)
             }
-            quantity => at_followed(quantity, followed.unwrap_or(u64::MAX), points, halo),
+            quantity => at_followed((quantity, self.lower), followed.unwrap_or(u64::MAX), points, halo),
         })
     }
 
@@ -183,11 +190,15 @@ fn both(noise: noise::Noise) -> Vec<f64> {
     vec![noise.about_average, noise.about_plane]
 }
 
-/// A quantity of the point `id`; of other quantities there is none.
-fn at_followed(quantity: &Quantity, id: u64, points: &Points<2>, halo: &dyn Halo) -> Vec<f64> {
+/// A quantity of the point `id`, or of the place that it is the nearest one to (`lower` is the grid's corner); of other
+/// quantities there is none.
+fn at_followed((quantity, lower): (&Quantity, Vector<2>), id: u64, points: &Points<2>, halo: &dyn Halo) -> Vec<f64> {
     let velocity = |p: usize| points.motion.as_ref().map_or([0.0; 2], |motion| motion.v[p].into());
     match quantity {
-        Quantity::Displacement { .. } => observe::at_point(points, id, halo, |p| points.u[p].into()).to_vec(),
+        Quantity::Displacement { at } => {
+            let place = Vector::from(*at) - lower;
+            observe::at_point(points, id, halo, |p| observe::displacement(points, p, &place).into()).to_vec()
+        }
         Quantity::Velocity { .. } => observe::at_point(points, id, halo, velocity).to_vec(),
         Quantity::Stress { .. } => observe::at_point(points, id, halo, |p| points.sigma.at(p).0)[..4].to_vec(),
         _ => Vec::new(),

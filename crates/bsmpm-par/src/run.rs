@@ -236,6 +236,9 @@ impl<'p> Run<'p> {
             Err(error) => launch::end(&self.universe.world(), exit::BUG, &error),
         };
         let step = self.simulation.steps();
+        if let (Some(ledger), Some(front)) = (&mut self.ledger, self.recorder.front(&row)) {
+            ledger.front(front);
+        }
         let written = self.ledger.as_mut().map_or(Ok(()), |ledger| ledger.history(step, time, &row));
         self.require(written);
     }

@@ -5,6 +5,7 @@ use crate::load;
 use crate::simulation::{Simulation, StartStress};
 use crate::slab::Slabs;
 use bsmpm::error::StepError;
+use bsmpm::initial::Equilibrium;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::Weighting;
 use bsmpm::stabilisation::Stabilisation;
@@ -18,18 +19,14 @@ use std::ops::Range;
 pub type Cut = ([Range<usize>; 2], Slabs);
 
 /// Gives the points the stress that the case wants at the start, and tells how well it is balanced.
-pub fn start(
-    case: &Case,
-    simulation: &mut Simulation<'_, PlaneStrain, 2>,
-) -> Result<Option<manifest::Initial>, StepError> {
-    let found = match &case.initial {
+pub fn start(case: &Case, simulation: &mut Simulation<'_, PlaneStrain, 2>) -> Result<Option<Equilibrium>, StepError> {
+    Ok(Some(match &case.initial {
         None => return Ok(None),
         Some(Initial::Elastic) => simulation.stress(StartStress::Elastic)?,
         Some(Initial::AtRest(k0)) => {
             simulation.stress(StartStress::Given(&|material, x| at_rest(case, k0, material, x)))?
         }
-    };
-    Ok(Some(manifest::Initial { unbalance: found.force, yielding: found.yielding }))
+    }))
 }
 
 /// The room that the bodies have in the grid at the start, and its first cut: about equal loads. `None` with more ranks

@@ -95,7 +95,8 @@ impl Need {
 
 /// Frames from `time` on, those at the start and at the end included.
 fn frames(case: &Case, time: f64, begun: bool) -> u64 {
-    let timed = bsmpm_scene::model::frame_times(case).into_iter().filter(|&wanted| wanted > time).count() as u64;
+    let before_end = |wanted: &f64| *wanted > time && *wanted < case.analysis.end;
+    let timed = bsmpm_scene::model::frame_times(case).into_iter().filter(before_end).count() as u64;
     let counted = match case.output.every {
         Some(Every::Steps(every)) => ((case.analysis.end - time) / case.analysis.dt) as u64 / every,
         _ => 0,

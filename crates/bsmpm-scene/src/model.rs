@@ -67,6 +67,14 @@ fn grid(case: &Case) -> Result<Grid<2>, GridError> {
 }
 
 fn boundary(case: &Case, grid: &Grid<2>) -> Boundary<2> {
+    Boundary {
+        supports: supports(case),
+        strips: surfaces::strips(case, grid, penalty(case)),
+        loads: surfaces::loads(case, grid),
+    }
+}
+
+fn supports(case: &Case) -> Vec<Support<2>> {
     let mut supports = Vec::new();
     for (axis, faces) in case.boundary.iter().enumerate() {
         for (upper, support) in [false, true].into_iter().zip(faces) {
@@ -77,7 +85,13 @@ fn boundary(case: &Case, grid: &Grid<2>) -> Boundary<2> {
             }
         }
     }
-    Boundary { supports, strips: surfaces::strips(case, grid, penalty(case)), loads: surfaces::loads(case, grid) }
+    supports
+}
+
+/// Of every support, the axis that its face is normal to and the sign of the force along it with which it pushes the body.
+pub fn faces(case: &Case) -> Vec<(usize, f64)> {
+    let push = |support: &Support<2>| (support.axis, if support.upper { -1.0 } else { 1.0 });
+    supports(case).iter().map(push).collect()
 }
 
 /// Penalty of the rigid strips, Pa/m.
@@ -105,12 +119,16 @@ pub fn schedule(case: &Case) -> Schedule {
     Schedule::new(case.analysis.dt, case.analysis.end, frame_times(case).into_iter().chain(checks))
 }
 
+/// Relative error of a quotient of two times.
+const ROUND_OFF: f64 = 1e-12;
+
 /// Times at which a frame is wanted, apart from the start, the end and every so many steps.
 pub fn frame_times(case: &Case) -> Vec<f64> {
     let mut times = case.output.times.clone();
     if let Some(Every::Time(every)) = case.output.every {
-        let count = (case.analysis.end / every).floor() as u64;
-        times.extend((1..=count).map(|k| k as f64 * every));
+        // Neither their number nor the last of them may be lost to rounding: 1.2 / 0.1 is less than 12, 12 x 0.1 more than 1.2.
+        let count = (case.analysis.end / every * (1.0 + ROUND_OFF)).floor() as u64;
+        times.extend((1..=count).map(|k| (k as f64 * every).min(case.analysis.end)));
     }
     times
 }

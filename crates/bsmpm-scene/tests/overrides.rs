@@ -143,7 +143,7 @@ fn the_full_case_in_si() {
     assert_eq!(case.bodies[2].velocity, Some([0.0, -1.0]));
     assert_eq!(case.boundary, [[Support::Roller, Support::Free], [Support::Fixed; 2]]);
     assert_eq!((case.solver.background, case.solver.background_cells), (0.0, Extent::Occupied));
-    assert_eq!(case.solver.background_kind, BackgroundKind::Laplacian);
+    assert_eq!(case.solver.background_kind, BackgroundKind::Strain);
     assert_eq!(case.output.times, [0.25, 0.75]);
     assert_eq!(case.histories[1].quantity, Quantity::Reaction { face: Face { axis: 1, upper: false } });
     let columns: Vec<String> = case.histories.iter().flat_map(|h| h.columns()).map(|c| c.name).collect();
@@ -168,13 +168,14 @@ fn the_full_case_in_si() {
 }
 
 #[test]
-fn the_background_is_the_laplacian_unless_the_case_wants_another() {
+fn the_background_is_that_of_strain_unless_the_case_wants_another() {
     let kind = |overrides: &[&str]| {
         let solver = valid(STATIC, overrides).solver;
         (solver.background_kind, solver.background, solver.background_cells)
     };
-    let (curvature, laplacian) = (BackgroundKind::Curvature, BackgroundKind::Laplacian);
-    assert_eq!(kind(&["grid.order=linear"]), (laplacian, 1e-4, Extent::Occupied));
+    let (curvature, strain) = (BackgroundKind::Curvature, BackgroundKind::Strain);
+    assert_eq!(kind(&["grid.order=linear"]), (strain, 1e-4, Extent::Occupied));
+    assert_eq!(kind(&["solver.background_kind=laplacian"]), (strain, 1e-4, Extent::Occupied));
     let curved = "solver.background_kind=curvature";
     assert_eq!(kind(&["grid.order=quadratic", curved]), (curvature, 1e-3, Extent::PartlyFilled));
     assert_eq!(kind(&["grid.order=cubic", curved, "solver.background=0.5"]), (curvature, 0.5, Extent::PartlyFilled));
@@ -183,9 +184,9 @@ fn the_background_is_the_laplacian_unless_the_case_wants_another() {
         assert_eq!(kind(&[order, ghost]), (BackgroundKind::GhostPenalty, 1e-4, Extent::Occupied));
     }
     let given = ["grid.order=quadratic", "solver.background_cells=partly-filled"];
-    assert_eq!(kind(&given), (laplacian, 1e-4, Extent::PartlyFilled));
+    assert_eq!(kind(&given), (strain, 1e-4, Extent::PartlyFilled));
     let errors = set(STATIC, &["grid.order=linear", "solver.background_kind=curvature"]).unwrap_err();
-    assert!(errors.len() == 1 && errors[0].message.contains("use \"laplacian\""), "{errors:?}");
+    assert!(errors.len() == 1 && errors[0].message.contains("use \"strain\""), "{errors:?}");
 }
 
 /// Twelve million unknowns.
@@ -231,7 +232,7 @@ fn what_the_program_chooses_is_noted() {
     assert_eq!((case.solver.background, case.solver.linear.factor), (1e-4, Some("dissection")));
     assert_eq!(
         (case.solver.background_kind, noted("solver.background_kind")),
-        (BackgroundKind::Laplacian, Some("\"laplacian\""))
+        (BackgroundKind::Strain, Some("\"strain\""))
     );
     let case = valid(&STATIC.replace("end   = 1.0\n", ""), &[]);
     assert_eq!(case.analysis.end, 1.0);

@@ -9,6 +9,7 @@
 mod form;
 mod ghost;
 
+use crate::exact::Exact;
 use crate::grid::shape::{Patch, Shape};
 use crate::grid::{Contributions, Grid, transfer};
 use crate::material::Material;
@@ -20,15 +21,15 @@ use ghost::Faces;
 /// What the background resists.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// eps E int |grad u|^2 dV: every deformation, and rotation. In all occupied cells it slows down what fails: a slope
+    /// c E int eps : eps dV, eps the symmetric gradient of the step's displacement: every deformation, no small rotation. In all occupied cells it slows down what fails: a slope
     /// far beyond its strength comes to rest in coarse steps, on half of its way.
-    Laplacian,
-    /// eps E int sum_ij h_i h_j (d2u / dx_i dx_j)^2 dV: how far a cell departs from the linear extrapolation of its
+    Strain,
+    /// c E int sum_ij h_i h_j (d2u / dx_i dx_j)^2 dV: how far a cell departs from the linear extrapolation of its
     /// neighbours. An affine motion of the step meets no resistance: no strain, and no rotation as far as it is linear
     /// in space, so large ones too. On a linear grid only the mixed term is left, and holds next to nothing.
     Curvature,
     /// gamma E h^(2q-1) int_F [d^q u / dn^q]^2 dA on faces between cells: how far the polynomials of two cells differ. A
-    /// polynomial of degree q meets no resistance. Better conditioned than the Laplacian with the same coefficient, and less
+    /// polynomial of degree q meets no resistance. Better conditioned than the strain form with the same coefficient, and less
     /// of a drag on what has failed; in fine cells stiffer before failure where it is as robust. The matrix has nearly
     /// twice the entries in a plane. In partly filled cells only, it does not hold what has gone far.
     GhostPenalty,
@@ -56,17 +57,67 @@ pub enum Extent {
 pub struct Background {
     /// the form
     pub kind: Kind,
-    /// -  fraction eps of the largest modulus in the cell
+    /// -  fraction c of the largest modulus in the cell
     pub coefficient: f64,
     /// the cells concerned
     pub extent: Extent,
 }
 
-/// The background's blocks of one step: a scalar matrix per cell or face, equal for every component.
+/// The background's blocks of one step, of cells or faces.
 #[derive(Clone, Debug, Default)]
 pub struct Blocks {
-    cells: Vec<(usize, Vec<f64>)>, // patch number; Pa m^(D-2), row-major (q+1)^D square
+    cells: Vec<(usize, Block)>, // patch number; Pa m^(D-2)
     faces: Faces,
+}
+
+/// The block of a cell, row-major.
+#[derive(Clone, Debug)]
+pub enum Block {
+    /// (q+1)^D square, equal for every component, which do not couple
+    Scalar(Vec<f64>),
+    /// D (q+1)^D square
+    Coupled(Vec<f64>),
+}
+
+impl Block {
+    /// Adds it to a patch's block of D unknowns a node.
+    pub fn add_to<const D: usize>(&self, block: &mut [f64]) {
+        match self {
+            Self::Coupled(soft) => block.iter_mut().zip(soft).for_each(|(sum, value)| *sum += value),
+            Self::Scalar(soft) => {
+                let size = soft.len().isqrt();
+                for (entry, value) in soft.iter().enumerate() {
+                    let (a, b) = (entry / size, entry % size);
+                    for i in 0..D {
+                        block[(a * D + i) * size * D + b * D + i] += value;
+                    }
+                }
+            }
+        }
+    }
+
+    /// Calls `product` for every node of the patch with what the block makes of the nodes' `u`, D numbers each.
+    fn multiply<const D: usize>(&self, u: &[[f64; D]], mut product: impl FnMut(usize, [f64; D])) {
+        let nodes = u.len();
+        match self {
+            Self::Scalar(soft) => {
+                for (a, row) in soft.chunks_exact(nodes).enumerate() {
+                    let mut sum = [0.0; D];
+                    for (entry, u) in row.iter().zip(u) {
+                        (0..D).for_each(|i| sum[i] += entry * u[i]);
+                    }
+                    product(a, sum);
+                }
+            }
+            Self::Coupled(soft) => {
+                let u = u.as_flattened();
+                for (a, rows) in soft.chunks_exact(nodes * D * D).enumerate() {
+                    let along = |i: usize| rows[i * u.len()..][..u.len()].iter().zip(u).map(|(e, u)| e * u).sum();
+                    product(a, std::array::from_fn(along));
+                }
+            }
+        }
+    }
 }
 
 /// Fill below which a cell counts as partly filled. Results hardly depend on it between .5 and .9.
@@ -95,7 +146,7 @@ impl Background {
             Extent::PartlyFilled => partly_filled(grid, shape, points, halo),
         };
         let form = match self.kind {
-            Kind::Laplacian => Form::Laplacian,
+            Kind::Strain => Form::Strain,
             Kind::Curvature => Form::Curvature,
             Kind::GhostPenalty => {
                 let faces = Faces::of((grid, shape), (self.coefficient, &concerned), modulus, halo);
@@ -109,6 +160,21 @@ impl Background {
         };
         Blocks { cells: cells.map(block).collect(), faces: Faces::default() }
     }
+}
+
+/// Largest number of nodes of a patch: (3 + 1)^3.
+const MOST_NODES: usize = 64;
+
+/// What the nodes of a patch have of a nodal array.
+fn gather<'a, const D: usize>(
+    u: &[f64],
+    (first, offsets): (usize, &[usize]),
+    own: &'a mut [[f64; D]; MOST_NODES],
+) -> &'a [[f64; D]] {
+    for (at_node, offset) in own.iter_mut().zip(offsets) {
+        at_node.copy_from_slice(&u[(first + offset) * D..][..D]);
+    }
+    &own[..offsets.len()]
 }
 
 /// Per patch: less than .75 of the cell is filled, and it holds a function at the body's edge.
@@ -129,16 +195,24 @@ impl Blocks {
     pub fn multiply<const D: usize>(&self, shape: &Shape<D>, u: &[f64], f: &mut Contributions) {
         for (number, block) in &self.cells {
             let first = shape.patches()[*number].first_node;
-            let f = f.patch(first);
-            for (row, a) in block.chunks_exact(shape.offsets().len()).zip(shape.offsets()) {
-                for (entry, b) in row.iter().zip(shape.offsets()) {
-                    for component in 0..D {
-                        f[a * D + component] += entry * u[(first + b) * D + component];
-                    }
-                }
-            }
+            let (f, offsets) = (f.patch(first), shape.offsets());
+            let mut own = [[0.0; D]; MOST_NODES];
+            block.multiply(gather(u, (first, offsets), &mut own), |a, force| {
+                (0..D).for_each(|i| f[offsets[a] * D + i] += force[i]);
+            });
         }
         self.faces.multiply::<D>(u, f);
+    }
+
+    /// u . B u of the cells and faces of this rank: what the background takes.
+    pub fn work<const D: usize>(&self, shape: &Shape<D>, u: &[f64]) -> Exact {
+        let of_cell = |(number, block): &(usize, Block)| {
+            let (mut own, mut work) = ([[0.0; D]; MOST_NODES], 0.0);
+            let u = &*gather(u, (shape.patches()[*number].first_node, shape.offsets()), &mut own);
+            block.multiply(u, |a, force| work += (0..D).map(|i| u[a][i] * force[i]).sum::<f64>());
+            work
+        };
+        self.cells.iter().map(of_cell).chain(self.faces.work::<D>(u)).collect()
     }
 
     /// Number of cells or faces concerned, of this rank.
@@ -157,7 +231,7 @@ impl Blocks {
     }
 
     /// Block of a patch by its number, if it has one.
-    pub fn of(&self, patch: usize) -> Option<&[f64]> {
+    pub fn of(&self, patch: usize) -> Option<&Block> {
         let found = self.cells.binary_search_by_key(&patch, |(number, _)| *number).ok()?;
         Some(&self.cells[found].1)
     }

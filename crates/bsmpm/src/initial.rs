@@ -1,6 +1,7 @@
 //! Stress at the start (a geostatic state), on the geometry as it is given: nothing has moved, displacements count from
 //! there. The elastic strain that belongs to the stress is put into b^e; F stays the identity.
 
+use crate::boundary::StripReport;
 use crate::boundary::strip::Grips;
 use crate::error::StepError;
 use crate::grid::{Shape, transfer};
@@ -21,13 +22,17 @@ const CORRECTIONS: usize = 20;
 /// Relative out-of-balance force of the elastic state that is left.
 const BALANCED: f64 = 1e-12;
 
-/// How well the state at the start is in equilibrium.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// How well the state at the start is in equilibrium, and what holds it.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Equilibrium {
     /// |f_oob| / max(|f_ext|, |f_int|, |reaction|)
     pub force: f64,
     /// points whose stress lies outside the yield surface, over all ranks
     pub yielding: u64,
+    /// N  force of every support on the body, by component, in the order of the model's supports
+    pub reactions: Vec<Vec<f64>>,
+    /// what every rigid strip holds
+    pub strips: Vec<StripReport>,
 }
 
 /// Gives every point the Cauchy stress `sigma(material, x)`, Pa, in a plane without components that couple it with its
@@ -95,9 +100,12 @@ pub fn balance<K: Kinematics<D>, const D: usize>(
     let counted = (0..points.len()).try_fold(0.0, |sum, p| Ok(sum + f64::from(yields(p)?)));
     let mut yielding = [agreed(halo, counted, StepError::OtherRank)?];
     let start = Start::of(model, points, halo)?;
-    let residual = Residual::of(&start.scene(model, points, halo), &vec![0.0; model.grid.nodes() * D]);
+    let at_rest = vec![0.0; model.grid.nodes() * D];
+    let balance = Residual::of(&start.scene(model, points, halo), &at_rest).balance;
     halo.reduce(&mut yielding);
-    Ok(Equilibrium { force: residual.balance.measure(), yielding: yielding[0] as u64 })
+    let reactions = model.boundary.reactions(&model.grid, &balance.reaction, halo);
+    let (strips, _) = start.grips.conclude(&model.boundary.strips, &at_rest, halo);
+    Ok(Equilibrium { force: balance.measure(), yielding: yielding[0] as u64, reactions, strips })
 }
 
 /// Whether forces at time 0 are out of balance, by more than the tolerance and round-off.

@@ -1,7 +1,10 @@
 //! What a history records: numbers of the whole body, the same on every rank.
 
+mod front;
 pub mod noise;
 pub mod quadrature;
+
+pub use front::front;
 
 use crate::exact::Exact;
 use crate::grid::Grid;
@@ -32,32 +35,6 @@ pub fn percentile<const D: usize>(points: &Points<D>, axis: usize, percentile: f
         if below[0] >= wanted { upper = middle } else { lower = middle }
     }
     upper
-}
-
-/// The body's front (m): the farthest point in the farthest cell of the lowest occupied row that the points' volume
-/// fills at least half. A few loose points run ahead of it. Rows count along the last axis, the front along axis 0.
-pub fn front<const D: usize>(grid: &Grid<D>, points: &Points<D>, halo: &dyn Halo) -> f64 {
-    let rows = &grid.axes()[D - 1];
-    let mut lowest = [points.x.iter().map(|x| -x[D - 1]).fold(f64::NEG_INFINITY, f64::max)];
-    halo.maximum(&mut lowest);
-    let row = rows.cell_of(-lowest[0]).unwrap_or(0);
-    let above = rows.breakpoint(row + 1);
-    let mut held = vec![(0.0, 0.0_f64); grid.cells()];
-    for p in (0..points.len()).filter(|&p| points.x[p][D - 1] <= above && rows.cell_of(points.x[p][D - 1]) == Some(row))
-    {
-        if let Some(cell) = grid.locate(&points.x[p]) {
-            let (volume, farthest) = &mut held[grid.cell_index(&cell)];
-            *volume += points.volume[p] * points.F.at(p).determinant();
-            *farthest = farthest.max(points.x[p][0]);
-        }
-    }
-    let half_full = |(index, (volume, _)): &(usize, &(f64, f64))| {
-        let (_, size) = grid.cell_box(&grid.cell_at(*index));
-        *volume >= 0.5 * size.product()
-    };
-    let mut front = [held.iter().enumerate().filter(half_full).map(|(_, (_, x))| *x).fold(0.0, f64::max)];
-    halo.maximum(&mut front);
-    front[0]
 }
 
 /// Largest displacement of any point, m.
@@ -106,6 +83,14 @@ pub fn nearest<const D: usize>(points: &Points<D>, at: &Vector<D>, halo: &dyn Ha
     let mut id = [candidates.map(|p| -(points.id[p] as f64)).fold(f64::NEG_INFINITY, f64::max)];
     halo.maximum(&mut id);
     id[0].is_finite().then(|| -id[0] as u64)
+}
+
+/// Displacement (m) of the material that was at `place` (m, from the grid's lower corner) before anything moved, by the
+/// motion about the point `p` near it: u_p + (F_p - I)(X - X_p), off by the curvature of the motion times half the squared
+/// distance. The displacement of the point itself is off by the strain times the distance.
+pub fn displacement<const D: usize>(points: &Points<D>, p: usize, place: &Vector<D>) -> Vector<D> {
+    let apart = place - (points.x[p] - points.u[p]);
+    points.u[p] + points.F.at(p).fixed_view::<D, D>(0, 0) * apart - apart
 }
 
 /// A vector or tensor of the point `id`, wherever it is: `value` is called on the rank that has it.

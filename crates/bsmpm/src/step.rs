@@ -78,6 +78,9 @@ pub struct Report {
     pub reactions: Vec<Vec<f64>>,
     /// what every rigid strip did
     pub strips: Vec<StripReport>,
+    /// J  work u . B u on the soft background, and f_int . u of all internal forces, the background's among them; if there
+    /// is a background
+    pub background: Option<[f64; 2]>,
     /// J  where the energy went, if the model balances it
     pub energy: Option<Flows>,
     /// J  what bounds the energy, in dynamics and where the model balances it

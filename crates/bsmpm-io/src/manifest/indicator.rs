@@ -15,13 +15,22 @@ pub struct Indicator {
     pub usual: [f64; 2],
     /// Whether the value lies outside.
     pub unusual: bool,
+    /// What a value outside means, and what to do then.
+    #[serde(default)]
+    pub advice: String,
 }
 
 impl Indicator {
     /// A value, judged by its usual range.
     pub fn new(value: f64, unit: &str, meaning: &str, usual: [f64; 2]) -> Self {
         let unusual = !(usual[0]..=usual[1]).contains(&value);
-        Self { value, unit: unit.to_owned(), meaning: meaning.to_owned(), usual, unusual }
+        Self { value, unit: unit.to_owned(), meaning: meaning.to_owned(), usual, unusual, advice: String::new() }
+    }
+
+    /// The same with what to do where it is unusual.
+    #[must_use]
+    pub fn advising(self, advice: &str) -> Self {
+        Self { advice: advice.to_owned(), ..self }
     }
 
     pub(super) fn numbers(&self) -> [f64; 3] {

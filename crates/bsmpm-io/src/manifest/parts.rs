@@ -120,6 +120,25 @@ pub struct Summary {
     /// The same of the energy measure.
     #[serde(default)]
     pub largest_energy_measure: Option<f64>,
+    /// N  largest force of a face's support on the body; none without supports.
+    #[serde(default)]
+    pub largest_reaction: Option<f64>,
+    /// N  largest force with which a face's support has pulled the body towards itself; none without supports.
+    #[serde(default)]
+    pub largest_pull: Option<f64>,
+    /// m  the farthest front of the body; none where it is not recorded.
+    #[serde(default)]
+    pub farthest_front: Option<f64>,
+    /// m  the farthest that the front went back behind the farthest one before; none where it is not recorded.
+    #[serde(default)]
+    pub largest_front_setback: Option<f64>,
+    /// J  work done on the soft background in all steps; none without one.
+    #[serde(default)]
+    pub background_work: Option<f64>,
+    /// J  magnitudes of the work of all internal forces, the background's among them, added over the steps; none without a
+    /// background.
+    #[serde(default)]
+    pub internal_work: Option<f64>,
     /// Passes of smoothing of the elastic state, each counted by the mean share of the points that it had; none without.
     #[serde(default)]
     pub smoothing_passes: Option<f64>,

@@ -28,7 +28,7 @@ pub(super) fn manifest(arguments: &Arguments, case: &Case, ranks: usize) -> Mani
     manifest.sizes = [("points", estimate.points), ("cells", estimate.cells), ("nodes", estimate.nodes)]
         .map(|(k, v)| (k.into(), v))
         .into();
-    manifest.picture_times = picture_times(case);
+    manifest.picture_times.clone_from(&case.output.times);
     manifest.choices = case
         .notes
         .iter()
@@ -49,14 +49,6 @@ pub(super) fn manifest(arguments: &Arguments, case: &Case, ranks: usize) -> Mani
     };
     manifest.checks = case.checks.iter().map(check).collect();
     manifest
-}
-
-fn picture_times(case: &Case) -> Vec<f64> {
-    if case.output.times.is_empty() {
-        bsmpm_scene::model::frame_times(case).last().copied().into_iter().collect()
-    } else {
-        case.output.times.clone()
-    }
 }
 
 /// Versions of the libraries in use, by name.

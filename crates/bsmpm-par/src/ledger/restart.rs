@@ -48,6 +48,7 @@ impl Ledger {
             end: case.analysis.end,
             dt: case.analysis.dt,
             criteria: [case.solver.force_tolerance, case.solver.tolerance],
+            faces: bsmpm_scene::model::faces(case),
             directory,
             manifest,
             columns,

@@ -4,8 +4,10 @@ use super::Run;
 use crate::machine;
 use crate::setup;
 use bsmpm::error::StepError;
+use bsmpm::initial::Equilibrium;
 use bsmpm::step::Report;
 use bsmpm_io::manifest;
+use bsmpm_scene::Initial;
 
 /// Part of the largest force beyond which an out-of-balance stress at the start is warned of. Level ground by k0 leaves
 /// .8 % in four cells of depth: the points' quadrature of linear stress.
@@ -34,20 +36,22 @@ impl Run<'_> {
             self.log.line("restart", &format!("goes on from step {step}, t = {time}"));
             return Ok(());
         }
+        let mut report = Report::default();
         if let Some(start) = setup::start(&self.case, &mut self.simulation)? {
-            self.tell_start(start);
+            self.tell_start(&start);
+            (report.reactions, report.strips) = (start.reactions, start.strips);
         }
-        self.record(&Report::default());
+        self.record(&report);
         self.frame();
         Ok(())
     }
 
     /// Tells how well the stress at the start is balanced, and warns where the first step will move the body by it.
-    fn tell_start(&mut self, start: manifest::Initial) {
+    fn tell_start(&mut self, start: &Equilibrium) {
+        let (unbalance, yielding) = (start.force, start.yielding);
         if let Some(ledger) = &mut self.ledger {
-            ledger.manifest().initial = Some(start);
+            ledger.manifest().initial = Some(manifest::Initial { unbalance, yielding });
         }
-        let manifest::Initial { unbalance, yielding } = start;
         self.log.line(
             "initial",
             &format!(
@@ -55,9 +59,16 @@ impl Run<'_> {
             ),
         );
         if unbalance > UNBALANCED {
+            // Linear elastic equilibrium is lost by nothing but yield.
+            let advice = match &self.case.initial {
+                Some(Initial::Elastic) => {
+                    "the elastic stress is beyond yield; gravity with a ramp and no [initial] lets the body yield as it is loaded"
+                }
+                _ => "k0 is for level ground and layers; gravity = \"elastic\" balances other shapes, too",
+            };
             self.warn(format!(
                 "the stress at the start leaves {:.1} % of the largest force unbalanced: the first step moves the body by it \
-                 (k0 is for level ground and layers; gravity = \"elastic\" balances any shape)",
+                 ({advice})",
                 100.0 * unbalance
             ));
         }

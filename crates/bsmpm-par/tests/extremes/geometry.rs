@@ -29,7 +29,7 @@ fn inner_stress(shift: f64, background: f64) -> Vec<f64> {
             .support(Support::fixed(1, false))
             .gravity(2.0, 0.0);
     scene.model.background = (background > 0.0).then_some(Background {
-        kind: Kind::Laplacian,
+        kind: Kind::Strain,
         coefficient: background,
         extent: Extent::Occupied,
     });

@@ -19,7 +19,7 @@ pub enum Quantity {
         /// %  100: the farthest point
         percentile: f64,
     },
-    /// m  the farthest x in a cell of the lowest occupied row that is at least half filled
+    /// m  the farthest x of the lowest occupied row up to which the last cell's length is at least half filled
     Front,
     /// m  the largest y of any point, or of those near an x; 0 where there are none
     Height {
@@ -37,7 +37,7 @@ pub enum Quantity {
         /// The face.
         face: Face,
     },
-    /// m  of the point nearest to `at` at the start
+    /// m  of the material that is at `at` at the start, by the motion about the point nearest to it
     Displacement {
         /// m  in the case's coordinates
         at: [f64; 2],

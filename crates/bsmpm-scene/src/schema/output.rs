@@ -56,7 +56,12 @@ pub(super) static HISTORY: Table = Table {
             Optional,
             "of height: of the points within half a cell of this x",
         ),
-        key("at", Pair(In::Length, Range::ANY), Optional, "of a point's quantity: the point nearest at the start"),
+        key(
+            "at",
+            Pair(In::Length, Range::ANY),
+            Optional,
+            "of displacement: the place at the start; of velocity and stress: the point nearest to it then",
+        ),
         key("box", Kind::Table(&body::BOX), Optional, "of pressure-noise: the points inside; all unless given"),
     ],
     exclusive: &[],

@@ -195,7 +195,12 @@ static SOLVER: Table = Table {
             Optional,
             "soft background; quasi-static 1e-4 (curvature: 1e-3), dynamic 0",
         ),
-        key("background_kind", BACKGROUND, Default("\"laplacian\""), "what it resists"),
+        key(
+            "background_kind",
+            BACKGROUND,
+            Default("\"strain\""),
+            "what it resists; laplacian is an earlier name of strain",
+        ),
         key("background_cells", CELLS, Optional, "cells that get it; occupied (curvature: partly-filled)"),
         key("linear", Kind::Table(&LINEAR), Default("{}"), "the linear solver, by PETSc's names"),
         key(
@@ -210,7 +215,7 @@ static SOLVER: Table = Table {
 
 const FRACTION: Range = Range::of(Excluded(0.0), Excluded(1.0));
 const UP_TO_1: Range = Range::of(Included(0.0), Included(1.0));
-const BACKGROUND: Kind = Choice(&["laplacian", "ghost-penalty", "curvature"], &[]);
+const BACKGROUND: Kind = Choice(&["strain", "laplacian", "ghost-penalty", "curvature"], &[]);
 const CELLS: Kind = Choice(&["occupied", "partly-filled"], &[]);
 
 static LINEAR: Table = Table {

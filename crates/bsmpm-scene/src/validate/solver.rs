@@ -70,24 +70,24 @@ fn background_kind(solver: &Record, order: Option<usize>, report: &mut Report<'_
     let kind = match solver.word(KIND)? {
         "curvature" => Kind::Curvature,
         "ghost-penalty" => Kind::GhostPenalty,
-        _ => Kind::Laplacian,
+        _ => Kind::Strain,
     };
     if linear && kind == Kind::Curvature {
         let message = "functions of a linear grid have no curvature along an axis, so that nothing would hold nearly \
-                       empty cells; use \"laplacian\"";
+                       empty cells; use \"strain\"";
         solver.error(KIND, message, report);
         return None;
     }
     Some(kind)
 }
 
-/// Curvature 1e-3 bounds the condition of the stiffness by 7e3 (Laplacian 1e-4: 7e5) and lets a tenth or ten times of it
+/// Curvature 1e-3 bounds the condition of the stiffness by 7e3 (the Laplacian of 1e-4: 7e5) and lets a tenth or ten times of it
 /// change a slope next to failure by 1 to 3 %; larger ones hold the edge too much.
 fn default_background(regime: Regime, kind: Kind, report: &mut Report<'_>) -> f64 {
     let (background, reason) = match (regime, kind) {
         (Regime::Dynamic, _) => (0.0, "inertia holds nearly empty cells in a dynamic analysis"),
         (Regime::QuasiStatic, Kind::Curvature) => (1e-3, QUASI_STATIC),
-        (Regime::QuasiStatic, Kind::Laplacian | Kind::GhostPenalty) => (1e-4, QUASI_STATIC),
+        (Regime::QuasiStatic, Kind::Strain | Kind::GhostPenalty) => (1e-4, QUASI_STATIC),
     };
     report.note("solver.background", format!("{background:?}"), reason);
     background

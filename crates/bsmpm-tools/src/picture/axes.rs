@@ -16,6 +16,9 @@ pub(crate) const THIN: f64 = 1.7;
 /// A dash and the gap after it.
 const DASH: (f64, f64) = (16.0, 10.0);
 
+/// Radius of the disc of a place alone, over the width of its line.
+const DOT: f64 = 2.5;
+
 /// A quantity and its unit.
 pub(crate) type Label<'a> = (&'a str, &'a str);
 
@@ -111,10 +114,13 @@ impl Axes {
         at
     }
 
-    /// A line through places of the region; a place that is not finite breaks it.
+    /// A line through places of the region; a place that is not finite breaks it, and a place alone is a disc.
     pub fn line(&self, canvas: &mut Canvas, places: &[(f64, f64)], width: f64, colour: Rgb) {
         for run in places.split(|(x, y)| !(x.is_finite() && y.is_finite())) {
-            canvas.line(run.iter().map(|&place| self.place(place)), width, colour);
+            match run {
+                &[alone] => canvas.disc(self.place(alone), DOT * width, colour),
+                _ => canvas.line(run.iter().map(|&place| self.place(place)), width, colour),
+            }
         }
     }
 }

@@ -173,6 +173,10 @@ fn a_run_that_has_just_begun_is_drawn_as_far_as_it_is() {
     first_rows("steps.csv", 1);
     let names = draw(&Arguments::of(dir.path().to_owned())).unwrap();
     assert_eq!(names, ["runout.png", "stress-noise.png", "convergence.png"]);
+    // One step is no line: a disc in either half.
+    let picture = Picture::read(&dir.path().join("convergence.png"));
+    let coloured: Vec<bool> = picture.rows().map(|row| row.iter().any(is_coloured)).collect();
+    assert!(coloured.chunks(coloured.len() / 2).take(2).all(|half| half.contains(&true)));
     first_rows("history.csv", 0);
     first_rows("steps.csv", 0);
     assert_eq!(draw(&Arguments::of(dir.path().to_owned())).unwrap_err().exit_code(), 66);

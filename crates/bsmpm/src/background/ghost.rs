@@ -74,19 +74,37 @@ impl Faces {
         self.faces.iter().flat_map(|face| self.offsets[face.normal].iter().map(move |offset| face.first_node + offset))
     }
 
+    /// u . B u of every face.
+    pub(super) fn work<const D: usize>(&self, u: &[f64]) -> impl Iterator<Item = f64> {
+        self.faces.iter().map(|face| {
+            let work = |component| {
+                let jumps = self.jumps::<D>(face, u, component);
+                let row = |(row, jump): (&[f64], &f64)| jump * row.iter().zip(&jumps).map(|(m, j)| m * j).sum::<f64>();
+                face.mass.chunks_exact(face.width()).zip(&jumps).map(row).sum::<f64>()
+            };
+            (0..D).map(work).sum()
+        })
+    }
+
+    /// Jumps of a component's derivative at the nodes along a face.
+    fn jumps<const D: usize>(&self, face: &Face, u: &[f64], component: usize) -> [f64; MOST_ALONG] {
+        let (offsets, width) = (&self.offsets[face.normal], face.width());
+        let mut jumps = [0.0; MOST_ALONG];
+        for (layer, weight) in face.jump.iter().enumerate() {
+            for (node, jump) in jumps[..width].iter_mut().enumerate() {
+                *jump += weight * u[(face.first_node + offsets[layer * width + node]) * D + component];
+            }
+        }
+        jumps
+    }
+
     /// f += B u (D numbers a node).
     pub(super) fn multiply<const D: usize>(&self, u: &[f64], f: &mut Contributions) {
         for face in &self.faces {
             let f = f.patch(face.first_node);
             let (offsets, width) = (&self.offsets[face.normal], face.width());
-            let at = |layer: usize, node: usize| (face.first_node + offsets[layer * width + node]) * D;
             for component in 0..D {
-                let mut jumps = [0.0; MOST_ALONG];
-                for (layer, weight) in face.jump.iter().enumerate() {
-                    for (node, jump) in jumps[..width].iter_mut().enumerate() {
-                        *jump += weight * u[at(layer, node) + component];
-                    }
-                }
+                let jumps = self.jumps::<D>(face, u, component);
                 for (node, row) in face.mass.chunks_exact(width).enumerate() {
                     let force: f64 = row.iter().zip(&jumps).map(|(mass, jump)| mass * jump).sum();
                     for (layer, weight) in face.jump.iter().enumerate() {

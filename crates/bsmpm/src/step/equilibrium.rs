@@ -67,6 +67,7 @@ pub struct Found<const D: usize> {
     pub reaction: Vec<f64>,
     history: Vec<Measures>,
     force: f64,
+    work: f64, // J  of all internal forces, with a background
     newton_iterations: usize,
     settled: bool,
     first_guess: bool,
@@ -76,14 +77,16 @@ impl<const D: usize> Found<D> {
     /// The state that an iteration reached.
     pub fn new(u: Vec<f64>, residual: Residual<D>, progress: &Progress) -> Self {
         let newton_iterations = progress.by_newton();
-        let (force, Residual { trial, balance, .. }) = (progress.measure(&residual.balance), residual);
+        let (force, work) = (progress.measure(&residual.balance), residual.balance.work);
+        let Residual { trial, balance, .. } = residual;
         let (history, reaction) = (progress.history().to_vec(), balance.reaction);
-        Self { u, trial, reaction, history, force, newton_iterations, settled: false, first_guess: true }
+        Self { u, trial, reaction, history, force, work, newton_iterations, settled: false, first_guess: true }
     }
 
-    /// The step's numbers; one reduction for the supports' forces.
+    /// The step's numbers; one reduction for the supports' forces, and one for the background's work.
     pub fn report<K: Kinematics<D>>(&self, scene: &Scene<'_, K, D>) -> Report {
         let nodes = scene.nodes;
+        let soft = nodes.background.as_ref().map(|blocks| blocks.work::<D>(scene.shape, &self.u));
         Report {
             iterations: self.history.len(),
             history: self.history.clone(),
@@ -97,6 +100,7 @@ impl<const D: usize> Found<D> {
             first_guess: self.first_guess,
             reactions: scene.model.boundary.reactions(&scene.model.grid, &self.reaction, scene.halo),
             strips: Vec::new(),
+            background: soft.map(|work| [scene.halo.total(&[work])[0], self.work]),
             energy: None,
             turnover: None,
             smoothed: 0.0,

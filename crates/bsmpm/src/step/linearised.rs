@@ -13,7 +13,7 @@ use crate::step::coupling::{Coupling, Dilations, Raised, Share};
 use crate::step::equilibrium::Scene;
 use crate::step::nodes::weights;
 use crate::step::residual::Residual;
-use crate::step::stiffness::{add_background, complete};
+use crate::step::stiffness::complete;
 use crate::step::trial::Trial;
 use crate::step::variational::{Adjoint, Pressures, transposed, works};
 use crate::tensor::{Square, Tensor, Vector};
@@ -168,7 +168,7 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
                 coupling.add::<D>(patch.first_node, dilations);
             }
             if let Some(soft) = nodes.background.as_ref().and_then(|background| background.of(number)) {
-                add_background::<D>(soft, &mut block);
+                soft.add_to::<D>(&mut block);
             }
             solver.add(patch.first_node, &block);
         }

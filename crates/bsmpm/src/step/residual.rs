@@ -35,6 +35,8 @@ pub struct Balance {
     pub scale: f64,
     /// N  the same two of each material's own nodes; empty in a scene of one material
     pub apart: Vec<[f64; 2]>,
+    /// J  f_int . u, the background's part among it; 0 without a background, which nobody else asks for
+    pub work: f64,
     /// points inverted or not finite, over all ranks
     pub inverted: u64,
     /// no norm overflowed
@@ -84,6 +86,7 @@ impl Balance {
             f_strips = scene.halo.sum(&held);
         }
         let forces = Forces::of(scene, u, f_int, &f_strips);
+        let soft = scene.nodes.background.is_some();
         let squares = |force: &[f64]| over_layers(scene.halo, D, |c| force[c].powi(2));
         let supporting = |c: usize| forces.reaction[c].powi(2) + f_strips.get(c).copied().unwrap_or(0.0).powi(2);
         let whole = [
@@ -93,8 +96,9 @@ impl Balance {
             over_active(scene, |c| f_int[c].powi(2)),
             over_layers(scene.halo, D, |c| forces.inertial.get(c).map_or(0.0, |inertial| inertial.powi(2))),
             over_active(scene, supporting),
+            over_active(scene, |c| if soft { f_int[c] * u[c] } else { 0.0 }),
         ];
-        let kinds = whole.len() - 1;
+        let kinds = whole.len() - 2;
         let terms = |c: usize| {
             let inertial = forces.inertial.get(c).map_or(0.0, |inertial| inertial.powi(2));
             [forces.f_oob[c].powi(2), scene.nodes.f_ext[c].powi(2), f_int[c].powi(2), inertial, supporting(c)]
@@ -103,13 +107,14 @@ impl Balance {
         let sums = scene.halo.total(&[&whole[..], &apart].concat());
         let (sums, apart) = sums.split_at(whole.len());
         let norms = |sums: &[f64]| [sums[0], sums[1..].iter().copied().fold(0.0, f64::max)].map(f64::sqrt);
-        let [norm, scale] = norms(&sums[1..]);
+        let [norm, scale] = norms(&sums[1..=kinds]);
         Self {
             f_oob: forces.f_oob,
             reaction: forces.reaction,
             norm,
             scale,
             apart: apart.chunks_exact(kinds).map(norms).collect(),
+            work: sums[kinds + 1],
             inverted: sums[0] as u64,
             finite: sums.iter().all(|sum| sum.is_finite()),
         }

@@ -94,7 +94,7 @@ impl<K: Kinematics<D>, const D: usize> State<'_, K, D> {
         }
         mirror(size * D, &mut part.block);
         if let Some(soft) = self.nodes.background.as_ref().and_then(|background| background.of(number)) {
-            add_background::<D>(soft, &mut part.block);
+            soft.add_to::<D>(&mut part.block);
         }
         part
     }
@@ -218,17 +218,6 @@ fn mirror(order: usize, block: &mut [f64]) {
     for row in 0..order {
         for column in 0..row {
             block[row * order + column] = block[column * order + row];
-        }
-    }
-}
-
-/// Adds the scalar block of the background to every component of a patch's block.
-pub fn add_background<const D: usize>(soft: &[f64], block: &mut [f64]) {
-    let size = soft.len().isqrt();
-    for (entry, value) in soft.iter().enumerate() {
-        let (a, b) = (entry / size, entry % size);
-        for i in 0..D {
-            block[(a * D + i) * size * D + b * D + i] += value;
         }
     }
 }

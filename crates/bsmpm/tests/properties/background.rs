@@ -2,7 +2,7 @@
 
 use crate::support::random::Random;
 use crate::support::scene::{Scene, axis, hencky};
-use bsmpm::background::{Background, Extent, Kind};
+use bsmpm::background::{Background, Block, Extent, Kind};
 use bsmpm::grid::{Grid, KnotVector, Shape};
 use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
 use bsmpm::model::Regime;
@@ -19,7 +19,10 @@ fn blocks<K: Kinematics<D>, const D: usize>(axes: [KnotVector; D], kind: Kind) -
     let shape = Shape::at(&grid, points).expect("points inside");
     let background = Background { kind, coefficient: COEFFICIENT, extent: Extent::Occupied };
     let found = background.blocks(&grid, &shape, points, &scene.model.materials, &scene.halo());
-    let blocks = (0..shape.patches().len()).map(|patch| found.of(patch).expect("a block").to_vec()).collect();
+    let block = |patch: usize| match found.of(patch).expect("a block") {
+        Block::Scalar(block) | Block::Coupled(block) => block.clone(),
+    };
+    let blocks = (0..shape.patches().len()).map(block).collect();
     (grid, blocks)
 }
 
@@ -100,9 +103,43 @@ fn curvature_of_quadratic_fields_is_exact() {
     }
 }
 
+/// c E int eps : eps dV of an affine motion, and nothing of a translation or a small rotation.
+fn measures_strain<K: Kinematics<D>, const D: usize>(order: usize) {
+    let mut random = Random::new(7);
+    let axes = std::array::from_fn(|axis| if axis == 0 { graded(order) } else { self::axis(0.25, 3, order) });
+    let (grid, blocks) = blocks::<K, D>(axes, Kind::Strain);
+    for (cell, block) in blocks.iter().enumerate() {
+        let size = block.len().isqrt();
+        let largest = block.iter().fold(0.0_f64, |most, b| most.max(b.abs()));
+        let skewed = |entry: usize| (block[entry] - block[entry % size * size + entry / size]).abs();
+        assert!((0..size * size).map(skewed).fold(0.0, f64::max) <= 1e-14 * largest && largest > 0.0);
+        let rows: [Vector<D>; D] = std::array::from_fn(|_| random.vector());
+        let motion = |rows: &[Vector<D>; D]| -> Vec<f64> {
+            let components = rows.each_ref().map(|row| affine(&grid, cell, row));
+            (0..size).map(|at| components[at % D][at / D]).collect()
+        };
+        let part = |i: usize, j: usize, sign: f64| 0.5 * (rows[i][j] + sign * rows[j][i]);
+        let strain: f64 = (0..D * D).map(|k| part(k / D, k % D, 1.0).powi(2)).sum();
+        let (_, edges) = grid.cell_box(&grid.cell_at(cell));
+        let expected = COEFFICIENT * YOUNG * strain * edges.product();
+        let found = energy(block, &motion(&rows));
+        assert!((found / expected - 1.0).abs() <= 1e-11, "order {order}, cell {cell}: {found} for {expected}");
+        let turn = std::array::from_fn(|i| Vector::<D>::from_fn(|j, _| part(i, j, -1.0)));
+        assert!(energy(block, &motion(&turn)).abs() <= 1e-12 * expected, "order {order}, cell {cell}");
+    }
+}
+
+#[test]
+fn the_strain_form_measures_strain_and_leaves_rotations_alone() {
+    for order in 1..=3 {
+        measures_strain::<PlaneStrain, 2>(order);
+    }
+    measures_strain::<Solid, 3>(2);
+}
+
 #[test]
 fn both_forms_within_cells_are_free_of_scale() {
-    for kind in [Kind::Laplacian, Kind::Curvature] {
+    for kind in [Kind::Strain, Kind::Curvature] {
         for order in 1..=3 {
             let of = |h: f64| blocks::<PlaneStrain, 2>([axis(h, 4, order), axis(3.0 * h, 3, order)], kind).1;
             assert_eq!(of(0.125), of(0.25), "{kind:?}, order {order}: a plane's stiffness has no length");

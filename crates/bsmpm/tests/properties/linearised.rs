@@ -32,7 +32,7 @@ fn loaded<K: Kinematics<D>, const D: usize>(method: Stabilisation, regime: Regim
     let mut scene = Scene::<K, D>::new(axes, Material::MohrCoulomb(soil), regime).stabilised(method);
     let cells = std::array::from_fn(|_| 0..2);
     scene = scene.body(cells, 2, 1.0, |_| Vector::zeros()).support(Support::fixed(D - 1, false));
-    scene.model.background = Some(Background { kind: Kind::Laplacian, coefficient: 1e-3, extent: Extent::Occupied });
+    scene.model.background = Some(Background { kind: Kind::Strain, coefficient: 1e-3, extent: Extent::Occupied });
     let mut random = Random::new(3);
     for p in 0..scene.points.len() {
         scene.points.x[p] += random.vector::<D>() * 0.02;

@@ -13,6 +13,7 @@ mod kinematics;
 mod linearised;
 mod multisecant;
 mod observe;
+mod place;
 mod points;
 mod rigid;
 mod spline;

@@ -23,7 +23,7 @@ fn pressed(method: Stabilisation) -> Points<2> {
         .support(Support::fixed(1, false));
     scene.model.weighting = Weighting::Volume;
     scene.model.criteria = Criteria { energy: 1e-6, force: 1e-4, max_iterations: 1000 };
-    let soft = Background { kind: Kind::Laplacian, coefficient: 1e-3, extent: Extent::Occupied };
+    let soft = Background { kind: Kind::Strain, coefficient: 1e-3, extent: Extent::Occupied };
     scene = scene.background(Some(soft));
     let points = surface::along(&scene.model.grid, &[0.0, 3.0].into(), &[1.0, 3.0].into(), 4);
     let path = Path { rows: vec![(1.0, [0.0, -0.5].into())] };

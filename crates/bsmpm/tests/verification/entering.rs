@@ -39,7 +39,7 @@ fn curvature(coefficient: f64) -> Option<Background> {
 }
 
 fn laplacian(coefficient: f64) -> Option<Background> {
-    Some(Background { kind: Kind::Laplacian, coefficient, extent: Extent::PartlyFilled })
+    Some(Background { kind: Kind::Strain, coefficient, extent: Extent::PartlyFilled })
 }
 
 fn ghost(coefficient: f64) -> Option<Background> {

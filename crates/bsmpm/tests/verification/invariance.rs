@@ -180,7 +180,7 @@ fn the_soft_background_changes_a_filled_elastic_block_by_the_order_of_its_coeffi
             let soft = settled(Some(Background { kind, coefficient, extent }));
             soft.u.iter().zip(&plain.u).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max) / scale
         };
-        let kinds = [Kind::Laplacian, Kind::Curvature, Kind::GhostPenalty];
+        let kinds = [Kind::Strain, Kind::Curvature, Kind::GhostPenalty];
         let [laplacian, curvature, ghost] = kinds.map(|kind| change(kind, Extent::Occupied));
         println!(
             "coefficient {coefficient:.0e}: displacement changes by {laplacian:.1e}, {curvature:.1e}, {ghost:.1e}"

@@ -23,7 +23,7 @@ fn pressure(factor: f64) -> f64 {
         .stabilised(Stabilisation::FBar);
     scene.model.weighting = Weighting::Volume;
     scene.model.criteria = Criteria { energy: 1e-10, force: 1e-6, max_iterations: 1000 };
-    scene.model.background = Some(Background { kind: Kind::Laplacian, coefficient: 1e-3, extent: Extent::Occupied });
+    scene.model.background = Some(Background { kind: Kind::Strain, coefficient: 1e-3, extent: Extent::Occupied });
     let at = |x: f64, y: f64| Vector::<2>::new(x, y);
     let points = surface::along(&scene.model.grid, &at(0.0, 2.0), &at(1.0, 2.0), 4);
     let path = Path { rows: vec![(1.0, at(0.0, -0.4))] };

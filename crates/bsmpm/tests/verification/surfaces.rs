@@ -25,7 +25,7 @@ fn block(cells: [usize; 2], order: usize) -> Plane {
         .rollers(0..2);
     scene.model.weighting = Weighting::Volume;
     scene.model.criteria.force = 1e-12;
-    scene.model.background = Some(Background { kind: Kind::Laplacian, coefficient: 1e-3, extent: Extent::Occupied });
+    scene.model.background = Some(Background { kind: Kind::Strain, coefficient: 1e-3, extent: Extent::Occupied });
     scene.model.boundary.supports.retain(|support| !(support.axis == 1 && support.upper));
     scene
 }

@@ -1,0 +1,53 @@
+//! What an unusual value of an indicator means, and what to do then.
+
+/// Of an indicator by its name; empty for a name that is none.
+pub(super) fn of(name: &str) -> &'static str {
+    match name {
+        "force-measure" | "energy-measure" => {
+            "a step was accepted above its tolerance, which is a fault of the program: report it"
+        }
+        "pressure-noise-average" | "pressure-noise-plane" => {
+            "the pressure jumps from point to point, so that stresses of single points mean little, though forces and \
+             displacements may be right; another [stabilisation] method (consistent-f-bar), or more points_per_cell"
+        }
+        "quadrature-defect" => {
+            "points have crowded or thinned out, and integrals over cells are off by about as much; more points_per_cell"
+        }
+        "quadrature-defect-largest" => {
+            "points have crowded or thinned out in single cells, whose stress is off by about as much; look at the last frame \
+             there, and use more points_per_cell"
+        }
+        "points-per-cell" => {
+            "so few points integrate a cell too coarsely, and stresses oscillate; more points_per_cell"
+        }
+        "energy-closure" => {
+            "energy has gone that no account names: the steps are not converged well enough; a smaller [solver] tolerance and \
+             force_tolerance"
+        }
+        "energy-loss" => {
+            "the algorithm damps what should move on, or (negative) drives it: look at the history's parts for which one does; \
+             smaller steps, another [stabilisation] method where integration is negative, less background or numerical damping"
+        }
+        "slip" => {
+            "material slides along or off a strip that should hold it, so that the strip's force is too small; more steps, or a \
+             strip that covers more cells"
+        }
+        "smoothing-length" => {
+            "the stress is smeared over a length that matters, and results belong to this number of steps; fewer steps, smaller \
+             cells, or another [stabilisation] method"
+        }
+        "support-pull" => {
+            "faces of the grid hold both ways: where the body is meant to hang on this one all is well, but a body that should \
+             come off a wall hangs on it; leave such a face free and put a body of its own there"
+        }
+        "front-setback" => {
+            "the tip has thinned out to less than half a cell, and the front is where the body is thicker: no front of this \
+             grid; smaller cells, or quantity = \"runout\" with a percentile"
+        }
+        "background-work" => {
+            "about this part of the forces is carried by the soft background and not by the body: it is stiffer and stronger \
+             than its material; a smaller [solver] background"
+        }
+        _ => "",
+    }
+}

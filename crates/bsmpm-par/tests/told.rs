@@ -1,0 +1,126 @@
+//! What a run tells of itself that nobody asked for: what holds it pulls, the background carries it, its front goes back;
+//! and what every such line says to do.
+
+mod support;
+
+use support::cases::changed;
+use support::results::{at, history, manifest};
+use support::{Scratch, shipped};
+
+/// A layer of two by one metres on the floor of its grid.
+const LAYER: &str = r#"geometry = "plane-strain"
+
+[analysis]
+type  = "quasi-static"
+steps = 2
+
+[grid]
+lower = [0.0, 0.0]
+upper = [2.0, 1.5]
+cell  = 0.25
+order = "quadratic"
+
+[material.soil]
+model       = "hencky"
+young       = "10 MPa"
+poisson     = 0.3
+unit_weight = "20 kN/m3"
+
+[[body]]
+material = "soil"
+box = { lower = [0.0, 0.0], upper = [2.0, 1.0] }
+points_per_cell = 3
+
+[gravity]
+acceleration = [0.0, -9.81]
+
+[boundary]
+bottom = "fixed"
+left   = "roller"
+right  = "roller"
+
+[[history]]
+quantity = "reaction"
+face = "bottom"
+
+[[history]]
+quantity = "reaction"
+face = "left"
+name = "side"
+"#;
+
+#[test]
+fn the_reaction_to_a_stress_at_the_start_is_there_before_the_first_step() {
+    // k0 leaves what the points' quadrature of a linear stress does: .7 % in four cells of depth.
+    for (initial, off) in [("gravity = \"elastic\"", 1e-8), ("k0 = 0.5", 0.01)] {
+        let scratch = Scratch::with_case(&format!("{LAYER}\n[initial]\n{initial}\n"));
+        scratch.mpirun(2, &["case.toml", "-q"]).expect(0);
+        let history = history(&scratch.path("case.out"));
+        let found = [0.0, 1.0].map(|time| at(&history, "reaction-y", time));
+        assert!(found.iter().all(|force| (force / 40e3 - 1.0).abs() < off), "{found:?}");
+        let sides = [0.0, 1.0].map(|time| at(&history, "side-x", time));
+        assert!((sides[0] / sides[1] - 1.0).abs() < 0.02 && sides[0] > 1e3, "{sides:?}");
+    }
+}
+
+#[test]
+fn a_body_that_hangs_on_a_face_is_told_and_one_that_lies_on_it_is_not() {
+    let scratch = Scratch::with_case(LAYER);
+    let lies = scratch.direct(&["case.toml"]).expect(0);
+    assert!(!lies.stderr.contains("unusual: support-pull"), "{}", lies.stderr);
+    let hangs = scratch.direct(&["case.toml", "--force", "--set", "gravity.acceleration=[0.0, 9.81]"]).expect(0);
+    assert!(hangs.stderr.contains("unusual: support-pull") && hangs.stderr.contains("hangs on it"), "{}", hangs.stderr);
+    let manifest = manifest(&scratch.path("case.out"));
+    let pull = &manifest.indicators["support-pull"];
+    assert!(pull.unusual && pull.value > 0.9 && !pull.advice.is_empty(), "{pull:?}");
+}
+
+/// A background as stiff as the body carries half of it.
+#[test]
+fn a_background_that_carries_the_body_is_told() {
+    let scratch = Scratch::with_case(LAYER);
+    scratch.direct(&["case.toml", "-q"]).expect(0);
+    let usual = manifest(&scratch.path("case.out")).indicators["background-work"].clone();
+    assert!(!usual.unusual && usual.value > 0.0 && usual.value < 1e-3, "{usual:?}");
+    let stiff = scratch.direct(&["case.toml", "--force", "--set", "solver.background=0.5"]).expect(0);
+    assert!(stiff.stderr.contains("unusual: background-work"), "{}", stiff.stderr);
+    // Of uniaxial strain under a load that grows from the first step to the second, E int eps:eps / 2 against 1.35 E of the body.
+    let share = manifest(&scratch.path("case.out")).indicators["background-work"].value;
+    assert!((0.1..0.5).contains(&share), "{share}");
+    let none = Scratch::with_case(&format!("{LAYER}\n[solver]\nbackground = 0.0\n"));
+    none.direct(&["case.toml", "-q"]).expect(0);
+    assert!(!manifest(&none.path("case.out")).indicators.contains_key("background-work"));
+}
+
+/// Sand whose gaps close: at .3565 s the tip thins out to less than half a cell.
+#[test]
+fn a_front_that_goes_back_is_told_with_what_to_do() {
+    let case = std::fs::read_to_string(shipped("short/column_collapse.toml")).unwrap();
+    let scratch =
+        Scratch::with_case(&changed(&case, "friction    = 21.9\n", "friction    = 21.9\nseparation  = \"closing\"\n"));
+    let set = [
+        "case.toml",
+        "--set",
+        "stabilisation.method=modified-f-bar",
+        "--set",
+        "analysis.end=0.38",
+        "--set",
+        "check=[]",
+    ];
+    let told = scratch.direct(&[&set[..], &["--set", "output.times=[]"]].concat()).expect(0);
+    assert!(told.stderr.contains("unusual: front-setback"), "{}", told.stderr);
+    let manifest = manifest(&scratch.path("case.out"));
+    assert!(manifest.indicators["front-setback"].value > 0.015);
+    // The end is a frame, and no time is singled out for pictures.
+    assert!(manifest.picture_times.is_empty());
+    assert!(manifest.indicators.values().all(|indicator| !indicator.advice.is_empty()));
+}
+
+#[test]
+fn the_advice_on_an_elastic_start_is_not_to_make_one() {
+    let weak = changed(LAYER, "model       = \"hencky\"", "model       = \"tresca\"\ncohesion    = \"0.5 kPa\"");
+    let scratch = Scratch::with_case(&format!("{weak}\n[initial]\ngravity = \"elastic\"\n"));
+    let told = scratch.direct(&["case.toml", "--max-steps", "1"]);
+    let line = told.stderr.lines().find(|line| line.contains("unbalanced")).unwrap_or_default();
+    assert!(line.contains("ramp") && !line.contains("gravity = \"elastic\""), "{}", told.stderr);
+}

@@ -1,0 +1,89 @@
+//! Where a body that runs out ends: how far its lowest row of cells is filled by half.
+//!
+//! The window that is to be half full ends at a point and goes with it, so that the front moves as the points do. A cell of
+//! the grid in its place makes the front jump back by a spacing of points wherever the first of them enter the next cell.
+
+use crate::grid::Grid;
+use crate::points::Points;
+use crate::seam::Halo;
+
+/// Part of the window that has to be full.
+const FULL: f64 = 0.5;
+
+/// Points of the lowest row that are in one cell: where along axis 0 (m), and volume (m^D).
+type Held = Vec<[f64; 2]>;
+
+/// The body's front (m): the farthest point of the lowest occupied row of cells such that the points from it back by the
+/// length of its cell, in this cell and the one before, fill half of a cell. A few loose points run ahead of it. Rows count
+/// along the last axis, the front along axis 0; 0 where nothing is so full.
+pub fn front<const D: usize>(grid: &Grid<D>, points: &Points<D>, halo: &dyn Halo) -> f64 {
+    let row = lowest_row(grid, points, halo);
+    let strands: usize = grid.axes()[1..D - 1].iter().map(|axis| axis.cells()).product();
+    let columns = grid.axes()[0].cells();
+    let mut held: Vec<Held> = vec![Held::new(); columns * strands];
+    for p in 0..points.len() {
+        if let Some(cell) = grid.locate(&points.x[p]).filter(|cell| cell[D - 1] == row) {
+            let strand = (1..D - 1).fold(0, |strand, axis| strand * grid.axes()[axis].cells() + cell[axis]);
+            let volume = points.volume[p] * points.F.at(p).determinant();
+            held[cell[0] * strands + strand].push([points.x[p][0], volume]);
+        }
+    }
+    // Of a cell one rank alone has points.
+    let volume = |points: &Held| points.iter().map(|[_, volume]| volume).sum::<f64>();
+    let mut told: Vec<f64> = held.iter().flat_map(|points| [points.len() as f64, volume(points)]).collect();
+    halo.reduce(&mut told);
+    let mut front = 0.0_f64;
+    for at in (0..held.len()).rev() {
+        if front > 0.0 && (at + 1).is_multiple_of(strands) {
+            break;
+        }
+        let cells = [at.checked_sub(strands), Some(at)].map(|cell| cell.filter(|&cell| told[2 * cell] > 0.0));
+        let cell = std::array::from_fn(|axis| match axis {
+            0 => at / strands,
+            _ if axis == D - 1 => row,
+            _ => {
+                grid.axes()[axis + 1..D - 1].iter().fold(at % strands, |at, axis| at / axis.cells())
+                    % grid.axes()[axis].cells()
+            }
+        });
+        let (_, size) = grid.cell_box(&cell);
+        let wanted = FULL * size.product();
+        let most: f64 = cells.iter().flatten().map(|cell| told[2 * cell + 1]).sum();
+        if cells[1].is_some() && most >= wanted * (1.0 - f64::EPSILON.sqrt()) {
+            let all = of_all_ranks(&held, &told, &cells, halo);
+            let first = grid.axes()[0].breakpoint(cell[0]);
+            front = front.max(end_of_full(&all, size[0], wanted).filter(|&x| x >= first).unwrap_or(0.0));
+        }
+    }
+    front
+}
+
+fn lowest_row<const D: usize>(grid: &Grid<D>, points: &Points<D>, halo: &dyn Halo) -> usize {
+    let mut lowest = [points.x.iter().map(|x| -x[D - 1]).fold(f64::NEG_INFINITY, f64::max)];
+    halo.maximum(&mut lowest);
+    grid.axes()[D - 1].cell_of(-lowest[0]).unwrap_or(0)
+}
+
+/// The points of some cells, on every rank in the order of their places.
+fn of_all_ranks(held: &[Held], told: &[f64], cells: &[Option<usize>], halo: &dyn Halo) -> Held {
+    let mut numbers = Vec::new();
+    for &cell in cells.iter().flatten() {
+        let from = numbers.len();
+        numbers.resize(from + 2 * told[2 * cell] as usize, 0.0);
+        numbers[from..].iter_mut().zip(held[cell].as_flattened()).for_each(|(slot, number)| *slot = *number);
+    }
+    halo.reduce(&mut numbers);
+    let mut all: Held = numbers.chunks_exact(2).map(|point| [point[0], point[1]]).collect();
+    all.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
+    all
+}
+
+/// The farthest of the points, in order, such that those from it back by `length` have the volume that is wanted.
+fn end_of_full(points: &Held, length: f64, wanted: f64) -> Option<f64> {
+    let fills = |&end: &usize| {
+        let x = points[end][0];
+        let window = points[..=end].iter().filter(|[at, _]| *at > x - length);
+        window.map(|[_, volume]| volume).sum::<f64>() >= wanted
+    };
+    (0..points.len()).rev().find(fills).map(|end| points[end][0])
+}
