@@ -208,7 +208,7 @@ impl Blocks {
     pub fn work<const D: usize>(&self, shape: &Shape<D>, u: &[f64]) -> Exact {
         let of_cell = |(number, block): &(usize, Block)| {
             let (mut own, mut work) = ([[0.0; D]; MOST_NODES], 0.0);
-            let u = &*gather(u, (shape.patches()[*number].first_node, shape.offsets()), &mut own);
+            let u = gather(u, (shape.patches()[*number].first_node, shape.offsets()), &mut own);
             block.multiply(u, |a, force| work += (0..D).map(|i| u[a][i] * force[i]).sum::<f64>());
             work
         };
