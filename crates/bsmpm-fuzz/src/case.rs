@@ -35,7 +35,7 @@ fn accepted(case: &Case) {
         bsmpm_scene::model::model(case).expect("a model of what is accepted");
     }
     let by_column = case.points_by_column();
-    assert_eq!((by_column.len(), by_column.iter().sum()), (columns, estimate.points));
+    assert_eq!((by_column.len(), by_column.iter().sum()), (case.grid.spans(0), estimate.points));
     let mut count = 0;
     for (number, seed) in seed(case, 0..columns).enumerate() {
         assert_eq!(seed.id, number as u64);

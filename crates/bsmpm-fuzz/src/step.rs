@@ -26,7 +26,7 @@ pub fn target(data: &[u8]) {
 fn try_steps(case: &Case) {
     let told = || format!("in\n{}", case.text);
     let scene = model::model(case).unwrap_or_else(|error| panic!("{error} {}", told()));
-    let points = model::points(case, 0..case.grid.axes[0].cells());
+    let points = model::points(case, 0..case.grid.spans(0));
     let mut run = Simulation::new(scene, points);
     if run.start(case).is_err() {
         return;

@@ -4,7 +4,8 @@
 //! where materials of unlike stiffness meet, and are singular at the ends of strips and loaded segments, which without a
 //! line would hold or load all that the splines reach, a cell further. `cases/results/stabilisation.md` has the figures.
 
-use crate::case::{Case, Path, Site};
+use super::material::strength;
+use crate::case::{Case, NamedMaterial, Path, Site};
 use crate::grid::Line;
 use crate::record::Record;
 use crate::region::Edge;
@@ -20,8 +21,10 @@ const BESIDE: f64 = 1e-3;
 const BEYOND: f64 = 0.25;
 /// Relative difference of two moduli, Poisson's ratios or densities that is none: they were computed.
 const EQUAL: f64 = 1e-9;
-/// Ratio of two moduli from which an interface inside cells is warned of.
+/// Ratio of two moduli, or of two densities, from which an interface inside cells is warned of.
 const UNLIKE: f64 = 1.5;
+/// Ratio of two moduli up to which a stiff body on yielding soil was shown to be right once it has left its grid line.
+const SHOWN: f64 = 100.0;
 const NAMES: [&str; 2] = ["x", "y"];
 
 /// Adds the lines to a case's grid, tells where and why, and warns of places where none can be.
@@ -105,28 +108,51 @@ fn interfaces(case: &Case, found: &mut Found) {
             if line.as_ref().is_some_and(known) {
                 continue;
             }
-            let Some((at, pair, ratio)) = unlike(case, &edge) else { continue };
-            let [a, b] = [pair.0, pair.1].map(|material| &case.materials[material].name);
-            match line {
-                Some(line) => {
-                    found.lines.insert(line, format!("{a} and {b} meet there, and strains jump"));
-                }
-                None if ratio >= UNLIKE => {
-                    let told = format!(
-                        "material.{a} and material.{b} meet inside cells, first at {at:?}: the splines cannot follow the jump of \
-                         strain there, and stress is wrong by tens of per cent within about three cells; where the interface \
-                         is straight along an axis, put a grid line on it"
-                    );
-                    found.doubts.entry(format!("{a} {b}")).or_insert(told);
-                }
-                None => {}
+            let Some((at, pair, ratios)) = unlike(case, &edge) else { continue };
+            let [a, b] = [pair.0, pair.1].map(|material| &case.materials[material]);
+            if let Some(line) = line {
+                let reason = format!("{} and {} meet there, and strains jump", a.name, b.name);
+                found.lines.insert(line, reason);
+            }
+            if let Some(doubt) = doubt([a, b], line.is_some(), (at, ratios)) {
+                found.doubts.entry(format!("{} {}", a.name, b.name)).or_insert(doubt);
             }
         }
     }
 }
 
-/// The first place along an edge with unlike materials on both sides, which they are, and the ratio of their moduli.
-fn unlike(case: &Case, edge: &Edge) -> Option<([f64; 2], (usize, usize), f64)> {
+/// What is doubtful about an interface of two materials whose moduli and densities have these ratios.
+fn doubt(
+    [a, b]: [&NamedMaterial; 2],
+    on_line: bool,
+    (at, [moduli, densities]): ([f64; 2], [f64; 2]),
+) -> Option<String> {
+    let (a, b, yields) = (&a.name, &b.name, [a, b].iter().any(|named| strength(&named.material, 0.0).is_some()));
+    if on_line {
+        let told = || {
+            format!(
+                "material.{a} and material.{b} meet, one {moduli:.3e} times as stiff as the other: once soil has yielded and \
+                 they have left the grid line at {at:?}, stress in the stiffer one is of no use (up to 1 : {SHOWN} it was \
+                 shown within 15 %); take a modulus of at most {SHOWN} times that of the soil"
+            )
+        };
+        return (yields && moduli > SHOWN).then(told);
+    }
+    let told = || {
+        format!(
+            "material.{a} and material.{b} meet inside cells, first at {at:?}: the splines cannot follow the jump of strain \
+             there, and stress is wrong by tens of per cent within about three cells; where the interface is straight along \
+             an axis, put a grid line on it"
+        )
+    };
+    (moduli.max(densities) >= UNLIKE).then(told)
+}
+
+/// An interface: a place on it, the materials on both sides, the ratios of their moduli and densities.
+type Interface = ([f64; 2], (usize, usize), [f64; 2]);
+
+/// The first place along an edge with unlike materials on both sides.
+fn unlike(case: &Case, edge: &Edge) -> Option<Interface> {
     let (lower, axes) = (case.grid.lower(), &case.grid.axes);
     let aside = BESIDE * axes[0].shortest().min(axes[1].shortest());
     let normal = usize::from(!edge.is_along(1)); // aside along x of a vertical edge, else along y
@@ -141,13 +167,13 @@ fn unlike(case: &Case, edge: &Edge) -> Option<([f64; 2], (usize, usize), f64)> {
             case.bodies.iter().find(|body| body.region.contains(place)).map(|body| body.material)
         };
         let pair = (beside(-aside)?, beside(aside)?);
-        differ(case, pair, Some(y)).map(|ratio| (at, pair, ratio))
+        differ(case, pair, Some(y)).map(|ratios| (at, pair, ratios))
     })
 }
 
 /// Whether two materials differ in stiffness or density, at a height (m from the grid's lower corner) or anywhere: the
-/// ratio of their moduli.
-fn differ(case: &Case, (a, b): (usize, usize), height: Option<f64>) -> Option<f64> {
+/// ratios of their moduli and densities.
+fn differ(case: &Case, (a, b): (usize, usize), height: Option<f64>) -> Option<[f64; 2]> {
     if a == b {
         return None;
     }
@@ -159,7 +185,8 @@ fn differ(case: &Case, (a, b): (usize, usize), height: Option<f64>) -> Option<f6
     let poisson = [a, b].map(|named| named.material.elastic().poisson);
     let density = [a, b].map(|named| named.density.unwrap_or(0.0));
     let differs = graded || [young, poisson, density].iter().any(|pair| apart(pair[0], pair[1]));
-    differs.then(|| young[0].max(young[1]) / young[0].min(young[1]))
+    let ratio = |[a, b]: [f64; 2]| if a.min(b) > 0.0 { a.max(b) / a.min(b) } else { 1.0 };
+    differs.then(|| [ratio(young), ratio(density)])
 }
 
 /// A strip or a loaded segment.

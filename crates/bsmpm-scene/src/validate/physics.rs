@@ -4,8 +4,7 @@ use super::NEARLY_INCOMPRESSIBLE;
 use super::material::strength;
 use super::place;
 use super::strip::{moves, normal};
-use crate::case::{Base, Body, Case, Prescribed, Site, Support};
-use crate::grid::Axis;
+use crate::case::{Base, Case, Prescribed, Site, Support};
 use crate::record::Record;
 use crate::report::Report;
 use bsmpm::model::Regime;
@@ -14,9 +13,6 @@ use bsmpm::stabilisation::Stabilisation;
 /// Components of a normal below which it does not hold them.
 const ALONG: f64 = 1e-9;
 
-/// Ratio of moduli or densities beyond which an interface is told of.
-const SMOOTH: f64 = 2.0;
-
 /// Errors and warnings about a case that is valid in its parts.
 pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
     if case.analysis.regime == Regime::QuasiStatic {
@@ -24,7 +20,6 @@ pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
     }
     too_soon(case, record, report);
     warn_of_materials(case, report);
-    warn_of_interfaces(case, report);
     if case.stabilisation == Stabilisation::None && !record.gives("stabilisation") {
         warn_of_locking(case, report);
     }
@@ -102,54 +97,6 @@ fn warn_of_materials(case: &Case, report: &mut Report<'_>) {
     }
     if case.analysis.regime == Regime::QuasiStatic && !loaded(case) {
         report.warn("nothing loads the bodies: there is no [gravity], no load, and nothing that moves");
-    }
-}
-
-/// Bodies that meet and differ by more than was shown: the strain jumps from one to the other, and that of the splines cannot.
-fn warn_of_interfaces(case: &Case, report: &mut Report<'_>) {
-    let near = case.grid.axes.each_ref().map(|axis| match axis {
-        Axis::Uniform { cell, .. } => *cell,
-        Axis::Graded(_) => (0..axis.cells()).map(|i| axis.cell(i)).fold(0.0, f64::max),
-    });
-    let meet = |a: &Body, b: &Body| {
-        let ([lower, upper], [low, high]) = (a.bounds(), b.bounds());
-        (0..2).all(|axis| lower[axis] <= high[axis] + near[axis] && low[axis] <= upper[axis] + near[axis])
-    };
-    let ratio = |a: f64, b: f64| (a / b).max(b / a);
-    let mut told = Vec::new();
-    for (number, a) in case.bodies.iter().enumerate() {
-        for b in case.bodies[..number].iter().filter(|b| meet(a, b)) {
-            let pair = [a.material.min(b.material), a.material.max(b.material)];
-            if pair[0] == pair[1] || told.contains(&pair) {
-                continue;
-            }
-            told.push(pair);
-            let [a, b] = pair.map(|material| &case.materials[material]);
-            let stiffer = ratio(a.material.elastic().young, b.material.elastic().young);
-            let heavier = a.density.zip(b.density).map_or(1.0, |(a, b)| ratio(a, b));
-            let (what, by, off) = if stiffer > SMOOTH {
-                (
-                    "young",
-                    stiffer,
-                    "the stress within two cells of the interface is off, in level ground by 14 % at 1 : 2 \
-                 and 50 % at 1 : 100, more where a much stiffer body moves",
-                )
-            } else if heavier > SMOOTH && case.stabilisation != Stabilisation::None {
-                (
-                    "density",
-                    heavier,
-                    "the horizontal stress within a cell of the interface is off, in level ground by 3 to \
-                 7 % at 1 : 2 and by 30 to 60 % of the lighter one's at 1 : 10",
-                )
-            } else {
-                continue;
-            };
-            report.warn(format!(
-                "material.{} and material.{} meet and differ in {what} by a factor of {by:.3}: the strain of the splines \
-                 cannot jump, and {off}; smaller cells there narrow that zone, with order = \"linear\" it is 3 %",
-                a.name, b.name
-            ));
-        }
     }
 }
 
