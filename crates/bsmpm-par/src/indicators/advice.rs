@@ -20,6 +20,14 @@ pub(super) fn of(name: &str) -> &'static str {
         "points-per-cell" => {
             "so few points integrate a cell too coarsely, and stresses oscillate; more points_per_cell"
         }
+        "compression" => {
+            "with fewer than 4 points a cell and axis the stress of material that has lost so much of its volume is off by up to \
+             1 %; points_per_cell = 4"
+        }
+        "energy-growth" => {
+            "motion and strain have more energy than they were given: dilatant or strengthless flow under an F-bar makes some; \
+             consistent-f-bar or none as [stabilisation] method, smaller steps, less dilation"
+        }
         "energy-closure" => {
             "energy has gone that no account names: the steps are not converged well enough; a smaller [solver] tolerance and \
              force_tolerance"
