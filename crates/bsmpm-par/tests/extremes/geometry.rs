@@ -85,8 +85,7 @@ fn falling() -> (f64, f64) {
         for u in stepper.guess.chunks_exact(2).filter(|u| u[0] != 0.0) {
             acceleration = acceleration.max((Vector::from([u[0], u[1]]) - before * dt).norm() * 2.0 / (dt * dt) / g);
         }
-        // Points start with a = 0, so that the first step gains half of g dt.
-        before = speed + Vector::from([0.0, -g * (t - 0.5 * dt)]);
+        before = speed + Vector::from([0.0, -g * t]);
         let momentum = observe::momentum(&scene.points, &halo);
         lost = lost.max((momentum - before * mass).norm() / (speed.norm() * mass));
     }
