@@ -54,6 +54,9 @@ impl Need {
         let (own, mut points) = (simulation.points.len() as u64, 0_u64);
         world.all_reduce_into(&own, &mut points, SystemOperation::sum());
         let (time, begun) = (simulation.time(), simulation.steps() > 0);
+        // A column that points carry from the first step on.
+        let is_to_come = simulation.model.stabilisation.averages() && simulation.points.dilation.is_none();
+        let to_come = if is_to_come { points * size_of::<f64>() as u64 } else { 0 };
         let (columns, guess) = simulation.arrays();
         let room = checkpoint::room(world, &Contents { columns, guess, state: &[] });
         // What is to be deleted counts as free, not as there.
@@ -63,7 +66,7 @@ impl Need {
             frame: HEAD + points * gather::point_bytes(case.analysis.regime == Regime::Dynamic),
             // A new one is whole before the oldest goes.
             checkpoints: (case.output.checkpoint.keep.max(1) + 1).saturating_sub(there),
-            checkpoint: WORDS + room,
+            checkpoint: WORDS + room + to_come,
         }
     }
 

@@ -131,11 +131,11 @@ impl Stepper {
             None => (self.at.t, schedule.next(self.at.t)?),
         };
         self.at.nominal = Some((from, to));
+        let before = (self.at.cuts, self.at.easy, self.at.budget);
         if model.regime == Regime::Dynamic && self.at.budget.is_none() {
             self.at.budget = Some(Budget::open(Stored::of(model, points, halo)));
         }
         let (mut rejected, mut counts) = (Vec::new(), Counts::default());
-        let before = (self.at.cuts, self.at.easy);
         loop {
             let size = TICKS >> self.at.cuts;
             let end =
@@ -153,7 +153,7 @@ impl Stepper {
                 }
                 Err(StepError::Interrupted) => {
                     // As if it had never begun: who goes on from here later makes the same attempts.
-                    (self.at.cuts, self.at.easy) = before;
+                    (self.at.cuts, self.at.easy, self.at.budget) = before;
                     rejected.push(StepError::Interrupted);
                     return Some(Err(Failure { t: self.at.t, dt, attempts: rejected, counts }));
                 }
@@ -168,7 +168,7 @@ impl Stepper {
                     rejected.push(error);
                     if hopeless || self.at.cuts == MOST_CUTS {
                         // Who goes on from here, with another nominal step, starts as this one did.
-                        (self.at.cuts, self.at.easy) = before;
+                        (self.at.cuts, self.at.easy, _) = before;
                         return Some(Err(Failure { t: self.at.t, dt, attempts: rejected, counts }));
                     }
                     self.at.cuts += 1;
