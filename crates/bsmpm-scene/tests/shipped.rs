@@ -24,7 +24,10 @@ fn every_shipped_case_is_valid() {
                 folders.push(path);
             } else if path.extension().is_some_and(|extension| extension == "toml") && !path.ends_with("matrix.toml") {
                 let case = read(&path);
-                assert!(case.warnings.is_empty(), "{}: {:?}", path.display(), case.warnings);
+                // The ground of the faults does without C0 lines on purpose, and is told so.
+                let on_purpose =
+                    |told: &String| path.ends_with("mini_footing.toml") && told.starts_with("grid.c0_lines:");
+                assert!(case.warnings.iter().all(on_purpose), "{}: {:?}", path.display(), case.warnings);
                 found += 1;
             }
         }
