@@ -21,7 +21,8 @@ use ghost::Faces;
 /// What the background resists.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// c E int eps : eps dV, eps the symmetric gradient of the step's displacement: every deformation, no small rotation. In all occupied cells it slows down what fails: a slope
+    /// c E int eps : eps dV, eps the symmetric gradient of the step's displacement: every deformation, no
+    /// small rotation. In all occupied cells it slows down what fails: a slope
     /// far beyond its strength comes to rest in coarse steps, on half of its way.
     Strain,
     /// c E int sum_ij h_i h_j (d2u / dx_i dx_j)^2 dV: how far a cell departs from the linear extrapolation of its

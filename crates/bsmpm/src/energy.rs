@@ -13,7 +13,8 @@
 //!   second order in dt else.
 //! - **plastic**: `Σ_p V0 τ : (ε_trial - εᵉ)`, backward Euler like the return.
 //! - **transfer** between points and nodes: `(T0 - ½ v_I0 · M v_I0) + (½ v_I1 · M v_I1 - T1)` and what the blow did, what
-//!   PIC/FLIP loses on the way there and back; it can be negative, as the points' velocity grows by the accelerations that they keep for themselves,
+//!   PIC/FLIP loses on the way there and back; it can be negative, as the points' velocity grows by the
+//!   accelerations that they keep for themselves,
 //!   the nodes' by the mapped ones.
 //! - **integration**: `(Σ_p V0 τ : (∇u dF⁻¹) - ΔE' - plastic) + (M ã · u - Δ(½ v_I · M v_I)) - ½ (f1 - f0) · u`: the work of the
 //!   internal forces less what became of it, the work of the inertia less the nodes' kinetic energy, and the difference

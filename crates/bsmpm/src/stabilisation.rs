@@ -29,7 +29,8 @@ pub enum Stabilisation {
     /// flow only: results converge in the step size.
     ///
     /// S1 is the locally lumped projection onto the degree below of Telikicherla and Moutsanidis (2022), Comput. Methods
-    /// Appl. Mech. Engrg. 395, 114985, here weighed by mass and from point to point; the filter is ours. Twice S1 would leave 28 % less noise in flowing sand, but then
+    /// Appl. Mech. Engrg. 395, 114985, here weighed by mass and from point to point; the filter is ours.
+    /// Twice S1 would leave 28 % less noise in flowing sand, but then
     /// dilatant slopes find no equilibrium. After a converged step (`step::smooth`) b^e <- exp(2/3 theta (S(eps_v) - eps_v))
     /// b^e, eps_v = 1/2 ln det b^e, with theta from 0, no flow, to 1. Without flow it is an F-bar with S1 for S, no more.
     /// In dilatant material its force is the adjoint of its stress, see `step::variational`.

@@ -10,7 +10,8 @@ use crate::error::StepError;
 
 /// Part of the largest energy by which a right run may seem to have grown: mean forces, mapped
 /// accelerations and what points keep to themselves are exact only in the limit. The short collapse reaches .0013 (in
-/// steps of 10 ms .025, which do not resolve its elastic waves), with dilation = 5 degrees .012. What makes energy passes .05 and goes on to several times the whole.
+/// steps of 10 ms .025, which do not resolve its elastic waves), with dilation = 5 degrees .012. What makes
+/// energy passes .05 and goes on to several times the whole.
 const SLACK: f64 = 0.05;
 
 /// What a step took in and dissipated, and what the points have after it, J.
