@@ -16,7 +16,7 @@ use bsmpm::points::Points;
 use bsmpm::seam::Halo;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm_io::manifest::{Indicator, Summary};
-use bsmpm_scene::{Axis, Case};
+use bsmpm_scene::{Axis, Body, Case};
 use std::collections::BTreeMap;
 
 /// Usual root mean square, and usual largest one, of the quadrature defect.
@@ -47,10 +47,10 @@ const SETBACK: f64 = 1.0;
 const BACKGROUND: f64 = 0.02;
 
 /// What the state at the end tells.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct State {
     defect: Option<Defect>,
-    compression: f64,
+    compression: Vec<f64>, // of each material
     noise: Noise,
     energy: Option<Energy>,
     growth: Option<f64>,
@@ -92,11 +92,14 @@ impl State {
             all.extend(value.map(|value| (name, Indicator::new(value, "-", meaning, [0.0, 1.0]))));
         }
         let (enough, most) = COMPRESSION;
-        let coarse = case.bodies.iter().any(|body| body.points_per_cell < enough);
-        let meaning = "part of its volume that the most compressed material has lost: with fewer than 4 points_per_cell stress \
-                       is wrong by up to 1 %, however fine the cells";
-        let usual = [0.0, if coarse { most } else { 1.0 }];
-        all.push(("compression", Indicator::new(self.compression, "-", meaning, usual)));
+        let lost = |body: &&Body| self.compression[body.material];
+        let largest = |bodies: &mut dyn Iterator<Item = f64>| bodies.fold(0.0, f64::max);
+        let coarse =
+            largest(&mut case.bodies.iter().filter(|body| body.points_per_cell < enough).map(|body| lost(&body)));
+        let usual = [0.0, if coarse > most { most } else { 1.0 }];
+        let value = if coarse > most { coarse } else { largest(&mut case.bodies.iter().map(|body| lost(&body))) };
+        let meaning = "part of its volume that the most compressed material has lost";
+        all.push(("compression", Indicator::new(value, "-", meaning, usual)));
         let slip = summary.largest_slip.map(|value| {
             ("slip", Indicator::new(value, "-", "largest slip of a strip in a step, over its motion", [0.0, SLIP]))
         });
@@ -141,7 +144,7 @@ impl State {
         }
         if let Some(growth) = self.growth {
             let meaning = "largest excess of kinetic, elastic and dissipated energy over that of the start and all work \
-                           since, over the largest energy: another [stabilisation], or a smaller dilation";
+                           since, over the largest energy";
             rows.push(row("energy-growth", growth, meaning, GROWTH));
         }
         rows

@@ -44,6 +44,7 @@ pub struct Ledger {
     dt: f64,
     criteria: [f64; 2],       // of the force and of the energy measure
     faces: Vec<(usize, f64)>, // of every support, the axis it is normal to, and the sign of its push along it
+    least_reaction: f64,      // N, below which a reaction is none
 }
 
 /// Headings of the tables.
@@ -99,6 +100,7 @@ impl Ledger {
             dt: case.analysis.dt,
             criteria: [case.solver.force_tolerance, case.solver.tolerance],
             faces: bsmpm_scene::model::faces(case),
+            least_reaction: bsmpm_scene::model::least_reaction(case),
             directory,
             manifest,
             columns,
@@ -219,7 +221,8 @@ impl Ledger {
     fn reactions(&mut self, report: &Report) {
         let summary = &mut self.manifest.summary;
         for (&(axis, push), force) in self.faces.iter().zip(&report.reactions) {
-            let (size, pull) = (force.iter().map(|f| f * f).sum::<f64>().sqrt(), (-push * force[axis]).max(0.0));
+            let size = force.iter().map(|f| f * f).sum::<f64>().sqrt();
+            let pull = if size > self.least_reaction { (-push * force[axis]).max(0.0) } else { 0.0 };
             summary.largest_reaction = Some(summary.largest_reaction.map_or(size, |so_far| so_far.max(size)));
             summary.largest_pull = Some(summary.largest_pull.map_or(pull, |so_far| so_far.max(pull)));
         }

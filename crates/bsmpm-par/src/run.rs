@@ -208,9 +208,11 @@ impl<'p> Run<'p> {
         for (number, strip) in accepted.report.strips.iter().enumerate() {
             let points = self.simulation.model.boundary.strips[number].points.len();
             let (name, t) = (bsmpm_scene::surfaces::name_of_strip(&self.case, number), accepted.t);
+            let mut kind = number;
             let told = if strip.held == 0 {
                 format!("{name} holds nothing: at t = {t} no free material is at it")
             } else if 2 * strip.left_behind > points {
+                kind += accepted.report.strips.len();
                 format!(
                     "{name} has let go: at t = {t} most of it is more than half a cell ahead of the material that it held at the \
                      start, and its force is no longer that of a strip that holds; smaller cells and more points_per_cell \
@@ -219,7 +221,7 @@ impl<'p> Run<'p> {
             } else {
                 continue;
             };
-            if self.told_strips.insert(number) {
+            if self.told_strips.insert(kind) {
                 self.warn(told);
             }
         }

@@ -8,7 +8,7 @@ pub use loads::{Base, Footing, Initial, Path, PointLoad, Prescribed, Site, Tract
 
 use crate::document;
 use crate::error::Error;
-use crate::grid::GridSpec;
+use crate::grid::{GridSpec, Line};
 use crate::region::Region;
 use crate::report::Report;
 use crate::source::{Source, decode};
@@ -69,6 +69,21 @@ pub struct Case {
 }
 
 impl Case {
+    /// Takes over the repeated breakpoints of a run that goes on, whatever the program would place today.
+    pub fn keep_lines(&mut self, lines: [Vec<Line>; 2]) {
+        if self.grid.lines == lines {
+            return;
+        }
+        self.grid.lines = lines;
+        self.notes.retain(|note| note.key != "grid.c0_lines");
+        let number = self.grid.lines.each_ref().map(Vec::len);
+        self.notes.push(Choice {
+            key: "grid.c0_lines".to_owned(),
+            value: format!("{} along x, {} along y", number[0], number[1]),
+            reason: "those of the run that is resumed".to_owned(),
+        });
+    }
+
     /// The case in `text`, the content of the file `name`, with overrides `KEY=VALUE` merged in their order.
     ///
     /// # Errors

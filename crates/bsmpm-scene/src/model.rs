@@ -11,9 +11,10 @@ use bsmpm::material::Material;
 use bsmpm::model::{Criteria, Gravity, Model, Weighting};
 use bsmpm::points::Points;
 use bsmpm::schedule::Schedule;
-use bsmpm::stabilisation::Groups;
+use bsmpm::stabilisation::{Groups, Stabilisation};
 use bsmpm::step::equilibrium::Nonlinear;
 use bsmpm::step::quasi_newton::QuasiNewton;
+use bsmpm::step::variational::is_dilatant;
 use bsmpm::tensor::{Symmetric, Vector};
 use std::marker::PhantomData;
 
@@ -94,6 +95,12 @@ pub fn faces(case: &Case) -> Vec<(usize, f64)> {
     supports(case).iter().map(push).collect()
 }
 
+/// N  reaction of a face below which it does nothing: a strain of 1e-9 of the softest material along the shortest cell.
+pub fn least_reaction(case: &Case) -> f64 {
+    let softest = case.materials.iter().map(|named| named.material.elastic().young).fold(f64::INFINITY, f64::min);
+    1e-9 * softest * case.grid.axes.iter().map(Axis::shortest).fold(f64::INFINITY, f64::min)
+}
+
 /// Penalty of the rigid strips, Pa/m.
 pub fn penalty(case: &Case) -> f64 {
     let stiffest = case.materials.iter().map(|named| named.material.elastic().young).fold(0.0, f64::max);
@@ -133,11 +140,13 @@ pub fn frame_times(case: &Case) -> Vec<f64> {
     times
 }
 
-/// Materials of one stiffness: what an average over the grid may mix. One that depends on the height is alike to itself.
+/// Materials of one stiffness: what an average over the grid may mix. One that depends on the height is alike to itself; under
+/// consistent F-bar one that dilates is not alike to one that does not, as their forces are formed in other ways.
 pub fn groups(case: &Case) -> Groups {
     let kind = |named: &NamedMaterial| {
         let graded = if let Material::Graded(_) = &named.material { Some(named.name.clone()) } else { None };
-        (named.material.elastic().clone(), graded)
+        let adjoint = case.stabilisation == Stabilisation::ConsistentFBar && is_dilatant(&named.material);
+        (named.material.elastic().clone(), graded, adjoint)
     };
     Groups::of_alike(&case.materials.iter().map(kind).collect::<Vec<_>>())
 }

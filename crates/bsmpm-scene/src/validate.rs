@@ -42,13 +42,17 @@ pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Op
     let reduction = material::Reduction::of(record);
     let around = material::Around { regime, grid: placed, bodies: made, reduction };
     let materials = material::read_all(record, around, report);
-    let gravity = gravity(record, end, report);
+    let mut gravity = gravity(record, end, report);
     let around = strip::Around { grid: placed, bodies: made, boundary, end };
     let footing = strip::footing(record, around, report);
     let prescribed = strip::prescribed(record, around, report);
-    let tractions = load::tractions(record, around, report);
-    let point_loads = load::point_loads(record, around, report);
-    let initial = load::initial(record, (materials.as_deref(), made), gravity.as_ref(), report);
+    let mut tractions = load::tractions(record, around, report);
+    let mut point_loads = load::point_loads(record, around, report);
+    let mut initial = load::initial(record, (materials.as_deref(), made), gravity.as_ref(), report);
+    if let Some(end) = end.filter(|_| load::is_unloaded(record)) {
+        initial = None;
+        load::grow((gravity.as_mut(), &mut tractions, &mut point_loads), end, report);
+    }
     load::sudden(&tractions, &point_loads, initial.as_ref(), report);
     let stabilisation = stabilisation(record);
     let solver = solver::read(record, regime, (grid.as_ref(), materials.as_deref()), report);

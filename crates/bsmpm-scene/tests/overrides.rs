@@ -311,6 +311,21 @@ fn strength_reduction_makes_every_material_elastic_and_stiffer() {
     assert!(note.value.contains("young x 20, elastic"), "{note:?}");
 }
 
+/// A search for the factor of safety loads every trial from zero, also of a case that begins with a stress.
+#[test]
+fn strength_reduction_leaves_the_stress_at_the_start_out_and_lets_loads_grow() {
+    let at_once = ["traction.0.ramp=0.0"];
+    let own = valid(FULL, &at_once);
+    let case = valid(FULL, &[&at_once[..], &["strength_reduction.unloaded=true"]].concat());
+    let ramps = |case: &Case| (case.gravity.as_ref().unwrap().ramp, case.tractions[0].ramp);
+    assert!(own.initial.is_some() && ramps(&own) == (0.0, 0.0));
+    assert!(case.initial.is_none() && ramps(&case) == (case.analysis.end, case.analysis.end));
+    // What grows by itself keeps its time.
+    assert_eq!(case.point_loads[0].ramp, own.point_loads[0].ramp);
+    let noted: Vec<_> = case.notes.iter().filter(|note| note.reason == "strength_reduction.unloaded").collect();
+    assert!(noted.len() == 2 && noted[0].key == "gravity.ramp", "{noted:?}");
+}
+
 /// Also where friction varies with the height, and whatever the strength is divided by.
 #[test]
 fn a_material_without_cohesion_may_close_its_gaps() {

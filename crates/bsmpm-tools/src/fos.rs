@@ -46,7 +46,7 @@ law, without strength that could limit the stress.
 
 The factor belongs to the body as it is drawn, and does not depend on its stiffness: where the load would strain it by more
 than 0.2 %, the trials' Young's moduli are multiplied until it does not, and displacements told as if they had not been.
-Gravity that comes at once is grown over the whole run. The notes say so.
+Loads that act at once grow over the whole run, and a stress at the start ([initial]) is left out. The notes say so.
 
 DIR gets fos.json, fos.csv, fos.png (displacement against factor), fos_plastic-strain.png and fos_displacement.png (the first
 failed trial), and trials/. Trials that are there and were made from the same case by the same solver are kept.

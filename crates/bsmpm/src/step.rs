@@ -125,9 +125,8 @@ pub fn step<K: Kinematics<D>, const D: usize>(
     *guess = u;
     let account = draft.map(|draft| draft.close(model, points, &surface, halo));
     let places = surface.anchors.places(&model.boundary, points, halo);
-    let reach = 0.5 * model.grid.smallest_edge();
     for (number, strip) in model.boundary.strips.iter().enumerate() {
-        report.strips[number].left_behind = places.left_behind(number, strip, t + dt, reach);
+        report.strips[number].left_behind = places.left_behind(number, strip, t + dt, &model.grid);
     }
     surface.position = places.loads;
     points.surface = surface;

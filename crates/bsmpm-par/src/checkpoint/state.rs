@@ -42,7 +42,7 @@ pub struct State {
     pub anchors: [Vec<Vec<u64>>; 2],
     /// What the histories go on from.
     pub record: RecordState,
-    /// Strips of which it was told that they hold nothing.
+    /// Strips of which it was told that they hold nothing; and, their number added, that they have let go.
     pub told_strips: BTreeSet<usize>,
     /// The step of the newest frame.
     pub last_frame: Option<u64>,

@@ -49,6 +49,7 @@ impl Ledger {
             dt: case.analysis.dt,
             criteria: [case.solver.force_tolerance, case.solver.tolerance],
             faces: bsmpm_scene::model::faces(case),
+            least_reaction: bsmpm_scene::model::least_reaction(case),
             directory,
             manifest,
             columns,

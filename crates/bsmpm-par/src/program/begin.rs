@@ -39,7 +39,8 @@ pub(super) fn run(
     let held = hold(universe, &task.arguments).map_err(refused)?;
     let mut start = restart::plan((hdf5, universe), held.as_ref(), &task.arguments, &task.case).map_err(refused)?;
     if let Start::Resumed(resumed) = &start {
-        task.case.grid.lines = resumed.lines(&task.case).map_err(refused)?;
+        let lines = resumed.lines(&task.case).map_err(refused)?;
+        task.case.keep_lines(lines);
     }
     let Task { case, arguments, .. } = &task;
     if let Start::Complete(code) = start {

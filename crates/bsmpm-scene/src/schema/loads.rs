@@ -92,6 +92,12 @@ pub(super) static REDUCTION: Table = Table {
             Default("1.0"),
             "Young's moduli times this, of all materials",
         ),
+        key(
+            "unloaded",
+            Flag,
+            Default("false"),
+            "start without stress: [initial] is left out, and loads that act at once grow over the run",
+        ),
     ],
     exclusive: &[],
 };

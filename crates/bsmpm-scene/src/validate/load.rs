@@ -94,6 +94,27 @@ pub(super) fn initial(
     at_rest(root, record, bodies?, report).map(Initial::AtRest)
 }
 
+/// Whether the case starts without stress, whatever its [initial] says.
+pub(super) fn is_unloaded(root: &Record) -> bool {
+    root.record("strength_reduction").and_then(|reduction| reduction.flag("unloaded")).unwrap_or(false)
+}
+
+/// Lets every load that acts at once grow until `end`.
+pub(super) fn grow(
+    (gravity, tractions, loads): (Option<&mut Gravity>, &mut [Traction], &mut [PointLoad]),
+    end: f64,
+    report: &mut Report<'_>,
+) {
+    let gravity = gravity.map(|gravity| ("gravity.ramp".to_owned(), &mut gravity.ramp));
+    let named = |name, number| format!("{name}.{number}.ramp");
+    let tractions = tractions.iter_mut().enumerate().map(|(k, load)| (named("traction", k), &mut load.ramp));
+    let loads = loads.iter_mut().enumerate().map(|(k, load)| (named("point_load", k), &mut load.ramp));
+    for (key, ramp) in gravity.into_iter().chain(tractions).chain(loads).filter(|(_, ramp)| **ramp == 0.0) {
+        *ramp = end;
+        report.note(key, format!("{end:?}"), "strength_reduction.unloaded");
+    }
+}
+
 /// Warns of loads that act in full from the start: a state by k0 knows the weight alone.
 pub(super) fn sudden(tractions: &[Traction], loads: &[PointLoad], initial: Option<&Initial>, report: &mut Report<'_>) {
     if !matches!(initial, Some(Initial::AtRest(_))) {

@@ -16,6 +16,8 @@ use crate::record::Case as Told;
 const LOOSEST: f64 = 1e-3;
 /// The key that the search sets.
 const FACTOR: &str = "strength_reduction.factor";
+/// The key that lets a trial start without stress.
+const UNLOADED: &str = "strength_reduction.unloaded";
 /// Strain by which a load may change the geometry: (weight of the body's height + traction)/E. Beyond, the branch after
 /// failure, up to 20 times the elastic displacement, is flattened by the body's settling, and with it the factor.
 const SMALL: f64 = 2e-3;
@@ -36,8 +38,10 @@ pub(super) struct Subject {
     pub end: f64,
     /// the column of the largest displacement
     pub column: String,
-    /// whether gravity, which the case lets come at once, is grown over the run
+    /// whether loads that the case lets act at once grow over the run
     is_grown: bool,
+    /// whether the case begins with a stress, which trials do not
+    is_stressed: bool,
     /// whether the case records it with a scale of its own, as E δ/(γ H²)
     pub is_scaled: bool,
     pub conditions: Conditions,
@@ -93,11 +97,12 @@ impl Subject {
             set.push(format!("history.{}.quantity={QUANTITY}", case.histories.len()));
         }
         let (title, end, conditions) = (case.title.clone(), case.analysis.end, Conditions::of(&case));
-        let is_grown = case.gravity.as_ref().is_some_and(|gravity| gravity.ramp == 0.0);
+        let (is_grown, is_stressed) = (ramps(&case).any(|ramp| ramp == 0.0), case.initial.is_some());
         if is_grown {
-            set.push(format!("gravity.ramp={end:?}"));
+            set.push(format!("{UNLOADED}=true"));
         }
-        Ok(Self { path: path.to_owned(), bytes, set, title, end, column, is_grown, is_scaled, conditions })
+        let path = path.to_owned();
+        Ok(Self { path, bytes, set, title, end, column, is_grown, is_stressed, is_scaled, conditions })
     }
 
     /// The overrides of a trial.
@@ -115,10 +120,14 @@ impl Subject {
             )
         });
         let grown = self.is_grown.then(|| {
-            "gravity comes at once in the case (gravity.ramp = 0); here it grows over the whole run (gravity.ramp = end)"
+            "a load acts at once in the case (ramp = 0); here it grows over the whole run (ramp = end)".to_owned()
+        });
+        let unstressed = self.is_stressed.then(|| {
+            "the case begins with a stress ([initial]); the trials begin without: a load that a body can carry does not \
+             depend on the stress before it (exactly so with dilation = friction)"
                 .to_owned()
         });
-        stiffened.into_iter().chain(grown).collect()
+        stiffened.into_iter().chain(grown).chain(unstressed).collect()
     }
 
     /// The text of a trial's case as its `run.json` has it.
@@ -180,13 +189,9 @@ fn refusals(case: &Case) -> Vec<String> {
         (!is_loaded(case), "nothing loads the body at `end`: no weight under gravity, no traction, no point load"),
         (never_full, "a load grows beyond `end`: it never acts in full, and the factor would be that of a part of it"),
         (
-            case.initial.is_some(),
-            "[initial]: displacements would not count from the start of the load, and so tell nothing of failure; let \
-             gravity grow from zero instead",
-        ),
-        (
             is_moved(case),
-            "the case prescribes a motion: displacements would tell of that, and not of failure; use loads",
+            "the case prescribes a motion: what moves as told shows no failure, however little strength is left; give the \
+             load instead of the motion, or run the case itself and read its force against the motion",
         ),
     ];
     let found = reasons.into_iter().filter(|(holds, _)| *holds).map(|(_, reason)| reason.to_owned());

@@ -5,6 +5,7 @@
 
 use super::Boundary;
 use super::strip::{Strip, reduce};
+use crate::grid::Grid;
 use crate::points::Points;
 use crate::seam::Halo;
 use crate::tensor::Vector;
@@ -73,13 +74,17 @@ impl Anchors {
 
 impl<const D: usize> Places<D> {
     /// Points of a strip, `number` of all, that at time `t` are farther ahead of the material that they held at the start
-    /// than `reach` (m), along the strip's whole motion as far as it is held.
-    pub fn left_behind(&self, number: usize, strip: &Strip<D>, t: f64, reach: f64) -> usize {
+    /// than half the shortest edge of the cell that they are in, along the strip's whole motion as far as it is held.
+    pub fn left_behind(&self, number: usize, strip: &Strip<D>, t: f64, grid: &Grid<D>) -> usize {
         let moved = strip.path.at(t);
         let held = strip.normal.map_or(moved, |normal| normal * normal.dot(&moved));
         let Some(ahead) = held.try_normalize(0.0) else { return 0 };
-        let lags =
-            |(point, place): &(&super::SurfacePoint<D>, &Vector<D>)| (point.x + moved - **place).dot(&ahead) > reach;
+        let reach =
+            |x: &Vector<D>| 0.5 * grid.locate(x).map_or(grid.smallest_edge(), |cell| grid.cell_box(&cell).1.min());
+        let lags = |(point, place): &(&super::SurfacePoint<D>, &Vector<D>)| {
+            let x = point.x + moved;
+            (x - **place).dot(&ahead) > reach(&x)
+        };
         strip.points.iter().zip(self.strips.get(number).map_or(&[][..], Vec::as_slice)).filter(lags).count()
     }
 }

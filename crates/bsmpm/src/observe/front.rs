@@ -37,7 +37,10 @@ pub fn front<const D: usize>(grid: &Grid<D>, points: &Points<D>, halo: &dyn Halo
         if front > 0.0 && (at + 1).is_multiple_of(strands) {
             break;
         }
-        let cells = [at.checked_sub(strands), Some(at)].map(|cell| cell.filter(|&cell| told[2 * cell] > 0.0));
+        // Copies of a breakpoint bound cells without length, which hold nothing.
+        let before = (0..at / strands).rev().find(|&column| grid.axes()[0].has_length(column));
+        let before = before.map(|column| column * strands + at % strands);
+        let cells = [before, Some(at)].map(|cell| cell.filter(|&cell| told[2 * cell] > 0.0));
         let cell = std::array::from_fn(|axis| match axis {
             0 => at / strands,
             _ if axis == D - 1 => row,

@@ -55,10 +55,10 @@ pub fn defect<const D: usize>(grid: &Grid<D>, points: &Points<D>, halo: &dyn Hal
     })
 }
 
-/// Part of its volume that the material of the points which has lost most, the mean of each over its points, has lost: equal
-/// weights integrate the worse the farther points have moved against each other and the cells. The same bits on any number
-/// of ranks.
-pub fn compression<const D: usize>(points: &Points<D>, materials: usize, halo: &dyn Halo) -> f64 {
+/// Part of its volume that each material has lost, the mean over its points; negative where it has grown, 0 without points:
+/// equal weights integrate the worse the farther points have moved against each other and the cells. The same bits on any
+/// number of ranks.
+pub fn compression<const D: usize>(points: &Points<D>, materials: usize, halo: &dyn Halo) -> Vec<f64> {
     let mut volumes = vec![Exact::ZERO; 2 * materials];
     for p in 0..points.len() {
         let at = 2 * usize::from(points.material[p]);
@@ -67,7 +67,7 @@ pub fn compression<const D: usize>(points: &Points<D>, materials: usize, halo: &
     }
     let volumes = halo.total(&volumes);
     let lost = |pair: &[f64]| if pair[0] > 0.0 { 1.0 - pair[1] / pair[0] } else { 0.0 };
-    volumes.chunks_exact(2).map(lost).fold(0.0, f64::max)
+    volumes.chunks_exact(2).map(lost).collect()
 }
 
 /// Which cells hold points, those beside this rank's columns included.

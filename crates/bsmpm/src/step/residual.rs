@@ -99,6 +99,7 @@ impl Balance {
             over_active(scene, |c| if soft { f_int[c] * u[c] } else { 0.0 }),
         ];
         let kinds = whole.len() - 2;
+        // Out of balance, external, internal, inertial, of supports and strips.
         let terms = |c: usize| {
             let inertial = forces.inertial.get(c).map_or(0.0, |inertial| inertial.powi(2));
             [forces.f_oob[c].powi(2), scene.nodes.f_ext[c].powi(2), f_int[c].powi(2), inertial, supporting(c)]
@@ -108,12 +109,14 @@ impl Balance {
         let (sums, apart) = sums.split_at(whole.len());
         let norms = |sums: &[f64]| [sums[0], sums[1..].iter().copied().fold(0.0, f64::max)].map(f64::sqrt);
         let [norm, scale] = norms(&sums[1..=kinds]);
+        // Where nothing but stress acts on a material's own nodes, that is all out of balance: no scale to judge it by.
+        let acts = |sums: &[f64]| [sums[1], sums[3], sums[4]].into_iter().any(|sum| sum > 0.0);
         Self {
             f_oob: forces.f_oob,
             reaction: forces.reaction,
             norm,
             scale,
-            apart: apart.chunks_exact(kinds).map(norms).collect(),
+            apart: apart.chunks_exact(kinds).map(|sums| if acts(sums) { norms(sums) } else { [0.0; 2] }).collect(),
             work: sums[kinds + 1],
             inverted: sums[0] as u64,
             finite: sums.iter().all(|sum| sum.is_finite()),

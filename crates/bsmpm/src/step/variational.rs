@@ -12,6 +12,7 @@
 //! elastic strain is projected after every step, so that none are kept, .07 -> .37 still).
 
 use crate::kinematics::Kinematics;
+use crate::material::Material;
 use crate::model::Model;
 use crate::points::Points;
 use crate::stabilisation::Stabilisation;
@@ -24,6 +25,12 @@ use crate::tensor::{Symmetric, Tensor};
 /// the stress without it .12 .22 .59 .80 1.31, with it .87 .66 .54 .37 .17; kinetic, elastic and plastic energy over the work
 /// of gravity without it .99 .99 1.02 1.07 1.71, with it .98 .98 .97 .97 .64.
 const DILATANT: f64 = 0.105;
+
+/// Whether a material dilates so much that the adjoint force wins. Materials of which one does and one does not belong to
+/// different [`Groups`](crate::stabilisation::Groups).
+pub fn is_dilatant(material: &Material) -> bool {
+    material.dilation() > DILATANT
+}
 
 /// Which points have the adjoint force.
 #[derive(Clone, Debug)]
@@ -39,7 +46,7 @@ impl Adjoint {
         }
         let mut groups = vec![false; model.groups.count()];
         for (number, material) in model.materials.iter().enumerate() {
-            groups[model.groups.of(number as u16)] |= material.dilation() > DILATANT;
+            groups[model.groups.of(number as u16)] |= is_dilatant(material);
         }
         groups.contains(&true).then_some(Self { groups })
     }

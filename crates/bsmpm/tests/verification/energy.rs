@@ -157,7 +157,9 @@ fn a_method_that_makes_energy_exceeds_the_budget_and_no_other() {
         (Stabilisation::None, soil(0.4, 0.4), false),
         (Stabilisation::None, soil(0.0, 0.0), false),
         (Stabilisation::ConsistentFBar, soil(0.4, 0.0), false),
+        (Stabilisation::ConsistentFBar, soil(0.4, 0.4), false),
         (Stabilisation::ModifiedFBar, soil(0.4, 0.0), false),
+        (Stabilisation::FBar, soil(0.4, 0.0), false),
         (Stabilisation::FBar, soil(0.4, 0.4), true),
         (Stabilisation::FBarZhao, soil(0.4, 0.4), true),
     ] {
