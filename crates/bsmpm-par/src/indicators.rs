@@ -174,7 +174,7 @@ fn course(case: &Case, summary: &Summary) -> impl Iterator<Item = (&'static str,
 /// How far so many passes of smoothing have reached.
 fn smoothing(case: &Case, passes: f64) -> Indicator {
     let (meaning, part) = match case.stabilisation {
-        Stabilisation::ConsistentFBar => (
+        Stabilisation::ConsistentFBar | Stabilisation::SubgridFBar => (
             "along which the elastic dilation was smoothed in all steps together, by the share of plastic flow, mean over the \
              points; usual: up to 1.5 of the thinnest body",
             SMOOTHED[1],

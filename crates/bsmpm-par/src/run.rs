@@ -9,7 +9,7 @@ mod start;
 use crate::cli::Arguments;
 use crate::exit;
 use crate::fault::Fault;
-use crate::gather::Gathering;
+use crate::gather::{Gathering, Moment};
 use crate::launch;
 use crate::ledger::Ledger;
 use crate::log::Log;
@@ -19,6 +19,7 @@ use crate::timers::Timers;
 use bsmpm::control::Accepted;
 use bsmpm::error::StepError;
 use bsmpm::kinematics::PlaneStrain;
+use bsmpm::observe::projection::projected_pressure;
 use bsmpm::seam::Halo;
 use bsmpm::step::Report;
 use bsmpm_io::frame::Parts;
@@ -259,7 +260,11 @@ impl<'p> Run<'p> {
         let begin = Instant::now();
         let (step, time) = (self.simulation.steps(), self.simulation.time());
         let world = self.universe.world();
-        let mut frame = Gathering::new(&world, &self.simulation.points, self.case.grid.lower(), (step, time));
+        let Simulation { model, points, halo, .. } = &self.simulation;
+        let projected = self.case.output.projected_pressure.then(|| projected_pressure(model, points, &**halo));
+        let projected = projected.transpose().unwrap_or_else(|error| launch::end(&world, exit::BUG, &error));
+        let moment = Moment { step, time, lower: self.case.grid.lower() };
+        let mut frame = Gathering::new(&world, points, projected, moment);
         let written = match &mut self.ledger {
             Some(ledger) => {
                 let (head, points) = (frame.head(), frame.points());

@@ -63,7 +63,8 @@ impl Need {
         let there = held.filter(|_| !emptied).map_or(0, |held| kept::count(held.path()) as u64);
         Self {
             frames: frames(case, time, begun),
-            frame: HEAD + points * gather::point_bytes(case.analysis.regime == Regime::Dynamic),
+            frame: HEAD
+                + points * gather::point_bytes(case.analysis.regime == Regime::Dynamic, case.output.projected_pressure),
             // A new one is whole before the oldest goes.
             checkpoints: (case.output.checkpoint.keep.max(1) + 1).saturating_sub(there),
             checkpoint: WORDS + room + to_come,

@@ -104,6 +104,36 @@ fn what_the_ranks_tell_each_other_is_counted() {
     }
 }
 
+/// Whatever the ranks, it is of the frames' own points; without being asked for it is not there.
+#[test]
+fn frames_have_the_projected_pressure_on_request() {
+    let scratch = Scratch::with_case(COLUMN);
+    let fields = |frame: &bsmpm_io::frame::Frame| -> Vec<String> {
+        frame.fields.iter().map(|field| field.name.clone()).collect()
+    };
+    scratch.mpirun(1, &["case.toml", "-q"]).expect(0);
+    let plain = all_frames(&scratch.path("case.out"));
+    assert!(plain.iter().all(|frame| !fields(frame).contains(&"projected_pressure".to_owned())));
+    let mut found: Vec<Vec<f64>> = Vec::new();
+    for ranks in [1, 2] {
+        scratch.mpirun(ranks, &["case.toml", "-q", "--force", "--set", "output.projected_pressure=true"]).expect(0);
+        let frames = all_frames(&scratch.path("case.out"));
+        let last = frames.last().unwrap();
+        let [projected, own] = ["projected_pressure", "pressure"].map(|name| last.real(name, 1).unwrap().to_vec());
+        let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+        assert!(
+            mean(&own) > 0.0 && (mean(&projected) / mean(&own) - 1.0).abs() < 0.02,
+            "{} {}",
+            mean(&projected),
+            mean(&own)
+        );
+        assert!(projected != own);
+        found.push(projected);
+    }
+    let largest = found[0].iter().copied().fold(0.0, f64::max);
+    assert!(found[0].iter().zip(&found[1]).all(|(a, b)| (a - b).abs() <= 1e-6 * largest));
+}
+
 #[test]
 fn residuals_are_kept_on_request_until_both_criteria_hold() {
     for (nonlinear, method) in [("newton", Method::Newton), ("auto", Method::Multisecant), ("broyden", Method::Broyden)]

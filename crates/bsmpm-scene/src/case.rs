@@ -263,6 +263,8 @@ pub struct Output {
     pub format: Format,
     /// Whether the measures of every iteration are kept.
     pub residuals: bool,
+    /// Whether frames have the projected pressure besides the points' own.
+    pub projected_pressure: bool,
     /// When restart files are written.
     pub checkpoint: Checkpoint,
 }

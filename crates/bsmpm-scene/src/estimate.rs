@@ -5,7 +5,6 @@
 use crate::case::{Body, Case, Nonlinear, Solver};
 use crate::grid::GridSpec;
 use bsmpm::grid::room;
-use bsmpm::stabilisation::Stabilisation;
 use std::ops::Range;
 
 /// Largest number of cells, unknowns and matrix rows: PETSc's and MPI's counts are 32-bit here.
@@ -153,7 +152,7 @@ impl Case {
         let occupied = occupied_nodes(self).min(nodes);
         let entries = 2 * occupied * 2 * places;
         let systems = Systems::of(&self.solver, 2 * occupied, entries, self.grid.order as u128 + self.beyond() as u128);
-        let lowered = if self.stabilisation == Stabilisation::ConsistentFBar { LOWERED } else { 0 };
+        let lowered = if self.stabilisation.lowers() { LOWERED } else { 0 };
         let passing = systems.built.max(points * SAVED);
         let bytes = points * (POINT + lowered)
             + occupied * stencil

@@ -179,6 +179,7 @@ fn stabilisation(record: &Record) -> Option<Stabilisation> {
         "f-bar-zhao" => Stabilisation::FBarZhao,
         "modified-f-bar" => Stabilisation::ModifiedFBar,
         "consistent-f-bar" => Stabilisation::ConsistentFBar,
+        "subgrid-f-bar" => Stabilisation::SubgridFBar,
         _ => Stabilisation::None,
     })
 }

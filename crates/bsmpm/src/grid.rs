@@ -3,6 +3,8 @@
 //! Positions are relative to the grid's lower corner: at 1e6 m an increment of 1e-9 m would lose 5 % of itself.
 
 pub mod contributions;
+pub mod merged;
+mod paired;
 pub mod room;
 pub mod shape;
 pub mod spline;

@@ -2,6 +2,7 @@
 
 mod front;
 pub mod noise;
+pub mod projection;
 pub mod quadrature;
 
 pub use front::front;

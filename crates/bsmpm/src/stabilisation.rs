@@ -35,6 +35,12 @@ pub enum Stabilisation {
     /// b^e, eps_v = 1/2 ln det b^e, with theta from 0, no flow, to 1. Without flow it is an F-bar with S1 for S, no more.
     /// In dilatant material its force is the adjoint of its stress, see `step::variational`.
     ConsistentFBar,
+    /// Consistent F-bar whose S1 has the splines of degree q - 1 on pairs of cells inside a body, and on the cells at its edges
+    /// (sub-grid method of Bressan and Sangalli, 2013; see [`grid::merged`](crate::grid::merged)).
+    ///
+    /// The pressure of nearly incompressible elastic material converges with it. Its stiffness reaches further and costs
+    /// more.
+    SubgridFBar,
 }
 
 /// Which materials an average over the grid may mix; by default all.
@@ -73,9 +79,18 @@ impl Groups {
 
 impl Stabilisation {
     /// Layers of nodes that its stiffness needs beyond those of the cells of a window of splines of the `order`, see
-    /// [`Grid::reaching`](crate::grid::Grid::reaching): the functions of degree q - 1 span q cells.
+    /// [`Grid::reaching`](crate::grid::Grid::reaching): the functions of degree q - 1 span q cells, or as many pairs.
     pub fn beyond(self, order: usize) -> usize {
-        if self == Self::ConsistentFBar { order - 1 } else { 0 }
+        match self {
+            Self::ConsistentFBar => order - 1,
+            Self::SubgridFBar => 2 * order - 1,
+            Self::None | Self::FBar | Self::FBarZhao | Self::ModifiedFBar => 0,
+        }
+    }
+
+    /// Whether dilations are averaged by splines of degree q - 1, and the elastic dilation is filtered where material flows.
+    pub fn lowers(self) -> bool {
+        self == Self::ConsistentFBar || self == Self::SubgridFBar
     }
 
     /// Whether dilations are averaged at all.

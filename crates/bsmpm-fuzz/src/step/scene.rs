@@ -226,7 +226,7 @@ fn strips(u: &mut Unstructured<'_>, grid: &Grid, free: [bool; 4], text: &mut Str
 
 /// Stabilisation and iteration; few iterations, so that many cases are tried.
 fn solver(u: &mut Unstructured<'_>, text: &mut String) -> Result<()> {
-    let methods = ["none", "f-bar", "f-bar-zhao", "modified-f-bar", "consistent-f-bar"];
+    let methods = ["none", "f-bar", "f-bar-zhao", "modified-f-bar", "consistent-f-bar", "subgrid-f-bar"];
     line(text, &format!("[stabilisation]\nmethod = \"{}\"", quoted(u, &methods)?));
     let nonlinear = quoted(u, &["auto", "broyden", "newton"])?;
     line(text, &format!("[solver]\nnonlinear = \"{nonlinear}\"\nmax_iterations = {}", u.int_in_range(1..=16)?));

@@ -92,7 +92,7 @@ impl Bench<'_> {
 pub fn bytes(mut points: Points<2>, model: &Model<PlaneStrain, 2>) -> Result<String, StepError> {
     let (rest, width) = (points.memory(), model.grid.order() + 1);
     let averaged = model.stabilisation.averages();
-    let lowered = model.stabilisation == bsmpm::stabilisation::Stabilisation::ConsistentFBar;
+    let lowered = model.stabilisation.lowers();
     let shape = 8 * (2 * 2 * width + if lowered { 2 * (width - 1) } else { 0 });
     // Two trial states: that of the iteration, and the next one while it is judged.
     let trial = 2 * 8 * (4 + usize::from(averaged));

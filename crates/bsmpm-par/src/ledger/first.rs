@@ -37,7 +37,7 @@ pub(super) fn manifest(arguments: &Arguments, case: &Case, ranks: usize) -> Mani
     manifest.choices.extend(setup::choices(case, ranks, &arguments.petsc));
     manifest.warnings = setup::warnings(case);
     manifest.versions = versions();
-    let smooths = [Stabilisation::ModifiedFBar, Stabilisation::ConsistentFBar].contains(&case.stabilisation);
+    let smooths = case.stabilisation.lowers() || case.stabilisation == Stabilisation::ModifiedFBar;
     manifest.summary.smoothing_passes = smooths.then_some(0.0);
     let check = |check: &bsmpm_scene::Check| Check {
         quantity: check.quantity.clone(),

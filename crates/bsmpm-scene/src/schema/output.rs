@@ -16,6 +16,12 @@ pub(super) static OUTPUT: Table = Table {
         key("format", Choice(&["vtu"], &["vtkhdf"]), Default("\"vtu\""), "format of the frames"),
         key("residuals", Flag, Default("false"), "whether residuals.csv has a row for every iteration"),
         key(
+            "projected_pressure",
+            Flag,
+            Default("false"),
+            "whether frames have the pressure projected onto splines of the order below, too",
+        ),
+        key(
             "checkpoint",
             Kind::Table(&CHECKPOINT),
             Optional,

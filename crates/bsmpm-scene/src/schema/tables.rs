@@ -174,7 +174,8 @@ static STABILISATION: Table = Table {
     exclusive: &[],
 };
 
-const METHOD: Kind = Choice(&["none", "f-bar", "f-bar-zhao", "modified-f-bar", "consistent-f-bar"], &[]);
+const METHOD: Kind =
+    Choice(&["none", "f-bar", "f-bar-zhao", "modified-f-bar", "consistent-f-bar", "subgrid-f-bar"], &[]);
 
 static SOLVER: Table = Table {
     header: "[solver]",

@@ -13,6 +13,7 @@ pub(super) fn read(root: &Record, end: Option<f64>, report: &mut Report<'_>) -> 
             times: Vec::new(),
             format: Format::default(),
             residuals: false,
+            projected_pressure: false,
             checkpoint,
         });
     }
@@ -39,7 +40,14 @@ pub(super) fn read(root: &Record, end: Option<f64>, report: &mut Report<'_>) -> 
     times.dedup();
     let checkpoint =
         if output.gives("checkpoint") { checkpoint(output.record("checkpoint")?)? } else { Checkpoint::default() };
-    Some(Output { every, times, format: Format::Vtu, residuals: output.flag("residuals")?, checkpoint })
+    Some(Output {
+        every,
+        times,
+        format: Format::Vtu,
+        residuals: output.flag("residuals")?,
+        projected_pressure: output.flag("projected_pressure")?,
+        checkpoint,
+    })
 }
 
 fn checkpoint(table: &Record) -> Option<Checkpoint> {

@@ -4,6 +4,7 @@
 //! tenth of the memory. The topology p2N is a cell's first node plus offsets that all cells share.
 
 use super::Grid;
+use super::merged::Merged;
 use crate::error::StepError;
 use crate::points::Points;
 use crate::tensor::Vector;
@@ -41,6 +42,7 @@ pub struct Shape<const D: usize> {
     extent: (usize, usize, usize), // layers that a column touches, nodes of a layer, of the window
     rows: Vec<f64>, // per point and axis: q + 1 values, then q + 1 derivatives (1/m) but for lowered functions
     stride: usize,  // numbers of a row
+    pub(super) merged: Option<Merged<D>>, // of lowered functions: those inside a body with their neighbours
 }
 
 /// Runs `$body` with the constant `W` = q + 1, so that the loops over a patch's nodes are unrolled; 1 is the degree
@@ -81,6 +83,7 @@ impl<const D: usize> Shape<D> {
             extent: (grid.column_layers(), grid.layer_nodes(), grid.nodes()),
             rows: Vec::with_capacity(points.len() * 2 * D * width),
             stride: 2 * width,
+            merged: None,
         };
         with_width!(width, W => shape.evaluate::<W>(grid, points))?;
         shape.columns = columns(&shape.patches, grid.column_cells());
@@ -121,6 +124,7 @@ impl<const D: usize> Shape<D> {
             extent: self.extent,
             rows: Vec::with_capacity(points.len() * D * width),
             stride: width,
+            merged: None,
         };
         with_width!(width, W => lower.evaluate_lower::<W>(grid, points));
         lower

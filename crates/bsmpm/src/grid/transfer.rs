@@ -5,7 +5,7 @@
 //! ranks and threads. Threads share the columns of cells. Nodal arrays are flat.
 
 use super::contributions::Contributions;
-use super::shape::{Column, Patch, Shape, with_width};
+use super::shape::{Column, Shape, with_width};
 use crate::stabilisation::Groups;
 use crate::tensor::{Square, Vector};
 use rayon::prelude::*;
@@ -123,9 +123,9 @@ pub fn to_points_grouped<const D: usize, const C: usize, T: Send>(
     nodal: &[f64],
     found: impl Fn(usize, [f64; C]) -> T + Sync,
 ) -> Vec<T> {
-    with_width!(shape.width(), W => at_points(shape, |patch, out: &mut Vec<T>| {
-        for (group, points) in grouped.runs(patch.points.clone()) {
-            let block: Block<C> = gather(nodal, shape.offsets(), patch.first_node, (group, grouped.count()));
+    with_width!(shape.width(), W => at_points(shape, |number, out: &mut Vec<T>| {
+        for (group, points) in grouped.runs(shape.patches()[number].points.clone()) {
+            let block: Block<C> = gathered(shape, nodal, number, (group, grouped.count()));
             for p in points {
                 let support = shape.values::<W>(p);
                 let mut value = [0.0; C];
@@ -147,7 +147,8 @@ pub fn gradients<const D: usize, T: Send>(
     u: &[f64],
     found: impl Fn(usize, Square<D>) -> T + Sync,
 ) -> Vec<T> {
-    with_width!(shape.width(), W => at_points(shape, |patch, out: &mut Vec<T>| {
+    with_width!(shape.width(), W => at_points(shape, |number, out: &mut Vec<T>| {
+        let patch = &shape.patches()[number];
         let block: Block<D> = gather(u, shape.offsets(), patch.first_node, (0, 1));
         for p in patch.points.clone() {
             let support = shape.support::<W>(p);
@@ -211,17 +212,25 @@ fn scatter<const D: usize, const C: usize>(
     grouped: Grouped<'_>,
     fill: impl Fn(Range<usize>, &mut Block<C>) + Sync,
 ) -> Contributions {
-    let count = grouped.count();
+    let (count, levels) = (grouped.count(), shape.levels());
     let columns = shape.columns().iter().map(|column| column.column).collect();
-    let mut contributions = Contributions::zeros(shape.extent(), count * C, columns);
+    let mut contributions = Contributions::zeros(shape.extent(), count * levels * C, columns);
     let work: Vec<(&Column, &mut [f64])> = shape.columns().iter().zip(contributions.columns_mut()).collect();
     work.into_par_iter().for_each(|(column, sums)| {
         let first = column.column * shape.extent().1;
-        for patch in &shape.patches()[column.patches.clone()] {
+        for number in column.patches.clone() {
+            let patch = &shape.patches()[number];
             for (group, points) in grouped.runs(patch.points.clone()) {
                 let mut block = [[0.0; C]; MOST_NODES];
                 fill(points, &mut block);
-                add(sums, shape.offsets(), patch.first_node - first, (group, count), &block);
+                let node = patch.first_node - first;
+                let Some(merged) = shape.merger() else {
+                    add(sums, shape.offsets(), node, (group, count), &block);
+                    continue;
+                };
+                let [cells, pairs] = merged.spread((number, group), &block);
+                add(sums, shape.offsets(), node, (2 * group, 2 * count), &cells);
+                add(sums, merged.offsets(number), node, (2 * group + 1, 2 * count), &pairs);
             }
         }
     });
@@ -229,18 +238,35 @@ fn scatter<const D: usize, const C: usize>(
 }
 
 /// What the patches leave at their points, in the order of the points.
-fn at_points<const D: usize, T: Send>(shape: &Shape<D>, work: impl Fn(&Patch, &mut Vec<T>) + Sync) -> Vec<T> {
+fn at_points<const D: usize, T: Send>(shape: &Shape<D>, work: impl Fn(usize, &mut Vec<T>) + Sync) -> Vec<T> {
     let of_column = |column: &Column| {
         let mut out = Vec::with_capacity(column.points.len());
-        shape.patches()[column.patches.clone()].iter().for_each(|patch| work(patch, &mut out));
+        column.patches.clone().for_each(|patch| work(patch, &mut out));
         out
     };
     if rayon::current_num_threads() == 1 {
         let mut out = Vec::with_capacity(shape.len());
-        shape.patches().iter().for_each(|patch| work(patch, &mut out));
+        (0..shape.patches().len()).for_each(|patch| work(patch, &mut out));
         return out;
     }
     shape.columns().par_iter().flat_map_iter(of_column).collect()
+}
+
+/// Numbers of a patch's nodes, or of its functions where these are merged.
+#[inline]
+fn gathered<const D: usize, const C: usize>(
+    shape: &Shape<D>,
+    nodal: &[f64],
+    number: usize,
+    (group, groups): (usize, usize),
+) -> Block<C> {
+    let first = shape.patches()[number].first_node;
+    let Some(merged) = shape.merger() else {
+        return gather(nodal, shape.offsets(), first, (group, groups));
+    };
+    let cells = gather(nodal, shape.offsets(), first, (2 * group, 2 * groups));
+    let pairs = gather(nodal, merged.offsets(number), first, (2 * group + 1, 2 * groups));
+    merged.combine((number, group), [cells, pairs])
 }
 
 fn gather<const C: usize>(nodal: &[f64], offsets: &[usize], first: usize, (group, groups): (usize, usize)) -> Block<C> {

@@ -67,7 +67,7 @@ pub fn relative_pressure_noise<const D: usize>(
 }
 
 /// -tr(sigma)/3 of a point, Pa.
-fn pressure<const D: usize>(points: &Points<D>, p: usize) -> f64 {
+pub(super) fn pressure<const D: usize>(points: &Points<D>, p: usize) -> f64 {
     -points.sigma.at(p).0[..3].iter().sum::<f64>() / 3.0
 }
 

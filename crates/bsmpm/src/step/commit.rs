@@ -100,7 +100,7 @@ pub fn commit<K: Kinematics<D>, const D: usize>(
             smooth::average_b_e(model, shape, nodes, points, halo);
             1.0
         }
-        Stabilisation::ConsistentFBar => {
+        Stabilisation::ConsistentFBar | Stabilisation::SubgridFBar => {
             let flow_of = |(p, response)| smooth::Flow::of(response, points.gap_of(p));
             let flow: Vec<smooth::Flow> = responses.iter().enumerate().map(flow_of).collect();
             smooth::filter_dilation(model, (shape, nodes), points, &flow, halo)

@@ -8,7 +8,7 @@
 //! and exact for elastic material that is the same wherever the function reaches. A K_0 without it is as much too stiff as the material is incompressible: short footing,
 //! nu = .495, 7,662 iterations without it and 3,383 with it.
 
-use crate::grid::{Contributions, Grid};
+use crate::grid::{Contributions, Grid, Shape};
 use crate::model::Model;
 use crate::seam::{Halo, LinearSolver};
 use crate::step::nodes::Nodes;
@@ -24,16 +24,22 @@ pub enum Raised {
 }
 
 /// Sums of all functions h, of every group of materials that the average does not mix.
-pub struct Coupling {
+pub struct Coupling<'a, const D: usize> {
+    grid: &'a Grid<D>,
+    lower: &'a Shape<D>,
+    cells: Level,
+    pairs: Option<Level>, // where functions are merged
+    raised: Raised,
+}
+
+/// Functions on cells, or on pairs of cells.
+struct Level {
     /// per group and function its head, W and kappa_h W, and g of the nodes that its cells touch; f of them, if it is its own
     sums: Vec<Contributions>,
-    /// of the functions of a cell
-    offsets: Vec<usize>,
-    /// place in g of node k of a cell, per function of the cell
-    places: Vec<Vec<usize>>,
     /// nodes that a function's cells touch, along an axis
     side: usize,
-    raised: Raised,
+    /// place of node k of a cell in the g of a function that starts with it
+    places: Vec<usize>,
 }
 
 /// Numbers of a function before g and f.
@@ -82,88 +88,101 @@ impl Dilations {
     }
 }
 
-impl Coupling {
+impl<'a, const D: usize> Coupling<'a, D> {
     /// No sums yet; `None` where dilations are not averaged by functions of a lower degree, or windows do not reach as far
     /// as these couple ([`Grid::reaching`]).
-    pub fn of<K, const D: usize>(model: &Model<K, D>, nodes: &Nodes<D>, raised: Raised) -> Option<Self> {
-        let grid = &model.grid;
+    pub fn of<K>(model: &'a Model<K, D>, nodes: &'a Nodes<D>, raised: Raised) -> Option<Self> {
+        let (grid, groups) = (&model.grid, model.groups.count());
         let lower = nodes.lowered().filter(|_| grid.beyond() + 1 >= grid.order())?;
-        let (degree, width) = (lower.width() - 1, lower.width() + 1);
-        let side = width + degree;
-        let digits = |k: usize, base: usize| (0..D).map(move |axis| k / base.pow((D - 1 - axis) as u32) % base);
-        let place = |function: usize, node: usize| {
-            let along = digits(node, width).zip(digits(function, lower.width()));
-            along.fold(0, |place, (node, function)| place * side + node + degree - function)
-        };
-        let functions = lower.offsets().len();
-        let places = (0..functions).map(|h| (0..width.pow(D as u32)).map(|node| place(h, node)).collect()).collect();
-        let none = || Contributions::none(grid, HEAD + raised.vectors() * side.pow(D as u32) * D, Vec::new());
-        let sums = (0..model.groups.count()).map(|_| none()).collect();
-        Some(Self { sums, offsets: lower.offsets().to_vec(), places, side, raised })
+        let q = grid.order();
+        let level = |side| Level::of((grid, groups), side, HEAD + raised.vectors() * usize::pow(side, D as u32) * D);
+        // A function spans q cells or q pairs of them, and these touch q nodes more.
+        Some(Self { grid, lower, cells: level(2 * q), pairs: lower.merger().map(|_| level(3 * q)), raised })
     }
 
     /// Zeros for one patch.
-    pub fn of_patch<const D: usize>(&self) -> Dilations {
-        let of_function = HEAD + self.raised.vectors() * self.places[0].len() * D;
-        let of_group = self.offsets.len() * of_function;
-        Dilations { numbers: vec![0.0; self.sums.len() * of_group], of_group, of_function }
+    pub fn of_patch(&self) -> Dilations {
+        let of_function = HEAD + self.raised.vectors() * self.grid.cell_nodes() * D;
+        let of_group = self.lower.offsets().len() * of_function;
+        Dilations { numbers: vec![0.0; self.cells.sums.len() * of_group], of_group, of_function }
     }
 
-    /// Adds what the patch whose first node is `first` contributes.
-    pub fn add<const D: usize>(&mut self, first: usize, dilations: &Dilations) {
-        let (of_patch, of_all) = (self.places[0].len() * D, self.side.pow(D as u32) * D);
-        for (sums, numbers) in self.sums.iter_mut().zip(dilations.numbers.chunks_exact(dilations.of_group)) {
-            let functions = numbers.chunks_exact(dilations.of_function);
-            if functions.clone().all(|numbers| numbers[0] == 0.0) {
+    /// Adds what the patch of a number contributes.
+    pub fn add(&mut self, number: usize, dilations: &Dilations) {
+        let (grid, lower) = (self.grid, self.lower);
+        let (first, of_function) = (lower.patches()[number].first_node, dilations.of_function);
+        let cell = grid.cell_at(lower.patches()[number].cell);
+        for (group, numbers) in dilations.numbers.chunks_exact(dilations.of_group).enumerate() {
+            if numbers.chunks_exact(of_function).all(|numbers| numbers[0] == 0.0) {
                 continue; // no point of the group
             }
-            let width = sums.width();
-            let sums = sums.patch(first);
-            for ((numbers, offset), places) in functions.zip(&self.offsets).zip(&self.places) {
-                let sums = &mut sums[offset * width..(offset + 1) * width];
-                sums.iter_mut().zip(&numbers[..HEAD]).for_each(|(sum, number)| *sum += number);
-                let vectors = numbers[HEAD..].chunks_exact(of_patch);
-                for (sums, vectors) in sums[HEAD..].chunks_exact_mut(of_all).zip(vectors) {
-                    for (place, vector) in places.iter().zip(vectors.chunks_exact(D)) {
-                        let sums = &mut sums[place * D..(place + 1) * D];
-                        sums.iter_mut().zip(vector).for_each(|(sum, value)| *sum += value);
-                    }
+            for (h, (numbers, offset)) in numbers.chunks_exact(of_function).zip(lower.offsets()).enumerate() {
+                let share = lower.merger().map_or(1.0, |merged| merged.rest((number, group), h));
+                let shift: [usize; D] =
+                    std::array::from_fn(|axis| grid.order() - 1 - digit::<D>(h, axis, grid.order()));
+                if share > 0.0 {
+                    self.cells.add(group, (first, *offset, shift), (share, numbers));
+                }
+            }
+            let (Some(merged), Some(pairs)) = (lower.merger(), &mut self.pairs) else { continue };
+            for (k, shares) in merged.rows((number, group)) {
+                let offset = merged.offsets(number)[k];
+                let slot = grid.node_at(first + offset);
+                let shift: [usize; D] =
+                    std::array::from_fn(|axis| cell[axis] - merged.first_cell(axis, slot[axis]).unwrap_or(0));
+                for (share, numbers) in shares.iter().zip(numbers.chunks_exact(of_function)) {
+                    pairs.add(group, (first, offset, shift), (*share, numbers));
                 }
             }
         }
     }
 
     /// Adds the products to a matrix, each on the rank that owns the first of its nodes. One exchange with the neighbours for
-    /// every group.
-    pub fn assemble<const D: usize>(&self, grid: &Grid<D>, halo: &dyn Halo, solver: &mut dyn LinearSolver) {
-        self.sums.iter().for_each(|sums| self.assemble_group(sums, grid, halo, solver));
+    /// every group, and one more where functions are merged.
+    pub fn assemble(&self, halo: &dyn Halo, solver: &mut dyn LinearSolver) {
+        let (grid, degree) = (self.grid, self.grid.order() - 1);
+        for sums in &self.cells.sums {
+            let first = |_: usize, number: usize| Some(number as isize - degree as isize);
+            self.assemble_group((sums, self.cells.side), first, halo, solver);
+        }
+        let (Some(merged), Some(pairs)) = (self.lower.merger(), &self.pairs) else { return };
+        debug_assert!(grid.beyond() + 1 >= 2 * grid.order());
+        for sums in &pairs.sums {
+            let first = |axis: usize, number: usize| merged.first_cell(axis, number).map(|cell| cell as isize);
+            self.assemble_group((sums, pairs.side), first, halo, solver);
+        }
     }
 
-    fn assemble_group<const D: usize>(
+    /// `first`: along an axis, by the number under which a function is kept, the first node that its cells touch; it may lie
+    /// before the grid.
+    fn assemble_group(
         &self,
-        sums: &Contributions,
-        grid: &Grid<D>,
+        (sums, side): (&Contributions, usize),
+        first: impl Fn(usize, usize) -> Option<isize>,
         halo: &dyn Halo,
         solver: &mut dyn LinearSolver,
     ) {
-        let (width, degree) = (sums.width(), grid.order() - 1);
+        let (width, grid) = (sums.width(), self.grid);
         let sums = halo.sum(sums);
-        let is_ours = |function: usize| {
-            let layer = grid.node_at(function)[0].saturating_sub(degree).checked_sub(grid.layers().start);
+        let is_ours = |first: isize| {
+            let layer = (first.max(0) as usize).checked_sub(grid.layers().start);
             layer.is_some_and(|layer| halo.owned().contains(&(layer * grid.layer_nodes())))
         };
         let (mut nodes, mut g, mut f, mut block) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         for (function, numbers) in sums.chunks_exact(width).enumerate() {
             let (weight, bulk) = (numbers[0], numbers[1]);
-            if weight <= 0.0 || !is_ours(function) {
+            let number = grid.node_at(function);
+            let starts: [Option<isize>; D] = std::array::from_fn(|axis| first(axis, number[axis]));
+            if weight <= 0.0 || !starts[0].is_some_and(is_ours) {
                 continue;
             }
             nodes.clear();
             g.clear();
             f.clear();
-            let (dilation, force) = numbers[HEAD..].split_at(self.side.pow(D as u32) * D);
+            let (dilation, force) = numbers[HEAD..].split_at(side.pow(D as u32) * D);
             for (place, along) in dilation.chunks_exact(D).enumerate() {
-                if let Some(node) = self.node(grid, (function, degree), place) {
+                let node = |axis: usize| starts[axis].map(|first| first + digit::<D>(place, axis, side) as isize);
+                if let Some(node) = node_at(grid, node) {
                     nodes.push(node);
                     g.extend_from_slice(along);
                     f.extend_from_slice(if self.raised == Raised::Own { &force[place * D..][..D] } else { along });
@@ -178,15 +197,51 @@ impl Coupling {
             solver.add_among(&nodes, &block);
         }
     }
+}
 
-    /// The node of the window at a place of a function's g; `None` where there is none.
-    fn node<const D: usize>(&self, grid: &Grid<D>, (function, degree): (usize, usize), place: usize) -> Option<usize> {
-        let mut node = grid.node_at(function);
-        for (axis, at) in node.iter_mut().enumerate() {
-            *at = (*at + place / self.side.pow((D - 1 - axis) as u32) % self.side).checked_sub(degree)?;
-        }
-        grid.node_index(&node)
+impl Level {
+    fn of<const D: usize>((grid, groups): (&Grid<D>, usize), side: usize, width: usize) -> Self {
+        let none = || Contributions::none(grid, width, Vec::new());
+        let along = |node: usize, axis: usize| digit::<D>(node, axis, grid.order() + 1);
+        let place = |node| (0..D).fold(0, |place, axis| place * side + along(node, axis));
+        let places = (0..grid.cell_nodes()).map(place).collect();
+        Self { sums: (0..groups).map(|_| none()).collect(), side, places }
     }
+
+    /// Adds a share of the `numbers` of a patch's function to the one that is kept `offset` from the patch's `first` node, whose
+    /// support starts `shift` cells before the patch.
+    fn add<const D: usize>(
+        &mut self,
+        group: usize,
+        (first, offset, shift): (usize, usize, [usize; D]),
+        (share, numbers): (f64, &[f64]),
+    ) {
+        let (width, side) = (self.sums[group].width(), self.side);
+        let sums = &mut self.sums[group].patch(first)[offset * width..(offset + 1) * width];
+        sums.iter_mut().zip(&numbers[..HEAD]).for_each(|(sum, number)| *sum += share * number);
+        let start = shift.iter().fold(0, |place, along| place * side + along);
+        let vectors = numbers[HEAD..].chunks_exact(self.places.len() * D);
+        for (sums, vectors) in sums[HEAD..].chunks_exact_mut(side.pow(D as u32) * D).zip(vectors) {
+            for (place, vector) in self.places.iter().zip(vectors.chunks_exact(D)) {
+                let sums = &mut sums[(start + place) * D..(start + place + 1) * D];
+                sums.iter_mut().zip(vector).for_each(|(sum, value)| *sum += share * value);
+            }
+        }
+    }
+}
+
+/// Digit of `number`, of which axis 0 is the slowest.
+fn digit<const D: usize>(number: usize, axis: usize, base: usize) -> usize {
+    number / base.pow((D - 1 - axis) as u32) % base
+}
+
+/// The node of the window at a place along each axis; `None` where there is none.
+fn node_at<const D: usize>(grid: &Grid<D>, along: impl Fn(usize) -> Option<isize>) -> Option<usize> {
+    let mut node = [0; D];
+    for (axis, at) in node.iter_mut().enumerate() {
+        *at = usize::try_from(along(axis)?).ok()?;
+    }
+    grid.node_index(&node)
 }
 
 impl Raised {

@@ -156,7 +156,7 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
         let mut coupling = Coupling::of(self.scene.model, nodes, Raised::Own);
         for (number, patch) in shape.patches().iter().enumerate() {
             block.fill(0.0);
-            let mut dilations = coupling.as_ref().map(Coupling::of_patch::<D>);
+            let mut dilations = coupling.as_ref().map(Coupling::of_patch);
             for p in patch.points.clone() {
                 transfer::gradients_of(shape, p, grad);
                 match &mut dilations {
@@ -165,7 +165,7 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
                 }
             }
             if let (Some(coupling), Some(dilations)) = (&mut coupling, &dilations) {
-                coupling.add::<D>(patch.first_node, dilations);
+                coupling.add(number, dilations);
             }
             if let Some(soft) = nodes.background.as_ref().and_then(|background| background.of(number)) {
                 soft.add_to::<D>(&mut block);
@@ -173,7 +173,7 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
             solver.add(patch.first_node, &block);
         }
         if let Some(coupling) = coupling {
-            coupling.assemble(&self.scene.model.grid, self.scene.halo, solver);
+            coupling.assemble(self.scene.halo, solver);
         }
         complete(self.scene, solver, Symmetry::General)
     }

@@ -22,7 +22,7 @@ struct Averages<const D: usize> {
     weight: Option<Vec<f64>>,
     /// weight at and below which a node has no average
     threshold: f64,
-    /// of dilations under consistent F-bar: the splines of degree q - 1 at the points, and what they weigh; they are numbered
+    /// of dilations under consistent and sub-grid F-bar: the splines of degree q - 1 at the points, and what they weigh; they are numbered
     /// within the nodes (see [`Shape::lowered`]), and those that no point touches weigh nothing
     lower: Option<(Shape<D>, Vec<f64>)>,
 }
@@ -178,6 +178,8 @@ impl<const D: usize> Averages<D> {
         let weight = |shape: &Shape<D>| halo.sum(&transfer::to_nodes_grouped(shape, grouped, |p| [weights[p]]));
         let lowered = || {
             let lower = shape.lowered(&model.grid, points);
+            let subgrid = model.stabilisation == Stabilisation::SubgridFBar;
+            let lower = if subgrid { lower.merged(&model.grid, grouped, halo) } else { lower };
             let weight = weight(&lower);
             (lower, weight)
         };
@@ -186,7 +188,7 @@ impl<const D: usize> Averages<D> {
         Self {
             threshold: of_nodes.as_ref().map_or(threshold, |weight| self::threshold(weight, halo)),
             weight: of_nodes,
-            lower: (model.stabilisation == Stabilisation::ConsistentFBar).then(lowered),
+            lower: model.stabilisation.lowers().then(lowered),
         }
     }
 }

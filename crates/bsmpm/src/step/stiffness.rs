@@ -37,16 +37,16 @@ pub fn assemble<K: Kinematics<D>, const D: usize>(
         let state = State { model, shape, nodes, points, at, coupling: coupling.as_ref() };
         let of_column = |column: &Column| column.patches.clone().map(|patch| state.part(patch)).collect();
         let parts: Vec<Vec<Part>> = columns.par_iter().map(of_column).collect();
-        let patches = columns.iter().flat_map(|column| &shape.patches()[column.patches.clone()]);
+        let patches = columns.iter().flat_map(|column| column.patches.clone());
         for (patch, part) in patches.zip(parts.into_iter().flatten()) {
-            solver.add(patch.first_node, &part.block);
+            solver.add(shape.patches()[patch].first_node, &part.block);
             if let (Some(coupling), Some(dilations)) = (&mut coupling, &part.dilations) {
-                coupling.add::<D>(patch.first_node, dilations);
+                coupling.add(patch, dilations);
             }
         }
     }
     if let Some(coupling) = coupling {
-        coupling.assemble(&model.grid, halo, solver);
+        coupling.assemble(halo, solver);
     }
     complete(scene, solver, Symmetry::Definite)
 }
@@ -66,7 +66,7 @@ struct State<'a, K, const D: usize> {
     nodes: &'a Nodes<D>,
     points: &'a Points<D>,
     at: Option<&'a Trial<D>>,
-    coupling: Option<&'a Coupling>,
+    coupling: Option<&'a Coupling<'a, D>>,
 }
 
 impl<K: Kinematics<D>, const D: usize> State<'_, K, D> {
@@ -74,7 +74,7 @@ impl<K: Kinematics<D>, const D: usize> State<'_, K, D> {
         let Self { model, shape, points, coupling, .. } = *self;
         let patch = &shape.patches()[number];
         let size = shape.offsets().len();
-        let mut part = Part { block: vec![0.0; (size * D).pow(2)], dilations: coupling.map(Coupling::of_patch::<D>) };
+        let mut part = Part { block: vec![0.0; (size * D).pow(2)], dilations: coupling.map(Coupling::of_patch) };
         let mut moments = vec![Square::<D>::zeros(); size * size];
         let mut grad = [Vector::zeros(); MOST];
         // All of them first: responses of neighbours do not wait for each other.

@@ -15,7 +15,6 @@ use crate::kinematics::Kinematics;
 use crate::material::Material;
 use crate::model::Model;
 use crate::points::Points;
-use crate::stabilisation::Stabilisation;
 use crate::step::equilibrium::Scene;
 use crate::step::nodes::weights;
 use crate::step::trial::Trial;
@@ -39,9 +38,9 @@ pub struct Adjoint {
 }
 
 impl Adjoint {
-    /// Under consistent F-bar those of the groups of materials of which one is dilatant; `None` where none has.
+    /// Under consistent and sub-grid F-bar those of the groups of materials of which one is dilatant; `None` where none has.
     pub fn of<K, const D: usize>(model: &Model<K, D>) -> Option<Self> {
-        if model.stabilisation != Stabilisation::ConsistentFBar {
+        if !model.stabilisation.lowers() {
             return None;
         }
         let mut groups = vec![false; model.groups.count()];

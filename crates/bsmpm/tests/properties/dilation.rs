@@ -195,3 +195,82 @@ fn without_flow_the_filter_leaves_every_bit() {
     let share = smooth::filter_dilation(&scene.model, (&shape, &nodes), &mut scene.points, &flow, &halo);
     assert_eq!((share, scene.points), (0.0, before));
 }
+
+/// Mean of a value of every point that F-bar puts into its place.
+fn means<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>, value: &[f64]) -> Vec<f64> {
+    let (model, points, halo) = (&scene.model, &scene.points, scene.halo());
+    let shape = Shape::at(&model.grid, points).unwrap();
+    let nodes = Nodes::map(model, &shape, points, (0.0, 1.0), &halo).expect("no loads");
+    nodes.mean_dilation(model, (&shape, points), &halo, |p| value[p])
+}
+
+/// Body in cells of .5 x .4 m, `filled` of 8 x 7, 3 x 3 points each, the points of different mass and off the lattice.
+fn scattered(axes: [KnotVector; 2], method: Stabilisation, filled: [usize; 2]) -> Scene<PlaneStrain, 2> {
+    let mut scene = Scene::<PlaneStrain, 2>::new(axes, hencky(1.0, 0.3), Regime::QuasiStatic).stabilised(method);
+    let (mut random, mut seeds) = (Random::new(4), Vec::new());
+    for k in 0..9 * filled[0] * filled[1] {
+        let lattice = Vector::<2>::new((k % (3 * filled[0])) as f64 / 6.0, (k / (3 * filled[0])) as f64 * 0.4 / 3.0);
+        let x = lattice + Vector::<2>::new(0.06, 0.05) + random.vector::<2>() * 0.04;
+        let mass = 1.0 + 0.5 * random.signed();
+        seeds.push(Seed { id: k as u64, material: 0, x, volume: 1.0, mass, v: Vector::zeros() });
+    }
+    scene.points = Points::from_seeds(seeds, false);
+    scene.points.sort_by_cell(&scene.model.grid);
+    scene
+}
+
+#[test]
+fn over_pairs_of_cells_the_average_is_that_of_the_coarser_grid_inside_and_of_the_grid_at_an_edge() {
+    for order in 1..=3 {
+        let fine = || [axis(0.5, 8, order), axis(0.4, 6, order)];
+        let coarse = [axis(1.0, 4, order), axis(0.8, 3, order)];
+        // It fills the grid up to its faces, which cut no cell.
+        let value = |scene: &Scene<PlaneStrain, 2>| -> Vec<f64> {
+            scene.points.x.iter().map(|x| (3.0 * x[0]).sin() + (5.0 * x[1]).cos()).collect()
+        };
+        let by_id = |scene: &Scene<PlaneStrain, 2>| {
+            let mut means: Vec<_> = scene.points.id.iter().copied().zip(means(scene, &value(scene))).collect();
+            means.sort_by_key(|(id, _)| *id);
+            means
+        };
+        let whole = [Stabilisation::SubgridFBar, Stabilisation::ConsistentFBar]
+            .map(|method| by_id(&scattered(fine(), method, [8, 6])));
+        let twice = by_id(&scattered(coarse, Stabilisation::ConsistentFBar, [8, 6]));
+        let distance =
+            |a: &[(u64, f64)], b: &[(u64, f64)]| a.iter().zip(b).map(|(a, b)| (a.1 - b.1).abs()).fold(0.0, f64::max);
+        assert!(distance(&whole[0], &twice) <= 1e-13, "order {order}");
+        assert!(distance(&whole[0], &whole[1]) >= 1e-2, "order {order}");
+        // A row of cells is empty: at that edge the average is the one of the grid.
+        let cut =
+            [Stabilisation::SubgridFBar, Stabilisation::ConsistentFBar].map(|method| scattered(fine(), method, [8, 5]));
+        let at_edge: Vec<u64> =
+            cut[0].points.id.iter().zip(&cut[0].points.x).filter(|(_, x)| x[1] > 1.6).map(|(id, _)| *id).collect();
+        let found = cut.each_ref().map(by_id);
+        let edge = found
+            .each_ref()
+            .map(|means| -> Vec<(u64, f64)> { means.iter().filter(|(id, _)| at_edge.contains(id)).copied().collect() });
+        assert!(!at_edge.is_empty() && distance(&edge[0], &edge[1]) <= 1e-14, "order {order}");
+        assert!(distance(&found[0], &found[1]) >= 1e-2, "order {order}: inside it is another");
+    }
+}
+
+#[test]
+fn over_pairs_of_cells_the_average_keeps_constants_and_is_symmetric() {
+    // Stretches of an odd number of cells, cells of unlike length, a repeated breakpoint, and a free edge.
+    let breakpoints = [0.0, 0.5, 1.0, 1.3, 1.3, 2.0, 2.6, 3.2, 4.0, 4.5];
+    for order in 2..=3 {
+        let axes = [KnotVector::graded(&breakpoints, order).unwrap(), axis(0.4, 7, order)];
+        let scene = scattered(axes, Stabilisation::SubgridFBar, [8, 5]);
+        let ones = means(&scene, &vec![1.0; scene.points.len()]);
+        assert!(ones.iter().all(|one| (one - 1.0).abs() <= 1e-14), "order {order}");
+        let mut random = Random::new(8);
+        let (a, b) = (random.array(ones.len()), random.array(ones.len()));
+        let (mean_a, mean_b) = (means(&scene, &a), means(&scene, &b));
+        let product = |a: &[f64], b: &[f64]| -> f64 {
+            a.iter().zip(b).zip(&scene.points.mass).map(|((a, b), mass)| a * b * mass).sum()
+        };
+        let (left, right) = (product(&a, &mean_b), product(&mean_a, &b));
+        assert!((left - right).abs() <= 1e-12 * product(&a, &a), "order {order}: {left} {right}");
+        assert!(product(&a, &mean_a) > 0.0 && product(&mean_a, &mean_a) < product(&a, &mean_a));
+    }
+}

@@ -17,20 +17,23 @@ use bsmpm::step::nodes::Nodes;
 use bsmpm::step::residual::Residual;
 use bsmpm::tensor::{Symmetric, Tensor, Vector};
 
-const METHODS: [Stabilisation; 5] = [
+const METHODS: [Stabilisation; 6] = [
     Stabilisation::None,
     Stabilisation::FBar,
     Stabilisation::FBarZhao,
     Stabilisation::ModifiedFBar,
     Stabilisation::ConsistentFBar,
+    Stabilisation::SubgridFBar,
 ];
 
 /// A body of frictional soil on a fixed base, some of it yielding, in a cut-off grid with a background.
 fn loaded<K: Kinematics<D>, const D: usize>(method: Stabilisation, regime: Regime) -> Scene<K, D> {
     let soil = MohrCoulomb::new(Elastic { young: 1000.0, poisson: 0.3 }, 0.5, 0.1, 1.0);
-    let axes = std::array::from_fn(|k| axis(1.0, if k == 0 { 3 } else { 2 }, 2));
+    // Averages over pairs of cells need some inside the body.
+    let length = if method == Stabilisation::SubgridFBar { 5 } else { 2 };
+    let axes = std::array::from_fn(|k| axis(1.0, if k == 0 { length + 1 } else { 2 }, 2));
     let mut scene = Scene::<K, D>::new(axes, Material::MohrCoulomb(soil), regime).stabilised(method);
-    let cells = std::array::from_fn(|_| 0..2);
+    let cells = std::array::from_fn(|k| 0..if k == 0 { length } else { 2 });
     scene = scene.body(cells, 2, 1.0, |_| Vector::zeros()).support(Support::fixed(D - 1, false));
     scene.model.background = Some(Background { kind: Kind::Strain, coefficient: 1e-3, extent: Extent::Occupied });
     let mut random = Random::new(3);

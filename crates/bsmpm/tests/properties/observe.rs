@@ -4,6 +4,7 @@ use crate::support::scene::{Scene, axis, hencky};
 use bsmpm::boundary::Support;
 use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
 use bsmpm::model::{Regime, Weighting};
+use bsmpm::observe::projection::projected_pressure;
 use bsmpm::observe::{farthest, front, mass, nearest, noise::stress_noise, percentile};
 use bsmpm::tensor::{Symmetric, Vector};
 
@@ -35,6 +36,34 @@ fn a_linear_stress_has_no_noise_about_planes_and_a_uniform_one_none_at_all() {
         println!("linear about planes {linear:.1e}, uniform {uniform:.1e}");
         assert!(linear <= 1e-13 && uniform <= 1e-13); // measured 5.3e-16, 4.7e-15
     }
+}
+
+/// A pressure that is uniform stays as it is, whatever the points weigh; of one that changes its sign from point to point
+/// nothing is left but at the corners.
+#[test]
+fn the_projected_pressure_keeps_what_is_uniform_and_damps_what_alternates() {
+    let mut scene = block::<PlaneStrain, 2>(2);
+    let signs: Vec<f64> =
+        scene.points.x.iter().map(|x| if (4.0 * x.sum()).round() % 2.0 == 0.0 { 1.0 } else { -1.0 }).collect();
+    let [mut uniform, mut alternating] = [0.0_f64; 2];
+    for p in 0..scene.points.len() {
+        scene.points.volume[p] *= if signs[p] > 0.0 { 1.0 } else { 0.5 };
+        scene.points.sigma.set(p, Symmetric([3.0, 5.0, 4.0, 1.0, 0.0, 0.0]));
+    }
+    for pressure in projected_pressure(&scene.model, &scene.points, &scene.halo()).unwrap() {
+        uniform = uniform.max((pressure + 4.0).abs());
+    }
+    assert!(uniform <= 1e-14, "{uniform}");
+    for p in 0..scene.points.len() {
+        scene.points.volume[p] = 1.0;
+        scene.points.sigma.set(p, Symmetric([signs[p], signs[p], signs[p], 0.0, 0.0, 0.0]));
+    }
+    for pressure in projected_pressure(&scene.model, &scene.points, &scene.halo()).unwrap() {
+        alternating = alternating.max(pressure.abs());
+    }
+    println!("left of 1: {alternating}");
+    // At a corner .75 x .75 of a function whose own mean is 1/4: .141; elsewhere nothing.
+    assert!(alternating <= 0.15 && signs.contains(&1.0) && signs.contains(&-1.0));
 }
 
 #[test]

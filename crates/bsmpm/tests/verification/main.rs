@@ -12,6 +12,7 @@ mod dynamics;
 mod energy;
 mod entering;
 mod geostatic;
+mod inf_sup;
 mod interface;
 mod invariance;
 mod locking;

@@ -1,0 +1,198 @@
+//! Splines of degree q - 1 on pairs of cells inside a body, and on the cells at its edges: an average over both.
+//!
+//! The pair (displacements of degree q, dilations averaged by splines of degree q - 1 on the same cells) has pressure modes:
+//! its inf-sup constant falls with h. On every second grid line it does not (sub-grid method: Bressan and Sangalli, 2013,
+//! IMA J. Numer. Anal. 33, 629-651). Beside a free edge, where cells are cut, so coarse an average leaves the edge too
+//! soft. So function k on the pairs takes part only where its whole support lies inside the body, and function j
+//! on the cells with what the others leave it, rho_j = 1 - sum_k r_kj: a partition of unity everywhere, and an
+//! average that is still symmetric.
+
+use super::paired::Paired;
+use super::transfer::Grouped;
+use super::{Contributions, Grid, Shape};
+use crate::seam::Halo;
+
+/// What the functions of every patch are merged to; numbers of the functions on pairs stand beside those of the nodes.
+#[derive(Clone, Debug)]
+pub struct Merged<const D: usize> {
+    axes: [Paired; D],
+    functions: usize, // of a cell, n
+    groups: usize,
+    offsets: Vec<usize>, // per patch: where its n functions on pairs are kept, from the patch's first node
+    shares: Vec<f64>,    // per patch: r, n x n, a row for every function on pairs
+    inside: Vec<bool>,   // per patch, group and function on pairs: whether it takes part
+}
+
+impl<const D: usize> Shape<D> {
+    /// The same lowered functions, those inside a body merged to the ones of pairs of cells.
+    pub(crate) fn merged(mut self, grid: &Grid<D>, grouped: Grouped<'_>, halo: &dyn Halo) -> Self {
+        self.merged = Some(Merged::of(grid, &self, grouped, halo));
+        self
+    }
+
+    /// What lowered functions are merged to, if they are.
+    pub(crate) fn merger(&self) -> Option<&Merged<D>> {
+        self.merged.as_ref()
+    }
+
+    /// Numbers that sums have per node and group: one, and one of the function on pairs that is kept there.
+    pub(crate) fn levels(&self) -> usize {
+        1 + usize::from(self.merged.is_some())
+    }
+}
+
+impl<const D: usize> Merged<D> {
+    /// Of the splines `lower` of degree q - 1 in a grid that reaches 2q - 1 layers; two exchanges with the neighbours.
+    pub(crate) fn of(grid: &Grid<D>, lower: &Shape<D>, grouped: Grouped<'_>, halo: &dyn Halo) -> Self {
+        debug_assert!(grid.beyond() + 1 >= 2 * grid.order(), "functions on pairs are kept beyond their cells");
+        let axes = grid.axes().each_ref().map(Paired::of);
+        let (width, n, groups) = (lower.width(), lower.offsets().len(), grouped.count());
+        let (mut offsets, mut shares) = (Vec::new(), Vec::new());
+        let digit = |k: usize, axis: usize| k / width.pow((D - 1 - axis) as u32) % width;
+        for patch in lower.patches() {
+            let cell = grid.cell_at(patch.cell);
+            let along = |k: usize, axis: usize| {
+                let paired: &Paired = &axes[axis];
+                paired.slot(paired.function(cell[axis], digit(k, axis))) - cell[axis]
+            };
+            offsets.extend((0..n).map(|k| offset(grid, |axis| along(k, axis))));
+            let share =
+                |axis: usize, (k, h): (usize, usize)| axes[axis].share(cell[axis], (digit(k, axis), digit(h, axis)));
+            shares.extend((0..n * n).map(|at| (0..D).map(|axis| share(axis, (at / n, at % n))).product::<f64>()));
+        }
+        let mut merged = Self { axes, functions: n, groups, offsets, shares, inside: Vec::new() };
+        merged.inside = merged.inside(grid, lower, grouped, halo);
+        merged
+    }
+
+    /// Which functions on pairs have all cells of their support inside the body of the group.
+    fn inside(&self, grid: &Grid<D>, lower: &Shape<D>, grouped: Grouped<'_>, halo: &dyn Halo) -> Vec<bool> {
+        let deep = inner_cells(grid, lower, grouped, halo);
+        let columns = lower.columns().iter().map(|column| column.column).collect();
+        let mut counts = Contributions::none(grid, self.groups, columns);
+        for (number, patch) in lower.patches().iter().enumerate() {
+            let sums = counts.patch(patch.first_node);
+            for group in (0..self.groups).filter(|group| deep[number * self.groups + group]) {
+                self.offsets(number).iter().for_each(|offset| sums[offset * self.groups + group] += 1.0);
+            }
+        }
+        let counts = halo.sum(&counts);
+        let mut inside = Vec::with_capacity(self.offsets.len() * self.groups);
+        for (number, patch) in lower.patches().iter().enumerate() {
+            for group in 0..self.groups {
+                inside.extend(self.offsets(number).iter().map(|offset| {
+                    let node = patch.first_node + offset;
+                    let at = grid.node_at(node);
+                    let cells =
+                        |axis: usize| self.axes[axis].at_slot(at[axis]).map_or(0, |k| self.axes[axis].cells_of(k));
+                    counts[node * self.groups + group] == (0..D).map(cells).product::<usize>() as f64
+                }));
+            }
+        }
+        inside
+    }
+
+    /// Where the functions on pairs that a patch sees are kept, from its first node.
+    pub(crate) fn offsets(&self, patch: usize) -> &[usize] {
+        &self.offsets[patch * self.functions..(patch + 1) * self.functions]
+    }
+
+    /// r of the functions k on pairs that a patch sees and that take part, with k, and those on cells.
+    pub(crate) fn rows(&self, (patch, group): (usize, usize)) -> impl Iterator<Item = (usize, &[f64])> {
+        let n = self.functions;
+        let inside = &self.inside[(patch * self.groups + group) * n..][..n];
+        let rows = self.shares[patch * n * n..(patch + 1) * n * n].chunks_exact(n);
+        rows.enumerate().zip(inside).filter(|(_, inside)| **inside).map(|(row, _)| row)
+    }
+
+    /// rho of function `h` on the cells: what functions on pairs that do not take part would have of it.
+    pub(crate) fn rest(&self, (patch, group): (usize, usize), h: usize) -> f64 {
+        let n = self.functions;
+        let inside = &self.inside[(patch * self.groups + group) * n..][..n];
+        (0..n).filter(|&k| !inside[k]).map(|k| self.shares[(patch * n + k) * n + h]).sum()
+    }
+
+    /// First cell along an axis of the function on pairs that is kept under the number of a node, if there is one.
+    pub(crate) fn first_cell(&self, axis: usize, slot: usize) -> Option<usize> {
+        self.axes[axis].at_slot(slot).map(|function| self.axes[axis].support(function).start)
+    }
+
+    /// Numbers of a patch's functions on the cells, as those of all functions that are merged: of cells, and of pairs.
+    pub(super) fn spread<const C: usize, const N: usize>(
+        &self,
+        at: (usize, usize),
+        block: &[[f64; C]; N],
+    ) -> [[[f64; C]; N]; 2] {
+        let (mut cells, mut pairs) = (*block, [[0.0; C]; N]);
+        for (h, numbers) in cells[..self.functions].iter_mut().enumerate() {
+            let rest = self.rest(at, h);
+            numbers.iter_mut().for_each(|number| *number *= rest);
+        }
+        for (k, row) in self.rows(at) {
+            for (share, numbers) in row.iter().zip(block) {
+                (0..C).for_each(|c| pairs[k][c] += share * numbers[c]);
+            }
+        }
+        [cells, pairs]
+    }
+
+    /// The transpose of [`Merged::spread`]: values of the functions on the cells that make up all.
+    pub(super) fn combine<const C: usize, const N: usize>(
+        &self,
+        at: (usize, usize),
+        [mut cells, pairs]: [[[f64; C]; N]; 2],
+    ) -> [[f64; C]; N] {
+        for (h, numbers) in cells[..self.functions].iter_mut().enumerate() {
+            let rest = self.rest(at, h);
+            numbers.iter_mut().for_each(|number| *number *= rest);
+        }
+        for (k, row) in self.rows(at) {
+            for (share, numbers) in row.iter().zip(&mut cells) {
+                (0..C).for_each(|c| numbers[c] += share * pairs[k][c]);
+            }
+        }
+        cells
+    }
+}
+
+/// Per patch and group: whether all cells about it hold points of the group, too. What lies behind a face of the grid or a
+/// repeated breakpoint does not count: an edge that lies there cuts no cell.
+fn inner_cells<const D: usize>(grid: &Grid<D>, lower: &Shape<D>, grouped: Grouped<'_>, halo: &dyn Halo) -> Vec<bool> {
+    let groups = grouped.count();
+    let columns = lower.columns().iter().map(|column| column.column).collect();
+    let mut around = Contributions::none(grid, groups, columns);
+    let holds = |patch: &super::shape::Patch, group: usize| patch.points.clone().any(|p| grouped.of(p) == group);
+    for patch in lower.patches() {
+        let cell = grid.cell_at(patch.cell);
+        let sums = around.patch(patch.first_node);
+        for group in (0..groups).filter(|&group| holds(patch, group)) {
+            for k in (0..3_usize.pow(D as u32)).filter(|&k| neighbour(grid, &cell, k)) {
+                // The count of cell m is kept at node m + 1, that no column's reaches below itself.
+                let offset = offset(grid, |axis| k / 3_usize.pow(axis as u32) % 3);
+                sums[offset * groups + group] += 1.0;
+            }
+        }
+    }
+    let (around, own) = (halo.sum(&around), offset(grid, |_| 1));
+    let mut inner = Vec::with_capacity(lower.patches().len() * groups);
+    for patch in lower.patches() {
+        let cell = grid.cell_at(patch.cell);
+        let all = (0..3_usize.pow(D as u32)).filter(|&k| neighbour(grid, &cell, k)).count() as f64;
+        let counts = &around[(patch.first_node + own) * groups..][..groups];
+        inner.extend((0..groups).map(|group| counts[group] == all && holds(patch, group)));
+    }
+    inner
+}
+
+/// Whether the neighbour `k` of a cell, of 3^D with itself, is a cell that has a length.
+fn neighbour<const D: usize>(grid: &Grid<D>, cell: &[usize; D], k: usize) -> bool {
+    (0..D).all(|axis| {
+        let along = (cell[axis] + k / 3_usize.pow(axis as u32) % 3).checked_sub(1);
+        along.is_some_and(|along| along < grid.axes()[axis].cells() && grid.axes()[axis].has_length(along))
+    })
+}
+
+/// Distance in the numbering of local nodes of so many nodes along each axis.
+fn offset<const D: usize>(grid: &Grid<D>, along: impl Fn(usize) -> usize) -> usize {
+    (1..D).fold(along(0), |offset, axis| offset * grid.nodes_along(axis) + along(axis))
+}

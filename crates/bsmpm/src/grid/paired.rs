@@ -1,0 +1,115 @@
+//! Splines of degree q - 1 on pairs of cells, in terms of those on the cells (one axis).
+//!
+//! Every spline on the pairs is a sum of those on the cells, B_k = sum_j r_kj b_j with r_kj >= 0 and sum_k r_kj = 1 (knot
+//! insertion; Cohen, Lyche and Riesenfeld, 1980), so that sums over points need the functions on the cells only.
+
+use super::KnotVector;
+use std::ops::Range;
+
+/// One axis whose neighbouring cells are paired, from the lower end of every stretch on in which no breakpoint is
+/// repeated; an odd last one stays alone, and so do cells without length.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Paired {
+    degree: usize,
+    of_cell: Vec<usize>,        // first function on the pairs that a cell sees
+    shares: Vec<f64>,           // per cell: r of its functions on the pairs, row by row of those on the cells
+    support: Vec<Range<usize>>, // cells of every function
+    long: Vec<usize>,           // of them those that have a length
+    slots: Vec<usize>,          // number among the nodes under which a function is kept
+    of_slot: Vec<Option<usize>>,
+}
+
+impl Paired {
+    pub fn of(axis: &KnotVector) -> Self {
+        let (degree, cells, pairs) = (axis.order() - 1, axis.cells(), pairs(axis));
+        let count = pairs.len() + degree;
+        let last = pairs.len() - 1;
+        let support = |k: usize| pairs[k.saturating_sub(degree)].start..pairs[k.min(last)].end;
+        let support: Vec<_> = (0..count).map(support).collect();
+        // The end of the pair that a function starts to vanish behind; past the last one, as many nodes as functions are left.
+        let slots: Vec<usize> = (0..count).map(|k| pairs[k.min(last)].end - 1 + k.saturating_sub(last)).collect();
+        let mut of_slot = vec![None; axis.functions()];
+        slots.iter().enumerate().for_each(|(k, &slot)| of_slot[slot] = Some(k));
+        let of_cell: Vec<usize> =
+            pairs.iter().enumerate().flat_map(|(first, pair)| pair.clone().map(move |_| first)).collect();
+        let knots = Knots::of(axis, &pairs);
+        let shares = (0..cells)
+            .flat_map(|cell| (0..=degree).map(move |a| (cell, a)))
+            .flat_map(|(cell, a)| (0..=degree).map(move |b| (cell, a, b)))
+            .map(|(cell, a, b)| knots.share(of_cell[cell] + a, cell + b, degree))
+            .collect();
+        let long = support.iter().map(|cells| cells.clone().filter(|&cell| axis.has_length(cell)).count()).collect();
+        Self { degree, of_cell, shares, support, long, slots, of_slot }
+    }
+
+    /// Number of function `a` of a cell.
+    pub fn function(&self, cell: usize, a: usize) -> usize {
+        self.of_cell[cell] + a
+    }
+
+    /// r of function `a` on the pairs and function `b` on the cells, of a cell.
+    pub fn share(&self, cell: usize, (a, b): (usize, usize)) -> f64 {
+        self.shares[(cell * (self.degree + 1) + a) * (self.degree + 1) + b]
+    }
+
+    /// Cells of a function's support.
+    pub fn support(&self, function: usize) -> Range<usize> {
+        self.support[function].clone()
+    }
+
+    /// How many of them have a length.
+    pub fn cells_of(&self, function: usize) -> usize {
+        self.long[function]
+    }
+
+    /// Number among the nodes under which a function is kept: of cell c it is c to c + 2q - 1.
+    pub fn slot(&self, function: usize) -> usize {
+        self.slots[function]
+    }
+
+    /// The function that is kept under the number of a node.
+    pub fn at_slot(&self, slot: usize) -> Option<usize> {
+        self.of_slot[slot]
+    }
+}
+
+fn pairs(axis: &KnotVector) -> Vec<Range<usize>> {
+    let mut pairs = Vec::new();
+    let mut cell = 0;
+    while cell < axis.cells() {
+        let paired = cell + 1 < axis.cells() && axis.has_length(cell) && axis.has_length(cell + 1);
+        let end = cell + 1 + usize::from(paired);
+        pairs.push(cell..end);
+        cell = end;
+    }
+    pairs
+}
+
+/// Knots of the degree q - 1 on the cells and on the pairs.
+struct Knots {
+    cells: Vec<f64>,
+    pairs: Vec<f64>,
+}
+
+impl Knots {
+    fn of(axis: &KnotVector, pairs: &[Range<usize>]) -> Self {
+        let degree = axis.order() - 1;
+        let cells = (0..axis.cells() + 2 * degree + 1).map(|i| axis.knot(i + 1)).collect();
+        let mut knots = vec![0.0; degree];
+        knots.extend(pairs.iter().map(|pair| axis.breakpoint(pair.start)));
+        knots.extend(std::iter::repeat_n(axis.length(), degree + 1));
+        Self { cells, pairs: knots }
+    }
+
+    /// r_kj of splines of a degree (the Oslo algorithm).
+    fn share(&self, k: usize, j: usize, degree: usize) -> f64 {
+        let (t, T) = (&self.cells, &self.pairs);
+        if degree == 0 {
+            return f64::from(u8::from(T[k] <= t[j] && t[j] < T[k + 1]));
+        }
+        let part = |from: usize, length: f64, share: f64| if T[from + degree] > T[from] { length * share } else { 0.0 };
+        let rising = part(k, (t[j + degree] - T[k]) / (T[k + degree] - T[k]), self.share(k, j, degree - 1));
+        let falling = (T[k + degree + 1] - t[j + degree]) / (T[k + degree + 1] - T[k + 1]);
+        rising + part(k + 1, falling, self.share(k + 1, j, degree - 1))
+    }
+}

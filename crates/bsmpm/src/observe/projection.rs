@@ -1,0 +1,33 @@
+//! The pressure that a frame shows beside the points' own: what is left of it without what the grid cannot hold.
+//!
+//! The pair of displacements and averaged dilations leaves modes to the pressure that no force feels, and that mean nothing;
+//! the equilibrium is right without them. The locally lumped projection onto splines of degree q - 1 (Telikicherla and
+//! Moutsanidis, 2022), weighed by volume, damps them.
+
+use super::noise::pressure;
+use crate::error::StepError;
+use crate::grid::{Shape, transfer};
+use crate::model::Model;
+use crate::points::Points;
+use crate::seam::{Halo, agreed};
+
+/// Projected pressure of every point, Pa, positive in compression: sum_h A_hp sum_r A_hr V_r p_r / sum_r A_hr V_r, A the splines
+/// of degree q - 1 and V the points' present volumes; of every group of materials by itself that averages do not mix. The
+/// points must be sorted by cell.
+pub fn projected_pressure<K, const D: usize>(
+    model: &Model<K, D>,
+    points: &Points<D>,
+    halo: &dyn Halo,
+) -> Result<Vec<f64>, StepError> {
+    let shape = agreed(halo, Shape::at(&model.grid, points), StepError::OtherRank)?.lowered(&model.grid, points);
+    let grouped = model.grouped(points);
+    let moments = |p: usize| {
+        let volume = points.volume[p] * points.F.at(p).determinant();
+        [volume, volume * pressure(points, p)]
+    };
+    let mut nodal = halo.sum(&transfer::to_nodes_grouped(&shape, grouped, moments));
+    for sums in nodal.chunks_exact_mut(2) {
+        sums[1] = if sums[0] > 0.0 { sums[1] / sums[0] } else { 0.0 };
+    }
+    Ok(transfer::to_points_grouped(&shape, grouped, &nodal, |_, [_, mean]: [f64; 2]| mean))
+}
