@@ -7,15 +7,7 @@ use crate::report::Report;
 /// What is wanted; nothing without the table.
 pub(super) fn read(root: &Record, end: Option<f64>, report: &mut Report<'_>) -> Option<Output> {
     if !root.gives("output") {
-        let checkpoint = Checkpoint::default();
-        return Some(Output {
-            every: None,
-            times: Vec::new(),
-            format: Format::default(),
-            residuals: false,
-            projected_pressure: false,
-            checkpoint,
-        });
+        return Some(nothing());
     }
     let output = root.record("output")?;
     let every = match (output.gives("every"), output.gives("every_steps")) {
@@ -48,6 +40,17 @@ pub(super) fn read(root: &Record, end: Option<f64>, report: &mut Report<'_>) -> 
         projected_pressure: output.flag("projected_pressure")?,
         checkpoint,
     })
+}
+
+fn nothing() -> Output {
+    Output {
+        every: None,
+        times: Vec::new(),
+        format: Format::default(),
+        residuals: false,
+        projected_pressure: false,
+        checkpoint: Checkpoint::default(),
+    }
 }
 
 fn checkpoint(table: &Record) -> Option<Checkpoint> {
