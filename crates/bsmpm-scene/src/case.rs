@@ -17,6 +17,7 @@ use bsmpm::background::{Extent, Kind};
 use bsmpm::material::Material;
 use bsmpm::model::Regime;
 use bsmpm::stabilisation::Stabilisation;
+use bsmpm::step::mass::MassMatrix;
 use bsmpm::step::newmark::Newmark;
 
 /// Everything that a run needs to know of what it solves.
@@ -137,6 +138,8 @@ pub struct Analysis {
     pub dt: f64,
     /// Time integration in dynamics.
     pub newmark: Newmark,
+    /// Mass matrix of the nodes in dynamics.
+    pub mass: MassMatrix,
 }
 
 /// A material and its name.

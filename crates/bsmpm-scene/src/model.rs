@@ -30,6 +30,7 @@ pub fn model(case: &Case) -> Result<Model<PlaneStrain, 2>, GridError> {
         materials: case.materials.iter().map(|named| named.material.clone()).collect(),
         regime: case.analysis.regime,
         newmark: case.analysis.newmark,
+        mass: case.analysis.mass,
         weighting: weighting(case),
         gravity: case
             .gravity

@@ -18,6 +18,7 @@ use crate::record::Record;
 use crate::report::Report;
 use bsmpm::model::Regime;
 use bsmpm::stabilisation::Stabilisation;
+use bsmpm::step::mass::MassMatrix;
 use bsmpm::step::newmark::Newmark;
 
 /// Steps of a run at most.
@@ -123,7 +124,13 @@ fn analysis(record: &Record, regime: Option<Regime>, report: &mut Report<'_>) ->
         analysis.error("dt", message, report);
         return None;
     }
-    Some(Analysis { regime, end, dt, newmark: newmark(analysis, regime, report)? })
+    Some(Analysis {
+        regime,
+        end,
+        dt,
+        newmark: newmark(analysis, regime, report)?,
+        mass: mass(analysis, regime, report),
+    })
 }
 
 /// Numerical damping, of which only a dynamic analysis can have any.
@@ -135,6 +142,14 @@ fn newmark(analysis: &Record, regime: Regime, report: &mut Report<'_>) -> Option
     }
     let value = analysis.number(key)?;
     Some(if key == "gamma" { Newmark::of_gamma(value) } else { Newmark::of_spectral_radius(value) })
+}
+
+/// The mass matrix, of which only a dynamic analysis has any.
+fn mass(analysis: &Record, regime: Regime, report: &mut Report<'_>) -> MassMatrix {
+    if regime == Regime::QuasiStatic && analysis.gives("mass") {
+        analysis.error("mass", "there is no inertia, and so no mass matrix, in a quasi-static analysis", report);
+    }
+    if analysis.word("mass") == Some("consistent") { MassMatrix::Consistent } else { MassMatrix::Lumped }
 }
 
 fn boundary(record: &Record) -> Option<[[Support; 2]; 2]> {

@@ -46,7 +46,6 @@ use crate::model::Model;
 use crate::points::Points;
 use crate::seam::{Halo, over_layers};
 use crate::step::equilibrium::{Found, Scene};
-use crate::step::nodes::Nodes;
 use crate::step::variational::Pressures;
 use crate::tensor::{Square, Vector};
 use std::ops::AddAssign;
@@ -151,7 +150,7 @@ impl Draft {
         let supports = over_layers(halo, D, |c| found.reaction[c] * u[c]);
         let mut flows = Flows { external: supports, ..Flows::<Exact>::default() };
         if let Some(inertia) = nodes.inertia.as_ref().filter(|inertia| !inertia.struck.is_empty()) {
-            let blow = over_layers(halo, D, |c| nodes.weight[c / D] * inertia.struck[c]);
+            let blow = over_layers(halo, D, |c| inertia.struck[c]);
             flows.external += &blow;
             flows.transfer = blow;
         }
@@ -177,7 +176,7 @@ impl Draft {
         scene: &Scene<'_, K, D>,
         (found, responses): (&Found<D>, &[Response]),
     ) {
-        let Scene { model, shape, nodes, points, halo, .. } = *scene;
+        let Scene { model, shape, nodes, points, .. } = *scene;
         let (flows, u) = (&mut self.flows, &found.u[..]);
         let pressures = Pressures::of(scene, &found.trial);
         let work_of = |p: usize, grad: Square<D>| {
@@ -190,7 +189,7 @@ impl Draft {
         flows.integration += &elastic(model, points);
         flows.smoothing += &self.elastic;
         flows.transfer += &kinetic(points);
-        add_inertia(flows, (nodes, halo), u);
+        add_inertia(flows, scene, u);
         if let Some(blocks) = &nodes.background {
             let mut force = Contributions::none(&model.grid, D, Vec::new());
             blocks.multiply::<D>(shape, u, &mut force);
@@ -256,14 +255,19 @@ fn add_gravity<K: Kinematics<D>, const D: usize>(
 }
 
 /// Work of the inertia, and the kinetic energy of this rank's own nodes at both ends of the step.
-fn add_inertia<const D: usize>(flows: &mut Flows<Exact>, (nodes, halo): (&Nodes<D>, &dyn Halo), u: &[f64]) {
-    let Some(inertia) = &nodes.inertia else { return };
-    let mass = |c: usize| nodes.weight[c / D];
-    let before = over_layers(halo, D, |c| 0.5 * mass(c) * inertia.v[c].powi(2));
-    let after = over_layers(halo, D, |c| 0.5 * mass(c) * inertia.velocity(c, u[c]).powi(2));
+fn add_inertia<K, const D: usize>(flows: &mut Flows<Exact>, scene: &Scene<'_, K, D>, u: &[f64]) {
+    let Some(inertia) = &scene.nodes.inertia else { return };
+    let (halo, mass) = (scene.halo, scene.mass());
+    let kinetic = |v: &[f64]| {
+        let momentum = mass.times(v);
+        over_layers(halo, D, |c| 0.5 * momentum[c] * v[c])
+    };
+    let velocity: Vec<f64> = u.iter().enumerate().map(|(c, &u)| inertia.velocity(c, u)).collect();
+    let acting: Vec<f64> = u.iter().enumerate().map(|(c, &u)| inertia.acting(c, u)).collect();
+    let (before, after, force) = (kinetic(&inertia.v), kinetic(&velocity), mass.times(&acting));
     flows.transfer += &after;
     flows.transfer -= &before;
-    flows.integration += &over_layers(halo, D, |c| mass(c) * inertia.acting(c, u[c]) * u[c]);
+    flows.integration += &over_layers(halo, D, |c| force[c] * u[c]);
     flows.integration -= &after;
     flows.integration += &before;
 }

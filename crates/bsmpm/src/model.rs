@@ -9,6 +9,7 @@ use crate::material::{Material, MaterialError, Response};
 use crate::points::Points;
 use crate::stabilisation::{Groups, Stabilisation};
 use crate::step::equilibrium::Nonlinear;
+use crate::step::mass::MassMatrix;
 use crate::step::newmark::Newmark;
 use crate::tensor::{Symmetric, Vector};
 use std::marker::PhantomData;
@@ -85,6 +86,8 @@ pub struct Model<K, const D: usize> {
     pub regime: Regime,
     /// Time integration in dynamics.
     pub newmark: Newmark,
+    /// Mass matrix in dynamics.
+    pub mass: MassMatrix,
     /// Weights of the averages.
     pub weighting: Weighting,
     /// Body force, if any.

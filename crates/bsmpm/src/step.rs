@@ -7,6 +7,7 @@ mod coupling;
 pub mod equilibrium;
 pub mod inertia;
 pub mod linearised;
+pub mod mass;
 pub mod multisecant;
 pub mod newmark;
 pub mod newton;

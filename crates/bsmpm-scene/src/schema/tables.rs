@@ -63,6 +63,7 @@ static ANALYSIS: Table = Table {
             Optional,
             "numerical damping of second order (WBZ-alpha): what is left at infinite frequency; 1 unless given: none",
         ),
+        key("mass", Choice(&["lumped", "consistent"], &[]), Optional, "mass matrix of the nodes; lumped unless given"),
         key("gamma", Quantity(In::Number, GAMMA), Optional, "Newmark's gamma instead: damping of first order"),
     ],
     exclusive: &[one_of(&["dt", "steps"], true), one_of(&["spectral_radius", "gamma"], false)],

@@ -98,6 +98,7 @@ pub const RANGES: &[Row] = &[
     row("dt   = \"10 ms\"", "steps = -1", "analysis.steps", "-1 is out of range"),
     row("dt   = ", "spectral_radius = 1.1\ndt   = ", "analysis.spectral_radius", "0 <= spectral_radius <= 1"),
     row("dt   = ", "spectral_radius = -0.1\ndt   = ", "analysis.spectral_radius", "-0.1 is out of range"),
+    row("dt   = ", "mass = \"consistant\"\ndt   = ", "analysis.mass", "consistent"),
     row("dt   = ", "gamma = 0.4\ndt   = ", "analysis.gamma", "0.5 <= gamma <= 1 (below 1/2 it gains energy)"),
     row("points_per_cell = 3", "points_per_cell = 0", "body.0.points_per_cell", "1 <= points_per_cell <= 100"),
     row("points_per_cell = 3", "points_per_cell = 101", "body.0.points_per_cell", "1 <= points_per_cell <= 100"),
@@ -231,6 +232,7 @@ pub const QUASI_STATIC: &[Row] = &[
     row("points_per_cell = 3", "points_per_cell = 3\nvelocity = [1, 0]", "body.0.velocity", "quasi-static").down(1),
     row("[output]", "[[history]]\nquantity = \"momentum\"\n[output]", "history.0.quantity", "no momentum").down(1),
     row("steps = 4", "steps = 4\nspectral_radius = 0.8", "analysis.spectral_radius", "no inertia").down(1),
+    row("steps = 4", "steps = 4\nmass = \"consistent\"", "analysis.mass", "no mass matrix").down(1),
     row("steps = 4", "steps = 4\ngamma = 0.6", "analysis.gamma", "no inertia").down(1),
     row("steps = 4", "steps = 4.5", "analysis.steps", "whole number"),
     row(

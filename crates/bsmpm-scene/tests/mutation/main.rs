@@ -41,7 +41,7 @@ const VALUES: [&str; 22] = [
 const OTHERWISE: [&[(&str, &str)]; 6] = [
     &[("geometry = \"plane-strain\"", "geometry = \"plane-strain\"\naccuracy = \"draft\"")],
     &[
-        ("dt   = \"10 ms\"", "steps = 100\nspectral_radius = 0.8"),
+        ("dt   = \"10 ms\"", "steps = 100\nspectral_radius = 0.8\nmass = \"consistent\""),
         ("every  = \"0.1 s\"", "every_steps = 20\ncheckpoint = { wall = \"10 min\", every_steps = 50, keep = 3 }"),
         ("quantity = \"heave\"", "quantity = \"height\"\nat_x = 1.0"),
     ],

@@ -17,6 +17,7 @@ use crate::seam::{Halo, agreed};
 use crate::stabilisation::Stabilisation;
 use crate::step::equilibrium::Found;
 use crate::step::inertia::Inertia;
+use crate::step::mass::MassMatrix;
 use crate::step::nodes::Nodes;
 use crate::step::smooth;
 use crate::step::trial::Trial;
@@ -78,7 +79,7 @@ pub fn commit<K: Kinematics<D>, const D: usize>(
 ) -> Committed {
     let Found { u, trial, .. } = found;
     if let Some(inertia) = &nodes.inertia {
-        move_with_inertia(shape, inertia, &u, points);
+        move_with_inertia((shape, model.mass), inertia, &u, points);
     }
     let du = transfer::to_points::<D, D, _>(shape, &u, |_, du| Vector::from(du));
     for (p, du) in du.into_iter().enumerate() {
@@ -119,13 +120,28 @@ fn gaps<K, const D: usize>(model: &Model<K, D>, points: &Points<D>, responses: &
     closes.contains(&true).then(|| responses.iter().zip(&points.material).map(gap).collect())
 }
 
-/// Steps (10a), (11c), (11d): a_I by Newmark, a_p = sum_I N_Ip a_I, v_p += dt ((1 - gamma) a_p(t) + gamma a_p(t+dt)).
-fn move_with_inertia<const D: usize>(shape: &Shape<D>, inertia: &Inertia, u: &[f64], points: &mut Points<D>) {
+/// Steps (10a), (11c), (11d): a_I by Newmark, a_p = sum_I N_Ip a_I, v_p += dt ((1 - gamma) a_p(t) + gamma a_p(t+dt)). With a
+/// consistent mass v_p += sum_I N_Ip (v_I(t+dt) - v_I(t)) instead, what supports took included: with it the points gain
+/// what the nodes gain, and with the accelerations that points keep to themselves they gain more.
+fn move_with_inertia<const D: usize>(
+    (shape, matrix): (&Shape<D>, MassMatrix),
+    inertia: &Inertia,
+    u: &[f64],
+    points: &mut Points<D>,
+) {
     let Some(motion) = &mut points.motion else { return };
+    if matrix == MassMatrix::Consistent {
+        let gain = |c: usize| inertia.velocity(c, u[c]) - inertia.v[c] + inertia.blow.get(c).copied().unwrap_or(0.0);
+        let gained: Vec<f64> = (0..u.len()).map(gain).collect();
+        let gained = transfer::to_points::<D, D, _>(shape, &gained, |_, v| Vector::from(v));
+        motion.v.iter_mut().zip(gained).for_each(|(v, gained)| *v += gained);
+    }
     let a: Vec<f64> = u.iter().enumerate().map(|(c, &u)| inertia.acceleration(c, u)).collect();
     let a = transfer::to_points::<D, D, _>(shape, &a, |_, a| Vector::from(a));
     for (p, a) in a.into_iter().enumerate() {
-        motion.v[p] += motion.a[p].zip_map(&a, |before, after| inertia.newmark.gained(inertia.dt, before, after));
+        if matrix == MassMatrix::Lumped {
+            motion.v[p] += motion.a[p].zip_map(&a, |before, after| inertia.newmark.gained(inertia.dt, before, after));
+        }
         motion.a[p] = a;
     }
 }

@@ -12,6 +12,7 @@ use crate::kinematics::Kinematics;
 use crate::model::Model;
 use crate::points::Points;
 use crate::seam::{Halo, LinearSolver};
+use crate::step::mass::Mass;
 use crate::step::nodes::Nodes;
 use crate::step::progress::{Progress, inverted};
 use crate::step::quasi_newton::{self, QuasiNewton, Stopped};
@@ -54,6 +55,13 @@ pub struct Scene<'a, K, const D: usize> {
     pub points: &'a Points<D>,
     /// the other ranks
     pub halo: &'a dyn Halo,
+}
+
+impl<K, const D: usize> Scene<'_, K, D> {
+    /// The mass matrix, in dynamics.
+    pub fn mass(&self) -> Mass<'_, D> {
+        self.nodes.mass(self.model, (self.shape, self.points), self.halo)
+    }
 }
 
 /// A converged displacement.

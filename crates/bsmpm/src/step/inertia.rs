@@ -1,10 +1,10 @@
 //! The nodes' motion at the start of a step (2b, 2c), and how it goes on in it (10a, 10b).
 
-use crate::grid::{Shape, transfer};
+use crate::grid::transfer;
 use crate::points::Points;
-use crate::seam::Halo;
+use crate::step::mass::{Mass, MassMatrix};
 use crate::step::newmark::Newmark;
-use crate::step::nodes::divide;
+use crate::tensor::Vector;
 
 /// Nodal velocity and acceleration at the start of the step, and how they go on.
 #[derive(Clone, Debug)]
@@ -13,9 +13,13 @@ pub struct Inertia {
     pub v: Vec<f64>,
     /// m/s2, D numbers a node
     pub a: Vec<f64>,
-    /// m2/s2  per component and mass, what a motion that is prescribed works on material that comes with another velocity:
-    /// the velocity times its jump; empty where nothing moves
+    /// J  per component, what a motion that is prescribed works on material that comes with another velocity: the velocity times
+    /// the jump of the momentum; empty where nothing moves
     pub struck: Vec<f64>,
+    /// m/s  by which supports change the velocity of the nodes as the step begins, D numbers a node, of a consistent mass; the points
+    /// share in it, so that what lies beside a support moves as its velocity says. Empty where nothing does: with the lumped
+    /// mass the nodes of a support see the velocity of the points above them, and would take it away in every step.
+    pub blow: Vec<f64>,
     /// s  length of the step
     pub dt: f64,
     /// time integration
@@ -50,29 +54,33 @@ impl Inertia {
 /// v_I and a_I (steps 2b, 2c). Where a motion is prescribed, the node already has it: else Newmark's formula would turn
 /// the points' velocity near a wall into an acceleration of the wall.
 pub(super) fn map<const D: usize>(
-    shape: &Shape<D>,
+    mass: &Mass<'_, D>,
     points: &Points<D>,
-    (mass, threshold): (&[f64], f64),
     prescribed: &[Option<f64>],
     (dt, newmark): (f64, Newmark),
-    halo: &dyn Halo,
 ) -> Inertia {
-    let mut inertia =
-        Inertia { v: vec![0.0; mass.len() * D], a: vec![0.0; mass.len() * D], struck: Vec::new(), dt, newmark };
-    if let Some(motion) = &points.motion {
-        for (field, nodal) in [(&motion.v, &mut inertia.v), (&motion.a, &mut inertia.a)] {
-            *nodal = halo.sum(&transfer::to_nodes::<D, D>(shape, |p| (field[p] * points.mass[p]).into()));
-            divide(nodal, mass, threshold);
+    let zeros = || vec![0.0; prescribed.len()];
+    let (nowhere, still) =
+        (vec![None; prescribed.len()], prescribed.iter().map(|v| v.map(|_| 0.0)).collect::<Vec<_>>());
+    let mut inertia = Inertia { v: zeros(), a: zeros(), struck: Vec::new(), blow: Vec::new(), dt, newmark };
+    let Some(motion) = &points.motion else { return inertia };
+    let momentum = |field: &[Vector<D>]| {
+        mass.halo.sum(&transfer::to_nodes::<D, D>(mass.shape, |p| (field[p] * points.mass[p]).into()))
+    };
+    let arriving = momentum(&motion.v);
+    inertia.a = mass.solve(momentum(&motion.a), &still);
+    inertia.v = mass.solve(arriving.clone(), prescribed);
+    let moves = prescribed.iter().flatten().any(|&velocity| velocity != 0.0);
+    let consistent = mass.matrix == MassMatrix::Consistent;
+    if moves || consistent && prescribed.iter().flatten().next().is_some() {
+        let free = mass.solve(arriving, &nowhere);
+        let jump: Vec<f64> = inertia.v.iter().zip(&free).map(|(held, free)| held - free).collect();
+        if moves {
+            let given = mass.times(&jump);
+            inertia.struck = prescribed.iter().zip(given).map(|(v, given)| v.map_or(0.0, |v| v * given)).collect();
         }
-    }
-    if prescribed.iter().flatten().any(|&velocity| velocity != 0.0) {
-        let jump = |(prescribed, v): (&Option<f64>, &f64)| prescribed.map_or(0.0, |velocity| velocity * (velocity - v));
-        inertia.struck = prescribed.iter().zip(&inertia.v).map(jump).collect();
-    }
-    for (component, velocity) in prescribed.iter().enumerate() {
-        if let Some(velocity) = velocity {
-            inertia.v[component] = *velocity;
-            inertia.a[component] = 0.0;
+        if consistent {
+            inertia.blow = jump;
         }
     }
     inertia

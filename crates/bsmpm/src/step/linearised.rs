@@ -13,7 +13,7 @@ use crate::step::coupling::{Coupling, Dilations, Raised, Share};
 use crate::step::equilibrium::Scene;
 use crate::step::nodes::weights;
 use crate::step::residual::Residual;
-use crate::step::stiffness::complete;
+use crate::step::stiffness::{add_mass, complete};
 use crate::step::trial::Trial;
 use crate::step::variational::{Adjoint, Pressures, transposed, works};
 use crate::tensor::{Square, Tensor, Vector};
@@ -137,8 +137,8 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
         self.scene.grips.multiply(v, &mut force);
         out.copy_from_slice(&halo.sum(&force));
         if let Some(inertia) = &nodes.inertia {
-            for (component, (out, v)) in out.iter_mut().zip(v).enumerate() {
-                *out += inertia.factor() * nodes.weight[component / D] * v;
+            for (out, momentum) in out.iter_mut().zip(self.scene.mass().times(v)) {
+                *out += inertia.factor() * momentum;
             }
         }
         out.iter_mut().zip(&nodes.free).filter(|(_, free)| !**free).for_each(|(out, _)| *out = 0.0);
@@ -170,6 +170,7 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
             if let Some(soft) = nodes.background.as_ref().and_then(|background| background.of(number)) {
                 soft.add_to::<D>(&mut block);
             }
+            add_mass((self.scene.model.mass, nodes), (shape, patch), &self.scene.points.mass, &mut block);
             solver.add(patch.first_node, &block);
         }
         if let Some(coupling) = coupling {

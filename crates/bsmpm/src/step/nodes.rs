@@ -11,6 +11,7 @@ use crate::seam::Halo;
 use crate::stabilisation::Stabilisation;
 use crate::step::apart::Apart;
 use crate::step::inertia::{self, Inertia};
+use crate::step::mass::Mass;
 
 /// Nodes lighter than this fraction of the heaviest one have no velocity, acceleration or average: 1/m is never formed.
 const MASSLESS: f64 = 1e-14;
@@ -73,8 +74,9 @@ impl<const D: usize> Nodes<D> {
         let weight = scatter_weight(weighting, shape, points, halo);
         let threshold = threshold(&weight, halo);
         let velocities = model.boundary.velocities(&model.grid);
-        let inertia = (model.regime == Regime::Dynamic)
-            .then(|| inertia::map(shape, points, (&weight, threshold), &velocities, (dt, model.newmark), halo));
+        let mass = Mass { matrix: model.mass, shape, of_points: &points.mass, lumped: &weight, threshold, halo };
+        let inertia =
+            (model.regime == Regime::Dynamic).then(|| inertia::map(&mass, points, &velocities, (dt, model.newmark)));
         let background = model.background.map(|soft| soft.blocks(&model.grid, shape, points, &model.materials, halo));
         let (active, stiff) = supported(shape, points, background.as_ref(), nodes, halo);
         let unknown = |node: usize| active[node] && (weight[node] > threshold || stiff[node]);
@@ -154,6 +156,17 @@ impl<const D: usize> Nodes<D> {
         let mut nodal = halo.sum(&transfer::to_nodes_grouped(shape, grouped, weighted));
         divide(&mut nodal, weight, self.averages.threshold);
         transfer::to_points_grouped(shape, grouped, &nodal, found)
+    }
+
+    /// The mass matrix, in dynamics.
+    pub fn mass<'a, K>(
+        &'a self,
+        model: &Model<K, D>,
+        (shape, points): (&'a Shape<D>, &'a Points<D>),
+        halo: &'a dyn Halo,
+    ) -> Mass<'a, D> {
+        let Self { weight, threshold, .. } = self;
+        Mass { matrix: model.mass, shape, of_points: &points.mass, lumped: weight, threshold: *threshold, halo }
     }
 
     fn count(&mut self, halo: &dyn Halo) {

@@ -156,8 +156,9 @@ impl Forces {
         let nodes = scene.nodes;
         let mut forces = Self { f_oob: vec![0.0; u.len()], reaction: vec![0.0; u.len()], inertial: Vec::new() };
         if let Some(inertia) = &nodes.inertia {
-            let of = |c: usize| if nodes.active[c / D] { nodes.weight[c / D] * inertia.acting(c, u[c]) } else { 0.0 };
-            forces.inertial = (0..u.len()).map(of).collect();
+            let of = |c: usize| if nodes.active[c / D] { inertia.acting(c, u[c]) } else { 0.0 };
+            let acting: Vec<f64> = (0..u.len()).map(of).collect();
+            forces.inertial = scene.mass().times(&acting);
         }
         for component in (0..u.len()).filter(|component| nodes.active[component / D]) {
             let inertial = forces.inertial.get(component).copied().unwrap_or(0.0);

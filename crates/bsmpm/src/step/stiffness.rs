@@ -16,6 +16,7 @@ use crate::seam::{LinearSolver, Symmetry};
 use crate::step::coupling::{Coupling, Dilations, Raised, Share};
 use crate::step::equilibrium::Scene;
 use crate::step::linearised::{MOST, Moduli, Pairs, add_point};
+use crate::step::mass::{MassMatrix, SHARE};
 use crate::step::nodes::Nodes;
 use crate::step::trial::Trial;
 use crate::tensor::{Square, Tensor, Vector};
@@ -93,6 +94,7 @@ impl<K: Kinematics<D>, const D: usize> State<'_, K, D> {
             add_elastic::<K, D>(&moments, (lambda, mu), &mut part.block);
         }
         mirror(size * D, &mut part.block);
+        add_mass((model.mass, self.nodes), (shape, patch), &points.mass, &mut part.block);
         if let Some(soft) = self.nodes.background.as_ref().and_then(|background| background.of(number)) {
             soft.add_to::<D>(&mut part.block);
         }
@@ -166,10 +168,40 @@ pub fn complete<K: Kinematics<D>, const D: usize>(
         background.assemble::<D>(solver);
     }
     if let Some(inertia) = &nodes.inertia {
-        let diagonal: Vec<f64> = (0..nodes.free.len()).map(|c| inertia.factor() * nodes.weight[c / D]).collect();
+        let factor = match scene.model.mass {
+            MassMatrix::Lumped => inertia.factor(),
+            MassMatrix::Consistent => (1.0 - SHARE) * inertia.factor(),
+        };
+        let diagonal: Vec<f64> = (0..nodes.free.len()).map(|c| factor * nodes.weight[c / D]).collect();
         solver.add_diagonal(&diagonal);
     }
     solver.finish(symmetry)
+}
+
+/// Adds what couples the nodes of a patch by their mass, if that is consistent; [`complete`] adds the diagonal.
+pub fn add_mass<const D: usize>(
+    (matrix, nodes): (MassMatrix, &Nodes<D>),
+    (shape, patch): (&Shape<D>, &Patch),
+    mass: &[f64],
+    block: &mut [f64],
+) {
+    let Some(inertia) = nodes.inertia.as_ref().filter(|_| matrix == MassMatrix::Consistent) else { return };
+    let size = shape.offsets().len();
+    let mut pairs = vec![0.0; size * size];
+    let mut N = [0.0; MOST];
+    let N = &mut N[..size];
+    for p in patch.points.clone() {
+        shape.values_into(p, N);
+        let weight = SHARE * inertia.factor() * mass[p];
+        for (row, N_a) in pairs.chunks_exact_mut(size).zip(&*N) {
+            row.iter_mut().zip(&*N).for_each(|(pair, N_b)| *pair += weight * N_a * N_b);
+        }
+    }
+    for (pair, mass) in pairs.iter().enumerate() {
+        for i in 0..D {
+            block[(pair / size * D + i) * size * D + pair % size * D + i] += mass;
+        }
+    }
 }
 
 fn runs_of_one_material(patch: &Patch, material: &[u16]) -> Vec<std::ops::Range<usize>> {

@@ -13,6 +13,7 @@ use bsmpm::schedule::Schedule;
 use bsmpm::seam::Alone;
 use bsmpm::stabilisation::{Groups, Stabilisation};
 use bsmpm::step::equilibrium::Nonlinear;
+use bsmpm::step::mass::MassMatrix;
 use bsmpm::step::newmark::Newmark;
 use bsmpm::tensor::Vector;
 use std::marker::PhantomData;
@@ -55,6 +56,7 @@ impl<K: Kinematics<D>, const D: usize> Scene<K, D> {
             materials: vec![material],
             regime,
             newmark: Newmark::default(),
+            mass: MassMatrix::default(),
             weighting: Weighting::Mass,
             gravity: None,
             boundary: Boundary::default(),
@@ -121,6 +123,12 @@ impl<K: Kinematics<D>, const D: usize> Scene<K, D> {
     pub fn cut(mut self, wanted: impl Fn(&Vector<D>) -> bool) -> Self {
         let kept: Vec<u32> = (0..self.points.len()).filter(|&p| wanted(&self.points.x[p])).map(|p| p as u32).collect();
         self.points.columns().into_iter().for_each(|column| column.reorder(&kept));
+        self
+    }
+
+    /// With this mass matrix.
+    pub fn with_mass(mut self, mass: MassMatrix) -> Self {
+        self.model.mass = mass;
         self
     }
 

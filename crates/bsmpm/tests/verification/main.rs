@@ -19,6 +19,7 @@ mod locking;
 mod newton;
 mod oedometer;
 mod penalty;
+mod rotation;
 mod stability;
 mod surfaces;
 
