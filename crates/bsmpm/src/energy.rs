@@ -5,7 +5,8 @@
 //!
 //! `external = ΔT + ΔE + plastic + transfer + integration + smoothing + background + penalty + closure`.
 //!
-//! In a step from t (0) to t + dt (1) with the nodal displacement u, M the nodal mass, v_I and a_I the nodes' motion:
+//! In a step from t (0) to t + dt (1) with the nodal displacement u, M the mass matrix, lumped or consistent, v_I and a_I
+//! the nodes' motion:
 //!
 //! - **external**: `Σ_p m_p (g0 + g1)/2 · Δu_p` of gravity, `Σ A (q0 + q1)/2 · Δx` of tractions and point loads, `Σ A (p0 + p1)/2 ·
 //!   motion` of rigid strips, `r1 · u` of supports of the grid that move, and the blow `v · M (v - v_p)` with which those
