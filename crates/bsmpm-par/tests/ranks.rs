@@ -142,12 +142,13 @@ fn where_all_ranks_factorise_the_whole_the_collapse_has_the_same_bits_on_1_2_3_a
     assert!(runs[1..].iter().all(|run| *run == runs[0]));
 }
 
-/// Strips, the ghost penalty, whose faces lie between the cells of two ranks, and cubic splines.
+/// Strips, the ghost penalty, whose faces lie between the cells of two ranks, cubic splines, and fitted volumes, of cells whose
+/// neighbours another rank has.
 #[test]
 fn where_all_ranks_factorise_the_whole_the_footing_has_the_same_bits_on_1_2_3_and_4_ranks() {
     let scratch = Scratch::with_case(&std::fs::read_to_string(shipped("short/strip_footing.toml")).unwrap());
     let mumps = "solver.linear={ksp=\"preonly\",pc=\"cholesky\",factor=\"mumps\"}";
-    for further in ["solver.background_kind=ghost-penalty", "grid.order=cubic"] {
+    for further in ["solver.background_kind=ghost-penalty", "grid.order=cubic", "solver.quadrature=fitted"] {
         let set = ["--set", mumps, "--set", "solver.nonlinear=broyden", "--set", further];
         let arguments = [&["case.toml", "-q", "--force", "--max-steps", "3"], &set[..]].concat();
         let runs = [1, 2, 3, 4].map(|ranks| left(&scratch, ranks, &arguments, 3));

@@ -121,6 +121,26 @@ fn restart_auto_starts_what_was_not_begun_and_leaves_alone_what_is_complete() {
     assert_eq!(std::fs::read(scratch.path("case.out/run.json")).unwrap(), before);
 }
 
+/// Fitted volumes are those of the points as they are, and no state; another quadrature is another problem.
+#[test]
+fn with_fitted_volumes_it_goes_on_to_the_bit_and_not_without() {
+    let scratch = Scratch::with_case(&changed(COLUMN, "\"1 MPa\"", "\"100 kPa\""));
+    let fitted = ["case.toml", "-q", "--set", "solver.quadrature=fitted"];
+    for ranks in [1, 2] {
+        scratch.mpirun(ranks, &[&fitted[..], &["-o", "whole", "--force"]].concat()).expect(0);
+        scratch.mpirun(ranks, &[&fitted[..], &["-o", "part", "--force", "--max-steps", "3"]].concat()).expect(75);
+        let go_on = ["-o", "part", "--restart", "auto"];
+        let output = scratch.mpirun(ranks, &[&["case.toml"], &go_on[..]].concat()).expect(76);
+        output.says_once("solver.quadrature was");
+        scratch.mpirun(ranks, &[&fitted[..], &go_on].concat()).expect(0);
+        assert!(results(&scratch.path("whole")) == results(&scratch.path("part")), "{ranks} ranks");
+        scratch.mpirun(ranks, &["case.toml", "-q", "-o", "points", "--force"]).expect(0);
+        let [whole, points] = ["whole", "points"].map(|name| history(&scratch.path(name)));
+        let height = |table: &bsmpm_io::table::Columns| *table.get("height").unwrap().last().unwrap();
+        assert_ne!(height(&whole), height(&points), "it is seen");
+    }
+}
+
 #[test]
 fn another_case_is_refused_by_the_keys_that_differ_and_nothing_is_touched() {
     let scratch = Scratch::with_case(SLIDING_BLOCK);

@@ -16,6 +16,7 @@ use crate::{overrides, preset, record, validate};
 use bsmpm::background::{Extent, Kind};
 use bsmpm::material::Material;
 use bsmpm::model::Regime;
+use bsmpm::quadrature::Quadrature;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::step::mass::MassMatrix;
 use bsmpm::step::newmark::Newmark;
@@ -221,6 +222,8 @@ pub struct Solver {
     pub force_tolerance: f64,
     /// Iterations of one attempt.
     pub max_iterations: usize,
+    /// What points weigh in integrals of the stress; fitted in quasi-static analysis with linear or quadratic splines only.
+    pub quadrature: Quadrature,
     /// -  coefficient of the soft background; 0: none
     pub background: f64,
     /// What the background resists.

@@ -31,6 +31,7 @@ mod validate;
 pub use bsmpm::background::{Extent, Kind as BackgroundKind};
 pub use bsmpm::model::Regime;
 pub use bsmpm::points::Seed;
+pub use bsmpm::quadrature::Quadrature;
 pub use case::{
     Analysis, Base, Body, Case, Check, Checkpoint, Choice, Column, Every, Face, Footing, Format, Geometry, Gravity,
     History, Initial, Linear, NamedMaterial, Nonlinear, Output, Path, PointLoad, Prescribed, Quantity, Site, Solver,

@@ -40,6 +40,7 @@ pub fn model(case: &Case) -> Result<Model<PlaneStrain, 2>, GridError> {
         grid,
         stabilisation: case.stabilisation,
         groups: groups(case),
+        quadrature: case.solver.quadrature,
         background,
         criteria: Criteria {
             energy: case.solver.tolerance,

@@ -3,7 +3,7 @@
 use bsmpm::material::{Material, MohrCoulomb, Separation};
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm_scene::{
-    Axis, BackgroundKind, Base, Case, Error, Every, Extent, Face, Initial, Place, Quantity, Site, Support,
+    Axis, BackgroundKind, Base, Case, Error, Every, Extent, Face, Initial, Place, Quadrature, Quantity, Site, Support,
 };
 
 const FULL: &str = include_str!("full.toml");
@@ -185,6 +185,18 @@ fn the_background_is_that_of_strain_unless_the_case_wants_another() {
     assert_eq!(kind(&given), (strain, 1e-4, Extent::PartlyFilled));
     let errors = set(STATIC, &["grid.order=linear", "solver.background_kind=curvature"]).unwrap_err();
     assert!(errors.len() == 1 && errors[0].message.contains("use \"strain\""), "{errors:?}");
+}
+
+#[test]
+fn points_weigh_their_own_volumes_unless_a_quasi_static_case_wants_others() {
+    let fitted = "solver.quadrature=fitted";
+    assert_eq!(valid(STATIC, &[]).solver.quadrature, Quadrature::Points);
+    assert_eq!(valid(STATIC, &[fitted]).solver.quadrature, Quadrature::Fitted);
+    assert_eq!(valid(FULL, &["solver.quadrature=points"]).solver.quadrature, Quadrature::Points);
+    let errors = set(STATIC, &["grid.order=cubic", fitted]).unwrap_err();
+    assert!(errors.len() == 1 && errors[0].message.contains("linear and quadratic"), "{errors:?}");
+    let errors = set(FULL, &[fitted]).unwrap_err();
+    assert!(errors.len() == 1 && errors[0].message.contains("quasi-static analysis"), "{errors:?}");
 }
 
 /// Twelve million unknowns.

@@ -62,6 +62,15 @@ impl<const D: usize> Boundary<D> {
         }
     }
 
+    /// The faces of the grid that no material leaves, per axis the lower and the upper one: their normal component is held.
+    pub fn closed(&self) -> [[bool; 2]; D] {
+        let mut closed = [[false; 2]; D];
+        for support in &self.supports {
+            closed[support.axis][usize::from(support.upper)] = support.velocity[support.axis] == Some(0.0);
+        }
+        closed
+    }
+
     /// Prescribed velocity of every nodal component of the window (D per node), `None` where it is free.
     pub fn velocities(&self, grid: &Grid<D>) -> Vec<Option<f64>> {
         let mut prescribed = vec![None; grid.nodes() * D];

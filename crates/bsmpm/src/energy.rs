@@ -17,10 +17,12 @@
 //!   PIC/FLIP loses on the way there and back; it can be negative, as the points' velocity grows by the
 //!   accelerations that they keep for themselves,
 //!   the nodes' by the mapped ones.
-//! - **integration**: `(Σ_p V0 τ : (∇u dF⁻¹) - ΔE' - plastic) + (M ã · u - Δ(½ v_I · M v_I)) - ½ (f1 - f0) · u`: the work of the
+//! - **integration**: `(Σ_p w τ : (∇u dF⁻¹) - ΔE' - plastic) + (M ã · u - Δ(½ v_I · M v_I)) - ½ (f1 - f0) · u`: the work of the
 //!   internal forces less what became of it, the work of the inertia less the nodes' kinetic energy, and the difference
 //!   between the forces at the end, which are in balance, and the mean ones, by which external work is counted (gravity,
-//!   loads, strips). ΔE' is the change of E before the smoothing, ã the acceleration that the mass resists with. With
+//!   loads, strips). w is V0, or the weight that the
+//!   [`quadrature`](crate::quadrature) gives to the point: energies are those of the points' own volumes, so that a state has one
+//!   energy, and what the weights work otherwise is counted here. ΔE' is the change of E before the smoothing, ã the acceleration that the mass resists with. With
 //!   Newmark's 1/4, 1/2 `M (a0 + a1)/2 · u` is exactly the nodes' change: elastic and without remapping, this part is of
 //!   second order in dt. Numerical damping, F-bar, backward Euler, and the difference between the forces at t on the new
 //!   grid and the mapped `M a0` appear here; in quasi-static analysis also what a load that is applied at once does more
@@ -179,10 +181,10 @@ impl Draft {
     ) {
         let Scene { model, shape, nodes, points, .. } = *scene;
         let (flows, u) = (&mut self.flows, &found.u[..]);
-        let pressures = Pressures::of(scene, &found.trial);
+        let (pressures, volume) = (Pressures::of(scene, &found.trial), scene.volume());
         let work_of = |p: usize, grad: Square<D>| {
-            let tau = pressures.acting::<K, D>(p, points.volume[p], responses[p].tau());
-            points.volume[p] * K::flux(&tau, &found.trial.dF::<K>(p)).dot(&grad)
+            let tau = pressures.acting::<K, D>(p, volume[p], responses[p].tau());
+            volume[p] * K::flux(&tau, &found.trial.dF::<K>(p)).dot(&grad)
         };
         flows.integration.extend(transfer::gradients(shape, u, work_of));
         flows.integration -= &flows.plastic;

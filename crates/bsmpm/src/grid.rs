@@ -4,6 +4,7 @@
 
 pub mod contributions;
 pub mod merged;
+pub(crate) mod occupied;
 mod paired;
 pub mod room;
 pub mod shape;
@@ -225,6 +226,12 @@ impl<const D: usize> Grid<D> {
     pub fn node_volume(&self, node: usize) -> f64 {
         let node = self.node_at(node);
         (0..D).map(|axis| self.axes[axis].integral(node[axis])).product()
+    }
+
+    /// Integral over the grid of the function of degree q - 1 that has a node's number ([`Shape::lowered`]), m^D.
+    pub fn lowered_volume(&self, node: usize) -> f64 {
+        let node = self.node_at(node);
+        (0..D).map(|axis| self.axes[axis].lowered_integral(node[axis])).product()
     }
 
     /// Smallest edge of any cell, m.

@@ -147,9 +147,10 @@ fn elastic_residual<K: Kinematics<D>, const D: usize>(
     strains: &[Symmetric],
     u: &[f64],
 ) -> Balance {
+    let volume = scene.volume();
     let f_int = transfer::divergence(scene.shape, |p| {
         let tau = stress_of(&elastic_at(scene.model, scene.points, p), &strains[p]);
-        K::flux(&tau, &Tensor::identity()) * scene.points.volume[p]
+        K::flux(&tau, &Tensor::identity()) * volume[p]
     });
     Balance::of(scene, u, &scene.halo.sum(&f_int), 0)
 }

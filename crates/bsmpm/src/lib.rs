@@ -11,7 +11,7 @@
 //! | (3), (7)-(9) | quasi-Newton iteration, Newton's method where it stalls, both convergence measures | [`step::equilibrium`], [`step::quasi_newton`], [`step::newton`], [`step::progress`], [`step::round_off`] |
 //! | (9) | whether an elastic equilibrium is stable (beyond the paper) | [`step::stability`] |
 //! | (4) | trial deformation, F-bar | [`step::trial`] |
-//! | (5) | out-of-balance force | [`step::residual`] |
+//! | (5) | out-of-balance force; what points weigh in it | [`step::residual`]; [`quadrature`] |
 //! | (6) | stiffness K_0 at the first guess, complete derivative | [`step::stiffness`], [`step::linearised`] |
 //! | (10), (11) | grid kinematics, converged points | [`step::commit`] |
 //!
@@ -36,6 +36,7 @@ pub mod material;
 pub mod model;
 pub mod observe;
 pub mod points;
+pub mod quadrature;
 pub mod schedule;
 pub mod seam;
 pub mod stabilisation;

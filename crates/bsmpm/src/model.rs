@@ -7,6 +7,7 @@ use crate::grid::transfer::Grouped;
 use crate::kinematics::Kinematics;
 use crate::material::{Material, MaterialError, Response};
 use crate::points::Points;
+use crate::quadrature::Quadrature;
 use crate::stabilisation::{Groups, Stabilisation};
 use crate::step::equilibrium::Nonlinear;
 use crate::step::mass::MassMatrix;
@@ -98,6 +99,8 @@ pub struct Model<K, const D: usize> {
     pub stabilisation: Stabilisation,
     /// Materials that averages may mix.
     pub groups: Groups,
+    /// What points weigh in the integrals of the stress.
+    pub quadrature: Quadrature,
     /// Soft background in nearly empty cells, if any.
     pub background: Option<Background>,
     /// Convergence.

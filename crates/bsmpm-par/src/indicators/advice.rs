@@ -1,7 +1,12 @@
 //! What an unusual value of an indicator means, and what to do then.
 
-/// Of an indicator by its name; empty for a name that is none.
-pub(super) fn of(name: &str) -> &'static str {
+use bsmpm::model::Regime;
+use bsmpm::quadrature::Quadrature;
+use bsmpm_scene::Case;
+
+/// Of an indicator of a case by its name; empty for a name that is none.
+pub(super) fn of(name: &str, case: &Case) -> &'static str {
+    let may_fit = case.analysis.regime == Regime::QuasiStatic && case.solver.quadrature == Quadrature::Points;
     match name {
         "force-measure" | "energy-measure" => {
             "a step was accepted above its tolerance, which is a fault of the program: report it"
@@ -20,6 +25,10 @@ pub(super) fn of(name: &str) -> &'static str {
         }
         "points-per-cell" => {
             "so few points integrate a cell too coarsely, and stresses oscillate; more points_per_cell"
+        }
+        "compression" if may_fit => {
+            "with fewer than 4 points a cell and axis the stress of material that has lost so much of its volume is off by up to \
+             1 %; quadrature = \"fitted\" in [solver], or points_per_cell = 4"
         }
         "compression" => {
             "with fewer than 4 points a cell and axis the stress of material that has lost so much of its volume is off by up to \

@@ -192,6 +192,12 @@ static SOLVER: Table = Table {
         key("force_tolerance", Quantity(In::Number, FRACTION), Default("1e-4"), "force measure; both must hold"),
         key("max_iterations", Count(1, 100_000), Default("200"), "iterations of one attempt"),
         key(
+            "quadrature",
+            Choice(&["points", "fitted"], &[]),
+            Default("\"points\""),
+            "what points weigh in integrals of the stress; fitted (quasi-static, not cubic): splines inside bodies are exact",
+        ),
+        key(
             "background",
             Quantity(In::Number, UP_TO_1),
             Optional,

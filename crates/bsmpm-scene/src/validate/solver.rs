@@ -7,6 +7,7 @@ use crate::record::Record;
 use crate::report::Report;
 use bsmpm::background::{Extent, Kind};
 use bsmpm::model::Regime;
+use bsmpm::quadrature::Quadrature;
 
 /// The solver, for a grid and its materials.
 pub(super) fn read(
@@ -16,6 +17,7 @@ pub(super) fn read(
     report: &mut Report<'_>,
 ) -> Option<Solver> {
     let solver = root.record("solver")?;
+    let quadrature = weights(solver, regime, grid.map(|grid| grid.order), report);
     let (kind, background) = background(solver, regime, grid.map(|grid| grid.order), report);
     let poisson = materials.unwrap_or_default().iter().map(|material| material.material.elastic().poisson);
     let unknowns = 2 * grid.map_or(0, estimate::nodes);
@@ -30,12 +32,38 @@ pub(super) fn read(
         tolerance: solver.number("tolerance")?,
         force_tolerance: solver.number("force_tolerance")?,
         max_iterations: usize::try_from(solver.count("max_iterations")?).ok()?,
+        quadrature: quadrature?,
         background: background?,
         background_kind: kind?,
         background_cells: cells(solver, kind?)?,
         linear: linear?,
         reproducible: size.reproducible,
     })
+}
+
+/// What points weigh, which is their own volume in dynamics and on cubic grids.
+fn weights(
+    solver: &Record,
+    regime: Option<Regime>,
+    order: Option<usize>,
+    report: &mut Report<'_>,
+) -> Option<Quadrature> {
+    if solver.word("quadrature")? == "points" {
+        return Some(Quadrature::Points);
+    }
+    if order? == 3 {
+        let message = "\"fitted\" is for linear and quadratic grids: cubic ones, which integrate well by themselves, find no \
+                       equilibrium with it in a bar compressed to half; use \"points\"";
+        solver.error("quadrature", message, report);
+        return None;
+    }
+    if regime? == Regime::Dynamic {
+        let message = "\"fitted\" is for quasi-static analysis: weights that change from step to step change the energy of \
+                       what moves; use \"points\"";
+        solver.error("quadrature", message, report);
+        return None;
+    }
+    Some(Quadrature::Fitted)
 }
 
 /// What the background resists, and its coefficient.

@@ -108,6 +108,7 @@ pub const RANGES: &[Row] = &[
     row("tolerance        = 1e-8", "tolerance = 0", "solver.tolerance", "0 < tolerance < 1"),
     row("force_tolerance  = 1e-4", "force_tolerance = 1.5", "solver.force_tolerance", "0 < force_tolerance < 1"),
     row("background       = 0.0", "background = -0.1", "solver.background", "0 <= background <= 1"),
+    row("\"points\"", "\"gauss\"", "solver.quadrature", "fitted"),
     row("\"strain\"", "\"bending\"", "solver.background_kind", "curvature"),
     row("max_iterations   = 200", "max_iterations = 0", "solver.max_iterations", "1 <= max_iterations"),
     row("every  = \"0.1 s\"", "every  = 0", "output.every", "allowed: every > 0"),

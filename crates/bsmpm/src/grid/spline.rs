@@ -103,6 +103,11 @@ impl KnotVector {
         (self.knots[i + self.order + 1] - self.knots[i]) / (self.order + 1) as f64
     }
 
+    /// Integral of function `i` of the splines of degree q - 1 on the same cells, m: function `a` of cell `c` is number `c + a`.
+    pub fn lowered_integral(&self, i: usize) -> f64 {
+        (self.knots[i + self.order + 1] - self.knots[i + 1]) / self.order as f64
+    }
+
     /// Shortest cell that has a length, m.
     pub fn smallest_cell(&self) -> f64 {
         let lengths = (0..self.cells()).map(|i| self.breakpoint(i + 1) - self.breakpoint(i));

@@ -2,11 +2,9 @@
 
 use crate::exact::Exact;
 use crate::grid::Grid;
+use crate::grid::occupied::Occupied;
 use crate::points::Points;
 use crate::seam::Halo;
-
-/// Cells along each axis of the neighbourhood that makes a cell interior: itself and one on either side.
-const SIDE: usize = 3;
 
 /// `sum_p V_p / V_cell - 1` over the interior cells.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -32,11 +30,12 @@ pub fn defect<const D: usize>(grid: &Grid<D>, points: &Points<D>, halo: &dyn Hal
             counts[grid.cell_index(&cell)] += 1;
         }
     }
-    let occupied = Occupied::of(grid, &held, halo);
+    let filled = held.iter().enumerate().filter(|(_, volume)| **volume > 0.0);
+    let occupied = Occupied::of(grid, filled.map(|(index, _)| index), halo);
     let (mut squares, mut largest, mut numbers) = (Exact::ZERO, [0.0_f64], [0.0; 2]);
     for (index, volume) in held.iter().enumerate() {
         let cell = grid.cell_at(index);
-        if *volume > 0.0 && occupied.surround(&cell) {
+        if *volume > 0.0 && occupied.surround(&cell, &[[true; 2]; D]) {
             let defect = volume / grid.cell_box(&cell).1.product() - 1.0;
             squares.add(defect * defect);
             largest[0] = largest[0].max(defect.abs());
@@ -68,66 +67,4 @@ pub fn compression<const D: usize>(points: &Points<D>, materials: usize, halo: &
     let volumes = halo.total(&volumes);
     let lost = |pair: &[f64]| if pair[0] > 0.0 { 1.0 - pair[1] / pair[0] } else { 0.0 };
     volumes.chunks_exact(2).map(lost).collect()
-}
-
-/// Which cells hold points, those beside this rank's columns included.
-struct Occupied<'a, const D: usize> {
-    grid: &'a Grid<D>,
-    width: usize,
-    marks: Vec<f64>, // per node: whether the cell k before that of its number along axis 0 holds points, k from 0 to q
-}
-
-impl<'a, const D: usize> Occupied<'a, D> {
-    /// Neighbouring slabs share layers of nodes, not of cells: a cell is noted at the node of its own number, which the rank
-    /// before sees, and at the q next ones, which the rank behind sees.
-    fn of(grid: &'a Grid<D>, held: &[f64], halo: &dyn Halo) -> Self {
-        let width = grid.order() + 1;
-        let mut occupied = Self { grid, width, marks: vec![0.0; width * grid.nodes()] };
-        for (index, _) in held.iter().enumerate().filter(|(_, volume)| **volume > 0.0) {
-            let cell = grid.cell_at(index);
-            for behind in 0..width {
-                let place = occupied.place(&cell, behind);
-                occupied.marks[place] = 1.0;
-            }
-        }
-        halo.max(&mut occupied.marks, width);
-        occupied
-    }
-
-    fn place(&self, cell: &[usize; D], behind: usize) -> usize {
-        let mut node = *cell;
-        node[0] += behind;
-        self.width * self.grid.first_node(&node) + behind
-    }
-
-    fn has(&self, cell: &[usize; D]) -> bool {
-        let behind = self.grid.columns().start.saturating_sub(cell[0]);
-        self.marks[self.place(cell, behind)] > 0.0
-    }
-
-    /// Whether all neighbours that the grid has hold points.
-    fn surround(&self, cell: &[usize; D]) -> bool {
-        (0..SIDE.pow(D as u32)).all(|k| {
-            let mut neighbour = *cell;
-            for (axis, at) in neighbour.iter_mut().enumerate() {
-                match self.beside(axis, *at, k / SIDE.pow(axis as u32) % SIDE) {
-                    Some(inside) => *at = inside,
-                    None => return true,
-                }
-            }
-            self.has(&neighbour)
-        })
-    }
-
-    /// The cell before (0), itself (1) or the one after (2) along an axis, of those that have a length; up to q away, as the
-    /// copies of a breakpoint are q at most.
-    fn beside(&self, axis: usize, cell: usize, side: usize) -> Option<usize> {
-        let axis = &self.grid.axes()[axis];
-        let has_length = |at: &usize| axis.has_length(*at);
-        match side {
-            0 => (0..cell).rev().find(has_length),
-            1 => Some(cell),
-            _ => (cell + 1..axis.cells()).find(has_length),
-        }
-    }
 }

@@ -57,10 +57,16 @@ pub struct Scene<'a, K, const D: usize> {
     pub halo: &'a dyn Halo,
 }
 
-impl<K, const D: usize> Scene<'_, K, D> {
+impl<'a, K, const D: usize> Scene<'a, K, D> {
     /// The mass matrix, in dynamics.
     pub fn mass(&self) -> Mass<'_, D> {
         self.nodes.mass(self.model, (self.shape, self.points), self.halo)
+    }
+
+    /// What the points weigh in the integrals of the stress, m^D of the reference volume.
+    #[inline]
+    pub fn volume(&self) -> &'a [f64] {
+        self.nodes.volume(self.points)
     }
 }
 

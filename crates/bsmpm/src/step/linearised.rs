@@ -70,7 +70,7 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
         let mut dilation = averaged.then(|| Vec::with_capacity(points.len()));
         let pressures = Pressures::of(scene, trial);
         let mut adjoint = Adjoint::of(scene.model).map(|adjoint| (adjoint, Vec::with_capacity(points.len())));
-        for p in 0..points.len() {
+        for (p, &volume) in scene.volume().iter().enumerate() {
             let dF = trial.dF::<K>(p);
             let inverse = dF.try_inverse();
             let (Ok(response), Some(inverse)) = (trial.respond(scene.model, points, p), inverse) else {
@@ -84,23 +84,23 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
                 let l = K::gradient(&grad) * inverse;
                 let mut change = tangent.apply(&l) - tau * l.transpose();
                 if let Some(pressure) = pressures.at(p) {
-                    let (pressure, own) = (pressure / points.volume[p], works::<K, D>(&tau));
+                    let (pressure, own) = (pressure / volume, works::<K, D>(&tau));
                     change -= l.transpose() * (pressure - own);
                     change += Tensor::identity() * (pressure * l.trace() - works::<K, D>(&tangent.apply(&l)));
                 }
-                K::in_plane(&(change * inverse.transpose())) * points.volume[p]
+                K::in_plane(&(change * inverse.transpose())) * volume
             };
             moduli.push(std::array::from_fn(|k| std::array::from_fn(|l| unit(k, l))));
             if let Some(dilation) = &mut dilation {
                 let mut change = tangent.apply(&K::dilation());
                 if let Some((_, at)) = &mut adjoint {
-                    at.push(Pressure::of::<K>((&tangent, &inverse), &tau, points.volume[p]));
+                    at.push(Pressure::of::<K>((&tangent, &inverse), &tau, volume));
                 }
                 if pressures.at(p).is_some() {
                     change -= Tensor::identity() * works::<K, D>(&change);
                 }
                 let change = change * inverse.transpose();
-                let flux = K::in_plane(&change) * points.volume[p];
+                let flux = K::in_plane(&change) * volume;
                 dilation.push(Dilation { trace: K::in_plane(&inverse.transpose()), flux });
             }
         }

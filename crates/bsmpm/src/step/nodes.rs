@@ -7,6 +7,7 @@ use crate::grid::{Shape, transfer};
 use crate::kinematics::Kinematics;
 use crate::model::{Model, Regime, Weighting};
 use crate::points::Points;
+use crate::quadrature::{self, Quadrature};
 use crate::seam::Halo;
 use crate::stabilisation::Stabilisation;
 use crate::step::apart::Apart;
@@ -58,6 +59,8 @@ pub struct Nodes<const D: usize> {
     /// weight at and below which a node counts as massless
     threshold: f64,
     averages: Averages<D>,
+    /// m^D  what the points weigh in the integrals of the stress; `None`: their volumes
+    fitted: Option<Vec<f64>>,
 }
 
 impl<const D: usize> Nodes<D> {
@@ -78,7 +81,10 @@ impl<const D: usize> Nodes<D> {
         let inertia =
             (model.regime == Regime::Dynamic).then(|| inertia::map(&mass, points, &velocities, (dt, model.newmark)));
         let background = model.background.map(|soft| soft.blocks(&model.grid, shape, points, &model.materials, halo));
-        let (active, stiff) = supported(shape, points, background.as_ref(), nodes, halo);
+        let fitted = (model.quadrature == Quadrature::Fitted)
+            .then(|| quadrature::fitted((&model.grid, &model.boundary), shape, points, halo));
+        let volume = fitted.as_deref().unwrap_or(&points.volume);
+        let (active, stiff) = supported(shape, volume, background.as_ref(), nodes, halo);
         let unknown = |node: usize| active[node] && (weight[node] > threshold || stiff[node]);
         let free = velocities.iter().enumerate().map(|(c, v)| v.is_none() && unknown(c / D)).collect();
         let mut f_ext = external_force((model, shape, points), t + dt, (weighting, &weight), halo);
@@ -101,6 +107,7 @@ impl<const D: usize> Nodes<D> {
             weight,
             active,
             averages,
+            fitted,
         };
         mapped.count(halo);
         Ok(mapped)
@@ -118,6 +125,12 @@ impl<const D: usize> Nodes<D> {
     ) -> Vec<T> {
         let weight = self.averages.weight.as_ref().unwrap_or(&self.weight);
         self.average_with(model, (shape, weight), points, halo, value, found)
+    }
+
+    /// What these points, which the nodes were mapped from, weigh in the integrals of the stress: m^D of the reference volume.
+    #[inline]
+    pub fn volume<'a>(&'a self, points: &'a Points<D>) -> &'a [f64] {
+        self.fitted.as_deref().unwrap_or(&points.volume)
     }
 
     /// The splines of degree q - 1 that dilations are averaged with, under consistent F-bar.
@@ -227,7 +240,7 @@ fn scatter_weight<const D: usize>(
 /// stiffness is positive.
 fn supported<const D: usize>(
     shape: &Shape<D>,
-    points: &Points<D>,
+    volume: &[f64],
     background: Option<&Blocks>,
     nodes: usize,
     halo: &dyn Halo,
@@ -245,7 +258,7 @@ fn supported<const D: usize>(
         touched[2 * node + 1] = 1.0;
     }
     halo.max(&mut touched, 2);
-    let stiff = halo.sum(&transfer::squared_gradients(shape, |p| points.volume[p]));
+    let stiff = halo.sum(&transfer::squared_gradients(shape, |p| volume[p]));
     let mut stiffest = [stiff.iter().copied().fold(0.0, f64::max)];
     halo.maximum(&mut stiffest);
     let above = MASSLESS * stiffest[0];

@@ -51,10 +51,11 @@ impl<const D: usize> Residual<D> {
         let trial = Trial::of(model, shape, nodes, points, u, halo);
         let (inverted, first_inverted) = (AtomicU64::new(0), AtomicUsize::new(usize::MAX));
         let pressures = Pressures::of(scene, &trial);
+        let volume = scene.volume();
         let mut f_int = transfer::divergence(shape, |p| match trial.respond(model, points, p) {
             Ok(response) => {
-                let tau = pressures.acting::<K, D>(p, points.volume[p], response.tau());
-                K::flux(&tau, &trial.dF::<K>(p)) * points.volume[p]
+                let tau = pressures.acting::<K, D>(p, volume[p], response.tau());
+                K::flux(&tau, &trial.dF::<K>(p)) * volume[p]
             }
             Err(_) => {
                 inverted.fetch_add(1, Relaxed);

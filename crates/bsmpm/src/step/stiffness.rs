@@ -30,12 +30,13 @@ pub fn assemble<K: Kinematics<D>, const D: usize>(
     solver: &mut dyn LinearSolver,
 ) -> Result<(), SolveError> {
     let Scene { model, shape, nodes, points, halo, .. } = *scene;
+    let volume = scene.volume();
     solver.begin(&nodes.free);
     let mut coupling = at.and_then(|_| Coupling::of(model, nodes, Raised::Along));
     // Threads work on a column each; what they found is added in the order of the patches.
     let threads = rayon::current_num_threads();
     for columns in shape.columns().chunks(threads) {
-        let state = State { model, shape, nodes, points, at, coupling: coupling.as_ref() };
+        let state = State { model, shape, nodes, points, volume, at, coupling: coupling.as_ref() };
         let of_column = |column: &Column| column.patches.clone().map(|patch| state.part(patch)).collect();
         let parts: Vec<Vec<Part>> = columns.par_iter().map(of_column).collect();
         let patches = columns.iter().flat_map(|column| column.patches.clone());
@@ -66,6 +67,7 @@ struct State<'a, K, const D: usize> {
     shape: &'a Shape<D>,
     nodes: &'a Nodes<D>,
     points: &'a Points<D>,
+    volume: &'a [f64],
     at: Option<&'a Trial<D>>,
     coupling: Option<&'a Coupling<'a, D>>,
 }
@@ -119,7 +121,7 @@ impl<K: Kinematics<D>, const D: usize> State<'_, K, D> {
     ) {
         let Self { model, shape, nodes, points, coupling, .. } = *self;
         transfer::gradients_of(shape, p, grad);
-        let volume = points.volume[p];
+        let volume = self.volume[p];
         let bulk = match stiffness {
             Some(stiffness) => {
                 let (moduli, bulk) = of_point::<K, D>(stiffness, volume, coupling.is_some());

@@ -66,8 +66,9 @@ impl Pressures {
     pub fn of<K: Kinematics<D>, const D: usize>(scene: &Scene<'_, K, D>, trial: &Trial<D>) -> Self {
         let Some(adjoint) = Adjoint::of(scene.model) else { return Self(None) };
         let Scene { model, points, .. } = *scene;
+        let volume = scene.volume();
         let per_mean = |p: usize| match trial.respond(model, points, p) {
-            Ok(response) => points.volume[p] * works::<K, D>(&response.tau().full()) / trial.means(model, points, p).1,
+            Ok(response) => volume[p] * works::<K, D>(&response.tau().full()) / trial.means(model, points, p).1,
             Err(_) => 0.0, // the residual refuses such a point
         };
         let transposed = transposed(scene, &adjoint, trial, per_mean);

@@ -10,6 +10,7 @@ use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
 use bsmpm::material::{Elastic, Material, MohrCoulomb, Region, Separation};
 use bsmpm::model::Regime;
 use bsmpm::points::Points;
+use bsmpm::quadrature::Quadrature;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::step::equilibrium;
 use bsmpm::step::linearised::Linearised;
@@ -119,6 +120,26 @@ fn adjoint_forces_are_in_the_product() {
         let errors = [product_error(&plane).0, product_error(&two).0, product_error(&solid).0];
         println!("{regime:?}: {errors:?}");
         assert!(errors.iter().all(|&error| error <= 1e-6), "{errors:?}"); // central differences
+    }
+}
+
+/// Volumes that are fitted, also under an adjoint force, whose pressure they weigh.
+#[test]
+fn fitted_volumes_are_in_the_product() {
+    let dilatant = MohrCoulomb::new(Elastic { young: 1000.0, poisson: 0.3 }, 0.5, 0.4, 1.0);
+    for method in METHODS {
+        // In the corner of held faces there is a function inside the body.
+        let mut plane =
+            loaded::<PlaneStrain, 2>(method, Regime::QuasiStatic).support(Support::roller(0, false)).fitted();
+        let mut solid = loaded::<Solid, 3>(method, Regime::QuasiStatic).fitted();
+        solid = solid.support(Support::roller(0, false)).support(Support::roller(1, false));
+        let mut errors = vec![product_error(&plane).0, product_error(&solid).0];
+        plane.model.materials = vec![Material::MohrCoulomb(dilatant.clone())];
+        errors.push(product_error(&plane).0);
+        println!("{method:?}: {errors:?}");
+        assert!(errors.iter().all(|&error| error <= 1e-6), "{method:?}: {errors:?}"); // central differences
+        plane.model.quadrature = Quadrature::Points;
+        assert_ne!(product_error(&plane).0, errors[2], "the volumes are seen");
     }
 }
 

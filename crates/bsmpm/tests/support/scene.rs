@@ -9,6 +9,7 @@ use bsmpm::kinematics::Kinematics;
 use bsmpm::material::{Elastic, Hencky, Material};
 use bsmpm::model::{Criteria, Gravity, Model, Regime, Weighting};
 use bsmpm::points::{Points, Seed};
+use bsmpm::quadrature::Quadrature;
 use bsmpm::schedule::Schedule;
 use bsmpm::seam::Alone;
 use bsmpm::stabilisation::{Groups, Stabilisation};
@@ -62,6 +63,7 @@ impl<K: Kinematics<D>, const D: usize> Scene<K, D> {
             boundary: Boundary::default(),
             stabilisation: Stabilisation::None,
             groups: Groups::default(),
+            quadrature: Quadrature::Points,
             background: None,
             criteria: Criteria { energy: 1e-14, force: 1e-10, max_iterations: 200 },
             nonlinear: Nonlinear::default(),
@@ -176,6 +178,12 @@ impl<K: Kinematics<D>, const D: usize> Scene<K, D> {
     pub fn stabilised(mut self, stabilisation: Stabilisation) -> Self {
         self.model.stabilisation = stabilisation;
         self.reaching()
+    }
+
+    /// Volumes that integrate linear functions exactly over interior cells.
+    pub fn fitted(mut self) -> Self {
+        self.model.quadrature = Quadrature::Fitted;
+        self
     }
 
     fn reaching(mut self) -> Self {

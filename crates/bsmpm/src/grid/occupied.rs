@@ -1,0 +1,73 @@
+//! Which cells hold points, seen across the cuts between ranks: what tells the inside of a body from its edge.
+
+use super::Grid;
+use crate::seam::Halo;
+
+/// Cells along each axis of the neighbourhood that makes a cell interior: itself and one on either side.
+const SIDE: usize = 3;
+
+/// Which cells hold points, those beside this rank's columns included.
+pub(crate) struct Occupied<'a, const D: usize> {
+    grid: &'a Grid<D>,
+    width: usize,
+    marks: Vec<f64>, // per node: whether the cell k before that of its number along axis 0 holds points, k from 0 to q
+}
+
+impl<'a, const D: usize> Occupied<'a, D> {
+    /// Of this rank's `cells`, by their index in the window; one exchange with the neighbours.
+    ///
+    /// Neighbouring slabs share layers of nodes, not of cells: a cell is noted at the node of its own number, which the rank
+    /// before sees, and at the q next ones, which the rank behind sees.
+    pub(crate) fn of(grid: &'a Grid<D>, cells: impl Iterator<Item = usize>, halo: &dyn Halo) -> Self {
+        let width = grid.order() + 1;
+        let mut occupied = Self { grid, width, marks: vec![0.0; width * grid.nodes()] };
+        for index in cells {
+            let cell = grid.cell_at(index);
+            for behind in 0..width {
+                let place = occupied.place(&cell, behind);
+                occupied.marks[place] = 1.0;
+            }
+        }
+        halo.max(&mut occupied.marks, width);
+        occupied
+    }
+
+    fn place(&self, cell: &[usize; D], behind: usize) -> usize {
+        let mut node = *cell;
+        node[0] += behind;
+        self.width * self.grid.first_node(&node) + behind
+    }
+
+    fn has(&self, cell: &[usize; D]) -> bool {
+        let behind = self.grid.columns().start.saturating_sub(cell[0]);
+        self.marks[self.place(cell, behind)] > 0.0
+    }
+
+    /// Whether all neighbours hold points, those that the grid does not have at its faces counted as ones that do where these
+    /// are `closed` (per axis the lower and the upper one).
+    pub(crate) fn surround(&self, cell: &[usize; D], closed: &[[bool; 2]; D]) -> bool {
+        (0..SIDE.pow(D as u32)).all(|k| {
+            let mut neighbour = *cell;
+            for (axis, at) in neighbour.iter_mut().enumerate() {
+                let side = k / SIDE.pow(axis as u32) % SIDE;
+                match self.beside(axis, *at, side) {
+                    Some(inside) => *at = inside,
+                    None => return closed[axis][usize::from(side > 1)],
+                }
+            }
+            self.has(&neighbour)
+        })
+    }
+
+    /// The cell before (0), itself (1) or the one after (2) along an axis, of those that have a length; up to q away, as the
+    /// copies of a breakpoint are q at most.
+    fn beside(&self, axis: usize, cell: usize, side: usize) -> Option<usize> {
+        let axis = &self.grid.axes()[axis];
+        let has_length = |at: &usize| axis.has_length(*at);
+        match side {
+            0 => (0..cell).rev().find(has_length),
+            1 => Some(cell),
+            _ => (cell + 1..axis.cells()).find(has_length),
+        }
+    }
+}

@@ -1,0 +1,120 @@
+//! What a point weighs in the integrals of the stress: its own volume, or one that integrates splines better.
+//!
+//! Points that have moved against each other and the cells fill these by too much or too little: a bar on two points a
+//! cell and axis that its weight compresses to half its height has a mean error of its stress of .6 % on 64 cells and
+//! on 256. `Fitted` multiplies the volumes V = V0 det F of the start of the step with factors 1 + sum_h c_h A_h(x_p), A
+//! the splines of degree q - 1, such that those that lie inside the body are integrated exactly: sum_p w_p A_h(x_p) =
+//! int A_h dV. Gradients of the splines of degree q are differences of these, so that a constant stress then is in
+//! equilibrium (along an axis; and nearly in a plane). It is the least change in the sense of sum_p (w_p - V_p)^2 /
+//! V_p: moment fitting, as of quadratures of cut cells (Müller, Kummer and Oberlack, 2013, Int. J. Numer. Meth. Engng
+//! 96, 512-528), to functions that reach over several cells. Evenly spaced points integrate them exactly wherever the
+//! cells lie, and are left alone; and with quadratic splines factors do not jump as points pass from cell to cell. (Of
+//! linear splines the A are the constants of the cells; cubic ones were tried and find no equilibrium in that bar with
+//! 3 points.) Fitted to constant and linear functions in every cell by itself, weights do both: with two points the
+//! error falls to .24 %, but in a bar that is compressed by 1 % it grows from .03 to 2 %.
+//!
+//! Nothing is carried from step to step. These are weights of the stress only, mass stays with the points. At the edge
+//! of a body nothing tells how much of a cell is filled: functions that reach there change nothing.
+
+use crate::boundary::Boundary;
+use crate::grid::occupied::Occupied;
+use crate::grid::{Grid, Shape, transfer};
+use crate::points::Points;
+use crate::seam::Halo;
+
+/// What points weigh in the internal force, its derivative and its work.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Quadrature {
+    /// Their own volumes.
+    #[default]
+    Points,
+    /// Inside a body, volumes that integrate the splines of degree q - 1 exactly.
+    Fitted,
+}
+
+/// Passes of the iteration: .001 of what is missing is left (10: .02, which then is the bar's error on 256 cells; with
+/// 5, 10 and 20 that is 1.1e-3, 1.3e-4 and .6e-4 for 6.2e-3 without).
+const PASSES: usize = 16;
+/// Least and largest factor of a volume: a function that few points see might ask for others.
+const FACTORS: [f64; 2] = [0.1, 10.0];
+
+/// Weight of every point, m^D of the reference volume; the same bits on any number of ranks. An exchange with the
+/// neighbours for every pass of the iteration, and three more.
+pub fn fitted<const D: usize>(
+    (grid, boundary): (&Grid<D>, &Boundary<D>),
+    shape: &Shape<D>,
+    points: &Points<D>,
+    halo: &dyn Halo,
+) -> Vec<f64> {
+    let lower = shape.lowered(grid, points);
+    let volume: Vec<f64> = (0..points.len()).map(|p| points.volume[p] * points.F.at(p).determinant()).collect();
+    let integrals = |factor: &dyn Fn(usize) -> f64| -> Vec<f64> {
+        let weights: Vec<f64> = volume.iter().enumerate().map(|(p, volume)| volume * factor(p)).collect();
+        halo.sum(&transfer::to_nodes(&lower, |p| [weights[p]]))
+    };
+    let own = integrals(&|_| 1.0);
+    let outside = outside(grid, boundary, &lower, halo);
+    let inside = |node: usize| !outside[node] && own[node] > 0.0;
+    let missing: Vec<f64> = (0..own.len()).map(|node| grid.lowered_volume(node) - own[node]).collect();
+    let mut chebyshev = Chebyshev::new(own.len());
+    let mut found = vec![0.0; own.len()];
+    for _ in 0..PASSES {
+        let change: Vec<f64> = transfer::to_points::<D, 1, _>(&lower, &found, |_, [change]| change);
+        let changed = integrals(&|p| change[p]);
+        let rest = |node: usize| if inside(node) { (missing[node] - changed[node]) / own[node] } else { 0.0 };
+        chebyshev.advance(&mut found, rest);
+    }
+    let [least, most] = FACTORS;
+    transfer::to_points::<D, 1, _>(&lower, &found, |p, [change]| points.volume[p] * (1.0 + change).clamp(least, most))
+}
+
+/// Which functions reach into cells that have empty neighbours.
+fn outside<const D: usize>(grid: &Grid<D>, boundary: &Boundary<D>, lower: &Shape<D>, halo: &dyn Halo) -> Vec<bool> {
+    let occupied = Occupied::of(grid, lower.patches().iter().map(|patch| patch.cell), halo);
+    let closed = boundary.closed();
+    let mut marks = vec![0.0; grid.nodes()];
+    for patch in lower.patches() {
+        if !occupied.surround(&grid.cell_at(patch.cell), &closed) {
+            lower.offsets().iter().for_each(|offset| marks[patch.first_node + offset] = 1.0);
+        }
+    }
+    halo.max(&mut marks, 1);
+    marks.iter().map(|&mark| mark > 0.0).collect()
+}
+
+/// Chebyshev's iteration for a symmetric system, in terms of its lumped form: needs no sums over all nodes, so that a
+/// fixed number of passes costs little and repeats to the bit (Saad, 2003, Iterative Methods for Sparse Linear
+/// Systems).
+struct Chebyshev {
+    way: Vec<f64>,
+    rho: f64, // 0 before the first pass
+}
+
+impl Chebyshev {
+    /// Eigenvalues of the lumped form's inverse times the matrix, none of which is above 1. With exact integrals those
+    /// of linear functions begin at 3^-D; what changes from node to node so fast comes slowly. Constants of cells have
+    /// ones only.
+    const EIGENVALUES: [f64; 2] = [0.05, 1.0];
+
+    fn new(nodes: usize) -> Self {
+        Self { way: vec![0.0; nodes], rho: 0.0 }
+    }
+
+    /// The next pass, `rest` being what is left of the right-hand side over the lumped form.
+    fn advance(&mut self, found: &mut [f64], rest: impl Fn(usize) -> f64) {
+        let [least, most] = Self::EIGENVALUES;
+        let (middle, half) = (0.5 * (most + least), 0.5 * (most - least));
+        let (keep, take) = if self.rho == 0.0 {
+            self.rho = half / middle;
+            (0.0, 1.0 / middle)
+        } else {
+            let before = self.rho;
+            self.rho = 1.0 / (2.0 * middle / half - before);
+            (self.rho * before, 2.0 * self.rho / half)
+        };
+        for (node, (found, way)) in found.iter_mut().zip(&mut self.way).enumerate() {
+            *way = keep * *way + take * rest(node);
+            *found += *way;
+        }
+    }
+}
