@@ -46,17 +46,17 @@ fn the_projected_pressure_keeps_what_is_uniform_and_damps_what_alternates() {
     let signs: Vec<f64> =
         scene.points.x.iter().map(|x| if (4.0 * x.sum()).round() % 2.0 == 0.0 { 1.0 } else { -1.0 }).collect();
     let [mut uniform, mut alternating] = [0.0_f64; 2];
-    for p in 0..scene.points.len() {
-        scene.points.volume[p] *= if signs[p] > 0.0 { 1.0 } else { 0.5 };
+    for (p, sign) in signs.iter().enumerate() {
+        scene.points.volume[p] *= if *sign > 0.0 { 1.0 } else { 0.5 };
         scene.points.sigma.set(p, Symmetric([3.0, 5.0, 4.0, 1.0, 0.0, 0.0]));
     }
     for pressure in projected_pressure(&scene.model, &scene.points, &scene.halo()).unwrap() {
         uniform = uniform.max((pressure + 4.0).abs());
     }
     assert!(uniform <= 1e-14, "{uniform}");
-    for p in 0..scene.points.len() {
+    for (p, sign) in signs.iter().enumerate() {
         scene.points.volume[p] = 1.0;
-        scene.points.sigma.set(p, Symmetric([signs[p], signs[p], signs[p], 0.0, 0.0, 0.0]));
+        scene.points.sigma.set(p, Symmetric([*sign, *sign, *sign, 0.0, 0.0, 0.0]));
     }
     for pressure in projected_pressure(&scene.model, &scene.points, &scene.halo()).unwrap() {
         alternating = alternating.max(pressure.abs());
