@@ -1,10 +1,11 @@
 //! How volumetric locking and stress oscillation are treated (section 2.3).
 //!
 //! Every method but `None` is an F-bar: dF-bar = (ratio)^(1/dof) dF, with a ratio_p = kept_p S(w dJ)_p / (w_p dJ_p) that
-//! replaces the point's own dilation by an average over the grid. S is the mass-weighted map to the nodes and back,
-//! S(a)_p = sum_I N_Ip (1/m_I) sum_r N_Ir m_r a_r; the methods differ in w, in what is kept, and in the functions of S.
+//! replaces the point's own dilation by an average over the grid. S is the weighted map to the nodes and back,
+//! S(a)_p = sum_I N_Ip (1/m_I) sum_r N_Ir m_r a_r, with m the mass, or the volume where densities differ; the methods differ in
+//! w, in what is kept, and in the functions of S.
 //!
-//! S runs over the points of one group of materials at a time, m_I too: materials whose stiffness or density differs dilate
+//! S runs over the points of one group of materials at a time, m_I too: materials whose stiffness differs dilate
 //! by different amounts under the same stress. One average over both gives the stiffer one the strain of the softer: in
 //! level ground with E 1:100 beside an interface 36 (consistent F-bar) and 66 times (F-bar) its horizontal stress.
 
