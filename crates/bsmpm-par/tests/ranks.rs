@@ -44,6 +44,13 @@ fn the_block_is_the_same_on_1_2_3_and_4_ranks_with_every_f_bar() {
     }
 }
 
+/// A consistent mass is solved with in every step and multiplied with in every evaluation, across the cuts.
+#[test]
+fn the_block_is_the_same_on_1_2_3_and_4_ranks_with_a_consistent_mass() {
+    let further = ["--set", "analysis.mass=consistent", "--set", "analysis.end=0.02"];
+    agree(&Scratch::with_case(SLIDING_BLOCK), "case.toml", &further, &[1, 2, 3, 4], 1e-9);
+}
+
 /// Plastic flow, whose largest values neighbours tell each other, and gaps, which go along with the points.
 #[test]
 fn the_filter_of_consistent_f_bar_and_gaps_are_the_same_on_1_2_and_3_ranks() {
@@ -142,13 +149,18 @@ fn where_all_ranks_factorise_the_whole_the_collapse_has_the_same_bits_on_1_2_3_a
     assert!(runs[1..].iter().all(|run| *run == runs[0]));
 }
 
-/// Strips, the ghost penalty, whose faces lie between the cells of two ranks, cubic splines, and fitted volumes, of cells whose
-/// neighbours another rank has.
+/// Strips, the ghost penalty, whose faces lie between the cells of two ranks, cubic splines, fitted volumes, of cells whose
+/// neighbours another rank has, and averages on pairs of cells, which slabs cut.
 #[test]
 fn where_all_ranks_factorise_the_whole_the_footing_has_the_same_bits_on_1_2_3_and_4_ranks() {
     let scratch = Scratch::with_case(&std::fs::read_to_string(shipped("short/strip_footing.toml")).unwrap());
     let mumps = "solver.linear={ksp=\"preonly\",pc=\"cholesky\",factor=\"mumps\"}";
-    for further in ["solver.background_kind=ghost-penalty", "grid.order=cubic", "solver.quadrature=fitted"] {
+    for further in [
+        "solver.background_kind=ghost-penalty",
+        "grid.order=cubic",
+        "solver.quadrature=fitted",
+        "stabilisation.method=subgrid-f-bar",
+    ] {
         let set = ["--set", mumps, "--set", "solver.nonlinear=broyden", "--set", further];
         let arguments = [&["case.toml", "-q", "--force", "--max-steps", "3"], &set[..]].concat();
         let runs = [1, 2, 3, 4].map(|ranks| left(&scratch, ranks, &arguments, 3));
