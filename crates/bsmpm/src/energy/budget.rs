@@ -9,8 +9,8 @@ use super::Stored;
 use crate::error::StepError;
 
 /// Part of the largest energy by which a right run may seem to have grown: mean forces, mapped
-/// accelerations and what points keep to themselves are exact only in the limit. The short collapse reaches .009 (in
-/// steps of 10 and 50 ms .031, which do not resolve its elastic waves), with dilation = 5 degrees .007. What makes
+/// accelerations and what points keep to themselves are exact only in the limit. The short collapse reaches .0013 (in
+/// steps of 10 ms .025, which do not resolve its elastic waves), with dilation = 5 degrees .012. What makes
 /// energy passes .05 and goes on to several times the whole.
 const SLACK: f64 = 0.05;
 
@@ -75,20 +75,5 @@ impl Budget {
         let given = self.start + self.external;
         let grown = StepError::EnergyMade { growth: self.growth, given, slack: SLACK };
         if self.growth > SLACK { Err(grown) } else { Ok(()) }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_was_lost_pays_for_nothing() {
-        let moving = |kinetic| Stored { kinetic, elastic: 0.0 };
-        let mut budget = Budget::open(moving(10.0));
-        for (kinetic, grown, passes) in [(4.0, 0.0, true), (4.4, 0.04, true), (4.6, 0.06, false)] {
-            budget.enter(&Turnover { stored: moving(kinetic), ..Turnover::default() });
-            assert!((budget.growth - grown).abs() < 1e-15 && budget.require().is_ok() == passes, "{budget:?}");
-        }
     }
 }
