@@ -157,8 +157,6 @@ struct BudgetFields {
     plastic: f64,
     largest: f64,
     growth: f64,
-    #[serde(default)]
-    least: f64,
 }
 
 /// [`Budget`] in a checkpoint; none in quasi-static analysis, and of a version that kept none.
@@ -214,7 +212,7 @@ mod tests {
 
     #[test]
     fn step_control_reads_back_and_that_of_a_version_without_a_budget_is_read() {
-        let budget = Budget { start: 0.1, external: 1.0 / 3.0, plastic: 2e-17, largest: 1e3, growth: 0.01, least: -2.0 };
+        let budget = Budget { start: 0.1, external: 1.0 / 3.0, plastic: 2e-17, largest: 1e3, growth: 0.01 };
         let kept = Form(Progress { t: 0.3, budget: Some(budget), ..Progress::default() });
         let text = serde_json::to_string(&kept).unwrap();
         assert_eq!(serde_json::from_str::<Form>(&text).unwrap(), kept);

@@ -1,8 +1,8 @@
 //! What bounds the energy of a dynamic run: nothing has more than it started with and was given.
 //!
-//! From one state to any later one, T + E + plastic grows by no more than the external work: elastic energy and dissipation
-//! are never negative, so that what is moving, strained and dissipated was there before or is work of gravity, loads and what
-//! moves. What an algorithm has lost it must not make again, so the bound is on the growth since the state with the least. A method whose force does not do the work of its stress makes energy all the same; no measure of the equilibrium
+//! In a state after any number of steps, T + E + plastic <= T0 + E0 + external: elastic energy and dissipation are never
+//! negative, so that what is moving, strained and dissipated was there at the start or is work of gravity, loads and what
+//! moves. A method whose force does not do the work of its stress makes energy all the same; no measure of the equilibrium
 //! tells, as each step is in balance.
 
 use super::Stored;
@@ -36,23 +36,20 @@ pub struct Budget {
     pub plastic: f64,
     /// J  the largest so far of start + external and of the energy, moving, strained and dissipated
     pub largest: f64,
-    /// -  the most by which the energy grew beyond the work, since the state where it had the least beyond it, over the largest
-    /// then
+    /// -  the most by which the energy exceeded start + external so far, over the largest then
     pub growth: f64,
-    /// J  the least so far of the energy beyond start + external
-    pub least: f64,
 }
 
 impl Budget {
     /// Opened in a state.
     pub fn open(stored: Stored) -> Self {
         let start = stored.kinetic + stored.elastic;
-        Self { start, external: 0.0, plastic: 0.0, largest: start, growth: 0.0, least: 0.0 }
+        Self { start, external: 0.0, plastic: 0.0, largest: start, growth: 0.0 }
     }
 
     /// All of it.
-    pub fn numbers(&self) -> [f64; 6] {
-        [self.start, self.external, self.plastic, self.largest, self.growth, self.least]
+    pub fn numbers(&self) -> [f64; 5] {
+        [self.start, self.external, self.plastic, self.largest, self.growth]
     }
 
     /// Enters a step.
@@ -61,9 +58,8 @@ impl Budget {
         self.plastic += step.plastic;
         let (given, energy) = (self.start + self.external, step.stored.kinetic + step.stored.elastic + self.plastic);
         self.largest = self.largest.max(given).max(energy);
-        self.least = self.least.min(energy - given);
         if self.largest > 0.0 {
-            self.growth = self.growth.max((energy - given - self.least) / self.largest);
+            self.growth = self.growth.max((energy - given) / self.largest);
         }
     }
 
