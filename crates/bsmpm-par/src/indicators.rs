@@ -149,8 +149,8 @@ impl State {
             rows.push(("energy-loss", Indicator::new(energy.loss, "-", meaning, usual)));
         }
         if let Some(growth) = self.growth {
-            let meaning = "largest growth of kinetic, elastic and dissipated energy beyond the work done, over the \
-                           largest energy";
+            let meaning = "largest excess of kinetic, elastic and dissipated energy over that of the start and all work \
+                           since, over the largest energy";
             rows.push(row("energy-growth", growth, meaning, GROWTH));
         }
         rows

@@ -52,7 +52,7 @@ const OTHERWISE: [&[(&str, &str)]; 6] = [
     &[
         ("\nk0 = 0.5", "\ngravity = \"elastic\""),
         ("k0          = 0.6\n", ""),
-        ("factor = 1.25", "factor = 1.25\nelastic = false\nstiffness = 1.5"),
+        ("factor = 1.25", "factor = 1.25\nelastic = false\nstiffness = 1.5\nunloaded = false"),
     ],
     &[
         ("displacement = [0.0, \"-10 cm\"]", "velocity = [0.0, -0.1]"),

@@ -29,7 +29,11 @@ pub(super) fn text(case: &Case, factor: usize) -> Option<String> {
     for key in ["lower", "upper", "cell"] {
         grid.remove(key);
     }
-    let knots = ["x", "y"].into_iter().zip(&case.grid.axes).map(|(name, axis)| (name.to_owned(), knots(axis, factor)));
+    let of = |axis: usize| {
+        let lines: Vec<usize> = case.grid.lines[axis].iter().map(|line| line.breakpoint).collect();
+        knots(&case.grid.axes[axis], &lines, factor)
+    };
+    let knots = ["x", "y"].into_iter().zip([of(0), of(1)]).map(|(name, knots)| (name.to_owned(), knots));
     grid.insert("knots".to_owned(), Value::Table(knots.collect()));
     for body in table.get_mut("body")?.as_array_mut()? {
         let points = body.get_mut("points_per_cell")?;
@@ -39,8 +43,9 @@ pub(super) fn text(case: &Case, factor: usize) -> Option<String> {
     Case::from_text("coarse form", &text, &[]).ok().map(|_| text)
 }
 
-/// Every so many breakpoints, and the last; a rest of less than half a cell goes to the one before.
-fn knots(axis: &Axis, factor: usize) -> Value {
+/// Every so many breakpoints, and the last; a rest of less than half a cell goes to the one before. Breakpoints that are
+/// repeated stay, as the form is to have them, too, in place of others less than half a cell away.
+fn knots(axis: &Axis, lines: &[usize], factor: usize) -> Value {
     let cells = axis.cells();
     let mut kept: Vec<usize> = (0..=cells).step_by(factor).collect();
     let rest = cells % factor;
@@ -50,6 +55,11 @@ fn knots(axis: &Axis, factor: usize) -> Value {
     if rest > 0 {
         kept.push(cells);
     }
+    let ends = [0, cells];
+    kept.retain(|k| ends.contains(k) || lines.iter().all(|line| 2 * line.abs_diff(*k) >= factor));
+    kept.extend(lines);
+    kept.sort_unstable();
+    kept.dedup();
     Value::Array(kept.into_iter().map(|i| Value::Float(axis.lower() + axis.breakpoint(i))).collect())
 }
 
@@ -77,14 +87,17 @@ mod tests {
 
     #[test]
     fn a_rest_of_cells_makes_one_more_or_a_longer_one() {
-        let lengths = |cells: usize, factor: usize| {
-            let value = knots(&Axis::Uniform { lower: 1.0, cell: 1.0, cells }, factor);
+        let lengths = |cells: usize, lines: &[usize], factor: usize| {
+            let value = knots(&Axis::Uniform { lower: 1.0, cell: 1.0, cells }, lines, factor);
             let at: Vec<f64> = value.as_array().unwrap().iter().map(|x| x.as_float().unwrap()).collect();
             at.windows(2).map(|pair| pair[1] - pair[0]).collect::<Vec<_>>()
         };
-        assert_eq!(lengths(8, 4), [4.0, 4.0]);
-        assert_eq!(lengths(9, 4), [4.0, 5.0]);
-        assert_eq!(lengths(11, 4), [4.0, 4.0, 3.0]);
-        assert_eq!(lengths(1, 4), [1.0]);
+        assert_eq!(lengths(8, &[], 4), [4.0, 4.0]);
+        assert_eq!(lengths(9, &[], 4), [4.0, 5.0]);
+        assert_eq!(lengths(11, &[], 4), [4.0, 4.0, 3.0]);
+        assert_eq!(lengths(1, &[], 4), [1.0]);
+        // A line inside, and one beside a breakpoint that goes.
+        assert_eq!(lengths(8, &[2], 4), [2.0, 2.0, 4.0]);
+        assert_eq!(lengths(8, &[3], 4), [3.0, 5.0]);
     }
 }

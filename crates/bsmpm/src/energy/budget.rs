@@ -4,6 +4,10 @@
 //! negative, so that what is moving, strained and dissipated was there at the start or is work of gravity, loads and what
 //! moves. A method whose force does not do the work of its stress makes energy all the same; no measure of the equilibrium
 //! tells, as each step is in balance.
+//!
+//! What an algorithm has lost can be made again unseen. Growth since the state with the least energy would show it (short
+//! collapse .009, in steps of 10 ms .031), but small blocks that a sudden force sets
+//! in motion pass .16 in their first steps.
 
 use super::Stored;
 use crate::error::StepError;
