@@ -79,8 +79,8 @@ pub fn choices(case: &Case, ranks: usize, options: &[String]) -> Vec<manifest::C
     };
     let mut choices = Vec::new();
     if case.solver.nonlinear == bsmpm_scene::Nonlinear::Auto {
-        let reason = "all recent secants on the stiffness at the first guess, in fewer iterations than Broyden's update; Newton's method with \
-                      the complete derivative where they stall; then shorter steps";
+        let reason = "all recent secants on the stiffness at the first guess, in fewer iterations than Broyden's update; \
+                      Newton's method with the complete derivative where they stall; then shorter steps";
         choices.push(choice("solver.nonlinear", "multisecant, newton", reason));
     }
     choices.extend(linear_choices(case, &linear(case, ranks, options), ranks));

@@ -1,7 +1,8 @@
 //! `bsmpm estimate`: what a case will cost. Sizes follow from the case (`sizes`); what a unit of work costs, from the case's
 //! first steps; how much work there is, from coarse forms of it over all its time (`probe`, `coarse`, `growth`), for
 //! iterations change as material yields; a case that takes no longer than probes may is run whole. Without probes both come
-//! from what runs took elsewhere (`stored`), scaled by how fast this machine is (`kernel`). The result is set in `report`, beside a finished run in `against`.
+//! from what runs took elsewhere (`stored`), scaled by how fast this machine is (`kernel`). The result is set in
+//! `report`, beside a finished run in `against`.
 
 use std::path::{Path, PathBuf};
 use std::thread;

@@ -22,7 +22,8 @@
 //!   between the forces at the end, which are in balance, and the mean ones, by which external work is counted (gravity,
 //!   loads, strips). w is V0, or the weight that the
 //!   [`quadrature`](crate::quadrature) gives to the point: energies are those of the points' own volumes, so that a state has one
-//!   energy, and what the weights work otherwise is counted here. ΔE' is the change of E before the smoothing, ã the acceleration that the mass resists with. With
+//!   energy, and what the weights work otherwise is counted here. ΔE' is the change of E before the smoothing, ã the
+//!   acceleration that the mass resists with. With
 //!   Newmark's 1/4, 1/2 `M (a0 + a1)/2 · u` is exactly the nodes' change: elastic and without remapping, this part is of
 //!   second order in dt. Numerical damping, F-bar, backward Euler, and the difference between the forces at t on the new
 //!   grid and the mapped `M a0` appear here; in quasi-static analysis also what a load that is applied at once does more

@@ -48,7 +48,8 @@ impl Exact {
         }
     }
 
-    /// The sum, rounded to the nearest float, so that other units by powers of two change no digit; not a number if a term was none or infinite.
+    /// The sum, rounded to the nearest float, so that other units by powers of two change no digit; not a number if a
+    /// term was none or infinite.
     pub fn value(&self) -> f64 {
         if self.words[DIGITS] != 0 {
             return f64::NAN;

@@ -8,7 +8,9 @@
 //! | --- | --- | --- |
 //! | (1) | shape functions and topology | [`grid::spline`], [`grid::shape`] |
 //! | (2) | points to nodes | [`step::nodes`] |
-//! | (3), (7)-(9) | quasi-Newton iteration, Newton's method where it stalls, both convergence measures | [`step::equilibrium`], [`step::quasi_newton`], [`step::newton`], [`step::progress`], [`step::round_off`] |
+//! | (3), (7)-(9) | quasi-Newton iteration, both convergence measures | [`step::equilibrium`], [`step::quasi_newton`] |
+//! | | where it ends, and what is round-off | [`step::progress`], [`step::round_off`] |
+//! | | Newton's method where it stalls | [`step::newton`] |
 //! | (9) | whether an elastic equilibrium is stable (beyond the paper) | [`step::stability`] |
 //! | (4) | trial deformation, F-bar | [`step::trial`] |
 //! | (5) | out-of-balance force; what points weigh in it | [`step::residual`]; [`quadrature`] |

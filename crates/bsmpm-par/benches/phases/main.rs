@@ -1,6 +1,7 @@
 //! What a step costs, phase by phase, from a state in mid-flow: `scripts/bench` prints it.
 //!
-//! `phases CASE CHECKPOINT SECONDS [--set KEY=VALUE]...`, on one rank, SECONDS for each phase: nanoseconds per point of every pass, of factorisation and solution, and
+//! `phases CASE CHECKPOINT SECONDS [--set KEY=VALUE]...`, on one rank, SECONDS for each phase: nanoseconds per point
+//! of every pass, of factorisation and solution, and
 //! bytes per point, beside the memory bandwidth and the arithmetic that the core reaches in the same minute.
 
 mod kernels;

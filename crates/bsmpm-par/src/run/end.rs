@@ -120,7 +120,8 @@ impl Run<'_> {
         let (all, unusual) = indicators::told(&ledger.manifest().indicators);
         let judged = !ledger.manifest().indicators.is_empty();
         let text = format!(
-            "{status:?} at t = {}: {} steps, {} iterations, {} cuts, {:.1} s by the clock, {:.1} CPU s, {:.0} MiB on the largest rank; written to {}",
+            "{status:?} at t = {}: {} steps, {} iterations, {} cuts, {:.1} s by the clock, {:.1} CPU s, \
+             {:.0} MiB on the largest rank; written to {}",
             self.simulation.time(),
             summary.steps,
             summary.iterations,

@@ -48,61 +48,83 @@ pub fn all() -> Vec<Row> {
 }
 
 /// Nearly incompressible material that cannot evade.
-#[rustfmt::skip] // a row is a line
+#[rustfmt::skip] // a row is a line or two
 fn confined() -> Vec<Row> {
     vec![
-        row("N01", "nu = .49, confined column, none: height / l0, error", AtMost(5e-4), || incompressible::confined(0.49, Plain)),
-        row("N01", "nu = .499, f-bar: the worst of 16 that differ by round-off", AtMost(5e-4), || incompressible::confined_by_round_off(0.499, FBar, 16)).or_refused(),
+        row("N01", "nu = .49, confined column, none: height / l0, error", AtMost(5e-4),
+            || incompressible::confined(0.49, Plain)),
+        row("N01", "nu = .499, f-bar: the worst of 16 that differ by round-off", AtMost(5e-4),
+            || incompressible::confined_by_round_off(0.499, FBar, 16)).or_refused(),
         row("N01", "nu = .4999, the same, f-bar", AtMost(5e-4), || incompressible::confined(0.4999, FBar)).or_refused(),
-        row("N01", "nu = .4999, the same, modified-f-bar", AtMost(5e-4), || incompressible::confined(0.4999, ModifiedFBar)).or_refused(),
-        row("N01", "nu = .4999, the same, consistent-f-bar", AtMost(5e-4), || incompressible::confined(0.4999, ConsistentFBar)).or_refused(),
-        row("N01", "nu = .49999, the same, f-bar", AtMost(5e-4), || incompressible::confined(0.49999, FBar)).or_refused(),
-        row("N01", "nu = .4999, cantilever, f-bar: deflection / that with .495 and the same E', - 1", AtMost(0.02), || incompressible::bending(0.4999, "f-bar")),
+        row("N01", "nu = .4999, the same, modified-f-bar", AtMost(5e-4),
+            || incompressible::confined(0.4999, ModifiedFBar)).or_refused(),
+        row("N01", "nu = .4999, the same, consistent-f-bar", AtMost(5e-4),
+            || incompressible::confined(0.4999, ConsistentFBar)).or_refused(),
+        row("N01", "nu = .49999, the same, f-bar", AtMost(5e-4),
+            || incompressible::confined(0.49999, FBar)).or_refused(),
+        row("N01", "nu = .4999, cantilever, f-bar: deflection / that with .495 and the same E', - 1", AtMost(0.02),
+            || incompressible::bending(0.4999, "f-bar")),
     ]
 }
 
 /// Nearly incompressible clay under a strip.
-#[rustfmt::skip] // a row is a line
+#[rustfmt::skip] // a row is a line or two
 fn footings() -> Vec<Row> {
     vec![
-        row("N01", "nu = .3, footing, modified-f-bar: p/c at z/B = .1", YIELDING, || incompressible::footing(0.3, MODIFIED)),
+        row("N01", "nu = .3, footing, modified-f-bar: p/c at z/B = .1", YIELDING,
+            || incompressible::footing(0.3, MODIFIED)),
         row("N01", "nu = .49, the same", BEARING, || incompressible::footing(0.49, MODIFIED)),
         row("N01", "nu = .499, the same", BEARING, || incompressible::footing(0.499, MODIFIED)),
         row("N01", "nu = .4999, the same", BEARING, || incompressible::footing(0.4999, MODIFIED)).or_refused(),
         row("N01", "nu = .3, the same, consistent-f-bar", YIELDING, || incompressible::footing(0.3, CONSISTENT)),
-        row("N01", "nu = .4999, the same, consistent-f-bar", BEARING, || incompressible::footing(0.4999, CONSISTENT)).or_refused(),
-        row("N01", "nu = .4999, the same, f-bar", BEARING, || incompressible::footing(0.4999, "f-bar")).or_refused().full(),
-        row("N01", "nu = .49999, the same, modified-f-bar", BEARING, || incompressible::footing(0.49999, MODIFIED)).or_refused().full(),
-        row("N01", "nu = .49999, the same, f-bar", BEARING, || incompressible::footing(0.49999, "f-bar")).or_refused().full(),
-        row("N01", "nu = .4999999, the same, modified-f-bar", BEARING, || incompressible::footing(0.499_999_9, MODIFIED)).or_refused().full(),
-        row("N01", "nu = .499, footing, modified-f-bar: noise of p about planes / mean |p|", AtMost(0.02), || incompressible::checkerboard(0.499, MODIFIED)).fails(NOISE_P),
-        row("N01", "nu = .499, footing, consistent-f-bar: noise of p about planes / mean |p|", AtMost(0.02), || incompressible::checkerboard(0.499, CONSISTENT)).fails(NOISE_P),
-        row("N01", "nu = .499, footing, modified-f-bar: iterations / those with .3", AtMost(3.0), || incompressible::iterations(0.499, MODIFIED)),
+        row("N01", "nu = .4999, the same, consistent-f-bar", BEARING,
+            || incompressible::footing(0.4999, CONSISTENT)).or_refused(),
+        row("N01", "nu = .4999, the same, f-bar", BEARING,
+            || incompressible::footing(0.4999, "f-bar")).or_refused().full(),
+        row("N01", "nu = .49999, the same, modified-f-bar", BEARING,
+            || incompressible::footing(0.49999, MODIFIED)).or_refused().full(),
+        row("N01", "nu = .49999, the same, f-bar", BEARING,
+            || incompressible::footing(0.49999, "f-bar")).or_refused().full(),
+        row("N01", "nu = .4999999, the same, modified-f-bar", BEARING,
+            || incompressible::footing(0.499_999_9, MODIFIED)).or_refused().full(),
+        row("N01", "nu = .499, footing, modified-f-bar: noise of p about planes / mean |p|", AtMost(0.02),
+            || incompressible::checkerboard(0.499, MODIFIED)).fails(NOISE_P),
+        row("N01", "nu = .499, footing, consistent-f-bar: noise of p about planes / mean |p|", AtMost(0.02),
+            || incompressible::checkerboard(0.499, CONSISTENT)).fails(NOISE_P),
+        row("N01", "nu = .499, footing, modified-f-bar: iterations / those with .3", AtMost(3.0),
+            || incompressible::iterations(0.499, MODIFIED)),
         row("N01", "nu = .49999: a warning", Reported, || incompressible::warned(0.49999)).or_refused(),
     ]
 }
 
 /// Next to no cohesion, and much friction.
-#[rustfmt::skip] // a row is a line
+#[rustfmt::skip] // a row is a line or two
 fn cohesionless() -> Vec<Row> {
     vec![
         row("N02", "c = 0, 1e-6, 1e-3 at a point, 3e5 trials: f / E", AtMost(1e-8), materials::apex),
         row("N02", "c = 0, column at rest: error of its base's reaction", AtMost(1e-4), || weak::resting(0.3)),
         row("N02", "c = 0, nu = .4999, the same", AtMost(1e-4), || weak::resting(0.4999)).or_refused(),
-        row("N02", "c = 1e-3 gamma H for 0, collapse to .1 s: change of the runout", AtMost(5e-3), || weak::little_cohesion(0.1)),
+        row("N02", "c = 1e-3 gamma H for 0, collapse to .1 s: change of the runout", AtMost(5e-3),
+            || weak::little_cohesion(0.1)),
         row("N02", "the same to .607 s", AtMost(5e-3), || weak::little_cohesion(0.607)).full().fails(LOOSE),
-        row("N02", "c = 0, nu = .4999, first 20 steps of the collapse, none: u, change with dt / 2", AtMost(0.05), || weak::beginning(0.4999, 21.9, "none")).or_refused().full(),
-        row("N02", "c = 0, nu = .4999, f-bar: the same", AtMost(0.05), || weak::beginning(0.4999, 21.9, "f-bar")).or_refused(),
-        row("N02", "c = 0, nu = .4999, modified-f-bar: the same", AtMost(0.05), || weak::beginning(0.4999, 21.9, MODIFIED)).or_refused(),
-        row("N02", "c = 0, nu = .4999, consistent-f-bar: the same", AtMost(0.05), || weak::beginning(0.4999, 21.9, CONSISTENT)).or_refused(),
-        row("N02", "c = 0, phi = 45, first 20 steps of the collapse: u, change with dt / 2", AtMost(0.05), || weak::beginning(0.3, 45.0, MODIFIED)),
+        row("N02", "c = 0, nu = .4999, first 20 steps of the collapse, none: u, change with dt / 2", AtMost(0.05),
+            || weak::beginning(0.4999, 21.9, "none")).or_refused().full(),
+        row("N02", "c = 0, nu = .4999, f-bar: the same", AtMost(0.05),
+            || weak::beginning(0.4999, 21.9, "f-bar")).or_refused(),
+        row("N02", "c = 0, nu = .4999, modified-f-bar: the same", AtMost(0.05),
+            || weak::beginning(0.4999, 21.9, MODIFIED)).or_refused(),
+        row("N02", "c = 0, nu = .4999, consistent-f-bar: the same", AtMost(0.05),
+            || weak::beginning(0.4999, 21.9, CONSISTENT)).or_refused(),
+        row("N02", "c = 0, phi = 45, first 20 steps of the collapse: u, change with dt / 2", AtMost(0.05),
+            || weak::beginning(0.3, 45.0, MODIFIED)),
         row("N02", "c = 0, phi = 60, the same", AtMost(0.05), || weak::beginning(0.3, 60.0, MODIFIED)),
-        row("N02", "c = 0, phi = 89.9, the same", AtMost(0.05), || weak::beginning(0.3, 89.9, MODIFIED)).or_refused().fails(LATE),
+        row("N02", "c = 0, phi = 89.9, the same", AtMost(0.05),
+            || weak::beginning(0.3, 89.9, MODIFIED)).or_refused().fails(LATE),
     ]
 }
 
 /// Returns at a point.
-#[rustfmt::skip] // a row is a line
+#[rustfmt::skip] // a row is a line or two
 fn returns() -> Vec<Row> {
     vec![
         row("N03", "phi = 0 (Tresca), 1e6 trials: f / (c + |p|)", AtMost(1e-10), || materials::yielding(0.0)),
@@ -118,7 +140,7 @@ fn returns() -> Vec<Row> {
 }
 
 /// Strains at a point.
-#[rustfmt::skip] // a row is a line
+#[rustfmt::skip] // a row is a line or two
 fn strains() -> Vec<Row> {
     vec![
         row("N04", "principal strains 1 to 1e-16 apart: b rebuilt from tau", AtMost(1e-13), materials::nearly_equal),
@@ -135,12 +157,14 @@ fn strains() -> Vec<Row> {
 }
 
 /// Where material ends in its cells.
-#[rustfmt::skip] // a row is a line
+#[rustfmt::skip] // a row is a line or two
 fn edges() -> Vec<Row> {
     vec![
-        row("N06", "a body moved across a cell in 200 places, no background: inner stress, change", AtMost(0.01), || geometry::crossing(0.0)).fails(EDGE),
+        row("N06", "a body moved across a cell in 200 places, no background: inner stress, change", AtMost(0.01),
+            || geometry::crossing(0.0)).fails(EDGE),
         row("N06", "the same with the background 1e-4", AtMost(0.01), || geometry::crossing(1e-4)),
-        row("N06", "its edge on a knot and 1e-2 .. 1e-15 h beyond, no background: the same", AtMost(0.01), || geometry::entering(0.0)).fails(EDGE),
+        row("N06", "its edge on a knot and 1e-2 .. 1e-15 h beyond, no background: the same", AtMost(0.01),
+            || geometry::entering(0.0)).fails(EDGE),
         row("N06", "the same with the background 1e-4", AtMost(0.01), || geometry::entering(1e-4)),
         row("N06", "falling across a cell: acceleration of nodes / g", AtMost(100.0), geometry::nodal_acceleration),
         row("N06", "falling across a cell: momentum lost, relative", AtMost(1e-12), geometry::lost_momentum),
@@ -148,21 +172,25 @@ fn edges() -> Vec<Row> {
 }
 
 /// Points per cell.
-#[rustfmt::skip] // a row is a line
+#[rustfmt::skip] // a row is a line or two
 fn counts() -> Vec<Row> {
     vec![
-        row("N07", "one point a cell, bar pulled to 1.5 l: error of its stress", AtMost(0.05), || points::stretched(1, 1.5)).or_refused().fails(GRIP),
-        row("N07", "one point a cell, bar pulled to 3 l: the same", AtMost(0.05), || points::stretched(1, 3.0)).or_refused().fails(GRIP),
-        row("N07", "two points a cell and axis, bar pulled to 3 l: the same", AtMost(0.05), || points::stretched(2, 3.0)).or_refused().fails(GRIP),
+        row("N07", "one point a cell, bar pulled to 1.5 l: error of its stress", AtMost(0.05),
+            || points::stretched(1, 1.5)).or_refused().fails(GRIP),
+        row("N07", "one point a cell, bar pulled to 3 l: the same", AtMost(0.05),
+            || points::stretched(1, 3.0)).or_refused().fails(GRIP),
+        row("N07", "two points a cell and axis, bar pulled to 3 l: the same", AtMost(0.05),
+            || points::stretched(2, 3.0)).or_refused().fails(GRIP),
         row("N07", "one point a cell, footing: p/c at z/B = .1", BEARING, || points::footing(1)).or_refused(),
-        row("N07", "one point a cell, collapse to .1 s: way of the front / that with four", Within(0.95, 1.05), points::collapse).or_refused(),
+        row("N07", "one point a cell, collapse to .1 s: way of the front / that with four", Within(0.95, 1.05),
+            points::collapse).or_refused(),
         row("N08", "36, 100, 400, 1e4 points a cell: stress error / that with fewer", AtMost(1.0), points::many),
         row("N08", "1e4 points a cell: time a point / that with 100", Reported, points::cost),
     ]
 }
 
 /// Tiny steps.
-#[rustfmt::skip] // a row is a line
+#[rustfmt::skip] // a row is a line or two
 fn tiny_steps() -> Vec<Row> {
     vec![
         row("N09", "dt = .25 ms, bar, 1000 steps: energy", AtMost(1e-6), || steps::tiny(2.5e-4)),
@@ -175,25 +203,30 @@ fn tiny_steps() -> Vec<Row> {
 }
 
 /// Huge steps.
-#[rustfmt::skip] // a row is a line
+#[rustfmt::skip] // a row is a line or two
 fn huge_steps() -> Vec<Row> {
     vec![
         row("N10", "dt = 1e3 s, settling block: distance from the static state", AtMost(1e-6), || steps::huge(1e3)),
         row("N10", "dt = 1e6 s: the same", AtMost(1e-6), || steps::huge(1e6)),
-        row("N10", "dt = 1e3 s, 200 steps: ringing of the last 100 / of the first", AtMost(1.0), || steps::ringing(1e3)),
-        row("N10", "dt = 10 ms, collapse to .1 s: way of the front, error", AtMost(0.05), || steps::collapse(0.01, 0.1)).or_refused(),
+        row("N10", "dt = 1e3 s, 200 steps: ringing of the last 100 / of the first", AtMost(1.0),
+            || steps::ringing(1e3)),
+        row("N10", "dt = 10 ms, collapse to .1 s: way of the front, error", AtMost(0.05),
+            || steps::collapse(0.01, 0.1)).or_refused(),
         row("N10", "dt = 50 ms, the same", AtMost(0.05), || steps::collapse(0.05, 0.1)).or_refused(),
-        row("N10", "dt = 10 ms, collapse to .607 s: the same", AtMost(0.05), || steps::collapse(0.01, 0.607)).or_refused().full(),
+        row("N10", "dt = 10 ms, collapse to .607 s: the same", AtMost(0.05),
+            || steps::collapse(0.01, 0.607)).or_refused().full(),
         row("N10", "dt = 50 ms, the same", AtMost(0.05), || steps::collapse(0.05, 0.607)).or_refused().full(),
-        row("N10", "dt = 1000 ms, collapse to 1 s: the same", AtMost(0.05), || steps::collapse(1.0, 1.0)).or_refused().full().fails(COARSE),
+        row("N10", "dt = 1000 ms, collapse to 1 s: the same", AtMost(0.05),
+            || steps::collapse(1.0, 1.0)).or_refused().full().fails(COARSE),
     ]
 }
 
 /// Layers of very different stiffness, and gravity of any size.
-#[rustfmt::skip] // a row is a line
+#[rustfmt::skip] // a row is a line or two
 fn stiffness() -> Vec<Row> {
     vec![
-        row("N11", "stiffness 1 : 1e3, two layers: error of the base's reaction", AtMost(1e-6), || weak::weight(1e3, false)),
+        row("N11", "stiffness 1 : 1e3, two layers: error of the base's reaction", AtMost(1e-6),
+            || weak::weight(1e3, false)),
         row("N11", "1 : 1e6", AtMost(1e-6), || weak::weight(1e6, false)),
         row("N11", "1 : 1e9", AtMost(1e-6), || weak::weight(1e9, false)).or_refused(),
         row("N11", "1 : 1e6: largest force measure accepted", AtMost(1e-4), || weak::balance(1e6)),
@@ -208,7 +241,7 @@ fn stiffness() -> Vec<Row> {
 }
 
 /// Other units and origins.
-#[rustfmt::skip] // a row is a line
+#[rustfmt::skip] // a row is a line or two
 fn other_units() -> Vec<Row> {
     vec![
         row("N13", "units x 2^n, collapse, modified-f-bar: numbers that differ", Same, || units::collapse(MODIFIED)),
@@ -217,8 +250,10 @@ fn other_units() -> Vec<Row> {
         row("N13", "units x 2^n, footing, modified-f-bar: the same", Same, || units::footing(MODIFIED)),
         row("N13", "units x 2^n, footing, cg with jacobi: the same", Same, units::iterative),
         row("N13", "mm, kPa, ms for m, Pa, s: largest difference", AtMost(1e-9), units::prefixes),
-        row("N14", "origin at 2^20 m, cells of 1/128 m, collapse: numbers that differ", Same, || units::exact_origin(1_048_576.0)),
-        row("N14", "origin at 1e3 m, cells of 10 mm, collapse: displacement, change", AtMost(1e-9), || units::origin(1e3)),
+        row("N14", "origin at 2^20 m, cells of 1/128 m, collapse: numbers that differ", Same,
+            || units::exact_origin(1_048_576.0)),
+        row("N14", "origin at 1e3 m, cells of 10 mm, collapse: displacement, change", AtMost(1e-9),
+            || units::origin(1e3)),
         row("N14", "origin at 1e6 m: the same", AtMost(1e-6), || units::origin(1e6)),
         row("N14", "origin at 1e8 m: the same", AtMost(1e-12), || units::origin(1e8)).or_refused(),
         row("N14", "points on knots in flight: momentum, change", AtMost(1e-10), units::knots),
@@ -226,7 +261,7 @@ fn other_units() -> Vec<Row> {
 }
 
 /// Symmetry and motion through cells.
-#[rustfmt::skip] // a row is a line
+#[rustfmt::skip] // a row is a line or two
 fn motions() -> Vec<Row> {
     vec![
         row("N15", "mirrored, 100 elastic steps, three methods: difference", AtMost(1e-10), geometry::mirrored),
@@ -240,7 +275,7 @@ fn motions() -> Vec<Row> {
 }
 
 /// Updates of no length, no load, denormal numbers.
-#[rustfmt::skip] // a row is a line
+#[rustfmt::skip] // a row is a line or two
 fn nothing() -> Vec<Row> {
     vec![
         row("N22", "Broyden, steps of no length, 250 updates: numbers that are none", Same, steps::degenerate_broyden),
@@ -254,7 +289,7 @@ fn nothing() -> Vec<Row> {
 }
 
 /// Long runs.
-#[rustfmt::skip] // a row is a line
+#[rustfmt::skip] // a row is a line or two
 fn long_runs() -> Vec<Row> {
     vec![
         row("N18", "1e5 steps, flight: steps with another total mass", Same, long::mass_in_flight).full(),
@@ -270,18 +305,22 @@ fn long_runs() -> Vec<Row> {
 }
 
 /// What belongs to the number of steps, and deep penetration.
-#[rustfmt::skip] // a row is a line
+#[rustfmt::skip] // a row is a line or two
 fn step_counts() -> Vec<Row> {
     vec![
         row("N19", "1e4 steps at rest, none: creep / elastic settlement", AtMost(0.01), || long::held("none")).full(),
         row("N19", "1e4 steps at rest, f-bar: the same", AtMost(0.01), || long::held("f-bar")).full(),
-        row("N19", "1e4 steps at rest, modified-f-bar: the same", AtMost(0.01), || long::held(MODIFIED)).full().fails(DIFFUSION),
+        row("N19", "1e4 steps at rest, modified-f-bar: the same", AtMost(0.01),
+            || long::held(MODIFIED)).full().fails(DIFFUSION),
         row("N19", "1e4 steps at rest, consistent-f-bar: the same", AtMost(0.01), || long::held(CONSISTENT)).full(),
-        row("N20", "footing in 8, 16, 32, 64 steps, none: change by a doubling / the one before", AtMost(0.5), || long::step_count("none")).or_refused().full().fails(SLOW),
+        row("N20", "footing in 8, 16, 32, 64 steps, none: change by a doubling / the one before", AtMost(0.5),
+            || long::step_count("none")).or_refused().full().fails(SLOW),
         row("N20", "the same, f-bar", AtMost(0.5), || long::step_count("f-bar")).or_refused().full().fails(SLOW),
         row("N20", "the same, modified-f-bar", AtMost(0.5), || long::step_count(MODIFIED)).or_refused().full(),
-        row("N20", "the same, consistent-f-bar", AtMost(0.5), || long::step_count(CONSISTENT)).or_refused().full().fails(SLOW),
-        row("N21", "footing to z = 2 B, none: noise of p about planes / c", Reported, || long::deep("none")).or_refused().full(),
+        row("N20", "the same, consistent-f-bar", AtMost(0.5),
+            || long::step_count(CONSISTENT)).or_refused().full().fails(SLOW),
+        row("N21", "footing to z = 2 B, none: noise of p about planes / c", Reported,
+            || long::deep("none")).or_refused().full(),
         row("N21", "the same, f-bar", Reported, || long::deep("f-bar")).or_refused().full(),
         row("N21", "the same, modified-f-bar", Reported, || long::deep(MODIFIED)).or_refused().full(),
         row("N21", "the same, consistent-f-bar", Reported, || long::deep(CONSISTENT)).or_refused().full(),

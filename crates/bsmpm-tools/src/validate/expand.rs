@@ -5,7 +5,8 @@ use toml::{Table, Value};
 /// Entries of a study that may have `each`.
 const REPEATED: [&str; 3] = ["run", "row", "plot"];
 
-/// Writes out what has `each = { word = [values], .. }`: a copy for every choice of values; of words by the alphabet the last's change the fastest.
+/// Writes out what has `each = { word = [values], .. }`: a copy for every choice of values; of words by the alphabet
+/// the last's change the fastest.
 ///
 /// In its strings "{word}" becomes the value's text; a string that is nothing but "{word}" becomes the value itself.
 ///
