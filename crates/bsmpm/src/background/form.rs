@@ -18,17 +18,24 @@ pub(super) struct Forms<'a, const D: usize> {
     grid: &'a Grid<D>,
     form: Form,
     products: [Vec<Products>; D], // per axis and cell
+    /// per axis: where each entry (a, b) of a block finds the product of its functions along that axis
+    entries: [Vec<usize>; D],
 }
 
-/// int N_a N_b, int N_a' N_b', int N_a'' N_b'' and int N_a' N_b over a cell of one axis, row-major (q + 1) square; m, 1/m,
-/// 1/m^3, 1.
-pub(super) type Products = [Vec<f64>; 4];
-/// The last of them.
-const MIXED: usize = 3;
+/// int N_a N_b, int N_a' N_b', int N_a'' N_b'', int N_a' N_b and int N_a N_b' over a cell of one axis, row-major (q + 1)
+/// square; m, 1/m, 1/m^3, 1, 1.
+pub(super) type Products = [Vec<f64>; 5];
+/// The last two of them.
+const MIXED: [usize; 2] = [3, 4];
 
 impl<'a, const D: usize> Forms<'a, D> {
     pub(super) fn new(grid: &'a Grid<D>, form: Form) -> Self {
-        Self { grid, form, products: products(grid) }
+        let (width, nodes) = (grid.order() + 1, grid.cell_nodes());
+        let entries = std::array::from_fn(|axis| {
+            let along = |k: usize| k / width.pow((D - 1 - axis) as u32) % width;
+            (0..nodes * nodes).map(|entry| along(entry / nodes) * width + along(entry % nodes)).collect()
+        });
+        Self { grid, form, products: products(grid), entries }
     }
 
     /// `factor` times the form of a cell; m^(D-2) times the unit of the factor.
@@ -60,54 +67,32 @@ impl<'a, const D: usize> Forms<'a, D> {
         for i in 0..D {
             self.add(cell, 0.5 * factor, |axis| usize::from(axis == i), &mut plain);
         }
+        let mut mixed = vec![0.0; nodes * nodes];
         for (i, j) in (0..D * D).map(|k| (k / D, k % D)) {
             // Of u_i at a and u_j at b: the derivative of N_a along j times that of N_b along i.
-            let mut mixed = vec![0.0; nodes * nodes];
-            let derivatives = |axis| (usize::from(axis == j), usize::from(axis == i));
-            self.add_mixed(cell, 0.5 * factor, derivatives, &mut mixed);
-            for (entry, value) in mixed.iter().enumerate() {
-                let (a, b) = (entry / nodes, entry % nodes);
-                let own = if i == j { plain[entry] } else { 0.0 };
-                coupled[(a * D + i) * nodes * D + b * D + j] = own + value;
+            let of = |axis| match (axis == j, axis == i) {
+                (true, false) => MIXED[0],
+                (false, true) => MIXED[1],
+                (both, _) => usize::from(both),
+            };
+            mixed.fill(0.0);
+            self.add(cell, 0.5 * factor, of, &mut mixed);
+            for (a, (mixed, plain)) in mixed.chunks_exact(nodes).zip(plain.chunks_exact(nodes)).enumerate() {
+                let row = coupled[(a * D + i) * nodes * D..].iter_mut().skip(j).step_by(D);
+                for (sum, (value, own)) in row.zip(mixed.iter().zip(plain)) {
+                    *sum = if i == j { own + value } else { 0.0 + value };
+                }
             }
         }
         coupled
     }
 
-    /// Adds `factor` times the integral of the products of the functions' derivatives of at most first order, of N_a and of
-    /// N_b along each axis.
-    fn add_mixed(
-        &self,
-        cell: &[usize; D],
-        factor: f64,
-        derivatives: impl Fn(usize) -> (usize, usize),
-        block: &mut [f64],
-    ) {
-        let (width, nodes) = (self.grid.order() + 1, self.grid.cell_nodes());
-        let along = |k: usize, axis: usize| k / width.pow((D - 1 - axis) as u32) % width;
+    /// Adds `factor` times the integral of the products of the functions' derivatives, `of(axis)` along each axis.
+    fn add(&self, cell: &[usize; D], factor: f64, of: impl Fn(usize) -> usize, block: &mut [f64]) {
+        let products: [&[f64]; D] = std::array::from_fn(|axis| &self.products[axis][cell[axis]][of(axis)][..]);
+        let entries = self.entries.each_ref().map(|entries| &entries[..block.len()]);
         for (entry, sum) in block.iter_mut().enumerate() {
-            let (a, b) = (entry / nodes, entry % nodes);
-            let integral = |axis: usize| {
-                let (a, b, products) = (along(a, axis), along(b, axis), &self.products[axis][cell[axis]]);
-                match derivatives(axis) {
-                    (1, 0) => products[MIXED][a * width + b],
-                    (0, 1) => products[MIXED][b * width + a],
-                    (order, _) => products[order][a * width + b],
-                }
-            };
-            *sum += factor * (0..D).map(integral).product::<f64>();
-        }
-    }
-
-    /// Adds `factor` times the integral of the products of the functions' derivatives of `order(axis)` along each axis.
-    fn add(&self, cell: &[usize; D], factor: f64, order: impl Fn(usize) -> usize, block: &mut [f64]) {
-        let (width, nodes) = (self.grid.order() + 1, self.grid.cell_nodes());
-        let along = |k: usize, axis: usize| k / width.pow((D - 1 - axis) as u32) % width;
-        for (entry, sum) in block.iter_mut().enumerate() {
-            let (a, b) = (entry / nodes, entry % nodes);
-            let integral =
-                |axis: usize| self.products[axis][cell[axis]][order(axis)][along(a, axis) * width + along(b, axis)];
-            *sum += factor * (0..D).map(integral).product::<f64>();
+            *sum += factor * (0..D).map(|axis| products[axis][entries[axis][entry]]).product::<f64>();
         }
     }
 }
@@ -130,14 +115,14 @@ fn of_cell<const W: usize>(axis: &KnotVector, cell: usize) -> Products {
     let (middle, half) = (0.5 * (lower + upper), 0.5 * (upper - lower));
     // N' is at most quadratic in a cell: its central difference over any distance is N''.
     let (behind, ahead) = (middle - half, middle + half);
-    let mut sums = [(); 4].map(|()| vec![0.0; W * W]);
+    let mut sums = [(); 5].map(|()| vec![0.0; W * W]);
     for (at, weight) in GAUSS {
         let (shift, weight) = (at * half, weight * half);
         let (N, dN) = axis.basis::<W>(middle + shift, cell);
         let slope = |x: f64| axis.basis::<W>(x + shift, cell).1;
         let (before, after) = (slope(behind), slope(ahead));
         let ddN = std::array::from_fn(|a| (after[a] - before[a]) / (2.0 * half));
-        for (sum, (rows, columns)) in sums.iter_mut().zip([(N, N), (dN, dN), (ddN, ddN), (dN, N)]) {
+        for (sum, (rows, columns)) in sums.iter_mut().zip([(N, N), (dN, dN), (ddN, ddN), (dN, N), (N, dN)]) {
             for (entry, value) in sum.iter_mut().enumerate() {
                 *value += weight * (rows[entry / W] * columns[entry % W]);
             }
