@@ -176,7 +176,7 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
     fn count(&self, before: Counts, load: f64) -> (Cost, bool) {
         let told = self.timers.traffic().counts().since(&before);
         let grid = &self.model.grid;
-        let lacks_room = grid.occupied(&self.points).is_some_and(|occupied| !grid.has_room(&occupied));
+        let lacks_room = grid.occupied(&self.points.x).is_some_and(|occupied| !grid.has_room(&occupied));
         let mut numbers = vec![0.0; 3 + self.slabs.ranks()];
         numbers[..2].copy_from_slice(&told.sent().map(|count| count as f64));
         numbers[2] = f64::from(u8::from(lacks_room));
@@ -213,7 +213,7 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
 
     /// Makes room for the points of all ranks, and cuts it anew.
     fn make_room(&mut self) {
-        let occupied = self.model.grid.occupied(&self.points);
+        let occupied = self.model.grid.occupied(&self.points.x);
         let ends = occupied.map(|ranges| ranges.map(|range| [-(range.start as f64), range.end as f64]));
         let mut ends = ends.unwrap_or([[f64::NEG_INFINITY; 2]; D]);
         self.halo.maximum(ends.as_flattened_mut());

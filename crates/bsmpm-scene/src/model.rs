@@ -8,13 +8,14 @@ use bsmpm::error::GridError;
 use bsmpm::grid::{Grid, KnotVector};
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::material::Material;
-use bsmpm::model::{Criteria, Gravity, Model, Weighting};
+use bsmpm::method::Criteria;
+use bsmpm::method::Nonlinear;
+use bsmpm::method::QuasiNewton;
+use bsmpm::model::{Gravity, Model, Weighting};
 use bsmpm::points::Points;
 use bsmpm::schedule::Schedule;
 use bsmpm::stabilisation::{Groups, Stabilisation};
-use bsmpm::step::equilibrium::Nonlinear;
-use bsmpm::step::quasi_newton::QuasiNewton;
-use bsmpm::step::variational::is_dilatant;
+use bsmpm::step::adjoint::is_dilatant;
 use bsmpm::tensor::{Symmetric, Vector};
 use std::marker::PhantomData;
 

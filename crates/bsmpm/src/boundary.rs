@@ -5,10 +5,9 @@ pub mod load;
 pub mod strip;
 pub mod surface;
 
-pub use anchor::Anchors;
 pub use load::Load;
 pub use strip::{Path, Strip, StripReport};
-pub use surface::{Surface, SurfacePoint};
+pub use surface::{Anchors, Surface, SurfacePoint};
 
 use crate::exact::Exact;
 use crate::grid::Grid;

@@ -49,8 +49,9 @@ use crate::material::Response;
 use crate::model::Model;
 use crate::points::Points;
 use crate::seam::{Halo, over_layers};
-use crate::step::equilibrium::{Found, Scene};
-use crate::step::variational::Pressures;
+use crate::solve::found::Found;
+use crate::step::adjoint::Pressures;
+use crate::step::problem::Problem;
 use crate::tensor::{Square, Vector};
 use std::ops::AddAssign;
 
@@ -145,11 +146,11 @@ impl Draft {
     /// Everything but what the points are in the end; of a model that does not balance its energy only what a [`Budget`] is
     /// made of.
     pub fn of<K: Kinematics<D>, const D: usize>(
-        scene: &Scene<'_, K, D>,
+        problem: &Problem<'_, K, D>,
         (found, responses): (&Found<D>, &[Response]),
         (t, dt): (f64, f64),
     ) -> Self {
-        let Scene { model, nodes, grips, points, halo, .. } = *scene;
+        let Problem { model, nodes, grips, points, halo, .. } = *problem;
         let u = &found.u[..];
         let supports = over_layers(halo, D, |c| found.reaction[c] * u[c]);
         let mut flows = Flows { external: supports, ..Flows::<Exact>::default() };
@@ -158,7 +159,7 @@ impl Draft {
             flows.external += &blow;
             flows.transfer = blow;
         }
-        add_gravity(&mut flows, scene, u, (t, dt));
+        add_gravity(&mut flows, problem, u, (t, dt));
         let strips = grips.work(u);
         flows.external += &strips.given;
         flows.integration -= &strips.grown;
@@ -169,7 +170,7 @@ impl Draft {
         let elastic = volumes().map(|(response, volume)| volume * response.elastic_energy()).collect();
         let mut draft = Self { flows, elastic, t, dt };
         if model.balances_energy {
-            draft.add_losses(scene, (found, responses));
+            draft.add_losses(problem, (found, responses));
         }
         draft
     }
@@ -177,12 +178,12 @@ impl Draft {
     /// Where the rest of the energy went.
     fn add_losses<K: Kinematics<D>, const D: usize>(
         &mut self,
-        scene: &Scene<'_, K, D>,
+        problem: &Problem<'_, K, D>,
         (found, responses): (&Found<D>, &[Response]),
     ) {
-        let Scene { model, shape, nodes, points, .. } = *scene;
+        let Problem { model, shape, nodes, points, .. } = *problem;
         let (flows, u) = (&mut self.flows, &found.u[..]);
-        let (pressures, volume) = (Pressures::of(scene, &found.trial), scene.volume());
+        let (pressures, volume) = (Pressures::of(problem, &found.trial), problem.volume());
         let work_of = |p: usize, grad: Square<D>| {
             let tau = pressures.acting::<K, D>(p, volume[p], responses[p].tau());
             volume[p] * K::flux(&tau, &found.trial.dF::<K>(p)).dot(&grad)
@@ -193,7 +194,7 @@ impl Draft {
         flows.integration += &elastic(model, points);
         flows.smoothing += &self.elastic;
         flows.transfer += &kinetic(points);
-        add_inertia(flows, scene, u);
+        add_inertia(flows, problem, u);
         if let Some(blocks) = &nodes.background {
             let mut force = Contributions::none(&model.grid, D, Vec::new());
             blocks.multiply::<D>(shape, u, &mut force);
@@ -247,21 +248,21 @@ fn elastic<K: Kinematics<D>, const D: usize>(model: &Model<K, D>, points: &Point
 /// Work of gravity by its mean, and half of what it has grown times u.
 fn add_gravity<K: Kinematics<D>, const D: usize>(
     flows: &mut Flows<Exact>,
-    scene: &Scene<'_, K, D>,
+    problem: &Problem<'_, K, D>,
     u: &[f64],
     (t, dt): (f64, f64),
 ) {
-    let Some(gravity) = &scene.model.gravity else { return };
+    let Some(gravity) = &problem.model.gravity else { return };
     let (before, after) = (gravity.at(t), gravity.at(t + dt));
-    let moved = transfer::to_points::<D, D, _>(scene.shape, u, |p, du| Vector::from(du) * scene.points.mass[p]);
+    let moved = transfer::to_points::<D, D, _>(problem.shape, u, |p, du| Vector::from(du) * problem.points.mass[p]);
     flows.external.extend(moved.iter().map(|moved| 0.5 * (before + after).dot(moved)));
     flows.integration.extend(moved.iter().map(|moved| -0.5 * (after - before).dot(moved)));
 }
 
 /// Work of the inertia, and the kinetic energy of this rank's own nodes at both ends of the step.
-fn add_inertia<K, const D: usize>(flows: &mut Flows<Exact>, scene: &Scene<'_, K, D>, u: &[f64]) {
-    let Some(inertia) = &scene.nodes.inertia else { return };
-    let (halo, mass) = (scene.halo, scene.mass());
+fn add_inertia<K, const D: usize>(flows: &mut Flows<Exact>, problem: &Problem<'_, K, D>, u: &[f64]) {
+    let Some(inertia) = &problem.nodes.inertia else { return };
+    let (halo, mass) = (problem.halo, problem.mass());
     let kinetic = |v: &[f64]| {
         let momentum = mass.times(v);
         over_layers(halo, D, |c| 0.5 * momentum[c] * v[c])

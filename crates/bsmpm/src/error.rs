@@ -1,8 +1,8 @@
 //! What can go wrong in the physics; every variant names the point, node or number concerned.
 
 use crate::material::MaterialError;
-use crate::model::Criteria;
-use crate::step::equilibrium::Method;
+use crate::method::Criteria;
+use crate::method::Method;
 use thiserror::Error;
 
 /// A grid that cannot be built.

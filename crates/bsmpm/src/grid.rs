@@ -3,7 +3,6 @@
 //! Positions are relative to the grid's lower corner: at 1e6 m an increment of 1e-9 m would lose 5 % of itself.
 
 pub mod contributions;
-pub mod merged;
 pub(crate) mod occupied;
 mod paired;
 pub mod room;
@@ -18,6 +17,14 @@ pub use spline::KnotVector;
 use crate::error::GridError;
 use crate::tensor::Vector;
 use std::ops::Range;
+
+/// What has places in a grid: the points, as the grid sees them.
+pub trait Located<const D: usize> {
+    /// m  places from the grid's lower corner
+    fn places(&self) -> &[Vector<D>];
+    /// Number by which an error names the one at `p`.
+    fn id(&self, p: usize) -> u64;
+}
 
 /// A tensor product of open knot vectors, of which the ranks together see the cells of a [`room`] around the points, and
 /// this rank those of some columns of it.

@@ -10,10 +10,10 @@ use crate::material::{Elastic, Region};
 use crate::model::{Model, Regime};
 use crate::points::{Held, Points};
 use crate::seam::{Halo, LinearSolver, agreed};
-use crate::step::equilibrium::Scene;
+use crate::solve::round_off::RoundOff;
 use crate::step::nodes::Nodes;
+use crate::step::problem::Problem;
 use crate::step::residual::{Balance, Residual};
-use crate::step::round_off::RoundOff;
 use crate::step::stiffness;
 use crate::tensor::{Symmetric, Tensor, Vector};
 
@@ -59,13 +59,13 @@ pub fn set_elastic<K: Kinematics<D>, const D: usize>(
 ) -> Result<(), StepError> {
     let model = &Model { regime: Regime::QuasiStatic, ..model.clone() };
     let start = Start::of(model, points, halo)?;
-    let scene = start.scene(model, points, halo);
-    stiffness::assemble(&scene, None, solver)?;
+    let problem = start.problem(model, points, halo);
+    stiffness::assemble(&problem, None, solver)?;
     let mut u = vec![0.0; model.grid.nodes() * D];
     let mut du = u.clone();
     let mut strains = vec![Symmetric::default(); points.len()];
     for _ in 0..CORRECTIONS {
-        let residual = elastic_residual(&scene, &strains, &u);
+        let residual = elastic_residual(&problem, &strains, &u);
         if residual.measure() <= BALANCED {
             break;
         }
@@ -101,7 +101,7 @@ pub fn balance<K: Kinematics<D>, const D: usize>(
     let mut yielding = [agreed(halo, counted, StepError::OtherRank)?];
     let start = Start::of(model, points, halo)?;
     let at_rest = vec![0.0; model.grid.nodes() * D];
-    let balance = Residual::of(&start.scene(model, points, halo), &at_rest).balance;
+    let balance = Residual::of(&start.problem(model, points, halo), &at_rest).balance;
     halo.reduce(&mut yielding);
     let reactions = model.boundary.reactions(&model.grid, &balance.reaction, halo);
     let (strips, _) = start.grips.conclude(&model.boundary.strips, &at_rest, halo);
@@ -116,9 +116,9 @@ pub fn is_pushed<K: Kinematics<D>, const D: usize>(
 ) -> Result<bool, StepError> {
     let model = &Model { regime: Regime::QuasiStatic, ..model.clone() };
     let start = Start::of(model, points, halo)?;
-    let scene = start.scene(model, points, halo);
-    let balance = Residual::of(&scene, &vec![0.0; model.grid.nodes() * D]).balance;
-    Ok(balance.measure() > model.criteria.force && !RoundOff::of(&scene).covers(&balance, &scene))
+    let problem = start.problem(model, points, halo);
+    let balance = Residual::of(&problem, &vec![0.0; model.grid.nodes() * D]).balance;
+    Ok(balance.measure() > model.criteria.force && !RoundOff::of(&problem).covers(&balance, &problem))
 }
 
 /// Steps (1) and (2) at time 0, without motion.
@@ -136,23 +136,28 @@ impl<const D: usize> Start<D> {
         Ok(Self { shape, nodes, grips })
     }
 
-    fn scene<'a, K>(&'a self, model: &'a Model<K, D>, points: &'a Points<D>, halo: &'a dyn Halo) -> Scene<'a, K, D> {
-        Scene { model, shape: &self.shape, nodes: &self.nodes, grips: &self.grips, points, halo }
+    fn problem<'a, K>(
+        &'a self,
+        model: &'a Model<K, D>,
+        points: &'a Points<D>,
+        halo: &'a dyn Halo,
+    ) -> Problem<'a, K, D> {
+        Problem { model, shape: &self.shape, nodes: &self.nodes, grips: &self.grips, points, halo }
     }
 }
 
 /// Out-of-balance force of linear elastic stress on the undeformed geometry.
 fn elastic_residual<K: Kinematics<D>, const D: usize>(
-    scene: &Scene<'_, K, D>,
+    problem: &Problem<'_, K, D>,
     strains: &[Symmetric],
     u: &[f64],
 ) -> Balance {
-    let volume = scene.volume();
-    let f_int = transfer::divergence(scene.shape, |p| {
-        let tau = stress_of(&elastic_at(scene.model, scene.points, p), &strains[p]);
+    let volume = problem.volume();
+    let f_int = transfer::divergence(problem.shape, |p| {
+        let tau = stress_of(&elastic_at(problem.model, problem.points, p), &strains[p]);
         K::flux(&tau, &Tensor::identity()) * volume[p]
     });
-    Balance::of(scene, u, &scene.halo.sum(&f_int), 0)
+    Balance::of(problem, u, &problem.halo.sum(&f_int), 0)
 }
 
 fn elastic_at<K: Kinematics<D>, const D: usize>(model: &Model<K, D>, points: &Points<D>, p: usize) -> Elastic {

@@ -8,13 +8,13 @@
 //! | --- | --- | --- |
 //! | (1) | shape functions and topology | [`grid::spline`], [`grid::shape`] |
 //! | (2) | points to nodes | [`step::nodes`] |
-//! | (3), (7)-(9) | quasi-Newton iteration, both convergence measures | [`step::equilibrium`], [`step::quasi_newton`] |
-//! | | where it ends, and what is round-off | [`step::progress`], [`step::round_off`] |
-//! | | Newton's method where it stalls | [`step::newton`] |
-//! | (9) | whether an elastic equilibrium is stable (beyond the paper) | [`step::stability`] |
+//! | (3), (7)-(9) | quasi-Newton iteration, both convergence measures | [`solve`], [`solve::quasi_newton`] |
+//! | | where it ends, and what is round-off | [`solve::convergence`], [`solve::round_off`] |
+//! | | Newton's method where it stalls | [`solve::newton`] |
+//! | (9) | whether an elastic equilibrium is stable (beyond the paper) | [`solve::stability`] |
 //! | (4) | trial deformation, F-bar | [`step::trial`] |
 //! | (5) | out-of-balance force; what points weigh in it | [`step::residual`]; [`quadrature`] |
-//! | (6) | stiffness K_0 at the first guess, complete derivative | [`step::stiffness`], [`step::linearised`] |
+//! | (6) | stiffness K_0 at the first guess, complete derivative | [`step::stiffness`], [`solve::linearised`] |
 //! | (10), (11) | grid kinematics, converged points | [`step::commit`] |
 //!
 //! [`boundary`] holds and loads the bodies, [`initial`] gives them stress at the start. [`control`] cuts and grows the
@@ -35,12 +35,14 @@ pub mod grid;
 pub mod initial;
 pub mod kinematics;
 pub mod material;
+pub mod method;
 pub mod model;
 pub mod observe;
 pub mod points;
 pub mod quadrature;
 pub mod schedule;
 pub mod seam;
+pub mod solve;
 pub mod stabilisation;
 pub mod step;
 pub mod tensor;

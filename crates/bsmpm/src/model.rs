@@ -3,13 +3,12 @@
 use crate::background::Background;
 use crate::boundary::Boundary;
 use crate::grid::Grid;
-use crate::grid::transfer::Grouped;
 use crate::kinematics::Kinematics;
 use crate::material::{Material, MaterialError, Response};
+use crate::method::{Criteria, Nonlinear};
 use crate::points::Points;
 use crate::quadrature::Quadrature;
-use crate::stabilisation::{Groups, Stabilisation};
-use crate::step::equilibrium::Nonlinear;
+use crate::stabilisation::{Grouped, Groups, Stabilisation};
 use crate::step::mass::MassMatrix;
 use crate::step::newmark::Newmark;
 use crate::tensor::{Symmetric, Vector};
@@ -49,30 +48,6 @@ impl<const D: usize> Gravity<D> {
     pub fn at(&self, t: f64) -> Vector<D> {
         let grown = if self.ramp > 0.0 { (t / self.ramp).clamp(0.0, 1.0) } else { 1.0 };
         self.acceleration * grown
-    }
-}
-
-/// When a step is in equilibrium: both measures must hold.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Criteria {
-    /// |du_k . f_k| / |du_0 . f_0| (step 9)
-    pub energy: f64,
-    /// |f_oob| / max(|f_ext|, |f_int|, |M a|, |reaction|): the energy product alone is no norm. Of all nodes, and of those that
-    /// one material alone touches
-    pub force: f64,
-    /// quasi-Newton iterations of one attempt
-    pub max_iterations: usize,
-}
-
-impl Criteria {
-    /// Both measures beside their tolerances, in words; the force measure with the number of the material that it is of.
-    pub fn judged(&self, energy: f64, (force, material): (f64, Option<usize>)) -> String {
-        let against = |measure: f64, tolerance: f64| {
-            let side = if measure < tolerance { "within" } else { "above" };
-            format!("{measure:.2e}, {side} its tolerance {tolerance:e}")
-        };
-        let of = material.map_or_else(String::new, |material| format!(" of material {material} alone"));
-        format!("energy measure {}; force measure{of} {}", against(energy, self.energy), against(force, self.force))
     }
 }
 

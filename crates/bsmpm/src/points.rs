@@ -7,7 +7,8 @@ pub use column::{Column, Number};
 pub use held::{Components, Held};
 
 use crate::boundary::Surface;
-use crate::grid::Grid;
+use crate::boundary::anchor::Anchored;
+use crate::grid::{Grid, Located};
 use crate::tensor::{Symmetric, Tensor, Vector};
 
 /// Velocity and acceleration; absent in quasi-static scenes.
@@ -69,7 +70,21 @@ pub struct Seed<const D: usize> {
     pub v: Vector<D>,
 }
 
+impl<const D: usize> Located<D> for Points<D> {
+    fn places(&self) -> &[Vector<D>] {
+        &self.x
+    }
+    fn id(&self, p: usize) -> u64 {
+        self.id[p]
+    }
+}
+
 impl<const D: usize> Points<D> {
+    /// The points as surfaces are anchored to them.
+    pub fn anchored(&self) -> Anchored<'_, D> {
+        Anchored { id: &self.id, x: &self.x, u: &self.u, F: &self.F }
+    }
+
     /// Stress-free points at rest or with their initial velocity; with `dynamic` they carry velocity and acceleration.
     pub fn from_seeds(seeds: impl IntoIterator<Item = Seed<D>>, dynamic: bool) -> Self {
         let mut points = Self { motion: dynamic.then(Motion::default), ..Self::default() };

@@ -9,6 +9,8 @@
 //! by different amounts under the same stress. One average over both gives the stiffer one the strain of the softer: in
 //! level ground with E 1:100 beside an interface 36 (consistent F-bar) and 66 times (F-bar) its horizontal stress.
 
+use std::ops::Range;
+
 /// The method of section 2.3 that a run uses.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Stabilisation {
@@ -34,10 +36,10 @@ pub enum Stabilisation {
     /// Twice S1 would leave 28 % less noise in flowing sand, but then
     /// dilatant slopes find no equilibrium. After a converged step (`step::smooth`) b^e <- exp(2/3 theta (S(eps_v) - eps_v))
     /// b^e, eps_v = 1/2 ln det b^e, with theta from 0, no flow, to 1. Without flow it is an F-bar with S1 for S, no more.
-    /// In dilatant material its force is the adjoint of its stress, see `step::variational`.
+    /// In dilatant material its force is the adjoint of its stress, see `step::adjoint`.
     ConsistentFBar,
     /// Consistent F-bar whose S1 has the splines of degree q - 1 on pairs of cells inside a body, and on the cells at its edges
-    /// (sub-grid method of Bressan and Sangalli, 2013; see [`grid::merged`](crate::grid::merged)).
+    /// (sub-grid method of Bressan and Sangalli, 2013; see [`grid::shape::merged`](crate::grid::shape::merged)).
     ///
     /// The pressure of nearly incompressible elastic material converges with it. Its stiffness reaches further and costs
     /// more.
@@ -75,6 +77,46 @@ impl Groups {
     #[inline]
     pub fn of(&self, material: u16) -> usize {
         self.of.get(usize::from(material)).map_or(0, |&group| usize::from(group))
+    }
+}
+
+/// Points in groups, whose nodal values stand side by side: numbers of group g at place g of a node.
+#[derive(Clone, Copy)]
+pub struct Grouped<'a> {
+    by: Option<(&'a Groups, &'a [u16])>, // with the materials of the points; several groups
+}
+
+impl<'a> Grouped<'a> {
+    /// All points in one group.
+    pub const NOT: Self = Self { by: None };
+
+    /// Points of these materials.
+    pub fn by(groups: &'a Groups, material: &'a [u16]) -> Self {
+        Self { by: (groups.count() > 1).then_some((groups, material)) }
+    }
+
+    /// Number of groups.
+    pub fn count(&self) -> usize {
+        self.by.map_or(1, |(groups, _)| groups.count())
+    }
+
+    /// Group of point `p`.
+    #[inline]
+    pub fn of(&self, p: usize) -> usize {
+        self.by.map_or(0, |(groups, material)| groups.of(material[p]))
+    }
+
+    /// Points of a patch in runs of one group, each with its group.
+    #[inline]
+    pub(crate) fn runs(&self, points: Range<usize>) -> impl Iterator<Item = (usize, Range<usize>)> {
+        let mut start = points.start;
+        std::iter::from_fn(move || {
+            let first = start;
+            let group = (first < points.end).then(|| self.of(first))?;
+            let differs = |p: &usize| self.of(*p) != group;
+            start = self.by.and_then(|_| (first..points.end).find(differs)).unwrap_or(points.end);
+            Some((group, first..start))
+        })
     }
 }
 

@@ -7,8 +7,8 @@ use bsmpm::kinematics::{Kinematics, PlaneStrain};
 use bsmpm::model::Model;
 use bsmpm::points::Points;
 use bsmpm::seam::{Halo, Krylov, LinearSolver, Solved, Symmetry};
-use bsmpm::step::equilibrium::Scene;
 use bsmpm::step::nodes::Nodes;
+use bsmpm::step::problem::Problem;
 use bsmpm::step::residual::Residual;
 use bsmpm::step::stiffness;
 use bsmpm::step::trial::Trial;
@@ -45,7 +45,7 @@ impl Bench<'_> {
         let shape = Shape::at(&model.grid, points)?;
         let nodes = Nodes::map(model, &shape, points, times, halo)?;
         let grips = Grips::at(&model.boundary.strips, &points.surface, (&model.grid, &nodes.free), times);
-        let scene = Scene { model, shape: &shape, nodes: &nodes, grips: &grips, points, halo };
+        let problem = Problem { model, shape: &shape, nodes: &nodes, grips: &grips, points, halo };
         let along = |(c, &guess): (usize, &f64)| match nodes.prescribed[c] {
             Some(prescribed) => prescribed,
             None if nodes.free[c] => guess,
@@ -69,14 +69,16 @@ impl Bench<'_> {
         self.row("(5a) scatter of the internal force", false, || {
             drop(black_box(transfer::divergence(&shape, |p| PlaneStrain::flux(&points.sigma.at(p), &points.F.at(p)))));
         });
-        self.row("(4), (5) whole residual, with balance and sums", false, || drop(black_box(Residual::of(&scene, &u))));
+        self.row("(4), (5) whole residual, with balance and sums", false, || {
+            drop(black_box(Residual::of(&problem, &u)))
+        });
         self.row("(6) stiffness of the patches", true, || {
-            drop(black_box(stiffness::assemble(&scene, Some(&trial), &mut Nowhere)))
+            drop(black_box(stiffness::assemble(&problem, Some(&trial), &mut Nowhere)))
         });
         self.row("(6) stiffness, assembled and factorised", true, || {
-            drop(black_box(stiffness::assemble(&scene, Some(&trial), solver)));
+            drop(black_box(stiffness::assemble(&problem, Some(&trial), solver)));
         });
-        let (f, mut w) = (Residual::of(&scene, &u).balance.f_oob, u.clone());
+        let (f, mut w) = (Residual::of(&problem, &u).balance.f_oob, u.clone());
         self.row("(7) solution", false, || drop(black_box(solver.solve(&f, &mut w))));
         Ok(())
     }

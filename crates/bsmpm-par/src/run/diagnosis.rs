@@ -2,7 +2,7 @@
 
 use bsmpm::control::Failure;
 use bsmpm::error::{SolveError, StepError};
-use bsmpm::model::Criteria;
+use bsmpm::method::Criteria;
 use bsmpm_io::failure::{FailureReport, Measures};
 use bsmpm_io::manifest::Worst;
 use bsmpm_scene::Case;

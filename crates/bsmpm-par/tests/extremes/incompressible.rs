@@ -8,7 +8,8 @@ use crate::table::Found;
 use bsmpm::boundary::Support;
 use bsmpm::control::{Failure, Stepper};
 use bsmpm::kinematics::PlaneStrain;
-use bsmpm::model::{Criteria, Regime};
+use bsmpm::method::Criteria;
+use bsmpm::model::Regime;
 use bsmpm::schedule::Schedule;
 use bsmpm::stabilisation::Stabilisation;
 

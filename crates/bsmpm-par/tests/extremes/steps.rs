@@ -10,8 +10,8 @@ use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::Regime;
 use bsmpm::points::Points;
 use bsmpm::seam::Alone;
+use bsmpm::solve::broyden::Broyden;
 use bsmpm::stabilisation::Stabilisation;
-use bsmpm::step::broyden::Broyden;
 use std::f64::consts::PI;
 
 const LENGTH: f64 = 25.0;

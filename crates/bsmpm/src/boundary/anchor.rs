@@ -5,19 +5,23 @@
 
 use super::Boundary;
 use super::strip::{Strip, reduce};
+use super::surface::Anchors;
 use crate::grid::Grid;
-use crate::points::Points;
+use crate::points::Held;
 use crate::seam::Halo;
-use crate::tensor::Vector;
+use crate::tensor::{Tensor, Vector};
 
-/// Ids of the points that the points of all strips and of all loads are anchored to; the same on every rank, and empty
-/// before the first step.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Anchors {
-    /// per strip and point of it
-    pub strips: Vec<Vec<u64>>,
-    /// per load and point of it
-    pub loads: Vec<Vec<u64>>,
+/// What surfaces are anchored to: the points of this rank.
+#[derive(Clone, Copy)]
+pub struct Anchored<'a, const D: usize> {
+    /// global ids
+    pub id: &'a [u64],
+    /// m  places now, from the grid's lower corner
+    pub x: &'a [Vector<D>],
+    /// m  displacements since the start
+    pub u: &'a [Vector<D>],
+    /// -  deformation gradients
+    pub F: &'a Held<D, Tensor>,
 }
 
 /// Places of the material now, m.
@@ -29,9 +33,14 @@ pub struct Places<const D: usize> {
 }
 
 impl Anchors {
-    /// The anchors that the points carry; before the first step, the nearest points. Two reductions then.
-    pub fn of<const D: usize>(boundary: &Boundary<D>, points: &Points<D>, halo: &dyn Halo) -> Self {
-        let (carried, starts) = (&points.surface.anchors, starts(boundary));
+    /// The anchors that are `carried`; before the first step, the nearest points. Two reductions then.
+    pub fn of<const D: usize>(
+        boundary: &Boundary<D>,
+        carried: &Self,
+        points: Anchored<'_, D>,
+        halo: &dyn Halo,
+    ) -> Self {
+        let starts = starts(boundary);
         if starts.is_empty() || !(carried.strips.is_empty() && carried.loads.is_empty()) {
             return carried.clone();
         }
@@ -44,7 +53,12 @@ impl Anchors {
     }
 
     /// Where the material is now. One reduction, if there are surface points at all.
-    pub fn places<const D: usize>(&self, boundary: &Boundary<D>, points: &Points<D>, halo: &dyn Halo) -> Places<D> {
+    pub fn places<const D: usize>(
+        &self,
+        boundary: &Boundary<D>,
+        points: Anchored<'_, D>,
+        halo: &dyn Halo,
+    ) -> Places<D> {
         let starts = starts(boundary);
         let mut anchored: Vec<(u64, usize)> =
             self.strips.iter().chain(&self.loads).flatten().copied().zip(0..).collect();
@@ -52,7 +66,7 @@ impl Anchors {
         let of_strips: usize = self.strips.iter().map(Vec::len).sum();
         let mut found = [vec![Vector::zeros(); starts.len()]];
         if let (Some(first), Some(last)) = (anchored.first(), anchored.last()) {
-            for p in (0..points.len()).filter(|&p| (first.0..=last.0).contains(&points.id[p])) {
+            for p in (0..points.id.len()).filter(|&p| (first.0..=last.0).contains(&points.id[p])) {
                 let from = anchored.partition_point(|(id, _)| *id < points.id[p]);
                 for (_, at) in anchored[from..].iter().take_while(|(id, _)| *id == points.id[p]) {
                     let offset = starts[*at] - (points.x[p] - points.u[p]);
@@ -96,11 +110,11 @@ fn starts<const D: usize>(boundary: &Boundary<D>) -> Vec<Vector<D>> {
 }
 
 /// Ids of the points that were nearest to places at the start; of equally near ones the smallest.
-fn nearest<const D: usize>(at: &[Vector<D>], points: &Points<D>, halo: &dyn Halo) -> Vec<u64> {
+fn nearest<const D: usize>(at: &[Vector<D>], points: Anchored<'_, D>, halo: &dyn Halo) -> Vec<u64> {
     let start = |p: usize| points.x[p] - points.u[p];
     let mut least = vec![f64::INFINITY; at.len()];
     let mut ids = vec![u64::MAX; at.len()];
-    for p in 0..points.len() {
+    for p in 0..points.id.len() {
         let start = start(p);
         for (k, at) in at.iter().enumerate() {
             let distance = (start - at).norm_squared();

@@ -2,7 +2,6 @@
 //!
 //! They are few and the same on every rank; each is worked on by the rank whose slab it lies in.
 
-use super::Anchors;
 use crate::grid::shape::with_width;
 use crate::grid::{Contributions, Grid, KnotVector};
 use crate::tensor::Vector;
@@ -55,6 +54,16 @@ pub struct Surface<const D: usize> {
     pub position: Vec<Vec<Vector<D>>>,
     /// that material
     pub anchors: Anchors,
+}
+
+/// Ids of the points that the points of all strips and of all loads are anchored to; the same on every rank, and empty
+/// before the first step.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Anchors {
+    /// per strip and point of it
+    pub strips: Vec<Vec<u64>>,
+    /// per load and point of it
+    pub loads: Vec<Vec<u64>>,
 }
 
 /// A surface point as some nodes of its cell see it.

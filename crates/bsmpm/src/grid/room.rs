@@ -5,7 +5,7 @@
 //! Nodes that no point touches have no unknowns and add zeros to sums: under one cut results do not depend on it, to the bit.
 
 use super::{Grid, KnotVector};
-use crate::points::Points;
+use crate::tensor::Vector;
 use std::ops::Range;
 
 /// Part of the points' extent by which the room reaches further on either side than it must.
@@ -13,10 +13,10 @@ const SLACK: usize = 8;
 
 impl<const D: usize> Grid<D> {
     /// Cells (global, along each axis) of a box around the points; `None` without points. They must lie in the grid.
-    pub fn occupied(&self, points: &Points<D>) -> Option<[Range<usize>; D]> {
+    pub fn occupied(&self, x: &[Vector<D>]) -> Option<[Range<usize>; D]> {
         let mut found = std::array::from_fn(|_| 0..0);
         for (axis, range) in found.iter_mut().enumerate() {
-            let along = points.x.iter().map(|x| x[axis]);
+            let along = x.iter().map(|x| x[axis]);
             let (least, most) = along.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)));
             *range = self.axes()[axis].cell_of(least)?..self.axes()[axis].cell_of(most)? + 1;
         }

@@ -3,11 +3,12 @@
 //! A point keeps D one-dimensional rows of N and dN/dx instead of (q+1)^D values and gradients: as fast, with half to a
 //! tenth of the memory. The topology p2N is a cell's first node plus offsets that all cells share.
 
-use super::Grid;
-use super::merged::Merged;
+pub mod merged;
+
+use super::{Grid, Located};
 use crate::error::StepError;
-use crate::points::Points;
 use crate::tensor::Vector;
+use merged::Merged;
 use std::ops::Range;
 
 /// An occupied cell with its points: the patch of section 2.1.
@@ -73,7 +74,7 @@ pub(crate) use with_width;
 
 impl<const D: usize> Shape<D> {
     /// Evaluates the functions at all points, which must be sorted by cell. Fails on a point outside the window.
-    pub fn at(grid: &Grid<D>, points: &Points<D>) -> Result<Self, StepError> {
+    pub fn at(grid: &Grid<D>, points: &impl Located<D>) -> Result<Self, StepError> {
         let width = grid.order() + 1;
         let mut shape = Self {
             width,
@@ -81,7 +82,7 @@ impl<const D: usize> Shape<D> {
             patches: Vec::new(),
             columns: Vec::new(),
             extent: (grid.column_layers(), grid.layer_nodes(), grid.nodes()),
-            rows: Vec::with_capacity(points.len() * 2 * D * width),
+            rows: Vec::with_capacity(points.places().len() * 2 * D * width),
             stride: 2 * width,
             merged: None,
         };
@@ -90,9 +91,9 @@ impl<const D: usize> Shape<D> {
         Ok(shape)
     }
 
-    fn evaluate<const W: usize>(&mut self, grid: &Grid<D>, points: &Points<D>) -> Result<(), StepError> {
-        for (p, x) in points.x.iter().enumerate() {
-            let outside = || StepError::Outside { id: points.id[p], x: x.as_slice().to_vec() };
+    fn evaluate<const W: usize>(&mut self, grid: &Grid<D>, points: &impl Located<D>) -> Result<(), StepError> {
+        for (p, x) in points.places().iter().enumerate() {
+            let outside = || StepError::Outside { id: points.id(p), x: x.as_slice().to_vec() };
             let located = grid.locate(x).filter(|cell| grid.holds(cell)).ok_or_else(outside)?;
             let cell = grid.cell_index(&located);
             match self.patches.last_mut() {
@@ -113,7 +114,7 @@ impl<const D: usize> Shape<D> {
     ///
     /// Function `a` of a cell is number `cell + a` in either degree, so that the lower ones are numbered as the first
     /// q + (cells - 1) nodes along an axis, and nodal arrays and their exchange serve both.
-    pub fn lowered(&self, grid: &Grid<D>, points: &Points<D>) -> Self {
+    pub fn lowered(&self, grid: &Grid<D>, points: &impl Located<D>) -> Self {
         let width = self.width - 1;
         let inside = |k: usize| (0..D).all(|axis| k / self.width.pow(axis as u32) % self.width < width);
         let mut lower = Self {
@@ -122,7 +123,7 @@ impl<const D: usize> Shape<D> {
             patches: self.patches.clone(),
             columns: self.columns.clone(),
             extent: self.extent,
-            rows: Vec::with_capacity(points.len() * D * width),
+            rows: Vec::with_capacity(points.places().len() * D * width),
             stride: width,
             merged: None,
         };
@@ -130,10 +131,10 @@ impl<const D: usize> Shape<D> {
         lower
     }
 
-    fn evaluate_lower<const W: usize>(&mut self, grid: &Grid<D>, points: &Points<D>) {
+    fn evaluate_lower<const W: usize>(&mut self, grid: &Grid<D>, points: &impl Located<D>) {
         for patch in &self.patches {
             let cell = grid.cell_at(patch.cell);
-            for x in &points.x[patch.points.clone()] {
+            for x in &points.places()[patch.points.clone()] {
                 for axis in 0..D {
                     let (N, _) = grid.axes()[axis].basis::<W>(x[axis], cell[axis]);
                     self.rows.extend_from_slice(&N);

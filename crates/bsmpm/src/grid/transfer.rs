@@ -6,53 +6,13 @@
 
 use super::contributions::Contributions;
 use super::shape::{Column, Shape, with_width};
-use crate::stabilisation::Groups;
+use crate::stabilisation::Grouped;
 use crate::tensor::{Square, Vector};
 use rayon::prelude::*;
 use std::ops::Range;
 
 /// Largest number of nodes of a patch: (3 + 1)^3.
 const MOST_NODES: usize = 64;
-
-/// Points in groups, whose nodal values stand side by side: numbers of group g at place g of a node.
-#[derive(Clone, Copy)]
-pub struct Grouped<'a> {
-    by: Option<(&'a Groups, &'a [u16])>, // with the materials of the points; several groups
-}
-
-impl<'a> Grouped<'a> {
-    /// All points in one group.
-    pub const NOT: Self = Self { by: None };
-
-    /// Points of these materials.
-    pub fn by(groups: &'a Groups, material: &'a [u16]) -> Self {
-        Self { by: (groups.count() > 1).then_some((groups, material)) }
-    }
-
-    /// Number of groups.
-    pub fn count(&self) -> usize {
-        self.by.map_or(1, |(groups, _)| groups.count())
-    }
-
-    /// Group of point `p`.
-    #[inline]
-    pub fn of(&self, p: usize) -> usize {
-        self.by.map_or(0, |(groups, material)| groups.of(material[p]))
-    }
-
-    /// Points of a patch in runs of one group, each with its group.
-    #[inline]
-    fn runs(&self, points: Range<usize>) -> impl Iterator<Item = (usize, Range<usize>)> {
-        let mut start = points.start;
-        std::iter::from_fn(move || {
-            let first = start;
-            let group = (first < points.end).then(|| self.of(first))?;
-            let differs = |p: &usize| self.of(*p) != group;
-            start = self.by.and_then(|_| (first..points.end).find(differs)).unwrap_or(points.end);
-            Some((group, first..start))
-        })
-    }
-}
 
 /// Numbers of a patch's nodes.
 type Block<const C: usize> = [[f64; C]; MOST_NODES];
@@ -289,5 +249,14 @@ fn add<const C: usize>(
         for (total, sum) in at_node.iter_mut().zip(sums) {
             *total += sum;
         }
+    }
+}
+
+/// Nodal values over the weight of their node, as many a node as there are; zero where it is at most the threshold: 1/m is never formed.
+pub fn divide(nodal: &mut [f64], weight: &[f64], threshold: f64) {
+    let width = nodal.len() / weight.len();
+    for (values, &weight) in nodal.chunks_exact_mut(width).zip(weight) {
+        let inverse = if weight > threshold { 1.0 / weight } else { 0.0 };
+        values.iter_mut().for_each(|value| *value *= inverse);
     }
 }

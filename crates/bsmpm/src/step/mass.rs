@@ -8,7 +8,6 @@
 
 use crate::grid::{Shape, transfer};
 use crate::seam::{Halo, dots};
-use crate::step::nodes::divide;
 
 /// How the mass of the points becomes that of the nodes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -99,7 +98,7 @@ impl<const D: usize> Mass<'_, D> {
 
     /// The lumped matrix's solution.
     fn by_lumped(&self, mut momentum: Vec<f64>) -> Vec<f64> {
-        divide(&mut momentum, self.lumped, self.threshold);
+        transfer::divide(&mut momentum, self.lumped, self.threshold);
         momentum
     }
 

@@ -167,7 +167,7 @@ impl<const D: usize> Nodes<D> {
         let (weights, grouped) = (weights(model.weighting, points), model.grouped(points));
         let weighted = |p: usize| value(p).map(|v| weights[p] * v);
         let mut nodal = halo.sum(&transfer::to_nodes_grouped(shape, grouped, weighted));
-        divide(&mut nodal, weight, self.averages.threshold);
+        transfer::divide(&mut nodal, weight, self.averages.threshold);
         transfer::to_points_grouped(shape, grouped, &nodal, found)
     }
 
@@ -219,7 +219,7 @@ impl<const D: usize> Averages<D> {
     }
 }
 
-pub(super) fn weights<const D: usize>(weighting: Weighting, points: &Points<D>) -> &[f64] {
+pub(crate) fn weights<const D: usize>(weighting: Weighting, points: &Points<D>) -> &[f64] {
     match weighting {
         Weighting::Mass => &points.mass,
         Weighting::Volume => &points.volume,
@@ -297,12 +297,4 @@ fn threshold(weight: &[f64], halo: &dyn Halo) -> f64 {
     let mut heaviest = [weight.iter().copied().fold(0.0, f64::max)];
     halo.maximum(&mut heaviest);
     MASSLESS * heaviest[0]
-}
-
-pub(super) fn divide(nodal: &mut [f64], weight: &[f64], threshold: f64) {
-    let width = nodal.len() / weight.len();
-    for (values, &weight) in nodal.chunks_exact_mut(width).zip(weight) {
-        let inverse = if weight > threshold { 1.0 / weight } else { 0.0 };
-        values.iter_mut().for_each(|value| *value *= inverse);
-    }
 }

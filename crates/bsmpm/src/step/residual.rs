@@ -4,9 +4,9 @@ use crate::exact::Exact;
 use crate::grid::{Contributions, transfer};
 use crate::kinematics::Kinematics;
 use crate::seam::over_layers;
-use crate::step::equilibrium::Scene;
+use crate::step::adjoint::Pressures;
+use crate::step::problem::Problem;
 use crate::step::trial::Trial;
-use crate::step::variational::Pressures;
 use crate::tensor::Square;
 use std::sync::atomic::Ordering::Relaxed;
 use std::sync::atomic::{AtomicU64, AtomicUsize};
@@ -46,12 +46,12 @@ pub struct Balance {
 impl<const D: usize> Residual<D> {
     /// Evaluates the forces under `u`: one exchange with the neighbours, one more each for F-bar, its adjoint and strips, and one
     /// reduction.
-    pub fn of<K: Kinematics<D>>(scene: &Scene<'_, K, D>, u: &[f64]) -> Self {
-        let Scene { model, shape, nodes, points, halo, .. } = *scene;
+    pub fn of<K: Kinematics<D>>(problem: &Problem<'_, K, D>, u: &[f64]) -> Self {
+        let Problem { model, shape, nodes, points, halo, .. } = *problem;
         let trial = Trial::of(model, shape, nodes, points, u, halo);
         let (inverted, first_inverted) = (AtomicU64::new(0), AtomicUsize::new(usize::MAX));
-        let pressures = Pressures::of(scene, &trial);
-        let volume = scene.volume();
+        let pressures = Pressures::of(problem, &trial);
+        let volume = problem.volume();
         let mut f_int = transfer::divergence(shape, |p| match trial.respond(model, points, p) {
             Ok(response) => {
                 let tau = pressures.acting::<K, D>(p, volume[p], response.tau());
@@ -66,7 +66,7 @@ impl<const D: usize> Residual<D> {
         if let Some(background) = &nodes.background {
             background.multiply::<D>(shape, u, &mut f_int);
         }
-        let balance = Balance::of(scene, u, &halo.sum(&f_int), inverted.into_inner());
+        let balance = Balance::of(problem, u, &halo.sum(&f_int), inverted.into_inner());
         let first_inverted = Some(first_inverted.into_inner()).filter(|&p| p < points.len());
         Self { trial, balance, first_inverted }
     }
@@ -75,38 +75,38 @@ impl<const D: usize> Residual<D> {
 impl Balance {
     /// Balance of an internal force that is summed over the ranks, with `inverted` points on this one.
     pub fn of<K: Kinematics<D>, const D: usize>(
-        scene: &Scene<'_, K, D>,
+        problem: &Problem<'_, K, D>,
         u: &[f64],
         f_int: &[f64],
         inverted: u64,
     ) -> Self {
         let mut f_strips = Vec::new();
-        if !scene.model.boundary.strips.is_empty() {
-            let mut held = Contributions::none(&scene.model.grid, D, Vec::new());
-            scene.grips.add_forces(u, &mut held);
-            f_strips = scene.halo.sum(&held);
+        if !problem.model.boundary.strips.is_empty() {
+            let mut held = Contributions::none(&problem.model.grid, D, Vec::new());
+            problem.grips.add_forces(u, &mut held);
+            f_strips = problem.halo.sum(&held);
         }
-        let forces = Forces::of(scene, u, f_int, &f_strips);
-        let soft = scene.nodes.background.is_some();
-        let squares = |force: &[f64]| over_layers(scene.halo, D, |c| force[c].powi(2));
+        let forces = Forces::of(problem, u, f_int, &f_strips);
+        let soft = problem.nodes.background.is_some();
+        let squares = |force: &[f64]| over_layers(problem.halo, D, |c| force[c].powi(2));
         let supporting = |c: usize| forces.reaction[c].powi(2) + f_strips.get(c).copied().unwrap_or(0.0).powi(2);
         let whole = [
             std::iter::once(inverted as f64).collect(),
             squares(&forces.f_oob),
-            over_active(scene, |c| scene.nodes.f_ext[c].powi(2)),
-            over_active(scene, |c| f_int[c].powi(2)),
-            over_layers(scene.halo, D, |c| forces.inertial.get(c).map_or(0.0, |inertial| inertial.powi(2))),
-            over_active(scene, supporting),
-            over_active(scene, |c| if soft { f_int[c] * u[c] } else { 0.0 }),
+            over_active(problem, |c| problem.nodes.f_ext[c].powi(2)),
+            over_active(problem, |c| f_int[c].powi(2)),
+            over_layers(problem.halo, D, |c| forces.inertial.get(c).map_or(0.0, |inertial| inertial.powi(2))),
+            over_active(problem, supporting),
+            over_active(problem, |c| if soft { f_int[c] * u[c] } else { 0.0 }),
         ];
         let kinds = whole.len() - 2;
         // Out of balance, external, internal, inertial, of supports and strips.
         let terms = |c: usize| {
             let inertial = forces.inertial.get(c).map_or(0.0, |inertial| inertial.powi(2));
-            [forces.f_oob[c].powi(2), scene.nodes.f_ext[c].powi(2), f_int[c].powi(2), inertial, supporting(c)]
+            [forces.f_oob[c].powi(2), problem.nodes.f_ext[c].powi(2), f_int[c].powi(2), inertial, supporting(c)]
         };
-        let apart = scene.nodes.apart.as_ref().map_or_else(Vec::new, |apart| apart.sums(scene.halo, D, terms));
-        let sums = scene.halo.total(&[&whole[..], &apart].concat());
+        let apart = problem.nodes.apart.as_ref().map_or_else(Vec::new, |apart| apart.sums(problem.halo, D, terms));
+        let sums = problem.halo.total(&[&whole[..], &apart].concat());
         let (sums, apart) = sums.split_at(whole.len());
         let norms = |sums: &[f64]| [sums[0], sums[1..].iter().copied().fold(0.0, f64::max)].map(f64::sqrt);
         let [norm, scale] = norms(&sums[1..=kinds]);
@@ -136,8 +136,8 @@ impl Balance {
 }
 
 /// Sum over the components of this rank's own active nodes.
-fn over_active<K, const D: usize>(scene: &Scene<'_, K, D>, term: impl Fn(usize) -> f64) -> Exact {
-    over_layers(scene.halo, D, |c| if scene.nodes.active[c / D] { term(c) } else { 0.0 })
+fn over_active<K, const D: usize>(problem: &Problem<'_, K, D>, term: impl Fn(usize) -> f64) -> Exact {
+    over_layers(problem.halo, D, |c| if problem.nodes.active[c / D] { term(c) } else { 0.0 })
 }
 
 /// Step (5b) at the nodes of the window.
@@ -149,17 +149,17 @@ struct Forces {
 
 impl Forces {
     fn of<K: Kinematics<D>, const D: usize>(
-        scene: &Scene<'_, K, D>,
+        problem: &Problem<'_, K, D>,
         u: &[f64],
         f_int: &[f64],
         f_strips: &[f64],
     ) -> Self {
-        let nodes = scene.nodes;
+        let nodes = problem.nodes;
         let mut forces = Self { f_oob: vec![0.0; u.len()], reaction: vec![0.0; u.len()], inertial: Vec::new() };
         if let Some(inertia) = &nodes.inertia {
             let of = |c: usize| if nodes.active[c / D] { inertia.acting(c, u[c]) } else { 0.0 };
             let acting: Vec<f64> = (0..u.len()).map(of).collect();
-            forces.inertial = scene.mass().times(&acting);
+            forces.inertial = problem.mass().times(&acting);
         }
         for component in (0..u.len()).filter(|component| nodes.active[component / D]) {
             let inertial = forces.inertial.get(component).copied().unwrap_or(0.0);

@@ -13,11 +13,10 @@ use crate::material::Stiffness;
 use crate::model::Model;
 use crate::points::Points;
 use crate::seam::{LinearSolver, Symmetry};
+use crate::step::blocks::{MOST, Moduli, Pairs, add_mass, add_point, complete};
 use crate::step::coupling::{Coupling, Dilations, Raised, Share};
-use crate::step::equilibrium::Scene;
-use crate::step::linearised::{MOST, Moduli, Pairs, add_point};
-use crate::step::mass::{MassMatrix, SHARE};
 use crate::step::nodes::Nodes;
+use crate::step::problem::Problem;
 use crate::step::trial::Trial;
 use crate::tensor::{Square, Tensor, Vector};
 use rayon::prelude::*;
@@ -25,12 +24,12 @@ use rayon::prelude::*;
 /// Assembles K_0 patch by patch into `solver` and factorises it: at the state `at`, or, without any, of elastic material
 /// whose dilation is not averaged. One exchange with the neighbours where the average couples patches.
 pub fn assemble<K: Kinematics<D>, const D: usize>(
-    scene: &Scene<'_, K, D>,
+    problem: &Problem<'_, K, D>,
     at: Option<&Trial<D>>,
     solver: &mut dyn LinearSolver,
 ) -> Result<(), SolveError> {
-    let Scene { model, shape, nodes, points, halo, .. } = *scene;
-    let volume = scene.volume();
+    let Problem { model, shape, nodes, points, halo, .. } = *problem;
+    let volume = problem.volume();
     solver.begin(&nodes.free);
     let mut coupling = at.and_then(|_| Coupling::of(model, nodes, Raised::Along));
     // Threads work on a column each; what they found is added in the order of the patches.
@@ -50,7 +49,7 @@ pub fn assemble<K: Kinematics<D>, const D: usize>(
     if let Some(coupling) = coupling {
         coupling.assemble(halo, solver);
     }
-    complete(scene, solver, Symmetry::Definite)
+    complete(problem, solver, Symmetry::Definite)
 }
 
 /// What one patch contributes.
@@ -156,54 +155,6 @@ fn of_point<K: Kinematics<D>, const D: usize>(stiffness: &Stiffness, volume: f64
     });
     moduli.iter_mut().flatten().for_each(|unit| *unit *= volume);
     (moduli, bulk.x)
-}
-
-/// Adds strips, faces of the background and inertia to a matrix whose patches are assembled, and factorises it.
-pub fn complete<K: Kinematics<D>, const D: usize>(
-    scene: &Scene<'_, K, D>,
-    solver: &mut dyn LinearSolver,
-    symmetry: Symmetry,
-) -> Result<(), SolveError> {
-    let nodes = scene.nodes;
-    scene.grips.assemble(solver);
-    if let Some(background) = &nodes.background {
-        background.assemble::<D>(solver);
-    }
-    if let Some(inertia) = &nodes.inertia {
-        let factor = match scene.model.mass {
-            MassMatrix::Lumped => inertia.factor(),
-            MassMatrix::Consistent => (1.0 - SHARE) * inertia.factor(),
-        };
-        let diagonal: Vec<f64> = (0..nodes.free.len()).map(|c| factor * nodes.weight[c / D]).collect();
-        solver.add_diagonal(&diagonal);
-    }
-    solver.finish(symmetry)
-}
-
-/// Adds what couples the nodes of a patch by their mass, if that is consistent; [`complete`] adds the diagonal.
-pub fn add_mass<const D: usize>(
-    (matrix, nodes): (MassMatrix, &Nodes<D>),
-    (shape, patch): (&Shape<D>, &Patch),
-    mass: &[f64],
-    block: &mut [f64],
-) {
-    let Some(inertia) = nodes.inertia.as_ref().filter(|_| matrix == MassMatrix::Consistent) else { return };
-    let size = shape.offsets().len();
-    let mut pairs = vec![0.0; size * size];
-    let mut N = [0.0; MOST];
-    let N = &mut N[..size];
-    for p in patch.points.clone() {
-        shape.values_into(p, N);
-        let weight = SHARE * inertia.factor() * mass[p];
-        for (row, N_a) in pairs.chunks_exact_mut(size).zip(&*N) {
-            row.iter_mut().zip(&*N).for_each(|(pair, N_b)| *pair += weight * N_a * N_b);
-        }
-    }
-    for (pair, mass) in pairs.iter().enumerate() {
-        for i in 0..D {
-            block[(pair / size * D + i) * size * D + pair % size * D + i] += mass;
-        }
-    }
 }
 
 fn runs_of_one_material(patch: &Patch, material: &[u16]) -> Vec<std::ops::Range<usize>> {

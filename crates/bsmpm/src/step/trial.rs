@@ -7,8 +7,8 @@ use crate::model::Model;
 use crate::points::Points;
 use crate::seam::Halo;
 use crate::stabilisation::Stabilisation;
-use crate::step::equilibrium::Scene;
 use crate::step::nodes::Nodes;
+use crate::step::problem::Problem;
 use crate::tensor::{Square, Symmetric, Tensor};
 
 /// Increment of the deformation of every point.
@@ -75,15 +75,15 @@ impl<const D: usize> Trial<D> {
     }
 
     /// w dJ and S(w dJ) of point `p`; 1 for the latter without F-bar.
-    pub(super) fn means<K: Kinematics<D>>(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> (f64, f64) {
+    pub(crate) fn means<K: Kinematics<D>>(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> (f64, f64) {
         (self.own(model, points, p), self.mean.as_ref().map_or(1.0, |mean| mean[p]))
     }
 
     /// Rate of ln ratio_p for a displacement whose spatial gradient has the trace `trace`_p at every point:
     /// S(w dJ tr l)_p / S(w dJ)_p - tr l_p. `None` without F-bar; one exchange with the neighbours.
-    pub fn dilation_rate<K: Kinematics<D>>(&self, scene: &Scene<'_, K, D>, trace: &[f64]) -> Option<Vec<f64>> {
+    pub fn dilation_rate<K: Kinematics<D>>(&self, problem: &Problem<'_, K, D>, trace: &[f64]) -> Option<Vec<f64>> {
         let mean = self.mean.as_ref()?;
-        let Scene { model, shape, nodes, points, halo, .. } = *scene;
+        let Problem { model, shape, nodes, points, halo, .. } = *problem;
         let own = |p: usize| self.own(model, points, p) * trace[p];
         let mut rate = nodes.mean_dilation(model, (shape, points), halo, own);
         rate.iter_mut().zip(mean).zip(trace).for_each(|((rate, mean), trace)| *rate = *rate / mean - trace);

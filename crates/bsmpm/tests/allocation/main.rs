@@ -8,8 +8,8 @@ use bsmpm::grid::Shape;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::Regime;
 use bsmpm::stabilisation::Stabilisation;
-use bsmpm::step::equilibrium;
 use bsmpm::step::nodes::Nodes;
+use bsmpm::step::problem::Problem;
 use bsmpm::step::residual::Residual;
 use bsmpm::tensor::Vector;
 use std::alloc::{GlobalAlloc, Layout, System};
@@ -48,7 +48,7 @@ fn allocations(per_axis: usize, method: Stabilisation) -> usize {
     let shape = Shape::at(&model.grid, points).expect("points in the grid");
     let nodes = Nodes::map(model, &shape, points, (0.0, 0.1), &halo).expect("no loads");
     let grips = Grips::at(&[], &points.surface, (&model.grid, &nodes.free), (0.0, 0.1));
-    let pieces = equilibrium::Scene { model, shape: &shape, nodes: &nodes, grips: &grips, points, halo: &halo };
+    let pieces = Problem { model, shape: &shape, nodes: &nodes, grips: &grips, points, halo: &halo };
     let u: Vec<f64> = (0..model.grid.nodes() * 2).map(|c| 1e-3 * (c as f64).sin()).collect();
     let evaluate = || Residual::of(&pieces, &u).balance.norm;
     assert!(evaluate() > 0.0);

@@ -2,8 +2,9 @@
 
 use crate::support::random::Random;
 use crate::support::solver::Skyline;
+use bsmpm::method::QuasiNewton;
 use bsmpm::seam::{Alone, LinearSolver, Symmetry};
-use bsmpm::step::quasi_newton::{QuasiNewton, Secants};
+use bsmpm::solve::quasi_newton::Secants;
 use nalgebra::{DMatrix, DVector};
 
 const N: usize = 12;

@@ -10,8 +10,9 @@ use bsmpm::model::Regime;
 use bsmpm::points::{Points, Seed};
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::step::nodes::Nodes;
+use bsmpm::step::problem::Problem;
+use bsmpm::step::smooth;
 use bsmpm::step::trial::Trial;
-use bsmpm::step::{equilibrium, smooth};
 use bsmpm::tensor::{Symmetric, Tensor, Vector};
 
 /// Points of different mass at scattered places of a graded grid, deformed, with what Zhao's F-bar keeps.
@@ -41,7 +42,7 @@ fn rate_error<K: Kinematics<D>, const D: usize>(order: usize, method: Stabilisat
     let shape = Shape::at(&model.grid, points).unwrap();
     let nodes = Nodes::map(model, &shape, points, (0.0, 1.0), &halo).expect("no loads");
     let grips = Grips::at(&[], &points.surface, (&model.grid, &nodes.free), (0.0, 1.0));
-    let pieces = equilibrium::Scene { model, shape: &shape, nodes: &nodes, grips: &grips, points, halo: &halo };
+    let pieces = Problem { model, shape: &shape, nodes: &nodes, grips: &grips, points, halo: &halo };
     let mut random = Random::new(7);
     let u: Vec<f64> = random.array(model.grid.nodes() * D).iter().map(|u| 0.02 * u).collect();
     let du = random.array(u.len());

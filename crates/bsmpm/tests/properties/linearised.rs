@@ -11,10 +11,10 @@ use bsmpm::material::{Elastic, Material, MohrCoulomb, Region, Separation};
 use bsmpm::model::Regime;
 use bsmpm::points::Points;
 use bsmpm::quadrature::Quadrature;
+use bsmpm::solve::linearised::Linearised;
 use bsmpm::stabilisation::Stabilisation;
-use bsmpm::step::equilibrium;
-use bsmpm::step::linearised::Linearised;
 use bsmpm::step::nodes::Nodes;
+use bsmpm::step::problem::Problem;
 use bsmpm::step::residual::Residual;
 use bsmpm::tensor::{Symmetric, Tensor, Vector};
 
@@ -54,7 +54,7 @@ fn product_error<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>) -> (f64,
     let shape = Shape::at(&model.grid, points).unwrap();
     let nodes = Nodes::map(model, &shape, points, (0.0, 0.01), &halo).expect("no loads");
     let grips = Grips::at(&model.boundary.strips, &points.surface, (&model.grid, &nodes.free), (0.0, 0.01));
-    let pieces = equilibrium::Scene { model, shape: &shape, nodes: &nodes, grips: &grips, points, halo: &halo };
+    let pieces = Problem { model, shape: &shape, nodes: &nodes, grips: &grips, points, halo: &halo };
     let mut random = Random::new(11);
     let mut free = |size: f64| -> Vec<f64> {
         let values = random.array(nodes.free.len());
@@ -191,7 +191,7 @@ fn curvature(cohesion: f64, size: f64) -> ([f64; 2], usize) {
     let shape = Shape::at(&model.grid, points).unwrap();
     let nodes = Nodes::map(model, &shape, points, (0.0, 0.01), &halo).expect("no loads");
     let grips = Grips::at(&[], &points.surface, (&model.grid, &nodes.free), (0.0, 0.01));
-    let pieces = equilibrium::Scene { model, shape: &shape, nodes: &nodes, grips: &grips, points, halo: &halo };
+    let pieces = Problem { model, shape: &shape, nodes: &nodes, grips: &grips, points, halo: &halo };
     let mut free =
         || -> Vec<f64> { nodes.free.iter().map(|&free| if free { size * random.signed() } else { 0.0 }).collect() };
     let (u, v) = (free(), free());

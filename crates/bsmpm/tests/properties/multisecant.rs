@@ -4,9 +4,10 @@ use crate::support::random::Random;
 use crate::support::solver::Skyline;
 use bsmpm::exact::Exact;
 use bsmpm::grid::Contributions;
+use bsmpm::method::QuasiNewton;
 use bsmpm::seam::{Alone, Halo, LinearSolver, Symmetry, dots};
-use bsmpm::step::quasi_newton::{QuasiNewton, Secants};
-use bsmpm::step::unknowns::Unknowns;
+use bsmpm::solve::quasi_newton::Secants;
+use bsmpm::solve::unknowns::Unknowns;
 use nalgebra::{DMatrix, DVector};
 
 const NODES: usize = 9;

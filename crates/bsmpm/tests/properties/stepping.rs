@@ -11,11 +11,11 @@ use bsmpm::exact::Exact;
 use bsmpm::grid::Contributions;
 use bsmpm::initial;
 use bsmpm::kinematics::PlaneStrain;
+use bsmpm::method::Nonlinear;
+use bsmpm::method::QuasiNewton;
 use bsmpm::model::Regime;
 use bsmpm::schedule::Schedule;
 use bsmpm::seam::{Alone, Halo};
-use bsmpm::step::equilibrium::Nonlinear;
-use bsmpm::step::quasi_newton::QuasiNewton;
 use std::cell::Cell;
 use std::ops::Range;
 

@@ -9,10 +9,10 @@ use bsmpm::grid::Shape;
 use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
 use bsmpm::material::{Elastic, Material, MohrCoulomb};
 use bsmpm::model::Regime;
+use bsmpm::solve::linearised::Linearised;
 use bsmpm::stabilisation::Stabilisation;
-use bsmpm::step::equilibrium;
-use bsmpm::step::linearised::Linearised;
 use bsmpm::step::nodes::Nodes;
+use bsmpm::step::problem::Problem;
 use bsmpm::step::residual::Residual;
 use bsmpm::step::stiffness;
 use bsmpm::tensor::Vector;
@@ -64,7 +64,7 @@ fn products<K: Kinematics<D>, const D: usize>(
     let shape = Shape::at(&model.grid, points).unwrap();
     let nodes = Nodes::map(model, &shape, points, (0.0, 0.01), &halo).expect("no loads");
     let grips = Grips::at(&[], &points.surface, (&model.grid, &nodes.free), (0.0, 0.01));
-    let pieces = equilibrium::Scene { model, shape: &shape, nodes: &nodes, grips: &grips, points, halo: &halo };
+    let pieces = Problem { model, shape: &shape, nodes: &nodes, grips: &grips, points, halo: &halo };
     let mut random = Random::new(11);
     let mut free = |size: f64| -> Vec<f64> {
         nodes.free.iter().map(|&free| if free { size * random.signed() } else { 0.0 }).collect()

@@ -2,7 +2,8 @@
 
 use crate::support::scene::{Scene, axis, hencky};
 use bsmpm::kinematics::PlaneStrain;
-use bsmpm::model::{Criteria, Regime};
+use bsmpm::method::Criteria;
+use bsmpm::model::Regime;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::tensor::Vector;
 use std::collections::HashSet;

@@ -8,8 +8,8 @@ use bsmpm::boundary::strip::Grips;
 use bsmpm::grid::Shape;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::Regime;
-use bsmpm::step::equilibrium;
 use bsmpm::step::nodes::Nodes;
+use bsmpm::step::problem::Problem;
 use bsmpm::step::stiffness;
 use bsmpm::tensor::Vector;
 use std::collections::HashSet;
@@ -92,7 +92,7 @@ fn condition(shift: f64, background: Option<Background>) -> [f64; 2] {
     let nodes = Nodes::map(model, &shape, points, (0.0, 1.0), halo).expect("loads on material");
     let grips = Grips::at(&[], &points.surface, (&model.grid, &nodes.free), (0.0, 1.0));
     let mut stiffness = Dense::new(&model.grid);
-    let scene = equilibrium::Scene { model, shape: &shape, nodes: &nodes, grips: &grips, points, halo };
+    let scene = Problem { model, shape: &shape, nodes: &nodes, grips: &grips, points, halo };
     stiffness::assemble(&scene, None, &mut stiffness).expect("a matrix");
     stiffness.conditions()
 }

@@ -3,11 +3,12 @@
 use crate::support::scene::{Scene, axis, hencky};
 use bsmpm::boundary::Support;
 use bsmpm::kinematics::PlaneStrain;
-use bsmpm::model::{Criteria, Regime, Weighting};
+use bsmpm::method::Criteria;
+use bsmpm::method::Nonlinear;
+use bsmpm::method::QuasiNewton;
+use bsmpm::model::{Regime, Weighting};
 use bsmpm::observe::{largest_displacement, noise};
 use bsmpm::stabilisation::Stabilisation;
-use bsmpm::step::equilibrium::Nonlinear;
-use bsmpm::step::quasi_newton::QuasiNewton;
 
 /// A block of 6 x 6 cells with nu = .49 on a fixed base beside a wall, under its weight: noise of the vertical stress
 /// about planes, and the largest displacement.

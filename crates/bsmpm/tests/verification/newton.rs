@@ -6,10 +6,11 @@ use bsmpm::boundary::{Path, Strip, Support, surface};
 use bsmpm::control::Accepted;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::material::{Elastic, Material, MohrCoulomb};
-use bsmpm::model::{Criteria, Regime, Weighting};
+use bsmpm::method::Criteria;
+use bsmpm::method::{Method, Nonlinear};
+use bsmpm::model::{Regime, Weighting};
 use bsmpm::observe::largest_displacement;
 use bsmpm::stabilisation::Stabilisation;
-use bsmpm::step::equilibrium::{Method, Nonlinear};
 
 type Plane = Scene<PlaneStrain, 2>;
 

@@ -5,7 +5,8 @@ use bsmpm::background::{Background, Extent, Kind};
 use bsmpm::boundary::{Path, Strip, Support, surface};
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::material::{Elastic, Material, MohrCoulomb};
-use bsmpm::model::{Criteria, Regime, Weighting};
+use bsmpm::method::Criteria;
+use bsmpm::model::{Regime, Weighting};
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::tensor::Vector;
 

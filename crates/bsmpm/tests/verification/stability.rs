@@ -8,12 +8,14 @@ use bsmpm::control::{Accepted, Failure, Stepper};
 use bsmpm::error::StepError;
 use bsmpm::grid::Shape;
 use bsmpm::kinematics::PlaneStrain;
-use bsmpm::model::{Criteria, Regime};
+use bsmpm::method::Criteria;
+use bsmpm::method::Nonlinear;
+use bsmpm::model::Regime;
 use bsmpm::schedule::Schedule;
+use bsmpm::solve::linearised::Linearised;
 use bsmpm::stabilisation::Stabilisation;
-use bsmpm::step::equilibrium::{self, Nonlinear};
-use bsmpm::step::linearised::Linearised;
 use bsmpm::step::nodes::Nodes;
+use bsmpm::step::problem::Problem;
 use bsmpm::step::residual::Residual;
 use nalgebra::DMatrix;
 
@@ -59,7 +61,7 @@ fn lowest(before: &Plane, step: &Accepted, u: &[f64]) -> f64 {
     let shape = Shape::at(&model.grid, points).expect("points in the grid");
     let nodes = Nodes::map(model, &shape, points, time, &halo).expect("a mapping");
     let grips = Grips::at(&model.boundary.strips, &points.surface, (&model.grid, &nodes.free), time);
-    let scene = equilibrium::Scene { model, shape: &shape, nodes: &nodes, grips: &grips, points, halo: &halo };
+    let scene = Problem { model, shape: &shape, nodes: &nodes, grips: &grips, points, halo: &halo };
     let residual = Residual::of(&scene, u);
     let linearised = Linearised::at(&scene, &residual);
     let free: Vec<usize> = (0..u.len()).filter(|&c| nodes.free[c]).collect();

@@ -6,7 +6,7 @@
 //! may take twice the iterations.
 
 use crate::seam::Halo;
-use crate::step::unknowns::Unknowns;
+use crate::solve::unknowns::Unknowns;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 /// Secants that are kept: older ones tell little of a plastic state that has changed.

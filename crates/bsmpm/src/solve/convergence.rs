@@ -5,10 +5,11 @@
 
 use crate::error::{Measures, SolveError, StepError, WorstNode};
 use crate::kinematics::Kinematics;
-use crate::model::Criteria;
-use crate::step::equilibrium::{Method, Scene};
+use crate::method::Criteria;
+use crate::method::Method;
+use crate::solve::round_off::RoundOff;
+use crate::step::problem::Problem;
 use crate::step::residual::{Balance, Residual};
-use crate::step::round_off::RoundOff;
 use crate::tensor::Vector;
 
 /// A first residual this much below the force tolerance needs no direction: |du_0 . f_0| would only be noise.
@@ -27,7 +28,7 @@ const WORST: usize = 5;
 
 /// Both measures over the iterations that started from one guess.
 #[derive(Clone, Debug)]
-pub struct Progress {
+pub struct Convergence {
     criteria: Criteria,
     round_off: RoundOff,
     first_energy: Option<f64>, // N m  |du_0 . f_0|
@@ -35,18 +36,18 @@ pub struct Progress {
     settled: Option<Vec<f64>>, // m, nodal
 }
 
-impl Progress {
+impl Convergence {
     /// Nothing iterated yet.
-    pub fn new<K: Kinematics<D>, const D: usize>(scene: &Scene<'_, K, D>) -> Self {
-        let (criteria, round_off) = (scene.model.criteria, RoundOff::of(scene));
+    pub fn new<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>) -> Self {
+        let (criteria, round_off) = (problem.model.criteria, RoundOff::of(problem));
         Self { criteria, round_off, first_energy: None, history: Vec::new(), settled: None }
     }
 
     /// Whether a state is in equilibrium before any direction is known: a guess far below the force tolerance, or forces
     /// that no node has further out of balance than by round-off.
-    pub fn is_balanced<K, const D: usize>(&self, balance: &Balance, scene: &Scene<'_, K, D>) -> bool {
+    pub fn is_balanced<K, const D: usize>(&self, balance: &Balance, problem: &Problem<'_, K, D>) -> bool {
         (self.history.is_empty() && self.measure(balance) <= ALREADY * self.criteria.force)
-            || self.round_off.covers(balance, scene)
+            || self.round_off.covers(balance, problem)
     }
 
     /// The first state whose forces balanced far below their tolerance, m, nodal: later ones only wander from it where the
@@ -117,7 +118,7 @@ impl Progress {
     /// The error of an iteration that ended at `residual`; `unsolved` where no direction was found there.
     pub fn failed<K, const D: usize>(
         &self,
-        scene: &Scene<'_, K, D>,
+        problem: &Problem<'_, K, D>,
         residual: &Residual<D>,
         unsolved: Option<SolveError>,
     ) -> StepError {
@@ -129,7 +130,7 @@ impl Progress {
             material,
             criteria: Box::new(self.criteria),
             history: self.history.clone(),
-            worst: worst_nodes(scene, residual),
+            worst: worst_nodes(problem, residual),
             unsolved,
         }
     }
@@ -137,25 +138,25 @@ impl Progress {
 
 /// |du_0 . (f_0 - K_strips du_0)|: the energy of the first direction without that of the strips' penalty, which takes up
 /// their motion in it and would make the measure as much too lenient as the penalty is stiff. `work`: du_0 . f_0.
-pub fn first_energy<K: Kinematics<D>, const D: usize>(scene: &Scene<'_, K, D>, du: &[f64], work: f64) -> f64 {
-    if scene.model.boundary.strips.is_empty() {
+pub fn first_energy<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>, du: &[f64], work: f64) -> f64 {
+    if problem.model.boundary.strips.is_empty() {
         return work.abs();
     }
-    let penalty = scene.halo.total(&[scene.grips.energy(du)]);
+    let penalty = problem.halo.total(&[problem.grips.energy(du)]);
     (work - penalty[0]).abs()
 }
 
 /// The error of a state in which points have inverted.
-pub fn inverted<K, const D: usize>(scene: &Scene<'_, K, D>, residual: &Residual<D>, iteration: usize) -> StepError {
-    let first = residual.first_inverted.map(|p| (scene.points.id[p], scene.points.x[p].as_slice().to_vec()));
+pub fn inverted<K, const D: usize>(problem: &Problem<'_, K, D>, residual: &Residual<D>, iteration: usize) -> StepError {
+    let first = residual.first_inverted.map(|p| (problem.points.id[p], problem.points.x[p].as_slice().to_vec()));
     StepError::Inverted { count: residual.balance.inverted, iteration, first }
 }
 
 /// This rank's own nodes whose forces are the least balanced, worst first.
-fn worst_nodes<K, const D: usize>(scene: &Scene<'_, K, D>, residual: &Residual<D>) -> Vec<WorstNode> {
-    let grid = &scene.model.grid;
+fn worst_nodes<K, const D: usize>(problem: &Problem<'_, K, D>, residual: &Residual<D>) -> Vec<WorstNode> {
+    let grid = &problem.model.grid;
     let force = |node: usize| Vector::<D>::from_column_slice(&residual.balance.f_oob[node * D..][..D]).norm();
-    let mut nodes: Vec<usize> = scene.halo.owned().filter(|&node| force(node) > 0.0).collect();
+    let mut nodes: Vec<usize> = problem.halo.owned().filter(|&node| force(node) > 0.0).collect();
     nodes.sort_by(|&a, &b| force(b).total_cmp(&force(a)));
     let told = |node: usize| {
         let place = grid.node_at(node);

@@ -2,28 +2,21 @@
 
 use crate::error::{SolveError, StepError};
 use crate::kinematics::Kinematics;
+use crate::method::{Method, QuasiNewton};
 use crate::seam::{Halo, LinearSolver, Solved, dots};
-use crate::step::Counts;
-use crate::step::broyden::Broyden;
-use crate::step::equilibrium::{Found, Method, Scene, evaluate};
-use crate::step::multisecant::Multisecant;
-use crate::step::progress::{Progress, first_energy, inverted};
+use crate::solve::broyden::Broyden;
+use crate::solve::convergence::{Convergence, first_energy, inverted};
+use crate::solve::evaluate;
+use crate::solve::found::Found;
+use crate::solve::multisecant::Multisecant;
+use crate::solve::stability;
+use crate::solve::unknowns::Unknowns;
+use crate::step::problem::Problem;
+use crate::step::report::Counts;
 use crate::step::residual::Residual;
-use crate::step::stability;
-use crate::step::unknowns::Unknowns;
 
 /// Shortest part of a direction that is tried when points invert.
 const SHORTEST: f64 = 1.0 / 16.0;
-
-/// How the stiffness K_0 is corrected from iteration to iteration.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum QuasiNewton {
-    /// All recent secants in the least-squares sense (Anderson, 1965).
-    #[default]
-    Multisecant,
-    /// The paper's rank-one update (Broyden, 1965).
-    Broyden,
-}
 
 /// A direction and what it took.
 #[derive(Clone, Debug, PartialEq)]
@@ -99,15 +92,15 @@ impl Stopped {
     /// An iteration whose linear system could not be solved at a state; where nothing was iterated before, the system itself
     /// is at fault.
     pub fn without_direction<K, const D: usize>(
-        scene: &Scene<'_, K, D>,
+        problem: &Problem<'_, K, D>,
         (best, residual): (Vec<f64>, &Residual<D>),
-        progress: &Progress,
+        progress: &Convergence,
         unsolved: SolveError,
     ) -> Self {
         if progress.iterations() == 0 {
             return unsolved.into();
         }
-        Self { error: Box::new(progress.failed(scene, residual, Some(unsolved))), best: Some(best) }
+        Self { error: Box::new(progress.failed(problem, residual, Some(unsolved))), best: Some(best) }
     }
 }
 
@@ -120,53 +113,53 @@ impl<E: Into<StepError>> From<E> for Stopped {
 /// Iterates from the displacement `u` and its `residual` with K_0 factorised, to the limit of iterations; unless
 /// `patient`, only as long as convergence is in reach.
 pub fn iterate<K: Kinematics<D>, const D: usize>(
-    scene: &Scene<'_, K, D>,
+    problem: &Problem<'_, K, D>,
     (method, patient): (QuasiNewton, bool),
     (mut u, mut residual): (Vec<f64>, Residual<D>),
     solver: &mut dyn LinearSolver,
     counts: &mut Counts,
-    progress: &mut Progress,
+    progress: &mut Convergence,
 ) -> Result<Found<D>, Stopped> {
-    let mut secants = Secants::new::<D>(method, &scene.nodes.free, scene.halo);
+    let mut secants = Secants::new::<D>(method, &problem.nodes.free, problem.halo);
     let (mut best, mut least) = (u.clone(), residual.balance.norm);
-    while progress.iterations() < scene.model.criteria.max_iterations && (patient || !progress.stalls()) {
-        if progress.is_balanced(&residual.balance, scene) {
+    while progress.iterations() < problem.model.criteria.max_iterations && (patient || !progress.stalls()) {
+        if progress.is_balanced(&residual.balance, problem) {
             return Ok(Found::new(u, residual, progress));
         }
-        if scene.halo.is_interrupted() {
+        if problem.halo.is_interrupted() {
             return Err(StepError::Interrupted.into());
         }
-        let direction = match secants.direction::<D>(&residual.balance.f_oob, scene.halo, solver) {
+        let direction = match secants.direction::<D>(&residual.balance.f_oob, problem.halo, solver) {
             Ok(direction) => direction, // (6), (7)
-            Err(unsolved) => return Err(Stopped::without_direction(scene, (best, &residual), progress, unsolved)),
+            Err(unsolved) => return Err(Stopped::without_direction(problem, (best, &residual), progress, unsolved)),
         };
         counts.iterations += 1;
         counts.linear_iterations += direction.solved.iterations;
         counts.factorisations += direction.solved.factorisations;
         if !progress.has_begun() {
-            progress.begin(first_energy(scene, &direction.du, direction.energy));
+            progress.begin(first_energy(problem, &direction.du, direction.energy));
         }
         if progress.reaches(Method::QuasiNewton(method), direction.energy.abs(), (&u, &residual.balance)) {
             return Ok(Found::new(u, residual, progress)); // (9)
         }
         // The direction's own energy is a sum of products with secants, whose round-off is another.
-        let work = stability::tells(scene, &residual.balance)
-            .then(|| dots(scene.halo, D, &[(&direction.du, &residual.balance.f_oob)])[0]);
-        match advance(scene, &mut u, &direction.du, &mut residual, counts) {
+        let work = stability::tells(problem, &residual.balance)
+            .then(|| dots(problem.halo, D, &[(&direction.du, &residual.balance.f_oob)])[0]);
+        match advance(problem, &mut u, &direction.du, &mut residual, counts) {
             Ok(length) => secants.took(length), // (8), (4), (5)
             Err(inverted) => return Err(Stopped { error: Box::new(inverted), best: Some(best) }),
         }
-        stability::check(scene, progress, (&direction.du, work), &residual.balance)?;
+        stability::check(problem, progress, (&direction.du, work), &residual.balance)?;
         if residual.balance.norm < least {
             (least, best) = (residual.balance.norm, u.clone());
         }
     }
-    Err(Stopped { error: Box::new(progress.failed(scene, &residual, None)), best: Some(best) })
+    Err(Stopped { error: Box::new(progress.failed(problem, &residual, None)), best: Some(best) })
 }
 
 /// Step (8): takes the direction, or the first half, quarter, .. of it under which no point inverts.
 fn advance<K: Kinematics<D>, const D: usize>(
-    scene: &Scene<'_, K, D>,
+    problem: &Problem<'_, K, D>,
     u: &mut Vec<f64>,
     du: &[f64],
     residual: &mut Residual<D>,
@@ -175,13 +168,13 @@ fn advance<K: Kinematics<D>, const D: usize>(
     let mut length = 1.0;
     loop {
         let next: Vec<f64> = u.iter().zip(du).map(|(u, du)| u + length * du).collect();
-        let found = evaluate(scene, &next, counts);
+        let found = evaluate(problem, &next, counts);
         if found.balance.is_sound() {
             (*u, *residual) = (next, found);
             return Ok(length);
         }
         if length <= SHORTEST {
-            return Err(inverted(scene, &found, counts.iterations));
+            return Err(inverted(problem, &found, counts.iterations));
         }
         length *= 0.5;
     }

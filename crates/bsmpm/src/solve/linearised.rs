@@ -9,21 +9,18 @@ use crate::grid::transfer;
 use crate::kinematics::Kinematics;
 use crate::material::Tangent;
 use crate::seam::{LinearSolver, Symmetry};
+use crate::step::adjoint::{Adjoint, Pressures, transposed, works};
+use crate::step::blocks::{MOST, Moduli, Pairs, add_mass, add_point, complete};
 use crate::step::coupling::{Coupling, Dilations, Raised, Share};
-use crate::step::equilibrium::Scene;
 use crate::step::nodes::weights;
+use crate::step::problem::Problem;
 use crate::step::residual::Residual;
-use crate::step::stiffness::{add_mass, complete};
 use crate::step::trial::Trial;
-use crate::step::variational::{Adjoint, Pressures, transposed, works};
 use crate::tensor::{Square, Tensor, Vector};
-
-/// Flux for every unit gradient: element (k, l) for du_k/dx_l = 1.
-pub type Moduli<const D: usize> = [[Square<D>; D]; D];
 
 /// The derivative at one displacement.
 pub struct Linearised<'a, K, const D: usize> {
-    scene: &'a Scene<'a, K, D>,
+    problem: &'a Problem<'a, K, D>,
     trial: &'a Trial<D>,
     /// N m  V0 d(tau dF^-T)/d(grad v), one unit gradient after the other
     moduli: Vec<Moduli<D>>,
@@ -63,17 +60,17 @@ impl<const D: usize> Pressure<D> {
 
 impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
     /// The derivative where `residual` was evaluated; no point of it may have inverted.
-    pub fn at(scene: &'a Scene<'a, K, D>, residual: &'a Residual<D>) -> Self {
-        let (trial, points) = (&residual.trial, scene.points);
+    pub fn at(problem: &'a Problem<'a, K, D>, residual: &'a Residual<D>) -> Self {
+        let (trial, points) = (&residual.trial, problem.points);
         let averaged = trial.is_averaged();
         let mut moduli = Vec::with_capacity(points.len());
         let mut dilation = averaged.then(|| Vec::with_capacity(points.len()));
-        let pressures = Pressures::of(scene, trial);
-        let mut adjoint = Adjoint::of(scene.model).map(|adjoint| (adjoint, Vec::with_capacity(points.len())));
-        for (p, &volume) in scene.volume().iter().enumerate() {
+        let pressures = Pressures::of(problem, trial);
+        let mut adjoint = Adjoint::of(problem.model).map(|adjoint| (adjoint, Vec::with_capacity(points.len())));
+        for (p, &volume) in problem.volume().iter().enumerate() {
             let dF = trial.dF::<K>(p);
             let inverse = dF.try_inverse();
-            let (Ok(response), Some(inverse)) = (trial.respond(scene.model, points, p), inverse) else {
+            let (Ok(response), Some(inverse)) = (trial.respond(problem.model, points, p), inverse) else {
                 moduli.push([[Square::zeros(); D]; D]); // cannot be: the residual has refused such a point
                 continue;
             };
@@ -104,27 +101,27 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
                 dilation.push(Dilation { trace: K::in_plane(&inverse.transpose()), flux });
             }
         }
-        Self { scene, trial, moduli, dilation, adjoint }
+        Self { problem, trial, moduli, dilation, adjoint }
     }
 
     /// K v on nodal arrays, `v` zero where it is not free: one exchange with the neighbours, one more under F-bar.
     pub fn multiply(&self, v: &[f64], out: &mut [f64]) {
-        let Scene { shape, nodes, halo, .. } = *self.scene;
+        let Problem { shape, nodes, halo, .. } = *self.problem;
         let grad = transfer::gradients(shape, v, |_, grad| grad);
         let rate = self.dilation.as_ref().and_then(|dilation| {
             let trace: Vec<f64> = dilation.iter().zip(&grad).map(|(at, grad)| at.trace.dot(grad)).collect();
-            Some((dilation, self.trial.dilation_rate(self.scene, &trace)?))
+            Some((dilation, self.trial.dilation_rate(self.problem, &trace)?))
         });
         let moduli = &self.moduli;
         let pressed = rate.as_ref().and_then(|(dilation, rate)| {
             let (adjoint, at) = self.adjoint.as_ref()?;
             let raised = |p: usize| {
                 let Pressure { raised: (by_gradient, by_rate), own } = &at[p];
-                let (_, mean) = self.trial.means(self.scene.model, self.scene.points, p);
+                let (_, mean) = self.trial.means(self.problem.model, self.problem.points, p);
                 let grown = own * (rate[p] + dilation[p].trace.dot(&grad[p]));
                 (by_gradient.dot(&grad[p]) + by_rate * rate[p] - grown) / mean
             };
-            Some((dilation, transposed(self.scene, adjoint, self.trial, raised)))
+            Some((dilation, transposed(self.problem, adjoint, self.trial, raised)))
         });
         let mut force = transfer::divergence(shape, |p| {
             let flux = contract(&moduli[p], &grad[p]);
@@ -134,10 +131,10 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
         if let Some(background) = &nodes.background {
             background.multiply::<D>(shape, v, &mut force);
         }
-        self.scene.grips.multiply(v, &mut force);
+        self.problem.grips.multiply(v, &mut force);
         out.copy_from_slice(&halo.sum(&force));
         if let Some(inertia) = &nodes.inertia {
-            for (out, momentum) in out.iter_mut().zip(self.scene.mass().times(v)) {
+            for (out, momentum) in out.iter_mut().zip(self.problem.mass().times(v)) {
                 *out += inertia.factor() * momentum;
             }
         }
@@ -147,13 +144,13 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
     /// Assembles and factorises the matrix that preconditions the product: all of it, but for F-bar's average where that
     /// reaches farther than the matrix. One exchange with the neighbours where it does not.
     pub fn factorise(&self, solver: &mut dyn LinearSolver) -> Result<(), SolveError> {
-        let Scene { shape, nodes, .. } = *self.scene;
+        let Problem { shape, nodes, .. } = *self.problem;
         solver.begin(&nodes.free);
         let size = shape.offsets().len();
         let mut grad = [Vector::<D>::zeros(); MOST];
         let grad = &mut grad[..size];
         let mut block = vec![0.0; (size * D).pow(2)];
-        let mut coupling = Coupling::of(self.scene.model, nodes, Raised::Own);
+        let mut coupling = Coupling::of(self.problem.model, nodes, Raised::Own);
         for (number, patch) in shape.patches().iter().enumerate() {
             block.fill(0.0);
             let mut dilations = coupling.as_ref().map(Coupling::of_patch);
@@ -170,20 +167,20 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
             if let Some(soft) = nodes.background.as_ref().and_then(|background| background.of(number)) {
                 soft.add_to::<D>(&mut block);
             }
-            add_mass((self.scene.model.mass, nodes), (shape, patch), &self.scene.points.mass, &mut block);
+            add_mass((self.problem.model.mass, nodes), (shape, patch), &self.problem.points.mass, &mut block);
             solver.add(patch.first_node, &block);
         }
         if let Some(coupling) = coupling {
-            coupling.assemble(self.scene.halo, solver);
+            coupling.assemble(self.problem.halo, solver);
         }
-        complete(self.scene, solver, Symmetry::General)
+        complete(self.problem, solver, Symmetry::General)
     }
 
     /// Moduli of point `p`, and its flux per unit of d ln(dJ-bar/dJ), of a force that is not the adjoint: that one reaches twice
     /// as far as a matrix.
     fn narrow(&self, p: usize) -> (Moduli<D>, Square<D>) {
         let flux = self.dilation.as_ref().map_or_else(Square::zeros, |dilation| dilation[p].flux);
-        let has = |(adjoint, _): &&(Adjoint, _)| adjoint.has(self.scene.model, self.scene.points, p);
+        let has = |(adjoint, _): &&(Adjoint, _)| adjoint.has(self.problem.model, self.problem.points, p);
         let (Some((_, at)), Some(dilation)) = (self.adjoint.as_ref().filter(has), &self.dilation) else {
             return (self.moduli[p], flux);
         };
@@ -194,7 +191,7 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
 
     /// Adds point `p`, whose dilation is averaged: flux_p (S(w dJ tr l)_p / S(w dJ)_p - tr l_p) besides its moduli.
     fn add_coupled(&self, p: usize, grad: &[Vector<D>], (dilations, block): (&mut Dilations, &mut [f64])) {
-        let Scene { model, nodes, points, .. } = *self.scene;
+        let Problem { model, nodes, points, .. } = *self.problem;
         let Some(Dilation { trace, .. }) = self.dilation.as_ref().map(|dilation| &dilation[p]) else { return };
         let (narrow, flux) = self.narrow(p);
         let own = |k: usize, l: usize| narrow[k][l] - flux * trace[(k, l)];
@@ -223,36 +220,4 @@ fn contract<const D: usize>(moduli: &Moduli<D>, grad: &Square<D>) -> Square<D> {
         }
     }
     flux
-}
-
-/// Nodes of a point, at most: cubic splines in three dimensions.
-pub const MOST: usize = 64;
-
-/// Node pairs (a, b) of a patch.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub enum Pairs {
-    /// All.
-    All,
-    /// Those with a <= b.
-    Upper,
-}
-
-/// Adds grad N_a . moduli . grad N_b of one point to the block of its patch.
-pub fn add_point<const D: usize>(moduli: &Moduli<D>, grad: &[Vector<D>], pairs: Pairs, block: &mut [f64]) {
-    let order = grad.len() * D;
-    for (a, grad_a) in grad.iter().enumerate() {
-        // Along the rows, so that nodes b follow each other in memory: D numbers of each row for one product.
-        let first = if pairs == Pairs::All { 0 } else { a };
-        for i in 0..D {
-            let row = &mut block[(a * D + i) * order..][..order];
-            let along: [[f64; D]; D] = std::array::from_fn(|l| {
-                std::array::from_fn(|k| (0..D).map(|j| moduli[k][l][(i, j)] * grad_a[j]).sum())
-            });
-            for (entries, grad_b) in row[first * D..].chunks_exact_mut(D).zip(&grad[first..]) {
-                for k in 0..D {
-                    entries[k] += (0..D).map(|l| along[l][k] * grad_b[l]).sum::<f64>();
-                }
-            }
-        }
-    }
 }

@@ -3,14 +3,17 @@
 
 use crate::error::{SolveError, StepError};
 use crate::kinematics::Kinematics;
+use crate::method::Method;
 use crate::seam::{LinearSolver, dots};
-use crate::step::Counts;
-use crate::step::equilibrium::{Found, Method, Scene, evaluate};
-use crate::step::linearised::Linearised;
-use crate::step::progress::{Progress, first_energy, inverted};
-use crate::step::quasi_newton::Stopped;
+use crate::solve::convergence::{Convergence, first_energy, inverted};
+use crate::solve::evaluate;
+use crate::solve::found::Found;
+use crate::solve::linearised::Linearised;
+use crate::solve::quasi_newton::Stopped;
+use crate::solve::stability;
+use crate::step::problem::Problem;
+use crate::step::report::Counts;
 use crate::step::residual::Residual;
-use crate::step::stability;
 
 /// Iterations after which a step is given up: near a solution five or six do.
 const MOST: usize = 30;
@@ -26,51 +29,51 @@ const DECREASE: f64 = 1e-4;
 
 /// Iterates from the displacement `u`, whose measures continue in `progress`.
 pub fn iterate<K: Kinematics<D>, const D: usize>(
-    scene: &Scene<'_, K, D>,
+    problem: &Problem<'_, K, D>,
     mut u: Vec<f64>,
     solver: &mut dyn LinearSolver,
     counts: &mut Counts,
-    progress: &mut Progress,
+    progress: &mut Convergence,
 ) -> Result<Found<D>, Stopped> {
-    let mut residual = evaluate(scene, &u, counts);
+    let mut residual = evaluate(problem, &u, counts);
     if !residual.balance.is_sound() {
-        return Err(inverted(scene, &residual, progress.iterations()).into());
+        return Err(inverted(problem, &residual, progress.iterations()).into());
     }
     for _ in 0..MOST {
-        if progress.is_balanced(&residual.balance, scene) {
+        if progress.is_balanced(&residual.balance, problem) {
             return Ok(Found::new(u, residual, progress));
         }
-        if scene.halo.is_interrupted() {
+        if problem.halo.is_interrupted() {
             return Err(StepError::Interrupted.into());
         }
-        let du = match direction(scene, &residual, solver, counts) {
+        let du = match direction(problem, &residual, solver, counts) {
             Ok(du) => du,
-            Err(unsolved) => return Err(Stopped::without_direction(scene, (u, &residual), progress, unsolved)),
+            Err(unsolved) => return Err(Stopped::without_direction(problem, (u, &residual), progress, unsolved)),
         };
         let f = &residual.balance.f_oob;
-        let energy = dots(scene.halo, D, &[(&du, f)])[0];
+        let energy = dots(problem.halo, D, &[(&du, f)])[0];
         if !progress.has_begun() {
-            progress.begin(first_energy(scene, &du, energy));
+            progress.begin(first_energy(problem, &du, energy));
         }
         if progress.reaches(Method::Newton, energy.abs(), (&u, &residual.balance)) {
             return Ok(Found::new(u, residual, progress));
         }
-        let work = stability::tells(scene, &residual.balance).then_some(energy);
-        let Some((next, found)) = search(scene, &u, &du, &residual, counts) else { break };
-        stability::check(scene, progress, (&du, work), &found.balance)?;
+        let work = stability::tells(problem, &residual.balance).then_some(energy);
+        let Some((next, found)) = search(problem, &u, &du, &residual, counts) else { break };
+        stability::check(problem, progress, (&du, work), &found.balance)?;
         (u, residual) = (next, found);
     }
-    Err(Stopped { error: Box::new(progress.failed(scene, &residual, None)), best: Some(u) })
+    Err(Stopped { error: Box::new(progress.failed(problem, &residual, None)), best: Some(u) })
 }
 
 /// K du = f_oob with the complete K at this state.
 fn direction<K: Kinematics<D>, const D: usize>(
-    scene: &Scene<'_, K, D>,
+    problem: &Problem<'_, K, D>,
     residual: &Residual<D>,
     solver: &mut dyn LinearSolver,
     counts: &mut Counts,
 ) -> Result<Vec<f64>, SolveError> {
-    let linearised = Linearised::at(scene, residual);
+    let linearised = Linearised::at(problem, residual);
     linearised.factorise(solver)?;
     counts.factorisations += 1;
     counts.iterations += 1;
@@ -85,7 +88,7 @@ fn direction<K: Kinematics<D>, const D: usize>(
 
 /// The longest of the direction's first part, half, quarter, .. that lessens the out-of-balance force.
 fn search<K: Kinematics<D>, const D: usize>(
-    scene: &Scene<'_, K, D>,
+    problem: &Problem<'_, K, D>,
     u: &[f64],
     du: &[f64],
     residual: &Residual<D>,
@@ -94,7 +97,7 @@ fn search<K: Kinematics<D>, const D: usize>(
     let mut length = 1.0;
     while length >= SHORTEST {
         let next: Vec<f64> = u.iter().zip(du).map(|(u, du)| u + length * du).collect();
-        let found = evaluate(scene, &next, counts);
+        let found = evaluate(problem, &next, counts);
         if found.balance.is_sound() && found.balance.norm <= (1.0 - DECREASE * length) * residual.balance.norm {
             return Some((next, found));
         }

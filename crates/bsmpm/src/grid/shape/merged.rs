@@ -7,10 +7,11 @@
 //! on the cells with what the others leave it, rho_j = 1 - sum_k r_kj: a partition of unity everywhere, and an
 //! average that is still symmetric.
 
-use super::paired::Paired;
-use super::transfer::Grouped;
-use super::{Contributions, Grid, Shape};
+use super::Shape;
+use crate::grid::paired::Paired;
+use crate::grid::{Contributions, Grid};
 use crate::seam::Halo;
+use crate::stabilisation::Grouped;
 
 /// What the functions of every patch are merged to; numbers of the functions on pairs stand beside those of the nodes.
 #[derive(Clone, Debug)]
@@ -118,7 +119,7 @@ impl<const D: usize> Merged<D> {
     }
 
     /// Numbers of a patch's functions on the cells, as those of all functions that are merged: of cells, and of pairs.
-    pub(super) fn spread<const C: usize, const N: usize>(
+    pub(crate) fn spread<const C: usize, const N: usize>(
         &self,
         at: (usize, usize),
         block: &[[f64; C]; N],
@@ -137,7 +138,7 @@ impl<const D: usize> Merged<D> {
     }
 
     /// The transpose of [`Merged::spread`]: values of the functions on the cells that make up all.
-    pub(super) fn combine<const C: usize, const N: usize>(
+    pub(crate) fn combine<const C: usize, const N: usize>(
         &self,
         at: (usize, usize),
         [mut cells, pairs]: [[[f64; C]; N]; 2],
@@ -161,7 +162,7 @@ fn inner_cells<const D: usize>(grid: &Grid<D>, lower: &Shape<D>, grouped: Groupe
     let groups = grouped.count();
     let columns = lower.columns().iter().map(|column| column.column).collect();
     let mut around = Contributions::none(grid, groups, columns);
-    let holds = |patch: &super::shape::Patch, group: usize| patch.points.clone().any(|p| grouped.of(p) == group);
+    let holds = |patch: &super::Patch, group: usize| patch.points.clone().any(|p| grouped.of(p) == group);
     for patch in lower.patches() {
         let cell = grid.cell_at(patch.cell);
         let sums = around.patch(patch.first_node);

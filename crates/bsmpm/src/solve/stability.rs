@@ -19,9 +19,9 @@ use crate::kinematics::Kinematics;
 use crate::material::Material;
 use crate::model::Model;
 use crate::seam::dots;
+use crate::solve::convergence::Convergence;
 use crate::stabilisation::Stabilisation;
-use crate::step::equilibrium::Scene;
-use crate::step::progress::Progress;
+use crate::step::problem::Problem;
 use crate::step::residual::Balance;
 
 /// Force measure below which a state counts as near equilibrium: farther off a step may pass several equilibria.
@@ -29,23 +29,23 @@ const NEAR: f64 = 1e-3;
 
 /// Whether anything follows from the work of a direction that is taken at this state: not far from equilibrium, nor in
 /// dynamics, where inertia decides where an unstable body goes, nor without symmetry.
-pub fn tells<K, const D: usize>(scene: &Scene<'_, K, D>, before: &Balance) -> bool {
-    before.measure() < NEAR && scene.nodes.inertia.is_none() && is_symmetric(scene.model)
+pub fn tells<K, const D: usize>(problem: &Problem<'_, K, D>, before: &Balance) -> bool {
+    before.measure() < NEAR && problem.nodes.inertia.is_none() && is_symmetric(problem.model)
 }
 
 /// Refuses a direction du (m, nodal; how much of it was taken changes no sign) near static equilibrium whose second-order
 /// work is negative beyond round-off: `work` is du . f_oob before it was taken, N m, where that [`tells`] anything; `after` are
 /// the forces then. Agreed by all ranks; one reduction.
 pub fn check<K: Kinematics<D>, const D: usize>(
-    scene: &Scene<'_, K, D>,
-    progress: &Progress,
+    problem: &Problem<'_, K, D>,
+    progress: &Convergence,
     (du, work): (&[f64], Option<f64>),
     after: &Balance,
 ) -> Result<(), StepError> {
     let Some(before) = work.filter(|_| after.measure() < NEAR) else { return Ok(()) };
-    let sums = dots(scene.halo, D, &[(du, &after.f_oob), (du, du)]);
+    let sums = dots(problem.halo, D, &[(du, &after.f_oob), (du, du)]);
     let work = before - sums[0];
-    if is_negative(work, sums[1].sqrt(), progress.round_off() * bulkiness(scene.model)) {
+    if is_negative(work, sums[1].sqrt(), progress.round_off() * bulkiness(problem.model)) {
         return Err(StepError::Unstable { iteration: progress.iterations(), work });
     }
     Ok(())

@@ -2,7 +2,7 @@
 
 use crate::kinematics::Kinematics;
 use crate::seam::over_layers;
-use crate::step::equilibrium::Scene;
+use crate::step::problem::Problem;
 use crate::step::residual::Balance;
 
 /// Round-off of the internal force, relative to E h^(D-1) x 1 m^(3-D).
@@ -21,10 +21,10 @@ pub struct RoundOff {
 
 impl RoundOff {
     /// Of the forces of a step, D numbers a node; one reduction, and one exchange where moduli differ.
-    pub fn of<K: Kinematics<D>, const D: usize>(scene: &Scene<'_, K, D>) -> Self {
-        let nodes = scene.nodes;
-        let area = scene.model.grid.smallest_edge().powi(D as i32 - 1);
-        let young = largest_moduli(scene);
+    pub fn of<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>) -> Self {
+        let nodes = problem.nodes;
+        let area = problem.model.grid.smallest_edge().powi(D as i32 - 1);
+        let young = largest_moduli(problem);
         let mut force: Vec<f64> = young.iter().flat_map(|young| [INTERNAL * young * area; D]).collect();
         if let Some(inertia) = &nodes.inertia {
             for (c, force) in force.iter_mut().enumerate() {
@@ -33,9 +33,9 @@ impl RoundOff {
         }
         force.iter_mut().zip(&nodes.free).filter(|(_, free)| !**free).for_each(|(force, _)| *force = 0.0);
         let square = |c: usize| force[c].powi(2);
-        let mut sums = vec![over_layers(scene.halo, D, square)];
-        sums.extend(nodes.apart.iter().flat_map(|apart| apart.sums(scene.halo, D, |c| [square(c)])));
-        let sums = scene.halo.total(&sums);
+        let mut sums = vec![over_layers(problem.halo, D, square)];
+        sums.extend(nodes.apart.iter().flat_map(|apart| apart.sums(problem.halo, D, |c| [square(c)])));
+        let sums = problem.halo.total(&sums);
         let (norm, apart) = (sums[0].sqrt(), sums[1..].iter().map(|sum| sum.sqrt()).collect());
         Self { force, norm, apart }
     }
@@ -57,22 +57,22 @@ impl RoundOff {
 
     /// Whether no node is further out of balance than by round-off. All ranks must ask; they share an exchange only where
     /// the norm leaves a doubt.
-    pub fn covers<K, const D: usize>(&self, balance: &Balance, scene: &Scene<'_, K, D>) -> bool {
+    pub fn covers<K, const D: usize>(&self, balance: &Balance, problem: &Problem<'_, K, D>) -> bool {
         if balance.norm > self.norm {
             return false;
         }
-        let owned = scene.halo.owned();
+        let owned = problem.halo.owned();
         let mut pairs = balance.f_oob.iter().zip(&self.force).skip(owned.start * D).take(owned.len() * D);
         let mut beyond = [f64::from(u8::from(pairs.any(|(f, limit)| f.abs() > *limit)))];
-        scene.halo.maximum(&mut beyond);
+        problem.halo.maximum(&mut beyond);
         beyond[0] == 0.0
     }
 }
 
 /// Largest Young's modulus of the points in the cells of each node, Pa.
-fn largest_moduli<K: Kinematics<D>, const D: usize>(scene: &Scene<'_, K, D>) -> Vec<f64> {
-    let (model, shape, points) = (scene.model, scene.shape, scene.points);
-    let number = scene.nodes.weight.len();
+fn largest_moduli<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>) -> Vec<f64> {
+    let (model, shape, points) = (problem.model, problem.shape, problem.points);
+    let number = problem.nodes.weight.len();
     if model.is_uniformly_stiff() {
         return vec![model.stiffest(); number];
     }
@@ -84,6 +84,6 @@ fn largest_moduli<K: Kinematics<D>, const D: usize>(scene: &Scene<'_, K, D>) -> 
             *node = node.max(young);
         }
     }
-    scene.halo.max(&mut moduli, 1);
+    problem.halo.max(&mut moduli, 1);
     moduli
 }

@@ -15,8 +15,8 @@ use crate::kinematics::Kinematics;
 use crate::material::Material;
 use crate::model::Model;
 use crate::points::Points;
-use crate::step::equilibrium::Scene;
 use crate::step::nodes::weights;
+use crate::step::problem::Problem;
 use crate::step::trial::Trial;
 use crate::tensor::{Symmetric, Tensor};
 
@@ -63,15 +63,15 @@ pub struct Pressures(Option<Vec<Option<f64>>>);
 
 impl Pressures {
     /// Under a trial; one exchange with the neighbours where anything has the adjoint force.
-    pub fn of<K: Kinematics<D>, const D: usize>(scene: &Scene<'_, K, D>, trial: &Trial<D>) -> Self {
-        let Some(adjoint) = Adjoint::of(scene.model) else { return Self(None) };
-        let Scene { model, points, .. } = *scene;
-        let volume = scene.volume();
+    pub fn of<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>, trial: &Trial<D>) -> Self {
+        let Some(adjoint) = Adjoint::of(problem.model) else { return Self(None) };
+        let Problem { model, points, .. } = *problem;
+        let volume = problem.volume();
         let per_mean = |p: usize| match trial.respond(model, points, p) {
             Ok(response) => volume[p] * works::<K, D>(&response.tau().full()) / trial.means(model, points, p).1,
             Err(_) => 0.0, // the residual refuses such a point
         };
-        let transposed = transposed(scene, &adjoint, trial, per_mean);
+        let transposed = transposed(problem, &adjoint, trial, per_mean);
         let of = |(p, pressure)| adjoint.has(model, points, p).then_some(pressure);
         Self(Some(transposed.into_iter().enumerate().map(of).collect()))
     }
@@ -95,12 +95,12 @@ impl Pressures {
 
 /// m_p w_p dJ_p sum_A A_p (1/m_A) sum_r A_r value_r, over points with the adjoint force: the transpose of the average.
 pub fn transposed<K: Kinematics<D>, const D: usize>(
-    scene: &Scene<'_, K, D>,
+    problem: &Problem<'_, K, D>,
     adjoint: &Adjoint,
     trial: &Trial<D>,
     value: impl Fn(usize) -> f64 + Sync,
 ) -> Vec<f64> {
-    let Scene { model, shape, nodes, points, halo, .. } = *scene;
+    let Problem { model, shape, nodes, points, halo, .. } = *problem;
     let weights = weights(model.weighting, points);
     let per_weight = |p: usize| if adjoint.has(model, points, p) { value(p) / weights[p] } else { 0.0 };
     let mut sums = nodes.mean_dilation(model, (shape, points), halo, per_weight);

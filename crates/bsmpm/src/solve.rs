@@ -1,0 +1,146 @@
+//! Steps (3), (7)-(9): how equilibrium is sought: from which guess, by which method, and what comes after a failure.
+//!
+//! The displacement that is accepted is the one whose forces were evaluated. Where Newton's method leads on no further, a
+//! state whose forces balance far below their tolerance is accepted although its energy measure is not small: that is
+//! relative to the energy of the first direction, which is next to nothing where a step begins nearly balanced. No step that
+//! meets both criteria is judged by this.
+
+pub mod broyden;
+pub mod convergence;
+pub mod found;
+pub mod linearised;
+pub mod multisecant;
+pub mod newton;
+pub mod quasi_newton;
+pub mod round_off;
+pub mod stability;
+pub mod unknowns;
+
+use crate::error::StepError;
+use crate::kinematics::Kinematics;
+use crate::method::{Nonlinear, QuasiNewton};
+use crate::seam::LinearSolver;
+use crate::step::nodes::Nodes;
+use crate::step::problem::Problem;
+use crate::step::report::Counts;
+use crate::step::residual::Residual;
+use crate::step::stiffness;
+use convergence::{Convergence, inverted};
+use found::Found;
+use quasi_newton::Stopped;
+
+/// Finds equilibrium from the last displacement `guess` (step 3b); if that fails, from zero.
+pub fn find<K: Kinematics<D>, const D: usize>(
+    problem: &Problem<'_, K, D>,
+    guess: &[f64],
+    solver: &mut dyn LinearSolver,
+    counts: &mut Counts,
+) -> Result<Found<D>, StepError> {
+    let (last, zero) = (admissible(problem.nodes, guess), admissible(problem.nodes, &vec![0.0; guess.len()]));
+    let mut differs = [f64::from(u8::from(last != zero))];
+    problem.halo.maximum(&mut differs);
+    let method = problem.model.nonlinear;
+    match search(problem, method, last, (solver, counts)) {
+        Err(error) if !error.is_final() && differs[0] > 0.0 => {
+            let method = if method == Nonlinear::Auto { Nonlinear::Newton } else { method };
+            let found = search(problem, method, zero, (solver, counts))?;
+            Ok(Found { first_guess: false, ..found })
+        }
+        found => found,
+    }
+}
+
+/// Seeks equilibrium from one guess.
+fn search<K: Kinematics<D>, const D: usize>(
+    problem: &Problem<'_, K, D>,
+    method: Nonlinear,
+    u: Vec<f64>,
+    (solver, counts): (&mut dyn LinearSolver, &mut Counts),
+) -> Result<Found<D>, StepError> {
+    let mut progress = Convergence::new(problem);
+    let secants = match method {
+        Nonlinear::Newton => {
+            let found = newton::iterate(problem, u, solver, counts, &mut progress);
+            return found
+                .or_else(|failure| settled(problem, failure, counts, &progress))
+                .map_err(|failure| *failure.error);
+        }
+        Nonlinear::QuasiNewton(secants) => secants,
+        Nonlinear::Auto => QuasiNewton::Multisecant,
+    };
+    let patient = method != Nonlinear::Auto;
+    let mut failure = match by_secants(problem, (secants, patient), u, (solver, counts), &mut progress) {
+        Ok(found) => return Ok(found),
+        Err(failure) => failure,
+    };
+    if let (Some(best), false) = (failure.best.take(), patient) {
+        let found = newton::iterate(problem, best, solver, counts, &mut progress);
+        failure = match found.or_else(|failure| settled(problem, failure, counts, &progress)) {
+            Ok(found) => return Ok(found),
+            Err(failure) => failure,
+        };
+        if let Some(best) = failure.best.take() {
+            failure = match by_secants(problem, (secants, true), best, (solver, counts), &mut progress) {
+                Ok(found) => return Ok(found),
+                Err(failure) => failure,
+            };
+        }
+    }
+    // Secants alone that come to their limit might have gone on.
+    let found = if patient { Err(failure) } else { settled(problem, failure, counts, &progress) };
+    found.map_err(|failure| *failure.error)
+}
+
+/// The first state of an iteration that led on no further whose forces balance far below their tolerance.
+fn settled<K: Kinematics<D>, const D: usize>(
+    problem: &Problem<'_, K, D>,
+    failure: Stopped,
+    counts: &mut Counts,
+    progress: &Convergence,
+) -> Result<Found<D>, Stopped> {
+    if failure.error.is_final() {
+        return Err(failure);
+    }
+    let Some(u) = progress.settled() else { return Err(failure) };
+    let residual = evaluate(problem, u, counts);
+    Ok(Found { settled: true, ..Found::new(u.clone(), residual, progress) })
+}
+
+/// Secants on the stiffness at `u`, where they start.
+fn by_secants<K: Kinematics<D>, const D: usize>(
+    problem: &Problem<'_, K, D>,
+    method: (QuasiNewton, bool),
+    u: Vec<f64>,
+    (solver, counts): (&mut dyn LinearSolver, &mut Counts),
+    progress: &mut Convergence,
+) -> Result<Found<D>, Stopped> {
+    let residual = evaluate(problem, &u, counts);
+    if !residual.balance.is_sound() {
+        return Err(inverted(problem, &residual, progress.iterations()).into());
+    }
+    if problem.nodes.unknowns > 0 && !progress.is_balanced(&residual.balance, problem) {
+        stiffness::assemble(problem, Some(&residual.trial), solver)?;
+        counts.factorisations += 1;
+    }
+    quasi_newton::iterate(problem, method, (u, residual), solver, counts, progress)
+}
+
+/// The guess where it is free, the prescribed values, zero elsewhere.
+fn admissible<const D: usize>(nodes: &Nodes<D>, guess: &[f64]) -> Vec<f64> {
+    let component = |(c, &value): (usize, &f64)| match nodes.prescribed[c] {
+        Some(prescribed) => prescribed,
+        None if nodes.free[c] => value,
+        None => 0.0,
+    };
+    guess.iter().enumerate().map(component).collect()
+}
+
+/// The forces under `u`, counted.
+pub fn evaluate<K: Kinematics<D>, const D: usize>(
+    problem: &Problem<'_, K, D>,
+    u: &[f64],
+    counts: &mut Counts,
+) -> Residual<D> {
+    counts.evaluations += 1;
+    Residual::of(problem, u)
+}

@@ -1,0 +1,40 @@
+//! What the search for equilibrium found.
+
+use crate::error::Measures;
+use crate::solve::convergence::Convergence;
+use crate::step::residual::Residual;
+use crate::step::trial::Trial;
+
+/// A converged displacement.
+#[derive(Clone, Debug)]
+pub struct Found<const D: usize> {
+    /// m, nodal
+    pub u: Vec<f64>,
+    /// deformation under `u`
+    pub trial: Trial<D>,
+    /// N  force of the supports on the body, nodal
+    pub reaction: Vec<f64>,
+    /// both measures of every iteration
+    pub history: Vec<Measures>,
+    /// force measure
+    pub force: f64,
+    /// J  of all internal forces, with a background
+    pub work: f64,
+    /// Newton iterations
+    pub newton_iterations: usize,
+    /// whether the forces alone decided
+    pub settled: bool,
+    /// whether the first guess led here
+    pub first_guess: bool,
+}
+
+impl<const D: usize> Found<D> {
+    /// The state that an iteration reached.
+    pub fn new(u: Vec<f64>, residual: Residual<D>, progress: &Convergence) -> Self {
+        let newton_iterations = progress.by_newton();
+        let (force, work) = (progress.measure(&residual.balance), residual.balance.work);
+        let Residual { trial, balance, .. } = residual;
+        let (history, reaction) = (progress.history().to_vec(), balance.reaction);
+        Self { u, trial, reaction, history, force, work, newton_iterations, settled: false, first_guess: true }
+    }
+}

@@ -1,0 +1,95 @@
+//! Step (6): the parts that the stiffness K_0 and the complete derivative share: a point's moduli in the block of its patch,
+//! mass, and what is added to a matrix once its patches are assembled.
+
+use crate::error::SolveError;
+use crate::grid::Shape;
+use crate::grid::shape::Patch;
+use crate::kinematics::Kinematics;
+use crate::seam::{LinearSolver, Symmetry};
+use crate::step::mass::{MassMatrix, SHARE};
+use crate::step::nodes::Nodes;
+use crate::step::problem::Problem;
+use crate::tensor::{Square, Vector};
+
+/// Flux for every unit gradient: element (k, l) for du_k/dx_l = 1.
+pub type Moduli<const D: usize> = [[Square<D>; D]; D];
+
+/// Nodes of a point, at most: cubic splines in three dimensions.
+pub const MOST: usize = 64;
+
+/// Node pairs (a, b) of a patch.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Pairs {
+    /// All.
+    All,
+    /// Those with a <= b.
+    Upper,
+}
+
+/// Adds grad N_a . moduli . grad N_b of one point to the block of its patch.
+pub fn add_point<const D: usize>(moduli: &Moduli<D>, grad: &[Vector<D>], pairs: Pairs, block: &mut [f64]) {
+    let order = grad.len() * D;
+    for (a, grad_a) in grad.iter().enumerate() {
+        // Along the rows, so that nodes b follow each other in memory: D numbers of each row for one product.
+        let first = if pairs == Pairs::All { 0 } else { a };
+        for i in 0..D {
+            let row = &mut block[(a * D + i) * order..][..order];
+            let along: [[f64; D]; D] = std::array::from_fn(|l| {
+                std::array::from_fn(|k| (0..D).map(|j| moduli[k][l][(i, j)] * grad_a[j]).sum())
+            });
+            for (entries, grad_b) in row[first * D..].chunks_exact_mut(D).zip(&grad[first..]) {
+                for k in 0..D {
+                    entries[k] += (0..D).map(|l| along[l][k] * grad_b[l]).sum::<f64>();
+                }
+            }
+        }
+    }
+}
+
+/// Adds strips, faces of the background and inertia to a matrix whose patches are assembled, and factorises it.
+pub fn complete<K: Kinematics<D>, const D: usize>(
+    problem: &Problem<'_, K, D>,
+    solver: &mut dyn LinearSolver,
+    symmetry: Symmetry,
+) -> Result<(), SolveError> {
+    let nodes = problem.nodes;
+    problem.grips.assemble(solver);
+    if let Some(background) = &nodes.background {
+        background.assemble::<D>(solver);
+    }
+    if let Some(inertia) = &nodes.inertia {
+        let factor = match problem.model.mass {
+            MassMatrix::Lumped => inertia.factor(),
+            MassMatrix::Consistent => (1.0 - SHARE) * inertia.factor(),
+        };
+        let diagonal: Vec<f64> = (0..nodes.free.len()).map(|c| factor * nodes.weight[c / D]).collect();
+        solver.add_diagonal(&diagonal);
+    }
+    solver.finish(symmetry)
+}
+
+/// Adds what couples the nodes of a patch by their mass, if that is consistent; [`complete`] adds the diagonal.
+pub fn add_mass<const D: usize>(
+    (matrix, nodes): (MassMatrix, &Nodes<D>),
+    (shape, patch): (&Shape<D>, &Patch),
+    mass: &[f64],
+    block: &mut [f64],
+) {
+    let Some(inertia) = nodes.inertia.as_ref().filter(|_| matrix == MassMatrix::Consistent) else { return };
+    let size = shape.offsets().len();
+    let mut pairs = vec![0.0; size * size];
+    let mut N = [0.0; MOST];
+    let N = &mut N[..size];
+    for p in patch.points.clone() {
+        shape.values_into(p, N);
+        let weight = SHARE * inertia.factor() * mass[p];
+        for (row, N_a) in pairs.chunks_exact_mut(size).zip(&*N) {
+            row.iter_mut().zip(&*N).for_each(|(pair, N_b)| *pair += weight * N_a * N_b);
+        }
+    }
+    for (pair, mass) in pairs.iter().enumerate() {
+        for i in 0..D {
+            block[(pair / size * D + i) * size * D + pair % size * D + i] += mass;
+        }
+    }
+}

@@ -1,0 +1,38 @@
+//! What is fixed while a step is iterated, steps (3) to (9).
+
+use crate::boundary::strip::Grips;
+use crate::grid::Shape;
+use crate::model::Model;
+use crate::points::Points;
+use crate::seam::Halo;
+use crate::step::mass::Mass;
+use crate::step::nodes::Nodes;
+
+/// Everything that is fixed while a step is iterated.
+pub struct Problem<'a, K, const D: usize> {
+    /// the scene
+    pub model: &'a Model<K, D>,
+    /// step (1)
+    pub shape: &'a Shape<D>,
+    /// step (2)
+    pub nodes: &'a Nodes<D>,
+    /// strips, attached to the nodes
+    pub grips: &'a Grips<D>,
+    /// state at t
+    pub points: &'a Points<D>,
+    /// the other ranks
+    pub halo: &'a dyn Halo,
+}
+
+impl<'a, K, const D: usize> Problem<'a, K, D> {
+    /// The mass matrix, in dynamics.
+    pub fn mass(&self) -> Mass<'_, D> {
+        self.nodes.mass(self.model, (self.shape, self.points), self.halo)
+    }
+
+    /// What the points weigh in the integrals of the stress, m^D of the reference volume.
+    #[inline]
+    pub fn volume(&self) -> &'a [f64] {
+        self.nodes.volume(self.points)
+    }
+}

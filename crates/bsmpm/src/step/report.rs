@@ -1,0 +1,88 @@
+//! What a step tells of itself.
+
+use crate::boundary::StripReport;
+use crate::energy::{Flows, Turnover};
+use crate::error::Measures;
+use crate::kinematics::Kinematics;
+use crate::solve::found::Found;
+use crate::step::problem::Problem;
+
+/// Work of one or more attempts, failed ones included.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// quasi-Newton and Newton iterations
+    pub iterations: usize,
+    /// evaluations of the residual
+    pub evaluations: usize,
+    /// iterations of the linear solver
+    pub linear_iterations: usize,
+    /// products with the complete derivative
+    pub products: usize,
+    /// factorisations
+    pub factorisations: usize,
+}
+
+/// What an accepted step did.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Report {
+    /// iterations from the guess that led to convergence
+    pub iterations: usize,
+    /// Newton iterations among them; 0 where the quasi-Newton method got there
+    pub newton_iterations: usize,
+    /// both measures of every iteration
+    pub history: Vec<Measures>,
+    /// force measure |f_oob| / largest force of the accepted state
+    pub force: f64,
+    /// nodes that carry material, over all ranks
+    pub active_nodes: usize,
+    /// unknowns of the linear system, over all ranks
+    pub unknowns: usize,
+    /// active nodes without mass, whose velocity and averages count as zero
+    pub massless_nodes: usize,
+    /// cells (ghost penalty: faces) with the soft background, over all ranks
+    pub background_cells: usize,
+    /// whether the forces alone decided: the methods led on no further, and forces balanced far below their tolerance
+    pub settled: bool,
+    /// whether the first guess of the displacement led to convergence
+    pub first_guess: bool,
+    /// N  force of every support on the body, by component, in the order of the model's supports
+    pub reactions: Vec<Vec<f64>>,
+    /// what every rigid strip did
+    pub strips: Vec<StripReport>,
+    /// J  work u . B u on the soft background, and f_int . u of all internal forces, the background's among them; if there
+    /// is a background
+    pub background: Option<[f64; 2]>,
+    /// J  where the energy went, if the model balances it
+    pub energy: Option<Flows>,
+    /// J  what bounds the energy, in dynamics and where the model balances it
+    pub turnover: Option<Turnover>,
+    /// share of a pass of S by which the elastic state was smoothed, mean over the points
+    pub smoothed: f64,
+}
+
+impl Report {
+    /// Of a displacement that was found, before the points have taken it; one reduction for the supports' forces, and one for
+    /// the background's work.
+    pub fn of<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>, found: &Found<D>) -> Self {
+        let nodes = problem.nodes;
+        let soft = nodes.background.as_ref().map(|blocks| blocks.work::<D>(problem.shape, &found.u));
+        Self {
+            iterations: found.history.len(),
+            history: found.history.clone(),
+            force: found.force,
+            newton_iterations: found.newton_iterations,
+            active_nodes: nodes.active_nodes,
+            unknowns: nodes.unknowns,
+            massless_nodes: nodes.massless_nodes,
+            background_cells: nodes.background_cells,
+            settled: found.settled,
+            first_guess: found.first_guess,
+            reactions: problem.model.boundary.reactions(&problem.model.grid, &found.reaction, problem.halo),
+            strips: Vec::new(),
+            background: soft.map(|work| [problem.halo.total(&[work])[0], found.work]),
+            energy: None,
+            turnover: None,
+            smoothed: 0.0,
+        }
+    }
+}
