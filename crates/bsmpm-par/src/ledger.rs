@@ -204,6 +204,8 @@ impl Ledger {
         if let Some(passes) = &mut summary.smoothing_passes {
             *passes += report.smoothed;
         }
+        summary.largest_advance =
+            Some(summary.largest_advance.map_or(report.advance, |so_far| so_far.max(report.advance)));
         summary.settled_steps += u64::from(report.settled);
         if let Some([soft, all]) = report.background {
             summary.background_work = Some(summary.background_work.unwrap_or(0.0) + soft);

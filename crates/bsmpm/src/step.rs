@@ -66,7 +66,8 @@ pub fn step<K: Kinematics<D>, const D: usize>(
     if halo.rejects() {
         return Err(StepError::Interrupted);
     }
-    let Committed { u, smoothed } = commit::commit(model, (&shape, &nodes), (found, &responses), points, halo); // (10), (11)
+    // (10), (11)
+    let Committed { u, advance, smoothed } = commit::commit(model, (&shape, &nodes), (found, &responses), points, halo);
     *guess = u;
     let account = draft.map(|draft| draft.close(model, points, &surface, halo));
     let places = surface.anchors.places(&model.boundary, points.anchored(), halo);
@@ -76,5 +77,5 @@ pub fn step<K: Kinematics<D>, const D: usize>(
     surface.position = places.loads;
     points.surface = surface;
     let (energy, turnover) = account.map_or((None, None), |(flows, turnover)| (flows, Some(turnover)));
-    Ok(Report { energy, turnover, smoothed, ..report })
+    Ok(Report { energy, turnover, advance, smoothed, ..report })
 }

@@ -108,6 +108,9 @@ pub struct Summary {
     /// measure did not hold.
     #[serde(default)]
     pub settled_steps: u64,
+    /// m  the farthest that a point moved in a step; none before the first one.
+    #[serde(default)]
+    pub largest_advance: Option<f64>,
     /// Largest slip of any rigid strip in a step, over its motion in that step; none without strips that move.
     #[serde(default)]
     pub largest_slip: Option<f64>,

@@ -62,6 +62,10 @@ pub(super) fn of(name: &str, case: &Case) -> &'static str {
             "the tip has thinned out to less than half a cell, and the front is where the body is thicker: no front of this \
              grid; smaller cells, or quantity = \"runout\" with a percentile"
         }
+        "step-advance" => {
+            "points move so far in a step that motion and contact are integrated coarsely: fronts of flows are off by 5 to 10 % where \
+             it is a cell; a smaller [analysis] dt"
+        }
         "background-work" => {
             "about this part of the forces is carried by the soft background and not by the body: it is stiffer and stronger \
              than its material; a smaller [solver] background"

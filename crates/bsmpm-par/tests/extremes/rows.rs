@@ -21,7 +21,6 @@ const FLIP: &str = "accelerations lose what the grid cannot hold when they go to
 const DIFFUSION: &str = "the paper's average of b^e is a diffusion per step";
 const LATE: &str = "an error of the step: 8, 7, 2 % between .5 and .0625 ms";
 const LOOSE: &str = "the farthest point has come loose, and slides on where its neighbours stick";
-const COARSE: &str = "an error of integration in time: a fall of .1 s in steps of 5 to 10 ms";
 const SLOW: &str = "p/c changes by .1 to .4 % a doubling, and that falls by less than half each time";
 const C1: &str = "the splines are C1: strain cannot jump at an interface inside the grid";
 
@@ -217,7 +216,7 @@ fn huge_steps() -> Vec<Row> {
             || steps::collapse(0.01, 0.607)).or_refused().full(),
         row("N10", "dt = 50 ms, the same", AtMost(0.05), || steps::collapse(0.05, 0.607)).or_refused().full(),
         row("N10", "dt = 1000 ms, collapse to 1 s: the same", AtMost(0.05),
-            || steps::collapse(1.0, 1.0)).or_refused().full().fails(COARSE),
+            || steps::collapse(1.0, 1.0)).or_refused().full(),
     ]
 }
 

@@ -110,7 +110,13 @@ pub fn collapse(dt: f64, end: f64) -> Found {
     let run = |dt: f64| Run::of(&Collapse { end, dt, ..Collapse::default() }.text(), 1, &[]);
     let way = |run: &Run| run.last("runout") - FARTHEST;
     let reference = way(&run(0.5e-3));
-    run(dt).found(|run| Found::Figure((way(run) / reference - 1.0).abs(), run.effort()))
+    let run = run(dt);
+    let error = (way(&run) / reference - 1.0).abs();
+    let advance = run.manifest().indicators.remove("step-advance").filter(|indicator| indicator.unusual);
+    match advance {
+        Some(told) => Found::Told(0, format!("step-advance is {:.2}: {}; figure {error:.3}", told.value, told.meaning)),
+        None => run.found(|run| Found::Figure(error, run.effort())),
+    }
 }
 
 /// Broyden's update with steps of no length and with more steps than it keeps: non-finite numbers in its directions.

@@ -51,6 +51,8 @@ pub struct Committed {
     pub u: Vec<f64>,
     /// share of a pass of S by which the elastic state was smoothed afterwards, mean over the points; 0 if it was not
     pub smoothed: f64,
+    /// m  the farthest that a point moved, over all ranks
+    pub advance: f64,
 }
 
 /// The constitution's answers to the converged step. Fails on all ranks if it refuses a state that it answered during the
@@ -82,6 +84,8 @@ pub fn commit<K: Kinematics<D>, const D: usize>(
         move_with_inertia((shape, model.mass), inertia, &u, points);
     }
     let du = transfer::to_points::<D, D, _>(shape, &u, |_, du| Vector::from(du));
+    let mut advance = [du.iter().map(Vector::norm_squared).fold(0.0, f64::max).sqrt()];
+    halo.maximum(&mut advance);
     for (p, du) in du.into_iter().enumerate() {
         points.x[p] += du; // (11a)
         points.u[p] += du; // (11b)
@@ -109,7 +113,7 @@ pub fn commit<K: Kinematics<D>, const D: usize>(
         Stabilisation::None | Stabilisation::FBar | Stabilisation::FBarZhao => 0.0,
     };
     points.gap = gaps(model, points, responses);
-    Committed { u, smoothed }
+    Committed { u, advance: advance[0], smoothed }
 }
 
 /// Gap of every point after the step, if some material closes its gaps.

@@ -56,6 +56,8 @@ pub struct Report {
     pub energy: Option<Flows>,
     /// J  what bounds the energy, in dynamics and where the model balances it
     pub turnover: Option<Turnover>,
+    /// m  the farthest that a point moved, over all ranks
+    pub advance: f64,
     /// share of a pass of S by which the elastic state was smoothed, mean over the points
     pub smoothed: f64,
 }
@@ -82,6 +84,7 @@ impl Report {
             background: soft.map(|work| [problem.halo.total(&[work])[0], found.work]),
             energy: None,
             turnover: None,
+            advance: 0.0,
             smoothed: 0.0,
         }
     }
