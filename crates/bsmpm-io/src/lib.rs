@@ -1,3 +1,6 @@
+#![doc = include_str!("../README.md")]
+//! ## The modules
+//!
 //! What a run leaves in its output directory, and how it is read back: frames for ParaView ([`frame`], [`vtu`],
 //! [`frames`]), one row a step ([`table`], [`steps`]), one an iteration ([`residuals`]), the manifest `run.json`
 //! ([`manifest`]), `failure.json` ([`failure`]), the directory itself ([`directory`]), which a run that goes on holds alone

@@ -1,4 +1,5 @@
-//! Exit codes, as the README lists them. Those of files (73, 74) come with the errors of `bsmpm-io`.
+//! What the program ends with. Codes of files (73, 74) come with the errors of `bsmpm-io`.
+#![doc = include_str!("exit.md")]
 
 /// The case's end was reached, and all its checks passed.
 pub const DONE: u8 = 0;

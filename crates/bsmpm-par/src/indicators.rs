@@ -1,6 +1,7 @@
 //! Cheap measures of how far a run can be trusted, taken once at its end: what they are, and which values are usual.
 //!
-//! The ranges are those of the shipped cases, coarse and fine, with methods that are known to be good; see the README.
+//! The ranges are those of the shipped cases, coarse and fine, with methods that are known to be good.
+#![doc = include_str!("indicators.md")]
 
 mod advice;
 

@@ -1,6 +1,4 @@
-//! The solver program around the physics: slabs and ranks, halos, migration, PETSc, files and the log.
-//!
-//! One program for any number of ranks; a single rank is a cut into one slab. `bsmpm` computes, this crate connects.
+#![doc = include_str!("../README.md")]
 #![deny(unsafe_code)]
 
 pub mod checkpoint;

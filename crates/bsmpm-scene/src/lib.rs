@@ -1,9 +1,11 @@
+#![doc = include_str!("../README.md")]
+//! ## The way of a case
+//!
 //! What to solve: a TOML case file, read strictly, becomes a valid [`Case`] in SI units and its material points.
 //!
-//! The way of a case: bytes ([`load`]) -> the document as written, with every value's place -> overrides
+//! Bytes ([`load`]) -> the document as written, with every value's place -> overrides
 //! (`--set KEY=VALUE`) -> what a preset stands for -> the document held against the [`schema`]: names, types, units,
-//! ranges -> the rules between
-//! keys -> [`Case`]. All errors of a file are reported at once; nothing is used differently from how it was written.
+//! ranges -> the rules between keys -> [`Case`]. Nothing is used differently from how it was written.
 //! This crate knows no MPI, writes nothing and allocates nothing in proportion to a number that a case gives, but for a
 //! bounded count per column of cells of a body that is no box.
 #![forbid(unsafe_code)]

@@ -1,8 +1,8 @@
 //! `accuracy = "draft" | "standard" | "reference"`: what a case leaves out of its discretisation is filled in before it is
 //! held against the schema, so that all that follows sees ordinary keys, and any key given by hand wins.
 //!
-//! The presets are defined here and nowhere else. What they cost on column, slope and footing, and what they give beside the
-//! paper's own discretisation, is measured by `scripts/presets` and stands in the README.
+//! The presets are defined here and nowhere else.
+#![doc = include_str!("preset.md")]
 
 mod scene;
 

@@ -3,6 +3,7 @@
 //! iterations change as material yields; a case that takes no longer than probes may is run whole. Without probes both come
 //! from what runs took elsewhere (`stored`), scaled by how fast this machine is (`kernel`). The result is set in
 //! `report`, beside a finished run in `against`.
+#![doc = include_str!("estimate.md")]
 
 use std::path::{Path, PathBuf};
 use std::thread;

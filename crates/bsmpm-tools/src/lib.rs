@@ -1,5 +1,5 @@
-//! The companion of bsmpm: what a person does with a case before, and with a run after, `bsmpm-par` has solved it. It
-//! never starts MPI.
+#![doc = include_str!("../README.md")]
+//! ## The modules
 //!
 //! Each command is a module with its arguments and one function that carries it out; [`cli`] lists them.
 #![forbid(unsafe_code)]

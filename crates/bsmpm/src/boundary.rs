@@ -1,4 +1,5 @@
 //! What holds and loads the bodies: supports at the faces of the grid, rigid strips, tractions and point loads.
+#![doc = include_str!("boundary.md")]
 
 pub mod anchor;
 pub mod load;

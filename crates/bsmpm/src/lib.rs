@@ -1,6 +1,5 @@
-//! Implicit, locking-free B-spline material point method for large-strain geotechnics, after Xie, Navas and
-//! López-Querol (2023), "An implicit locking-free B-spline Material Point Method for large strain geotechnical
-//! modelling" (the paper). This crate is the physics: it knows no MPI, PETSc, file, clock or log.
+#![doc = include_str!("../README.md")]
+//! ## The paper's steps, and where they are
 //!
 //! Who has read the paper's section 2.4 finds its numbered steps here:
 //!

@@ -1,4 +1,5 @@
 //! What a history records: numbers of the whole body, the same on every rank.
+#![doc = include_str!("observe.md")]
 
 mod front;
 pub mod noise;

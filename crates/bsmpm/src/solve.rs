@@ -1,9 +1,5 @@
 //! Steps (3), (7)-(9): how equilibrium is sought: from which guess, by which method, and what comes after a failure.
-//!
-//! The displacement that is accepted is the one whose forces were evaluated. Where Newton's method leads on no further, a
-//! state whose forces balance far below their tolerance is accepted although its energy measure is not small: that is
-//! relative to the energy of the first direction, which is next to nothing where a step begins nearly balanced. No step that
-//! meets both criteria is judged by this.
+#![doc = include_str!("solve.md")]
 
 pub mod broyden;
 pub mod convergence;

@@ -8,6 +8,7 @@
 //! S runs over the points of one group of materials at a time, m_I too: materials whose stiffness differs dilate
 //! by different amounts under the same stress. One average over both gives the stiffer one the strain of the softer: in
 //! level ground with E 1:100 beside an interface 36 (consistent F-bar) and 66 times (F-bar) its horizontal stress.
+#![doc = include_str!("stabilisation.md")]
 
 use std::ops::Range;
 
@@ -31,8 +32,6 @@ pub enum Stabilisation {
     /// ratio = S1(dJ)/dJ, S1 with the splines of degree q - 1, and a filter of the elastic dilation that acts with plastic
     /// flow only: results converge in the step size.
     ///
-    /// S1 is the locally lumped projection onto the degree below of Telikicherla and Moutsanidis (2022), Comput. Methods
-    /// Appl. Mech. Engrg. 395, 114985, here weighed by mass and from point to point; the filter is ours.
     /// Twice S1 would leave 28 % less noise in flowing sand, but then
     /// dilatant slopes find no equilibrium. After a converged step (`step::smooth`) b^e <- exp(2/3 theta (S(eps_v) - eps_v))
     /// b^e, eps_v = 1/2 ln det b^e, with theta from 0, no flow, to 1. Without flow it is an F-bar with S1 for S, no more.

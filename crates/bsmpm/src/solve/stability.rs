@@ -1,18 +1,5 @@
-//! Whether the equilibrium that a quasi-static iteration comes near is stable: the sign of the second-order work on its way.
-//!
-//! Under dead loads an elastic equilibrium is stable where du . K du > 0 for all du (Hill, 1958, J. Mech. Phys. Solids 6,
-//! 236-249). No iteration shuns the others, and there round-off decides to which of several states it goes. A nearly
-//! incompressible body has them where its pressure p is several times G: against isochoric motions, and such as F-bar averages
-//! out, the geometric stiffness of a pressure that grows with depth is not negative as an integral, but is as the sum over a
-//! few points, and only G resists it. In the mode that a heavy column loses first, with 3 points a cell and axis, it works
-//! -1.16e-3 and G 1.00e-3; over 24 points the same two would be 0.20e-3 and 1.22e-3. On quadratic splines that begins at p/G
-//! of 4, 10, 22, 65 and 80 with 2 to 6 points.
-//!
-//! A step s of the iteration changes the out-of-balance force by -K s, K a mean of its way: s . (f_old - f_new) < 0 near
-//! equilibrium shows a direction of negative second-order work. It says nothing of directions in which no iteration went: a
-//! state that passes may be unstable. Nor does it prove anything where K is not symmetric: in flow that is not associated
-//! (slopes beyond failure have such steps), or where an average of F-bar spans materials of unequal stiffness or density, of
-//! which A S of two points 1:10 has x . A S x < 0. So it is asked only of a single elastic material, or without averages.
+//! Whether the equilibrium that a quasi-static iteration comes near is stable: the sign of the second-order work on its way
+//! (Hill, 1958). Asked of a single elastic material, or without averages; why, and what it meets: `solve.md`.
 
 use crate::error::StepError;
 use crate::kinematics::Kinematics;

@@ -1,5 +1,5 @@
-//! Analyses against exact solutions, known orders and the figures of method.md 9; numbers after `measured` are what
-//! this machine gave.
+#![doc = include_str!("README.md")]
+//! Numbers after `measured` in the tests are what this machine gave.
 
 #![allow(non_snake_case)] // the paper's letters, as in the crate
 
