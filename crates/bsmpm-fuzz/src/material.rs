@@ -3,7 +3,9 @@
 
 use crate::draw;
 use arbitrary::{Result, Unstructured};
-use bsmpm::material::{Elastic, Graded, GradedStrength, Hencky, Material, MohrCoulomb, Profile, Response, Separation};
+use bsmpm::material::{
+    Elastic, Graded, GradedStrength, Hencky, Law, Material, MohrCoulomb, Profile, Response, Separation,
+};
 use bsmpm::tensor::{Symmetric, Tensor};
 use nalgebra::{Rotation3, Vector3};
 
@@ -24,7 +26,7 @@ fn draw(u: &mut Unstructured<'_>) -> Result<()> {
     let material = material(u)?;
     while !u.is_empty() {
         let trial = trial(u)?;
-        match material.respond(&trial) {
+        match material.respond(&trial, &[]) {
             Ok(response) => check(&material, &trial, &response),
             Err(error) => assert!(!error.to_string().is_empty()),
         }
@@ -116,7 +118,7 @@ fn second_return(material: &Material, response: &Response, scale: f64) {
     if condition > CONDITION || eps[0].abs().max(eps[2].abs()) > LARGEST {
         return;
     }
-    let again = material.respond(&response.b_e());
+    let again = material.respond(&response.b_e(), &[]);
     let again = again.unwrap_or_else(|error| panic!("{error} after a return of {material:?}: {response:?}"));
     let (lambda, mu) = material.elastic().lame();
     let bulk = material.elastic().young / (3.0 - 6.0 * material.elastic().poisson);

@@ -32,7 +32,7 @@ fn print(universe: &Universe, file: &Path) -> Result<(), Refusal> {
     let found = found.expect("a checkpoint that is named is found or refused");
     let opened = Opened::new((&hdf5, universe.world()), &found)?;
     let names: Vec<&str> = found.record.arrays.iter().map(|array| array.name.as_str()).collect();
-    let mut points = Points::<2>::holding(&names);
+    let mut points = Points::<2>::holding(&names, 0);
     opened.points(points.named_columns())?;
     for (name, column) in points.named_columns() {
         let mut bytes = Vec::new();

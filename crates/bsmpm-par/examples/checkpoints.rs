@@ -92,7 +92,7 @@ fn read(universe: &Universe, hdf5: &Hdf5<'_>, wanted: Wanted<'_>, count: u64) ->
         return Ok(());
     };
     let names: Vec<&str> = found.record.arrays.iter().map(|array| array.name.as_str()).collect();
-    let mut held = Points::<2>::holding(&names);
+    let mut held = Points::<2>::holding(&names, 0);
     let opened = Opened::new((hdf5, universe.world()), &found)?;
     let text = opened.state()?;
     opened.points(held.named_columns())?;

@@ -195,7 +195,7 @@ impl Resumed<'_> {
             )
         };
         let names: Vec<&str> = self.found.record.arrays.iter().map(|array| array.name.as_str()).collect();
-        let mut points = Points::holding(&names);
+        let mut points = Points::holding(&names, bsmpm::material::state_width(&model.materials));
         self.opened.points(points.named_columns())?;
         checkpoint::require(&world, &self.found.path, &mut points, &model.grid, model.materials.len())?;
         let held = self.state.within(&model.grid).ok_or_else(|| foreign("its room is not of this grid"))?;

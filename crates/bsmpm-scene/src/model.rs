@@ -112,7 +112,10 @@ pub fn penalty(case: &Case) -> f64 {
 
 /// The points of the columns of one slab, by the numbers of the physics' grid.
 pub fn points(case: &Case, columns: std::ops::Range<usize>) -> Points<2> {
-    Points::from_seeds(crate::seed(case, case.grid.cells_in(0, &columns)), case.analysis.regime == Regime::Dynamic)
+    let points =
+        Points::from_seeds(crate::seed(case, case.grid.cells_in(0, &columns)), case.analysis.regime == Regime::Dynamic);
+    let states = case.materials.iter().map(|named| named.material.state().len());
+    points.with_state(states.max().unwrap_or(0))
 }
 
 /// Stress of ground at rest, Pa, at `x` (m, from the grid's lower corner); `k0` by material.

@@ -1,6 +1,6 @@
 //! `--set KEY=VALUE`, and what a valid case becomes.
 
-use bsmpm::material::{Material, MohrCoulomb, Separation};
+use bsmpm::material::{Law, Material, MohrCoulomb, Separation};
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm_scene::{
     Axis, BackgroundKind, Base, Case, Error, Every, Extent, Face, Initial, Place, Quadrature, Quantity, Site, Support,

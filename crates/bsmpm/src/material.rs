@@ -6,6 +6,7 @@
 
 mod graded;
 mod hencky;
+mod law;
 mod mohr_coulomb;
 mod response;
 mod spectral;
@@ -14,13 +15,13 @@ mod tangent;
 
 pub use graded::{Graded, GradedStrength, Profile};
 pub use hencky::Hencky;
-pub use mohr_coulomb::{MohrCoulomb, Separation};
-pub use response::{Region, Response};
+pub use law::{Flow, Law, Region, Separation, Variable, split};
+pub use mohr_coulomb::MohrCoulomb;
+pub use response::Response;
 pub use stiffness::Stiffness;
 pub use tangent::Tangent;
 
-use crate::tensor::Symmetric;
-use mohr_coulomb::Return;
+use crate::tensor::{Symmetric, Tensor};
 use spectral::Spectrum;
 use std::borrow::Cow;
 
@@ -56,9 +57,11 @@ impl Elastic {
 
 /// The Lamé constants, in Pa.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Moduli {
-    lambda: f64,
-    mu: f64,
+pub struct Moduli {
+    /// Pa  λ
+    pub lambda: f64,
+    /// Pa  μ
+    pub mu: f64,
 }
 
 impl Moduli {
@@ -77,6 +80,11 @@ impl Moduli {
         tau.map(|t| (t - mean) / (2.0 * self.mu) + spherical)
     }
 
+    /// `D_AB = ∂τ_A/∂ε_B = λ + 2μ δ_AB`.
+    fn tangent(&self) -> Tensor {
+        Tensor::from_element(self.lambda) + Tensor::identity() * (2.0 * self.mu)
+    }
+
     /// Energy per volume in J/m3: `½ λ tr(ε)² + μ ε : ε`.
     fn energy(&self, eps: [f64; 3]) -> f64 {
         0.5 * self.lambda * (eps[0] + eps[1] + eps[2]).powi(2) + self.mu * eps.iter().map(|e| e * e).sum::<f64>()
@@ -89,27 +97,141 @@ impl Moduli {
     }
 }
 
-/// A material of the case.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Material {
+/// The enum of all laws with its dispatch, and that of what their returns leave.
+macro_rules! laws {
+    ($($(#[$doc:meta])* $module:ident::$Law:ident,)*) => {
+        /// A material of the case.
+        #[derive(Clone, Debug, PartialEq)]
+        pub enum Material {
+            $($(#[$doc])* $Law($module::$Law),)*
+            /// One of the others, with parameters that depend on the height.
+            Graded(Graded),
+        }
+
+        /// What the return of a response left; elastic without one.
+        #[derive(Clone, Copy, Debug)]
+        pub(super) enum Flowed {
+            Elastic,
+            $($Law(<$module::$Law as Law>::Flow),)*
+        }
+
+        impl Material {
+            /// The elastic part of the law; of a graded one where it is stiffest.
+            pub fn elastic(&self) -> &Elastic {
+                match self {
+                    $(Self::$Law(law) => law.elastic(),)*
+                    Self::Graded(law) => law.stiffest(),
+                }
+            }
+
+            /// Dilation angle, rad.
+            pub fn dilation(&self) -> f64 {
+                match self {
+                    $(Self::$Law(law) => law.dilation(),)*
+                    Self::Graded(law) => law.dilation(),
+                }
+            }
+
+            /// What becomes of the volume that opens at the apex.
+            pub fn separation(&self) -> Separation {
+                match self {
+                    $(Self::$Law(law) => law.separation(),)*
+                    Self::Graded(law) => law.separation(),
+                }
+            }
+
+            /// The law with its strength divided by `factor`; of a graded one as it was made.
+            pub fn reduced(self, factor: f64) -> Self {
+                match self {
+                    $(Self::$Law(law) => Self::$Law(law.reduced(factor)),)*
+                    graded @ Self::Graded(_) => graded,
+                }
+            }
+
+            /// State variables of its points.
+            pub fn state(&self) -> &'static [Variable] {
+                match self {
+                    $(Self::$Law(_) => <$module::$Law as Law>::STATE,)*
+                    Self::Graded(law) => law.state(),
+                }
+            }
+
+            /// The response to a trial elastic left Cauchy-Green tensor, `b_trial = ΔF bᵉ ΔFᵀ` (Eq. 7), of a point in the `state`
+            /// of the last step; a graded law answers through [`Material::at`] only, and elastically here.
+            ///
+            /// # Errors
+            /// When `b_trial` has a component that is not finite, or an eigenvalue that is not positive.
+            // Always inlined: who wants the stress only does not pay for the rest of the response.
+            #[inline(always)]
+            pub fn respond(&self, b_trial: &Symmetric, state: &[f64]) -> Result<Response, MaterialError> {
+                let spectrum = Spectrum::of(b_trial)?;
+                let (moduli, tau, flowed) = match self {
+                    $(Self::$Law(law) => {
+                        let moduli = law.moduli();
+                        let trial = moduli.stress(spectrum.eps);
+                        match law.project(trial, state) {
+                            Some((tau, flow)) => (moduli, tau, Flowed::$Law(flow)),
+                            None => (moduli, trial, Flowed::Elastic),
+                        }
+                    })*
+                    Self::Graded(law) => {
+                        let moduli = law.stiffest().moduli();
+                        (moduli, moduli.stress(spectrum.eps), Flowed::Elastic)
+                    }
+                };
+                Ok(Response::new(*b_trial, spectrum, moduli, (tau, flowed)))
+            }
+        }
+
+        impl Flowed {
+            #[inline]
+            pub fn region(&self) -> Region {
+                match self {
+                    Self::Elastic => Region::Elastic,
+                    $(Self::$Law(flow) => flow.region(),)*
+                }
+            }
+
+            /// `D_AB = ∂τ_A/∂ε_B`, Pa.
+            pub fn tangent(&self, moduli: Moduli) -> Tensor {
+                match self {
+                    Self::Elastic => moduli.tangent(),
+                    $(Self::$Law(flow) => flow.tangent(moduli),)*
+                }
+            }
+
+            /// See [`Flow::shear_of_equal_strains`].
+            pub fn shear_of_equal_strains(&self, moduli: Moduli) -> f64 {
+                match self {
+                    Self::Elastic => 2.0 * moduli.mu,
+                    $(Self::$Law(flow) => flow.shear_of_equal_strains(moduli),)*
+                }
+            }
+
+            /// Puts the state after the return in the place of that before it.
+            pub fn advance(&self, state: &mut [f64]) {
+                match self {
+                    Self::Elastic => {}
+                    $(Self::$Law(flow) => flow.advance(state),)*
+                }
+            }
+        }
+    };
+}
+
+laws! {
     /// Elastic at any strain.
-    Hencky(Hencky),
+    hencky::Hencky,
     /// Elastic, perfectly plastic with friction, dilation and cohesion.
-    MohrCoulomb(MohrCoulomb),
-    /// One of the others, with parameters that depend on the height.
-    Graded(Graded),
+    mohr_coulomb::MohrCoulomb,
+}
+
+/// Numbers of state that the points of these materials carry.
+pub fn state_width(materials: &[Material]) -> usize {
+    materials.iter().map(|material| material.state().len()).max().unwrap_or(0)
 }
 
 impl Material {
-    /// The elastic part of the law; of a graded one where it is stiffest.
-    pub fn elastic(&self) -> &Elastic {
-        match self {
-            Self::Hencky(law) => &law.elastic,
-            Self::MohrCoulomb(law) => law.elastic(),
-            Self::Graded(law) => law.stiffest(),
-        }
-    }
-
     /// The law of a point that was placed at `height` (m from the grid's lower corner).
     #[inline]
     pub fn at(&self, height: f64) -> Cow<'_, Self> {
@@ -135,49 +257,6 @@ impl Material {
         matches!(self, Self::Graded(_))
     }
 
-    /// Dilation angle, rad.
-    pub fn dilation(&self) -> f64 {
-        match self {
-            Self::Hencky(_) => 0.0,
-            Self::MohrCoulomb(law) => law.dilation(),
-            Self::Graded(law) => law.dilation(),
-        }
-    }
-
-    /// What becomes of the volume that opens at the apex.
-    pub fn separation(&self) -> Separation {
-        match self {
-            Self::Hencky(_) => Separation::Forgotten,
-            Self::MohrCoulomb(law) => law.separation(),
-            Self::Graded(law) => law.separation(),
-        }
-    }
-
-    /// The response to a trial elastic left Cauchy-Green tensor, `b_trial = ΔF bᵉ ΔFᵀ` (Eq. 7); a graded law answers
-    /// through [`Material::at`] only, and elastically here.
-    ///
-    /// # Errors
-    /// When `b_trial` has a component that is not finite, or an eigenvalue that is not positive.
-    // Always inlined: who wants the stress only does not pay for the rest of the response.
-    #[inline(always)]
-    pub fn respond(&self, b_trial: &Symmetric) -> Result<Response, MaterialError> {
-        let spectrum = Spectrum::of(b_trial)?;
-        let (moduli, returned) = match self {
-            Self::Hencky(Hencky { elastic }) => {
-                let moduli = elastic.moduli();
-                (moduli, Return::elastic(moduli.stress(spectrum.eps)))
-            }
-            Self::MohrCoulomb(law) => (law.moduli(), law.project(law.moduli().stress(spectrum.eps))),
-            Self::Graded(law) => {
-                let moduli = law.stiffest().moduli();
-                (moduli, Return::elastic(moduli.stress(spectrum.eps)))
-            }
-        };
-        Ok(Response::new(*b_trial, spectrum, moduli, returned))
-    }
-}
-
-impl Material {
     /// Elastic energy per reference volume of the state `b_e`, J/m3; of a graded law through [`Material::at`] only.
     ///
     /// # Errors

@@ -89,12 +89,12 @@ pub struct Model<K, const D: usize> {
 }
 
 impl<K: Kinematics<D>, const D: usize> Model<K, D> {
-    /// The constitution's answer to the trial b^e of point `p`.
+    /// The constitution's answer to the trial b^e of point `p`, which is in the state of the last step.
     #[inline(always)]
     pub fn respond(&self, points: &Points<D>, p: usize, b_trial: &Symmetric) -> Result<Response, MaterialError> {
         match &self.materials[usize::from(points.material[p])] {
-            Material::Graded(law) => law.respond(points.height(p), b_trial),
-            uniform => uniform.respond(b_trial),
+            Material::Graded(law) => law.respond(points.height(p), b_trial, points.state_of(p)),
+            uniform => uniform.respond(b_trial, points.state_of(p)),
         }
     }
 

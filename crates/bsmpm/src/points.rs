@@ -3,7 +3,7 @@
 mod column;
 mod held;
 
-pub use column::{Column, Number};
+pub use column::{Column, Number, Rows};
 pub use held::{Components, Held};
 
 use crate::boundary::Surface;
@@ -49,6 +49,8 @@ pub struct Points<const D: usize> {
     pub dilation: Option<Vec<f64>>,
     /// -  logarithm of the volume that gapes, where a material closes its gaps, from its first step on; before that it is 0
     pub gap: Option<Vec<f64>>,
+    /// state variables of the points' laws, if any law has some
+    pub state: Option<Rows>,
     /// what strips and loads carry on; no column: it is the same on every rank
     pub surface: Surface<D>,
 }
@@ -107,6 +109,12 @@ impl<const D: usize> Points<D> {
         points
     }
 
+    /// The same points with `width` numbers of state each, at their start: 0. None for 0.
+    pub fn with_state(self, width: usize) -> Self {
+        let state = (width > 0).then(|| Rows { width, numbers: vec![0.0; width * self.len()] });
+        Self { state, ..self }
+    }
+
     /// Number of points.
     pub fn len(&self) -> usize {
         self.id.len()
@@ -129,6 +137,12 @@ impl<const D: usize> Points<D> {
         self.gap.as_ref().map_or(0.0, |gap| gap[p])
     }
 
+    /// State of a point's law; its variables are the first ones.
+    #[inline]
+    pub fn state_of(&self, p: usize) -> &[f64] {
+        self.state.as_ref().map_or(&[], |state| state.of_point(p))
+    }
+
     /// J-bar/J of a point.
     #[inline]
     pub fn dilation_of(&self, p: usize) -> f64 {
@@ -136,12 +150,14 @@ impl<const D: usize> Points<D> {
     }
 
     /// No points, with room for the columns of these names: those that a scene does without are there if they are named.
-    pub fn holding(names: &[&str]) -> Self {
+    /// `state`: numbers that the laws' state consists of.
+    pub fn holding(names: &[&str], state: usize) -> Self {
         let has = |name| names.contains(&name);
         Self {
             motion: has("v").then(Motion::default),
             dilation: has("dilation").then(Vec::new),
             gap: has("gap").then(Vec::new),
+            state: has("law_state").then(|| Rows::of(state)),
             ..Self::default()
         }
     }
@@ -170,6 +186,9 @@ impl<const D: usize> Points<D> {
         }
         if let Some(gap) = &mut self.gap {
             columns.push(("gap", gap));
+        }
+        if let Some(state) = &mut self.state {
+            columns.push(("law_state", state));
         }
         columns
     }

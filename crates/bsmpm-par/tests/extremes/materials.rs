@@ -18,7 +18,7 @@ fn mohr_coulomb(poisson: f64, friction: f64, dilation: f64, cohesion: f64) -> Ma
 }
 
 fn respond(material: &Material, b: &Symmetric) -> Response {
-    material.respond(b).unwrap_or_else(|error| panic!("{error} for {material:?}"))
+    material.respond(b, &[]).unwrap_or_else(|error| panic!("{error} for {material:?}"))
 }
 
 fn largest(numbers: &[f64]) -> f64 {

@@ -6,7 +6,7 @@ use crate::grid::GridSpec;
 use crate::record::Record;
 use crate::report::Report;
 use crate::schema::{BELOW_90, Range};
-use bsmpm::material::{Elastic, Graded, GradedStrength, Hencky, Material, MohrCoulomb, Profile, Separation};
+use bsmpm::material::{Elastic, Graded, GradedStrength, Hencky, Law, Material, MohrCoulomb, Profile, Separation};
 use bsmpm::model::Regime;
 
 /// Materials at most: a point holds its material's number in 16 bits.

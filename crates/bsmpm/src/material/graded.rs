@@ -2,7 +2,8 @@
 //!
 //! A point keeps the parameters of the height at which it was placed: they follow the material, not the place.
 
-use super::{Elastic, Hencky, Material, MaterialError, MohrCoulomb, Response, Separation};
+use super::law::{Law, Separation, Variable};
+use super::{Elastic, Hencky, Material, MaterialError, MohrCoulomb, Response};
 use crate::tensor::Symmetric;
 use std::ops::Range;
 
@@ -89,8 +90,13 @@ impl Graded {
 
     /// The response of a point that was placed at a height, m; see [`Material::respond`].
     #[inline(never)]
-    pub fn respond(&self, height: f64, b_trial: &Symmetric) -> Result<Response, MaterialError> {
-        self.at(height).respond(b_trial)
+    pub fn respond(&self, height: f64, b_trial: &Symmetric, state: &[f64]) -> Result<Response, MaterialError> {
+        self.at(height).respond(b_trial, state)
+    }
+
+    /// State variables of its points.
+    pub(super) fn state(&self) -> &'static [Variable] {
+        if self.strength.is_some() { MohrCoulomb::STATE } else { Hencky::STATE }
     }
 
     /// The law at a height.

@@ -3,7 +3,9 @@
 //! With no hardening each return is linear, so all are in closed form, and region by region:
 //! face, the edges τ₁ = τ₂ (left) and τ₂ = τ₃ (right), apex. Tresca is φ = ψ = 0, which has no apex.
 
-use super::{Elastic, Moduli, Region};
+use super::law::{Flow, Law, Region, Separation};
+use super::{Elastic, Moduli};
+use crate::tensor::Tensor;
 
 /// Elastic inside `f = (τ₁ - τ₃) + (τ₁ + τ₃) sin φ - 2 c cos φ ≤ 0`, with the same form in ψ as plastic potential.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,67 +17,48 @@ pub struct MohrCoulomb {
     separation: Separation,
     // What every response needs, formed once:
     moduli: Moduli,
-    flow: Flow,    // sin φ and sin ψ
-    strength: f64, // Pa  c cos φ
-    shift: f64,    // Pa  τ₁ at yield where τ₃ = 0
-    slope: f64,    // 1/Pa  ½/(λ sin φ sin ψ + μ (1 + sin φ sin ψ)), multiplier over excess of a return to a face
+    slopes: Slopes, // sin φ and sin ψ
+    strength: f64,  // Pa  c cos φ
+    shift: f64,     // Pa  τ₁ at yield where τ₃ = 0
+    slope: f64,     // 1/Pa  ½/(λ sin φ sin ψ + μ (1 + sin φ sin ψ)), multiplier over excess of a return to a face
 }
 
-/// What becomes of the volume that opens where the stress returns to the apex: the material has come apart.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Separation {
-    /// It is plastic and forgotten: the material resists at once when it is compressed again, however loose.
-    #[default]
-    Forgotten,
-    /// It is a gap that closes first: see [`Response::gap`](super::Response::gap).
-    Closing,
-}
-
-/// Principal stress after the return, where it lies, and the two sines its tangent needs.
+/// What a return leaves: where the stress lies, and the two sines that its tangent needs.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Return {
-    pub tau: [f64; 3],
-    pub region: Region,
-    pub flow: Flow,
-}
-
-impl Return {
-    /// No return: the trial stress itself.
-    #[inline]
-    pub fn elastic(tau: [f64; 3]) -> Self {
-        Self { tau, region: Region::Elastic, flow: Flow { sin_phi: 0.0, sin_psi: 0.0 } }
-    }
+pub struct Return {
+    region: Region,
+    slopes: Slopes,
 }
 
 /// Slopes of the yield surface and of the plastic potential.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Flow {
-    pub sin_phi: f64,
-    pub sin_psi: f64,
+struct Slopes {
+    sin_phi: f64,
+    sin_psi: f64,
 }
 
 /// An edge of the yield surface with the plane of trial stresses that return to each of its points.
-pub(super) struct Edge {
+struct Edge {
     /// Direction of the edge where τ₃ grows by one: (N, 1, 1) or (N, N, 1), N = (1 - sin φ)/(1 + sin φ).
-    pub along: [f64; 3],
+    along: [f64; 3],
     /// Normal in strain to both plastic flows, which an edge return therefore keeps: q · εᵖ = 0.
-    pub kept: [f64; 3],
+    kept: [f64; 3],
     /// 18 K μ C q without cancellation, C the elastic compliance: `w = 9 K dev q + 2μ tr(q) I`.
-    pub weight: [f64; 3],
+    weight: [f64; 3],
     /// Pa²  `w · along`, positive for all ν, φ and ψ.
-    pub slope: f64,
+    slope: f64,
 }
 
-impl Flow {
+impl Slopes {
     /// `N = (1 - sin φ)/(1 + sin φ)`, the smaller over the larger principal stress at yield without cohesion.
     #[inline]
-    pub fn ratio(self) -> f64 {
+    fn ratio(self) -> f64 {
         (1.0 - self.sin_phi) / (1.0 + self.sin_phi)
     }
 
     /// The right edge (τ₂ = τ₃), on which the potentials of the planes 1-3 and 1-2 flow together.
     #[inline]
-    pub fn right(self, moduli: Moduli) -> Edge {
+    fn right(self, moduli: Moduli) -> Edge {
         let (minus, plus) = (1.0 - self.sin_psi, 1.0 + self.sin_psi);
         let (dev, trace) = (6.0 * moduli.bulk() * self.sin_psi, 2.0 * moduli.mu * (3.0 + self.sin_psi));
         Edge::new([self.ratio(), 1.0, 1.0], [minus, plus, plus], [trace - 2.0 * dev, trace + dev, trace + dev])
@@ -83,7 +66,7 @@ impl Flow {
 
     /// The left edge (τ₁ = τ₂), on which the potentials of the planes 1-3 and 2-3 flow together.
     #[inline]
-    pub fn left(self, moduli: Moduli) -> Edge {
+    fn left(self, moduli: Moduli) -> Edge {
         let (minus, plus) = (1.0 - self.sin_psi, 1.0 + self.sin_psi);
         let (dev, trace) = (6.0 * moduli.bulk() * self.sin_psi, 2.0 * moduli.mu * (3.0 - self.sin_psi));
         let ratio = self.ratio();
@@ -107,8 +90,8 @@ impl Edge {
 impl MohrCoulomb {
     /// A law with friction angle 0 ≤ φ < π/2 (rad), dilation angle 0 ≤ ψ ≤ φ (rad) and cohesion c ≥ 0 (Pa).
     pub fn new(elastic: Elastic, friction: f64, dilation: f64, cohesion: f64) -> Self {
-        let flow = Flow { sin_phi: friction.sin(), sin_psi: dilation.sin() };
-        let (moduli, product) = (elastic.moduli(), flow.sin_phi * flow.sin_psi);
+        let slopes = Slopes { sin_phi: friction.sin(), sin_psi: dilation.sin() };
+        let (moduli, product) = (elastic.moduli(), slopes.sin_phi * slopes.sin_psi);
         let strength = cohesion * friction.cos();
         Self {
             elastic,
@@ -117,9 +100,9 @@ impl MohrCoulomb {
             cohesion,
             separation: Separation::default(),
             moduli,
-            flow,
+            slopes,
             strength,
-            shift: 2.0 * strength / (1.0 + flow.sin_phi),
+            shift: 2.0 * strength / (1.0 + slopes.sin_phi),
             slope: 0.5 / (moduli.lambda * product + moduli.mu * (1.0 + product)),
         }
     }
@@ -129,8 +112,60 @@ impl MohrCoulomb {
         Self { separation, ..self }
     }
 
-    /// The law with its strength divided by `factor` (section 3.2): `c/SRF`, `atan(tan φ/SRF)`, `ψ_f = min(ψ, φ_f)`.
-    pub fn reduced(self, factor: f64) -> Self {
+    /// Friction angle φ, rad.
+    pub fn friction(&self) -> f64 {
+        self.friction
+    }
+
+    /// Cohesion c, Pa.
+    pub fn cohesion(&self) -> f64 {
+        self.cohesion
+    }
+
+    /// Return along `τ = τ_trial - Δγ D m`, `Δγ = f/(4λ sin φ sin ψ + 4μ(1 + sin φ sin ψ))`; none if it breaks the order.
+    #[inline]
+    fn face(&self, trial: [f64; 3], excess: f64) -> Option<([f64; 3], Region)> {
+        let (Moduli { lambda, mu }, sin_psi) = (self.moduli, self.slopes.sin_psi);
+        let half = self.slope * excess;
+        let second = trial[1] - half * lambda * sin_psi;
+        let third = trial[2] - half * (lambda * sin_psi - mu * (1.0 - sin_psi));
+        let first = self.slopes.ratio() * third + self.shift;
+        // Beyond the apex f = 0 and the order exclude each other, so this test covers the apex too.
+        (first >= second && second >= third).then_some(([first, second, third], Region::Face))
+    }
+}
+
+impl Law for MohrCoulomb {
+    type Flow = Return;
+
+    fn elastic(&self) -> &Elastic {
+        &self.elastic
+    }
+
+    #[inline]
+    fn moduli(&self) -> Moduli {
+        self.moduli
+    }
+
+    /// τ₁ is always taken from τ₃ by f = 0, so the result satisfies yield and order to the last digits even where it
+    /// is much smaller than the trial.
+    #[inline]
+    fn project(&self, trial: [f64; 3], _state: &[f64]) -> Option<([f64; 3], Return)> {
+        let Self { moduli, slopes, strength, shift, .. } = *self;
+        let sin_phi = slopes.sin_phi;
+        let excess = (trial[0] - trial[2]) + (trial[0] + trial[2]) * sin_phi - 2.0 * strength;
+        if excess <= 0.0 {
+            return None;
+        }
+        let (tau, region) = self
+            .face(trial, excess)
+            .or_else(|| edge(slopes, moduli, trial, shift))
+            .unwrap_or_else(|| ([strength / sin_phi; 3], Region::Apex));
+        Some((tau, Return { region, slopes }))
+    }
+
+    /// `c/SRF`, `atan(tan φ/SRF)`, `ψ_f = min(ψ, φ_f)`.
+    fn reduced(self, factor: f64) -> Self {
         if factor == 1.0 {
             return self;
         }
@@ -139,81 +174,56 @@ impl MohrCoulomb {
         reduced.separating(self.separation)
     }
 
-    /// The Lamé constants.
-    #[inline]
-    pub(super) fn moduli(&self) -> Moduli {
-        self.moduli
-    }
-
-    /// The elastic part.
-    pub fn elastic(&self) -> &Elastic {
-        &self.elastic
-    }
-
-    /// Friction angle φ, rad.
-    pub fn friction(&self) -> f64 {
-        self.friction
-    }
-
-    /// Dilation angle ψ, rad.
-    pub fn dilation(&self) -> f64 {
+    fn dilation(&self) -> f64 {
         self.dilation
     }
 
-    /// Cohesion c, Pa.
-    pub fn cohesion(&self) -> f64 {
-        self.cohesion
-    }
-
-    /// What becomes of the volume that opens at the apex.
-    pub fn separation(&self) -> Separation {
+    fn separation(&self) -> Separation {
         self.separation
     }
+}
 
-    /// Returns a descending trial stress to the yield surface, if it lies outside.
-    ///
-    /// τ₁ is always taken from τ₃ by f = 0, so the result satisfies yield and order to the last digits even where it
-    /// is much smaller than the trial.
+impl Flow for Return {
     #[inline]
-    pub(super) fn project(&self, trial: [f64; 3]) -> Return {
-        let Self { moduli, flow, strength, shift, .. } = *self;
-        let sin_phi = flow.sin_phi;
-        let excess = (trial[0] - trial[2]) + (trial[0] + trial[2]) * sin_phi - 2.0 * strength;
-        if excess <= 0.0 {
-            return Return::elastic(trial);
-        }
-        let (tau, region) = self
-            .face(trial, excess)
-            .or_else(|| edge(flow, moduli, trial, shift))
-            .unwrap_or_else(|| ([strength / sin_phi; 3], Region::Apex));
-        Return { tau, region, flow }
+    fn region(&self) -> Region {
+        self.region
     }
 
-    /// Return along `τ = τ_trial - Δγ D m`, `Δγ = f/(4λ sin φ sin ψ + 4μ(1 + sin φ sin ψ))`; none if it breaks the order.
-    #[inline]
-    fn face(&self, trial: [f64; 3], excess: f64) -> Option<([f64; 3], Region)> {
-        let (Moduli { lambda, mu }, sin_psi) = (self.moduli, self.flow.sin_psi);
-        let half = self.slope * excess;
-        let second = trial[1] - half * lambda * sin_psi;
-        let third = trial[2] - half * (lambda * sin_psi - mu * (1.0 - sin_psi));
-        let first = self.flow.ratio() * third + self.shift;
-        // Beyond the apex f = 0 and the order exclude each other, so this test covers the apex too.
-        (first >= second && second >= third).then_some(([first, second, third], Region::Face))
+    /// On the face `D - (D m)(D n)ᵀ/(n · D m)`, on an edge of direction a `a qᵀ/(q · C a)`, at the apex zero.
+    fn tangent(&self, moduli: Moduli) -> Tensor {
+        let slopes = self.slopes;
+        match self.region {
+            Region::Elastic => moduli.tangent(),
+            Region::Apex => Tensor::zeros(),
+            Region::Face => {
+                let normal = |sin: f64| [1.0 + sin, 0.0, sin - 1.0];
+                let (n, m) = (normal(slopes.sin_phi), normal(slopes.sin_psi));
+                let (d_n, d_m) = (moduli.stress(n), moduli.stress(m));
+                let product = slopes.sin_phi * slopes.sin_psi;
+                let scale = 4.0 * (moduli.lambda * product + moduli.mu * (1.0 + product));
+                moduli.tangent() - Tensor::from_fn(|i, j| d_m[i] * d_n[j] / scale)
+            }
+            edge => {
+                let edge = if edge == Region::LeftEdge { slopes.left(moduli) } else { slopes.right(moduli) };
+                let scale = 18.0 * moduli.bulk() * moduli.mu / edge.slope;
+                Tensor::from_fn(|i, j| scale * edge.along[i] * edge.kept[j])
+            }
+        }
     }
 }
 
 /// Return to the edge that the face return crosses first; none if that is beyond the apex (never when sin φ = 0).
 #[inline]
-fn edge(flow: Flow, moduli: Moduli, trial: [f64; 3], shift: f64) -> Option<([f64; 3], Region)> {
+fn edge(slopes: Slopes, moduli: Moduli, trial: [f64; 3], shift: f64) -> Option<([f64; 3], Region)> {
     let (upper, lower) = (trial[0] - trial[1], trial[1] - trial[2]);
-    let is_right = (1.0 - flow.sin_psi) * upper > (1.0 + flow.sin_psi) * lower;
+    let is_right = (1.0 - slopes.sin_psi) * upper > (1.0 + slopes.sin_psi) * lower;
     if is_right {
-        let third = flow.right(moduli).third(trial, [shift, 0.0, 0.0]);
-        let first = flow.ratio() * third + shift;
+        let third = slopes.right(moduli).third(trial, [shift, 0.0, 0.0]);
+        let first = slopes.ratio() * third + shift;
         (first >= third).then_some(([first, third, third], Region::RightEdge))
     } else {
-        let third = flow.left(moduli).third(trial, [shift, shift, 0.0]);
-        let first = flow.ratio() * third + shift;
+        let third = slopes.left(moduli).third(trial, [shift, shift, 0.0]);
+        let first = slopes.ratio() * third + shift;
         (first >= third).then_some(([first, first, third], Region::LeftEdge))
     }
 }

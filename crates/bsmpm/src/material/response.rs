@@ -1,24 +1,9 @@
 //! What a material answers: principal values and axes (section 2.2); tensors and the tangent are formed on demand.
 
-use super::mohr_coulomb::{Flow, Return};
+use super::law::Region;
 use super::spectral::Spectrum;
-use super::{Moduli, Tangent};
-use crate::tensor::{Symmetric, Tensor};
-
-/// Where on the yield surface the stress lies.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Region {
-    /// Inside or on the yield surface: no return.
-    Elastic,
-    /// One plane of the surface, τ₁ > τ₂ > τ₃.
-    Face,
-    /// The edge τ₁ = τ₂.
-    LeftEdge,
-    /// The edge τ₂ = τ₃.
-    RightEdge,
-    /// The tip, τ₁ = τ₂ = τ₃ = c cot φ.
-    Apex,
-}
+use super::{Flowed, Moduli};
+use crate::tensor::Symmetric;
 
 /// The response of one point, in the axes of the trial b; principal values are descending.
 #[derive(Clone, Copy, Debug)]
@@ -26,16 +11,14 @@ pub struct Response {
     b_trial: Symmetric,
     pub(super) trial: Spectrum,
     pub(super) moduli: Moduli,
-    pub(super) flow: Flow,
     pub(super) tau: [f64; 3],
-    region: Region,
+    pub(super) flowed: Flowed,
 }
 
 impl Response {
     #[inline]
-    pub(super) fn new(b_trial: Symmetric, trial: Spectrum, moduli: Moduli, returned: Return) -> Self {
-        let Return { tau, region, flow } = returned;
-        Self { b_trial, trial, moduli, flow, tau, region }
+    pub(super) fn new(b_trial: Symmetric, trial: Spectrum, moduli: Moduli, (tau, flowed): ([f64; 3], Flowed)) -> Self {
+        Self { b_trial, trial, moduli, tau, flowed }
     }
 
     /// Kirchhoff stress in Pa: `τ = Σ_A τ_A n_A ⊗ n_A` (Eq. 10).
@@ -48,7 +31,7 @@ impl Response {
     ///
     /// Without plastic flow this is the trial tensor, bit for bit.
     pub fn b_e(&self) -> Symmetric {
-        if self.region == Region::Elastic {
+        if self.region() == Region::Elastic {
             return self.b_trial;
         }
         let eps_e = self.principal_eps_e();
@@ -64,7 +47,7 @@ impl Response {
     /// Where on the yield surface the stress lies.
     #[inline]
     pub fn region(&self) -> Region {
-        self.region
+        self.flowed.region()
     }
 
     /// The gap that is open after the return, as a logarithm of volume: `g = tr ε_trial - tr εᵉ` at the apex, else 0.
@@ -74,7 +57,7 @@ impl Response {
     /// (2016), "Drucker-Prager elastoplasticity for sand animation". g is constant during a step, so that the tangent
     /// keeps its form. What ψ dilates on faces and edges is no gap, and where such flow goes on what gapes is filled.
     pub fn gap(&self) -> f64 {
-        if self.region != Region::Apex {
+        if self.region() != Region::Apex {
             return 0.0;
         }
         let sum = |eps: [f64; 3]| eps[0] + eps[1] + eps[2];
@@ -115,17 +98,11 @@ impl Response {
 
     /// Principal elastic Hencky strain after the return, descending: `εᵉ = D⁻¹ τ`.
     pub fn principal_eps_e(&self) -> [f64; 3] {
-        if self.region == Region::Elastic { self.trial.eps } else { self.moduli.strain(self.tau) }
+        if self.region() == Region::Elastic { self.trial.eps } else { self.moduli.strain(self.tau) }
     }
 
-    /// The tangent of this response, for use with many gradients.
-    #[inline]
-    pub fn tangent(&self) -> Tangent {
-        Tangent::of(self)
-    }
-
-    /// The change dτ in Pa for a spatial gradient `l = ∂(δu)/∂x` of a displacement increment: see [`Tangent::apply`].
-    pub fn linearise(&self, l: &Tensor) -> Tensor {
-        self.tangent().apply(l)
+    /// Puts the law's state after the return in the place of that before it.
+    pub fn advance(&self, state: &mut [f64]) {
+        self.flowed.advance(state);
     }
 }

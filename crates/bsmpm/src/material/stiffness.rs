@@ -2,8 +2,9 @@
 //! stiffness and shear as they are, their coupling left out, the deviatoric rest without its negative part (Higham, 1988,
 //! Linear Algebra Appl. 103, 103-118), and a small share of the elastic stiffness everywhere.
 
-use super::tangent::{PAIRS, principal, slope};
-use super::{Region, Response};
+use super::Response;
+use super::law::Region;
+use super::tangent::{PAIRS, slope};
 use crate::tensor::{Square, Tensor};
 use std::f64::consts::FRAC_1_SQRT_2;
 
@@ -32,7 +33,7 @@ pub struct Stiffness {
 
 impl Stiffness {
     pub(super) fn of(response: &Response) -> Self {
-        let (moduli, tangent) = (response.moduli, principal(response));
+        let (moduli, tangent) = (response.moduli, response.flowed.tangent(response.moduli));
         let plastic = |plastic: f64, elastic: f64| plastic + ELASTIC * (elastic - plastic);
         let deviatoric = positive([[0, 0], [1, 1], [0, 1]].map(|[i, j]| {
             let entry = |k: usize| 0.5 * (tangent[(k / 3, k % 3)] + tangent[(k % 3, k / 3)]);

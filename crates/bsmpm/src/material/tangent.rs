@@ -2,8 +2,22 @@
 //!
 //! It linearises τ(b_trial) only; the term τ lᵀ of the internal force and the F-bar factor belong to the stiffness.
 
-use super::{Region, Response};
+use super::Response;
+use super::law::Region;
 use crate::tensor::Tensor;
+
+impl Response {
+    /// The tangent of this response, for use with many gradients.
+    #[inline]
+    pub fn tangent(&self) -> Tangent {
+        Tangent::of(self)
+    }
+
+    /// The change dτ in Pa for a spatial gradient `l = ∂(δu)/∂x` of a displacement increment: see [`Tangent::apply`].
+    pub fn linearise(&self, l: &Tensor) -> Tensor {
+        self.tangent().apply(l)
+    }
+}
 
 /// dτ as a linear map of the spatial gradient of the displacement increment, in the axes of the trial b.
 #[derive(Clone, Copy, Debug)]
@@ -27,7 +41,7 @@ impl Tangent {
         Self {
             axes: Tensor::from_fn(|i, j| axis[i][j]),
             b: response.trial.b,
-            principal: principal(response),
+            principal: response.flowed.tangent(response.moduli),
             chord: PAIRS.map(|(a, b)| chord(response, a, b)),
         }
     }
@@ -45,34 +59,10 @@ impl Tangent {
     }
 }
 
-/// `∂τ_A/∂ε_B`: D, on the face `D - (D m)(D n)ᵀ/(n · D m)`, on an edge of direction a `a qᵀ/(q · C a)`, at the apex zero.
-pub(super) fn principal(response: &Response) -> Tensor {
-    let (moduli, flow) = (response.moduli, response.flow);
-    let elastic = Tensor::from_element(moduli.lambda) + Tensor::identity() * (2.0 * moduli.mu);
-    match response.region() {
-        Region::Elastic => elastic,
-        Region::Apex => Tensor::zeros(),
-        Region::Face => {
-            let normal = |sin: f64| [1.0 + sin, 0.0, sin - 1.0];
-            let (n, m) = (normal(flow.sin_phi), normal(flow.sin_psi));
-            let (d_n, d_m) = (moduli.stress(n), moduli.stress(m));
-            let product = flow.sin_phi * flow.sin_psi;
-            let scale = 4.0 * (moduli.lambda * product + moduli.mu * (1.0 + product));
-            elastic - Tensor::from_fn(|i, j| d_m[i] * d_n[j] / scale)
-        }
-        edge => {
-            let edge = if edge == Region::LeftEdge { flow.left(moduli) } else { flow.right(moduli) };
-            let scale = 18.0 * moduli.bulk() * moduli.mu / edge.slope;
-            Tensor::from_fn(|i, j| scale * edge.along[i] * edge.kept[j])
-        }
-    }
-}
-
 /// `(τ_A - τ_B)/(b_A - b_B) = (τ_A - τ_B)/(ε_A - ε_B) · ln(1 + x)/(2 x b_B)`, x = b_A/b_B - 1.
 ///
 /// The second factor tends to 1/(2b) for equal eigenvalues; the first is 2μ if elastic. If plastic it lies in 0..2μ, since
-/// returns shrink stress differences, and equal strains return to equal stresses (an edge or the apex): the limit is 0, as
-/// `(D11 - D12 - D21 + D22)/(4 b)` gives there. The bounds keep rounding of a tiny gap inside.
+/// returns shrink stress differences; of equal strains the law tells it. The bounds keep rounding of a tiny gap inside.
 fn chord(response: &Response, a: usize, b: usize) -> f64 {
     let trial = &response.trial;
     let x = (trial.b[a] - trial.b[b]) / trial.b[b];
@@ -86,6 +76,6 @@ pub(super) fn slope(response: &Response, a: usize, b: usize) -> f64 {
     match response.region() {
         Region::Elastic => shear,
         _ if gap > 0.0 => ((response.tau[a] - response.tau[b]) / gap).max(0.0).min(shear),
-        _ => 0.0,
+        _ => response.flowed.shear_of_equal_strains(response.moduli),
     }
 }

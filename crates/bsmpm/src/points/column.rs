@@ -37,6 +37,64 @@ pub trait Column {
     fn take(&mut self, message: &mut &[u8]);
 }
 
+/// Rows of floats, as many in each as a scene needs.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Rows {
+    pub(super) width: usize,
+    pub(super) numbers: Vec<f64>,
+}
+
+impl Rows {
+    /// None yet.
+    pub fn of(width: usize) -> Self {
+        Self { width, numbers: Vec::new() }
+    }
+
+    /// Row `p`.
+    #[inline]
+    pub fn of_point(&self, p: usize) -> &[f64] {
+        &self.numbers[p * self.width..][..self.width]
+    }
+
+    /// Row `p`, to be changed.
+    #[inline]
+    pub fn of_point_mut(&mut self, p: usize) -> &mut [f64] {
+        &mut self.numbers[p * self.width..][..self.width]
+    }
+}
+
+impl Column for Rows {
+    fn number(&self) -> Number {
+        Number::F64
+    }
+    fn width(&self) -> usize {
+        self.width
+    }
+    fn rows(&self) -> usize {
+        self.numbers.len() / self.width.max(1)
+    }
+    fn bytes(&self) -> usize {
+        8 * self.width
+    }
+    fn memory(&self) -> usize {
+        8 * self.width
+    }
+    fn fits(&self, _row: &[u8]) -> bool {
+        true
+    }
+    fn reorder(&mut self, order: &[u32]) {
+        self.numbers = order.iter().flat_map(|&p| self.of_point(p as usize).to_vec()).collect();
+    }
+    fn put(&self, p: usize, message: &mut Vec<u8>) {
+        self.of_point(p).iter().for_each(|number| number.put(message));
+    }
+    fn take(&mut self, message: &mut &[u8]) {
+        let (row, rest) = message.split_at(self.bytes());
+        self.numbers.extend(row.chunks_exact(8).map(f64::take));
+        *message = rest;
+    }
+}
+
 impl<T: Row> Column for Vec<T> {
     fn number(&self) -> Number {
         T::NUMBER

@@ -93,6 +93,9 @@ pub fn commit<K: Kinematics<D>, const D: usize>(
     if model.stabilisation.averages() {
         points.dilation = Some((0..points.len()).map(|p| trial.dilation(model, points, p)).collect());
     }
+    if let Some(state) = &mut points.state {
+        responses.iter().enumerate().for_each(|(p, response)| response.advance(state.of_point_mut(p)));
+    }
     for (p, response) in responses.iter().enumerate() {
         let F = trial.dF::<K>(p) * points.F.at(p);
         points.F.set(p, F);

@@ -220,7 +220,7 @@ mod tests {
     fn moduli_of_a_point_are_those_of_unit_gradients_averaged_or_not() {
         let law = MohrCoulomb::new(Elastic { young: 1e3, poisson: 0.3 }, 0.4, 0.1, 1.0);
         let b = Symmetric([1.02, 0.96, 0.99, 0.015, 0.0, 0.0]);
-        let stiffness = Material::MohrCoulomb(law).respond(&b).unwrap().yielding().expect("it yields");
+        let stiffness = Material::MohrCoulomb(law).respond(&b, &[]).unwrap().yielding().expect("it yields");
         let whole = stiffness.moduli(|stress: &Tensor| *stress);
         let apply = |l: &Tensor| -> Tensor { (0..9).map(|at| whole[at / 3][at % 3] * l[(at / 3, at % 3)]).sum() };
         let (volume, dilation) = (0.7, <PlaneStrain as Kinematics<2>>::dilation());

@@ -40,7 +40,7 @@ fn turned(q: &Tensor, b: &Symmetric) -> Symmetric {
 }
 
 fn respond(material: &Material, b: &Symmetric) -> Response {
-    material.respond(b).unwrap_or_else(|error| panic!("{error} for {material:?}"))
+    material.respond(b, &[]).unwrap_or_else(|error| panic!("{error} for {material:?}"))
 }
 
 fn largest(t: &[f64]) -> f64 {

@@ -2,7 +2,7 @@
 
 use super::{Region, difference, largest, mohr_coulomb, respond};
 use crate::random::Random;
-use bsmpm::material::{Material, Response};
+use bsmpm::material::{Law, Material, Response};
 
 const FRICTIONS: [f64; 6] = [0.0, 1e-9, 20.0, 45.0, 60.0, 89.9];
 const POISSONS: [f64; 6] = [-0.99, -0.5, 0.0, 0.3, 0.49, 0.49999];

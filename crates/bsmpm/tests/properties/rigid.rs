@@ -112,7 +112,7 @@ fn a_rigidly_rotating_field_turns_the_stress_of_every_point() {
         let shape = Shape::at(&scene.model.grid, points).unwrap();
         let nodes = Nodes::map(&scene.model, &shape, points, (0.0, 1.0), &halo).expect("no loads");
         let trial = Trial::of(&scene.model, &shape, &nodes, points, &u, &halo);
-        let before = scene.model.materials[0].respond(&b_e).unwrap();
+        let before = scene.model.materials[0].respond(&b_e, &[]).unwrap();
         for p in 0..points.len() {
             let after = trial.respond(&scene.model, points, p).unwrap();
             for (x, y) in before.principal_tau().iter().zip(after.principal_tau()) {
