@@ -6,13 +6,9 @@ mod loads;
 pub use history::{Check, Column, Face, History, Quantity};
 pub use loads::{Base, Footing, Initial, Path, PointLoad, Prescribed, Site, Traction};
 
-use crate::document;
-use crate::error::Error;
+use crate::error::Choice;
 use crate::grid::{GridSpec, Line};
 use crate::region::Region;
-use crate::report::Report;
-use crate::source::{Source, decode};
-use crate::{overrides, preset, record, validate};
 use bsmpm::background::{Extent, Kind};
 use bsmpm::material::Material;
 use bsmpm::model::Regime;
@@ -84,40 +80,6 @@ impl Case {
             value: format!("{} along x, {} along y", number[0], number[1]),
             reason: "those of the run that is resumed".to_owned(),
         });
-    }
-
-    /// The case in `text`, the content of the file `name`, with overrides `KEY=VALUE` merged in their order.
-    ///
-    /// # Errors
-    /// All errors of the file and the overrides at once; if the text is no TOML, the syntax errors only.
-    pub fn from_text(name: &str, text: &str, overrides: &[String]) -> Result<Self, Vec<Error>> {
-        Self::from_bytes(name, text.as_bytes(), overrides)
-    }
-
-    /// [`Case::from_text`] for bytes as they stand in the file, see [`crate::load`].
-    ///
-    /// # Errors
-    /// As [`Case::from_text`]; also if the bytes are too many, binary, UTF-16 or no UTF-8.
-    pub fn from_bytes(name: &str, bytes: &[u8], overrides: &[String]) -> Result<Self, Vec<Error>> {
-        let text = decode(name, bytes)?;
-        let source = Source::new(name, text);
-        let mut report = Report::new(&source, overrides);
-        let mut document = document::parse(&source, &mut report);
-        if report.failed() {
-            return Err(report.into_errors());
-        }
-        overrides::apply(&mut document, overrides, &mut report);
-        if document.entries.is_empty() && !report.failed() {
-            report.error(document::Origin::Nowhere, "", "the file is empty: it holds no key of a case");
-            return Err(report.into_errors());
-        }
-        let filled = preset::fill(&mut document, (&source, overrides), &mut report);
-        let record = record::read(&document, &mut report);
-        let effective = if overrides.is_empty() && !filled { text.to_owned() } else { document.to_toml() };
-        match validate::case(&record, effective, &mut report) {
-            Some(case) if !report.failed() => Ok(case),
-            _ => Err(report.into_errors()),
-        }
     }
 }
 
@@ -310,15 +272,4 @@ pub enum Format {
     /// One `.vtu` per frame and a `.pvd`.
     #[default]
     Vtu,
-}
-
-/// Something that the program chose by itself, for the manifest.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Choice {
-    /// Path of the key.
-    pub key: String,
-    /// The value chosen.
-    pub value: String,
-    /// Why.
-    pub reason: String,
 }

@@ -6,7 +6,8 @@
 
 mod scene;
 
-use crate::document::{self, Entry, Node, Origin, Table, Value};
+use crate::document::{self, Entry, Node, Table, Value};
+use crate::error::Origin;
 use crate::record;
 use crate::report::Report;
 use crate::source::Source;

@@ -2,7 +2,8 @@
 
 mod value;
 
-use crate::document::{self, Node, Origin, Value};
+use crate::document::{self, Node, Value};
+use crate::error::Origin;
 use crate::nearest::nearest;
 use crate::report::{Report, shortened};
 use crate::schema::{Group, Kind, Presence, ROOT, Table};

@@ -36,6 +36,10 @@ pub struct Group {
     pub required: bool,
 }
 
+const fn one_of(keys: &'static [&'static str], required: bool) -> Group {
+    Group { keys, required }
+}
+
 /// A key of a table.
 #[derive(Debug)]
 pub struct Key {
@@ -47,6 +51,14 @@ pub struct Key {
     pub presence: Presence,
     /// What it means.
     pub doc: &'static str,
+}
+
+const fn key(name: &'static str, kind: Kind, presence: Presence, doc: &'static str) -> Key {
+    Key { name, kind, presence, doc }
+}
+
+const fn later(name: &'static str, doc: &'static str) -> Key {
+    key(name, Kind::Open, Presence::Later, doc)
 }
 
 /// Whether a key must be given, and what holds if it is not.

@@ -2,8 +2,7 @@
 
 use super::Kind::*;
 use super::Presence::{Default, Optional, Required};
-use super::tables::{key, one_of};
-use super::{Dimension as In, Kind, Range, Table, body};
+use super::{Dimension as In, Kind, Range, Table, body, key, one_of};
 use std::ops::Bound::{Excluded, Included};
 
 pub(super) static OUTPUT: Table = Table {

@@ -1,22 +1,10 @@
 //! The tables and keys of the language.
 
 use super::Kind::*;
-use super::Presence::{Default, Later, Optional, Required};
-use super::{Dimension as In, Group, Key, Kind, Presence, Range, Table, body, loads, output};
+use super::Presence::{Default, Optional, Required};
+use super::{Dimension as In, Kind, Range, Table, body, key, later, loads, one_of, output};
 use crate::preset;
 use std::ops::Bound::{Excluded, Included};
-
-pub(super) const fn key(name: &'static str, kind: Kind, presence: Presence, doc: &'static str) -> Key {
-    Key { name, kind, presence, doc }
-}
-
-const fn later(name: &'static str, doc: &'static str) -> Key {
-    key(name, Open, Later, doc)
-}
-
-pub(super) const fn one_of(keys: &'static [&'static str], required: bool) -> Group {
-    Group { keys, required }
-}
 
 /// The whole file.
 pub static ROOT: Table = Table {

@@ -1,7 +1,7 @@
 //! Shapes of bodies and of what is cut out of them.
 
 use super::place;
-use crate::document::Origin;
+use crate::error::Origin;
 use crate::grid::GridSpec;
 use crate::record::Record;
 use crate::region::{self, Edge, Fault, Outline, Region};
