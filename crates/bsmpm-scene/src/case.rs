@@ -3,12 +3,14 @@
 mod history;
 mod loads;
 
+pub use crate::words::{Base, Format, Geometry, Nonlinear, Support};
 pub use history::{Check, Column, Face, History, Quantity};
-pub use loads::{Base, Footing, Initial, Path, PointLoad, Prescribed, Site, Traction};
+pub use loads::{Footing, Initial, Path, PointLoad, Prescribed, Site, Traction};
 
 use crate::error::Choice;
 use crate::grid::{GridSpec, Line};
 use crate::region::Region;
+use crate::words::{Factor, Ksp, Pc};
 use bsmpm::background::{Extent, Kind};
 use bsmpm::material::Material;
 use bsmpm::model::Regime;
@@ -83,13 +85,6 @@ impl Case {
     }
 }
 
-/// Kind of the geometry.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Geometry {
-    /// Plane strain, 1 m thick.
-    PlaneStrain,
-}
-
 /// Kind and time of the analysis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Analysis {
@@ -162,17 +157,6 @@ pub struct Gravity {
     pub ramp: f64,
 }
 
-/// Support of one face of the grid.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Support {
-    /// All components held.
-    Fixed,
-    /// The normal component held.
-    Roller,
-    /// Nothing held.
-    Free,
-}
-
 /// The non-linear iteration and the linear solver.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solver {
@@ -198,26 +182,15 @@ pub struct Solver {
     pub reproducible: bool,
 }
 
-/// The non-linear iteration.
+/// The linear solver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Nonlinear {
-    /// The controller's choice: all recent secants on the stiffness at a step's first guess, Newton's method where they stall.
-    Auto,
-    /// The paper's rank-one update.
-    Broyden,
-    /// Newton's method with the complete derivative.
-    Newton,
-}
-
-/// The linear solver by PETSc's own names, all of them known ones.
-#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Linear {
     /// Krylov method, or `preonly`.
-    pub ksp: &'static str,
+    pub ksp: Ksp,
     /// Preconditioner, or direct solver.
-    pub pc: &'static str,
+    pub pc: Pc,
     /// Package of a direct solver, or `dissection`, which is this program's own; `None` for other preconditioners.
-    pub factor: Option<&'static str>,
+    pub factor: Option<Factor>,
 }
 
 /// What is written besides tables with a row a step; without `every` and `times` there are no frames.
@@ -264,12 +237,4 @@ pub enum Every {
     Time(f64),
     /// Accepted steps.
     Steps(u64),
-}
-
-/// Format of frames.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Format {
-    /// One `.vtu` per frame and a `.pvd`.
-    #[default]
-    Vtu,
 }

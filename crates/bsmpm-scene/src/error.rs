@@ -1,5 +1,5 @@
-//! One thing that is wrong with a case, told so that its author finds it and knows what to write; and one that the program
-//! chose by itself.
+//! One thing that is wrong with a case, told so that its author finds it and knows what to write; and one that the
+//! program chose by itself.
 
 use std::fmt;
 

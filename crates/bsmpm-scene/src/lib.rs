@@ -12,6 +12,7 @@ pub mod model;
 pub mod schema;
 pub mod surfaces;
 pub mod unit;
+pub mod words;
 
 mod case;
 mod difference;

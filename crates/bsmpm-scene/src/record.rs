@@ -8,6 +8,8 @@ use crate::nearest::nearest;
 use crate::report::{Report, shortened};
 use crate::schema::{Group, Kind, Presence, ROOT, Table};
 use crate::unit::Dimension;
+use crate::words::Word;
+use bsmpm::model::Regime;
 
 /// A table whose keys and values are as the schema says.
 #[derive(Clone, Debug)]
@@ -62,8 +64,11 @@ pub(crate) fn read(document: &document::Table, report: &mut Report<'_>) -> Recor
         Value::Table(analysis) => analysis.get("type"),
         _ => None,
     });
-    let pseudo_time =
-        kind.is_some_and(|entry| matches!(&entry.node.value, Value::Text(text) if text == "quasi-static"));
+    let regime = kind.and_then(|entry| match &entry.node.value {
+        Value::Text(text) => Regime::of(text),
+        _ => None,
+    });
+    let pseudo_time = regime == Some(Regime::QuasiStatic);
     Context { pseudo_time }.record(&ROOT, document, Origin::Nowhere, "", report)
 }
 
@@ -275,8 +280,17 @@ impl Record {
         if let Datum::Count(count) = self.datum(key)? { Some(*count) } else { None }
     }
 
-    pub(crate) fn word(&self, key: &str) -> Option<&'static str> {
-        if let Datum::Word(word) = self.datum(key)? { Some(word) } else { None }
+    /// What the key's word stands for; `T` is the choice that the schema names.
+    pub(crate) fn word<T: Word>(&self, key: &str) -> Option<T> {
+        let Datum::Word(word) = self.datum(key)? else { return None };
+        let choice = T::of(word);
+        debug_assert!(choice.is_some(), "{key}: \"{word}\" is no {}", std::any::type_name::<T>());
+        choice
+    }
+
+    /// The same of a key that may be absent; the outer option is `None` after an error.
+    pub(crate) fn word_if_given<T: Word>(&self, key: &str) -> Option<Option<T>> {
+        if self.gives(key) { self.word(key).map(Some) } else { Some(None) }
     }
 
     pub(crate) fn text(&self, key: &str) -> Option<&str> {

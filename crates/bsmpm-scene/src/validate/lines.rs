@@ -10,6 +10,7 @@ use crate::grid::Line;
 use crate::record::Record;
 use crate::region::Edge;
 use crate::report::Report;
+use crate::words::C0Lines;
 use std::collections::BTreeMap;
 
 /// Parts of a cell by which a place may miss a grid line: rounding.
@@ -42,7 +43,7 @@ pub(super) fn place(case: &mut Case, record: &Record, report: &mut Report<'_>) {
         of.into_iter().for_each(|record| record.error("to", &message, report));
     }
     let lines = std::mem::take(&mut found.lines);
-    if record.record("grid").and_then(|grid| grid.word("c0_lines")) == Some("none") {
+    if record.record("grid").and_then(|grid| grid.word("c0_lines")) == Some(C0Lines::None) {
         if let Some(((axis, line), reason)) = lines.iter().find(|((axis, line), _)| !has(case, *axis, *line)) {
             let at = coordinate(case, *axis, *line);
             let name = NAMES[*axis];

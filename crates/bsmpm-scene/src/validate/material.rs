@@ -6,6 +6,7 @@ use crate::grid::GridSpec;
 use crate::record::Record;
 use crate::report::Report;
 use crate::schema::{BELOW_90, Range};
+use crate::words::Law;
 use bsmpm::material::{Elastic, Graded, GradedStrength, Hencky, Material, MohrCoulomb, Profile, Separation};
 use bsmpm::model::Regime;
 
@@ -66,7 +67,7 @@ pub(super) fn read_all(root: &Record, around: Around<'_>, report: &mut Report<'_
 pub(super) fn strength(material: &Material, height: f64) -> Option<[f64; 3]> {
     match material.at(height).as_ref() {
         Material::MohrCoulomb(law) => Some([law.cohesion(), law.friction(), law.dilation()]),
-        _ => None,
+        Material::Hencky(_) | Material::Graded(_) => None,
     }
 }
 
@@ -85,13 +86,14 @@ fn read(
     }
     warn_of_stiffness(record, young.map(|young| young.value), poisson, report);
     let Reduction { factor, elastic, stiffness } = around.reduction;
-    let (young, poisson, law) = (young?, poisson?, law?.filter(|_| !elastic));
+    let (young, poisson, law) = (young?, poisson?, law?);
+    let law = if elastic { Parameters::Hencky } else { law };
     let young = Profile { value: stiffness * young.value, per_metre: stiffness * young.per_metre, ..young };
     if elastic || stiffness != 1.0 {
         let value = format!("young x {stiffness}{}", if elastic { ", elastic" } else { "" });
         report.note(&record.path, value, "strength_reduction.elastic and .stiffness");
     }
-    let separation = separation(record, law.as_ref(), layer.as_ref(), report);
+    let separation = separation(record, &law, layer.as_ref(), report);
     let material = if is_graded(record) {
         graded(young, poisson, law, (layer.as_ref()?, factor, separation))
     } else {
@@ -103,29 +105,43 @@ fn read(
     Some(NamedMaterial { name: name.clone(), material, density: density? })
 }
 
-/// The plain law; `strength` is friction, dilation (degrees) and cohesion (Pa).
-fn uniform(elastic: Elastic, strength: Option<[Profile; 3]>, (factor, separation): (f64, Separation)) -> Material {
-    let Some([friction, dilation, cohesion]) = strength else { return Material::Hencky(Hencky { elastic }) };
-    let (friction, dilation) = (friction.value.to_radians(), dilation.value.to_radians());
-    let law = MohrCoulomb::new(elastic, friction, dilation, cohesion.value);
-    Material::MohrCoulomb(law.separating(separation).reduced(factor))
+/// What a law has besides the elastic parameters.
+enum Parameters {
+    Hencky,
+    /// Friction and dilation angle (degrees), cohesion (Pa).
+    MohrCoulomb([Profile; 3]),
+}
+
+/// The plain law.
+fn uniform(elastic: Elastic, law: Parameters, (factor, separation): (f64, Separation)) -> Material {
+    match law {
+        Parameters::Hencky => Material::Hencky(Hencky { elastic }),
+        Parameters::MohrCoulomb([friction, dilation, cohesion]) => {
+            let (friction, dilation) = (friction.value.to_radians(), dilation.value.to_radians());
+            let law = MohrCoulomb::new(elastic, friction, dilation, cohesion.value);
+            Material::MohrCoulomb(law.separating(separation).reduced(factor))
+        }
+    }
 }
 
 /// The law by height above the grid's lower corner.
 fn graded(
     young: Profile,
     poisson: f64,
-    strength: Option<[Profile; 3]>,
+    law: Parameters,
     (layer, factor, separation): (&Layer, f64, Separation),
 ) -> Material {
     let relative = |profile: Profile| Profile { at: profile.at - layer.base, ..profile };
-    let strength = strength.map(|[friction, dilation, cohesion]| GradedStrength {
-        friction: relative(radians(friction)),
-        dilation: dilation.value.to_radians(),
-        cohesion: relative(cohesion),
-        reduction: factor,
-        separation,
-    });
+    let strength = match law {
+        Parameters::Hencky => None,
+        Parameters::MohrCoulomb([friction, dilation, cohesion]) => Some(GradedStrength {
+            friction: relative(radians(friction)),
+            dilation: dilation.value.to_radians(),
+            cohesion: relative(cohesion),
+            reduction: factor,
+            separation,
+        }),
+    };
     let heights = layer.heights.start - layer.base..layer.heights.end - layer.base;
     Material::Graded(Graded::new(relative(young), poisson, strength, heights))
 }
@@ -221,14 +237,19 @@ fn density(record: &Record, regime: Option<Regime>, report: &mut Report<'_>) -> 
     Some(Some(density))
 }
 
-/// Friction, dilation (degrees) and cohesion (Pa), none of an elastic law; the outer option is `None` after an error.
-fn law(record: &Record, layer: Option<&Layer>, report: &mut Report<'_>) -> Option<Option<[Profile; 3]>> {
+/// Keys that a law has no use for, and keys that it needs.
+fn keys(law: Law) -> (&'static [&'static str], &'static [&'static str]) {
+    match law {
+        Law::Hencky => (&["friction", "dilation", "cohesion", "separation"], &[]),
+        Law::Tresca => (&["friction", "dilation", "separation"], &["cohesion"]),
+        Law::MohrCoulomb => (&[], &["friction", "cohesion"]),
+    }
+}
+
+/// The law's own parameters; `None` after an error.
+fn law(record: &Record, layer: Option<&Layer>, report: &mut Report<'_>) -> Option<Parameters> {
     let model = record.word("model")?;
-    let (unused, required): (&[&str], &[&str]) = match model {
-        "hencky" => (&["friction", "dilation", "cohesion", "separation"], &[]),
-        "tresca" => (&["friction", "dilation", "separation"], &["cohesion"]),
-        _ => (&[], &["friction", "cohesion"]),
-    };
+    let (unused, required) = keys(model);
     let mut whole = true;
     for key in unused.iter().filter(|key| record.gives(key) && !zero_angle(record, model, key)) {
         record.error(key, format!("has no meaning in model \"{model}\""), report);
@@ -241,9 +262,14 @@ fn law(record: &Record, layer: Option<&Layer>, report: &mut Report<'_>) -> Optio
     if !whole {
         return None;
     }
-    if model == "hencky" {
-        return Some(None);
+    match model {
+        Law::Hencky => Some(Parameters::Hencky),
+        Law::MohrCoulomb | Law::Tresca => mohr_coulomb(record, model, layer, report).map(Parameters::MohrCoulomb),
     }
+}
+
+/// Friction and dilation angle (degrees) and cohesion (Pa); zero unless given.
+fn mohr_coulomb(record: &Record, model: Law, layer: Option<&Layer>, report: &mut Report<'_>) -> Option<[Profile; 3]> {
     let given = |key| if record.gives(key) { profile(record, key) } else { Some(Profile::constant(0.0)) };
     let (friction, dilation, cohesion) = (given("friction")?, given("dilation")?, given("cohesion")?);
     if let Some(layer) = layer {
@@ -265,21 +291,17 @@ fn law(record: &Record, layer: Option<&Layer>, report: &mut Report<'_>) -> Optio
     if most == 0.0 && cohesion.bounds(&heights).1 == 0.0 {
         report.warn(format!("{}: friction and cohesion are both 0: the material has no strength", record.path));
     }
-    if record.word("model") == Some("mohr-coulomb") && !record.gives("dilation") {
+    if model == Law::MohrCoulomb && !record.gives("dilation") {
         report.note(record.path_of("dilation"), "0.0", "default: plastic flow without change of volume");
     }
-    Some(Some([friction, dilation, cohesion]))
+    Some([friction, dilation, cohesion])
 }
 
 /// What becomes of the volume that opens at the apex. Only where that is free of stress can it be a gap: with cohesion
 /// it would pull with c cot phi until it has closed, and without friction there is no apex.
-fn separation(
-    record: &Record,
-    strength: Option<&[Profile; 3]>,
-    layer: Option<&Layer>,
-    report: &mut Report<'_>,
-) -> Separation {
-    let (Some("closing"), Some([friction, _, cohesion])) = (record.word("separation"), strength) else {
+fn separation(record: &Record, law: &Parameters, layer: Option<&Layer>, report: &mut Report<'_>) -> Separation {
+    let separation = record.word("separation").unwrap_or_default();
+    let (Separation::Closing, Parameters::MohrCoulomb([friction, _, cohesion])) = (separation, law) else {
         return Separation::Forgotten;
     };
     let bounds =
@@ -292,8 +314,8 @@ fn separation(
 }
 
 /// Tresca's angles may be written if they are zero.
-fn zero_angle(record: &Record, model: &str, key: &str) -> bool {
-    model == "tresca" && record.number(key) == Some(0.0)
+fn zero_angle(record: &Record, model: Law, key: &str) -> bool {
+    model == Law::Tresca && record.number(key) == Some(0.0)
 }
 
 fn warn_of_stiffness(record: &Record, young: Option<f64>, poisson: Option<f64>, report: &mut Report<'_>) {
