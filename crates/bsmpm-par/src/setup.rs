@@ -12,6 +12,7 @@ use bsmpm::stabilisation::Stabilisation;
 use bsmpm::step::smooth;
 use bsmpm_io::manifest;
 use bsmpm_scene::model::{at_rest, penalty, weighting};
+use bsmpm_scene::words::{Factor, Word};
 use bsmpm_scene::{Axis, Case, Initial};
 use std::ops::Range;
 
@@ -42,20 +43,19 @@ pub fn cut(case: &Case, ranks: usize) -> Option<Cut> {
 /// The linear solver of a run on so many ranks with further `options` of PETSc.
 pub fn linear(case: &Case, ranks: usize, options: &[String]) -> Choice {
     let linear = &case.solver.linear;
-    let direct = ["cholesky", "lu"].contains(&linear.pc);
     let dissection = linear.factor == Some(DISSECTION);
     Choice {
         dissection: dissection && !options.iter().any(|option| decides(option)),
-        ksp: linear.ksp.into(),
-        pc: linear.pc.into(),
-        factor: linear.factor.map(|package| if dissection { "mumps" } else { package }.into()),
+        ksp: linear.ksp.word().into(),
+        pc: linear.pc.word().into(),
+        factor: linear.factor.map(|package| if dissection { Factor::Mumps } else { package }.word().into()),
         // On one rank, too, where the matrix goes to PETSc: the same factorisation, bit by bit, on any number of ranks.
-        redundant: case.solver.reproducible && direct && (ranks > 1 || !dissection),
+        redundant: case.solver.reproducible && linear.pc.factorises() && (ranks > 1 || !dissection),
     }
 }
 
 /// The factorisation that is this program's own; PETSc and MUMPS do instead of it what it does not: general matrices.
-const DISSECTION: &str = "dissection";
+const DISSECTION: Factor = Factor::Dissection;
 
 /// Whether an option of PETSc says how definite systems are solved: all but those of Newton's and the report of times.
 fn decides(option: &str) -> bool {

@@ -3,16 +3,14 @@
 mod history;
 mod loads;
 
+pub use crate::words::{Base, Format, Geometry, Nonlinear, Support};
 pub use history::{Check, Column, Face, History, Quantity};
-pub use loads::{Base, Footing, Initial, Path, PointLoad, Prescribed, Site, Traction};
+pub use loads::{Footing, Initial, Path, PointLoad, Prescribed, Site, Traction};
 
-use crate::document;
-use crate::error::Error;
+use crate::error::Choice;
 use crate::grid::{GridSpec, Line};
 use crate::region::Region;
-use crate::report::Report;
-use crate::source::{Source, decode};
-use crate::{overrides, preset, record, validate};
+use crate::words::{Factor, Ksp, Pc};
 use bsmpm::background::{Extent, Kind};
 use bsmpm::material::Material;
 use bsmpm::model::Regime;
@@ -85,47 +83,6 @@ impl Case {
             reason: "those of the run that is resumed".to_owned(),
         });
     }
-
-    /// The case in `text`, the content of the file `name`, with overrides `KEY=VALUE` merged in their order.
-    ///
-    /// # Errors
-    /// All errors of the file and the overrides at once; if the text is no TOML, the syntax errors only.
-    pub fn from_text(name: &str, text: &str, overrides: &[String]) -> Result<Self, Vec<Error>> {
-        Self::from_bytes(name, text.as_bytes(), overrides)
-    }
-
-    /// [`Case::from_text`] for bytes as they stand in the file, see [`crate::load`].
-    ///
-    /// # Errors
-    /// As [`Case::from_text`]; also if the bytes are too many, binary, UTF-16 or no UTF-8.
-    pub fn from_bytes(name: &str, bytes: &[u8], overrides: &[String]) -> Result<Self, Vec<Error>> {
-        let text = decode(name, bytes)?;
-        let source = Source::new(name, text);
-        let mut report = Report::new(&source, overrides);
-        let mut document = document::parse(&source, &mut report);
-        if report.failed() {
-            return Err(report.into_errors());
-        }
-        overrides::apply(&mut document, overrides, &mut report);
-        if document.entries.is_empty() && !report.failed() {
-            report.error(document::Origin::Nowhere, "", "the file is empty: it holds no key of a case");
-            return Err(report.into_errors());
-        }
-        let filled = preset::fill(&mut document, (&source, overrides), &mut report);
-        let record = record::read(&document, &mut report);
-        let effective = if overrides.is_empty() && !filled { text.to_owned() } else { document.to_toml() };
-        match validate::case(&record, effective, &mut report) {
-            Some(case) if !report.failed() => Ok(case),
-            _ => Err(report.into_errors()),
-        }
-    }
-}
-
-/// Kind of the geometry.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Geometry {
-    /// Plane strain, 1 m thick.
-    PlaneStrain,
 }
 
 /// Kind and time of the analysis.
@@ -200,17 +157,6 @@ pub struct Gravity {
     pub ramp: f64,
 }
 
-/// Support of one face of the grid.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Support {
-    /// All components held.
-    Fixed,
-    /// The normal component held.
-    Roller,
-    /// Nothing held.
-    Free,
-}
-
 /// The non-linear iteration and the linear solver.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solver {
@@ -236,26 +182,15 @@ pub struct Solver {
     pub reproducible: bool,
 }
 
-/// The non-linear iteration.
+/// The linear solver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Nonlinear {
-    /// The controller's choice: all recent secants on the stiffness at a step's first guess, Newton's method where they stall.
-    Auto,
-    /// The paper's rank-one update.
-    Broyden,
-    /// Newton's method with the complete derivative.
-    Newton,
-}
-
-/// The linear solver by PETSc's own names, all of them known ones.
-#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Linear {
     /// Krylov method, or `preonly`.
-    pub ksp: &'static str,
+    pub ksp: Ksp,
     /// Preconditioner, or direct solver.
-    pub pc: &'static str,
+    pub pc: Pc,
     /// Package of a direct solver, or `dissection`, which is this program's own; `None` for other preconditioners.
-    pub factor: Option<&'static str>,
+    pub factor: Option<Factor>,
 }
 
 /// What is written besides tables with a row a step; without `every` and `times` there are no frames.
@@ -302,23 +237,4 @@ pub enum Every {
     Time(f64),
     /// Accepted steps.
     Steps(u64),
-}
-
-/// Format of frames.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Format {
-    /// One `.vtu` per frame and a `.pvd`.
-    #[default]
-    Vtu,
-}
-
-/// Something that the program chose by itself, for the manifest.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Choice {
-    /// Path of the key.
-    pub key: String,
-    /// The value chosen.
-    pub value: String,
-    /// Why.
-    pub reason: String,
 }

@@ -1,21 +1,11 @@
 //! The case as written: a tree of values, each with the place where it stands.
 
+use crate::error::Origin;
 use crate::report::{Report, shortened};
 use crate::source::Source;
 use toml::de::{DeTable, DeValue};
 
 mod write;
-
-/// Where a value or key was written. Orders as a report lists: the file from its start, then overrides.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Origin {
-    /// nowhere: the file as a whole, or a default
-    Nowhere,
-    /// byte offset in the text
-    Text(usize),
-    /// number of the override
-    Override(usize),
-}
 
 /// A value with its place.
 #[derive(Clone, Debug)]

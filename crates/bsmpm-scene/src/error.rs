@@ -1,6 +1,29 @@
-//! One thing that is wrong with a case, told so that its author finds it and knows what to write.
+//! One thing that is wrong with a case, told so that its author finds it and knows what to write; and one that the
+//! program chose by itself.
 
 use std::fmt;
+
+/// Where a value or key was written. Orders as a report lists: the file from its start, then overrides.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Origin {
+    /// nowhere: the file as a whole, or a default
+    Nowhere,
+    /// byte offset in the text
+    Text(usize),
+    /// number of the override
+    Override(usize),
+}
+
+/// Something that the program chose by itself, for the manifest.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Choice {
+    /// Path of the key.
+    pub key: String,
+    /// The value chosen.
+    pub value: String,
+    /// Why.
+    pub reason: String,
+}
 
 /// Where an error stands.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]

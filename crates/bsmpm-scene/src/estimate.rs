@@ -4,6 +4,7 @@
 
 use crate::case::{Body, Case, Nonlinear, Solver};
 use crate::grid::GridSpec;
+use crate::words::Factor;
 use bsmpm::grid::room;
 use std::ops::Range;
 
@@ -106,7 +107,7 @@ impl Systems {
         let levels = u128::from(unknowns.max(2).ilog2());
         let factor = if direct { unknowns * levels * LEVEL * reach / 2 } else { 0 };
         let again = u128::from(direct && solver.reproducible);
-        let elastic = if solver.linear.factor == Some("dissection") {
+        let elastic = if solver.linear.factor == Some(Factor::Dissection) {
             [unknowns * levels * FRONT * reach.pow(2) / 4, 0, 0]
         } else {
             [entries * ENTRY + factor, again * (entries * REPEATED + factor), entries * BUILT]

@@ -14,6 +14,7 @@ pub mod model;
 pub mod schema;
 pub mod surfaces;
 pub mod unit;
+pub mod words;
 
 mod case;
 mod difference;
@@ -24,6 +25,7 @@ mod grid;
 mod nearest;
 mod overrides;
 mod preset;
+mod read;
 mod record;
 mod region;
 mod report;
@@ -36,12 +38,12 @@ pub use bsmpm::model::Regime;
 pub use bsmpm::points::Seed;
 pub use bsmpm::quadrature::Quadrature;
 pub use case::{
-    Analysis, Base, Body, Case, Check, Checkpoint, Choice, Column, Every, Face, Footing, Format, Geometry, Gravity,
-    History, Initial, Linear, NamedMaterial, Nonlinear, Output, Path, PointLoad, Prescribed, Quantity, Site, Solver,
-    Support, Traction,
+    Analysis, Base, Body, Case, Check, Checkpoint, Column, Every, Face, Footing, Format, Geometry, Gravity, History,
+    Initial, Linear, NamedMaterial, Nonlinear, Output, Path, PointLoad, Prescribed, Quantity, Site, Solver, Support,
+    Traction,
 };
 pub use difference::{Difference, differences};
-pub use error::{Error, Place};
+pub use error::{Choice, Error, Place};
 pub use estimate::Estimate;
 pub use grid::{Axis, GridSpec, Line};
 pub use region::{Outline, Region};

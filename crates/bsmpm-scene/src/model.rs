@@ -1,5 +1,4 @@
-//! From a valid case to the physics' model, its points and its steps: the only place where the case's words become types
-//! of crate `bsmpm`.
+//! From a valid case to the physics' model, its points and its steps.
 
 use crate::{Axis, Case, Every, NamedMaterial, Quantity, Regime, surfaces};
 use bsmpm::background::Background;

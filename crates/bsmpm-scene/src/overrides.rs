@@ -1,6 +1,7 @@
 //! `--set KEY=VALUE`: one value of the document replaced before anything is validated.
 
-use crate::document::{self, Entry, Node, Origin, Table, Value};
+use crate::document::{self, Entry, Node, Table, Value};
+use crate::error::Origin;
 use crate::report::{Report, shortened};
 use crate::schema::{Kind, ROOT, Table as Schema};
 

@@ -6,16 +6,17 @@
 
 mod scene;
 
-use crate::document::{self, Entry, Node, Origin, Table, Value};
+use crate::document::{self, Entry, Node, Table, Value};
+use crate::error::Origin;
 use crate::record;
 use crate::report::Report;
 use crate::source::Source;
+use crate::words::{Accuracy, Order, Word};
+use bsmpm::stabilisation::Stabilisation;
 use scene::Scene;
 
 /// The key.
 const ACCURACY: &str = "accuracy";
-/// Its words, coarsest first.
-pub(crate) const NAMES: [&str; 3] = ["draft", "standard", "reference"];
 
 /// A discretisation in terms of what a scene is made of.
 struct Preset {
@@ -35,43 +36,46 @@ struct Preset {
     tolerances: [&'static str; 2],
 }
 
-/// As [`NAMES`].
-const PRESETS: [Preset; 3] = [
-    Preset {
-        across: 10.0,
-        along: 4.0,
-        points: 2,
-        crossed: 4.0,
-        advance: 0.25,
-        steps: 10.0,
-        tolerances: ["1e-6", "1e-3"],
-    },
-    Preset {
-        across: 20.0,
-        along: 8.0,
-        points: 3,
-        crossed: 4.0,
-        advance: 0.25,
-        steps: 10.0,
-        tolerances: ["1e-8", "1e-4"],
-    },
-    Preset {
-        across: 40.0,
-        along: 12.0,
-        points: 4,
-        crossed: 2.0,
-        advance: 0.125,
-        steps: 20.0,
-        tolerances: ["1e-10", "1e-5"],
-    },
-];
+impl Preset {
+    fn of(accuracy: Accuracy) -> Self {
+        match accuracy {
+            Accuracy::Draft => Self {
+                across: 10.0,
+                along: 4.0,
+                points: 2,
+                crossed: 4.0,
+                advance: 0.25,
+                steps: 10.0,
+                tolerances: ["1e-6", "1e-3"],
+            },
+            Accuracy::Standard => Self {
+                across: 20.0,
+                along: 8.0,
+                points: 3,
+                crossed: 4.0,
+                advance: 0.25,
+                steps: 10.0,
+                tolerances: ["1e-8", "1e-4"],
+            },
+            Accuracy::Reference => Self {
+                across: 40.0,
+                along: 12.0,
+                points: 4,
+                crossed: 2.0,
+                advance: 0.125,
+                steps: 20.0,
+                tolerances: ["1e-10", "1e-5"],
+            },
+        }
+    }
+}
 
 /// Cells across the thinnest body below which a warning is told.
 const FEWEST: f64 = 2.0;
 
 /// Of every preset: splines of this order, and where a material could lock this against it.
-const ORDER: &str = "\"quadratic\"";
-const METHOD: &str = "\"consistent-f-bar\"";
+const ORDER: Order = Order::Quadratic;
+const METHOD: Stabilisation = Stabilisation::ConsistentFBar;
 
 /// Fills in what the document's `accuracy` stands for, if it has one; whether anything was. What cannot be told from
 /// the rest of the case is an error, which says what it would follow from.
@@ -80,13 +84,13 @@ pub(crate) fn fill(
     (source, overrides): (&Source<'_>, &[String]),
     report: &mut Report<'_>,
 ) -> bool {
-    let Some((name, origin)) = chosen(document) else { return false };
-    let preset = &PRESETS[NAMES.iter().position(|known| *known == name).unwrap_or_default()];
+    let Some((accuracy, origin)) = chosen(document) else { return false };
+    let preset = &Preset::of(accuracy);
     // Its errors are told when the filled document is read.
     let record = record::read(document, &mut Report::new(source, overrides));
     let scene = Scene::of(&record);
-    let mut filling = Filling { document, origin, name, report, filled: false };
-    filling.put("grid", &["order"], ORDER, "");
+    let mut filling = Filling { document, origin, accuracy, report, filled: false };
+    filling.put("grid", &["order"], &quoted(ORDER), "");
     let cells = scene.cells(preset);
     match &cells {
         Some(cells) => {
@@ -108,7 +112,7 @@ pub(crate) fn fill(
         None => {} // told already
     }
     if let Some(why) = scene.locks() {
-        filling.put("stabilisation", &["method"], METHOD, why);
+        filling.put("stabilisation", &["method"], &quoted(METHOD), why);
     }
     let [energy, force] = preset.tolerances;
     filling.put("solver", &["tolerance"], energy, "");
@@ -123,17 +127,22 @@ pub(crate) fn fill(
 }
 
 /// The word that the case gives, if it is one of them, and its place.
-fn chosen(document: &Table) -> Option<(&'static str, Origin)> {
+fn chosen(document: &Table) -> Option<(Accuracy, Origin)> {
     let entry = document.get(ACCURACY)?;
     let Value::Text(text) = &entry.node.value else { return None };
-    Some((NAMES.into_iter().find(|name| name == text)?, entry.node.origin))
+    Some((Accuracy::of(text)?, entry.node.origin))
+}
+
+/// A word as TOML.
+fn quoted(choice: impl Word) -> String {
+    format!("\"{}\"", choice.word())
 }
 
 /// A document on its way to be complete.
 struct Filling<'a, 'r> {
     document: &'a mut Table,
     origin: Origin,
-    name: &'static str,
+    accuracy: Accuracy,
     report: &'a mut Report<'r>,
     filled: bool,
 }
@@ -162,7 +171,8 @@ impl Filling<'_, '_> {
         match self.document.get(table) {
             Some(Entry { node: Node { value: Value::Table(table), .. }, .. }) if given(table) => {}
             _ => {
-                let reason = format!("\"{}\" cannot choose {table}.{}, which follows from {basis}", self.name, keys[0]);
+                let reason =
+                    format!("\"{}\" cannot choose {table}.{}, which follows from {basis}", self.accuracy, keys[0]);
                 self.report.error(self.origin, ACCURACY, reason);
             }
         }
@@ -171,7 +181,7 @@ impl Filling<'_, '_> {
     /// Warns of cells (m) that are too wide for the thinnest body.
     fn doubt(&mut self, cell: f64, thinnest: Option<f64>) {
         if let Some(side) = thinnest.filter(|side| *side < FEWEST * cell) {
-            let name = self.name;
+            let name = self.accuracy;
             self.report.warn(format!(
                 "{ACCURACY}: the cells of {cell} m of \"{name}\" are fewer than {FEWEST} across a body of {side} m; give grid.cell"
             ));
@@ -199,7 +209,7 @@ impl Filling<'_, '_> {
     fn tell(&mut self, key: &str, value: &str, why: &str) {
         self.filled = true;
         let colon = if why.is_empty() { "" } else { ": " };
-        self.report.note(key, value, format!("accuracy = \"{}\"{colon}{why}", self.name));
+        self.report.note(key, value, format!("accuracy = \"{}\"{colon}{why}", self.accuracy));
     }
 }
 

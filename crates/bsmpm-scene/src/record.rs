@@ -1,12 +1,16 @@
 //! The document held against the schema: every value typed, in SI and within its range, or an error.
 
+mod access;
 mod value;
 
-use crate::document::{self, Node, Origin, Value};
+use crate::document::{self, Node, Value};
+use crate::error::Origin;
 use crate::nearest::nearest;
 use crate::report::{Report, shortened};
 use crate::schema::{Group, Kind, Presence, ROOT, Table};
 use crate::unit::Dimension;
+use crate::words::Word;
+use bsmpm::model::Regime;
 
 /// A table whose keys and values are as the schema says.
 #[derive(Clone, Debug)]
@@ -61,8 +65,11 @@ pub(crate) fn read(document: &document::Table, report: &mut Report<'_>) -> Recor
         Value::Table(analysis) => analysis.get("type"),
         _ => None,
     });
-    let pseudo_time =
-        kind.is_some_and(|entry| matches!(&entry.node.value, Value::Text(text) if text == "quasi-static"));
+    let regime = kind.and_then(|entry| match &entry.node.value {
+        Value::Text(text) => Regime::of(text),
+        _ => None,
+    });
+    let pseudo_time = regime == Some(Regime::QuasiStatic);
     Context { pseudo_time }.record(&ROOT, document, Origin::Nowhere, "", report)
 }
 
@@ -245,56 +252,5 @@ impl Record {
     /// Records an error about the key.
     pub(crate) fn error(&self, key: &str, message: impl Into<String>, report: &mut Report<'_>) {
         report.error(self.place(key), &self.path_of(key), message);
-    }
-}
-
-/// Typed access: `None` if the key is absent or an error has been reported.
-impl Record {
-    pub(crate) fn number(&self, key: &str) -> Option<f64> {
-        if let Datum::Number(number) = self.datum(key)? { Some(*number) } else { None }
-    }
-
-    pub(crate) fn measure(&self, key: &str) -> Option<(f64, Option<Dimension>)> {
-        if let Datum::Measure(number, dimension) = self.datum(key)? { Some((*number, *dimension)) } else { None }
-    }
-
-    pub(crate) fn numbers(&self, key: &str) -> Option<&[f64]> {
-        if let Datum::Numbers(numbers) = self.datum(key)? { Some(numbers) } else { None }
-    }
-
-    pub(crate) fn rows(&self, key: &str) -> Option<&[Row]> {
-        if let Datum::Rows(rows) = self.datum(key)? { Some(rows) } else { None }
-    }
-
-    pub(crate) fn pair(&self, key: &str) -> Option<[f64; 2]> {
-        self.numbers(key)?.try_into().ok()
-    }
-
-    pub(crate) fn count(&self, key: &str) -> Option<u64> {
-        if let Datum::Count(count) = self.datum(key)? { Some(*count) } else { None }
-    }
-
-    pub(crate) fn word(&self, key: &str) -> Option<&'static str> {
-        if let Datum::Word(word) = self.datum(key)? { Some(word) } else { None }
-    }
-
-    pub(crate) fn text(&self, key: &str) -> Option<&str> {
-        if let Datum::Text(text) = self.datum(key)? { Some(text) } else { None }
-    }
-
-    pub(crate) fn flag(&self, key: &str) -> Option<bool> {
-        if let Datum::Flag(flag) = self.datum(key)? { Some(*flag) } else { None }
-    }
-
-    pub(crate) fn record(&self, key: &str) -> Option<&Record> {
-        if let Datum::Record(record) = self.datum(key)? { Some(record) } else { None }
-    }
-
-    pub(crate) fn named(&self, key: &str) -> &[(String, Record)] {
-        if let Some(Datum::Named(named)) = self.datum(key) { named } else { &[] }
-    }
-
-    pub(crate) fn records(&self, key: &str) -> &[Record] {
-        if let Some(Datum::Records(records)) = self.datum(key) { records } else { &[] }
     }
 }

@@ -1,8 +1,6 @@
 //! Collects what is wrong, doubtful or chosen while a case is read, each thing once and in the file's order.
 
-use crate::case::Choice;
-use crate::document::Origin;
-use crate::error::{Error, Place};
+use crate::error::{Choice, Error, Origin, Place};
 use crate::source::Source;
 use std::collections::HashSet;
 

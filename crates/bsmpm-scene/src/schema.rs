@@ -8,6 +8,7 @@ mod output;
 mod tables;
 
 pub use crate::unit::Dimension;
+pub use crate::words::Words;
 pub(crate) use tables::BELOW_90;
 pub use tables::ROOT;
 
@@ -36,6 +37,10 @@ pub struct Group {
     pub required: bool,
 }
 
+const fn one_of(keys: &'static [&'static str], required: bool) -> Group {
+    Group { keys, required }
+}
+
 /// A key of a table.
 #[derive(Debug)]
 pub struct Key {
@@ -47,6 +52,14 @@ pub struct Key {
     pub presence: Presence,
     /// What it means.
     pub doc: &'static str,
+}
+
+const fn key(name: &'static str, kind: Kind, presence: Presence, doc: &'static str) -> Key {
+    Key { name, kind, presence, doc }
+}
+
+const fn later(name: &'static str, doc: &'static str) -> Key {
+    key(name, Kind::Open, Presence::Later, doc)
 }
 
 /// Whether a key must be given, and what holds if it is not.
@@ -83,8 +96,8 @@ pub enum Kind {
     Rows(&'static [(Dimension, Range)]),
     /// A whole number within bounds, both included.
     Count(u64, u64),
-    /// One of several words; the second list is not available yet.
-    Choice(&'static [&'static str], &'static [&'static str]),
+    /// One of several words.
+    Choice(Words),
     /// Text of at most so many characters.
     Text(usize),
     /// A name: ASCII letters, digits, `-` and `_`.
@@ -201,7 +214,10 @@ impl fmt::Display for Kind {
             Self::Either(dimension, _) => write!(f, "{}, or a list of two", Quantity(*dimension)),
             Self::List(dimension, _) => write!(f, "a list, each item {}", Quantity(*dimension)),
             Self::Count(least, most) => write!(f, "a whole number from {least} to {most}"),
-            Self::Choice(words, _) => write!(f, "one of {}", words.map_quoted()),
+            Self::Choice(words) => {
+                let words: Vec<String> = words.words().map(|word| format!("\"{word}\"")).collect();
+                write!(f, "one of {}", words.join(", "))
+            }
             Self::Text(most) => write!(f, "a text of at most {most} characters without control characters"),
             Self::Name => f.write_str("a name of at most 64 ASCII letters, digits, `-` and `_`"),
             Self::Flag => f.write_str("true or false"),
@@ -225,16 +241,5 @@ impl fmt::Display for Quantity {
                 write!(f, "a number ({unit}) or a string with a unit ({})", units.join(", "))
             }
         }
-    }
-}
-
-trait Quoted {
-    fn map_quoted(&self) -> String;
-}
-
-impl Quoted for [&str] {
-    fn map_quoted(&self) -> String {
-        let quoted: Vec<String> = self.iter().map(|word| format!("\"{word}\"")).collect();
-        quoted.join(", ")
     }
 }

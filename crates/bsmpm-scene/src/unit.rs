@@ -75,6 +75,11 @@ impl Dimension {
         table(self).iter().map(|(name, _)| *name)
     }
 
+    /// The dimension whose SI unit is called so.
+    pub(crate) fn of_unit(name: &str) -> Option<Self> {
+        UNITS.iter().find(|(_, units)| units[0].0 == name).map(|(dimension, _)| *dimension)
+    }
+
     /// Largest magnitude that is taken for meant: what is derived from such values stays finite.
     pub fn limit(self) -> f64 {
         match self {

@@ -13,9 +13,10 @@ mod shape;
 mod solver;
 mod strip;
 
-use crate::case::{Analysis, Case, Geometry, Gravity, Support};
+use crate::case::{Analysis, Case, Gravity, Support};
 use crate::record::Record;
 use crate::report::Report;
+use crate::words::{Side, Word};
 use bsmpm::model::Regime;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::step::mass::MassMatrix;
@@ -32,7 +33,7 @@ pub(crate) const NEARLY_INCOMPRESSIBLE: f64 = 0.45;
 
 /// The case that `record` describes; `text` is what was read. `None` after an error.
 pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Option<Case> {
-    let regime = regime(record);
+    let regime = record.record("analysis").and_then(|analysis| analysis.word("type"));
     let analysis = analysis(record, regime, report);
     let end = analysis.as_ref().map(|analysis| analysis.end);
     let boundary = boundary(record);
@@ -62,7 +63,7 @@ pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Op
     let checks = history::checks(record, &histories, end, report);
     let mut case = Case {
         title: record.text("title").unwrap_or_default().to_owned(),
-        geometry: record.word("geometry").map(|_| Geometry::PlaneStrain)?,
+        geometry: record.word("geometry")?,
         analysis: analysis?,
         grid: grid?,
         materials: materials?,
@@ -90,11 +91,6 @@ pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Op
     lines::place(&mut case, record, report);
     physics::check(&case, record, report);
     Some(Case { warnings: std::mem::take(&mut report.warnings), notes: std::mem::take(&mut report.notes), ..case })
-}
-
-fn regime(record: &Record) -> Option<Regime> {
-    let word = record.record("analysis")?.word("type")?;
-    Some(if word == "dynamic" { Regime::Dynamic } else { Regime::QuasiStatic })
 }
 
 fn analysis(record: &Record, regime: Option<Regime>, report: &mut Report<'_>) -> Option<Analysis> {
@@ -135,13 +131,16 @@ fn analysis(record: &Record, regime: Option<Regime>, report: &mut Report<'_>) ->
 
 /// Numerical damping, of which only a dynamic analysis can have any.
 fn newmark(analysis: &Record, regime: Regime, report: &mut Report<'_>) -> Option<Newmark> {
-    let given = ["spectral_radius", "gamma"].into_iter().find(|key| analysis.gives(key));
-    let Some(key) = given else { return Some(Newmark::default()) };
+    let Some(key) = ["spectral_radius", "gamma"].into_iter().find(|key| analysis.gives(key)) else {
+        return Some(Newmark::default());
+    };
     if regime == Regime::QuasiStatic {
         analysis.error(key, "there is no inertia, and so no numerical damping, in a quasi-static analysis", report);
     }
-    let value = analysis.number(key)?;
-    Some(if key == "gamma" { Newmark::of_gamma(value) } else { Newmark::of_spectral_radius(value) })
+    if analysis.gives("spectral_radius") {
+        return analysis.number("spectral_radius").map(Newmark::of_spectral_radius);
+    }
+    analysis.number("gamma").map(Newmark::of_gamma)
 }
 
 /// The mass matrix, of which only a dynamic analysis has any.
@@ -149,19 +148,13 @@ fn mass(analysis: &Record, regime: Regime, report: &mut Report<'_>) -> MassMatri
     if regime == Regime::QuasiStatic && analysis.gives("mass") {
         analysis.error("mass", "there is no inertia, and so no mass matrix, in a quasi-static analysis", report);
     }
-    if analysis.word("mass") == Some("consistent") { MassMatrix::Consistent } else { MassMatrix::Lumped }
+    analysis.word("mass").unwrap_or_default()
 }
 
 fn boundary(record: &Record) -> Option<[[Support; 2]; 2]> {
     let boundary = record.record("boundary")?;
-    let support = |face| {
-        Some(match boundary.word(face)? {
-            "fixed" => Support::Fixed,
-            "roller" => Support::Roller,
-            _ => Support::Free,
-        })
-    };
-    Some([[support("left")?, support("right")?], [support("bottom")?, support("top")?]])
+    let [x, y] = Side::ALL.map(|sides| sides.map(|side| boundary.word(side.word())));
+    Some([[x[0]?, x[1]?], [y[0]?, y[1]?]])
 }
 
 fn gravity(record: &Record, end: Option<f64>, report: &mut Report<'_>) -> Option<Gravity> {
@@ -189,12 +182,5 @@ fn stabilisation(record: &Record) -> Option<Stabilisation> {
     if !record.gives("stabilisation") {
         return Some(Stabilisation::None);
     }
-    Some(match record.record("stabilisation")?.word("method")? {
-        "f-bar" => Stabilisation::FBar,
-        "f-bar-zhao" => Stabilisation::FBarZhao,
-        "modified-f-bar" => Stabilisation::ModifiedFBar,
-        "consistent-f-bar" => Stabilisation::ConsistentFBar,
-        "subgrid-f-bar" => Stabilisation::SubgridFBar,
-        _ => Stabilisation::None,
-    })
+    record.record("stabilisation")?.word("method")
 }

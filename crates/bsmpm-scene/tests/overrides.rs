@@ -2,6 +2,7 @@
 
 use bsmpm::material::{Law, Material, MohrCoulomb, Separation};
 use bsmpm::stabilisation::Stabilisation;
+use bsmpm_scene::words::{Factor, Ksp, Pc};
 use bsmpm_scene::{
     Axis, BackgroundKind, Base, Case, Error, Every, Extent, Face, Initial, Place, Quadrature, Quantity, Site, Support,
 };
@@ -43,7 +44,7 @@ fn lists_are_reached_by_index_and_absent_tables_are_made() {
         valid(STATIC, &["history.0.quantity=height", "history.1.quantity=mass", "check.0={quantity=\"mass\", min=0}"]);
     assert_eq!((case.histories.len(), case.checks[0].min), (2, Some(0.0)));
     assert_eq!(valid(STATIC, &["material.clay={model=\"hencky\", young=1e6, poisson=0}"]).materials[1].name, "clay");
-    assert_eq!(valid(STATIC, &["solver.linear.pc=lu"]).solver.linear.factor, Some("mumps"));
+    assert_eq!(valid(STATIC, &["solver.linear.pc=lu"]).solver.linear.factor, Some(Factor::Mumps));
 }
 
 #[test]
@@ -210,19 +211,19 @@ fn the_linear_solver_that_is_left_open_is_chosen_by_size_and_explained() {
         let linear = &case.solver.linear;
         ((linear.ksp, linear.pc, linear.factor), reason("solver.linear.pc"))
     };
-    let direct = ("preonly", "cholesky", Some("dissection"));
-    assert_eq!(chosen(&["solver.linear.factor=mumps"]).0, ("preonly", "cholesky", Some("mumps")));
+    let direct = (Ksp::Preonly, Pc::Cholesky, Some(Factor::Dissection));
+    assert_eq!(chosen(&["solver.linear.factor=mumps"]).0, (Ksp::Preonly, Pc::Cholesky, Some(Factor::Mumps)));
     assert_eq!(chosen(&["solver.linear.ksp=preonly"]).0, direct);
     assert_eq!(chosen(&["solver.linear={ksp=\"auto\", pc=\"auto\"}"]).0, direct);
-    assert_eq!(chosen(&["solver.linear.pc=hypre"]), (("cg", "hypre", None), None));
-    assert_eq!(chosen(&["solver.linear.ksp=cg"]).0, ("cg", "cholesky", Some("mumps")));
+    assert_eq!(chosen(&["solver.linear.pc=hypre"]), ((Ksp::Cg, Pc::Hypre, None), None));
+    assert_eq!(chosen(&["solver.linear.ksp=cg"]).0, (Ksp::Cg, Pc::Cholesky, Some(Factor::Mumps)));
     let (found, reason) = chosen(&[]);
     assert!(found == direct && reason.is_some_and(|reason| reason.contains("costs least")));
     let (found, reason) = chosen(&[LARGE]);
     assert!(found == direct && reason.is_some_and(|reason| reason.contains("repeat to the bit")));
     let any = "solver.reproducible=false";
     let (found, reason) = chosen(&[LARGE, any]);
-    assert!(found == ("cg", "gamg", None) && reason.is_some_and(|reason| reason.contains("more than 10000000")));
+    assert!(found == (Ksp::Cg, Pc::Gamg, None) && reason.is_some_and(|reason| reason.contains("more than 10000000")));
     let (found, reason) = chosen(&[LARGE, any, "material.soil.poisson=0.46"]);
     assert!(found == direct && reason.is_some_and(|reason| reason.contains("Poisson")));
     assert_eq!(chosen(&[LARGE, any, "solver.linear.ksp=preonly"]).0, direct);
@@ -239,7 +240,7 @@ fn what_the_program_chooses_is_noted() {
     let case = valid(STATIC, &[]);
     let noted = |key: &str| case.notes.iter().find(|note| note.key == key).map(|note| note.value.as_str());
     assert_eq!((noted("solver.background"), noted("solver.tolerance")), (Some("0.0001"), Some("1e-8")));
-    assert_eq!((case.solver.background, case.solver.linear.factor), (1e-4, Some("dissection")));
+    assert_eq!((case.solver.background, case.solver.linear.factor), (1e-4, Some(Factor::Dissection)));
     assert_eq!(
         (case.solver.background_kind, noted("solver.background_kind")),
         (BackgroundKind::Strain, Some("\"strain\""))

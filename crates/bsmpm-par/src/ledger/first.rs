@@ -6,11 +6,12 @@ use crate::setup;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm_io::manifest::{self, Check, Extent, Manifest};
 use bsmpm_scene::Case;
+use bsmpm_scene::words::Word;
 
 /// The manifest of a new run of a case.
 pub(super) fn manifest(arguments: &Arguments, case: &Case, ranks: usize) -> Manifest {
     let file = arguments.case.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let described = manifest::Case::new(&file, &case.title, "plane-strain", case.text.clone());
+    let described = manifest::Case::new(&file, &case.title, case.geometry.word(), case.text.clone());
     let mut manifest = Manifest::begin(
         env!("CARGO_PKG_VERSION"),
         std::env::args_os().map(|argument| argument.to_string_lossy().into_owned()).collect(),

@@ -1,5 +1,7 @@
 //! What is recorded every step, and what is verified of it at the end.
 
+use crate::words::Side;
+
 /// A quantity that is recorded every step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct History {
@@ -80,6 +82,18 @@ pub struct Face {
     pub axis: usize,
     /// the face at the axis' upper end
     pub upper: bool,
+}
+
+impl From<Side> for Face {
+    fn from(side: Side) -> Self {
+        let (axis, upper) = match side {
+            Side::Left => (0, false),
+            Side::Right => (0, true),
+            Side::Bottom => (1, false),
+            Side::Top => (1, true),
+        };
+        Self { axis, upper }
+    }
 }
 
 /// One column of the history file.

@@ -1,6 +1,6 @@
 //! What acts on the bodies besides gravity: rigid strips, prescribed motions, tractions, point loads, initial stress.
 
-use super::Face;
+use super::{Base, Face};
 
 /// A displacement as a function of time, linear between its rows; zero at the start, constant after the last row.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,15 +20,6 @@ pub struct Footing {
     pub path: Path,
     /// what it holds
     pub base: Base,
-}
-
-/// What a rigid strip holds of the material at it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Base {
-    /// The component normal to it.
-    Smooth,
-    /// All components.
-    Rough,
 }
 
 /// Prescribed motion of what lies at a face of the grid or at a segment.

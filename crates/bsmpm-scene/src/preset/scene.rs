@@ -4,6 +4,8 @@ use super::Preset;
 use crate::record::Record;
 use crate::region;
 use crate::validate::{NEARLY_INCOMPRESSIBLE, STANDARD_GRAVITY};
+use crate::words::{Law, Side, Support, Word};
+use bsmpm::model::Regime;
 
 /// Cells that a preset chooses.
 pub(super) struct Cells {
@@ -41,13 +43,12 @@ impl<'a> Scene<'a> {
         let (size, why) = self.size(preset)?;
         let (grid, boundary) = (self.root.record("grid")?, self.root.record("boundary")?);
         let (lower, upper) = (grid.pair("lower")?, grid.pair("upper")?);
-        let faces = [["left", "right"], ["bottom", "top"]];
-        let moved: Vec<&str> =
+        let moved: Vec<Side> =
             self.root.records("prescribed").iter().filter_map(|motion| motion.word("face")).collect();
         let edge = |axis: usize| {
-            let (length, faces) = (upper[axis] - lower[axis], faces[axis]);
-            let gives_way = |face: &str| boundary.word(face) == Some("free") && !moved.contains(&face);
-            if faces.into_iter().any(gives_way) { size } else { length / (length / size).round().max(1.0) }
+            let length = upper[axis] - lower[axis];
+            let gives_way = |side: Side| boundary.word(side.word()) == Some(Support::Free) && !moved.contains(&side);
+            if Side::ALL[axis].into_iter().any(gives_way) { size } else { length / (length / size).round().max(1.0) }
         };
         let [x, y] = [edge(0), edge(1)];
         let sound = |edge: f64| edge > 0.0 && edge.is_finite();
@@ -111,18 +112,18 @@ impl<'a> Scene<'a> {
     pub(super) fn steps(&self, preset: &Preset, chosen: Option<f64>) -> Option<(u64, String)> {
         let analysis = self.root.record("analysis")?;
         let cell = self.shortest().or(chosen)?;
-        let (steps, why) = if analysis.word("type")? == "dynamic" {
-            let crossed = preset.crossed;
-            (
-                analysis.number("end")? * self.shear_wave()? / (crossed * cell),
-                format!("a shear wave crosses {crossed} cells in each"),
-            )
-        } else {
-            let (steps, advance) = (self.fastest() / (preset.advance * cell), preset.advance);
-            if steps > preset.steps {
-                (steps, format!("what is moved moves {advance} cells in each at most"))
-            } else {
-                (preset.steps, "so many at least".to_owned())
+        let (steps, why) = match analysis.word("type")? {
+            Regime::Dynamic => {
+                let (crossed, way) = (preset.crossed, analysis.number("end")? * self.shear_wave()?);
+                (way / (crossed * cell), format!("a shear wave crosses {crossed} cells in each"))
+            }
+            Regime::QuasiStatic => {
+                let (steps, advance) = (self.fastest() / (preset.advance * cell), preset.advance);
+                if steps > preset.steps {
+                    (steps, format!("what is moved moves {advance} cells in each at most"))
+                } else {
+                    (preset.steps, "so many at least".to_owned())
+                }
             }
         };
         // Rounding makes no step more.
@@ -132,7 +133,7 @@ impl<'a> Scene<'a> {
 
     /// What there is to lock, if any.
     pub(super) fn locks(&self) -> Option<&'static str> {
-        if self.materials().any(|material| material.word("model").is_some_and(|model| model != "hencky")) {
+        if self.materials().filter_map(|material| material.word("model")).any(Law::is_plastic) {
             return Some("plastic material locks without");
         }
         let stiff =

@@ -4,7 +4,7 @@ use super::{Datum, Row};
 use crate::document::{Node, Value};
 use crate::nearest::hint;
 use crate::report::{Report, shortened};
-use crate::schema::{Kind, Range};
+use crate::schema::{Kind, Range, Words};
 use crate::unit::{self, Dimension};
 
 /// Longest name of a material, column or check.
@@ -27,7 +27,7 @@ pub(super) fn read(kind: &Kind, node: &Node, path: &str, pseudo_time: bool, repo
             _ => reader.quantity(node, *dimension, range).map(|number| Datum::Numbers(vec![number])),
         },
         Kind::Count(least, most) => reader.count(node, *least, *most),
-        Kind::Choice(words, later) => reader.choice(node, words, later),
+        Kind::Choice(words) => reader.choice(node, words),
         Kind::Text(most) => reader.text(node, *most),
         Kind::Name => match &node.value {
             Value::Text(text) if is_name(text) => Some(Datum::Text(text.clone())),
@@ -161,15 +161,15 @@ impl Reader<'_, '_> {
         }
     }
 
-    fn choice(&mut self, node: &Node, words: &[&'static str], later: &[&str]) -> Option<Datum> {
+    fn choice(&mut self, node: &Node, words: &Words) -> Option<Datum> {
         let Value::Text(text) = &node.value else { return self.unexpected(node) };
-        if let Some(word) = words.iter().find(|word| **word == text.as_str()) {
+        if let Some(word) = words.words().find(|word| word == text) {
             return Some(Datum::Word(word));
         }
-        if later.contains(&text.as_str()) {
+        if words.later.contains(&text.as_str()) {
             return self.fail(node, format!("\"{text}\" is not available yet; allowed: {}", self.kind));
         }
-        let near = hint(text, words.iter().copied());
+        let near = hint(text, words.words());
         self.fail(node, format!("expected {}, found {}{near}", self.kind, node.show()))
     }
 

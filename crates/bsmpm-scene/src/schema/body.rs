@@ -2,8 +2,7 @@
 
 use super::Kind::*;
 use super::Presence::{Optional, Required};
-use super::tables::{key, one_of};
-use super::{Dimension as In, Kind, Range, Table};
+use super::{Dimension as In, Kind, Range, Table, key, one_of};
 
 pub(super) static BODY: Table = Table {
     header: "[[body]]",

@@ -2,8 +2,8 @@
 
 use super::Kind::*;
 use super::Presence::{Default, Optional, Required};
-use super::tables::{key, one_of};
-use super::{Dimension as In, Kind, Range, Table};
+use super::{Dimension as In, Kind, Range, Table, key, one_of};
+use crate::words::{Base, Components, Side, Start, Word};
 use std::ops::Bound::Included;
 
 const PLACE: Kind = Pair(In::Length, Range::ANY);
@@ -28,7 +28,7 @@ pub(super) static FOOTING: Table = Table {
             Optional,
             "rows [t, ux, uy], t increasing; linear between, 0 at time 0, constant after the last",
         ),
-        key("base", Choice(&["smooth", "rough"], &[]), Default("\"smooth\""), "holds the normal component, or all"),
+        key("base", Choice(Base::WORDS), Default("\"smooth\""), "holds the normal component, or all"),
     ],
     exclusive: &[one_of(&["displacement", "velocity", "path"], true)],
 };
@@ -37,7 +37,7 @@ pub(super) static PRESCRIBED: Table = Table {
     header: "[[prescribed]]",
     doc: "Motion of a face of the grid, or of a segment, which holds the material at it",
     keys: &[
-        key("face", Choice(&["left", "right", "bottom", "top"], &[]), Optional, "the face; free in [boundary]"),
+        key("face", Choice(Side::WORDS), Optional, "the face; free in [boundary]"),
         key("from", PLACE, Optional, "one end of a segment at the start"),
         key("to", PLACE, Optional, "the other end"),
         key("displacement", DISPLACEMENT, Optional, "reached at the end, linear in time"),
@@ -48,7 +48,7 @@ pub(super) static PRESCRIBED: Table = Table {
             Optional,
             "rows [t, ux, uy], t increasing; linear between, 0 at time 0, constant after the last",
         ),
-        key("components", Choice(&["all", "normal"], &[]), Default("\"all\""), "what is held"),
+        key("components", Choice(Components::WORDS), Default("\"all\""), "what is held"),
     ],
     exclusive: &[
         one_of(&["face", "from"], true),
@@ -112,7 +112,7 @@ pub(super) static INITIAL: Table = Table {
             Optional,
             "weight of what lies above as vertical stress, k0 times it as horizontal; of materials without their own k0",
         ),
-        key("gravity", Choice(&["elastic"], &[]), Optional, "elastic equilibrium under the loads at time 0 instead"),
+        key("gravity", Choice(Start::WORDS), Optional, "elastic equilibrium under the loads at time 0 instead"),
     ],
     exclusive: &[one_of(&["k0", "gravity"], false)],
 };

@@ -2,8 +2,8 @@
 
 use super::Kind::*;
 use super::Presence::{Default, Optional, Required};
-use super::tables::{key, one_of};
-use super::{Dimension as In, Kind, Range, Table, body};
+use super::{Dimension as In, Kind, Range, Table, body, key, one_of};
+use crate::words::{Format, Measurement, Side, Word};
 use std::ops::Bound::{Excluded, Included};
 
 pub(super) static OUTPUT: Table = Table {
@@ -13,7 +13,7 @@ pub(super) static OUTPUT: Table = Table {
         key("every", Quantity(In::Time, Range::POSITIVE), Optional, "time between frames, hit exactly"),
         key("every_steps", Count(1, 1_000_000_000), Optional, "accepted steps between frames, instead of every"),
         key("times", List(In::Time, Range::POSITIVE), Optional, "further times of frames, hit exactly"),
-        key("format", Choice(&["vtu"], &["vtkhdf"]), Default("\"vtu\""), "format of the frames"),
+        key("format", Choice(Format::WORDS), Default("\"vtu\""), "format of the frames"),
         key("residuals", Flag, Default("false"), "whether residuals.csv has a row for every iteration"),
         key(
             "projected_pressure",
@@ -51,11 +51,11 @@ pub(super) static HISTORY: Table = Table {
     header: "[[history]]",
     doc: "One column of history.csv, or several",
     keys: &[
-        key("quantity", QUANTITY, Required, "what is recorded every step"),
+        key("quantity", Choice(Measurement::WORDS), Required, "what is recorded every step"),
         key("name", Name, Optional, "name of the column; the quantity's unless given"),
         key("scale", Quantity(In::Number, Range::ANY), Default("1.0"), "multiplies"),
         key("percentile", Quantity(In::Number, PERCENT), Optional, "of runout: share of the points; 100 unless given"),
-        key("face", Choice(&["left", "right", "bottom", "top"], &[]), Optional, "of reaction: the face"),
+        key("face", Choice(Side::WORDS), Optional, "of reaction: the face"),
         key(
             "at_x",
             Quantity(In::Length, Range::ANY),
@@ -74,29 +74,6 @@ pub(super) static HISTORY: Table = Table {
 };
 
 const PERCENT: Range = Range::of(Excluded(0.0), Included(100.0));
-const QUANTITY: Kind = Choice(
-    &[
-        "runout",
-        "front",
-        "height",
-        "max-displacement",
-        "mass",
-        "momentum",
-        "reaction",
-        "displacement",
-        "velocity",
-        "stress",
-        "stress-noise",
-        "pressure-noise",
-        "heave",
-        "footing-pressure",
-        "footing-force",
-        "penetration",
-        "slip",
-        "energy",
-    ],
-    &[],
-);
 
 pub(super) static CHECK: Table = Table {
     header: "[[check]]",

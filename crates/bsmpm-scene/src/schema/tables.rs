@@ -1,22 +1,16 @@
 //! The tables and keys of the language.
 
 use super::Kind::*;
-use super::Presence::{Default, Later, Optional, Required};
-use super::{Dimension as In, Group, Key, Kind, Presence, Range, Table, body, loads, output};
-use crate::preset;
+use super::Presence::{Default, Optional, Required};
+use super::{Dimension as In, Kind, Range, Table, body, key, later, loads, one_of, output};
+use crate::words::{Accuracy, C0Lines, Factor, Geometry, Ksp, Law, Nonlinear, Order, Pc, Support, Word};
+use bsmpm::background::{Extent, Kind as Background};
+use bsmpm::material::Separation;
+use bsmpm::model::Regime;
+use bsmpm::quadrature::Quadrature;
+use bsmpm::stabilisation::Stabilisation;
+use bsmpm::step::mass::MassMatrix;
 use std::ops::Bound::{Excluded, Included};
-
-pub(super) const fn key(name: &'static str, kind: Kind, presence: Presence, doc: &'static str) -> Key {
-    Key { name, kind, presence, doc }
-}
-
-const fn later(name: &'static str, doc: &'static str) -> Key {
-    key(name, Open, Later, doc)
-}
-
-pub(super) const fn one_of(keys: &'static [&'static str], required: bool) -> Group {
-    Group { keys, required }
-}
 
 /// The whole file.
 pub static ROOT: Table = Table {
@@ -24,8 +18,8 @@ pub static ROOT: Table = Table {
     doc: "One case: everything that a run needs",
     keys: &[
         key("title", Text(200), Optional, "what the case is, in a line"),
-        key("geometry", Choice(&["plane-strain"], &["axisymmetric", "solid"]), Required, "kind of the geometry"),
-        key("accuracy", Choice(&preset::NAMES, &[]), Optional, "cells, points, steps, tolerances that are not given"),
+        key("geometry", Choice(Geometry::WORDS), Required, "kind of the geometry"),
+        key("accuracy", Choice(Accuracy::WORDS), Optional, "cells, points, steps, tolerances that are not given"),
         key("analysis", Kind::Table(&ANALYSIS), Required, "kind of the analysis and its time"),
         key("grid", Kind::Table(&GRID), Required, "the parametric grid"),
         key("material", Named(&MATERIAL), Required, "materials by name"),
@@ -53,7 +47,7 @@ static ANALYSIS: Table = Table {
     header: "[analysis]",
     doc: "Dynamic (Newmark 1/4, 1/2 unless damped) or quasi-static (no inertia; time is a pseudo-time without unit)",
     keys: &[
-        key("type", Choice(&["dynamic", "quasi-static"], &[]), Required, "whether inertia acts"),
+        key("type", Choice(Regime::WORDS), Required, "whether inertia acts"),
         key("end", Quantity(In::Time, Range::POSITIVE), Optional, "end of the run; quasi-static: 1.0 unless given"),
         key("dt", Quantity(In::Time, Range::POSITIVE), Optional, "nominal step"),
         key("steps", Count(1, 1_000_000_000), Optional, "number of equal steps, instead of dt"),
@@ -63,7 +57,7 @@ static ANALYSIS: Table = Table {
             Optional,
             "numerical damping of second order (WBZ-alpha): what is left at infinite frequency; 1 unless given: none",
         ),
-        key("mass", Choice(&["lumped", "consistent"], &[]), Optional, "mass matrix of the nodes; lumped unless given"),
+        key("mass", Choice(MassMatrix::WORDS), Optional, "mass matrix of the nodes; lumped unless given"),
         key("gamma", Quantity(In::Number, GAMMA), Optional, "Newmark's gamma instead: damping of first order"),
     ],
     exclusive: &[one_of(&["dt", "steps"], true), one_of(&["spectral_radius", "gamma"], false)],
@@ -79,10 +73,10 @@ static GRID: Table = Table {
         key("upper", Pair(In::Length, Range::ANY), Optional, "upper corner; a free face moves out to a whole cell"),
         key("cell", Either(In::Length, Range::POSITIVE), Optional, "edge of the cells, or [hx, hy]"),
         key("knots", Kind::Table(&KNOTS), Optional, "explicit breakpoints instead of cell"),
-        key("order", Choice(&["linear", "quadratic", "cubic"], &[]), Required, "order of the B-splines"),
+        key("order", Choice(Order::WORDS), Required, "order of the B-splines"),
         key(
             "c0_lines",
-            Choice(&["automatic", "none"], &[]),
+            Choice(C0Lines::WORDS),
             Default("\"automatic\""),
             "grid lines across which strains may jump: where bodies of unlike stiffness or density meet, and at the ends of \
              strips and loaded segments; none: only breakpoints that knots repeats",
@@ -105,7 +99,7 @@ static MATERIAL: Table = Table {
     header: "[material.NAME]",
     doc: "A material by its name",
     keys: &[
-        key("model", Choice(&["hencky", "mohr-coulomb", "tresca"], &[]), Required, "constitutive law"),
+        key("model", Choice(Law::WORDS), Required, "constitutive law"),
         key("young", Profile(In::Stress, Range::POSITIVE, &loads::STRESS_PROFILE), Required, "Young's modulus"),
         key("poisson", Quantity(In::Number, POISSON), Required, "Poisson's ratio"),
         key(
@@ -123,7 +117,7 @@ static MATERIAL: Table = Table {
         ),
         key(
             "separation",
-            Choice(&["forgotten", "closing"], &[]),
+            Choice(Separation::WORDS),
             Optional,
             "volume that opens where stress returns to the apex: plastic, or a gap that closes first; forgotten unless given",
         ),
@@ -152,7 +146,7 @@ static GRAVITY: Table = Table {
     exclusive: &[],
 };
 
-const SUPPORT: Kind = Choice(&["fixed", "roller", "free"], &[]);
+const SUPPORT: Kind = Choice(Support::WORDS);
 
 static BOUNDARY: Table = Table {
     header: "[boundary]",
@@ -171,12 +165,9 @@ static BOUNDARY: Table = Table {
 static STABILISATION: Table = Table {
     header: "[stabilisation]",
     doc: "Section 2.3 of the paper",
-    keys: &[key("method", METHOD, Required, "what is averaged over the grid")],
+    keys: &[key("method", Choice(Stabilisation::WORDS), Required, "what is averaged over the grid")],
     exclusive: &[],
 };
-
-const METHOD: Kind =
-    Choice(&["none", "f-bar", "f-bar-zhao", "modified-f-bar", "consistent-f-bar", "subgrid-f-bar"], &[]);
 
 static SOLVER: Table = Table {
     header: "[solver]",
@@ -184,7 +175,7 @@ static SOLVER: Table = Table {
     keys: &[
         key(
             "nonlinear",
-            Choice(&["auto", "broyden", "newton"], &[]),
+            Choice(Nonlinear::WORDS),
             Default("\"auto\""),
             "auto: all recent secants, newton where they stall; broyden: the paper's update; newton: the complete tangent",
         ),
@@ -193,7 +184,7 @@ static SOLVER: Table = Table {
         key("max_iterations", Count(1, 100_000), Default("200"), "iterations of one attempt"),
         key(
             "quadrature",
-            Choice(&["points", "fitted"], &[]),
+            Choice(Quadrature::WORDS),
             Default("\"points\""),
             "what points weigh in integrals of the stress; fitted (quasi-static, not cubic): splines inside bodies are exact",
         ),
@@ -205,11 +196,16 @@ static SOLVER: Table = Table {
         ),
         key(
             "background_kind",
-            BACKGROUND,
+            Choice(Background::WORDS),
             Default("\"strain\""),
             "what it resists; laplacian is an earlier name of strain",
         ),
-        key("background_cells", CELLS, Optional, "cells that get it; occupied (curvature: partly-filled)"),
+        key(
+            "background_cells",
+            Choice(Extent::WORDS),
+            Optional,
+            "cells that get it; occupied (curvature: partly-filled)",
+        ),
         key("linear", Kind::Table(&LINEAR), Default("{}"), "the linear solver, by PETSc's names"),
         key(
             "reproducible",
@@ -223,48 +219,24 @@ static SOLVER: Table = Table {
 
 const FRACTION: Range = Range::of(Excluded(0.0), Excluded(1.0));
 const UP_TO_1: Range = Range::of(Included(0.0), Included(1.0));
-const BACKGROUND: Kind = Choice(&["strain", "laplacian", "ghost-penalty", "curvature"], &[]);
-const CELLS: Kind = Choice(&["occupied", "partly-filled"], &[]);
 
 static LINEAR: Table = Table {
     header: "linear = { ksp, pc, factor }",
     doc: "The linear solver, by PETSc's own names",
     keys: &[
-        key(
-            "ksp",
-            Choice(&["auto", "preonly", "cg", "minres", "gmres", "fgmres", "bcgs"], &[]),
-            Optional,
-            "method; auto, unless given: what the preconditioner needs",
-        ),
+        key("ksp", Choice(Option::<Ksp>::WORDS), Optional, "method; auto, unless given: what the preconditioner needs"),
         key(
             "pc",
-            PRECONDITIONERS,
+            Choice(Option::<Pc>::WORDS),
             Optional,
             "preconditioner or direct solver; auto, unless given: cholesky, or gamg of very many unknowns",
         ),
-        key("factor", PACKAGES, Optional, "package of a direct solver; dissection (cholesky) or mumps unless given"),
+        key(
+            "factor",
+            Choice(Factor::WORDS),
+            Optional,
+            "package of a direct solver; dissection (cholesky) or mumps unless given",
+        ),
     ],
     exclusive: &[],
 };
-
-const PRECONDITIONERS: Kind = Choice(
-    &[
-        "auto",
-        "cholesky",
-        "lu",
-        "redundant",
-        "none",
-        "jacobi",
-        "pbjacobi",
-        "bjacobi",
-        "sor",
-        "asm",
-        "icc",
-        "ilu",
-        "gamg",
-        "ml",
-        "hypre",
-    ],
-    &[],
-);
-const PACKAGES: Kind = Choice(&["dissection", "mumps", "petsc", "superlu", "superlu_dist", "cholmod", "umfpack"], &[]);

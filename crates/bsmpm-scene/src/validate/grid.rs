@@ -6,6 +6,7 @@ use crate::grid::{Axis, GridSpec, Line};
 use crate::record::Record;
 use crate::report::Report;
 use crate::unit::Dimension;
+use crate::words::Order;
 
 /// Parts of a cell by which a length may miss a whole number of cells.
 const WHOLE: f64 = 1e-9;
@@ -14,11 +15,8 @@ const NAMES: [&str; 2] = ["x", "y"];
 /// The grid, once the supports of its faces are known.
 pub(super) fn read(root: &Record, boundary: Option<[[Support; 2]; 2]>, report: &mut Report<'_>) -> Option<GridSpec> {
     let grid = root.record("grid")?;
-    let order = match grid.word("order") {
-        Some("linear") => 1,
-        Some("cubic") => 3,
-        _ => 2,
-    };
+    // The rest is checked without it, too.
+    let order = grid.word("order").unwrap_or(Order::Quadratic).degree();
     let (axes, lines) = if grid.gives("knots") {
         graded(grid, order, report)?
     } else {

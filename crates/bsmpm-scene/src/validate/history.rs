@@ -1,12 +1,12 @@
 //! Histories and the checks of their columns.
 
-use super::strip::face;
 use crate::case::{Check, History, Quantity};
 use crate::grid::GridSpec;
 use crate::nearest::hint;
 use crate::record::Record;
 use crate::report::{Report, shortened};
 use crate::unit::Dimension;
+use crate::words::{Measurement, Side, Word};
 use bsmpm::model::Regime;
 use std::collections::HashSet;
 
@@ -42,62 +42,74 @@ fn read(
     (regime, grid): (Option<Regime>, Option<&GridSpec>),
     report: &mut Report<'_>,
 ) -> Option<History> {
-    let word = record.word("quantity")?;
-    let own = match word {
-        "runout" => "percentile",
-        "height" => "at_x",
-        "reaction" => "face",
-        "displacement" | "velocity" | "stress" => "at",
-        "pressure-noise" => "box",
-        _ => "",
-    };
-    let others = ["percentile", "face", "at", "at_x", "box"].into_iter().filter(|key| *key != own);
+    let measured: Measurement = record.word("quantity")?;
+    let own = own_key(measured);
+    let others = ["percentile", "face", "at", "at_x", "box"].into_iter().filter(|key| Some(*key) != own);
     for key in others.filter(|key| record.gives(key)) {
-        record.error(key, format!("has no meaning for quantity \"{word}\""), report);
+        record.error(key, format!("has no meaning for quantity \"{measured}\""), report);
     }
-    if matches!(own, "face" | "at") && !record.gives(own) {
-        report.error(record.origin, &record.path_of(own), format!("missing; quantity \"{word}\" needs it"));
+    if let Some(own) = own.filter(|own| matches!(*own, "face" | "at") && !record.gives(own)) {
+        report.error(record.origin, &record.path_of(own), format!("missing; quantity \"{measured}\" needs it"));
     }
-    if regime == Some(Regime::QuasiStatic) && matches!(word, "velocity" | "momentum") {
-        record.error("quantity", format!("there is no {word} in a quasi-static analysis"), report);
+    if regime == Some(Regime::QuasiStatic) && matches!(measured, Measurement::Velocity | Measurement::Momentum) {
+        record.error("quantity", format!("there is no {measured} in a quasi-static analysis"), report);
     }
-    if matches!(word, "footing-pressure" | "footing-force" | "penetration" | "slip") && !root.gives("footing") {
-        record.error("quantity", format!("\"{word}\" is about the footing, and there is no [footing]"), report);
+    if measured.is_of_footing() && !root.gives("footing") {
+        record.error("quantity", format!("\"{measured}\" is about the footing, and there is no [footing]"), report);
     }
     if record.number("scale") == Some(0.0) {
         record.error("scale", "0 is out of range: the column would be zero; allowed: any scale but 0", report);
     }
-    let quantity = quantity(word, record, grid, report)?;
-    let name = if record.gives("name") { record.text("name")? } else { word };
+    let quantity = quantity(measured, record, grid, report)?;
+    let name = if record.gives("name") { record.text("name")? } else { measured.word() };
     Some(History { quantity, name: name.to_owned(), scale: record.number("scale")? })
 }
 
-fn quantity(word: &str, record: &Record, grid: Option<&GridSpec>, report: &mut Report<'_>) -> Option<Quantity> {
-    Some(match word {
-        "runout" => {
+/// The key that belongs to a quantity.
+fn own_key(measured: Measurement) -> Option<&'static str> {
+    use Measurement::*;
+    match measured {
+        Runout => Some("percentile"),
+        Height => Some("at_x"),
+        Reaction => Some("face"),
+        Displacement | Velocity | Stress => Some("at"),
+        PressureNoise => Some("box"),
+        Front | MaxDisplacement | Mass | Momentum | StressNoise | Heave | Energy => None,
+        FootingPressure | FootingForce | Penetration | Slip => None,
+    }
+}
+
+fn quantity(
+    measured: Measurement,
+    record: &Record,
+    grid: Option<&GridSpec>,
+    report: &mut Report<'_>,
+) -> Option<Quantity> {
+    Some(match measured {
+        Measurement::Runout => {
             let given = record.gives("percentile");
             Quantity::Runout { percentile: if given { record.number("percentile")? } else { 100.0 } }
         }
-        "front" => Quantity::Front,
-        "height" => Quantity::Height { at_x: at_x(record, grid, report)? },
-        "max-displacement" => Quantity::MaxDisplacement,
-        "mass" => Quantity::Mass,
-        "momentum" => Quantity::Momentum,
-        "reaction" => Quantity::Reaction { face: face(record.word("face")?) },
-        "displacement" => Quantity::Displacement { at: at(record, grid, report)? },
-        "velocity" => Quantity::Velocity { at: at(record, grid, report)? },
-        "stress" => Quantity::Stress { at: at(record, grid, report)? },
-        "pressure-noise" if record.gives("box") => {
+        Measurement::Front => Quantity::Front,
+        Measurement::Height => Quantity::Height { at_x: at_x(record, grid, report)? },
+        Measurement::MaxDisplacement => Quantity::MaxDisplacement,
+        Measurement::Mass => Quantity::Mass,
+        Measurement::Momentum => Quantity::Momentum,
+        Measurement::Reaction => Quantity::Reaction { face: record.word::<Side>("face")?.into() },
+        Measurement::Displacement => Quantity::Displacement { at: at(record, grid, report)? },
+        Measurement::Velocity => Quantity::Velocity { at: at(record, grid, report)? },
+        Measurement::Stress => Quantity::Stress { at: at(record, grid, report)? },
+        Measurement::StressNoise => Quantity::StressNoise,
+        Measurement::PressureNoise if record.gives("box") => {
             Quantity::PressureNoise { within: Some(within(record.record("box")?, grid, report)?) }
         }
-        "pressure-noise" => Quantity::PressureNoise { within: None },
-        "heave" => Quantity::Heave,
-        "footing-pressure" => Quantity::FootingPressure,
-        "footing-force" => Quantity::FootingForce,
-        "penetration" => Quantity::Penetration,
-        "slip" => Quantity::Slip,
-        "energy" => Quantity::Energy,
-        _ => Quantity::StressNoise,
+        Measurement::PressureNoise => Quantity::PressureNoise { within: None },
+        Measurement::Heave => Quantity::Heave,
+        Measurement::FootingPressure => Quantity::FootingPressure,
+        Measurement::FootingForce => Quantity::FootingForce,
+        Measurement::Penetration => Quantity::Penetration,
+        Measurement::Slip => Quantity::Slip,
+        Measurement::Energy => Quantity::Energy,
     })
 }
 
@@ -179,14 +191,7 @@ fn bound(key: &str, record: &Record, history: &History, report: &mut Report<'_>)
     }
     let (value, dimension) = record.measure(key)?;
     let Some(dimension) = dimension else { return Some(Some(value)) };
-    let expected = match history.quantity.unit() {
-        _ if history.scale != 1.0 => None,
-        "m" => Some(Dimension::Length),
-        "m/s" => Some(Dimension::Velocity),
-        "Pa" => Some(Dimension::Stress),
-        "N/m" => Some(Dimension::LineForce),
-        _ => None,
-    };
+    let expected = Dimension::of_unit(history.quantity.unit()).filter(|_| history.scale == 1.0);
     if expected == Some(dimension) {
         return Some(Some(value));
     }

@@ -10,6 +10,7 @@ use crate::grid::Line;
 use crate::record::Record;
 use crate::region::Edge;
 use crate::report::Report;
+use crate::words::C0Lines;
 use std::collections::BTreeMap;
 
 /// Parts of a cell by which a place may miss a grid line: rounding.
@@ -42,20 +43,24 @@ pub(super) fn place(case: &mut Case, record: &Record, report: &mut Report<'_>) {
         of.into_iter().for_each(|record| record.error("to", &message, report));
     }
     let lines = std::mem::take(&mut found.lines);
-    if record.record("grid").and_then(|grid| grid.word("c0_lines")) == Some("none") {
-        if let Some(((axis, line), reason)) = lines.iter().find(|((axis, line), _)| !has(case, *axis, *line)) {
-            let at = coordinate(case, *axis, *line);
-            let name = NAMES[*axis];
-            report.warn(format!(
-                "grid.c0_lines: with \"none\" the splines cannot follow the jump of strain at {name} = {at} ({reason}): stress \
-                 is wrong, up to by tens of per cent, within about three cells, and a strip holds a cell more than its length"
-            ));
+    match record.record("grid").and_then(|grid| grid.word("c0_lines")).unwrap_or(C0Lines::Automatic) {
+        C0Lines::None => {
+            if let Some(((axis, line), reason)) = lines.iter().find(|((axis, line), _)| !has(case, *axis, *line)) {
+                let at = coordinate(case, *axis, *line);
+                let name = NAMES[*axis];
+                report.warn(format!(
+                    "grid.c0_lines: with \"none\" the splines cannot follow the jump of strain at {name} = {at} ({reason}): \
+                     stress is wrong, up to by tens of per cent, within about three cells, and a strip holds a cell more \
+                     than its length"
+                ));
+            }
         }
-    } else {
-        for ((axis, line), reason) in lines {
-            insert(case, axis, line);
-            let at = format!("{} = {}", NAMES[axis], coordinate(case, axis, line));
-            report.note("grid.c0_lines", at, reason);
+        C0Lines::Automatic => {
+            for ((axis, line), reason) in lines {
+                insert(case, axis, line);
+                let at = format!("{} = {}", NAMES[axis], coordinate(case, axis, line));
+                report.note("grid.c0_lines", at, reason);
+            }
         }
     }
     found.doubts.into_values().for_each(|doubt| report.warn(doubt));

@@ -5,6 +5,7 @@ use super::strip::{Around, segment};
 use crate::case::{Body, Gravity, Initial, NamedMaterial, PointLoad, Traction};
 use crate::record::Record;
 use crate::report::Report;
+use crate::words::Start;
 
 /// All tractions in the order of the file, without those that have an error.
 pub(super) fn tractions(root: &Record, around: Around<'_>, report: &mut Report<'_>) -> Vec<Traction> {
@@ -85,7 +86,9 @@ pub(super) fn initial(
     let record = record?;
     loaded(root, record, (materials, bodies), gravity, report);
     if elastic {
-        return record.word("gravity").map(|_| Initial::Elastic);
+        return record.word("gravity").map(|start| match start {
+            Start::Elastic => Initial::Elastic,
+        });
     }
     if let Some(gravity) = gravity.filter(|gravity| gravity.acceleration[0] != 0.0 || gravity.acceleration[1] >= 0.0) {
         let message = format!("{:?} is not straight down, which a state by k0 needs", gravity.acceleration);

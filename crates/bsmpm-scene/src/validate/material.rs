@@ -1,13 +1,16 @@
 //! Materials and what is doubtful about their parameters.
 
+mod law;
+
 use super::STANDARD_GRAVITY;
 use crate::case::{Body, NamedMaterial};
 use crate::grid::GridSpec;
 use crate::record::Record;
 use crate::report::Report;
-use crate::schema::{BELOW_90, Range};
-use bsmpm::material::{Elastic, Graded, GradedStrength, Hencky, Law, Material, MohrCoulomb, Profile, Separation};
+use crate::schema::Range;
+use bsmpm::material::{Elastic, Law as _, Material, Profile};
 use bsmpm::model::Regime;
+use law::{Parameters, graded, law, separation, uniform};
 
 /// Materials at most: a point holds its material's number in 16 bits.
 const MOST: usize = 65_536;
@@ -66,7 +69,7 @@ pub(super) fn read_all(root: &Record, around: Around<'_>, report: &mut Report<'_
 pub(super) fn strength(material: &Material, height: f64) -> Option<[f64; 3]> {
     match material.at(height).as_ref() {
         Material::MohrCoulomb(law) => Some([law.cohesion(), law.friction(), law.dilation()]),
-        _ => None,
+        Material::Hencky(_) | Material::Graded(_) => None,
     }
 }
 
@@ -85,13 +88,14 @@ fn read(
     }
     warn_of_stiffness(record, young.map(|young| young.value), poisson, report);
     let Reduction { factor, elastic, stiffness } = around.reduction;
-    let (young, poisson, law) = (young?, poisson?, law?.filter(|_| !elastic));
+    let (young, poisson, law) = (young?, poisson?, law?);
+    let law = if elastic { Parameters::Hencky } else { law };
     let young = Profile { value: stiffness * young.value, per_metre: stiffness * young.per_metre, ..young };
     if elastic || stiffness != 1.0 {
         let value = format!("young x {stiffness}{}", if elastic { ", elastic" } else { "" });
         report.note(&record.path, value, "strength_reduction.elastic and .stiffness");
     }
-    let separation = separation(record, law.as_ref(), layer.as_ref(), report);
+    let separation = separation(record, &law, layer.as_ref(), report);
     let material = if is_graded(record) {
         graded(young, poisson, law, (layer.as_ref()?, factor, separation))
     } else {
@@ -101,33 +105,6 @@ fn read(
         note_reduction(record, &material, &layer, factor, report);
     }
     Some(NamedMaterial { name: name.clone(), material, density: density? })
-}
-
-/// The plain law; `strength` is friction, dilation (degrees) and cohesion (Pa).
-fn uniform(elastic: Elastic, strength: Option<[Profile; 3]>, (factor, separation): (f64, Separation)) -> Material {
-    let Some([friction, dilation, cohesion]) = strength else { return Material::Hencky(Hencky { elastic }) };
-    let (friction, dilation) = (friction.value.to_radians(), dilation.value.to_radians());
-    let law = MohrCoulomb::new(elastic, friction, dilation, cohesion.value);
-    Material::MohrCoulomb(law.separating(separation).reduced(factor))
-}
-
-/// The law by height above the grid's lower corner.
-fn graded(
-    young: Profile,
-    poisson: f64,
-    strength: Option<[Profile; 3]>,
-    (layer, factor, separation): (&Layer, f64, Separation),
-) -> Material {
-    let relative = |profile: Profile| Profile { at: profile.at - layer.base, ..profile };
-    let strength = strength.map(|[friction, dilation, cohesion]| GradedStrength {
-        friction: relative(radians(friction)),
-        dilation: dilation.value.to_radians(),
-        cohesion: relative(cohesion),
-        reduction: factor,
-        separation,
-    });
-    let heights = layer.heights.start - layer.base..layer.heights.end - layer.base;
-    Material::Graded(Graded::new(relative(young), poisson, strength, heights))
 }
 
 /// Heights (m, in the case's coordinates) between which bodies of a material lie; the grid's if there are none.
@@ -174,10 +151,6 @@ fn profile(record: &Record, key: &str) -> Option<Profile> {
     Some(Profile { value: table.number("value")?, at: table.number("at_y")?, per_metre: table.number("per_metre")? })
 }
 
-fn radians(profile: Profile) -> Profile {
-    Profile { value: profile.value.to_radians(), per_metre: profile.per_metre.to_radians(), ..profile }
-}
-
 /// Tells what strength is left, at the lowest and the highest place where it differs there.
 fn note_reduction(record: &Record, material: &Material, layer: &Layer, factor: f64, report: &mut Report<'_>) {
     let at = |y: f64| {
@@ -219,81 +192,6 @@ fn density(record: &Record, regime: Option<Regime>, report: &mut Report<'_>) -> 
         ));
     }
     Some(Some(density))
-}
-
-/// Friction, dilation (degrees) and cohesion (Pa), none of an elastic law; the outer option is `None` after an error.
-fn law(record: &Record, layer: Option<&Layer>, report: &mut Report<'_>) -> Option<Option<[Profile; 3]>> {
-    let model = record.word("model")?;
-    let (unused, required): (&[&str], &[&str]) = match model {
-        "hencky" => (&["friction", "dilation", "cohesion", "separation"], &[]),
-        "tresca" => (&["friction", "dilation", "separation"], &["cohesion"]),
-        _ => (&[], &["friction", "cohesion"]),
-    };
-    let mut whole = true;
-    for key in unused.iter().filter(|key| record.gives(key) && !zero_angle(record, model, key)) {
-        record.error(key, format!("has no meaning in model \"{model}\""), report);
-        whole = false;
-    }
-    for key in required.iter().filter(|key| !record.gives(key)) {
-        report.error(record.origin, &record.path_of(key), format!("missing; model \"{model}\" needs it"));
-        whole = false;
-    }
-    if !whole {
-        return None;
-    }
-    if model == "hencky" {
-        return Some(None);
-    }
-    let given = |key| if record.gives(key) { profile(record, key) } else { Some(Profile::constant(0.0)) };
-    let (friction, dilation, cohesion) = (given("friction")?, given("dilation")?, given("cohesion")?);
-    if let Some(layer) = layer {
-        layer.check(record, ("friction", &BELOW_90), &friction, report);
-        layer.check(record, ("cohesion", &Range::NOT_NEGATIVE), &cohesion, report);
-    }
-    let heights = layer.map_or(friction.at..friction.at, |layer| layer.heights.clone());
-    let (least, most) = friction.bounds(&heights);
-    if dilation.value > most {
-        let message = format!("{} is out of range; allowed: 0 <= dilation <= friction = {most}", dilation.value);
-        record.error("dilation", message, report);
-        return None;
-    }
-    if dilation.value > least {
-        let path = record.path_of("dilation");
-        report
-            .warn(format!("{path}: {} is above the friction angle in places, and lowered to it there", dilation.value));
-    }
-    if most == 0.0 && cohesion.bounds(&heights).1 == 0.0 {
-        report.warn(format!("{}: friction and cohesion are both 0: the material has no strength", record.path));
-    }
-    if record.word("model") == Some("mohr-coulomb") && !record.gives("dilation") {
-        report.note(record.path_of("dilation"), "0.0", "default: plastic flow without change of volume");
-    }
-    Some(Some([friction, dilation, cohesion]))
-}
-
-/// What becomes of the volume that opens at the apex. Only where that is free of stress can it be a gap: with cohesion
-/// it would pull with c cot phi until it has closed, and without friction there is no apex.
-fn separation(
-    record: &Record,
-    strength: Option<&[Profile; 3]>,
-    layer: Option<&Layer>,
-    report: &mut Report<'_>,
-) -> Separation {
-    let (Some("closing"), Some([friction, _, cohesion])) = (record.word("separation"), strength) else {
-        return Separation::Forgotten;
-    };
-    let bounds =
-        |profile: &Profile| profile.bounds(&layer.map_or(profile.at..profile.at, |layer| layer.heights.clone()));
-    if bounds(friction).0 <= 0.0 || bounds(cohesion).1 > 0.0 {
-        let message = "\"closing\" needs friction and no cohesion: a gap is what opens where the stress is zero";
-        record.error("separation", message, report);
-    }
-    Separation::Closing
-}
-
-/// Tresca's angles may be written if they are zero.
-fn zero_angle(record: &Record, model: &str, key: &str) -> bool {
-    model == "tresca" && record.number(key) == Some(0.0)
 }
 
 fn warn_of_stiffness(record: &Record, young: Option<f64>, poisson: Option<f64>, report: &mut Report<'_>) {

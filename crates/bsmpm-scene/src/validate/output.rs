@@ -35,7 +35,7 @@ pub(super) fn read(root: &Record, end: Option<f64>, report: &mut Report<'_>) -> 
     Some(Output {
         every,
         times,
-        format: Format::Vtu,
+        format: output.word("format")?,
         residuals: output.flag("residuals")?,
         projected_pressure: output.flag("projected_pressure")?,
         checkpoint,
@@ -46,7 +46,7 @@ fn nothing() -> Output {
     Output {
         every: None,
         times: Vec::new(),
-        format: Format::default(),
+        format: Format::Vtu,
         residuals: false,
         projected_pressure: false,
         checkpoint: Checkpoint::default(),

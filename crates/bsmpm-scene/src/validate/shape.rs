@@ -1,7 +1,7 @@
 //! Shapes of bodies and of what is cut out of them.
 
 use super::place;
-use crate::document::Origin;
+use crate::error::Origin;
 use crate::grid::GridSpec;
 use crate::record::Record;
 use crate::region::{self, Edge, Fault, Outline, Region};
@@ -77,22 +77,20 @@ pub(super) fn key(record: &Record) -> &'static str {
 }
 
 fn read(record: &Record, report: &mut Report<'_>) -> Option<Shape> {
-    match key(record) {
-        "polygon" => polygon(record, report),
-        "circle" => {
-            let circle = record.record("circle")?;
-            Some(Shape::Circle { center: circle.pair("center")?, radius: circle.number("radius")? })
-        }
-        _ => {
-            let shape = record.record("box")?;
-            let (lower, upper) = (shape.pair("lower")?, shape.pair("upper")?);
-            if lower[0] >= upper[0] || lower[1] >= upper[1] {
-                shape.error("upper", format!("{upper:?} is not above lower = {lower:?}: the body is empty"), report);
-                return None;
-            }
-            Some(Shape::Box { lower, upper })
-        }
+    if record.gives("polygon") {
+        return polygon(record, report);
     }
+    if record.gives("circle") {
+        let circle = record.record("circle")?;
+        return Some(Shape::Circle { center: circle.pair("center")?, radius: circle.number("radius")? });
+    }
+    let shape = record.record("box")?;
+    let (lower, upper) = (shape.pair("lower")?, shape.pair("upper")?);
+    if lower[0] >= upper[0] || lower[1] >= upper[1] {
+        shape.error("upper", format!("{upper:?} is not above lower = {lower:?}: the body is empty"), report);
+        return None;
+    }
+    Some(Shape::Box { lower, upper })
 }
 
 fn polygon(record: &Record, report: &mut Report<'_>) -> Option<Shape> {

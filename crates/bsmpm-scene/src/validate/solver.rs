@@ -1,10 +1,11 @@
 //! The solver's settings and their defaults that depend on the analysis.
 
-use crate::case::{Linear, NamedMaterial, Nonlinear, Solver};
+use crate::case::{Linear, NamedMaterial, Solver};
 use crate::estimate;
 use crate::grid::GridSpec;
 use crate::record::Record;
 use crate::report::Report;
+use crate::words::{Factor, Ksp, Pc, Word};
 use bsmpm::background::{Extent, Kind};
 use bsmpm::model::Regime;
 use bsmpm::quadrature::Quadrature;
@@ -24,11 +25,7 @@ pub(super) fn read(
     let size = Size { unknowns, poisson: poisson.fold(0.0, f64::max), reproducible: solver.flag("reproducible")? };
     let linear = solver.record("linear").and_then(|linear| read_linear(linear, size, report));
     Some(Solver {
-        nonlinear: match solver.word("nonlinear")? {
-            "broyden" => Nonlinear::Broyden,
-            "newton" => Nonlinear::Newton,
-            _ => Nonlinear::Auto,
-        },
+        nonlinear: solver.word("nonlinear")?,
         tolerance: solver.number("tolerance")?,
         force_tolerance: solver.number("force_tolerance")?,
         max_iterations: usize::try_from(solver.count("max_iterations")?).ok()?,
@@ -48,8 +45,9 @@ fn weights(
     order: Option<usize>,
     report: &mut Report<'_>,
 ) -> Option<Quadrature> {
-    if solver.word("quadrature")? == "points" {
-        return Some(Quadrature::Points);
+    match solver.word("quadrature")? {
+        Quadrature::Points => return Some(Quadrature::Points),
+        Quadrature::Fitted => {}
     }
     if order? == 3 {
         let message = "\"fitted\" is for linear and quadratic grids: cubic ones, which integrate well by themselves, find no \
@@ -86,20 +84,17 @@ const KIND: &str = "background_kind";
 
 /// The cells that the case names, else those that its kind of background is meant for.
 fn cells(solver: &Record, kind: Kind) -> Option<Extent> {
-    if !solver.gives("background_cells") {
-        return Some(if kind == Kind::Curvature { Extent::PartlyFilled } else { Extent::Occupied });
-    }
-    Some(if solver.word("background_cells")? == "occupied" { Extent::Occupied } else { Extent::PartlyFilled })
+    let meant = match kind {
+        Kind::Curvature => Extent::PartlyFilled,
+        Kind::Strain | Kind::GhostPenalty => Extent::Occupied,
+    };
+    Some(solver.word_if_given("background_cells")?.unwrap_or(meant))
 }
 
 /// What the case wants the background to resist.
 fn background_kind(solver: &Record, order: Option<usize>, report: &mut Report<'_>) -> Option<Kind> {
     let linear = order? == 1;
-    let kind = match solver.word(KIND)? {
-        "curvature" => Kind::Curvature,
-        "ghost-penalty" => Kind::GhostPenalty,
-        _ => Kind::Strain,
-    };
+    let kind = solver.word(KIND)?;
     if linear && kind == Kind::Curvature {
         let message = "functions of a linear grid have no curvature along an axis, so that nothing would hold nearly \
                        empty cells; use \"strain\"";
@@ -150,74 +145,69 @@ impl Size {
     }
 }
 
+/// What the case says of the linear solver.
+struct Asked {
+    ksp: Option<Ksp>,
+    pc: Option<Pc>,
+    factor: Option<Factor>,
+}
+
 fn read_linear(linear: &Record, size: Size, report: &mut Report<'_>) -> Option<Linear> {
-    if ["ksp", "pc", "factor"].iter().any(|key| linear.gives(key) && linear.word(key).is_none()) {
-        return None;
-    }
-    let word = |key: &str| linear.word(key).unwrap_or("auto");
-    let (ksp, factor) = (word("ksp"), linear.word("factor"));
-    let pc = match word("pc") {
-        // Nothing else asks for a factorisation.
-        "auto" if size.against_multigrid().is_none() && ksp != "preonly" && factor.is_none() => "gamg",
-        "auto" => "cholesky",
-        pc => pc,
+    let asked = Asked {
+        ksp: linear.word_if_given("ksp")?.flatten(),
+        pc: linear.word_if_given("pc")?.flatten(),
+        factor: linear.word_if_given("factor")?,
     };
-    let direct = matches!(pc, "cholesky" | "lu");
-    let ksp = match ksp {
-        "auto" if direct || pc == "redundant" => "preonly",
-        "auto" => "cg",
-        ksp => ksp,
-    };
-    if ksp == "preonly" && !direct && pc != "redundant" {
-        let message = format!("\"preonly\" solves with a direct pc (cholesky, lu, redundant) only, not with \"{pc}\"");
+    // Nothing else asks for a factorisation.
+    let open = size.against_multigrid().is_none() && asked.ksp != Some(Ksp::Preonly) && asked.factor.is_none();
+    let pc = asked.pc.unwrap_or(if open { Pc::Gamg } else { Pc::Cholesky });
+    let ksp = asked.ksp.unwrap_or(if pc.solves() { Ksp::Preonly } else { Ksp::Cg });
+    if ksp == Ksp::Preonly && !pc.solves() {
+        let message = format!("\"{ksp}\" solves with a direct pc (cholesky, lu, redundant) only, not with \"{pc}\"");
         linear.error("ksp", message, report);
         return None;
     }
-    let dissects = ksp == "preonly" && pc == "cholesky";
-    if factor == Some("dissection") && !dissects {
+    let dissects = ksp == Ksp::Preonly && pc == Pc::Cholesky;
+    if asked.factor == Some(Factor::Dissection) && !dissects {
         let message =
             format!("\"dissection\" is a \"preonly\" \"cholesky\", neither \"{ksp}\" nor \"{pc}\" can use it");
         linear.error("factor", message, report);
         return None;
     }
-    let factor = match (direct, factor) {
+    let factor = match (pc.factorises(), asked.factor) {
         (true, Some(factor)) => Some(factor),
-        (true, None) if dissects => Some("dissection"),
-        (true, None) => Some("mumps"),
+        (true, None) => Some(if dissects { Factor::Dissection } else { Factor::Mumps }),
         (false, Some(factor)) => {
-            report.warn(format!(
-                "{}: \"{factor}\" is not used: pc = \"{pc}\" is no direct solver",
-                linear.path_of("factor")
-            ));
+            let path = linear.path_of("factor");
+            report.warn(format!("{path}: \"{factor}\" is not used: pc = \"{pc}\" is no direct solver"));
             None
         }
         (false, None) => None,
     };
     let found = Linear { ksp, pc, factor };
-    explain(linear, &found, size, report);
+    explain(linear, (&asked, &found), size, report);
     Some(found)
 }
 
 /// Notes what the case has left open, and why it is what it is.
-fn explain(linear: &Record, found: &Linear, size: Size, report: &mut Report<'_>) {
-    let open = |key: &str| linear.word(key).is_none_or(|word| word == "auto");
-    if open("pc") {
+fn explain(linear: &Record, (asked, found): (&Asked, &Linear), size: Size, report: &mut Report<'_>) {
+    if asked.pc.is_none() {
         let many =
             || format!("up to {} unknowns, more than {MANY}: a factor costs more than iterations", size.unknowns);
-        let asked = || "\"preonly\" or a factor is asked for".to_owned();
+        let wanted = || "\"preonly\" or a factor is asked for".to_owned();
         let reason = match (found.pc, size.against_multigrid()) {
-            ("gamg", _) => many(),
+            (Pc::Gamg, _) => many(),
             (_, Some(reason)) => reason,
-            (_, None) => asked(),
+            (_, None) => wanted(),
         };
-        report.note(linear.path_of("pc"), found.pc, reason);
+        report.note(linear.path_of("pc"), found.pc.word(), reason);
     }
-    if let (Some(factor), true) = (found.factor, open("factor")) {
-        let reason = if factor == "dissection" {
+    if let (Some(factor), None) = (found.factor, asked.factor) {
+        let reason = if factor == Factor::Dissection {
             "nested dissection of the grid: shared between the ranks, repeats to the bit, no analysis of a graph"
         } else {
             "the default package of PETSc's direct solvers"
         };
-        report.note(linear.path_of("factor"), factor, reason);
+        report.note(linear.path_of("factor"), factor.word(), reason);
     }
 }

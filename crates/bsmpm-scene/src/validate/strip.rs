@@ -5,7 +5,7 @@ use crate::case::{Base, Body, Face, Footing, Path, Prescribed, Site, Support};
 use crate::grid::GridSpec;
 use crate::record::Record;
 use crate::report::Report;
-use std::collections::HashSet;
+use crate::words::{Components, Side};
 
 /// Parts of a motion below which it does not count.
 const NOTHING: f64 = 1e-12;
@@ -29,7 +29,7 @@ pub(super) fn footing(root: &Record, around: Around<'_>, report: &mut Report<'_>
     }
     let (path, [from, to]) = (path?, ends?);
     stays_inside(record, [from, to], &path, around, report);
-    let base = if record.word("base")? == "rough" { Base::Rough } else { Base::Smooth };
+    let base = record.word("base")?;
     if base == Base::Smooth && normal_part(&path, from, to) <= NOTHING * size(&path) {
         let message = "a smooth base holds its normal component only, and the motion has none";
         record.error(motion(record), message, report);
@@ -39,8 +39,7 @@ pub(super) fn footing(root: &Record, around: Around<'_>, report: &mut Report<'_>
 
 /// All prescribed motions in the order of the file, without those that have an error.
 pub(super) fn prescribed(root: &Record, around: Around<'_>, report: &mut Report<'_>) -> Vec<Prescribed> {
-    let mut taken = HashSet::new();
-    let mut found = Vec::new();
+    let mut found: Vec<Prescribed> = Vec::new();
     for record in root.records("prescribed") {
         let path = path(record, around.end, report);
         let site = site(record, around, report);
@@ -48,21 +47,16 @@ pub(super) fn prescribed(root: &Record, around: Around<'_>, report: &mut Report<
         match site {
             Site::Face(face) => {
                 inward(record, face, &path, report);
-                if !taken.insert(record.word("face")) {
+                if found.iter().any(|other| other.site == site) {
                     record.error("face", "its motion is prescribed already", report);
                 }
             }
             Site::Segment { from, to } => stays_inside(record, [from, to], &path, around, report),
         }
-        let base = if record.word("components") == Some("normal") { Base::Smooth } else { Base::Rough };
-        found.push(Prescribed { site, path, base });
+        let components = record.word("components").unwrap_or(Components::All);
+        found.push(Prescribed { site, path, base: components.base() });
     }
     found
-}
-
-/// Name of a face.
-pub(super) fn face(word: &str) -> Face {
-    Face { axis: usize::from(matches!(word, "bottom" | "top")), upper: matches!(word, "right" | "top") }
 }
 
 /// A segment's ends inside the grid.
@@ -100,11 +94,11 @@ fn site(record: &Record, around: Around<'_>, report: &mut Report<'_>) -> Option<
         starts_at_body(record, "from", [from, to], around, report);
         return Some(Site::Segment { from, to });
     }
-    let word = record.word("face")?;
-    let face = face(word);
+    let side: Side = record.word("face")?;
+    let face = Face::from(side);
     let support = around.boundary?[face.axis][usize::from(face.upper)];
     if support != Support::Free {
-        let message = format!("[boundary] holds \"{word}\" too; leave it free there");
+        let message = format!("[boundary] holds \"{side}\" too; leave it free there");
         record.error("face", message, report);
         return None;
     }
@@ -121,10 +115,12 @@ fn motion(record: &Record) -> &'static str {
 }
 
 fn path(record: &Record, end: Option<f64>, report: &mut Report<'_>) -> Option<Path> {
-    let rows = match motion(record) {
-        "displacement" => vec![(end?, record.pair("displacement")?)],
-        "velocity" => vec![(end?, record.pair("velocity")?.map(|v| v * end.unwrap_or(0.0)))],
-        _ => rows(record, end, report)?,
+    let rows = if record.gives("displacement") {
+        vec![(end?, record.pair("displacement")?)]
+    } else if record.gives("velocity") {
+        vec![(end?, record.pair("velocity")?.map(|v| v * end.unwrap_or(0.0)))]
+    } else {
+        rows(record, end, report)?
     };
     Some(Path { rows })
 }

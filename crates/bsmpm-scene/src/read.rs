@@ -1,0 +1,43 @@
+//! From the text of a case file to the case.
+
+use crate::case::Case;
+use crate::error::{Error, Origin};
+use crate::report::Report;
+use crate::source::{Source, decode};
+use crate::{document, overrides, preset, record, validate};
+
+impl Case {
+    /// The case in `text`, the content of the file `name`, with overrides `KEY=VALUE` merged in their order.
+    ///
+    /// # Errors
+    /// All errors of the file and the overrides at once; if the text is no TOML, the syntax errors only.
+    pub fn from_text(name: &str, text: &str, overrides: &[String]) -> Result<Self, Vec<Error>> {
+        Self::from_bytes(name, text.as_bytes(), overrides)
+    }
+
+    /// [`Case::from_text`] for bytes as they stand in the file, see [`crate::load`].
+    ///
+    /// # Errors
+    /// As [`Case::from_text`]; also if the bytes are too many, binary, UTF-16 or no UTF-8.
+    pub fn from_bytes(name: &str, bytes: &[u8], overrides: &[String]) -> Result<Self, Vec<Error>> {
+        let text = decode(name, bytes)?;
+        let source = Source::new(name, text);
+        let mut report = Report::new(&source, overrides);
+        let mut document = document::parse(&source, &mut report);
+        if report.failed() {
+            return Err(report.into_errors());
+        }
+        overrides::apply(&mut document, overrides, &mut report);
+        if document.entries.is_empty() && !report.failed() {
+            report.error(Origin::Nowhere, "", "the file is empty: it holds no key of a case");
+            return Err(report.into_errors());
+        }
+        let filled = preset::fill(&mut document, (&source, overrides), &mut report);
+        let record = record::read(&document, &mut report);
+        let effective = if overrides.is_empty() && !filled { text.to_owned() } else { document.to_toml() };
+        match validate::case(&record, effective, &mut report) {
+            Some(case) if !report.failed() => Ok(case),
+            _ => Err(report.into_errors()),
+        }
+    }
+}

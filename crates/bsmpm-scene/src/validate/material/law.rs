@@ -1,0 +1,139 @@
+//! What makes a material the law that its `model` names.
+
+use super::{Layer, profile};
+use crate::record::Record;
+use crate::report::Report;
+use crate::schema::{BELOW_90, Range};
+use crate::words::Law;
+use bsmpm::material::{Elastic, Graded, GradedStrength, Hencky, Law as _, Material, MohrCoulomb, Profile, Separation};
+
+/// What a law has besides the elastic parameters.
+pub(super) enum Parameters {
+    Hencky,
+    /// Friction and dilation angle (degrees), cohesion (Pa).
+    MohrCoulomb([Profile; 3]),
+}
+
+/// The plain law.
+pub(super) fn uniform(elastic: Elastic, law: Parameters, (factor, separation): (f64, Separation)) -> Material {
+    match law {
+        Parameters::Hencky => Material::Hencky(Hencky { elastic }),
+        Parameters::MohrCoulomb([friction, dilation, cohesion]) => {
+            let (friction, dilation) = (friction.value.to_radians(), dilation.value.to_radians());
+            let law = MohrCoulomb::new(elastic, friction, dilation, cohesion.value);
+            Material::MohrCoulomb(law.separating(separation).reduced(factor))
+        }
+    }
+}
+
+/// The law by height above the grid's lower corner.
+pub(super) fn graded(
+    young: Profile,
+    poisson: f64,
+    law: Parameters,
+    (layer, factor, separation): (&Layer, f64, Separation),
+) -> Material {
+    let relative = |profile: Profile| Profile { at: profile.at - layer.base, ..profile };
+    let strength = match law {
+        Parameters::Hencky => None,
+        Parameters::MohrCoulomb([friction, dilation, cohesion]) => Some(GradedStrength {
+            friction: relative(radians(friction)),
+            dilation: dilation.value.to_radians(),
+            cohesion: relative(cohesion),
+            reduction: factor,
+            separation,
+        }),
+    };
+    let heights = layer.heights.start - layer.base..layer.heights.end - layer.base;
+    Material::Graded(Graded::new(relative(young), poisson, strength, heights))
+}
+
+/// Keys that a law has no use for, and keys that it needs.
+fn keys(law: Law) -> (&'static [&'static str], &'static [&'static str]) {
+    match law {
+        Law::Hencky => (&["friction", "dilation", "cohesion", "separation"], &[]),
+        Law::Tresca => (&["friction", "dilation", "separation"], &["cohesion"]),
+        Law::MohrCoulomb => (&[], &["friction", "cohesion"]),
+    }
+}
+
+/// The law's own parameters; `None` after an error.
+pub(super) fn law(record: &Record, layer: Option<&Layer>, report: &mut Report<'_>) -> Option<Parameters> {
+    let model = record.word("model")?;
+    let (unused, required) = keys(model);
+    let mut whole = true;
+    for key in unused.iter().filter(|key| record.gives(key) && !zero_angle(record, model, key)) {
+        record.error(key, format!("has no meaning in model \"{model}\""), report);
+        whole = false;
+    }
+    for key in required.iter().filter(|key| !record.gives(key)) {
+        report.error(record.origin, &record.path_of(key), format!("missing; model \"{model}\" needs it"));
+        whole = false;
+    }
+    if !whole {
+        return None;
+    }
+    match model {
+        Law::Hencky => Some(Parameters::Hencky),
+        Law::MohrCoulomb | Law::Tresca => mohr_coulomb(record, model, layer, report).map(Parameters::MohrCoulomb),
+    }
+}
+
+/// Friction and dilation angle (degrees) and cohesion (Pa); zero unless given.
+fn mohr_coulomb(record: &Record, model: Law, layer: Option<&Layer>, report: &mut Report<'_>) -> Option<[Profile; 3]> {
+    let given = |key| if record.gives(key) { profile(record, key) } else { Some(Profile::constant(0.0)) };
+    let (friction, dilation, cohesion) = (given("friction")?, given("dilation")?, given("cohesion")?);
+    if let Some(layer) = layer {
+        layer.check(record, ("friction", &BELOW_90), &friction, report);
+        layer.check(record, ("cohesion", &Range::NOT_NEGATIVE), &cohesion, report);
+    }
+    let heights = layer.map_or(friction.at..friction.at, |layer| layer.heights.clone());
+    let (least, most) = friction.bounds(&heights);
+    if dilation.value > most {
+        let message = format!("{} is out of range; allowed: 0 <= dilation <= friction = {most}", dilation.value);
+        record.error("dilation", message, report);
+        return None;
+    }
+    if dilation.value > least {
+        let path = record.path_of("dilation");
+        report
+            .warn(format!("{path}: {} is above the friction angle in places, and lowered to it there", dilation.value));
+    }
+    if most == 0.0 && cohesion.bounds(&heights).1 == 0.0 {
+        report.warn(format!("{}: friction and cohesion are both 0: the material has no strength", record.path));
+    }
+    if model == Law::MohrCoulomb && !record.gives("dilation") {
+        report.note(record.path_of("dilation"), "0.0", "default: plastic flow without change of volume");
+    }
+    Some([friction, dilation, cohesion])
+}
+
+/// What becomes of the volume that opens at the apex. Only where that is free of stress can it be a gap: with cohesion
+/// it would pull with c cot phi until it has closed, and without friction there is no apex.
+pub(super) fn separation(
+    record: &Record,
+    law: &Parameters,
+    layer: Option<&Layer>,
+    report: &mut Report<'_>,
+) -> Separation {
+    let separation = record.word("separation").unwrap_or_default();
+    let (Separation::Closing, Parameters::MohrCoulomb([friction, _, cohesion])) = (separation, law) else {
+        return Separation::Forgotten;
+    };
+    let bounds =
+        |profile: &Profile| profile.bounds(&layer.map_or(profile.at..profile.at, |layer| layer.heights.clone()));
+    if bounds(friction).0 <= 0.0 || bounds(cohesion).1 > 0.0 {
+        let message = "\"closing\" needs friction and no cohesion: a gap is what opens where the stress is zero";
+        record.error("separation", message, report);
+    }
+    Separation::Closing
+}
+
+/// Tresca's angles may be written if they are zero.
+fn zero_angle(record: &Record, model: Law, key: &str) -> bool {
+    model == Law::Tresca && record.number(key) == Some(0.0)
+}
+
+fn radians(profile: Profile) -> Profile {
+    Profile { value: profile.value.to_radians(), per_metre: profile.per_metre.to_radians(), ..profile }
+}

@@ -1,0 +1,86 @@
+//! The words of the case language as types: every choice is defined once, by its words, what they mean and what they
+//! stand for. Schema, reader, messages and manifest take them from here.
+//!
+//! A variant without a word does not compile, and a word stands for one variant or is none: there are no default arms.
+
+#[macro_use]
+mod define;
+mod physics;
+mod scene;
+mod solver;
+
+pub use scene::{Accuracy, Base, C0Lines, Components, Format, Geometry, Law, Measurement, Order, Side, Start, Support};
+pub use solver::{Factor, Ksp, Nonlinear, Pc};
+
+/// What one of several words stands for.
+pub trait Word: Copy + 'static {
+    /// All its words.
+    const WORDS: Words;
+
+    /// What `word` stands for, if it is one of them.
+    fn of(word: &str) -> Option<Self>;
+
+    /// Its word; of several the one that is listed first.
+    fn word(self) -> &'static str;
+}
+
+/// The words of a choice, in the order in which messages list them.
+#[derive(Clone, Copy, Debug)]
+pub struct Words {
+    /// The word that leaves it to the program, if there is one.
+    pub auto: Option<(&'static str, &'static str)>,
+    /// Words and what they mean.
+    pub words: &'static [(&'static str, &'static str)],
+    /// Words that are not available yet.
+    pub later: &'static [&'static str],
+}
+
+impl Words {
+    /// Words and what they mean.
+    pub fn all(&self) -> impl Iterator<Item = (&'static str, &'static str)> {
+        self.auto.into_iter().chain(self.words.iter().copied()).map(|(word, doc)| (word, doc.trim_start()))
+    }
+
+    /// The words.
+    pub fn words(&self) -> impl Iterator<Item = &'static str> {
+        self.all().map(|(word, _)| word)
+    }
+}
+
+/// What the word `auto` leaves to the program is `None`.
+impl<T: Word> Word for Option<T> {
+    const WORDS: Words = Words { auto: Some((AUTO, "chosen by the program")), ..T::WORDS };
+
+    fn of(word: &str) -> Option<Self> {
+        if word == AUTO { Some(None) } else { T::of(word).map(Some) }
+    }
+
+    fn word(self) -> &'static str {
+        self.map_or(AUTO, T::word)
+    }
+}
+
+const AUTO: &str = "auto";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bsmpm::background::Kind;
+
+    #[test]
+    fn words_lead_to_their_choice_and_back() {
+        for (word, doc) in Option::<Pc>::WORDS.all() {
+            assert!(!doc.is_empty());
+            assert_eq!(Option::<Pc>::of(word).map(Word::word), Some(word));
+        }
+        assert_eq!(Pc::of(AUTO), None);
+        assert_eq!(Law::of("drucker-prager"), None);
+    }
+
+    #[test]
+    fn a_word_of_old_is_read_and_another_written() {
+        assert_eq!(Kind::of("laplacian"), Some(Kind::Strain));
+        assert_eq!(Kind::Strain.word(), "strain");
+        assert!(Kind::WORDS.words().eq(["strain", "laplacian", "ghost-penalty", "curvature"]));
+    }
+}

@@ -1,0 +1,52 @@
+//! How words are defined: for an enum of another crate, or together with the enum.
+
+/// The words of an enum: `Variant = "word" | "word of old": "what it means",` and those that are not available `later`.
+macro_rules! words {
+    ($type:ident {
+        $($variant:ident = $word:literal $(| $old:literal)*: $doc:expr,)+
+    } $(later [$($later:literal),+])?) => {
+        impl $crate::words::Word for $type {
+            const WORDS: $crate::words::Words = $crate::words::Words {
+                auto: None,
+                words: &[$(($word, $doc), $(($old, concat!("earlier name of ", $word)),)*)+],
+                later: &[$($($later),+)?],
+            };
+
+            fn of(word: &str) -> Option<Self> {
+                match word {
+                    $($word $(| $old)* => Some(Self::$variant),)+
+                    _ => None,
+                }
+            }
+
+            fn word(self) -> &'static str {
+                match self {
+                    $(Self::$variant => $word,)+
+                }
+            }
+        }
+    };
+}
+
+/// An enum with its words; a variant's documentation is what its word means.
+macro_rules! choice {
+    ($(#[$about:meta])+ pub enum $type:ident {
+        $($(#[doc = $doc:literal])+ $variant:ident = $word:literal,)+
+    } $(later [$($later:literal),+])?) => {
+        $(#[$about])+
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub enum $type {
+            $($(#[doc = $doc])+ $variant,)+
+        }
+
+        words! { $type {
+            $($variant = $word: concat!($($doc),+),)+
+        } $(later [$($later),+])? }
+
+        impl std::fmt::Display for $type {
+            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.write_str($crate::words::Word::word(*self))
+            }
+        }
+    };
+}

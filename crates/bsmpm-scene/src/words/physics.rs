@@ -1,0 +1,48 @@
+//! Words of choices that the physics defines.
+
+use bsmpm::background::{Extent, Kind};
+use bsmpm::material::Separation;
+use bsmpm::model::Regime;
+use bsmpm::quadrature::Quadrature;
+use bsmpm::stabilisation::Stabilisation;
+use bsmpm::step::mass::MassMatrix;
+
+words! { Regime {
+    Dynamic = "dynamic": "inertia acts",
+    QuasiStatic = "quasi-static": "no inertia; time is a pseudo-time",
+} }
+
+words! { MassMatrix {
+    Lumped = "lumped": "diagonal, the paper's",
+    Consistent = "consistent": "mostly the consistent one",
+} }
+
+words! { Separation {
+    Forgotten = "forgotten": "volume that opens is plastic",
+    Closing = "closing": "volume that opens is a gap that closes first",
+} }
+
+words! { Stabilisation {
+    None = "none": "the plain B-spline method",
+    FBar = "f-bar": "dilations of the step averaged",
+    FBarZhao = "f-bar-zhao": "total dilations averaged",
+    ModifiedFBar = "modified-f-bar": "the paper's: elastic strain averaged after every step, too",
+    ConsistentFBar = "consistent-f-bar": "dilations averaged by splines of the order below",
+    SubgridFBar = "subgrid-f-bar": "the same on pairs of cells",
+} }
+
+words! { Quadrature {
+    Points = "points": "points weigh their own volumes",
+    Fitted = "fitted": "volumes that integrate splines inside bodies exactly",
+} }
+
+words! { Kind {
+    Strain = "strain" | "laplacian": "resists strain",
+    GhostPenalty = "ghost-penalty": "resists jumps between cells at the edge of bodies",
+    Curvature = "curvature": "resists curvature",
+} }
+
+words! { Extent {
+    Occupied = "occupied": "all cells that hold points",
+    PartlyFilled = "partly-filled": "cells that points do not fill",
+} }

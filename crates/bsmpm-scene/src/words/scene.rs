@@ -1,0 +1,202 @@
+//! Words of what is solved and of what is kept of it.
+
+choice! {
+    /// Kind of the geometry.
+    pub enum Geometry {
+        /// Plane strain, 1 m thick.
+        PlaneStrain = "plane-strain",
+    } later ["axisymmetric", "solid"]
+}
+
+choice! {
+    /// What a case leaves out of its discretisation is filled in as coarse or as fine; coarsest first.
+    pub enum Accuracy {
+        /// To look at.
+        Draft = "draft",
+        /// As fine as the paper's.
+        Standard = "standard",
+        /// To compare others with.
+        Reference = "reference",
+    }
+}
+
+choice! {
+    /// Order of the B-splines.
+    pub enum Order {
+        /// Continuous functions.
+        Linear = "linear",
+        /// Continuous slopes.
+        Quadratic = "quadratic",
+        /// Continuous curvatures.
+        Cubic = "cubic",
+    }
+}
+
+impl Order {
+    /// As a number.
+    pub fn degree(self) -> usize {
+        match self {
+            Self::Linear => 1,
+            Self::Quadratic => 2,
+            Self::Cubic => 3,
+        }
+    }
+}
+
+choice! {
+    /// Which grid lines are those across which strains may jump.
+    pub enum C0Lines {
+        /// Those where they do.
+        Automatic = "automatic",
+        /// Only breakpoints that the grid repeats.
+        None = "none",
+    }
+}
+
+choice! {
+    /// Constitutive law.
+    pub enum Law {
+        /// Elastic at any strain.
+        Hencky = "hencky",
+        /// Elastic, perfectly plastic with friction, dilation and cohesion.
+        MohrCoulomb = "mohr-coulomb",
+        /// The same without friction.
+        Tresca = "tresca",
+    }
+}
+
+impl Law {
+    /// Whether its stress is limited.
+    pub fn is_plastic(self) -> bool {
+        match self {
+            Self::Hencky => false,
+            Self::MohrCoulomb | Self::Tresca => true,
+        }
+    }
+}
+
+choice! {
+    /// Support of one face of the grid.
+    pub enum Support {
+        /// All components held.
+        Fixed = "fixed",
+        /// The normal component held.
+        Roller = "roller",
+        /// Nothing held.
+        Free = "free",
+    }
+}
+
+choice! {
+    /// A face of the grid, and the key of its support.
+    pub enum Side {
+        /// At the lowest x.
+        Left = "left",
+        /// At the highest x.
+        Right = "right",
+        /// At the lowest y.
+        Bottom = "bottom",
+        /// At the highest y.
+        Top = "top",
+    }
+}
+
+impl Side {
+    /// Per axis the lower and the upper one.
+    pub const ALL: [[Self; 2]; 2] = [[Self::Left, Self::Right], [Self::Bottom, Self::Top]];
+}
+
+choice! {
+    /// What a rigid strip holds of the material at it.
+    pub enum Base {
+        /// The component normal to it.
+        Smooth = "smooth",
+        /// All components.
+        Rough = "rough",
+    }
+}
+
+choice! {
+    /// What a prescribed motion holds of the material at it.
+    pub enum Components {
+        /// All components.
+        All = "all",
+        /// The component normal to it.
+        Normal = "normal",
+    }
+}
+
+impl Components {
+    /// The same of a strip.
+    pub fn base(self) -> Base {
+        match self {
+            Self::All => Base::Rough,
+            Self::Normal => Base::Smooth,
+        }
+    }
+}
+
+choice! {
+    /// How the stress at the start is found, other than by k0.
+    pub enum Start {
+        /// Elastic equilibrium under the loads at time 0.
+        Elastic = "elastic",
+    }
+}
+
+choice! {
+    /// Format of frames.
+    pub enum Format {
+        /// One `.vtu` per frame and a `.pvd`.
+        Vtu = "vtu",
+    } later ["vtkhdf"]
+}
+
+choice! {
+    /// What a history records, without what it needs besides, which [`Quantity`](crate::Quantity) has.
+    pub enum Measurement {
+        /// The x that a share of the points do not exceed.
+        Runout = "runout",
+        /// How far the lowest row is filled.
+        Front = "front",
+        /// The largest y of points.
+        Height = "height",
+        /// The largest displacement of any point.
+        MaxDisplacement = "max-displacement",
+        /// Of all points.
+        Mass = "mass",
+        /// Of all points.
+        Momentum = "momentum",
+        /// Force of a face's supports on the body.
+        Reaction = "reaction",
+        /// Of the material at a place.
+        Displacement = "displacement",
+        /// Of the point nearest to a place.
+        Velocity = "velocity",
+        /// Of the point nearest to a place.
+        Stress = "stress",
+        /// Oscillation of sigma_yy.
+        StressNoise = "stress-noise",
+        /// Oscillation of the pressure.
+        PressureNoise = "pressure-noise",
+        /// The largest upward displacement of any point.
+        Heave = "heave",
+        /// Mean normal pressure on the footing's base.
+        FootingPressure = "footing-pressure",
+        /// Force of the soil on the footing against its motion.
+        FootingForce = "footing-force",
+        /// Of the footing, downwards.
+        Penetration = "penetration",
+        /// Of the material from the footing.
+        Slip = "slip",
+        /// Where the energy is, and where it went.
+        Energy = "energy",
+    }
+}
+
+impl Measurement {
+    /// Whether there must be a footing.
+    pub fn is_of_footing(self) -> bool {
+        matches!(self, Self::FootingPressure | Self::FootingForce | Self::Penetration | Self::Slip)
+    }
+}
