@@ -1,6 +1,6 @@
 //! `--set KEY=VALUE`, and what a valid case becomes.
 
-use bsmpm::material::{Law, Material, MohrCoulomb, Separation};
+use bsmpm::material::{Law, Match, Material, MohrCoulomb, Separation};
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm_scene::words::{Factor, Ksp, Pc};
 use bsmpm_scene::{
@@ -271,6 +271,29 @@ fn strips_loads_and_initial_stress_arrive() {
     assert!(set(&own, &[]).is_err(), "not all materials have their own");
     let k0 = ["material.sand.k0=0.4", "material.clay.k0=0.7", "material.block.k0=0"];
     assert_eq!(valid(&own, &k0).initial, Some(Initial::AtRest(vec![0.4, 0.7, 0.0, 0.6])));
+}
+
+/// Laws by their words, with what is not given left at its default; strength is divided by the factor of the case.
+#[test]
+fn cones_and_cylinders() {
+    let law =
+        |text: &str| valid(FULL, &[&format!("material.clay={{ young = 1e7, poisson = 0.3, density = 2e3, {text} }}")]);
+    let case = law("model = \"von-mises\", yield_stress = \"10 kPa\", hardening = 5e4");
+    let Material::VonMises(clay) = &case.materials[1].material else { panic!() };
+    assert_eq!((clay.yield_stress(), clay.hardening(), clay.elastic().young), (8e3, 4e4, 1e7));
+    assert_eq!(case.materials[1].material.state()[0].name, "hardening_strain");
+    let note = case.notes.iter().find(|note| note.key == "material.clay").expect("a note of what is left");
+    assert!(note.value.starts_with("yield_stress = 8000.0"), "{}", note.value);
+    for (given, fit) in [("", Match::PlaneStrain), (", match = \"inner\"", Match::Inner)] {
+        let case = law(&format!("model = \"drucker-prager\", friction = 30, cohesion = 1e3{given}"));
+        let Material::DruckerPrager(clay) = &case.materials[1].material else { panic!() };
+        assert!(clay.fit() == fit && clay.cohesion() == 800.0 && clay.dilation() == 0.0);
+        assert!((clay.friction().tan() * 1.25 - f64::to_radians(30.0).tan()).abs() < 1e-14);
+    }
+    let graded = "material.clay={ model = \"von-mises\", yield_stress = 1e4, poisson = 0.3, \
+                  young = { value = 1e7, at_y = 2.0, per_metre = 1e5 }, density = 2e3 }";
+    let message = set(FULL, &[graded]).expect_err("no heights yet").to_string();
+    assert!(message.contains("no parameters that depend on the height yet"), "{message}");
 }
 
 #[test]

@@ -4,6 +4,7 @@
 //! de Souza Neto et al. (2008) holds at large strain (Eq. 10). Stress is in Pa, tension positive, principal values
 //! descending. Nothing here knows F, J or the grid, nor stores a state: old state in, new state out.
 
+mod drucker_prager;
 mod graded;
 mod hencky;
 mod law;
@@ -12,7 +13,9 @@ mod response;
 mod spectral;
 mod stiffness;
 mod tangent;
+mod von_mises;
 
+pub use drucker_prager::{DruckerPrager, Match};
 pub use graded::{Graded, GradedStrength, Profile};
 pub use hencky::Hencky;
 pub use law::{Flow, Law, Region, Separation, Variable, split};
@@ -20,6 +23,7 @@ pub use mohr_coulomb::MohrCoulomb;
 pub use response::Response;
 pub use stiffness::Stiffness;
 pub use tangent::Tangent;
+pub use von_mises::VonMises;
 
 use crate::tensor::{Symmetric, Tensor};
 use spectral::Spectrum;
@@ -200,11 +204,11 @@ macro_rules! laws {
                 }
             }
 
-            /// See [`Flow::shear_of_equal_strains`].
-            pub fn shear_of_equal_strains(&self, moduli: Moduli) -> f64 {
+            /// See [`Flow::chord`]; 2μ if elastic.
+            pub fn chord(&self, moduli: Moduli, differences: (f64, f64)) -> f64 {
                 match self {
                     Self::Elastic => 2.0 * moduli.mu,
-                    $(Self::$Law(flow) => flow.shear_of_equal_strains(moduli),)*
+                    $(Self::$Law(flow) => flow.chord(moduli, differences),)*
                 }
             }
 
@@ -224,6 +228,10 @@ laws! {
     hencky::Hencky,
     /// Elastic, perfectly plastic with friction, dilation and cohesion.
     mohr_coulomb::MohrCoulomb,
+    /// Mohr-Coulomb's strength with a cone in the place of its pyramid.
+    drucker_prager::DruckerPrager,
+    /// Elastic, plastic without friction, hardening linearly.
+    von_mises::VonMises,
 }
 
 /// Numbers of state that the points of these materials carry.
@@ -250,6 +258,11 @@ impl Material {
     /// Young's modulus at a height, Pa.
     pub fn young_at(&self, height: f64) -> f64 {
         self.elastic().young * self.relative_stiffness(height)
+    }
+
+    /// Whether its stress is limited.
+    pub fn yields(&self) -> bool {
+        !matches!(self.at(0.0).as_ref(), Self::Hencky(_))
     }
 
     /// Whether parameters depend on the height.

@@ -5,7 +5,7 @@ use super::Presence::{Default, Optional, Required};
 use super::{Dimension as In, Kind, Range, Table, body, key, later, loads, one_of, output};
 use crate::words::{Accuracy, C0Lines, Factor, Geometry, Ksp, Law, Nonlinear, Order, Pc, Support, Word};
 use bsmpm::background::{Extent, Kind as Background};
-use bsmpm::material::Separation;
+use bsmpm::material::{Match, Separation};
 use bsmpm::model::Regime;
 use bsmpm::quadrature::Quadrature;
 use bsmpm::stabilisation::Stabilisation;
@@ -106,14 +106,27 @@ static MATERIAL: Table = Table {
             "friction",
             Profile(In::Angle, BELOW_90, &loads::ANGLE_PROFILE),
             Optional,
-            "friction angle (mohr-coulomb: required)",
+            "friction angle (mohr-coulomb and drucker-prager: required)",
         ),
         key("dilation", Quantity(In::Angle, BELOW_90), Optional, "dilation angle, at most friction; 0 unless given"),
         key(
             "cohesion",
             Profile(In::Stress, Range::NOT_NEGATIVE, &loads::STRESS_PROFILE),
             Optional,
-            "cohesion (elastic: none; else required)",
+            "cohesion (hencky and von-mises: none; else required)",
+        ),
+        key(
+            "match",
+            Choice(Match::WORDS),
+            Optional,
+            "where drucker-prager meets mohr-coulomb; plane-strain unless given",
+        ),
+        key("yield_stress", Quantity(In::Stress, Range::POSITIVE), Optional, "uniaxial (von-mises: required)"),
+        key(
+            "hardening",
+            Quantity(In::Stress, Range::NOT_NEGATIVE),
+            Optional,
+            "yield stress gained per plastic strain (von-mises); 0 unless given",
         ),
         key(
             "separation",

@@ -4,7 +4,6 @@
 //! where materials of unlike stiffness meet, and are singular at the ends of strips and loaded segments, which without a
 //! line would hold or load all that the splines reach, a cell further. `cases/results/stabilisation.md` has the figures.
 
-use super::material::strength;
 use crate::case::{Case, NamedMaterial, Path, Site};
 use crate::grid::Line;
 use crate::record::Record;
@@ -132,7 +131,7 @@ fn doubt(
     (on_line, averages): (bool, bool),
     (at, [moduli, densities]): ([f64; 2], [f64; 2]),
 ) -> Option<String> {
-    let (a, b, yields) = (&a.name, &b.name, [a, b].iter().any(|named| strength(&named.material, 0.0).is_some()));
+    let (a, b, yields) = (&a.name, &b.name, [a, b].iter().any(|named| named.material.yields()));
     if on_line {
         let told = || {
             format!(

@@ -58,7 +58,7 @@ pub(super) fn read_all(root: &Record, around: Around<'_>, report: &mut Report<'_
     let read = named.iter().enumerate().map(|(number, named)| read(number, named, around, report));
     let read: Vec<_> = read.collect();
     let materials = read.into_iter().collect::<Option<Vec<_>>>()?;
-    let is_limited = |named: &NamedMaterial| strength(&named.material, 0.0).is_some();
+    let is_limited = |named: &NamedMaterial| named.material.yields();
     if root.gives("strength_reduction") && !around.reduction.elastic && !materials.iter().any(is_limited) {
         report.warn("strength_reduction: no material has strength: it does nothing");
     }
@@ -69,7 +69,8 @@ pub(super) fn read_all(root: &Record, around: Around<'_>, report: &mut Report<'_
 pub(super) fn strength(material: &Material, height: f64) -> Option<[f64; 3]> {
     match material.at(height).as_ref() {
         Material::MohrCoulomb(law) => Some([law.cohesion(), law.friction(), law.dilation()]),
-        Material::Hencky(_) | Material::Graded(_) => None,
+        Material::DruckerPrager(law) => Some([law.cohesion(), law.friction(), law.dilation()]),
+        Material::Hencky(_) | Material::VonMises(_) | Material::Graded(_) => None,
     }
 }
 
@@ -154,6 +155,10 @@ fn profile(record: &Record, key: &str) -> Option<Profile> {
 /// Tells what strength is left, at the lowest and the highest place where it differs there.
 fn note_reduction(record: &Record, material: &Material, layer: &Layer, factor: f64, report: &mut Report<'_>) {
     let at = |y: f64| {
+        if let Material::VonMises(law) = material {
+            let (yield_stress, hardening) = (law.yield_stress(), law.hardening());
+            return Some(format!("yield_stress = {yield_stress:.6} Pa, hardening = {hardening:.6} Pa"));
+        }
         let [cohesion, friction, dilation] = strength(material, y - layer.base)?;
         let (friction, dilation) = (friction.to_degrees(), dilation.to_degrees());
         Some(format!("c = {cohesion:.6} Pa, phi = {friction:.6} deg, psi = {dilation:.6} deg"))
@@ -164,7 +169,11 @@ fn note_reduction(record: &Record, material: &Material, layer: &Layer, factor: f
     } else {
         format!("{low} at y = {}; {high} at y = {}", layer.heights.start, layer.heights.end)
     };
-    let reason = format!("strength_reduction.factor = {factor}: c/F, atan(tan(phi)/F), psi at most the new phi");
+    let how = match material {
+        Material::VonMises(_) => "both / F",
+        _ => "c/F, atan(tan(phi)/F), psi at most the new phi",
+    };
+    let reason = format!("strength_reduction.factor = {factor}: {how}");
     report.note(&record.path, value, reason);
 }
 

@@ -1,7 +1,6 @@
 //! What only the whole case shows: supports that hold it, and combinations that are doubtful.
 
 use super::NEARLY_INCOMPRESSIBLE;
-use super::material::strength;
 use super::place;
 use super::strip::{moves, normal};
 use crate::case::{Base, Case, Prescribed, Site, Support};
@@ -113,10 +112,10 @@ fn warn_of_locking(case: &Case, report: &mut Report<'_>) {
     for body in &case.bodies {
         let named = &case.materials[body.material];
         let poisson = named.material.elastic().poisson;
-        let reason = match strength(&named.material, 0.0) {
-            Some(_) => "is plastic".to_owned(),
-            _ if poisson > NEARLY_INCOMPRESSIBLE => format!("has poisson = {poisson} > {NEARLY_INCOMPRESSIBLE}"),
-            _ => continue,
+        let reason = match named.material.yields() {
+            true => "is plastic".to_owned(),
+            false if poisson > NEARLY_INCOMPRESSIBLE => format!("has poisson = {poisson} > {NEARLY_INCOMPRESSIBLE}"),
+            false => continue,
         };
         report.warn(format!(
             "stabilisation: absent is none, and material.{} {reason}: expect locking and oscillating stress",

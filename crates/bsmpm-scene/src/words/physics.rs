@@ -1,7 +1,7 @@
 //! Words of choices that the physics defines.
 
 use bsmpm::background::{Extent, Kind};
-use bsmpm::material::Separation;
+use bsmpm::material::{Match, Separation};
 use bsmpm::model::Regime;
 use bsmpm::quadrature::Quadrature;
 use bsmpm::stabilisation::Stabilisation;
@@ -20,6 +20,12 @@ words! { MassMatrix {
 words! { Separation {
     Forgotten = "forgotten": "volume that opens is plastic",
     Closing = "closing": "volume that opens is a gap that closes first",
+} }
+
+words! { Match {
+    Outer = "outer": "in triaxial compression: outside elsewhere",
+    Inner = "inner": "in triaxial extension",
+    PlaneStrain = "plane-strain": "the limit load of plane strain",
 } }
 
 words! { Stabilisation {

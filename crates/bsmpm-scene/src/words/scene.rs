@@ -62,6 +62,10 @@ choice! {
         MohrCoulomb = "mohr-coulomb",
         /// The same without friction.
         Tresca = "tresca",
+        /// The same strength with a cone in the place of the pyramid.
+        DruckerPrager = "drucker-prager",
+        /// Elastic, plastic without friction, hardening linearly.
+        VonMises = "von-mises",
     }
 }
 
@@ -70,7 +74,7 @@ impl Law {
     pub fn is_plastic(self) -> bool {
         match self {
             Self::Hencky => false,
-            Self::MohrCoulomb | Self::Tresca => true,
+            Self::MohrCoulomb | Self::Tresca | Self::DruckerPrager | Self::VonMises => true,
         }
     }
 }

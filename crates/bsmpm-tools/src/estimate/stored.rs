@@ -2,7 +2,6 @@
 //!
 //! Fitted to the processor seconds of the shipped short cases and of the column at the paper's resolution, one rank each.
 
-use bsmpm::material::Material;
 use bsmpm_scene::{Case, Regime};
 
 use super::sizes::{self, Bytes};
@@ -50,7 +49,7 @@ impl Found {
 
 /// An estimate from what runs took elsewhere; `speed` is this machine's time over that of the other one.
 pub(super) fn guess(case: &Case, speed: f64) -> Found {
-    let plastic = case.materials.iter().any(|named| !matches!(named.material, Material::Hencky(_)));
+    let plastic = case.materials.iter().any(|named| named.material.yields());
     let kind = match (plastic, case.analysis.regime) {
         (false, _) => 0,
         (true, Regime::Dynamic) => 1,

@@ -2,7 +2,6 @@
 
 use std::path::{Path, PathBuf};
 
-use bsmpm::material::Material;
 use bsmpm::model::Regime;
 use bsmpm_scene::{Axis, Case, Path as Motion, Quantity};
 use serde::Serialize;
@@ -178,7 +177,7 @@ fn parsed(path: &Path, bytes: &[u8], set: &[String]) -> Result<Case, Error> {
 
 /// Why a case has no factor of safety, or none that could be trusted.
 fn refusals(case: &Case) -> Vec<String> {
-    let is_plastic = case.materials.iter().any(|named| is_plastic(&named.material));
+    let is_plastic = case.materials.iter().any(|named| named.material.yields());
     let never_full = ramps(case).any(|ramp| ramp > case.analysis.end);
     let reasons = [
         (
@@ -212,14 +211,6 @@ fn is_moved(case: &Case) -> bool {
     let moves = |path: &Motion| path.rows.iter().any(|(_, by)| *by != [0.0; 2]);
     let footing = case.footing.iter().map(|footing| &footing.path);
     footing.chain(case.prescribed.iter().map(|prescribed| &prescribed.path)).any(moves)
-}
-
-fn is_plastic(material: &Material) -> bool {
-    match material {
-        Material::Hencky(_) => false,
-        Material::Graded(graded) => is_plastic(&graded.at(0.0)),
-        _ => true,
-    }
 }
 
 fn is_loaded(case: &Case) -> bool {

@@ -51,10 +51,12 @@ pub trait Flow: Copy {
     /// `D_AB = ∂τ_A/∂ε_B`, Pa, of principal values.
     fn tangent(&self, moduli: Moduli) -> Tensor;
 
-    /// The limit of `(τ_A - τ_B)/(ε_A - ε_B)` where the trial strains are equal, Pa: 0 on edges, to which all that is near
-    /// returns.
-    fn shear_of_equal_strains(&self, _moduli: Moduli) -> f64 {
-        0.0
+    /// `(τ_A - τ_B)/(ε_A - ε_B)`, Pa, where these differ by `tau` and `eps` ≥ 0.
+    ///
+    /// In 0..2μ, since returns shrink stress differences; here 0 of equal strains, as what is near an edge returns to it. The bounds keep
+    /// rounding of a tiny difference inside.
+    fn chord(&self, moduli: Moduli, (tau, eps): (f64, f64)) -> f64 {
+        if eps > 0.0 { (tau / eps).max(0.0).min(2.0 * moduli.mu) } else { 0.0 }
     }
 
     /// Puts the state after the return in the place of that before it.

@@ -3,7 +3,6 @@
 //! It linearises τ(b_trial) only; the term τ lᵀ of the internal force and the F-bar factor belong to the stiffness.
 
 use super::Response;
-use super::law::Region;
 use crate::tensor::Tensor;
 
 impl Response {
@@ -61,8 +60,7 @@ impl Tangent {
 
 /// `(τ_A - τ_B)/(b_A - b_B) = (τ_A - τ_B)/(ε_A - ε_B) · ln(1 + x)/(2 x b_B)`, x = b_A/b_B - 1.
 ///
-/// The second factor tends to 1/(2b) for equal eigenvalues; the first is 2μ if elastic. If plastic it lies in 0..2μ, since
-/// returns shrink stress differences; of equal strains the law tells it. The bounds keep rounding of a tiny gap inside.
+/// The second factor tends to 1/(2b) for equal eigenvalues.
 fn chord(response: &Response, a: usize, b: usize) -> f64 {
     let trial = &response.trial;
     let x = (trial.b[a] - trial.b[b]) / trial.b[b];
@@ -70,12 +68,8 @@ fn chord(response: &Response, a: usize, b: usize) -> f64 {
     slope(response, a, b) * log / (2.0 * trial.b[b])
 }
 
-/// `(τ_A - τ_B)/(ε_A - ε_B)` in Pa: see [`chord`].
+/// `(τ_A - τ_B)/(ε_A - ε_B)` in Pa, as the law tells it.
 pub(super) fn slope(response: &Response, a: usize, b: usize) -> f64 {
-    let (shear, gap) = (2.0 * response.moduli.mu, response.trial.eps[a] - response.trial.eps[b]);
-    match response.region() {
-        Region::Elastic => shear,
-        _ if gap > 0.0 => ((response.tau[a] - response.tau[b]) / gap).max(0.0).min(shear),
-        _ => response.flowed.shear_of_equal_strains(response.moduli),
-    }
+    let (tau, eps) = (response.tau, response.trial.eps);
+    response.flowed.chord(response.moduli, (tau[a] - tau[b], eps[a] - eps[b]))
 }

@@ -2,6 +2,7 @@
 
 mod continuity;
 mod driver;
+mod drucker_prager;
 mod eigen;
 mod gap;
 mod input;
@@ -10,6 +11,7 @@ mod random;
 mod reference;
 mod stiffness;
 mod tangent;
+mod von_mises;
 mod yield_surface;
 
 use bsmpm::material::{Elastic, Hencky, Material, MohrCoulomb, Region, Response};

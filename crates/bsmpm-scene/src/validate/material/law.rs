@@ -1,17 +1,24 @@
 //! What makes a material the law that its `model` names.
 
-use super::{Layer, profile};
+use super::{Layer, is_graded, profile};
 use crate::record::Record;
 use crate::report::Report;
 use crate::schema::{BELOW_90, Range};
 use crate::words::Law;
-use bsmpm::material::{Elastic, Graded, GradedStrength, Hencky, Law as _, Material, MohrCoulomb, Profile, Separation};
+use bsmpm::material::{
+    DruckerPrager, Elastic, Graded, GradedStrength, Hencky, Law as _, Match, Material, MohrCoulomb, Profile,
+    Separation, VonMises,
+};
 
 /// What a law has besides the elastic parameters.
 pub(super) enum Parameters {
     Hencky,
     /// Friction and dilation angle (degrees), cohesion (Pa).
     MohrCoulomb([Profile; 3]),
+    /// The same, and where the cone meets the pyramid.
+    DruckerPrager([Profile; 3], Match),
+    /// Yield stress and hardening modulus, Pa.
+    VonMises([f64; 2]),
 }
 
 /// The plain law.
@@ -22,6 +29,13 @@ pub(super) fn uniform(elastic: Elastic, law: Parameters, (factor, separation): (
             let (friction, dilation) = (friction.value.to_radians(), dilation.value.to_radians());
             let law = MohrCoulomb::new(elastic, friction, dilation, cohesion.value);
             Material::MohrCoulomb(law.separating(separation).reduced(factor))
+        }
+        Parameters::DruckerPrager([friction, dilation, cohesion], fit) => {
+            let strength = (friction.value.to_radians(), dilation.value.to_radians(), cohesion.value);
+            Material::DruckerPrager(DruckerPrager::new(elastic, strength, fit).reduced(factor))
+        }
+        Parameters::VonMises([yield_stress, hardening]) => {
+            Material::VonMises(VonMises::new(elastic, yield_stress, hardening).reduced(factor))
         }
     }
 }
@@ -35,7 +49,7 @@ pub(super) fn graded(
 ) -> Material {
     let relative = |profile: Profile| Profile { at: profile.at - layer.base, ..profile };
     let strength = match law {
-        Parameters::Hencky => None,
+        Parameters::Hencky | Parameters::DruckerPrager(..) | Parameters::VonMises(_) => None, // refused before
         Parameters::MohrCoulomb([friction, dilation, cohesion]) => Some(GradedStrength {
             friction: relative(radians(friction)),
             dilation: dilation.value.to_radians(),
@@ -48,21 +62,27 @@ pub(super) fn graded(
     Material::Graded(Graded::new(relative(young), poisson, strength, heights))
 }
 
-/// Keys that a law has no use for, and keys that it needs.
+/// All keys that some laws have and others have not.
+const KEYS: [&str; 7] = ["friction", "dilation", "cohesion", "separation", "match", "yield_stress", "hardening"];
+
+/// Keys that a law needs, and further ones that it knows.
 fn keys(law: Law) -> (&'static [&'static str], &'static [&'static str]) {
     match law {
-        Law::Hencky => (&["friction", "dilation", "cohesion", "separation"], &[]),
-        Law::Tresca => (&["friction", "dilation", "separation"], &["cohesion"]),
-        Law::MohrCoulomb => (&[], &["friction", "cohesion"]),
+        Law::Hencky => (&[], &[]),
+        Law::Tresca => (&["cohesion"], &[]),
+        Law::MohrCoulomb => (&["friction", "cohesion"], &["dilation", "separation"]),
+        Law::DruckerPrager => (&["friction", "cohesion"], &["dilation", "match"]),
+        Law::VonMises => (&["yield_stress"], &["hardening"]),
     }
 }
 
 /// The law's own parameters; `None` after an error.
 pub(super) fn law(record: &Record, layer: Option<&Layer>, report: &mut Report<'_>) -> Option<Parameters> {
     let model = record.word("model")?;
-    let (unused, required) = keys(model);
+    let (required, known) = keys(model);
     let mut whole = true;
-    for key in unused.iter().filter(|key| record.gives(key) && !zero_angle(record, model, key)) {
+    let unused = KEYS.iter().filter(|key| !required.contains(key) && !known.contains(key));
+    for key in unused.filter(|key| record.gives(key) && !zero_angle(record, model, key)) {
         record.error(key, format!("has no meaning in model \"{model}\""), report);
         whole = false;
     }
@@ -76,6 +96,17 @@ pub(super) fn law(record: &Record, layer: Option<&Layer>, report: &mut Report<'_
     match model {
         Law::Hencky => Some(Parameters::Hencky),
         Law::MohrCoulomb | Law::Tresca => mohr_coulomb(record, model, layer, report).map(Parameters::MohrCoulomb),
+        Law::DruckerPrager | Law::VonMises if is_graded(record) => {
+            record.error("model", format!("\"{model}\" has no parameters that depend on the height yet"), report);
+            None
+        }
+        Law::DruckerPrager => {
+            let strength = mohr_coulomb(record, model, layer, report)?;
+            Some(Parameters::DruckerPrager(strength, record.word("match").unwrap_or_default()))
+        }
+        Law::VonMises => {
+            Some(Parameters::VonMises([record.number("yield_stress")?, record.number("hardening").unwrap_or(0.0)]))
+        }
     }
 }
 
@@ -102,7 +133,7 @@ fn mohr_coulomb(record: &Record, model: Law, layer: Option<&Layer>, report: &mut
     if most == 0.0 && cohesion.bounds(&heights).1 == 0.0 {
         report.warn(format!("{}: friction and cohesion are both 0: the material has no strength", record.path));
     }
-    if model == Law::MohrCoulomb && !record.gives("dilation") {
+    if model != Law::Tresca && !record.gives("dilation") {
         report.note(record.path_of("dilation"), "0.0", "default: plastic flow without change of volume");
     }
     Some([friction, dilation, cohesion])

@@ -1,0 +1,177 @@
+//! Drucker-Prager plasticity (de Souza Neto et al., 2008, section 8.3): a cone through or beside Mohr-Coulomb's pyramid,
+//! perfect, non-associated.
+//!
+//! The return is linear: along the deviator to the cone, or to its tip.
+
+use super::law::{Flow, Law, Region, split};
+use super::{Elastic, Moduli};
+use crate::tensor::Tensor;
+
+/// Where the cone meets Mohr-Coulomb's pyramid.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Match {
+    /// At the edges of triaxial compression: outside of it elsewhere.
+    Outer,
+    /// At the edges of triaxial extension.
+    Inner,
+    /// Where both have the same limit load in plane strain.
+    #[default]
+    PlaneStrain,
+}
+
+impl Match {
+    /// Slope in the mean stress for the angle `sin` is of, and factor of the cohesion for a friction angle.
+    fn slopes(self, angle: f64) -> (f64, f64) {
+        let (sin, cos, tan) = (angle.sin(), angle.cos(), angle.tan());
+        match self {
+            Self::Outer => (6.0 * sin / (3_f64.sqrt() * (3.0 - sin)), 6.0 * cos / (3_f64.sqrt() * (3.0 - sin))),
+            Self::Inner => (6.0 * sin / (3_f64.sqrt() * (3.0 + sin)), 6.0 * cos / (3_f64.sqrt() * (3.0 + sin))),
+            Self::PlaneStrain => {
+                let root = (9.0 + 12.0 * tan * tan).sqrt();
+                (3.0 * tan / root, 3.0 / root)
+            }
+        }
+    }
+}
+
+/// Elastic inside `√J₂ + η p - ξ c ≤ 0`, p the mean stress; plastic potential `√J₂ + η_ψ p`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DruckerPrager {
+    elastic: Elastic,
+    friction: f64,
+    dilation: f64,
+    cohesion: f64,
+    fit: Match,
+    // What every response needs, formed once:
+    moduli: Moduli,
+    slopes: [f64; 2], // η and η_ψ
+    strength: f64,    // Pa  ξ c
+}
+
+/// What a return leaves.
+#[derive(Clone, Copy, Debug)]
+pub enum Return {
+    /// To the cone.
+    Cone {
+        /// (-)  principal deviator of the trial over its norm
+        direction: [f64; 3],
+        /// (-)  √J₂ after the return over that of the trial
+        kept: f64,
+        /// η and η_ψ
+        slopes: [f64; 2],
+    },
+    /// To the tip.
+    Apex,
+}
+
+impl DruckerPrager {
+    /// A law that meets the pyramid of friction angle 0 ≤ φ < π/2 (rad), dilation angle 0 ≤ ψ ≤ φ (rad) and cohesion
+    /// c ≥ 0 (Pa) as `fit` says.
+    pub fn new(elastic: Elastic, (friction, dilation, cohesion): (f64, f64, f64), fit: Match) -> Self {
+        let (moduli, (eta, xi)) = (elastic.moduli(), fit.slopes(friction));
+        let slopes = [eta, fit.slopes(dilation).0];
+        Self { elastic, friction, dilation, cohesion, fit, moduli, slopes, strength: xi * cohesion }
+    }
+
+    /// Friction angle φ, rad.
+    pub fn friction(&self) -> f64 {
+        self.friction
+    }
+
+    /// Cohesion c, Pa.
+    pub fn cohesion(&self) -> f64 {
+        self.cohesion
+    }
+
+    /// Where the cone meets the pyramid.
+    pub fn fit(&self) -> Match {
+        self.fit
+    }
+
+    /// Slope η of the cone, and its √J₂ at p = 0 in Pa.
+    pub fn cone(&self) -> (f64, f64) {
+        (self.slopes[0], self.strength)
+    }
+}
+
+impl Law for DruckerPrager {
+    type Flow = Return;
+
+    fn elastic(&self) -> &Elastic {
+        &self.elastic
+    }
+
+    #[inline]
+    fn moduli(&self) -> Moduli {
+        self.moduli
+    }
+
+    /// `Δγ = (√J₂ + η p - ξ c)/(μ + K η η_ψ)`, `p - K η_ψ Δγ`, and √J₂ from f = 0; where that is negative the tip, p = ξ c/η.
+    #[inline]
+    fn project(&self, trial: [f64; 3], _state: &[f64]) -> Option<([f64; 3], Return)> {
+        let (Moduli { mu, .. }, [eta, eta_psi]) = (self.moduli, self.slopes);
+        let (mean, deviator, norm) = split(trial);
+        let root = norm * std::f64::consts::FRAC_1_SQRT_2;
+        let excess = root + eta * mean - self.strength;
+        if excess <= 0.0 {
+            return None;
+        }
+        let bulk = self.moduli.bulk();
+        let p = mean - bulk * eta_psi * excess / (mu + bulk * eta * eta_psi);
+        let after = self.strength - eta * p;
+        if after < 0.0 || root == 0.0 {
+            return Some(([self.strength / eta; 3], Return::Apex));
+        }
+        let kept = after / root;
+        let tau = deviator.map(|s| p + kept * s);
+        Some((tau, Return::Cone { direction: deviator.map(|s| s / norm), kept, slopes: self.slopes }))
+    }
+
+    /// `c/SRF`, `atan(tan φ/SRF)`, `ψ_f = min(ψ, φ_f)`.
+    fn reduced(self, factor: f64) -> Self {
+        if factor == 1.0 {
+            return self;
+        }
+        let friction = (self.friction.tan() / factor).atan();
+        let strength = (friction, self.dilation.min(friction), self.cohesion / factor);
+        Self::new(self.elastic, strength, self.fit)
+    }
+
+    fn dilation(&self) -> f64 {
+        self.dilation
+    }
+}
+
+impl Flow for Return {
+    #[inline]
+    fn region(&self) -> Region {
+        match self {
+            Self::Cone { .. } => Region::Face,
+            Self::Apex => Region::Apex,
+        }
+    }
+
+    /// With `A = 1/(μ + K η η_ψ)`, n the direction and r what is kept of √J₂:
+    /// `2μ r (I₄ - ⅓ I ⊗ I) + 2μ (1 - r - μ A) n ⊗ n - √2 μ A K (η n ⊗ I + η_ψ I ⊗ n) + K (1 - K η η_ψ A) I ⊗ I`; at the tip 0.
+    fn tangent(&self, moduli: Moduli) -> Tensor {
+        let Self::Cone { direction: n, kept, slopes: [eta, eta_psi] } = *self else { return Tensor::zeros() };
+        let (mu, bulk) = (moduli.mu, moduli.bulk());
+        let inverse = 1.0 / (mu + bulk * eta * eta_psi);
+        let mixed = std::f64::consts::SQRT_2 * mu * inverse * bulk;
+        let entry = |a: usize, b: usize| {
+            let deviator = if a == b { 2.0 / 3.0 } else { -1.0 / 3.0 };
+            2.0 * mu * (kept * deviator + (1.0 - kept - mu * inverse) * n[a] * n[b])
+                - mixed * (eta * n[a] + eta_psi * n[b])
+                + bulk * mu * inverse
+        };
+        Tensor::from_fn(entry)
+    }
+
+    /// All differences are kept alike.
+    fn chord(&self, moduli: Moduli, _differences: (f64, f64)) -> f64 {
+        match self {
+            Self::Cone { kept, .. } => 2.0 * moduli.mu * kept,
+            Self::Apex => 0.0,
+        }
+    }
+}
