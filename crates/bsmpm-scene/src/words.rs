@@ -74,7 +74,7 @@ mod tests {
             assert_eq!(Option::<Pc>::of(word).map(Word::word), Some(word));
         }
         assert_eq!(Pc::of(AUTO), None);
-        assert_eq!(Law::of("drucker-prager"), None);
+        assert_eq!(Law::of("cam-clay"), None);
     }
 
     #[test]

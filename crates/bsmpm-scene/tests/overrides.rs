@@ -292,7 +292,7 @@ fn cones_and_cylinders() {
     }
     let graded = "material.clay={ model = \"von-mises\", yield_stress = 1e4, poisson = 0.3, \
                   young = { value = 1e7, at_y = 2.0, per_metre = 1e5 }, density = 2e3 }";
-    let message = set(FULL, &[graded]).expect_err("no heights yet").to_string();
+    let message = format!("{:?}", set(FULL, &[graded]).expect_err("no heights yet"));
     assert!(message.contains("no parameters that depend on the height yet"), "{message}");
 }
 

@@ -42,11 +42,15 @@ const OTHERWISE: [&[(&str, &str)]; 6] = [
     &[("geometry = \"plane-strain\"", "geometry = \"plane-strain\"\naccuracy = \"draft\"")],
     &[
         ("dt   = \"10 ms\"", "steps = 100\nspectral_radius = 0.8\nmass = \"consistent\""),
+        ("\"tresca\"", "\"von-mises\""),
+        ("cohesion    = 2e4", "yield_stress = 2e4\nhardening = 1e3"),
         ("every  = \"0.1 s\"", "every_steps = 20\ncheckpoint = { wall = \"10 min\", every_steps = 50, keep = 3 }"),
         ("quantity = \"heave\"", "quantity = \"height\"\nat_x = 1.0"),
     ],
     &[
         ("dt   = \"10 ms\"", "dt = 0.01\ngamma = 0.6"),
+        ("model    = \"mohr-coulomb\"", "model = \"drucker-prager\""),
+        ("separation = \"forgotten\"", "match = \"inner\""),
         ("cell  = [0.5, \"50 cm\"]", "knots = { x = [0, 0.5, 1.5, \"4 m\"], y = [0, 1, 2, 3] }"),
     ],
     &[
