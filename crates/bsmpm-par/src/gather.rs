@@ -1,6 +1,7 @@
 //! Frames: all points by ascending id, so that a frame does not depend on the number of ranks, block by block on rank 0, so
 //! that no rank holds more of them than its own and a block.
 
+use bsmpm::material::{Material, Variable};
 use bsmpm::points::Points;
 use bsmpm_io::frame::{Field, Frame, Values};
 use bsmpm_io::vtu;
@@ -8,9 +9,6 @@ use mpi::collective::{CommunicatorCollectives, Root, SystemOperation};
 use mpi::datatype::PartitionMut;
 use mpi::topology::{Communicator, SimpleCommunicator};
 
-/// Numbers of a point on its way to rank 0: id, material, x 2, u 2, v 2, sigma 6, plastic strain, volume, and the projected
-/// pressure, 0 where it is not asked for.
-const WIDTH: usize = 17;
 /// Ids of a block: 2 MB of numbers on their way.
 const BLOCK: u64 = 1 << 14;
 
@@ -25,11 +23,109 @@ pub struct Moment {
     pub lower: [f64; 2],
 }
 
+/// What a point is in a frame besides its place, field by field.
+#[derive(Clone, Copy, Debug)]
+enum Source<'a> {
+    Displacement,
+    Velocity,
+    Stress,
+    Pressure,
+    /// Pa
+    Projected(&'a [f64]),
+    PlasticStrain,
+    /// of the materials that have it
+    State(Variable, &'a [Material]),
+    Volume,
+    Material,
+    Id,
+}
+
+impl<'a> Source<'a> {
+    /// All of a scene, in the order of the files; the same on all ranks.
+    fn all(dynamic: bool, projected: Option<&'a [f64]>, materials: &'a [Material]) -> Vec<Self> {
+        let mut variables: Vec<Variable> = Vec::new();
+        for variable in materials.iter().flat_map(|material| material.state()) {
+            if !variables.contains(variable) {
+                variables.push(*variable);
+            }
+        }
+        let state = variables.into_iter().map(|variable| Self::State(variable, materials));
+        let first = [Self::Displacement].into_iter().chain(dynamic.then_some(Self::Velocity));
+        let first = first.chain([Self::Stress, Self::Pressure]).chain(projected.map(Self::Projected));
+        let last = [Self::Volume, Self::Material, Self::Id];
+        first.chain([Self::PlasticStrain]).chain(state).chain(last).collect()
+    }
+
+    fn name(&self) -> &'static str {
+        match self {
+            Self::Displacement => "displacement",
+            Self::Velocity => "velocity",
+            Self::Stress => "stress",
+            Self::Pressure => "pressure",
+            Self::Projected(_) => "projected_pressure",
+            Self::PlasticStrain => "plastic_strain",
+            Self::State(variable, _) => variable.name,
+            Self::Volume => "volume",
+            Self::Material => "material",
+            Self::Id => "id",
+        }
+    }
+
+    fn components(&self) -> usize {
+        match self {
+            Self::Displacement | Self::Velocity => 3,
+            Self::Stress => 6,
+            _ => 1,
+        }
+    }
+
+    /// Its numbers of point `p`.
+    fn put(&self, points: &Points<2>, p: usize, row: &mut Vec<f64>) {
+        let sigma = || points.sigma.at(p).0;
+        match self {
+            Self::Displacement => row.extend([points.u[p][0], points.u[p][1], 0.0]),
+            Self::Velocity => {
+                let v = points.motion.as_ref().map_or([0.0; 2], |motion| motion.v[p].into());
+                row.extend([v[0], v[1], 0.0]);
+            }
+            Self::Stress => row.extend(sigma()),
+            Self::Pressure => row.push(-(sigma()[0] + sigma()[1] + sigma()[2]) / 3.0),
+            Self::Projected(pressure) => row.push(pressure[p]),
+            Self::PlasticStrain => row.push(points.eps_p[p]),
+            Self::State(variable, materials) => {
+                let state = materials[usize::from(points.material[p])].state();
+                let place = state.iter().position(|own| own == variable);
+                row.push(place.map_or(0.0, |place| points.state_of(p)[place]));
+            }
+            Self::Volume => row.push(points.volume[p] * points.F.at(p).determinant()),
+            Self::Material => row.push(f64::from(points.material[p])),
+            Self::Id => row.push(points.id[p] as f64),
+        }
+    }
+
+    /// The field of the rows, in which its numbers begin at `at`.
+    fn field(&self, rows: &[&[f64]], at: usize) -> Field {
+        let (name, components) = (self.name(), self.components());
+        let values = match self {
+            Self::Material => Values::U16(rows.iter().map(|row| row[at] as u16).collect()),
+            Self::Id => Values::U64(rows.iter().map(|row| row[at] as u64).collect()),
+            _ => {
+                return Field::real(
+                    name,
+                    components,
+                    rows.iter().flat_map(|row| &row[at..at + components]).copied().collect(),
+                );
+            }
+        };
+        Field { name: name.into(), components, values }
+    }
+}
+
 /// The frame of the present state, on its way to rank 0.
 pub struct Gathering<'a> {
     world: &'a SimpleCommunicator,
     points: &'a Points<2>,
-    projected: Option<Vec<f64>>, // Pa
+    sources: Vec<Source<'a>>,
     moment: Moment,
     by_id: Vec<u32>, // this rank's points, those that have gone first
     gone: usize,
@@ -38,11 +134,12 @@ pub struct Gathering<'a> {
 }
 
 impl<'a> Gathering<'a> {
-    /// The points of all ranks, with their projected pressures (Pa) if these are wanted. Collective.
+    /// The points of all ranks with what their materials carry, and with their projected pressures (Pa) if these are wanted.
+    /// Collective.
     pub fn new(
         world: &'a SimpleCommunicator,
-        points: &'a Points<2>,
-        projected: Option<Vec<f64>>,
+        (points, materials): (&'a Points<2>, &'a [Material]),
+        projected: Option<&'a [f64]>,
         moment: Moment,
     ) -> Self {
         let mut by_id: Vec<u32> = (0..points.len() as u32).collect();
@@ -51,7 +148,8 @@ impl<'a> Gathering<'a> {
         let (mut end, mut total) = (0_u64, 0_u64);
         world.all_reduce_into(&own, &mut end, SystemOperation::max());
         world.all_reduce_into(&(points.len() as u64), &mut total, SystemOperation::sum());
-        Self { world, points, projected, moment, by_id, gone: 0, ids: 0..end, total: total as usize }
+        let sources = Source::all(points.motion.is_some(), projected, materials);
+        Self { world, points, sources, moment, by_id, gone: 0, ids: 0..end, total: total as usize }
     }
 
     /// The frame without its points.
@@ -84,59 +182,50 @@ impl<'a> Gathering<'a> {
         let starts: Vec<i32> = counts.iter().scan(0, |at, count| Some(std::mem::replace(at, *at + count))).collect();
         let mut all = vec![0.0; counts.iter().map(|&count| count as usize).sum()];
         root.gather_varcount_into_root(&own[..], &mut PartitionMut::new(&mut all[..], &counts[..], &starts[..]));
-        let mut rows: Vec<&[f64]> = all.chunks_exact(WIDTH).collect();
+        let mut rows: Vec<&[f64]> = all.chunks_exact(width(&self.sources)).collect();
         rows.sort_by(|a, b| a[0].total_cmp(&b[0]));
         Some(self.frame(&rows))
     }
 
-    /// This rank's points up to the id `end`, which have not gone before.
+    /// This rank's points up to the id `end`, which have not gone before: id, place, and the fields of each.
     fn pack(&mut self, end: u64) -> Vec<f64> {
         let (points, rest) = (self.points, &self.by_id[self.gone..]);
         let count = rest.partition_point(|&p| points.id[p as usize] < end);
-        let mut rows = Vec::with_capacity(count * WIDTH);
+        let mut rows = Vec::with_capacity(count * width(&self.sources));
         for p in rest[..count].iter().map(|&p| p as usize) {
-            let velocity = points.motion.as_ref().map_or([0.0; 2], |motion| motion.v[p].into());
-            rows.extend([points.id[p] as f64, f64::from(points.material[p])]);
-            rows.extend(points.x[p].iter());
-            rows.extend(points.u[p].iter());
-            rows.extend(velocity);
-            rows.extend(points.sigma.at(p).0);
-            rows.extend([points.eps_p[p], points.volume[p] * points.F.at(p).determinant()]);
-            rows.push(self.projected.as_ref().map_or(0.0, |projected| projected[p]));
+            rows.extend([points.id[p] as f64, points.x[p][0], points.x[p][1]]);
+            self.sources.iter().for_each(|source| source.put(points, p, &mut rows));
         }
         self.gone += count;
         rows
     }
 
     fn frame(&self, rows: &[&[f64]]) -> Frame {
-        unpack(rows, self.moment, (self.points.motion.is_some(), self.projected.is_some()))
+        unpack(rows, self.moment, &self.sources)
     }
 }
 
-/// Bytes that a point takes in a frame's file.
-pub fn point_bytes(dynamic: bool, projected: bool) -> u64 {
-    vtu::point_bytes(&unpack(&[], Moment { step: 0, time: 0.0, lower: [0.0; 2] }, (dynamic, projected)))
+/// Numbers of a point before its fields: id, x, y.
+const HEAD: usize = 3;
+
+/// Numbers of a point on its way to rank 0.
+fn width(sources: &[Source<'_>]) -> usize {
+    HEAD + sources.iter().map(Source::components).sum::<usize>()
 }
 
-fn unpack(rows: &[&[f64]], Moment { step, time, lower }: Moment, (dynamic, projected): (bool, bool)) -> Frame {
-    let column = |at: usize| rows.iter().map(|row| row[at]).collect::<Vec<f64>>();
-    let vector = |at: usize| rows.iter().flat_map(|row| [row[at], row[at + 1], 0.0]).collect::<Vec<f64>>();
-    let pressure = rows.iter().map(|row| -(row[8] + row[9] + row[10]) / 3.0).collect();
-    let ids = rows.iter().map(|row| row[0] as u64).collect();
-    let materials = rows.iter().map(|row| row[1] as u16).collect();
-    let mut fields = vec![
-        Field::real("displacement", 3, vector(4)),
-        Field::real("velocity", 3, vector(6)),
-        Field::real("stress", 6, rows.iter().flat_map(|row| row[8..14].to_vec()).collect()),
-        Field::real("pressure", 1, pressure),
-        Field::real("projected_pressure", 1, column(16)),
-        Field::real("plastic_strain", 1, column(14)),
-        Field::real("volume", 1, column(15)),
-        Field { name: "material".into(), components: 1, values: Values::U16(materials) },
-        Field { name: "id".into(), components: 1, values: Values::U64(ids) },
-    ];
-    fields.retain(|field| dynamic || field.name != "velocity");
-    fields.retain(|field| projected || field.name != "projected_pressure");
-    let position = rows.iter().map(|row| [lower[0] + row[2], lower[1] + row[3], 0.0]).collect();
+/// Bytes that a point takes in a frame's file.
+pub fn point_bytes(dynamic: bool, projected: bool, materials: &[Material]) -> u64 {
+    let sources = Source::all(dynamic, projected.then_some(&[]), materials);
+    vtu::point_bytes(&unpack(&[], Moment { step: 0, time: 0.0, lower: [0.0; 2] }, &sources))
+}
+
+fn unpack(rows: &[&[f64]], Moment { step, time, lower }: Moment, sources: &[Source<'_>]) -> Frame {
+    let mut at = HEAD;
+    let field = |source: &Source<'_>| {
+        at += source.components();
+        source.field(rows, at - source.components())
+    };
+    let fields = sources.iter().map(field).collect();
+    let position = rows.iter().map(|row| [lower[0] + row[1], lower[1] + row[2], 0.0]).collect();
     Frame { step, time, position, fields }
 }

@@ -264,7 +264,7 @@ impl<'p> Run<'p> {
         let projected = self.case.output.projected_pressure.then(|| projected_pressure(model, points, &**halo));
         let projected = projected.transpose().unwrap_or_else(|error| launch::end(&world, exit::BUG, &error));
         let moment = Moment { step, time, lower: self.case.grid.lower() };
-        let mut frame = Gathering::new(&world, points, projected, moment);
+        let mut frame = Gathering::new(&world, (points, &model.materials), projected.as_deref(), moment);
         let written = match &mut self.ledger {
             Some(ledger) => {
                 let (head, points) = (frame.head(), frame.points());

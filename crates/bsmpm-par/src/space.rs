@@ -64,7 +64,12 @@ impl Need {
         Self {
             frames: frames(case, time, begun),
             frame: HEAD
-                + points * gather::point_bytes(case.analysis.regime == Regime::Dynamic, case.output.projected_pressure),
+                + points
+                    * gather::point_bytes(
+                        case.analysis.regime == Regime::Dynamic,
+                        case.output.projected_pressure,
+                        &simulation.model.materials,
+                    ),
             // A new one is whole before the oldest goes.
             checkpoints: (case.output.checkpoint.keep.max(1) + 1).saturating_sub(there),
             checkpoint: WORDS + room + to_come,

@@ -74,6 +74,24 @@ fn with_the_ghost_penalty_it_goes_on_on_other_ranks_too() {
     goes_on_on_other_ranks(&changed(SLIDING_BLOCK, "[solver]\n", solver), &[(2, 3), (4, 2)]);
 }
 
+/// What a law declares as its state stays with the points: over a restart to the bit, on other ranks, and in frames.
+#[test]
+fn the_state_of_a_law_goes_along() {
+    let clay = "model = \"von-mises\"\nyield_stress = 2e3\nhardening = 5e4";
+    let case = changed(SLIDING_BLOCK, "model   = \"hencky\"", clay);
+    let scratch = Scratch::with_case(&case);
+    scratch.mpirun(2, &["case.toml", "-q", "-o", "whole"]).expect(0);
+    let part = ["case.toml", "-q", "-o", "part", "--restart", "auto"];
+    scratch.mpirun(2, &[&part[..], &["--max-steps", "20"]].concat()).expect(75);
+    scratch.mpirun(2, &part).expect(0);
+    assert!(results(&scratch.path("whole")) == results(&scratch.path("part")));
+    let frame = last_frame(&scratch.path("whole"));
+    let [state, flow] = ["hardening_strain", "plastic_strain"].map(|name| frame.real(name, 1).unwrap().to_vec());
+    assert!(flow.iter().copied().fold(0.0, f64::max) > 1e-3, "it yields");
+    assert!(state.iter().zip(&flow).all(|(a, b)| (a - b).abs() <= 1e-12), "von Mises hardens with its plastic strain");
+    goes_on_on_other_ranks(&case, &[(2, 3)]);
+}
+
 #[track_caller]
 fn goes_on_on_other_ranks(case: &str, ranks: &[(usize, usize)]) {
     let scratch = Scratch::with_case(case);
