@@ -1,6 +1,6 @@
 //! `bsmpm validate`: runs the cases of a matrix and judges their histories against references. The matrix is read in
-//! `matrix` and looked through in `check`, the runs are made in `runs`, numbers (`measured`) are taken from them in `measure`,
-//! `course` and `kink`, the table is set in `table`, curves are drawn in `figure`.
+//! `matrix` and looked through in `check`, the runs are made in `runs`, numbers (`measured`) are taken from them in
+//! `measure`, `course` and `kink`, the table is set in `table`, curves are drawn in `figure`.
 
 use std::collections::BTreeMap;
 use std::fs;

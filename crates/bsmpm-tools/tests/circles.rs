@@ -177,8 +177,8 @@ impl Tree {
         self.0.insert(path, (file, module));
     }
 
-    /// The module that a path in module `at` leads to, and whether all of the path is modules. Where nothing is known of
-    /// its beginning, as of other crates, that is `at`.
+    /// The module that a path in module `at` leads to, and whether all of the path is modules. Where nothing is known
+    /// of its beginning, as of other crates, that is `at`.
     fn owner(&self, at: &[String], path: &[String], names: usize) -> (Segments, bool) {
         let here = |is_module| (at.to_vec(), is_module);
         let Some((first, rest)) = path.split_first() else { return here(true) };
