@@ -2,12 +2,13 @@
 
 use std::fs::{self, Metadata};
 use std::io::{self, ErrorKind};
-use std::path::{Component, Path, PathBuf};
+use std::path::{Path, PathBuf};
 
 use crate::Error;
 use crate::frames::COLLECTION;
 use crate::lock::{Lock, Unseen};
 use crate::manifest::{MANIFEST, Manifest};
+use crate::relative::is_plain_relative;
 use crate::residuals::RESIDUALS;
 use crate::steps::STEPS;
 
@@ -228,10 +229,4 @@ fn inspect(directory: &Path, name: &str) -> Result<bool, &'static str> {
 
 fn has_our_ending(name: &str) -> bool {
     Path::new(name).extension().is_some_and(|ending| ENDINGS.iter().any(|&ours| ending == ours))
-}
-
-/// Whether a path is relative and goes nowhere but down.
-pub(crate) fn is_plain_relative(name: &str) -> bool {
-    let mut parts = Path::new(name).components().peekable();
-    parts.peek().is_some() && parts.all(|part| matches!(part, Component::Normal(_)))
 }

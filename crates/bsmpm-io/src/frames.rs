@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use crate::directory::is_plain_relative;
 use crate::frame::{Frame, Parts};
+use crate::relative::is_plain_relative;
 use crate::xml::tags;
 use crate::{Error, atomic, vtu};
 

@@ -22,6 +22,7 @@ pub mod frame;
 pub mod frames;
 pub mod lock;
 pub mod manifest;
+mod relative;
 pub mod residuals;
 pub mod steps;
 pub mod table;

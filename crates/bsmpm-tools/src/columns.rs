@@ -1,4 +1,4 @@
-//! Rows of text in columns, for the screen and as CSV.
+//! Rows of text in columns, for the screen and as CSV, and the numbers in them.
 
 /// At which side of its column a text stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,6 +35,12 @@ pub(crate) fn csv(lines: &[Vec<String>]) -> String {
         false => cell.clone(),
     };
     lines.iter().map(|line| line.iter().map(cell).collect::<Vec<_>>().join(",") + "\n").collect()
+}
+
+/// Five digits, without an exponent where that is readable.
+pub(crate) fn number(value: f64) -> String {
+    let rounded: f64 = format!("{value:.4e}").parse().unwrap_or(value);
+    if rounded != 0.0 && !(1e-3..1e7).contains(&rounded.abs()) { format!("{rounded:e}") } else { rounded.to_string() }
 }
 
 #[cfg(test)]

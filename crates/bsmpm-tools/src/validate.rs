@@ -1,6 +1,6 @@
 //! `bsmpm validate`: runs the cases of a matrix and judges their histories against references. The matrix is read in
-//! `matrix` and looked through in `check`, the runs are made in `runs`, numbers are taken from them in `measure`, `course` and
-//! `kink`, the table is set in `table`, curves are drawn in `figure`.
+//! `matrix` and looked through in `check`, the runs are made in `runs`, numbers (`measured`) are taken from them in
+//! `measure`, `course` and `kink`, the table is set in `table`, curves are drawn in `figure`.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -20,12 +20,13 @@ mod figure;
 mod kink;
 mod matrix;
 mod measure;
+mod measured;
 mod runs;
 mod table;
 
 pub use matrix::Depth;
 use matrix::{Matrix, Run, Study};
-use measure::{Lack, Measured};
+use measured::{Lack, Measured};
 use runs::{Launcher, Outcome};
 use table::{Row, Verdict};
 

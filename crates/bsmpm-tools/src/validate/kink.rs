@@ -2,7 +2,7 @@
 
 use super::course::reached;
 use super::matrix::Kink;
-use super::measure::Measured;
+use super::measured::Measured;
 
 /// The branch after a kink: from this many times the elastic displacement ..
 const BENT: f64 = 5.0;

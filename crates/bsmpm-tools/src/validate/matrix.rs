@@ -7,8 +7,8 @@ use std::path::Path;
 use serde::Deserialize;
 
 use super::expand::expand;
-use super::table::number;
 use crate::Error;
+use crate::columns::number;
 
 /// When something is run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]

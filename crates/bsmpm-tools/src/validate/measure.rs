@@ -5,28 +5,8 @@ use std::collections::BTreeMap;
 use super::course::{Spot, mean, reached, window};
 use super::kink::failure;
 use super::matrix::{Kink, Operation, Order, Place, Row};
+use super::measured::{Lack, Measured};
 use super::runs::Outcome;
-
-/// A number, and what its reader should know.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Measured {
-    pub value: f64,
-    pub remark: Option<String>,
-}
-
-/// Why there is no number.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) enum Lack {
-    /// The run did not come so far.
-    NotReached(String),
-    Other(String),
-}
-
-impl From<String> for Lack {
-    fn from(reason: String) -> Self {
-        Self::Other(reason)
-    }
-}
 
 /// The number of a row, or why there is none.
 pub(super) fn value(row: &Row, outcomes: &BTreeMap<String, Outcome>) -> Result<Measured, Lack> {

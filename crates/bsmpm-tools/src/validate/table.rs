@@ -1,6 +1,7 @@
 //! The table: for the screen study by study, as Markdown and as CSV whole.
 
 use super::runs::Cost;
+use crate::columns::number;
 
 /// How a row stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -91,12 +92,6 @@ impl Row {
             self.remark.clone(),
         ]
     }
-}
-
-/// Five digits, without an exponent where that is readable.
-pub(super) fn number(value: f64) -> String {
-    let rounded: f64 = format!("{value:.4e}").parse().unwrap_or(value);
-    if rounded != 0.0 && !(1e-3..1e7).contains(&rounded.abs()) { format!("{rounded:e}") } else { rounded.to_string() }
 }
 
 /// A study for the screen, in columns.

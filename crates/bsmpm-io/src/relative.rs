@@ -1,0 +1,9 @@
+//! Names of files that an output directory's own files hold: none of them may lead out of the directory.
+
+use std::path::{Component, Path};
+
+/// Whether a path is relative and goes nowhere but down.
+pub(crate) fn is_plain_relative(name: &str) -> bool {
+    let mut parts = Path::new(name).components().peekable();
+    parts.peek().is_some() && parts.all(|part| matches!(part, Component::Normal(_)))
+}
