@@ -91,8 +91,10 @@ fn read(universe: &Universe, hdf5: &Hdf5<'_>, wanted: Wanted<'_>, count: u64) ->
         }
         return Ok(());
     };
+    let law_state =
+        found.record.arrays.iter().find(|array| array.name == "law_state").map_or(0, |array| array.width as usize);
     let names: Vec<&str> = found.record.arrays.iter().map(|array| array.name.as_str()).collect();
-    let mut held = Points::<2>::holding(&names, 0);
+    let mut held = Points::<2>::holding(&names, law_state);
     let opened = Opened::new((hdf5, universe.world()), &found)?;
     let text = opened.state()?;
     opened.points(held.named_columns())?;

@@ -45,7 +45,7 @@ impl<'a> Source<'a> {
     fn all(dynamic: bool, projected: Option<&'a [f64]>, materials: &'a [Material]) -> Vec<Self> {
         let mut variables: Vec<Variable> = Vec::new();
         for variable in materials.iter().flat_map(|material| material.state()) {
-            if !variables.contains(variable) {
+            if variables.iter().all(|known| known.name != variable.name) {
                 variables.push(*variable);
             }
         }
@@ -94,7 +94,7 @@ impl<'a> Source<'a> {
             Self::PlasticStrain => row.push(points.eps_p[p]),
             Self::State(variable, materials) => {
                 let state = materials[usize::from(points.material[p])].state();
-                let place = state.iter().position(|own| own == variable);
+                let place = state.iter().position(|own| own.name == variable.name);
                 row.push(place.map_or(0.0, |place| points.state_of(p)[place]));
             }
             Self::Volume => row.push(points.volume[p] * points.F.at(p).determinant()),

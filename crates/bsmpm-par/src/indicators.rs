@@ -178,9 +178,7 @@ fn course(case: &Case, summary: &Summary) -> impl Iterator<Item = (&'static str,
         let meaning = "work done on the soft background, over that of all internal forces, of all steps";
         ("background-work", Indicator::new(share(soft, all), "-", meaning, [0.0, BACKGROUND]))
     });
-    let shortest =
-        |axis: &Axis| (0..axis.cells()).map(|i| axis.cell(i)).filter(|cell| *cell > 0.0).fold(f64::INFINITY, f64::min);
-    let cell = case.grid.axes.iter().map(shortest).fold(f64::INFINITY, f64::min);
+    let cell = case.grid.axes.iter().map(Axis::shortest).fold(f64::INFINITY, f64::min);
     let advance = summary.largest_advance.filter(|_| case.analysis.regime == Regime::Dynamic).map(|advance| {
         let meaning = "the farthest that a point moved in a step, in cells";
         ("step-advance", Indicator::new(advance / cell, "-", meaning, [0.0, ADVANCE]))

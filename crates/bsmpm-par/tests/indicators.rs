@@ -57,14 +57,14 @@ fn they_are_the_same_on_1_2_3_and_4_ranks() {
         all.sort_unstable();
         all
     };
-    assert_eq!(names, sorted(&["energy-growth", "front-setback", "smoothing-length", "support-pull"]));
+    assert_eq!(names, sorted(&["energy-growth", "front-setback", "smoothing-length", "step-advance", "support-pull"]));
     let footing = Scratch::with_case(&std::fs::read_to_string(shipped("short/strip_footing.toml")).unwrap());
     let names = agree(&footing, &["--max-steps", "4"], 75);
     assert_eq!(names, sorted(&["background-work", "slip", "smoothing-length", "support-pull"]));
     // It slides over the bounds of slabs, smooths nothing, and keeps books.
     let block = Scratch::with_case(&format!("{SLIDING_BLOCK}\n[[history]]\nquantity = \"energy\"\n"));
     let names = agree(&block, &[], 0);
-    assert_eq!(names, sorted(&["energy-closure", "energy-growth", "energy-loss", "support-pull"]));
+    assert_eq!(names, sorted(&["energy-closure", "energy-growth", "energy-loss", "step-advance", "support-pull"]));
 }
 
 #[test]

@@ -6,7 +6,7 @@ use bsmpm::boundary::{Boundary, Support};
 use bsmpm::error::GridError;
 use bsmpm::grid::{Grid, KnotVector};
 use bsmpm::kinematics::PlaneStrain;
-use bsmpm::material::Material;
+use bsmpm::material::{Material, state_width};
 use bsmpm::method::Criteria;
 use bsmpm::method::Nonlinear;
 use bsmpm::method::QuasiNewton;
@@ -113,8 +113,7 @@ pub fn penalty(case: &Case) -> f64 {
 pub fn points(case: &Case, columns: std::ops::Range<usize>) -> Points<2> {
     let points =
         Points::from_seeds(crate::seed(case, case.grid.cells_in(0, &columns)), case.analysis.regime == Regime::Dynamic);
-    let states = case.materials.iter().map(|named| named.material.state().len());
-    points.with_state(states.max().unwrap_or(0))
+    points.with_state(state_width(case.materials.iter().map(|named| &named.material)))
 }
 
 /// Stress of ground at rest, Pa, at `x` (m, from the grid's lower corner); `k0` by material.

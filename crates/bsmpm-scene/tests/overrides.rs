@@ -288,6 +288,8 @@ fn cones_and_cylinders() {
         let case = law(&format!("model = \"drucker-prager\", friction = 30, cohesion = 1e3{given}"));
         let Material::DruckerPrager(clay) = &case.materials[1].material else { panic!() };
         assert!(clay.fit() == fit && clay.cohesion() == 800.0 && clay.dilation() == 0.0);
+        let weaker = if fit == Match::Inner { "99.0 %" } else { "96.1 %" };
+        assert!(case.warnings.iter().any(|told| told.contains(weaker)), "{:?}", case.warnings);
         assert!((clay.friction().tan() * 1.25 - f64::to_radians(30.0).tan()).abs() < 1e-14);
     }
     let graded = "material.clay={ model = \"von-mises\", yield_stress = 1e4, poisson = 0.3, \

@@ -161,7 +161,7 @@ macro_rules! laws {
             }
 
             /// The response to a trial elastic left Cauchy-Green tensor, `b_trial = ΔF bᵉ ΔFᵀ` (Eq. 7), of a point in the `state`
-            /// of the last step; a graded law answers through [`Material::at`] only, and elastically here.
+            /// of the last step, which has the law's variables first; a graded law answers through [`Material::at`] only, and elastically here.
             ///
             /// # Errors
             /// When `b_trial` has a component that is not finite, or an eigenvalue that is not positive.
@@ -235,8 +235,8 @@ laws! {
 }
 
 /// Numbers of state that the points of these materials carry.
-pub fn state_width(materials: &[Material]) -> usize {
-    materials.iter().map(|material| material.state().len()).max().unwrap_or(0)
+pub fn state_width<'a>(materials: impl IntoIterator<Item = &'a Material>) -> usize {
+    materials.into_iter().map(|material| material.state().len()).max().unwrap_or(0)
 }
 
 impl Material {

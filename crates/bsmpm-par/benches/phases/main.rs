@@ -55,7 +55,7 @@ fn state(universe: &Universe, path: &Path, model: &mut Model<PlaneStrain, 2>) ->
     let (found, _) = checkpoint::find(&universe.world(), Wanted::Named(path)).map_err(refused)?;
     let found = found.ok_or("there is no checkpoint")?;
     let names: Vec<&str> = found.record.arrays.iter().map(|array| array.name.as_str()).collect();
-    let mut points = Points::holding(&names, 0);
+    let mut points = Points::holding(&names, bsmpm::material::state_width(&model.materials));
     let opened = Opened::new((&hdf5, universe.world()), &found).map_err(refused)?;
     opened.points(points.named_columns()).map_err(refused)?;
     let state = opened.state().and_then(|text| checkpoint::State::parse(path, &text)).map_err(refused)?;

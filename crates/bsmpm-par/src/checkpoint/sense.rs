@@ -52,6 +52,8 @@ fn possible(points: &Points<2>, grid: &Grid<2>, materials: usize) -> Result<(), 
             "its volume is not positive"
         } else if points.F.at(p).determinant() <= 0.0 {
             "det F is not positive"
+        } else if points.state_of(p).iter().any(|number| *number < 0.0) {
+            "the state of its law is negative"
         } else {
             continue;
         };

@@ -132,7 +132,7 @@ static MATERIAL: Table = Table {
             "separation",
             Choice(Separation::WORDS),
             Optional,
-            "volume that opens where stress returns to the apex: plastic, or a gap that closes first; forgotten unless given",
+            "volume that opens at the apex of mohr-coulomb: plastic, or a gap that closes first; forgotten unless given",
         ),
         key("unit_weight", Quantity(In::UnitWeight, Range::POSITIVE), Optional, "density = unit_weight / 9.81 m/s2"),
         key("density", Quantity(In::Density, Range::POSITIVE), Optional, "neither: weightless, in dynamics an error"),

@@ -171,7 +171,9 @@ fn note_reduction(record: &Record, material: &Material, layer: &Layer, factor: f
     };
     let how = match material {
         Material::VonMises(_) => "both / F",
-        _ => "c/F, atan(tan(phi)/F), psi at most the new phi",
+        Material::Hencky(_) | Material::MohrCoulomb(_) | Material::DruckerPrager(_) | Material::Graded(_) => {
+            "c/F, atan(tan(phi)/F), psi at most the new phi"
+        }
     };
     let reason = format!("strength_reduction.factor = {factor}: {how}");
     report.note(&record.path, value, reason);

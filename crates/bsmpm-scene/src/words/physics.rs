@@ -23,9 +23,9 @@ words! { Separation {
 } }
 
 words! { Match {
-    Outer = "outer": "in triaxial compression: outside elsewhere",
-    Inner = "inner": "in triaxial extension",
-    PlaneStrain = "plane-strain": "the limit load of plane strain",
+    Outer = "outer": "in triaxial compression; stronger than Mohr-Coulomb elsewhere",
+    Inner = "inner": "in triaxial extension; weaker in compression",
+    PlaneStrain = "plane-strain": "as strong in plane strain with associated flow (dilation = friction), weaker with less",
 } }
 
 words! { Stabilisation {

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use bsmpm::material::Material;
 use bsmpm::model::Regime;
 use bsmpm_scene::{Axis, Case, Path as Motion, Quantity};
 use serde::Serialize;
@@ -178,11 +179,18 @@ fn parsed(path: &Path, bytes: &[u8], set: &[String]) -> Result<Case, Error> {
 /// Why a case has no factor of safety, or none that could be trusted.
 fn refusals(case: &Case) -> Vec<String> {
     let is_plastic = case.materials.iter().any(|named| named.material.yields());
+    let hardens =
+        case.materials.iter().any(|named| matches!(&named.material, Material::VonMises(law) if law.hardening() > 0.0));
     let never_full = ramps(case).any(|ramp| ramp > case.analysis.end);
     let reasons = [
         (
             case.analysis.regime == Regime::Dynamic,
             "analysis.type = \"dynamic\": strength reduction looks for equilibrium; it needs a quasi-static analysis",
+        ),
+        (
+            hardens,
+            "a material hardens: its strength has no limit, and the factor would be that of the displacement that is looked at; \
+             hardening = 0 gives one",
         ),
         (!is_plastic, "no material is plastic: there is no strength to be reduced"),
         (!is_loaded(case), "nothing loads the body at `end`: no weight under gravity, no traction, no point load"),

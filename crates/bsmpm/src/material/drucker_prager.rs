@@ -14,7 +14,8 @@ pub enum Match {
     Outer,
     /// At the edges of triaxial extension.
     Inner,
-    /// Where both have the same limit load in plane strain.
+    /// Where both have the same limit load in plane strain, with associated flow: see
+    /// [`DruckerPrager::strength_in_plane_strain`] for less dilation.
     #[default]
     PlaneStrain,
 }
@@ -81,6 +82,17 @@ impl DruckerPrager {
     /// Cohesion c, Pa.
     pub fn cohesion(&self) -> f64 {
         self.cohesion
+    }
+
+    /// Shear strength over that of Mohr-Coulomb where plastic flow goes on in plane strain.
+    ///
+    /// No plastic strain along the normal makes its deviatoric stress -⅔ η_ψ √J₂, so that the radius of Mohr's circle is √(1 - η_ψ²/3)
+    /// (ξ c - η m)/(1 - η η_ψ/3) with m the mean stress in the plane, for c cos φ - m sin φ. Without friction that is of the cohesion.
+    pub fn strength_in_plane_strain(&self) -> f64 {
+        let [eta, eta_psi] = self.slopes;
+        let (sin, cos) = self.friction.sin_cos();
+        let slope = if sin > 0.0 { eta / sin } else { self.fit.slopes(0.0).1 / cos };
+        slope * (1.0 - eta_psi * eta_psi / 3.0).sqrt() / (1.0 - eta * eta_psi / 3.0)
     }
 
     /// Where the cone meets the pyramid.

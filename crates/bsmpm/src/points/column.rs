@@ -83,7 +83,9 @@ impl Column for Rows {
         true
     }
     fn reorder(&mut self, order: &[u32]) {
-        self.numbers = order.iter().flat_map(|&p| self.of_point(p as usize).to_vec()).collect();
+        let mut numbers = Vec::with_capacity(order.len() * self.width);
+        order.iter().for_each(|&p| numbers.extend_from_slice(self.of_point(p as usize)));
+        self.numbers = numbers;
     }
     fn put(&self, p: usize, message: &mut Vec<u8>) {
         self.of_point(p).iter().for_each(|number| number.put(message));

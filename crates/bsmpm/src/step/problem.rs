@@ -10,7 +10,7 @@ use crate::step::nodes::Nodes;
 
 /// Everything that is fixed while a step is iterated.
 pub struct Problem<'a, K, const D: usize> {
-    /// the scene
+    /// grid, materials, supports and the measures of convergence
     pub model: &'a Model<K, D>,
     /// step (1)
     pub shape: &'a Shape<D>,

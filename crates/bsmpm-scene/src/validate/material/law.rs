@@ -4,7 +4,7 @@ use super::{Layer, is_graded, profile};
 use crate::record::Record;
 use crate::report::Report;
 use crate::schema::{BELOW_90, Range};
-use crate::words::Law;
+use crate::words::{Law, Word};
 use bsmpm::material::{
     DruckerPrager, Elastic, Graded, GradedStrength, Hencky, Law as _, Match, Material, MohrCoulomb, Profile,
     Separation, VonMises,
@@ -63,7 +63,13 @@ pub(super) fn graded(
 }
 
 /// All keys that some laws have and others have not.
-const KEYS: [&str; 7] = ["friction", "dilation", "cohesion", "separation", "match", "yield_stress", "hardening"];
+fn all_keys() -> Vec<&'static str> {
+    let of = |word| Law::of(word).map(keys).map_or(Vec::new(), |(required, known)| [required, known].concat());
+    let mut all: Vec<&str> = Law::WORDS.words().flat_map(of).collect();
+    all.sort_unstable();
+    all.dedup();
+    all
+}
 
 /// Keys that a law needs, and further ones that it knows.
 fn keys(law: Law) -> (&'static [&'static str], &'static [&'static str]) {
@@ -81,7 +87,8 @@ pub(super) fn law(record: &Record, layer: Option<&Layer>, report: &mut Report<'_
     let model = record.word("model")?;
     let (required, known) = keys(model);
     let mut whole = true;
-    let unused = KEYS.iter().filter(|key| !required.contains(key) && !known.contains(key));
+    let all = all_keys();
+    let unused = all.iter().filter(|key| !required.contains(key) && !known.contains(key));
     for key in unused.filter(|key| record.gives(key) && !zero_angle(record, model, key)) {
         record.error(key, format!("has no meaning in model \"{model}\""), report);
         whole = false;
@@ -102,11 +109,29 @@ pub(super) fn law(record: &Record, layer: Option<&Layer>, report: &mut Report<'_
         }
         Law::DruckerPrager => {
             let strength = mohr_coulomb(record, model, layer, report)?;
-            Some(Parameters::DruckerPrager(strength, record.word("match").unwrap_or_default()))
+            let fit = record.word("match").unwrap_or_default();
+            warn_of_plane_strain(record, &strength, fit, report);
+            Some(Parameters::DruckerPrager(strength, fit))
         }
         Law::VonMises => {
             Some(Parameters::VonMises([record.number("yield_stress")?, record.number("hardening").unwrap_or(0.0)]))
         }
+    }
+}
+
+/// A cone that has another strength in plane strain than the pyramid it is to stand for.
+fn warn_of_plane_strain(record: &Record, strength: &[Profile; 3], fit: Match, report: &mut Report<'_>) {
+    let [friction, dilation, cohesion] = strength.each_ref().map(|profile| profile.value);
+    let angles = (friction.to_radians(), dilation.to_radians(), cohesion);
+    let cone = DruckerPrager::new(Elastic { young: 1.0, poisson: 0.0 }, angles, fit);
+    let ratio = cone.strength_in_plane_strain();
+    if (ratio - 1.0).abs() > 0.005 {
+        report.warn(format!(
+            "{}: in plane strain this cone has {:.1} % of mohr-coulomb's strength (with match = \"plane-strain\" and dilation = \
+             friction it has all); use mohr-coulomb where that is meant",
+            record.path,
+            100.0 * ratio
+        ));
     }
 }
 
@@ -162,7 +187,7 @@ pub(super) fn separation(
 
 /// Tresca's angles may be written if they are zero.
 fn zero_angle(record: &Record, model: Law, key: &str) -> bool {
-    model == Law::Tresca && record.number(key) == Some(0.0)
+    model == Law::Tresca && matches!(key, "friction" | "dilation") && record.number(key) == Some(0.0)
 }
 
 fn radians(profile: Profile) -> Profile {
