@@ -144,11 +144,11 @@ macro_rules! laws {
                 }
             }
 
-            /// The law with its strength divided by `factor`; of a graded one as it was made.
-            pub fn reduced(self, factor: f64) -> Self {
+            /// Whether its strength grows with plastic strain, without a limit.
+            pub fn hardens(&self) -> bool {
                 match self {
-                    $(Self::$Law(law) => Self::$Law(law.reduced(factor)),)*
-                    graded @ Self::Graded(_) => graded,
+                    $(Self::$Law(law) => law.hardens(),)*
+                    Self::Graded(_) => false,
                 }
             }
 
@@ -160,8 +160,9 @@ macro_rules! laws {
                 }
             }
 
-            /// The response to a trial elastic left Cauchy-Green tensor, `b_trial = ΔF bᵉ ΔFᵀ` (Eq. 7), of a point in the `state`
-            /// of the last step, which has the law's variables first; a graded law answers through [`Material::at`] only, and elastically here.
+            /// The response to a trial elastic left Cauchy-Green tensor, `b_trial = ΔF bᵉ ΔFᵀ` (Eq. 7), of a point in
+            /// the `state` of the last step, which has the law's variables first; a graded law answers through
+            /// [`Material::at`] only, and elastically here.
             ///
             /// # Errors
             /// When `b_trial` has a component that is not finite, or an eigenvalue that is not positive.

@@ -53,37 +53,37 @@ fn search<K: Kinematics<D>, const D: usize>(
     u: Vec<f64>,
     (solver, counts): (&mut dyn LinearSolver, &mut Counts),
 ) -> Result<Found<D>, StepError> {
-    let mut progress = Convergence::new(problem);
+    let mut convergence = Convergence::new(problem);
     let secants = match method {
         Nonlinear::Newton => {
-            let found = newton::iterate(problem, u, solver, counts, &mut progress);
+            let found = newton::iterate(problem, u, solver, counts, &mut convergence);
             return found
-                .or_else(|failure| settled(problem, failure, counts, &progress))
+                .or_else(|failure| settled(problem, failure, counts, &convergence))
                 .map_err(|failure| *failure.error);
         }
         Nonlinear::QuasiNewton(secants) => secants,
         Nonlinear::Auto => QuasiNewton::Multisecant,
     };
     let patient = method != Nonlinear::Auto;
-    let mut failure = match by_secants(problem, (secants, patient), u, (solver, counts), &mut progress) {
+    let mut failure = match by_secants(problem, (secants, patient), u, (solver, counts), &mut convergence) {
         Ok(found) => return Ok(found),
         Err(failure) => failure,
     };
     if let (Some(best), false) = (failure.best.take(), patient) {
-        let found = newton::iterate(problem, best, solver, counts, &mut progress);
-        failure = match found.or_else(|failure| settled(problem, failure, counts, &progress)) {
+        let found = newton::iterate(problem, best, solver, counts, &mut convergence);
+        failure = match found.or_else(|failure| settled(problem, failure, counts, &convergence)) {
             Ok(found) => return Ok(found),
             Err(failure) => failure,
         };
         if let Some(best) = failure.best.take() {
-            failure = match by_secants(problem, (secants, true), best, (solver, counts), &mut progress) {
+            failure = match by_secants(problem, (secants, true), best, (solver, counts), &mut convergence) {
                 Ok(found) => return Ok(found),
                 Err(failure) => failure,
             };
         }
     }
     // Secants alone that come to their limit might have gone on.
-    let found = if patient { Err(failure) } else { settled(problem, failure, counts, &progress) };
+    let found = if patient { Err(failure) } else { settled(problem, failure, counts, &convergence) };
     found.map_err(|failure| *failure.error)
 }
 
@@ -92,14 +92,14 @@ fn settled<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
     failure: Stopped,
     counts: &mut Counts,
-    progress: &Convergence,
+    convergence: &Convergence,
 ) -> Result<Found<D>, Stopped> {
     if failure.error.is_final() {
         return Err(failure);
     }
-    let Some(u) = progress.settled() else { return Err(failure) };
+    let Some(u) = convergence.settled() else { return Err(failure) };
     let residual = evaluate(problem, u, counts);
-    Ok(Found { settled: true, ..Found::new(u.clone(), residual, progress) })
+    Ok(Found { settled: true, ..Found::new(u.clone(), residual, convergence) })
 }
 
 /// Secants on the stiffness at `u`, where they start.
@@ -108,17 +108,17 @@ fn by_secants<K: Kinematics<D>, const D: usize>(
     method: (QuasiNewton, bool),
     u: Vec<f64>,
     (solver, counts): (&mut dyn LinearSolver, &mut Counts),
-    progress: &mut Convergence,
+    convergence: &mut Convergence,
 ) -> Result<Found<D>, Stopped> {
     let residual = evaluate(problem, &u, counts);
     if !residual.balance.is_sound() {
-        return Err(inverted(problem, &residual, progress.iterations()).into());
+        return Err(inverted(problem, &residual, convergence.iterations()).into());
     }
-    if problem.nodes.unknowns > 0 && !progress.is_balanced(&residual.balance, problem) {
+    if problem.nodes.unknowns > 0 && !convergence.is_balanced(&residual.balance, problem) {
         stiffness::assemble(problem, Some(&residual.trial), solver)?;
         counts.factorisations += 1;
     }
-    quasi_newton::iterate(problem, method, (u, residual), solver, counts, progress)
+    quasi_newton::iterate(problem, method, (u, residual), solver, counts, convergence)
 }
 
 /// The guess where it is free, the prescribed values, zero elsewhere.

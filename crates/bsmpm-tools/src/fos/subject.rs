@@ -2,7 +2,6 @@
 
 use std::path::{Path, PathBuf};
 
-use bsmpm::material::Material;
 use bsmpm::model::Regime;
 use bsmpm_scene::{Axis, Case, Path as Motion, Quantity};
 use serde::Serialize;
@@ -179,8 +178,7 @@ fn parsed(path: &Path, bytes: &[u8], set: &[String]) -> Result<Case, Error> {
 /// Why a case has no factor of safety, or none that could be trusted.
 fn refusals(case: &Case) -> Vec<String> {
     let is_plastic = case.materials.iter().any(|named| named.material.yields());
-    let hardens =
-        case.materials.iter().any(|named| matches!(&named.material, Material::VonMises(law) if law.hardening() > 0.0));
+    let hardens = case.materials.iter().any(|named| named.material.hardens());
     let never_full = ramps(case).any(|ramp| ramp > case.analysis.end);
     let reasons = [
         (

@@ -3,7 +3,7 @@
 //!
 //! The return is linear: along the deviator to the cone, or to its tip.
 
-use super::law::{Flow, Law, Region, split};
+use super::law::{Flow, Law, Region, reduced, split};
 use super::{Elastic, Moduli};
 use crate::tensor::Tensor;
 
@@ -21,7 +21,7 @@ pub enum Match {
 }
 
 impl Match {
-    /// Slope in the mean stress for the angle `sin` is of, and factor of the cohesion for a friction angle.
+    /// Of an angle (rad) its slope in the mean stress, η or η_ψ, and of the friction angle the factor ξ of the cohesion.
     fn slopes(self, angle: f64) -> (f64, f64) {
         let (sin, cos, tan) = (angle.sin(), angle.cos(), angle.tan());
         match self {
@@ -86,8 +86,9 @@ impl DruckerPrager {
 
     /// Shear strength over that of Mohr-Coulomb where plastic flow goes on in plane strain.
     ///
-    /// No plastic strain along the normal makes its deviatoric stress -⅔ η_ψ √J₂, so that the radius of Mohr's circle is √(1 - η_ψ²/3)
-    /// (ξ c - η m)/(1 - η η_ψ/3) with m the mean stress in the plane, for c cos φ - m sin φ. Without friction that is of the cohesion.
+    /// No plastic strain along the normal makes its deviatoric stress -⅔ η_ψ √J₂, so that the radius of Mohr's circle is
+    /// `√(1 - η_ψ²/3) (ξ c - η m)/(1 - η η_ψ/3)`, m the mean stress in the plane, for `c cos φ - m sin φ`: the ratio of
+    /// the terms in m, without friction of those in c.
     pub fn strength_in_plane_strain(&self) -> f64 {
         let [eta, eta_psi] = self.slopes;
         let (sin, cos) = self.friction.sin_cos();
@@ -118,7 +119,8 @@ impl Law for DruckerPrager {
         self.moduli
     }
 
-    /// `Δγ = (√J₂ + η p - ξ c)/(μ + K η η_ψ)`, `p - K η_ψ Δγ`, and √J₂ from f = 0; where that is negative the tip, p = ξ c/η.
+    /// `Δγ = (√J₂ + η p - ξ c)/(μ + K η η_ψ)`, `p - K η_ψ Δγ`, and √J₂ from f = 0; where that is negative the tip,
+    /// p = ξ c/η.
     #[inline]
     fn project(&self, trial: [f64; 3], _state: &[f64]) -> Option<([f64; 3], Return)> {
         let (Moduli { mu, .. }, [eta, eta_psi]) = (self.moduli, self.slopes);
@@ -139,13 +141,11 @@ impl Law for DruckerPrager {
         Some((tau, Return::Cone { direction: deviator.map(|s| s / norm), kept, slopes: self.slopes }))
     }
 
-    /// `c/SRF`, `atan(tan φ/SRF)`, `ψ_f = min(ψ, φ_f)`.
     fn reduced(self, factor: f64) -> Self {
         if factor == 1.0 {
             return self;
         }
-        let friction = (self.friction.tan() / factor).atan();
-        let strength = (friction, self.dilation.min(friction), self.cohesion / factor);
+        let strength = reduced((self.friction, self.dilation, self.cohesion), factor);
         Self::new(self.elastic, strength, self.fit)
     }
 
@@ -164,7 +164,8 @@ impl Flow for Return {
     }
 
     /// With `A = 1/(μ + K η η_ψ)`, n the direction and r what is kept of √J₂:
-    /// `2μ r (I₄ - ⅓ I ⊗ I) + 2μ (1 - r - μ A) n ⊗ n - √2 μ A K (η n ⊗ I + η_ψ I ⊗ n) + K (1 - K η η_ψ A) I ⊗ I`; at the tip 0.
+    /// `2μ r (I₄ - ⅓ I ⊗ I) + 2μ (1 - r - μ A) n ⊗ n - √2 μ A K (η n ⊗ I + η_ψ I ⊗ n) + K (1 - K η η_ψ A) I ⊗ I`;
+    /// at the tip 0.
     fn tangent(&self, moduli: Moduli) -> Tensor {
         let Self::Cone { direction: n, kept, slopes: [eta, eta_psi] } = *self else { return Tensor::zeros() };
         let (mu, bulk) = (moduli.mu, moduli.bulk());

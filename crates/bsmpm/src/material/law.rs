@@ -25,8 +25,8 @@ pub trait Law {
     /// Its moduli.
     fn moduli(&self) -> Moduli;
 
-    /// The stress after the return of an elastic trial stress (Pa), and its flow; `None` where the trial does not yield. `state`
-    /// is that of the last step, in the order of [`Law::STATE`].
+    /// The stress after the return of an elastic trial stress (Pa), and its flow; `None` where the trial does not yield.
+    /// `state` is that of the last step, in the order of [`Law::STATE`].
     fn project(&self, trial: [f64; 3], state: &[f64]) -> Option<([f64; 3], Self::Flow)>;
 
     /// The law with its strength divided by `factor` (section 3.2).
@@ -35,6 +35,11 @@ pub trait Law {
     /// Dilation angle, rad.
     fn dilation(&self) -> f64 {
         0.0
+    }
+
+    /// Whether its strength grows with plastic strain, without a limit.
+    fn hardens(&self) -> bool {
+        false
     }
 
     /// What becomes of the volume that opens at an apex.
@@ -53,8 +58,8 @@ pub trait Flow: Copy {
 
     /// `(τ_A - τ_B)/(ε_A - ε_B)`, Pa, where these differ by `tau` and `eps` ≥ 0.
     ///
-    /// In 0..2μ, since returns shrink stress differences; here 0 of equal strains, as what is near an edge returns to it. The bounds keep
-    /// rounding of a tiny difference inside.
+    /// In 0..2μ, since returns shrink stress differences; here 0 of equal strains, as what is near an edge returns to it.
+    /// The bounds keep rounding of a tiny difference inside.
     fn chord(&self, moduli: Moduli, (tau, eps): (f64, f64)) -> f64 {
         if eps > 0.0 { (tau / eps).max(0.0).min(2.0 * moduli.mu) } else { 0.0 }
     }
@@ -88,7 +93,7 @@ pub enum Separation {
     Closing,
 }
 
-/// A law that never yields leaves none.
+/// What the return of a law that never yields leaves: there is none.
 #[derive(Clone, Copy, Debug)]
 pub enum Never {}
 
@@ -99,6 +104,13 @@ impl Flow for Never {
     fn tangent(&self, _moduli: Moduli) -> Tensor {
         match *self {}
     }
+}
+
+/// Friction and dilation angle (rad) and cohesion (Pa), divided by a strength reduction factor: `atan(tan φ/SRF)`,
+/// `ψ_f = min(ψ, φ_f)`, `c/SRF`.
+pub(super) fn reduced((friction, dilation, cohesion): (f64, f64, f64), factor: f64) -> (f64, f64, f64) {
+    let reduced = (friction.tan() / factor).atan();
+    (reduced, dilation.min(reduced), cohesion / factor)
 }
 
 /// Mean, deviator and norm of the deviator of principal values.

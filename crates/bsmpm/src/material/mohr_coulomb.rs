@@ -3,7 +3,7 @@
 //! With no hardening each return is linear, so all are in closed form, and region by region:
 //! face, the edges τ₁ = τ₂ (left) and τ₂ = τ₃ (right), apex. Tresca is φ = ψ = 0, which has no apex.
 
-use super::law::{Flow, Law, Region, Separation};
+use super::law::{Flow, Law, Region, Separation, reduced};
 use super::{Elastic, Moduli};
 use crate::tensor::Tensor;
 
@@ -164,14 +164,12 @@ impl Law for MohrCoulomb {
         Some((tau, Return { region, slopes }))
     }
 
-    /// `c/SRF`, `atan(tan φ/SRF)`, `ψ_f = min(ψ, φ_f)`.
     fn reduced(self, factor: f64) -> Self {
         if factor == 1.0 {
             return self;
         }
-        let friction = (self.friction.tan() / factor).atan();
-        let reduced = Self::new(self.elastic, friction, self.dilation.min(friction), self.cohesion / factor);
-        reduced.separating(self.separation)
+        let (friction, dilation, cohesion) = reduced((self.friction, self.dilation, self.cohesion), factor);
+        Self::new(self.elastic, friction, dilation, cohesion).separating(self.separation)
     }
 
     fn dilation(&self) -> f64 {

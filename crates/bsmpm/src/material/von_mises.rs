@@ -77,6 +77,10 @@ impl Law for VonMises {
         Some((tau, Return { direction, kept, followed: self.hardening / (shear + self.hardening), growth }))
     }
 
+    fn hardens(&self) -> bool {
+        self.hardening > 0.0
+    }
+
     fn reduced(self, factor: f64) -> Self {
         Self::new(self.elastic, self.yield_stress / factor, self.hardening / factor)
     }

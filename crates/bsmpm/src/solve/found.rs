@@ -30,11 +30,11 @@ pub struct Found<const D: usize> {
 
 impl<const D: usize> Found<D> {
     /// The state that an iteration reached.
-    pub fn new(u: Vec<f64>, residual: Residual<D>, progress: &Convergence) -> Self {
-        let newton_iterations = progress.by_newton();
-        let (force, work) = (progress.measure(&residual.balance), residual.balance.work);
+    pub fn new(u: Vec<f64>, residual: Residual<D>, convergence: &Convergence) -> Self {
+        let newton_iterations = convergence.by_newton();
+        let (force, work) = (convergence.measure(&residual.balance), residual.balance.work);
         let Residual { trial, balance, .. } = residual;
-        let (history, reaction) = (progress.history().to_vec(), balance.reaction);
+        let (history, reaction) = (convergence.history().to_vec(), balance.reaction);
         Self { u, trial, reaction, history, force, work, newton_iterations, settled: false, first_guess: true }
     }
 }

@@ -33,37 +33,37 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
     mut u: Vec<f64>,
     solver: &mut dyn LinearSolver,
     counts: &mut Counts,
-    progress: &mut Convergence,
+    convergence: &mut Convergence,
 ) -> Result<Found<D>, Stopped> {
     let mut residual = evaluate(problem, &u, counts);
     if !residual.balance.is_sound() {
-        return Err(inverted(problem, &residual, progress.iterations()).into());
+        return Err(inverted(problem, &residual, convergence.iterations()).into());
     }
     for _ in 0..MOST {
-        if progress.is_balanced(&residual.balance, problem) {
-            return Ok(Found::new(u, residual, progress));
+        if convergence.is_balanced(&residual.balance, problem) {
+            return Ok(Found::new(u, residual, convergence));
         }
         if problem.halo.is_interrupted() {
             return Err(StepError::Interrupted.into());
         }
         let du = match direction(problem, &residual, solver, counts) {
             Ok(du) => du,
-            Err(unsolved) => return Err(Stopped::without_direction(problem, (u, &residual), progress, unsolved)),
+            Err(unsolved) => return Err(Stopped::without_direction(problem, (u, &residual), convergence, unsolved)),
         };
         let f = &residual.balance.f_oob;
         let energy = dots(problem.halo, D, &[(&du, f)])[0];
-        if !progress.has_begun() {
-            progress.begin(first_energy(problem, &du, energy));
+        if !convergence.has_begun() {
+            convergence.begin(first_energy(problem, &du, energy));
         }
-        if progress.reaches(Method::Newton, energy.abs(), (&u, &residual.balance)) {
-            return Ok(Found::new(u, residual, progress));
+        if convergence.reaches(Method::Newton, energy.abs(), (&u, &residual.balance)) {
+            return Ok(Found::new(u, residual, convergence));
         }
         let work = stability::tells(problem, &residual.balance).then_some(energy);
         let Some((next, found)) = search(problem, &u, &du, &residual, counts) else { break };
-        stability::check(problem, progress, (&du, work), &found.balance)?;
+        stability::check(problem, convergence, (&du, work), &found.balance)?;
         (u, residual) = (next, found);
     }
-    Err(Stopped { error: Box::new(progress.failed(problem, &residual, None)), best: Some(u) })
+    Err(Stopped { error: Box::new(convergence.failed(problem, &residual, None)), best: Some(u) })
 }
 
 /// K du = f_oob with the complete K at this state.

@@ -94,13 +94,13 @@ impl Stopped {
     pub fn without_direction<K, const D: usize>(
         problem: &Problem<'_, K, D>,
         (best, residual): (Vec<f64>, &Residual<D>),
-        progress: &Convergence,
+        convergence: &Convergence,
         unsolved: SolveError,
     ) -> Self {
-        if progress.iterations() == 0 {
+        if convergence.iterations() == 0 {
             return unsolved.into();
         }
-        Self { error: Box::new(progress.failed(problem, residual, Some(unsolved))), best: Some(best) }
+        Self { error: Box::new(convergence.failed(problem, residual, Some(unsolved))), best: Some(best) }
     }
 }
 
@@ -118,29 +118,29 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
     (mut u, mut residual): (Vec<f64>, Residual<D>),
     solver: &mut dyn LinearSolver,
     counts: &mut Counts,
-    progress: &mut Convergence,
+    convergence: &mut Convergence,
 ) -> Result<Found<D>, Stopped> {
     let mut secants = Secants::new::<D>(method, &problem.nodes.free, problem.halo);
     let (mut best, mut least) = (u.clone(), residual.balance.norm);
-    while progress.iterations() < problem.model.criteria.max_iterations && (patient || !progress.stalls()) {
-        if progress.is_balanced(&residual.balance, problem) {
-            return Ok(Found::new(u, residual, progress));
+    while convergence.iterations() < problem.model.criteria.max_iterations && (patient || !convergence.stalls()) {
+        if convergence.is_balanced(&residual.balance, problem) {
+            return Ok(Found::new(u, residual, convergence));
         }
         if problem.halo.is_interrupted() {
             return Err(StepError::Interrupted.into());
         }
         let direction = match secants.direction::<D>(&residual.balance.f_oob, problem.halo, solver) {
             Ok(direction) => direction, // (6), (7)
-            Err(unsolved) => return Err(Stopped::without_direction(problem, (best, &residual), progress, unsolved)),
+            Err(unsolved) => return Err(Stopped::without_direction(problem, (best, &residual), convergence, unsolved)),
         };
         counts.iterations += 1;
         counts.linear_iterations += direction.solved.iterations;
         counts.factorisations += direction.solved.factorisations;
-        if !progress.has_begun() {
-            progress.begin(first_energy(problem, &direction.du, direction.energy));
+        if !convergence.has_begun() {
+            convergence.begin(first_energy(problem, &direction.du, direction.energy));
         }
-        if progress.reaches(Method::QuasiNewton(method), direction.energy.abs(), (&u, &residual.balance)) {
-            return Ok(Found::new(u, residual, progress)); // (9)
+        if convergence.reaches(Method::QuasiNewton(method), direction.energy.abs(), (&u, &residual.balance)) {
+            return Ok(Found::new(u, residual, convergence)); // (9)
         }
         // The direction's own energy is a sum of products with secants, whose round-off is another.
         let work = stability::tells(problem, &residual.balance)
@@ -149,12 +149,12 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
             Ok(length) => secants.took(length), // (8), (4), (5)
             Err(inverted) => return Err(Stopped { error: Box::new(inverted), best: Some(best) }),
         }
-        stability::check(problem, progress, (&direction.du, work), &residual.balance)?;
+        stability::check(problem, convergence, (&direction.du, work), &residual.balance)?;
         if residual.balance.norm < least {
             (least, best) = (residual.balance.norm, u.clone());
         }
     }
-    Err(Stopped { error: Box::new(progress.failed(problem, &residual, None)), best: Some(best) })
+    Err(Stopped { error: Box::new(convergence.failed(problem, &residual, None)), best: Some(best) })
 }
 
 /// Step (8): takes the direction, or the first half, quarter, .. of it under which no point inverts.

@@ -25,15 +25,15 @@ pub fn tells<K, const D: usize>(problem: &Problem<'_, K, D>, before: &Balance) -
 /// the forces then. Agreed by all ranks; one reduction.
 pub fn check<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
-    progress: &Convergence,
+    convergence: &Convergence,
     (du, work): (&[f64], Option<f64>),
     after: &Balance,
 ) -> Result<(), StepError> {
     let Some(before) = work.filter(|_| after.measure() < NEAR) else { return Ok(()) };
     let sums = dots(problem.halo, D, &[(du, &after.f_oob), (du, du)]);
     let work = before - sums[0];
-    if is_negative(work, sums[1].sqrt(), progress.round_off() * bulkiness(problem.model)) {
-        return Err(StepError::Unstable { iteration: progress.iterations(), work });
+    if is_negative(work, sums[1].sqrt(), convergence.round_off() * bulkiness(problem.model)) {
+        return Err(StepError::Unstable { iteration: convergence.iterations(), work });
     }
     Ok(())
 }
