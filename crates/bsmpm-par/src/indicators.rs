@@ -76,7 +76,7 @@ impl State {
         (recorder, budget): (&Recorder, Option<Budget>),
         halo: &dyn Halo,
     ) -> Result<Self, StepError> {
-        let defect = quadrature::defect(&model.grid, points, halo);
+        let defect = quadrature::defect(model, points, halo);
         let compression = quadrature::compression(points, model.materials.len(), halo);
         let noise = relative_pressure_noise(&model.grid, points, model.weighting, halo)?;
         let energy = recorder.books().map(|books| {

@@ -125,7 +125,7 @@ impl Recorder {
                 vec![left + observe::percentile(points, 0, *percentile, halo)]
             }
             Quantity::Runout { .. } => vec![left + observe::farthest(points, 0, halo)],
-            Quantity::Front => vec![left + observe::front(&model.grid, points, halo)],
+            Quantity::Front => vec![left + observe::front(model, points, halo)],
             Quantity::Height { at_x: None } => vec![bottom + observe::farthest(points, 1, halo)],
             Quantity::Height { at_x: Some(x) } => {
                 let [x, _] = self.grid.local([*x, bottom]);

@@ -3,6 +3,7 @@
 use crate::{Base, Case, Face, Footing, Prescribed, Site};
 use bsmpm::boundary::{Load, Path, Strip, StripReport, SurfacePoint, surface};
 use bsmpm::grid::Grid;
+use bsmpm::kinematics::PlaneStrain;
 use bsmpm::tensor::Vector;
 
 /// Stiffness of the penalty over E/h of the stiffest material and the smallest cell. The traction is carried from step to
@@ -19,7 +20,7 @@ pub fn penalty(young: f64, edge: f64) -> f64 {
 /// Rigid strips: the footing first, then the prescribed motions in the order of the file.
 pub fn strips(case: &Case, grid: &Grid<2>, penalty: f64) -> Vec<Strip<2>> {
     let strip = |[from, to]: [Vector<2>; 2], path: &crate::Path, base: Base| Strip {
-        points: surface::along(grid, &from, &to, HELD),
+        points: surface::along::<PlaneStrain>(grid, &from, &to, HELD),
         normal: (base == Base::Smooth).then(|| normal(&from, &to)),
         path: Path { rows: path.rows.iter().map(|(time, moved)| (*time, Vector::from(*moved))).collect() },
         penalty,
@@ -49,7 +50,7 @@ pub fn loads(case: &Case, grid: &Grid<2>) -> Vec<Load<2>> {
     let place = |at: [f64; 2]| Vector::from(case.grid.local(at));
     let across = case.bodies.iter().map(|body| body.points_per_cell).max().unwrap_or(1);
     let tractions = case.tractions.iter().map(|traction| Load {
-        points: surface::along(grid, &place(traction.from), &place(traction.to), across),
+        points: surface::along::<PlaneStrain>(grid, &place(traction.from), &place(traction.to), across),
         traction: traction.stress.into(),
         ramp: traction.ramp,
     });

@@ -12,6 +12,7 @@ mod ghost;
 use crate::exact::Exact;
 use crate::grid::shape::{Patch, Shape};
 use crate::grid::{Contributions, Grid, transfer};
+use crate::kinematics::Kinematics;
 use crate::material::Material;
 use crate::points::Points;
 use crate::seam::{Halo, LinearSolver};
@@ -22,7 +23,7 @@ use ghost::Faces;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// c E int eps : eps dV, eps the symmetric gradient of the step's displacement: every deformation, no
-    /// small rotation. In all occupied cells it slows down what fails: a slope
+    /// small rotation; in axisymmetry those in the plane. In all occupied cells it slows down what fails: a slope
     /// far beyond its strength comes to rest in coarse steps, on half of its way.
     Strain,
     /// c E int sum_ij h_i h_j (d2u / dx_i dx_j)^2 dV: how far a cell departs from the linear extrapolation of its
@@ -129,8 +130,8 @@ const FILLED: f64 = 0.75;
 const SUPPORTED: f64 = 0.5;
 
 impl Background {
-    /// Blocks of the cells or faces concerned, eps E times the form.
-    pub fn blocks<const D: usize>(
+    /// Blocks of the cells or faces concerned, eps E times the form; a geometry's weight is that of their middles.
+    pub fn blocks<K: Kinematics<D>, const D: usize>(
         &self,
         grid: &Grid<D>,
         shape: &Shape<D>,
@@ -144,20 +145,23 @@ impl Background {
         };
         let concerned: Vec<bool> = match self.extent {
             Extent::Occupied => vec![true; shape.patches().len()],
-            Extent::PartlyFilled => partly_filled(grid, shape, points, halo),
+            Extent::PartlyFilled => partly_filled::<K, D>(grid, shape, points, halo),
         };
         let form = match self.kind {
             Kind::Strain => Form::Strain,
             Kind::Curvature => Form::Curvature,
             Kind::GhostPenalty => {
-                let faces = Faces::of((grid, shape), (self.coefficient, &concerned), modulus, halo);
+                let faces = Faces::of::<K, D>((grid, shape), (self.coefficient, &concerned), modulus, halo);
                 return Blocks { cells: Vec::new(), faces };
             }
         };
         let forms = Forms::new(grid, form);
         let cells = shape.patches().iter().enumerate().filter(|(number, _)| concerned[*number]);
         let block = |(number, patch): (usize, &Patch)| {
-            (number, forms.block(&grid.cell_at(patch.cell), self.coefficient * modulus(patch)))
+            let cell = grid.cell_at(patch.cell);
+            let (lower, size) = grid.cell_box(&cell);
+            let weight = K::weight(&(lower + size * 0.5));
+            (number, forms.block(&cell, self.coefficient * modulus(patch) * weight))
         };
         Blocks { cells: cells.map(block).collect(), faces: Faces::default() }
     }
@@ -179,13 +183,17 @@ fn gather<'a, const D: usize>(
 }
 
 /// Per patch: less than .75 of the cell is filled, and it holds a function at the body's edge.
-fn partly_filled<const D: usize>(grid: &Grid<D>, shape: &Shape<D>, points: &Points<D>, halo: &dyn Halo) -> Vec<bool> {
+fn partly_filled<K: Kinematics<D>, const D: usize>(
+    grid: &Grid<D>,
+    shape: &Shape<D>,
+    points: &Points<D>,
+    halo: &dyn Halo,
+) -> Vec<bool> {
     let volume = |p: usize| points.volume[p] * points.F.at(p).determinant();
     let held = halo.sum(&transfer::to_nodes(shape, |p| [volume(p)]));
-    let at_the_edge = |node: usize| held[node] < SUPPORTED * grid.node_volume(node);
+    let at_the_edge = |node: usize| held[node] < SUPPORTED * grid.node_volume::<K>(node);
     let concerned = |patch: &Patch| {
-        let (_, size) = grid.cell_box(&grid.cell_at(patch.cell));
-        patch.points.clone().map(volume).sum::<f64>() < FILLED * size.product()
+        patch.points.clone().map(volume).sum::<f64>() < FILLED * grid.cell_volume::<K>(&grid.cell_at(patch.cell))
             && shape.offsets().iter().any(|offset| at_the_edge(patch.first_node + offset))
     };
     shape.patches().iter().map(concerned).collect()

@@ -44,7 +44,7 @@ pub use budget::{Budget, Turnover};
 use crate::boundary::{Surface, load};
 use crate::exact::Exact;
 use crate::grid::{Contributions, transfer};
-use crate::kinematics::Kinematics;
+use crate::kinematics::{Gradient, Kinematics};
 use crate::material::Response;
 use crate::model::Model;
 use crate::points::Points;
@@ -52,7 +52,7 @@ use crate::seam::{Halo, over_layers};
 use crate::solve::found::Found;
 use crate::step::adjoint::Pressures;
 use crate::step::problem::Problem;
-use crate::tensor::{Square, Vector};
+use crate::tensor::Vector;
 use std::ops::AddAssign;
 
 /// Energy that went somewhere in a step, or in all steps so far, J; see the module.
@@ -147,7 +147,7 @@ impl Draft {
     /// made of.
     pub fn of<K: Kinematics<D>, const D: usize>(
         problem: &Problem<'_, K, D>,
-        (found, responses): (&Found<D>, &[Response]),
+        (found, responses): (&Found<K, D>, &[Response]),
         (t, dt): (f64, f64),
     ) -> Self {
         let Problem { model, nodes, grips, points, halo, .. } = *problem;
@@ -179,16 +179,16 @@ impl Draft {
     fn add_losses<K: Kinematics<D>, const D: usize>(
         &mut self,
         problem: &Problem<'_, K, D>,
-        (found, responses): (&Found<D>, &[Response]),
+        (found, responses): (&Found<K, D>, &[Response]),
     ) {
         let Problem { model, shape, nodes, points, .. } = *problem;
         let (flows, u) = (&mut self.flows, &found.u[..]);
         let (pressures, volume) = (Pressures::of(problem, &found.trial), problem.volume());
-        let work_of = |p: usize, grad: Square<D>| {
+        let work_of = |p: usize, grad: K::Gradient| {
             let tau = pressures.acting::<K, D>(p, volume[p], responses[p].tau());
-            volume[p] * K::flux(&tau, &found.trial.dF::<K>(p)).dot(&grad)
+            volume[p] * K::flux(&tau, &found.trial.dF(p)).dot(&grad)
         };
-        flows.integration.extend(transfer::gradients(shape, u, work_of));
+        flows.integration.extend(transfer::gradients::<K, D, _>((shape, &points.x), u, work_of));
         flows.integration -= &flows.plastic;
         flows.integration -= &self.elastic;
         flows.integration += &elastic(model, points);

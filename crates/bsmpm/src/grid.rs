@@ -15,6 +15,7 @@ pub use shape::Shape;
 pub use spline::KnotVector;
 
 use crate::error::GridError;
+use crate::kinematics::Kinematics;
 use crate::tensor::Vector;
 use std::ops::Range;
 
@@ -229,16 +230,26 @@ impl<const D: usize> Grid<D> {
         (lower, size)
     }
 
-    /// Integral of a node's function over the grid, m^D.
-    pub fn node_volume(&self, node: usize) -> f64 {
-        let node = self.node_at(node);
-        (0..D).map(|axis| self.axes[axis].integral(node[axis])).product()
+    /// Volume of a cell.
+    pub fn cell_volume<K: Kinematics<D>>(&self, cell: &[usize; D]) -> f64 {
+        let (lower, size) = self.cell_box(cell);
+        size.product() * K::weight(&(lower + size * 0.5))
     }
 
-    /// Integral over the grid of the function of degree q - 1 that has a node's number ([`Shape::lowered`]), m^D.
-    pub fn lowered_volume(&self, node: usize) -> f64 {
-        let node = self.node_at(node);
-        (0..D).map(|axis| self.axes[axis].lowered_integral(node[axis])).product()
+    /// Integral of a node's function over the grid: its weight is linear, so that the function's mean place decides.
+    pub fn node_volume<K: Kinematics<D>>(&self, node: usize) -> f64 {
+        self.volume::<K>(self.node_at(node), KnotVector::integral)
+    }
+
+    /// Integral over the grid of the function of degree q - 1 that has a node's number ([`Shape::lowered`]).
+    pub fn lowered_volume<K: Kinematics<D>>(&self, node: usize) -> f64 {
+        self.volume::<K>(self.node_at(node), KnotVector::lowered_integral)
+    }
+
+    /// Of the functions with these numbers along the axes, whose `integral` along one has the length and the mean place.
+    fn volume<K: Kinematics<D>>(&self, node: [usize; D], integral: impl Fn(&KnotVector, usize) -> (f64, f64)) -> f64 {
+        let along: [(f64, f64); D] = std::array::from_fn(|axis| integral(&self.axes[axis], node[axis]));
+        along.iter().map(|(length, _)| length).product::<f64>() * K::weight(&Vector::from_fn(|axis, _| along[axis].1))
     }
 
     /// Smallest edge of any cell, m.

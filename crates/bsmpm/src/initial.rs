@@ -74,7 +74,8 @@ pub fn set_elastic<K: Kinematics<D>, const D: usize>(
         }
         solver.solve(&residual.f_oob, &mut du)?;
         u.iter_mut().zip(&du).for_each(|(u, du)| *u += du);
-        strains = transfer::gradients(&start.shape, &u, |_, grad| Symmetric::of(&K::gradient(&grad)));
+        strains =
+            transfer::gradients::<K, D, _>((&start.shape, &points.x), &u, |_, grad| Symmetric::of(&K::gradient(&grad)));
     }
     let (_, traction) = start.grips.conclude(&model.boundary.strips, &u, halo);
     points.surface.traction = traction;
@@ -153,7 +154,7 @@ fn elastic_residual<K: Kinematics<D>, const D: usize>(
     u: &[f64],
 ) -> Balance {
     let volume = problem.volume();
-    let f_int = transfer::divergence(problem.shape, |p| {
+    let f_int = transfer::divergence::<K, D>((problem.shape, &problem.points.x), |p| {
         let tau = stress_of(&elastic_at(problem.model, problem.points, p), &strains[p]);
         K::flux(&tau, &Tensor::identity()) * volume[p]
     });

@@ -1,127 +1,166 @@
-//! The only place where plane strain, axisymmetry and three dimensions differ: G, G^T and F-bar's exponent.
+//! The only place where plane strain, axisymmetry and three dimensions differ: the numbers that a node's function has in a
+//! gradient (G), how they become tensors and back (G, G^T), F-bar's exponent, and what a piece of the grid weighs.
 
-use crate::tensor::{Square, Symmetric, Tensor};
+mod axisymmetric;
+mod plane_strain;
+mod solid;
+
+pub use axisymmetric::Axisymmetric;
+pub use plane_strain::PlaneStrain;
+pub use solid::Solid;
+
+use crate::tensor::{Square, Symmetric, Tensor, Vector};
+use nalgebra::{ArrayStorage, SMatrix, SVector};
+use std::fmt::Debug;
+use std::ops::{Add, AddAssign, Index, IndexMut, Mul, MulAssign, Sub, SubAssign};
 
 /// How grid fields of dimension `D` become three-dimensional tensors, and back.
-pub trait Kinematics<const D: usize>: Copy + Default + Send + Sync + 'static {
-    /// Displacement gradient as a tensor, from the in-plane gradient du_i/dx_j.
-    fn gradient(grad: &Square<D>) -> Tensor;
+pub trait Kinematics<const D: usize>: Copy + Debug + Default + Send + Sync + 'static {
+    /// Gradient of a displacement, 1/m of m: a row for each component, a column for each number of a node's function.
+    type Gradient: Gradient<D>;
 
-    /// dJ = det(I + grad), -; out of the grid's directions nothing stretches.
-    fn jacobian(grad: &Square<D>) -> f64;
+    /// The numbers of a node's function in a gradient, 1/m, of its value `N` and its gradient at `x`.
+    fn slope(N: impl FnOnce() -> f64, grad: Vector<D>, x: &Vector<D>) -> Slope<Self, D>;
 
-    /// In-plane part of V0 tau dF^-T: times grad N_I it is the internal force of a point at node I (step 5a).
-    fn flux(tau: &Symmetric, dF: &Tensor) -> Square<D>;
+    /// Displacement gradient as a tensor.
+    fn gradient(grad: &Self::Gradient) -> Tensor;
+
+    /// dJ = det(I + grad), -; where nothing stretches out of the grid's directions, without them.
+    fn jacobian(grad: &Self::Gradient) -> f64;
+
+    /// What the grid sees of V0 tau dF^-T: times a node's numbers it is the internal force of a point there (step 5a).
+    fn flux(tau: &Symmetric, dF: &Tensor) -> Self::Gradient;
 
     /// dF-bar = (dJ-bar/dJ)^(1/dof) dF (Eq. 15), `ratio` = dJ-bar/dJ > 0; dof are the directions that the grid dilates.
     fn dilate(dF: &Tensor, ratio: f64) -> Tensor;
 
-    /// The part of a tensor that works on in-plane gradients: the adjoint of [`Kinematics::gradient`].
-    fn in_plane(tensor: &Tensor) -> Square<D>;
+    /// The part of a tensor that works on gradients: the adjoint of [`Kinematics::gradient`].
+    fn working(tensor: &Tensor) -> Self::Gradient;
 
     /// Spatial gradient of a unit of d ln(dJ-bar/dJ) under [`Kinematics::dilate`]: I / dof in the grid's directions.
     fn dilation() -> Tensor;
+
+    /// What a unit displacement of a node dilates, 1/m: the trace of its gradient, by component.
+    fn divergence(slope: &Slope<Self, D>) -> Vector<D>;
 
     /// Trial b^e = dF-bar b^e dF-bar^T (Eqs 7, 19).
     fn push_forward(dF: &Tensor, b_e: &Symmetric) -> Symmetric {
         Symmetric::of(&(dF * b_e.full() * dF.transpose()))
     }
 
-    /// Elastic stiffness of a node pair from T = sum V0 grad N_a (x) grad N_b: lambda T + mu T^T + mu tr T I.
-    fn stiffness(moment: &Square<D>, (lambda, mu): (f64, f64)) -> Square<D> {
-        moment * lambda + moment.transpose() * mu + Square::<D>::identity() * (mu * moment.trace())
+    /// Elastic stiffness of a node pair from T = sum V0 g_a (x) g_b, g their numbers: where these are derivatives,
+    /// lambda T + mu T^T + mu tr T I.
+    fn stiffness(moment: &Moment<Self, D>, lame: (f64, f64)) -> Square<D>;
+
+    /// Volume at `x` per m^D of the grid: what volumes and areas are multiplied with. Linear in x.
+    fn weight(_x: &Vector<D>) -> f64 {
+        1.0
     }
 }
 
-/// Plane strain: no displacement and no stretch out of the plane; 1 m thick.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct PlaneStrain;
+/// The numbers of a node's function in the gradients of a geometry.
+pub type Slope<K, const D: usize> = <<K as Kinematics<D>>::Gradient as Gradient<D>>::Slope;
+/// Sums over a node pair's numbers.
+pub type Moment<K, const D: usize> = <<K as Kinematics<D>>::Gradient as Gradient<D>>::Moment;
+/// A linear map of gradients.
+pub type Moduli<K, const D: usize> = <<K as Kinematics<D>>::Gradient as Gradient<D>>::Moduli;
 
-impl Kinematics<2> for PlaneStrain {
+/// A matrix of D rows and G columns: gradients of grid fields, and what works on them.
+pub trait Gradient<const D: usize>:
+    Copy
+    + Debug
+    + PartialEq
+    + Send
+    + Sync
+    + 'static
+    + Index<(usize, usize), Output = f64>
+    + IndexMut<(usize, usize)>
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + AddAssign
+    + SubAssign
+    + Mul<f64, Output = Self>
+    + MulAssign<f64>
+{
+    /// G
+    const SLOPES: usize;
+    /// Zeros of a node.
+    const NO_SLOPE: Self::Slope;
+    /// Zeros of a pair of nodes.
+    const NO_MOMENT: Self::Moment;
+    /// G numbers of a node's function.
+    type Slope: Copy + Debug + Send + Sync + Index<usize, Output = f64> + Mul<f64, Output = Self::Slope>;
+    /// G x G numbers of a pair of nodes.
+    type Moment: Copy + Debug + Send + Sync + Index<(usize, usize), Output = f64> + IndexMut<(usize, usize)>;
+    /// What every unit gradient makes: element (k, l) that of a unit at (k, l).
+    type Moduli: Copy + Debug + Send + Sync + Index<(usize, usize), Output = Self> + IndexMut<(usize, usize)>;
+
+    /// All elements the same.
+    fn from_element(value: f64) -> Self;
+
+    /// Every element by its row and column.
+    fn from_fn(element: impl FnMut(usize, usize) -> f64) -> Self;
+
+    /// The map that makes these of unit gradients.
+    fn moduli(unit: impl FnMut(usize, usize) -> Self) -> Self::Moduli;
+
+    /// Sum of the products of all elements.
+    fn dot(&self, other: &Self) -> f64;
+
+    /// The matrix times a node's numbers.
+    fn times(&self, slope: &Self::Slope) -> Vector<D>;
+
+    /// Zeros.
     #[inline]
-    fn jacobian(grad: &Square<2>) -> f64 {
-        (Square::<2>::identity() + grad).determinant()
+    fn zeros() -> Self {
+        Self::from_element(0.0)
     }
 
+    /// 1 at one element, 0 elsewhere.
     #[inline]
-    fn gradient(grad: &Square<2>) -> Tensor {
-        Tensor::new(grad[(0, 0)], grad[(0, 1)], 0.0, grad[(1, 0)], grad[(1, 1)], 0.0, 0.0, 0.0, 0.0)
-    }
-
-    #[inline]
-    fn in_plane(tensor: &Tensor) -> Square<2> {
-        tensor.fixed_view::<2, 2>(0, 0).into_owned()
-    }
-
-    fn dilation() -> Tensor {
-        Tensor::from_diagonal(&[0.5, 0.5, 0.0].into())
-    }
-
-    #[inline]
-    fn flux(tau: &Symmetric, dF: &Tensor) -> Square<2> {
-        let [xx, yy, _, xy, ..] = tau.0;
-        let (a, b, c, d) = (dF[(0, 0)], dF[(0, 1)], dF[(1, 0)], dF[(1, 1)]);
-        let inverse = 1.0 / (a * d - b * c);
-        Square::<2>::new(
-            (xx * d - xy * b) * inverse,
-            (xy * a - xx * c) * inverse,
-            (xy * d - yy * b) * inverse,
-            (yy * a - xy * c) * inverse,
-        )
-    }
-
-    #[inline]
-    fn push_forward(dF: &Tensor, b_e: &Symmetric) -> Symmetric {
-        let [xx, yy, zz, xy, ..] = b_e.0;
-        let (a, b, c, d) = (dF[(0, 0)], dF[(0, 1)], dF[(1, 0)], dF[(1, 1)]);
-        let (row_x, row_y) = ((a * xx + b * xy, a * xy + b * yy), (c * xx + d * xy, c * xy + d * yy));
-        let normal = dF[(2, 2)] * dF[(2, 2)] * zz;
-        Symmetric([row_x.0 * a + row_x.1 * b, row_y.0 * c + row_y.1 * d, normal, row_x.0 * c + row_x.1 * d, 0.0, 0.0])
-    }
-
-    #[inline]
-    fn dilate(dF: &Tensor, ratio: f64) -> Tensor {
-        let root = ratio.sqrt();
-        let mut dF_bar = *dF;
-        for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
-            dF_bar[(i, j)] *= root;
-        }
-        dF_bar
+    fn unit(row: usize, column: usize) -> Self {
+        let mut unit = Self::zeros();
+        unit[(row, column)] = 1.0;
+        unit
     }
 }
 
-/// Three dimensions.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Solid;
-
-impl Kinematics<3> for Solid {
-    #[inline]
-    fn jacobian(grad: &Square<3>) -> f64 {
-        (Square::<3>::identity() + grad).determinant()
-    }
+impl<const D: usize, const G: usize> Gradient<D> for SMatrix<f64, D, G> {
+    const SLOPES: usize = G;
+    const NO_SLOPE: Self::Slope = SVector::from_array_storage(ArrayStorage([[0.0; G]]));
+    const NO_MOMENT: Self::Moment = SMatrix::from_array_storage(ArrayStorage([[0.0; G]; G]));
+    type Slope = SVector<f64, G>;
+    type Moment = SMatrix<f64, G, G>;
+    type Moduli = SMatrix<Self, D, G>;
 
     #[inline]
-    fn gradient(grad: &Square<3>) -> Tensor {
-        *grad
+    fn from_element(value: f64) -> Self {
+        Self::from_element(value)
     }
 
     #[inline]
-    fn in_plane(tensor: &Tensor) -> Square<3> {
-        *tensor
-    }
-
-    fn dilation() -> Tensor {
-        Tensor::identity() / 3.0
+    fn from_fn(element: impl FnMut(usize, usize) -> f64) -> Self {
+        Self::from_fn(element)
     }
 
     #[inline]
-    fn flux(tau: &Symmetric, dF: &Tensor) -> Square<3> {
-        let inverse = dF.try_inverse().unwrap_or_else(|| Tensor::from_element(f64::NAN));
-        tau.full() * inverse.transpose()
+    fn moduli(unit: impl FnMut(usize, usize) -> Self) -> Self::Moduli {
+        SMatrix::from_fn(unit)
     }
 
     #[inline]
-    fn dilate(dF: &Tensor, ratio: f64) -> Tensor {
-        dF * ratio.cbrt()
+    fn dot(&self, other: &Self) -> f64 {
+        self.dot(other)
     }
+
+    #[inline]
+    fn times(&self, slope: &Self::Slope) -> Vector<D> {
+        self * slope
+    }
+}
+
+/// lambda T + mu T^T + mu tr T I, T = sum V0 grad N_a (x) grad N_b.
+#[inline]
+fn isotropic<const D: usize>(moment: &Square<D>, (lambda, mu): (f64, f64)) -> Square<D> {
+    moment * lambda + moment.transpose() * mu + Square::<D>::identity() * (mu * moment.trace())
 }

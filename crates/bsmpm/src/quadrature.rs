@@ -19,6 +19,7 @@
 use crate::boundary::Boundary;
 use crate::grid::occupied::Occupied;
 use crate::grid::{Grid, Shape, transfer};
+use crate::kinematics::Kinematics;
 use crate::points::Points;
 use crate::seam::Halo;
 
@@ -40,7 +41,7 @@ const FACTORS: [f64; 2] = [0.1, 10.0];
 
 /// Weight of every point, m^D of the reference volume; the same bits on any number of ranks. An exchange with the
 /// neighbours for every pass of the iteration, and three more.
-pub fn fitted<const D: usize>(
+pub fn fitted<K: Kinematics<D>, const D: usize>(
     (grid, boundary): (&Grid<D>, &Boundary<D>),
     shape: &Shape<D>,
     points: &Points<D>,
@@ -55,7 +56,7 @@ pub fn fitted<const D: usize>(
     let own = integrals(&|_| 1.0);
     let outside = outside(grid, boundary, &lower, halo);
     let inside = |node: usize| !outside[node] && own[node] > 0.0;
-    let missing: Vec<f64> = (0..own.len()).map(|node| grid.lowered_volume(node) - own[node]).collect();
+    let missing: Vec<f64> = (0..own.len()).map(|node| grid.lowered_volume::<K>(node) - own[node]).collect();
     let mut chebyshev = Chebyshev::new(own.len());
     let mut found = vec![0.0; own.len()];
     for _ in 0..PASSES {

@@ -31,7 +31,7 @@ pub fn find<K: Kinematics<D>, const D: usize>(
     guess: &[f64],
     solver: &mut dyn LinearSolver,
     counts: &mut Counts,
-) -> Result<Found<D>, StepError> {
+) -> Result<Found<K, D>, StepError> {
     let (last, zero) = (admissible(problem.nodes, guess), admissible(problem.nodes, &vec![0.0; guess.len()]));
     let mut differs = [f64::from(u8::from(last != zero))];
     problem.halo.maximum(&mut differs);
@@ -52,7 +52,7 @@ fn search<K: Kinematics<D>, const D: usize>(
     method: Nonlinear,
     u: Vec<f64>,
     (solver, counts): (&mut dyn LinearSolver, &mut Counts),
-) -> Result<Found<D>, StepError> {
+) -> Result<Found<K, D>, StepError> {
     let mut convergence = Convergence::new(problem);
     let secants = match method {
         Nonlinear::Newton => {
@@ -93,7 +93,7 @@ fn settled<K: Kinematics<D>, const D: usize>(
     failure: Stopped,
     counts: &mut Counts,
     convergence: &Convergence,
-) -> Result<Found<D>, Stopped> {
+) -> Result<Found<K, D>, Stopped> {
     if failure.error.is_final() {
         return Err(failure);
     }
@@ -109,7 +109,7 @@ fn by_secants<K: Kinematics<D>, const D: usize>(
     u: Vec<f64>,
     (solver, counts): (&mut dyn LinearSolver, &mut Counts),
     convergence: &mut Convergence,
-) -> Result<Found<D>, Stopped> {
+) -> Result<Found<K, D>, Stopped> {
     let residual = evaluate(problem, &u, counts);
     if !residual.balance.is_sound() {
         return Err(inverted(problem, &residual, convergence.iterations()).into());
@@ -136,7 +136,7 @@ pub fn evaluate<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
     u: &[f64],
     counts: &mut Counts,
-) -> Residual<D> {
+) -> Residual<K, D> {
     counts.evaluations += 1;
     Residual::of(problem, u)
 }

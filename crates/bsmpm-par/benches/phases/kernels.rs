@@ -54,7 +54,9 @@ impl Bench<'_> {
         let u: Vec<f64> = guess.iter().enumerate().map(along).collect();
         self.row("(1) shape functions, sorting apart", true, || drop(black_box(Shape::at(&model.grid, points))));
         self.row("(2) points to nodes", true, || drop(black_box(Nodes::map(model, &shape, points, times, halo))));
-        self.row("(4a) gather of grad u", false, || drop(black_box(transfer::gradients(&shape, &u, |_, grad| grad))));
+        self.row("(4a) gather of grad u", false, || {
+            drop(black_box(transfer::gradients::<PlaneStrain, 2, _>((&shape, &points.x), &u, |_, grad| grad)))
+        });
         if model.stabilisation.averages() {
             self.row("(4c-e) average of F-bar", false, || {
                 drop(black_box(nodes.mean_dilation(model, (&shape, points), halo, |_| 1.0)));
@@ -67,7 +69,9 @@ impl Bench<'_> {
             }
         });
         self.row("(5a) scatter of the internal force", false, || {
-            drop(black_box(transfer::divergence(&shape, |p| PlaneStrain::flux(&points.sigma.at(p), &points.F.at(p)))));
+            drop(black_box(transfer::divergence::<PlaneStrain, 2>((&shape, &points.x), |p| {
+                PlaneStrain::flux(&points.sigma.at(p), &points.F.at(p))
+            })));
         });
         self.row("(4), (5) whole residual, with balance and sums", false, || {
             drop(black_box(Residual::of(&problem, &u)))

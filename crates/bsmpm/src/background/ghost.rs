@@ -8,6 +8,7 @@
 use super::form::{Products, products};
 use crate::grid::shape::{Patch, Shape};
 use crate::grid::{Contributions, Grid, KnotVector};
+use crate::kinematics::Kinematics;
 use crate::seam::{Halo, LinearSolver};
 
 /// The faces of one step.
@@ -31,7 +32,7 @@ const MOST_ALONG: usize = 16;
 impl Faces {
     /// Faces with a cell of this rank below and a concerned cell on one side or on both; `modulus` in Pa, the largest of
     /// a patch; h is the mean of the two cells' lengths.
-    pub(super) fn of<const D: usize>(
+    pub(super) fn of<K: Kinematics<D>, const D: usize>(
         (grid, shape): (&Grid<D>, &Shape<D>),
         (coefficient, concerned): (f64, &[bool]),
         modulus: impl Fn(&Patch) -> f64,
@@ -56,7 +57,10 @@ impl Faces {
                 let next = patch.first_node + offsets[normal][along(grid)];
                 let sides = [patch.first_node, next].map(|node| (cells[2 * node], cells[2 * node + 1] > 0.0));
                 if sides[1].0 > 0.0 && (sides[0].1 || sides[1].1) {
-                    let factor = coefficient * sides[0].0.max(sides[1].0);
+                    let (lower, size) = grid.cell_box(&cell);
+                    let middle =
+                        lower + size.map_with_location(|along, _, h| if along == normal { h } else { 0.5 * h });
+                    let factor = coefficient * sides[0].0.max(sides[1].0) * K::weight(&middle);
                     faces.push(Face::new((grid, &products), (patch.first_node, &cell, normal), factor));
                 }
             }

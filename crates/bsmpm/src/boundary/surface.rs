@@ -4,6 +4,7 @@
 
 use crate::grid::shape::with_width;
 use crate::grid::{Contributions, Grid, KnotVector};
+use crate::kinematics::Kinematics;
 use crate::tensor::Vector;
 
 /// Share of a surface point's shape functions that the nodes that count must have: below it no material is near enough.
@@ -26,7 +27,7 @@ pub struct SurfacePoint<const D: usize> {
 /// Points in the middles of `count` equal pieces of every part of a straight segment that the grid's lines cut off; `from`
 /// and `to` in m from the grid's lower corner. With as many pieces as a cell has points across, a load is in exact balance
 /// with uniform stress: the points' quadrature is the same rule.
-pub fn along(grid: &Grid<2>, from: &Vector<2>, to: &Vector<2>, count: usize) -> Vec<SurfacePoint<2>> {
+pub fn along<K: Kinematics<2>>(grid: &Grid<2>, from: &Vector<2>, to: &Vector<2>, count: usize) -> Vec<SurfacePoint<2>> {
     let mut cuts = vec![0.0, 1.0];
     for (axis, knots) in grid.axes().iter().enumerate() {
         let reach = to[axis] - from[axis];
@@ -40,7 +41,8 @@ pub fn along(grid: &Grid<2>, from: &Vector<2>, to: &Vector<2>, count: usize) -> 
     let length = (to - from).norm();
     let piece = |part: &[f64], k: usize| {
         let share = (part[1] - part[0]) / count as f64;
-        SurfacePoint { x: from + (to - from) * (part[0] + (k as f64 + 0.5) * share), area: share * length }
+        let x = from + (to - from) * (part[0] + (k as f64 + 0.5) * share);
+        SurfacePoint { x, area: share * length * K::weight(&x) }
     };
     cuts.windows(2).flat_map(|part| (0..count).map(move |k| piece(part, k))).collect()
 }

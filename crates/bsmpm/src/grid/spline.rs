@@ -98,14 +98,14 @@ impl KnotVector {
         self.knots[i + 1..=i + self.order].iter().sum::<f64>() / self.order as f64
     }
 
-    /// Integral of function `i`: the length of its support over q + 1, m.
-    pub fn integral(&self, i: usize) -> f64 {
-        (self.knots[i + self.order + 1] - self.knots[i]) / (self.order + 1) as f64
+    /// Integral of function `i`, the length of its support over q + 1, and its mean place, that of its knots, m.
+    pub fn integral(&self, i: usize) -> (f64, f64) {
+        integral(&self.knots[i..=i + self.order + 1])
     }
 
-    /// Integral of function `i` of the splines of degree q - 1 on the same cells, m: function `a` of cell `c` is number `c + a`.
-    pub fn lowered_integral(&self, i: usize) -> f64 {
-        (self.knots[i + self.order + 1] - self.knots[i + 1]) / self.order as f64
+    /// The same of function `i` of the splines of degree q - 1 on the same cells: function `a` of cell `c` is number `c + a`.
+    pub fn lowered_integral(&self, i: usize) -> (f64, f64) {
+        integral(&self.knots[i + 1..=i + self.order + 1])
     }
 
     /// Shortest cell that has a length, m.
@@ -168,4 +168,10 @@ impl KnotVector {
         }
         (N, dN)
     }
+}
+
+/// Integral of the function with these knots, and the mean of its place (Curry and Schoenberg, 1966, J. Anal. Math. 17, 71-107).
+fn integral(knots: &[f64]) -> (f64, f64) {
+    let last = knots.len() - 1;
+    ((knots[last] - knots[0]) / last as f64, knots.iter().sum::<f64>() / knots.len() as f64)
 }

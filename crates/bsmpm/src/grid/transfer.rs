@@ -6,8 +6,9 @@
 
 use super::contributions::Contributions;
 use super::shape::{Column, Shape, with_width};
+use crate::kinematics::{Gradient, Kinematics, Slope};
 use crate::stabilisation::Grouped;
-use crate::tensor::{Square, Vector};
+use crate::tensor::Vector;
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -101,23 +102,24 @@ pub fn to_points_grouped<const D: usize, const C: usize, T: Send>(
     }))
 }
 
-/// Gather with gradients: what `found` makes of (grad u)_p = sum_I u_I (x) grad N_Ip (step 4a), for every point.
-pub fn gradients<const D: usize, T: Send>(
-    shape: &Shape<D>,
+/// Gather with gradients: what `found` makes of (grad u)_p = sum_I u_I (x) grad N_Ip (step 4a), for every point; the points
+/// are at `x`, m.
+pub fn gradients<K: Kinematics<D>, const D: usize, T: Send>(
+    (shape, x): (&Shape<D>, &[Vector<D>]),
     u: &[f64],
-    found: impl Fn(usize, Square<D>) -> T + Sync,
+    found: impl Fn(usize, K::Gradient) -> T + Sync,
 ) -> Vec<T> {
     with_width!(shape.width(), W => at_points(shape, |number, out: &mut Vec<T>| {
         let patch = &shape.patches()[number];
         let block: Block<D> = gather(u, shape.offsets(), patch.first_node, (0, 1));
         for p in patch.points.clone() {
             let support = shape.support::<W>(p);
-            let mut gradient = Square::<D>::zeros();
+            let mut gradient = K::Gradient::zeros();
             for (k, at_node) in block[..const { W.pow(D as u32) }].iter().enumerate() {
-                let grad = support.gradient(k);
-                for j in 0..D {
+                let slope = K::slope(|| support.value(k), support.gradient(k), &x[p]);
+                for j in 0..K::Gradient::SLOPES {
                     for i in 0..D {
-                        gradient[(i, j)] += at_node[i] * grad[j];
+                        gradient[(i, j)] += at_node[i] * slope[j];
                     }
                 }
             }
@@ -127,15 +129,18 @@ pub fn gradients<const D: usize, T: Send>(
 }
 
 /// Scatter with gradients, the adjoint of [`gradients`]: sum_p flux_p grad N_Ip (step 5a).
-pub fn divergence<const D: usize>(shape: &Shape<D>, flux: impl Fn(usize) -> Square<D> + Sync) -> Contributions {
+pub fn divergence<K: Kinematics<D>, const D: usize>(
+    (shape, x): (&Shape<D>, &[Vector<D>]),
+    flux: impl Fn(usize) -> K::Gradient + Sync,
+) -> Contributions {
     with_width!(shape.width(), W => scatter(shape, Grouped::NOT, |points, block: &mut Block<D>| {
         for p in points {
             let (support, flux) = (shape.support::<W>(p), flux(p));
             for (k, sums) in block[..const { W.pow(D as u32) }].iter_mut().enumerate() {
-                let grad = support.gradient(k);
-                for j in 0..D {
+                let slope = K::slope(|| support.value(k), support.gradient(k), &x[p]);
+                for j in 0..K::Gradient::SLOPES {
                     for i in 0..D {
-                        sums[i] += flux[(i, j)] * grad[j];
+                        sums[i] += flux[(i, j)] * slope[j];
                     }
                 }
             }
@@ -155,13 +160,17 @@ pub fn squared_gradients<const D: usize>(shape: &Shape<D>, weight: impl Fn(usize
     }))
 }
 
-/// Gradients of all nodes of point `p`, for pair sums over a patch.
+/// What all nodes of point `p` at `x` have in a gradient, for pair sums over a patch.
 #[inline]
-pub(crate) fn gradients_of<const D: usize>(shape: &Shape<D>, p: usize, out: &mut [Vector<D>]) {
+pub(crate) fn slopes_of<K: Kinematics<D>, const D: usize>(
+    (shape, x): (&Shape<D>, &[Vector<D>]),
+    p: usize,
+    out: &mut [Slope<K, D>],
+) {
     with_width!(shape.width(), W => {
         let support = shape.support::<W>(p);
-        for (k, grad) in out[..const { W.pow(D as u32) }].iter_mut().enumerate() {
-            *grad = support.gradient(k);
+        for (k, slope) in out[..const { W.pow(D as u32) }].iter_mut().enumerate() {
+            *slope = K::slope(|| support.value(k), support.gradient(k), &x[p]);
         }
     });
 }

@@ -5,7 +5,8 @@
 use super::Response;
 use super::law::Region;
 use super::tangent::{PAIRS, slope};
-use crate::tensor::{Square, Tensor};
+use crate::kinematics::Gradient;
+use crate::tensor::Tensor;
 use std::f64::consts::FRAC_1_SQRT_2;
 
 /// Share of the elastic stiffness. Less takes fewer iterations where steps are small, and more where they are large: measured in
@@ -61,19 +62,19 @@ impl Stiffness {
     /// `Σ D_AB v_A ⊗ v_B + Σ G_AB w_AB ⊗ w_AB`, v_A what it sees of `n_A n_Aᵀ`, w_AB of `n_A n_Bᵀ + n_B n_Aᵀ`: so that no
     /// unit has to be turned to the axes of b and its stress back.
     #[inline(always)]
-    pub fn moduli<const D: usize>(&self, seen: impl Fn(&Tensor) -> Square<D>) -> [[Square<D>; D]; D] {
+    pub fn moduli<G: Gradient<D>, const D: usize>(&self, seen: impl Fn(&Tensor) -> G) -> G::Moduli {
         let n = |a: usize, i: usize| self.axes[(a, i)];
         let dyad = |a: usize| seen(&Tensor::from_fn(|i, j| n(a, i) * n(a, j)));
         let pair = |(a, b): (usize, usize)| seen(&Tensor::from_fn(|i, j| n(a, i) * n(b, j) + n(b, i) * n(a, j)));
         let (v, w) = ([dyad(0), dyad(1), dyad(2)], [pair(PAIRS[0]), pair(PAIRS[1]), pair(PAIRS[2])]);
-        let mut moduli = [[Square::zeros(); D]; D];
+        let mut moduli = G::moduli(|_, _| G::zeros());
         for m in 0..3 {
             let [a, b, c] = [self.principal[(m, 0)], self.principal[(m, 1)], self.principal[(m, 2)]];
             let (stress, shear) = (v[0] * a + v[1] * b + v[2] * c, w[m] * self.shear[m]);
             for k in 0..D {
-                for l in k..D {
-                    moduli[k][l] += stress * v[m][(k, l)] + shear * w[m][(k, l)];
-                    moduli[l][k] = moduli[k][l];
+                (0..k).for_each(|l| moduli[(k, l)] = moduli[(l, k)]);
+                for l in k..G::SLOPES {
+                    moduli[(k, l)] += stress * v[m][(k, l)] + shear * w[m][(k, l)];
                 }
             }
         }

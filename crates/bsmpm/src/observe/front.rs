@@ -4,6 +4,8 @@
 //! the grid in its place makes the front jump back by a spacing of points wherever the first of them enter the next cell.
 
 use crate::grid::Grid;
+use crate::kinematics::Kinematics;
+use crate::model::Model;
 use crate::points::Points;
 use crate::seam::Halo;
 
@@ -16,7 +18,8 @@ type Held = Vec<[f64; 2]>;
 /// The body's front (m): the farthest point of the lowest occupied row of cells such that the points from it back by the
 /// length of its cell, in this cell and the one before, fill half of a cell. A few loose points run ahead of it. Rows count
 /// along the last axis, the front along axis 0; 0 where nothing is so full.
-pub fn front<const D: usize>(grid: &Grid<D>, points: &Points<D>, halo: &dyn Halo) -> f64 {
+pub fn front<K: Kinematics<D>, const D: usize>(model: &Model<K, D>, points: &Points<D>, halo: &dyn Halo) -> f64 {
+    let grid = &model.grid;
     let row = lowest_row(grid, points, halo);
     let strands: usize = grid.axes()[1..D - 1].iter().map(|axis| axis.cells()).product();
     let columns = grid.axes()[0].cells();
@@ -50,7 +53,7 @@ pub fn front<const D: usize>(grid: &Grid<D>, points: &Points<D>, halo: &dyn Halo
             }
         });
         let (_, size) = grid.cell_box(&cell);
-        let wanted = FULL * size.product();
+        let wanted = FULL * grid.cell_volume::<K>(&cell);
         let most: f64 = cells.iter().flatten().map(|cell| told[2 * cell + 1]).sum();
         if cells[1].is_some() && most >= wanted * (1.0 - f64::EPSILON.sqrt()) {
             let all = of_all_ranks(&held, &told, &cells, halo);

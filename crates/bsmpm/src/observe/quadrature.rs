@@ -1,8 +1,9 @@
 //! How well the points fill the cells: equal-weight quadrature is exact where the volumes of a cell's points add up to it.
 
 use crate::exact::Exact;
-use crate::grid::Grid;
 use crate::grid::occupied::Occupied;
+use crate::kinematics::Kinematics;
+use crate::model::Model;
 use crate::points::Points;
 use crate::seam::Halo;
 
@@ -22,7 +23,12 @@ pub struct Defect {
 /// Defect of the points' current volumes V_p = J_p V0_p over the cells all of whose neighbours (3^D - 1, as far as the grid
 /// has them) hold points, too; none where no cell is interior. The points must be sorted by cell: then it has the same
 /// bits on any number of ranks.
-pub fn defect<const D: usize>(grid: &Grid<D>, points: &Points<D>, halo: &dyn Halo) -> Option<Defect> {
+pub fn defect<K: Kinematics<D>, const D: usize>(
+    model: &Model<K, D>,
+    points: &Points<D>,
+    halo: &dyn Halo,
+) -> Option<Defect> {
+    let grid = &model.grid;
     let (mut held, mut counts) = (vec![0.0; grid.cells()], vec![0_u32; grid.cells()]);
     for p in 0..points.len() {
         if let Some(cell) = grid.locate(&points.x[p]) {
@@ -36,7 +42,7 @@ pub fn defect<const D: usize>(grid: &Grid<D>, points: &Points<D>, halo: &dyn Hal
     for (index, volume) in held.iter().enumerate() {
         let cell = grid.cell_at(index);
         if *volume > 0.0 && occupied.surround(&cell, &[[true; 2]; D]) {
-            let defect = volume / grid.cell_box(&cell).1.product() - 1.0;
+            let defect = volume / grid.cell_volume::<K>(&cell) - 1.0;
             squares.add(defect * defect);
             largest[0] = largest[0].max(defect.abs());
             numbers = [numbers[0] + 1.0, numbers[1] + f64::from(counts[index])];

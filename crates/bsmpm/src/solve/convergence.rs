@@ -116,10 +116,10 @@ impl Convergence {
     }
 
     /// The error of an iteration that ended at `residual`; `unsolved` where no direction was found there.
-    pub fn failed<K, const D: usize>(
+    pub fn failed<K: Kinematics<D>, const D: usize>(
         &self,
         problem: &Problem<'_, K, D>,
-        residual: &Residual<D>,
+        residual: &Residual<K, D>,
         unsolved: Option<SolveError>,
     ) -> StepError {
         let (force, material) = self.round_off.measure(&residual.balance);
@@ -147,13 +147,20 @@ pub fn first_energy<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D
 }
 
 /// The error of a state in which points have inverted.
-pub fn inverted<K, const D: usize>(problem: &Problem<'_, K, D>, residual: &Residual<D>, iteration: usize) -> StepError {
+pub fn inverted<K: Kinematics<D>, const D: usize>(
+    problem: &Problem<'_, K, D>,
+    residual: &Residual<K, D>,
+    iteration: usize,
+) -> StepError {
     let first = residual.first_inverted.map(|p| (problem.points.id[p], problem.points.x[p].as_slice().to_vec()));
     StepError::Inverted { count: residual.balance.inverted, iteration, first }
 }
 
 /// This rank's own nodes whose forces are the least balanced, worst first.
-fn worst_nodes<K, const D: usize>(problem: &Problem<'_, K, D>, residual: &Residual<D>) -> Vec<WorstNode> {
+fn worst_nodes<K: Kinematics<D>, const D: usize>(
+    problem: &Problem<'_, K, D>,
+    residual: &Residual<K, D>,
+) -> Vec<WorstNode> {
     let grid = &problem.model.grid;
     let force = |node: usize| Vector::<D>::from_column_slice(&residual.balance.f_oob[node * D..][..D]).norm();
     let mut nodes: Vec<usize> = problem.halo.owned().filter(|&node| force(node) > 0.0).collect();

@@ -1,17 +1,18 @@
 //! What the search for equilibrium found.
 
 use crate::error::Measures;
+use crate::kinematics::Kinematics;
 use crate::solve::convergence::Convergence;
 use crate::step::residual::Residual;
 use crate::step::trial::Trial;
 
 /// A converged displacement.
 #[derive(Clone, Debug)]
-pub struct Found<const D: usize> {
+pub struct Found<K: Kinematics<D>, const D: usize> {
     /// m, nodal
     pub u: Vec<f64>,
     /// deformation under `u`
-    pub trial: Trial<D>,
+    pub trial: Trial<K, D>,
     /// N  force of the supports on the body, nodal
     pub reaction: Vec<f64>,
     /// both measures of every iteration
@@ -28,9 +29,9 @@ pub struct Found<const D: usize> {
     pub first_guess: bool,
 }
 
-impl<const D: usize> Found<D> {
+impl<K: Kinematics<D>, const D: usize> Found<K, D> {
     /// The state that an iteration reached.
-    pub fn new(u: Vec<f64>, residual: Residual<D>, convergence: &Convergence) -> Self {
+    pub fn new(u: Vec<f64>, residual: Residual<K, D>, convergence: &Convergence) -> Self {
         let newton_iterations = convergence.by_newton();
         let (force, work) = (convergence.measure(&residual.balance), residual.balance.work);
         let Residual { trial, balance, .. } = residual;

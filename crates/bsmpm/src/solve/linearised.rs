@@ -6,51 +6,58 @@
 
 use crate::error::SolveError;
 use crate::grid::transfer;
-use crate::kinematics::Kinematics;
+use crate::kinematics::{Gradient, Kinematics, Moduli, Slope};
 use crate::material::Tangent;
 use crate::seam::{LinearSolver, Symmetry};
 use crate::step::adjoint::{Adjoint, Pressures, transposed, works};
-use crate::step::blocks::{MOST, Moduli, Pairs, add_mass, add_point, complete};
+use crate::step::blocks::{MOST, Pairs, add_mass, add_point, complete};
 use crate::step::coupling::{Coupling, Dilations, Raised, Share};
 use crate::step::nodes::weights;
 use crate::step::problem::Problem;
 use crate::step::residual::Residual;
 use crate::step::trial::Trial;
-use crate::tensor::{Square, Tensor, Vector};
+use crate::tensor::{Tensor, Vector};
 
 /// The derivative at one displacement.
-pub struct Linearised<'a, K, const D: usize> {
+pub struct Linearised<'a, K: Kinematics<D>, const D: usize> {
     problem: &'a Problem<'a, K, D>,
-    trial: &'a Trial<D>,
+    trial: &'a Trial<K, D>,
     /// N m  V0 d(tau dF^-T)/d(grad v), one unit gradient after the other
-    moduli: Vec<Moduli<D>>,
+    moduli: Vec<Moduli<K, D>>,
     /// under F-bar
-    dilation: Option<Vec<Dilation<D>>>,
+    dilation: Option<Vec<Dilation<K::Gradient>>>,
     /// under consistent F-bar in dilatant material; of all points
-    adjoint: Option<(Adjoint, Vec<Pressure<D>>)>,
+    adjoint: Option<(Adjoint, Vec<Pressure<K::Gradient>>)>,
 }
 
 /// What the adjoint force adds at a point: its pressure is that of an average.
-struct Pressure<const D: usize> {
+struct Pressure<G> {
     /// J  d(V0 tau : I / dof) per gradient, and per unit of d ln(dJ-bar/dJ)
-    raised: (Square<D>, f64),
+    raised: (G, f64),
     /// J  V0 tau : I / dof of the point itself
     own: f64,
 }
 
 /// What F-bar adds at a point.
-struct Dilation<const D: usize> {
+struct Dilation<G> {
     /// -  tr l per gradient: dF^-T
-    trace: Square<D>,
+    trace: G,
     /// N m  V0 d(tau dF^-T) per unit of d ln(dJ-bar/dJ)
-    flux: Square<D>,
+    flux: G,
 }
 
-impl<const D: usize> Pressure<D> {
+impl<G> Pressure<G> {
     /// Of a point with a tangent, dF^-1 and tau.
-    fn of<K: Kinematics<D>>((tangent, inverse): (&Tangent, &Tensor), tau: &Tensor, volume: f64) -> Self {
-        let by_gradient = Square::<D>::from_fn(|k, l| {
-            let unit = Square::<D>::from_fn(|i, j| f64::from(u8::from((i, j) == (k, l))));
+    fn of<K: Kinematics<D, Gradient = G>, const D: usize>(
+        (tangent, inverse): (&Tangent, &Tensor),
+        tau: &Tensor,
+        volume: f64,
+    ) -> Self
+    where
+        G: Gradient<D>,
+    {
+        let by_gradient = G::from_fn(|k, l| {
+            let unit = G::unit(k, l);
             volume * works::<K, D>(&tangent.apply(&(K::gradient(&unit) * inverse)))
         });
         let by_rate = volume * works::<K, D>(&tangent.apply(&K::dilation()));
@@ -60,7 +67,7 @@ impl<const D: usize> Pressure<D> {
 
 impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
     /// The derivative where `residual` was evaluated; no point of it may have inverted.
-    pub fn at(problem: &'a Problem<'a, K, D>, residual: &'a Residual<D>) -> Self {
+    pub fn at(problem: &'a Problem<'a, K, D>, residual: &'a Residual<K, D>) -> Self {
         let (trial, points) = (&residual.trial, problem.points);
         let averaged = trial.is_averaged();
         let mut moduli = Vec::with_capacity(points.len());
@@ -68,37 +75,35 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
         let pressures = Pressures::of(problem, trial);
         let mut adjoint = Adjoint::of(problem.model).map(|adjoint| (adjoint, Vec::with_capacity(points.len())));
         for (p, &volume) in problem.volume().iter().enumerate() {
-            let dF = trial.dF::<K>(p);
+            let dF = trial.dF(p);
             let inverse = dF.try_inverse();
             let (Ok(response), Some(inverse)) = (trial.respond(problem.model, points, p), inverse) else {
-                moduli.push([[Square::zeros(); D]; D]); // cannot be: the residual has refused such a point
+                moduli.push(K::Gradient::moduli(|_, _| K::Gradient::zeros())); // cannot be: the residual has refused such a point
                 continue;
             };
             let (tau, tangent) = (response.tau().full(), response.tangent());
             let unit = |k: usize, l: usize| {
-                let mut grad = Square::<D>::zeros();
-                grad[(k, l)] = 1.0;
-                let l = K::gradient(&grad) * inverse;
+                let l = K::gradient(&K::Gradient::unit(k, l)) * inverse;
                 let mut change = tangent.apply(&l) - tau * l.transpose();
                 if let Some(pressure) = pressures.at(p) {
                     let (pressure, own) = (pressure / volume, works::<K, D>(&tau));
                     change -= l.transpose() * (pressure - own);
                     change += Tensor::identity() * (pressure * l.trace() - works::<K, D>(&tangent.apply(&l)));
                 }
-                K::in_plane(&(change * inverse.transpose())) * volume
+                K::working(&(change * inverse.transpose())) * volume
             };
-            moduli.push(std::array::from_fn(|k| std::array::from_fn(|l| unit(k, l))));
+            moduli.push(K::Gradient::moduli(unit));
             if let Some(dilation) = &mut dilation {
                 let mut change = tangent.apply(&K::dilation());
                 if let Some((_, at)) = &mut adjoint {
-                    at.push(Pressure::of::<K>((&tangent, &inverse), &tau, volume));
+                    at.push(Pressure::of::<K, D>((&tangent, &inverse), &tau, volume));
                 }
                 if pressures.at(p).is_some() {
                     change -= Tensor::identity() * works::<K, D>(&change);
                 }
                 let change = change * inverse.transpose();
-                let flux = K::in_plane(&change) * volume;
-                dilation.push(Dilation { trace: K::in_plane(&inverse.transpose()), flux });
+                let flux = K::working(&change) * volume;
+                dilation.push(Dilation { trace: K::working(&inverse.transpose()), flux });
             }
         }
         Self { problem, trial, moduli, dilation, adjoint }
@@ -106,8 +111,8 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
 
     /// K v on nodal arrays, `v` zero where it is not free: one exchange with the neighbours, one more under F-bar.
     pub fn multiply(&self, v: &[f64], out: &mut [f64]) {
-        let Problem { shape, nodes, halo, .. } = *self.problem;
-        let grad = transfer::gradients(shape, v, |_, grad| grad);
+        let Problem { shape, nodes, points, halo, .. } = *self.problem;
+        let grad = transfer::gradients::<K, D, _>((shape, &points.x), v, |_, grad| grad);
         let rate = self.dilation.as_ref().and_then(|dilation| {
             let trace: Vec<f64> = dilation.iter().zip(&grad).map(|(at, grad)| at.trace.dot(grad)).collect();
             Some((dilation, self.trial.dilation_rate(self.problem, &trace)?))
@@ -123,8 +128,8 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
             };
             Some((dilation, transposed(self.problem, adjoint, self.trial, raised)))
         });
-        let mut force = transfer::divergence(shape, |p| {
-            let flux = contract(&moduli[p], &grad[p]);
+        let mut force = transfer::divergence::<K, D>((shape, &points.x), |p| {
+            let flux = contract::<K, D>(&moduli[p], &grad[p]);
             let flux = rate.as_ref().map_or(flux, |(dilation, rate)| flux + dilation[p].flux * rate[p]);
             pressed.as_ref().map_or(flux, |(dilation, pressed)| flux + dilation[p].trace * pressed[p])
         });
@@ -144,21 +149,21 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
     /// Assembles and factorises the matrix that preconditions the product: all of it, but for F-bar's average where that
     /// reaches farther than the matrix. One exchange with the neighbours where it does not.
     pub fn factorise(&self, solver: &mut dyn LinearSolver) -> Result<(), SolveError> {
-        let Problem { shape, nodes, .. } = *self.problem;
+        let Problem { shape, nodes, points, .. } = *self.problem;
         solver.begin(&nodes.free);
         let size = shape.offsets().len();
-        let mut grad = [Vector::<D>::zeros(); MOST];
-        let grad = &mut grad[..size];
+        let mut slopes = [K::Gradient::NO_SLOPE; MOST];
+        let slopes = &mut slopes[..size];
         let mut block = vec![0.0; (size * D).pow(2)];
         let mut coupling = Coupling::of(self.problem.model, nodes, Raised::Own);
         for (number, patch) in shape.patches().iter().enumerate() {
             block.fill(0.0);
             let mut dilations = coupling.as_ref().map(Coupling::of_patch);
             for p in patch.points.clone() {
-                transfer::gradients_of(shape, p, grad);
+                transfer::slopes_of::<K, D>((shape, &points.x), p, slopes);
                 match &mut dilations {
-                    Some(dilations) => self.add_coupled(p, grad, (dilations, &mut block)),
-                    None => add_point(&self.narrow(p).0, grad, Pairs::All, &mut block),
+                    Some(dilations) => self.add_coupled(p, slopes, (dilations, &mut block)),
+                    None => add_point::<K, D>(&self.narrow(p).0, slopes, Pairs::All, &mut block),
                 }
             }
             if let (Some(coupling), Some(dilations)) = (&mut coupling, &dilations) {
@@ -178,33 +183,32 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
 
     /// Moduli of point `p`, and its flux per unit of d ln(dJ-bar/dJ), of a force that is not the adjoint: that one reaches twice
     /// as far as a matrix.
-    fn narrow(&self, p: usize) -> (Moduli<D>, Square<D>) {
-        let flux = self.dilation.as_ref().map_or_else(Square::zeros, |dilation| dilation[p].flux);
+    fn narrow(&self, p: usize) -> (Moduli<K, D>, K::Gradient) {
+        let flux = self.dilation.as_ref().map_or_else(K::Gradient::zeros, |dilation| dilation[p].flux);
         let has = |(adjoint, _): &&(Adjoint, _)| adjoint.has(self.problem.model, self.problem.points, p);
         let (Some((_, at)), Some(dilation)) = (self.adjoint.as_ref().filter(has), &self.dilation) else {
             return (self.moduli[p], flux);
         };
         let (Dilation { trace, .. }, Pressure { raised: (by_gradient, by_rate), .. }) = (&dilation[p], &at[p]);
-        let unit = |k: usize, l: usize| self.moduli[p][k][l] + trace * by_gradient[(k, l)];
-        (std::array::from_fn(|k| std::array::from_fn(|l| unit(k, l))), flux + trace * *by_rate)
+        let unit = |k: usize, l: usize| self.moduli[p][(k, l)] + *trace * by_gradient[(k, l)];
+        (K::Gradient::moduli(unit), flux + *trace * *by_rate)
     }
 
     /// Adds point `p`, whose dilation is averaged: flux_p (S(w dJ tr l)_p / S(w dJ)_p - tr l_p) besides its moduli.
-    fn add_coupled(&self, p: usize, grad: &[Vector<D>], (dilations, block): (&mut Dilations, &mut [f64])) {
+    fn add_coupled(&self, p: usize, slopes: &[Slope<K, D>], (dilations, block): (&mut Dilations, &mut [f64])) {
         let Problem { model, nodes, points, .. } = *self.problem;
         let Some(Dilation { trace, .. }) = self.dilation.as_ref().map(|dilation| &dilation[p]) else { return };
         let (narrow, flux) = self.narrow(p);
-        let own = |k: usize, l: usize| narrow[k][l] - flux * trace[(k, l)];
-        let moduli = std::array::from_fn(|k| std::array::from_fn(|l| own(k, l)));
-        add_point(&moduli, grad, Pairs::All, block);
+        let moduli = K::Gradient::moduli(|k, l| narrow[(k, l)] - flux * trace[(k, l)]);
+        add_point::<K, D>(&moduli, slopes, Pairs::All, block);
         let weight = weights(model.weighting, points)[p];
         let (dilated, mean) = self.trial.means(model, points, p);
         let [mut dilation, mut force] = [[Vector::<D>::zeros(); MOST]; 2];
-        for ((dilation, force), grad) in dilation.iter_mut().zip(&mut force).zip(grad) {
-            *dilation = trace * grad * (weight * dilated);
-            *force = flux * grad / mean;
+        for ((dilation, force), slope) in dilation.iter_mut().zip(&mut force).zip(slopes) {
+            *dilation = trace.times(slope) * (weight * dilated);
+            *force = flux.times(slope) / mean;
         }
-        let (dilation, force) = (&dilation[..grad.len()], &force[..grad.len()]);
+        let (dilation, force) = (&dilation[..slopes.len()], &force[..slopes.len()]);
         let group = model.groups.of(points.material[p]);
         dilations.add(nodes, p, &Share { group, weight, bulk: 0.0, dilation, force });
     }
@@ -212,11 +216,11 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
 
 /// Change of the flux for a gradient: sum_kl moduli_kl grad_kl.
 #[inline]
-fn contract<const D: usize>(moduli: &Moduli<D>, grad: &Square<D>) -> Square<D> {
-    let mut flux = Square::zeros();
-    for (k, row) in moduli.iter().enumerate() {
-        for (l, unit) in row.iter().enumerate() {
-            flux += unit * grad[(k, l)];
+fn contract<K: Kinematics<D>, const D: usize>(moduli: &Moduli<K, D>, grad: &K::Gradient) -> K::Gradient {
+    let mut flux = K::Gradient::zeros();
+    for k in 0..D {
+        for l in 0..K::Gradient::SLOPES {
+            flux += moduli[(k, l)] * grad[(k, l)];
         }
     }
     flux

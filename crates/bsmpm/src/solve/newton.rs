@@ -34,7 +34,7 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
     solver: &mut dyn LinearSolver,
     counts: &mut Counts,
     convergence: &mut Convergence,
-) -> Result<Found<D>, Stopped> {
+) -> Result<Found<K, D>, Stopped> {
     let mut residual = evaluate(problem, &u, counts);
     if !residual.balance.is_sound() {
         return Err(inverted(problem, &residual, convergence.iterations()).into());
@@ -69,7 +69,7 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
 /// K du = f_oob with the complete K at this state.
 fn direction<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
-    residual: &Residual<D>,
+    residual: &Residual<K, D>,
     solver: &mut dyn LinearSolver,
     counts: &mut Counts,
 ) -> Result<Vec<f64>, SolveError> {
@@ -91,9 +91,9 @@ fn search<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
     u: &[f64],
     du: &[f64],
-    residual: &Residual<D>,
+    residual: &Residual<K, D>,
     counts: &mut Counts,
-) -> Option<(Vec<f64>, Residual<D>)> {
+) -> Option<(Vec<f64>, Residual<K, D>)> {
     let mut length = 1.0;
     while length >= SHORTEST {
         let next: Vec<f64> = u.iter().zip(du).map(|(u, du)| u + length * du).collect();

@@ -91,9 +91,9 @@ pub struct Stopped {
 impl Stopped {
     /// An iteration whose linear system could not be solved at a state; where nothing was iterated before, the system itself
     /// is at fault.
-    pub fn without_direction<K, const D: usize>(
+    pub fn without_direction<K: Kinematics<D>, const D: usize>(
         problem: &Problem<'_, K, D>,
-        (best, residual): (Vec<f64>, &Residual<D>),
+        (best, residual): (Vec<f64>, &Residual<K, D>),
         convergence: &Convergence,
         unsolved: SolveError,
     ) -> Self {
@@ -115,11 +115,11 @@ impl<E: Into<StepError>> From<E> for Stopped {
 pub fn iterate<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
     (method, patient): (QuasiNewton, bool),
-    (mut u, mut residual): (Vec<f64>, Residual<D>),
+    (mut u, mut residual): (Vec<f64>, Residual<K, D>),
     solver: &mut dyn LinearSolver,
     counts: &mut Counts,
     convergence: &mut Convergence,
-) -> Result<Found<D>, Stopped> {
+) -> Result<Found<K, D>, Stopped> {
     let mut secants = Secants::new::<D>(method, &problem.nodes.free, problem.halo);
     let (mut best, mut least) = (u.clone(), residual.balance.norm);
     while convergence.iterations() < problem.model.criteria.max_iterations && (patient || !convergence.stalls()) {
@@ -162,7 +162,7 @@ fn advance<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
     u: &mut Vec<f64>,
     du: &[f64],
-    residual: &mut Residual<D>,
+    residual: &mut Residual<K, D>,
     counts: &mut Counts,
 ) -> Result<f64, StepError> {
     let mut length = 1.0;

@@ -63,7 +63,7 @@ pub struct Pressures(Option<Vec<Option<f64>>>);
 
 impl Pressures {
     /// Under a trial; one exchange with the neighbours where anything has the adjoint force.
-    pub fn of<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>, trial: &Trial<D>) -> Self {
+    pub fn of<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>, trial: &Trial<K, D>) -> Self {
         let Some(adjoint) = Adjoint::of(problem.model) else { return Self(None) };
         let Problem { model, points, .. } = *problem;
         let volume = problem.volume();
@@ -97,7 +97,7 @@ impl Pressures {
 pub fn transposed<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
     adjoint: &Adjoint,
-    trial: &Trial<D>,
+    trial: &Trial<K, D>,
     value: impl Fn(usize) -> f64 + Sync,
 ) -> Vec<f64> {
     let Problem { model, shape, nodes, points, halo, .. } = *problem;

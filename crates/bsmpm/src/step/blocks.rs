@@ -4,15 +4,11 @@
 use crate::error::SolveError;
 use crate::grid::Shape;
 use crate::grid::shape::Patch;
-use crate::kinematics::Kinematics;
+use crate::kinematics::{Gradient, Kinematics, Moduli, Slope};
 use crate::seam::{LinearSolver, Symmetry};
 use crate::step::mass::{MassMatrix, SHARE};
 use crate::step::nodes::Nodes;
 use crate::step::problem::Problem;
-use crate::tensor::{Square, Vector};
-
-/// Flux for every unit gradient: element (k, l) for du_k/dx_l = 1.
-pub type Moduli<const D: usize> = [[Square<D>; D]; D];
 
 /// Nodes of a point, at most: cubic splines in three dimensions.
 pub const MOST: usize = 64;
@@ -27,19 +23,22 @@ pub enum Pairs {
 }
 
 /// Adds grad N_a . moduli . grad N_b of one point to the block of its patch.
-pub fn add_point<const D: usize>(moduli: &Moduli<D>, grad: &[Vector<D>], pairs: Pairs, block: &mut [f64]) {
-    let order = grad.len() * D;
-    for (a, grad_a) in grad.iter().enumerate() {
+pub fn add_point<K: Kinematics<D>, const D: usize>(
+    moduli: &Moduli<K, D>,
+    slopes: &[Slope<K, D>],
+    pairs: Pairs,
+    block: &mut [f64],
+) {
+    let (order, numbers) = (slopes.len() * D, K::Gradient::SLOPES);
+    for (a, of_a) in slopes.iter().enumerate() {
         // Along the rows, so that nodes b follow each other in memory: D numbers of each row for one product.
         let first = if pairs == Pairs::All { 0 } else { a };
         for i in 0..D {
             let row = &mut block[(a * D + i) * order..][..order];
-            let along: [[f64; D]; D] = std::array::from_fn(|l| {
-                std::array::from_fn(|k| (0..D).map(|j| moduli[k][l][(i, j)] * grad_a[j]).sum())
-            });
-            for (entries, grad_b) in row[first * D..].chunks_exact_mut(D).zip(&grad[first..]) {
+            let along = K::Gradient::from_fn(|k, l| (0..numbers).map(|j| moduli[(k, l)][(i, j)] * of_a[j]).sum());
+            for (entries, of_b) in row[first * D..].chunks_exact_mut(D).zip(&slopes[first..]) {
                 for k in 0..D {
-                    entries[k] += (0..D).map(|l| along[l][k] * grad_b[l]).sum::<f64>();
+                    entries[k] += (0..numbers).map(|l| along[(k, l)] * of_b[l]).sum::<f64>();
                 }
             }
         }

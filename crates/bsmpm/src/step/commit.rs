@@ -59,7 +59,7 @@ pub struct Committed {
 /// iteration.
 pub fn responses<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
-    trial: &Trial<D>,
+    trial: &Trial<K, D>,
     points: &Points<D>,
     halo: &dyn Halo,
 ) -> Result<Vec<Response>, StepError> {
@@ -75,7 +75,7 @@ pub fn responses<K: Kinematics<D>, const D: usize>(
 pub fn commit<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     (shape, nodes): (&Shape<D>, &Nodes<D>),
-    (found, responses): (Found<D>, &[Response]),
+    (found, responses): (Found<K, D>, &[Response]),
     points: &mut Points<D>,
     halo: &dyn Halo,
 ) -> Committed {
@@ -97,7 +97,7 @@ pub fn commit<K: Kinematics<D>, const D: usize>(
         responses.iter().enumerate().for_each(|(p, response)| response.advance(state.of_point_mut(p)));
     }
     for (p, response) in responses.iter().enumerate() {
-        let F = trial.dF::<K>(p) * points.F.at(p);
+        let F = trial.dF(p) * points.F.at(p);
         points.F.set(p, F);
         points.sigma.set(p, response.tau().scaled(1.0 / (F.determinant() * points.dilation_of(p))));
         points.b_e.set(p, response.b_e());

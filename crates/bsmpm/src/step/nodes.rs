@@ -80,9 +80,10 @@ impl<const D: usize> Nodes<D> {
         let mass = Mass { matrix: model.mass, shape, of_points: &points.mass, lumped: &weight, threshold, halo };
         let inertia =
             (model.regime == Regime::Dynamic).then(|| inertia::map(&mass, points, &velocities, (dt, model.newmark)));
-        let background = model.background.map(|soft| soft.blocks(&model.grid, shape, points, &model.materials, halo));
+        let background =
+            model.background.map(|soft| soft.blocks::<K, D>(&model.grid, shape, points, &model.materials, halo));
         let fitted = (model.quadrature == Quadrature::Fitted)
-            .then(|| quadrature::fitted((&model.grid, &model.boundary), shape, points, halo));
+            .then(|| quadrature::fitted::<K, D>((&model.grid, &model.boundary), shape, points, halo));
         let volume = fitted.as_deref().unwrap_or(&points.volume);
         let (active, stiff) = supported(shape, volume, background.as_ref(), nodes, halo);
         let unknown = |node: usize| active[node] && (weight[node] > threshold || stiff[node]);

@@ -65,7 +65,7 @@ pub struct Report {
 impl Report {
     /// Of a displacement that was found, before the points have taken it; one reduction for the supports' forces, and one for
     /// the background's work.
-    pub fn of<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>, found: &Found<D>) -> Self {
+    pub fn of<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>, found: &Found<K, D>) -> Self {
         let nodes = problem.nodes;
         let soft = nodes.background.as_ref().map(|blocks| blocks.work::<D>(problem.shape, &found.u));
         Self {

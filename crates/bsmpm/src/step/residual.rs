@@ -2,20 +2,19 @@
 
 use crate::exact::Exact;
 use crate::grid::{Contributions, transfer};
-use crate::kinematics::Kinematics;
+use crate::kinematics::{Gradient, Kinematics};
 use crate::seam::over_layers;
 use crate::step::adjoint::Pressures;
 use crate::step::problem::Problem;
 use crate::step::trial::Trial;
-use crate::tensor::Square;
 use std::sync::atomic::Ordering::Relaxed;
 use std::sync::atomic::{AtomicU64, AtomicUsize};
 
 /// Forces of the points under a nodal displacement, balanced at the nodes.
 #[derive(Clone, Debug)]
-pub struct Residual<const D: usize> {
+pub struct Residual<K: Kinematics<D>, const D: usize> {
     /// deformation that they follow from
-    pub trial: Trial<D>,
+    pub trial: Trial<K, D>,
     /// the nodes
     pub balance: Balance,
     /// the first point of this rank that inverted or is not finite
@@ -43,24 +42,24 @@ pub struct Balance {
     finite: bool,
 }
 
-impl<const D: usize> Residual<D> {
+impl<K: Kinematics<D>, const D: usize> Residual<K, D> {
     /// Evaluates the forces under `u`: one exchange with the neighbours, one more each for F-bar, its adjoint and strips, and one
     /// reduction.
-    pub fn of<K: Kinematics<D>>(problem: &Problem<'_, K, D>, u: &[f64]) -> Self {
+    pub fn of(problem: &Problem<'_, K, D>, u: &[f64]) -> Self {
         let Problem { model, shape, nodes, points, halo, .. } = *problem;
         let trial = Trial::of(model, shape, nodes, points, u, halo);
         let (inverted, first_inverted) = (AtomicU64::new(0), AtomicUsize::new(usize::MAX));
         let pressures = Pressures::of(problem, &trial);
         let volume = problem.volume();
-        let mut f_int = transfer::divergence(shape, |p| match trial.respond(model, points, p) {
+        let mut f_int = transfer::divergence::<K, D>((shape, &points.x), |p| match trial.respond(model, points, p) {
             Ok(response) => {
                 let tau = pressures.acting::<K, D>(p, volume[p], response.tau());
-                K::flux(&tau, &trial.dF::<K>(p)) * volume[p]
+                K::flux(&tau, &trial.dF(p)) * volume[p]
             }
             Err(_) => {
                 inverted.fetch_add(1, Relaxed);
                 first_inverted.fetch_min(p, Relaxed);
-                Square::zeros()
+                K::Gradient::zeros()
             }
         });
         if let Some(background) = &nodes.background {

@@ -8,24 +8,25 @@
 use crate::error::SolveError;
 use crate::grid::shape::{Column, Patch};
 use crate::grid::{Shape, transfer};
-use crate::kinematics::Kinematics;
+use crate::kinematics::{Gradient, Kinematics, Moduli, Moment, Slope};
 use crate::material::Stiffness;
 use crate::model::Model;
 use crate::points::Points;
 use crate::seam::{LinearSolver, Symmetry};
-use crate::step::blocks::{MOST, Moduli, Pairs, add_mass, add_point, complete};
+use crate::step::blocks::{MOST, Pairs, add_mass, add_point, complete};
 use crate::step::coupling::{Coupling, Dilations, Raised, Share};
 use crate::step::nodes::Nodes;
 use crate::step::problem::Problem;
 use crate::step::trial::Trial;
-use crate::tensor::{Square, Tensor, Vector};
+use crate::tensor::{Tensor, Vector};
+use nalgebra::SMatrix;
 use rayon::prelude::*;
 
 /// Assembles K_0 patch by patch into `solver` and factorises it: at the state `at`, or, without any, of elastic material
 /// whose dilation is not averaged. One exchange with the neighbours where the average couples patches.
 pub fn assemble<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
-    at: Option<&Trial<D>>,
+    at: Option<&Trial<K, D>>,
     solver: &mut dyn LinearSolver,
 ) -> Result<(), SolveError> {
     let Problem { model, shape, nodes, points, halo, .. } = *problem;
@@ -61,13 +62,13 @@ struct Part {
 }
 
 /// What the parts are made of.
-struct State<'a, K, const D: usize> {
+struct State<'a, K: Kinematics<D>, const D: usize> {
     model: &'a Model<K, D>,
     shape: &'a Shape<D>,
     nodes: &'a Nodes<D>,
     points: &'a Points<D>,
     volume: &'a [f64],
-    at: Option<&'a Trial<D>>,
+    at: Option<&'a Trial<K, D>>,
     coupling: Option<&'a Coupling<'a, D>>,
 }
 
@@ -77,19 +78,19 @@ impl<K: Kinematics<D>, const D: usize> State<'_, K, D> {
         let patch = &shape.patches()[number];
         let size = shape.offsets().len();
         let mut part = Part { block: vec![0.0; (size * D).pow(2)], dilations: coupling.map(Coupling::of_patch) };
-        let mut moments = vec![Square::<D>::zeros(); size * size];
-        let mut grad = [Vector::zeros(); MOST];
+        let mut moments = vec![K::Gradient::NO_MOMENT; size * size];
+        let mut slopes = [K::Gradient::NO_SLOPE; MOST];
         // All of them first: responses of neighbours do not wait for each other.
         let yielding: Vec<Option<Stiffness>> = patch.points.clone().map(|p| self.yielding(p)).collect();
         for run in runs_of_one_material(patch, &points.material) {
-            moments.fill(Square::zeros());
+            moments.fill(K::Gradient::NO_MOMENT);
             let material = &model.materials[usize::from(points.material[run.start])];
             let (lambda, mu) = material.elastic().lame();
             // What F-bar averages of isotropic stiffness is lambda + 2 mu/dof times the dilation; the rest has -2 mu/dof.
             let averaged = 2.0 * mu * K::dilation().norm_squared();
             for p in run {
                 let stiffness = yielding[p - patch.points.start].as_ref();
-                self.add((p, &mut grad[..size]), (stiffness, lambda + averaged), &mut moments, &mut part);
+                self.add((p, &mut slopes[..size]), (stiffness, lambda + averaged), &mut moments, &mut part);
             }
             let lambda = if coupling.is_some() { -averaged } else { lambda };
             add_elastic::<K, D>(&moments, (lambda, mu), &mut part.block);
@@ -110,34 +111,36 @@ impl<K: Kinematics<D>, const D: usize> State<'_, K, D> {
 
     /// Adds a point: to the `moments` of its material where it is elastic, and where it yields with a stiffness of its own
     /// to the block; its dilation, against which elastic material has the stiffness `bulk` in Pa, where that is averaged.
-    /// `grad` is room to work.
+    /// `slopes` is room to work.
     fn add(
         &self,
-        (p, grad): (usize, &mut [Vector<D>]),
+        (p, slopes): (usize, &mut [Slope<K, D>]),
         (stiffness, bulk): (Option<&Stiffness>, f64),
-        moments: &mut [Square<D>],
+        moments: &mut [Moment<K, D>],
         part: &mut Part,
     ) {
         let Self { model, shape, nodes, points, coupling, .. } = *self;
-        transfer::gradients_of(shape, p, grad);
+        transfer::slopes_of::<K, D>((shape, &points.x), p, slopes);
         let volume = self.volume[p];
         let bulk = match stiffness {
             Some(stiffness) => {
                 let (moduli, bulk) = of_point::<K, D>(stiffness, volume, coupling.is_some());
-                add_point(&moduli, grad, Pairs::Upper, &mut part.block);
+                add_point::<K, D>(&moduli, slopes, Pairs::Upper, &mut part.block);
                 bulk
             }
             None => {
                 let material = &model.materials[usize::from(points.material[p])];
                 let relative = material.relative_stiffness(points.height(p));
-                accumulate(volume * relative, grad, moments);
+                accumulate::<K, D>(volume * relative, slopes, moments);
                 bulk * relative
             }
         };
         if let Some(dilations) = &mut part.dilations {
-            grad.iter_mut().for_each(|grad| *grad *= volume);
+            let mut dilation = [Vector::zeros(); MOST];
+            let dilation = &mut dilation[..slopes.len()];
+            dilation.iter_mut().zip(slopes).for_each(|(of_node, slope)| *of_node = K::divergence(slope) * volume);
             let group = model.groups.of(points.material[p]);
-            dilations.add(nodes, p, &Share { group, weight: volume, bulk, dilation: grad, force: &[] });
+            dilations.add(nodes, p, &Share { group, weight: volume, bulk, dilation, force: &[] });
         }
     }
 }
@@ -145,16 +148,22 @@ impl<K: Kinematics<D>, const D: usize> State<'_, K, D> {
 /// V0 D_p of a point that yields, one unit gradient after the other, and its stiffness against dilation in Pa; where that is
 /// `averaged` it is no part of the first.
 #[inline]
-fn of_point<K: Kinematics<D>, const D: usize>(stiffness: &Stiffness, volume: f64, averaged: bool) -> (Moduli<D>, f64) {
+fn of_point<K: Kinematics<D>, const D: usize>(
+    stiffness: &Stiffness,
+    volume: f64,
+    averaged: bool,
+) -> (Moduli<K, D>, f64) {
     let dilation = K::dilation().diagonal();
     let works = |stress: &Tensor| stress.diagonal().dot(&dilation);
-    let [[bulk]] = stiffness.moduli(|stress| Square::<1>::new(works(stress)));
-    let mut moduli = stiffness.moduli(|stress| {
+    let bulk = stiffness.moduli::<SMatrix<f64, 1, 1>, 1>(|stress| SMatrix::from_element(works(stress)))[(0, 0)].x;
+    let mut moduli = stiffness.moduli::<K::Gradient, D>(|stress| {
         let mean = if averaged { works(stress) } else { 0.0 };
-        K::in_plane(&(stress - Tensor::identity() * mean))
+        K::working(&(stress - Tensor::identity() * mean))
     });
-    moduli.iter_mut().flatten().for_each(|unit| *unit *= volume);
-    (moduli, bulk.x)
+    for (k, l) in (0..D).flat_map(|k| (0..K::Gradient::SLOPES).map(move |l| (k, l))) {
+        moduli[(k, l)] *= volume;
+    }
+    (moduli, bulk)
 }
 
 fn runs_of_one_material(patch: &Patch, material: &[u16]) -> Vec<std::ops::Range<usize>> {
@@ -169,13 +178,13 @@ fn runs_of_one_material(patch: &Patch, material: &[u16]) -> Vec<std::ops::Range<
 }
 
 /// Adds V0 grad N_a (x) grad N_b for a <= b to the moments, `volume` weighted with the stiffness relative to the material's.
-fn accumulate<const D: usize>(volume: f64, grad: &[Vector<D>], moments: &mut [Square<D>]) {
-    let size = grad.len();
+fn accumulate<K: Kinematics<D>, const D: usize>(volume: f64, slopes: &[Slope<K, D>], moments: &mut [Moment<K, D>]) {
+    let size = slopes.len();
     for a in 0..size {
-        let weighted = grad[a] * volume;
-        for (moment, other) in moments[a * size + a..(a + 1) * size].iter_mut().zip(&grad[a..]) {
-            for j in 0..D {
-                for i in 0..D {
+        let weighted = slopes[a] * volume;
+        for (moment, other) in moments[a * size + a..(a + 1) * size].iter_mut().zip(&slopes[a..]) {
+            for j in 0..K::Gradient::SLOPES {
+                for i in 0..K::Gradient::SLOPES {
                     moment[(i, j)] += weighted[i] * other[j];
                 }
             }
@@ -184,7 +193,7 @@ fn accumulate<const D: usize>(volume: f64, grad: &[Vector<D>], moments: &mut [Sq
 }
 
 /// Adds the elastic stiffness of node pairs a <= b.
-fn add_elastic<K: Kinematics<D>, const D: usize>(moments: &[Square<D>], lame: (f64, f64), block: &mut [f64]) {
+fn add_elastic<K: Kinematics<D>, const D: usize>(moments: &[Moment<K, D>], lame: (f64, f64), block: &mut [f64]) {
     let size = moments.len().isqrt();
     for a in 0..size {
         for b in a..size {
@@ -212,7 +221,7 @@ mod tests {
     use super::*;
     use crate::kinematics::PlaneStrain;
     use crate::material::{Elastic, Material, MohrCoulomb};
-    use crate::tensor::Symmetric;
+    use crate::tensor::{Square, Symmetric};
 
     /// One unit gradient after the other, each turned into a stress by the three-dimensional moduli: averaged, without the
     /// part of its dilation, and without what the stress works on it.
@@ -221,8 +230,8 @@ mod tests {
         let law = MohrCoulomb::new(Elastic { young: 1e3, poisson: 0.3 }, 0.4, 0.1, 1.0);
         let b = Symmetric([1.02, 0.96, 0.99, 0.015, 0.0, 0.0]);
         let stiffness = Material::MohrCoulomb(law).respond(&b, &[]).unwrap().yielding().expect("it yields");
-        let whole = stiffness.moduli(|stress: &Tensor| *stress);
-        let apply = |l: &Tensor| -> Tensor { (0..9).map(|at| whole[at / 3][at % 3] * l[(at / 3, at % 3)]).sum() };
+        let whole = stiffness.moduli::<Tensor, 3>(|stress| *stress);
+        let apply = |l: &Tensor| -> Tensor { (0..9).map(|at| whole[(at / 3, at % 3)] * l[(at / 3, at % 3)]).sum() };
         let (volume, dilation) = (0.7, <PlaneStrain as Kinematics<2>>::dilation());
         let expected_bulk = apply(&dilation).dot(&dilation);
         for averaged in [false, true] {
@@ -238,8 +247,8 @@ mod tests {
                 if averaged {
                     stress -= Tensor::identity() * stress.dot(&dilation);
                 }
-                let expected = <PlaneStrain as Kinematics<2>>::in_plane(&stress) * volume;
-                assert!((moduli[k][l] - expected).amax() <= 1e-10 * 1e3, "{averaged} {k}{l}: {expected}");
+                let expected = <PlaneStrain as Kinematics<2>>::working(&stress) * volume;
+                assert!((moduli[(k, l)] - expected).amax() <= 1e-10 * 1e3, "{averaged} {k}{l}: {expected}");
             }
         }
     }

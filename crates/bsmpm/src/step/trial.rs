@@ -1,7 +1,7 @@
 //! Step (4): deformation of the points under a nodal displacement, and its F-bar (Eqs 15-18).
 
 use crate::grid::{Shape, transfer};
-use crate::kinematics::Kinematics;
+use crate::kinematics::{Gradient, Kinematics};
 use crate::material::{MaterialError, Response};
 use crate::model::Model;
 use crate::points::Points;
@@ -9,21 +9,21 @@ use crate::seam::Halo;
 use crate::stabilisation::Stabilisation;
 use crate::step::nodes::Nodes;
 use crate::step::problem::Problem;
-use crate::tensor::{Square, Symmetric, Tensor};
+use crate::tensor::{Symmetric, Tensor};
 
 /// Increment of the deformation of every point.
 #[derive(Clone, Debug)]
-pub struct Trial<const D: usize> {
+pub struct Trial<K: Kinematics<D>, const D: usize> {
     /// -  grad u of the step (step 4a); not a number at a point that inverted
-    grad: Vec<Square<D>>,
+    grad: Vec<K::Gradient>,
     /// -  S(w dJ) of every point, w dJ: dJ, or J under Zhao's F-bar (steps 4c, 4e); under F-bar only
     mean: Option<Vec<f64>>,
 }
 
-impl<const D: usize> Trial<D> {
+impl<K: Kinematics<D>, const D: usize> Trial<K, D> {
     /// Deformation under the nodal displacement `u`. A point that inverted gets a dF that is not finite, which the
     /// constitution refuses: all ranks decide together once the residual's norms are reduced.
-    pub fn of<K: Kinematics<D>>(
+    pub fn of(
         model: &Model<K, D>,
         shape: &Shape<D>,
         nodes: &Nodes<D>,
@@ -31,9 +31,9 @@ impl<const D: usize> Trial<D> {
         u: &[f64],
         halo: &dyn Halo,
     ) -> Self {
-        let grad = transfer::gradients(shape, u, |_, grad| {
+        let grad = transfer::gradients::<K, D, _>((shape, &points.x), u, |_, grad| {
             let dJ = K::jacobian(&grad);
-            if dJ > 0.0 && dJ.is_finite() { grad } else { Square::from_element(f64::NAN) }
+            if dJ > 0.0 && dJ.is_finite() { grad } else { K::Gradient::from_element(f64::NAN) }
         });
         let trial = Self { grad, mean: None };
         let own = |p: usize| match trial.own(model, points, p) {
@@ -46,42 +46,42 @@ impl<const D: usize> Trial<D> {
 
     /// dF of point `p`, -.
     #[inline]
-    pub fn dF<K: Kinematics<D>>(&self, p: usize) -> Tensor {
+    pub fn dF(&self, p: usize) -> Tensor {
         Tensor::identity() + K::gradient(&self.grad[p])
     }
 
     /// w dJ of point `p`.
     #[inline]
-    fn own<K: Kinematics<D>>(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> f64 {
+    fn own(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> f64 {
         weight(model.stabilisation, points, p) * K::jacobian(&self.grad[p])
     }
 
     /// ratio_p = kept_p S(w dJ)_p / (w_p dJ_p), which F-bar multiplies the dilation of point `p` with; 1 without F-bar.
     #[inline]
-    pub fn ratio<K: Kinematics<D>>(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> f64 {
+    pub fn ratio(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> f64 {
         self.averaged(model, points, p) * (1.0 / kept(model.stabilisation, points, p))
     }
 
     /// J-bar/J of point `p` at the end of the step.
-    pub(super) fn dilation<K: Kinematics<D>>(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> f64 {
+    pub(super) fn dilation(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> f64 {
         let before = if model.stabilisation == Stabilisation::FBarZhao { 1.0 } else { points.dilation_of(p) };
         self.averaged(model, points, p) * before
     }
 
     /// S(w dJ)_p / (w_p dJ_p).
     #[inline]
-    fn averaged<K: Kinematics<D>>(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> f64 {
+    fn averaged(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> f64 {
         self.mean.as_ref().map_or(1.0, |mean| mean[p] / self.own(model, points, p))
     }
 
     /// w dJ and S(w dJ) of point `p`; 1 for the latter without F-bar.
-    pub(crate) fn means<K: Kinematics<D>>(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> (f64, f64) {
+    pub(crate) fn means(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> (f64, f64) {
         (self.own(model, points, p), self.mean.as_ref().map_or(1.0, |mean| mean[p]))
     }
 
     /// Rate of ln ratio_p for a displacement whose spatial gradient has the trace `trace`_p at every point:
     /// S(w dJ tr l)_p / S(w dJ)_p - tr l_p. `None` without F-bar; one exchange with the neighbours.
-    pub fn dilation_rate<K: Kinematics<D>>(&self, problem: &Problem<'_, K, D>, trace: &[f64]) -> Option<Vec<f64>> {
+    pub fn dilation_rate(&self, problem: &Problem<'_, K, D>, trace: &[f64]) -> Option<Vec<f64>> {
         let mean = self.mean.as_ref()?;
         let Problem { model, shape, nodes, points, halo, .. } = *problem;
         let own = |p: usize| self.own(model, points, p) * trace[p];
@@ -97,13 +97,8 @@ impl<const D: usize> Trial<D> {
 
     /// Steps (4f)-(4i): trial b^e of point `p` under dF-bar, widened by its gap, and the constitution's answer.
     #[inline(always)]
-    pub fn respond<K: Kinematics<D>>(
-        &self,
-        model: &Model<K, D>,
-        points: &Points<D>,
-        p: usize,
-    ) -> Result<Response, MaterialError> {
-        let dF = self.dF::<K>(p);
+    pub fn respond(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> Result<Response, MaterialError> {
+        let dF = self.dF(p);
         let b_trial: Symmetric = match &self.mean {
             Some(_) => K::push_forward(&K::dilate(&dF, self.ratio(model, points, p)), &points.b_e.at(p)),
             None => K::push_forward(&dF, &points.b_e.at(p)),

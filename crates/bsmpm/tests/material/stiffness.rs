@@ -23,7 +23,7 @@ fn units() -> Vec<Tensor> {
 /// The change of stress for a displacement gradient.
 fn apply(stiffness: &Stiffness, l: &Tensor) -> Tensor {
     let moduli = stiffness.moduli(|stress: &Tensor| *stress);
-    (0..9).map(|at| moduli[at / 3][at % 3] * l[(at / 3, at % 3)]).sum()
+    (0..9).map(|at| moduli[(at / 3, at % 3)] * l[(at / 3, at % 3)]).sum()
 }
 
 /// As a 6 x 6 matrix on unit strains: what stress works on them.

@@ -18,7 +18,7 @@ fn blocks<K: Kinematics<D>, const D: usize>(axes: [KnotVector; D], kind: Kind) -
     let (grid, points) = (scene.model.grid.clone(), &scene.points);
     let shape = Shape::at(&grid, points).expect("points inside");
     let background = Background { kind, coefficient: COEFFICIENT, extent: Extent::Occupied };
-    let found = background.blocks(&grid, &shape, points, &scene.model.materials, &scene.halo());
+    let found = background.blocks::<K, D>(&grid, &shape, points, &scene.model.materials, &scene.halo());
     let block = |patch: usize| match found.of(patch).expect("a block") {
         Block::Scalar(block) | Block::Coupled(block) => block.clone(),
     };
@@ -170,7 +170,7 @@ fn concerned(F: [[f64; 2]; 2], extent: Extent) -> Vec<[usize; 2]> {
     let (grid, points) = (&scene.model.grid, &scene.points);
     let shape = Shape::at(grid, points).expect("points inside");
     let background = Background { kind: Kind::Curvature, coefficient: COEFFICIENT, extent };
-    let found = background.blocks(grid, &shape, points, &scene.model.materials, &scene.halo());
+    let found = background.blocks::<PlaneStrain, 2>(grid, &shape, points, &scene.model.materials, &scene.halo());
     let patches = shape.patches().iter().enumerate();
     let cells = patches.filter(|(number, _)| found.of(*number).is_some()).map(|(_, patch)| grid.cell_at(patch.cell));
     let cells: Vec<_> = cells.collect();

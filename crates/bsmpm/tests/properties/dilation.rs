@@ -51,8 +51,8 @@ fn rate_error<K: Kinematics<D>, const D: usize>(order: usize, method: Stabilisat
         Trial::of(model, &shape, &nodes, points, &u, &halo)
     };
     let at = trial(0.0);
-    let trace = transfer::gradients(&shape, &du, |p, grad| {
-        (K::gradient(&grad) * at.dF::<K>(p).try_inverse().expect("sound")).trace()
+    let trace = transfer::gradients::<K, D, _>((&shape, &scene.points.x), &du, |p, grad| {
+        (K::gradient(&grad) * at.dF(p).try_inverse().expect("sound")).trace()
     });
     let rate = at.dilation_rate(&pieces, &trace).expect("averaged");
     let step = 1e-6;

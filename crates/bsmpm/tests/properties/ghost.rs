@@ -26,7 +26,7 @@ impl<const D: usize> Faces<D> {
         let (grid, points) = (scene.model.grid.clone().reaching(Kind::GhostPenalty.beyond()), &scene.points);
         let shape = Shape::at(&grid, points).expect("points inside");
         let background = Background { kind: Kind::GhostPenalty, coefficient: COEFFICIENT, extent };
-        let blocks = background.blocks(&grid, &shape, points, &scene.model.materials, &scene.halo());
+        let blocks = background.blocks::<K, D>(&grid, &shape, points, &scene.model.materials, &scene.halo());
         Self { grid, shape, blocks }
     }
 

@@ -22,7 +22,7 @@ fn block<K: Kinematics<D>, const D: usize>(order: usize, cells: std::ops::Range<
 }
 
 fn of<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>) -> Option<Defect> {
-    defect(&scene.model.grid, &scene.points, &scene.halo())
+    defect(&scene.model, &scene.points, &scene.halo())
 }
 
 fn exact(cells: u64, points: f64) -> Defect {
@@ -77,7 +77,7 @@ fn stirred<K: Kinematics<D>, const D: usize>() -> Scene<K, D> {
 fn weights<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>) -> Vec<f64> {
     let Model { grid, boundary, .. } = &scene.model;
     let shape = Shape::at(grid, &scene.points).unwrap();
-    quadrature::fitted((grid, boundary), &shape, &scene.points, &scene.halo())
+    quadrature::fitted::<K, D>((grid, boundary), &shape, &scene.points, &scene.halo())
 }
 
 /// Largest relative error of the integrals of the lower splines that only reach cells of which `inside` holds, with the points'
@@ -91,7 +91,7 @@ fn errors<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>, inside: impl Fn
     [&points.volume, &weights(scene)].map(|weights| {
         let present = |p: usize| [weights[p] * points.F.at(p).determinant()];
         let sums = scene.halo().sum(&transfer::to_nodes(&lower, present));
-        let error = |node: usize| (sums[node] / grid.lowered_volume(node) - 1.0).abs();
+        let error = |node: usize| (sums[node] / grid.lowered_volume::<K>(node) - 1.0).abs();
         (0..grid.nodes()).filter(counts).map(error).fold(0.0, f64::max)
     })
 }

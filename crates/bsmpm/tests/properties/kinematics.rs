@@ -2,9 +2,9 @@
 
 use crate::support::random::Random;
 use crate::support::scene::hencky;
-use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
-use bsmpm::tensor::{Square, Symmetric, Tensor};
-use nalgebra::{Rotation3, Vector3};
+use bsmpm::kinematics::{Axisymmetric, Gradient, Kinematics, PlaneStrain, Solid};
+use bsmpm::tensor::{Square, Symmetric, Tensor, Vector};
+use nalgebra::{Rotation3, SMatrix, Vector3};
 
 /// A deformation in the plane: the third direction is untouched.
 fn in_plane(random: &mut Random) -> Tensor {
@@ -32,7 +32,12 @@ fn f_bar_gives_the_wanted_determinant_and_in_plane_leaves_the_third_direction() 
     for _ in 0..1000 {
         let ratio = 2.0_f64.powf(random.signed());
         let (plane, solid) = (in_plane(&mut random), Tensor::identity() + random.square::<3>() * 0.3);
-        for (before, after) in [(plane, PlaneStrain::dilate(&plane, ratio)), (solid, Solid::dilate(&solid, ratio))] {
+        let pairs = [
+            (plane, PlaneStrain::dilate(&plane, ratio)),
+            (plane, Axisymmetric::dilate(&plane, ratio)),
+            (solid, Solid::dilate(&solid, ratio)),
+        ];
+        for (before, after) in pairs {
             let wanted = ratio * before.determinant();
             worst = worst.max((after.determinant() / wanted - 1.0).abs());
         }
@@ -107,4 +112,36 @@ fn the_stiffness_of_a_node_pair_is_the_isotropic_one() {
     let (plane, solid) = (random.square::<2>(), random.square::<3>());
     assert!((PlaneStrain::stiffness(&plane, lame) - elastic_force(&plane, lame)).amax() <= 1e-15);
     assert!((Solid::stiffness(&solid, lame) - elastic_force(&solid, lame)).amax() <= 2e-15);
+}
+
+/// Every unit displacement of two nodes against lambda tr(e) I + 2 mu e of the tensors that their gradients become.
+#[test]
+fn axisymmetric_forces_are_the_adjoint_of_axisymmetric_gradients() {
+    let (mut random, mut worst) = (Random::new(7), 0.0_f64);
+    let (lambda, mu) = (3.0, 2.0);
+    for _ in 0..100 {
+        let x = Vector::<2>::new(1.5 + random.signed(), random.signed());
+        let slopes = [0, 1].map(|_| Axisymmetric::slope(|| random.signed(), Vector::repeat(0.7), &x));
+        let of = |node: usize, component: usize| {
+            let mut gradient = SMatrix::<f64, 2, 3>::zeros();
+            gradient.set_row(component, &slopes[node].transpose());
+            gradient
+        };
+        let stiffness = Axisymmetric::stiffness(&(slopes[0] * slopes[1].transpose()), (lambda, mu));
+        for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+            let strain = Symmetric::of(&Axisymmetric::gradient(&of(1, j))).full();
+            let stress = Tensor::identity() * (lambda * strain.trace()) + strain * (2.0 * mu);
+            let works = stress.dot(&Axisymmetric::gradient(&of(0, i)));
+            worst = worst.max((stiffness[(i, j)] - works).abs());
+            let force = Axisymmetric::working(&stress).times(&slopes[0])[i];
+            worst = worst.max((force - works).abs());
+            let dilation = Axisymmetric::divergence(&slopes[0])[i];
+            worst = worst.max((dilation - Axisymmetric::gradient(&of(0, i)).trace()).abs());
+        }
+        let grad = SMatrix::<f64, 2, 3>::from_fn(|i, j| if (i, j) == (1, 2) { 0.0 } else { 0.3 * random.signed() });
+        let dF = Tensor::identity() + Axisymmetric::gradient(&grad);
+        worst = worst.max((Axisymmetric::jacobian(&grad) - dF.determinant()).abs());
+    }
+    println!("to {worst:.1e}");
+    assert!(worst <= 1e-13);
 }

@@ -6,7 +6,7 @@ use bsmpm::background::{Background, Extent, Kind};
 use bsmpm::boundary::strip::Grips;
 use bsmpm::boundary::{Path, Strip, Support, surface};
 use bsmpm::grid::Shape;
-use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
+use bsmpm::kinematics::{Axisymmetric, Kinematics, PlaneStrain, Solid};
 use bsmpm::material::{Elastic, Material, MohrCoulomb, Region, Separation};
 use bsmpm::model::Regime;
 use bsmpm::points::Points;
@@ -83,7 +83,12 @@ fn the_product_is_the_derivative_of_the_forces() {
     for method in METHODS {
         for regime in [Regime::QuasiStatic, Regime::Dynamic] {
             let (plane, solid) = (loaded::<PlaneStrain, 2>(method, regime), loaded::<Solid, 3>(method, regime));
-            let found = [(product_error(&plane), plane.points.len()), (product_error(&solid), solid.points.len())];
+            let axisymmetric = loaded::<Axisymmetric, 2>(method, regime);
+            let found = [
+                (product_error(&plane), plane.points.len()),
+                (product_error(&axisymmetric), axisymmetric.points.len()),
+                (product_error(&solid), solid.points.len()),
+            ];
             println!("{method:?}, {regime:?}: {found:?}");
             for ((error, yielding), points) in found {
                 assert!(error <= 1e-6, "{error:e}"); // central differences; measured figures are printed
@@ -146,7 +151,7 @@ fn fitted_volumes_are_in_the_product() {
 #[test]
 fn strips_are_in_the_product() {
     let scene = loaded::<PlaneStrain, 2>(Stabilisation::FBar, Regime::QuasiStatic);
-    let points = surface::along(&scene.model.grid, &[0.2, 1.9].into(), &[1.4, 1.9].into(), 3);
+    let points = surface::along::<PlaneStrain>(&scene.model.grid, &[0.2, 1.9].into(), &[1.4, 1.9].into(), 3);
     let path = Path { rows: vec![(1.0, [0.0, -0.1].into())] };
     let with = scene.clone().strip(Strip { points, normal: Some([0.0, 1.0].into()), path, penalty: 1e4 });
     let [(free, _), (held, _)] = [&scene, &with].map(product_error);
@@ -196,7 +201,7 @@ fn curvature(cohesion: f64, size: f64) -> ([f64; 2], usize) {
         || -> Vec<f64> { nodes.free.iter().map(|&free| if free { size * random.signed() } else { 0.0 }).collect() };
     let (u, v) = (free(), free());
     let at = |s: f64| Residual::of(&pieces, &u.iter().zip(&v).map(|(u, v)| u + s * v).collect::<Vec<_>>());
-    let regions = |residual: &Residual<2>| -> Vec<Region> {
+    let regions = |residual: &Residual<PlaneStrain, 2>| -> Vec<Region> {
         (0..points.len()).map(|p| residual.trial.respond(model, points, p).unwrap().region()).collect()
     };
     let start = at(0.0);

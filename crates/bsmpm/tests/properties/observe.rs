@@ -72,7 +72,7 @@ fn numbers_of_a_known_block() {
     let (points, halo) = (&scene.points, scene.halo());
     assert!((mass(points, &halo) - 3.0 * 4.0).abs() <= 1e-14);
     assert_eq!(farthest(points, 0, &halo), 2.375);
-    assert_eq!(front(&scene.model.grid, points, &halo), 2.375);
+    assert_eq!(front(&scene.model, points, &halo), 2.375);
     assert!((percentile(points, 1, 50.0, &halo) - 1.375).abs() <= 1e-12); // half of the rows lie below and on it
     let id = nearest(points, &[0.7, 0.6].into(), &halo).unwrap();
     let found = points.id.iter().position(|&other| other == id).unwrap();

@@ -6,7 +6,7 @@ use crate::support::solver::Dense;
 use bsmpm::boundary::Support;
 use bsmpm::boundary::strip::Grips;
 use bsmpm::grid::Shape;
-use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
+use bsmpm::kinematics::{Axisymmetric, Kinematics, PlaneStrain, Solid};
 use bsmpm::material::{Elastic, Material, MohrCoulomb};
 use bsmpm::model::Regime;
 use bsmpm::solve::linearised::Linearised;
@@ -106,6 +106,7 @@ fn is_the_derivative_of_elastic_material<K: Kinematics<D>, const D: usize>(order
 fn the_factorised_stiffness_is_the_derivative_of_elastic_material() {
     for order in [1, 2, 3] {
         is_the_derivative_of_elastic_material::<PlaneStrain, 2>(order);
+        is_the_derivative_of_elastic_material::<Axisymmetric, 2>(order);
     }
     is_the_derivative_of_elastic_material::<Solid, 3>(2);
 }

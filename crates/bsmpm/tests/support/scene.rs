@@ -104,6 +104,7 @@ impl<K: Kinematics<D>, const D: usize> Scene<K, D> {
                 x[axis] = at;
                 volume *= length;
             }
+            let volume = volume * K::weight(&x);
             Seed { id, material: 0, x, volume, mass: density * volume, v: v(&x) }
         };
         let mut added = Points::from_seeds((0..total).map(seed), self.points.motion.is_some());

@@ -31,11 +31,15 @@ fn forms(method: Stabilisation, (order, cells): (usize, usize)) -> [DMatrix<f64>
     let mut u = vec![0.0; nodes.free.len()];
     for (column, &component) in free.iter().enumerate() {
         u[component] = 1.0;
-        let grad = transfer::gradients(&shape, &u, |_, grad| grad);
+        let grad = transfer::gradients::<PlaneStrain, 2, _>((&shape, &points.x), &u, |_, grad| grad);
         u[component] = 0.0;
         let mean = nodes.mean_dilation(model, (&shape, points), &halo, |p| grad[p].trace());
-        let dilation = transfer::divergence(&shape, |p| Square::identity() * (points.volume[p] * mean[p])).alone();
-        let gradient = transfer::divergence(&shape, |p| grad[p] * points.volume[p]).alone();
+        let dilation = transfer::divergence::<PlaneStrain, 2>((&shape, &points.x), |p| {
+            Square::identity() * (points.volume[p] * mean[p])
+        })
+        .alone();
+        let gradient =
+            transfer::divergence::<PlaneStrain, 2>((&shape, &points.x), |p| grad[p] * points.volume[p]).alone();
         for (row, &c) in free.iter().enumerate() {
             forms[0][(row, column)] = dilation[c];
             forms[1][(row, column)] = gradient[c];

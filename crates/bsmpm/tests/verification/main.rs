@@ -3,6 +3,7 @@
 
 #![allow(non_snake_case)] // the paper's letters, as in the crate
 
+mod axisymmetric;
 mod bar;
 mod cauchy;
 mod column;

@@ -1,0 +1,78 @@
+//! Axisymmetry without torsion.
+
+use super::Kinematics;
+use crate::tensor::{Square, Symmetric, Tensor, Vector};
+use nalgebra::{SMatrix, SVector};
+
+/// Rotational symmetry about the axis r = 0, without torsion: axis 0 of the grid is r, axis 1 is z; of every body a sector of
+/// one radian. Tensors have the directions r, z and theta, in which u_r / r stretches.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Axisymmetric;
+
+/// dN/dr, dN/dz and N/r of a node: columns r, z and theta of a gradient, whose element (z, theta) has no meaning and is
+/// nowhere read.
+type Gradient = SMatrix<f64, 2, 3>;
+
+impl Kinematics<2> for Axisymmetric {
+    type Gradient = Gradient;
+
+    #[inline]
+    fn slope(N: impl FnOnce() -> f64, grad: Vector<2>, x: &Vector<2>) -> SVector<f64, 3> {
+        SVector::<f64, 3>::new(grad[0], grad[1], N() / x[0])
+    }
+
+    #[inline]
+    fn divergence(slope: &SVector<f64, 3>) -> Vector<2> {
+        Vector::<2>::new(slope[0] + slope[2], slope[1])
+    }
+
+    /// The rows and columns r, z of sum B_a^T D B_b, B the strains rr, zz, theta theta and rz of a node's displacement.
+    #[inline]
+    fn stiffness(moment: &SMatrix<f64, 3, 3>, (lambda, mu): (f64, f64)) -> Square<2> {
+        let T = |i: usize, j: usize| moment[(i, j)];
+        Square::<2>::new(
+            lambda * (T(0, 0) + T(0, 2) + T(2, 0) + T(2, 2)) + mu * (2.0 * T(0, 0) + T(1, 1) + 2.0 * T(2, 2)),
+            lambda * (T(0, 1) + T(2, 1)) + mu * T(1, 0),
+            lambda * (T(1, 0) + T(1, 2)) + mu * T(0, 1),
+            lambda * T(1, 1) + mu * (2.0 * T(1, 1) + T(0, 0)),
+        )
+    }
+
+    #[inline]
+    fn jacobian(grad: &Gradient) -> f64 {
+        let in_plane = (1.0 + grad[(0, 0)]) * (1.0 + grad[(1, 1)]) - grad[(0, 1)] * grad[(1, 0)];
+        in_plane * (1.0 + grad[(0, 2)])
+    }
+
+    #[inline]
+    fn gradient(grad: &Gradient) -> Tensor {
+        Tensor::new(grad[(0, 0)], grad[(0, 1)], 0.0, grad[(1, 0)], grad[(1, 1)], 0.0, 0.0, 0.0, grad[(0, 2)])
+    }
+
+    #[inline]
+    fn working(tensor: &Tensor) -> Gradient {
+        let t = |i: usize, j: usize| tensor[(i, j)];
+        Gradient::new(t(0, 0), t(0, 1), t(2, 2), t(1, 0), t(1, 1), 0.0)
+    }
+
+    fn dilation() -> Tensor {
+        Tensor::identity() / 3.0
+    }
+
+    #[inline]
+    fn flux(tau: &Symmetric, dF: &Tensor) -> Gradient {
+        let inverse = dF.try_inverse().unwrap_or_else(|| Tensor::from_element(f64::NAN));
+        Self::working(&(tau.full() * inverse.transpose()))
+    }
+
+    #[inline]
+    fn dilate(dF: &Tensor, ratio: f64) -> Tensor {
+        dF * ratio.cbrt()
+    }
+
+    /// r: the volume of a sector of one radian.
+    #[inline]
+    fn weight(x: &Vector<2>) -> f64 {
+        x[0]
+    }
+}

@@ -1,0 +1,95 @@
+//! Rotational symmetry through the step: uniform strain, and Lame's thick-walled cylinder.
+
+use crate::support::scene::{METHODS, Scene, axis, hencky, rms};
+use bsmpm::boundary::{Load, Support, surface};
+use bsmpm::grid::{Grid, KnotVector};
+use bsmpm::kinematics::{Axisymmetric, Kinematics};
+use bsmpm::model::{Regime, Weighting};
+use bsmpm::stabilisation::Stabilisation;
+
+type Round = Scene<Axisymmetric, 2>;
+
+/// A disc pressed flat: its rim and its top move, the axis and the base do not; every stretch is the same everywhere. With
+/// linear functions, of which N + r dN/dr is linear, the points' rule is exact and so is the stress.
+#[test]
+fn uniform_strain_is_exact_in_one_step_with_every_method() {
+    for method in METHODS {
+        let (radial, axial) = (1.05, 0.9);
+        let moving = |axis: usize, stretch: f64| {
+            let mut face = Support::<2>::roller(axis, true);
+            face.velocity[axis] = Some(stretch - 1.0);
+            face
+        };
+        let mut scene = Round::new([axis(0.25, 4, 1), axis(0.25, 4, 1)], hencky(1000.0, 0.3), Regime::QuasiStatic)
+            .body([0..4, 0..4], 2, 1.0, |x| x * 0.0)
+            .support(Support::roller(0, false))
+            .support(Support::roller(1, false))
+            .support(moving(0, radial))
+            .support(moving(1, axial))
+            .stabilised(method);
+        scene.model.criteria.force = 1e-12;
+        let (scene, steps) = scene.solved(1.0, 1.0);
+        let (lambda, mu) = scene.model.materials[0].elastic().lame();
+        let J: f64 = radial * radial * axial;
+        let stress = |stretch: f64| (lambda * J.ln() + 2.0 * mu * stretch.ln()) / J;
+        let expected = [stress(radial), stress(axial), stress(radial)];
+        let error = |p: usize| {
+            let sigma = scene.points.sigma.at(p).0;
+            (0..3).map(|k| (sigma[k] - expected[k]).abs()).fold(sigma[3].abs(), f64::max)
+        };
+        let worst = (0..scene.points.len()).map(error).fold(0.0, f64::max) / expected[1].abs();
+        println!("{method:?}: {worst:.1e}");
+        assert_eq!(steps.len(), 1);
+        assert!(worst <= 1e-10, "{method:?}: {worst:e}");
+    }
+}
+
+/// Relative error of the radial displacement (root of the mean square over the body), of a cylinder with inner radius 1 and
+/// outer radius 2 between smooth plates under a small pressure inside.
+fn cylinder(cells: usize, method: Stabilisation) -> f64 {
+    let (inner, outer, pressure, poisson) = (1.0, 2.0, 1e-7, 0.3);
+    let h = (outer - inner) / cells as f64;
+    let columns = 3 * cells;
+    let mut scene = Round::new([axis(h, columns, 2), axis(h, 2, 2)], hencky(1.0, poisson), Regime::QuasiStatic)
+        .body([cells..2 * cells, 0..2], 3, 0.0, |x| x * 0.0)
+        .rollers(1..2)
+        .stabilised(method);
+    scene.model.weighting = Weighting::Volume;
+    let (from, to) = ([inner, 0.0].into(), [inner, 2.0 * h].into());
+    let points = surface::along::<Axisymmetric>(&scene.model.grid, &from, &to, 3);
+    let (scene, _) = scene.load(Load { points, traction: [pressure, 0.0].into(), ramp: 1.0 }).solved(1.0, 1.0);
+    // Lame (1852) in plane strain: u = A r + B/r.
+    let factor = (1.0 + poisson) * pressure * inner * inner / (outer * outer - inner * inner);
+    let exact = |r: f64| factor * ((1.0 - 2.0 * poisson) * r + outer * outer / r);
+    let start: Vec<f64> = scene.points.x.iter().zip(&scene.points.u).map(|(x, u)| x[0] - u[0]).collect();
+    rms(&scene.points, |p| scene.points.u[p][0] - exact(start[p])) / rms(&scene.points, |p| exact(start[p]))
+}
+
+#[test]
+fn a_thick_cylinder_under_pressure_converges_to_lame() {
+    for method in [Stabilisation::None, Stabilisation::FBar, Stabilisation::ConsistentFBar] {
+        let errors = [4, 8, 16].map(|cells| cylinder(cells, method));
+        let orders: Vec<f64> = errors.windows(2).map(|pair| (pair[0] / pair[1]).log2()).collect();
+        println!("{method:?}: {errors:?}, orders {orders:?}"); // measured 7.5e-5 at the finest, orders 1.97 to 1.99
+        assert!(errors[2] <= 1e-4 && orders.iter().all(|&order| order >= 1.9), "{method:?}: {errors:?}");
+    }
+}
+
+/// The volumes of cells and of functions add up to that of a sector of one radian, and a function's is its own integral.
+#[test]
+fn volumes_of_cells_and_functions_are_those_of_the_sector() {
+    for order in 1..=3 {
+        let radial = KnotVector::graded(&[0.0, 0.3, 0.5, 0.5, 1.2], order).unwrap_or_else(|_| axis(0.3, 4, order));
+        let grid = Grid::new([radial, axis(0.5, 3, order)]).unwrap();
+        let whole = 0.5 * grid.axes()[0].length().powi(2) * 1.5;
+        let cells: f64 = (0..grid.cells()).map(|cell| grid.cell_volume::<Axisymmetric>(&grid.cell_at(cell))).sum();
+        let functions: f64 = (0..grid.nodes()).map(|node| grid.node_volume::<Axisymmetric>(node)).sum();
+        assert!((cells / whole - 1.0).abs() <= 1e-14 && (functions / whole - 1.0).abs() <= 1e-14);
+        // sum_I r_I int N_I = int r dV, r_I the Greville places: the moment tells a wrong mean of a function.
+        let r = |node: usize| grid.axes()[0].greville(grid.node_at(node)[0]);
+        let moment: f64 = (0..grid.nodes()).map(|node| r(node) * grid.node_volume::<Axisymmetric>(node)).sum();
+        let exact = grid.axes()[0].length().powi(3) / 3.0 * 1.5;
+        assert!((moment / exact - 1.0).abs() <= 1e-14, "order {order}: {moment} for {exact}");
+        assert_eq!(Axisymmetric::weight(&[0.7, 0.2].into()), 0.7);
+    }
+}
