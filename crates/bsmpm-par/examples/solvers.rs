@@ -42,7 +42,7 @@ fn main() -> ExitCode {
     let timers = Rc::new(Timers::default());
     let shared = (Rc::clone(&timers), Rc::new(Requests::of_signals().expect("signals")));
     let halo = Rc::new(MpiHalo::new(universe.world(), &slabs, &grid, shared));
-    let mut solver = KspSolver::new(&petsc, choice, &grid, Rc::clone(&halo), timers);
+    let mut solver = KspSolver::<2, 2>::new(&petsc, choice, &grid, Rc::clone(&halo), timers);
     measure(&mut solver, &grid, &*halo, nu, &format!("{method} {nu} {cells} x{}", petsc.ranks()));
     ExitCode::SUCCESS
 }

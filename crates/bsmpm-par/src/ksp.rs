@@ -21,13 +21,13 @@ use petsc_rs::{Matrix, Petsc};
 use std::rc::Rc;
 use system::{System, failed};
 
-/// The linear solver of a run: one matrix, rebuilt every step; pattern and analysis are kept while the unknowns stay.
-pub struct KspSolver<'p, const D: usize> {
+/// The linear solver of a run, C unknowns a node of a grid of dimension D: one matrix, rebuilt every step; pattern and analysis are kept while the unknowns stay.
+pub struct KspSolver<'p, const D: usize, const C: usize> {
     petsc: &'p Petsc<'p>,
     choice: Choice,
     halo: Rc<MpiHalo>,
     grid: Grid<D>,
-    stencil: Stencil<D>,
+    stencil: Stencil<D, C>,
     free: Vec<bool>,
     numbers: Numbering, // empty before PETSc needs it
     own: usize,         // unknowns of this rank
@@ -39,7 +39,7 @@ pub struct KspSolver<'p, const D: usize> {
     timers: Rc<Timers>,
 }
 
-impl<'p, const D: usize> KspSolver<'p, D> {
+impl<'p, const D: usize, const C: usize> KspSolver<'p, D, C> {
     /// A solver for a window of the grid.
     pub fn new(petsc: &'p Petsc<'p>, choice: Choice, grid: &Grid<D>, halo: Rc<MpiHalo>, timers: Rc<Timers>) -> Self {
         // Where every rank factorises the whole, the same bits on any number of ranks; else sums depend on the cut anyway.
@@ -70,8 +70,8 @@ impl<'p, const D: usize> KspSolver<'p, D> {
     fn number(&mut self) {
         let free = &self.free;
         let owned = self.halo.owned();
-        let owned = owned.start * D..owned.end * D;
-        let numbered = numbered::<D>(&self.choice, free);
+        let owned = owned.start * C..owned.end * C;
+        let numbered = numbered::<C>(&self.choice, free);
         self.own = owned.clone().filter(|&component| numbered(component)).count();
         let count = self.own as u64;
         let mut before = 0_u64;
@@ -82,7 +82,7 @@ impl<'p, const D: usize> KspSolver<'p, D> {
             next += 1;
             numbers[component] = next as f64;
         }
-        self.halo.share(&mut numbers, D);
+        self.halo.share(&mut numbers, C);
         self.numbers = numbers.iter().map(|&number| (number > 0.0).then(|| number as usize - 1)).collect();
     }
 
@@ -102,10 +102,10 @@ impl<'p, const D: usize> KspSolver<'p, D> {
             Some(system) => system,
             none => {
                 let places = self.stencil.coordinates(&self.numbers, &self.free);
-                let block = if self.choice.whole_nodes() { D } else { 1 };
+                let block = if self.choice.whole_nodes() { C } else { 1 };
                 let mut matrix = Matrix::from_coo(self.petsc, self.own, block, &places.rows, &places.columns)?;
-                if block > 1 {
-                    matrix.set_rigid_body_modes(&places_of(&self.grid, &self.halo, &self.numbers))?;
+                if block > 1 && C == D {
+                    matrix.set_rigid_body_modes(&places_of::<D, C>(&self.grid, &self.halo, &self.numbers))?;
                 }
                 none.insert(System::new(self.petsc, (&self.choice, symmetry), matrix)?)
             }
@@ -118,21 +118,21 @@ impl<'p, const D: usize> KspSolver<'p, D> {
     /// Components of this rank's unknowns, in the order of their numbers.
     fn unknowns(&self) -> Vec<usize> {
         let owned = self.halo.owned();
-        (owned.start * D..owned.end * D).filter(|&component| self.numbers[component].is_some()).collect()
+        (owned.start * C..owned.end * C).filter(|&component| self.numbers[component].is_some()).collect()
     }
 }
 
 /// Which components of a window have a row: the free ones, or all of the nodes that have a free one.
-fn numbered<const D: usize>(choice: &Choice, free: &[bool]) -> impl Fn(usize) -> bool {
+fn numbered<const C: usize>(choice: &Choice, free: &[bool]) -> impl Fn(usize) -> bool {
     let whole = choice.whole_nodes();
     move |component| {
-        if whole { free[component / D * D..][..D].contains(&true) } else { free[component] }
+        if whole { free[component / C * C..][..C].contains(&true) } else { free[component] }
     }
 }
 
 /// Where the nodes with rows of this rank are, m: the splines' coefficients there (Greville) give linear fields exactly.
-fn places_of<const D: usize>(grid: &Grid<D>, halo: &MpiHalo, numbers: &Numbering) -> Vec<f64> {
-    let with_rows = halo.owned().filter(|node| numbers[node * D].is_some());
+fn places_of<const D: usize, const C: usize>(grid: &Grid<D>, halo: &MpiHalo, numbers: &Numbering) -> Vec<f64> {
+    let with_rows = halo.owned().filter(|node| numbers[node * C].is_some());
     with_rows
         .flat_map(|node| {
             let node = grid.node_at(node);
@@ -142,26 +142,26 @@ fn places_of<const D: usize>(grid: &Grid<D>, halo: &MpiHalo, numbers: &Numbering
 }
 
 /// Nodal array, known to all ranks that share a node, of the unknowns that the ranks own.
-fn spread<const D: usize>(halo: &MpiHalo, unknowns: &[usize], values: &[f64], nodal: &mut [f64]) {
+fn spread<const C: usize>(halo: &MpiHalo, unknowns: &[usize], values: &[f64], nodal: &mut [f64]) {
     nodal.fill(0.0);
     for (&component, value) in unknowns.iter().zip(values) {
         nodal[component] = *value;
     }
-    halo.share(nodal, D);
+    halo.share(nodal, C);
 }
 
 fn missing() -> SolveError {
     SolveError::Failed("no matrix was assembled".into())
 }
 
-impl<const D: usize> LinearSolver for KspSolver<'_, D> {
+impl<const D: usize, const C: usize> LinearSolver for KspSolver<'_, D, C> {
     fn begin(&mut self, free: &[bool]) {
         let mut changed = [f64::from(self.free != free)];
         self.halo.maximum(&mut changed);
         if changed[0] > 0.0 {
             (self.free, self.numbers) = (free.to_vec(), Numbering::new());
             (self.planned, self.definite, self.general) = (false, None, None);
-            self.stencil.keep(|node| free[node * D..(node + 1) * D].contains(&true));
+            self.stencil.keep(|node| free[node * C..(node + 1) * C].contains(&true));
         }
         self.standing = Standing::Missing;
         self.stencil.clear();
@@ -177,8 +177,8 @@ impl<const D: usize> LinearSolver for KspSolver<'_, D> {
 
     fn add_diagonal(&mut self, diagonal: &[f64]) {
         for node in self.halo.owned() {
-            for component in 0..D {
-                self.stencil.add_diagonal(node, component, diagonal[node * D + component]);
+            for component in 0..C {
+                self.stencil.add_diagonal(node, component, diagonal[node * C + component]);
             }
         }
     }
@@ -201,7 +201,7 @@ impl<const D: usize> LinearSolver for KspSolver<'_, D> {
         let unknowns = self.unknowns();
         let own: Vec<f64> = unknowns.iter().map(|&at| if self.free[at] { rhs[at] } else { 0.0 }).collect();
         let (iterations, x) = self.definite.as_mut().ok_or_else(missing)?.solve(&own)?;
-        spread::<D>(&self.halo, &unknowns, &x, solution);
+        spread::<C>(&self.halo, &unknowns, &x, solution);
         Ok(Solved { iterations, ..Solved::default() })
     }
 
@@ -219,7 +219,7 @@ impl<const D: usize> LinearSolver for KspSolver<'_, D> {
         let (mut nodal, mut image) = (vec![0.0; rhs.len()], vec![0.0; rhs.len()]);
         let free = &self.free;
         let mut on_unknowns = |x: &[f64], y: &mut [f64]| {
-            spread::<D>(&halo, &unknowns, x, &mut nodal);
+            spread::<C>(&halo, &unknowns, x, &mut nodal);
             nodal.iter_mut().zip(free).for_each(|(value, &free)| *value *= f64::from(u8::from(free)));
             product(&nodal, &mut image);
             for ((y, x), &component) in y.iter_mut().zip(x).zip(&unknowns) {
@@ -228,7 +228,7 @@ impl<const D: usize> LinearSolver for KspSolver<'_, D> {
         };
         let system = self.general.as_mut().ok_or_else(missing)?;
         let (krylov, x) = system.solve_with(&mut on_unknowns, relative, &own)?;
-        spread::<D>(&self.halo, &unknowns, &x, solution);
+        spread::<C>(&self.halo, &unknowns, &x, solution);
         Ok(krylov)
     }
 }

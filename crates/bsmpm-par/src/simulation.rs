@@ -63,7 +63,7 @@ pub struct Simulation<'p, K, const D: usize> {
     slabs: Slabs,
     schedule: Schedule,
     stepper: Stepper,
-    solver: KspSolver<'p, D>,
+    solver: KspSolver<'p, D, D>,
     steps: u64,
     cost: Cost, // of the last step
     timers: Rc<Timers>,

@@ -14,9 +14,9 @@ use std::ops::Range;
 /// Row of a node that has none.
 const NONE: usize = usize::MAX;
 
-/// Stencils of all nodes of a window: D x D blocks of a node with each node of its stencil.
+/// Stencils of all nodes of a window, C unknowns each: C x C blocks of a node with each node of its stencil.
 #[derive(Clone, Debug)]
-pub struct Stencil<const D: usize> {
+pub struct Stencil<const D: usize, const C: usize> {
     places: Places<D>,
     slot: Vec<usize>,    // stencil place of patch node b as seen from patch node a
     offsets: Vec<usize>, // of a patch's nodes
@@ -46,7 +46,7 @@ pub struct Coordinates {
     pub columns: Vec<usize>,
 }
 
-impl<const D: usize> Stencil<D> {
+impl<const D: usize, const C: usize> Stencil<D, C> {
     /// Stencils over a window, of no node yet: see [`Stencil::keep`].
     pub fn new(grid: &Grid<D>) -> Self {
         let places = Places::new(grid);
@@ -79,7 +79,7 @@ impl<const D: usize> Stencil<D> {
     pub fn by_columns(grid: &Grid<D>, owned: Range<usize>) -> Self {
         let stencil = Self::new(grid);
         let none = Contributions::none(grid, stencil.width(), Vec::new());
-        let (sums, diagonal) = (none.clone(), vec![0.0; grid.nodes() * D]);
+        let (sums, diagonal) = (none.clone(), vec![0.0; grid.nodes() * C]);
         let columns = Columns { none, sums, diagonal, owned };
         let mut stencil = Self { columns: Some(columns), ..stencil };
         stencil.keep(|_| true);
@@ -92,7 +92,7 @@ impl<const D: usize> Stencil<D> {
         self.values = total(&columns.sums);
         let diagonal = columns.diagonal.clone();
         for (at, value) in diagonal.into_iter().enumerate() {
-            self.diagonal(at / D, at % D).into_iter().for_each(|entry| *entry += value);
+            self.diagonal(at / C, at % C).into_iter().for_each(|entry| *entry += value);
         }
     }
 
@@ -109,12 +109,12 @@ impl<const D: usize> Stencil<D> {
 
     fn diagonal(&mut self, node: usize, component: usize) -> Option<&mut f64> {
         let row = self.rows[node];
-        let at = (self.places.count() / 2 * D + component) * D + component;
+        let at = (self.places.count() / 2 * C + component) * C + component;
         (row != NONE).then(|| row * self.width() + at).map(|at| &mut self.values[at])
     }
 
     fn width(&self) -> usize {
-        self.places.count() * D * D
+        self.places.count() * C * C
     }
 
     /// Adds the dense block of the patch whose first node is `first`.
@@ -127,7 +127,7 @@ impl<const D: usize> Stencil<D> {
     /// Adds the dense block of `nodes`, the lowest first.
     pub fn add_among(&mut self, nodes: &[usize], block: &[f64]) {
         let numbers: Vec<usize> = nodes.iter().map(|&node| self.places.number_of(node)).collect();
-        let mut slot = Vec::with_capacity(block.len() / (D * D));
+        let mut slot = Vec::with_capacity(block.len() / (C * C));
         for a in &numbers {
             slot.extend(numbers.iter().map(|b| self.places.of(*a, *b)));
         }
@@ -145,10 +145,10 @@ impl<const D: usize> Stencil<D> {
                 None => &mut self.values[self.rows[first + offset] * width..][..width],
             };
             for (b, place) in slot[a * count..(a + 1) * count].iter().enumerate() {
-                for i in 0..D {
-                    let row = &block[(a * D + i) * count * D + b * D..][..D];
-                    let at = (place * D + i) * D;
-                    values[at..at + D].iter_mut().zip(row).for_each(|(value, entry)| *value += entry);
+                for i in 0..C {
+                    let row = &block[(a * C + i) * count * C + b * C..][..C];
+                    let at = (place * C + i) * C;
+                    values[at..at + C].iter_mut().zip(row).for_each(|(value, entry)| *value += entry);
                 }
             }
         }
@@ -157,7 +157,7 @@ impl<const D: usize> Stencil<D> {
     /// Adds to the diagonal entry of a component of `node`.
     pub fn add_diagonal(&mut self, node: usize, component: usize, value: f64) {
         match &mut self.columns {
-            Some(columns) => columns.diagonal[node * D + component] += value,
+            Some(columns) => columns.diagonal[node * C + component] += value,
             None => self.diagonal(node, component).into_iter().for_each(|entry| *entry += value),
         }
     }
@@ -165,37 +165,37 @@ impl<const D: usize> Stencil<D> {
     /// Largest entry on the diagonal of this window's blocks.
     pub fn largest_diagonal(&self) -> f64 {
         let middle = self.places.count() / 2;
-        let entries = |row: &[f64]| (0..D).map(|i| row[(middle * D + i) * D + i]).fold(0.0, f64::max);
+        let entries = |row: &[f64]| (0..C).map(|i| row[(middle * C + i) * C + i]).fold(0.0, f64::max);
         self.values.chunks_exact(self.width()).map(entries).fold(0.0, f64::max)
     }
 
     /// A component's row: the first component of every node that it couples with, and the entries there; nothing for a node
     /// without a stencil.
     pub fn row(&self, component: usize) -> impl Iterator<Item = (usize, &[f64])> {
-        let (node, i) = (component / D, component % D);
+        let (node, i) = (component / C, component % C);
         let row = self.rows[node];
         let places = (row != NONE).then(|| self.places.around(node)).into_iter().flatten();
         places.map(move |(place, other)| {
-            let at = row * self.width() + (place * D + i) * D;
-            (other * D, &self.values[at..at + D])
+            let at = row * self.width() + (place * C + i) * C;
+            (other * C, &self.values[at..at + C])
         })
     }
 
     /// y = A x of the components marked `free`, as far as this window's blocks go; `x` is zero at the others.
     pub fn multiply(&self, free: &[bool], x: &[f64], y: &mut [f64]) {
-        let nodes = self.rows.iter().zip(y.chunks_exact_mut(D).zip(free.chunks_exact(D))).enumerate();
+        let nodes = self.rows.iter().zip(y.chunks_exact_mut(C).zip(free.chunks_exact(C))).enumerate();
         for (node, (&row, (y, free))) in nodes {
-            let mut image = [0.0; D];
+            let mut image = [0.0; C];
             if row != NONE {
                 let values = &self.values[row * self.width()..][..self.width()];
                 for (place, other) in self.places.around(node) {
-                    let (block, x) = (&values[place * D * D..][..D * D], &x[other * D..][..D]);
-                    for i in 0..D {
-                        image[i] += (0..D).map(|j| block[i * D + j] * x[j]).sum::<f64>();
+                    let (block, x) = (&values[place * C * C..][..C * C], &x[other * C..][..C]);
+                    for i in 0..C {
+                        image[i] += (0..C).map(|j| block[i * C + j] * x[j]).sum::<f64>();
                     }
                 }
             }
-            (0..D).for_each(|i| y[i] = if free[i] { image[i] } else { 0.0 });
+            (0..C).for_each(|i| y[i] = if free[i] { image[i] } else { 0.0 });
         }
     }
 
@@ -222,7 +222,7 @@ impl<const D: usize> Stencil<D> {
         let handed = |a: usize, b: usize| self.columns.as_ref().is_none_or(|columns| columns.owned.contains(&a.min(b)));
         for (component, row) in numbers.iter().enumerate() {
             let Some(row) = row else { continue };
-            let (node, i) = (component / D, component % D);
+            let (node, i) = (component / C, component % C);
             if self.rows[node] == NONE {
                 continue;
             }
@@ -230,10 +230,10 @@ impl<const D: usize> Stencil<D> {
                 if !handed(node, other) {
                     continue;
                 }
-                let at = self.rows[node] * self.width() + (place * D + i) * D;
-                for j in 0..D {
-                    let coupled = other * D + j == component || free[component] && free[other * D + j];
-                    if let Some(column) = numbers[other * D + j].filter(|_| coupled) {
+                let at = self.rows[node] * self.width() + (place * C + i) * C;
+                for j in 0..C {
+                    let coupled = other * C + j == component || free[component] && free[other * C + j];
+                    if let Some(column) = numbers[other * C + j].filter(|_| coupled) {
                         visit(*row, column, at + j);
                     }
                 }
@@ -252,7 +252,7 @@ mod tests {
     }
 
     /// Stencils of all nodes.
-    fn all(grid: &Grid<2>) -> Stencil<2> {
+    fn all(grid: &Grid<2>) -> Stencil<2, 2> {
         let mut stencil = Stencil::new(grid);
         stencil.keep(|_| true);
         stencil
@@ -318,7 +318,7 @@ mod tests {
         let (grid, cut) = (grid(), 2);
         let stencil = |columns: Range<usize>| {
             let window = grid.window(columns.clone());
-            let mut stencil = Stencil::by_columns(&window, 0..window.nodes());
+            let mut stencil = Stencil::<2, 2>::by_columns(&window, 0..window.nodes());
             for cell in 0..window.cells() {
                 let cell = window.cell_at(cell);
                 let value = |entry: usize| 1.0 / (entry + 7 * cell[0] + 3 * cell[1] + 1) as f64;
@@ -359,7 +359,7 @@ mod tests {
     #[test]
     fn nodes_that_are_not_kept_take_no_memory_and_change_no_row() {
         let grid = grid();
-        let add = |stencil: &mut Stencil<2>| {
+        let add = |stencil: &mut Stencil<2, 2>| {
             for cell in 0..grid.cells() {
                 let block: Vec<f64> = (0..18 * 18).map(|entry| ((entry * 7 + cell * 13) % 31) as f64).collect();
                 stencil.add(grid.first_node(&grid.cell_at(cell)), &block);

@@ -85,7 +85,7 @@ fn measure(
     let halo = Rc::new(MpiHalo::new(universe.world(), &slabs, &model.grid, (Rc::clone(&timers), requests)));
     let choice = setup::linear(&case, 1, &[]);
     let petsc = Petsc::initialize(universe, &choice.options())?;
-    let mut solver = KspSolver::new(&petsc, choice, &model.grid, Rc::clone(&halo), timers);
+    let mut solver = KspSolver::<2, 2>::new(&petsc, choice, &model.grid, Rc::clone(&halo), timers);
     println!("| {} points, {:.4} s | ns per point | of a step with one iteration |", points.len(), time);
     println!("| --- | --- | --- |");
     let bench =

@@ -25,7 +25,7 @@ pub(super) enum Standing {
     Tried,
 }
 
-impl<const D: usize> KspSolver<'_, D> {
+impl<const D: usize, const C: usize> KspSolver<'_, D, C> {
     /// Factorises without PETSc.
     pub(super) fn factorise(&mut self, precision: Precision) -> Result<(), SolveError> {
         let (halo, timers) = (Rc::clone(&self.halo), Rc::clone(&self.timers));
@@ -34,7 +34,7 @@ impl<const D: usize> KspSolver<'_, D> {
             let mut bounds = vec![0; self.petsc.ranks()];
             world.all_gather_into(&self.grid.columns().start, &mut bounds[..]);
             bounds.push(self.grid.room()[0].end);
-            self.direct.plan(&link, (&bounds, self.petsc.rank()), &self.grid, &self.free);
+            self.direct.plan::<D, C>(&link, (&bounds, self.petsc.rank()), &self.grid, &self.free);
             self.planned = true;
         }
         let mut largest = [self.stencil.largest_diagonal()];
@@ -50,7 +50,7 @@ impl<const D: usize> KspSolver<'_, D> {
     /// made, whose solution must be.
     pub(super) fn solve_directly(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<Solved, SolveError> {
         let owned = self.halo.owned();
-        let owned = owned.start * D..owned.end * D;
+        let owned = owned.start * C..owned.end * C;
         let mut solved = Solved { iterations: 1, ..Solved::default() };
         if self.standing == Standing::Missing {
             return Err(missing());
@@ -85,10 +85,10 @@ impl<const D: usize> KspSolver<'_, D> {
     fn norms(&self, rhs: &[f64], solution: &[f64]) -> (f64, f64) {
         let mut image = vec![0.0; rhs.len()];
         self.stencil.multiply(&self.free, solution, &mut image);
-        self.halo.add_shared(&mut image, D);
+        self.halo.add_shared(&mut image, C);
         let square = |component: usize, value: f64| if self.free[component] { value * value } else { 0.0 };
-        let left = over_layers(&*self.halo, D, |c| square(c, rhs[c] - image[c]));
-        let right = over_layers(&*self.halo, D, |c| square(c, rhs[c]));
+        let left = over_layers(&*self.halo, C, |c| square(c, rhs[c] - image[c]));
+        let right = over_layers(&*self.halo, C, |c| square(c, rhs[c]));
         let squares = self.halo.total(&[left, right]);
         (squares[0].sqrt(), squares[1].sqrt())
     }

@@ -38,8 +38,8 @@ pub struct Dissection {
 
 impl Dissection {
     /// Plans for the `free` components of the window of `rank`, the ranks' slabs beginning at the columns `bounds`, the
-    /// last of which is the end of the grid's room. Collective.
-    pub fn plan<const D: usize>(
+    /// last of which is the end of the grid's room; C unknowns a node. Collective.
+    pub fn plan<const D: usize, const C: usize>(
         &mut self,
         link: &dyn Link,
         (bounds, rank): (&[usize], usize),
@@ -52,8 +52,8 @@ impl Dissection {
         let start = if rank == 0 { 0 } else { q.min(layers.len()) };
         let end = if rank + 2 == bounds.len() { layers.len() } else { grid.columns().len() };
         let counts = std::array::from_fn(|axis| grid.nodes_along(axis));
-        self.plan = Plan::new::<D>(counts, q, start..end.max(start), free);
-        let layer = grid.layer_nodes() * D;
+        self.plan = Plan::new::<D, C>(counts, q, start..end.max(start), free);
+        let layer = grid.layer_nodes() * C;
         let whole = |&component: &u32| layers.start * layer + component as usize;
         let shared: Vec<usize> = self.plan.shared().iter().map(whole).collect();
         self.ladder = Ladder::new(link, (rank, ladder::role(bounds, q, rank)), &shared, layer);
@@ -62,11 +62,11 @@ impl Dissection {
     /// Factorises; `false` where a pivot of this rank was not positive and finite. `largest` is about the largest
     /// number of the matrix: without its power of two, square roots round alike in all units that differ by powers of
     /// two. Collective.
-    pub fn factorise<const D: usize>(
+    pub fn factorise<const D: usize, const C: usize>(
         &mut self,
         link: &dyn Link,
         precision: Precision,
-        stencil: &Stencil<D>,
+        stencil: &Stencil<D, C>,
         largest: f64,
     ) -> bool {
         let unit = f64::from_bits(largest.to_bits() & f64::INFINITY.to_bits());
@@ -127,10 +127,10 @@ impl Dissection {
 }
 
 /// Adds the matrix's own entries of a part: its rows against what is eliminated later; of the last part, what it shares.
-fn take<const D: usize>(
+fn take<const D: usize, const C: usize>(
     plan: &Plan,
     part: &Part,
-    (stencil, places, scale): (&Stencil<D>, &[usize], f64),
+    (stencil, places, scale): (&Stencil<D, C>, &[usize], f64),
     columns: &mut [f64],
     matrix: &mut [f64],
 ) {
@@ -142,7 +142,7 @@ fn take<const D: usize>(
         let place = places[number];
         let target = if last { &mut matrix[place * order..][..order] } else { &mut columns[place * rows..][..rows] };
         for (component, values) in stencil.row(plan.order[number] as usize) {
-            for (value, &other) in values.iter().zip(&plan.number[component..component + D]) {
+            for (value, &other) in values.iter().zip(&plan.number[component..component + C]) {
                 if other != NONE && other as usize >= number {
                     target[places[other as usize]] += value * scale;
                 }

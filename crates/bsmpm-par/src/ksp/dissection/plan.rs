@@ -54,7 +54,7 @@ pub struct Plan {
 }
 
 /// The box of nodes that is cut up.
-struct Cutter<'a, const D: usize> {
+struct Cutter<'a, const D: usize, const C: usize> {
     counts: [usize; D], // nodes of the window along each axis
     order: usize,       // of the splines
     free: &'a [bool],
@@ -63,10 +63,15 @@ struct Cutter<'a, const D: usize> {
 }
 
 impl Plan {
-    /// Plan for the `free` components of a window of `counts` nodes, of which no other slab touches the layers `inner`.
-    pub fn new<const D: usize>(counts: [usize; D], order: usize, inner: Range<usize>, free: &[bool]) -> Self {
+    /// Plan for the `free` components of a window of `counts` nodes with C each, of which no other slab touches the layers `inner`.
+    pub fn new<const D: usize, const C: usize>(
+        counts: [usize; D],
+        order: usize,
+        inner: Range<usize>,
+        free: &[bool],
+    ) -> Self {
         let plan = Plan { number: vec![NONE; free.len()], ..Plan::default() };
-        let mut cutter = Cutter { counts, order, free, plan, boxes: Vec::new() };
+        let mut cutter = Cutter::<D, C> { counts, order, free, plan, boxes: Vec::new() };
         let mut whole = counts.map(|count| 0..count);
         whole[0] = inner.clone();
         let children = usize::from(cutter.cut(whole));
@@ -103,7 +108,7 @@ impl Plan {
     }
 }
 
-impl<const D: usize> Cutter<'_, D> {
+impl<const D: usize, const C: usize> Cutter<'_, D, C> {
     /// Eliminates the unknowns of a box; `false` if it has none.
     fn cut(&mut self, region: [Range<usize>; D]) -> bool {
         let Some((region, unknowns)) = self.tight(&region) else { return false };
@@ -163,7 +168,7 @@ impl<const D: usize> Cutter<'_, D> {
     }
 
     fn unknowns(&self, node: usize) -> impl Iterator<Item = usize> + '_ {
-        (node * D..(node + 1) * D).filter(|&component| self.free[component])
+        (node * C..(node + 1) * C).filter(|&component| self.free[component])
     }
 
     fn components(&self, region: &[Range<usize>; D]) -> Vec<usize> {

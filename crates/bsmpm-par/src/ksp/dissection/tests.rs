@@ -52,13 +52,13 @@ fn a_pivot_that_is_not_positive_and_finite_is_told() {
 /// The front of every part holds all that its unknowns couple with and all that its children leave.
 #[test]
 fn every_unknown_is_eliminated_once_and_before_what_it_is_told() {
-    fn check<const D: usize>(counts: [usize; D], q: usize, inner: std::ops::Range<usize>, filled: f64) {
+    fn check<const D: usize, const C: usize>(counts: [usize; D], q: usize, inner: std::ops::Range<usize>, filled: f64) {
         let nodes: usize = counts.iter().product();
-        let free: Vec<bool> = (0..nodes * D).map(|component| noise(component) < filled).collect();
-        let plan = Plan::new(counts, q, inner.clone(), &free);
+        let free: Vec<bool> = (0..nodes * C).map(|component| noise(component) < filled).collect();
+        let plan = Plan::new::<D, C>(counts, q, inner.clone(), &free);
         assert_eq!(plan.order.len(), free.iter().filter(|&&free| free).count());
         assert!((0..plan.order.len()).all(|number| plan.number[plan.order[number] as usize] as usize == number));
-        let layer = nodes * D / counts[0];
+        let layer = nodes * C / counts[0];
         assert!(plan.shared().iter().all(|&component| !inner.contains(&(component as usize / layer))));
         let at = |mut node: usize| {
             let mut place = [0; D];
@@ -74,9 +74,9 @@ fn every_unknown_is_eliminated_once_and_before_what_it_is_told() {
             assert!(part.rim.is_sorted_by(|a, b| a < b) && part.rim.iter().all(|&number| number as usize >= next));
             let holds = |number: usize| part.own.contains(&number) || part.rim.contains(&(number as u32));
             for number in part.own.clone() {
-                let node = at(plan.order[number] as usize / D);
+                let node = at(plan.order[number] as usize / C);
                 for (component, &other) in plan.number.iter().enumerate().filter(|(_, other)| **other != NONE) {
-                    let place = at(component / D);
+                    let place = at(component / C);
                     let near = (0..D).all(|axis| node[axis].abs_diff(place[axis]) <= q);
                     assert!(!near || (other as usize) < number || holds(other as usize));
                 }
@@ -88,12 +88,12 @@ fn every_unknown_is_eliminated_once_and_before_what_it_is_told() {
         }
         assert!(stack.len() == 1 && next == plan.eliminated());
     }
-    check([30, 14], 2, 2..28, 0.9);
-    check([9, 40], 1, 0..9, 0.5);
-    check([26, 20], 3, 3..3, 1.0);
-    check([12, 12], 2, 0..10, 0.02);
-    check([7, 6, 5], 1, 1..6, 0.8);
-    check([5, 4], 2, 0..5, 0.0);
+    check::<2, 2>([30, 14], 2, 2..28, 0.9);
+    check::<2, 1>([9, 40], 1, 0..9, 0.5);
+    check::<2, 2>([26, 20], 3, 3..3, 1.0);
+    check::<2, 3>([12, 12], 2, 0..10, 0.02);
+    check::<3, 3>([7, 6, 5], 1, 1..6, 0.8);
+    check::<2, 2>([5, 4], 2, 0..5, 0.0);
 }
 
 #[test]
@@ -139,7 +139,9 @@ fn slabs_find_the_solution_of_the_dense_matrix() {
         ([11, 3], 2, &[0, 1, 3, 4, 5, 6, 7, 8, 9, 11]),
     ];
     for (cells, order, bounds) in cases {
-        System::new(cells, order, bounds).is_solved();
+        System::<1>::new(cells, order, bounds).is_solved();
+        System::<2>::new(cells, order, bounds).is_solved();
+        System::<3>::new(cells, order, bounds).is_solved();
     }
 }
 
@@ -151,9 +153,9 @@ fn bodies_apart_find_the_solution_of_the_dense_matrix() {
     for (side, other) in (6..10).flat_map(|side| (side - 1..side + 5).map(move |other| (side, other))) {
         let columns = side + 6 + other;
         for bounds in [vec![0, columns], vec![0, columns - 2, columns], vec![0, side + 1, side + 3, columns]] {
-            let system = System { gap: side..side + 6, ..System::new([columns, 7], 2, &bounds) };
+            let system = System { gap: side..side + 6, ..System::<2>::new([columns, 7], 2, &bounds) };
             let counts = std::array::from_fn(|axis| system.grid.axes()[axis].functions());
-            let plan = Plan::new::<2>(counts, 2, 0..counts[0], &system.free());
+            let plan = Plan::new::<2, 2>(counts, 2, 0..counts[0], &system.free());
             let (_, parts) = plan.parts.split_last().unwrap();
             parted += usize::from(parts.iter().any(|part| part.own.is_empty() && part.children == 2));
             system.is_solved();
@@ -164,7 +166,7 @@ fn bodies_apart_find_the_solution_of_the_dense_matrix() {
 
 #[test]
 fn solutions_repeat_to_the_bit_however_late_messages_are_and_agree_where_slabs_meet() {
-    let system = System::new([15, 6], 2, &[0, 4, 7, 8, 15]);
+    let system = System::<2>::new([15, 6], 2, &[0, 4, 7, 8, 15]);
     let bits = |delay| -> Vec<Vec<u64>> {
         system
             .solutions(Precision::Single, delay)

@@ -48,14 +48,14 @@ fn wires(ranks: usize, delay: usize) -> Vec<Wire> {
     wires
 }
 
-/// A made-up system on a grid, of which some cells are empty and some components held.
-pub struct System {
+/// A made-up system of C unknowns a node on a grid, of which some cells are empty and some components held.
+pub struct System<const C: usize> {
     pub grid: Grid<2>,
     pub slabs: Slabs,
     pub gap: std::ops::Range<usize>, // columns of empty cells
 }
 
-impl System {
+impl<const C: usize> System<C> {
     pub fn new([columns, rows]: [usize; 2], order: usize, bounds: &[usize]) -> Self {
         let axis = |cells| KnotVector::uniform(1.0, cells, order).unwrap();
         let slabs = Slabs::new(bounds.to_vec(), bounds.len() - 1, 0..columns).unwrap();
@@ -64,7 +64,7 @@ impl System {
 
     /// Positive definite block of a cell, or none.
     fn block(&self, cell: usize) -> Option<DMatrix<f64>> {
-        let size = self.grid.cell_nodes() * 2;
+        let size = self.grid.cell_nodes() * C;
         let g = DMatrix::from_fn(size, size, |i, j| noise((cell * size + i) * size + j) - 0.5);
         let empty = noise(cell) >= 0.9 || self.gap.contains(&self.grid.cell_at(cell)[0]);
         (!empty).then(|| &g * g.transpose() + 0.1 * DMatrix::identity(size, size))
@@ -77,18 +77,18 @@ impl System {
     }
 
     pub fn free(&self) -> Vec<bool> {
-        let mut free = vec![false; self.grid.nodes() * 2];
+        let mut free = vec![false; self.grid.nodes() * C];
         for cell in (0..self.grid.cells()).filter(|&cell| self.block(cell).is_some()) {
             self.nodes(cell)
                 .into_iter()
-                .flat_map(|node| [2 * node, 2 * node + 1])
+                .flat_map(|node| C * node..C * (node + 1))
                 .for_each(|c| free[c] = noise(c) < 0.95);
         }
         free
     }
 
     fn rhs(&self) -> Vec<f64> {
-        (0..self.grid.nodes() * 2).map(|component| noise(component) - 0.5).collect()
+        (0..self.grid.nodes() * C).map(|component| noise(component) - 0.5).collect()
     }
 
     fn dense_solution(&self) -> Vec<f64> {
@@ -98,7 +98,7 @@ impl System {
         free.iter().enumerate().filter(|(_, free)| **free).for_each(|(c, _)| matrix[(c, c)] = 0.0);
         for (cell, block) in (0..self.grid.cells()).filter_map(|cell| Some((cell, self.block(cell)?))) {
             let components: Vec<usize> =
-                self.nodes(cell).into_iter().flat_map(|node| [2 * node, 2 * node + 1]).collect();
+                self.nodes(cell).into_iter().flat_map(|node| C * node..C * (node + 1)).collect();
             for (i, &row) in components.iter().enumerate().filter(|(_, row)| free[**row]) {
                 for (j, &column) in components.iter().enumerate().filter(|(_, column)| free[**column]) {
                     matrix[(row, column)] += block[(i, j)];
@@ -112,12 +112,12 @@ impl System {
     /// What `rank` finds at the nodes of its window, after a first factorisation of another matrix in the other precision.
     fn solution(&self, (rank, precision): (usize, Precision), wire: &Wire) -> Vec<f64> {
         let grid = self.grid.window(self.slabs.columns(rank));
-        let per_layer = grid.layer_nodes() * 2;
+        let per_layer = grid.layer_nodes() * C;
         let window = grid.layers().start * per_layer..grid.layers().end * per_layer;
         let free = &self.free()[window.clone()];
         let mut direct = Dissection::default();
-        direct.plan(wire, (self.slabs.bounds(), rank), &grid, free);
-        let mut stencil = Stencil::new(&grid);
+        direct.plan::<2, C>(wire, (self.slabs.bounds(), rank), &grid, free);
+        let mut stencil = Stencil::<2, C>::new(&grid);
         stencil.keep(|_| true);
         let other = if precision == Precision::Double { Precision::Single } else { Precision::Double };
         for (scale, precision) in [(3.0, other), (1.0, precision)] {
@@ -145,7 +145,7 @@ impl System {
         for (precision, least, most) in [(Precision::Double, 0.0, 1e-9), (Precision::Single, 1e-9, 1e-3)] {
             let mut largest = 0.0_f64;
             for (rank, found) in self.solutions(precision, 0).into_iter().enumerate() {
-                let layer = self.grid.layer_nodes() * 2;
+                let layer = self.grid.layer_nodes() * C;
                 let expected = &dense[self.slabs.layers(rank, self.grid.order()).start * layer..][..found.len()];
                 assert!(found.iter().all(|x| x.is_finite()));
                 largest = found.iter().zip(expected).fold(largest, |most, (a, b)| most.max((a - b).abs()));
