@@ -1,103 +1,38 @@
-//! Start and end of the ranks: what MPI needs before it starts, and how a failure on one rank ends all of them.
+//! Start and end of the program: what it says, and how a failure on one rank ends all of them.
 
 use crate::exit::{BUG, WRONG_LAUNCH};
 use bsmpm_io::lock;
-use mpi::collective::{CommunicatorCollectives, SystemOperation};
+use bsmpm_ranks::launch::{self, Failure};
 use mpi::environment::Universe;
-use mpi::topology::{Communicator, SimpleCommunicator};
+use mpi::topology::SimpleCommunicator;
 use std::fmt::Display;
 use std::io::Write;
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
-/// Variables by which a launcher tells a process how many ranks it started.
-const LAUNCHED: [&str; 4] = ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_SIZE", "SLURM_STEP_NUM_TASKS"];
-
 /// Starts MPI; from here on a panic on any rank ends the job. `Err` holds the exit code.
 pub fn start() -> Result<Universe, u8> {
     age();
-    prepare(!LAUNCHED.iter().any(|name| std::env::var_os(name).is_some()));
-    let Some((universe, _)) = mpi::initialize_with_threading(mpi::Threading::Funneled) else {
-        say("bsmpm-par: MPI could not be started");
-        return Err(BUG);
-    };
-    abort_on_panic();
-    let ranks = universe.world().size().unsigned_abs() as usize;
-    let wanted = LAUNCHED.iter().find_map(|name| std::env::var(name).ok()?.parse::<usize>().ok());
-    if ranks == 1 && wanted.is_some_and(|wanted| wanted > 1) {
-        say(&format!(
-            "bsmpm-par: the launcher started {} processes, but each is a run of its own: \
-             the launcher and this program use different MPI libraries",
-            wanted.unwrap_or(0)
-        ));
-        return Err(WRONG_LAUNCH);
-    }
-    Ok(universe)
-}
-
-/// Settings of Open MPI for every run. Files have no pointer that ranks share: Open MPI's would fill a buffer of fixed size
-/// with long names.
-const ALWAYS: [(&str, &str); 1] = [("OMPI_MCA_sharedfp", "individual")];
-
-/// Settings without a launcher. Open MPI would start a daemon and look for a network; one rank needs neither. Its folder for
-/// the processes of a node would be shared by all such runs, and go with the first that ends.
-const ALONE: [(&str, &str); 4] = [
-    ("OMPI_MCA_ess_singleton_isolated", "1"),
-    ("OMPI_MCA_orte_create_session_dirs", "0"),
-    ("OMPI_MCA_pml", "ob1"),
-    ("OMPI_MCA_btl", "self"),
-];
-
-/// Sets what the environment has not set by itself.
-#[allow(unsafe_code)]
-fn prepare(alone: bool) {
-    let settings = ALWAYS.iter().chain(ALONE.iter().filter(|_| alone));
-    for (name, value) in settings.filter(|(name, _)| std::env::var_os(name).is_none()) {
-        // SAFETY: called first thing in `main`, before any other thread exists.
-        unsafe { std::env::set_var(name, value) };
-    }
-}
-
-/// rsmpi finalises MPI while a panic unwinds, and the other ranks would wait for ever: abort them all instead.
-fn abort_on_panic() {
-    std::panic::set_hook(Box::new(|panic| {
-        let world = SimpleCommunicator::world();
-        let place = panic.location().map_or_else(String::new, |place| format!(" at {place}"));
-        let text = panic.payload();
-        let text = text.downcast_ref::<&str>().copied().or_else(|| text.downcast_ref::<String>().map(String::as_str));
-        let reason = text.unwrap_or("no reason given");
-        end(&world, BUG, &format!("panic on rank {}{place}: {reason}; please report it", world.rank()));
-    }));
+    launch::start(|world, reason| end(world, BUG, &reason)).map_err(|failure| {
+        say(&format!("bsmpm-par: {failure}"));
+        match failure {
+            Failure::NoMpi => BUG,
+            Failure::Apart(_) => WRONG_LAUNCH,
+        }
+    })
 }
 
 /// Ends the job on all ranks with `code`, for failures that the other ranks do not know of. Prints `reason` once.
 pub fn end(world: &SimpleCommunicator, code: u8, reason: &dyn Display) -> ! {
     say(&format!("bsmpm-par: {reason}"));
     lock::abandon();
-    if mpi::environment::is_initialized() && !mpi::environment::is_finalized() {
-        world.abort(i32::from(code));
-    }
-    std::process::exit(i32::from(code));
+    launch::abort(world, code)
 }
 
 /// Writes a line to stderr; where nobody listens there is nothing left to do.
 pub fn say(line: &str) {
     let mut stderr = std::io::stderr().lock();
     let _ = writeln!(stderr, "{line}").and_then(|()| stderr.flush());
-}
-
-/// The same exit code on all ranks: the largest of them, 0 where all are well. Collective.
-pub fn agree(world: &SimpleCommunicator, own: u8) -> u8 {
-    let mut largest = 0;
-    world.all_reduce_into(&own, &mut largest, SystemOperation::max());
-    largest
-}
-
-/// Number of ranks on which a condition holds. Collective.
-pub fn count(world: &SimpleCommunicator, holds: bool) -> usize {
-    let mut sum = 0_u32;
-    world.all_reduce_into(&u32::from(holds), &mut sum, SystemOperation::sum());
-    sum as usize
 }
 
 /// How long this process has been there: what a limit of time is compared with, so that starting libraries, making points

@@ -7,7 +7,6 @@ pub(crate) use first::versions;
 
 use crate::cli::Arguments;
 use crate::restart::Beginning;
-use crate::simulation::Cost;
 use bsmpm::control::Accepted;
 use bsmpm::error::Measures;
 use bsmpm::method::Method;
@@ -23,6 +22,7 @@ use bsmpm_io::manifest::{self, Manifest, Status};
 use bsmpm_io::residuals::{self, Iterate, RESIDUALS};
 use bsmpm_io::steps::{STEPS, Step};
 use bsmpm_io::table::{Cell, Column, Table};
+use bsmpm_ranks::simulation::Cost;
 use bsmpm_scene::Case;
 use bsmpm_scene::Regime;
 use bsmpm_scene::surfaces;

@@ -5,12 +5,12 @@ mod begin;
 use crate::cli::Arguments;
 use crate::exit;
 use crate::fault::Fault;
-use crate::ksp;
 use crate::launch;
 use crate::run::Task;
 use crate::setup::{self, Cut};
-use crate::signals::Requests;
 use crate::source;
+use bsmpm_ranks::linear;
+use bsmpm_ranks::signals::Requests;
 use hdf5_collective::Hdf5;
 use mpi::environment::Universe;
 use mpi::topology::Communicator;
@@ -63,11 +63,11 @@ fn agreed<T>(universe: &Universe, code: u8, mine: Result<T, String>) -> Result<T
     let world = universe.world();
     // What is wrong everywhere is said once.
     let (first, own) = (world.rank() == 0, u8::from(mine.is_err()));
-    let everywhere = world.size().unsigned_abs() as usize == launch::count(&world, own == 1);
+    let everywhere = world.size().unsigned_abs() as usize == bsmpm_ranks::launch::count(&world, own == 1);
     if let (Err(reason), true) = (&mine, first || !everywhere) {
         launch::say(&format!("bsmpm-par: {reason}"));
     }
-    let failed = launch::agree(&world, own * code);
+    let failed = bsmpm_ranks::launch::agree(&world, own * code);
     mine.map_err(|_| failed).and_then(|good| if failed == 0 { Ok(good) } else { Err(failed) })
 }
 
@@ -85,7 +85,7 @@ fn solve(universe: &Universe, task: Task, cut: Cut) -> Result<u8, u8> {
     let options: Vec<&str> = choice.options().into_iter().chain(own).collect();
     let petsc = Petsc::initialize(universe, &options).map_err(|error| format!("PETSc could not be started: {error}"));
     let petsc = agreed(universe, exit::BUG, petsc)?;
-    let probed = ksp::probe(&petsc, &choice).map_err(|error| format!("the linear solver cannot be used: {error}"));
+    let probed = linear::probe(&petsc, &choice).map_err(|error| format!("the linear solver cannot be used: {error}"));
     agreed(universe, exit::CASE, probed)?;
     agreed(universe, exit::BUG, start_threads(arguments.threads))?;
     let hdf5 = Hdf5::initialize(universe).map_err(|error| format!("HDF5 could not be started: {error}"));

@@ -1,9 +1,5 @@
 //! What a run needs of its case beside the model: the first cut, the linear solver, what is told of it in the manifest.
 
-use crate::ksp::Choice;
-use crate::load;
-use crate::simulation::{Simulation, StartStress};
-use crate::slab::Slabs;
 use bsmpm::error::StepError;
 use bsmpm::initial::Equilibrium;
 use bsmpm::kinematics::PlaneStrain;
@@ -11,6 +7,10 @@ use bsmpm::model::Weighting;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::step::smooth;
 use bsmpm_io::manifest;
+use bsmpm_ranks::linear::Choice;
+use bsmpm_ranks::load;
+use bsmpm_ranks::simulation::{Simulation, StartStress};
+use bsmpm_ranks::slab::Slabs;
 use bsmpm_scene::model::{at_rest, penalty, weighting};
 use bsmpm_scene::words::{Factor, Word};
 use bsmpm_scene::{Axis, Case, Initial};

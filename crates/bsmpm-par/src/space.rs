@@ -3,11 +3,11 @@
 
 use crate::checkpoint::{self, Contents, Refusal, agree};
 use crate::cli::Arguments;
-use crate::simulation::Simulation;
 use crate::{exit, gather};
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm_io::directory::OutputDirectory;
 use bsmpm_io::{checkpoint as kept, disk};
+use bsmpm_ranks::simulation::Simulation;
 use bsmpm_scene::{Case, Every, Regime};
 use mpi::collective::{CommunicatorCollectives, SystemOperation};
 use mpi::topology::SimpleCommunicator;

@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
 
-const CRATES: [&str; 5] = ["bsmpm", "bsmpm-scene", "bsmpm-io", "bsmpm-par", "bsmpm-tools"];
+const CRATES: [&str; 6] = ["bsmpm", "bsmpm-scene", "bsmpm-io", "bsmpm-ranks", "bsmpm-par", "bsmpm-tools"];
 /// Words before the name of an item.
 const ITEMS: [&str; 8] = ["struct", "enum", "union", "trait", "type", "fn", "const", "static"];
 /// Names for names that are followed; one that leads back to itself ends here.

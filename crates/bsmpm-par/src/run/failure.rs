@@ -2,11 +2,11 @@
 
 use super::{Run, diagnosis};
 use crate::exit;
-use crate::launch;
 use bsmpm::control::Failure;
 use bsmpm::error::StepError;
 use bsmpm::step::Counts;
 use bsmpm_io::manifest::Status;
+use bsmpm_ranks::launch;
 
 impl Run<'_> {
     /// Ends the run after a step that failed.

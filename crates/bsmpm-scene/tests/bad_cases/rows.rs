@@ -49,6 +49,7 @@ pub const LANGUAGE: &[Row] = &[
     row("poisson  = 0.3\n", "", "material.sand.poisson", "missing; it is a number").up(3),
     row("acceleration = [0.0, -9.81]\n", "", "gravity.acceleration", "missing").up(1),
     row("order = \"quadratic\"\n", "", "grid.order", "missing").up(4),
+    row("order = \"quadratic\"", "order = \"quartic\"", "grid.order", "expected one of"),
     row("method = \"f-bar\"", "", "stabilisation.method", "missing").up(1),
     row("poisson  = 0.3", "poisson = 0.3\npoisson = 0.2", "", "no valid TOML: duplicate key").down(1),
     row("[gravity]", "[grid]", "", "duplicate key"),
@@ -119,6 +120,7 @@ pub const RANGES: &[Row] = &[
     row("cell  = [0.5, \"50 cm\"]", "cell  = 0", "grid.cell", "allowed: cell > 0"),
     row("cell  = [0.5, \"50 cm\"]", "cell  = -0.0", "grid.cell", "allowed: cell > 0"),
     row("cell  = [0.5, \"50 cm\"]", "cell  = 1e-9", "grid.cell", "cells along x; at most 2147483647"),
+    row("cell  = [0.5, \"50 cm\"]", "cell  = [0.5, 1e-9]", "grid.cell", "cells along y; at most 2147483647"),
     row("cell  = [0.5, \"50 cm\"]", "cell  = 4e-6", "grid.cell", "cells and"),
     row("cell  = [0.5, \"50 cm\"]", "cell  = [0.5, 0.1, 0.1]", "grid.cell", "found a list of 3"),
 ];
@@ -211,6 +213,7 @@ pub const RULES: &[Row] = &[
     row("times  = [\"0.25 s\", 0.75]", "times = [2]", "output.times", "beyond the end"),
     row("times  = [\"0.25 s\", 0.75]", "times = [-2]", "output.times", "out of range"),
     row("percentile = 99.9", "face = \"left\"", "history.0.face", "no meaning for quantity \"runout\""),
+    row("face     = \"bottom\"", "face = \"botom\"", "history.1.face", "did you mean `bottom`?"),
     row("face     = \"bottom\"\n", "", "history.1.face", "quantity \"reaction\" needs it").up(2),
     row("at       = [2.0, \"0.5 m\"]", "at = [5, 0]", "history.2.at", "outside the grid"),
     row("percentile = 99.9", "name = \"floor-x\"", "history.1.name", "a column `floor-x` already").down(5),
@@ -250,6 +253,7 @@ pub const LATER: &[(&str, &str, &str)] = &[
     ("geometry = \"plane-strain\"", "geometry = \"axisymmetric\"", "geometry"),
     ("geometry = \"plane-strain\"", "geometry = \"solid\"", "geometry"),
     ("format = \"vtu\"", "format = \"vtkhdf\"", "output.format"),
+    ("[gravity]", "[stage]", "stage"),
     ("[gravity]", "[[stage]]", "stage"),
     ("[gravity]", "[profile.depth]", "profile"),
 ];

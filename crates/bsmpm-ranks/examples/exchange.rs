@@ -1,9 +1,9 @@
 //! Messages of many lengths between all ranks, for the test of their exchange: `exchange BLOCK`, with blocks of so many
 //! bytes. Every rank looks at every byte that it gets.
 
-use bsmpm_par::traffic::Traffic;
-use bsmpm_par::{launch, migrate};
-use mpi::topology::Communicator;
+use bsmpm_ranks::traffic::Traffic;
+use bsmpm_ranks::{launch, migrate};
+use mpi::topology::{Communicator, SimpleCommunicator};
 use std::process::ExitCode;
 
 /// What one rank sends to another: none to some, less than a block, whole blocks, and more.
@@ -12,10 +12,16 @@ fn message(from: usize, to: usize, block: usize) -> Vec<u8> {
     (0..length).map(|at| (at * 31 + from * 7 + to * 3) as u8).collect()
 }
 
+/// A panic on one rank ends all of them.
+fn end(world: &SimpleCommunicator, reason: &str) -> ! {
+    eprintln!("exchange: {reason}");
+    launch::abort(world, 1)
+}
+
 fn main() -> ExitCode {
-    let universe = match launch::start() {
+    let universe = match launch::start(end) {
         Ok(universe) => universe,
-        Err(code) => return code.into(),
+        Err(failure) => panic!("{failure}"),
     };
     let world = universe.world();
     let (rank, ranks) = (world.rank() as usize, world.size() as usize);

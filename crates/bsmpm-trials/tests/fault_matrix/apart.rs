@@ -1,7 +1,7 @@
 //! Ranks that do not see the same files: one of them has an empty folder in a place where the others have one that is full.
 
 use crate::ground::{Ground, RUN, Trial, results, same};
-use crate::support::{Ears, Output, PROGRAM, processes};
+use crate::support::{Ears, Output, processes, program};
 use crate::table::{Tried, trials};
 use std::process::{Command, Stdio};
 use std::time::Duration;
@@ -19,7 +19,7 @@ fn start(trial: &Trial, (ranks, blind): (usize, usize), folder: &str, arguments:
             let line = format!("mount -t tmpfs none {folder} && exec \"$0\" \"$@\"");
             launcher.args(["unshare", "--mount", "sh", "-c", &line]);
         }
-        launcher.arg(PROGRAM).args(arguments);
+        launcher.arg(program()).args(arguments);
     }
     processes::start_beside(launcher, &[], Ears::Open, Duration::from_secs(60)).end()
 }

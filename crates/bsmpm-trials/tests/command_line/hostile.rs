@@ -220,7 +220,7 @@ fn s1_a_link_in_the_place_of_a_folder_of_the_run_is_refused_with_73() {
 #[test]
 fn s2_the_solver_starts_no_process() {
     let crates = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
-    let names = ["bsmpm", "bsmpm-scene", "bsmpm-io", "bsmpm-par", "petsc-rs", "hdf5-collective"];
+    let names = ["bsmpm", "bsmpm-scene", "bsmpm-io", "bsmpm-ranks", "bsmpm-par", "petsc-rs", "hdf5-collective"];
     let mut folders: Vec<_> = names.map(|name| crates.join(name).join("src")).into();
     let mut seen = 0;
     while let Some(folder) = folders.pop() {

@@ -2,7 +2,7 @@
 
 use crate::ground::{Ground, INTERVAL, RUN, Trial, results, same, same_but_for_frames, spread};
 use crate::support::results::manifest;
-use crate::support::{Ears, PROGRAM, Scratch, entries, example, processes};
+use crate::support::{Ears, Scratch, entries, example, processes, program};
 use crate::table::{Tried, trials};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -159,7 +159,7 @@ pub fn small_files(ground: &Ground, count: usize) -> Tried {
     let tried = trials(count, |index| {
         let trial = ground.trial(2);
         let limit = (frame + (spread(index, 14) * 0.9 * (checkpoint - frame) as f64) as u64) / 1024 + 1;
-        let line = format!("ulimit -f {limit}; exec {PROGRAM} case.toml -q -o {RUN} --restart auto");
+        let line = format!("ulimit -f {limit}; exec {} case.toml -q -o {RUN} --restart auto", program());
         let mut command = Command::new("bash");
         command.args(["-c", &line]).current_dir(trial.scratch.path(""));
         let output = processes::start_beside(command, &[], Ears::Open, Duration::from_secs(60)).end().expect(74);
@@ -222,7 +222,7 @@ fn traced(trial: &Trial, options: &[&str]) -> Option<String> {
     }
     let mut command = Command::new("strace");
     command.args(["-f", "-y", "-o", trace.to_str().unwrap()]).args(options);
-    command.args([PROGRAM, "case.toml", "-q", "-o", RUN, "--restart", "auto"]);
+    command.args([program(), "case.toml", "-q", "-o", RUN, "--restart", "auto"]);
     command.current_dir(trial.scratch.path(""));
     processes::start_beside(command, &[], Ears::Open, Duration::from_secs(300)).end().expect(0);
     Some(std::fs::read_to_string(trace).unwrap())

@@ -5,12 +5,13 @@
 
 use bsmpm::grid::{Grid, KnotVector};
 use bsmpm::seam::{Halo, LinearSolver, Symmetry};
-use bsmpm_par::halo::MpiHalo;
-use bsmpm_par::ksp::{Choice, KspSolver};
-use bsmpm_par::launch;
-use bsmpm_par::signals::Requests;
-use bsmpm_par::slab::Slabs;
-use bsmpm_par::timers::Timers;
+use bsmpm_ranks::halo::MpiHalo;
+use bsmpm_ranks::launch;
+use bsmpm_ranks::linear::{Choice, KspSolver};
+use bsmpm_ranks::signals::Requests;
+use bsmpm_ranks::slab::Slabs;
+use bsmpm_ranks::timers::Timers;
+use mpi::topology::SimpleCommunicator;
 use petsc_rs::Petsc;
 use std::process::ExitCode;
 use std::rc::Rc;
@@ -18,10 +19,16 @@ use std::rc::Rc;
 /// Solves whose mean is told.
 const SOLVES: usize = 50;
 
+/// A panic on one rank ends all of them.
+fn end(world: &SimpleCommunicator, reason: &str) -> ! {
+    eprintln!("solvers: {reason}");
+    launch::abort(world, 1)
+}
+
 fn main() -> ExitCode {
-    let universe = match launch::start() {
+    let universe = match launch::start(end) {
         Ok(universe) => universe,
-        Err(code) => return code.into(),
+        Err(failure) => panic!("{failure}"),
     };
     let arguments: Vec<String> = std::env::args().collect();
     let [_, method, nu, cells, further @ ..] = &arguments[..] else {

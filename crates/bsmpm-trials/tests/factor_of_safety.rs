@@ -1,5 +1,7 @@
 //! `bsmpm fos` with this program: the coarsest slope that still has a mechanism.
 
+mod support;
+
 use std::path::Path;
 
 use bsmpm_tools::fos::{Arguments, run};
@@ -21,7 +23,7 @@ fn between((from, to): (f64, f64), case: &str, set: &[&str], jobs: usize, output
         set: set.iter().map(|&set| set.to_owned()).collect(),
         output: Some(output.to_owned()),
         force: false,
-        command: vec![env!("CARGO_BIN_EXE_bsmpm-par").to_owned()],
+        command: vec![support::program().to_owned()],
     };
     let mut made = 0;
     let (_, pictures) = run(&arguments, |line| made += usize::from(!line.contains("kept"))).unwrap();

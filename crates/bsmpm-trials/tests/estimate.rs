@@ -19,7 +19,7 @@ fn the_short_footing_is_estimated_beside_its_run() {
         against: Some(scratch.path("run.out")),
         json: true,
         set: Vec::new(),
-        command: vec![support::PROGRAM.to_owned()],
+        command: vec![support::program().to_owned()],
     };
     let mut told = Vec::new();
     let found: Value = serde_json::from_str(&run(&arguments, |line| told.push(line.to_owned())).unwrap()).unwrap();

@@ -3,7 +3,7 @@
 use crate::scenes::{Footing, block, layers};
 use crate::solver::Run;
 use crate::steps::{PERIOD, bar, energy};
-use crate::support::{PROGRAM, Scratch};
+use crate::support::{Scratch, program};
 use crate::table::Found;
 use bsmpm::schedule::Schedule;
 use std::process::{Command, Stdio};
@@ -61,7 +61,7 @@ pub fn rebound() -> Found {
 /// the number of open files changed there.
 fn growth(speed: f64) -> (f64, bool) {
     let scratch = Scratch::with_case(&block([speed, 0.0], STEPS, ""));
-    let mut command = Command::new(PROGRAM);
+    let mut command = Command::new(program());
     command.args(["case.toml", "-q"]).current_dir(scratch.path("")).stdin(Stdio::null()).stderr(Stdio::null());
     let mut child = command.spawn().expect("the program starts");
     let of_process = |name: &str| format!("/proc/{}/{name}", child.id());

@@ -1,5 +1,7 @@
 //! `bsmpm sweep` and `bsmpm verify-case` with this program, on the first milliseconds of the coarse column.
 
+mod support;
+
 use std::fs;
 use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
@@ -8,8 +10,8 @@ use std::process::Command;
 use bsmpm_tools::{sweep, verify_case};
 use clap::Parser;
 use serde_json::Value;
+use support::program;
 
-const PROGRAM: &str = env!("CARGO_BIN_EXE_bsmpm-par");
 const COLUMN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../cases/short/column_collapse.toml");
 const SHORT: [&str; 6] = ["--set", "analysis.end=0.02", "--set", "check=[]", "--set", "output.times=[0.02]"];
 
@@ -32,7 +34,8 @@ impl Bench {
     fn new() -> Self {
         let bench = Self(tempfile::tempdir().unwrap());
         let script = format!(
-            "#!/bin/sh\ncase \"$*\" in *cubic*) export BSMPM_FAULT=panic:rank=0,step=2;; esac\nexec '{PROGRAM}' \"$@\"\n"
+            "#!/bin/sh\ncase \"$*\" in *cubic*) export BSMPM_FAULT=panic:rank=0,step=2;; esac\nexec '{}' \"$@\"\n",
+            program()
         );
         fs::write(bench.path("solver"), script).unwrap();
         fs::set_permissions(bench.path("solver"), fs::Permissions::from_mode(0o755)).unwrap();
@@ -114,7 +117,7 @@ fn a_run_that_was_stopped_goes_on_to_the_same_end() {
     let [run, _] = runs(&found)[..] else { panic!("{found}") };
     let directory = Path::new(run["directory"].as_str().unwrap());
     let sets = run["set"].as_array().unwrap().iter().flat_map(|set| ["--set", set.as_str().unwrap()]);
-    let stopped = Command::new(PROGRAM)
+    let stopped = Command::new(program())
         .arg(COLUMN)
         .args(sets)
         .args(["--quiet", "--force", "--max-steps", "7", "--output"])
@@ -154,7 +157,7 @@ fn the_cheapest_setting_is_written_back_as_a_case_that_passes() {
     assert_eq!(states(&found).len(), 3, "{found}");
     let text = fs::read_to_string(&best).unwrap();
     assert!(text.contains("# A column of rods, 0.2 m wide"), "{text}");
-    let checked = Command::new(PROGRAM).arg(&best).arg("--check").output().unwrap();
+    let checked = Command::new(program()).arg(&best).arg("--check").output().unwrap();
     assert!(checked.status.success(), "{checked:?}");
 }
 
@@ -174,7 +177,7 @@ fn runs_that_would_not_fit_are_not_begun() {
         "--output",
         output.to_str().unwrap(),
         "--",
-        PROGRAM,
+        program(),
     ];
     let error = sweep::run(&Sweep::parse_from(words).arguments, |line| panic!("{line}")).unwrap_err();
     assert_eq!(error.exit_code(), 80);
@@ -191,7 +194,7 @@ fn three_grids_tell_an_order_or_why_there_is_none() {
         &["verify-case", COLUMN, "--output", output.to_str().unwrap(), "--cells", "12.5 mm,10 mm,5 mm", "--at", "0.01"]
             [..],
         &SHORT,
-        &["--", PROGRAM],
+        &["--", program()],
     ];
     let line = VerifyCase::parse_from(words.concat());
     let (text, _) = verify_case::run(&line.arguments, |_| ()).unwrap();

@@ -3,7 +3,7 @@
 use crate::ground::{Ground, RUN, results, same};
 use crate::support::cases::{SLIDING_BLOCK, changed};
 use crate::support::results::manifest;
-use crate::support::{Ears, PROGRAM, Scratch, processes, shipped};
+use crate::support::{Ears, Scratch, processes, program, shipped};
 use crate::table::{Tried, trials};
 use std::fs::{Permissions, set_permissions};
 use std::os::unix::fs::PermissionsExt;
@@ -45,7 +45,18 @@ pub fn no_permission(ground: &Ground, _: usize) -> Tried {
             }
         };
         let mut command = Command::new("setpriv");
-        command.args(["--reuid", NOBODY, "--regid", NOBODY, "--clear-groups", PROGRAM, "case.toml", "-q", "-o", path]);
+        command.args([
+            "--reuid",
+            NOBODY,
+            "--regid",
+            NOBODY,
+            "--clear-groups",
+            program(),
+            "case.toml",
+            "-q",
+            "-o",
+            path,
+        ]);
         command.current_dir(scratch.path("")).env("TMPDIR", "/tmp").env("HOME", "/");
         let output = processes::start_beside(command, &[], Ears::Open, Duration::from_secs(30)).end().expect(73);
         assert!(output.said().contains(path.split('/').next().unwrap()), "{output:?}");
@@ -123,7 +134,7 @@ pub fn memory(ground: &Ground, _: usize) -> Tried {
             trial.scratch.direct(&["case.toml", "-q", "--max-memory", "5MB"])
         } else {
             // 2.9 million points, some GB, for a process that may have 1.5 GB.
-            let line = format!("ulimit -v 1500000; exec {PROGRAM} case.toml -q --set body.0.points_per_cell=60");
+            let line = format!("ulimit -v 1500000; exec {} case.toml -q --set body.0.points_per_cell=60", program());
             let mut command = Command::new("bash");
             command.args(["-c", &line]).current_dir(trial.scratch.path(""));
             processes::start_beside(command, &[], Ears::Open, Duration::from_secs(60)).end()
@@ -188,7 +199,7 @@ pub fn clock(ground: &Ground, _: usize) -> Tried {
     }
     let whole = ground.whole(1);
     let tried = trials(1, |_| {
-        let mut command = Command::new(PROGRAM);
+        let mut command = Command::new(program());
         command.args(["case.toml", "-q", "-o", RUN, "--restart", "auto", "--max-wall", "00:10:00"]);
         command.current_dir(trial.scratch.path("")).env("LD_PRELOAD", &library);
         let output = processes::start_beside(command, &[], Ears::Open, Duration::from_secs(120)).end().expect(0);

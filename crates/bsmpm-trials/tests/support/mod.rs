@@ -9,6 +9,7 @@ pub mod results;
 
 pub use processes::{Ears, Output, Running};
 
+use bsmpm_trials::executable;
 use std::ffi::OsString;
 use std::os::unix::ffi::OsStringExt;
 use std::path::{Path, PathBuf};
@@ -16,7 +17,9 @@ use std::process::Command;
 use std::time::Duration;
 
 /// The program under test.
-pub const PROGRAM: &str = env!("CARGO_BIN_EXE_bsmpm-par");
+pub fn program() -> &'static str {
+    executable("bsmpm-par").to_str().expect("a path in UTF-8")
+}
 
 /// After this long a run counts as hanging.
 const PATIENCE: Duration = Duration::from_secs(120);
@@ -26,11 +29,9 @@ pub fn shipped(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases").join(name)
 }
 
-/// An example, built together with the tests.
+/// An example of the crates under test.
 pub fn example(name: &str) -> PathBuf {
-    let program = Path::new(PROGRAM).with_file_name("examples").join(name);
-    assert!(program.is_file(), "cargo build --examples, with the profile of this test, makes {program:?}");
-    program
+    executable(name).to_owned()
 }
 
 /// A directory in which runs are started; it goes with everything in it.
@@ -161,7 +162,7 @@ impl Job {
 
     fn command(self) -> Command {
         let shell = self.limit.map(|limit| format!("ulimit {limit} && exec \"$0\" \"$@\""));
-        let words = shell.iter().flat_map(|line| ["sh", "-c", line]).chain([PROGRAM]).collect::<Vec<_>>();
+        let words = shell.iter().flat_map(|line| ["sh", "-c", line]).chain([program()]).collect::<Vec<_>>();
         let mut command = match self.ranks {
             None => Command::new(words[0]),
             Some(ranks) => {

@@ -34,6 +34,7 @@ fn main() -> ExitCode {
         let ids: Vec<&str> = rows.iter().map(|row| row.id).collect();
         return look_through("scripts/faults", IDS.map(|number| format!("F{number:02}")), &ids);
     };
+    support::program(); // built before the first row is timed
     let ground = ground::Ground::new(request.depth);
     let wanted = rows.iter().filter(|row| request.wants(row.depth(), row.id, row.what));
     request.run(&table::COLUMNS, wanted, |row| row.judge(&ground))

@@ -1,7 +1,7 @@
 //! A scene on the ranks: steps, migration, and the cut of the grid that follows the points.
 
 use crate::halo::MpiHalo;
-use crate::ksp::{Choice, KspSolver};
+use crate::linear::{Choice, KspSolver};
 use crate::load;
 use crate::migrate;
 use crate::signals::Requests;
