@@ -1,5 +1,6 @@
 //! What can go wrong when a run's files are written or read, with the exit code that each error means.
 
+use crate::exit;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -139,19 +140,18 @@ pub enum Error {
 }
 
 impl Error {
-    /// The exit code of a program that ends with this error: 73 for the output directory, 81 for numbers that are not
-    /// finite, 70 for a caller's mistake, 76 for a checkpoint that cannot be used, 74 for all other trouble with files.
+    /// The [exit code](crate::exit) of a program that ends with this error.
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Directory { .. }
             | Self::NotDirectory { .. }
             | Self::Occupied { .. }
             | Self::Locked { .. }
-            | Self::UnsafeOutput { .. } => 73,
-            Self::PointNotFinite { .. } | Self::NotFinite { .. } => 81,
-            Self::Length { .. } | Self::Name { .. } => 70,
-            Self::File { .. } | Self::Format { .. } | Self::Space { .. } => 74,
-            Self::Checkpoint { .. } => 76,
+            | Self::UnsafeOutput { .. } => exit::DIRECTORY,
+            Self::PointNotFinite { .. } | Self::NotFinite { .. } => exit::LEFT,
+            Self::Length { .. } | Self::Name { .. } => exit::BUG,
+            Self::File { .. } | Self::Format { .. } | Self::Space { .. } => exit::WRITE,
+            Self::Checkpoint { .. } => exit::CHECKPOINT,
         }
     }
 

@@ -1,8 +1,8 @@
 //! The command line of `bsmpm-par`.
 
-use crate::exit::USAGE;
 use crate::launch::say;
 use bsmpm_io::disk::size;
+use bsmpm_io::exit::USAGE;
 use clap::{Parser, ValueEnum};
 use std::path::PathBuf;
 use std::time::Duration;
@@ -178,6 +178,19 @@ fn wall(text: &str) -> Result<Duration, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use bsmpm_io::exit::{MEMORY, STOPPED, WRITE};
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_help_names_the_codes_of_the_list() {
+        let command = Arguments::command();
+        let codes = [("max_steps", STOPPED), ("max_wall", STOPPED), ("max_memory", MEMORY), ("strict_space", WRITE)];
+        for (option, code) in codes {
+            let option = command.get_arguments().find(|argument| argument.get_id() == option).expect("an option");
+            let help = option.get_help().expect("a help text").to_string();
+            assert!(help.contains(&format!("(exit {code}")), "{help}");
+        }
+    }
 
     #[test]
     fn petsc_options_that_write_or_read_files_are_refused() {

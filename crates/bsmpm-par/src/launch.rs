@@ -1,6 +1,6 @@
 //! Start and end of the program: what it says, and how a failure on one rank ends all of them.
 
-use crate::exit::{BUG, WRONG_LAUNCH};
+use bsmpm_io::exit::{BUG, WRONG_LAUNCH};
 use bsmpm_io::lock;
 use bsmpm_ranks::launch::{self, Failure};
 use mpi::environment::Universe;

@@ -3,7 +3,6 @@
 
 pub mod checkpoint;
 pub mod cli;
-pub mod exit;
 mod fault;
 pub mod gather;
 pub mod indicators;

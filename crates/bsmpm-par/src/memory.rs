@@ -2,8 +2,8 @@
 //! allocated. Linux tells; elsewhere only the command line does.
 
 use crate::cli::Arguments;
-use crate::exit;
 use crate::launch::say;
+use bsmpm_io::exit;
 use bsmpm_scene::Case;
 use mpi::collective::Root;
 use mpi::topology::{Communicator, SimpleCommunicator};

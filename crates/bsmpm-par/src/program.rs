@@ -3,12 +3,12 @@
 mod begin;
 
 use crate::cli::Arguments;
-use crate::exit;
 use crate::fault::Fault;
 use crate::launch;
 use crate::run::Task;
 use crate::setup::{self, Cut};
 use crate::source;
+use bsmpm_io::exit;
 use bsmpm_ranks::linear;
 use bsmpm_ranks::signals::Requests;
 use hdf5_collective::Hdf5;

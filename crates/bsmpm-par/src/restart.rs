@@ -4,7 +4,6 @@ mod there;
 
 use crate::checkpoint::{self, Opened, Refusal, State, Wanted, agree, broadcast, find};
 use crate::cli::{Arguments, Restart};
-use crate::exit;
 use bsmpm::control::Stepper;
 use bsmpm::grid::Grid;
 use bsmpm::kinematics::PlaneStrain;
@@ -13,6 +12,7 @@ use bsmpm::points::Points;
 use bsmpm::schedule::Schedule;
 use bsmpm_io::checkpoint::{FOLDER, Found};
 use bsmpm_io::directory::{Existing, OutputDirectory};
+use bsmpm_io::exit;
 use bsmpm_io::manifest;
 use bsmpm_ranks::load;
 use bsmpm_ranks::migrate;

@@ -7,7 +7,6 @@ mod save;
 mod start;
 
 use crate::cli::Arguments;
-use crate::exit;
 use crate::fault::Fault;
 use crate::gather::{Gathering, Moment};
 use crate::launch;
@@ -20,6 +19,7 @@ use bsmpm::kinematics::PlaneStrain;
 use bsmpm::observe::projection::projected_pressure;
 use bsmpm::seam::Halo;
 use bsmpm::step::Report;
+use bsmpm_io::exit;
 use bsmpm_io::frame::Parts;
 use bsmpm_io::manifest::{Communication, Status};
 use bsmpm_ranks::simulation::Simulation;

@@ -1,10 +1,10 @@
 //! The case file: read by rank 0, parsed by every rank from the same bytes.
 
 use crate::cli::Arguments;
-use crate::exit::{CASE, MISSING};
 use crate::launch::say;
 use crate::memory;
 use crate::setup;
+use bsmpm_io::exit::{CASE, MISSING};
 use bsmpm_scene::Case;
 use mpi::collective::Root;
 use mpi::topology::{Communicator, SimpleCommunicator};

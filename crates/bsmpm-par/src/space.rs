@@ -3,9 +3,10 @@
 
 use crate::checkpoint::{self, Contents, Refusal, agree};
 use crate::cli::Arguments;
-use crate::{exit, gather};
+use crate::gather;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm_io::directory::OutputDirectory;
+use bsmpm_io::exit;
 use bsmpm_io::{checkpoint as kept, disk};
 use bsmpm_ranks::simulation::Simulation;
 use bsmpm_scene::{Case, Every, Regime};

@@ -117,3 +117,40 @@ fn print(table: &str, files: &[PathBuf]) {
         let _ = writeln!(stdout, "{}", file.display());
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use bsmpm_io::exit::{ALL, CASE, DONE, MISSING, NO_CONVERGENCE, USAGE, WRITE};
+    use clap::CommandFactory;
+
+    /// What the help says of some codes.
+    const WORDS: [(&str, u8); 9] = [
+        ("command line", USAGE),
+        ("has errors", CASE),
+        ("no such case", MISSING),
+        ("does not start", WRITE),
+        ("could not be written", WRITE),
+        ("no stable state", NO_CONVERGENCE),
+        ("no run came to its end", NO_CONVERGENCE),
+        ("done, whatever", DONE),
+        ("estimated", DONE),
+    ];
+
+    #[test]
+    fn the_help_names_the_codes_of_the_list() {
+        let mut seen = 0;
+        for mut command in super::Cli::command().get_subcommands().cloned() {
+            let help = command.render_long_help().to_string();
+            let Some((_, rest)) = help.split_once("Exit codes: ") else { continue };
+            let told = rest.split("\n\n").next().unwrap_or_default().split_whitespace().collect::<Vec<_>>().join(" ");
+            for part in told.split("; ") {
+                let numbers = part.split(|c: char| !c.is_ascii_digit()).filter_map(|word| word.parse::<u8>().ok());
+                assert!(numbers.clone().all(|code| ALL.contains(&code)), "{part}");
+                let is_told = WORDS.iter().filter(|(words, _)| part.contains(words));
+                is_told.for_each(|(words, code)| assert_eq!(numbers.clone().next(), Some(*code), "{words}: {part}"));
+            }
+            seen += 1;
+        }
+        assert_eq!(seen, 5);
+    }
+}

@@ -1,5 +1,6 @@
 //! What can go wrong in a command, with the exit code that it means.
 
+use bsmpm_io::exit;
 use std::path::{Path, PathBuf};
 
 use thiserror::Error;
@@ -172,12 +173,10 @@ impl Error {
         Self::BadCase { path: path.to_owned(), errors: errors.iter().map(|error| format!("{error:#}")).collect() }
     }
 
-    /// The exit code of `bsmpm`: 2 for options that do not fit, 66 for what is missing, 65 for a bad reference file or a case
-    /// that does not fit, 77 for a validation that failed, 74 for a solver that does not start, 80 where nothing stands, that
-    /// of a trial or probe that broke, 70 for a fault of this program, else that of the file's error.
+    /// The [exit code](bsmpm_io::exit) of `bsmpm`: that of a trial or probe that broke is the solver's.
     pub fn exit_code(&self) -> u8 {
         match self {
-            Self::Usage { .. } => 2,
+            Self::Usage { .. } => exit::USAGE,
             Self::NoRun { .. }
             | Self::Empty { .. }
             | Self::NoRow { .. }
@@ -185,13 +184,13 @@ impl Error {
             | Self::NoResiduals { .. }
             | Self::NoField { .. }
             | Self::NoReference { .. }
-            | Self::NoCase { .. } => 66,
-            Self::BadReference { .. } | Self::BadCase { .. } | Self::NoFactor { .. } => 65,
-            Self::NoStableState { .. } | Self::NoResult { .. } => 80,
+            | Self::NoCase { .. } => exit::MISSING,
+            Self::BadReference { .. } | Self::BadCase { .. } | Self::NoFactor { .. } => exit::CASE,
+            Self::NoStableState { .. } | Self::NoResult { .. } => exit::NO_CONVERGENCE,
             Self::Trial { code, .. } | Self::Run { code, .. } | Self::Probe { code, .. } => *code,
-            Self::NotValid { .. } => 77,
-            Self::Launch { .. } => 74,
-            Self::Drawing { .. } => 70,
+            Self::NotValid { .. } => exit::CHECK,
+            Self::Launch { .. } => exit::WRITE,
+            Self::Drawing { .. } => exit::BUG,
             Self::File(error) => error.exit_code(),
         }
     }

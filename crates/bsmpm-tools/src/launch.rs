@@ -18,16 +18,10 @@ mod stop;
 
 pub(crate) use stop::Stop;
 
-/// Exit codes of bsmpm-par: done, and a check of the case failed.
-pub(crate) const DONE: u8 = 0;
-pub(crate) const CHECK: u8 = 77;
+use bsmpm_io::exit::{CHECK, CHECKPOINT, DIRECTORY, DONE, LEFT, MEMORY, NO_CONVERGENCE, STALLED, STOPPED};
+
 /// Not begun: too little memory, restarts that come to nothing, a directory or a checkpoint that cannot be used.
-const REFUSED: [u8; 4] = [71, 72, 73, 76];
-/// Stopped on request, to be gone on with.
-pub(crate) const STOPPED: u8 = 75;
-/// No convergence, and material left the grid: the run has ended early with its last state saved.
-pub(crate) const NO_CONVERGENCE: u8 = 80;
-pub(crate) const LEFT: u8 = 81;
+const REFUSED: [u8; 4] = [MEMORY, STALLED, DIRECTORY, CHECKPOINT];
 
 /// What keeps runs side by side from taking each other's cores: no threads in BLAS, no ranks bound to the same cores.
 /// Variables that are set already stay as they are.

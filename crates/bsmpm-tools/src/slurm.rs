@@ -8,6 +8,7 @@ use std::os::unix::ffi::OsStrExt;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+use bsmpm_io::exit::{CASE, STOPPED};
 use bsmpm_scene::Case;
 use clap::Args;
 
@@ -86,7 +87,7 @@ fn doubt(case: &Case, ranks: u64) -> Option<String> {
     if ranks > most {
         return Some(format!(
             "{ranks} ranks are too many: the grid has {most} columns of cells, so at most {most} ranks; the run would be \
-             refused with 65"
+             refused with {CASE}"
         ));
     }
     (ranks > useful).then(|| {
@@ -116,12 +117,15 @@ impl Arguments {
             script.extend(quoted(word));
         }
         script.extend_from_slice(
-            b"\nrc=$?\n\
-              # 75: stopped in time, with a good checkpoint. Every other end is the job's own.\n\
-              if [ \"$rc\" -eq 75 ]; then\n    \
+            format!(
+                "\nrc=$?\n\
+              # {STOPPED}: stopped in time, with a good checkpoint. Every other end is the job's own.\n\
+              if [ \"$rc\" -eq {STOPPED} ]; then\n    \
                   scontrol requeue \"$SLURM_JOB_ID\" && exit 0\n\
               fi\n\
-              exit \"$rc\"\n",
+              exit \"$rc\"\n"
+            )
+            .as_bytes(),
         );
         script
     }

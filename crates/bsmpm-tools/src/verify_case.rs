@@ -107,7 +107,7 @@ fn ended(outcome: &Outcome, h: f64) -> Result<(), Error> {
         State::Done => Ok(()),
         _ => Err(Error::Run {
             what: format!("cells of {h} m"),
-            code: outcome.code.unwrap_or(70),
+            code: outcome.code.unwrap_or(bsmpm_io::exit::BUG),
             reason: outcome.reason.clone(),
         }),
     }

@@ -2,9 +2,9 @@
 
 use super::refusal::{Refusal, agree, broadcast};
 use super::{GUESS, STATE, form, named};
-use crate::exit;
 use bsmpm::points::Column;
 use bsmpm_io::checkpoint::{self, Found, Record};
+use bsmpm_io::exit;
 use bsmpm_ranks::slab::intersection;
 use hdf5_collective::{Hdf5, Reader, Shape};
 use mpi::topology::{Communicator, SimpleCommunicator};

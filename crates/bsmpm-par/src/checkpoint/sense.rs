@@ -3,9 +3,9 @@
 
 use super::refusal::{Refusal, agree};
 use super::write::infinite;
-use crate::exit;
 use bsmpm::grid::Grid;
 use bsmpm::points::{Column, Number, Points};
+use bsmpm_io::exit;
 use mpi::collective::{CommunicatorCollectives, SystemOperation};
 use mpi::topology::SimpleCommunicator;
 use std::path::Path;

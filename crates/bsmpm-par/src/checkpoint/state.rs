@@ -1,12 +1,12 @@
 //! What a checkpoint says in words and single numbers: everything that is no array of the points or nodes.
 
 use super::Refusal;
-use crate::exit;
 use bsmpm::boundary::{Anchors, Surface};
 use bsmpm::control::Progress;
 use bsmpm::energy::{Books, Budget, Flows};
 use bsmpm::grid::Grid;
 use bsmpm::tensor::Vector;
+use bsmpm_io::exit;
 use bsmpm_io::frames::Entry;
 use bsmpm_io::manifest::Manifest;
 use bsmpm_io::table::Mark;

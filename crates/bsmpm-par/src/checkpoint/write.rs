@@ -2,9 +2,10 @@
 
 use super::refusal::{Refusal, agree, broadcast};
 use super::{GUESS, STATE, form, named};
-use crate::{exit, launch};
+use crate::launch;
 use bsmpm::points::{Column, Number};
 use bsmpm_io::checkpoint::{Facts, Found, Pending, Phase, Store};
+use bsmpm_io::exit;
 use hdf5_collective::{Hdf5, Shape, Writer};
 use mpi::collective::{CommunicatorCollectives, SystemOperation};
 use mpi::topology::{Communicator, SimpleCommunicator};

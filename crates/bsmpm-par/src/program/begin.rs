@@ -3,7 +3,6 @@
 use super::refuse;
 use crate::checkpoint::{Refusal, agree};
 use crate::cli::Arguments;
-use crate::exit;
 use crate::ledger::Ledger;
 use crate::log::Log;
 use crate::record::Recorder;
@@ -13,6 +12,7 @@ use crate::setup::Cut;
 use crate::space;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm_io::directory::OutputDirectory;
+use bsmpm_io::exit;
 use bsmpm_io::lock::Unseen;
 use bsmpm_io::table::Column;
 use bsmpm_ranks::linear::Choice;

@@ -2,10 +2,10 @@
 
 use super::Beginning;
 use crate::checkpoint::Refusal;
-use crate::exit;
 use crate::ledger;
 use bsmpm_io::checkpoint::Found;
 use bsmpm_io::directory::Existing;
+use bsmpm_io::exit;
 use bsmpm_io::manifest::{Manifest, Restart, Status};
 use bsmpm_scene::{Case, Difference};
 

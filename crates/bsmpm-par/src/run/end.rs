@@ -1,11 +1,11 @@
 //! The ends of a run.
 
 use super::Run;
-use crate::exit;
 use crate::indicators::{self, State};
 use crate::launch;
 use crate::machine;
 use bsmpm::seam::Halo;
+use bsmpm_io::exit;
 use bsmpm_io::manifest::{Communication, Status};
 use bsmpm_ranks::simulation::Simulation;
 use bsmpm_ranks::traffic::Kind;

@@ -1,10 +1,10 @@
 //! Steps that cannot be made: what is told, and the exit code.
 
 use super::{Run, diagnosis};
-use crate::exit;
 use bsmpm::control::Failure;
 use bsmpm::error::StepError;
 use bsmpm::step::Counts;
+use bsmpm_io::exit;
 use bsmpm_io::manifest::Status;
 use bsmpm_ranks::launch;
 

@@ -1,12 +1,13 @@
 //! What a run of a batch left, and whether it counts.
 
+use bsmpm_io::exit::{CHECK, DONE, LEFT, NO_CONVERGENCE, STOPPED};
 use std::path::{Path, PathBuf};
 
 use bsmpm_io::directory::HISTORY;
 use bsmpm_io::table::{self, Columns};
 use serde::Serialize;
 
-use crate::launch::{CHECK, DONE, Ending, LEFT, NO_CONVERGENCE, STOPPED};
+use crate::launch::Ending;
 
 /// How a run stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

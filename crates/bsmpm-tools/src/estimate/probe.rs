@@ -1,6 +1,7 @@
 //! Runs that an estimate is made from, in a folder that goes with them: the start of the case, its first steps, coarse
 //! forms of it over all its time, and the whole case where that takes no longer than they may.
 
+use bsmpm_io::exit::{CHECK, DONE, STOPPED};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -18,10 +19,8 @@ use super::sizes::{self, Bytes};
 use super::stored::{self, Found};
 use super::work::Work;
 use crate::Error;
-use crate::launch::{CHECK, DONE, Ending, Solver, Stop, Task};
+use crate::launch::{Ending, Solver, Stop, Task};
 
-/// The exit code of a run that stopped as it was asked to.
-const STOPPED: u8 = 75;
 /// Part of the time for probes that the first steps may take, and part of the case's steps.
 const FIRST: [f64; 2] = [0.25, 0.2];
 /// Steps that are made at least, if the case has them.

@@ -1,5 +1,6 @@
 //! Trials: runs of the case with reduced strength, and what each of them gave.
 
+use bsmpm_io::exit::{CHECK, DONE, LEFT, NO_CONVERGENCE};
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
@@ -8,7 +9,7 @@ use super::curve::State;
 use super::jobs::Source;
 use super::subject::Subject;
 use crate::Error;
-use crate::launch::{self, CHECK, DONE, Ending, LEFT, NO_CONVERGENCE, Solver, Stop, Task};
+use crate::launch::{self, Ending, Solver, Stop, Task};
 use crate::plot::FieldName;
 use crate::record::Record;
 

@@ -1,5 +1,6 @@
 //! The runs of a study, one after another: what they are made from, and what they gave.
 
+use bsmpm_io::exit::{CHECK, DONE, LEFT, NO_CONVERGENCE};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -8,7 +9,7 @@ use bsmpm_io::table::{self, Columns};
 
 use super::matrix::{Run, Study};
 use crate::Error;
-use crate::launch::{CHECK, DONE, Ending, LEFT, NO_CONVERGENCE, Solver, Task};
+use crate::launch::{Ending, Solver, Task};
 
 /// How runs are started.
 pub(super) struct Launcher<'a> {

@@ -1,9 +1,9 @@
-//! What the program ends with. Codes of files (73, 74) come with the errors of `bsmpm-io`.
+//! What the programs end with: the one list of codes, and what they mean.
 #![doc = include_str!("exit.md")]
 
 /// The case's end was reached, and all its checks passed.
 pub const DONE: u8 = 0;
-/// The command line is wrong.
+/// The command line is wrong; clap ends with it, too.
 pub const USAGE: u8 = 2;
 /// The case is wrong, or cannot be run on so many ranks or with the libraries at hand.
 pub const CASE: u8 = 65;
@@ -15,7 +15,9 @@ pub const BUG: u8 = 70;
 pub const MEMORY: u8 = 71;
 /// Restarts come to nothing.
 pub const STALLED: u8 = 72;
-/// A file could not be written.
+/// The output directory cannot be used, or another run holds it.
+pub const DIRECTORY: u8 = 73;
+/// Reading or writing a file failed.
 pub const WRITE: u8 = 74;
 /// Stopped on request.
 pub const STOPPED: u8 = 75;
@@ -29,3 +31,34 @@ pub const WRONG_LAUNCH: u8 = 78;
 pub const NO_CONVERGENCE: u8 = 80;
 /// Material left the grid, or a load its material; the last converged state is saved.
 pub const LEFT: u8 = 81;
+
+/// All of them.
+pub const ALL: [u8; 15] = [
+    DONE,
+    USAGE,
+    CASE,
+    MISSING,
+    BUG,
+    MEMORY,
+    STALLED,
+    DIRECTORY,
+    WRITE,
+    STOPPED,
+    CHECKPOINT,
+    CHECK,
+    WRONG_LAUNCH,
+    NO_CONVERGENCE,
+    LEFT,
+];
+
+#[cfg(test)]
+mod tests {
+    use super::ALL;
+
+    #[test]
+    fn the_table_has_every_code_once() {
+        let rows = include_str!("exit.md").lines().filter_map(|line| line.strip_prefix("| ")?.split(" | ").next());
+        let told: Vec<u8> = rows.flat_map(|codes| codes.split(", ")).filter_map(|code| code.parse().ok()).collect();
+        assert_eq!(told, ALL);
+    }
+}
