@@ -88,12 +88,12 @@ fn run(block: &Block, directory: &Path, printed: &mut String) -> io::Result<Opti
     Ok((code != expected || code.is_none()).then(|| format!("exit code {code:?}, the book says {expected:?}")))
 }
 
-/// The first line of `text` that no line of `printed` is.
+/// The first line of `text` that no line of `printed` is, whatever the spaces between words.
 fn missing(text: &str, printed: &str) -> Option<String> {
     let matches = |line: &str, pattern: &str| {
-        let mut rest = line.trim();
-        let mut pieces = pattern.trim().split("...").enumerate();
-        let last = pattern.trim().split("...").count() - 1;
+        let mut rest = line;
+        let mut pieces = pattern.split("...").enumerate();
+        let last = pattern.split("...").count() - 1;
         pieces.all(|(number, piece)| match rest.find(piece) {
             Some(at) if number > 0 || at == 0 => {
                 rest = &rest[at + piece.len()..];
@@ -102,7 +102,9 @@ fn missing(text: &str, printed: &str) -> Option<String> {
             _ => false,
         })
     };
-    let absent = |pattern: &&str| !printed.lines().any(|line| matches(line, pattern));
+    let spaced = |line: &str| line.split_whitespace().collect::<Vec<_>>().join(" ");
+    let printed: Vec<String> = printed.lines().map(spaced).collect();
+    let absent = |pattern: &&str| !printed.iter().any(|line| matches(line, &spaced(pattern)));
     let line = text.lines().filter(|line| !line.trim().is_empty()).find(absent)?;
     Some(format!("no line \"{line}\" was printed"))
 }
