@@ -1,5 +1,5 @@
-//! Walks through the book as a reader does: every file is written, every command is run, and what the book says that they
-//! print and end with is compared. `scripts/book --check` starts it with the programs on the PATH.
+//! Walks through the book as a reader does: every file is written, every command is run, and what the book says that
+//! they print and end with is compared. `scripts/book --check` starts it with the programs on the PATH.
 
 use bsmpm_book::{Block, Chapter, blocks, chapters};
 use std::io::Write;

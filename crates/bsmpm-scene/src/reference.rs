@@ -13,8 +13,8 @@ pub fn reference() -> String {
     let mut page = Page::default();
     page.line("# Case reference\n");
     page.paragraph(
-        "This page is printed by `bsmpm keys` from the schema that reads case files. A number is in SI units (angles in \
-         degrees); a string carries a unit. A table that is absent means that the thing does not exist in the scene.",
+        "This page is printed by `bsmpm keys` from the schema that reads case files. A number is in SI units (angles \
+         in degrees); a string carries a unit. A table that is absent means that the thing does not exist in the scene.",
     );
     page.units();
     let mut told: Vec<&Table> = Vec::new();
@@ -114,8 +114,8 @@ impl Page {
     fn histories(&mut self) {
         self.line("## Quantities of a history\n");
         self.paragraph(
-            "Words of `quantity` in `[[history]]`, with the unit of the numbers. A quantity of several numbers has a column \
-             for each, whose name has what is told here appended.",
+            "Words of `quantity` in `[[history]]`, with the unit of the numbers. A quantity of several numbers has a \
+             column for each, whose name has what is told here appended.",
         );
         for (word, doc) in Measurement::WORDS.all() {
             let Some(measured) = Measurement::of(word) else { continue };

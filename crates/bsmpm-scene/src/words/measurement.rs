@@ -6,8 +6,8 @@ choice! {
         /// The x that `percentile` per cent of the points do not exceed; 100: of the farthest point. In the grid's
         /// coordinates: the initial length is not taken off.
         Runout = "runout",
-        /// The farthest x of the lowest occupied row of cells such that the points from it back by the length of its cell
-        /// fill half of a cell; a few loose points run ahead of it.
+        /// The farthest x of the lowest occupied row of cells such that the points from it back by the length of its
+        /// cell fill half of a cell; a few loose points run ahead of it.
         Front = "front",
         /// The largest y of any point, or of those within half a cell of `at_x`; 0 where there are none.
         Height = "height",
@@ -25,7 +25,8 @@ choice! {
         Velocity = "velocity",
         /// Cauchy stress of the point nearest to `at` at the start, positive in tension.
         Stress = "stress",
-        /// Oscillation of sigma_yy over all points from point to point: a root mean square, over the mean of |sigma_yy|.
+        /// Oscillation of sigma_yy over all points from point to point: a root mean square, over the mean of
+        /// |sigma_yy|.
         StressNoise = "stress-noise",
         /// Oscillation of the pressure from point to point: a root mean square over the points in `box`, or all.
         PressureNoise = "pressure-noise",
@@ -37,10 +38,11 @@ choice! {
         FootingForce = "footing-force",
         /// Displacement of the footing, downwards.
         Penetration = "penetration",
-        /// The largest distance that the material has slipped from the footing in the step, over the footing's motion in it.
+        /// The largest distance that the material has slipped from the footing in the step, over the footing's
+        /// motion in it.
         Slip = "slip",
-        /// Where the energy of the points is, and where it went since the start, per metre of thickness: external = change of
-        /// kinetic + change of elastic + plastic + numerical + closure.
+        /// Where the energy of the points is, and where it went since the start, per metre of thickness: external =
+        /// change of kinetic + change of elastic + plastic + numerical + closure.
         Energy = "energy",
     }
 }
