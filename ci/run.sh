@@ -49,6 +49,7 @@ gate "format" cargo fmt --all --check
 gate "clippy" cargo clippy --workspace --all-targets -- -D warnings
 RUSTDOCFLAGS='-D warnings' gate "docs" cargo doc --workspace --no-deps --lib
 gate "tests" scripts/test
+gate "book" scripts/book --check
 gate "short cases, golden curves" scripts/golden --check
 gate "validation, short" scripts/validate --short
 gate "extremes, short" scripts/extremes --short

@@ -144,6 +144,11 @@ impl Range {
         (self.lower, self.upper).contains(&value)
     }
 
+    /// Whether any finite number lies in it.
+    pub fn is_any(&self) -> bool {
+        matches!((self.lower, self.upper), (Bound::Unbounded, Bound::Unbounded))
+    }
+
     /// The condition on `name` in words, e.g. `0 <= friction < 90`.
     pub fn condition(&self, name: &str) -> String {
         let (more, at_least) = (" < ", " <= ");

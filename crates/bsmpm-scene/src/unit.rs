@@ -69,6 +69,11 @@ const UNITS: [(Dimension, &[(&str, Worth)]); 9] = [
     (Dimension::LineForce, &[("N/m", Ten(0)), ("kN/m", Ten(3)), ("MN/m", Ten(6))]),
 ];
 
+/// The dimensions that have units, in the order of messages.
+pub(crate) fn dimensions() -> impl Iterator<Item = Dimension> {
+    UNITS.iter().map(|(dimension, _)| *dimension)
+}
+
 impl Dimension {
     /// Its units, the first one SI; none for a pure number.
     pub fn units(self) -> impl Iterator<Item = &'static str> {

@@ -5,11 +5,13 @@
 
 #[macro_use]
 mod define;
+mod measurement;
 mod physics;
 mod scene;
 mod solver;
 
-pub use scene::{Accuracy, Base, C0Lines, Components, Format, Geometry, Law, Measurement, Order, Side, Start, Support};
+pub use measurement::Measurement;
+pub use scene::{Accuracy, Base, C0Lines, Components, Format, Geometry, Law, Order, Side, Start, Support};
 pub use solver::{Factor, Ksp, Nonlinear, Pc};
 
 /// What one of several words stands for.

@@ -35,6 +35,8 @@ pub enum Command {
     Estimate(Box<estimate::Arguments>),
     /// Write a job script for Slurm that queues itself again until the case is done
     Slurm(slurm::Arguments),
+    /// Print every key of a case file with its unit, range and default, and every quantity of a history
+    Keys,
 }
 
 /// Carries out a command and prints what it made: tables, and pictures with one path a line.
@@ -95,6 +97,7 @@ pub fn run(cli: &Cli) -> Result<(), Error> {
             })?;
             let _ = write!(std::io::stdout(), "{told}");
         }
+        Command::Keys => print(&bsmpm_scene::reference(), &[]),
         Command::Slurm(arguments) => {
             let script = slurm::run(arguments, |line| {
                 let _ = writeln!(std::io::stderr(), "warning: {line}");

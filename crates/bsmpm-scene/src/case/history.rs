@@ -1,6 +1,6 @@
 //! What is recorded every step, and what is verified of it at the end.
 
-use crate::words::Side;
+use crate::words::{Measurement, Side};
 
 /// A quantity that is recorded every step.
 #[derive(Clone, Debug, PartialEq)]
@@ -106,47 +106,33 @@ pub struct Column {
 }
 
 impl Quantity {
-    /// What a column's name gets appended, in the order of the numbers; one empty text for a scalar.
-    pub fn suffixes(&self) -> &'static [&'static str] {
+    /// Its kind, which has its definition, unit and columns.
+    pub fn measurement(&self) -> Measurement {
         match self {
-            Self::Momentum | Self::Reaction { .. } | Self::Displacement { .. } | Self::Velocity { .. } => &["-x", "-y"],
-            Self::Stress { .. } => &["-xx", "-yy", "-zz", "-xy"],
-            Self::StressNoise | Self::PressureNoise { .. } => &["-average", "-plane"],
-            Self::Energy => &[
-                "-kinetic",
-                "-elastic",
-                "-plastic",
-                "-external",
-                "-numerical",
-                "-transfer",
-                "-integration",
-                "-smoothing",
-                "-background",
-                "-penalty",
-                "-closure",
-            ],
-            _ => &[""],
+            Self::Runout { .. } => Measurement::Runout,
+            Self::Front => Measurement::Front,
+            Self::Height { .. } => Measurement::Height,
+            Self::MaxDisplacement => Measurement::MaxDisplacement,
+            Self::Mass => Measurement::Mass,
+            Self::Momentum => Measurement::Momentum,
+            Self::Reaction { .. } => Measurement::Reaction,
+            Self::Displacement { .. } => Measurement::Displacement,
+            Self::Velocity { .. } => Measurement::Velocity,
+            Self::Stress { .. } => Measurement::Stress,
+            Self::StressNoise => Measurement::StressNoise,
+            Self::PressureNoise { .. } => Measurement::PressureNoise,
+            Self::Heave => Measurement::Heave,
+            Self::FootingPressure => Measurement::FootingPressure,
+            Self::FootingForce => Measurement::FootingForce,
+            Self::Penetration => Measurement::Penetration,
+            Self::Slip => Measurement::Slip,
+            Self::Energy => Measurement::Energy,
         }
     }
 
     /// Unit of its numbers.
     pub fn unit(&self) -> &'static str {
-        match self {
-            Self::Runout { .. }
-            | Self::Front
-            | Self::Height { .. }
-            | Self::MaxDisplacement
-            | Self::Displacement { .. }
-            | Self::Heave
-            | Self::Penetration => "m",
-            Self::Mass => "kg/m",
-            Self::Momentum => "kg/s",
-            Self::Reaction { .. } | Self::FootingForce => "N/m",
-            Self::Velocity { .. } => "m/s",
-            Self::Stress { .. } | Self::PressureNoise { .. } | Self::FootingPressure => "Pa",
-            Self::StressNoise | Self::Slip => "-",
-            Self::Energy => "J/m",
-        }
+        self.measurement().unit()
     }
 }
 
@@ -155,8 +141,8 @@ impl History {
     pub fn columns(&self) -> Vec<Column> {
         let unit = self.quantity.unit();
         let unit = if self.scale == 1.0 { unit.to_owned() } else { format!("scaled {unit}") };
-        let column = |suffix: &&str| Column { name: format!("{}{suffix}", self.name), unit: unit.clone() };
-        self.quantity.suffixes().iter().map(column).collect()
+        let column = |(suffix, _): &(&str, &str)| Column { name: format!("{}{suffix}", self.name), unit: unit.clone() };
+        self.quantity.measurement().columns().iter().map(column).collect()
     }
 }
 

@@ -1,0 +1,103 @@
+//! What a history records: its words, definitions, units and columns.
+
+choice! {
+    /// What a history records, without what it needs besides, which [`Quantity`](crate::Quantity) has.
+    pub enum Measurement {
+        /// The x that `percentile` per cent of the points do not exceed; 100: of the farthest point. In the grid's
+        /// coordinates: the initial length is not taken off.
+        Runout = "runout",
+        /// The farthest x of the lowest occupied row of cells such that the points from it back by the length of its
+        /// cell fill half of a cell; a few loose points run ahead of it.
+        Front = "front",
+        /// The largest y of any point, or of those within half a cell of `at_x`; 0 where there are none.
+        Height = "height",
+        /// The largest displacement of any point.
+        MaxDisplacement = "max-displacement",
+        /// Mass of all points, per metre of thickness.
+        Mass = "mass",
+        /// Momentum of all points (kg m/s), per metre of thickness.
+        Momentum = "momentum",
+        /// Force of a face's supports on the body, per metre of thickness.
+        Reaction = "reaction",
+        /// Displacement of the material that is at `at` at the start, by the motion about the point nearest to it.
+        Displacement = "displacement",
+        /// Velocity of the point nearest to `at` at the start.
+        Velocity = "velocity",
+        /// Cauchy stress of the point nearest to `at` at the start, positive in tension.
+        Stress = "stress",
+        /// Oscillation of sigma_yy over all points from point to point: a root mean square, over the mean of
+        /// |sigma_yy|.
+        StressNoise = "stress-noise",
+        /// Oscillation of the pressure from point to point: a root mean square over the points in `box`, or all.
+        PressureNoise = "pressure-noise",
+        /// The largest upward displacement of any point.
+        Heave = "heave",
+        /// Mean normal pressure on the footing's base.
+        FootingPressure = "footing-pressure",
+        /// Force of the soil on the footing against its motion, per metre of thickness.
+        FootingForce = "footing-force",
+        /// Displacement of the footing, downwards.
+        Penetration = "penetration",
+        /// The largest distance that the material has slipped from the footing in the step, over the footing's
+        /// motion in it.
+        Slip = "slip",
+        /// Where the energy of the points is, and where it went since the start, per metre of thickness: external =
+        /// change of kinetic + change of elastic + plastic + numerical + closure.
+        Energy = "energy",
+    }
+}
+
+/// Components of a vector.
+const VECTOR: &[(&str, &str)] = &[("-x", "along x"), ("-y", "along y")];
+const STRESS: &[(&str, &str)] =
+    &[("-xx", "normal to x"), ("-yy", "normal to y"), ("-zz", "out of the plane"), ("-xy", "shear")];
+const NOISE: &[(&str, &str)] =
+    &[("-average", "about the average over the grid"), ("-plane", "about the plane through the points around")];
+const ENERGY: &[(&str, &str)] = &[
+    ("-kinetic", "kinetic energy of the points"),
+    ("-elastic", "elastic energy of the points"),
+    ("-plastic", "dissipated by plastic flow"),
+    ("-external", "work of gravity, loads and what moves"),
+    ("-numerical", "loss of the algorithm: the sum of the next five"),
+    ("-transfer", "lost between points and nodes"),
+    ("-integration", "lost by integration in time and along the strain"),
+    ("-smoothing", "lost by the smoothing of the elastic strain"),
+    ("-background", "lost to the soft background"),
+    ("-penalty", "lost between strips and material"),
+    ("-closure", "what is left over: the work of what is out of balance, and round-off"),
+];
+
+impl Measurement {
+    /// Whether there must be a footing.
+    pub fn is_of_footing(self) -> bool {
+        matches!(self, Self::FootingPressure | Self::FootingForce | Self::Penetration | Self::Slip)
+    }
+
+    /// What the names of its columns get appended, in the order of the numbers, and what each is; nothing is appended
+    /// to the one column of a scalar.
+    pub fn columns(self) -> &'static [(&'static str, &'static str)] {
+        match self {
+            Self::Momentum | Self::Reaction | Self::Displacement | Self::Velocity => VECTOR,
+            Self::Stress => STRESS,
+            Self::StressNoise | Self::PressureNoise => NOISE,
+            Self::Energy => ENERGY,
+            Self::Runout | Self::Front | Self::Height | Self::MaxDisplacement | Self::Heave => &[("", "")],
+            Self::Mass | Self::FootingPressure | Self::FootingForce | Self::Penetration | Self::Slip => &[("", "")],
+        }
+    }
+
+    /// Unit of its numbers.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::Runout | Self::Front | Self::Height | Self::Heave | Self::Penetration => "m",
+            Self::MaxDisplacement | Self::Displacement => "m",
+            Self::Mass => "kg/m",
+            Self::Momentum => "kg/s",
+            Self::Reaction | Self::FootingForce => "N/m",
+            Self::Velocity => "m/s",
+            Self::Stress | Self::PressureNoise | Self::FootingPressure => "Pa",
+            Self::StressNoise | Self::Slip => "-",
+            Self::Energy => "J/m",
+        }
+    }
+}
