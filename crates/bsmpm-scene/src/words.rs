@@ -10,7 +10,7 @@ mod scene;
 mod solver;
 
 pub use scene::{Accuracy, Base, C0Lines, Components, Format, Geometry, Law, Measurement, Order, Side, Start, Support};
-pub use solver::{Factor, Ksp, Nonlinear, Pc};
+pub use solver::{Factor, Ksp, LinearSolver, Nonlinear, Pc};
 
 /// What one of several words stands for.
 pub trait Word: Copy + 'static {

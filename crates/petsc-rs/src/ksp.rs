@@ -51,12 +51,13 @@ pub struct Ksp<'p> {
     raw: ffi::KSP,
     /// of the operator, None before there is one
     local_rows: Option<usize>,
-    /// the operator, if it is one
-    shell: Option<Shell<'p>>,
+    /// the operator, if it is one, with a right-hand side and a solution
+    shell: Option<(Shell<'p>, Vector<'p>, Vector<'p>)>,
     /// where the shell preconditioner finds what is lent to it, if there is one; never moved while PETSc knows it
     pc_slot: Option<Box<Slot<dyn ShellPc>>>,
     /// the shell preconditioner is that of the operator
     is_ready: bool,
+    reads_options: bool,
 }
 
 impl<'p> Ksp<'p> {
@@ -65,7 +66,7 @@ impl<'p> Ksp<'p> {
         let mut raw = ptr::null_mut();
         // SAFETY: PETSc runs; the pointer is valid.
         check(unsafe { ffi::KSPCreate(petsc.comm(), &mut raw) })?;
-        Ok(Self { petsc, raw, local_rows: None, shell: None, pc_slot: None, is_ready: false })
+        Ok(Self { petsc, raw, local_rows: None, shell: None, pc_slot: None, is_ready: false, reads_options: false })
     }
 
     /// Solves with `matrix` from now on, and builds the preconditioner from it. PETSc shares the
@@ -136,6 +137,7 @@ impl<'p> Ksp<'p> {
     /// Reads the options database; it overrules what was set before. After
     /// [`Ksp::set_operator`], or once method and preconditioner have a type. Collective.
     pub fn set_from_options(&mut self) -> Result<()> {
+        self.reads_options = true;
         // SAFETY: the handle is valid.
         check(unsafe { ffi::KSPSetFromOptions(self.raw) })
     }

@@ -11,19 +11,21 @@ impl Ksp<'_> {
     /// type, preconditioner and options stay, what was built is forgotten. Collective.
     pub fn set_shell_operator(&mut self, local_rows: usize) -> Result<()> {
         let shell = Shell::new(self.petsc, local_rows)?;
+        let (b, x) = (Vector::new(self.petsc, local_rows)?, Vector::new(self.petsc, local_rows)?);
         // SAFETY: the handle is valid; it refers to no older operator any more.
         check(unsafe { ffi::KSPReset(self.raw) })?;
         // SAFETY: both handles are valid; PETSc takes references of its own.
         check(unsafe { ffi::KSPSetOperators(self.raw, shell.raw(), shell.raw()) })?;
         self.pc_slot.iter().for_each(|slot| slot.set_rows(local_rows));
-        (self.local_rows, self.shell, self.is_ready) = (Some(local_rows), Some(shell), false);
-        Ok(())
+        (self.local_rows, self.shell, self.is_ready) = (Some(local_rows), Some((shell, b, x)), false);
+        // KSPReset forgets the viewers that options have asked for.
+        if self.reads_options { self.set_from_options() } else { Ok(()) }
     }
 
     /// The shell operator is another one from now on: the preconditioner is built anew. Collective.
     pub fn shell_operator_changed(&mut self) -> Result<()> {
         self.is_ready = false;
-        self.shell()?.changed()
+        self.shell()?.0.changed()
     }
 
     /// A shell preconditioner, which `-ksp_view` shows by `name`; what it does is handed over with
@@ -51,28 +53,33 @@ impl Ksp<'_> {
     }
 
     /// [`Ksp::solve`] with the shell operator, `product` setting y = A x on this rank's part, and the shell preconditioner
-    /// `pc`, which is set up first where that is still to be done. Collective.
+    /// `pc`, which is set up first where that is still to be done; `fill` sets this rank's part of b. Collective.
     pub fn solve_with_pc(
         &mut self,
         (product, pc): (&mut Product<'_>, &mut dyn ShellPc),
-        b: &Vector,
-        x: &mut Vector,
+        fill: impl FnOnce(&mut [f64]),
     ) -> Result<SolveInfo> {
-        let rows = self.operator_rows()?;
-        let checked = same_length("right-hand side", b.local_len(), rows)
-            .and_then(|()| same_length("solution", x.local_len(), rows));
-        self.petsc.agree(checked)?;
         if !self.is_ready {
             self.set_up_with_pc(pc)?;
         }
+        self.shell.as_mut().map_or(Ok(()), |(_, b, _)| b.write(fill))?;
+        // Whatever happens below, only a solution says that the preconditioner is good.
+        self.is_ready = false;
+        let (shell, b, x) = self.shell()?;
         let call = || {
-            // SAFETY: the handles are valid; the vectors have the operator's layout and are distinct.
+            // SAFETY: the handles are valid; the vectors were made with the operator, and are distinct.
             check(unsafe { ffi::KSPSolve(self.raw, b.raw(), x.raw()) }).and_then(|()| self.verdict())
         };
         let slot = self.lent_pc()?;
-        let outcome = self.shell()?.slot().lend_product(product, || slot.lend_pc(pc, call));
+        let outcome = shell.slot().lend_product(product, || slot.lend_pc(pc, call));
+        let outcome = self.conclude(outcome);
         self.is_ready = outcome.is_ok();
-        self.conclude(outcome)
+        outcome
+    }
+
+    /// Gives the last solution of [`Ksp::solve_with_pc`], this rank's part, to `use_solution`.
+    pub fn solution<R>(&self, use_solution: impl FnOnce(&[f64]) -> R) -> Result<R> {
+        self.shell()?.2.read(use_solution)
     }
 
     /// Solves A x = b for an operator known by its product, `product` setting y = A x on this rank's part, with the
@@ -106,7 +113,7 @@ impl Ksp<'_> {
         self.conclude(restored.and(outcome))
     }
 
-    fn shell(&self) -> Result<&Shell<'_>> {
+    fn shell(&self) -> Result<&(Shell<'_>, Vector<'_>, Vector<'_>)> {
         self.shell.as_ref().ok_or(Error::Unsupported("a shell operator before set_shell_operator"))
     }
 

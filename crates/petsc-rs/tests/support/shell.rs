@@ -1,7 +1,7 @@
 //! A preconditioner of the caller's own under KSP: it is called, its failures are KSP's, its panics the caller's.
 
 use crate::{LOCAL, expect, poisson, text, wavy};
-use petsc_rs::{Error, Ksp, Matrix, PcFailure, Petsc, ShellPc, Tolerances, Vector};
+use petsc_rs::{Error, Ksp, Matrix, PcFailure, Petsc, ShellPc, SolveInfo, Tolerances, Vector};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// Solves exactly with the Poisson matrix by MUMPS; fails when it is told to.
@@ -67,6 +67,19 @@ fn times<'a>(petsc: &'a Petsc, matrix: &'a Matrix<'_>, count: &'a mut usize) -> 
     }
 }
 
+fn solve(
+    ksp: &mut Ksp,
+    (product, pc): (&mut petsc_rs::Product<'_>, &mut dyn ShellPc),
+    b: &Vector,
+    x: &mut Vector,
+) -> petsc_rs::Result<SolveInfo> {
+    let mut right = vec![0.0; LOCAL];
+    b.copy_to(&mut right)?;
+    let info = ksp.solve_with_pc((product, pc), |b| b.copy_from_slice(&right))?;
+    ksp.solution(|solution| x.copy_from(solution))??;
+    Ok(info)
+}
+
 fn relative_residual(petsc: &Petsc, matrix: &Matrix, b: &Vector, x: &Vector) -> Result<f64, String> {
     let mut r = Vector::new(petsc, LOCAL).map_err(text)?;
     matrix.residual(b, x, &mut r).map_err(text)?;
@@ -85,7 +98,7 @@ pub fn shell_pc(petsc: &Petsc) -> Result<(), String> {
                 ksp.shell_operator_changed().map_err(text)?;
             }
             x.fill(0.0).map_err(text)?;
-            let info = ksp.solve_with_pc((&mut product, &mut inner), &b, &mut x).map_err(text)?;
+            let info = solve(&mut ksp, (&mut product, &mut inner), &b, &mut x).map_err(text)?;
             expect(info.iterations == 1, &format!("{method}: {info:?}"))?;
             let (reason, name) = ksp.converged_reason().map_err(text)?;
             expect(reason == info.reason && name == wanted, &format!("{method}: {name} {info:?}"))?;
@@ -112,14 +125,14 @@ pub fn shell_failures(petsc: &Petsc) -> Result<(), String> {
             let (mut inner, mut ksp, mut count) = (Inner::new(petsc, &matrix)?, outer(petsc, method)?, 0);
             let mut product = times(petsc, &matrix, &mut count);
             inner.failures[which] = Some(failure);
-            match ksp.solve_with_pc((&mut product, &mut inner), &b, &mut x) {
+            match solve(&mut ksp, (&mut product, &mut inner), &b, &mut x) {
                 Err(Error::Diverged { reason: -11, name, .. }) if name.contains(says) => {}
                 other => return Err(format!("{method}, {failure:?} in call {which}: {other:?}")),
             }
             let calls = inner.calls;
             expect(calls[which] == 1, &format!("{method}: {calls:?}"))?;
             inner.failures[which] = None;
-            ksp.solve_with_pc((&mut product, &mut inner), &b, &mut x).map_err(text)?;
+            solve(&mut ksp, (&mut product, &mut inner), &b, &mut x).map_err(text)?;
             let left = relative_residual(petsc, &matrix, &b, &x)?;
             expect(left < 1e-10, &format!("{method} leaves {left:e} after a failure"))?;
             expect(inner.calls[0] == 2, "what failed is built anew")?;
@@ -129,7 +142,7 @@ pub fn shell_failures(petsc: &Petsc) -> Result<(), String> {
         let last = petsc.rank() + 1 == petsc.ranks();
         inner.failures[0] = last.then_some(PcFailure::Other);
         let mut product = times(petsc, &matrix, &mut count);
-        let verdict = ksp.solve_with_pc((&mut product, &mut inner), &b, &mut x);
+        let verdict = solve(&mut ksp, (&mut product, &mut inner), &b, &mut x);
         let right = match &verdict {
             Err(Error::Diverged { reason: -11, .. }) => true,
             Err(Error::OtherRank) => !last,
@@ -148,8 +161,8 @@ pub fn panics(petsc: &Petsc) -> Result<(), String> {
         let (mut inner, mut ksp, mut count) = (Inner::new(petsc, &matrix)?, outer(petsc, "preonly")?, 0);
         inner.panics[which] = true;
         let mut product = times(petsc, &matrix, &mut count);
-        let solve = || ksp.solve_with_pc((&mut product, &mut inner), &b, &mut x).map(|_| ());
-        let end = catch_unwind(AssertUnwindSafe(solve));
+        let attempt = || solve(&mut ksp, (&mut product, &mut inner), &b, &mut x).map(|_| ());
+        let end = catch_unwind(AssertUnwindSafe(attempt));
         ends.push(end.err().and_then(|panic| panic.downcast_ref::<&str>().map(|text| (*text).to_owned())));
     }
     let _ = std::panic::take_hook();
