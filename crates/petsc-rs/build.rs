@@ -29,15 +29,17 @@ const FUNCTIONS: &[&str] = &[
     "KSP(Create|SetOperators|SetType|GetPC|SetOptionsPrefix|SetFromOptions|SetUp|Solve)",
     "KSP(GetTolerances|SetTolerances|SetNormType|SetInitialGuessNonzero)",
     "KSP(SetReusePreconditioner|GetConvergedReason|GetConvergedReasonString)",
-    "KSP(GetIterationNumber|GetOperators|SetUpOnBlocks|Destroy)",
+    "KSP(GetIterationNumber|GetOperators|GetType|SetUpOnBlocks|Reset|Destroy)",
     "PC(SetType|FactorSetMatSolverType|FactorGetMatSolverType|GetFailedReason)",
-    "PC(SetUp|SetFailedReason|Reset)",
+    "PC(GetType|SetUp|SetFailedReason|Reset)",
+    "PCShell(SetContext|GetContext|SetSetUp|SetApply|SetName)",
     "PetscObjectReference",
 ];
 
 const VARIABLES: &[&str] = &[
     "PETSC_COMM_WORLD",
     "PETSC_ERROR_INITIAL",
+    "PETSC_ERR_USER",
     "(INSERT|ADD)_VALUES",
     "NORM_(2|INFINITY)",
     "MAT_(SYMMETRIC|SYMMETRY_ETERNAL|SPD|SPD_ETERNAL)",

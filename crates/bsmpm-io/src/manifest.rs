@@ -17,7 +17,8 @@ pub mod parts;
 
 pub use indicator::Indicator;
 pub use parts::{
-    Balance, Case, Check, Choice, Communication, Extent, Failure, Initial, Output, Restart, Status, Summary, Worst,
+    Balance, Case, Check, Choice, Communication, Extent, Failure, Initial, LinearSolver, Output, Restart, Status,
+    Summary, Worst,
 };
 
 /// The manifest's file.
@@ -72,6 +73,9 @@ pub struct Manifest {
     /// What the ranks told each other, by kind.
     #[serde(default)]
     pub communication: BTreeMap<String, Communication>,
+    /// What solved the linear systems: `stiffness`, which the secants correct, and `newton`, Newton's general ones.
+    #[serde(default)]
+    pub linear: BTreeMap<String, LinearSolver>,
     /// How evenly the work lay on them; none on one rank.
     #[serde(default)]
     pub balance: Option<Balance>,
@@ -121,6 +125,7 @@ impl Manifest {
             end: None,
             timers: BTreeMap::new(),
             communication: BTreeMap::new(),
+            linear: BTreeMap::new(),
             balance: None,
             summary: Summary::default(),
             indicators: BTreeMap::new(),

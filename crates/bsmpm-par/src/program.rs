@@ -77,16 +77,24 @@ fn start_threads(count: u32) -> Result<(), String> {
     pool.build_global().map_err(|error| format!("{count} threads could not be started: {error}"))
 }
 
+/// Whether an option of PETSc has every solve reported, and thus has no value: it waits for the run's own systems.
+fn reports(option: &str) -> bool {
+    option != "-log_view" && ["_view", "_monitor", "_converged_reason"].iter().any(|part| option.contains(part))
+}
+
 fn solve(universe: &Universe, task: Task, cut: Cut) -> Result<u8, u8> {
     let Task { case, arguments, .. } = &task;
     let ranks = universe.world().size().unsigned_abs() as usize;
     let choice = setup::linear(case, ranks, &arguments.petsc);
-    let own = arguments.petsc.iter().map(String::as_str);
+    let (reports, own): (Vec<&str>, Vec<&str>) =
+        arguments.petsc.iter().map(String::as_str).partition(|option| reports(option));
     let options: Vec<&str> = choice.options().into_iter().chain(own).collect();
     let petsc = Petsc::initialize(universe, &options).map_err(|error| format!("PETSc could not be started: {error}"));
     let petsc = agreed(universe, exit::BUG, petsc)?;
     let probed = linear::probe(&petsc, &choice).map_err(|error| format!("the linear solver cannot be used: {error}"));
     agreed(universe, exit::CASE, probed)?;
+    let set = reports.iter().try_for_each(|report| petsc.set_option(report, None));
+    agreed(universe, exit::BUG, set.map_err(|error| format!("PETSc does not take an option: {error}")))?;
     agreed(universe, exit::BUG, start_threads(arguments.threads))?;
     let hdf5 = Hdf5::initialize(universe).map_err(|error| format!("HDF5 could not be started: {error}"));
     let hdf5 = agreed(universe, exit::BUG, hdf5)?;

@@ -21,7 +21,7 @@ use bsmpm::seam::Halo;
 use bsmpm::step::Report;
 use bsmpm_io::exit;
 use bsmpm_io::frame::Parts;
-use bsmpm_io::manifest::{Communication, Status};
+use bsmpm_io::manifest::{Communication, LinearSolver, Status};
 use bsmpm_ranks::simulation::Simulation;
 use bsmpm_ranks::timers::Timers;
 use bsmpm_scene::{Case, Every};
@@ -79,6 +79,8 @@ pub struct Before {
     pub timers: BTreeMap<String, f64>,
     /// what the ranks had told each other, by kind; on rank 0
     pub communication: BTreeMap<String, Communication>,
+    /// how its linear solves had ended; on rank 0
+    pub linear: BTreeMap<String, LinearSolver>,
     /// s  of processor time; on rank 0
     pub cpu_seconds: f64,
 }

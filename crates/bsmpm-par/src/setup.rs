@@ -57,12 +57,10 @@ pub fn linear(case: &Case, ranks: usize, options: &[String]) -> Choice {
 /// The factorisation that is this program's own; PETSc and MUMPS do instead of it what it does not: general matrices.
 const DISSECTION: Factor = Factor::Dissection;
 
-/// Whether an option of PETSc says how definite systems are solved: all but those of Newton's and the report of times.
+/// Whether an option of PETSc is about a preconditioner or a matrix of PETSc's, which need the matrix assembled; those of
+/// KSP, and of reports, are for any.
 fn decides(option: &str) -> bool {
-    option.starts_with('-')
-        && option.parse::<f64>().is_err()
-        && !option.starts_with("-newton_")
-        && option != "-log_view"
+    ["-pc_", "-mat_", "-sub_", "-mg_", "-redundant_"].iter().any(|prefix| option.starts_with(prefix))
 }
 
 /// Nominal number of steps.

@@ -1,12 +1,15 @@
-//! The linear system: assembly, factorisation without PETSc or on it, with numbers of the unknowns, and solutions that
-//! are checked: PETSc's all, a factor's first one.
+//! The linear system: assembly, with numbers of the unknowns where PETSc holds the matrix, and KSP, which solves it. Of its
+//! solutions are checked those of PETSc's preconditioners all, of the program's own factor the first one.
 
 mod choice;
 mod direct;
 mod dissection;
+mod shell;
 mod system;
+mod tally;
 
 pub use choice::{Choice, probe};
+pub use tally::Tally;
 
 use crate::halo::MpiHalo;
 use crate::stencil::{Numbering, Stencil};
@@ -14,14 +17,15 @@ use crate::timers::Timers;
 use bsmpm::error::SolveError;
 use bsmpm::grid::Grid;
 use bsmpm::seam::{Halo, Krylov, LinearSolver, Solved, Symmetry};
-use direct::Standing;
-use dissection::{Dissection, Precision};
+use direct::Stiffness;
 use mpi::collective::{CommunicatorCollectives, SystemOperation};
 use petsc_rs::{Matrix, Petsc};
+use shell::ShellSystem;
 use std::rc::Rc;
 use system::{System, failed};
 
-/// The linear solver of a run, C unknowns a node of a grid of dimension D: one matrix, rebuilt every step; pattern and analysis are kept while the unknowns stay.
+/// The linear solver of a run, C unknowns a node of a grid of dimension D: one matrix, rebuilt every step; pattern and
+/// analysis are kept while the unknowns stay.
 pub struct KspSolver<'p, const D: usize, const C: usize> {
     petsc: &'p Petsc<'p>,
     choice: Choice,
@@ -29,14 +33,23 @@ pub struct KspSolver<'p, const D: usize, const C: usize> {
     grid: Grid<D>,
     stencil: Stencil<D, C>,
     free: Vec<bool>,
-    numbers: Numbering, // empty before PETSc needs it
-    own: usize,         // unknowns of this rank
-    direct: Dissection,
-    planned: bool,      // for the present unknowns
-    standing: Standing, // of the factorisation without PETSc
+    numbers: Numbering,             // empty before PETSc needs it
+    own: usize,                     // unknowns of this rank
+    shell: Option<ShellSystem<'p>>, // where the program factorises
+    is_sized: bool,                 // the shell system has the present unknowns
     definite: Option<System<'p>>,
     general: Option<System<'p>>, // where Newton's method is used
+    tallies: Tallies,
     timers: Rc<Timers>,
+}
+
+/// How the solves of each kind of systems ended.
+#[derive(Clone, Debug, Default)]
+pub struct Tallies {
+    /// the stiffness that the secants correct
+    pub definite: Option<Tally>,
+    /// Newton's
+    pub general: Option<Tally>,
 }
 
 impl<'p, const D: usize, const C: usize> KspSolver<'p, D, C> {
@@ -46,24 +59,32 @@ impl<'p, const D: usize, const C: usize> KspSolver<'p, D, C> {
         let whole = choice.redundant && !choice.dissection;
         let stencil = if whole { Stencil::by_columns(grid, halo.owned()) } else { Stencil::new(grid) };
         let (free, numbers) = (Vec::new(), Vec::new());
-        let (direct, definite, general) = (Dissection::default(), None, None);
-        let (planned, standing, grid) = (false, Standing::Missing, grid.clone());
         Self {
             petsc,
             choice,
             halo,
-            grid,
+            grid: grid.clone(),
             stencil,
             free,
             numbers,
             own: 0,
-            direct,
-            planned,
-            standing,
-            definite,
-            general,
+            shell: None,
+            is_sized: false,
+            definite: None,
+            general: None,
+            tallies: Tallies::default(),
             timers,
         }
+    }
+
+    /// How the solves have ended so far.
+    pub fn tallies(&self) -> &Tallies {
+        &self.tallies
+    }
+
+    /// Goes on counting where another solver of the run has ended.
+    pub fn count_on(&mut self, tallies: Tallies) {
+        self.tallies = tallies;
     }
 
     /// Numbers the free components: those of rank 0 first, by node; the same number on every rank that shares a node.
@@ -112,7 +133,44 @@ impl<'p, const D: usize, const C: usize> KspSolver<'p, D, C> {
         };
         system.matrix.set_values(&values)?;
         system.ksp.set_operator(&system.matrix)?;
-        system.ksp.set_up()
+        let tally = match symmetry {
+            Symmetry::Definite => &mut self.tallies.definite,
+            Symmetry::General => &mut self.tallies.general,
+        };
+        let outcome = system.ksp.set_up();
+        tally.get_or_insert_with(|| Tally::of(&system.ksp, None)).failure(&outcome);
+        outcome
+    }
+
+    /// Has the stiffness factorised as KSP's preconditioner. Collective.
+    fn set_up_shell(&mut self) -> Result<(), SolveError> {
+        if self.shell.is_none() {
+            self.shell = Some(ShellSystem::new(self.petsc, &self.choice).map_err(failed)?);
+        }
+        let (owned, free, is_sized) = (self.halo.owned(), &self.free, self.is_sized);
+        if let (Some(shell), false) = (&mut self.shell, is_sized) {
+            let unknowns = (owned.start * C..owned.end * C).filter(|&component| free[component]).collect();
+            shell.resize(unknowns).map_err(failed)?;
+            self.is_sized = true;
+        }
+        let Some((shell, matrix, tally)) = self.shell_system() else { return Err(missing()) };
+        shell.set_up(matrix, tally)
+    }
+
+    fn solve_shell(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<Solved, SolveError> {
+        match self.shell_system() {
+            Some((shell, matrix, tally)) if shell.is_ready() => shell.solve(matrix, (rhs, solution), tally),
+            _ => Err(missing()),
+        }
+    }
+
+    /// The shell system, what it is to solve, and where that is counted.
+    fn shell_system(&mut self) -> Option<(&mut ShellSystem<'p>, Stiffness<'_, D, C>, &mut Tally)> {
+        let Self { halo, grid, stencil, free, timers, .. } = self;
+        let matrix = Stiffness { halo, grid, stencil, free, unknowns: &[], timers };
+        let shell = self.shell.as_mut()?;
+        let tally = self.tallies.definite.get_or_insert_with(|| shell.tally());
+        Some((shell, matrix, tally))
     }
 
     /// Components of this rank's unknowns, in the order of their numbers.
@@ -160,10 +218,10 @@ impl<const D: usize, const C: usize> LinearSolver for KspSolver<'_, D, C> {
         self.halo.maximum(&mut changed);
         if changed[0] > 0.0 {
             (self.free, self.numbers) = (free.to_vec(), Numbering::new());
-            (self.planned, self.definite, self.general) = (false, None, None);
+            (self.is_sized, self.definite, self.general) = (false, None, None);
             self.stencil.keep(|node| free[node * C..(node + 1) * C].contains(&true));
         }
-        self.standing = Standing::Missing;
+        self.shell.iter_mut().for_each(ShellSystem::outdate);
         self.stencil.clear();
     }
 
@@ -185,7 +243,7 @@ impl<const D: usize, const C: usize> LinearSolver for KspSolver<'_, D, C> {
 
     fn finish(&mut self, symmetry: Symmetry) -> Result<(), SolveError> {
         if symmetry == Symmetry::Definite && self.choice.dissection {
-            return self.factorise(Precision::Single);
+            return self.set_up_shell();
         }
         let timers = Rc::clone(&self.timers);
         let _timed = timers.time("factorisation");
@@ -194,13 +252,14 @@ impl<const D: usize, const C: usize> LinearSolver for KspSolver<'_, D, C> {
 
     fn solve(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<Solved, SolveError> {
         if self.choice.dissection {
-            return self.solve_directly(rhs, solution);
+            return self.solve_shell(rhs, solution);
         }
         let timers = Rc::clone(&self.timers);
         let _timed = timers.time("linear solve");
         let unknowns = self.unknowns();
         let own: Vec<f64> = unknowns.iter().map(|&at| if self.free[at] { rhs[at] } else { 0.0 }).collect();
-        let (iterations, x) = self.definite.as_mut().ok_or_else(missing)?.solve(&own)?;
+        let tally = self.tallies.definite.get_or_insert_default();
+        let (iterations, x) = self.definite.as_mut().ok_or_else(missing)?.solve(&own, tally)?;
         spread::<C>(&self.halo, &unknowns, &x, solution);
         Ok(Solved { iterations, ..Solved::default() })
     }
@@ -227,7 +286,8 @@ impl<const D: usize, const C: usize> LinearSolver for KspSolver<'_, D, C> {
             }
         };
         let system = self.general.as_mut().ok_or_else(missing)?;
-        let (krylov, x) = system.solve_with(&mut on_unknowns, relative, &own)?;
+        let tally = self.tallies.general.get_or_insert_default();
+        let (krylov, x) = system.solve_with((&mut on_unknowns, relative), &own, tally)?;
         spread::<C>(&self.halo, &unknowns, &x, solution);
         Ok(krylov)
     }

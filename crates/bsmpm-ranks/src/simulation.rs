@@ -1,7 +1,7 @@
 //! A scene on the ranks: steps, migration, and the cut of the grid that follows the points.
 
 use crate::halo::MpiHalo;
-use crate::linear::{Choice, KspSolver};
+use crate::linear::{Choice, KspSolver, Tallies};
 use crate::load;
 use crate::migrate;
 use crate::signals::Requests;
@@ -135,6 +135,11 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         self.petsc.unused_options().unwrap_or_default()
     }
 
+    /// How the linear solves of this program have ended so far.
+    pub fn tallies(&self) -> &Tallies {
+        self.solver.tallies()
+    }
+
     /// Accepted steps.
     pub fn steps(&self) -> u64 {
         self.steps
@@ -238,6 +243,8 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         let shared = (Rc::clone(&timers), Rc::clone(self.halo.requests()));
         self.halo = Rc::new(MpiHalo::new(world, &self.slabs, &self.model.grid, shared));
         let halo = Rc::clone(&self.halo);
+        let tallies = self.solver.tallies().clone();
         self.solver = KspSolver::new(self.petsc, self.choice.clone(), &self.model.grid, halo, timers);
+        self.solver.count_on(tallies);
     }
 }

@@ -98,6 +98,8 @@ pub enum Kind {
     Count(u64, u64),
     /// One of several words.
     Choice(Words),
+    /// One of several words, or a table that says it in detail.
+    ChoiceOr(Words, &'static Table),
     /// Text of at most so many characters.
     Text(usize),
     /// A name: ASCII letters, digits, `-` and `_`.
@@ -195,7 +197,8 @@ impl Kind {
     /// The table that the value is, or is made of.
     pub fn table(&self) -> Option<&'static Table> {
         match self {
-            Self::Table(table) | Self::Named(table) | Self::Tables(table) | Self::Profile(.., table) => Some(table),
+            Self::Table(table) | Self::Named(table) | Self::Tables(table) => Some(table),
+            Self::Profile(.., table) | Self::ChoiceOr(_, table) => Some(table),
             _ => None,
         }
     }
@@ -219,10 +222,8 @@ impl fmt::Display for Kind {
             Self::Either(dimension, _) => write!(f, "{}, or a list of two", Quantity(*dimension)),
             Self::List(dimension, _) => write!(f, "a list, each item {}", Quantity(*dimension)),
             Self::Count(least, most) => write!(f, "a whole number from {least} to {most}"),
-            Self::Choice(words) => {
-                let words: Vec<String> = words.words().map(|word| format!("\"{word}\"")).collect();
-                write!(f, "one of {}", words.join(", "))
-            }
+            Self::Choice(words) => write!(f, "{}", OneOf(words)),
+            Self::ChoiceOr(words, table) => write!(f, "{}, or a table, {}", OneOf(words), table.header),
             Self::Text(most) => write!(f, "a text of at most {most} characters without control characters"),
             Self::Name => f.write_str("a name of at most 64 ASCII letters, digits, `-` and `_`"),
             Self::Flag => f.write_str("true or false"),
@@ -231,6 +232,16 @@ impl fmt::Display for Kind {
             Self::Tables(table) => write!(f, "a list of tables, {}", table.header),
             Self::Open => f.write_str("not available yet"),
         }
+    }
+}
+
+/// Words in words.
+struct OneOf<'a>(&'a Words);
+
+impl fmt::Display for OneOf<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let words: Vec<String> = self.0.words().map(|word| format!("\"{word}\"")).collect();
+        write!(f, "one of {}", words.join(", "))
     }
 }
 

@@ -12,7 +12,7 @@ mod solver;
 
 pub use measurement::Measurement;
 pub use scene::{Accuracy, Base, C0Lines, Components, Format, Geometry, Law, Order, Side, Start, Support};
-pub use solver::{Factor, Ksp, Nonlinear, Pc};
+pub use solver::{Factor, Ksp, LinearSolver, Nonlinear, Pc};
 
 /// What one of several words stands for.
 pub trait Word: Copy + 'static {

@@ -217,6 +217,19 @@ fn the_linear_solver_that_is_left_open_is_chosen_by_size_and_explained() {
     assert_eq!(chosen(&["solver.linear={ksp=\"auto\", pc=\"auto\"}"]).0, direct);
     assert_eq!(chosen(&["solver.linear.pc=hypre"]), ((Ksp::Cg, Pc::Hypre, None), None));
     assert_eq!(chosen(&["solver.linear.ksp=cg"]).0, (Ksp::Cg, Pc::Cholesky, Some(Factor::Mumps)));
+    let multigrid = (Ksp::Cg, Pc::Gamg, None);
+    assert_eq!(chosen(&["solver.linear=direct"]), (direct, None));
+    assert_eq!(chosen(&["solver.linear=multigrid"]), (multigrid, None));
+    assert_eq!(chosen(&["solver.linear={factor=\"mumps\"}", "solver.linear=multigrid"]), (multigrid, None));
+    assert_eq!(chosen(&[LARGE, "solver.reproducible=false", "solver.linear=direct"]).0, direct);
+    for (wrong, why) in [
+        (&["solver.linear=multigird"][..], "did you mean `multigrid`?"),
+        (&["solver.linear=multigrid", "solver.linear.ksp=preonly"], "which is no table"),
+        (&["solver.linear=7"], "\"direct\""),
+    ] {
+        let errors = set(STATIC, wrong).unwrap_err();
+        assert!(errors.len() == 1 && errors[0].message.contains(why), "{errors:?}");
+    }
     let (found, reason) = chosen(&[]);
     assert!(found == direct && reason.is_some_and(|reason| reason.contains("costs least")));
     let (found, reason) = chosen(&[LARGE]);

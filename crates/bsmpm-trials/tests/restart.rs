@@ -39,6 +39,7 @@ fn a_run_that_was_stopped_goes_on_to_the_bit() {
             let (whole, part) = (manifest(&scratch.path("whole")), manifest(&scratch.path("part")));
             assert_eq!(part.restarts.len(), 1);
             assert_eq!(whole.summary.iterations, part.summary.iterations);
+            assert_eq!(whole.linear, part.linear);
             assert_eq!(part.status, Status::Finished);
             std::fs::remove_dir_all(scratch.path("part")).unwrap();
         }

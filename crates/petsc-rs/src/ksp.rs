@@ -1,5 +1,6 @@
 //! Linear solvers: a Krylov method with its preconditioner, or a factorisation (method `preonly`).
 
+mod shell;
 mod verdict;
 
 use std::ptr;
@@ -8,7 +9,7 @@ use crate::error::{Error, Result, c_string, check, int, same_length, text};
 use crate::ffi;
 use crate::matrix::Matrix;
 use crate::petsc::Petsc;
-use crate::shell::Shell;
+use crate::shell::{Shell, ShellPc, Slot};
 use crate::vector::Vector;
 
 /// When an iteration ends: |r| <= max(relative |b|, absolute), or too many iterations (an `Err`).
@@ -50,6 +51,13 @@ pub struct Ksp<'p> {
     raw: ffi::KSP,
     /// of the operator, None before there is one
     local_rows: Option<usize>,
+    /// the operator, if it is one, with a right-hand side and a solution
+    shell: Option<(Shell<'p>, Vector<'p>, Vector<'p>)>,
+    /// where the shell preconditioner finds what is lent to it, if there is one; never moved while PETSc knows it
+    pc_slot: Option<Box<Slot<dyn ShellPc>>>,
+    /// the shell preconditioner is that of the operator
+    is_ready: bool,
+    reads_options: bool,
 }
 
 impl<'p> Ksp<'p> {
@@ -58,7 +66,7 @@ impl<'p> Ksp<'p> {
         let mut raw = ptr::null_mut();
         // SAFETY: PETSc runs; the pointer is valid.
         check(unsafe { ffi::KSPCreate(petsc.comm(), &mut raw) })?;
-        Ok(Self { petsc, raw, local_rows: None })
+        Ok(Self { petsc, raw, local_rows: None, shell: None, pc_slot: None, is_ready: false, reads_options: false })
     }
 
     /// Solves with `matrix` from now on, and builds the preconditioner from it. PETSc shares the
@@ -101,6 +109,24 @@ impl<'p> Ksp<'p> {
         Ok(())
     }
 
+    /// The method's name, `None` before there is one.
+    pub fn type_name(&self) -> Result<Option<String>> {
+        let mut name = ptr::null();
+        // SAFETY: the handle and the pointer are valid.
+        check(unsafe { ffi::KSPGetType(self.raw, &mut name) })?;
+        // SAFETY: null or a text of PETSc.
+        Ok(Some(unsafe { text(name) }).filter(|name| !name.is_empty()))
+    }
+
+    /// The preconditioner's name, `None` before there is one.
+    pub fn pc_type_name(&self) -> Result<Option<String>> {
+        let (mut name, pc) = (ptr::null(), self.pc()?);
+        // SAFETY: the handle and the pointer are valid.
+        check(unsafe { ffi::PCGetType(pc, &mut name) })?;
+        // SAFETY: null or a text of PETSc.
+        Ok(Some(unsafe { text(name) }).filter(|name| !name.is_empty()))
+    }
+
     /// Text put before the names of this solver's options: `flow_` makes it read `-flow_ksp_type`.
     pub fn set_options_prefix(&mut self, prefix: &str) -> Result<()> {
         let prefix = c_string(prefix)?;
@@ -109,8 +135,9 @@ impl<'p> Ksp<'p> {
     }
 
     /// Reads the options database; it overrules what was set before. After
-    /// [`Ksp::set_operator`]. Collective.
+    /// [`Ksp::set_operator`], or once method and preconditioner have a type. Collective.
     pub fn set_from_options(&mut self) -> Result<()> {
+        self.reads_options = true;
         // SAFETY: the handle is valid.
         check(unsafe { ffi::KSPSetFromOptions(self.raw) })
     }
@@ -154,17 +181,24 @@ impl<'p> Ksp<'p> {
     /// for instance at a zero pivot, is [`Error::Diverged`]. Collective.
     pub fn set_up(&mut self) -> Result<()> {
         self.operator_rows()?;
+        let outcome = self.build();
+        self.conclude(outcome)
+    }
+
+    /// Builds on this rank.
+    fn build(&self) -> Result<()> {
         let pc = self.pc()?;
-        // SAFETY: the handles are valid and have an operator. The PC is asked besides the KSP, which
-        // after its first time would leave new values of the matrix to the solve.
-        let built = check(unsafe { ffi::KSPSetUp(self.raw) })
-            .and_then(|()| check(unsafe { ffi::PCSetUp(pc) }))
-            .and_then(|()| check(unsafe { ffi::KSPSetUpOnBlocks(self.raw) }));
-        let outcome = built.and_then(|()| match self.factor_failure()? {
+        // SAFETY: the handle is valid and has an operator.
+        check(unsafe { ffi::KSPSetUp(self.raw) })?;
+        // The KSP, after its first time, would leave new values of the matrix to the solve.
+        // SAFETY: the handle is valid and has an operator.
+        check(unsafe { ffi::PCSetUp(pc) })?;
+        // SAFETY: as above.
+        check(unsafe { ffi::KSPSetUpOnBlocks(self.raw) })?;
+        match self.factor_failure()? {
             Some(failure) => Err(self.diverged(ffi::KSP_DIVERGED_PC_FAILED, failure, 0)),
             None => Ok(()),
-        });
-        self.conclude(outcome)
+        }
     }
 
     /// Solves A x = b, with [`Ksp::set_up`] before it. Collective.
@@ -182,39 +216,6 @@ impl<'p> Ksp<'p> {
         // SAFETY: the handles are valid; the vectors have the operator's layout and are distinct.
         let outcome = check(unsafe { ffi::KSPSolve(self.raw, b.raw(), x.raw()) }).and_then(|()| self.verdict());
         self.conclude(outcome)
-    }
-
-    /// Solves A x = b for an operator known by its product, `apply(x, y)` setting y = A x on this rank's part, with the
-    /// preconditioner of the matrix of [`Ksp::set_operator`]; for Krylov methods. `apply` is called equally often on all
-    /// ranks. A solve that reaches its most iterations is `Ok` too: the caller looks at what is left. Collective.
-    pub fn solve_with(
-        &mut self,
-        apply: &mut dyn FnMut(&[f64], &mut [f64]),
-        b: &Vector,
-        x: &mut Vector,
-    ) -> Result<SolveInfo> {
-        let rows = self.operator_rows()?;
-        let checked = same_length("right-hand side", b.local_len(), rows)
-            .and_then(|()| same_length("solution", x.local_len(), rows));
-        self.petsc.agree(checked)?;
-        self.set_up()?;
-        let mut matrix = ptr::null_mut();
-        // SAFETY: the handle and the pointer are valid; the matrix stays PETSc's, and alive through the reference below.
-        check(unsafe { ffi::KSPGetOperators(self.raw, ptr::null_mut(), &mut matrix) })?;
-        let shell = Shell::new(self.petsc, rows, apply)?;
-        // SAFETY: all handles are valid; the preconditioner keeps its matrix and is not built again.
-        check(unsafe { ffi::KSPSetOperators(self.raw, shell.raw(), matrix) })?;
-        // SAFETY: the handles are valid; the vectors have the operator's layout and are distinct.
-        let outcome = check(unsafe { ffi::KSPSolve(self.raw, b.raw(), x.raw()) }).and_then(|()| self.verdict());
-        let outcome = match outcome {
-            Err(Error::Diverged { reason, iterations, .. }) if reason == ffi::KSP_DIVERGED_ITS => {
-                Ok(SolveInfo { reason, iterations })
-            }
-            other => other,
-        };
-        // SAFETY: as above; nothing refers to the shell any more when it ends.
-        let restored = check(unsafe { ffi::KSPSetOperators(self.raw, matrix, matrix) });
-        self.conclude(restored.and(outcome))
     }
 
     fn operator_rows(&self) -> Result<usize> {

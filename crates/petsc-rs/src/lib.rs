@@ -40,6 +40,7 @@ pub use error::{Error, Result};
 pub use ksp::{Ksp, NormType, SolveInfo, Tolerances};
 pub use matrix::{Matrix, Symmetry};
 pub use petsc::{Petsc, petsc_int_bits, version};
+pub use shell::{PcFailure, Product, ShellPc};
 pub use vector::Vector;
 
 /// What bindgen made of PETSc's headers.

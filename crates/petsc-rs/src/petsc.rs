@@ -90,17 +90,16 @@ impl<'u> Petsc<'u> {
         self.universe.world().as_raw()
     }
 
-    /// Whether it holds on one rank at least. Collective.
-    pub(crate) fn any(&self, holds: bool) -> bool {
-        let (mine, mut most) = (i32::from(holds), 0);
-        let world = self.universe.world();
-        world.all_reduce_into(&mine, &mut most, SystemOperation::max());
-        most != 0
+    /// The largest number of all ranks. Collective.
+    pub(crate) fn most(&self, mine: i32) -> i32 {
+        let mut most = mine;
+        self.universe.world().all_reduce_into(&mine, &mut most, SystemOperation::max());
+        most
     }
 
     /// The outcome of this rank, or `OtherRank` where only others failed. Collective.
     pub(crate) fn agree<T>(&self, mine: Result<T>) -> Result<T> {
-        match (self.any(mine.is_err()), mine) {
+        match (self.most(i32::from(mine.is_err())) > 0, mine) {
             (true, Ok(_)) => Err(Error::OtherRank),
             (_, mine) => mine,
         }

@@ -6,6 +6,7 @@ mod support;
 use mpi::environment::Universe;
 use petsc_rs::{Error, Ksp, Matrix, NormType, Petsc, Symmetry, Tolerances, Vector};
 use support::classes::classes;
+use support::shell::{panics, shell_failures, shell_pc};
 use support::{Captured, enter_directory_with_petscrc, prepare_environment};
 
 /// Rows on each rank.
@@ -27,6 +28,9 @@ const CHECKS: &[Check] = &[
     ("PETSc's errors are values and print nothing", silent),
     ("rigid body modes", rigid_body_modes),
     ("an operator known by its product", product),
+    ("a preconditioner of the caller's own", shell_pc),
+    ("its failures are KSP's", shell_failures),
+    ("its panics go on behind PETSc", panics),
 ];
 
 fn main() {

@@ -1,5 +1,6 @@
 //! The parts of the manifest.
 
+use std::collections::BTreeMap;
 use std::fs::{self, File};
 use std::io::ErrorKind;
 use std::path::Path;
@@ -164,6 +165,17 @@ pub struct Communication {
     pub most_messages: u64,
     /// Bytes of the rank that sent the most.
     pub most_bytes: u64,
+}
+
+/// What solved a kind of linear systems, and how its solves ended.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct LinearSolver {
+    /// KSPType of PETSc, of the program that ran last.
+    pub ksp: String,
+    /// PCType of PETSc; of a shell its name, too, as in `shell (dissection)`.
+    pub pc: String,
+    /// Solves by the name of their KSPConvergedReason, over the run; `ERROR` of those that came to none.
+    pub reasons: BTreeMap<String, u64>,
 }
 
 /// How evenly the work lay on the ranks, over the steps.

@@ -189,6 +189,7 @@ fn manifest(new: Manifest, resumed: &Resumed<'_>) -> (Manifest, Vec<String>) {
         start: old.start,
         timers: old.timers,
         communication: old.communication,
+        linear: old.linear,
         balance: old.balance,
         summary: old.summary,
         initial: old.initial,

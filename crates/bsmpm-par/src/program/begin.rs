@@ -109,6 +109,7 @@ fn before(start: &Start<'_>, directory: &Path) -> Before {
         told_strips: state.told_strips.clone(),
         timers: state.files.manifest.timers.clone(),
         communication: state.files.manifest.communication.clone(),
+        linear: state.files.manifest.linear.clone(),
         cpu_seconds: state.files.manifest.summary.cpu_seconds,
     }
 }

@@ -6,7 +6,8 @@ use crate::launch;
 use crate::machine;
 use bsmpm::seam::Halo;
 use bsmpm_io::exit;
-use bsmpm_io::manifest::{Communication, Status};
+use bsmpm_io::manifest::{Communication, LinearSolver, Status};
+use bsmpm_ranks::linear::Tallies;
 use bsmpm_ranks::simulation::Simulation;
 use bsmpm_ranks::traffic::Kind;
 use mpi::collective::CommunicatorCollectives;
@@ -101,8 +102,10 @@ impl Run<'_> {
         self.simulation.halo.reduce(&mut total);
         self.simulation.halo.maximum(&mut most);
         let wall = self.wall();
+        let tallies = self.simulation.tallies();
         let Some(ledger) = &mut self.ledger else { return };
         let manifest = ledger.manifest();
+        manifest.linear = linear(&self.before.linear, tallies);
         manifest.summary.cpu_seconds = self.before.cpu_seconds + total[0];
         manifest.summary.peak_memory = all_memory;
         manifest.timers = self.before.timers.clone();
@@ -145,6 +148,20 @@ impl Run<'_> {
         }
         unusual.iter().for_each(|line| self.log.line("indicator", &format!("unusual: {line}")));
     }
+}
+
+/// How the linear solves `before` ended and those since then.
+fn linear(before: &BTreeMap<String, LinearSolver>, tallies: &Tallies) -> BTreeMap<String, LinearSolver> {
+    let mut all = before.clone();
+    for (name, tally) in [("stiffness", &tallies.definite), ("newton", &tallies.general)] {
+        let Some(tally) = tally else { continue };
+        let solver = all.entry(name.to_owned()).or_default();
+        (solver.ksp, solver.pc) = (tally.ksp.clone(), tally.pc.clone());
+        for (reason, count) in &tally.reasons {
+            *solver.reasons.entry(reason.clone()).or_default() += count;
+        }
+    }
+    all
 }
 
 /// What the ranks have told each other `before` and since then, of which the sums over the ranks are known and the largest.

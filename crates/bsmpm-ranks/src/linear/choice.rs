@@ -1,7 +1,7 @@
 //! Which solver is wanted, and how PETSc is told.
 
 use bsmpm::seam::Symmetry;
-use petsc_rs::{Ksp, Matrix, Petsc, Vector};
+use petsc_rs::{Ksp, Matrix, PcFailure, Petsc, ShellPc, Vector};
 
 /// Defaults of the factorisation, given before the user's own options, which win. MUMPS: ordering by approximate minimum
 /// fill, of all that were tried the cheapest for plane grids, and twice the workspace that it estimates, which on
@@ -32,7 +32,7 @@ const NEWTON: &str = "newton_";
 /// Method, preconditioner and factorising package by PETSc's names.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Choice {
-    /// definite systems are solved by nested dissection of the grid, without PETSc
+    /// definite systems are preconditioned by nested dissection of the grid, whose matrix is not assembled
     pub dissection: bool,
     /// KSPType, e.g. `preonly`, `cg`
     pub ksp: String,
@@ -65,6 +65,11 @@ impl Choice {
 
     /// Tells a solver; what the options say goes before. A general matrix preconditions a Krylov method.
     pub(super) fn apply(&self, ksp: &mut Ksp<'_>, symmetry: Symmetry) -> petsc_rs::Result<()> {
+        if self.dissection && symmetry == Symmetry::Definite {
+            ksp.set_type(&self.ksp)?;
+            ksp.set_pc_shell("dissection")?;
+            return ksp.set_from_options();
+        }
         let pc = match (symmetry, self.pc.as_str()) {
             (Symmetry::General, "cholesky") => "lu",
             (_, pc) => pc,
@@ -91,15 +96,35 @@ impl Choice {
 /// Solves a system of one unknown a rank as `choice` and the options say: what PETSc does not know or have shows before
 /// a run begins. Collective.
 pub fn probe<'p>(petsc: &'p Petsc<'p>, choice: &Choice) -> petsc_rs::Result<()> {
+    let mut ksp = Ksp::new(petsc)?;
+    if choice.dissection {
+        choice.apply(&mut ksp, Symmetry::Definite)?;
+        ksp.set_shell_operator(1)?;
+        let mut product = |x: &[f64], y: &mut [f64]| y.copy_from_slice(x);
+        return ksp.solve_with_pc((&mut product, &mut Identity), |b| b.fill(1.0)).map(|_| ());
+    }
     let own = [petsc.rank()];
     let mut matrix = Matrix::from_coo(petsc, 1, 1, &own, &own)?;
     matrix.set_values(&[1.0])?;
     matrix.set_symmetry(petsc_rs::Symmetry::PositiveDefinite)?;
-    let mut ksp = Ksp::new(petsc)?;
     ksp.set_operator(&matrix)?;
     choice.apply(&mut ksp, Symmetry::Definite)?;
     let (mut b, mut x) = (Vector::new(petsc, 1)?, Vector::new(petsc, 1)?);
     b.fill(1.0)?;
     ksp.set_up()?;
     ksp.solve(&b, &mut x).map(|_| ())
+}
+
+/// The preconditioner of the matrix that is solved before a run.
+struct Identity;
+
+impl ShellPc for Identity {
+    fn set_up(&mut self) -> Result<(), PcFailure> {
+        Ok(())
+    }
+
+    fn apply(&mut self, r: &[f64], z: &mut [f64]) -> Result<(), PcFailure> {
+        z.copy_from_slice(r);
+        Ok(())
+    }
 }

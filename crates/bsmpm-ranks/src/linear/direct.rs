@@ -1,23 +1,28 @@
-//! Definite systems without PETSc: a factor of single precision, tried by its first solution, or else one of double.
+//! The preconditioner of definite systems that is this program's own, under PETSc's KSP: a factor of single precision,
+//! tried by its first solution, or else one of double.
 
-use super::dissection::Precision;
+use super::dissection::{Dissection, Precision};
 use super::system::trusted;
-use super::{KspSolver, missing};
+use crate::halo::MpiHalo;
+use crate::stencil::Stencil;
+use crate::timers::Timers;
 use bsmpm::error::SolveError;
-use bsmpm::seam::{Halo, Solved, agreed, over_layers};
+use bsmpm::grid::Grid;
+use bsmpm::seam::{Halo, agreed, over_layers};
 use mpi::collective::CommunicatorCollectives;
-use std::ops::Range;
-use std::rc::Rc;
+use mpi::topology::Communicator;
+use petsc_rs::{PcFailure, ShellPc};
 
 /// Largest relative residual of a solution by a factor of single precision, which a quasi-Newton direction can do with.
 /// It is 1e-7 in dynamics; in statics about 1e-9 n/(1 - 2 nu), n the unknowns of a body in one piece. One right-hand
 /// side tells for all of a step: what it does not excite, it does not tell of.
 const NEAR: f64 = 1e-2;
 
-/// What is known of the factorisation without PETSc.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Standing {
+/// What is known of the factor.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Standing {
     /// there is none of the present matrix
+    #[default]
     Missing,
     /// it has not solved a system yet
     Untried,
@@ -25,71 +30,165 @@ pub(super) enum Standing {
     Tried,
 }
 
-impl<const D: usize, const C: usize> KspSolver<'_, D, C> {
-    /// Factorises without PETSc.
-    pub(super) fn factorise(&mut self, precision: Precision) -> Result<(), SolveError> {
-        let (halo, timers) = (Rc::clone(&self.halo), Rc::clone(&self.timers));
-        let (world, link, _timed) = (halo.world(), halo.link(), timers.time("factorisation"));
-        if !self.planned {
-            let mut bounds = vec![0; self.petsc.ranks()];
-            world.all_gather_into(&self.grid.columns().start, &mut bounds[..]);
-            bounds.push(self.grid.room()[0].end);
-            self.direct.plan::<D, C>(&link, (&bounds, self.petsc.rank()), &self.grid, &self.free);
-            self.planned = true;
-        }
-        let mut largest = [self.stencil.largest_diagonal()];
-        halo.maximum(&mut largest);
-        let good = self.direct.factorise(&link, precision, &self.stencil, largest[0]);
-        self.standing = Standing::Untried;
-        let pivot =
-            |what: &str| SolveError::Failed(format!("a pivot {what} is not positive: the stiffness is not definite"));
-        agreed(&*self.halo, if good { Ok(()) } else { Err(pivot("here")) }, pivot("of another rank"))
+/// A definite matrix: the stencil's blocks of the free components.
+#[derive(Clone, Copy)]
+pub(super) struct Stiffness<'a, const D: usize, const C: usize> {
+    pub halo: &'a MpiHalo,
+    pub grid: &'a Grid<D>,
+    pub stencil: &'a Stencil<D, C>,
+    pub free: &'a [bool],
+    /// components of this rank's unknowns
+    pub unknowns: &'a [usize],
+    pub timers: &'a Timers,
+}
+
+impl<const D: usize, const C: usize> Stiffness<'_, D, C> {
+    /// y = A x of this rank's unknowns. Collective.
+    pub fn multiply(&self, x: &[f64], y: &mut [f64]) {
+        let (mut nodal, mut image) = (vec![0.0; self.free.len()], vec![0.0; self.free.len()]);
+        super::spread::<C>(self.halo, self.unknowns, x, &mut nodal);
+        self.multiply_nodal(&nodal, &mut image);
+        gather(self.unknowns, &image, y);
     }
 
-    /// The solution by the factorisation. The first one tries it: if it is not near, a factor of double precision is
-    /// made, whose solution must be.
-    pub(super) fn solve_directly(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<Solved, SolveError> {
-        let owned = self.halo.owned();
-        let owned = owned.start * C..owned.end * C;
-        let mut solved = Solved { iterations: 1, ..Solved::default() };
-        if self.standing == Standing::Missing {
-            return Err(missing());
+    fn multiply_nodal(&self, x: &[f64], image: &mut [f64]) {
+        self.stencil.multiply(self.free, x, image);
+        self.halo.add_shared(image, C);
+    }
+
+    /// Norms of the residual that a solution leaves, recomputed, and of the right-hand side. Collective.
+    pub fn norms(&self, rhs: &[f64], solution: &[f64]) -> (f64, f64) {
+        let mut image = vec![0.0; rhs.len()];
+        self.multiply_nodal(solution, &mut image);
+        let square = |component: usize, value: f64| if self.free[component] { value * value } else { 0.0 };
+        let left = over_layers(self.halo, C, |c| square(c, rhs[c] - image[c]));
+        let right = over_layers(self.halo, C, |c| square(c, rhs[c]));
+        let squares = self.halo.total(&[left, right]);
+        (squares[0].sqrt(), squares[1].sqrt())
+    }
+}
+
+/// Entries of the `unknowns` in a nodal array.
+pub(super) fn gather(unknowns: &[usize], nodal: &[f64], values: &mut [f64]) {
+    values.iter_mut().zip(unknowns).for_each(|(value, &component)| *value = nodal[component]);
+}
+
+/// The factor of a definite matrix, and what its applications leave beside their result.
+#[derive(Default)]
+pub(super) struct Factor {
+    dissection: Dissection,
+    is_planned: bool, // for the present unknowns
+    standing: Standing,
+    rhs: Vec<f64>, // nodal
+    /// the last application's result, right at all nodes of the window
+    pub solution: Vec<f64>,
+    /// factorisations besides the one of the set-up, since it was asked last
+    pub further: usize,
+    /// |b - A x| / |b| of the first solution, since it was asked last
+    pub residual: Option<f64>,
+    /// why it failed
+    pub cause: Option<SolveError>,
+}
+
+impl Factor {
+    /// Forgets the plan, as the unknowns are others.
+    pub fn replan(&mut self) {
+        self.is_planned = false;
+    }
+
+    /// Forgets that there is a factor, as the matrix is another one.
+    pub fn outdate(&mut self) {
+        self.standing = Standing::Missing;
+    }
+
+    /// Whether there is one of the present matrix.
+    pub fn is_there(&self) -> bool {
+        self.standing != Standing::Missing
+    }
+}
+
+/// The factor with its matrix, as KSP's preconditioner.
+pub(super) struct DissectionPc<'a, const D: usize, const C: usize> {
+    pub factor: &'a mut Factor,
+    pub matrix: Stiffness<'a, D, C>,
+}
+
+impl<const D: usize, const C: usize> DissectionPc<'_, D, C> {
+    fn factorise(&mut self, precision: Precision) -> Result<(), SolveError> {
+        let Stiffness { halo, grid, stencil, free, timers, .. } = self.matrix;
+        let (world, link, _timed) = (halo.world(), halo.link(), timers.time("factorisation"));
+        if !self.factor.is_planned {
+            let mut bounds = vec![0; world.size().unsigned_abs() as usize];
+            world.all_gather_into(&grid.columns().start, &mut bounds[..]);
+            bounds.push(grid.room()[0].end);
+            let rank = world.rank().unsigned_abs() as usize;
+            self.factor.dissection.plan::<D, C>(&link, (&bounds, rank), grid, free);
+            self.factor.is_planned = true;
         }
-        self.timed_solution(owned.clone(), rhs, solution);
-        if self.standing == Standing::Tried {
-            return Ok(solved);
+        let mut largest = [stencil.largest_diagonal()];
+        halo.maximum(&mut largest);
+        let good = self.factor.dissection.factorise(&link, precision, stencil, largest[0]);
+        self.factor.standing = Standing::Untried;
+        let pivot =
+            |what: &str| SolveError::Failed(format!("a pivot {what} is not positive: the stiffness is not definite"));
+        agreed(halo, if good { Ok(()) } else { Err(pivot("here")) }, pivot("of another rank"))
+    }
+
+    /// The solution for the nodal right-hand side. The first one tries the factor: if it is not near, one of double
+    /// precision is made, whose solution must be: no reason of KSP's tells what a factor is worth.
+    fn solve(&mut self) -> Result<(), SolveError> {
+        self.back_substitute();
+        if self.factor.standing == Standing::Tried {
+            return Ok(());
         }
-        let (mut left, right) = self.norms(rhs, solution);
+        let (mut left, right) = self.matrix.norms(&self.factor.rhs, &self.factor.solution);
         if !right.is_finite() {
             return Err(SolveError::NotFinite);
         }
         if !left.is_finite() || left > NEAR * right {
             self.factorise(Precision::Double)?;
-            solved.factorisations = 1;
-            self.timed_solution(owned, rhs, solution);
-            left = self.norms(rhs, solution).0;
+            self.factor.further += 1;
+            self.back_substitute();
+            left = self.matrix.norms(&self.factor.rhs, &self.factor.solution).0;
             trusted(left, right)?;
         }
         if right > 0.0 {
-            (self.standing, solved.residual) = (Standing::Tried, Some(left / right));
+            (self.factor.standing, self.factor.residual) = (Standing::Tried, Some(left / right));
         }
-        Ok(solved)
+        Ok(())
     }
 
-    fn timed_solution(&mut self, owned: Range<usize>, rhs: &[f64], solution: &mut [f64]) {
-        let _timed = self.timers.time("linear solve");
-        self.direct.solve(&self.halo.link(), owned, rhs, solution);
+    fn back_substitute(&mut self) {
+        let _timed = self.matrix.timers.time("linear solve");
+        let owned = self.matrix.halo.owned();
+        let Factor { dissection, rhs, solution, .. } = &mut *self.factor;
+        dissection.solve(&self.matrix.halo.link(), owned.start * C..owned.end * C, rhs, solution);
     }
 
-    /// Norms of the residual that a solution leaves, recomputed, and of the right-hand side.
-    fn norms(&self, rhs: &[f64], solution: &[f64]) -> (f64, f64) {
-        let mut image = vec![0.0; rhs.len()];
-        self.stencil.multiply(&self.free, solution, &mut image);
-        self.halo.add_shared(&mut image, C);
-        let square = |component: usize, value: f64| if self.free[component] { value * value } else { 0.0 };
-        let left = over_layers(&*self.halo, C, |c| square(c, rhs[c] - image[c]));
-        let right = over_layers(&*self.halo, C, |c| square(c, rhs[c]));
-        let squares = self.halo.total(&[left, right]);
-        (squares[0].sqrt(), squares[1].sqrt())
+    /// Tells KSP of a failure, and the caller why.
+    fn told(&mut self, outcome: Result<(), SolveError>, failure: PcFailure) -> Result<(), PcFailure> {
+        outcome.map_err(|cause| {
+            self.factor.cause = Some(cause);
+            failure
+        })
+    }
+}
+
+impl<const D: usize, const C: usize> ShellPc for DissectionPc<'_, D, C> {
+    fn set_up(&mut self) -> Result<(), PcFailure> {
+        let outcome = self.factorise(Precision::Single);
+        self.told(outcome, PcFailure::ZeroPivot)
+    }
+
+    fn apply(&mut self, r: &[f64], z: &mut [f64]) -> Result<(), PcFailure> {
+        let (count, unknowns) = (self.matrix.free.len(), self.matrix.unknowns);
+        let Factor { rhs, solution, .. } = &mut *self.factor;
+        rhs.clear();
+        rhs.resize(count, 0.0);
+        solution.resize(count, 0.0);
+        unknowns.iter().zip(r).for_each(|(&component, value)| rhs[component] = *value);
+        let outcome = self.solve();
+        gather(unknowns, &self.factor.solution, z);
+        self.told(outcome, PcFailure::Other)
     }
 }

@@ -1,6 +1,7 @@
 //! A linear system of PETSc, and which of its solutions are accepted.
 
 use super::choice::Choice;
+use super::tally::Tally;
 use bsmpm::error::SolveError;
 use bsmpm::seam::{Krylov, Symmetry};
 use petsc_rs::{Ksp, Matrix, Petsc, Tolerances, Vector};
@@ -40,9 +41,11 @@ impl<'p> System<'p> {
     }
 
     /// Solution of this rank's unknowns, if it is finite and its recomputed residual small.
-    pub(super) fn solve(&mut self, rhs: &[f64]) -> Result<(usize, Vec<f64>), SolveError> {
+    pub(super) fn solve(&mut self, rhs: &[f64], tally: &mut Tally) -> Result<(usize, Vec<f64>), SolveError> {
         self.b.copy_from(rhs).map_err(failed)?;
-        let info = self.ksp.solve(&self.b, &mut self.x).map_err(failed)?;
+        let outcome = self.ksp.solve(&self.b, &mut self.x);
+        tally.count(&self.ksp, &outcome);
+        let info = outcome.map_err(failed)?;
         self.matrix.residual(&self.b, &self.x, &mut self.r).map_err(failed)?;
         let (left, right) = (self.r.norm().map_err(failed)?, self.b.norm().map_err(failed)?);
         trusted(left, right)?;
@@ -52,14 +55,16 @@ impl<'p> System<'p> {
     /// Solution of this rank's unknowns for an operator known by its product, and what it leaves.
     pub(super) fn solve_with(
         &mut self,
-        product: &mut dyn FnMut(&[f64], &mut [f64]),
-        relative: f64,
+        (product, relative): (&mut dyn FnMut(&[f64], &mut [f64]), f64),
         rhs: &[f64],
+        tally: &mut Tally,
     ) -> Result<(Krylov, Vec<f64>), SolveError> {
         self.b.copy_from(rhs).map_err(failed)?;
         let tolerances = Tolerances { relative, absolute: 0.0, max_iterations: MOST_PRODUCTS };
         self.ksp.set_tolerances(tolerances).map_err(failed)?;
-        let info = self.ksp.solve_with(product, &self.b, &mut self.x).map_err(failed)?;
+        let outcome = self.ksp.solve_with(product, &self.b, &mut self.x);
+        tally.count(&self.ksp, &outcome);
+        let info = outcome.map_err(failed)?;
         let x = self.x.read(<[f64]>::to_vec).map_err(failed)?;
         self.r.write(|r| product(&x, r)).map_err(failed)?;
         self.r.add_scaled(-1.0, &self.b).map_err(failed)?;

@@ -27,7 +27,7 @@ pub(super) fn read(kind: &Kind, node: &Node, path: &str, pseudo_time: bool, repo
             _ => reader.quantity(node, *dimension, range).map(|number| Datum::Numbers(vec![number])),
         },
         Kind::Count(least, most) => reader.count(node, *least, *most),
-        Kind::Choice(words) => reader.choice(node, words),
+        Kind::Choice(words) | Kind::ChoiceOr(words, _) => reader.choice(node, words),
         Kind::Text(most) => reader.text(node, *most),
         Kind::Name => match &node.value {
             Value::Text(text) if is_name(text) => Some(Datum::Text(text.clone())),

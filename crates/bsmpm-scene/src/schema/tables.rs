@@ -3,7 +3,7 @@
 use super::Kind::*;
 use super::Presence::{Default, Optional, Required};
 use super::{Dimension as In, Kind, Range, Table, body, key, later, loads, one_of, output};
-use crate::words::{Accuracy, C0Lines, Factor, Geometry, Ksp, Law, Nonlinear, Order, Pc, Support, Word};
+use crate::words::{Accuracy, C0Lines, Factor, Geometry, Ksp, Law, LinearSolver, Nonlinear, Order, Pc, Support, Word};
 use bsmpm::background::{Extent, Kind as Background};
 use bsmpm::material::{Match, Separation};
 use bsmpm::model::Regime;
@@ -219,7 +219,12 @@ static SOLVER: Table = Table {
             Optional,
             "cells that get it; occupied (curvature: partly-filled)",
         ),
-        key("linear", Kind::Table(&LINEAR), Default("{}"), "the linear solver, by PETSc's names"),
+        key(
+            "linear",
+            ChoiceOr(LinearSolver::WORDS, &LINEAR),
+            Default("{}"),
+            "the linear solver, in a word or by PETSc's names; chosen by the size unless given; options after -- go before it",
+        ),
         key(
             "reproducible",
             Flag,

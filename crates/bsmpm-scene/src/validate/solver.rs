@@ -5,7 +5,7 @@ use crate::estimate;
 use crate::grid::GridSpec;
 use crate::record::Record;
 use crate::report::Report;
-use crate::words::{Factor, Ksp, Pc, Word};
+use crate::words::{Factor, Ksp, LinearSolver, Pc, Word};
 use bsmpm::background::{Extent, Kind};
 use bsmpm::model::Regime;
 use bsmpm::quadrature::Quadrature;
@@ -23,7 +23,10 @@ pub(super) fn read(
     let poisson = materials.unwrap_or_default().iter().map(|material| material.material.elastic().poisson);
     let unknowns = 2 * grid.map_or(0, estimate::nodes);
     let size = Size { unknowns, poisson: poisson.fold(0.0, f64::max), reproducible: solver.flag("reproducible")? };
-    let linear = solver.record("linear").and_then(|linear| read_linear(linear, size, report));
+    let linear = match solver.record("linear") {
+        Some(linear) => read_linear(linear, size, report),
+        None => solver.word("linear").map(in_a_word),
+    };
     Some(Solver {
         nonlinear: solver.word("nonlinear")?,
         tolerance: solver.number("tolerance")?,
@@ -145,7 +148,15 @@ impl Size {
     }
 }
 
-/// What the case says of the linear solver.
+/// What a word for the linear solver stands for.
+fn in_a_word(solver: LinearSolver) -> Linear {
+    match solver {
+        LinearSolver::Direct => Linear { ksp: Ksp::Preonly, pc: Pc::Cholesky, factor: Some(Factor::Dissection) },
+        LinearSolver::Multigrid => Linear { ksp: Ksp::Cg, pc: Pc::Gamg, factor: None },
+    }
+}
+
+/// What the case says of the linear solver by PETSc's names.
 struct Asked {
     ksp: Option<Ksp>,
     pc: Option<Pc>,

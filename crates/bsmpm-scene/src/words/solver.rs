@@ -14,6 +14,16 @@ choice! {
 }
 
 choice! {
+    /// The linear solver in a word.
+    pub enum LinearSolver {
+        /// A factor of the stiffness by nested dissection of the grid.
+        Direct = "direct",
+        /// Conjugate gradients with PETSc's algebraic multigrid.
+        Multigrid = "multigrid",
+    }
+}
+
+choice! {
     /// Krylov method, by PETSc's name.
     pub enum Ksp {
         /// The preconditioner alone, which solves by itself.

@@ -63,7 +63,7 @@ fn below(kind: &'static Kind, value: &DeValue<'_>, path: &str, text: &str, found
     let mut item =
         |fits, value| found.push(Written { fits, value, name: None, presence: Presence::Optional, ..whole.clone() });
     match (kind, value) {
-        (Kind::Table(schema) | Kind::Profile(.., schema), DeValue::Table(written)) => {
+        (Kind::Table(schema) | Kind::Profile(.., schema) | Kind::ChoiceOr(_, schema), DeValue::Table(written)) => {
             table(schema, written, &format!("{path}."), text, found);
         }
         (Kind::Named(schema), DeValue::Table(named)) => {
@@ -118,7 +118,7 @@ impl Fits {
             Kind::Text(_) => !is_text,
             Kind::Name => put != "\"abc\"",
             Kind::Flag => put != "true",
-            Kind::Table(_) | Kind::Named(_) => put != "{}",
+            Kind::Table(_) | Kind::Named(_) | Kind::ChoiceOr(..) => put != "{}",
             Kind::Tables(_) => put != "[]",
         }
     }

@@ -2,7 +2,7 @@
 
 use crate::support::Scratch;
 use crate::support::cases::COLUMN;
-use crate::support::results::steps;
+use crate::support::results::{differences, last_frame, manifest, steps};
 
 #[test]
 fn options_after_two_dashes_reach_the_solver() {
@@ -15,6 +15,69 @@ fn options_after_two_dashes_reach_the_solver() {
         let many = linear.iter().zip(nonlinear).all(|(linear, nonlinear)| *linear > 5.0 * nonlinear);
         assert!(many, "conjugate gradients take many iterations: {linear:?}");
     }
+}
+
+/// Lines that begin with `start`.
+fn lines(text: &str, start: &str) -> usize {
+    text.lines().filter(|line| line.trim_start().starts_with(start)).count()
+}
+
+/// The default solver, too, is KSP's: its reports are of the run's systems only, and the manifest counts the same solves.
+#[test]
+fn ksp_reports_every_solve_of_a_default_run() {
+    let scratch = Scratch::with_case(COLUMN);
+    let options = ["--", "-ksp_view", "-ksp_monitor", "-ksp_converged_reason"];
+    for ranks in [1, 2] {
+        let output = scratch.mpirun(ranks, &[&["case.toml", "-q", "--force"], &options[..]].concat()).expect(0);
+        let (manifest, steps) = (manifest(&scratch.path("case.out")), steps(&scratch.path("case.out")));
+        let linear = &manifest.linear["stiffness"];
+        assert_eq!((&*linear.ksp, &*linear.pc), ("preonly", "shell (dissection)"));
+        let solves = linear.reasons["CONVERGED_ITS"];
+        assert_eq!(linear.reasons.len(), 1, "{linear:?}");
+        assert_eq!(solves as f64, steps.get("linear_iterations").unwrap().iter().sum::<f64>());
+        let told =
+            ["type: preonly", "dissection", "Linear solve converged due to CONVERGED_ITS", "1 KSP Residual norm"];
+        for text in told {
+            assert_eq!(lines(&output.stdout, text) as u64, solves, "{text}");
+        }
+        assert_eq!(lines(&output.stdout, "type: shell") as u64, 2 * solves, "the preconditioner and the matrix");
+    }
+}
+
+/// A Krylov method takes the program's own factor as its preconditioner, with which it has next to nothing to do.
+#[test]
+fn conjugate_gradients_take_the_default_preconditioner() {
+    let scratch = Scratch::with_case(COLUMN);
+    for ranks in [1, 2] {
+        let run = |name: &str, options: &[&str]| {
+            scratch.mpirun(ranks, &[&["case.toml", "-q", "--force", "-o", name], options].concat()).expect(0);
+            (manifest(&scratch.path(name)), last_frame(&scratch.path(name)))
+        };
+        let (whole, expected) = run("direct", &[]);
+        let (manifest, found) = run("cg", &["--", "-ksp_type", "cg"]);
+        let linear = &manifest.linear["stiffness"];
+        assert_eq!((&*linear.ksp, &*linear.pc), ("cg", "shell (dissection)"));
+        assert!(linear.reasons.len() == 1 && linear.reasons.contains_key("CONVERGED_RTOL"), "{linear:?}");
+        let (iterations, solves) = (manifest.summary.linear_iterations, linear.reasons["CONVERGED_RTOL"]);
+        assert!(iterations > solves && iterations <= 4 * solves, "{iterations} iterations in {solves} solves");
+        assert_eq!(whole.summary.steps, manifest.summary.steps);
+        let worst = differences(&found, &expected);
+        assert!(worst.iter().all(|(_, difference)| *difference < 1e-6), "{worst:?}");
+    }
+}
+
+#[test]
+fn the_manifest_counts_what_ksp_said() {
+    let scratch = Scratch::with_case(COLUMN);
+    let told = |code: i32, options: &[&str]| {
+        scratch.mpirun(2, &[&["case.toml", "-q", "--force"], options].concat()).expect(code);
+        manifest(&scratch.path("case.out")).linear["stiffness"].clone()
+    };
+    let linear = told(0, &["--set", "solver.linear=multigrid"]);
+    assert_eq!((&*linear.ksp, &*linear.pc), ("cg", "gamg"));
+    assert!(linear.reasons.len() == 1 && linear.reasons["CONVERGED_RTOL"] > 0, "{linear:?}");
+    let linear = told(80, &["--", "-ksp_type", "cg", "-pc_type", "jacobi", "-ksp_max_it", "2"]);
+    assert!(linear.reasons.len() == 1 && linear.reasons["DIVERGED_ITS"] > 0, "{linear:?}");
 }
 
 /// Without a tolerance of their own the methods must still solve well enough to be trusted; the first row is the example

@@ -6,6 +6,9 @@ use super::{Ksp, SolveInfo};
 use crate::error::{Error, Result, check, text};
 use crate::ffi;
 
+/// A solver whose preconditioner cannot be used any more.
+const BROKEN: i32 = 2;
+
 impl Ksp<'_> {
     /// How the solve that has just returned ended.
     pub(super) fn verdict(&self) -> Result<SolveInfo> {
@@ -22,18 +25,35 @@ impl Ksp<'_> {
         }
     }
 
-    /// The outcome of this rank, agreed with the others; a preconditioner that failed is dropped.
+    /// The outcome of this rank, agreed with the others in one reduction; a preconditioner that failed is dropped.
     pub(super) fn conclude<T>(&mut self, outcome: Result<T>) -> Result<T> {
-        let broken = match &outcome {
-            Ok(_) => false,
-            Err(Error::Diverged { reason, .. }) => *reason == ffi::KSP_DIVERGED_PC_FAILED,
-            Err(_) => true,
+        let severity = match &outcome {
+            Ok(_) => 0,
+            Err(Error::Diverged { reason, .. }) if *reason != ffi::KSP_DIVERGED_PC_FAILED => 1,
+            Err(_) => BROKEN,
         };
-        if self.petsc.any(broken) {
+        let worst = self.petsc.most(severity);
+        if worst == BROKEN {
             // The error that led here says more than one of the cleaning up would.
             let _ = self.forget_factor();
         }
-        self.petsc.agree(outcome)
+        if worst > 0 { outcome.and(Err(Error::OtherRank)) } else { outcome }
+    }
+
+    /// Why the last solve ended, KSPConvergedReason and its name.
+    pub fn converged_reason(&self) -> Result<(i32, String)> {
+        let mut reason = 0;
+        // SAFETY: the handle and the pointer are valid.
+        check(unsafe { ffi::KSPGetConvergedReason(self.raw, &mut reason) })?;
+        Ok((reason, self.reason_name()?))
+    }
+
+    fn reason_name(&self) -> Result<String> {
+        let mut name = ptr::null();
+        // SAFETY: the handle and the pointer are valid; PETSc's text is constant.
+        check(unsafe { ffi::KSPGetConvergedReasonString(self.raw, &mut name) })?;
+        // SAFETY: null or a text of PETSc.
+        Ok(unsafe { text(name) })
     }
 
     pub(super) fn diverged(&self, reason: i32, failure: &str, iterations: usize) -> Error {
@@ -44,12 +64,7 @@ impl Ksp<'_> {
                 iterations,
             };
         }
-        let mut name = ptr::null();
-        // SAFETY: the handle and the pointer are valid; PETSc's text is constant.
-        let known = check(unsafe { ffi::KSPGetConvergedReasonString(self.raw, &mut name) });
-        // SAFETY: null or a text of PETSc.
-        let name = known.map(|()| unsafe { text(name) }).unwrap_or_default();
-        Error::Diverged { reason, name, iterations }
+        Error::Diverged { reason, name: self.reason_name().unwrap_or_default(), iterations }
     }
 
     /// Why the preconditioner or factor cannot be used, if it cannot.

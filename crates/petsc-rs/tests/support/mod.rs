@@ -1,6 +1,7 @@
 //! What the test program needs of the process: environment, working directory, captured output.
 
 pub mod classes;
+pub mod shell;
 
 use std::ffi::{c_int, c_void};
 use std::fs::{self, File};
