@@ -1,5 +1,5 @@
-//! The linear system: assembly, with numbers of the unknowns where PETSc holds the matrix, and KSP, which solves it. Of its
-//! solutions are checked those of PETSc's preconditioners all, of the program's own factor the first one.
+//! The linear system: assembly, with numbers of the unknowns where PETSc holds the matrix, and KSP, which solves it. Of
+//! its solutions are checked those of PETSc's preconditioners all, of the program's own factor the first one.
 
 mod choice;
 mod direct;

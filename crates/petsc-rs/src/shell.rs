@@ -1,7 +1,7 @@
 //! What PETSc reaches through callbacks: the product of a shell matrix, and a shell preconditioner of the caller's own.
 //!
-//! A callback is lent for the time of one call of PETSc. What unwinds in it stops there, as no panic may pass through C:
-//! PETSc gets an error code, and the panic goes on when its call has returned.
+//! A callback is lent for the time of one call of PETSc. What unwinds in it stops there, as no panic may pass through
+//! C: PETSc gets an error code, and the panic goes on when its call has returned.
 
 use std::any::Any;
 use std::cell::{Cell, RefCell};
@@ -77,8 +77,8 @@ impl<T: ?Sized> Slot<T> {
     /// What `work` makes of the callback; an error code without one, and where it panicked.
     fn with(&self, work: impl FnOnce(&mut T) -> ffi::PetscErrorCode) -> ffi::PetscErrorCode {
         let Some(mut callback) = self.lent.take() else { return FAILED };
-        // SAFETY: `lend` was given an exclusive borrow that outlives the call of PETSc that led here; while it is used the
-        // place is empty, so that nothing else reaches it.
+        // SAFETY: `lend` was given an exclusive borrow that outlives the call of PETSc that led here; while it is used
+        // the place is empty, so that nothing else reaches it.
         let outcome = catch_unwind(AssertUnwindSafe(|| work(unsafe { callback.as_mut() })));
         self.lent.set(Some(callback));
         outcome.unwrap_or_else(|panic| {

@@ -4,7 +4,7 @@ use super::choice::Choice;
 use super::tally::Tally;
 use bsmpm::error::SolveError;
 use bsmpm::seam::{Krylov, Symmetry};
-use petsc_rs::{Ksp, Matrix, Petsc, Tolerances, Vector};
+use petsc_rs::{Ksp, Matrix, Petsc, Product, Tolerances, Vector};
 
 /// Largest relative residual of a solution that is accepted, recomputed: direct solvers report success for NaN.
 const TRUSTED: f64 = 1e-6;
@@ -55,7 +55,7 @@ impl<'p> System<'p> {
     /// Solution of this rank's unknowns for an operator known by its product, and what it leaves.
     pub(super) fn solve_with(
         &mut self,
-        (product, relative): (&mut dyn FnMut(&[f64], &mut [f64]), f64),
+        (product, relative): (&mut Product<'_>, f64),
         rhs: &[f64],
         tally: &mut Tally,
     ) -> Result<(Krylov, Vec<f64>), SolveError> {

@@ -223,7 +223,7 @@ static SOLVER: Table = Table {
             "linear",
             ChoiceOr(LinearSolver::WORDS, &LINEAR),
             Default("{}"),
-            "the linear solver, in a word or by PETSc's names; chosen by the size unless given; options after -- go before it",
+            "the linear solver, in a word or by PETSc's names; by size unless given; options after -- go before it",
         ),
         key(
             "reproducible",

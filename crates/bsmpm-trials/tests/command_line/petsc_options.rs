@@ -22,7 +22,7 @@ fn lines(text: &str, start: &str) -> usize {
     text.lines().filter(|line| line.trim_start().starts_with(start)).count()
 }
 
-/// The default solver, too, is KSP's: its reports are of the run's systems only, and the manifest counts the same solves.
+/// The default solver, too, is KSP's: its reports are of the run's systems only, and the manifest counts the same.
 #[test]
 fn ksp_reports_every_solve_of_a_default_run() {
     let scratch = Scratch::with_case(COLUMN);

@@ -52,8 +52,9 @@ impl Ksp<'_> {
         Ok(())
     }
 
-    /// [`Ksp::solve`] with the shell operator, `product` setting y = A x on this rank's part, and the shell preconditioner
-    /// `pc`, which is set up first where that is still to be done; `fill` sets this rank's part of b. Collective.
+    /// [`Ksp::solve`] with the shell operator, `product` setting y = A x on this rank's part, and the shell
+    /// preconditioner `pc`, which is set up first where that is still to be done; `fill` sets this rank's part of b.
+    /// Collective.
     pub fn solve_with_pc(
         &mut self,
         (product, pc): (&mut Product<'_>, &mut dyn ShellPc),
@@ -83,8 +84,8 @@ impl Ksp<'_> {
     }
 
     /// Solves A x = b for an operator known by its product, `product` setting y = A x on this rank's part, with the
-    /// preconditioner of the matrix of [`Ksp::set_operator`]; for Krylov methods. A solve that reaches its most iterations
-    /// is `Ok` too: the caller looks at what is left. Collective.
+    /// preconditioner of the matrix of [`Ksp::set_operator`]; for Krylov methods. A solve that reaches its most
+    /// iterations is `Ok` too: the caller looks at what is left. Collective.
     pub fn solve_with(&mut self, product: &mut Product<'_>, b: &Vector, x: &mut Vector) -> Result<SolveInfo> {
         let rows = self.operator_rows()?;
         let checked = same_length("right-hand side", b.local_len(), rows)
@@ -92,8 +93,8 @@ impl Ksp<'_> {
         self.petsc.agree(checked)?;
         self.set_up()?;
         let mut matrix = std::ptr::null_mut();
-        // SAFETY: the handle and the pointer are valid; the matrix stays PETSc's, and alive through the preconditioner's
-        // reference to it.
+        // SAFETY: the handle and the pointer are valid; the matrix stays PETSc's, and alive through the
+        // preconditioner's reference to it.
         check(unsafe { ffi::KSPGetOperators(self.raw, std::ptr::null_mut(), &mut matrix) })?;
         let shell = Shell::new(self.petsc, rows)?;
         // SAFETY: all handles are valid; the preconditioner keeps its matrix and is not built again.
