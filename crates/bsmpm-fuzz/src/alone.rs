@@ -5,9 +5,9 @@ use bsmpm::error::{SolveError, StepError};
 use bsmpm::initial;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::Model;
+use bsmpm::parallel::{Alone, Krylov, LinearSolver, Solved, Symmetry};
 use bsmpm::points::Points;
-use bsmpm::seam::{Alone, Krylov, LinearSolver, Solved, Symmetry};
-use bsmpm::step::{Counts, Report, step};
+use bsmpm::step::{Counts, StepReport, step};
 use bsmpm_scene::{Case, Initial, model};
 
 /// A scene on its one rank.
@@ -47,13 +47,13 @@ impl Simulation {
     }
 
     /// One attempt at one step from `t` on.
-    pub fn step(&mut self, t: f64, dt: f64) -> Result<Report, StepError> {
+    pub fn step(&mut self, t: f64, dt: f64) -> Result<StepReport, StepError> {
         let mut counts = Counts::default();
         step(&self.model, &mut self.points, &mut self.guess, (t, dt), (&self.halo, &mut self.solver), &mut counts)
     }
 }
 
-/// The direct solver with what the seam demands of it: solutions are finite.
+/// The direct solver with what the trait demands of it: solutions are finite.
 struct Trusted(Skyline);
 
 impl LinearSolver for Trusted {

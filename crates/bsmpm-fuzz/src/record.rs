@@ -2,7 +2,7 @@
 //! but what its record describes.
 
 use arbitrary::{Result, Unstructured};
-use bsmpm_io::checkpoint::{Array, Found, Number, Record, SCHEMA, named, newest};
+use bsmpm_io::checkpoint::{ArrayNumber, CheckpointRecord, FoundCheckpoint, RecordedArray, SCHEMA, named, newest};
 use std::fs;
 use std::path::Path;
 use tempfile::TempDir;
@@ -37,13 +37,13 @@ fn signed(body: &[u8]) -> Vec<u8> {
 }
 
 /// A record that is right about its file in size and hash, most times.
-fn record(u: &mut Unstructured<'_>) -> Result<Record> {
+fn record(u: &mut Unstructured<'_>) -> Result<CheckpointRecord> {
     let array = |u: &mut Unstructured<'_>| {
-        let numbers = [Number::U8, Number::U16, Number::U64, Number::F64];
+        let numbers = [ArrayNumber::U8, ArrayNumber::U16, ArrayNumber::U64, ArrayNumber::F64];
         let count = |u: &mut Unstructured<'_>| if u.ratio(1, 8)? { u.arbitrary() } else { u.int_in_range(0..=2) };
-        Ok(Array { name: u.arbitrary()?, number: *u.choose(&numbers)?, rows: count(u)?, width: count(u)? })
+        Ok(RecordedArray { name: u.arbitrary()?, number: *u.choose(&numbers)?, rows: count(u)?, width: count(u)? })
     };
-    Ok(Record {
+    Ok(CheckpointRecord {
         schema: if u.ratio(1, 16)? { u.arbitrary()? } else { SCHEMA },
         version: u.arbitrary()?,
         step: u.arbitrary()?,
@@ -57,7 +57,7 @@ fn record(u: &mut Unstructured<'_>) -> Result<Record> {
 }
 
 /// What is found by name is what is found as the newest, and true.
-fn try_folder(record: &[u8], file: &[u8]) -> Option<Found> {
+fn try_folder(record: &[u8], file: &[u8]) -> Option<FoundCheckpoint> {
     FOLDER.with(|folder| {
         let path = folder.path().join("step_000000007.json");
         fs::write(&path, record).and_then(|()| fs::write(path.with_extension("h5"), file)).expect("room for files");
@@ -78,7 +78,7 @@ fn try_folder(record: &[u8], file: &[u8]) -> Option<Found> {
     })
 }
 
-fn check(found: &Found, file: &[u8], path: &Path) {
+fn check(found: &FoundCheckpoint, file: &[u8], path: &Path) {
     let record = &found.record;
     assert_eq!(found.path, path.with_extension("h5"));
     assert_eq!((record.bytes, &*record.blake3), (file.len() as u64, blake3::hash(file).to_hex().as_str()));

@@ -1,6 +1,6 @@
 //! Checkpoints: one HDF5 file each, and beside it a record that makes it count.
 //!
-//! `checkpoint/step_000001234.h5` holds the arrays, `step_000001234.json` the [`Record`]: size and BLAKE3 of the file, its
+//! `checkpoint/step_000001234.h5` holds the arrays, `step_000001234.json` the [`CheckpointRecord`]: size and BLAKE3 of the file, its
 //! arrays, what it belongs to. Without a valid record there is no checkpoint. A checkpoint is written under temporary
 //! names and comes into being with the last rename ([`Store::commit`]); what is good is never renamed or written to again.
 //! The hash finds every accident; it does not protect from someone who rewrites the record as well.
@@ -9,8 +9,8 @@ mod find;
 mod record;
 mod store;
 
-pub use find::{Found, named, newest};
-pub use record::{Array, Number, Record, SCHEMA};
+pub use find::{FoundCheckpoint, named, newest};
+pub use record::{ArrayNumber, CheckpointRecord, RecordedArray, SCHEMA};
 pub use store::{Facts, Pending, Phase, Store, forget_beyond};
 
 use std::path::{Path, PathBuf};

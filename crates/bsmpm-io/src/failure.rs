@@ -22,10 +22,10 @@ pub struct FailureReport {
     /// Why every attempt failed, first one first.
     pub attempts: Vec<String>,
     /// Both measures of every iteration of the last attempt.
-    pub history: Vec<Measures>,
+    pub history: Vec<FailureMeasures>,
     /// What both had to fall below; none where nothing was iterated.
     #[serde(default)]
-    pub tolerances: Option<Measures>,
+    pub tolerances: Option<FailureMeasures>,
     /// The worst nodes or points of all ranks, worst first.
     pub worst: Vec<Worst>,
     /// What may help.
@@ -34,14 +34,14 @@ pub struct FailureReport {
 
 /// How far an iteration was from equilibrium, or how far it may be.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Measures {
+pub struct FailureMeasures {
     /// The energy measure.
     pub energy: Option<f64>,
     /// The force measure.
     pub force: Option<f64>,
 }
 
-impl Measures {
+impl FailureMeasures {
     /// Of numbers that may not be finite.
     pub fn new(energy: f64, force: f64) -> Self {
         let finite = |number: f64| Some(number).filter(|number| number.is_finite());

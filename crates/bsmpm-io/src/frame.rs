@@ -35,12 +35,12 @@ pub struct Field {
     /// How many numbers a point has: 1, 3 (x, y, z) or 6 (XX YY ZZ XY YZ XZ).
     pub components: usize,
     /// The numbers, the components of a point together.
-    pub values: Values,
+    pub values: FieldValues,
 }
 
 /// The numbers of a field.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Values {
+pub enum FieldValues {
     /// Physical quantities in SI units.
     F64(Vec<f64>),
     /// Numbers of points.
@@ -49,7 +49,7 @@ pub enum Values {
     U16(Vec<u16>),
 }
 
-impl Values {
+impl FieldValues {
     /// How many numbers there are.
     pub fn len(&self) -> usize {
         match self {
@@ -68,7 +68,7 @@ impl Values {
 impl Field {
     /// A physical quantity with `components` numbers per point, in SI units.
     pub fn real(name: &str, components: usize, values: Vec<f64>) -> Self {
-        Self { name: name.to_owned(), components, values: Values::F64(values) }
+        Self { name: name.to_owned(), components, values: FieldValues::F64(values) }
     }
 }
 
@@ -77,17 +77,17 @@ impl Frame {
     pub fn real(&self, name: &str, components: usize) -> Option<&[f64]> {
         let field = self.fields.iter().find(|field| field.name == name && field.components == components)?;
         match &field.values {
-            Values::F64(values) => Some(values),
+            FieldValues::F64(values) => Some(values),
             _ => None,
         }
     }
 
     /// The same without its points.
     pub fn without_points(&self) -> Self {
-        let none = |values: &Values| match values {
-            Values::F64(_) => Values::F64(Vec::new()),
-            Values::U64(_) => Values::U64(Vec::new()),
-            Values::U16(_) => Values::U16(Vec::new()),
+        let none = |values: &FieldValues| match values {
+            FieldValues::F64(_) => FieldValues::F64(Vec::new()),
+            FieldValues::U64(_) => FieldValues::U64(Vec::new()),
+            FieldValues::U16(_) => FieldValues::U16(Vec::new()),
         };
         let fields = self.fields.iter();
         let fields = fields.map(|field| Field { values: none(&field.values), name: field.name.clone(), ..*field });
@@ -111,7 +111,7 @@ impl Frame {
                 let (item, found) = (field.name.clone(), field.values.len());
                 return Err(Error::Length { path: path.to_owned(), item, expected, found });
             }
-            if let Values::F64(values) = &field.values {
+            if let FieldValues::F64(values) = &field.values {
                 self.check_finite(path, &field.name, field.components, values)?;
             }
         }
@@ -145,7 +145,7 @@ impl Frame {
     fn id(&self, index: usize) -> u64 {
         let ids = self.fields.iter().find(|field| field.name == "id").map(|field| &field.values);
         match ids {
-            Some(Values::U64(ids)) => ids.get(index).copied().unwrap_or(index as u64),
+            Some(FieldValues::U64(ids)) => ids.get(index).copied().unwrap_or(index as u64),
             _ => index as u64,
         }
     }

@@ -46,7 +46,7 @@ static HELD: Mutex<Vec<(PathBuf, Holder)>> = Mutex::new(Vec::new());
 
 /// A lock file as it was found; without a holder where its text is none of ours.
 #[derive(PartialEq)]
-struct Found {
+struct FoundLock {
     holder: Option<Holder>,
     owner: u32,
 }
@@ -63,7 +63,7 @@ impl Lock {
             if create(&path, &own).map_err(refused)? {
                 return Ok(Self::held(path, own, None));
             }
-            let Some(found) = Found::whole(&path).map_err(refused)? else { continue };
+            let Some(found) = FoundLock::whole(&path).map_err(refused)? else { continue };
             let note = found.yields(directory, &own, unseen)?;
             if take_over(directory, (&own, &found), unseen)? {
                 return Ok(Self::held(path, own, Some(note)));
@@ -106,7 +106,7 @@ pub fn abandon() {
 
 /// Removes a lock unless another has taken it over. What cannot be removed is found stale by the next run.
 fn remove(path: &Path, own: &Holder) {
-    if Found::read(path).is_ok_and(|found| found.is_some_and(|found| found.holder.as_ref() == Some(own))) {
+    if FoundLock::read(path).is_ok_and(|found| found.is_some_and(|found| found.holder.as_ref() == Some(own))) {
         let _ = fs::remove_file(path);
     }
 }
@@ -124,7 +124,7 @@ fn create(path: &Path, own: &Holder) -> io::Result<bool> {
 }
 
 /// Puts `own` in the place of the dead holder that was found; false if the lock is no longer as it was.
-fn take_over(directory: &Path, (own, found): (&Holder, &Found), unseen: Unseen) -> Result<bool, Error> {
+fn take_over(directory: &Path, (own, found): (&Holder, &FoundLock), unseen: Unseen) -> Result<bool, Error> {
     let refused = |source| Error::Directory { action: "lock", path: directory.to_owned(), source };
     let (path, guard) = (directory.join(LOCK), directory.join(TAKEOVER));
     let mut looks = LOOKS.0;
@@ -143,7 +143,7 @@ fn take_over(directory: &Path, (own, found): (&Holder, &Found), unseen: Unseen) 
             _ => sleep(LOOKS.1),
         }
     }
-    let replaced = match Found::read(&path) {
+    let replaced = match FoundLock::read(&path) {
         Ok(now) if now.as_ref() == Some(found) => {
             atomic::replace(&path, |file| file.write_all(own.text().as_bytes())).map(|()| true)
         }
@@ -154,7 +154,7 @@ fn take_over(directory: &Path, (own, found): (&Holder, &Found), unseen: Unseen) 
     replaced
 }
 
-impl Found {
+impl FoundLock {
     /// The lock at `path`, if there is one.
     fn read(path: &Path) -> io::Result<Option<Self>> {
         let mut file = match File::open(path) {

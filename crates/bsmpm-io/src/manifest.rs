@@ -17,8 +17,8 @@ pub mod parts;
 
 pub use indicator::Indicator;
 pub use parts::{
-    Balance, Case, Check, Choice, Communication, Extent, Failure, Initial, LinearSolver, Output, Restart, Status,
-    Summary, Worst,
+    Communication, EnergyBalance, GridExtent, LinearSolver, ManifestCase, ManifestCheck, ManifestChoice,
+    ManifestFailure, ManifestInitial, ManifestOutput, ManifestRestart, Status, Summary, Worst,
 };
 
 /// The manifest's file.
@@ -40,7 +40,7 @@ pub struct Manifest {
     /// The command line, the program first.
     pub argv: Vec<String>,
     /// What was solved.
-    pub case: Case,
+    pub case: ManifestCase,
     /// Versions of libraries and compilers, by name.
     #[serde(default)]
     pub versions: BTreeMap<String, String>,
@@ -53,13 +53,13 @@ pub struct Manifest {
     pub sizes: BTreeMap<String, u64>,
     /// The region of the grid, for pictures.
     #[serde(default)]
-    pub grid: Option<Extent>,
+    pub grid: Option<GridExtent>,
     /// Times (s or pseudo-time) whose pictures the case asks for.
     #[serde(default)]
     pub picture_times: Vec<f64>,
     /// What the program chose by itself.
     #[serde(default)]
-    pub choices: Vec<Choice>,
+    pub choices: Vec<ManifestChoice>,
     /// Every warning that was given.
     #[serde(default)]
     pub warnings: Vec<String>,
@@ -78,7 +78,7 @@ pub struct Manifest {
     pub linear: BTreeMap<String, LinearSolver>,
     /// How evenly the work lay on them; none on one rank.
     #[serde(default)]
-    pub balance: Option<Balance>,
+    pub balance: Option<EnergyBalance>,
     /// Totals of the run so far.
     #[serde(default)]
     pub summary: Summary,
@@ -87,25 +87,25 @@ pub struct Manifest {
     pub indicators: BTreeMap<String, Indicator>,
     /// How the state at the start was balanced, if the case gives it a stress.
     #[serde(default)]
-    pub initial: Option<Initial>,
+    pub initial: Option<ManifestInitial>,
     /// The case's checks, once they were made.
     #[serde(default)]
-    pub checks: Vec<Check>,
+    pub checks: Vec<ManifestCheck>,
     /// Every file that the run wrote or is about to write, but for this one.
     #[serde(default)]
-    pub outputs: Vec<Output>,
+    pub outputs: Vec<ManifestOutput>,
     /// The newest good checkpoint, relative to the directory.
     pub checkpoint: Option<String>,
     /// Where the run went on after it had stopped, first one first.
     #[serde(default)]
-    pub restarts: Vec<Restart>,
+    pub restarts: Vec<ManifestRestart>,
     /// Why the run ended early.
-    pub failure: Option<Failure>,
+    pub failure: Option<ManifestFailure>,
 }
 
 impl Manifest {
     /// The manifest of a run that begins now, on one rank and thread until the caller says otherwise.
-    pub fn begin(version: &str, argv: Vec<String>, case: Case) -> Self {
+    pub fn begin(version: &str, argv: Vec<String>, case: ManifestCase) -> Self {
         Self {
             schema: SCHEMA,
             status: Status::Running,
@@ -148,7 +148,7 @@ impl Manifest {
     /// Names a file, relative to the directory, that is about to be written; a name that is there already stays once.
     pub fn name_output(&mut self, path: &str) {
         if !self.outputs.iter().any(|output| output.path == path) {
-            self.outputs.push(Output { path: path.to_owned(), bytes: None, blake3: None });
+            self.outputs.push(ManifestOutput { path: path.to_owned(), bytes: None, blake3: None });
         }
     }
 
@@ -197,12 +197,12 @@ impl Manifest {
     fn numbers(&self) -> impl Iterator<Item = (String, f64)> {
         let timers = self.timers.iter().map(|(name, &value)| (format!("timers.{name}"), value));
         let times = self.picture_times.iter().map(|&time| ("picture_times".to_owned(), time));
-        let grid = self.grid.iter().flat_map(Extent::numbers).map(|value| ("grid".to_owned(), value));
+        let grid = self.grid.iter().flat_map(GridExtent::numbers).map(|value| ("grid".to_owned(), value));
         let checks = self.checks.iter().flat_map(|check| {
             let numbers = [check.at, check.value, check.min, check.max].into_iter().flatten();
             numbers.map(|value| (format!("checks.{}", check.quantity), value))
         });
-        let failure = self.failure.iter().flat_map(Failure::numbers).map(|value| ("failure".to_owned(), value));
+        let failure = self.failure.iter().flat_map(ManifestFailure::numbers).map(|value| ("failure".to_owned(), value));
         let cpu = [("summary.cpu_seconds".to_owned(), self.summary.cpu_seconds)];
         let balance = self.balance.iter().flat_map(|balance| [balance.mean, balance.largest]);
         let balance = balance.map(|value| ("balance".to_owned(), value));
@@ -219,13 +219,13 @@ impl Manifest {
     /// [`Error::File`] when there is none or the system refuses, [`Error::Format`] when it is not ours, or of a newer form.
     pub fn read(directory: &Path) -> Result<Self, Error> {
         #[derive(Deserialize)]
-        struct Form {
+        struct ManifestForm {
             schema: u32,
         }
         let path = directory.join(MANIFEST);
         let text = fs::read_to_string(&path).map_err(Error::file("read", &path))?;
         let damaged = |error: serde_json::Error| Error::format(&path, error.to_string());
-        let Form { schema } = serde_json::from_str(&text).map_err(damaged)?;
+        let ManifestForm { schema } = serde_json::from_str(&text).map_err(damaged)?;
         if schema != SCHEMA {
             return Err(Error::format(&path, format!("it has form {schema}, this program knows form {SCHEMA}")));
         }

@@ -3,14 +3,14 @@
 use std::path::Path;
 
 use crate::Error;
-use crate::table::{self, Cell, Column};
+use crate::table::{self, Cell, TableColumn};
 
 /// The file's name.
 pub const RESIDUALS: &str = "residuals.csv";
 
 /// What gave the direction of an iteration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Method {
+pub enum ResidualMethod {
     /// All recent secants.
     Multisecant,
     /// Broyden's update.
@@ -19,7 +19,7 @@ pub enum Method {
     Newton,
 }
 
-impl Method {
+impl ResidualMethod {
     const ALL: [Self; 3] = [Self::Multisecant, Self::Broyden, Self::Newton];
 
     fn of(word: &str) -> Option<Self> {
@@ -47,7 +47,7 @@ pub struct Iterate {
     /// The number of the iteration within the step; the first one, 1, is at the guess.
     pub iteration: u64,
     /// What gave its direction; an empty cell without one.
-    pub method: Option<Method>,
+    pub method: Option<ResidualMethod>,
     /// The energy measure; an empty cell without a direction.
     pub energy: f64,
     /// The force measure.
@@ -56,9 +56,9 @@ pub struct Iterate {
 
 impl Iterate {
     /// The file's columns; `time_unit` is `s`, or `-` for pseudo-time.
-    pub fn columns(time_unit: &str) -> [Column; 6] {
+    pub fn columns(time_unit: &str) -> [TableColumn; 6] {
         [("step", "-"), ("time", time_unit), ("iteration", "-"), ("method", "-"), ("energy", "-"), ("force", "-")]
-            .map(|(name, unit)| Column::new(name, unit))
+            .map(|(name, unit)| TableColumn::new(name, unit))
     }
 
     /// The iteration as a row under [`Iterate::columns`].
@@ -82,7 +82,7 @@ impl Iterate {
             step: step.parse().ok()?,
             time: time.parse().ok()?,
             iteration: iteration.parse().ok()?,
-            method: if method.is_empty() { None } else { Some(Method::of(method)?) },
+            method: if method.is_empty() { None } else { Some(ResidualMethod::of(method)?) },
             energy: measure(energy)?,
             force: measure(force)?,
         })

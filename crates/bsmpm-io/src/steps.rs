@@ -1,13 +1,13 @@
 //! `steps.csv`: how hard each accepted step was.
 
-use crate::table::{Cell, Column};
+use crate::table::{Cell, TableColumn};
 
 /// The file's name.
 pub const STEPS: &str = "steps.csv";
 
 /// What `steps.csv` keeps of one accepted step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Step {
+pub struct StepRow {
     /// The step's number.
     pub step: u64,
     /// s (pseudo-time in a quasi-static analysis)  at its end.
@@ -44,9 +44,9 @@ pub struct Step {
     pub imbalance: f64,
 }
 
-impl Step {
+impl StepRow {
     /// The file's columns; `time_unit` is `s`, or `-` for pseudo-time.
-    pub fn columns(time_unit: &str) -> [Column; 17] {
+    pub fn columns(time_unit: &str) -> [TableColumn; 17] {
         [
             ("step", "-"),
             ("time", time_unit),
@@ -66,10 +66,10 @@ impl Step {
             ("bytes", "-"),
             ("imbalance", "-"),
         ]
-        .map(|(name, unit)| Column::new(name, unit))
+        .map(|(name, unit)| TableColumn::new(name, unit))
     }
 
-    /// The step as a row under [`Step::columns`].
+    /// The step as a row under [`StepRow::columns`].
     pub fn cells(&self) -> [Cell; 17] {
         [
             Cell::Int(self.step),

@@ -11,14 +11,14 @@ use crate::{Error, atomic};
 
 /// The heading of one column.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Column {
+pub struct TableColumn {
     /// The quantity's name.
     pub name: String,
     /// Its unit, `-` for a pure number.
     pub unit: String,
 }
 
-impl Column {
+impl TableColumn {
     /// A column `name` in `unit`; an empty unit is written as `-`.
     pub fn new(name: &str, unit: &str) -> Self {
         let unit = if unit.is_empty() { "-" } else { unit };
@@ -41,7 +41,7 @@ pub enum Cell {
 
 /// How far a table has come: what must stand in it for a run to go on from here.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Mark {
+pub struct TableMark {
     /// Bytes of its file.
     pub bytes: u64,
     /// Their BLAKE3, in hexadecimal.
@@ -50,20 +50,20 @@ pub struct Mark {
 
 /// A table that grows by a row at a time.
 #[derive(Debug)]
-pub struct Table {
+pub struct CsvTable {
     path: PathBuf,
     file: File,
-    columns: Vec<Column>,
+    columns: Vec<TableColumn>,
     hasher: Box<blake3::Hasher>, // of all that is in the file
 }
 
-impl Table {
+impl CsvTable {
     /// Begins a new file with its two heading lines.
     ///
     /// # Errors
     /// [`Error::Name`] for an empty or repeated name or one with a comma, quote, `#` or line break;
     /// [`Error::File`] when the file is there already or cannot be made.
-    pub fn create(path: &Path, columns: &[Column]) -> Result<Self, Error> {
+    pub fn create(path: &Path, columns: &[TableColumn]) -> Result<Self, Error> {
         check_headings(path, columns)?;
         let file = File::create_new(path).map_err(Error::file("create", path))?;
         atomic::sync_folder(path).map_err(Error::file("create", path))?;
@@ -79,22 +79,22 @@ impl Table {
     /// # Errors
     /// [`Error::Format`] if the file is shorter or its beginning another one, or if it has other columns; [`Error::File`] when
     /// the system refuses.
-    pub fn verify(path: &Path, columns: &[Column], mark: &Mark) -> Result<(), Error> {
+    pub fn verify(path: &Path, columns: &[TableColumn], mark: &TableMark) -> Result<(), Error> {
         Self::reach(path, columns, mark).map(|_| ())
     }
 
     /// Goes on with a file that had come to `mark`: what was written later is cut off.
     ///
     /// # Errors
-    /// Those of [`Table::verify`]; the file is as it was then.
-    pub fn resume(path: &Path, columns: &[Column], mark: &Mark) -> Result<Self, Error> {
+    /// Those of [`CsvTable::verify`]; the file is as it was then.
+    pub fn resume(path: &Path, columns: &[TableColumn], mark: &TableMark) -> Result<Self, Error> {
         let table = Self::reach(path, columns, mark)?;
         table.file.set_len(mark.bytes).map_err(Error::file("write", path))?;
         Ok(table)
     }
 
     /// The table at the mark, whatever comes after it.
-    fn reach(path: &Path, columns: &[Column], mark: &Mark) -> Result<Self, Error> {
+    fn reach(path: &Path, columns: &[TableColumn], mark: &TableMark) -> Result<Self, Error> {
         check_headings(path, columns)?;
         let mut file = File::options().read(true).write(true).open(path).map_err(Error::file("open", path))?;
         let mut hasher = Box::<blake3::Hasher>::default();
@@ -117,9 +117,9 @@ impl Table {
     ///
     /// # Errors
     /// [`Error::File`] when the system refuses.
-    pub fn mark(&self) -> Result<Mark, Error> {
+    pub fn mark(&self) -> Result<TableMark, Error> {
         self.file.sync_all().map_err(Error::file("write", &self.path))?;
-        Ok(Mark { bytes: self.hasher.count(), blake3: self.hasher.finalize().to_hex().to_string() })
+        Ok(TableMark { bytes: self.hasher.count(), blake3: self.hasher.finalize().to_hex().to_string() })
     }
 
     fn append(&mut self, text: &str) -> Result<(), Error> {
@@ -147,7 +147,7 @@ impl Table {
         self.append(&line)
     }
 
-    fn text(&self, column: &Column, cell: Cell, first: Cell) -> Result<String, Error> {
+    fn text(&self, column: &TableColumn, cell: Cell, first: Cell) -> Result<String, Error> {
         match cell {
             Cell::Int(value) => Ok(value.to_string()),
             Cell::Word(word) => Ok(word.to_owned()),
@@ -163,14 +163,14 @@ impl Table {
 }
 
 /// The two heading lines.
-fn heading(columns: &[Column]) -> String {
-    let join = |part: fn(&Column) -> &str| columns.iter().map(part).collect::<Vec<_>>().join(",");
+fn heading(columns: &[TableColumn]) -> String {
+    let join = |part: fn(&TableColumn) -> &str| columns.iter().map(part).collect::<Vec<_>>().join(",");
     format!("{}\n# {}\n", join(|column| &column.name), join(|column| &column.unit))
 }
 
-fn check_headings(path: &Path, columns: &[Column]) -> Result<(), Error> {
+fn check_headings(path: &Path, columns: &[TableColumn]) -> Result<(), Error> {
     let bad = |text: &str| text.trim() != text || text.is_empty() || text.contains([',', '"', '#', '\n', '\r']);
-    for (index, Column { name, unit }) in columns.iter().enumerate() {
+    for (index, TableColumn { name, unit }) in columns.iter().enumerate() {
         let reason = if bad(name) || bad(unit) {
             "or its unit is empty or holds a comma, quote, # or space at an end"
         } else if columns[..index].iter().any(|other| other.name == *name) {
@@ -187,7 +187,7 @@ fn check_headings(path: &Path, columns: &[Column]) -> Result<(), Error> {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Columns {
     /// The headings; the units are empty if the file has none.
-    pub headings: Vec<Column>,
+    pub headings: Vec<TableColumn>,
     /// One list of numbers per column, all of one length.
     pub values: Vec<Vec<f64>>,
 }
@@ -230,7 +230,7 @@ pub fn parse(text: &str) -> Result<Columns, String> {
     while lines.next_if(|(_, line)| line.starts_with('#')).is_some() {}
     let (_, names) = lines.next().ok_or("it has no line of names")?;
     let mut headings: Vec<_> =
-        names.split(',').map(|name| Column { name: name.trim().to_owned(), unit: String::new() }).collect();
+        names.split(',').map(|name| TableColumn { name: name.trim().to_owned(), unit: String::new() }).collect();
     if let Some(units) = lines.peek().and_then(|(_, line)| line.strip_prefix('#')) {
         let units: Vec<_> = units.split(',').collect();
         if units.len() == headings.len() {

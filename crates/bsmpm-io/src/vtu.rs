@@ -6,7 +6,7 @@ use std::path::Path;
 
 use crate::Error;
 use crate::atomic;
-use crate::frame::{Field, Frame, Parts, Values};
+use crate::frame::{Field, FieldValues, Frame, Parts};
 
 pub use crate::vtu_read::read;
 
@@ -167,12 +167,12 @@ enum Numbers<'a> {
     },
 }
 
-impl<'a> From<&'a Values> for Numbers<'a> {
-    fn from(values: &'a Values) -> Self {
+impl<'a> From<&'a FieldValues> for Numbers<'a> {
+    fn from(values: &'a FieldValues) -> Self {
         match values {
-            Values::F64(values) => Self::F64(values),
-            Values::U64(values) => Self::U64(values),
-            Values::U16(values) => Self::U16(values),
+            FieldValues::F64(values) => Self::F64(values),
+            FieldValues::U64(values) => Self::U64(values),
+            FieldValues::U16(values) => Self::U16(values),
         }
     }
 }

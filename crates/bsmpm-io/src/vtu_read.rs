@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use crate::Error;
-use crate::frame::{Field, Frame, Values};
+use crate::frame::{Field, FieldValues, Frame};
 use crate::xml::{Tag, tags};
 
 /// Reads a frame that this program wrote.
@@ -61,7 +61,7 @@ fn moment(tag: &Tag, frame: &mut Frame) -> Result<(), String> {
 
 fn places(tag: &Tag, data: &[u8], points: usize) -> Result<Vec<[f64; 3]>, String> {
     match field(tag, data, points)? {
-        Field { components: 3, values: Values::F64(values), .. } => Ok(values.as_chunks().0.to_vec()),
+        Field { components: 3, values: FieldValues::F64(values), .. } => Ok(values.as_chunks().0.to_vec()),
         _ => Err("its points are no triples of Float64".to_owned()),
     }
 }
@@ -72,9 +72,9 @@ fn field(tag: &Tag, data: &[u8], points: usize) -> Result<Field, String> {
     let raw =
         block(data, number(tag, "offset")?).ok_or_else(|| format!("{name} reaches beyond the end of the file"))?;
     let values = match tag.attribute("type") {
-        Some("Float64") => Values::F64(raw.as_chunks().0.iter().map(|&bytes| f64::from_le_bytes(bytes)).collect()),
-        Some("UInt64") => Values::U64(raw.as_chunks().0.iter().map(|&bytes| u64::from_le_bytes(bytes)).collect()),
-        Some("UInt16") => Values::U16(raw.as_chunks().0.iter().map(|&bytes| u16::from_le_bytes(bytes)).collect()),
+        Some("Float64") => FieldValues::F64(raw.as_chunks().0.iter().map(|&bytes| f64::from_le_bytes(bytes)).collect()),
+        Some("UInt64") => FieldValues::U64(raw.as_chunks().0.iter().map(|&bytes| u64::from_le_bytes(bytes)).collect()),
+        Some("UInt16") => FieldValues::U16(raw.as_chunks().0.iter().map(|&bytes| u16::from_le_bytes(bytes)).collect()),
         other => return Err(format!("{name} is of type {}", other.unwrap_or("unknown"))),
     };
     if components == 0 || points.checked_mul(components) != Some(values.len()) {

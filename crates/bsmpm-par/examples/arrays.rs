@@ -4,7 +4,7 @@
 //! files, whose manifest tells times. Checkpoints of one state print the same.
 
 use bsmpm::points::Points;
-use bsmpm_par::checkpoint::{Opened, Refusal, State, Wanted, find};
+use bsmpm_par::checkpoint::{CheckpointState, Opened, Refusal, Wanted, find};
 use bsmpm_par::launch;
 use hdf5_collective::Hdf5;
 use mpi::environment::Universe;
@@ -46,7 +46,7 @@ fn print(universe: &Universe, file: &Path) -> Result<(), Refusal> {
     let guess = opened.guess(&layers, &layers, guess.width as usize)?;
     let bytes: Vec<u8> = guess.iter().flat_map(|value| value.to_le_bytes()).collect();
     println!("guess {}", blake3::hash(&bytes));
-    let state = State::parse(&found.path, &opened.state()?)?;
+    let state = CheckpointState::parse(&found.path, &opened.state()?)?;
     let rest = format!(
         "{:?} {:?} {:?} {:?} {:?} {:?}",
         state.steps, state.slabs, state.progress, state.traction, state.position, state.record

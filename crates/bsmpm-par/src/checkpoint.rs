@@ -1,24 +1,24 @@
 //! Checkpoints on all ranks: the columns of the points and the nodal displacement of the last step, a slice of rows each,
-//! and a text of everything that is the same everywhere, the [`State`]. What makes a file a checkpoint is
+//! and a text of everything that is the same everywhere, the [`CheckpointState`]. What makes a file a checkpoint is
 //! `bsmpm_io::checkpoint`'s part.
 
 mod read;
 mod refusal;
-mod sense;
+mod sanity;
 mod state;
 mod write;
 
 pub use read::{Opened, Wanted, find};
 pub use refusal::Refusal;
 pub(crate) use refusal::{agree, broadcast};
-pub(crate) use sense::require;
+pub(crate) use sanity::require;
 pub(crate) use state::pairs;
-pub use state::{BooksForm, Files, RecordState, State};
+pub use state::{BooksForm, CheckpointState, Files, RecordState};
 pub(crate) use write::room;
 pub use write::{Contents, write};
 
 use bsmpm::points::Column;
-use bsmpm_io::checkpoint::{Array, Number};
+use bsmpm_io::checkpoint::{ArrayNumber, RecordedArray};
 use hdf5_collective::Shape;
 
 /// The array that holds the text.
@@ -37,12 +37,12 @@ fn form(column: &dyn Column) -> (hdf5_collective::Number, u64) {
 }
 
 /// An array of the file as the record names it.
-fn named(name: &str, shape: Shape) -> Array {
+fn named(name: &str, shape: Shape) -> RecordedArray {
     let number = match shape.number {
-        hdf5_collective::Number::U8 => Number::U8,
-        hdf5_collective::Number::U16 => Number::U16,
-        hdf5_collective::Number::U64 => Number::U64,
-        hdf5_collective::Number::F64 => Number::F64,
+        hdf5_collective::Number::U8 => ArrayNumber::U8,
+        hdf5_collective::Number::U16 => ArrayNumber::U16,
+        hdf5_collective::Number::U64 => ArrayNumber::U64,
+        hdf5_collective::Number::F64 => ArrayNumber::F64,
     };
-    Array { name: name.to_owned(), number, rows: shape.rows, width: shape.width }
+    RecordedArray { name: name.to_owned(), number, rows: shape.rows, width: shape.width }
 }

@@ -7,12 +7,12 @@ use bsmpm_io::checkpoint::Phase;
 /// The fault that the environment asks for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Fault {
-    place: Place,
+    place: FaultPlace,
     step: u64,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Place {
+enum FaultPlace {
     Rank(usize),
     Phase(Phase),
     Convergence,
@@ -23,7 +23,7 @@ impl Fault {
     pub fn from_environment(ranks: usize) -> Result<Option<Self>, String> {
         let Some(text) = std::env::var_os("BSMPM_FAULT") else { return Ok(None) };
         match Self::parse(&text.to_string_lossy())? {
-            Self { place: Place::Rank(rank), .. } if rank >= ranks => {
+            Self { place: FaultPlace::Rank(rank), .. } if rank >= ranks => {
                 Err(format!("BSMPM_FAULT: there are {ranks} ranks only"))
             }
             fault => Ok(Some(fault)),
@@ -35,9 +35,9 @@ impl Fault {
             let (kind, places) = text.split_once(':')?;
             let (place, step) = places.rsplit_once(',').unwrap_or(("", places));
             let place = match kind {
-                "panic" => Place::Rank(place.strip_prefix("rank=")?.parse().ok()?),
-                "kill" => Place::Phase(phase(place.strip_prefix("phase=")?)?),
-                "reject" if place.is_empty() => Place::Convergence,
+                "panic" => FaultPlace::Rank(place.strip_prefix("rank=")?.parse().ok()?),
+                "kill" => FaultPlace::Phase(phase(place.strip_prefix("phase=")?)?),
+                "reject" if place.is_empty() => FaultPlace::Convergence,
                 _ => return None,
             };
             Some(Self { place, step: step.strip_prefix("step=")?.parse().ok()? })
@@ -48,17 +48,17 @@ impl Fault {
 
     /// Whether this step is to be rejected when it has converged.
     pub fn rejects(self, step: u64) -> bool {
-        (Place::Convergence, step) == (self.place, self.step)
+        (FaultPlace::Convergence, step) == (self.place, self.step)
     }
 
     /// Panics if this is the rank and the step.
     pub fn strike(self, rank: usize, step: u64) {
-        assert!((Place::Rank(rank), step) != (self.place, self.step), "injected by BSMPM_FAULT at step {step}");
+        assert!((FaultPlace::Rank(rank), step) != (self.place, self.step), "injected by BSMPM_FAULT at step {step}");
     }
 
     /// Kills the process, with no chance to clean up, if it writes the checkpoint of this step and is in this phase.
     pub fn strike_in(self, writes: bool, step: u64, phase: Phase) {
-        if writes && (Place::Phase(phase), step) == (self.place, self.step) {
+        if writes && (FaultPlace::Phase(phase), step) == (self.place, self.step) {
             let _ = signal_hook::low_level::raise(signal_hook::consts::SIGKILL);
         }
     }
@@ -74,10 +74,10 @@ mod tests {
 
     #[test]
     fn a_fault_names_rank_or_phase_and_step() {
-        assert_eq!(Fault::parse("panic:rank=1,step=20"), Ok(Fault { place: Place::Rank(1), step: 20 }));
-        let fault = Fault { place: Place::Phase(Phase::Midway), step: 4 };
+        assert_eq!(Fault::parse("panic:rank=1,step=20"), Ok(Fault { place: FaultPlace::Rank(1), step: 20 }));
+        let fault = Fault { place: FaultPlace::Phase(Phase::Midway), step: 4 };
         assert_eq!(Fault::parse("kill:phase=midway,step=4"), Ok(fault));
-        assert_eq!(Fault::parse("reject:step=7"), Ok(Fault { place: Place::Convergence, step: 7 }));
+        assert_eq!(Fault::parse("reject:step=7"), Ok(Fault { place: FaultPlace::Convergence, step: 7 }));
         for wrong in [
             "reject:rank=1,step=2",
             "",

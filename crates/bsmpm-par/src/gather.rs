@@ -3,7 +3,7 @@
 
 use bsmpm::material::{Material, Variable};
 use bsmpm::points::Points;
-use bsmpm_io::frame::{Field, Frame, Values};
+use bsmpm_io::frame::{Field, FieldValues, Frame};
 use bsmpm_io::vtu;
 use mpi::collective::{CommunicatorCollectives, Root, SystemOperation};
 use mpi::datatype::PartitionMut;
@@ -14,7 +14,7 @@ const BLOCK: u64 = 1 << 14;
 
 /// When and where a frame is.
 #[derive(Clone, Copy, Debug)]
-pub struct Moment {
+pub struct FrameMoment {
     /// accepted steps
     pub step: u64,
     /// s, or pseudo-time
@@ -25,7 +25,7 @@ pub struct Moment {
 
 /// What a point is in a frame besides its place, field by field.
 #[derive(Clone, Copy, Debug)]
-enum Source<'a> {
+enum FieldSource<'a> {
     Displacement,
     Velocity,
     Stress,
@@ -40,7 +40,7 @@ enum Source<'a> {
     Id,
 }
 
-impl<'a> Source<'a> {
+impl<'a> FieldSource<'a> {
     /// All of a scene, in the order of the files; the same on all ranks.
     fn all(dynamic: bool, projected: Option<&'a [f64]>, materials: &'a [Material]) -> Vec<Self> {
         let mut variables: Vec<Variable> = Vec::new();
@@ -107,8 +107,8 @@ impl<'a> Source<'a> {
     fn field(&self, rows: &[&[f64]], at: usize) -> Field {
         let (name, components) = (self.name(), self.components());
         let values = match self {
-            Self::Material => Values::U16(rows.iter().map(|row| row[at] as u16).collect()),
-            Self::Id => Values::U64(rows.iter().map(|row| row[at] as u64).collect()),
+            Self::Material => FieldValues::U16(rows.iter().map(|row| row[at] as u16).collect()),
+            Self::Id => FieldValues::U64(rows.iter().map(|row| row[at] as u64).collect()),
             _ => {
                 return Field::real(
                     name,
@@ -125,8 +125,8 @@ impl<'a> Source<'a> {
 pub struct Gathering<'a> {
     world: &'a SimpleCommunicator,
     points: &'a Points<2>,
-    sources: Vec<Source<'a>>,
-    moment: Moment,
+    sources: Vec<FieldSource<'a>>,
+    moment: FrameMoment,
     by_id: Vec<u32>, // this rank's points, those that have gone first
     gone: usize,
     ids: std::ops::Range<u64>, // of the next block, and the end of them all
@@ -140,7 +140,7 @@ impl<'a> Gathering<'a> {
         world: &'a SimpleCommunicator,
         (points, materials): (&'a Points<2>, &'a [Material]),
         projected: Option<&'a [f64]>,
-        moment: Moment,
+        moment: FrameMoment,
     ) -> Self {
         let mut by_id: Vec<u32> = (0..points.len() as u32).collect();
         by_id.sort_unstable_by_key(|&p| points.id[p as usize]);
@@ -148,7 +148,7 @@ impl<'a> Gathering<'a> {
         let (mut end, mut total) = (0_u64, 0_u64);
         world.all_reduce_into(&own, &mut end, SystemOperation::max());
         world.all_reduce_into(&(points.len() as u64), &mut total, SystemOperation::sum());
-        let sources = Source::all(points.motion.is_some(), projected, materials);
+        let sources = FieldSource::all(points.motion.is_some(), projected, materials);
         Self { world, points, sources, moment, by_id, gone: 0, ids: 0..end, total: total as usize }
     }
 
@@ -209,19 +209,19 @@ impl<'a> Gathering<'a> {
 const HEAD: usize = 3;
 
 /// Numbers of a point on its way to rank 0.
-fn width(sources: &[Source<'_>]) -> usize {
-    HEAD + sources.iter().map(Source::components).sum::<usize>()
+fn width(sources: &[FieldSource<'_>]) -> usize {
+    HEAD + sources.iter().map(FieldSource::components).sum::<usize>()
 }
 
 /// Bytes that a point takes in a frame's file.
 pub fn point_bytes(dynamic: bool, projected: bool, materials: &[Material]) -> u64 {
-    let sources = Source::all(dynamic, projected.then_some(&[]), materials);
-    vtu::point_bytes(&unpack(&[], Moment { step: 0, time: 0.0, lower: [0.0; 2] }, &sources))
+    let sources = FieldSource::all(dynamic, projected.then_some(&[]), materials);
+    vtu::point_bytes(&unpack(&[], FrameMoment { step: 0, time: 0.0, lower: [0.0; 2] }, &sources))
 }
 
-fn unpack(rows: &[&[f64]], Moment { step, time, lower }: Moment, sources: &[Source<'_>]) -> Frame {
+fn unpack(rows: &[&[f64]], FrameMoment { step, time, lower }: FrameMoment, sources: &[FieldSource<'_>]) -> Frame {
     let mut at = HEAD;
-    let field = |source: &Source<'_>| {
+    let field = |source: &FieldSource<'_>| {
         at += source.components();
         source.field(rows, at - source.components())
     };

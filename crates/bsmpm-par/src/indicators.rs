@@ -13,12 +13,12 @@ use bsmpm::kinematics::Kinematics;
 use bsmpm::model::{Model, Regime};
 use bsmpm::observe::noise::{Noise, relative_pressure_noise};
 use bsmpm::observe::quadrature::{self, Defect};
+use bsmpm::parallel::Halo;
 use bsmpm::points::Points;
 use bsmpm::quadrature::Quadrature;
-use bsmpm::seam::Halo;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm_io::manifest::{Indicator, Summary};
-use bsmpm_scene::{Axis, Body, Case};
+use bsmpm_scene::{Body, Case, GridAxis};
 use std::collections::BTreeMap;
 
 /// Usual root mean square, and usual largest one, of the quadrature defect.
@@ -54,7 +54,7 @@ const BACKGROUND: f64 = 0.02;
 
 /// What the state at the end tells.
 #[derive(Clone, Debug, PartialEq)]
-pub struct State {
+pub struct IndicatorState {
     defect: Option<Defect>,
     compression: Vec<f64>, // of each material
     noise: Noise,
@@ -69,7 +69,7 @@ struct Energy {
     loss: f64,
 }
 
-impl State {
+impl IndicatorState {
     /// Of the points of all ranks. Collective; the same on all.
     pub fn of<K: Kinematics<2>>(
         (model, points): (&Model<K, 2>, &Points<2>),
@@ -163,7 +163,7 @@ impl State {
 
 /// Those of all steps together that need no more than their totals.
 fn course(case: &Case, summary: &Summary) -> impl Iterator<Item = (&'static str, Indicator)> {
-    let longest = |axis: &Axis| (0..axis.cells()).map(|i| axis.cell(i)).fold(0.0, f64::max);
+    let longest = |axis: &GridAxis| (0..axis.cells()).map(|i| axis.cell(i)).fold(0.0, f64::max);
     let share = |part: f64, whole: f64| if part == 0.0 { 0.0 } else { part / whole };
     let pull = summary.largest_pull.zip(summary.largest_reaction).map(|(pull, largest)| {
         let meaning =
@@ -178,7 +178,7 @@ fn course(case: &Case, summary: &Summary) -> impl Iterator<Item = (&'static str,
         let meaning = "work done on the soft background, over that of all internal forces, of all steps";
         ("background-work", Indicator::new(share(soft, all), "-", meaning, [0.0, BACKGROUND]))
     });
-    let cell = case.grid.axes.iter().map(Axis::shortest).fold(f64::INFINITY, f64::min);
+    let cell = case.grid.axes.iter().map(GridAxis::shortest).fold(f64::INFINITY, f64::min);
     let advance = summary.largest_advance.filter(|_| case.analysis.regime == Regime::Dynamic).map(|advance| {
         let meaning = "the farthest that a point moved in a step, in cells";
         ("step-advance", Indicator::new(advance / cell, "-", meaning, [0.0, ADVANCE]))

@@ -2,7 +2,7 @@
 
 use bsmpm_io::exit::{BUG, WRONG_LAUNCH};
 use bsmpm_io::lock;
-use bsmpm_ranks::launch::{self, Failure};
+use bsmpm_ranks::launch::{self, LaunchFailure};
 use mpi::environment::Universe;
 use mpi::topology::SimpleCommunicator;
 use std::fmt::Display;
@@ -16,8 +16,8 @@ pub fn start() -> Result<Universe, u8> {
     launch::start(|world, reason| end(world, BUG, &reason)).map_err(|failure| {
         say(&format!("bsmpm-par: {failure}"));
         match failure {
-            Failure::NoMpi => BUG,
-            Failure::Apart(_) => WRONG_LAUNCH,
+            LaunchFailure::NoMpi => BUG,
+            LaunchFailure::Apart(_) => WRONG_LAUNCH,
         }
     })
 }

@@ -11,7 +11,7 @@ use bsmpm::control::Accepted;
 use bsmpm::error::Measures;
 use bsmpm::method::Method;
 use bsmpm::method::QuasiNewton;
-use bsmpm::step::{Counts, Report};
+use bsmpm::step::{Counts, StepReport};
 use bsmpm_io::Error;
 use bsmpm_io::checkpoint::Store;
 use bsmpm_io::directory::{HISTORY, OutputDirectory};
@@ -20,8 +20,8 @@ use bsmpm_io::frame::Parts;
 use bsmpm_io::frames::{COLLECTION, Frames};
 use bsmpm_io::manifest::{self, Manifest, Status};
 use bsmpm_io::residuals::{self, Iterate, RESIDUALS};
-use bsmpm_io::steps::{STEPS, Step};
-use bsmpm_io::table::{Cell, Column, Table};
+use bsmpm_io::steps::{STEPS, StepRow};
+use bsmpm_io::table::{Cell, CsvTable, TableColumn};
 use bsmpm_ranks::simulation::Cost;
 use bsmpm_scene::Case;
 use bsmpm_scene::Regime;
@@ -31,10 +31,10 @@ use bsmpm_scene::surfaces;
 pub struct Ledger {
     directory: OutputDirectory,
     manifest: Manifest,
-    columns: Vec<Column>,
-    history: Table,
-    steps: Table,
-    residuals: Option<Table>, // if the case asks for it
+    columns: Vec<TableColumn>,
+    history: CsvTable,
+    steps: CsvTable,
+    residuals: Option<CsvTable>, // if the case asks for it
     frames: Frames,
     store: Option<Store>, // once there is a checkpoint
     news: Vec<String>,    // warnings of this start
@@ -49,21 +49,21 @@ pub struct Ledger {
 
 /// Headings of the tables.
 struct Headings {
-    history: Vec<Column>,
-    steps: Vec<Column>,
-    residuals: Option<Vec<Column>>, // if the case asks for them
+    history: Vec<TableColumn>,
+    steps: Vec<TableColumn>,
+    residuals: Option<Vec<TableColumn>>, // if the case asks for them
 }
 
 impl Headings {
-    fn of(case: &Case, columns: &[Column]) -> Self {
+    fn of(case: &Case, columns: &[TableColumn]) -> Self {
         let time = match case.analysis.regime {
             Regime::Dynamic => "s",
             Regime::QuasiStatic => "-",
         };
-        let mut history = vec![Column::new("step", "-"), Column::new("time", time)];
+        let mut history = vec![TableColumn::new("step", "-"), TableColumn::new("time", time)];
         history.extend(columns.iter().cloned());
         let residuals = case.output.residuals.then(|| Iterate::columns(time).into());
-        Self { history, steps: Step::columns(time).into(), residuals }
+        Self { history, steps: StepRow::columns(time).into(), residuals }
     }
 }
 
@@ -74,7 +74,7 @@ impl Ledger {
         beginning: &Beginning,
         (arguments, case): (&Arguments, &Case),
         ranks: usize,
-        columns: Vec<Column>,
+        columns: Vec<TableColumn>,
     ) -> Result<Self, Error> {
         let mut manifest = first::manifest(arguments, case, ranks);
         [HISTORY, STEPS, COLLECTION].iter().for_each(|file| manifest.name_output(file));
@@ -86,11 +86,11 @@ impl Ledger {
         let directory = held.claim(beginning.existing, &manifest)?;
         let headings = Headings::of(case, &columns);
         let path = directory.path();
-        let residuals = headings.residuals.map(|headings| Table::create(&path.join(RESIDUALS), &headings));
+        let residuals = headings.residuals.map(|headings| CsvTable::create(&path.join(RESIDUALS), &headings));
         Ok(Self {
             residuals: residuals.transpose()?,
-            history: Table::create(&path.join(HISTORY), &headings.history)?,
-            steps: Table::create(&path.join(STEPS), &headings.steps)?,
+            history: CsvTable::create(&path.join(HISTORY), &headings.history)?,
+            steps: CsvTable::create(&path.join(STEPS), &headings.steps)?,
             frames: Frames::create(path)?,
             store: None,
             news: manifest.warnings.clone(),
@@ -173,7 +173,7 @@ impl Ledger {
             let most = sizes.entry(name.into()).or_default();
             *most = (*most).max(count as u64);
         }
-        let row = Step {
+        let row = StepRow {
             step: number,
             time: accepted.t,
             dt: accepted.dt,
@@ -198,7 +198,7 @@ impl Ledger {
 
     /// What a step tells of how far its state can be trusted. A state without a direction from it was accepted as balanced to
     /// round-off, or far below the tolerance; one that settled, by its forces alone.
-    fn measures(&mut self, report: &Report) {
+    fn measures(&mut self, report: &StepReport) {
         let [force, energy] = self.criteria;
         let summary = &mut self.manifest.summary;
         if let Some(passes) = &mut summary.smoothing_passes {
@@ -220,7 +220,7 @@ impl Ledger {
     }
 
     /// The largest forces of the supports: supports hold both ways, which soil at a wall does not.
-    fn reactions(&mut self, report: &Report) {
+    fn reactions(&mut self, report: &StepReport) {
         let summary = &mut self.manifest.summary;
         for (&(axis, push), force) in self.faces.iter().zip(&report.reactions) {
             let size = force.iter().map(|f| f * f).sum::<f64>().sqrt();
@@ -246,9 +246,9 @@ impl Ledger {
         let report = &accepted.report;
         let row = |iteration, method: Option<Method>, energy, force| {
             let method = method.map(|method| match method {
-                Method::QuasiNewton(QuasiNewton::Multisecant) => residuals::Method::Multisecant,
-                Method::QuasiNewton(QuasiNewton::Broyden) => residuals::Method::Broyden,
-                Method::Newton => residuals::Method::Newton,
+                Method::QuasiNewton(QuasiNewton::Multisecant) => residuals::ResidualMethod::Multisecant,
+                Method::QuasiNewton(QuasiNewton::Broyden) => residuals::ResidualMethod::Broyden,
+                Method::Newton => residuals::ResidualMethod::Newton,
             });
             Iterate { step, time: accepted.t, iteration, method, energy, force }
         };
@@ -286,7 +286,7 @@ impl Ledger {
     /// `failure.json`, and what the manifest says of it.
     pub fn failure(&mut self, report: &FailureReport) -> Result<(), Error> {
         self.manifest.name_output(FAILURE);
-        self.manifest.failure = Some(manifest::Failure {
+        self.manifest.failure = Some(manifest::ManifestFailure {
             step: report.step,
             time: report.time,
             reason: report.attempts.last().cloned().unwrap_or_default(),

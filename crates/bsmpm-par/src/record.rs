@@ -6,9 +6,9 @@ use bsmpm::error::StepError;
 use bsmpm::kinematics::Kinematics;
 use bsmpm::model::Model;
 use bsmpm::observe::{self, noise};
+use bsmpm::parallel::Halo;
 use bsmpm::points::Points;
-use bsmpm::seam::Halo;
-use bsmpm::step::Report;
+use bsmpm::step::StepReport;
 use bsmpm::tensor::Vector;
 use bsmpm_scene::surfaces::{self, Gauge};
 use bsmpm_scene::{Case, Face, GridSpec, History, Quantity};
@@ -74,9 +74,9 @@ impl Recorder {
     }
 
     /// Heading and unit of every column.
-    pub fn columns(&self) -> Vec<bsmpm_io::table::Column> {
+    pub fn columns(&self) -> Vec<bsmpm_io::table::TableColumn> {
         let columns = self.histories.iter().flat_map(History::columns);
-        columns.map(|column| bsmpm_io::table::Column::new(&column.name, &column.unit)).collect()
+        columns.map(|column| bsmpm_io::table::TableColumn::new(&column.name, &column.unit)).collect()
     }
 
     /// The body's front (m) in a row, if it is recorded.
@@ -91,7 +91,7 @@ impl Recorder {
         &mut self,
         model: &Model<K, 2>,
         points: &Points<2>,
-        (t, report): (f64, &Report),
+        (t, report): (f64, &StepReport),
         halo: &dyn Halo,
     ) -> Result<Vec<f64>, StepError> {
         let energy = if model.balances_energy { self.energy(model, points, report, halo) } else { Vec::new() };
@@ -149,7 +149,7 @@ impl Recorder {
         &mut self,
         model: &Model<K, 2>,
         points: &Points<2>,
-        report: &Report,
+        report: &StepReport,
         halo: &dyn Halo,
     ) -> Vec<f64> {
         let now = Stored::of(model, points, halo);
@@ -164,7 +164,7 @@ impl Recorder {
     }
 
     /// A quantity of the footing; 0 without one, and before the first step.
-    fn footing(&self, quantity: &Quantity, t: f64, report: &Report) -> f64 {
+    fn footing(&self, quantity: &Quantity, t: f64, report: &StepReport) -> f64 {
         let strip = report.strips.first();
         let Some(gauge) = &self.gauge else { return 0.0 };
         match quantity {
@@ -176,7 +176,13 @@ impl Recorder {
     }
 
     /// Force of what holds a face on the body; zero where there is nothing, and before the first step.
-    fn reaction<K: Kinematics<2>>(&self, number: usize, model: &Model<K, 2>, face: Face, report: &Report) -> Vec<f64> {
+    fn reaction<K: Kinematics<2>>(
+        &self,
+        number: usize,
+        model: &Model<K, 2>,
+        face: Face,
+        report: &StepReport,
+    ) -> Vec<f64> {
         if let Some(strip) = self.reacting[number].and_then(|strip| report.strips.get(strip)) {
             return strip.force.clone();
         }

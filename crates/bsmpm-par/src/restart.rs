@@ -2,7 +2,7 @@
 
 mod there;
 
-use crate::checkpoint::{self, Opened, Refusal, State, Wanted, agree, broadcast, find};
+use crate::checkpoint::{self, CheckpointState, Opened, Refusal, Wanted, agree, broadcast, find};
 use crate::cli::{Arguments, Restart};
 use bsmpm::control::Stepper;
 use bsmpm::grid::Grid;
@@ -10,7 +10,7 @@ use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::Model;
 use bsmpm::points::Points;
 use bsmpm::schedule::Schedule;
-use bsmpm_io::checkpoint::{FOLDER, Found};
+use bsmpm_io::checkpoint::{FOLDER, FoundCheckpoint};
 use bsmpm_io::directory::{Existing, OutputDirectory};
 use bsmpm_io::exit;
 use bsmpm_io::manifest;
@@ -27,7 +27,7 @@ use std::path::{Path, PathBuf};
 use there::There;
 
 /// How a run starts.
-pub enum Start<'h> {
+pub enum RunStart<'h> {
     /// From the case.
     New(Beginning),
     /// From a checkpoint.
@@ -36,7 +36,7 @@ pub enum Start<'h> {
     Complete(u8),
 }
 
-impl Start<'_> {
+impl RunStart<'_> {
     /// Adds a warning of this start, on the first rank.
     pub fn warn(&mut self, warning: Option<String>) {
         match self {
@@ -53,7 +53,7 @@ pub struct Beginning {
     /// What becomes of a run that is there.
     pub existing: Existing,
     /// How often it has been started before, on the first rank.
-    pub restarts: Vec<manifest::Restart>,
+    pub restarts: Vec<manifest::ManifestRestart>,
     /// What is to be told, on the first rank.
     pub warnings: Vec<String>,
 }
@@ -67,15 +67,15 @@ impl Default for Beginning {
 /// A checkpoint from which a run goes on.
 pub struct Resumed<'h> {
     /// It and its record.
-    pub found: Found,
+    pub found: FoundCheckpoint,
     /// Everything that is no array.
-    pub state: State,
+    pub state: CheckpointState,
     /// Keys of the case that have changed since, with both values.
     pub changed: Vec<String>,
     /// What is to be told, on the first rank.
     pub warnings: Vec<String>,
     /// Where the run went on before, on the first rank.
-    pub restarts: Vec<manifest::Restart>,
+    pub restarts: Vec<manifest::ManifestRestart>,
     opened: Opened<'h>,
 }
 
@@ -89,19 +89,19 @@ pub fn plan<'h>(
     held: Option<&OutputDirectory>,
     arguments: &Arguments,
     case: &Case,
-) -> Result<Start<'h>, Refusal> {
+) -> Result<RunStart<'h>, Refusal> {
     let world = universe.world();
     let Some(restart) = &arguments.restart else {
         let existing = if arguments.force { Existing::Delete } else { Existing::Refuse };
-        return Ok(Start::New(Beginning { existing, ..Beginning::default() }));
+        return Ok(RunStart::New(Beginning { existing, ..Beginning::default() }));
     };
     let run = agree(&world, held.map_or(Ok(None), OutputDirectory::run).map_err(Refusal::from))?;
     let auto = *restart == Restart::Auto;
     if auto {
         let there = agree(&world, held.map_or(Ok(There::Unfinished), |_| there::look(run.as_ref(), case)))?;
         match There::of(broadcast(&world, 0, there.bytes())) {
-            There::Nothing => return Ok(Start::New(Beginning::default())),
-            There::Complete(code) => return Ok(Start::Complete(code)),
+            There::Nothing => return Ok(RunStart::New(Beginning::default())),
+            There::Complete(code) => return Ok(RunStart::Complete(code)),
             There::Unfinished => {}
         }
     }
@@ -113,7 +113,7 @@ pub fn plan<'h>(
     let Some(found) = found else {
         let anew =
             held.map_or_else(|| Ok(Beginning::default()), |_| there::anew(run.as_ref(), &passed_over, world.size()));
-        return agree(&world, anew).map(Start::New);
+        return agree(&world, anew).map(RunStart::New);
     };
     let restarts = run.map_or_else(Vec::new, |run| run.restarts);
     agree(&world, if auto { there::futile(&restarts, found.record.step) } else { Ok(()) })?;
@@ -123,12 +123,12 @@ pub fn plan<'h>(
 /// Opens a checkpoint that was found, `passed_over` what is wrong with newer ones, if it is of that case. Collective.
 fn resume<'h>(
     (hdf5, universe): (&'h Hdf5<'h>, &Universe),
-    found: Found,
-    (passed_over, restarts): (Vec<String>, Vec<manifest::Restart>),
+    found: FoundCheckpoint,
+    (passed_over, restarts): (Vec<String>, Vec<manifest::ManifestRestart>),
     case: &Case,
-) -> Result<Start<'h>, Refusal> {
+) -> Result<RunStart<'h>, Refusal> {
     let opened = Opened::new((hdf5, universe.world()), &found)?;
-    let state = State::parse(&found.path, &opened.state()?)?;
+    let state = CheckpointState::parse(&found.path, &opened.state()?)?;
     let past = &state.files.manifest;
     let changed = there::admissible(&format!("the checkpoint {}", found.path.display()), past, case)?;
     let changed: Vec<String> = changed.iter().map(ToString::to_string).collect();
@@ -142,7 +142,7 @@ fn resume<'h>(
         passed_over.into_iter().map(|bad| format!("{bad}; an older checkpoint is used")).collect();
     warnings.extend(there::other_machine(past, universe.world().size().unsigned_abs(), &found));
     warnings.extend(changed.iter().map(|change| format!("since the checkpoint, {change}")));
-    Ok(Start::Resumed(Box::new(Resumed { found, state, changed, warnings, restarts, opened })))
+    Ok(RunStart::Resumed(Box::new(Resumed { found, state, changed, warnings, restarts, opened })))
 }
 
 impl Resumed<'_> {

@@ -8,7 +8,7 @@ mod start;
 
 use crate::cli::Arguments;
 use crate::fault::Fault;
-use crate::gather::{Gathering, Moment};
+use crate::gather::{FrameMoment, Gathering};
 use crate::launch;
 use crate::ledger::Ledger;
 use crate::log::Log;
@@ -17,8 +17,8 @@ use bsmpm::control::Accepted;
 use bsmpm::error::StepError;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::observe::projection::projected_pressure;
-use bsmpm::seam::Halo;
-use bsmpm::step::Report;
+use bsmpm::parallel::Halo;
+use bsmpm::step::StepReport;
 use bsmpm_io::exit;
 use bsmpm_io::frame::Parts;
 use bsmpm_io::manifest::{Communication, LinearSolver, Status};
@@ -231,7 +231,7 @@ impl<'p> Run<'p> {
     }
 
     /// A row of histories.
-    fn record(&mut self, report: &Report) {
+    fn record(&mut self, report: &StepReport) {
         let timers = Rc::clone(&self.timers);
         let _timed = timers.time("histories");
         let Simulation { model, points, halo, .. } = &self.simulation;
@@ -265,7 +265,7 @@ impl<'p> Run<'p> {
         let Simulation { model, points, halo, .. } = &self.simulation;
         let projected = self.case.output.projected_pressure.then(|| projected_pressure(model, points, &**halo));
         let projected = projected.transpose().unwrap_or_else(|error| launch::end(&world, exit::BUG, &error));
-        let moment = Moment { step, time, lower: self.case.grid.lower() };
+        let moment = FrameMoment { step, time, lower: self.case.grid.lower() };
         let mut frame = Gathering::new(&world, (points, &model.materials), projected.as_deref(), moment);
         let written = match &mut self.ledger {
             Some(ledger) => {

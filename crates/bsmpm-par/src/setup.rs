@@ -13,7 +13,7 @@ use bsmpm_ranks::simulation::{Simulation, StartStress};
 use bsmpm_ranks::slab::Slabs;
 use bsmpm_scene::model::{at_rest, penalty, weighting};
 use bsmpm_scene::words::{Factor, Word};
-use bsmpm_scene::{Axis, Case, Initial};
+use bsmpm_scene::{Case, GridAxis, Initial};
 use std::ops::Range;
 
 /// Cells along each axis that the ranks together see ([`bsmpm::grid::room`]), and how they share them.
@@ -69,8 +69,8 @@ pub fn nominal_steps(case: &Case) -> u64 {
 }
 
 /// What the program chooses by itself in a run on so many ranks with further `options` of PETSc.
-pub fn choices(case: &Case, ranks: usize, options: &[String]) -> Vec<manifest::Choice> {
-    let choice = |key: &str, value: &str, reason: &str| manifest::Choice {
+pub fn choices(case: &Case, ranks: usize, options: &[String]) -> Vec<manifest::ManifestChoice> {
+    let choice = |key: &str, value: &str, reason: &str| manifest::ManifestChoice {
         key: key.into(),
         value: value.into(),
         reason: reason.into(),
@@ -99,7 +99,7 @@ pub fn choices(case: &Case, ranks: usize, options: &[String]) -> Vec<manifest::C
 }
 
 /// What the linear solver is chosen for.
-fn linear_choices(case: &Case, linear: &Choice, ranks: usize) -> Vec<manifest::Choice> {
+fn linear_choices(case: &Case, linear: &Choice, ranks: usize) -> Vec<manifest::ManifestChoice> {
     let newton = case.solver.nonlinear != bsmpm_scene::Nonlinear::Broyden;
     let mut rows = Vec::new();
     if case.solver.linear.factor == Some(DISSECTION) && !linear.dissection {
@@ -117,7 +117,7 @@ fn linear_choices(case: &Case, linear: &Choice, ranks: usize) -> Vec<manifest::C
         rows.push(("mat_mumps_icntl_7", "2", "ordering by minimum fill, the cheapest for plane grids"));
         rows.push(("mat_mumps_icntl_14", "100", "the estimated workspace is at times too little"));
     }
-    let owned = |(key, value, reason): (&str, &str, &str)| manifest::Choice {
+    let owned = |(key, value, reason): (&str, &str, &str)| manifest::ManifestChoice {
         key: key.into(),
         value: value.into(),
         reason: reason.into(),
@@ -151,7 +151,7 @@ fn smoothing(case: &Case, steps: u64) -> Option<(f64, f64)> {
 
 /// Length (m) along which so many passes of smoothing reach in the largest cells.
 pub fn smoothing_length(case: &Case, passes: f64) -> f64 {
-    let longest = |axis: &Axis| (0..axis.cells()).map(|i| axis.cell(i)).fold(0.0, f64::max);
+    let longest = |axis: &GridAxis| (0..axis.cells()).map(|i| axis.cell(i)).fold(0.0, f64::max);
     smooth::length(case.grid.order, case.grid.axes.iter().map(longest).fold(0.0, f64::max), passes)
 }
 

@@ -4,7 +4,7 @@
 //! `mpirun -n 2 solvers direct|mumps|redundant|gamg NU CELLS [PETSc options]`
 
 use bsmpm::grid::{Grid, KnotVector};
-use bsmpm::seam::{Halo, LinearSolver, Symmetry};
+use bsmpm::parallel::{Halo, LinearSolver, Symmetry};
 use bsmpm_ranks::halo::MpiHalo;
 use bsmpm_ranks::launch;
 use bsmpm_ranks::linear::{Choice, KspSolver};

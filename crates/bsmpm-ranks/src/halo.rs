@@ -6,10 +6,10 @@
 use crate::signals::{Requests, WIDTH};
 use crate::slab::{SharedLayer, Slabs, intersection};
 use crate::timers::Timers;
-use crate::traffic::Kind;
+use crate::traffic::TrafficKind;
 use bsmpm::exact::{Exact, WORDS};
 use bsmpm::grid::{Contributions, Grid};
-use bsmpm::seam::Halo;
+use bsmpm::parallel::Halo;
 use mpi::collective::{CommunicatorCollectives, SystemOperation};
 use mpi::point_to_point::{Destination, Source};
 use mpi::topology::{Communicator, SimpleCommunicator};
@@ -50,7 +50,7 @@ pub struct Ranks<'a> {
 
 impl Link for Ranks<'_> {
     fn send(&self, to: usize, numbers: &[f64]) {
-        self.halo.timers.traffic().count(Kind::Factor, 1, size_of_val(numbers));
+        self.halo.timers.traffic().count(TrafficKind::Factor, 1, size_of_val(numbers));
         self.halo.world.process_at_rank(to as i32).send(numbers);
     }
 
@@ -98,11 +98,11 @@ impl MpiHalo {
 
     /// Adds what the other ranks have at the nodes that they share with this one.
     pub fn add_shared(&self, nodal: &mut [f64], width: usize) {
-        self.combine(Kind::HaloSum, nodal, width, |own, other| own + other);
+        self.combine(TrafficKind::HaloSum, nodal, width, |own, other| own + other);
     }
 
     /// Combines the numbers of every shared node with those of the ranks that share it.
-    fn combine(&self, kind: Kind, nodal: &mut [f64], width: usize, both: impl Fn(f64, f64) -> f64) {
+    fn combine(&self, kind: TrafficKind, nodal: &mut [f64], width: usize, both: impl Fn(f64, f64) -> f64) {
         if self.neighbours.is_empty() {
             return;
         }
@@ -116,7 +116,12 @@ impl MpiHalo {
     }
 
     /// Gives every neighbour its message and returns theirs, of the given lengths, in the order of the neighbours.
-    fn exchange(&self, kind: Kind, outgoing: &[Vec<f64>], lengths: impl Fn(&Neighbour) -> usize) -> Vec<Vec<f64>> {
+    fn exchange(
+        &self,
+        kind: TrafficKind,
+        outgoing: &[Vec<f64>],
+        lengths: impl Fn(&Neighbour) -> usize,
+    ) -> Vec<Vec<f64>> {
         let bytes = outgoing.iter().map(|part| size_of_val(&part[..])).sum();
         self.timers.traffic().count(kind, outgoing.len(), bytes);
         let mut incoming: Vec<Vec<f64>> = self.neighbours.iter().map(|other| vec![0.0; lengths(other)]).collect();
@@ -188,7 +193,7 @@ impl Halo for MpiHalo {
         let layer = self.layer_nodes * contributions.width();
         let outgoing: Vec<_> =
             self.neighbours.iter().map(|other| pieces(contributions, &other.layers, layer)).collect();
-        let incoming = self.exchange(Kind::HaloSum, &outgoing, |other| {
+        let incoming = self.exchange(TrafficKind::HaloSum, &outgoing, |other| {
             other.layers.iter().map(|shared| shared.theirs).sum::<usize>() * layer
         });
         // The columns of lower ranks lie before this rank's: every layer adds its columns in their order.
@@ -216,20 +221,20 @@ impl Halo for MpiHalo {
             .iter()
             .map(|other| nodal[mine(other).start * width..mine(other).end * width].to_vec())
             .collect();
-        let incoming = self.exchange(Kind::HaloShare, &outgoing, |other| other.owned.len() * width);
+        let incoming = self.exchange(TrafficKind::HaloShare, &outgoing, |other| other.owned.len() * width);
         for (part, other) in incoming.iter().zip(&self.neighbours) {
             nodal[other.owned.start * width..other.owned.end * width].copy_from_slice(part);
         }
     }
 
     fn max(&self, nodal: &mut [f64], width: usize) {
-        self.combine(Kind::HaloMax, nodal, width, f64::max);
+        self.combine(TrafficKind::HaloMax, nodal, width, f64::max);
     }
 
     fn reduce(&self, numbers: &mut [f64]) {
         let _timed = self.timers.time("reduction");
         let own = [&*numbers, &self.requests.share()].concat();
-        self.timers.traffic().count(Kind::Reduction, 0, size_of_val(&own[..]));
+        self.timers.traffic().count(TrafficKind::Reduction, 0, size_of_val(&own[..]));
         let mut sums = vec![0.0; own.len()];
         self.world.all_reduce_into(&own[..], &mut sums[..], SystemOperation::sum());
         numbers.copy_from_slice(&sums[..numbers.len()]);
@@ -242,7 +247,7 @@ impl Halo for MpiHalo {
         let _timed = self.timers.time("reduction");
         let mut own: Vec<i64> = sums.iter().flat_map(|sum| sum.words()).copied().collect();
         own.extend(self.requests.share().map(|count| count as i64));
-        self.timers.traffic().count(Kind::Reduction, 0, size_of_val(&own[..]));
+        self.timers.traffic().count(TrafficKind::Reduction, 0, size_of_val(&own[..]));
         let mut all = vec![0; own.len()];
         self.world.all_reduce_into(&own[..], &mut all[..], SystemOperation::sum());
         let (words, requested) = all.split_at(sums.len() * WORDS);
@@ -253,7 +258,7 @@ impl Halo for MpiHalo {
     fn maximum(&self, numbers: &mut [f64]) {
         let _timed = self.timers.time("reduction");
         let own = numbers.to_vec();
-        self.timers.traffic().count(Kind::Reduction, 0, size_of_val(&own[..]));
+        self.timers.traffic().count(TrafficKind::Reduction, 0, size_of_val(&own[..]));
         self.world.all_reduce_into(&own[..], numbers, SystemOperation::max());
     }
 

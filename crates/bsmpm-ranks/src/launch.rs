@@ -10,14 +10,14 @@ const LAUNCHED: [&str; 4] = ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_SIZE", "S
 
 /// Why there are no ranks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Failure {
+pub enum LaunchFailure {
     /// MPI could not be started.
     NoMpi,
     /// The launcher started so many processes, and each is a run of its own.
     Apart(usize),
 }
 
-impl fmt::Display for Failure {
+impl fmt::Display for LaunchFailure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NoMpi => write!(f, "MPI could not be started"),
@@ -32,16 +32,16 @@ impl fmt::Display for Failure {
 
 /// Starts MPI. From here on a panic on any rank goes to `end` with its reason, which is to end the job ([`abort`]) and to
 /// say why. First thing in `main`, before any other thread: it sets environment variables.
-pub fn start(end: fn(&SimpleCommunicator, &str) -> !) -> Result<Universe, Failure> {
+pub fn start(end: fn(&SimpleCommunicator, &str) -> !) -> Result<Universe, LaunchFailure> {
     prepare(!LAUNCHED.iter().any(|name| std::env::var_os(name).is_some()));
     let Some((universe, _)) = mpi::initialize_with_threading(mpi::Threading::Funneled) else {
-        return Err(Failure::NoMpi);
+        return Err(LaunchFailure::NoMpi);
     };
     abort_on_panic(end);
     let ranks = universe.world().size().unsigned_abs() as usize;
     let wanted = LAUNCHED.iter().find_map(|name| std::env::var(name).ok()?.parse::<usize>().ok());
     match wanted {
-        Some(wanted) if ranks == 1 && wanted > 1 => Err(Failure::Apart(wanted)),
+        Some(wanted) if ranks == 1 && wanted > 1 => Err(LaunchFailure::Apart(wanted)),
         _ => Ok(universe),
     }
 }

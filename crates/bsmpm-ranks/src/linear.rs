@@ -16,7 +16,7 @@ use crate::stencil::{Numbering, Stencil};
 use crate::timers::Timers;
 use bsmpm::error::SolveError;
 use bsmpm::grid::Grid;
-use bsmpm::seam::{Halo, Krylov, LinearSolver, Solved, Symmetry};
+use bsmpm::parallel::{Halo, Krylov, LinearSolver, Solved, Symmetry};
 use direct::Stiffness;
 use mpi::collective::{CommunicatorCollectives, SystemOperation};
 use petsc_rs::{Matrix, Petsc};

@@ -3,7 +3,7 @@
 
 use crate::plan::{LayerPlan, PointPlan};
 use crate::slab::Slabs;
-use crate::traffic::{Kind, Traffic};
+use crate::traffic::{Traffic, TrafficKind};
 use bsmpm::grid::Grid;
 use bsmpm::points::Points;
 use mpi::collective::CommunicatorCollectives;
@@ -104,7 +104,7 @@ pub fn exchange(
     let mut incoming: Vec<(usize, Vec<u8>)> =
         expected.map(|(other, size)| (other, vec![0; usize::try_from(size).unwrap_or(usize::MAX)])).collect();
     let messages = outgoing.iter().map(|(_, message)| message.len().div_ceil(block)).sum();
-    traffic.count(Kind::Migration, messages, outgoing.iter().map(|(_, message)| message.len()).sum());
+    traffic.count(TrafficKind::Migration, messages, outgoing.iter().map(|(_, message)| message.len()).sum());
     // Messages between two ranks do not overtake each other.
     mpi::request::scope(|scope| {
         let mut receives = Vec::new();

@@ -7,7 +7,7 @@ use crate::migrate;
 use crate::signals::Requests;
 use crate::slab::Slabs;
 use crate::timers::Timers;
-use crate::traffic::{Counts, Kind};
+use crate::traffic::{TrafficCounts, TrafficKind};
 use bsmpm::boundary::Surface;
 use bsmpm::control::{Accepted, Failure, Progress, Stepper};
 use bsmpm::error::StepError;
@@ -15,9 +15,9 @@ use bsmpm::grid::Grid;
 use bsmpm::initial::{self, Equilibrium};
 use bsmpm::kinematics::Kinematics;
 use bsmpm::model::Model;
+use bsmpm::parallel::Halo;
 use bsmpm::points::{Column, Points};
 use bsmpm::schedule::Schedule;
-use bsmpm::seam::Halo;
 use bsmpm::tensor::{Symmetric, Vector};
 use mpi::environment::Universe;
 use petsc_rs::Petsc;
@@ -178,7 +178,7 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
 
     /// What has been told since `before` by all ranks, and how even this one's `load` and the others' are; and whether
     /// the grid has room for the points of all. One reduction.
-    fn count(&self, before: Counts, load: f64) -> (Cost, bool) {
+    fn count(&self, before: TrafficCounts, load: f64) -> (Cost, bool) {
         let told = self.timers.traffic().counts().since(&before);
         let grid = &self.model.grid;
         let lacks_room = grid.occupied(&self.points.x).is_some_and(|occupied| !grid.has_room(&occupied));
@@ -188,7 +188,7 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         numbers[3 + self.petsc.rank()] = load;
         self.halo.reduce(&mut numbers);
         let cost = Cost {
-            reductions: told.of(Kind::Reduction).calls + 1,
+            reductions: told.of(TrafficKind::Reduction).calls + 1,
             messages: numbers[0] as u64,
             bytes: numbers[1] as u64,
             imbalance: load::imbalance(&numbers[3..]),

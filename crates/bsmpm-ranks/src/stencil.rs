@@ -22,12 +22,12 @@ pub struct Stencil<const D: usize, const C: usize> {
     offsets: Vec<usize>, // of a patch's nodes
     rows: Vec<usize>,    // of every node, or NONE
     values: Vec<f64>,    // row, place, row and column of the block
-    columns: Option<Columns>,
+    columns: Option<StencilColumns>,
 }
 
 /// Sums by columns of cells, whose rows one rank completes: see [`Stencil::by_columns`].
 #[derive(Clone, Debug)]
-struct Columns {
+struct StencilColumns {
     none: Contributions,
     sums: Contributions,
     diagonal: Vec<f64>,
@@ -80,7 +80,7 @@ impl<const D: usize, const C: usize> Stencil<D, C> {
         let stencil = Self::new(grid);
         let none = Contributions::none(grid, stencil.width(), Vec::new());
         let (sums, diagonal) = (none.clone(), vec![0.0; grid.nodes() * C]);
-        let columns = Columns { none, sums, diagonal, owned };
+        let columns = StencilColumns { none, sums, diagonal, owned };
         let mut stencil = Self { columns: Some(columns), ..stencil };
         stencil.keep(|_| true);
         stencil

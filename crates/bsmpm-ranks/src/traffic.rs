@@ -6,7 +6,7 @@ use std::cell::Cell;
 
 /// Kinds of communication.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum TrafficKind {
     /// contributions to shared nodes, summed
     HaloSum,
     /// numbers of shared nodes of which the largest counts
@@ -21,8 +21,8 @@ pub enum Kind {
     Migration,
 }
 
-impl Kind {
-    /// All of them, in the order of [`Counts`].
+impl TrafficKind {
+    /// All of them, in the order of [`TrafficCounts`].
     pub const ALL: [Self; 6] =
         [Self::HaloSum, Self::HaloMax, Self::HaloShare, Self::Factor, Self::Reduction, Self::Migration];
 
@@ -52,24 +52,30 @@ pub struct Count {
 
 /// What one rank did, by kind.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Counts([Count; 6]);
+pub struct TrafficCounts([Count; 6]);
 
-impl Counts {
+impl TrafficCounts {
     /// Those of one kind.
-    pub fn of(&self, kind: Kind) -> Count {
+    pub fn of(&self, kind: TrafficKind) -> Count {
         self.0[kind as usize]
     }
 
     /// Messages to other ranks and their bytes, of all kinds.
     pub fn sent(&self) -> [u64; 2] {
-        let exchanges =
-            [Kind::HaloSum, Kind::HaloMax, Kind::HaloShare, Kind::Factor, Kind::Migration].map(|kind| self.of(kind));
+        let exchanges = [
+            TrafficKind::HaloSum,
+            TrafficKind::HaloMax,
+            TrafficKind::HaloShare,
+            TrafficKind::Factor,
+            TrafficKind::Migration,
+        ]
+        .map(|kind| self.of(kind));
         [exchanges.iter().map(|count| count.messages).sum(), exchanges.iter().map(|count| count.bytes).sum()]
     }
 
     /// What has been added since `before`.
     pub fn since(&self, before: &Self) -> Self {
-        Self(Kind::ALL.map(|kind| {
+        Self(TrafficKind::ALL.map(|kind| {
             let (now, then) = (self.of(kind), before.of(kind));
             Count {
                 calls: now.calls - then.calls,
@@ -87,11 +93,11 @@ impl Counts {
 
 /// The counter of a rank.
 #[derive(Debug, Default)]
-pub struct Traffic(Cell<Counts>);
+pub struct Traffic(Cell<TrafficCounts>);
 
 impl Traffic {
     /// Counts one call with so many messages of so many bytes in all.
-    pub fn count(&self, kind: Kind, messages: usize, bytes: usize) {
+    pub fn count(&self, kind: TrafficKind, messages: usize, bytes: usize) {
         let mut counts = self.0.get();
         let count = &mut counts.0[kind as usize];
         count.calls += 1;
@@ -101,7 +107,7 @@ impl Traffic {
     }
 
     /// Everything so far.
-    pub fn counts(&self) -> Counts {
+    pub fn counts(&self) -> TrafficCounts {
         self.0.get()
     }
 }
@@ -113,15 +119,15 @@ mod tests {
     #[test]
     fn every_kind_is_counted_for_itself_and_reductions_send_no_messages() {
         let traffic = Traffic::default();
-        traffic.count(Kind::HaloSum, 2, 160);
+        traffic.count(TrafficKind::HaloSum, 2, 160);
         let before = traffic.counts();
-        traffic.count(Kind::HaloSum, 2, 80);
-        traffic.count(Kind::Reduction, 0, 24);
-        traffic.count(Kind::Migration, 1, 500);
+        traffic.count(TrafficKind::HaloSum, 2, 80);
+        traffic.count(TrafficKind::Reduction, 0, 24);
+        traffic.count(TrafficKind::Migration, 1, 500);
         let counts = traffic.counts();
-        assert_eq!(counts.of(Kind::HaloSum), Count { calls: 2, messages: 4, bytes: 240 });
+        assert_eq!(counts.of(TrafficKind::HaloSum), Count { calls: 2, messages: 4, bytes: 240 });
         assert_eq!((counts.sent(), counts.since(&before).sent()), ([5, 740], [3, 580]));
-        assert_eq!(counts.since(&before).of(Kind::Reduction).calls, 1);
+        assert_eq!(counts.since(&before).of(TrafficKind::Reduction).calls, 1);
         let numbers: Vec<f64> = counts.numbers().collect();
         let told = [[2.0, 4.0, 240.0], [0.0; 3], [0.0; 3], [0.0; 3], [1.0, 0.0, 24.0], [1.0, 1.0, 500.0]];
         assert_eq!(numbers, told.concat());

@@ -62,7 +62,7 @@ pub fn differences(was: &str, is: &str) -> Result<Vec<Difference>, Vec<Error>> {
         // The default of a table that only one of them has.
         (one, other) => one.or(other).is_some_and(|value| value.written),
     });
-    let shown = |value: Option<&Value>| value.map(|value| value.shown.clone());
+    let shown = |value: Option<&DifferenceValue>| value.map(|value| value.shown.clone());
     Ok(differing
         .map(|key| Difference {
             key: key.clone(),
@@ -81,13 +81,13 @@ fn below(key: &str, table: &str) -> bool {
 }
 
 /// A value in SI, and whether it is written or a default.
-struct Value {
+struct DifferenceValue {
     shown: String,
     written: bool,
 }
 
 /// All values of a case by key.
-fn values(text: &str) -> Result<BTreeMap<String, Value>, Vec<Error>> {
+fn values(text: &str) -> Result<BTreeMap<String, DifferenceValue>, Vec<Error>> {
     let source = Source::new("case", text);
     let mut report = Report::new(&source, &[]);
     let mut document = document::parse(&source, &mut report);
@@ -101,7 +101,7 @@ fn values(text: &str) -> Result<BTreeMap<String, Value>, Vec<Error>> {
     Ok(values)
 }
 
-fn collect(record: &Record, values: &mut BTreeMap<String, Value>) {
+fn collect(record: &Record, values: &mut BTreeMap<String, DifferenceValue>) {
     for (key, datum) in record.all() {
         let shown = match datum {
             Datum::Record(inner) => {
@@ -125,7 +125,7 @@ fn collect(record: &Record, values: &mut BTreeMap<String, Value>) {
             Datum::Text(text) => format!("{text:?}"),
             Datum::Flag(flag) => flag.to_string(),
         };
-        values.insert(record.path_of(key), Value { shown, written: record.gives(key) });
+        values.insert(record.path_of(key), DifferenceValue { shown, written: record.gives(key) });
     }
 }
 

@@ -29,23 +29,23 @@ pub(crate) enum Value {
 /// The entries of a table in the order of the file.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Table {
-    pub(crate) entries: Vec<Entry>,
+    pub(crate) entries: Vec<DocumentEntry>,
 }
 
 /// A key, its place and its value.
 #[derive(Clone, Debug)]
-pub(crate) struct Entry {
+pub(crate) struct DocumentEntry {
     pub(crate) key: String,
     pub(crate) origin: Origin,
     pub(crate) node: Node,
 }
 
 impl Table {
-    pub(crate) fn get(&self, key: &str) -> Option<&Entry> {
+    pub(crate) fn get(&self, key: &str) -> Option<&DocumentEntry> {
         self.entries.iter().find(|entry| entry.key == key)
     }
 
-    pub(crate) fn get_mut(&mut self, key: &str) -> Option<&mut Entry> {
+    pub(crate) fn get_mut(&mut self, key: &str) -> Option<&mut DocumentEntry> {
         self.entries.iter_mut().find(|entry| entry.key == key)
     }
 }
@@ -88,12 +88,13 @@ pub(crate) fn parse_value(text: &str, origin: Origin) -> Result<Node, String> {
 type Placing<'a> = dyn Fn(std::ops::Range<usize>) -> Origin + 'a;
 
 fn entries(table: &DeTable<'_>, place: &Placing<'_>) -> Table {
-    let entry = |(key, value): (&toml::Spanned<std::borrow::Cow<'_, str>>, &toml::Spanned<DeValue<'_>>)| Entry {
-        key: key.get_ref().to_string(),
-        origin: place(key.span()),
-        node: Node { origin: place(value.span()), value: convert(value.get_ref(), place) },
-    };
-    let mut entries: Vec<Entry> = table.iter().map(entry).collect();
+    let entry =
+        |(key, value): (&toml::Spanned<std::borrow::Cow<'_, str>>, &toml::Spanned<DeValue<'_>>)| DocumentEntry {
+            key: key.get_ref().to_string(),
+            origin: place(key.span()),
+            node: Node { origin: place(value.span()), value: convert(value.get_ref(), place) },
+        };
+    let mut entries: Vec<DocumentEntry> = table.iter().map(entry).collect();
     entries.sort_by_key(|entry| entry.origin);
     Table { entries }
 }

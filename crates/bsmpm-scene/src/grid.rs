@@ -9,7 +9,7 @@ use std::ops::Range;
 #[derive(Clone, Debug, PartialEq)]
 pub struct GridSpec {
     /// Cells along x and y.
-    pub axes: [Axis; 2],
+    pub axes: [GridAxis; 2],
     /// Order of the B-splines, 1 to 3.
     pub order: usize,
     /// Repeated inner breakpoints along x and y, in ascending order.
@@ -27,7 +27,7 @@ pub struct Line {
 
 /// Cells along one axis.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Axis {
+pub enum GridAxis {
     /// Equal cells.
     Uniform {
         /// m  where the first cell starts, in the case's coordinates
@@ -91,7 +91,7 @@ impl GridSpec {
     }
 }
 
-impl Axis {
+impl GridAxis {
     /// Where the first cell starts, m.
     pub fn lower(&self) -> f64 {
         match self {

@@ -46,7 +46,7 @@ pub use case::{
 pub use difference::{Difference, differences};
 pub use error::{Choice, Error, Place};
 pub use estimate::Estimate;
-pub use grid::{Axis, GridSpec, Line};
+pub use grid::{GridAxis, GridSpec, Line};
 pub use reference::reference;
 pub use region::{Outline, Region};
 pub use seed::seed;

@@ -1,6 +1,6 @@
 //! From a valid case to the physics' model, its points and its steps.
 
-use crate::{Axis, Case, Every, NamedMaterial, Quantity, Regime, surfaces};
+use crate::{Case, Every, GridAxis, NamedMaterial, Quantity, Regime, surfaces};
 use bsmpm::background::Background;
 use bsmpm::boundary::{Boundary, Support};
 use bsmpm::error::GridError;
@@ -61,7 +61,7 @@ pub fn model(case: &Case) -> Result<Model<PlaneStrain, 2>, GridError> {
 fn grid(case: &Case) -> Result<Grid<2>, GridError> {
     let order = case.grid.order;
     let knots = |axis: usize| match &case.grid.axes[axis] {
-        Axis::Uniform { cell, cells, .. } if case.grid.lines[axis].is_empty() => {
+        GridAxis::Uniform { cell, cells, .. } if case.grid.lines[axis].is_empty() => {
             KnotVector::uniform(*cell, *cells, order)
         }
         _ => KnotVector::graded(&case.grid.repeated(axis), order),
@@ -100,13 +100,13 @@ pub fn faces(case: &Case) -> Vec<(usize, f64)> {
 /// N  reaction of a face below which it does nothing: a strain of 1e-9 of the softest material along the shortest cell.
 pub fn least_reaction(case: &Case) -> f64 {
     let softest = case.materials.iter().map(|named| named.material.elastic().young).fold(f64::INFINITY, f64::min);
-    1e-9 * softest * case.grid.axes.iter().map(Axis::shortest).fold(f64::INFINITY, f64::min)
+    1e-9 * softest * case.grid.axes.iter().map(GridAxis::shortest).fold(f64::INFINITY, f64::min)
 }
 
 /// Penalty of the rigid strips, Pa/m.
 pub fn penalty(case: &Case) -> f64 {
     let stiffest = case.materials.iter().map(|named| named.material.elastic().young).fold(0.0, f64::max);
-    surfaces::penalty(stiffest, case.grid.axes.iter().map(Axis::shortest).fold(f64::INFINITY, f64::min))
+    surfaces::penalty(stiffest, case.grid.axes.iter().map(GridAxis::shortest).fold(f64::INFINITY, f64::min))
 }
 
 /// The points of the columns of one slab, by the numbers of the physics' grid.

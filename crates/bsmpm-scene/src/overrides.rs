@@ -1,6 +1,6 @@
 //! `--set KEY=VALUE`: one value of the document replaced before anything is validated.
 
-use crate::document::{self, Entry, Node, Table, Value};
+use crate::document::{self, DocumentEntry, Node, Table, Value};
 use crate::error::Origin;
 use crate::report::{Report, shortened};
 use crate::schema::{Kind, ROOT, Table as Schema};
@@ -61,8 +61,8 @@ impl Setting<'_> {
         if depth + 1 == self.parts.len() {
             let node = self.node.clone();
             match table.get_mut(name) {
-                Some(entry) => *entry = Entry { key: name.to_owned(), origin: self.origin, node },
-                None => table.entries.push(Entry { key: name.to_owned(), origin: self.origin, node }),
+                Some(entry) => *entry = DocumentEntry { key: name.to_owned(), origin: self.origin, node },
+                None => table.entries.push(DocumentEntry { key: name.to_owned(), origin: self.origin, node }),
             }
             return Ok(());
         }
@@ -72,7 +72,7 @@ impl Setting<'_> {
                 _ => Value::Table(Table::default()),
             };
             let node = Node { origin: self.origin, value };
-            table.entries.push(Entry { key: name.to_owned(), origin: self.origin, node });
+            table.entries.push(DocumentEntry { key: name.to_owned(), origin: self.origin, node });
         }
         let Some(entry) = table.get_mut(name) else { return Ok(()) };
         match (kind, &mut entry.node.value) {

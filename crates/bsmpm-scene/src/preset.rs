@@ -6,14 +6,14 @@
 
 mod scene;
 
-use crate::document::{self, Entry, Node, Table, Value};
+use crate::document::{self, DocumentEntry, Node, Table, Value};
 use crate::error::Origin;
 use crate::record;
 use crate::report::Report;
 use crate::source::Source;
 use crate::words::{Accuracy, Order, Word};
 use bsmpm::stabilisation::Stabilisation;
-use scene::Scene;
+use scene::PresetScene;
 
 /// The key.
 const ACCURACY: &str = "accuracy";
@@ -88,7 +88,7 @@ pub(crate) fn fill(
     let preset = &Preset::of(accuracy);
     // Its errors are told when the filled document is read.
     let record = record::read(document, &mut Report::new(source, overrides));
-    let scene = Scene::of(&record);
+    let scene = PresetScene::of(&record);
     let mut filling = Filling { document, origin, accuracy, report, filled: false };
     filling.put("grid", &["order"], &quoted(ORDER), "");
     let cells = scene.cells(preset);
@@ -153,9 +153,10 @@ impl Filling<'_, '_> {
         let origin = self.origin;
         if self.document.get(table).is_none() {
             let node = Node { origin, value: Value::Table(Table::default()) };
-            self.document.entries.push(Entry { key: table.to_owned(), origin, node });
+            self.document.entries.push(DocumentEntry { key: table.to_owned(), origin, node });
         }
-        let Some(Entry { node: Node { value: Value::Table(inner), .. }, .. }) = self.document.get_mut(table) else {
+        let Some(DocumentEntry { node: Node { value: Value::Table(inner), .. }, .. }) = self.document.get_mut(table)
+        else {
             return false;
         };
         let put = keys.iter().all(|key| inner.get(key).is_none()) && insert(inner, keys[0], value, origin);
@@ -169,7 +170,7 @@ impl Filling<'_, '_> {
     fn miss(&mut self, table: &str, keys: &[&str], basis: &str) {
         let given = |table: &Table| keys.iter().any(|key| table.get(key).is_some());
         match self.document.get(table) {
-            Some(Entry { node: Node { value: Value::Table(table), .. }, .. }) if given(table) => {}
+            Some(DocumentEntry { node: Node { value: Value::Table(table), .. }, .. }) if given(table) => {}
             _ => {
                 let reason =
                     format!("\"{}\" cannot choose {table}.{}, which follows from {basis}", self.accuracy, keys[0]);
@@ -192,7 +193,8 @@ impl Filling<'_, '_> {
     fn points(&mut self, points: u64) {
         const KEY: &str = "points_per_cell";
         let (origin, value) = (self.origin, points.to_string());
-        let Some(Entry { node: Node { value: Value::List(bodies), .. }, .. }) = self.document.get_mut("body") else {
+        let Some(DocumentEntry { node: Node { value: Value::List(bodies), .. }, .. }) = self.document.get_mut("body")
+        else {
             return;
         };
         let mut any = false;
@@ -215,6 +217,6 @@ impl Filling<'_, '_> {
 
 fn insert(table: &mut Table, key: &str, value: &str, origin: Origin) -> bool {
     let Ok(node) = document::parse_value(value, origin) else { return false };
-    table.entries.push(Entry { key: key.to_owned(), origin, node });
+    table.entries.push(DocumentEntry { key: key.to_owned(), origin, node });
     true
 }

@@ -5,12 +5,12 @@ mod edge;
 mod simple;
 mod sweep;
 
-pub(crate) use cells::{Part, Place, place};
+pub(crate) use cells::{CellPlace, RegionPart, place};
 pub(crate) use edge::Edge;
-pub(crate) use simple::{Fault, area, bounds, fault};
+pub(crate) use simple::{PolygonFault, area, bounds, fault};
 pub(crate) use sweep::{Window, solid, sweep};
 
-use crate::grid::{Axis, GridSpec};
+use crate::grid::{GridAxis, GridSpec};
 use cells::column;
 use std::ops::Range;
 use sweep::intervals;
@@ -164,7 +164,7 @@ impl Outline {
     }
 
     /// The part of a column of cells.
-    pub(crate) fn column(&self, grid: &GridSpec, points_per_cell: usize, i: usize) -> cells::Column {
+    pub(crate) fn column(&self, grid: &GridSpec, points_per_cell: usize, i: usize) -> cells::CellColumn {
         column(&self.edges, self.shapes, (grid, points_per_cell), i)
     }
 }
@@ -181,7 +181,7 @@ pub(crate) fn polygon(corners: &[[f64; 2]], origin: [f64; 2], shape: usize) -> V
 }
 
 /// Cells along an axis that an interval (m from the first) touches, those at whose ends it ends too.
-fn reached(axis: &Axis, [lower, upper]: [f64; 2]) -> Range<usize> {
+fn reached(axis: &GridAxis, [lower, upper]: [f64; 2]) -> Range<usize> {
     let start = axis.first_cell(|i| axis.breakpoint(i + 1) >= lower);
     start..axis.first_cell(|i| axis.breakpoint(i) > upper).max(start)
 }

@@ -2,8 +2,8 @@
 //! where another shape cuts them.
 
 use crate::case::{Body, Case};
-use crate::grid::{Axis, GridSpec};
-use crate::region::{self, Outline, Part, Place, Region};
+use crate::grid::{GridAxis, GridSpec};
+use crate::region::{self, CellPlace, Outline, Region, RegionPart};
 use bsmpm::points::Seed;
 use bsmpm::tensor::Vector;
 use std::ops::Range;
@@ -13,16 +13,16 @@ const SLIVER: f64 = 1e-9;
 
 /// The part of one axis that a box covers.
 #[derive(Clone, Debug)]
-struct Extent<'a> {
-    axis: &'a Axis,
+struct SeedExtent<'a> {
+    axis: &'a GridAxis,
     /// m  ends of the box, from the grid's lower corner
     ends: [f64; 2],
     /// cells that it reaches into
     cells: Range<usize>,
 }
 
-impl<'a> Extent<'a> {
-    fn new(axis: &'a Axis, lower: f64, upper: f64) -> Self {
+impl<'a> SeedExtent<'a> {
+    fn new(axis: &'a GridAxis, lower: f64, upper: f64) -> Self {
         let ends = [(lower - axis.lower()).max(0.0), (upper - axis.lower()).min(axis.length())];
         let start = axis.first_cell(|i| axis.breakpoint(i + 1) > ends[0] + SLIVER * axis.cell(i));
         let end = axis.first_cell(|i| axis.breakpoint(i) >= ends[1] - SLIVER * axis.cell(i));
@@ -39,9 +39,9 @@ impl<'a> Extent<'a> {
 
 impl Body {
     /// Cells that the body reaches into, per axis, if it is a box.
-    fn extents<'a>(&self, grid: &'a GridSpec) -> Option<[Extent<'a>; 2]> {
+    fn extents<'a>(&self, grid: &'a GridSpec) -> Option<[SeedExtent<'a>; 2]> {
         let Region::Box { lower, upper } = &self.region else { return None };
-        Some([0, 1].map(|axis| Extent::new(&grid.axes[axis], lower[axis], upper[axis])))
+        Some([0, 1].map(|axis| SeedExtent::new(&grid.axes[axis], lower[axis], upper[axis])))
     }
 
     /// Cells between the first and the last one along each axis that hold its points.
@@ -130,7 +130,7 @@ fn of_box<'a>(
     case: &'a Case,
     body: &'a Body,
     first_id: u64,
-    [across, up]: [Extent<'a>; 2],
+    [across, up]: [SeedExtent<'a>; 2],
     columns: Range<usize>,
 ) -> impl Iterator<Item = Seed<2>> + 'a {
     let cells = across.cells.start.max(columns.start)..across.cells.end.min(columns.end);
@@ -163,8 +163,8 @@ fn of_outline<'a>(
         let x = [grid.axes[0].breakpoint(i), grid.axes[0].breakpoint(i + 1)];
         let places = outline.column(grid, n, i).parts.into_iter().flat_map(move |part| {
             let (whole, cut) = match part {
-                Part::Whole(rows) => (rows, Vec::new()),
-                Part::Cut(_, places) => (0..0, places),
+                RegionPart::Whole(rows) => (rows, Vec::new()),
+                RegionPart::Cut(_, places) => (0..0, places),
             };
             let y = move |j: usize| [grid.axes[1].breakpoint(j), grid.axes[1].breakpoint(j + 1)];
             whole.flat_map(move |j| of_cell(n, [x, y(j)])).chain(cut)
@@ -174,14 +174,14 @@ fn of_outline<'a>(
 }
 
 /// Points of a rectangle that lies in one cell.
-fn of_cell(n: usize, [across, up]: [[f64; 2]; 2]) -> impl Iterator<Item = Place> {
+fn of_cell(n: usize, [across, up]: [[f64; 2]; 2]) -> impl Iterator<Item = CellPlace> {
     let count = n * n;
     let area = (across[1] - across[0]) * (up[1] - up[0]) / count as f64;
-    (0..count).map(move |k| Place { x: [region::place(across, k / n, n), region::place(up, k % n, n)], area })
+    (0..count).map(move |k| CellPlace { x: [region::place(across, k / n, n), region::place(up, k % n, n)], area })
 }
 
 impl Body {
-    fn seed(&self, case: &Case, id: u64, place: Place) -> Seed<2> {
+    fn seed(&self, case: &Case, id: u64, place: CellPlace) -> Seed<2> {
         Seed {
             id,
             material: self.material as u16,

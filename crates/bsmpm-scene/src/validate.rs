@@ -45,7 +45,7 @@ pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Op
     let around = material::Around { regime, grid: placed, bodies: made, reduction };
     let materials = material::read_all(record, around, report);
     let mut gravity = gravity(record, end, report);
-    let around = strip::Around { grid: placed, bodies: made, boundary, end };
+    let around = strip::AroundStrip { grid: placed, bodies: made, boundary, end };
     let footing = strip::footing(record, around, report);
     let prescribed = strip::prescribed(record, around, report);
     let mut tractions = load::tractions(record, around, report);

@@ -1,9 +1,9 @@
 //! Places of a case from the grid's lower corner.
 
-use bsmpm_scene::{Axis, GridSpec};
+use bsmpm_scene::{GridAxis, GridSpec};
 
-fn axis(lower: f64, cell: f64, cells: usize) -> Axis {
-    Axis::Uniform { lower, cell, cells }
+fn axis(lower: f64, cell: f64, cells: usize) -> GridAxis {
+    GridAxis::Uniform { lower, cell, cells }
 }
 
 #[test]

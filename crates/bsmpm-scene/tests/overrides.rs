@@ -4,7 +4,8 @@ use bsmpm::material::{Law, Match, Material, MohrCoulomb, Separation};
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm_scene::words::{Factor, Ksp, Pc};
 use bsmpm_scene::{
-    Axis, BackgroundKind, Base, Case, Error, Every, Extent, Face, Initial, Place, Quadrature, Quantity, Site, Support,
+    BackgroundKind, Base, Case, Error, Every, Extent, Face, GridAxis, Initial, Place, Quadrature, Quantity, Site,
+    Support,
 };
 
 const FULL: &str = include_str!("full.toml");
@@ -67,7 +68,7 @@ fn one_of_two_exclusive_keys_removes_the_other() {
     assert_eq!(valid(FULL, &["material.clay.density=1500"]).materials[1].density, Some(1500.0));
     assert!(valid(FULL, &["material.sand.unit_weight=981 kN/m3"]).materials[0].density.is_some_and(|d| d > 9.9e4));
     let case = valid(FULL, &["grid.knots.x=[0, 1, 4]", "grid.knots.y=[0, 1.5, 3]"]);
-    assert_eq!(case.grid.axes, [Axis::Graded(vec![0.0, 1.0, 4.0]), Axis::Graded(vec![0.0, 1.5, 3.0])]);
+    assert_eq!(case.grid.axes, [GridAxis::Graded(vec![0.0, 1.0, 4.0]), GridAxis::Graded(vec![0.0, 1.5, 3.0])]);
     assert_eq!(valid(&case.text, &["grid.cell=1"]).grid.axes[0].cells(), 4);
     let round = valid(FULL, &["body.3.circle={center=[3, 2], radius=0.5}"]);
     assert_eq!(round.bodies[3].bounds(), [[2.5, 1.5], [3.5, 2.5]]);
@@ -131,7 +132,7 @@ fn the_effective_text_gives_the_same_case() {
 fn the_full_case_in_si() {
     let case = valid(FULL, &[]);
     assert_eq!((case.analysis.end, case.analysis.dt), (1.0, 0.01));
-    assert_eq!(case.grid.axes, [8, 6].map(|cells| Axis::Uniform { lower: 0.0, cell: 0.5, cells }));
+    assert_eq!(case.grid.axes, [8, 6].map(|cells| GridAxis::Uniform { lower: 0.0, cell: 0.5, cells }));
     let names: Vec<&str> = case.materials.iter().map(|material| material.name.as_str()).collect();
     assert_eq!(names, ["sand", "clay", "block", "till"]);
     let Material::MohrCoulomb(sand) = &case.materials[0].material else { panic!() };

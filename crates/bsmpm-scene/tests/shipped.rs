@@ -1,6 +1,6 @@
 //! Every case that the project ships is valid, and the paper's column has the sizes that it should.
 
-use bsmpm_scene::{Axis, Base, Case, Quantity, load};
+use bsmpm_scene::{Base, Case, GridAxis, Quantity, load};
 use std::path::{Path, PathBuf};
 
 fn cases() -> PathBuf {
@@ -240,7 +240,7 @@ fn the_footing_of_the_paper() {
 #[test]
 fn the_coarse_column_moves_its_free_top_outward() {
     let case = read(&cases().join("short/column_collapse.toml"));
-    assert_eq!(case.grid.axes[1], Axis::Uniform { lower: 0.0, cell: 0.01, cells: 11 });
+    assert_eq!(case.grid.axes[1], GridAxis::Uniform { lower: 0.0, cell: 0.01, cells: 11 });
     let note = case.notes.iter().find(|note| note.key == "grid.upper.1").unwrap();
     assert!(note.reason.contains("outward"), "{note:?}");
     assert_eq!(case.points(), 800);

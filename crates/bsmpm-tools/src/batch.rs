@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use crate::Error;
-use crate::launch::{Solver, Task};
+use crate::launch::{LaunchTask, SolverProgram};
 use crate::slurm::clock;
 
 mod options;
@@ -16,13 +16,13 @@ mod outcome;
 mod pool;
 
 pub use options::Options;
-pub(crate) use order::Order;
-pub(crate) use outcome::{Cost, Outcome, State};
-pub(crate) use pool::{Limits, Load};
+pub(crate) use order::RunOrder;
+pub(crate) use outcome::{Outcome, RunCost, RunState};
+pub(crate) use pool::{Limits, PoolLoad};
 
 /// How the runs of a batch are made.
 pub(crate) struct Batch<'a> {
-    pub solver: Solver<'a>,
+    pub solver: SolverProgram<'a>,
     /// The case file.
     pub path: &'a Path,
     /// Below it are the runs, in `runs`.
@@ -36,29 +36,29 @@ pub(crate) struct Batch<'a> {
 
 impl Batch<'_> {
     /// What the runs gave, in the order of the orders; `told` gets each as soon as it is there.
-    pub fn run(&self, orders: &[Order], ranks: usize, told: impl FnMut(usize, &Outcome)) -> Vec<Outcome> {
+    pub fn run(&self, orders: &[RunOrder], ranks: usize, told: impl FnMut(usize, &Outcome)) -> Vec<Outcome> {
         self.with(orders, ranks, |order| self.outcome(order), told)
     }
 
     /// The same with something else in the place of each run.
     pub fn with(
         &self,
-        orders: &[Order],
+        orders: &[RunOrder],
         ranks: usize,
-        made: impl Fn(&Order) -> Outcome + Sync,
+        made: impl Fn(&RunOrder) -> Outcome + Sync,
         told: impl FnMut(usize, &Outcome),
     ) -> Vec<Outcome> {
-        let loads: Vec<Load> = orders.iter().map(|order| order.load(ranks)).collect();
+        let loads: Vec<PoolLoad> = orders.iter().map(|order| order.load(ranks)).collect();
         pool::all(&loads, self.limits, |index| made(&orders[index]), told)
     }
 
     /// Where a run is written.
-    pub fn directory(&self, order: &Order) -> PathBuf {
+    pub fn directory(&self, order: &RunOrder) -> PathBuf {
         self.output.join("runs").join(format!("{}.out", order.name))
     }
 
     /// The outcome of one run, made now unless it is there.
-    fn outcome(&self, order: &Order) -> Outcome {
+    fn outcome(&self, order: &RunOrder) -> Outcome {
         let directory = self.directory(order);
         let mut arguments = vec![self.path.display().to_string()];
         for set in &order.set {
@@ -69,7 +69,8 @@ impl Batch<'_> {
             arguments.extend(["--max-wall".to_owned(), clock(limit.as_secs())]);
         }
         let origin = self.origin(order);
-        let task = Task { arguments: &arguments, directory: &directory, origin: origin.as_deref(), force: self.force };
+        let task =
+            LaunchTask { arguments: &arguments, directory: &directory, origin: origin.as_deref(), force: self.force };
         if task.is_there(|manifest| manifest.case.text == order.case.text) {
             return Outcome::read(&directory, None);
         }
@@ -80,7 +81,7 @@ impl Batch<'_> {
     }
 
     /// Everything that a run is made from, as it stands now; its launcher, too, for the cost depends on the ranks.
-    fn origin(&self, order: &Order) -> Option<String> {
+    fn origin(&self, order: &RunOrder) -> Option<String> {
         Some(format!("{}\n{}\n\n{}", self.solver.command.join(" "), self.solver.stamp()?, order.case.text))
     }
 }

@@ -20,21 +20,21 @@ pub struct Cli {
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// Draw the pictures of a run into its directory.
-    Plot(plot::Arguments),
+    Plot(plot::PlotArguments),
     /// Draw one quantity of several runs in one picture, or print it as a table
-    Compare(Box<compare::Arguments>),
+    Compare(Box<compare::CompareArguments>),
     /// Run the cases of a matrix and judge their histories against references
-    Validate(validate::Arguments),
+    Validate(validate::ValidateArguments),
     /// Find the factor of safety of a case by strength reduction
-    Fos(fos::Arguments),
+    Fos(fos::FosArguments),
     /// Vary settings of a case and weigh the error of its results against their cost
-    Sweep(Box<sweep::Arguments>),
+    Sweep(Box<sweep::SweepArguments>),
     /// Run a case on three grids: observed order, extrapolated values, grid convergence index
-    VerifyCase(verify_case::Arguments),
+    VerifyCase(verify_case::VerifyArguments),
     /// Tell what a case will cost before it is run: time, memory, disk
-    Estimate(Box<estimate::Arguments>),
+    Estimate(Box<estimate::EstimateArguments>),
     /// Write a job script for Slurm that queues itself again until the case is done
-    Slurm(slurm::Arguments),
+    Slurm(slurm::SlurmArguments),
     /// Print every key of a case file with its unit, range and default, and every quantity of a history
     Keys,
 }

@@ -8,14 +8,14 @@ use clap::Args;
 use crate::Error;
 use crate::picture::chart::{Chart, Curve};
 use crate::picture::colour::{self, INK};
-use crate::picture::legend::{Entry, Mark};
+use crate::picture::legend::{LegendEntry, Mark};
 
 mod reference;
 mod residuals;
 mod runs;
 mod table;
 
-pub use crate::picture::chart::Level;
+pub use crate::picture::chart::ChartLevel;
 use runs::Runs;
 
 /// Options that have no meaning for residuals.
@@ -24,7 +24,7 @@ const OF_QUANTITIES: [&str; 11] =
 
 /// What to compare.
 #[derive(Clone, Debug, Args)]
-pub struct Arguments {
+pub struct CompareArguments {
     /// The output directories of the runs, which may go on or have stopped
     #[arg(required = true, value_name = "DIR")]
     pub directories: Vec<PathBuf>,
@@ -58,7 +58,7 @@ pub struct Arguments {
     pub labels: Vec<String>,
     /// A level across the picture; repeatable
     #[arg(long = "line", value_name = "VALUE[=TEXT]", value_parser = level, allow_hyphen_values = true)]
-    pub lines: Vec<Level>,
+    pub lines: Vec<ChartLevel>,
     /// Points to compare with, as they are seen in the picture: a CSV file with a line of names and columns x,y;
     /// repeatable
     #[arg(long = "reference", value_name = "FILE")]
@@ -94,7 +94,7 @@ pub struct Arguments {
     pub at: Vec<f64>,
 }
 
-impl Arguments {
+impl CompareArguments {
     /// Where the picture goes, if one is wanted.
     fn picture(&self) -> Option<PathBuf> {
         match (&self.output, self.table) {
@@ -109,14 +109,14 @@ fn number(text: &str) -> Result<f64, String> {
     text.trim().parse().ok().filter(|number: &f64| number.is_finite()).ok_or_else(|| "a finite number".to_owned())
 }
 
-fn level(text: &str) -> Result<Level, String> {
+fn level(text: &str) -> Result<ChartLevel, String> {
     let (value, text) = text.split_once('=').unwrap_or((text, ""));
-    Ok(Level { value: number(value)?, text: text.trim().trim_matches('"').to_owned() })
+    Ok(ChartLevel { value: number(value)?, text: text.trim().trim_matches('"').to_owned() })
 }
 
 /// What was made of a comparison.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Made {
+pub struct ComparedFiles {
     /// The picture.
     pub picture: Option<PathBuf>,
     /// The table, a line a row.
@@ -131,7 +131,7 @@ pub struct Made {
 /// [`Error::NoRun`], [`Error::NoRow`] and [`Error::NoColumn`] for what a directory does not hold, [`Error::Usage`] for
 /// options that do not fit the runs or each other,
 /// [`Error::NoResiduals`] for a step that was not kept, the errors of references and files.
-pub fn run(arguments: &Arguments) -> Result<Made, Error> {
+pub fn run(arguments: &CompareArguments) -> Result<ComparedFiles, Error> {
     if let Some(step) = arguments.residuals {
         return residuals::run(arguments, step);
     }
@@ -141,25 +141,25 @@ pub fn run(arguments: &Arguments) -> Result<Made, Error> {
         draw(arguments, &runs, path)?;
     }
     let table = arguments.table.then(|| table::text(&runs, &arguments.at));
-    Ok(Made { picture, table, notes: runs.notes })
+    Ok(ComparedFiles { picture, table, notes: runs.notes })
 }
 
-fn draw(arguments: &Arguments, runs: &Runs, path: &Path) -> Result<(), Error> {
+fn draw(arguments: &CompareArguments, runs: &Runs, path: &Path) -> Result<(), Error> {
     let names = runs.labels();
     let count = names.len() + arguments.references.len().saturating_sub(1);
     let mark = if arguments.last { Mark::Both } else { Mark::Line };
     let mut curves = Vec::new();
     for (name, places) in &runs.curves {
         let index = names.iter().position(|other| *other == name).unwrap_or(0);
-        let entry = Entry { name: name.clone(), colour: colour::line(index, count), mark };
+        let entry = LegendEntry { name: name.clone(), colour: colour::line(index, count), mark };
         curves.push(Curve { entry, places: places.clone() });
     }
     for (index, path) in arguments.references.iter().enumerate() {
         let colour = if index == 0 { INK } else { colour::line(names.len() + index - 1, count) };
         let (name, places) = reference::read(path)?;
-        curves.push(Curve { entry: Entry { name, colour, mark: Mark::Points }, places });
+        curves.push(Curve { entry: LegendEntry { name, colour, mark: Mark::Points }, places });
     }
-    let mut legend: Vec<&Entry> = Vec::new();
+    let mut legend: Vec<&LegendEntry> = Vec::new();
     for Curve { entry, .. } in &curves {
         if !legend.iter().any(|other| (&other.name, other.colour) == (&entry.name, entry.colour)) {
             legend.push(entry);

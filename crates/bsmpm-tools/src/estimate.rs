@@ -25,7 +25,7 @@ mod sizes;
 mod stored;
 mod work;
 
-use report::Report;
+use report::EstimateReport;
 
 /// What to estimate, and how.
 #[derive(Clone, Debug, Args)]
@@ -45,7 +45,7 @@ Examples:
   bsmpm estimate cases/column_collapse.toml --ranks 2
   bsmpm estimate case.toml --no-probe --json
   bsmpm estimate case.toml --against case.out")]
-pub struct Arguments {
+pub struct EstimateArguments {
     /// The case file
     pub case: PathBuf,
     /// Ranks of the run [default: 1]
@@ -79,7 +79,7 @@ pub struct Arguments {
 ///
 /// # Errors
 /// Those of the command line and the case before anything runs; [`Error::Probe`] if the first steps fail; those of files.
-pub fn run(arguments: &Arguments, mut told: impl FnMut(&str)) -> Result<String, Error> {
+pub fn run(arguments: &EstimateArguments, mut told: impl FnMut(&str)) -> Result<String, Error> {
     if !(arguments.budget.is_finite() && arguments.budget > 0.0) {
         return Err(Error::Usage { reason: format!("--budget {}: expected some seconds", arguments.budget) });
     }
@@ -97,10 +97,10 @@ pub fn run(arguments: &Arguments, mut told: impl FnMut(&str)) -> Result<String, 
         guess
     } else {
         let (ranks, command) = (arguments.probed(ranks), &arguments.command()[..]);
-        let plan = probe::Plan { case: &case, ranks, command, may_be_whole: !arguments.no_whole };
+        let plan = probe::ProbePlan { case: &case, ranks, command, may_be_whole: !arguments.no_whole };
         probe::estimate(&plan, &guess, deadline(arguments.budget), &mut told)?
     };
-    let mut report = Report::of(&arguments.case, &case, ranks, (speed, &found));
+    let mut report = EstimateReport::of(&arguments.case, &case, ranks, (speed, &found));
     if let Some(actual) = actual {
         if actual.text != case.text {
             told("warning: the run is of another text of the case, or of other overrides");
@@ -121,7 +121,7 @@ fn deadline(budget: f64) -> Instant {
     Instant::now() + Duration::from_secs_f64(budget.min(3e7))
 }
 
-impl Arguments {
+impl EstimateArguments {
     fn command(&self) -> Vec<String> {
         if self.command.is_empty() { vec![command::own_solver()] } else { self.command.clone() }
     }

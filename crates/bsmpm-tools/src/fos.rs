@@ -14,7 +14,7 @@ use bsmpm_io::atomic;
 use clap::Args;
 
 use crate::Error;
-use crate::launch::{self, Solver, command};
+use crate::launch::{self, SolverProgram, command};
 
 mod curve;
 mod guess;
@@ -25,8 +25,8 @@ mod search;
 mod subject;
 mod trial;
 
-use report::Report;
-use search::{GREATEST, LEAST, Plan};
+use report::FosReport;
+use search::{GREATEST, LEAST, SearchPlan};
 use subject::Subject;
 use trial::{Trial, Trials};
 
@@ -61,7 +61,7 @@ such case; 80 no stable state was found; that of a trial that broke, as 70, 71, 
 Examples:
   bsmpm fos cases/slope_stability.toml
   bsmpm fos case.toml --width 0.01 --set grid.cell=\"0.5 m\" -o fine -- mpirun -n 4 bsmpm-par")]
-pub struct Arguments {
+pub struct FosArguments {
     /// The case file: quasi-static, with a plastic material and a load
     pub case: PathBuf,
     /// The least factor
@@ -92,7 +92,7 @@ pub struct Arguments {
 }
 
 /// What a search found, for other commands.
-pub(crate) struct Found {
+pub(crate) struct FoundFactor {
     /// By the kink: the estimate, or where there is none the middle of the band.
     pub factor: Option<f64>,
     /// s  of processor time, all trials together
@@ -111,7 +111,7 @@ pub(crate) struct Found {
 /// # Errors
 /// Those of the command line and the case before anything runs; [`Error::NoStableState`]; [`Error::Trial`] for a trial that
 /// broke; the errors of files.
-pub fn run(arguments: &Arguments, told: impl FnMut(&str)) -> Result<(String, Vec<PathBuf>), Error> {
+pub fn run(arguments: &FosArguments, told: impl FnMut(&str)) -> Result<(String, Vec<PathBuf>), Error> {
     let (report, subject) = found(arguments, told)?;
     let output = arguments.directory();
     let pictures = picture::draw(&report, &subject, &output)?;
@@ -119,12 +119,12 @@ pub fn run(arguments: &Arguments, told: impl FnMut(&str)) -> Result<(String, Vec
 }
 
 /// The same without words and pictures.
-pub(crate) fn factor(arguments: &Arguments) -> Result<Found, Error> {
+pub(crate) fn factor(arguments: &FosArguments) -> Result<FoundFactor, Error> {
     let (report, _) = found(arguments, |_| ())?;
     let trials = || report.trials.iter().map(|row| &row.trial);
     let finding = report.factor_of_safety;
     let middle = || Some(f64::midpoint(finding.last_stable?, finding.first_failed?));
-    Ok(Found {
+    Ok(FoundFactor {
         factor: finding.estimate.or_else(middle),
         cpu_seconds: trials().map(|trial| trial.cpu_seconds).sum(),
         seconds: report.seconds,
@@ -136,12 +136,12 @@ pub(crate) fn factor(arguments: &Arguments) -> Result<Found, Error> {
 }
 
 /// The search, written as tables.
-fn found(arguments: &Arguments, mut told: impl FnMut(&str)) -> Result<(Report, Subject), Error> {
+fn found(arguments: &FosArguments, mut told: impl FnMut(&str)) -> Result<(FosReport, Subject), Error> {
     let start = Instant::now();
     let command = command::words(&arguments.command, 1);
     let (plan, jobs) = (arguments.plan()?, command::jobs(arguments.jobs, &command)?);
     // Whatever the number of jobs: threads in BLAS would sum in another order.
-    let solver = Solver { command: &command, side_by_side: true };
+    let solver = SolverProgram { command: &command, side_by_side: true };
     let subject = Subject::read(&arguments.case, &arguments.set, plan.from)?;
     solver.check()?;
     let output = arguments.directory();
@@ -153,7 +153,7 @@ fn found(arguments: &Arguments, mut told: impl FnMut(&str)) -> Result<(Report, S
     }
     let trials = Trials { solver, subject: &subject, output: &output, force: arguments.force };
     let (curve, made) = jobs::find(plan, jobs, &trials, |trial| told(&line(trial)))?;
-    let mut report = Report::of(&subject, plan, &command, &curve, made);
+    let mut report = FosReport::of(&subject, plan, &command, &curve, made);
     report.jobs = jobs;
     report.seconds = start.elapsed().as_secs_f64();
     atomic::replace(&output.join(CSV), |file| file.write_all(report.csv().as_bytes()))?;
@@ -164,8 +164,8 @@ fn found(arguments: &Arguments, mut told: impl FnMut(&str)) -> Result<(Report, S
     Ok((report, subject))
 }
 
-impl Arguments {
-    fn plan(&self) -> Result<Plan, Error> {
+impl FosArguments {
+    fn plan(&self) -> Result<SearchPlan, Error> {
         let usage = |reason: String| Err(Error::Usage { reason });
         let Self { from, to, width, .. } = *self;
         // Written so that what is no number is refused, too.
@@ -175,7 +175,7 @@ impl Arguments {
         if !(NARROWEST <= width && width <= to - from) {
             return usage(format!("--width {width}: allowed is {NARROWEST} <= WIDTH <= TO - FROM"));
         }
-        Ok(Plan { from, to, width })
+        Ok(SearchPlan { from, to, width })
     }
 
     fn directory(&self) -> PathBuf {

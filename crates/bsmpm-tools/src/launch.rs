@@ -35,7 +35,7 @@ const SIDE_BY_SIDE: [(&str, &str); 5] = [
 
 /// The words that start the solver, which its arguments follow.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Solver<'a> {
+pub(crate) struct SolverProgram<'a> {
     /// The launcher, if any, and at the end bsmpm-par.
     pub command: &'a [String],
     /// Whether runs may be made at the same time.
@@ -43,7 +43,7 @@ pub(crate) struct Solver<'a> {
 }
 
 /// A run that is wanted.
-pub(crate) struct Task<'a> {
+pub(crate) struct LaunchTask<'a> {
     /// Those of bsmpm-par.
     pub arguments: &'a [String],
     /// The directory that they name as the output.
@@ -63,7 +63,7 @@ pub(crate) struct Ending {
     pub reason: String,
 }
 
-impl Solver<'_> {
+impl SolverProgram<'_> {
     /// Whether a solver that is named by its path is there: to be seen before former runs are deleted for new ones.
     pub fn check(&self) -> Result<(), Error> {
         match self.command.last() {
@@ -83,7 +83,7 @@ impl Solver<'_> {
 
     /// Makes the run unless it has ended there, made from what would be taken now, and `is_same` agrees; its exit code, none
     /// if it was there.
-    pub fn perform(&self, task: &Task, is_same: impl Fn(&Manifest) -> bool) -> Result<Option<u8>, Error> {
+    pub fn perform(&self, task: &LaunchTask, is_same: impl Fn(&Manifest) -> bool) -> Result<Option<u8>, Error> {
         if task.is_there(is_same) {
             return Ok(None);
         }
@@ -91,7 +91,7 @@ impl Solver<'_> {
     }
 
     /// Makes the run, whatever is there; its exit code. `stop` may end it early.
-    pub fn make(&self, task: &Task, stop: &Stop) -> Result<u8, Error> {
+    pub fn make(&self, task: &LaunchTask, stop: &Stop) -> Result<u8, Error> {
         // What an older run left must not pass for this one's, should it die before it writes.
         if task.directory.join(MANIFEST).exists() {
             // Unless it goes on.
@@ -110,7 +110,7 @@ impl Solver<'_> {
 
     /// Goes on with the run if it was stopped or killed and is made from what would be taken now, else makes it; its exit code.
     /// The arguments leave to this what becomes of what is there.
-    pub fn advance(&self, task: &Task) -> Result<u8, Error> {
+    pub fn advance(&self, task: &LaunchTask) -> Result<u8, Error> {
         let (goes_on, stop) = (task.is_broken_off(), Stop::default());
         let how = if goes_on { &["--restart", "auto"][..] } else { &["--force"] };
         let arguments: Vec<String> =
@@ -118,7 +118,7 @@ impl Solver<'_> {
         if goes_on {
             return self.start(&arguments, &beside(task.directory, "log"), &stop);
         }
-        self.make(&Task { arguments: &arguments, ..*task }, &stop)
+        self.make(&LaunchTask { arguments: &arguments, ..*task }, &stop)
     }
 
     fn start(&self, arguments: &[String], log: &Path, stop: &Stop) -> Result<u8, Error> {
@@ -139,7 +139,7 @@ impl Solver<'_> {
     }
 }
 
-impl Task<'_> {
+impl LaunchTask<'_> {
     /// Whether the run has ended there, made from what would be taken now, and `is_same` agrees; never if it is to be made
     /// again.
     pub fn is_there(&self, is_same: impl Fn(&Manifest) -> bool) -> bool {

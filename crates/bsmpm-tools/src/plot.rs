@@ -9,7 +9,7 @@ use bsmpm_io::table::Columns;
 use clap::Args;
 
 use crate::Error;
-use crate::record::{Record, Regime};
+use crate::record::{RecordedRegime, RunRecord};
 
 mod body;
 mod convergence;
@@ -22,7 +22,7 @@ pub use field::FieldName;
 
 /// What to draw.
 #[derive(Clone, Debug, Args)]
-pub struct Arguments {
+pub struct PlotArguments {
     /// The output directory of a run; the pictures are written there
     pub directory: PathBuf,
     /// Times (in s, or pseudo-time) of the pictures of the body; the nearest frames are taken [default: those of the
@@ -42,7 +42,7 @@ pub struct Arguments {
     pub reference: Option<PathBuf>,
 }
 
-impl Arguments {
+impl PlotArguments {
     /// All pictures of a run as its case wants them.
     pub fn of(directory: PathBuf) -> Self {
         Self { directory, times: Vec::new(), field: None, range: None, reference: None }
@@ -66,7 +66,7 @@ fn ends(text: &str) -> Result<(f64, f64), String> {
 ///
 /// # Errors
 /// Those of [`draw`]; a `run.json` that cannot be written.
-pub fn run(arguments: &Arguments) -> Result<Vec<PathBuf>, Error> {
+pub fn run(arguments: &PlotArguments) -> Result<Vec<PathBuf>, Error> {
     let (mut record, names) = pictures(arguments)?;
     if record.manifest.status != Status::Running {
         names.iter().for_each(|name| record.manifest.name_output(name));
@@ -80,12 +80,12 @@ pub fn run(arguments: &Arguments) -> Result<Vec<PathBuf>, Error> {
 /// # Errors
 /// [`Error::NoRun`] without a `run.json`, [`Error::Empty`] if there is nothing to draw yet, [`Error::File`] for files that
 /// are damaged or cannot be written.
-pub fn draw(arguments: &Arguments) -> Result<Vec<String>, Error> {
+pub fn draw(arguments: &PlotArguments) -> Result<Vec<String>, Error> {
     pictures(arguments).map(|(_, names)| names)
 }
 
-fn pictures(arguments: &Arguments) -> Result<(Record, Vec<String>), Error> {
-    let record = Record::read(&arguments.directory)?;
+fn pictures(arguments: &PlotArguments) -> Result<(RunRecord, Vec<String>), Error> {
+    let record = RunRecord::read(&arguments.directory)?;
     let reference = arguments.reference.as_deref().map(reference::read).transpose()?;
     let frames = record.frames(&arguments.times)?;
     let mut names = Vec::new();
@@ -105,11 +105,11 @@ fn pictures(arguments: &Arguments) -> Result<(Record, Vec<String>), Error> {
 }
 
 /// The wanted field, or those that show how a scene of this kind stands; the plastic strain only if there is any.
-fn fields(record: &Record, frames: &[Frame], wanted: Option<FieldName>) -> Vec<FieldName> {
+fn fields(record: &RunRecord, frames: &[Frame], wanted: Option<FieldName>) -> Vec<FieldName> {
     match (wanted, record.regime()) {
         (Some(field), _) => vec![field],
-        (None, Regime::Dynamic) => vec![FieldName::StressYy],
-        (None, Regime::QuasiStatic) => {
+        (None, RecordedRegime::Dynamic) => vec![FieldName::StressYy],
+        (None, RecordedRegime::QuasiStatic) => {
             let strains: Option<Vec<_>> = frames.iter().map(|frame| FieldName::PlasticStrain.values(frame)).collect();
             let has_strain = strains.is_some_and(|strains| strains.iter().flatten().any(|&strain| strain != 0.0));
             let strain = has_strain.then_some(FieldName::PlasticStrain);
@@ -119,7 +119,7 @@ fn fields(record: &Record, frames: &[Frame], wanted: Option<FieldName>) -> Vec<F
 }
 
 /// Whether the free surface tells something: where a body runs out, or there is one to compare with.
-fn has_surface(record: &Record, reference: Option<&Columns>) -> bool {
+fn has_surface(record: &RunRecord, reference: Option<&Columns>) -> bool {
     let is_measured = reference.is_some_and(|table| ["time", "x", "y"].iter().all(|name| table.get(name).is_some()));
-    record.regime() == Regime::Dynamic || !record.columns("runout").is_empty() || is_measured
+    record.regime() == RecordedRegime::Dynamic || !record.columns("runout").is_empty() || is_measured
 }

@@ -8,17 +8,17 @@ use bsmpm_io::frame::Frame;
 use bsmpm_io::frames::{Entry, read_collection};
 use bsmpm_io::manifest::Manifest;
 use bsmpm_io::steps::STEPS;
-use bsmpm_io::table::{self, Column, Columns};
+use bsmpm_io::table::{self, Columns, TableColumn};
 use bsmpm_io::vtu;
 
 use crate::Error;
 
 pub(crate) mod case;
 
-pub(crate) use case::{Case, Regime};
+pub(crate) use case::{Case, RecordedRegime};
 
 /// The files of a run; those that are not there yet are none.
-pub(crate) struct Record {
+pub(crate) struct RunRecord {
     pub directory: PathBuf,
     pub manifest: Manifest,
     pub case: Case,
@@ -27,7 +27,7 @@ pub(crate) struct Record {
     pub steps: Option<Columns>,
 }
 
-impl Record {
+impl RunRecord {
     pub fn read(directory: &Path) -> Result<Self, Error> {
         let manifest = present(Manifest::read(directory))?;
         let manifest = manifest.ok_or_else(|| Error::NoRun { directory: directory.to_owned() })?;
@@ -42,10 +42,10 @@ impl Record {
     }
 
     /// Whether inertia acts: as the case says, else by the unit of time, which a quasi-static analysis does not have.
-    pub fn regime(&self) -> Regime {
+    pub fn regime(&self) -> RecordedRegime {
         let by_unit = || {
             let unit = [&self.history, &self.steps].into_iter().flatten().find_map(|table| table.unit("time"));
-            if unit == Some("-") { Regime::QuasiStatic } else { Regime::Dynamic }
+            if unit == Some("-") { RecordedRegime::QuasiStatic } else { RecordedRegime::Dynamic }
         };
         self.case.regime.unwrap_or_else(by_unit)
     }
@@ -66,30 +66,30 @@ impl Record {
 
     fn all_columns(&self) -> impl Iterator<Item = Recorded<'_>> {
         let columns = self.history.iter().flat_map(|table| table.headings.iter().zip(&table.values));
-        columns.map(|(Column { name, unit }, values)| {
+        columns.map(|(TableColumn { name, unit }, values)| {
             let scale = self.history_of(name).map_or("", |history| &history.scale);
             Recorded { name, unit, scale, values }
         })
     }
 
     /// The case's table that a column comes from: of several names that it begins with, the longest.
-    fn history_of(&self, column: &str) -> Option<&case::History> {
+    fn history_of(&self, column: &str) -> Option<&case::RecordedHistory> {
         self.case.histories.iter().filter(|history| history.has(column)).max_by_key(|history| history.name.len())
     }
 
     /// The axis label of time.
     pub fn time_label(&self) -> (&'static str, &'static str) {
         match self.regime() {
-            Regime::Dynamic => ("Time", "s"),
-            Regime::QuasiStatic => ("Pseudo-time", "-"),
+            RecordedRegime::Dynamic => ("Time", "s"),
+            RecordedRegime::QuasiStatic => ("Pseudo-time", "-"),
         }
     }
 
     /// A moment in words, for titles and legends.
     pub fn moment(&self, time: f64) -> String {
         match self.regime() {
-            Regime::Dynamic => format!("t = {} s", short(time)),
-            Regime::QuasiStatic => format!("pseudo-time {}", short(time)),
+            RecordedRegime::Dynamic => format!("t = {} s", short(time)),
+            RecordedRegime::QuasiStatic => format!("pseudo-time {}", short(time)),
         }
     }
 

@@ -34,7 +34,7 @@ Exit codes: 0 written; 2 command line; 65 the case has errors; 66 no such case; 
 Examples:
   bsmpm slurm case.toml -n 64 -t 24:00:00 | sbatch -A project -p standard
   bsmpm slurm case.toml -n 64 -t 2-00:00:00 -o run1 --script job.sh -- srun --mpi=pmix bsmpm-par")]
-pub struct Arguments {
+pub struct SlurmArguments {
     /// The case file
     pub case: PathBuf,
     /// Ranks
@@ -64,7 +64,7 @@ pub struct Arguments {
 ///
 /// # Errors
 /// [`Error::NoCase`] and [`Error::BadCase`] before anything is written; those of the script's file.
-pub fn run(arguments: &Arguments, mut told: impl FnMut(&str)) -> Result<Option<Vec<u8>>, Error> {
+pub fn run(arguments: &SlurmArguments, mut told: impl FnMut(&str)) -> Result<Option<Vec<u8>>, Error> {
     let path = &arguments.case;
     let bytes = bsmpm_scene::load(path).map_err(|source| Error::NoCase { path: path.clone(), source })?;
     let case = Case::from_bytes(&path.display().to_string(), &bytes, &arguments.set)
@@ -95,7 +95,7 @@ fn doubt(case: &Case, ranks: u64) -> Option<String> {
     })
 }
 
-impl Arguments {
+impl SlurmArguments {
     fn script(&self) -> Vec<u8> {
         let seconds = self.time.as_secs();
         let notice = NOTICE.min(seconds / 4);

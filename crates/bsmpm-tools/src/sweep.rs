@@ -11,7 +11,7 @@ use bsmpm_scene::Case;
 use clap::Args;
 
 use crate::Error;
-use crate::batch::{Batch, Options, Order, Outcome, State};
+use crate::batch::{Batch, Options, Outcome, RunOrder, RunState};
 use crate::launch::command;
 
 mod axes;
@@ -26,11 +26,11 @@ mod study;
 mod write;
 
 pub(crate) use axes::split;
-use plan::Plan;
-pub(crate) use quantity::Part;
-use quantity::Quantity;
-use reference::Values;
-use report::{Parts, Report};
+use plan::SweepPlan;
+pub(crate) use quantity::QuantityPart;
+use quantity::SweepQuantity;
+use reference::ReferenceValues;
+use report::{ReportParts, SweepReport};
 use study::Point;
 
 const JSON: &str = "sweep.json";
@@ -56,7 +56,7 @@ its end.
 Examples:
   bsmpm sweep case.toml --vary grid.cell=20mm,10mm,5mm --vary body.*.points_per_cell=2,3,4 --quantity runout@0.607
   bsmpm sweep slope.toml --vary grid.cell=2m,1m,0.5m --quantity factor-of-safety --within 1% --write best.toml")]
-pub struct Arguments {
+pub struct SweepArguments {
     /// The case file
     pub case: PathBuf,
     /// A key of the case, as --set takes it, with its values; `*` is every item of a list; repeatable
@@ -97,14 +97,14 @@ fn share(text: &str) -> Result<f64, String> {
 ///
 /// # Errors
 /// Those of the command line and the case before anything runs; [`Error::NoResult`] if no run came to its end; those of files.
-pub fn run(arguments: &Arguments, mut told: impl FnMut(&str)) -> Result<(String, Vec<PathBuf>), Error> {
+pub fn run(arguments: &SweepArguments, mut told: impl FnMut(&str)) -> Result<(String, Vec<PathBuf>), Error> {
     let (plan, options, path) = (arguments.plan()?, &arguments.options, &*arguments.case);
     let (command, output) = (options.words(), options.directory(path, ".sweep"));
     let batch = options.batch(&command, path, &output)?;
     let outcomes = outcomes(&batch, &plan, command::ranks(&command), &mut told);
     let (values, outcomes) = measured(&plan.quantities, outcomes);
     let reference = plan.reference.find(&plan.quantities, &plan.points, &values)?;
-    let parts = Parts {
+    let parts = ReportParts {
         case: path.display().to_string(),
         title: plan.own.title.clone(),
         command: &command,
@@ -114,7 +114,7 @@ pub fn run(arguments: &Arguments, mut told: impl FnMut(&str)) -> Result<(String,
         outcomes: &outcomes,
         within: arguments.within,
     };
-    let report = Report::of(parts, &values, reference);
+    let report = SweepReport::of(parts, &values, reference);
     let mut files = tables(&report, &output)?;
     files.extend(pictures(&report, &output)?);
     if !report.has_result() {
@@ -134,10 +134,10 @@ pub fn run(arguments: &Arguments, mut told: impl FnMut(&str)) -> Result<(String,
 }
 
 /// What became of every point: those that could be begun were.
-fn outcomes(batch: &Batch, plan: &Plan, ranks: usize, told: &mut dyn FnMut(&str)) -> Vec<Outcome> {
+fn outcomes(batch: &Batch, plan: &SweepPlan, ranks: usize, told: &mut dyn FnMut(&str)) -> Vec<Outcome> {
     let mut outcomes: Vec<Option<Outcome>> = plan.points.iter().map(|point| refused(point, batch, ranks)).collect();
     let wanted: Vec<usize> = (0..outcomes.len()).filter(|&index| outcomes[index].is_none()).collect();
-    let orders: Vec<Order> =
+    let orders: Vec<RunOrder> =
         wanted.iter().filter_map(|&index| plan.points[index].order.as_ref().ok()).cloned().collect();
     let (count, mut ended) = (orders.len(), 0);
     let mut tell = |index: usize, outcome: &Outcome| {
@@ -147,7 +147,7 @@ fn outcomes(batch: &Batch, plan: &Plan, ranks: usize, told: &mut dyn FnMut(&str)
         let line = format!("{ended}/{count}  {name}: {}, {cpu:.1} CPU s{kept} {}", outcome.words(), outcome.reason);
         told(line.trim_end());
     };
-    let made = if plan.quantities.iter().any(Quantity::is_factor) {
+    let made = if plan.quantities.iter().any(SweepQuantity::is_factor) {
         batch.with(&orders, ranks, |order| safety::outcome(batch, order), &mut tell)
     } else {
         batch.run(&orders, ranks, &mut tell)
@@ -159,20 +159,20 @@ fn outcomes(batch: &Batch, plan: &Plan, ranks: usize, told: &mut dyn FnMut(&str)
 /// Why a point is not begun, if it is not.
 fn refused(point: &Point, batch: &Batch, ranks: usize) -> Option<Outcome> {
     match &point.order {
-        Err(errors) => Some(Outcome::never(State::Invalid, errors.join("\n"))),
+        Err(errors) => Some(Outcome::never(RunState::Invalid, errors.join("\n"))),
         Ok(order) => {
             let (needed, allowed) = (order.load(ranks).memory, batch.limits.memory);
             let mib = |bytes: u64| bytes as f64 / 1048576.0;
             let reason = || format!("it needs about {:.0} MiB of {:.0} MiB", mib(needed), mib(allowed));
-            (needed > allowed).then(|| Outcome::never(State::Memory, reason()))
+            (needed > allowed).then(|| Outcome::never(RunState::Memory, reason()))
         }
     }
 }
 
 /// The quantities of the runs that came to their end; where one is missing, the outcome says why.
-fn measured(quantities: &[Quantity], mut outcomes: Vec<Outcome>) -> (Vec<Option<Values>>, Vec<Outcome>) {
-    let of = |outcome: &mut Outcome| -> Option<Values> {
-        let history = outcome.history.as_ref().filter(|_| outcome.state == State::Done)?;
+fn measured(quantities: &[SweepQuantity], mut outcomes: Vec<Outcome>) -> (Vec<Option<ReferenceValues>>, Vec<Outcome>) {
+    let of = |outcome: &mut Outcome| -> Option<ReferenceValues> {
+        let history = outcome.history.as_ref().filter(|_| outcome.state == RunState::Done)?;
         let found: Vec<Result<Vec<f64>, String>> = quantities.iter().map(|quantity| quantity.values(history)).collect();
         let missing = found.iter().find_map(|found| found.as_ref().err().cloned());
         outcome.reason = missing.unwrap_or_default();
@@ -182,7 +182,7 @@ fn measured(quantities: &[Quantity], mut outcomes: Vec<Outcome>) -> (Vec<Option<
     (values, outcomes)
 }
 
-fn tables(report: &Report, output: &Path) -> Result<Vec<PathBuf>, Error> {
+fn tables(report: &SweepReport, output: &Path) -> Result<Vec<PathBuf>, Error> {
     let (csv, json) = (output.join(CSV), output.join(JSON));
     atomic::replace(&csv, |file| file.write_all(report.csv().as_bytes()))?;
     atomic::replace(&json, |file| {
@@ -193,7 +193,7 @@ fn tables(report: &Report, output: &Path) -> Result<Vec<PathBuf>, Error> {
 }
 
 /// A picture for each quantity that has errors.
-fn pictures(report: &Report, output: &Path) -> Result<Vec<PathBuf>, Error> {
+fn pictures(report: &SweepReport, output: &Path) -> Result<Vec<PathBuf>, Error> {
     let plain = |c: char| if c.is_ascii_alphanumeric() || ".-_".contains(c) { c } else { '-' };
     let mut drawn = Vec::new();
     for (index, name) in report.quantities.iter().enumerate() {

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 
 use crate::Error;
-use crate::launch::{self, Solver};
+use crate::launch::{self, SolverProgram};
 use crate::plot::FieldName;
 
 mod check;
@@ -25,14 +25,14 @@ mod runs;
 mod table;
 
 pub use matrix::Depth;
-use matrix::{Matrix, Run, Study};
+use matrix::{MatrixRun, MatrixStudy, ValidationMatrix};
 use measured::{Lack, Measured};
-use runs::{Launcher, Outcome};
-use table::{Row, Verdict};
+use runs::{Launcher, MatrixOutcome};
+use table::{RowVerdict, TableRow};
 
 /// What to validate.
 #[derive(Clone, Debug, Args)]
-pub struct Arguments {
+pub struct ValidateArguments {
     /// The matrix: a TOML file of studies with their runs, rows and figures
     pub matrix: PathBuf,
     /// Only what is marked as short
@@ -54,7 +54,7 @@ pub struct Arguments {
 
 /// Rows that passed and failed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Counts {
+pub struct MatrixCounts {
     /// Judged rows within their bounds.
     pub passed: usize,
     /// Judged rows outside of them, or without a result; figures that could not be drawn.
@@ -64,10 +64,10 @@ pub struct Counts {
 }
 
 /// A study as far as it is asked for.
-struct Part<'a> {
-    study: &'a Study,
-    runs: Vec<&'a Run>,
-    rows: Vec<&'a matrix::Row>,
+struct MatrixPart<'a> {
+    study: &'a MatrixStudy,
+    runs: Vec<&'a MatrixRun>,
+    rows: Vec<&'a matrix::MatrixRow>,
 }
 
 /// Runs and judges the matrix; `told` gets each study's part of the table as soon as it is there.
@@ -75,17 +75,17 @@ struct Part<'a> {
 /// # Errors
 /// A matrix that cannot be read, or of which nothing that is asked for can fail; a solver that is not there; files that cannot
 /// be written. Runs that fail are rows that fail.
-pub fn run(arguments: &Arguments, mut told: impl FnMut(&str)) -> Result<Counts, Error> {
-    let matrix = Matrix::read(&arguments.matrix)?;
+pub fn run(arguments: &ValidateArguments, mut told: impl FnMut(&str)) -> Result<MatrixCounts, Error> {
+    let matrix = ValidationMatrix::read(&arguments.matrix)?;
     let parts = parts(&matrix, arguments)?;
-    let solver = Solver { command: &arguments.command, side_by_side: false };
+    let solver = SolverProgram { command: &arguments.command, side_by_side: false };
     solver.check()?; // before former runs are deleted for new ones that cannot be
     let base = arguments.matrix.parent().unwrap_or(Path::new(""));
     launch::make(&arguments.output)?;
     let launcher = Launcher { solver, base, output: &arguments.output, force: arguments.force };
-    let mut rows: Vec<Row> = Vec::new();
+    let mut rows: Vec<TableRow> = Vec::new();
     let mut undrawn = 0;
-    for Part { study, runs, rows: wanted } in parts {
+    for MatrixPart { study, runs, rows: wanted } in parts {
         let mut outcomes = BTreeMap::new();
         for run in runs {
             outcomes.insert(run.name.clone(), launcher.outcome(study, run)?);
@@ -100,26 +100,26 @@ pub fn run(arguments: &Arguments, mut told: impl FnMut(&str)) -> Result<Counts, 
             told(&format!("  {reason}"));
         }
     }
-    let count = |is: fn(Verdict) -> bool| rows.iter().filter(|row| is(row.verdict)).count();
-    Ok(Counts {
-        passed: count(|verdict| verdict == Verdict::Passed),
-        failed: count(Verdict::is_failure) + undrawn,
-        known: count(|verdict| verdict == Verdict::Known),
+    let count = |is: fn(RowVerdict) -> bool| rows.iter().filter(|row| is(row.verdict)).count();
+    Ok(MatrixCounts {
+        passed: count(|verdict| verdict == RowVerdict::Passed),
+        failed: count(RowVerdict::is_failure) + undrawn,
+        known: count(|verdict| verdict == RowVerdict::Known),
     })
 }
 
 /// What is asked for; a validation that judges nothing would pass whatever the program does.
-fn parts<'a>(matrix: &'a Matrix, arguments: &Arguments) -> Result<Vec<Part<'a>>, Error> {
+fn parts<'a>(matrix: &'a ValidationMatrix, arguments: &ValidateArguments) -> Result<Vec<MatrixPart<'a>>, Error> {
     let asked = |depth: Depth| !arguments.short || depth == Depth::Short;
-    let wanted = |study: &&Study| arguments.only.as_ref().is_none_or(|part| study.title.contains(part));
-    let part = |study: &'a Study| {
-        let runs: Vec<&Run> = study.run.iter().filter(|run| asked(study.depth_of(run))).collect();
+    let wanted = |study: &&MatrixStudy| arguments.only.as_ref().is_none_or(|part| study.title.contains(part));
+    let part = |study: &'a MatrixStudy| {
+        let runs: Vec<&MatrixRun> = study.run.iter().filter(|run| asked(study.depth_of(run))).collect();
         let is_run = |name: &&str| runs.iter().any(|run| run.name == **name);
-        let is_asked = |row: &&matrix::Row| row.depth.is_none_or(asked) && row.runs().iter().all(is_run);
+        let is_asked = |row: &&matrix::MatrixRow| row.depth.is_none_or(asked) && row.runs().iter().all(is_run);
         let rows = study.row.iter().filter(is_asked).collect();
-        Part { study, runs, rows }
+        MatrixPart { study, runs, rows }
     };
-    let parts: Vec<Part<'a>> = matrix.study.iter().filter(wanted).map(part).collect();
+    let parts: Vec<MatrixPart<'a>> = matrix.study.iter().filter(wanted).map(part).collect();
     if parts.iter().flat_map(|part| &part.rows).any(|row| row.is_judged()) {
         return Ok(parts.into_iter().filter(|part| !part.runs.is_empty()).collect());
     }
@@ -132,7 +132,7 @@ fn parts<'a>(matrix: &'a Matrix, arguments: &Arguments) -> Result<Vec<Part<'a>>,
 }
 
 /// Draws what a study wants; what could not be drawn, and why, is no reason to leave the other studies.
-fn draw(study: &Study, outcomes: &BTreeMap<String, Outcome>, base: &Path, output: &Path) -> Vec<String> {
+fn draw(study: &MatrixStudy, outcomes: &BTreeMap<String, MatrixOutcome>, base: &Path, output: &Path) -> Vec<String> {
     let figures = study.figure.iter().filter_map(|figure| {
         let drawn = figure::draw(figure, &study.title, outcomes, base, output);
         drawn.err().map(|error| format!("{} is not drawn: {error}", figure.file))
@@ -145,9 +145,9 @@ fn draw(study: &Study, outcomes: &BTreeMap<String, Outcome>, base: &Path, output
 }
 
 /// The number of a row and what it is worth.
-fn judged(study: &Study, row: &matrix::Row, outcomes: &BTreeMap<String, Outcome>) -> Row {
+fn judged(study: &MatrixStudy, row: &matrix::MatrixRow, outcomes: &BTreeMap<String, MatrixOutcome>) -> TableRow {
     let found = measure::value(row, outcomes);
-    let of_row: Vec<&Outcome> = row.runs().iter().filter_map(|name| outcomes.get(*name)).collect();
+    let of_row: Vec<&MatrixOutcome> = row.runs().iter().filter_map(|name| outcomes.get(*name)).collect();
     let failed = of_row.iter().find_map(|outcome| outcome.failure.clone());
     let verdict = verdict(row, &found, failed.is_some());
     let (ours, remark) = match found {
@@ -159,7 +159,7 @@ fn judged(study: &Study, row: &matrix::Row, outcomes: &BTreeMap<String, Outcome>
     remarks.extend(failed);
     remarks.extend(of_row.iter().filter_map(|outcome| outcome.stopped.clone()));
     remarks.dedup();
-    Row {
+    TableRow {
         study: study.title.clone(),
         quantity: row.quantity.clone(),
         reference: row.reference,
@@ -169,32 +169,32 @@ fn judged(study: &Study, row: &matrix::Row, outcomes: &BTreeMap<String, Outcome>
         verdict,
         remark: remarks.join("; "),
         codes: runs::codes(&of_row),
-        cost: runs::Cost::of(&of_row),
+        cost: runs::MatrixCost::of(&of_row),
     }
 }
 
 /// How a row stands. A run that broke, or did not come so far, or a number elsewhere is another failure than the known one;
 /// and what is known to fail and does not has changed without the matrix.
-fn verdict(row: &matrix::Row, found: &Result<Measured, Lack>, is_broken: bool) -> Verdict {
+fn verdict(row: &matrix::MatrixRow, found: &Result<Measured, Lack>, is_broken: bool) -> RowVerdict {
     match (found, &row.known) {
-        (Err(Lack::NotReached(_)), _) if !row.is_judged() => Verdict::NotReached,
-        _ if !row.is_judged() => Verdict::Told,
-        _ if is_broken => Verdict::Failed,
-        (Err(Lack::NotReached(_)), _) => Verdict::Missed,
-        (Ok(ours), known) if row.holds(ours.value) => known.as_ref().map_or(Verdict::Passed, |_| Verdict::Mended),
-        (Ok(ours), Some(known)) if (known.min..=known.max).contains(&ours.value) => Verdict::Known,
-        _ => Verdict::Failed,
+        (Err(Lack::NotReached(_)), _) if !row.is_judged() => RowVerdict::NotReached,
+        _ if !row.is_judged() => RowVerdict::Told,
+        _ if is_broken => RowVerdict::Failed,
+        (Err(Lack::NotReached(_)), _) => RowVerdict::Missed,
+        (Ok(ours), known) if row.holds(ours.value) => known.as_ref().map_or(RowVerdict::Passed, |_| RowVerdict::Mended),
+        (Ok(ours), Some(known)) if (known.min..=known.max).contains(&ours.value) => RowVerdict::Known,
+        _ => RowVerdict::Failed,
     }
 }
 
 /// The pictures of the body of a run, copied beside the table.
-fn draw_body(plot: &matrix::Plot, outcomes: &BTreeMap<String, Outcome>, output: &Path) -> Result<(), Error> {
+fn draw_body(plot: &matrix::Plot, outcomes: &BTreeMap<String, MatrixOutcome>, output: &Path) -> Result<(), Error> {
     let Some(outcome) = outcomes.get(&plot.run).filter(|outcome| outcome.has_rows()) else { return Ok(()) };
-    let arguments = crate::plot::Arguments {
+    let arguments = crate::plot::PlotArguments {
         times: plot.times.clone(),
         field: FieldName::from_str(&plot.field, true).ok(),
         range: plot.range,
-        ..crate::plot::Arguments::of(outcome.directory.clone())
+        ..crate::plot::PlotArguments::of(outcome.directory.clone())
     };
     for name in crate::plot::draw(&arguments)?.iter().filter(|name| name.starts_with(&plot.field)) {
         let to = output.join(format!("{}_{name}", plot.run));

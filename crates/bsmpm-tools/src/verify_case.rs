@@ -8,7 +8,7 @@ use bsmpm_io::atomic;
 use clap::{Args, ValueEnum};
 
 use crate::Error;
-use crate::batch::{self, Options, Outcome, State};
+use crate::batch::{self, Options, Outcome, RunState};
 use crate::launch::command;
 use crate::plot;
 
@@ -16,7 +16,7 @@ mod grids;
 mod report;
 
 use grids::Grids;
-use report::Report;
+use report::VerifyReport;
 
 const JSON: &str = "verify.json";
 const CSV: &str = "verify.csv";
@@ -50,7 +50,7 @@ case; that of a run that did not come to its end.
 Examples:
   bsmpm verify-case case.toml --at 0.235 --at 0.607
   bsmpm verify-case case.toml --refine-only --ratio 1.5 --time-step refined -- mpirun -n 2 bsmpm-par")]
-pub struct Arguments {
+pub struct VerifyArguments {
     /// The case file
     pub case: PathBuf,
     /// Each grid's cells over those of the next finer one
@@ -78,7 +78,7 @@ pub struct Arguments {
 /// # Errors
 /// Those of the command line and of the case on each grid before anything runs; [`Error::Run`] for a run that did not come
 /// to its end; those of files.
-pub fn run(arguments: &Arguments, mut told: impl FnMut(&str)) -> Result<(String, Vec<PathBuf>), Error> {
+pub fn run(arguments: &VerifyArguments, mut told: impl FnMut(&str)) -> Result<(String, Vec<PathBuf>), Error> {
     let (options, path) = (&arguments.options, &*arguments.case);
     let (command, output) = (options.words(), options.directory(path, ".verify"));
     let bytes = batch::load(path)?;
@@ -91,7 +91,7 @@ pub fn run(arguments: &Arguments, mut told: impl FnMut(&str)) -> Result<(String,
     for (outcome, h) in outcomes.iter().zip(grids.sizes) {
         ended(outcome, h)?;
     }
-    let report = Report::of(arguments, &grids, &outcomes)?;
+    let report = VerifyReport::of(arguments, &grids, &outcomes)?;
     let (csv, json) = (output.join(CSV), output.join(JSON));
     atomic::replace(&csv, |file| file.write_all(report.csv().as_bytes()))?;
     atomic::replace(&json, |file| {
@@ -104,7 +104,7 @@ pub fn run(arguments: &Arguments, mut told: impl FnMut(&str)) -> Result<(String,
 /// Three grids are needed; two show no order.
 fn ended(outcome: &Outcome, h: f64) -> Result<(), Error> {
     match outcome.state {
-        State::Done => Ok(()),
+        RunState::Done => Ok(()),
         _ => Err(Error::Run {
             what: format!("cells of {h} m"),
             code: outcome.code.unwrap_or(bsmpm_io::exit::BUG),

@@ -8,9 +8,9 @@ use std::process::{Command, Output};
 
 use bsmpm_io::directory::{Existing, OutputDirectory};
 use bsmpm_io::lock::Unseen;
-use bsmpm_io::manifest::{Case, Manifest, Status};
-use bsmpm_io::steps::{STEPS, Step};
-use bsmpm_io::table::Table;
+use bsmpm_io::manifest::{Manifest, ManifestCase, Status};
+use bsmpm_io::steps::{STEPS, StepRow};
+use bsmpm_io::table::CsvTable;
 use bsmpm_scene::model::schedule;
 use serde_json::Value;
 
@@ -51,12 +51,12 @@ fn evaluations(case: &bsmpm_scene::Case) -> u64 {
 
 /// A run of so many steps at most; whether it stopped before the end. A step costs four evaluations besides its own.
 fn write_run(case: &bsmpm_scene::Case, directory: &Path, most: u64) -> bool {
-    let told = Case::new("column.toml", &case.title, "plane-strain", case.text.clone());
+    let told = ManifestCase::new("column.toml", &case.title, "plane-strain", case.text.clone());
     let mut manifest = Manifest::begin("0.1.0", Vec::new(), told);
     let directory = OutputDirectory::hold(directory, Unseen::Respect)
         .and_then(|held| held.claim(Existing::Delete, &manifest))
         .unwrap();
-    let mut table = Table::create(&directory.path().join(STEPS), &Step::columns("s")).unwrap();
+    let mut table = CsvTable::create(&directory.path().join(STEPS), &StepRow::columns("s")).unwrap();
     let (schedule, mut steps, mut time) = (schedule(case), 0, 0.0);
     while let Some(next) = schedule.next(time).filter(|_| steps < most) {
         (steps, time) = (steps + 1, next);
@@ -76,8 +76,8 @@ fn write_run(case: &bsmpm_scene::Case, directory: &Path, most: u64) -> bool {
     stopped
 }
 
-fn row(step: u64, time: f64, evaluations: u64) -> Step {
-    Step {
+fn row(step: u64, time: f64, evaluations: u64) -> StepRow {
+    StepRow {
         step,
         time,
         dt: 0.0,

@@ -2,7 +2,7 @@
 
 mod support;
 
-use bsmpm_tools::estimate::{Arguments, run};
+use bsmpm_tools::estimate::{EstimateArguments, run};
 use serde_json::Value;
 use support::{Scratch, shipped};
 
@@ -10,7 +10,7 @@ use support::{Scratch, shipped};
 fn the_short_footing_is_estimated_beside_its_run() {
     let (scratch, case) = (Scratch::new(), shipped("short/strip_footing.toml"));
     scratch.direct(&[case.to_str().unwrap(), "-q", "-o", "run.out"]).expect(0);
-    let mut arguments = Arguments {
+    let mut arguments = EstimateArguments {
         case,
         ranks: None,
         no_probe: false,

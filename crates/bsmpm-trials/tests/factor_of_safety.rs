@@ -4,7 +4,7 @@ mod support;
 
 use std::path::Path;
 
-use bsmpm_tools::fos::{Arguments, run};
+use bsmpm_tools::fos::{FosArguments, run};
 use serde_json::Value;
 
 const CASES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../cases");
@@ -14,7 +14,7 @@ fn search(case: &str, set: &[&str], jobs: usize, output: &Path) -> (Value, usize
 }
 
 fn between((from, to): (f64, f64), case: &str, set: &[&str], jobs: usize, output: &Path) -> (Value, usize) {
-    let arguments = Arguments {
+    let arguments = FosArguments {
         case: Path::new(CASES).join(case),
         from,
         to,

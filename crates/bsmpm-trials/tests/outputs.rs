@@ -3,7 +3,7 @@
 mod support;
 
 use bsmpm_io::manifest::{Manifest, Status};
-use bsmpm_io::residuals::{self, Method};
+use bsmpm_io::residuals::{self, ResidualMethod};
 use bsmpm_io::{frames, table};
 use std::path::Path;
 use support::cases::{COLUMN, SLIDING_BLOCK, changed};
@@ -136,8 +136,11 @@ fn frames_have_the_projected_pressure_on_request() {
 
 #[test]
 fn residuals_are_kept_on_request_until_both_criteria_hold() {
-    for (nonlinear, method) in [("newton", Method::Newton), ("auto", Method::Multisecant), ("broyden", Method::Broyden)]
-    {
+    for (nonlinear, method) in [
+        ("newton", ResidualMethod::Newton),
+        ("auto", ResidualMethod::Multisecant),
+        ("broyden", ResidualMethod::Broyden),
+    ] {
         let scratch = Scratch::with_case(SLIDING_BLOCK);
         let nonlinear = format!("solver.nonlinear={nonlinear}");
         scratch.mpirun(2, &["case.toml", "-q", "--set", "output.residuals=true", "--set", &nonlinear]).expect(0);
@@ -250,7 +253,7 @@ fn the_manifest_explains_a_finished_run() {
     let manifest = manifest(&directory);
     assert_eq!((manifest.status, manifest.exit_code), (Status::Finished, Some(0)));
     assert_eq!((manifest.case.file.as_str(), &manifest.case.text), ("case.toml", &text));
-    assert_eq!(manifest.case, bsmpm_io::manifest::Case::new("case.toml", "", "plane-strain", text));
+    assert_eq!(manifest.case, bsmpm_io::manifest::ManifestCase::new("case.toml", "", "plane-strain", text));
     assert_eq!((manifest.ranks, manifest.threads), (2, 1));
     for (size, expected) in [("points", 64), ("cells", 20), ("nodes", 42)] {
         assert_eq!(manifest.sizes.get(size), Some(&expected), "{size}");

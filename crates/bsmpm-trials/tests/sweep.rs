@@ -18,13 +18,13 @@ const SHORT: [&str; 6] = ["--set", "analysis.end=0.02", "--set", "check=[]", "--
 #[derive(Parser)]
 struct Sweep {
     #[command(flatten)]
-    arguments: sweep::Arguments,
+    arguments: sweep::SweepArguments,
 }
 
 #[derive(Parser)]
 struct VerifyCase {
     #[command(flatten)]
-    arguments: verify_case::Arguments,
+    arguments: verify_case::VerifyArguments,
 }
 
 /// A folder with a solver that is this program, but for cubic splines, with which it panics in the second step.

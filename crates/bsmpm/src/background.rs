@@ -14,10 +14,10 @@ use crate::grid::shape::{Patch, Shape};
 use crate::grid::{Contributions, Grid, transfer};
 use crate::kinematics::Kinematics;
 use crate::material::Material;
+use crate::parallel::{Halo, LinearSolver};
 use crate::points::Points;
-use crate::seam::{Halo, LinearSolver};
 use form::{Form, Forms};
-use ghost::Faces;
+use ghost::GhostFaces;
 
 /// What the background resists.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -69,7 +69,7 @@ pub struct Background {
 #[derive(Clone, Debug, Default)]
 pub struct Blocks {
     cells: Vec<(usize, Block)>, // patch number; Pa m^(D-2)
-    faces: Faces,
+    faces: GhostFaces,
 }
 
 /// The block of a cell, row-major.
@@ -151,7 +151,7 @@ impl Background {
             Kind::Strain => Form::Strain,
             Kind::Curvature => Form::Curvature,
             Kind::GhostPenalty => {
-                let faces = Faces::of::<K, D>((grid, shape), (self.coefficient, &concerned), modulus, halo);
+                let faces = GhostFaces::of::<K, D>((grid, shape), (self.coefficient, &concerned), modulus, halo);
                 return Blocks { cells: Vec::new(), faces };
             }
         };
@@ -163,7 +163,7 @@ impl Background {
             let weight = K::weight(&(lower + size * 0.5));
             (number, forms.block(&cell, self.coefficient * modulus(patch) * weight))
         };
-        Blocks { cells: cells.map(block).collect(), faces: Faces::default() }
+        Blocks { cells: cells.map(block).collect(), faces: GhostFaces::default() }
     }
 }
 

@@ -12,7 +12,7 @@ pub use surface::{Anchors, Surface, SurfacePoint};
 
 use crate::exact::Exact;
 use crate::grid::Grid;
-use crate::seam::Halo;
+use crate::parallel::Halo;
 use crate::tensor::Vector;
 
 /// Motion of one face of the grid.

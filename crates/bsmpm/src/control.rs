@@ -7,10 +7,10 @@ use crate::energy::{Budget, Stored};
 use crate::error::StepError;
 use crate::kinematics::Kinematics;
 use crate::model::{Model, Regime};
+use crate::parallel::{Halo, LinearSolver};
 use crate::points::Points;
 use crate::schedule::Schedule;
-use crate::seam::{Halo, LinearSolver};
-use crate::step::{Counts, Report, step};
+use crate::step::{Counts, StepReport, step};
 
 /// Halvings of the nominal step before the run gives up.
 const MOST_CUTS: u32 = 10;
@@ -27,7 +27,7 @@ pub struct Accepted {
     /// s  its length
     pub dt: f64,
     /// what it did
-    pub report: Report,
+    pub report: StepReport,
     /// work of all attempts, rejected ones included
     pub counts: Counts,
     /// the attempts before it that failed, first one first

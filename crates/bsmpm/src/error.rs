@@ -139,7 +139,7 @@ pub enum StepError {
         /// Bound of `growth`.
         slack: f64,
     },
-    /// The step was given up on request, see [`Halo::is_interrupted`](crate::seam::Halo::is_interrupted).
+    /// The step was given up on request, see [`Halo::is_interrupted`](crate::parallel::Halo::is_interrupted).
     #[error("given up on request")]
     Interrupted,
     /// Another rank has the error; this rank's part was good.

@@ -2,14 +2,14 @@
 //! there. The elastic strain that belongs to the stress is put into b^e; F stays the identity.
 
 use crate::boundary::StripReport;
-use crate::boundary::strip::Grips;
+use crate::boundary::strip::StripAttachments;
 use crate::error::StepError;
 use crate::grid::{Shape, transfer};
 use crate::kinematics::Kinematics;
-use crate::material::{Elastic, Region};
+use crate::material::{Branch, Elastic};
 use crate::model::{Model, Regime};
-use crate::points::{Held, Points};
-use crate::seam::{Halo, LinearSolver, agreed};
+use crate::parallel::{Halo, LinearSolver, agreed};
+use crate::points::{Packed, Points};
 use crate::solve::round_off::RoundOff;
 use crate::step::nodes::Nodes;
 use crate::step::problem::Problem;
@@ -44,7 +44,7 @@ pub fn set_stress<K: Kinematics<D>, const D: usize>(
 ) {
     for p in 0..points.len() {
         let stress = sigma(points.material[p], &points.x[p]);
-        assert!(Held::<D, Symmetric>::holds(&stress), "a stress at the start leaves the plane: {stress:?}");
+        assert!(Packed::<D, Symmetric>::holds(&stress), "a stress at the start leaves the plane: {stress:?}");
         let strain = strain_of(&elastic_at(model, points, p), &stress);
         set(points, p, stress, &strain);
     }
@@ -58,7 +58,7 @@ pub fn set_elastic<K: Kinematics<D>, const D: usize>(
     (halo, solver): (&dyn Halo, &mut dyn LinearSolver),
 ) -> Result<(), StepError> {
     let model = &Model { regime: Regime::QuasiStatic, ..model.clone() };
-    let start = Start::of(model, points, halo)?;
+    let start = Undeformed::of(model, points, halo)?;
     let problem = start.problem(model, points, halo);
     stiffness::assemble(&problem, None, solver)?;
     let mut u = vec![0.0; model.grid.nodes() * D];
@@ -95,12 +95,12 @@ pub fn balance<K: Kinematics<D>, const D: usize>(
 ) -> Result<Equilibrium, StepError> {
     let model = &Model { regime: Regime::QuasiStatic, ..model.clone() };
     let yields = |p: usize| match model.respond(points, p, &points.b_e.at(p)) {
-        Ok(response) => Ok(u32::from(response.region() != Region::Elastic)),
+        Ok(response) => Ok(u32::from(response.region() != Branch::Elastic)),
         Err(source) => Err(StepError::Material { id: points.id[p], source }),
     };
     let counted = (0..points.len()).try_fold(0.0, |sum, p| Ok(sum + f64::from(yields(p)?)));
     let mut yielding = [agreed(halo, counted, StepError::OtherRank)?];
-    let start = Start::of(model, points, halo)?;
+    let start = Undeformed::of(model, points, halo)?;
     let at_rest = vec![0.0; model.grid.nodes() * D];
     let balance = Residual::of(&start.problem(model, points, halo), &at_rest).balance;
     halo.reduce(&mut yielding);
@@ -116,24 +116,25 @@ pub fn is_pushed<K: Kinematics<D>, const D: usize>(
     halo: &dyn Halo,
 ) -> Result<bool, StepError> {
     let model = &Model { regime: Regime::QuasiStatic, ..model.clone() };
-    let start = Start::of(model, points, halo)?;
+    let start = Undeformed::of(model, points, halo)?;
     let problem = start.problem(model, points, halo);
     let balance = Residual::of(&problem, &vec![0.0; model.grid.nodes() * D]).balance;
     Ok(balance.measure() > model.criteria.force && !RoundOff::of(&problem).covers(&balance, &problem))
 }
 
 /// Steps (1) and (2) at time 0, without motion.
-struct Start<const D: usize> {
+struct Undeformed<const D: usize> {
     shape: Shape<D>,
     nodes: Nodes<D>,
-    grips: Grips<D>,
+    grips: StripAttachments<D>,
 }
 
-impl<const D: usize> Start<D> {
+impl<const D: usize> Undeformed<D> {
     fn of<K: Kinematics<D>>(model: &Model<K, D>, points: &Points<D>, halo: &dyn Halo) -> Result<Self, StepError> {
         let shape = agreed(halo, Shape::at(&model.grid, points), StepError::OtherRank)?;
         let nodes = Nodes::map(model, &shape, points, (0.0, 0.0), halo)?;
-        let grips = Grips::at(&model.boundary.strips, &points.surface, (&model.grid, &nodes.free), (0.0, 0.0));
+        let grips =
+            StripAttachments::at(&model.boundary.strips, &points.surface, (&model.grid, &nodes.free), (0.0, 0.0));
         Ok(Self { shape, nodes, grips })
     }
 

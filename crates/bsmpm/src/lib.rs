@@ -17,7 +17,7 @@
 //! | (10), (11) | grid kinematics, converged points | [`step::commit`] |
 //!
 //! [`boundary`] holds and loads the bodies, [`initial`] gives them stress at the start. [`control`] cuts and grows the
-//! steps so that a non-converged one is never accepted; [`seam`] holds the two traits behind which ranks and linear
+//! steps so that a non-converged one is never accepted; [`parallel`] holds the two traits behind which ranks and linear
 //! algebra live, [`grid::contributions`] and [`exact`] what makes sums the same on any number of ranks and threads;
 //! [`observe`] evaluates what a history records, [`energy`] where the energy of a step went.
 #![forbid(unsafe_code)]
@@ -37,10 +37,10 @@ pub mod material;
 pub mod method;
 pub mod model;
 pub mod observe;
+pub mod parallel;
 pub mod points;
 pub mod quadrature;
 pub mod schedule;
-pub mod seam;
 pub mod solve;
 pub mod stabilisation;
 pub mod step;

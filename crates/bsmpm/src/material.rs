@@ -18,7 +18,7 @@ mod von_mises;
 pub use drucker_prager::{DruckerPrager, Match};
 pub use graded::{Graded, GradedStrength, Profile};
 pub use hencky::Hencky;
-pub use law::{Flow, Law, Region, Separation, Variable, split};
+pub use law::{Branch, Flow, Law, Separation, Variable, split};
 pub use mohr_coulomb::MohrCoulomb;
 pub use response::Response;
 pub use stiffness::Stiffness;
@@ -190,9 +190,9 @@ macro_rules! laws {
 
         impl Flowed {
             #[inline]
-            pub fn region(&self) -> Region {
+            pub fn region(&self) -> Branch {
                 match self {
-                    Self::Elastic => Region::Elastic,
+                    Self::Elastic => Branch::Elastic,
                     $(Self::$Law(flow) => flow.region(),)*
                 }
             }

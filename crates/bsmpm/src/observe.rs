@@ -10,8 +10,8 @@ pub use front::front;
 
 use crate::exact::Exact;
 use crate::grid::Grid;
+use crate::parallel::Halo;
 use crate::points::Points;
-use crate::seam::Halo;
 use crate::tensor::Vector;
 
 /// Bisections of a percentile: the interval shrinks to 1e-15 of the grid.

@@ -1,10 +1,10 @@
 //! Material points: the permanent state, one array per quantity, sorted by cell.
 
 mod column;
-mod held;
+mod packed;
 
 pub use column::{Column, Number, Rows};
-pub use held::{Components, Held};
+pub use packed::{Components, Packed};
 
 use crate::boundary::Surface;
 use crate::boundary::anchor::Anchored;
@@ -38,11 +38,11 @@ pub struct Points<const D: usize> {
     /// m^D  reference volume V0; the current one is det F V0
     pub volume: Vec<f64>,
     /// -  deformation gradient
-    pub F: Held<D, Tensor>,
+    pub F: Packed<D, Tensor>,
     /// -  elastic left Cauchy-Green tensor that the next step starts from (smoothed under some F-bar methods)
-    pub b_e: Held<D, Symmetric>,
+    pub b_e: Packed<D, Symmetric>,
     /// Pa  Cauchy stress of the last converged step
-    pub sigma: Held<D, Symmetric>,
+    pub sigma: Packed<D, Symmetric>,
     /// -  accumulated plastic strain
     pub eps_p: Vec<f64>,
     /// -  J-bar/J, J-bar the dilation that the stress has felt, under F-bar from its first step on; before that it is 1
@@ -203,7 +203,7 @@ impl<const D: usize> Points<D> {
         self.columns().iter().map(|column| column.bytes()).sum()
     }
 
-    /// Bytes of one point in memory: fewer where the dimension leaves components out, see [`Held`].
+    /// Bytes of one point in memory: fewer where the dimension leaves components out, see [`Packed`].
     pub fn memory(&mut self) -> usize {
         self.columns().iter().map(|column| column.memory()).sum()
     }

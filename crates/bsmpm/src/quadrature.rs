@@ -20,8 +20,8 @@ use crate::boundary::Boundary;
 use crate::grid::occupied::Occupied;
 use crate::grid::{Grid, Shape, transfer};
 use crate::kinematics::Kinematics;
+use crate::parallel::Halo;
 use crate::points::Points;
-use crate::seam::Halo;
 
 /// What points weigh in the internal force, its derivative and its work.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -15,7 +15,7 @@ pub mod unknowns;
 use crate::error::StepError;
 use crate::kinematics::Kinematics;
 use crate::method::{Nonlinear, QuasiNewton};
-use crate::seam::LinearSolver;
+use crate::parallel::LinearSolver;
 use crate::step::nodes::Nodes;
 use crate::step::problem::Problem;
 use crate::step::report::Counts;

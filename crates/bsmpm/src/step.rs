@@ -16,9 +16,9 @@ pub mod smooth;
 pub mod stiffness;
 pub mod trial;
 
-pub use report::{Counts, Report};
+pub use report::{Counts, StepReport};
 
-use crate::boundary::strip::Grips;
+use crate::boundary::strip::StripAttachments;
 use crate::boundary::{Anchors, Surface, load};
 use crate::energy::Draft;
 use crate::error::StepError;
@@ -26,8 +26,8 @@ use crate::grid::Shape;
 use crate::initial;
 use crate::kinematics::Kinematics;
 use crate::model::{Model, Regime};
+use crate::parallel::{Halo, LinearSolver, agreed};
 use crate::points::Points;
-use crate::seam::{Halo, LinearSolver, agreed};
 use crate::solve;
 use commit::Committed;
 use newmark::Newmark;
@@ -43,7 +43,7 @@ pub fn step<K: Kinematics<D>, const D: usize>(
     (t, dt): (f64, f64),
     (halo, solver): (&dyn Halo, &mut dyn LinearSolver),
     counts: &mut Counts,
-) -> Result<Report, StepError> {
+) -> Result<StepReport, StepError> {
     let shape = agreed(halo, Shape::at(&model.grid, points), StepError::OtherRank)?; // (1)
     let mut nodes = Nodes::map(model, &shape, points, (t, dt), halo)?; // (2)
     if let Some(inertia) = nodes.inertia.as_mut().filter(|_| t == 0.0)
@@ -51,12 +51,12 @@ pub fn step<K: Kinematics<D>, const D: usize>(
     {
         inertia.newmark = Newmark::of_the_end();
     }
-    let grips = Grips::at(&model.boundary.strips, &points.surface, (&model.grid, &nodes.free), (t, dt));
+    let grips = StripAttachments::at(&model.boundary.strips, &points.surface, (&model.grid, &nodes.free), (t, dt));
     let problem = Problem { model, shape: &shape, nodes: &nodes, grips: &grips, points, halo };
     let found = solve::find(&problem, guess, solver, counts)?; // (3)-(9)
     commit::check_inside(model, &shape, points, &found.u, halo)?;
     let (strips, traction) = grips.conclude(&model.boundary.strips, &found.u, halo);
-    let mut report = Report { strips, ..Report::of(&problem, &found) };
+    let mut report = StepReport { strips, ..StepReport::of(&problem, &found) };
     let anchors = Anchors::of(&model.boundary, &points.surface.anchors, points.anchored(), halo);
     let position = load::moved(&model.boundary.loads, &points.surface, (&model.grid, &nodes.active), &found.u, halo);
     let mut surface = Surface { traction, position, anchors };
@@ -77,5 +77,5 @@ pub fn step<K: Kinematics<D>, const D: usize>(
     surface.position = places.loads;
     points.surface = surface;
     let (energy, turnover) = account.map_or((None, None), |(flows, turnover)| (flows, Some(turnover)));
-    Ok(Report { energy, turnover, advance, smoothed, ..report })
+    Ok(StepReport { energy, turnover, advance, smoothed, ..report })
 }

@@ -5,13 +5,13 @@ use arbitrary::{Result, Unstructured};
 use std::fmt::Write;
 
 /// The grid that the rest is placed on.
-struct Grid {
+struct FuzzGrid {
     lower: [f64; 2],
     upper: [f64; 2],
     h: f64,
 }
 
-impl Grid {
+impl FuzzGrid {
     /// A place in eighths of the grid, ends included.
     fn place(&self, u: &mut Unstructured<'_>) -> Result<[f64; 2]> {
         let mut part = || Ok(f64::from(u.int_in_range(0..=8_u8)?) / 8.0);
@@ -27,7 +27,7 @@ impl Grid {
 
 /// Where the stress at the start comes from.
 #[derive(Clone, Copy, PartialEq)]
-enum Start {
+enum FuzzStart {
     Nothing,
     AtRest,
     Elastic,
@@ -38,7 +38,7 @@ pub fn text(u: &mut Unstructured<'_>) -> Result<String> {
     let mut text = String::from("geometry = \"plane-strain\"\n");
     let dynamic = analysis(u, &mut text)?;
     let grid = grid(u, &mut text)?;
-    let start = *u.choose(&[Start::Nothing, Start::Nothing, Start::AtRest, Start::Elastic])?;
+    let start = *u.choose(&[FuzzStart::Nothing, FuzzStart::Nothing, FuzzStart::AtRest, FuzzStart::Elastic])?;
     let materials = u.int_in_range(1..=2)?;
     for number in 0..materials {
         material(u, number, (dynamic, start), &mut text)?;
@@ -77,7 +77,7 @@ fn analysis(u: &mut Unstructured<'_>, text: &mut String) -> Result<bool> {
     Ok(dynamic)
 }
 
-fn grid(u: &mut Unstructured<'_>, text: &mut String) -> Result<Grid> {
+fn grid(u: &mut Unstructured<'_>, text: &mut String) -> Result<FuzzGrid> {
     let order = quoted(u, &["linear", "quadratic", "cubic"])?;
     let cells = [u.int_in_range(1..=3_u8)?, u.int_in_range(1..=3_u8)?];
     let h = *u.choose(&[1.0, 0.125, 2.5e-3, 64.0])?;
@@ -98,10 +98,15 @@ fn grid(u: &mut Unstructured<'_>, text: &mut String) -> Result<Grid> {
     } else {
         line(text, &format!("grid = {{ lower = {lower:?}, upper = {upper:?}, cell = {h:?}, order = \"{order}\" }}"));
     }
-    Ok(Grid { lower, upper, h })
+    Ok(FuzzGrid { lower, upper, h })
 }
 
-fn material(u: &mut Unstructured<'_>, number: usize, (dynamic, start): (bool, Start), text: &mut String) -> Result<()> {
+fn material(
+    u: &mut Unstructured<'_>,
+    number: usize,
+    (dynamic, start): (bool, FuzzStart),
+    text: &mut String,
+) -> Result<()> {
     let model = quoted(u, &["hencky", "mohr-coulomb", "tresca"])?;
     let poisson = if u.ratio(1, 8)? { 0.5 - size(u, -9.0, -1.0)? } else { between(u, -0.5, 0.499)? };
     let young = size(u, 0.0, 11.0)?;
@@ -127,13 +132,13 @@ fn material(u: &mut Unstructured<'_>, number: usize, (dynamic, start): (bool, St
     if dynamic || u.ratio(3, 4)? {
         line(text, &format!("density = {:?}", size(u, 0.0, 5.0)?));
     }
-    if start == Start::AtRest && u.ratio(1, 4)? {
+    if start == FuzzStart::AtRest && u.ratio(1, 4)? {
         line(text, &format!("k0 = {:?}", between(u, 0.0, 3.0)?));
     }
     Ok(())
 }
 
-fn bodies(u: &mut Unstructured<'_>, grid: &Grid, materials: usize, text: &mut String) -> Result<()> {
+fn bodies(u: &mut Unstructured<'_>, grid: &FuzzGrid, materials: usize, text: &mut String) -> Result<()> {
     for _ in 0..u.int_in_range(1..=2)? {
         let (material, points) = (u.int_in_range(0..=materials - 1)?, u.int_in_range(1..=4_u8)?);
         line(text, &format!("[[body]]\nmaterial = \"m{material}\"\npoints_per_cell = {points}"));
@@ -171,24 +176,24 @@ fn ramp(u: &mut Unstructured<'_>) -> Result<f64> {
 }
 
 /// Gravity, and the stress at the start that belongs to it.
-fn gravity(u: &mut Unstructured<'_>, start: Start, text: &mut String) -> Result<()> {
-    if start == Start::Nothing && u.ratio(1, 4)? {
+fn gravity(u: &mut Unstructured<'_>, start: FuzzStart, text: &mut String) -> Result<()> {
+    if start == FuzzStart::Nothing && u.ratio(1, 4)? {
         return Ok(());
     }
-    let across = if start != Start::AtRest && u.ratio(1, 4)? { signed(u, -3.0, 2.0)? } else { 0.0 };
-    let down = if start == Start::AtRest { -size(u, -1.0, 2.5)? } else { signed(u, -1.0, 2.5)? };
-    let ramp = if start == Start::Nothing { ramp(u)? } else { 0.0 };
+    let across = if start != FuzzStart::AtRest && u.ratio(1, 4)? { signed(u, -3.0, 2.0)? } else { 0.0 };
+    let down = if start == FuzzStart::AtRest { -size(u, -1.0, 2.5)? } else { signed(u, -1.0, 2.5)? };
+    let ramp = if start == FuzzStart::Nothing { ramp(u)? } else { 0.0 };
     line(text, &format!("[gravity]\nacceleration = [{across:?}, {down:?}]\nramp = {ramp:?}"));
     match start {
-        Start::Nothing => {}
-        Start::AtRest => line(text, &format!("[initial]\nk0 = {:?}", between(u, 0.0, 3.0)?)),
-        Start::Elastic => line(text, "[initial]\ngravity = \"elastic\""),
+        FuzzStart::Nothing => {}
+        FuzzStart::AtRest => line(text, &format!("[initial]\nk0 = {:?}", between(u, 0.0, 3.0)?)),
+        FuzzStart::Elastic => line(text, "[initial]\ngravity = \"elastic\""),
     }
     Ok(())
 }
 
 /// A traction, a point load, a reduction of strength.
-fn loads(u: &mut Unstructured<'_>, grid: &Grid, text: &mut String) -> Result<()> {
+fn loads(u: &mut Unstructured<'_>, grid: &FuzzGrid, text: &mut String) -> Result<()> {
     if u.ratio(1, 6)? {
         let stress = [signed(u, 0.0, 9.0)?, signed(u, 0.0, 9.0)?];
         let (from, to, ramp) = (grid.place(u)?, grid.place(u)?, ramp(u)?);
@@ -205,7 +210,7 @@ fn loads(u: &mut Unstructured<'_>, grid: &Grid, text: &mut String) -> Result<()>
 }
 
 /// A footing, and a face or segment that moves.
-fn strips(u: &mut Unstructured<'_>, grid: &Grid, free: [bool; 4], text: &mut String) -> Result<()> {
+fn strips(u: &mut Unstructured<'_>, grid: &FuzzGrid, free: [bool; 4], text: &mut String) -> Result<()> {
     let segment = |u: &mut Unstructured<'_>| Ok(format!("from = {:?}\nto = {:?}", grid.place(u)?, grid.place(u)?));
     if u.ratio(1, 4)? {
         let (segment, base, moved) = (segment(u)?, quoted(u, &["smooth", "rough"])?, grid.motion(u)?);

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use rustix::fs::OFlags;
 
-use super::record::Record;
+use super::record::CheckpointRecord;
 use super::{file, steps};
 use crate::Error;
 
@@ -16,18 +16,18 @@ const RECORD_LIMIT: u64 = 1 << 20;
 
 /// A checkpoint whose file is what its record says.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Found {
+pub struct FoundCheckpoint {
     /// The file of the arrays.
     pub path: PathBuf,
     /// Its record.
-    pub record: Record,
+    pub record: CheckpointRecord,
 }
 
 /// The newest good checkpoint of a folder, and what is wrong with newer ones; a folder that is not there holds none.
 ///
 /// # Errors
 /// [`Error::File`] when the folder cannot be read.
-pub fn newest(folder: &Path) -> Result<(Option<Found>, Vec<Error>), Error> {
+pub fn newest(folder: &Path) -> Result<(Option<FoundCheckpoint>, Vec<Error>), Error> {
     let mut damaged = Vec::new();
     let steps = match steps(folder, ".json") {
         Err(error) if error.kind() == ErrorKind::NotFound => Vec::new(),
@@ -46,7 +46,7 @@ pub fn newest(folder: &Path) -> Result<(Option<Found>, Vec<Error>), Error> {
 ///
 /// # Errors
 /// [`Error::Checkpoint`] when either is missing, damaged, or none of ours.
-pub fn named(path: &Path) -> Result<Found, Error> {
+pub fn named(path: &Path) -> Result<FoundCheckpoint, Error> {
     let (arrays, record) = (path.with_extension("h5"), path.with_extension("json"));
     let mut bytes = Vec::new();
     let (source, size) = open(&record)?;
@@ -54,12 +54,12 @@ pub fn named(path: &Path) -> Result<Found, Error> {
         return Err(Error::checkpoint(&record, format!("its {size} bytes are no record of a checkpoint")));
     }
     source.take(RECORD_LIMIT).read_to_end(&mut bytes).map_err(|error| unreadable(&record, &error))?;
-    let record = Record::parse(&record, &bytes)?;
+    let record = CheckpointRecord::parse(&record, &bytes)?;
     verify(&arrays, &record)?;
-    Ok(Found { path: arrays, record })
+    Ok(FoundCheckpoint { path: arrays, record })
 }
 
-fn verify(path: &Path, record: &Record) -> Result<(), Error> {
+fn verify(path: &Path, record: &CheckpointRecord) -> Result<(), Error> {
     let (source, size) = open(path)?;
     if size != record.bytes {
         return Err(Error::checkpoint(path, format!("it has {size} bytes, its record says {}", record.bytes)));

@@ -17,7 +17,7 @@ const DIGITS: usize = 64;
 /// What a number of an array is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Number {
+pub enum ArrayNumber {
     /// A byte.
     U8,
     /// 16 bits without a sign.
@@ -28,7 +28,7 @@ pub enum Number {
     F64,
 }
 
-impl Number {
+impl ArrayNumber {
     /// Bytes of one.
     pub fn bytes(self) -> u64 {
         match self {
@@ -42,18 +42,18 @@ impl Number {
 /// One array of a checkpoint: a row for each point, or for each byte of a text.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Array {
+pub struct RecordedArray {
     /// Its name.
     pub name: String,
     /// What it holds.
-    pub number: Number,
+    pub number: ArrayNumber,
     /// Rows of all ranks.
     pub rows: u64,
     /// Numbers of a row.
     pub width: u64,
 }
 
-impl Array {
+impl RecordedArray {
     /// Bytes of all rows; none where they are more than can be counted.
     pub fn bytes(&self) -> Option<u64> {
         self.number.bytes().checked_mul(self.width)?.checked_mul(self.rows)
@@ -63,7 +63,7 @@ impl Array {
 /// What makes a checkpoint's file count.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Record {
+pub struct CheckpointRecord {
     /// The form of the checkpoint, [`SCHEMA`].
     pub schema: u32,
     /// The version of the program that wrote it.
@@ -81,17 +81,17 @@ pub struct Record {
     /// BLAKE3 of the file, in hexadecimal.
     pub blake3: String,
     /// Its arrays, in the order in which they were written.
-    pub arrays: Vec<Array>,
+    pub arrays: Vec<RecordedArray>,
 }
 
-impl Record {
+impl CheckpointRecord {
     /// The time that was reached, s or pseudo-time.
     pub fn time(&self) -> f64 {
         f64::from_bits(self.time_bits)
     }
 
     /// The array of that name.
-    pub fn array(&self, name: &str) -> Option<&Array> {
+    pub fn array(&self, name: &str) -> Option<&RecordedArray> {
         self.arrays.iter().find(|array| array.name == name)
     }
 
@@ -112,10 +112,10 @@ impl Record {
         }
         let wrong = |error: serde_json::Error| refused(error.to_string());
         #[derive(Deserialize)]
-        struct Form {
+        struct RecordForm {
             schema: u32,
         }
-        let Form { schema } = serde_json::from_slice(body).map_err(wrong)?;
+        let RecordForm { schema } = serde_json::from_slice(body).map_err(wrong)?;
         if schema != SCHEMA {
             return Err(refused(format!("it was written in form {schema}, this program reads form {SCHEMA}")));
         }

@@ -9,8 +9,8 @@ use rustix::fs::{FallocateFlags, fallocate};
 use rustix::io::Errno;
 use rustix::process::{Resource, getrlimit};
 
-use super::find::{Found, named};
-use super::record::{Array, Record, SCHEMA};
+use super::find::{FoundCheckpoint, named};
+use super::record::{CheckpointRecord, RecordedArray, SCHEMA};
 use super::{FOLDER, file, stem, steps};
 use crate::{Error, disk};
 
@@ -115,9 +115,9 @@ impl Store {
     ///
     /// # Errors
     /// [`Error::File`] when the system refuses.
-    pub fn existing(&self, facts: &Facts) -> Result<Option<Found>, Error> {
+    pub fn existing(&self, facts: &Facts) -> Result<Option<FoundCheckpoint>, Error> {
         let step = facts.step;
-        let same = |found: &Found| found.record.case == facts.case && found.record.ranks == facts.ranks;
+        let same = |found: &FoundCheckpoint| found.record.case == facts.case && found.record.ranks == facts.ranks;
         let found = named(&file(&self.folder, step, ".h5")).ok().filter(same);
         if found.is_none() && remove(&file(&self.folder, step, ".json"))? {
             sync(&self.folder)?;
@@ -146,9 +146,9 @@ impl Store {
         &self,
         pending: Pending,
         facts: &Facts,
-        arrays: Vec<Array>,
+        arrays: Vec<RecordedArray>,
         at: &dyn Fn(Phase),
-    ) -> Result<Found, Error> {
+    ) -> Result<FoundCheckpoint, Error> {
         at(Phase::Closed);
         let (bytes, blake3) = sync_and_hash(&pending.path).map_err(Error::file("write", &pending.path))?;
         at(Phase::Synced);
@@ -156,7 +156,7 @@ impl Store {
         write_record(&pending.record, &record).map_err(Error::file("write", &pending.record))?;
         at(Phase::Recorded);
         let place = |ending| file(&self.folder, pending.step, ending);
-        let found = Found { path: place(".h5"), record };
+        let found = FoundCheckpoint { path: place(".h5"), record };
         fs::rename(&pending.path, &found.path).map_err(Error::file("write", &found.path))?;
         at(Phase::Named);
         fs::rename(&pending.record, place(".json")).map_err(Error::file("write", &place(".json")))?;
@@ -239,9 +239,9 @@ fn free(path: &Path) -> String {
     disk::free(folder).map_or_else(|_| "more than there are".into(), |bytes| format!("the disk has {bytes} left"))
 }
 
-fn record(facts: &Facts, arrays: Vec<Array>, (bytes, blake3): (u64, String)) -> Record {
+fn record(facts: &Facts, arrays: Vec<RecordedArray>, (bytes, blake3): (u64, String)) -> CheckpointRecord {
     let Facts { version, case, ranks, step, time } = facts.clone();
-    Record { schema: SCHEMA, version, step, time_bits: time.to_bits(), case, ranks, bytes, blake3, arrays }
+    CheckpointRecord { schema: SCHEMA, version, step, time_bits: time.to_bits(), case, ranks, bytes, blake3, arrays }
 }
 
 fn sync_and_hash(path: &Path) -> io::Result<(u64, String)> {
@@ -252,7 +252,7 @@ fn sync_and_hash(path: &Path) -> io::Result<(u64, String)> {
     Ok((bytes, hasher.finalize().to_hex().to_string()))
 }
 
-fn write_record(path: &Path, record: &Record) -> io::Result<()> {
+fn write_record(path: &Path, record: &CheckpointRecord) -> io::Result<()> {
     let mut file = File::create(path)?;
     file.write_all(record.text()?.as_bytes())?;
     file.sync_all()

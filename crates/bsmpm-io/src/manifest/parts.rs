@@ -25,7 +25,7 @@ pub enum Status {
 
 /// What was solved.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Case {
+pub struct ManifestCase {
     /// The case file's name, without folders.
     pub file: String,
     /// The case's title.
@@ -38,7 +38,7 @@ pub struct Case {
     pub blake3: String,
 }
 
-impl Case {
+impl ManifestCase {
     /// A case with the hash of its text.
     pub fn new(file: &str, title: &str, geometry: &str, text: String) -> Self {
         let blake3 = blake3::hash(text.as_bytes()).to_hex().to_string();
@@ -48,7 +48,7 @@ impl Case {
 
 /// The box of the grid.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Extent {
+pub struct GridExtent {
     /// m  its lowest corner.
     pub lower: Vec<f64>,
     /// m  its highest corner.
@@ -57,7 +57,7 @@ pub struct Extent {
     pub cell: Vec<f64>,
 }
 
-impl Extent {
+impl GridExtent {
     pub(super) fn numbers(&self) -> impl Iterator<Item = f64> {
         [&self.lower, &self.upper, &self.cell].into_iter().flatten().copied()
     }
@@ -65,7 +65,7 @@ impl Extent {
 
 /// A quantity that the program chose by itself.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Choice {
+pub struct ManifestChoice {
     /// The key of the case file.
     pub key: String,
     /// What it became.
@@ -76,7 +76,7 @@ pub struct Choice {
 
 /// How the state at the start was balanced.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Initial {
+pub struct ManifestInitial {
     /// |out-of-balance force| / largest force
     pub unbalance: f64,
     /// Points whose stress lies outside the yield surface.
@@ -180,7 +180,7 @@ pub struct LinearSolver {
 
 /// How evenly the work lay on the ranks, over the steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Balance {
+pub struct EnergyBalance {
     /// Steps that are counted.
     pub steps: u64,
     /// Mean over them of the largest load over the mean load.
@@ -191,7 +191,7 @@ pub struct Balance {
     pub cuts: u64,
 }
 
-impl Balance {
+impl EnergyBalance {
     /// Counts one step more.
     pub fn enter(&mut self, imbalance: f64, is_cut_anew: bool) {
         self.steps += 1;
@@ -203,7 +203,7 @@ impl Balance {
 
 /// One `[[check]]` of the case and what came of it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Check {
+pub struct ManifestCheck {
     /// What was looked at.
     pub quantity: String,
     /// s or pseudo-time  when; none for the end.
@@ -220,7 +220,7 @@ pub struct Check {
 
 /// A file that the run wrote.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Output {
+pub struct ManifestOutput {
     /// Its place relative to the output directory, with `/` between its parts.
     pub path: String,
     /// Its size, once it is complete.
@@ -229,7 +229,7 @@ pub struct Output {
     pub blake3: Option<String>,
 }
 
-impl Output {
+impl ManifestOutput {
     pub(super) fn seal(&mut self, directory: &Path) -> Result<(), Error> {
         let size = fs::metadata(directory.join(&self.path)).ok().map(|found| found.len());
         if self.blake3.is_some() && size.is_some() && size == self.bytes {
@@ -253,7 +253,7 @@ impl Output {
 
 /// Where and how a run went on.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Restart {
+pub struct ManifestRestart {
     /// The checkpoint's file.
     pub checkpoint: String,
     /// Steps that were made before.
@@ -270,7 +270,7 @@ pub struct Restart {
 
 /// Why a run ended early.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Failure {
+pub struct ManifestFailure {
     /// The step that failed.
     pub step: u64,
     /// s or pseudo-time  at its start.
@@ -283,7 +283,7 @@ pub struct Failure {
     pub worst: Option<Worst>,
 }
 
-impl Failure {
+impl ManifestFailure {
     pub(super) fn numbers(&self) -> impl Iterator<Item = f64> {
         let place = self.worst.iter().flat_map(|worst| worst.position.iter().copied().chain(worst.force));
         self.residuals.iter().copied().flatten().chain(place).chain([self.time])

@@ -1,7 +1,7 @@
 //! Checkpoints: what was not committed does not count, and what was damaged since is refused.
 
 use bsmpm_io::Error;
-use bsmpm_io::checkpoint::{self, Array, Facts, Found, Number, Phase, Store};
+use bsmpm_io::checkpoint::{self, ArrayNumber, Facts, FoundCheckpoint, Phase, RecordedArray, Store};
 use std::cell::Cell;
 use std::fs;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -12,8 +12,8 @@ const ROWS: u64 = 500;
 /// Bytes of what stands in for a checkpoint, and more.
 const ROOM: u64 = 1 << 15;
 
-fn arrays() -> Vec<Array> {
-    vec![Array { name: "x".into(), number: Number::F64, rows: ROWS, width: 2 }]
+fn arrays() -> Vec<RecordedArray> {
+    vec![RecordedArray { name: "x".into(), number: ArrayNumber::F64, rows: ROWS, width: 2 }]
 }
 
 fn facts(step: u64) -> Facts {
@@ -25,7 +25,7 @@ fn content(step: u64) -> Vec<u8> {
     (0..16 * ROWS + 100).map(|at| (at * 31 + step * 17) as u8).collect()
 }
 
-fn write(store: &Store, step: u64, at: &dyn Fn(Phase)) -> Result<Found, Error> {
+fn write(store: &Store, step: u64, at: &dyn Fn(Phase)) -> Result<FoundCheckpoint, Error> {
     let pending = store.begin(step, ROOM)?;
     fs::write(pending.path(), content(step)).unwrap();
     store.commit(pending, &facts(step), arrays(), at)
@@ -54,7 +54,7 @@ fn a_checkpoint_is_found_again_as_it_was_written_and_the_newest_few_are_kept() {
     let directory = tempfile::tempdir().unwrap();
     let store = store(directory.path(), 2);
     assert_eq!(checkpoint::newest(store.folder()).unwrap().0, None);
-    let written: Vec<Found> = [3, 12, 1_000_000_007].map(|step| write(&store, step, &|_| ()).unwrap()).into();
+    let written: Vec<FoundCheckpoint> = [3, 12, 1_000_000_007].map(|step| write(&store, step, &|_| ()).unwrap()).into();
     assert_eq!(written[2].record.time().to_bits(), (0.1 * 1_000_000_007_f64).to_bits());
     let (found, damaged) = checkpoint::newest(store.folder()).unwrap();
     assert_eq!((found.as_ref(), damaged.len()), (Some(&written[2]), 0));
@@ -247,7 +247,7 @@ fn a_checkpoint_of_another_case_or_of_other_ranks_makes_way_too() {
 fn what_is_later_than_a_step_is_forgotten() {
     let directory = tempfile::tempdir().unwrap();
     let store = store(directory.path(), 10);
-    let written: Vec<Found> = [3, 12, 20].map(|step| write(&store, step, &|_| ()).unwrap()).into();
+    let written: Vec<FoundCheckpoint> = [3, 12, 20].map(|step| write(&store, step, &|_| ()).unwrap()).into();
     fs::write(&written[2].path, "damaged").unwrap();
     checkpoint::forget_beyond(directory.path(), 3).unwrap();
     assert_eq!(super::listing(store.folder()), ["step_000000003.h5", "step_000000003.json"]);

@@ -6,12 +6,13 @@ use std::path::Path;
 use bsmpm_io::Error;
 use bsmpm_io::directory::{Existing, OutputDirectory};
 use bsmpm_io::lock::Unseen;
-use bsmpm_io::manifest::{Case, Manifest};
+use bsmpm_io::manifest::{Manifest, ManifestCase};
 
 use crate::listing;
 
 fn manifest(outputs: &[&str]) -> Manifest {
-    let mut manifest = Manifest::begin("0.1.0", vec![], Case::new("a.toml", "A", "plane-strain", String::new()));
+    let mut manifest =
+        Manifest::begin("0.1.0", vec![], ManifestCase::new("a.toml", "A", "plane-strain", String::new()));
     outputs.iter().for_each(|output| manifest.name_output(output));
     manifest
 }

@@ -1,6 +1,6 @@
 //! Frames and their list.
 
-use bsmpm_io::frame::{Field, Frame, Parts, Values};
+use bsmpm_io::frame::{Field, FieldValues, Frame, Parts};
 use bsmpm_io::frames::{Frames, read_collection};
 use bsmpm_io::{Error, vtu};
 
@@ -20,11 +20,11 @@ fn frame(points: usize) -> Frame {
             Field::real("velocity", 3, delicate(3 * points)),
             Field::real("stress", 6, delicate(6 * points)),
             Field::real("pressure", 1, delicate(points)),
-            Field { name: "material".into(), components: 1, values: Values::U16(vec![65_535; points]) },
+            Field { name: "material".into(), components: 1, values: FieldValues::U16(vec![65_535; points]) },
             Field {
                 name: "id".into(),
                 components: 1,
-                values: Values::U64((0..points as u64).map(|p| u64::MAX - p).collect()),
+                values: FieldValues::U64((0..points as u64).map(|p| u64::MAX - p).collect()),
             },
         ],
     }
@@ -59,9 +59,9 @@ fn part(frame: &Frame, range: std::ops::Range<usize>) -> Frame {
     for (to, from) in part.fields.iter_mut().zip(&frame.fields) {
         let numbers = range.start * from.components..range.end * from.components;
         to.values = match &from.values {
-            Values::F64(values) => Values::F64(values[numbers].to_vec()),
-            Values::U64(values) => Values::U64(values[numbers].to_vec()),
-            Values::U16(values) => Values::U16(values[numbers].to_vec()),
+            FieldValues::F64(values) => FieldValues::F64(values[numbers].to_vec()),
+            FieldValues::U64(values) => FieldValues::U64(values[numbers].to_vec()),
+            FieldValues::U16(values) => FieldValues::U16(values[numbers].to_vec()),
         };
     }
     part
@@ -122,7 +122,7 @@ fn a_number_that_is_not_finite_is_named_and_nothing_is_written() {
     let path = dir.path().join("bad.vtu");
     for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         let mut bad = frame(9);
-        let Values::F64(stress) = &mut bad.fields[1].values else { unreachable!() };
+        let FieldValues::F64(stress) = &mut bad.fields[1].values else { unreachable!() };
         stress[6 * 7 + 3] = value;
         match vtu::write(&path, &bad) {
             Err(Error::PointNotFinite { field, component: 3, point, .. }) => {

@@ -1,21 +1,27 @@
 //! The manifest.
 
 use bsmpm_io::Error;
-use bsmpm_io::manifest::{Case, Check, Choice, Extent, Failure, Indicator, Manifest, Status, Worst};
+use bsmpm_io::manifest::{
+    GridExtent, Indicator, Manifest, ManifestCase, ManifestCheck, ManifestChoice, ManifestFailure, Status, Worst,
+};
 
 use crate::listing;
 
 fn manifest() -> Manifest {
-    let case = Case::new("slope.toml", "A slope", "plane-strain", "title = \"A slope\"\n".to_owned());
+    let case = ManifestCase::new("slope.toml", "A slope", "plane-strain", "title = \"A slope\"\n".to_owned());
     let mut manifest = Manifest::begin("0.1.0", vec!["bsmpm-par".into(), "slope.toml".into()], case);
     manifest.versions.insert("petsc".into(), "3.18.5".into());
     manifest.sizes.insert("points".into(), 115_200);
     manifest.timers.insert("residual".into(), 0.1 + 0.2);
     manifest.picture_times = vec![0.109, 0.235];
-    manifest.grid = Some(Extent { lower: vec![0.0, 0.0], upper: vec![0.55, 0.1025], cell: vec![2.5e-3; 2] });
-    manifest.choices.push(Choice { key: "grid.upper".into(), value: "[0.55]".into(), reason: "whole cells".into() });
+    manifest.grid = Some(GridExtent { lower: vec![0.0, 0.0], upper: vec![0.55, 0.1025], cell: vec![2.5e-3; 2] });
+    manifest.choices.push(ManifestChoice {
+        key: "grid.upper".into(),
+        value: "[0.55]".into(),
+        reason: "whole cells".into(),
+    });
     manifest.warnings.push("friction \"21.9\" deg".into());
-    manifest.checks.push(Check {
+    manifest.checks.push(ManifestCheck {
         quantity: "runout".into(),
         at: Some(0.607),
         value: None,
@@ -26,7 +32,7 @@ fn manifest() -> Manifest {
     manifest.indicators.insert("slip".into(), Indicator::new(0.02, "-", "slip over motion", [0.0, 0.01]));
     let worst = Worst { kind: "node".into(), id: 7, position: vec![0.5, 0.25], force: Some(2.0) };
     let (residuals, reason) = (vec![Some(1.0), None], "no convergence".to_owned());
-    manifest.failure = Some(Failure { step: 3, time: 0.1, reason, residuals, worst: Some(worst) });
+    manifest.failure = Some(ManifestFailure { step: 3, time: 0.1, reason, residuals, worst: Some(worst) });
     manifest
 }
 

@@ -1,8 +1,8 @@
 //! `residuals.csv`.
 
 use bsmpm_io::Error;
-use bsmpm_io::residuals::{Iterate, Method, read};
-use bsmpm_io::table::Table;
+use bsmpm_io::residuals::{Iterate, ResidualMethod, read};
+use bsmpm_io::table::CsvTable;
 
 const NAMES: &str = "step,time,iteration,method,energy,force\n# -,s,-,-,-,-\n";
 
@@ -11,8 +11,9 @@ fn rows_are_read_as_they_were_written() {
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join("residuals.csv");
     let row = |iteration, method, energy| Iterate { step: 3, time: 0.1 + 0.2, iteration, method, energy, force: 1e-9 };
-    let rows = [Method::Multisecant, Method::Broyden, Method::Newton].map(|method| row(1, Some(method), 1.0));
-    let mut table = Table::create(&path, &Iterate::columns("s")).unwrap();
+    let rows = [ResidualMethod::Multisecant, ResidualMethod::Broyden, ResidualMethod::Newton]
+        .map(|method| row(1, Some(method), 1.0));
+    let mut table = CsvTable::create(&path, &Iterate::columns("s")).unwrap();
     rows.iter().for_each(|row| table.row(&row.cells()).unwrap());
     table.row(&row(2, None, f64::NAN).cells()).unwrap();
     let text = std::fs::read_to_string(&path).unwrap();

@@ -1,18 +1,18 @@
 //! Tables with one row a step.
 
 use bsmpm_io::Error;
-use bsmpm_io::steps::Step;
-use bsmpm_io::table::{self, Cell, Column, Table};
+use bsmpm_io::steps::StepRow;
+use bsmpm_io::table::{self, Cell, CsvTable, TableColumn};
 
-fn columns() -> [Column; 3] {
-    [Column::new("step", ""), Column::new("time", "s"), Column::new("footing-pressure", "Pa")]
+fn columns() -> [TableColumn; 3] {
+    [TableColumn::new("step", ""), TableColumn::new("time", "s"), TableColumn::new("footing-pressure", "Pa")]
 }
 
 #[test]
 fn every_float_reads_back_to_the_bit_and_is_in_the_file_at_once() {
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join("history.csv");
-    let mut table = Table::create(&path, &columns()).unwrap();
+    let mut table = CsvTable::create(&path, &columns()).unwrap();
     let mut numbers = vec![0.1 + 0.2, -0.0, 5e-324, f64::MAX, 1e16, 123_456_789.123_456_78, -1e-7];
     // A linear congruential walk through the bit patterns.
     let mut state = 1_u64;
@@ -38,7 +38,7 @@ fn every_float_reads_back_to_the_bit_and_is_in_the_file_at_once() {
 fn a_bad_row_leaves_the_file_as_it_was() {
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join("history.csv");
-    let mut table = Table::create(&path, &columns()).unwrap();
+    let mut table = CsvTable::create(&path, &columns()).unwrap();
     table.row(&[Cell::Int(0), Cell::Float(0.0), Cell::Float(1.5)]).unwrap();
     let before = std::fs::read(&path).unwrap();
     for value in [f64::NAN, f64::INFINITY] {
@@ -54,12 +54,12 @@ fn headings_that_would_break_the_file_are_refused() {
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join("history.csv");
     for name in ["", "a,b", "a\nb", "\"a\"", "#a", " a", "step"] {
-        let columns = [Column::new("step", ""), Column::new(name, "m")];
-        assert!(matches!(Table::create(&path, &columns), Err(Error::Name { .. })), "{name:?}");
+        let columns = [TableColumn::new("step", ""), TableColumn::new(name, "m")];
+        assert!(matches!(CsvTable::create(&path, &columns), Err(Error::Name { .. })), "{name:?}");
     }
     assert!(!path.exists());
-    Table::create(&path, &columns()).unwrap();
-    assert!(matches!(Table::create(&path, &columns()), Err(Error::File { action: "create", .. })));
+    CsvTable::create(&path, &columns()).unwrap();
+    assert!(matches!(CsvTable::create(&path, &columns()), Err(Error::File { action: "create", .. })));
 }
 
 #[test]
@@ -87,8 +87,8 @@ fn a_table_of_the_literature_may_begin_with_its_source() {
 fn steps_fit_their_columns() {
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join("steps.csv");
-    let mut table = Table::create(&path, &Step::columns("s")).unwrap();
-    let step = Step {
+    let mut table = CsvTable::create(&path, &StepRow::columns("s")).unwrap();
+    let step = StepRow {
         step: 1,
         time: 2.5e-4,
         dt: 2.5e-4,
@@ -124,7 +124,7 @@ fn a_table_goes_on_from_a_mark_and_loses_what_came_later() {
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join("history.csv");
     let row = |step: u64| [Cell::Int(step), Cell::Float(0.1 * step as f64), Cell::Float(0.0)];
-    let mut table = Table::create(&path, &columns()).unwrap();
+    let mut table = CsvTable::create(&path, &columns()).unwrap();
     table.row(&row(0)).unwrap();
     let mark = table.mark().unwrap();
     let marked = std::fs::read(&path).unwrap();
@@ -133,7 +133,7 @@ fn a_table_goes_on_from_a_mark_and_loses_what_came_later() {
     let whole_mark = table.mark().unwrap();
     // A row of which a crash has left one half.
     std::fs::write(&path, [&whole[..], b"2,0.2"].concat()).unwrap();
-    let mut again = Table::resume(&path, &columns(), &mark).unwrap();
+    let mut again = CsvTable::resume(&path, &columns(), &mark).unwrap();
     assert_eq!(std::fs::read(&path).unwrap(), marked);
     again.row(&row(1)).unwrap();
     assert_eq!(std::fs::read(&path).unwrap(), whole);
@@ -144,7 +144,7 @@ fn a_table_goes_on_from_a_mark_and_loses_what_came_later() {
 fn a_table_that_is_not_the_marked_one_is_refused_and_stays() {
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join("history.csv");
-    let mut table = Table::create(&path, &columns()).unwrap();
+    let mut table = CsvTable::create(&path, &columns()).unwrap();
     table.row(&[Cell::Int(0), Cell::Float(0.0), Cell::Float(1.5)]).unwrap();
     let mark = table.mark().unwrap();
     let whole = std::fs::read(&path).unwrap();
@@ -152,10 +152,10 @@ fn a_table_that_is_not_the_marked_one_is_refused_and_stays() {
     other[whole.len() - 2] ^= 1;
     for found in [&whole[..whole.len() - 1], &other, b""] {
         std::fs::write(&path, found).unwrap();
-        assert!(matches!(Table::resume(&path, &columns(), &mark), Err(Error::Format { .. })));
+        assert!(matches!(CsvTable::resume(&path, &columns(), &mark), Err(Error::Format { .. })));
         assert_eq!(std::fs::read(&path).unwrap(), found);
     }
     std::fs::write(&path, &whole).unwrap();
-    assert!(matches!(Table::resume(&path, &columns()[..2], &mark), Err(Error::Format { .. })), "other columns");
-    assert!(Table::resume(&path, &columns(), &mark).is_ok());
+    assert!(matches!(CsvTable::resume(&path, &columns()[..2], &mark), Err(Error::Format { .. })), "other columns");
+    assert!(CsvTable::resume(&path, &columns(), &mark).is_ok());
 }

@@ -1,12 +1,12 @@
 //! The passes of a step, each by itself, on the points of a state.
 
-use bsmpm::boundary::strip::Grips;
+use bsmpm::boundary::strip::StripAttachments;
 use bsmpm::error::{SolveError, StepError};
 use bsmpm::grid::{Shape, transfer};
 use bsmpm::kinematics::{Kinematics, PlaneStrain};
 use bsmpm::model::Model;
+use bsmpm::parallel::{Halo, Krylov, LinearSolver, Solved, Symmetry};
 use bsmpm::points::Points;
-use bsmpm::seam::{Halo, Krylov, LinearSolver, Solved, Symmetry};
 use bsmpm::step::nodes::Nodes;
 use bsmpm::step::problem::Problem;
 use bsmpm::step::residual::Residual;
@@ -44,7 +44,7 @@ impl Bench<'_> {
         let Self { model, points, halo, times, .. } = *self;
         let shape = Shape::at(&model.grid, points)?;
         let nodes = Nodes::map(model, &shape, points, times, halo)?;
-        let grips = Grips::at(&model.boundary.strips, &points.surface, (&model.grid, &nodes.free), times);
+        let grips = StripAttachments::at(&model.boundary.strips, &points.surface, (&model.grid, &nodes.free), times);
         let problem = Problem { model, shape: &shape, nodes: &nodes, grips: &grips, points, halo };
         let along = |(c, &guess): (usize, &f64)| match nodes.prescribed[c] {
             Some(prescribed) => prescribed,

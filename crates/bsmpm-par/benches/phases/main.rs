@@ -58,7 +58,7 @@ fn state(universe: &Universe, path: &Path, model: &mut Model<PlaneStrain, 2>) ->
     let mut points = Points::holding(&names, bsmpm::material::state_width(&model.materials));
     let opened = Opened::new((&hdf5, universe.world()), &found).map_err(refused)?;
     opened.points(points.named_columns()).map_err(refused)?;
-    let state = opened.state().and_then(|text| checkpoint::State::parse(path, &text)).map_err(refused)?;
+    let state = opened.state().and_then(|text| checkpoint::CheckpointState::parse(path, &text)).map_err(refused)?;
     model.grid = state.within(&model.grid).ok_or("the checkpoint is of another grid")?;
     let layers = model.grid.layers();
     let guess = opened.guess(&layers, &layers, model.grid.layer_nodes() * 2).map_err(refused)?;

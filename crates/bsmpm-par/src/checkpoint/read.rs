@@ -3,7 +3,7 @@
 use super::refusal::{Refusal, agree, broadcast};
 use super::{GUESS, STATE, form, named};
 use bsmpm::points::Column;
-use bsmpm_io::checkpoint::{self, Found, Record};
+use bsmpm_io::checkpoint::{self, CheckpointRecord, FoundCheckpoint};
 use bsmpm_io::exit;
 use bsmpm_ranks::slab::intersection;
 use hdf5_collective::{Hdf5, Reader, Shape};
@@ -27,7 +27,7 @@ pub enum Wanted<'a> {
 ///
 /// # Errors
 /// The same on all ranks: a checkpoint that was named is missing or damaged (76).
-pub fn find(world: &SimpleCommunicator, wanted: Wanted<'_>) -> Result<(Option<Found>, Vec<String>), Refusal> {
+pub fn find(world: &SimpleCommunicator, wanted: Wanted<'_>) -> Result<(Option<FoundCheckpoint>, Vec<String>), Refusal> {
     let first = world.rank() == 0;
     let looked = if first { look(wanted) } else { Ok((None, Vec::new())) };
     let (found, passed_over) = agree(world, looked)?;
@@ -36,11 +36,11 @@ pub fn find(world: &SimpleCommunicator, wanted: Wanted<'_>) -> Result<(Option<Fo
     let record = agree(world, serde_json::to_vec(&found.as_ref().map(|found| &found.record)).map_err(told))?;
     let path = found.as_ref().map_or_else(Vec::new, |found| found.path.as_os_str().as_bytes().to_vec());
     let (record, path) = (broadcast(world, 0, record), broadcast(world, 0, path));
-    let record: Option<Record> = agree(world, serde_json::from_slice(&record).map_err(told))?;
-    Ok((record.map(|record| Found { path: OsString::from_vec(path).into(), record }), passed_over))
+    let record: Option<CheckpointRecord> = agree(world, serde_json::from_slice(&record).map_err(told))?;
+    Ok((record.map(|record| FoundCheckpoint { path: OsString::from_vec(path).into(), record }), passed_over))
 }
 
-fn look(wanted: Wanted<'_>) -> Result<(Option<Found>, Vec<String>), Refusal> {
+fn look(wanted: Wanted<'_>) -> Result<(Option<FoundCheckpoint>, Vec<String>), Refusal> {
     Ok(match wanted {
         Wanted::Newest(folder) => {
             let (found, damaged) = checkpoint::newest(folder)?;
@@ -63,7 +63,7 @@ impl<'h> Opened<'h> {
     ///
     /// # Errors
     /// The same on all ranks (76): the file holds other arrays than its record says, or cannot be read.
-    pub fn new((hdf5, world): (&'h Hdf5<'h>, SimpleCommunicator), found: &Found) -> Result<Self, Refusal> {
+    pub fn new((hdf5, world): (&'h Hdf5<'h>, SimpleCommunicator), found: &FoundCheckpoint) -> Result<Self, Refusal> {
         let refused = |reason: String| refused(&found.path, &reason);
         let library = |error: hdf5_collective::Error| refused(error.to_string());
         visible(&world, found)?;
@@ -166,7 +166,7 @@ impl<'h> Opened<'h> {
 
 /// Refuses a file that not all ranks see as the first one has: the library would wait for a rank that cannot open it, or
 /// each would read another. Collective.
-fn visible(world: &SimpleCommunicator, found: &Found) -> Result<(), Refusal> {
+fn visible(world: &SimpleCommunicator, found: &FoundCheckpoint) -> Result<(), Refusal> {
     let size = std::fs::File::open(&found.path).and_then(|file| file.metadata()).map(|there| there.len());
     let own = match size {
         Ok(bytes) if bytes == found.record.bytes => Ok(()),
@@ -181,7 +181,7 @@ fn refused(path: &Path, reason: &str) -> Refusal {
 }
 
 /// The file's arrays, if they are those of the record.
-fn recorded(arrays: Vec<(String, Shape)>, found: &Found) -> Result<Vec<(String, Shape)>, String> {
+fn recorded(arrays: Vec<(String, Shape)>, found: &FoundCheckpoint) -> Result<Vec<(String, Shape)>, String> {
     let recorded = |(name, shape): &&(String, Shape)| found.record.array(name) == Some(&named(name, *shape));
     if let Some((name, _)) = arrays.iter().find(|array| !recorded(array)) {
         return Err(format!("the array {name} is not as its record says"));

@@ -9,7 +9,7 @@ use bsmpm::tensor::Vector;
 use bsmpm_io::exit;
 use bsmpm_io::frames::Entry;
 use bsmpm_io::manifest::Manifest;
-use bsmpm_io::table::Mark;
+use bsmpm_io::table::TableMark;
 use bsmpm_scene::{GridSpec, Line};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
@@ -18,7 +18,7 @@ use std::path::Path;
 /// The state of a run between two steps, besides the arrays; the same on all ranks.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct State {
+pub struct CheckpointState {
     /// Accepted steps.
     pub steps: u64,
     /// Where the slabs begin, and where the columns of the grid's room end.
@@ -67,16 +67,16 @@ pub struct Files {
     /// The manifest.
     pub manifest: Manifest,
     /// `history.csv`.
-    pub history: Mark,
+    pub history: TableMark,
     /// `steps.csv`.
-    pub steps: Mark,
+    pub steps: TableMark,
     /// `residuals.csv`, if there is one.
-    pub residuals: Option<Mark>,
+    pub residuals: Option<TableMark>,
     /// The frames.
     pub frames: Vec<Entry>,
 }
 
-impl State {
+impl CheckpointState {
     /// As text, if it reads back as it is: a number that is not finite would not.
     ///
     /// # Errors
@@ -166,14 +166,14 @@ mod budget {
 
     #[derive(Serialize, Deserialize)]
     #[serde(transparent)]
-    struct Form(#[serde(with = "BudgetFields")] Budget);
+    struct StateForm(#[serde(with = "BudgetFields")] Budget);
 
     pub(super) fn serialize<S: Serializer>(budget: &Option<Budget>, serializer: S) -> Result<S::Ok, S::Error> {
-        budget.map(Form).serialize(serializer)
+        budget.map(StateForm).serialize(serializer)
     }
 
     pub(super) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Budget>, D::Error> {
-        Ok(Option::<Form>::deserialize(deserializer)?.map(|Form(budget)| budget))
+        Ok(Option::<StateForm>::deserialize(deserializer)?.map(|StateForm(budget)| budget))
     }
 }
 
@@ -208,17 +208,20 @@ mod tests {
 
     #[derive(Debug, PartialEq, Serialize, Deserialize)]
     #[serde(transparent)]
-    struct Form(#[serde(with = "ProgressForm")] Progress);
+    struct StateForm(#[serde(with = "ProgressForm")] Progress);
 
     #[test]
     fn step_control_reads_back_and_that_of_a_version_without_a_budget_is_read() {
         let budget = Budget { start: 0.1, external: 1.0 / 3.0, plastic: 2e-17, largest: 1e3, growth: 0.01 };
-        let kept = Form(Progress { t: 0.3, budget: Some(budget), ..Progress::default() });
+        let kept = StateForm(Progress { t: 0.3, budget: Some(budget), ..Progress::default() });
         let text = serde_json::to_string(&kept).unwrap();
-        assert_eq!(serde_json::from_str::<Form>(&text).unwrap(), kept);
+        assert_eq!(serde_json::from_str::<StateForm>(&text).unwrap(), kept);
         let old = r#"{"t":0.3,"guess_dt":0.0,"nominal":null,"tick":0,"cuts":0,"easy":0}"#;
-        assert_eq!(serde_json::from_str::<Form>(old).unwrap(), Form(Progress { t: 0.3, ..Progress::default() }));
+        assert_eq!(
+            serde_json::from_str::<StateForm>(old).unwrap(),
+            StateForm(Progress { t: 0.3, ..Progress::default() })
+        );
         let unknown = old.replace("easy", "hard");
-        assert!(serde_json::from_str::<Form>(&unknown).is_err());
+        assert!(serde_json::from_str::<StateForm>(&unknown).is_err());
     }
 }

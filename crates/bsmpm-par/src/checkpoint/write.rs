@@ -4,7 +4,7 @@ use super::refusal::{Refusal, agree, broadcast};
 use super::{GUESS, STATE, form, named};
 use crate::launch;
 use bsmpm::points::{Column, Number};
-use bsmpm_io::checkpoint::{Facts, Found, Pending, Phase, Store};
+use bsmpm_io::checkpoint::{Facts, FoundCheckpoint, Pending, Phase, Store};
 use bsmpm_io::exit;
 use hdf5_collective::{Hdf5, Shape, Writer};
 use mpi::collective::{CommunicatorCollectives, SystemOperation};
@@ -39,7 +39,7 @@ pub fn write(
     facts: &Facts,
     contents: &Contents<'_>,
     at: &dyn Fn(Phase),
-) -> Result<Option<Found>, Refusal> {
+) -> Result<Option<FoundCheckpoint>, Refusal> {
     agree(world, finite(facts.step, contents))?;
     let shapes = shapes(world, contents);
     let room = hdf5_collective::room(shapes.iter().map(|&(_, shape)| shape));
@@ -64,7 +64,7 @@ pub fn write(
 }
 
 enum Begun {
-    Existing(Found),
+    Existing(FoundCheckpoint),
     Pending(Pending),
 }
 

@@ -4,23 +4,23 @@ use crate::cli::Arguments;
 use crate::machine;
 use crate::setup;
 use bsmpm::stabilisation::Stabilisation;
-use bsmpm_io::manifest::{self, Check, Extent, Manifest};
+use bsmpm_io::manifest::{self, GridExtent, Manifest, ManifestCheck};
 use bsmpm_scene::Case;
 use bsmpm_scene::words::Word;
 
 /// The manifest of a new run of a case.
 pub(super) fn manifest(arguments: &Arguments, case: &Case, ranks: usize) -> Manifest {
     let file = arguments.case.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let described = manifest::Case::new(&file, &case.title, case.geometry.word(), case.text.clone());
+    let described = manifest::ManifestCase::new(&file, &case.title, case.geometry.word(), case.text.clone());
     let mut manifest = Manifest::begin(
         env!("CARGO_PKG_VERSION"),
         std::env::args_os().map(|argument| argument.to_string_lossy().into_owned()).collect(),
         described,
     );
     let axes = &case.grid.axes;
-    let longest = |axis: &bsmpm_scene::Axis| (0..axis.cells()).map(|i| axis.cell(i)).fold(0.0, f64::max);
+    let longest = |axis: &bsmpm_scene::GridAxis| (0..axis.cells()).map(|i| axis.cell(i)).fold(0.0, f64::max);
     (manifest.ranks, manifest.threads) = (ranks as u32, arguments.threads);
-    manifest.grid = Some(Extent {
+    manifest.grid = Some(GridExtent {
         lower: case.grid.lower().to_vec(),
         upper: case.grid.upper().to_vec(),
         cell: axes.iter().map(longest).collect(),
@@ -33,14 +33,18 @@ pub(super) fn manifest(arguments: &Arguments, case: &Case, ranks: usize) -> Mani
     manifest.choices = case
         .notes
         .iter()
-        .map(|note| manifest::Choice { key: note.key.clone(), value: note.value.clone(), reason: note.reason.clone() })
+        .map(|note| manifest::ManifestChoice {
+            key: note.key.clone(),
+            value: note.value.clone(),
+            reason: note.reason.clone(),
+        })
         .collect();
     manifest.choices.extend(setup::choices(case, ranks, &arguments.petsc));
     manifest.warnings = setup::warnings(case);
     manifest.versions = versions();
     let smooths = case.stabilisation.lowers() || case.stabilisation == Stabilisation::ModifiedFBar;
     manifest.summary.smoothing_passes = smooths.then_some(0.0);
-    let check = |check: &bsmpm_scene::Check| Check {
+    let check = |check: &bsmpm_scene::Check| ManifestCheck {
         quantity: check.quantity.clone(),
         at: Some(check.at),
         value: None,

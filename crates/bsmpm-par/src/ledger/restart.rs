@@ -1,18 +1,18 @@
 //! Going on with a run's files, and what a checkpoint must know of them.
 
 use super::{Headings, Ledger, first};
-use crate::checkpoint::{Files, State};
+use crate::checkpoint::{CheckpointState, Files};
 use crate::cli::Arguments;
 use crate::restart::Resumed;
 use bsmpm_io::Error;
-use bsmpm_io::checkpoint::{self, Found, Store};
+use bsmpm_io::checkpoint::{self, FoundCheckpoint, Store};
 use bsmpm_io::directory::{Existing, HISTORY, OutputDirectory};
 use bsmpm_io::failure::FAILURE;
 use bsmpm_io::frames::Frames;
-use bsmpm_io::manifest::{Manifest, Restart};
+use bsmpm_io::manifest::{Manifest, ManifestRestart};
 use bsmpm_io::residuals::RESIDUALS;
 use bsmpm_io::steps::STEPS;
-use bsmpm_io::table::{Column, Mark, Table};
+use bsmpm_io::table::{CsvTable, TableColumn, TableMark};
 use bsmpm_scene::Case;
 use std::fs;
 use std::path::Path;
@@ -24,7 +24,7 @@ impl Ledger {
         held: OutputDirectory,
         (arguments, case): (&Arguments, &Case),
         ranks: usize,
-        columns: Vec<Column>,
+        columns: Vec<TableColumn>,
         resumed: &Resumed<'_>,
     ) -> Result<Self, Error> {
         let here = held.path().to_owned();
@@ -65,7 +65,7 @@ impl Ledger {
             manifest: self.manifest.clone(),
             history: self.history.mark()?,
             steps: self.steps.mark()?,
-            residuals: self.residuals.as_ref().map(Table::mark).transpose()?,
+            residuals: self.residuals.as_ref().map(CsvTable::mark).transpose()?,
             frames: self.frames.entries().to_vec(),
         })
     }
@@ -80,7 +80,7 @@ impl Ledger {
     }
 
     /// Notes a checkpoint in the manifest, which names those no longer that are gone.
-    pub fn checkpointed(&mut self, found: &Found) -> Result<(), Error> {
+    pub fn checkpointed(&mut self, found: &FoundCheckpoint) -> Result<(), Error> {
         let path = self.directory.path();
         let folder = format!("{}/", checkpoint::FOLDER);
         self.manifest.outputs.retain(|output| !output.path.starts_with(&folder) || path.join(&output.path).exists());
@@ -95,22 +95,22 @@ impl Ledger {
 
 /// The tables of a run that goes on.
 struct Tables {
-    history: Table,
-    steps: Table,
-    residuals: Option<Table>,
+    history: CsvTable,
+    steps: CsvTable,
+    residuals: Option<CsvTable>,
 }
 
 impl Headings {
     /// The tables as far as they were; one that is not there begins anew, which is told in the `news`.
-    fn resume(&self, directory: &Path, state: &State, news: &mut Vec<String>) -> Result<Tables, Error> {
-        let mut table = |name: &str, headings: &[Column], mark: &Mark| {
+    fn resume(&self, directory: &Path, state: &CheckpointState, news: &mut Vec<String>) -> Result<Tables, Error> {
+        let mut table = |name: &str, headings: &[TableColumn], mark: &TableMark| {
             let path = directory.join(name);
             if path.exists() {
-                return Table::resume(&path, headings, mark);
+                return CsvTable::resume(&path, headings, mark);
             }
             let first = state.steps + 1;
             news.push(format!("{name} of the steps before is not there: it begins with step {first}"));
-            Table::create(&path, headings)
+            CsvTable::create(&path, headings)
         };
         let files = &state.files;
         let residuals = self.residuals.as_ref().zip(files.residuals.as_ref());
@@ -129,7 +129,7 @@ impl Headings {
         for (name, headings, mark) in marked.into_iter().chain([residuals]) {
             let path = directory.join(name);
             if let (Some(headings), Some(mark), true) = (headings, mark, path.exists()) {
-                Table::verify(&path, headings, mark)?;
+                CsvTable::verify(&path, headings, mark)?;
             }
         }
         Ok(())
@@ -175,7 +175,7 @@ fn manifest(new: Manifest, resumed: &Resumed<'_>) -> (Manifest, Vec<String>) {
     let checkpoint = resumed.directory().and_then(|there| path.strip_prefix(there).ok().map(Path::to_owned));
     let checkpoint = checkpoint.as_ref().unwrap_or(path).to_string_lossy().into_owned();
     let mut restarts = resumed.restarts.clone();
-    restarts.push(Restart {
+    restarts.push(ManifestRestart {
         checkpoint: checkpoint.clone(),
         step: resumed.state.steps,
         ranks_before: old.ranks,

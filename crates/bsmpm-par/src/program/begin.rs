@@ -6,7 +6,7 @@ use crate::cli::Arguments;
 use crate::ledger::Ledger;
 use crate::log::Log;
 use crate::record::Recorder;
-use crate::restart::{self, Resumed, Start};
+use crate::restart::{self, Resumed, RunStart};
 use crate::run::{Before, Run, Task};
 use crate::setup::Cut;
 use crate::space;
@@ -14,7 +14,7 @@ use bsmpm::kinematics::PlaneStrain;
 use bsmpm_io::directory::OutputDirectory;
 use bsmpm_io::exit;
 use bsmpm_io::lock::Unseen;
-use bsmpm_io::table::Column;
+use bsmpm_io::table::TableColumn;
 use bsmpm_ranks::linear::Choice;
 use bsmpm_ranks::signals::Requests;
 use bsmpm_ranks::simulation::Simulation;
@@ -38,12 +38,12 @@ pub(super) fn run(
     let refused = |refusal: Refusal| refuse(universe, refusal.code, &refusal.reason);
     let held = hold(universe, &task.arguments).map_err(refused)?;
     let mut start = restart::plan((hdf5, universe), held.as_ref(), &task.arguments, &task.case).map_err(refused)?;
-    if let Start::Resumed(resumed) = &start {
+    if let RunStart::Resumed(resumed) = &start {
         let lines = resumed.lines(&task.case).map_err(refused)?;
         task.case.keep_lines(lines);
     }
     let Task { case, arguments, .. } = &task;
-    if let Start::Complete(code) = start {
+    if let RunStart::Complete(code) = start {
         return Ok(refuse(universe, code, &format!("{} is complete already", arguments.directory().display())));
     }
     let timers = Rc::new(Timers::default());
@@ -53,7 +53,7 @@ pub(super) fn run(
     start.warn(told);
     let before = before(&start, &arguments.directory());
     let ledger = ledger(universe, held, (arguments, case), scene.1.columns(), &start).map_err(refused)?;
-    if let Start::Resumed(resumed) = start {
+    if let RunStart::Resumed(resumed) = start {
         resumed.close().map_err(refused)?;
     }
     let speaks = universe.world().rank() == 0;
@@ -76,13 +76,13 @@ fn scene<'p>(
     seam: (&'p Universe, &'p Petsc<'p>, Choice),
     case: &bsmpm_scene::Case,
     (room, slabs): Cut,
-    start: &Start<'_>,
+    start: &RunStart<'_>,
     shared: (Rc<Timers>, Rc<Requests>),
 ) -> Result<Scene<'p>, Refusal> {
     let universe = seam.0;
     let mut model = model(case).map_err(|error| Refusal::new(exit::CASE, error.to_string()))?;
     let schedule = schedule(case);
-    if let Start::Resumed(resumed) = start {
+    if let RunStart::Resumed(resumed) = start {
         let (slabs, points, stepper) = resumed.read(universe, &mut model, &schedule)?;
         let surface = points.surface.clone();
         let mut simulation = Simulation::new(seam, model, (slabs, points), schedule, shared);
@@ -99,8 +99,8 @@ fn scene<'p>(
 }
 
 /// What there was before.
-fn before(start: &Start<'_>, directory: &Path) -> Before {
-    let Start::Resumed(resumed) = start else { return Before::default() };
+fn before(start: &RunStart<'_>, directory: &Path) -> Before {
+    let RunStart::Resumed(resumed) = start else { return Before::default() };
     let Resumed { state, .. } = &**resumed;
     Before {
         resumed: true,
@@ -119,15 +119,15 @@ fn ledger(
     universe: &Universe,
     held: Option<OutputDirectory>,
     (arguments, case): (&Arguments, &bsmpm_scene::Case),
-    columns: Vec<Column>,
-    start: &Start<'_>,
+    columns: Vec<TableColumn>,
+    start: &RunStart<'_>,
 ) -> Result<Option<Ledger>, Refusal> {
     let world = universe.world();
     let ranks = world.size().unsigned_abs() as usize;
     let opened = held.map(|held| match start {
-        Start::New(beginning) => Ledger::open(held, beginning, (arguments, case), ranks, columns),
-        Start::Resumed(resumed) => Ledger::resume(held, (arguments, case), ranks, columns, resumed),
-        Start::Complete(_) => unreachable!("such a run does not begin"),
+        RunStart::New(beginning) => Ledger::open(held, beginning, (arguments, case), ranks, columns),
+        RunStart::Resumed(resumed) => Ledger::resume(held, (arguments, case), ranks, columns, resumed),
+        RunStart::Complete(_) => unreachable!("such a run does not begin"),
     });
     agree(&world, opened.transpose().map_err(Refusal::from))
 }

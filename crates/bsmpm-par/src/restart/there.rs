@@ -3,10 +3,10 @@
 use super::Beginning;
 use crate::checkpoint::Refusal;
 use crate::ledger;
-use bsmpm_io::checkpoint::Found;
+use bsmpm_io::checkpoint::FoundCheckpoint;
 use bsmpm_io::directory::Existing;
 use bsmpm_io::exit;
-use bsmpm_io::manifest::{Manifest, Restart, Status};
+use bsmpm_io::manifest::{Manifest, ManifestRestart, Status};
 use bsmpm_scene::{Case, Difference};
 
 /// Restarts in a row from one step after which no more is tried: the loop of a batch system would have no end.
@@ -78,7 +78,7 @@ pub(super) fn anew(run: Option<&Manifest>, passed_over: &[String], ranks: i32) -
     }
     futile(&run.restarts, 0)?;
     let ranks = ranks.unsigned_abs();
-    let restart = Restart {
+    let restart = ManifestRestart {
         checkpoint: String::new(),
         step: 0,
         ranks_before: run.ranks,
@@ -104,7 +104,7 @@ pub(super) fn admissible(what: &str, past: &Manifest, case: &Case) -> Result<Vec
 }
 
 /// Whether the last restarts were all from this step.
-pub(super) fn futile(restarts: &[Restart], step: u64) -> Result<(), Refusal> {
+pub(super) fn futile(restarts: &[ManifestRestart], step: u64) -> Result<(), Refusal> {
     let same = restarts.iter().rev().take_while(|restart| restart.step == step).count();
     if same < MOST_FUTILE {
         return Ok(());
@@ -117,7 +117,7 @@ pub(super) fn futile(restarts: &[Restart], step: u64) -> Result<(), Refusal> {
 }
 
 /// Why the run will not repeat to the bit, if so.
-pub(super) fn other_machine(past: &Manifest, ranks: u32, found: &Found) -> Vec<String> {
+pub(super) fn other_machine(past: &Manifest, ranks: u32, found: &FoundCheckpoint) -> Vec<String> {
     let mut reasons = Vec::new();
     if found.record.ranks != ranks {
         let before = found.record.ranks;

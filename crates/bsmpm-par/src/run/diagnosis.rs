@@ -3,7 +3,7 @@
 use bsmpm::control::Failure;
 use bsmpm::error::{SolveError, StepError};
 use bsmpm::method::Criteria;
-use bsmpm_io::failure::{FailureReport, Measures};
+use bsmpm_io::failure::{FailureMeasures, FailureReport};
 use bsmpm_io::manifest::Worst;
 use bsmpm_scene::Case;
 use mpi::topology::{Communicator, SimpleCommunicator};
@@ -21,8 +21,8 @@ pub(super) fn of(world: &SimpleCommunicator, failure: &Failure, step: u64, case:
     let iterated = failure.attempts.iter().rev().find(iterated);
     let (history, tolerances) = match iterated {
         Some(StepError::NotConverged { history, criteria, .. }) => (
-            history.iter().map(|m| Measures::new(m.energy, m.force)).collect(),
-            Some(Measures::new(criteria.energy, criteria.force)),
+            history.iter().map(|m| FailureMeasures::new(m.energy, m.force)).collect(),
+            Some(FailureMeasures::new(criteria.energy, criteria.force)),
         ),
         _ => (Vec::new(), None),
     };
@@ -44,12 +44,12 @@ fn places_of<'a>(last: &'a StepError, iterated: Option<&'a StepError>) -> &'a St
 }
 
 /// Order among the places, number, x and y, force or 0.
-type Place = [f64; 5];
+type NodePlace = [f64; 5];
 
 /// The nodes whose forces are the least balanced, or the points that the ranks name, of all ranks.
 fn worst(world: &SimpleCommunicator, error: &StepError, lower: [f64; 2]) -> Vec<Worst> {
     let kind = if matches!(error, StepError::NotConverged { .. }) { "node" } else { "point" };
-    let mut own: Vec<Place> = match error {
+    let mut own: Vec<NodePlace> = match error {
         StepError::NotConverged { worst, .. } => worst
             .iter()
             .map(|node| [-node.force, node.number as f64, lower[0] + node.x[0], lower[1] + node.x[1], node.force])

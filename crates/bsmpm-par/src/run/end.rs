@@ -1,15 +1,15 @@
 //! The ends of a run.
 
 use super::Run;
-use crate::indicators::{self, State};
+use crate::indicators::{self, IndicatorState};
 use crate::launch;
 use crate::machine;
-use bsmpm::seam::Halo;
+use bsmpm::parallel::Halo;
 use bsmpm_io::exit;
 use bsmpm_io::manifest::{Communication, LinearSolver, Status};
 use bsmpm_ranks::linear::Tallies;
 use bsmpm_ranks::simulation::Simulation;
-use bsmpm_ranks::traffic::Kind;
+use bsmpm_ranks::traffic::TrafficKind;
 use mpi::collective::CommunicatorCollectives;
 use mpi::topology::Communicator;
 use std::collections::BTreeMap;
@@ -80,7 +80,7 @@ impl Run<'_> {
         let timers = Rc::clone(&self.timers);
         let _timed = timers.time("indicators");
         let Simulation { model, points, halo, .. } = &self.simulation;
-        match State::of((model, points), (&self.recorder, self.simulation.progress().budget), &**halo) {
+        match IndicatorState::of((model, points), (&self.recorder, self.simulation.progress().budget), &**halo) {
             Ok(state) => {
                 if let Some(ledger) = &mut self.ledger {
                     let manifest = ledger.manifest();
@@ -171,7 +171,7 @@ fn communication(
     largest: &[f64],
 ) -> BTreeMap<String, Communication> {
     let numbers = sums.chunks_exact(3).zip(largest.chunks_exact(3));
-    let with = |(kind, (sum, most)): (Kind, (&[f64], &[f64]))| {
+    let with = |(kind, (sum, most)): (TrafficKind, (&[f64], &[f64]))| {
         let mut all = before.get(kind.name()).copied().unwrap_or_default();
         all.calls += most[0] as u64;
         all.messages += sum[1] as u64;
@@ -180,5 +180,5 @@ fn communication(
         all.most_bytes += most[2] as u64;
         (kind.name().to_owned(), all)
     };
-    Kind::ALL.into_iter().zip(numbers).map(with).collect()
+    TrafficKind::ALL.into_iter().zip(numbers).map(with).collect()
 }

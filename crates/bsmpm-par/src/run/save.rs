@@ -1,10 +1,10 @@
 //! Checkpoints and frames of the last converged state: when they are due, and what is in them.
 
 use super::Run;
-use crate::checkpoint::{self, Contents, Refusal, State, pairs};
+use crate::checkpoint::{self, CheckpointState, Contents, Refusal, pairs};
 use crate::launch;
-use bsmpm::seam::Halo;
-use bsmpm_io::checkpoint::{Facts, Found, Phase};
+use bsmpm::parallel::Halo;
+use bsmpm_io::checkpoint::{Facts, FoundCheckpoint, Phase};
 use mpi::topology::Communicator;
 use std::rc::Rc;
 use std::time::{Duration, Instant};
@@ -109,7 +109,7 @@ impl Run<'_> {
         Ok(())
     }
 
-    fn write_checkpoint(&mut self, step: u64) -> Result<Option<Found>, Refusal> {
+    fn write_checkpoint(&mut self, step: u64) -> Result<Option<FoundCheckpoint>, Refusal> {
         let world = self.universe.world();
         let text = checkpoint::agree(&world, self.state(step))?;
         let text = checkpoint::broadcast(&world, 0, text);
@@ -134,7 +134,7 @@ impl Run<'_> {
     fn state(&mut self, step: u64) -> Result<Vec<u8>, Refusal> {
         let Some(ledger) = &mut self.ledger else { return Ok(Vec::new()) };
         let (simulation, surface) = (&self.simulation, &self.simulation.points.surface);
-        let state = State {
+        let state = CheckpointState {
             steps: step,
             slabs: simulation.slabs().bounds().to_vec(),
             lines: self

@@ -5,7 +5,7 @@ use crate::machine;
 use crate::setup;
 use bsmpm::error::StepError;
 use bsmpm::initial::Equilibrium;
-use bsmpm::step::Report;
+use bsmpm::step::StepReport;
 use bsmpm_io::manifest;
 use bsmpm_scene::Initial;
 
@@ -36,7 +36,7 @@ impl Run<'_> {
             self.log.line("restart", &format!("goes on from step {step}, t = {time}"));
             return Ok(());
         }
-        let mut report = Report::default();
+        let mut report = StepReport::default();
         if let Some(start) = setup::start(&self.case, &mut self.simulation)? {
             self.tell_start(&start);
             (report.reactions, report.strips) = (start.reactions, start.strips);
@@ -50,7 +50,7 @@ impl Run<'_> {
     fn tell_start(&mut self, start: &Equilibrium) {
         let (unbalance, yielding) = (start.force, start.yielding);
         if let Some(ledger) = &mut self.ledger {
-            ledger.manifest().initial = Some(manifest::Initial { unbalance, yielding });
+            ledger.manifest().initial = Some(manifest::ManifestInitial { unbalance, yielding });
         }
         self.log.line(
             "initial",

@@ -1,6 +1,6 @@
 //! Which solver is wanted, and how PETSc is told.
 
-use bsmpm::seam::Symmetry;
+use bsmpm::parallel::Symmetry;
 use petsc_rs::{Ksp, Matrix, PcFailure, Petsc, ShellPc, Vector};
 
 /// Defaults of the factorisation, given before the user's own options, which win. MUMPS: ordering by approximate minimum

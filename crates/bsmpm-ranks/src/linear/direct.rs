@@ -8,7 +8,7 @@ use crate::stencil::Stencil;
 use crate::timers::Timers;
 use bsmpm::error::SolveError;
 use bsmpm::grid::Grid;
-use bsmpm::seam::{Halo, agreed, over_layers};
+use bsmpm::parallel::{Halo, agreed, over_layers};
 use mpi::collective::CommunicatorCollectives;
 use mpi::topology::Communicator;
 use petsc_rs::{PcFailure, ShellPc};

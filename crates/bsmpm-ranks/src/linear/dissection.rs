@@ -8,8 +8,8 @@
 
 mod factor;
 mod front;
-mod ladder;
 mod plan;
+mod reduction;
 #[cfg(test)]
 mod tests;
 
@@ -19,8 +19,8 @@ use crate::halo::Link;
 use crate::stencil::Stencil;
 use bsmpm::grid::Grid;
 use factor::Factor;
-use ladder::{Ladder, add_packed, pack};
 use plan::{NONE, Part, Plan};
+use reduction::{TreeReduction, add_packed, pack};
 use std::ops::Range;
 
 /// A factorisation of one slab's share of the matrix. Its memory is kept when the unknowns change, as they do in most
@@ -29,7 +29,7 @@ use std::ops::Range;
 pub struct Dissection {
     plan: Plan,
     factor: Factor, // part after part
-    ladder: Ladder,
+    reduction: TreeReduction,
     columns: Vec<f64>, // of the front in work
     matrix: Vec<f64>,  // what it leaves
     work: Vec<f64>,    // a vector by elimination numbers
@@ -56,7 +56,7 @@ impl Dissection {
         let layer = grid.layer_nodes() * C;
         let whole = |&component: &u32| layers.start * layer + component as usize;
         let shared: Vec<usize> = self.plan.shared().iter().map(whole).collect();
-        self.ladder = Ladder::new(link, (rank, ladder::role(bounds, q, rank)), &shared, layer);
+        self.reduction = TreeReduction::new(link, (rank, reduction::role(bounds, q, rank)), &shared, layer);
     }
 
     /// Factorises; `false` where a pivot of this rank was not positive and finite. `largest` is about the largest
@@ -71,7 +71,7 @@ impl Dissection {
     ) -> bool {
         let unit = f64::from_bits(largest.to_bits() & f64::INFINITY.to_bits());
         self.scale = if unit.is_normal() { 1.0 / unit } else { 1.0 };
-        let Self { plan, factor, ladder, columns, matrix, scale, .. } = self;
+        let Self { plan, factor, reduction, columns, matrix, scale, .. } = self;
         factor.restart(precision, plan.entries());
         let mut stack = Vec::new();
         let mut places = vec![0; plan.order.len()];
@@ -95,13 +95,13 @@ impl Dissection {
             stack.push((part, pack(matrix, order)));
         }
         let (_, rest) = stack.pop().expect("a plan has a last part");
-        ladder.factorise(link, precision, rest) && good
+        reduction.factorise(link, precision, rest) && good
     }
 
     /// Solves for the nodal right-hand side whose `owned` components are this rank's, with the last factorisation; the
     /// solution is right at all nodes of the window. Collective.
     pub fn solve(&mut self, link: &dyn Link, owned: Range<usize>, rhs: &[f64], solution: &mut [f64]) {
-        let Self { plan, factor, ladder, work, scale, .. } = self;
+        let Self { plan, factor, reduction, work, scale, .. } = self;
         let own = |component: usize| if owned.contains(&component) { rhs[component] * *scale } else { 0.0 };
         work.clear();
         work.extend(plan.order.iter().map(|&component| own(component as usize)));
@@ -114,7 +114,7 @@ impl Dissection {
             work[part.own.clone()].copy_from_slice(&x[..part.own.len()]);
             part.rim.iter().zip(&x[part.own.len()..]).for_each(|(&number, taken)| work[number as usize] += taken);
         }
-        ladder.solve(link, &mut work[plan.eliminated()..]);
+        reduction.solve(link, &mut work[plan.eliminated()..]);
         for part in plan.parts.iter().rev() {
             x.clear();
             x.extend(plan.front(part).map(|number| work[number]));

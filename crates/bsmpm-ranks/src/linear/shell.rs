@@ -7,7 +7,7 @@ use super::spread;
 use super::system::{failed, trusted};
 use super::tally::Tally;
 use bsmpm::error::SolveError;
-use bsmpm::seam::{Solved, Symmetry};
+use bsmpm::parallel::{Solved, Symmetry};
 use petsc_rs::{Ksp, Petsc};
 
 /// The system with its solver, which stay when the unknowns change.

@@ -3,7 +3,7 @@
 use super::choice::Choice;
 use super::tally::Tally;
 use bsmpm::error::SolveError;
-use bsmpm::seam::{Krylov, Symmetry};
+use bsmpm::parallel::{Krylov, Symmetry};
 use petsc_rs::{Ksp, Matrix, Petsc, Product, Tolerances, Vector};
 
 /// Largest relative residual of a solution that is accepted, recomputed: direct solvers report success for NaN.

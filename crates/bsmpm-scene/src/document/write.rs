@@ -50,7 +50,8 @@ fn inline(value: &Value) -> String {
             format!("[{}]", items.join(", "))
         }
         Value::Table(table) => {
-            let entry = |entry: &super::Entry| format!("{} = {}", quoted_key(&entry.key), inline(&entry.node.value));
+            let entry =
+                |entry: &super::DocumentEntry| format!("{} = {}", quoted_key(&entry.key), inline(&entry.node.value));
             let entries: Vec<String> = table.entries.iter().map(entry).collect();
             format!("{{ {} }}", entries.join(", "))
         }

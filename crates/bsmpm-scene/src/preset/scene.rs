@@ -29,11 +29,11 @@ pub(super) const STEPS: &str = "`type`, the cells and, in dynamics, `end` and yo
 const MOST_STEPS: f64 = 1e8;
 
 /// A case as far as it is written.
-pub(super) struct Scene<'a> {
+pub(super) struct PresetScene<'a> {
     root: &'a Record,
 }
 
-impl<'a> Scene<'a> {
+impl<'a> PresetScene<'a> {
     pub(super) fn of(root: &'a Record) -> Self {
         Self { root }
     }

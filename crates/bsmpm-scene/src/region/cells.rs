@@ -11,30 +11,30 @@ const SLIVER: f64 = 1e-9;
 
 /// What an outline has in a column of cells.
 #[derive(Clone, Debug)]
-pub(crate) struct Column {
+pub(crate) struct CellColumn {
     /// rows, upwards
-    pub(crate) parts: Vec<Part>,
+    pub(crate) parts: Vec<RegionPart>,
     /// m²
     pub(crate) area: f64,
 }
 
 /// Some rows of a column.
 #[derive(Clone, Debug)]
-pub(crate) enum Part {
+pub(crate) enum RegionPart {
     /// Cells that are covered as a whole.
     Whole(Range<usize>),
     /// A cell that the outline cuts, with its points.
-    Cut(usize, Vec<Place>),
+    Cut(usize, Vec<CellPlace>),
 }
 
 /// A point's place (m, from the grid's lower corner) and area (m²).
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Place {
+pub(crate) struct CellPlace {
     pub(crate) x: [f64; 2],
     pub(crate) area: f64,
 }
 
-impl Column {
+impl CellColumn {
     /// From the first to the last row with points.
     pub(crate) fn rows(&self) -> Option<Range<usize>> {
         let (first, last) = (self.parts.first()?, self.parts.last()?);
@@ -42,7 +42,7 @@ impl Column {
     }
 }
 
-impl Part {
+impl RegionPart {
     pub(crate) fn rows(&self) -> Range<usize> {
         match self {
             Self::Whole(rows) => rows.clone(),
@@ -65,15 +65,15 @@ pub(crate) fn place([lower, upper]: [f64; 2], k: usize, n: usize) -> f64 {
 }
 
 /// What shape 0 less the others has in column `i` of the grid with `n` points along each axis of a cell.
-pub(crate) fn column(edges: &[Edge], shapes: usize, (grid, n): (&GridSpec, usize), i: usize) -> Column {
+pub(crate) fn column(edges: &[Edge], shapes: usize, (grid, n): (&GridSpec, usize), i: usize) -> CellColumn {
     let (across, up) = (&grid.axes[0], &grid.axes[1]);
     let x = [across.breakpoint(i), across.breakpoint(i + 1)];
     let near: Vec<Near> = edges.iter().filter_map(|edge| Some(Near { edge: *edge, span: edge.span(x)? })).collect();
-    let mut column = Column { parts: Vec::new(), area: 0.0 };
+    let mut column = CellColumn { parts: Vec::new(), area: 0.0 };
     if near.is_empty() {
         return column;
     }
-    let strip = Strip::new(x, near, shapes, n);
+    let strip = CellStrip::new(x, near, shapes, n);
     let mut cut: Vec<Range<usize>> = strip.near.iter().map(|near| reached(up, near.span)).collect();
     cut.sort_by_key(|rows| rows.start);
     let mut next = 0;
@@ -82,14 +82,14 @@ pub(crate) fn column(edges: &[Edge], shapes: usize, (grid, n): (&GridSpec, usize
             let y = [up.breakpoint(next), up.breakpoint(next + 1)];
             if covers(&strip.middle, 0.5 * (y[0] + y[1])) {
                 column.area += (x[1] - x[0]) * (up.breakpoint(rows.start) - y[0]);
-                column.parts.push(Part::Whole(next..rows.start));
+                column.parts.push(RegionPart::Whole(next..rows.start));
             }
         }
         for row in rows.start.max(next)..rows.end {
             let (places, area) = strip.cell([up.breakpoint(row), up.breakpoint(row + 1)]);
             column.area += area;
             if !places.is_empty() {
-                column.parts.push(Part::Cut(row, places));
+                column.parts.push(RegionPart::Cut(row, places));
             }
         }
         next = next.max(rows.end);
@@ -109,7 +109,7 @@ struct Near {
 }
 
 /// A column of cells with the edges in it.
-struct Strip {
+struct CellStrip {
     x: [f64; 2],
     near: Vec<Near>,
     shapes: usize,
@@ -138,7 +138,7 @@ impl Sum {
     }
 }
 
-impl Strip {
+impl CellStrip {
     fn new(x: [f64; 2], near: Vec<Near>, shapes: usize, n: usize) -> Self {
         let at = |x: f64| intervals(near.iter().map(|near| &near.edge), shapes, x);
         let lines = (0..n).map(|k| at(place(x, k, n))).collect();
@@ -150,7 +150,7 @@ impl Strip {
     ///
     /// A point has the covered area of its own n-th of the cell along each axis; what is left of the others goes to the
     /// nearest point of the cell. A cell without a lattice point inside has one point, at the centroid if that is inside.
-    fn cell(&self, y: [f64; 2]) -> (Vec<Place>, f64) {
+    fn cell(&self, y: [f64; 2]) -> (Vec<CellPlace>, f64) {
         let size = (self.x[1] - self.x[0]).min(y[1] - y[0]);
         let sub = (self.x[1] - self.x[0]) * (y[1] - y[0]) / (self.n * self.n) as f64;
         let (mut places, mut left) = (Vec::new(), Vec::new());
@@ -169,11 +169,11 @@ impl Strip {
                 let Some(area) = area.filter(|area| *area > 0.0) else { continue };
                 let inside = covered && area > SLIVER * sub;
                 let clear = |near: &Near| near.span[1] < y[0] || near.edge.distance(x) > SLIVER * size;
-                if inside && edges.iter().all(clear) { &mut places } else { &mut left }.push(Place { x, area });
+                if inside && edges.iter().all(clear) { &mut places } else { &mut left }.push(CellPlace { x, area });
             }
         }
         if places.is_empty() && sum.area > SLIVER * sub * (self.n * self.n) as f64 {
-            places.push(Place { x: self.within(&sum), area: sum.area });
+            places.push(CellPlace { x: self.within(&sum), area: sum.area });
             return (places, sum.area);
         }
         left.iter().for_each(|left| give(&mut places, left));
@@ -217,8 +217,8 @@ fn part([lower, upper]: [f64; 2], k: usize, n: usize) -> [f64; 2] {
 }
 
 /// Gives the area of a place to the nearest of others, the first of several.
-fn give(places: &mut [Place], left: &Place) {
-    let distance = |place: &Place| (place.x[0] - left.x[0]).hypot(place.x[1] - left.x[1]);
+fn give(places: &mut [CellPlace], left: &CellPlace) {
+    let distance = |place: &CellPlace| (place.x[0] - left.x[0]).hypot(place.x[1] - left.x[1]);
     if let Some(nearest) = places.iter_mut().min_by(|a, b| distance(a).total_cmp(&distance(b))) {
         nearest.area += left.area;
     }

@@ -2,7 +2,7 @@
 
 /// What is wrong with a polygon.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Fault {
+pub(crate) enum PolygonFault {
     /// fewer than three corners
     TooFew,
     /// a corner and the next one are the same place
@@ -14,20 +14,20 @@ pub(crate) enum Fault {
 }
 
 /// The first fault of a polygon, none if it is simple.
-pub(crate) fn fault(corners: &[[f64; 2]]) -> Option<Fault> {
+pub(crate) fn fault(corners: &[[f64; 2]]) -> Option<PolygonFault> {
     let n = corners.len();
     if n < 3 {
-        return Some(Fault::TooFew);
+        return Some(PolygonFault::TooFew);
     }
     let next = |k: usize| (k + 1) % n;
     if let Some(k) = (0..n).find(|&k| corners[k] == corners[next(k)]) {
-        return Some(Fault::Repeated(k, next(k)));
+        return Some(PolygonFault::Repeated(k, next(k)));
     }
     let [lower, upper] = bounds(corners);
     let thinnest = 1e-12 * (upper[0] - lower[0]).hypot(upper[1] - lower[1]);
     let (p, q) = (corners[0], *corners.iter().max_by(|a, b| far(corners[0], a).total_cmp(&far(corners[0], b)))?);
     if corners.iter().all(|r| turn(p, q, *r).abs() <= thinnest * far(p, &q)) {
-        return Some(Fault::Flat);
+        return Some(PolygonFault::Flat);
     }
     let crossing = |i: usize, j: usize| {
         let (p, q, r, s) = (corners[i], corners[next(i)], corners[j], corners[next(j)]);
@@ -38,7 +38,7 @@ pub(crate) fn fault(corners: &[[f64; 2]]) -> Option<Fault> {
         }
     };
     let mut pairs = (0..n).flat_map(|i| (i + 1..n).map(move |j| (i, j)));
-    pairs.find(|(i, j)| crossing(*i, *j)).map(|(i, j)| Fault::Crossing(i, j))
+    pairs.find(|(i, j)| crossing(*i, *j)).map(|(i, j)| PolygonFault::Crossing(i, j))
 }
 
 /// Lower and upper corner of the rectangle around places.

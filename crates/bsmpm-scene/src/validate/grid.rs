@@ -2,7 +2,7 @@
 
 use crate::case::Support;
 use crate::estimate::{self, MOST_UNKNOWNS};
-use crate::grid::{Axis, GridSpec, Line};
+use crate::grid::{GridAxis, GridSpec, Line};
 use crate::record::Record;
 use crate::report::Report;
 use crate::unit::Dimension;
@@ -50,7 +50,7 @@ fn bounded(spec: &GridSpec, grid: &Record, report: &mut Report<'_>) -> Option<()
 }
 
 /// Breakpoints as written; equal ones are copies of one.
-fn graded(grid: &Record, order: usize, report: &mut Report<'_>) -> Option<([Axis; 2], [Vec<Line>; 2])> {
+fn graded(grid: &Record, order: usize, report: &mut Report<'_>) -> Option<([GridAxis; 2], [Vec<Line>; 2])> {
     let knots = grid.record("knots")?;
     let mut axis = |number: usize| {
         let name = NAMES[number];
@@ -78,14 +78,14 @@ fn graded(grid: &Record, order: usize, report: &mut Report<'_>) -> Option<([Axis
                 grid.error(key, message, report);
             }
         }
-        Some((Axis::Graded(breakpoints), lines))
+        Some((GridAxis::Graded(breakpoints), lines))
     };
     let (x, y) = (axis(0), axis(1));
     let ((x, of_x), (y, of_y)) = (x?, y?);
     Some(([x, y], [of_x, of_y]))
 }
 
-fn uniform(grid: &Record, boundary: [[Support; 2]; 2], report: &mut Report<'_>) -> Option<[Axis; 2]> {
+fn uniform(grid: &Record, boundary: [[Support; 2]; 2], report: &mut Report<'_>) -> Option<[GridAxis; 2]> {
     for key in ["lower", "upper"] {
         if !grid.gives(key) {
             report.error(grid.origin, &grid.path_of(key), "missing; it is needed with `cell`");
@@ -117,7 +117,7 @@ struct Faces<'a> {
 }
 
 impl Faces<'_> {
-    fn cells(&self, lower: f64, upper: f64, cell: f64, report: &mut Report<'_>) -> Option<Axis> {
+    fn cells(&self, lower: f64, upper: f64, cell: f64, report: &mut Report<'_>) -> Option<GridAxis> {
         let exact = (upper - lower) / cell;
         let name = NAMES[self.number];
         if exact > MOST_UNKNOWNS as f64 {
@@ -127,7 +127,7 @@ impl Faces<'_> {
         }
         let rounding = 4.0 * f64::EPSILON * lower.abs().max(upper.abs()) / cell;
         if exact >= 0.5 && (exact - exact.round()).abs() <= (WHOLE + rounding).min(0.01) {
-            return Some(Axis::Uniform { lower, cell, cells: exact.round() as usize });
+            return Some(GridAxis::Uniform { lower, cell, cells: exact.round() as usize });
         }
         let cells = exact.ceil();
         let length = cells * cell;
@@ -140,12 +140,12 @@ impl Faces<'_> {
                     format!("{}", lower + length),
                     reason,
                 );
-                Some(Axis::Uniform { lower, cell, cells: cells as usize })
+                Some(GridAxis::Uniform { lower, cell, cells: cells as usize })
             }
             [Support::Free, _] => {
                 let lower = upper - length;
                 report.note(self.grid.path_of(&format!("lower.{}", self.number)), format!("{lower}"), reason);
-                Some(Axis::Uniform { lower, cell, cells: cells as usize })
+                Some(GridAxis::Uniform { lower, cell, cells: cells as usize })
             }
             _ => {
                 let message = format!(

@@ -34,7 +34,7 @@ pub(super) fn place(case: &mut Case, record: &Record, report: &mut Report<'_>) {
     if case.grid.order == 1 {
         return; // Every grid line is one.
     }
-    let mut found = Found::default();
+    let mut found = FoundLine::default();
     interfaces(case, &mut found);
     segments(case, &mut found);
     for (table, number, message) in std::mem::take(&mut found.narrow) {
@@ -67,7 +67,7 @@ pub(super) fn place(case: &mut Case, record: &Record, report: &mut Report<'_>) {
 
 /// Lines by axis and breakpoint with their reasons, and what cannot be on one.
 #[derive(Default)]
-struct Found {
+struct FoundLine {
     lines: BTreeMap<(usize, usize), String>,
     doubts: BTreeMap<String, String>,
     narrow: Vec<(&'static str, usize, String)>,
@@ -99,7 +99,7 @@ fn grid_line(case: &Case, axis: usize, x: f64) -> Option<usize> {
 }
 
 /// Where bodies of unlike stiffness or density meet.
-fn interfaces(case: &Case, found: &mut Found) {
+fn interfaces(case: &Case, found: &mut FoundLine) {
     let used: Vec<usize> = case.bodies.iter().map(|body| body.material).collect();
     if used.iter().all(|material| differ(case, (used[0], *material), None).is_none()) {
         return;
@@ -248,7 +248,7 @@ fn all_segments(case: &Case) -> Vec<Segment<'_>> {
 }
 
 /// Ends of strips and loaded segments beyond which the surface goes on, and walls with material on both sides.
-fn segments(case: &Case, found: &mut Found) {
+fn segments(case: &Case, found: &mut FoundLine) {
     for segment in all_segments(case) {
         let Some(along) = [0, 1].into_iter().find(|&axis| segment.ends[0][1 - axis] == segment.ends[1][1 - axis])
         else {
@@ -262,7 +262,7 @@ fn segments(case: &Case, found: &mut Found) {
 }
 
 /// The line through one end of a segment along an axis; `outward` is the direction away from the other end.
-fn end(case: &Case, segment: &Segment<'_>, (along, at, outward): (usize, [f64; 2], f64), found: &mut Found) {
+fn end(case: &Case, segment: &Segment<'_>, (along, at, outward): (usize, [f64; 2], f64), found: &mut FoundLine) {
     let (axis, name) = (&case.grid.axes[along], &segment.name);
     let mut beyond = at;
     beyond[along] += outward.signum() * BEYOND * axis.shortest();
@@ -306,7 +306,7 @@ fn end(case: &Case, segment: &Segment<'_>, (along, at, outward): (usize, [f64; 2
 }
 
 /// The line along a segment that stays on it, with material on both sides.
-fn wall(case: &Case, segment: &Segment<'_>, normal: usize, found: &mut Found) {
+fn wall(case: &Case, segment: &Segment<'_>, normal: usize, found: &mut FoundLine) {
     let axis = &case.grid.axes[normal];
     let place = segment.ends[0][normal];
     if segment.path.is_none() || !segment.stays(normal) {

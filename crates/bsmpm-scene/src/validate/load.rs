@@ -1,14 +1,14 @@
 //! Tractions, point loads, and the stress at the start.
 
 use super::place::{along, at_body, beyond};
-use super::strip::{Around, segment};
+use super::strip::{AroundStrip, segment};
 use crate::case::{Body, Gravity, Initial, NamedMaterial, PointLoad, Traction};
 use crate::record::Record;
 use crate::report::Report;
 use crate::words::Start;
 
 /// All tractions in the order of the file, without those that have an error.
-pub(super) fn tractions(root: &Record, around: Around<'_>, report: &mut Report<'_>) -> Vec<Traction> {
+pub(super) fn tractions(root: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Vec<Traction> {
     let mut read = |record: &Record| {
         let ends = segment(record, around, report);
         if let Some(ends) = ends {
@@ -23,7 +23,7 @@ pub(super) fn tractions(root: &Record, around: Around<'_>, report: &mut Report<'
 }
 
 /// All point loads in the order of the file, without those that have an error.
-pub(super) fn point_loads(root: &Record, around: Around<'_>, report: &mut Report<'_>) -> Vec<PointLoad> {
+pub(super) fn point_loads(root: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Vec<PointLoad> {
     let mut read = |record: &Record| {
         let (at, ramp) = (record.pair("at")?, ramp(record, around.end, report));
         let grid = around.grid?;
@@ -50,7 +50,7 @@ fn acts_on_body(
     record: &Record,
     key: &str,
     mut places: impl Iterator<Item = [f64; 2]>,
-    around: Around<'_>,
+    around: AroundStrip<'_>,
     report: &mut Report<'_>,
 ) {
     let (Some(grid), Some(bodies)) = (around.grid, around.bodies) else { return };

@@ -4,18 +4,18 @@ use super::place;
 use crate::error::Origin;
 use crate::grid::GridSpec;
 use crate::record::Record;
-use crate::region::{self, Edge, Fault, Outline, Region};
+use crate::region::{self, Edge, Outline, PolygonFault, Region};
 use crate::report::Report;
 
 /// A shape as it is written, m in the case's coordinates.
 #[derive(Clone, Debug)]
-enum Shape {
+enum BodyShape {
     Box { lower: [f64; 2], upper: [f64; 2] },
     Polygon(Vec<[f64; 2]>),
     Circle { center: [f64; 2], radius: f64 },
 }
 
-impl Shape {
+impl BodyShape {
     fn bounds(&self) -> [[f64; 2]; 2] {
         match self {
             Self::Box { lower, upper } => [*lower, *upper],
@@ -50,14 +50,14 @@ pub(super) fn region(
     report: &mut Report<'_>,
 ) -> Option<Region> {
     let whole = read(body, report);
-    let cut: Option<Vec<Shape>> = body.records("subtract").iter().map(|record| read(record, report)).collect();
+    let cut: Option<Vec<BodyShape>> = body.records("subtract").iter().map(|record| read(record, report)).collect();
     let (whole, cut) = (whole?, cut?);
     if body.gives("subtract") && cut.len() != body.records("subtract").len() {
         return None;
     }
     let grid = grid?;
     inside(&whole, body, grid, report)?;
-    if let (Shape::Box { lower, upper }, true) = (&whole, cut.is_empty()) {
+    if let (BodyShape::Box { lower, upper }, true) = (&whole, cut.is_empty()) {
         return Some(Region::Box { lower: *lower, upper: *upper });
     }
     let shapes = std::iter::once(&whole).chain(&cut).enumerate();
@@ -76,13 +76,13 @@ pub(super) fn key(record: &Record) -> &'static str {
     ["polygon", "circle"].into_iter().find(|key| record.gives(key)).unwrap_or("box")
 }
 
-fn read(record: &Record, report: &mut Report<'_>) -> Option<Shape> {
+fn read(record: &Record, report: &mut Report<'_>) -> Option<BodyShape> {
     if record.gives("polygon") {
         return polygon(record, report);
     }
     if record.gives("circle") {
         let circle = record.record("circle")?;
-        return Some(Shape::Circle { center: circle.pair("center")?, radius: circle.number("radius")? });
+        return Some(BodyShape::Circle { center: circle.pair("center")?, radius: circle.number("radius")? });
     }
     let shape = record.record("box")?;
     let (lower, upper) = (shape.pair("lower")?, shape.pair("upper")?);
@@ -90,10 +90,10 @@ fn read(record: &Record, report: &mut Report<'_>) -> Option<Shape> {
         shape.error("upper", format!("{upper:?} is not above lower = {lower:?}: the body is empty"), report);
         return None;
     }
-    Some(Shape::Box { lower, upper })
+    Some(BodyShape::Box { lower, upper })
 }
 
-fn polygon(record: &Record, report: &mut Report<'_>) -> Option<Shape> {
+fn polygon(record: &Record, report: &mut Report<'_>) -> Option<BodyShape> {
     let rows = record.rows("polygon")?;
     let corners: Vec<[f64; 2]> = rows.iter().map(|row| [row.numbers[0], row.numbers[1]]).collect();
     if corners.len() > region::MOST_EDGES {
@@ -101,16 +101,20 @@ fn polygon(record: &Record, report: &mut Report<'_>) -> Option<Shape> {
         record.error("polygon", message, report);
         return None;
     }
-    let Some(fault) = region::fault(&corners) else { return Some(Shape::Polygon(corners)) };
+    let Some(fault) = region::fault(&corners) else { return Some(BodyShape::Polygon(corners)) };
     let row = |k: usize| rows[k].origin;
     let (origin, message): (Origin, String) = match fault {
-        Fault::TooFew => (record.place("polygon"), format!("{} corners; a polygon has three at least", corners.len())),
-        Fault::Repeated(last, 0) => {
+        PolygonFault::TooFew => {
+            (record.place("polygon"), format!("{} corners; a polygon has three at least", corners.len()))
+        }
+        PolygonFault::Repeated(last, 0) => {
             (row(last), format!("the last corner {:?} repeats the first; a polygon closes by itself", corners[last]))
         }
-        Fault::Repeated(_, k) => (row(k), format!("corner {k}, {:?}, repeats the one before (from 0)", corners[k])),
-        Fault::Flat => (record.place("polygon"), "all corners lie on a line: the area is zero".to_owned()),
-        Fault::Crossing(i, j) => {
+        PolygonFault::Repeated(_, k) => {
+            (row(k), format!("corner {k}, {:?}, repeats the one before (from 0)", corners[k]))
+        }
+        PolygonFault::Flat => (record.place("polygon"), "all corners lie on a line: the area is zero".to_owned()),
+        PolygonFault::Crossing(i, j) => {
             let edge = |k: usize| format!("{:?} to {:?}", corners[k], corners[(k + 1) % corners.len()]);
             (row(j), format!("the edge {} crosses or touches the edge {}", edge(j), edge(i)))
         }
@@ -120,13 +124,13 @@ fn polygon(record: &Record, report: &mut Report<'_>) -> Option<Shape> {
 }
 
 /// Errors about what lies outside the grid.
-fn inside(shape: &Shape, body: &Record, grid: &GridSpec, report: &mut Report<'_>) -> Option<()> {
+fn inside(shape: &BodyShape, body: &Record, grid: &GridSpec, report: &mut Report<'_>) -> Option<()> {
     let [lower, upper] = shape.bounds();
     if place::beyond(grid, lower).is_none() && place::beyond(grid, upper).is_none() {
         return Some(());
     }
     match shape {
-        Shape::Box { .. } => {
+        BodyShape::Box { .. } => {
             for (key, corner) in [("lower", lower), ("upper", upper)] {
                 let message = place::beyond(grid, corner);
                 message.into_iter().for_each(|message| {
@@ -136,14 +140,14 @@ fn inside(shape: &Shape, body: &Record, grid: &GridSpec, report: &mut Report<'_>
                 });
             }
         }
-        Shape::Polygon(corners) => {
+        BodyShape::Polygon(corners) => {
             let outside = |(k, corner): (usize, &[f64; 2])| Some((k, place::beyond(grid, *corner)?));
             if let Some((k, message)) = corners.iter().enumerate().find_map(outside) {
                 let origin = body.rows("polygon").map_or(body.place("polygon"), |rows| rows[k].origin);
                 report.error(origin, &body.path_of("polygon"), format!("corner {k} (from 0): {message}"));
             }
         }
-        Shape::Circle { .. } => {
+        BodyShape::Circle { .. } => {
             let message = place::beyond(grid, lower).or(place::beyond(grid, upper)).unwrap_or_default();
             body.error("circle", message, report);
         }

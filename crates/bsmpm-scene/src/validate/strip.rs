@@ -12,7 +12,7 @@ const NOTHING: f64 = 1e-12;
 
 /// What the rest of the case says to a strip.
 #[derive(Clone, Copy)]
-pub(super) struct Around<'a> {
+pub(super) struct AroundStrip<'a> {
     pub(super) grid: Option<&'a GridSpec>,
     pub(super) bodies: Option<&'a [Body]>,
     pub(super) boundary: Option<[[Support; 2]; 2]>,
@@ -20,7 +20,7 @@ pub(super) struct Around<'a> {
 }
 
 /// The footing, if there is one and it is right.
-pub(super) fn footing(root: &Record, around: Around<'_>, report: &mut Report<'_>) -> Option<Footing> {
+pub(super) fn footing(root: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Option<Footing> {
     let record = root.record("footing")?;
     let path = path(record, around.end, report);
     let ends = segment(record, around, report);
@@ -38,7 +38,7 @@ pub(super) fn footing(root: &Record, around: Around<'_>, report: &mut Report<'_>
 }
 
 /// All prescribed motions in the order of the file, without those that have an error.
-pub(super) fn prescribed(root: &Record, around: Around<'_>, report: &mut Report<'_>) -> Vec<Prescribed> {
+pub(super) fn prescribed(root: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Vec<Prescribed> {
     let mut found: Vec<Prescribed> = Vec::new();
     for record in root.records("prescribed") {
         let path = path(record, around.end, report);
@@ -60,7 +60,7 @@ pub(super) fn prescribed(root: &Record, around: Around<'_>, report: &mut Report<
 }
 
 /// A segment's ends inside the grid.
-pub(super) fn segment(record: &Record, around: Around<'_>, report: &mut Report<'_>) -> Option<[[f64; 2]; 2]> {
+pub(super) fn segment(record: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Option<[[f64; 2]; 2]> {
     let (from, to) = (record.pair("from")?, record.pair("to")?);
     if from == to {
         record.error("to", format!("{to:?} is `from` too: the length is zero"), report);
@@ -78,7 +78,7 @@ pub(super) fn segment(record: &Record, around: Around<'_>, report: &mut Report<'
 }
 
 /// A strip starts at a body, if only with a part of it.
-fn starts_at_body(record: &Record, key: &str, ends: [[f64; 2]; 2], around: Around<'_>, report: &mut Report<'_>) {
+fn starts_at_body(record: &Record, key: &str, ends: [[f64; 2]; 2], around: AroundStrip<'_>, report: &mut Report<'_>) {
     let (Some(grid), Some(bodies)) = (around.grid, around.bodies) else { return };
     if !along(ends).any(|at| at_body(bodies, grid, at)) {
         let [from, to] = ends;
@@ -88,7 +88,7 @@ fn starts_at_body(record: &Record, key: &str, ends: [[f64; 2]; 2], around: Aroun
     }
 }
 
-fn site(record: &Record, around: Around<'_>, report: &mut Report<'_>) -> Option<Site> {
+fn site(record: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Option<Site> {
     if !record.gives("face") {
         let [from, to] = segment(record, around, report)?;
         starts_at_body(record, "from", [from, to], around, report);
@@ -159,7 +159,7 @@ fn rows(record: &Record, end: Option<f64>, report: &mut Report<'_>) -> Option<Ve
 }
 
 /// Between its rows a path is straight, and the grid convex: the rows decide.
-fn stays_inside(record: &Record, ends: [[f64; 2]; 2], path: &Path, around: Around<'_>, report: &mut Report<'_>) {
+fn stays_inside(record: &Record, ends: [[f64; 2]; 2], path: &Path, around: AroundStrip<'_>, report: &mut Report<'_>) {
     let Some(grid) = around.grid else { return };
     let at = |end: [f64; 2], u: [f64; 2]| [end[0] + u[0], end[1] + u[1]];
     let beyond = |(t, u): &(f64, [f64; 2])| Some((*t, ends.into_iter().find_map(|end| beyond(grid, at(end, *u)))?));

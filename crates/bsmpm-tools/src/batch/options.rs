@@ -8,7 +8,7 @@ use clap::Args;
 
 use super::{Batch, Limits, memory};
 use crate::Error;
-use crate::launch::{self, Solver, command};
+use crate::launch::{self, SolverProgram, command};
 
 /// How the runs are made, and where they are written.
 #[derive(Clone, Debug, Args)]
@@ -66,7 +66,7 @@ impl Options {
         output: &'a Path,
     ) -> Result<Batch<'a>, Error> {
         let limits = Limits { jobs: command::jobs(self.jobs, command)?, memory: memory(self.max_memory) };
-        let solver = Solver { command, side_by_side: true };
+        let solver = SolverProgram { command, side_by_side: true };
         solver.check()?;
         launch::make(output)?;
         Ok(Batch { solver, path, output, limits, max_wall: self.max_wall, force: self.force })

@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use bsmpm_io::manifest;
-use bsmpm_scene::{Axis, Case};
+use bsmpm_scene::{Case, GridAxis};
 
-use super::Load;
+use super::PoolLoad;
 
 /// Characters of the settings in the name of a directory; what is longer is told apart by the hash.
 const LONGEST: usize = 80;
@@ -14,7 +14,7 @@ const DIGITS: usize = 8;
 
 /// A run that is wanted.
 #[derive(Clone, Debug)]
-pub(crate) struct Order {
+pub(crate) struct RunOrder {
     /// Overrides, `KEY=VALUE`.
     pub set: Vec<String>,
     /// What they make of the case.
@@ -23,7 +23,7 @@ pub(crate) struct Order {
     pub name: String,
 }
 
-impl Order {
+impl RunOrder {
     /// The case with overrides, named by the last `named` of them.
     ///
     /// # Errors
@@ -31,21 +31,21 @@ impl Order {
     pub fn read(path: &Path, bytes: &[u8], set: Vec<String>, named: usize) -> Result<Self, Vec<String>> {
         let case = Case::from_bytes(&path.display().to_string(), bytes, &set)
             .map_err(|errors| errors.iter().map(ToString::to_string).collect::<Vec<_>>())?;
-        let hash = manifest::Case::new("", "", "", case.text.clone()).blake3;
+        let hash = manifest::ManifestCase::new("", "", "", case.text.clone()).blake3;
         let settings = &set[set.len().saturating_sub(named)..];
         let name = format!("{}{}", slug(settings), &hash[..DIGITS]);
         Ok(Self { set, case, name })
     }
 
     /// What it takes of the machine.
-    pub fn load(&self, ranks: usize) -> Load {
+    pub fn load(&self, ranks: usize) -> PoolLoad {
         let steps = self.case.analysis.end / self.case.analysis.dt;
-        Load { memory: self.case.estimate().bytes_with_newton_on(ranks), work: self.case.points() as f64 * steps }
+        PoolLoad { memory: self.case.estimate().bytes_with_newton_on(ranks), work: self.case.points() as f64 * steps }
     }
 
     /// m  the size of its cells: the root of the largest area of one.
     pub fn cell(&self) -> f64 {
-        let largest = |axis: &Axis| (0..axis.cells()).map(|cell| axis.cell(cell)).fold(0.0, f64::max);
+        let largest = |axis: &GridAxis| (0..axis.cells()).map(|cell| axis.cell(cell)).fold(0.0, f64::max);
         self.case.grid.axes.iter().map(largest).product::<f64>().sqrt()
     }
 }

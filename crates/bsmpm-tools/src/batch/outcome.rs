@@ -12,7 +12,7 @@ use crate::launch::Ending;
 /// How a run stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub(crate) enum State {
+pub(crate) enum RunState {
     /// It came to the end of the case; its own checks may have failed.
     Done,
     /// It was stopped, by a limit or a signal, and goes on when it is asked for again.
@@ -32,13 +32,13 @@ pub(crate) enum State {
 /// What there is of a run.
 #[derive(Clone, Debug)]
 pub(crate) struct Outcome {
-    pub state: State,
+    pub state: RunState,
     /// Its exit code, if it was begun.
     pub code: Option<u8>,
     /// Why it did not come to its end; empty if it did.
     pub reason: String,
     pub history: Option<Columns>,
-    pub cost: Cost,
+    pub cost: RunCost,
     /// Whether it was there from before.
     pub kept: bool,
     pub directory: Option<PathBuf>,
@@ -46,7 +46,7 @@ pub(crate) struct Outcome {
 
 /// What it took.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub(crate) struct Cost {
+pub(crate) struct RunCost {
     /// s  of processor time, all ranks together
     pub cpu_seconds: f64,
     /// s  by the clock
@@ -58,7 +58,7 @@ pub(crate) struct Cost {
     pub cuts: u64,
 }
 
-impl State {
+impl RunState {
     /// The word for it.
     pub fn word(self) -> &'static str {
         match self {
@@ -79,13 +79,13 @@ impl Outcome {
         let kept = code.is_none();
         let Ending { code, manifest, reason } = Ending::of(directory, code);
         let state = match code {
-            DONE | CHECK => State::Done,
-            STOPPED => State::Stopped,
-            NO_CONVERGENCE => State::NoConvergence,
-            LEFT => State::Left,
-            _ => State::Broken,
+            DONE | CHECK => RunState::Done,
+            STOPPED => RunState::Stopped,
+            NO_CONVERGENCE => RunState::NoConvergence,
+            LEFT => RunState::Left,
+            _ => RunState::Broken,
         };
-        let cost = manifest.map_or_else(Cost::default, |manifest| Cost {
+        let cost = manifest.map_or_else(RunCost::default, |manifest| RunCost {
             cpu_seconds: manifest.summary.cpu_seconds,
             wall_seconds: manifest.timers.get("wall").copied().unwrap_or(0.0),
             peak_memory: manifest.summary.peak_memory.iter().sum(),
@@ -96,28 +96,28 @@ impl Outcome {
         let history = table::read(&directory.join(HISTORY)).ok();
         let time = || history.as_ref().and_then(|history| history.get("time")?.last().copied()).unwrap_or(0.0);
         let reason = match state {
-            State::Done => String::new(),
-            State::Stopped => format!("at time {}", crate::record::short(time())),
+            RunState::Done => String::new(),
+            RunState::Stopped => format!("at time {}", crate::record::short(time())),
             _ => reason,
         };
         Self { state, code: Some(code), reason, history, cost, kept, directory: Some(directory.to_owned()) }
     }
 
     /// That of a run that never began.
-    pub fn never(state: State, reason: String) -> Self {
-        let cost = Cost::default();
+    pub fn never(state: RunState, reason: String) -> Self {
+        let cost = RunCost::default();
         Self { state, code: None, reason, history: None, cost, kept: false, directory: None }
     }
 
     /// That of a run that could not be started.
     pub fn broken(reason: String) -> Self {
-        Self::never(State::Broken, reason)
+        Self::never(RunState::Broken, reason)
     }
 
     /// How it stands, in a few words for a table.
     pub fn words(&self) -> String {
         let code =
-            self.code.filter(|_| self.state != State::Done).map_or_else(String::new, |code| format!(" ({code})"));
+            self.code.filter(|_| self.state != RunState::Done).map_or_else(String::new, |code| format!(" ({code})"));
         format!("{}{code}", self.state.word())
     }
 }

@@ -6,7 +6,7 @@ use std::thread;
 
 /// What one of them takes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Load {
+pub(crate) struct PoolLoad {
     /// bytes
     pub memory: u64,
     /// In any unit: those with the most begin first, so that no long one is left for the end.
@@ -25,7 +25,7 @@ pub(crate) struct Limits {
 /// The results of `work` for every load, in their order; `told` gets each as soon as it is there. A load beyond the memory of
 /// all runs alone: whether it is begun at all is the caller's choice.
 pub(crate) fn all<T: Send>(
-    loads: &[Load],
+    loads: &[PoolLoad],
     limits: Limits,
     work: impl Fn(usize) -> T + Sync,
     mut told: impl FnMut(usize, &T),
@@ -60,7 +60,7 @@ pub(crate) fn all<T: Send>(
 }
 
 /// The place among the waiting ones of the next that fits beside the running ones.
-fn next(waiting: &[usize], running: &[usize], loads: &[Load], limits: Limits) -> Option<usize> {
+fn next(waiting: &[usize], running: &[usize], loads: &[PoolLoad], limits: Limits) -> Option<usize> {
     if running.is_empty() {
         return (!waiting.is_empty()).then_some(0);
     }
@@ -77,7 +77,7 @@ mod tests {
     use super::*;
 
     /// Results, the order in which they began, and the most jobs and memory at a time.
-    fn run(loads: &[Load], limits: Limits) -> (Vec<usize>, Vec<usize>, usize, u64) {
+    fn run(loads: &[PoolLoad], limits: Limits) -> (Vec<usize>, Vec<usize>, usize, u64) {
         let state = Mutex::new((Vec::new(), Vec::<usize>::new(), 0, 0));
         let results = all(
             loads,
@@ -101,8 +101,8 @@ mod tests {
 
     #[test]
     fn neither_jobs_nor_memory_are_exceeded_and_the_longest_begin() {
-        let loads: Vec<Load> =
-            (0..12).map(|index| Load { memory: 10 + index % 5, work: (index * 7 % 12) as f64 }).collect();
+        let loads: Vec<PoolLoad> =
+            (0..12).map(|index| PoolLoad { memory: 10 + index % 5, work: (index * 7 % 12) as f64 }).collect();
         let (results, _, jobs, memory) = run(&loads, Limits { jobs: 3, memory: 25 });
         assert_eq!(results, (0..12).map(|index| 10 * index).collect::<Vec<_>>());
         assert!(jobs == 2 && memory <= 25, "{jobs} {memory}");
@@ -114,7 +114,7 @@ mod tests {
 
     #[test]
     fn what_is_too_large_for_any_neighbour_runs_alone() {
-        let loads = [1, 100, 1].map(|memory| Load { memory, work: memory as f64 });
+        let loads = [1, 100, 1].map(|memory| PoolLoad { memory, work: memory as f64 });
         let (results, _, _, memory) = run(&loads, Limits { jobs: 4, memory: 50 });
         assert_eq!((results.len(), memory), (3, 100));
         assert!(run(&[], Limits { jobs: 4, memory: 50 }).0.is_empty());

@@ -4,16 +4,16 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use bsmpm_io::residuals::{self, Iterate, Method, RESIDUALS};
+use bsmpm_io::residuals::{self, Iterate, RESIDUALS, ResidualMethod};
 
-use super::{Arguments, Made, runs};
+use super::{CompareArguments, ComparedFiles, runs};
 use crate::Error;
-use crate::picture::axes::{Axes, BELOW, LEFT, NUMBER, title};
-use crate::picture::canvas::{Align, Canvas, width};
+use crate::picture::axes::{BELOW, ChartAxes, LEFT, NUMBER, title};
+use crate::picture::canvas::{Canvas, TextAlign, width};
 use crate::picture::colour::{self, INK};
-use crate::picture::legend::{self, Entry, Mark};
+use crate::picture::legend::{self, LegendEntry, Mark};
 use crate::picture::ticks::{Scale, range};
-use crate::record::{Record, present};
+use crate::record::{RunRecord, present};
 
 const SHEET: (f64, f64) = (1600.0, 1250.0);
 const ABOVE: f64 = 115.0;
@@ -40,7 +40,7 @@ const MEASURES: [Measure; 2] = [
 ];
 
 /// The step of one run.
-struct Course {
+struct ResidualCourse {
     label: String,
     iterates: Vec<Iterate>,
     /// Of both measures, if the case tells them.
@@ -48,10 +48,10 @@ struct Course {
 }
 
 /// Draws the picture and sets the table, as far as they are wanted.
-pub(super) fn run(arguments: &Arguments, step: u64) -> Result<Made, Error> {
+pub(super) fn run(arguments: &CompareArguments, step: u64) -> Result<ComparedFiles, Error> {
     let records = runs::records(arguments)?;
     let labels = runs::labels(arguments, &records);
-    let course = |(label, record): (String, &Record)| Course::read(label, record, step);
+    let course = |(label, record): (String, &RunRecord)| ResidualCourse::read(label, record, step);
     let courses = labels.into_iter().zip(&records).map(course).collect::<Result<Vec<_>, _>>()?;
     let moment = |index: usize| records[index].moment(courses[index].iterates[0].time);
     let shared = (1..records.len()).all(|index| moment(index) == moment(0));
@@ -60,11 +60,11 @@ pub(super) fn run(arguments: &Arguments, step: u64) -> Result<Made, Error> {
     if let Some(path) = &picture {
         draw(&courses, (&runs::title(arguments, &records), &below), path)?;
     }
-    Ok(Made { picture, table: arguments.table.then(|| text(&courses, &below)), notes: Vec::new() })
+    Ok(ComparedFiles { picture, table: arguments.table.then(|| text(&courses, &below)), notes: Vec::new() })
 }
 
-impl Course {
-    fn read(label: String, record: &Record, step: u64) -> Result<Self, Error> {
+impl ResidualCourse {
+    fn read(label: String, record: &RunRecord, step: u64) -> Result<Self, Error> {
         let missing = |reason| Error::NoResiduals { directory: record.directory.clone(), reason };
         let all = present(residuals::read(&record.directory.join(RESIDUALS)))?;
         let all = all.ok_or_else(|| missing("no residuals.csv: [output] residuals = true writes it".to_owned()))?;
@@ -86,21 +86,21 @@ impl Course {
 }
 
 /// Different tolerances of a measure, which all runs share as a rule.
-fn tolerances(courses: &[Course], measure: usize) -> Vec<f64> {
+fn tolerances(courses: &[ResidualCourse], measure: usize) -> Vec<f64> {
     let mut all: Vec<f64> = courses.iter().filter_map(|course| Some(course.tolerances?[measure])).collect();
     all.sort_by(f64::total_cmp);
     all.dedup();
     all
 }
 
-fn draw(courses: &[Course], (above, below): (&str, &str), path: &Path) -> Result<(), Error> {
-    let entry = |(index, course): (usize, &Course)| Entry {
+fn draw(courses: &[ResidualCourse], (above, below): (&str, &str), path: &Path) -> Result<(), Error> {
+    let entry = |(index, course): (usize, &ResidualCourse)| LegendEntry {
         name: course.label.clone(),
         colour: colour::line(index, courses.len()),
         mark: Mark::Both,
     };
-    let entries: Vec<Entry> = courses.iter().enumerate().map(entry).collect();
-    let legend: Vec<&Entry> = entries.iter().collect();
+    let entries: Vec<LegendEntry> = courses.iter().enumerate().map(entry).collect();
+    let legend: Vec<&LegendEntry> = entries.iter().collect();
     let room = SHEET.0 - 80.0;
     let mut canvas = Canvas::new(SHEET.0, SHEET.1);
     title(&mut canvas, SHEET.0, above, below);
@@ -113,11 +113,16 @@ fn draw(courses: &[Course], (above, below): (&str, &str), path: &Path) -> Result
 }
 
 /// The axes of one measure, between two heights of the sheet; the last ones bear the numbers of the iterations.
-fn draw_measure(canvas: &mut Canvas, (courses, entries): (&[Course], &[Entry]), index: usize, upright: (f64, f64)) {
+fn draw_measure(
+    canvas: &mut Canvas,
+    (courses, entries): (&[ResidualCourse], &[LegendEntry]),
+    index: usize,
+    upright: (f64, f64),
+) {
     let (measure, levels) = (&MEASURES[index], tolerances(courses, index));
     let places: Vec<Vec<(f64, f64)>> = courses.iter().map(|course| course.places(measure)).collect();
     let most = (places.iter().map(Vec::len).max().unwrap_or(0) as f64).max(FEWEST);
-    let axes = Axes {
+    let axes = ChartAxes {
         left: LEFT,
         top: upright.0,
         right: SHEET.0 - width(TOLERANCE, NUMBER) - 40.0,
@@ -129,7 +134,7 @@ fn draw_measure(canvas: &mut Canvas, (courses, entries): (&[Course], &[Entry]), 
     axes.rules(canvas);
     for level in levels {
         let at = axes.level(canvas, level);
-        canvas.text(TOLERANCE, (axes.right + 14.0, at), NUMBER, Align::Left, INK);
+        canvas.text(TOLERANCE, (axes.right + 14.0, at), NUMBER, TextAlign::Left, INK);
     }
     for (places, entry) in places.iter().zip(entries) {
         for run in places.split(|place| place.1.is_nan()) {
@@ -150,14 +155,14 @@ fn decades(values: impl IntoIterator<Item = f64>) -> (f64, f64) {
 }
 
 /// A block of rows for every run: both measures, and the order of convergence.
-fn text(courses: &[Course], below: &str) -> String {
+fn text(courses: &[ResidualCourse], below: &str) -> String {
     let mut text = format!("{below}\n");
-    for Course { label, iterates, .. } in courses {
+    for ResidualCourse { label, iterates, .. } in courses {
         let _ = writeln!(text, "{label}\niteration       method     energy      force  order");
         for (index, iterate) in iterates.iter().enumerate() {
             let Iterate { iteration, energy, force, .. } = iterate;
             let order = order(&iterates[..=index]).map_or_else(|| "-".to_owned(), |order| format!("{order:.2}"));
-            let method = iterate.method.map_or("-", Method::word);
+            let method = iterate.method.map_or("-", ResidualMethod::word);
             let energy = if energy.is_nan() { "-".to_owned() } else { format!("{energy:.2e}") };
             let _ = writeln!(text, "{iteration:>9}  {method:>11}  {energy:>9}  {force:>9.2e}  {order:>5}");
         }
@@ -182,7 +187,7 @@ mod tests {
             step: 1,
             time: 1.0,
             iteration,
-            method: Some(Method::Newton),
+            method: Some(ResidualMethod::Newton),
             energy: force * force,
             force,
         };

@@ -4,9 +4,9 @@ use std::path::Path;
 
 use bsmpm_io::manifest::Status;
 
-use super::Arguments;
+use super::CompareArguments;
 use crate::Error;
-use crate::record::{Record, Recorded};
+use crate::record::{Recorded, RunRecord};
 
 /// The curves in the order of the command line.
 pub(super) struct Runs {
@@ -23,7 +23,7 @@ pub(super) struct Runs {
 }
 
 impl Runs {
-    pub fn read(arguments: &Arguments) -> Result<Self, Error> {
+    pub fn read(arguments: &CompareArguments) -> Result<Self, Error> {
         fits("--x-value", arguments.x_values.len(), arguments.directories.len())?;
         let records = records(arguments)?;
         let columns = |name: &str| records.iter().map(|record| column(record, name)).collect::<Result<Vec<_>, _>>();
@@ -74,9 +74,9 @@ impl Runs {
 }
 
 /// The runs, for each of which there is a name or for none.
-pub(super) fn records(arguments: &Arguments) -> Result<Vec<Record>, Error> {
+pub(super) fn records(arguments: &CompareArguments) -> Result<Vec<RunRecord>, Error> {
     fits("--label", arguments.labels.len(), arguments.directories.len())?;
-    arguments.directories.iter().map(|directory| Record::read(directory)).collect()
+    arguments.directories.iter().map(|directory| RunRecord::read(directory)).collect()
 }
 
 /// An option that is given for all runs or not at all.
@@ -89,7 +89,7 @@ fn fits(option: &str, given: usize, runs: usize) -> Result<(), Error> {
 }
 
 /// The column `name` of a run's history, or the only one that records the quantity of that name.
-fn column<'a>(record: &'a Record, name: &str) -> Result<Recorded<'a>, Error> {
+fn column<'a>(record: &'a RunRecord, name: &str) -> Result<Recorded<'a>, Error> {
     let directory = || record.directory.clone();
     let history = record.history.as_ref().filter(|history| history.values.iter().any(|values| !values.is_empty()));
     let history = history.ok_or_else(|| Error::NoRow { directory: directory() })?;
@@ -106,7 +106,12 @@ fn column<'a>(record: &'a Record, name: &str) -> Result<Recorded<'a>, Error> {
 }
 
 /// The label and unit of an axis: as given, else those of the runs' columns, which must then share a unit.
-fn axis(records: &[Record], columns: &[Recorded], given: Option<&str>, factor: f64) -> Result<(String, String), Error> {
+fn axis(
+    records: &[RunRecord],
+    columns: &[Recorded],
+    given: Option<&str>,
+    factor: f64,
+) -> Result<(String, String), Error> {
     if let Some(label) = given {
         return Ok((label.to_owned(), String::new()));
     }
@@ -131,7 +136,7 @@ fn axis(records: &[Record], columns: &[Recorded], given: Option<&str>, factor: f
 
 /// The names of the runs: as given; else their stabilisation if it tells them apart, or with `--last` groups them; else
 /// their directories.
-pub(super) fn labels(arguments: &Arguments, records: &[Record]) -> Vec<String> {
+pub(super) fn labels(arguments: &CompareArguments, records: &[RunRecord]) -> Vec<String> {
     if !arguments.labels.is_empty() {
         return arguments.labels.clone();
     }
@@ -158,7 +163,7 @@ fn stem(directory: &Path) -> String {
 }
 
 /// How a run that has not come to its end stands.
-fn note(record: &Record) -> Option<String> {
+fn note(record: &RunRecord) -> Option<String> {
     let stands = match record.manifest.status {
         Status::Finished => return None,
         Status::Running => "is running",
@@ -170,7 +175,7 @@ fn note(record: &Record) -> Option<String> {
 }
 
 /// The title of the picture: as given, else that of the cases if they share one.
-pub(super) fn title(arguments: &Arguments, records: &[Record]) -> String {
+pub(super) fn title(arguments: &CompareArguments, records: &[RunRecord]) -> String {
     let titles = || records.iter().map(|record| &record.manifest.case.title);
     let shared = titles().next().filter(|first| titles().all(|title| title == *first));
     arguments.title.clone().or(shared.cloned()).unwrap_or_default()

@@ -1,6 +1,6 @@
 //! Coarse forms of a case: larger cells, no more points in them than iterations need, and nothing that is written.
 
-use bsmpm_scene::{Axis, Case};
+use bsmpm_scene::{Case, GridAxis};
 use toml::{Table, Value};
 
 /// Points along each axis of a cell: more make a step dearer, and hardly change how many iterations it takes.
@@ -12,7 +12,7 @@ pub(super) const FACTORS: [usize; 4] = [16, 8, 4, 2];
 
 /// The text of a form with cells that many times as long; none where it would be too coarse, or no valid case.
 pub(super) fn text(case: &Case, factor: usize) -> Option<String> {
-    let longest = |axis: &Axis| (0..axis.cells()).map(|i| axis.cell(i)).fold(0.0, f64::max);
+    let longest = |axis: &GridAxis| (0..axis.cells()).map(|i| axis.cell(i)).fold(0.0, f64::max);
     let cells = |body: &bsmpm_scene::Body| {
         let [lower, upper] = body.bounds();
         let across = |axis: usize| (upper[axis] - lower[axis]) / (factor as f64 * longest(&case.grid.axes[axis]));
@@ -45,7 +45,7 @@ pub(super) fn text(case: &Case, factor: usize) -> Option<String> {
 
 /// Every so many breakpoints, and the last; a rest of less than half a cell goes to the one before. Breakpoints that are
 /// repeated stay, as the form is to have them, too, in place of others less than half a cell away.
-fn knots(axis: &Axis, lines: &[usize], factor: usize) -> Value {
+fn knots(axis: &GridAxis, lines: &[usize], factor: usize) -> Value {
     let cells = axis.cells();
     let mut kept: Vec<usize> = (0..=cells).step_by(factor).collect();
     let rest = cells % factor;
@@ -88,7 +88,7 @@ mod tests {
     #[test]
     fn a_rest_of_cells_makes_one_more_or_a_longer_one() {
         let lengths = |cells: usize, lines: &[usize], factor: usize| {
-            let value = knots(&Axis::Uniform { lower: 1.0, cell: 1.0, cells }, lines, factor);
+            let value = knots(&GridAxis::Uniform { lower: 1.0, cell: 1.0, cells }, lines, factor);
             let at: Vec<f64> = value.as_array().unwrap().iter().map(|x| x.as_float().unwrap()).collect();
             at.windows(2).map(|pair| pair[1] - pair[0]).collect::<Vec<_>>()
         };

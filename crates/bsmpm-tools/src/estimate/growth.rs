@@ -14,7 +14,7 @@ const MOST: [f64; 2] = [2.0, 4.0];
 
 /// A coarse form, run to its end or as far as it came.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Level {
+pub(super) struct GrowthLevel {
     /// its cells over the case's
     pub factor: usize,
     /// work over all the case's time
@@ -27,7 +27,7 @@ pub(super) struct Level {
 
 /// The work of a case whose first steps took `early` in their iterations, from one coarse form or more, the finest one last;
 /// none without.
-pub(super) fn extrapolate(levels: &[Level], regime: Regime, early: f64) -> Option<Work> {
+pub(super) fn extrapolate(levels: &[GrowthLevel], regime: Regime, early: f64) -> Option<Work> {
     let finest = levels.last()?;
     let factor = finest.factor as f64;
     let bounded = |growth: f64, most: f64| growth.clamp(1.0, most.powf(factor.log2()));
@@ -46,8 +46,8 @@ pub(super) fn extrapolate(levels: &[Level], regime: Regime, early: f64) -> Optio
 mod tests {
     use super::*;
 
-    fn level(factor: usize, evaluations: f64, early: f64) -> Level {
-        Level { factor, work: Work { steps: 100.0, evaluations, ..Work::default() }, early, spread: 1.0 }
+    fn level(factor: usize, evaluations: f64, early: f64) -> GrowthLevel {
+        GrowthLevel { factor, work: Work { steps: 100.0, evaluations, ..Work::default() }, early, spread: 1.0 }
     }
 
     #[test]
@@ -67,7 +67,7 @@ mod tests {
 
     #[test]
     fn one_form_alone_grows_as_the_first_steps_do_and_no_trend_makes_less_or_runs_away() {
-        let of = |levels: &[Level], regime, early| extrapolate(levels, regime, early).unwrap().evaluations;
+        let of = |levels: &[GrowthLevel], regime, early| extrapolate(levels, regime, early).unwrap().evaluations;
         for regime in [Regime::Dynamic, Regime::QuasiStatic] {
             assert_eq!(extrapolate(&[], regime, 1.0), None);
             assert_eq!(of(&[level(2, 1000.0, 40.0)], regime, 50.0), 1250.0);

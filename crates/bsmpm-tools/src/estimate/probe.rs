@@ -14,12 +14,12 @@ use bsmpm_scene::Case;
 use tempfile::TempDir;
 
 use super::coarse::{self, FACTORS};
-use super::growth::{self, Level};
+use super::growth::{self, GrowthLevel};
 use super::sizes::{self, Bytes};
-use super::stored::{self, Found};
+use super::stored::{self, StoredEstimate};
 use super::work::Work;
 use crate::Error;
-use crate::launch::{Ending, Solver, Stop, Task};
+use crate::launch::{Ending, LaunchTask, SolverProgram, Stop};
 
 /// Part of the time for probes that the first steps may take, and part of the case's steps.
 const FIRST: [f64; 2] = [0.25, 0.2];
@@ -43,7 +43,7 @@ const WHOLE: (f64, u64) = (0.25, 1_000_000_000);
 const SURE: f64 = 1.25;
 
 /// What is to be probed.
-pub(super) struct Plan<'a> {
+pub(super) struct ProbePlan<'a> {
     pub case: &'a Case,
     /// of the case's first steps
     pub ranks: usize,
@@ -55,7 +55,7 @@ pub(super) struct Plan<'a> {
 
 /// A step.
 #[derive(Clone, Copy)]
-struct Row {
+struct ProbeRow {
     /// s or pseudo-time  at its end
     time: f64,
     active_nodes: f64,
@@ -63,15 +63,15 @@ struct Row {
 }
 
 /// What a run left.
-struct Run {
+struct ProbeRun {
     code: u8,
     reason: String,
     manifest: Option<Manifest>,
-    rows: Vec<Row>,
+    rows: Vec<ProbeRow>,
     directory: PathBuf,
 }
 
-impl Run {
+impl ProbeRun {
     fn cpu(&self) -> f64 {
         self.manifest.as_ref().map_or(0.0, |manifest| manifest.summary.cpu_seconds)
     }
@@ -98,11 +98,11 @@ impl Run {
 /// # Errors
 /// [`Error::Probe`] if the case's own first steps fail; [`Error::Launch`]; those of the folder.
 pub(super) fn estimate(
-    plan: &Plan,
-    guess: &Found,
+    plan: &ProbePlan,
+    guess: &StoredEstimate,
     deadline: Instant,
     told: &mut dyn FnMut(&str),
-) -> Result<Found, Error> {
+) -> Result<StoredEstimate, Error> {
     let folder = tempfile::Builder::new().prefix("bsmpm-estimate-").tempdir();
     let folder = folder.map_err(|source| Error::File(bsmpm_io::Error::file("make", &std::env::temp_dir())(source)))?;
     let probes = Probes { plan, folder, deadline };
@@ -134,13 +134,13 @@ pub(super) fn estimate(
     let unit = measured.unit * spread;
     let newton = levels.iter().map(|level| level.work.newton_part()).fold(made.newton_part(), f64::max);
     let band = if newton > NEWTON[0] { NEWTON[1] } else { BANDS[levels.len().min(BANDS.len() - 1)] };
-    let found = Found { work, unit, basis, band, ..measured };
+    let found = StoredEstimate { work, unit, basis, band, ..measured };
     let whole = probes.whole(&found, told)?;
     Ok(whole.unwrap_or(found))
 }
 
 /// What the case's own start and first steps tell of what a unit of work, a frame and the files cost.
-fn measured(guess: &Found, (start, first): (&Run, &Run)) -> Found {
+fn measured(guess: &StoredEstimate, (start, first): (&ProbeRun, &ProbeRun)) -> StoredEstimate {
     let frame = guess.frame.min(start.clock(&["frames"]));
     let (taken, units) = (first.cpu() - start.cpu() - frame, first.work().units());
     let clock = first.clock(&["step", "migration", "histories"]);
@@ -156,11 +156,11 @@ fn measured(guess: &Found, (start, first): (&Run, &Run)) -> Found {
         ..guess.bytes
     };
     let unknowns = first.manifest.as_ref().and_then(|manifest| manifest.sizes.get("unknowns").copied());
-    Found { unit, start: start.cpu(), frame, bytes, unknowns, ..guess.clone() }
+    StoredEstimate { unit, start: start.cpu(), frame, bytes, unknowns, ..guess.clone() }
 }
 
 struct Probes<'a> {
-    plan: &'a Plan<'a>,
+    plan: &'a ProbePlan<'a>,
     folder: TempDir,
     deadline: Instant,
 }
@@ -172,7 +172,7 @@ impl Probes<'_> {
     }
 
     /// So many steps of the case itself.
-    fn of_case(&self, name: &str, steps: f64) -> Result<Run, Error> {
+    fn of_case(&self, name: &str, steps: f64) -> Result<ProbeRun, Error> {
         let most = format!("{steps:.0}");
         let run = self.run(name, &self.plan.case.text, &["--max-steps", &most], self.plan.ranks)?;
         match run.code {
@@ -182,7 +182,12 @@ impl Probes<'_> {
     }
 
     /// Coarse forms, the finest one last; `until` is how far the case's first steps came.
-    fn levels(&self, guess: &Found, until: f64, told: &mut dyn FnMut(&str)) -> Result<Vec<Level>, Error> {
+    fn levels(
+        &self,
+        guess: &StoredEstimate,
+        until: f64,
+        told: &mut dyn FnMut(&str),
+    ) -> Result<Vec<GrowthLevel>, Error> {
         let mut levels = Vec::new();
         let mut taken = None;
         for factor in FACTORS {
@@ -210,7 +215,7 @@ impl Probes<'_> {
     }
 
     /// What the whole case takes, if that is expected to be little.
-    fn whole(&self, expected: &Found, told: &mut dyn FnMut(&str)) -> Result<Option<Found>, Error> {
+    fn whole(&self, expected: &StoredEstimate, told: &mut dyn FnMut(&str)) -> Result<Option<StoredEstimate>, Error> {
         let case = self.plan.case;
         let frames = sizes::frames(case, expected.work.steps);
         let (part, bytes) = WHOLE;
@@ -233,11 +238,11 @@ impl Probes<'_> {
             run.cpu()
         ));
         let basis = "the whole case, which takes no longer than probes may".to_owned();
-        Ok(Some(Found { work, unit: taken.max(0.0) / work.units(), band: SURE, basis, ..expected.clone() }))
+        Ok(Some(StoredEstimate { work, unit: taken.max(0.0) / work.units(), band: SURE, basis, ..expected.clone() }))
     }
 
     /// A run on so many ranks, to the deadline at most.
-    fn run(&self, name: &str, text: &str, further: &[&str], ranks: usize) -> Result<Run, Error> {
+    fn run(&self, name: &str, text: &str, further: &[&str], ranks: usize) -> Result<ProbeRun, Error> {
         let folder = self.folder.path();
         let (case, directory) = (folder.join(format!("{name}.toml")), folder.join(format!("{name}.out")));
         fs::write(&case, text).map_err(|source| Error::File(bsmpm_io::Error::file("write", &case)(source)))?;
@@ -248,12 +253,12 @@ impl Probes<'_> {
         let clock = format!("{:02}:{:02}:{:02}", wall / 3600, wall / 60 % 60, wall % 60);
         arguments.extend(["--max-wall".to_owned(), clock]);
         let command = if ranks == 1 { self.plan.command.to_vec() } else { on_ranks(ranks, self.plan.command) };
-        let solver = Solver { command: &command, side_by_side: true };
+        let solver = SolverProgram { command: &command, side_by_side: true };
         solver.check()?;
-        let task = Task { arguments: &arguments, directory: &directory, origin: None, force: true };
+        let task = LaunchTask { arguments: &arguments, directory: &directory, origin: None, force: true };
         let code = solver.make(&task, &Stop::default())?;
         let Ending { code, manifest, reason } = Ending::of(&directory, Some(code));
-        Ok(Run { code, manifest, reason, rows: rows(&directory), directory })
+        Ok(ProbeRun { code, manifest, reason, rows: rows(&directory), directory })
     }
 }
 
@@ -263,7 +268,7 @@ fn on_ranks(ranks: usize, command: &[String]) -> Vec<String> {
 }
 
 /// The steps of a run; none where it left no table.
-fn rows(directory: &Path) -> Vec<Row> {
+fn rows(directory: &Path) -> Vec<ProbeRow> {
     let Ok(columns) = table::read(&directory.join(STEPS)) else { return Vec::new() };
     let column = |name: &str| columns.get(name).unwrap_or_default();
     let names = ["time", "active_nodes", "evaluations", "products", "factorisations", "cutbacks"];
@@ -272,18 +277,18 @@ fn rows(directory: &Path) -> Vec<Row> {
     let row = |k: usize| {
         let [time, active_nodes, evaluations, products, factorisations, cutbacks] = columns.map(|column| column[k]);
         let newton = (factorisations - 1.0 - cutbacks).max(0.0);
-        Row { time, active_nodes, work: Work { steps: 1.0, evaluations, products, newton } }
+        ProbeRow { time, active_nodes, work: Work { steps: 1.0, evaluations, products, newton } }
     };
     (0..length).map(row).collect()
 }
 
 /// What a coarse form tells, if it came far enough; the work of what it did not reach is taken as even.
-fn level(factor: usize, run: &Run, (until, end): (f64, f64)) -> Option<Level> {
+fn level(factor: usize, run: &ProbeRun, (until, end): (f64, f64)) -> Option<GrowthLevel> {
     let reached = run.rows.last()?.time / end;
     let first = run.rows.partition_point(|row| row.time <= until * (1.0 + 1e-9));
     let early = run.rows[..first].iter().map(|row| row.work.iterations()).sum();
-    let mean = |rows: &[Row]| rows.iter().map(|row| row.active_nodes).sum::<f64>() / rows.len() as f64;
+    let mean = |rows: &[ProbeRow]| rows.iter().map(|row| row.active_nodes).sum::<f64>() / rows.len() as f64;
     let (all, before) = (mean(&run.rows), mean(&run.rows[..first.max(1)]));
     let spread = if before > 0.0 { all / before } else { 1.0 };
-    (reached >= REACHED).then(|| Level { factor, work: run.work().times(1.0 / reached), early, spread })
+    (reached >= REACHED).then(|| GrowthLevel { factor, work: run.work().times(1.0 / reached), early, spread })
 }

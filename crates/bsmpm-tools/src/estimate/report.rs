@@ -8,14 +8,14 @@ use serde::Serialize;
 
 use super::against::Actual;
 use super::sizes::{self, Bytes};
-use super::stored::Found;
+use super::stored::StoredEstimate;
 use super::work::Work;
 
 const MIB: f64 = (1_u64 << 20) as f64;
 
 /// An estimate.
 #[derive(Clone, Debug, Serialize)]
-pub(super) struct Report {
+pub(super) struct EstimateReport {
     case: String,
     ranks: usize,
     useful_ranks: u64,
@@ -34,9 +34,9 @@ pub(super) struct Report {
     disk: u64,
     work: Work,
     /// s  of processor time, all ranks together
-    cpu_seconds: Band,
+    cpu_seconds: EstimateBand,
     /// s  by the clock, where nobody else uses the cores
-    seconds: Band,
+    seconds: EstimateBand,
     /// time of this machine for the same computation, over that of the machine of reference
     speed: f64,
     basis: String,
@@ -49,21 +49,21 @@ pub(super) struct Report {
 
 /// A number, and between which ones it is expected.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-struct Band {
+struct EstimateBand {
     value: f64,
     low: f64,
     high: f64,
 }
 
-impl Band {
+impl EstimateBand {
     fn of(value: f64, factor: f64) -> Self {
         Self { value, low: value / factor, high: value * factor }
     }
 }
 
-impl Report {
+impl EstimateReport {
     /// Of a run of a case on so many ranks; `speed` is that of this machine.
-    pub fn of(path: &Path, case: &Case, ranks: usize, (speed, found): (f64, &Found)) -> Self {
+    pub fn of(path: &Path, case: &Case, ranks: usize, (speed, found): (f64, &StoredEstimate)) -> Self {
         let estimate = case.estimate();
         let steps = found.work.steps;
         let frames = sizes::frames(case, steps);
@@ -86,8 +86,8 @@ impl Report {
             sizes: bytes,
             disk: frames * bytes.frame + checkpoints * bytes.checkpoint + tables,
             work: found.work,
-            cpu_seconds: Band::of(cpu, found.band),
-            seconds: Band::of(seconds, found.band),
+            cpu_seconds: EstimateBand::of(cpu, found.band),
+            seconds: EstimateBand::of(seconds, found.band),
             speed,
             basis: found.basis.clone(),
             actual: None,
@@ -168,7 +168,7 @@ fn row(what: &str, estimate: &str, actual: String) -> [String; 3] {
     [what.to_owned(), estimate.to_owned(), actual]
 }
 
-fn told(band: Band) -> String {
+fn told(band: EstimateBand) -> String {
     format!("{} ({} to {})", seconds(band.value), seconds(band.low), seconds(band.high))
 }
 
@@ -189,9 +189,9 @@ mod tests {
 
     const COLUMN: &str = include_str!("../../../../cases/short/column_collapse.toml");
 
-    fn report() -> Report {
+    fn report() -> EstimateReport {
         let case = Case::from_text("column", COLUMN, &[]).unwrap();
-        Report::of(Path::new("column.toml"), &case, 2, (1.0, &stored::guess(&case, 1.0)))
+        EstimateReport::of(Path::new("column.toml"), &case, 2, (1.0, &stored::guess(&case, 1.0)))
     }
 
     #[test]

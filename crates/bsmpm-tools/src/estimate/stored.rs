@@ -21,7 +21,7 @@ const BAND: f64 = 4.0;
 
 /// What an estimate is made from.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Found {
+pub(super) struct StoredEstimate {
     /// of the whole run
     pub work: Work,
     /// s  of a unit of work, all ranks together
@@ -40,7 +40,7 @@ pub(super) struct Found {
     pub basis: String,
 }
 
-impl Found {
+impl StoredEstimate {
     /// Processor seconds of the run, all ranks together, with so many frames.
     pub fn seconds(&self, frames: u64) -> f64 {
         self.start + self.unit * self.work.units() + self.frame * frames.saturating_sub(1) as f64
@@ -48,7 +48,7 @@ impl Found {
 }
 
 /// An estimate from what runs took elsewhere; `speed` is this machine's time over that of the other one.
-pub(super) fn guess(case: &Case, speed: f64) -> Found {
+pub(super) fn guess(case: &Case, speed: f64) -> StoredEstimate {
     let plastic = case.materials.iter().any(|named| named.material.yields());
     let kind = match (plastic, case.analysis.regime) {
         (false, _) => 0,
@@ -57,7 +57,7 @@ pub(super) fn guess(case: &Case, speed: f64) -> Found {
     };
     let (sizes, steps) = (case.estimate(), sizes::steps(case));
     let points = case.points() as f64;
-    Found {
+    StoredEstimate {
         work: Work { steps, evaluations: EVALUATIONS[kind] * steps, ..Work::default() },
         unit: speed * (POINT * points + UNKNOWN * sizes.active as f64),
         start: speed * START,

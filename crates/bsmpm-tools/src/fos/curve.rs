@@ -14,7 +14,7 @@ const STRAIGHT: f64 = 1.25;
 
 /// What a trial shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct State {
+pub(super) struct CurveState {
     /// by which the strength is divided
     pub factor: f64,
     /// the largest displacement, in the unit of the history; of the last equilibrium that was found
@@ -25,10 +25,10 @@ pub(super) struct State {
 
 /// The trials in the order of their factors.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Curve {
+pub(super) struct FactorCurve {
     /// the displacement of the elastic body
     elastic: f64,
-    states: Vec<State>,
+    states: Vec<CurveState>,
 }
 
 /// The greatest factor of stable trials, and the least one of failed trials above it.
@@ -40,7 +40,7 @@ pub(super) struct Band {
 
 /// `displacement = at_zero + slope factor`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Line {
+pub(super) struct FittedLine {
     at_zero: f64,
     slope: f64,
 }
@@ -49,11 +49,11 @@ pub(super) struct Line {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Kink {
     pub factor: f64,
-    pub before: Line,
-    pub after: Line,
+    pub before: FittedLine,
+    pub after: FittedLine,
 }
 
-impl Line {
+impl FittedLine {
     fn through(a: (f64, f64), b: (f64, f64)) -> Self {
         let slope = (b.1 - a.1) / (b.0 - a.0);
         Self { at_zero: a.1 - slope * a.0, slope }
@@ -80,13 +80,13 @@ impl Line {
     }
 }
 
-impl Curve {
+impl FactorCurve {
     /// A curve without trials yet, of a body whose `elastic` displacement is positive.
     pub fn new(elastic: f64) -> Self {
         Self { elastic, states: Vec::new() }
     }
 
-    pub fn add(&mut self, states: impl IntoIterator<Item = State>) {
+    pub fn add(&mut self, states: impl IntoIterator<Item = CurveState>) {
         self.states.extend(states);
         self.states.sort_by(|a, b| a.factor.total_cmp(&b.factor));
     }
@@ -95,16 +95,16 @@ impl Curve {
         self.elastic
     }
 
-    pub fn states(&self) -> &[State] {
+    pub fn states(&self) -> &[CurveState] {
         &self.states
     }
 
     /// The displacement over the elastic one.
-    pub fn growth(&self, state: &State) -> f64 {
+    pub fn growth(&self, state: &CurveState) -> f64 {
         state.displacement / self.elastic
     }
 
-    fn is_beyond(&self, level: f64, state: &State) -> bool {
+    fn is_beyond(&self, level: f64, state: &CurveState) -> bool {
         !state.whole || self.growth(state) > level
     }
 
@@ -116,14 +116,14 @@ impl Curve {
         self.band(|state| self.is_beyond(level, state))
     }
 
-    fn band(&self, failed: impl Fn(&State) -> bool) -> Band {
+    fn band(&self, failed: impl Fn(&CurveState) -> bool) -> Band {
         let last_stable = self.states.iter().rev().find(|state| !failed(state)).map(|state| state.factor);
         let mut above = self.states.iter().filter(|state| last_stable.is_none_or(|last| state.factor > last));
         Band { last_stable, first_failed: above.next().map(|state| state.factor) }
     }
 
     /// The trial at a factor.
-    pub fn at(&self, factor: f64) -> Option<&State> {
+    pub fn at(&self, factor: f64) -> Option<&CurveState> {
         self.states.iter().find(|state| state.factor == factor)
     }
 
@@ -145,10 +145,10 @@ impl Curve {
             Some((last.factor, last.displacement))
         };
         let end = self.reaches(FALLEN).map(|factor| (factor, FALLEN * self.elastic)).or_else(farthest)?;
-        let after = Line::through(begin, end);
+        let after = FittedLine::through(begin, end);
         let straight = self.states.iter().filter(|state| state.whole && self.growth(state) <= STRAIGHT);
         let places: Vec<(f64, f64)> = straight.map(|state| (state.factor, state.displacement)).collect();
-        let before = Line::fitted(&places).unwrap_or(Line { at_zero: self.elastic, slope: 0.0 });
+        let before = FittedLine::fitted(&places).unwrap_or(FittedLine { at_zero: self.elastic, slope: 0.0 });
         let factor = (before.at_zero - after.at_zero) / (after.slope - before.slope);
         let is_one = end.0 > begin.0 && after.slope > before.slope && factor >= self.states.first()?.factor;
         is_one.then_some(Kink { factor, before, after })
@@ -156,7 +156,7 @@ impl Curve {
 
     /// Whether a trial lies beyond the kink. Without a branch after failure: whether it found no equilibrium, or has grown so
     /// far that it would be on it.
-    pub fn is_failed(&self, kink: Option<&Kink>, state: &State) -> bool {
+    pub fn is_failed(&self, kink: Option<&Kink>, state: &CurveState) -> bool {
         match kink {
             Some(kink) => state.factor > kink.factor,
             None => self.is_beyond(BENT, state),
@@ -181,11 +181,11 @@ mod tests {
     use super::*;
 
     /// The curve of `displacement` over factors from `from` to `to`.
-    fn curve(from: f64, to: f64, step: f64, displacement: impl Fn(f64) -> f64) -> Curve {
-        let mut curve = Curve::new(1.0);
+    fn curve(from: f64, to: f64, step: f64, displacement: impl Fn(f64) -> f64) -> FactorCurve {
+        let mut curve = FactorCurve::new(1.0);
         let count = ((to - from) / step).round() as usize;
         let factors = (0..=count).map(|index| from + index as f64 * step);
-        curve.add(factors.map(|factor| State { factor, displacement: displacement(factor), whole: true }));
+        curve.add(factors.map(|factor| CurveState { factor, displacement: displacement(factor), whole: true }));
         curve
     }
 
@@ -239,7 +239,7 @@ mod tests {
     #[test]
     fn a_failure_before_a_weaker_body_that_stands_is_not_the_slope_s() {
         let mut curve = curve(0.5, 1.7, 0.02, |factor| 1.0 + 100.0 * (factor - 1.4).max(0.0));
-        curve.states[10] = State { displacement: 0.9, whole: false, ..curve.states[10] };
+        curve.states[10] = CurveState { displacement: 0.9, whole: false, ..curve.states[10] };
         assert!(near(curve.kink().map(|kink| kink.factor), 1.4));
         assert!(near(curve.crossing(DOUBLED).last_stable, 1.4) && near(curve.crossing(DOUBLED).first_failed, 1.42));
         assert_eq!(curve.isolated(), [0.7]);

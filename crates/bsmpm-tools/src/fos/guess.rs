@@ -1,8 +1,8 @@
 //! Which factors a search may ask for next: the search itself, gone on with guesses of the trials that are not known yet. It
 //! knows no runs, and nothing of how a search chooses.
 
-use super::curve::{FALLEN, State};
-use super::search::{Halt, Plan, search};
+use super::curve::{CurveState, FALLEN};
+use super::search::{Halt, SearchPlan, search};
 
 /// A body stands rather than fails where no weaker one is known to have failed: of the rungs of a ladder most stand.
 const STANDS: f64 = 0.75;
@@ -10,16 +10,16 @@ const STANDS: f64 = 0.75;
 const LOOKS: usize = 8;
 
 /// A guess of trials that are not known.
-struct Path {
+struct GuessPath {
     /// a measure of how likely it is
     weight: f64,
-    guesses: Vec<State>,
+    guesses: Vec<CurveState>,
 }
 
 /// Up to `most` factors for which the search may ask next, none of them known: the one that it needs now, then the likeliest.
-pub(super) fn ahead(plan: Plan, known: &dyn Fn(f64) -> Option<State>, most: usize) -> Vec<f64> {
+pub(super) fn ahead(plan: SearchPlan, known: &dyn Fn(f64) -> Option<CurveState>, most: usize) -> Vec<f64> {
     let mut factors = Vec::new();
-    let mut paths = vec![Path { weight: 1.0, guesses: Vec::new() }];
+    let mut paths = vec![GuessPath { weight: 1.0, guesses: Vec::new() }];
     for _ in 0..LOOKS * most {
         // Of paths that are as likely as each other the shorter one, which was added earlier.
         let likeliest = (0..paths.len()).rev().max_by(|&a, &b| paths[a].weight.total_cmp(&paths[b].weight));
@@ -36,7 +36,7 @@ pub(super) fn ahead(plan: Plan, known: &dyn Fn(f64) -> Option<State>, most: usiz
         if factors.len() == most {
             break;
         }
-        paths.extend(outcomes(factor, &states).map(|(share, state)| Path {
+        paths.extend(outcomes(factor, &states).map(|(share, state)| GuessPath {
             weight: share * path.weight,
             guesses: path.guesses.iter().copied().chain([state]).collect(),
         }));
@@ -45,15 +45,16 @@ pub(super) fn ahead(plan: Plan, known: &dyn Fn(f64) -> Option<State>, most: usiz
 }
 
 /// How a trial may end, with the share of each way: as those of a stronger and of a weaker body did.
-fn outcomes(factor: f64, states: &[State]) -> impl Iterator<Item = (f64, State)> {
-    let nearest = |a: &&State, b: &&State| (a.factor - factor).abs().total_cmp(&(b.factor - factor).abs());
+fn outcomes(factor: f64, states: &[CurveState]) -> impl Iterator<Item = (f64, CurveState)> {
+    let nearest = |a: &&CurveState, b: &&CurveState| (a.factor - factor).abs().total_cmp(&(b.factor - factor).abs());
     let stronger = states.iter().filter(|state| state.factor < factor && state.whole).min_by(nearest);
     let weaker = states.iter().filter(|state| state.factor > factor).min_by(nearest);
     let elastic = states.first().map(|state| state.displacement);
-    let stands = stronger.map_or(State { factor, displacement: 1.0, whole: true }, |state| State { factor, ..*state });
-    let falls = weaker.map(|state| State { factor, ..*state });
+    let stands =
+        stronger.map_or(CurveState { factor, displacement: 1.0, whole: true }, |state| CurveState { factor, ..*state });
+    let falls = weaker.map(|state| CurveState { factor, ..*state });
     // Nobody fails as the elastic body, the first of all.
-    let falls = falls.or_else(|| Some(State { factor, displacement: 2.0 * FALLEN * elastic?, whole: true }));
+    let falls = falls.or_else(|| Some(CurveState { factor, displacement: 2.0 * FALLEN * elastic?, whole: true }));
     let share = if weaker.is_some() { 0.5 } else { STANDS };
     [(share, stands)].into_iter().chain(falls.map(|state| (1.0 - share, state)))
 }
@@ -64,9 +65,9 @@ mod tests {
     use super::super::search::tests::{PLAN, hockey};
     use super::*;
 
-    fn state(kink: f64, factor: f64) -> State {
+    fn state(kink: f64, factor: f64) -> CurveState {
         let (displacement, whole) = hockey(kink)(factor);
-        State { factor, displacement, whole }
+        CurveState { factor, displacement, whole }
     }
 
     /// What is wanted when the trials of these factors are known.
@@ -76,7 +77,7 @@ mod tests {
 
     /// Rounds of a search in each of which so many trials are made, and how many those are in all.
     fn rounds(kink: f64, most: usize) -> (usize, usize) {
-        let (mut made, mut rounds): (Vec<State>, usize) = (Vec::new(), 0);
+        let (mut made, mut rounds): (Vec<CurveState>, usize) = (Vec::new(), 0);
         loop {
             let wanted = ahead(PLAN, &|factor| made.iter().find(|state| state.factor == factor).copied(), most);
             if wanted.is_empty() {

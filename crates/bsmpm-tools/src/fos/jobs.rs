@@ -5,9 +5,9 @@ use std::sync::Arc;
 use std::sync::mpsc::{self, Receiver, Sender};
 use std::thread::{self, Scope};
 
-use super::curve::{Curve, State};
+use super::curve::{CurveState, FactorCurve};
 use super::guess;
-use super::search::{Halt, Plan, search};
+use super::search::{Halt, SearchPlan, search};
 use crate::Error;
 use crate::launch::Stop;
 
@@ -16,7 +16,7 @@ use crate::launch::Stop;
 const HORIZON: usize = 4;
 
 /// Where trials come from. The trial of a factor is the same whenever it is made, and whatever else is.
-pub(super) trait Source: Sync {
+pub(super) trait JobSource: Sync {
     type Trial: Send;
 
     /// The trial if it is there from before.
@@ -26,7 +26,7 @@ pub(super) trait Source: Sync {
     fn make(&self, factor: f64, stop: &Stop) -> Result<Self::Trial, Error>;
 
     /// What the judge sees of it.
-    fn state(trial: &Self::Trial) -> State;
+    fn state(trial: &Self::Trial) -> CurveState;
 }
 
 /// A trial that is being made.
@@ -39,8 +39,8 @@ struct Running {
 type Made<T> = (f64, Result<T, Error>);
 
 /// Trials under way, and those there are.
-struct Jobs<'a, S: Source> {
-    plan: Plan,
+struct Jobs<'a, S: JobSource> {
+    plan: SearchPlan,
     most: usize,
     source: &'a S,
     running: Vec<Running>,
@@ -56,12 +56,12 @@ struct Jobs<'a, S: Source> {
 ///
 /// # Errors
 /// Those of the search, and of trials for which it has asked. No trial is left running.
-pub(super) fn find<S: Source>(
-    plan: Plan,
+pub(super) fn find<S: JobSource>(
+    plan: SearchPlan,
     most: usize,
     source: &S,
     mut told: impl FnMut(&S::Trial),
-) -> Result<(Curve, Vec<S::Trial>), Error> {
+) -> Result<(FactorCurve, Vec<S::Trial>), Error> {
     let (sender, receiver) = mpsc::channel();
     let (running, made, asked) = (Vec::new(), Vec::new(), Vec::new());
     let mut jobs = Jobs { plan, most, source, running, made, asked, sender, receiver };
@@ -73,12 +73,12 @@ pub(super) fn find<S: Source>(
     Ok((curve, jobs.asked))
 }
 
-impl<'a, S: Source> Jobs<'a, S> {
+impl<'a, S: JobSource> Jobs<'a, S> {
     fn curve<'scope>(
         &mut self,
         scope: &'scope Scope<'scope, 'a>,
         told: &mut dyn FnMut(&S::Trial),
-    ) -> Result<Curve, Error> {
+    ) -> Result<FactorCurve, Error> {
         loop {
             match search(self.plan, &mut |factor| self.ask(factor, told)) {
                 Ok(curve) => return Ok(curve),
@@ -89,7 +89,7 @@ impl<'a, S: Source> Jobs<'a, S> {
     }
 
     /// The answer to the search.
-    fn ask(&mut self, factor: f64, told: &mut dyn FnMut(&S::Trial)) -> Option<State> {
+    fn ask(&mut self, factor: f64, told: &mut dyn FnMut(&S::Trial)) -> Option<CurveState> {
         if let Some(index) = self.made.iter().position(|made| made.0 == factor && made.1.is_ok()) {
             let trial = self.made.swap_remove(index).1.ok()?;
             told(&trial);
@@ -99,7 +99,7 @@ impl<'a, S: Source> Jobs<'a, S> {
     }
 
     /// What is known, whether the search has asked for it or not.
-    fn known(&self, factor: f64) -> Option<State> {
+    fn known(&self, factor: f64) -> Option<CurveState> {
         let made = self.made.iter().filter_map(|made| made.1.as_ref().ok());
         self.asked.iter().chain(made).map(S::state).find(|state| state.factor == factor)
     }
@@ -193,9 +193,9 @@ mod tests {
             Self { state, seed, is_kept: &|_| false, breaks: &|_| false, count: Mutex::default() }
         }
 
-        fn trial(&self, factor: f64) -> State {
+        fn trial(&self, factor: f64) -> CurveState {
             let (displacement, whole) = (self.state)(factor);
-            State { factor, displacement, whole }
+            CurveState { factor, displacement, whole }
         }
 
         /// Whether it ended by itself.
@@ -212,14 +212,14 @@ mod tests {
         Error::Trial { factor, code: 70, reason: String::new(), log: "log".into() }
     }
 
-    impl Source for Body<'_> {
-        type Trial = State;
+    impl JobSource for Body<'_> {
+        type Trial = CurveState;
 
-        fn kept(&self, factor: f64) -> Result<Option<State>, Error> {
+        fn kept(&self, factor: f64) -> Result<Option<CurveState>, Error> {
             Ok((self.is_kept)(factor).then(|| self.trial(factor)))
         }
 
-        fn make(&self, factor: f64, stop: &Stop) -> Result<State, Error> {
+        fn make(&self, factor: f64, stop: &Stop) -> Result<CurveState, Error> {
             let mut count = self.count.lock().unwrap();
             let is_alone = !count.0.contains(&factor);
             count.0.push(factor);
@@ -235,7 +235,7 @@ mod tests {
             Ok(self.trial(factor))
         }
 
-        fn state(trial: &State) -> State {
+        fn state(trial: &CurveState) -> CurveState {
             *trial
         }
     }

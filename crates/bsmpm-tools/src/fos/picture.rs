@@ -5,16 +5,16 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::curve::{DOUBLED, FALLEN};
-use super::report::{Report, Row, Verdict};
+use super::report::{FosReport, FosRow, Verdict};
 use super::subject::Subject;
 use crate::Error;
-use crate::picture::axes::{Axes, BELOW, LEFT, LINEAR, title};
+use crate::picture::axes::{BELOW, ChartAxes, LEFT, LINEAR, title};
 use crate::picture::canvas::Canvas;
 use crate::picture::colour::{self, INK, OUTLINE, Rgb};
-use crate::picture::legend::{self, Entry, Mark};
+use crate::picture::legend::{self, LegendEntry, Mark};
 use crate::picture::ticks::{padded, range};
-use crate::plot::{self, Arguments, FieldName};
-use crate::record::Record;
+use crate::plot::{self, FieldName, PlotArguments};
+use crate::record::RunRecord;
 
 const SHEET: (f64, f64) = (1600.0, 1000.0);
 const ABOVE: f64 = 115.0;
@@ -30,9 +30,9 @@ const MECHANISM: [(FieldName, &str, &str); 2] =
     [(FieldName::PlasticStrain, "plastic-strain_", NAMES[1]), (FieldName::Displacement, "displacement_", NAMES[2])];
 
 /// Draws `fos.png` and, where a trial has failed, the mechanism; returns their names in the output directory.
-pub(super) fn draw(report: &Report, subject: &Subject, output: &Path) -> Result<Vec<&'static str>, Error> {
+pub(super) fn draw(report: &FosReport, subject: &Subject, output: &Path) -> Result<Vec<&'static str>, Error> {
     let mut names = vec![NAMES[0]];
-    Chart::of(report, label(report, subject, output)?).draw().save(&output.join(NAMES[0]))?;
+    FactorChart::of(report, label(report, subject, output)?).draw().save(&output.join(NAMES[0]))?;
     let failed = report.factor_of_safety.first_failed.and_then(|factor| report.at(factor));
     if let Some(row) = failed {
         names.extend(mechanism(&output.join(&row.trial.directory), subject.end, output)?);
@@ -44,7 +44,8 @@ pub(super) fn draw(report: &Report, subject: &Subject, output: &Path) -> Result<
 fn mechanism(directory: &Path, end: f64, output: &Path) -> Result<Vec<&'static str>, Error> {
     let mut names = Vec::new();
     for (field, beginning, name) in MECHANISM {
-        let arguments = Arguments { times: vec![end], field: Some(field), ..Arguments::of(directory.to_owned()) };
+        let arguments =
+            PlotArguments { times: vec![end], field: Some(field), ..PlotArguments::of(directory.to_owned()) };
         let drawn = plot::run(&arguments)?;
         let is_body =
             |path: &&PathBuf| path.file_name().is_some_and(|name| name.to_string_lossy().starts_with(beginning));
@@ -58,32 +59,32 @@ fn mechanism(directory: &Path, end: f64, output: &Path) -> Result<Vec<&'static s
 }
 
 /// What the vertical axis shows: the case's own quantity if it has a scale, else parts of the elastic displacement.
-fn label(report: &Report, subject: &Subject, output: &Path) -> Result<Option<String>, Error> {
+fn label(report: &FosReport, subject: &Subject, output: &Path) -> Result<Option<String>, Error> {
     let Some(row) = report.trials.first().filter(|_| subject.is_scaled) else { return Ok(None) };
-    let record = Record::read(&output.join(&row.trial.directory))?;
+    let record = RunRecord::read(&output.join(&row.trial.directory))?;
     Ok(record.column(&subject.column).map(|column| column.label()))
 }
 
 /// The chart before it has axes.
-struct Chart<'a> {
-    report: &'a Report,
+struct FactorChart<'a> {
+    report: &'a FosReport,
     /// by which displacements are multiplied
     scale: f64,
     /// of the vertical axis
     label: String,
     /// the trials that are seen, in groups
-    groups: Vec<(Entry, Vec<(f64, f64)>)>,
+    groups: Vec<(LegendEntry, Vec<(f64, f64)>)>,
     /// the greatest factor that must be seen
     farthest: f64,
 }
 
-impl<'a> Chart<'a> {
-    fn of(report: &'a Report, label: Option<String>) -> Self {
+impl<'a> FactorChart<'a> {
+    fn of(report: &'a FosReport, label: Option<String>) -> Self {
         let scale = if label.is_some() { 1.0 } else { 1.0 / report.elastic_displacement };
         let ends = [report.factor_of_safety.first_failed, report.kink.map(|kink| kink.after.reaches(fallen(report)))];
         let farthest = ends.into_iter().flatten().fold(0.0, f64::max);
         // Far beyond failure the displacements would leave no room for those before it.
-        let is_seen = |row: &&Row| {
+        let is_seen = |row: &&FosRow| {
             farthest == 0.0
                 || (row.growth <= 1.05 * FALLEN && (row.verdict == Verdict::Stable || row.trial.factor <= farthest))
         };
@@ -92,7 +93,7 @@ impl<'a> Chart<'a> {
             rows.map(|row| (row.trial.factor, scale * row.trial.displacement)).collect::<Vec<_>>()
         };
         let group = |name: &str, verdict: Verdict, colour: Rgb| {
-            (Entry { name: name.to_owned(), colour, mark: Mark::Points }, places(verdict))
+            (LegendEntry { name: name.to_owned(), colour, mark: Mark::Points }, places(verdict))
         };
         let mut groups = vec![
             group("stable", Verdict::Stable, colour::line(0, 3)),
@@ -104,14 +105,14 @@ impl<'a> Chart<'a> {
     }
 
     fn draw(&self) -> Canvas {
-        let level = Entry { name: "twice the elastic".to_owned(), colour: colour::line(2, 3), mark: Mark::Line };
-        let branches = Entry { name: "branches".to_owned(), colour: OUTLINE, mark: Mark::Line };
+        let level = LegendEntry { name: "twice the elastic".to_owned(), colour: colour::line(2, 3), mark: Mark::Line };
+        let branches = LegendEntry { name: "branches".to_owned(), colour: OUTLINE, mark: Mark::Line };
         let lines = [Some(&level), self.report.kink.as_ref().map(|_| &branches)];
-        let entries: Vec<&Entry> =
+        let entries: Vec<&LegendEntry> =
             self.groups.iter().map(|(entry, _)| entry).chain(lines.into_iter().flatten()).collect();
         let axes = self.axes(ABOVE + legend::height(&entries, SHEET.0 - 80.0) + 20.0);
         let mut canvas = Canvas::new(SHEET.0, SHEET.1);
-        let Report { factor_of_safety: band, conditions, .. } = self.report;
+        let FosReport { factor_of_safety: band, conditions, .. } = self.report;
         let below = format!("Factor of safety {}; {}", band.words(), conditions.lines()[0]);
         title(&mut canvas, SHEET.0, &self.report.title, &below);
         legend::draw(&mut canvas, &entries, 40.0, ABOVE, SHEET.0 - 80.0);
@@ -135,17 +136,17 @@ impl<'a> Chart<'a> {
         self.scale * self.report.elastic_displacement
     }
 
-    fn axes(&self, top: f64) -> Axes {
+    fn axes(&self, top: f64) -> ChartAxes {
         let places = || self.groups.iter().flat_map(|(_, places)| places);
         let farthest = Some(self.farthest).filter(|factor| *factor > 0.0);
         let x = range(places().map(|place| place.0).chain(farthest)).unwrap_or((0.0, 1.0));
         let high = places().map(|place| place.1).fold(DOUBLED * self.elastic(), f64::max);
         let (x, y) = (padded(x.0, x.1, 0.03), (0.0, 1.06 * high));
-        Axes { left: LEFT, top, right: SHEET.0 - RIGHT, bottom: SHEET.1 - BELOW, x, y, scales: LINEAR }
+        ChartAxes { left: LEFT, top, right: SHEET.0 - RIGHT, bottom: SHEET.1 - BELOW, x, y, scales: LINEAR }
     }
 
     /// Both branches, from the left to where they meet, and up to the end of what is seen.
-    fn draw_branches(&self, canvas: &mut Canvas, axes: &Axes) {
+    fn draw_branches(&self, canvas: &mut Canvas, axes: &ChartAxes) {
         let Some(kink) = &self.report.kink else { return };
         let end = kink.after.reaches(fallen(self.report).min(axes.y.1 / self.scale));
         let before = [axes.x.0, kink.factor].map(|factor| (factor, self.scale * kink.before.at(factor)));
@@ -155,6 +156,6 @@ impl<'a> Chart<'a> {
 }
 
 /// The displacement at the end of the branch after failure.
-fn fallen(report: &Report) -> f64 {
+fn fallen(report: &FosReport) -> f64 {
     FALLEN * report.elastic_displacement
 }

@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-use super::curve::{Band, Curve, DOUBLED, Kink};
-use super::search::{ELASTIC, Plan};
+use super::curve::{Band, DOUBLED, FactorCurve, Kink};
+use super::search::{ELASTIC, SearchPlan};
 use super::subject::{Conditions, Subject};
 use super::trial::{End, Trial};
 use crate::record::short;
@@ -33,7 +33,7 @@ pub(super) enum Verdict {
 
 /// A trial with what it is worth.
 #[derive(Clone, Debug, Serialize)]
-pub(super) struct Row {
+pub(super) struct FosRow {
     pub verdict: Verdict,
     /// displacement over the elastic one
     pub growth: f64,
@@ -43,7 +43,7 @@ pub(super) struct Row {
 
 /// All of it.
 #[derive(Debug, Serialize)]
-pub(super) struct Report {
+pub(super) struct FosReport {
     pub case: String,
     pub title: String,
     /// the one of the kink; where it shows none, the coarse one
@@ -53,10 +53,10 @@ pub(super) struct Report {
     pub column: String,
     pub elastic_displacement: f64,
     pub conditions: Conditions,
-    pub plan: Plan,
+    pub plan: SearchPlan,
     pub command: Vec<String>,
     pub notes: Vec<String>,
-    pub trials: Vec<Row>,
+    pub trials: Vec<FosRow>,
     /// trials at the same time; they change the clock only
     pub jobs: usize,
     /// s  by the clock, those of trials that were kept left out
@@ -82,8 +82,14 @@ impl Finding {
     }
 }
 
-impl Report {
-    pub fn of(subject: &Subject, plan: Plan, command: &[String], curve: &Curve, trials: Vec<Trial>) -> Self {
+impl FosReport {
+    pub fn of(
+        subject: &Subject,
+        plan: SearchPlan,
+        command: &[String],
+        curve: &FactorCurve,
+        trials: Vec<Trial>,
+    ) -> Self {
         let kink = curve.kink();
         let by_kink = Finding::of("kink", curve.kinked(), kink.map(|kink| kink.factor));
         let doubled = Finding::of("doubled", curve.crossing(DOUBLED), curve.reaches(DOUBLED));
@@ -93,8 +99,8 @@ impl Report {
             state if curve.is_failed(kink.as_ref(), &state) => Verdict::Failed,
             _ => Verdict::Stable,
         };
-        let row = |trial: Trial| Row { verdict: verdict(&trial), growth: curve.growth(&trial.state()), trial };
-        let mut rows: Vec<Row> = trials.into_iter().map(row).collect();
+        let row = |trial: Trial| FosRow { verdict: verdict(&trial), growth: curve.growth(&trial.state()), trial };
+        let mut rows: Vec<FosRow> = trials.into_iter().map(row).collect();
         rows.sort_by(|a, b| a.trial.factor.total_cmp(&b.trial.factor));
         Self {
             case: subject.path().display().to_string(),
@@ -115,7 +121,7 @@ impl Report {
     }
 
     /// The row of a factor.
-    pub fn at(&self, factor: f64) -> Option<&Row> {
+    pub fn at(&self, factor: f64) -> Option<&FosRow> {
         self.trials.iter().find(|row| row.trial.factor == factor)
     }
 
@@ -145,7 +151,7 @@ impl Report {
             self.column
         );
         made += "# -,-,as the case,-,-,-,-,-,-,s,s\n";
-        for Row { verdict, growth, trial } in &self.trials {
+        for FosRow { verdict, growth, trial } in &self.trials {
             let load = trial.end.early().map_or(1.0, |(load, _)| load);
             let strain = trial.plastic_strain.map_or_else(String::new, |strain| strain.to_string());
             made += &format!(
@@ -175,10 +181,10 @@ impl Verdict {
     }
 }
 
-fn table(rows: &[Row], column: &str) -> String {
+fn table(rows: &[FosRow], column: &str) -> String {
     let headings = ["factor", "verdict", column, "/ elastic", "plastic strain", "iterations", "cuts", "CPU s", "s"]
         .map(str::to_owned);
-    let cells = |row: &Row| {
+    let cells = |row: &FosRow| {
         let Trial { factor, displacement, plastic_strain, iterations, cuts, cpu_seconds, seconds, .. } = &row.trial;
         [
             factor.to_string(),
@@ -209,7 +215,7 @@ fn table(rows: &[Row], column: &str) -> String {
 }
 
 /// What the reader of the factor should know.
-fn notes(curve: &Curve, kink: Option<&Kink>, rows: &[Row], plan: Plan) -> Vec<String> {
+fn notes(curve: &FactorCurve, kink: Option<&Kink>, rows: &[FosRow], plan: SearchPlan) -> Vec<String> {
     let mut notes = Vec::new();
     let coarse = curve.crossing(DOUBLED);
     if coarse.first_failed.is_none() {

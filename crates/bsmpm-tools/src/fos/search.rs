@@ -3,7 +3,7 @@
 
 use serde::Serialize;
 
-use super::curve::{BENT, Band, Curve, DOUBLED, FALLEN, State};
+use super::curve::{BENT, Band, CurveState, DOUBLED, FALLEN, FactorCurve};
 use crate::Error;
 
 /// The factor of the body that shows the elastic displacement: its materials follow their elastic laws, without strength
@@ -22,7 +22,7 @@ const ROUNDS: usize = 8;
 
 /// What is wanted of a search.
 #[derive(Clone, Copy, Debug, Serialize)]
-pub(super) struct Plan {
+pub(super) struct SearchPlan {
     /// The least and the greatest factor.
     pub from: f64,
     pub to: f64,
@@ -40,12 +40,12 @@ pub(super) enum Halt {
 }
 
 /// What is known of the trial of a factor, as far as it is.
-type Known<'a> = dyn FnMut(f64) -> Option<State> + 'a;
+type Known<'a> = dyn FnMut(f64) -> Option<CurveState> + 'a;
 
 /// A search as far as trials are known.
 struct Search<'a, 'b> {
-    plan: Plan,
-    curve: Curve,
+    plan: SearchPlan,
+    curve: FactorCurve,
     known: &'a mut Known<'b>,
 }
 
@@ -55,7 +55,7 @@ struct Search<'a, 'b> {
 /// # Errors
 /// [`Halt::Needs`] at the first trial that is not known; [`Error::NoStableState`] where the elastic body or that of the least
 /// factor finds no equilibrium or has failed.
-pub(super) fn search(plan: Plan, known: &mut Known<'_>) -> Result<Curve, Halt> {
+pub(super) fn search(plan: SearchPlan, known: &mut Known<'_>) -> Result<FactorCurve, Halt> {
     let over = |reason: String| Halt::Over(Error::NoStableState { reason });
     let elastic = known(ELASTIC).ok_or(Halt::Needs(ELASTIC))?;
     if !(elastic.whole && elastic.displacement.is_finite() && elastic.displacement > 0.0) {
@@ -66,7 +66,7 @@ pub(super) fn search(plan: Plan, known: &mut Known<'_>) -> Result<Curve, Halt> {
                 .to_owned(),
         ));
     }
-    let mut search = Search { plan, curve: Curve::new(elastic.displacement), known };
+    let mut search = Search { plan, curve: FactorCurve::new(elastic.displacement), known };
     search.climb()?;
     if search.curve.crossing(DOUBLED).last_stable.is_none() {
         return Err(over(format!(
@@ -84,7 +84,7 @@ pub(super) fn search(plan: Plan, known: &mut Known<'_>) -> Result<Curve, Halt> {
     Ok(search.curve)
 }
 
-impl Plan {
+impl SearchPlan {
     /// From the least to the greatest factor.
     fn rungs(&self) -> Vec<f64> {
         let mut rungs = vec![self.from];
@@ -185,12 +185,12 @@ pub(super) mod tests {
     use super::*;
 
     /// A search of a body by a formula, and the factors in the order in which they were asked for.
-    pub fn searched(plan: Plan, state: impl Fn(f64) -> (f64, bool)) -> (Result<Curve, Error>, Vec<f64>) {
+    pub fn searched(plan: SearchPlan, state: impl Fn(f64) -> (f64, bool)) -> (Result<FactorCurve, Error>, Vec<f64>) {
         let mut asked = Vec::new();
         let curve = search(plan, &mut |factor| {
             asked.push(factor);
             let (displacement, whole) = state(factor);
-            Some(State { factor, displacement, whole })
+            Some(CurveState { factor, displacement, whole })
         });
         let curve = curve.map_err(|halt| match halt {
             Halt::Needs(factor) => panic!("{factor} is known"),
@@ -199,7 +199,7 @@ pub(super) mod tests {
         (curve, asked)
     }
 
-    pub const PLAN: Plan = Plan { from: 0.5, to: 3.0, width: 0.02 };
+    pub const PLAN: SearchPlan = SearchPlan { from: 0.5, to: 3.0, width: 0.02 };
 
     /// The displacement of a body that bends at a factor, always in equilibrium.
     pub fn hockey(kink: f64) -> impl Fn(f64) -> (f64, bool) {
@@ -234,7 +234,7 @@ pub(super) mod tests {
         for (count, &next) in asked.iter().enumerate() {
             let known = |factor| asked[..count].contains(&factor).then(|| hockey(1.373)(factor));
             let halt = search(PLAN, &mut |factor| {
-                known(factor).map(|(displacement, whole)| State { factor, displacement, whole })
+                known(factor).map(|(displacement, whole)| CurveState { factor, displacement, whole })
             });
             assert!(matches!(halt, Err(Halt::Needs(factor)) if factor == next), "{next} {halt:?}");
         }

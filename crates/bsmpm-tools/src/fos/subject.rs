@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use bsmpm::model::Regime;
-use bsmpm_scene::{Axis, Case, Path as Motion, Quantity};
+use bsmpm_scene::{Case, GridAxis, Path as Motion, Quantity};
 use serde::Serialize;
 
 use super::search::{ELASTIC, LEAST};
@@ -235,7 +235,7 @@ fn ramps(case: &Case) -> impl Iterator<Item = f64> {
 
 impl Conditions {
     fn of(case: &Case) -> Self {
-        let largest = |axis: &Axis| (0..axis.cells()).map(|cell| axis.cell(cell)).fold(0.0, f64::max);
+        let largest = |axis: &GridAxis| (0..axis.cells()).map(|cell| axis.cell(cell)).fold(0.0, f64::max);
         let mut points_per_cell: Vec<usize> = case.bodies.iter().map(|body| body.points_per_cell).collect();
         points_per_cell.dedup();
         Self {

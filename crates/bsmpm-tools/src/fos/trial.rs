@@ -5,13 +5,13 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use super::curve::State;
-use super::jobs::Source;
+use super::curve::CurveState;
+use super::jobs::JobSource;
 use super::subject::Subject;
 use crate::Error;
-use crate::launch::{self, Ending, Solver, Stop, Task};
+use crate::launch::{self, Ending, LaunchTask, SolverProgram, Stop};
 use crate::plot::FieldName;
-use crate::record::Record;
+use crate::record::RunRecord;
 
 /// How a trial ended.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -49,7 +49,7 @@ pub(super) struct Trial {
 
 /// How trials are made.
 pub(super) struct Trials<'a> {
-    pub solver: Solver<'a>,
+    pub solver: SolverProgram<'a>,
     pub subject: &'a Subject,
     pub output: &'a Path,
     pub force: bool,
@@ -57,8 +57,8 @@ pub(super) struct Trials<'a> {
 
 impl Trial {
     /// What the judge sees of it.
-    pub fn state(&self) -> State {
-        State { factor: self.factor, displacement: self.displacement, whole: self.end == End::Equilibrium }
+    pub fn state(&self) -> CurveState {
+        CurveState { factor: self.factor, displacement: self.displacement, whole: self.end == End::Equilibrium }
     }
 }
 
@@ -73,7 +73,7 @@ impl End {
 }
 
 /// What a trial is made from.
-struct Order {
+struct TrialOrder {
     arguments: Vec<String>,
     /// relative to the output directory
     within: PathBuf,
@@ -83,13 +83,13 @@ struct Order {
     origin: Option<String>,
 }
 
-impl Order {
-    fn task(&self, force: bool) -> Task<'_> {
-        Task { arguments: &self.arguments, directory: &self.directory, origin: self.origin.as_deref(), force }
+impl TrialOrder {
+    fn task(&self, force: bool) -> LaunchTask<'_> {
+        LaunchTask { arguments: &self.arguments, directory: &self.directory, origin: self.origin.as_deref(), force }
     }
 }
 
-impl Source for Trials<'_> {
+impl JobSource for Trials<'_> {
     type Trial = Trial;
 
     fn kept(&self, factor: f64) -> Result<Option<Trial>, Error> {
@@ -109,13 +109,13 @@ impl Source for Trials<'_> {
         self.read(factor, &order.directory, order.within, Some(code))
     }
 
-    fn state(trial: &Trial) -> State {
+    fn state(trial: &Trial) -> CurveState {
         trial.state()
     }
 }
 
 impl Trials<'_> {
-    fn order(&self, factor: f64) -> Result<Order, Error> {
+    fn order(&self, factor: f64) -> Result<TrialOrder, Error> {
         let within = Path::new("trials").join(format!("{factor}.out"));
         let directory = self.output.join(&within);
         let mut arguments = vec![self.subject.path().display().to_string()];
@@ -127,7 +127,7 @@ impl Trials<'_> {
         let text = self.subject.text(factor)?;
         // The same text is the same trial, on whatever ranks; but not of another solver.
         let origin = self.solver.stamp().map(|stamp| format!("{stamp}\n\n{text}"));
-        Ok(Order { arguments, within, directory, text, origin })
+        Ok(TrialOrder { arguments, within, directory, text, origin })
     }
 
     fn read(&self, factor: f64, directory: &Path, within: PathBuf, code: Option<u8>) -> Result<Trial, Error> {
@@ -138,7 +138,7 @@ impl Trials<'_> {
             (Some(manifest), DONE | CHECK | NO_CONVERGENCE | LEFT) => manifest,
             _ => return Err(broken(ending.reason.clone())),
         };
-        let record = Record::read(directory)?;
+        let record = RunRecord::read(directory)?;
         let last = record.column(&self.subject.column).and_then(|column| column.values.last().copied());
         let displacement = last.ok_or_else(|| broken("it left no displacement".to_owned()))?;
         let displacement = displacement * self.subject.conditions.stiffness;

@@ -9,10 +9,10 @@ use rustix::process::{Pid, Signal, WaitId, WaitIdOptions, kill_process, waitid};
 
 /// What a run and those who may stop it share.
 #[derive(Debug, Default)]
-pub(crate) struct Stop(Mutex<State>);
+pub(crate) struct Stop(Mutex<StopState>);
 
 #[derive(Debug, Default)]
-struct State {
+struct StopState {
     is_asked: bool,
     /// while its number is that of no other process
     process: Option<Pid>,
@@ -51,7 +51,7 @@ impl Stop {
         child.wait()
     }
 
-    fn state(&self) -> MutexGuard<'_, State> {
+    fn state(&self) -> MutexGuard<'_, StopState> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

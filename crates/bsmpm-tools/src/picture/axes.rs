@@ -1,6 +1,6 @@
 //! Two axes with ticks and labels about a box of the sheet.
 
-use super::canvas::{Align, Canvas, fitting, width};
+use super::canvas::{Canvas, TextAlign, fitting, width};
 use super::colour::{INK, OUTLINE, RULE, Rgb};
 use super::ticks::{Scale, Ticks};
 
@@ -24,7 +24,7 @@ pub(crate) type Label<'a> = (&'a str, &'a str);
 
 /// A box of the sheet and the region of the plane that it shows.
 #[derive(Clone, Copy)]
-pub(crate) struct Axes {
+pub(crate) struct ChartAxes {
     /// Left, top, right and bottom edge in pixels.
     pub left: f64,
     pub top: f64,
@@ -39,7 +39,7 @@ pub(crate) struct Axes {
 /// Both axes linear.
 pub(crate) const LINEAR: [Scale; 2] = [Scale::Linear; 2];
 
-impl Axes {
+impl ChartAxes {
     /// Where a place of the region lies on the sheet.
     pub fn place(&self, (x, y): (f64, f64)) -> (f64, f64) {
         let (across, up) = (self.scales[0].share(x, self.x), self.scales[1].share(y, self.y));
@@ -79,7 +79,7 @@ impl Axes {
             let text = ticks.text(value);
             widest = widest.max(width(&text, NUMBER));
             canvas.fill((self.left - TICK, at - THIN / 2.0), (self.left, at + THIN / 2.0), INK);
-            canvas.text(&text, (self.left - TICK - 8.0, at), NUMBER, Align::Right, INK);
+            canvas.text(&text, (self.left - TICK - 8.0, at), NUMBER, TextAlign::Right, INK);
         }
         let label = ticks.label(y.0, y.1);
         let size = fitting(&label, LABEL, self.bottom - self.top + 90.0);
@@ -94,12 +94,12 @@ impl Axes {
             let at = self.place((value, self.y.0)).0;
             canvas.fill((at - THIN / 2.0, self.bottom), (at + THIN / 2.0, self.bottom + TICK), INK);
             if label.is_some() {
-                canvas.text(&ticks.text(value), (at, self.bottom + TICK + 22.0), NUMBER, Align::Centre, INK);
+                canvas.text(&ticks.text(value), (at, self.bottom + TICK + 22.0), NUMBER, TextAlign::Centre, INK);
             }
         }
         if let Some((quantity, unit)) = label {
             let centre = f64::midpoint(self.left, self.right);
-            canvas.text(&ticks.label(quantity, unit), (centre, self.bottom + 72.0), LABEL, Align::Centre, INK);
+            canvas.text(&ticks.label(quantity, unit), (centre, self.bottom + 72.0), LABEL, TextAlign::Centre, INK);
         }
     }
 
@@ -133,7 +133,7 @@ pub(crate) fn label(quantity: &str, unit: &str) -> String {
 /// The title of a picture: what was solved and, smaller, what is seen.
 pub(crate) fn title(canvas: &mut Canvas, sheet: f64, text: &str, below: &str) {
     let size = fitting(text, TITLE, sheet - 60.0);
-    canvas.text(text, (sheet / 2.0, 42.0), size, Align::Centre, INK);
+    canvas.text(text, (sheet / 2.0, 42.0), size, TextAlign::Centre, INK);
     let size = fitting(below, LABEL, sheet - 60.0);
-    canvas.text(below, (sheet / 2.0, 88.0), size, Align::Centre, INK);
+    canvas.text(below, (sheet / 2.0, 88.0), size, TextAlign::Centre, INK);
 }

@@ -1,7 +1,7 @@
 //! The bar that tells which colour is which number.
 
-use super::axes::{self, Axes, LABEL, Label, NUMBER, THIN, TICK};
-use super::canvas::{Align, Canvas, fitting, width};
+use super::axes::{self, ChartAxes, LABEL, Label, NUMBER, THIN, TICK};
+use super::canvas::{Canvas, TextAlign, fitting, width};
 use super::colour::{self, INK};
 use super::ticks::Ticks;
 
@@ -20,7 +20,7 @@ pub(crate) struct Bar<'a> {
 
 impl Bar<'_> {
     /// Draws the bar lying below the axes, its label on the left.
-    pub fn lying(&self, canvas: &mut Canvas, axes: &Axes) {
+    pub fn lying(&self, canvas: &mut Canvas, axes: &ChartAxes) {
         let ticks = Ticks::between(self.range.0, self.range.1, 8.0);
         let label = ticks.label(self.label.0, self.label.1);
         let size = fitting(&label, LABEL, 0.5 * (axes.right - axes.left));
@@ -33,14 +33,14 @@ impl Bar<'_> {
         for &value in &ticks.values {
             let at = left + (right - left) * self.share(value);
             canvas.fill((at - THIN / 2.0, bottom), (at + THIN / 2.0, bottom + TICK), INK);
-            canvas.text(&ticks.text(value), (at, bottom + TICK + 22.0), NUMBER, Align::Centre, INK);
+            canvas.text(&ticks.text(value), (at, bottom + TICK + 22.0), NUMBER, TextAlign::Centre, INK);
         }
-        canvas.text(&label, (axes.left, f64::midpoint(top, bottom)), size, Align::Left, INK);
+        canvas.text(&label, (axes.left, f64::midpoint(top, bottom)), size, TextAlign::Left, INK);
     }
 
     /// Draws the bar standing right of the axes, its label reading upward.
-    pub fn upright(&self, canvas: &mut Canvas, axes: &Axes) {
-        let Axes { top, bottom, .. } = *axes;
+    pub fn upright(&self, canvas: &mut Canvas, axes: &ChartAxes) {
+        let ChartAxes { top, bottom, .. } = *axes;
         let ticks = Ticks::between(self.range.0, self.range.1, (bottom - top) / 90.0);
         let (left, right) = (axes.right + 50.0, axes.right + 50.0 + THICK);
         for (from, to, shade) in shades(bottom, top) {
@@ -52,7 +52,7 @@ impl Bar<'_> {
             let (at, text) = (bottom - (bottom - top) * self.share(value), ticks.text(value));
             widest = widest.max(width(&text, NUMBER));
             canvas.fill((right, at - THIN / 2.0), (right + TICK, at + THIN / 2.0), INK);
-            canvas.text(&text, (right + TICK + 8.0, at), NUMBER, Align::Left, INK);
+            canvas.text(&text, (right + TICK + 8.0, at), NUMBER, TextAlign::Left, INK);
         }
         let label = ticks.label(self.label.0, self.label.1);
         let size = fitting(&label, LABEL, bottom - top + 80.0);

@@ -23,7 +23,7 @@ const CAPITAL_CENTRE: f64 = 0.5 - 0.626 / 2.0;
 
 /// Where a text stands about its place; upright it is always centred on it.
 #[derive(Clone, Copy)]
-pub(crate) enum Align {
+pub(crate) enum TextAlign {
     Left,
     Centre,
     Right,
@@ -51,7 +51,7 @@ impl Canvas {
     }
 
     /// A text whose capitals are centred upright on `(x, y)`.
-    pub fn text(&mut self, text: &str, (x, y): (f64, f64), size: f64, align: Align, colour: Rgb) {
+    pub fn text(&mut self, text: &str, (x, y): (f64, f64), size: f64, align: TextAlign, colour: Rgb) {
         let place = fine((x, y - CAPITAL_CENTRE * size));
         let style = style(size, align, colour, FontTransform::None);
         self.draw(|sheet| sheet.draw_text(text, &style, place).map_err(|error| error.to_string()));
@@ -60,7 +60,7 @@ impl Canvas {
     /// A text that reads upward, centred on `(x, y)`.
     pub fn upward(&mut self, text: &str, (x, y): (f64, f64), size: f64, colour: Rgb) {
         let place = fine((x - CAPITAL_CENTRE * size, y));
-        let style = style(size, Align::Centre, colour, FontTransform::Rotate270);
+        let style = style(size, TextAlign::Centre, colour, FontTransform::Rotate270);
         self.draw(|sheet| sheet.draw_text(text, &style, place).map_err(|error| error.to_string()));
     }
 
@@ -176,11 +176,11 @@ fn font(size: f64) -> FontDesc<'static> {
     (FONT, size * FINE as f64).into_font()
 }
 
-fn style(size: f64, align: Align, colour: Rgb, turn: FontTransform) -> TextStyle<'static> {
+fn style(size: f64, align: TextAlign, colour: Rgb, turn: FontTransform) -> TextStyle<'static> {
     let across = match align {
-        Align::Left => HPos::Left,
-        Align::Centre => HPos::Center,
-        Align::Right => HPos::Right,
+        TextAlign::Left => HPos::Left,
+        TextAlign::Centre => HPos::Center,
+        TextAlign::Right => HPos::Right,
     };
     let mut style = TextStyle::from(font(size).transform(turn)).pos(Pos::new(across, VPos::Top));
     style.color = rgb(colour).to_backend_color();

@@ -1,9 +1,9 @@
 //! Curves and points over one pair of axes, with levels across them.
 
-use super::axes::{Axes, BELOW, LEFT, LINEAR, Label, NUMBER, title};
-use super::canvas::{Align, Canvas, fitting, width};
+use super::axes::{BELOW, ChartAxes, LEFT, LINEAR, Label, NUMBER, title};
+use super::canvas::{Canvas, TextAlign, fitting, width};
 use super::colour::INK;
-use super::legend::{self, Entry};
+use super::legend::{self, LegendEntry};
 use super::ticks::{padded, range};
 
 const SHEET: (f64, f64) = (1600.0, 1000.0);
@@ -16,13 +16,13 @@ const WIDEST: f64 = 420.0;
 
 /// Places, and how they are drawn and named.
 pub(crate) struct Curve {
-    pub entry: Entry,
+    pub entry: LegendEntry,
     pub places: Vec<(f64, f64)>,
 }
 
 /// A number on the vertical axis with a meaning of its own; the text may be empty.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Level {
+pub struct ChartLevel {
     /// Where, in the unit of the picture.
     pub value: f64,
     /// Its meaning.
@@ -37,8 +37,8 @@ pub(crate) struct Chart<'a> {
     pub x: Label<'a>,
     pub y: Label<'a>,
     pub curves: &'a [Curve],
-    pub levels: &'a [Level],
-    pub legend: Vec<&'a Entry>,
+    pub levels: &'a [ChartLevel],
+    pub legend: Vec<&'a LegendEntry>,
 }
 
 impl Chart<'_> {
@@ -51,7 +51,7 @@ impl Chart<'_> {
         let right = if texts > 0.0 { texts + 40.0 } else { RIGHT };
         let (x, y) = self.ranges();
         let top = above + legend::height(&self.legend, room) + 20.0;
-        let axes = Axes { left: LEFT, top, right: SHEET.0 - right, bottom: SHEET.1 - BELOW, x, y, scales: LINEAR };
+        let axes = ChartAxes { left: LEFT, top, right: SHEET.0 - right, bottom: SHEET.1 - BELOW, x, y, scales: LINEAR };
         let mut canvas = Canvas::new(SHEET.0, SHEET.1);
         title(&mut canvas, SHEET.0, self.title, self.below);
         legend::draw(&mut canvas, &self.legend, 40.0, above, room);
@@ -83,7 +83,7 @@ impl Chart<'_> {
     }
 
     /// Dashed lines with their texts right of the axes, moved apart where they are too close.
-    fn draw_levels(&self, canvas: &mut Canvas, axes: &Axes) {
+    fn draw_levels(&self, canvas: &mut Canvas, axes: &ChartAxes) {
         let mut texts: Vec<(f64, &str)> = Vec::new();
         for level in self.levels {
             texts.push((axes.level(canvas, level.value), &level.text));
@@ -92,7 +92,7 @@ impl Chart<'_> {
         texts.sort_by(|a, b| a.0.total_cmp(&b.0));
         let places: Vec<f64> = texts.iter().map(|text| text.0).collect();
         for (at, (_, text)) in apart(&places, 1.3 * NUMBER).into_iter().zip(texts) {
-            canvas.text(text, (axes.right + 14.0, at), fitting(text, NUMBER, WIDEST), Align::Left, INK);
+            canvas.text(text, (axes.right + 14.0, at), fitting(text, NUMBER, WIDEST), TextAlign::Left, INK);
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Where the axes of a region stand on the sheet when a metre is as long upward as across.
 
-use super::axes::{Axes, LEFT, LINEAR};
+use super::axes::{ChartAxes, LEFT, LINEAR};
 
 const WIDEST: f64 = 1600.0;
 const NARROWEST: f64 = 1000.0;
@@ -32,9 +32,9 @@ impl Layout {
     }
 
     /// The axes, their box beginning `top` pixels below the sheet's upper edge.
-    pub fn axes(&self, top: f64) -> Axes {
+    pub fn axes(&self, top: f64) -> ChartAxes {
         let [x, y] = self.region;
-        Axes { left: self.left, top, right: self.left + self.wide, bottom: top + self.high, x, y, scales: LINEAR }
+        ChartAxes { left: self.left, top, right: self.left + self.wide, bottom: top + self.high, x, y, scales: LINEAR }
     }
 }
 

@@ -1,7 +1,7 @@
 //! Which line means what: a row, or several, of names above the axes, where they can hide nothing.
 
 use super::axes::NUMBER;
-use super::canvas::{Align, Canvas, fitting, width};
+use super::canvas::{Canvas, TextAlign, fitting, width};
 use super::colour::{INK, Rgb, WHITE};
 
 /// How places are drawn.
@@ -16,7 +16,7 @@ pub(crate) enum Mark {
 }
 
 /// One line or sort of points and its name.
-pub(crate) struct Entry {
+pub(crate) struct LegendEntry {
     pub name: String,
     pub colour: Rgb,
     pub mark: Mark,
@@ -44,14 +44,14 @@ impl Mark {
 }
 
 /// The size of the letters of an entry and its whole width.
-fn sizes(entry: &Entry, room: f64) -> (f64, f64) {
+fn sizes(entry: &LegendEntry, room: f64) -> (f64, f64) {
     let letters = fitting(&entry.name, NUMBER, room - SAMPLE - SPACE);
     (letters, SAMPLE + SPACE + width(&entry.name, letters))
 }
 
 /// The entries in rows no wider than `room`, with their widths.
-fn rows<'a>(entries: &[&'a Entry], room: f64) -> Vec<Vec<(&'a Entry, f64)>> {
-    let mut rows: Vec<Vec<(&'a Entry, f64)>> = Vec::new();
+fn rows<'a>(entries: &[&'a LegendEntry], room: f64) -> Vec<Vec<(&'a LegendEntry, f64)>> {
+    let mut rows: Vec<Vec<(&'a LegendEntry, f64)>> = Vec::new();
     let mut used = f64::INFINITY;
     for &entry in entries {
         let (_, size) = sizes(entry, room);
@@ -68,12 +68,12 @@ fn rows<'a>(entries: &[&'a Entry], room: f64) -> Vec<Vec<(&'a Entry, f64)>> {
 }
 
 /// The height that the legend takes.
-pub(crate) fn height(entries: &[&Entry], room: f64) -> f64 {
+pub(crate) fn height(entries: &[&LegendEntry], room: f64) -> f64 {
     rows(entries, room).len() as f64 * ROW
 }
 
 /// Draws the legend, centred between `left` and `left + room`, its first row just below `top`.
-pub(crate) fn draw(canvas: &mut Canvas, entries: &[&Entry], left: f64, top: f64, room: f64) {
+pub(crate) fn draw(canvas: &mut Canvas, entries: &[&LegendEntry], left: f64, top: f64, room: f64) {
     for (index, row) in rows(entries, room).iter().enumerate() {
         let whole: f64 = row.iter().map(|(_, size)| size).sum::<f64>() + GAP * (row.len() - 1) as f64;
         let y = top + ROW * (index as f64 + 0.5);
@@ -87,7 +87,7 @@ pub(crate) fn draw(canvas: &mut Canvas, entries: &[&Entry], left: f64, top: f64,
                     mark.draw(canvas, &middle, 0.0, entry.colour);
                 }
             }
-            canvas.text(&entry.name, (x + SAMPLE + SPACE, y), sizes(entry, room).0, Align::Left, INK);
+            canvas.text(&entry.name, (x + SAMPLE + SPACE, y), sizes(entry, room).0, TextAlign::Left, INK);
             x += size + GAP;
         }
     }

@@ -6,7 +6,7 @@ use std::collections::HashSet;
 
 use bsmpm_io::frame::Frame;
 
-use super::axes::Axes;
+use super::axes::ChartAxes;
 use super::canvas::{Canvas, FINE, fine};
 use super::colour::Rgb;
 
@@ -59,7 +59,7 @@ struct Nearest {
 const NOBODY: u32 = u32::MAX;
 
 /// The part of the plane where a body is drawn.
-pub(crate) struct Window {
+pub(crate) struct SplatWindow {
     /// m  the ranges of x and y
     pub ranges: [(f64, f64); 2],
     /// Whether the body is held at the lower and upper ends of the ranges: what comes near to such an end goes up to it.
@@ -69,8 +69,8 @@ pub(crate) struct Window {
 /// Draws the part of a body that lies in `window`, each point in its colour.
 pub(crate) fn draw(
     canvas: &mut Canvas,
-    axes: &Axes,
-    window: &Window,
+    axes: &ChartAxes,
+    window: &SplatWindow,
     (points, sizes): (&[[f64; 3]], &[f64]),
     colours: &[Rgb],
 ) {
@@ -109,7 +109,7 @@ fn median(sizes: &[f64]) -> f64 {
     sorted.get(sorted.len() / 2).copied().unwrap_or(0.0)
 }
 
-impl Window {
+impl SplatWindow {
     /// A place and its mirror images behind the walls that it is nearer to than `reach`, m.
     fn images(&self, place: [f64; 2], reach: f64) -> impl Iterator<Item = (f64, f64)> {
         let along = |axis: usize| {

@@ -33,12 +33,12 @@ impl Scale {
 /// The round numbers of an axis and how they are written.
 pub(crate) struct Ticks {
     pub values: Vec<f64>,
-    form: Form,
+    form: TickForm,
 }
 
 /// How round numbers are written.
 #[derive(Clone, Copy)]
-enum Form {
+enum TickForm {
     /// Divided by a power of 1000.
     Decimal { scale: f64, decimals: usize },
     /// As powers of ten.
@@ -71,7 +71,7 @@ impl Ticks {
         let values = (0..=steps).map(|i| (first + i as f64) * step + 0.0).collect();
         let scale = 10_f64.powi(power_of(low.abs().max(high.abs())));
         let decimals = (-(step / scale * 1.001).log10().floor()).clamp(0.0, 12.0) as usize;
-        Self { values, form: Form::Decimal { scale, decimals } }
+        Self { values, form: TickForm::Decimal { scale, decimals } }
     }
 
     /// At most `count` powers of ten between two positive numbers, whose exponents are multiples of 1, 2, 3, ..
@@ -79,12 +79,12 @@ impl Ticks {
         let (first, last) = ((low.log10() - 1e-6).ceil() as i32, (high.log10() + 1e-6).floor() as i32);
         let stride = (f64::from(last - first) / count.max(1.0)).ceil().max(1.0) as i32;
         let exponents = (first..=last).filter(|exponent| exponent % stride == 0);
-        Self { values: exponents.map(|exponent| 10_f64.powi(exponent)).collect(), form: Form::Power }
+        Self { values: exponents.map(|exponent| 10_f64.powi(exponent)).collect(), form: TickForm::Power }
     }
 
     /// How a number of this axis is written.
     pub fn text(&self, value: f64) -> String {
-        let Form::Decimal { scale, decimals } = self.form else { return power_text(value) };
+        let TickForm::Decimal { scale, decimals } = self.form else { return power_text(value) };
         let text = format!("{:.*}", decimals, value / scale);
         let is_zero = text.trim_start_matches(['-', '0', '.']).is_empty();
         if is_zero { "0".to_owned() } else { text.replace('-', "−") }
@@ -92,7 +92,7 @@ impl Ticks {
 
     /// The axis' label: the quantity with its unit, and the power of ten by which the numbers were divided.
     pub fn label(&self, quantity: &str, unit: &str) -> String {
-        let scale = if let Form::Decimal { scale, .. } = self.form { scale } else { 1.0 };
+        let scale = if let TickForm::Decimal { scale, .. } = self.form { scale } else { 1.0 };
         let power = POWERS.iter().find(|(power, _)| 10_f64.powi(*power) == scale).map_or("", |(_, text)| text);
         let unit = if unit == "-" { "" } else { unit };
         let prefix = ["", "k", "M", "G"].into_iter().zip(["", "10³", "10⁶", "10⁹"]).find(|(_, text)| *text == power);

@@ -4,21 +4,21 @@ use bsmpm_io::frame::Frame;
 
 use super::field::FieldName;
 use crate::Error;
-use crate::picture::axes::{self, Axes, title};
+use crate::picture::axes::{self, ChartAxes, title};
 use crate::picture::bar::{self, Bar};
 use crate::picture::canvas::Canvas;
 use crate::picture::colour::{self, OUTLINE};
 use crate::picture::layout::{Layout, aspect};
 use crate::picture::splat;
 use crate::picture::ticks::range;
-use crate::record::{Record, Regime, short};
+use crate::record::{RecordedRegime, RunRecord, short};
 
 const ABOVE: f64 = 130.0;
 const RIGHT: f64 = 60.0;
 
 /// Draws a picture for every frame, with the `wanted` range of colours or one from the values; returns their names.
 pub(super) fn draw(
-    record: &Record,
+    record: &RunRecord,
     frames: &[Frame],
     field: FieldName,
     wanted: Option<(f64, f64)>,
@@ -38,7 +38,7 @@ pub(super) fn draw(
     Ok(names)
 }
 
-fn picture(record: &Record, frame: &Frame, values: &[f64], region: [(f64, f64); 2], bar: Bar) -> Canvas {
+fn picture(record: &RunRecord, frame: &Frame, values: &[f64], region: [(f64, f64); 2], bar: Bar) -> Canvas {
     // A low and long body has its bar of colours lying below it.
     let lying = aspect(region) < 0.5;
     let layout = Layout::of(region, if lying { RIGHT } else { bar::BESIDE }, 0.0);
@@ -52,10 +52,10 @@ fn picture(record: &Record, frame: &Frame, values: &[f64], region: [(f64, f64); 
     let ranges = if record.manifest.grid.is_some() { window(record, &[]) } else { region };
     // What is thrown may leave the walls; what is pushed does not.
     let walls = match record.regime() {
-        Regime::QuasiStatic if record.manifest.grid.is_some() => record.case.walls,
+        RecordedRegime::QuasiStatic if record.manifest.grid.is_some() => record.case.walls,
         _ => Default::default(),
     };
-    let inside = splat::Window { ranges, walls };
+    let inside = splat::SplatWindow { ranges, walls };
     splat::draw(&mut canvas, &axes, &inside, (&frame.position, &sizes), &shades);
     outline(&mut canvas, &axes, record);
     axes.draw(&mut canvas, Some(("x", "m")), ("y", "m"));
@@ -68,7 +68,7 @@ fn picture(record: &Record, frame: &Frame, values: &[f64], region: [(f64, f64); 
 }
 
 /// The ranges of x and y where points can be: the grid's box, or without one that of all points.
-fn window(record: &Record, frames: &[Frame]) -> [(f64, f64); 2] {
+fn window(record: &RunRecord, frames: &[Frame]) -> [(f64, f64); 2] {
     let extent = record.manifest.grid.as_ref();
     [0, 1].map(|axis| {
         let grid = extent.and_then(|grid| Some((*grid.lower.get(axis)?, *grid.upper.get(axis)?)));
@@ -78,7 +78,7 @@ fn window(record: &Record, frames: &[Frame]) -> [(f64, f64); 2] {
 }
 
 /// The region that is shown: where points can be and a little more.
-pub(super) fn region(record: &Record, frames: &[Frame]) -> [(f64, f64); 2] {
+pub(super) fn region(record: &RunRecord, frames: &[Frame]) -> [(f64, f64); 2] {
     let [x, y] = window(record, frames);
     let room = 0.02 * (x.1 - x.0).min(y.1 - y.0).max(0.1 * (x.1 - x.0).max(y.1 - y.0));
     let room = if room > 0.0 { room } else { 0.5 };
@@ -86,7 +86,7 @@ pub(super) fn region(record: &Record, frames: &[Frame]) -> [(f64, f64); 2] {
 }
 
 /// The box of the grid, if the manifest tells it.
-pub(super) fn outline(canvas: &mut Canvas, axes: &Axes, record: &Record) {
+pub(super) fn outline(canvas: &mut Canvas, axes: &ChartAxes, record: &RunRecord) {
     let Some(grid) = &record.manifest.grid else { return };
     if let ([left, bottom, ..], [right, top, ..]) = (&grid.lower[..], &grid.upper[..]) {
         canvas.frame(axes.place((*left, *top)), axes.place((*right, *bottom)), 1.5, OUTLINE);

@@ -3,12 +3,12 @@
 use bsmpm_io::table::Columns;
 
 use crate::Error;
-use crate::picture::axes::{Axes, BELOW, LEFT, LINEAR, title};
+use crate::picture::axes::{BELOW, ChartAxes, LEFT, LINEAR, title};
 use crate::picture::canvas::Canvas;
 use crate::picture::colour;
-use crate::picture::legend::{self, Entry, Mark};
+use crate::picture::legend::{self, LegendEntry, Mark};
 use crate::picture::ticks::{padded, range};
-use crate::record::Record;
+use crate::record::RunRecord;
 
 const SHEET: (f64, f64) = (1600.0, 1100.0);
 const ABOVE: f64 = 115.0;
@@ -17,7 +17,7 @@ const BETWEEN: f64 = 40.0;
 const NAME: &str = "convergence.png";
 
 /// Draws `convergence.png` if there is a row in `steps.csv`; returns its name.
-pub(super) fn draw(record: &Record) -> Result<Option<String>, Error> {
+pub(super) fn draw(record: &RunRecord) -> Result<Option<String>, Error> {
     let column = |name| record.steps.as_ref().and_then(|steps: &Columns| steps.get(name));
     let columns = (column("time"), column("iterations"), column("dt"));
     let (Some(time), Some(iterations), Some(dt)) = columns else { return Ok(None) };
@@ -29,15 +29,16 @@ pub(super) fn draw(record: &Record) -> Result<Option<String>, Error> {
         time.iter().zip(dt).zip(cutbacks).filter(|(_, cuts)| **cuts > 0.0).map(|((&time, &dt), _)| (time, dt)).collect()
     });
 
-    let legend = Entry { name: "step that was cut back".to_owned(), colour: colour::line(1, 2), mark: Mark::Points };
-    let legend: &[&Entry] = if cut.is_empty() { &[] } else { &[&legend] };
+    let legend =
+        LegendEntry { name: "step that was cut back".to_owned(), colour: colour::line(1, 2), mark: Mark::Points };
+    let legend: &[&LegendEntry] = if cut.is_empty() { &[] } else { &[&legend] };
     let top = ABOVE + legend::height(legend, SHEET.0 - 80.0) + 20.0;
     let bottom = SHEET.1 - BELOW;
     let middle = f64::midpoint(top, bottom);
     let above = |values: &[f64]| (0.0, 1.08 * range(values.iter().copied()).map_or(1.0, |(_, high)| high.max(1e-300)));
     let (left, right) = (LEFT, SHEET.0 - RIGHT);
-    let upper = Axes { left, top, right, bottom: middle - BETWEEN / 2.0, x, y: above(iterations), scales: LINEAR };
-    let lower = Axes { left, top: middle + BETWEEN / 2.0, right, bottom, x, y: above(dt), scales: LINEAR };
+    let upper = ChartAxes { left, top, right, bottom: middle - BETWEEN / 2.0, x, y: above(iterations), scales: LINEAR };
+    let lower = ChartAxes { left, top: middle + BETWEEN / 2.0, right, bottom, x, y: above(dt), scales: LINEAR };
 
     let mut canvas = Canvas::new(SHEET.0, SHEET.1);
     title(&mut canvas, SHEET.0, &record.manifest.case.title, "Convergence of the steps");

@@ -6,9 +6,9 @@ use bsmpm_io::table::Columns;
 use crate::Error;
 use crate::picture::chart::{Chart, Curve};
 use crate::picture::colour::{self, INK};
-use crate::picture::legend::{Entry, Mark};
+use crate::picture::legend::{LegendEntry, Mark};
 use crate::picture::ticks::range;
-use crate::record::{Record, Recorded};
+use crate::record::{Recorded, RunRecord};
 
 /// A picture that is drawn if the history has columns for it; those of another unit or scale get one of their
 /// own, the scaled ones last.
@@ -77,7 +77,7 @@ struct Axis<'a> {
 }
 
 /// Draws every picture for which the history has columns, none of them twice over one axis; returns their names.
-pub(super) fn draw(record: &Record, reference: Option<&Columns>) -> Result<Vec<String>, Error> {
+pub(super) fn draw(record: &RunRecord, reference: Option<&Columns>) -> Result<Vec<String>, Error> {
     let mut names = Vec::new();
     let mut drawn: Vec<(&str, &str)> = Vec::new();
     for picture in &PICTURES {
@@ -98,7 +98,7 @@ pub(super) fn draw(record: &Record, reference: Option<&Columns>) -> Result<Vec<S
 }
 
 impl Across {
-    fn axis(self, record: &Record) -> Option<Axis<'_>> {
+    fn axis(self, record: &RunRecord) -> Option<Axis<'_>> {
         if self == Time {
             let (label, unit) = record.time_label();
             let values = record.history.as_ref()?.get("time")?;
@@ -132,7 +132,7 @@ impl Picture {
     }
 
     /// The columns that there are, those of one unit and scale together.
-    fn groups<'a>(&self, record: &'a Record) -> Vec<Vec<Recorded<'a>>> {
+    fn groups<'a>(&self, record: &'a RunRecord) -> Vec<Vec<Recorded<'a>>> {
         let recorded = |quantities: &[&str]| -> Vec<Recorded<'a>> {
             let columns = quantities.iter().flat_map(|quantity| record.columns(quantity));
             columns.filter(|column| !column.values.is_empty() && self.is_about(column)).collect()
@@ -160,7 +160,7 @@ impl Picture {
 
     fn draw(
         &self,
-        record: &Record,
+        record: &RunRecord,
         axis: &Axis,
         columns: &[Recorded],
         reference: Option<&Columns>,
@@ -168,8 +168,11 @@ impl Picture {
     ) -> Result<(), Error> {
         let mut curves = Vec::new();
         for (index, column) in columns.iter().enumerate() {
-            let entry =
-                Entry { name: column.name.to_owned(), colour: colour::line(index, columns.len()), mark: Mark::Line };
+            let entry = LegendEntry {
+                name: column.name.to_owned(),
+                colour: colour::line(index, columns.len()),
+                mark: Mark::Line,
+            };
             curves.push(Curve { entry, places: axis.places(axis.values, column.values) });
         }
         // The points of a reference whose columns bear the names of ours.
@@ -177,7 +180,7 @@ impl Picture {
         for column in columns {
             if let Some((across, values)) = referred(column.name) {
                 let name = format!("reference, {}", column.name);
-                let entry = Entry { name, colour: INK, mark: Mark::Points };
+                let entry = LegendEntry { name, colour: INK, mark: Mark::Points };
                 curves.push(Curve { entry, places: axis.places(across, values) });
             }
         }

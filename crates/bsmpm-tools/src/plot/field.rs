@@ -30,7 +30,7 @@ pub enum FieldName {
 }
 
 /// How a quantity is taken from a frame.
-struct Source {
+struct PlotSource {
     field: &'static str,
     components: usize,
     /// The component; none takes the length of the vector.
@@ -41,8 +41,8 @@ struct Source {
 }
 
 impl FieldName {
-    fn source(self) -> Source {
-        let stress = |component, quantity| Source {
+    fn source(self) -> PlotSource {
+        let stress = |component, quantity| PlotSource {
             field: "stress",
             components: 6,
             component: Some(component),
@@ -51,9 +51,15 @@ impl FieldName {
             unit: "kPa",
         };
         let vector =
-            |field, quantity, unit| Source { field, components: 3, component: None, scale: 1.0, quantity, unit };
-        let scalar =
-            |field, scale, quantity, unit| Source { field, components: 1, component: Some(0), scale, quantity, unit };
+            |field, quantity, unit| PlotSource { field, components: 3, component: None, scale: 1.0, quantity, unit };
+        let scalar = |field, scale, quantity, unit| PlotSource {
+            field,
+            components: 1,
+            component: Some(0),
+            scale,
+            quantity,
+            unit,
+        };
         match self {
             Self::StressXx => stress(0, "Horizontal stress σxx"),
             Self::StressYy => stress(1, "Vertical stress σyy"),
@@ -84,7 +90,7 @@ impl FieldName {
 
     /// The quantity at every point of a frame, in the unit of [`FieldName::label`].
     pub(crate) fn values(self, frame: &Frame) -> Option<Vec<f64>> {
-        let Source { field, components, component, scale, .. } = self.source();
+        let PlotSource { field, components, component, scale, .. } = self.source();
         let values = frame.real(field, components)?.chunks_exact(components);
         Some(match component {
             Some(component) => values.map(|point| scale * point[component]).collect(),

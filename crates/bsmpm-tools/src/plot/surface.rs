@@ -9,10 +9,10 @@ use crate::picture::axes::{BELOW, title};
 use crate::picture::canvas::Canvas;
 use crate::picture::colour::{self, INK, WHITE};
 use crate::picture::layout::Layout;
-use crate::picture::legend::{self, Entry, Mark};
+use crate::picture::legend::{self, LegendEntry, Mark};
 use crate::picture::splat;
 use crate::picture::ticks::range;
-use crate::record::Record;
+use crate::record::RunRecord;
 
 const ABOVE: f64 = 115.0;
 const RIGHT: f64 = 60.0;
@@ -21,10 +21,10 @@ const NAME: &str = "surface.png";
 const LOWEST: f64 = 0.16;
 
 /// Draws the surfaces of all frames, with the points of a reference that has columns `time,x,y`; returns the picture's name.
-pub(super) fn draw(record: &Record, frames: &[Frame], reference: Option<&Columns>) -> Result<String, Error> {
+pub(super) fn draw(record: &RunRecord, frames: &[Frame], reference: Option<&Columns>) -> Result<String, Error> {
     let reference = reference.map(|table| places(record, frames, table)).unwrap_or_default();
     let entries = entries(record, frames, &reference);
-    let entries: Vec<&Entry> = entries.iter().collect();
+    let entries: Vec<&LegendEntry> = entries.iter().collect();
     let layout = Layout::of(region(record, frames), RIGHT, LOWEST);
     let room = layout.width - 80.0;
     let axes = layout.axes(ABOVE + legend::height(&entries, room) + 20.0);
@@ -48,7 +48,7 @@ pub(super) fn draw(record: &Record, frames: &[Frame], reference: Option<&Columns
 }
 
 /// The highest point of every column of cells from left to right; an empty column breaks the line.
-fn surface(record: &Record, frame: &Frame) -> Vec<(f64, f64)> {
+fn surface(record: &RunRecord, frame: &Frame) -> Vec<(f64, f64)> {
     let Some((low, high)) = range(frame.position.iter().map(|point| point[0])) else { return Vec::new() };
     let grid = record.manifest.grid.as_ref();
     let cell = grid.and_then(|grid| Some((*grid.lower.first()?, *grid.cell.first()?)));
@@ -69,36 +69,36 @@ fn surface(record: &Record, frame: &Frame) -> Vec<(f64, f64)> {
 }
 
 /// Reference points of one time.
-struct Group {
+struct SurfaceGroup {
     time: f64,
     places: Vec<(f64, f64)>,
     colour: colour::Rgb,
 }
 
 /// The reference's points by time, in the colour of the frame of the same time, if there is one.
-fn places(record: &Record, frames: &[Frame], table: &Columns) -> Vec<Group> {
+fn places(record: &RunRecord, frames: &[Frame], table: &Columns) -> Vec<SurfaceGroup> {
     let columns = (table.get("time"), table.get("x"), table.get("y"));
     let (Some(times), Some(x), Some(y)) = columns else { return Vec::new() };
-    let mut groups: Vec<Group> = Vec::new();
+    let mut groups: Vec<SurfaceGroup> = Vec::new();
     for ((&time, &x), &y) in times.iter().zip(x).zip(y) {
         if let Some(group) = groups.iter_mut().find(|group| group.time == time) {
             group.places.push((x, y));
         } else {
             let same = |frame: &Frame| record.moment(frame.time) == record.moment(time);
             let colour = frames.iter().position(same).map_or(INK, |index| colour::line(index, frames.len()));
-            groups.push(Group { time, places: vec![(x, y)], colour });
+            groups.push(SurfaceGroup { time, places: vec![(x, y)], colour });
         }
     }
     groups
 }
 
-fn entries(record: &Record, frames: &[Frame], reference: &[Group]) -> Vec<Entry> {
-    let line = |(index, frame): (usize, &Frame)| Entry {
+fn entries(record: &RunRecord, frames: &[Frame], reference: &[SurfaceGroup]) -> Vec<LegendEntry> {
+    let line = |(index, frame): (usize, &Frame)| LegendEntry {
         name: record.moment(frame.time),
         colour: colour::line(index, frames.len()),
         mark: Mark::Line,
     };
-    let group = |group: &Group| Entry {
+    let group = |group: &SurfaceGroup| LegendEntry {
         name: format!("reference, {}", record.moment(group.time)),
         colour: group.colour,
         mark: Mark::Points,

@@ -1,35 +1,35 @@
 //! What the text of a case says that pictures need. It is read with leave: a text of another version of the program, or
 //! none, leaves gaps, and no errors.
 
-use bsmpm_io::manifest::Extent;
+use bsmpm_io::manifest::GridExtent;
 use toml::de::{DeTable, DeValue};
 
 /// What is known of a case; what it does not say, or not in a known form, is none.
 #[derive(Debug, Default, PartialEq)]
 pub(crate) struct Case {
     /// Whether inertia acts.
-    pub regime: Option<Regime>,
+    pub regime: Option<RecordedRegime>,
     /// The method of stabilisation.
     pub stabilisation: Option<String>,
     /// Whether the grid's lower and upper faces along x and y hold the body, fixed or as rollers.
     pub walls: [[bool; 2]; 2],
     /// The rigid strip.
-    pub footing: Option<Footing>,
+    pub footing: Option<RecordedFooting>,
     /// By which the strength is divided.
     pub strength_reduction: Option<f64>,
     /// What it records, in its order.
-    pub histories: Vec<History>,
+    pub histories: Vec<RecordedHistory>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Regime {
+pub(crate) enum RecordedRegime {
     QuasiStatic,
     Dynamic,
 }
 
 /// A rigid strip.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Footing {
+pub(crate) struct RecordedFooting {
     /// m  the x of its ends
     ends: Option<[f64; 2]>,
     /// Whether the grid's left and right faces are planes of symmetry.
@@ -38,7 +38,7 @@ pub(crate) struct Footing {
 
 /// A `[[history]]`.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct History {
+pub(crate) struct RecordedHistory {
     pub quantity: String,
     /// The beginning of its columns' names.
     pub name: String,
@@ -52,8 +52,8 @@ impl Case {
         let Ok(document) = DeTable::parse(text) else { return Self::default() };
         let root = document.get_ref();
         let regime = match word(table(root, "analysis"), "type") {
-            Some("quasi-static") => Some(Regime::QuasiStatic),
-            Some("dynamic") => Some(Regime::Dynamic),
+            Some("quasi-static") => Some(RecordedRegime::QuasiStatic),
+            Some("dynamic") => Some(RecordedRegime::Dynamic),
             _ => None,
         };
         // An absent table is no stabilisation, but only in a text that is a case.
@@ -61,16 +61,23 @@ impl Case {
         let held = |face| matches!(word(table(root, "boundary"), face), Some("fixed" | "roller"));
         let walls = [["left", "right"], ["bottom", "top"]].map(|faces| faces.map(held));
         let histories = match root.get("history").map(|value| value.get_ref()) {
-            Some(DeValue::Array(list)) => list.iter().filter_map(|item| History::of(item.get_ref())).collect(),
+            Some(DeValue::Array(list)) => list.iter().filter_map(|item| RecordedHistory::of(item.get_ref())).collect(),
             _ => Vec::new(),
         };
         let reduction =
             table(root, "strength_reduction").and_then(|reduction| number(reduction.get("factor")?.get_ref()));
-        Self { regime, stabilisation, walls, footing: Footing::of(root), strength_reduction: reduction, histories }
+        Self {
+            regime,
+            stabilisation,
+            walls,
+            footing: RecordedFooting::of(root),
+            strength_reduction: reduction,
+            histories,
+        }
     }
 }
 
-impl History {
+impl RecordedHistory {
     fn of(value: &DeValue) -> Option<Self> {
         let DeValue::Table(table) = value else { return None };
         let quantity = word(Some(table), "quantity")?.to_owned();
@@ -95,7 +102,7 @@ pub(crate) fn bears(column: &str, name: &str) -> bool {
     column.strip_prefix(name).is_some_and(|rest| rest.is_empty() || rest.starts_with('-'))
 }
 
-impl Footing {
+impl RecordedFooting {
     fn of(root: &DeTable) -> Option<Self> {
         let footing = table(root, "footing")?;
         let end = |key| match footing.get(key)?.get_ref() {
@@ -108,7 +115,7 @@ impl Footing {
     }
 
     /// m  The whole width, of which a half model that begins or ends at a plane of symmetry has only the half.
-    pub fn width(&self, grid: &Extent) -> Option<f64> {
+    pub fn width(&self, grid: &GridExtent) -> Option<f64> {
         let [one, other] = self.ends?;
         let (left, right) = (one.min(other), one.max(other));
         let width = right - left;
@@ -179,14 +186,14 @@ mod tests {
     "#;
 
     fn width(text: &str) -> Option<f64> {
-        let grid = Extent { lower: vec![0.0; 2], upper: vec![5.0, 11.0], cell: vec![0.1; 2] };
+        let grid = GridExtent { lower: vec![0.0; 2], upper: vec![5.0, 11.0], cell: vec![0.1; 2] };
         Case::of(text).footing?.width(&grid)
     }
 
     #[test]
     fn a_case_is_read() {
         let case = Case::of(HALF);
-        assert_eq!((case.regime, case.stabilisation.as_deref()), (Some(Regime::QuasiStatic), Some("none")));
+        assert_eq!((case.regime, case.stabilisation.as_deref()), (Some(RecordedRegime::QuasiStatic), Some("none")));
         assert_eq!(
             (case.strength_reduction, Case::of("strength_reduction.factor = 2").strength_reduction),
             (None, Some(2.0))

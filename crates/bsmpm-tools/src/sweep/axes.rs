@@ -5,15 +5,15 @@ const MOST: usize = 10_000;
 
 /// A key with its values, in the syntax of `--set`.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Axis {
+pub(super) struct SweepAxis {
     pub key: String,
     pub values: Vec<String>,
 }
 
 /// A value for each axis; none where the case's own stays.
-pub(super) type Setting = Vec<Option<String>>;
+pub(super) type SweepSetting = Vec<Option<String>>;
 
-impl Axis {
+impl SweepAxis {
     /// `KEY=V1,V2,...`; a comma within brackets, braces or quotes belongs to a value.
     pub fn parse(text: &str) -> Result<Self, String> {
         let wrong = |why: &str| Err(format!("--vary {text}: {why}; expected KEY=V1,V2,..."));
@@ -52,7 +52,7 @@ pub(crate) fn split(text: &str) -> Vec<String> {
 ///
 /// # Errors
 /// Says that a key is varied twice, or that there are too many.
-pub(super) fn settings(axes: &[Axis], one_at_a_time: bool) -> Result<Vec<Setting>, String> {
+pub(super) fn settings(axes: &[SweepAxis], one_at_a_time: bool) -> Result<Vec<SweepSetting>, String> {
     if let Some(twice) = (1..axes.len()).find(|&index| axes[..index].iter().any(|axis| axis.key == axes[index].key)) {
         return Err(format!("--vary {}: the key is varied twice", axes[twice].key));
     }
@@ -60,10 +60,10 @@ pub(super) fn settings(axes: &[Axis], one_at_a_time: bool) -> Result<Vec<Setting
     if count > MOST && !one_at_a_time {
         return Err(format!("{count} settings are too many: at most {MOST}"));
     }
-    let own: Setting = vec![None; axes.len()];
+    let own: SweepSetting = vec![None; axes.len()];
     let mut settings = vec![own.clone()];
     for (index, axis) in axes.iter().enumerate() {
-        let with = |setting: &Setting, value: &String| {
+        let with = |setting: &SweepSetting, value: &String| {
             let mut setting = setting.clone();
             setting[index] = Some(value.clone());
             setting
@@ -81,8 +81,8 @@ pub(super) fn settings(axes: &[Axis], one_at_a_time: bool) -> Result<Vec<Setting
 mod tests {
     use super::*;
 
-    fn axis(text: &str) -> Axis {
-        Axis::parse(text).unwrap()
+    fn axis(text: &str) -> SweepAxis {
+        SweepAxis::parse(text).unwrap()
     }
 
     #[test]
@@ -92,7 +92,7 @@ mod tests {
         assert_eq!(axis("title=\"a, b\"").values, ["\"a, b\""]);
         assert_eq!(axis("a.b={c = 1, d = [2, 3]},{c = 2}").values.len(), 2);
         for text in ["grid.cell", "=1", "a=", "a=1,,2", "a=1,1"] {
-            assert!(Axis::parse(text).is_err(), "{text}");
+            assert!(SweepAxis::parse(text).is_err(), "{text}");
         }
     }
 
@@ -107,7 +107,7 @@ mod tests {
         assert_eq!(shown(false), ["1x", "1y", "1z", "2x", "2y", "2z"]);
         assert_eq!(shown(true), ["--", "1-", "2-", "-x", "-y", "-z"]);
         assert!(settings(&[axis("a=1"), axis("a=2")], false).is_err());
-        let long = Axis { key: "a".into(), values: (0..200).map(|value| value.to_string()).collect() };
-        assert!(settings(&[long.clone(), Axis { key: "b".into(), ..long }], false).is_err());
+        let long = SweepAxis { key: "a".into(), values: (0..200).map(|value| value.to_string()).collect() };
+        assert!(settings(&[long.clone(), SweepAxis { key: "b".into(), ..long }], false).is_err());
     }
 }

@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
-use super::report::{Report, Row};
+use super::report::{SweepReport, SweepRow};
 use crate::Error;
-use crate::picture::axes::{Axes, BELOW, LEFT, NUMBER, title};
-use crate::picture::canvas::{Align, Canvas, fitting};
+use crate::picture::axes::{BELOW, ChartAxes, LEFT, NUMBER, title};
+use crate::picture::canvas::{Canvas, TextAlign, fitting};
 use crate::picture::colour::{self, INK, OUTLINE};
-use crate::picture::legend::{self, Entry, Mark};
+use crate::picture::legend::{self, LegendEntry, Mark};
 use crate::picture::ticks::{Scale, range};
 
 const SHEET: (f64, f64) = (1900.0, 1000.0);
@@ -21,10 +21,10 @@ const GAP: f64 = 1.9 * NUMBER;
 const SMALLEST: f64 = 1e-12;
 
 /// Draws the errors of one quantity; nothing where no run has one.
-pub(super) fn draw(report: &Report, quantity: usize, path: &Path) -> Result<bool, Error> {
-    let place = |row: &Row| row.place(&[quantity]).filter(|(cost, error)| *cost > 0.0 && *error > SMALLEST);
-    let front: Vec<(&Row, (f64, f64))> = sorted(report, |row| place(row).filter(|_| row.on_front[quantity]));
-    let others: Vec<(&Row, (f64, f64))> =
+pub(super) fn draw(report: &SweepReport, quantity: usize, path: &Path) -> Result<bool, Error> {
+    let place = |row: &SweepRow| row.place(&[quantity]).filter(|(cost, error)| *cost > 0.0 && *error > SMALLEST);
+    let front: Vec<(&SweepRow, (f64, f64))> = sorted(report, |row| place(row).filter(|_| row.on_front[quantity]));
+    let others: Vec<(&SweepRow, (f64, f64))> =
         sorted(report, |row| place(row).filter(|_| !row.on_front[quantity] && !row.is_reference));
     let all = || front.iter().chain(&others).map(|(_, place)| *place);
     let (Some(x), Some(y)) = (range(all().map(|place| place.0)), range(all().map(|place| 100.0 * place.1))) else {
@@ -35,7 +35,7 @@ pub(super) fn draw(report: &Report, quantity: usize, path: &Path) -> Result<bool
         ("other settings", OUTLINE, Mark::Points),
         ("baseline", colour::line(1, 3), Mark::Points),
     ]
-    .map(|(name, colour, mark)| Entry { name: name.to_owned(), colour, mark });
+    .map(|(name, colour, mark)| LegendEntry { name: name.to_owned(), colour, mark });
     let own: Vec<(f64, f64)> = sorted(report, |row| place(row).filter(|_| row.is_baseline && !row.is_reference))
         .into_iter()
         .map(|(_, place)| place)
@@ -44,7 +44,7 @@ pub(super) fn draw(report: &Report, quantity: usize, path: &Path) -> Result<bool
     entries.extend((!others.is_empty()).then_some(&elsewhere));
     entries.extend((!own.is_empty()).then_some(&baseline));
     let room = SHEET.0 - 80.0;
-    let axes = Axes {
+    let axes = ChartAxes {
         left: LEFT,
         top: ABOVE + legend::height(&entries, room) + 20.0,
         right: SHEET.0 - NAMES,
@@ -60,9 +60,9 @@ pub(super) fn draw(report: &Report, quantity: usize, path: &Path) -> Result<bool
     axes.rules(&mut canvas);
     let level = axes.level(&mut canvas, 100.0 * report.within);
     let good = format!("{} %", 100.0 * report.within);
-    canvas.text(&good, (axes.left + 12.0, level - 20.0), NUMBER, Align::Left, OUTLINE);
+    canvas.text(&good, (axes.left + 12.0, level - 20.0), NUMBER, TextAlign::Left, OUTLINE);
     let on_sheet = |(cost, error): (f64, f64)| axes.place((cost, 100.0 * error));
-    let marked = |canvas: &mut Canvas, entry: &Entry, places: Vec<(f64, f64)>| {
+    let marked = |canvas: &mut Canvas, entry: &LegendEntry, places: Vec<(f64, f64)>| {
         let places: Vec<_> = places.into_iter().map(on_sheet).collect();
         entry.mark.draw(canvas, &places, LINE, entry.colour);
     };
@@ -76,30 +76,35 @@ pub(super) fn draw(report: &Report, quantity: usize, path: &Path) -> Result<bool
 }
 
 /// Runs that have a place, the cheapest first.
-fn sorted(report: &Report, place: impl Fn(&Row) -> Option<(f64, f64)>) -> Vec<(&Row, (f64, f64))> {
+fn sorted(report: &SweepReport, place: impl Fn(&SweepRow) -> Option<(f64, f64)>) -> Vec<(&SweepRow, (f64, f64))> {
     let mut found: Vec<_> = report.runs.iter().filter_map(|row| Some((row, place(row)?))).collect();
     found.sort_by(|a, b| a.1.0.total_cmp(&b.1.0));
     found
 }
 
-fn against(report: &Report) -> &str {
+fn against(report: &SweepReport) -> &str {
     report.reference.what.split(':').next().unwrap_or_default()
 }
 
 /// Numbers at the points of the front, lower left where nothing else can be, and what they mean beside the axes.
-fn names(canvas: &mut Canvas, axes: &Axes, front: &[(&Row, (f64, f64))], on_sheet: &dyn Fn((f64, f64)) -> (f64, f64)) {
+fn names(
+    canvas: &mut Canvas,
+    axes: &ChartAxes,
+    front: &[(&SweepRow, (f64, f64))],
+    on_sheet: &dyn Fn((f64, f64)) -> (f64, f64),
+) {
     let (left, wide) = (axes.right + 24.0, NAMES - 44.0);
     let gap = GAP.min((axes.bottom - axes.top) / front.len().max(1) as f64);
     for (index, (row, place)) in front.iter().enumerate() {
         let number = (index + 1).to_string();
         let (x, y) = on_sheet(*place);
-        canvas.text(&number, (x - 14.0, y + 22.0), NUMBER, Align::Right, INK);
+        canvas.text(&number, (x - 14.0, y + 22.0), NUMBER, TextAlign::Right, INK);
         let text = format!("{number}  {}", row.name);
         let cost = format!("     {:.3} %, {} CPU s", 100.0 * place.1, crate::record::short(place.0));
         let top = axes.top + gap * (index as f64 + 0.3);
         let size = (0.42 * gap).min(NUMBER * 0.85);
-        canvas.text(&text, (left, top), fitting(&text, size, wide), Align::Left, INK);
-        canvas.text(&cost, (left, top + 0.42 * gap), fitting(&cost, size, wide), Align::Left, OUTLINE);
+        canvas.text(&text, (left, top), fitting(&text, size, wide), TextAlign::Left, INK);
+        canvas.text(&cost, (left, top + 0.42 * gap), fitting(&cost, size, wide), TextAlign::Left, OUTLINE);
     }
 }
 

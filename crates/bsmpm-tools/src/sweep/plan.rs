@@ -2,31 +2,31 @@
 
 use bsmpm_scene::Case;
 
-use super::Arguments;
-use super::axes::{self, Axis};
-use super::quantity::{FACTOR, Quantity};
+use super::SweepArguments;
+use super::axes::{self, SweepAxis};
+use super::quantity::{FACTOR, SweepQuantity};
 use super::reference::Reference;
 use super::study::{Point, Study};
 use crate::Error;
 use crate::batch;
 
 /// What is swept, before anything runs.
-pub(super) struct Plan {
+pub(super) struct SweepPlan {
     pub bytes: Vec<u8>,
     pub own: Case,
-    pub axes: Vec<Axis>,
-    pub quantities: Vec<Quantity>,
+    pub axes: Vec<SweepAxis>,
+    pub quantities: Vec<SweepQuantity>,
     pub reference: Reference,
     pub points: Vec<Point>,
 }
 
-impl Arguments {
-    pub(super) fn plan(&self) -> Result<Plan, Error> {
+impl SweepArguments {
+    pub(super) fn plan(&self) -> Result<SweepPlan, Error> {
         let usage = |reason: String| Error::Usage { reason };
-        let axes: Vec<Axis> =
-            self.vary.iter().map(|text| Axis::parse(text)).collect::<Result<_, _>>().map_err(usage)?;
-        let quantities: Vec<Quantity> =
-            self.quantity.iter().map(|text| Quantity::parse(text)).collect::<Result<_, _>>().map_err(usage)?;
+        let axes: Vec<SweepAxis> =
+            self.vary.iter().map(|text| SweepAxis::parse(text)).collect::<Result<_, _>>().map_err(usage)?;
+        let quantities: Vec<SweepQuantity> =
+            self.quantity.iter().map(|text| SweepQuantity::parse(text)).collect::<Result<_, _>>().map_err(usage)?;
         let settings = axes::settings(&axes, self.one_at_a_time).map_err(usage)?;
         let bytes = batch::load(&self.case)?;
         let own = Case::from_bytes(&self.case.display().to_string(), &bytes, &self.options.set)
@@ -36,13 +36,13 @@ impl Arguments {
         reference.check(&quantities)?;
         let study = Study { path: &self.case, bytes: &bytes, set: &self.options.set, axes: &axes };
         let points = study.points(&settings, &self.baseline.as_deref().map_or_else(Vec::new, axes::split))?;
-        Ok(Plan { bytes, own, axes, quantities, reference, points })
+        Ok(SweepPlan { bytes, own, axes, quantities, reference, points })
     }
 
     /// Whether the case records what is wanted.
-    fn look_through(&self, quantities: &[Quantity], case: &Case) -> Result<(), Error> {
+    fn look_through(&self, quantities: &[SweepQuantity], case: &Case) -> Result<(), Error> {
         let usage = |reason: String| Err(Error::Usage { reason });
-        if quantities.iter().any(Quantity::is_factor) {
+        if quantities.iter().any(SweepQuantity::is_factor) {
             return match (quantities, self.options.max_wall) {
                 ([only], None) if only.name == FACTOR => Ok(()),
                 (_, Some(_)) => usage(format!("--max-wall: not with --quantity {FACTOR}")),

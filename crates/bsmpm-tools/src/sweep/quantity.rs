@@ -11,21 +11,21 @@ const NEAR: f64 = 1e-9;
 
 /// One number of a run, or several that count together.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Quantity {
+pub(super) struct SweepQuantity {
     /// As it was asked for.
     pub name: String,
-    pub parts: Vec<Part>,
+    pub parts: Vec<QuantityPart>,
 }
 
 /// A column at a time; at the end without one.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Part {
+pub(crate) struct QuantityPart {
     pub column: String,
     /// s or pseudo-time
     pub at: Option<f64>,
 }
 
-impl Quantity {
+impl SweepQuantity {
     /// `NAME[@TIME],...`; a name without a time takes that of the next one that has it.
     pub fn parse(text: &str) -> Result<Self, String> {
         let wrong =
@@ -34,12 +34,12 @@ impl Quantity {
         for part in text.split(',').rev() {
             let (column, at) = match part.split_once('@') {
                 Some((column, time)) => (column.trim(), Some(plot::time(time).map_err(|why| wrong(&why))?)),
-                None => (part.trim(), parts.last().and_then(|next: &Part| next.at)),
+                None => (part.trim(), parts.last().and_then(|next: &QuantityPart| next.at)),
             };
             if column.is_empty() {
                 return Err(wrong("an empty name"));
             }
-            parts.push(Part { column: column.to_owned(), at });
+            parts.push(QuantityPart { column: column.to_owned(), at });
         }
         parts.reverse();
         let name = text.chars().filter(|c| !c.is_whitespace()).collect();
@@ -64,7 +64,7 @@ impl Quantity {
     }
 }
 
-impl Part {
+impl QuantityPart {
     /// Its number in a history: linear between rows.
     pub fn value(&self, history: &Columns) -> Result<f64, String> {
         let column = |name: &str| history.get(name).ok_or_else(|| format!("its history has no column {name}"));
@@ -100,22 +100,22 @@ mod tests {
 
     use super::*;
 
-    fn quantity(text: &str) -> Quantity {
-        Quantity::parse(text).unwrap()
+    fn quantity(text: &str) -> SweepQuantity {
+        SweepQuantity::parse(text).unwrap()
     }
 
     #[test]
     fn names_and_times_are_read() {
         let places = |text: &str| {
             let parts = quantity(text).parts;
-            parts.iter().map(Part::words).collect::<Vec<_>>().join(" ")
+            parts.iter().map(QuantityPart::words).collect::<Vec<_>>().join(" ")
         };
         assert_eq!(places("runout"), "runout");
         assert_eq!(places("runout @ 0.607 s"), "runout@0.607");
         assert_eq!(places("surface-200, surface-302@0.607"), "surface-200@0.607 surface-302@0.607");
         assert_eq!(places("p@.25,p@1,q"), "p@0.25 p@1 q");
         for text in ["", "a,", "a@soon", "@1", "a@inf"] {
-            assert!(Quantity::parse(text).is_err(), "{text}");
+            assert!(SweepQuantity::parse(text).is_err(), "{text}");
         }
     }
 

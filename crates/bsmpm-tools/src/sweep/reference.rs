@@ -8,7 +8,7 @@ use bsmpm_io::table;
 use serde::Serialize;
 
 use super::axes::split;
-use super::quantity::Quantity;
+use super::quantity::SweepQuantity;
 use super::study::Point;
 use crate::Error;
 use crate::grid_convergence::{Course, Index};
@@ -26,7 +26,7 @@ pub(super) enum Reference {
 
 /// What it is.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub(super) struct Found {
+pub(super) struct FoundReference {
     /// In words.
     pub what: String,
     /// For each quantity those of its parts; none where there are none.
@@ -38,7 +38,7 @@ pub(super) struct Found {
 }
 
 /// Values of a run of the sweep: for each quantity those of its parts.
-pub(super) type Values = Vec<Option<Vec<f64>>>;
+pub(super) type ReferenceValues = Vec<Option<Vec<f64>>>;
 
 impl Reference {
     /// `baseline`, `finest`, `extrapolated`, a number for each part, or the directory of a run.
@@ -54,7 +54,7 @@ impl Reference {
     }
 
     /// What can be seen to be wrong before anything runs.
-    pub fn check(&self, quantities: &[Quantity]) -> Result<(), Error> {
+    pub fn check(&self, quantities: &[SweepQuantity]) -> Result<(), Error> {
         let parts: usize = quantities.iter().map(|quantity| quantity.parts.len()).sum();
         match self {
             Self::Baseline | Self::Finest | Self::Extrapolated => Ok(()),
@@ -72,49 +72,59 @@ impl Reference {
     ///
     /// # Errors
     /// Those of a run elsewhere that does not have the quantities.
-    pub fn find(&self, quantities: &[Quantity], points: &[Point], values: &[Option<Values>]) -> Result<Found, Error> {
+    pub fn find(
+        &self,
+        quantities: &[SweepQuantity],
+        points: &[Point],
+        values: &[Option<ReferenceValues>],
+    ) -> Result<FoundReference, Error> {
         match self {
             Self::Baseline => Ok(baseline(quantities, points, values)),
             Self::Finest => Ok(finest(quantities, points, values)),
             Self::Extrapolated => Ok(extrapolated(quantities, points, values)),
             Self::Run(directory) => {
                 let values = elsewhere(directory, quantities)?.into_iter().map(Some).collect();
-                Ok(Found { what: format!("the run in {}", directory.display()), values, run: None, notes: Vec::new() })
+                Ok(FoundReference {
+                    what: format!("the run in {}", directory.display()),
+                    values,
+                    run: None,
+                    notes: Vec::new(),
+                })
             }
             Self::Numbers(numbers) => {
                 let mut numbers = numbers.iter().copied();
-                let of = |quantity: &Quantity| Some(numbers.by_ref().take(quantity.parts.len()).collect());
+                let of = |quantity: &SweepQuantity| Some(numbers.by_ref().take(quantity.parts.len()).collect());
                 let values = quantities.iter().map(of).collect();
-                Ok(Found { what: "the numbers given".to_owned(), values, run: None, notes: Vec::new() })
+                Ok(FoundReference { what: "the numbers given".to_owned(), values, run: None, notes: Vec::new() })
             }
         }
     }
 }
 
 /// The quantities of a run that is not of the sweep.
-fn elsewhere(directory: &Path, quantities: &[Quantity]) -> Result<Vec<Vec<f64>>, Error> {
+fn elsewhere(directory: &Path, quantities: &[SweepQuantity]) -> Result<Vec<Vec<f64>>, Error> {
     let refused = |reason: &str| Error::Usage { reason: format!("--reference {}: {reason}", directory.display()) };
     let manifest = Manifest::read(directory).map_err(|error| refused(&error.to_string()))?;
     if manifest.status == Status::Running || manifest.status == Status::Stopped {
         return Err(refused("the run has not come to its end"));
     }
     let history = table::read(&directory.join(HISTORY))?;
-    let of = |quantity: &Quantity| quantity.values(&history);
+    let of = |quantity: &SweepQuantity| quantity.values(&history);
     quantities.iter().map(of).collect::<Result<_, _>>().map_err(|reason| refused(&reason))
 }
 
 /// The finest run that has finished.
-fn best(points: &[Point], values: &[Option<Values>]) -> Option<usize> {
+fn best(points: &[Point], values: &[Option<ReferenceValues>]) -> Option<usize> {
     let there = (0..points.len()).filter(|&index| values[index].is_some());
     there.max_by(|&a, &b| points[a].fineness().partial_cmp(&points[b].fineness()).unwrap_or(std::cmp::Ordering::Equal))
 }
 
-fn baseline(quantities: &[Quantity], points: &[Point], values: &[Option<Values>]) -> Found {
+fn baseline(quantities: &[SweepQuantity], points: &[Point], values: &[Option<ReferenceValues>]) -> FoundReference {
     let index = points.iter().position(|point| point.is_baseline);
     of_run(index, "the baseline", quantities, points, values)
 }
 
-fn finest(quantities: &[Quantity], points: &[Point], values: &[Option<Values>]) -> Found {
+fn finest(quantities: &[SweepQuantity], points: &[Point], values: &[Option<ReferenceValues>]) -> FoundReference {
     of_run(best(points, values), "the finest run that has finished", quantities, points, values)
 }
 
@@ -122,23 +132,23 @@ fn finest(quantities: &[Quantity], points: &[Point], values: &[Option<Values>]) 
 fn of_run(
     index: Option<usize>,
     what: &str,
-    quantities: &[Quantity],
+    quantities: &[SweepQuantity],
     points: &[Point],
-    values: &[Option<Values>],
-) -> Found {
+    values: &[Option<ReferenceValues>],
+) -> FoundReference {
     let Some((index, values)) = index.and_then(|index| Some((index, values[index].clone()?))) else {
         let what = format!("none: {what} is not there");
-        return Found { what, values: vec![None; quantities.len()], run: None, notes: Vec::new() };
+        return FoundReference { what, values: vec![None; quantities.len()], run: None, notes: Vec::new() };
     };
-    Found { what: format!("{what}: {}", points[index].name()), values, run: Some(index), notes: Vec::new() }
+    FoundReference { what: format!("{what}: {}", points[index].name()), values, run: Some(index), notes: Vec::new() }
 }
 
 /// From the three smallest cells of the runs that differ from the finest one in them alone.
-fn extrapolated(quantities: &[Quantity], points: &[Point], values: &[Option<Values>]) -> Found {
+fn extrapolated(quantities: &[SweepQuantity], points: &[Point], values: &[Option<ReferenceValues>]) -> FoundReference {
     let mut found = finest(quantities, points, values);
     let Some(run) = found.run else { return found };
     let same = |index: &usize| points[*index].differs_in_cells_only(&points[run]);
-    let mut series: Vec<(f64, &Values)> = (0..points.len())
+    let mut series: Vec<(f64, &ReferenceValues)> = (0..points.len())
         .filter(same)
         .filter_map(|index| Some((points[index].cell()?, values[index].as_ref()?)))
         .collect();
@@ -156,7 +166,7 @@ fn extrapolated(quantities: &[Quantity], points: &[Point], values: &[Option<Valu
     found.what = format!("extrapolated from cells of {} m, {} m and {} m", h[0], h[1], h[2]);
     let finest = found.run.take();
     for (index, quantity) in quantities.iter().enumerate() {
-        let of = |values: &Values, part: usize| values[index].as_ref().map_or(f64::NAN, |values| values[part]);
+        let of = |values: &ReferenceValues, part: usize| values[index].as_ref().map_or(f64::NAN, |values| values[part]);
         let mut limits = Vec::new();
         for part in 0..quantity.parts.len() {
             let f = [of(first.1, part), of(second.1, part), of(third.1, part)];
@@ -201,7 +211,7 @@ mod tests {
         assert_eq!(Reference::parse("extrapolated"), Reference::Extrapolated);
         assert_eq!(Reference::parse("0.45, 1e-3"), Reference::Numbers(vec![0.45, 1e-3]));
         assert_eq!(Reference::parse("run.out"), Reference::Run("run.out".into()));
-        let quantity = [Quantity::parse("a,b").unwrap()];
+        let quantity = [SweepQuantity::parse("a,b").unwrap()];
         assert!(Reference::Numbers(vec![1.0, 2.0]).check(&quantity).is_ok());
         assert!(Reference::Numbers(vec![1.0]).check(&quantity).is_err());
         assert!(Reference::Numbers(vec![1.0, f64::NAN]).check(&quantity).is_err());
@@ -222,12 +232,13 @@ mod tests {
     fn the_finest_run_that_finished_is_the_reference_or_what_its_cells_tend_to() {
         let vary = ["grid.cell=10 mm,5 mm,2.5 mm", "body.0.points_per_cell=2,3"];
         let points = points(&vary, false, &[]).unwrap();
-        let quantity = [Quantity::parse("a").unwrap()];
+        let quantity = [SweepQuantity::parse("a").unwrap()];
         // 5 + 1e3 h of three points a cell; what fewer points give is of no matter, and the finest run of all failed.
         let value = |a: f64| Some(vec![Some(vec![a])]);
         let values = [value(1.0), value(15.0), value(2.0), value(10.0), value(3.0), value(7.5)];
-        let found =
-            |reference: &Reference, values: &[Option<Values>]| reference.find(&quantity, &points, values).unwrap();
+        let found = |reference: &Reference, values: &[Option<ReferenceValues>]| {
+            reference.find(&quantity, &points, values).unwrap()
+        };
         assert_eq!(found(&Reference::Finest, &values).run, Some(5));
         let own = points.iter().position(|point| point.is_baseline);
         assert!(own == Some(0) && found(&Reference::Baseline, &values).run == own);

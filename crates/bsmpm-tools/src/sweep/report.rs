@@ -4,22 +4,22 @@
 use serde::Serialize;
 
 use super::front::{cheapest, front};
-use super::quantity::Quantity;
-use super::reference::{Found, Values};
+use super::quantity::SweepQuantity;
+use super::reference::{FoundReference, ReferenceValues};
 use super::study::Point;
-use crate::batch::{Cost, Outcome, State};
+use crate::batch::{Outcome, RunCost, RunState};
 use crate::columns::{Align, aligned, csv};
 
 /// A run with what it is worth.
 #[derive(Clone, Debug, Serialize)]
-pub(super) struct Row {
+pub(super) struct SweepRow {
     /// The settings in words.
     pub name: String,
     /// Those of the axes.
     pub settings: Vec<String>,
     /// Overrides of the case.
     pub set: Vec<String>,
-    pub state: State,
+    pub state: RunState,
     pub code: Option<u8>,
     pub reason: String,
     /// For each quantity its parts.
@@ -32,7 +32,7 @@ pub(super) struct Row {
     pub is_reference: bool,
     pub kept: bool,
     #[serde(flatten)]
-    pub cost: Cost,
+    pub cost: RunCost,
     pub directory: Option<String>,
 }
 
@@ -48,16 +48,16 @@ pub(super) struct Cheapest {
 
 /// All of it.
 #[derive(Debug, Serialize)]
-pub(super) struct Report {
+pub(super) struct SweepReport {
     pub case: String,
     pub title: String,
     pub command: Vec<String>,
     pub axes: Vec<String>,
     pub quantities: Vec<String>,
-    pub reference: Found,
+    pub reference: FoundReference,
     /// The error that is good enough.
     pub within: f64,
-    pub runs: Vec<Row>,
+    pub runs: Vec<SweepRow>,
     /// By quantity, and where there are several at last by all.
     pub cheapest: Vec<Cheapest>,
     #[serde(skip)]
@@ -65,22 +65,22 @@ pub(super) struct Report {
 }
 
 /// What a report is made of.
-pub(super) struct Parts<'a> {
+pub(super) struct ReportParts<'a> {
     pub case: String,
     pub title: String,
     pub command: &'a [String],
     pub axes: Vec<String>,
-    pub quantities: &'a [Quantity],
+    pub quantities: &'a [SweepQuantity],
     pub points: &'a [Point],
     pub outcomes: &'a [Outcome],
     pub within: f64,
 }
 
-impl Report {
-    pub fn of(parts: Parts, values: &[Option<Values>], reference: Found) -> Self {
-        let Parts { quantities, points, outcomes, within, .. } = parts;
+impl SweepReport {
+    pub fn of(parts: ReportParts, values: &[Option<ReferenceValues>], reference: FoundReference) -> Self {
+        let ReportParts { quantities, points, outcomes, within, .. } = parts;
         let row = |index: usize| row(&points[index], &outcomes[index], values[index].as_ref(), quantities, &reference);
-        let mut runs: Vec<Row> = (0..points.len()).map(row).collect();
+        let mut runs: Vec<SweepRow> = (0..points.len()).map(row).collect();
         for (index, row) in runs.iter_mut().enumerate() {
             row.is_reference = reference.run == Some(index);
         }
@@ -98,7 +98,7 @@ impl Report {
             let places: Vec<_> = runs.iter().map(|row| row.place(&all)).collect();
             best.push((None, cheapest(&places, within)));
         }
-        let baseline = runs.iter().find(|row| row.is_baseline && row.state == State::Done);
+        let baseline = runs.iter().find(|row| row.is_baseline && row.state == RunState::Done);
         let baseline = baseline.map(|row| row.cost.cpu_seconds).filter(|cost| *cost > 0.0);
         let ratio = |run: Option<usize>| Some(runs[run?].cost.cpu_seconds / baseline?);
         let cheapest = best.into_iter().map(|(quantity, run)| Cheapest { quantity, run, ratio: ratio(run) }).collect();
@@ -117,13 +117,13 @@ impl Report {
     }
 
     /// The run that is the cheapest by all quantities.
-    pub fn best(&self) -> Option<&Row> {
+    pub fn best(&self) -> Option<&SweepRow> {
         self.cheapest.last().and_then(|cheapest| cheapest.run).map(|run| &self.runs[run])
     }
 
     /// Whether any run has come to its end.
     pub fn has_result(&self) -> bool {
-        self.runs.iter().any(|row| row.state == State::Done)
+        self.runs.iter().any(|row| row.state == RunState::Done)
     }
 
     /// For the screen.
@@ -162,7 +162,7 @@ impl Report {
                 let mark = if row.on_front[index] { " *" } else { "" };
                 cells.push(row.errors[index].map_or_else(String::new, |error| format!("{:.3} %{mark}", 100.0 * error)));
             }
-            let Cost { cpu_seconds, wall_seconds, peak_memory, iterations, .. } = row.cost;
+            let RunCost { cpu_seconds, wall_seconds, peak_memory, iterations, .. } = row.cost;
             cells.extend([format!("{cpu_seconds:.2}"), format!("{wall_seconds:.2}")]);
             // That of a search of a factor is not known.
             let memory = if peak_memory > 0 { format!("{:.0}", peak_memory as f64 / 1048576.0) } else { String::new() };
@@ -193,7 +193,7 @@ impl Report {
         csv(&lines)
     }
 
-    fn csv_row(&self, row: &Row) -> Vec<String> {
+    fn csv_row(&self, row: &SweepRow) -> Vec<String> {
         let number = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
         let mut cells = row.settings.clone();
         cells.extend([row.state.word().to_owned(), row.code.map_or_else(String::new, |code| code.to_string())]);
@@ -202,7 +202,7 @@ impl Report {
             cells.extend((0..self.reference_parts(index)).map(part));
             cells.extend([number(row.errors[index]), row.on_front[index].to_string()]);
         }
-        let Cost { cpu_seconds, wall_seconds, peak_memory, steps, iterations, cuts } = row.cost;
+        let RunCost { cpu_seconds, wall_seconds, peak_memory, steps, iterations, cuts } = row.cost;
         cells.extend([cpu_seconds.to_string(), wall_seconds.to_string()]);
         cells.extend([peak_memory, steps, iterations, cuts].map(|count| count.to_string()));
         cells.extend([row.is_baseline, row.is_reference].map(|flag| flag.to_string()));
@@ -216,7 +216,7 @@ impl Report {
     }
 }
 
-impl Row {
+impl SweepRow {
     /// Cost and the largest error of some quantities; none without them.
     pub fn place(&self, quantities: &[usize]) -> Option<(f64, f64)> {
         let errors: Option<Vec<f64>> = quantities.iter().map(|&index| self.errors[index]).collect();
@@ -225,7 +225,7 @@ impl Row {
 
     fn remark(&self) -> String {
         let code =
-            self.code.filter(|_| self.state != State::Done).map_or_else(String::new, |code| format!(" ({code})"));
+            self.code.filter(|_| self.state != RunState::Done).map_or_else(String::new, |code| format!(" ({code})"));
         let marks = [(self.is_baseline, "baseline"), (self.is_reference, "reference"), (self.kept, "kept")];
         let marks = marks.iter().filter(|(is, _)| *is).map(|(_, mark)| format!(", {mark}")).collect::<String>();
         let reason = if self.reason.is_empty() { String::new() } else { format!(": {}", self.reason) };
@@ -233,14 +233,20 @@ impl Row {
     }
 }
 
-fn row(point: &Point, outcome: &Outcome, values: Option<&Values>, quantities: &[Quantity], found: &Found) -> Row {
+fn row(
+    point: &Point,
+    outcome: &Outcome,
+    values: Option<&ReferenceValues>,
+    quantities: &[SweepQuantity],
+    found: &FoundReference,
+) -> SweepRow {
     let none = vec![None; quantities.len()];
     let values = values.unwrap_or(&none).clone();
     let error = |index: usize| {
         let (values, reference) = (values[index].as_ref()?, found.values[index].as_ref()?);
         quantities[index].error(values, reference)
     };
-    Row {
+    SweepRow {
         name: point.name(),
         settings: point.values.clone(),
         set: point.order.as_ref().map_or_else(|_| Vec::new(), |order| order.set.clone()),
@@ -265,19 +271,19 @@ mod tests {
     use super::*;
 
     /// A sweep over two sizes of cells and two numbers of points, of which one run failed.
-    fn report(within: f64) -> Report {
+    fn report(within: f64) -> SweepReport {
         let points = points(&["grid.cell=10 mm,5 mm", "body.*.points_per_cell=2,3"], false, &[]).unwrap();
-        let quantities = ["a", "b,c@0.5"].map(|text| Quantity::parse(text).unwrap());
+        let quantities = ["a", "b,c@0.5"].map(|text| SweepQuantity::parse(text).unwrap());
         let value = |a: f64| Some(vec![Some(vec![a]), Some(vec![2.0 * a, 3.0])]);
         let values = [value(1.1), None, value(1.03), value(1.0)];
-        let outcome = |(cpu_seconds, value): (f64, &Option<Values>)| {
-            let state = if value.is_some() { State::Done } else { State::NoConvergence };
+        let outcome = |(cpu_seconds, value): (f64, &Option<ReferenceValues>)| {
+            let state = if value.is_some() { RunState::Done } else { RunState::NoConvergence };
             let reason = if value.is_some() { String::new() } else { "no, it said".to_owned() };
-            Outcome { cost: Cost { cpu_seconds, ..Cost::default() }, ..Outcome::never(state, reason) }
+            Outcome { cost: RunCost { cpu_seconds, ..RunCost::default() }, ..Outcome::never(state, reason) }
         };
         let outcomes: Vec<Outcome> = [4.0, 5.0, 16.0, 32.0].into_iter().zip(&values).map(outcome).collect();
         let found = Reference::Finest.find(&quantities, &points, &values).unwrap();
-        let parts = Parts {
+        let parts = ReportParts {
             case: "case.toml".into(),
             title: "A case".into(),
             command: &[],
@@ -287,7 +293,7 @@ mod tests {
             outcomes: &outcomes,
             within,
         };
-        Report::of(parts, &values, found)
+        SweepReport::of(parts, &values, found)
     }
 
     #[test]

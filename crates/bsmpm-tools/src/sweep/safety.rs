@@ -2,11 +2,11 @@
 
 use std::path::PathBuf;
 
-use bsmpm_io::table::{Column, Columns};
+use bsmpm_io::table::{Columns, TableColumn};
 
 use super::quantity::FACTOR;
 use crate::Error;
-use crate::batch::{Batch, Cost, Order, Outcome, State};
+use crate::batch::{Batch, Outcome, RunCost, RunOrder, RunState};
 use crate::fos;
 
 /// The width of its band; the estimate is finer.
@@ -15,9 +15,9 @@ const WIDTH: f64 = 0.02;
 const RANGE: [f64; 2] = [0.5, 3.0];
 
 /// The outcome of a search: a history of one row with the factor.
-pub(super) fn outcome(batch: &Batch, order: &Order) -> Outcome {
+pub(super) fn outcome(batch: &Batch, order: &RunOrder) -> Outcome {
     let directory = batch.output.join("runs").join(format!("{}.fos", order.name));
-    let arguments = fos::Arguments {
+    let arguments = fos::FosArguments {
         case: batch.path.to_owned(),
         from: RANGE[0],
         to: RANGE[1],
@@ -32,9 +32,9 @@ pub(super) fn outcome(batch: &Batch, order: &Order) -> Outcome {
         Ok(found) => of(found, directory),
         Err(error) => {
             let state = match error {
-                Error::NoStableState { .. } => State::NoConvergence,
-                Error::NoFactor { .. } => State::Invalid,
-                _ => State::Broken,
+                Error::NoStableState { .. } => RunState::NoConvergence,
+                Error::NoFactor { .. } => RunState::Invalid,
+                _ => RunState::Broken,
             };
             let reason = error.to_string().lines().map(str::trim).collect::<Vec<_>>().join(" ");
             Outcome { code: Some(error.exit_code()), ..Outcome::never(state, reason) }
@@ -42,8 +42,8 @@ pub(super) fn outcome(batch: &Batch, order: &Order) -> Outcome {
     }
 }
 
-fn of(found: fos::Found, directory: PathBuf) -> Outcome {
-    let cost = Cost {
+fn of(found: fos::FoundFactor, directory: PathBuf) -> Outcome {
+    let cost = RunCost {
         cpu_seconds: found.cpu_seconds,
         wall_seconds: found.seconds,
         peak_memory: 0,
@@ -53,12 +53,12 @@ fn of(found: fos::Found, directory: PathBuf) -> Outcome {
     };
     let Some(factor) = found.factor else {
         let reason = format!("no failure up to the factor {}", RANGE[1]);
-        return Outcome { cost, directory: Some(directory), ..Outcome::never(State::Broken, reason) };
+        return Outcome { cost, directory: Some(directory), ..Outcome::never(RunState::Broken, reason) };
     };
-    let headings = ["time", FACTOR].map(|name| Column::new(name, "-")).to_vec();
+    let headings = ["time", FACTOR].map(|name| TableColumn::new(name, "-")).to_vec();
     let history = Some(Columns { headings, values: vec![vec![1.0], vec![factor]] });
     Outcome {
-        state: State::Done,
+        state: RunState::Done,
         code: Some(0),
         reason: String::new(),
         history,

@@ -4,9 +4,9 @@ use std::path::Path;
 
 use toml::{Table, Value};
 
-use super::axes::{Axis, Setting};
+use super::axes::{SweepAxis, SweepSetting};
 use crate::Error;
-use crate::batch::Order;
+use crate::batch::RunOrder;
 
 /// A run that is wanted.
 #[derive(Clone, Debug)]
@@ -18,7 +18,7 @@ pub(super) struct Point {
     /// The keys of the axes, the last parts of which stand in its name.
     keys: Vec<String>,
     /// What it is made from; all errors of a case that is none.
-    pub order: Result<Order, Vec<String>>,
+    pub order: Result<RunOrder, Vec<String>>,
     pub is_baseline: bool,
 }
 
@@ -28,7 +28,7 @@ pub(super) struct Study<'a> {
     pub bytes: &'a [u8],
     /// overrides of all runs
     pub set: &'a [String],
-    pub axes: &'a [Axis],
+    pub axes: &'a [SweepAxis],
 }
 
 impl Study<'_> {
@@ -36,14 +36,14 @@ impl Study<'_> {
     ///
     /// # Errors
     /// [`Error::BadCase`] where the case itself, or its baseline, has errors.
-    pub fn points(&self, settings: &[Setting], baseline: &[String]) -> Result<Vec<Point>, Error> {
+    pub fn points(&self, settings: &[SweepSetting], baseline: &[String]) -> Result<Vec<Point>, Error> {
         let own = self.order(&[]).map_err(|errors| self.bad(errors))?;
         let document: Table = toml::from_str(&own.case.text).unwrap_or_default();
         let mut points: Vec<Point> = Vec::new();
         for setting in settings {
-            let set = |(axis, value): (&Axis, &Option<String>)| Some(format!("{}={}", axis.key, value.as_ref()?));
+            let set = |(axis, value): (&SweepAxis, &Option<String>)| Some(format!("{}={}", axis.key, value.as_ref()?));
             let sets: Vec<String> = self.axes.iter().zip(setting).filter_map(set).collect();
-            let value = |(axis, value): (&Axis, &Option<String>)| {
+            let value = |(axis, value): (&SweepAxis, &Option<String>)| {
                 value.clone().unwrap_or_else(|| written(&document, &axis.key))
             };
             let values = self.axes.iter().zip(setting).map(value).collect();
@@ -51,7 +51,7 @@ impl Study<'_> {
         }
         let (of_axis, besides): (Vec<String>, Vec<String>) =
             baseline.iter().cloned().partition(|set| self.axes.iter().any(|axis| key(set) == axis.key));
-        let value = |axis: &Axis| {
+        let value = |axis: &SweepAxis| {
             let given = of_axis.iter().rev().find(|set| key(set) == axis.key).and_then(|set| set.split_once('='));
             given.map_or_else(|| written(&document, &axis.key), |(_, value)| value.trim().to_owned())
         };
@@ -83,8 +83,8 @@ impl Study<'_> {
         })
     }
 
-    fn order(&self, sets: &[String]) -> Result<Order, Vec<String>> {
-        Order::read(self.path, self.bytes, [self.set, sets].concat(), sets.len())
+    fn order(&self, sets: &[String]) -> Result<RunOrder, Vec<String>> {
+        RunOrder::read(self.path, self.bytes, [self.set, sets].concat(), sets.len())
     }
 
     fn bad(&self, errors: Vec<String>) -> Error {
@@ -104,7 +104,7 @@ impl Point {
 
     /// m  the size of its cells.
     pub fn cell(&self) -> Option<f64> {
-        self.order.as_ref().ok().map(Order::cell)
+        self.order.as_ref().ok().map(RunOrder::cell)
     }
 
     /// By which runs are called finer: smaller cells, then a higher order, more points, more steps, tighter tolerances.
@@ -167,7 +167,7 @@ pub(super) mod tests {
 
     /// The runs of an exemplary sweep.
     pub(in super::super) fn points(vary: &[&str], one_at_a_time: bool, baseline: &[&str]) -> Result<Vec<Point>, Error> {
-        let axes: Vec<Axis> = vary.iter().map(|text| Axis::parse(text).unwrap()).collect();
+        let axes: Vec<SweepAxis> = vary.iter().map(|text| SweepAxis::parse(text).unwrap()).collect();
         let baseline: Vec<String> = baseline.iter().map(|&set| set.to_owned()).collect();
         let study = Study { path: Path::new("case.toml"), bytes: COLUMN.as_bytes(), set: &[], axes: &axes };
         study.points(&settings(&axes, one_at_a_time).unwrap(), &baseline)

@@ -4,11 +4,14 @@ use std::path::Path;
 
 use clap::ValueEnum;
 
-use super::matrix::{Depth, Figure, Kink, Known, Matrix, Operation, Order, Place, Row, Study};
+use super::matrix::{
+    Depth, Figure, KnownFailure, MatrixKink, MatrixPlace, MatrixRow, MatrixStudy, MeasuredOrder, Operation,
+    ValidationMatrix,
+};
 use super::runs::slug;
 use crate::plot::FieldName;
 
-impl Matrix {
+impl ValidationMatrix {
     /// `Err` says what does not fit, and where.
     pub fn check(&self) -> Result<(), String> {
         self.study.iter().try_for_each(|study| {
@@ -34,7 +37,7 @@ fn distinct(what: &str, names: impl Iterator<Item = String>) -> Result<(), Strin
 /// The part of a study, and what does not fit.
 type Misfit = (String, String);
 
-impl Study {
+impl MatrixStudy {
     fn check(&self) -> Result<(), Misfit> {
         let in_runs = |reason| ("runs".to_owned(), reason);
         distinct("names", self.run.iter().map(|run| run.name.clone())).map_err(in_runs)?;
@@ -67,7 +70,7 @@ impl Study {
         unknown.map_or(Ok(()), |name| Err(format!("there is no run \"{name}\"")))
     }
 
-    fn check_row(&self, row: &Row) -> Result<(), String> {
+    fn check_row(&self, row: &MatrixRow) -> Result<(), String> {
         let names: Vec<String> = row.runs().into_iter().map(str::to_owned).collect();
         self.are_known(&names)?;
         let full = |name: &&String| self.run.iter().any(|run| run.name == **name && self.depth_of(run) == Depth::Full);
@@ -84,8 +87,8 @@ impl Study {
         if row.order.as_ref().is_some_and(|order| order.exact.is_none()) {
             return Err("an order needs `exact`".into());
         }
-        row.kink.iter().try_for_each(Kink::check)?;
-        row.order.iter().chain(&row.extrapolated).try_for_each(Order::check)
+        row.kink.iter().try_for_each(MatrixKink::check)?;
+        row.order.iter().chain(&row.extrapolated).try_for_each(MeasuredOrder::check)
     }
 }
 
@@ -94,7 +97,7 @@ fn is_file_name(name: &str) -> bool {
     !name.starts_with('.') && Path::new(name).file_name().is_some_and(|last| last == name)
 }
 
-impl Row {
+impl MatrixRow {
     fn check_bounds(&self) -> Result<(), String> {
         let numbers = [self.reference, self.tolerance, self.min, self.max, self.scale, self.at];
         if numbers.into_iter().flatten().any(|number| !number.is_finite()) {
@@ -110,7 +113,7 @@ impl Row {
         match (self.min, self.max, &self.known) {
             (Some(min), Some(max), _) if min > max => Err("its min is above its max".into()),
             (.., Some(_)) if !self.is_judged() => Err("it is known to fail, and cannot".into()),
-            (.., Some(Known { min, max, .. })) if !(min <= max && min.is_finite() && max.is_finite()) => {
+            (.., Some(KnownFailure { min, max, .. })) if !(min <= max && min.is_finite() && max.is_finite()) => {
                 Err("known needs a band: min and max, finite and in this order".into())
             }
             _ => Ok(()),
@@ -130,13 +133,13 @@ impl Row {
             }
             (Some(_), Some(_)) => Err("at and where exclude each other".into()),
             (None, Some(_)) if !is_last => Err("at is one row: max, min and mean take a window, with where".into()),
-            (Some(Place { value: Some(_), from: None, to: None, .. }), _) if !is_last => {
+            (Some(MatrixPlace { value: Some(_), from: None, to: None, .. }), _) if !is_last => {
                 Err("where has a value, which is one row: max, min and mean take a window, from and to".into())
             }
-            (Some(Place { value: Some(_), from, to, .. }), _) if from.is_some() || to.is_some() => {
+            (Some(MatrixPlace { value: Some(_), from, to, .. }), _) if from.is_some() || to.is_some() => {
                 Err("where has a value or a window, not both".into())
             }
-            (Some(Place { value: None, .. }), _) if is_last => {
+            (Some(MatrixPlace { value: None, .. }), _) if is_last => {
                 Err("where needs a value, or a window an operation: max, min, mean".into())
             }
             _ => Ok(()),
@@ -144,7 +147,7 @@ impl Row {
     }
 }
 
-impl Order {
+impl MeasuredOrder {
     fn check(&self) -> Result<(), String> {
         if self.runs.len() != self.sizes.len() || self.runs.len() < 3 {
             return Err(format!("{} runs need as many sizes, at least 3", self.runs.len()));
@@ -152,13 +155,13 @@ impl Order {
         if self.column.is_some() == self.kink.is_some() || (self.kink.is_some() && self.at.is_some()) {
             return Err("one of column, at a time if at is given, and kink is needed".into());
         }
-        self.kink.iter().try_for_each(Kink::check)?;
+        self.kink.iter().try_for_each(MatrixKink::check)?;
         let shrink = self.sizes.windows(2).all(|pair| pair[1] < pair[0]) && self.sizes.iter().all(|size| *size > 0.0);
         if shrink { Ok(()) } else { Err("the sizes go from coarse to fine and are positive".into()) }
     }
 }
 
-impl Kink {
+impl MatrixKink {
     fn check(&self) -> Result<(), String> {
         let is_sound = self.elastic.is_finite() && self.elastic != 0.0 && self.scale.is_finite();
         if is_sound { Ok(()) } else { Err("a kink's `elastic` and `scale` are finite, the first one is not 0".into()) }

@@ -4,15 +4,15 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::matrix::Figure;
-use super::runs::Outcome;
+use super::runs::MatrixOutcome;
 use crate::Error;
-use crate::compare::{self, Level};
+use crate::compare::{self, ChartLevel};
 
 /// Draws a figure of the runs that left something.
 pub(super) fn draw(
     figure: &Figure,
     title: &str,
-    outcomes: &BTreeMap<String, Outcome>,
+    outcomes: &BTreeMap<String, MatrixOutcome>,
     base: &Path,
     output: &Path,
 ) -> Result<(), Error> {
@@ -37,8 +37,8 @@ pub(super) fn draw(
     if directories.is_empty() {
         return Ok(());
     }
-    let lines = figure.lines.iter().map(|(value, text)| Level { value: *value, text: text.clone() });
-    compare::run(&compare::Arguments {
+    let lines = figure.lines.iter().map(|(value, text)| ChartLevel { value: *value, text: text.clone() });
+    compare::run(&compare::CompareArguments {
         directories,
         x: figure.x.clone(),
         y: Some(figure.y.clone()),

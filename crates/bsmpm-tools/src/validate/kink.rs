@@ -1,7 +1,7 @@
 //! Failure loads: where a load-displacement curve bends away from its elastic beginning.
 
 use super::course::reached;
-use super::matrix::Kink;
+use super::matrix::MatrixKink;
 use super::measured::Measured;
 
 /// The branch after a kink: from this many times the elastic displacement ..
@@ -12,7 +12,7 @@ const FALLEN: f64 = 20.0;
 /// Where the straight line through the beginning of the branch after the kink meets the elastic one, and in the remark where
 /// twice the elastic displacement is reached. A curve that has not gone that far shows no failure, whatever has ended it:
 /// that a solver gives up is no collapse.
-pub(super) fn failure(kink: &Kink, curve: &[(f64, f64)]) -> Result<Measured, String> {
+pub(super) fn failure(kink: &MatrixKink, curve: &[(f64, f64)]) -> Result<Measured, String> {
     let (loads, moved): (Vec<f64>, Vec<f64>) = curve.iter().copied().unzip();
     let end = reached(&loads, kink.elastic).ok_or("it ended within the elastic part")?;
     let (&load, &place) = loads.first().zip(moved.first()).ok_or("no row for a kink")?;
@@ -40,7 +40,7 @@ pub(super) fn failure(kink: &Kink, curve: &[(f64, f64)]) -> Result<Measured, Str
 mod tests {
     use super::*;
 
-    const KINK: Kink = Kink { x: String::new(), y: String::new(), elastic: 0.2, scale: 2.0 };
+    const KINK: MatrixKink = MatrixKink { x: String::new(), y: String::new(), elastic: 0.2, scale: 2.0 };
 
     /// Straight, and a hundred times as soft from .7 on.
     fn bent(loads: impl Iterator<Item = f64>) -> Vec<(f64, f64)> {

@@ -24,14 +24,14 @@ pub enum Depth {
 /// All studies.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Matrix {
-    pub study: Vec<Study>,
+pub(super) struct ValidationMatrix {
+    pub study: Vec<MatrixStudy>,
 }
 
 /// A case with its variations, and what is taken from them.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Study {
+pub(super) struct MatrixStudy {
     pub title: String,
     /// relative to the matrix
     pub case: String,
@@ -41,9 +41,9 @@ pub(super) struct Study {
     #[serde(default)]
     pub depth: Depth,
     #[serde(default)]
-    pub run: Vec<Run>,
+    pub run: Vec<MatrixRun>,
     #[serde(default)]
-    pub row: Vec<Row>,
+    pub row: Vec<MatrixRow>,
     #[serde(default)]
     pub figure: Vec<Figure>,
     #[serde(default)]
@@ -53,7 +53,7 @@ pub(super) struct Study {
 /// One variation.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Run {
+pub(super) struct MatrixRun {
     pub name: String,
     /// relative to the matrix; the study's unless given
     pub case: Option<String>,
@@ -68,7 +68,7 @@ pub(super) struct Run {
 /// A number to be judged, or printed where it has neither tolerance nor bounds.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Row {
+pub(super) struct MatrixRow {
     pub quantity: String,
     #[serde(default)]
     pub source: String,
@@ -80,28 +80,28 @@ pub(super) struct Row {
     pub min: Option<f64>,
     pub max: Option<f64>,
     /// a failure that is told, and is none of the validation's
-    pub known: Option<Known>,
+    pub known: Option<KnownFailure>,
     pub run: Option<String>,
     pub column: Option<String>,
     /// time; the last row of the history unless given
     pub at: Option<f64>,
     /// the place, or the window, by another column
     #[serde(rename = "where")]
-    pub place: Option<Place>,
+    pub place: Option<MatrixPlace>,
     #[serde(default)]
     pub operation: Operation,
     /// multiplies what is taken of the column
     pub scale: Option<f64>,
-    pub order: Option<Order>,
-    pub extrapolated: Option<Order>,
+    pub order: Option<MeasuredOrder>,
+    pub extrapolated: Option<MeasuredOrder>,
     /// of the run, in place of a column
-    pub kink: Option<Kink>,
+    pub kink: Option<MatrixKink>,
 }
 
 /// Why a row is known to fail, and the band in which its number lies as long as nothing else has changed.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Known {
+pub(super) struct KnownFailure {
     pub why: String,
     pub min: f64,
     pub max: f64,
@@ -127,7 +127,7 @@ pub(super) enum Operation {
 /// Where a column first reaches a value; or the part of the history from one value to another, whole where one is missing.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Place {
+pub(super) struct MatrixPlace {
     #[serde(default = "time")]
     pub column: String,
     pub value: Option<f64>,
@@ -138,13 +138,13 @@ pub(super) struct Place {
 /// The same quantity on several grids.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Order {
+pub(super) struct MeasuredOrder {
     /// coarse to fine
     pub runs: Vec<String>,
     pub sizes: Vec<f64>,
     /// or the kink of each
     pub column: Option<String>,
-    pub kink: Option<Kink>,
+    pub kink: Option<MatrixKink>,
     pub at: Option<f64>,
     pub exact: Option<f64>,
 }
@@ -152,7 +152,7 @@ pub(super) struct Order {
 /// A load-displacement curve whose bend is a failure load.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Kink {
+pub(super) struct MatrixKink {
     pub x: String,
     pub y: String,
     /// x up to which it is straight: the elastic displacement is measured there
@@ -220,7 +220,7 @@ fn time() -> String {
     "time".to_owned()
 }
 
-impl Matrix {
+impl ValidationMatrix {
     pub fn read(path: &Path) -> Result<Self, Error> {
         let text = fs::read_to_string(path).map_err(|source| Error::NoReference { path: path.to_owned(), source })?;
         let bad = |reason: String| Error::BadReference { path: path.to_owned(), reason };
@@ -245,14 +245,14 @@ impl Figure {
     }
 }
 
-impl Study {
+impl MatrixStudy {
     /// When a run is made.
-    pub fn depth_of(&self, run: &Run) -> Depth {
+    pub fn depth_of(&self, run: &MatrixRun) -> Depth {
         run.depth.unwrap_or(self.depth)
     }
 }
 
-impl Row {
+impl MatrixRow {
     /// The runs that it takes its number from.
     pub fn runs(&self) -> Vec<&str> {
         let orders = self.order.iter().chain(&self.extrapolated).flat_map(|order| &order.runs);

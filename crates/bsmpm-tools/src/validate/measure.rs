@@ -4,12 +4,12 @@ use std::collections::BTreeMap;
 
 use super::course::{Spot, mean, reached, window};
 use super::kink::failure;
-use super::matrix::{Kink, Operation, Order, Place, Row};
+use super::matrix::{MatrixKink, MatrixPlace, MatrixRow, MeasuredOrder, Operation};
 use super::measured::{Lack, Measured};
-use super::runs::Outcome;
+use super::runs::MatrixOutcome;
 
 /// The number of a row, or why there is none.
-pub(super) fn value(row: &Row, outcomes: &BTreeMap<String, Outcome>) -> Result<Measured, Lack> {
+pub(super) fn value(row: &MatrixRow, outcomes: &BTreeMap<String, MatrixOutcome>) -> Result<Measured, Lack> {
     if let Some(order) = &row.order {
         return Ok(observed_order(order, &values(order, outcomes)?)?);
     }
@@ -22,7 +22,7 @@ pub(super) fn value(row: &Row, outcomes: &BTreeMap<String, Outcome>) -> Result<M
     }
     let values = column(outcomes, run, row.column.as_deref().unwrap_or_default())?;
     let value = match (row.operation, &row.place) {
-        (Operation::Last, Some(Place { column, value: Some(value), .. })) => {
+        (Operation::Last, Some(MatrixPlace { column, value: Some(value), .. })) => {
             spot(outcomes, run, column, *value)?.of(&values)
         }
         (Operation::Last, _) => at_time(outcomes, run, &values, row.at)?,
@@ -32,7 +32,7 @@ pub(super) fn value(row: &Row, outcomes: &BTreeMap<String, Outcome>) -> Result<M
     Ok(Measured { value: row.scale.unwrap_or(1.0) * value, remark: None })
 }
 
-fn column(outcomes: &BTreeMap<String, Outcome>, run: &str, name: &str) -> Result<Vec<f64>, String> {
+fn column(outcomes: &BTreeMap<String, MatrixOutcome>, run: &str, name: &str) -> Result<Vec<f64>, String> {
     let outcome = outcomes.get(run).ok_or_else(|| format!("{run} was not run"))?;
     let history = outcome.history.as_ref().ok_or_else(|| format!("{run} left no history"))?;
     let values = history.get(name).ok_or_else(|| format!("{run} has no column {name}"))?;
@@ -40,12 +40,12 @@ fn column(outcomes: &BTreeMap<String, Outcome>, run: &str, name: &str) -> Result
 }
 
 /// The load-displacement curve of a run.
-fn curve(outcomes: &BTreeMap<String, Outcome>, run: &str, kink: &Kink) -> Result<Vec<(f64, f64)>, String> {
+fn curve(outcomes: &BTreeMap<String, MatrixOutcome>, run: &str, kink: &MatrixKink) -> Result<Vec<(f64, f64)>, String> {
     Ok(column(outcomes, run, &kink.x)?.into_iter().zip(column(outcomes, run, &kink.y)?).collect())
 }
 
 /// The last row of a run that stopped is not that of the others.
-fn ended(outcomes: &BTreeMap<String, Outcome>, run: &str) -> Result<(), Lack> {
+fn ended(outcomes: &BTreeMap<String, MatrixOutcome>, run: &str) -> Result<(), Lack> {
     match outcomes.get(run).is_some_and(|outcome| outcome.stopped.is_some()) {
         true => Err(Lack::NotReached(format!("not reached: {run} stopped"))),
         false => Ok(()),
@@ -53,7 +53,7 @@ fn ended(outcomes: &BTreeMap<String, Outcome>, run: &str) -> Result<(), Lack> {
 }
 
 /// Where a column of a run first reaches a value.
-fn spot(outcomes: &BTreeMap<String, Outcome>, run: &str, name: &str, value: f64) -> Result<Spot, Lack> {
+fn spot(outcomes: &BTreeMap<String, MatrixOutcome>, run: &str, name: &str, value: f64) -> Result<Spot, Lack> {
     let across = column(outcomes, run, name)?;
     reached(&across, value).ok_or_else(|| {
         let last = across.last().copied().unwrap_or(f64::NAN);
@@ -63,10 +63,10 @@ fn spot(outcomes: &BTreeMap<String, Outcome>, run: &str, name: &str, value: f64)
 
 /// The part of a history that a window leaves, to the end of the run unless it says where: the other column, and the values.
 fn part(
-    outcomes: &BTreeMap<String, Outcome>,
+    outcomes: &BTreeMap<String, MatrixOutcome>,
     run: &str,
     values: &[f64],
-    place: Option<&Place>,
+    place: Option<&MatrixPlace>,
 ) -> Result<Vec<(f64, f64)>, Lack> {
     let name = place.map_or("time", |place| &place.column);
     let end = |value: Option<f64>, row: usize| match value {
@@ -104,7 +104,12 @@ fn over(operation: Operation, part: &[(f64, f64)]) -> f64 {
 }
 
 /// The value at a time; without a time that at the end, which the run must have reached.
-fn at_time(outcomes: &BTreeMap<String, Outcome>, run: &str, values: &[f64], at: Option<f64>) -> Result<f64, Lack> {
+fn at_time(
+    outcomes: &BTreeMap<String, MatrixOutcome>,
+    run: &str,
+    values: &[f64],
+    at: Option<f64>,
+) -> Result<f64, Lack> {
     match at {
         Some(at) => Ok(spot(outcomes, run, "time", at)?.of(values)),
         None => {
@@ -115,7 +120,7 @@ fn at_time(outcomes: &BTreeMap<String, Outcome>, run: &str, values: &[f64], at: 
 }
 
 /// What an order or an extrapolation takes of each of its runs.
-fn values(order: &Order, outcomes: &BTreeMap<String, Outcome>) -> Result<Vec<f64>, Lack> {
+fn values(order: &MeasuredOrder, outcomes: &BTreeMap<String, MatrixOutcome>) -> Result<Vec<f64>, Lack> {
     let of_run = |run: &String| match &order.kink {
         Some(kink) => Ok(failure(kink, &curve(outcomes, run, kink)?)?.value),
         None => {
@@ -128,7 +133,7 @@ fn values(order: &Order, outcomes: &BTreeMap<String, Outcome>) -> Result<Vec<f64
 
 /// Slope of log error over log size: least squares over all sizes; in the remark that of the last two, and the limit that the
 /// last three show.
-fn observed_order(order: &Order, values: &[f64]) -> Result<Measured, String> {
+fn observed_order(order: &MeasuredOrder, values: &[f64]) -> Result<Measured, String> {
     let exact = order.exact.ok_or("an order needs `exact`")?;
     let places: Vec<(f64, f64)> =
         order.sizes.iter().zip(values).map(|(size, value)| (size.ln(), (value - exact).abs().ln())).collect();
@@ -147,7 +152,7 @@ fn observed_order(order: &Order, values: &[f64]) -> Result<Measured, String> {
 }
 
 /// Richardson's limit of the last three sizes, which must shrink by one ratio, with the order that they show.
-fn extrapolated(order: &Order, values: &[f64]) -> Result<Measured, String> {
+fn extrapolated(order: &MeasuredOrder, values: &[f64]) -> Result<Measured, String> {
     let ([.., a, b, c], [.., x, y, z]) = (values, &order.sizes[..]) else {
         return Err("an extrapolation needs three sizes".into());
     };
@@ -169,8 +174,8 @@ fn extrapolated(order: &Order, values: &[f64]) -> Result<Measured, String> {
 mod tests {
     use super::*;
 
-    fn order(sizes: &[f64], exact: Option<f64>) -> Order {
-        Order { runs: Vec::new(), sizes: sizes.to_vec(), column: None, kink: None, at: None, exact }
+    fn order(sizes: &[f64], exact: Option<f64>) -> MeasuredOrder {
+        MeasuredOrder { runs: Vec::new(), sizes: sizes.to_vec(), column: None, kink: None, at: None, exact }
     }
 
     #[test]

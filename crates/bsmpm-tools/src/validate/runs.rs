@@ -7,13 +7,13 @@ use std::path::{Path, PathBuf};
 use bsmpm_io::directory::HISTORY;
 use bsmpm_io::table::{self, Columns};
 
-use super::matrix::{Run, Study};
+use super::matrix::{MatrixRun, MatrixStudy};
 use crate::Error;
-use crate::launch::{Ending, Solver, Task};
+use crate::launch::{Ending, LaunchTask, SolverProgram};
 
 /// How runs are started.
 pub(super) struct Launcher<'a> {
-    pub solver: Solver<'a>,
+    pub solver: SolverProgram<'a>,
     /// what the matrix names is relative to
     pub base: &'a Path,
     pub output: &'a Path,
@@ -21,7 +21,7 @@ pub(super) struct Launcher<'a> {
 }
 
 /// What a run left.
-pub(super) struct Outcome {
+pub(super) struct MatrixOutcome {
     pub directory: PathBuf,
     pub history: Option<Columns>,
     /// why it is no result
@@ -30,10 +30,10 @@ pub(super) struct Outcome {
     pub stopped: Option<String>,
     /// its exit code
     pub code: u8,
-    pub cost: Cost,
+    pub cost: MatrixCost,
 }
 
-impl Outcome {
+impl MatrixOutcome {
     /// Whether its history holds anything.
     pub fn has_rows(&self) -> bool {
         self.history.as_ref().is_some_and(|history| history.values.iter().any(|values| !values.is_empty()))
@@ -42,16 +42,16 @@ impl Outcome {
 
 /// What runs took.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Cost {
+pub(super) struct MatrixCost {
     pub steps: u64,
     pub cuts: u64,
     pub iterations: u64,
     pub seconds: f64,
 }
 
-impl Cost {
-    pub fn of(outcomes: &[&Outcome]) -> Self {
-        outcomes.iter().fold(Self::default(), |sum, Outcome { cost, .. }| Self {
+impl MatrixCost {
+    pub fn of(outcomes: &[&MatrixOutcome]) -> Self {
+        outcomes.iter().fold(Self::default(), |sum, MatrixOutcome { cost, .. }| Self {
             steps: sum.steps + cost.steps,
             cuts: sum.cuts + cost.cuts,
             iterations: sum.iterations + cost.iterations,
@@ -62,7 +62,7 @@ impl Cost {
 
 impl Launcher<'_> {
     /// The outcome of a run, made now unless it is there.
-    pub fn outcome(&self, study: &Study, run: &Run) -> Result<Outcome, Error> {
+    pub fn outcome(&self, study: &MatrixStudy, run: &MatrixRun) -> Result<MatrixOutcome, Error> {
         let directory = self.output.join("runs").join(slug(&study.title)).join(format!("{}.out", run.name));
         let case = self.base.join(run.case.as_ref().unwrap_or(&study.case));
         let mut arguments = vec![case.display().to_string()];
@@ -72,7 +72,8 @@ impl Launcher<'_> {
         arguments.extend(["--quiet", "--force", "--output"].map(str::to_owned));
         arguments.push(directory.display().to_string());
         let origin = self.origin(&case, &arguments);
-        let task = Task { arguments: &arguments, directory: &directory, origin: origin.as_deref(), force: self.force };
+        let task =
+            LaunchTask { arguments: &arguments, directory: &directory, origin: origin.as_deref(), force: self.force };
         let code = self.solver.perform(&task, |manifest| manifest.argv.ends_with(&arguments))?;
         Ok(read(directory, code, run.may_stop))
     }
@@ -87,7 +88,7 @@ impl Launcher<'_> {
 }
 
 /// What stands in a run's directory.
-fn read(directory: PathBuf, code: Option<u8>, may_stop: bool) -> Outcome {
+fn read(directory: PathBuf, code: Option<u8>, may_stop: bool) -> MatrixOutcome {
     let Ending { code, manifest, reason } = Ending::of(&directory, code);
     let history = table::read(&directory.join(HISTORY)).ok();
     let time = history.as_ref().and_then(|history| history.get("time")?.last().copied()).unwrap_or(0.0);
@@ -97,17 +98,17 @@ fn read(directory: PathBuf, code: Option<u8>, may_stop: bool) -> Outcome {
         NO_CONVERGENCE | LEFT if may_stop => stopped = Some(format!("stopped at t = {time:.4}: {reason}")),
         code => failure = Some(format!("exit code {code} at t = {time:.4}: {reason}")),
     }
-    let cost = manifest.map_or_else(Cost::default, |manifest| Cost {
+    let cost = manifest.map_or_else(MatrixCost::default, |manifest| MatrixCost {
         steps: manifest.summary.steps,
         cuts: manifest.summary.cutbacks,
         iterations: manifest.summary.iterations,
         seconds: manifest.timers.get("wall").copied().unwrap_or(0.0),
     });
-    Outcome { directory, history, failure, stopped, code, cost }
+    MatrixOutcome { directory, history, failure, stopped, code, cost }
 }
 
 /// The exit codes of runs, once if they are all the same.
-pub(super) fn codes(outcomes: &[&Outcome]) -> String {
+pub(super) fn codes(outcomes: &[&MatrixOutcome]) -> String {
     let mut codes: Vec<String> = outcomes.iter().map(|outcome| outcome.code.to_string()).collect();
     if codes.iter().all(|code| *code == codes[0]) {
         codes.truncate(1);

@@ -1,11 +1,11 @@
 //! The table: for the screen study by study, as Markdown and as CSV whole.
 
-use super::runs::Cost;
+use super::runs::MatrixCost;
 use crate::columns::number;
 
 /// How a row stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Verdict {
+pub(super) enum RowVerdict {
     Passed,
     Failed,
     /// failed because a run did not come so far
@@ -22,21 +22,21 @@ pub(super) enum Verdict {
 
 /// A line of the table.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Row {
+pub(super) struct TableRow {
     pub study: String,
     pub quantity: String,
     pub reference: Option<f64>,
     pub source: String,
     pub ours: Option<f64>,
     pub wanted: String,
-    pub verdict: Verdict,
+    pub verdict: RowVerdict,
     pub remark: String,
     /// exit codes of its runs, once if they are all the same
     pub codes: String,
-    pub cost: Cost,
+    pub cost: MatrixCost,
 }
 
-impl Verdict {
+impl RowVerdict {
     /// Whether it fails the validation.
     pub fn is_failure(self) -> bool {
         matches!(self, Self::Failed | Self::Missed | Self::Mended)
@@ -71,7 +71,7 @@ const HEADINGS: [&str; 13] = [
     "remark",
 ];
 
-impl Row {
+impl TableRow {
     fn cells(&self) -> [String; 13] {
         let deviation = self.ours.zip(self.reference).filter(|(_, reference)| *reference != 0.0);
         [
@@ -95,7 +95,7 @@ impl Row {
 }
 
 /// A study for the screen, in columns.
-pub(super) fn text(title: &str, rows: &[Row]) -> String {
+pub(super) fn text(title: &str, rows: &[TableRow]) -> String {
     let shown = [0, 1, 3, 4, 5, 6, 11]; // sources and counts are in the files
     let mut lines: Vec<Vec<String>> = vec![shown.iter().map(|&column| HEADINGS[column].to_owned()).collect()];
     lines.extend(rows.iter().map(|row| {
@@ -121,7 +121,7 @@ pub(super) fn text(title: &str, rows: &[Row]) -> String {
 }
 
 /// All rows, a table a study.
-pub(super) fn markdown(rows: &[Row]) -> String {
+pub(super) fn markdown(rows: &[TableRow]) -> String {
     let mut made = String::from("# Validation\n");
     for part in rows.chunk_by(|a, b| a.study == b.study) {
         made +=
@@ -134,7 +134,7 @@ pub(super) fn markdown(rows: &[Row]) -> String {
 }
 
 /// All rows for programs.
-pub(super) fn csv(rows: &[Row]) -> String {
+pub(super) fn csv(rows: &[TableRow]) -> String {
     let quoted = |cell: &String| format!("\"{}\"", cell.replace('"', "\"\""));
     let mut made = format!("study,{}\n", HEADINGS.join(","));
     for row in rows {
@@ -150,7 +150,7 @@ mod tests {
 
     #[test]
     fn rows_stand_in_columns_with_their_verdict() {
-        let row = |quantity: &str, ours, verdict| Row {
+        let row = |quantity: &str, ours, verdict| TableRow {
             study: "A study".into(),
             quantity: quantity.into(),
             reference: Some(5.141593),
@@ -160,9 +160,9 @@ mod tests {
             verdict,
             remark: "coarse".into(),
             codes: "0".into(),
-            cost: Cost { steps: 20, ..Cost::default() },
+            cost: MatrixCost { steps: 20, ..MatrixCost::default() },
         };
-        let rows = [row("p/c", Some(5.2), Verdict::Passed), row("longer", None, Verdict::Failed)];
+        let rows = [row("p/c", Some(5.2), RowVerdict::Passed), row("longer", None, RowVerdict::Failed)];
         let text = text("A study", &rows);
         let words: Vec<&str> = text.lines().nth(3).unwrap().split_whitespace().collect();
         assert_eq!(words, ["p/c", "5.1416", "5.2", "+1.14", "%", "5", "%", "pass", "0.0", "coarse"], "{text}");

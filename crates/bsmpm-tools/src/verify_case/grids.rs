@@ -1,10 +1,10 @@
 //! Three grids of one case, each made of the same body.
 
-use bsmpm_scene::{Axis, Case};
+use bsmpm_scene::{Case, GridAxis};
 
-use super::{Arguments, TimeStep};
+use super::{TimeStep, VerifyArguments};
 use crate::Error;
-use crate::batch::Order;
+use crate::batch::RunOrder;
 use crate::sweep::split;
 
 /// Ratios below this make differences that drown in everything else (Celik et al. want 1.3).
@@ -14,7 +14,7 @@ const MOST: f64 = 10.0;
 
 /// The case on each of them, the finest first.
 pub(super) struct Grids {
-    pub orders: Vec<Order>,
+    pub orders: Vec<RunOrder>,
     /// m  the size of the cells: the root of the area of one
     pub sizes: [f64; 3],
     pub own: Case,
@@ -24,7 +24,7 @@ impl Grids {
     /// # Errors
     /// [`Error::Usage`] for a case without `grid.cell` and for ratios that show nothing; [`Error::BadCase`] for grids that
     /// the case cannot have, with all of their errors.
-    pub fn of(arguments: &Arguments, bytes: &[u8]) -> Result<Self, Error> {
+    pub fn of(arguments: &VerifyArguments, bytes: &[u8]) -> Result<Self, Error> {
         let path = &arguments.case;
         let own = Case::from_bytes(&path.display().to_string(), bytes, &arguments.options.set)
             .map_err(|errors| Error::bad_case(path, &errors))?;
@@ -34,7 +34,7 @@ impl Grids {
         for value in &cells {
             let mut set = arguments.options.set.clone();
             set.push(format!("grid.cell={value}"));
-            match Order::read(path, bytes, set.clone(), 1) {
+            match RunOrder::read(path, bytes, set.clone(), 1) {
                 Ok(order) => orders.push(arguments.timed(order, (bytes, set), &own, cell)?),
                 Err(found) => errors.extend(found),
             }
@@ -57,7 +57,7 @@ impl Grids {
     }
 }
 
-impl Arguments {
+impl VerifyArguments {
     /// The value of `grid.cell` on each grid.
     fn cells(&self, cell: [f64; 2]) -> Result<Vec<String>, Error> {
         let usage = |reason: String| Err(Error::Usage { reason });
@@ -77,11 +77,11 @@ impl Arguments {
     /// The order with the step that it gets.
     fn timed(
         &self,
-        order: Order,
+        order: RunOrder,
         (bytes, mut set): (&[u8], Vec<String>),
         own: &Case,
         cell: [f64; 2],
-    ) -> Result<Order, Error> {
+    ) -> Result<RunOrder, Error> {
         let step = match self.time_step {
             // Steps that a preset chooses would follow the cells.
             TimeStep::Kept if order.case.analysis.dt == own.analysis.dt => return Ok(order),
@@ -89,14 +89,14 @@ impl Arguments {
             TimeStep::Refined => own.analysis.dt * order.cell() / (cell[0] * cell[1]).sqrt(),
         };
         set.push(format!("analysis.dt={step:?}"));
-        Order::read(&self.case, bytes, set, 2).map_err(|errors| Error::BadCase { path: self.case.clone(), errors })
+        RunOrder::read(&self.case, bytes, set, 2).map_err(|errors| Error::BadCase { path: self.case.clone(), errors })
     }
 }
 
 /// m  the edges of the case's cells.
 fn cell(case: &Case) -> Result<[f64; 2], Error> {
     let [x, y] = &case.grid.axes;
-    if [x, y].iter().any(|axis| matches!(axis, Axis::Graded(_))) {
+    if [x, y].iter().any(|axis| matches!(axis, GridAxis::Graded(_))) {
         let reason =
             "the grid has explicit knots: there is no one size of cells to refine; give it grid.cell with --set";
         return Err(Error::Usage { reason: reason.to_owned() });
@@ -124,7 +124,7 @@ mod tests {
     #[derive(Parser)]
     struct Line {
         #[command(flatten)]
-        arguments: Arguments,
+        arguments: VerifyArguments,
     }
 
     fn grids(options: &[&str]) -> Result<Grids, Error> {

@@ -4,13 +4,13 @@ use bsmpm_io::table::Columns;
 use serde::Serialize;
 
 use super::grids::Grids;
-use super::{Arguments, TimeStep};
+use super::{TimeStep, VerifyArguments};
 use crate::Error;
-use crate::batch::{Cost, Outcome};
+use crate::batch::{Outcome, RunCost};
 use crate::columns::{Align, aligned, csv};
 use crate::grid_convergence::{Course, Index};
 use crate::record::short;
-use crate::sweep::Part;
+use crate::sweep::QuantityPart;
 
 /// Orders below it converge too slowly for the next term of the series to be small.
 const SLOWEST: f64 = 0.5;
@@ -19,7 +19,7 @@ const NEAR: f64 = 0.1;
 
 /// A quantity at a time.
 #[derive(Clone, Debug, Serialize)]
-pub(super) struct Row {
+pub(super) struct VerifyRow {
     pub quantity: String,
     pub unit: String,
     /// s or pseudo-time; none for the end
@@ -34,7 +34,7 @@ pub(super) struct Row {
 
 /// All of it.
 #[derive(Debug, Serialize)]
-pub(super) struct Report {
+pub(super) struct VerifyReport {
     pub case: String,
     pub title: String,
     /// m  the finest first
@@ -43,15 +43,15 @@ pub(super) struct Report {
     pub time_step: &'static str,
     /// s or pseudo-time, of each grid
     pub steps: [f64; 3],
-    pub rows: Vec<Row>,
-    pub costs: Vec<Cost>,
+    pub rows: Vec<VerifyRow>,
+    pub costs: Vec<RunCost>,
     pub directories: Vec<String>,
 }
 
-impl Report {
+impl VerifyReport {
     /// # Errors
     /// [`Error::Usage`] for a time that a run has no row about, or for a case that records nothing.
-    pub fn of(arguments: &Arguments, grids: &Grids, outcomes: &[Outcome]) -> Result<Self, Error> {
+    pub fn of(arguments: &VerifyArguments, grids: &Grids, outcomes: &[Outcome]) -> Result<Self, Error> {
         let histories: Vec<&Columns> = outcomes.iter().filter_map(|outcome| outcome.history.as_ref()).collect();
         let [fine, middle, coarse] = histories[..] else {
             return Err(Error::Usage { reason: "a run has left no history: the case needs a [[history]]".to_owned() });
@@ -59,12 +59,12 @@ impl Report {
         let mut rows = Vec::new();
         for time in arguments.at.iter().copied().map(Some).chain([None]) {
             for heading in fine.headings.iter().filter(|heading| !["step", "time"].contains(&&*heading.name)) {
-                let part = Part { column: heading.name.clone(), at: time };
+                let part = QuantityPart { column: heading.name.clone(), at: time };
                 let value = |history: &Columns| part.value(history).map_err(|reason| Error::Usage { reason });
                 let values = [value(fine)?, value(middle)?, value(coarse)?];
                 let index = Index::of(grids.sizes, values);
                 let verdict = verdict(&index, grids.own.grid.order);
-                rows.push(Row {
+                rows.push(VerifyRow {
                     quantity: heading.name.clone(),
                     unit: heading.unit.clone(),
                     time,
@@ -151,7 +151,7 @@ impl Report {
         ];
         let mut lines = vec![headings.map(str::to_owned).to_vec()];
         let number = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
-        for Row { quantity, unit, time, values, index, verdict } in &self.rows {
+        for VerifyRow { quantity, unit, time, values, index, verdict } in &self.rows {
             let mut cells =
                 vec![quantity.clone(), unit.clone(), time.map_or("end".to_owned(), |time| time.to_string())];
             cells.extend(self.cells.iter().chain(values).map(f64::to_string));

@@ -4,12 +4,12 @@ use std::f64::consts::PI;
 use std::path::Path;
 
 use bsmpm_io::directory::{Existing, HISTORY, OutputDirectory};
-use bsmpm_io::frame::{Field, Frame, Values};
+use bsmpm_io::frame::{Field, FieldValues, Frame};
 use bsmpm_io::frames::{COLLECTION, Frames};
 use bsmpm_io::lock::Unseen;
-use bsmpm_io::manifest::{Case, Extent, Manifest, Status};
-use bsmpm_io::steps::{STEPS, Step};
-use bsmpm_io::table::{Cell, Column, Table};
+use bsmpm_io::manifest::{GridExtent, Manifest, ManifestCase, Status};
+use bsmpm_io::steps::{STEPS, StepRow};
+use bsmpm_io::table::{Cell, CsvTable, TableColumn};
 
 /// What slumps, and how finely.
 pub struct Collapse {
@@ -34,10 +34,10 @@ impl Collapse {
         let mut manifest = Manifest::begin(
             "0.1.0",
             vec!["bsmpm-par".to_owned(), "collapse.toml".to_owned()],
-            Case::new("collapse.toml", title, "plane-strain", format!("title = \"{title}\"\n")),
+            ManifestCase::new("collapse.toml", title, "plane-strain", format!("title = \"{title}\"\n")),
         );
         manifest.picture_times = picture_times.to_vec();
-        manifest.grid = Some(Extent { lower: vec![0.0; 2], upper: self.grid.to_vec(), cell: vec![self.cell; 2] });
+        manifest.grid = Some(GridExtent { lower: vec![0.0; 2], upper: self.grid.to_vec(), cell: vec![self.cell; 2] });
         let directory = OutputDirectory::hold(directory, Unseen::Respect)
             .and_then(|held| held.claim(Existing::Refuse, &manifest))?;
         let mut frames = Frames::create(directory.path())?;
@@ -96,8 +96,8 @@ impl Collapse {
             Field::real("stress", 6, stress),
             Field::real("pressure", 1, pressure),
             Field::real("plastic_strain", 1, vec![0.0; count]),
-            Field { name: "material".to_owned(), components: 1, values: Values::U16(vec![0; count]) },
-            Field { name: "id".to_owned(), components: 1, values: Values::U64((0..count as u64).collect()) },
+            Field { name: "material".to_owned(), components: 1, values: FieldValues::U16(vec![0; count]) },
+            Field { name: "id".to_owned(), components: 1, values: FieldValues::U64((0..count as u64).collect()) },
         ];
         if volumes {
             fields.push(Field::real("volume", 1, vec![width * height / count as f64; count]));
@@ -106,14 +106,14 @@ impl Collapse {
     }
 
     fn write_tables(&self, directory: &Path) -> Result<(), bsmpm_io::Error> {
-        let lengths = ["runout", "front", "height"].map(|name| Column::new(name, "m"));
-        let mut columns = vec![Column::new("step", "-"), Column::new("time", "s")];
+        let lengths = ["runout", "front", "height"].map(|name| TableColumn::new(name, "m"));
+        let mut columns = vec![TableColumn::new("step", "-"), TableColumn::new("time", "s")];
         columns.extend(lengths);
-        columns.push(Column::new("stress-noise", "-"));
+        columns.push(TableColumn::new("stress-noise", "-"));
         let energies = ["kinetic", "plastic", "numerical", "smoothing", "background"];
-        columns.extend(energies.map(|part| Column::new(&format!("energy-{part}"), "J/m")));
-        let mut history = Table::create(&directory.join(HISTORY), &columns)?;
-        let mut steps = Table::create(&directory.join(STEPS), &Step::columns("s"))?;
+        columns.extend(energies.map(|part| TableColumn::new(&format!("energy-{part}"), "J/m")));
+        let mut history = CsvTable::create(&directory.join(HISTORY), &columns)?;
+        let mut steps = CsvTable::create(&directory.join(STEPS), &StepRow::columns("s"))?;
         let last = (FRAMES - 1) * STEPS_PER_FRAME;
         for step in 0..=last {
             let time = END * step as f64 / last as f64;
@@ -132,9 +132,9 @@ impl Collapse {
         Ok(())
     }
 
-    fn step(step: u64, time: f64, dt: f64) -> Step {
+    fn step(step: u64, time: f64, dt: f64) -> StepRow {
         let cutbacks = u64::from(step.is_multiple_of(170));
-        Step {
+        StepRow {
             step,
             time,
             dt: if cutbacks > 0 { dt / 4.0 } else { dt },

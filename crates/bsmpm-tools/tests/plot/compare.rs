@@ -7,8 +7,8 @@ use std::process::{Command, Output};
 use crate::Picture;
 use crate::quasi_static::{FOOTING, SLOPE};
 use crate::still::Still;
-use bsmpm_io::residuals::{Iterate, Method, RESIDUALS};
-use bsmpm_io::table::Table;
+use bsmpm_io::residuals::{Iterate, RESIDUALS, ResidualMethod};
+use bsmpm_io::table::CsvTable;
 
 fn compare(directory: &Path, arguments: &[&str]) -> Output {
     let program = env!("CARGO_BIN_EXE_bsmpm");
@@ -114,13 +114,13 @@ fn last_rows_of_one_label_are_a_curve() {
 /// Step 7 of a run by Newton's method, and by secants until forces are balanced to round-off.
 fn iterated(directory: &Path) {
     footings(directory);
-    let (newton, secants) = (Some(Method::Newton), Some(Method::Multisecant));
+    let (newton, secants) = (Some(ResidualMethod::Newton), Some(ResidualMethod::Multisecant));
     let courses = [
         ("new.out", [(newton, 0.1), (newton, 1e-2), (newton, 1e-4)]),
         ("old.out", [(secants, 0.1), (secants, 1e-2), (None, 1e-12)]),
     ];
     for (run, course) in courses {
-        let mut table = Table::create(&directory.join(run).join(RESIDUALS), &Iterate::columns("-")).unwrap();
+        let mut table = CsvTable::create(&directory.join(run).join(RESIDUALS), &Iterate::columns("-")).unwrap();
         for ((method, force), iteration) in course.into_iter().zip(1..) {
             let energy = if method.is_some() { force * force } else { f64::NAN };
             table.row(&Iterate { step: 7, time: 0.175, iteration, method, energy, force }.cells()).unwrap();

@@ -13,8 +13,8 @@ use bsmpm_io::directory::{Existing, HISTORY, OutputDirectory};
 use bsmpm_io::frame::{Field, Frame};
 use bsmpm_io::frames::{COLLECTION, Frames};
 use bsmpm_io::lock::Unseen;
-use bsmpm_io::manifest::{Case, Extent, Failure, Manifest, Status};
-use bsmpm_io::table::{Cell, Column, Table};
+use bsmpm_io::manifest::{GridExtent, Manifest, ManifestCase, ManifestFailure, Status};
+use bsmpm_io::table::{Cell, CsvTable, TableColumn};
 use serde_json::Value;
 
 use crate::Picture;
@@ -63,16 +63,16 @@ fn stub() {
 
 /// A run of one step whose largest displacement is that many metres.
 fn write_run(case: &bsmpm_scene::Case, argv: Vec<String>, directory: &Path, displacement: f64, code: u8) {
-    let told = Case::new("slope.toml", &case.title, "plane-strain", case.text.clone());
+    let told = ManifestCase::new("slope.toml", &case.title, "plane-strain", case.text.clone());
     let mut manifest = Manifest::begin("0.1.0", argv, told);
-    manifest.grid = Some(Extent { lower: vec![0.0; 2], upper: vec![40.0, 12.0], cell: vec![1.0; 2] });
+    manifest.grid = Some(GridExtent { lower: vec![0.0; 2], upper: vec![40.0, 12.0], cell: vec![1.0; 2] });
     let directory = OutputDirectory::hold(directory, Unseen::Respect)
         .and_then(|held| held.claim(Existing::Delete, &manifest))
         .unwrap();
-    let mut headings = vec![Column::new("step", ""), Column::new("time", "")];
+    let mut headings = vec![TableColumn::new("step", ""), TableColumn::new("time", "")];
     let columns = case.histories.iter().flat_map(bsmpm_scene::History::columns);
-    headings.extend(columns.map(|column| Column::new(&column.name, &column.unit)));
-    let mut table = Table::create(&directory.path().join(HISTORY), &headings).unwrap();
+    headings.extend(columns.map(|column| TableColumn::new(&column.name, &column.unit)));
+    let mut table = CsvTable::create(&directory.path().join(HISTORY), &headings).unwrap();
     let row = |step: u64, displacement: f64| -> Vec<Cell> {
         let quantities = headings[2..].iter().map(|heading| match &*heading.name {
             SCALED => Cell::Float(50.0 * displacement),
@@ -98,7 +98,7 @@ fn write_run(case: &bsmpm_scene::Case, argv: Vec<String>, directory: &Path, disp
         manifest.finish(Status::Finished, 0);
     } else {
         let reason = "no step converged".to_owned();
-        manifest.failure = Some(Failure { step: 2, time: 0.875, reason, residuals: Vec::new(), worst: None });
+        manifest.failure = Some(ManifestFailure { step: 2, time: 0.875, reason, residuals: Vec::new(), worst: None });
         manifest.finish(Status::Failed, code);
     }
     manifest.write(directory.path()).unwrap();

@@ -16,7 +16,7 @@ use std::process::{Command, Output};
 use bsmpm_io::directory::{Existing, OutputDirectory};
 use bsmpm_io::lock::Unseen;
 use bsmpm_io::manifest::Manifest;
-use bsmpm_tools::plot::{Arguments, draw, run};
+use bsmpm_tools::plot::{PlotArguments, draw, run};
 use collapse::Collapse;
 
 const LONG: Collapse = Collapse { body: [0.2, 0.1], grid: [0.55, 0.1025], cell: 2.5e-3, points: [120, 60] };
@@ -94,7 +94,7 @@ fn the_body_is_filled_and_its_colours_mean_the_same_at_all_times() {
     for volumes in [true, false] {
         let dir = tempfile::tempdir().unwrap();
         LONG.write(dir.path(), &[0.12, 0.36, 0.6], volumes).unwrap();
-        let names = draw(&Arguments::of(dir.path().to_owned())).unwrap();
+        let names = draw(&PlotArguments::of(dir.path().to_owned())).unwrap();
         assert_eq!(names[..3], ["stress-yy_0.12.png", "stress-yy_0.36.png", "stress-yy_0.6.png"]);
         let pictures: Vec<_> = names[..3].iter().map(|name| Picture::read(&dir.path().join(name))).collect();
         for picture in &pictures {
@@ -119,7 +119,7 @@ fn wanted_times_fields_and_references_are_heeded() {
     let dir = tempfile::tempdir().unwrap();
     LONG.write(dir.path(), &[0.6], true).unwrap();
     let reference = dir.path().join("experiment.csv");
-    let plain = Picture::read(&run(&Arguments::of(dir.path().to_owned())).unwrap()[1]);
+    let plain = Picture::read(&run(&PlotArguments::of(dir.path().to_owned())).unwrap()[1]);
     fs::write(&reference, "# a laboratory\ntime,x,y\n0.6,0.3,0.08\n0.6,0.4,0.08").unwrap();
     let with = |options: &[&str]| {
         let options: Vec<_> = options.iter().map(Path::new).collect();
@@ -171,7 +171,7 @@ fn a_run_that_has_just_begun_is_drawn_as_far_as_it_is() {
     };
     first_rows("history.csv", 1);
     first_rows("steps.csv", 1);
-    let names = draw(&Arguments::of(dir.path().to_owned())).unwrap();
+    let names = draw(&PlotArguments::of(dir.path().to_owned())).unwrap();
     assert_eq!(names, ["runout.png", "stress-noise.png", "convergence.png"]);
     // One step is no line: a disc in either half.
     let picture = Picture::read(&dir.path().join("convergence.png"));
@@ -179,5 +179,5 @@ fn a_run_that_has_just_begun_is_drawn_as_far_as_it_is() {
     assert!(coloured.chunks(coloured.len() / 2).take(2).all(|half| half.contains(&true)));
     first_rows("history.csv", 0);
     first_rows("steps.csv", 0);
-    assert_eq!(draw(&Arguments::of(dir.path().to_owned())).unwrap_err().exit_code(), 66);
+    assert_eq!(draw(&PlotArguments::of(dir.path().to_owned())).unwrap_err().exit_code(), 66);
 }

@@ -6,9 +6,9 @@ use bsmpm_io::directory::{Existing, HISTORY, OutputDirectory};
 use bsmpm_io::frame::{Field, Frame};
 use bsmpm_io::frames::{COLLECTION, Frames};
 use bsmpm_io::lock::Unseen;
-use bsmpm_io::manifest::{Case, Extent, Manifest, Status};
-use bsmpm_io::steps::{STEPS, Step};
-use bsmpm_io::table::{Cell, Column, Table};
+use bsmpm_io::manifest::{GridExtent, Manifest, ManifestCase, Status};
+use bsmpm_io::steps::{STEPS, StepRow};
+use bsmpm_io::table::{Cell, CsvTable, TableColumn};
 
 /// A run whose pseudo-time goes from 0 to 1.
 pub struct Still {
@@ -43,10 +43,11 @@ impl Still {
             Scene::Slope => ("Slope stability, Xie et al. (2023), section 3.2", [55.0, 16.0]),
             Scene::Footing => ("Large penetration of a strip footing, Xie et al. (2023), section 3.3", [5.0, 11.0]),
         };
-        let case = Case::new("still.toml", title, "plane-strain", self.text(title));
+        let case = ManifestCase::new("still.toml", title, "plane-strain", self.text(title));
         let mut manifest = Manifest::begin("0.1.0", vec!["bsmpm-par".to_owned(), "still.toml".to_owned()], case);
         manifest.picture_times = picture_times.to_vec();
-        manifest.grid = Some(Extent { lower: vec![0.0; 2], upper: upper.to_vec(), cell: vec![2.0 * self.spacing; 2] });
+        manifest.grid =
+            Some(GridExtent { lower: vec![0.0; 2], upper: upper.to_vec(), cell: vec![2.0 * self.spacing; 2] });
         let directory = OutputDirectory::hold(directory, Unseen::Respect)
             .and_then(|held| held.claim(Existing::Refuse, &manifest))?;
         let mut frames = Frames::create(directory.path())?;
@@ -168,9 +169,9 @@ impl Still {
             ],
         };
         let columns = [("step", "-"), ("time", "-")].iter().chain(columns);
-        let columns: Vec<Column> = columns.map(|(name, unit)| Column::new(name, unit)).collect();
-        let mut history = Table::create(&directory.join(HISTORY), &columns)?;
-        let mut steps = Table::create(&directory.join(STEPS), &Step::columns("-"))?;
+        let columns: Vec<TableColumn> = columns.map(|(name, unit)| TableColumn::new(name, unit)).collect();
+        let mut history = CsvTable::create(&directory.join(HISTORY), &columns)?;
+        let mut steps = CsvTable::create(&directory.join(STEPS), &StepRow::columns("-"))?;
         for step in 0..=self.steps {
             let time = step as f64 / ALL as f64;
             let mut cells = vec![Cell::Int(step), Cell::Float(time)];
@@ -193,8 +194,8 @@ impl Still {
         vec![pressure, COHESION * pressure, 2.0 * time, 0.02 + rough.abs() / 10.0, 0.5 * time]
     }
 
-    fn step(step: u64, time: f64) -> Step {
-        Step {
+    fn step(step: u64, time: f64) -> StepRow {
+        StepRow {
             step,
             time,
             dt: 1.0 / ALL as f64,

@@ -4,7 +4,7 @@ use crate::physics::random::Random;
 use crate::physics::scene::hencky;
 use crate::table::Found;
 use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
-use bsmpm::material::{Elastic, Material, MohrCoulomb, Region, Response};
+use bsmpm::material::{Branch, Elastic, Material, MohrCoulomb, Response};
 use bsmpm::tensor::{Symmetric, Tensor};
 
 const YOUNG: f64 = 1e3;
@@ -73,7 +73,7 @@ pub fn apex() -> Found {
             let dilation = friction * pick(&mut random, &[0.0, 0.5, 1.0]);
             let poisson = pick(&mut random, &[0.0, 0.3, 0.4999]);
             let found = respond(&mohr_coulomb(poisson, friction, dilation, cohesion), &trial(&mut random, -7.0, 0.0));
-            tips += usize::from(found.region() == Region::Apex);
+            tips += usize::from(found.region() == Branch::Apex);
             worst = worst.max(excess(found.principal_tau(), friction, cohesion) / YOUNG);
             assert!(found.tau().0.iter().chain(&found.b_e().0).all(|x| x.is_finite()));
         }
@@ -136,7 +136,7 @@ pub fn projection() -> Found {
     while returned < 10_000 {
         let (friction, poisson) = (pick(&mut random, &[20.0, 45.0, 60.0]), pick(&mut random, &[0.0, 0.3, 0.45]));
         let found = respond(&mohr_coulomb(poisson, friction, friction, 1.0), &trial(&mut random, -3.0, -1.0));
-        if found.region() == Region::Elastic {
+        if found.region() == Branch::Elastic {
             continue;
         }
         returned += 1;

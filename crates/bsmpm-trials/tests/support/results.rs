@@ -1,6 +1,6 @@
 //! What a run left in its output directory.
 
-use bsmpm_io::frame::{Frame, Values};
+use bsmpm_io::frame::{FieldValues, Frame};
 use bsmpm_io::manifest::Manifest;
 use bsmpm_io::table::Columns;
 use bsmpm_io::{frames, table, vtu};
@@ -33,7 +33,7 @@ pub fn last_frame(directory: &Path) -> Frame {
 pub fn ids(frame: &Frame) -> Vec<u64> {
     let field = frame.fields.iter().find(|field| field.name == "id").expect("a field id");
     match &field.values {
-        Values::U64(ids) => ids.clone(),
+        FieldValues::U64(ids) => ids.clone(),
         other => panic!("ids are {other:?}"),
     }
 }
@@ -53,7 +53,7 @@ pub fn differences(found: &Frame, expected: &Frame) -> Vec<(String, f64)> {
     assert_eq!((found.step, found.time), (expected.step, expected.time));
     assert_eq!(ids(found), ids(expected));
     let position = ("position".to_owned(), relative(found.position.as_flattened(), expected.position.as_flattened()));
-    let real = expected.fields.iter().filter(|field| matches!(field.values, Values::F64(_)));
+    let real = expected.fields.iter().filter(|field| matches!(field.values, FieldValues::F64(_)));
     let fields = real.map(|field| {
         let part = |frame: &Frame| frame.real(&field.name, field.components).expect("the same fields").to_vec();
         (field.name.clone(), relative(&part(found), &part(expected)))
@@ -83,7 +83,7 @@ pub fn all_finite(directory: &Path) {
     for frame in all_frames(directory) {
         assert!(frame.time.is_finite() && finite(frame.position.as_flattened()));
         for field in &frame.fields {
-            assert!(!matches!(&field.values, Values::F64(values) if !finite(values)), "{}", field.name);
+            assert!(!matches!(&field.values, FieldValues::F64(values) if !finite(values)), "{}", field.name);
         }
     }
 }

@@ -17,14 +17,14 @@ pub(super) enum Form {
 pub(super) struct Forms<'a, const D: usize> {
     grid: &'a Grid<D>,
     form: Form,
-    products: [Vec<Products>; D], // per axis and cell
+    products: [Vec<FormProducts>; D], // per axis and cell
     /// per axis: where each entry (a, b) of a block finds the product of its functions along that axis
     entries: [Vec<usize>; D],
 }
 
 /// int N_a N_b, int N_a' N_b', int N_a'' N_b'', int N_a' N_b and int N_a N_b' over a cell of one axis, row-major (q + 1)
 /// square; m, 1/m, 1/m^3, 1, 1.
-pub(super) type Products = [Vec<f64>; 5];
+pub(super) type FormProducts = [Vec<f64>; 5];
 /// The last two of them.
 const MIXED: [usize; 2] = [3, 4];
 
@@ -98,7 +98,7 @@ impl<'a, const D: usize> Forms<'a, D> {
 }
 
 /// The integrals of every cell of every axis.
-pub(super) fn products<const D: usize>(grid: &Grid<D>) -> [Vec<Products>; D] {
+pub(super) fn products<const D: usize>(grid: &Grid<D>) -> [Vec<FormProducts>; D] {
     let of_axis = |axis: &KnotVector| {
         with_width!(axis.order() + 1, W => {
             (0..axis.cells()).map(|cell| of_cell::<W>(axis, cell)).collect()
@@ -107,7 +107,7 @@ pub(super) fn products<const D: usize>(grid: &Grid<D>) -> [Vec<Products>; D] {
     grid.axes().each_ref().map(of_axis)
 }
 
-fn of_cell<const W: usize>(axis: &KnotVector, cell: usize) -> Products {
+fn of_cell<const W: usize>(axis: &KnotVector, cell: usize) -> FormProducts {
     if !axis.has_length(cell) {
         return std::array::from_fn(|_| vec![0.0; W * W]);
     }

@@ -5,21 +5,21 @@
 //! nodes along its normal and q + 1 along it, one more than a cell; its cells may be those of two ranks. Where a repeated
 //! breakpoint lies between two cells there is no face: strains may jump there.
 
-use super::form::{Products, products};
+use super::form::{FormProducts, products};
 use crate::grid::shape::{Patch, Shape};
 use crate::grid::{Contributions, Grid, KnotVector};
 use crate::kinematics::Kinematics;
-use crate::seam::{Halo, LinearSolver};
+use crate::parallel::{Halo, LinearSolver};
 
 /// The faces of one step.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Faces {
+pub(super) struct GhostFaces {
     offsets: Vec<Vec<usize>>, // of a face's nodes from its first one, by its normal, which is the slowest
-    faces: Vec<Face>,
+    faces: Vec<GhostFace>,
 }
 
 #[derive(Clone, Debug)]
-struct Face {
+struct GhostFace {
     first_node: usize,
     normal: usize,
     jump: Vec<f64>, // m^-q  of the q-th derivative, by node along the normal
@@ -29,7 +29,7 @@ struct Face {
 /// Largest number of nodes along a face: (3 + 1)^2.
 const MOST_ALONG: usize = 16;
 
-impl Faces {
+impl GhostFaces {
     /// Faces with a cell of this rank below and a concerned cell on one side or on both; `modulus` in Pa, the largest of
     /// a patch; h is the mean of the two cells' lengths.
     pub(super) fn of<K: Kinematics<D>, const D: usize>(
@@ -61,7 +61,7 @@ impl Faces {
                     let middle =
                         lower + size.map_with_location(|along, _, h| if along == normal { h } else { 0.5 * h });
                     let factor = coefficient * sides[0].0.max(sides[1].0) * K::weight(&middle);
-                    faces.push(Face::new((grid, &products), (patch.first_node, &cell, normal), factor));
+                    faces.push(GhostFace::new((grid, &products), (patch.first_node, &cell, normal), factor));
                 }
             }
         }
@@ -91,7 +91,7 @@ impl Faces {
     }
 
     /// Jumps of a component's derivative at the nodes along a face.
-    fn jumps<const D: usize>(&self, face: &Face, u: &[f64], component: usize) -> [f64; MOST_ALONG] {
+    fn jumps<const D: usize>(&self, face: &GhostFace, u: &[f64], component: usize) -> [f64; MOST_ALONG] {
         let (offsets, width) = (&self.offsets[face.normal], face.width());
         let mut jumps = [0.0; MOST_ALONG];
         for (layer, weight) in face.jump.iter().enumerate() {
@@ -131,9 +131,9 @@ impl Faces {
     }
 }
 
-impl Face {
+impl GhostFace {
     fn new<const D: usize>(
-        (grid, products): (&Grid<D>, &[Vec<Products>; D]),
+        (grid, products): (&Grid<D>, &[Vec<FormProducts>; D]),
         (first_node, cell, normal): (usize, &[usize; D], usize),
         factor: f64,
     ) -> Self {

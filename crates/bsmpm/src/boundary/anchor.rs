@@ -7,8 +7,8 @@ use super::Boundary;
 use super::strip::{Strip, reduce};
 use super::surface::Anchors;
 use crate::grid::Grid;
-use crate::points::Held;
-use crate::seam::Halo;
+use crate::parallel::Halo;
+use crate::points::Packed;
 use crate::tensor::{Tensor, Vector};
 
 /// What surfaces are anchored to: the points of this rank.
@@ -21,7 +21,7 @@ pub struct Anchored<'a, const D: usize> {
     /// m  displacements since the start
     pub u: &'a [Vector<D>],
     /// -  deformation gradients
-    pub F: &'a Held<D, Tensor>,
+    pub F: &'a Packed<D, Tensor>,
 }
 
 /// Places of the material now, m.

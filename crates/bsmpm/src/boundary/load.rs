@@ -4,7 +4,7 @@ use super::strip::reduce;
 use super::surface::{Attachment, Surface, SurfacePoint};
 use crate::error::StepError;
 use crate::grid::{Contributions, Grid};
-use crate::seam::Halo;
+use crate::parallel::Halo;
 use crate::tensor::Vector;
 
 /// A load whose force, direction and area are those of the start.

@@ -7,7 +7,7 @@
 use super::surface::{Attachment, Surface, SurfacePoint};
 use crate::exact::Exact;
 use crate::grid::{Contributions, Grid};
-use crate::seam::{Halo, LinearSolver};
+use crate::parallel::{Halo, LinearSolver};
 use crate::tensor::Vector;
 
 /// A displacement as a function of time, linear between its rows: a cut step follows the same path.
@@ -73,13 +73,13 @@ pub struct GripWork {
 
 /// The strips' points of this rank in one step.
 #[derive(Clone, Debug)]
-pub struct Grips<const D: usize> {
+pub struct StripAttachments<const D: usize> {
     offsets: Vec<usize>,
-    held: Vec<Held<D>>,
+    held: Vec<StripPoint<D>>,
 }
 
 #[derive(Clone, Debug)]
-struct Held<const D: usize> {
+struct StripPoint<const D: usize> {
     strip: usize,
     point: usize,
     attachment: [Option<Attachment>; D], // per component: where a support holds all of its nodes, the strip does not
@@ -90,7 +90,7 @@ struct Held<const D: usize> {
     carried: Vector<D>,
 }
 
-impl<const D: usize> Held<D> {
+impl<const D: usize> StripPoint<D> {
     /// The components that the strip and no support holds.
     fn own(&self, vector: Vector<D>) -> Vector<D> {
         Vector::from_fn(|component, _| if self.attachment[component].is_some() { vector[component] } else { 0.0 })
@@ -148,7 +148,7 @@ impl<const D: usize> Held<D> {
     }
 }
 
-impl<const D: usize> Grips<D> {
+impl<const D: usize> StripAttachments<D> {
     /// Attaches the strips at their places at time `t`, to move until `t + dt`, by the components that are `free`: where a
     /// support of the grid holds a node, it stays the one that does.
     pub fn at(
@@ -167,7 +167,7 @@ impl<const D: usize> Grips<D> {
                 if attachment.iter().all(Option::is_none) {
                     continue;
                 }
-                held.push(Held {
+                held.push(StripPoint {
                     strip: number,
                     point: index,
                     attachment,
@@ -189,7 +189,7 @@ impl<const D: usize> Grips<D> {
         }
     }
 
-    /// Adds the product of [`Grips::assemble`]'s stiffness with `v`; other ranks' parts are not yet in it.
+    /// Adds the product of [`StripAttachments::assemble`]'s stiffness with `v`; other ranks' parts are not yet in it.
     pub fn multiply(&self, v: &[f64], out: &mut Contributions) {
         for held in &self.held {
             let force = held.part(held.displacement(&self.offsets, v)) * (held.penalty * held.area);
@@ -206,7 +206,7 @@ impl<const D: usize> Grips<D> {
 
     /// du . K du of the strips' stiffness on this rank, N m.
     pub fn energy(&self, du: &[f64]) -> Exact {
-        let of = |held: &Held<D>| {
+        let of = |held: &StripPoint<D>| {
             let moved = held.part(held.displacement(&self.offsets, du));
             held.penalty * held.area * moved.norm_squared()
         };

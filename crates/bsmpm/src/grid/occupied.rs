@@ -1,7 +1,7 @@
 //! Which cells hold points, seen across the cuts between ranks: what tells the inside of a body from its edge.
 
 use super::Grid;
-use crate::seam::Halo;
+use crate::parallel::Halo;
 
 /// Cells along each axis of the neighbourhood that makes a cell interior: itself and one on either side.
 const SIDE: usize = 3;

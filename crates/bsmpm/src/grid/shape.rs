@@ -24,7 +24,7 @@ pub struct Patch {
 
 /// An occupied column of cells with its patches: what one thread works on, and what one sum of a layer comes from.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Column {
+pub(crate) struct PatchColumn {
     /// column of the window
     pub column: usize,
     /// its patches
@@ -39,7 +39,7 @@ pub struct Shape<const D: usize> {
     width: usize,
     offsets: Vec<usize>,
     patches: Vec<Patch>,
-    columns: Vec<Column>,
+    columns: Vec<PatchColumn>,
     extent: (usize, usize, usize), // layers that a column touches, nodes of a layer, of the window
     rows: Vec<f64>, // per point and axis: q + 1 values, then q + 1 derivatives (1/m) but for lowered functions
     stride: usize,  // numbers of a row
@@ -154,7 +154,7 @@ impl<const D: usize> Shape<D> {
     }
 
     /// Occupied columns of cells in ascending order.
-    pub(crate) fn columns(&self) -> &[Column] {
+    pub(crate) fn columns(&self) -> &[PatchColumn] {
         &self.columns
     }
 
@@ -180,10 +180,10 @@ impl<const D: usize> Shape<D> {
 
     /// The rows of point `p`, for a width known to the compiler.
     #[inline(always)]
-    pub(crate) fn support<const W: usize>(&self, p: usize) -> Support<'_, D, W> {
+    pub(crate) fn support<const W: usize>(&self, p: usize) -> PointSupport<'_, D, W> {
         let size = 2 * D * W;
         debug_assert_eq!(self.stride, 2 * W, "lowered functions have values only");
-        Support { rows: &self.rows[p * size..(p + 1) * size] }
+        PointSupport { rows: &self.rows[p * size..(p + 1) * size] }
     }
 
     /// Rows of values of point `p`, the first of each axis at its multiple of the stride.
@@ -220,15 +220,19 @@ impl<const D: usize> Shape<D> {
 }
 
 /// Patches by columns of `cells` cells.
-fn columns(patches: &[Patch], cells: usize) -> Vec<Column> {
-    let mut columns: Vec<Column> = Vec::new();
+fn columns(patches: &[Patch], cells: usize) -> Vec<PatchColumn> {
+    let mut columns: Vec<PatchColumn> = Vec::new();
     for (number, patch) in patches.iter().enumerate() {
         let of_patch = patch.cell / cells;
         match columns.last_mut() {
             Some(last) if last.column == of_patch => {
                 (last.patches.end, last.points.end) = (number + 1, patch.points.end);
             }
-            _ => columns.push(Column { column: of_patch, patches: number..number + 1, points: patch.points.clone() }),
+            _ => columns.push(PatchColumn {
+                column: of_patch,
+                patches: number..number + 1,
+                points: patch.points.clone(),
+            }),
         }
     }
     columns
@@ -255,11 +259,11 @@ impl<const D: usize, const W: usize> Values<'_, D, W> {
 
 /// One point's functions: D rows of W values and W derivatives.
 #[derive(Clone, Copy)]
-pub(crate) struct Support<'a, const D: usize, const W: usize> {
+pub(crate) struct PointSupport<'a, const D: usize, const W: usize> {
     rows: &'a [f64],
 }
 
-impl<const D: usize, const W: usize> Support<'_, D, W> {
+impl<const D: usize, const W: usize> PointSupport<'_, D, W> {
     /// Position of local node `k` along `axis`.
     #[inline(always)]
     fn along(k: usize, axis: usize) -> usize {

@@ -5,7 +5,7 @@
 //! ranks and threads. Threads share the columns of cells. Nodal arrays are flat.
 
 use super::contributions::Contributions;
-use super::shape::{Column, Shape, with_width};
+use super::shape::{PatchColumn, Shape, with_width};
 use crate::kinematics::{Gradient, Kinematics, Slope};
 use crate::stabilisation::Grouped;
 use crate::tensor::Vector;
@@ -16,7 +16,7 @@ use std::ops::Range;
 const MOST_NODES: usize = 64;
 
 /// Numbers of a patch's nodes.
-type Block<const C: usize> = [[f64; C]; MOST_NODES];
+type PatchBlock<const C: usize> = [[f64; C]; MOST_NODES];
 
 /// Scatter with shape functions: sum_p N_Ip value_p (Eq. 2), `C` numbers a point.
 pub fn to_nodes<const D: usize, const C: usize>(
@@ -32,7 +32,7 @@ pub fn to_nodes_grouped<const D: usize, const C: usize>(
     grouped: Grouped<'_>,
     value: impl Fn(usize) -> [f64; C] + Sync,
 ) -> Contributions {
-    with_width!(shape.width(), W => scatter(shape, grouped, |points, block: &mut Block<C>| {
+    with_width!(shape.width(), W => scatter(shape, grouped, |points, block: &mut PatchBlock<C>| {
         for p in points {
             let (support, value) = (shape.values::<W>(p), value(p));
             for (k, sums) in block[..const { W.pow(D as u32) }].iter_mut().enumerate() {
@@ -86,7 +86,7 @@ pub fn to_points_grouped<const D: usize, const C: usize, T: Send>(
 ) -> Vec<T> {
     with_width!(shape.width(), W => at_points(shape, |number, out: &mut Vec<T>| {
         for (group, points) in grouped.runs(shape.patches()[number].points.clone()) {
-            let block: Block<C> = gathered(shape, nodal, number, (group, grouped.count()));
+            let block: PatchBlock<C> = gathered(shape, nodal, number, (group, grouped.count()));
             for p in points {
                 let support = shape.values::<W>(p);
                 let mut value = [0.0; C];
@@ -111,7 +111,7 @@ pub fn gradients<K: Kinematics<D>, const D: usize, T: Send>(
 ) -> Vec<T> {
     with_width!(shape.width(), W => at_points(shape, |number, out: &mut Vec<T>| {
         let patch = &shape.patches()[number];
-        let block: Block<D> = gather(u, shape.offsets(), patch.first_node, (0, 1));
+        let block: PatchBlock<D> = gather(u, shape.offsets(), patch.first_node, (0, 1));
         for p in patch.points.clone() {
             let support = shape.support::<W>(p);
             let mut gradient = K::Gradient::zeros();
@@ -133,7 +133,7 @@ pub fn divergence<K: Kinematics<D>, const D: usize>(
     (shape, x): (&Shape<D>, &[Vector<D>]),
     flux: impl Fn(usize) -> K::Gradient + Sync,
 ) -> Contributions {
-    with_width!(shape.width(), W => scatter(shape, Grouped::NOT, |points, block: &mut Block<D>| {
+    with_width!(shape.width(), W => scatter(shape, Grouped::NOT, |points, block: &mut PatchBlock<D>| {
         for p in points {
             let (support, flux) = (shape.support::<W>(p), flux(p));
             for (k, sums) in block[..const { W.pow(D as u32) }].iter_mut().enumerate() {
@@ -150,7 +150,7 @@ pub fn divergence<K: Kinematics<D>, const D: usize>(
 
 /// Scatter of squared gradients: sum_p weight_p |grad N_Ip|^2; tells nodes that have stiffness but no mass.
 pub fn squared_gradients<const D: usize>(shape: &Shape<D>, weight: impl Fn(usize) -> f64 + Sync) -> Contributions {
-    with_width!(shape.width(), W => scatter(shape, Grouped::NOT, |points, block: &mut Block<1>| {
+    with_width!(shape.width(), W => scatter(shape, Grouped::NOT, |points, block: &mut PatchBlock<1>| {
         for p in points {
             let (support, weight) = (shape.support::<W>(p), weight(p));
             for (k, sum) in block[..const { W.pow(D as u32) }].iter_mut().enumerate() {
@@ -179,12 +179,12 @@ pub(crate) fn slopes_of<K: Kinematics<D>, const D: usize>(
 fn scatter<const D: usize, const C: usize>(
     shape: &Shape<D>,
     grouped: Grouped<'_>,
-    fill: impl Fn(Range<usize>, &mut Block<C>) + Sync,
+    fill: impl Fn(Range<usize>, &mut PatchBlock<C>) + Sync,
 ) -> Contributions {
     let (count, levels) = (grouped.count(), shape.levels());
     let columns = shape.columns().iter().map(|column| column.column).collect();
     let mut contributions = Contributions::zeros(shape.extent(), count * levels * C, columns);
-    let work: Vec<(&Column, &mut [f64])> = shape.columns().iter().zip(contributions.columns_mut()).collect();
+    let work: Vec<(&PatchColumn, &mut [f64])> = shape.columns().iter().zip(contributions.columns_mut()).collect();
     work.into_par_iter().for_each(|(column, sums)| {
         let first = column.column * shape.extent().1;
         for number in column.patches.clone() {
@@ -208,7 +208,7 @@ fn scatter<const D: usize, const C: usize>(
 
 /// What the patches leave at their points, in the order of the points.
 fn at_points<const D: usize, T: Send>(shape: &Shape<D>, work: impl Fn(usize, &mut Vec<T>) + Sync) -> Vec<T> {
-    let of_column = |column: &Column| {
+    let of_column = |column: &PatchColumn| {
         let mut out = Vec::with_capacity(column.points.len());
         column.patches.clone().for_each(|patch| work(patch, &mut out));
         out
@@ -228,7 +228,7 @@ fn gathered<const D: usize, const C: usize>(
     nodal: &[f64],
     number: usize,
     (group, groups): (usize, usize),
-) -> Block<C> {
+) -> PatchBlock<C> {
     let first = shape.patches()[number].first_node;
     let Some(merged) = shape.merger() else {
         return gather(nodal, shape.offsets(), first, (group, groups));
@@ -238,7 +238,12 @@ fn gathered<const D: usize, const C: usize>(
     merged.combine((number, group), [cells, pairs])
 }
 
-fn gather<const C: usize>(nodal: &[f64], offsets: &[usize], first: usize, (group, groups): (usize, usize)) -> Block<C> {
+fn gather<const C: usize>(
+    nodal: &[f64],
+    offsets: &[usize],
+    first: usize,
+    (group, groups): (usize, usize),
+) -> PatchBlock<C> {
     let mut block = [[0.0; C]; MOST_NODES];
     for (at_node, offset) in block.iter_mut().zip(offsets) {
         at_node.copy_from_slice(&nodal[((first + offset) * groups + group) * C..][..C]);
@@ -251,7 +256,7 @@ fn add<const C: usize>(
     offsets: &[usize],
     first: usize,
     (group, groups): (usize, usize),
-    block: &Block<C>,
+    block: &PatchBlock<C>,
 ) {
     for (sums, offset) in block.iter().zip(offsets) {
         let at_node = &mut nodal[((first + offset) * groups + group) * C..][..C];

@@ -3,7 +3,7 @@
 //!
 //! The return is linear: along the deviator to the cone, or to its tip.
 
-use super::law::{Flow, Law, Region, reduced, split};
+use super::law::{Branch, Flow, Law, reduced, split};
 use super::{Elastic, Moduli};
 use crate::tensor::Tensor;
 
@@ -156,10 +156,10 @@ impl Law for DruckerPrager {
 
 impl Flow for Return {
     #[inline]
-    fn region(&self) -> Region {
+    fn region(&self) -> Branch {
         match self {
-            Self::Cone { .. } => Region::Face,
-            Self::Apex => Region::Apex,
+            Self::Cone { .. } => Branch::Face,
+            Self::Apex => Branch::Apex,
         }
     }
 

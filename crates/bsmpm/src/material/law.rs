@@ -51,7 +51,7 @@ pub trait Law {
 /// What a return leaves.
 pub trait Flow: Copy {
     /// Where on the yield surface the stress lies.
-    fn region(&self) -> Region;
+    fn region(&self) -> Branch;
 
     /// `D_AB = ∂τ_A/∂ε_B`, Pa, of principal values.
     fn tangent(&self, moduli: Moduli) -> Tensor;
@@ -70,7 +70,7 @@ pub trait Flow: Copy {
 
 /// Where on the yield surface the stress lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Region {
+pub enum Branch {
     /// Inside or on the yield surface: no return.
     Elastic,
     /// A smooth part of it: a cone, or one plane of a pyramid, τ₁ > τ₂ > τ₃.
@@ -98,7 +98,7 @@ pub enum Separation {
 pub enum Never {}
 
 impl Flow for Never {
-    fn region(&self) -> Region {
+    fn region(&self) -> Branch {
         match *self {}
     }
     fn tangent(&self, _moduli: Moduli) -> Tensor {

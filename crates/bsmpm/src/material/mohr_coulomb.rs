@@ -3,7 +3,7 @@
 //! With no hardening each return is linear, so all are in closed form, and region by region:
 //! face, the edges τ₁ = τ₂ (left) and τ₂ = τ₃ (right), apex. Tresca is φ = ψ = 0, which has no apex.
 
-use super::law::{Flow, Law, Region, Separation, reduced};
+use super::law::{Branch, Flow, Law, Separation, reduced};
 use super::{Elastic, Moduli};
 use crate::tensor::Tensor;
 
@@ -26,7 +26,7 @@ pub struct MohrCoulomb {
 /// What a return leaves: where the stress lies, and the two sines that its tangent needs.
 #[derive(Clone, Copy, Debug)]
 pub struct Return {
-    region: Region,
+    region: Branch,
     slopes: Slopes,
 }
 
@@ -38,7 +38,7 @@ struct Slopes {
 }
 
 /// An edge of the yield surface with the plane of trial stresses that return to each of its points.
-struct Edge {
+struct YieldEdge {
     /// Direction of the edge where τ₃ grows by one: (N, 1, 1) or (N, N, 1), N = (1 - sin φ)/(1 + sin φ).
     along: [f64; 3],
     /// Normal in strain to both plastic flows, which an edge return therefore keeps: q · εᵖ = 0.
@@ -58,23 +58,23 @@ impl Slopes {
 
     /// The right edge (τ₂ = τ₃), on which the potentials of the planes 1-3 and 1-2 flow together.
     #[inline]
-    fn right(self, moduli: Moduli) -> Edge {
+    fn right(self, moduli: Moduli) -> YieldEdge {
         let (minus, plus) = (1.0 - self.sin_psi, 1.0 + self.sin_psi);
         let (dev, trace) = (6.0 * moduli.bulk() * self.sin_psi, 2.0 * moduli.mu * (3.0 + self.sin_psi));
-        Edge::new([self.ratio(), 1.0, 1.0], [minus, plus, plus], [trace - 2.0 * dev, trace + dev, trace + dev])
+        YieldEdge::new([self.ratio(), 1.0, 1.0], [minus, plus, plus], [trace - 2.0 * dev, trace + dev, trace + dev])
     }
 
     /// The left edge (τ₁ = τ₂), on which the potentials of the planes 1-3 and 2-3 flow together.
     #[inline]
-    fn left(self, moduli: Moduli) -> Edge {
+    fn left(self, moduli: Moduli) -> YieldEdge {
         let (minus, plus) = (1.0 - self.sin_psi, 1.0 + self.sin_psi);
         let (dev, trace) = (6.0 * moduli.bulk() * self.sin_psi, 2.0 * moduli.mu * (3.0 - self.sin_psi));
         let ratio = self.ratio();
-        Edge::new([ratio, ratio, 1.0], [minus, minus, plus], [trace - dev, trace - dev, trace + 2.0 * dev])
+        YieldEdge::new([ratio, ratio, 1.0], [minus, minus, plus], [trace - dev, trace - dev, trace + 2.0 * dev])
     }
 }
 
-impl Edge {
+impl YieldEdge {
     #[inline]
     fn new(along: [f64; 3], kept: [f64; 3], weight: [f64; 3]) -> Self {
         Self { along, kept, weight, slope: dot(weight, along) }
@@ -124,14 +124,14 @@ impl MohrCoulomb {
 
     /// Return along `τ = τ_trial - Δγ D m`, `Δγ = f/(4λ sin φ sin ψ + 4μ(1 + sin φ sin ψ))`; none if it breaks the order.
     #[inline]
-    fn face(&self, trial: [f64; 3], excess: f64) -> Option<([f64; 3], Region)> {
+    fn face(&self, trial: [f64; 3], excess: f64) -> Option<([f64; 3], Branch)> {
         let (Moduli { lambda, mu }, sin_psi) = (self.moduli, self.slopes.sin_psi);
         let half = self.slope * excess;
         let second = trial[1] - half * lambda * sin_psi;
         let third = trial[2] - half * (lambda * sin_psi - mu * (1.0 - sin_psi));
         let first = self.slopes.ratio() * third + self.shift;
         // Beyond the apex f = 0 and the order exclude each other, so this test covers the apex too.
-        (first >= second && second >= third).then_some(([first, second, third], Region::Face))
+        (first >= second && second >= third).then_some(([first, second, third], Branch::Face))
     }
 }
 
@@ -160,7 +160,7 @@ impl Law for MohrCoulomb {
         let (tau, region) = self
             .face(trial, excess)
             .or_else(|| edge(slopes, moduli, trial, shift))
-            .unwrap_or_else(|| ([strength / sin_phi; 3], Region::Apex));
+            .unwrap_or_else(|| ([strength / sin_phi; 3], Branch::Apex));
         Some((tau, Return { region, slopes }))
     }
 
@@ -183,7 +183,7 @@ impl Law for MohrCoulomb {
 
 impl Flow for Return {
     #[inline]
-    fn region(&self) -> Region {
+    fn region(&self) -> Branch {
         self.region
     }
 
@@ -191,9 +191,9 @@ impl Flow for Return {
     fn tangent(&self, moduli: Moduli) -> Tensor {
         let slopes = self.slopes;
         match self.region {
-            Region::Elastic => moduli.tangent(),
-            Region::Apex => Tensor::zeros(),
-            Region::Face => {
+            Branch::Elastic => moduli.tangent(),
+            Branch::Apex => Tensor::zeros(),
+            Branch::Face => {
                 let normal = |sin: f64| [1.0 + sin, 0.0, sin - 1.0];
                 let (n, m) = (normal(slopes.sin_phi), normal(slopes.sin_psi));
                 let (d_n, d_m) = (moduli.stress(n), moduli.stress(m));
@@ -202,7 +202,7 @@ impl Flow for Return {
                 moduli.tangent() - Tensor::from_fn(|i, j| d_m[i] * d_n[j] / scale)
             }
             edge => {
-                let edge = if edge == Region::LeftEdge { slopes.left(moduli) } else { slopes.right(moduli) };
+                let edge = if edge == Branch::LeftEdge { slopes.left(moduli) } else { slopes.right(moduli) };
                 let scale = 18.0 * moduli.bulk() * moduli.mu / edge.slope;
                 Tensor::from_fn(|i, j| scale * edge.along[i] * edge.kept[j])
             }
@@ -212,17 +212,17 @@ impl Flow for Return {
 
 /// Return to the edge that the face return crosses first; none if that is beyond the apex (never when sin φ = 0).
 #[inline]
-fn edge(slopes: Slopes, moduli: Moduli, trial: [f64; 3], shift: f64) -> Option<([f64; 3], Region)> {
+fn edge(slopes: Slopes, moduli: Moduli, trial: [f64; 3], shift: f64) -> Option<([f64; 3], Branch)> {
     let (upper, lower) = (trial[0] - trial[1], trial[1] - trial[2]);
     let is_right = (1.0 - slopes.sin_psi) * upper > (1.0 + slopes.sin_psi) * lower;
     if is_right {
         let third = slopes.right(moduli).third(trial, [shift, 0.0, 0.0]);
         let first = slopes.ratio() * third + shift;
-        (first >= third).then_some(([first, third, third], Region::RightEdge))
+        (first >= third).then_some(([first, third, third], Branch::RightEdge))
     } else {
         let third = slopes.left(moduli).third(trial, [shift, shift, 0.0]);
         let first = slopes.ratio() * third + shift;
-        (first >= third).then_some(([first, first, third], Region::LeftEdge))
+        (first >= third).then_some(([first, first, third], Branch::LeftEdge))
     }
 }
 

@@ -1,6 +1,6 @@
 //! What a material answers: principal values and axes (section 2.2); tensors and the tangent are formed on demand.
 
-use super::law::Region;
+use super::law::Branch;
 use super::spectral::Spectrum;
 use super::{Flowed, Moduli};
 use crate::tensor::Symmetric;
@@ -31,7 +31,7 @@ impl Response {
     ///
     /// Without plastic flow this is the trial tensor, bit for bit.
     pub fn b_e(&self) -> Symmetric {
-        if self.region() == Region::Elastic {
+        if self.region() == Branch::Elastic {
             return self.b_trial;
         }
         let eps_e = self.principal_eps_e();
@@ -46,7 +46,7 @@ impl Response {
 
     /// Where on the yield surface the stress lies.
     #[inline]
-    pub fn region(&self) -> Region {
+    pub fn region(&self) -> Branch {
         self.flowed.region()
     }
 
@@ -57,7 +57,7 @@ impl Response {
     /// (2016), "Drucker-Prager elastoplasticity for sand animation". g is constant during a step, so that the tangent
     /// keeps its form. What ψ dilates on faces and edges is no gap, and where such flow goes on what gapes is filled.
     pub fn gap(&self) -> f64 {
-        if self.region() != Region::Apex {
+        if self.region() != Branch::Apex {
             return 0.0;
         }
         let sum = |eps: [f64; 3]| eps[0] + eps[1] + eps[2];
@@ -98,7 +98,7 @@ impl Response {
 
     /// Principal elastic Hencky strain after the return, descending: `εᵉ = D⁻¹ τ`.
     pub fn principal_eps_e(&self) -> [f64; 3] {
-        if self.region() == Region::Elastic { self.trial.eps } else { self.moduli.strain(self.tau) }
+        if self.region() == Branch::Elastic { self.trial.eps } else { self.moduli.strain(self.tau) }
     }
 
     /// Puts the law's state after the return in the place of that before it.

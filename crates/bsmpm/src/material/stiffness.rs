@@ -3,7 +3,7 @@
 //! Linear Algebra Appl. 103, 103-118), and a small share of the elastic stiffness everywhere.
 
 use super::Response;
-use super::law::Region;
+use super::law::Branch;
 use super::tangent::{PAIRS, slope};
 use crate::kinematics::Gradient;
 use crate::tensor::Tensor;
@@ -86,7 +86,7 @@ impl Response {
     /// The stiffness of a response that yields, for use with many gradients; `None` where it is the elastic one, or as good as.
     #[inline]
     pub fn yielding(&self) -> Option<Stiffness> {
-        if self.region() == Region::Elastic {
+        if self.region() == Branch::Elastic {
             return None;
         }
         let (trial, elastic) = (self.principal_eps_trial(), self.principal_eps_e());

@@ -3,7 +3,7 @@
 //!
 //! One elastic trial stress returns along its own deviator, which is the radius of a cylinder.
 
-use super::law::{Flow, Law, Region, Variable, split};
+use super::law::{Branch, Flow, Law, Variable, split};
 use super::{Elastic, Moduli};
 use crate::tensor::Tensor;
 
@@ -88,8 +88,8 @@ impl Law for VonMises {
 
 impl Flow for Return {
     #[inline]
-    fn region(&self) -> Region {
-        Region::Face
+    fn region(&self) -> Branch {
+        Branch::Face
     }
 
     /// `K I ⊗ I + 2μ (r (I₄ - ⅓ I ⊗ I) + (r' - r) n ⊗ n)`: r = q/q_trial along the surface, r' = dq/dq_trial across it.

@@ -6,14 +6,14 @@
 use crate::grid::Grid;
 use crate::kinematics::Kinematics;
 use crate::model::Model;
+use crate::parallel::Halo;
 use crate::points::Points;
-use crate::seam::Halo;
 
 /// Part of the window that has to be full.
 const FULL: f64 = 0.5;
 
 /// Points of the lowest row that are in one cell: where along axis 0 (m), and volume (m^D).
-type Held = Vec<[f64; 2]>;
+type CellPoints = Vec<[f64; 2]>;
 
 /// The body's front (m): the farthest point of the lowest occupied row of cells such that the points from it back by the
 /// length of its cell, in this cell and the one before, fill half of a cell. A few loose points run ahead of it. Rows count
@@ -23,7 +23,7 @@ pub fn front<K: Kinematics<D>, const D: usize>(model: &Model<K, D>, points: &Poi
     let row = lowest_row(grid, points, halo);
     let strands: usize = grid.axes()[1..D - 1].iter().map(|axis| axis.cells()).product();
     let columns = grid.axes()[0].cells();
-    let mut held: Vec<Held> = vec![Held::new(); columns * strands];
+    let mut held: Vec<CellPoints> = vec![CellPoints::new(); columns * strands];
     for p in 0..points.len() {
         if let Some(cell) = grid.locate(&points.x[p]).filter(|cell| cell[D - 1] == row) {
             let strand = (1..D - 1).fold(0, |strand, axis| strand * grid.axes()[axis].cells() + cell[axis]);
@@ -32,7 +32,7 @@ pub fn front<K: Kinematics<D>, const D: usize>(model: &Model<K, D>, points: &Poi
         }
     }
     // Of a cell one rank alone has points.
-    let volume = |points: &Held| points.iter().map(|[_, volume]| volume).sum::<f64>();
+    let volume = |points: &CellPoints| points.iter().map(|[_, volume]| volume).sum::<f64>();
     let mut told: Vec<f64> = held.iter().flat_map(|points| [points.len() as f64, volume(points)]).collect();
     halo.reduce(&mut told);
     let mut front = 0.0_f64;
@@ -71,7 +71,7 @@ fn lowest_row<const D: usize>(grid: &Grid<D>, points: &Points<D>, halo: &dyn Hal
 }
 
 /// The points of some cells, on every rank in the order of their places.
-fn of_all_ranks(held: &[Held], told: &[f64], cells: &[Option<usize>], halo: &dyn Halo) -> Held {
+fn of_all_ranks(held: &[CellPoints], told: &[f64], cells: &[Option<usize>], halo: &dyn Halo) -> CellPoints {
     let mut numbers = Vec::new();
     for &cell in cells.iter().flatten() {
         let from = numbers.len();
@@ -79,13 +79,13 @@ fn of_all_ranks(held: &[Held], told: &[f64], cells: &[Option<usize>], halo: &dyn
         numbers[from..].iter_mut().zip(held[cell].as_flattened()).for_each(|(slot, number)| *slot = *number);
     }
     halo.reduce(&mut numbers);
-    let mut all: Held = numbers.chunks_exact(2).map(|point| [point[0], point[1]]).collect();
+    let mut all: CellPoints = numbers.chunks_exact(2).map(|point| [point[0], point[1]]).collect();
     all.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
     all
 }
 
 /// The farthest of the points, in order, such that those from it back by `length` have the volume that is wanted.
-fn end_of_full(points: &Held, length: f64, wanted: f64) -> Option<f64> {
+fn end_of_full(points: &CellPoints, length: f64, wanted: f64) -> Option<f64> {
     let fills = |&end: &usize| {
         let x = points[end][0];
         let window = points[..=end].iter().filter(|[at, _]| *at > x - length);

@@ -8,8 +8,8 @@ use crate::exact::Exact;
 use crate::grid::shape::Patch;
 use crate::grid::{Contributions, Grid, Shape, transfer};
 use crate::model::Weighting;
+use crate::parallel::{Halo, agreed};
 use crate::points::Points;
-use crate::seam::{Halo, agreed};
 use crate::tensor::Vector;
 use nalgebra::{Matrix4, Vector4};
 

@@ -8,8 +8,8 @@ use super::noise::pressure;
 use crate::error::StepError;
 use crate::grid::{Shape, transfer};
 use crate::model::Model;
+use crate::parallel::{Halo, agreed};
 use crate::points::Points;
-use crate::seam::{Halo, agreed};
 
 /// Projected pressure of every point, Pa, positive in compression: sum_h A_hp sum_r A_hr V_r p_r / sum_r A_hr V_r, A the splines
 /// of degree q - 1 and V the points' present volumes; of every group of materials by itself that averages do not mix. The

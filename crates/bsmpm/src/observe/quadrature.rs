@@ -4,8 +4,8 @@ use crate::exact::Exact;
 use crate::grid::occupied::Occupied;
 use crate::kinematics::Kinematics;
 use crate::model::Model;
+use crate::parallel::Halo;
 use crate::points::Points;
-use crate::seam::Halo;
 
 /// `sum_p V_p / V_cell - 1` over the interior cells.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

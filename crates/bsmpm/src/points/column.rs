@@ -1,6 +1,6 @@
 //! The columns of the points as sorting, migration and checkpoints see them: rows of bytes, whatever they hold.
 
-use super::held::{Components, Held};
+use super::packed::{Components, Packed};
 use crate::tensor::Symmetric;
 use nalgebra::SMatrix;
 
@@ -129,7 +129,7 @@ impl<T: Row> Column for Vec<T> {
     }
 }
 
-impl<const D: usize, T: Row + Components> Column for Held<D, T> {
+impl<const D: usize, T: Row + Components> Column for Packed<D, T> {
     fn number(&self) -> Number {
         T::NUMBER
     }

@@ -4,7 +4,7 @@
 //! is: the printed update K+ = K - f s^T / s.s holds for full steps, in general it is
 //! K+ = K + ((1-a) f_old - f_new) s^T / s.s.
 
-use crate::seam::{Halo, dots};
+use crate::parallel::{Halo, dots};
 
 /// Denominator 1 - a g below which the update is nearly singular and the history is dropped.
 const SINGULAR: f64 = 0.1;

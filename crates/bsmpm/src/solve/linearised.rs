@@ -8,7 +8,7 @@ use crate::error::SolveError;
 use crate::grid::transfer;
 use crate::kinematics::{Gradient, Kinematics, Moduli, Slope};
 use crate::material::Tangent;
-use crate::seam::{LinearSolver, Symmetry};
+use crate::parallel::{LinearSolver, Symmetry};
 use crate::step::adjoint::{Adjoint, Pressures, transposed, works};
 use crate::step::blocks::{MOST, Pairs, add_mass, add_point, complete};
 use crate::step::coupling::{Coupling, Dilations, Raised, Share};

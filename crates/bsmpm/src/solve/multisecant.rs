@@ -5,7 +5,7 @@
 //! dw_i . df_j, which need no product with K_0. On a linear problem that is as good as GMRES, where Broyden's update
 //! may take twice the iterations.
 
-use crate::seam::Halo;
+use crate::parallel::Halo;
 use crate::solve::unknowns::Unknowns;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 

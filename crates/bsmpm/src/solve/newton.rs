@@ -4,7 +4,7 @@
 use crate::error::{SolveError, StepError};
 use crate::kinematics::Kinematics;
 use crate::method::Method;
-use crate::seam::{LinearSolver, dots};
+use crate::parallel::{LinearSolver, dots};
 use crate::solve::convergence::{Convergence, first_energy, inverted};
 use crate::solve::evaluate;
 use crate::solve::found::Found;

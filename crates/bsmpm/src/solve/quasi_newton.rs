@@ -3,7 +3,7 @@
 use crate::error::{SolveError, StepError};
 use crate::kinematics::Kinematics;
 use crate::method::{Method, QuasiNewton};
-use crate::seam::{Halo, LinearSolver, Solved, dots};
+use crate::parallel::{Halo, LinearSolver, Solved, dots};
 use crate::solve::broyden::Broyden;
 use crate::solve::convergence::{Convergence, first_energy, inverted};
 use crate::solve::evaluate;

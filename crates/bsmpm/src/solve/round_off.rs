@@ -1,7 +1,7 @@
 //! What out-of-balance force is round-off: below it no iteration can change a state, and no relative measure means anything.
 
 use crate::kinematics::Kinematics;
-use crate::seam::over_layers;
+use crate::parallel::over_layers;
 use crate::step::problem::Problem;
 use crate::step::residual::Balance;
 

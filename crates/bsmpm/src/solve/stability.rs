@@ -5,7 +5,7 @@ use crate::error::StepError;
 use crate::kinematics::Kinematics;
 use crate::material::Material;
 use crate::model::Model;
-use crate::seam::dots;
+use crate::parallel::dots;
 use crate::solve::convergence::Convergence;
 use crate::stabilisation::Stabilisation;
 use crate::step::problem::Problem;

@@ -1,7 +1,7 @@
 //! Vectors of the unknowns alone: what an iteration keeps of many steps follows the occupied cells, not the grid.
 
 use crate::exact::Exact;
-use crate::seam::Halo;
+use crate::parallel::Halo;
 use std::ops::Range;
 
 /// Terms that are summed side by side: sums one after the other would wait for each other.

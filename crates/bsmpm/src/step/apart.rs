@@ -5,8 +5,8 @@
 
 use crate::exact::Exact;
 use crate::grid::Shape;
+use crate::parallel::Halo;
 use crate::points::Points;
-use crate::seam::Halo;
 
 /// Which nodes are a material's own, in a scene of several.
 #[derive(Clone, Debug)]
@@ -44,7 +44,7 @@ impl Apart {
     }
 
     /// For each material, sums over the components of this rank's own nodes that are the material's alone, `width` a node;
-    /// all of one material behind each other. Formed like [`over_layers`](crate::seam::over_layers).
+    /// all of one material behind each other. Formed like [`over_layers`](crate::parallel::over_layers).
     pub fn sums<const N: usize>(&self, halo: &dyn Halo, width: usize, terms: impl Fn(usize) -> [f64; N]) -> Vec<Exact> {
         let (owned, layer) = (halo.owned(), halo.layer_nodes().max(1));
         let mut sums = vec![Exact::ZERO; self.materials * N];

@@ -5,7 +5,7 @@ use crate::error::SolveError;
 use crate::grid::Shape;
 use crate::grid::shape::Patch;
 use crate::kinematics::{Gradient, Kinematics, Moduli, Slope};
-use crate::seam::{LinearSolver, Symmetry};
+use crate::parallel::{LinearSolver, Symmetry};
 use crate::step::mass::{MassMatrix, SHARE};
 use crate::step::nodes::Nodes;
 use crate::step::problem::Problem;

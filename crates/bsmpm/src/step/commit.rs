@@ -12,8 +12,8 @@ use crate::grid::{Shape, transfer};
 use crate::kinematics::Kinematics;
 use crate::material::{Response, Separation};
 use crate::model::Model;
+use crate::parallel::{Halo, agreed};
 use crate::points::Points;
-use crate::seam::{Halo, agreed};
 use crate::solve::found::Found;
 use crate::stabilisation::Stabilisation;
 use crate::step::inertia::Inertia;
@@ -109,8 +109,8 @@ pub fn commit<K: Kinematics<D>, const D: usize>(
             1.0
         }
         Stabilisation::ConsistentFBar | Stabilisation::SubgridFBar => {
-            let flow_of = |(p, response)| smooth::Flow::of(response, points.gap_of(p));
-            let flow: Vec<smooth::Flow> = responses.iter().enumerate().map(flow_of).collect();
+            let flow_of = |(p, response)| smooth::PlasticFlow::of(response, points.gap_of(p));
+            let flow: Vec<smooth::PlasticFlow> = responses.iter().enumerate().map(flow_of).collect();
             smooth::filter_dilation(model, (shape, nodes), points, &flow, halo)
         }
         Stabilisation::None | Stabilisation::FBar | Stabilisation::FBarZhao => 0.0,

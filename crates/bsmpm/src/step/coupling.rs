@@ -4,7 +4,7 @@
 
 use crate::grid::{Contributions, Grid, Shape};
 use crate::model::Model;
-use crate::seam::{Halo, LinearSolver};
+use crate::parallel::{Halo, LinearSolver};
 use crate::step::nodes::Nodes;
 use crate::tensor::Vector;
 

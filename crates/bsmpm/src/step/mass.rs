@@ -7,7 +7,7 @@
 //! them, but is singular where a node sees too little: see [`SHARE`].
 
 use crate::grid::{Shape, transfer};
-use crate::seam::{Halo, dots};
+use crate::parallel::{Halo, dots};
 
 /// How the mass of the points becomes that of the nodes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

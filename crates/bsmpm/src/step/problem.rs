@@ -1,10 +1,10 @@
 //! What is fixed while a step is iterated, steps (3) to (9).
 
-use crate::boundary::strip::Grips;
+use crate::boundary::strip::StripAttachments;
 use crate::grid::Shape;
 use crate::model::Model;
+use crate::parallel::Halo;
 use crate::points::Points;
-use crate::seam::Halo;
 use crate::step::mass::Mass;
 use crate::step::nodes::Nodes;
 
@@ -17,7 +17,7 @@ pub struct Problem<'a, K, const D: usize> {
     /// step (2)
     pub nodes: &'a Nodes<D>,
     /// strips, attached to the nodes
-    pub grips: &'a Grips<D>,
+    pub grips: &'a StripAttachments<D>,
     /// state at t
     pub points: &'a Points<D>,
     /// the other ranks

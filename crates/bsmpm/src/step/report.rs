@@ -24,7 +24,7 @@ pub struct Counts {
 
 /// What an accepted step did.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Report {
+pub struct StepReport {
     /// iterations from the guess that led to convergence
     pub iterations: usize,
     /// Newton iterations among them; 0 where the quasi-Newton method got there
@@ -62,7 +62,7 @@ pub struct Report {
     pub smoothed: f64,
 }
 
-impl Report {
+impl StepReport {
     /// Of a displacement that was found, before the points have taken it; one reduction for the supports' forces, and one for
     /// the background's work.
     pub fn of<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>, found: &Found<K, D>) -> Self {

@@ -3,7 +3,7 @@
 use crate::exact::Exact;
 use crate::grid::{Contributions, transfer};
 use crate::kinematics::{Gradient, Kinematics};
-use crate::seam::over_layers;
+use crate::parallel::over_layers;
 use crate::step::adjoint::Pressures;
 use crate::step::problem::Problem;
 use crate::step::trial::Trial;

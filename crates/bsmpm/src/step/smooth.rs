@@ -10,8 +10,8 @@ use crate::exact::Exact;
 use crate::grid::{Shape, transfer};
 use crate::material::Response;
 use crate::model::Model;
-use crate::points::{Held, Points};
-use crate::seam::Halo;
+use crate::parallel::Halo;
+use crate::points::{Packed, Points};
 use crate::step::nodes::Nodes;
 use crate::tensor::Symmetric;
 
@@ -31,7 +31,7 @@ pub fn average_b_e<K, const D: usize>(
 ) {
     let b_e = &points.b_e;
     let averaged = nodes.average(model, (shape, points), halo, |p| b_e.at(p).0, |_, b_e| Symmetric(b_e));
-    let averaged: Held<D, Symmetric> = averaged.into_iter().collect();
+    let averaged: Packed<D, Symmetric> = averaged.into_iter().collect();
     if let Some(dilation) = &mut points.dilation {
         for ((dilation, after), before) in dilation.iter_mut().zip(averaged.iter()).zip(points.b_e.iter()) {
             *dilation *= (after.full().determinant() / before.full().determinant()).sqrt();
@@ -42,14 +42,14 @@ pub fn average_b_e<K, const D: usize>(
 
 /// What the filter of consistent F-bar needs of a point's return.
 #[derive(Clone, Copy, Debug)]
-pub struct Flow {
+pub struct PlasticFlow {
     /// -  sqrt(2/3) |eps_trial - eps^e|, the plastic strain of the step with its dilation
     plastic: f64,
     /// -  eps_v = tr eps^e = 1/2 ln det b^e
     dilation: f64,
 }
 
-impl Flow {
+impl PlasticFlow {
     /// Of one response; `gap` is what gaped before the step, which is in its trial but did not flow in it.
     pub fn of(response: &Response, gap: f64) -> Self {
         let (trial, elastic) = (response.principal_eps_trial(), response.principal_eps_e());
@@ -74,7 +74,7 @@ pub fn filter_dilation<K, const D: usize>(
     model: &Model<K, D>,
     (shape, nodes): (&Shape<D>, &Nodes<D>),
     points: &mut Points<D>,
-    flow: &[Flow],
+    flow: &[PlasticFlow],
     halo: &dyn Halo,
 ) -> f64 {
     let mut flowing = [flow.iter().map(|flow| flow.plastic).fold(0.0, f64::max)];

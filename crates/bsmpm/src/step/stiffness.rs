@@ -6,13 +6,13 @@
 //! stands for everything that K_0 leaves out.
 
 use crate::error::SolveError;
-use crate::grid::shape::{Column, Patch};
+use crate::grid::shape::{Patch, PatchColumn};
 use crate::grid::{Shape, transfer};
 use crate::kinematics::{Gradient, Kinematics, Moduli, Moment, Slope};
 use crate::material::Stiffness;
 use crate::model::Model;
+use crate::parallel::{LinearSolver, Symmetry};
 use crate::points::Points;
-use crate::seam::{LinearSolver, Symmetry};
 use crate::step::blocks::{MOST, Pairs, add_mass, add_point, complete};
 use crate::step::coupling::{Coupling, Dilations, Raised, Share};
 use crate::step::nodes::Nodes;
@@ -36,9 +36,9 @@ pub fn assemble<K: Kinematics<D>, const D: usize>(
     // Threads work on a column each; what they found is added in the order of the patches.
     let threads = rayon::current_num_threads();
     for columns in shape.columns().chunks(threads) {
-        let state = State { model, shape, nodes, points, volume, at, coupling: coupling.as_ref() };
-        let of_column = |column: &Column| column.patches.clone().map(|patch| state.part(patch)).collect();
-        let parts: Vec<Vec<Part>> = columns.par_iter().map(of_column).collect();
+        let state = Assembly { model, shape, nodes, points, volume, at, coupling: coupling.as_ref() };
+        let of_column = |column: &PatchColumn| column.patches.clone().map(|patch| state.part(patch)).collect();
+        let parts: Vec<Vec<PatchPart>> = columns.par_iter().map(of_column).collect();
         let patches = columns.iter().flat_map(|column| column.patches.clone());
         for (patch, part) in patches.zip(parts.into_iter().flatten()) {
             solver.add(shape.patches()[patch].first_node, &part.block);
@@ -54,7 +54,7 @@ pub fn assemble<K: Kinematics<D>, const D: usize>(
 }
 
 /// What one patch contributes.
-struct Part {
+struct PatchPart {
     /// N/m  row-major square, D unknowns a node
     block: Vec<f64>,
     /// dilations of its points, where their average couples it with others
@@ -62,7 +62,7 @@ struct Part {
 }
 
 /// What the parts are made of.
-struct State<'a, K: Kinematics<D>, const D: usize> {
+struct Assembly<'a, K: Kinematics<D>, const D: usize> {
     model: &'a Model<K, D>,
     shape: &'a Shape<D>,
     nodes: &'a Nodes<D>,
@@ -72,12 +72,12 @@ struct State<'a, K: Kinematics<D>, const D: usize> {
     coupling: Option<&'a Coupling<'a, D>>,
 }
 
-impl<K: Kinematics<D>, const D: usize> State<'_, K, D> {
-    fn part(&self, number: usize) -> Part {
+impl<K: Kinematics<D>, const D: usize> Assembly<'_, K, D> {
+    fn part(&self, number: usize) -> PatchPart {
         let Self { model, shape, points, coupling, .. } = *self;
         let patch = &shape.patches()[number];
         let size = shape.offsets().len();
-        let mut part = Part { block: vec![0.0; (size * D).pow(2)], dilations: coupling.map(Coupling::of_patch) };
+        let mut part = PatchPart { block: vec![0.0; (size * D).pow(2)], dilations: coupling.map(Coupling::of_patch) };
         let mut moments = vec![K::Gradient::NO_MOMENT; size * size];
         let mut slopes = [K::Gradient::NO_SLOPE; MOST];
         // All of them first: responses of neighbours do not wait for each other.
@@ -117,7 +117,7 @@ impl<K: Kinematics<D>, const D: usize> State<'_, K, D> {
         (p, slopes): (usize, &mut [Slope<K, D>]),
         (stiffness, bulk): (Option<&Stiffness>, f64),
         moments: &mut [Moment<K, D>],
-        part: &mut Part,
+        part: &mut PatchPart,
     ) {
         let Self { model, shape, nodes, points, coupling, .. } = *self;
         transfer::slopes_of::<K, D>((shape, &points.x), p, slopes);

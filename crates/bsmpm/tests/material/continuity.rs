@@ -2,16 +2,16 @@
 
 use super::{REGIONS, largest, mohr_coulomb, respond, stretched};
 use crate::random::Random;
-use bsmpm::material::{Material, Region};
+use bsmpm::material::{Branch, Material};
 
-fn at(material: &Material, from: [f64; 3], to: [f64; 3], s: f64) -> (Region, [f64; 3]) {
+fn at(material: &Material, from: [f64; 3], to: [f64; 3], s: f64) -> (Branch, [f64; 3]) {
     let eps = [0, 1, 2].map(|i| from[i] + s * (to[i] - from[i]));
     let found = respond(material, &stretched(eps));
     (found.region(), found.principal_tau())
 }
 
 /// The regions on both sides of a boundary on the segment, and the jump of stress across it.
-fn jump(material: &Material, from: [f64; 3], to: [f64; 3]) -> Option<(Region, Region, f64)> {
+fn jump(material: &Material, from: [f64; 3], to: [f64; 3]) -> Option<(Branch, Branch, f64)> {
     let (mut low, mut high) = (0.0, 1.0);
     let start = at(material, from, to, low).0;
     if at(material, from, to, high).0 == start {
@@ -37,7 +37,7 @@ fn stress_is_continuous_where_regions_meet() {
         let material = mohr_coulomb(1e3, poisson, friction, dilation, random.pick(&[0.0, 1.0]));
         let (from, to) = (random.strains(-3.0, -1.5), random.strains(-3.0, -1.5));
         if let Some((a, b, jump)) = jump(&material, from, to) {
-            let index = |r: Region| REGIONS.iter().position(|x| *x == r).unwrap();
+            let index = |r: Branch| REGIONS.iter().position(|x| *x == r).unwrap();
             met[index(a)][index(b)] += 1;
             worst = worst.max(jump / 1e3);
         }

@@ -2,7 +2,7 @@
 
 use super::{largest, mohr_coulomb, respond, stretched, turned};
 use crate::random::Random;
-use bsmpm::material::{DruckerPrager, Elastic, Law, Match, Material, Region, split};
+use bsmpm::material::{Branch, DruckerPrager, Elastic, Law, Match, Material, split};
 use bsmpm::tensor::{Symmetric, Tensor};
 
 const FITS: [Match; 3] = [Match::Outer, Match::Inner, Match::PlaneStrain];
@@ -33,20 +33,20 @@ fn returns_lie_on_the_cone_or_its_tip_and_flow_along_the_potential() {
         let (root, p) = invariants(found.principal_tau());
         let size = strength.max(eta * p.abs()).max(root);
         match found.region() {
-            Region::Elastic => assert!(root + eta * p <= strength + 1e-13 * size),
-            Region::Face => {
+            Branch::Elastic => assert!(root + eta * p <= strength + 1e-13 * size),
+            Branch::Face => {
                 cones += 1;
                 assert!((root + eta * p - strength).abs() <= 1e-11 * size, "{root} {p}");
             }
             region => {
                 tips += 1;
-                assert!(region == Region::Apex && root <= 1e-15 * size, "{root}");
+                assert!(region == Branch::Apex && root <= 1e-15 * size, "{root}");
                 assert!((eta * p - strength).abs() <= 1e-12 * size);
             }
         }
         let again = respond(&material, &found.b_e()).principal_tau();
         assert!((0..3).all(|k| (again[k] - found.principal_tau()[k]).abs() <= 1e-9 * size.max(1.0)));
-        if found.region() == Region::Face {
+        if found.region() == Branch::Face {
             // Volume over shear of the flow is that of the potential: tr εᵖ = η_ψ Δγ, |dev εᵖ| = Δγ/√2.
             let (trial, elastic) = (found.principal_eps_trial(), found.principal_eps_e());
             let (mean, _, norm) = split(std::array::from_fn(|k| trial[k] - elastic[k]));
@@ -127,8 +127,8 @@ fn tangent_is_the_derivative_on_cone_and_tip() {
         let difference = (a - d + (c - b) * 8.0) / 12e-6;
         let size = found.linearise(&l).amax().max(1e3);
         worst = worst.max((difference - found.linearise(&l)).amax() / size);
-        seen[0] += usize::from(found.region() == Region::Face);
-        seen[1] += usize::from(found.region() == Region::Apex);
+        seen[0] += usize::from(found.region() == Branch::Face);
+        seen[1] += usize::from(found.region() == Branch::Apex);
     }
     println!("{seen:?} on cone and tip, error {worst:.1e}");
     assert!(seen[0] > 5_000 && seen[1] > 500 && worst < 1e-6, "{seen:?} {worst}");

@@ -1,7 +1,7 @@
 //! Volume that opens at the apex: sand comes apart, and resists again where it came apart.
 
 use super::{mohr_coulomb, respond};
-use bsmpm::material::{Material, Region, Response};
+use bsmpm::material::{Branch, Material, Response};
 use bsmpm::tensor::Symmetric;
 
 /// A step of a point: its elastic state and gap, driven by the stretches of the axes.
@@ -26,7 +26,7 @@ fn sand_resists_again_at_the_volume_at_which_it_came_apart() {
         volume += change;
         state = (found.b_e(), found.gap());
         let closed = volume <= 1e-12;
-        assert!(closed || (found.region() == Region::Apex && found.principal_tau() == [0.0; 3]), "step {step}");
+        assert!(closed || (found.region() == Branch::Apex && found.principal_tau() == [0.0; 3]), "step {step}");
         assert!((state.1 - volume.max(0.0)).abs() <= 1e-13, "step {step}: {} for {volume}", state.1);
     }
     assert!(state.1 <= 1e-13 && volume.abs() <= 1e-13);
@@ -59,8 +59,8 @@ fn dilation_is_no_gap() {
     state.0 = driven(&material, state, [0.99, 0.99, 0.99]).b_e();
     for _ in 0..10 {
         let found = driven(&material, state, [1.002, 0.998, 1.0]);
-        assert!(found.region() != Region::Elastic || found.plastic_increment() == 0.0);
-        assert!(found.region() != Region::Apex && found.gap() == 0.0);
+        assert!(found.region() != Branch::Elastic || found.plastic_increment() == 0.0);
+        assert!(found.region() != Branch::Apex && found.gap() == 0.0);
         state = (found.b_e(), found.gap());
     }
 }

@@ -14,11 +14,11 @@ mod tangent;
 mod von_mises;
 mod yield_surface;
 
-use bsmpm::material::{Elastic, Hencky, Material, MohrCoulomb, Region, Response};
+use bsmpm::material::{Branch, Elastic, Hencky, Material, MohrCoulomb, Response};
 use bsmpm::tensor::{Symmetric, Tensor};
 
 /// Every region of a response.
-const REGIONS: [Region; 5] = [Region::Elastic, Region::Face, Region::LeftEdge, Region::RightEdge, Region::Apex];
+const REGIONS: [Branch; 5] = [Branch::Elastic, Branch::Face, Branch::LeftEdge, Branch::RightEdge, Branch::Apex];
 
 fn hencky(young: f64, poisson: f64) -> Material {
     Material::Hencky(Hencky { elastic: Elastic { young, poisson } })

@@ -1,6 +1,6 @@
 //! Associated returns against a brute-force projection: closest point in the energy norm (reliability N03).
 
-use super::{Region, largest, mohr_coulomb, respond, stretched};
+use super::{Branch, largest, mohr_coulomb, respond, stretched};
 use crate::random::Random;
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
@@ -43,13 +43,13 @@ fn closest(trial: Vector3<f64>, stiffness: Matrix3<f64>, sin: f64, strength: f64
     best.1
 }
 
-fn region(tau: &[f64; 3], size: f64) -> Region {
+fn region(tau: &[f64; 3], size: f64) -> Branch {
     let ties = (tau[0] - tau[1] <= 1e-8 * size, tau[1] - tau[2] <= 1e-8 * size);
     match ties {
-        (true, true) => Region::Apex,
-        (true, false) => Region::LeftEdge,
-        (false, true) => Region::RightEdge,
-        (false, false) => Region::Face,
+        (true, true) => Branch::Apex,
+        (true, false) => Branch::LeftEdge,
+        (false, true) => Branch::RightEdge,
+        (false, false) => Branch::Face,
     }
 }
 
@@ -62,7 +62,7 @@ fn associated_return_is_the_closest_point() {
         let poisson = random.pick(&[0.0, 0.3, 0.45]);
         let material = mohr_coulomb(1e3, poisson, friction, friction, 1.0);
         let found = respond(&material, &stretched(random.strains(-3.0, -1.0)));
-        if found.region() == Region::Elastic {
+        if found.region() == Branch::Elastic {
             continue;
         }
         tried += 1;

@@ -1,10 +1,10 @@
 //! Reference values of method.md section 2, and limits between materials.
 
-use super::{Material, Region, difference, hencky, largest, mohr_coulomb, respond, stretched};
+use super::{Branch, Material, difference, hencky, largest, mohr_coulomb, respond, stretched};
 use crate::random::Random;
 
 /// φ, ψ (degrees) and c; principal strain; region; principal stress.
-type Row = ([f64; 3], [f64; 3], Region, [f64; 3]);
+type Row = ([f64; 3], [f64; 3], Branch, [f64; 3]);
 
 #[test]
 fn method_section_2_table() {
@@ -12,23 +12,23 @@ fn method_section_2_table() {
         (
             [20.0, 0.0, 1.0],
             [0.002, -0.001, -0.01],
-            Region::Face,
+            Branch::Face,
             [-4.501294655559524, -5.961538461538462, -12.037166882902014],
         ),
         (
             [20.0, 10.0, 1.0],
             [0.002, 0.0015, -0.01],
-            Region::LeftEdge,
+            Branch::LeftEdge,
             [-3.764196803964208, -3.764196803964208, -10.533777144737742],
         ),
         (
             [20.0, 0.0, 1.0],
             [0.01, -0.01, -0.011],
-            Region::RightEdge,
+            Branch::RightEdge,
             [-4.28952398866601, -11.605238005666994, -11.605238005666994],
         ),
-        ([0.0, 0.0, 1.0], [0.005, 0.0, -0.005], Region::Face, [1.0, 0.0, -1.0]),
-        ([30.0, 0.0, 1.0], [0.01; 3], Region::Apex, [1.7320508075688776; 3]),
+        ([0.0, 0.0, 1.0], [0.005, 0.0, -0.005], Branch::Face, [1.0, 0.0, -1.0]),
+        ([30.0, 0.0, 1.0], [0.01; 3], Branch::Apex, [1.7320508075688776; 3]),
     ];
     for ([friction, dilation, cohesion], eps, region, tau) in rows {
         let found = respond(&mohr_coulomb(1000.0, 0.3, friction, dilation, cohesion), &stretched(eps));
@@ -71,7 +71,7 @@ fn elastic_state_is_the_trial_bit_for_bit() {
     for _ in 0..10_000 {
         let b = random.trial(-8.0, -1.0);
         let (a, c) = (respond(&strong, &b), respond(&hencky(1e3, 0.3), &b));
-        assert_eq!((a.region(), a.b_e(), a.tau()), (Region::Elastic, b, c.tau()));
+        assert_eq!((a.region(), a.b_e(), a.tau()), (Branch::Elastic, b, c.tau()));
         assert_eq!((c.b_e(), a.plastic_increment()), (b, 0.0));
     }
 }

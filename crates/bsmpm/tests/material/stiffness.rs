@@ -1,6 +1,6 @@
 //! The stiffness that stands for the tangent in the factorised matrix: symmetric, positive, and the tangent where that is so.
 
-use super::{REGIONS, Region, hencky, mohr_coulomb, respond};
+use super::{Branch, REGIONS, hencky, mohr_coulomb, respond};
 use crate::random::Random;
 use bsmpm::material::{Response, Stiffness};
 use bsmpm::tensor::Tensor;
@@ -43,7 +43,7 @@ fn it_is_symmetric_and_positive_in_every_region() {
         let found = respond(&mohr_coulomb(1e3, poisson, friction, dilation, 1.0), &random.trial(-2.5, -0.7));
         seen[REGIONS.iter().position(|region| *region == found.region()).unwrap()] += 1;
         let Some(stiffness) = found.yielding() else {
-            assert_eq!(found.region(), Region::Elastic);
+            assert_eq!(found.region(), Branch::Elastic);
             continue;
         };
         let matrix = matrix(&stiffness);

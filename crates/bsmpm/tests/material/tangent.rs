@@ -1,12 +1,12 @@
 //! The spatial tangent against fourth-order central differences of τ((I + h l) b (I + h l)ᵀ), in every region.
 
-use super::{REGIONS, Region, hencky, mohr_coulomb, respond, stretched, turned};
+use super::{Branch, REGIONS, hencky, mohr_coulomb, respond, stretched, turned};
 use crate::random::Random;
 use bsmpm::material::{Material, Response};
 use bsmpm::tensor::{Symmetric, Tensor};
 
 /// Relative error of the tangent along l, or none if the difference leaves the region.
-fn error(material: &Material, b: &Symmetric, l: &Tensor, h: f64) -> Option<(Region, f64)> {
+fn error(material: &Material, b: &Symmetric, l: &Tensor, h: f64) -> Option<(Branch, f64)> {
     let found = respond(material, b);
     let mut difference = Tensor::zeros();
     for (weight, steps) in [(-1.0, 2.0), (8.0, 1.0), (-8.0, -1.0), (1.0, -2.0)] {

@@ -2,7 +2,7 @@
 
 use super::{largest, respond, stretched, turned};
 use crate::random::Random;
-use bsmpm::material::{Elastic, Law, Material, Region, Response, VonMises, split};
+use bsmpm::material::{Branch, Elastic, Law, Material, Response, VonMises, split};
 use bsmpm::tensor::{Symmetric, Tensor};
 
 const STRENGTH: f64 = 3.0; // Pa
@@ -30,7 +30,7 @@ fn returns_lie_on_the_surface_that_has_grown_and_flow_along_its_normal() {
         let (response, after) = answer(&material, &random.trial(-4.0, -0.7), before);
         let (_, deviator, norm) = split(response.principal_tau());
         let (q, strength) = (1.5_f64.sqrt() * norm, STRENGTH + hardening * after);
-        if response.region() == Region::Elastic {
+        if response.region() == Branch::Elastic {
             assert!(q <= strength * (1.0 + 1e-14) && after == before);
             continue;
         }
@@ -75,7 +75,7 @@ fn tangent_is_the_derivative() {
         let [a, b, c, d] = around.map(|moved| moved.tau().full());
         let difference = (a - d + (c - b) * 8.0) / 12e-6;
         worst = worst.max((difference - found.linearise(&l)).amax() / 1e3);
-        seen += usize::from(found.region() == Region::Face);
+        seen += usize::from(found.region() == Branch::Face);
     }
     println!("{seen} yielding, error {worst:.1e} of Young's modulus");
     assert!(seen > 10_000 && worst < 1e-7, "{seen}, {worst}");

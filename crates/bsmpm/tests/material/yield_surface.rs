@@ -1,6 +1,6 @@
 //! Properties of the return: yield, order, idempotence, flow rule (reliability N02, N03).
 
-use super::{Region, difference, largest, mohr_coulomb, respond};
+use super::{Branch, difference, largest, mohr_coulomb, respond};
 use crate::random::Random;
 use bsmpm::material::{Law, Material, Response};
 
@@ -68,11 +68,11 @@ fn plastic_strain_obeys_the_flow_rule() {
         let [x, y, z] = [x - eps_e[0], y - eps_e[1], z - eps_e[2]];
         let size = largest(&response.principal_eps_trial());
         let (negative, off) = match response.region() {
-            Region::Elastic => (0.0, largest(&[x, y, z])),
-            Region::Face => (-x, largest(&[y, minus * x + plus * z])),
-            Region::RightEdge => (y.max(z), (minus * x + plus * (y + z)).abs()),
-            Region::LeftEdge => ((-x).max(-y), (minus * (x + y) + plus * z).abs()),
-            Region::Apex => (0.0, 0.0),
+            Branch::Elastic => (0.0, largest(&[x, y, z])),
+            Branch::Face => (-x, largest(&[y, minus * x + plus * z])),
+            Branch::RightEdge => (y.max(z), (minus * x + plus * (y + z)).abs()),
+            Branch::LeftEdge => ((-x).max(-y), (minus * (x + y) + plus * z).abs()),
+            Branch::Apex => (0.0, 0.0),
         };
         negative.max(off) / size
     });

@@ -3,7 +3,7 @@
 use crate::support::random::Random;
 use crate::support::solver::Skyline;
 use bsmpm::method::QuasiNewton;
-use bsmpm::seam::{Alone, LinearSolver, Symmetry};
+use bsmpm::parallel::{Alone, LinearSolver, Symmetry};
 use bsmpm::solve::quasi_newton::Secants;
 use nalgebra::{DMatrix, DVector};
 

@@ -2,7 +2,7 @@
 
 use crate::support::random::Random;
 use crate::support::scene::{METHODS, Scene, axis, hencky};
-use bsmpm::boundary::strip::Grips;
+use bsmpm::boundary::strip::StripAttachments;
 use bsmpm::grid::{Grid, KnotVector, Shape, transfer};
 use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
 use bsmpm::material::{Elastic, Material, MohrCoulomb};
@@ -41,7 +41,7 @@ fn rate_error<K: Kinematics<D>, const D: usize>(order: usize, method: Stabilisat
     let (model, points, halo) = (&scene.model, &scene.points, scene.halo());
     let shape = Shape::at(&model.grid, points).unwrap();
     let nodes = Nodes::map(model, &shape, points, (0.0, 1.0), &halo).expect("no loads");
-    let grips = Grips::at(&[], &points.surface, (&model.grid, &nodes.free), (0.0, 1.0));
+    let grips = StripAttachments::at(&[], &points.surface, (&model.grid, &nodes.free), (0.0, 1.0));
     let pieces = Problem { model, shape: &shape, nodes: &nodes, grips: &grips, points, halo: &halo };
     let mut random = Random::new(7);
     let u: Vec<f64> = random.array(model.grid.nodes() * D).iter().map(|u| 0.02 * u).collect();
@@ -161,7 +161,7 @@ fn the_filter_smooths_the_elastic_dilation_where_the_material_flows_and_nothing_
     let mut flow = Vec::new();
     for p in 0..scene.points.len() {
         let response = scene.model.respond(&scene.points, p, &scene.points.b_e.at(p)).unwrap();
-        flow.push(smooth::Flow::of(&response, 0.0));
+        flow.push(smooth::PlasticFlow::of(&response, 0.0));
         scene.points.b_e.set(p, response.b_e());
     }
     let before = scene.points.b_e.clone();
@@ -192,7 +192,7 @@ fn without_flow_the_filter_leaves_every_bit() {
     let shape = Shape::at(&scene.model.grid, &scene.points).unwrap();
     let nodes = Nodes::map(&scene.model, &shape, &scene.points, (0.0, 1.0), &halo).expect("no loads");
     let respond = |p: usize| scene.model.respond(&before, p, &before.b_e.at(p)).unwrap();
-    let flow: Vec<_> = (0..before.len()).map(|p| smooth::Flow::of(&respond(p), 0.0)).collect();
+    let flow: Vec<_> = (0..before.len()).map(|p| smooth::PlasticFlow::of(&respond(p), 0.0)).collect();
     let share = smooth::filter_dilation(&scene.model, (&shape, &nodes), &mut scene.points, &flow, &halo);
     assert_eq!((share, scene.points), (0.0, before));
 }

@@ -7,7 +7,7 @@ use bsmpm::background::{Background, Blocks, Extent, Kind};
 use bsmpm::grid::{Contributions, Grid, KnotVector, Shape};
 use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
 use bsmpm::model::Regime;
-use bsmpm::seam::LinearSolver;
+use bsmpm::parallel::LinearSolver;
 
 const YOUNG: f64 = 50.0;
 const COEFFICIENT: f64 = 0.02;

@@ -3,11 +3,11 @@
 use crate::support::random::Random;
 use crate::support::scene::{Scene, axis};
 use bsmpm::background::{Background, Extent, Kind};
-use bsmpm::boundary::strip::Grips;
+use bsmpm::boundary::strip::StripAttachments;
 use bsmpm::boundary::{Path, Strip, Support, surface};
 use bsmpm::grid::Shape;
 use bsmpm::kinematics::{Axisymmetric, Kinematics, PlaneStrain, Solid};
-use bsmpm::material::{Elastic, Material, MohrCoulomb, Region, Separation};
+use bsmpm::material::{Branch, Elastic, Material, MohrCoulomb, Separation};
 use bsmpm::model::Regime;
 use bsmpm::points::Points;
 use bsmpm::quadrature::Quadrature;
@@ -53,7 +53,7 @@ fn product_error<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>) -> (f64,
     let (model, points, halo) = (&scene.model, &scene.points, scene.halo());
     let shape = Shape::at(&model.grid, points).unwrap();
     let nodes = Nodes::map(model, &shape, points, (0.0, 0.01), &halo).expect("no loads");
-    let grips = Grips::at(&model.boundary.strips, &points.surface, (&model.grid, &nodes.free), (0.0, 0.01));
+    let grips = StripAttachments::at(&model.boundary.strips, &points.surface, (&model.grid, &nodes.free), (0.0, 0.01));
     let pieces = Problem { model, shape: &shape, nodes: &nodes, grips: &grips, points, halo: &halo };
     let mut random = Random::new(11);
     let mut free = |size: f64| -> Vec<f64> {
@@ -170,7 +170,7 @@ fn what_gapes_is_in_the_product() {
         let response = |p: usize, b_e: &Symmetric| scene.model.respond(&scene.points, p, b_e).unwrap();
         let opened = |p: usize, gap: f64| response(p, &scene.points.b_e.at(p).scaled((2.0 / 3.0 * gap).exp()));
         let gaps = scene.points.gap.as_ref().unwrap();
-        let open = (0..gaps.len()).filter(|&p| opened(p, gaps[p]).region() == Region::Apex).count();
+        let open = (0..gaps.len()).filter(|&p| opened(p, gaps[p]).region() == Branch::Apex).count();
         assert!(open > 0 && open < gaps.len(), "{open} of {}", gaps.len());
         let (error, _) = product_error(&scene);
         println!("{method:?}: {error:e}");
@@ -195,13 +195,13 @@ fn curvature(cohesion: f64, size: f64) -> ([f64; 2], usize) {
     let (model, points, halo) = (&scene.model, &scene.points, scene.halo());
     let shape = Shape::at(&model.grid, points).unwrap();
     let nodes = Nodes::map(model, &shape, points, (0.0, 0.01), &halo).expect("no loads");
-    let grips = Grips::at(&[], &points.surface, (&model.grid, &nodes.free), (0.0, 0.01));
+    let grips = StripAttachments::at(&[], &points.surface, (&model.grid, &nodes.free), (0.0, 0.01));
     let pieces = Problem { model, shape: &shape, nodes: &nodes, grips: &grips, points, halo: &halo };
     let mut free =
         || -> Vec<f64> { nodes.free.iter().map(|&free| if free { size * random.signed() } else { 0.0 }).collect() };
     let (u, v) = (free(), free());
     let at = |s: f64| Residual::of(&pieces, &u.iter().zip(&v).map(|(u, v)| u + s * v).collect::<Vec<_>>());
-    let regions = |residual: &Residual<PlaneStrain, 2>| -> Vec<Region> {
+    let regions = |residual: &Residual<PlaneStrain, 2>| -> Vec<Branch> {
         (0..points.len()).map(|p| residual.trial.respond(model, points, p).unwrap().region()).collect()
     };
     let start = at(0.0);

@@ -5,7 +5,7 @@ use crate::support::solver::Skyline;
 use bsmpm::exact::Exact;
 use bsmpm::grid::Contributions;
 use bsmpm::method::QuasiNewton;
-use bsmpm::seam::{Alone, Halo, LinearSolver, Symmetry, dots};
+use bsmpm::parallel::{Alone, Halo, LinearSolver, Symmetry, dots};
 use bsmpm::solve::quasi_newton::Secants;
 use bsmpm::solve::unknowns::Unknowns;
 use nalgebra::{DMatrix, DVector};

@@ -14,8 +14,8 @@ use bsmpm::kinematics::PlaneStrain;
 use bsmpm::method::Nonlinear;
 use bsmpm::method::QuasiNewton;
 use bsmpm::model::Regime;
+use bsmpm::parallel::{Alone, Halo};
 use bsmpm::schedule::Schedule;
-use bsmpm::seam::{Alone, Halo};
 use std::cell::Cell;
 use std::ops::Range;
 

@@ -4,7 +4,7 @@ use crate::support::random::Random;
 use crate::support::scene::{Scene, axis};
 use crate::support::solver::Dense;
 use bsmpm::boundary::Support;
-use bsmpm::boundary::strip::Grips;
+use bsmpm::boundary::strip::StripAttachments;
 use bsmpm::grid::Shape;
 use bsmpm::kinematics::{Axisymmetric, Kinematics, PlaneStrain, Solid};
 use bsmpm::material::{Elastic, Material, MohrCoulomb};
@@ -63,7 +63,7 @@ fn products<K: Kinematics<D>, const D: usize>(
     let (model, points, halo) = (&scene.model, &scene.points, scene.halo());
     let shape = Shape::at(&model.grid, points).unwrap();
     let nodes = Nodes::map(model, &shape, points, (0.0, 0.01), &halo).expect("no loads");
-    let grips = Grips::at(&[], &points.surface, (&model.grid, &nodes.free), (0.0, 0.01));
+    let grips = StripAttachments::at(&[], &points.surface, (&model.grid, &nodes.free), (0.0, 0.01));
     let pieces = Problem { model, shape: &shape, nodes: &nodes, grips: &grips, points, halo: &halo };
     let mut random = Random::new(11);
     let mut free = |size: f64| -> Vec<f64> {

@@ -2,7 +2,7 @@
 
 use bsmpm::error::SolveError;
 use bsmpm::grid::Grid;
-use bsmpm::seam::{Krylov, LinearSolver, Solved, Symmetry};
+use bsmpm::parallel::{Krylov, LinearSolver, Solved, Symmetry};
 use nalgebra::{DMatrix, DVector};
 
 /// Direct solver: L D L^T within the profile of the lower triangle. Without square roots its rounding does not depend

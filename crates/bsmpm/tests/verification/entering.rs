@@ -4,7 +4,7 @@ use crate::support::scene::{Scene, axis, by_id, hencky};
 use crate::support::solver::Dense;
 use bsmpm::background::{Background, Extent, Kind};
 use bsmpm::boundary::Support;
-use bsmpm::boundary::strip::Grips;
+use bsmpm::boundary::strip::StripAttachments;
 use bsmpm::grid::Shape;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::Regime;
@@ -90,7 +90,7 @@ fn condition(shift: f64, background: Option<Background>) -> [f64; 2] {
     let (model, points, halo) = (&scene.model, &scene.points, &scene.halo());
     let shape = Shape::at(&model.grid, points).expect("points inside");
     let nodes = Nodes::map(model, &shape, points, (0.0, 1.0), halo).expect("loads on material");
-    let grips = Grips::at(&[], &points.surface, (&model.grid, &nodes.free), (0.0, 1.0));
+    let grips = StripAttachments::at(&[], &points.surface, (&model.grid, &nodes.free), (0.0, 1.0));
     let mut stiffness = Dense::new(&model.grid);
     let scene = Problem { model, shape: &shape, nodes: &nodes, grips: &grips, points, halo };
     stiffness::assemble(&scene, None, &mut stiffness).expect("a matrix");

@@ -3,7 +3,7 @@
 
 use crate::support::scene::{Scene, axis, hencky};
 use crate::support::solver::Skyline;
-use bsmpm::boundary::{Support, strip::Grips};
+use bsmpm::boundary::{Support, strip::StripAttachments};
 use bsmpm::control::{Accepted, Failure, Stepper};
 use bsmpm::error::StepError;
 use bsmpm::grid::Shape;
@@ -60,7 +60,7 @@ fn lowest(before: &Plane, step: &Accepted, u: &[f64]) -> f64 {
     let time = (step.t - step.dt, step.dt);
     let shape = Shape::at(&model.grid, points).expect("points in the grid");
     let nodes = Nodes::map(model, &shape, points, time, &halo).expect("a mapping");
-    let grips = Grips::at(&model.boundary.strips, &points.surface, (&model.grid, &nodes.free), time);
+    let grips = StripAttachments::at(&model.boundary.strips, &points.surface, (&model.grid, &nodes.free), time);
     let scene = Problem { model, shape: &shape, nodes: &nodes, grips: &grips, points, halo: &halo };
     let residual = Residual::of(&scene, u);
     let linearised = Linearised::at(&scene, &residual);

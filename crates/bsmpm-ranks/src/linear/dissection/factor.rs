@@ -80,12 +80,12 @@ pub fn entries(rows: usize, columns: usize) -> usize {
 }
 
 /// A number of a factor.
-trait Number: Copy {
+trait Scalar: Copy {
     fn of(value: f64) -> Self;
     fn double(self) -> f64;
 }
 
-impl Number for f32 {
+impl Scalar for f32 {
     fn of(value: f64) -> Self {
         value as f32
     }
@@ -95,7 +95,7 @@ impl Number for f32 {
     }
 }
 
-impl Number for f64 {
+impl Scalar for f64 {
     fn of(value: f64) -> Self {
         value
     }
@@ -107,7 +107,7 @@ impl Number for f64 {
 
 /// Groups of columns one after another, and of each its rows from the first diagonal entry on; what stands above the
 /// diagonal is copied, too, and not read.
-fn keep<T: Number>(columns: &[f64], rows: usize, numbers: &mut Vec<T>) {
+fn keep<T: Scalar>(columns: &[f64], rows: usize, numbers: &mut Vec<T>) {
     for (group, columns) in columns.chunks(GROUP * rows.max(1)).enumerate() {
         for row in GROUP * group..rows {
             numbers.extend(columns[row..].iter().step_by(rows).map(|&value| T::of(value)));
@@ -127,7 +127,7 @@ macro_rules! with_columns {
     };
 }
 
-fn forward<T: Number>(mut l: &[T], (rows, columns): (usize, usize), x: &mut [f64]) {
+fn forward<T: Scalar>(mut l: &[T], (rows, columns): (usize, usize), x: &mut [f64]) {
     for start in (0..columns).step_by(GROUP) {
         let width = GROUP.min(columns - start);
         let (group, rest) = l.split_at((rows - start) * width);
@@ -136,7 +136,7 @@ fn forward<T: Number>(mut l: &[T], (rows, columns): (usize, usize), x: &mut [f64
     }
 }
 
-fn backward<T: Number>(mut l: &[T], (rows, columns): (usize, usize), x: &mut [f64]) {
+fn backward<T: Scalar>(mut l: &[T], (rows, columns): (usize, usize), x: &mut [f64]) {
     for start in (0..columns).step_by(GROUP).rev() {
         let width = GROUP.min(columns - start);
         let (rest, group) = l.split_at(l.len() - (rows - start) * width);
@@ -145,7 +145,7 @@ fn backward<T: Number>(mut l: &[T], (rows, columns): (usize, usize), x: &mut [f6
     }
 }
 
-fn forward_group<const W: usize, T: Number>(l: &[T], x: &mut [f64]) {
+fn forward_group<const W: usize, T: Scalar>(l: &[T], x: &mut [f64]) {
     let (diagonal, below) = l.as_chunks::<W>().0.split_at(W);
     let (own, others) = x.split_at_mut(W);
     for c in 0..W {
@@ -158,7 +158,7 @@ fn forward_group<const W: usize, T: Number>(l: &[T], x: &mut [f64]) {
     }
 }
 
-fn backward_group<const W: usize, T: Number>(l: &[T], x: &mut [f64]) {
+fn backward_group<const W: usize, T: Scalar>(l: &[T], x: &mut [f64]) {
     let (diagonal, below) = l.as_chunks::<W>().0.split_at(W);
     let (own, others) = x.split_at_mut(W);
     // Two sums a column, so that one row need not wait for the other.

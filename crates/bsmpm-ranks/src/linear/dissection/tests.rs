@@ -4,8 +4,8 @@ mod system;
 
 use super::factor::{self, Factor, Precision};
 use super::front;
-use super::ladder::role;
 use super::plan::{NONE, Part, Plan};
+use super::reduction::role;
 use nalgebra::{DMatrix, DVector};
 use system::{System, noise};
 

@@ -10,7 +10,7 @@
 use super::Shape;
 use crate::grid::paired::Paired;
 use crate::grid::{Contributions, Grid};
-use crate::seam::Halo;
+use crate::parallel::Halo;
 use crate::stabilisation::Grouped;
 
 /// What the functions of every patch are merged to; numbers of the functions on pairs stand beside those of the nodes.

@@ -61,28 +61,28 @@ struct Joint {
 
 /// A rank in the pairing, with its front.
 #[derive(Default)]
-pub struct Ladder {
+pub struct TreeReduction {
     rank: usize,
     joined_by: Option<usize>,
     joint: Option<Joint>,
 }
 
-impl Ladder {
+impl TreeReduction {
     /// The front of the `rank` whose slab leaves the `shared` components of the whole grid, ascending, of which `layer`
     /// make a layer of nodes. Collective.
     pub fn new(link: &dyn Link, (rank, role): (usize, Role), shared: &[usize], layer: usize) -> Self {
-        let mut ladder = Self { rank, joined_by: role.joined_by, joint: None };
+        let mut reduction = Self { rank, joined_by: role.joined_by, joint: None };
         let slab: Vec<f64> = shared.iter().map(|&component| component as f64).collect();
-        let slab = ladder.hand(link, ladder.joined_by, slab);
+        let slab = reduction.hand(link, reduction.joined_by, slab);
         if let Some(join) = role.join {
-            let groups = ladder.hear(link, join.from, slab);
+            let groups = reduction.hear(link, join.from, slab);
             let groups = groups.map(|group| group.into_iter().map(|component| component as usize).collect());
             let (joint, left) = Joint::new(join, &groups, layer);
             let left = left.iter().map(|&component| component as f64).collect();
-            ladder.hand(link, joint.join.joined_by, left);
-            ladder.joint = Some(joint);
+            reduction.hand(link, joint.join.joined_by, left);
+            reduction.joint = Some(joint);
         }
-        ladder
+        reduction
     }
 
     /// Factorises, given what this rank's slab leaves, packed. `false` where a pivot was not positive. Collective.

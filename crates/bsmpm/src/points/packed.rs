@@ -55,12 +55,12 @@ impl Components for Symmetric {
 /// An array of tensors: 5 numbers of 9, and 4 of 6 symmetric ones, if `D` is 2, else all. The sign of a zero that is not
 /// held is lost.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Held<const D: usize, T> {
+pub struct Packed<const D: usize, T> {
     numbers: Vec<f64>, // those that are held, tensor by tensor
     whole: PhantomData<T>,
 }
 
-impl<const D: usize, T: Components> Held<D, T> {
+impl<const D: usize, T: Components> Packed<D, T> {
     /// Places of the numbers that are held.
     const PLACES: &'static [usize] = if D == 2 { T::IN_PLANE } else { T::ALL };
     /// Numbers from one tensor to the next.
@@ -125,7 +125,7 @@ impl<const D: usize, T: Components> Held<D, T> {
     }
 }
 
-impl<const D: usize, T: Components> FromIterator<T> for Held<D, T> {
+impl<const D: usize, T: Components> FromIterator<T> for Packed<D, T> {
     fn from_iter<I: IntoIterator<Item = T>>(tensors: I) -> Self {
         let tensors = tensors.into_iter();
         let numbers = Vec::with_capacity(tensors.size_hint().0 * Self::STRIDE);
