@@ -17,8 +17,8 @@ pub mod parts;
 
 pub use indicator::Indicator;
 pub use parts::{
-    Communication, EnergyBalance, GridExtent, LinearSolver, ManifestCase, ManifestCheck, ManifestChoice,
-    ManifestFailure, ManifestInitial, ManifestOutput, ManifestRestart, Status, Summary, Worst,
+    Communication, EnergyBalance, GridExtent, ManifestCase, ManifestCheck, ManifestChoice, ManifestFailure,
+    ManifestInitial, ManifestOutput, ManifestRestart, SolverNames, Status, Summary, Worst,
 };
 
 /// The manifest's file.
@@ -75,7 +75,7 @@ pub struct Manifest {
     pub communication: BTreeMap<String, Communication>,
     /// What solved the linear systems: `stiffness`, which the secants correct, and `newton`, Newton's general ones.
     #[serde(default)]
-    pub linear: BTreeMap<String, LinearSolver>,
+    pub linear: BTreeMap<String, SolverNames>,
     /// How evenly the work lay on them; none on one rank.
     #[serde(default)]
     pub balance: Option<EnergyBalance>,

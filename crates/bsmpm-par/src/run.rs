@@ -21,7 +21,7 @@ use bsmpm::parallel::Halo;
 use bsmpm::step::StepReport;
 use bsmpm_io::exit;
 use bsmpm_io::frame::Parts;
-use bsmpm_io::manifest::{Communication, LinearSolver, Status};
+use bsmpm_io::manifest::{Communication, SolverNames, Status};
 use bsmpm_ranks::simulation::Simulation;
 use bsmpm_ranks::timers::Timers;
 use bsmpm_scene::{Case, Every};
@@ -80,7 +80,7 @@ pub struct Before {
     /// what the ranks had told each other, by kind; on rank 0
     pub communication: BTreeMap<String, Communication>,
     /// how its linear solves had ended; on rank 0
-    pub linear: BTreeMap<String, LinearSolver>,
+    pub linear: BTreeMap<String, SolverNames>,
     /// s  of processor time; on rank 0
     pub cpu_seconds: f64,
 }

@@ -17,7 +17,7 @@ use crate::timers::Timers;
 use bsmpm::error::SolveError;
 use bsmpm::grid::Grid;
 use bsmpm::parallel::{Halo, Krylov, LinearSolver, Solved, Symmetry};
-use direct::Stiffness;
+use direct::StiffnessOperator;
 use mpi::collective::{CommunicatorCollectives, SystemOperation};
 use petsc_rs::{Matrix, Petsc};
 use shell::ShellSystem;
@@ -165,9 +165,9 @@ impl<'p, const D: usize, const C: usize> KspSolver<'p, D, C> {
     }
 
     /// The shell system, what it is to solve, and where that is counted.
-    fn shell_system(&mut self) -> Option<(&mut ShellSystem<'p>, Stiffness<'_, D, C>, &mut Tally)> {
+    fn shell_system(&mut self) -> Option<(&mut ShellSystem<'p>, StiffnessOperator<'_, D, C>, &mut Tally)> {
         let Self { halo, grid, stencil, free, timers, .. } = self;
-        let matrix = Stiffness { halo, grid, stencil, free, unknowns: &[], timers };
+        let matrix = StiffnessOperator { halo, grid, stencil, free, unknowns: &[], timers };
         let shell = self.shell.as_mut()?;
         let tally = self.tallies.definite.get_or_insert_with(|| shell.tally());
         Some((shell, matrix, tally))

@@ -5,7 +5,7 @@ mod loads;
 
 pub use crate::words::{Base, Format, Geometry, Nonlinear, Support};
 pub use history::{Check, Column, Face, History, Quantity};
-pub use loads::{Footing, Initial, Path, PointLoad, Prescribed, Site, Traction};
+pub use loads::{Footing, Initial, MotionPath, PointLoad, Prescribed, Site, Traction};
 
 use crate::error::Choice;
 use crate::grid::{GridSpec, Line};

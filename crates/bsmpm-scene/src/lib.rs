@@ -40,8 +40,8 @@ pub use bsmpm::points::Seed;
 pub use bsmpm::quadrature::Quadrature;
 pub use case::{
     Analysis, Base, Body, Case, Check, Checkpoint, Column, Every, Face, Footing, Format, Geometry, Gravity, History,
-    Initial, Linear, NamedMaterial, Nonlinear, Output, Path, PointLoad, Prescribed, Quantity, Site, Solver, Support,
-    Traction,
+    Initial, Linear, MotionPath, NamedMaterial, Nonlinear, Output, PointLoad, Prescribed, Quantity, Site, Solver,
+    Support, Traction,
 };
 pub use difference::{Difference, differences};
 pub use error::{Choice, Error, Place};

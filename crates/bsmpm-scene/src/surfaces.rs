@@ -19,7 +19,7 @@ pub fn penalty(young: f64, edge: f64) -> f64 {
 
 /// Rigid strips: the footing first, then the prescribed motions in the order of the file.
 pub fn strips(case: &Case, grid: &Grid<2>, penalty: f64) -> Vec<Strip<2>> {
-    let strip = |[from, to]: [Vector<2>; 2], path: &crate::Path, base: Base| Strip {
+    let strip = |[from, to]: [Vector<2>; 2], path: &crate::MotionPath, base: Base| Strip {
         points: surface::along::<PlaneStrain>(grid, &from, &to, HELD),
         normal: (base == Base::Smooth).then(|| normal(&from, &to)),
         path: Path { rows: path.rows.iter().map(|(time, moved)| (*time, Vector::from(*moved))).collect() },

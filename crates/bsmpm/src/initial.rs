@@ -95,7 +95,7 @@ pub fn balance<K: Kinematics<D>, const D: usize>(
 ) -> Result<Equilibrium, StepError> {
     let model = &Model { regime: Regime::QuasiStatic, ..model.clone() };
     let yields = |p: usize| match model.respond(points, p, &points.b_e.at(p)) {
-        Ok(response) => Ok(u32::from(response.region() != Branch::Elastic)),
+        Ok(response) => Ok(u32::from(response.branch() != Branch::Elastic)),
         Err(source) => Err(StepError::Material { id: points.id[p], source }),
     };
     let counted = (0..points.len()).try_fold(0.0, |sum, p| Ok(sum + f64::from(yields(p)?)));

@@ -190,10 +190,10 @@ macro_rules! laws {
 
         impl Flowed {
             #[inline]
-            pub fn region(&self) -> Branch {
+            pub fn branch(&self) -> Branch {
                 match self {
                     Self::Elastic => Branch::Elastic,
-                    $(Self::$Law(flow) => flow.region(),)*
+                    $(Self::$Law(flow) => flow.branch(),)*
                 }
             }
 

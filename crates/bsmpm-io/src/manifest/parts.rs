@@ -169,7 +169,7 @@ pub struct Communication {
 
 /// What solved a kind of linear systems, and how its solves ended.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct LinearSolver {
+pub struct SolverNames {
     /// KSPType of PETSc, of the program that ran last.
     pub ksp: String,
     /// PCType of PETSc; of a shell its name, too, as in `shell (dissection)`.

@@ -6,7 +6,7 @@ use crate::launch;
 use crate::machine;
 use bsmpm::parallel::Halo;
 use bsmpm_io::exit;
-use bsmpm_io::manifest::{Communication, LinearSolver, Status};
+use bsmpm_io::manifest::{Communication, SolverNames, Status};
 use bsmpm_ranks::linear::Tallies;
 use bsmpm_ranks::simulation::Simulation;
 use bsmpm_ranks::traffic::TrafficKind;
@@ -151,7 +151,7 @@ impl Run<'_> {
 }
 
 /// How the linear solves `before` ended and those since then.
-fn linear(before: &BTreeMap<String, LinearSolver>, tallies: &Tallies) -> BTreeMap<String, LinearSolver> {
+fn linear(before: &BTreeMap<String, SolverNames>, tallies: &Tallies) -> BTreeMap<String, SolverNames> {
     let mut all = before.clone();
     for (name, tally) in [("stiffness", &tallies.definite), ("newton", &tallies.general)] {
         let Some(tally) = tally else { continue };

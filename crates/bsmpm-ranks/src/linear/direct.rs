@@ -32,7 +32,7 @@ enum Standing {
 
 /// A definite matrix: the stencil's blocks of the free components.
 #[derive(Clone, Copy)]
-pub(super) struct Stiffness<'a, const D: usize, const C: usize> {
+pub(super) struct StiffnessOperator<'a, const D: usize, const C: usize> {
     pub halo: &'a MpiHalo,
     pub grid: &'a Grid<D>,
     pub stencil: &'a Stencil<D, C>,
@@ -42,7 +42,7 @@ pub(super) struct Stiffness<'a, const D: usize, const C: usize> {
     pub timers: &'a Timers,
 }
 
-impl<const D: usize, const C: usize> Stiffness<'_, D, C> {
+impl<const D: usize, const C: usize> StiffnessOperator<'_, D, C> {
     /// y = A x of this rank's unknowns. Collective.
     pub fn multiply(&self, x: &[f64], y: &mut [f64]) {
         let (mut nodal, mut image) = (vec![0.0; self.free.len()], vec![0.0; self.free.len()]);
@@ -110,12 +110,12 @@ impl Factor {
 /// The factor with its matrix, as KSP's preconditioner.
 pub(super) struct DissectionPc<'a, const D: usize, const C: usize> {
     pub factor: &'a mut Factor,
-    pub matrix: Stiffness<'a, D, C>,
+    pub matrix: StiffnessOperator<'a, D, C>,
 }
 
 impl<const D: usize, const C: usize> DissectionPc<'_, D, C> {
     fn factorise(&mut self, precision: Precision) -> Result<(), SolveError> {
-        let Stiffness { halo, grid, stencil, free, timers, .. } = self.matrix;
+        let StiffnessOperator { halo, grid, stencil, free, timers, .. } = self.matrix;
         let (world, link, _timed) = (halo.world(), halo.link(), timers.time("factorisation"));
         if !self.factor.is_planned {
             let mut bounds = vec![0; world.size().unsigned_abs() as usize];

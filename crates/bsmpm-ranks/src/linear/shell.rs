@@ -2,7 +2,7 @@
 //! program's own factor.
 
 use super::choice::Choice;
-use super::direct::{DissectionPc, Factor, Stiffness, gather};
+use super::direct::{DissectionPc, Factor, StiffnessOperator, gather};
 use super::spread;
 use super::system::{failed, trusted};
 use super::tally::Tally;
@@ -53,13 +53,13 @@ impl<'p> ShellSystem<'p> {
     /// Factorises a matrix, of which the unknowns are filled in. Collective.
     pub fn set_up<const D: usize, const C: usize>(
         &mut self,
-        matrix: Stiffness<'_, D, C>,
+        matrix: StiffnessOperator<'_, D, C>,
         tally: &mut Tally,
     ) -> Result<(), SolveError> {
         let Self { ksp, factor, unknowns, .. } = self;
         factor.cause = None;
         ksp.shell_operator_changed().map_err(failed)?;
-        let mut pc = DissectionPc { factor, matrix: Stiffness { unknowns, ..matrix } };
+        let mut pc = DissectionPc { factor, matrix: StiffnessOperator { unknowns, ..matrix } };
         let outcome = ksp.set_up_with_pc(&mut pc);
         tally.failure(&outcome);
         outcome.map_err(|error| pc.factor.cause.take().unwrap_or_else(|| failed(error)))
@@ -68,12 +68,12 @@ impl<'p> ShellSystem<'p> {
     /// The nodal solution for a nodal right-hand side; KSP's reason says whether it is one. Collective.
     pub fn solve<const D: usize, const C: usize>(
         &mut self,
-        matrix: Stiffness<'_, D, C>,
+        matrix: StiffnessOperator<'_, D, C>,
         (rhs, solution): (&[f64], &mut [f64]),
         tally: &mut Tally,
     ) -> Result<Solved, SolveError> {
         let Self { ksp, factor, unknowns, .. } = self;
-        let matrix = Stiffness { unknowns, ..matrix };
+        let matrix = StiffnessOperator { unknowns, ..matrix };
         (factor.cause, factor.further, factor.residual) = (None, 0, None);
         let mut pc = DissectionPc { factor, matrix };
         let outcome = ksp.solve_with_pc((&mut |x, y| matrix.multiply(x, y), &mut pc), |b| gather(unknowns, rhs, b));

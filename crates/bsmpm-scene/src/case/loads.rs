@@ -4,7 +4,7 @@ use super::{Base, Face};
 
 /// A displacement as a function of time, linear between its rows; zero at the start, constant after the last row.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Path {
+pub struct MotionPath {
     /// s (quasi-static: pseudo-time), increasing, and m
     pub rows: Vec<(f64, [f64; 2])>,
 }
@@ -17,7 +17,7 @@ pub struct Footing {
     /// m  the other end
     pub to: [f64; 2],
     /// its motion
-    pub path: Path,
+    pub path: MotionPath,
     /// what it holds
     pub base: Base,
 }
@@ -28,7 +28,7 @@ pub struct Prescribed {
     /// where
     pub site: Site,
     /// its motion
-    pub path: Path,
+    pub path: MotionPath,
     /// which components
     pub base: Base,
 }

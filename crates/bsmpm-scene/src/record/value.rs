@@ -13,7 +13,7 @@ const LONGEST_NAME: usize = 64;
 /// The value of `node` as `kind` says; `None` after an error.
 pub(super) fn read(kind: &Kind, node: &Node, path: &str, pseudo_time: bool, report: &mut Report<'_>) -> Option<Datum> {
     let name = path.rsplit('.').next().unwrap_or(path);
-    let mut reader = Reader { kind, path, name, pseudo_time, report };
+    let mut reader = ValueReader { kind, path, name, pseudo_time, report };
     match kind {
         Kind::Quantity(dimension, range) => reader.quantity(node, *dimension, range).map(Datum::Number),
         Kind::Profile(dimension, range, _) => reader.quantity(node, *dimension, range).map(Datum::Number),
@@ -47,7 +47,7 @@ pub(super) fn is_name(text: &str) -> bool {
     (1..=LONGEST_NAME).contains(&text.len()) && text.chars().all(fit)
 }
 
-struct Reader<'a, 'r> {
+struct ValueReader<'a, 'r> {
     kind: &'a Kind,
     path: &'a str,
     name: &'a str,
@@ -55,7 +55,7 @@ struct Reader<'a, 'r> {
     report: &'a mut Report<'r>,
 }
 
-impl Reader<'_, '_> {
+impl ValueReader<'_, '_> {
     fn fail<T>(&mut self, node: &Node, message: impl Into<String>) -> Option<T> {
         self.report.error(node.origin, self.path, message);
         None

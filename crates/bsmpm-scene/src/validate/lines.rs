@@ -4,7 +4,7 @@
 //! where materials of unlike stiffness meet, and are singular at the ends of strips and loaded segments, which without a
 //! line would hold or load all that the splines reach, a cell further. `cases/results/stabilisation.md` has the figures.
 
-use crate::case::{Case, NamedMaterial, Path, Site};
+use crate::case::{Case, MotionPath, NamedMaterial, Site};
 use crate::grid::Line;
 use crate::record::Record;
 use crate::region::Edge;
@@ -212,7 +212,7 @@ struct Segment<'a> {
     name: String,
     table: (&'static str, usize),
     ends: [[f64; 2]; 2],
-    path: Option<&'a Path>,
+    path: Option<&'a MotionPath>,
 }
 
 impl Segment<'_> {

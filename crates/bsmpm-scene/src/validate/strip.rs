@@ -1,7 +1,7 @@
 //! The footing and prescribed motions.
 
 use super::place::{along, at_body, beyond};
-use crate::case::{Base, Body, Face, Footing, Path, Prescribed, Site, Support};
+use crate::case::{Base, Body, Face, Footing, MotionPath, Prescribed, Site, Support};
 use crate::grid::GridSpec;
 use crate::record::Record;
 use crate::report::Report;
@@ -114,7 +114,7 @@ fn motion(record: &Record) -> &'static str {
     ["displacement", "velocity"].into_iter().find(|key| record.gives(key)).unwrap_or("path")
 }
 
-fn path(record: &Record, end: Option<f64>, report: &mut Report<'_>) -> Option<Path> {
+fn path(record: &Record, end: Option<f64>, report: &mut Report<'_>) -> Option<MotionPath> {
     let rows = if record.gives("displacement") {
         vec![(end?, record.pair("displacement")?)]
     } else if record.gives("velocity") {
@@ -122,7 +122,7 @@ fn path(record: &Record, end: Option<f64>, report: &mut Report<'_>) -> Option<Pa
     } else {
         rows(record, end, report)?
     };
-    Some(Path { rows })
+    Some(MotionPath { rows })
 }
 
 fn rows(record: &Record, end: Option<f64>, report: &mut Report<'_>) -> Option<Vec<(f64, [f64; 2])>> {
@@ -159,7 +159,13 @@ fn rows(record: &Record, end: Option<f64>, report: &mut Report<'_>) -> Option<Ve
 }
 
 /// Between its rows a path is straight, and the grid convex: the rows decide.
-fn stays_inside(record: &Record, ends: [[f64; 2]; 2], path: &Path, around: AroundStrip<'_>, report: &mut Report<'_>) {
+fn stays_inside(
+    record: &Record,
+    ends: [[f64; 2]; 2],
+    path: &MotionPath,
+    around: AroundStrip<'_>,
+    report: &mut Report<'_>,
+) {
     let Some(grid) = around.grid else { return };
     let at = |end: [f64; 2], u: [f64; 2]| [end[0] + u[0], end[1] + u[1]];
     let beyond = |(t, u): &(f64, [f64; 2])| Some((*t, ends.into_iter().find_map(|end| beyond(grid, at(end, *u)))?));
@@ -168,7 +174,7 @@ fn stays_inside(record: &Record, ends: [[f64; 2]; 2], path: &Path, around: Aroun
     }
 }
 
-fn inward(record: &Record, face: Face, path: &Path, report: &mut Report<'_>) {
+fn inward(record: &Record, face: Face, path: &MotionPath, report: &mut Report<'_>) {
     let outward = |u: f64| if face.upper { u > 0.0 } else { u < 0.0 };
     if let Some((t, u)) = path.rows.iter().find(|(_, u)| outward(u[face.axis])) {
         let message = format!("at t = {t} the face has left the grid by {u:?}; it may move inward or along itself");
@@ -176,12 +182,12 @@ fn inward(record: &Record, face: Face, path: &Path, report: &mut Report<'_>) {
     }
 }
 
-fn size(path: &Path) -> f64 {
+fn size(path: &MotionPath) -> f64 {
     path.rows.iter().map(|(_, u)| u[0].hypot(u[1])).fold(0.0, f64::max)
 }
 
 /// The largest motion normal to a base, m.
-fn normal_part(path: &Path, from: [f64; 2], to: [f64; 2]) -> f64 {
+fn normal_part(path: &MotionPath, from: [f64; 2], to: [f64; 2]) -> f64 {
     let normal = normal(from, to);
     path.rows.iter().map(|(_, u)| (u[0] * normal[0] + u[1] * normal[1]).abs()).fold(0.0, f64::max)
 }
@@ -194,6 +200,6 @@ pub(super) fn normal(from: [f64; 2], to: [f64; 2]) -> [f64; 2] {
 }
 
 /// Whether a path moves at all.
-pub(super) fn moves(path: &Path) -> bool {
+pub(super) fn moves(path: &MotionPath) -> bool {
     size(path) > 0.0
 }

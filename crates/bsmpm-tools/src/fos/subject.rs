@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use bsmpm::model::Regime;
-use bsmpm_scene::{Case, GridAxis, Path as Motion, Quantity};
+use bsmpm_scene::{Case, GridAxis, MotionPath, Quantity};
 use serde::Serialize;
 
 use super::search::{ELASTIC, LEAST};
@@ -214,7 +214,7 @@ fn loose_tolerances(case: &Case) -> impl Iterator<Item = String> {
 }
 
 fn is_moved(case: &Case) -> bool {
-    let moves = |path: &Motion| path.rows.iter().any(|(_, by)| *by != [0.0; 2]);
+    let moves = |path: &MotionPath| path.rows.iter().any(|(_, by)| *by != [0.0; 2]);
     let footing = case.footing.iter().map(|footing| &footing.path);
     footing.chain(case.prescribed.iter().map(|prescribed| &prescribed.path)).any(moves)
 }

@@ -73,7 +73,7 @@ pub fn apex() -> Found {
             let dilation = friction * pick(&mut random, &[0.0, 0.5, 1.0]);
             let poisson = pick(&mut random, &[0.0, 0.3, 0.4999]);
             let found = respond(&mohr_coulomb(poisson, friction, dilation, cohesion), &trial(&mut random, -7.0, 0.0));
-            tips += usize::from(found.region() == Branch::Apex);
+            tips += usize::from(found.branch() == Branch::Apex);
             worst = worst.max(excess(found.principal_tau(), friction, cohesion) / YOUNG);
             assert!(found.tau().0.iter().chain(&found.b_e().0).all(|x| x.is_finite()));
         }
@@ -116,7 +116,7 @@ pub fn tangent() -> Found {
         let h = (3e-3 * gap).min(1e-5);
         let at = |steps: f64| respond(&material, &turned(&(Tensor::identity() + l * (steps * h)), &b));
         let around = [(-1.0, 2.0), (8.0, 1.0), (-8.0, -1.0), (1.0, -2.0)].map(|(weight, steps)| (weight, at(steps)));
-        if gap < 1e-4 || around.iter().any(|(_, moved)| moved.region() != found.region()) {
+        if gap < 1e-4 || around.iter().any(|(_, moved)| moved.branch() != found.branch()) {
             continue;
         }
         tried += 1;
@@ -136,7 +136,7 @@ pub fn projection() -> Found {
     while returned < 10_000 {
         let (friction, poisson) = (pick(&mut random, &[20.0, 45.0, 60.0]), pick(&mut random, &[0.0, 0.3, 0.45]));
         let found = respond(&mohr_coulomb(poisson, friction, friction, 1.0), &trial(&mut random, -3.0, -1.0));
-        if found.region() == Branch::Elastic {
+        if found.branch() == Branch::Elastic {
             continue;
         }
         returned += 1;

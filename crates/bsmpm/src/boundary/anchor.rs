@@ -24,8 +24,8 @@ pub struct Anchored<'a, const D: usize> {
     pub F: &'a Packed<D, Tensor>,
 }
 
-/// Places of the material now, m.
-pub struct Places<const D: usize> {
+/// AnchorPlaces of the material now, m.
+pub struct AnchorPlaces<const D: usize> {
     /// per strip and point of it: as far from the anchor as at the start, without what the material between has stretched
     pub strips: Vec<Vec<Vector<D>>>,
     /// per load and point of it: on the material
@@ -58,7 +58,7 @@ impl Anchors {
         boundary: &Boundary<D>,
         points: Anchored<'_, D>,
         halo: &dyn Halo,
-    ) -> Places<D> {
+    ) -> AnchorPlaces<D> {
         let starts = starts(boundary);
         let mut anchored: Vec<(u64, usize)> =
             self.strips.iter().chain(&self.loads).flatten().copied().zip(0..).collect();
@@ -79,14 +79,14 @@ impl Anchors {
         }
         let mut found = found.into_iter().flatten();
         let mut take = |ids: &Vec<u64>| found.by_ref().take(ids.len()).collect::<Vec<_>>();
-        Places {
+        AnchorPlaces {
             strips: self.strips.iter().map(&mut take).collect(),
             loads: self.loads.iter().map(&mut take).collect(),
         }
     }
 }
 
-impl<const D: usize> Places<D> {
+impl<const D: usize> AnchorPlaces<D> {
     /// Points of a strip, `number` of all, that at time `t` are farther ahead of the material that they held at the start
     /// than half the shortest edge of the cell that they are in, along the strip's whole motion as far as it is held.
     pub fn left_behind(&self, number: usize, strip: &Strip<D>, t: f64, grid: &Grid<D>) -> usize {
@@ -103,7 +103,7 @@ impl<const D: usize> Places<D> {
     }
 }
 
-/// Places of all surface points at the start, m: those of strips, then those of loads.
+/// AnchorPlaces of all surface points at the start, m: those of strips, then those of loads.
 fn starts<const D: usize>(boundary: &Boundary<D>) -> Vec<Vector<D>> {
     let strips = boundary.strips.iter().flat_map(|strip| &strip.points);
     strips.chain(boundary.loads.iter().flat_map(|load| &load.points)).map(|point| point.x).collect()

@@ -11,10 +11,10 @@ pub struct Axisymmetric;
 
 /// dN/dr, dN/dz and N/r of a node: columns r, z and theta of a gradient, whose element (z, theta) has no meaning and is
 /// nowhere read.
-type Gradient = SMatrix<f64, 2, 3>;
+type Strains = SMatrix<f64, 2, 3>;
 
 impl Kinematics<2> for Axisymmetric {
-    type Gradient = Gradient;
+    type Gradient = Strains;
 
     #[inline]
     fn slope(N: impl FnOnce() -> f64, grad: Vector<2>, x: &Vector<2>) -> SVector<f64, 3> {
@@ -39,20 +39,20 @@ impl Kinematics<2> for Axisymmetric {
     }
 
     #[inline]
-    fn jacobian(grad: &Gradient) -> f64 {
+    fn jacobian(grad: &Strains) -> f64 {
         let in_plane = (1.0 + grad[(0, 0)]) * (1.0 + grad[(1, 1)]) - grad[(0, 1)] * grad[(1, 0)];
         in_plane * (1.0 + grad[(0, 2)])
     }
 
     #[inline]
-    fn gradient(grad: &Gradient) -> Tensor {
+    fn gradient(grad: &Strains) -> Tensor {
         Tensor::new(grad[(0, 0)], grad[(0, 1)], 0.0, grad[(1, 0)], grad[(1, 1)], 0.0, 0.0, 0.0, grad[(0, 2)])
     }
 
     #[inline]
-    fn working(tensor: &Tensor) -> Gradient {
+    fn working(tensor: &Tensor) -> Strains {
         let t = |i: usize, j: usize| tensor[(i, j)];
-        Gradient::new(t(0, 0), t(0, 1), t(2, 2), t(1, 0), t(1, 1), 0.0)
+        Strains::new(t(0, 0), t(0, 1), t(2, 2), t(1, 0), t(1, 1), 0.0)
     }
 
     fn dilation() -> Tensor {
@@ -60,7 +60,7 @@ impl Kinematics<2> for Axisymmetric {
     }
 
     #[inline]
-    fn flux(tau: &Symmetric, dF: &Tensor) -> Gradient {
+    fn flux(tau: &Symmetric, dF: &Tensor) -> Strains {
         let inverse = dF.try_inverse().unwrap_or_else(|| Tensor::from_element(f64::NAN));
         Self::working(&(tau.full() * inverse.transpose()))
     }

@@ -51,7 +51,7 @@ pub struct DruckerPrager {
 
 /// What a return leaves.
 #[derive(Clone, Copy, Debug)]
-pub enum Return {
+pub enum DruckerPragerReturn {
     /// To the cone.
     Cone {
         /// (-)  principal deviator of the trial over its norm
@@ -108,7 +108,7 @@ impl DruckerPrager {
 }
 
 impl Law for DruckerPrager {
-    type Flow = Return;
+    type Flow = DruckerPragerReturn;
 
     fn elastic(&self) -> &Elastic {
         &self.elastic
@@ -122,7 +122,7 @@ impl Law for DruckerPrager {
     /// `Δγ = (√J₂ + η p - ξ c)/(μ + K η η_ψ)`, `p - K η_ψ Δγ`, and √J₂ from f = 0; where that is negative the tip,
     /// p = ξ c/η.
     #[inline]
-    fn project(&self, trial: [f64; 3], _state: &[f64]) -> Option<([f64; 3], Return)> {
+    fn project(&self, trial: [f64; 3], _state: &[f64]) -> Option<([f64; 3], DruckerPragerReturn)> {
         let (Moduli { mu, .. }, [eta, eta_psi]) = (self.moduli, self.slopes);
         let (mean, deviator, norm) = split(trial);
         let root = norm * std::f64::consts::FRAC_1_SQRT_2;
@@ -134,11 +134,11 @@ impl Law for DruckerPrager {
         let p = mean - bulk * eta_psi * excess / (mu + bulk * eta * eta_psi);
         let after = self.strength - eta * p;
         if after < 0.0 || root == 0.0 {
-            return Some(([self.strength / eta; 3], Return::Apex));
+            return Some(([self.strength / eta; 3], DruckerPragerReturn::Apex));
         }
         let kept = after / root;
         let tau = deviator.map(|s| p + kept * s);
-        Some((tau, Return::Cone { direction: deviator.map(|s| s / norm), kept, slopes: self.slopes }))
+        Some((tau, DruckerPragerReturn::Cone { direction: deviator.map(|s| s / norm), kept, slopes: self.slopes }))
     }
 
     fn reduced(self, factor: f64) -> Self {
@@ -154,9 +154,9 @@ impl Law for DruckerPrager {
     }
 }
 
-impl Flow for Return {
+impl Flow for DruckerPragerReturn {
     #[inline]
-    fn region(&self) -> Branch {
+    fn branch(&self) -> Branch {
         match self {
             Self::Cone { .. } => Branch::Face,
             Self::Apex => Branch::Apex,

@@ -51,7 +51,7 @@ pub trait Law {
 /// What a return leaves.
 pub trait Flow: Copy {
     /// Where on the yield surface the stress lies.
-    fn region(&self) -> Branch;
+    fn branch(&self) -> Branch;
 
     /// `D_AB = ∂τ_A/∂ε_B`, Pa, of principal values.
     fn tangent(&self, moduli: Moduli) -> Tensor;
@@ -98,7 +98,7 @@ pub enum Separation {
 pub enum Never {}
 
 impl Flow for Never {
-    fn region(&self) -> Branch {
+    fn branch(&self) -> Branch {
         match *self {}
     }
     fn tangent(&self, _moduli: Moduli) -> Tensor {

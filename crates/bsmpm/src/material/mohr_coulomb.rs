@@ -25,7 +25,7 @@ pub struct MohrCoulomb {
 
 /// What a return leaves: where the stress lies, and the two sines that its tangent needs.
 #[derive(Clone, Copy, Debug)]
-pub struct Return {
+pub struct MohrCoulombReturn {
     region: Branch,
     slopes: Slopes,
 }
@@ -136,7 +136,7 @@ impl MohrCoulomb {
 }
 
 impl Law for MohrCoulomb {
-    type Flow = Return;
+    type Flow = MohrCoulombReturn;
 
     fn elastic(&self) -> &Elastic {
         &self.elastic
@@ -150,7 +150,7 @@ impl Law for MohrCoulomb {
     /// τ₁ is always taken from τ₃ by f = 0, so the result satisfies yield and order to the last digits even where it
     /// is much smaller than the trial.
     #[inline]
-    fn project(&self, trial: [f64; 3], _state: &[f64]) -> Option<([f64; 3], Return)> {
+    fn project(&self, trial: [f64; 3], _state: &[f64]) -> Option<([f64; 3], MohrCoulombReturn)> {
         let Self { moduli, slopes, strength, shift, .. } = *self;
         let sin_phi = slopes.sin_phi;
         let excess = (trial[0] - trial[2]) + (trial[0] + trial[2]) * sin_phi - 2.0 * strength;
@@ -161,7 +161,7 @@ impl Law for MohrCoulomb {
             .face(trial, excess)
             .or_else(|| edge(slopes, moduli, trial, shift))
             .unwrap_or_else(|| ([strength / sin_phi; 3], Branch::Apex));
-        Some((tau, Return { region, slopes }))
+        Some((tau, MohrCoulombReturn { region, slopes }))
     }
 
     fn reduced(self, factor: f64) -> Self {
@@ -181,9 +181,9 @@ impl Law for MohrCoulomb {
     }
 }
 
-impl Flow for Return {
+impl Flow for MohrCoulombReturn {
     #[inline]
-    fn region(&self) -> Branch {
+    fn branch(&self) -> Branch {
         self.region
     }
 

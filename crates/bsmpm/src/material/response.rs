@@ -31,7 +31,7 @@ impl Response {
     ///
     /// Without plastic flow this is the trial tensor, bit for bit.
     pub fn b_e(&self) -> Symmetric {
-        if self.region() == Branch::Elastic {
+        if self.branch() == Branch::Elastic {
             return self.b_trial;
         }
         let eps_e = self.principal_eps_e();
@@ -46,8 +46,8 @@ impl Response {
 
     /// Where on the yield surface the stress lies.
     #[inline]
-    pub fn region(&self) -> Branch {
-        self.flowed.region()
+    pub fn branch(&self) -> Branch {
+        self.flowed.branch()
     }
 
     /// The gap that is open after the return, as a logarithm of volume: `g = tr ε_trial - tr εᵉ` at the apex, else 0.
@@ -57,7 +57,7 @@ impl Response {
     /// (2016), "Drucker-Prager elastoplasticity for sand animation". g is constant during a step, so that the tangent
     /// keeps its form. What ψ dilates on faces and edges is no gap, and where such flow goes on what gapes is filled.
     pub fn gap(&self) -> f64 {
-        if self.region() != Branch::Apex {
+        if self.branch() != Branch::Apex {
             return 0.0;
         }
         let sum = |eps: [f64; 3]| eps[0] + eps[1] + eps[2];
@@ -98,7 +98,7 @@ impl Response {
 
     /// Principal elastic Hencky strain after the return, descending: `εᵉ = D⁻¹ τ`.
     pub fn principal_eps_e(&self) -> [f64; 3] {
-        if self.region() == Branch::Elastic { self.trial.eps } else { self.moduli.strain(self.tau) }
+        if self.branch() == Branch::Elastic { self.trial.eps } else { self.moduli.strain(self.tau) }
     }
 
     /// Puts the law's state after the return in the place of that before it.

@@ -86,7 +86,7 @@ impl Response {
     /// The stiffness of a response that yields, for use with many gradients; `None` where it is the elastic one, or as good as.
     #[inline]
     pub fn yielding(&self) -> Option<Stiffness> {
-        if self.region() == Branch::Elastic {
+        if self.branch() == Branch::Elastic {
             return None;
         }
         let (trial, elastic) = (self.principal_eps_trial(), self.principal_eps_e());

@@ -18,7 +18,7 @@ pub struct VonMises {
 
 /// What a return leaves.
 #[derive(Clone, Copy, Debug)]
-pub struct Return {
+pub struct VonMisesReturn {
     /// (-)  principal deviator of the trial over its norm
     direction: [f64; 3],
     /// (-)  q after the return over that of the trial
@@ -48,7 +48,7 @@ impl VonMises {
 }
 
 impl Law for VonMises {
-    type Flow = Return;
+    type Flow = VonMisesReturn;
     const STATE: &'static [Variable] = &[Variable { name: "hardening_strain", unit: "-" }];
 
     fn elastic(&self) -> &Elastic {
@@ -62,7 +62,7 @@ impl Law for VonMises {
 
     /// `Δκ = (q_trial - σ_y - H κ)/(3μ + H)`, `s = s_trial (1 - 3μ Δκ/q_trial)`.
     #[inline]
-    fn project(&self, trial: [f64; 3], state: &[f64]) -> Option<([f64; 3], Return)> {
+    fn project(&self, trial: [f64; 3], state: &[f64]) -> Option<([f64; 3], VonMisesReturn)> {
         let (mean, deviator, norm) = split(trial);
         let (q, strength) = (1.5_f64.sqrt() * norm, self.yield_stress + self.hardening * state[0]);
         if q <= strength {
@@ -74,7 +74,7 @@ impl Law for VonMises {
         let kept = (self.hardening * q + shear * strength) / ((shear + self.hardening) * q);
         let tau = deviator.map(|s| mean + kept * s);
         let direction = deviator.map(|s| s / norm);
-        Some((tau, Return { direction, kept, followed: self.hardening / (shear + self.hardening), growth }))
+        Some((tau, VonMisesReturn { direction, kept, followed: self.hardening / (shear + self.hardening), growth }))
     }
 
     fn hardens(&self) -> bool {
@@ -86,9 +86,9 @@ impl Law for VonMises {
     }
 }
 
-impl Flow for Return {
+impl Flow for VonMisesReturn {
     #[inline]
-    fn region(&self) -> Branch {
+    fn branch(&self) -> Branch {
         Branch::Face
     }
 

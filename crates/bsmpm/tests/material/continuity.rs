@@ -7,7 +7,7 @@ use bsmpm::material::{Branch, Material};
 fn at(material: &Material, from: [f64; 3], to: [f64; 3], s: f64) -> (Branch, [f64; 3]) {
     let eps = [0, 1, 2].map(|i| from[i] + s * (to[i] - from[i]));
     let found = respond(material, &stretched(eps));
-    (found.region(), found.principal_tau())
+    (found.branch(), found.principal_tau())
 }
 
 /// The regions on both sides of a boundary on the segment, and the jump of stress across it.

@@ -32,7 +32,7 @@ fn returns_lie_on_the_cone_or_its_tip_and_flow_along_the_potential() {
         let found = respond(&material, &random.trial(-4.0, -0.7));
         let (root, p) = invariants(found.principal_tau());
         let size = strength.max(eta * p.abs()).max(root);
-        match found.region() {
+        match found.branch() {
             Branch::Elastic => assert!(root + eta * p <= strength + 1e-13 * size),
             Branch::Face => {
                 cones += 1;
@@ -46,7 +46,7 @@ fn returns_lie_on_the_cone_or_its_tip_and_flow_along_the_potential() {
         }
         let again = respond(&material, &found.b_e()).principal_tau();
         assert!((0..3).all(|k| (again[k] - found.principal_tau()[k]).abs() <= 1e-9 * size.max(1.0)));
-        if found.region() == Branch::Face {
+        if found.branch() == Branch::Face {
             // Volume over shear of the flow is that of the potential: tr εᵖ = η_ψ Δγ, |dev εᵖ| = Δγ/√2.
             let (trial, elastic) = (found.principal_eps_trial(), found.principal_eps_e());
             let (mean, _, norm) = split(std::array::from_fn(|k| trial[k] - elastic[k]));
@@ -120,15 +120,15 @@ fn tangent_is_the_derivative_on_cone_and_tip() {
         let found = respond(&material, &b);
         let around = [-2.0, -1.0, 1.0, 2.0]
             .map(|steps| respond(&material, &turned(&(Tensor::identity() + l * (steps * 1e-6)), &b)));
-        if around.iter().any(|moved| moved.region() != found.region()) {
+        if around.iter().any(|moved| moved.branch() != found.branch()) {
             continue;
         }
         let [a, b, c, d] = around.map(|moved| moved.tau().full());
         let difference = (a - d + (c - b) * 8.0) / 12e-6;
         let size = found.linearise(&l).amax().max(1e3);
         worst = worst.max((difference - found.linearise(&l)).amax() / size);
-        seen[0] += usize::from(found.region() == Branch::Face);
-        seen[1] += usize::from(found.region() == Branch::Apex);
+        seen[0] += usize::from(found.branch() == Branch::Face);
+        seen[1] += usize::from(found.branch() == Branch::Apex);
     }
     println!("{seen:?} on cone and tip, error {worst:.1e}");
     assert!(seen[0] > 5_000 && seen[1] > 500 && worst < 1e-6, "{seen:?} {worst}");

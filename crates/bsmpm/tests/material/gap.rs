@@ -26,13 +26,13 @@ fn sand_resists_again_at_the_volume_at_which_it_came_apart() {
         volume += change;
         state = (found.b_e(), found.gap());
         let closed = volume <= 1e-12;
-        assert!(closed || (found.region() == Branch::Apex && found.principal_tau() == [0.0; 3]), "step {step}");
+        assert!(closed || (found.branch() == Branch::Apex && found.principal_tau() == [0.0; 3]), "step {step}");
         assert!((state.1 - volume.max(0.0)).abs() <= 1e-13, "step {step}: {} for {volume}", state.1);
     }
     assert!(state.1 <= 1e-13 && volume.abs() <= 1e-13);
     let squeeze = |state| driven(&material, state, [0.99, 0.995, 1.0]);
     let (again, virgin) = (squeeze(state), squeeze((Symmetric::IDENTITY, 0.0)));
-    assert_eq!(again.region(), virgin.region());
+    assert_eq!(again.branch(), virgin.branch());
     for (again, virgin) in again.principal_tau().into_iter().zip(virgin.principal_tau()) {
         assert!((again - virgin).abs() <= 1e-10 * 1e4, "{again} for {virgin}");
     }
@@ -59,8 +59,8 @@ fn dilation_is_no_gap() {
     state.0 = driven(&material, state, [0.99, 0.99, 0.99]).b_e();
     for _ in 0..10 {
         let found = driven(&material, state, [1.002, 0.998, 1.0]);
-        assert!(found.region() != Branch::Elastic || found.plastic_increment() == 0.0);
-        assert!(found.region() != Branch::Apex && found.gap() == 0.0);
+        assert!(found.branch() != Branch::Elastic || found.plastic_increment() == 0.0);
+        assert!(found.branch() != Branch::Apex && found.gap() == 0.0);
         state = (found.b_e(), found.gap());
     }
 }

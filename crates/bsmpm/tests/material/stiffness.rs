@@ -41,9 +41,9 @@ fn it_is_symmetric_and_positive_in_every_region() {
         let friction = random.pick(&[0.0, 20.0, 45.0, 60.0, 89.0]);
         let (dilation, poisson) = (friction * random.pick(&[0.0, 0.5, 1.0]), random.pick(&[-0.5, 0.0, 0.3, 0.499]));
         let found = respond(&mohr_coulomb(1e3, poisson, friction, dilation, 1.0), &random.trial(-2.5, -0.7));
-        seen[REGIONS.iter().position(|region| *region == found.region()).unwrap()] += 1;
+        seen[REGIONS.iter().position(|region| *region == found.branch()).unwrap()] += 1;
         let Some(stiffness) = found.yielding() else {
-            assert_eq!(found.region(), Branch::Elastic);
+            assert_eq!(found.branch(), Branch::Elastic);
             continue;
         };
         let matrix = matrix(&stiffness);

@@ -12,7 +12,7 @@ fn error(material: &Material, b: &Symmetric, l: &Tensor, h: f64) -> Option<(Bran
     for (weight, steps) in [(-1.0, 2.0), (8.0, 1.0), (-8.0, -1.0), (1.0, -2.0)] {
         let step = Tensor::identity() + l * (steps * h);
         let moved = respond(material, &turned(&step, b));
-        if moved.region() != found.region() {
+        if moved.branch() != found.branch() {
             return None;
         }
         difference += moved.tau().full() * weight;
@@ -20,7 +20,7 @@ fn error(material: &Material, b: &Symmetric, l: &Tensor, h: f64) -> Option<(Bran
     difference /= 12.0 * h;
     let tangent = found.linearise(l);
     let size = tangent.amax().max(1e-3 * material.elastic().oedometric() * l.amax());
-    Some((found.region(), (difference - tangent).amax() / size))
+    Some((found.branch(), (difference - tangent).amax() / size))
 }
 
 /// The smallest gap of trial strains whose stresses differ: the tangent varies over it, so a difference must stay within.

@@ -30,7 +30,7 @@ fn returns_lie_on_the_surface_that_has_grown_and_flow_along_its_normal() {
         let (response, after) = answer(&material, &random.trial(-4.0, -0.7), before);
         let (_, deviator, norm) = split(response.principal_tau());
         let (q, strength) = (1.5_f64.sqrt() * norm, STRENGTH + hardening * after);
-        if response.region() == Branch::Elastic {
+        if response.branch() == Branch::Elastic {
             assert!(q <= strength * (1.0 + 1e-14) && after == before);
             continue;
         }
@@ -69,13 +69,13 @@ fn tangent_is_the_derivative() {
         };
         let found = material.respond(&b, &[0.1]).unwrap();
         let around = [-2.0, -1.0, 1.0, 2.0].map(tau);
-        if around.iter().any(|moved| moved.region() != found.region()) {
+        if around.iter().any(|moved| moved.branch() != found.branch()) {
             continue;
         }
         let [a, b, c, d] = around.map(|moved| moved.tau().full());
         let difference = (a - d + (c - b) * 8.0) / 12e-6;
         worst = worst.max((difference - found.linearise(&l)).amax() / 1e3);
-        seen += usize::from(found.region() == Branch::Face);
+        seen += usize::from(found.branch() == Branch::Face);
     }
     println!("{seen} yielding, error {worst:.1e} of Young's modulus");
     assert!(seen > 10_000 && worst < 1e-7, "{seen}, {worst}");

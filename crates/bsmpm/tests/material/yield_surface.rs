@@ -33,7 +33,7 @@ fn sines(material: &Material) -> (f64, f64, f64) {
 fn yield_is_satisfied_and_order_kept() {
     let violation = worst(10, 0.3, |material, response| {
         let ([first, second, third], (sin, _, strength)) = (response.principal_tau(), sines(material));
-        assert!(first >= second && second >= third, "{:?} in {:?}", response.principal_tau(), response.region());
+        assert!(first >= second && second >= third, "{:?} in {:?}", response.principal_tau(), response.branch());
         let f = (first - third) + (first + third) * sin - strength;
         let scale = first.abs() + third.abs() + strength;
         if f <= 0.0 { 0.0 } else { f / scale }
@@ -67,7 +67,7 @@ fn plastic_strain_obeys_the_flow_rule() {
         let (eps_e, [x, y, z]) = (response.principal_eps_e(), response.principal_eps_trial());
         let [x, y, z] = [x - eps_e[0], y - eps_e[1], z - eps_e[2]];
         let size = largest(&response.principal_eps_trial());
-        let (negative, off) = match response.region() {
+        let (negative, off) = match response.branch() {
             Branch::Elastic => (0.0, largest(&[x, y, z])),
             Branch::Face => (-x, largest(&[y, minus * x + plus * z])),
             Branch::RightEdge => (y.max(z), (minus * x + plus * (y + z)).abs()),
@@ -87,7 +87,7 @@ fn every_region_is_visited() {
         let mut random = Random::new(13);
         for _ in 0..20_000 {
             let material = mohr_coulomb(1e3, 0.3, friction, 0.5 * friction, 1.0);
-            let region = respond(&material, &random.trial(-5.0, -1.0)).region();
+            let region = respond(&material, &random.trial(-5.0, -1.0)).branch();
             seen[super::REGIONS.iter().position(|r| *r == region).unwrap()] += 1;
         }
         let has_apex = friction >= 20.0;

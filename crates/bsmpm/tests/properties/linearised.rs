@@ -170,7 +170,7 @@ fn what_gapes_is_in_the_product() {
         let response = |p: usize, b_e: &Symmetric| scene.model.respond(&scene.points, p, b_e).unwrap();
         let opened = |p: usize, gap: f64| response(p, &scene.points.b_e.at(p).scaled((2.0 / 3.0 * gap).exp()));
         let gaps = scene.points.gap.as_ref().unwrap();
-        let open = (0..gaps.len()).filter(|&p| opened(p, gaps[p]).region() == Branch::Apex).count();
+        let open = (0..gaps.len()).filter(|&p| opened(p, gaps[p]).branch() == Branch::Apex).count();
         assert!(open > 0 && open < gaps.len(), "{open} of {}", gaps.len());
         let (error, _) = product_error(&scene);
         println!("{method:?}: {error:e}");
@@ -202,7 +202,7 @@ fn curvature(cohesion: f64, size: f64) -> ([f64; 2], usize) {
     let (u, v) = (free(), free());
     let at = |s: f64| Residual::of(&pieces, &u.iter().zip(&v).map(|(u, v)| u + s * v).collect::<Vec<_>>());
     let regions = |residual: &Residual<PlaneStrain, 2>| -> Vec<Branch> {
-        (0..points.len()).map(|p| residual.trial.respond(model, points, p).unwrap().region()).collect()
+        (0..points.len()).map(|p| residual.trial.respond(model, points, p).unwrap().branch()).collect()
     };
     let start = at(0.0);
     let mut product = vec![0.0; u.len()];
