@@ -77,23 +77,36 @@ fn start_threads(count: u32) -> Result<(), String> {
     pool.build_global().map_err(|error| format!("{count} threads could not be started: {error}"))
 }
 
-/// Whether an option of PETSc has every solve reported, and thus has no value: it waits for the run's own systems.
-fn reports(option: &str) -> bool {
-    option != "-log_view" && ["_view", "_monitor", "_converged_reason"].iter().any(|part| option.contains(part))
+/// Options of PETSc, each with its value if it has one, that have every solve reported: they wait for the run's own systems.
+fn reports(options: &[String]) -> (Vec<&str>, Vec<(&str, Option<&str>)>) {
+    let is_name = |option: &str| option.starts_with('-') && option.parse::<f64>().is_err();
+    let reports = |option: &str| {
+        option != "-log_view" && ["_view", "_monitor", "_converged_reason"].iter().any(|part| option.contains(part))
+    };
+    let (mut others, mut waiting) = (Vec::new(), Vec::<(&str, Option<&str>)>::new());
+    let mut is_value = false; // of one that waits
+    for option in options.iter().map(String::as_str) {
+        match waiting.last_mut() {
+            Some((_, value)) if is_value && !is_name(option) => *value = Some(option),
+            _ if is_name(option) && reports(option) => waiting.push((option, None)),
+            _ => others.push(option),
+        }
+        is_value = is_name(option) && reports(option);
+    }
+    (others, waiting)
 }
 
 fn solve(universe: &Universe, task: Task, cut: Cut) -> Result<u8, u8> {
     let Task { case, arguments, .. } = &task;
     let ranks = universe.world().size().unsigned_abs() as usize;
     let choice = setup::linear(case, ranks, &arguments.petsc);
-    let (reports, own): (Vec<&str>, Vec<&str>) =
-        arguments.petsc.iter().map(String::as_str).partition(|option| reports(option));
+    let (own, reports) = reports(&arguments.petsc);
     let options: Vec<&str> = choice.options().into_iter().chain(own).collect();
     let petsc = Petsc::initialize(universe, &options).map_err(|error| format!("PETSc could not be started: {error}"));
     let petsc = agreed(universe, exit::BUG, petsc)?;
     let probed = linear::probe(&petsc, &choice).map_err(|error| format!("the linear solver cannot be used: {error}"));
     agreed(universe, exit::CASE, probed)?;
-    let set = reports.iter().try_for_each(|report| petsc.set_option(report, None));
+    let set = reports.iter().try_for_each(|(name, value)| petsc.set_option(name, *value));
     agreed(universe, exit::BUG, set.map_err(|error| format!("PETSc does not take an option: {error}")))?;
     agreed(universe, exit::BUG, start_threads(arguments.threads))?;
     let hdf5 = Hdf5::initialize(universe).map_err(|error| format!("HDF5 could not be started: {error}"));
@@ -101,4 +114,18 @@ fn solve(universe: &Universe, task: Task, cut: Cut) -> Result<u8, u8> {
     let requests = Requests::of_signals().map_err(|error| format!("signals cannot be handled: {error}"));
     let requests = Rc::new(agreed(universe, exit::BUG, requests)?);
     begin::run((universe, &hdf5), (&petsc, choice), task, cut, requests)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::reports;
+
+    #[test]
+    fn reports_wait_with_their_values_and_other_options_do_not() {
+        let words = "-ksp_view :view.txt -ksp_type cg -ksp_monitor -ksp_rtol -1e-3 -log_view :times.txt";
+        let options: Vec<String> = words.split(' ').map(String::from).collect();
+        let (others, waiting) = reports(&options);
+        assert_eq!(others, ["-ksp_type", "cg", "-ksp_rtol", "-1e-3", "-log_view", ":times.txt"]);
+        assert_eq!(waiting, [("-ksp_view", Some(":view.txt")), ("-ksp_monitor", None)]);
+    }
 }

@@ -10,6 +10,7 @@ impl Petsc<'_> {
     /// Sets an option, e.g. `("-mat_mumps_icntl_7", Some("5"))`, for the `set_from_options` calls
     /// to come. The name begins with a dash. To be done alike on every rank.
     pub fn set_option(&self, name: &str, value: Option<&str>) -> Result<()> {
+        self.note_option(name);
         let name = c_string(name)?;
         let value = value.map(c_string).transpose()?;
         let value = value.as_ref().map_or(ptr::null(), |value| value.as_ptr());

@@ -1,5 +1,6 @@
 //! The library itself: started after MPI and ended before it, and the agreements between ranks.
 
+use std::cell::Cell;
 use std::ffi::{CString, c_char, c_int};
 use std::marker::PhantomData;
 use std::ptr;
@@ -25,6 +26,8 @@ pub struct Petsc<'u> {
     universe: &'u Universe,
     /// PETSc keeps pointers to both until it is finalised.
     _arguments: (Vec<CString>, Vec<*mut c_char>),
+    /// an option asks for viewers of solvers
+    views: Cell<bool>,
     _one_thread: PhantomData<*mut ()>,
 }
 
@@ -73,7 +76,18 @@ impl<'u> Petsc<'u> {
             ffi::PETSC_COMM_WORLD = universe.world().as_raw();
             ffi::PetscInitialize(&mut count, &mut argv, ptr::null(), ptr::null())
         })?;
-        Ok(Self { universe, _arguments: (texts, pointers), _one_thread: PhantomData })
+        let views = Cell::new(options.iter().any(|option| is_view(option)));
+        Ok(Self { universe, _arguments: (texts, pointers), views, _one_thread: PhantomData })
+    }
+
+    /// Takes note of an option that was set.
+    pub(crate) fn note_option(&self, name: &str) {
+        self.views.set(self.views.get() || is_view(name));
+    }
+
+    /// Whether an option asks for viewers of solvers.
+    pub(crate) fn views(&self) -> bool {
+        self.views.get()
     }
 
     /// Number of ranks.
@@ -135,4 +149,9 @@ pub fn version() -> (u32, u32, u32) {
 /// Bits of PETSc's integer, 32 or 64.
 pub const fn petsc_int_bits() -> u32 {
     ffi::PetscInt::BITS
+}
+
+/// Whether an option makes a solver open a viewer.
+fn is_view(option: &str) -> bool {
+    ["_view", "_converged_reason", "_converged_rate"].iter().any(|part| option.contains(part))
 }

@@ -24,7 +24,7 @@ pub struct Anchored<'a, const D: usize> {
     pub F: &'a Packed<D, Tensor>,
 }
 
-/// AnchorPlaces of the material now, m.
+/// Places of the material now, m.
 pub struct AnchorPlaces<const D: usize> {
     /// per strip and point of it: as far from the anchor as at the start, without what the material between has stretched
     pub strips: Vec<Vec<Vector<D>>>,
@@ -103,7 +103,7 @@ impl<const D: usize> AnchorPlaces<D> {
     }
 }
 
-/// AnchorPlaces of all surface points at the start, m: those of strips, then those of loads.
+/// Places of all surface points at the start, m: those of strips, then those of loads.
 fn starts<const D: usize>(boundary: &Boundary<D>) -> Vec<Vector<D>> {
     let strips = boundary.strips.iter().flat_map(|strip| &strip.points);
     strips.chain(boundary.loads.iter().flat_map(|load| &load.points)).map(|point| point.x).collect()

@@ -18,8 +18,8 @@ impl Ksp<'_> {
         check(unsafe { ffi::KSPSetOperators(self.raw, shell.raw(), shell.raw()) })?;
         self.pc_slot.iter().for_each(|slot| slot.set_rows(local_rows));
         (self.local_rows, self.shell, self.is_ready) = (Some(local_rows), Some((shell, b, x)), false);
-        // KSPReset forgets the viewers that options have asked for.
-        if self.reads_options { self.set_from_options() } else { Ok(()) }
+        // KSPReset forgets the viewers that options have asked for, and nothing else of what they say.
+        if self.reads_options && self.petsc.views() { self.set_from_options() } else { Ok(()) }
     }
 
     /// The shell operator is another one from now on: the preconditioner is built anew. Collective.
