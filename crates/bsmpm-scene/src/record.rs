@@ -7,7 +7,7 @@ use crate::document::{self, Node, Value};
 use crate::error::Origin;
 use crate::nearest::nearest;
 use crate::report::{Report, shortened};
-use crate::schema::{Group, Kind, Presence, ROOT, Table};
+use crate::schema::{Group, Key, Kind, Presence, ROOT, Table};
 use crate::unit::Dimension;
 use crate::words::Word;
 use bsmpm::model::Regime;
@@ -17,6 +17,7 @@ use bsmpm::model::Regime;
 pub(crate) struct Record {
     pub(crate) path: String,
     pub(crate) origin: Origin,
+    table: &'static Table,
     fields: Vec<Field>,
 }
 
@@ -83,7 +84,7 @@ impl Context {
         report: &mut Report<'_>,
     ) -> Record {
         unknown_keys(table, written, path, report);
-        let mut record = Record { path: path.to_owned(), origin, fields: Vec::new() };
+        let mut record = Record { path: path.to_owned(), origin, table, fields: Vec::new() };
         for key in table.keys {
             let path = join(path, key.name);
             match (written.get(key.name), key.presence) {
@@ -225,8 +226,21 @@ impl Record {
         self.fields.iter().find(|field| field.key == key)
     }
 
-    fn datum(&self, key: &str) -> Option<&Datum> {
+    /// The value of a key, whose kind is one that `fits` the type it is wanted as; none of a key of other tables only.
+    ///
+    /// # Panics
+    /// By a mistake of the program: a key that no table has, or whose value is of another type.
+    fn datum(&self, key: &str, fits: impl Fn(&Kind) -> bool) -> Option<&Datum> {
+        let known = self.known(key)?;
+        assert!(fits(&known.kind), "{} of {} is {}", key, self.table.header, known.kind);
         self.field(key)?.datum.as_ref()
+    }
+
+    /// The key as the schema has it.
+    fn known(&self, key: &str) -> Option<&'static Key> {
+        let known = self.table.key(key);
+        assert!(known.is_some() || ROOT.all().iter().any(|table| table.key(key).is_some()), "no table has a key {key}");
+        known
     }
 
     /// Every key that has a value, and the value.
@@ -236,6 +250,7 @@ impl Record {
 
     /// Whether the file gives the key, even with a wrong value.
     pub(crate) fn gives(&self, key: &str) -> bool {
+        self.known(key);
         self.field(key).is_some_and(|field| field.written)
     }
 

@@ -1,41 +1,45 @@
 //! Values by the type that the schema gives them.
 
 use super::{Datum, Record, Row};
+use crate::schema::Kind;
 use crate::unit::Dimension;
 use crate::words::Word;
 
+/// An accessor: its type, the kinds of keys that have such values, and the value as it is stored.
+macro_rules! typed {
+    ($($(#[$doc:meta])* $name:ident: $Type:ty, $($kind:pat_param)|+ => $datum:pat => $value:expr;)+) => {$(
+        $(#[$doc])*
+        pub(crate) fn $name(&self, key: &str) -> Option<$Type> {
+            if let $datum = self.datum(key, |kind| matches!(kind, $($kind)|+))? { Some($value) } else { None }
+        }
+    )+};
+}
+
 /// Typed access: `None` if the key is absent or an error has been reported.
 impl Record {
-    pub(crate) fn number(&self, key: &str) -> Option<f64> {
-        if let Datum::Number(number) = self.datum(key)? { Some(*number) } else { None }
-    }
-
-    pub(crate) fn measure(&self, key: &str) -> Option<(f64, Option<Dimension>)> {
-        if let Datum::Measure(number, dimension) = self.datum(key)? { Some((*number, *dimension)) } else { None }
-    }
-
-    pub(crate) fn numbers(&self, key: &str) -> Option<&[f64]> {
-        if let Datum::Numbers(numbers) = self.datum(key)? { Some(numbers) } else { None }
-    }
-
-    pub(crate) fn rows(&self, key: &str) -> Option<&[Row]> {
-        if let Datum::Rows(rows) = self.datum(key)? { Some(rows) } else { None }
+    typed! {
+        number: f64, Kind::Quantity(..) | Kind::Profile(..) | Kind::Gradient(_) => Datum::Number(number) => *number;
+        measure: (f64, Option<Dimension>), Kind::Measure => Datum::Measure(number, unit) => (*number, *unit);
+        numbers: &[f64], Kind::Pair(..) | Kind::Either(..) | Kind::List(..) => Datum::Numbers(numbers) => numbers;
+        rows: &[Row], Kind::Rows(_) => Datum::Rows(rows) => rows;
+        count: u64, Kind::Count(..) => Datum::Count(count) => *count;
+        text: &str, Kind::Text(_) | Kind::Name => Datum::Text(text) => text;
+        flag: bool, Kind::Flag => Datum::Flag(flag) => *flag;
+        /// A table, also where it may stand for a number or a word.
+        record: &Record, Kind::Table(_) | Kind::Profile(..) | Kind::ChoiceOr(..) => Datum::Record(record) => record;
     }
 
     pub(crate) fn pair(&self, key: &str) -> Option<[f64; 2]> {
         self.numbers(key)?.try_into().ok()
     }
 
-    pub(crate) fn count(&self, key: &str) -> Option<u64> {
-        if let Datum::Count(count) = self.datum(key)? { Some(*count) } else { None }
-    }
-
     /// What the key's word stands for; `T` is the choice that the schema names.
     pub(crate) fn word<T: Word>(&self, key: &str) -> Option<T> {
-        let Datum::Word(word) = self.datum(key)? else { return None };
-        let choice = T::of(word);
-        debug_assert!(choice.is_some(), "{key}: \"{word}\" is no {}", std::any::type_name::<T>());
-        choice
+        let is_of = |kind: &Kind| match kind {
+            Kind::Choice(words) | Kind::ChoiceOr(words, _) => words.words().eq(T::WORDS.words()),
+            _ => false,
+        };
+        if let Datum::Word(word) = self.datum(key, is_of)? { T::of(word) } else { None }
     }
 
     /// The same of a key that may be absent; the outer option is `None` after an error.
@@ -43,23 +47,17 @@ impl Record {
         if self.gives(key) { self.word(key).map(Some) } else { Some(None) }
     }
 
-    pub(crate) fn text(&self, key: &str) -> Option<&str> {
-        if let Datum::Text(text) = self.datum(key)? { Some(text) } else { None }
-    }
-
-    pub(crate) fn flag(&self, key: &str) -> Option<bool> {
-        if let Datum::Flag(flag) = self.datum(key)? { Some(*flag) } else { None }
-    }
-
-    pub(crate) fn record(&self, key: &str) -> Option<&Record> {
-        if let Datum::Record(record) = self.datum(key)? { Some(record) } else { None }
-    }
-
     pub(crate) fn named(&self, key: &str) -> &[(String, Record)] {
-        if let Some(Datum::Named(named)) = self.datum(key) { named } else { &[] }
+        let named = self.datum(key, |kind| matches!(kind, Kind::Named(_)));
+        if let Some(Datum::Named(named)) = named { named } else { &[] }
     }
 
+    /// All tables of a key that may stand several times, or once.
     pub(crate) fn records(&self, key: &str) -> &[Record] {
-        if let Some(Datum::Records(records)) = self.datum(key) { records } else { &[] }
+        match self.datum(key, |kind| matches!(kind, Kind::Tables(_) | Kind::Table(_))) {
+            Some(Datum::Records(records)) => records,
+            Some(Datum::Record(record)) => std::slice::from_ref(record),
+            _ => &[],
+        }
     }
 }

@@ -38,7 +38,7 @@ pub(super) fn place(case: &mut Case, record: &Record, report: &mut Report<'_>) {
     interfaces(case, &mut found);
     segments(case, &mut found);
     for (table, number, message) in std::mem::take(&mut found.narrow) {
-        let of = record.records(table).get(number).or_else(|| record.record(table));
+        let of = record.records(table).get(number);
         of.into_iter().for_each(|record| record.error("to", &message, report));
     }
     let lines = std::mem::take(&mut found.lines);
