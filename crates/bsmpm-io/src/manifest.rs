@@ -94,6 +94,9 @@ pub struct Manifest {
     /// Every file that the run wrote or is about to write, but for this one.
     #[serde(default)]
     pub outputs: Vec<ManifestOutput>,
+    /// Units of the frames' fields, by name, once a frame was written.
+    #[serde(default)]
+    pub frame_units: BTreeMap<String, String>,
     /// The newest good checkpoint, relative to the directory.
     pub checkpoint: Option<String>,
     /// Where the run went on after it had stopped, first one first.
@@ -132,6 +135,7 @@ impl Manifest {
             initial: None,
             checks: Vec::new(),
             outputs: Vec::new(),
+            frame_units: BTreeMap::new(),
             checkpoint: None,
             restarts: Vec::new(),
             failure: None,

@@ -2,12 +2,13 @@
 //! that no rank holds more of them than its own and a block.
 
 use bsmpm::material::{Material, Variable};
-use bsmpm::points::Points;
+use bsmpm::points::{Column, ColumnInfo, Number, Points};
 use bsmpm_io::frame::{Field, FieldValues, Frame};
 use bsmpm_io::vtu;
 use mpi::collective::{CommunicatorCollectives, Root, SystemOperation};
 use mpi::datatype::PartitionMut;
 use mpi::topology::{Communicator, SimpleCommunicator};
+use std::collections::BTreeMap;
 
 /// Ids of a block: 2 MB of numbers on their way.
 const BLOCK: u64 = 1 << 14;
@@ -24,25 +25,30 @@ pub struct FrameMoment {
 }
 
 /// What a point is in a frame besides its place, field by field.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy)]
 enum FieldSource<'a> {
-    Displacement,
-    Velocity,
-    Stress,
+    /// a column of the points as it is, vectors with three components
+    Column(&'static ColumnInfo, &'a dyn Column),
     Pressure,
     /// Pa
     Projected(&'a [f64]),
-    PlasticStrain,
     /// of the materials that have it
     State(Variable, &'a [Material]),
     Volume,
-    Material,
-    Id,
 }
 
 impl<'a> FieldSource<'a> {
-    /// All of a scene, in the order of the files; the same on all ranks.
-    fn all(dynamic: bool, projected: Option<&'a [f64]>, materials: &'a [Material]) -> Vec<Self> {
+    /// All of a scene, in the order of the files; the same on all ranks: vectors and tensors, then numbers, then who a point
+    /// is.
+    fn all(points: &'a Points<2>, projected: Option<&'a [f64]>, materials: &'a [Material]) -> Vec<Self> {
+        let shown = Points::<2>::COLUMNS.iter().filter(|info| info.frame.is_some());
+        let shown = shown.filter_map(|info| points.column(info.name).map(|column| (info, column)));
+        let (real, whole): (Vec<_>, Vec<_>) = shown.partition(|(_, column)| column.number() == Number::F64);
+        let (numbers, mut shaped): (Vec<_>, Vec<_>) = real.into_iter().partition(|(_, column)| column.width() == 1);
+        shaped.sort_by_key(|(_, column)| column.width());
+        let columns = |list: Vec<(&'static ColumnInfo, &'a dyn Column)>| {
+            list.into_iter().map(|(info, column)| Self::Column(info, column))
+        };
         let mut variables: Vec<Variable> = Vec::new();
         for variable in materials.iter().flat_map(|material| material.state()) {
             if variables.iter().all(|known| known.name != variable.name) {
@@ -50,72 +56,56 @@ impl<'a> FieldSource<'a> {
             }
         }
         let state = variables.into_iter().map(|variable| Self::State(variable, materials));
-        let first = [Self::Displacement].into_iter().chain(dynamic.then_some(Self::Velocity));
-        let first = first.chain([Self::Stress, Self::Pressure]).chain(projected.map(Self::Projected));
-        let last = [Self::Volume, Self::Material, Self::Id];
-        first.chain([Self::PlasticStrain]).chain(state).chain(last).collect()
+        let first = columns(shaped).chain([Self::Pressure]).chain(projected.map(Self::Projected));
+        first.chain(columns(numbers)).chain(state).chain([Self::Volume]).chain(columns(whole).rev()).collect()
     }
 
-    fn name(&self) -> &'static str {
+    /// Its name and unit.
+    fn label(&self) -> (&'static str, &'static str) {
         match self {
-            Self::Displacement => "displacement",
-            Self::Velocity => "velocity",
-            Self::Stress => "stress",
-            Self::Pressure => "pressure",
-            Self::Projected(_) => "projected_pressure",
-            Self::PlasticStrain => "plastic_strain",
-            Self::State(variable, _) => variable.name,
-            Self::Volume => "volume",
-            Self::Material => "material",
-            Self::Id => "id",
+            Self::Column(info, _) => (info.frame.unwrap_or(info.name), info.unit),
+            Self::Pressure => ("pressure", "Pa"),
+            Self::Projected(_) => ("projected_pressure", "Pa"),
+            Self::State(variable, _) => (variable.name, variable.unit),
+            Self::Volume => ("volume", "m^D"),
         }
     }
 
     fn components(&self) -> usize {
         match self {
-            Self::Displacement | Self::Velocity => 3,
-            Self::Stress => 6,
+            Self::Column(_, column) if column.width() == 2 => 3,
+            Self::Column(_, column) => column.width(),
             _ => 1,
         }
     }
 
     /// Its numbers of point `p`.
     fn put(&self, points: &Points<2>, p: usize, row: &mut Vec<f64>) {
-        let sigma = || points.sigma.at(p).0;
         match self {
-            Self::Displacement => row.extend([points.u[p][0], points.u[p][1], 0.0]),
-            Self::Velocity => {
-                let v = points.motion.as_ref().map_or([0.0; 2], |motion| motion.v[p].into());
-                row.extend([v[0], v[1], 0.0]);
+            Self::Column(_, column) => {
+                column.show(p, row);
+                row.extend((column.width()..self.components()).map(|_| 0.0));
             }
-            Self::Stress => row.extend(sigma()),
-            Self::Pressure => row.push(-(sigma()[0] + sigma()[1] + sigma()[2]) / 3.0),
+            Self::Pressure => row.push(-points.sigma.at(p).0[..3].iter().sum::<f64>() / 3.0),
             Self::Projected(pressure) => row.push(pressure[p]),
-            Self::PlasticStrain => row.push(points.eps_p[p]),
             Self::State(variable, materials) => {
                 let state = materials[usize::from(points.material[p])].state();
                 let place = state.iter().position(|own| own.name == variable.name);
                 row.push(place.map_or(0.0, |place| points.state_of(p)[place]));
             }
             Self::Volume => row.push(points.volume[p] * points.F.at(p).determinant()),
-            Self::Material => row.push(f64::from(points.material[p])),
-            Self::Id => row.push(points.id[p] as f64),
         }
     }
 
     /// The field of the rows, in which its numbers begin at `at`.
     fn field(&self, rows: &[&[f64]], at: usize) -> Field {
-        let (name, components) = (self.name(), self.components());
-        let values = match self {
-            Self::Material => FieldValues::U16(rows.iter().map(|row| row[at] as u16).collect()),
-            Self::Id => FieldValues::U64(rows.iter().map(|row| row[at] as u64).collect()),
-            _ => {
-                return Field::real(
-                    name,
-                    components,
-                    rows.iter().flat_map(|row| &row[at..at + components]).copied().collect(),
-                );
-            }
+        let (name, components) = (self.label().0, self.components());
+        let number = if let Self::Column(_, column) = self { column.number() } else { Number::F64 };
+        let numbers = rows.iter().flat_map(|row| &row[at..at + components]).copied();
+        let values = match number {
+            Number::U16 => FieldValues::U16(numbers.map(|number| number as u16).collect()),
+            Number::U64 => FieldValues::U64(numbers.map(|number| number as u64).collect()),
+            Number::F64 => return Field::real(name, components, numbers.collect()),
         };
         Field { name: name.into(), components, values }
     }
@@ -148,8 +138,17 @@ impl<'a> Gathering<'a> {
         let (mut end, mut total) = (0_u64, 0_u64);
         world.all_reduce_into(&own, &mut end, SystemOperation::max());
         world.all_reduce_into(&(points.len() as u64), &mut total, SystemOperation::sum());
-        let sources = FieldSource::all(points.motion.is_some(), projected, materials);
+        let sources = FieldSource::all(points, projected, materials);
         Self { world, points, sources, moment, by_id, gone: 0, ids: 0..end, total: total as usize }
+    }
+
+    /// Units of the fields, by name.
+    pub fn units(&self) -> BTreeMap<String, String> {
+        self.sources
+            .iter()
+            .map(FieldSource::label)
+            .map(|(name, unit)| (name.into(), unit.replace("m^D", "m2")))
+            .collect()
     }
 
     /// The frame without its points.
@@ -213,9 +212,15 @@ fn width(sources: &[FieldSource<'_>]) -> usize {
     HEAD + sources.iter().map(FieldSource::components).sum::<usize>()
 }
 
+/// No points, with the columns of a scene.
+fn no_points(dynamic: bool) -> Points<2> {
+    Points::from_seeds([], dynamic)
+}
+
 /// Bytes that a point takes in a frame's file.
 pub fn point_bytes(dynamic: bool, projected: bool, materials: &[Material]) -> u64 {
-    let sources = FieldSource::all(dynamic, projected.then_some(&[]), materials);
+    let points = no_points(dynamic);
+    let sources = FieldSource::all(&points, projected.then_some(&[]), materials);
     vtu::point_bytes(&unpack(&[], FrameMoment { step: 0, time: 0.0, lower: [0.0; 2] }, &sources))
 }
 

@@ -270,6 +270,7 @@ impl<'p> Run<'p> {
         let written = match &mut self.ledger {
             Some(ledger) => {
                 let (head, points) = (frame.head(), frame.points());
+                ledger.manifest().frame_units = frame.units();
                 ledger.frame(Parts { head, points, next: &mut || frame.block() })
             }
             None => {

@@ -11,48 +11,141 @@ use crate::boundary::anchor::Anchored;
 use crate::grid::{Grid, Located};
 use crate::tensor::{Symmetric, Tensor, Vector};
 
-/// Velocity and acceleration; absent in quasi-static scenes.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Motion<const D: usize> {
-    /// m/s  velocity
-    pub v: Vec<Vector<D>>,
-    /// m/s2  acceleration
-    pub a: Vec<Vector<D>>,
+/// What a column is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ColumnInfo {
+    /// as checkpoints name it
+    pub name: &'static str,
+    /// its unit, "-" for none
+    pub unit: &'static str,
+    /// as frames name it, if they show it
+    pub frame: Option<&'static str>,
 }
 
-/// The material points of one rank. Read-only until a step is committed.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Points<const D: usize> {
-    /// global id, unique over all ranks
-    pub id: Vec<u64>,
-    /// number of the material
-    pub material: Vec<u16>,
-    /// m  position from the grid's lower corner
-    pub x: Vec<Vector<D>>,
-    /// m  displacement since the start
-    pub u: Vec<Vector<D>>,
-    /// velocity and acceleration
-    pub motion: Option<Motion<D>>,
-    /// kg (per metre in plane strain)
-    pub mass: Vec<f64>,
-    /// m^D  reference volume V0; the current one is det F V0
-    pub volume: Vec<f64>,
-    /// -  deformation gradient
-    pub F: Packed<D, Tensor>,
-    /// -  elastic left Cauchy-Green tensor that the next step starts from (smoothed under some F-bar methods)
-    pub b_e: Packed<D, Symmetric>,
-    /// Pa  Cauchy stress of the last converged step
-    pub sigma: Packed<D, Symmetric>,
-    /// -  accumulated plastic strain
-    pub eps_p: Vec<f64>,
-    /// -  J-bar/J, J-bar the dilation that the stress has felt, under F-bar from its first step on; before that it is 1
-    pub dilation: Option<Vec<f64>>,
-    /// -  logarithm of the volume that gapes, where a material closes its gaps, from its first step on; before that it is 0
-    pub gap: Option<Vec<f64>>,
-    /// state variables of the points' laws, if any law has some
-    pub state: Option<Rows>,
-    /// what strips and loads carry on; no column: it is the same on every rank
-    pub surface: Surface<D>,
+/// The columns, each with its type, unit, name in frames, and what it starts from. Seeding, sorting, migration, checkpoints
+/// and frames walk this list, so that a new state variable is one line.
+macro_rules! columns {
+    (
+        every { $($(#[$doc:meta])+ $name:ident: $Type:ty, $unit:literal, $frame:expr, |$seed:ident| $start:expr;)+ }
+        dynamic { $($(#[$moving_doc:meta])+
+            $moving:ident: $MovingType:ty, $moving_unit:literal, $moving_frame:expr, |$moving_seed:ident| $moving_start:expr;)+ }
+        some { $($(#[$some_doc:meta])+ $some:ident: $SomeType:ty, $some_unit:literal, $some_frame:expr;)+ }
+    ) => {
+        /// Velocity and acceleration; absent in quasi-static scenes.
+        #[derive(Clone, Debug, Default, PartialEq)]
+        pub struct Motion<const D: usize> {
+            $($(#[$moving_doc])+ pub $moving: $MovingType,)+
+        }
+
+        /// The material points of one rank. Read-only until a step is committed.
+        #[derive(Clone, Debug, Default, PartialEq)]
+        pub struct Points<const D: usize> {
+            $($(#[$doc])+ pub $name: $Type,)+
+            /// velocity and acceleration
+            pub motion: Option<Motion<D>>,
+            $($(#[$some_doc])+ pub $some: Option<$SomeType>,)+
+            /// state variables of the points' laws, if any law has some
+            pub state: Option<Rows>,
+            /// what strips and loads carry on; no column: it is the same on every rank
+            pub surface: Surface<D>,
+        }
+
+        impl<const D: usize> Points<D> {
+            /// What the columns are; but for the laws' state, which has variables of its own.
+            pub const COLUMNS: &'static [ColumnInfo] = &[
+                $(ColumnInfo { name: stringify!($name), unit: $unit, frame: $frame },)+
+                $(ColumnInfo { name: stringify!($moving), unit: $moving_unit, frame: $moving_frame },)+
+                $(ColumnInfo { name: stringify!($some), unit: $some_unit, frame: $some_frame },)+
+            ];
+
+            /// Adds a stress-free point at rest or with its initial velocity.
+            fn push(&mut self, seed: &Seed<D>) {
+                $({ let $seed = seed; self.$name.push($start); })+
+                if let Some(motion) = &mut self.motion {
+                    $({ let $moving_seed = seed; motion.$moving.push($moving_start); })+
+                }
+            }
+
+            /// No points, with room for the columns of these names: those that a scene does without are there if they are
+            /// named. `state`: numbers that the laws' state consists of.
+            pub fn holding(names: &[&str], state: usize) -> Self {
+                let has = |name| names.contains(&name);
+                Self {
+                    motion: [$(stringify!($moving)),+].into_iter().all(has).then(Motion::default),
+                    $($some: has(stringify!($some)).then(Default::default),)+
+                    state: has(LAW_STATE).then(|| Rows::of(state)),
+                    ..Self::default()
+                }
+            }
+
+            /// Every array once, by name.
+            pub fn named_columns(&mut self) -> Vec<(&'static str, &mut dyn Column)> {
+                let mut columns: Vec<(&'static str, &mut dyn Column)> = vec![$((stringify!($name), &mut self.$name),)+];
+                if let Some(motion) = &mut self.motion {
+                    $(columns.push((stringify!($moving), &mut motion.$moving));)+
+                }
+                $(if let Some(column) = &mut self.$some {
+                    columns.push((stringify!($some), column));
+                })+
+                columns.extend(self.state.as_mut().map(|state| (LAW_STATE, state as &mut dyn Column)));
+                columns
+            }
+
+            /// The array of a name, if the scene has it.
+            pub fn column(&self, name: &str) -> Option<&dyn Column> {
+                $(if name == stringify!($name) {
+                    return Some(&self.$name);
+                })+
+                $(if name == stringify!($moving) {
+                    return self.motion.as_ref().map(|motion| &motion.$moving as &dyn Column);
+                })+
+                $(if name == stringify!($some) {
+                    return self.$some.as_ref().map(|column| column as &dyn Column);
+                })+
+                None
+            }
+        }
+    };
+}
+
+/// Name of the column of the laws' state.
+const LAW_STATE: &str = "law_state";
+
+columns! {
+    every {
+        /// global id, unique over all ranks
+        id: Vec<u64>, "-", Some("id"), |seed| seed.id;
+        /// number of the material
+        material: Vec<u16>, "-", Some("material"), |seed| seed.material;
+        /// m  position from the grid's lower corner
+        x: Vec<Vector<D>>, "m", None, |seed| seed.x;
+        /// m  displacement since the start
+        u: Vec<Vector<D>>, "m", Some("displacement"), |_seed| Vector::zeros();
+        /// kg (per metre in plane strain)
+        mass: Vec<f64>, "kg", None, |seed| seed.mass;
+        /// m^D  reference volume V0; the current one is det F V0
+        volume: Vec<f64>, "m^D", None, |seed| seed.volume;
+        /// -  deformation gradient
+        F: Packed<D, Tensor>, "-", None, |_seed| Tensor::identity();
+        /// -  elastic left Cauchy-Green tensor that the next step starts from (smoothed under some F-bar methods)
+        b_e: Packed<D, Symmetric>, "-", None, |_seed| Symmetric::IDENTITY;
+        /// Pa  Cauchy stress of the last converged step
+        sigma: Packed<D, Symmetric>, "Pa", Some("stress"), |_seed| Symmetric::default();
+        /// -  accumulated plastic strain
+        eps_p: Vec<f64>, "-", Some("plastic_strain"), |_seed| 0.0;
+    }
+    dynamic {
+        /// m/s  velocity
+        v: Vec<Vector<D>>, "m/s", Some("velocity"), |seed| seed.v;
+        /// m/s2  acceleration
+        a: Vec<Vector<D>>, "m/s2", None, |_seed| Vector::zeros();
+    }
+    some {
+        /// -  J-bar/J, J-bar the dilation that the stress has felt, under F-bar from its first step on; before that it is 1
+        dilation: Vec<f64>, "-", None;
+        /// -  logarithm of the volume that gapes, where a material closes its gaps, from its first step on; before that it is 0
+        gap: Vec<f64>, "-", None;
+    }
 }
 
 /// A point as it is placed at the start.
@@ -90,22 +183,7 @@ impl<const D: usize> Points<D> {
     /// Stress-free points at rest or with their initial velocity; with `dynamic` they carry velocity and acceleration.
     pub fn from_seeds(seeds: impl IntoIterator<Item = Seed<D>>, dynamic: bool) -> Self {
         let mut points = Self { motion: dynamic.then(Motion::default), ..Self::default() };
-        for seed in seeds {
-            points.id.push(seed.id);
-            points.material.push(seed.material);
-            points.x.push(seed.x);
-            points.u.push(Vector::zeros());
-            points.mass.push(seed.mass);
-            points.volume.push(seed.volume);
-            points.F.push(Tensor::identity());
-            points.b_e.push(Symmetric::IDENTITY);
-            points.sigma.push(Symmetric::default());
-            points.eps_p.push(0.0);
-            if let Some(motion) = &mut points.motion {
-                motion.v.push(seed.v);
-                motion.a.push(Vector::zeros());
-            }
-        }
+        seeds.into_iter().for_each(|seed| points.push(&seed));
         points
     }
 
@@ -147,50 +225,6 @@ impl<const D: usize> Points<D> {
     #[inline]
     pub fn dilation_of(&self, p: usize) -> f64 {
         self.dilation.as_ref().map_or(1.0, |dilation| dilation[p])
-    }
-
-    /// No points, with room for the columns of these names: those that a scene does without are there if they are named.
-    /// `state`: numbers that the laws' state consists of.
-    pub fn holding(names: &[&str], state: usize) -> Self {
-        let has = |name| names.contains(&name);
-        Self {
-            motion: has("v").then(Motion::default),
-            dilation: has("dilation").then(Vec::new),
-            gap: has("gap").then(Vec::new),
-            state: has("law_state").then(|| Rows::of(state)),
-            ..Self::default()
-        }
-    }
-
-    /// Every array once, by name: sorting, migration and checkpoints walk this list, so that a new state variable is one
-    /// line.
-    pub fn named_columns(&mut self) -> Vec<(&'static str, &mut dyn Column)> {
-        let mut columns: Vec<(&'static str, &mut dyn Column)> = vec![
-            ("id", &mut self.id),
-            ("material", &mut self.material),
-            ("x", &mut self.x),
-            ("u", &mut self.u),
-            ("mass", &mut self.mass),
-            ("volume", &mut self.volume),
-            ("F", &mut self.F),
-            ("b_e", &mut self.b_e),
-            ("sigma", &mut self.sigma),
-            ("eps_p", &mut self.eps_p),
-        ];
-        if let Some(motion) = &mut self.motion {
-            columns.push(("v", &mut motion.v));
-            columns.push(("a", &mut motion.a));
-        }
-        if let Some(dilation) = &mut self.dilation {
-            columns.push(("dilation", dilation));
-        }
-        if let Some(gap) = &mut self.gap {
-            columns.push(("gap", gap));
-        }
-        if let Some(state) = &mut self.state {
-            columns.push(("law_state", state));
-        }
-        columns
     }
 
     /// Every array once.

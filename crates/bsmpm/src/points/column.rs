@@ -29,6 +29,8 @@ pub trait Column {
     fn memory(&self) -> usize;
     /// Whether a row of a message or a file can be taken without loss: everything that is not held is zero.
     fn fits(&self, row: &[u8]) -> bool;
+    /// Appends the numbers of row `p`.
+    fn show(&self, p: usize, numbers: &mut Vec<f64>);
     /// Keeps the rows `order`, in that order.
     fn reorder(&mut self, order: &[u32]);
     /// Appends row `p` to a message.
@@ -82,6 +84,9 @@ impl Column for Rows {
     fn fits(&self, _row: &[u8]) -> bool {
         true
     }
+    fn show(&self, p: usize, numbers: &mut Vec<f64>) {
+        numbers.extend_from_slice(self.of_point(p));
+    }
     fn reorder(&mut self, order: &[u32]) {
         let mut numbers = Vec::with_capacity(order.len() * self.width);
         order.iter().for_each(|&p| numbers.extend_from_slice(self.of_point(p as usize)));
@@ -116,6 +121,9 @@ impl<T: Row> Column for Vec<T> {
     fn fits(&self, _row: &[u8]) -> bool {
         true
     }
+    fn show(&self, p: usize, numbers: &mut Vec<f64>) {
+        self[p].show(numbers);
+    }
     fn reorder(&mut self, order: &[u32]) {
         *self = order.iter().map(|&p| self[p as usize]).collect();
     }
@@ -148,6 +156,9 @@ impl<const D: usize, T: Row + Components> Column for Packed<D, T> {
     fn fits(&self, row: &[u8]) -> bool {
         Self::holds(&T::take(row))
     }
+    fn show(&self, p: usize, numbers: &mut Vec<f64>) {
+        self.at(p).show(numbers);
+    }
     fn reorder(&mut self, order: &[u32]) {
         *self = order.iter().map(|&p| self.at(p as usize)).collect();
     }
@@ -166,6 +177,7 @@ trait Row: Copy {
     const NUMBER: Number;
     const WIDTH: usize;
     const BYTES: usize;
+    fn show(&self, numbers: &mut Vec<f64>);
     fn put(&self, message: &mut Vec<u8>);
     fn take(row: &[u8]) -> Self;
 }
@@ -176,6 +188,9 @@ macro_rules! number_rows {
             const NUMBER: Number = Number::$kind;
             const WIDTH: usize = 1;
             const BYTES: usize = size_of::<$number>();
+            fn show(&self, numbers: &mut Vec<f64>) {
+                numbers.push(*self as f64);
+            }
             fn put(&self, message: &mut Vec<u8>) {
                 message.extend_from_slice(&self.to_le_bytes());
             }
@@ -193,6 +208,9 @@ impl<const R: usize, const C: usize> Row for SMatrix<f64, R, C> {
     const NUMBER: Number = Number::F64;
     const WIDTH: usize = R * C;
     const BYTES: usize = 8 * R * C;
+    fn show(&self, numbers: &mut Vec<f64>) {
+        numbers.extend(self.iter());
+    }
     fn put(&self, message: &mut Vec<u8>) {
         self.iter().for_each(|entry| entry.put(message));
     }
@@ -205,6 +223,9 @@ impl Row for Symmetric {
     const NUMBER: Number = Number::F64;
     const WIDTH: usize = 6;
     const BYTES: usize = 48;
+    fn show(&self, numbers: &mut Vec<f64>) {
+        numbers.extend(self.0);
+    }
     fn put(&self, message: &mut Vec<u8>) {
         self.0.iter().for_each(|entry| entry.put(message));
     }
