@@ -4,7 +4,7 @@
 use crate::draw;
 use arbitrary::{Result, Unstructured};
 use bsmpm::material::{
-    Elastic, Graded, GradedStrength, Hencky, Law, Material, MohrCoulomb, Profile, Response, Separation,
+    DruckerPrager, Elastic, Graded, Hencky, Match, Material, MohrCoulomb, Profile, Response, Separation, VonMises,
 };
 use bsmpm::tensor::{Symmetric, Tensor};
 use nalgebra::{Rotation3, Vector3};
@@ -24,17 +24,22 @@ pub fn target(data: &[u8]) {
 
 fn draw(u: &mut Unstructured<'_>) -> Result<()> {
     let material = material(u)?;
+    let mut state = vec![0.0; material.state().len()];
     while !u.is_empty() {
         let trial = trial(u)?;
-        match material.respond(&trial, &[]) {
-            Ok(response) => check(&material, &trial, &response),
+        match material.respond(&trial, &state) {
+            Ok(response) => {
+                response.advance(&mut state);
+                check(&material, &trial, &response, &state);
+            }
             Err(error) => assert!(!error.to_string().is_empty()),
         }
     }
     Ok(())
 }
 
-/// What [`bsmpm_scene`] admits: E > 0, -1 < ν < ½, 0 ≤ ψ ≤ φ < 90°, c ≥ 0, a strength reduction of 0.1 to 100.
+/// What [`bsmpm_scene`] admits: E > 0, -1 < ν < ½, 0 ≤ ψ ≤ φ < 90°, c ≥ 0, σ_y > 0, H ≥ 0, a strength reduction of 0.1 to
+/// 100; of any law also by height.
 fn material(u: &mut Unstructured<'_>) -> Result<Material> {
     let elastic = Elastic { young: draw::size(u, -12.0, 20.0)?, poisson: poisson(u)? };
     let friction = draw::between(u, 0.0, 89.999)?.to_radians() * if u.ratio(1, 8)? { 1e-9 } else { 1.0 };
@@ -42,18 +47,21 @@ fn material(u: &mut Unstructured<'_>) -> Result<Material> {
     let cohesion = if u.ratio(1, 4)? { 0.0 } else { draw::size(u, -12.0, 20.0)? };
     let separation = if u.arbitrary()? { Separation::Forgotten } else { Separation::Closing };
     let reduction = if u.arbitrary()? { 1.0 } else { draw::size(u, -1.0, 2.0)? };
-    Ok(match u.int_in_range(0..=7)? {
+    let law = match u.int_in_range(0..=9)? {
         0 => Material::Hencky(Hencky { elastic }),
-        1 => {
-            let [young, friction, cohesion] = [elastic.young, friction, cohesion].map(Profile::constant);
-            let strength = GradedStrength { friction, dilation, cohesion, reduction, separation };
-            Graded::new(young, elastic.poisson, Some(strength), 0.0..1.0).at(draw::fraction(u)?)
+        1 | 2 => {
+            let fit = *u.choose(&[Match::PlaneStrain, Match::Inner, Match::Outer])?;
+            Material::DruckerPrager(DruckerPrager::new(elastic, (friction, dilation, cohesion), fit))
         }
-        _ => {
-            let law = MohrCoulomb::new(elastic, friction, dilation, cohesion);
-            Material::MohrCoulomb(law.separating(separation).reduced(reduction))
-        }
-    })
+        3 | 4 => Material::VonMises(VonMises::new(elastic, cohesion.max(1e-12), friction * cohesion)),
+        _ => Material::MohrCoulomb(MohrCoulomb::new(elastic, friction, dilation, cohesion).separating(separation)),
+    };
+    if u.ratio(7, 8)? {
+        return Ok(law.reduced(reduction));
+    }
+    let young = Profile::constant(law.elastic().young);
+    let parameters = law.parameters().into_iter().map(Profile::constant).collect();
+    Ok(Graded::new(&law, young, parameters, 0.0..1.0, reduction).at(draw::fraction(u)?))
 }
 
 /// Anywhere between -1 and ½, or near an end.
@@ -83,42 +91,36 @@ fn trial(u: &mut Unstructured<'_>) -> Result<Symmetric> {
     })
 }
 
-fn check(material: &Material, trial: &Symmetric, response: &Response) {
+fn check(material: &Material, trial: &Symmetric, response: &Response, state: &[f64]) {
     let (tau, b_e) = (response.tau(), response.b_e());
     let told = || format!("{material:?} at {trial:?}: {response:?}");
     let principal = response.principal_tau();
     let increments = [response.gap(), response.plastic_increment(), response.dissipation()];
-    let numbers = tau.0.iter().chain(&b_e.0).chain(&principal).chain(&increments);
+    let numbers = tau.0.iter().chain(&b_e.0).chain(&principal).chain(&increments).chain(state);
     assert!(numbers.into_iter().all(|number| number.is_finite()), "not finite: {}", told());
     assert!(principal[0] >= principal[1] && principal[1] >= principal[2], "order: {}", told());
     assert!(increments[0] >= 0.0 && increments[1] >= 0.0, "sign: {}", told());
     let tangent = response.linearise(&Tensor::new(0.3, -0.2, 0.1, 0.5, -0.4, 0.2, 0.1, 0.0, 0.6));
     assert!(tangent.iter().all(|number| number.is_finite()), "tangent: {}", told());
-    let scale = yield_scale(material, principal);
-    assert!(yield_function(material, principal) <= SAME * scale, "yield: {}", told());
-    second_return(material, response, scale);
+    let scale = yield_scale(material, principal, state);
+    assert!(material.excess(principal, state) <= SAME * scale, "yield: {}", told());
+    second_return(material, response, scale, state);
 }
 
-/// `f = (τ₁ - τ₃) + (τ₁ + τ₃) sin φ - 2 c cos φ`, Pa.
-fn yield_function(material: &Material, [first, _, third]: [f64; 3]) -> f64 {
-    let Material::MohrCoulomb(law) = material else { return f64::NEG_INFINITY };
-    (first - third) + (first + third) * law.friction().sin() - 2.0 * law.cohesion() * law.friction().cos()
-}
-
-/// Size of the terms of f, Pa.
-fn yield_scale(material: &Material, [first, second, third]: [f64; 3]) -> f64 {
-    let strength = if let Material::MohrCoulomb(law) = material { law.cohesion() * law.friction().cos() } else { 0.0 };
-    first.abs() + second.abs() + third.abs() + 2.0 * strength
+/// Size of the terms of the yield function, Pa.
+fn yield_scale(material: &Material, [first, second, third]: [f64; 3], state: &[f64]) -> f64 {
+    let strength = if material.yields() { material.excess([0.0; 3], state).abs() } else { 0.0 };
+    first.abs() + second.abs() + third.abs() + strength
 }
 
 /// A second return changes no more than rounding: of b's components, and of the inverse elasticity where ν is near an end.
-fn second_return(material: &Material, response: &Response, scale: f64) {
+fn second_return(material: &Material, response: &Response, scale: f64, state: &[f64]) {
     let eps = response.principal_eps_e();
     let condition = (2.0 * (eps[0] - eps[2])).exp();
     if condition > CONDITION || eps[0].abs().max(eps[2].abs()) > LARGEST {
         return;
     }
-    let again = material.respond(&response.b_e(), &[]);
+    let again = material.respond(&response.b_e(), state);
     let again = again.unwrap_or_else(|error| panic!("{error} after a return of {material:?}: {response:?}"));
     let (lambda, mu) = material.elastic().lame();
     let bulk = material.elastic().young / (3.0 - 6.0 * material.elastic().poisson);

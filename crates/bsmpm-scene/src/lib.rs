@@ -10,11 +10,12 @@
 //! bounded count per column of cells of a body that is no box.
 #![forbid(unsafe_code)]
 
+#[macro_use]
+pub mod words;
 pub mod model;
 pub mod schema;
 pub mod surfaces;
 pub mod unit;
-pub mod words;
 
 mod case;
 mod difference;

@@ -6,7 +6,7 @@ use bsmpm::boundary::{Boundary, Support};
 use bsmpm::error::GridError;
 use bsmpm::grid::{Grid, KnotVector};
 use bsmpm::kinematics::PlaneStrain;
-use bsmpm::material::{Material, state_width};
+use bsmpm::material::state_width;
 use bsmpm::method::Criteria;
 use bsmpm::method::Nonlinear;
 use bsmpm::method::QuasiNewton;
@@ -148,7 +148,7 @@ pub fn frame_times(case: &Case) -> Vec<f64> {
 /// consistent F-bar one that dilates is not alike to one that does not, as their forces are formed in other ways.
 pub fn groups(case: &Case) -> Groups {
     let kind = |named: &NamedMaterial| {
-        let graded = if let Material::Graded(_) = &named.material { Some(named.name.clone()) } else { None };
+        let graded = named.material.is_graded().then(|| named.name.clone());
         let adjoint = case.stabilisation == Stabilisation::ConsistentFBar && is_dilatant(&named.material);
         (named.material.elastic().clone(), graded, adjoint)
     };

@@ -78,8 +78,7 @@ impl Page {
     }
 
     fn table(&mut self, table: &Table) {
-        let header =
-            if table.header.contains(['[', '{']) { format!("`{}`", table.header) } else { "Top level".to_owned() };
+        let header = if table.header.contains(['[', '{']) { quoted(table) } else { "Top level".to_owned() };
         self.line(&format!("## {header}\n"));
         self.paragraph(&format!("{}.", table.doc));
         for key in table.keys {
@@ -127,6 +126,14 @@ impl Page {
     }
 }
 
+/// A table's header, what is TOML in it as code.
+fn quoted(table: &Table) -> String {
+    match table.header.split_once("} ") {
+        Some((code, words)) => format!("`{code}}}` {words}"),
+        None => format!("`{}`", table.header),
+    }
+}
+
 /// Keys of which only one may be given, in words.
 fn choice(group: &Group) -> String {
     let keys: Vec<String> = group.keys.iter().map(|key| format!("`{key}`")).collect();
@@ -148,7 +155,7 @@ fn takes(key: &Key) -> String {
     let ranged = |what: String, range: &Range| format!("{what}{}", range_of(key.name, range));
     match &key.kind {
         Kind::Quantity(of, range) => ranged(of.to_string(), range),
-        Kind::Profile(of, range, table) => ranged(format!("{of}, or `{}`", table.header), range),
+        Kind::Profile(of, range, table) => ranged(format!("{of}, or {}", quoted(table)), range),
         Kind::Pair(of, range) => ranged(format!("`[x, y]`, each {of}"), range),
         Kind::Either(of, range) => ranged(format!("{of}, or `[x, y]`"), range),
         Kind::List(of, range) => ranged(format!("a list, each {of}"), range),

@@ -3,13 +3,14 @@
 //! The reader takes names, types, units, ranges and defaults from here; messages and `did you mean` do too.
 
 mod body;
+mod laws;
 mod loads;
 mod output;
 mod tables;
 
 pub use crate::unit::Dimension;
 pub use crate::words::Words;
-pub(crate) use tables::BELOW_90;
+pub(crate) use laws::{Law, MATERIAL};
 pub use tables::ROOT;
 
 use std::fmt;

@@ -11,7 +11,7 @@ mod scene;
 mod solver;
 
 pub use measurement::Measurement;
-pub use scene::{Accuracy, Base, C0Lines, Components, Format, Geometry, Law, Order, Side, Start, Support};
+pub use scene::{Accuracy, Base, C0Lines, Components, Format, Geometry, Order, Side, Start, Support};
 pub use solver::{Factor, Ksp, LinearSolver, Nonlinear, Pc};
 
 /// What one of several words stands for.
@@ -67,6 +67,7 @@ const AUTO: &str = "auto";
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::schema::Law;
     use bsmpm::background::Kind;
 
     #[test]

@@ -139,7 +139,7 @@ fn the_full_case_in_si() {
     let whole = MohrCoulomb::new(sand.elastic().clone(), 30_f64.to_radians(), 5_f64.to_radians(), 1e3);
     assert!(sand.elastic().young == 2e7 && *sand == whole.reduced(1.25));
     let Material::MohrCoulomb(clay) = &case.materials[1].material else { panic!() };
-    assert_eq!((clay.friction(), clay.dilation(), clay.cohesion()), (0.0, 0.0, 1.6e4));
+    assert_eq!(clay.parameters(), [0.0, 0.0, 1.6e4]);
     assert!(matches!(case.materials[2].material, Material::Hencky(_)));
     assert_eq!(case.bodies[2].velocity, Some([0.0, -1.0]));
     assert_eq!(case.boundary, [[Support::Roller, Support::Free], [Support::Fixed; 2]]);
@@ -294,22 +294,29 @@ fn cones_and_cylinders() {
         |text: &str| valid(FULL, &[&format!("material.clay={{ young = 1e7, poisson = 0.3, density = 2e3, {text} }}")]);
     let case = law("model = \"von-mises\", yield_stress = \"10 kPa\", hardening = 5e4");
     let Material::VonMises(clay) = &case.materials[1].material else { panic!() };
-    assert_eq!((clay.yield_stress(), clay.hardening(), clay.elastic().young), (8e3, 4e4, 1e7));
+    assert_eq!((clay.parameters(), clay.elastic().young), (vec![8e3, 4e4], 1e7));
     assert_eq!(case.materials[1].material.state()[0].name, "hardening_strain");
     let note = case.notes.iter().find(|note| note.key == "material.clay").expect("a note of what is left");
     assert!(note.value.starts_with("yield_stress = 8000.0"), "{}", note.value);
     for (given, fit) in [("", Match::PlaneStrain), (", match = \"inner\"", Match::Inner)] {
         let case = law(&format!("model = \"drucker-prager\", friction = 30, cohesion = 1e3{given}"));
         let Material::DruckerPrager(clay) = &case.materials[1].material else { panic!() };
-        assert!(clay.fit() == fit && clay.cohesion() == 800.0 && clay.dilation() == 0.0);
+        let [friction, dilation, cohesion] = clay.parameters()[..] else { panic!() };
+        assert!(clay.fit() == fit && cohesion == 800.0 && dilation == 0.0);
         let weaker = if fit == Match::Inner { "99.0 %" } else { "96.1 %" };
         assert!(case.warnings.iter().any(|told| told.contains(weaker)), "{:?}", case.warnings);
-        assert!((clay.friction().tan() * 1.25 - f64::to_radians(30.0).tan()).abs() < 1e-14);
+        assert!((friction.tan() * 1.25 - f64::to_radians(30.0).tan()).abs() < 1e-14);
     }
-    let graded = "material.clay={ model = \"von-mises\", yield_stress = 1e4, poisson = 0.3, \
-                  young = { value = 1e7, at_y = 2.0, per_metre = 1e5 }, density = 2e3 }";
-    let message = format!("{:?}", set(FULL, &[graded]).expect_err("no heights yet"));
-    assert!(message.contains("no parameters that depend on the height yet"), "{message}");
+    let case =
+        law("model = \"von-mises\", yield_stress = { value = 1e4, at_y = 2.0, per_metre = 1e3 }, hardening = 5e4");
+    let clay = &case.materials[1].material;
+    let yield_stress = |y: f64| clay.at(y - case.grid.lower()[1]).parameters()[0];
+    assert_eq!((yield_stress(2.0), yield_stress(1.0)), (8e3, 8.8e3));
+    assert_eq!((clay.state().len(), clay.hardens(), clay.is_graded()), (1, true, true));
+    let negative = "material.clay={ model = \"von-mises\", young = 1e7, poisson = 0.3, density = 2e3, \
+                    yield_stress = { value = 1e4, at_y = 2.0, per_metre = -1e5 } }";
+    let message = format!("{:?}", set(FULL, &[negative]).expect_err("no strength below"));
+    assert!(message.contains("allowed: yield_stress > 0"), "{message}");
 }
 
 #[test]
@@ -321,23 +328,27 @@ fn layers_by_height_and_reduced_strength() {
     };
     for (y, young, friction, cohesion) in [(3.0, 1e7, 30.0, 1e3), (2.0, 1.2e7, 30.5, 1.5e3), (3.5, 9e6, 29.75, 750.0)] {
         let law = law(y);
-        let (tan, expected): (f64, f64) = (law.friction().tan(), f64::to_radians(friction).tan() / 1.25);
+        let [angle, dilation, strength] = law.parameters()[..] else { panic!() };
+        let (tan, expected): (f64, f64) = (angle.tan(), f64::to_radians(friction).tan() / 1.25);
         assert!((law.elastic().young / young - 1.0).abs() < 1e-14 && (tan / expected - 1.0).abs() < 1e-14, "y = {y}");
-        assert!((law.cohesion() / (cohesion / 1.25) - 1.0).abs() < 1e-14 && law.dilation() == 0.0);
+        assert!((strength / (cohesion / 1.25) - 1.0).abs() < 1e-14 && dilation == 0.0);
     }
     assert_eq!(case.materials[3].material.elastic().young, 1.3e7, "stiffest at the lowest place of a body, y = 1.5");
     assert!(!matches!(case.materials[0].material, Material::Graded(_)));
     let note = |case: &Case, name: &str| case.notes.iter().find(|note| note.key == name).unwrap().value.clone();
-    assert!(note(&case, "material.clay").starts_with("c = 16000.000000 Pa, phi = 0.000000 deg"));
+    assert!(note(&case, "material.clay").ends_with("dilation = 0.000000 deg, cohesion = 16000.000000 Pa"));
     let till = note(&case, "material.till");
-    assert!(till.contains("at y = 1.5; c = 1000.000000 Pa") && till.ends_with("at y = 2.5"), "{till}");
+    assert!(
+        till.contains("cohesion = 1400.000000 Pa at y = 1.5; friction = ") && till.ends_with("at y = 2.5"),
+        "{till}"
+    );
     let case = valid(FULL, &["strength_reduction.factor=1.4"]);
     assert_eq!(case.strength_reduction, Some(1.4));
-    assert!(note(&case, "material.clay").starts_with("c = 14285.714286 Pa"));
+    assert!(note(&case, "material.clay").ends_with("cohesion = 14285.714286 Pa"));
     let plain = FULL.replace("[strength_reduction]\nfactor = 1.25\n", "");
     let case = valid(&plain, &["material.till.cohesion.value=2e3"]);
     let cohesion = |y: f64| match case.materials[3].material.at(y).as_ref() {
-        Material::MohrCoulomb(law) => law.cohesion(),
+        Material::MohrCoulomb(law) => law.parameters()[2],
         other => panic!("{other:?}"),
     };
     assert_eq!((case.strength_reduction, cohesion(3.0), cohesion(1.5)), (None, 2e3, 2750.0));

@@ -16,7 +16,7 @@ mod tangent;
 mod von_mises;
 
 pub use drucker_prager::{DruckerPrager, Match};
-pub use graded::{Graded, GradedStrength, Profile};
+pub use graded::{Graded, Profile};
 pub use hencky::Hencky;
 pub use law::{Branch, Flow, Law, Separation, Variable, split};
 pub use mohr_coulomb::MohrCoulomb;
@@ -128,11 +128,11 @@ macro_rules! laws {
                 }
             }
 
-            /// Dilation angle, rad.
+            /// Dilation angle, rad; the largest of a graded law, before a reduction of strength.
             pub fn dilation(&self) -> f64 {
                 match self {
                     $(Self::$Law(law) => law.dilation(),)*
-                    Self::Graded(law) => law.dilation(),
+                    Self::Graded(law) => law.most().dilation(),
                 }
             }
 
@@ -140,7 +140,15 @@ macro_rules! laws {
             pub fn separation(&self) -> Separation {
                 match self {
                     $(Self::$Law(law) => law.separation(),)*
-                    Self::Graded(law) => law.separation(),
+                    Self::Graded(law) => law.most().separation(),
+                }
+            }
+
+            /// Whether its stress is limited.
+            pub fn yields(&self) -> bool {
+                match self {
+                    $(Self::$Law(_) => <$module::$Law as Law>::YIELDS,)*
+                    Self::Graded(law) => law.most().yields(),
                 }
             }
 
@@ -148,7 +156,7 @@ macro_rules! laws {
             pub fn hardens(&self) -> bool {
                 match self {
                     $(Self::$Law(law) => law.hardens(),)*
-                    Self::Graded(_) => false,
+                    Self::Graded(law) => law.most().hardens(),
                 }
             }
 
@@ -156,7 +164,48 @@ macro_rules! laws {
             pub fn state(&self) -> &'static [Variable] {
                 match self {
                     $(Self::$Law(_) => <$module::$Law as Law>::STATE,)*
-                    Self::Graded(law) => law.state(),
+                    Self::Graded(law) => law.most().state(),
+                }
+            }
+
+            /// Names and units of its parameters besides the elastic ones.
+            pub fn parameter_names(&self) -> &'static [Variable] {
+                match self {
+                    $(Self::$Law(_) => <$module::$Law as Law>::PARAMETERS,)*
+                    Self::Graded(law) => law.most().parameter_names(),
+                }
+            }
+
+            /// Its parameters in the order of their names; of a graded law the largest of each.
+            pub fn parameters(&self) -> Vec<f64> {
+                match self {
+                    $(Self::$Law(law) => law.parameters(),)*
+                    Self::Graded(law) => law.most().parameters(),
+                }
+            }
+
+            /// The law with other numbers, the same at all heights; see [`Law::with`].
+            pub fn with(&self, elastic: Elastic, parameters: &[f64]) -> Self {
+                match self {
+                    $(Self::$Law(law) => Self::$Law(law.with(elastic, parameters)),)*
+                    Self::Graded(law) => law.most().with(elastic, parameters),
+                }
+            }
+
+            /// The law with its strength divided by `factor` (section 3.2); a graded one has its own.
+            pub fn reduced(self, factor: f64) -> Self {
+                match self {
+                    $(Self::$Law(law) => Self::$Law(law.reduced(factor)),)*
+                    graded => graded,
+                }
+            }
+
+            /// The yield function of a principal stress (Pa, descending) in a `state`, Pa: positive outside; of a graded
+            /// law that of the largest parameters.
+            pub fn excess(&self, tau: [f64; 3], state: &[f64]) -> f64 {
+                match self {
+                    $(Self::$Law(law) => law.excess(tau, state),)*
+                    Self::Graded(law) => law.most().excess(tau, state),
                 }
             }
 
@@ -259,11 +308,6 @@ impl Material {
     /// Young's modulus at a height, Pa.
     pub fn young_at(&self, height: f64) -> f64 {
         self.elastic().young * self.relative_stiffness(height)
-    }
-
-    /// Whether its stress is limited.
-    pub fn yields(&self) -> bool {
-        !matches!(self.at(0.0).as_ref(), Self::Hencky(_))
     }
 
     /// Whether parameters depend on the height.

@@ -3,8 +3,9 @@
 use super::Preset;
 use crate::record::Record;
 use crate::region;
+use crate::schema::Law;
 use crate::validate::{NEARLY_INCOMPRESSIBLE, STANDARD_GRAVITY};
-use crate::words::{Law, Side, Support, Word};
+use crate::words::{Side, Support, Word};
 use bsmpm::model::Regime;
 
 /// Cells that a preset chooses.

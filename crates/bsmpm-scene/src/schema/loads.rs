@@ -118,7 +118,7 @@ pub(super) static INITIAL: Table = Table {
 };
 
 pub(super) static STRESS_PROFILE: Table = Table {
-    header: "{ value, at_y, per_metre }",
+    header: "{ value, at_y, per_metre } of a stress",
     doc: "value + per_metre (at_y - y): linear everywhere, above at_y too; a point keeps what it has at the start",
     keys: &[
         key("value", Quantity(In::Stress, Range::ANY), Required, "at the height at_y"),
@@ -129,7 +129,7 @@ pub(super) static STRESS_PROFILE: Table = Table {
 };
 
 pub(super) static ANGLE_PROFILE: Table = Table {
-    header: "{ value, at_y, per_metre }",
+    header: "{ value, at_y, per_metre } of an angle",
     doc: "value + per_metre (at_y - y): linear everywhere, above at_y too; a point keeps what it has at the start",
     keys: &[
         key("value", Quantity(In::Angle, Range::ANY), Required, "at the height at_y"),

@@ -2,10 +2,9 @@
 
 use super::Kind::*;
 use super::Presence::{Default, Optional, Required};
-use super::{Dimension as In, Kind, Range, Table, body, key, later, loads, one_of, output};
-use crate::words::{Accuracy, C0Lines, Factor, Geometry, Ksp, Law, LinearSolver, Nonlinear, Order, Pc, Support, Word};
+use super::{Dimension as In, Kind, Range, Table, body, key, later, laws, loads, one_of, output};
+use crate::words::{Accuracy, C0Lines, Factor, Geometry, Ksp, LinearSolver, Nonlinear, Order, Pc, Support, Word};
 use bsmpm::background::{Extent, Kind as Background};
-use bsmpm::material::{Match, Separation};
 use bsmpm::model::Regime;
 use bsmpm::quadrature::Quadrature;
 use bsmpm::stabilisation::Stabilisation;
@@ -22,7 +21,7 @@ pub static ROOT: Table = Table {
         key("accuracy", Choice(Accuracy::WORDS), Optional, "cells, points, steps, tolerances that are not given"),
         key("analysis", Kind::Table(&ANALYSIS), Required, "kind of the analysis and its time"),
         key("grid", Kind::Table(&GRID), Required, "the parametric grid"),
-        key("material", Named(&MATERIAL), Required, "materials by name"),
+        key("material", Named(&laws::MATERIAL), Required, "materials by name"),
         key("body", Tables(&body::BODY), Required, "bodies made of material points"),
         key("gravity", Kind::Table(&GRAVITY), Optional, "body force; absent: none"),
         key("boundary", Kind::Table(&BOUNDARY), Default("{}"), "supports at the faces of the grid"),
@@ -94,60 +93,6 @@ static KNOTS: Table = Table {
     ],
     exclusive: &[],
 };
-
-static MATERIAL: Table = Table {
-    header: "[material.NAME]",
-    doc: "A material by its name",
-    keys: &[
-        key("model", Choice(Law::WORDS), Required, "constitutive law"),
-        key("young", Profile(In::Stress, Range::POSITIVE, &loads::STRESS_PROFILE), Required, "Young's modulus"),
-        key("poisson", Quantity(In::Number, POISSON), Required, "Poisson's ratio"),
-        key(
-            "friction",
-            Profile(In::Angle, BELOW_90, &loads::ANGLE_PROFILE),
-            Optional,
-            "friction angle (mohr-coulomb and drucker-prager: required)",
-        ),
-        key("dilation", Quantity(In::Angle, BELOW_90), Optional, "dilation angle, at most friction; 0 unless given"),
-        key(
-            "cohesion",
-            Profile(In::Stress, Range::NOT_NEGATIVE, &loads::STRESS_PROFILE),
-            Optional,
-            "cohesion (hencky and von-mises: none; else required)",
-        ),
-        key(
-            "match",
-            Choice(Match::WORDS),
-            Optional,
-            "where drucker-prager meets mohr-coulomb; plane-strain unless given",
-        ),
-        key("yield_stress", Quantity(In::Stress, Range::POSITIVE), Optional, "uniaxial (von-mises: required)"),
-        key(
-            "hardening",
-            Quantity(In::Stress, Range::NOT_NEGATIVE),
-            Optional,
-            "yield stress gained per plastic strain (von-mises); 0 unless given",
-        ),
-        key(
-            "separation",
-            Choice(Separation::WORDS),
-            Optional,
-            "volume that opens at the apex of mohr-coulomb: plastic, or a gap that closes first; forgotten unless given",
-        ),
-        key("unit_weight", Quantity(In::UnitWeight, Range::POSITIVE), Optional, "density = unit_weight / 9.81 m/s2"),
-        key("density", Quantity(In::Density, Range::POSITIVE), Optional, "neither: weightless, in dynamics an error"),
-        key("k0", Quantity(In::Number, loads::COEFFICIENT), Optional, "horizontal over vertical stress at the start"),
-    ],
-    exclusive: &[one_of(&["unit_weight", "density"], false)],
-};
-
-const POISSON: Range = Range {
-    lower: Excluded(-1.0),
-    upper: Excluded(0.5),
-    why: "at 0.5 the material is incompressible and its elastic stiffness singular",
-};
-/// Friction and dilation angles, degrees.
-pub(crate) const BELOW_90: Range = Range::of(Included(0.0), Excluded(90.0));
 
 static GRAVITY: Table = Table {
     header: "[gravity]",

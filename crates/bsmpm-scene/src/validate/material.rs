@@ -8,9 +8,9 @@ use crate::grid::GridSpec;
 use crate::record::Record;
 use crate::report::Report;
 use crate::schema::Range;
-use bsmpm::material::{Elastic, Law as _, Material, Profile};
+use bsmpm::material::{Material, Profile};
 use bsmpm::model::Regime;
-use law::{Parameters, graded, law, separation, uniform};
+use law::{Parameters, law};
 
 /// Materials at most: a point holds its material's number in 16 bits.
 const MOST: usize = 65_536;
@@ -65,15 +65,6 @@ pub(super) fn read_all(root: &Record, around: Around<'_>, report: &mut Report<'_
     Some(materials)
 }
 
-/// Cohesion (Pa), friction and dilation angle (rad) at a height, of a material that has them.
-pub(super) fn strength(material: &Material, height: f64) -> Option<[f64; 3]> {
-    match material.at(height).as_ref() {
-        Material::MohrCoulomb(law) => Some([law.cohesion(), law.friction(), law.dilation()]),
-        Material::DruckerPrager(law) => Some([law.cohesion(), law.friction(), law.dilation()]),
-        Material::Hencky(_) | Material::VonMises(_) | Material::Graded(_) => None,
-    }
-}
-
 fn read(
     number: usize,
     (name, record): &(String, Record),
@@ -90,18 +81,13 @@ fn read(
     warn_of_stiffness(record, young.map(|young| young.value), poisson, report);
     let Reduction { factor, elastic, stiffness } = around.reduction;
     let (young, poisson, law) = (young?, poisson?, law?);
-    let law = if elastic { Parameters::Hencky } else { law };
+    let law = if elastic { Parameters::elastic() } else { law };
     let young = Profile { value: stiffness * young.value, per_metre: stiffness * young.per_metre, ..young };
     if elastic || stiffness != 1.0 {
         let value = format!("young x {stiffness}{}", if elastic { ", elastic" } else { "" });
         report.note(&record.path, value, "strength_reduction.elastic and .stiffness");
     }
-    let separation = separation(record, &law, layer.as_ref(), report);
-    let material = if is_graded(record) {
-        graded(young, poisson, law, (layer.as_ref()?, factor, separation))
-    } else {
-        uniform(Elastic { young: young.value, poisson }, law, (factor, separation))
-    };
+    let material = law.material(record, (young, poisson), (layer.as_ref(), factor))?;
     if let Some(layer) = layer.filter(|_| factor != 1.0) {
         note_reduction(record, &material, &layer, factor, report);
     }
@@ -142,10 +128,6 @@ impl Layer {
     }
 }
 
-fn is_graded(record: &Record) -> bool {
-    ["young", "friction", "cohesion"].iter().any(|key| record.record(key).is_some())
-}
-
 /// The parameter in its own unit (degrees for angles) by the height in the case's coordinates.
 fn profile(record: &Record, key: &str) -> Option<Profile> {
     let Some(table) = record.record(key) else { return record.number(key).map(Profile::constant) };
@@ -155,28 +137,24 @@ fn profile(record: &Record, key: &str) -> Option<Profile> {
 /// Tells what strength is left, at the lowest and the highest place where it differs there.
 fn note_reduction(record: &Record, material: &Material, layer: &Layer, factor: f64, report: &mut Report<'_>) {
     let at = |y: f64| {
-        if let Material::VonMises(law) = material {
-            let (yield_stress, hardening) = (law.yield_stress(), law.hardening());
-            return Some(format!("yield_stress = {yield_stress:.6} Pa, hardening = {hardening:.6} Pa"));
-        }
-        let [cohesion, friction, dilation] = strength(material, y - layer.base)?;
-        let (friction, dilation) = (friction.to_degrees(), dilation.to_degrees());
-        Some(format!("c = {cohesion:.6} Pa, phi = {friction:.6} deg, psi = {dilation:.6} deg"))
+        let law = material.at(y - layer.base);
+        let told = law.parameter_names().iter().zip(law.parameters()).map(|(parameter, value)| {
+            let (value, unit) =
+                if parameter.unit == "rad" { (value.to_degrees(), "deg") } else { (value, parameter.unit) };
+            format!("{} = {value:.6} {unit}", parameter.name)
+        });
+        told.collect::<Vec<_>>().join(", ")
     };
-    let (Some(low), Some(high)) = (at(layer.heights.start), at(layer.heights.end)) else { return };
+    let (low, high) = (at(layer.heights.start), at(layer.heights.end));
+    if low.is_empty() {
+        return;
+    }
     let value = if low == high {
         low
     } else {
         format!("{low} at y = {}; {high} at y = {}", layer.heights.start, layer.heights.end)
     };
-    let how = match material {
-        Material::VonMises(_) => "both / F",
-        Material::Hencky(_) | Material::MohrCoulomb(_) | Material::DruckerPrager(_) | Material::Graded(_) => {
-            "c/F, atan(tan(phi)/F), psi at most the new phi"
-        }
-    };
-    let reason = format!("strength_reduction.factor = {factor}: {how}");
-    report.note(&record.path, value, reason);
+    report.note(&record.path, value, format!("strength_reduction.factor = {factor}"));
 }
 
 /// kg/m3; the outer option is `None` after an error.

@@ -54,32 +54,6 @@ choice! {
 }
 
 choice! {
-    /// Constitutive law.
-    pub enum Law {
-        /// Elastic at any strain.
-        Hencky = "hencky",
-        /// Elastic, perfectly plastic with friction, dilation and cohesion.
-        MohrCoulomb = "mohr-coulomb",
-        /// The same without friction.
-        Tresca = "tresca",
-        /// The same strength with a cone in the place of the pyramid.
-        DruckerPrager = "drucker-prager",
-        /// Elastic, plastic without friction, hardening linearly.
-        VonMises = "von-mises",
-    }
-}
-
-impl Law {
-    /// Whether its stress is limited.
-    pub fn is_plastic(self) -> bool {
-        match self {
-            Self::Hencky => false,
-            Self::MohrCoulomb | Self::Tresca | Self::DruckerPrager | Self::VonMises => true,
-        }
-    }
-}
-
-choice! {
     /// Support of one face of the grid.
     pub enum Support {
         /// All components held.

@@ -3,7 +3,7 @@
 //!
 //! The return is linear: along the deviator to the cone, or to its tip.
 
-use super::law::{Branch, Flow, Law, reduced, split};
+use super::law::{Branch, FRICTIONAL, Flow, Law, Variable, frictional, reduced, split};
 use super::{Elastic, Moduli};
 use crate::tensor::Tensor;
 
@@ -74,16 +74,6 @@ impl DruckerPrager {
         Self { elastic, friction, dilation, cohesion, fit, moduli, slopes, strength: xi * cohesion }
     }
 
-    /// Friction angle φ, rad.
-    pub fn friction(&self) -> f64 {
-        self.friction
-    }
-
-    /// Cohesion c, Pa.
-    pub fn cohesion(&self) -> f64 {
-        self.cohesion
-    }
-
     /// Shear strength over that of Mohr-Coulomb where plastic flow goes on in plane strain.
     ///
     /// No plastic strain along the normal makes its deviatoric stress -⅔ η_ψ √J₂, so that the radius of Mohr's circle is
@@ -109,6 +99,7 @@ impl DruckerPrager {
 
 impl Law for DruckerPrager {
     type Flow = DruckerPragerReturn;
+    const PARAMETERS: &'static [Variable] = &FRICTIONAL;
 
     fn elastic(&self) -> &Elastic {
         &self.elastic
@@ -117,6 +108,23 @@ impl Law for DruckerPrager {
     #[inline]
     fn moduli(&self) -> Moduli {
         self.moduli
+    }
+
+    fn parameters(&self) -> Vec<f64> {
+        vec![self.friction, self.dilation, self.cohesion]
+    }
+
+    /// ψ is at most φ.
+    fn with(&self, elastic: Elastic, parameters: &[f64]) -> Self {
+        let [friction, dilation, cohesion] = frictional(parameters);
+        Self::new(elastic, (friction, dilation, cohesion), self.fit)
+    }
+
+    /// `f = √J₂ + η p - ξ c`.
+    #[inline]
+    fn excess(&self, tau: [f64; 3], _state: &[f64]) -> f64 {
+        let (mean, _, norm) = split(tau);
+        norm * std::f64::consts::FRAC_1_SQRT_2 + self.slopes[0] * mean - self.strength
     }
 
     /// `Δγ = (√J₂ + η p - ξ c)/(μ + K η η_ψ)`, `p - K η_ψ Δγ`, and √J₂ from f = 0; where that is negative the tip,

@@ -1,9 +1,9 @@
-//! Stiffness and strength that vary linearly with depth (layers of one material, section 3.2's soils in the field).
+//! Stiffness and strength of any law that vary linearly with depth (layers of one material, soils in the field).
 //!
 //! A point keeps the parameters of the height at which it was placed: they follow the material, not the place.
 
-use super::law::{Law, Separation, Variable};
-use super::{Elastic, Hencky, Material, MaterialError, MohrCoulomb, Response};
+use super::law::MOST_PARAMETERS;
+use super::{Elastic, Material, MaterialError, Response};
 use crate::tensor::Symmetric;
 use std::ops::Range;
 
@@ -37,34 +37,23 @@ impl Profile {
     }
 }
 
-/// Mohr-Coulomb strength by height.
-#[derive(Clone, Debug, PartialEq)]
-pub struct GradedStrength {
-    /// rad  friction angle
-    pub friction: Profile,
-    /// rad  dilation angle; where the friction angle is smaller, that
-    pub dilation: f64,
-    /// Pa  cohesion
-    pub cohesion: Profile,
-    /// -  strength reduction factor (section 3.2); 1: none
-    pub reduction: f64,
-    /// what becomes of the volume that opens at the apex
-    pub separation: Separation,
-}
-
-/// An elastic or Mohr-Coulomb material whose parameters depend on the height.
+/// A law whose parameters depend on the height.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Graded {
     young: Profile,
     stiffest: Elastic,
-    strength: Option<GradedStrength>,
+    parameters: Vec<Profile>,
+    law: Box<Material>,
+    reduction: f64,
 }
 
 impl Graded {
-    /// A material between two heights (m from the grid's lower corner), elastic without `strength`.
-    pub fn new(young: Profile, poisson: f64, strength: Option<GradedStrength>, heights: Range<f64>) -> Self {
-        let stiffest = Elastic { young: young.bounds(&heights).1, poisson };
-        Self { young, stiffest, strength }
+    /// The `law` with other numbers: Young's modulus (Pa) and its parameters by the height, for points that are placed at
+    /// `heights` (m from the grid's lower corner); its strength divided by `reduction` (section 3.2).
+    pub fn new(law: &Material, young: Profile, parameters: Vec<Profile>, heights: Range<f64>, reduction: f64) -> Self {
+        let stiffest = Elastic { young: young.bounds(&heights).1, ..law.elastic().clone() };
+        let most: Vec<f64> = parameters.iter().map(|parameter| parameter.bounds(&heights).1).collect();
+        Self { young, law: Box::new(law.with(stiffest.clone(), &most)), stiffest, parameters, reduction }
     }
 
     /// The elastic part where it is stiffest.
@@ -78,14 +67,9 @@ impl Graded {
         self.young.at(height) / self.stiffest.young
     }
 
-    /// What becomes of the volume that opens at the apex.
-    pub(super) fn separation(&self) -> Separation {
-        self.strength.as_ref().map_or(Separation::Forgotten, |strength| strength.separation)
-    }
-
-    /// Dilation angle, rad; elastic material has none.
-    pub(super) fn dilation(&self) -> f64 {
-        self.strength.as_ref().map_or(0.0, |strength| strength.dilation)
+    /// The law with the largest value of each parameter.
+    pub(super) fn most(&self) -> &Material {
+        &self.law
     }
 
     /// The response of a point that was placed at a height, m; see [`Material::respond`].
@@ -94,25 +78,13 @@ impl Graded {
         self.at(height).respond(b_trial, state)
     }
 
-    /// State variables of its points.
-    pub(super) fn state(&self) -> &'static [Variable] {
-        if self.strength.is_some() { MohrCoulomb::STATE } else { Hencky::STATE }
-    }
-
     /// The law at a height.
     pub fn at(&self, height: f64) -> Material {
-        let elastic = Elastic { young: self.young.at(height), poisson: self.stiffest.poisson };
-        match &self.strength {
-            None => Material::Hencky(Hencky { elastic }),
-            Some(strength) => {
-                let law = MohrCoulomb::new(
-                    elastic,
-                    strength.friction.at(height),
-                    strength.dilation.min(strength.friction.at(height)),
-                    strength.cohesion.at(height),
-                );
-                Material::MohrCoulomb(law.separating(strength.separation).reduced(strength.reduction))
-            }
+        let elastic = Elastic { young: self.young.at(height), ..self.stiffest };
+        let mut parameters = [0.0; MOST_PARAMETERS];
+        for (parameter, profile) in parameters.iter_mut().zip(&self.parameters) {
+            *parameter = profile.at(height);
         }
+        self.law.with(elastic, &parameters[..self.parameters.len()]).reduced(self.reduction)
     }
 }

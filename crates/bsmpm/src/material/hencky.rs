@@ -12,6 +12,7 @@ pub struct Hencky {
 
 impl Law for Hencky {
     type Flow = Never;
+    const YIELDS: bool = false;
 
     fn elastic(&self) -> &Elastic {
         &self.elastic
@@ -20,6 +21,18 @@ impl Law for Hencky {
     #[inline]
     fn moduli(&self) -> Moduli {
         self.elastic.moduli()
+    }
+
+    fn parameters(&self) -> Vec<f64> {
+        Vec::new()
+    }
+
+    fn with(&self, elastic: Elastic, _parameters: &[f64]) -> Self {
+        Self { elastic }
+    }
+
+    fn excess(&self, _tau: [f64; 3], _state: &[f64]) -> f64 {
+        f64::NEG_INFINITY
     }
 
     #[inline]

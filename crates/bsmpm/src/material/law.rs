@@ -3,27 +3,50 @@
 use super::{Elastic, Moduli};
 use crate::tensor::Tensor;
 
-/// A state variable of a law, which the points carry from step to step; 0 at the start.
+/// A number of a law: a parameter, or a state variable that points carry from step to step, 0 at the start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Variable {
-    /// as frames name it
+    /// as frames name a state variable and cases a parameter
     pub name: &'static str,
     /// its unit, "-" for none
     pub unit: &'static str,
 }
 
+impl Variable {
+    /// A variable by its name and unit.
+    pub const fn new(name: &'static str, unit: &'static str) -> Self {
+        Self { name, unit }
+    }
+}
+
+/// Parameters of one law at most.
+pub const MOST_PARAMETERS: usize = 8;
+
 /// An isotropic law on principal values: Hencky strain in, Kirchhoff stress out, both descending.
 pub trait Law {
     /// What a return leaves for its tangent and its state.
     type Flow: Flow;
+    /// Parameters besides the elastic ones; at most [`MOST_PARAMETERS`].
+    const PARAMETERS: &'static [Variable] = &[];
     /// State variables.
     const STATE: &'static [Variable] = &[];
+    /// Whether its stress is limited.
+    const YIELDS: bool = true;
 
     /// The elastic part.
     fn elastic(&self) -> &Elastic;
 
+    /// Its parameters, in the order of [`Law::PARAMETERS`].
+    fn parameters(&self) -> Vec<f64>;
+
+    /// The law with other numbers, in the order of [`Law::PARAMETERS`]; what is no number stays.
+    fn with(&self, elastic: Elastic, parameters: &[f64]) -> Self;
+
     /// Its moduli.
     fn moduli(&self) -> Moduli;
+
+    /// The yield function of a stress, Pa; positive where that is outside.
+    fn excess(&self, tau: [f64; 3], state: &[f64]) -> f64;
 
     /// The stress after the return of an elastic trial stress (Pa), and its flow; `None` where the trial does not yield.
     /// `state` is that of the last step, in the order of [`Law::STATE`].
@@ -106,6 +129,15 @@ impl Flow for Never {
     }
 }
 
+/// Parameters of laws with friction: φ, ψ, c.
+pub(super) const FRICTIONAL: [Variable; 3] =
+    [Variable::new("friction", "rad"), Variable::new("dilation", "rad"), Variable::new("cohesion", "Pa")];
+
+/// These parameters, with ψ at most φ.
+pub(super) fn frictional(parameters: &[f64]) -> [f64; 3] {
+    [parameters[0], parameters[1].min(parameters[0]), parameters[2]]
+}
+
 /// Friction and dilation angle (rad) and cohesion (Pa), divided by a strength reduction factor: `atan(tan φ/SRF)`,
 /// `ψ_f = min(ψ, φ_f)`, `c/SRF`.
 pub(super) fn reduced((friction, dilation, cohesion): (f64, f64, f64), factor: f64) -> (f64, f64, f64) {
@@ -117,6 +149,9 @@ pub(super) fn reduced((friction, dilation, cohesion): (f64, f64, f64), factor: f
 #[inline]
 pub fn split(tau: [f64; 3]) -> (f64, [f64; 3], f64) {
     let mean = (tau[0] + tau[1] + tau[2]) / 3.0;
-    let deviator = tau.map(|t| t - mean);
+    // By differences, so that the deviator has no trace even where the mean is many orders larger.
+    let (upper, lower) = (tau[0] - tau[1], tau[1] - tau[2]);
+    let whole = tau[0] - tau[2];
+    let deviator = [(upper + whole) / 3.0, (lower - upper) / 3.0, -(whole + lower) / 3.0];
     (mean, deviator, deviator.iter().map(|s| s * s).sum::<f64>().sqrt())
 }

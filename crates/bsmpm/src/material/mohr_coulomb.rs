@@ -3,7 +3,7 @@
 //! With no hardening each return is linear, so all are in closed form, and region by region:
 //! face, the edges τ₁ = τ₂ (left) and τ₂ = τ₃ (right), apex. Tresca is φ = ψ = 0, which has no apex.
 
-use super::law::{Branch, Flow, Law, Separation, reduced};
+use super::law::{Branch, FRICTIONAL, Flow, Law, Separation, Variable, frictional, reduced};
 use super::{Elastic, Moduli};
 use crate::tensor::Tensor;
 
@@ -112,16 +112,6 @@ impl MohrCoulomb {
         Self { separation, ..self }
     }
 
-    /// Friction angle φ, rad.
-    pub fn friction(&self) -> f64 {
-        self.friction
-    }
-
-    /// Cohesion c, Pa.
-    pub fn cohesion(&self) -> f64 {
-        self.cohesion
-    }
-
     /// Return along `τ = τ_trial - Δγ D m`, `Δγ = f/(4λ sin φ sin ψ + 4μ(1 + sin φ sin ψ))`; none if it breaks the order.
     #[inline]
     fn face(&self, trial: [f64; 3], excess: f64) -> Option<([f64; 3], Branch)> {
@@ -137,6 +127,7 @@ impl MohrCoulomb {
 
 impl Law for MohrCoulomb {
     type Flow = MohrCoulombReturn;
+    const PARAMETERS: &'static [Variable] = &FRICTIONAL;
 
     fn elastic(&self) -> &Elastic {
         &self.elastic
@@ -147,13 +138,29 @@ impl Law for MohrCoulomb {
         self.moduli
     }
 
+    fn parameters(&self) -> Vec<f64> {
+        vec![self.friction, self.dilation, self.cohesion]
+    }
+
+    /// ψ is at most φ.
+    fn with(&self, elastic: Elastic, parameters: &[f64]) -> Self {
+        let [friction, dilation, cohesion] = frictional(parameters);
+        Self::new(elastic, friction, dilation, cohesion).separating(self.separation)
+    }
+
+    /// `f = (τ₁ - τ₃) + (τ₁ + τ₃) sin φ - 2 c cos φ`.
+    #[inline]
+    fn excess(&self, tau: [f64; 3], _state: &[f64]) -> f64 {
+        (tau[0] - tau[2]) + (tau[0] + tau[2]) * self.slopes.sin_phi - 2.0 * self.strength
+    }
+
     /// τ₁ is always taken from τ₃ by f = 0, so the result satisfies yield and order to the last digits even where it
     /// is much smaller than the trial.
     #[inline]
-    fn project(&self, trial: [f64; 3], _state: &[f64]) -> Option<([f64; 3], MohrCoulombReturn)> {
+    fn project(&self, trial: [f64; 3], state: &[f64]) -> Option<([f64; 3], MohrCoulombReturn)> {
         let Self { moduli, slopes, strength, shift, .. } = *self;
         let sin_phi = slopes.sin_phi;
-        let excess = (trial[0] - trial[2]) + (trial[0] + trial[2]) * sin_phi - 2.0 * strength;
+        let excess = self.excess(trial, state);
         if excess <= 0.0 {
             return None;
         }

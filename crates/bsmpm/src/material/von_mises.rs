@@ -36,20 +36,17 @@ impl VonMises {
         Self { elastic, moduli, yield_stress, hardening }
     }
 
-    /// Uniaxial yield stress at the start, Pa.
-    pub fn yield_stress(&self) -> f64 {
-        self.yield_stress
-    }
-
-    /// Hardening modulus, Pa.
-    pub fn hardening(&self) -> f64 {
-        self.hardening
+    /// The stress that q reaches after the plastic strain of `state`, Pa.
+    #[inline]
+    fn strength(&self, state: &[f64]) -> f64 {
+        self.yield_stress + self.hardening * state[0]
     }
 }
 
 impl Law for VonMises {
     type Flow = VonMisesReturn;
-    const STATE: &'static [Variable] = &[Variable { name: "hardening_strain", unit: "-" }];
+    const PARAMETERS: &'static [Variable] = &[Variable::new("yield_stress", "Pa"), Variable::new("hardening", "Pa")];
+    const STATE: &'static [Variable] = &[Variable::new("hardening_strain", "-")];
 
     fn elastic(&self) -> &Elastic {
         &self.elastic
@@ -60,11 +57,25 @@ impl Law for VonMises {
         self.moduli
     }
 
+    fn parameters(&self) -> Vec<f64> {
+        vec![self.yield_stress, self.hardening]
+    }
+
+    fn with(&self, elastic: Elastic, parameters: &[f64]) -> Self {
+        Self::new(elastic, parameters[0], parameters[1])
+    }
+
+    /// `f = q - σ_y - H κ`.
+    #[inline]
+    fn excess(&self, tau: [f64; 3], state: &[f64]) -> f64 {
+        1.5_f64.sqrt() * split(tau).2 - self.strength(state)
+    }
+
     /// `Δκ = (q_trial - σ_y - H κ)/(3μ + H)`, `s = s_trial (1 - 3μ Δκ/q_trial)`.
     #[inline]
     fn project(&self, trial: [f64; 3], state: &[f64]) -> Option<([f64; 3], VonMisesReturn)> {
         let (mean, deviator, norm) = split(trial);
-        let (q, strength) = (1.5_f64.sqrt() * norm, self.yield_stress + self.hardening * state[0]);
+        let (q, strength) = (1.5_f64.sqrt() * norm, self.strength(state));
         if q <= strength {
             return None;
         }

@@ -40,7 +40,7 @@ pub fn check<K: Kinematics<D>, const D: usize>(
 
 /// Whether the complete derivative is symmetric.
 fn is_symmetric<K, const D: usize>(model: &Model<K, D>) -> bool {
-    let elastic = model.materials.iter().all(|material| matches!(material, Material::Hencky(_)));
+    let elastic = model.materials.iter().all(|material| !material.yields() && !material.is_graded());
     elastic && (model.materials.len() == 1 || model.stabilisation == Stabilisation::None)
 }
 

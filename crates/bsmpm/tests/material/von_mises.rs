@@ -106,7 +106,7 @@ fn pure_shear_hardens_linearly_in_any_number_of_steps() {
 #[test]
 fn reduction_divides_strength_and_hardening() {
     let reduced = law(0.3, 40.0).reduced(2.0);
-    assert_eq!((reduced.yield_stress(), reduced.hardening()), (1.5, 20.0));
+    assert_eq!(reduced.parameters(), [1.5, 20.0]);
     let b = stretched([1e-4, 0.0, -1e-4]);
     assert_eq!(
         respond(&super::hencky(1e3, 0.3), &b).tau(),

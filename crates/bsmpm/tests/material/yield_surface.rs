@@ -26,7 +26,8 @@ fn worst(seed: u64, high: f64, check: impl Fn(&Material, &Response) -> f64) -> f
 
 fn sines(material: &Material) -> (f64, f64, f64) {
     let Material::MohrCoulomb(law) = material else { panic!("Mohr-Coulomb only") };
-    (law.friction().sin(), law.dilation().sin(), 2.0 * law.cohesion() * law.friction().cos())
+    let [friction, dilation, cohesion] = law.parameters()[..] else { panic!("three parameters") };
+    (friction.sin(), dilation.sin(), 2.0 * cohesion * friction.cos())
 }
 
 #[test]

@@ -5,7 +5,7 @@ use crate::support::solver::Skyline;
 use bsmpm::error::StepError;
 use bsmpm::initial;
 use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
-use bsmpm::material::{Branch, Graded, GradedStrength, Material, Profile, Separation};
+use bsmpm::material::{Branch, DruckerPrager, Elastic, Graded, Match, Material, MohrCoulomb, Profile, VonMises};
 use bsmpm::model::Regime;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::tensor::Symmetric;
@@ -63,7 +63,7 @@ fn earth_pressure_at_rest_gives_back_its_stress_and_is_nearly_balanced() {
 
 #[test]
 fn a_state_beyond_yield_is_counted() {
-    let law = bsmpm::material::MohrCoulomb::new(bsmpm::material::Elastic { young: 1e4, poisson: 0.3 }, 0.5, 0.0, 0.0);
+    let law = MohrCoulomb::new(Elastic { young: 1e4, poisson: 0.3 }, 0.5, 0.0, 0.0);
     let mut scene = ground::<PlaneStrain, 2>(Material::MohrCoulomb(law));
     initial::set_stress(&scene.model, &mut scene.points, |_, x| {
         let deep = if x[1] < 2.0 { 0.1 } else { 0.5 };
@@ -89,7 +89,8 @@ fn a_modulus_that_grows_with_depth_settles_by_the_integral() {
     // E = e (1 + k z), z the depth: settlement of the surface = int_0^H gamma z / M(z) dz at small strain.
     let (e, k, height) = (1e8, 0.5, 4.0);
     let young = Profile { value: e, at: height, per_metre: k * e };
-    let scene = ground::<PlaneStrain, 2>(Material::Graded(Graded::new(young, 0.3, None, 0.0..height)));
+    let scene =
+        ground::<PlaneStrain, 2>(Material::Graded(Graded::new(&hencky(1.0, 0.3), young, Vec::new(), 0.0..height, 1.0)));
     let oedometric = hencky(1.0, 0.3).elastic().oedometric();
     let exact = 20.0 / (e * oedometric) * (height / k - (1.0 + k * height).ln() / (k * k));
     let (scene, steps) = scene.solved(1.0, 1.0);
@@ -101,22 +102,30 @@ fn a_modulus_that_grows_with_depth_settles_by_the_integral() {
 }
 
 #[test]
-fn strength_follows_the_height_at_which_a_point_was_placed() {
-    let strength = GradedStrength {
-        friction: Profile::constant(0.0),
-        dilation: 0.0,
-        cohesion: Profile { value: 10.0, at: 4.0, per_metre: 5.0 },
-        reduction: 2.0,
-        separation: Separation::Forgotten,
-    };
-    let law = Graded::new(Profile::constant(1e5), 0.3, Some(strength), 0.0..4.0);
-    let scene = ground::<PlaneStrain, 2>(Material::Graded(law));
+fn strength_of_any_law_follows_the_height_at_which_a_point_was_placed() {
+    let elastic = Elastic { young: 1e5, poisson: 0.3 };
+    let laws = [
+        Material::MohrCoulomb(MohrCoulomb::new(elastic.clone(), 0.0, 0.0, 0.0)),
+        Material::DruckerPrager(DruckerPrager::new(elastic.clone(), (0.0, 0.0, 0.0), Match::PlaneStrain)),
+        Material::VonMises(VonMises::new(elastic.clone(), 0.0, 0.0)),
+    ];
+    let strength = Profile { value: 10.0, at: 4.0, per_metre: 5.0 };
     let sheared = Symmetric([1.1, 0.9, 1.0, 0.0, 0.0, 0.0]);
-    for p in 0..scene.points.len() {
-        let response = scene.model.respond(&scene.points, p, &sheared).expect("a response");
-        let [first, _, third] = response.principal_tau();
-        let cohesion = (10.0 + 5.0 * (4.0 - scene.points.x[p][1])) / 2.0;
-        assert_ne!(response.branch(), Branch::Elastic);
-        assert!(((first - third) / 2.0 - cohesion).abs() <= 1e-10 * cohesion);
+    for law in &laws {
+        let is_strength = |name: &str| ["cohesion", "yield_stress"].contains(&name);
+        let profile = |name| if is_strength(name) { strength.clone() } else { Profile::constant(0.0) };
+        let parameters = law.parameter_names().iter().map(|parameter| profile(parameter.name)).collect();
+        let graded = Graded::new(law, Profile::constant(elastic.young), parameters, 0.0..4.0, 2.0);
+        let mut scene = ground::<PlaneStrain, 2>(Material::Graded(graded));
+        scene.points = scene.points.with_state(law.state().len());
+        for p in 0..scene.points.len() {
+            let response = scene.model.respond(&scene.points, p, &sheared).expect("a response");
+            let strength = (10.0 + 5.0 * (4.0 - scene.points.x[p][1])) / 2.0;
+            let numbers = law.parameter_names().iter().map(|it| if is_strength(it.name) { strength } else { 0.0 });
+            let uniform = law.with(elastic.clone(), &numbers.collect::<Vec<_>>());
+            let excess = uniform.excess(response.principal_tau(), &[0.0]);
+            assert_ne!(response.branch(), Branch::Elastic);
+            assert!(excess.abs() <= 1e-10 * strength, "{uniform:?}: {excess:e}");
+        }
     }
 }

@@ -1,91 +1,70 @@
 //! What makes a material the law that its `model` names.
 
-use super::{Layer, is_graded, profile};
+use super::{Layer, profile};
 use crate::record::Record;
 use crate::report::Report;
-use crate::schema::{BELOW_90, Range};
-use crate::words::{Law, Word};
-use bsmpm::material::{
-    DruckerPrager, Elastic, Graded, GradedStrength, Hencky, Law as _, Match, Material, MohrCoulomb, Profile,
-    Separation, VonMises,
-};
+use crate::schema::{Dimension, Kind, Law, MATERIAL};
+use crate::words::Word;
+use bsmpm::material::{Elastic, Graded, Material, Profile, Separation};
 
-/// What a law has besides the elastic parameters.
-pub(super) enum Parameters {
-    Hencky,
-    /// Friction and dilation angle (degrees), cohesion (Pa).
-    MohrCoulomb([Profile; 3]),
-    /// The same, and where the cone meets the pyramid.
-    DruckerPrager([Profile; 3], Match),
-    /// Yield stress and hardening modulus, Pa.
-    VonMises([f64; 2]),
+/// A law and its numbers, by the height in the case's coordinates and units.
+pub(super) struct Parameters {
+    model: Law,
+    values: Vec<(&'static str, Profile)>,
 }
 
-/// The plain law.
-pub(super) fn uniform(elastic: Elastic, law: Parameters, (factor, separation): (f64, Separation)) -> Material {
-    match law {
-        Parameters::Hencky => Material::Hencky(Hencky { elastic }),
-        Parameters::MohrCoulomb([friction, dilation, cohesion]) => {
-            let (friction, dilation) = (friction.value.to_radians(), dilation.value.to_radians());
-            let law = MohrCoulomb::new(elastic, friction, dilation, cohesion.value);
-            Material::MohrCoulomb(law.separating(separation).reduced(factor))
+impl Parameters {
+    /// What is left of them where no strength limits the stress.
+    pub(super) fn elastic() -> Self {
+        Self { model: Law::Hencky, values: Vec::new() }
+    }
+
+    fn is_graded(&self) -> bool {
+        self.values.iter().any(|(_, profile)| profile.per_metre != 0.0)
+    }
+
+    /// Its profile of a key, 0 of one that it has not.
+    fn of(&self, key: &str) -> Profile {
+        let found = self.values.iter().find(|(name, _)| *name == key);
+        found.map_or(Profile::constant(0.0), |(_, profile)| *profile)
+    }
+
+    /// The material, its strength divided by `factor`.
+    pub(super) fn material(
+        &self,
+        record: &Record,
+        (young, poisson): (Profile, f64),
+        (layer, factor): (Option<&Layer>, f64),
+    ) -> Option<Material> {
+        let law = self.model.chosen(record, Elastic { young: young.value, poisson });
+        let ordered = law.parameter_names().iter().map(|parameter| in_si(parameter.name, self.of(parameter.name)));
+        let parameters: Vec<Profile> = ordered.collect();
+        if young.per_metre == 0.0 && !self.is_graded() {
+            let values: Vec<f64> = parameters.iter().map(|parameter| parameter.value).collect();
+            return Some(law.with(law.elastic().clone(), &values).reduced(factor));
         }
-        Parameters::DruckerPrager([friction, dilation, cohesion], fit) => {
-            let strength = (friction.value.to_radians(), dilation.value.to_radians(), cohesion.value);
-            Material::DruckerPrager(DruckerPrager::new(elastic, strength, fit).reduced(factor))
-        }
-        Parameters::VonMises([yield_stress, hardening]) => {
-            Material::VonMises(VonMises::new(elastic, yield_stress, hardening).reduced(factor))
-        }
+        let layer = layer?;
+        let relative = |profile: Profile| Profile { at: profile.at - layer.base, ..profile };
+        let heights = layer.heights.start - layer.base..layer.heights.end - layer.base;
+        let parameters = parameters.into_iter().map(relative).collect();
+        Some(Material::Graded(Graded::new(&law, relative(young), parameters, heights, factor)))
     }
 }
 
-/// The law by height above the grid's lower corner.
-pub(super) fn graded(
-    young: Profile,
-    poisson: f64,
-    law: Parameters,
-    (layer, factor, separation): (&Layer, f64, Separation),
-) -> Material {
-    let relative = |profile: Profile| Profile { at: profile.at - layer.base, ..profile };
-    let strength = match law {
-        Parameters::Hencky | Parameters::DruckerPrager(..) | Parameters::VonMises(_) => None, // refused before
-        Parameters::MohrCoulomb([friction, dilation, cohesion]) => Some(GradedStrength {
-            friction: relative(radians(friction)),
-            dilation: dilation.value.to_radians(),
-            cohesion: relative(cohesion),
-            reduction: factor,
-            separation,
-        }),
-    };
-    let heights = layer.heights.start - layer.base..layer.heights.end - layer.base;
-    Material::Graded(Graded::new(relative(young), poisson, strength, heights))
-}
-
-/// All keys that some laws have and others have not.
-fn all_keys() -> Vec<&'static str> {
-    let of = |word| Law::of(word).map(keys).map_or(Vec::new(), |(required, known)| [required, known].concat());
-    let mut all: Vec<&str> = Law::WORDS.words().flat_map(of).collect();
-    all.sort_unstable();
-    all.dedup();
-    all
-}
-
-/// Keys that a law needs, and further ones that it knows.
-fn keys(law: Law) -> (&'static [&'static str], &'static [&'static str]) {
-    match law {
-        Law::Hencky => (&[], &[]),
-        Law::Tresca => (&["cohesion"], &[]),
-        Law::MohrCoulomb => (&["friction", "cohesion"], &["dilation", "separation"]),
-        Law::DruckerPrager => (&["friction", "cohesion"], &["dilation", "match"]),
-        Law::VonMises => (&["yield_stress"], &["hardening"]),
+/// A parameter as laws take it: angles in rad.
+fn in_si(key: &str, profile: Profile) -> Profile {
+    match MATERIAL.key(key).map(|key| &key.kind) {
+        Some(Kind::Profile(Dimension::Angle, ..)) => {
+            Profile { value: profile.value.to_radians(), per_metre: profile.per_metre.to_radians(), ..profile }
+        }
+        _ => profile,
     }
 }
 
-/// The law's own parameters; `None` after an error.
+/// The law of a material; `None` after an error.
 pub(super) fn law(record: &Record, layer: Option<&Layer>, report: &mut Report<'_>) -> Option<Parameters> {
-    let model = record.word("model")?;
-    let (required, known) = keys(model);
+    let model: Law = record.word("model")?;
+    let (required, known) = model.keys();
     let mut whole = true;
     let all = all_keys();
     let unused = all.iter().filter(|key| !required.contains(key) && !known.contains(key));
@@ -100,96 +79,83 @@ pub(super) fn law(record: &Record, layer: Option<&Layer>, report: &mut Report<'_
     if !whole {
         return None;
     }
-    match model {
-        Law::Hencky => Some(Parameters::Hencky),
-        Law::MohrCoulomb | Law::Tresca => mohr_coulomb(record, model, layer, report).map(Parameters::MohrCoulomb),
-        Law::DruckerPrager | Law::VonMises if is_graded(record) => {
-            record.error("model", format!("\"{model}\" has no parameters that depend on the height yet"), report);
-            None
+    let mut values = Vec::new();
+    for &key in required.iter().chain(known).filter(|key| record.gives(key)) {
+        let Some(Kind::Profile(_, range, _)) = MATERIAL.key(key).map(|key| &key.kind) else { continue };
+        let profile = profile(record, key)?;
+        if let Some(layer) = layer {
+            layer.check(record, (key, range), &profile, report);
         }
-        Law::DruckerPrager => {
-            let strength = mohr_coulomb(record, model, layer, report)?;
-            let fit = record.word("match").unwrap_or_default();
-            warn_of_plane_strain(record, &strength, fit, report);
-            Some(Parameters::DruckerPrager(strength, fit))
-        }
-        Law::VonMises => {
-            Some(Parameters::VonMises([record.number("yield_stress")?, record.number("hardening").unwrap_or(0.0)]))
-        }
+        values.push((key, profile));
     }
+    let parameters = Parameters { model, values };
+    check(record, &parameters, layer, report)?;
+    Some(parameters)
+}
+
+/// All keys that some laws have and others have not.
+fn all_keys() -> Vec<&'static str> {
+    let of = |word| Law::of(word).map_or(Vec::new(), |law| [law.keys().0, law.keys().1].concat());
+    let mut all: Vec<&str> = Law::WORDS.words().flat_map(of).collect();
+    all.sort_unstable();
+    all.dedup();
+    all
+}
+
+/// What laws with friction ask for beyond the ranges of their keys; `None` after an error.
+fn check(record: &Record, law: &Parameters, layer: Option<&Layer>, report: &mut Report<'_>) -> Option<()> {
+    match law.model {
+        Law::MohrCoulomb | Law::Tresca | Law::DruckerPrager => {}
+        Law::Hencky | Law::VonMises => return Some(()),
+    }
+    let bounds = |key| {
+        let profile = law.of(key);
+        profile.bounds(&layer.map_or(profile.at..profile.at, |layer| layer.heights.clone()))
+    };
+    let (friction, dilation, cohesion) = (bounds("friction"), bounds("dilation"), bounds("cohesion"));
+    if dilation.1 > friction.1 {
+        let message = format!("{} is out of range; allowed: 0 <= dilation <= friction = {}", dilation.1, friction.1);
+        record.error("dilation", message, report);
+        return None;
+    }
+    if dilation.1 > friction.0 {
+        let path = record.path_of("dilation");
+        report.warn(format!("{path}: {} is above the friction angle in places, and lowered to it there", dilation.1));
+    }
+    if friction.1 == 0.0 && cohesion.1 == 0.0 {
+        report.warn(format!("{}: friction and cohesion are both 0: the material has no strength", record.path));
+    }
+    if law.model != Law::Tresca && !record.gives("dilation") {
+        report.note(record.path_of("dilation"), "0.0", "default: plastic flow without change of volume");
+    }
+    // Only where an apex is free of stress can what opens there be a gap: with cohesion it would pull with c cot phi until
+    // it has closed, and without friction there is no apex.
+    if record.word("separation") == Some(Separation::Closing) && (friction.0 <= 0.0 || cohesion.1 > 0.0) {
+        let message = "\"closing\" needs friction and no cohesion: a gap is what opens where the stress is zero";
+        record.error("separation", message, report);
+    }
+    warn_of_plane_strain(record, law, report);
+    Some(())
 }
 
 /// A cone that has another strength in plane strain than the pyramid it is to stand for.
-fn warn_of_plane_strain(record: &Record, strength: &[Profile; 3], fit: Match, report: &mut Report<'_>) {
-    let [friction, dilation, cohesion] = strength.each_ref().map(|profile| profile.value);
-    let angles = (friction.to_radians(), dilation.to_radians(), cohesion);
-    let cone = DruckerPrager::new(Elastic { young: 1.0, poisson: 0.0 }, angles, fit);
+fn warn_of_plane_strain(record: &Record, law: &Parameters, report: &mut Report<'_>) {
+    let elastic = (Profile::constant(1.0), 0.0);
+    let uniform = law.values.iter().map(|(key, profile)| (*key, Profile::constant(profile.value))).collect();
+    let uniform = Parameters { model: law.model, values: uniform };
+    let Some(Material::DruckerPrager(cone)) = uniform.material(record, elastic, (None, 1.0)) else { return };
     let ratio = cone.strength_in_plane_strain();
     if (ratio - 1.0).abs() > 0.005 {
         report.warn(format!(
-            "{}: in plane strain this cone has {:.1} % of mohr-coulomb's strength (with match = \"plane-strain\" and dilation = \
-             friction it has all); use mohr-coulomb where that is meant",
+            "{}: in plane strain this cone has {:.1} % of mohr-coulomb's strength (with match = \"plane-strain\" and \
+             dilation = friction it has all); use mohr-coulomb where that is meant",
             record.path,
             100.0 * ratio
         ));
     }
 }
 
-/// Friction and dilation angle (degrees) and cohesion (Pa); zero unless given.
-fn mohr_coulomb(record: &Record, model: Law, layer: Option<&Layer>, report: &mut Report<'_>) -> Option<[Profile; 3]> {
-    let given = |key| if record.gives(key) { profile(record, key) } else { Some(Profile::constant(0.0)) };
-    let (friction, dilation, cohesion) = (given("friction")?, given("dilation")?, given("cohesion")?);
-    if let Some(layer) = layer {
-        layer.check(record, ("friction", &BELOW_90), &friction, report);
-        layer.check(record, ("cohesion", &Range::NOT_NEGATIVE), &cohesion, report);
-    }
-    let heights = layer.map_or(friction.at..friction.at, |layer| layer.heights.clone());
-    let (least, most) = friction.bounds(&heights);
-    if dilation.value > most {
-        let message = format!("{} is out of range; allowed: 0 <= dilation <= friction = {most}", dilation.value);
-        record.error("dilation", message, report);
-        return None;
-    }
-    if dilation.value > least {
-        let path = record.path_of("dilation");
-        report
-            .warn(format!("{path}: {} is above the friction angle in places, and lowered to it there", dilation.value));
-    }
-    if most == 0.0 && cohesion.bounds(&heights).1 == 0.0 {
-        report.warn(format!("{}: friction and cohesion are both 0: the material has no strength", record.path));
-    }
-    if model != Law::Tresca && !record.gives("dilation") {
-        report.note(record.path_of("dilation"), "0.0", "default: plastic flow without change of volume");
-    }
-    Some([friction, dilation, cohesion])
-}
-
-/// What becomes of the volume that opens at the apex. Only where that is free of stress can it be a gap: with cohesion
-/// it would pull with c cot phi until it has closed, and without friction there is no apex.
-pub(super) fn separation(
-    record: &Record,
-    law: &Parameters,
-    layer: Option<&Layer>,
-    report: &mut Report<'_>,
-) -> Separation {
-    let separation = record.word("separation").unwrap_or_default();
-    let (Separation::Closing, Parameters::MohrCoulomb([friction, _, cohesion])) = (separation, law) else {
-        return Separation::Forgotten;
-    };
-    let bounds =
-        |profile: &Profile| profile.bounds(&layer.map_or(profile.at..profile.at, |layer| layer.heights.clone()));
-    if bounds(friction).0 <= 0.0 || bounds(cohesion).1 > 0.0 {
-        let message = "\"closing\" needs friction and no cohesion: a gap is what opens where the stress is zero";
-        record.error("separation", message, report);
-    }
-    Separation::Closing
-}
-
 /// Tresca's angles may be written if they are zero.
 fn zero_angle(record: &Record, model: Law, key: &str) -> bool {
     model == Law::Tresca && matches!(key, "friction" | "dilation") && record.number(key) == Some(0.0)
-}
-
-fn radians(profile: Profile) -> Profile {
-    Profile { value: profile.value.to_radians(), per_metre: profile.per_metre.to_radians(), ..profile }
 }

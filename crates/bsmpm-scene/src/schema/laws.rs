@@ -1,0 +1,126 @@
+//! Constitutive laws in the language: a law's word, its keys, and what it is made of.
+
+use super::Kind::*;
+use super::Presence::{Optional, Required};
+use super::{Dimension as In, Range, Table, key, loads, one_of};
+use crate::record::Record;
+use crate::words::Word;
+use bsmpm::material::{DruckerPrager, Elastic, Hencky, Match, Material, MohrCoulomb, Separation, VonMises};
+use std::ops::Bound::{Excluded, Included};
+
+choice! {
+    /// Constitutive law.
+    pub enum Law {
+        /// Elastic at any strain.
+        Hencky = "hencky",
+        /// Elastic, perfectly plastic with friction, dilation and cohesion.
+        MohrCoulomb = "mohr-coulomb",
+        /// The same without friction.
+        Tresca = "tresca",
+        /// The same strength with a cone in the place of the pyramid.
+        DruckerPrager = "drucker-prager",
+        /// Elastic, plastic without friction, hardening linearly.
+        VonMises = "von-mises",
+    }
+}
+
+impl Law {
+    /// Whether its stress is limited.
+    pub(crate) fn is_plastic(self) -> bool {
+        match self {
+            Self::Hencky => false,
+            Self::MohrCoulomb | Self::Tresca | Self::DruckerPrager | Self::VonMises => true,
+        }
+    }
+
+    /// Its keys besides the elastic ones: those that it needs, and others that it knows.
+    pub(crate) fn keys(self) -> (&'static [&'static str], &'static [&'static str]) {
+        match self {
+            Self::Hencky => (&[], &[]),
+            Self::Tresca => (&["cohesion"], &[]),
+            Self::MohrCoulomb => (&["friction", "cohesion"], &["dilation", "separation"]),
+            Self::DruckerPrager => (&["friction", "cohesion"], &["dilation", "match"]),
+            Self::VonMises => (&["yield_stress"], &["hardening"]),
+        }
+    }
+
+    /// The law with the choices of its table; its numbers are those of the elastic part only.
+    pub(crate) fn chosen(self, record: &Record, elastic: Elastic) -> Material {
+        match self {
+            Self::Hencky => Material::Hencky(Hencky { elastic }),
+            Self::MohrCoulomb | Self::Tresca => {
+                let separation = record.word("separation").unwrap_or_default();
+                Material::MohrCoulomb(MohrCoulomb::new(elastic, 0.0, 0.0, 0.0).separating(separation))
+            }
+            Self::DruckerPrager => {
+                let fit = record.word("match").unwrap_or_default();
+                Material::DruckerPrager(DruckerPrager::new(elastic, (0.0, 0.0, 0.0), fit))
+            }
+            Self::VonMises => Material::VonMises(VonMises::new(elastic, 0.0, 0.0)),
+        }
+    }
+}
+
+pub(crate) static MATERIAL: Table = Table {
+    header: "[material.NAME]",
+    doc: "A material by its name",
+    keys: &[
+        key("model", Choice(Law::WORDS), Required, "constitutive law"),
+        key("young", Profile(In::Stress, Range::POSITIVE, &loads::STRESS_PROFILE), Required, "Young's modulus"),
+        key("poisson", Quantity(In::Number, POISSON), Required, "Poisson's ratio"),
+        key(
+            "friction",
+            Profile(In::Angle, BELOW_90, &loads::ANGLE_PROFILE),
+            Optional,
+            "friction angle (mohr-coulomb and drucker-prager: required)",
+        ),
+        key(
+            "dilation",
+            Profile(In::Angle, BELOW_90, &loads::ANGLE_PROFILE),
+            Optional,
+            "dilation angle, at most friction; 0 unless given",
+        ),
+        key(
+            "cohesion",
+            Profile(In::Stress, Range::NOT_NEGATIVE, &loads::STRESS_PROFILE),
+            Optional,
+            "cohesion (hencky and von-mises: none; else required)",
+        ),
+        key(
+            "match",
+            Choice(Match::WORDS),
+            Optional,
+            "where drucker-prager meets mohr-coulomb; plane-strain unless given",
+        ),
+        key(
+            "yield_stress",
+            Profile(In::Stress, Range::POSITIVE, &loads::STRESS_PROFILE),
+            Optional,
+            "uniaxial (von-mises: required)",
+        ),
+        key(
+            "hardening",
+            Profile(In::Stress, Range::NOT_NEGATIVE, &loads::STRESS_PROFILE),
+            Optional,
+            "yield stress gained per plastic strain (von-mises); 0 unless given",
+        ),
+        key(
+            "separation",
+            Choice(Separation::WORDS),
+            Optional,
+            "volume that opens at the apex of mohr-coulomb: plastic, or a gap that closes first; forgotten unless given",
+        ),
+        key("unit_weight", Quantity(In::UnitWeight, Range::POSITIVE), Optional, "density = unit_weight / 9.81 m/s2"),
+        key("density", Quantity(In::Density, Range::POSITIVE), Optional, "neither: weightless, in dynamics an error"),
+        key("k0", Quantity(In::Number, loads::COEFFICIENT), Optional, "horizontal over vertical stress at the start"),
+    ],
+    exclusive: &[one_of(&["unit_weight", "density"], false)],
+};
+
+const POISSON: Range = Range {
+    lower: Excluded(-1.0),
+    upper: Excluded(0.5),
+    why: "at 0.5 the material is incompressible and its elastic stiffness singular",
+};
+/// Friction and dilation angles, degrees.
+const BELOW_90: Range = Range::of(Included(0.0), Excluded(90.0));
