@@ -113,7 +113,7 @@ fn strength_of_any_law_follows_the_height_at_which_a_point_was_placed() {
     let sheared = Symmetric([1.1, 0.9, 1.0, 0.0, 0.0, 0.0]);
     for law in &laws {
         let is_strength = |name: &str| ["cohesion", "yield_stress"].contains(&name);
-        let profile = |name| if is_strength(name) { strength.clone() } else { Profile::constant(0.0) };
+        let profile = |name| if is_strength(name) { strength } else { Profile::constant(0.0) };
         let parameters = law.parameter_names().iter().map(|parameter| profile(parameter.name)).collect();
         let graded = Graded::new(law, Profile::constant(elastic.young), parameters, 0.0..4.0, 2.0);
         let mut scene = ground::<PlaneStrain, 2>(Material::Graded(graded));
