@@ -61,6 +61,17 @@ impl Law {
     }
 }
 
+words! { Separation {
+    Forgotten = "forgotten": "volume that opens is plastic",
+    Closing = "closing": "volume that opens is a gap that closes first",
+} }
+
+words! { Match {
+    Outer = "outer": "in triaxial compression; stronger than Mohr-Coulomb elsewhere",
+    Inner = "inner": "in triaxial extension; weaker in compression",
+    PlaneStrain = "plane-strain": "as strong in plane strain with associated flow (dilation = friction), weaker with less",
+} }
+
 pub(crate) static MATERIAL: Table = Table {
     header: "[material.NAME]",
     doc: "A material by its name",

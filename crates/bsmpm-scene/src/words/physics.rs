@@ -1,7 +1,6 @@
 //! Words of choices that the physics defines.
 
 use bsmpm::background::{Extent, Kind};
-use bsmpm::material::{Match, Separation};
 use bsmpm::model::Regime;
 use bsmpm::quadrature::Quadrature;
 use bsmpm::stabilisation::Stabilisation;
@@ -15,17 +14,6 @@ words! { Regime {
 words! { MassMatrix {
     Lumped = "lumped": "diagonal, the paper's",
     Consistent = "consistent": "mostly the consistent one",
-} }
-
-words! { Separation {
-    Forgotten = "forgotten": "volume that opens is plastic",
-    Closing = "closing": "volume that opens is a gap that closes first",
-} }
-
-words! { Match {
-    Outer = "outer": "in triaxial compression; stronger than Mohr-Coulomb elsewhere",
-    Inner = "inner": "in triaxial extension; weaker in compression",
-    PlaneStrain = "plane-strain": "as strong in plane strain with associated flow (dilation = friction), weaker with less",
 } }
 
 words! { Stabilisation {
