@@ -36,7 +36,7 @@ pub(crate) enum Datum {
     /// the dimension is that of its unit, if it has one
     Measure(f64, Option<Dimension>),
     Numbers(Vec<f64>),
-    Rows(Vec<Row>),
+    Rows(Vec<ListRow>),
     Count(u64),
     Word(&'static str),
     Text(String),
@@ -48,7 +48,7 @@ pub(crate) enum Datum {
 
 /// A row of numbers and its place.
 #[derive(Clone, Debug)]
-pub(crate) struct Row {
+pub(crate) struct ListRow {
     pub(crate) origin: Origin,
     pub(crate) numbers: Vec<f64>,
 }

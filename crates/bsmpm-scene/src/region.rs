@@ -45,12 +45,12 @@ pub struct Outline {
     shapes: usize,
     bounds: [[f64; 2]; 2], // m  in the case's coordinates
     area: f64,
-    tally: Tally,
+    tally: CellTally,
 }
 
 /// Points and cells of an outline, counted once.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Tally {
+pub(crate) struct CellTally {
     /// cells that hold points, per axis
     pub(crate) occupied: [Range<usize>; 2],
     /// of the first column in `occupied` and all later ones: number of the body's points before it; and of all
@@ -121,7 +121,7 @@ impl Outline {
     ) -> Result<Self, String> {
         affordable(&edges, grid, points_per_cell)?;
         let origin = grid.lower();
-        let mut outline = Self { origin, edges, shapes, bounds, area, tally: Tally::default() };
+        let mut outline = Self { origin, edges, shapes, bounds, area, tally: CellTally::default() };
         let columns = outline.columns(grid).len();
         if columns > MOST_COLUMNS {
             return Err(format!("it spans {columns} columns of cells; at most {MOST_COLUMNS} are possible"));
@@ -132,7 +132,7 @@ impl Outline {
 
     /// Counts points and cells column by column; where something is cut out, the area is that of all cells' parts.
     fn count(&mut self, grid: &GridSpec, points_per_cell: usize) {
-        let (mut tally, mut total, mut area) = (Tally::default(), 0_u64, 0.0);
+        let (mut tally, mut total, mut area) = (CellTally::default(), 0_u64, 0.0);
         for i in self.columns(grid) {
             let column = self.column(grid, points_per_cell, i);
             area += column.area;
@@ -159,7 +159,7 @@ impl Outline {
         reached(&grid.axes[0], self.bounds.map(|corner| corner[0] - self.origin[0]))
     }
 
-    pub(crate) fn tally(&self) -> &Tally {
+    pub(crate) fn tally(&self) -> &CellTally {
         &self.tally
     }
 

@@ -10,7 +10,7 @@ mod tables;
 
 pub use crate::unit::Dimension;
 pub use crate::words::Words;
-pub(crate) use laws::{Law, MATERIAL};
+pub(crate) use laws::{LawName, MATERIAL};
 pub use tables::ROOT;
 
 use std::fmt;

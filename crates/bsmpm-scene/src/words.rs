@@ -67,7 +67,7 @@ const AUTO: &str = "auto";
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::schema::Law;
+    use crate::schema::LawName;
     use bsmpm::background::Kind;
 
     #[test]
@@ -77,7 +77,7 @@ mod tests {
             assert_eq!(Option::<Pc>::of(word).map(Word::word), Some(word));
         }
         assert_eq!(Pc::of(AUTO), None);
-        assert_eq!(Law::of("cam-clay"), None);
+        assert_eq!(LawName::of("cam-clay"), None);
     }
 
     #[test]

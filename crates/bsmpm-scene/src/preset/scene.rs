@@ -3,7 +3,7 @@
 use super::Preset;
 use crate::record::Record;
 use crate::region;
-use crate::schema::Law;
+use crate::schema::LawName;
 use crate::validate::{NEARLY_INCOMPRESSIBLE, STANDARD_GRAVITY};
 use crate::words::{Side, Support, Word};
 use bsmpm::model::Regime;
@@ -134,7 +134,7 @@ impl<'a> PresetScene<'a> {
 
     /// What there is to lock, if any.
     pub(super) fn locks(&self) -> Option<&'static str> {
-        if self.materials().filter_map(|material| material.word("model")).any(Law::is_plastic) {
+        if self.materials().filter_map(|material| material.word("model")).any(LawName::is_plastic) {
             return Some("plastic material locks without");
         }
         let stiff =

@@ -1,6 +1,6 @@
 //! Values by the type that the schema gives them.
 
-use super::{Datum, Record, Row};
+use super::{Datum, ListRow, Record};
 use crate::schema::Kind;
 use crate::unit::Dimension;
 use crate::words::Word;
@@ -21,7 +21,7 @@ impl Record {
         number: f64, Kind::Quantity(..) | Kind::Profile(..) | Kind::Gradient(_) => Datum::Number(number) => *number;
         measure: (f64, Option<Dimension>), Kind::Measure => Datum::Measure(number, unit) => (*number, *unit);
         numbers: &[f64], Kind::Pair(..) | Kind::Either(..) | Kind::List(..) => Datum::Numbers(numbers) => numbers;
-        rows: &[Row], Kind::Rows(_) => Datum::Rows(rows) => rows;
+        rows: &[ListRow], Kind::Rows(_) => Datum::Rows(rows) => rows;
         count: u64, Kind::Count(..) => Datum::Count(count) => *count;
         text: &str, Kind::Text(_) | Kind::Name => Datum::Text(text) => text;
         flag: bool, Kind::Flag => Datum::Flag(flag) => *flag;

@@ -1,6 +1,6 @@
 //! One value held against its kind.
 
-use super::{Datum, Row};
+use super::{Datum, ListRow};
 use crate::document::{Node, Value};
 use crate::nearest::hint;
 use crate::report::{Report, shortened};
@@ -117,18 +117,18 @@ impl ValueReader<'_, '_> {
 
     fn rows(&mut self, node: &Node, columns: &[(Dimension, Range)]) -> Option<Datum> {
         let Value::List(items) = &node.value else { return self.unexpected(node) };
-        let read: Vec<Option<Row>> = items.iter().map(|item| self.row(item, columns)).collect();
-        read.into_iter().collect::<Option<Vec<Row>>>().map(Datum::Rows)
+        let read: Vec<Option<ListRow>> = items.iter().map(|item| self.row(item, columns)).collect();
+        read.into_iter().collect::<Option<Vec<ListRow>>>().map(Datum::Rows)
     }
 
-    fn row(&mut self, node: &Node, columns: &[(Dimension, Range)]) -> Option<Row> {
+    fn row(&mut self, node: &Node, columns: &[(Dimension, Range)]) -> Option<ListRow> {
         let items = match &node.value {
             Value::List(items) if items.len() == columns.len() => items,
             _ => return self.unexpected(node),
         };
         let read = items.iter().zip(columns).map(|(item, (dimension, range))| self.quantity(item, *dimension, range));
         let read: Vec<Option<f64>> = read.collect();
-        Some(Row { origin: node.origin, numbers: read.into_iter().collect::<Option<_>>()? })
+        Some(ListRow { origin: node.origin, numbers: read.into_iter().collect::<Option<_>>()? })
     }
 
     fn quantities(&mut self, node: &Node, dimension: Dimension, range: &Range, length: Option<usize>) -> Option<Datum> {

@@ -10,7 +10,7 @@ use std::ops::Bound::{Excluded, Included};
 
 choice! {
     /// Constitutive law.
-    pub enum Law {
+    pub enum LawName {
         /// Elastic at any strain.
         Hencky = "hencky",
         /// Elastic, perfectly plastic with friction, dilation and cohesion.
@@ -24,7 +24,7 @@ choice! {
     }
 }
 
-impl Law {
+impl LawName {
     /// Whether its stress is limited.
     pub(crate) fn is_plastic(self) -> bool {
         match self {
@@ -76,7 +76,7 @@ pub(crate) static MATERIAL: Table = Table {
     header: "[material.NAME]",
     doc: "A material by its name",
     keys: &[
-        key("model", Choice(Law::WORDS), Required, "constitutive law"),
+        key("model", Choice(LawName::WORDS), Required, "constitutive law"),
         key("young", Profile(In::Stress, Range::POSITIVE, &loads::STRESS_PROFILE), Required, "Young's modulus"),
         key("poisson", Quantity(In::Number, POISSON), Required, "Poisson's ratio"),
         key(

@@ -3,20 +3,20 @@
 use super::{Layer, profile};
 use crate::record::Record;
 use crate::report::Report;
-use crate::schema::{Dimension, Kind, Law, MATERIAL};
+use crate::schema::{Dimension, Kind, LawName, MATERIAL};
 use crate::words::Word;
 use bsmpm::material::{Elastic, Graded, Material, Profile, Separation};
 
 /// A law and its numbers, by the height in the case's coordinates and units.
 pub(super) struct Parameters {
-    model: Law,
+    model: LawName,
     values: Vec<(&'static str, Profile)>,
 }
 
 impl Parameters {
     /// What is left of them where no strength limits the stress.
     pub(super) fn elastic() -> Self {
-        Self { model: Law::Hencky, values: Vec::new() }
+        Self { model: LawName::Hencky, values: Vec::new() }
     }
 
     fn is_graded(&self) -> bool {
@@ -63,7 +63,7 @@ fn in_si(key: &str, profile: Profile) -> Profile {
 
 /// The law of a material; `None` after an error.
 pub(super) fn law(record: &Record, layer: Option<&Layer>, report: &mut Report<'_>) -> Option<Parameters> {
-    let model: Law = record.word("model")?;
+    let model: LawName = record.word("model")?;
     let (required, known) = model.keys();
     let mut whole = true;
     let all = all_keys();
@@ -95,8 +95,8 @@ pub(super) fn law(record: &Record, layer: Option<&Layer>, report: &mut Report<'_
 
 /// All keys that some laws have and others have not.
 fn all_keys() -> Vec<&'static str> {
-    let of = |word| Law::of(word).map_or(Vec::new(), |law| [law.keys().0, law.keys().1].concat());
-    let mut all: Vec<&str> = Law::WORDS.words().flat_map(of).collect();
+    let of = |word| LawName::of(word).map_or(Vec::new(), |law| [law.keys().0, law.keys().1].concat());
+    let mut all: Vec<&str> = LawName::WORDS.words().flat_map(of).collect();
     all.sort_unstable();
     all.dedup();
     all
@@ -124,7 +124,7 @@ fn check(record: &Record, law: &Parameters, layer: Option<&Layer>, report: &mut 
     if friction.1 == 0.0 && cohesion.1 == 0.0 {
         report.warn(format!("{}: friction and cohesion are both 0: the material has no strength", record.path));
     }
-    if law.model != Law::Tresca && !record.gives("dilation") {
+    if law.model != LawName::Tresca && !record.gives("dilation") {
         report.note(record.path_of("dilation"), "0.0", "default: plastic flow without change of volume");
     }
     // Only where an apex is free of stress can what opens there be a gap: with cohesion it would pull with c cot phi until
@@ -155,6 +155,6 @@ fn warn_of_plane_strain(record: &Record, law: &Parameters, report: &mut Report<'
 }
 
 /// Tresca's angles may be written if they are zero.
-fn zero_angle(record: &Record, model: Law, key: &str) -> bool {
-    model == Law::Tresca && matches!(key, "friction" | "dilation") && record.number(key) == Some(0.0)
+fn zero_angle(record: &Record, model: LawName, key: &str) -> bool {
+    model == LawName::Tresca && matches!(key, "friction" | "dilation") && record.number(key) == Some(0.0)
 }
