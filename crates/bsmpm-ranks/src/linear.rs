@@ -16,6 +16,7 @@ use crate::stencil::{Numbering, Stencil};
 use crate::timers::Timers;
 use bsmpm::error::SolveError;
 use bsmpm::grid::Grid;
+use bsmpm::nodal::Nodal;
 use bsmpm::parallel::{Halo, Krylov, LinearSolver, Solved, Symmetry};
 use direct::StiffnessOperator;
 use mpi::collective::{CommunicatorCollectives, SystemOperation};
@@ -91,7 +92,7 @@ impl<'p, const D: usize, const C: usize> KspSolver<'p, D, C> {
     fn number(&mut self) {
         let free = &self.free;
         let owned = self.halo.owned();
-        let owned = owned.start * C..owned.end * C;
+        let owned = Nodal::<C>::all(&owned);
         let numbered = numbered::<C>(&self.choice, free);
         self.own = owned.clone().filter(|&component| numbered(component)).count();
         let count = self.own as u64;
@@ -149,7 +150,7 @@ impl<'p, const D: usize, const C: usize> KspSolver<'p, D, C> {
         }
         let (owned, free, is_sized) = (self.halo.owned(), &self.free, self.is_sized);
         if let (Some(shell), false) = (&mut self.shell, is_sized) {
-            let unknowns = (owned.start * C..owned.end * C).filter(|&component| free[component]).collect();
+            let unknowns = Nodal::<C>::all(&owned).filter(|&component| free[component]).collect();
             shell.resize(unknowns).map_err(failed)?;
             self.is_sized = true;
         }
@@ -176,7 +177,7 @@ impl<'p, const D: usize, const C: usize> KspSolver<'p, D, C> {
     /// Components of this rank's unknowns, in the order of their numbers.
     fn unknowns(&self) -> Vec<usize> {
         let owned = self.halo.owned();
-        (owned.start * C..owned.end * C).filter(|&component| self.numbers[component].is_some()).collect()
+        Nodal::<C>::all(&owned).filter(|&component| self.numbers[component].is_some()).collect()
     }
 }
 
@@ -184,7 +185,7 @@ impl<'p, const D: usize, const C: usize> KspSolver<'p, D, C> {
 fn numbered<const C: usize>(choice: &Choice, free: &[bool]) -> impl Fn(usize) -> bool {
     let whole = choice.whole_nodes();
     move |component| {
-        if whole { free[component / C * C..][..C].contains(&true) } else { free[component] }
+        if whole { free[Nodal::<C>::of(Nodal::<C>::node(component))].contains(&true) } else { free[component] }
     }
 }
 
@@ -219,7 +220,7 @@ impl<const D: usize, const C: usize> LinearSolver for KspSolver<'_, D, C> {
         if changed[0] > 0.0 {
             (self.free, self.numbers) = (free.to_vec(), Numbering::new());
             (self.is_sized, self.definite, self.general) = (false, None, None);
-            self.stencil.keep(|node| free[node * C..(node + 1) * C].contains(&true));
+            self.stencil.keep(|node| free[Nodal::<C>::of(node)].contains(&true));
         }
         self.shell.iter_mut().for_each(ShellSystem::outdate);
         self.stencil.clear();
@@ -236,7 +237,7 @@ impl<const D: usize, const C: usize> LinearSolver for KspSolver<'_, D, C> {
     fn add_diagonal(&mut self, diagonal: &[f64]) {
         for node in self.halo.owned() {
             for component in 0..C {
-                self.stencil.add_diagonal(node, component, diagonal[node * C + component]);
+                self.stencil.add_diagonal(node, component, diagonal[Nodal::<C>::at(node, component)]);
             }
         }
     }

@@ -15,6 +15,7 @@ use bsmpm::grid::Grid;
 use bsmpm::initial::{self, Equilibrium};
 use bsmpm::kinematics::Kinematics;
 use bsmpm::model::Model;
+use bsmpm::nodal::Nodal;
 use bsmpm::parallel::Halo;
 use bsmpm::points::{Column, Points};
 use bsmpm::schedule::Schedule;
@@ -116,7 +117,7 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
     #[allow(clippy::type_complexity)]
     pub fn arrays(&mut self) -> (Vec<(&'static str, &mut dyn Column)>, (&[f64], usize)) {
         let owned = self.halo.owned();
-        let guess = &self.stepper.guess[owned.start * D..owned.end * D];
+        let guess = &self.stepper.guess[Nodal::<D>::all(&owned)];
         (self.points.named_columns(), (guess, self.model.grid.layer_nodes() * D))
     }
 

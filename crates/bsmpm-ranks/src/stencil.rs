@@ -8,6 +8,7 @@
 mod places;
 
 use bsmpm::grid::{Contributions, Grid};
+use bsmpm::nodal::Nodal;
 use places::Places;
 use std::ops::Range;
 
@@ -92,7 +93,8 @@ impl<const D: usize, const C: usize> Stencil<D, C> {
         self.values = total(&columns.sums);
         let diagonal = columns.diagonal.clone();
         for (at, value) in diagonal.into_iter().enumerate() {
-            self.diagonal(at / C, at % C).into_iter().for_each(|entry| *entry += value);
+            let (node, component) = Nodal::<C>::split(at);
+            self.diagonal(node, component).into_iter().for_each(|entry| *entry += value);
         }
     }
 
@@ -157,7 +159,7 @@ impl<const D: usize, const C: usize> Stencil<D, C> {
     /// Adds to the diagonal entry of a component of `node`.
     pub fn add_diagonal(&mut self, node: usize, component: usize, value: f64) {
         match &mut self.columns {
-            Some(columns) => columns.diagonal[node * C + component] += value,
+            Some(columns) => columns.diagonal[Nodal::<C>::at(node, component)] += value,
             None => self.diagonal(node, component).into_iter().for_each(|entry| *entry += value),
         }
     }
@@ -172,7 +174,7 @@ impl<const D: usize, const C: usize> Stencil<D, C> {
     /// A component's row: the first component of every node that it couples with, and the entries there; nothing for a node
     /// without a stencil.
     pub fn row(&self, component: usize) -> impl Iterator<Item = (usize, &[f64])> {
-        let (node, i) = (component / C, component % C);
+        let (node, i) = Nodal::<C>::split(component);
         let row = self.rows[node];
         let places = (row != NONE).then(|| self.places.around(node)).into_iter().flatten();
         places.map(move |(place, other)| {
@@ -189,7 +191,7 @@ impl<const D: usize, const C: usize> Stencil<D, C> {
             if row != NONE {
                 let values = &self.values[row * self.width()..][..self.width()];
                 for (place, other) in self.places.around(node) {
-                    let (block, x) = (&values[place * C * C..][..C * C], &x[other * C..][..C]);
+                    let (block, x) = (&values[place * C * C..][..C * C], &x[Nodal::<C>::of(other)]);
                     for i in 0..C {
                         image[i] += (0..C).map(|j| block[i * C + j] * x[j]).sum::<f64>();
                     }
@@ -222,7 +224,7 @@ impl<const D: usize, const C: usize> Stencil<D, C> {
         let handed = |a: usize, b: usize| self.columns.as_ref().is_none_or(|columns| columns.owned.contains(&a.min(b)));
         for (component, row) in numbers.iter().enumerate() {
             let Some(row) = row else { continue };
-            let (node, i) = (component / C, component % C);
+            let (node, i) = Nodal::<C>::split(component);
             if self.rows[node] == NONE {
                 continue;
             }
@@ -232,8 +234,9 @@ impl<const D: usize, const C: usize> Stencil<D, C> {
                 }
                 let at = self.rows[node] * self.width() + (place * C + i) * C;
                 for j in 0..C {
-                    let coupled = other * C + j == component || free[component] && free[other * C + j];
-                    if let Some(column) = numbers[other * C + j].filter(|_| coupled) {
+                    let coupled =
+                        Nodal::<C>::at(other, j) == component || free[component] && free[Nodal::<C>::at(other, j)];
+                    if let Some(column) = numbers[Nodal::<C>::at(other, j)].filter(|_| coupled) {
                         visit(*row, column, at + j);
                     }
                 }

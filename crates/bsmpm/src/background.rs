@@ -14,6 +14,7 @@ use crate::grid::shape::{Patch, Shape};
 use crate::grid::{Contributions, Grid, transfer};
 use crate::kinematics::Kinematics;
 use crate::material::Material;
+use crate::nodal::Nodal;
 use crate::parallel::{Halo, LinearSolver};
 use crate::points::Points;
 use form::{Form, Forms};
@@ -177,7 +178,7 @@ fn gather<'a, const D: usize>(
     own: &'a mut [[f64; D]; MOST_NODES],
 ) -> &'a [[f64; D]] {
     for (at_node, offset) in own.iter_mut().zip(offsets) {
-        at_node.copy_from_slice(&u[(first + offset) * D..][..D]);
+        at_node.copy_from_slice(&u[Nodal::<D>::of(first + offset)]);
     }
     &own[..offsets.len()]
 }
@@ -207,7 +208,7 @@ impl Blocks {
             let (f, offsets) = (f.patch(first), shape.offsets());
             let mut own = [[0.0; D]; MOST_NODES];
             block.multiply(gather(u, (first, offsets), &mut own), |a, force| {
-                (0..D).for_each(|i| f[offsets[a] * D + i] += force[i]);
+                (0..D).for_each(|i| f[Nodal::<D>::at(offsets[a], i)] += force[i]);
             });
         }
         self.faces.multiply::<D>(u, f);

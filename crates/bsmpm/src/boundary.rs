@@ -12,6 +12,7 @@ pub use surface::{Anchors, Surface, SurfacePoint};
 
 use crate::exact::Exact;
 use crate::grid::Grid;
+use crate::nodal::Nodal;
 use crate::parallel::Halo;
 use crate::tensor::Vector;
 
@@ -78,7 +79,7 @@ impl<const D: usize> Boundary<D> {
             for node in grid.face_nodes(support.axis, support.upper) {
                 for (component, velocity) in support.velocity.iter().enumerate() {
                     if velocity.is_some() {
-                        prescribed[node * D + component] = *velocity;
+                        prescribed[Nodal::<D>::at(node, component)] = *velocity;
                     }
                 }
             }
@@ -94,8 +95,9 @@ impl<const D: usize> Boundary<D> {
         for (support, sum) in self.supports.iter().zip(sums.chunks_exact_mut(D)).rev() {
             for node in grid.face_nodes(support.axis, support.upper) {
                 for component in (0..D).filter(|&component| support.velocity[component].is_some()) {
-                    if !std::mem::replace(&mut counted[node * D + component], true) && owned.contains(&node) {
-                        sum[component].add(reaction[node * D + component]);
+                    if !std::mem::replace(&mut counted[Nodal::<D>::at(node, component)], true) && owned.contains(&node)
+                    {
+                        sum[component].add(reaction[Nodal::<D>::at(node, component)]);
                     }
                 }
             }

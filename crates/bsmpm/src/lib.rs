@@ -36,6 +36,7 @@ pub mod kinematics;
 pub mod material;
 pub mod method;
 pub mod model;
+pub mod nodal;
 pub mod observe;
 pub mod parallel;
 pub mod points;

@@ -8,6 +8,7 @@ use crate::stencil::Stencil;
 use crate::timers::Timers;
 use bsmpm::error::SolveError;
 use bsmpm::grid::Grid;
+use bsmpm::nodal::Nodal;
 use bsmpm::parallel::{Halo, agreed, over_layers};
 use mpi::collective::CommunicatorCollectives;
 use mpi::topology::Communicator;
@@ -162,7 +163,7 @@ impl<const D: usize, const C: usize> DissectionPc<'_, D, C> {
         let _timed = self.matrix.timers.time("linear solve");
         let owned = self.matrix.halo.owned();
         let Factor { dissection, rhs, solution, .. } = &mut *self.factor;
-        dissection.solve(&self.matrix.halo.link(), owned.start * C..owned.end * C, rhs, solution);
+        dissection.solve(&self.matrix.halo.link(), Nodal::<C>::all(&owned), rhs, solution);
     }
 
     /// Tells KSP of a failure, and the caller why.

@@ -9,6 +9,7 @@ use super::form::{FormProducts, products};
 use crate::grid::shape::{Patch, Shape};
 use crate::grid::{Contributions, Grid, KnotVector};
 use crate::kinematics::Kinematics;
+use crate::nodal::Nodal;
 use crate::parallel::{Halo, LinearSolver};
 
 /// The faces of one step.
@@ -96,7 +97,7 @@ impl GhostFaces {
         let mut jumps = [0.0; MOST_ALONG];
         for (layer, weight) in face.jump.iter().enumerate() {
             for (node, jump) in jumps[..width].iter_mut().enumerate() {
-                *jump += weight * u[(face.first_node + offsets[layer * width + node]) * D + component];
+                *jump += weight * u[Nodal::<D>::at(face.first_node + offsets[layer * width + node], component)];
             }
         }
         jumps
@@ -112,7 +113,7 @@ impl GhostFaces {
                 for (node, row) in face.mass.chunks_exact(width).enumerate() {
                     let force: f64 = row.iter().zip(&jumps).map(|(mass, jump)| mass * jump).sum();
                     for (layer, weight) in face.jump.iter().enumerate() {
-                        f[offsets[layer * width + node] * D + component] += weight * force;
+                        f[Nodal::<D>::at(offsets[layer * width + node], component)] += weight * force;
                     }
                 }
             }

@@ -7,6 +7,7 @@
 use super::surface::{Attachment, Surface, SurfacePoint};
 use crate::exact::Exact;
 use crate::grid::{Contributions, Grid};
+use crate::nodal::Nodal;
 use crate::parallel::{Halo, LinearSolver};
 use crate::tensor::Vector;
 
@@ -162,8 +163,9 @@ impl<const D: usize> StripAttachments<D> {
             let (place, motion) = (strip.path.at(t), strip.path.at(t + dt) - strip.path.at(t));
             for (index, point) in strip.points.iter().enumerate() {
                 let x = point.x + place;
-                let attachment =
-                    std::array::from_fn(|c| Attachment::at(grid, &offsets, |node: usize| free[node * D + c], &x));
+                let attachment = std::array::from_fn(|c| {
+                    Attachment::at(grid, &offsets, |node: usize| free[Nodal::<D>::at(node, c)], &x)
+                });
                 if attachment.iter().all(Option::is_none) {
                     continue;
                 }

@@ -5,6 +5,7 @@
 use crate::grid::shape::with_width;
 use crate::grid::{Contributions, Grid, KnotVector};
 use crate::kinematics::Kinematics;
+use crate::nodal::Nodal;
 use crate::tensor::Vector;
 
 /// Share of a surface point's shape functions that the nodes that count must have: below it no material is near enough.
@@ -115,7 +116,7 @@ impl Attachment {
         let mut sum = Vector::zeros();
         for (N, offset) in self.N.iter().zip(offsets) {
             for component in 0..D {
-                sum[component] += N * u[(self.first_node + offset) * D + component];
+                sum[component] += N * u[Nodal::<D>::at(self.first_node + offset, component)];
             }
         }
         sum
@@ -126,7 +127,7 @@ impl Attachment {
         let out = out.patch(self.first_node);
         for (N, offset) in self.N.iter().zip(offsets) {
             for component in 0..D {
-                out[offset * D + component] += N * force[component];
+                out[Nodal::<D>::at(*offset, component)] += N * force[component];
             }
         }
     }

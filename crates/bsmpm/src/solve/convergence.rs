@@ -7,6 +7,7 @@ use crate::error::{Measures, SolveError, StepError, WorstNode};
 use crate::kinematics::Kinematics;
 use crate::method::Criteria;
 use crate::method::Method;
+use crate::nodal::Nodal;
 use crate::solve::round_off::RoundOff;
 use crate::step::problem::Problem;
 use crate::step::residual::{Balance, Residual};
@@ -162,7 +163,7 @@ fn worst_nodes<K: Kinematics<D>, const D: usize>(
     residual: &Residual<K, D>,
 ) -> Vec<WorstNode> {
     let grid = &problem.model.grid;
-    let force = |node: usize| Vector::<D>::from_column_slice(&residual.balance.f_oob[node * D..][..D]).norm();
+    let force = |node: usize| Vector::<D>::from_column_slice(&residual.balance.f_oob[Nodal::<D>::of(node)]).norm();
     let mut nodes: Vec<usize> = problem.halo.owned().filter(|&node| force(node) > 0.0).collect();
     nodes.sort_by(|&a, &b| force(b).total_cmp(&force(a)));
     let told = |node: usize| {

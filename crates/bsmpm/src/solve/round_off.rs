@@ -1,6 +1,7 @@
 //! What out-of-balance force is round-off: below it no iteration can change a state, and no relative measure means anything.
 
 use crate::kinematics::Kinematics;
+use crate::nodal::Nodal;
 use crate::parallel::over_layers;
 use crate::step::problem::Problem;
 use crate::step::residual::Balance;
@@ -28,7 +29,10 @@ impl RoundOff {
         let mut force: Vec<f64> = young.iter().flat_map(|young| [INTERNAL * young * area; D]).collect();
         if let Some(inertia) = &nodes.inertia {
             for (c, force) in force.iter_mut().enumerate() {
-                *force += CANCELLED * inertia.newmark.pulse(inertia.dt) * nodes.weight[c / D] * inertia.v[c].abs();
+                *force += CANCELLED
+                    * inertia.newmark.pulse(inertia.dt)
+                    * nodes.weight[Nodal::<D>::node(c)]
+                    * inertia.v[c].abs();
             }
         }
         force.iter_mut().zip(&nodes.free).filter(|(_, free)| !**free).for_each(|(force, _)| *force = 0.0);

@@ -1,6 +1,7 @@
 //! Vectors of the unknowns alone: what an iteration keeps of many steps follows the occupied cells, not the grid.
 
 use crate::exact::Exact;
+use crate::nodal::Nodal;
 use crate::parallel::Halo;
 use std::ops::Range;
 
@@ -20,7 +21,7 @@ impl Unknowns {
         let places: Vec<u32> = (0..).zip(free).filter(|(_, free)| **free).map(|(place, _)| place).collect();
         let (owned, layer) = (halo.owned(), halo.layer_nodes() * D);
         let number = |component: usize| places.partition_point(|&place| (place as usize) < component);
-        let firsts = (owned.start * D..owned.end * D).step_by(layer.max(1));
+        let firsts = Nodal::<D>::all(&owned).step_by(layer.max(1));
         let layers = firsts.map(|first| number(first)..number(first + layer)).collect();
         Self { places, layers }
     }

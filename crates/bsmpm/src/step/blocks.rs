@@ -5,6 +5,7 @@ use crate::error::SolveError;
 use crate::grid::Shape;
 use crate::grid::shape::Patch;
 use crate::kinematics::{Gradient, Kinematics, Moduli, Slope};
+use crate::nodal::Nodal;
 use crate::parallel::{LinearSolver, Symmetry};
 use crate::step::mass::{MassMatrix, SHARE};
 use crate::step::nodes::Nodes;
@@ -61,7 +62,7 @@ pub fn complete<K: Kinematics<D>, const D: usize>(
             MassMatrix::Lumped => inertia.factor(),
             MassMatrix::Consistent => (1.0 - SHARE) * inertia.factor(),
         };
-        let diagonal: Vec<f64> = (0..nodes.free.len()).map(|c| factor * nodes.weight[c / D]).collect();
+        let diagonal: Vec<f64> = (0..nodes.free.len()).map(|c| factor * nodes.weight[Nodal::<D>::node(c)]).collect();
         solver.add_diagonal(&diagonal);
     }
     solver.finish(symmetry)

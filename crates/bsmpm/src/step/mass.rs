@@ -7,6 +7,7 @@
 //! them, but is singular where a node sees too little: see [`SHARE`].
 
 use crate::grid::{Shape, transfer};
+use crate::nodal::Nodal;
 use crate::parallel::{Halo, dots};
 
 /// How the mass of the points becomes that of the nodes.
@@ -48,7 +49,7 @@ pub struct Mass<'a, const D: usize> {
 impl<const D: usize> Mass<'_, D> {
     /// M times a nodal field: one exchange with the neighbours where M is consistent.
     pub fn times(&self, field: &[f64]) -> Vec<f64> {
-        let lumped = |(c, value): (usize, &f64)| self.lumped[c / D] * value;
+        let lumped = |(c, value): (usize, &f64)| self.lumped[Nodal::<D>::node(c)] * value;
         if self.matrix == MassMatrix::Lumped {
             return field.iter().enumerate().map(lumped).collect();
         }
@@ -105,7 +106,7 @@ impl<const D: usize> Mass<'_, D> {
     /// Leaves out what is held, and massless nodes.
     fn clear(&self, field: &mut [f64], held: &[Option<f64>]) {
         for (c, value) in field.iter_mut().enumerate() {
-            if held[c].is_some() || self.lumped[c / D] <= self.threshold {
+            if held[c].is_some() || self.lumped[Nodal::<D>::node(c)] <= self.threshold {
                 *value = 0.0;
             }
         }

@@ -6,6 +6,7 @@ use crate::error::StepError;
 use crate::grid::{Shape, transfer};
 use crate::kinematics::Kinematics;
 use crate::model::{Model, Regime, Weighting};
+use crate::nodal::Nodal;
 use crate::parallel::Halo;
 use crate::points::Points;
 use crate::quadrature::{self, Quadrature};
@@ -87,7 +88,7 @@ impl<const D: usize> Nodes<D> {
         let volume = fitted.as_deref().unwrap_or(&points.volume);
         let (active, stiff) = supported(shape, volume, background.as_ref(), nodes, halo);
         let unknown = |node: usize| active[node] && (weight[node] > threshold || stiff[node]);
-        let free = velocities.iter().enumerate().map(|(c, v)| v.is_none() && unknown(c / D)).collect();
+        let free = velocities.iter().enumerate().map(|(c, v)| v.is_none() && unknown(Nodal::<D>::node(c))).collect();
         let mut f_ext = external_force((model, shape, points), t + dt, (weighting, &weight), halo);
         let window = (&model.grid, &active[..]);
         load::add_forces(&model.boundary.loads, &points.surface, window, t + dt, halo, &mut f_ext)?;
@@ -188,7 +189,7 @@ impl<const D: usize> Nodes<D> {
         let count = |marks: &mut dyn Iterator<Item = bool>| marks.filter(|&mark| mark).count() as f64;
         let mut counts = [
             count(&mut self.active[owned.clone()].iter().copied()),
-            count(&mut self.free[owned.start * D..owned.end * D].iter().copied()),
+            count(&mut self.free[Nodal::<D>::all(&owned)].iter().copied()),
             count(&mut owned.map(|node| self.active[node] && self.weight[node] <= self.threshold)),
             self.background.as_ref().map_or(0, Blocks::count) as f64,
         ];

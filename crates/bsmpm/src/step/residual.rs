@@ -3,6 +3,7 @@
 use crate::exact::Exact;
 use crate::grid::{Contributions, transfer};
 use crate::kinematics::{Gradient, Kinematics};
+use crate::nodal::Nodal;
 use crate::parallel::over_layers;
 use crate::step::adjoint::Pressures;
 use crate::step::problem::Problem;
@@ -136,7 +137,7 @@ impl Balance {
 
 /// Sum over the components of this rank's own active nodes.
 fn over_active<K, const D: usize>(problem: &Problem<'_, K, D>, term: impl Fn(usize) -> f64) -> Exact {
-    over_layers(problem.halo, D, |c| if problem.nodes.active[c / D] { term(c) } else { 0.0 })
+    over_layers(problem.halo, D, |c| if problem.nodes.active[Nodal::<D>::node(c)] { term(c) } else { 0.0 })
 }
 
 /// Step (5b) at the nodes of the window.
@@ -156,11 +157,11 @@ impl Forces {
         let nodes = problem.nodes;
         let mut forces = Self { f_oob: vec![0.0; u.len()], reaction: vec![0.0; u.len()], inertial: Vec::new() };
         if let Some(inertia) = &nodes.inertia {
-            let of = |c: usize| if nodes.active[c / D] { inertia.acting(c, u[c]) } else { 0.0 };
+            let of = |c: usize| if nodes.active[Nodal::<D>::node(c)] { inertia.acting(c, u[c]) } else { 0.0 };
             let acting: Vec<f64> = (0..u.len()).map(of).collect();
             forces.inertial = problem.mass().times(&acting);
         }
-        for component in (0..u.len()).filter(|component| nodes.active[component / D]) {
+        for component in (0..u.len()).filter(|&component| nodes.active[Nodal::<D>::node(component)]) {
             let inertial = forces.inertial.get(component).copied().unwrap_or(0.0);
             let held = f_strips.get(component).copied().unwrap_or(0.0);
             let balance = nodes.f_ext[component] + held - f_int[component] - inertial;

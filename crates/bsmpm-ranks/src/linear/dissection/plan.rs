@@ -4,6 +4,7 @@
 //! touch too come last. George, A. (1973), SIAM J. Numer. Anal. 10, 345-363; Liu, J. W. H. (1992), SIAM Rev. 34, 82-109.
 
 use super::factor;
+use bsmpm::nodal::Nodal;
 use std::ops::Range;
 
 /// Unknowns of a box below which cutting costs more than it saves, by trial between 32 and 192 on plane grids.
@@ -168,7 +169,7 @@ impl<const D: usize, const C: usize> Cutter<'_, D, C> {
     }
 
     fn unknowns(&self, node: usize) -> impl Iterator<Item = usize> + '_ {
-        (node * C..(node + 1) * C).filter(|&component| self.free[component])
+        Nodal::<C>::of(node).filter(|&component| self.free[component])
     }
 
     fn components(&self, region: &[Range<usize>; D]) -> Vec<usize> {
