@@ -37,10 +37,9 @@ impl Run<'_> {
         if let Some(ledger) = &mut run.ledger {
             failed[0] = f64::from(!ledger.judge());
             for check in ledger.manifest().checks.iter().filter(|check| !check.passed) {
-                run.log.failure(&format!(
-                    "check failed: {} = {:?}, wanted {:?} to {:?}",
-                    check.quantity, check.value, check.min, check.max
-                ));
+                let number = |number: Option<f64>| number.map_or("-".to_owned(), |number| format!("{number}"));
+                let (value, least, most) = (number(check.value), number(check.min), number(check.max));
+                run.log.failure(&format!("check failed: {} = {value}, allowed: {least} to {most}", check.quantity));
             }
         }
         run.simulation.halo.maximum(&mut failed);
