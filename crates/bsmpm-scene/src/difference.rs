@@ -5,6 +5,7 @@ use crate::error::Error;
 use crate::preset;
 use crate::record::{self, Datum, Record};
 use crate::report::Report;
+use crate::schema::ROOT;
 use crate::source::Source;
 use std::collections::BTreeMap;
 use std::fmt;
@@ -92,7 +93,7 @@ fn values(text: &str) -> Result<BTreeMap<String, DifferenceValue>, Vec<Error>> {
     let mut report = Report::new(&source, &[]);
     let mut document = document::parse(&source, &mut report);
     preset::fill(&mut document, (&source, &[]), &mut report);
-    let record = record::read(&document, &mut report);
+    let record = record::read(&ROOT, &document, &mut report);
     if report.failed() {
         return Err(report.into_errors());
     }

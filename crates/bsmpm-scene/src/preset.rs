@@ -10,6 +10,7 @@ use crate::document::{self, DocumentEntry, Node, Table, Value};
 use crate::error::Origin;
 use crate::record;
 use crate::report::Report;
+use crate::schema::ROOT;
 use crate::source::Source;
 use crate::words::{Accuracy, Order, Word};
 use bsmpm::stabilisation::Stabilisation;
@@ -87,7 +88,7 @@ pub(crate) fn fill(
     let Some((accuracy, origin)) = chosen(document) else { return false };
     let preset = &Preset::of(accuracy);
     // Its errors are told when the filled document is read.
-    let record = record::read(document, &mut Report::new(source, overrides));
+    let record = record::read(&ROOT, document, &mut Report::new(source, overrides));
     let scene = PresetScene::of(&record);
     let mut filling = Filling { document, origin, accuracy, report, filled: false };
     filling.put("grid", &["order"], &quoted(ORDER), "");

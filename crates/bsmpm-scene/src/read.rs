@@ -3,6 +3,7 @@
 use crate::case::Case;
 use crate::error::{Error, Origin};
 use crate::report::Report;
+use crate::schema::ROOT;
 use crate::source::{Source, decode};
 use crate::{document, overrides, preset, record, validate};
 
@@ -33,7 +34,7 @@ impl Case {
             return Err(report.into_errors());
         }
         let filled = preset::fill(&mut document, (&source, overrides), &mut report);
-        let record = record::read(&document, &mut report);
+        let record = record::read(&ROOT, &document, &mut report);
         let effective = if overrides.is_empty() && !filled { text.to_owned() } else { document.to_toml() };
         match validate::case(&record, effective, &mut report) {
             Some(case) if !report.failed() => Ok(case),

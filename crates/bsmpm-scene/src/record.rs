@@ -7,7 +7,7 @@ use crate::document::{self, Node, Value};
 use crate::error::Origin;
 use crate::nearest::nearest;
 use crate::report::{Report, shortened};
-use crate::schema::{Group, Key, Kind, Presence, ROOT, Table};
+use crate::schema::{Group, Key, Kind, Presence, Table};
 use crate::unit::Dimension;
 use crate::words::Word;
 use bsmpm::model::Regime;
@@ -17,6 +17,7 @@ use bsmpm::model::Regime;
 pub(crate) struct Record {
     pub(crate) path: String,
     pub(crate) origin: Origin,
+    root: &'static Table,
     table: &'static Table,
     fields: Vec<Field>,
 }
@@ -56,12 +57,14 @@ pub(crate) struct ListRow {
 /// What the types of values depend on besides the schema.
 #[derive(Clone, Copy)]
 struct Context {
+    /// table of the whole file
+    root: &'static Table,
     /// time is a pseudo-time without unit
     pseudo_time: bool,
 }
 
-/// The whole file as a record; what does not fit goes to `report`.
-pub(crate) fn read(document: &document::Table, report: &mut Report<'_>) -> Record {
+/// The whole file, whose table is `root`, as a record; what does not fit goes to `report`.
+pub(crate) fn read(root: &'static Table, document: &document::Table, report: &mut Report<'_>) -> Record {
     let kind = document.get("analysis").and_then(|entry| match &entry.node.value {
         Value::Table(analysis) => analysis.get("type"),
         _ => None,
@@ -71,7 +74,7 @@ pub(crate) fn read(document: &document::Table, report: &mut Report<'_>) -> Recor
         _ => None,
     });
     let pseudo_time = regime == Some(Regime::QuasiStatic);
-    Context { pseudo_time }.record(&ROOT, document, Origin::Nowhere, "", report)
+    Context { root, pseudo_time }.record(root, document, Origin::Nowhere, "", report)
 }
 
 impl Context {
@@ -83,8 +86,8 @@ impl Context {
         path: &str,
         report: &mut Report<'_>,
     ) -> Record {
-        unknown_keys(table, written, path, report);
-        let mut record = Record { path: path.to_owned(), origin, table, fields: Vec::new() };
+        self.unknown_keys(table, written, path, report);
+        let mut record = Record { path: path.to_owned(), origin, root: self.root, table, fields: Vec::new() };
         for key in table.keys {
             let path = join(path, key.name);
             match (written.get(key.name), key.presence) {
@@ -180,34 +183,34 @@ impl Context {
         }
         (records.len() == items.len()).then_some(Datum::Records(records))
     }
+
+    fn unknown_keys(self, table: &'static Table, written: &document::Table, path: &str, report: &mut Report<'_>) {
+        const SHOWN: usize = 50;
+        let mut unknown = written.entries.iter().filter(|entry| table.key(&entry.key).is_none());
+        for entry in unknown.by_ref().take(SHOWN) {
+            report.error(entry.origin, &join(path, &entry.key), self.unknown_key(table, &entry.key));
+        }
+        if let Some(entry) = unknown.next() {
+            let message = format!("{} more unknown keys from here on", unknown.count() + 1);
+            report.error(entry.origin, path, message);
+        }
+    }
+
+    fn unknown_key(self, table: &'static Table, key: &str) -> String {
+        let names = || table.keys.iter().map(|key| key.name);
+        let elsewhere = || self.root.all().into_iter().find(|other| other.key(key).is_some());
+        let hint = match (nearest(key, names()), elsewhere()) {
+            (Some(name), _) => format!("; did you mean `{name}`?"),
+            (None, Some(other)) => format!("; `{key}` belongs to {}", other.header),
+            (None, None) => String::new(),
+        };
+        let known: Vec<&str> = names().collect();
+        format!("unknown key `{}` in {}{hint} (known: {})", shortened(key), table.header, known.join(", "))
+    }
 }
 
 fn join(path: &str, key: &str) -> String {
     if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") }
-}
-
-fn unknown_keys(table: &'static Table, written: &document::Table, path: &str, report: &mut Report<'_>) {
-    const SHOWN: usize = 50;
-    let mut unknown = written.entries.iter().filter(|entry| table.key(&entry.key).is_none());
-    for entry in unknown.by_ref().take(SHOWN) {
-        report.error(entry.origin, &join(path, &entry.key), unknown_key(table, &entry.key));
-    }
-    if let Some(entry) = unknown.next() {
-        let message = format!("{} more unknown keys from here on", unknown.count() + 1);
-        report.error(entry.origin, path, message);
-    }
-}
-
-fn unknown_key(table: &'static Table, key: &str) -> String {
-    let names = || table.keys.iter().map(|key| key.name);
-    let elsewhere = || ROOT.all().into_iter().find(|other| other.key(key).is_some());
-    let hint = match (nearest(key, names()), elsewhere()) {
-        (Some(name), _) => format!("; did you mean `{name}`?"),
-        (None, Some(other)) => format!("; `{key}` belongs to {}", other.header),
-        (None, None) => String::new(),
-    };
-    let known: Vec<&str> = names().collect();
-    format!("unknown key `{}` in {}{hint} (known: {})", shortened(key), table.header, known.join(", "))
 }
 
 fn exclusive(group: &Group, written: &document::Table, record: &Record, report: &mut Report<'_>) {
@@ -239,7 +242,10 @@ impl Record {
     /// The key as the schema has it.
     fn known(&self, key: &str) -> Option<&'static Key> {
         let known = self.table.key(key);
-        assert!(known.is_some() || ROOT.all().iter().any(|table| table.key(key).is_some()), "no table has a key {key}");
+        assert!(
+            known.is_some() || self.root.all().iter().any(|table| table.key(key).is_some()),
+            "no table has a key {key}"
+        );
         known
     }
 

@@ -20,13 +20,13 @@ impl Variable {
 }
 
 /// Parameters of one law at most.
-pub const MOST_PARAMETERS: usize = 8;
+pub(super) const MOST_PARAMETERS: usize = 8;
 
 /// An isotropic law on principal values: Hencky strain in, Kirchhoff stress out, both descending.
 pub trait Law {
     /// What a return leaves for its tangent and its state.
     type Flow: Flow;
-    /// Parameters besides the elastic ones; at most [`MOST_PARAMETERS`].
+    /// Parameters besides the elastic ones; at most eight.
     const PARAMETERS: &'static [Variable] = &[];
     /// State variables.
     const STATE: &'static [Variable] = &[];
