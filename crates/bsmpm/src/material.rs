@@ -18,13 +18,14 @@ mod von_mises;
 pub use drucker_prager::{DruckerPrager, Match};
 pub use graded::{Graded, Profile};
 pub use hencky::Hencky;
-pub use law::{Branch, Flow, Law, Separation, Variable, split};
+pub use law::{Branch, Law, Projection, Separation, Variable, split};
 pub use mohr_coulomb::MohrCoulomb;
 pub use response::Response;
 pub use stiffness::Stiffness;
 pub use tangent::Tangent;
 pub use von_mises::VonMises;
 
+use crate::real::Real;
 use crate::tensor::{Symmetric, Tensor};
 use spectral::Spectrum;
 use std::borrow::Cow;
@@ -70,10 +71,10 @@ pub struct Moduli {
 
 impl Moduli {
     /// `τ_A = λ Σ_B ε_B + 2μ ε_A`.
-    #[inline]
-    fn stress(&self, eps: [f64; 3]) -> [f64; 3] {
-        let spherical = self.lambda * (eps[0] + eps[1] + eps[2]);
-        eps.map(|e| spherical + 2.0 * self.mu * e)
+    #[inline(always)]
+    fn stress<R: Real>(&self, eps: [R; 3]) -> [R; 3] {
+        let spherical = (eps[0] + eps[1] + eps[2]) * self.lambda;
+        eps.map(|e| spherical + e * (2.0 * self.mu))
     }
 
     /// The inverse of [`Moduli::stress`]: `ε_A = (τ_A - p)/(2μ) + p/(3K)`, p the mean stress.
@@ -116,7 +117,7 @@ macro_rules! laws {
         #[derive(Clone, Copy, Debug)]
         pub(super) enum Flowed {
             Elastic,
-            $($Law(<$module::$Law as Law>::Flow),)*
+            $($Law(<$module::$Law as Law>::Flow<f64>),)*
         }
 
         impl Material {
@@ -223,10 +224,8 @@ macro_rules! laws {
                     $(Self::$Law(law) => {
                         let moduli = law.moduli();
                         let trial = moduli.stress(spectrum.eps);
-                        match law.project(trial, state) {
-                            Some((tau, flow)) => (moduli, tau, Flowed::$Law(flow)),
-                            None => (moduli, trial, Flowed::Elastic),
-                        }
+                        let Projection { tau, yields, flow } = law.project(trial, state);
+                        (moduli, tau, if yields { Flowed::$Law(flow) } else { Flowed::Elastic })
                     })*
                     Self::Graded(law) => {
                         let moduli = law.stiffest().moduli();
@@ -242,7 +241,7 @@ macro_rules! laws {
             pub fn branch(&self) -> Branch {
                 match self {
                     Self::Elastic => Branch::Elastic,
-                    $(Self::$Law(flow) => flow.branch(),)*
+                    $(Self::$Law(flow) => $module::$Law::branch(flow),)*
                 }
             }
 
@@ -250,15 +249,15 @@ macro_rules! laws {
             pub fn tangent(&self, moduli: Moduli) -> Tensor {
                 match self {
                     Self::Elastic => moduli.tangent(),
-                    $(Self::$Law(flow) => flow.tangent(moduli),)*
+                    $(Self::$Law(flow) => $module::$Law::tangent(flow, moduli),)*
                 }
             }
 
-            /// See [`Flow::chord`]; 2μ if elastic.
+            /// See [`Law::chord`]; 2μ if elastic.
             pub fn chord(&self, moduli: Moduli, differences: (f64, f64)) -> f64 {
                 match self {
                     Self::Elastic => 2.0 * moduli.mu,
-                    $(Self::$Law(flow) => flow.chord(moduli, differences),)*
+                    $(Self::$Law(flow) => $module::$Law::chord(flow, moduli, differences),)*
                 }
             }
 
@@ -266,7 +265,7 @@ macro_rules! laws {
             pub fn advance(&self, state: &mut [f64]) {
                 match self {
                     Self::Elastic => {}
-                    $(Self::$Law(flow) => flow.advance(state),)*
+                    $(Self::$Law(flow) => $module::$Law::advance(flow, state),)*
                 }
             }
         }

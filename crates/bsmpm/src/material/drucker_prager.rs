@@ -3,8 +3,9 @@
 //!
 //! The return is linear: along the deviator to the cone, or to its tip.
 
-use super::law::{Branch, FRICTIONAL, Flow, Law, Variable, frictional, reduced, split};
+use super::law::{Branch, FRICTIONAL, Law, Projection, Variable, frictional, reduced, split};
 use super::{Elastic, Moduli};
+use crate::real::Real;
 use crate::tensor::Tensor;
 
 /// Where the cone meets Mohr-Coulomb's pyramid.
@@ -51,18 +52,15 @@ pub struct DruckerPrager {
 
 /// What a return leaves.
 #[derive(Clone, Copy, Debug)]
-pub enum DruckerPragerReturn {
-    /// To the cone.
-    Cone {
-        /// (-)  principal deviator of the trial over its norm
-        direction: [f64; 3],
-        /// (-)  √J₂ after the return over that of the trial
-        kept: f64,
-        /// η and η_ψ
-        slopes: [f64; 2],
-    },
-    /// To the tip.
-    Apex,
+pub struct DruckerPragerReturn<R: Real> {
+    /// to the tip, where the rest has no meaning
+    apex: R::Mask,
+    /// (-)  principal deviator of the trial over its norm
+    direction: [R; 3],
+    /// (-)  √J₂ after the return over that of the trial
+    kept: R,
+    /// η and η_ψ
+    slopes: [f64; 2],
 }
 
 impl DruckerPrager {
@@ -98,7 +96,7 @@ impl DruckerPrager {
 }
 
 impl Law for DruckerPrager {
-    type Flow = DruckerPragerReturn;
+    type Flow<R: Real> = DruckerPragerReturn<R>;
     const PARAMETERS: &'static [Variable] = &FRICTIONAL;
 
     fn elastic(&self) -> &Elastic {
@@ -121,61 +119,45 @@ impl Law for DruckerPrager {
     }
 
     /// `f = √J₂ + η p - ξ c`.
-    #[inline]
-    fn excess(&self, tau: [f64; 3], _state: &[f64]) -> f64 {
+    #[inline(always)]
+    fn excess<R: Real>(&self, tau: [R; 3], _state: &[R]) -> R {
         let (mean, _, norm) = split(tau);
-        norm * std::f64::consts::FRAC_1_SQRT_2 + self.slopes[0] * mean - self.strength
+        norm * std::f64::consts::FRAC_1_SQRT_2 + mean * self.slopes[0] - self.strength
     }
 
     /// `Δγ = (√J₂ + η p - ξ c)/(μ + K η η_ψ)`, `p - K η_ψ Δγ`, and √J₂ from f = 0; where that is negative the tip,
     /// p = ξ c/η.
-    #[inline]
-    fn project(&self, trial: [f64; 3], _state: &[f64]) -> Option<([f64; 3], DruckerPragerReturn)> {
+    #[inline(always)]
+    fn project<R: Real>(&self, trial: [R; 3], _state: &[R]) -> Projection<R, DruckerPragerReturn<R>> {
         let (Moduli { mu, .. }, [eta, eta_psi]) = (self.moduli, self.slopes);
         let (mean, deviator, norm) = split(trial);
-        let root = norm * std::f64::consts::FRAC_1_SQRT_2;
-        let excess = root + eta * mean - self.strength;
-        if excess <= 0.0 {
-            return None;
-        }
+        let (root, zero) = (norm * std::f64::consts::FRAC_1_SQRT_2, mean.like(0.0));
+        let excess = root + mean * eta - self.strength;
         let bulk = self.moduli.bulk();
-        let p = mean - bulk * eta_psi * excess / (mu + bulk * eta * eta_psi);
-        let after = self.strength - eta * p;
-        if after < 0.0 || root == 0.0 {
-            return Some(([self.strength / eta; 3], DruckerPragerReturn::Apex));
-        }
+        let p = mean - excess * (bulk * eta_psi) / (mu + bulk * eta * eta_psi);
+        let after = -(p * eta) + self.strength;
+        let (yields, apex) = (!excess.at_most(zero), after.below(zero) | root.at_most(zero));
         let kept = after / root;
-        let tau = deviator.map(|s| p + kept * s);
-        Some((tau, DruckerPragerReturn::Cone { direction: deviator.map(|s| s / norm), kept, slopes: self.slopes }))
+        let tip = mean.like(self.strength / eta);
+        let returned = deviator.map(|s| R::choose(apex, tip, p + kept * s));
+        let tau = [0, 1, 2].map(|k| R::choose(yields, returned[k], trial[k]));
+        let direction = deviator.map(|s| s / norm);
+        Projection { tau, yields, flow: DruckerPragerReturn { apex, direction, kept, slopes: self.slopes } }
     }
 
-    fn reduced(self, factor: f64) -> Self {
-        if factor == 1.0 {
-            return self;
-        }
-        let strength = reduced((self.friction, self.dilation, self.cohesion), factor);
-        Self::new(self.elastic, strength, self.fit)
-    }
-
-    fn dilation(&self) -> f64 {
-        self.dilation
-    }
-}
-
-impl Flow for DruckerPragerReturn {
     #[inline]
-    fn branch(&self) -> Branch {
-        match self {
-            Self::Cone { .. } => Branch::Face,
-            Self::Apex => Branch::Apex,
-        }
+    fn branch(flow: &DruckerPragerReturn<f64>) -> Branch {
+        if flow.apex { Branch::Apex } else { Branch::Face }
     }
 
     /// With `A = 1/(μ + K η η_ψ)`, n the direction and r what is kept of √J₂:
     /// `2μ r (I₄ - ⅓ I ⊗ I) + 2μ (1 - r - μ A) n ⊗ n - √2 μ A K (η n ⊗ I + η_ψ I ⊗ n) + K (1 - K η η_ψ A) I ⊗ I`;
     /// at the tip 0.
-    fn tangent(&self, moduli: Moduli) -> Tensor {
-        let Self::Cone { direction: n, kept, slopes: [eta, eta_psi] } = *self else { return Tensor::zeros() };
+    fn tangent(flow: &DruckerPragerReturn<f64>, moduli: Moduli) -> Tensor {
+        let DruckerPragerReturn { direction: n, kept, slopes: [eta, eta_psi], apex } = *flow;
+        if apex {
+            return Tensor::zeros();
+        }
         let (mu, bulk) = (moduli.mu, moduli.bulk());
         let inverse = 1.0 / (mu + bulk * eta * eta_psi);
         let mixed = std::f64::consts::SQRT_2 * mu * inverse * bulk;
@@ -189,10 +171,19 @@ impl Flow for DruckerPragerReturn {
     }
 
     /// All differences are kept alike.
-    fn chord(&self, moduli: Moduli, _differences: (f64, f64)) -> f64 {
-        match self {
-            Self::Cone { kept, .. } => 2.0 * moduli.mu * kept,
-            Self::Apex => 0.0,
+    fn chord(flow: &DruckerPragerReturn<f64>, moduli: Moduli, _differences: (f64, f64)) -> f64 {
+        if flow.apex { 0.0 } else { 2.0 * moduli.mu * flow.kept }
+    }
+
+    fn reduced(self, factor: f64) -> Self {
+        if factor == 1.0 {
+            return self;
         }
+        let strength = reduced((self.friction, self.dilation, self.cohesion), factor);
+        Self::new(self.elastic, strength, self.fit)
+    }
+
+    fn dilation(&self) -> f64 {
+        self.dilation
     }
 }

@@ -1,7 +1,9 @@
 //! Hencky elasticity (section 2.2, Eqs 9 and 10): linear between logarithmic strain and Kirchhoff stress.
 
-use super::law::{Law, Never};
+use super::law::{Branch, Law, Projection};
 use super::{Elastic, Moduli};
+use crate::real::Real;
+use crate::tensor::Tensor;
 
 /// Elastic at any strain: `τ = Dᵉ ½ ln bᵉ`; the state after the step is the trial state.
 #[derive(Clone, Debug, PartialEq)]
@@ -11,7 +13,7 @@ pub struct Hencky {
 }
 
 impl Law for Hencky {
-    type Flow = Never;
+    type Flow<R: Real> = ();
     const YIELDS: bool = false;
 
     fn elastic(&self) -> &Elastic {
@@ -31,13 +33,22 @@ impl Law for Hencky {
         Self { elastic }
     }
 
-    fn excess(&self, _tau: [f64; 3], _state: &[f64]) -> f64 {
-        f64::NEG_INFINITY
+    fn excess<R: Real>(&self, tau: [R; 3], _state: &[R]) -> R {
+        tau[0].like(f64::NEG_INFINITY)
     }
 
-    #[inline]
-    fn project(&self, _trial: [f64; 3], _state: &[f64]) -> Option<([f64; 3], Never)> {
-        None
+    #[inline(always)]
+    fn project<R: Real>(&self, trial: [R; 3], _state: &[R]) -> Projection<R, ()> {
+        let never = trial[0].like(1.0).below(trial[0].like(0.0));
+        Projection { tau: trial, yields: never, flow: () }
+    }
+
+    fn branch(_flow: &()) -> Branch {
+        Branch::Elastic
+    }
+
+    fn tangent(_flow: &(), moduli: Moduli) -> Tensor {
+        moduli.tangent()
     }
 
     fn reduced(self, _factor: f64) -> Self {

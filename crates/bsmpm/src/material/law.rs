@@ -1,6 +1,7 @@
 //! What a law is: a file beside this one that implements [`Law`], and a line in the list of `material.rs`.
 
 use super::{Elastic, Moduli};
+use crate::real::Real;
 use crate::tensor::Tensor;
 
 /// A number of a law: a parameter, or a state variable that points carry from step to step, 0 at the start.
@@ -25,7 +26,7 @@ pub(super) const MOST_PARAMETERS: usize = 8;
 /// An isotropic law on principal values: Hencky strain in, Kirchhoff stress out, both descending.
 pub trait Law {
     /// What a return leaves for its tangent and its state.
-    type Flow: Flow;
+    type Flow<R: Real>: Copy;
     /// Parameters besides the elastic ones; at most eight.
     const PARAMETERS: &'static [Variable] = &[];
     /// State variables.
@@ -46,11 +47,27 @@ pub trait Law {
     fn moduli(&self) -> Moduli;
 
     /// The yield function of a stress, Pa; positive where that is outside.
-    fn excess(&self, tau: [f64; 3], state: &[f64]) -> f64;
+    fn excess<R: Real>(&self, tau: [R; 3], state: &[R]) -> R;
 
-    /// The stress after the return of an elastic trial stress (Pa), and its flow; `None` where the trial does not yield.
-    /// `state` is that of the last step, in the order of [`Law::STATE`].
-    fn project(&self, trial: [f64; 3], state: &[f64]) -> Option<([f64; 3], Self::Flow)>;
+    /// The return of an elastic trial stress, Pa. `state` is that of the last step, in the order of [`Law::STATE`].
+    fn project<R: Real>(&self, trial: [R; 3], state: &[R]) -> Projection<R, Self::Flow<R>>;
+
+    /// Where on the yield surface the stress lies after a return.
+    fn branch(flow: &Self::Flow<f64>) -> Branch;
+
+    /// `D_AB = ∂τ_A/∂ε_B`, Pa, of principal values after a return.
+    fn tangent(flow: &Self::Flow<f64>, moduli: Moduli) -> Tensor;
+
+    /// `(τ_A - τ_B)/(ε_A - ε_B)`, Pa, where these differ by `tau` and `eps` ≥ 0 after a return.
+    ///
+    /// In 0..2μ, since returns shrink stress differences; here 0 of equal strains, as what is near an edge returns to it.
+    /// The bounds keep rounding of a tiny difference inside.
+    fn chord(_flow: &Self::Flow<f64>, moduli: Moduli, (tau, eps): (f64, f64)) -> f64 {
+        if eps > 0.0 { (tau / eps).max(0.0).min(2.0 * moduli.mu) } else { 0.0 }
+    }
+
+    /// Puts the state after a return in the place of that before it.
+    fn advance(_flow: &Self::Flow<f64>, _state: &mut [f64]) {}
 
     /// The law with its strength divided by `factor` (section 3.2).
     fn reduced(self, factor: f64) -> Self;
@@ -71,24 +88,15 @@ pub trait Law {
     }
 }
 
-/// What a return leaves.
-pub trait Flow: Copy {
-    /// Where on the yield surface the stress lies.
-    fn branch(&self) -> Branch;
-
-    /// `D_AB = ∂τ_A/∂ε_B`, Pa, of principal values.
-    fn tangent(&self, moduli: Moduli) -> Tensor;
-
-    /// `(τ_A - τ_B)/(ε_A - ε_B)`, Pa, where these differ by `tau` and `eps` ≥ 0.
-    ///
-    /// In 0..2μ, since returns shrink stress differences; here 0 of equal strains, as what is near an edge returns to it.
-    /// The bounds keep rounding of a tiny difference inside.
-    fn chord(&self, moduli: Moduli, (tau, eps): (f64, f64)) -> f64 {
-        if eps > 0.0 { (tau / eps).max(0.0).min(2.0 * moduli.mu) } else { 0.0 }
-    }
-
-    /// Puts the state after the return in the place of that before it.
-    fn advance(&self, _state: &mut [f64]) {}
+/// The return of a trial stress.
+#[derive(Clone, Copy, Debug)]
+pub struct Projection<R: Real, F> {
+    /// Pa  the stress after it, descending; the trial where that does not yield
+    pub tau: [R; 3],
+    /// where the trial yields
+    pub yields: R::Mask,
+    /// what the return leaves; without a meaning where there is none
+    pub flow: F,
 }
 
 /// Where on the yield surface the stress lies.
@@ -116,19 +124,6 @@ pub enum Separation {
     Closing,
 }
 
-/// What the return of a law that never yields leaves: there is none.
-#[derive(Clone, Copy, Debug)]
-pub enum Never {}
-
-impl Flow for Never {
-    fn branch(&self) -> Branch {
-        match *self {}
-    }
-    fn tangent(&self, _moduli: Moduli) -> Tensor {
-        match *self {}
-    }
-}
-
 /// Parameters of laws with friction: φ, ψ, c.
 pub(super) const FRICTIONAL: [Variable; 3] =
     [Variable::new("friction", "rad"), Variable::new("dilation", "rad"), Variable::new("cohesion", "Pa")];
@@ -146,12 +141,13 @@ pub(super) fn reduced((friction, dilation, cohesion): (f64, f64, f64), factor: f
 }
 
 /// Mean, deviator and norm of the deviator of principal values.
-#[inline]
-pub fn split(tau: [f64; 3]) -> (f64, [f64; 3], f64) {
+#[inline(always)]
+pub fn split<R: Real>(tau: [R; 3]) -> (R, [R; 3], R) {
     let mean = (tau[0] + tau[1] + tau[2]) / 3.0;
     // By differences, so that the deviator has no trace even where the mean is many orders larger.
     let (upper, lower) = (tau[0] - tau[1], tau[1] - tau[2]);
     let whole = tau[0] - tau[2];
     let deviator = [(upper + whole) / 3.0, (lower - upper) / 3.0, -(whole + lower) / 3.0];
-    (mean, deviator, deviator.iter().map(|s| s * s).sum::<f64>().sqrt())
+    let squares = deviator[0] * deviator[0] + deviator[1] * deviator[1] + deviator[2] * deviator[2];
+    (mean, deviator, squares.root())
 }

@@ -3,8 +3,9 @@
 //! With no hardening each return is linear, so all are in closed form, and region by region:
 //! face, the edges τ₁ = τ₂ (left) and τ₂ = τ₃ (right), apex. Tresca is φ = ψ = 0, which has no apex.
 
-use super::law::{Branch, FRICTIONAL, Flow, Law, Separation, Variable, frictional, reduced};
+use super::law::{Branch, FRICTIONAL, Law, Projection, Separation, Variable, frictional, reduced};
 use super::{Elastic, Moduli};
+use crate::real::Real;
 use crate::tensor::Tensor;
 
 /// Elastic inside `f = (τ₁ - τ₃) + (τ₁ + τ₃) sin φ - 2 c cos φ ≤ 0`, with the same form in ψ as plastic potential.
@@ -23,10 +24,12 @@ pub struct MohrCoulomb {
     slope: f64,     // 1/Pa  ½/(λ sin φ sin ψ + μ (1 + sin φ sin ψ)), multiplier over excess of a return to a face
 }
 
-/// What a return leaves: where the stress lies, and the two sines that its tangent needs.
+/// What a return leaves: where the stress lies, on a face unless told, and the two sines that its tangent needs.
 #[derive(Clone, Copy, Debug)]
-pub struct MohrCoulombReturn {
-    region: Branch,
+pub struct MohrCoulombReturn<R: Real> {
+    left_edge: R::Mask,
+    right_edge: R::Mask,
+    apex: R::Mask,
     slopes: Slopes,
 }
 
@@ -81,9 +84,10 @@ impl YieldEdge {
     }
 
     /// τ₃ after the return to this edge: `τ₃ = w · (τ_trial - o)/(w · along)`, o the edge's point where τ₃ = 0.
-    #[inline]
-    fn third(&self, trial: [f64; 3], origin: [f64; 3]) -> f64 {
-        dot(self.weight, [trial[0] - origin[0], trial[1] - origin[1], trial[2]]) / self.slope
+    #[inline(always)]
+    fn third<R: Real>(&self, trial: [R; 3], origin: [f64; 3]) -> R {
+        let [first, second, third] = [trial[0] - origin[0], trial[1] - origin[1], trial[2]];
+        (first * self.weight[0] + second * self.weight[1] + third * self.weight[2]) / self.slope
     }
 }
 
@@ -112,21 +116,39 @@ impl MohrCoulomb {
         Self { separation, ..self }
     }
 
-    /// Return along `τ = τ_trial - Δγ D m`, `Δγ = f/(4λ sin φ sin ψ + 4μ(1 + sin φ sin ψ))`; none if it breaks the order.
-    #[inline]
-    fn face(&self, trial: [f64; 3], excess: f64) -> Option<([f64; 3], Branch)> {
+    /// Return along `τ = τ_trial - Δγ D m`, `Δγ = f/(4λ sin φ sin ψ + 4μ(1 + sin φ sin ψ))`, and where it keeps the order.
+    #[inline(always)]
+    fn face<R: Real>(&self, trial: [R; 3], excess: R) -> ([R; 3], R::Mask) {
         let (Moduli { lambda, mu }, sin_psi) = (self.moduli, self.slopes.sin_psi);
-        let half = self.slope * excess;
+        let half = excess * self.slope;
         let second = trial[1] - half * lambda * sin_psi;
         let third = trial[2] - half * (lambda * sin_psi - mu * (1.0 - sin_psi));
-        let first = self.slopes.ratio() * third + self.shift;
+        let first = third * self.slopes.ratio() + self.shift;
         // Beyond the apex f = 0 and the order exclude each other, so this test covers the apex too.
-        (first >= second && second >= third).then_some(([first, second, third], Branch::Face))
+        ([first, second, third], second.at_most(first) & third.at_most(second))
+    }
+}
+
+impl MohrCoulomb {
+    /// Return to the edge that the face return crosses first, whether that is the right one, and where it is not beyond the
+    /// apex (never when sin φ = 0).
+    #[inline(always)]
+    fn edge<R: Real>(&self, trial: [R; 3]) -> ([R; 3], R::Mask, R::Mask) {
+        let Self { slopes, moduli, shift, .. } = *self;
+        let (upper, lower) = (trial[0] - trial[1], trial[1] - trial[2]);
+        let is_right = (lower * (1.0 + slopes.sin_psi)).below(upper * (1.0 - slopes.sin_psi));
+        let (right, left) = (
+            slopes.right(moduli).third(trial, [shift, 0.0, 0.0]),
+            slopes.left(moduli).third(trial, [shift, shift, 0.0]),
+        );
+        let third = R::choose(is_right, right, left);
+        let first = third * slopes.ratio() + shift;
+        ([first, R::choose(is_right, third, first), third], is_right, third.at_most(first))
     }
 }
 
 impl Law for MohrCoulomb {
-    type Flow = MohrCoulombReturn;
+    type Flow<R: Real> = MohrCoulombReturn<R>;
     const PARAMETERS: &'static [Variable] = &FRICTIONAL;
 
     fn elastic(&self) -> &Elastic {
@@ -149,55 +171,51 @@ impl Law for MohrCoulomb {
     }
 
     /// `f = (τ₁ - τ₃) + (τ₁ + τ₃) sin φ - 2 c cos φ`.
-    #[inline]
-    fn excess(&self, tau: [f64; 3], _state: &[f64]) -> f64 {
+    #[inline(always)]
+    fn excess<R: Real>(&self, tau: [R; 3], _state: &[R]) -> R {
         (tau[0] - tau[2]) + (tau[0] + tau[2]) * self.slopes.sin_phi - 2.0 * self.strength
     }
 
     /// τ₁ is always taken from τ₃ by f = 0, so the result satisfies yield and order to the last digits even where it
     /// is much smaller than the trial.
-    #[inline]
-    fn project(&self, trial: [f64; 3], state: &[f64]) -> Option<([f64; 3], MohrCoulombReturn)> {
-        let Self { moduli, slopes, strength, shift, .. } = *self;
-        let sin_phi = slopes.sin_phi;
+    #[inline(always)]
+    fn project<R: Real>(&self, trial: [R; 3], state: &[R]) -> Projection<R, MohrCoulombReturn<R>> {
+        let Self { slopes, strength, .. } = *self;
         let excess = self.excess(trial, state);
-        if excess <= 0.0 {
-            return None;
+        let inside = excess.at_most(excess.like(0.0));
+        let none = inside & !inside;
+        let mut flow = MohrCoulombReturn { left_edge: none, right_edge: none, apex: none, slopes };
+        let mut tau = trial;
+        if R::any(!inside) {
+            let (face, keeps_order) = self.face(trial, excess);
+            tau = [0, 1, 2].map(|k| R::choose(inside, trial[k], face[k]));
+            let beyond = !(inside | keeps_order);
+            if R::any(beyond) {
+                let (edge, is_right, is_edge) = self.edge(trial);
+                flow.right_edge = beyond & is_edge & is_right;
+                flow.left_edge = beyond & is_edge & !is_right;
+                flow.apex = beyond & !is_edge;
+                let tip = excess.like(strength / slopes.sin_phi);
+                tau = [0, 1, 2].map(|k| R::choose(beyond, R::choose(is_edge, edge[k], tip), tau[k]));
+            }
         }
-        let (tau, region) = self
-            .face(trial, excess)
-            .or_else(|| edge(slopes, moduli, trial, shift))
-            .unwrap_or_else(|| ([strength / sin_phi; 3], Branch::Apex));
-        Some((tau, MohrCoulombReturn { region, slopes }))
+        Projection { tau, yields: !inside, flow }
     }
 
-    fn reduced(self, factor: f64) -> Self {
-        if factor == 1.0 {
-            return self;
-        }
-        let (friction, dilation, cohesion) = reduced((self.friction, self.dilation, self.cohesion), factor);
-        Self::new(self.elastic, friction, dilation, cohesion).separating(self.separation)
-    }
-
-    fn dilation(&self) -> f64 {
-        self.dilation
-    }
-
-    fn separation(&self) -> Separation {
-        self.separation
-    }
-}
-
-impl Flow for MohrCoulombReturn {
     #[inline]
-    fn branch(&self) -> Branch {
-        self.region
+    fn branch(flow: &MohrCoulombReturn<f64>) -> Branch {
+        match flow {
+            MohrCoulombReturn { right_edge: true, .. } => Branch::RightEdge,
+            MohrCoulombReturn { left_edge: true, .. } => Branch::LeftEdge,
+            MohrCoulombReturn { apex: true, .. } => Branch::Apex,
+            _ => Branch::Face,
+        }
     }
 
     /// On the face `D - (D m)(D n)ᵀ/(n · D m)`, on an edge of direction a `a qᵀ/(q · C a)`, at the apex zero.
-    fn tangent(&self, moduli: Moduli) -> Tensor {
-        let slopes = self.slopes;
-        match self.region {
+    fn tangent(flow: &MohrCoulombReturn<f64>, moduli: Moduli) -> Tensor {
+        let slopes = flow.slopes;
+        match Self::branch(flow) {
             Branch::Elastic => moduli.tangent(),
             Branch::Apex => Tensor::zeros(),
             Branch::Face => {
@@ -215,21 +233,21 @@ impl Flow for MohrCoulombReturn {
             }
         }
     }
-}
 
-/// Return to the edge that the face return crosses first; none if that is beyond the apex (never when sin φ = 0).
-#[inline]
-fn edge(slopes: Slopes, moduli: Moduli, trial: [f64; 3], shift: f64) -> Option<([f64; 3], Branch)> {
-    let (upper, lower) = (trial[0] - trial[1], trial[1] - trial[2]);
-    let is_right = (1.0 - slopes.sin_psi) * upper > (1.0 + slopes.sin_psi) * lower;
-    if is_right {
-        let third = slopes.right(moduli).third(trial, [shift, 0.0, 0.0]);
-        let first = slopes.ratio() * third + shift;
-        (first >= third).then_some(([first, third, third], Branch::RightEdge))
-    } else {
-        let third = slopes.left(moduli).third(trial, [shift, shift, 0.0]);
-        let first = slopes.ratio() * third + shift;
-        (first >= third).then_some(([first, first, third], Branch::LeftEdge))
+    fn reduced(self, factor: f64) -> Self {
+        if factor == 1.0 {
+            return self;
+        }
+        let (friction, dilation, cohesion) = reduced((self.friction, self.dilation, self.cohesion), factor);
+        Self::new(self.elastic, friction, dilation, cohesion).separating(self.separation)
+    }
+
+    fn dilation(&self) -> f64 {
+        self.dilation
+    }
+
+    fn separation(&self) -> Separation {
+        self.separation
     }
 }
 

@@ -3,8 +3,9 @@
 //!
 //! One elastic trial stress returns along its own deviator, which is the radius of a cylinder.
 
-use super::law::{Branch, Flow, Law, Variable, split};
+use super::law::{Branch, Law, Projection, Variable, split};
 use super::{Elastic, Moduli};
+use crate::real::Real;
 use crate::tensor::Tensor;
 
 /// Elastic inside `q = √(3/2) |s| ≤ σ_y + H κ`, s the deviator of τ and κ the equivalent plastic strain; associated.
@@ -18,15 +19,15 @@ pub struct VonMises {
 
 /// What a return leaves.
 #[derive(Clone, Copy, Debug)]
-pub struct VonMisesReturn {
+pub struct VonMisesReturn<R> {
     /// (-)  principal deviator of the trial over its norm
-    direction: [f64; 3],
+    direction: [R; 3],
     /// (-)  q after the return over that of the trial
-    kept: f64,
+    kept: R,
     /// (-)  dq of the return over dq of the trial
     followed: f64,
     /// (-)  growth of κ
-    growth: f64,
+    growth: R,
 }
 
 impl VonMises {
@@ -37,14 +38,14 @@ impl VonMises {
     }
 
     /// The stress that q reaches after the plastic strain of `state`, Pa.
-    #[inline]
-    fn strength(&self, state: &[f64]) -> f64 {
-        self.yield_stress + self.hardening * state[0]
+    #[inline(always)]
+    fn strength<R: Real>(&self, state: &[R]) -> R {
+        state[0] * self.hardening + self.yield_stress
     }
 }
 
 impl Law for VonMises {
-    type Flow = VonMisesReturn;
+    type Flow<R: Real> = VonMisesReturn<R>;
     const PARAMETERS: &'static [Variable] = &[Variable::new("yield_stress", "Pa"), Variable::new("hardening", "Pa")];
     const STATE: &'static [Variable] = &[Variable::new("hardening_strain", "-")];
 
@@ -66,46 +67,34 @@ impl Law for VonMises {
     }
 
     /// `f = q - σ_y - H κ`.
-    #[inline]
-    fn excess(&self, tau: [f64; 3], state: &[f64]) -> f64 {
-        1.5_f64.sqrt() * split(tau).2 - self.strength(state)
+    #[inline(always)]
+    fn excess<R: Real>(&self, tau: [R; 3], state: &[R]) -> R {
+        split(tau).2 * 1.5_f64.sqrt() - self.strength(state)
     }
 
     /// `Δκ = (q_trial - σ_y - H κ)/(3μ + H)`, `s = s_trial (1 - 3μ Δκ/q_trial)`.
-    #[inline]
-    fn project(&self, trial: [f64; 3], state: &[f64]) -> Option<([f64; 3], VonMisesReturn)> {
+    #[inline(always)]
+    fn project<R: Real>(&self, trial: [R; 3], state: &[R]) -> Projection<R, VonMisesReturn<R>> {
         let (mean, deviator, norm) = split(trial);
-        let (q, strength) = (1.5_f64.sqrt() * norm, self.strength(state));
-        if q <= strength {
-            return None;
-        }
+        let (q, strength) = (norm * 1.5_f64.sqrt(), self.strength(state));
+        let yields = !q.at_most(strength);
         let shear = 3.0 * self.moduli.mu;
         let growth = (q - strength) / (shear + self.hardening);
         // Not 1 - 3μ Δκ/q, which cancels where the trial is far outside.
-        let kept = (self.hardening * q + shear * strength) / ((shear + self.hardening) * q);
-        let tau = deviator.map(|s| mean + kept * s);
+        let kept = (q * self.hardening + strength * shear) / (q * (shear + self.hardening));
+        let tau = [0, 1, 2].map(|k| R::choose(yields, mean + kept * deviator[k], trial[k]));
         let direction = deviator.map(|s| s / norm);
-        Some((tau, VonMisesReturn { direction, kept, followed: self.hardening / (shear + self.hardening), growth }))
+        let followed = self.hardening / (shear + self.hardening);
+        Projection { tau, yields, flow: VonMisesReturn { direction, kept, followed, growth } }
     }
 
-    fn hardens(&self) -> bool {
-        self.hardening > 0.0
-    }
-
-    fn reduced(self, factor: f64) -> Self {
-        Self::new(self.elastic, self.yield_stress / factor, self.hardening / factor)
-    }
-}
-
-impl Flow for VonMisesReturn {
-    #[inline]
-    fn branch(&self) -> Branch {
+    fn branch(_flow: &VonMisesReturn<f64>) -> Branch {
         Branch::Face
     }
 
     /// `K I ⊗ I + 2μ (r (I₄ - ⅓ I ⊗ I) + (r' - r) n ⊗ n)`: r = q/q_trial along the surface, r' = dq/dq_trial across it.
-    fn tangent(&self, moduli: Moduli) -> Tensor {
-        let Self { direction: n, kept, followed, .. } = *self;
+    fn tangent(flow: &VonMisesReturn<f64>, moduli: Moduli) -> Tensor {
+        let VonMisesReturn { direction: n, kept, followed, .. } = *flow;
         let entry = |a: usize, b: usize| {
             let deviator = if a == b { 2.0 / 3.0 } else { -1.0 / 3.0 };
             moduli.bulk() + 2.0 * moduli.mu * (kept * deviator + (followed - kept) * n[a] * n[b])
@@ -114,11 +103,19 @@ impl Flow for VonMisesReturn {
     }
 
     /// All differences are kept alike.
-    fn chord(&self, moduli: Moduli, _differences: (f64, f64)) -> f64 {
-        2.0 * moduli.mu * self.kept
+    fn chord(flow: &VonMisesReturn<f64>, moduli: Moduli, _differences: (f64, f64)) -> f64 {
+        2.0 * moduli.mu * flow.kept
     }
 
-    fn advance(&self, state: &mut [f64]) {
-        state[0] += self.growth;
+    fn advance(flow: &VonMisesReturn<f64>, state: &mut [f64]) {
+        state[0] += flow.growth;
+    }
+
+    fn hardens(&self) -> bool {
+        self.hardening > 0.0
+    }
+
+    fn reduced(self, factor: f64) -> Self {
+        Self::new(self.elastic, self.yield_stress / factor, self.hardening / factor)
     }
 }

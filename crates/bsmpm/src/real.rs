@@ -1,0 +1,94 @@
+//! Numbers that a formula works on: those of one point, or of eight points at a time (lanes).
+//!
+//! A formula that is written for [`Real`] serves both with the same operations in the same order, so that a point has the
+//! same bits wherever it is computed. It chooses by masks where points differ; [`Real::any`] saves a part that no point
+//! takes, and of one point is its branch. There is no fused multiplication: not every machine has one.
+
+use nalgebra::Scalar;
+use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
+
+/// A number, or several side by side.
+pub trait Real:
+    Scalar
+    + Copy
+    + Neg<Output = Self>
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Add<f64, Output = Self>
+    + Sub<f64, Output = Self>
+    + Mul<f64, Output = Self>
+    + Div<f64, Output = Self>
+{
+    /// What is true of each.
+    type Mask: Copy + BitAnd<Output = Self::Mask> + BitOr<Output = Self::Mask> + Not<Output = Self::Mask>;
+
+    /// `value`, as many times as this has numbers.
+    fn like(self, value: f64) -> Self;
+
+    /// Square root.
+    fn root(self) -> Self;
+
+    /// Absolute value.
+    fn magnitude(self) -> Self;
+
+    /// This magnitude with the sign of the other.
+    fn signed(self, sign: Self) -> Self;
+
+    /// `self < other`
+    fn below(self, other: Self) -> Self::Mask;
+
+    /// `self <= other`
+    fn at_most(self, other: Self) -> Self::Mask;
+
+    /// The one where the mask is true, the other elsewhere.
+    fn choose(mask: Self::Mask, one: Self, other: Self) -> Self;
+
+    /// Whether it is true of at least one.
+    fn any(mask: Self::Mask) -> bool;
+}
+
+impl Real for f64 {
+    type Mask = bool;
+
+    #[inline(always)]
+    fn like(self, value: f64) -> Self {
+        value
+    }
+
+    #[inline(always)]
+    fn root(self) -> Self {
+        self.sqrt()
+    }
+
+    #[inline(always)]
+    fn magnitude(self) -> Self {
+        self.abs()
+    }
+
+    #[inline(always)]
+    fn signed(self, sign: Self) -> Self {
+        self.copysign(sign)
+    }
+
+    #[inline(always)]
+    fn below(self, other: Self) -> bool {
+        self < other
+    }
+
+    #[inline(always)]
+    fn at_most(self, other: Self) -> bool {
+        self <= other
+    }
+
+    #[inline(always)]
+    fn choose(mask: bool, one: Self, other: Self) -> Self {
+        if mask { one } else { other }
+    }
+
+    #[inline(always)]
+    fn any(mask: bool) -> bool {
+        mask
+    }
+}
