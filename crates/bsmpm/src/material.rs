@@ -210,6 +210,19 @@ macro_rules! laws {
                 }
             }
 
+            /// Kirchhoff stress of a point, or of a lane of them, under a `b_trial` of a plane and its normal that is near to
+            /// the identity: as [`Material::respond`] has it. `None` where only that can tell: of a graded law, and where
+            /// one of the points strains elastically by more than 5 %.
+            #[inline(always)]
+            pub fn stress<R: Real>(&self, b_trial: [R; 4], state: &[R]) -> Option<Symmetric<R>> {
+                let spectrum = Spectrum::near(b_trial)?;
+                let tau = match self {
+                    $(Self::$Law(law) => law.project(law.moduli().stress(spectrum.eps), state).tau,)*
+                    Self::Graded(_) => return None,
+                };
+                Some(spectrum.assemble(tau))
+            }
+
             /// The response to a trial elastic left Cauchy-Green tensor, `b_trial = ΔF bᵉ ΔFᵀ` (Eq. 7), of a point in
             /// the `state` of the last step, which has the law's variables first; a graded law answers through
             /// [`Material::at`] only, and elastically here.

@@ -7,11 +7,11 @@ pub type Vector<const D: usize> = SVector<f64, D>;
 /// A square matrix of the grid's dimension: gradients of grid fields.
 pub type Square<const D: usize> = SMatrix<f64, D, D>;
 /// A second-order tensor: constitution is always three-dimensional.
-pub type Tensor = Matrix3<f64>;
+pub type Tensor<R = f64> = Matrix3<R>;
 
 /// A symmetric tensor by its components XX, YY, ZZ, XY, YZ, XZ, the order that ParaView expects.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Symmetric(pub [f64; 6]);
+pub struct Symmetric<R = f64>(pub [R; 6]);
 
 impl Symmetric {
     /// The identity.

@@ -5,6 +5,7 @@
 //! logarithm uses both, so the digits that their sum would round away are not lost near b = I.
 
 use super::MaterialError;
+use crate::real::Real;
 use crate::tensor::Symmetric;
 
 /// Beyond this, squares would overflow; b is without unit, and no meaningful one comes near.
@@ -18,22 +19,22 @@ const SWEEPS: usize = 12;
 
 /// Principal values of b and of ε = ½ ln b, descending, with their orthonormal axes.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Spectrum {
+pub(super) struct Spectrum<R: Real = f64> {
     /// (-)  eigenvalues of b
-    pub b: [f64; 3],
+    pub b: [R; 3],
     /// (-)  principal Hencky strains
-    pub eps: [f64; 3],
-    order: [usize; 3], // axis of each of them
-    axes: Axes,
+    pub eps: [R; 3],
+    below: [R::Mask; 3], // whether the strain of axis 0 is below that of 1, 1 below 2, 0 below 2
+    axes: Axes<R>,
 }
 
 /// Unit eigenvectors.
 #[derive(Clone, Copy, Debug)]
-enum Axes {
+enum Axes<R> {
     /// x and y turned about z by the angle of this tangent
-    Plane { tan: f64 },
+    Plane { tan: R },
     /// one a row
-    Solid([[f64; 3]; 3]),
+    Solid([[R; 3]; 3]),
 }
 
 impl Spectrum {
@@ -45,14 +46,11 @@ impl Spectrum {
         if largest.is_nan() || largest > LARGEST {
             return Err(MaterialError::NotFinite(b.0));
         }
-        if yz == 0.0 && xz == 0.0 { Self::plane([xx, yy, zz], xy) } else { Self::solid(b) }
-    }
-
-    #[inline(always)]
-    fn plane([xx, yy, zz]: [f64; 3], xy: f64) -> Result<Self, MaterialError> {
-        let tan = tangent(0.5 * (xx - yy), xy);
-        let gain = tan * xy;
-        Self::sorted([(xx, gain), (yy, -gain), (zz, 0.0)], Axes::Plane { tan })
+        if yz != 0.0 || xz != 0.0 {
+            return Self::solid(b);
+        }
+        let (sums, axes) = plane([xx, yy, zz], xy);
+        Self::of_sums(sums, axes)
     }
 
     fn solid(b: &Symmetric) -> Result<Self, MaterialError> {
@@ -79,46 +77,14 @@ impl Spectrum {
                 (axis[p], axis[q]) = (pair.map(|x| x.0), pair.map(|x| x.1));
             }
         }
-        Self::sorted([0, 1, 2].map(|k| (start[k], gain[k])), Axes::Solid(axis))
+        Self::of_sums([0, 1, 2].map(|k| (start[k], gain[k])), Axes::Solid(axis))
     }
 
-    /// Ranks the eigenvalues, sums of a component of b and a gain, by comparisons without branches, which random points would
-    /// mispredict.
+    /// Of eigenvalues that are sums of a component of b and a gain.
     #[inline(always)]
-    fn sorted([x, y, z]: [(f64, f64); 3], axes: Axes) -> Result<Self, MaterialError> {
+    fn of_sums([x, y, z]: [(f64, f64); 3], axes: Axes<f64>) -> Result<Self, MaterialError> {
         let principal = [Principal::of(x.0, x.1)?, Principal::of(y.0, y.1)?, Principal::of(z.0, z.1)?];
-        let below = |i: usize, j: usize| usize::from(principal[i].eps < principal[j].eps);
-        let (a, b, c) = (below(0, 1), below(1, 2), below(0, 2));
-        let mut order = [0; 3];
-        order[a + c] = 0;
-        order[1 - a + b] = 1;
-        order[2 - b - c] = 2;
-        Ok(Self { b: order.map(|k| principal[k].b), eps: order.map(|k| principal[k].eps), order, axes })
-    }
-
-    /// The tensor that has the principal values `s`, descending as those of b, on the same axes: exactly isotropic if they are
-    /// equal.
-    #[inline(always)]
-    pub fn assemble(&self, s: [f64; 3]) -> Symmetric {
-        match &self.axes {
-            Axes::Plane { tan } => {
-                let mut along = [0.0; 3];
-                (0..3).for_each(|k| along[self.order[k]] = s[k]);
-                let [x, y, z] = along;
-                let shear = tan * (x - y) / (1.0 + tan * tan);
-                let moved = tan * shear;
-                Symmetric([x - moved, y + moved, z, shear, 0.0, 0.0])
-            }
-            Axes::Solid(_) => self.assemble_solid(s),
-        }
-    }
-
-    /// `s₂ I + (s₁ - s₂) n₁ ⊗ n₁ + (s₃ - s₂) n₃ ⊗ n₃`.
-    fn assemble_solid(&self, s: [f64; 3]) -> Symmetric {
-        let ((first, third), [a, _, c]) = ((s[0] - s[1], s[2] - s[1]), self.axis());
-        let at = |i: usize, j: usize| first * (a[i] * a[j]) + third * (c[i] * c[j]);
-        let spherical = s[1];
-        Symmetric([spherical + at(0, 0), spherical + at(1, 1), spherical + at(2, 2), at(0, 1), at(1, 2), at(0, 2)])
+        Ok(Self::sorted(principal, axes))
     }
 
     /// Unit eigenvectors, one a row, in the order of the values.
@@ -130,25 +96,103 @@ impl Spectrum {
             }
             Axes::Solid(axes) => axes,
         };
-        self.order.map(|k| axes[k])
+        let component = |i: usize| self.descending([axes[0][i], axes[1][i], axes[2][i]]);
+        let [x, y, z] = [0, 1, 2].map(component);
+        [0, 1, 2].map(|k| [x[k], y[k], z[k]])
+    }
+}
+
+impl<R: Real> Spectrum<R> {
+    /// The same of a plane and its normal, by its components XX, YY, ZZ, XY; `None` unless all eigenvalues are so near to 1
+    /// that the series holds.
+    #[inline(always)]
+    pub fn near([xx, yy, zz, xy]: [R; 4]) -> Option<Self> {
+        let (sums, axes) = plane([xx, yy, zz], xy);
+        let near = sums.map(|(start, gain)| (start + gain - 1.0).magnitude().below(start.like(NEAR)));
+        if R::any(!(near[0] & near[1] & near[2])) {
+            return None;
+        }
+        Some(Self::sorted(sums.map(|(start, gain)| Principal::near(start, gain)), axes))
+    }
+
+    /// Ranks the eigenvalues by comparisons without branches, which random points would mispredict.
+    #[inline(always)]
+    fn sorted([x, y, z]: [Principal<R>; 3], axes: Axes<R>) -> Self {
+        let below = [x.eps.below(y.eps), y.eps.below(z.eps), x.eps.below(z.eps)];
+        let found = Self { b: [x.b, y.b, z.b], eps: [x.eps, y.eps, z.eps], below, axes };
+        Self { b: found.descending(found.b), eps: found.descending(found.eps), ..found }
+    }
+
+    /// What belongs to the axes, in the order of the values.
+    #[inline(always)]
+    fn descending(&self, [x, y, z]: [R; 3]) -> [R; 3] {
+        let [a, b, c] = self.below;
+        [
+            R::choose(a | c, R::choose(b, z, y), x),
+            R::choose(a, R::choose(c, R::choose(b, y, z), x), R::choose(c, x, R::choose(b, z, y))),
+            R::choose(a & c, x, R::choose(b & !a, y, z)),
+        ]
+    }
+
+    /// What belongs to the values, in the order of the axes.
+    #[inline(always)]
+    fn by_axis(&self, s: [R; 3]) -> [R; 3] {
+        let [a, b, c] = self.below;
+        [
+            R::choose(a & c, s[2], R::choose(a | c, s[1], s[0])),
+            R::choose(a, R::choose(b, s[1], s[0]), R::choose(b, s[2], s[1])),
+            R::choose(b & c, s[0], R::choose(b | c, s[1], s[2])),
+        ]
+    }
+
+    /// The tensor that has the principal values `s`, descending as those of b, on the same axes: exactly isotropic if they are
+    /// equal.
+    #[inline(always)]
+    pub fn assemble(&self, s: [R; 3]) -> Symmetric<R> {
+        match &self.axes {
+            Axes::Plane { tan } => {
+                let [x, y, z] = self.by_axis(s);
+                let shear = *tan * (x - y) / (*tan * *tan + 1.0);
+                let moved = *tan * shear;
+                Symmetric([x - moved, y + moved, z, shear, x.like(0.0), x.like(0.0)])
+            }
+            Axes::Solid(axes) => self.assemble_solid(axes, s),
+        }
+    }
+
+    /// `s₂ I + (s₁ - s₂) n₁ ⊗ n₁ + (s₃ - s₂) n₃ ⊗ n₃`.
+    fn assemble_solid(&self, axes: &[[R; 3]; 3], s: [R; 3]) -> Symmetric<R> {
+        let component = |i: usize| self.descending([axes[0][i], axes[1][i], axes[2][i]]);
+        let (first, third, n) = (s[0] - s[1], s[2] - s[1], [0, 1, 2].map(component));
+        let at = |i: usize, j: usize| first * (n[i][0] * n[j][0]) + third * (n[i][2] * n[j][2]);
+        let spherical = s[1];
+        Symmetric([spherical + at(0, 0), spherical + at(1, 1), spherical + at(2, 2), at(0, 1), at(1, 2), at(0, 2)])
     }
 }
 
 /// An eigenvalue and its Hencky strain.
 #[derive(Clone, Copy)]
-struct Principal {
-    b: f64,
-    eps: f64,
+struct Principal<R> {
+    b: R,
+    eps: R,
 }
 
-impl Principal {
-    /// `ε = artanh(e/(2 + e))`, e = b - 1 without the rounding of b; as a series where soils are, else by the logarithm.
-    #[inline]
+impl<R: Real> Principal<R> {
+    /// `ε = artanh(e/(2 + e))`, e = b - 1 without the rounding of b, as a series: where soils are.
+    #[inline(always)]
+    fn near(start: R, gain: R) -> Self {
+        let strain = (start - 1.0) + gain;
+        Self { b: start + gain, eps: artanh(strain / (strain + 2.0)) }
+    }
+}
+
+impl Principal<f64> {
+    /// By the series or by the logarithm.
+    #[inline(always)]
     fn of(start: f64, gain: f64) -> Result<Self, MaterialError> {
         let b = start + gain;
         if (b - 1.0).abs() < NEAR {
-            let strain = (start - 1.0) + gain;
-            return Ok(Self { b, eps: artanh(strain / (2.0 + strain)) });
+            return Ok(Self::near(start, gain));
         }
         if b < SMALLEST {
             return Err(MaterialError::NotPositive(b));
@@ -167,18 +211,27 @@ fn logarithm(b: f64, start: f64, gain: f64) -> f64 {
 
 /// `z + z³/3 + z⁵/5 + ..` to the last digit for |z| <= NEAR/(2 - NEAR).
 #[inline(always)]
-fn artanh(z: f64) -> f64 {
+fn artanh<R: Real>(z: R) -> R {
     let s = z * z;
-    let tail = 1.0 / 11.0 + s * (1.0 / 13.0 + s * (1.0 / 15.0));
-    z + z * s * (1.0 / 3.0 + s * (1.0 / 5.0 + s * (1.0 / 7.0 + s * (1.0 / 9.0 + s * tail))))
+    let tail = s * (s * (1.0 / 15.0) + 1.0 / 13.0) + 1.0 / 11.0;
+    z + z * s * (s * (s * (s * (s * tail + 1.0 / 9.0) + 1.0 / 7.0) + 1.0 / 5.0) + 1.0 / 3.0)
+}
+
+/// Eigenvalues of a tensor of a plane and its normal, as sums of a component and a gain, and its axes.
+#[inline(always)]
+fn plane<R: Real>([xx, yy, zz]: [R; 3], xy: R) -> ([(R, R); 3], Axes<R>) {
+    let tan = tangent((xx - yy) * 0.5, xy);
+    let gain = tan * xy;
+    ([(xx, gain), (yy, -gain), (zz, zz.like(0.0))], Axes::Plane { tan })
 }
 
 /// `tan θ = g/(d ± √(d² + g²))` of the smaller of the two rotations that make a pair of axes principal, for half the
 /// difference d of the diagonal and the coupling g, the sign that of d.
 #[inline(always)]
-fn tangent(half: f64, coupling: f64) -> f64 {
-    let sum = half.abs() + (half * half + coupling * coupling).sqrt();
-    if sum > 0.0 { coupling / sum.copysign(half) } else { 0.0 }
+fn tangent<R: Real>(half: R, coupling: R) -> R {
+    let sum = half.magnitude() + (half * half + coupling * coupling).root();
+    let zero = half.like(0.0);
+    R::choose(zero.below(sum), coupling / sum.signed(half), zero)
 }
 
 /// A rotation of a pair of axes.
