@@ -74,8 +74,9 @@ pub fn set_elastic<K: Kinematics<D>, const D: usize>(
         }
         solver.solve(&residual.f_oob, &mut du)?;
         u.iter_mut().zip(&du).for_each(|(u, du)| *u += du);
-        strains =
-            transfer::gradients::<K, D, _>((&start.shape, &points.x), &u, |_, grad| Symmetric::of(&K::gradient(&grad)));
+        strains = transfer::gradients::<K, D, _>((&start.shape, &points.x), &u, |_, grad| {
+            Symmetric::of(&K::gradient::<f64>(&grad))
+        });
     }
     let (_, traction) = start.grips.conclude(&model.boundary.strips, &u, halo);
     points.surface.traction = traction;

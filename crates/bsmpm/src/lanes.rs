@@ -5,21 +5,13 @@
 
 use crate::real::Real;
 pub use fearless_simd::Simd;
-use fearless_simd::{Level, Select, SimdBase, SimdFloat, SimdFrom, dispatch, f64x8, mask64x8};
+use fearless_simd::{Level, Select, SimdBase, SimdFloat, SimdFrom, SimdMask, f64x4, f64x8, mask64x4, mask64x8};
 use std::fmt::{Debug, Formatter, Result};
-use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
+use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Range, Sub};
 use std::sync::OnceLock;
 
 /// Points that are computed at a time.
 pub const LANES: usize = 8;
-
-/// A number of eight points.
-#[derive(Clone, Copy)]
-pub struct Lanes<S: Simd>(f64x8<S>);
-
-/// What is true of each of eight points.
-#[derive(Clone, Copy)]
-pub struct LaneMask<S: Simd>(mask64x8<S>);
 
 /// What can be done in lanes.
 pub trait InLanes {
@@ -34,8 +26,24 @@ pub trait InLanes {
 /// `avx2`), which tests do.
 pub fn run<W: InLanes>(work: W) -> W::Output {
     static WIDEST: OnceLock<Level> = OnceLock::new();
-    let level = *WIDEST.get_or_init(|| chosen(std::env::var("BSMPM_LANES").ok().as_deref()));
-    dispatch!(level, simd => work.run(simd))
+    match *WIDEST.get_or_init(|| chosen(std::env::var("BSMPM_LANES").ok().as_deref())) {
+        #[cfg(target_arch = "x86_64")]
+        Level::Avx512(simd) => vectorised(simd, work),
+        #[cfg(target_arch = "x86_64")]
+        Level::Avx2(simd) => vectorised(simd, work),
+        #[cfg(target_arch = "x86_64")]
+        level => vectorised(level.as_sse2().expect("of every x86-64"), work),
+        #[cfg(not(target_arch = "x86_64"))]
+        level => fearless_simd::dispatch!(level, simd => work.run(simd)),
+    }
+}
+
+#[inline(always)]
+fn vectorised<S: Simd, W: InLanes>(simd: S, work: W) -> W::Output {
+    simd.vectorize(
+        #[inline(always)]
+        || work.run(simd),
+    )
 }
 
 /// The instruction set of this machine, or the smaller one of the name.
@@ -50,91 +58,173 @@ fn chosen(name: Option<&str>) -> Level {
     widest
 }
 
-impl<S: Simd> Lanes<S> {
-    /// The number of each lane.
+/// The points of a range, eight at a time: the first of each eight, and the points of its lanes, of which those beyond the end
+/// repeat the last one.
+#[inline(always)]
+pub fn eights(points: Range<usize>) -> impl Iterator<Item = Eight> {
+    points.clone().step_by(LANES).map(move |first| Eight { first, last: points.end - 1 })
+}
+
+/// Eight consecutive points, or fewer.
+#[derive(Clone, Copy, Debug)]
+pub struct Eight {
+    first: usize,
+    last: usize, // of all
+}
+
+impl Eight {
+    /// The points, each once.
     #[inline(always)]
-    pub fn new(simd: S, numbers: [f64; LANES]) -> Self {
-        Self(f64x8::simd_from(simd, numbers))
+    pub fn points(self) -> Range<usize> {
+        self.first..(self.first + LANES).min(self.last + 1)
     }
 
-    /// One number for all lanes.
+    /// The point of a lane.
     #[inline(always)]
-    pub fn splat(simd: S, number: f64) -> Self {
-        Self(f64x8::splat(simd, number))
+    pub fn point(self, lane: usize) -> usize {
+        (self.first + lane).min(self.last)
     }
 
-    /// The number of each lane.
+    /// What each point has, by its lane.
     #[inline(always)]
-    pub fn numbers(self) -> [f64; LANES] {
-        self.0.into()
+    pub fn of<T>(self, all: &[T]) -> [&T; LANES] {
+        let at = |lane: usize| &all[self.point(lane)];
+        [at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7)]
     }
 }
 
-impl<S: Simd> Debug for Lanes<S> {
-    fn fmt(&self, f: &mut Formatter<'_>) -> Result {
-        self.numbers().fmt(f)
-    }
+/// A vector of numbers with its masks.
+macro_rules! vector {
+    ($(#[$doc:meta])* $Vector:ident($vector:ident), $Mask:ident($mask:ident), $count:literal) => {
+        $(#[$doc])*
+        #[derive(Clone, Copy)]
+        pub struct $Vector<S: Simd>($vector<S>);
+
+        /// What is true of each of them.
+        #[derive(Clone, Copy)]
+        pub struct $Mask<S: Simd>($mask<S>);
+
+        impl<S: Simd> $Vector<S> {
+            /// One number for all.
+            #[inline(always)]
+            pub fn splat(simd: S, number: f64) -> Self {
+                Self($vector::splat(simd, number))
+            }
+
+            /// The first of these numbers.
+            #[inline(always)]
+            pub fn first_of(simd: S, numbers: &[f64]) -> Self {
+                Self($vector::from_slice(simd, &numbers[..$count]))
+            }
+
+            /// Each number.
+            #[inline(always)]
+            pub fn numbers(self) -> [f64; $count] {
+                self.0.into()
+            }
+        }
+
+        impl<S: Simd> Debug for $Vector<S> {
+            fn fmt(&self, f: &mut Formatter<'_>) -> Result {
+                self.numbers().fmt(f)
+            }
+        }
+
+        impl<S: Simd> PartialEq for $Vector<S> {
+            fn eq(&self, other: &Self) -> bool {
+                self.numbers() == other.numbers()
+            }
+        }
+
+        impl<S: Simd> Real for $Vector<S> {
+            type Mask = $Mask<S>;
+
+            #[inline(always)]
+            fn like(self, value: f64) -> Self {
+                Self::splat(self.0.simd, value)
+            }
+
+            #[inline(always)]
+            fn root(self) -> Self {
+                Self(self.0.sqrt())
+            }
+
+            #[inline(always)]
+            fn cube_root(self) -> Self {
+                Self($vector::simd_from(self.0.simd, self.numbers().map(f64::cbrt)))
+            }
+
+            #[inline(always)]
+            fn magnitude(self) -> Self {
+                Self(self.0.abs())
+            }
+
+            #[inline(always)]
+            fn signed(self, sign: Self) -> Self {
+                Self(self.0.copysign(sign.0))
+            }
+
+            #[inline(always)]
+            fn below(self, other: Self) -> $Mask<S> {
+                $Mask(self.0.simd_lt(other.0))
+            }
+
+            #[inline(always)]
+            fn at_most(self, other: Self) -> $Mask<S> {
+                $Mask(self.0.simd_le(other.0))
+            }
+
+            #[inline(always)]
+            fn choose(mask: $Mask<S>, one: Self, other: Self) -> Self {
+                Self(mask.0.select(one.0, other.0))
+            }
+
+            #[inline(always)]
+            fn any(mask: $Mask<S>) -> bool {
+                mask.0.any_true()
+            }
+        }
+
+        operations!($Vector, Add::add, Sub::sub, Mul::mul, Div::div);
+
+        impl<S: Simd> Neg for $Vector<S> {
+            type Output = Self;
+            #[inline(always)]
+            fn neg(self) -> Self {
+                Self(-self.0)
+            }
+        }
+
+        impl<S: Simd> BitAnd for $Mask<S> {
+            type Output = Self;
+            #[inline(always)]
+            fn bitand(self, other: Self) -> Self {
+                Self(self.0 & other.0)
+            }
+        }
+
+        impl<S: Simd> BitOr for $Mask<S> {
+            type Output = Self;
+            #[inline(always)]
+            fn bitor(self, other: Self) -> Self {
+                Self(self.0 | other.0)
+            }
+        }
+
+        impl<S: Simd> Not for $Mask<S> {
+            type Output = Self;
+            #[inline(always)]
+            fn not(self) -> Self {
+                Self(!self.0)
+            }
+        }
+    };
 }
 
-impl<S: Simd> PartialEq for Lanes<S> {
-    fn eq(&self, other: &Self) -> bool {
-        self.numbers() == other.numbers()
-    }
-}
-
-impl<S: Simd> Debug for LaneMask<S> {
-    fn fmt(&self, f: &mut Formatter<'_>) -> Result {
-        <[i64; LANES]>::from(self.0).fmt(f)
-    }
-}
-
-impl<S: Simd> Real for Lanes<S> {
-    type Mask = LaneMask<S>;
-
-    #[inline(always)]
-    fn like(self, value: f64) -> Self {
-        Self(f64x8::splat(self.0.simd, value))
-    }
-
-    #[inline(always)]
-    fn root(self) -> Self {
-        Self(self.0.sqrt())
-    }
-
-    #[inline(always)]
-    fn magnitude(self) -> Self {
-        Self(self.0.abs())
-    }
-
-    #[inline(always)]
-    fn signed(self, sign: Self) -> Self {
-        Self(self.0.copysign(sign.0))
-    }
-
-    #[inline(always)]
-    fn below(self, other: Self) -> LaneMask<S> {
-        LaneMask(self.0.simd_lt(other.0))
-    }
-
-    #[inline(always)]
-    fn at_most(self, other: Self) -> LaneMask<S> {
-        LaneMask(self.0.simd_le(other.0))
-    }
-
-    #[inline(always)]
-    fn choose(mask: LaneMask<S>, one: Self, other: Self) -> Self {
-        Self(mask.0.select(one.0, other.0))
-    }
-
-    #[inline(always)]
-    fn any(mask: LaneMask<S>) -> bool {
-        fearless_simd::SimdMask::any_true(mask.0)
-    }
-}
-
-macro_rules! arithmetic {
-    ($($Operation:ident::$operation:ident),+) => {$(
-        impl<S: Simd> $Operation for Lanes<S> {
+/// Operations between vectors, and of vectors with one number.
+macro_rules! operations {
+    ($Vector:ident, $($Operation:ident::$operation:ident),+) => {$(
+        impl<S: Simd> $Operation for $Vector<S> {
             type Output = Self;
             #[inline(always)]
             fn $operation(self, other: Self) -> Self {
@@ -142,7 +232,7 @@ macro_rules! arithmetic {
             }
         }
 
-        impl<S: Simd> $Operation<f64> for Lanes<S> {
+        impl<S: Simd> $Operation<f64> for $Vector<S> {
             type Output = Self;
             #[inline(always)]
             fn $operation(self, other: f64) -> Self {
@@ -152,36 +242,20 @@ macro_rules! arithmetic {
     )+};
 }
 
-arithmetic!(Add::add, Sub::sub, Mul::mul, Div::div);
-
-impl<S: Simd> Neg for Lanes<S> {
-    type Output = Self;
-    #[inline(always)]
-    fn neg(self) -> Self {
-        Self(-self.0)
-    }
+vector! {
+    /// A number of eight points.
+    Lanes(f64x8), LaneMask(mask64x8), 8
 }
 
-impl<S: Simd> BitAnd for LaneMask<S> {
-    type Output = Self;
-    #[inline(always)]
-    fn bitand(self, other: Self) -> Self {
-        Self(self.0 & other.0)
-    }
+vector! {
+    /// A number of four nodes of a point.
+    Quad(f64x4), QuadMask(mask64x4), 4
 }
 
-impl<S: Simd> BitOr for LaneMask<S> {
-    type Output = Self;
+impl<S: Simd> Lanes<S> {
+    /// The number of each lane.
     #[inline(always)]
-    fn bitor(self, other: Self) -> Self {
-        Self(self.0 | other.0)
-    }
-}
-
-impl<S: Simd> Not for LaneMask<S> {
-    type Output = Self;
-    #[inline(always)]
-    fn not(self) -> Self {
-        Self(!self.0)
+    pub fn from_fn(simd: S, at: impl Fn(usize) -> f64) -> Self {
+        Self(f64x8::simd_from(simd, [at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7)]))
     }
 }

@@ -25,7 +25,7 @@ pub use stiffness::Stiffness;
 pub use tangent::Tangent;
 pub use von_mises::VonMises;
 
-use crate::real::Real;
+use crate::real::{Real, three};
 use crate::tensor::{Symmetric, Tensor};
 use spectral::Spectrum;
 use std::borrow::Cow;
@@ -74,7 +74,7 @@ impl Moduli {
     #[inline(always)]
     fn stress<R: Real>(&self, eps: [R; 3]) -> [R; 3] {
         let spherical = (eps[0] + eps[1] + eps[2]) * self.lambda;
-        eps.map(|e| spherical + e * (2.0 * self.mu))
+        three(|k| spherical + eps[k] * (2.0 * self.mu))
     }
 
     /// The inverse of [`Moduli::stress`]: `ε_A = (τ_A - p)/(2μ) + p/(3K)`, p the mean stress.
@@ -295,6 +295,9 @@ laws! {
     /// Elastic, plastic without friction, hardening linearly.
     von_mises::VonMises,
 }
+
+/// Numbers of state of one law at most.
+pub const MOST_STATE: usize = 8;
 
 /// Numbers of state that the points of these materials carry.
 pub fn state_width<'a>(materials: impl IntoIterator<Item = &'a Material>) -> usize {

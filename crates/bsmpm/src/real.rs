@@ -30,6 +30,9 @@ pub trait Real:
     /// Square root.
     fn root(self) -> Self;
 
+    /// Cube root.
+    fn cube_root(self) -> Self;
+
     /// Absolute value.
     fn magnitude(self) -> Self;
 
@@ -49,6 +52,12 @@ pub trait Real:
     fn any(mask: Self::Mask) -> bool;
 }
 
+/// What is made of 0, 1 and 2. Unlike an array's `map` it is inlined whatever the numbers are.
+#[inline(always)]
+pub fn three<T>(of: impl Fn(usize) -> T) -> [T; 3] {
+    [of(0), of(1), of(2)]
+}
+
 impl Real for f64 {
     type Mask = bool;
 
@@ -60,6 +69,11 @@ impl Real for f64 {
     #[inline(always)]
     fn root(self) -> Self {
         self.sqrt()
+    }
+
+    #[inline(always)]
+    fn cube_root(self) -> Self {
+        self.cbrt()
     }
 
     #[inline(always)]

@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, SMatrix, SVector};
 
 /// A vector of the grid's dimension.
-pub type Vector<const D: usize> = SVector<f64, D>;
+pub type Vector<const D: usize, R = f64> = SVector<R, D>;
 /// A square matrix of the grid's dimension: gradients of grid fields.
 pub type Square<const D: usize> = SMatrix<f64, D, D>;
 /// A second-order tensor: constitution is always three-dimensional.

@@ -7,6 +7,7 @@ pub mod merged;
 
 use super::{Grid, Located};
 use crate::error::StepError;
+use crate::real::Real;
 use crate::tensor::Vector;
 use merged::Merged;
 use std::ops::Range;
@@ -41,10 +42,13 @@ pub struct Shape<const D: usize> {
     patches: Vec<Patch>,
     columns: Vec<PatchColumn>,
     extent: (usize, usize, usize), // layers that a column touches, nodes of a layer, of the window
-    rows: Vec<f64>, // per point and axis: q + 1 values, then q + 1 derivatives (1/m) but for lowered functions
+    rows: Vec<f64>, // per point and axis: q + 1 values, then q + 1 derivatives (1/m) but for lowered functions, and zeros behind
     stride: usize,  // numbers of a row
     pub(super) merged: Option<Merged<D>>, // of lowered functions: those inside a body with their neighbours
 }
+
+/// Zeros behind the rows; fewer than a point has numbers.
+const BEHIND: usize = 3;
 
 /// Runs `$body` with the constant `W` = q + 1, so that the loops over a patch's nodes are unrolled; 1 is the degree
 /// below linear functions, constant in a cell.
@@ -87,6 +91,7 @@ impl<const D: usize> Shape<D> {
             merged: None,
         };
         with_width!(width, W => shape.evaluate::<W>(grid, points))?;
+        shape.rows.extend([0.0; BEHIND]);
         shape.columns = columns(&shape.patches, grid.column_cells());
         Ok(shape)
     }
@@ -168,6 +173,13 @@ impl<const D: usize> Shape<D> {
         &self.offsets
     }
 
+    /// Rows of values and derivatives, point by point and axis by axis; behind them so many zeros that four numbers can be read
+    /// from the place of each.
+    pub(super) fn rows(&self) -> &[f64] {
+        debug_assert_eq!(self.stride, 2 * self.width, "lowered functions have values only");
+        &self.rows
+    }
+
     /// Number of points.
     pub fn len(&self) -> usize {
         self.rows.len() / (D * self.stride)
@@ -175,12 +187,12 @@ impl<const D: usize> Shape<D> {
 
     /// Whether there is no point.
     pub fn is_empty(&self) -> bool {
-        self.rows.is_empty()
+        self.len() == 0
     }
 
     /// The rows of point `p`, for a width known to the compiler.
     #[inline(always)]
-    pub(crate) fn support<const W: usize>(&self, p: usize) -> PointSupport<'_, D, W> {
+    pub(crate) fn support<const W: usize>(&self, p: usize) -> PointSupport<'_, f64, D, W> {
         let size = 2 * D * W;
         debug_assert_eq!(self.stride, 2 * W, "lowered functions have values only");
         PointSupport { rows: &self.rows[p * size..(p + 1) * size] }
@@ -257,13 +269,13 @@ impl<const D: usize, const W: usize> Values<'_, D, W> {
     }
 }
 
-/// One point's functions: D rows of W values and W derivatives.
+/// Functions of a point, or of a lane of points: D rows of W values and W derivatives.
 #[derive(Clone, Copy)]
-pub(crate) struct PointSupport<'a, const D: usize, const W: usize> {
-    rows: &'a [f64],
+pub(crate) struct PointSupport<'a, R, const D: usize, const W: usize> {
+    pub(super) rows: &'a [R],
 }
 
-impl<const D: usize, const W: usize> PointSupport<'_, D, W> {
+impl<R: Real, const D: usize, const W: usize> PointSupport<'_, R, D, W> {
     /// Position of local node `k` along `axis`.
     #[inline(always)]
     fn along(k: usize, axis: usize) -> usize {
@@ -272,25 +284,27 @@ impl<const D: usize, const W: usize> PointSupport<'_, D, W> {
 
     /// N_Ip of local node `k`.
     #[inline(always)]
-    pub fn value(&self, k: usize) -> f64 {
-        let mut product = 1.0;
-        for axis in 0..D {
-            product *= self.rows[2 * W * axis + Self::along(k, axis)];
+    pub fn value(&self, k: usize) -> R {
+        let mut product = self.rows[Self::along(k, 0)];
+        for axis in 1..D {
+            product = product * self.rows[2 * W * axis + Self::along(k, axis)];
         }
         product
     }
 
     /// grad N_Ip of local node `k`, 1/m.
     #[inline(always)]
-    pub fn gradient(&self, k: usize) -> Vector<D> {
-        let mut gradient = Vector::repeat(1.0);
-        for axis in 0..D {
-            let a = Self::along(k, axis);
-            let (N, dN) = (self.rows[2 * W * axis + a], self.rows[2 * W * axis + W + a]);
-            for component in 0..D {
-                gradient[component] *= if component == axis { dN } else { N };
+    pub fn gradient(&self, k: usize) -> Vector<D, R> {
+        let row = |axis: usize, component: usize| {
+            let a = 2 * W * axis + Self::along(k, axis);
+            self.rows[if component == axis { a + W } else { a }]
+        };
+        Vector::from_fn(|component, _| {
+            let mut product = row(0, component);
+            for axis in 1..D {
+                product = product * row(axis, component);
             }
-        }
-        gradient
+            product
+        })
     }
 }

@@ -4,12 +4,17 @@
 //! in a block before it is added to its column's [`Contributions`]: sums over points have one order, whatever the number of
 //! ranks and threads. Threads share the columns of cells. Nodal arrays are flat.
 
+mod patch;
+
 use super::contributions::Contributions;
 use super::shape::{PatchColumn, Shape, with_width};
-use crate::kinematics::{Gradient, Kinematics, Slope};
+use crate::kinematics::{Kinematics, Slope};
+use crate::lanes;
 use crate::stabilisation::Grouped;
 use crate::tensor::Vector;
+use patch::{Divergence, Gradients};
 use rayon::prelude::*;
+use std::marker::PhantomData;
 use std::ops::Range;
 
 /// Largest number of nodes of a patch: (3 + 1)^3.
@@ -84,9 +89,9 @@ pub fn to_points_grouped<const D: usize, const C: usize, T: Send>(
     nodal: &[f64],
     found: impl Fn(usize, [f64; C]) -> T + Sync,
 ) -> Vec<T> {
-    with_width!(shape.width(), W => at_points(shape, |number, out: &mut Vec<T>| {
+    with_width!(shape.width(), W => at_points(shape, |number, block: &mut PatchBlock<C>, out: &mut Vec<T>| {
         for (group, points) in grouped.runs(shape.patches()[number].points.clone()) {
-            let block: PatchBlock<C> = gathered(shape, nodal, number, (group, grouped.count()));
+            gathered(shape, nodal, number, (group, grouped.count()), block);
             for p in points {
                 let support = shape.values::<W>(p);
                 let mut value = [0.0; C];
@@ -109,41 +114,34 @@ pub fn gradients<K: Kinematics<D>, const D: usize, T: Send>(
     u: &[f64],
     found: impl Fn(usize, K::Gradient) -> T + Sync,
 ) -> Vec<T> {
-    with_width!(shape.width(), W => at_points(shape, |number, out: &mut Vec<T>| {
+    with_width!(shape.width(), W => at_points(shape, |number, block: &mut PatchBlock<D>, out: &mut Vec<T>| {
         let patch = &shape.patches()[number];
-        let block: PatchBlock<D> = gather(u, shape.offsets(), patch.first_node, (0, 1));
-        for p in patch.points.clone() {
-            let support = shape.support::<W>(p);
-            let mut gradient = K::Gradient::zeros();
-            for (k, at_node) in block[..const { W.pow(D as u32) }].iter().enumerate() {
-                let slope = K::slope(|| support.value(k), support.gradient(k), &x[p]);
-                for j in 0..K::Gradient::SLOPES {
-                    for i in 0..D {
-                        gradient[(i, j)] += at_node[i] * slope[j];
-                    }
-                }
-            }
-            out.push(found(p, gradient));
-        }
+        gather(u, shape.offsets(), patch.first_node, (0, 1), block);
+        let (rows, points) = (shape.rows(), patch.points.clone());
+        lanes::run(Gradients::<K, T, _, D, W> { rows, x, points, block, found: &found, out, kinematics: PhantomData });
     }))
 }
 
 /// Scatter with gradients, the adjoint of [`gradients`]: sum_p flux_p grad N_Ip (step 5a).
 pub fn divergence<K: Kinematics<D>, const D: usize>(
-    (shape, x): (&Shape<D>, &[Vector<D>]),
+    at: (&Shape<D>, &[Vector<D>]),
     flux: impl Fn(usize) -> K::Gradient + Sync,
 ) -> Contributions {
-    with_width!(shape.width(), W => scatter(shape, Grouped::NOT, |points, block: &mut PatchBlock<D>| {
-        for p in points {
-            let (support, flux) = (shape.support::<W>(p), flux(p));
-            for (k, sums) in block[..const { W.pow(D as u32) }].iter_mut().enumerate() {
-                let slope = K::slope(|| support.value(k), support.gradient(k), &x[p]);
-                for j in 0..K::Gradient::SLOPES {
-                    for i in 0..D {
-                        sums[i] += flux[(i, j)] * slope[j];
-                    }
-                }
-            }
+    divergence_of::<K, D>(at, |points, fluxes| fluxes.extend(points.map(&flux)))
+}
+
+/// The same of fluxes that are appended for many consecutive points at a time.
+pub fn divergence_of<K: Kinematics<D>, const D: usize>(
+    (shape, x): (&Shape<D>, &[Vector<D>]),
+    flux: impl Fn(Range<usize>, &mut Vec<K::Gradient>) + Sync,
+) -> Contributions {
+    with_width!(shape.width(), W => scatter_columns(shape, Grouped::NOT, |column| {
+        let first = column.points.start;
+        let mut fluxes = Vec::with_capacity(column.points.len());
+        flux(column.points.clone(), &mut fluxes);
+        move |points: Range<usize>, block: &mut PatchBlock<D>| {
+            let fluxes = &fluxes[points.start - first..points.end - first];
+            lanes::run(Divergence::<K, D, W> { rows: shape.rows(), x, points, fluxes, block });
         }
     }))
 }
@@ -170,7 +168,7 @@ pub(crate) fn slopes_of<K: Kinematics<D>, const D: usize>(
     with_width!(shape.width(), W => {
         let support = shape.support::<W>(p);
         for (k, slope) in out[..const { W.pow(D as u32) }].iter_mut().enumerate() {
-            *slope = K::slope(|| support.value(k), support.gradient(k), &x[p]);
+            *slope = K::slope::<f64>(|| support.value(k), support.gradient(k), &x[p]);
         }
     });
 }
@@ -181,16 +179,26 @@ fn scatter<const D: usize, const C: usize>(
     grouped: Grouped<'_>,
     fill: impl Fn(Range<usize>, &mut PatchBlock<C>) + Sync,
 ) -> Contributions {
+    scatter_columns(shape, grouped, |_| &fill)
+}
+
+/// The same by what fills the blocks of a column.
+fn scatter_columns<const D: usize, const C: usize, F: FnMut(Range<usize>, &mut PatchBlock<C>)>(
+    shape: &Shape<D>,
+    grouped: Grouped<'_>,
+    filling: impl Fn(&PatchColumn) -> F + Sync,
+) -> Contributions {
     let (count, levels) = (grouped.count(), shape.levels());
     let columns = shape.columns().iter().map(|column| column.column).collect();
     let mut contributions = Contributions::zeros(shape.extent(), count * levels * C, columns);
     let work: Vec<(&PatchColumn, &mut [f64])> = shape.columns().iter().zip(contributions.columns_mut()).collect();
     work.into_par_iter().for_each(|(column, sums)| {
-        let first = column.column * shape.extent().1;
+        let (first, mut fill) = (column.column * shape.extent().1, filling(column));
+        let mut block = [[0.0; C]; MOST_NODES];
         for number in column.patches.clone() {
             let patch = &shape.patches()[number];
             for (group, points) in grouped.runs(patch.points.clone()) {
-                let mut block = [[0.0; C]; MOST_NODES];
+                block[..shape.offsets().len()].fill([0.0; C]);
                 fill(points, &mut block);
                 let node = patch.first_node - first;
                 let Some(merged) = shape.merger() else {
@@ -207,35 +215,40 @@ fn scatter<const D: usize, const C: usize>(
 }
 
 /// What the patches leave at their points, in the order of the points.
-fn at_points<const D: usize, T: Send>(shape: &Shape<D>, work: impl Fn(usize, &mut Vec<T>) + Sync) -> Vec<T> {
+fn at_points<const D: usize, const C: usize, T: Send>(
+    shape: &Shape<D>,
+    work: impl Fn(usize, &mut PatchBlock<C>, &mut Vec<T>) + Sync,
+) -> Vec<T> {
     let of_column = |column: &PatchColumn| {
-        let mut out = Vec::with_capacity(column.points.len());
-        column.patches.clone().for_each(|patch| work(patch, &mut out));
+        let (mut block, mut out) = ([[0.0; C]; MOST_NODES], Vec::with_capacity(column.points.len()));
+        column.patches.clone().for_each(|patch| work(patch, &mut block, &mut out));
         out
     };
     if rayon::current_num_threads() == 1 {
-        let mut out = Vec::with_capacity(shape.len());
-        (0..shape.patches().len()).for_each(|patch| work(patch, &mut out));
+        let (mut block, mut out) = ([[0.0; C]; MOST_NODES], Vec::with_capacity(shape.len()));
+        (0..shape.patches().len()).for_each(|patch| work(patch, &mut block, &mut out));
         return out;
     }
     shape.columns().par_iter().flat_map_iter(of_column).collect()
 }
 
-/// Numbers of a patch's nodes, or of its functions where these are merged.
+/// Fills a block with the numbers of a patch's nodes, or of its functions where these are merged.
 #[inline]
 fn gathered<const D: usize, const C: usize>(
     shape: &Shape<D>,
     nodal: &[f64],
     number: usize,
     (group, groups): (usize, usize),
-) -> PatchBlock<C> {
+    block: &mut PatchBlock<C>,
+) {
     let first = shape.patches()[number].first_node;
     let Some(merged) = shape.merger() else {
-        return gather(nodal, shape.offsets(), first, (group, groups));
+        return gather(nodal, shape.offsets(), first, (group, groups), block);
     };
-    let cells = gather(nodal, shape.offsets(), first, (2 * group, 2 * groups));
-    let pairs = gather(nodal, merged.offsets(number), first, (2 * group + 1, 2 * groups));
-    merged.combine((number, group), [cells, pairs])
+    let mut pairs = [[0.0; C]; MOST_NODES];
+    gather(nodal, shape.offsets(), first, (2 * group, 2 * groups), block);
+    gather(nodal, merged.offsets(number), first, (2 * group + 1, 2 * groups), &mut pairs);
+    *block = merged.combine((number, group), [*block, pairs]);
 }
 
 fn gather<const C: usize>(
@@ -243,12 +256,11 @@ fn gather<const C: usize>(
     offsets: &[usize],
     first: usize,
     (group, groups): (usize, usize),
-) -> PatchBlock<C> {
-    let mut block = [[0.0; C]; MOST_NODES];
+    block: &mut PatchBlock<C>,
+) {
     for (at_node, offset) in block.iter_mut().zip(offsets) {
         at_node.copy_from_slice(&nodal[((first + offset) * groups + group) * C..][..C]);
     }
-    block
 }
 
 fn add<const C: usize>(

@@ -1,6 +1,7 @@
 //! Axisymmetry without torsion.
 
-use super::Kinematics;
+use super::{Kinematics, pull_back, push_forward, scaled};
+use crate::real::Real;
 use crate::tensor::{Square, Symmetric, Tensor, Vector};
 use nalgebra::{SMatrix, SVector};
 
@@ -16,9 +17,9 @@ type Strains = SMatrix<f64, 2, 3>;
 impl Kinematics<2> for Axisymmetric {
     type Gradient = Strains;
 
-    #[inline]
-    fn slope(N: impl FnOnce() -> f64, grad: Vector<2>, x: &Vector<2>) -> SVector<f64, 3> {
-        SVector::<f64, 3>::new(grad[0], grad[1], N() / x[0])
+    #[inline(always)]
+    fn slope<R: Real>(N: impl FnOnce() -> R, grad: Vector<2, R>, x: &Vector<2, R>) -> SVector<R, 3> {
+        SVector::<R, 3>::new(grad[0], grad[1], N() / x[0])
     }
 
     #[inline]
@@ -38,15 +39,16 @@ impl Kinematics<2> for Axisymmetric {
         )
     }
 
-    #[inline]
-    fn jacobian(grad: &Strains) -> f64 {
-        let in_plane = (1.0 + grad[(0, 0)]) * (1.0 + grad[(1, 1)]) - grad[(0, 1)] * grad[(1, 0)];
-        in_plane * (1.0 + grad[(0, 2)])
+    #[inline(always)]
+    fn jacobian<R: Real>(grad: &SMatrix<R, 2, 3>) -> R {
+        let in_plane = (grad[(0, 0)] + 1.0) * (grad[(1, 1)] + 1.0) - grad[(0, 1)] * grad[(1, 0)];
+        in_plane * (grad[(0, 2)] + 1.0)
     }
 
-    #[inline]
-    fn gradient(grad: &Strains) -> Tensor {
-        Tensor::new(grad[(0, 0)], grad[(0, 1)], 0.0, grad[(1, 0)], grad[(1, 1)], 0.0, 0.0, 0.0, grad[(0, 2)])
+    #[inline(always)]
+    fn gradient<R: Real>(grad: &SMatrix<R, 2, 3>) -> Tensor<R> {
+        let zero = grad[(0, 0)].like(0.0);
+        Tensor::new(grad[(0, 0)], grad[(0, 1)], zero, grad[(1, 0)], grad[(1, 1)], zero, zero, zero, grad[(0, 2)])
     }
 
     #[inline]
@@ -59,15 +61,20 @@ impl Kinematics<2> for Axisymmetric {
         Tensor::identity() / 3.0
     }
 
-    #[inline]
-    fn flux(tau: &Symmetric, dF: &Tensor) -> Strains {
-        let inverse = dF.try_inverse().unwrap_or_else(|| Tensor::from_element(f64::NAN));
-        Self::working(&(tau.full() * inverse.transpose()))
+    #[inline(always)]
+    fn flux<R: Real>(tau: &Symmetric<R>, dF: &Tensor<R>) -> SMatrix<R, 2, 3> {
+        let t = pull_back(tau, dF);
+        SMatrix::<R, 2, 3>::new(t[(0, 0)], t[(0, 1)], t[(2, 2)], t[(1, 0)], t[(1, 1)], t[(0, 0)].like(0.0))
     }
 
-    #[inline]
-    fn dilate(dF: &Tensor, ratio: f64) -> Tensor {
-        dF * ratio.cbrt()
+    #[inline(always)]
+    fn push_forward<R: Real>(dF: &Tensor<R>, b_e: &Symmetric<R>) -> Symmetric<R> {
+        push_forward(dF, b_e)
+    }
+
+    #[inline(always)]
+    fn dilate<R: Real>(dF: &Tensor<R>, ratio: R) -> Tensor<R> {
+        scaled(dF, ratio.cube_root())
     }
 
     /// r: the volume of a sector of one radian.

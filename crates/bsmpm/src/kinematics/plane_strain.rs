@@ -1,7 +1,9 @@
 //! Plane strain.
 
 use super::{Kinematics, isotropic};
+use crate::real::Real;
 use crate::tensor::{Square, Symmetric, Tensor, Vector};
+use nalgebra::SMatrix;
 
 /// Plane strain: no displacement and no stretch out of the plane; 1 m thick.
 #[derive(Clone, Copy, Debug, Default)]
@@ -10,8 +12,8 @@ pub struct PlaneStrain;
 impl Kinematics<2> for PlaneStrain {
     type Gradient = Square<2>;
 
-    #[inline]
-    fn slope(_N: impl FnOnce() -> f64, grad: Vector<2>, _x: &Vector<2>) -> Vector<2> {
+    #[inline(always)]
+    fn slope<R: Real>(_N: impl FnOnce() -> R, grad: Vector<2, R>, _x: &Vector<2, R>) -> Vector<2, R> {
         grad
     }
 
@@ -25,14 +27,15 @@ impl Kinematics<2> for PlaneStrain {
         isotropic(moment, lame)
     }
 
-    #[inline]
-    fn jacobian(grad: &Square<2>) -> f64 {
-        (Square::<2>::identity() + grad).determinant()
+    #[inline(always)]
+    fn jacobian<R: Real>(grad: &SMatrix<R, 2, 2>) -> R {
+        (grad[(0, 0)] + 1.0) * (grad[(1, 1)] + 1.0) - grad[(1, 0)] * grad[(0, 1)]
     }
 
-    #[inline]
-    fn gradient(grad: &Square<2>) -> Tensor {
-        Tensor::new(grad[(0, 0)], grad[(0, 1)], 0.0, grad[(1, 0)], grad[(1, 1)], 0.0, 0.0, 0.0, 0.0)
+    #[inline(always)]
+    fn gradient<R: Real>(grad: &SMatrix<R, 2, 2>) -> Tensor<R> {
+        let zero = grad[(0, 0)].like(0.0);
+        Tensor::new(grad[(0, 0)], grad[(0, 1)], zero, grad[(1, 0)], grad[(1, 1)], zero, zero, zero, zero)
     }
 
     #[inline]
@@ -44,12 +47,12 @@ impl Kinematics<2> for PlaneStrain {
         Tensor::from_diagonal(&[0.5, 0.5, 0.0].into())
     }
 
-    #[inline]
-    fn flux(tau: &Symmetric, dF: &Tensor) -> Square<2> {
+    #[inline(always)]
+    fn flux<R: Real>(tau: &Symmetric<R>, dF: &Tensor<R>) -> SMatrix<R, 2, 2> {
         let [xx, yy, _, xy, ..] = tau.0;
         let (a, b, c, d) = (dF[(0, 0)], dF[(0, 1)], dF[(1, 0)], dF[(1, 1)]);
-        let inverse = 1.0 / (a * d - b * c);
-        Square::<2>::new(
+        let inverse = a.like(1.0) / (a * d - b * c);
+        SMatrix::<R, 2, 2>::new(
             (xx * d - xy * b) * inverse,
             (xy * a - xx * c) * inverse,
             (xy * d - yy * b) * inverse,
@@ -57,21 +60,23 @@ impl Kinematics<2> for PlaneStrain {
         )
     }
 
-    #[inline]
-    fn push_forward(dF: &Tensor, b_e: &Symmetric) -> Symmetric {
+    #[inline(always)]
+    fn push_forward<R: Real>(dF: &Tensor<R>, b_e: &Symmetric<R>) -> Symmetric<R> {
         let [xx, yy, zz, xy, ..] = b_e.0;
         let (a, b, c, d) = (dF[(0, 0)], dF[(0, 1)], dF[(1, 0)], dF[(1, 1)]);
         let (row_x, row_y) = ((a * xx + b * xy, a * xy + b * yy), (c * xx + d * xy, c * xy + d * yy));
         let normal = dF[(2, 2)] * dF[(2, 2)] * zz;
-        Symmetric([row_x.0 * a + row_x.1 * b, row_y.0 * c + row_y.1 * d, normal, row_x.0 * c + row_x.1 * d, 0.0, 0.0])
+        let zero = a.like(0.0);
+        let (along, across) = ([row_x.0 * a + row_x.1 * b, row_y.0 * c + row_y.1 * d], row_x.0 * c + row_x.1 * d);
+        Symmetric([along[0], along[1], normal, across, zero, zero])
     }
 
-    #[inline]
-    fn dilate(dF: &Tensor, ratio: f64) -> Tensor {
-        let root = ratio.sqrt();
+    #[inline(always)]
+    fn dilate<R: Real>(dF: &Tensor<R>, ratio: R) -> Tensor<R> {
+        let root = ratio.root();
         let mut dF_bar = *dF;
         for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
-            dF_bar[(i, j)] *= root;
+            dF_bar[(i, j)] = dF[(i, j)] * root;
         }
         dF_bar
     }

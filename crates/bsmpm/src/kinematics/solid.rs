@@ -1,6 +1,7 @@
 //! Three dimensions.
 
-use super::{Kinematics, isotropic};
+use super::{Kinematics, determinant, isotropic, pull_back, push_forward, scaled};
+use crate::real::Real;
 use crate::tensor::{Square, Symmetric, Tensor, Vector};
 
 /// Three dimensions.
@@ -10,8 +11,8 @@ pub struct Solid;
 impl Kinematics<3> for Solid {
     type Gradient = Square<3>;
 
-    #[inline]
-    fn slope(_N: impl FnOnce() -> f64, grad: Vector<3>, _x: &Vector<3>) -> Vector<3> {
+    #[inline(always)]
+    fn slope<R: Real>(_N: impl FnOnce() -> R, grad: Vector<3, R>, _x: &Vector<3, R>) -> Vector<3, R> {
         grad
     }
 
@@ -25,13 +26,13 @@ impl Kinematics<3> for Solid {
         isotropic(moment, lame)
     }
 
-    #[inline]
-    fn jacobian(grad: &Square<3>) -> f64 {
-        (Square::<3>::identity() + grad).determinant()
+    #[inline(always)]
+    fn jacobian<R: Real>(grad: &Tensor<R>) -> R {
+        determinant(&Tensor::from_fn(|i, j| if i == j { grad[(i, j)] + 1.0 } else { grad[(i, j)] }))
     }
 
-    #[inline]
-    fn gradient(grad: &Square<3>) -> Tensor {
+    #[inline(always)]
+    fn gradient<R: Real>(grad: &Tensor<R>) -> Tensor<R> {
         *grad
     }
 
@@ -44,14 +45,18 @@ impl Kinematics<3> for Solid {
         Tensor::identity() / 3.0
     }
 
-    #[inline]
-    fn flux(tau: &Symmetric, dF: &Tensor) -> Square<3> {
-        let inverse = dF.try_inverse().unwrap_or_else(|| Tensor::from_element(f64::NAN));
-        tau.full() * inverse.transpose()
+    #[inline(always)]
+    fn flux<R: Real>(tau: &Symmetric<R>, dF: &Tensor<R>) -> Tensor<R> {
+        pull_back(tau, dF)
     }
 
-    #[inline]
-    fn dilate(dF: &Tensor, ratio: f64) -> Tensor {
-        dF * ratio.cbrt()
+    #[inline(always)]
+    fn push_forward<R: Real>(dF: &Tensor<R>, b_e: &Symmetric<R>) -> Symmetric<R> {
+        push_forward(dF, b_e)
+    }
+
+    #[inline(always)]
+    fn dilate<R: Real>(dF: &Tensor<R>, ratio: R) -> Tensor<R> {
+        scaled(dF, ratio.cube_root())
     }
 }

@@ -5,7 +5,7 @@
 
 use super::law::{Branch, FRICTIONAL, Law, Projection, Variable, frictional, reduced, split};
 use super::{Elastic, Moduli};
-use crate::real::Real;
+use crate::real::{Real, three};
 use crate::tensor::Tensor;
 
 /// Where the cone meets Mohr-Coulomb's pyramid.
@@ -139,9 +139,9 @@ impl Law for DruckerPrager {
         let (yields, apex) = (!excess.at_most(zero), after.below(zero) | root.at_most(zero));
         let kept = after / root;
         let tip = mean.like(self.strength / eta);
-        let returned = deviator.map(|s| R::choose(apex, tip, p + kept * s));
-        let tau = [0, 1, 2].map(|k| R::choose(yields, returned[k], trial[k]));
-        let direction = deviator.map(|s| s / norm);
+        let returned = three(|k| R::choose(apex, tip, p + kept * deviator[k]));
+        let tau = three(|k| R::choose(yields, returned[k], trial[k]));
+        let direction = three(|k| deviator[k] / norm);
         Projection { tau, yields, flow: DruckerPragerReturn { apex, direction, kept, slopes: self.slopes } }
     }
 

@@ -5,7 +5,7 @@
 
 use super::law::{Branch, FRICTIONAL, Law, Projection, Separation, Variable, frictional, reduced};
 use super::{Elastic, Moduli};
-use crate::real::Real;
+use crate::real::{Real, three};
 use crate::tensor::Tensor;
 
 /// Elastic inside `f = (τ₁ - τ₃) + (τ₁ + τ₃) sin φ - 2 c cos φ ≤ 0`, with the same form in ψ as plastic potential.
@@ -188,7 +188,7 @@ impl Law for MohrCoulomb {
         let mut tau = trial;
         if R::any(!inside) {
             let (face, keeps_order) = self.face(trial, excess);
-            tau = [0, 1, 2].map(|k| R::choose(inside, trial[k], face[k]));
+            tau = three(|k| R::choose(inside, trial[k], face[k]));
             let beyond = !(inside | keeps_order);
             if R::any(beyond) {
                 let (edge, is_right, is_edge) = self.edge(trial);
@@ -196,7 +196,7 @@ impl Law for MohrCoulomb {
                 flow.left_edge = beyond & is_edge & !is_right;
                 flow.apex = beyond & !is_edge;
                 let tip = excess.like(strength / slopes.sin_phi);
-                tau = [0, 1, 2].map(|k| R::choose(beyond, R::choose(is_edge, edge[k], tip), tau[k]));
+                tau = three(|k| R::choose(beyond, R::choose(is_edge, edge[k], tip), tau[k]));
             }
         }
         Projection { tau, yields: !inside, flow }

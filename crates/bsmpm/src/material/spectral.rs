@@ -5,7 +5,7 @@
 //! logarithm uses both, so the digits that their sum would round away are not lost near b = I.
 
 use super::MaterialError;
-use crate::real::Real;
+use crate::real::{Real, three};
 use crate::tensor::Symmetric;
 
 /// Beyond this, squares would overflow; b is without unit, and no meaningful one comes near.
@@ -97,7 +97,7 @@ impl Spectrum {
             Axes::Solid(axes) => axes,
         };
         let component = |i: usize| self.descending([axes[0][i], axes[1][i], axes[2][i]]);
-        let [x, y, z] = [0, 1, 2].map(component);
+        let [x, y, z] = three(component);
         [0, 1, 2].map(|k| [x[k], y[k], z[k]])
     }
 }
@@ -108,11 +108,11 @@ impl<R: Real> Spectrum<R> {
     #[inline(always)]
     pub fn near([xx, yy, zz, xy]: [R; 4]) -> Option<Self> {
         let (sums, axes) = plane([xx, yy, zz], xy);
-        let near = sums.map(|(start, gain)| (start + gain - 1.0).magnitude().below(start.like(NEAR)));
-        if R::any(!(near[0] & near[1] & near[2])) {
+        let near = |(start, gain): (R, R)| (start + gain - 1.0).magnitude().below(start.like(NEAR));
+        if R::any(!(near(sums[0]) & near(sums[1]) & near(sums[2]))) {
             return None;
         }
-        Some(Self::sorted(sums.map(|(start, gain)| Principal::near(start, gain)), axes))
+        Some(Self::sorted(three(|k| Principal::near(sums[k].0, sums[k].1)), axes))
     }
 
     /// Ranks the eigenvalues by comparisons without branches, which random points would mispredict.
@@ -163,7 +163,7 @@ impl<R: Real> Spectrum<R> {
     /// `s₂ I + (s₁ - s₂) n₁ ⊗ n₁ + (s₃ - s₂) n₃ ⊗ n₃`.
     fn assemble_solid(&self, axes: &[[R; 3]; 3], s: [R; 3]) -> Symmetric<R> {
         let component = |i: usize| self.descending([axes[0][i], axes[1][i], axes[2][i]]);
-        let (first, third, n) = (s[0] - s[1], s[2] - s[1], [0, 1, 2].map(component));
+        let (first, third, n) = (s[0] - s[1], s[2] - s[1], three(component));
         let at = |i: usize, j: usize| first * (n[i][0] * n[j][0]) + third * (n[i][2] * n[j][2]);
         let spherical = s[1];
         Symmetric([spherical + at(0, 0), spherical + at(1, 1), spherical + at(2, 2), at(0, 1), at(1, 2), at(0, 2)])

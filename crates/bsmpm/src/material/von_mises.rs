@@ -5,7 +5,7 @@
 
 use super::law::{Branch, Law, Projection, Variable, split};
 use super::{Elastic, Moduli};
-use crate::real::Real;
+use crate::real::{Real, three};
 use crate::tensor::Tensor;
 
 /// Elastic inside `q = √(3/2) |s| ≤ σ_y + H κ`, s the deviator of τ and κ the equivalent plastic strain; associated.
@@ -82,8 +82,8 @@ impl Law for VonMises {
         let growth = (q - strength) / (shear + self.hardening);
         // Not 1 - 3μ Δκ/q, which cancels where the trial is far outside.
         let kept = (q * self.hardening + strength * shear) / (q * (shear + self.hardening));
-        let tau = [0, 1, 2].map(|k| R::choose(yields, mean + kept * deviator[k], trial[k]));
-        let direction = deviator.map(|s| s / norm);
+        let tau = three(|k| R::choose(yields, mean + kept * deviator[k], trial[k]));
+        let direction = three(|k| deviator[k] / norm);
         let followed = self.hardening / (shear + self.hardening);
         Projection { tau, yields, flow: VonMisesReturn { direction, kept, followed, growth } }
     }

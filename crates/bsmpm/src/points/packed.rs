@@ -134,3 +134,11 @@ impl<const D: usize, T: Components> FromIterator<T> for Packed<D, T> {
         held
     }
 }
+
+impl<const D: usize> Packed<D, Symmetric> {
+    /// Components XX, YY, ZZ, XY of every tensor, where these are all that there is.
+    #[inline(always)]
+    pub fn planar(&self) -> Option<&[[f64; 4]]> {
+        (D == 2).then(|| self.numbers.as_chunks().0)
+    }
+}

@@ -54,11 +54,11 @@ impl<G> Pressure<G> {
         volume: f64,
     ) -> Self
     where
-        G: Gradient<D>,
+        G: Gradient<D, Of<f64> = G>,
     {
         let by_gradient = G::from_fn(|k, l| {
             let unit = G::unit(k, l);
-            volume * works::<K, D>(&tangent.apply(&(K::gradient(&unit) * inverse)))
+            volume * works::<K, D>(&tangent.apply(&(K::gradient::<f64>(&unit) * inverse)))
         });
         let by_rate = volume * works::<K, D>(&tangent.apply(&K::dilation()));
         Self { raised: (by_gradient, by_rate), own: volume * works::<K, D>(tau) }
@@ -83,7 +83,7 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
             };
             let (tau, tangent) = (response.tau().full(), response.tangent());
             let unit = |k: usize, l: usize| {
-                let l = K::gradient(&K::Gradient::unit(k, l)) * inverse;
+                let l = K::gradient::<f64>(&K::Gradient::unit(k, l)) * inverse;
                 let mut change = tangent.apply(&l) - tau * l.transpose();
                 if let Some(pressure) = pressures.at(p) {
                     let (pressure, own) = (pressure / volume, works::<K, D>(&tau));

@@ -2,12 +2,16 @@
 
 use crate::exact::Exact;
 use crate::grid::{Contributions, transfer};
-use crate::kinematics::{Gradient, Kinematics};
+use crate::kinematics::{Gradient, GradientOf, Kinematics};
+use crate::lanes::{self, Eight, InLanes, LANES, Lanes, Simd};
+use crate::model::Model;
 use crate::nodal::Nodal;
 use crate::parallel::over_layers;
+use crate::points::Points;
 use crate::step::adjoint::Pressures;
 use crate::step::problem::Problem;
 use crate::step::trial::Trial;
+use std::ops::Range;
 use std::sync::atomic::Ordering::Relaxed;
 use std::sync::atomic::{AtomicU64, AtomicUsize};
 
@@ -52,7 +56,7 @@ impl<K: Kinematics<D>, const D: usize> Residual<K, D> {
         let (inverted, first_inverted) = (AtomicU64::new(0), AtomicUsize::new(usize::MAX));
         let pressures = Pressures::of(problem, &trial);
         let volume = problem.volume();
-        let mut f_int = transfer::divergence::<K, D>((shape, &points.x), |p| match trial.respond(model, points, p) {
+        let flux = |p: usize| match trial.respond(model, points, p) {
             Ok(response) => {
                 let tau = pressures.acting::<K, D>(p, volume[p], response.tau());
                 K::flux(&tau, &trial.dF(p)) * volume[p]
@@ -62,6 +66,14 @@ impl<K: Kinematics<D>, const D: usize> Residual<K, D> {
                 first_inverted.fetch_min(p, Relaxed);
                 K::Gradient::zeros()
             }
+        };
+        let in_lanes = pressures.none();
+        let mut f_int = transfer::divergence_of::<K, D>((shape, &points.x), |range, fluxes| {
+            if in_lanes {
+                lanes::run(Fluxes { model, points, trial: &trial, volume, range, flux: &flux, fluxes });
+            } else {
+                fluxes.extend(range.map(flux));
+            }
         });
         if let Some(background) = &nodes.background {
             background.multiply::<D>(shape, u, &mut f_int);
@@ -69,6 +81,50 @@ impl<K: Kinematics<D>, const D: usize> Residual<K, D> {
         let balance = Balance::of(problem, u, &halo.sum(&f_int), inverted.into_inner());
         let first_inverted = Some(first_inverted.into_inner()).filter(|&p| p < points.len());
         Self { trial, balance, first_inverted }
+    }
+}
+
+/// Fluxes of consecutive points, eight at a time; of those by `flux` of which one is not like the others.
+struct Fluxes<'a, K: Kinematics<D>, F, const D: usize> {
+    model: &'a Model<K, D>,
+    points: &'a Points<D>,
+    trial: &'a Trial<K, D>,
+    volume: &'a [f64],
+    range: Range<usize>,
+    flux: &'a F,
+    fluxes: &'a mut Vec<K::Gradient>,
+}
+
+impl<K: Kinematics<D>, F: Fn(usize) -> K::Gradient, const D: usize> InLanes for Fluxes<'_, K, F, D> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        for eight in lanes::eights(self.range.clone()) {
+            let Some(flux) = self.of(simd, eight) else {
+                self.fluxes.extend(eight.points().map(self.flux));
+                continue;
+            };
+            let mut each = [K::Gradient::zeros(); LANES];
+            for j in 0..K::Gradient::SLOPES {
+                for i in 0..D {
+                    let numbers = flux[(i, j)].numbers();
+                    (0..LANES).for_each(|lane| each[lane][(i, j)] = numbers[lane]);
+                }
+            }
+            self.fluxes.extend_from_slice(&each[..eight.points().len()]);
+        }
+    }
+}
+
+impl<K: Kinematics<D>, F, const D: usize> Fluxes<'_, K, F, D> {
+    #[inline(always)]
+    fn of<S: Simd>(&self, simd: S, eight: Eight) -> Option<GradientOf<K, Lanes<S>, D>> {
+        let (dF, tau) = self.trial.respond_in_lanes(self.model, self.points, simd, eight)?;
+        let flux = K::flux(&tau, &dF);
+        let volume = eight.of(self.volume);
+        let volume = Lanes::from_fn(simd, |lane| *volume[lane]);
+        Some(K::Gradient::of(|i, j| flux[(i, j)] * volume))
     }
 }
 

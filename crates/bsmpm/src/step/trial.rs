@@ -2,7 +2,8 @@
 
 use crate::grid::{Shape, transfer};
 use crate::kinematics::{Gradient, Kinematics};
-use crate::material::{MaterialError, Response};
+use crate::lanes::{Eight, Lanes, Simd};
+use crate::material::{MOST_STATE, MaterialError, Response};
 use crate::model::Model;
 use crate::parallel::Halo;
 use crate::points::Points;
@@ -32,7 +33,7 @@ impl<K: Kinematics<D>, const D: usize> Trial<K, D> {
         halo: &dyn Halo,
     ) -> Self {
         let grad = transfer::gradients::<K, D, _>((shape, &points.x), u, |_, grad| {
-            let dJ = K::jacobian(&grad);
+            let dJ = K::jacobian::<f64>(&grad);
             if dJ > 0.0 && dJ.is_finite() { grad } else { K::Gradient::from_element(f64::NAN) }
         });
         let trial = Self { grad, mean: None };
@@ -47,13 +48,13 @@ impl<K: Kinematics<D>, const D: usize> Trial<K, D> {
     /// dF of point `p`, -.
     #[inline]
     pub fn dF(&self, p: usize) -> Tensor {
-        Tensor::identity() + K::gradient(&self.grad[p])
+        K::deformation::<f64>(&self.grad[p])
     }
 
     /// w dJ of point `p`.
     #[inline]
     fn own(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> f64 {
-        weight(model.stabilisation, points, p) * K::jacobian(&self.grad[p])
+        weight(model.stabilisation, points, p) * K::jacobian::<f64>(&self.grad[p])
     }
 
     /// ratio_p = kept_p S(w dJ)_p / (w_p dJ_p), which F-bar multiplies the dilation of point `p` with; 1 without F-bar.
@@ -93,6 +94,45 @@ impl<K: Kinematics<D>, const D: usize> Trial<K, D> {
     /// Whether F-bar acts.
     pub fn is_averaged(&self) -> bool {
         self.mean.is_some()
+    }
+
+    /// Steps (4f)-(4i) of eight points: dF and the stress. `None` where [`Trial::respond`] has to answer: of points of
+    /// several materials, of those that gape, and where the material says so.
+    #[inline(always)]
+    pub fn respond_in_lanes<S: Simd>(
+        &self,
+        model: &Model<K, D>,
+        points: &Points<D>,
+        simd: S,
+        eight: Eight,
+    ) -> Option<(Tensor<Lanes<S>>, Symmetric<Lanes<S>>)> {
+        let material = points.material[eight.points().start];
+        if points.gap.is_some() || eight.points().any(|p| points.material[p] != material) {
+            return None;
+        }
+        let grad = eight.of(&self.grad);
+        let grad = K::Gradient::of(|i, j| Lanes::from_fn(simd, |lane| grad[lane][(i, j)]));
+        let (dF, b_e) = (K::deformation(&grad), eight.of(points.b_e.planar()?));
+        let mut dF_bar = dF;
+        if let Some(mean) = &self.mean {
+            let (mean, mut own) = (eight.of(mean), K::jacobian::<Lanes<S>>(&grad));
+            let mut kept = Lanes::splat(simd, 1.0);
+            if model.stabilisation == Stabilisation::FBarZhao {
+                own = Lanes::from_fn(simd, |lane| weight(model.stabilisation, points, eight.point(lane))) * own;
+                kept = Lanes::from_fn(simd, |lane| 1.0 / points.dilation_of(eight.point(lane)));
+            }
+            dF_bar = K::dilate(&dF, Lanes::from_fn(simd, |lane| *mean[lane]) / own * kept);
+        }
+        let b_e = |k: usize| Lanes::from_fn(simd, |lane| b_e[lane][k]);
+        let zero = Lanes::splat(simd, 0.0);
+        let [xx, yy, zz, xy, ..] = K::push_forward(&dF_bar, &Symmetric([b_e(0), b_e(1), b_e(2), b_e(3), zero, zero])).0;
+        let mut state = [zero; MOST_STATE];
+        let width = points.state_of(eight.point(0)).len();
+        for (k, variable) in state[..width].iter_mut().enumerate() {
+            *variable = Lanes::from_fn(simd, |lane| points.state_of(eight.point(lane))[k]);
+        }
+        let material = &model.materials[usize::from(material)];
+        Some((dF, material.stress([xx, yy, zz, xy], &state[..width])?))
     }
 
     /// Steps (4f)-(4i): trial b^e of point `p` under dF-bar, widened by its gap, and the constitution's answer.

@@ -52,7 +52,7 @@ fn rate_error<K: Kinematics<D>, const D: usize>(order: usize, method: Stabilisat
     };
     let at = trial(0.0);
     let trace = transfer::gradients::<K, D, _>((&shape, &scene.points.x), &du, |p, grad| {
-        (K::gradient(&grad) * at.dF(p).try_inverse().expect("sound")).trace()
+        (K::gradient::<f64>(&grad) * at.dF(p).try_inverse().expect("sound")).trace()
     });
     let rate = at.dilation_rate(&pieces, &trace).expect("averaged");
     let step = 1e-6;

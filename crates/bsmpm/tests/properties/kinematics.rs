@@ -121,7 +121,7 @@ fn axisymmetric_forces_are_the_adjoint_of_axisymmetric_gradients() {
     let (lambda, mu) = (3.0, 2.0);
     for _ in 0..100 {
         let x = Vector::<2>::new(1.5 + random.signed(), random.signed());
-        let slopes = [0, 1].map(|_| Axisymmetric::slope(|| random.signed(), Vector::repeat(0.7), &x));
+        let slopes = [0, 1].map(|_| Axisymmetric::slope::<f64>(|| random.signed(), Vector::repeat(0.7), &x));
         let of = |node: usize, component: usize| {
             let mut gradient = SMatrix::<f64, 2, 3>::zeros();
             gradient.set_row(component, &slopes[node].transpose());

@@ -78,11 +78,11 @@ fn gather_and_scatter_are_adjoint_in_two_and_three_dimensions() {
 fn of_linear<K: Kinematics<D>, const D: usize>(H: &Square<D>, shift: &Vector<D>, x: &Vector<D>) -> K::Gradient {
     let mut gradient = K::Gradient::zeros();
     for k in 0..D {
-        let slope = K::slope(|| 0.0, H.row(k).transpose(), x);
+        let slope = K::slope::<f64>(|| 0.0, H.row(k).transpose(), x);
         (0..K::Gradient::SLOPES).for_each(|j| gradient[(k, j)] = slope[j]);
     }
     let u = H * x + shift;
-    let hoop = K::slope(|| u[0], Vector::zeros(), x);
+    let hoop = K::slope::<f64>(|| u[0], Vector::zeros(), x);
     (0..K::Gradient::SLOPES).for_each(|j| gradient[(0, j)] += hoop[j]);
     gradient
 }
@@ -95,7 +95,7 @@ fn linear_fields_are_exact<K: Kinematics<D>, const D: usize>(order: usize) {
     let u = linear_field(&scene, &H, &shift);
     let largest = |errors: Vec<f64>| errors.into_iter().fold(0.0, f64::max);
     let gradient = largest(transfer::gradients::<K, D, _>((&shape, &scene.points.x), &u, |p, found| {
-        (K::gradient(&found) - K::gradient(&of_linear::<K, D>(&H, &shift, &scene.points.x[p]))).amax()
+        (K::gradient::<f64>(&found) - K::gradient::<f64>(&of_linear::<K, D>(&H, &shift, &scene.points.x[p]))).amax()
     }));
     let value = largest(transfer::to_points::<D, D, _>(&shape, &u, |p, found| {
         let exact = H * scene.points.x[p] + shift;

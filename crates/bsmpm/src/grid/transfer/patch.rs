@@ -1,0 +1,101 @@
+//! Gather and scatter with gradients within a patch: points in lanes, or their nodes side by side.
+
+use super::PatchBlock;
+use crate::grid::shape::PointSupport;
+use crate::kinematics::{Gradient, Kinematics};
+use crate::lanes::{InLanes, Quad, Simd};
+use crate::tensor::Vector;
+use std::marker::PhantomData;
+use std::ops::Range;
+
+/// Rows of nodes along the last axis of a patch at most: four by four in three dimensions.
+const MOST_ROWS: usize = 16;
+
+/// Gradients of the points of a patch, eight at a time, appended as `found` makes them.
+pub(super) struct Gradients<'a, K, T, F, const D: usize, const W: usize> {
+    pub rows: &'a [f64],
+    pub x: &'a [Vector<D>],
+    pub points: Range<usize>,
+    pub block: &'a PatchBlock<D>,
+    pub found: &'a F,
+    pub out: &'a mut Vec<T>,
+    pub kinematics: PhantomData<K>,
+}
+
+impl<K: Kinematics<D>, T, F: Fn(usize, K::Gradient) -> T, const D: usize, const W: usize> InLanes
+    for Gradients<'_, K, T, F, D, W>
+{
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self, _simd: S) {
+        let size = 2 * D * W;
+        for p in self.points {
+            let support = PointSupport::<f64, D, W> { rows: &self.rows[p * size..(p + 1) * size] };
+            let mut gradient = K::Gradient::zeros();
+            for (k, at_node) in self.block[..const { W.pow(D as u32) }].iter().enumerate() {
+                let slope = K::slope::<f64>(|| support.value(k), support.gradient(k), &self.x[p]);
+                for j in 0..K::Gradient::SLOPES {
+                    for i in 0..D {
+                        gradient[(i, j)] += at_node[i] * slope[j];
+                    }
+                }
+            }
+            self.out.push((self.found)(p, gradient));
+        }
+    }
+}
+
+/// What the fluxes of a patch's points add up to, point by point.
+pub(super) struct Divergence<'a, K: Kinematics<D>, const D: usize, const W: usize> {
+    pub rows: &'a [f64],
+    pub x: &'a [Vector<D>],
+    pub points: Range<usize>,
+    pub fluxes: &'a [K::Gradient],
+    pub block: &'a mut PatchBlock<D>,
+}
+
+impl<K: Kinematics<D>, const D: usize, const W: usize> InLanes for Divergence<'_, K, D, W> {
+    type Output = ();
+
+    /// The nodes of a patch along its last axis stand side by side, up to four; places beyond them collect what nobody reads.
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        let size = 2 * D * W;
+        let mut sums = [[Quad::splat(simd, 0.0); D]; MOST_ROWS];
+        let sums = &mut sums[..const { W.pow(D as u32 - 1) }];
+        for (p, flux) in self.points.zip(self.fluxes) {
+            let rows = &self.rows[p * size..];
+            let x = Vector::from_fn(|i, _| Quad::splat(simd, self.x[p][i]));
+            let last = [0, W].map(|derivative| Quad::first_of(simd, &rows[2 * W * (D - 1) + derivative..]));
+            for (k, sums) in sums.iter_mut().enumerate() {
+                let along = |axis: usize, derivative: usize| {
+                    if axis == D - 1 {
+                        return last[derivative];
+                    }
+                    let a = k / W.pow((D - 2 - axis) as u32) % W;
+                    Quad::splat(simd, rows[2 * W * axis + W * derivative + a])
+                };
+                let product = |component: usize| {
+                    let mut product = along(0, usize::from(component == 0));
+                    for axis in 1..D {
+                        product = product * along(axis, usize::from(component == axis));
+                    }
+                    product
+                };
+                let slope = K::slope(|| product(D), Vector::from_fn(|component, _| product(component)), &x);
+                for j in 0..K::Gradient::SLOPES {
+                    for i in 0..D {
+                        sums[i] = sums[i] + slope[j] * flux[(i, j)];
+                    }
+                }
+            }
+        }
+        for (k, sums) in sums.iter().enumerate() {
+            let numbers: [[f64; 4]; D] = std::array::from_fn(|i| sums[i].numbers());
+            for (b, at_node) in self.block[W * k..W * (k + 1)].iter_mut().enumerate() {
+                (0..D).for_each(|i| at_node[i] = numbers[i][b]);
+            }
+        }
+    }
+}
