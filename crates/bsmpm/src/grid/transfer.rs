@@ -14,7 +14,6 @@ use crate::stabilisation::Grouped;
 use crate::tensor::Vector;
 use patch::{Divergence, Gradients};
 use rayon::prelude::*;
-use std::marker::PhantomData;
 use std::ops::Range;
 
 /// Largest number of nodes of a patch: (3 + 1)^3.
@@ -37,7 +36,7 @@ pub fn to_nodes_grouped<const D: usize, const C: usize>(
     grouped: Grouped<'_>,
     value: impl Fn(usize) -> [f64; C] + Sync,
 ) -> Contributions {
-    with_width!(shape.width(), W => scatter(shape, grouped, |points, block: &mut PatchBlock<C>| {
+    with_width!(lowered shape.width(), W => scatter(shape, grouped, |points, block: &mut PatchBlock<C>| {
         for p in points {
             let (support, value) = (shape.values::<W>(p), value(p));
             for (k, sums) in block[..const { W.pow(D as u32) }].iter_mut().enumerate() {
@@ -58,7 +57,7 @@ pub fn largest_to_nodes<const D: usize>(
     value: impl Fn(usize) -> f64,
 ) {
     let count = grouped.count();
-    with_width!(shape.width(), W => {
+    with_width!(lowered shape.width(), W => {
         for patch in shape.patches() {
             for p in patch.points.clone() {
                 let (support, value) = (shape.values::<W>(p), value(p));
@@ -89,7 +88,7 @@ pub fn to_points_grouped<const D: usize, const C: usize, T: Send>(
     nodal: &[f64],
     found: impl Fn(usize, [f64; C]) -> T + Sync,
 ) -> Vec<T> {
-    with_width!(shape.width(), W => at_points(shape, |number, block: &mut PatchBlock<C>, out: &mut Vec<T>| {
+    with_width!(lowered shape.width(), W => at_points(shape, || [[0.0; C]; MOST_NODES], |number, block, out: &mut Vec<T>| {
         for (group, points) in grouped.runs(shape.patches()[number].points.clone()) {
             gathered(shape, nodal, number, (group, grouped.count()), block);
             for p in points {
@@ -114,11 +113,12 @@ pub fn gradients<K: Kinematics<D>, const D: usize, T: Send>(
     u: &[f64],
     found: impl Fn(usize, K::Gradient) -> T + Sync,
 ) -> Vec<T> {
-    with_width!(shape.width(), W => at_points(shape, |number, block: &mut PatchBlock<D>, out: &mut Vec<T>| {
+    with_width!(shape.width(), W => at_points(shape, || ([[0.0; D]; MOST_NODES], Vec::new()), |number, (block, gradients), out: &mut Vec<T>| {
         let patch = &shape.patches()[number];
         gather(u, shape.offsets(), patch.first_node, (0, 1), block);
         let (rows, points) = (shape.rows(), patch.points.clone());
-        lanes::run(Gradients::<K, T, _, D, W> { rows, x, points, block, found: &found, out, kinematics: PhantomData });
+        lanes::run(Gradients::<K, D, W> { rows, x, points: points.clone(), block, out: gradients });
+        out.extend(points.zip(gradients.drain(..)).map(|(p, gradient)| found(p, gradient)));
     }))
 }
 
@@ -215,18 +215,19 @@ fn scatter_columns<const D: usize, const C: usize, F: FnMut(Range<usize>, &mut P
 }
 
 /// What the patches leave at their points, in the order of the points.
-fn at_points<const D: usize, const C: usize, T: Send>(
+fn at_points<const D: usize, S, T: Send>(
     shape: &Shape<D>,
-    work: impl Fn(usize, &mut PatchBlock<C>, &mut Vec<T>) + Sync,
+    scratch: impl Fn() -> S + Sync,
+    work: impl Fn(usize, &mut S, &mut Vec<T>) + Sync,
 ) -> Vec<T> {
     let of_column = |column: &PatchColumn| {
-        let (mut block, mut out) = ([[0.0; C]; MOST_NODES], Vec::with_capacity(column.points.len()));
-        column.patches.clone().for_each(|patch| work(patch, &mut block, &mut out));
+        let (mut scratch, mut out) = (scratch(), Vec::with_capacity(column.points.len()));
+        column.patches.clone().for_each(|patch| work(patch, &mut scratch, &mut out));
         out
     };
     if rayon::current_num_threads() == 1 {
-        let (mut block, mut out) = ([[0.0; C]; MOST_NODES], Vec::with_capacity(shape.len()));
-        (0..shape.patches().len()).for_each(|patch| work(patch, &mut block, &mut out));
+        let (mut scratch, mut out) = (scratch(), Vec::with_capacity(shape.len()));
+        (0..shape.patches().len()).for_each(|patch| work(patch, &mut scratch, &mut out));
         return out;
     }
     shape.columns().par_iter().flat_map_iter(of_column).collect()
