@@ -6,10 +6,11 @@ use std::path::PathBuf;
 use bsmpm_io::frame::Frame;
 use bsmpm_io::manifest::Status;
 use bsmpm_io::table::Columns;
+use bsmpm_scene::Regime;
 use clap::Args;
 
 use crate::Error;
-use crate::record::{RecordedRegime, RunRecord};
+use crate::record::RunRecord;
 
 mod body;
 mod convergence;
@@ -108,8 +109,8 @@ fn pictures(arguments: &PlotArguments) -> Result<(RunRecord, Vec<String>), Error
 fn fields(record: &RunRecord, frames: &[Frame], wanted: Option<FieldName>) -> Vec<FieldName> {
     match (wanted, record.regime()) {
         (Some(field), _) => vec![field],
-        (None, RecordedRegime::Dynamic) => vec![FieldName::StressYy],
-        (None, RecordedRegime::QuasiStatic) => {
+        (None, Regime::Dynamic) => vec![FieldName::StressYy],
+        (None, Regime::QuasiStatic) => {
             let strains: Option<Vec<_>> = frames.iter().map(|frame| FieldName::PlasticStrain.values(frame)).collect();
             let has_strain = strains.is_some_and(|strains| strains.iter().flatten().any(|&strain| strain != 0.0));
             let strain = has_strain.then_some(FieldName::PlasticStrain);
@@ -121,5 +122,5 @@ fn fields(record: &RunRecord, frames: &[Frame], wanted: Option<FieldName>) -> Ve
 /// Whether the free surface tells something: where a body runs out, or there is one to compare with.
 fn has_surface(record: &RunRecord, reference: Option<&Columns>) -> bool {
     let is_measured = reference.is_some_and(|table| ["time", "x", "y"].iter().all(|name| table.get(name).is_some()));
-    record.regime() == RecordedRegime::Dynamic || !record.columns("runout").is_empty() || is_measured
+    record.regime() == Regime::Dynamic || !record.columns("runout").is_empty() || is_measured
 }

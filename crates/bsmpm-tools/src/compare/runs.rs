@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use bsmpm_io::manifest::Status;
+use bsmpm_scene::words::Word;
 
 use super::CompareArguments;
 use crate::Error;
@@ -140,7 +141,8 @@ pub(super) fn labels(arguments: &CompareArguments, records: &[RunRecord]) -> Vec
     if !arguments.labels.is_empty() {
         return arguments.labels.clone();
     }
-    let methods: Option<Vec<String>> = records.iter().map(|record| record.case.stabilisation.clone()).collect();
+    let methods: Option<Vec<String>> =
+        records.iter().map(|record| Some(record.case.stabilisation?.word().to_owned())).collect();
     if let Some(methods) = methods.filter(|methods| arguments.last || (methods.len() > 1 && are_distinct(methods))) {
         return methods;
     }

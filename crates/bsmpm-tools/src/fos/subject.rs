@@ -3,12 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use bsmpm::model::Regime;
+use bsmpm_scene::words::Word;
 use bsmpm_scene::{Case, GridAxis, MotionPath, Quantity};
 use serde::Serialize;
 
 use super::search::{ELASTIC, LEAST};
 use crate::Error;
-use crate::record::Case as Told;
 
 /// The loosest tolerances with which a factor means anything: a study by finite elements found it 45.6 % too high with
 /// residuals of 1e-1, 2 % with 1e-2, and no difference from 1e-3 on.
@@ -242,7 +242,7 @@ impl Conditions {
             cell: [largest(&case.grid.axes[0]), largest(&case.grid.axes[1])],
             order: case.grid.order,
             points_per_cell,
-            stabilisation: Told::of(&case.text).stabilisation.unwrap_or_else(|| "none".to_owned()),
+            stabilisation: case.stabilisation.word().to_owned(),
             background: case.solver.background,
             tolerance: case.solver.tolerance,
             force_tolerance: case.solver.force_tolerance,
