@@ -6,15 +6,14 @@
 //! the search may ask for next, `jobs` runs them. They shorten the search and change nothing else in it.
 
 use std::fs;
-use std::io::Write;
 use std::path::PathBuf;
 use std::time::Instant;
 
-use bsmpm_io::atomic;
 use clap::Args;
 
 use crate::Error;
 use crate::launch::{self, SolverProgram, command};
+use crate::report::save;
 
 mod curve;
 mod guess;
@@ -30,8 +29,8 @@ use search::{GREATEST, LEAST, SearchPlan};
 use subject::Subject;
 use trial::{Trial, Trials};
 
-const JSON: &str = "fos.json";
-const CSV: &str = "fos.csv";
+/// Of the files of its tables.
+const NAME: &str = "fos";
 /// Narrower bands would show the rounding of displacements.
 const NARROWEST: f64 = 1e-4;
 
@@ -147,8 +146,9 @@ fn found(arguments: &FosArguments, mut told: impl FnMut(&str)) -> Result<(FosRep
     let output = arguments.directory();
     launch::make(&output)?;
     // Results of an older search must not pass for this one's, should it not come to its end.
-    let older = [JSON, CSV].iter().chain(&picture::NAMES).map(|name| output.join(name)).filter(|path| path.exists());
-    for path in older {
+    for path in
+        ["fos.json", "fos.csv"].iter().chain(&picture::NAMES).map(|name| output.join(name)).filter(|path| path.exists())
+    {
         fs::remove_file(&path).map_err(|source| Error::File(bsmpm_io::Error::file("delete", &path)(source)))?;
     }
     let trials = Trials { solver, subject: &subject, output: &output, force: arguments.force };
@@ -156,11 +156,7 @@ fn found(arguments: &FosArguments, mut told: impl FnMut(&str)) -> Result<(FosRep
     let mut report = FosReport::of(&subject, plan, &command, &curve, made);
     report.jobs = jobs;
     report.seconds = start.elapsed().as_secs_f64();
-    atomic::replace(&output.join(CSV), |file| file.write_all(report.csv().as_bytes()))?;
-    atomic::replace(&output.join(JSON), |file| {
-        serde_json::to_writer_pretty(&mut *file, &report)?;
-        file.write_all(b"\n")
-    })?;
+    save(&output, NAME, &report.csv(), &report)?;
     Ok((report, subject))
 }
 

@@ -6,7 +6,6 @@
 
 mod batch;
 pub mod cli;
-mod columns;
 pub mod compare;
 pub mod error;
 pub mod estimate;
@@ -16,6 +15,7 @@ mod launch;
 mod picture;
 pub mod plot;
 mod record;
+mod report;
 pub mod slurm;
 pub mod sweep;
 pub mod validate;

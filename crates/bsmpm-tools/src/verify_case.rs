@@ -1,25 +1,21 @@
 //! `bsmpm verify-case`: how far a case is from the limit of ever smaller cells. Three grids are made in `grids` and run by
 //! `crate::batch`, what they say of each quantity is found in `crate::grid_convergence` and told in `report`.
 
-use std::io::Write;
 use std::path::PathBuf;
 
-use bsmpm_io::atomic;
 use clap::{Args, ValueEnum};
 
 use crate::Error;
 use crate::batch::{self, Options, Outcome, RunState};
 use crate::launch::command;
 use crate::plot;
+use crate::report::save;
 
 mod grids;
 mod report;
 
 use grids::Grids;
 use report::VerifyReport;
-
-const JSON: &str = "verify.json";
-const CSV: &str = "verify.csv";
 
 /// What becomes of the time step on other grids.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -92,13 +88,7 @@ pub fn run(arguments: &VerifyArguments, mut told: impl FnMut(&str)) -> Result<(S
         ended(outcome, h)?;
     }
     let report = VerifyReport::of(arguments, &grids, &outcomes)?;
-    let (csv, json) = (output.join(CSV), output.join(JSON));
-    atomic::replace(&csv, |file| file.write_all(report.csv().as_bytes()))?;
-    atomic::replace(&json, |file| {
-        serde_json::to_writer_pretty(&mut *file, &report)?;
-        file.write_all(b"\n")
-    })?;
-    Ok((report.text(), vec![csv, json]))
+    Ok((report.text(), save(&output, "verify", &report.csv(), &report)?))
 }
 
 /// Three grids are needed; two show no order.

@@ -8,6 +8,7 @@ use bsmpm_io::table::{self, Columns};
 use serde::Serialize;
 
 use crate::launch::Ending;
+use crate::report::word;
 
 /// How a run stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -58,21 +59,6 @@ pub(crate) struct RunCost {
     pub cuts: u64,
 }
 
-impl RunState {
-    /// The word for it.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Done => "done",
-            Self::Stopped => "stopped",
-            Self::NoConvergence => "no-convergence",
-            Self::Left => "left",
-            Self::Broken => "broken",
-            Self::Invalid => "invalid",
-            Self::Memory => "memory",
-        }
-    }
-}
-
 impl Outcome {
     /// That of the run in a directory; `code` is what its process ended with, if it was made now.
     pub fn read(directory: &Path, code: Option<u8>) -> Self {
@@ -118,6 +104,6 @@ impl Outcome {
     pub fn words(&self) -> String {
         let code =
             self.code.filter(|_| self.state != RunState::Done).map_or_else(String::new, |code| format!(" ({code})"));
-        format!("{}{code}", self.state.word())
+        format!("{}{code}", word(self.state))
     }
 }

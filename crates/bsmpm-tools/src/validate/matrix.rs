@@ -8,7 +8,7 @@ use serde::Deserialize;
 
 use super::expand::expand;
 use crate::Error;
-use crate::columns::number;
+use crate::report::number;
 
 /// When something is run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
