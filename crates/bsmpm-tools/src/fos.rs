@@ -12,7 +12,7 @@ use std::time::Instant;
 use clap::Args;
 
 use crate::Error;
-use crate::launch::{self, SolverProgram, command};
+use crate::launch::{self, RunCost, SolverProgram, command};
 use crate::report::save;
 
 mod curve;
@@ -94,13 +94,8 @@ pub struct FosArguments {
 pub(crate) struct FoundFactor {
     /// By the kink: the estimate, or where there is none the middle of the band.
     pub factor: Option<f64>,
-    /// s  of processor time, all trials together
-    pub cpu_seconds: f64,
-    /// s  by the clock, those of trials that were there left out
-    pub seconds: f64,
-    pub steps: u64,
-    pub iterations: u64,
-    pub cuts: u64,
+    /// Of all trials together; by the clock those that were there are left out.
+    pub cost: RunCost,
     /// Whether every trial was there.
     pub kept: bool,
 }
@@ -125,11 +120,7 @@ pub(crate) fn factor(arguments: &FosArguments) -> Result<FoundFactor, Error> {
     let middle = || Some(f64::midpoint(finding.last_stable?, finding.first_failed?));
     Ok(FoundFactor {
         factor: finding.estimate.or_else(middle),
-        cpu_seconds: trials().map(|trial| trial.cpu_seconds).sum(),
-        seconds: report.seconds,
-        steps: trials().map(|trial| trial.steps).sum(),
-        iterations: trials().map(|trial| trial.iterations).sum(),
-        cuts: trials().map(|trial| trial.cuts).sum(),
+        cost: RunCost { wall_seconds: report.seconds, ..trials().map(Trial::cost).sum() },
         kept: trials().all(|trial| trial.kept),
     })
 }

@@ -11,8 +11,8 @@ use bsmpm_scene::Case;
 use clap::Args;
 
 use crate::Error;
-use crate::batch::{Batch, Options, Outcome, RunOrder, RunState};
-use crate::launch::command;
+use crate::batch::{Batch, Options, RunOrder};
+use crate::launch::{Outcome, RunState, command};
 use crate::report::{mebibytes, save};
 
 mod axes;

@@ -6,8 +6,8 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 
 use crate::Error;
-use crate::batch::{self, Options, Outcome, RunState};
-use crate::launch::command;
+use crate::batch::{self, Options};
+use crate::launch::{Outcome, RunState, command};
 use crate::plot;
 use crate::report::save;
 

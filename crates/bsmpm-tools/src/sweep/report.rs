@@ -7,7 +7,7 @@ use super::front::{cheapest, front};
 use super::quantity::SweepQuantity;
 use super::reference::{FoundReference, ReferenceValues};
 use super::study::Point;
-use crate::batch::{Outcome, RunCost, RunState};
+use crate::launch::{Outcome, RunCost, RunState};
 use crate::report::{Quoted, Table, mebibytes, some, word};
 
 /// A run with what it is worth.

@@ -34,7 +34,7 @@ pub(super) fn value(row: &MatrixRow, outcomes: &BTreeMap<String, MatrixOutcome>)
 
 fn column(outcomes: &BTreeMap<String, MatrixOutcome>, run: &str, name: &str) -> Result<Vec<f64>, String> {
     let outcome = outcomes.get(run).ok_or_else(|| format!("{run} was not run"))?;
-    let history = outcome.history.as_ref().ok_or_else(|| format!("{run} left no history"))?;
+    let history = outcome.run.history.as_ref().ok_or_else(|| format!("{run} left no history"))?;
     let values = history.get(name).ok_or_else(|| format!("{run} has no column {name}"))?;
     if values.is_empty() { Err(format!("{run} has no row")) } else { Ok(values.to_vec()) }
 }

@@ -1,6 +1,6 @@
 //! The table: for the screen study by study, as Markdown and as CSV whole.
 
-use super::runs::MatrixCost;
+use crate::launch::RunCost;
 use crate::report::{Quoted, Table, number, some};
 
 /// How a row stands.
@@ -33,7 +33,7 @@ pub(super) struct TableRow {
     pub remark: String,
     /// exit codes of its runs, once if they are all the same
     pub codes: String,
-    pub cost: MatrixCost,
+    pub cost: RunCost,
 }
 
 impl RowVerdict {
@@ -75,7 +75,7 @@ fn add_columns(table: &mut Table<TableRow>) {
         .right("steps", |row| row.cost.steps)
         .right("cuts", |row| row.cost.cuts)
         .right("iterations", |row| row.cost.iterations)
-        .right("s", |row| format!("{:.1}", row.cost.seconds))
+        .right("s", |row| format!("{:.1}", row.cost.wall_seconds))
         .column("remark", |row| &row.remark);
 }
 
@@ -120,7 +120,7 @@ mod tests {
             verdict,
             remark: "coarse".into(),
             codes: "0".into(),
-            cost: MatrixCost { steps: 20, ..MatrixCost::default() },
+            cost: RunCost { steps: 20, ..RunCost::default() },
         };
         let rows = [row("p/c", Some(5.2), RowVerdict::Passed), row("longer", None, RowVerdict::Failed)];
         let text = text("A study", &rows);
