@@ -6,7 +6,6 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use crate::Error;
 use crate::launch::{LaunchTask, Outcome, RunState, SolverProgram};
 use crate::record::short;
 use crate::slurm::clock;
@@ -89,12 +88,4 @@ fn memory(asked: Option<u64>) -> u64 {
         Some(line.split_whitespace().next()?.parse::<u64>().ok()? * 1024)
     };
     asked.or_else(free).unwrap_or(u64::MAX)
-}
-
-/// The bytes of the case file.
-///
-/// # Errors
-/// [`Error::NoCase`].
-pub(crate) fn load(path: &Path) -> Result<Vec<u8>, Error> {
-    bsmpm_scene::load(path).map_err(|source| Error::NoCase { path: path.to_owned(), source })
 }

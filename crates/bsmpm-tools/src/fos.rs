@@ -11,9 +11,9 @@ use std::time::Instant;
 
 use clap::Args;
 
-use crate::Error;
 use crate::launch::{self, RunCost, SolverProgram, command};
 use crate::report::save;
+use crate::{Error, case};
 
 mod curve;
 mod guess;
@@ -103,7 +103,7 @@ pub(crate) struct FoundFactor {
 /// Searches; `told` gets a line for every trial as soon as it is there. Returns the table and the written pictures.
 ///
 /// # Errors
-/// Those of the command line and the case before anything runs; [`Error::NoStableState`]; [`Error::Trial`] for a trial that
+/// Those of the command line and the case before anything runs; [`Error::NoStableState`]; [`Error::Run`] for a trial that
 /// broke; the errors of files.
 pub fn run(arguments: &FosArguments, told: impl FnMut(&str)) -> Result<(String, Vec<PathBuf>), Error> {
     let (report, subject) = found(arguments, told)?;
@@ -140,7 +140,7 @@ fn found(arguments: &FosArguments, mut told: impl FnMut(&str)) -> Result<(FosRep
     for path in
         ["fos.json", "fos.csv"].iter().chain(&picture::NAMES).map(|name| output.join(name)).filter(|path| path.exists())
     {
-        fs::remove_file(&path).map_err(|source| Error::File(bsmpm_io::Error::file("delete", &path)(source)))?;
+        fs::remove_file(&path).map_err(bsmpm_io::Error::file("delete", &path))?;
     }
     let trials = Trials { solver, subject: &subject, output: &output, force: arguments.force };
     let (curve, made) = jobs::find(plan, jobs, &trials, |trial| told(&line(trial)))?;
@@ -166,11 +166,7 @@ impl FosArguments {
     }
 
     fn directory(&self) -> PathBuf {
-        self.output.clone().unwrap_or_else(|| {
-            let mut name = self.case.file_stem().unwrap_or_default().to_owned();
-            name.push(".fos");
-            PathBuf::from(name)
-        })
+        self.output.clone().unwrap_or_else(|| case::directory(&self.case, ".fos"))
     }
 }
 

@@ -5,6 +5,7 @@
 #![forbid(unsafe_code)]
 
 mod batch;
+mod case;
 pub mod cli;
 pub mod compare;
 pub mod error;
@@ -12,9 +13,11 @@ pub mod estimate;
 pub mod fos;
 mod grid_convergence;
 mod launch;
+mod line;
 mod picture;
 pub mod plot;
 mod record;
+mod reference;
 mod report;
 pub mod slurm;
 pub mod sweep;

@@ -9,14 +9,13 @@ use bsmpm_io::table::Columns;
 use bsmpm_scene::Regime;
 use clap::Args;
 
-use crate::Error;
 use crate::record::RunRecord;
+use crate::{Error, reference};
 
 mod body;
 mod convergence;
 mod curves;
 mod field;
-mod reference;
 mod surface;
 
 pub use field::FieldName;
@@ -79,7 +78,7 @@ pub fn run(arguments: &PlotArguments) -> Result<Vec<PathBuf>, Error> {
 /// Draws the pictures of a run and returns their files' names, in the run's directory.
 ///
 /// # Errors
-/// [`Error::NoRun`] without a `run.json`, [`Error::Empty`] if there is nothing to draw yet, [`Error::File`] for files that
+/// [`Error::Missing`] without a `run.json`, or if there is nothing to draw yet, [`Error::File`] for files that
 /// are damaged or cannot be written.
 pub fn draw(arguments: &PlotArguments) -> Result<Vec<String>, Error> {
     pictures(arguments).map(|(_, names)| names)
@@ -87,7 +86,7 @@ pub fn draw(arguments: &PlotArguments) -> Result<Vec<String>, Error> {
 
 fn pictures(arguments: &PlotArguments) -> Result<(RunRecord, Vec<String>), Error> {
     let record = RunRecord::read(&arguments.directory)?;
-    let reference = arguments.reference.as_deref().map(reference::read).transpose()?;
+    let reference = arguments.reference.as_deref().map(reference::columns).transpose()?;
     let frames = record.frames(&arguments.times)?;
     let mut names = Vec::new();
     if !frames.is_empty() {
@@ -102,7 +101,11 @@ fn pictures(arguments: &PlotArguments) -> Result<(RunRecord, Vec<String>), Error
     }
     names.extend(curves::draw(&record, reference.as_ref())?);
     names.extend(convergence::draw(&record)?);
-    if names.is_empty() { Err(Error::Empty { directory: record.directory }) } else { Ok((record, names)) }
+    if names.is_empty() {
+        let reason = format!("the run in {} has left no frame, no history and no step yet", record.directory.display());
+        return Err(Error::Missing { reason });
+    }
+    Ok((record, names))
 }
 
 /// The wanted field, or those that show how a scene of this kind stands; the plastic strain only if there is any.

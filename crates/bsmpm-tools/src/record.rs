@@ -28,7 +28,7 @@ pub(crate) struct RunRecord {
 impl RunRecord {
     pub fn read(directory: &Path) -> Result<Self, Error> {
         let manifest = present(Manifest::read(directory))?;
-        let manifest = manifest.ok_or_else(|| Error::NoRun { directory: directory.to_owned() })?;
+        let manifest = manifest.ok_or_else(|| Error::no_run(directory))?;
         Ok(Self {
             directory: directory.to_owned(),
             case: Sketch::of(&manifest.case.text),

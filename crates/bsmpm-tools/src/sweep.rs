@@ -10,10 +10,10 @@ use bsmpm_io::atomic;
 use bsmpm_scene::Case;
 use clap::Args;
 
-use crate::Error;
 use crate::batch::{Batch, Options, RunOrder};
 use crate::launch::{Outcome, RunState, command};
 use crate::report::{mebibytes, save};
+use crate::{Error, case};
 
 mod axes;
 mod front;
@@ -203,7 +203,7 @@ fn written_back(bytes: &[u8], set: &[String], file: &Path) -> Result<(), Error> 
     let text = write::text(&original, set).map_err(usage)?;
     let name = file.display().to_string();
     Case::from_text(&name, &text, &[]).map_err(|errors| Error::bad_case(file, &errors))?;
-    let run = Case::from_bytes(&name, bytes, set).map_err(|errors| Error::bad_case(file, &errors))?;
+    let run = case::parsed(file, bytes, set)?;
     let differences = bsmpm_scene::differences(&run.text, &text).map_err(|errors| Error::bad_case(file, &errors))?;
     if let Some(difference) = differences.first() {
         return Err(usage(format!("the text would be another case than the run: {difference}")));

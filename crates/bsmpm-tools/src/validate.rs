@@ -4,7 +4,6 @@
 
 use std::collections::BTreeMap;
 use std::fs;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
@@ -200,12 +199,11 @@ fn draw_body(plot: &matrix::Plot, outcomes: &BTreeMap<String, MatrixOutcome>, ou
     for name in crate::plot::draw(&arguments)?.iter().filter(|name| name.starts_with(&plot.field)) {
         let to = output.join(format!("{}_{name}", plot.run));
         let from = directory.join(name);
-        fs::copy(&from, &to).map_err(|source| Error::File(bsmpm_io::Error::file("copy", &from)(source)))?;
+        fs::copy(&from, &to).map_err(bsmpm_io::Error::file("copy", &from))?;
     }
     Ok(())
 }
 
 fn write(path: &Path, text: &str) -> Result<(), Error> {
-    let written = fs::File::create(path).and_then(|mut file| file.write_all(text.as_bytes()));
-    written.map_err(|source| Error::File(bsmpm_io::Error::file("write", path)(source)))
+    Ok(fs::write(path, text).map_err(bsmpm_io::Error::file("write", path))?)
 }

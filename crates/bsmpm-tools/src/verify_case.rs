@@ -5,11 +5,10 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use crate::Error;
-use crate::batch::{self, Options};
+use crate::batch::Options;
 use crate::launch::{Outcome, RunState, command};
-use crate::plot;
 use crate::report::save;
+use crate::{Error, case, plot};
 
 mod grids;
 mod report;
@@ -77,7 +76,7 @@ pub struct VerifyArguments {
 pub fn run(arguments: &VerifyArguments, mut told: impl FnMut(&str)) -> Result<(String, Vec<PathBuf>), Error> {
     let (options, path) = (&arguments.options, &*arguments.case);
     let (command, output) = (options.words(), options.directory(path, ".verify"));
-    let bytes = batch::load(path)?;
+    let bytes = case::load(path)?;
     let grids = Grids::of(arguments, &bytes)?;
     let batch = options.batch(&command, path, &output)?;
     let outcomes = batch.run(&grids.orders, command::ranks(&command), |index, outcome| {
@@ -95,10 +94,6 @@ pub fn run(arguments: &VerifyArguments, mut told: impl FnMut(&str)) -> Result<(S
 fn ended(outcome: &Outcome, h: f64) -> Result<(), Error> {
     match outcome.state {
         RunState::Done => Ok(()),
-        _ => Err(Error::Run {
-            what: format!("cells of {h} m"),
-            code: outcome.code.unwrap_or(bsmpm_io::exit::BUG),
-            reason: outcome.reason.clone(),
-        }),
+        _ => Err(outcome.error(format!("the run with cells of {h} m"))),
     }
 }

@@ -93,7 +93,7 @@ impl ProbeRun {
 /// Estimates from probes that end at about the deadline; `guess` is what they are planned by.
 ///
 /// # Errors
-/// [`Error::Probe`] if the case's own first steps fail; [`Error::Launch`]; those of the folder.
+/// [`Error::Run`] if the case's own first steps fail; [`Error::Launch`]; those of the folder.
 pub(super) fn estimate(
     plan: &ProbePlan,
     guess: &StoredEstimate,
@@ -101,7 +101,7 @@ pub(super) fn estimate(
     told: &mut dyn FnMut(&str),
 ) -> Result<StoredEstimate, Error> {
     let folder = tempfile::Builder::new().prefix("bsmpm-estimate-").tempdir();
-    let folder = folder.map_err(|source| Error::File(bsmpm_io::Error::file("make", &std::env::temp_dir())(source)))?;
+    let folder = folder.map_err(bsmpm_io::Error::file("make", &std::env::temp_dir()))?;
     let probes = Probes { plan, folder, deadline };
     let start = probes.of_case("start", 0.0)?;
     let wanted = FIRST[0] * probes.left() * guess.work.steps / (guess.unit * guess.work.units());
@@ -174,7 +174,7 @@ impl Probes<'_> {
         let run = self.run(name, &self.plan.case.text, &["--max-steps", &most], self.plan.ranks)?;
         match run.outcome.state {
             RunState::Done | RunState::Stopped if run.outcome.manifest.is_some() => Ok(run),
-            _ => Err(Error::Probe { code: run.outcome.code.unwrap_or(u8::MAX), reason: run.outcome.reason }),
+            _ => Err(run.outcome.error("the first steps of the case".to_owned())),
         }
     }
 

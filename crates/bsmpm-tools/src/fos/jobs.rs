@@ -209,7 +209,7 @@ mod tests {
     }
 
     fn broken(factor: f64) -> Error {
-        Error::Trial { factor, code: 70, reason: String::new(), log: "log".into() }
+        Error::Run { what: format!("the trial {factor}"), code: 70, reason: String::new() }
     }
 
     impl JobSource for Body<'_> {

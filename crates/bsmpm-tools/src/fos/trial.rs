@@ -90,7 +90,7 @@ impl JobSource for Trials<'_> {
     }
 
     /// # Errors
-    /// [`Error::Trial`] for one that ended neither in equilibrium nor for the want of it; [`Error::Launch`], and the errors of
+    /// [`Error::Run`] for one that ended neither in equilibrium nor for the want of it; [`Error::Launch`], and the errors of
     /// files.
     fn make(&self, factor: f64, stop: &Stop) -> Result<Trial, Error> {
         let (set, text) = (self.subject.overrides(factor), self.subject.text(factor)?);
@@ -120,7 +120,11 @@ impl Trials<'_> {
 
     fn read(&self, factor: f64, directory: &Path, outcome: &Outcome) -> Result<Trial, Error> {
         let code = outcome.code.unwrap_or(u8::MAX);
-        let broken = |reason: String| Error::Trial { factor, code, reason, log: launch::beside(directory, "log") };
+        let broken = |reason: String| Error::Run {
+            what: format!("the trial of the factor {factor}"),
+            code,
+            reason: format!("{reason} (whole in {})", launch::beside(directory, "log").display()),
+        };
         let carried = |manifest: &Manifest| manifest.failure.as_ref().map_or(0.0, |it| it.time / self.subject.end);
         let (reason, load) = (outcome.reason.clone(), outcome.manifest.as_ref().map(carried));
         let end = match (outcome.state, load) {

@@ -5,12 +5,13 @@ use std::iter::Sum;
 use std::path::{Path, PathBuf};
 
 use bsmpm_io::directory::HISTORY;
-use bsmpm_io::exit::{CHECK, CHECKPOINT, DIRECTORY, DONE, LEFT, MEMORY, NO_CONVERGENCE, STALLED, STOPPED};
+use bsmpm_io::exit::{self, CHECK, CHECKPOINT, DIRECTORY, DONE, LEFT, MEMORY, NO_CONVERGENCE, STALLED, STOPPED};
 use bsmpm_io::manifest::Manifest;
 use bsmpm_io::table::{self, Columns};
 use serde::Serialize;
 
 use super::beside;
+use crate::Error;
 use crate::report::word;
 
 /// Not begun: too little memory, restarts that come to nothing, a directory or a checkpoint that cannot be used.
@@ -126,6 +127,11 @@ impl Outcome {
     /// That of a run that could not be started.
     pub fn broken(reason: String) -> Self {
         Self::never(RunState::Broken, reason)
+    }
+
+    /// The error that it is where it is needed; `what` names it.
+    pub fn error(&self, what: String) -> Error {
+        Error::Run { what, code: self.code.unwrap_or(exit::BUG), reason: self.reason.clone() }
     }
 
     /// The time, s or pseudo-time, that its history has come to.

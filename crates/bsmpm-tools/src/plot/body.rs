@@ -25,7 +25,9 @@ pub(super) fn draw(
     wanted: Option<(f64, f64)>,
 ) -> Result<Vec<String>, Error> {
     let values: Option<Vec<_>> = frames.iter().map(|frame| field.values(frame)).collect();
-    let missing = || Error::NoField { directory: record.directory.clone(), field: field.field() };
+    let missing = || Error::Missing {
+        reason: format!("the frames of {} have no field \"{}\"", record.directory.display(), field.field()),
+    };
     let values = values.ok_or_else(missing)?;
     let colours = wanted.unwrap_or_else(|| field.range(&values));
     let region = region(record, frames);
