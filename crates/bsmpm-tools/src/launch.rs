@@ -8,6 +8,7 @@ use std::process::{Command, Stdio};
 use std::time::UNIX_EPOCH;
 
 use bsmpm_io::atomic;
+use bsmpm_io::exit::{CHECK, DONE, LEFT, NO_CONVERGENCE, STOPPED};
 use bsmpm_io::lock::{Lock, Unseen};
 use bsmpm_io::manifest::{MANIFEST, Manifest};
 
@@ -17,7 +18,6 @@ pub(crate) mod command;
 mod outcome;
 mod stop;
 
-use bsmpm_io::exit::{CHECK, DONE, LEFT, NO_CONVERGENCE, STOPPED};
 pub(crate) use outcome::{Outcome, RunCost, RunState};
 pub(crate) use stop::Stop;
 
