@@ -1,5 +1,5 @@
-//! What the text of a case tells without all of it being valid: a text of another version of the program, or none, leaves
-//! gaps, and no errors.
+//! What the text of a case tells without all of it being valid: a text of another version of the program, or none,
+//! leaves gaps, and no errors.
 
 use crate::case::Support;
 use crate::record::{self, Record};

@@ -16,7 +16,8 @@ pub(crate) fn parsed(path: &Path, bytes: &[u8], set: &[String]) -> Result<Case, 
     Case::from_bytes(&path.display().to_string(), bytes, set).map_err(|errors| Error::bad_case(path, &errors))
 }
 
-/// Where what is made of a case is written unless its user says where: its stem with an ending, in the working directory.
+/// Where what is made of a case is written unless its user says where: its stem with an ending, in the working
+/// directory.
 pub(crate) fn directory(path: &Path, ending: &str) -> PathBuf {
     let mut name = path.file_stem().unwrap_or_default().to_owned();
     name.push(ending);

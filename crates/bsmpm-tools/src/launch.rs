@@ -75,8 +75,8 @@ impl SolverProgram<'_> {
         Some(format!("solver: {} bytes, changed at {changed}", solver.len()))
     }
 
-    /// The outcome of a run: as it is there if it has ended, made from what would be taken now, and `is_same` agrees; else it
-    /// is made now, or gone on with.
+    /// The outcome of a run: as it is there if it has ended, made from what would be taken now, and `is_same` agrees;
+    /// else it is made now, or gone on with.
     ///
     /// # Errors
     /// Those of a solver that does not start, and of files. A run that fails is an outcome.

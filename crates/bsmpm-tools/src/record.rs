@@ -99,7 +99,8 @@ impl RunRecord {
             .map_or_else(Default::default, |axes| axes.map(|faces| faces.map(|face| face != Support::Free)))
     }
 
-    /// m  The whole width of the footing, of which a half model that begins or ends at a plane of symmetry has only the half.
+    /// m  The whole width of the footing, of which a half model that begins or ends at a plane of symmetry has only the
+    /// half.
     pub fn footing_width(&self) -> Option<f64> {
         let ([from, to], grid) = (self.case.footing?, self.manifest.grid.as_ref()?);
         let (left, right) = (from[0].min(to[0]), from[0].max(to[0]));
