@@ -88,7 +88,8 @@ pub fn to_points_grouped<const D: usize, const C: usize, T: Send>(
     nodal: &[f64],
     found: impl Fn(usize, [f64; C]) -> T + Sync,
 ) -> Vec<T> {
-    with_width!(lowered shape.width(), W => at_points(shape, || [[0.0; C]; MOST_NODES], |number, block, out: &mut Vec<T>| {
+    let scratch = || [[0.0; C]; MOST_NODES];
+    with_width!(lowered shape.width(), W => at_points(shape, scratch, |number, block, out: &mut Vec<T>| {
         for (group, points) in grouped.runs(shape.patches()[number].points.clone()) {
             gathered(shape, nodal, number, (group, grouped.count()), block);
             for p in points {
@@ -106,14 +107,16 @@ pub fn to_points_grouped<const D: usize, const C: usize, T: Send>(
     }))
 }
 
-/// Gather with gradients: what `found` makes of (grad u)_p = sum_I u_I (x) grad N_Ip (step 4a), for every point; the points
-/// are at `x`, m.
+/// Gather with gradients: what `found` makes of (grad u)_p = sum_I u_I (x) grad N_Ip (step 4a), for every point; the
+/// points are at `x`, m.
 pub fn gradients<K: Kinematics<D>, const D: usize, T: Send>(
     (shape, x): (&Shape<D>, &[Vector<D>]),
     u: &[f64],
     found: impl Fn(usize, K::Gradient) -> T + Sync,
 ) -> Vec<T> {
-    with_width!(shape.width(), W => at_points(shape, || ([[0.0; D]; MOST_NODES], Vec::new()), |number, (block, gradients), out: &mut Vec<T>| {
+    let most = shape.patches().iter().map(|patch| patch.points.len()).max().unwrap_or(0);
+    let scratch = || ([[0.0; D]; MOST_NODES], Vec::with_capacity(most));
+    with_width!(shape.width(), W => at_points(shape, scratch, |number, (block, gradients), out: &mut Vec<T>| {
         let patch = &shape.patches()[number];
         gather(u, shape.offsets(), patch.first_node, (0, 1), block);
         let (rows, points) = (shape.rows(), patch.points.clone());

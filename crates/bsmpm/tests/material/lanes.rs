@@ -30,10 +30,12 @@ impl InLanes for Stresses<'_> {
 fn laws() -> Vec<Material> {
     let elastic = Elastic { young: 1e3, poisson: 0.3 };
     let angles = (0.5, 0.2, 3.0);
-    let mut laws = vec![hencky(1e3, 0.3), mohr_coulomb(1e3, 0.3, 35.0, 10.0, 3.0), mohr_coulomb(1e3, 0.45, 0.0, 0.0, 3.0)];
-    laws.extend([Match::Outer, Match::Inner, Match::PlaneStrain].map(|fit| {
-        Material::DruckerPrager(DruckerPrager::new(elastic.clone(), angles, fit))
-    }));
+    let mut laws =
+        vec![hencky(1e3, 0.3), mohr_coulomb(1e3, 0.3, 35.0, 10.0, 3.0), mohr_coulomb(1e3, 0.45, 0.0, 0.0, 3.0)];
+    laws.extend(
+        [Match::Outer, Match::Inner, Match::PlaneStrain]
+            .map(|fit| Material::DruckerPrager(DruckerPrager::new(elastic.clone(), angles, fit))),
+    );
     laws.push(Material::VonMises(VonMises::new(elastic, 3.0, 40.0)));
     laws
 }

@@ -53,7 +53,7 @@ pub(super) struct Divergence<'a, K: Kinematics<D>, const D: usize, const W: usiz
 impl<K: Kinematics<D>, const D: usize, const W: usize> InLanes for Divergence<'_, K, D, W> {
     type Output = ();
 
-    /// The nodes of a patch along its last axis stand side by side, up to four; places beyond them collect what nobody reads.
+    /// The nodes along the last axis stand side by side, up to four; places beyond them collect what nobody reads.
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
         let size = 2 * D * W;
