@@ -16,6 +16,7 @@ use patch::{Divergence, Gradients};
 use rayon::prelude::*;
 use std::marker::PhantomData;
 use std::ops::Range;
+use std::sync::Mutex;
 
 /// Largest number of nodes of a patch: (3 + 1)^3.
 const MOST_NODES: usize = 64;
@@ -188,11 +189,11 @@ fn scatter_columns<const D: usize, const C: usize, F: FnMut(Range<usize>, &mut P
     grouped: Grouped<'_>,
     filling: impl Fn(&PatchColumn) -> F + Sync,
 ) -> Contributions {
-    let (count, levels) = (grouped.count(), shape.levels());
-    let columns = shape.columns().iter().map(|column| column.column).collect();
-    let mut contributions = Contributions::zeros(shape.extent(), count * levels * C, columns);
-    let work: Vec<(&PatchColumn, &mut [f64])> = shape.columns().iter().zip(contributions.columns_mut()).collect();
-    work.into_par_iter().for_each(|(column, sums)| {
+    let count = grouped.count();
+    let mut contributions = nothing(shape, count * C);
+    let sums = apart(&mut contributions);
+    share(sums.len(), &|index| {
+        let (column, sums) = (&shape.columns()[index], &mut *sums[index].lock().expect("the column's only thread"));
         let (first, mut fill) = (column.column * shape.extent().1, filling(column));
         let mut block = [[0.0; C]; MOST_NODES];
         for number in column.patches.clone() {
@@ -219,17 +220,48 @@ fn at_points<const D: usize, const C: usize, T: Send>(
     shape: &Shape<D>,
     work: impl Fn(usize, &mut PatchBlock<C>, &mut Vec<T>) + Sync,
 ) -> Vec<T> {
-    let of_column = |column: &PatchColumn| {
-        let (mut block, mut out) = ([[0.0; C]; MOST_NODES], Vec::with_capacity(column.points.len()));
-        column.patches.clone().for_each(|patch| work(patch, &mut block, &mut out));
-        out
-    };
     if rayon::current_num_threads() == 1 {
         let (mut block, mut out) = ([[0.0; C]; MOST_NODES], Vec::with_capacity(shape.len()));
         (0..shape.patches().len()).for_each(|patch| work(patch, &mut block, &mut out));
         return out;
     }
-    shape.columns().par_iter().flat_map_iter(of_column).collect()
+    let parts = unfilled(shape.columns().len());
+    share(parts.len(), &|index| {
+        let column = &shape.columns()[index];
+        let (mut block, mut out) = ([[0.0; C]; MOST_NODES], Vec::with_capacity(column.points.len()));
+        column.patches.clone().for_each(|patch| work(patch, &mut block, &mut out));
+        *parts[index].lock().expect("the column's only thread") = out;
+    });
+    joined(parts)
+}
+
+/// Contributions of no point yet, `width` numbers a node and level.
+fn nothing<const D: usize>(shape: &Shape<D>, width: usize) -> Contributions {
+    let columns = shape.columns().iter().map(|column| column.column).collect();
+    Contributions::zeros(shape.extent(), width * shape.levels(), columns)
+}
+
+/// The sums of every column, for a thread of its own.
+fn apart(contributions: &mut Contributions) -> Vec<Mutex<&mut [f64]>> {
+    contributions.columns_mut().map(Mutex::new).collect()
+}
+
+/// Room for what every column leaves.
+fn unfilled<T>(columns: usize) -> Vec<Mutex<Vec<T>>> {
+    (0..columns).map(|_| Mutex::default()).collect()
+}
+
+fn joined<T>(parts: Vec<Mutex<Vec<T>>>) -> Vec<T> {
+    let parts: Vec<Vec<T>> = parts.into_iter().map(|part| part.into_inner().expect("no thread panicked")).collect();
+    let mut out = Vec::with_capacity(parts.iter().map(Vec::len).sum());
+    parts.into_iter().for_each(|mut part| out.append(&mut part));
+    out
+}
+
+/// Threads share the columns, by their index. Not generic, as what else is apart here: with a copy for every pass, most of
+/// what is compiled of a program would be the machinery of threads.
+fn share(columns: usize, work: &(dyn Fn(usize) + Sync)) {
+    (0..columns).into_par_iter().for_each(work);
 }
 
 /// Fills a block with the numbers of a patch's nodes, or of its functions where these are merged.
