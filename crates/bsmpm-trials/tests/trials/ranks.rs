@@ -1,13 +1,11 @@
 //! The number of ranks changes nothing but the time that a run takes.
 
-mod support;
-
+use crate::support::cases::{SLIDING_BLOCK, changed};
+use crate::support::results::{all_frames, differences, history, ids, last_frame, manifest, steps};
+use crate::support::{Scratch, example, processes, shipped};
 use std::collections::BTreeSet;
 use std::process::Command;
 use std::time::Duration;
-use support::cases::{SLIDING_BLOCK, changed};
-use support::results::{all_frames, differences, history, ids, last_frame, manifest, steps};
-use support::{Scratch, example, processes, shipped};
 
 /// Asserts that the last frames of runs on these numbers of ranks agree with the first one's to `tolerance`, relative to
 /// the largest number of each field.
