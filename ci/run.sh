@@ -42,6 +42,8 @@ scripts_are_sound() {
 
 cd -- "$root"
 export CARGO_TERM_COLOR=never
+# Nothing here is compiled a second time after a change.
+export CARGO_INCREMENTAL=0
 gate "setup" scripts/setup
 gate "lock file" cargo tree --locked --workspace --depth 0 --quiet
 gate "scripts" scripts_are_sound

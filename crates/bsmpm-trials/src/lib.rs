@@ -19,19 +19,15 @@ pub fn executable(name: &str) -> &'static Path {
     built.get(name).unwrap_or_else(|| panic!("{PACKAGES:?} have no executable {name}"))
 }
 
-/// Builds all of them, with the profile of this test program and into its target directory. Once a process; test programs
-/// side by side wait for each other, as cargo locks the directory. Only cargo knows whether a file that is there already is
-/// that of the sources: times of files tell nothing of features, profiles and switched branches.
+/// Builds all of them, optimised as users run them whatever this test program is, and into its target directory. Once a process;
+/// test programs side by side wait for each other, as cargo locks the directory. Only cargo knows whether a file that is there
+/// already is that of the sources: times of files tell nothing of features, profiles and switched branches.
 fn build() -> HashMap<String, PathBuf> {
     let own = std::env::current_exe().expect("the path of this program");
-    let [folder, target] = [2, 3].map(|up| own.ancestors().nth(up).expect("target/PROFILE/deps/PROGRAM"));
-    let profile = match folder.file_name().and_then(|name| name.to_str()).expect("a profile's folder") {
-        "debug" => "dev",
-        name => name,
-    };
+    let target = own.ancestors().nth(3).expect("target/PROFILE/deps/PROGRAM");
     // Without `cargo test`, as scripts/extremes does it, there is only the one of PATH.
     let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-    cargo.current_dir(env!("CARGO_MANIFEST_DIR")).args(["build", "--bins", "--examples", "--profile", profile]);
+    cargo.current_dir(env!("CARGO_MANIFEST_DIR")).args(["build", "--bins", "--examples", "--release"]);
     cargo.args(["--message-format", "json-render-diagnostics", "--target-dir"]).arg(target);
     cargo.args(PACKAGES.iter().flat_map(|package| ["--package", package]));
     // What it compiles, and why it fails, is seen at once: this may take minutes.

@@ -79,7 +79,7 @@ pub fn second_run(ground: &Ground, count: usize) -> Tried {
     });
     tried
         .figure(|seconds| format!("73 after {seconds} s at most; the first: B"))
-        .remark("twenty at once: tests/lock.rs")
+        .remark("twenty at once: tests/trials/lock.rs")
 }
 
 /// The lock of a run that was killed on another host.

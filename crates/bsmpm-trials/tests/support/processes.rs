@@ -13,7 +13,7 @@ const MARK: &str = "BSMPM_TEST_RUN";
 /// What a developer's environment might hold and a run must not see.
 const REMOVED: [&str; 3] = ["BSMPM_FAULT", "PETSC_OPTIONS", "PETSC_OPTIONS_YAML"];
 
-/// Two cores: runs of one test program wait for each other.
+/// Two cores: runs wait for each other.
 static TURN: Mutex<()> = Mutex::new(());
 static RUNS: AtomicUsize = AtomicUsize::new(0);
 
@@ -81,9 +81,14 @@ pub fn run(command: Command, variables: &[(String, String)], heard: bool, patien
     start(command, variables, if heard { Ears::Open } else { Ears::Full }, patience).end()
 }
 
+/// Waits until all runs that were started in turn have ended, and holds back the next ones: for what starts runs by itself.
+pub fn turn() -> MutexGuard<'static, ()> {
+    TURN.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
 /// Starts a command when all runs that were started so before have ended.
 pub fn start(command: Command, variables: &[(String, String)], ears: Ears, patience: Duration) -> Running {
-    let turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
+    let turn = turn();
     let mut running = start_beside(command, variables, ears, patience);
     running._turn = Some(turn);
     running

@@ -4,6 +4,7 @@
 //! in a block before it is added to its column's [`Contributions`]: sums over points have one order, whatever the number of
 //! ranks and threads. Threads share the columns of cells. Nodal arrays are flat.
 
+mod columns;
 mod patch;
 
 use super::contributions::Contributions;
@@ -12,8 +13,8 @@ use crate::kinematics::{Kinematics, Slope};
 use crate::lanes;
 use crate::stabilisation::Grouped;
 use crate::tensor::Vector;
+use columns::{apart, joined, nothing, share, unfilled};
 use patch::{Divergence, Gradients};
-use rayon::prelude::*;
 use std::ops::Range;
 
 /// Largest number of nodes of a patch: (3 + 1)^3.
@@ -191,11 +192,11 @@ fn scatter_columns<const D: usize, const C: usize, F: FnMut(Range<usize>, &mut P
     grouped: Grouped<'_>,
     filling: impl Fn(&PatchColumn) -> F + Sync,
 ) -> Contributions {
-    let (count, levels) = (grouped.count(), shape.levels());
-    let columns = shape.columns().iter().map(|column| column.column).collect();
-    let mut contributions = Contributions::zeros(shape.extent(), count * levels * C, columns);
-    let work: Vec<(&PatchColumn, &mut [f64])> = shape.columns().iter().zip(contributions.columns_mut()).collect();
-    work.into_par_iter().for_each(|(column, sums)| {
+    let count = grouped.count();
+    let mut contributions = nothing(shape, count * C);
+    let sums = apart(&mut contributions);
+    share(sums.len(), &|index| {
+        let (column, sums) = (&shape.columns()[index], &mut *sums[index].lock().expect("the column's only thread"));
         let (first, mut fill) = (column.column * shape.extent().1, filling(column));
         let mut block = [[0.0; C]; MOST_NODES];
         for number in column.patches.clone() {
@@ -223,17 +224,19 @@ fn at_points<const D: usize, S, T: Send>(
     scratch: impl Fn() -> S + Sync,
     work: impl Fn(usize, &mut S, &mut Vec<T>) + Sync,
 ) -> Vec<T> {
-    let of_column = |column: &PatchColumn| {
-        let (mut scratch, mut out) = (scratch(), Vec::with_capacity(column.points.len()));
-        column.patches.clone().for_each(|patch| work(patch, &mut scratch, &mut out));
-        out
-    };
     if rayon::current_num_threads() == 1 {
         let (mut scratch, mut out) = (scratch(), Vec::with_capacity(shape.len()));
         (0..shape.patches().len()).for_each(|patch| work(patch, &mut scratch, &mut out));
         return out;
     }
-    shape.columns().par_iter().flat_map_iter(of_column).collect()
+    let parts = unfilled(shape.columns().len());
+    share(parts.len(), &|index| {
+        let column = &shape.columns()[index];
+        let (mut scratch, mut out) = (scratch(), Vec::with_capacity(column.points.len()));
+        column.patches.clone().for_each(|patch| work(patch, &mut scratch, &mut out));
+        *parts[index].lock().expect("the column's only thread") = out;
+    });
+    joined(parts)
 }
 
 /// Fills a block with the numbers of a patch's nodes, or of its functions where these are merged.

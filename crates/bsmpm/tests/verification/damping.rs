@@ -1,6 +1,6 @@
 //! Numerical damping against the theory of the methods: one degree of freedom exactly, a mode of the elastic bar.
 
-use crate::bar::{CELLS, PERIOD, bar};
+use super::bar::{CELLS, PERIOD, bar};
 use crate::support::scene::{Scene, axis, hencky};
 use bsmpm::boundary::{Path, Strip, SurfacePoint};
 use bsmpm::kinematics::PlaneStrain;

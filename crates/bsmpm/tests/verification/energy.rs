@@ -1,7 +1,7 @@
 //! Energy: the books close to the iteration's tolerance, every part tells what it is named after, and known energies
 //! are found.
 
-use crate::bar::{PERIOD, bar};
+use super::bar::{PERIOD, bar};
 use crate::support::scene::{Scene, axis, hencky};
 use crate::support::solver::Skyline;
 use bsmpm::background::{Background, Extent, Kind};

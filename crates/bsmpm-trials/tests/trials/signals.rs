@@ -1,12 +1,10 @@
 //! Signals: whichever process they reach, all ranks stop at one state, or go on as if nothing had been.
 
-mod support;
-
+use crate::support::cases::{COLUMN, endless, long_step};
+use crate::support::results::{all_finite, all_frames, history, last_frame, manifest, steps};
+use crate::support::{Running, Scratch};
 use bsmpm_io::manifest::Status;
 use std::time::Duration;
-use support::cases::{COLUMN, endless, long_step};
-use support::results::{all_finite, all_frames, history, last_frame, manifest, steps};
-use support::{Running, Scratch};
 
 /// s  Far more than anything here takes that is not to go on for ever.
 const HANGS: u64 = 60;

@@ -1,14 +1,12 @@
 //! What a run leaves: tables, frames and the manifest, complete and true.
 
-mod support;
-
+use crate::support::cases::{COLUMN, SLIDING_BLOCK, changed};
+use crate::support::results::{all_finite, all_frames, at, history, ids, manifest, steps};
+use crate::support::{Scratch, entries, shipped};
 use bsmpm_io::manifest::{Manifest, Status};
 use bsmpm_io::residuals::{self, ResidualMethod};
 use bsmpm_io::{frames, table};
 use std::path::Path;
-use support::cases::{COLUMN, SLIDING_BLOCK, changed};
-use support::results::{all_finite, all_frames, at, history, ids, manifest, steps};
-use support::{Scratch, entries, shipped};
 
 /// Every number of a table as it stands in the file, without the headings.
 fn rows(path: &Path) -> Vec<Vec<String>> {

@@ -1,13 +1,11 @@
 //! The indicators of real runs: the same on any number of ranks, of what the scene contains, and outside their usual range
 //! for methods that are known to be bad.
 
-mod support;
-
+use crate::support::cases::SLIDING_BLOCK;
+use crate::support::results::manifest;
+use crate::support::{Scratch, shipped};
 use bsmpm_io::manifest::Indicator;
 use std::collections::BTreeMap;
-use support::cases::SLIDING_BLOCK;
-use support::results::manifest;
-use support::{Scratch, shipped};
 
 type Indicators = BTreeMap<String, Indicator>;
 

@@ -1,11 +1,9 @@
 //! What a run tells of itself that nobody asked for: what holds it pulls, the background carries it, its front goes back;
 //! and what every such line says to do.
 
-mod support;
-
-use support::cases::changed;
-use support::results::{at, history, manifest};
-use support::{Scratch, shipped};
+use crate::support::cases::changed;
+use crate::support::results::{at, history, manifest};
+use crate::support::{Scratch, shipped};
 
 /// A layer of two by one metres on the floor of its grid.
 const LAYER: &str = r#"geometry = "plane-strain"

@@ -1,12 +1,10 @@
 //! Checkpoint files by real ranks: read back to the bit on any number of them, whenever a writer was killed.
 
-mod support;
-
+use crate::support::processes::{self, Output};
+use crate::support::{Scratch, entries, example};
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
-use support::processes::{self, Output};
-use support::{Scratch, entries, example};
 
 /// Points enough for several chunks, the last of them not full.
 const MANY: &str = "40000";

@@ -1,10 +1,8 @@
 //! `bsmpm estimate` with this program, of a case that has run.
 
-mod support;
-
+use crate::support::{Scratch, processes, program, shipped};
 use bsmpm_tools::estimate::{EstimateArguments, run};
 use serde_json::Value;
-use support::{Scratch, shipped};
 
 #[test]
 fn the_short_footing_is_estimated_beside_its_run() {
@@ -19,9 +17,9 @@ fn the_short_footing_is_estimated_beside_its_run() {
         against: Some(scratch.path("run.out")),
         json: true,
         set: Vec::new(),
-        command: vec![support::program().to_owned()],
+        command: vec![program().to_owned()],
     };
-    let mut told = Vec::new();
+    let (mut told, _turn) = (Vec::new(), processes::turn());
     let found: Value = serde_json::from_str(&run(&arguments, |line| told.push(line.to_owned())).unwrap()).unwrap();
     assert!(told.iter().any(|line| line.starts_with("cells 2 times")), "{told:?}");
     let number = |path: &str| {

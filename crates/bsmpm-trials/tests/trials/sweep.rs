@@ -1,16 +1,14 @@
 //! `bsmpm sweep` and `bsmpm verify-case` with this program, on the first milliseconds of the coarse column.
 
-mod support;
-
 use std::fs;
 use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use crate::support::{processes, program};
 use bsmpm_tools::{sweep, verify_case};
 use clap::Parser;
 use serde_json::Value;
-use support::program;
 
 const COLUMN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../cases/short/column_collapse.toml");
 const SHORT: [&str; 6] = ["--set", "analysis.end=0.02", "--set", "check=[]", "--set", "output.times=[0.02]"];
@@ -55,7 +53,7 @@ impl Bench {
             options,
             &["--", solver.to_str().unwrap()],
         ];
-        let mut lines = Vec::new();
+        let (mut lines, _turn) = (Vec::new(), processes::turn());
         let line = Sweep::parse_from(words.concat());
         let (text, files) = sweep::run(&line.arguments, |line| lines.push(line.to_owned())).unwrap();
         assert!(files.iter().all(|file| file.is_file()), "{files:?}");
@@ -117,6 +115,7 @@ fn a_run_that_was_stopped_goes_on_to_the_same_end() {
     let [run, _] = runs(&found)[..] else { panic!("{found}") };
     let directory = Path::new(run["directory"].as_str().unwrap());
     let sets = run["set"].as_array().unwrap().iter().flat_map(|set| ["--set", set.as_str().unwrap()]);
+    let turn = processes::turn();
     let stopped = Command::new(program())
         .arg(COLUMN)
         .args(sets)
@@ -125,6 +124,7 @@ fn a_run_that_was_stopped_goes_on_to_the_same_end() {
         .env("OMP_NUM_THREADS", "1")
         .status()
         .unwrap();
+    drop(turn);
     assert_eq!(stopped.code(), Some(75));
     let (_, _, again) = bench.sweep(&options);
     let [first, second] = runs(&again)[..] else { panic!("{again}") };
@@ -197,6 +197,7 @@ fn three_grids_tell_an_order_or_why_there_is_none() {
         &["--", program()],
     ];
     let line = VerifyCase::parse_from(words.concat());
+    let _turn = processes::turn();
     let (text, _) = verify_case::run(&line.arguments, |_| ()).unwrap();
     let found: Value = serde_json::from_str(&fs::read_to_string(output.join("verify.json")).unwrap()).unwrap();
     let rows = found["rows"].as_array().unwrap();

@@ -6,15 +6,12 @@ mod hostile;
 mod log;
 mod petsc_options;
 
-#[path = "../support/mod.rs"]
-mod support;
-
+use crate::support::Scratch;
+use crate::support::cases::{COLUMN, changed};
+use crate::support::results::{history, manifest, steps};
 use bsmpm_io::manifest::Status;
 use std::ffi::OsStr;
 use std::os::unix::ffi::OsStrExt;
-use support::Scratch;
-use support::cases::{COLUMN, changed};
-use support::results::{history, manifest, steps};
 
 #[test]
 fn help_and_version_are_said_once_and_are_no_error() {
@@ -119,7 +116,7 @@ fn max_steps_stops_with_75_after_as_many_steps() {
         let checkpoint = (code == 75).then(|| format!("checkpoint/step_{most:09}.h5"));
         assert_eq!((manifest.summary.steps, manifest.checkpoint), (most, checkpoint));
         assert_eq!(steps(&directory).get("step").unwrap().len() as u64, most);
-        let last = support::results::last_frame(&directory);
+        let last = crate::support::results::last_frame(&directory);
         assert_eq!(last.step, most, "the last state is in the last frame");
     }
 }

@@ -1,10 +1,8 @@
 //! The history of energy on the real program: it closes, on one rank and on two, with strips, loads and numerical damping.
 
-mod support;
-
+use crate::support::results::history;
+use crate::support::{Scratch, shipped};
 use bsmpm_io::table::Columns;
-use support::results::history;
-use support::{Scratch, shipped};
 
 const TIGHT: [&str; 4] = ["--set", "solver.tolerance=1e-14", "--set", "solver.force_tolerance=1e-10"];
 

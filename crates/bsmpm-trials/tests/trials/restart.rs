@@ -1,12 +1,10 @@
 //! Going on from checkpoints: on as many ranks to the bit, on others within tolerances, and never with another case.
 
-mod support;
-
+use crate::support::cases::{COLUMN, SLIDING_BLOCK, changed};
+use crate::support::results::{all_frames, differences, history, last_frame, manifest, steps};
+use crate::support::{Scratch, entries};
 use bsmpm_io::manifest::Status;
 use std::path::Path;
-use support::cases::{COLUMN, SLIDING_BLOCK, changed};
-use support::results::{all_frames, differences, history, last_frame, manifest, steps};
-use support::{Scratch, entries};
 
 /// Restart files after every fifth step, all of them kept.
 const OFTEN: &str = "output.checkpoint={every_steps=5,keep=100}";

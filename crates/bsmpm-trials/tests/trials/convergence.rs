@@ -1,10 +1,8 @@
 //! What is accepted as converged, what is not, and what is told of it.
 
-mod support;
-
-use support::Scratch;
-use support::cases::changed;
-use support::results::{at, history, manifest};
+use crate::support::Scratch;
+use crate::support::cases::changed;
+use crate::support::results::{at, history, manifest};
 
 /// Sand at rest behind a smooth wall that moves away from it.
 const WALL: &str = r#"title    = "Rankine active, smooth wall"

@@ -1,7 +1,6 @@
 //! `bsmpm fos` with this program: the coarsest slope that still has a mechanism.
 
-mod support;
-
+use crate::support::{processes, program};
 use std::path::Path;
 
 use bsmpm_tools::fos::{FosArguments, run};
@@ -23,9 +22,9 @@ fn between((from, to): (f64, f64), case: &str, set: &[&str], jobs: usize, output
         set: set.iter().map(|&set| set.to_owned()).collect(),
         output: Some(output.to_owned()),
         force: false,
-        command: vec![support::program().to_owned()],
+        command: vec![program().to_owned()],
     };
-    let mut made = 0;
+    let (mut made, _turn) = (0, processes::turn());
     let (_, pictures) = run(&arguments, |line| made += usize::from(!line.contains("kept"))).unwrap();
     assert_eq!(pictures.len(), 3);
     assert!(pictures.iter().all(|picture| picture.is_file()));

@@ -1,11 +1,9 @@
 //! Only the part of the grid around the points is held: how large the grid is changes neither results nor what they take.
 
-mod support;
-
+use crate::support::cases::{SLIDING_BLOCK, changed};
+use crate::support::results::manifest;
+use crate::support::{Scratch, shipped};
 use std::path::Path;
-use support::cases::{SLIDING_BLOCK, changed};
-use support::results::manifest;
-use support::{Scratch, shipped};
 
 /// One factorisation of the whole on every rank: then nothing depends on the cut.
 const WHOLE: [&str; 2] = ["--set", "solver.linear={ksp=\"preonly\",pc=\"cholesky\",factor=\"mumps\"}"];
@@ -108,8 +106,8 @@ fn more_ranks_than_the_room_had_columns_can_go_on() {
     let part = ["case.toml", "-q", "-o", "part", "--restart", "auto"];
     scratch.mpirun(1, &[&part[..], &["--max-steps", "3"]].concat()).expect(75);
     scratch.mpirun(9, &part).expect(0);
-    let [whole, part] = ["whole", "part"].map(|name| support::results::last_frame(&scratch.path(name)));
-    for (field, difference) in support::results::differences(&part, &whole) {
+    let [whole, part] = ["whole", "part"].map(|name| crate::support::results::last_frame(&scratch.path(name)));
+    for (field, difference) in crate::support::results::differences(&part, &whole) {
         assert!(difference <= 1e-9, "{field} differs by {difference:.1e}");
     }
 }

@@ -1,13 +1,11 @@
 //! The lock of the output directory: of all runs that want it one has it, and a dead one's is taken over.
 
-mod support;
-
+use crate::support::cases::endless;
+use crate::support::results::{history, manifest};
+use crate::support::{Output, Running, Scratch};
 use bsmpm_io::manifest::Status;
 use serde_json::Value;
 use std::time::Duration;
-use support::cases::endless;
-use support::results::{history, manifest};
-use support::{Output, Running, Scratch};
 
 /// s  Far more than anything here takes.
 const HANGS: u64 = 120;
@@ -88,7 +86,7 @@ fn of_twenty_that_find_a_dead_runs_lock_one_takes_it_over() {
     let scratch = Scratch::with_case(&endless());
     killed(&scratch, None);
     one_of_twenty(&scratch).says_once("the process is gone");
-    let left = support::entries(&scratch.path("case.out"));
+    let left = crate::support::entries(&scratch.path("case.out"));
     assert!(!left.iter().any(|name| name.contains("lock")), "{left:?}");
 }
 

@@ -1,11 +1,8 @@
 //! The estimate by which a case is refused against the memory that its run takes (reliability.md F37, I20).
 
-#[path = "support/mod.rs"]
-mod support;
-
+use crate::support::results::manifest;
+use crate::support::{Scratch, shipped};
 use bsmpm_scene::Case;
-use support::results::manifest;
-use support::{Scratch, shipped};
 
 /// Shipped cases, large enough that not the libraries decide, by different parts of the estimate: points, cells, Newton's
 /// system, and what every further rank repeats.

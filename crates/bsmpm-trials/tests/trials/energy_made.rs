@@ -1,10 +1,8 @@
 //! A run that makes energy ends with code 80 and says so, on any number of ranks, also one that goes on from a checkpoint.
 
-mod support;
-
+use crate::support::results::{history, manifest};
+use crate::support::{Scratch, shipped};
 use bsmpm_io::manifest::Status;
-use support::results::{history, manifest};
-use support::{Scratch, shipped};
 
 /// The short collapse with associated flow, in which F-bar makes energy from the start.
 const DILATANT: [&str; 4] = ["--set", "stabilisation.method=f-bar", "--set", "material.rods.dilation=21.9"];

@@ -1,8 +1,6 @@
 //! What a step's inner iteration allocates: arrays a pass, nothing a point.
 
-#[path = "../support/mod.rs"]
-mod support;
-
+use crate::support::scene::{METHODS, Scene, axis, hencky};
 use bsmpm::boundary::strip::StripAttachments;
 use bsmpm::grid::Shape;
 use bsmpm::kinematics::PlaneStrain;
@@ -13,18 +11,19 @@ use bsmpm::step::problem::Problem;
 use bsmpm::step::residual::Residual;
 use bsmpm::tensor::Vector;
 use std::alloc::{GlobalAlloc, Layout, System};
-use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
-use support::scene::{METHODS, Scene, axis, hencky};
+use std::cell::Cell;
 
-/// The system's allocator, counting.
+/// The system's allocator, counting what each thread asks for.
 struct Counting;
 
-static COUNT: AtomicUsize = AtomicUsize::new(0);
+thread_local! {
+    static COUNT: Cell<usize> = const { Cell::new(0) };
+}
 
-// SAFETY: every call goes to the system's allocator unchanged; the count is no memory of it.
+// SAFETY: every call goes to the system's allocator unchanged; the count is no memory of it, needs none and no destructor.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        COUNT.fetch_add(1, Relaxed);
+        COUNT.set(COUNT.get() + 1);
         // SAFETY: the caller's promises are those that the system's allocator asks for.
         unsafe { System.alloc(layout) }
     }
@@ -52,13 +51,14 @@ fn allocations(per_axis: usize, method: Stabilisation) -> usize {
     let u: Vec<f64> = (0..model.grid.nodes() * 2).map(|c| 1e-3 * (c as f64).sin()).collect();
     let evaluate = || Residual::of(&pieces, &u).balance.norm;
     assert!(evaluate() > 0.0);
-    let before = COUNT.load(Relaxed);
+    let before = COUNT.get();
     let _ = evaluate();
-    COUNT.load(Relaxed) - before
+    COUNT.get() - before
 }
 
 #[test]
 fn an_iteration_allocates_as_often_whatever_the_number_of_points() {
+    // One thread does all of it, and nothing else meanwhile.
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread starts");
     for method in METHODS {
         let counts = pool.install(|| [1, 2, 6].map(|per_axis| allocations(per_axis, method)));

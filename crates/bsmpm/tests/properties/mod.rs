@@ -1,8 +1,6 @@
 //! What must hold for any input: properties of the splines, the mapping, the kinematics, the iteration and the step
 //! control. Numbers after `measured` are what this machine gave; bounds leave room for another one.
 
-#![allow(non_snake_case)] // the paper's letters, as in the crate
-
 mod background;
 mod broyden;
 mod dilation;
@@ -21,6 +19,3 @@ mod stepping;
 mod stiffness;
 mod topology;
 mod transfer;
-
-#[path = "../support/mod.rs"]
-mod support;

@@ -1,8 +1,6 @@
 #![doc = include_str!("README.md")]
 //! Numbers after `measured` in the tests are what this machine gave.
 
-#![allow(non_snake_case)] // the paper's letters, as in the crate
-
 mod axisymmetric;
 mod bar;
 mod cauchy;
@@ -23,6 +21,3 @@ mod penalty;
 mod rotation;
 mod stability;
 mod surfaces;
-
-#[path = "../support/mod.rs"]
-mod support;

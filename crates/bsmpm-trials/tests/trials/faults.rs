@@ -1,13 +1,11 @@
 //! Whatever fails on whichever rank: the job ends by itself, with the code and the message, and leaves what is good.
 
-mod support;
-
+use crate::support::cases::{COLUMN, SLIDING_BLOCK, changed};
+use crate::support::results::{all_finite, all_frames, history, manifest, steps};
+use crate::support::{Output, Scratch};
 use bsmpm_io::manifest::Status;
 use std::process::Command;
 use std::time::Duration;
-use support::cases::{COLUMN, SLIDING_BLOCK, changed};
-use support::results::{all_finite, all_frames, history, manifest, steps};
-use support::{Output, Scratch};
 
 /// s  Far more than a job that ends by itself takes here.
 const HANGS: u64 = 30;
@@ -146,7 +144,7 @@ fn a_point_that_leaves_the_grid_ends_the_run_with_81_and_is_named() {
 fn a_run_that_does_not_end_is_noticed() {
     let mut launcher = Command::new("mpirun");
     launcher.args(["-q", "--oversubscribe", "-n", "2", "sleep", "100"]);
-    support::processes::run(launcher, &[], true, Duration::from_secs(1));
+    crate::support::processes::run(launcher, &[], true, Duration::from_secs(1));
 }
 
 #[test]
@@ -154,5 +152,5 @@ fn a_run_that_does_not_end_is_noticed() {
 fn a_process_that_is_left_behind_is_noticed() {
     let mut shell = Command::new("sh");
     shell.args(["-c", "setsid sleep 100 & exit 0"]);
-    support::processes::run(shell, &[], true, Duration::from_secs(10));
+    crate::support::processes::run(shell, &[], true, Duration::from_secs(10));
 }

@@ -1,10 +1,8 @@
 //! The scenes of geotechnics on the real program: strips, loads, layers and stress at the start, on any number of ranks.
 
-mod support;
-
-use support::cases::changed;
-use support::results::{all_finite, differences, history, last_frame, manifest};
-use support::{Scratch, shipped};
+use crate::support::cases::changed;
+use crate::support::results::{all_finite, differences, history, last_frame, manifest};
+use crate::support::{Scratch, shipped};
 
 /// An elastic block between everything that may hold or load it; the strip crosses the bounds of all slabs.
 const LOADED: &str = r#"geometry = "plane-strain"

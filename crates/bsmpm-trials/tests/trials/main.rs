@@ -1,0 +1,25 @@
+//! The programs from outside, a file for each of what is tried. One test program: each by itself would be linked with
+//! the same crates again.
+
+mod checkpoints;
+mod command_line;
+mod convergence;
+mod energy;
+mod energy_made;
+mod estimate;
+mod factor_of_safety;
+mod faults;
+mod indicators;
+mod lock;
+mod memory;
+mod outputs;
+mod ranks;
+mod restart;
+mod room;
+mod scenes;
+mod signals;
+mod sweep;
+mod told;
+
+#[path = "../support/mod.rs"]
+mod support;
