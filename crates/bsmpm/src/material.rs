@@ -5,6 +5,7 @@
 //! descending. Nothing here knows F, J or the grid, nor stores a state: old state in, new state out.
 
 mod drucker_prager;
+mod elastic;
 mod graded;
 mod hencky;
 mod law;
@@ -16,6 +17,7 @@ mod tangent;
 mod von_mises;
 
 pub use drucker_prager::{DruckerPrager, Match};
+pub use elastic::{Elastic, Moduli};
 pub use graded::{Graded, Profile};
 pub use hencky::Hencky;
 pub use law::{Branch, Law, Projection, Separation, Variable, split};
@@ -25,82 +27,10 @@ pub use stiffness::Stiffness;
 pub use tangent::Tangent;
 pub use von_mises::VonMises;
 
-use crate::real::{Real, three};
+use crate::real::Real;
 use crate::tensor::{Symmetric, Tensor};
 use spectral::Spectrum;
 use std::borrow::Cow;
-
-/// Isotropic linear elasticity between Hencky strain and Kirchhoff stress: `τ = λ tr(ε) I + 2μ ε`.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Elastic {
-    /// Pa  Young's modulus E
-    pub young: f64,
-    /// (-)  Poisson's ratio ν, -1 < ν < ½
-    pub poisson: f64,
-}
-
-impl Elastic {
-    /// The Lamé constants in Pa: `λ = E ν/((1 + ν)(1 - 2ν))`, `μ = E/(2(1 + ν))`.
-    #[inline]
-    pub fn lame(&self) -> (f64, f64) {
-        let mu = 0.5 * self.young / (1.0 + self.poisson);
-        (2.0 * mu * self.poisson / (1.0 - 2.0 * self.poisson), mu)
-    }
-
-    /// The constrained modulus in Pa, stress over strain without lateral strain: `M = λ + 2μ`.
-    pub fn oedometric(&self) -> f64 {
-        let (lambda, mu) = self.lame();
-        lambda + 2.0 * mu
-    }
-
-    #[inline]
-    fn moduli(&self) -> Moduli {
-        let (lambda, mu) = self.lame();
-        Moduli { lambda, mu }
-    }
-}
-
-/// The Lamé constants, in Pa.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Moduli {
-    /// Pa  λ
-    pub lambda: f64,
-    /// Pa  μ
-    pub mu: f64,
-}
-
-impl Moduli {
-    /// `τ_A = λ Σ_B ε_B + 2μ ε_A`.
-    #[inline(always)]
-    fn stress<R: Real>(&self, eps: [R; 3]) -> [R; 3] {
-        let spherical = (eps[0] + eps[1] + eps[2]) * self.lambda;
-        three(|k| spherical + eps[k] * (2.0 * self.mu))
-    }
-
-    /// The inverse of [`Moduli::stress`]: `ε_A = (τ_A - p)/(2μ) + p/(3K)`, p the mean stress.
-    #[inline]
-    fn strain(&self, tau: [f64; 3]) -> [f64; 3] {
-        let mean = (tau[0] + tau[1] + tau[2]) / 3.0;
-        let spherical = mean / (3.0 * self.bulk());
-        tau.map(|t| (t - mean) / (2.0 * self.mu) + spherical)
-    }
-
-    /// `D_AB = ∂τ_A/∂ε_B = λ + 2μ δ_AB`.
-    fn tangent(&self) -> Tensor {
-        Tensor::from_element(self.lambda) + Tensor::identity() * (2.0 * self.mu)
-    }
-
-    /// Energy per volume in J/m3: `½ λ tr(ε)² + μ ε : ε`.
-    fn energy(&self, eps: [f64; 3]) -> f64 {
-        0.5 * self.lambda * (eps[0] + eps[1] + eps[2]).powi(2) + self.mu * eps.iter().map(|e| e * e).sum::<f64>()
-    }
-
-    /// `K = λ + ⅔ μ`.
-    #[inline]
-    fn bulk(&self) -> f64 {
-        self.lambda + self.mu * (2.0 / 3.0)
-    }
-}
 
 /// The enum of all laws with its dispatch, and that of what their returns leave.
 macro_rules! laws {

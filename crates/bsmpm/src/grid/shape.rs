@@ -4,13 +4,14 @@
 //! tenth of the memory. The topology p2N is a cell's first node plus offsets that all cells share.
 
 pub mod merged;
+mod support;
 
 use super::{Grid, Located};
 use crate::error::StepError;
-use crate::real::Real;
 use crate::tensor::Vector;
 use merged::Merged;
 use std::ops::Range;
+pub(crate) use support::{PointSupport, Values};
 
 /// An occupied cell with its points: the patch of section 2.1.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -253,63 +254,4 @@ fn columns(patches: &[Patch], cells: usize) -> Vec<PatchColumn> {
         }
     }
     columns
-}
-
-/// One point's values: D rows of W.
-#[derive(Clone, Copy)]
-pub(crate) struct Values<'a, const D: usize, const W: usize> {
-    rows: &'a [f64],
-    stride: usize,
-}
-
-impl<const D: usize, const W: usize> Values<'_, D, W> {
-    /// N_Ip of local node `k`.
-    #[inline(always)]
-    pub fn value(&self, k: usize) -> f64 {
-        let mut product = 1.0;
-        for axis in 0..D {
-            product *= self.rows[self.stride * axis + k / W.pow((D - 1 - axis) as u32) % W];
-        }
-        product
-    }
-}
-
-/// Functions of a point, or of a lane of points: D rows of W values and W derivatives.
-#[derive(Clone, Copy)]
-pub(crate) struct PointSupport<'a, R, const D: usize, const W: usize> {
-    pub(super) rows: &'a [R],
-}
-
-impl<R: Real, const D: usize, const W: usize> PointSupport<'_, R, D, W> {
-    /// Position of local node `k` along `axis`.
-    #[inline(always)]
-    fn along(k: usize, axis: usize) -> usize {
-        k / W.pow((D - 1 - axis) as u32) % W
-    }
-
-    /// N_Ip of local node `k`.
-    #[inline(always)]
-    pub fn value(&self, k: usize) -> R {
-        let mut product = self.rows[Self::along(k, 0)];
-        for axis in 1..D {
-            product = product * self.rows[2 * W * axis + Self::along(k, axis)];
-        }
-        product
-    }
-
-    /// grad N_Ip of local node `k`, 1/m.
-    #[inline(always)]
-    pub fn gradient(&self, k: usize) -> Vector<D, R> {
-        let row = |axis: usize, component: usize| {
-            let a = 2 * W * axis + Self::along(k, axis);
-            self.rows[if component == axis { a + W } else { a }]
-        };
-        Vector::from_fn(|component, _| {
-            let mut product = row(0, component);
-            for axis in 1..D {
-                product = product * row(axis, component);
-            }
-            product
-        })
-    }
 }

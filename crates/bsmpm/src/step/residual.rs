@@ -85,17 +85,17 @@ impl<K: Kinematics<D>, const D: usize> Residual<K, D> {
 }
 
 /// Fluxes of consecutive points, eight at a time; of those by `flux` of which one is not like the others.
-struct Fluxes<'a, K: Kinematics<D>, F, const D: usize> {
+struct Fluxes<'a, K: Kinematics<D>, const D: usize> {
     model: &'a Model<K, D>,
     points: &'a Points<D>,
     trial: &'a Trial<K, D>,
     volume: &'a [f64],
     range: Range<usize>,
-    flux: &'a F,
+    flux: &'a dyn Fn(usize) -> K::Gradient,
     fluxes: &'a mut Vec<K::Gradient>,
 }
 
-impl<K: Kinematics<D>, F: Fn(usize) -> K::Gradient, const D: usize> InLanes for Fluxes<'_, K, F, D> {
+impl<K: Kinematics<D>, const D: usize> InLanes for Fluxes<'_, K, D> {
     type Output = ();
 
     #[inline(always)]
@@ -117,7 +117,7 @@ impl<K: Kinematics<D>, F: Fn(usize) -> K::Gradient, const D: usize> InLanes for 
     }
 }
 
-impl<K: Kinematics<D>, F, const D: usize> Fluxes<'_, K, F, D> {
+impl<K: Kinematics<D>, const D: usize> Fluxes<'_, K, D> {
     #[inline(always)]
     fn of<S: Simd>(&self, simd: S, eight: Eight) -> Option<GradientOf<K, Lanes<S>, D>> {
         let (dF, tau) = self.trial.respond_in_lanes(self.model, self.points, simd, eight)?;

@@ -12,6 +12,9 @@ use crate::step::nodes::Nodes;
 use crate::step::problem::Problem;
 use crate::tensor::{Symmetric, Tensor};
 
+/// dF (-) and the Kirchhoff stress (Pa) that it causes, of one point or of several.
+pub type Stressed<R> = (Tensor<R>, Symmetric<R>);
+
 /// Increment of the deformation of every point.
 #[derive(Clone, Debug)]
 pub struct Trial<K: Kinematics<D>, const D: usize> {
@@ -105,7 +108,7 @@ impl<K: Kinematics<D>, const D: usize> Trial<K, D> {
         points: &Points<D>,
         simd: S,
         eight: Eight,
-    ) -> Option<(Tensor<Lanes<S>>, Symmetric<Lanes<S>>)> {
+    ) -> Option<Stressed<Lanes<S>>> {
         let material = points.material[eight.points().start];
         if points.gap.is_some() || eight.points().any(|p| points.material[p] != material) {
             return None;

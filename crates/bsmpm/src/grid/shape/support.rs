@@ -1,0 +1,63 @@
+//! The functions of a point at the nodes of its cell, as products of its rows.
+
+use crate::real::Real;
+use crate::tensor::Vector;
+
+/// One point's values: D rows of W.
+#[derive(Clone, Copy)]
+pub(crate) struct Values<'a, const D: usize, const W: usize> {
+    pub(super) rows: &'a [f64],
+    pub(super) stride: usize,
+}
+
+impl<const D: usize, const W: usize> Values<'_, D, W> {
+    /// N_Ip of local node `k`.
+    #[inline(always)]
+    pub fn value(&self, k: usize) -> f64 {
+        let mut product = 1.0;
+        for axis in 0..D {
+            product *= self.rows[self.stride * axis + k / W.pow((D - 1 - axis) as u32) % W];
+        }
+        product
+    }
+}
+
+/// Functions of a point, or of a lane of points: D rows of W values and W derivatives.
+#[derive(Clone, Copy)]
+pub(crate) struct PointSupport<'a, R, const D: usize, const W: usize> {
+    pub rows: &'a [R],
+}
+
+impl<R: Real, const D: usize, const W: usize> PointSupport<'_, R, D, W> {
+    /// Position of local node `k` along `axis`.
+    #[inline(always)]
+    fn along(k: usize, axis: usize) -> usize {
+        k / W.pow((D - 1 - axis) as u32) % W
+    }
+
+    /// N_Ip of local node `k`.
+    #[inline(always)]
+    pub fn value(&self, k: usize) -> R {
+        let mut product = self.rows[Self::along(k, 0)];
+        for axis in 1..D {
+            product = product * self.rows[2 * W * axis + Self::along(k, axis)];
+        }
+        product
+    }
+
+    /// grad N_Ip of local node `k`, 1/m.
+    #[inline(always)]
+    pub fn gradient(&self, k: usize) -> Vector<D, R> {
+        let row = |axis: usize, component: usize| {
+            let a = 2 * W * axis + Self::along(k, axis);
+            self.rows[if component == axis { a + W } else { a }]
+        };
+        Vector::from_fn(|component, _| {
+            let mut product = row(0, component);
+            for axis in 1..D {
+                product = product * row(axis, component);
+            }
+            product
+        })
+    }
+}
