@@ -126,6 +126,11 @@ impl GridAxis {
         self.breakpoint(i + 1) - self.breakpoint(i)
     }
 
+    /// Longest edge of a cell, m.
+    pub fn longest(&self) -> f64 {
+        (0..self.cells()).map(|i| self.cell(i)).fold(0.0, f64::max)
+    }
+
     /// Shortest edge of a cell, m.
     pub fn shortest(&self) -> f64 {
         match self {

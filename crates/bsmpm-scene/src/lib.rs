@@ -32,6 +32,7 @@ mod reference;
 mod region;
 mod report;
 mod seed;
+mod sketch;
 mod source;
 mod validate;
 
@@ -51,4 +52,5 @@ pub use grid::{GridAxis, GridSpec, Line};
 pub use reference::reference;
 pub use region::{Outline, Region};
 pub use seed::seed;
+pub use sketch::{Sketch, SketchedHistory};
 pub use source::{MAX_BYTES, load};

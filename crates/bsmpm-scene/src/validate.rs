@@ -151,7 +151,8 @@ fn mass(analysis: &Record, regime: Regime, report: &mut Report<'_>) -> MassMatri
     analysis.word("mass").unwrap_or_default()
 }
 
-fn boundary(record: &Record) -> Option<[[Support; 2]; 2]> {
+/// Supports of the grid's faces; none after an error.
+pub(crate) fn boundary(record: &Record) -> Option<[[Support; 2]; 2]> {
     let boundary = record.record("boundary")?;
     let [x, y] = Side::ALL.map(|sides| sides.map(|side| boundary.word(side.word())));
     Some([[x[0]?, x[1]?], [y[0]?, y[1]?]])
@@ -178,7 +179,8 @@ fn gravity(record: &Record, end: Option<f64>, report: &mut Report<'_>) -> Option
     Some(Gravity { acceleration, ramp })
 }
 
-fn stabilisation(record: &Record) -> Option<Stabilisation> {
+/// The method of stabilisation; none after an error.
+pub(crate) fn stabilisation(record: &Record) -> Option<Stabilisation> {
     if !record.gives("stabilisation") {
         return Some(Stabilisation::None);
     }

@@ -1,23 +1,21 @@
 //! Many runs of one case with different settings, side by side: each is validated in `order` before anything runs, begun when
-//! there is room in `pool`, and what it left is read in `outcome`. Runs that have ended are kept, those that were stopped go
+//! there is room in `pool`, and made by `crate::launch`. Runs that have ended are kept, those that were stopped go
 //! on, and one that fails does not end the others.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use crate::Error;
-use crate::launch::{LaunchTask, SolverProgram};
+use crate::launch::{LaunchTask, Outcome, RunState, SolverProgram};
+use crate::record::short;
 use crate::slurm::clock;
 
 mod options;
 mod order;
-mod outcome;
 mod pool;
 
 pub use options::Options;
 pub(crate) use order::RunOrder;
-pub(crate) use outcome::{Outcome, RunCost, RunState};
 pub(crate) use pool::{Limits, PoolLoad};
 
 /// How the runs of a batch are made.
@@ -57,32 +55,28 @@ impl Batch<'_> {
         self.output.join("runs").join(format!("{}.out", order.name))
     }
 
-    /// The outcome of one run, made now unless it is there.
+    /// The outcome of one run, made now unless it is there; its reason is that of a run that did not come to its end.
     fn outcome(&self, order: &RunOrder) -> Outcome {
-        let directory = self.directory(order);
-        let mut arguments = vec![self.path.display().to_string()];
-        for set in &order.set {
-            arguments.extend(["--set".to_owned(), set.clone()]);
-        }
-        arguments.extend(["--quiet".to_owned(), "--output".to_owned(), directory.display().to_string()]);
-        if let Some(limit) = self.max_wall {
-            arguments.extend(["--max-wall".to_owned(), clock(limit.as_secs())]);
-        }
-        let origin = self.origin(order);
-        let task =
-            LaunchTask { arguments: &arguments, directory: &directory, origin: origin.as_deref(), force: self.force };
-        if task.is_there(|manifest| manifest.case.text == order.case.text) {
-            return Outcome::read(&directory, None);
-        }
-        match self.solver.advance(&task) {
-            Ok(code) => Outcome::read(&directory, Some(code)),
-            Err(error) => Outcome::broken(error.to_string()),
-        }
-    }
-
-    /// Everything that a run is made from, as it stands now; its launcher, too, for the cost depends on the ranks.
-    fn origin(&self, order: &RunOrder) -> Option<String> {
-        Some(format!("{}\n{}\n\n{}", self.solver.command.join(" "), self.solver.stamp()?, order.case.text))
+        let limit = self.max_wall.map(|limit| ["--max-wall".to_owned(), clock(limit.as_secs())]);
+        // Its launcher, too, for the cost depends on the ranks.
+        let origin = |stamp| format!("{}\n{stamp}\n\n{}", self.solver.command.join(" "), order.case.text);
+        let task = LaunchTask {
+            case: self.path,
+            set: &order.set,
+            further: limit.into_iter().flatten().collect(),
+            directory: self.directory(order),
+            origin: self.solver.stamp().map(origin),
+            force: self.force,
+            resume: true,
+        };
+        let outcome = self.solver.outcome(&task, |manifest| manifest.case.text == order.case.text);
+        let outcome = outcome.unwrap_or_else(|error| Outcome::broken(error.to_string()));
+        let reason = match outcome.state {
+            RunState::Done => String::new(),
+            RunState::Stopped => format!("at time {}", short(outcome.time())),
+            _ => outcome.reason,
+        };
+        Outcome { reason, ..outcome }
     }
 }
 
@@ -94,12 +88,4 @@ fn memory(asked: Option<u64>) -> u64 {
         Some(line.split_whitespace().next()?.parse::<u64>().ok()? * 1024)
     };
     asked.or_else(free).unwrap_or(u64::MAX)
-}
-
-/// The bytes of the case file.
-///
-/// # Errors
-/// [`Error::NoCase`].
-pub(crate) fn load(path: &Path) -> Result<Vec<u8>, Error> {
-    bsmpm_scene::load(path).map_err(|source| Error::NoCase { path: path.to_owned(), source })
 }

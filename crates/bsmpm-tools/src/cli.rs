@@ -44,64 +44,42 @@ pub enum Command {
 /// # Errors
 /// Those of the command; [`Error::exit_code`] is the program's.
 pub fn run(cli: &Cli) -> Result<(), Error> {
+    // Where nobody listens there is nothing left to do.
+    let say = |line: &str| _ = writeln!(std::io::stderr(), "{line}");
     match &cli.command {
-        Command::Plot(arguments) => {
-            for picture in plot::run(arguments)? {
-                // Where nobody listens there is nothing left to do.
-                let _ = writeln!(std::io::stdout(), "{}", picture.display());
-            }
-        }
+        Command::Plot(arguments) => print("", &plot::run(arguments)?),
         Command::Compare(arguments) => {
             let made = compare::run(arguments)?;
-            for note in made.notes {
-                let _ = writeln!(std::io::stderr(), "bsmpm: {note}");
-            }
-            let table = made.table.unwrap_or_default();
-            let picture = made.picture.map(|path| format!("{}\n", path.display())).unwrap_or_default();
-            let _ = write!(std::io::stdout(), "{table}{picture}");
+            made.notes.iter().for_each(|note| say(&format!("bsmpm: {note}")));
+            print(&made.table.unwrap_or_default(), made.picture.as_slice());
         }
         Command::Validate(arguments) => {
-            let counts = validate::run(arguments, |part| {
-                let _ = writeln!(std::io::stdout(), "{part}");
-            })?;
+            let counts = validate::run(arguments, |part| print(&format!("{part}\n"), &[]))?;
             let known = match counts.known {
                 0 => String::new(),
                 rows => format!("{rows} row(s) fail as the matrix says\n"),
             };
-            let _ = writeln!(std::io::stdout(), "\n{known}{} passed, {} failed", counts.passed, counts.failed);
+            print(&format!("\n{known}{} passed, {} failed\n", counts.passed, counts.failed), &[]);
             if counts.failed > 0 {
                 return Err(Error::NotValid { failed: counts.failed });
             }
         }
         Command::Fos(arguments) => {
-            let (table, pictures) = fos::run(arguments, |line| {
-                let _ = writeln!(std::io::stderr(), "{line}");
-            })?;
+            let (table, pictures) = fos::run(arguments, say)?;
             print(&table, &pictures);
         }
         Command::Sweep(arguments) => {
-            let (table, files) = sweep::run(arguments, |line| {
-                let _ = writeln!(std::io::stderr(), "{line}");
-            })?;
+            let (table, files) = sweep::run(arguments, say)?;
             print(&table, &files);
         }
         Command::VerifyCase(arguments) => {
-            let (table, files) = verify_case::run(arguments, |line| {
-                let _ = writeln!(std::io::stderr(), "{line}");
-            })?;
+            let (table, files) = verify_case::run(arguments, say)?;
             print(&table, &files);
         }
-        Command::Estimate(arguments) => {
-            let told = estimate::run(arguments, |line| {
-                let _ = writeln!(std::io::stderr(), "{line}");
-            })?;
-            let _ = write!(std::io::stdout(), "{told}");
-        }
+        Command::Estimate(arguments) => print(&estimate::run(arguments, say)?, &[]),
         Command::Keys => print(&bsmpm_scene::reference(), &[]),
         Command::Slurm(arguments) => {
-            let script = slurm::run(arguments, |line| {
-                let _ = writeln!(std::io::stderr(), "warning: {line}");
-            })?;
+            let script = slurm::run(arguments, |line| say(&format!("warning: {line}")))?;
             // Half a script must not pass for one.
             let failed = bsmpm_io::Error::file("write", Path::new("the standard output"));
             let mut stdout = std::io::stdout();

@@ -1,16 +1,15 @@
 //! `bsmpm compare`: one quantity of several runs in one picture, and as a table. What the runs give is in `runs`, points
-//! to compare with in `reference`, the table in `table`; how a step of theirs converged, in `residuals`.
+//! to compare with in `crate::reference`, the table in `table`; how a step of theirs converged, in `residuals`.
 
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use crate::Error;
 use crate::picture::chart::{Chart, Curve};
 use crate::picture::colour::{self, INK};
 use crate::picture::legend::{LegendEntry, Mark};
+use crate::{Error, reference};
 
-mod reference;
 mod residuals;
 mod runs;
 mod table;
@@ -128,9 +127,8 @@ pub struct ComparedFiles {
 /// Draws the picture and sets the table, as far as they are wanted.
 ///
 /// # Errors
-/// [`Error::NoRun`], [`Error::NoRow`] and [`Error::NoColumn`] for what a directory does not hold, [`Error::Usage`] for
-/// options that do not fit the runs or each other,
-/// [`Error::NoResiduals`] for a step that was not kept, the errors of references and files.
+/// [`Error::Missing`] for what a directory does not hold, [`Error::Usage`] for options that do not fit the runs or each
+/// other, the errors of references and files.
 pub fn run(arguments: &CompareArguments) -> Result<ComparedFiles, Error> {
     if let Some(step) = arguments.residuals {
         return residuals::run(arguments, step);
@@ -156,7 +154,7 @@ fn draw(arguments: &CompareArguments, runs: &Runs, path: &Path) -> Result<(), Er
     }
     for (index, path) in arguments.references.iter().enumerate() {
         let colour = if index == 0 { INK } else { colour::line(names.len() + index - 1, count) };
-        let (name, places) = reference::read(path)?;
+        let (name, places) = reference::places(path)?;
         curves.push(Curve { entry: LegendEntry { name, colour, mark: Mark::Points }, places });
     }
     let mut legend: Vec<&LegendEntry> = Vec::new();

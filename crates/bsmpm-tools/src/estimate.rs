@@ -5,15 +5,14 @@
 //! `report`, beside a finished run in `against`.
 #![doc = include_str!("estimate.md")]
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::thread;
 use std::time::{Duration, Instant};
 
-use bsmpm_scene::Case;
 use clap::Args;
 
-use crate::Error;
 use crate::launch::command;
+use crate::{Error, case};
 
 mod against;
 mod coarse;
@@ -78,12 +77,12 @@ pub struct EstimateArguments {
 /// Estimates; `told` gets a line for every probe. Returns what is to be printed.
 ///
 /// # Errors
-/// Those of the command line and the case before anything runs; [`Error::Probe`] if the first steps fail; those of files.
+/// Those of the command line and the case before anything runs; [`Error::Run`] if the first steps fail; those of files.
 pub fn run(arguments: &EstimateArguments, mut told: impl FnMut(&str)) -> Result<String, Error> {
     if !(arguments.budget.is_finite() && arguments.budget > 0.0) {
         return Err(Error::Usage { reason: format!("--budget {}: expected some seconds", arguments.budget) });
     }
-    let case = read(&arguments.case, &arguments.set)?;
+    let case = case::parsed(&arguments.case, &case::load(&arguments.case)?, &arguments.set)?;
     let actual = arguments.against.as_deref().map(against::read).transpose()?;
     let ranks = arguments.ranks.or(actual.as_ref().map(|actual| actual.ranks)).unwrap_or(1) as usize;
     let most = case.grid.axes[0].cells();
@@ -108,12 +107,6 @@ pub fn run(arguments: &EstimateArguments, mut told: impl FnMut(&str)) -> Result<
         report.compare(&actual);
     }
     Ok(if arguments.json { report.json() } else { report.text() })
-}
-
-/// The case at `path` with overrides.
-fn read(path: &Path, set: &[String]) -> Result<Case, Error> {
-    let bytes = bsmpm_scene::load(path).map_err(|source| Error::NoCase { path: path.to_owned(), source })?;
-    Case::from_bytes(&path.display().to_string(), &bytes, set).map_err(|errors| Error::bad_case(path, &errors))
 }
 
 fn deadline(budget: f64) -> Instant {

@@ -6,15 +6,14 @@
 //! the search may ask for next, `jobs` runs them. They shorten the search and change nothing else in it.
 
 use std::fs;
-use std::io::Write;
 use std::path::PathBuf;
 use std::time::Instant;
 
-use bsmpm_io::atomic;
 use clap::Args;
 
-use crate::Error;
-use crate::launch::{self, SolverProgram, command};
+use crate::launch::{self, RunCost, SolverProgram, command};
+use crate::report::save;
+use crate::{Error, case};
 
 mod curve;
 mod guess;
@@ -30,8 +29,8 @@ use search::{GREATEST, LEAST, SearchPlan};
 use subject::Subject;
 use trial::{Trial, Trials};
 
-const JSON: &str = "fos.json";
-const CSV: &str = "fos.csv";
+/// Of the files of its tables.
+const NAME: &str = "fos";
 /// Narrower bands would show the rounding of displacements.
 const NARROWEST: f64 = 1e-4;
 
@@ -95,13 +94,8 @@ pub struct FosArguments {
 pub(crate) struct FoundFactor {
     /// By the kink: the estimate, or where there is none the middle of the band.
     pub factor: Option<f64>,
-    /// s  of processor time, all trials together
-    pub cpu_seconds: f64,
-    /// s  by the clock, those of trials that were there left out
-    pub seconds: f64,
-    pub steps: u64,
-    pub iterations: u64,
-    pub cuts: u64,
+    /// Of all trials together; by the clock those that were there are left out.
+    pub cost: RunCost,
     /// Whether every trial was there.
     pub kept: bool,
 }
@@ -109,7 +103,7 @@ pub(crate) struct FoundFactor {
 /// Searches; `told` gets a line for every trial as soon as it is there. Returns the table and the written pictures.
 ///
 /// # Errors
-/// Those of the command line and the case before anything runs; [`Error::NoStableState`]; [`Error::Trial`] for a trial that
+/// Those of the command line and the case before anything runs; [`Error::NoStableState`]; [`Error::Run`] for a trial that
 /// broke; the errors of files.
 pub fn run(arguments: &FosArguments, told: impl FnMut(&str)) -> Result<(String, Vec<PathBuf>), Error> {
     let (report, subject) = found(arguments, told)?;
@@ -126,11 +120,7 @@ pub(crate) fn factor(arguments: &FosArguments) -> Result<FoundFactor, Error> {
     let middle = || Some(f64::midpoint(finding.last_stable?, finding.first_failed?));
     Ok(FoundFactor {
         factor: finding.estimate.or_else(middle),
-        cpu_seconds: trials().map(|trial| trial.cpu_seconds).sum(),
-        seconds: report.seconds,
-        steps: trials().map(|trial| trial.steps).sum(),
-        iterations: trials().map(|trial| trial.iterations).sum(),
-        cuts: trials().map(|trial| trial.cuts).sum(),
+        cost: RunCost { wall_seconds: report.seconds, ..trials().map(Trial::cost).sum() },
         kept: trials().all(|trial| trial.kept),
     })
 }
@@ -147,20 +137,17 @@ fn found(arguments: &FosArguments, mut told: impl FnMut(&str)) -> Result<(FosRep
     let output = arguments.directory();
     launch::make(&output)?;
     // Results of an older search must not pass for this one's, should it not come to its end.
-    let older = [JSON, CSV].iter().chain(&picture::NAMES).map(|name| output.join(name)).filter(|path| path.exists());
-    for path in older {
-        fs::remove_file(&path).map_err(|source| Error::File(bsmpm_io::Error::file("delete", &path)(source)))?;
+    for path in
+        ["fos.json", "fos.csv"].iter().chain(&picture::NAMES).map(|name| output.join(name)).filter(|path| path.exists())
+    {
+        fs::remove_file(&path).map_err(bsmpm_io::Error::file("delete", &path))?;
     }
     let trials = Trials { solver, subject: &subject, output: &output, force: arguments.force };
     let (curve, made) = jobs::find(plan, jobs, &trials, |trial| told(&line(trial)))?;
     let mut report = FosReport::of(&subject, plan, &command, &curve, made);
     report.jobs = jobs;
     report.seconds = start.elapsed().as_secs_f64();
-    atomic::replace(&output.join(CSV), |file| file.write_all(report.csv().as_bytes()))?;
-    atomic::replace(&output.join(JSON), |file| {
-        serde_json::to_writer_pretty(&mut *file, &report)?;
-        file.write_all(b"\n")
-    })?;
+    save(&output, NAME, &report.csv(), &report)?;
     Ok((report, subject))
 }
 
@@ -179,11 +166,7 @@ impl FosArguments {
     }
 
     fn directory(&self) -> PathBuf {
-        self.output.clone().unwrap_or_else(|| {
-            let mut name = self.case.file_stem().unwrap_or_default().to_owned();
-            name.push(".fos");
-            PathBuf::from(name)
-        })
+        self.output.clone().unwrap_or_else(|| case::directory(&self.case, ".fos"))
     }
 }
 

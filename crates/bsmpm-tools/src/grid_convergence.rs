@@ -42,19 +42,6 @@ pub(crate) struct Index {
     pub ratio: Option<f64>,
 }
 
-impl Course {
-    /// The word for it.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Unchanged => "unchanged",
-            Self::Monotone => "monotone",
-            Self::Oscillatory => "oscillatory",
-            Self::Diverging => "diverging",
-            Self::OscillatoryDiverging => "oscillatory-diverging",
-        }
-    }
-}
-
 impl Index {
     /// Of sizes and values from the finest grid to the coarsest.
     pub fn of(h: [f64; 3], f: [f64; 3]) -> Self {

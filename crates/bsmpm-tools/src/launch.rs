@@ -8,20 +8,18 @@ use std::process::{Command, Stdio};
 use std::time::UNIX_EPOCH;
 
 use bsmpm_io::atomic;
+use bsmpm_io::exit::{CHECK, DONE, LEFT, NO_CONVERGENCE, STOPPED};
 use bsmpm_io::lock::{Lock, Unseen};
 use bsmpm_io::manifest::{MANIFEST, Manifest};
 
 use crate::Error;
 
 pub(crate) mod command;
+mod outcome;
 mod stop;
 
+pub(crate) use outcome::{Outcome, RunCost, RunState};
 pub(crate) use stop::Stop;
-
-use bsmpm_io::exit::{CHECK, CHECKPOINT, DIRECTORY, DONE, LEFT, MEMORY, NO_CONVERGENCE, STALLED, STOPPED};
-
-/// Not begun: too little memory, restarts that come to nothing, a directory or a checkpoint that cannot be used.
-const REFUSED: [u8; 4] = [MEMORY, STALLED, DIRECTORY, CHECKPOINT];
 
 /// What keeps runs side by side from taking each other's cores: no threads in BLAS, no ranks bound to the same cores.
 /// Variables that are set already stay as they are.
@@ -44,23 +42,19 @@ pub(crate) struct SolverProgram<'a> {
 
 /// A run that is wanted.
 pub(crate) struct LaunchTask<'a> {
-    /// Those of bsmpm-par.
-    pub arguments: &'a [String],
-    /// The directory that they name as the output.
-    pub directory: &'a Path,
+    /// The case file.
+    pub case: &'a Path,
+    /// Overrides, `KEY=VALUE`.
+    pub set: &'a [String],
+    /// Further arguments of bsmpm-par.
+    pub further: Vec<String>,
+    pub directory: PathBuf,
     /// Everything that the run is made from, as it stands now; none where a part cannot be told, and the run is made.
-    pub origin: Option<&'a str>,
+    pub origin: Option<String>,
     /// Make it even if it is there.
     pub force: bool,
-}
-
-/// How a run ended.
-pub(crate) struct Ending {
-    /// That of bsmpm-par; the launcher's where there is no manifest.
-    pub code: u8,
-    pub manifest: Option<Manifest>,
-    /// Why it ended early, or its last word.
-    pub reason: String,
+    /// Go on with it if it was stopped or killed.
+    pub resume: bool,
 }
 
 impl SolverProgram<'_> {
@@ -81,50 +75,38 @@ impl SolverProgram<'_> {
         Some(format!("solver: {} bytes, changed at {changed}", solver.len()))
     }
 
-    /// Makes the run unless it has ended there, made from what would be taken now, and `is_same` agrees; its exit code, none
-    /// if it was there.
-    pub fn perform(&self, task: &LaunchTask, is_same: impl Fn(&Manifest) -> bool) -> Result<Option<u8>, Error> {
-        if task.is_there(is_same) {
-            return Ok(None);
-        }
-        self.make(task, &Stop::default()).map(Some)
+    /// The outcome of a run: as it is there if it has ended, made from what would be taken now, and `is_same` agrees;
+    /// else it is made now, or gone on with.
+    ///
+    /// # Errors
+    /// Those of a solver that does not start, and of files. A run that fails is an outcome.
+    pub fn outcome(&self, task: &LaunchTask, is_same: impl Fn(&Manifest) -> bool) -> Result<Outcome, Error> {
+        if task.is_there(is_same) { Ok(task.left(None)) } else { self.make(task, &Stop::default()) }
     }
 
-    /// Makes the run, whatever is there; its exit code. `stop` may end it early.
-    pub fn make(&self, task: &LaunchTask, stop: &Stop) -> Result<u8, Error> {
+    /// The outcome of a run that is made, or gone on with, whatever is there; `stop` may end it early.
+    pub fn make(&self, task: &LaunchTask, stop: &Stop) -> Result<Outcome, Error> {
+        let log = beside(&task.directory, "log");
+        if task.resume && task.is_broken_off() {
+            return self.start(&task.arguments(&["--restart", "auto"]), &log, stop).map(|code| task.left(Some(code)));
+        }
         // What an older run left must not pass for this one's, should it die before it writes.
         if task.directory.join(MANIFEST).exists() {
             // Unless it goes on.
-            let _lock = Lock::take(task.directory, Unseen::Respect)?;
-            let file = |source| Error::File(bsmpm_io::Error::file("delete", task.directory)(source));
-            fs::remove_dir_all(task.directory).map_err(file)?;
+            let _lock = Lock::take(&task.directory, Unseen::Respect)?;
+            fs::remove_dir_all(&task.directory).map_err(bsmpm_io::Error::file("delete", &task.directory))?;
         }
         if let Some(parent) = task.directory.parent() {
             make(parent)?;
         }
-        atomic::replace(&beside(task.directory, "origin"), |file| {
-            file.write_all(task.origin.unwrap_or_default().as_bytes())
-        })?;
-        self.start(task.arguments, &beside(task.directory, "log"), stop)
-    }
-
-    /// Goes on with the run if it was stopped or killed and is made from what would be taken now, else makes it; its exit code.
-    /// The arguments leave to this what becomes of what is there.
-    pub fn advance(&self, task: &LaunchTask) -> Result<u8, Error> {
-        let (goes_on, stop) = (task.is_broken_off(), Stop::default());
-        let how = if goes_on { &["--restart", "auto"][..] } else { &["--force"] };
-        let arguments: Vec<String> =
-            task.arguments.iter().cloned().chain(how.iter().map(|&word| word.into())).collect();
-        if goes_on {
-            return self.start(&arguments, &beside(task.directory, "log"), &stop);
-        }
-        self.make(&LaunchTask { arguments: &arguments, ..*task }, &stop)
+        let origin = task.origin.as_deref().unwrap_or_default();
+        atomic::replace(&beside(&task.directory, "origin"), |file| file.write_all(origin.as_bytes()))?;
+        self.start(&task.arguments(&["--force"]), &log, stop).map(|code| task.left(Some(code)))
     }
 
     fn start(&self, arguments: &[String], log: &Path, stop: &Stop) -> Result<u8, Error> {
-        let file = |source| Error::File(bsmpm_io::Error::file("write", log)(source));
-        let out = File::create(log).map_err(file)?;
-        let both = out.try_clone().map_err(file)?;
+        let out = File::create(log).map_err(bsmpm_io::Error::file("write", log))?;
+        let both = out.try_clone().map_err(bsmpm_io::Error::file("write", log))?;
         let (program, first) = self
             .command
             .split_first()
@@ -140,6 +122,19 @@ impl SolverProgram<'_> {
 }
 
 impl LaunchTask<'_> {
+    /// Those of bsmpm-par; `how` says what becomes of what is there.
+    pub fn arguments(&self, how: &[&str]) -> Vec<String> {
+        let set = self.set.iter().flat_map(|set| ["--set", set]);
+        let words = set.chain(["--quiet"]).chain(self.further.iter().map(String::as_str)).chain(how.iter().copied());
+        let words = [self.case.display().to_string()].into_iter().chain(words.map(str::to_owned));
+        words.chain(["--output".to_owned(), self.directory.display().to_string()]).collect()
+    }
+
+    /// What its directory holds; `code` is what its process ended with, if it was made now.
+    pub fn left(&self, code: Option<u8>) -> Outcome {
+        Outcome::read(&self.directory, code)
+    }
+
     /// Whether the run has ended there, made from what would be taken now, and `is_same` agrees; never if it is to be made
     /// again.
     pub fn is_there(&self, is_same: impl Fn(&Manifest) -> bool) -> bool {
@@ -156,23 +151,9 @@ impl LaunchTask<'_> {
 
     /// What is there from before, if it counts and was made from what would be taken now.
     fn before(&self) -> Option<Manifest> {
-        let manifest = Manifest::read(self.directory).ok().filter(|_| !self.force)?;
-        let origin = fs::read_to_string(beside(self.directory, "origin")).ok()?;
-        (self.origin == Some(&*origin)).then_some(manifest)
-    }
-}
-
-impl Ending {
-    /// That of the run in a directory; `code` is what its process ended with, if it was made now.
-    pub fn of(directory: &Path, code: Option<u8>) -> Self {
-        let manifest = Manifest::read(directory).ok();
-        // A launcher may hide the program's own exit code, which is in the manifest; but not where the run was refused and the
-        // manifest is that of before.
-        let refused = code.filter(|code| REFUSED.contains(code));
-        let own = refused.or(manifest.as_ref().and_then(|manifest| manifest.exit_code));
-        let failure = manifest.as_ref().and_then(|manifest| manifest.failure.as_ref());
-        let reason = failure.map_or_else(|| last_line(directory), |failure| failure.reason.clone());
-        Self { code: own.or(code).unwrap_or(u8::MAX), manifest, reason }
+        let manifest = Manifest::read(&self.directory).ok().filter(|_| !self.force)?;
+        let origin = fs::read_to_string(beside(&self.directory, "origin")).ok()?;
+        (self.origin.as_ref() == Some(&origin)).then_some(manifest)
     }
 }
 
@@ -184,7 +165,7 @@ pub(crate) fn beside(directory: &Path, ending: &str) -> PathBuf {
 
 /// A directory, with those above it.
 pub(crate) fn make(directory: &Path) -> Result<(), Error> {
-    fs::create_dir_all(directory).map_err(|source| Error::File(bsmpm_io::Error::file("make", directory)(source)))
+    Ok(fs::create_dir_all(directory).map_err(bsmpm_io::Error::file("make", directory))?)
 }
 
 /// The file of a program: as it is named, or in the folders of PATH.
@@ -193,9 +174,4 @@ fn found(program: &str) -> Option<PathBuf> {
         return Some(PathBuf::from(program));
     }
     env::split_paths(&env::var_os("PATH")?).map(|folder| folder.join(program)).find(|file| file.is_file())
-}
-
-fn last_line(directory: &Path) -> String {
-    let text = fs::read_to_string(beside(directory, "log")).unwrap_or_default();
-    text.lines().rev().find(|line| !line.trim().is_empty()).unwrap_or("it left no word").to_owned()
 }

@@ -5,17 +5,20 @@
 #![forbid(unsafe_code)]
 
 mod batch;
+mod case;
 pub mod cli;
-mod columns;
 pub mod compare;
 pub mod error;
 pub mod estimate;
 pub mod fos;
 mod grid_convergence;
 mod launch;
+mod line;
 mod picture;
 pub mod plot;
 mod record;
+mod reference;
+mod report;
 pub mod slurm;
 pub mod sweep;
 pub mod validate;

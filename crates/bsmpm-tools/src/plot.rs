@@ -6,16 +6,16 @@ use std::path::PathBuf;
 use bsmpm_io::frame::Frame;
 use bsmpm_io::manifest::Status;
 use bsmpm_io::table::Columns;
+use bsmpm_scene::Regime;
 use clap::Args;
 
-use crate::Error;
-use crate::record::{RecordedRegime, RunRecord};
+use crate::record::RunRecord;
+use crate::{Error, reference};
 
 mod body;
 mod convergence;
 mod curves;
 mod field;
-mod reference;
 mod surface;
 
 pub use field::FieldName;
@@ -78,7 +78,7 @@ pub fn run(arguments: &PlotArguments) -> Result<Vec<PathBuf>, Error> {
 /// Draws the pictures of a run and returns their files' names, in the run's directory.
 ///
 /// # Errors
-/// [`Error::NoRun`] without a `run.json`, [`Error::Empty`] if there is nothing to draw yet, [`Error::File`] for files that
+/// [`Error::Missing`] without a `run.json`, or if there is nothing to draw yet, [`Error::File`] for files that
 /// are damaged or cannot be written.
 pub fn draw(arguments: &PlotArguments) -> Result<Vec<String>, Error> {
     pictures(arguments).map(|(_, names)| names)
@@ -86,7 +86,7 @@ pub fn draw(arguments: &PlotArguments) -> Result<Vec<String>, Error> {
 
 fn pictures(arguments: &PlotArguments) -> Result<(RunRecord, Vec<String>), Error> {
     let record = RunRecord::read(&arguments.directory)?;
-    let reference = arguments.reference.as_deref().map(reference::read).transpose()?;
+    let reference = arguments.reference.as_deref().map(reference::columns).transpose()?;
     let frames = record.frames(&arguments.times)?;
     let mut names = Vec::new();
     if !frames.is_empty() {
@@ -101,15 +101,19 @@ fn pictures(arguments: &PlotArguments) -> Result<(RunRecord, Vec<String>), Error
     }
     names.extend(curves::draw(&record, reference.as_ref())?);
     names.extend(convergence::draw(&record)?);
-    if names.is_empty() { Err(Error::Empty { directory: record.directory }) } else { Ok((record, names)) }
+    if names.is_empty() {
+        let reason = format!("the run in {} has left no frame, no history and no step yet", record.directory.display());
+        return Err(Error::Missing { reason });
+    }
+    Ok((record, names))
 }
 
 /// The wanted field, or those that show how a scene of this kind stands; the plastic strain only if there is any.
 fn fields(record: &RunRecord, frames: &[Frame], wanted: Option<FieldName>) -> Vec<FieldName> {
     match (wanted, record.regime()) {
         (Some(field), _) => vec![field],
-        (None, RecordedRegime::Dynamic) => vec![FieldName::StressYy],
-        (None, RecordedRegime::QuasiStatic) => {
+        (None, Regime::Dynamic) => vec![FieldName::StressYy],
+        (None, Regime::QuasiStatic) => {
             let strains: Option<Vec<_>> = frames.iter().map(|frame| FieldName::PlasticStrain.values(frame)).collect();
             let has_strain = strains.is_some_and(|strains| strains.iter().flatten().any(|&strain| strain != 0.0));
             let strain = has_strain.then_some(FieldName::PlasticStrain);
@@ -121,5 +125,5 @@ fn fields(record: &RunRecord, frames: &[Frame], wanted: Option<FieldName>) -> Ve
 /// Whether the free surface tells something: where a body runs out, or there is one to compare with.
 fn has_surface(record: &RunRecord, reference: Option<&Columns>) -> bool {
     let is_measured = reference.is_some_and(|table| ["time", "x", "y"].iter().all(|name| table.get(name).is_some()));
-    record.regime() == RecordedRegime::Dynamic || !record.columns("runout").is_empty() || is_measured
+    record.regime() == Regime::Dynamic || !record.columns("runout").is_empty() || is_measured
 }

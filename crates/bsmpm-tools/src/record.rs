@@ -1,4 +1,4 @@
-//! What a run left, as the pictures need it: its files here, what its case says in `case`.
+//! What a run left, as the pictures need it.
 
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -10,18 +10,16 @@ use bsmpm_io::manifest::Manifest;
 use bsmpm_io::steps::STEPS;
 use bsmpm_io::table::{self, Columns, TableColumn};
 use bsmpm_io::vtu;
+use bsmpm_scene::words::{Support, Word};
+use bsmpm_scene::{Regime, Sketch, SketchedHistory};
 
 use crate::Error;
-
-pub(crate) mod case;
-
-pub(crate) use case::{Case, RecordedRegime};
 
 /// The files of a run; those that are not there yet are none.
 pub(crate) struct RunRecord {
     pub directory: PathBuf,
     pub manifest: Manifest,
-    pub case: Case,
+    pub case: Sketch,
     entries: Vec<Entry>,
     pub history: Option<Columns>,
     pub steps: Option<Columns>,
@@ -30,10 +28,10 @@ pub(crate) struct RunRecord {
 impl RunRecord {
     pub fn read(directory: &Path) -> Result<Self, Error> {
         let manifest = present(Manifest::read(directory))?;
-        let manifest = manifest.ok_or_else(|| Error::NoRun { directory: directory.to_owned() })?;
+        let manifest = manifest.ok_or_else(|| Error::no_run(directory))?;
         Ok(Self {
             directory: directory.to_owned(),
-            case: Case::of(&manifest.case.text),
+            case: Sketch::of(&manifest.case.text),
             manifest,
             entries: present(read_collection(directory))?.unwrap_or_default(),
             history: present(table::read(&directory.join(HISTORY)))?,
@@ -42,10 +40,10 @@ impl RunRecord {
     }
 
     /// Whether inertia acts: as the case says, else by the unit of time, which a quasi-static analysis does not have.
-    pub fn regime(&self) -> RecordedRegime {
+    pub fn regime(&self) -> Regime {
         let by_unit = || {
             let unit = [&self.history, &self.steps].into_iter().flatten().find_map(|table| table.unit("time"));
-            if unit == Some("-") { RecordedRegime::QuasiStatic } else { RecordedRegime::Dynamic }
+            if unit == Some("-") { Regime::QuasiStatic } else { Regime::Dynamic }
         };
         self.case.regime.unwrap_or_else(by_unit)
     }
@@ -58,8 +56,8 @@ impl RunRecord {
     /// The columns of `history.csv` that record a quantity, found by the case's `[[history]]` tables, or without such by name.
     pub fn columns(&self, quantity: &str) -> Vec<Recorded<'_>> {
         let is_wanted = |column: &Recorded| match self.history_of(column.name) {
-            Some(history) => history.quantity == quantity,
-            None => self.case.histories.is_empty() && case::bears(column.name, quantity),
+            Some(history) => history.quantity.word() == quantity,
+            None => self.case.histories.is_empty() && bears(column.name, quantity),
         };
         self.all_columns().filter(is_wanted).collect()
     }
@@ -67,30 +65,51 @@ impl RunRecord {
     fn all_columns(&self) -> impl Iterator<Item = Recorded<'_>> {
         let columns = self.history.iter().flat_map(|table| table.headings.iter().zip(&table.values));
         columns.map(|(TableColumn { name, unit }, values)| {
-            let scale = self.history_of(name).map_or("", |history| &history.scale);
+            let scale = self.history_of(name).map_or(1.0, |history| history.scale);
             Recorded { name, unit, scale, values }
         })
     }
 
     /// The case's table that a column comes from: of several names that it begins with, the longest.
-    fn history_of(&self, column: &str) -> Option<&case::RecordedHistory> {
-        self.case.histories.iter().filter(|history| history.has(column)).max_by_key(|history| history.name.len())
+    fn history_of(&self, column: &str) -> Option<&SketchedHistory> {
+        let of_column = self.case.histories.iter().filter(|history| bears(column, &history.name));
+        of_column.max_by_key(|history| history.name.len())
     }
 
     /// The axis label of time.
     pub fn time_label(&self) -> (&'static str, &'static str) {
         match self.regime() {
-            RecordedRegime::Dynamic => ("Time", "s"),
-            RecordedRegime::QuasiStatic => ("Pseudo-time", "-"),
+            Regime::Dynamic => ("Time", "s"),
+            Regime::QuasiStatic => ("Pseudo-time", "-"),
         }
     }
 
     /// A moment in words, for titles and legends.
     pub fn moment(&self, time: f64) -> String {
         match self.regime() {
-            RecordedRegime::Dynamic => format!("t = {} s", short(time)),
-            RecordedRegime::QuasiStatic => format!("pseudo-time {}", short(time)),
+            Regime::Dynamic => format!("t = {} s", short(time)),
+            Regime::QuasiStatic => format!("pseudo-time {}", short(time)),
         }
+    }
+
+    /// Whether the grid's lower and upper faces along x and y hold the body.
+    pub fn walls(&self) -> [[bool; 2]; 2] {
+        self.case
+            .boundary
+            .map_or_else(Default::default, |axes| axes.map(|faces| faces.map(|face| face != Support::Free)))
+    }
+
+    /// m  The whole width of the footing, of which a half model that begins or ends at a plane of symmetry has only the
+    /// half.
+    pub fn footing_width(&self) -> Option<f64> {
+        let ([from, to], grid) = (self.case.footing?, self.manifest.grid.as_ref()?);
+        let (left, right) = (from[0].min(to[0]), from[0].max(to[0]));
+        let width = right - left;
+        let is_plane = self.case.boundary?[0].map(|face| face == Support::Roller);
+        let touches = |end: f64, face: f64| (end - face).abs() <= 1e-6 * width;
+        let at_left = is_plane[0] && touches(left, *grid.lower.first()?);
+        let at_right = is_plane[1] && touches(right, *grid.upper.first()?);
+        (width > 0.0).then_some(if at_left == at_right { width } else { 2.0 * width })
     }
 
     /// The frames nearest to the wanted times; without such, those of the case, or three that are evenly spread.
@@ -120,13 +139,18 @@ impl RunRecord {
     }
 }
 
+/// Whether a column of `history.csv` is called as a history is, or as one of its components, `name-...`.
+fn bears(column: &str, name: &str) -> bool {
+    column.strip_prefix(name).is_some_and(|rest| rest.is_empty() || rest.starts_with('-'))
+}
+
 /// A column of `history.csv` that records a quantity of the case.
 #[derive(Clone, Copy)]
 pub(crate) struct Recorded<'a> {
     pub name: &'a str,
     pub unit: &'a str,
-    /// The factor that multiplies it, as the case writes it; empty for none.
-    pub scale: &'a str,
+    /// The factor that multiplies it.
+    pub scale: f64,
     pub values: &'a [f64],
 }
 
@@ -184,7 +208,39 @@ pub(crate) fn short(time: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::formula;
+    use bsmpm_io::manifest::{GridExtent, ManifestCase};
+
+    use super::*;
+
+    const HALF: &str =
+        "boundary = { left = 'roller', right = 'roller' }\nfooting = { from = [0, 10.0], to = ['1 m', 10.0] }";
+
+    fn record(text: &str) -> RunRecord {
+        let mut manifest = Manifest::begin("0.1.0", Vec::new(), ManifestCase::new("", "", "", text.to_owned()));
+        manifest.grid = Some(GridExtent { lower: vec![0.0; 2], upper: vec![5.0, 11.0], cell: vec![0.1; 2] });
+        let (directory, entries) = (PathBuf::new(), Vec::new());
+        RunRecord { directory, manifest, case: Sketch::of(text), entries, history: None, steps: None }
+    }
+
+    #[test]
+    fn half_a_footing_is_doubled() {
+        let width = |text: &str| record(text).footing_width();
+        assert_eq!(width(HALF), Some(2.0));
+        assert_eq!(width(&HALF.replace("roller", "free")), Some(1.0));
+        assert_eq!(width(&HALF.replace("[0, 10.0]", "['0.5 m', 10.0]")), Some(0.5));
+        assert_eq!(width(&HALF.replace("[0, 10.0]", "'far'")), None);
+    }
+
+    #[test]
+    fn walls_are_faces_that_hold() {
+        assert_eq!(record(HALF).walls(), [[true, true], [false, false]]);
+        assert_eq!(record("").walls(), [[false; 2]; 2]);
+    }
+
+    #[test]
+    fn columns_bear_the_names_of_their_histories() {
+        assert!(bears("displacement-x", "displacement") && !bears("displacements", "displacement"));
+    }
 
     #[test]
     fn names_are_read_as_formulas() {

@@ -12,7 +12,7 @@ use bsmpm_io::exit::{CASE, STOPPED};
 use bsmpm_scene::Case;
 use clap::Args;
 
-use crate::Error;
+use crate::{Error, case};
 
 /// Seconds before the end of the job at which Slurm tells the ranks to stop, where the job is long enough.
 const NOTICE: u64 = 300;
@@ -63,20 +63,18 @@ pub struct SlurmArguments {
 /// Writes the script, or returns it where it is for stdout; `told` gets what is doubtful.
 ///
 /// # Errors
-/// [`Error::NoCase`] and [`Error::BadCase`] before anything is written; those of the script's file.
+/// [`Error::Missing`] and [`Error::BadCase`] before anything is written; those of the script's file.
 pub fn run(arguments: &SlurmArguments, mut told: impl FnMut(&str)) -> Result<Option<Vec<u8>>, Error> {
     let path = &arguments.case;
-    let bytes = bsmpm_scene::load(path).map_err(|source| Error::NoCase { path: path.clone(), source })?;
-    let case = Case::from_bytes(&path.display().to_string(), &bytes, &arguments.set)
-        .map_err(|errors| Error::bad_case(path, &errors))?;
+    let case = case::parsed(path, &case::load(path)?, &arguments.set)?;
     case.warnings.iter().for_each(|warning| told(warning));
     if let Some(doubt) = doubt(&case, arguments.ranks.into()) {
         told(&doubt);
     }
     let script = arguments.script();
     let Some(file) = &arguments.script else { return Ok(Some(script)) };
-    let failed = |source| Error::File(bsmpm_io::Error::file("write", file)(source));
-    File::create_new(file).and_then(|mut file| file.write_all(&script)).map_err(failed)?;
+    let written = File::create_new(file).and_then(|mut file| file.write_all(&script));
+    written.map_err(bsmpm_io::Error::file("write", file))?;
     Ok(None)
 }
 
@@ -134,11 +132,7 @@ impl SlurmArguments {
     fn words(&self, wall: &str) -> Vec<Vec<u8>> {
         let own = ["srun".to_owned(), "bsmpm-par".to_owned()];
         let command = if self.command.is_empty() { &own[..] } else { &self.command };
-        let output = self.output.clone().unwrap_or_else(|| {
-            let mut name = self.case.file_stem().unwrap_or_default().to_owned();
-            name.push(".out");
-            PathBuf::from(name)
-        });
+        let output = self.output.clone().unwrap_or_else(|| case::directory(&self.case, ".out"));
         let mut words: Vec<Vec<u8>> = command.iter().map(|word| word.as_bytes().to_vec()).collect();
         words.push(file(&self.case));
         words.extend([b"-o".to_vec(), file(&output), b"--restart".to_vec(), b"auto".to_vec()]);

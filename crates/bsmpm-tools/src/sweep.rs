@@ -10,9 +10,10 @@ use bsmpm_io::atomic;
 use bsmpm_scene::Case;
 use clap::Args;
 
-use crate::Error;
-use crate::batch::{Batch, Options, Outcome, RunOrder, RunState};
-use crate::launch::command;
+use crate::batch::{Batch, Options, RunOrder};
+use crate::launch::{Outcome, RunState, command};
+use crate::report::{mebibytes, save};
+use crate::{Error, case};
 
 mod axes;
 mod front;
@@ -33,8 +34,8 @@ use reference::ReferenceValues;
 use report::{ReportParts, SweepReport};
 use study::Point;
 
-const JSON: &str = "sweep.json";
-const CSV: &str = "sweep.csv";
+/// Of the files of its tables.
+const NAME: &str = "sweep";
 
 /// What to vary, and what to look at.
 #[derive(Clone, Debug, Args)]
@@ -115,10 +116,10 @@ pub fn run(arguments: &SweepArguments, mut told: impl FnMut(&str)) -> Result<(St
         within: arguments.within,
     };
     let report = SweepReport::of(parts, &values, reference);
-    let mut files = tables(&report, &output)?;
+    let mut files = save(&output, NAME, &report.csv(), &report)?;
     files.extend(pictures(&report, &output)?);
     if !report.has_result() {
-        return Err(Error::NoResult { table: output.join(CSV) });
+        return Err(Error::NoResult { table: output.join("sweep.csv") });
     }
     let mut text = report.text();
     if let Some(file) = &arguments.write {
@@ -162,8 +163,7 @@ fn refused(point: &Point, batch: &Batch, ranks: usize) -> Option<Outcome> {
         Err(errors) => Some(Outcome::never(RunState::Invalid, errors.join("\n"))),
         Ok(order) => {
             let (needed, allowed) = (order.load(ranks).memory, batch.limits.memory);
-            let mib = |bytes: u64| bytes as f64 / 1048576.0;
-            let reason = || format!("it needs about {:.0} MiB of {:.0} MiB", mib(needed), mib(allowed));
+            let reason = || format!("it needs about {:.0} MiB of {:.0} MiB", mebibytes(needed), mebibytes(allowed));
             (needed > allowed).then(|| Outcome::never(RunState::Memory, reason()))
         }
     }
@@ -180,16 +180,6 @@ fn measured(quantities: &[SweepQuantity], mut outcomes: Vec<Outcome>) -> (Vec<Op
     };
     let values = outcomes.iter_mut().map(of).collect();
     (values, outcomes)
-}
-
-fn tables(report: &SweepReport, output: &Path) -> Result<Vec<PathBuf>, Error> {
-    let (csv, json) = (output.join(CSV), output.join(JSON));
-    atomic::replace(&csv, |file| file.write_all(report.csv().as_bytes()))?;
-    atomic::replace(&json, |file| {
-        serde_json::to_writer_pretty(&mut *file, report)?;
-        file.write_all(b"\n")
-    })?;
-    Ok(vec![csv, json])
 }
 
 /// A picture for each quantity that has errors.
@@ -213,7 +203,7 @@ fn written_back(bytes: &[u8], set: &[String], file: &Path) -> Result<(), Error> 
     let text = write::text(&original, set).map_err(usage)?;
     let name = file.display().to_string();
     Case::from_text(&name, &text, &[]).map_err(|errors| Error::bad_case(file, &errors))?;
-    let run = Case::from_bytes(&name, bytes, set).map_err(|errors| Error::bad_case(file, &errors))?;
+    let run = case::parsed(file, bytes, set)?;
     let differences = bsmpm_scene::differences(&run.text, &text).map_err(|errors| Error::bad_case(file, &errors))?;
     if let Some(difference) = differences.first() {
         return Err(usage(format!("the text would be another case than the run: {difference}")));

@@ -4,7 +4,6 @@
 
 use std::collections::BTreeMap;
 use std::fs;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
@@ -169,7 +168,7 @@ fn judged(study: &MatrixStudy, row: &matrix::MatrixRow, outcomes: &BTreeMap<Stri
         verdict,
         remark: remarks.join("; "),
         codes: runs::codes(&of_row),
-        cost: runs::MatrixCost::of(&of_row),
+        cost: of_row.iter().map(|outcome| outcome.run.cost).sum(),
     }
 }
 
@@ -189,22 +188,22 @@ fn verdict(row: &matrix::MatrixRow, found: &Result<Measured, Lack>, is_broken: b
 
 /// The pictures of the body of a run, copied beside the table.
 fn draw_body(plot: &matrix::Plot, outcomes: &BTreeMap<String, MatrixOutcome>, output: &Path) -> Result<(), Error> {
-    let Some(outcome) = outcomes.get(&plot.run).filter(|outcome| outcome.has_rows()) else { return Ok(()) };
+    let Some(outcome) = outcomes.get(&plot.run).filter(|outcome| outcome.run.has_rows()) else { return Ok(()) };
+    let Some(directory) = &outcome.run.directory else { return Ok(()) };
     let arguments = crate::plot::PlotArguments {
         times: plot.times.clone(),
         field: FieldName::from_str(&plot.field, true).ok(),
         range: plot.range,
-        ..crate::plot::PlotArguments::of(outcome.directory.clone())
+        ..crate::plot::PlotArguments::of(directory.clone())
     };
     for name in crate::plot::draw(&arguments)?.iter().filter(|name| name.starts_with(&plot.field)) {
         let to = output.join(format!("{}_{name}", plot.run));
-        let from = outcome.directory.join(name);
-        fs::copy(&from, &to).map_err(|source| Error::File(bsmpm_io::Error::file("copy", &from)(source)))?;
+        let from = directory.join(name);
+        fs::copy(&from, &to).map_err(bsmpm_io::Error::file("copy", &from))?;
     }
     Ok(())
 }
 
 fn write(path: &Path, text: &str) -> Result<(), Error> {
-    let written = fs::File::create(path).and_then(|mut file| file.write_all(text.as_bytes()));
-    written.map_err(|source| Error::File(bsmpm_io::Error::file("write", path)(source)))
+    Ok(fs::write(path, text).map_err(bsmpm_io::Error::file("write", path))?)
 }

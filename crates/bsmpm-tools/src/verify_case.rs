@@ -1,25 +1,20 @@
 //! `bsmpm verify-case`: how far a case is from the limit of ever smaller cells. Three grids are made in `grids` and run by
 //! `crate::batch`, what they say of each quantity is found in `crate::grid_convergence` and told in `report`.
 
-use std::io::Write;
 use std::path::PathBuf;
 
-use bsmpm_io::atomic;
 use clap::{Args, ValueEnum};
 
-use crate::Error;
-use crate::batch::{self, Options, Outcome, RunState};
-use crate::launch::command;
-use crate::plot;
+use crate::batch::Options;
+use crate::launch::{Outcome, RunState, command};
+use crate::report::save;
+use crate::{Error, case, plot};
 
 mod grids;
 mod report;
 
 use grids::Grids;
 use report::VerifyReport;
-
-const JSON: &str = "verify.json";
-const CSV: &str = "verify.csv";
 
 /// What becomes of the time step on other grids.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -81,7 +76,7 @@ pub struct VerifyArguments {
 pub fn run(arguments: &VerifyArguments, mut told: impl FnMut(&str)) -> Result<(String, Vec<PathBuf>), Error> {
     let (options, path) = (&arguments.options, &*arguments.case);
     let (command, output) = (options.words(), options.directory(path, ".verify"));
-    let bytes = batch::load(path)?;
+    let bytes = case::load(path)?;
     let grids = Grids::of(arguments, &bytes)?;
     let batch = options.batch(&command, path, &output)?;
     let outcomes = batch.run(&grids.orders, command::ranks(&command), |index, outcome| {
@@ -92,23 +87,13 @@ pub fn run(arguments: &VerifyArguments, mut told: impl FnMut(&str)) -> Result<(S
         ended(outcome, h)?;
     }
     let report = VerifyReport::of(arguments, &grids, &outcomes)?;
-    let (csv, json) = (output.join(CSV), output.join(JSON));
-    atomic::replace(&csv, |file| file.write_all(report.csv().as_bytes()))?;
-    atomic::replace(&json, |file| {
-        serde_json::to_writer_pretty(&mut *file, &report)?;
-        file.write_all(b"\n")
-    })?;
-    Ok((report.text(), vec![csv, json]))
+    Ok((report.text(), save(&output, "verify", &report.csv(), &report)?))
 }
 
 /// Three grids are needed; two show no order.
 fn ended(outcome: &Outcome, h: f64) -> Result<(), Error> {
     match outcome.state {
         RunState::Done => Ok(()),
-        _ => Err(Error::Run {
-            what: format!("cells of {h} m"),
-            code: outcome.code.unwrap_or(bsmpm_io::exit::BUG),
-            reason: outcome.reason.clone(),
-        }),
+        _ => Err(outcome.error(format!("the run with cells of {h} m"))),
     }
 }

@@ -211,7 +211,7 @@ fn pull_back<R: Real>(tau: &Symmetric<R>, dF: &Tensor<R>) -> Tensor<R> {
     let cofactor = |i: usize, j: usize| at(i + 1, j + 1) * at(i + 2, j + 2) - at(i + 1, j + 2) * at(i + 2, j + 1);
     let inverse = at(0, 0).like(1.0) / determinant(dF);
     let element =
-        |i: usize, j: usize| tau[i][0] * cofactor(j, 0) + tau[i][1] * cofactor(j, 1) + tau[i][2] * cofactor(j, 2);
+        |i: usize, j: usize| tau[i][0] * cofactor(0, j) + tau[i][1] * cofactor(1, j) + tau[i][2] * cofactor(2, j);
     Tensor::from_fn(|i, j| element(i, j) * inverse)
 }
 

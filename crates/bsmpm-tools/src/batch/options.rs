@@ -7,8 +7,8 @@ use bsmpm_io::disk;
 use clap::Args;
 
 use super::{Batch, Limits, memory};
-use crate::Error;
 use crate::launch::{self, SolverProgram, command};
+use crate::{Error, case};
 
 /// How the runs are made, and where they are written.
 #[derive(Clone, Debug, Args)]
@@ -48,11 +48,7 @@ impl Options {
 
     /// Where everything about the case at `path` is written; `kind` ends the name that is chosen without `--output`.
     pub(crate) fn directory(&self, path: &Path, kind: &str) -> PathBuf {
-        self.output.clone().unwrap_or_else(|| {
-            let mut name = path.file_stem().unwrap_or_default().to_owned();
-            name.push(kind);
-            PathBuf::from(name)
-        })
+        self.output.clone().unwrap_or_else(|| case::directory(path, kind))
     }
 
     /// Runs of the case at `path` by `command`, its [`words`](Self::words), below `output`, which is made.

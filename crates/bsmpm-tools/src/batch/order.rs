@@ -45,8 +45,7 @@ impl RunOrder {
 
     /// m  the size of its cells: the root of the largest area of one.
     pub fn cell(&self) -> f64 {
-        let largest = |axis: &GridAxis| (0..axis.cells()).map(|cell| axis.cell(cell)).fold(0.0, f64::max);
-        self.case.grid.axes.iter().map(largest).product::<f64>().sqrt()
+        self.case.grid.axes.iter().map(GridAxis::longest).product::<f64>().sqrt()
     }
 }
 

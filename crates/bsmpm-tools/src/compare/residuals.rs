@@ -65,7 +65,7 @@ pub(super) fn run(arguments: &CompareArguments, step: u64) -> Result<ComparedFil
 
 impl ResidualCourse {
     fn read(label: String, record: &RunRecord, step: u64) -> Result<Self, Error> {
-        let missing = |reason| Error::NoResiduals { directory: record.directory.clone(), reason };
+        let missing = |what: String| Error::Missing { reason: format!("{} holds {what}", record.directory.display()) };
         let all = present(residuals::read(&record.directory.join(RESIDUALS)))?;
         let all = all.ok_or_else(|| missing("no residuals.csv: [output] residuals = true writes it".to_owned()))?;
         let last = all.last().map_or(0, |iterate| iterate.step);

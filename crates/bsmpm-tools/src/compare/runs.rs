@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use bsmpm_io::manifest::Status;
+use bsmpm_scene::words::Word;
 
 use super::CompareArguments;
 use crate::Error;
@@ -90,9 +91,11 @@ fn fits(option: &str, given: usize, runs: usize) -> Result<(), Error> {
 
 /// The column `name` of a run's history, or the only one that records the quantity of that name.
 fn column<'a>(record: &'a RunRecord, name: &str) -> Result<Recorded<'a>, Error> {
-    let directory = || record.directory.clone();
+    let directory = record.directory.display();
+    let missing = |reason| Error::Missing { reason };
     let history = record.history.as_ref().filter(|history| history.values.iter().any(|values| !values.is_empty()));
-    let history = history.ok_or_else(|| Error::NoRow { directory: directory() })?;
+    let history =
+        history.ok_or_else(|| missing(format!("the run in {directory} has left no row of history.csv yet")))?;
     if let Some(column) = record.column(name) {
         return Ok(column);
     }
@@ -100,7 +103,7 @@ fn column<'a>(record: &'a RunRecord, name: &str) -> Result<Recorded<'a>, Error> 
         [only] => Ok(only),
         _ => {
             let known: Vec<_> = history.headings.iter().map(|heading| heading.name.as_str()).collect();
-            Err(Error::NoColumn { directory: directory(), column: name.to_owned(), known: known.join(", ") })
+            Err(missing(format!("history.csv of {directory} has no column \"{name}\"; it has {}", known.join(", "))))
         }
     }
 }
@@ -140,7 +143,8 @@ pub(super) fn labels(arguments: &CompareArguments, records: &[RunRecord]) -> Vec
     if !arguments.labels.is_empty() {
         return arguments.labels.clone();
     }
-    let methods: Option<Vec<String>> = records.iter().map(|record| record.case.stabilisation.clone()).collect();
+    let methods: Option<Vec<String>> =
+        records.iter().map(|record| Some(record.case.stabilisation?.word().to_owned())).collect();
     if let Some(methods) = methods.filter(|methods| arguments.last || (methods.len() > 1 && are_distinct(methods))) {
         return methods;
     }

@@ -3,6 +3,8 @@
 use super::runs::Runs;
 use crate::picture::axes::label;
 use crate::picture::ticks::{Ticks, range};
+use crate::record::short;
+use crate::report::{Table, or_dash};
 
 /// How many rows there are about when nobody says which.
 const ROWS: f64 = 10.0;
@@ -14,19 +16,12 @@ pub(super) fn text(runs: &Runs, at: &[f64]) -> String {
     let at = if at.is_empty() { places(runs) } else { at.to_vec() };
     let heading = label(&runs.x.0, &runs.x.1);
     let heading = if heading.is_empty() { "x".to_owned() } else { heading };
-    let mut columns = vec![[heading].into_iter().chain(at.iter().map(|&x| written(x))).collect::<Vec<_>>()];
+    let mut table = Table::of(&at);
+    table.right(heading, |&x| written(x));
     for (name, places) in &runs.curves {
-        let cells = at.iter().map(|&x| interpolated(places, x).map_or_else(|| "-".to_owned(), written));
-        columns.push([name.clone()].into_iter().chain(cells).collect());
+        table.right(name, |&x| or_dash(interpolated(places, x).map(written)));
     }
-    let widths: Vec<usize> =
-        columns.iter().map(|cells| cells.iter().map(|cell| cell.chars().count()).max().unwrap_or(0)).collect();
-    let row = |index: usize| {
-        let cells = columns.iter().zip(&widths).map(|(cells, &width)| format!("{:>width$}", cells[index]));
-        cells.collect::<Vec<_>>().join("  ") + "\n"
-    };
-    let rows: String = (0..=at.len()).map(row).collect();
-    format!("{}\n{rows}", label(&runs.y.0, &runs.y.1))
+    format!("{}\n{}", label(&runs.y.0, &runs.y.1), table.text(""))
 }
 
 /// Round numbers along the curves; of runs that are single places, where these are.
@@ -57,7 +52,7 @@ fn interpolated(places: &[(f64, f64)], x: f64) -> Option<f64> {
 
 /// A number to six digits.
 fn written(value: f64) -> String {
-    let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
+    let rounded = short(value);
     if rounded != 0.0 && !(1e-4..1e7).contains(&rounded.abs()) { format!("{rounded:e}") } else { rounded.to_string() }
 }
 

@@ -34,10 +34,9 @@ pub(super) struct Actual {
 /// The run in a directory.
 ///
 /// # Errors
-/// [`Error::NoRun`] if there is none, [`Error::Usage`] if it has not ended; those of its manifest.
+/// [`Error::Missing`] if there is none, [`Error::Usage`] if it has not ended; those of its manifest.
 pub(super) fn read(directory: &Path) -> Result<Actual, Error> {
-    let none = || Error::NoRun { directory: directory.to_owned() };
-    let manifest = present(Manifest::read(directory))?.ok_or_else(none)?;
+    let manifest = present(Manifest::read(directory))?.ok_or_else(|| Error::no_run(directory))?;
     if manifest.status == Status::Running {
         return Err(Error::Usage { reason: format!("the run in {} has not ended", directory.display()) });
     }

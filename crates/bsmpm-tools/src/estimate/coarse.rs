@@ -12,10 +12,9 @@ pub(super) const FACTORS: [usize; 4] = [16, 8, 4, 2];
 
 /// The text of a form with cells that many times as long; none where it would be too coarse, or no valid case.
 pub(super) fn text(case: &Case, factor: usize) -> Option<String> {
-    let longest = |axis: &GridAxis| (0..axis.cells()).map(|i| axis.cell(i)).fold(0.0, f64::max);
     let cells = |body: &bsmpm_scene::Body| {
         let [lower, upper] = body.bounds();
-        let across = |axis: usize| (upper[axis] - lower[axis]) / (factor as f64 * longest(&case.grid.axes[axis]));
+        let across = |axis: usize| (upper[axis] - lower[axis]) / (factor as f64 * case.grid.axes[axis].longest());
         across(0).min(across(1))
     };
     if case.bodies.iter().map(cells).fold(f64::INFINITY, f64::min) < FEWEST {

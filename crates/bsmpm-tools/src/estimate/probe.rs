@@ -1,13 +1,11 @@
 //! Runs that an estimate is made from, in a folder that goes with them: the start of the case, its first steps, coarse
 //! forms of it over all its time, and the whole case where that takes no longer than they may.
 
-use bsmpm_io::exit::{CHECK, DONE, STOPPED};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use bsmpm_io::checkpoint::FOLDER;
-use bsmpm_io::manifest::Manifest;
 use bsmpm_io::steps::STEPS;
 use bsmpm_io::table;
 use bsmpm_scene::Case;
@@ -19,7 +17,8 @@ use super::sizes::{self, Bytes};
 use super::stored::{self, StoredEstimate};
 use super::work::Work;
 use crate::Error;
-use crate::launch::{Ending, LaunchTask, SolverProgram, Stop};
+use crate::launch::{LaunchTask, Outcome, RunState, SolverProgram};
+use crate::slurm::clock;
 
 /// Part of the time for probes that the first steps may take, and part of the case's steps.
 const FIRST: [f64; 2] = [0.25, 0.2];
@@ -64,21 +63,19 @@ struct ProbeRow {
 
 /// What a run left.
 struct ProbeRun {
-    code: u8,
-    reason: String,
-    manifest: Option<Manifest>,
+    outcome: Outcome,
     rows: Vec<ProbeRow>,
     directory: PathBuf,
 }
 
 impl ProbeRun {
     fn cpu(&self) -> f64 {
-        self.manifest.as_ref().map_or(0.0, |manifest| manifest.summary.cpu_seconds)
+        self.outcome.cost.cpu_seconds
     }
 
     /// s  by the clock of phases that have timers
     fn clock(&self, phases: &[&str]) -> f64 {
-        let timers = self.manifest.iter().flat_map(|manifest| &manifest.timers);
+        let timers = self.outcome.manifest.iter().flat_map(|manifest| &manifest.timers);
         timers.filter(|(phase, _)| phases.contains(&phase.as_str())).map(|(_, seconds)| seconds).sum()
     }
 
@@ -96,7 +93,7 @@ impl ProbeRun {
 /// Estimates from probes that end at about the deadline; `guess` is what they are planned by.
 ///
 /// # Errors
-/// [`Error::Probe`] if the case's own first steps fail; [`Error::Launch`]; those of the folder.
+/// [`Error::Run`] if the case's own first steps fail; [`Error::Launch`]; those of the folder.
 pub(super) fn estimate(
     plan: &ProbePlan,
     guess: &StoredEstimate,
@@ -104,7 +101,7 @@ pub(super) fn estimate(
     told: &mut dyn FnMut(&str),
 ) -> Result<StoredEstimate, Error> {
     let folder = tempfile::Builder::new().prefix("bsmpm-estimate-").tempdir();
-    let folder = folder.map_err(|source| Error::File(bsmpm_io::Error::file("make", &std::env::temp_dir())(source)))?;
+    let folder = folder.map_err(bsmpm_io::Error::file("make", &std::env::temp_dir()))?;
     let probes = Probes { plan, folder, deadline };
     let start = probes.of_case("start", 0.0)?;
     let wanted = FIRST[0] * probes.left() * guess.work.steps / (guess.unit * guess.work.units());
@@ -155,7 +152,7 @@ fn measured(guess: &StoredEstimate, (start, first): (&ProbeRun, &ProbeRun)) -> S
         checkpoint: start.bytes(FOLDER).unwrap_or(guess.bytes.checkpoint),
         ..guess.bytes
     };
-    let unknowns = first.manifest.as_ref().and_then(|manifest| manifest.sizes.get("unknowns").copied());
+    let unknowns = first.outcome.manifest.as_ref().and_then(|manifest| manifest.sizes.get("unknowns").copied());
     StoredEstimate { unit, start: start.cpu(), frame, bytes, unknowns, ..guess.clone() }
 }
 
@@ -175,9 +172,9 @@ impl Probes<'_> {
     fn of_case(&self, name: &str, steps: f64) -> Result<ProbeRun, Error> {
         let most = format!("{steps:.0}");
         let run = self.run(name, &self.plan.case.text, &["--max-steps", &most], self.plan.ranks)?;
-        match run.code {
-            DONE | CHECK | STOPPED if run.manifest.is_some() => Ok(run),
-            code => Err(Error::Probe { code, reason: run.reason }),
+        match run.outcome.state {
+            RunState::Done | RunState::Stopped if run.outcome.manifest.is_some() => Ok(run),
+            _ => Err(run.outcome.error("the first steps of the case".to_owned())),
         }
     }
 
@@ -207,7 +204,7 @@ impl Probes<'_> {
                     level.work.steps,
                     run.cpu()
                 ),
-                None => format!("cells {factor} times as large: ended early ({}), of no use", run.reason),
+                None => format!("cells {factor} times as large: ended early ({}), of no use", run.outcome.reason),
             });
             levels.extend(level);
         }
@@ -227,8 +224,8 @@ impl Probes<'_> {
         }
         let run = self.run("whole", &case.text, &[], self.plan.ranks)?;
         let (work, taken) = (run.work(), run.cpu() - expected.start - expected.frame * frames.saturating_sub(1) as f64);
-        if !matches!(run.code, DONE | CHECK) || work.units() <= 0.0 {
-            told(&format!("the whole case: ended early ({}), of no use", run.reason));
+        if run.outcome.state != RunState::Done || work.units() <= 0.0 {
+            told(&format!("the whole case: ended early ({}), of no use", run.outcome.reason));
             return Ok(None);
         }
         told(&format!(
@@ -245,20 +242,17 @@ impl Probes<'_> {
     fn run(&self, name: &str, text: &str, further: &[&str], ranks: usize) -> Result<ProbeRun, Error> {
         let folder = self.folder.path();
         let (case, directory) = (folder.join(format!("{name}.toml")), folder.join(format!("{name}.out")));
-        fs::write(&case, text).map_err(|source| Error::File(bsmpm_io::Error::file("write", &case)(source)))?;
-        let mut arguments = vec![case.display().to_string(), "--output".to_owned(), directory.display().to_string()];
-        arguments.extend(further.iter().map(|&word| word.to_owned()));
+        fs::write(&case, text).map_err(bsmpm_io::Error::file("write", &case))?;
         // A start takes a second or two of what may be the whole time.
-        let wall = self.left().ceil().max(2.0) as u64;
-        let clock = format!("{:02}:{:02}:{:02}", wall / 3600, wall / 60 % 60, wall % 60);
-        arguments.extend(["--max-wall".to_owned(), clock]);
+        let wall = clock(self.left().ceil().max(2.0) as u64);
+        let further = further.iter().copied().chain(["--max-wall", &wall]).map(str::to_owned).collect();
         let command = if ranks == 1 { self.plan.command.to_vec() } else { on_ranks(ranks, self.plan.command) };
         let solver = SolverProgram { command: &command, side_by_side: true };
         solver.check()?;
-        let task = LaunchTask { arguments: &arguments, directory: &directory, origin: None, force: true };
-        let code = solver.make(&task, &Stop::default())?;
-        let Ending { code, manifest, reason } = Ending::of(&directory, Some(code));
-        Ok(ProbeRun { code, manifest, reason, rows: rows(&directory), directory })
+        let (origin, force, resume) = (None, true, false);
+        let task = LaunchTask { case: &case, set: &[], further, directory: directory.clone(), origin, force, resume };
+        let outcome = solver.outcome(&task, |_| false)?;
+        Ok(ProbeRun { outcome, rows: rows(&directory), directory })
     }
 }
 

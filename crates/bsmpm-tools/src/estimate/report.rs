@@ -10,8 +10,7 @@ use super::against::Actual;
 use super::sizes::{self, Bytes};
 use super::stored::StoredEstimate;
 use super::work::Work;
-
-const MIB: f64 = (1_u64 << 20) as f64;
+use crate::report::mebibytes;
 
 /// An estimate.
 #[derive(Clone, Debug, Serialize)]
@@ -119,21 +118,24 @@ impl EstimateReport {
 
     fn rows(&self) -> Vec<[String; 3]> {
         let beside = |number: fn(&Actual) -> String| self.actual.as_ref().map_or_else(String::new, number);
-        let mebibytes = |bytes: u64| format!("{:.1} MiB", bytes as f64 / MIB);
         let [memory, newton] = self.memory_per_rank;
         let memory = match newton > memory {
-            true => format!("{}, with Newton's method {}", mebibytes(memory), mebibytes(newton)),
-            false => mebibytes(memory),
+            true => format!("{}, with Newton's method {}", in_mebibytes(memory), in_mebibytes(newton)),
+            false => in_mebibytes(memory),
         };
-        let disk =
-            format!("{}: {} frame(s), {} checkpoint(s), tables", mebibytes(self.disk), self.frames, self.checkpoints);
+        let disk = format!(
+            "{}: {} frame(s), {} checkpoint(s), tables",
+            in_mebibytes(self.disk),
+            self.frames,
+            self.checkpoints
+        );
         let mut rows = vec![
             row("", "estimate", self.title()),
             row("points", &self.points.to_string(), beside(|actual| actual.points.to_string())),
             row("unknowns", &self.unknowns.to_string(), beside(|actual| actual.unknowns.to_string())),
             row("non-zeros of the stiffness", &self.non_zeros.to_string(), String::new()),
-            row("memory of each rank", &memory, beside(|actual| format!("{:.1} MiB", actual.memory as f64 / MIB))),
-            row("disk", &disk, beside(|actual| format!("{:.1} MiB", actual.disk as f64 / MIB))),
+            row("memory of each rank", &memory, beside(|actual| in_mebibytes(actual.memory))),
+            row("disk", &disk, beside(|actual| in_mebibytes(actual.disk))),
             row("steps", &format!("{:.0}", self.work.steps), beside(|actual| actual.steps.to_string())),
             row(
                 "evaluations",
@@ -162,6 +164,10 @@ impl EstimateReport {
         };
         self.actual.as_ref().map_or_else(String::new, title)
     }
+}
+
+fn in_mebibytes(bytes: u64) -> String {
+    format!("{:.1} MiB", mebibytes(bytes))
 }
 
 fn row(what: &str, estimate: &str, actual: String) -> [String; 3] {

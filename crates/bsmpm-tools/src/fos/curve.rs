@@ -1,12 +1,10 @@
 //! Displacement against the strength reduction factor, and the two ways to see failure in it: twice the elastic
 //! displacement, and the kink between the branch before failure and the one after it.
 
+use crate::line::{BENT, FALLEN, FittedLine};
+
 /// Failure, coarsely: this many times the elastic displacement.
 pub(super) const DOUBLED: f64 = 2.0;
-/// The branch after failure: from this many times the elastic displacement ..
-pub(super) const BENT: f64 = 5.0;
-/// .. to this many times; so early that the geometry has not changed yet. The kinks of `bsmpm validate` are taken so, too.
-pub(super) const FALLEN: f64 = 20.0;
 /// Where the trials after the kink find no equilibrium: the end of the branch must show this many times BENT.
 const SHORTEST: f64 = 2.0;
 /// The branch before failure: up to this many times the elastic displacement.
@@ -38,46 +36,12 @@ pub(super) struct Band {
     pub first_failed: Option<f64>,
 }
 
-/// `displacement = at_zero + slope factor`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct FittedLine {
-    at_zero: f64,
-    slope: f64,
-}
-
 /// Where both branches meet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Kink {
     pub factor: f64,
     pub before: FittedLine,
     pub after: FittedLine,
-}
-
-impl FittedLine {
-    fn through(a: (f64, f64), b: (f64, f64)) -> Self {
-        let slope = (b.1 - a.1) / (b.0 - a.0);
-        Self { at_zero: a.1 - slope * a.0, slope }
-    }
-
-    /// The line of least squares; level through a single place.
-    fn fitted(places: &[(f64, f64)]) -> Option<Self> {
-        let count = places.len() as f64;
-        let mean = places.iter().fold((0.0, 0.0), |sum, place| (sum.0 + place.0 / count, sum.1 + place.1 / count));
-        let product: f64 = places.iter().map(|place| (place.0 - mean.0) * (place.1 - mean.1)).sum();
-        let square: f64 = places.iter().map(|place| (place.0 - mean.0).powi(2)).sum();
-        let slope = if square > 0.0 { product / square } else { 0.0 };
-        (!places.is_empty()).then_some(Self { at_zero: mean.1 - slope * mean.0, slope })
-    }
-
-    /// The displacement at a factor.
-    pub fn at(&self, factor: f64) -> f64 {
-        self.at_zero + self.slope * factor
-    }
-
-    /// The factor of a displacement.
-    pub fn reaches(&self, displacement: f64) -> f64 {
-        (displacement - self.at_zero) / self.slope
-    }
 }
 
 impl FactorCurve {

@@ -1,8 +1,9 @@
 //! Which factors a search may ask for next: the search itself, gone on with guesses of the trials that are not known yet. It
 //! knows no runs, and nothing of how a search chooses.
 
-use super::curve::{CurveState, FALLEN};
+use super::curve::CurveState;
 use super::search::{Halt, SearchPlan, search};
+use crate::line::FALLEN;
 
 /// A body stands rather than fails where no weaker one is known to have failed: of the rungs of a ladder most stand.
 const STANDS: f64 = 0.75;

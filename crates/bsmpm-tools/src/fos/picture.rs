@@ -4,10 +4,11 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::curve::{DOUBLED, FALLEN};
+use super::curve::DOUBLED;
 use super::report::{FosReport, FosRow, Verdict};
 use super::subject::Subject;
 use crate::Error;
+use crate::line::FALLEN;
 use crate::picture::axes::{BELOW, ChartAxes, LEFT, LINEAR, title};
 use crate::picture::canvas::Canvas;
 use crate::picture::colour::{self, INK, OUTLINE, Rgb};
@@ -50,8 +51,7 @@ fn mechanism(directory: &Path, end: f64, output: &Path) -> Result<Vec<&'static s
         let is_body =
             |path: &&PathBuf| path.file_name().is_some_and(|name| name.to_string_lossy().starts_with(beginning));
         if let Some(from) = drawn.iter().find(is_body) {
-            fs::copy(from, output.join(name))
-                .map_err(|source| Error::File(bsmpm_io::Error::file("copy", from)(source)))?;
+            fs::copy(from, output.join(name)).map_err(bsmpm_io::Error::file("copy", from))?;
             names.push(name);
         }
     }

@@ -7,6 +7,7 @@ use super::search::{ELASTIC, SearchPlan};
 use super::subject::{Conditions, Subject};
 use super::trial::{End, Trial};
 use crate::record::short;
+use crate::report::{Quoted, Table, some, word};
 
 /// A factor of safety by one criterion.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -128,7 +129,7 @@ impl FosReport {
     /// For the screen.
     pub fn text(&self) -> String {
         let [first, second] = self.conditions.lines();
-        let mut text = format!("{}\n{first}\n{second}\n\n{}", self.title, table(&self.trials, &self.column));
+        let mut text = format!("{}\n{first}\n{second}\n\n{}", self.title, self.table());
         let [kink, doubled] = &self.criteria;
         text += &format!("\nfactor of safety, by the kink:     {}\n", kink.words());
         text += &format!("by twice the elastic displacement: {}\n", doubled.words());
@@ -144,74 +145,46 @@ impl FosReport {
         )
     }
 
+    fn table(&self) -> String {
+        Table::of(&self.trials)
+            .right("factor", |row| row.trial.factor)
+            .right("verdict", |row| word(row.verdict))
+            .right(&self.column, |row| format!("{:.4e}", row.trial.displacement))
+            .right("/ elastic", |row| format!("{:.3}", row.growth))
+            .right("plastic strain", |row| some(row.trial.plastic_strain.map(|strain| format!("{strain:.2e}"))))
+            .right("iterations", |row| row.trial.iterations)
+            .right("cuts", |row| row.trial.cuts)
+            .right("CPU s", |row| format!("{:.2}", row.trial.cpu_seconds))
+            .right("s", |row| format!("{:.2}", row.trial.seconds))
+            .column("", |row| some(row.trial.end.early().map(|early| row.early(early))))
+            .text("")
+    }
+
     /// A row a trial.
     pub fn csv(&self) -> String {
-        let mut made = format!(
-            "factor,verdict,{},growth,plastic_strain,load,steps,iterations,cuts,cpu_seconds,seconds\n",
-            self.column
-        );
-        made += "# -,-,as the case,-,-,-,-,-,-,s,s\n";
-        for FosRow { verdict, growth, trial } in &self.trials {
-            let load = trial.end.early().map_or(1.0, |(load, _)| load);
-            let strain = trial.plastic_strain.map_or_else(String::new, |strain| strain.to_string());
-            made += &format!(
-                "{},{},{},{growth},{strain},{load},{},{},{},{},{}\n",
-                trial.factor,
-                verdict.word(),
-                trial.displacement,
-                trial.steps,
-                trial.iterations,
-                trial.cuts,
-                trial.cpu_seconds,
-                trial.seconds
-            );
-        }
-        made
+        let made = Table::of(&self.trials)
+            .column("factor", |row| row.trial.factor)
+            .column("verdict", |row| word(row.verdict))
+            .column(&self.column, |row| row.trial.displacement)
+            .column("growth", |row| row.growth)
+            .column("plastic_strain", |row| some(row.trial.plastic_strain))
+            .column("load", |row| row.trial.end.early().map_or(1.0, |(load, _)| load))
+            .column("steps", |row| row.trial.steps)
+            .column("iterations", |row| row.trial.iterations)
+            .column("cuts", |row| row.trial.cuts)
+            .column("cpu_seconds", |row| row.trial.cpu_seconds)
+            .column("seconds", |row| row.trial.seconds)
+            .csv(Quoted::Needed);
+        made.replacen('\n', "\n# -,-,as the case,-,-,-,-,-,-,s,s\n", 1)
     }
 }
 
-impl Verdict {
-    fn word(self) -> &'static str {
-        match self {
-            Self::Elastic => "elastic",
-            Self::Stable => "stable",
-            Self::Failed => "failed",
-            Self::NoEquilibrium => "no-equilibrium",
-        }
+impl FosRow {
+    /// What ended a trial early, at a share of its load.
+    fn early(&self, (load, reason): (f64, &str)) -> String {
+        let what = if matches!(self.trial.end, End::Left { .. }) { "left" } else { "stopped" };
+        format!("{what} at {load:.3} of the load: {reason}")
     }
-}
-
-fn table(rows: &[FosRow], column: &str) -> String {
-    let headings = ["factor", "verdict", column, "/ elastic", "plastic strain", "iterations", "cuts", "CPU s", "s"]
-        .map(str::to_owned);
-    let cells = |row: &FosRow| {
-        let Trial { factor, displacement, plastic_strain, iterations, cuts, cpu_seconds, seconds, .. } = &row.trial;
-        [
-            factor.to_string(),
-            row.verdict.word().to_owned(),
-            format!("{displacement:.4e}"),
-            format!("{:.3}", row.growth),
-            plastic_strain.map_or_else(String::new, |strain| format!("{strain:.2e}")),
-            iterations.to_string(),
-            cuts.to_string(),
-            format!("{cpu_seconds:.2}"),
-            format!("{seconds:.2}"),
-        ]
-    };
-    let lines: Vec<[String; 9]> = [headings].into_iter().chain(rows.iter().map(cells)).collect();
-    let width = |column: usize| lines.iter().map(|line| line[column].chars().count()).max().unwrap_or(0);
-    let mut made = String::new();
-    for (index, line) in lines.iter().enumerate() {
-        let cells = line.iter().enumerate().map(|(column, cell)| format!("{cell:>width$}", width = width(column)));
-        made += &cells.collect::<Vec<_>>().join("  ");
-        let row = index.checked_sub(1).map(|row| &rows[row].trial);
-        if let Some((trial, (load, reason))) = row.and_then(|trial| Some((trial, trial.end.early()?))) {
-            let what = if matches!(trial.end, End::Left { .. }) { "left" } else { "stopped" };
-            made += &format!("  {what} at {load:.3} of the load: {reason}");
-        }
-        made.push('\n');
-    }
-    made
 }
 
 /// What the reader of the factor should know.

@@ -3,8 +3,9 @@
 
 use serde::Serialize;
 
-use super::curve::{BENT, Band, CurveState, DOUBLED, FALLEN, FactorCurve};
+use super::curve::{Band, CurveState, DOUBLED, FactorCurve};
 use crate::Error;
+use crate::line::{BENT, FALLEN};
 
 /// The factor of the body that shows the elastic displacement: its materials follow their elastic laws, without strength
 /// that could limit the stress.

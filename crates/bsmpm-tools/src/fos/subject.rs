@@ -3,12 +3,13 @@
 use std::path::{Path, PathBuf};
 
 use bsmpm::model::Regime;
+use bsmpm_scene::words::Word;
 use bsmpm_scene::{Case, GridAxis, MotionPath, Quantity};
 use serde::Serialize;
 
 use super::search::{ELASTIC, LEAST};
 use crate::Error;
-use crate::record::Case as Told;
+use crate::case::{self, parsed};
 
 /// The loosest tolerances with which a factor means anything: a study by finite elements found it 45.6 % too high with
 /// residuals of 1e-1, 2 % with 1e-2, and no difference from 1e-3 on.
@@ -74,13 +75,13 @@ impl Subject {
     /// The case at `path` with overrides, to be searched from the factor `from` on.
     ///
     /// # Errors
-    /// [`Error::NoCase`] for a file that cannot be read, [`Error::BadCase`] with all errors of the case,
+    /// [`Error::Missing`] for a file that cannot be read, [`Error::BadCase`] with all errors of the case,
     /// [`Error::NoFactor`] with all reasons why it has no factor of safety, [`Error::Usage`] for overrides of the factor.
     pub fn read(path: &Path, set: &[String], from: f64) -> Result<Self, Error> {
         if set.iter().any(|set| set.trim_start().starts_with("strength_reduction")) {
             return Err(Error::Usage { reason: format!("--set {FACTOR}: the factor is what the search sets") });
         }
-        let bytes = bsmpm_scene::load(path).map_err(|source| Error::NoCase { path: path.to_owned(), source })?;
+        let bytes = case::load(path)?;
         let mut set = set.to_vec();
         let case = parsed(path, &bytes, &[&set[..], &reduction(from, 1.0)].concat())?;
         let reasons = refusals(&case);
@@ -171,10 +172,6 @@ fn stiffness(case: &Case) -> f64 {
     if needed < UNCHANGED { 1.0 } else { format!("{needed:.2e}").parse().unwrap_or(needed) }
 }
 
-fn parsed(path: &Path, bytes: &[u8], set: &[String]) -> Result<Case, Error> {
-    Case::from_bytes(&path.display().to_string(), bytes, set).map_err(|errors| Error::bad_case(path, &errors))
-}
-
 /// Why a case has no factor of safety, or none that could be trusted.
 fn refusals(case: &Case) -> Vec<String> {
     let is_plastic = case.materials.iter().any(|named| named.material.yields());
@@ -235,14 +232,13 @@ fn ramps(case: &Case) -> impl Iterator<Item = f64> {
 
 impl Conditions {
     fn of(case: &Case) -> Self {
-        let largest = |axis: &GridAxis| (0..axis.cells()).map(|cell| axis.cell(cell)).fold(0.0, f64::max);
         let mut points_per_cell: Vec<usize> = case.bodies.iter().map(|body| body.points_per_cell).collect();
         points_per_cell.dedup();
         Self {
-            cell: [largest(&case.grid.axes[0]), largest(&case.grid.axes[1])],
+            cell: case.grid.axes.each_ref().map(GridAxis::longest),
             order: case.grid.order,
             points_per_cell,
-            stabilisation: Told::of(&case.text).stabilisation.unwrap_or_else(|| "none".to_owned()),
+            stabilisation: case.stabilisation.word().to_owned(),
             background: case.solver.background,
             tolerance: case.solver.tolerance,
             force_tolerance: case.solver.force_tolerance,

@@ -1,15 +1,15 @@
 //! Trials: runs of the case with reduced strength, and what each of them gave.
 
-use bsmpm_io::exit::{CHECK, DONE, LEFT, NO_CONVERGENCE};
 use std::path::{Path, PathBuf};
 
+use bsmpm_io::manifest::Manifest;
 use serde::Serialize;
 
 use super::curve::CurveState;
 use super::jobs::JobSource;
 use super::subject::Subject;
 use crate::Error;
-use crate::launch::{self, Ending, LaunchTask, SolverProgram, Stop};
+use crate::launch::{self, LaunchTask, Outcome, RunCost, RunState, SolverProgram, Stop};
 use crate::plot::FieldName;
 use crate::record::RunRecord;
 
@@ -60,6 +60,11 @@ impl Trial {
     pub fn state(&self) -> CurveState {
         CurveState { factor: self.factor, displacement: self.displacement, whole: self.end == End::Equilibrium }
     }
+
+    pub fn cost(&self) -> RunCost {
+        let Self { cpu_seconds, seconds, steps, iterations, cuts, .. } = *self;
+        RunCost { cpu_seconds, wall_seconds: seconds, peak_memory: 0, steps, iterations, cuts }
+    }
 }
 
 impl End {
@@ -72,41 +77,25 @@ impl End {
     }
 }
 
-/// What a trial is made from.
-struct TrialOrder {
-    arguments: Vec<String>,
-    /// relative to the output directory
-    within: PathBuf,
-    directory: PathBuf,
-    /// of the case as its `run.json` has it
-    text: String,
-    origin: Option<String>,
-}
-
-impl TrialOrder {
-    fn task(&self, force: bool) -> LaunchTask<'_> {
-        LaunchTask { arguments: &self.arguments, directory: &self.directory, origin: self.origin.as_deref(), force }
-    }
-}
-
 impl JobSource for Trials<'_> {
     type Trial = Trial;
 
     fn kept(&self, factor: f64) -> Result<Option<Trial>, Error> {
-        let order = self.order(factor)?;
-        if !order.task(self.force).is_there(|manifest| manifest.case.text == order.text) {
+        let (set, text) = (self.subject.overrides(factor), self.subject.text(factor)?);
+        let task = self.task(factor, &set, &text);
+        if !task.is_there(|manifest| manifest.case.text == text) {
             return Ok(None);
         }
-        self.read(factor, &order.directory, order.within, None).map(Some)
+        self.read(factor, &task.directory, &task.left(None)).map(Some)
     }
 
     /// # Errors
-    /// [`Error::Trial`] for one that ended neither in equilibrium nor for the want of it; [`Error::Launch`], and the errors of
+    /// [`Error::Run`] for one that ended neither in equilibrium nor for the want of it; [`Error::Launch`], and the errors of
     /// files.
     fn make(&self, factor: f64, stop: &Stop) -> Result<Trial, Error> {
-        let order = self.order(factor)?;
-        let code = self.solver.make(&order.task(self.force), stop)?;
-        self.read(factor, &order.directory, order.within, Some(code))
+        let (set, text) = (self.subject.overrides(factor), self.subject.text(factor)?);
+        let task = self.task(factor, &set, &text);
+        self.read(factor, &task.directory, &self.solver.make(&task, stop)?)
     }
 
     fn state(trial: &Trial) -> CurveState {
@@ -115,53 +104,57 @@ impl JobSource for Trials<'_> {
 }
 
 impl Trials<'_> {
-    fn order(&self, factor: f64) -> Result<TrialOrder, Error> {
-        let within = Path::new("trials").join(format!("{factor}.out"));
-        let directory = self.output.join(&within);
-        let mut arguments = vec![self.subject.path().display().to_string()];
-        for set in self.subject.overrides(factor) {
-            arguments.extend(["--set".to_owned(), set]);
+    /// The run of a factor, which makes a case of the text.
+    fn task<'b>(&'b self, factor: f64, set: &'b [String], text: &str) -> LaunchTask<'b> {
+        LaunchTask {
+            case: self.subject.path(),
+            set,
+            further: Vec::new(),
+            directory: self.output.join(within(factor)),
+            // The same text is the same trial, on whatever ranks; but not of another solver.
+            origin: self.solver.stamp().map(|stamp| format!("{stamp}\n\n{text}")),
+            force: self.force,
+            resume: false,
         }
-        arguments.extend(["--quiet", "--force", "--output"].map(str::to_owned));
-        arguments.push(directory.display().to_string());
-        let text = self.subject.text(factor)?;
-        // The same text is the same trial, on whatever ranks; but not of another solver.
-        let origin = self.solver.stamp().map(|stamp| format!("{stamp}\n\n{text}"));
-        Ok(TrialOrder { arguments, within, directory, text, origin })
     }
 
-    fn read(&self, factor: f64, directory: &Path, within: PathBuf, code: Option<u8>) -> Result<Trial, Error> {
-        let ending = Ending::of(directory, code);
-        let broken =
-            |reason: String| Error::Trial { factor, code: ending.code, reason, log: launch::beside(directory, "log") };
-        let manifest = match (&ending.manifest, ending.code) {
-            (Some(manifest), DONE | CHECK | NO_CONVERGENCE | LEFT) => manifest,
-            _ => return Err(broken(ending.reason.clone())),
+    fn read(&self, factor: f64, directory: &Path, outcome: &Outcome) -> Result<Trial, Error> {
+        let code = outcome.code.unwrap_or(u8::MAX);
+        let broken = |reason: String| Error::Run {
+            what: format!("the trial of the factor {factor}"),
+            code,
+            reason: format!("{reason} (whole in {})", launch::beside(directory, "log").display()),
         };
-        let record = RunRecord::read(directory)?;
-        let last = record.column(&self.subject.column).and_then(|column| column.values.last().copied());
-        let displacement = last.ok_or_else(|| broken("it left no displacement".to_owned()))?;
-        let displacement = displacement * self.subject.conditions.stiffness;
-        let load = manifest.failure.as_ref().map_or(0.0, |failure| failure.time / self.subject.end);
-        let end = match ending.code {
-            NO_CONVERGENCE => End::NoEquilibrium { load, reason: ending.reason.clone() },
-            LEFT => End::Left { load, reason: ending.reason.clone() },
-            _ => End::Equilibrium,
+        let carried = |manifest: &Manifest| manifest.failure.as_ref().map_or(0.0, |it| it.time / self.subject.end);
+        let (reason, load) = (outcome.reason.clone(), outcome.manifest.as_ref().map(carried));
+        let end = match (outcome.state, load) {
+            (RunState::Done, Some(_)) => End::Equilibrium,
+            (RunState::NoConvergence, Some(load)) => End::NoEquilibrium { load, reason },
+            (RunState::Left, Some(load)) => End::Left { load, reason },
+            _ => return Err(broken(reason)),
         };
-        let frames = record.frames(&[self.subject.end])?;
+        let column = outcome.history.as_ref().and_then(|history| history.get(&self.subject.column)?.last().copied());
+        let displacement = column.ok_or_else(|| broken("it left no displacement".to_owned()))?;
+        let frames = RunRecord::read(directory)?.frames(&[self.subject.end])?;
         let strains = frames.last().and_then(|frame| FieldName::PlasticStrain.values(frame));
+        let RunCost { cpu_seconds, wall_seconds, steps, iterations, cuts, .. } = outcome.cost;
         Ok(Trial {
             factor,
             end,
-            displacement,
+            displacement: displacement * self.subject.conditions.stiffness,
             plastic_strain: strains.and_then(|strains| strains.into_iter().reduce(f64::max)),
-            steps: manifest.summary.steps,
-            iterations: manifest.summary.iterations,
-            cuts: manifest.summary.cutbacks,
-            cpu_seconds: manifest.summary.cpu_seconds,
-            seconds: manifest.timers.get("wall").copied().unwrap_or(0.0),
-            kept: code.is_none(),
-            directory: within,
+            steps,
+            iterations,
+            cuts,
+            cpu_seconds,
+            seconds: wall_seconds,
+            kept: outcome.kept,
+            directory: within(factor),
         })
     }
+}
+
+/// Where a trial is, relative to the output directory.
+fn within(factor: f64) -> PathBuf {
+    Path::new("trials").join(format!("{factor}.out"))
 }

@@ -1,6 +1,7 @@
 //! The body at chosen times, coloured by a quantity of its points; one range of colours for all times.
 
 use bsmpm_io::frame::Frame;
+use bsmpm_scene::Regime;
 
 use super::field::FieldName;
 use crate::Error;
@@ -11,7 +12,7 @@ use crate::picture::colour::{self, OUTLINE};
 use crate::picture::layout::{Layout, aspect};
 use crate::picture::splat;
 use crate::picture::ticks::range;
-use crate::record::{RecordedRegime, RunRecord, short};
+use crate::record::{RunRecord, short};
 
 const ABOVE: f64 = 130.0;
 const RIGHT: f64 = 60.0;
@@ -24,7 +25,9 @@ pub(super) fn draw(
     wanted: Option<(f64, f64)>,
 ) -> Result<Vec<String>, Error> {
     let values: Option<Vec<_>> = frames.iter().map(|frame| field.values(frame)).collect();
-    let missing = || Error::NoField { directory: record.directory.clone(), field: field.field() };
+    let missing = || Error::Missing {
+        reason: format!("the frames of {} have no field \"{}\"", record.directory.display(), field.field()),
+    };
     let values = values.ok_or_else(missing)?;
     let colours = wanted.unwrap_or_else(|| field.range(&values));
     let region = region(record, frames);
@@ -52,7 +55,7 @@ fn picture(record: &RunRecord, frame: &Frame, values: &[f64], region: [(f64, f64
     let ranges = if record.manifest.grid.is_some() { window(record, &[]) } else { region };
     // What is thrown may leave the walls; what is pushed does not.
     let walls = match record.regime() {
-        RecordedRegime::QuasiStatic if record.manifest.grid.is_some() => record.case.walls,
+        Regime::QuasiStatic if record.manifest.grid.is_some() => record.walls(),
         _ => Default::default(),
     };
     let inside = splat::SplatWindow { ranges, walls };

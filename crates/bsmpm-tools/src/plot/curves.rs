@@ -114,8 +114,7 @@ impl Across {
         let column = *record.columns("penetration").first()?;
         // A strip that stays where it is has no such curve.
         range(column.values.iter().copied()).filter(|range| range.1 > range.0)?;
-        let grid = record.manifest.grid.as_ref();
-        let width = grid.and_then(|grid| record.case.footing?.width(grid)).filter(|_| column.unit == "m");
+        let width = record.footing_width().filter(|_| column.unit == "m");
         let (label, unit) = match width {
             Some(_) => ("Penetration z/B".to_owned(), "-"),
             None => (column.label(), column.shown_unit()),
@@ -149,7 +148,7 @@ impl Picture {
                 None => groups.push(vec![column]),
             }
         }
-        groups.sort_by_key(|group| !group[0].scale.is_empty());
+        groups.sort_by_key(|group| group[0].scale != 1.0);
         groups
     }
 

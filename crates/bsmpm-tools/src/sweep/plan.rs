@@ -7,8 +7,7 @@ use super::axes::{self, SweepAxis};
 use super::quantity::{FACTOR, SweepQuantity};
 use super::reference::Reference;
 use super::study::{Point, Study};
-use crate::Error;
-use crate::batch;
+use crate::{Error, case};
 
 /// What is swept, before anything runs.
 pub(super) struct SweepPlan {
@@ -28,9 +27,8 @@ impl SweepArguments {
         let quantities: Vec<SweepQuantity> =
             self.quantity.iter().map(|text| SweepQuantity::parse(text)).collect::<Result<_, _>>().map_err(usage)?;
         let settings = axes::settings(&axes, self.one_at_a_time).map_err(usage)?;
-        let bytes = batch::load(&self.case)?;
-        let own = Case::from_bytes(&self.case.display().to_string(), &bytes, &self.options.set)
-            .map_err(|errors| Error::bad_case(&self.case, &errors))?;
+        let bytes = case::load(&self.case)?;
+        let own = case::parsed(&self.case, &bytes, &self.options.set)?;
         self.look_through(&quantities, &own)?;
         let reference = Reference::parse(&self.reference);
         reference.check(&quantities)?;

@@ -7,8 +7,8 @@ use super::front::{cheapest, front};
 use super::quantity::SweepQuantity;
 use super::reference::{FoundReference, ReferenceValues};
 use super::study::Point;
-use crate::batch::{Outcome, RunCost, RunState};
-use crate::columns::{Align, aligned, csv};
+use crate::launch::{Outcome, RunCost, RunState};
+use crate::report::{Quoted, Table, mebibytes, some, word};
 
 /// A run with what it is worth.
 #[derive(Clone, Debug, Serialize)]
@@ -150,64 +150,61 @@ impl SweepReport {
     }
 
     fn table(&self) -> String {
-        let mut headings = self.heads.clone();
-        headings.extend(self.quantities.iter().flat_map(|name| [name.clone(), "error".to_owned()]));
-        headings.extend(["CPU s", "s", "MiB", "iterations", "state"].map(str::to_owned));
-        let mut lines = vec![headings];
-        for row in &self.runs {
-            let mut cells = row.settings.clone();
-            for (index, values) in row.values.iter().enumerate() {
-                let values = values.iter().flatten().map(|value| format!("{value:.5}"));
-                cells.push(values.collect::<Vec<_>>().join(" "));
-                let mark = if row.on_front[index] { " *" } else { "" };
-                cells.push(row.errors[index].map_or_else(String::new, |error| format!("{:.3} %{mark}", 100.0 * error)));
-            }
-            let RunCost { cpu_seconds, wall_seconds, peak_memory, iterations, .. } = row.cost;
-            cells.extend([format!("{cpu_seconds:.2}"), format!("{wall_seconds:.2}")]);
-            // That of a search of a factor is not known.
-            let memory = if peak_memory > 0 { format!("{:.0}", peak_memory as f64 / 1048576.0) } else { String::new() };
-            cells.extend([memory, iterations.to_string(), row.remark()]);
-            lines.push(cells);
+        let mut table = Table::of(&self.runs);
+        for (axis, head) in self.heads.iter().enumerate() {
+            table.column(head, |row| &row.settings[axis]);
         }
-        let last = lines[0].len() - 1;
-        aligned(&lines, |column| if column < self.heads.len() || column == last { Align::Left } else { Align::Right })
+        for (index, name) in self.quantities.iter().enumerate() {
+            let values =
+                |row: &SweepRow| row.values[index].iter().flatten().map(|v| format!("{v:.5}")).collect::<Vec<_>>();
+            table.right(name, |row| values(row).join(" ")).right("error", |row| {
+                let mark = if row.on_front[index] { " *" } else { "" };
+                some(row.errors[index].map(|error| format!("{:.3} %{mark}", 100.0 * error)))
+            });
+        }
+        table
+            .right("CPU s", |row| format!("{:.2}", row.cost.cpu_seconds))
+            .right("s", |row| format!("{:.2}", row.cost.wall_seconds))
+            // That of a search of a factor is not known.
+            .right("MiB", |row| {
+                let memory = Some(row.cost.peak_memory).filter(|memory| *memory > 0);
+                some(memory.map(|memory| format!("{:.0}", mebibytes(memory))))
+            })
+            .right("iterations", |row| row.cost.iterations)
+            .column("state", SweepRow::remark)
+            .text("")
             + "*: on the front of cost and error, to which no other run is cheaper and better\n"
     }
 
     /// A row a run.
     pub fn csv(&self) -> String {
-        let mut headings = self.axes.clone();
-        headings.extend(["state", "code"].map(str::to_owned));
-        for (quantity, of) in self.quantities.iter().zip(0..) {
-            let parts = self.reference_parts(of);
-            let part = |index: usize| if parts > 1 { format!("{quantity} [{index}]") } else { quantity.clone() };
-            headings.extend((0..parts).map(part));
-            headings.extend([format!("error {quantity}"), format!("on_front {quantity}")]);
+        let mut table = Table::of(&self.runs);
+        for (axis, key) in self.axes.iter().enumerate() {
+            table.column(key, |row| &row.settings[axis]);
         }
-        headings.extend(
-            ["cpu_seconds", "wall_seconds", "peak_memory_bytes", "steps", "iterations", "cuts"].map(str::to_owned),
-        );
-        headings.extend(["baseline", "reference", "directory", "reason"].map(str::to_owned));
-        let mut lines = vec![headings];
-        lines.extend(self.runs.iter().map(|row| self.csv_row(row)));
-        csv(&lines)
-    }
-
-    fn csv_row(&self, row: &SweepRow) -> Vec<String> {
-        let number = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
-        let mut cells = row.settings.clone();
-        cells.extend([row.state.word().to_owned(), row.code.map_or_else(String::new, |code| code.to_string())]);
-        for (index, values) in row.values.iter().enumerate() {
-            let part = |part: usize| number(values.as_ref().and_then(|values| values.get(part).copied()));
-            cells.extend((0..self.reference_parts(index)).map(part));
-            cells.extend([number(row.errors[index]), row.on_front[index].to_string()]);
+        table.column("state", |row| word(row.state)).column("code", |row| some(row.code));
+        for (index, quantity) in self.quantities.iter().enumerate() {
+            let parts = self.reference_parts(index);
+            for part in 0..parts {
+                let heading = if parts > 1 { format!("{quantity} [{part}]") } else { quantity.clone() };
+                table.column(heading, |row| some(row.values[index].as_ref().and_then(|values| values.get(part))));
+            }
+            table
+                .column(format!("error {quantity}"), |row| some(row.errors[index]))
+                .column(format!("on_front {quantity}"), |row| row.on_front[index]);
         }
-        let RunCost { cpu_seconds, wall_seconds, peak_memory, steps, iterations, cuts } = row.cost;
-        cells.extend([cpu_seconds.to_string(), wall_seconds.to_string()]);
-        cells.extend([peak_memory, steps, iterations, cuts].map(|count| count.to_string()));
-        cells.extend([row.is_baseline, row.is_reference].map(|flag| flag.to_string()));
-        cells.extend([row.directory.clone().unwrap_or_default(), row.reason.clone()]);
-        cells
+        table
+            .column("cpu_seconds", |row| row.cost.cpu_seconds)
+            .column("wall_seconds", |row| row.cost.wall_seconds)
+            .column("peak_memory_bytes", |row| row.cost.peak_memory)
+            .column("steps", |row| row.cost.steps)
+            .column("iterations", |row| row.cost.iterations)
+            .column("cuts", |row| row.cost.cuts)
+            .column("baseline", |row| row.is_baseline)
+            .column("reference", |row| row.is_reference)
+            .column("directory", |row| some(row.directory.as_ref()))
+            .column("reason", |row| &row.reason)
+            .csv(Quoted::Needed)
     }
 
     /// The number of parts of a quantity.
@@ -229,7 +226,7 @@ impl SweepRow {
         let marks = [(self.is_baseline, "baseline"), (self.is_reference, "reference"), (self.kept, "kept")];
         let marks = marks.iter().filter(|(is, _)| *is).map(|(_, mark)| format!(", {mark}")).collect::<String>();
         let reason = if self.reason.is_empty() { String::new() } else { format!(": {}", self.reason) };
-        format!("{}{code}{marks}{reason}", self.state.word())
+        format!("{}{code}{marks}{reason}", word(self.state))
     }
 }
 

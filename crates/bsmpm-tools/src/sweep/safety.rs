@@ -2,12 +2,14 @@
 
 use std::path::PathBuf;
 
+use bsmpm_io::exit::DONE;
 use bsmpm_io::table::{Columns, TableColumn};
 
 use super::quantity::FACTOR;
 use crate::Error;
-use crate::batch::{Batch, Outcome, RunCost, RunOrder, RunState};
+use crate::batch::{Batch, RunOrder};
 use crate::fos;
+use crate::launch::{Outcome, RunState};
 
 /// The width of its band; the estimate is finer.
 const WIDTH: f64 = 0.02;
@@ -43,27 +45,13 @@ pub(super) fn outcome(batch: &Batch, order: &RunOrder) -> Outcome {
 }
 
 fn of(found: fos::FoundFactor, directory: PathBuf) -> Outcome {
-    let cost = RunCost {
-        cpu_seconds: found.cpu_seconds,
-        wall_seconds: found.seconds,
-        peak_memory: 0,
-        steps: found.steps,
-        iterations: found.iterations,
-        cuts: found.cuts,
-    };
+    let cost = found.cost;
     let Some(factor) = found.factor else {
         let reason = format!("no failure up to the factor {}", RANGE[1]);
         return Outcome { cost, directory: Some(directory), ..Outcome::never(RunState::Broken, reason) };
     };
     let headings = ["time", FACTOR].map(|name| TableColumn::new(name, "-")).to_vec();
     let history = Some(Columns { headings, values: vec![vec![1.0], vec![factor]] });
-    Outcome {
-        state: RunState::Done,
-        code: Some(0),
-        reason: String::new(),
-        history,
-        cost,
-        kept: found.kept,
-        directory: Some(directory),
-    }
+    let (code, kept, directory) = (Some(DONE), found.kept, Some(directory));
+    Outcome { code, history, cost, kept, directory, ..Outcome::never(RunState::Done, String::new()) }
 }

@@ -16,11 +16,11 @@ pub(super) fn draw(
     base: &Path,
     output: &Path,
 ) -> Result<(), Error> {
-    let left = |name: &String| outcomes.get(name).filter(|outcome| outcome.has_rows());
+    let left = |name: &String| outcomes.get(name).filter(|outcome| outcome.run.has_rows());
     let (mut directories, mut labels, mut x_values) = (Vec::new(), Vec::new(), Vec::new());
     for name in &figure.runs {
         if let Some(outcome) = left(name) {
-            directories.push(outcome.directory.clone());
+            directories.extend(outcome.run.directory.clone());
             labels.push(name.clone());
         }
     }
@@ -28,7 +28,7 @@ pub(super) fn draw(
         for (name, x) in names.iter().zip(&figure.x_values) {
             // The last row of a run that stopped is no point of this curve.
             if let Some(outcome) = left(name).filter(|outcome| outcome.stopped.is_none()) {
-                directories.push(outcome.directory.clone());
+                directories.extend(outcome.run.directory.clone());
                 labels.push(label.clone());
                 x_values.push(*x);
             }

@@ -3,11 +3,7 @@
 use super::course::reached;
 use super::matrix::MatrixKink;
 use super::measured::Measured;
-
-/// The branch after a kink: from this many times the elastic displacement ..
-const BENT: f64 = 5.0;
-/// .. to this many times; so early that the geometry has not changed yet.
-const FALLEN: f64 = 20.0;
+use crate::line::{BENT, FALLEN};
 
 /// Where the straight line through the beginning of the branch after the kink meets the elastic one, and in the remark where
 /// twice the elastic displacement is reached. A curve that has not gone that far shows no failure, whatever has ended it:

@@ -8,7 +8,7 @@ use serde::Deserialize;
 
 use super::expand::expand;
 use crate::Error;
-use crate::columns::number;
+use crate::report::number;
 
 /// When something is run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
@@ -222,7 +222,7 @@ fn time() -> String {
 
 impl ValidationMatrix {
     pub fn read(path: &Path) -> Result<Self, Error> {
-        let text = fs::read_to_string(path).map_err(|source| Error::NoReference { path: path.to_owned(), source })?;
+        let text = fs::read_to_string(path).map_err(Error::unread("reference", path))?;
         let bad = |reason: String| Error::BadReference { path: path.to_owned(), reason };
         let mut written: toml::Table = toml::from_str(&text).map_err(|error| bad(error.to_string()))?;
         expand(&mut written).map_err(bad)?;

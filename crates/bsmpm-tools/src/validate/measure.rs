@@ -7,6 +7,7 @@ use super::kink::failure;
 use super::matrix::{MatrixKink, MatrixPlace, MatrixRow, MeasuredOrder, Operation};
 use super::measured::{Lack, Measured};
 use super::runs::MatrixOutcome;
+use crate::line::FittedLine;
 
 /// The number of a row, or why there is none.
 pub(super) fn value(row: &MatrixRow, outcomes: &BTreeMap<String, MatrixOutcome>) -> Result<Measured, Lack> {
@@ -34,7 +35,7 @@ pub(super) fn value(row: &MatrixRow, outcomes: &BTreeMap<String, MatrixOutcome>)
 
 fn column(outcomes: &BTreeMap<String, MatrixOutcome>, run: &str, name: &str) -> Result<Vec<f64>, String> {
     let outcome = outcomes.get(run).ok_or_else(|| format!("{run} was not run"))?;
-    let history = outcome.history.as_ref().ok_or_else(|| format!("{run} left no history"))?;
+    let history = outcome.run.history.as_ref().ok_or_else(|| format!("{run} left no history"))?;
     let values = history.get(name).ok_or_else(|| format!("{run} has no column {name}"))?;
     if values.is_empty() { Err(format!("{run} has no row")) } else { Ok(values.to_vec()) }
 }
@@ -137,18 +138,12 @@ fn observed_order(order: &MeasuredOrder, values: &[f64]) -> Result<Measured, Str
     let exact = order.exact.ok_or("an order needs `exact`")?;
     let places: Vec<(f64, f64)> =
         order.sizes.iter().zip(values).map(|(size, value)| (size.ln(), (value - exact).abs().ln())).collect();
-    let count = places.len() as f64;
-    let mean = places.iter().fold((0.0, 0.0), |sum, place| (sum.0 + place.0 / count, sum.1 + place.1 / count));
-    let (mut product, mut square) = (0.0, 0.0);
-    for (size, error) in &places {
-        product += (size - mean.0) * (error - mean.1);
-        square += (size - mean.0).powi(2);
-    }
+    let line = FittedLine::fitted(&places).ok_or("an order needs two sizes")?;
     let [.., before, last] = &places[..] else { return Err("an order needs two sizes".into()) };
     let pair = (before.1 - last.1) / (before.0 - last.0);
     let limit = extrapolated(order, values).map_or_else(|reason| reason, |limit| format!("{:.4}", limit.value));
     let remark = format!("last two sizes: {pair:.2}; limit of the last three: {limit}");
-    Ok(Measured { value: product / square, remark: Some(remark) })
+    Ok(Measured { value: line.slope, remark: Some(remark) })
 }
 
 /// Richardson's limit of the last three sizes, which must shrink by one ratio, with the order that they show.

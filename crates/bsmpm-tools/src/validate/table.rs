@@ -1,7 +1,7 @@
 //! The table: for the screen study by study, as Markdown and as CSV whole.
 
-use super::runs::MatrixCost;
-use crate::columns::number;
+use crate::launch::RunCost;
+use crate::report::{Quoted, Table, number, some};
 
 /// How a row stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,7 +33,7 @@ pub(super) struct TableRow {
     pub remark: String,
     /// exit codes of its runs, once if they are all the same
     pub codes: String,
-    pub cost: MatrixCost,
+    pub cost: RunCost,
 }
 
 impl RowVerdict {
@@ -55,93 +55,53 @@ impl RowVerdict {
     }
 }
 
-const HEADINGS: [&str; 13] = [
-    "quantity",
-    "reference",
-    "source",
-    "ours",
-    "deviation",
-    "allowed",
-    "verdict",
-    "exit",
-    "steps",
-    "cuts",
-    "iterations",
-    "s",
-    "remark",
-];
-
 impl TableRow {
-    fn cells(&self) -> [String; 13] {
-        let deviation = self.ours.zip(self.reference).filter(|(_, reference)| *reference != 0.0);
-        [
-            self.quantity.clone(),
-            self.reference.map(number).unwrap_or_default(),
-            self.source.clone(),
-            self.ours.map_or_else(|| "none".to_owned(), number),
-            deviation
-                .map(|(ours, reference)| format!("{:+.2} %", 100.0 * (ours / reference - 1.0)))
-                .unwrap_or_default(),
-            self.wanted.clone(),
-            self.verdict.word().to_owned(),
-            self.codes.clone(),
-            self.cost.steps.to_string(),
-            self.cost.cuts.to_string(),
-            self.cost.iterations.to_string(),
-            format!("{:.1}", self.cost.seconds),
-            self.remark.clone(),
-        ]
+    fn deviation(&self) -> String {
+        let both = self.ours.zip(self.reference).filter(|(_, reference)| *reference != 0.0);
+        some(both.map(|(ours, reference)| format!("{:+.2} %", 100.0 * (ours / reference - 1.0))))
     }
 }
 
-/// A study for the screen, in columns.
+fn add_columns(table: &mut Table<TableRow>) {
+    table
+        .column("quantity", |row| &row.quantity)
+        .right("reference", |row| some(row.reference.map(number)))
+        .right("source", |row| &row.source)
+        .right("ours", |row| row.ours.map_or_else(|| "none".to_owned(), number))
+        .right("deviation", TableRow::deviation)
+        .right("allowed", |row| &row.wanted)
+        .right("verdict", |row| row.verdict.word())
+        .right("exit", |row| &row.codes)
+        .right("steps", |row| row.cost.steps)
+        .right("cuts", |row| row.cost.cuts)
+        .right("iterations", |row| row.cost.iterations)
+        .right("s", |row| format!("{:.1}", row.cost.wall_seconds))
+        .column("remark", |row| &row.remark);
+}
+
+/// A study for the screen, in columns; sources and counts are in the files.
 pub(super) fn text(title: &str, rows: &[TableRow]) -> String {
-    let shown = [0, 1, 3, 4, 5, 6, 11]; // sources and counts are in the files
-    let mut lines: Vec<Vec<String>> = vec![shown.iter().map(|&column| HEADINGS[column].to_owned()).collect()];
-    lines.extend(rows.iter().map(|row| {
-        let cells = row.cells();
-        shown.iter().map(|&column| cells[column].clone()).collect()
-    }));
-    let width = |column: usize| lines.iter().map(|line| line[column].chars().count()).max().unwrap_or(0);
-    let widths: Vec<usize> = (0..shown.len()).map(width).collect();
-    let aligned = |line: &Vec<String>| {
-        let cell = |(column, text): (usize, &String)| match column {
-            0 => format!("{text:<width$}", width = widths[column]),
-            _ => format!("{text:>width$}", width = widths[column]),
-        };
-        line.iter().enumerate().map(cell).collect::<Vec<_>>().join("  ")
-    };
-    let mut made = format!("\n{title}\n");
-    for (index, line) in lines.iter().enumerate() {
-        let remark = index.checked_sub(1).map_or("remark", |row| &rows[row].remark);
-        made += format!("  {}  {remark}", aligned(line)).trim_end();
-        made.push('\n');
-    }
-    made.trim_end().to_owned()
+    let mut table = Table::of(rows);
+    add_columns(&mut table);
+    table.only(&["quantity", "reference", "ours", "deviation", "allowed", "verdict", "s", "remark"]);
+    format!("\n{title}\n{}", table.text("  ")).trim_end().to_owned()
 }
 
 /// All rows, a table a study.
 pub(super) fn markdown(rows: &[TableRow]) -> String {
-    let mut made = String::from("# Validation\n");
-    for part in rows.chunk_by(|a, b| a.study == b.study) {
-        made +=
-            &format!("\n## {}\n\n| {} |\n|{}\n", part[0].study, HEADINGS.join(" | "), " --- |".repeat(HEADINGS.len()));
-        for row in part {
-            made += &format!("| {} |\n", row.cells().map(|cell| cell.replace('|', "\\|")).join(" | "));
-        }
-    }
-    made
+    let of_study = |part: &[TableRow]| {
+        let mut table = Table::of(part);
+        add_columns(&mut table);
+        format!("\n## {}\n\n{}", part[0].study, table.markdown())
+    };
+    "# Validation\n".to_owned() + &rows.chunk_by(|a, b| a.study == b.study).map(of_study).collect::<String>()
 }
 
 /// All rows for programs.
 pub(super) fn csv(rows: &[TableRow]) -> String {
-    let quoted = |cell: &String| format!("\"{}\"", cell.replace('"', "\"\""));
-    let mut made = format!("study,{}\n", HEADINGS.join(","));
-    for row in rows {
-        let cells: Vec<String> = [row.study.clone()].iter().chain(&row.cells()).map(quoted).collect();
-        made += &format!("{}\n", cells.join(","));
-    }
-    made
+    let mut table = Table::of(rows);
+    add_columns(table.column("study", |row| &row.study));
+    table.csv(Quoted::All)
 }
 
 #[cfg(test)]
@@ -160,7 +120,7 @@ mod tests {
             verdict,
             remark: "coarse".into(),
             codes: "0".into(),
-            cost: MatrixCost { steps: 20, ..MatrixCost::default() },
+            cost: RunCost { steps: 20, ..RunCost::default() },
         };
         let rows = [row("p/c", Some(5.2), RowVerdict::Passed), row("longer", None, RowVerdict::Failed)];
         let text = text("A study", &rows);

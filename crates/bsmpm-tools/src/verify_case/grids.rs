@@ -3,9 +3,9 @@
 use bsmpm_scene::{Case, GridAxis};
 
 use super::{TimeStep, VerifyArguments};
-use crate::Error;
 use crate::batch::RunOrder;
 use crate::sweep::split;
+use crate::{Error, case};
 
 /// Ratios below this make differences that drown in everything else (Celik et al. want 1.3).
 const LEAST: f64 = 1.1;
@@ -26,8 +26,7 @@ impl Grids {
     /// the case cannot have, with all of their errors.
     pub fn of(arguments: &VerifyArguments, bytes: &[u8]) -> Result<Self, Error> {
         let path = &arguments.case;
-        let own = Case::from_bytes(&path.display().to_string(), bytes, &arguments.options.set)
-            .map_err(|errors| Error::bad_case(path, &errors))?;
+        let own = case::parsed(path, bytes, &arguments.options.set)?;
         let cell = cell(&own)?;
         let cells = arguments.cells(cell)?;
         let (mut orders, mut errors) = (Vec::new(), Vec::new());

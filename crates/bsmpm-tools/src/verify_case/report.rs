@@ -6,10 +6,10 @@ use serde::Serialize;
 use super::grids::Grids;
 use super::{TimeStep, VerifyArguments};
 use crate::Error;
-use crate::batch::{Outcome, RunCost};
-use crate::columns::{Align, aligned, csv};
 use crate::grid_convergence::{Course, Index};
+use crate::launch::{Outcome, RunCost};
 use crate::record::short;
+use crate::report::{Quoted, Table, or_dash, some, word};
 use crate::sweep::QuantityPart;
 
 /// Orders below it converge too slowly for the next term of the series to be small.
@@ -92,30 +92,19 @@ impl VerifyReport {
     /// For the screen.
     pub fn text(&self) -> String {
         let [h1, h2, h3] = self.cells.map(short);
-        let mut lines = vec![
-            ["quantity", "time", "coarse", "middle", "fine", "order", "extrapolated", "GCI %", "GCI ratio", "verdict"]
-                .map(str::to_owned)
-                .to_vec(),
-        ];
-        for row in &self.rows {
-            let [f1, f2, f3] = row.values.map(|value| short(value).to_string());
-            let index = &row.index;
-            let digits = |value: Option<f64>, digits: usize| value.map_or("-".to_owned(), |v| format!("{v:.digits$}"));
-            lines.push(vec![
-                row.quantity.clone(),
-                row.time.map_or_else(|| "end".to_owned(), |time| time.to_string()),
-                f3,
-                f2,
-                f1,
-                digits(index.order, 2),
-                index.extrapolated.map_or("-".to_owned(), |value| short(value).to_string()),
-                digits(index.fine.map(|band| 100.0 * band), 3),
-                digits(index.ratio, 3),
-                row.verdict.clone(),
-            ]);
-        }
-        let last = lines[0].len() - 1;
-        let table = aligned(&lines, |column| if column == 0 || column == last { Align::Left } else { Align::Right });
+        let digits = |value: Option<f64>, digits: usize| or_dash(value.map(|value| format!("{value:.digits$}")));
+        let mut table = Table::of(&self.rows);
+        table
+            .column("quantity", |row| &row.quantity)
+            .right("time", VerifyRow::time)
+            .right("coarse", |row| short(row.values[2]))
+            .right("middle", |row| short(row.values[1]))
+            .right("fine", |row| short(row.values[0]))
+            .right("order", |row| digits(row.index.order, 2))
+            .right("extrapolated", |row| or_dash(row.index.extrapolated.map(short)))
+            .right("GCI %", |row| digits(row.index.fine.map(|band| 100.0 * band), 3))
+            .right("GCI ratio", |row| digits(row.index.ratio, 3))
+            .column("verdict", |row| &row.verdict);
         let cpu: f64 = self.costs.iter().map(|cost| cost.cpu_seconds).sum();
         let steps = self.steps.map(short).map(|step| step.to_string()).join(", ");
         let why = match self.time_step {
@@ -124,43 +113,38 @@ impl VerifyReport {
         };
         format!(
             "{}\ncells of {h3}, {h2} and {h1} m, points per cell kept; steps {} ({steps}, the finest grid first): {why}\n\n\
-             {table}\nGCI: 1.25 |change| / |value| / (r^order - 1), the band about the value on the fine grid.\n{cpu:.1} CPU s\n",
-            self.title, self.time_step
+             {}\nGCI: 1.25 |change| / |value| / (r^order - 1), the band about the value on the fine grid.\n{cpu:.1} CPU s\n",
+            self.title,
+            self.time_step,
+            table.text("")
         )
     }
 
     /// A row a quantity and time.
     pub fn csv(&self) -> String {
-        let headings = [
-            "quantity",
-            "unit",
-            "time",
-            "h_fine",
-            "h_middle",
-            "h_coarse",
-            "fine",
-            "middle",
-            "coarse",
-            "course",
-            "order",
-            "extrapolated",
-            "gci_fine",
-            "gci_coarse",
-            "gci_ratio",
-            "verdict",
-        ];
-        let mut lines = vec![headings.map(str::to_owned).to_vec()];
-        let number = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
-        for VerifyRow { quantity, unit, time, values, index, verdict } in &self.rows {
-            let mut cells =
-                vec![quantity.clone(), unit.clone(), time.map_or("end".to_owned(), |time| time.to_string())];
-            cells.extend(self.cells.iter().chain(values).map(f64::to_string));
-            cells.push(index.course.word().to_owned());
-            cells.extend([index.order, index.extrapolated, index.fine, index.coarse, index.ratio].map(number));
-            cells.push(verdict.clone());
-            lines.push(cells);
+        let mut table = Table::of(&self.rows);
+        table.column("quantity", |row| &row.quantity).column("unit", |row| &row.unit).column("time", VerifyRow::time);
+        for (heading, cell) in ["h_fine", "h_middle", "h_coarse"].into_iter().zip(self.cells) {
+            table.column(heading, |_| cell);
         }
-        csv(&lines)
+        for (index, heading) in ["fine", "middle", "coarse"].into_iter().enumerate() {
+            table.column(heading, |row| row.values[index]);
+        }
+        table
+            .column("course", |row| word(row.index.course))
+            .column("order", |row| some(row.index.order))
+            .column("extrapolated", |row| some(row.index.extrapolated))
+            .column("gci_fine", |row| some(row.index.fine))
+            .column("gci_coarse", |row| some(row.index.coarse))
+            .column("gci_ratio", |row| some(row.index.ratio))
+            .column("verdict", |row| &row.verdict)
+            .csv(Quoted::Needed)
+    }
+}
+
+impl VerifyRow {
+    fn time(&self) -> String {
+        self.time.map_or_else(|| "end".to_owned(), |time| time.to_string())
     }
 }
 

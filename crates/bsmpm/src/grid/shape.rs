@@ -50,15 +50,20 @@ pub struct Shape<const D: usize> {
 /// Zeros behind the rows; fewer than a point has numbers.
 const BEHIND: usize = 3;
 
-/// Runs `$body` with the constant `W` = q + 1, so that the loops over a patch's nodes are unrolled; 1 is the degree
-/// below linear functions, constant in a cell.
+/// Runs `$body` with the constant `W` = q + 1, so that the loops over a patch's nodes are unrolled; `lowered` functions may
+/// be of the degree below linear ones, constant in a cell.
 macro_rules! with_width {
-    ($width:expr, $W:ident => $body:expr) => {
+    (lowered $width:expr, $W:ident => $body:expr) => {
         match $width {
             1 => {
                 const $W: usize = 1;
                 $body
             }
+            width => with_width!(width, $W => $body),
+        }
+    };
+    ($width:expr, $W:ident => $body:expr) => {
+        match $width {
             2 => {
                 const $W: usize = 2;
                 $body
@@ -132,7 +137,7 @@ impl<const D: usize> Shape<D> {
             stride: width,
             merged: None,
         };
-        with_width!(width, W => lower.evaluate_lower::<W>(grid, points));
+        with_width!(lowered width, W => lower.evaluate_lower::<W>(grid, points));
         lower
     }
 
@@ -208,7 +213,7 @@ impl<const D: usize> Shape<D> {
     /// N_Ip of every node of point `p`, axis 0 slowest, for sums over a patch.
     #[inline]
     pub(crate) fn values_into(&self, p: usize, out: &mut [f64]) {
-        with_width!(self.width, W => {
+        with_width!(lowered self.width, W => {
             let support = self.values::<W>(p);
             out.iter_mut().enumerate().for_each(|(k, value)| *value = support.value(k));
         });
@@ -216,7 +221,7 @@ impl<const D: usize> Shape<D> {
 
     /// N_Ip of every node of point `p`, axis 0 slowest; for tests.
     pub fn values_of(&self, p: usize) -> Vec<f64> {
-        with_width!(self.width, W => {
+        with_width!(lowered self.width, W => {
             let support = self.values::<W>(p);
             (0..W.pow(D as u32)).map(|k| support.value(k)).collect()
         })

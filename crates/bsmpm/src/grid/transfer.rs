@@ -4,6 +4,7 @@
 //! in a block before it is added to its column's [`Contributions`]: sums over points have one order, whatever the number of
 //! ranks and threads. Threads share the columns of cells. Nodal arrays are flat.
 
+mod columns;
 mod patch;
 
 use super::contributions::Contributions;
@@ -12,11 +13,9 @@ use crate::kinematics::{Kinematics, Slope};
 use crate::lanes;
 use crate::stabilisation::Grouped;
 use crate::tensor::Vector;
+use columns::{apart, joined, nothing, share, unfilled};
 use patch::{Divergence, Gradients};
-use rayon::prelude::*;
-use std::marker::PhantomData;
 use std::ops::Range;
-use std::sync::Mutex;
 
 /// Largest number of nodes of a patch: (3 + 1)^3.
 const MOST_NODES: usize = 64;
@@ -38,7 +37,7 @@ pub fn to_nodes_grouped<const D: usize, const C: usize>(
     grouped: Grouped<'_>,
     value: impl Fn(usize) -> [f64; C] + Sync,
 ) -> Contributions {
-    with_width!(shape.width(), W => scatter(shape, grouped, |points, block: &mut PatchBlock<C>| {
+    with_width!(lowered shape.width(), W => scatter(shape, grouped, |points, block: &mut PatchBlock<C>| {
         for p in points {
             let (support, value) = (shape.values::<W>(p), value(p));
             for (k, sums) in block[..const { W.pow(D as u32) }].iter_mut().enumerate() {
@@ -59,7 +58,7 @@ pub fn largest_to_nodes<const D: usize>(
     value: impl Fn(usize) -> f64,
 ) {
     let count = grouped.count();
-    with_width!(shape.width(), W => {
+    with_width!(lowered shape.width(), W => {
         for patch in shape.patches() {
             for p in patch.points.clone() {
                 let (support, value) = (shape.values::<W>(p), value(p));
@@ -90,7 +89,8 @@ pub fn to_points_grouped<const D: usize, const C: usize, T: Send>(
     nodal: &[f64],
     found: impl Fn(usize, [f64; C]) -> T + Sync,
 ) -> Vec<T> {
-    with_width!(shape.width(), W => at_points(shape, |number, block: &mut PatchBlock<C>, out: &mut Vec<T>| {
+    let scratch = || [[0.0; C]; MOST_NODES];
+    with_width!(lowered shape.width(), W => at_points(shape, scratch, |number, block, out: &mut Vec<T>| {
         for (group, points) in grouped.runs(shape.patches()[number].points.clone()) {
             gathered(shape, nodal, number, (group, grouped.count()), block);
             for p in points {
@@ -108,18 +108,21 @@ pub fn to_points_grouped<const D: usize, const C: usize, T: Send>(
     }))
 }
 
-/// Gather with gradients: what `found` makes of (grad u)_p = sum_I u_I (x) grad N_Ip (step 4a), for every point; the points
-/// are at `x`, m.
+/// Gather with gradients: what `found` makes of (grad u)_p = sum_I u_I (x) grad N_Ip (step 4a), for every point; the
+/// points are at `x`, m.
 pub fn gradients<K: Kinematics<D>, const D: usize, T: Send>(
     (shape, x): (&Shape<D>, &[Vector<D>]),
     u: &[f64],
     found: impl Fn(usize, K::Gradient) -> T + Sync,
 ) -> Vec<T> {
-    with_width!(shape.width(), W => at_points(shape, |number, block: &mut PatchBlock<D>, out: &mut Vec<T>| {
+    let most = shape.patches().iter().map(|patch| patch.points.len()).max().unwrap_or(0);
+    let scratch = || ([[0.0; D]; MOST_NODES], Vec::with_capacity(most));
+    with_width!(shape.width(), W => at_points(shape, scratch, |number, (block, gradients), out: &mut Vec<T>| {
         let patch = &shape.patches()[number];
         gather(u, shape.offsets(), patch.first_node, (0, 1), block);
         let (rows, points) = (shape.rows(), patch.points.clone());
-        lanes::run(Gradients::<K, T, _, D, W> { rows, x, points, block, found: &found, out, kinematics: PhantomData });
+        lanes::run(Gradients::<K, D, W> { rows, x, points: points.clone(), block, out: gradients });
+        out.extend(points.zip(gradients.drain(..)).map(|(p, gradient)| found(p, gradient)));
     }))
 }
 
@@ -216,52 +219,24 @@ fn scatter_columns<const D: usize, const C: usize, F: FnMut(Range<usize>, &mut P
 }
 
 /// What the patches leave at their points, in the order of the points.
-fn at_points<const D: usize, const C: usize, T: Send>(
+fn at_points<const D: usize, S, T: Send>(
     shape: &Shape<D>,
-    work: impl Fn(usize, &mut PatchBlock<C>, &mut Vec<T>) + Sync,
+    scratch: impl Fn() -> S + Sync,
+    work: impl Fn(usize, &mut S, &mut Vec<T>) + Sync,
 ) -> Vec<T> {
     if rayon::current_num_threads() == 1 {
-        let (mut block, mut out) = ([[0.0; C]; MOST_NODES], Vec::with_capacity(shape.len()));
-        (0..shape.patches().len()).for_each(|patch| work(patch, &mut block, &mut out));
+        let (mut scratch, mut out) = (scratch(), Vec::with_capacity(shape.len()));
+        (0..shape.patches().len()).for_each(|patch| work(patch, &mut scratch, &mut out));
         return out;
     }
     let parts = unfilled(shape.columns().len());
     share(parts.len(), &|index| {
         let column = &shape.columns()[index];
-        let (mut block, mut out) = ([[0.0; C]; MOST_NODES], Vec::with_capacity(column.points.len()));
-        column.patches.clone().for_each(|patch| work(patch, &mut block, &mut out));
+        let (mut scratch, mut out) = (scratch(), Vec::with_capacity(column.points.len()));
+        column.patches.clone().for_each(|patch| work(patch, &mut scratch, &mut out));
         *parts[index].lock().expect("the column's only thread") = out;
     });
     joined(parts)
-}
-
-/// Contributions of no point yet, `width` numbers a node and level.
-fn nothing<const D: usize>(shape: &Shape<D>, width: usize) -> Contributions {
-    let columns = shape.columns().iter().map(|column| column.column).collect();
-    Contributions::zeros(shape.extent(), width * shape.levels(), columns)
-}
-
-/// The sums of every column, for a thread of its own.
-fn apart(contributions: &mut Contributions) -> Vec<Mutex<&mut [f64]>> {
-    contributions.columns_mut().map(Mutex::new).collect()
-}
-
-/// Room for what every column leaves.
-fn unfilled<T>(columns: usize) -> Vec<Mutex<Vec<T>>> {
-    (0..columns).map(|_| Mutex::default()).collect()
-}
-
-fn joined<T>(parts: Vec<Mutex<Vec<T>>>) -> Vec<T> {
-    let parts: Vec<Vec<T>> = parts.into_iter().map(|part| part.into_inner().expect("no thread panicked")).collect();
-    let mut out = Vec::with_capacity(parts.iter().map(Vec::len).sum());
-    parts.into_iter().for_each(|mut part| out.append(&mut part));
-    out
-}
-
-/// Threads share the columns, by their index. Not generic, as what else is apart here: with a copy for every pass, most of
-/// what is compiled of a program would be the machinery of threads.
-fn share(columns: usize, work: &(dyn Fn(usize) + Sync)) {
-    (0..columns).into_par_iter().for_each(work);
 }
 
 /// Fills a block with the numbers of a patch's nodes, or of its functions where these are merged.

@@ -6,6 +6,7 @@ mod drucker_prager;
 mod eigen;
 mod gap;
 mod input;
+mod lanes;
 mod projection;
 mod random;
 mod reference;

@@ -5,26 +5,21 @@ use crate::grid::shape::PointSupport;
 use crate::kinematics::{Gradient, Kinematics};
 use crate::lanes::{InLanes, Quad, Simd};
 use crate::tensor::Vector;
-use std::marker::PhantomData;
 use std::ops::Range;
 
 /// Rows of nodes along the last axis of a patch at most: four by four in three dimensions.
 const MOST_ROWS: usize = 16;
 
-/// Gradients of the points of a patch, eight at a time, appended as `found` makes them.
-pub(super) struct Gradients<'a, K, T, F, const D: usize, const W: usize> {
+/// Gradients of the points of a patch, appended.
+pub(super) struct Gradients<'a, K: Kinematics<D>, const D: usize, const W: usize> {
     pub rows: &'a [f64],
     pub x: &'a [Vector<D>],
     pub points: Range<usize>,
     pub block: &'a PatchBlock<D>,
-    pub found: &'a F,
-    pub out: &'a mut Vec<T>,
-    pub kinematics: PhantomData<K>,
+    pub out: &'a mut Vec<K::Gradient>,
 }
 
-impl<K: Kinematics<D>, T, F: Fn(usize, K::Gradient) -> T, const D: usize, const W: usize> InLanes
-    for Gradients<'_, K, T, F, D, W>
-{
+impl<K: Kinematics<D>, const D: usize, const W: usize> InLanes for Gradients<'_, K, D, W> {
     type Output = ();
 
     #[inline(always)]
@@ -41,7 +36,7 @@ impl<K: Kinematics<D>, T, F: Fn(usize, K::Gradient) -> T, const D: usize, const 
                     }
                 }
             }
-            self.out.push((self.found)(p, gradient));
+            self.out.push(gradient);
         }
     }
 }
@@ -58,7 +53,7 @@ pub(super) struct Divergence<'a, K: Kinematics<D>, const D: usize, const W: usiz
 impl<K: Kinematics<D>, const D: usize, const W: usize> InLanes for Divergence<'_, K, D, W> {
     type Output = ();
 
-    /// The nodes of a patch along its last axis stand side by side, up to four; places beyond them collect what nobody reads.
+    /// The nodes along the last axis stand side by side, up to four; places beyond them collect what nobody reads.
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
         let size = 2 * D * W;

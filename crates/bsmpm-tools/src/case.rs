@@ -1,0 +1,25 @@
+//! The case file of a command.
+
+use std::path::{Path, PathBuf};
+
+use bsmpm_scene::Case;
+
+use crate::Error;
+
+/// The bytes of a case file.
+pub(crate) fn load(path: &Path) -> Result<Vec<u8>, Error> {
+    bsmpm_scene::load(path).map_err(Error::unread("case", path))
+}
+
+/// The case that overrides `KEY=VALUE` make of the bytes of its file.
+pub(crate) fn parsed(path: &Path, bytes: &[u8], set: &[String]) -> Result<Case, Error> {
+    Case::from_bytes(&path.display().to_string(), bytes, set).map_err(|errors| Error::bad_case(path, &errors))
+}
+
+/// Where what is made of a case is written unless its user says where: its stem with an ending, in the working
+/// directory.
+pub(crate) fn directory(path: &Path, ending: &str) -> PathBuf {
+    let mut name = path.file_stem().unwrap_or_default().to_owned();
+    name.push(ending);
+    PathBuf::from(name)
+}

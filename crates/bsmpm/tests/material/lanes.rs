@@ -1,0 +1,80 @@
+//! Lanes: eight points at a time have the bits of each by itself.
+
+use super::{REGIONS, hencky, mohr_coulomb};
+use crate::random::Random;
+use bsmpm::lanes::{self, InLanes, LANES, Lanes, Simd};
+use bsmpm::material::{DruckerPrager, Elastic, Match, Material, VonMises};
+use bsmpm::tensor::Symmetric;
+use std::array::from_fn;
+use std::collections::BTreeMap;
+
+/// Stresses of eight points by components.
+struct Stresses<'a> {
+    material: &'a Material,
+    b_trial: &'a [Symmetric; LANES],
+    state: f64,
+}
+
+impl InLanes for Stresses<'_> {
+    type Output = Option<[Symmetric; LANES]>;
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) -> Self::Output {
+        let b_trial = from_fn(|k| Lanes::from_fn(simd, |lane| self.b_trial[lane].0[k]));
+        let tau = self.material.stress(b_trial, &[Lanes::splat(simd, self.state)])?;
+        let components = tau.0.map(Lanes::numbers);
+        Some(from_fn(|lane| Symmetric(from_fn(|k| components[k][lane]))))
+    }
+}
+
+fn laws() -> Vec<Material> {
+    let elastic = Elastic { young: 1e3, poisson: 0.3 };
+    let angles = (0.5, 0.2, 3.0);
+    let mut laws =
+        vec![hencky(1e3, 0.3), mohr_coulomb(1e3, 0.3, 35.0, 10.0, 3.0), mohr_coulomb(1e3, 0.45, 0.0, 0.0, 3.0)];
+    laws.extend(
+        [Match::Outer, Match::Inner, Match::PlaneStrain]
+            .map(|fit| Material::DruckerPrager(DruckerPrager::new(elastic.clone(), angles, fit))),
+    );
+    laws.push(Material::VonMises(VonMises::new(elastic, 3.0, 40.0)));
+    laws
+}
+
+/// Of every law, with points inside and in every region of the yield surface side by side, on axes and turned, and at rest.
+#[test]
+fn eight_points_have_the_stresses_of_each() {
+    let mut random = Random::new(90);
+    let mut seen = BTreeMap::new();
+    for material in laws() {
+        for _ in 0..5_000 {
+            let b_trial: [Symmetric; LANES] = from_fn(|_| {
+                let size = 10_f64.powf(-1.2 - 3.0 * random.unit());
+                let turn = random.pick(&[0.0, 1e-9, 1.0]);
+                let strain: [f64; 4] = from_fn(|_| size * random.signed());
+                let [xx, yy, zz, xy] = random.pick(&[strain, strain, [0.0; 4]]);
+                Symmetric([1.0 + xx, 1.0 + yy, 1.0 + zz, turn * xy, 0.0, 0.0])
+            });
+            let state = random.unit();
+            let Some(found) = lanes::run(Stresses { material: &material, b_trial: &b_trial, state }) else { continue };
+            for (found, b_trial) in found.iter().zip(&b_trial) {
+                let response = material.respond(b_trial, &[state]).expect("an admissible trial");
+                let expected = response.tau();
+                assert_eq!(found.0.map(f64::to_bits), expected.0.map(f64::to_bits), "{material:?}: {b_trial:?}");
+                *seen.entry(format!("{:?}", response.branch())).or_insert(0) += 1;
+            }
+        }
+    }
+    assert!(REGIONS.iter().all(|region| seen[&format!("{region:?}")] > 1_000), "{seen:?}");
+}
+
+/// What only the logarithm can tell is left to one point at a time, and so is what is no strain at all.
+#[test]
+fn a_lane_that_strains_by_more_than_the_series_holds_is_left() {
+    let material = mohr_coulomb(1e3, 0.3, 35.0, 10.0, 3.0);
+    for odd in [1.2, 0.8, -1.0, f64::NAN, f64::INFINITY] {
+        let mut b_trial = [Symmetric::IDENTITY; LANES];
+        assert!(lanes::run(Stresses { material: &material, b_trial: &b_trial, state: 0.0 }).is_some());
+        b_trial[5].0[1] = odd;
+        assert!(lanes::run(Stresses { material: &material, b_trial: &b_trial, state: 0.0 }).is_none(), "{odd}");
+    }
+}
