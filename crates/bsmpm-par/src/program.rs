@@ -8,6 +8,7 @@ use crate::launch;
 use crate::run::Task;
 use crate::setup::{self, Cut};
 use crate::source;
+use bsmpm::lanes;
 use bsmpm_io::exit;
 use bsmpm_ranks::linear;
 use bsmpm_ranks::signals::Requests;
@@ -41,6 +42,7 @@ fn prepare(universe: &Universe) -> Result<Option<(Task, Cut)>, u8> {
     let (speaks, ranks) = (world.rank() == 0, world.size().unsigned_abs() as usize);
     let arguments = Arguments::read(speaks)?;
     let fault = agreed(universe, exit::USAGE, Fault::from_environment(ranks))?;
+    agreed(universe, exit::USAGE, choose_lanes())?;
     let case = source::read(&world, &arguments)?;
     let Some(cut) = setup::cut(&case, ranks) else {
         let columns = case.grid.axes[0].cells();
@@ -69,6 +71,13 @@ fn agreed<T>(universe: &Universe, code: u8, mine: Result<T, String>) -> Result<T
     }
     let failed = bsmpm_ranks::launch::agree(&world, own * code);
     mine.map_err(|_| failed).and_then(|good| if failed == 0 { Ok(good) } else { Err(failed) })
+}
+
+/// Computes with the vectors of `BSMPM_LANES`, for tests; without it with the widest.
+fn choose_lanes() -> Result<(), String> {
+    let Some(name) = std::env::var_os("BSMPM_LANES") else { return Ok(()) };
+    let name = name.to_string_lossy();
+    lanes::choose(&name).map_err(|error| format!("BSMPM_LANES={name}: {error}"))
 }
 
 /// The threads that share the points of this rank; its own one is the first of them, so that one is none more.

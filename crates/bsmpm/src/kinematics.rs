@@ -40,10 +40,14 @@ pub trait Kinematics<const D: usize>: Copy + Debug + Default + Send + Sync + 'st
     fn flux<R: Real>(tau: &Symmetric<R>, dF: &Tensor<R>) -> GradientOf<Self, R, D>;
 
     /// dF-bar = (dJ-bar/dJ)^(1/dof) dF (Eq. 15), `ratio` = dJ-bar/dJ > 0; dof are the directions that the grid dilates.
-    fn dilate<R: Real>(dF: &Tensor<R>, ratio: R) -> Tensor<R>;
+    #[inline(always)]
+    fn dilate<R: Real>(dF: &Tensor<R>, ratio: R) -> Tensor<R> {
+        let root = ratio.cube_root();
+        Tensor::from_fn(|i, j| dF[(i, j)] * root)
+    }
 
     /// The part of a tensor that works on gradients: the adjoint of [`Kinematics::gradient`].
-    fn working(tensor: &Tensor) -> Self::Gradient;
+    fn working<R: Real>(tensor: &Tensor<R>) -> GradientOf<Self, R, D>;
 
     /// Spatial gradient of a unit of d ln(dJ-bar/dJ) under [`Kinematics::dilate`]: I / dof in the grid's directions.
     fn dilation() -> Tensor;
@@ -52,7 +56,15 @@ pub trait Kinematics<const D: usize>: Copy + Debug + Default + Send + Sync + 'st
     fn divergence(slope: &Slope<Self, D>) -> Vector<D>;
 
     /// Trial b^e = dF-bar b^e dF-bar^T (Eqs 7, 19).
-    fn push_forward<R: Real>(dF: &Tensor<R>, b_e: &Symmetric<R>) -> Symmetric<R>;
+    #[inline(always)]
+    fn push_forward<R: Real>(dF: &Tensor<R>, b_e: &Symmetric<R>) -> Symmetric<R> {
+        let [xx, yy, zz, xy, yz, xz] = b_e.0;
+        let b = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
+        let row = |i: usize| three(|k| dF[(i, 0)] * b[0][k] + dF[(i, 1)] * b[1][k] + dF[(i, 2)] * b[2][k]);
+        let rows = [row(0), row(1), row(2)];
+        let at = |i: usize, j: usize| rows[i][0] * dF[(j, 0)] + rows[i][1] * dF[(j, 1)] + rows[i][2] * dF[(j, 2)];
+        Symmetric([at(0, 0), at(1, 1), at(2, 2), at(0, 1), at(1, 2), at(0, 2)])
+    }
 
     /// Elastic stiffness of a node pair from T = sum V0 g_a (x) g_b, g their numbers: where these are derivatives,
     /// lambda T + mu T^T + mu tr T I.
@@ -190,17 +202,6 @@ fn isotropic<const D: usize>(moment: &Square<D>, (lambda, mu): (f64, f64)) -> Sq
     moment * lambda + moment.transpose() * mu + Square::<D>::identity() * (mu * moment.trace())
 }
 
-/// dF b^e dF^T.
-#[inline(always)]
-fn push_forward<R: Real>(dF: &Tensor<R>, b_e: &Symmetric<R>) -> Symmetric<R> {
-    let [xx, yy, zz, xy, yz, xz] = b_e.0;
-    let b = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
-    let row = |i: usize| three(|k| dF[(i, 0)] * b[0][k] + dF[(i, 1)] * b[1][k] + dF[(i, 2)] * b[2][k]);
-    let rows = [row(0), row(1), row(2)];
-    let at = |i: usize, j: usize| rows[i][0] * dF[(j, 0)] + rows[i][1] * dF[(j, 1)] + rows[i][2] * dF[(j, 2)];
-    Symmetric([at(0, 0), at(1, 1), at(2, 2), at(0, 1), at(1, 2), at(0, 2)])
-}
-
 /// tau dF^-T.
 #[inline(always)]
 fn pull_back<R: Real>(tau: &Symmetric<R>, dF: &Tensor<R>) -> Tensor<R> {
@@ -220,10 +221,4 @@ fn pull_back<R: Real>(tau: &Symmetric<R>, dF: &Tensor<R>) -> Tensor<R> {
 fn determinant<R: Real>(F: &Tensor<R>) -> R {
     let minor = |i: usize, j: usize| F[(1, i)] * F[(2, j)] - F[(2, i)] * F[(1, j)];
     F[(0, 0)] * minor(1, 2) - F[(0, 1)] * minor(0, 2) + F[(0, 2)] * minor(0, 1)
-}
-
-/// dF with every element times `factor`.
-#[inline(always)]
-fn scaled<R: Real>(dF: &Tensor<R>, factor: R) -> Tensor<R> {
-    Tensor::from_fn(|i, j| dF[(i, j)] * factor)
 }

@@ -1,7 +1,8 @@
 //! Eight points at a time, with whatever vectors the machine has: SSE2, AVX2 or AVX-512, chosen at run time.
 //!
 //! There are eight lanes on every machine, and no operation has another result in a wider register: the bits are the
-//! same. What runs in lanes is inlined into one function for each instruction set, so all of it says `#[inline(always)]`.
+//! same. What runs in lanes is inlined into one function for each instruction set; what says `#[inline(always)]` is
+//! there for sure, and a call that remains costs time but no digit.
 
 use crate::real::Real;
 pub use fearless_simd::Simd;
@@ -22,11 +23,46 @@ pub trait InLanes {
     fn run<S: Simd>(self, simd: S) -> Self::Output;
 }
 
-/// Does `work` with the widest vectors of this machine, in builds for debugging with SSE2 (they take a third of the time then);
-/// with those of `BSMPM_LANES` (`sse2`, `avx2`) where tests set it.
+/// What [`run`] uses.
+static LEVEL: OnceLock<Level> = OnceLock::new();
+
+/// Does `work` with the widest vectors of this machine, or the chosen ones; in builds for debugging with SSE2, as they
+/// would take three times as long to compile.
 pub fn run<W: InLanes>(work: W) -> W::Output {
-    static WIDEST: OnceLock<Level> = OnceLock::new();
-    match *WIDEST.get_or_init(|| chosen(std::env::var("BSMPM_LANES").ok().as_deref())) {
+    run_at(*LEVEL.get_or_init(Level::new), work)
+}
+
+/// Chooses the instruction set of all that is to come by its name: `sse2`, `avx2` or `avx512`; for tests.
+///
+/// # Errors
+/// A name that this machine does not know, or a choice that comes too late.
+pub fn choose(name: &str) -> std::result::Result<(), String> {
+    let (_, level) = levels().into_iter().find(|level| level.0 == name).ok_or("this machine has no such vectors")?;
+    LEVEL.set(level).map_err(|_| "lanes run already".to_owned())
+}
+
+/// What `work` leaves with each instruction set of this machine, by its name; for tests.
+pub fn with_each<W: InLanes + Clone>(work: &W) -> Vec<(&'static str, W::Output)> {
+    levels().into_iter().map(|(name, level)| (name, run_at(level, work.clone()))).collect()
+}
+
+/// Instruction sets of this machine.
+fn levels() -> Vec<(&'static str, Level)> {
+    let widest = Level::new();
+    #[cfg(target_arch = "x86_64")]
+    let all = [
+        ("sse2", widest.as_sse2().map(Level::Sse2)),
+        ("avx2", widest.as_avx2().map(Level::Avx2)),
+        ("avx512", widest.as_avx512().map(Level::Avx512)),
+    ];
+    #[cfg(not(target_arch = "x86_64"))]
+    let all = [("widest", Some(widest))];
+    all.into_iter().filter_map(|(name, level)| Some((name, level?))).collect()
+}
+
+#[inline(always)]
+fn run_at<W: InLanes>(level: Level, work: W) -> W::Output {
+    match level {
         #[cfg(all(target_arch = "x86_64", not(debug_assertions)))]
         Level::Avx512(simd) => vectorised(simd, work),
         #[cfg(all(target_arch = "x86_64", not(debug_assertions)))]
@@ -46,18 +82,6 @@ fn vectorised<S: Simd, W: InLanes>(simd: S, work: W) -> W::Output {
     )
 }
 
-/// The instruction set of this machine, or the smaller one of the name.
-fn chosen(name: Option<&str>) -> Level {
-    let widest = Level::new();
-    #[cfg(target_arch = "x86_64")]
-    let widest = match name {
-        Some("sse2") => widest.as_sse2().map_or(widest, Level::Sse2),
-        Some("avx2") => widest.as_avx2().map_or(widest, Level::Avx2),
-        _ => widest,
-    };
-    widest
-}
-
 /// The points of a range, eight at a time; lanes beyond the end repeat the last one.
 #[inline(always)]
 pub fn eights(points: Range<usize>) -> impl Iterator<Item = Eight> {
@@ -68,7 +92,7 @@ pub fn eights(points: Range<usize>) -> impl Iterator<Item = Eight> {
 #[derive(Clone, Copy, Debug)]
 pub struct Eight {
     first: usize,
-    last: usize, // of all
+    last: usize, // point of the range
 }
 
 impl Eight {

@@ -140,9 +140,9 @@ macro_rules! laws {
                 }
             }
 
-            /// Kirchhoff stress of a point, or of a lane of them, under a `b_trial` of a plane and its normal that is near to
-            /// the identity: as [`Material::respond`] has it. `None` where only that can tell: of a graded law, and where
-            /// one of the points strains elastically by more than 5 %.
+            /// Kirchhoff stress in Pa of a point, or of several, by components XX, YY, ZZ, XY of `b_trial` and the
+            /// `state` of the last step, which has the law's variables first: as [`Material::respond`] has it. `None`
+            /// where only that can tell: of a graded law, and where an eigenvalue of a trial is not within 0.1 of 1.
             #[inline(always)]
             pub fn stress<R: Real>(&self, b_trial: [R; 4], state: &[R]) -> Option<Symmetric<R>> {
                 let spectrum = Spectrum::near(b_trial)?;
@@ -178,6 +178,9 @@ macro_rules! laws {
                 Ok(Response::new(*b_trial, spectrum, moduli, (tau, flowed)))
             }
         }
+
+        $(const _: () = assert!(<$module::$Law as Law>::STATE.len() <= MOST_STATE);)*
+        $(const _: () = assert!(<$module::$Law as Law>::PARAMETERS.len() <= law::MOST_PARAMETERS);)*
 
         impl Flowed {
             #[inline]

@@ -9,7 +9,7 @@ use bsmpm::parallel::{Halo, Krylov, LinearSolver, Solved, Symmetry};
 use bsmpm::points::Points;
 use bsmpm::step::nodes::Nodes;
 use bsmpm::step::problem::Problem;
-use bsmpm::step::residual::Residual;
+use bsmpm::step::residual::{InternalForce, Residual};
 use bsmpm::step::stiffness;
 use bsmpm::step::trial::Trial;
 use std::hint::black_box;
@@ -63,7 +63,10 @@ impl Bench<'_> {
             });
         }
         let trial = Trial::of(model, &shape, &nodes, points, &u, halo);
-        self.row("(4f-i) constitution", false, || {
+        self.row("(4f-i), (5a) constitution in lanes, and scatter of the internal force", false, || {
+            drop(black_box(InternalForce::of(&problem, &trial).f_int))
+        });
+        self.row("(4f-i) constitution point by point, with what a step keeps of it", true, || {
             for p in 0..points.len() {
                 let _ = black_box(trial.respond(model, points, p).map(|response| response.tau()));
             }

@@ -2,7 +2,7 @@
 
 use super::{Row, row};
 
-/// Names, types and units (reliability.md I01 to I04, I07).
+/// Names, types and units (rows I01 to I04, I07).
 pub const LANGUAGE: &[Row] = &[
     row("poisson  = 0.3", "poissson = 0.3", "material.sand.poissson", "did you mean `poisson`?"),
     row("points_per_cell = 3", "points-per-cell = 3", "body.0.points-per-cell", "did you mean `points_per_cell`?"),
@@ -248,7 +248,7 @@ pub const QUASI_STATIC: &[Row] = &[
     row("[[body]]", "[body]", "body", "expected a list of tables, [[body]]"),
 ];
 
-/// What case-file.md knows and this version does not do.
+/// What is reserved and not done yet.
 pub const LATER: &[(&str, &str, &str)] = &[
     ("geometry = \"plane-strain\"", "geometry = \"axisymmetric\"", "geometry"),
     ("geometry = \"plane-strain\"", "geometry = \"solid\"", "geometry"),

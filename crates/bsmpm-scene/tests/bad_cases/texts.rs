@@ -1,4 +1,4 @@
-//! Texts that are no case at all, and how errors are told (reliability.md I01 to I07, I20, I21).
+//! Texts that are no case at all, and how errors are told (rows I01 to I07, I20, I21).
 
 use super::{DYNAMIC, STATIC};
 use bsmpm_scene::{Case, Error, MAX_BYTES, Place};

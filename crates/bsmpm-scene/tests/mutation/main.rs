@@ -1,4 +1,4 @@
-//! Every key of the schema removed, renamed, retyped and set to extreme values (reliability.md, bad input): what the schema
+//! Every key of the schema removed, renamed, retyped and set to extreme values (bad input): what the schema
 //! refuses is refused at its place, the rest gives a case or errors; never a panic.
 
 mod written;

@@ -60,7 +60,7 @@ pub(crate) struct RunCost {
     pub cpu_seconds: f64,
     /// s  by the clock
     pub wall_seconds: f64,
-    /// bytes  the sum of the ranks' peaks
+    /// bytes  the sum of the ranks' peaks; of several runs that of the largest
     pub peak_memory: u64,
     pub steps: u64,
     pub iterations: u64,

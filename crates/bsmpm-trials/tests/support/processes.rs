@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 /// Set in every process of a run, so that it is found whatever its group or parent.
 const MARK: &str = "BSMPM_TEST_RUN";
 /// What a developer's environment might hold and a run must not see.
-const REMOVED: [&str; 3] = ["BSMPM_FAULT", "PETSC_OPTIONS", "PETSC_OPTIONS_YAML"];
+const REMOVED: [&str; 4] = ["BSMPM_FAULT", "BSMPM_LANES", "PETSC_OPTIONS", "PETSC_OPTIONS_YAML"];
 
 /// Two cores: runs wait for each other.
 static TURN: Mutex<()> = Mutex::new(());

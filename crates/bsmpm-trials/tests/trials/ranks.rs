@@ -48,16 +48,18 @@ fn the_bits_are_the_same_with_the_vectors_of_any_machine() {
     for case in ["short/column_collapse.toml", "short/strip_footing.toml"] {
         let scratch = Scratch::new();
         let case = shipped(case).to_str().unwrap().to_owned();
-        let histories = ["sse2", "avx2", "widest"].map(|vectors| {
+        let mut histories = ["sse2", "avx2", "avx512"].iter().filter_map(|vectors| {
             let arguments = [&case, "-q", "--max-steps", "12", "-o", vectors];
-            scratch.job(None, &arguments).variable("BSMPM_LANES", vectors).run().expect(75);
-            let path = scratch.path(vectors).join("history.csv");
-            std::fs::read_to_string(path).unwrap()
+            let run = scratch.job(None, &arguments).variable("BSMPM_LANES", vectors).run();
+            if run.code == Some(64) && run.stderr.contains("this machine has no such vectors") {
+                println!("not compared here: {vectors}");
+                return None;
+            }
+            run.expect(75);
+            Some(std::fs::read_to_string(scratch.path(vectors).join("history.csv")).unwrap())
         });
-        assert!(
-            histories[0].lines().count() > 10 && histories.iter().all(|history| *history == histories[0]),
-            "{case}"
-        );
+        let first = histories.next().expect("one of them");
+        assert!(first.lines().count() > 10 && histories.all(|history| history == first), "{case}");
     }
 }
 

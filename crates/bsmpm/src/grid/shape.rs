@@ -73,10 +73,11 @@ macro_rules! with_width {
                 const $W: usize = 3;
                 $body
             }
-            _ => {
+            4 => {
                 const $W: usize = 4;
                 $body
             }
+            width => unreachable!("{width} functions per axis"),
         }
     };
 }
@@ -182,7 +183,7 @@ impl<const D: usize> Shape<D> {
     /// Rows of values and derivatives, point by point and axis by axis; behind them so many zeros that four numbers can be read
     /// from the place of each.
     pub(super) fn rows(&self) -> &[f64] {
-        debug_assert_eq!(self.stride, 2 * self.width, "lowered functions have values only");
+        assert_eq!(self.stride, 2 * self.width, "lowered functions have values only");
         &self.rows
     }
 
@@ -198,7 +199,7 @@ impl<const D: usize> Shape<D> {
 
     /// The rows of point `p`, for a width known to the compiler.
     #[inline(always)]
-    pub(crate) fn support<const W: usize>(&self, p: usize) -> PointSupport<'_, f64, D, W> {
+    pub(crate) fn support<const W: usize>(&self, p: usize) -> PointSupport<'_, D, W> {
         let size = 2 * D * W;
         debug_assert_eq!(self.stride, 2 * W, "lowered functions have values only");
         PointSupport { rows: &self.rows[p * size..(p + 1) * size] }

@@ -1,6 +1,6 @@
 //! Axisymmetry without torsion.
 
-use super::{Kinematics, pull_back, push_forward, scaled};
+use super::{Kinematics, pull_back};
 use crate::real::Real;
 use crate::tensor::{Square, Symmetric, Tensor, Vector};
 use nalgebra::{SMatrix, SVector};
@@ -51,10 +51,10 @@ impl Kinematics<2> for Axisymmetric {
         Tensor::new(grad[(0, 0)], grad[(0, 1)], zero, grad[(1, 0)], grad[(1, 1)], zero, zero, zero, grad[(0, 2)])
     }
 
-    #[inline]
-    fn working(tensor: &Tensor) -> Strains {
+    #[inline(always)]
+    fn working<R: Real>(tensor: &Tensor<R>) -> SMatrix<R, 2, 3> {
         let t = |i: usize, j: usize| tensor[(i, j)];
-        Strains::new(t(0, 0), t(0, 1), t(2, 2), t(1, 0), t(1, 1), 0.0)
+        SMatrix::<R, 2, 3>::new(t(0, 0), t(0, 1), t(2, 2), t(1, 0), t(1, 1), t(0, 0).like(0.0))
     }
 
     fn dilation() -> Tensor {
@@ -63,18 +63,7 @@ impl Kinematics<2> for Axisymmetric {
 
     #[inline(always)]
     fn flux<R: Real>(tau: &Symmetric<R>, dF: &Tensor<R>) -> SMatrix<R, 2, 3> {
-        let t = pull_back(tau, dF);
-        SMatrix::<R, 2, 3>::new(t[(0, 0)], t[(0, 1)], t[(2, 2)], t[(1, 0)], t[(1, 1)], t[(0, 0)].like(0.0))
-    }
-
-    #[inline(always)]
-    fn push_forward<R: Real>(dF: &Tensor<R>, b_e: &Symmetric<R>) -> Symmetric<R> {
-        push_forward(dF, b_e)
-    }
-
-    #[inline(always)]
-    fn dilate<R: Real>(dF: &Tensor<R>, ratio: R) -> Tensor<R> {
-        scaled(dF, ratio.cube_root())
+        Self::working(&pull_back(tau, dF))
     }
 
     /// r: the volume of a sector of one radian.

@@ -38,9 +38,9 @@ impl Kinematics<2> for PlaneStrain {
         Tensor::new(grad[(0, 0)], grad[(0, 1)], zero, grad[(1, 0)], grad[(1, 1)], zero, zero, zero, zero)
     }
 
-    #[inline]
-    fn working(tensor: &Tensor) -> Square<2> {
-        tensor.fixed_view::<2, 2>(0, 0).into_owned()
+    #[inline(always)]
+    fn working<R: Real>(tensor: &Tensor<R>) -> SMatrix<R, 2, 2> {
+        SMatrix::<R, 2, 2>::from_fn(|i, j| tensor[(i, j)])
     }
 
     fn dilation() -> Tensor {

@@ -1,6 +1,6 @@
 //! Three dimensions.
 
-use super::{Kinematics, determinant, isotropic, pull_back, push_forward, scaled};
+use super::{Kinematics, determinant, isotropic, pull_back};
 use crate::real::Real;
 use crate::tensor::{Square, Symmetric, Tensor, Vector};
 
@@ -36,8 +36,8 @@ impl Kinematics<3> for Solid {
         *grad
     }
 
-    #[inline]
-    fn working(tensor: &Tensor) -> Square<3> {
+    #[inline(always)]
+    fn working<R: Real>(tensor: &Tensor<R>) -> Tensor<R> {
         *tensor
     }
 
@@ -48,15 +48,5 @@ impl Kinematics<3> for Solid {
     #[inline(always)]
     fn flux<R: Real>(tau: &Symmetric<R>, dF: &Tensor<R>) -> Tensor<R> {
         pull_back(tau, dF)
-    }
-
-    #[inline(always)]
-    fn push_forward<R: Real>(dF: &Tensor<R>, b_e: &Symmetric<R>) -> Symmetric<R> {
-        push_forward(dF, b_e)
-    }
-
-    #[inline(always)]
-    fn dilate<R: Real>(dF: &Tensor<R>, ratio: R) -> Tensor<R> {
-        scaled(dF, ratio.cube_root())
     }
 }

@@ -133,10 +133,15 @@ impl Law for DruckerPrager {
         let (mean, deviator, norm) = split(trial);
         let (root, zero) = (norm * std::f64::consts::FRAC_1_SQRT_2, mean.like(0.0));
         let excess = root + mean * eta - self.strength;
+        let yields = !excess.at_most(zero);
+        if !R::any(yields) {
+            let flow = DruckerPragerReturn { apex: yields, direction: deviator, kept: root, slopes: self.slopes };
+            return Projection { tau: trial, yields, flow };
+        }
         let bulk = self.moduli.bulk();
         let p = mean - excess * (bulk * eta_psi) / (mu + bulk * eta * eta_psi);
         let after = -(p * eta) + self.strength;
-        let (yields, apex) = (!excess.at_most(zero), after.below(zero) | root.at_most(zero));
+        let apex = after.below(zero) | root.at_most(zero);
         let kept = after / root;
         let tip = mean.like(self.strength / eta);
         let returned = three(|k| R::choose(apex, tip, p + kept * deviator[k]));

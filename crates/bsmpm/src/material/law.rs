@@ -29,7 +29,7 @@ pub trait Law {
     type Flow<R: Real>: Copy;
     /// Parameters besides the elastic ones; at most eight.
     const PARAMETERS: &'static [Variable] = &[];
-    /// State variables.
+    /// State variables; at most eight.
     const STATE: &'static [Variable] = &[];
     /// Whether its stress is limited.
     const YIELDS: bool = true;
@@ -50,6 +50,8 @@ pub trait Law {
     fn excess<R: Real>(&self, tau: [R; 3], state: &[R]) -> R;
 
     /// The return of an elastic trial stress, Pa. `state` is that of the last step, in the order of [`Law::STATE`].
+    ///
+    /// It runs on vectors if it and all that it calls are `#[inline(always)]`. A trial that is not a number yields.
     fn project<R: Real>(&self, trial: [R; 3], state: &[R]) -> Projection<R, Self::Flow<R>>;
 
     /// Where on the yield surface the stress lies after a return.

@@ -78,6 +78,10 @@ impl Law for VonMises {
         let (mean, deviator, norm) = split(trial);
         let (q, strength) = (norm * 1.5_f64.sqrt(), self.strength(state));
         let yields = !q.at_most(strength);
+        if !R::any(yields) {
+            let flow = VonMisesReturn { direction: deviator, kept: q, followed: 0.0, growth: q };
+            return Projection { tau: trial, yields, flow };
+        }
         let shear = 3.0 * self.moduli.mu;
         let growth = (q - strength) / (shear + self.hardening);
         // Not 1 - 3μ Δκ/q, which cancels where the trial is far outside.

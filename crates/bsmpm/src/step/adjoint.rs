@@ -76,11 +76,6 @@ impl Pressures {
         Self(Some(transposed.into_iter().enumerate().map(of).collect()))
     }
 
-    /// Whether no point has the adjoint force.
-    pub fn none(&self) -> bool {
-        self.0.is_none()
-    }
-
     /// pi-bar of point `p`, if it has the adjoint force.
     #[inline]
     pub fn at(&self, p: usize) -> Option<f64> {

@@ -53,9 +53,31 @@ impl<K: Kinematics<D>, const D: usize> Residual<K, D> {
     pub fn of(problem: &Problem<'_, K, D>, u: &[f64]) -> Self {
         let Problem { model, shape, nodes, points, halo, .. } = *problem;
         let trial = Trial::of(model, shape, nodes, points, u, halo);
+        let InternalForce { mut f_int, inverted, first_inverted } = InternalForce::of(problem, &trial);
+        if let Some(background) = &nodes.background {
+            background.multiply::<D>(shape, u, &mut f_int);
+        }
+        let balance = Balance::of(problem, u, &halo.sum(&f_int), inverted);
+        Self { trial, balance, first_inverted }
+    }
+}
+
+/// Step (5a): what the stress of this rank's points makes at the nodes.
+pub struct InternalForce {
+    /// N  forces
+    pub f_int: Contributions,
+    /// points that inverted or are not finite
+    pub inverted: u64,
+    /// the first of them
+    pub first_inverted: Option<usize>,
+}
+
+impl InternalForce {
+    /// Under a trial; one exchange with the neighbours where a point has the adjoint force.
+    pub fn of<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>, trial: &Trial<K, D>) -> Self {
+        let Problem { model, shape, points, .. } = *problem;
         let (inverted, first_inverted) = (AtomicU64::new(0), AtomicUsize::new(usize::MAX));
-        let pressures = Pressures::of(problem, &trial);
-        let volume = problem.volume();
+        let (pressures, volume) = (&Pressures::of(problem, trial), problem.volume());
         let flux = |p: usize| match trial.respond(model, points, p) {
             Ok(response) => {
                 let tau = pressures.acting::<K, D>(p, volume[p], response.tau());
@@ -67,20 +89,11 @@ impl<K: Kinematics<D>, const D: usize> Residual<K, D> {
                 K::Gradient::zeros()
             }
         };
-        let in_lanes = pressures.none();
-        let mut f_int = transfer::divergence_of::<K, D>((shape, &points.x), |range, fluxes| {
-            if in_lanes {
-                lanes::run(Fluxes { model, points, trial: &trial, volume, range, flux: &flux, fluxes });
-            } else {
-                fluxes.extend(range.map(flux));
-            }
+        let f_int = transfer::divergence_of::<K, D>((shape, &points.x), |range, fluxes| {
+            lanes::run(Fluxes { model, points, trial, pressures, volume, range, flux: &flux, fluxes });
         });
-        if let Some(background) = &nodes.background {
-            background.multiply::<D>(shape, u, &mut f_int);
-        }
-        let balance = Balance::of(problem, u, &halo.sum(&f_int), inverted.into_inner());
         let first_inverted = Some(first_inverted.into_inner()).filter(|&p| p < points.len());
-        Self { trial, balance, first_inverted }
+        Self { f_int, inverted: inverted.into_inner(), first_inverted }
     }
 }
 
@@ -89,6 +102,7 @@ struct Fluxes<'a, K: Kinematics<D>, const D: usize> {
     model: &'a Model<K, D>,
     points: &'a Points<D>,
     trial: &'a Trial<K, D>,
+    pressures: &'a Pressures,
     volume: &'a [f64],
     range: Range<usize>,
     flux: &'a dyn Fn(usize) -> K::Gradient,
@@ -120,6 +134,9 @@ impl<K: Kinematics<D>, const D: usize> InLanes for Fluxes<'_, K, D> {
 impl<K: Kinematics<D>, const D: usize> Fluxes<'_, K, D> {
     #[inline(always)]
     fn of<S: Simd>(&self, simd: S, eight: Eight) -> Option<GradientOf<K, Lanes<S>, D>> {
+        if eight.points().any(|p| self.pressures.at(p).is_some()) {
+            return None;
+        }
         let (dF, tau) = self.trial.respond_in_lanes(self.model, self.points, simd, eight)?;
         let flux = K::flux(&tau, &dF);
         let volume = eight.of(self.volume);

@@ -7,6 +7,7 @@ use crate::material::{MOST_STATE, MaterialError, Response};
 use crate::model::Model;
 use crate::parallel::Halo;
 use crate::points::Points;
+use crate::real::Real;
 use crate::stabilisation::Stabilisation;
 use crate::step::nodes::Nodes;
 use crate::step::problem::Problem;
@@ -63,7 +64,8 @@ impl<K: Kinematics<D>, const D: usize> Trial<K, D> {
     /// ratio_p = kept_p S(w dJ)_p / (w_p dJ_p), which F-bar multiplies the dilation of point `p` with; 1 without F-bar.
     #[inline]
     pub fn ratio(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> f64 {
-        self.averaged(model, points, p) * (1.0 / kept(model.stabilisation, points, p))
+        let Some(mean) = &self.mean else { return 1.0 };
+        ratio(mean[p], self.own(model, points, p), kept(model.stabilisation, points, p))
     }
 
     /// J-bar/J of point `p` at the end of the step.
@@ -100,7 +102,7 @@ impl<K: Kinematics<D>, const D: usize> Trial<K, D> {
     }
 
     /// Steps (4f)-(4i) of eight points: dF and the stress. `None` where [`Trial::respond`] has to answer: of points of
-    /// several materials, of those that gape, and where the material says so.
+    /// several materials, of graded ones, of those that gape, and where the material says so.
     #[inline(always)]
     pub fn respond_in_lanes<S: Simd>(
         &self,
@@ -110,7 +112,8 @@ impl<K: Kinematics<D>, const D: usize> Trial<K, D> {
         eight: Eight,
     ) -> Option<Stressed<Lanes<S>>> {
         let material = points.material[eight.points().start];
-        if points.gap.is_some() || eight.points().any(|p| points.material[p] != material) {
+        let law = &model.materials[usize::from(material)];
+        if law.is_graded() || points.gap.is_some() || eight.points().any(|p| points.material[p] != material) {
             return None;
         }
         let grad = eight.of(&self.grad);
@@ -122,9 +125,9 @@ impl<K: Kinematics<D>, const D: usize> Trial<K, D> {
             let mut kept = Lanes::splat(simd, 1.0);
             if model.stabilisation == Stabilisation::FBarZhao {
                 own = Lanes::from_fn(simd, |lane| weight(model.stabilisation, points, eight.point(lane))) * own;
-                kept = Lanes::from_fn(simd, |lane| 1.0 / points.dilation_of(eight.point(lane)));
+                kept = Lanes::from_fn(simd, |lane| points.dilation_of(eight.point(lane)));
             }
-            dF_bar = K::dilate(&dF, Lanes::from_fn(simd, |lane| *mean[lane]) / own * kept);
+            dF_bar = K::dilate(&dF, ratio(Lanes::from_fn(simd, |lane| *mean[lane]), own, kept));
         }
         let b_e = |k: usize| Lanes::from_fn(simd, |lane| b_e[lane][k]);
         let zero = Lanes::splat(simd, 0.0);
@@ -134,8 +137,7 @@ impl<K: Kinematics<D>, const D: usize> Trial<K, D> {
         for (k, variable) in state[..width].iter_mut().enumerate() {
             *variable = Lanes::from_fn(simd, |lane| points.state_of(eight.point(lane))[k]);
         }
-        let material = &model.materials[usize::from(material)];
-        Some((dF, material.stress([xx, yy, zz, xy], &state[..width])?))
+        Some((dF, law.stress([xx, yy, zz, xy], &state[..width])?))
     }
 
     /// Steps (4f)-(4i): trial b^e of point `p` under dF-bar, widened by its gap, and the constitution's answer.
@@ -151,6 +153,12 @@ impl<K: Kinematics<D>, const D: usize> Trial<K, D> {
             gap => model.respond(points, p, &b_trial.scaled((2.0 / 3.0 * gap).exp())),
         }
     }
+}
+
+/// kept S(w dJ) / (w dJ).
+#[inline(always)]
+fn ratio<R: Real>(mean: R, own: R, kept: R) -> R {
+    mean / own * (kept.like(1.0) / kept)
 }
 
 /// J-bar/J at the start of the step where the total J is averaged, else 1.

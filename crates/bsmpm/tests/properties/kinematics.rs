@@ -67,7 +67,7 @@ fn a_rigid_rotation_keeps_the_principal_stress_and_turns_the_stress() {
 
 #[test]
 fn ten_turns_in_steps_of_a_degree_keep_the_kirchhoff_stress() {
-    // reliability.md N17: <= 1e-8 E for an exact rotation at point level.
+    // Extreme N17: <= 1e-8 E for an exact rotation at point level.
     let law = hencky(1000.0, 0.3);
     let mut b = b_of(&Tensor::new(1.1, 0.05, 0.0, -0.02, 0.93, 0.0, 0.0, 0.0, 1.0));
     let before = law.respond(&b, &[]).unwrap();

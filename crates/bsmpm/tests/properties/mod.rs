@@ -8,6 +8,7 @@ mod gap;
 mod ghost;
 mod indicators;
 mod kinematics;
+mod lanes;
 mod linearised;
 mod multisecant;
 mod observe;

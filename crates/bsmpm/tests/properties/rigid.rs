@@ -43,7 +43,7 @@ fn flight<K: Kinematics<D>, const D: usize>(order: usize, method: Stabilisation,
 
 #[test]
 fn free_flight_across_cells_keeps_velocity_and_no_stress() {
-    // reliability.md N16: velocity change <= 1e-12 per step, stress <= 1e-10 E.
+    // Extreme N16: velocity change <= 1e-12 per step, stress <= 1e-10 E.
     for method in METHODS {
         for order in 1..=3 {
             let (change, stress) = flight::<PlaneStrain, 2>(order, method, 50);

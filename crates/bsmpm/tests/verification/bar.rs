@@ -100,7 +100,7 @@ fn consistent_f_bar_keeps_the_energy_however_many_steps_there_are() {
 
 #[test]
 fn tiny_steps_converge_and_keep_the_energy() {
-    // reliability.md N09: energy error <= 1e-6, no stagnation of the iteration.
+    // Extreme N09: energy error <= 1e-6, no stagnation of the iteration.
     for dt in [2.5e-4, 1e-6, 1e-9] {
         let mut scene = bar(Stabilisation::None);
         let start = energy(&scene.points);

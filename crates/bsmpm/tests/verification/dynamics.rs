@@ -69,7 +69,7 @@ fn a_dynamic_step_of_huge_length_is_the_static_solution() {
 
 #[test]
 fn a_quasi_static_scene_without_load_needs_no_iteration_and_stays_as_it_is() {
-    // reliability.md N23.
+    // Extreme N23.
     for method in METHODS {
         let mut scene = settling(Regime::QuasiStatic).stabilised(method);
         scene.model.gravity = None;

@@ -1,4 +1,4 @@
-//! reliability.md N06: a body whose edge enters a cell by next to nothing: stress inside it, and the system's condition.
+//! Extreme N06: a body whose edge enters a cell by next to nothing: stress inside it, and the system's condition.
 
 use crate::support::scene::{Scene, axis, by_id, hencky};
 use crate::support::solver::Dense;

@@ -39,7 +39,7 @@ fn thrown(mirror: bool, method: Stabilisation) -> Scene<PlaneStrain, 2> {
 
 #[test]
 fn a_mirrored_scene_has_the_mirrored_result() {
-    // reliability.md N15: <= 1e-10 after 100 elastic steps.
+    // Extreme N15: <= 1e-10 after 100 elastic steps.
     for method in METHODS {
         let run = |mirror| thrown(mirror, method).solved(0.01, 1.0).0.points;
         let (left, right) = (run(false), run(true));
@@ -94,7 +94,7 @@ fn exchanged_axes_give_the_exchanged_result() {
 
 #[test]
 fn the_origin_of_the_axes_does_not_matter_and_neither_do_whole_cells() {
-    // reliability.md N14: positions are relative to the grid's corner.
+    // Extreme N14: positions are relative to the grid's corner.
     let run = |origin: f64, shift: usize| {
         let breakpoints: Vec<f64> = (0..=14).map(|i| origin + f64::from(i) * 0.5).collect();
         let knots = KnotVector::graded(&breakpoints, 2).unwrap();

@@ -64,7 +64,7 @@ fn one_step_over_many_cells_too() {
 
 #[test]
 fn a_uniformly_stressed_block_between_fixed_faces_stays_without_iteration() {
-    // reliability.md N23: already in equilibrium.
+    // Extreme N23: already in equilibrium.
     for method in METHODS {
         let (mut scene, _) = compressed::<PlaneStrain, 2>(4, 1.0, method);
         scene.points.b_e.fill(Symmetric([0.9, 0.64, 1.0, 0.0, 0.0, 0.0]));

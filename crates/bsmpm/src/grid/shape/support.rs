@@ -1,6 +1,5 @@
 //! The functions of a point at the nodes of its cell, as products of its rows.
 
-use crate::real::Real;
 use crate::tensor::Vector;
 
 /// One point's values: D rows of W.
@@ -22,13 +21,13 @@ impl<const D: usize, const W: usize> Values<'_, D, W> {
     }
 }
 
-/// Functions of a point, or of a lane of points: D rows of W values and W derivatives.
+/// One point's functions: D rows of W values and W derivatives.
 #[derive(Clone, Copy)]
-pub(crate) struct PointSupport<'a, R, const D: usize, const W: usize> {
-    pub rows: &'a [R],
+pub(crate) struct PointSupport<'a, const D: usize, const W: usize> {
+    pub rows: &'a [f64],
 }
 
-impl<R: Real, const D: usize, const W: usize> PointSupport<'_, R, D, W> {
+impl<const D: usize, const W: usize> PointSupport<'_, D, W> {
     /// Position of local node `k` along `axis`.
     #[inline(always)]
     fn along(k: usize, axis: usize) -> usize {
@@ -37,7 +36,7 @@ impl<R: Real, const D: usize, const W: usize> PointSupport<'_, R, D, W> {
 
     /// N_Ip of local node `k`.
     #[inline(always)]
-    pub fn value(&self, k: usize) -> R {
+    pub fn value(&self, k: usize) -> f64 {
         let mut product = self.rows[Self::along(k, 0)];
         for axis in 1..D {
             product = product * self.rows[2 * W * axis + Self::along(k, axis)];
@@ -47,7 +46,7 @@ impl<R: Real, const D: usize, const W: usize> PointSupport<'_, R, D, W> {
 
     /// grad N_Ip of local node `k`, 1/m.
     #[inline(always)]
-    pub fn gradient(&self, k: usize) -> Vector<D, R> {
+    pub fn gradient(&self, k: usize) -> Vector<D> {
         let row = |axis: usize, component: usize| {
             let a = 2 * W * axis + Self::along(k, axis);
             self.rows[if component == axis { a + W } else { a }]

@@ -1,4 +1,5 @@
-//! Gather and scatter with gradients within a patch: points in lanes, or their nodes side by side.
+//! Gather and scatter with gradients within a patch, compiled for each instruction set: the sums of a point are left to the
+//! compiler, those of nodes stand side by side.
 
 use super::PatchBlock;
 use crate::grid::shape::PointSupport;
@@ -26,7 +27,7 @@ impl<K: Kinematics<D>, const D: usize, const W: usize> InLanes for Gradients<'_,
     fn run<S: Simd>(self, _simd: S) {
         let size = 2 * D * W;
         for p in self.points {
-            let support = PointSupport::<f64, D, W> { rows: &self.rows[p * size..(p + 1) * size] };
+            let support = PointSupport::<D, W> { rows: &self.rows[p * size..(p + 1) * size] };
             let mut gradient = K::Gradient::zeros();
             for (k, at_node) in self.block[..const { W.pow(D as u32) }].iter().enumerate() {
                 let slope = K::slope::<f64>(|| support.value(k), support.gradient(k), &self.x[p]);
