@@ -1,5 +1,5 @@
-//! The targets as a program. Built plainly it replays files: `bsmpm-fuzz TARGET FILE...`. Built as `scripts/fuzz` does, with
-//! libFuzzer, it is the fuzzer of the target that `BSMPM_FUZZ_TARGET` names.
+//! The targets as a program. Built plainly it replays files: `bsmpm-fuzz TARGET FILE...`. Built as `scripts/fuzz` does,
+//! with libFuzzer, it is the fuzzer of the target that `BSMPM_FUZZ_TARGET` names.
 #![cfg_attr(fuzzing, no_main)]
 
 #[cfg(fuzzing)]

@@ -1,5 +1,5 @@
-//! The return mapping (section 2.2): any trial state and any parameters that a case may have give a finite response or a
-//! typed error, on or inside the yield surface, that a second return leaves alone.
+//! The return mapping (section 2.2): any trial state and any parameters that a case may have give a finite response or
+//! a typed error, on or inside the yield surface, that a second return leaves alone.
 
 use crate::draw;
 use arbitrary::{Result, Unstructured};
@@ -38,8 +38,8 @@ fn draw(u: &mut Unstructured<'_>) -> Result<()> {
     Ok(())
 }
 
-/// What [`bsmpm_scene`] admits: E > 0, -1 < ν < ½, 0 ≤ ψ ≤ φ < 90°, c ≥ 0, σ_y > 0, H ≥ 0, a strength reduction of 0.1 to
-/// 100; of any law also by height.
+/// What [`bsmpm_scene`] admits: E > 0, -1 < ν < ½, 0 ≤ ψ ≤ φ < 90°, c ≥ 0, σ_y > 0, H ≥ 0, a strength reduction of 0.1
+/// to 100; of any law also by height.
 fn material(u: &mut Unstructured<'_>) -> Result<Material> {
     let elastic = Elastic { young: draw::size(u, -12.0, 20.0)?, poisson: poisson(u)? };
     let friction = draw::between(u, 0.0, 89.999)?.to_radians() * if u.ratio(1, 8)? { 1e-9 } else { 1.0 };
@@ -113,7 +113,8 @@ fn yield_scale(material: &Material, [first, second, third]: [f64; 3], state: &[f
     first.abs() + second.abs() + third.abs() + strength
 }
 
-/// A second return changes no more than rounding: of b's components, and of the inverse elasticity where ν is near an end.
+/// A second return changes no more than rounding: of b's components, and of the inverse elasticity where ν is near an
+/// end.
 fn second_return(material: &Material, response: &Response, scale: f64, state: &[f64]) {
     let eps = response.principal_eps_e();
     let condition = (2.0 * (eps[0] - eps[2])).exp();

@@ -39,12 +39,12 @@ pub struct OutputDirectory {
 }
 
 impl OutputDirectory {
-    /// Makes the directory if need be, and holds it against other runs as long as this lives: of several programs that try
-    /// at once, one succeeds.
+    /// Makes the directory if need be, and holds it against other runs as long as this lives: of several programs that
+    /// try at once, one succeeds.
     ///
     /// # Errors
-    /// [`Error::Locked`] by a run that goes on, see [`Lock::take`]. [`Error::NotDirectory`], [`Error::Directory`] if the path
-    /// is a file or cannot be made or written to, or if a link stands where one of the run's folders belongs.
+    /// [`Error::Locked`] by a run that goes on, see [`Lock::take`]. [`Error::NotDirectory`], [`Error::Directory`] if
+    /// the path is a file or cannot be made or written to, or if a link stands where one of the run's folders belongs.
     pub fn hold(path: &Path, unseen: Unseen) -> Result<Self, Error> {
         let refused = |action| move |source| Error::Directory { action, path: path.to_owned(), source };
         let idle = match fs::metadata(path) {
@@ -63,9 +63,9 @@ impl OutputDirectory {
     /// Puts the first manifest of a new run there.
     ///
     /// # Errors
-    /// [`Error::Occupied`] by another run; with [`Existing::Delete`] only if there is a file of a run that no `run.json`
-    /// names. [`Error::UnsafeOutput`] if the older `run.json` names what no run of ours wrote: nothing is deleted then.
-    /// [`Error::Directory`] if it cannot be written to.
+    /// [`Error::Occupied`] by another run; with [`Existing::Delete`] only if there is a file of a run that no
+    /// `run.json` names. [`Error::UnsafeOutput`] if the older `run.json` names what no run of ours wrote: nothing is
+    /// deleted then. [`Error::Directory`] if it cannot be written to.
     pub fn claim(mut self, existing: Existing, first: &Manifest) -> Result<Self, Error> {
         let path = &self.path;
         let refused = |action| move |source| Error::Directory { action, path: path.clone(), source };
@@ -164,7 +164,8 @@ fn is_no_folder(path: &Path) -> bool {
     fs::symlink_metadata(path).is_ok_and(|found| !found.is_dir())
 }
 
-/// Deletes the outputs that the directory's `run.json` names, then itself. All are looked at before the first is deleted.
+/// Deletes the outputs that the directory's `run.json` names, then itself. All are looked at before the first is
+/// deleted.
 fn delete_run(directory: &Path, held: &[String]) -> Result<(), Error> {
     if held[0] != MANIFEST {
         return Err(occupied(

@@ -97,8 +97,8 @@ impl Frame {
     /// Whether the frame may be written to `path`.
     ///
     /// # Errors
-    /// [`Error::Name`] for a name that XML or ParaView cannot take, [`Error::Length`] for a field that does not have its
-    /// numbers for every point, [`Error::PointNotFinite`] for the first number that is infinite or none.
+    /// [`Error::Name`] for a name that XML or ParaView cannot take, [`Error::Length`] for a field that does not have
+    /// its numbers for every point, [`Error::PointNotFinite`] for the first number that is infinite or none.
     pub fn check(&self, path: &Path) -> Result<(), Error> {
         if !self.time.is_finite() {
             return Err(Error::NotFinite { path: path.to_owned(), item: "time".to_owned(), value: self.time });

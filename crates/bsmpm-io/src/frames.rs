@@ -105,8 +105,8 @@ fn write_collection(path: &Path, entries: &[Entry]) -> Result<(), Error> {
 /// The frames that an output directory lists, in their order.
 ///
 /// # Errors
-/// [`Error::File`] without a readable `frames.pvd`; [`Error::Format`] for one that is not ours, or that names files outside
-/// the directory.
+/// [`Error::File`] without a readable `frames.pvd`; [`Error::Format`] for one that is not ours, or that names files
+/// outside the directory.
 pub fn read_collection(directory: &Path) -> Result<Vec<Entry>, Error> {
     let path = directory.join(COLLECTION);
     let text = fs::read_to_string(&path).map_err(Error::file("read", &path))?;

@@ -8,8 +8,8 @@
 //! and found again ([`checkpoint`]); the arrays in a checkpoint's HDF5 file are written where the ranks are known, in
 //! `bsmpm-par`.
 //!
-//! Two promises hold for everything that is written: no number that is not finite ever reaches a file, and a file that is
-//! replaced is either the old or the new one, whenever the program is killed ([`atomic`]).
+//! Two promises hold for everything that is written: no number that is not finite ever reaches a file, and a file that
+//! is replaced is either the old or the new one, whenever the program is killed ([`atomic`]).
 #![forbid(unsafe_code)]
 
 pub mod atomic;

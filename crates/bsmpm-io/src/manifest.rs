@@ -1,5 +1,5 @@
-//! `run.json`, the manifest: what was run, by which program, how it went, and what it left. It is replaced whole, so that
-//! a reader finds a good one at any moment.
+//! `run.json`, the manifest: what was run, by which program, how it went, and what it left. It is replaced whole, so
+//! that a reader finds a good one at any moment.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -165,8 +165,8 @@ impl Manifest {
         output.map_or(Ok(()), |output| output.complete(directory))
     }
 
-    /// Notes the size and hash of every named output as it now stands in `directory`; one that is not there has none, and
-    /// one that was complete and has kept its size is not read again.
+    /// Notes the size and hash of every named output as it now stands in `directory`; one that is not there has none,
+    /// and one that was complete and has kept its size is not read again.
     ///
     /// # Errors
     /// [`Error::File`] when a file cannot be read.
@@ -220,7 +220,8 @@ impl Manifest {
     /// Reads the `run.json` of `directory`.
     ///
     /// # Errors
-    /// [`Error::File`] when there is none or the system refuses, [`Error::Format`] when it is not ours, or of a newer form.
+    /// [`Error::File`] when there is none or the system refuses, [`Error::Format`] when it is not ours, or of a newer
+    /// form.
     pub fn read(directory: &Path) -> Result<Self, Error> {
         #[derive(Deserialize)]
         struct ManifestForm {

@@ -1,4 +1,5 @@
-//! `residuals.csv`: how far from equilibrium every iteration of every accepted step was. Kept where the case asks for it.
+//! `residuals.csv`: how far from equilibrium every iteration of every accepted step was. Kept where the case asks for
+//! it.
 
 use std::path::Path;
 
@@ -36,8 +37,8 @@ impl ResidualMethod {
     }
 }
 
-/// One row: a state on the way from the guess that led to convergence, and the direction found there. The last state has no
-/// direction where its forces are balanced to round-off.
+/// One row: a state on the way from the guess that led to convergence, and the direction found there. The last state
+/// has no direction where its forces are balanced to round-off.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Iterate {
     /// The step's number.

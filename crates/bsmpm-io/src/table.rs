@@ -1,5 +1,5 @@
-//! Tables with one row a step, as comma-separated values: a line of names, a line of units that begins with `#`, then the
-//! rows. Each row is in the file before the next step begins.
+//! Tables with one row a step, as comma-separated values: a line of names, a line of units that begins with `#`, then
+//! the rows. Each row is in the file before the next step begins.
 
 use std::fs::{self, File};
 use std::io::{Read, Seek, SeekFrom, Write};
@@ -77,8 +77,8 @@ impl CsvTable {
     /// Whether a file can be gone on with from `mark`; it is left as it is.
     ///
     /// # Errors
-    /// [`Error::Format`] if the file is shorter or its beginning another one, or if it has other columns; [`Error::File`] when
-    /// the system refuses.
+    /// [`Error::Format`] if the file is shorter or its beginning another one, or if it has other columns;
+    /// [`Error::File`] when the system refuses.
     pub fn verify(path: &Path, columns: &[TableColumn], mark: &TableMark) -> Result<(), Error> {
         Self::reach(path, columns, mark).map(|_| ())
     }
@@ -130,8 +130,8 @@ impl CsvTable {
     /// Adds a row, floats in the shortest form that reads back to the same bits. The row goes to the system whole.
     ///
     /// # Errors
-    /// [`Error::Length`] for a row of another length, [`Error::NotFinite`] for a number that is infinite or none: the file
-    /// is then as before. [`Error::File`] when the system refuses.
+    /// [`Error::Length`] for a row of another length, [`Error::NotFinite`] for a number that is infinite or none: the
+    /// file is then as before. [`Error::File`] when the system refuses.
     pub fn row(&mut self, cells: &[Cell]) -> Result<(), Error> {
         if cells.len() != self.columns.len() {
             let (expected, found) = (self.columns.len(), cells.len());
@@ -205,8 +205,8 @@ impl Columns {
     }
 }
 
-/// Reads a table of numbers: ours, or another with a line of names. Lines that begin with `#` are comments, the one right
-/// after the names their units; a last line without its end is one that is being written, and left out.
+/// Reads a table of numbers: ours, or another with a line of names. Lines that begin with `#` are comments, the one
+/// right after the names their units; a last line without its end is one that is being written, and left out.
 ///
 /// # Errors
 /// [`Error::File`] when the system refuses, [`Error::Format`] with the line for anything but finite numbers.

@@ -134,8 +134,8 @@ fn write_array(file: &mut dyn Write, name: &str, components: usize, kind: &str, 
     writeln!(file, " format=\"appended\" offset=\"{offset}\"/>")
 }
 
-/// The arrays in the order of the file: fields, places, then the three that make each point a cell, the first one's number
-/// being `first`.
+/// The arrays in the order of the file: fields, places, then the three that make each point a cell, the first one's
+/// number being `first`.
 fn arrays(frame: &Frame, first: usize) -> impl Iterator<Item = Data<'_>> {
     let points = frame.position.len();
     let fields =

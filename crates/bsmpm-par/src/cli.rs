@@ -68,7 +68,8 @@ pub struct Arguments {
     /// Take over the output directory's lock from a run that cannot be seen to be dead, e.g. on another host
     #[arg(long)]
     pub break_lock: bool,
-    /// Go on from the newest good checkpoint in the output directory, or start where there is none; or from this one only
+    /// Go on from the newest good checkpoint in the output directory, or start where there is none; or from this one
+    /// only
     #[arg(long, value_name = "auto|FILE")]
     pub restart: Option<Restart>,
     /// Stop when the run's step number reaches N (exit 75; 0 if the end was reached)
@@ -83,7 +84,8 @@ pub struct Arguments {
     /// Cores of each rank, for the work on its points
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1024))]
     pub threads: u32,
-    /// Refuse a case that would need more memory on all ranks, e.g. 16GiB (exit 71) [default: what the first rank's host has]
+    /// Refuse a case that would need more memory on all ranks, e.g. 16GiB (exit 71) [default: what the first rank's
+    /// host has]
     #[arg(long, value_name = "SIZE", value_parser = size)]
     pub max_memory: Option<u64>,
     /// Refuse a run whose frames and checkpoints may not fit on the disk (exit 74), instead of warning

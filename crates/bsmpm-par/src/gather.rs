@@ -1,5 +1,5 @@
-//! Frames: all points by ascending id, so that a frame does not depend on the number of ranks, block by block on rank 0, so
-//! that no rank holds more of them than its own and a block.
+//! Frames: all points by ascending id, so that a frame does not depend on the number of ranks, block by block on rank
+//! 0, so that no rank holds more of them than its own and a block.
 
 use bsmpm::material::{Material, Variable};
 use bsmpm::points::{Column, ColumnInfo, Number, Points};
@@ -38,8 +38,8 @@ enum FieldSource<'a> {
 }
 
 impl<'a> FieldSource<'a> {
-    /// All of a scene, in the order of the files; the same on all ranks: vectors and tensors, then numbers, then who a point
-    /// is.
+    /// All of a scene, in the order of the files; the same on all ranks: vectors and tensors, then numbers, then who a
+    /// point is.
     fn all(points: &'a Points<2>, projected: Option<&'a [f64]>, materials: &'a [Material]) -> Vec<Self> {
         let shown = Points::<2>::COLUMNS.iter().filter(|info| info.frame.is_some());
         let shown = shown.filter_map(|info| points.column(info.name).map(|column| (info, column)));
@@ -124,8 +124,8 @@ pub struct Gathering<'a> {
 }
 
 impl<'a> Gathering<'a> {
-    /// The points of all ranks with what their materials carry, and with their projected pressures (Pa) if these are wanted.
-    /// Collective.
+    /// The points of all ranks with what their materials carry, and with their projected pressures (Pa) if these are
+    /// wanted. Collective.
     pub fn new(
         world: &'a SimpleCommunicator,
         (points, materials): (&'a Points<2>, &'a [Material]),

@@ -26,9 +26,9 @@ const DEFECT: [f64; 2] = [0.2, 0.8];
 /// Usual number of points in an inner cell: fewer than 2 x 2 integrate too little, and no number is too many.
 const POINTS: [f64; 2] = [3.0, 1e3];
 /// Usual compression with fewer points along an axis of a cell than so many: an elastic bar on 64 cells that its weight
-/// compresses by 1, 5, 9, 15, 28 and 52 % has a mean error of its stress of .006, .3, .8, 1.0, 1.0 and .6 % with 2, .4 and .3 %
-/// at 28 and 52 % with 3, .2 and .07 % at 52 % with 4 and 6 points. With fitted volumes it is .04 % at most, with 2 or 3 points:
-/// no compression is unusual then.
+/// compresses by 1, 5, 9, 15, 28 and 52 % has a mean error of its stress of .006, .3, .8, 1.0, 1.0 and .6 % with 2, .4
+/// and .3 % at 28 and 52 % with 3, .2 and .07 % at 52 % with 4 and 6 points. With fitted volumes it is .04 % at most,
+/// with 2 or 3 points: no compression is unusual then.
 const COMPRESSION: (usize, f64) = (4, 0.1);
 /// Usual noise of the pressure about its average and about planes.
 const NOISE: [f64; 2] = [0.25, 0.3];
@@ -36,8 +36,8 @@ const NOISE: [f64; 2] = [0.25, 0.3];
 const ENERGY: [f64; 2] = [1e-4, 0.1];
 /// Usual growth of energy beyond the work done; the run ends at .05.
 const GROWTH: f64 = 0.02;
-/// Part of the thinnest body along which smoothing is usual: of all strain in every step, and of the elastic dilation in
-/// proportion to plastic flow, which renews it.
+/// Part of the thinnest body along which smoothing is usual: of all strain in every step, and of the elastic dilation
+/// in proportion to plastic flow, which renews it.
 const SMOOTHED: [f64; 2] = [0.1, 1.5];
 /// Usual slip of a strip in a step over its motion.
 const SLIP: f64 = 0.01;
@@ -46,8 +46,8 @@ const SLIP: f64 = 0.01;
 const PULL: f64 = 0.05;
 /// Largest cells by which a front usually goes back.
 const SETBACK: f64 = 1.0;
-/// Cells by which points usually move in a step of dynamics, at most: the short collapse in steps of 10 ms, in which they move by
-/// one, ends 9 % off.
+/// Cells by which points usually move in a step of dynamics, at most: the short collapse in steps of 10 ms, in which
+/// they move by one, ends 9 % off.
 const ADVANCE: f64 = 0.5;
 /// Part of the internal forces' work that a background usually takes.
 const BACKGROUND: f64 = 0.02;

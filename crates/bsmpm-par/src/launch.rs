@@ -35,8 +35,8 @@ pub fn say(line: &str) {
     let _ = writeln!(stderr, "{line}").and_then(|()| stderr.flush());
 }
 
-/// How long this process has been there: what a limit of time is compared with, so that starting libraries, making points
-/// and reading a checkpoint count, too.
+/// How long this process has been there: what a limit of time is compared with, so that starting libraries, making
+/// points and reading a checkpoint count, too.
 pub fn age() -> Duration {
     static BEGUN: OnceLock<Instant> = OnceLock::new();
     BEGUN.get_or_init(Instant::now).elapsed()

@@ -196,8 +196,8 @@ impl Ledger {
         self.residuals(number, accepted)
     }
 
-    /// What a step tells of how far its state can be trusted. A state without a direction from it was accepted as balanced to
-    /// round-off, or far below the tolerance; one that settled, by its forces alone.
+    /// What a step tells of how far its state can be trusted. A state without a direction from it was accepted as
+    /// balanced to round-off, or far below the tolerance; one that settled, by its forces alone.
     fn measures(&mut self, report: &StepReport) {
         let [force, energy] = self.criteria;
         let summary = &mut self.manifest.summary;

@@ -60,8 +60,8 @@ impl Display for Shortage {
     }
 }
 
-/// Refuses a case that needs more than the first rank's host or the command line allows, which that rank says; `Err` holds
-/// the exit code, the same on all ranks. What is only checked may be meant for another host. Collective.
+/// Refuses a case that needs more than the first rank's host or the command line allows, which that rank says; `Err`
+/// holds the exit code, the same on all ranks. What is only checked may be meant for another host. Collective.
 pub fn admit(world: &SimpleCommunicator, arguments: &Arguments, case: &Case) -> Result<(), u8> {
     let ranks = world.size().unsigned_abs() as usize;
     let here = world.split_shared(world.rank()).size().unsigned_abs() as usize;

@@ -86,7 +86,8 @@ fn start_threads(count: u32) -> Result<(), String> {
     pool.build_global().map_err(|error| format!("{count} threads could not be started: {error}"))
 }
 
-/// Options of PETSc, each with its value if it has one, that have every solve reported: they wait for the run's own systems.
+/// Options of PETSc, each with its value if it has one, that have every solve reported: they wait for the run's own
+/// systems.
 fn reports(options: &[String]) -> (Vec<&str>, Vec<(&str, Option<&str>)>) {
     let is_name = |option: &str| option.starts_with('-') && option.parse::<f64>().is_err();
     let reports = |option: &str| {

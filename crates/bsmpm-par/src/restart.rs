@@ -176,8 +176,8 @@ impl Resumed<'_> {
         self.state.lines(&case.grid).ok_or_else(foreign)
     }
 
-    /// Reads the points and the nodal displacement, each rank what lies in its slab; the model's grid gets the room that the
-    /// run had. Collective.
+    /// Reads the points and the nodal displacement, each rank what lies in its slab; the model's grid gets the room
+    /// that the run had. Collective.
     ///
     /// # Errors
     /// The same on all ranks (76): they are not those of this case.

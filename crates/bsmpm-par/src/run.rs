@@ -205,8 +205,8 @@ impl<'p> Run<'p> {
         }
     }
 
-    /// A strip that holds nothing, or no longer the material that it held, does nothing of what it is there for, which no
-    /// other number tells.
+    /// A strip that holds nothing, or no longer the material that it held, does nothing of what it is there for, which
+    /// no other number tells.
     fn tell_strips_without_material(&mut self, accepted: &Accepted) {
         for (number, strip) in accepted.report.strips.iter().enumerate() {
             let points = self.simulation.model.boundary.strips[number].points.len();

@@ -57,8 +57,8 @@ pub fn linear(case: &Case, ranks: usize, options: &[String]) -> Choice {
 /// The factorisation that is this program's own; PETSc and MUMPS do instead of it what it does not: general matrices.
 const DISSECTION: Factor = Factor::Dissection;
 
-/// Whether an option of PETSc is about a preconditioner or a matrix of PETSc's, which need the matrix assembled; those of
-/// KSP, and of reports, are for any.
+/// Whether an option of PETSc is about a preconditioner or a matrix of PETSc's, which need the matrix assembled; those
+/// of KSP, and of reports, are for any.
 fn decides(option: &str) -> bool {
     ["-pc_", "-mat_", "-sub_", "-mg_", "-redundant_"].iter().any(|prefix| option.starts_with(prefix))
 }

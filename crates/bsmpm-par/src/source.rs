@@ -9,7 +9,8 @@ use bsmpm_scene::Case;
 use mpi::collective::Root;
 use mpi::topology::{Communicator, SimpleCommunicator};
 
-/// The valid case of the command line, for which there is enough memory; `Err` holds the exit code, and rank 0 has said why.
+/// The valid case of the command line, for which there is enough memory; `Err` holds the exit code, and rank 0 has said
+/// why.
 pub fn read(world: &SimpleCommunicator, arguments: &Arguments) -> Result<Case, u8> {
     let speaks = world.rank() == 0;
     let name = arguments.case.display().to_string();

@@ -27,8 +27,8 @@ struct Need {
     checkpoint: u64, // bytes
 }
 
-/// A warning for the first rank where its disk has less room than the run may need, or with `--strict-space` the refusal
-/// (74). Collective.
+/// A warning for the first rank where its disk has less room than the run may need, or with `--strict-space` the
+/// refusal (74). Collective.
 pub fn admit(
     world: &SimpleCommunicator,
     held: Option<&OutputDirectory>,

@@ -151,7 +151,8 @@ impl MpiHalo {
     }
 }
 
-/// What the columns of this rank contribute to the layers shared with another one: layer after layer, column after column.
+/// What the columns of this rank contribute to the layers shared with another one: layer after layer, column after
+/// column.
 fn pieces(contributions: &Contributions, layers: &[SharedLayer], layer: usize) -> Vec<f64> {
     let mut message = Vec::new();
     for shared in layers {

@@ -30,8 +30,8 @@ impl fmt::Display for LaunchFailure {
     }
 }
 
-/// Starts MPI. From here on a panic on any rank goes to `end` with its reason, which is to end the job ([`abort`]) and to
-/// say why. First thing in `main`, before any other thread: it sets environment variables.
+/// Starts MPI. From here on a panic on any rank goes to `end` with its reason, which is to end the job ([`abort`]) and
+/// to say why. First thing in `main`, before any other thread: it sets environment variables.
 pub fn start(end: fn(&SimpleCommunicator, &str) -> !) -> Result<Universe, LaunchFailure> {
     prepare(!LAUNCHED.iter().any(|name| std::env::var_os(name).is_some()));
     let Some((universe, _)) = mpi::initialize_with_threading(mpi::Threading::Funneled) else {
@@ -46,12 +46,12 @@ pub fn start(end: fn(&SimpleCommunicator, &str) -> !) -> Result<Universe, Launch
     }
 }
 
-/// Settings of Open MPI for every run. Files have no pointer that ranks share: Open MPI's would fill a buffer of fixed size
-/// with long names.
+/// Settings of Open MPI for every run. Files have no pointer that ranks share: Open MPI's would fill a buffer of fixed
+/// size with long names.
 const ALWAYS: [(&str, &str); 1] = [("OMPI_MCA_sharedfp", "individual")];
 
-/// Settings without a launcher. Open MPI would start a daemon and look for a network; one rank needs neither. Its folder for
-/// the processes of a node would be shared by all such runs, and go with the first that ends.
+/// Settings without a launcher. Open MPI would start a daemon and look for a network; one rank needs neither. Its
+/// folder for the processes of a node would be shared by all such runs, and go with the first that ends.
 const ALONE: [(&str, &str); 4] = [
     ("OMPI_MCA_ess_singleton_isolated", "1"),
     ("OMPI_MCA_orte_create_session_dirs", "0"),

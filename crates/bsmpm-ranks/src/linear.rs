@@ -56,7 +56,8 @@ pub struct Tallies {
 impl<'p, const D: usize, const C: usize> KspSolver<'p, D, C> {
     /// A solver for a window of the grid.
     pub fn new(petsc: &'p Petsc<'p>, choice: Choice, grid: &Grid<D>, halo: Rc<MpiHalo>, timers: Rc<Timers>) -> Self {
-        // Where every rank factorises the whole, the same bits on any number of ranks; else sums depend on the cut anyway.
+        // Where every rank factorises the whole, the same bits on any number of ranks; else sums depend on the cut
+        // anyway.
         let whole = choice.redundant && !choice.dissection;
         let stencil = if whole { Stencil::by_columns(grid, halo.owned()) } else { Stencil::new(grid) };
         let (free, numbers) = (Vec::new(), Vec::new());
@@ -189,7 +190,8 @@ fn numbered<const C: usize>(choice: &Choice, free: &[bool]) -> impl Fn(usize) ->
     }
 }
 
-/// Where the nodes with rows of this rank are, m: the splines' coefficients there (Greville) give linear fields exactly.
+/// Where the nodes with rows of this rank are, m: the splines' coefficients there (Greville) give linear fields
+/// exactly.
 fn places_of<const D: usize, const C: usize>(grid: &Grid<D>, halo: &MpiHalo, numbers: &Numbering) -> Vec<f64> {
     let with_rows = halo.owned().filter(|node| numbers[node * C].is_some());
     with_rows

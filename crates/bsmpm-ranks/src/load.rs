@@ -1,8 +1,8 @@
 //! What the work of a rank is measured by: counts, never a clock, so that a run repeats.
 //!
-//! Two fits to runs of many sizes on one rank (`scripts/scaling`) say that a node of the window costs .95 and 1.07 of what a
-//! point does in an evaluation, everything included. A point that yields cost 4 % more in an earlier fit, and an occupied
-//! cell nothing that its points did not, so neither counts.
+//! Two fits to runs of many sizes on one rank (`scripts/scaling`) say that a node of the window costs .95 and 1.07 of
+//! what a point does in an evaluation, everything included. A point that yields cost 4 % more in an earlier fit, and an
+//! occupied cell nothing that its points did not, so neither counts.
 
 use crate::slab::Slabs;
 use bsmpm::grid::Grid;
@@ -10,8 +10,8 @@ use bsmpm::points::Points;
 
 /// Work of a node of the window in an evaluation, in that of a point.
 const NODE: f64 = 1.0;
-/// Work of a new cut on every rank, in evaluations. Measured with 3,200 points on two ranks: 1.0 ms for moving points and
-/// nodal values, and in the 57 % of steps that would have kept it, 3.7 ms for the linear solver's new pattern; an
+/// Work of a new cut on every rank, in evaluations. Measured with 3,200 points on two ranks: 1.0 ms for moving points
+/// and nodal values, and in the 57 % of steps that would have kept it, 3.7 ms for the linear solver's new pattern; an
 /// evaluation takes .53 ms.
 const PRICE: f64 = 6.0;
 
@@ -25,8 +25,8 @@ pub fn points_by_column<const D: usize>(grid: &Grid<D>, points: &Points<D>) -> V
     counts
 }
 
-/// The cut of the grid's room into about equal loads, with so many points of all ranks in every column; `None` with more
-/// ranks than columns.
+/// The cut of the grid's room into about equal loads, with so many points of all ranks in every column; `None` with
+/// more ranks than columns.
 pub fn cut<const D: usize>(grid: &Grid<D>, points: &[f64], ranks: usize) -> Option<Slabs> {
     let slabs = Slabs::cut(&by_column(points, grid.layer_nodes()), ranks)?;
     Some(slabs.starting_at(grid.room()[0].start).reaching(grid.beyond()))
@@ -59,7 +59,8 @@ pub fn imbalance(loads: &[f64]) -> f64 {
     if sum > 0.0 { most * loads.len() as f64 / sum } else { 1.0 }
 }
 
-/// Whether a cut under which the largest load is `best` instead of `now` gains more in so many evaluations than it costs.
+/// Whether a cut under which the largest load is `best` instead of `now` gains more in so many evaluations than it
+/// costs.
 pub fn pays(now: f64, best: f64, evaluations: u64) -> bool {
     (now - best) * evaluations as f64 > PRICE * best
 }

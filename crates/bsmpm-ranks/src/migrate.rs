@@ -1,5 +1,5 @@
-//! Points and nodal values that change their rank: after every step, and when the slabs are cut anew. [`plan`](crate::plan)
-//! says who gets what.
+//! Points and nodal values that change their rank: after every step, and when the slabs are cut anew.
+//! [`plan`](crate::plan) says who gets what.
 
 use crate::plan::{LayerPlan, PointPlan};
 use crate::slab::Slabs;
@@ -44,8 +44,8 @@ pub fn points<const D: usize>(
     points.sort_by_cell(grid);
 }
 
-/// Nodal values (`width` a node) of a window of `old`, as a window of `new` with the same columns' layers has them: what
-/// lies outside the old room is zero.
+/// Nodal values (`width` a node) of a window of `old`, as a window of `new` with the same columns' layers has them:
+/// what lies outside the old room is zero.
 pub fn across<const D: usize>(old: &Grid<D>, new: &Grid<D>, values: &[f64], width: usize) -> Vec<f64> {
     let mut room = new.room().clone();
     room[0] = old.room()[0].clone();
@@ -89,8 +89,8 @@ pub fn nodal<const D: usize>(
     moved
 }
 
-/// Sends every rank its message, and returns those received; both ascending by rank and without empty ones. Longer messages
-/// than a `block` of bytes go in several. Collective.
+/// Sends every rank its message, and returns those received; both ascending by rank and without empty ones. Longer
+/// messages than a `block` of bytes go in several. Collective.
 pub fn exchange(
     (world, traffic): (&SimpleCommunicator, &Traffic),
     outgoing: &[(usize, Vec<u8>)],

@@ -1,7 +1,8 @@
 //! What signals ask of a run, agreed by all ranks: one to a single rank is enough, and no extra message is sent.
 //!
-//! USR1, TERM and INT: stop at the last converged state; a second TERM or INT: end at once. USR2: write a frame and a checkpoint, go on.
-//! The handlers only set flags; [`MpiHalo`](crate::halo::MpiHalo) adds those to every sum over the ranks.
+//! USR1, TERM and INT: stop at the last converged state; a second TERM or INT: end at once. USR2: write a frame and a
+//! checkpoint, go on. The handlers only set flags; [`MpiHalo`](crate::halo::MpiHalo) adds those to every sum over the
+//! ranks.
 
 use signal_hook::consts::{SIGINT, SIGTERM, SIGUSR1, SIGUSR2};
 use signal_hook::flag;

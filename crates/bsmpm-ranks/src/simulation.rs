@@ -112,8 +112,8 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         self.stepper.progress()
     }
 
-    /// Everything that is large and must be kept to go on: the points' columns, and the nodal displacement of the layers
-    /// that this rank owns, from which the next step starts, with the numbers of a layer.
+    /// Everything that is large and must be kept to go on: the points' columns, and the nodal displacement of the
+    /// layers that this rank owns, from which the next step starts, with the numbers of a layer.
     #[allow(clippy::type_complexity)]
     pub fn arrays(&mut self) -> (Vec<(&'static str, &mut dyn Column)>, (&[f64], usize)) {
         let owned = self.halo.owned();

@@ -16,8 +16,8 @@ pub struct Slabs {
 }
 
 impl Slabs {
-    /// Cuts columns of given cost into slabs, each at least one column wide, whose largest cost is as small as it can be
-    /// and whose bounds are, within that, near equal shares. `None` if there are fewer columns than ranks.
+    /// Cuts columns of given cost into slabs, each at least one column wide, whose largest cost is as small as it can
+    /// be and whose bounds are, within that, near equal shares. `None` if there are fewer columns than ranks.
     pub fn cut(cost: &[f64], ranks: usize) -> Option<Self> {
         if cost.len() < ranks {
             return None;
@@ -53,8 +53,8 @@ impl Slabs {
         Some(Self { bounds, beyond: 0 })
     }
 
-    /// Slabs that begin at given columns; `None` if they are not one for each rank, all with cells, of all `columns` of the
-    /// grid's room.
+    /// Slabs that begin at given columns; `None` if they are not one for each rank, all with cells, of all `columns` of
+    /// the grid's room.
     pub fn new(bounds: Vec<usize>, ranks: usize, columns: Range<usize>) -> Option<Self> {
         let whole = bounds.len() == ranks + 1 && bounds[0] == columns.start && bounds[ranks] == columns.end;
         (whole && bounds.is_sorted_by(|a, b| a < b)).then_some(Self { bounds, beyond: 0 })

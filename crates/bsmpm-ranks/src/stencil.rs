@@ -1,9 +1,9 @@
 //! The stiffness of one window as node stencils, and its entries as PETSc wants them: plain data, without MPI or PETSc.
 //!
-//! A node couples with the (2q+1)^D nodes around it, and with those a layer further where the window reaches beyond its cells.
-//! Blocks of patches are summed into that fixed stencil, so that every
-//! rank hands each of its coordinates over once; rows of ghost nodes are completed by their owner, in whatever order, or by
-//! columns of cells in the order of these.
+//! A node couples with the (2q+1)^D nodes around it, and with those a layer further where the window reaches beyond its
+//! cells. Blocks of patches are summed into that fixed stencil, so that every
+//! rank hands each of its coordinates over once; rows of ghost nodes are completed by their owner, in whatever order,
+//! or by columns of cells in the order of these.
 
 mod places;
 
@@ -59,8 +59,8 @@ impl<const D: usize, const C: usize> Stencil<D, C> {
         Self { places, slot, offsets, rows, values, columns: None }
     }
 
-    /// Zero stencils of these of the window's nodes only: others take no memory, and what is added to them is lost. Sums by
-    /// columns keep all.
+    /// Zero stencils of these of the window's nodes only: others take no memory, and what is added to them is lost.
+    /// Sums by columns keep all.
     pub fn keep(&mut self, kept: impl Fn(usize) -> bool) {
         let mut count = 0;
         let mut next = || {
@@ -74,9 +74,9 @@ impl<const D: usize, const C: usize> Stencil<D, C> {
         self.values.shrink_to(2 * self.values.len());
     }
 
-    /// Zero stencils whose sums do not depend on the cut: the columns of cells add to a row in their order, whichever rank
-    /// has them. An entry is handed over once, by the owner of the lower one of its two nodes, whose window holds both. `owned`
-    /// nodes of the window are this rank's. Takes q + 1 times the memory.
+    /// Zero stencils whose sums do not depend on the cut: the columns of cells add to a row in their order, whichever
+    /// rank has them. An entry is handed over once, by the owner of the lower one of its two nodes, whose window holds
+    /// both. `owned` nodes of the window are this rank's. Takes q + 1 times the memory.
     pub fn by_columns(grid: &Grid<D>, owned: Range<usize>) -> Self {
         let stencil = Self::new(grid);
         let none = Contributions::none(grid, stencil.width(), Vec::new());
@@ -171,8 +171,8 @@ impl<const D: usize, const C: usize> Stencil<D, C> {
         self.values.chunks_exact(self.width()).map(entries).fold(0.0, f64::max)
     }
 
-    /// A component's row: the first component of every node that it couples with, and the entries there; nothing for a node
-    /// without a stencil.
+    /// A component's row: the first component of every node that it couples with, and the entries there; nothing for a
+    /// node without a stencil.
     pub fn row(&self, component: usize) -> impl Iterator<Item = (usize, &[f64])> {
         let (node, i) = Nodal::<C>::split(component);
         let row = self.rows[node];
@@ -201,8 +201,8 @@ impl<const D: usize, const C: usize> Stencil<D, C> {
         }
     }
 
-    /// Coordinates of all entries between `free` components that have a number; others with a number are on the diagonal
-    /// only.
+    /// Coordinates of all entries between `free` components that have a number; others with a number are on the
+    /// diagonal only.
     pub fn coordinates(&self, numbers: &Numbering, free: &[bool]) -> Coordinates {
         let mut coordinates = Coordinates::default();
         self.walk(numbers, free, |row, column, _| {

@@ -168,7 +168,8 @@ pub struct Solver {
     pub force_tolerance: f64,
     /// Iterations of one attempt.
     pub max_iterations: usize,
-    /// What points weigh in integrals of the stress; fitted in quasi-static analysis with linear or quadratic splines only.
+    /// What points weigh in integrals of the stress; fitted in quasi-static analysis with linear or quadratic splines
+    /// only.
     pub quadrature: Quadrature,
     /// -  coefficient of the soft background; 0: none
     pub background: f64,

@@ -43,7 +43,8 @@ pub enum Place {
 
 /// One error of a case file.
 ///
-/// `{}` writes one line, `FILE:LINE:COLUMN: KEY: MESSAGE`; `{:#}` adds the line of the file with a mark under the place.
+/// `{}` writes one line, `FILE:LINE:COLUMN: KEY: MESSAGE`; `{:#}` adds the line of the file with a mark under the
+/// place.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Error {
     /// The case file as it was named.

@@ -13,8 +13,8 @@ pub(crate) const MOST_UNKNOWNS: u128 = i32::MAX as u128;
 /// Largest number of points: they are sorted by 32-bit numbers, and exact sums have room for 2^31 terms.
 pub(crate) const MOST_POINTS: u128 = i32::MAX as u128;
 
-/// Bytes of a point that are always there: its state in a plane (about 200), shape functions (96), trial states and their
-/// answers. Measured, as all that follows, in the runs of `tests/shipped.rs`.
+/// Bytes of a point that are always there: its state in a plane (about 200), shape functions (96), trial states and
+/// their answers. Measured, as all that follows, in the runs of `tests/shipped.rs`.
 const POINT: u128 = 536;
 /// Bytes of a point's functions of the degree below, which `consistent-f-bar` averages with.
 const LOWERED: u128 = 64;
@@ -27,7 +27,8 @@ const VECTORS: u128 = (12 + 20 * 3) * 16;
 const ENTRY: u128 = 36;
 /// Bytes of an entry while the system is built; not there while a step is saved.
 const BUILT: u128 = 44;
-/// Bytes of an entry that every further rank holds where all factorise the whole system: it is sent, collected and copied.
+/// Bytes of an entry that every further rank holds where all factorise the whole system: it is sent, collected and
+/// copied.
 const REPEATED: u128 = 60;
 /// Bytes of a symmetric factor per unknown and level of a nested dissection: 15 doubles with their workspace. A general
 /// one has twice of it.
@@ -42,8 +43,8 @@ const PROCESS: u64 = 47_000_000;
 /// Unknowns of a rank below which it mostly waits for others, in two dimensions.
 const FEWEST: u128 = 1000;
 
-/// Sizes that follow from a case; unknowns are bounded from above, since empty cells have none. Vectors are held for the
-/// nodes of the room that the bodies have, however large the grid is.
+/// Sizes that follow from a case; unknowns are bounded from above, since empty cells have none. Vectors are held for
+/// the nodes of the room that the bodies have, however large the grid is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Estimate {
     /// Cells of the grid.
@@ -60,8 +61,8 @@ pub struct Estimate {
     pub points: u64,
     /// Ranks that have something to do: at least a thousand unknowns each, and a column of cells.
     pub useful_ranks: u64,
-    /// Memory of the case, bytes, however many ranks share it: points, nodes, stiffness and its factor, where the bodies
-    /// are at the start. Not what each rank adds, see [`Estimate::bytes_on`].
+    /// Memory of the case, bytes, however many ranks share it: points, nodes, stiffness and its factor, where the
+    /// bodies are at the start. Not what each rank adds, see [`Estimate::bytes_on`].
     pub bytes: u64,
     /// Bytes that every further rank adds: the system again, where each factorises the whole.
     pub repeated: u64,
@@ -72,8 +73,8 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// Memory of all of `ranks` ranks together, bytes, their libraries included, as long as `auto` needs no Newton's method.
-    /// Within .8 to 1.5 of the peaks that were measured on one to three ranks; bodies that spread take more.
+    /// Memory of all of `ranks` ranks together, bytes, their libraries included, as long as `auto` needs no Newton's
+    /// method. Within .8 to 1.5 of the peaks that were measured on one to three ranks; bodies that spread take more.
     pub fn bytes_on(&self, ranks: usize) -> u64 {
         let ranks = ranks as u64;
         let further = self.repeated.saturating_mul(ranks.saturating_sub(1));
@@ -95,13 +96,14 @@ struct Systems {
     repeated: u128,
     /// bytes while they are built
     built: u128,
-    /// bytes of the general one, and those that every further rank holds again, where it is made only if a step needs it
+    /// bytes of the general one, and those that every further rank holds again, where it is made only if a step needs
+    /// it
     perhaps: [u128; 2],
 }
 
 impl Systems {
-    /// `entries` of the stiffness of so many `unknowns`, which couples layers of nodes up to `reach` apart: separators are as
-    /// wide, in which the constants are those of quadratic splines.
+    /// `entries` of the stiffness of so many `unknowns`, which couples layers of nodes up to `reach` apart: separators
+    /// are as wide, in which the constants are those of quadratic splines.
     fn of(solver: &Solver, unknowns: u128, entries: u128, reach: u128) -> Self {
         let direct = solver.linear.factor.is_some();
         let levels = u128::from(unknowns.max(2).ilog2());

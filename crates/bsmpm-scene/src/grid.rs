@@ -1,7 +1,7 @@
 //! The grid of a case, cells described but not stored where they are equal.
 //!
-//! The cells here are those that have a length. The knot vectors of the physics count the spans between knots, among them
-//! those without length between the copies of a repeated breakpoint.
+//! The cells here are those that have a length. The knot vectors of the physics count the spans between knots, among
+//! them those without length between the copies of a repeated breakpoint.
 
 use std::ops::Range;
 
@@ -16,7 +16,8 @@ pub struct GridSpec {
     pub lines: [Vec<Line>; 2],
 }
 
-/// A grid line across which the splines of order q are less smooth: with `multiplicity` m, q - m derivatives are continuous.
+/// A grid line across which the splines of order q are less smooth: with `multiplicity` m, q - m derivatives are
+/// continuous.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Line {
     /// Number of the breakpoint along its axis.

@@ -91,7 +91,8 @@ fn supports(case: &Case) -> Vec<Support<2>> {
     supports
 }
 
-/// Of every support, the axis that its face is normal to and the sign of the force along it with which it pushes the body.
+/// Of every support, the axis that its face is normal to and the sign of the force along it with which it pushes the
+/// body.
 pub fn faces(case: &Case) -> Vec<(usize, f64)> {
     let push = |support: &Support<2>| (support.axis, if support.upper { -1.0 } else { 1.0 });
     supports(case).iter().map(push).collect()
@@ -137,15 +138,17 @@ const ROUND_OFF: f64 = 1e-12;
 pub fn frame_times(case: &Case) -> Vec<f64> {
     let mut times = case.output.times.clone();
     if let Some(Every::Time(every)) = case.output.every {
-        // Neither their number nor the last of them may be lost to rounding: 1.2 / 0.1 is less than 12, 12 x 0.1 more than 1.2.
+        // Neither their number nor the last of them may be lost to rounding: 1.2 / 0.1 is less than 12, 12 x 0.1 more
+        // than 1.2.
         let count = (case.analysis.end / every * (1.0 + ROUND_OFF)).floor() as u64;
         times.extend((1..=count).map(|k| (k as f64 * every).min(case.analysis.end)));
     }
     times
 }
 
-/// Materials of one stiffness: what an average over the grid may mix. One that depends on the height is alike to itself; under
-/// consistent F-bar one that dilates is not alike to one that does not, as their forces are formed in other ways.
+/// Materials of one stiffness: what an average over the grid may mix. One that depends on the height is alike to
+/// itself; under consistent F-bar one that dilates is not alike to one that does not, as their forces are formed in
+/// other ways.
 pub fn groups(case: &Case) -> Groups {
     let kind = |named: &NamedMaterial| {
         let graded = named.material.is_graded().then(|| named.name.clone());

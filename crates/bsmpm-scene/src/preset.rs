@@ -1,5 +1,5 @@
-//! `accuracy = "draft" | "standard" | "reference"`: what a case leaves out of its discretisation is filled in before it is
-//! held against the schema, so that all that follows sees ordinary keys, and any key given by hand wins.
+//! `accuracy = "draft" | "standard" | "reference"`: what a case leaves out of its discretisation is filled in before it
+//! is held against the schema, so that all that follows sees ordinary keys, and any key given by hand wins.
 //!
 //! The presets are defined here and nowhere else.
 #![doc = include_str!("preset.md")]

@@ -111,7 +111,8 @@ impl Case {
 /// body's; where an outline, but not a box, covers less than 1e-9 of a cell, that is left out.
 ///
 /// Ids count body by body, cell by cell and point by point, axis 0 slowest; they and the points do not depend on
-/// `columns`. Positions are relative to the grid's lower corner (m), volumes and masses per metre of thickness (m², kg/m).
+/// `columns`. Positions are relative to the grid's lower corner (m), volumes and masses per metre of thickness (m²,
+/// kg/m).
 pub fn seed(case: &Case, columns: Range<usize>) -> impl Iterator<Item = Seed<2>> + '_ {
     let mut offset = 0;
     case.bodies.iter().flat_map(move |body| {

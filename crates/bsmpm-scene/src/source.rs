@@ -10,7 +10,8 @@ pub const MAX_BYTES: usize = 1 << 20;
 /// Characters of a line that an excerpt shows at most.
 const EXCERPT: usize = 100;
 
-/// Bytes of the case file at `path`, at most [`MAX_BYTES`] + 1 of them (what is larger [`crate::Case::from_bytes`] refuses).
+/// Bytes of the case file at `path`, at most [`MAX_BYTES`] + 1 of them (what is larger [`crate::Case::from_bytes`]
+/// refuses).
 ///
 /// # Errors
 /// Those of opening and reading; [`io::ErrorKind::InvalidInput`] for a directory, pipe or device, which is not opened.

@@ -6,8 +6,8 @@ use bsmpm::grid::Grid;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::tensor::Vector;
 
-/// Stiffness of the penalty over E/h of the stiffest material and the smallest cell. The traction is carried from step to
-/// step, so that all slips together stay at p/beta: measured on the footing, 1e2 to 1e5 give the same pressure.
+/// Stiffness of the penalty over E/h of the stiffest material and the smallest cell. The traction is carried from step
+/// to step, so that all slips together stay at p/beta: measured on the footing, 1e2 to 1e5 give the same pressure.
 const PENALTY: f64 = 1e4;
 /// Points of a strip in every cell that it crosses.
 const HELD: usize = 4;

@@ -1,6 +1,6 @@
-//! Many runs of one case with different settings, side by side: each is validated in `order` before anything runs, begun when
-//! there is room in `pool`, and made by `crate::launch`. Runs that have ended are kept, those that were stopped go
-//! on, and one that fails does not end the others.
+//! Many runs of one case with different settings, side by side: each is validated in `order` before anything runs,
+//! begun when there is room in `pool`, and made by `crate::launch`. Runs that have ended are kept, those that were
+//! stopped go on, and one that fails does not end the others.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,5 +1,5 @@
-//! `bsmpm compare`: one quantity of several runs in one picture, and as a table. What the runs give is in `runs`, points
-//! to compare with in `crate::reference`, the table in `table`; how a step of theirs converged, in `residuals`.
+//! `bsmpm compare`: one quantity of several runs in one picture, and as a table. What the runs give is in `runs`,
+//! points to compare with in `crate::reference`, the table in `table`; how a step of theirs converged, in `residuals`.
 
 use std::path::{Path, PathBuf};
 
@@ -33,8 +33,8 @@ pub struct CompareArguments {
     /// The column of history.csv along the vertical axis, or the quantity that it records
     #[arg(long, value_name = "COLUMN", required_unless_present = "residuals")]
     pub y: Option<String>,
-    /// Instead of a quantity: both measures of every iteration of this step, on logarithmic axes; from residuals.csv, which
-    /// `[output] residuals = true` writes
+    /// Instead of a quantity: both measures of every iteration of this step, on logarithmic axes; from residuals.csv,
+    /// which `[output] residuals = true` writes
     #[arg(long, value_name = "STEP", conflicts_with_all = OF_QUANTITIES)]
     pub residuals: Option<u64>,
     /// Multiplies the column along the horizontal axis

@@ -1,8 +1,8 @@
-//! `bsmpm estimate`: what a case will cost. Sizes follow from the case (`sizes`); what a unit of work costs, from the case's
-//! first steps; how much work there is, from coarse forms of it over all its time (`probe`, `coarse`, `growth`), for
-//! iterations change as material yields; a case that takes no longer than probes may is run whole. Without probes both come
-//! from what runs took elsewhere (`stored`), scaled by how fast this machine is (`kernel`). The result is set in
-//! `report`, beside a finished run in `against`.
+//! `bsmpm estimate`: what a case will cost. Sizes follow from the case (`sizes`); what a unit of work costs, from the
+//! case's first steps; how much work there is, from coarse forms of it over all its time (`probe`, `coarse`, `growth`),
+//! for iterations change as material yields; a case that takes no longer than probes may is run whole. Without probes
+//! both come from what runs took elsewhere (`stored`), scaled by how fast this machine is (`kernel`). The result is set
+//! in `report`, beside a finished run in `against`.
 #![doc = include_str!("estimate.md")]
 
 use std::path::PathBuf;
@@ -68,8 +68,8 @@ pub struct EstimateArguments {
     /// Override one key of the case, as for bsmpm-par; repeatable
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,
-    /// The solver on one rank: the word or words that bsmpm-par's arguments follow [default: the bsmpm-par beside this program,
-    /// or that of PATH; on several ranks after mpirun -n N]
+    /// The solver on one rank: the word or words that bsmpm-par's arguments follow [default: the bsmpm-par beside this
+    /// program, or that of PATH; on several ranks after mpirun -n N]
     #[arg(last = true, value_name = "COMMAND")]
     pub command: Vec<String>,
 }

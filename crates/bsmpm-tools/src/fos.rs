@@ -1,9 +1,9 @@
-//! `bsmpm fos`: the factor of safety of a case by strength reduction. The case is read in `subject`, factors are chosen in
-//! `search`, trials are made in `trial` and judged in `curve`, results are set in `report` and drawn in `picture`.
+//! `bsmpm fos`: the factor of safety of a case by strength reduction. The case is read in `subject`, factors are chosen
+//! in `search`, trials are made in `trial` and judged in `curve`, results are set in `report` and drawn in `picture`.
 //!
 //! Loading soil is path dependent, so every trial carries its load from zero: a state of another strength is no state
-//! on the way. What could be saved that way is taken from trials that run at the same time instead: `guess` tells which ones
-//! the search may ask for next, `jobs` runs them. They shorten the search and change nothing else in it.
+//! on the way. What could be saved that way is taken from trials that run at the same time instead: `guess` tells which
+//! ones the search may ask for next, `jobs` runs them. They shorten the search and change nothing else in it.
 
 use std::fs;
 use std::path::PathBuf;
@@ -84,8 +84,8 @@ pub struct FosArguments {
     /// Repeat trials that are there already
     #[arg(long)]
     pub force: bool,
-    /// The solver, with the launcher before it: words that bsmpm-par's arguments follow [default: the bsmpm-par beside this
-    /// program, or that of PATH, on one rank]
+    /// The solver, with the launcher before it: words that bsmpm-par's arguments follow [default: the bsmpm-par beside
+    /// this program, or that of PATH, on one rank]
     #[arg(last = true, value_name = "COMMAND")]
     pub command: Vec<String>,
 }
@@ -103,8 +103,8 @@ pub(crate) struct FoundFactor {
 /// Searches; `told` gets a line for every trial as soon as it is there. Returns the table and the written pictures.
 ///
 /// # Errors
-/// Those of the command line and the case before anything runs; [`Error::NoStableState`]; [`Error::Run`] for a trial that
-/// broke; the errors of files.
+/// Those of the command line and the case before anything runs; [`Error::NoStableState`]; [`Error::Run`] for a trial
+/// that broke; the errors of files.
 pub fn run(arguments: &FosArguments, told: impl FnMut(&str)) -> Result<(String, Vec<PathBuf>), Error> {
     let (report, subject) = found(arguments, told)?;
     let output = arguments.directory();

@@ -1,5 +1,6 @@
-//! What three grids say of a fourth, infinitely fine one: observed order, Richardson's extrapolation and the grid convergence
-//! index (Roache, 1994) by the procedure of Celik et al. (2008), J. Fluids Eng. 130, 078001. It knows no runs.
+//! What three grids say of a fourth, infinitely fine one: observed order, Richardson's extrapolation and the grid
+//! convergence index (Roache, 1994) by the procedure of Celik et al. (2008), J. Fluids Eng. 130, 078001. It knows no
+//! runs.
 
 use serde::Serialize;
 

@@ -135,8 +135,8 @@ impl LaunchTask<'_> {
         Outcome::read(&self.directory, code)
     }
 
-    /// Whether the run has ended there, made from what would be taken now, and `is_same` agrees; never if it is to be made
-    /// again.
+    /// Whether the run has ended there, made from what would be taken now, and `is_same` agrees; never if it is to be
+    /// made again.
     pub fn is_there(&self, is_same: impl Fn(&Manifest) -> bool) -> bool {
         self.before().is_some_and(|manifest| {
             let is_whole = manifest.exit_code.is_some_and(|code| [DONE, CHECK, NO_CONVERGENCE, LEFT].contains(&code));

@@ -1,5 +1,5 @@
-//! What pictures are made of: a sheet of paper (`canvas`), axes (`layout`, `axes`, `ticks`), a legend (`legend`), colours
-//! (`colour`, `bar`), a body of points (`splat`) and curves (`chart`). It knows no run.
+//! What pictures are made of: a sheet of paper (`canvas`), axes (`layout`, `axes`, `ticks`), a legend (`legend`),
+//! colours (`colour`, `bar`), a body of points (`splat`) and curves (`chart`). It knows no run.
 
 pub(crate) mod axes;
 pub(crate) mod bar;

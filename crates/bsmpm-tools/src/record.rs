@@ -53,7 +53,8 @@ impl RunRecord {
         self.all_columns().find(|column| column.name == name)
     }
 
-    /// The columns of `history.csv` that record a quantity, found by the case's `[[history]]` tables, or without such by name.
+    /// The columns of `history.csv` that record a quantity, found by the case's `[[history]]` tables, or without such
+    /// by name.
     pub fn columns(&self, quantity: &str) -> Vec<Recorded<'_>> {
         let is_wanted = |column: &Recorded| match self.history_of(column.name) {
             Some(history) => history.quantity.word() == quantity,
@@ -155,8 +156,8 @@ pub(crate) struct Recorded<'a> {
 }
 
 impl<'a> Recorded<'a> {
-    /// The label of an axis: `stress-noise` becomes `Stress noise`; a name of the case's own for what it has scaled is read as
-    /// a formula, `E_delta_over_gamma_H2` as `E δ/(γ H²)`.
+    /// The label of an axis: `stress-noise` becomes `Stress noise`; a name of the case's own for what it has scaled is
+    /// read as a formula, `E_delta_over_gamma_H2` as `E δ/(γ H²)`.
     pub fn label(&self) -> String {
         if self.shown_unit() != self.unit {
             return formula(self.name);

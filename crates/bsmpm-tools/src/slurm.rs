@@ -1,5 +1,5 @@
-//! `bsmpm slurm`: a job script for a case. What stops in time goes back into the queue and on from its checkpoint; a run
-//! that ended for another reason does not.
+//! `bsmpm slurm`: a job script for a case. What stops in time goes back into the queue and on from its checkpoint; a
+//! run that ended for another reason does not.
 
 use std::ffi::OsStr;
 use std::fs::File;

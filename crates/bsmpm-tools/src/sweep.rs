@@ -1,7 +1,7 @@
-//! `bsmpm sweep`: what accuracy costs on a case. What was asked for is looked through in `plan`: settings are made in `axes`
-//! and become runs in `study`, which `crate::batch` makes, or searches of a factor of safety in `safety`. Numbers are taken
-//! from them in `quantity`, held against a `reference`, and weighed against their cost in `front`; `report` and `picture`
-//! tell, `write` writes a setting back as a case file.
+//! `bsmpm sweep`: what accuracy costs on a case. What was asked for is looked through in `plan`: settings are made in
+//! `axes` and become runs in `study`, which `crate::batch` makes, or searches of a factor of safety in `safety`.
+//! Numbers are taken from them in `quantity`, held against a `reference`, and weighed against their cost in `front`;
+//! `report` and `picture` tell, `write` writes a setting back as a case file.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -69,8 +69,8 @@ pub struct SweepArguments {
     /// What is looked at; repeatable
     #[arg(long, value_name = "NAME[@TIME],...", required = true)]
     pub quantity: Vec<String>,
-    /// What errors are measured against: finest, baseline, extrapolated (over the cells' sizes), the directory of a run,
-    /// or numbers
+    /// What errors are measured against: finest, baseline, extrapolated (over the cells' sizes), the directory of a
+    /// run, or numbers
     #[arg(long, value_name = "REFERENCE", default_value = "finest")]
     pub reference: String,
     /// The error that is good enough
@@ -97,7 +97,8 @@ fn share(text: &str) -> Result<f64, String> {
 /// Sweeps; `told` gets a line for every run as soon as it is there. Returns the text for the screen, and the files.
 ///
 /// # Errors
-/// Those of the command line and the case before anything runs; [`Error::NoResult`] if no run came to its end; those of files.
+/// Those of the command line and the case before anything runs; [`Error::NoResult`] if no run came to its end; those of
+/// files.
 pub fn run(arguments: &SweepArguments, mut told: impl FnMut(&str)) -> Result<(String, Vec<PathBuf>), Error> {
     let (plan, options, path) = (arguments.plan()?, &arguments.options, &*arguments.case);
     let (command, output) = (options.words(), options.directory(path, ".sweep"));

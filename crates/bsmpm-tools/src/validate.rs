@@ -72,8 +72,8 @@ struct MatrixPart<'a> {
 /// Runs and judges the matrix; `told` gets each study's part of the table as soon as it is there.
 ///
 /// # Errors
-/// A matrix that cannot be read, or of which nothing that is asked for can fail; a solver that is not there; files that cannot
-/// be written. Runs that fail are rows that fail.
+/// A matrix that cannot be read, or of which nothing that is asked for can fail; a solver that is not there; files that
+/// cannot be written. Runs that fail are rows that fail.
 pub fn run(arguments: &ValidateArguments, mut told: impl FnMut(&str)) -> Result<MatrixCounts, Error> {
     let matrix = ValidationMatrix::read(&arguments.matrix)?;
     let parts = parts(&matrix, arguments)?;
@@ -172,8 +172,8 @@ fn judged(study: &MatrixStudy, row: &matrix::MatrixRow, outcomes: &BTreeMap<Stri
     }
 }
 
-/// How a row stands. A run that broke, or did not come so far, or a number elsewhere is another failure than the known one;
-/// and what is known to fail and does not has changed without the matrix.
+/// How a row stands. A run that broke, or did not come so far, or a number elsewhere is another failure than the known
+/// one; and what is known to fail and does not has changed without the matrix.
 fn verdict(row: &matrix::MatrixRow, found: &Result<Measured, Lack>, is_broken: bool) -> RowVerdict {
     match (found, &row.known) {
         (Err(Lack::NotReached(_)), _) if !row.is_judged() => RowVerdict::NotReached,

@@ -1,5 +1,5 @@
-//! `bsmpm verify-case`: how far a case is from the limit of ever smaller cells. Three grids are made in `grids` and run by
-//! `crate::batch`, what they say of each quantity is found in `crate::grid_convergence` and told in `report`.
+//! `bsmpm verify-case`: how far a case is from the limit of ever smaller cells. Three grids are made in `grids` and run
+//! by `crate::batch`, what they say of each quantity is found in `crate::grid_convergence` and told in `report`.
 
 use std::path::PathBuf;
 
@@ -71,8 +71,8 @@ pub struct VerifyArguments {
 /// Verifies; `told` gets a line for every run as soon as it is there. Returns the text for the screen, and the files.
 ///
 /// # Errors
-/// Those of the command line and of the case on each grid before anything runs; [`Error::Run`] for a run that did not come
-/// to its end; those of files.
+/// Those of the command line and of the case on each grid before anything runs; [`Error::Run`] for a run that did not
+/// come to its end; those of files.
 pub fn run(arguments: &VerifyArguments, mut told: impl FnMut(&str)) -> Result<(String, Vec<PathBuf>), Error> {
     let (options, path) = (&arguments.options, &*arguments.case);
     let (command, output) = (options.words(), options.directory(path, ".verify"));

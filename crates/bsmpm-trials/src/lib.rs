@@ -19,9 +19,10 @@ pub fn executable(name: &str) -> &'static Path {
     built.get(name).unwrap_or_else(|| panic!("{PACKAGES:?} have no executable {name}"))
 }
 
-/// Builds all of them, optimised as users run them whatever this test program is, and into its target directory. Once a process;
-/// test programs side by side wait for each other, as cargo locks the directory. Only cargo knows whether a file that is there
-/// already is that of the sources: times of files tell nothing of features, profiles and switched branches.
+/// Builds all of them, optimised as users run them whatever this test program is, and into its target directory. Once a
+/// process; test programs side by side wait for each other, as cargo locks the directory. Only cargo knows whether a
+/// file that is there already is that of the sources: times of files tell nothing of features, profiles and switched
+/// branches.
 fn build() -> HashMap<String, PathBuf> {
     let own = std::env::current_exe().expect("the path of this program");
     let target = own.ancestors().nth(3).expect("target/PROFILE/deps/PROGRAM");

@@ -4,7 +4,8 @@
 //! background ties such nodes to their neighbours; it acts on the step's increment u only, in residual and stiffness
 //! alike, linear in u. So it never accumulates stress, however far a body moves or turns in many steps: it is a drag,
 //! weaker in smaller steps. It is no part of the paper. The forms within a cell need neither a wider matrix nor more
-//! exchange; the ghost penalty (Burman 2010) reaches over two cells, q + 2 layers of nodes, and leaves more motions alone.
+//! exchange; the ghost penalty (Burman 2010) reaches over two cells, q + 2 layers of nodes, and leaves more motions
+//! alone.
 
 mod form;
 mod ghost;
@@ -31,10 +32,10 @@ pub enum Kind {
     /// neighbours. An affine motion of the step meets no resistance: no strain, and no rotation as far as it is linear
     /// in space, so large ones too. On a linear grid only the mixed term is left, and holds next to nothing.
     Curvature,
-    /// gamma E h^(2q-1) int_F [d^q u / dn^q]^2 dA on faces between cells: how far the polynomials of two cells differ. A
-    /// polynomial of degree q meets no resistance. Better conditioned than the strain form with the same coefficient, and less
-    /// of a drag on what has failed; in fine cells stiffer before failure where it is as robust. The matrix has nearly
-    /// twice the entries in a plane. In partly filled cells only, it does not hold what has gone far.
+    /// gamma E h^(2q-1) int_F [d^q u / dn^q]^2 dA on faces between cells: how far the polynomials of two cells differ.
+    /// A polynomial of degree q meets no resistance. Better conditioned than the strain form with the same coefficient,
+    /// and less of a drag on what has failed; in fine cells stiffer before failure where it is as robust. The matrix
+    /// has nearly twice the entries in a plane. In partly filled cells only, it does not hold what has gone far.
     GhostPenalty,
 }
 
@@ -45,8 +46,8 @@ impl Kind {
     }
 }
 
-/// Which occupied cells get the background; of the ghost penalty, the faces between occupied cells of which at least one
-/// is such a cell.
+/// Which occupied cells get the background; of the ghost penalty, the faces between occupied cells of which at least
+/// one is such a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Extent {
     /// All occupied cells.

@@ -63,7 +63,8 @@ impl<const D: usize> Boundary<D> {
         }
     }
 
-    /// The faces of the grid that no material leaves, per axis the lower and the upper one: their normal component is held.
+    /// The faces of the grid that no material leaves, per axis the lower and the upper one: their normal component is
+    /// held.
     pub fn closed(&self) -> [[bool; 2]; D] {
         let mut closed = [[false; 2]; D];
         for support in &self.supports {

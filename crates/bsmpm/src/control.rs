@@ -112,8 +112,8 @@ impl Stepper {
         self.at.t
     }
 
-    /// Makes one accepted step towards the end of `schedule`; `None` if the end is reached. Fails before it if the steps so
-    /// far have made energy.
+    /// Makes one accepted step towards the end of `schedule`; `None` if the end is reached. Fails before it if the
+    /// steps so far have made energy.
     pub fn advance<K: Kinematics<D>, const D: usize>(
         &mut self,
         schedule: &Schedule,

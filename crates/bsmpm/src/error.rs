@@ -117,8 +117,8 @@ pub enum StepError {
         /// Why there is no direction from the last state, if that ended it.
         unsolved: Option<SolveError>,
     },
-    /// The iteration came near a static equilibrium of elastic material along a direction of negative second-order work: it
-    /// is not stable, and round-off decides where an iteration goes from there.
+    /// The iteration came near a static equilibrium of elastic material along a direction of negative second-order
+    /// work: it is not stable, and round-off decides where an iteration goes from there.
     #[error("unstable equilibrium: the second-order work of iteration {iteration} is {work:.2e} N m")]
     Unstable {
         /// Iteration.
@@ -159,8 +159,8 @@ pub enum StepError {
 }
 
 impl StepError {
-    /// Whether no other guess of the displacement can mend a step of this length: an unstable equilibrium is one whatever
-    /// leads there.
+    /// Whether no other guess of the displacement can mend a step of this length: an unstable equilibrium is one
+    /// whatever leads there.
     pub fn is_final(&self) -> bool {
         matches!(self, Self::Interrupted | Self::Unstable { .. })
     }

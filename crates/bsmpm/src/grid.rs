@@ -27,8 +27,8 @@ pub trait Located<const D: usize> {
     fn id(&self, p: usize) -> u64;
 }
 
-/// A tensor product of open knot vectors, of which the ranks together see the cells of a [`room`] around the points, and
-/// this rank those of some columns of it.
+/// A tensor product of open knot vectors, of which the ranks together see the cells of a [`room`] around the points,
+/// and this rank those of some columns of it.
 ///
 /// Axis 0 is the slowest in every numbering, so that the nodes of a slab of columns are one contiguous block.
 /// Node and cell indices are local to the window unless said otherwise.
@@ -51,8 +51,8 @@ impl<const D: usize> Grid<D> {
         Ok(Self { columns: room[0].clone(), axes, room, beyond: 0 })
     }
 
-    /// The same grid, whose windows hold `beyond` layers of nodes past those that their cells touch, as far as there are
-    /// any: for what couples the cells of two windows.
+    /// The same grid, whose windows hold `beyond` layers of nodes past those that their cells touch, as far as there
+    /// are any: for what couples the cells of two windows.
     pub fn reaching(self, beyond: usize) -> Self {
         Self { beyond, ..self }
     }
@@ -62,8 +62,8 @@ impl<const D: usize> Grid<D> {
         self.beyond
     }
 
-    /// The same grid of which only the cells of a box are seen (from and to, along each axis), by all ranks together; the
-    /// window is all of it.
+    /// The same grid of which only the cells of a box are seen (from and to, along each axis), by all ranks together;
+    /// the window is all of it.
     pub fn within(&self, room: [Range<usize>; D]) -> Self {
         debug_assert!((0..D).all(|axis| !room[axis].is_empty() && room[axis].end <= self.axes[axis].cells()));
         Self { axes: self.axes.clone(), columns: room[0].clone(), room, beyond: self.beyond }
@@ -95,8 +95,8 @@ impl<const D: usize> Grid<D> {
         self.axes[0].order()
     }
 
-    /// Layers of nodes along axis 0 that the window holds: those that its cells touch, of which the last q are shared with
-    /// the next slab, and those beyond.
+    /// Layers of nodes along axis 0 that the window holds: those that its cells touch, of which the last q are shared
+    /// with the next slab, and those beyond.
     pub fn layers(&self) -> Range<usize> {
         let end = (self.columns.end + self.beyond).min(self.room[0].end);
         self.columns.start..end + self.order()
@@ -246,7 +246,8 @@ impl<const D: usize> Grid<D> {
         self.volume::<K>(self.node_at(node), KnotVector::lowered_integral)
     }
 
-    /// Of the functions with these numbers along the axes, whose `integral` along one has the length and the mean place.
+    /// Of the functions with these numbers along the axes, whose `integral` along one has the length and the mean
+    /// place.
     fn volume<K: Kinematics<D>>(&self, node: [usize; D], integral: impl Fn(&KnotVector, usize) -> (f64, f64)) -> f64 {
         let along: [(f64, f64); D] = std::array::from_fn(|axis| integral(&self.axes[axis], node[axis]));
         along.iter().map(|(length, _)| length).product::<f64>() * K::weight(&Vector::from_fn(|axis, _| along[axis].1))

@@ -87,8 +87,8 @@ pub fn set_elastic<K: Kinematics<D>, const D: usize>(
     Ok(())
 }
 
-/// Equilibrium of the points as they are, under the loads at time 0. Fails on all ranks if a point has no response, as its
-/// strain is beyond all bounds.
+/// Equilibrium of the points as they are, under the loads at time 0. Fails on all ranks if a point has no response, as
+/// its strain is beyond all bounds.
 pub fn balance<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     points: &Points<D>,

@@ -1,5 +1,5 @@
-//! The only place where plane strain, axisymmetry and three dimensions differ: the numbers that a node's function has in a
-//! gradient (G), how they become tensors and back (G, G^T), F-bar's exponent, and what a piece of the grid weighs.
+//! The only place where plane strain, axisymmetry and three dimensions differ: the numbers that a node's function has
+//! in a gradient (G), how they become tensors and back (G, G^T), F-bar's exponent, and what a piece of the grid weighs.
 
 mod axisymmetric;
 mod plane_strain;

@@ -131,8 +131,8 @@ macro_rules! laws {
                 }
             }
 
-            /// The yield function of a principal stress (Pa, descending) in a `state`, Pa: positive outside; of a graded
-            /// law that of the largest parameters.
+            /// The yield function of a principal stress (Pa, descending) in a `state`, Pa: positive outside; of a
+            /// graded law that of the largest parameters.
             pub fn excess(&self, tau: [f64; 3], state: &[f64]) -> f64 {
                 match self {
                     $(Self::$Law(law) => law.excess(tau, state),)*

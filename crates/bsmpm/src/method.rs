@@ -36,15 +36,16 @@ pub enum QuasiNewton {
 pub struct Criteria {
     /// |du_k . f_k| / |du_0 . f_0| (step 9)
     pub energy: f64,
-    /// |f_oob| / max(|f_ext|, |f_int|, |M a|, |reaction|): the energy product alone is no norm. Of all nodes, and of those that
-    /// one material alone touches
+    /// |f_oob| / max(|f_ext|, |f_int|, |M a|, |reaction|): the energy product alone is no norm. Of all nodes, and of
+    /// those that one material alone touches
     pub force: f64,
     /// quasi-Newton iterations of one attempt
     pub max_iterations: usize,
 }
 
 impl Criteria {
-    /// Both measures beside their tolerances, in words; the force measure with the number of the material that it is of.
+    /// Both measures beside their tolerances, in words; the force measure with the number of the material that it is
+    /// of.
     pub fn judged(&self, energy: f64, (force, material): (f64, Option<usize>)) -> String {
         let against = |measure: f64, tolerance: f64| {
             let side = if measure < tolerance { "within" } else { "above" };

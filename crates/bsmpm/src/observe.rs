@@ -88,8 +88,8 @@ pub fn nearest<const D: usize>(points: &Points<D>, at: &Vector<D>, halo: &dyn Ha
 }
 
 /// Displacement (m) of the material that was at `place` (m, from the grid's lower corner) before anything moved, by the
-/// motion about the point `p` near it: u_p + (F_p - I)(X - X_p), off by the curvature of the motion times half the squared
-/// distance. The displacement of the point itself is off by the strain times the distance.
+/// motion about the point `p` near it: u_p + (F_p - I)(X - X_p), off by the curvature of the motion times half the
+/// squared distance. The displacement of the point itself is off by the strain times the distance.
 pub fn displacement<const D: usize>(points: &Points<D>, p: usize, place: &Vector<D>) -> Vector<D> {
     let apart = place - (points.x[p] - points.u[p]);
     points.u[p] + points.F.at(p).fixed_view::<D, D>(0, 0) * apart - apart

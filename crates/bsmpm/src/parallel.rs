@@ -31,8 +31,8 @@ pub trait Halo {
     fn is_interrupted(&self) -> bool {
         false
     }
-    /// Whether a step that has converged is to be given up all the same, on all ranks: what shows that an attempt leaves no
-    /// trace.
+    /// Whether a step that has converged is to be given up all the same, on all ranks: what shows that an attempt
+    /// leaves no trace.
     fn rejects(&self) -> bool {
         false
     }
@@ -65,8 +65,8 @@ pub trait LinearSolver {
     fn begin(&mut self, free: &[bool]);
     /// Adds the dense row-major block of a patch: D unknowns for each of its (q+1)^D nodes, counted from `first_node`.
     fn add(&mut self, first_node: usize, block: &[f64]);
-    /// Adds a dense row-major block of D unknowns for each of `nodes`, the lowest first: what couples neighbouring patches, of
-    /// a grid that reaches so far ([`Grid::reaching`](crate::grid::Grid::reaching)).
+    /// Adds a dense row-major block of D unknowns for each of `nodes`, the lowest first: what couples neighbouring
+    /// patches, of a grid that reaches so far ([`Grid::reaching`](crate::grid::Grid::reaching)).
     fn add_among(&mut self, nodes: &[usize], block: &[f64]);
     /// Adds to the diagonal, D numbers per local node; those of owned nodes count.
     fn add_diagonal(&mut self, diagonal: &[f64]);

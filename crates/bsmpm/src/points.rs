@@ -22,8 +22,8 @@ pub struct ColumnInfo {
     pub frame: Option<&'static str>,
 }
 
-/// The columns, each with its type, unit, name in frames, and what it starts from. Seeding, sorting, migration, checkpoints
-/// and frames walk this list, so that a new state variable is one line.
+/// The columns, each with its type, unit, name in frames, and what it starts from. Seeding, sorting, migration,
+/// checkpoints and frames walk this list, so that a new state variable is one line.
 macro_rules! columns {
     (
         every { $($(#[$doc:meta])+ $name:ident: $Type:ty, $unit:literal, $frame:expr, |$seed:ident| $start:expr;)+ }
@@ -66,8 +66,8 @@ macro_rules! columns {
                 }
             }
 
-            /// No points, with room for the columns of these names: those that a scene does without are there if they are
-            /// named. `state`: numbers that the laws' state consists of.
+            /// No points, with room for the columns of these names: those that a scene does without are there if they
+            /// are named. `state`: numbers that the laws' state consists of.
             pub fn holding(names: &[&str], state: usize) -> Self {
                 let has = |name| names.contains(&name);
                 Self {
@@ -141,9 +141,11 @@ columns! {
         a: Vec<Vector<D>>, "m/s2", None, |_seed| Vector::zeros();
     }
     some {
-        /// -  J-bar/J, J-bar the dilation that the stress has felt, under F-bar from its first step on; before that it is 1
+        /// -  J-bar/J, J-bar the dilation that the stress has felt, under F-bar from its first step on; before that it
+        ///   is 1
         dilation: Vec<f64>, "-", None;
-        /// -  logarithm of the volume that gapes, where a material closes its gaps, from its first step on; before that it is 0
+        /// -  logarithm of the volume that gapes, where a material closes its gaps, from its first step on; before that
+        ///   it is 0
         gap: Vec<f64>, "-", None;
     }
 }

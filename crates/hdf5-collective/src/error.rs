@@ -16,8 +16,8 @@ pub enum Error {
         /// What HDF5 said.
         reason: String,
     },
-    /// Writing failed on this rank while the others may still wait for it within HDF5, and HDF5 may crash when it closes
-    /// the file: the job must be ended at once, without a normal exit. The only error that is not agreed on.
+    /// Writing failed on this rank while the others may still wait for it within HDF5, and HDF5 may crash when it
+    /// closes the file: the job must be ended at once, without a normal exit. The only error that is not agreed on.
     #[error("HDF5 failed while it wrote {name}: {reason}")]
     Torn {
         /// The array.

@@ -2,8 +2,8 @@
 //! each. It knows nothing of what the numbers mean.
 //!
 //! A file holds arrays `[rows, width]` in its root group and nothing else: hard links, little-endian numbers of fixed
-//! size, chunks of 16,384 rows with Fletcher's checksum, no compression, no time stamps, so that equal contents make equal
-//! bytes. [`Reader`] refuses whatever else a file may hold before it makes room for any of it.
+//! size, chunks of 16,384 rows with Fletcher's checksum, no compression, no time stamps, so that equal contents make
+//! equal bytes. [`Reader`] refuses whatever else a file may hold before it makes room for any of it.
 //!
 //! Every function of [`Writer`] and [`Reader`] is collective, and so are their errors, but for [`Error::Torn`].
 #![deny(unsafe_code)]

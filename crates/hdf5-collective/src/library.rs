@@ -17,7 +17,8 @@ pub struct Hdf5<'u> {
 
 impl<'u> Hdf5<'u> {
     /// Starts HDF5, which from then on prints nothing by itself and loads no plugin: `HDF5_PLUGIN_PATH` and
-    /// `HDF5_PLUGIN_PRELOAD` are removed from the environment. To be called while no other thread reads that. Collective.
+    /// `HDF5_PLUGIN_PRELOAD` are removed from the environment. To be called while no other thread reads that.
+    /// Collective.
     ///
     /// # Errors
     /// [`Error::Library`] if it does not start.

@@ -36,7 +36,8 @@ impl<'h> Reader<'h> {
         self.hdf5.agree(all)
     }
 
-    /// This rank's equal share of an array's rows, in little-endian bytes; in the order of the ranks they are the array.
+    /// This rank's equal share of an array's rows, in little-endian bytes; in the order of the ranks they are the
+    /// array.
     ///
     /// # Errors
     /// [`Error::Library`] if they cannot be read, [`Error::Foreign`] if the array has another shape.

@@ -47,8 +47,8 @@ impl Shape {
         usize::try_from(self.width).ok()?.checked_mul(self.number.bytes())
     }
 
-    /// Bytes that it takes in a file, rather too many: of several chunks the last one is whole, too; each has a checksum and
-    /// a place in the index, and the array a header.
+    /// Bytes that it takes in a file, rather too many: of several chunks the last one is whole, too; each has a
+    /// checksum and a place in the index, and the array a header.
     fn room(&self) -> u64 {
         let chunks = self.rows.div_ceil(CHUNK);
         let rows = if chunks > 1 { chunks.saturating_mul(CHUNK) } else { self.rows };

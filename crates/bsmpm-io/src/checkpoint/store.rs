@@ -86,8 +86,8 @@ pub struct Pending {
 }
 
 impl Store {
-    /// Makes the folder in an output directory if need be, and removes what crashed writers left there. The newest `keep`
-    /// checkpoints will be kept, one at least.
+    /// Makes the folder in an output directory if need be, and removes what crashed writers left there. The newest
+    /// `keep` checkpoints will be kept, one at least.
     ///
     /// # Errors
     /// [`Error::File`] when the system refuses.
@@ -110,8 +110,8 @@ impl Store {
         &self.folder
     }
 
-    /// The good checkpoint of a step, if there is one of this case and as many ranks already; another one of that step is
-    /// taken out of the way.
+    /// The good checkpoint of a step, if there is one of this case and as many ranks already; another one of that step
+    /// is taken out of the way.
     ///
     /// # Errors
     /// [`Error::File`] when the system refuses.

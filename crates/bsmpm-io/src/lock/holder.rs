@@ -81,8 +81,8 @@ impl Holder {
         }
     }
 
-    /// Whether `own` is of a later start of this holder's job. Slurm counts the starts; of others it is believed that a job
-    /// does not run itself twice in one directory.
+    /// Whether `own` is of a later start of this holder's job. Slurm counts the starts; of others it is believed that a
+    /// job does not run itself twice in one directory.
     fn was_started_again(&self, own: &Self) -> bool {
         let counted = self.job.as_ref().is_some_and(|job| job.starts_with(JOBS[0]));
         self.job.is_some() && self.job == own.job && (!counted || own.restarts > self.restarts)

@@ -105,8 +105,8 @@ pub struct Summary {
     /// Steps in which Newton's method found equilibrium.
     #[serde(default)]
     pub newton_steps: u64,
-    /// Steps whose forces alone decided: they balanced ten times better than asked, where no method led on and the energy
-    /// measure did not hold.
+    /// Steps whose forces alone decided: they balanced ten times better than asked, where no method led on and the
+    /// energy measure did not hold.
     #[serde(default)]
     pub settled_steps: u64,
     /// m  the farthest that a point moved in a step; none before the first one.
@@ -118,7 +118,8 @@ pub struct Summary {
     /// m  largest slip of any rigid strip in all steps together, also of strips that do not move; none without strips.
     #[serde(default)]
     pub largest_accumulated_slip: Option<f64>,
-    /// Largest force measure of a state that was accepted by both measures, over its tolerance; none while there is no such state.
+    /// Largest force measure of a state that was accepted by both measures, over its tolerance; none while there is no
+    /// such state.
     #[serde(default)]
     pub largest_force_measure: Option<f64>,
     /// The same of the energy measure.
@@ -139,11 +140,12 @@ pub struct Summary {
     /// J  work done on the soft background in all steps; none without one.
     #[serde(default)]
     pub background_work: Option<f64>,
-    /// J  magnitudes of the work of all internal forces, the background's among them, added over the steps; none without a
-    /// background.
+    /// J  magnitudes of the work of all internal forces, the background's among them, added over the steps; none
+    /// without a background.
     #[serde(default)]
     pub internal_work: Option<f64>,
-    /// Passes of smoothing of the elastic state, each counted by the mean share of the points that it had; none without.
+    /// Passes of smoothing of the elastic state, each counted by the mean share of the points that it had; none
+    /// without.
     #[serde(default)]
     pub smoothing_passes: Option<f64>,
     /// s  of processor time, all ranks together.

@@ -39,7 +39,8 @@ pub struct Bench<'a> {
 }
 
 impl Bench<'_> {
-    /// Prints a row for every phase, under the displacement `guess` (m, nodal) of the last step: what flowed then flows on.
+    /// Prints a row for every phase, under the displacement `guess` (m, nodal) of the last step: what flowed then flows
+    /// on.
     pub fn run(&self, guess: &[f64], solver: &mut dyn LinearSolver) -> Result<(), StepError> {
         let Self { model, points, halo, times, .. } = *self;
         let shape = Shape::at(&model.grid, points)?;

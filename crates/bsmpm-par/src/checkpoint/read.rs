@@ -83,12 +83,12 @@ impl<'h> Opened<'h> {
         self.read(self.reader.range(STATE, shape, 0..shape.rows))
     }
 
-    /// An equal share of the rows of every column of the points, in the order of the ranks, behind those that the columns
-    /// hold. Collective.
+    /// An equal share of the rows of every column of the points, in the order of the ranks, behind those that the
+    /// columns hold. Collective.
     ///
     /// # Errors
-    /// The same on all ranks (76): the file holds other columns than are wanted, or numbers that the columns leave out; or
-    /// they cannot be read.
+    /// The same on all ranks (76): the file holds other columns than are wanted, or numbers that the columns leave out;
+    /// or they cannot be read.
     pub fn points(&self, columns: Vec<(&'static str, &mut dyn Column)>) -> Result<(), Refusal> {
         let held = self.arrays.iter().filter(|(name, _)| ![STATE, GUESS].contains(&name.as_str()));
         if held.count() != columns.len() {
@@ -112,8 +112,8 @@ impl<'h> Opened<'h> {
         Ok(())
     }
 
-    /// The nodal displacement from which the next step starts, at the nodes of some layers, `width` numbers a layer; the file
-    /// has the layers `held`, others are zero. Collective.
+    /// The nodal displacement from which the next step starts, at the nodes of some layers, `width` numbers a layer;
+    /// the file has the layers `held`, others are zero. Collective.
     ///
     /// # Errors
     /// The same on all ranks (76): it is not there, is of other layers, or cannot be read.
@@ -164,8 +164,8 @@ impl<'h> Opened<'h> {
     }
 }
 
-/// Refuses a file that not all ranks see as the first one has: the library would wait for a rank that cannot open it, or
-/// each would read another. Collective.
+/// Refuses a file that not all ranks see as the first one has: the library would wait for a rank that cannot open it,
+/// or each would read another. Collective.
 fn visible(world: &SimpleCommunicator, found: &FoundCheckpoint) -> Result<(), Refusal> {
     let size = std::fs::File::open(&found.path).and_then(|file| file.metadata()).map(|there| there.len());
     let own = match size {

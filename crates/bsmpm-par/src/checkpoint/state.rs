@@ -23,7 +23,8 @@ pub struct CheckpointState {
     pub steps: u64,
     /// Where the slabs begin, and where the columns of the grid's room end.
     pub slabs: Vec<usize>,
-    /// The room, cells from and to along each axis; none of a run by a version that kept the whole grid, which then stays.
+    /// The room, cells from and to along each axis; none of a run by a version that kept the whole grid, which then
+    /// stays.
     #[serde(default)]
     pub room: Option<[[usize; 2]; 2]>,
     /// Repeated breakpoints along each axis, with how often they stand; none of a run by a version that had none.
@@ -36,8 +37,8 @@ pub struct CheckpointState {
     pub traction: Vec<Vec<[f64; 2]>>,
     /// m  position of every load's points.
     pub position: Vec<Vec<[f64; 2]>>,
-    /// Ids of the points that the points of strips, and those of loads, are anchored to; none of a run by a version that had
-    /// none, or before the first step.
+    /// Ids of the points that the points of strips, and those of loads, are anchored to; none of a run by a version
+    /// that had none, or before the first step.
     #[serde(default)]
     pub anchors: [Vec<Vec<u64>>; 2],
     /// What the histories go on from.

@@ -23,16 +23,16 @@ pub struct Contents<'a> {
     pub state: &'a [u8],
 }
 
-/// Writes the checkpoint of a step, and returns it on the first rank, which is the one with a store. One of that step that
-/// is good already is left as it is. `at` hears of every phase, those after [`Phase::Written`] on the first rank only.
-/// Collective.
+/// Writes the checkpoint of a step, and returns it on the first rank, which is the one with a store. One of that step
+/// that is good already is left as it is. `at` hears of every phase, those after [`Phase::Written`] on the first rank
+/// only. Collective.
 ///
 /// When HDF5 fails with the file open, this ends the job on all ranks: it might crash in a normal exit, or leave ranks
 /// waiting.
 ///
 /// # Errors
-/// The same on all ranks, with nothing left of the new checkpoint and all older ones good: no room (74), trouble with the
-/// file (74), a number that is not finite (81).
+/// The same on all ranks, with nothing left of the new checkpoint and all older ones good: no room (74), trouble with
+/// the file (74), a number that is not finite (81).
 pub fn write(
     (hdf5, world): (&Hdf5<'_>, &SimpleCommunicator),
     store: Option<&Store>,
@@ -98,8 +98,8 @@ fn shapes(world: &SimpleCommunicator, contents: &Contents<'_>) -> Vec<(&'static 
     columns.chain([(GUESS, guess), (STATE, text)]).collect()
 }
 
-/// Refuses a file that not all ranks see: the library would wait for a rank that cannot open it, or each host would fill
-/// one of its own. Collective.
+/// Refuses a file that not all ranks see: the library would wait for a rank that cannot open it, or each host would
+/// fill one of its own. Collective.
 fn visible(world: &SimpleCommunicator, path: &Path) -> Result<(), Refusal> {
     let opened = std::fs::File::options().write(true).open(path);
     let told = |error: std::io::Error| {

@@ -136,8 +136,8 @@ impl Headings {
     }
 }
 
-/// Makes a directory that of the run that goes on, with its tables as far as they were: nothing is touched before they were
-/// found to be the ones of the checkpoint. Files that were written later go.
+/// Makes a directory that of the run that goes on, with its tables as far as they were: nothing is touched before they
+/// were found to be the ones of the checkpoint. Files that were written later go.
 fn claim(
     held: OutputDirectory,
     headings: &Headings,
@@ -158,8 +158,8 @@ fn claim(
     Ok(directory)
 }
 
-/// The manifest of a run that goes on, the new one with all that the older one has counted and warned of; and the warnings
-/// of this start.
+/// The manifest of a run that goes on, the new one with all that the older one has counted and warned of; and the
+/// warnings of this start.
 fn manifest(new: Manifest, resumed: &Resumed<'_>) -> (Manifest, Vec<String>) {
     let old = resumed.state.files.manifest.clone();
     let mut checks = new.checks.clone();

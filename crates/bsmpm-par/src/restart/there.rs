@@ -57,8 +57,8 @@ fn is_later(change: &Difference) -> bool {
     number(&change.was).zip(number(&change.is)).is_none_or(|(was, is)| is > was)
 }
 
-/// How a run begins anew in whose directory there is no checkpoint: only if it was killed or stopped before it had one, so
-/// that nothing is deleted that had been kept.
+/// How a run begins anew in whose directory there is no checkpoint: only if it was killed or stopped before it had one,
+/// so that nothing is deleted that had been kept.
 pub(super) fn anew(run: Option<&Manifest>, passed_over: &[String], ranks: i32) -> Result<Beginning, Refusal> {
     let refused = |reason: String| Err(Refusal::new(exit::CHECKPOINT, reason));
     if let Some(bad) = passed_over.first() {

@@ -111,7 +111,8 @@ fn advice(error: &StepError, case: &Case) -> Vec<String> {
     lines.iter().map(|line| (*line).to_owned()).collect()
 }
 
-/// What to try where both measures did not fall below their tolerances; `material`: the one that the force measure is of.
+/// What to try where both measures did not fall below their tolerances; `material`: the one that the force measure is
+/// of.
 fn not_converged(
     iterations: usize,
     (energy, force): (f64, f64),

@@ -163,7 +163,8 @@ fn linear(before: &BTreeMap<String, SolverNames>, tallies: &Tallies) -> BTreeMap
     all
 }
 
-/// What the ranks have told each other `before` and since then, of which the sums over the ranks are known and the largest.
+/// What the ranks have told each other `before` and since then, of which the sums over the ranks are known and the
+/// largest.
 fn communication(
     before: &BTreeMap<String, Communication>,
     sums: &[f64],

@@ -21,8 +21,8 @@ pub struct Saving {
 }
 
 impl Saving {
-    /// At the start of a run after `first` steps, whose newest checkpoint is of that step; another one is wanted soon if
-    /// the directory has none, or none that fits its tables.
+    /// At the start of a run after `first` steps, whose newest checkpoint is of that step; another one is wanted soon
+    /// if the directory has none, or none that fits its tables.
     pub fn new(newest: Option<u64>, soon: bool, first: u64) -> Self {
         Self { newest, soon, first, last: Instant::now(), cost: launch::age().as_secs_f64(), frame: 0.0 }
     }

@@ -3,9 +3,10 @@
 use bsmpm::parallel::Symmetry;
 use petsc_rs::{Ksp, Matrix, PcFailure, Petsc, ShellPc, Vector};
 
-/// Defaults of the factorisation, given before the user's own options, which win. MUMPS: ordering by approximate minimum
-/// fill, of all that were tried the cheapest for plane grids, and twice the workspace that it estimates, which on
-/// several ranks is at times too little. Iterative methods: a tolerance whose solutions are trusted, unlike PETSc's 1e-5.
+/// Defaults of the factorisation, given before the user's own options, which win. MUMPS: ordering by approximate
+/// minimum fill, of all that were tried the cheapest for plane grids, and twice the workspace that it estimates, which
+/// on several ranks is at times too little. Iterative methods: a tolerance whose solutions are trusted, unlike PETSc's
+/// 1e-5.
 const OPTIONS: [&str; 18] = [
     "-ksp_rtol",
     "1e-10",

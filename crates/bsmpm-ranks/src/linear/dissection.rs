@@ -126,7 +126,8 @@ impl Dissection {
     }
 }
 
-/// Adds the matrix's own entries of a part: its rows against what is eliminated later; of the last part, what it shares.
+/// Adds the matrix's own entries of a part: its rows against what is eliminated later; of the last part, what it
+/// shares.
 fn take<const D: usize, const C: usize>(
     plan: &Plan,
     part: &Part,

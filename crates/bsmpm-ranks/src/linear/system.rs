@@ -28,7 +28,8 @@ impl<'p> System<'p> {
         (choice, symmetry): (&Choice, Symmetry),
         mut matrix: Matrix<'p>,
     ) -> petsc_rs::Result<Self> {
-        // PETSc's copies of the whole do not know that they are definite: on one rank, too, MUMPS shall do as with them.
+        // PETSc's copies of the whole do not know that they are definite: on one rank, too, MUMPS shall do as with
+        // them.
         if symmetry == Symmetry::Definite && !choice.redundant {
             matrix.set_symmetry(petsc_rs::Symmetry::PositiveDefinite)?;
         }

@@ -74,8 +74,8 @@ impl<'a> PresetScene<'a> {
         (edge > 0.0).then_some(Cells { keys: ["knots", "cell"], value, edge, why })
     }
 
-    /// m  places along x and y at which a grid line is wanted: ends of strips and loaded segments, then sides of bodies, if
-    /// these are of several materials.
+    /// m  places along x and y at which a grid line is wanted: ends of strips and loaded segments, then sides of
+    /// bodies, if these are of several materials.
     fn wanted(&self) -> [Vec<f64>; 2] {
         let mut wanted = [Vec::new(), Vec::new()];
         for [from, to] in self.segments() {
@@ -210,8 +210,8 @@ impl<'a> PresetScene<'a> {
 /// Parts of a cell by which a place may miss a grid line: rounding.
 const ON_LINE: f64 = 1e-6;
 
-/// m  breakpoints from the one end of an axis to the other, about `cell` apart, with one at every wanted place that is half a
-/// cell from those before it in the list, and from the ends.
+/// m  breakpoints from the one end of an axis to the other, about `cell` apart, with one at every wanted place that is
+/// half a cell from those before it in the list, and from the ends.
 fn knots([lower, upper]: [f64; 2], cell: f64, wanted: &[f64]) -> Vec<f64> {
     let mut fixed = vec![lower, upper];
     for &at in wanted.iter().filter(|at| (lower..=upper).contains(*at)) {

@@ -149,7 +149,8 @@ impl CellStrip {
     /// Points of the cell between two heights, and the area that is covered of it.
     ///
     /// A point has the covered area of its own n-th of the cell along each axis; what is left of the others goes to the
-    /// nearest point of the cell. A cell without a lattice point inside has one point, at the centroid if that is inside.
+    /// nearest point of the cell. A cell without a lattice point inside has one point, at the centroid if that is
+    /// inside.
     fn cell(&self, y: [f64; 2]) -> (Vec<CellPlace>, f64) {
         let size = (self.x[1] - self.x[0]).min(y[1] - y[0]);
         let sub = (self.x[1] - self.x[0]) * (y[1] - y[0]) / (self.n * self.n) as f64;

@@ -71,8 +71,8 @@ pub(crate) fn intervals<'a>(edges: impl IntoIterator<Item = &'a Edge>, shapes: u
     found
 }
 
-/// Gives `visit` every slice of the window that is filled, as `filled` tells from inside which shapes it is. Edges above
-/// the window may be missing; those below may not.
+/// Gives `visit` every slice of the window that is filled, as `filled` tells from inside which shapes it is. Edges
+/// above the window may be missing; those below may not.
 pub(crate) fn sweep(
     edges: &[Edge],
     shapes: usize,

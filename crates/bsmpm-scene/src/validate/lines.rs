@@ -1,8 +1,9 @@
 //! C0 lines: grid lines across which strains may jump, placed where they do.
 //!
 //! A spline with continuous slopes cannot hold a jump of strain: about three cells on either side ring. Strains jump
-//! where materials of unlike stiffness meet, and are singular at the ends of strips and loaded segments, which without a
-//! line would hold or load all that the splines reach, a cell further. `cases/results/stabilisation.md` has the figures.
+//! where materials of unlike stiffness meet, and are singular at the ends of strips and loaded segments, which without
+//! a line would hold or load all that the splines reach, a cell further. `cases/results/stabilisation.md` has the
+//! figures.
 
 use crate::case::{Case, MotionPath, NamedMaterial, Site};
 use crate::grid::Line;

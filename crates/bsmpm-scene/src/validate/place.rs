@@ -35,8 +35,8 @@ pub(super) fn along([from, to]: [[f64; 2]; 2]) -> impl Iterator<Item = [f64; 2]>
     })
 }
 
-/// Whether some body is within half the spacing of its points of a place: the splines would carry a force over more than
-/// a cell of empty room.
+/// Whether some body is within half the spacing of its points of a place: the splines would carry a force over more
+/// than a cell of empty room.
 pub(super) fn at_body(bodies: &[Body], grid: &GridSpec, at: [f64; 2]) -> bool {
     let shortest = grid.axes[0].shortest().min(grid.axes[1].shortest());
     bodies.iter().any(|body| {

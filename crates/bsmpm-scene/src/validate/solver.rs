@@ -107,8 +107,8 @@ fn background_kind(solver: &Record, order: Option<usize>, report: &mut Report<'_
     Some(kind)
 }
 
-/// Curvature 1e-3 bounds the condition of the stiffness by 7e3 (the Laplacian of 1e-4: 7e5) and lets a tenth or ten times of it
-/// change a slope next to failure by 1 to 3 %; larger ones hold the edge too much.
+/// Curvature 1e-3 bounds the condition of the stiffness by 7e3 (the Laplacian of 1e-4: 7e5) and lets a tenth or ten
+/// times of it change a slope next to failure by 1 to 3 %; larger ones hold the edge too much.
 fn default_background(regime: Regime, kind: Kind, report: &mut Report<'_>) -> f64 {
     let (background, reason) = match (regime, kind) {
         (Regime::Dynamic, _) => (0.0, "inertia holds nearly empty cells in a dynamic analysis"),

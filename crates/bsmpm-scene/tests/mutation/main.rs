@@ -82,8 +82,8 @@ fn bases() -> Vec<String> {
     bases
 }
 
-/// The case, if it is one: then it can be counted and its points made. Errors must have a place, but for tables that are
-/// missing altogether.
+/// The case, if it is one: then it can be counted and its points made. Errors must have a place, but for tables that
+/// are missing altogether.
 fn read(text: &str) -> Result<Case, Vec<Error>> {
     let case = Case::from_text("case.toml", text, &[]).inspect_err(|errors| {
         assert!(!errors.is_empty());

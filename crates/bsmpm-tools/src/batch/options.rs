@@ -19,7 +19,8 @@ pub struct Options {
     /// Ranks of each run, started by mpirun
     #[arg(long, value_name = "R", default_value_t = 1, value_parser = ranks, conflicts_with = "command")]
     pub ranks: usize,
-    /// What the runs at the same time may take together, by their estimates, e.g. 16GiB [default: what the machine has free]
+    /// What the runs at the same time may take together, by their estimates, e.g. 16GiB [default: what the machine has
+    /// free]
     #[arg(long, value_name = "SIZE", value_parser = disk::size)]
     pub max_memory: Option<u64>,
     /// Stop each run after so much time by the clock; asked for again it goes on
@@ -34,8 +35,8 @@ pub struct Options {
     /// Repeat runs that are there already
     #[arg(long)]
     pub force: bool,
-    /// The solver, with the launcher before it: words that bsmpm-par's arguments follow [default: the bsmpm-par beside this
-    /// program, or that of PATH]
+    /// The solver, with the launcher before it: words that bsmpm-par's arguments follow [default: the bsmpm-par beside
+    /// this program, or that of PATH]
     #[arg(last = true, value_name = "COMMAND")]
     pub command: Vec<String>,
 }

@@ -49,7 +49,8 @@ impl RunOrder {
     }
 }
 
-/// The settings as part of a file's name: the last part of each key, and its value, without what shells would take amiss.
+/// The settings as part of a file's name: the last part of each key, and its value, without what shells would take
+/// amiss.
 fn slug(settings: &[String]) -> String {
     let mut made = String::new();
     for (key, value) in settings.iter().filter_map(|set| set.split_once('=')) {

@@ -22,8 +22,8 @@ pub(crate) struct Limits {
     pub memory: u64,
 }
 
-/// The results of `work` for every load, in their order; `told` gets each as soon as it is there. A load beyond the memory of
-/// all runs alone: whether it is begun at all is the caller's choice.
+/// The results of `work` for every load, in their order; `told` gets each as soon as it is there. A load beyond the
+/// memory of all runs alone: whether it is begun at all is the caller's choice.
 pub(crate) fn all<T: Send>(
     loads: &[PoolLoad],
     limits: Limits,

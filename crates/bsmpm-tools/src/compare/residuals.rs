@@ -1,5 +1,5 @@
-//! How the iterations of one step converged in several runs: both measures on logarithmic axes (Fig. 4 of the paper), and as
-//! a table. The rows are those of `residuals.csv`.
+//! How the iterations of one step converged in several runs: both measures on logarithmic axes (Fig. 4 of the paper),
+//! and as a table. The rows are those of `residuals.csv`.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -21,7 +21,8 @@ const BETWEEN: f64 = 40.0;
 const LINE: f64 = 3.5;
 /// What stands right of a tolerance.
 const TOLERANCE: &str = "tolerance";
-/// How far the axes go beyond the first and last iteration, as a share of their number: a disc's radius and a little more.
+/// How far the axes go beyond the first and last iteration, as a share of their number: a disc's radius and a little
+/// more.
 const BESIDE: f64 = 0.02;
 /// What is left of a force of which an order is told.
 const LEAST: f64 = 0.9;
@@ -170,8 +171,8 @@ fn text(courses: &[ResidualCourse], below: &str) -> String {
     text
 }
 
-/// The order at which the force measure f fell last: ln(f_k / f_k-1) / ln(f_k-1 / f_k-2), 2 for quadratic convergence. None
-/// where it has not fallen by [`LEAST`] twice: what is left then is noise.
+/// The order at which the force measure f fell last: ln(f_k / f_k-1) / ln(f_k-1 / f_k-2), 2 for quadratic convergence.
+/// None where it has not fallen by [`LEAST`] twice: what is left then is noise.
 fn order(iterates: &[Iterate]) -> Option<f64> {
     let [.., before, last, now] = iterates else { return None };
     let (first, second) = ((last.force / before.force).ln(), (now.force / last.force).ln());

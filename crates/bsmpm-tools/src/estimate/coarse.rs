@@ -42,8 +42,8 @@ pub(super) fn text(case: &Case, factor: usize) -> Option<String> {
     Case::from_text("coarse form", &text, &[]).ok().map(|_| text)
 }
 
-/// Every so many breakpoints, and the last; a rest of less than half a cell goes to the one before. Breakpoints that are
-/// repeated stay, as the form is to have them, too, in place of others less than half a cell away.
+/// Every so many breakpoints, and the last; a rest of less than half a cell goes to the one before. Breakpoints that
+/// are repeated stay, as the form is to have them, too, in place of others less than half a cell away.
 fn knots(axis: &GridAxis, lines: &[usize], factor: usize) -> Value {
     let cells = axis.cells();
     let mut kept: Vec<usize> = (0..=cells).step_by(factor).collect();

@@ -1,9 +1,10 @@
 //! How much more work the case is than its coarse forms.
 //!
-//! Iterations of coarse forms, counted over all the case's time, follow a + b/h: what is not stiffer in smaller cells, and what
-//! is. The granular column needs 5.2, 7.2 and 20.1 of them a step in cells of 20, 10 and 2.5 mm; the first two give 19.4. In
-//! quasi-static analysis, where no mass is beside the stiffness, the iterations of secants hardly feel the cells: what forms
-//! of few cells show of a trend there is something else, and only the case's own first steps are believed.
+//! Iterations of coarse forms, counted over all the case's time, follow a + b/h: what is not stiffer in smaller cells,
+//! and what is. The granular column needs 5.2, 7.2 and 20.1 of them a step in cells of 20, 10 and 2.5 mm; the first two
+//! give 19.4. In quasi-static analysis, where no mass is beside the stiffness, the iterations of secants hardly feel
+//! the cells: what forms of few cells show of a trend there is something else, and only the case's own first steps are
+//! believed.
 
 use bsmpm_scene::Regime;
 
@@ -25,8 +26,8 @@ pub(super) struct GrowthLevel {
     pub spread: f64,
 }
 
-/// The work of a case whose first steps took `early` in their iterations, from one coarse form or more, the finest one last;
-/// none without.
+/// The work of a case whose first steps took `early` in their iterations, from one coarse form or more, the finest one
+/// last; none without.
 pub(super) fn extrapolate(levels: &[GrowthLevel], regime: Regime, early: f64) -> Option<Work> {
     let finest = levels.last()?;
     let factor = finest.factor as f64;

@@ -26,14 +26,15 @@ const FIRST: [f64; 2] = [0.25, 0.2];
 const LEAST: f64 = 3.0;
 /// s  of processor time below which its account, in hundredths, is too coarse to be trusted.
 const TRUSTED: f64 = 0.1;
-/// How many times longer a form takes than the one with cells twice as large: four times the cells, and more iterations.
+/// How many times longer a form takes than the one with cells twice as large: four times the cells, and more
+/// iterations.
 const FINER: f64 = 6.0;
 /// Part of the case's time that a form must reach to count.
 const REACHED: f64 = 0.5;
 /// Factor within which the time is expected, by the number of coarse forms.
 const BANDS: [f64; 3] = [3.0, 1.75, 1.5];
-/// Part of the iterations' work beyond which Newton's method makes it doubtful, as other cells may need it in most steps or in
-/// none; and the factor then.
+/// Part of the iterations' work beyond which Newton's method makes it doubtful, as other cells may need it in most
+/// steps or in none; and the factor then.
 const NEWTON: [f64; 2] = [0.1, 4.0];
 
 /// Part of the time left for probes that the whole case may take at most to be run, and bytes of its frames at most.

@@ -1,6 +1,7 @@
 //! What runs took on the machine of reference: where nothing may be run, and to plan the probes with.
 //!
-//! Fitted to the processor seconds of the shipped short cases and of the column at the paper's resolution, one rank each.
+//! Fitted to the processor seconds of the shipped short cases and of the column at the paper's resolution, one rank
+//! each.
 
 use bsmpm_scene::{Case, Regime};
 
@@ -10,7 +11,8 @@ use super::work::Work;
 /// s  of a unit of work, for each point and for each unknown.
 const POINT: f64 = 0.134e-6;
 const UNKNOWN: f64 = 0.25e-6;
-/// Evaluations of a step: elastic; dynamic; quasi-static and plastic, between those of slopes (9 to 20) and footings (38).
+/// Evaluations of a step: elastic; dynamic; quasi-static and plastic, between those of slopes (9 to 20) and footings
+/// (38).
 const EVALUATIONS: [f64; 3] = [4.0, 16.0, 25.0];
 /// s  that a run takes before its first step.
 const START: f64 = 0.08;
@@ -71,7 +73,8 @@ pub(super) fn guess(case: &Case, speed: f64) -> StoredEstimate {
     }
 }
 
-/// How much dearer a unit of work becomes where the body spreads to so many times the nodes: that of the points does not.
+/// How much dearer a unit of work becomes where the body spreads to so many times the nodes: that of the points does
+/// not.
 pub(super) fn spread(case: &Case, unknowns: Option<u64>, nodes: f64) -> f64 {
     let unknowns = unknowns.unwrap_or(case.estimate().active) as f64;
     let unit = |unknowns: f64| POINT * case.points() as f64 + UNKNOWN * unknowns;

@@ -74,8 +74,8 @@ impl FactorCurve {
 
     /// Between which factors the displacement grows beyond a level.
     ///
-    /// A weaker body in equilibrium shows that a stronger one can stand (lower bound theorem), so the greatest factor below the
-    /// level counts, and failures before it do not.
+    /// A weaker body in equilibrium shows that a stronger one can stand (lower bound theorem), so the greatest factor
+    /// below the level counts, and failures before it do not.
     pub fn crossing(&self, level: f64) -> Band {
         self.band(|state| self.is_beyond(level, state))
     }
@@ -91,7 +91,8 @@ impl FactorCurve {
         self.states.iter().find(|state| state.factor == factor)
     }
 
-    /// The factor where the displacement grows beyond a level, between whole trials linearly; none where there are none.
+    /// The factor where the displacement grows beyond a level, between whole trials linearly; none where there are
+    /// none.
     pub fn reaches(&self, level: f64) -> Option<f64> {
         let band = self.crossing(level);
         let (low, high) = (self.at(band.last_stable?)?, self.at(band.first_failed?).filter(|state| state.whole)?);
@@ -99,8 +100,8 @@ impl FactorCurve {
         Some(low.factor + share * (high.factor - low.factor))
     }
 
-    /// Where the branch after failure, from [`BENT`] to [`FALLEN`], meets the one before it when both are continued. None
-    /// where no equilibrium shows a branch after failure.
+    /// Where the branch after failure, from [`BENT`] to [`FALLEN`], meets the one before it when both are continued.
+    /// None where no equilibrium shows a branch after failure.
     pub fn kink(&self) -> Option<Kink> {
         let begin = (self.reaches(BENT)?, BENT * self.elastic);
         let farthest = || {
@@ -118,8 +119,8 @@ impl FactorCurve {
         is_one.then_some(Kink { factor, before, after })
     }
 
-    /// Whether a trial lies beyond the kink. Without a branch after failure: whether it found no equilibrium, or has grown so
-    /// far that it would be on it.
+    /// Whether a trial lies beyond the kink. Without a branch after failure: whether it found no equilibrium, or has
+    /// grown so far that it would be on it.
     pub fn is_failed(&self, kink: Option<&Kink>, state: &CurveState) -> bool {
         match kink {
             Some(kink) => state.factor > kink.factor,

@@ -1,5 +1,5 @@
-//! Which factors a search may ask for next: the search itself, gone on with guesses of the trials that are not known yet. It
-//! knows no runs, and nothing of how a search chooses.
+//! Which factors a search may ask for next: the search itself, gone on with guesses of the trials that are not known
+//! yet. It knows no runs, and nothing of how a search chooses.
 
 use super::curve::CurveState;
 use super::search::{Halt, SearchPlan, search};
@@ -17,7 +17,8 @@ struct GuessPath {
     guesses: Vec<CurveState>,
 }
 
-/// Up to `most` factors for which the search may ask next, none of them known: the one that it needs now, then the likeliest.
+/// Up to `most` factors for which the search may ask next, none of them known: the one that it needs now, then the
+/// likeliest.
 pub(super) fn ahead(plan: SearchPlan, known: &dyn Fn(f64) -> Option<CurveState>, most: usize) -> Vec<f64> {
     let mut factors = Vec::new();
     let mut paths = vec![GuessPath { weight: 1.0, guesses: Vec::new() }];

@@ -1,5 +1,6 @@
-//! Several trials at the same time. The search asks for one after the other; while one is made, others begin for which it may
-//! ask next. Only what it has asked for counts, so how many run, and which one ends first, changes nothing but the time.
+//! Several trials at the same time. The search asks for one after the other; while one is made, others begin for which
+//! it may ask next. Only what it has asked for counts, so how many run, and which one ends first, changes nothing but
+//! the time.
 //!
 //! A trial beyond failure costs many times as much as one before it: those that cannot be asked for any more are
 //! stopped. Rounds that wait for all of theirs were slower by a third and more.
@@ -14,8 +15,8 @@ use super::search::{Halt, SearchPlan, search};
 use crate::Error;
 use crate::launch::Stop;
 
-/// For each trial at the same time, so many guesses of what may be asked for: a trial that begins is one of the first of
-/// them, a trial that goes on one of all.
+/// For each trial at the same time, so many guesses of what may be asked for: a trial that begins is one of the first
+/// of them, a trial that goes on one of all.
 const HORIZON: usize = 4;
 
 /// Where trials come from. The trial of a factor is the same whenever it is made, and whatever else is.
@@ -54,8 +55,8 @@ struct Jobs<'a, S: JobSource> {
     receiver: Receiver<Made<S::Trial>>,
 }
 
-/// The curve of a search, with up to `most` trials at the same time, and the trials for which it has asked, in that order;
-/// `told` gets each as soon as it counts.
+/// The curve of a search, with up to `most` trials at the same time, and the trials for which it has asked, in that
+/// order; `told` gets each as soon as it counts.
 ///
 /// # Errors
 /// Those of the search, and of trials for which it has asked. No trial is left running.
@@ -141,7 +142,8 @@ impl<'a, S: JobSource> Jobs<'a, S> {
         is_there
     }
 
-    /// Stops the trials for which the search will not ask, and one more if the first wanted one would have to wait otherwise.
+    /// Stops the trials for which the search will not ask, and one more if the first wanted one would have to wait
+    /// otherwise.
     fn make_room(&self, wanted: &[f64]) {
         let rank = |running: &Running| wanted.iter().position(|&factor| factor == running.factor);
         self.running.iter().filter(|running| rank(running).is_none()).for_each(|running| running.stop.ask());

@@ -1,5 +1,6 @@
-//! Which factors are tried: up a ladder until the body fails, then closer and closer about the places where its displacement
-//! doubles, where the branch after failure begins and ends, and where both branches meet. It knows no runs.
+//! Which factors are tried: up a ladder until the body fails, then closer and closer about the places where its
+//! displacement doubles, where the branch after failure begins and ends, and where both branches meet. It knows no
+//! runs.
 
 use serde::Serialize;
 
@@ -7,14 +8,15 @@ use super::curve::{Band, CurveState, DOUBLED, FactorCurve};
 use crate::Error;
 use crate::line::{BENT, FALLEN};
 
-/// The factor of the body that shows the elastic displacement: its materials follow their elastic laws, without strength
-/// that could limit the stress.
+/// The factor of the body that shows the elastic displacement: its materials follow their elastic laws, without
+/// strength that could limit the stress.
 pub(super) const ELASTIC: f64 = 0.0;
 /// The least factor that a case may have.
 pub(super) const LEAST: f64 = 0.1;
 /// The greatest one.
 pub(super) const GREATEST: f64 = 100.0;
-/// From one round of the ladder to the next. Trials before failure are cheap, those far beyond it cost many times as much.
+/// From one round of the ladder to the next. Trials before failure are cheap, those far beyond it cost many times as
+/// much.
 const RUNG: f64 = 1.25;
 /// The end of the branch after failure need not be known as well as the rest, by this factor.
 const COARSER: f64 = 2.0;
@@ -50,12 +52,12 @@ struct Search<'a, 'b> {
     known: &'a mut Known<'b>,
 }
 
-/// The curve with all trials that the plan needs. It follows from the trials alone, which are asked for one after the other,
-/// each once; asked again with more of them, the search takes the same way to where it was.
+/// The curve with all trials that the plan needs. It follows from the trials alone, which are asked for one after the
+/// other, each once; asked again with more of them, the search takes the same way to where it was.
 ///
 /// # Errors
-/// [`Halt::Needs`] at the first trial that is not known; [`Error::NoStableState`] where the elastic body or that of the least
-/// factor finds no equilibrium or has failed.
+/// [`Halt::Needs`] at the first trial that is not known; [`Error::NoStableState`] where the elastic body or that of the
+/// least factor finds no equilibrium or has failed.
 pub(super) fn search(plan: SearchPlan, known: &mut Known<'_>) -> Result<FactorCurve, Halt> {
     let over = |reason: String| Halt::Over(Error::NoStableState { reason });
     let elastic = known(ELASTIC).ok_or(Halt::Needs(ELASTIC))?;
@@ -121,7 +123,8 @@ impl Search<'_, '_> {
         Ok(())
     }
 
-    /// Up the ladder to where the body has failed: its displacement has doubled, or the solver has given up twice running.
+    /// Up the ladder to where the body has failed: its displacement has doubled, or the solver has given up twice
+    /// running.
     fn climb(&mut self) -> Result<(), Halt> {
         for rung in self.plan.rungs() {
             if self.has_failed() {
@@ -147,8 +150,8 @@ impl Search<'_, '_> {
         Ok(())
     }
 
-    /// A trial that found no equilibrium before it moved much may be the solver's failure: the next factor tells, unless it
-    /// is known to fail as well.
+    /// A trial that found no equilibrium before it moved much may be the solver's failure: the next factor tells,
+    /// unless it is known to fail as well.
     fn doubted(&self, factor: f64) -> Option<f64> {
         let state = self.curve.at(factor).filter(|state| !state.whole && self.curve.growth(state) <= DOUBLED)?;
         let next = self.plan.rounded(state.factor + self.plan.width);

@@ -76,7 +76,8 @@ impl Subject {
     ///
     /// # Errors
     /// [`Error::Missing`] for a file that cannot be read, [`Error::BadCase`] with all errors of the case,
-    /// [`Error::NoFactor`] with all reasons why it has no factor of safety, [`Error::Usage`] for overrides of the factor.
+    /// [`Error::NoFactor`] with all reasons why it has no factor of safety, [`Error::Usage`] for overrides of the
+    /// factor.
     pub fn read(path: &Path, set: &[String], from: f64) -> Result<Self, Error> {
         if set.iter().any(|set| set.trim_start().starts_with("strength_reduction")) {
             return Err(Error::Usage { reason: format!("--set {FACTOR}: the factor is what the search sets") });
@@ -153,7 +154,8 @@ fn reduction(factor: f64, stiffness: f64) -> Vec<String> {
     set
 }
 
-/// What Young's moduli must be multiplied with so that the load strains no body by more than [`SMALL`], to three digits.
+/// What Young's moduli must be multiplied with so that the load strains no body by more than [`SMALL`], to three
+/// digits.
 fn stiffness(case: &Case) -> f64 {
     let heights = case.bodies.iter().map(|body| [body.bounds()[0][1], body.bounds()[1][1]]);
     let [low, high] = heights.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], [c, d]| [a.min(c), b.max(d)]);

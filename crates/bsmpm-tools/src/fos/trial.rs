@@ -31,7 +31,8 @@ pub(super) struct Trial {
     pub factor: f64,
     #[serde(flatten)]
     pub end: End,
-    /// the largest one, in the unit of the case's history, as of its own stiffness; at the end of the load that was reached
+    /// the largest one, in the unit of the case's history, as of its own stiffness; at the end of the load that was
+    /// reached
     pub displacement: f64,
     /// the largest accumulated one of any point; none where no frame holds it
     pub plastic_strain: Option<f64>,
@@ -90,8 +91,8 @@ impl JobSource for Trials<'_> {
     }
 
     /// # Errors
-    /// [`Error::Run`] for one that ended neither in equilibrium nor for the want of it; [`Error::Launch`], and the errors of
-    /// files.
+    /// [`Error::Run`] for one that ended neither in equilibrium nor for the want of it; [`Error::Launch`], and the
+    /// errors of files.
     fn make(&self, factor: f64, stop: &Stop) -> Result<Trial, Error> {
         let (set, text) = (self.subject.overrides(factor), self.subject.text(factor)?);
         let task = self.task(factor, &set, &text);

@@ -98,8 +98,8 @@ impl Outcome {
     pub fn read(directory: &Path, code: Option<u8>) -> Self {
         let kept = code.is_none();
         let manifest = Manifest::read(directory).ok();
-        // A launcher may hide the program's own exit code, which is in the manifest; but not where the run was refused and the
-        // manifest is that of before.
+        // A launcher may hide the program's own exit code, which is in the manifest; but not where the run was refused
+        // and the manifest is that of before.
         let refused = code.filter(|code| REFUSED.contains(code));
         let own = refused.or(manifest.as_ref().and_then(|manifest| manifest.exit_code));
         let code = own.or(code).unwrap_or(u8::MAX);

@@ -44,7 +44,8 @@ impl Stop {
         let process = Pid::from_child(&child);
         state.process = Some(process);
         drop(state);
-        // It is waited for in two steps: until nobody can send it a signal any more, no other process may get its number.
+        // It is waited for in two steps: until nobody can send it a signal any more, no other process may get its
+        // number.
         let ended = || waitid(WaitId::Pid(process), WaitIdOptions::EXITED | WaitIdOptions::NOWAIT);
         while ended().is_err_and(|error| error == Errno::INTR) {}
         self.state().process = None;

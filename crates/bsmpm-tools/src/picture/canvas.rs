@@ -1,5 +1,5 @@
-//! A sheet of paper in memory. Everything is drawn [`FINE`] times larger and averaged when it is saved, which smooths all
-//! edges alike. Lengths are pixels of the saved picture, from its upper left corner.
+//! A sheet of paper in memory. Everything is drawn [`FINE`] times larger and averaged when it is saved, which smooths
+//! all edges alike. Lengths are pixels of the saved picture, from its upper left corner.
 
 use std::io;
 use std::path::Path;

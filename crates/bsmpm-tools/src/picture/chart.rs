@@ -97,8 +97,8 @@ impl Chart<'_> {
     }
 }
 
-/// Sorted places moved as little as it takes for each to be `gap` from the next: those that are too close are centred about
-/// their mean.
+/// Sorted places moved as little as it takes for each to be `gap` from the next: those that are too close are centred
+/// about their mean.
 fn apart(places: &[f64], gap: f64) -> Vec<f64> {
     // Groups of neighbours: the sum of their places and their number.
     let mut groups: Vec<(f64, usize)> = Vec::new();

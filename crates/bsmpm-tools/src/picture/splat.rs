@@ -1,6 +1,6 @@
-//! Fills a body from its points: a dot of the sheet takes the colour of the nearest point, if one is near enough; then the
-//! rim is taken off again to where the body ends. So a body of few points or of many looks filled where it is stretched,
-//! keeps its size, and no point hides its neighbours. At walls nothing is taken off.
+//! Fills a body from its points: a dot of the sheet takes the colour of the nearest point, if one is near enough; then
+//! the rim is taken off again to where the body ends. So a body of few points or of many looks filled where it is
+//! stretched, keeps its size, and no point hides its neighbours. At walls nothing is taken off.
 
 use std::collections::HashSet;
 
@@ -10,7 +10,8 @@ use super::axes::ChartAxes;
 use super::canvas::{Canvas, FINE, fine};
 use super::colour::Rgb;
 
-/// How far a point's colour reaches, in its own size: enough to close a body that is stretched to four times its length.
+/// How far a point's colour reaches, in its own size: enough to close a body that is stretched to four times its
+/// length.
 const REACH: f64 = 2.0;
 /// How far the body reaches beyond its outer points, in their size.
 const SKIN: f64 = 0.5;
@@ -62,7 +63,8 @@ const NOBODY: u32 = u32::MAX;
 pub(crate) struct SplatWindow {
     /// m  the ranges of x and y
     pub ranges: [(f64, f64); 2],
-    /// Whether the body is held at the lower and upper ends of the ranges: what comes near to such an end goes up to it.
+    /// Whether the body is held at the lower and upper ends of the ranges: what comes near to such an end goes up to
+    /// it.
     pub walls: [[bool; 2]; 2],
 }
 
@@ -153,8 +155,8 @@ impl Nearest {
         }
     }
 
-    /// How far each dot is from the next one that no point reaches, in dots (up to 8 % too long): the way over neighbours, found
-    /// in one sweep down and one up.
+    /// How far each dot is from the next one that no point reaches, in dots (up to 8 % too long): the way over
+    /// neighbours, found in one sweep down and one up.
     fn distance_to_nobody(&self) -> Vec<f32> {
         let mut way: Vec<f32> =
             self.dots.iter().map(|&(_, point)| if point == NOBODY { 0.0 } else { f32::INFINITY }).collect();

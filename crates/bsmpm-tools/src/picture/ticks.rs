@@ -59,7 +59,8 @@ const POWERS: [(i32, &str); 9] = [
 ];
 
 impl Ticks {
-    /// At most `count` (but at least two) round numbers between two finite ones: steps of 1, 2 or 5 times a power of ten.
+    /// At most `count` (but at least two) round numbers between two finite ones: steps of 1, 2 or 5 times a power of
+    /// ten.
     pub fn between(low: f64, high: f64, count: f64) -> Self {
         let rough = (high - low) / count.max(2.0);
         let power = 10_f64.powf(rough.log10().floor());

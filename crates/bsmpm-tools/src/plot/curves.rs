@@ -1,5 +1,5 @@
-//! Pictures of the histories: quantities against time, and the pressure of a footing against its penetration (Fig. 12 of
-//! the paper).
+//! Pictures of the histories: quantities against time, and the pressure of a footing against its penetration (Fig. 12
+//! of the paper).
 
 use bsmpm_io::table::Columns;
 

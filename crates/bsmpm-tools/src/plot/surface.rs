@@ -20,7 +20,8 @@ const NAME: &str = "surface.png";
 /// A picture lower than this share of its width is stretched upward.
 const LOWEST: f64 = 0.16;
 
-/// Draws the surfaces of all frames, with the points of a reference that has columns `time,x,y`; returns the picture's name.
+/// Draws the surfaces of all frames, with the points of a reference that has columns `time,x,y`; returns the picture's
+/// name.
 pub(super) fn draw(record: &RunRecord, frames: &[Frame], reference: Option<&Columns>) -> Result<String, Error> {
     let reference = reference.map(|table| places(record, frames, table)).unwrap_or_default();
     let entries = entries(record, frames, &reference);

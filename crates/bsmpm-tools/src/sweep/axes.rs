@@ -48,7 +48,8 @@ pub(crate) fn split(text: &str) -> Vec<String> {
     parts.iter().map(|part| part.trim().to_owned()).collect()
 }
 
-/// Every combination of the axes' values, the last axis fastest; or the case's own values with one of them replaced at a time.
+/// Every combination of the axes' values, the last axis fastest; or the case's own values with one of them replaced at
+/// a time.
 ///
 /// # Errors
 /// Says that a key is varied twice, or that there are too many.

@@ -1,7 +1,7 @@
 //! Which settings are worth their cost: no other is both cheaper and better.
 
-/// Of pairs of cost and error those to which no other is better in one and as good in the other; of equal ones the first.
-/// None is no result, and neither is a number that is not finite.
+/// Of pairs of cost and error those to which no other is better in one and as good in the other; of equal ones the
+/// first. None is no result, and neither is a number that is not finite.
 pub(super) fn front(places: &[Option<(f64, f64)>]) -> Vec<bool> {
     let beats = |(index, one): (usize, (f64, f64)), (other_index, other): (usize, (f64, f64))| {
         let no_worse = one.0 <= other.0 && one.1 <= other.1;

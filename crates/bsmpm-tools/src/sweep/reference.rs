@@ -1,4 +1,5 @@
-//! What errors are measured against: a run of the sweep, Richardson's extrapolation of some of them, a run elsewhere, numbers.
+//! What errors are measured against: a run of the sweep, Richardson's extrapolation of some of them, a run elsewhere,
+//! numbers.
 
 use std::path::{Path, PathBuf};
 

@@ -1,5 +1,5 @@
-//! What a sweep found: runs with their errors and costs, fronts, and the cheapest settings that are good enough; as text, CSV
-//! and JSON.
+//! What a sweep found: runs with their errors and costs, fronts, and the cheapest settings that are good enough; as
+//! text, CSV and JSON.
 
 use serde::Serialize;
 

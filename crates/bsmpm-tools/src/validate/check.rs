@@ -1,4 +1,5 @@
-//! Whether the parts of a matrix fit each other: what can be seen before anything runs is refused here, none of it after hours.
+//! Whether the parts of a matrix fit each other: what can be seen before anything runs is refused here, none of it
+//! after hours.
 
 use std::path::Path;
 

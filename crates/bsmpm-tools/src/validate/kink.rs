@@ -5,9 +5,9 @@ use super::matrix::MatrixKink;
 use super::measured::Measured;
 use crate::line::{BENT, FALLEN};
 
-/// Where the straight line through the beginning of the branch after the kink meets the elastic one, and in the remark where
-/// twice the elastic displacement is reached. A curve that has not gone that far shows no failure, whatever has ended it:
-/// that a solver gives up is no collapse.
+/// Where the straight line through the beginning of the branch after the kink meets the elastic one, and in the remark
+/// where twice the elastic displacement is reached. A curve that has not gone that far shows no failure, whatever has
+/// ended it: that a solver gives up is no collapse.
 pub(super) fn failure(kink: &MatrixKink, curve: &[(f64, f64)]) -> Result<Measured, String> {
     let (loads, moved): (Vec<f64>, Vec<f64>) = curve.iter().copied().unzip();
     let end = reached(&loads, kink.elastic).ok_or("it ended within the elastic part")?;

@@ -124,7 +124,8 @@ pub(super) enum Operation {
     Mean,
 }
 
-/// Where a column first reaches a value; or the part of the history from one value to another, whole where one is missing.
+/// Where a column first reaches a value; or the part of the history from one value to another, whole where one is
+/// missing.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct MatrixPlace {

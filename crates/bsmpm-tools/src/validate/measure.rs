@@ -62,7 +62,8 @@ fn spot(outcomes: &BTreeMap<String, MatrixOutcome>, run: &str, name: &str, value
     })
 }
 
-/// The part of a history that a window leaves, to the end of the run unless it says where: the other column, and the values.
+/// The part of a history that a window leaves, to the end of the run unless it says where: the other column, and the
+/// values.
 fn part(
     outcomes: &BTreeMap<String, MatrixOutcome>,
     run: &str,
@@ -132,8 +133,8 @@ fn values(order: &MeasuredOrder, outcomes: &BTreeMap<String, MatrixOutcome>) -> 
     order.runs.iter().map(of_run).collect()
 }
 
-/// Slope of log error over log size: least squares over all sizes; in the remark that of the last two, and the limit that the
-/// last three show.
+/// Slope of log error over log size: least squares over all sizes; in the remark that of the last two, and the limit
+/// that the last three show.
 fn observed_order(order: &MeasuredOrder, values: &[f64]) -> Result<Measured, String> {
     let exact = order.exact.ok_or("an order needs `exact`")?;
     let places: Vec<(f64, f64)> =

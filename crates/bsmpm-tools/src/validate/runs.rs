@@ -45,8 +45,8 @@ impl Launcher<'_> {
         Ok(MatrixOutcome::of(outcome, run.may_stop))
     }
 
-    /// Everything that a run is made from, as it stands now: the solver, its arguments, the text of the case. None where a
-    /// part cannot be told.
+    /// Everything that a run is made from, as it stands now: the solver, its arguments, the text of the case. None
+    /// where a part cannot be told.
     fn origin(&self, case: &Path, arguments: &[String]) -> Option<String> {
         let text = fs::read_to_string(case).ok()?;
         let command = [self.solver.command, arguments].concat().join(" ");

@@ -22,8 +22,8 @@ pub(super) struct Grids {
 
 impl Grids {
     /// # Errors
-    /// [`Error::Usage`] for a case without `grid.cell` and for ratios that show nothing; [`Error::BadCase`] for grids that
-    /// the case cannot have, with all of their errors.
+    /// [`Error::Usage`] for a case without `grid.cell` and for ratios that show nothing; [`Error::BadCase`] for grids
+    /// that the case cannot have, with all of their errors.
     pub fn of(arguments: &VerifyArguments, bytes: &[u8]) -> Result<Self, Error> {
         let path = &arguments.case;
         let own = case::parsed(path, bytes, &arguments.options.set)?;

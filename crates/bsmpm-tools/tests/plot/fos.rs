@@ -1,4 +1,5 @@
-//! `bsmpm fos`, with a stub for the solver: this test program, which writes runs of a body that bends at a known factor.
+//! `bsmpm fos`, with a stub for the solver: this test program, which writes runs of a body that bends at a known
+//! factor.
 
 mod trials;
 
@@ -24,8 +25,8 @@ const STUB: &str = "BSMPM_TEST_FOS";
 const SLOPE: &str = include_str!("../../../../cases/short/slope_stability.toml");
 const SCALED: &str = "E_delta_over_gamma_H2";
 
-/// What the body of a stub does, as `KEY=NUMBER ...`: it bends at the factor `kink`, ends early from `stops` to `until` with
-/// `code`.
+/// What the body of a stub does, as `KEY=NUMBER ...`: it bends at the factor `kink`, ends early from `stops` to `until`
+/// with `code`.
 fn behaviour(folder: &Path, key: &str, otherwise: f64) -> f64 {
     let text = fs::read_to_string(folder.join("behaviour")).unwrap();
     let value = text.split_whitespace().find_map(|word| word.strip_prefix(key)?.strip_prefix('='));

@@ -67,8 +67,8 @@ pub fn entering(background: f64) -> Found {
     change((2..=15).map(|k| ON_KNOT + 10.0_f64.powi(-k)).chain([ON_KNOT]), background)
 }
 
-/// A block of 3 x 3 cells that falls freely and moves across a cell in 200 steps: largest acceleration of any node over g, and
-/// largest error of the momentum, relative.
+/// A block of 3 x 3 cells that falls freely and moves across a cell in 200 steps: largest acceleration of any node over
+/// g, and largest error of the momentum, relative.
 fn falling() -> (f64, f64) {
     let (g, speed, steps) = (2.0, Vector::from([1.0, 0.3]), 200);
     let mut scene = Scene::<PlaneStrain, 2>::new([axis(H, 10, 2), axis(H, 10, 2)], hencky(100.0, 0.3), Regime::Dynamic)
@@ -102,8 +102,8 @@ pub fn lost_momentum() -> f64 {
     falling().1
 }
 
-/// A soft block thrown at a wall, under gravity, on a base that it sticks to; `mirrored` lets everything face right, with
-/// `swapped` axes the wall is the floor.
+/// A soft block thrown at a wall, under gravity, on a base that it sticks to; `mirrored` lets everything face right,
+/// with `swapped` axes the wall is the floor.
 fn thrown(is_mirrored: bool, is_swapped: bool, method: Stabilisation) -> Points<2> {
     let sign = if is_mirrored { -1.0 } else { 1.0 };
     let (mut cells, mut axes) = ([if is_mirrored { 3..6 } else { 2..5 }, 0..3], [axis(0.5, 8, 2), axis(0.5, 5, 2)]);
@@ -151,8 +151,8 @@ pub fn swapped() -> f64 {
     METHODS.into_iter().map(of).fold(0.0, f64::max)
 }
 
-/// The plastic collapse to the left against the one to the right: largest difference of a point's way, over ten times what
-/// one unit in the last place of the cell changes, plus 1e-10 m.
+/// The plastic collapse to the left against the one to the right: largest difference of a point's way, over ten times
+/// what one unit in the last place of the cell changes, plus 1e-10 m.
 pub fn mirrored_collapse() -> Found {
     let ways = |is_mirrored: bool, cell: f64| {
         let run = Run::of(&Collapse { mirrored: is_mirrored, cell, end: 0.05, ..Collapse::default() }.text(), 1, &[]);
@@ -178,7 +178,8 @@ pub fn mirrored_collapse() -> Found {
     Found::Figure(found / (10.0 * spread + 1e-10), format!("{found:.1e} m, spread {spread:.1e} m"))
 }
 
-/// Change of velocity a step (m/s at 1 m/s) and stress (over E) of a block that flies through 1000 cells, half a cell a step.
+/// Change of velocity a step (m/s at 1 m/s) and stress (over E) of a block that flies through 1000 cells, half a cell a
+/// step.
 fn flight(order: usize) -> (f64, f64) {
     let velocity = Vector::<2>::new(1.0, 0.0);
     // So soft that the round-off floor of the force, which scales with E, lets v change by less than 1e-12.

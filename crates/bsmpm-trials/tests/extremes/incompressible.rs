@@ -16,13 +16,14 @@ use bsmpm::stabilisation::Stabilisation;
 /// Height of Hencky's confined column under rho0 g l0 / M = .4, M the oedometric modulus, over its first one.
 const SETTLED: f64 = 0.853_305_216_7;
 
-/// Error of the height of a confined column of 20 cells, gravity in ten steps, over its length; or the physics' reason, which
-/// the program would end with 80 for.
+/// Error of the height of a confined column of 20 cells, gravity in ten steps, over its length; or the physics' reason,
+/// which the program would end with 80 for.
 pub fn confined(poisson: f64, method: Stabilisation) -> Found {
     column(poisson, method, 1.0)
 }
 
-/// The largest error of so many columns that differ by round-off alone, where it decides what is found; told if all are.
+/// The largest error of so many columns that differ by round-off alone, where it decides what is found; told if all
+/// are.
 pub fn confined_by_round_off(poisson: f64, method: Stabilisation, columns: i32) -> Found {
     let mut worst = None;
     for k in 0..columns {
@@ -78,8 +79,8 @@ pub fn footing(poisson: f64, method: &'static str) -> Found {
     run.found(|run| Found::Figure(Footing::factor(run.last("pressure")), run.effort()))
 }
 
-/// Root mean square of the pressure about the planes of neighbouring cells, under the footing at z/B = .1, over the mean of
-/// its absolute value.
+/// Root mean square of the pressure about the planes of neighbouring cells, under the footing at z/B = .1, over the
+/// mean of its absolute value.
 pub fn checkerboard(poisson: f64, method: &'static str) -> Found {
     let run = Run::of(&Footing { poisson, method, ..Footing::default() }.text(), 1, &[]);
     run.found(|run| {
@@ -99,8 +100,8 @@ pub fn iterations(poisson: f64, method: &'static str) -> Found {
     Found::Figure(many / few, format!("{many} for {few}"))
 }
 
-/// A cantilever 8 m long and 1 m thick with a small force at its end: deflection with this ratio over that with .495, both
-/// with the same E / (1 - nu^2), less one.
+/// A cantilever 8 m long and 1 m thick with a small force at its end: deflection with this ratio over that with .495,
+/// both with the same E / (1 - nu^2), less one.
 pub fn bending(poisson: f64, method: &'static str) -> Found {
     let run = |poisson: f64| {
         let young = 1e8 * (1.0 - poisson * poisson);

@@ -57,8 +57,8 @@ pub fn rebound() -> Found {
     })
 }
 
-/// Growth of the resident memory (kB per 1000 steps) over the last four fifths of a flight with that speed (m/s), and whether
-/// the number of open files changed there.
+/// Growth of the resident memory (kB per 1000 steps) over the last four fifths of a flight with that speed (m/s), and
+/// whether the number of open files changed there.
 fn growth(speed: f64) -> (f64, bool) {
     let scratch = Scratch::with_case(&block([speed, 0.0], STEPS, ""));
     let mut command = Command::new(program());
@@ -139,8 +139,8 @@ pub fn far_steps() -> f64 {
     worst
 }
 
-/// A column at rest, 8 m high, in equilibrium from the start, held for 1e4 steps with this method: largest displacement over
-/// its elastic settlement gamma H^2 / (2 M).
+/// A column at rest, 8 m high, in equilibrium from the start, held for 1e4 steps with this method: largest displacement
+/// over its elastic settlement gamma H^2 / (2 M).
 pub fn held(method: &str) -> Found {
     let further = format!("[initial]\nk0 = 0.42857142857142855\n[stabilisation]\nmethod = \"{method}\"\n");
     let text = layers(&[(1e7, 2e3, 8.0)], &further, 10_000, 9.81).replacen("ramp = 1.0", "ramp = 0.0", 1);
@@ -149,8 +149,8 @@ pub fn held(method: &str) -> Found {
     Run::of(&text, 1, &[]).found(|run| Found::Figure(run.last("max-displacement") / settlement, run.effort()))
 }
 
-/// The footing to z/B = .1 with 8, 16, 32 and 64 steps: largest ratio of the change of p/c by a doubling to the change before;
-/// or a warning that results belong to their number of steps.
+/// The footing to z/B = .1 with 8, 16, 32 and 64 steps: largest ratio of the change of p/c by a doubling to the change
+/// before; or a warning that results belong to their number of steps.
 pub fn step_count(method: &'static str) -> Found {
     let runs = [8, 16, 32, 64].map(|steps| Run::of(&Footing { method, steps, ..Footing::default() }.text(), 1, &[]));
     if let Some(missing) = runs.iter().map(|run| run.found(|_| 0.0)).find(|found| !matches!(found, Found::Figure(..))) {

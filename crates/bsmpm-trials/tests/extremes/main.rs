@@ -2,8 +2,8 @@
 //! units and origins. Every row gives the right value or a clean refusal, or is printed as failing.
 //!
 //! `rows` declares them, one below the other, with their bounds and what is known to fail; `table` judges and prints;
-//! the others measure: on the physics alone, with a solver of one rank that needs no PETSc, or through the real program.
-//! Without `--short` or `--full`, as `cargo test` calls it, only the declaration itself is looked through.
+//! the others measure: on the physics alone, with a solver of one rank that needs no PETSc, or through the real
+//! program. Without `--short` or `--full`, as `cargo test` calls it, only the declaration itself is looked through.
 
 #![allow(non_snake_case)] // the paper's letters, as in the crate
 

@@ -264,7 +264,8 @@ pub fn untouched() -> f64 {
     (0..1_000).map(one).sum::<usize>() as f64
 }
 
-/// F-bar gives dF the averaged determinant: exponent 1/2 in the plane, without touching zz, 1/3 in space. Largest error.
+/// F-bar gives dF the averaged determinant: exponent 1/2 in the plane, without touching zz, 1/3 in space. Largest
+/// error.
 pub fn exponents() -> f64 {
     let mut random = Random::new(12);
     let mut worst = 0.0_f64;

@@ -9,8 +9,8 @@ use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::Regime;
 use std::time::Instant;
 
-/// A bar of 10 cells of 1 m is pulled to `stretch` times its length, 1 m tall between rollers, nu = 0, with so many points
-/// a cell and axis: error of its axial stress, E ln(l)/l, in its middle; or a warning that it has come apart.
+/// A bar of 10 cells of 1 m is pulled to `stretch` times its length, 1 m tall between rollers, nu = 0, with so many
+/// points a cell and axis: error of its axial stress, E ln(l)/l, in its middle; or a warning that it has come apart.
 pub fn stretched(per_cell: usize, stretch: f64) -> Found {
     let (pull, end) = (10.0 * (stretch - 1.0), 10.0 * stretch + 2.0);
     let text = format!(

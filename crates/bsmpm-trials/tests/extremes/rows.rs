@@ -1,4 +1,5 @@
-//! Every row of the extremes: its number in the project's list, what is measured, what it may be, and what is known to fail.
+//! Every row of the extremes: its number in the project's list, what is measured, what it may be, and what is known to
+//! fail.
 
 use crate::table::Limit::{AtMost, Reported, Same, Within};
 use crate::table::{Row, row};
@@ -7,8 +8,9 @@ use bsmpm::stabilisation::Stabilisation::{ConsistentFBar, FBar, ModifiedFBar, No
 
 /// Bearing capacity factors between which a footing's p/c must lie: Prandtl's and Meyerhof's.
 const BEARING: crate::table::Limit = Within(5.14, 8.28);
-/// The same where nu = .3: so compressible a clay has not yielded all round at z/B = .1, and less than Prandtl's is right. With
-/// h = .125 m it is 4.75 (`modified-f-bar`) and 4.77 (`consistent-f-bar`), with .25 m 4.51 and 4.69: 10 % of the finest.
+/// The same where nu = .3: so compressible a clay has not yielded all round at z/B = .1, and less than Prandtl's is
+/// right. With h = .125 m it is 4.75 (`modified-f-bar`) and 4.77 (`consistent-f-bar`), with .25 m 4.51 and 4.69: 10 %
+/// of the finest.
 const YIELDING: crate::table::Limit = Within(4.28, 5.23);
 const MODIFIED: &str = "modified-f-bar";
 const CONSISTENT: &str = "consistent-f-bar";

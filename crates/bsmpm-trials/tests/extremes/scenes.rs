@@ -35,7 +35,8 @@ pub struct Soil {
 /// The rods of the collapse.
 pub const RODS: Soil = Soil { young: 5840e3, poisson: 0.3, friction: 21.9, cohesion: 0.0 };
 
-/// The coarse column collapse with cells of `cell` m and `per_cell` x `per_cell` points, up to `end` s by steps of `dt` s.
+/// The coarse column collapse with cells of `cell` m and `per_cell` x `per_cell` points, up to `end` s by steps of `dt`
+/// s.
 pub struct Collapse {
     pub soil: Soil,
     pub method: &'static str,

@@ -45,8 +45,8 @@ impl Run {
         self.scratch.path("case.out")
     }
 
-    /// The number that `value` takes from a run that came to its end, or the reason that the program gave for not coming
-    /// there. Every number that it left must be finite, too.
+    /// The number that `value` takes from a run that came to its end, or the reason that the program gave for not
+    /// coming there. Every number that it left must be finite, too.
     pub fn found<F: Into<Found>>(&self, value: impl FnOnce(&Self) -> F) -> Found {
         match self.output.code {
             Some(0 | 75) => {

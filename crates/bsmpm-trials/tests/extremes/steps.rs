@@ -85,8 +85,8 @@ pub fn huge(dt: f64) -> f64 {
     [Stabilisation::None, Stabilisation::FBar].into_iter().map(of).fold(0.0, f64::max)
 }
 
-/// 200 dynamic steps of `dt` s: largest distance from the static state over the last 100 steps, over that of the first 100
-/// but for the first step. The trapezoidal rule keeps ringing; it must not ring louder.
+/// 200 dynamic steps of `dt` s: largest distance from the static state over the last 100 steps, over that of the first
+/// 100 but for the first step. The trapezoidal rule keeps ringing; it must not ring louder.
 pub fn ringing(dt: f64) -> Found {
     let still = settling(Regime::QuasiStatic, Stabilisation::None).solved(1.0, 1.0).0.points;
     let size = still.u.iter().map(|u| u.norm()).fold(0.0, f64::max);
@@ -138,7 +138,8 @@ pub fn long_broyden() -> Found {
     Run::of(&text, 1, &[]).found(|run| Found::Figure(Footing::factor(run.last("pressure")), run.effort()))
 }
 
-/// A footing by Broyden's update to the last digit that round-off leaves: iterations beyond that must be refused or end.
+/// A footing by Broyden's update to the last digit that round-off leaves: iterations beyond that must be refused or
+/// end.
 pub fn beyond_round_off() -> Found {
     let solver = "nonlinear = \"broyden\"\ntolerance = 1e-30\nforce_tolerance = 1e-15";
     let text = Footing { solver, steps: 2, depth: 1e-3, ..Footing::default() }.text();

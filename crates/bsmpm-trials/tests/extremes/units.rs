@@ -112,8 +112,8 @@ pub fn origin(origin: f64) -> Found {
     run.found_or_warned("resolve", |run| relative(&moved(run), &reference))
 }
 
-/// A block that flies through 20 m of cells, an eighth of a metre a step, so that half of its points stand on knots after every
-/// second step: change of its momentum, relative.
+/// A block that flies through 20 m of cells, an eighth of a metre a step, so that half of its points stand on knots
+/// after every second step: change of its momentum, relative.
 pub fn knots() -> Found {
     Run::of(&block([125.0, 0.0], 160, ""), 2, &[]).found(|run| {
         let momentum = run.column("momentum-x");

@@ -30,8 +30,8 @@ pub fn little_cohesion(end: f64) -> Found {
     runout(1e-3 * 20.4e3 * 0.1).found(|run| (run.last("runout") / reference - 1.0).abs())
 }
 
-/// The beginning of the collapse, 20 steps, with this Poisson's ratio: change of the largest displacement with steps of half
-/// the length.
+/// The beginning of the collapse, 20 steps, with this Poisson's ratio: change of the largest displacement with steps of
+/// half the length.
 pub fn beginning(poisson: f64, friction: f64, method: &'static str) -> Found {
     let soil = Soil { poisson, friction, ..RODS };
     let run = |dt: f64| Run::of(&Collapse { soil, method, end: 0.01, dt, ..Collapse::default() }.text(), 1, &[]);
@@ -51,14 +51,15 @@ fn contrast(contrast: f64, is_airy: bool) -> (Arc<Run>, f64) {
     (Run::of(&layers(stack, "[solver]\nforce_tolerance = 1e-8\n", 5, 9.81), 2, &[]), weight)
 }
 
-/// Error of the reaction of the base below layers of that contrast, with another layer 1e-3 as stiff as the soil on top.
+/// Error of the reaction of the base below layers of that contrast, with another layer 1e-3 as stiff as the soil on
+/// top.
 pub fn weight(ratio: f64, is_airy: bool) -> Found {
     let (run, weight) = contrast(ratio, is_airy);
     run.found(|run| Found::Figure((run.last("reaction-y") / weight - 1.0).abs(), run.effort()))
 }
 
-/// Largest force measure of an accepted step below layers of that contrast; the tolerance is 1e-8, round-off of the stiff
-/// layer may be more.
+/// Largest force measure of an accepted step below layers of that contrast; the tolerance is 1e-8, round-off of the
+/// stiff layer may be more.
 pub fn balance(ratio: f64) -> Found {
     let (run, _) = contrast(ratio, false);
     run.found(|run| {

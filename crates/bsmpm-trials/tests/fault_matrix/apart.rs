@@ -1,4 +1,5 @@
-//! Ranks that do not see the same files: one of them has an empty folder in a place where the others have one that is full.
+//! Ranks that do not see the same files: one of them has an empty folder in a place where the others have one that is
+//! full.
 
 use crate::ground::{Ground, RUN, Trial, results, same};
 use crate::support::{Ears, Output, processes, program};

@@ -8,7 +8,8 @@ use crate::table::{Tried, trials};
 use bsmpm_io::manifest::Status;
 use std::time::Instant;
 
-/// Sends something that is to stop the run with that code; the seconds until it has stopped. No step is made twice then.
+/// Sends something that is to stop the run with that code; the seconds until it has stopped. No step is made twice
+/// then.
 fn stopped(ground: &Ground, (step, code): (u64, i32), send: impl Fn(&Running), variables: &[(&str, &str)]) -> f64 {
     let whole = ground.whole(2);
     let trial = ground.trial(2);
@@ -102,8 +103,8 @@ fn abrupt(ground: &Ground, count: usize, variables: &[(&str, &str)], send: impl 
     tried.figure(|seconds| format!("gone after {seconds} s at most"))
 }
 
-/// A limit of time, again and again until the end: each time the job is over before its limit, and the time that it takes
-/// to launch a program which does nothing. Two seconds at first, more where no step can be made in that.
+/// A limit of time, again and again until the end: each time the job is over before its limit, and the time that it
+/// takes to launch a program which does nothing. Two seconds at first, more where no step can be made in that.
 pub fn max_wall(ground: &Ground, count: usize) -> Tried {
     let whole = ground.whole(2);
     let launching = ground.trial(2).scratch.mpirun(2, &["--version"]).expect(0).elapsed.as_secs_f64();

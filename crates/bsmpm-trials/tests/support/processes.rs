@@ -81,7 +81,8 @@ pub fn run(command: Command, variables: &[(String, String)], heard: bool, patien
     start(command, variables, if heard { Ears::Open } else { Ears::Full }, patience).end()
 }
 
-/// Waits until all runs that were started in turn have ended, and holds back the next ones: for what starts runs by itself.
+/// Waits until all runs that were started in turn have ended, and holds back the next ones: for what starts runs by
+/// itself.
 pub fn turn() -> MutexGuard<'static, ()> {
     TURN.lock().unwrap_or_else(PoisonError::into_inner)
 }
@@ -103,7 +104,8 @@ pub fn start_beside(mut command: Command, variables: &[(String, String)], ears: 
     command.env("OMPI_ALLOW_RUN_AS_ROOT", "1").env("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1");
     // Shared memory will do; looking for faster networks takes most of the time of a start.
     command.env("OMPI_MCA_pml", "ob1");
-    // Nor does mpirun wait a second for ranks to go after one has left with an error: they have nothing left to do then.
+    // Nor does mpirun wait a second for ranks to go after one has left with an error: they have nothing left to do
+    // then.
     command.env("OMPI_MCA_odls_base_sigkill_timeout", "0");
     for name in REMOVED {
         command.env_remove(name);

@@ -103,8 +103,9 @@ fn value(scratch: &Scratch, column: &str) -> f64 {
     at(&history(&scratch.path("case.out")), column, 1.0)
 }
 
-/// The steps in which the whole wedge yields begin so nearly balanced that no later energy is small beside their first one:
-/// they ended with 80 at .84 and .10 of the wall's way although the forces balanced a hundred times better than asked.
+/// The steps in which the whole wedge yields begin so nearly balanced that no later energy is small beside their first
+/// one: they ended with 80 at .84 and .10 of the wall's way although the forces balanced a hundred times better than
+/// asked.
 #[test]
 fn a_wall_that_moves_away_has_rankines_active_thrust() {
     let weight = 18.0e3 * 4.0_f64.powi(2) / 2.0;

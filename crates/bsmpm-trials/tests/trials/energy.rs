@@ -1,4 +1,5 @@
-//! The history of energy on the real program: it closes, on one rank and on two, with strips, loads and numerical damping.
+//! The history of energy on the real program: it closes, on one rank and on two, with strips, loads and numerical
+//! damping.
 
 use crate::support::results::history;
 use crate::support::{Scratch, shipped};

@@ -1,4 +1,5 @@
-//! A run that makes energy ends with code 80 and says so, on any number of ranks, also one that goes on from a checkpoint.
+//! A run that makes energy ends with code 80 and says so, on any number of ranks, also one that goes on from a
+//! checkpoint.
 
 use crate::support::results::{history, manifest};
 use crate::support::{Scratch, shipped};

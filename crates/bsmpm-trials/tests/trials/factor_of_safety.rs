@@ -36,8 +36,8 @@ fn a_slope_of_five_cells_has_the_factor_of_the_literature() {
     let dir = tempfile::tempdir().unwrap();
     let (found, made) = search("short/slope_stability.toml", &["grid.cell=2.0"], 2, dir.path());
     let number = |key: &str| found["factor_of_safety"][key].as_f64().unwrap();
-    // Bishop and Morgenstern (1960): 1.380. The program found 1.405 with cells of 2 m and 1.380 with cells of 1 m; 4 % are
-    // twice that error.
+    // Bishop and Morgenstern (1960): 1.380. The program found 1.405 with cells of 2 m and 1.380 with cells of 1 m; 4 %
+    // are twice that error.
     assert!((number("estimate") / 1.38 - 1.0).abs() < 0.04, "{found}");
     assert!(number("last_stable") <= number("estimate") && number("estimate") <= number("first_failed"), "{found}");
     assert!(number("first_failed") - number("last_stable") <= 0.0501, "{found}");
@@ -71,8 +71,9 @@ fn estimate(found: &Value) -> f64 {
     found["factor_of_safety"]["estimate"].as_f64().unwrap_or_else(|| panic!("{found}"))
 }
 
-/// With E = 10 MPa the displacement of 20 times the elastic one is a third of the slope's height, and geometry that flattens
-/// under it lowers the factor: with cells of 1.25 m .981 without stiffer trials, .994 with them, .993 with 1,000 MPa.
+/// With E = 10 MPa the displacement of 20 times the elastic one is a third of the slope's height, and geometry that
+/// flattens under it lowers the factor: with cells of 1.25 m .981 without stiffer trials, .994 with them, .993 with
+/// 1,000 MPa.
 #[test]
 fn the_factor_of_acads_1a_does_not_depend_on_the_stiffness() {
     let of = |young: &str| {
@@ -87,8 +88,9 @@ fn the_factor_of_acads_1a_does_not_depend_on_the_stiffness() {
     assert!((soft - stiff).abs() < 0.01, "{soft} {stiff}");
 }
 
-/// The reference is elastic: with ten times the strength for it the fill had a friction angle of 80.2 degrees without dilation,
-/// with which not every embankment finds equilibrium. The program found 1.472 with a band of .02, 1.468 at `standard`.
+/// The reference is elastic: with ten times the strength for it the fill had a friction angle of 80.2 degrees without
+/// dilation, with which not every embankment finds equilibrium. The program found 1.472 with a band of .02, 1.468 at
+/// `standard`.
 #[test]
 fn an_embankment_on_clay_whose_weight_acts_from_the_start_has_a_factor() {
     let dir = tempfile::tempdir().unwrap();

@@ -1,5 +1,5 @@
-//! The indicators of real runs: the same on any number of ranks, of what the scene contains, and outside their usual range
-//! for methods that are known to be bad.
+//! The indicators of real runs: the same on any number of ranks, of what the scene contains, and outside their usual
+//! range for methods that are known to be bad.
 
 use crate::support::cases::SLIDING_BLOCK;
 use crate::support::results::manifest;

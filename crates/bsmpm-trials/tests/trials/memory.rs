@@ -4,8 +4,8 @@ use crate::support::results::manifest;
 use crate::support::{Scratch, shipped};
 use bsmpm_scene::Case;
 
-/// Shipped cases, large enough that not the libraries decide, by different parts of the estimate: points, cells, Newton's
-/// system, and what every further rank repeats.
+/// Shipped cases, large enough that not the libraries decide, by different parts of the estimate: points, cells,
+/// Newton's system, and what every further rank repeats.
 const RUNS: [(&str, &[&str], usize); 6] = [
     ("short/strip_footing", &[], 1),
     ("short/strip_footing", &["grid.cell=0.1"], 2),

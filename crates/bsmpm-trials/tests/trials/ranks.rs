@@ -7,8 +7,8 @@ use std::collections::BTreeSet;
 use std::process::Command;
 use std::time::Duration;
 
-/// Asserts that the last frames of runs on these numbers of ranks agree with the first one's to `tolerance`, relative to
-/// the largest number of each field.
+/// Asserts that the last frames of runs on these numbers of ranks agree with the first one's to `tolerance`, relative
+/// to the largest number of each field.
 #[track_caller]
 fn agree(scratch: &Scratch, case: &str, further: &[&str], ranks: &[usize], tolerance: f64) {
     let frames: Vec<_> = ranks
@@ -157,7 +157,8 @@ fn left(scratch: &Scratch, ranks: usize, arguments: &[&str], step: usize) -> (Ve
     (read("history.csv"), read(&format!("frames/step_{step:09}.vtu")))
 }
 
-/// Nodal sums, reductions and the stiffness do not depend on the cut; with one factorisation of the whole, nothing does.
+/// Nodal sums, reductions and the stiffness do not depend on the cut; with one factorisation of the whole, nothing
+/// does.
 #[test]
 fn where_all_ranks_factorise_the_whole_the_collapse_has_the_same_bits_on_1_2_3_and_4_ranks() {
     let scratch = Scratch::with_case(&std::fs::read_to_string(shipped("short/column_collapse.toml")).unwrap());
@@ -168,8 +169,8 @@ fn where_all_ranks_factorise_the_whole_the_collapse_has_the_same_bits_on_1_2_3_a
     assert!(runs[1..].iter().all(|run| *run == runs[0]));
 }
 
-/// Strips, the ghost penalty, whose faces lie between the cells of two ranks, cubic splines, fitted volumes, of cells whose
-/// neighbours another rank has, and averages on pairs of cells, which slabs cut.
+/// Strips, the ghost penalty, whose faces lie between the cells of two ranks, cubic splines, fitted volumes, of cells
+/// whose neighbours another rank has, and averages on pairs of cells, which slabs cut.
 #[test]
 fn where_all_ranks_factorise_the_whole_the_footing_has_the_same_bits_on_1_2_3_and_4_ranks() {
     let scratch = Scratch::with_case(&std::fs::read_to_string(shipped("short/strip_footing.toml")).unwrap());
@@ -187,7 +188,8 @@ fn where_all_ranks_factorise_the_whole_the_footing_has_the_same_bits_on_1_2_3_an
     }
 }
 
-/// A square that is nearly incompressible, loaded unevenly, is solved by a factor of double precision, others by one of single.
+/// A square that is nearly incompressible, loaded unevenly, is solved by a factor of double precision, others by one of
+/// single.
 #[test]
 fn a_factor_of_single_precision_that_is_too_coarse_is_made_anew_on_1_2_and_3_ranks() {
     let told = |nu: &str, ranks: usize| {
@@ -202,8 +204,9 @@ fn a_factor_of_single_precision_that_is_too_coarse_is_made_anew_on_1_2_and_3_ran
     }
 }
 
-/// Any stiffness leads to the same state, but only the same one in as many iterations, to the same rest. Here dilations couple
-/// 2 q layers of nodes, which slabs of one column are much thinner than. Of the default factor, single precision is left.
+/// Any stiffness leads to the same state, but only the same one in as many iterations, to the same rest. Here dilations
+/// couple 2 q layers of nodes, which slabs of one column are much thinner than. Of the default factor, single precision
+/// is left.
 #[test]
 fn the_stiffness_is_the_same_on_1_3_and_10_ranks_of_one_column_each() {
     let scratch = Scratch::with_case(&std::fs::read_to_string(shipped("short/strip_footing.toml")).unwrap());
@@ -286,8 +289,8 @@ fn slabs_thinner_than_the_splines_reach_work_for_every_order() {
     }
 }
 
-/// The ghost penalty ties nodes over the faces between slabs: of a body that crosses them, of slabs that are thinner than
-/// the splines reach, and of the quasi-static matrix, which nothing else completes.
+/// The ghost penalty ties nodes over the faces between slabs: of a body that crosses them, of slabs that are thinner
+/// than the splines reach, and of the quasi-static matrix, which nothing else completes.
 #[test]
 fn the_ghost_penalty_is_the_same_on_1_2_3_and_4_ranks() {
     let ghost = ["--set", "solver.background_kind=ghost-penalty", "--set", "solver.background=1e-2"];

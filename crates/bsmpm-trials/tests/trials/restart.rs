@@ -9,8 +9,8 @@ use std::path::Path;
 /// Restart files after every fifth step, all of them kept.
 const OFTEN: &str = "output.checkpoint={every_steps=5,keep=100}";
 
-/// All rows of a run's tables but the seconds and messages that they tell (who goes on numbers the unknowns anew), and the
-/// bytes of its last frame.
+/// All rows of a run's tables but the seconds and messages that they tell (who goes on numbers the unknowns anew), and
+/// the bytes of its last frame.
 fn results(directory: &Path) -> (String, String, Vec<u8>) {
     let text = |name: &str| std::fs::read_to_string(directory.join(name)).unwrap();
     let steps = text("steps.csv");

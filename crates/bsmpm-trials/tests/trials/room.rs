@@ -1,4 +1,5 @@
-//! Only the part of the grid around the points is held: how large the grid is changes neither results nor what they take.
+//! Only the part of the grid around the points is held: how large the grid is changes neither results nor what they
+//! take.
 
 use crate::support::cases::{SLIDING_BLOCK, changed};
 use crate::support::results::manifest;
@@ -14,7 +15,8 @@ fn left(directory: &Path, step: usize) -> (Vec<u8>, Vec<u8>) {
     (read("history.csv"), read(&format!("frames/step_{step:09}.vtu")))
 }
 
-/// What the case leaves after so many steps on these numbers of ranks, in grids of these upper corners, all with `further`.
+/// What the case leaves after so many steps on these numbers of ranks, in grids of these upper corners, all with
+/// `further`.
 #[track_caller]
 fn agree(scratch: &Scratch, ranks: &[usize], uppers: &[&str], further: &[&str], step: usize) {
     let steps = step.to_string();
@@ -35,8 +37,9 @@ fn the_sliding_block_has_the_same_bits_in_a_grid_ten_times_as_long_and_as_high_o
     agree(&scratch, &[1, 2, 4], &["[1.0,0.3]", "[10.0,0.3]", "[10.0,3.0]"], &WHOLE, 40);
 }
 
-/// A grid of 14 columns is held whole from the start, one of 20 is not: there the block outruns its room in the first steps.
-/// After 24 steps two empty cells are left to the wall of the short one: the block touches no function that a wall changes.
+/// A grid of 14 columns is held whole from the start, one of 20 is not: there the block outruns its room in the first
+/// steps. After 24 steps two empty cells are left to the wall of the short one: the block touches no function that a
+/// wall changes.
 #[test]
 fn a_room_that_is_made_anew_has_the_bits_of_a_grid_that_is_held_whole() {
     let scratch = Scratch::with_case(SLIDING_BLOCK);
@@ -76,7 +79,8 @@ fn newest(directory: &Path) -> (usize, String) {
     (bytes.len(), rest.split("]]").next().unwrap().to_owned())
 }
 
-/// What a checkpoint holds, and what it goes on from, is the room at that time; where the block has moved on, it is another one.
+/// What a checkpoint holds, and what it goes on from, is the room at that time; where the block has moved on, it is
+/// another one.
 #[test]
 fn a_run_in_a_large_grid_goes_on_to_the_bit_and_keeps_no_more() {
     let scratch = Scratch::with_case(SLIDING_BLOCK);

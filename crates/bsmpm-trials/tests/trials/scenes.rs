@@ -1,4 +1,5 @@
-//! The scenes of geotechnics on the real program: strips, loads, layers and stress at the start, on any number of ranks.
+//! The scenes of geotechnics on the real program: strips, loads, layers and stress at the start, on any number of
+//! ranks.
 
 use crate::support::cases::changed;
 use crate::support::results::{all_finite, differences, history, last_frame, manifest};
@@ -151,7 +152,8 @@ fn nothing_moves_under_its_own_stress_at_the_start() {
     assert!(moved.iter().all(|&moved| moved < 1e-6), "{moved:?}"); // the layer settles by 2 cm under gravity
 }
 
-/// A weightless elastic block of 7 x 7 cells of .1 m between a roller and a face that moves; `lower` is the grid's left.
+/// A weightless elastic block of 7 x 7 cells of .1 m between a roller and a face that moves; `lower` is the grid's
+/// left.
 fn platen(lower: f64, upper: f64) -> String {
     format!(
         r#"geometry = "plane-strain"

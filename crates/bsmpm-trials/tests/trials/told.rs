@@ -1,5 +1,5 @@
-//! What a run tells of itself that nobody asked for: what holds it pulls, the background carries it, its front goes back;
-//! and what every such line says to do.
+//! What a run tells of itself that nobody asked for: what holds it pulls, the background carries it, its front goes
+//! back; and what every such line says to do.
 
 use crate::support::cases::changed;
 use crate::support::results::{at, history, manifest};
@@ -82,7 +82,8 @@ fn a_background_that_carries_the_body_is_told() {
     assert!(!usual.unusual && usual.value > 0.0 && usual.value < 1e-3, "{usual:?}");
     let stiff = scratch.direct(&["case.toml", "--force", "--set", "solver.background=0.5"]).expect(0);
     assert!(stiff.stderr.contains("unusual: background-work"), "{}", stiff.stderr);
-    // Of uniaxial strain under a load that grows from the first step to the second, E int eps:eps / 2 against 1.35 E of the body.
+    // Of uniaxial strain under a load that grows from the first step to the second, E int eps:eps / 2 against 1.35 E of
+    // the body.
     let share = manifest(&scratch.path("case.out")).indicators["background-work"].value;
     assert!((0.1..0.5).contains(&share), "{share}");
     let none = Scratch::with_case(&format!("{LAYER}\n[solver]\nbackground = 0.0\n"));

@@ -22,8 +22,8 @@ pub(super) struct Forms<'a, const D: usize> {
     entries: [Vec<usize>; D],
 }
 
-/// int N_a N_b, int N_a' N_b', int N_a'' N_b'', int N_a' N_b and int N_a N_b' over a cell of one axis, row-major (q + 1)
-/// square; m, 1/m, 1/m^3, 1, 1.
+/// int N_a N_b, int N_a' N_b', int N_a'' N_b'', int N_a' N_b and int N_a N_b' over a cell of one axis, row-major,
+/// (q + 1) square; m, 1/m, 1/m^3, 1, 1.
 pub(super) type FormProducts = [Vec<f64>; 5];
 /// The last two of them.
 const MIXED: [usize; 2] = [3, 4];

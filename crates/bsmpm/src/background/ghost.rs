@@ -1,9 +1,9 @@
 //! The ghost penalty: gamma E h^(2q-1) int_F [d^q u / dn^q] . [d^q v / dn^q] dA on faces between occupied cells.
 //!
 //! Splines of degree q join their cells with q - 1 continuous derivatives: the jump of the q-th along the normal is all
-//! that tells the polynomials of two cells apart, so that a polynomial of degree q meets no resistance. A face has q + 2
-//! nodes along its normal and q + 1 along it, one more than a cell; its cells may be those of two ranks. Where a repeated
-//! breakpoint lies between two cells there is no face: strains may jump there.
+//! that tells the polynomials of two cells apart, so that a polynomial of degree q meets no resistance. A face has q +
+//! 2 nodes along its normal and q + 1 along it, one more than a cell; its cells may be those of two ranks. Where a
+//! repeated breakpoint lies between two cells there is no face: strains may jump there.
 
 use super::form::{FormProducts, products};
 use crate::grid::shape::{Patch, Shape};
@@ -31,8 +31,8 @@ struct GhostFace {
 const MOST_ALONG: usize = 16;
 
 impl GhostFaces {
-    /// Faces with a cell of this rank below and a concerned cell on one side or on both; `modulus` in Pa, the largest of
-    /// a patch; h is the mean of the two cells' lengths.
+    /// Faces with a cell of this rank below and a concerned cell on one side or on both; `modulus` in Pa, the largest
+    /// of a patch; h is the mean of the two cells' lengths.
     pub(super) fn of<K: Kinematics<D>, const D: usize>(
         (grid, shape): (&Grid<D>, &Shape<D>),
         (coefficient, concerned): (f64, &[bool]),
@@ -207,8 +207,8 @@ fn jump(axis: &KnotVector, cell: usize) -> Vec<f64> {
     jump
 }
 
-/// The q-th derivative of the q + 1 functions of `cell`, constant there, 1/m^q: every derivative of a spline of degree p
-/// has the coefficients p (c_i - c_(i-1)) / (t_(i+p) - t_i) on the splines of degree p - 1.
+/// The q-th derivative of the q + 1 functions of `cell`, constant there, 1/m^q: every derivative of a spline of degree
+/// p has the coefficients p (c_i - c_(i-1)) / (t_(i+p) - t_i) on the splines of degree p - 1.
 fn highest(axis: &KnotVector, cell: usize) -> Vec<f64> {
     let q = axis.order();
     let of = |function: usize| {

@@ -1,4 +1,5 @@
-//! The material that surface points are anchored to: `x_s = x_p + F_p (X_s - X_p)`, p the point that is nearest at the start.
+//! The material that surface points are anchored to: `x_s = x_p + F_p (X_s - X_p)`, p the point that is nearest at the
+//! start.
 //!
 //! Points that moved with the nodes instead would lag behind where rows of cells empty: on a column compressed by 30 %
 //! a load would come to lie .013 m of .70 m below the surface. And it tells where a strip has let go of its material.
@@ -26,7 +27,8 @@ pub struct Anchored<'a, const D: usize> {
 
 /// Places of the material now, m.
 pub struct AnchorPlaces<const D: usize> {
-    /// per strip and point of it: as far from the anchor as at the start, without what the material between has stretched
+    /// per strip and point of it: as far from the anchor as at the start, without what the material between has
+    /// stretched
     pub strips: Vec<Vec<Vector<D>>>,
     /// per load and point of it: on the material
     pub loads: Vec<Vec<Vector<D>>>,
@@ -87,8 +89,9 @@ impl Anchors {
 }
 
 impl<const D: usize> AnchorPlaces<D> {
-    /// Points of a strip, `number` of all, that at time `t` are farther ahead of the material that they held at the start
-    /// than half the shortest edge of the cell that they are in, along the strip's whole motion as far as it is held.
+    /// Points of a strip, `number` of all, that at time `t` are farther ahead of the material that they held at the
+    /// start than half the shortest edge of the cell that they are in, along the strip's whole motion as far as it is
+    /// held.
     pub fn left_behind(&self, number: usize, strip: &Strip<D>, t: f64, grid: &Grid<D>) -> usize {
         let moved = strip.path.at(t);
         let held = strip.normal.map_or(moved, |normal| normal * normal.dot(&moved));

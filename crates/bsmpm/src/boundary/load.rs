@@ -58,8 +58,8 @@ pub fn add_forces<const D: usize>(
     Ok(())
 }
 
-/// Positions that all loads' points would have after the converged displacement `u`, m, moved by the nodes that their forces
-/// act on: what the work of a load is of.
+/// Positions that all loads' points would have after the converged displacement `u`, m, moved by the nodes that their
+/// forces act on: what the work of a load is of.
 pub fn moved<const D: usize>(
     loads: &[Load<D>],
     surface: &Surface<D>,
@@ -81,8 +81,8 @@ pub fn moved<const D: usize>(
     position
 }
 
-/// Work of all loads from `t` to `t + dt` by their mean, N m, and half of what they have grown times the displacement of
-/// their points, from one surface to the other.
+/// Work of all loads from `t` to `t + dt` by their mean, N m, and half of what they have grown times the displacement
+/// of their points, from one surface to the other.
 pub fn work<const D: usize>(
     loads: &[Load<D>],
     (before, after): (&Surface<D>, &Surface<D>),

@@ -1,8 +1,8 @@
 //! Rigid strips (section 3.3): footings, platens and clamps that move on a given path and hold the material at them.
 //!
 //! The paper holds the material by a penalty on boundary points (Cortis et al., 2018), whose slip is lost every step.
-//! Here the traction of the last step is carried on, as a multiplier: p = p(t) + beta (motion - sum N u). What has slipped
-//! in all steps together is then p / beta, so that a moderate penalty does. The hold is bilateral.
+//! Here the traction of the last step is carried on, as a multiplier: p = p(t) + beta (motion - sum N u). What has
+//! slipped in all steps together is then p / beta, so that a moderate penalty does. The hold is bilateral.
 
 use super::surface::{Attachment, Surface, SurfacePoint};
 use crate::exact::Exact;
@@ -150,8 +150,8 @@ impl<const D: usize> StripPoint<D> {
 }
 
 impl<const D: usize> StripAttachments<D> {
-    /// Attaches the strips at their places at time `t`, to move until `t + dt`, by the components that are `free`: where a
-    /// support of the grid holds a node, it stays the one that does.
+    /// Attaches the strips at their places at time `t`, to move until `t + dt`, by the components that are `free`:
+    /// where a support of the grid holds a node, it stays the one that does.
     pub fn at(
         strips: &[Strip<D>],
         surface: &Surface<D>,

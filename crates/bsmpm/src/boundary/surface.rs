@@ -10,7 +10,8 @@ use crate::tensor::Vector;
 
 /// Share of a surface point's shape functions that the nodes that count must have: below it no material is near enough.
 /// It sets the reach beyond the cells that hold points: .75, 1.29 and 1.85 cells for the orders 1, 2 and 3. With a much
-/// shorter one a strip would let go where the row of cells at it has emptied while the points below are still at its base.
+/// shorter one a strip would let go where the row of cells at it has emptied while the points below are still at its
+/// base.
 const NEAR: f64 = 0.25;
 /// Parts of a mean cell by which a surface point may lie outside the grid and still be on its face: rounding of what
 /// it has moved.
@@ -25,9 +26,9 @@ pub struct SurfacePoint<const D: usize> {
     pub area: f64,
 }
 
-/// Points in the middles of `count` equal pieces of every part of a straight segment that the grid's lines cut off; `from`
-/// and `to` in m from the grid's lower corner. With as many pieces as a cell has points across, a load is in exact balance
-/// with uniform stress: the points' quadrature is the same rule.
+/// Points in the middles of `count` equal pieces of every part of a straight segment that the grid's lines cut off;
+/// `from` and `to` in m from the grid's lower corner. With as many pieces as a cell has points across, a load is in
+/// exact balance with uniform stress: the points' quadrature is the same rule.
 pub fn along<K: Kinematics<2>>(grid: &Grid<2>, from: &Vector<2>, to: &Vector<2>, count: usize) -> Vec<SurfacePoint<2>> {
     let mut cuts = vec![0.0, 1.0];
     for (axis, knots) in grid.axes().iter().enumerate() {

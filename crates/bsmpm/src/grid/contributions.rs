@@ -1,8 +1,8 @@
 //! What the columns of cells contribute to their nodes, each column for itself, so that sums do not depend on the cut.
 //!
-//! A layer of nodes gets contributions from q + 1 columns at most. They are added in the order of the columns, whichever
-//! rank has them: a nodal sum has the same bits on any number of ranks and threads. A column's contribution is the sum of
-//! its patches in their order, a patch's that of its points.
+//! A layer of nodes gets contributions from q + 1 columns at most. They are added in the order of the columns,
+//! whichever rank has them: a nodal sum has the same bits on any number of ranks and threads. A column's contribution
+//! is the sum of its patches in their order, a patch's that of its points.
 
 use super::Grid;
 use crate::exact::Exact;
@@ -49,8 +49,8 @@ impl Contributions {
         self.sums.chunks_exact_mut(size)
     }
 
-    /// The numbers of a cell's nodes and those behind them, to be indexed by the grid's offsets times the width; a column
-    /// that has not contributed before begins with zeros.
+    /// The numbers of a cell's nodes and those behind them, to be indexed by the grid's offsets times the width; a
+    /// column that has not contributed before begins with zeros.
     pub fn patch(&mut self, first_node: usize) -> &mut [f64] {
         let column = first_node * self.width / self.layer;
         let size = self.column_size();

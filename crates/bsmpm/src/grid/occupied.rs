@@ -16,8 +16,8 @@ pub(crate) struct Occupied<'a, const D: usize> {
 impl<'a, const D: usize> Occupied<'a, D> {
     /// Of this rank's `cells`, by their index in the window; one exchange with the neighbours.
     ///
-    /// Neighbouring slabs share layers of nodes, not of cells: a cell is noted at the node of its own number, which the rank
-    /// before sees, and at the q next ones, which the rank behind sees.
+    /// Neighbouring slabs share layers of nodes, not of cells: a cell is noted at the node of its own number, which the
+    /// rank before sees, and at the q next ones, which the rank behind sees.
     pub(crate) fn of(grid: &'a Grid<D>, cells: impl Iterator<Item = usize>, halo: &dyn Halo) -> Self {
         let width = grid.order() + 1;
         let mut occupied = Self { grid, width, marks: vec![0.0; width * grid.nodes()] };
@@ -43,8 +43,8 @@ impl<'a, const D: usize> Occupied<'a, D> {
         self.marks[self.place(cell, behind)] > 0.0
     }
 
-    /// Whether all neighbours hold points, those that the grid does not have at its faces counted as ones that do where these
-    /// are `closed` (per axis the lower and the upper one).
+    /// Whether all neighbours hold points, those that the grid does not have at its faces counted as ones that do where
+    /// these are `closed` (per axis the lower and the upper one).
     pub(crate) fn surround(&self, cell: &[usize; D], closed: &[[bool; 2]; D]) -> bool {
         (0..SIDE.pow(D as u32)).all(|k| {
             let mut neighbour = *cell;
@@ -59,8 +59,8 @@ impl<'a, const D: usize> Occupied<'a, D> {
         })
     }
 
-    /// The cell before (0), itself (1) or the one after (2) along an axis, of those that have a length; up to q away, as the
-    /// copies of a breakpoint are q at most.
+    /// The cell before (0), itself (1) or the one after (2) along an axis, of those that have a length; up to q away,
+    /// as the copies of a breakpoint are q at most.
     fn beside(&self, axis: usize, cell: usize, side: usize) -> Option<usize> {
         let axis = &self.grid.axes()[axis];
         let has_length = |at: &usize| axis.has_length(*at);

@@ -1,7 +1,7 @@
 //! Splines of degree q - 1 on pairs of cells, in terms of those on the cells (one axis).
 //!
-//! Every spline on the pairs is a sum of those on the cells, B_k = sum_j r_kj b_j with r_kj >= 0 and sum_k r_kj = 1 (knot
-//! insertion; Cohen, Lyche and Riesenfeld, 1980), so that sums over points need the functions on the cells only.
+//! Every spline on the pairs is a sum of those on the cells, B_k = sum_j r_kj b_j with r_kj >= 0 and sum_k r_kj = 1
+//! (knot insertion; Cohen, Lyche and Riesenfeld, 1980), so that sums over points need the functions on the cells only.
 
 use super::KnotVector;
 use std::ops::Range;
@@ -26,7 +26,8 @@ impl Paired {
         let last = pairs.len() - 1;
         let support = |k: usize| pairs[k.saturating_sub(degree)].start..pairs[k.min(last)].end;
         let support: Vec<_> = (0..count).map(support).collect();
-        // The end of the pair that a function starts to vanish behind; past the last one, as many nodes as functions are left.
+        // The end of the pair that a function starts to vanish behind; past the last one, as many nodes as functions
+        // are left.
         let slots: Vec<usize> = (0..count).map(|k| pairs[k.min(last)].end - 1 + k.saturating_sub(last)).collect();
         let mut of_slot = vec![None; axis.functions()];
         slots.iter().enumerate().for_each(|(k, &slot)| of_slot[slot] = Some(k));

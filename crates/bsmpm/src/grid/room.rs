@@ -2,7 +2,8 @@
 //!
 //! A scene's grid has room for all that may come to pass; at any time most of it is empty. What is kept reaches further
 //! than the points do by what they couple with, and by a part of their own extent, so that it is seldom fitted anew.
-//! Nodes that no point touches have no unknowns and add zeros to sums: under one cut results do not depend on it, to the bit.
+//! Nodes that no point touches have no unknowns and add zeros to sums: under one cut results do not depend on it, to
+//! the bit.
 
 use super::{Grid, KnotVector};
 use crate::tensor::Vector;
@@ -47,7 +48,8 @@ impl<const D: usize> Grid<D> {
 }
 
 /// Room for points in the cells `occupied` of a grid of so many `cells` along each axis, for splines of an order and
-/// `beyond` further layers that are coupled: as large as the grid at most, and at least so many columns, if it has them.
+/// `beyond` further layers that are coupled: as large as the grid at most, and at least so many columns, if it has
+/// them.
 pub fn around<const D: usize>(
     occupied: &[Range<usize>; D],
     cells: [usize; D],

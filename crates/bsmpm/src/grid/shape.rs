@@ -43,7 +43,7 @@ pub struct Shape<const D: usize> {
     patches: Vec<Patch>,
     columns: Vec<PatchColumn>,
     extent: (usize, usize, usize), // layers that a column touches, nodes of a layer, of the window
-    rows: Vec<f64>, // per point and axis: q + 1 values, then q + 1 derivatives (1/m) but for lowered functions, and zeros behind
+    rows: Vec<f64>, // per point and axis: q + 1 values, q + 1 derivatives (1/m) but for lowered ones; then zeros
     stride: usize,  // numbers of a row
     pub(super) merged: Option<Merged<D>>, // of lowered functions: those inside a body with their neighbours
 }
@@ -51,8 +51,8 @@ pub struct Shape<const D: usize> {
 /// Zeros behind the rows; fewer than a point has numbers.
 const BEHIND: usize = 3;
 
-/// Runs `$body` with the constant `W` = q + 1, so that the loops over a patch's nodes are unrolled; `lowered` functions may
-/// be of the degree below linear ones, constant in a cell.
+/// Runs `$body` with the constant `W` = q + 1, so that the loops over a patch's nodes are unrolled; `lowered` functions
+/// may be of the degree below linear ones, constant in a cell.
 macro_rules! with_width {
     (lowered $width:expr, $W:ident => $body:expr) => {
         match $width {
@@ -180,8 +180,8 @@ impl<const D: usize> Shape<D> {
         &self.offsets
     }
 
-    /// Rows of values and derivatives, point by point and axis by axis; behind them so many zeros that four numbers can be read
-    /// from the place of each.
+    /// Rows of values and derivatives, point by point and axis by axis; behind them so many zeros that four numbers can
+    /// be read from the place of each.
     pub(super) fn rows(&self) -> &[f64] {
         assert_eq!(self.stride, 2 * self.width, "lowered functions have values only");
         &self.rows

@@ -4,8 +4,8 @@
 //! functions of the span are kept: on a knot N = 0 while dN/dx != 0, and those must not be dropped.
 //!
 //! A breakpoint of multiplicity m stands m times: there the functions have q - m continuous derivatives, and with m = q
-//! strains may jump. Between its copies lie m - 1 cells without length, which hold no point; so function `a` of cell `c`
-//! is number `c + a` whatever the multiplicities are, and all that counts nodes by cells need not know of them.
+//! strains may jump. Between its copies lie m - 1 cells without length, which hold no point; so function `a` of cell
+//! `c` is number `c + a` whatever the multiplicities are, and all that counts nodes by cells need not know of them.
 
 use crate::error::GridError;
 
@@ -33,8 +33,8 @@ impl KnotVector {
         Ok(axis)
     }
 
-    /// Cells between `breakpoints` (m), counted from the first, which do not decrease; an inner one may stand up to q times.
-    /// Fails as [`KnotVector::uniform`] does, also where the distances from the first one are too short.
+    /// Cells between `breakpoints` (m), counted from the first, which do not decrease; an inner one may stand up to q
+    /// times. Fails as [`KnotVector::uniform`] does, also where the distances from the first one are too short.
     pub fn graded(breakpoints: &[f64], order: usize) -> Result<Self, GridError> {
         if !(1..=MAX_ORDER).contains(&order) {
             return Err(GridError::Order(order));
@@ -103,7 +103,8 @@ impl KnotVector {
         integral(&self.knots[i..=i + self.order + 1])
     }
 
-    /// The same of function `i` of the splines of degree q - 1 on the same cells: function `a` of cell `c` is number `c + a`.
+    /// The same of function `i` of the splines of degree q - 1 on the same cells: function `a` of cell `c` is number
+    /// `c + a`.
     pub fn lowered_integral(&self, i: usize) -> (f64, f64) {
         integral(&self.knots[i + 1..=i + self.order + 1])
     }
@@ -170,7 +171,8 @@ impl KnotVector {
     }
 }
 
-/// Integral of the function with these knots, and the mean of its place (Curry and Schoenberg, 1966, J. Anal. Math. 17, 71-107).
+/// Integral of the function with these knots, and the mean of its place (Curry and Schoenberg, 1966, J. Anal. Math. 17,
+/// 71-107).
 fn integral(knots: &[f64]) -> (f64, f64) {
     let last = knots.len() - 1;
     ((knots[last] - knots[0]) / last as f64, knots.iter().sum::<f64>() / knots.len() as f64)

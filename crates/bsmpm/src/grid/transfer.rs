@@ -1,8 +1,8 @@
 //! The passes between points and nodes (Eqs 1, 2 and steps 4a, 5a), patch by patch.
 //!
 //! A patch gathers its (q+1)^D nodal values once, its points work on that small block, and what they scatter is summed
-//! in a block before it is added to its column's [`Contributions`]: sums over points have one order, whatever the number of
-//! ranks and threads. Threads share the columns of cells. Nodal arrays are flat.
+//! in a block before it is added to its column's [`Contributions`]: sums over points have one order, whatever the
+//! number of ranks and threads. Threads share the columns of cells. Nodal arrays are flat.
 
 mod columns;
 mod patch;
@@ -285,7 +285,8 @@ fn add<const C: usize>(
     }
 }
 
-/// Nodal values over the weight of their node, as many a node as there are; zero where it is at most the threshold: 1/m is never formed.
+/// Nodal values over the weight of their node, as many a node as there are; zero where it is at most the threshold: 1/m
+/// is never formed.
 pub fn divide(nodal: &mut [f64], weight: &[f64], threshold: f64) {
     let width = nodal.len() / weight.len();
     for (values, &weight) in nodal.chunks_exact_mut(width).zip(weight) {

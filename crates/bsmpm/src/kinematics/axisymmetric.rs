@@ -5,8 +5,8 @@ use crate::real::Real;
 use crate::tensor::{Square, Symmetric, Tensor, Vector};
 use nalgebra::{SMatrix, SVector};
 
-/// Rotational symmetry about the axis r = 0, without torsion: axis 0 of the grid is r, axis 1 is z; of every body a sector of
-/// one radian. Tensors have the directions r, z and theta, in which u_r / r stretches.
+/// Rotational symmetry about the axis r = 0, without torsion: axis 0 of the grid is r, axis 1 is z; of every body a
+/// sector of one radian. Tensors have the directions r, z and theta, in which u_r / r stretches.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Axisymmetric;
 

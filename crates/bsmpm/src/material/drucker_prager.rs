@@ -1,5 +1,5 @@
-//! Drucker-Prager plasticity (de Souza Neto et al., 2008, section 8.3): a cone through or beside Mohr-Coulomb's pyramid,
-//! perfect, non-associated.
+//! Drucker-Prager plasticity (de Souza Neto et al., 2008, section 8.3): a cone through or beside Mohr-Coulomb's
+//! pyramid, perfect, non-associated.
 //!
 //! The return is linear: along the deviator to the cone, or to its tip.
 
@@ -22,7 +22,8 @@ pub enum Match {
 }
 
 impl Match {
-    /// Of an angle (rad) its slope in the mean stress, η or η_ψ, and of the friction angle the factor ξ of the cohesion.
+    /// Of an angle (rad) its slope in the mean stress, η or η_ψ, and of the friction angle the factor ξ of the
+    /// cohesion.
     fn slopes(self, angle: f64) -> (f64, f64) {
         let (sin, cos, tan) = (angle.sin(), angle.cos(), angle.tan());
         match self {
@@ -74,9 +75,9 @@ impl DruckerPrager {
 
     /// Shear strength over that of Mohr-Coulomb where plastic flow goes on in plane strain.
     ///
-    /// No plastic strain along the normal makes its deviatoric stress -⅔ η_ψ √J₂, so that the radius of Mohr's circle is
-    /// `√(1 - η_ψ²/3) (ξ c - η m)/(1 - η η_ψ/3)`, m the mean stress in the plane, for `c cos φ - m sin φ`: the ratio of
-    /// the terms in m, without friction of those in c.
+    /// No plastic strain along the normal makes its deviatoric stress -⅔ η_ψ √J₂, so that the radius of Mohr's circle
+    /// is `√(1 - η_ψ²/3) (ξ c - η m)/(1 - η η_ψ/3)`, m the mean stress in the plane, for `c cos φ - m sin φ`: the ratio
+    /// of the terms in m, without friction of those in c.
     pub fn strength_in_plane_strain(&self) -> f64 {
         let [eta, eta_psi] = self.slopes;
         let (sin, cos) = self.friction.sin_cos();

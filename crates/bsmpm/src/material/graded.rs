@@ -48,8 +48,8 @@ pub struct Graded {
 }
 
 impl Graded {
-    /// The `law` with other numbers: Young's modulus (Pa) and its parameters by the height, for points that are placed at
-    /// `heights` (m from the grid's lower corner); its strength divided by `reduction` (section 3.2).
+    /// The `law` with other numbers: Young's modulus (Pa) and its parameters by the height, for points that are placed
+    /// at `heights` (m from the grid's lower corner); its strength divided by `reduction` (section 3.2).
     pub fn new(law: &Material, young: Profile, parameters: Vec<Profile>, heights: Range<f64>, reduction: f64) -> Self {
         let stiffest = Elastic { young: young.bounds(&heights).1, ..law.elastic().clone() };
         let most: Vec<f64> = parameters.iter().map(|parameter| parameter.bounds(&heights).1).collect();

@@ -62,8 +62,8 @@ pub trait Law {
 
     /// `(τ_A - τ_B)/(ε_A - ε_B)`, Pa, where these differ by `tau` and `eps` ≥ 0 after a return.
     ///
-    /// In 0..2μ, since returns shrink stress differences; here 0 of equal strains, as what is near an edge returns to it.
-    /// The bounds keep rounding of a tiny difference inside.
+    /// In 0..2μ, since returns shrink stress differences; here 0 of equal strains, as what is near an edge returns to
+    /// it. The bounds keep rounding of a tiny difference inside.
     fn chord(_flow: &Self::Flow<f64>, moduli: Moduli, (tau, eps): (f64, f64)) -> f64 {
         if eps > 0.0 { (tau / eps).max(0.0).min(2.0 * moduli.mu) } else { 0.0 }
     }

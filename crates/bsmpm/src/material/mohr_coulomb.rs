@@ -116,7 +116,8 @@ impl MohrCoulomb {
         Self { separation, ..self }
     }
 
-    /// Return along `τ = τ_trial - Δγ D m`, `Δγ = f/(4λ sin φ sin ψ + 4μ(1 + sin φ sin ψ))`, and where it keeps the order.
+    /// Return along `τ = τ_trial - Δγ D m`, `Δγ = f/(4λ sin φ sin ψ + 4μ(1 + sin φ sin ψ))`, and where it keeps the
+    /// order.
     #[inline(always)]
     fn face<R: Real>(&self, trial: [R; 3], excess: R) -> ([R; 3], R::Mask) {
         let (Moduli { lambda, mu }, sin_psi) = (self.moduli, self.slopes.sin_psi);
@@ -130,8 +131,8 @@ impl MohrCoulomb {
 }
 
 impl MohrCoulomb {
-    /// Return to the edge that the face return crosses first, whether that is the right one, and where it is not beyond the
-    /// apex (never when sin φ = 0).
+    /// Return to the edge that the face return crosses first, whether that is the right one, and where it is not beyond
+    /// the apex (never when sin φ = 0).
     #[inline(always)]
     fn edge<R: Real>(&self, trial: [R; 3]) -> ([R; 3], R::Mask, R::Mask) {
         let Self { slopes, moduli, shift, .. } = *self;

@@ -52,10 +52,11 @@ impl Response {
 
     /// The gap that is open after the return, as a logarithm of volume: `g = tr ε_trial - tr εᵉ` at the apex, else 0.
     ///
-    /// Material that keeps it is given `b_trial exp(⅔ g)` in the next step, `ε_trial + g/3 I`: it stays at the apex until
-    /// the gap has closed, and then resists at the volume at which it came apart: the volume correction of Klár et al.
-    /// (2016), "Drucker-Prager elastoplasticity for sand animation". g is constant during a step, so that the tangent
-    /// keeps its form. What ψ dilates on faces and edges is no gap, and where such flow goes on what gapes is filled.
+    /// Material that keeps it is given `b_trial exp(⅔ g)` in the next step, `ε_trial + g/3 I`: it stays at the apex
+    /// until the gap has closed, and then resists at the volume at which it came apart: the volume correction of Klár
+    /// et al. (2016), "Drucker-Prager elastoplasticity for sand animation". g is constant during a step, so that the
+    /// tangent keeps its form. What ψ dilates on faces and edges is no gap, and where such flow goes on what gapes is
+    /// filled.
     pub fn gap(&self) -> f64 {
         if self.branch() != Branch::Apex {
             return 0.0;

@@ -103,8 +103,8 @@ impl Spectrum {
 }
 
 impl<R: Real> Spectrum<R> {
-    /// The same of a plane and its normal, by its components XX, YY, ZZ, XY; `None` unless all eigenvalues are so near to 1
-    /// that the series holds.
+    /// The same of a plane and its normal, by its components XX, YY, ZZ, XY; `None` unless all eigenvalues are so near
+    /// to 1 that the series holds.
     #[inline(always)]
     pub fn near([xx, yy, zz, xy]: [R; 4]) -> Option<Self> {
         let (sums, axes) = plane([xx, yy, zz], xy);
@@ -145,8 +145,8 @@ impl<R: Real> Spectrum<R> {
         ]
     }
 
-    /// The tensor that has the principal values `s`, descending as those of b, on the same axes: exactly isotropic if they are
-    /// equal.
+    /// The tensor that has the principal values `s`, descending as those of b, on the same axes: exactly isotropic if
+    /// they are equal.
     #[inline(always)]
     pub fn assemble(&self, s: [R; 3]) -> Symmetric<R> {
         match &self.axes {

@@ -1,6 +1,6 @@
 //! A symmetric, positive stand-in for the tangent of a response, for the stiffness that is factorised once a step: bulk
-//! stiffness and shear as they are, their coupling left out, the deviatoric rest without its negative part (Higham, 1988,
-//! Linear Algebra Appl. 103, 103-118), and a small share of the elastic stiffness everywhere.
+//! stiffness and shear as they are, their coupling left out, the deviatoric rest without its negative part (Higham,
+//! 1988, Linear Algebra Appl. 103, 103-118), and a small share of the elastic stiffness everywhere.
 
 use super::Response;
 use super::law::Branch;
@@ -9,11 +9,11 @@ use crate::kinematics::Gradient;
 use crate::tensor::Tensor;
 use std::f64::consts::FRAC_1_SQRT_2;
 
-/// Share of the elastic stiffness. Less takes fewer iterations where steps are small, and more where they are large: measured in
-/// `cases/results/nonlinear_methods.md`.
+/// Share of the elastic stiffness. Less takes fewer iterations where steps are small, and more where they are large:
+/// measured in `cases/results/nonlinear_methods.md`.
 const ELASTIC: f64 = 0.1;
-/// Plastic strain of a response below which it counts as elastic: what rests on the yield surface is beyond it by round-off or
-/// not, and the stiffness should not depend on that.
+/// Plastic strain of a response below which it counts as elastic: what rests on the yield surface is beyond it by
+/// round-off or not, and the stiffness should not depend on that.
 const FLOW: f64 = 1e-10;
 /// 1/sqrt(6)
 const FRAC_1_SQRT_6: f64 = 0.408_248_290_463_863;
@@ -55,12 +55,12 @@ impl Stiffness {
         }
     }
 
-    /// The change of stress in Pa for a displacement gradient of a grid's dimension, one unit gradient after the other: in
-    /// the axes of b `D_AB ε_BB` and `2 G_AB ε_AB`, ε its symmetric part. `seen` is what the grid sees of a stress, the
-    /// adjoint of what makes its gradient a tensor.
+    /// The change of stress in Pa for a displacement gradient of a grid's dimension, one unit gradient after the other:
+    /// in the axes of b `D_AB ε_BB` and `2 G_AB ε_AB`, ε its symmetric part. `seen` is what the grid sees of a stress,
+    /// the adjoint of what makes its gradient a tensor.
     ///
-    /// `Σ D_AB v_A ⊗ v_B + Σ G_AB w_AB ⊗ w_AB`, v_A what it sees of `n_A n_Aᵀ`, w_AB of `n_A n_Bᵀ + n_B n_Aᵀ`: so that no
-    /// unit has to be turned to the axes of b and its stress back.
+    /// `Σ D_AB v_A ⊗ v_B + Σ G_AB w_AB ⊗ w_AB`, v_A what it sees of `n_A n_Aᵀ`, w_AB of `n_A n_Bᵀ + n_B n_Aᵀ`: so that
+    /// no unit has to be turned to the axes of b and its stress back.
     #[inline(always)]
     pub fn moduli<G: Gradient<D>, const D: usize>(&self, seen: impl Fn(&Tensor) -> G) -> G::Moduli {
         let n = |a: usize, i: usize| self.axes[(a, i)];
@@ -83,7 +83,8 @@ impl Stiffness {
 }
 
 impl Response {
-    /// The stiffness of a response that yields, for use with many gradients; `None` where it is the elastic one, or as good as.
+    /// The stiffness of a response that yields, for use with many gradients; `None` where it is the elastic one, or as
+    /// good as.
     #[inline]
     pub fn yielding(&self) -> Option<Stiffness> {
         if self.branch() == Branch::Elastic {

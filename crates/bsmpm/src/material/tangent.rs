@@ -45,7 +45,8 @@ impl Tangent {
         }
     }
 
-    /// `dτ_AA = Σ_B D_AB l_BB`, `dτ_AB = (τ_A - τ_B)/(b_A - b_B) (l_AB b_B + b_A l_BA)`, in the eigenbasis of the trial b.
+    /// `dτ_AA = Σ_B D_AB l_BB`, `dτ_AB = (τ_A - τ_B)/(b_A - b_B) (l_AB b_B + b_A l_BA)`, in the eigenbasis of the trial
+    /// b.
     pub fn apply(&self, l: &Tensor) -> Tensor {
         let l = self.axes * l * self.axes.transpose();
         let mut d_tau = Tensor::from_diagonal(&(self.principal * l.diagonal()));

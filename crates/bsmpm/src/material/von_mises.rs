@@ -1,5 +1,5 @@
-//! Von Mises plasticity with linear isotropic hardening (de Souza Neto et al., 2008, sections 7.3 and 7.4): clay without
-//! drainage whose strength does not depend on the direction of shear, metal.
+//! Von Mises plasticity with linear isotropic hardening (de Souza Neto et al., 2008, sections 7.3 and 7.4): clay
+//! without drainage whose strength does not depend on the direction of shear, metal.
 //!
 //! One elastic trial stress returns along its own deviator, which is the radius of a cylinder.
 

@@ -1,7 +1,8 @@
 //! Where a body that runs out ends: how far its lowest row of cells is filled by half.
 //!
-//! The window that is to be half full ends at a point and goes with it, so that the front moves as the points do. A cell of
-//! the grid in its place makes the front jump back by a spacing of points wherever the first of them enter the next cell.
+//! The window that is to be half full ends at a point and goes with it, so that the front moves as the points do. A
+//! cell of the grid in its place makes the front jump back by a spacing of points wherever the first of them enter the
+//! next cell.
 
 use crate::grid::Grid;
 use crate::kinematics::Kinematics;
@@ -15,9 +16,9 @@ const FULL: f64 = 0.5;
 /// Points of the lowest row that are in one cell: where along axis 0 (m), and volume (m^D).
 type CellPoints = Vec<[f64; 2]>;
 
-/// The body's front (m): the farthest point of the lowest occupied row of cells such that the points from it back by the
-/// length of its cell, in this cell and the one before, fill half of a cell. A few loose points run ahead of it. Rows count
-/// along the last axis, the front along axis 0; 0 where nothing is so full.
+/// The body's front (m): the farthest point of the lowest occupied row of cells such that the points from it back by
+/// the length of its cell, in this cell and the one before, fill half of a cell. A few loose points run ahead of it.
+/// Rows count along the last axis, the front along axis 0; 0 where nothing is so full.
 pub fn front<K: Kinematics<D>, const D: usize>(model: &Model<K, D>, points: &Points<D>, halo: &dyn Halo) -> f64 {
     let grid = &model.grid;
     let row = lowest_row(grid, points, halo);

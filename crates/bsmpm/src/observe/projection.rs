@@ -1,8 +1,8 @@
 //! The pressure that a frame shows beside the points' own: what is left of it without what the grid cannot hold.
 //!
-//! The pair of displacements and averaged dilations leaves modes to the pressure that no force feels, and that mean nothing;
-//! the equilibrium is right without them. The locally lumped projection onto splines of degree q - 1 (Telikicherla and
-//! Moutsanidis, 2022), weighed by volume, damps them.
+//! The pair of displacements and averaged dilations leaves modes to the pressure that no force feels, and that mean
+//! nothing; the equilibrium is right without them. The locally lumped projection onto splines of degree q - 1
+//! (Telikicherla and Moutsanidis, 2022), weighed by volume, damps them.
 
 use super::noise::pressure;
 use crate::error::StepError;
@@ -11,9 +11,9 @@ use crate::model::Model;
 use crate::parallel::{Halo, agreed};
 use crate::points::Points;
 
-/// Projected pressure of every point, Pa, positive in compression: sum_h A_hp sum_r A_hr V_r p_r / sum_r A_hr V_r, A the splines
-/// of degree q - 1 and V the points' present volumes; of every group of materials by itself that averages do not mix. The
-/// points must be sorted by cell.
+/// Projected pressure of every point, Pa, positive in compression: sum_h A_hp sum_r A_hr V_r p_r / sum_r A_hr V_r, A
+/// the splines of degree q - 1 and V the points' present volumes; of every group of materials by itself that averages
+/// do not mix. The points must be sorted by cell.
 pub fn projected_pressure<K, const D: usize>(
     model: &Model<K, D>,
     points: &Points<D>,

@@ -1,4 +1,5 @@
-//! How well the points fill the cells: equal-weight quadrature is exact where the volumes of a cell's points add up to it.
+//! How well the points fill the cells: equal-weight quadrature is exact where the volumes of a cell's points add up to
+//! it.
 
 use crate::exact::Exact;
 use crate::grid::occupied::Occupied;
@@ -20,9 +21,9 @@ pub struct Defect {
     pub largest: f64,
 }
 
-/// Defect of the points' current volumes V_p = J_p V0_p over the cells all of whose neighbours (3^D - 1, as far as the grid
-/// has them) hold points, too; none where no cell is interior. The points must be sorted by cell: then it has the same
-/// bits on any number of ranks.
+/// Defect of the points' current volumes V_p = J_p V0_p over the cells all of whose neighbours (3^D - 1, as far as the
+/// grid has them) hold points, too; none where no cell is interior. The points must be sorted by cell: then it has the
+/// same bits on any number of ranks.
 pub fn defect<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     points: &Points<D>,
@@ -60,9 +61,9 @@ pub fn defect<K: Kinematics<D>, const D: usize>(
     })
 }
 
-/// Part of its volume that each material has lost, the mean over its points; negative where it has grown, 0 without points:
-/// equal weights integrate the worse the farther points have moved against each other and the cells. The same bits on any
-/// number of ranks.
+/// Part of its volume that each material has lost, the mean over its points; negative where it has grown, 0 without
+/// points: equal weights integrate the worse the farther points have moved against each other and the cells. The same
+/// bits on any number of ranks.
 pub fn compression<const D: usize>(points: &Points<D>, materials: usize, halo: &dyn Halo) -> Vec<f64> {
     let mut volumes = vec![Exact::ZERO; 2 * materials];
     for p in 0..points.len() {

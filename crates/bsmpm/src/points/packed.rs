@@ -1,5 +1,5 @@
-//! Tensors of all points, without the components that the dimension leaves at zero: in a plane those that couple it with
-//! its normal. Computation knows whole tensors only.
+//! Tensors of all points, without the components that the dimension leaves at zero: in a plane those that couple it
+//! with its normal. Computation knows whole tensors only.
 
 use crate::tensor::{Symmetric, Tensor};
 use std::marker::PhantomData;
@@ -52,8 +52,8 @@ impl Components for Symmetric {
     }
 }
 
-/// An array of tensors: 5 numbers of 9, and 4 of 6 symmetric ones, if `D` is 2, else all. The sign of a zero that is not
-/// held is lost.
+/// An array of tensors: 5 numbers of 9, and 4 of 6 symmetric ones, if `D` is 2, else all. The sign of a zero that is
+/// not held is lost.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Packed<const D: usize, T> {
     numbers: Vec<f64>, // those that are held, tensor by tensor

@@ -15,8 +15,9 @@ use crate::tensor::Vector;
 
 /// A first residual this much below the force tolerance needs no direction: |du_0 . f_0| would only be noise.
 const ALREADY: f64 = 1e-2;
-/// Forces this much below their tolerance are enough where no method leads on: the states of steps that meet both criteria
-/// have such forces (.01 to .07 of the tolerance in a wall's active wedge, .5 at most), so that none is balanced worse.
+/// Forces this much below their tolerance are enough where no method leads on: the states of steps that meet both
+/// criteria have such forces (.01 to .07 of the tolerance in a wall's active wedge, .5 at most), so that none is
+/// balanced worse.
 const SETTLED: f64 = 1e-1;
 /// Iterations over which the rate of convergence is taken.
 const WINDOW: usize = 20;
@@ -44,15 +45,15 @@ impl Convergence {
         Self { criteria, round_off, first_energy: None, history: Vec::new(), settled: None }
     }
 
-    /// Whether a state is in equilibrium before any direction is known: a guess far below the force tolerance, or forces
-    /// that no node has further out of balance than by round-off.
+    /// Whether a state is in equilibrium before any direction is known: a guess far below the force tolerance, or
+    /// forces that no node has further out of balance than by round-off.
     pub fn is_balanced<K, const D: usize>(&self, balance: &Balance, problem: &Problem<'_, K, D>) -> bool {
         (self.history.is_empty() && self.measure(balance) <= ALREADY * self.criteria.force)
             || self.round_off.covers(balance, problem)
     }
 
-    /// The first state whose forces balanced far below their tolerance, m, nodal: later ones only wander from it where the
-    /// stiffness is next to singular.
+    /// The first state whose forces balanced far below their tolerance, m, nodal: later ones only wander from it where
+    /// the stiffness is next to singular.
     pub fn settled(&self) -> Option<&Vec<f64>> {
         self.settled.as_ref()
     }
@@ -137,8 +138,9 @@ impl Convergence {
     }
 }
 
-/// |du_0 . (f_0 - K_strips du_0)|: the energy of the first direction without that of the strips' penalty, which takes up
-/// their motion in it and would make the measure as much too lenient as the penalty is stiff. `work`: du_0 . f_0.
+/// |du_0 . (f_0 - K_strips du_0)|: the energy of the first direction without that of the strips' penalty, which
+/// takes up their motion in it and would make the measure as much too lenient as the penalty is stiff. `work`:
+/// du_0 . f_0.
 pub fn first_energy<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>, du: &[f64], work: f64) -> f64 {
     if problem.model.boundary.strips.is_empty() {
         return work.abs();

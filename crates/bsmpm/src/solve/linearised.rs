@@ -146,8 +146,8 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
         out.iter_mut().zip(&nodes.free).filter(|(_, free)| !**free).for_each(|(out, _)| *out = 0.0);
     }
 
-    /// Assembles and factorises the matrix that preconditions the product: all of it, but for F-bar's average where that
-    /// reaches farther than the matrix. One exchange with the neighbours where it does not.
+    /// Assembles and factorises the matrix that preconditions the product: all of it, but for F-bar's average where
+    /// that reaches farther than the matrix. One exchange with the neighbours where it does not.
     pub fn factorise(&self, solver: &mut dyn LinearSolver) -> Result<(), SolveError> {
         let Problem { shape, nodes, points, .. } = *self.problem;
         solver.begin(&nodes.free);
@@ -181,8 +181,8 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
         complete(self.problem, solver, Symmetry::General)
     }
 
-    /// Moduli of point `p`, and its flux per unit of d ln(dJ-bar/dJ), of a force that is not the adjoint: that one reaches twice
-    /// as far as a matrix.
+    /// Moduli of point `p`, and its flux per unit of d ln(dJ-bar/dJ), of a force that is not the adjoint: that one
+    /// reaches twice as far as a matrix.
     fn narrow(&self, p: usize) -> (Moduli<K, D>, K::Gradient) {
         let flux = self.dilation.as_ref().map_or_else(K::Gradient::zeros, |dilation| dilation[p].flux);
         let has = |(adjoint, _): &&(Adjoint, _)| adjoint.has(self.problem.model, self.problem.points, p);

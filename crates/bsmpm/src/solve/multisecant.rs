@@ -1,7 +1,7 @@
 //! Steps (6), (7) by all recent secants at once: Anderson (1965), in the form of Fang and Saad (2009).
 //!
-//! With w = K_0^-1 f, a step du = w - sum_j g_j (s_j + dw_j), where s_j are the last steps, dw_j what they changed in w,
-//! and g makes the predicted rest w - sum_j g_j dw_j smallest in the energy of K_0: its products dw_i . K_0 dw_j are
+//! With w = K_0^-1 f, a step du = w - sum_j g_j (s_j + dw_j), where s_j are the last steps, dw_j what they changed in
+//! w, and g makes the predicted rest w - sum_j g_j dw_j smallest in the energy of K_0: its products dw_i . K_0 dw_j are
 //! dw_i . df_j, which need no product with K_0. On a linear problem that is as good as GMRES, where Broyden's update
 //! may take twice the iterations.
 
@@ -131,8 +131,8 @@ fn least_squares(products: &[Vec<f64>], right: &[f64]) -> Vec<f64> {
     (eigenvectors * along).iter().enumerate().map(|(i, weight)| weight * inverse(i)).collect()
 }
 
-/// The power of two (N m) of the largest diagonal product. Square roots round otherwise in other units: without unit, the
-/// same problem has the same bits in all units that differ by powers of two.
+/// The power of two (N m) of the largest diagonal product. Square roots round otherwise in other units: without unit,
+/// the same problem has the same bits in all units that differ by powers of two.
 fn unit(products: &[Vec<f64>]) -> f64 {
     let largest = products.iter().enumerate().map(|(i, row)| row[i].abs()).fold(0.0, f64::max);
     f64::from_bits(largest.to_bits() & f64::INFINITY.to_bits())

@@ -89,8 +89,8 @@ pub struct Stopped {
 }
 
 impl Stopped {
-    /// An iteration whose linear system could not be solved at a state; where nothing was iterated before, the system itself
-    /// is at fault.
+    /// An iteration whose linear system could not be solved at a state; where nothing was iterated before, the system
+    /// itself is at fault.
     pub fn without_direction<K: Kinematics<D>, const D: usize>(
         problem: &Problem<'_, K, D>,
         (best, residual): (Vec<f64>, &Residual<K, D>),

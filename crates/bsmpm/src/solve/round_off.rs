@@ -1,4 +1,5 @@
-//! What out-of-balance force is round-off: below it no iteration can change a state, and no relative measure means anything.
+//! What out-of-balance force is round-off: below it no iteration can change a state, and no relative measure means
+//! anything.
 
 use crate::kinematics::Kinematics;
 use crate::nodal::Nodal;
@@ -11,11 +12,11 @@ const INTERNAL: f64 = 1e-13;
 /// Round-off of the inertia, relative to |4/dt M v| (with numerical damping: its factor): a few roundings.
 const CANCELLED: f64 = 4.0 * f64::EPSILON;
 
-/// Round-off of the forces in one step. Each node has its own: the stiffest material of a scene must not excuse what is out
-/// of balance in the softest.
+/// Round-off of the forces in one step. Each node has its own: the stiffest material of a scene must not excuse what is
+/// out of balance in the softest.
 #[derive(Clone, Debug)]
 pub struct RoundOff {
-    force: Vec<f64>, // N  1e-13 E h^(D-1), E the largest at the node, and of 4/dt^2 u and 4/dt v that cancel when dt is tiny
+    force: Vec<f64>, // N  1e-13 E h^(D-1), E the largest at the node, and of 4/dt^2 u, 4/dt v, which cancel if dt is tiny
     norm: f64,       // N  of all nodes
     apart: Vec<f64>, // N  of each material's own nodes; empty in a scene of one material
 }
@@ -49,8 +50,8 @@ impl RoundOff {
         self.norm
     }
 
-    /// The force measure: the larger of |f_oob| / largest force of all nodes and that of any material's own nodes, where it is
-    /// not round-off; with the number of the material that it is of.
+    /// The force measure: the larger of |f_oob| / largest force of all nodes and that of any material's own nodes,
+    /// where it is not round-off; with the number of the material that it is of.
     pub fn measure(&self, balance: &Balance) -> (f64, Option<usize>) {
         let parts = balance.apart.iter().zip(&self.apart).enumerate();
         let apart = parts
@@ -59,8 +60,8 @@ impl RoundOff {
         apart.fold((balance.measure(), None), |most, part| if part.0 > most.0 { part } else { most })
     }
 
-    /// Whether no node is further out of balance than by round-off. All ranks must ask; they share an exchange only where
-    /// the norm leaves a doubt.
+    /// Whether no node is further out of balance than by round-off. All ranks must ask; they share an exchange only
+    /// where the norm leaves a doubt.
     pub fn covers<K, const D: usize>(&self, balance: &Balance, problem: &Problem<'_, K, D>) -> bool {
         if balance.norm > self.norm {
             return false;

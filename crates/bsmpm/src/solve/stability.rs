@@ -1,5 +1,5 @@
-//! Whether the equilibrium that a quasi-static iteration comes near is stable: the sign of the second-order work on its way
-//! (Hill, 1958). Asked of a single elastic material, or without averages; why, and what it meets: `solve.md`.
+//! Whether the equilibrium that a quasi-static iteration comes near is stable: the sign of the second-order work on its
+//! way (Hill, 1958). Asked of a single elastic material, or without averages; why, and what it meets: `solve.md`.
 
 use crate::error::StepError;
 use crate::kinematics::Kinematics;
@@ -20,9 +20,9 @@ pub fn tells<K, const D: usize>(problem: &Problem<'_, K, D>, before: &Balance) -
     before.measure() < NEAR && problem.nodes.inertia.is_none() && is_symmetric(problem.model)
 }
 
-/// Refuses a direction du (m, nodal; how much of it was taken changes no sign) near static equilibrium whose second-order
-/// work is negative beyond round-off: `work` is du . f_oob before it was taken, N m, where that [`tells`] anything; `after` are
-/// the forces then. Agreed by all ranks; one reduction.
+/// Refuses a direction du (m, nodal; how much of it was taken changes no sign) near static equilibrium whose
+/// second-order work is negative beyond round-off: `work` is du . f_oob before it was taken, N m, where that [`tells`]
+/// anything; `after` are the forces then. Agreed by all ranks; one reduction.
 pub fn check<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
     convergence: &Convergence,
@@ -44,7 +44,8 @@ fn is_symmetric<K, const D: usize>(model: &Model<K, D>) -> bool {
     elastic && (model.materials.len() == 1 || model.stabilisation == Stabilisation::None)
 }
 
-/// Largest stiffness against dilation over Young's modulus, by which the round-off of nearly incompressible stress is larger.
+/// Largest stiffness against dilation over Young's modulus, by which the round-off of nearly incompressible stress is
+/// larger.
 fn bulkiness<K, const D: usize>(model: &Model<K, D>) -> f64 {
     let of = |material: &Material| material.elastic().oedometric() / material.elastic().young;
     model.materials.iter().map(of).fold(1.0, f64::max)

@@ -1,7 +1,8 @@
-//! Nodes that a single material touches. One scale for the forces of all would let a heavy body excuse what is out of balance
-//! in a light one, so the force measure is taken of each material's own nodes, too.
+//! Nodes that a single material touches. One scale for the forces of all would let a heavy body excuse what is out of
+//! balance in a light one, so the force measure is taken of each material's own nodes, too.
 //!
-//! Nodes where materials meet belong to none: there the forces of the heavier one act. Bodies of one material share a scale.
+//! Nodes where materials meet belong to none: there the forces of the heavier one act. Bodies of one material share a
+//! scale.
 
 use crate::exact::Exact;
 use crate::grid::Shape;
@@ -43,8 +44,8 @@ impl Apart {
         Some(Self { materials, of })
     }
 
-    /// For each material, sums over the components of this rank's own nodes that are the material's alone, `width` a node;
-    /// all of one material behind each other. Formed like [`over_layers`](crate::parallel::over_layers).
+    /// For each material, sums over the components of this rank's own nodes that are the material's alone, `width` a
+    /// node; all of one material behind each other. Formed like [`over_layers`](crate::parallel::over_layers).
     pub fn sums<const N: usize>(&self, halo: &dyn Halo, width: usize, terms: impl Fn(usize) -> [f64; N]) -> Vec<Exact> {
         let (owned, layer) = (halo.owned(), halo.layer_nodes().max(1));
         let mut sums = vec![Exact::ZERO; self.materials * N];

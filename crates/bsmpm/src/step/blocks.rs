@@ -1,5 +1,5 @@
-//! Step (6): the parts that the stiffness K_0 and the complete derivative share: a point's moduli in the block of its patch,
-//! mass, and what is added to a matrix once its patches are assembled.
+//! Step (6): the parts that the stiffness K_0 and the complete derivative share: a point's moduli in the block of its
+//! patch, mass, and what is added to a matrix once its patches are assembled.
 
 use crate::error::SolveError;
 use crate::grid::Shape;

@@ -3,9 +3,9 @@
 //! The Cauchy stress that is kept comes from the converged tau; the b^e that the next step starts from is the averaged
 //! or filtered one under modified and consistent F-bar: the two differ, and the stress is the one in equilibrium.
 //!
-//! It is tau/J-bar, J-bar the dilation that the stress has felt: the product of the averaged ones of all steps and of what
-//! filters made of the elastic part. The point's own J = det F drifts away from that (the short footing's: .79 to 1.33), as
-//! nothing resists, so that tau/J lies outside of the yield surface that tau is on.
+//! It is tau/J-bar, J-bar the dilation that the stress has felt: the product of the averaged ones of all steps and of
+//! what filters made of the elastic part. The point's own J = det F drifts away from that (the short footing's: .79 to
+//! 1.33), as nothing resists, so that tau/J lies outside of the yield surface that tau is on.
 
 use crate::error::StepError;
 use crate::grid::{Shape, transfer};
@@ -55,8 +55,8 @@ pub struct Committed {
     pub advance: f64,
 }
 
-/// The constitution's answers to the converged step. Fails on all ranks if it refuses a state that it answered during the
-/// iteration.
+/// The constitution's answers to the converged step. Fails on all ranks if it refuses a state that it answered during
+/// the iteration.
 pub fn responses<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     trial: &Trial<K, D>,
@@ -127,9 +127,9 @@ fn gaps<K, const D: usize>(model: &Model<K, D>, points: &Points<D>, responses: &
     closes.contains(&true).then(|| responses.iter().zip(&points.material).map(gap).collect())
 }
 
-/// Steps (10a), (11c), (11d): a_I by Newmark, a_p = sum_I N_Ip a_I, v_p += dt ((1 - gamma) a_p(t) + gamma a_p(t+dt)). With a
-/// consistent mass v_p += sum_I N_Ip (v_I(t+dt) - v_I(t)) instead, what supports took included: with it the points gain
-/// what the nodes gain, and with the accelerations that points keep to themselves they gain more.
+/// Steps (10a), (11c), (11d): a_I by Newmark, a_p = sum_I N_Ip a_I, v_p += dt ((1 - gamma) a_p(t) + gamma a_p(t+dt)).
+/// With a consistent mass v_p += sum_I N_Ip (v_I(t+dt) - v_I(t)) instead, what supports took included: with it the
+/// points gain what the nodes gain, and with the accelerations that points keep to themselves they gain more.
 fn move_with_inertia<const D: usize>(
     (shape, matrix): (&Shape<D>, MassMatrix),
     inertia: &Inertia,

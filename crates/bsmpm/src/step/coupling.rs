@@ -1,6 +1,6 @@
-//! F-bar's average in a matrix, by which points of neighbouring patches dilate together: sum_h (1/W_h) f_h g_h^T over the
-//! functions h that average, W_h = sum_r A_hr w_r, g_h the forces that work on the dilation of h, f_h those that a unit of it
-//! raises. Where it comes from, and what it is worth: `solve.md`.
+//! F-bar's average in a matrix, by which points of neighbouring patches dilate together: sum_h (1/W_h) f_h g_h^T over
+//! the functions h that average, W_h = sum_r A_hr w_r, g_h the forces that work on the dilation of h, f_h those that a
+//! unit of it raises. Where it comes from, and what it is worth: `solve.md`.
 
 use crate::grid::{Contributions, Grid, Shape};
 use crate::model::Model;
@@ -28,7 +28,8 @@ pub struct Coupling<'a, const D: usize> {
 
 /// Functions on cells, or on pairs of cells.
 struct Level {
-    /// per group and function its head, W and kappa_h W, and g of the nodes that its cells touch; f of them, if it is its own
+    /// per group and function its head, W and kappa_h W, and g of the nodes that its cells touch; f of them, if it is
+    /// its own
     sums: Vec<Contributions>,
     /// nodes that a function's cells touch, along an axis
     side: usize,
@@ -83,8 +84,8 @@ impl Dilations {
 }
 
 impl<'a, const D: usize> Coupling<'a, D> {
-    /// No sums yet; `None` where dilations are not averaged by functions of a lower degree, or windows do not reach as far
-    /// as these couple ([`Grid::reaching`]).
+    /// No sums yet; `None` where dilations are not averaged by functions of a lower degree, or windows do not reach as
+    /// far as these couple ([`Grid::reaching`]).
     pub fn of<K>(model: &'a Model<K, D>, nodes: &'a Nodes<D>, raised: Raised) -> Option<Self> {
         let (grid, groups) = (&model.grid, model.groups.count());
         let lower = nodes.lowered().filter(|_| grid.beyond() + 1 >= grid.order())?;
@@ -131,8 +132,8 @@ impl<'a, const D: usize> Coupling<'a, D> {
         }
     }
 
-    /// Adds the products to a matrix, each on the rank that owns the first of its nodes. One exchange with the neighbours for
-    /// every group, and one more where functions are merged.
+    /// Adds the products to a matrix, each on the rank that owns the first of its nodes. One exchange with the
+    /// neighbours for every group, and one more where functions are merged.
     pub fn assemble(&self, halo: &dyn Halo, solver: &mut dyn LinearSolver) {
         let (grid, degree) = (self.grid, self.grid.order() - 1);
         for sums in &self.cells.sums {
@@ -147,8 +148,8 @@ impl<'a, const D: usize> Coupling<'a, D> {
         }
     }
 
-    /// `first`: along an axis, by the number under which a function is kept, the first node that its cells touch; it may lie
-    /// before the grid.
+    /// `first`: along an axis, by the number under which a function is kept, the first node that its cells touch; it
+    /// may lie before the grid.
     fn assemble_group(
         &self,
         (sums, side): (&Contributions, usize),
@@ -202,8 +203,8 @@ impl Level {
         Self { sums: (0..groups).map(|_| none()).collect(), side, places }
     }
 
-    /// Adds a share of the `numbers` of a patch's function to the one that is kept `offset` from the patch's `first` node, whose
-    /// support starts `shift` cells before the patch.
+    /// Adds a share of the `numbers` of a patch's function to the one that is kept `offset` from the patch's `first`
+    /// node, whose support starts `shift` cells before the patch.
     fn add<const D: usize>(
         &mut self,
         group: usize,

@@ -13,12 +13,13 @@ pub struct Inertia {
     pub v: Vec<f64>,
     /// m/s2, D numbers a node
     pub a: Vec<f64>,
-    /// J  per component, what a motion that is prescribed works on material that comes with another velocity: the velocity times
-    /// the jump of the momentum; empty where nothing moves
+    /// J  per component, what a motion that is prescribed works on material that comes with another velocity: the
+    /// velocity times the jump of the momentum; empty where nothing moves
     pub struck: Vec<f64>,
-    /// m/s  by which supports change the velocity of the nodes as the step begins, D numbers a node, of a consistent mass; the points
-    /// share in it, so that what lies beside a support moves as its velocity says. Empty where nothing does: with the lumped
-    /// mass the nodes of a support see the velocity of the points above them, and would take it away in every step.
+    /// m/s  by which supports change the velocity of the nodes as the step begins, D numbers a node, of a consistent
+    /// mass; the points share in it, so that what lies beside a support moves as its velocity says. Empty where nothing
+    /// does: with the lumped mass the nodes of a support see the velocity of the points above them, and would take it
+    /// away in every step.
     pub blow: Vec<f64>,
     /// s  length of the step
     pub dt: f64,

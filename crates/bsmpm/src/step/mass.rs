@@ -1,10 +1,11 @@
 //! The mass matrix of the nodes, lumped or consistent: what maps momentum to velocity and resists acceleration.
 //!
-//! One matrix serves both. With `M v_I = Σ_p N_Ip m_p v_p` and `M Δv_I = f dt`, the points' gain `Σ_p m_p v_p · Σ_I N_Ip Δv_I` is the
-//! work `v_I · f dt` of the forces on the displacement that they cause; with different matrices energy is made or lost in
-//! proportion to the force, however short the step. A lumped M smooths the velocity at a body's edge, where the points that a node
-//! sees lie to one side of it; the consistent one gives every velocity field that the splines hold back to them, rotation among
-//! them, but is singular where a node sees too little: see [`SHARE`].
+//! One matrix serves both. With `M v_I = Σ_p N_Ip m_p v_p` and `M Δv_I = f dt`, the points' gain
+//! `Σ_p m_p v_p · Σ_I N_Ip Δv_I` is the work `v_I · f dt` of the forces on the displacement that they cause; with
+//! different matrices energy is made or lost in proportion to the force, however short the step. A lumped M smooths the
+//! velocity at a body's edge, where the points that a node sees lie to one side of it; the consistent one gives every
+//! velocity field that the splines hold back to them, rotation among them, but is singular where a node sees too
+//! little: see [`SHARE`].
 
 use crate::grid::{Shape, transfer};
 use crate::nodal::Nodal;
@@ -20,14 +21,15 @@ pub enum MassMatrix {
     Consistent,
 }
 
-/// Part s of the consistent matrix that is consistent. As `0 <= x · M_c x <= x · M_l x`, the eigenvalues relative to the lumped one
-/// lie in [1 - s, 1], whatever nodes a body hardly touches: solutions take some tens of iterations.
+/// Part s of the consistent matrix that is consistent. As `0 <= x · M_c x <= x · M_l x`, the eigenvalues relative to
+/// the lumped one lie in [1 - s, 1], whatever nodes a body hardly touches: solutions take some tens of iterations.
 pub const SHARE: f64 = 0.95;
 
 /// Square of the part of a momentum, in the norm of the kinetic energy, that a solution may leave.
 const LEFT: f64 = 1e-24;
 
-/// Iterations that a solution may take: with the eigenvalues of [`SHARE`] each leaves .64 of the error at most, and 80 reach 1e-12.
+/// Iterations that a solution may take: with the eigenvalues of [`SHARE`] each leaves .64 of the error at most, and 80
+/// reach 1e-12.
 const MOST: usize = 120;
 
 /// The mass matrix of a step. Fields are flat, D numbers a node of the window.
@@ -61,9 +63,9 @@ impl<const D: usize> Mass<'_, D> {
         product
     }
 
-    /// The field whose momentum is `momentum` at every component that is not `held`, and which has the value of those that are.
-    /// Massless nodes have none. Conjugate gradients with the lumped matrix where M is consistent, one exchange and two
-    /// reductions an iteration.
+    /// The field whose momentum is `momentum` at every component that is not `held`, and which has the value of those
+    /// that are. Massless nodes have none. Conjugate gradients with the lumped matrix where M is consistent, one
+    /// exchange and two reductions an iteration.
     pub fn solve(&self, momentum: Vec<f64>, held: &[Option<f64>]) -> Vec<f64> {
         let mut x = self.by_lumped(momentum.clone());
         let scale = dots(self.halo, D, &[(&momentum, &x)])[0];

@@ -1,9 +1,9 @@
 //! Time integration (steps 2c, 5b, 10): Newmark's family, with a choice of numerical damping.
 //!
-//! `u = dt v + dt² ((1/2 - β) a + β a')`, `v' = v + dt ((1 - γ) a + γ a')`; balance at the end of the step with the inertia
-//! `M ((1 - α) a' + α a)` (Wood, Bossak and Zienkiewicz, 1980; here α as in Chung and Hulbert, 1993). In this method a at the
-//! start of a step is what the points give the nodes, not what the last step left there. A first step under a force
-//! that acts at once has β = 1/2, γ = 1.
+//! `u = dt v + dt² ((1/2 - β) a + β a')`, `v' = v + dt ((1 - γ) a + γ a')`; balance at the end of the step with the
+//! inertia `M ((1 - α) a' + α a)` (Wood, Bossak and Zienkiewicz, 1980; here α as in Chung and Hulbert, 1993). In this
+//! method a at the start of a step is what the points give the nodes, not what the last step left there. A first step
+//! under a force that acts at once has β = 1/2, γ = 1.
 
 /// Parameters of the family; the paper's are α = 0, β = 1/4, γ = 1/2.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,8 +20,8 @@ impl Default for Newmark {
 }
 
 impl Newmark {
-    /// WBZ-α (Bossak): `α = (ρ - 1)/(ρ + 1)`, `γ = 1/2 - α`, `β = (1 - α)²/4`; of second order, unconditionally stable. The
-    /// spectral radius ρ at infinite frequency lies in [0, 1]; 1 is the paper's method to the bit.
+    /// WBZ-α (Bossak): `α = (ρ - 1)/(ρ + 1)`, `γ = 1/2 - α`, `β = (1 - α)²/4`; of second order, unconditionally stable.
+    /// The spectral radius ρ at infinite frequency lies in [0, 1]; 1 is the paper's method to the bit.
     pub fn of_spectral_radius(rho: f64) -> Self {
         let alpha = (rho - 1.0) / (rho + 1.0);
         Self { alpha, beta: 0.25 * (1.0 - alpha).powi(2), gamma: 0.5 - alpha }
@@ -32,9 +32,10 @@ impl Newmark {
         Self { alpha: 0.0, beta: 0.25 * (gamma + 0.5).powi(2), gamma }
     }
 
-    /// β = 1/2, γ = 1: nothing depends on a at the start of the step, and a constant acceleration is exact. For a first step
-    /// under a force that acts at once: the points' a = 0 there would let it come half a step late. `M a = f` at the start
-    /// instead makes what is stiff swing about its equilibrium in steps that do not resolve it, where this one damps it.
+    /// β = 1/2, γ = 1: nothing depends on a at the start of the step, and a constant acceleration is exact. For a first
+    /// step under a force that acts at once: the points' a = 0 there would let it come half a step late. `M a = f` at
+    /// the start instead makes what is stiff swing about its equilibrium in steps that do not resolve it, where this
+    /// one damps it.
     pub fn of_the_end() -> Self {
         Self { alpha: 0.0, beta: 0.5, gamma: 1.0 }
     }

@@ -25,8 +25,9 @@ struct Averages<const D: usize> {
     weight: Option<Vec<f64>>,
     /// weight at and below which a node has no average
     threshold: f64,
-    /// of dilations under consistent and sub-grid F-bar: the splines of degree q - 1 at the points, and what they weigh; they are numbered
-    /// within the nodes (see [`Shape::lowered`]), and those that no point touches weigh nothing
+    /// of dilations under consistent and sub-grid F-bar: the splines of degree q - 1 at the points, and what they
+    /// weigh; they are numbered within the nodes (see [`Shape::lowered`]), and those that no point touches weigh
+    /// nothing
     lower: Option<(Shape<D>, Vec<f64>)>,
 }
 
@@ -115,8 +116,8 @@ impl<const D: usize> Nodes<D> {
         Ok(mapped)
     }
 
-    /// What `found` makes of S(a)_p = sum_I N_Ip a_I, for every point: a_I = 1/m_I sum_p N_Ip m_p a_p (Eqs 16, 17), zero at
-    /// massless nodes, both sums over the points of one group of materials.
+    /// What `found` makes of S(a)_p = sum_I N_Ip a_I, for every point: a_I = 1/m_I sum_p N_Ip m_p a_p (Eqs 16, 17),
+    /// zero at massless nodes, both sums over the points of one group of materials.
     pub fn average<K, const C: usize, T: Send>(
         &self,
         model: &Model<K, D>,
@@ -129,7 +130,8 @@ impl<const D: usize> Nodes<D> {
         self.average_with(model, (shape, weight), points, halo, value, found)
     }
 
-    /// What these points, which the nodes were mapped from, weigh in the integrals of the stress: m^D of the reference volume.
+    /// What these points, which the nodes were mapped from, weigh in the integrals of the stress: m^D of the reference
+    /// volume.
     #[inline]
     pub fn volume<'a>(&'a self, points: &'a Points<D>) -> &'a [f64] {
         self.fitted.as_deref().unwrap_or(&points.volume)

@@ -49,8 +49,8 @@ pub struct StepReport {
     pub reactions: Vec<Vec<f64>>,
     /// what every rigid strip did
     pub strips: Vec<StripReport>,
-    /// J  work u . B u on the soft background, and f_int . u of all internal forces, the background's among them; if there
-    /// is a background
+    /// J  work u . B u on the soft background, and f_int . u of all internal forces, the background's among them; if
+    /// there is a background
     pub background: Option<[f64; 2]>,
     /// J  where the energy went, if the model balances it
     pub energy: Option<Flows>,
@@ -63,8 +63,8 @@ pub struct StepReport {
 }
 
 impl StepReport {
-    /// Of a displacement that was found, before the points have taken it; one reduction for the supports' forces, and one for
-    /// the background's work.
+    /// Of a displacement that was found, before the points have taken it; one reduction for the supports' forces, and
+    /// one for the background's work.
     pub fn of<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>, found: &Found<K, D>) -> Self {
         let nodes = problem.nodes;
         let soft = nodes.background.as_ref().map(|blocks| blocks.work::<D>(problem.shape, &found.u));

@@ -48,8 +48,8 @@ pub struct Balance {
 }
 
 impl<K: Kinematics<D>, const D: usize> Residual<K, D> {
-    /// Evaluates the forces under `u`: one exchange with the neighbours, one more each for F-bar, its adjoint and strips, and one
-    /// reduction.
+    /// Evaluates the forces under `u`: one exchange with the neighbours, one more each for F-bar, its adjoint and
+    /// strips, and one reduction.
     pub fn of(problem: &Problem<'_, K, D>, u: &[f64]) -> Self {
         let Problem { model, shape, nodes, points, halo, .. } = *problem;
         let trial = Trial::of(model, shape, nodes, points, u, halo);

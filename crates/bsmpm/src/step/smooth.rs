@@ -1,10 +1,10 @@
 //! Step (11e): smoothing of the elastic state that the next step starts from, once a converged step.
 //!
 //! How far it reaches: the kernel of S is the overlap of two B-splines of degree q, spread uniformly over a cell. As a
-//! density such a spline is the sum of q + 1 uniform ones over a cell, of variance (q+1) h^2/12 about its middle; to the
-//! nodes and back it is (q+1) h^2/6. Variances of passes add up, so that n of them smooth like a Gaussian of standard
-//! deviation `h sqrt(n (q+1)/6)`, and one multiplies a mode of wave number k by 1 - (q+1) k^2 h^2/12 + O(k^4 h^4).
-//! A share theta of a pass, (1 - theta) + theta S, has theta times its variance.
+//! density such a spline is the sum of q + 1 uniform ones over a cell, of variance (q+1) h^2/12 about its middle; to
+//! the nodes and back it is (q+1) h^2/6. Variances of passes add up, so that n of them smooth like a Gaussian of
+//! standard deviation `h sqrt(n (q+1)/6)`, and one multiplies a mode of wave number k by 1 - (q+1) k^2 h^2/12 + O(k^4
+//! h^4). A share theta of a pass, (1 - theta) + theta S, has theta times its variance.
 
 use crate::exact::Exact;
 use crate::grid::{Shape, transfer};
@@ -65,10 +65,10 @@ const RENEWING: f64 = 0.01;
 
 /// Consistent F-bar: b^e_p <- exp(2/3 theta_p (S(eps_v)_p - eps_v,p)) b^e_p, theta_p = S(1 - exp(-x/0.01))_p.
 ///
-/// x_p = sum_I N_Ip chi_I, chi_I the largest plastic strain of the step among the points that node I sees, of those groups
-/// of materials by themselves that averages do not mix. Two half
-/// steps have the flow of the whole, so that the filter converges in the step size, and where nothing flows within reach
-/// b^e stays bit by bit. The factor is a positive scalar on the whole tensor: 1/2 ln det b^e changes by
+/// x_p = sum_I N_Ip chi_I, chi_I the largest plastic strain of the step among the points that node I sees, of those
+/// groups of materials by themselves that averages do not mix. Two half
+/// steps have the flow of the whole, so that the filter converges in the step size, and where nothing flows within
+/// reach b^e stays bit by bit. The factor is a positive scalar on the whole tensor: 1/2 ln det b^e changes by
 /// theta (S(eps_v) - eps_v), the deviator of the elastic strain not at all. Returns the mean of theta over all points.
 pub fn filter_dilation<K, const D: usize>(
     model: &Model<K, D>,

@@ -1,9 +1,10 @@
-//! Step (6): the stiffness K_0 that the quasi-Newton method starts from, at the state it starts from, symmetric and without
-//! negative eigenvalues; definite with inertia, or where supports, points enough in a cell or the background leave no
-//! motion free: K_0 = 4/dt^2 M + sum_p V0 G^T D_p G + F-bar's average + background + strips; numerical damping changes the 4/dt^2.
+//! Step (6): the stiffness K_0 that the quasi-Newton method starts from, at the state it starts from, symmetric and
+//! without negative eigenvalues; definite with inertia, or where supports, points enough in a cell or the background
+//! leave no motion free: K_0 = 4/dt^2 M + sum_p V0 G^T D_p G + F-bar's average + background + strips; numerical damping
+//! changes the 4/dt^2.
 //!
-//! D_p is the elastic D^e, or where that state yields a positive stand-in for the tangent there. The quasi-Newton method
-//! stands for everything that K_0 leaves out.
+//! D_p is the elastic D^e, or where that state yields a positive stand-in for the tangent there. The quasi-Newton
+//! method stands for everything that K_0 leaves out.
 
 use crate::error::SolveError;
 use crate::grid::shape::{Patch, PatchColumn};
@@ -22,8 +23,8 @@ use crate::tensor::{Tensor, Vector};
 use nalgebra::SMatrix;
 use rayon::prelude::*;
 
-/// Assembles K_0 patch by patch into `solver` and factorises it: at the state `at`, or, without any, of elastic material
-/// whose dilation is not averaged. One exchange with the neighbours where the average couples patches.
+/// Assembles K_0 patch by patch into `solver` and factorises it: at the state `at`, or, without any, of elastic
+/// material whose dilation is not averaged. One exchange with the neighbours where the average couples patches.
 pub fn assemble<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
     at: Option<&Trial<K, D>>,
@@ -86,7 +87,8 @@ impl<K: Kinematics<D>, const D: usize> Assembly<'_, K, D> {
             moments.fill(K::Gradient::NO_MOMENT);
             let material = &model.materials[usize::from(points.material[run.start])];
             let (lambda, mu) = material.elastic().lame();
-            // What F-bar averages of isotropic stiffness is lambda + 2 mu/dof times the dilation; the rest has -2 mu/dof.
+            // What F-bar averages of isotropic stiffness is lambda + 2 mu/dof times the dilation; the rest has -2
+            // mu/dof.
             let averaged = 2.0 * mu * K::dilation().norm_squared();
             for p in run {
                 let stiffness = yielding[p - patch.points.start].as_ref();
@@ -109,9 +111,9 @@ impl<K: Kinematics<D>, const D: usize> Assembly<'_, K, D> {
         self.at?.respond(self.model, self.points, p).ok()?.yielding()
     }
 
-    /// Adds a point: to the `moments` of its material where it is elastic, and where it yields with a stiffness of its own
-    /// to the block; its dilation, against which elastic material has the stiffness `bulk` in Pa, where that is averaged.
-    /// `slopes` is room to work.
+    /// Adds a point: to the `moments` of its material where it is elastic, and where it yields with a stiffness of its
+    /// own to the block; its dilation, against which elastic material has the stiffness `bulk` in Pa, where that is
+    /// averaged. `slopes` is room to work.
     fn add(
         &self,
         (p, slopes): (usize, &mut [Slope<K, D>]),
@@ -145,8 +147,8 @@ impl<K: Kinematics<D>, const D: usize> Assembly<'_, K, D> {
     }
 }
 
-/// V0 D_p of a point that yields, one unit gradient after the other, and its stiffness against dilation in Pa; where that is
-/// `averaged` it is no part of the first.
+/// V0 D_p of a point that yields, one unit gradient after the other, and its stiffness against dilation in Pa; where
+/// that is `averaged` it is no part of the first.
 #[inline]
 fn of_point<K: Kinematics<D>, const D: usize>(
     stiffness: &Stiffness,
@@ -177,7 +179,8 @@ fn runs_of_one_material(patch: &Patch, material: &[u16]) -> Vec<std::ops::Range<
         .collect()
 }
 
-/// Adds V0 grad N_a (x) grad N_b for a <= b to the moments, `volume` weighted with the stiffness relative to the material's.
+/// Adds V0 grad N_a (x) grad N_b for a <= b to the moments, `volume` weighted with the stiffness relative to the
+/// material's.
 fn accumulate<K: Kinematics<D>, const D: usize>(volume: f64, slopes: &[Slope<K, D>], moments: &mut [Moment<K, D>]) {
     let size = slopes.len();
     for a in 0..size {
@@ -223,8 +226,8 @@ mod tests {
     use crate::material::{Elastic, Material, MohrCoulomb};
     use crate::tensor::{Square, Symmetric};
 
-    /// One unit gradient after the other, each turned into a stress by the three-dimensional moduli: averaged, without the
-    /// part of its dilation, and without what the stress works on it.
+    /// One unit gradient after the other, each turned into a stress by the three-dimensional moduli: averaged, without
+    /// the part of its dilation, and without what the stress works on it.
     #[test]
     fn moduli_of_a_point_are_those_of_unit_gradients_averaged_or_not() {
         let law = MohrCoulomb::new(Elastic { young: 1e3, poisson: 0.3 }, 0.4, 0.1, 1.0);

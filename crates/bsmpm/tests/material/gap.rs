@@ -12,8 +12,8 @@ fn driven(material: &Material, (b_e, gap): (Symmetric, f64), stretch: [f64; 3]) 
     respond(material, &Symmetric([x * p, y * q, z * r, 0.0, 0.0, 0.0]))
 }
 
-/// From rest apart to J = 1.5, in plane strain with shear on the way, back and into compression: without stress until J = 1,
-/// and then on the path of sand that has never come apart.
+/// From rest apart to J = 1.5, in plane strain with shear on the way, back and into compression: without stress until J
+/// = 1, and then on the path of sand that has never come apart.
 #[test]
 fn sand_resists_again_at_the_volume_at_which_it_came_apart() {
     let material = mohr_coulomb(1e4, 0.3, 30.0, 0.0, 0.0);

@@ -1,4 +1,5 @@
-//! The stiffness that stands for the tangent in the factorised matrix: symmetric, positive, and the tangent where that is so.
+//! The stiffness that stands for the tangent in the factorised matrix: symmetric, positive, and the tangent where that
+//! is so.
 
 use super::{Branch, REGIONS, hencky, mohr_coulomb, respond};
 use crate::random::Random;

@@ -23,7 +23,8 @@ fn error(material: &Material, b: &Symmetric, l: &Tensor, h: f64) -> Option<(Bran
     Some((found.branch(), (difference - tangent).amax() / size))
 }
 
-/// The smallest gap of trial strains whose stresses differ: the tangent varies over it, so a difference must stay within.
+/// The smallest gap of trial strains whose stresses differ: the tangent varies over it, so a difference must stay
+/// within.
 fn smallest_gap(found: &Response) -> f64 {
     let (eps, tau) = (found.principal_eps_trial(), found.principal_tau());
     let pairs = [(0, 1), (1, 2)].into_iter().filter(|(a, b)| tau[*a] != tau[*b]);

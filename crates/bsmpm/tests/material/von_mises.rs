@@ -18,7 +18,8 @@ fn answer(material: &Material, b: &Symmetric, state: f64) -> (Response, f64) {
     (response, after[0])
 }
 
-/// The stress lies on the surface of the state after the return; flow goes along the deviator, and κ grows by √(2/3) of it.
+/// The stress lies on the surface of the state after the return; flow goes along the deviator, and κ grows by √(2/3) of
+/// it.
 #[test]
 fn returns_lie_on_the_surface_that_has_grown_and_flow_along_its_normal() {
     let mut random = Random::new(70);
@@ -81,7 +82,8 @@ fn tangent_is_the_derivative() {
     assert!(seen > 10_000 && worst < 1e-7, "{seen}, {worst}");
 }
 
-/// Shear without change of volume: τ = G γ, then √3 τ = σ_y + H κ with γ = τ/G + √3 κ in logarithmic strain, in one step or many.
+/// Shear without change of volume: τ = G γ, then √3 τ = σ_y + H κ with γ = τ/G + √3 κ in logarithmic strain, in one
+/// step or many.
 #[test]
 fn pure_shear_hardens_linearly_in_any_number_of_steps() {
     let (hardening, way) = (50.0, 0.1); // principal strains ± way

@@ -57,7 +57,8 @@ fn second_return_changes_nothing() {
     assert!(change <= 1e-10, "{change:e}");
 }
 
-/// Koiter's rule in principal values: plastic strain is a combination of the active flows, with multipliers not negative.
+/// Koiter's rule in principal values: plastic strain is a combination of the active flows, with multipliers not
+/// negative.
 #[test]
 fn plastic_strain_obeys_the_flow_rule() {
     let violation = worst(12, -0.5, |material, response| {

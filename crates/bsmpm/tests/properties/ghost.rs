@@ -54,7 +54,8 @@ impl<const D: usize> Faces<D> {
     }
 }
 
-/// Coefficient of function `i` of x^p: the elementary symmetric polynomial of its q inner knots over its number of terms.
+/// Coefficient of function `i` of x^p: the elementary symmetric polynomial of its q inner knots over its number of
+/// terms.
 fn power(axis: &KnotVector, p: usize, i: usize) -> f64 {
     let q = axis.order();
     let subsets = (0..1_usize << q).filter(|set| set.count_ones() as usize == p);
@@ -97,8 +98,8 @@ fn it_is_symmetric_positive_and_leaves_every_polynomial_of_the_degree_alone() {
     holds_no_polynomial_and_is_positive::<Solid, 3>(2);
 }
 
-/// u = (x - s)_+^q jumps by q! in its q-th derivative at the breakpoint s, and nowhere else: gamma E h^(2q-1) q!^2 times
-/// the area of the section.
+/// u = (x - s)_+^q jumps by q! in its q-th derivative at the breakpoint s, and nowhere else: gamma E h^(2q-1) q!^2
+/// times the area of the section.
 #[test]
 fn the_jump_of_a_truncated_power_is_exact() {
     for order in 1..=3 {

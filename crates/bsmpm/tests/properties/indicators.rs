@@ -80,8 +80,8 @@ fn weights<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>) -> Vec<f64> {
     quadrature::fitted::<K, D>((grid, boundary), &shape, &scene.points, &scene.halo())
 }
 
-/// Largest relative error of the integrals of the lower splines that only reach cells of which `inside` holds, with the points'
-/// own volumes and the fitted ones.
+/// Largest relative error of the integrals of the lower splines that only reach cells of which `inside` holds, with the
+/// points' own volumes and the fitted ones.
 fn errors<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>, inside: impl Fn(usize, usize) -> bool) -> [f64; 2] {
     let (grid, points) = (&scene.model.grid, &scene.points);
     let lower = Shape::at(grid, points).unwrap().lowered(grid, points);
@@ -186,7 +186,8 @@ fn the_noise_of_the_pressure_has_no_unit() {
     }
 }
 
-/// What the formula says of a pass, measured on S itself: the variance of its kernel is that by which S x^2 exceeds x^2.
+/// What the formula says of a pass, measured on S itself: the variance of its kernel is that by which S x^2 exceeds
+/// x^2.
 #[test]
 fn a_pass_of_smoothing_has_the_variance_of_its_formula() {
     for order in 1..=3 {

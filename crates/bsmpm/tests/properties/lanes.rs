@@ -39,8 +39,8 @@ impl<K: Kinematics<D>, const D: usize> InLanes for Stresses<'_, K, D> {
     }
 }
 
-/// Clay that hardens beside sand, deformed at random, one point turned inside out; compares all points that lanes answer for
-/// and returns how many these are.
+/// Clay that hardens beside sand, deformed at random, one point turned inside out; compares all points that lanes
+/// answer for and returns how many these are.
 fn compared<K: Kinematics<D>, const D: usize>(method: Stabilisation, seed: u64) -> usize {
     let elastic = Elastic { young: 1e4, poisson: 0.3 };
     let clay = Material::VonMises(VonMises::new(elastic.clone(), 20.0, 300.0));

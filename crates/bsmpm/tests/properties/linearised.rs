@@ -181,8 +181,8 @@ fn what_gapes_is_in_the_product() {
 }
 
 /// Sand, or stiff clay far from yield, strained by about `size`: what is left of the force of a small step v, as large
-/// as the strain, once the product is taken off, |f(u + s v) - f(u) + s K v| / |s K v| for s = .02 and .01; and how many
-/// points change their region in it.
+/// as the strain, once the product is taken off, |f(u + s v) - f(u) + s K v| / |s K v| for s = .02 and .01; and how
+/// many points change their region in it.
 fn curvature(cohesion: f64, size: f64) -> ([f64; 2], usize) {
     let mut scene = loaded::<PlaneStrain, 2>(Stabilisation::FBar, Regime::QuasiStatic);
     let law = MohrCoulomb::new(Elastic { young: 1000.0, poisson: 0.3 }, 0.5, 0.0, cohesion);
@@ -217,8 +217,8 @@ fn curvature(cohesion: f64, size: f64) -> ([f64; 2], usize) {
     (left, changed)
 }
 
-/// Why Newton's method is slow where sand is next to stress-free: the law without cohesion scales with its strain, so that
-/// its curvature goes with the inverse, and a step must be small against the strain itself.
+/// Why Newton's method is slow where sand is next to stress-free: the law without cohesion scales with its strain, so
+/// that its curvature goes with the inverse, and a step must be small against the strain itself.
 #[test]
 fn the_curvature_of_sand_grows_as_its_stress_falls() {
     let [sand, clay] = [0.0, 1e3].map(|cohesion| {

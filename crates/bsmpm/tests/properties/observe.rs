@@ -38,8 +38,8 @@ fn a_linear_stress_has_no_noise_about_planes_and_a_uniform_one_none_at_all() {
     }
 }
 
-/// A pressure that is uniform stays as it is, whatever the points weigh; of one that changes its sign from point to point
-/// nothing is left but at the corners.
+/// A pressure that is uniform stays as it is, whatever the points weigh; of one that changes its sign from point to
+/// point nothing is left but at the corners.
 #[test]
 fn the_projected_pressure_keeps_what_is_uniform_and_damps_what_alternates() {
     let mut scene = block::<PlaneStrain, 2>(2);

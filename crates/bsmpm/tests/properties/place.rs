@@ -14,8 +14,8 @@ fn step() -> Scene<PlaneStrain, 2> {
         .body([0..2, 1..2], 2, 3.0, |x| x * 0.0)
 }
 
-/// The farthest point of a cell that is half full went back by a spacing of points (.25 m) whenever a column of points came
-/// into the next cell.
+/// The farthest point of a cell that is half full went back by a spacing of points (.25 m) whenever a column of points
+/// came into the next cell.
 #[test]
 fn the_front_of_a_body_that_slides_moves_as_the_body_does() {
     let plain = step();

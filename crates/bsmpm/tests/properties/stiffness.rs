@@ -27,7 +27,8 @@ fn paired<K: Kinematics<D>, const D: usize>(order: usize, cohesion: f64, regime:
     averaged(Stabilisation::SubgridFBar, (if D == 2 { 10 } else { 7 }, 2), (order, cohesion), regime)
 }
 
-/// In a grid of so many cells along the first axis, all but one of which it fills, and along the others, of which it fills two.
+/// In a grid of so many cells along the first axis, all but one of which it fills, and along the others, of which it
+/// fills two.
 fn averaged<K: Kinematics<D>, const D: usize>(
     method: Stabilisation,
     (length, width): (usize, usize),
@@ -54,7 +55,8 @@ enum Kind {
     General,
 }
 
-/// A matrix at a displacement of this size, its product with the free part of a nodal array, and the complete derivative's.
+/// A matrix at a displacement of this size, its product with the free part of a nodal array, and the complete
+/// derivative's.
 fn products<K: Kinematics<D>, const D: usize>(
     scene: &Scene<K, D>,
     size: f64,

@@ -170,7 +170,8 @@ fn squared_gradients_are_the_trace_of_the_moment() {
     assert!(found.iter().zip(&expected).all(|(a, b)| (a - b).abs() <= 1e-13 * b.abs()));
 }
 
-/// Sums of the windows of any cut, each layer adding its columns in their order, are those of the whole grid to the bit.
+/// Sums of the windows of any cut, each layer adding its columns in their order, are those of the whole grid to the
+/// bit.
 fn sums_of_windows<K: Kinematics<D>, const D: usize>(order: usize) {
     let scene = scattered::<K, D>(order);
     let (grid, all) = (&scene.model.grid, 0..scene.model.grid.columns().end);

@@ -113,7 +113,8 @@ impl<K: Kinematics<D>, const D: usize> Scene<K, D> {
         self
     }
 
-    /// Gives the points that `stiff` names by their place a second material, whose dilation averages do not mix with the first.
+    /// Gives the points that `stiff` names by their place a second material, whose dilation averages do not mix with
+    /// the first.
     pub fn with(mut self, second: Material, stiff: impl Fn(&Vector<D>) -> bool) -> Self {
         self.model.materials.push(second);
         self.model.groups = Groups::of_alike(&[false, true]);

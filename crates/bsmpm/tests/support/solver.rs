@@ -226,8 +226,8 @@ impl Dense {
         self.number.iter().map(|number| number.map_or(0.0, |row| image[row])).collect()
     }
 
-    /// Largest over smallest eigenvalue of the symmetric matrix: as it is, and scaled to a unit diagonal. Infinite if it
-    /// is not positive definite to rounding.
+    /// Largest over smallest eigenvalue of the symmetric matrix: as it is, and scaled to a unit diagonal. Infinite if
+    /// it is not positive definite to rounding.
     pub fn conditions(&self) -> [f64; 2] {
         let diagonal = self.matrix.diagonal();
         let scaled = self.matrix.map_with_location(|i, j, value| value / (diagonal[i] * diagonal[j]).sqrt());

@@ -9,8 +9,8 @@ use bsmpm::stabilisation::Stabilisation;
 
 type Round = Scene<Axisymmetric, 2>;
 
-/// A disc pressed flat: its rim and its top move, the axis and the base do not; every stretch is the same everywhere. With
-/// linear functions, of which N + r dN/dr is linear, the points' rule is exact and so is the stress.
+/// A disc pressed flat: its rim and its top move, the axis and the base do not; every stretch is the same everywhere.
+/// With linear functions, of which N + r dN/dr is linear, the points' rule is exact and so is the stress.
 #[test]
 fn uniform_strain_is_exact_in_one_step_with_every_method() {
     for method in METHODS {
@@ -44,8 +44,8 @@ fn uniform_strain_is_exact_in_one_step_with_every_method() {
     }
 }
 
-/// Relative error of the radial displacement (root of the mean square over the body), of a cylinder with inner radius 1 and
-/// outer radius 2 between smooth plates under a small pressure inside.
+/// Relative error of the radial displacement (root of the mean square over the body), of a cylinder with inner radius 1
+/// and outer radius 2 between smooth plates under a small pressure inside.
 fn cylinder(cells: usize, method: Stabilisation) -> f64 {
     let (inner, outer, pressure, poisson) = (1.0, 2.0, 1e-7, 0.3);
     let h = (outer - inner) / cells as f64;
@@ -75,7 +75,8 @@ fn a_thick_cylinder_under_pressure_converges_to_lame() {
     }
 }
 
-/// The volumes of cells and of functions add up to that of a sector of one radian, and a function's is its own integral.
+/// The volumes of cells and of functions add up to that of a sector of one radian, and a function's is its own
+/// integral.
 #[test]
 fn volumes_of_cells_and_functions_are_those_of_the_sector() {
     for order in 1..=3 {

@@ -1,4 +1,5 @@
-//! The Cauchy stress that points keep lies on the yield surface that their Kirchhoff stress is on, however far they flow.
+//! The Cauchy stress that points keep lies on the yield surface that their Kirchhoff stress is on, however far they
+//! flow.
 
 use crate::support::scene::{METHODS, Scene, axis};
 use bsmpm::background::{Background, Extent, Kind};

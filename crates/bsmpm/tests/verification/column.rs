@@ -137,7 +137,8 @@ fn the_base_carries_the_columns_weight_at_any_strain_and_any_time_of_the_ramp() 
     }
 }
 
-/// A bar that its weight compresses to half its height, nu = 0, on `points` points a cell and axis: mean error of the stress.
+/// A bar that its weight compresses to half its height, nu = 0, on `points` points a cell and axis: mean error of the
+/// stress.
 fn compressed(cells: usize, points: usize, fitted: bool) -> f64 {
     let h = 1.0 / cells as f64;
     let mut scene =

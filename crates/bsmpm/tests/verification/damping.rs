@@ -40,8 +40,9 @@ impl Scheme {
         }
     }
 
-    /// Amplification of (d, v dt, a dt^2) in a step of the length `turn` / omega, where of the points' v and a the part `kept`
-    /// reaches the nodes: 1 - (q+1) k^2 h^2 / 12 of a mode of the wave number k (method.md 3), 1 of a uniform one.
+    /// Amplification of (d, v dt, a dt^2) in a step of the length `turn` / omega, where of the points' v and a the part
+    /// `kept` reaches the nodes: 1 - (q+1) k^2 h^2 / 12 of a mode of the wave number k (method.md 3), 1 of a uniform
+    /// one.
     fn amplification(self, turn: f64, kept: f64) -> Matrix3<f64> {
         let (alpha, beta, gamma) = self.parameters();
         let end = Matrix3::new(1.0, -beta, 0.0, 0.0, -gamma, 1.0, turn * turn, 1.0 - alpha, 0.0);

@@ -252,7 +252,8 @@ fn a_load_that_grows_stores_its_work_and_one_at_once_twice_as_much_as_is_stored(
 
 #[test]
 fn a_face_that_moves_does_the_work_of_its_reaction() {
-    // From l = 1 to .9 in one step: W = M ln(l)^2 / 2, and the reaction M ln(l) / l at the end of the step does the work.
+    // From l = 1 to .9 in one step: W = M ln(l)^2 / 2, and the reaction M ln(l) / l at the end of the step does the
+    // work.
     fn pressed<K: Kinematics<D>, const D: usize>() -> (f64, f64) {
         let mut pushed = Support::roller(D - 1, true);
         pushed.velocity[D - 1] = Some(-0.1);

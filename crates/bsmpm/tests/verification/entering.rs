@@ -119,8 +119,8 @@ fn curvature_bounds_the_condition_however_little_enters_a_cell() {
 #[test]
 fn the_ghost_penalty_bounds_the_condition_however_little_enters_a_cell() {
     for k in [2, 3, 4, 6, 8, 10, 12, 15] {
-        // Measured 2.6e6, 2.6e5, 2.7e4 and 3.9e3: some 26 / gamma, whatever delta is, a third of the Laplacian's. Scaled at
-        // most 88, where a smaller coefficient leaves a hundredth of a cell to what is in it.
+        // Measured 2.6e6, 2.6e5, 2.7e4 and 3.9e3: some 26 / gamma, whatever delta is, a third of the Laplacian's.
+        // Scaled at most 88, where a smaller coefficient leaves a hundredth of a cell to what is in it.
         for coefficient in [1e-5, 1e-4, 1e-3, 1e-2] {
             let [plain, scaled] = condition(EDGE + H * 10.0_f64.powi(-k), ghost(coefficient));
             assert!(plain <= 40.0 / coefficient && scaled <= 100.0, "1e-{k}, {coefficient}: {plain:.1e} {scaled:.1e}");

@@ -1,4 +1,5 @@
-//! Stress at the start: equilibrium where it must hold, displacements that count from there, layers that grow with depth.
+//! Stress at the start: equilibrium where it must hold, displacements that count from there, layers that grow with
+//! depth.
 
 use crate::support::scene::{Scene, axis, hencky};
 use crate::support::solver::Skyline;

@@ -11,7 +11,8 @@ const YOUNG: f64 = 1e9;
 const WEIGHT: f64 = 2e4; // N/m3
 const SURFACE: f64 = 12.0; // m
 
-/// sigma_xx and sigma_yy over the true ones in the first row of points above an interface at the height `at`, and below.
+/// sigma_xx and sigma_yy over the true ones in the first row of points above an interface at the height `at`, and
+/// below.
 fn beside(method: Stabilisation, at: f64, stiffer: f64, lighter: f64) -> [[f64; 2]; 2] {
     let axes = [axis(1.0, 3, 2), axis(1.0, 13, 2)];
     let above = |x: &Vector<2>| x[1] > at;
@@ -43,8 +44,9 @@ fn beside(method: Stabilisation, at: f64, stiffer: f64, lighter: f64) -> [[f64; 
     [nearest(1.0), nearest(-1.0)]
 }
 
-/// Mixed, the stiffer layer's horizontal stress is 36 times too large with E 1:100 and 3,477 times with 1:1e4 (consistent
-/// F-bar; F-bar 66 and 6,586). What is left is in the displacement, whose strain cannot jump: without any average it is
+/// Mixed, the stiffer layer's horizontal stress is 36 times too large with E 1:100 and 3,477 times with 1:1e4
+/// (consistent F-bar; F-bar 66 and 6,586). What is left is in the displacement, whose strain cannot jump: without any
+/// average it is
 /// 1.80 times too large above and .24 times what it should be below.
 #[test]
 fn the_stiffness_beside_an_interface_does_not_matter() {

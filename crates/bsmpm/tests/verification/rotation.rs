@@ -18,8 +18,8 @@ fn angular_momentum(points: &Points<2>, centre: &Vector<2>) -> f64 {
     (0..points.len()).map(of).sum()
 }
 
-/// A free block of `cells` x `cells` cells, 1 m wide, through a quarter of a turn in `steps` steps: parts of the angular momentum
-/// and of the energy that are lost, and the momentum gained over mass times speed.
+/// A free block of `cells` x `cells` cells, 1 m wide, through a quarter of a turn in `steps` steps: parts of the
+/// angular momentum and of the energy that are lost, and the momentum gained over mass times speed.
 fn lost(mass: MassMatrix, cells: usize, steps: usize) -> [f64; 3] {
     let (h, pad) = (1.0 / cells as f64, cells / 2);
     let knots = || axis(h, cells + 2 * pad, 2);
@@ -55,8 +55,8 @@ fn a_free_block_keeps_its_angular_momentum_with_consistent_mass() {
     }
 }
 
-/// A layer of a tenth of a cell on a fixed base that starts at 1 m/s: kinetic energy of what the points say and of how they
-/// move, after some steps.
+/// A layer of a tenth of a cell on a fixed base that starts at 1 m/s: kinetic energy of what the points say and of how
+/// they move, after some steps.
 fn beside_a_base(mass: MassMatrix) -> [f64; 2] {
     let mut scene = Scene::<PlaneStrain, 2>::new([axis(1.0, 8, 2), axis(1.0, 2, 2)], hencky(1e2, 0.3), Regime::Dynamic)
         .body([0..8, 0..1], 2, 1.0, |_| [1.0, 0.0].into())

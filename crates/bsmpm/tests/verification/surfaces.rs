@@ -54,8 +54,8 @@ fn surface_points_share_the_length_of_their_segment_cell_by_cell() {
 #[test]
 fn a_platens_force_follows_the_exact_curve_across_cells_and_the_points_stress_less_closely() {
     // sigma = M ln(l)/l at l = .6: the platen crosses from one row of cells to the next, which a moving face cannot.
-    // F-bar averages over what little material a nearly empty row of cells holds: its force is off most where the platen
-    // has just left one. Bounds of force and of a point's stress, 1.3 times what was measured.
+    // F-bar averages over what little material a nearly empty row of cells holds: its force is off most where the
+    // platen has just left one. Bounds of force and of a point's stress, 1.3 times what was measured.
     for (method, rough, [whole, local]) in
         [(Stabilisation::None, false, [0.004, 0.14]), (Stabilisation::FBar, true, [0.095, 0.3])]
     {
@@ -90,7 +90,8 @@ fn what_a_strip_has_slipped_in_all_steps_is_its_pressure_over_the_penalty() {
         });
         let ratios = [slip / (last.abs() / penalty) - 1.0, accumulated / slip - 1.0];
         println!("penalty {penalty:e}: slipped {slip:.3e} m, off by {ratios:?}");
-        // The largest slip against the mean pressure, and the largest of all steps against the sum of the steps' largest.
+        // The largest slip against the mean pressure, and the largest of all steps against the sum of the steps'
+        // largest.
         assert!(ratios[0].abs() <= 1e-5 && ratios[1].abs() <= 1e-6);
     }
 }

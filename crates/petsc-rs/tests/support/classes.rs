@@ -1,5 +1,5 @@
-//! What is wrong with a linear system, and what each solver says of it: a class of its own, or what it gives is no solution
-//! and is seen not to be one.
+//! What is wrong with a linear system, and what each solver says of it: a class of its own, or what it gives is no
+//! solution and is seen not to be one.
 
 use crate::{LOCAL, entries, expect, poisson, solver, text, wavy};
 use petsc_rs::{Error, Ksp, Matrix, Petsc, Tolerances, Vector};
@@ -28,8 +28,8 @@ const ZERO: Fault = |row, column, value| if row == 7 || column == 7 { 0.0 } else
 const INDEFINITE: Fault = |row, column, value| if row == column && row % 3 == 0 { -value } else { value };
 const NONE: Fault = |_, _, value| value;
 
-/// With at most so many iterations, what each of the solvers comes to on one rank. Jacobi takes a zero of the diagonal for
-/// a one, and conjugate gradients then converge to what is no solution. On one rank ILU of this matrix is exact.
+/// With at most so many iterations, what each of the solvers comes to on one rank. Jacobi takes a zero of the diagonal
+/// for a one, and conjugate gradients then converge to what is no solution. On one rank ILU of this matrix is exact.
 const TABLE: [(&str, Fault, usize, [End; 3]); 4] = [
     ("not a number", NAN, 1000, [Diverged(-9), Diverged(-9), Untrue]),
     ("zero row", ZERO, 1000, [Untrue, Diverged(-5), Diverged(-11)]),
@@ -49,7 +49,8 @@ pub fn classes(petsc: &Petsc) -> Result<(), String> {
             let tolerances = Tolerances { relative: 1e-10, absolute: 0.0, max_iterations: most };
             ksp.set_tolerances(tolerances).map_err(text)?;
             let found = end(petsc, &mut ksp, &matrix)?;
-            // On several ranks other blocks are factorised, and which class comes first may differ; none is a success that is not.
+            // On several ranks other blocks are factorised, and which class comes first may differ; none is a success
+            // that is not.
             let right = petsc.ranks() > 1 && matches!(found, Diverged(_) | OtherRank) || found == expected;
             if !right {
                 wrong.push(format!("{what}, {}: {found:?}, not {expected:?}", names[0]));

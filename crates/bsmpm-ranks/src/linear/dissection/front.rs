@@ -1,5 +1,5 @@
-//! Dense kernels of a front: Cholesky factorisation of its first columns, and what they leave to the rest. Column-major,
-//! lower triangle; what stands above the diagonal enters no sum.
+//! Dense kernels of a front: Cholesky factorisation of its first columns, and what they leave to the rest.
+//! Column-major, lower triangle; what stands above the diagonal enters no sum.
 
 use nalgebra::{Dyn, MatrixView, MatrixViewMut};
 

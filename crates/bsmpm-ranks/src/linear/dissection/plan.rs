@@ -1,7 +1,8 @@
 //! Order of elimination of one slab's unknowns: nested dissection of its box of nodes, without MPI or numbers.
 //!
 //! Splines of order q couple nodes up to q apart, so that q layers of nodes cut a box in two. Nodes that other slabs
-//! touch too come last. George, A. (1973), SIAM J. Numer. Anal. 10, 345-363; Liu, J. W. H. (1992), SIAM Rev. 34, 82-109.
+//! touch too come last. George, A. (1973), SIAM J. Numer. Anal. 10, 345-363; Liu, J. W. H. (1992), SIAM Rev. 34,
+//! 82-109.
 
 use super::factor;
 use bsmpm::nodal::Nodal;
@@ -64,7 +65,8 @@ struct Cutter<'a, const D: usize, const C: usize> {
 }
 
 impl Plan {
-    /// Plan for the `free` components of a window of `counts` nodes with C each, of which no other slab touches the layers `inner`.
+    /// Plan for the `free` components of a window of `counts` nodes with C each, of which no other slab touches the
+    /// layers `inner`.
     pub fn new<const D: usize, const C: usize>(
         counts: [usize; D],
         order: usize,
@@ -193,7 +195,8 @@ impl<const D: usize, const C: usize> Cutter<'_, D, C> {
         }
     }
 
-    /// The rims: unknowns within the splines' reach of a part's box. All of them come later, as q layers part the boxes.
+    /// The rims: unknowns within the splines' reach of a part's box. All of them come later, as q layers part the
+    /// boxes.
     fn rims(&mut self) {
         let mut start = 0;
         for (part, region) in (0..).zip(&self.boxes) {

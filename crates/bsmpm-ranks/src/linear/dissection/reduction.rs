@@ -95,8 +95,8 @@ impl TreeReduction {
         good
     }
 
-    /// Solves for what the slabs share: `x` holds what this rank's slab leaves of the right-hand side, then the solution
-    /// there. Collective.
+    /// Solves for what the slabs share: `x` holds what this rank's slab leaves of the right-hand side, then the
+    /// solution there. Collective.
     pub fn solve(&self, link: &dyn Link, x: &mut [f64]) {
         let mut slab = self.hand(link, self.joined_by, x.to_vec());
         if let Some(joint) = &self.joint {
@@ -148,7 +148,8 @@ impl Joint {
         (Self { rows: all.len(), own, places, factor: Factor::default(), join }, left)
     }
 
-    /// Factorises the front of what the groups leave, packed; whether all pivots were positive, and what is left, packed.
+    /// Factorises the front of what the groups leave, packed; whether all pivots were positive, and what is left,
+    /// packed.
     fn factorise(&mut self, precision: Precision, groups: [Vec<f64>; 2]) -> (bool, Vec<f64>) {
         let order = self.rows - self.own;
         let (mut columns, mut rest) = (vec![0.0; self.own * self.rows], vec![0.0; order * order]);

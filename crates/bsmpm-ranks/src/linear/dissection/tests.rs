@@ -145,8 +145,8 @@ fn slabs_find_the_solution_of_the_dense_matrix() {
     }
 }
 
-/// Between two bodies a separator may hold nothing: it does where the first of them has as many unknowns, or hardly more.
-/// What the second slab shares with the first one, which has both bodies, must not be taken for that separator's.
+/// Between two bodies a separator may hold nothing: it does where the first of them has as many unknowns, or hardly
+/// more. What the second slab shares with the first one, which has both bodies, must not be taken for that separator's.
 #[test]
 fn bodies_apart_find_the_solution_of_the_dense_matrix() {
     let mut parted = 0;

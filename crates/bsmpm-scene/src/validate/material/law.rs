@@ -127,8 +127,8 @@ fn check(record: &Record, law: &Parameters, layer: Option<&Layer>, report: &mut 
     if law.model != LawName::Tresca && !record.gives("dilation") {
         report.note(record.path_of("dilation"), "0.0", "default: plastic flow without change of volume");
     }
-    // Only where an apex is free of stress can what opens there be a gap: with cohesion it would pull with c cot phi until
-    // it has closed, and without friction there is no apex.
+    // Only where an apex is free of stress can what opens there be a gap: with cohesion it would pull with c cot phi
+    // until it has closed, and without friction there is no apex.
     if record.word("separation") == Some(Separation::Closing) && (friction.0 <= 0.0 || cohesion.1 > 0.0) {
         let message = "\"closing\" needs friction and no cohesion: a gap is what opens where the stress is zero";
         record.error("separation", message, report);

@@ -6,8 +6,8 @@ use crate::support::cases::{COLUMN, changed};
 use std::ffi::OsStr;
 use std::os::unix::ffi::{OsStrExt, OsStringExt};
 
-/// kB  of private memory that a refusal may map, its threads' stacks (1 MB) included; a page more and it fails. Its whole
-/// resident memory was 39 MB, of which most are libraries; 50 MB are allowed.
+/// kB  of private memory that a refusal may map, its threads' stacks (1 MB) included; a page more and it fails. Its
+/// whole resident memory was 39 MB, of which most are libraries; 50 MB are allowed.
 const REFUSAL: &str = "-s 1024 && ulimit -d 40000";
 
 /// Names of files that a shell, a parser or a terminal could take for something else.

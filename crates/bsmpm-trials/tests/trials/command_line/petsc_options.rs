@@ -80,8 +80,8 @@ fn the_manifest_counts_what_ksp_said() {
     assert!(linear.reasons.len() == 1 && linear.reasons["DIVERGED_ITS"] > 0, "{linear:?}");
 }
 
-/// Without a tolerance of their own the methods must still solve well enough to be trusted; the first row is the example
-/// of the documentation.
+/// Without a tolerance of their own the methods must still solve well enough to be trusted; the first row is the
+/// example of the documentation.
 #[test]
 fn iterative_methods_work_by_their_names_alone() {
     let options: [&[&str]; 4] = [

@@ -1,11 +1,11 @@
 //! Splines of degree q - 1 on pairs of cells inside a body, and on the cells at its edges: an average over both.
 //!
-//! The pair (displacements of degree q, dilations averaged by splines of degree q - 1 on the same cells) has pressure modes:
-//! its inf-sup constant falls with h. On every second grid line it does not (sub-grid method: Bressan and Sangalli, 2013,
-//! IMA J. Numer. Anal. 33, 629-651). Beside a free edge, where cells are cut, so coarse an average leaves the edge too
-//! soft. So function k on the pairs takes part only where its whole support lies inside the body, and function j
-//! on the cells with what the others leave it, rho_j = 1 - sum_k r_kj: a partition of unity everywhere, and an
-//! average that is still symmetric.
+//! The pair (displacements of degree q, dilations averaged by splines of degree q - 1 on the same cells) has pressure
+//! modes: its inf-sup constant falls with h. On every second grid line it does not (sub-grid method: Bressan and
+//! Sangalli, 2013, IMA J. Numer. Anal. 33, 629-651). Beside a free edge, where cells are cut, so coarse an average
+//! leaves the edge too soft. So function k on the pairs takes part only where its whole support lies inside the body,
+//! and function j on the cells with what the others leave it, rho_j = 1 - sum_k r_kj: a partition of unity everywhere,
+//! and an average that is still symmetric.
 
 use super::Shape;
 use crate::grid::paired::Paired;
@@ -156,8 +156,8 @@ impl<const D: usize> Merged<D> {
     }
 }
 
-/// Per patch and group: whether all cells about it hold points of the group, too. What lies behind a face of the grid or a
-/// repeated breakpoint does not count: an edge that lies there cuts no cell.
+/// Per patch and group: whether all cells about it hold points of the group, too. What lies behind a face of the grid
+/// or a repeated breakpoint does not count: an edge that lies there cuts no cell.
 fn inner_cells<const D: usize>(grid: &Grid<D>, lower: &Shape<D>, grouped: Grouped<'_>, halo: &dyn Halo) -> Vec<bool> {
     let groups = grouped.count();
     let columns = lower.columns().iter().map(|column| column.column).collect();

@@ -1,5 +1,5 @@
-//! Columns shared by threads. Nothing here is generic in the work: with a copy for every pass, most of what is compiled of a
-//! program would be the machinery of threads.
+//! Columns shared by threads. Nothing here is generic in the work: with a copy for every pass, most of what is compiled
+//! of a program would be the machinery of threads.
 
 use crate::grid::contributions::Contributions;
 use crate::grid::shape::Shape;

@@ -1,5 +1,5 @@
-//! Gather and scatter with gradients within a patch, compiled for each instruction set: the sums of a point are left to the
-//! compiler, those of nodes stand side by side.
+//! Gather and scatter with gradients within a patch, compiled for each instruction set: the sums of a point are left to
+//! the compiler, those of nodes stand side by side.
 
 use super::PatchBlock;
 use crate::grid::shape::PointSupport;

@@ -109,7 +109,8 @@ impl<const C: usize> System<C> {
         matrix.cholesky().unwrap().solve(&DVector::from_iterator(size, rhs)).as_slice().to_vec()
     }
 
-    /// What `rank` finds at the nodes of its window, after a first factorisation of another matrix in the other precision.
+    /// What `rank` finds at the nodes of its window, after a first factorisation of another matrix in the other
+    /// precision.
     fn solution(&self, (rank, precision): (usize, Precision), wire: &Wire) -> Vec<f64> {
         let grid = self.grid.window(self.slabs.columns(rank));
         let per_layer = grid.layer_nodes() * C;
