@@ -206,6 +206,19 @@ macro_rules! vector {
             fn any(mask: $Mask<S>) -> bool {
                 mask.0.any_true()
             }
+
+            #[inline(always)]
+            fn unless(self, mask: $Mask<S>, arguments: [Self; 2], rare: fn([f64; 2]) -> f64) -> Self {
+                if !mask.0.any_true() {
+                    return self;
+                }
+                let marks = Self::choose(mask, self.like(1.0), self.like(0.0)).numbers();
+                let (mut numbers, [first, second]) = (self.numbers(), arguments.map(Self::numbers));
+                for lane in (0..$count).filter(|&lane| marks[lane] > 0.0) {
+                    numbers[lane] = rare([first[lane], second[lane]]);
+                }
+                Self($vector::simd_from(self.0.simd, numbers))
+            }
         }
 
         operations!($Vector, Add::add, Sub::sub, Mul::mul, Div::div);

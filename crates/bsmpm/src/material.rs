@@ -142,10 +142,10 @@ macro_rules! laws {
 
             /// Kirchhoff stress in Pa of a point, or of several, by components XX, YY, ZZ, XY of `b_trial` and the
             /// `state` of the last step, which has the law's variables first: as [`Material::respond`] has it. `None`
-            /// where only that can tell: of a graded law, and where an eigenvalue of a trial is not within 0.1 of 1.
+            /// where only that can tell: of a graded law, and of trials of which one is no strain.
             #[inline(always)]
             pub fn stress<R: Real>(&self, b_trial: [R; 4], state: &[R]) -> Option<Symmetric<R>> {
-                let spectrum = Spectrum::near(b_trial)?;
+                let spectrum = Spectrum::planar(b_trial)?;
                 let tau = match self {
                     $(Self::$Law(law) => law.project(law.moduli().stress(spectrum.eps), state).tau,)*
                     Self::Graded(_) => return None,

@@ -50,6 +50,9 @@ pub trait Real:
 
     /// Whether it is true of at least one.
     fn any(mask: Self::Mask) -> bool;
+
+    /// Where the mask is true what `rare` makes of the arguments, one by one; elsewhere this.
+    fn unless(self, mask: Self::Mask, arguments: [Self; 2], rare: fn([f64; 2]) -> f64) -> Self;
 }
 
 /// What is made of 0, 1 and 2. Unlike an array's `map` it is inlined whatever the numbers are.
@@ -104,5 +107,10 @@ impl Real for f64 {
     #[inline(always)]
     fn any(mask: bool) -> bool {
         mask
+    }
+
+    #[inline(always)]
+    fn unless(self, mask: bool, arguments: [Self; 2], rare: fn([f64; 2]) -> f64) -> Self {
+        if mask { rare(arguments) } else { self }
     }
 }

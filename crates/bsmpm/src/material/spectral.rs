@@ -103,16 +103,18 @@ impl Spectrum {
 }
 
 impl<R: Real> Spectrum<R> {
-    /// The same of a plane and its normal, by its components XX, YY, ZZ, XY; `None` unless all eigenvalues are so near
-    /// to 1 that the series holds.
+    /// The same of a plane and its normal, by its components XX, YY, ZZ, XY; `None` unless all are finite and positive
+    /// definite.
     #[inline(always)]
-    pub fn near([xx, yy, zz, xy]: [R; 4]) -> Option<Self> {
+    pub fn planar([xx, yy, zz, xy]: [R; 4]) -> Option<Self> {
         let (sums, axes) = plane([xx, yy, zz], xy);
-        let near = |(start, gain): (R, R)| (start + gain - 1.0).magnitude().below(start.like(NEAR));
-        if R::any(!(near(sums[0]) & near(sums[1]) & near(sums[2]))) {
+        let largest = xx.magnitude() + yy.magnitude() + zz.magnitude() + xy.magnitude();
+        let positive = |(start, gain): (R, R)| start.like(SMALLEST).at_most(start + gain);
+        let finite = largest.at_most(xx.like(LARGEST));
+        if R::any(!(finite & positive(sums[0]) & positive(sums[1]) & positive(sums[2]))) {
             return None;
         }
-        Some(Self::sorted(three(|k| Principal::near(sums[k].0, sums[k].1)), axes))
+        Some(Self::sorted(three(|k| Principal::of_sum(sums[k].0, sums[k].1)), axes))
     }
 
     /// Ranks the eigenvalues by comparisons without branches, which random points would mispredict.
@@ -178,32 +180,28 @@ struct Principal<R> {
 }
 
 impl<R: Real> Principal<R> {
-    /// `ε = artanh(e/(2 + e))`, e = b - 1 without the rounding of b, as a series: where soils are.
+    /// `ε = artanh(e/(2 + e))`, e = b - 1 without the rounding of b; as a series where soils are, else by the logarithm.
     #[inline(always)]
-    fn near(start: R, gain: R) -> Self {
-        let strain = (start - 1.0) + gain;
-        Self { b: start + gain, eps: artanh(strain / (strain + 2.0)) }
+    fn of_sum(start: R, gain: R) -> Self {
+        let (b, strain) = (start + gain, (start - 1.0) + gain);
+        let far = !(b - 1.0).magnitude().below(b.like(NEAR));
+        Self { b, eps: artanh(strain / (strain + 2.0)).unless(far, [start, gain], logarithm) }
     }
 }
 
 impl Principal<f64> {
-    /// By the series or by the logarithm.
+    /// The same; fails unless it is positive.
     #[inline(always)]
     fn of(start: f64, gain: f64) -> Result<Self, MaterialError> {
         let b = start + gain;
-        if (b - 1.0).abs() < NEAR {
-            return Ok(Self::near(start, gain));
-        }
-        if b < SMALLEST {
-            return Err(MaterialError::NotPositive(b));
-        }
-        Ok(Self { b, eps: logarithm(b, start, gain) })
+        if b < SMALLEST { Err(MaterialError::NotPositive(b)) } else { Ok(Self::of_sum(start, gain)) }
     }
 }
 
 /// `½ (ln b + r/b)`, b the rounded sum of `start` and `gain`, r what the rounding lost (Knuth's two-sum).
 #[cold]
-fn logarithm(b: f64, start: f64, gain: f64) -> f64 {
+fn logarithm([start, gain]: [f64; 2]) -> f64 {
+    let b = start + gain;
     let kept = b - start;
     let lost = (start - (b - kept)) + (gain - kept);
     0.5 * (b.ln() + lost / b)

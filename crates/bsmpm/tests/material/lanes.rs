@@ -53,7 +53,7 @@ fn eight_points_have_the_stresses_of_each() {
         let mut computed = 0;
         for _ in 0..GROUPS {
             let b_trial: [Symmetric; LANES] = from_fn(|_| {
-                let size = 10_f64.powf(-1.2 - 3.0 * random.unit());
+                let size = 10_f64.powf(-0.3 - 4.0 * random.unit());
                 let turn = random.pick(&[0.0, 1e-9, 1.0]);
                 let strain: [f64; 4] = from_fn(|_| size * random.signed());
                 let [xx, yy, zz, xy] = random.pick(&[strain, strain, [0.0; 4]]);
@@ -71,16 +71,16 @@ fn eight_points_have_the_stresses_of_each() {
                 }
             }
         }
-        assert!(computed > GROUPS / 2, "{material:?}: {computed} groups were near enough to the identity");
+        assert!(computed > GROUPS / 2, "{material:?}: {computed} groups were strains");
     }
     assert!(REGIONS.iter().all(|region| seen[&format!("{region:?}")] > 1_000), "{seen:?}");
 }
 
-/// What only the logarithm can tell is left to one point at a time, and so is what is no strain at all.
+/// What is no strain is left to one point at a time, which says so.
 #[test]
-fn a_lane_that_strains_by_more_than_the_series_holds_is_left() {
+fn a_lane_that_is_no_strain_is_left() {
     let material = mohr_coulomb(1e3, 0.3, 35.0, 10.0, 3.0);
-    for odd in [1.2, 0.8, -1.0, f64::NAN, f64::INFINITY] {
+    for odd in [0.0, -1.0, 1e101, f64::NAN, f64::INFINITY] {
         let mut b_trial = [Symmetric::IDENTITY; LANES];
         assert!(lanes::run(Stresses { material: &material, b_trial: &b_trial, state: 0.0 }).is_some());
         b_trial[5].0[1] = odd;
