@@ -39,7 +39,7 @@ impl<const D: usize, const W: usize> PointSupport<'_, D, W> {
     pub fn value(&self, k: usize) -> f64 {
         let mut product = self.rows[Self::along(k, 0)];
         for axis in 1..D {
-            product = product * self.rows[2 * W * axis + Self::along(k, axis)];
+            product *= self.rows[2 * W * axis + Self::along(k, axis)];
         }
         product
     }
@@ -54,7 +54,7 @@ impl<const D: usize, const W: usize> PointSupport<'_, D, W> {
         Vector::from_fn(|component, _| {
             let mut product = row(0, component);
             for axis in 1..D {
-                product = product * row(axis, component);
+                product *= row(axis, component);
             }
             product
         })
