@@ -180,7 +180,8 @@ struct Principal<R> {
 }
 
 impl<R: Real> Principal<R> {
-    /// `ε = artanh(e/(2 + e))`, e = b - 1 without the rounding of b; as a series where soils are, else by the logarithm.
+    /// `ε = artanh(e/(2 + e))`, e = b - 1 without the rounding of b; as a series where soils are, else by the
+    /// logarithm.
     #[inline(always)]
     fn of_sum(start: R, gain: R) -> Self {
         let (b, strain) = (start + gain, (start - 1.0) + gain);
