@@ -1,4 +1,4 @@
-//! How fast this machine is at what the solver does most: returning trial stresses to the yield surface.
+//! How fast this machine is beside another: it returns trial stresses to the yield surface, one point at a time.
 
 use std::hint::black_box;
 use std::time::Instant;

@@ -122,12 +122,12 @@ impl<K: Kinematics<D>, const D: usize> Trial<K, D> {
         let mut dF_bar = dF;
         if let Some(mean) = &self.mean {
             let (mean, mut own) = (eight.of(mean), K::jacobian::<Lanes<S>>(&grad));
-            let mut kept = Lanes::splat(simd, 1.0);
+            let mut before = Lanes::splat(simd, 1.0);
             if model.stabilisation == Stabilisation::FBarZhao {
                 own = Lanes::from_fn(simd, |lane| weight(model.stabilisation, points, eight.point(lane))) * own;
-                kept = Lanes::from_fn(simd, |lane| points.dilation_of(eight.point(lane)));
+                before = Lanes::from_fn(simd, |lane| kept(model.stabilisation, points, eight.point(lane)));
             }
-            dF_bar = K::dilate(&dF, ratio(Lanes::from_fn(simd, |lane| *mean[lane]), own, kept));
+            dF_bar = K::dilate(&dF, ratio(Lanes::from_fn(simd, |lane| *mean[lane]), own, before));
         }
         let b_e = |k: usize| Lanes::from_fn(simd, |lane| b_e[lane][k]);
         let zero = Lanes::splat(simd, 0.0);
