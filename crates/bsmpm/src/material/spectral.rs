@@ -114,7 +114,9 @@ impl<R: Real> Spectrum<R> {
         if R::any(!(finite & positive(sums[0]) & positive(sums[1]) & positive(sums[2]))) {
             return None;
         }
-        Some(Self::sorted(three(|k| Principal::of_sum(sums[k].0, sums[k].1)), axes))
+        // Not by a closure: not inlined, it would make a call of every operation between lanes.
+        let principal = [Principal::of_sum(sums[0]), Principal::of_sum(sums[1]), Principal::of_sum(sums[2])];
+        Some(Self::sorted(principal, axes))
     }
 
     /// Ranks the eigenvalues by comparisons without branches, which random points would mispredict.
@@ -183,7 +185,7 @@ impl<R: Real> Principal<R> {
     /// `ε = artanh(e/(2 + e))`, e = b - 1 without the rounding of b; as a series where soils are, else by the
     /// logarithm.
     #[inline(always)]
-    fn of_sum(start: R, gain: R) -> Self {
+    fn of_sum((start, gain): (R, R)) -> Self {
         let (b, strain) = (start + gain, (start - 1.0) + gain);
         let far = !(b - 1.0).magnitude().below(b.like(NEAR));
         Self { b, eps: artanh(strain / (strain + 2.0)).unless(far, [start, gain], logarithm) }
@@ -195,7 +197,7 @@ impl Principal<f64> {
     #[inline(always)]
     fn of(start: f64, gain: f64) -> Result<Self, MaterialError> {
         let b = start + gain;
-        if b < SMALLEST { Err(MaterialError::NotPositive(b)) } else { Ok(Self::of_sum(start, gain)) }
+        if b < SMALLEST { Err(MaterialError::NotPositive(b)) } else { Ok(Self::of_sum((start, gain))) }
     }
 }
 
