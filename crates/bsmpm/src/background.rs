@@ -14,6 +14,7 @@ use crate::exact::Exact;
 use crate::grid::shape::{Patch, Shape};
 use crate::grid::{Contributions, Grid, transfer};
 use crate::kinematics::Kinematics;
+use crate::lanes::{self, InLanes, LANES, Lanes, Simd};
 use crate::material::Material;
 use crate::nodal::Nodal;
 use crate::parallel::{Halo, LinearSolver};
@@ -70,56 +71,80 @@ pub struct Background {
 /// The background's blocks of one step, of cells or faces.
 #[derive(Clone, Debug, Default)]
 pub struct Blocks {
-    cells: Vec<(usize, Block)>, // patch number; Pa m^(D-2)
+    cells: Vec<SoftCell>, // ascending by patch
+    forms: Vec<Block>,    // of those cells, one for all whose breakpoints lie alike
     faces: GhostFaces,
 }
 
-/// The block of a cell, row-major.
+/// A cell with a background: `factor` times a form.
+#[derive(Clone, Copy, Debug)]
+struct SoftCell {
+    patch: usize,
+    form: usize,
+    factor: f64, // Pa  c E, times a geometry's weight
+}
+
+/// The block of a cell, m^(D-2), row-major and symmetric to the last bit.
 #[derive(Clone, Debug)]
-pub enum Block {
+enum Block {
     /// (q+1)^D square, equal for every component, which do not couple
     Scalar(Vec<f64>),
-    /// D (q+1)^D square
+    /// D (q+1)^D square, and behind it seven zeros, so that vectors of eight may reach beyond the end
     Coupled(Vec<f64>),
 }
 
 impl Block {
-    /// Adds it to a patch's block of D unknowns a node.
-    pub fn add_to<const D: usize>(&self, block: &mut [f64]) {
+    /// Adds `factor` times it to a patch's block of D unknowns a node.
+    fn add_to<const D: usize>(&self, factor: f64, block: &mut [f64]) {
         match self {
-            Self::Coupled(soft) => block.iter_mut().zip(soft).for_each(|(sum, value)| *sum += value),
-            Self::Scalar(soft) => {
-                let size = soft.len().isqrt();
-                for (entry, value) in soft.iter().enumerate() {
+            Self::Coupled(form) => block.iter_mut().zip(form).for_each(|(sum, value)| *sum += factor * value),
+            Self::Scalar(form) => {
+                let size = form.len().isqrt();
+                for (entry, value) in form.iter().enumerate() {
                     let (a, b) = (entry / size, entry % size);
                     for i in 0..D {
-                        block[(a * D + i) * size * D + b * D + i] += value;
+                        block[(a * D + i) * size * D + b * D + i] += factor * value;
                     }
                 }
             }
         }
     }
 
-    /// Calls `product` for every node of the patch with what the block makes of the nodes' `u`, D numbers each.
-    fn multiply<const D: usize>(&self, u: &[[f64; D]], mut product: impl FnMut(usize, [f64; D])) {
-        let nodes = u.len();
+    /// What it makes of the nodes' `u`, into `product`.
+    fn multiply<const D: usize>(&self, u: &[[f64; D]], product: &mut [[f64; D]]) {
         match self {
-            Self::Scalar(soft) => {
-                for (a, row) in soft.chunks_exact(nodes).enumerate() {
-                    let mut sum = [0.0; D];
-                    for (entry, u) in row.iter().zip(u) {
-                        (0..D).for_each(|i| sum[i] += entry * u[i]);
-                    }
-                    product(a, sum);
+            Self::Scalar(form) => {
+                for (sum, row) in product.iter_mut().zip(form.chunks_exact(u.len())) {
+                    let along = |i: usize| row.iter().zip(u).map(|(entry, u)| entry * u[i]).sum();
+                    *sum = std::array::from_fn(along);
                 }
             }
-            Self::Coupled(soft) => {
-                let u = u.as_flattened();
-                for (a, rows) in soft.chunks_exact(nodes * D * D).enumerate() {
-                    let along = |i: usize| rows[i * u.len()..][..u.len()].iter().zip(u).map(|(e, u)| e * u).sum();
-                    product(a, std::array::from_fn(along));
-                }
+            Self::Coupled(form) => {
+                lanes::run(Product { form, u: u.as_flattened(), product: product.as_flattened_mut() });
             }
+        }
+    }
+}
+
+/// A symmetric block times what the nodes have: eight rows at a time, of which each entry of `u` has its column's.
+struct Product<'a> {
+    form: &'a [f64],
+    u: &'a [f64],
+    product: &'a mut [f64],
+}
+
+impl InLanes for Product<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        for (eight, rows) in self.product.chunks_mut(LANES).enumerate() {
+            let mut sum = Lanes::splat(simd, 0.0);
+            for (column, u) in self.u.iter().enumerate() {
+                let entries = &self.form[column * self.u.len() + eight * LANES..];
+                sum = sum + Lanes::first_of(simd, entries) * *u;
+            }
+            rows.copy_from_slice(&sum.numbers()[..rows.len()]);
         }
     }
 }
@@ -154,35 +179,24 @@ impl Background {
             Kind::Curvature => Form::Curvature,
             Kind::GhostPenalty => {
                 let faces = GhostFaces::of::<K, D>((grid, shape), (self.coefficient, &concerned), modulus, halo);
-                return Blocks { cells: Vec::new(), faces };
+                return Blocks { faces, ..Blocks::default() };
             }
         };
-        let forms = Forms::new(grid, form);
+        let mut forms = Forms::new(grid, form);
         let cells = shape.patches().iter().enumerate().filter(|(number, _)| concerned[*number]);
-        let block = |(number, patch): (usize, &Patch)| {
+        let soft = |(number, patch): (usize, &Patch)| {
             let cell = grid.cell_at(patch.cell);
             let (lower, size) = grid.cell_box(&cell);
             let weight = K::weight(&(lower + size * 0.5));
-            (number, forms.block(&cell, self.coefficient * modulus(patch) * weight))
+            SoftCell { patch: number, form: forms.of(&cell), factor: self.coefficient * modulus(patch) * weight }
         };
-        Blocks { cells: cells.map(block).collect(), faces: GhostFaces::default() }
+        let cells = cells.map(soft).collect();
+        Blocks { cells, forms: forms.found, ..Blocks::default() }
     }
 }
 
 /// Largest number of nodes of a patch: (3 + 1)^3.
 const MOST_NODES: usize = 64;
-
-/// What the nodes of a patch have of a nodal array.
-fn gather<'a, const D: usize>(
-    u: &[f64],
-    (first, offsets): (usize, &[usize]),
-    own: &'a mut [[f64; D]; MOST_NODES],
-) -> &'a [[f64; D]] {
-    for (at_node, offset) in own.iter_mut().zip(offsets) {
-        at_node.copy_from_slice(&u[Nodal::<D>::of(first + offset)]);
-    }
-    &own[..offsets.len()]
-}
 
 /// Per patch: less than .75 of the cell is filled, and it holds a function at the body's edge.
 fn partly_filled<K: Kinematics<D>, const D: usize>(
@@ -204,26 +218,42 @@ fn partly_filled<K: Kinematics<D>, const D: usize>(
 impl Blocks {
     /// f += B u (D numbers a node).
     pub fn multiply<const D: usize>(&self, shape: &Shape<D>, u: &[f64], f: &mut Contributions) {
-        for (number, block) in &self.cells {
-            let first = shape.patches()[*number].first_node;
-            let (f, offsets) = (f.patch(first), shape.offsets());
-            let mut own = [[0.0; D]; MOST_NODES];
-            block.multiply(gather(u, (first, offsets), &mut own), |a, force| {
-                (0..D).for_each(|i| f[Nodal::<D>::at(offsets[a], i)] += force[i]);
-            });
-        }
+        self.each_product::<D>(shape, u, |first, _, forces| {
+            let f = f.patch(first);
+            for (force, offset) in forces.iter().zip(shape.offsets()) {
+                (0..D).for_each(|i| f[Nodal::<D>::at(*offset, i)] += force[i]);
+            }
+        });
         self.faces.multiply::<D>(u, f);
     }
 
     /// u . B u of the cells and faces of this rank: what the background takes.
     pub fn work<const D: usize>(&self, shape: &Shape<D>, u: &[f64]) -> Exact {
-        let of_cell = |(number, block): &(usize, Block)| {
-            let (mut own, mut work) = ([[0.0; D]; MOST_NODES], 0.0);
-            let u = gather(u, (shape.patches()[*number].first_node, shape.offsets()), &mut own);
-            block.multiply(u, |a, force| work += (0..D).map(|i| u[a][i] * force[i]).sum::<f64>());
-            work
-        };
-        self.cells.iter().map(of_cell).chain(self.faces.work::<D>(u)).collect()
+        let mut works = Vec::with_capacity(self.cells.len());
+        self.each_product::<D>(shape, u, |_, u, forces| {
+            works.push(u.iter().zip(forces).map(|(u, force)| (0..D).map(|i| u[i] * force[i]).sum::<f64>()).sum());
+        });
+        works.into_iter().chain(self.faces.work::<D>(u)).collect()
+    }
+
+    /// Calls `product` for every cell with its first node, what its nodes have of `u` and what its block makes of it.
+    fn each_product<const D: usize>(
+        &self,
+        shape: &Shape<D>,
+        u: &[f64],
+        mut product: impl FnMut(usize, &[[f64; D]], &[[f64; D]]),
+    ) {
+        let size = shape.offsets().len();
+        let (mut own, mut forces) = ([[0.0; D]; MOST_NODES], [[0.0; D]; MOST_NODES]);
+        for soft in &self.cells {
+            let first = shape.patches()[soft.patch].first_node;
+            for (at_node, offset) in own[..size].iter_mut().zip(shape.offsets()) {
+                at_node.copy_from_slice(&u[Nodal::<D>::of(first + offset)]);
+            }
+            self.forms[soft.form].multiply(&own[..size], &mut forces[..size]);
+            forces[..size].as_flattened_mut().iter_mut().for_each(|force| *force *= soft.factor);
+            product(first, &own[..size], &forces[..size]);
+        }
     }
 
     /// Number of cells or faces concerned, of this rank.
@@ -241,9 +271,20 @@ impl Blocks {
         self.faces.assemble::<D>(solver);
     }
 
-    /// Block of a patch by its number, if it has one.
-    pub fn of(&self, patch: usize) -> Option<&Block> {
-        let found = self.cells.binary_search_by_key(&patch, |(number, _)| *number).ok()?;
-        Some(&self.cells[found].1)
+    /// Whether the patch of this number has a background of its own.
+    pub fn concerns(&self, patch: usize) -> bool {
+        self.of(patch).is_some()
+    }
+
+    /// Adds that of the patch of this number, if it has one, to the patch's block.
+    pub fn add_to<const D: usize>(&self, patch: usize, block: &mut [f64]) {
+        if let Some(soft) = self.of(patch) {
+            self.forms[soft.form].add_to::<D>(soft.factor, block);
+        }
+    }
+
+    fn of(&self, patch: usize) -> Option<&SoftCell> {
+        let found = self.cells.binary_search_by_key(&patch, |soft| soft.patch).ok()?;
+        Some(&self.cells[found])
     }
 }

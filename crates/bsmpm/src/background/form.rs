@@ -3,6 +3,8 @@
 use super::Block;
 use crate::grid::shape::with_width;
 use crate::grid::{Grid, KnotVector};
+use crate::lanes::LANES;
+use std::collections::BTreeMap;
 
 /// A form within a cell.
 #[derive(Clone, Copy, Debug)]
@@ -13,13 +15,17 @@ pub(super) enum Form {
     Curvature,
 }
 
-/// What all blocks of a form need.
+/// The blocks of a form, each made once: cells whose breakpoints lie alike have the same, up to round-off.
 pub(super) struct Forms<'a, const D: usize> {
     grid: &'a Grid<D>,
     form: Form,
     products: [Vec<FormProducts>; D], // per axis and cell
+    alike: [Vec<usize>; D],           // per axis and cell: the first of the cells next to each other that are alike
     /// per axis: where each entry (a, b) of a block finds the product of its functions along that axis
     entries: [Vec<usize>; D],
+    numbers: BTreeMap<[usize; D], usize>, // of what was found, by the first of the cells alike
+    /// what was asked for
+    pub found: Vec<Block>,
 }
 
 /// int N_a N_b, int N_a' N_b', int N_a'' N_b'', int N_a' N_b and int N_a N_b' over a cell of one axis, row-major,
@@ -35,37 +41,45 @@ impl<'a, const D: usize> Forms<'a, D> {
             let along = |k: usize| k / width.pow((D - 1 - axis) as u32) % width;
             (0..nodes * nodes).map(|entry| along(entry / nodes) * width + along(entry % nodes)).collect()
         });
-        Self { grid, form, products: products(grid), entries }
+        let products = products(grid);
+        let alike = products.each_ref().map(|products| first_alike(products));
+        Self { grid, form, products, alike, entries, numbers: BTreeMap::new(), found: Vec::new() }
     }
 
-    /// `factor` times the form of a cell; m^(D-2) times the unit of the factor.
-    pub(super) fn block(&self, cell: &[usize; D], factor: f64) -> Block {
-        match self.form {
-            Form::Strain => Block::Coupled(self.strain(cell, factor)),
-            Form::Curvature => Block::Scalar(self.curvature(cell, factor)),
+    /// Number of a cell's form among those found.
+    pub(super) fn of(&mut self, cell: &[usize; D]) -> usize {
+        let cell = std::array::from_fn(|axis| self.alike[axis][cell[axis]]);
+        if let Some(&number) = self.numbers.get(&cell) {
+            return number;
         }
+        self.found.push(match self.form {
+            Form::Strain => Block::Coupled(self.strain(&cell)),
+            Form::Curvature => Block::Scalar(self.curvature(&cell)),
+        });
+        self.numbers.insert(cell, self.found.len() - 1);
+        self.found.len() - 1
     }
 
     /// Row-major (q + 1)^D square.
-    fn curvature(&self, cell: &[usize; D], factor: f64) -> Vec<f64> {
+    fn curvature(&self, cell: &[usize; D]) -> Vec<f64> {
         let mut block = vec![0.0; self.grid.cell_nodes().pow(2)];
         let size = self.grid.cell_box(cell).1;
         for i in 0..D {
             for j in 0..D {
                 let order = |axis| usize::from(axis == i) + usize::from(axis == j);
-                self.add(cell, factor * size[i] * size[j], order, &mut block);
+                self.add(cell, size[i] * size[j], order, &mut block);
             }
         }
         block
     }
 
-    /// Row-major D (q + 1)^D square: eps : eps is half of |grad u|^2, which does not couple the components, and half of
+    /// Row-major D (q + 1)^D square, with the room behind it: eps : eps is half of |grad u|^2, which does not couple the components, and half of
     /// sum_ij du_i/dx_j du_j/dx_i.
-    fn strain(&self, cell: &[usize; D], factor: f64) -> Vec<f64> {
+    fn strain(&self, cell: &[usize; D]) -> Vec<f64> {
         let nodes = self.grid.cell_nodes();
         let (mut plain, mut coupled) = (vec![0.0; nodes * nodes], vec![0.0; (nodes * D).pow(2)]);
         for i in 0..D {
-            self.add(cell, 0.5 * factor, |axis| usize::from(axis == i), &mut plain);
+            self.add(cell, 0.5, |axis| usize::from(axis == i), &mut plain);
         }
         let mut mixed = vec![0.0; nodes * nodes];
         for (i, j) in (0..D * D).map(|k| (k / D, k % D)) {
@@ -76,7 +90,7 @@ impl<'a, const D: usize> Forms<'a, D> {
                 (both, _) => usize::from(both),
             };
             mixed.fill(0.0);
-            self.add(cell, 0.5 * factor, of, &mut mixed);
+            self.add(cell, 0.5, of, &mut mixed);
             for (a, (mixed, plain)) in mixed.chunks_exact(nodes).zip(plain.chunks_exact(nodes)).enumerate() {
                 let row = coupled[(a * D + i) * nodes * D..].iter_mut().skip(j).step_by(D);
                 for (sum, (value, own)) in row.zip(mixed.iter().zip(plain)) {
@@ -84,6 +98,7 @@ impl<'a, const D: usize> Forms<'a, D> {
                 }
             }
         }
+        coupled.resize(coupled.len() + LANES - 1, 0.0);
         coupled
     }
 
@@ -105,6 +120,28 @@ pub(super) fn products<const D: usize>(grid: &Grid<D>) -> [Vec<FormProducts>; D]
         })
     };
     grid.axes().each_ref().map(of_axis)
+}
+
+/// Departure from another cell's integrals, by the largest of each kind, up to which a cell counts as like it: what
+/// breakpoints far from the origin lose of a cell's length.
+const ALIKE: f64 = 1e-10;
+
+/// For each cell of an axis the first one of the cells next to each other that it is like.
+fn first_alike(products: &[FormProducts]) -> Vec<usize> {
+    let are_alike = |one: &FormProducts, other: &FormProducts| {
+        one.iter().zip(other).all(|(one, other)| {
+            let largest = one.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
+            one.iter().zip(other).all(|(one, other)| (one - other).abs() <= ALIKE * largest)
+        })
+    };
+    let mut first = 0;
+    let of_cell = |cell: usize| {
+        if !are_alike(&products[first], &products[cell]) {
+            first = cell;
+        }
+        first
+    };
+    (0..products.len()).map(of_cell).collect()
 }
 
 fn of_cell<const W: usize>(axis: &KnotVector, cell: usize) -> FormProducts {

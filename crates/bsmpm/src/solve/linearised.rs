@@ -169,8 +169,8 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
             if let (Some(coupling), Some(dilations)) = (&mut coupling, &dilations) {
                 coupling.add(number, dilations);
             }
-            if let Some(soft) = nodes.background.as_ref().and_then(|background| background.of(number)) {
-                soft.add_to::<D>(&mut block);
+            if let Some(background) = &nodes.background {
+                background.add_to::<D>(number, &mut block);
             }
             add_mass((self.problem.model.mass, nodes), (shape, patch), &self.problem.points.mass, &mut block);
             solver.add(patch.first_node, &block);

@@ -251,7 +251,7 @@ fn supported<const D: usize>(
 ) -> (Vec<bool>, Vec<bool>) {
     let mut touched = vec![0.0_f64; 2 * nodes]; // by a cell, by the background
     for (number, patch) in shape.patches().iter().enumerate() {
-        let soft = background.is_some_and(|blocks| blocks.of(number).is_some());
+        let soft = background.is_some_and(|blocks| blocks.concerns(number));
         for offset in shape.offsets() {
             let marks = &mut touched[2 * (patch.first_node + offset)..][..2];
             marks[0] = 1.0;

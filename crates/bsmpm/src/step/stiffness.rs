@@ -99,8 +99,8 @@ impl<K: Kinematics<D>, const D: usize> Assembly<'_, K, D> {
         }
         mirror(size * D, &mut part.block);
         add_mass((model.mass, self.nodes), (shape, patch), &points.mass, &mut part.block);
-        if let Some(soft) = self.nodes.background.as_ref().and_then(|background| background.of(number)) {
-            soft.add_to::<D>(&mut part.block);
+        if let Some(background) = &self.nodes.background {
+            background.add_to::<D>(number, &mut part.block);
         }
         part
     }

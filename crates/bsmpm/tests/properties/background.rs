@@ -2,7 +2,7 @@
 
 use crate::support::random::Random;
 use crate::support::scene::{Scene, axis, hencky};
-use bsmpm::background::{Background, Block, Extent, Kind};
+use bsmpm::background::{Background, Extent, Kind};
 use bsmpm::grid::{Grid, KnotVector, Shape};
 use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
 use bsmpm::model::Regime;
@@ -11,7 +11,8 @@ use bsmpm::tensor::{Tensor, Vector};
 const YOUNG: f64 = 50.0;
 const COEFFICIENT: f64 = 0.02;
 
-/// The blocks of all cells of a grid, a point in the middle of each.
+/// The blocks of all cells of a grid, a point in the middle of each; of a form that does not couple the components, that
+/// of the first one.
 fn blocks<K: Kinematics<D>, const D: usize>(axes: [KnotVector; D], kind: Kind) -> (Grid<D>, Vec<Vec<f64>>) {
     let cells = axes.each_ref().map(|axis| 0..axis.cells());
     let scene = Scene::<K, D>::new(axes, hencky(YOUNG, 0.3), Regime::QuasiStatic).body(cells, 1, 1.0, |x| x * 0.0);
@@ -19,8 +20,14 @@ fn blocks<K: Kinematics<D>, const D: usize>(axes: [KnotVector; D], kind: Kind) -
     let shape = Shape::at(&grid, points).expect("points inside");
     let background = Background { kind, coefficient: COEFFICIENT, extent: Extent::Occupied };
     let found = background.blocks::<K, D>(&grid, &shape, points, &scene.model.materials, &scene.halo());
-    let block = |patch: usize| match found.of(patch).expect("a block") {
-        Block::Scalar(block) | Block::Coupled(block) => block.clone(),
+    let size = shape.offsets().len() * D;
+    let block = |patch: usize| {
+        let mut block = vec![0.0; size * size];
+        found.add_to::<D>(patch, &mut block);
+        if kind == Kind::Curvature {
+            block = block.chunks(size).step_by(D).flat_map(|row| row.iter().step_by(D).copied()).collect();
+        }
+        block
     };
     let blocks = (0..shape.patches().len()).map(block).collect();
     (grid, blocks)
@@ -172,7 +179,7 @@ fn concerned(F: [[f64; 2]; 2], extent: Extent) -> Vec<[usize; 2]> {
     let background = Background { kind: Kind::Curvature, coefficient: COEFFICIENT, extent };
     let found = background.blocks::<PlaneStrain, 2>(grid, &shape, points, &scene.model.materials, &scene.halo());
     let patches = shape.patches().iter().enumerate();
-    let cells = patches.filter(|(number, _)| found.of(*number).is_some()).map(|(_, patch)| grid.cell_at(patch.cell));
+    let cells = patches.filter(|(number, _)| found.concerns(*number)).map(|(_, patch)| grid.cell_at(patch.cell));
     let cells: Vec<_> = cells.collect();
     assert_eq!(cells.len(), found.count());
     cells
