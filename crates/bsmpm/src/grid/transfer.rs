@@ -15,6 +15,7 @@ use crate::stabilisation::Grouped;
 use crate::tensor::Vector;
 use columns::{apart, joined, nothing, share, unfilled};
 use patch::{Divergence, Gradients};
+use std::marker::PhantomData;
 use std::ops::Range;
 
 /// Largest number of nodes of a patch: (3 + 1)^3.
@@ -115,14 +116,12 @@ pub fn gradients<K: Kinematics<D>, const D: usize, T: Send>(
     u: &[f64],
     found: impl Fn(usize, K::Gradient) -> T + Sync,
 ) -> Vec<T> {
-    let most = shape.patches().iter().map(|patch| patch.points.len()).max().unwrap_or(0);
-    let scratch = || ([[0.0; D]; MOST_NODES], Vec::with_capacity(most));
-    with_width!(shape.width(), W => at_points(shape, scratch, |number, (block, gradients), out: &mut Vec<T>| {
+    let scratch = || [[0.0; D]; MOST_NODES];
+    with_width!(shape.width(), W => at_points(shape, scratch, |number, block, out: &mut Vec<T>| {
         let patch = &shape.patches()[number];
         gather(u, shape.offsets(), patch.first_node, (0, 1), block);
-        let (rows, points) = (shape.rows(), patch.points.clone());
-        lanes::run(Gradients::<K, D, W> { rows, x, points: points.clone(), block, out: gradients });
-        out.extend(points.zip(gradients.drain(..)).map(|(p, gradient)| found(p, gradient)));
+        let (rows, points, kinematics) = (shape.rows(), patch.points.clone(), PhantomData::<K>);
+        lanes::run(Gradients::<K, _, _, D, W> { rows, x, points, block, found: &found, out, kinematics });
     }))
 }
 

@@ -6,21 +6,28 @@ use crate::grid::shape::PointSupport;
 use crate::kinematics::{Gradient, Kinematics};
 use crate::lanes::{InLanes, Quad, Simd};
 use crate::tensor::Vector;
+use std::marker::PhantomData;
 use std::ops::Range;
 
 /// Rows of nodes along the last axis of a patch at most: four by four in three dimensions.
 const MOST_ROWS: usize = 16;
 
-/// Gradients of the points of a patch, appended.
-pub(super) struct Gradients<'a, K: Kinematics<D>, const D: usize, const W: usize> {
+/// What is found of the gradients of the points of a patch, appended.
+pub(super) struct Gradients<'a, K: Kinematics<D>, F, T, const D: usize, const W: usize> {
     pub rows: &'a [f64],
     pub x: &'a [Vector<D>],
     pub points: Range<usize>,
     pub block: &'a PatchBlock<D>,
-    pub out: &'a mut Vec<K::Gradient>,
+    pub found: &'a F,
+    pub out: &'a mut Vec<T>,
+    pub kinematics: PhantomData<K>,
 }
 
-impl<K: Kinematics<D>, const D: usize, const W: usize> InLanes for Gradients<'_, K, D, W> {
+impl<K, F, T, const D: usize, const W: usize> InLanes for Gradients<'_, K, F, T, D, W>
+where
+    K: Kinematics<D>,
+    F: Fn(usize, K::Gradient) -> T,
+{
     type Output = ();
 
     #[inline(always)]
@@ -37,7 +44,7 @@ impl<K: Kinematics<D>, const D: usize, const W: usize> InLanes for Gradients<'_,
                     }
                 }
             }
-            self.out.push(gradient);
+            self.out.push((self.found)(p, gradient));
         }
     }
 }
