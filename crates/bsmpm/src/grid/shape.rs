@@ -93,7 +93,7 @@ impl<const D: usize> Shape<D> {
             patches: Vec::new(),
             columns: Vec::new(),
             extent: (grid.column_layers(), grid.layer_nodes(), grid.nodes()),
-            rows: Vec::with_capacity(points.places().len() * 2 * D * width),
+            rows: Vec::with_capacity(points.places().len() * 2 * D * width + BEHIND),
             stride: 2 * width,
             merged: None,
         };
@@ -135,11 +135,12 @@ impl<const D: usize> Shape<D> {
             patches: self.patches.clone(),
             columns: self.columns.clone(),
             extent: self.extent,
-            rows: Vec::with_capacity(points.places().len() * D * width),
+            rows: Vec::with_capacity(points.places().len() * D * width + BEHIND),
             stride: width,
             merged: None,
         };
         with_width!(lowered width, W => lower.evaluate_lower::<W>(grid, points));
+        lower.rows.extend([0.0; BEHIND]);
         lower
     }
 
@@ -180,16 +181,21 @@ impl<const D: usize> Shape<D> {
         &self.offsets
     }
 
-    /// Rows of values and derivatives, point by point and axis by axis; behind them so many zeros that four numbers can
-    /// be read from the place of each.
-    pub(super) fn rows(&self) -> &[f64] {
+    /// Rows of values and derivatives, or of values alone, point by point and axis by axis, and their stride; behind
+    /// them so many zeros that four numbers can be read from the place of each.
+    pub(super) fn rows(&self) -> (&[f64], usize) {
+        (&self.rows, self.stride)
+    }
+
+    /// Rows of values and derivatives.
+    pub(super) fn rows_with_derivatives(&self) -> &[f64] {
         assert_eq!(self.stride, 2 * self.width, "lowered functions have values only");
         &self.rows
     }
 
     /// Number of points.
     pub fn len(&self) -> usize {
-        self.rows.len() / (D * self.stride)
+        self.patches.last().map_or(0, |patch| patch.points.end)
     }
 
     /// Whether there is no point.

@@ -14,7 +14,7 @@ use crate::lanes;
 use crate::stabilisation::Grouped;
 use crate::tensor::Vector;
 use columns::{apart, joined, nothing, share, unfilled};
-use patch::{Divergence, Gradients};
+use patch::{Divergence, Gradients, Sums};
 use std::marker::PhantomData;
 use std::ops::Range;
 
@@ -38,15 +38,14 @@ pub fn to_nodes_grouped<const D: usize, const C: usize>(
     grouped: Grouped<'_>,
     value: impl Fn(usize) -> [f64; C] + Sync,
 ) -> Contributions {
-    with_width!(lowered shape.width(), W => scatter(shape, grouped, |points, block: &mut PatchBlock<C>| {
-        for p in points {
-            let (support, value) = (shape.values::<W>(p), value(p));
-            for (k, sums) in block[..const { W.pow(D as u32) }].iter_mut().enumerate() {
-                let N = support.value(k);
-                for c in 0..C {
-                    sums[c] += N * value[c];
-                }
-            }
+    let (rows, stride) = shape.rows();
+    with_width!(lowered shape.width(), W => scatter_columns(shape, grouped, |_| {
+        let mut values = Vec::new();
+        let value = &value;
+        move |points: Range<usize>, block: &mut PatchBlock<C>| {
+            values.clear();
+            values.extend(points.clone().map(value));
+            lanes::run(Sums::<D, C, W> { rows, stride, points, values: &values, block });
         }
     }))
 }
@@ -120,7 +119,7 @@ pub fn gradients<K: Kinematics<D>, const D: usize, T: Send>(
     with_width!(shape.width(), W => at_points(shape, scratch, |number, block, out: &mut Vec<T>| {
         let patch = &shape.patches()[number];
         gather(u, shape.offsets(), patch.first_node, (0, 1), block);
-        let (rows, points, kinematics) = (shape.rows(), patch.points.clone(), PhantomData::<K>);
+        let (rows, points, kinematics) = (shape.rows_with_derivatives(), patch.points.clone(), PhantomData::<K>);
         lanes::run(Gradients::<K, _, _, D, W> { rows, x, points, block, found: &found, out, kinematics });
     }))
 }
@@ -144,7 +143,7 @@ pub fn divergence_of<K: Kinematics<D>, const D: usize>(
         flux(column.points.clone(), &mut fluxes);
         move |points: Range<usize>, block: &mut PatchBlock<D>| {
             let fluxes = &fluxes[points.start - first..points.end - first];
-            lanes::run(Divergence::<K, D, W> { rows: shape.rows(), x, points, fluxes, block });
+            lanes::run(Divergence::<K, D, W> { rows: shape.rows_with_derivatives(), x, points, fluxes, block });
         }
     }))
 }

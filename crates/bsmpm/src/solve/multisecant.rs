@@ -1,9 +1,9 @@
 //! Steps (6), (7) by all recent secants at once: Anderson (1965), in the form of Fang and Saad (2009).
 //!
 //! With w = K_0^-1 f, a step du = w - sum_j g_j (s_j + dw_j), where s_j are the last steps, dw_j what they changed in
-//! w, and g makes the predicted rest w - sum_j g_j dw_j smallest in the energy of K_0: its products dw_i . K_0 dw_j are
-//! dw_i . df_j, which need no product with K_0. On a linear problem that is as good as GMRES, where Broyden's update
-//! may take twice the iterations.
+//! w, and g makes the predicted rest w - sum_j g_j dw_j smallest in the energy of K_0, which is symmetric: its products
+//! dw_i . K_0 dw_j are dw_i . df_j, and dw_i . K_0 w are df_i . w, which need no product with K_0 and no dw but the
+//! newest. On a linear problem that is as good as GMRES, where Broyden's update may take twice the iterations.
 
 use crate::parallel::Halo;
 use crate::solve::unknowns::Unknowns;
@@ -26,7 +26,6 @@ pub struct Multisecant {
 #[derive(Clone, Debug)]
 struct Secant {
     both: Vec<f64>, // s + dw
-    dw: Vec<f64>,
     df: Vec<f64>,
 }
 
@@ -46,8 +45,8 @@ impl Multisecant {
     /// Turns the nodal w = K_0^-1 f into the direction du, and tells du . f: one reduction for everything.
     pub fn correct(&mut self, nodal_w: &mut [f64], f: &[f64], halo: &dyn Halo) -> f64 {
         let (w, f) = (self.unknowns.packed(nodal_w), self.unknowns.packed(f));
-        self.learn(&w, &f);
-        let Products { right, both, mut energy } = self.products((&w, &f), halo);
+        let dw = self.learn(&w, &f);
+        let Products { right, both, mut energy } = self.products((&w, &f), dw.as_deref(), halo);
         let mut du = w.clone();
         for ((weight, secant), both) in least_squares(&self.products, &right).into_iter().zip(&self.secants).zip(both) {
             du.iter_mut().zip(&secant.both).for_each(|(du, both)| *du -= weight * both);
@@ -65,13 +64,13 @@ impl Multisecant {
         }
     }
 
-    /// Adds the secant of the last step, and forgets the oldest one if there are too many.
-    fn learn(&mut self, w: &[f64], f: &[f64]) {
-        let Some(last) = self.last.take() else { return };
+    /// Adds the secant of the last step, and forgets the oldest one if there are too many; what w changed by.
+    fn learn(&mut self, w: &[f64], f: &[f64]) -> Option<Vec<f64>> {
+        let last = self.last.take()?;
         let change = |now: &[f64], before: &[f64]| -> Vec<f64> { now.iter().zip(before).map(|(a, b)| a - b).collect() };
         let (dw, df) = (change(w, &last.w), change(f, &last.f));
         let both = last.s.iter().zip(&dw).map(|(s, dw)| s + dw).collect();
-        self.secants.push(Secant { both, dw, df });
+        self.secants.push(Secant { both, df });
         if self.secants.len() > MOST {
             self.secants.remove(0);
             self.products.remove(0);
@@ -79,32 +78,32 @@ impl Multisecant {
                 row.remove(0);
             }
         }
+        Some(dw)
     }
 
-    /// Products with the present force, from one reduction; rows of `products` are completed on the way.
-    fn products(&mut self, (w, f): (&[f64], &[f64]), halo: &dyn Halo) -> Products {
+    /// Products with the present force, from one reduction; rows of `products` are completed on the way, of the newest
+    /// secant's `dw`.
+    fn products(&mut self, (w, f): (&[f64], &[f64]), dw: Option<&[f64]>, halo: &dyn Halo) -> Products {
         let Self { unknowns, secants, .. } = self;
         let count = secants.len();
-        let newest = secants.last();
-        let among =
-            newest.into_iter().flat_map(|newest| secants.iter().map(|secant| unknowns.dot(&newest.dw, &secant.df)));
-        let with_f = secants.iter().map(|secant| unknowns.dot(&secant.dw, f));
-        let both = secants.iter().map(|secant| unknowns.dot(&secant.both, f));
-        let sums: Vec<_> = among.chain(with_f).chain(both).chain([unknowns.dot(w, f)]).collect();
-        let mut row = halo.total(&sums);
-        let energy = row.split_off(3 * count)[0];
-        let both = row.split_off(2 * count);
-        let right = row.split_off(count);
-        if count > 0 {
-            self.products.push(row);
+        let mut sums = Vec::with_capacity(3 * count + 1);
+        for secant in secants.iter() {
+            sums.extend(unknowns.dots([dw.unwrap_or_default(), w], &secant.df));
+            sums.extend(unknowns.dots([f], &secant.both));
         }
-        Products { right, both, energy }
+        sums.extend(unknowns.dots([w], f));
+        let sums = halo.total(&sums);
+        let every_third = |from: usize| sums[..3 * count].iter().skip(from).step_by(3).copied().collect();
+        if count > 0 {
+            self.products.push(every_third(0));
+        }
+        Products { right: every_third(1), both: every_third(2), energy: sums[3 * count] }
     }
 }
 
 /// Products of the secants with the force f, N m.
 struct Products {
-    right: Vec<f64>, // dw_j . f
+    right: Vec<f64>, // df_j . w
     both: Vec<f64>,  // (s_j + dw_j) . f
     energy: f64,     // w . f
 }

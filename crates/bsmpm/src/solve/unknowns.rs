@@ -36,21 +36,29 @@ impl Unknowns {
         self.places.iter().zip(packed).for_each(|(&place, value)| nodal[place as usize] = *value);
     }
 
-    /// Dot product of two packed vectors over this rank's own nodes: plainly within a layer, exactly over the layers.
-    pub fn dot(&self, a: &[f64], b: &[f64]) -> Exact {
-        self.layers.iter().map(|layer| dot(&a[layer.clone()], &b[layer.clone()])).collect()
+    /// Dot products of packed vectors with another one over this rank's own nodes: plainly within a layer, exactly over
+    /// the layers.
+    pub fn dots<const M: usize>(&self, with: [&[f64]; M], a: &[f64]) -> [Exact; M] {
+        let mut sums = [Exact::ZERO; M];
+        for layer in &self.layers {
+            let of_layer = dots(with.map(|b| &b[layer.clone()]), &a[layer.clone()]);
+            sums.iter_mut().zip(of_layer).for_each(|(sum, of_layer)| sum.add(of_layer));
+        }
+        sums
     }
 }
 
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let (mut sums, (a, rest_of_a), (b, rest_of_b)) = ([0.0; LANES], a.as_chunks::<LANES>(), b.as_chunks::<LANES>());
-    for (a, b) in a.iter().zip(b) {
-        for lane in 0..LANES {
-            sums[lane] += a[lane] * b[lane];
+/// Several at a time, as what is kept of many steps comes from memory.
+fn dots<const M: usize>(with: [&[f64]; M], a: &[f64]) -> [f64; M] {
+    let (mut sums, (eights, rest)) = ([[0.0; LANES]; M], a.as_chunks::<LANES>());
+    let with = with.map(|b| b.as_chunks::<LANES>());
+    for (k, a) in eights.iter().enumerate() {
+        for (sums, (b, _)) in sums.iter_mut().zip(with) {
+            (0..LANES).for_each(|lane| sums[lane] += a[lane] * b[k][lane]);
         }
     }
-    for (lane, (a, b)) in rest_of_a.iter().zip(rest_of_b).enumerate() {
-        sums[lane] += a * b;
+    for (sums, (_, b)) in sums.iter_mut().zip(with) {
+        rest.iter().zip(b).zip(sums).for_each(|((a, b), sum)| *sum += a * b);
     }
-    sums.iter().sum()
+    sums.map(|sums| sums.iter().sum())
 }

@@ -69,7 +69,7 @@ fn packed_vectors_have_the_products_of_nodal_ones_and_come_back() {
     let (packed_a, packed_b) = (unknowns.packed(a.as_slice()), unknowns.packed(b.as_slice()));
     assert_eq!(packed_a.len(), free().iter().filter(|free| **free).count());
     let whole = dots(&halo, 2, &[(a.as_slice(), b.as_slice())])[0];
-    assert!((unknowns.dot(&packed_a, &packed_b).value() - whole).abs() <= 1e-14);
+    assert!((unknowns.dots([&packed_a], &packed_b)[0].value() - whole).abs() <= 1e-14);
     let mut nodal = vec![0.0; SIZE];
     unknowns.unpack(&packed_a, &mut nodal);
     assert_eq!(nodal, a.as_slice());
@@ -103,6 +103,6 @@ fn ghosts_do_not_count_twice() {
     let (a, b) = (random.array(SIZE), random.array(SIZE));
     let unknowns = Unknowns::of::<2>(&free(), &Between);
     let own: f64 = (6..12).filter(|&c| free()[c]).map(|c| a[c] * b[c]).sum();
-    let found = unknowns.dot(&unknowns.packed(&a), &unknowns.packed(&b)).value();
+    let found = unknowns.dots([&unknowns.packed(&a)], &unknowns.packed(&b))[0].value();
     assert!((found - own).abs() <= 1e-14 && own.abs() > 1e-3, "{found} {own}");
 }

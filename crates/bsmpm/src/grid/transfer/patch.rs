@@ -94,11 +94,52 @@ impl<K: Kinematics<D>, const D: usize, const W: usize> InLanes for Divergence<'_
                 }
             }
         }
-        for (k, sums) in sums.iter().enumerate() {
-            let numbers: [[f64; 4]; D] = std::array::from_fn(|i| sums[i].numbers());
-            for (b, at_node) in self.block[W * k..W * (k + 1)].iter_mut().enumerate() {
-                (0..D).for_each(|i| at_node[i] = numbers[i][b]);
+        spread::<S, D, W>(sums, self.block);
+    }
+}
+
+/// What the values of a patch's points add up to, point by point.
+pub(super) struct Sums<'a, const D: usize, const C: usize, const W: usize> {
+    pub rows: &'a [f64],
+    pub stride: usize,
+    pub points: Range<usize>,
+    pub values: &'a [[f64; C]],
+    pub block: &'a mut PatchBlock<C>,
+}
+
+impl<const D: usize, const C: usize, const W: usize> InLanes for Sums<'_, D, C, W> {
+    type Output = ();
+
+    /// As in [`Divergence`], the nodes along the last axis stand side by side.
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        let mut sums = [[Quad::splat(simd, 0.0); C]; MOST_ROWS];
+        let sums = &mut sums[..const { W.pow(D as u32 - 1) }];
+        for (p, value) in self.points.zip(self.values) {
+            let rows = &self.rows[p * D * self.stride..];
+            let last = Quad::first_of(simd, &rows[(D - 1) * self.stride..]);
+            for (k, sums) in sums.iter_mut().enumerate() {
+                let mut others = 1.0;
+                for axis in 0..D - 1 {
+                    others *= rows[axis * self.stride + k / W.pow((D - 2 - axis) as u32) % W];
+                }
+                let N = last * others;
+                for c in 0..C {
+                    sums[c] = sums[c] + N * value[c];
+                }
             }
+        }
+        spread::<S, C, W>(sums, self.block);
+    }
+}
+
+/// Puts rows of sums in the places of their nodes.
+#[inline(always)]
+fn spread<S: Simd, const C: usize, const W: usize>(sums: &[[Quad<S>; C]], block: &mut PatchBlock<C>) {
+    for (k, sums) in sums.iter().enumerate() {
+        let numbers: [[f64; 4]; C] = std::array::from_fn(|i| sums[i].numbers());
+        for (b, at_node) in block[W * k..W * (k + 1)].iter_mut().enumerate() {
+            (0..C).for_each(|i| at_node[i] = numbers[i][b]);
         }
     }
 }
