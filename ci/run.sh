@@ -47,6 +47,19 @@ is_formatted() {
     ! LC_ALL=C.UTF-8 git grep -nE '^.{121,}$' -- '*.rs' | grep -E '^[^:]*:[0-9]+: *//'
 }
 
+# An operation between lanes that the compiler leaves out of the function with the wide vectors is a call through memory.
+# shellcheck disable=SC2317
+lanes_are_inlined() {
+    local symbols
+    build_programs
+    symbols=$(nm --demangle -- "$solver") || return
+    if ! grep -q 'vectorize_' <<<"$symbols"; then
+        echo "no function with wide vectors: what is looked for may have another name"
+        return 1
+    fi
+    ! grep __fearless_simd_kernel <<<"$symbols"
+}
+
 cd -- "$root"
 export CARGO_TERM_COLOR=never
 # Nothing here is compiled a second time after a change.
@@ -60,6 +73,7 @@ RUSTDOCFLAGS='-D warnings' gate "docs" cargo doc --workspace --no-deps --lib
 gate "tests" scripts/test
 gate "book" scripts/book --check
 gate "short cases, golden curves" scripts/golden --check
+gate "lanes" lanes_are_inlined
 gate "validation, short" scripts/validate --short
 gate "extremes, short" scripts/extremes --short
 gate "faults, short" scripts/faults --short

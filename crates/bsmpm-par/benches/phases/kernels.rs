@@ -53,48 +53,79 @@ impl Bench<'_> {
             None => 0.0,
         };
         let u: Vec<f64> = guess.iter().enumerate().map(along).collect();
-        self.row("(1) shape functions, sorting apart", true, || drop(black_box(Shape::at(&model.grid, points))));
-        self.row("(2) points to nodes", true, || drop(black_box(Nodes::map(model, &shape, points, times, halo))));
-        self.row("(4a) gather of grad u", false, || {
+        let traffic = Traffic::of(model);
+        self.row("(1) shape functions, sorting apart", None, || drop(black_box(Shape::at(&model.grid, points))));
+        self.row("(2) points to nodes", None, || drop(black_box(Nodes::map(model, &shape, points, times, halo))));
+        self.row("(4a) gather of grad u", Some(traffic.gradients), || {
             drop(black_box(transfer::gradients::<PlaneStrain, 2, _>((&shape, &points.x), &u, |_, grad| grad)))
         });
         if model.stabilisation.averages() {
-            self.row("(4c-e) average of F-bar", false, || {
+            self.row("(4c-e) average of F-bar", Some(traffic.average), || {
                 drop(black_box(nodes.mean_dilation(model, (&shape, points), halo, |_| 1.0)));
             });
         }
         let trial = Trial::of(model, &shape, &nodes, points, &u, halo);
-        self.row("(4f-i), (5a) constitution in lanes, and scatter of the internal force", false, || {
+        self.row("(4f-i), (5a) constitution in lanes, and scatter of the internal force", Some(traffic.force), || {
             drop(black_box(InternalForce::of(&problem, &trial).f_int))
         });
-        self.row("(4f-i) constitution point by point, with what a step keeps of it", true, || {
+        self.row("(4f-i) constitution point by point, with what a step keeps of it", None, || {
             for p in 0..points.len() {
                 let _ = black_box(trial.respond(model, points, p).map(|response| response.tau()));
             }
         });
-        self.row("(5a) scatter of the internal force", false, || {
+        self.row("(5a) scatter of the internal force", Some(0), || {
             drop(black_box(transfer::divergence::<PlaneStrain, 2>((&shape, &points.x), |p| {
                 PlaneStrain::flux(&points.sigma.at(p), &points.F.at(p))
             })));
         });
-        self.row("(4), (5) whole residual, with balance and sums", false, || {
+        let whole = traffic.gradients + traffic.average + traffic.force;
+        self.row("(4), (5) whole residual, with balance and sums", Some(whole), || {
             drop(black_box(Residual::of(&problem, &u)))
         });
-        self.row("(6) stiffness of the patches", true, || {
+        self.row("(6) stiffness of the patches", None, || {
             drop(black_box(stiffness::assemble(&problem, Some(&trial), &mut Nowhere)))
         });
-        self.row("(6) stiffness, assembled and factorised", true, || {
+        self.row("(6) stiffness, assembled and factorised", None, || {
             drop(black_box(stiffness::assemble(&problem, Some(&trial), solver)));
         });
         let (f, mut w) = (Residual::of(&problem, &u).balance.f_oob, u.clone());
-        self.row("(7) solution", false, || drop(black_box(solver.solve(&f, &mut w))));
+        self.row("(7) solution", Some(0), || drop(black_box(solver.solve(&f, &mut w))));
         Ok(())
     }
 
-    fn row(&self, what: &str, once: bool, call: impl FnMut()) {
+    /// `traffic`: bytes a point from and to memory, of what is done in every iteration; 0 if not counted.
+    fn row(&self, what: &str, traffic: Option<usize>, call: impl FnMut()) {
         let time = shortest(self.seconds, call) / self.points.len() as f64;
-        let how_often = if once { "once a step" } else { "every iteration" };
-        println!("| {what} | {:.1} | {how_often} |", time * 1e9);
+        let [bytes, how_often] = match traffic {
+            None => [String::new(), "once a step".into()],
+            Some(0) => [String::new(), "every iteration".into()],
+            Some(bytes) => [format!("{bytes}"), "every iteration".into()],
+        };
+        println!("| {what} | {:.1} | {bytes} | {how_often} |", time * 1e9);
+    }
+}
+
+/// Bytes of a point that the passes of an iteration read and write, each array once a pass.
+struct Traffic {
+    gradients: usize,
+    average: usize,
+    force: usize,
+}
+
+impl Traffic {
+    fn of(model: &Model<PlaneStrain, 2>) -> Self {
+        let number = size_of::<f64>();
+        let width = model.grid.order() + 1;
+        let (functions, tensor) = (2 * 2 * width, 4);
+        // Without functions of their own averages read the rows with the derivatives between.
+        let averaging = if model.stabilisation.lowers() { 2 * (width - 1) } else { functions };
+        let averages = model.stabilisation.averages();
+        let mean = usize::from(averages);
+        Self {
+            gradients: number * (functions + tensor),
+            average: if averages { number * (tensor + 1 + 2 * averaging + 1) } else { 0 },
+            force: number * (2 * tensor + mean + 1 + functions) + size_of::<u16>(),
+        }
     }
 }
 

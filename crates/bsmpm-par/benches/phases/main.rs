@@ -1,8 +1,8 @@
 //! What a step costs, phase by phase, from a state in mid-flow: `scripts/bench` prints it.
 //!
 //! `phases CASE CHECKPOINT SECONDS [--set KEY=VALUE]...`, on one rank, SECONDS for each phase: nanoseconds per point
-//! of every pass, of factorisation and solution, and
-//! bytes per point, beside the memory bandwidth and the arithmetic that the core reaches in the same minute.
+//! of every pass, of factorisation and solution, and the bytes that passes move and points take, beside the memory
+//! bandwidth and the arithmetic that the core reaches in the same minute.
 
 mod kernels;
 mod machine;
@@ -86,13 +86,20 @@ fn measure(
     let choice = setup::linear(&case, 1, &[]);
     let petsc = Petsc::initialize(universe, &choice.options())?;
     let mut solver = KspSolver::<2, 2>::new(&petsc, choice, &model.grid, Rc::clone(&halo), timers);
-    println!("| {} points, {:.4} s | ns per point | of a step with one iteration |", points.len(), time);
-    println!("| --- | --- | --- |");
+    println!(
+        "| {} points, {:.4} s | ns per point | bytes per point, read and written | of a step |",
+        points.len(),
+        time
+    );
+    println!("| --- | --- | --- | --- |");
     let bench =
         kernels::Bench { model: &model, points: &points, halo: &*halo, times: (time, case.analysis.dt), seconds };
     bench.run(&guess, &mut solver)?;
-    println!("| bytes of a point; with its shape functions and a trial state | {} |", kernels::bytes(points, &model)?);
+    println!(
+        "| bytes of a point; with its shape functions and two trial states | {} | | |",
+        kernels::bytes(points, &model)?
+    );
     let (triad, multiply_add) = (machine::triad(seconds), machine::multiply_add(seconds));
-    println!("| triad, GB/s; dependent-free multiply-add, GFlop/s | {triad:.1}; {multiply_add:.1} | |");
+    println!("| triad, GB/s; dependent-free multiply-add, GFlop/s | {triad:.1}; {multiply_add:.1} | | |");
     Ok(())
 }
