@@ -4,7 +4,8 @@
 use crate::draw;
 use arbitrary::{Result, Unstructured};
 use bsmpm::material::{
-    DruckerPrager, Elastic, Graded, Hencky, Match, Material, MohrCoulomb, Profile, Response, Separation, VonMises,
+    Decay, DruckerPrager, Elastic, Graded, Hencky, Match, Material, MohrCoulomb, Profile, Response, Separation,
+    SofteningMohrCoulomb, VonMises,
 };
 use bsmpm::tensor::{Symmetric, Tensor};
 use nalgebra::{Rotation3, Vector3};
@@ -39,7 +40,7 @@ fn draw(u: &mut Unstructured<'_>) -> Result<()> {
 }
 
 /// What [`bsmpm_scene`] admits: E > 0, -1 < ν < ½, 0 ≤ ψ ≤ φ < 90°, c ≥ 0, σ_y > 0, H ≥ 0, a strength reduction of 0.1
-/// to 100; of any law also by height.
+/// to 100, a strength that falls; of any law also by height.
 fn material(u: &mut Unstructured<'_>) -> Result<Material> {
     let elastic = Elastic { young: draw::size(u, -12.0, 20.0)?, poisson: poisson(u)? };
     let friction = draw::between(u, 0.0, 89.999)?.to_radians() * if u.ratio(1, 8)? { 1e-9 } else { 1.0 };
@@ -54,6 +55,12 @@ fn material(u: &mut Unstructured<'_>) -> Result<Material> {
             Material::DruckerPrager(DruckerPrager::new(elastic, (friction, dilation, cohesion), fit))
         }
         3 | 4 => Material::VonMises(VonMises::new(elastic, cohesion.max(1e-12), friction * cohesion)),
+        5 => {
+            let (decay, part) = (*u.choose(&[Decay::Linear, Decay::Exponential])?, draw::fraction(u)?);
+            let residual = (friction * part, dilation * part, cohesion * draw::fraction(u)?);
+            let (peak, strain) = ((friction, dilation, cohesion), draw::size(u, -6.0, 3.0)?);
+            Material::SofteningMohrCoulomb(SofteningMohrCoulomb::new(elastic, peak, residual, strain, decay))
+        }
         _ => Material::MohrCoulomb(MohrCoulomb::new(elastic, friction, dilation, cohesion).separating(separation)),
     };
     if u.ratio(7, 8)? {

@@ -319,6 +319,36 @@ fn cones_and_cylinders() {
     assert!(message.contains("allowed: yield_stress > 0"), "{message}");
 }
 
+/// Strength that falls: its last values, the strain of a band in cells of one size, and what is doubtful or refused.
+#[test]
+fn softening_strengths() {
+    let keys = "young = 1e7, poisson = 0.3, density = 2e3, model = \"mohr-coulomb-softening\", friction = 30, \
+                cohesion = 1e3, residual_friction = 25";
+    let with = |text: &str| set(FULL, &["grid.cell=0.5", &format!("material.clay={{ {keys}, {text} }}")]);
+    let case = with("residual_cohesion = 0, softening_strain = 0.2").expect("a valid case");
+    let Material::SofteningMohrCoulomb(clay) = &case.materials[1].material else { panic!() };
+    let parameters = clay.parameters();
+    assert_eq!((parameters[2], parameters[5], parameters[6]), (800.0, 0.0, 0.2));
+    assert!((parameters[3].tan() * 1.25 - f64::to_radians(25.0).tan()).abs() < 1e-14);
+    assert!(case.warnings.iter().any(|told| told.contains("results depend on the cells")), "{:?}", case.warnings);
+    let case = with("residual_cohesion = 0, softening_strain = 0.2, band_width = \"5 cm\"").expect("a valid case");
+    let Material::SofteningMohrCoulomb(clay) = &case.materials[1].material else { panic!() };
+    assert!((clay.parameters()[6] - 0.02).abs() < 1e-15, "{:?}", clay.parameters());
+    assert!(!case.warnings.iter().any(|told| told.contains("depend on the cells")));
+    for (text, told) in [
+        ("softening_strain = 0.2", "needs it"),
+        ("residual_cohesion = 0, softening_strain = 0", "allowed: softening_strain > 0"),
+        ("residual_cohesion = 0, softening_strain = 0.2, residual_dilation = 26", "0 <= residual_dilation <= "),
+        ("residual_cohesion = 0, softening_strain = 0.2, softening = \"quadratic\"", "exponential"),
+        ("residual_cohesion = 0, softening_strain = 0.2, separation = \"closing\"", "has no meaning"),
+    ] {
+        let message = format!("{:?}", with(text).expect_err(text));
+        assert!(message.contains(told), "{message}");
+    }
+    let case = with("residual_cohesion = 0, softening_strain = 1e-5").expect("a valid case");
+    assert!(case.warnings.iter().any(|told| told.contains("drops at once")), "{:?}", case.warnings);
+}
+
 #[test]
 fn layers_by_height_and_reduced_strength() {
     let case = valid(FULL, &["grid.lower=[-1, -1]", "grid.cell=0.5"]);

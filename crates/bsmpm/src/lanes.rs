@@ -124,7 +124,7 @@ macro_rules! vector {
         pub struct $Vector<S: Simd>($vector<S>);
 
         /// What is true of each of them.
-        #[derive(Clone, Copy)]
+        #[derive(Clone, Copy, Debug)]
         pub struct $Mask<S: Simd>($mask<S>);
 
         impl<S: Simd> $Vector<S> {

@@ -11,6 +11,7 @@ mod hencky;
 mod law;
 mod mohr_coulomb;
 mod response;
+mod softening;
 mod spectral;
 mod stiffness;
 mod tangent;
@@ -23,6 +24,7 @@ pub use hencky::Hencky;
 pub use law::{Branch, Law, Projection, Separation, Variable, split};
 pub use mohr_coulomb::MohrCoulomb;
 pub use response::Response;
+pub use softening::{Decay, SofteningMohrCoulomb};
 pub use stiffness::Stiffness;
 pub use tangent::Tangent;
 pub use von_mises::VonMises;
@@ -227,6 +229,8 @@ laws! {
     drucker_prager::DruckerPrager,
     /// Elastic, plastic without friction, hardening linearly.
     von_mises::VonMises,
+    /// Mohr-Coulomb's strength that follows the plastic strain.
+    softening::SofteningMohrCoulomb,
 }
 
 /// Numbers of state of one law at most.

@@ -5,6 +5,7 @@
 //! point takes, and of one point is its branch. There is no fused multiplication: not every machine has one.
 
 use nalgebra::Scalar;
+use std::fmt::Debug;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 /// A number, or several side by side.
@@ -22,7 +23,7 @@ pub trait Real:
     + Div<f64, Output = Self>
 {
     /// What is true of each.
-    type Mask: Copy + BitAnd<Output = Self::Mask> + BitOr<Output = Self::Mask> + Not<Output = Self::Mask>;
+    type Mask: Copy + Debug + BitAnd<Output = Self::Mask> + BitOr<Output = Self::Mask> + Not<Output = Self::Mask>;
 
     /// `value`, as many times as this has numbers.
     fn like(self, value: f64) -> Self;

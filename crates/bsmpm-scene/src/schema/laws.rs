@@ -5,7 +5,9 @@ use super::Presence::{Optional, Required};
 use super::{Dimension as In, Range, Table, key, loads, one_of};
 use crate::record::Record;
 use crate::words::Word;
-use bsmpm::material::{DruckerPrager, Elastic, Hencky, Match, Material, MohrCoulomb, Separation, VonMises};
+use bsmpm::material::{
+    Decay, DruckerPrager, Elastic, Hencky, Match, Material, MohrCoulomb, Separation, SofteningMohrCoulomb, VonMises,
+};
 use std::ops::Bound::{Excluded, Included};
 
 choice! {
@@ -21,6 +23,8 @@ choice! {
         DruckerPrager = "drucker-prager",
         /// Elastic, plastic without friction, hardening linearly.
         VonMises = "von-mises",
+        /// Mohr-Coulomb whose strength goes from a first to a last value with plastic strain.
+        Softening = "mohr-coulomb-softening",
     }
 }
 
@@ -29,7 +33,7 @@ impl LawName {
     pub(crate) fn is_plastic(self) -> bool {
         match self {
             Self::Hencky => false,
-            Self::MohrCoulomb | Self::Tresca | Self::DruckerPrager | Self::VonMises => true,
+            Self::MohrCoulomb | Self::Tresca | Self::DruckerPrager | Self::VonMises | Self::Softening => true,
         }
     }
 
@@ -41,6 +45,10 @@ impl LawName {
             Self::MohrCoulomb => (&["friction", "cohesion"], &["dilation", "separation"]),
             Self::DruckerPrager => (&["friction", "cohesion"], &["dilation", "match"]),
             Self::VonMises => (&["yield_stress"], &["hardening"]),
+            Self::Softening => (
+                &["friction", "cohesion", "residual_friction", "residual_cohesion", "softening_strain"],
+                &["dilation", "residual_dilation", "softening", "band_width"],
+            ),
         }
     }
 
@@ -57,6 +65,10 @@ impl LawName {
                 Material::DruckerPrager(DruckerPrager::new(elastic, (0.0, 0.0, 0.0), fit))
             }
             Self::VonMises => Material::VonMises(VonMises::new(elastic, 0.0, 0.0)),
+            Self::Softening => {
+                let (decay, none) = (record.word("softening").unwrap_or_default(), (0.0, 0.0, 0.0));
+                Material::SofteningMohrCoulomb(SofteningMohrCoulomb::new(elastic, none, none, 1.0, decay))
+            }
         }
     }
 }
@@ -64,6 +76,11 @@ impl LawName {
 words! { Separation {
     Forgotten = "forgotten": "volume that opens is plastic",
     Closing = "closing": "volume that opens is a gap that closes first",
+} }
+
+words! { Decay {
+    Linear = "linear": "in proportion to the plastic strain, until it is softening_strain",
+    Exponential = "exponential": "95 % of the way at softening_strain",
 } }
 
 words! { Match {
@@ -83,7 +100,7 @@ pub(crate) static MATERIAL: Table = Table {
             "friction",
             Profile(In::Angle, BELOW_90, &loads::ANGLE_PROFILE),
             Optional,
-            "friction angle (mohr-coulomb and drucker-prager: required)",
+            "friction angle (mohr-coulomb, drucker-prager and mohr-coulomb-softening, before any plastic strain: required)",
         ),
         key(
             "dilation",
@@ -96,6 +113,40 @@ pub(crate) static MATERIAL: Table = Table {
             Profile(In::Stress, Range::NOT_NEGATIVE, &loads::STRESS_PROFILE),
             Optional,
             "cohesion (hencky and von-mises: none; else required)",
+        ),
+        key(
+            "residual_friction",
+            Profile(In::Angle, BELOW_90, &loads::ANGLE_PROFILE),
+            Optional,
+            "friction angle after softening_strain (mohr-coulomb-softening: required)",
+        ),
+        key(
+            "residual_dilation",
+            Profile(In::Angle, BELOW_90, &loads::ANGLE_PROFILE),
+            Optional,
+            "dilation angle after softening_strain, at most residual_friction; 0 unless given",
+        ),
+        key(
+            "residual_cohesion",
+            Profile(In::Stress, Range::NOT_NEGATIVE, &loads::STRESS_PROFILE),
+            Optional,
+            "cohesion after softening_strain (mohr-coulomb-softening: required)",
+        ),
+        key(
+            "softening_strain",
+            Quantity(In::Number, Range::POSITIVE),
+            Optional,
+            "plastic shear strain sqrt(2/3) |dev| at which the strength has its last value (mohr-coulomb-softening: \
+             required)",
+        ),
+        key("softening", Choice(Decay::WORDS), Optional, "how the strength gets there; linear unless given"),
+        key(
+            "band_width",
+            Quantity(In::Length, Range::POSITIVE),
+            Optional,
+            "of the shear band that softening_strain is of: cells of size h take softening_strain band_width / h, so \
+             that a band does the same work in any grid (crack band; cells of one size only); without it results depend \
+             on the cells",
         ),
         key(
             "match",

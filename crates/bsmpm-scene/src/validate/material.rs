@@ -73,7 +73,7 @@ fn read(
 ) -> Option<NamedMaterial> {
     let density = density(record, around.regime, report);
     let layer = Layer::of(number, around);
-    let law = law(record, layer.as_ref(), report);
+    let law = law(record, (layer.as_ref(), around.grid), report);
     let (young, poisson) = (profile(record, "young"), record.number("poisson"));
     if let (Some(young), Some(layer)) = (&young, &layer) {
         layer.check(record, ("young", &Range::POSITIVE), young, report);

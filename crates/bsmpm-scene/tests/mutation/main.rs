@@ -56,6 +56,12 @@ const OTHERWISE: [&[(&str, &str)]; 6] = [
     &[
         ("\nk0 = 0.5", "\ngravity = \"elastic\""),
         ("k0          = 0.6\n", ""),
+        ("model    = \"mohr-coulomb\"", "model = \"mohr-coulomb-softening\""),
+        (
+            "separation = \"forgotten\"",
+            "residual_friction = 20\nresidual_dilation = 5\nresidual_cohesion = 10\nsoftening_strain = 0.2\n\
+             softening = \"exponential\"\nband_width = 0.1",
+        ),
         ("factor = 1.25", "factor = 1.25\nelastic = false\nstiffness = 1.5\nunloaded = false"),
     ],
     &[

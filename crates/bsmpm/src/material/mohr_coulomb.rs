@@ -7,6 +7,7 @@ use super::law::{Branch, FRICTIONAL, Law, Projection, Separation, Variable, fric
 use super::{Elastic, Moduli};
 use crate::real::{Real, three};
 use crate::tensor::Tensor;
+use std::ops::{Add, Div, Mul, Sub};
 
 /// Elastic inside `f = (τ₁ - τ₃) + (τ₁ + τ₃) sin φ - 2 c cos φ ≤ 0`, with the same form in ψ as plastic potential.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,78 +17,223 @@ pub struct MohrCoulomb {
     dilation: f64,
     cohesion: f64,
     separation: Separation,
-    // What every response needs, formed once:
-    moduli: Moduli,
-    slopes: Slopes, // sin φ and sin ψ
-    strength: f64,  // Pa  c cos φ
-    shift: f64,     // Pa  τ₁ at yield where τ₃ = 0
-    slope: f64,     // 1/Pa  ½/(λ sin φ sin ψ + μ (1 + sin φ sin ψ)), multiplier over excess of a return to a face
+    pyramid: Pyramid,
 }
 
-/// What a return leaves: where the stress lies, on a face unless told, and the two sines that its tangent needs.
+/// The pyramid and how stresses return to it: one for all points, or one for each (`P` as wide as they are).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Pyramid<P: Real = f64> {
+    moduli: Moduli,
+    pub slopes: Slopes<P>,
+    /// Pa  c cos φ
+    pub strength: P,
+    shift: P, // Pa  τ₁ at yield where τ₃ = 0
+    slope: P, // 1/Pa  ½/(λ sin φ sin ψ + μ (1 + sin φ sin ψ)), multiplier over excess of a return to a face
+}
+
+/// Points that are computed with numbers as wide as they are, or with one for all.
+pub(super) trait With<P>:
+    Real + Add<P, Output = Self> + Sub<P, Output = Self> + Mul<P, Output = Self> + Div<P, Output = Self>
+{
+}
+
+impl<P, R> With<P> for R where
+    R: Real + Add<P, Output = R> + Sub<P, Output = R> + Mul<P, Output = R> + Div<P, Output = R>
+{
+}
+
+/// Where a return ends that is not on a face.
 #[derive(Clone, Copy, Debug)]
-pub struct MohrCoulombReturn<R: Real> {
+pub struct Corners<R: Real> {
     left_edge: R::Mask,
     right_edge: R::Mask,
     apex: R::Mask,
+}
+
+impl Corners<f64> {
+    /// The part of the surface after a return.
+    #[inline]
+    pub(super) fn branch(&self) -> Branch {
+        match self {
+            Self { right_edge: true, .. } => Branch::RightEdge,
+            Self { left_edge: true, .. } => Branch::LeftEdge,
+            Self { apex: true, .. } => Branch::Apex,
+            _ => Branch::Face,
+        }
+    }
+}
+
+/// What a return leaves: where the stress lies, and the two sines that its tangent needs.
+#[derive(Clone, Copy, Debug)]
+pub struct MohrCoulombReturn<R: Real> {
+    corners: Corners<R>,
     slopes: Slopes,
 }
 
 /// Slopes of the yield surface and of the plastic potential.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Slopes {
-    sin_phi: f64,
-    sin_psi: f64,
+pub struct Slopes<P = f64> {
+    pub(super) sin_phi: P,
+    pub(super) sin_psi: P,
 }
 
 /// An edge of the yield surface with the plane of trial stresses that return to each of its points.
-struct YieldEdge {
+struct YieldEdge<P> {
     /// Direction of the edge where τ₃ grows by one: (N, 1, 1) or (N, N, 1), N = (1 - sin φ)/(1 + sin φ).
-    along: [f64; 3],
+    along: [P; 3],
     /// Normal in strain to both plastic flows, which an edge return therefore keeps: q · εᵖ = 0.
-    kept: [f64; 3],
+    kept: [P; 3],
     /// 18 K μ C q without cancellation, C the elastic compliance: `w = 9 K dev q + 2μ tr(q) I`.
-    weight: [f64; 3],
+    weight: [P; 3],
     /// Pa²  `w · along`, positive for all ν, φ and ψ.
-    slope: f64,
+    slope: P,
 }
 
-impl Slopes {
+impl<P: Real> Slopes<P> {
     /// `N = (1 - sin φ)/(1 + sin φ)`, the smaller over the larger principal stress at yield without cohesion.
-    #[inline]
-    fn ratio(self) -> f64 {
-        (1.0 - self.sin_phi) / (1.0 + self.sin_phi)
+    #[inline(always)]
+    fn ratio(self) -> P {
+        (self.sin_phi.like(1.0) - self.sin_phi) / (self.sin_phi + 1.0)
+    }
+
+    /// 1 - sin ψ and 1 + sin ψ.
+    #[inline(always)]
+    fn flow(self) -> (P, P) {
+        (self.sin_psi.like(1.0) - self.sin_psi, self.sin_psi + 1.0)
     }
 
     /// The right edge (τ₂ = τ₃), on which the potentials of the planes 1-3 and 1-2 flow together.
-    #[inline]
-    fn right(self, moduli: Moduli) -> YieldEdge {
-        let (minus, plus) = (1.0 - self.sin_psi, 1.0 + self.sin_psi);
-        let (dev, trace) = (6.0 * moduli.bulk() * self.sin_psi, 2.0 * moduli.mu * (3.0 + self.sin_psi));
-        YieldEdge::new([self.ratio(), 1.0, 1.0], [minus, plus, plus], [trace - 2.0 * dev, trace + dev, trace + dev])
+    #[inline(always)]
+    fn right(self, moduli: Moduli) -> YieldEdge<P> {
+        let ((minus, plus), one) = (self.flow(), self.sin_psi.like(1.0));
+        let (dev, trace) = (self.sin_psi * (6.0 * moduli.bulk()), (self.sin_psi + 3.0) * (2.0 * moduli.mu));
+        YieldEdge::new([self.ratio(), one, one], [minus, plus, plus], [trace - dev * 2.0, trace + dev, trace + dev])
     }
 
     /// The left edge (τ₁ = τ₂), on which the potentials of the planes 1-3 and 2-3 flow together.
-    #[inline]
-    fn left(self, moduli: Moduli) -> YieldEdge {
-        let (minus, plus) = (1.0 - self.sin_psi, 1.0 + self.sin_psi);
-        let (dev, trace) = (6.0 * moduli.bulk() * self.sin_psi, 2.0 * moduli.mu * (3.0 - self.sin_psi));
-        let ratio = self.ratio();
-        YieldEdge::new([ratio, ratio, 1.0], [minus, minus, plus], [trace - dev, trace - dev, trace + 2.0 * dev])
+    #[inline(always)]
+    fn left(self, moduli: Moduli) -> YieldEdge<P> {
+        let ((minus, plus), one) = (self.flow(), self.sin_psi.like(1.0));
+        let trace = (self.sin_psi.like(3.0) - self.sin_psi) * (2.0 * moduli.mu);
+        let (dev, ratio) = (self.sin_psi * (6.0 * moduli.bulk()), self.ratio());
+        YieldEdge::new([ratio, ratio, one], [minus, minus, plus], [trace - dev, trace - dev, trace + dev * 2.0])
     }
 }
 
-impl YieldEdge {
-    #[inline]
-    fn new(along: [f64; 3], kept: [f64; 3], weight: [f64; 3]) -> Self {
-        Self { along, kept, weight, slope: dot(weight, along) }
+impl Slopes {
+    /// `D_AB = ∂τ_A/∂ε_B`, Pa, of a surface that stays: on the face `D - (D m)(D n)ᵀ/(n · D m)`, on an edge of
+    /// direction a `a qᵀ/(q · C a)`, at the apex zero.
+    pub(super) fn tangent(self, branch: Branch, moduli: Moduli) -> Tensor {
+        match branch {
+            Branch::Elastic => moduli.tangent(),
+            Branch::Apex => Tensor::zeros(),
+            Branch::Face => {
+                let normal = |sin: f64| [1.0 + sin, 0.0, sin - 1.0];
+                let (n, m) = (normal(self.sin_phi), normal(self.sin_psi));
+                let (d_n, d_m) = (moduli.stress(n), moduli.stress(m));
+                let product = self.sin_phi * self.sin_psi;
+                let scale = 4.0 * (moduli.lambda * product + moduli.mu * (1.0 + product));
+                moduli.tangent() - Tensor::from_fn(|i, j| d_m[i] * d_n[j] / scale)
+            }
+            edge => {
+                let edge = if edge == Branch::LeftEdge { self.left(moduli) } else { self.right(moduli) };
+                let scale = 18.0 * moduli.bulk() * moduli.mu / edge.slope;
+                Tensor::from_fn(|i, j| scale * edge.along[i] * edge.kept[j])
+            }
+        }
+    }
+}
+
+impl<P: Real> YieldEdge<P> {
+    #[inline(always)]
+    fn new(along: [P; 3], kept: [P; 3], weight: [P; 3]) -> Self {
+        let slope = weight[0] * along[0] + weight[1] * along[1] + weight[2] * along[2];
+        Self { along, kept, weight, slope }
     }
 
     /// τ₃ after the return to this edge: `τ₃ = w · (τ_trial - o)/(w · along)`, o the edge's point where τ₃ = 0.
     #[inline(always)]
-    fn third<R: Real>(&self, trial: [R; 3], origin: [f64; 3]) -> R {
+    fn third<R: With<P>>(&self, trial: [R; 3], origin: [P; 3]) -> R {
         let [first, second, third] = [trial[0] - origin[0], trial[1] - origin[1], trial[2]];
         (first * self.weight[0] + second * self.weight[1] + third * self.weight[2]) / self.slope
+    }
+}
+
+impl<P: Real> Pyramid<P> {
+    /// Of sin φ, sin ψ and c cos φ (Pa).
+    #[inline(always)]
+    pub(super) fn new(moduli: Moduli, slopes: Slopes<P>, strength: P) -> Self {
+        let product = slopes.sin_phi * slopes.sin_psi;
+        Self {
+            moduli,
+            slopes,
+            strength,
+            shift: strength * 2.0 / (slopes.sin_phi + 1.0),
+            slope: product.like(0.5) / (product * moduli.lambda + (product + 1.0) * moduli.mu),
+        }
+    }
+
+    /// `f = (τ₁ - τ₃) + (τ₁ + τ₃) sin φ - 2 c cos φ`.
+    #[inline(always)]
+    pub(super) fn excess<R: With<P>>(&self, tau: [R; 3]) -> R {
+        (tau[0] - tau[2]) + (tau[0] + tau[2]) * self.slopes.sin_phi - self.strength * 2.0
+    }
+
+    /// The return of a trial stress, where it yields, and where it ends.
+    ///
+    /// τ₁ is always taken from τ₃ by f = 0, so the result satisfies yield and order to the last digits even where it
+    /// is much smaller than the trial.
+    #[inline(always)]
+    pub(super) fn project<R: With<P>>(&self, trial: [R; 3]) -> ([R; 3], R::Mask, Corners<R>) {
+        let excess = self.excess(trial);
+        let inside = excess.at_most(excess.like(0.0));
+        let none = inside & !inside;
+        let mut corners = Corners { left_edge: none, right_edge: none, apex: none };
+        let mut tau = trial;
+        if R::any(!inside) {
+            let (face, keeps_order) = self.face(trial, excess);
+            tau = three(|k| R::choose(inside, trial[k], face[k]));
+            let beyond = !(inside | keeps_order);
+            if R::any(beyond) {
+                let (edge, is_right, is_edge) = self.edge(trial);
+                corners.right_edge = beyond & is_edge & is_right;
+                corners.left_edge = beyond & is_edge & !is_right;
+                corners.apex = beyond & !is_edge;
+                let tip = excess.like(0.0) + self.strength / self.slopes.sin_phi;
+                tau = three(|k| R::choose(beyond, R::choose(is_edge, edge[k], tip), tau[k]));
+            }
+        }
+        (tau, !inside, corners)
+    }
+
+    /// Return along `τ = τ_trial - Δγ D m`, `Δγ = f/(4λ sin φ sin ψ + 4μ(1 + sin φ sin ψ))`, and where it keeps the
+    /// order.
+    #[inline(always)]
+    fn face<R: With<P>>(&self, trial: [R; 3], excess: R) -> ([R; 3], R::Mask) {
+        let (Moduli { lambda, mu }, sin_psi) = (self.moduli, self.slopes.sin_psi);
+        let half = excess * self.slope;
+        let second = trial[1] - half * lambda * sin_psi;
+        let third = trial[2] - half * (sin_psi * lambda - (sin_psi.like(1.0) - sin_psi) * mu);
+        let first = third * self.slopes.ratio() + self.shift;
+        // Beyond the apex f = 0 and the order exclude each other, so this test covers the apex too.
+        ([first, second, third], second.at_most(first) & third.at_most(second))
+    }
+
+    /// Return to the edge that the face return crosses first, whether that is the right one, and where it is not beyond
+    /// the apex (never when sin φ = 0).
+    #[inline(always)]
+    fn edge<R: With<P>>(&self, trial: [R; 3]) -> ([R; 3], R::Mask, R::Mask) {
+        let Self { slopes, moduli, shift, .. } = *self;
+        let (upper, lower) = (trial[0] - trial[1], trial[1] - trial[2]);
+        let ((minus, plus), none) = (slopes.flow(), shift.like(0.0));
+        let is_right = (lower * plus).below(upper * minus);
+        let (right, left) = (
+            slopes.right(moduli).third(trial, [shift, none, none]),
+            slopes.left(moduli).third(trial, [shift, shift, none]),
+        );
+        let third = R::choose(is_right, right, left);
+        let first = third * slopes.ratio() + shift;
+        ([first, R::choose(is_right, third, first), third], is_right, third.at_most(first))
     }
 }
 
@@ -95,56 +241,13 @@ impl MohrCoulomb {
     /// A law with friction angle 0 ≤ φ < π/2 (rad), dilation angle 0 ≤ ψ ≤ φ (rad) and cohesion c ≥ 0 (Pa).
     pub fn new(elastic: Elastic, friction: f64, dilation: f64, cohesion: f64) -> Self {
         let slopes = Slopes { sin_phi: friction.sin(), sin_psi: dilation.sin() };
-        let (moduli, product) = (elastic.moduli(), slopes.sin_phi * slopes.sin_psi);
-        let strength = cohesion * friction.cos();
-        Self {
-            elastic,
-            friction,
-            dilation,
-            cohesion,
-            separation: Separation::default(),
-            moduli,
-            slopes,
-            strength,
-            shift: 2.0 * strength / (1.0 + slopes.sin_phi),
-            slope: 0.5 / (moduli.lambda * product + moduli.mu * (1.0 + product)),
-        }
+        let pyramid = Pyramid::new(elastic.moduli(), slopes, cohesion * friction.cos());
+        Self { elastic, friction, dilation, cohesion, separation: Separation::default(), pyramid }
     }
 
     /// The law with another answer to what comes apart.
     pub fn separating(self, separation: Separation) -> Self {
         Self { separation, ..self }
-    }
-
-    /// Return along `τ = τ_trial - Δγ D m`, `Δγ = f/(4λ sin φ sin ψ + 4μ(1 + sin φ sin ψ))`, and where it keeps the
-    /// order.
-    #[inline(always)]
-    fn face<R: Real>(&self, trial: [R; 3], excess: R) -> ([R; 3], R::Mask) {
-        let (Moduli { lambda, mu }, sin_psi) = (self.moduli, self.slopes.sin_psi);
-        let half = excess * self.slope;
-        let second = trial[1] - half * lambda * sin_psi;
-        let third = trial[2] - half * (lambda * sin_psi - mu * (1.0 - sin_psi));
-        let first = third * self.slopes.ratio() + self.shift;
-        // Beyond the apex f = 0 and the order exclude each other, so this test covers the apex too.
-        ([first, second, third], second.at_most(first) & third.at_most(second))
-    }
-}
-
-impl MohrCoulomb {
-    /// Return to the edge that the face return crosses first, whether that is the right one, and where it is not beyond
-    /// the apex (never when sin φ = 0).
-    #[inline(always)]
-    fn edge<R: Real>(&self, trial: [R; 3]) -> ([R; 3], R::Mask, R::Mask) {
-        let Self { slopes, moduli, shift, .. } = *self;
-        let (upper, lower) = (trial[0] - trial[1], trial[1] - trial[2]);
-        let is_right = (lower * (1.0 + slopes.sin_psi)).below(upper * (1.0 - slopes.sin_psi));
-        let (right, left) = (
-            slopes.right(moduli).third(trial, [shift, 0.0, 0.0]),
-            slopes.left(moduli).third(trial, [shift, shift, 0.0]),
-        );
-        let third = R::choose(is_right, right, left);
-        let first = third * slopes.ratio() + shift;
-        ([first, R::choose(is_right, third, first), third], is_right, third.at_most(first))
     }
 }
 
@@ -158,7 +261,7 @@ impl Law for MohrCoulomb {
 
     #[inline]
     fn moduli(&self) -> Moduli {
-        self.moduli
+        self.pyramid.moduli
     }
 
     fn parameters(&self) -> Vec<f64> {
@@ -171,68 +274,24 @@ impl Law for MohrCoulomb {
         Self::new(elastic, friction, dilation, cohesion).separating(self.separation)
     }
 
-    /// `f = (τ₁ - τ₃) + (τ₁ + τ₃) sin φ - 2 c cos φ`.
     #[inline(always)]
     fn excess<R: Real>(&self, tau: [R; 3], _state: &[R]) -> R {
-        (tau[0] - tau[2]) + (tau[0] + tau[2]) * self.slopes.sin_phi - 2.0 * self.strength
+        self.pyramid.excess(tau)
     }
 
-    /// τ₁ is always taken from τ₃ by f = 0, so the result satisfies yield and order to the last digits even where it
-    /// is much smaller than the trial.
     #[inline(always)]
-    fn project<R: Real>(&self, trial: [R; 3], state: &[R]) -> Projection<R, MohrCoulombReturn<R>> {
-        let Self { slopes, strength, .. } = *self;
-        let excess = self.excess(trial, state);
-        let inside = excess.at_most(excess.like(0.0));
-        let none = inside & !inside;
-        let mut flow = MohrCoulombReturn { left_edge: none, right_edge: none, apex: none, slopes };
-        let mut tau = trial;
-        if R::any(!inside) {
-            let (face, keeps_order) = self.face(trial, excess);
-            tau = three(|k| R::choose(inside, trial[k], face[k]));
-            let beyond = !(inside | keeps_order);
-            if R::any(beyond) {
-                let (edge, is_right, is_edge) = self.edge(trial);
-                flow.right_edge = beyond & is_edge & is_right;
-                flow.left_edge = beyond & is_edge & !is_right;
-                flow.apex = beyond & !is_edge;
-                let tip = excess.like(strength / slopes.sin_phi);
-                tau = three(|k| R::choose(beyond, R::choose(is_edge, edge[k], tip), tau[k]));
-            }
-        }
-        Projection { tau, yields: !inside, flow }
+    fn project<R: Real>(&self, trial: [R; 3], _state: &[R]) -> Projection<R, MohrCoulombReturn<R>> {
+        let (tau, yields, corners) = self.pyramid.project(trial);
+        Projection { tau, yields, flow: MohrCoulombReturn { corners, slopes: self.pyramid.slopes } }
     }
 
     #[inline]
     fn branch(flow: &MohrCoulombReturn<f64>) -> Branch {
-        match flow {
-            MohrCoulombReturn { right_edge: true, .. } => Branch::RightEdge,
-            MohrCoulombReturn { left_edge: true, .. } => Branch::LeftEdge,
-            MohrCoulombReturn { apex: true, .. } => Branch::Apex,
-            _ => Branch::Face,
-        }
+        flow.corners.branch()
     }
 
-    /// On the face `D - (D m)(D n)ᵀ/(n · D m)`, on an edge of direction a `a qᵀ/(q · C a)`, at the apex zero.
     fn tangent(flow: &MohrCoulombReturn<f64>, moduli: Moduli) -> Tensor {
-        let slopes = flow.slopes;
-        match Self::branch(flow) {
-            Branch::Elastic => moduli.tangent(),
-            Branch::Apex => Tensor::zeros(),
-            Branch::Face => {
-                let normal = |sin: f64| [1.0 + sin, 0.0, sin - 1.0];
-                let (n, m) = (normal(slopes.sin_phi), normal(slopes.sin_psi));
-                let (d_n, d_m) = (moduli.stress(n), moduli.stress(m));
-                let product = slopes.sin_phi * slopes.sin_psi;
-                let scale = 4.0 * (moduli.lambda * product + moduli.mu * (1.0 + product));
-                moduli.tangent() - Tensor::from_fn(|i, j| d_m[i] * d_n[j] / scale)
-            }
-            edge => {
-                let edge = if edge == Branch::LeftEdge { slopes.left(moduli) } else { slopes.right(moduli) };
-                let scale = 18.0 * moduli.bulk() * moduli.mu / edge.slope;
-                Tensor::from_fn(|i, j| scale * edge.along[i] * edge.kept[j])
-            }
-        }
+        flow.slopes.tangent(Self::branch(flow), moduli)
     }
 
     fn reduced(self, factor: f64) -> Self {
@@ -250,9 +309,4 @@ impl Law for MohrCoulomb {
     fn separation(&self) -> Separation {
         self.separation
     }
-}
-
-#[inline]
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }

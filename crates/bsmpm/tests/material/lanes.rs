@@ -3,7 +3,7 @@
 use super::{REGIONS, hencky, mohr_coulomb};
 use crate::random::Random;
 use bsmpm::lanes::{self, InLanes, LANES, Lanes, Simd};
-use bsmpm::material::{DruckerPrager, Elastic, Match, Material, VonMises};
+use bsmpm::material::{Decay, DruckerPrager, Elastic, Match, Material, SofteningMohrCoulomb, VonMises};
 use bsmpm::tensor::Symmetric;
 use std::array::from_fn;
 use std::collections::BTreeMap;
@@ -39,6 +39,10 @@ fn laws() -> Vec<Material> {
                 .map(|fit| Material::DruckerPrager(DruckerPrager::new(elastic.clone(), (0.5, 0.2, cohesion), fit))),
         );
     }
+    laws.extend([Decay::Linear, Decay::Exponential].map(|decay| {
+        let (peak, residual) = ((0.6, 0.2, 2.0), (0.4, 0.0, 0.5));
+        Material::SofteningMohrCoulomb(SofteningMohrCoulomb::new(elastic.clone(), peak, residual, 0.05, decay))
+    }));
     laws.extend([0.0, 40.0].map(|hardening| Material::VonMises(VonMises::new(elastic.clone(), 3.0, hardening))));
     laws
 }

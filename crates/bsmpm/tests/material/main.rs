@@ -10,6 +10,7 @@ mod lanes;
 mod projection;
 mod random;
 mod reference;
+mod softening;
 mod stiffness;
 mod tangent;
 mod von_mises;

@@ -1,6 +1,7 @@
 //! What makes a material the law that its `model` names.
 
 use super::{Layer, profile};
+use crate::grid::{GridAxis, GridSpec};
 use crate::record::Record;
 use crate::report::Report;
 use crate::schema::{Dimension, Kind, LawName, MATERIAL};
@@ -62,7 +63,11 @@ fn in_si(key: &str, profile: Profile) -> Profile {
 }
 
 /// The law of a material; `None` after an error.
-pub(super) fn law(record: &Record, layer: Option<&Layer>, report: &mut Report<'_>) -> Option<Parameters> {
+pub(super) fn law(
+    record: &Record,
+    (layer, grid): (Option<&Layer>, Option<&GridSpec>),
+    report: &mut Report<'_>,
+) -> Option<Parameters> {
     let model: LawName = record.word("model")?;
     let (required, known) = model.keys();
     let mut whole = true;
@@ -81,16 +86,71 @@ pub(super) fn law(record: &Record, layer: Option<&Layer>, report: &mut Report<'_
     }
     let mut values = Vec::new();
     for &key in required.iter().chain(known).filter(|key| record.gives(key)) {
-        let Some(Kind::Profile(_, range, _)) = MATERIAL.key(key).map(|key| &key.kind) else { continue };
-        let profile = profile(record, key)?;
+        let (profile, range) = match MATERIAL.key(key).map(|key| &key.kind) {
+            Some(Kind::Profile(_, range, _)) => (profile(record, key)?, range),
+            Some(Kind::Quantity(Dimension::Number, range)) => (Profile::constant(record.number(key)?), range),
+            _ => continue,
+        };
         if let Some(layer) = layer {
             layer.check(record, (key, range), &profile, report);
         }
         values.push((key, profile));
     }
-    let parameters = Parameters { model, values };
+    let mut parameters = Parameters { model, values };
     check(record, &parameters, layer, report)?;
+    if model == LawName::Softening {
+        regularise(record, &mut parameters, grid, report)?;
+        warn_of_collapse(record, &parameters, report);
+    }
     Some(parameters)
+}
+
+/// Cohesion that falls faster than shear stress does where material unloads: the point has no path, it drops at once.
+fn warn_of_collapse(record: &Record, law: &Parameters, report: &mut Report<'_>) {
+    let (Some(young), Some(poisson)) = (profile(record, "young"), record.number("poisson")) else { return };
+    let rate = (law.of("cohesion").value - law.of("residual_cohesion").value) / law.of("softening_strain").value;
+    let shear = 0.5 * young.value / (1.0 + poisson);
+    if rate > 3.0_f64.sqrt() * shear {
+        report.warn(format!(
+            "{}: the cohesion falls by {rate:.3e} Pa per plastic strain, faster than stress falls where the material \
+             unloads ({:.3e} Pa): it drops at once, and the work of a band is too large; use smaller cells or a larger \
+             softening_strain",
+            record.path,
+            3.0_f64.sqrt() * shear
+        ));
+    }
+}
+
+/// The plastic strain of cells for that of a shear band: a band that is one cell wide does the same work in any (crack
+/// band: Bažant and Oh, 1983). `None` after an error.
+fn regularise(record: &Record, law: &mut Parameters, grid: Option<&GridSpec>, report: &mut Report<'_>) -> Option<()> {
+    let Some(width) = record.number("band_width") else {
+        report.warn(format!(
+            "{}: what softens localises in bands one cell wide, so that results depend on the cells; give band_width, \
+             or compare two cell sizes",
+            record.path
+        ));
+        return Some(());
+    };
+    let axes = &grid?.axes;
+    let (shortest, longest) = (
+        axes.iter().map(GridAxis::shortest).fold(f64::INFINITY, f64::min),
+        axes.iter().map(GridAxis::longest).fold(0.0, f64::max),
+    );
+    if longest > 1.01 * shortest {
+        let message = format!("needs square cells of one size, and these measure {shortest} to {longest} m");
+        record.error("band_width", message, report);
+        return None;
+    }
+    let (_, strain) = law.values.iter_mut().find(|(key, _)| *key == "softening_strain")?;
+    let of_band = strain.value;
+    strain.value *= width / longest;
+    report.note(
+        record.path_of("softening_strain"),
+        strain.value.to_string(),
+        format!("{of_band} of a band {width} m wide, in cells of {longest} m"),
+    );
+    Some(())
 }
 
 /// All keys that some laws have and others have not.
@@ -112,6 +172,15 @@ fn check(record: &Record, law: &Parameters, layer: Option<&Layer>, report: &mut 
         profile.bounds(&layer.map_or(profile.at..profile.at, |layer| layer.heights.clone()))
     };
     let (friction, dilation, cohesion) = (bounds("friction"), bounds("dilation"), bounds("cohesion"));
+    let last = ["residual_dilation", "residual_friction"].map(bounds);
+    if law.model == LawName::Softening && last[0].1 > last[1].0 {
+        let message = format!(
+            "{} is out of range; allowed: 0 <= residual_dilation <= residual_friction = {}",
+            last[0].1, last[1].0
+        );
+        record.error("residual_dilation", message, report);
+        return None;
+    }
     if dilation.1 > friction.1 {
         let message = format!("{} is out of range; allowed: 0 <= dilation <= friction = {}", dilation.1, friction.1);
         record.error("dilation", message, report);

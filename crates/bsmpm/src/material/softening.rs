@@ -1,0 +1,293 @@
+//! Mohr-Coulomb plasticity whose strength follows the plastic strain, from a peak to a residual one or the other way
+//! round: the strain-softening model of sensitive and overconsolidated clays and of dense sand.
+//!
+//! In the plastic strain κ, `κ̇ = √(2/3) |dev ε̇ᵖ|`, sin φ, sin ψ and c cos φ go from their first to their last values.
+//! The return is implicit: that of the pyramid at the end of the step, whose κ it makes itself. A strength that falls
+//! has no width of its own: a band of shear is as wide as a cell, and its work as large as that. The regularisation
+//! of the scene scales the strain by the cell (crack band: Bažant and Oh, 1983, Mater. Struct. 16, 155-177).
+
+use super::law::{Branch, Law, Projection, Variable, reduced, split};
+use super::mohr_coulomb::{Corners, Pyramid, Slopes};
+use super::{Elastic, Moduli};
+use crate::real::{Real, three};
+use crate::tensor::Tensor;
+
+/// How the strength follows the plastic strain, over that at which it has its last value.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Decay {
+    /// In proportion, and then no more.
+    #[default]
+    Linear,
+    /// `1 - exp(-3 κ/κ_r)`: 95 % of the way at κ_r.
+    Exponential,
+}
+
+/// Rate of the exponential decay.
+const RATE: f64 = 3.0;
+/// Most evaluations of the return for its own plastic strain: bisection alone needs as many.
+const EVALUATIONS: usize = 80;
+/// Difference between the plastic strain that a strength follows from and that of the return that it leads to that
+/// counts as none: by the latter, and by the elastic strain of the trial, whose digits it comes from.
+const AGREED: [f64; 2] = [1e-13, 1e-14];
+
+/// Mohr-Coulomb's pyramid, of which the strength follows κ.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SofteningMohrCoulomb {
+    elastic: Elastic,
+    moduli: Moduli,
+    peak: Strength,
+    residual: Strength,
+    strain: f64,
+    decay: Decay,
+    first: [f64; 3],  // sin φ, sin ψ, c cos φ (Pa)
+    change: [f64; 3], // from the first to the last
+}
+
+/// φ and ψ in rad, c in Pa.
+type Strength = (f64, f64, f64);
+
+/// What a return leaves.
+#[derive(Clone, Copy, Debug)]
+pub struct SofteningReturn<R: Real> {
+    corners: Corners<R>,
+    /// Pa
+    trial: [R; 3],
+    /// Pa
+    tau: [R; 3],
+    slopes: Slopes<R>,
+    /// Pa  c cos φ
+    strength: R,
+    /// of sin φ, sin ψ and c cos φ (Pa) with κ
+    rates: [R; 3],
+    /// (-)  growth of κ
+    growth: R,
+}
+
+impl SofteningMohrCoulomb {
+    /// A law with the strength `peak` before any plastic strain and `residual` from the plastic strain κ_r > 0 on:
+    /// 0 ≤ φ < π/2 and 0 ≤ ψ ≤ φ (rad), c ≥ 0 (Pa).
+    pub fn new(elastic: Elastic, peak: Strength, residual: Strength, strain: f64, decay: Decay) -> Self {
+        let numbers = |(friction, dilation, cohesion): Strength| {
+            [friction.sin(), dilation.min(friction).sin(), cohesion * friction.cos()]
+        };
+        let (first, last) = (numbers(peak), numbers(residual));
+        let (moduli, change) = (elastic.moduli(), [0, 1, 2].map(|k| last[k] - first[k]));
+        Self { elastic, moduli, peak, residual, strain, decay, first, change }
+    }
+
+    /// How far the strength has come after the plastic strain κ, 0 to 1, and its rate with κ.
+    #[inline(always)]
+    fn progress<R: Real>(&self, kappa: R) -> (R, R) {
+        let (along, none) = (kappa / self.strain, kappa.like(0.0));
+        match self.decay {
+            Decay::Linear => {
+                let softens = along.below(along.like(1.0));
+                let progress = R::choose(softens, along, along.like(1.0));
+                (progress, R::choose(softens, along.like(1.0 / self.strain), none))
+            }
+            Decay::Exponential => {
+                let every = !along.below(none);
+                let left = none.unless(every, [along, none], |[along, _]| (-RATE * along).exp());
+                (left.like(1.0) - left, left * (RATE / self.strain))
+            }
+        }
+    }
+
+    /// The pyramid after the plastic strain κ.
+    #[inline(always)]
+    fn pyramid<R: Real>(&self, kappa: R) -> Pyramid<R> {
+        let (progress, _) = self.progress(kappa);
+        let [sin_phi, sin_psi, strength] = three(|k| progress * self.change[k] + self.first[k]);
+        Pyramid::new(self.moduli, Slopes { sin_phi, sin_psi }, strength)
+    }
+
+    /// The plastic strain of a return, `√(2/3) |dev(τ_trial - τ)|/(2μ)`.
+    #[inline(always)]
+    fn growth<R: Real>(&self, trial: [R; 3], tau: [R; 3]) -> R {
+        split(three(|k| trial[k] - tau[k])).2 * ((2.0_f64 / 3.0).sqrt() / (2.0 * self.moduli.mu))
+    }
+
+    /// The growth of κ that the return with its own strength makes: by secants between bounds, by halves where these
+    /// leave them. Not a number where that finds none.
+    #[inline(always)]
+    fn solve<R: Real>(&self, trial: [R; 3], kappa: R) -> R {
+        let none = kappa.like(0.0);
+        let size = trial[0].magnitude() + trial[1].magnitude() + trial[2].magnitude();
+        let round_off = size * (AGREED[1] / (2.0 * self.moduli.mu));
+        let (mut low, mut high) = (none, none.like(f64::INFINITY));
+        let (mut growth, mut last_growth, mut last_gap) = (none, none, none);
+        let mut found = none.like(f64::NAN);
+        let mut sought = none.at_most(none);
+        for _ in 0..EVALUATIONS {
+            let made = self.growth(trial, self.pyramid(kappa + growth).project(trial).0);
+            let gap = made - growth;
+            // Where strength falls faster than stress does, the bounds meet before the two agree to all digits.
+            let bounded = high.below(none.like(f64::INFINITY));
+            let met = bounded & (high - low).at_most(high * 4e-16);
+            let agrees = gap.magnitude().at_most(made * AGREED[0] + round_off) | met;
+            found = R::choose(sought & agrees, growth, found);
+            sought = sought & !agrees;
+            if !R::any(sought) {
+                break;
+            }
+            low = R::choose(none.below(gap), growth, low);
+            high = R::choose(gap.below(none), growth, high);
+            let slope = (gap - last_gap) / (growth - last_growth);
+            let secant = growth - gap / slope;
+            let middle = R::choose(high.below(none.like(f64::INFINITY)), (low + high) * 0.5, made);
+            let inside = low.below(secant) & secant.below(high);
+            (last_growth, last_gap) = (growth, gap);
+            growth = R::choose(inside, secant, middle);
+        }
+        found
+    }
+}
+
+impl Law for SofteningMohrCoulomb {
+    type Flow<R: Real> = SofteningReturn<R>;
+    const PARAMETERS: &'static [Variable] = &[
+        Variable::new("friction", "rad"),
+        Variable::new("dilation", "rad"),
+        Variable::new("cohesion", "Pa"),
+        Variable::new("residual_friction", "rad"),
+        Variable::new("residual_dilation", "rad"),
+        Variable::new("residual_cohesion", "Pa"),
+        Variable::new("softening_strain", "-"),
+    ];
+    const STATE: &'static [Variable] = &[Variable::new("plastic_shear_strain", "-")];
+
+    fn elastic(&self) -> &Elastic {
+        &self.elastic
+    }
+
+    #[inline]
+    fn moduli(&self) -> Moduli {
+        self.moduli
+    }
+
+    fn parameters(&self) -> Vec<f64> {
+        let Self { peak, residual, strain, .. } = *self;
+        vec![peak.0, peak.1, peak.2, residual.0, residual.1, residual.2, strain]
+    }
+
+    /// ψ is at most φ.
+    fn with(&self, elastic: Elastic, parameters: &[f64]) -> Self {
+        let [friction, dilation, cohesion, last_friction, last_dilation, last_cohesion, strain] = parameters[..7]
+        else {
+            unreachable!("seven numbers")
+        };
+        let (peak, residual) = ((friction, dilation, cohesion), (last_friction, last_dilation, last_cohesion));
+        Self::new(elastic, peak, residual, strain, self.decay)
+    }
+
+    #[inline(always)]
+    fn excess<R: Real>(&self, tau: [R; 3], state: &[R]) -> R {
+        self.pyramid(state[0]).excess(tau)
+    }
+
+    #[inline(always)]
+    fn project<R: Real>(&self, trial: [R; 3], state: &[R]) -> Projection<R, SofteningReturn<R>> {
+        let kappa = state[0];
+        let (_, yields, _) = self.pyramid(kappa).project(trial);
+        let growth = if R::any(yields) { self.solve(trial, kappa) } else { kappa.like(0.0) };
+        let growth = R::choose(yields, growth, kappa.like(0.0));
+        let (pyramid, (_, rate)) = (self.pyramid(kappa + growth), self.progress(kappa + growth));
+        let (projected, _, corners) = pyramid.project(trial);
+        let tau = three(|k| R::choose(yields, projected[k], trial[k]));
+        let rates = three(|k| rate * self.change[k]);
+        let (slopes, strength) = (pyramid.slopes, pyramid.strength);
+        Projection { tau, yields, flow: SofteningReturn { corners, trial, tau, slopes, strength, rates, growth } }
+    }
+
+    #[inline]
+    fn branch(flow: &SofteningReturn<f64>) -> Branch {
+        flow.corners.branch()
+    }
+
+    /// `A + b ⊗ (I - A C) v/(1 + v · C b)`: A of a surface that stays, b = ∂τ/∂κ at a trial that stays, and
+    /// `v = ⅔ dev Δεᵖ/Δκ`, the direction in which plastic strain makes κ grow.
+    fn tangent(flow: &SofteningReturn<f64>, moduli: Moduli) -> Tensor {
+        let perfect = flow.slopes.tangent(Self::branch(flow), moduli);
+        if flow.growth == 0.0 {
+            return perfect;
+        }
+        let along = flow.along(moduli);
+        let plastic = moduli.strain([0, 1, 2].map(|k| flow.trial[k] - flow.tau[k]));
+        let mean = (plastic[0] + plastic[1] + plastic[2]) / 3.0;
+        let v = plastic.map(|strain| (strain - mean) / (1.5 * flow.growth));
+        let scale = 1.0 + dot(v, moduli.strain(along));
+        // v · (dε - C A dε), column by column.
+        let seen = [0, 1, 2].map(|b| v[b] - dot(v, moduli.strain([0, 1, 2].map(|a| perfect[(a, b)]))));
+        perfect + Tensor::from_fn(|a, b| along[a] * seen[b] / scale)
+    }
+
+    fn advance(flow: &SofteningReturn<f64>, state: &mut [f64]) {
+        state[0] += flow.growth;
+    }
+
+    fn reduced(self, factor: f64) -> Self {
+        if factor == 1.0 {
+            return self;
+        }
+        let (peak, residual) = (reduced(self.peak, factor), reduced(self.residual, factor));
+        Self::new(self.elastic, peak, residual, self.strain, self.decay)
+    }
+
+    fn dilation(&self) -> f64 {
+        self.peak.1.max(self.residual.1)
+    }
+}
+
+impl SofteningReturn<f64> {
+    /// `∂τ/∂κ` at a trial that stays, Pa, from `τ = τ_trial - D Σ γ m` and `f = n · τ - 2 c cos φ = 0` of the planes
+    /// that flow: `(n · D m) γ' = n' · τ - 2 (c cos φ)' - n · D m' γ`, `τ' = -D Σ (m γ' + m' γ)`.
+    fn along(&self, moduli: Moduli) -> [f64; 3] {
+        let Slopes { sin_phi, sin_psi } = self.slopes;
+        let planes: &[Plane] = match self.corners.branch() {
+            Branch::Apex => return [(self.rates[2] - self.rates[0] * self.strength / sin_phi) / sin_phi; 3],
+            Branch::RightEdge => &[(0, 2), (0, 1)],
+            Branch::LeftEdge => &[(0, 2), (1, 2)],
+            _ => &[(0, 2)],
+        };
+        let n = |plane: Plane| normal(plane, 1.0 + sin_phi, sin_phi - 1.0);
+        let m = |plane: Plane| normal(plane, 1.0 + sin_psi, sin_psi - 1.0);
+        let grown = |plane: Plane, rate: f64| normal(plane, rate, rate);
+        let solve = |right: &dyn Fn(Plane) -> f64| -> [f64; 2] {
+            let entry = |a: usize, b: usize| dot(n(planes[a]), moduli.stress(m(planes[b])));
+            let first = right(planes[0]);
+            if planes.len() == 1 {
+                return [first / entry(0, 0), 0.0];
+            }
+            let (second, (a, b, c, d)) = (right(planes[1]), (entry(0, 0), entry(0, 1), entry(1, 0), entry(1, 1)));
+            let determinant = a * d - b * c;
+            [(first * d - b * second) / determinant, (a * second - c * first) / determinant]
+        };
+        let stressed = |direction: &dyn Fn(Plane) -> [f64; 3], by: [f64; 2]| {
+            let mut sum = [0.0; 3];
+            for (&plane, factor) in planes.iter().zip(by) {
+                let direction = direction(plane);
+                (0..3).for_each(|k| sum[k] += direction[k] * factor);
+            }
+            moduli.stress(sum)
+        };
+        let multipliers = solve(&|plane| dot(n(plane), self.trial) - 2.0 * self.strength);
+        let turned = stressed(&|plane| grown(plane, self.rates[1]), multipliers);
+        let driven = |plane: Plane| dot(grown(plane, self.rates[0]), self.tau) - 2.0 * self.rates[2];
+        let followed = stressed(&m, solve(&|plane| driven(plane) - dot(n(plane), turned)));
+        [0, 1, 2].map(|k| -followed[k] - turned[k])
+    }
+}
+
+/// The larger and the smaller of the two principal stresses that a plane of the pyramid limits.
+type Plane = (usize, usize);
+
+/// A direction with components in a plane only.
+fn normal((i, j): Plane, larger: f64, smaller: f64) -> [f64; 3] {
+    let mut normal = [0.0; 3];
+    (normal[i], normal[j]) = (larger, smaller);
+    normal
+}
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
