@@ -209,7 +209,7 @@ fn edges(axis: &GridAxis) -> Vec<f64> {
     (0..axis.cells()).map(|i| axis.cell(i)).collect()
 }
 
-/// Whether breakpoints cover the grid, neighbours are as `most` to one at most, and no cell is longer than `longest` (m).
+/// Breakpoints cover the grid, neighbours are as `most` to one at most, no cell is longer than `longest` (m).
 fn assert_sound(case: &Case, corners: [[f64; 2]; 2], longest: f64, most: f64) {
     for (axis, [lower, upper]) in case.grid.axes.iter().zip([0, 1].map(|k| [corners[0][k], corners[1][k]])) {
         let (all, edges) = (breakpoints(axis), edges(axis));
