@@ -16,6 +16,7 @@ use crate::schema::ROOT;
 use crate::source::Source;
 use crate::words::{Accuracy, Order, Word};
 use bsmpm::stabilisation::Stabilisation;
+use cells::Cells;
 use scene::PresetScene;
 
 /// The key.
@@ -108,18 +109,8 @@ pub(crate) fn fill(
     let scene = PresetScene::of(&record);
     let mut filling = Filling { document, origin, accuracy, report, filled: false };
     filling.put("grid", &["order"], &quoted(ORDER), "");
-    let (cells, mut points) = (scene.cells(preset), preset.points);
-    match &cells {
-        Some(cells) => {
-            if filling.put("grid", &cells.keys, &cells.value, &cells.why) {
-                cells.sizes.iter().for_each(|(value, why)| filling.tell("grid.knots", value, why));
-                filling.doubt(scene.too_thin(cells, FEWEST));
-                points = if cells.is_graded() { preset.points.max(GRADED_POINTS) } else { preset.points };
-            }
-        }
-        None => filling.miss("grid", &["cell", "knots"], cells::CELLS),
-    }
-    filling.points(points);
+    let cells = scene.cells(preset);
+    filling.cells(cells.as_ref(), &scene, preset);
     // The cells that a case gives by hand count, too.
     match scene.steps(preset, cells.as_ref().map(|cells| cells.edge)) {
         Some((steps, why)) => {
@@ -196,6 +187,22 @@ impl Filling<'_, '_> {
                 self.report.error(self.origin, ACCURACY, reason);
             }
         }
+    }
+
+    /// Gives the grid cells, unless it has some, tells their sizes, and gives bodies points to suit them.
+    fn cells(&mut self, cells: Option<&Cells>, scene: &PresetScene<'_>, preset: &Preset) {
+        let mut points = preset.points;
+        match cells {
+            Some(cells) => {
+                if self.put("grid", &cells.keys, &cells.value, &cells.why) {
+                    cells.sizes.iter().for_each(|(value, why)| self.tell("grid.knots", value, why));
+                    self.doubt(scene.too_thin(cells, FEWEST));
+                    points = if cells.is_graded() { points.max(GRADED_POINTS) } else { points };
+                }
+            }
+            None => self.miss("grid", &["cell", "knots"], cells::CELLS),
+        }
+        self.points(points);
     }
 
     /// Warns of a body whose shorter side (m) has too few cells of an edge (m).
