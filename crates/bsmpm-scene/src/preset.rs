@@ -4,6 +4,8 @@
 //! The presets are defined here and nowhere else.
 #![doc = include_str!("preset.md")]
 
+mod axis;
+mod cells;
 mod scene;
 
 use crate::document::{self, DocumentEntry, Node, Table, Value};
@@ -14,6 +16,7 @@ use crate::schema::ROOT;
 use crate::source::Source;
 use crate::words::{Accuracy, Order, Word};
 use bsmpm::stabilisation::Stabilisation;
+use cells::Cells;
 use scene::PresetScene;
 
 /// The key.
@@ -23,13 +26,17 @@ const ACCURACY: &str = "accuracy";
 struct Preset {
     /// Cells along the shorter side of the rectangle around all bodies.
     across: f64,
-    /// Cells along the shortest strip or loaded segment: the finer of both counts.
+    /// Cells along the width of a strip or loaded segment, where these are smaller.
     along: f64,
+    /// Parts of that width as far as which cells around it are as small.
+    reach: f64,
+    /// Edge of a cell over that of the next smaller one, farther away.
+    growth: f64,
     /// Points along each axis of a cell.
     points: u64,
     /// Cells that a shear wave crosses in a step of dynamics.
     crossed: f64,
-    /// Part of a cell that what is moved may move in a quasi-static step.
+    /// Part of a cell that a face may move in a quasi-static step.
     advance: f64,
     /// Quasi-static steps at least.
     steps: f64,
@@ -42,7 +49,9 @@ impl Preset {
         match accuracy {
             Accuracy::Draft => Self {
                 across: 10.0,
-                along: 4.0,
+                along: 8.0,
+                reach: 0.125,
+                growth: 1.5,
                 points: 2,
                 crossed: 4.0,
                 advance: 0.25,
@@ -51,7 +60,9 @@ impl Preset {
             },
             Accuracy::Standard => Self {
                 across: 20.0,
-                along: 8.0,
+                along: 16.0,
+                reach: 0.25,
+                growth: 1.2,
                 points: 3,
                 crossed: 4.0,
                 advance: 0.25,
@@ -60,7 +71,9 @@ impl Preset {
             },
             Accuracy::Reference => Self {
                 across: 40.0,
-                along: 12.0,
+                along: 24.0,
+                reach: 0.5,
+                growth: 1.1,
                 points: 4,
                 crossed: 2.0,
                 advance: 0.125,
@@ -70,6 +83,10 @@ impl Preset {
         }
     }
 }
+
+/// Points along each axis at least of cells of several sizes: with two the strains under a strip move them so far apart
+/// that iterations stall.
+const GRADED_POINTS: u64 = 3;
 
 /// Cells across the thinnest body below which a warning is told.
 const FEWEST: f64 = 2.0;
@@ -93,15 +110,7 @@ pub(crate) fn fill(
     let mut filling = Filling { document, origin, accuracy, report, filled: false };
     filling.put("grid", &["order"], &quoted(ORDER), "");
     let cells = scene.cells(preset);
-    match &cells {
-        Some(cells) => {
-            if filling.put("grid", &cells.keys, &cells.value, &cells.why) {
-                filling.doubt(cells.edge, scene.thinnest());
-            }
-        }
-        None => filling.miss("grid", &["cell", "knots"], scene::CELLS),
-    }
-    filling.points(preset.points);
+    filling.cells(cells.as_ref(), &scene, preset);
     // The cells that a case gives by hand count, too.
     match scene.steps(preset, cells.as_ref().map(|cells| cells.edge)) {
         Some((steps, why)) => {
@@ -180,9 +189,25 @@ impl Filling<'_, '_> {
         }
     }
 
-    /// Warns of cells (m) that are too wide for the thinnest body.
-    fn doubt(&mut self, cell: f64, thinnest: Option<f64>) {
-        if let Some(side) = thinnest.filter(|side| *side < FEWEST * cell) {
+    /// Gives the grid cells, unless it has some, tells their sizes, and gives bodies points to suit them.
+    fn cells(&mut self, cells: Option<&Cells>, scene: &PresetScene<'_>, preset: &Preset) {
+        let mut points = preset.points;
+        match cells {
+            Some(cells) => {
+                if self.put("grid", &cells.keys, &cells.value, &cells.why) {
+                    cells.sizes.iter().for_each(|(value, why)| self.tell("grid.knots", value, why));
+                    self.doubt(scene.too_thin(cells, FEWEST));
+                    points = if cells.is_graded() { points.max(GRADED_POINTS) } else { points };
+                }
+            }
+            None => self.miss("grid", &["cell", "knots"], cells::CELLS),
+        }
+        self.points(points);
+    }
+
+    /// Warns of a body whose shorter side (m) has too few cells of an edge (m).
+    fn doubt(&mut self, thin: Option<(f64, f64)>) {
+        if let Some((side, cell)) = thin {
             let name = self.accuracy;
             self.report.warn(format!(
                 "{ACCURACY}: the cells of {cell} m of \"{name}\" are fewer than {FEWEST} across a body of {side} m; give grid.cell"

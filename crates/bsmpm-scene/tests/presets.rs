@@ -1,7 +1,7 @@
 //! `accuracy`: what it fills in, from which parts of a scene, and that everything given by hand wins.
 
 use bsmpm::stabilisation::Stabilisation;
-use bsmpm_scene::{Case, Error, Place, differences};
+use bsmpm_scene::{Case, Error, GridAxis, Place, differences, seed};
 
 const COLUMN: &str = include_str!("../../../cases/presets/column_collapse.toml");
 const SLOPE: &str = include_str!("../../../cases/presets/slope_stability.toml");
@@ -27,15 +27,16 @@ fn every_word_fills_in_another_discretisation_of_the_same_scene() {
     for text in [COLUMN, SLOPE, FOOTING] {
         let [draft, standard, reference] = ["draft", "standard", "reference"].map(|word| of(text, word));
         assert!(draft.1 > standard.1 && standard.1 > reference.1, "{draft:?} {standard:?} {reference:?}");
-        assert!(draft.2 < standard.2 && standard.2 < reference.2);
+        assert!(draft.2 <= standard.2 && standard.2 < reference.2);
         assert!(draft.3 >= standard.3 && standard.3 > reference.3);
         assert!(draft.4 > standard.4 && standard.4 > reference.4);
     }
-    // The shorter side of the column is .1 m high, that of the slope 10 m, and the strip is 1 m wide.
+    // The shorter side of the column is .1 m high, that of the slope 10 m, and the strip is half of one 2 m wide.
     let cells = |text, word| of(text, word).0;
     assert_eq!([cells(COLUMN, "draft"), cells(COLUMN, "standard"), cells(COLUMN, "reference")], [55, 110, 220]);
     assert_eq!([cells(SLOPE, "draft"), cells(SLOPE, "standard"), cells(SLOPE, "reference")], [40, 80, 160]);
-    assert_eq!([cells(FOOTING, "draft"), cells(FOOTING, "standard"), cells(FOOTING, "reference")], [40, 80, 120]);
+    assert_eq!([cells(FOOTING, "draft"), cells(FOOTING, "standard"), cells(FOOTING, "reference")], [15, 32, 61]);
+    assert_eq!([of(SLOPE, "draft").2, of(COLUMN, "draft").2, of(FOOTING, "draft").2], [2, 2, 3]);
     assert_eq!(valid(COLUMN, &[]).stabilisation, Stabilisation::ConsistentFBar);
 }
 
@@ -56,21 +57,31 @@ fn steps_follow_the_shear_wave_the_motion_or_the_least_number() {
     assert!((column.analysis.dt / graded.analysis.dt - 2.0_f64.sqrt()).abs() < 0.01);
     let steps = |case: &Case| (case.analysis.end / case.analysis.dt).round();
     assert_eq!(steps(&valid(SLOPE, &["accuracy=draft"])), 10.0);
-    // 2 m down in quarters of cells of .25 m; the fastest part of a path counts, up to the end.
-    assert_eq!(steps(&valid(FOOTING, &["accuracy=draft"])), 32.0);
+    // 2 m down in tenths of cells of .25 m; the fastest part of a path counts, up to the end.
+    assert_eq!(steps(&valid(FOOTING, &["accuracy=draft"])), 80.0);
     let path = "footing.path=[[0.5, 0.0, -2.0], [1.0, 0.0, 0.0]]";
-    assert_eq!(steps(&valid(FOOTING, &["accuracy=draft", path])), 64.0);
+    assert_eq!(steps(&valid(FOOTING, &["accuracy=draft", path])), 160.0);
     let early = "footing.path=[[0.1, 0.0, -2.0], [0.9, 0.0, -2.0], [1.0, 0.0, -2.1]]";
-    assert_eq!(steps(&valid(FOOTING, &["accuracy=draft", early])), 320.0);
+    assert_eq!(steps(&valid(FOOTING, &["accuracy=draft", early])), 800.0);
     let late = "footing.path=[[1.0, 0.0, -2.0], [1.1, 0.0, -9.0]]";
-    assert_eq!(steps(&valid(FOOTING, &["accuracy=draft", late])), 32.0);
+    assert_eq!(steps(&valid(FOOTING, &["accuracy=draft", late])), 80.0);
+    // A face may move a quarter of a cell (of 20 mm).
+    let face = "prescribed.0={ face = \"top\", displacement = [0.0, -0.1], components = \"normal\" }";
+    let pressed = [
+        "analysis={ type = \"quasi-static\" }",
+        "grid.upper=[0.55, 0.1]",
+        "output.times=[1.0]",
+        "gravity.ramp=1.0",
+        face,
+    ];
+    assert_eq!(steps(&valid(COLUMN, &[&pressed[..], &["accuracy=draft", "grid.cell=10 mm"]].concat())), 40.0);
     // What no body is made of does not count.
     let unused = [
         "accuracy=draft",
         "material.steel={ model = \"tresca\", young = 2e11, poisson = 0.3, cohesion = 1e8, density = 7800.0 }",
     ];
     assert_eq!(valid(COLUMN, &unused).analysis.dt, valid(COLUMN, &unused[..1]).analysis.dt);
-    assert_eq!(steps(&valid(FOOTING, &["accuracy=draft", "footing.velocity=[0.0, -1.0]"])), 16.0);
+    assert_eq!(steps(&valid(FOOTING, &["accuracy=draft", "footing.velocity=[0.0, -1.0]"])), 40.0);
 }
 
 #[test]
@@ -189,19 +200,108 @@ fn errors_have_a_place() {
     assert!(errors.iter().any(|error| error.message.contains("missing: one of cell, knots")), "{errors:?}");
 }
 
+/// m  the breakpoints of an axis, in the case's coordinates
+fn breakpoints(axis: &GridAxis) -> Vec<f64> {
+    (0..=axis.cells()).map(|i| axis.lower() + axis.breakpoint(i)).collect()
+}
+
+fn edges(axis: &GridAxis) -> Vec<f64> {
+    (0..axis.cells()).map(|i| axis.cell(i)).collect()
+}
+
+/// Breakpoints cover the grid, neighbours are as `most` to one at most, no cell is longer than `longest` (m).
+fn assert_sound(case: &Case, corners: [[f64; 2]; 2], longest: f64, most: f64) {
+    for (axis, [lower, upper]) in case.grid.axes.iter().zip([0, 1].map(|k| [corners[0][k], corners[1][k]])) {
+        let (all, edges) = (breakpoints(axis), edges(axis));
+        assert!(all[0] == lower && all[all.len() - 1] == upper && all.is_sorted(), "{all:?}");
+        assert!((edges.iter().sum::<f64>() - (upper - lower)).abs() < 1e-12 * (upper - lower));
+        let ratio = |pair: &[f64]| (pair[1] / pair[0]).max(pair[0] / pair[1]);
+        assert!(edges.windows(2).all(|pair| ratio(pair) <= most), "{edges:?}");
+        assert!(edges.iter().all(|edge| *edge <= longest), "{edges:?}");
+    }
+}
+
+/// Whether each of the cells between two places is `edge` long (m), with grid lines at both places.
+fn is_fine(axis: &GridAxis, [lower, upper]: [f64; 2], edge: f64) -> bool {
+    let inside: Vec<f64> = breakpoints(axis).into_iter().filter(|at| (lower..=upper).contains(at)).collect();
+    let ends = inside.first() == Some(&lower) && inside.last() == Some(&upper);
+    ends && inside.windows(2).all(|pair| (pair[1] - pair[0] - edge).abs() < 1e-9)
+}
+
+#[test]
+fn cells_are_small_around_a_strip_and_on_its_way_and_grow_away_from_it() {
+    for (word, edge, reach, longest, growth) in
+        [("draft", 0.25, 0.25, 1.0, 1.5), ("standard", 0.125, 0.5, 0.5, 1.2), ("reference", 1.0 / 12.0, 1.0, 0.25, 1.1)]
+    {
+        let case = valid(FOOTING, &[&format!("accuracy={word}")]);
+        let [x, y] = &case.grid.axes;
+        assert_sound(&case, [[0.0, 0.0], [10.0, 12.0]], 1.1 * longest, 1.15 * growth);
+        // From the strip's axis to beyond its end; from below its last place to above its first, all breakpoints.
+        assert!(is_fine(x, [0.0, 1.0], edge) && is_fine(x, [1.0, 1.0 + reach], edge), "{x:?}");
+        assert!(is_fine(y, [8.0 - reach, 10.0], edge) && is_fine(y, [10.0, 10.0 + reach], edge), "{y:?}");
+        assert!(x.longest() > 2.5 * edge && y.longest() > 2.5 * edge);
+        assert!(case.warnings.is_empty(), "{:?}", case.warnings);
+        // Sizes, places and reasons are told.
+        let told: Vec<_> = case.notes.iter().filter(|note| note.key == "grid.knots").collect();
+        let [all, zone, rest] = &told[..] else { panic!("{told:?}") };
+        assert!(all.reason.contains("across the 10 m of the bodies") && all.reason.contains(&growth.to_string()));
+        assert!(zone.value.contains(&format!("x = 0 to {}, y = {} to {}", 1.0 + reach, 8.0 - reach, 10.0 + reach)));
+        assert!(zone.reason.contains("the width of footing, 2 m, 1 m cut at a roller"), "{}", zone.reason);
+        assert!(rest.value.starts_with("up to ") && rest.value.ends_with(" elsewhere"), "{}", rest.value);
+        // Points fill the ground, whose volume does not depend on the cells; the estimate counts them.
+        let seeds: Vec<f64> = seed(&case, 0..x.cells()).map(|seed| seed.volume).collect();
+        assert_eq!(case.estimate().points, seeds.len() as u64);
+        assert!((seeds.iter().sum::<f64>() - 100.0).abs() < 1e-9);
+    }
+}
+
+/// What is small follows each strip or load and its way, not the shortest of them.
+#[test]
+fn every_strip_and_load_has_small_cells_of_its_own() {
+    let load = "traction.0={ from = [6.0, 10.0], to = [6.5, 10.0], stress = [0.0, -100.0], ramp = 1.0 }";
+    let case = valid(FOOTING, &[load]);
+    let [x, y] = &case.grid.axes;
+    assert!(is_fine(x, [0.0, 1.5], 0.125) && is_fine(x, [6.0, 6.5], 0.03125), "{x:?}");
+    assert!(is_fine(y, [9.875, 10.0], 0.03125), "{y:?}");
+    assert_sound(&case, [[0.0, 0.0], [10.0, 12.0]], 0.55, 1.5);
+    let told = |case: &Case| case.notes.iter().filter(|note| note.key == "grid.knots").count();
+    assert_eq!(told(&case), 4);
+    // A strip between two others' rollers is no half, and a wide one asks for no smaller cells than the bodies do.
+    let wide = valid(FOOTING, &["footing.to=[10.0, 10.0]"]);
+    assert_eq!((told(&wide), wide.grid.axes[0].cells()), (0, 20));
+    let whole = valid(FOOTING, &["footing.from=[4.0, 10.0]", "footing.to=[6.0, 10.0]"]);
+    assert!(is_fine(&whole.grid.axes[0], [3.5, 6.5], 0.125), "{:?}", whole.grid.axes[0]);
+    // A wall beside the soil, and its way until the end.
+    let wall = "footing={ from = [5.0, 8.0], to = [5.0, 10.0], path = [[0.5, -1.0, 0.0], [1.5, 1.0, 0.0]] }";
+    let pushed = valid(FOOTING, &[wall]);
+    assert!(is_fine(&pushed.grid.axes[0], [3.5, 5.0], 0.125) && is_fine(&pushed.grid.axes[0], [5.0, 5.5], 0.125));
+    assert!(is_fine(&pushed.grid.axes[1], [7.5, 8.0], 0.125), "{:?}", pushed.grid.axes[1]);
+    // By hand, cells stay as they are.
+    let by_hand = valid(FOOTING, &["grid.cell=0.5"]);
+    assert_eq!((told(&by_hand), edges(&by_hand.grid.axes[0])), (0, vec![0.5; 20]));
+}
+
+/// So many breakpoints are the author's to ask for.
+#[test]
+fn a_strip_too_small_for_its_grid_is_told() {
+    let tiny = ["footing.from=[4.0, 10.0]", "footing.to=[4.00001, 10.0]"];
+    let errors = read(FOOTING, &tiny).unwrap_err();
+    assert!(errors.iter().any(|error| error.message.contains("1e5 along an axis at most")), "{errors:?}");
+}
+
 #[test]
 fn cells_are_moved_to_where_strips_end_and_materials_meet() {
-    // Cells of .25 m from 0; the strip begins at .3 m and ends at 1.3 m.
-    let aside = "footing.from=[0.3, 5.0]";
-    let moved = valid(FOOTING, &["accuracy=draft", aside, "footing.to=[1.3, 5.0]"]);
+    // Equal cells of 1 m from 0: the strip, from 1.2 to 9.3 m, is wide enough for them.
+    let aside = "footing.from=[1.2, 5.0]";
+    let moved = valid(FOOTING, &["accuracy=draft", aside, "footing.to=[9.3, 5.0]"]);
     let x = &moved.grid.axes[0];
     let is_line = |wanted: f64| (0..=x.cells()).any(|i| (x.breakpoint(i) - wanted).abs() < 1e-12);
-    assert!(is_line(0.3) && is_line(1.3));
+    assert!(is_line(1.2) && is_line(9.3));
     let cells: Vec<f64> = (0..x.cells()).map(|i| x.cell(i)).collect();
-    assert!(cells.iter().all(|cell| (0.5..=1.5).contains(&(cell / 0.25))), "{cells:?}");
+    assert!(cells.iter().all(|cell| (0.5..=1.5).contains(cell)), "{cells:?}");
     assert_eq!(moved.grid.lines[0].len(), 2);
     assert!(moved.warnings.is_empty(), "{:?}", moved.warnings);
     // By hand, nothing is moved, and it is told.
-    let by_hand = valid(FOOTING, &["accuracy=draft", aside, "footing.to=[1.3, 5.0]", "grid.cell=0.25"]);
+    let by_hand = valid(FOOTING, &["accuracy=draft", aside, "footing.to=[9.3, 5.0]", "grid.cell=1.0"]);
     assert!(by_hand.warnings.iter().any(|told| told.contains("lies inside a cell")), "{:?}", by_hand.warnings);
 }

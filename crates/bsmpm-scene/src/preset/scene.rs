@@ -1,27 +1,13 @@
 //! What of a scene a preset's cells and steps follow from, read from a record in which much may be missing.
 
 use super::Preset;
-use crate::record::Record;
+use super::cells::Cells;
+use crate::record::{ListRow, Record};
 use crate::region;
 use crate::schema::LawName;
 use crate::validate::{NEARLY_INCOMPRESSIBLE, STANDARD_GRAVITY};
-use crate::words::{Side, Support, Word};
 use bsmpm::model::Regime;
 
-/// Cells that a preset chooses.
-pub(super) struct Cells {
-    /// the key that says so, and its rival
-    pub keys: [&'static str; 2],
-    /// TOML
-    pub value: String,
-    /// m  the shorter edge
-    pub edge: f64,
-    pub why: String,
-}
-
-/// What cells follow from.
-pub(super) const CELLS: &str = "the size of the bodies, or the length of the shortest strip or loaded segment, the grid's corners \
-                                and [boundary]";
 /// What steps follow from.
 pub(super) const STEPS: &str = "`type`, the cells and, in dynamics, `end` and young, poisson and density of the bodies' \
                                 materials, in statics what is moved; 1e8 at most";
@@ -29,9 +15,29 @@ pub(super) const STEPS: &str = "`type`, the cells and, in dynamics, `end` and yo
 /// Steps at most that are filled in: more are the author's to ask for.
 const MOST_STEPS: f64 = 1e8;
 
+/// Part of a cell that a strip may move in a quasi-static step: with more, soil at its ends yields so far at once that
+/// secants stall, and Newton's method costs more than the steps saved.
+const STRIP_ADVANCE: f64 = 0.1;
+
 /// A case as far as it is written.
 pub(super) struct PresetScene<'a> {
-    root: &'a Record,
+    pub root: &'a Record,
+}
+
+/// A strip or a loaded segment.
+pub(super) struct Segment<'a> {
+    pub name: String,
+    record: &'a Record,
+    /// m
+    pub ends: [[f64; 2]; 2],
+}
+
+impl Segment<'_> {
+    /// The axis that it lies along, if it does.
+    pub(super) fn along(&self) -> Option<usize> {
+        let [from, to] = self.ends;
+        [0, 1].into_iter().find(|&axis| from[1 - axis] == to[1 - axis])
+    }
 }
 
 impl<'a> PresetScene<'a> {
@@ -39,74 +45,15 @@ impl<'a> PresetScene<'a> {
         Self { root }
     }
 
-    /// The cells. Along an axis between two faces that stay they come out whole.
-    pub(super) fn cells(&self, preset: &Preset) -> Option<Cells> {
-        let (size, why) = self.size(preset)?;
-        let (grid, boundary) = (self.root.record("grid")?, self.root.record("boundary")?);
-        let (lower, upper) = (grid.pair("lower")?, grid.pair("upper")?);
-        let moved: Vec<Side> =
-            self.root.records("prescribed").iter().filter_map(|motion| motion.word("face")).collect();
-        let edge = |axis: usize| {
-            let length = upper[axis] - lower[axis];
-            let gives_way = |side: Side| boundary.word(side.word()) == Some(Support::Free) && !moved.contains(&side);
-            if Side::ALL[axis].into_iter().any(gives_way) { size } else { length / (length / size).round().max(1.0) }
+    /// m  the shorter side of the first body across which there are fewer than so many cells, and the edge of these
+    pub(super) fn too_thin(&self, cells: &Cells, fewest: f64) -> Option<(f64, f64)> {
+        let thin = |[lower, upper]: [[f64; 2]; 2]| {
+            let [x, y] = [0, 1].map(|axis| upper[axis] - lower[axis]);
+            let axis = usize::from(y < x);
+            (x.min(y), cells.longest(axis, [lower[axis], upper[axis]]))
         };
-        let [x, y] = [edge(0), edge(1)];
-        let sound = |edge: f64| edge > 0.0 && edge.is_finite();
-        if !sound(x) || !sound(y) {
-            return None;
-        }
-        let wanted = self.wanted();
-        let on_line = |axis: usize, edge: f64| {
-            let off = |at: &f64| ((at - lower[axis]) / edge - ((at - lower[axis]) / edge).round()).abs();
-            let inside = |at: &&f64| (lower[axis]..=upper[axis]).contains(*at);
-            wanted[axis].iter().filter(inside).all(|at| off(at) <= ON_LINE)
-        };
-        if on_line(0, x) && on_line(1, y) {
-            let value = if x == y { format!("{x:?}") } else { format!("[{x:?}, {y:?}]") };
-            return Some(Cells { keys: ["cell", "knots"], value, edge: x.min(y), why });
-        }
-        let knots = [0, 1].map(|axis| knots([lower[axis], upper[axis]], [x, y][axis], &wanted[axis]));
-        let shortest = |knots: &Vec<f64>| knots.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
-        let edge = shortest(&knots[0]).min(shortest(&knots[1]));
-        let why = format!("{why}, moved by up to half a cell to where materials meet and strips and loads end");
-        let value = format!("{{ x = {:?}, y = {:?} }}", knots[0], knots[1]);
-        (edge > 0.0).then_some(Cells { keys: ["knots", "cell"], value, edge, why })
-    }
-
-    /// m  places along x and y at which a grid line is wanted: ends of strips and loaded segments, then sides of
-    /// bodies, if these are of several materials.
-    fn wanted(&self) -> [Vec<f64>; 2] {
-        let mut wanted = [Vec::new(), Vec::new()];
-        for [from, to] in self.segments() {
-            let along = [0, 1].into_iter().find(|&axis| from[1 - axis] == to[1 - axis]);
-            along.into_iter().for_each(|axis| wanted[axis].extend([from[axis], to[axis]]));
-        }
-        if self.materials().count() > 1 {
-            for (a, b) in self.root.records("body").iter().flat_map(sides) {
-                let across = [0, 1].into_iter().find(|&axis| a[axis] == b[axis]);
-                across.into_iter().for_each(|axis| wanted[axis].push(a[axis]));
-            }
-        }
-        wanted
-    }
-
-    /// m  the shorter side of the thinnest body's rectangle
-    pub(super) fn thinnest(&self) -> Option<f64> {
-        let side = |[lower, upper]: [[f64; 2]; 2]| (upper[0] - lower[0]).min(upper[1] - lower[1]);
-        self.root.records("body").iter().filter_map(around).map(side).reduce(f64::min)
-    }
-
-    /// m  what the preset wants, and why
-    fn size(&self, preset: &Preset) -> Option<(f64, String)> {
-        let [lower, upper] = self.bounds()?;
-        let side = (upper[0] - lower[0]).min(upper[1] - lower[1]);
-        let of_bodies = side / preset.across;
-        let strip = self.segments().map(|[from, to]| (to[0] - from[0]).hypot(to[1] - from[1])).reduce(f64::min);
-        Some(match strip.map(|length| (length, length / preset.along)).filter(|(_, size)| *size < of_bodies) {
-            Some((length, size)) => (size, format!("{} along the strip or load of {length} m", preset.along)),
-            None => (of_bodies, format!("{} across the {side} m of the bodies", preset.across)),
-        })
+        let bodies = self.root.records("body").iter().filter_map(around).map(thin);
+        bodies.filter(|(side, edge)| *side < fewest * edge).min_by(|a, b| a.0.total_cmp(&b.0))
     }
 
     /// Number of steps for cells whose shorter edge is `chosen` (m), unless the case gives its own, and why.
@@ -119,7 +66,9 @@ impl<'a> PresetScene<'a> {
                 (way / (crossed * cell), format!("a shear wave crosses {crossed} cells in each"))
             }
             Regime::QuasiStatic => {
-                let (steps, advance) = (self.fastest() / (preset.advance * cell), preset.advance);
+                let steps = |moved: (f64, f64)| moved.0 / (moved.1 * cell);
+                let moved = self.moved(preset).reduce(|a, b| if steps(b) > steps(a) { b } else { a });
+                let (steps, advance) = moved.map_or((0.0, 0.0), |moved| (steps(moved), moved.1));
                 if steps > preset.steps {
                     (steps, format!("what is moved moves {advance} cells in each at most"))
                 } else {
@@ -143,17 +92,23 @@ impl<'a> PresetScene<'a> {
     }
 
     /// m  corners of the rectangle around all bodies, whatever is cut out of them
-    fn bounds(&self) -> Option<[[f64; 2]; 2]> {
+    pub(super) fn bounds(&self) -> Option<[[f64; 2]; 2]> {
         let corners: Option<Vec<[[f64; 2]; 2]>> = self.root.records("body").iter().map(around).collect();
         let corners = corners?.concat();
         (!corners.is_empty()).then(|| region::bounds(&corners))
     }
 
-    /// Ends of strips and loaded segments.
-    fn segments(&self) -> impl Iterator<Item = [[f64; 2]; 2]> + '_ {
-        let listed = ["prescribed", "traction"].into_iter().flat_map(|table| self.root.records(table));
-        let ends = |record: &Record| Some([record.pair("from")?, record.pair("to")?]);
-        self.root.record("footing").into_iter().chain(listed).filter_map(ends)
+    /// Strips and loaded segments.
+    pub(super) fn segments(&self) -> impl Iterator<Item = Segment<'a>> + '_ {
+        let root = self.root;
+        let listed = ["prescribed", "traction"].into_iter().flat_map(move |table| {
+            let named = move |(number, record)| (format!("{table}.{number}"), record);
+            root.records(table).iter().enumerate().map(named)
+        });
+        let footing = root.record("footing").map(|record| ("footing".to_owned(), record));
+        footing.into_iter().chain(listed).filter_map(|(name, record)| {
+            Some(Segment { name, record, ends: [record.pair("from")?, record.pair("to")?] })
+        })
     }
 
     /// m  shortest edge of the cells that the case gives, if it does
@@ -167,27 +122,52 @@ impl<'a> PresetScene<'a> {
         axes.flat_map(|axis| axis.windows(2).map(|pair| pair[1] - pair[0])).reduce(f64::min).filter(|edge| *edge > 0.0)
     }
 
-    /// m  what is moved at its fastest would come so far in the whole run
-    fn fastest(&self) -> f64 {
-        let end = self.root.record("analysis").and_then(|analysis| analysis.number("end")).unwrap_or(1.0);
+    /// m  how far each strip or face would come in the whole run at its fastest; part of a cell that it may in a step
+    fn moved(&self, preset: &Preset) -> impl Iterator<Item = (f64, f64)> {
+        let end = self.end();
         let norm = |[x, y]: [f64; 2]| x.hypot(y);
-        let way = |record: &Record| -> f64 {
-            let rows = record.rows("path").unwrap_or_default().iter().map(|row| &row.numbers[..]);
-            let places: Vec<&[f64]> = std::iter::once(&[0.0; 3][..]).chain(rows).collect();
-            let speed = |pair: &[&[f64]]| {
-                let [t, x, y] = [0, 1, 2].map(|k| pair[1][k] - pair[0][k]);
-                if t > 0.0 && pair[0][0] < end { norm([x, y]) / t } else { 0.0 }
+        let (of_strips, of_faces) = (STRIP_ADVANCE, preset.advance);
+        let moved = self.root.record("footing").into_iter().chain(self.root.records("prescribed"));
+        moved.map(move |record| {
+            let places = rows(record);
+            let speed = |pair: &[(f64, [f64; 2])]| {
+                let ([from, to], t) = ([pair[0], pair[1]], pair[1].0 - pair[0].0);
+                let way = [0, 1].map(|k| to.1[k] - from.1[k]);
+                if t > 0.0 && from.0 < end { norm(way) / t } else { 0.0 }
             };
             let path = places.windows(2).map(speed).fold(0.0, f64::max) * end;
             let steady = record.pair("velocity").map_or(0.0, norm) * end;
-            path + steady + record.pair("displacement").map_or(0.0, norm)
-        };
-        let moved = self.root.record("footing").into_iter().chain(self.root.records("prescribed"));
-        moved.map(way).fold(0.0, f64::max)
+            let way = path + steady + record.pair("displacement").map_or(0.0, norm);
+            (way, if record.pair("from").is_some() { of_strips } else { of_faces })
+        })
+    }
+
+    /// m  where the ends of a strip come to in the run, at every change of its speed
+    pub(super) fn places(&self, segment: &Segment<'_>) -> Vec<[f64; 2]> {
+        let (end, record) = (self.end(), segment.record);
+        let mut moved = vec![[0.0; 2]];
+        for pair in rows(record).windows(2).filter(|pair| pair[0].0 < end && pair[1].0 > pair[0].0) {
+            let part = ((end - pair[0].0) / (pair[1].0 - pair[0].0)).min(1.0);
+            moved.push([0, 1].map(|k| pair[0].1[k] + part * (pair[1].1[k] - pair[0].1[k])));
+        }
+        moved.extend(record.pair("velocity").map(|velocity| velocity.map(|v| v * end)));
+        moved.extend(record.pair("displacement"));
+        let places = |way: [f64; 2]| segment.ends.map(|at| [at[0] + way[0], at[1] + way[1]]);
+        moved.into_iter().flat_map(places).collect()
+    }
+
+    /// m  ends of the straight sides of all bodies
+    pub(super) fn sides(&self) -> impl Iterator<Item = ([f64; 2], [f64; 2])> {
+        self.root.records("body").iter().flat_map(sides)
+    }
+
+    /// s  the end, or what it is of pseudo-time
+    fn end(&self) -> f64 {
+        self.root.record("analysis").and_then(|analysis| analysis.number("end")).unwrap_or(1.0)
     }
 
     /// Materials that bodies are made of.
-    fn materials(&self) -> impl Iterator<Item = &Record> {
+    pub(super) fn materials(&self) -> impl Iterator<Item = &Record> {
         let bodies = self.root.records("body");
         let is_used = move |name: &str| bodies.iter().any(|body| body.text("material") == Some(name));
         self.root.named("material").iter().filter(move |(name, _)| is_used(name)).map(|(_, material)| material)
@@ -205,28 +185,6 @@ impl<'a> PresetScene<'a> {
         };
         self.materials().filter_map(speed).filter(|speed| speed.is_finite()).reduce(f64::max)
     }
-}
-
-/// Parts of a cell by which a place may miss a grid line: rounding.
-const ON_LINE: f64 = 1e-6;
-
-/// m  breakpoints from the one end of an axis to the other, about `cell` apart, with one at every wanted place that is
-/// half a cell from those before it in the list, and from the ends.
-fn knots([lower, upper]: [f64; 2], cell: f64, wanted: &[f64]) -> Vec<f64> {
-    let mut fixed = vec![lower, upper];
-    for &at in wanted.iter().filter(|at| (lower..=upper).contains(*at)) {
-        if fixed.iter().all(|other| (at - other).abs() >= 0.5 * cell) {
-            fixed.push(at);
-        }
-    }
-    fixed.sort_by(f64::total_cmp);
-    let mut knots = vec![lower];
-    for pair in fixed.windows(2) {
-        let cells = ((pair[1] - pair[0]) / cell).round().max(1.0) as usize;
-        let inner = (1..cells).map(|k| pair[0] + (pair[1] - pair[0]) * (k as f64 / cells as f64));
-        knots.extend(inner.chain([pair[1]]));
-    }
-    knots
 }
 
 /// m  ends of the straight sides of a body
@@ -253,6 +211,12 @@ fn around(body: &Record) -> Option<[[f64; 2]; 2]> {
     }
     let corners: Vec<[f64; 2]> = body.rows("polygon")?.iter().map(|row| [row.numbers[0], row.numbers[1]]).collect();
     (!corners.is_empty()).then(|| region::bounds(&corners))
+}
+
+/// s, m  Times and displacements of a path, from none at the start on.
+fn rows(record: &Record) -> Vec<(f64, [f64; 2])> {
+    let row = |row: &ListRow| (row.numbers[0], [row.numbers[1], row.numbers[2]]);
+    std::iter::once((0.0, [0.0; 2])).chain(record.rows("path").unwrap_or_default().iter().map(row)).collect()
 }
 
 /// Pa  the largest value of a profile between two heights

@@ -96,8 +96,8 @@ impl VerifyArguments {
 fn cell(case: &Case) -> Result<[f64; 2], Error> {
     let [x, y] = &case.grid.axes;
     if [x, y].iter().any(|axis| matches!(axis, GridAxis::Graded(_))) {
-        let reason =
-            "the grid has explicit knots: there is no one size of cells to refine; give it grid.cell with --set";
+        let reason = "the grid has explicit knots, by hand or by a preset: there is no one size of cells to refine; \
+                      give it grid.cell with --set";
         return Err(Error::Usage { reason: reason.to_owned() });
     }
     Ok([x.cell(0), y.cell(0)])

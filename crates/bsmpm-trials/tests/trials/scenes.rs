@@ -2,7 +2,7 @@
 //! ranks.
 
 use crate::support::cases::changed;
-use crate::support::results::{all_finite, differences, history, last_frame, manifest};
+use crate::support::results::{all_finite, at, differences, history, last_frame, manifest};
 use crate::support::{Scratch, shipped};
 
 /// An elastic block between everything that may hold or load it; the strip crosses the bounds of all slabs.
@@ -218,6 +218,22 @@ fn the_footing_on_clay_is_the_same_on_1_2_3_and_4_ranks() {
     });
     assert!((pressures[0] - 6.219).abs() < 0.01, "what this coarse grid gave before: {pressures:?}");
     assert!(pressures.iter().all(|pressure| (pressure / pressures[0] - 1.0).abs() < 1e-6), "{pressures:?}");
+}
+
+/// The draft preset's graded cells against the paper's discretisation: `cases/results/strip_footing.md`.
+#[test]
+fn a_draft_of_the_footing_is_within_a_tenth_for_a_four_hundredth_of_the_work() {
+    let (case, scratch) = (shipped("presets/strip_footing.toml"), Scratch::new());
+    let arguments = [case.to_str().unwrap(), "-q", "-o", "draft.out", "--set", "accuracy=draft"];
+    scratch.direct(&arguments).expect(0);
+    let pressures = history(&scratch.path("draft.out"));
+    for (time, of_paper) in [(0.1, 4.97), (0.25, 5.84), (0.5, 6.17), (1.0, 6.65)] {
+        let ratio = at(&pressures, "p_over_c", time) / of_paper;
+        assert!((0.9..=1.1).contains(&ratio), "z/B = {time}: {ratio}");
+    }
+    let manifest = manifest(&scratch.path("draft.out"));
+    let work = manifest.sizes["points"] as f64 * manifest.summary.residual_evaluations as f64;
+    assert!(work < 360_000.0 * 5064.0 / 400.0, "{work}");
 }
 
 #[test]

@@ -1,0 +1,205 @@
+//! Cells that a preset chooses: equal ones, or small ones around strips and loaded segments that grow away from them.
+
+use super::Preset;
+use super::axis::{Fine, ON_LINE, Spacing};
+use super::scene::{PresetScene, Segment};
+use crate::words::{Side, Support, Word};
+
+/// What cells follow from.
+pub(super) const CELLS: &str = "the size of the bodies, or the width of strips and loaded segments, the grid's corners \
+                                and [boundary]; 1e5 along an axis at most";
+
+const NAMES: [&str; 2] = ["x", "y"];
+
+/// Cells that a preset chooses.
+pub(super) struct Cells {
+    /// the key that says so, and its rival
+    pub keys: [&'static str; 2],
+    /// TOML
+    pub value: String,
+    /// m  the shortest edge; of cells of several sizes where they are small
+    pub edge: f64,
+    pub why: String,
+    /// Of cells of several sizes: which where, and why.
+    pub sizes: Vec<(String, String)>,
+    /// m  breakpoints of the same along x and y
+    breakpoints: Option<[Vec<f64>; 2]>,
+}
+
+impl Cells {
+    /// Whether they are of several sizes.
+    pub(super) fn is_graded(&self) -> bool {
+        self.breakpoints.is_some()
+    }
+
+    /// m  the longest edge along an axis within a part of it
+    pub(super) fn longest(&self, axis: usize, [lower, upper]: [f64; 2]) -> f64 {
+        let Some(breakpoints) = &self.breakpoints else { return self.edge };
+        let cells = breakpoints[axis].windows(2).filter(|cell| cell[0] < upper && cell[1] > lower);
+        cells.map(|cell| cell[1] - cell[0]).fold(0.0, f64::max)
+    }
+}
+
+/// A rectangle in which cells are small.
+struct Zone {
+    /// m  per axis
+    ranges: [Fine; 2],
+    why: String,
+}
+
+impl PresetScene<'_> {
+    /// The cells.
+    pub(super) fn cells(&self, preset: &Preset) -> Option<Cells> {
+        let [lower, upper] = self.bounds()?;
+        let side = (upper[0] - lower[0]).min(upper[1] - lower[1]);
+        let (size, why) = (side / preset.across, format!("{} across the {side} m of the bodies", preset.across));
+        let zones = self.zones(preset, size)?;
+        if zones.is_empty() { self.equal(size, why) } else { self.graded(preset, (size, &why), &zones) }
+    }
+
+    /// Equal cells of about `size` (m). Along an axis between two faces that stay they come out whole.
+    fn equal(&self, size: f64, why: String) -> Option<Cells> {
+        let (ends, boundary) = (self.ends()?, self.root.record("boundary")?);
+        let moved: Vec<Side> =
+            self.root.records("prescribed").iter().filter_map(|motion| motion.word("face")).collect();
+        let edge = |axis: usize| {
+            let length = ends[axis][1] - ends[axis][0];
+            let gives_way = |side: Side| boundary.word(side.word()) == Some(Support::Free) && !moved.contains(&side);
+            if Side::ALL[axis].into_iter().any(gives_way) { size } else { length / (length / size).round().max(1.0) }
+        };
+        let [x, y] = [edge(0), edge(1)];
+        let sound = |edge: f64| edge > 0.0 && edge.is_finite();
+        if !sound(x) || !sound(y) {
+            return None;
+        }
+        let wanted = self.wanted();
+        let on_line = |axis: usize, edge: f64| {
+            let [lower, upper] = ends[axis];
+            let off = |at: &f64| ((at - lower) / edge - ((at - lower) / edge).round()).abs();
+            let inside = |at: &&f64| (lower..=upper).contains(*at);
+            wanted[axis].iter().filter(inside).all(|at| off(at) <= ON_LINE)
+        };
+        if on_line(0, x) && on_line(1, y) {
+            let value = if x == y { format!("{x:?}") } else { format!("[{x:?}, {y:?}]") };
+            let (keys, edge) = (["cell", "knots"], x.min(y));
+            return Some(Cells { keys, value, edge, why, sizes: Vec::new(), breakpoints: None });
+        }
+        let along = |axis: usize| {
+            let spacing = Spacing { cell: [x, y][axis], growth: 1.0, fine: Vec::new() };
+            spacing.breakpoints(ends[axis], &wanted[axis])
+        };
+        let why = format!("{why}, moved by up to half a cell to where materials meet and strips and loads end");
+        let mut cells = of_breakpoints([along(0)?, along(1)?], why)?;
+        cells.breakpoints = None; // about equal ones
+        Some(cells)
+    }
+
+    /// Small cells in the zones and growing ones away from them, up to the size (m) that the bodies want, which has a
+    /// reason.
+    fn graded(&self, preset: &Preset, (size, why): (f64, &str), zones: &[Zone]) -> Option<Cells> {
+        let (ends, mut wanted, growth) = (self.ends()?, self.wanted(), preset.growth);
+        for segment in self.segments() {
+            // The surface under a strip, or the wall beside it.
+            segment.along().into_iter().for_each(|along| wanted[1 - along].push(segment.ends[0][1 - along]));
+        }
+        let along = |axis: usize| {
+            let fine: Vec<Fine> = zones.iter().map(|zone| zone.ranges[axis]).collect();
+            let edges = fine.iter().flat_map(|range| [range.lower, range.upper]);
+            let wanted: Vec<f64> = wanted[axis].iter().copied().chain(edges).collect();
+            Spacing { cell: size, growth, fine }.breakpoints(ends[axis], &wanted)
+        };
+        let why =
+            format!("{why}, smaller ones around strips and loads, growing away by a factor of about {growth} each");
+        let mut cells = of_breakpoints([along(0)?, along(1)?], why)?;
+        cells.edge = f64::INFINITY;
+        for Zone { ranges, why } in zones {
+            let edges = [0, 1].map(|axis| cells.longest(axis, [ranges[axis].lower, ranges[axis].upper]));
+            let range = |axis: usize| {
+                let [lower, upper] =
+                    [ranges[axis].lower.max(ends[axis][0]), ranges[axis].upper.min(ends[axis][1])].map(brief);
+                format!("{} = {lower} to {upper}", NAMES[axis])
+            };
+            cells.edge = edges.into_iter().fold(cells.edge, f64::min);
+            let value = format!("{} by {} m at {}, {}", brief(edges[0]), brief(edges[1]), range(0), range(1));
+            cells.sizes.push((value, why.clone()));
+        }
+        let longest = [0, 1].map(|axis| brief(cells.longest(axis, ends[axis])));
+        cells.sizes.push((format!("up to {} by {} m elsewhere", longest[0], longest[1]), String::new()));
+        Some(cells)
+    }
+
+    /// Where strips and loaded segments want cells smaller than `size` (m).
+    fn zones(&self, preset: &Preset, size: f64) -> Option<Vec<Zone>> {
+        let ends = self.ends()?;
+        let zone = |segment: Segment<'_>| {
+            let (width, cut) = self.width(&segment, ends);
+            let cell = width / preset.along;
+            let (reach, places) = (preset.reach * width, self.places(&segment));
+            let range = |axis: usize| {
+                let along = || places.iter().map(|place| place[axis]);
+                let lower = along().fold(f64::INFINITY, f64::min) - reach;
+                Fine { lower, upper: along().fold(f64::NEG_INFINITY, f64::max) + reach, cell }
+            };
+            let whole = if cut { format!(", {} m cut at a roller", brief(0.5 * width)) } else { String::new() };
+            let why = format!(
+                "{} along the width of {}, {} m{whole}; on all of its way and {} of the width around it",
+                preset.along,
+                segment.name,
+                brief(width),
+                preset.reach
+            );
+            (cell > 0.0 && cell < size).then(|| Zone { ranges: [range(0), range(1)], why })
+        };
+        Some(self.segments().filter_map(zone).collect())
+    }
+
+    /// m  Width of a strip or loaded segment; whether it is twice what is there, which a roller cuts in its middle.
+    fn width(&self, segment: &Segment<'_>, ends: [[f64; 2]; 2]) -> (f64, bool) {
+        let [from, to] = segment.ends;
+        let length = (to[0] - from[0]).hypot(to[1] - from[1]);
+        let at_roller = |axis: usize, side: usize| {
+            let support = self.root.record("boundary").and_then(|boundary| boundary.word(Side::ALL[axis][side].word()));
+            support == Some(Support::Roller) && segment.ends.iter().any(|end| end[axis] == ends[axis][side])
+        };
+        let cut = segment.along().is_some_and(|axis| at_roller(axis, 0) != at_roller(axis, 1));
+        (if cut { 2.0 * length } else { length }, cut)
+    }
+
+    /// m  lower and upper end of the grid per axis
+    fn ends(&self) -> Option<[[f64; 2]; 2]> {
+        let grid = self.root.record("grid")?;
+        let (lower, upper) = (grid.pair("lower")?, grid.pair("upper")?);
+        Some([0, 1].map(|axis| [lower[axis], upper[axis]]))
+    }
+
+    /// m  places along x and y at which a grid line is wanted: ends of strips and loaded segments, then sides of
+    /// bodies, if these are of several materials.
+    fn wanted(&self) -> [Vec<f64>; 2] {
+        let mut wanted = [Vec::new(), Vec::new()];
+        for segment in self.segments() {
+            let ends = segment.ends;
+            segment.along().into_iter().for_each(|axis| wanted[axis].extend(ends.map(|end| end[axis])));
+        }
+        if self.materials().count() > 1 {
+            for (a, b) in self.sides() {
+                let across = [0, 1].into_iter().find(|&axis| a[axis] == b[axis]);
+                across.into_iter().for_each(|axis| wanted[axis].push(a[axis]));
+            }
+        }
+        wanted
+    }
+}
+
+/// Cells with these breakpoints (m).
+fn of_breakpoints(breakpoints: [Vec<f64>; 2], why: String) -> Option<Cells> {
+    let shortest = |of: &[f64]| of.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
+    let edge = shortest(&breakpoints[0]).min(shortest(&breakpoints[1]));
+    let value = format!("{{ x = {:?}, y = {:?} }}", breakpoints[0], breakpoints[1]);
+    let cells = Cells { keys: ["knots", "cell"], value, edge, why, sizes: Vec::new(), breakpoints: Some(breakpoints) };
+    (edge > 0.0).then_some(cells)
+}
+
+/// A number, to four digits.
+fn brief(number: f64) -> f64 {
+    format!("{number:.3e}").parse().unwrap_or(number)
+}
