@@ -196,7 +196,7 @@ impl Filling<'_, '_> {
             Some(cells) => {
                 if self.put("grid", &cells.keys, &cells.value, &cells.why) {
                     cells.sizes.iter().for_each(|(value, why)| self.tell("grid.knots", value, why));
-                    self.doubt(scene.too_thin(cells, FEWEST));
+                    self.doubt(cells.too_thin(scene, FEWEST));
                     points = if cells.is_graded() { points.max(GRADED_POINTS) } else { points };
                 }
             }

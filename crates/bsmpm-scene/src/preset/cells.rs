@@ -2,7 +2,7 @@
 
 use super::Preset;
 use super::axis::{Fine, ON_LINE, Spacing};
-use super::scene::{PresetScene, Segment};
+use super::scene::{PresetScene, Segment, around};
 use crate::words::{Side, Support, Word};
 
 /// What cells follow from.
@@ -37,6 +37,17 @@ impl Cells {
         let Some(breakpoints) = &self.breakpoints else { return self.edge };
         let cells = breakpoints[axis].windows(2).filter(|cell| cell[0] < upper && cell[1] > lower);
         cells.map(|cell| cell[1] - cell[0]).fold(0.0, f64::max)
+    }
+
+    /// m  the shorter side of the first body across which there are fewer than so many cells, and the edge of these
+    pub(super) fn too_thin(&self, scene: &PresetScene<'_>, fewest: f64) -> Option<(f64, f64)> {
+        let thin = |[lower, upper]: [[f64; 2]; 2]| {
+            let [x, y] = [0, 1].map(|axis| upper[axis] - lower[axis]);
+            let axis = usize::from(y < x);
+            (x.min(y), self.longest(axis, [lower[axis], upper[axis]]))
+        };
+        let bodies = scene.root.records("body").iter().filter_map(around).map(thin);
+        bodies.filter(|(side, edge)| *side < fewest * edge).min_by(|a, b| a.0.total_cmp(&b.0))
     }
 }
 

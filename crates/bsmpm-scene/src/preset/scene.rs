@@ -1,7 +1,6 @@
 //! What of a scene a preset's cells and steps follow from, read from a record in which much may be missing.
 
 use super::Preset;
-use super::cells::Cells;
 use crate::record::{ListRow, Record};
 use crate::region;
 use crate::schema::LawName;
@@ -43,17 +42,6 @@ impl Segment<'_> {
 impl<'a> PresetScene<'a> {
     pub(super) fn of(root: &'a Record) -> Self {
         Self { root }
-    }
-
-    /// m  the shorter side of the first body across which there are fewer than so many cells, and the edge of these
-    pub(super) fn too_thin(&self, cells: &Cells, fewest: f64) -> Option<(f64, f64)> {
-        let thin = |[lower, upper]: [[f64; 2]; 2]| {
-            let [x, y] = [0, 1].map(|axis| upper[axis] - lower[axis]);
-            let axis = usize::from(y < x);
-            (x.min(y), cells.longest(axis, [lower[axis], upper[axis]]))
-        };
-        let bodies = self.root.records("body").iter().filter_map(around).map(thin);
-        bodies.filter(|(side, edge)| *side < fewest * edge).min_by(|a, b| a.0.total_cmp(&b.0))
     }
 
     /// Number of steps for cells whose shorter edge is `chosen` (m), unless the case gives its own, and why.
@@ -201,7 +189,7 @@ fn sides(body: &Record) -> Vec<([f64; 2], [f64; 2])> {
 }
 
 /// m  corners of a body's rectangle
-fn around(body: &Record) -> Option<[[f64; 2]; 2]> {
+pub(super) fn around(body: &Record) -> Option<[[f64; 2]; 2]> {
     if let Some(shape) = body.record("box") {
         return Some([shape.pair("lower")?, shape.pair("upper")?]);
     }

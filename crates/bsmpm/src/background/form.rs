@@ -73,8 +73,8 @@ impl<'a, const D: usize> Forms<'a, D> {
         block
     }
 
-    /// Row-major D (q + 1)^D square, with the room behind it: eps : eps is half of |grad u|^2, which does not couple the components, and half of
-    /// sum_ij du_i/dx_j du_j/dx_i.
+    /// Row-major D (q + 1)^D square, with the room behind it: eps : eps is half of |grad u|^2, which does not couple
+    /// the components, and half of sum_ij du_i/dx_j du_j/dx_i.
     fn strain(&self, cell: &[usize; D]) -> Vec<f64> {
         let nodes = self.grid.cell_nodes();
         let (mut plain, mut coupled) = (vec![0.0; nodes * nodes], vec![0.0; (nodes * D).pow(2)]);

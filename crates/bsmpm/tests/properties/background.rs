@@ -11,8 +11,8 @@ use bsmpm::tensor::{Tensor, Vector};
 const YOUNG: f64 = 50.0;
 const COEFFICIENT: f64 = 0.02;
 
-/// The blocks of all cells of a grid, a point in the middle of each; of a form that does not couple the components, that
-/// of the first one.
+/// The blocks of all cells of a grid, a point in the middle of each; of a form that does not couple the components,
+/// that of the first one.
 fn blocks<K: Kinematics<D>, const D: usize>(axes: [KnotVector; D], kind: Kind) -> (Grid<D>, Vec<Vec<f64>>) {
     let cells = axes.each_ref().map(|axis| 0..axis.cells());
     let scene = Scene::<K, D>::new(axes, hencky(YOUNG, 0.3), Regime::QuasiStatic).body(cells, 1, 1.0, |x| x * 0.0);
