@@ -30,7 +30,8 @@ pub enum TimeStep {
 #[command(after_help = "\
 The points of a cell stay as they are, so that they are refined with the grid. The time step stays, too, unless --time-step
 refined: the difference between the grids is then the error of the grid alone, and the step's error is in none of the
-figures. With modified-f-bar results belong to the number of steps, so keep it.
+figures. With modified-f-bar results belong to the number of steps, so keep it. Cells of several sizes, by [grid.knots] or a
+preset, are divided: the case's own grid is the coarsest, and the ratio a whole number.
 
 For every column of history.csv at each time: the course of the three values, the observed order, Richardson's extrapolated
 value and the grid convergence index with the safety factor 1.25 (Roache, 1994; Celik et al., 2008), also where the ratios of

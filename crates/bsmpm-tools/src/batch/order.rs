@@ -45,7 +45,12 @@ impl RunOrder {
 
     /// m  the size of its cells: the root of the largest area of one.
     pub fn cell(&self) -> f64 {
-        self.case.grid.axes.iter().map(GridAxis::longest).product::<f64>().sqrt()
+        Self::cell_of(&self.case)
+    }
+
+    /// The same of any case.
+    pub fn cell_of(case: &Case) -> f64 {
+        case.grid.axes.iter().map(GridAxis::longest).product::<f64>().sqrt()
     }
 }
 

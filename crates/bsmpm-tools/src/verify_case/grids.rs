@@ -22,19 +22,18 @@ pub(super) struct Grids {
 
 impl Grids {
     /// # Errors
-    /// [`Error::Usage`] for a case without `grid.cell` and for ratios that show nothing; [`Error::BadCase`] for grids
-    /// that the case cannot have, with all of their errors.
+    /// [`Error::Usage`] for ratios that show nothing, and for those that cells of several sizes cannot be divided by;
+    /// [`Error::BadCase`] for grids that the case cannot have, with all of their errors.
     pub fn of(arguments: &VerifyArguments, bytes: &[u8]) -> Result<Self, Error> {
         let path = &arguments.case;
         let own = case::parsed(path, bytes, &arguments.options.set)?;
-        let cell = cell(&own)?;
-        let cells = arguments.cells(cell)?;
         let (mut orders, mut errors) = (Vec::new(), Vec::new());
-        for value in &cells {
+        for grid in arguments.grids(&own)? {
             let mut set = arguments.options.set.clone();
-            set.push(format!("grid.cell={value}"));
-            match RunOrder::read(path, bytes, set.clone(), 1) {
-                Ok(order) => orders.push(arguments.timed(order, (bytes, set), &own, cell)?),
+            let named = grid.len();
+            set.extend(grid);
+            match RunOrder::read(path, bytes, set.clone(), named) {
+                Ok(order) => orders.push(arguments.timed(order, (bytes, set), &own)?),
                 Err(found) => errors.extend(found),
             }
         }
@@ -57,50 +56,77 @@ impl Grids {
 }
 
 impl VerifyArguments {
-    /// The value of `grid.cell` on each grid.
-    fn cells(&self, cell: [f64; 2]) -> Result<Vec<String>, Error> {
+    /// The settings that make each grid.
+    fn grids(&self, own: &Case) -> Result<Vec<Vec<String>>, Error> {
         let usage = |reason: String| Err(Error::Usage { reason });
+        let [x, y] = &own.grid.axes;
+        let graded = [x, y].iter().any(|axis| matches!(axis, GridAxis::Graded(_)));
         if let Some(cells) = &self.cells {
             let cells = split(cells);
+            if graded {
+                return usage("--cells: the grid's cells are of several sizes, and can be divided only".to_owned());
+            }
             let count = cells.len();
-            return if count == 3 { Ok(cells) } else { usage(format!("--cells: three are needed, found {count}")) };
+            let of = |cell: &String| vec![format!("grid.cell={cell}")];
+            return if count == 3 {
+                Ok(cells.iter().map(of).collect())
+            } else {
+                usage(format!("--cells: three are needed, found {count}"))
+            };
         }
         if !(LEAST..=MOST).contains(&self.ratio) {
             return usage(format!("--ratio {}: allowed is {LEAST} to {MOST}", self.ratio));
         }
+        if graded && self.ratio.fract() != 0.0 {
+            return usage(format!(
+                "--ratio {}: cells of several sizes can be divided by whole numbers only",
+                self.ratio
+            ));
+        }
+        let parts = self.ratio as usize;
+        if graded {
+            return Ok([1, parts, parts * parts].map(|parts| divided(own, parts)).to_vec());
+        }
         let coarsest = if self.refine_only { 1.0 } else { self.ratio };
         let factors = [coarsest, coarsest / self.ratio, coarsest / self.ratio / self.ratio];
-        Ok(factors.map(|factor| format!("[{:?}, {:?}]", factor * cell[0], factor * cell[1])).to_vec())
+        let of = |factor: f64| vec![format!("grid.cell=[{:?}, {:?}]", factor * x.cell(0), factor * y.cell(0))];
+        Ok(factors.map(of).to_vec())
     }
 
     /// The order with the step that it gets.
-    fn timed(
-        &self,
-        order: RunOrder,
-        (bytes, mut set): (&[u8], Vec<String>),
-        own: &Case,
-        cell: [f64; 2],
-    ) -> Result<RunOrder, Error> {
+    fn timed(&self, order: RunOrder, (bytes, mut set): (&[u8], Vec<String>), own: &Case) -> Result<RunOrder, Error> {
         let step = match self.time_step {
             // Steps that a preset chooses would follow the cells.
             TimeStep::Kept if order.case.analysis.dt == own.analysis.dt => return Ok(order),
             TimeStep::Kept => own.analysis.dt,
-            TimeStep::Refined => own.analysis.dt * order.cell() / (cell[0] * cell[1]).sqrt(),
+            TimeStep::Refined => own.analysis.dt * order.cell() / RunOrder::cell_of(own),
         };
         set.push(format!("analysis.dt={step:?}"));
         RunOrder::read(&self.case, bytes, set, 2).map_err(|errors| Error::BadCase { path: self.case.clone(), errors })
     }
 }
 
-/// m  the edges of the case's cells.
-fn cell(case: &Case) -> Result<[f64; 2], Error> {
-    let [x, y] = &case.grid.axes;
-    if [x, y].iter().any(|axis| matches!(axis, GridAxis::Graded(_))) {
-        let reason = "the grid has explicit knots, by hand or by a preset: there is no one size of cells to refine; \
-                      give it grid.cell with --set";
-        return Err(Error::Usage { reason: reason.to_owned() });
-    }
-    Ok([x.cell(0), y.cell(0)])
+/// The settings of the case's own grid with each cell divided into so many parts along each axis, and the points of a
+/// cell as they are.
+fn divided(own: &Case, parts: usize) -> Vec<String> {
+    let along = |axis: usize| -> Vec<f64> {
+        let cells = &own.grid.axes[axis];
+        let at = |breakpoint: usize| match breakpoint % parts {
+            0 => cells.breakpoint(breakpoint / parts),
+            part => {
+                let (cell, along) = (breakpoint / parts, part as f64 / parts as f64);
+                cells.breakpoint(cell) * (1.0 - along) + cells.breakpoint(cell + 1) * along
+            }
+        };
+        let copies = |breakpoint: usize| {
+            let line = own.grid.lines[axis].iter().find(|line| line.breakpoint * parts == breakpoint);
+            line.map_or(1, |line| line.multiplicity)
+        };
+        (0..=cells.cells() * parts).flat_map(|k| std::iter::repeat_n(at(k), copies(k))).collect()
+    };
+    let points = own.bodies.iter().enumerate();
+    let points = points.map(|(body, made)| format!("body.{body}.points_per_cell={}", made.points_per_cell));
+    std::iter::once(format!("grid.knots={{ x = {:?}, y = {:?} }}", along(0), along(1))).chain(points).collect()
 }
 
 #[cfg(test)]
@@ -158,7 +184,26 @@ mod tests {
         {
             assert_eq!(grids(options).err().unwrap().exit_code(), 2, "{options:?}");
         }
-        let knots = ["--set", "grid.knots.x=[0.0, 0.3, 0.55]", "--set", "grid.knots.y=[0.0, 0.05, 0.1025]"];
-        assert_eq!(grids(&knots).err().unwrap().exit_code(), 2);
+    }
+
+    /// Cells of several sizes keep their proportions, repeated breakpoints and points of a cell; by hand or by a preset.
+    #[test]
+    fn graded_cells_are_divided() {
+        let knots = ["--set", "grid.knots.x=[0.0, 0.3, 0.3, 0.55]", "--set", "grid.knots.y=[0.0, 0.05, 0.1025]"];
+        let found = grids(&knots).unwrap();
+        assert!(near(found.sizes, [0.25, 0.5, 1.0].map(|part| part * (0.3_f64 * 0.0525).sqrt())), "{:?}", found.sizes);
+        let cells: Vec<usize> = found.orders.iter().map(|order| order.case.grid.axes[0].cells()).collect();
+        assert_eq!(cells, [8, 4, 2]);
+        assert!(found.orders.iter().all(|order| order.case.grid.lines[0].len() == 1));
+        assert!(found.orders.iter().all(|order| order.case.bodies[0].points_per_cell == 2));
+        for options in [&["--ratio", "1.5"][..], &["--cells", "5mm,10mm,20mm"]] {
+            assert_eq!(grids(&[&knots[..], options].concat()).err().unwrap().exit_code(), 2, "{options:?}");
+        }
+        let line = Line::parse_from(["verify-case", "case.toml"]);
+        let footing = include_str!("../../../../cases/presets/strip_footing.toml");
+        let found = Grids::of(&line.arguments, footing.as_bytes()).unwrap();
+        let points: Vec<usize> = found.orders.iter().map(|order| order.case.bodies[0].points_per_cell).collect();
+        assert_eq!(points, [found.own.bodies[0].points_per_cell; 3]);
+        assert!(found.orders[2].case.points() == found.own.points(), "the coarsest is the case's own");
     }
 }
