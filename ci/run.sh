@@ -47,7 +47,8 @@ is_formatted() {
     ! LC_ALL=C.UTF-8 git grep -nE '^.{121,}$' -- '*.rs' | grep -E '^[^:]*:[0-9]+: *//'
 }
 
-# An operation between lanes that the compiler leaves out of the function with the wide vectors is a call through memory.
+# An operation between lanes that the compiler leaves out of the function with the wide vectors is a call through
+# memory.
 # shellcheck disable=SC2317
 lanes_are_inlined() {
     local symbols

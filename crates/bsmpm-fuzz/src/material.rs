@@ -59,7 +59,8 @@ fn material(u: &mut Unstructured<'_>) -> Result<Material> {
             let (decay, part) = (*u.choose(&[Decay::Linear, Decay::Exponential])?, draw::fraction(u)?);
             let residual = (friction * part, dilation * part, cohesion * draw::fraction(u)?);
             let (peak, strain) = ((friction, dilation, cohesion), draw::size(u, -6.0, 3.0)?);
-            Material::SofteningMohrCoulomb(SofteningMohrCoulomb::new(elastic, peak, residual, strain, decay))
+            let (first, last) = if u.arbitrary()? { (peak, residual) } else { (residual, peak) };
+            Material::SofteningMohrCoulomb(SofteningMohrCoulomb::new(elastic, first, last, strain, decay))
         }
         _ => Material::MohrCoulomb(MohrCoulomb::new(elastic, friction, dilation, cohesion).separating(separation)),
     };

@@ -93,6 +93,14 @@ macro_rules! laws {
                 }
             }
 
+            /// Whether its strength follows plastic strain to another last value.
+            pub fn softens(&self) -> bool {
+                match self {
+                    $(Self::$Law(law) => law.softens(),)*
+                    Self::Graded(law) => law.most().softens(),
+                }
+            }
+
             /// State variables of its points.
             pub fn state(&self) -> &'static [Variable] {
                 match self {

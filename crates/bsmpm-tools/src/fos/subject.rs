@@ -178,6 +178,7 @@ fn stiffness(case: &Case) -> f64 {
 fn refusals(case: &Case) -> Vec<String> {
     let is_plastic = case.materials.iter().any(|named| named.material.yields());
     let hardens = case.materials.iter().any(|named| named.material.hardens());
+    let softens = case.materials.iter().any(|named| named.material.softens());
     let never_full = ramps(case).any(|ramp| ramp > case.analysis.end);
     let reasons = [
         (
@@ -188,6 +189,12 @@ fn refusals(case: &Case) -> Vec<String> {
             hardens,
             "a material hardens: its strength has no limit, and the factor would be that of the displacement that is looked at; \
              hardening = 0 gives one",
+        ),
+        (
+            softens,
+            "a material's strength follows its plastic strain: what it carries depends on how far it is strained, and trials \
+             stiffen the ground so that it hardly is; give its peak or its residual strength as \"mohr-coulomb\", which \
+             bounds the factor from both sides",
         ),
         (!is_plastic, "no material is plastic: there is no strength to be reduced"),
         (!is_loaded(case), "nothing loads the body at `end`: no weight under gravity, no traction, no point load"),

@@ -63,9 +63,6 @@ impl VerifyArguments {
         let graded = [x, y].iter().any(|axis| matches!(axis, GridAxis::Graded(_)));
         if let Some(cells) = &self.cells {
             let cells = split(cells);
-            if graded {
-                return usage("--cells: the grid's cells are of several sizes, and can be divided only".to_owned());
-            }
             let count = cells.len();
             let of = |cell: &String| vec![format!("grid.cell={cell}")];
             return if count == 3 {
@@ -79,7 +76,8 @@ impl VerifyArguments {
         }
         if graded && self.ratio.fract() != 0.0 {
             return usage(format!(
-                "--ratio {}: cells of several sizes can be divided by whole numbers only",
+                "--ratio {}: cells of several sizes can be divided by whole numbers only; --cells takes \
+                 equal ones",
                 self.ratio
             ));
         }
@@ -111,15 +109,20 @@ impl VerifyArguments {
 fn divided(own: &Case, parts: usize) -> Vec<String> {
     let along = |axis: usize| -> Vec<f64> {
         let cells = &own.grid.axes[axis];
-        let at = |breakpoint: usize| match breakpoint % parts {
-            0 => cells.breakpoint(breakpoint / parts),
+        // In the case's coordinates.
+        let breakpoint = |number: usize| match cells {
+            GridAxis::Uniform { lower, .. } => lower + cells.breakpoint(number),
+            GridAxis::Graded(breakpoints) => breakpoints[number],
+        };
+        let at = |number: usize| match number % parts {
+            0 => breakpoint(number / parts),
             part => {
-                let (cell, along) = (breakpoint / parts, part as f64 / parts as f64);
-                cells.breakpoint(cell) * (1.0 - along) + cells.breakpoint(cell + 1) * along
+                let (cell, along) = (number / parts, part as f64 / parts as f64);
+                breakpoint(cell) * (1.0 - along) + breakpoint(cell + 1) * along
             }
         };
-        let copies = |breakpoint: usize| {
-            let line = own.grid.lines[axis].iter().find(|line| line.breakpoint * parts == breakpoint);
+        let copies = |number: usize| {
+            let line = own.grid.lines[axis].iter().find(|line| line.breakpoint * parts == number);
             line.map_or(1, |line| line.multiplicity)
         };
         (0..=cells.cells() * parts).flat_map(|k| std::iter::repeat_n(at(k), copies(k))).collect()
@@ -196,9 +199,11 @@ mod tests {
         assert_eq!(cells, [8, 4, 2]);
         assert!(found.orders.iter().all(|order| order.case.grid.lines[0].len() == 1));
         assert!(found.orders.iter().all(|order| order.case.bodies[0].points_per_cell == 2));
-        for options in [&["--ratio", "1.5"][..], &["--cells", "5mm,10mm,20mm"]] {
-            assert_eq!(grids(&[&knots[..], options].concat()).err().unwrap().exit_code(), 2, "{options:?}");
-        }
+        let knots_moved = ["--set", "grid.knots.x=[-0.1, 0.3, 0.55]", "--set", "grid.knots.y=[-0.2, 0.05, 0.1025]"];
+        let found = grids(&[&["--set", "grid.lower=[-0.1, -0.2]"][..], &knots_moved].concat()).unwrap();
+        assert!(found.orders.iter().all(|order| order.case.grid.lower() == [-0.1, -0.2]));
+        assert_eq!(found.orders[2].case.grid, found.own.grid);
+        assert_eq!(grids(&[&knots[..], &["--ratio", "1.5"]].concat()).err().unwrap().exit_code(), 2);
         let line = Line::parse_from(["verify-case", "case.toml"]);
         let footing = include_str!("../../../../cases/presets/strip_footing.toml");
         let found = Grids::of(&line.arguments, footing.as_bytes()).unwrap();

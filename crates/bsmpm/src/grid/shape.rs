@@ -48,7 +48,7 @@ pub struct Shape<const D: usize> {
     pub(super) merged: Option<Merged<D>>, // of lowered functions: those inside a body with their neighbours
 }
 
-/// Zeros behind the rows; fewer than a point has numbers.
+/// Zeros behind the rows, of which four numbers are read from any place.
 const BEHIND: usize = 3;
 
 /// Runs `$body` with the constant `W` = q + 1, so that the loops over a patch's nodes are unrolled; `lowered` functions

@@ -84,6 +84,12 @@ pub trait Law {
         false
     }
 
+    /// Whether its strength follows plastic strain to another last value, so that what it carries depends on how far it
+    /// is strained.
+    fn softens(&self) -> bool {
+        false
+    }
+
     /// What becomes of the volume that opens at an apex.
     fn separation(&self) -> Separation {
         Separation::Forgotten

@@ -1,7 +1,8 @@
 //! Mohr-Coulomb plasticity whose strength follows the plastic strain, from a peak to a residual one or the other way
 //! round: the strain-softening model of sensitive and overconsolidated clays and of dense sand.
 //!
-//! In the plastic strain κ, `κ̇ = √(2/3) |dev ε̇ᵖ|`, sin φ, sin ψ and c cos φ go from their first to their last values.
+//! In the plastic strain κ, `κ̇ = √(2/3) |dev ε̇ᵖ|`, sin φ, sin ψ and c cos φ go from their first to their last values;
+//! what opens at the apex without shear takes no strength.
 //! The return is implicit: that of the pyramid at the end of the step, whose κ it makes itself. A strength that falls
 //! has no width of its own: a band of shear is as wide as a cell, and its work as large as that. The regularisation
 //! of the scene scales the strain by the cell (crack band: Bažant and Oh, 1983, Mater. Struct. 16, 155-177).
@@ -81,9 +82,9 @@ impl SofteningMohrCoulomb {
         let (along, none) = (kappa / self.strain, kappa.like(0.0));
         match self.decay {
             Decay::Linear => {
-                let softens = along.below(along.like(1.0));
-                let progress = R::choose(softens, along, along.like(1.0));
-                (progress, R::choose(softens, along.like(1.0 / self.strain), none))
+                let done = along.like(1.0).at_most(along); // what is no number stays none
+                let progress = R::choose(done, along.like(1.0), along);
+                (progress, R::choose(done, none, along.like(1.0 / self.strain)))
             }
             Decay::Exponential => {
                 let every = !along.below(none);
@@ -231,6 +232,10 @@ impl Law for SofteningMohrCoulomb {
         }
         let (peak, residual) = (reduced(self.peak, factor), reduced(self.residual, factor));
         Self::new(self.elastic, peak, residual, self.strain, self.decay)
+    }
+
+    fn softens(&self) -> bool {
+        self.change != [0.0; 3]
     }
 
     fn dilation(&self) -> f64 {

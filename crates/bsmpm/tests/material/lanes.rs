@@ -13,7 +13,7 @@ use std::collections::BTreeMap;
 struct Stresses<'a> {
     material: &'a Material,
     b_trial: &'a [Symmetric; LANES],
-    state: f64,
+    state: [f64; LANES],
 }
 
 impl InLanes for Stresses<'_> {
@@ -22,13 +22,13 @@ impl InLanes for Stresses<'_> {
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> Self::Output {
         let b_trial = from_fn(|k| Lanes::from_fn(simd, |lane| self.b_trial[lane].0[k]));
-        let tau = self.material.stress(b_trial, &[Lanes::splat(simd, self.state)])?;
+        let tau = self.material.stress(b_trial, &[Lanes::from_fn(simd, |lane| self.state[lane])])?;
         let components = tau.0.map(Lanes::numbers);
         Some(from_fn(|lane| Symmetric(from_fn(|k| components[k][lane]))))
     }
 }
 
-/// Every law, with cohesion and without, with friction and without, hardening and not.
+/// Every law, with cohesion and without, with friction and without, hardening and not, softening.
 fn laws() -> Vec<Material> {
     let elastic = Elastic { young: 1e3, poisson: 0.3 };
     let mut laws = vec![hencky(1e3, 0.3), mohr_coulomb(1e3, 0.45, 0.0, 0.0, 3.0)];
@@ -39,10 +39,11 @@ fn laws() -> Vec<Material> {
                 .map(|fit| Material::DruckerPrager(DruckerPrager::new(elastic.clone(), (0.5, 0.2, cohesion), fit))),
         );
     }
-    laws.extend([Decay::Linear, Decay::Exponential].map(|decay| {
-        let (peak, residual) = ((0.6, 0.2, 2.0), (0.4, 0.0, 0.5));
-        Material::SofteningMohrCoulomb(SofteningMohrCoulomb::new(elastic.clone(), peak, residual, 0.05, decay))
-    }));
+    let (strong, weak) = ((0.6, 0.2, 2.0), (0.4, 0.0, 0.5));
+    for (first, last) in [(strong, weak), (weak, strong), ((0.0, 0.0, 3.0), (0.0, 0.0, 1.0))] {
+        let law = |decay| SofteningMohrCoulomb::new(elastic.clone(), first, last, 0.05, decay);
+        laws.extend([Decay::Linear, Decay::Exponential].map(|decay| Material::SofteningMohrCoulomb(law(decay))));
+    }
     laws.extend([0.0, 40.0].map(|hardening| Material::VonMises(VonMises::new(elastic.clone(), 3.0, hardening))));
     laws
 }
@@ -63,11 +64,12 @@ fn eight_points_have_the_stresses_of_each() {
                 let [xx, yy, zz, xy] = random.pick(&[strain, strain, [0.0; 4]]);
                 Symmetric([1.0 + xx, 1.0 + yy, 1.0 + zz, turn * xy, 0.0, 0.0])
             });
-            let state = random.unit();
+            // On both sides of the strain at which softening ends.
+            let state: [f64; LANES] = from_fn(|_| 0.1 * random.unit());
             for (vectors, found) in lanes::with_each(&Stresses { material: &material, b_trial: &b_trial, state }) {
                 let Some(found) = found else { continue };
                 computed += 1;
-                for (found, b_trial) in found.iter().zip(&b_trial) {
+                for ((found, b_trial), state) in found.iter().zip(&b_trial).zip(state) {
                     let response = material.respond(b_trial, &[state]).expect("an admissible trial");
                     let (found, expected) = (found.0.map(f64::to_bits), response.tau().0.map(f64::to_bits));
                     assert_eq!(found, expected, "{vectors}, {material:?}: {b_trial:?}");
@@ -86,8 +88,11 @@ fn a_lane_that_is_no_strain_is_left() {
     let material = mohr_coulomb(1e3, 0.3, 35.0, 10.0, 3.0);
     for odd in [0.0, -1.0, 1e101, f64::NAN, f64::INFINITY] {
         let mut b_trial = [Symmetric::IDENTITY; LANES];
-        assert!(lanes::run(Stresses { material: &material, b_trial: &b_trial, state: 0.0 }).is_some());
+        assert!(lanes::run(Stresses { material: &material, b_trial: &b_trial, state: [0.0; LANES] }).is_some());
         b_trial[5].0[1] = odd;
-        assert!(lanes::run(Stresses { material: &material, b_trial: &b_trial, state: 0.0 }).is_none(), "{odd}");
+        assert!(
+            lanes::run(Stresses { material: &material, b_trial: &b_trial, state: [0.0; LANES] }).is_none(),
+            "{odd}"
+        );
     }
 }

@@ -6,7 +6,7 @@ use crate::record::Record;
 use crate::report::Report;
 use crate::schema::{Dimension, Kind, LawName, MATERIAL};
 use crate::words::Word;
-use bsmpm::material::{Elastic, Graded, Material, Profile, Separation};
+use bsmpm::material::{Decay, Elastic, Graded, Material, Profile, Separation};
 
 /// A law and its numbers, by the height in the case's coordinates and units.
 pub(super) struct Parameters {
@@ -100,31 +100,46 @@ pub(super) fn law(
     check(record, &parameters, layer, report)?;
     if model == LawName::Softening {
         regularise(record, &mut parameters, grid, report)?;
-        warn_of_collapse(record, &parameters, report);
+        warn_of_collapse(record, &parameters, layer, report);
     }
     Some(parameters)
 }
 
 /// Cohesion that falls faster than shear stress does where material unloads: the point has no path, it drops at once.
-fn warn_of_collapse(record: &Record, law: &Parameters, report: &mut Report<'_>) {
+/// How fast friction falls depends on the pressure, and is not looked at.
+fn warn_of_collapse(record: &Record, law: &Parameters, layer: Option<&Layer>, report: &mut Report<'_>) {
     let (Some(young), Some(poisson)) = (profile(record, "young"), record.number("poisson")) else { return };
-    let rate = (law.of("cohesion").value - law.of("residual_cohesion").value) / law.of("softening_strain").value;
-    let shear = 0.5 * young.value / (1.0 + poisson);
-    if rate > 3.0_f64.sqrt() * shear {
-        report.warn(format!(
-            "{}: the cohesion falls by {rate:.3e} Pa per plastic strain, faster than stress falls where the material \
-             unloads ({:.3e} Pa): it drops at once, and the work of a band is too large; use smaller cells or a larger \
-             softening_strain",
-            record.path,
-            3.0_f64.sqrt() * shear
-        ));
+    // An exponential decay begins three times as fast as it goes on the whole.
+    let steepest = if record.word("softening") == Some(Decay::Exponential) { 3.0 } else { 1.0 };
+    let strain = law.of("softening_strain").value / steepest;
+    let ends = layer.map_or([0.0, 0.0], |layer| [layer.heights.start, layer.heights.end]);
+    for y in ends {
+        let rate = (law.of("cohesion").at(y) - law.of("residual_cohesion").at(y)) / strain;
+        let limit = 1.5 * 0.5 * young.at(y) / (1.0 + poisson);
+        if rate > limit {
+            report.warn(format!(
+                "{}: the cohesion falls by up to {rate:.3e} Pa per plastic strain, faster than stress falls where the \
+                 material unloads ({limit:.3e} Pa): it drops at once, and the work of a band is too large; use smaller \
+                 cells or a larger softening_strain",
+                record.path
+            ));
+            return;
+        }
     }
 }
 
 /// The plastic strain of cells for that of a shear band: a band that is one cell wide does the same work in any (crack
 /// band: Bažant and Oh, 1983). `None` after an error.
 fn regularise(record: &Record, law: &mut Parameters, grid: Option<&GridSpec>, report: &mut Report<'_>) -> Option<()> {
+    let falls = ["friction", "cohesion"].map(|key| (law.of(key), law.of(&format!("residual_{key}"))));
+    let falls = falls.into_iter().any(|(first, last)| first.value > last.value);
+    if !falls {
+        report.note(&record.path, "hardens", "no residual strength is below the first one: shear does not localise");
+    }
     let Some(width) = record.number("band_width") else {
+        if !falls {
+            return Some(());
+        }
         report.warn(format!(
             "{}: what softens localises in bands one cell wide, so that results depend on the cells; give band_width, \
              or compare two cell sizes",
@@ -138,7 +153,9 @@ fn regularise(record: &Record, law: &mut Parameters, grid: Option<&GridSpec>, re
         axes.iter().map(GridAxis::longest).fold(0.0, f64::max),
     );
     if longest > 1.01 * shortest {
-        let message = format!("needs square cells of one size, and these measure {shortest} to {longest} m");
+        let message = format!(
+            "needs square cells of one size, and these measure {shortest} to {longest} m; with `accuracy`, give grid.cell"
+        );
         record.error("band_width", message, report);
         return None;
     }
@@ -172,12 +189,12 @@ fn check(record: &Record, law: &Parameters, layer: Option<&Layer>, report: &mut 
         profile.bounds(&layer.map_or(profile.at..profile.at, |layer| layer.heights.clone()))
     };
     let (friction, dilation, cohesion) = (bounds("friction"), bounds("dilation"), bounds("cohesion"));
-    let last = ["residual_dilation", "residual_friction"].map(bounds);
-    if law.model == LawName::Softening && last[0].1 > last[1].0 {
-        let message = format!(
-            "{} is out of range; allowed: 0 <= residual_dilation <= residual_friction = {}",
-            last[0].1, last[1].0
-        );
+    let last = ["residual_dilation", "residual_friction"].map(|key| law.of(key));
+    let ends = layer.map_or([0.0, 0.0], |layer| [layer.heights.start, layer.heights.end]);
+    if let Some(y) = ends.into_iter().find(|&y| last[0].at(y) > last[1].at(y)) {
+        let [dilation, friction] = last.map(|profile| profile.at(y));
+        let message =
+            format!("{dilation} is out of range; allowed: 0 <= residual_dilation <= residual_friction = {friction}");
         record.error("residual_dilation", message, report);
         return None;
     }
