@@ -189,7 +189,7 @@ mod tests {
         }
     }
 
-    /// Cells of several sizes keep their proportions, repeated breakpoints and points of a cell; by hand or by a preset.
+    /// Cells of several sizes, by hand or by a preset, keep their proportions, repeated breakpoints and points.
     #[test]
     fn graded_cells_are_divided() {
         let knots = ["--set", "grid.knots.x=[0.0, 0.3, 0.3, 0.55]", "--set", "grid.knots.y=[0.0, 0.05, 0.1025]"];

@@ -280,6 +280,13 @@ fn a_case_without_a_factor_of_safety_is_refused_before_anything_runs() {
             vec!["material.soil={ model = \"hencky\", young = 1e8, poisson = 0.3, density = 2e3 }"],
             "no material is plastic",
         ),
+        (
+            vec![
+                "material.soil={ model = \"mohr-coulomb-softening\", young = 1e8, poisson = 0.3, density = 2e3, \
+                  friction = 30, cohesion = 1e4, residual_friction = 20, residual_cohesion = 0, softening_strain = 0.1 }",
+            ],
+            "give its peak or its residual strength",
+        ),
         (vec!["gravity.acceleration=[0.0, 0.0]"], "nothing loads the body"),
         (vec!["gravity.ramp=2.0"], "grows beyond `end`"),
         (vec![strip], "prescribes a motion"),
