@@ -93,6 +93,15 @@ macro_rules! laws {
                 }
             }
 
+            /// Whether [`Material::stress`] can tell.
+            #[inline(always)]
+            fn is_in_lanes(&self) -> bool {
+                match self {
+                    $(Self::$Law(_) => <$module::$Law as Law>::IN_LANES,)*
+                    Self::Graded(_) => false,
+                }
+            }
+
             /// Whether its strength follows plastic strain to another last value.
             pub fn softens(&self) -> bool {
                 match self {
@@ -152,13 +161,16 @@ macro_rules! laws {
 
             /// Kirchhoff stress in Pa of a point, or of several, by components XX, YY, ZZ, XY of `b_trial` and the
             /// `state` of the last step, which has the law's variables first: as [`Material::respond`] has it. `None`
-            /// where only that can tell: of a graded law, and of trials of which one is no strain.
+            /// where only that can tell: of a graded or long law, and of trials of which one is no strain.
             #[inline(always)]
             pub fn stress<R: Real>(&self, b_trial: [R; 4], state: &[R]) -> Option<Symmetric<R>> {
+                if !self.is_in_lanes() {
+                    return None;
+                }
                 let spectrum = Spectrum::planar(b_trial)?;
                 let tau = match self {
-                    $(Self::$Law(law) => law.project(law.moduli().stress(spectrum.eps), state).tau,)*
-                    Self::Graded(_) => return None,
+                    $(Self::$Law(law) if <$module::$Law as Law>::IN_LANES => law.project(law.moduli().stress(spectrum.eps), state).tau,)*
+                    _ => return None,
                 };
                 Some(spectrum.assemble(tau))
             }

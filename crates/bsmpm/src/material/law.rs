@@ -33,6 +33,8 @@ pub trait Law {
     const STATE: &'static [Variable] = &[];
     /// Whether its stress is limited.
     const YIELDS: bool = true;
+    /// Whether its points are computed side by side; a long law's are not, so that the code of the others stays short.
+    const IN_LANES: bool = true;
 
     /// The elastic part.
     fn elastic(&self) -> &Elastic;

@@ -156,6 +156,8 @@ impl Law for SofteningMohrCoulomb {
         Variable::new("softening_strain", "-"),
     ];
     const STATE: &'static [Variable] = &[Variable::new("plastic_shear_strain", "-")];
+    /// In one function with it Mohr-Coulomb itself takes 3 to 5 % more of a run.
+    const IN_LANES: bool = false;
 
     fn elastic(&self) -> &Elastic {
         &self.elastic
@@ -186,7 +188,7 @@ impl Law for SofteningMohrCoulomb {
         self.pyramid(state[0]).excess(tau)
     }
 
-    #[inline(always)]
+    #[inline(never)]
     fn project<R: Real>(&self, trial: [R; 3], state: &[R]) -> Projection<R, SofteningReturn<R>> {
         let kappa = state[0];
         let (_, yields, _) = self.pyramid(kappa).project(trial);

@@ -3,7 +3,7 @@
 use super::{REGIONS, hencky, mohr_coulomb};
 use crate::random::Random;
 use bsmpm::lanes::{self, InLanes, LANES, Lanes, Simd};
-use bsmpm::material::{Decay, DruckerPrager, Elastic, Match, Material, SofteningMohrCoulomb, VonMises};
+use bsmpm::material::{DruckerPrager, Elastic, Match, Material, VonMises};
 use bsmpm::tensor::Symmetric;
 use std::array::from_fn;
 use std::collections::BTreeMap;
@@ -28,7 +28,7 @@ impl InLanes for Stresses<'_> {
     }
 }
 
-/// Every law, with cohesion and without, with friction and without, hardening and not, softening.
+/// Every law that runs in lanes, with cohesion and without, with friction and without, hardening and not.
 fn laws() -> Vec<Material> {
     let elastic = Elastic { young: 1e3, poisson: 0.3 };
     let mut laws = vec![hencky(1e3, 0.3), mohr_coulomb(1e3, 0.45, 0.0, 0.0, 3.0)];
@@ -38,11 +38,6 @@ fn laws() -> Vec<Material> {
             [Match::Outer, Match::Inner, Match::PlaneStrain]
                 .map(|fit| Material::DruckerPrager(DruckerPrager::new(elastic.clone(), (0.5, 0.2, cohesion), fit))),
         );
-    }
-    let (strong, weak) = ((0.6, 0.2, 2.0), (0.4, 0.0, 0.5));
-    for (first, last) in [(strong, weak), (weak, strong), ((0.0, 0.0, 3.0), (0.0, 0.0, 1.0))] {
-        let law = |decay| SofteningMohrCoulomb::new(elastic.clone(), first, last, 0.05, decay);
-        laws.extend([Decay::Linear, Decay::Exponential].map(|decay| Material::SofteningMohrCoulomb(law(decay))));
     }
     laws.extend([0.0, 40.0].map(|hardening| Material::VonMises(VonMises::new(elastic.clone(), 3.0, hardening))));
     laws
@@ -64,7 +59,6 @@ fn eight_points_have_the_stresses_of_each() {
                 let [xx, yy, zz, xy] = random.pick(&[strain, strain, [0.0; 4]]);
                 Symmetric([1.0 + xx, 1.0 + yy, 1.0 + zz, turn * xy, 0.0, 0.0])
             });
-            // On both sides of the strain at which softening ends.
             let state: [f64; LANES] = from_fn(|_| 0.1 * random.unit());
             for (vectors, found) in lanes::with_each(&Stresses { material: &material, b_trial: &b_trial, state }) {
                 let Some(found) = found else { continue };
