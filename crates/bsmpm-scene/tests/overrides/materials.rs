@@ -1,0 +1,151 @@
+//! What materials become: laws by their words, heights, reduced strength.
+
+use super::{FULL, set, valid};
+use bsmpm::material::{Law, Match, Material, Separation};
+use bsmpm_scene::Case;
+
+/// Laws by their words, with what is not given left at its default; strength is divided by the factor of the case.
+#[test]
+fn cones_and_cylinders() {
+    let law =
+        |text: &str| valid(FULL, &[&format!("material.clay={{ young = 1e7, poisson = 0.3, density = 2e3, {text} }}")]);
+    let case = law("model = \"von-mises\", yield_stress = \"10 kPa\", hardening = 5e4");
+    let Material::VonMises(clay) = &case.materials[1].material else { panic!() };
+    assert_eq!((clay.parameters(), clay.elastic().young), (vec![8e3, 4e4], 1e7));
+    assert_eq!(case.materials[1].material.state()[0].name, "hardening_strain");
+    let note = case.notes.iter().find(|note| note.key == "material.clay").expect("a note of what is left");
+    assert!(note.value.starts_with("yield_stress = 8000.0"), "{}", note.value);
+    for (given, fit) in [("", Match::PlaneStrain), (", match = \"inner\"", Match::Inner)] {
+        let case = law(&format!("model = \"drucker-prager\", friction = 30, cohesion = 1e3{given}"));
+        let Material::DruckerPrager(clay) = &case.materials[1].material else { panic!() };
+        let [friction, dilation, cohesion] = clay.parameters()[..] else { panic!() };
+        assert!(clay.fit() == fit && cohesion == 800.0 && dilation == 0.0);
+        let weaker = if fit == Match::Inner { "99.0 %" } else { "96.1 %" };
+        assert!(case.warnings.iter().any(|told| told.contains(weaker)), "{:?}", case.warnings);
+        assert!((friction.tan() * 1.25 - f64::to_radians(30.0).tan()).abs() < 1e-14);
+    }
+    let case =
+        law("model = \"von-mises\", yield_stress = { value = 1e4, at_y = 2.0, per_metre = 1e3 }, hardening = 5e4");
+    let clay = &case.materials[1].material;
+    let yield_stress = |y: f64| clay.at(y - case.grid.lower()[1]).parameters()[0];
+    assert_eq!((yield_stress(2.0), yield_stress(1.0)), (8e3, 8.8e3));
+    assert_eq!((clay.state().len(), clay.hardens(), clay.is_graded()), (1, true, true));
+    let negative = "material.clay={ model = \"von-mises\", young = 1e7, poisson = 0.3, density = 2e3, \
+                    yield_stress = { value = 1e4, at_y = 2.0, per_metre = -1e5 } }";
+    let message = format!("{:?}", set(FULL, &[negative]).expect_err("no strength below"));
+    assert!(message.contains("allowed: yield_stress > 0"), "{message}");
+}
+
+/// Strength that falls: its last values, the strain of a band in cells of one size, and what is doubtful or refused.
+#[test]
+fn softening_strengths() {
+    let keys = "young = 1e7, poisson = 0.3, density = 2e3, model = \"mohr-coulomb-softening\", friction = 30, \
+                cohesion = 1e3, residual_friction = 25";
+    let with = |text: &str| set(FULL, &["grid.cell=0.5", &format!("material.clay={{ {keys}, {text} }}")]);
+    let case = with("residual_cohesion = 0, softening_strain = 0.2").expect("a valid case");
+    let Material::SofteningMohrCoulomb(clay) = &case.materials[1].material else { panic!() };
+    let parameters = clay.parameters();
+    assert_eq!((parameters[2], parameters[5], parameters[6]), (800.0, 0.0, 0.2));
+    assert!((parameters[3].tan() * 1.25 - f64::to_radians(25.0).tan()).abs() < 1e-14);
+    assert!(case.warnings.iter().any(|told| told.contains("results depend on the cells")), "{:?}", case.warnings);
+    let case = with("residual_cohesion = 0, softening_strain = 0.2, band_width = \"5 cm\"").expect("a valid case");
+    let Material::SofteningMohrCoulomb(clay) = &case.materials[1].material else { panic!() };
+    assert!((clay.parameters()[6] - 0.02).abs() < 1e-15, "{:?}", clay.parameters());
+    assert!(!case.warnings.iter().any(|told| told.contains("depend on the cells")));
+    for (text, told) in [
+        ("softening_strain = 0.2", "needs it"),
+        ("residual_cohesion = 0, softening_strain = 0", "allowed: softening_strain > 0"),
+        ("residual_cohesion = 0, softening_strain = 0.2, residual_dilation = 26", "0 <= residual_dilation <= "),
+        ("residual_cohesion = 0, softening_strain = 0.2, softening = \"quadratic\"", "exponential"),
+        ("residual_cohesion = 0, softening_strain = 0.2, separation = \"closing\"", "has no meaning"),
+    ] {
+        let message = format!("{:?}", with(text).expect_err(text));
+        assert!(message.contains(told), "{message}");
+    }
+    let case = with("residual_cohesion = 0, softening_strain = 1e-5").expect("a valid case");
+    assert!(case.warnings.iter().any(|told| told.contains("drops at once")), "{:?}", case.warnings);
+}
+
+#[test]
+fn layers_by_height_and_reduced_strength() {
+    let case = valid(FULL, &["grid.lower=[-1, -1]", "grid.cell=0.5"]);
+    let law = |y: f64| match case.materials[3].material.at(y + 1.0).as_ref() {
+        Material::MohrCoulomb(law) => law.clone(),
+        other => panic!("{other:?}"),
+    };
+    for (y, young, friction, cohesion) in [(3.0, 1e7, 30.0, 1e3), (2.0, 1.2e7, 30.5, 1.5e3), (3.5, 9e6, 29.75, 750.0)] {
+        let law = law(y);
+        let [angle, dilation, strength] = law.parameters()[..] else { panic!() };
+        let (tan, expected): (f64, f64) = (angle.tan(), f64::to_radians(friction).tan() / 1.25);
+        assert!((law.elastic().young / young - 1.0).abs() < 1e-14 && (tan / expected - 1.0).abs() < 1e-14, "y = {y}");
+        assert!((strength / (cohesion / 1.25) - 1.0).abs() < 1e-14 && dilation == 0.0);
+    }
+    assert_eq!(case.materials[3].material.elastic().young, 1.3e7, "stiffest at the lowest place of a body, y = 1.5");
+    assert!(!matches!(case.materials[0].material, Material::Graded(_)));
+    let note = |case: &Case, name: &str| case.notes.iter().find(|note| note.key == name).unwrap().value.clone();
+    assert!(note(&case, "material.clay").ends_with("dilation = 0.000000 deg, cohesion = 16000.000000 Pa"));
+    let till = note(&case, "material.till");
+    assert!(
+        till.contains("cohesion = 1400.000000 Pa at y = 1.5; friction = ") && till.ends_with("at y = 2.5"),
+        "{till}"
+    );
+    let case = valid(FULL, &["strength_reduction.factor=1.4"]);
+    assert_eq!(case.strength_reduction, Some(1.4));
+    assert!(note(&case, "material.clay").ends_with("cohesion = 14285.714286 Pa"));
+    let plain = FULL.replace("[strength_reduction]\nfactor = 1.25\n", "");
+    let case = valid(&plain, &["material.till.cohesion.value=2e3"]);
+    let cohesion = |y: f64| match case.materials[3].material.at(y).as_ref() {
+        Material::MohrCoulomb(law) => law.parameters()[2],
+        other => panic!("{other:?}"),
+    };
+    assert_eq!((case.strength_reduction, cohesion(3.0), cohesion(1.5)), (None, 2e3, 2750.0));
+}
+
+/// What a search for the factor of safety takes as its reference: the same stiffness, and no strength.
+#[test]
+fn strength_reduction_makes_every_material_elastic_and_stiffer() {
+    let set = ["strength_reduction.elastic=true", "strength_reduction.stiffness=20"];
+    let (own, case) = (valid(FULL, &[]), valid(FULL, &set));
+    let is_elastic = |material: &Material| matches!(material, Material::Hencky(_));
+    for (own, made) in own.materials.iter().zip(&case.materials) {
+        for height in [2.5, 3.0, 4.0] {
+            let (own, made) = (own.material.at(height), made.material.at(height));
+            assert!(is_elastic(&made), "{made:?}");
+            let (own, made) = (own.elastic(), made.elastic());
+            assert!((made.young / (20.0 * own.young) - 1.0).abs() < 1e-14 && made.poisson == own.poisson);
+        }
+    }
+    assert!(!own.materials.iter().all(|named| is_elastic(&named.material.at(3.0))));
+    assert!(case.warnings.iter().all(|warning| !warning.contains("no material has strength")));
+    let note = case.notes.iter().find(|note| note.key == "material.clay").unwrap();
+    assert!(note.value.contains("young x 20, elastic"), "{note:?}");
+}
+
+/// A search for the factor of safety loads every trial from zero, also of a case that begins with a stress.
+#[test]
+fn strength_reduction_leaves_the_stress_at_the_start_out_and_lets_loads_grow() {
+    let at_once = ["traction.0.ramp=0.0"];
+    let own = valid(FULL, &at_once);
+    let case = valid(FULL, &[&at_once[..], &["strength_reduction.unloaded=true"]].concat());
+    let ramps = |case: &Case| (case.gravity.as_ref().unwrap().ramp, case.tractions[0].ramp);
+    assert!(own.initial.is_some() && ramps(&own) == (0.0, 0.0));
+    assert!(case.initial.is_none() && ramps(&case) == (case.analysis.end, case.analysis.end));
+    // What grows by itself keeps its time.
+    assert_eq!(case.point_loads[0].ramp, own.point_loads[0].ramp);
+    let noted: Vec<_> = case.notes.iter().filter(|note| note.reason == "strength_reduction.unloaded").collect();
+    assert!(noted.len() == 2 && noted[0].key == "gravity.ramp", "{noted:?}");
+}
+
+/// Also where friction varies with the height, and whatever the strength is divided by.
+#[test]
+fn a_material_without_cohesion_may_close_its_gaps() {
+    let separation = |case: &Case, material: usize| case.materials[material].material.separation();
+    let case = valid(FULL, &[]);
+    assert_eq!([0, 1, 2, 3].map(|material| separation(&case, material)), [Separation::Forgotten; 4]);
+    let sand = ["material.sand.cohesion=0", "material.sand.separation=closing"];
+    let till = ["material.till.cohesion=0", "material.till.separation=closing"];
+    let case = valid(FULL, &[sand, till].concat());
+    assert_eq!(case.strength_reduction, Some(1.25));
+    assert_eq!([0, 3].map(|material| separation(&case, material)), [Separation::Closing; 2]);
+    assert_eq!(case.materials[3].material.at(2.5).separation(), Separation::Closing);
+}
