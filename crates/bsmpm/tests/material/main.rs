@@ -47,6 +47,14 @@ fn respond(material: &Material, b: &Symmetric) -> Response {
     material.respond(b, &[]).unwrap_or_else(|error| panic!("{error} for {material:?}"))
 }
 
+/// The response of a law with one state variable, and what that is after it.
+fn answer(material: &Material, b: &Symmetric, state: f64) -> (Response, f64) {
+    let response = material.respond(b, &[state]).expect("an admissible trial");
+    let mut after = [state];
+    response.advance(&mut after);
+    (response, after[0])
+}
+
 fn largest(t: &[f64]) -> f64 {
     t.iter().fold(0.0, |m: f64, x| m.max(x.abs()))
 }

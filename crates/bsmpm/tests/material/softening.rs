@@ -1,6 +1,6 @@
 //! Mohr-Coulomb whose strength follows the plastic strain: yield, tangent, and paths with closed forms.
 
-use super::{largest, mohr_coulomb, stretched, turned};
+use super::{answer, largest, mohr_coulomb, stretched, turned};
 use crate::random::Random;
 use bsmpm::material::{Branch, Decay, Elastic, Law, Material, Response, SofteningMohrCoulomb};
 use bsmpm::tensor::{Symmetric, Tensor};
@@ -19,13 +19,6 @@ fn random_law(random: &mut Random) -> SofteningMohrCoulomb {
     let peak = random.pick(&[[30.0, 10.0, 2.0], [40.0, 40.0, 0.5], [25.0, 0.0, 0.0], [0.0, 0.0, 3.0]]);
     let residual = random.pick(&[[20.0, 0.0, 0.5], [30.0, 10.0, 2.0], [35.0, 0.0, 0.1], [0.0, 0.0, 1.0]]);
     law(random.pick(&[0.0, 0.3, 0.49]), peak, residual, random.pick(&[0.02, 0.1, 1.0]), random.pick(&DECAYS))
-}
-
-fn answer(material: &Material, b: &Symmetric, state: f64) -> (Response, f64) {
-    let response = material.respond(b, &[state]).expect("an admissible trial");
-    let mut after = [state];
-    response.advance(&mut after);
-    (response, after[0])
 }
 
 /// The stress lies on the surface of the strength that the plastic strain after the return leaves, and κ grows by it.

@@ -1,21 +1,14 @@
 //! Von Mises with linear hardening: yield, flow rule, tangent, and paths with closed forms.
 
-use super::{largest, respond, stretched, turned};
+use super::{answer, largest, respond, stretched, turned};
 use crate::random::Random;
-use bsmpm::material::{Branch, Elastic, Law, Material, Response, VonMises, split};
+use bsmpm::material::{Branch, Elastic, Law, Material, VonMises, split};
 use bsmpm::tensor::{Symmetric, Tensor};
 
 const STRENGTH: f64 = 3.0; // Pa
 
 fn law(poisson: f64, hardening: f64) -> VonMises {
     VonMises::new(Elastic { young: 1e3, poisson }, STRENGTH, hardening)
-}
-
-fn answer(material: &Material, b: &Symmetric, state: f64) -> (Response, f64) {
-    let response = material.respond(b, &[state]).expect("an admissible trial");
-    let mut after = [state];
-    response.advance(&mut after);
-    (response, after[0])
 }
 
 /// The stress lies on the surface of the state after the return; flow goes along the deviator, and κ grows by √(2/3) of
