@@ -4,8 +4,8 @@
 use crate::draw;
 use arbitrary::{Result, Unstructured};
 use bsmpm::material::{
-    Decay, DruckerPrager, Elastic, Graded, Hencky, Match, Material, MohrCoulomb, Profile, Response, Separation,
-    SofteningMohrCoulomb, VonMises,
+    CamClay, Decay, DruckerPrager, Elastic, Graded, Hencky, Match, Material, MohrCoulomb, Profile, Response,
+    Separation, SofteningMohrCoulomb, VonMises,
 };
 use bsmpm::tensor::{Symmetric, Tensor};
 use nalgebra::{Rotation3, Vector3};
@@ -26,6 +26,10 @@ pub fn target(data: &[u8]) {
 fn draw(u: &mut Unstructured<'_>) -> Result<()> {
     let material = material(u)?;
     let mut state = vec![0.0; material.state().len()];
+    if !material.is_linear() {
+        // A stress at the start: any pressure.
+        material.start([-draw::size(u, -3.0, 9.0)?; 3], &mut state);
+    }
     while !u.is_empty() {
         let trial = trial(u)?;
         match material.respond(&trial, &state) {
@@ -40,7 +44,7 @@ fn draw(u: &mut Unstructured<'_>) -> Result<()> {
 }
 
 /// What [`bsmpm_scene`] admits: E > 0, -1 < ν < ½, 0 ≤ ψ ≤ φ < 90°, c ≥ 0, σ_y > 0, H ≥ 0, a strength reduction of 0.1
-/// to 100, a strength that falls; of any law also by height.
+/// to 100, a strength that falls, 0 < κ < λ < 1, 0 < M < 3; of any law also by height.
 fn material(u: &mut Unstructured<'_>) -> Result<Material> {
     let elastic = Elastic { young: draw::size(u, -12.0, 20.0)?, poisson: poisson(u)? };
     let friction = draw::between(u, 0.0, 89.999)?.to_radians() * if u.ratio(1, 8)? { 1e-9 } else { 1.0 };
@@ -48,7 +52,7 @@ fn material(u: &mut Unstructured<'_>) -> Result<Material> {
     let cohesion = if u.ratio(1, 4)? { 0.0 } else { draw::size(u, -12.0, 20.0)? };
     let separation = if u.arbitrary()? { Separation::Forgotten } else { Separation::Closing };
     let reduction = if u.arbitrary()? { 1.0 } else { draw::size(u, -1.0, 2.0)? };
-    let law = match u.int_in_range(0..=9)? {
+    let law = match u.int_in_range(0..=10)? {
         0 => Material::Hencky(Hencky { elastic }),
         1 | 2 => {
             let fit = *u.choose(&[Match::PlaneStrain, Match::Inner, Match::Outer])?;
@@ -61,6 +65,12 @@ fn material(u: &mut Unstructured<'_>) -> Result<Material> {
             let (peak, strain) = ((friction, dilation, cohesion), draw::size(u, -6.0, 3.0)?);
             let (first, last) = if u.arbitrary()? { (peak, residual) } else { (residual, peak) };
             Material::SofteningMohrCoulomb(SofteningMohrCoulomb::new(elastic, first, last, strain, decay))
+        }
+        6 => {
+            let lambda = draw::between(u, 1e-4, 0.9)?;
+            let (kappa, ratio) = (lambda * draw::between(u, 0.01, 0.99)?, draw::between(u, 0.01, 2.99)?);
+            let (given, ocr) = (if u.arbitrary()? { 0.0 } else { draw::size(u, -3.0, 9.0)? }, draw::size(u, 0.0, 3.0)?);
+            Material::CamClay(CamClay::new(elastic, [kappa, lambda, ratio, given, ocr]))
         }
         _ => Material::MohrCoulomb(MohrCoulomb::new(elastic, friction, dilation, cohesion).separating(separation)),
     };
@@ -129,12 +139,18 @@ fn second_return(material: &Material, response: &Response, scale: f64, state: &[
     if condition > CONDITION || eps[0].abs().max(eps[2].abs()) > LARGEST {
         return;
     }
+    // Of elasticity by the pressure, K = p/κ; nothing is left of a stress that is less than the digits of b hold.
+    let bulk = if material.is_linear() { 0.0 } else { scale / material.parameters()[0] };
+    let (lambda, mu) = material.elastic().lame();
+    let stiffness = 3.0 * (lambda.abs() + bulk) + 2.0 * mu;
+    if !material.is_linear() && 32.0 * f64::EPSILON * condition * stiffness > SAME * scale {
+        return;
+    }
     let again = material.respond(&response.b_e(), state);
     let again = again.unwrap_or_else(|error| panic!("{error} after a return of {material:?}: {response:?}"));
-    let (lambda, mu) = material.elastic().lame();
     let bulk = material.elastic().young / (3.0 - 6.0 * material.elastic().poisson);
     let elasticity = (lambda.abs() / mu).max(mu / bulk);
-    let rounding = 32.0 * f64::EPSILON * (condition * (3.0 * lambda.abs() + 2.0 * mu) + elasticity * scale);
+    let rounding = 32.0 * f64::EPSILON * (condition * stiffness + elasticity * scale);
     let (before, after) = (response.principal_tau(), again.principal_tau());
     let change = (0..3).map(|k| (before[k] - after[k]).abs()).fold(0.0, f64::max);
     assert!(change <= SAME * scale + rounding, "{material:?}: {response:?} became {again:?}, {change:e} {rounding:e}");

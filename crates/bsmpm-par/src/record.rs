@@ -1,6 +1,7 @@
 //! Rows of `history.csv`: the quantities that the case asks for, in the case's own coordinates.
 
 use crate::checkpoint::{BooksForm, RecordState};
+use bsmpm::boundary::ContactReport;
 use bsmpm::energy::{Books, Stored};
 use bsmpm::error::StepError;
 use bsmpm::kinematics::Kinematics;
@@ -103,6 +104,10 @@ impl Recorder {
                     vec![self.footing(&history.quantity, t, report)]
                 }
                 Quantity::Energy => energy.clone(),
+                Quantity::Contact { face }
+                | Quantity::Gap { face }
+                | Quantity::SlipRate { face }
+                | Quantity::FrictionPower { face } => contact(&history.quantity, model, *face, report),
                 quantity => self.values(quantity, self.followed[number], model, points, halo)?,
             };
             row.extend(values.iter().map(|value| history.scale * value));
@@ -132,8 +137,15 @@ impl Recorder {
                 vec![bottom + observe::surface(&model.grid, points, x, halo)]
             }
             Quantity::MaxDisplacement => vec![observe::largest_displacement(points, halo)],
-            Quantity::Mass => vec![observe::mass(points, halo)],
-            Quantity::Momentum => observe::momentum(points, halo).as_slice().to_vec(),
+            Quantity::Mass { of } => vec![observe::mass(points, *of, halo)],
+            Quantity::Momentum { of } => observe::momentum(points, *of, halo).as_slice().to_vec(),
+            Quantity::CentreOfMass { of } => {
+                let centre = observe::centre_of_mass(points, *of, halo).unwrap_or_else(Vector::zeros);
+                (self.lower + centre).as_slice().to_vec()
+            }
+            Quantity::AngularMomentum { of } => {
+                vec![observe::angular_momentum(points, *of, &-self.lower, halo)]
+            }
             Quantity::Heave => vec![observe::heave(points, halo)],
             Quantity::StressNoise => both(noise::stress_noise(&model.grid, points, model.weighting, VERTICAL, halo)?),
             Quantity::PressureNoise { within } => {
@@ -189,6 +201,23 @@ impl Recorder {
         let supports = model.boundary.supports.iter().zip(&report.reactions);
         let mut at_face = supports.filter(|(support, _)| support.axis == face.axis && support.upper == face.upper);
         at_face.next().map_or_else(|| vec![0.0; 2], |(_, force)| force.clone())
+    }
+}
+
+/// A quantity of a face in contact; zero before the first step.
+fn contact<K: Kinematics<2>>(quantity: &Quantity, model: &Model<K, 2>, face: Face, report: &StepReport) -> Vec<f64> {
+    let supports = &model.boundary.supports;
+    let of_face = |found: &&ContactReport| {
+        let support = &supports[found.support];
+        support.axis == face.axis && support.upper == face.upper
+    };
+    let found = report.contacts.iter().find(of_face).copied().unwrap_or_default();
+    let rate = |sum: f64| if report.dt > 0.0 { sum / report.dt } else { 0.0 };
+    match quantity {
+        Quantity::Contact { .. } => vec![found.closed, found.sliding],
+        Quantity::Gap { .. } => found.gap.to_vec(),
+        Quantity::SlipRate { .. } => vec![rate(found.slip)],
+        _ => vec![rate(found.dissipated)],
     }
 }
 

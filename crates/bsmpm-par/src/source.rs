@@ -8,6 +8,7 @@ use bsmpm_io::exit::{CASE, MISSING};
 use bsmpm_scene::Case;
 use mpi::collective::Root;
 use mpi::topology::{Communicator, SimpleCommunicator};
+use std::io::ErrorKind;
 
 /// The valid case of the command line, for which there is enough memory; `Err` holds the exit code, and rank 0 has said
 /// why.
@@ -15,9 +16,11 @@ pub fn read(world: &SimpleCommunicator, arguments: &Arguments) -> Result<Case, u
     let speaks = world.rank() == 0;
     let name = arguments.case.display().to_string();
     let bytes = broadcast(world, || {
-        bsmpm_scene::load(&arguments.case).map_err(|error| say(&format!("bsmpm-par: {name}: {error}"))).ok()
-    })
-    .ok_or(MISSING)?;
+        bsmpm_scene::load(&arguments.case).map_err(|error| {
+            say(&format!("bsmpm-par: {name}: {error}"));
+            if error.kind() == ErrorKind::InvalidData { CASE } else { MISSING }
+        })
+    })?;
     let case = Case::from_bytes(&name, &bytes, &arguments.set).map_err(|errors| {
         if speaks {
             errors.iter().for_each(|error| say(&format!("{error:#}")));
@@ -30,18 +33,20 @@ pub fn read(world: &SimpleCommunicator, arguments: &Arguments) -> Result<Case, u
     Ok(case)
 }
 
-/// Bytes that rank 0 may have; `None` everywhere if it has none.
-fn broadcast(world: &SimpleCommunicator, bytes: impl FnOnce() -> Option<Vec<u8>>) -> Option<Vec<u8>> {
+/// Bytes that rank 0 has read, or the exit code of why it has not.
+fn broadcast(world: &SimpleCommunicator, bytes: impl FnOnce() -> Result<Vec<u8>, u8>) -> Result<Vec<u8>, u8> {
     let root = world.process_at_rank(0);
-    let own = if world.rank() == 0 { bytes() } else { None };
-    let mut length = own.as_ref().map_or(-1, |bytes| bytes.len() as i64);
+    let own = if world.rank() == 0 { bytes() } else { Ok(Vec::new()) };
+    // Below zero: the exit code.
+    let mut length = own.as_ref().map_or_else(|code| -i64::from(*code), |bytes| bytes.len() as i64);
     root.broadcast_into(&mut length);
-    let length = usize::try_from(length).ok()?;
-    let mut shared = own.unwrap_or_else(|| vec![0; length]);
-    if length > 0 {
+    let Ok(size) = usize::try_from(length) else { return Err(length.unsigned_abs() as u8) };
+    let mut shared = own.unwrap_or_default();
+    shared.resize(size, 0);
+    if size > 0 {
         root.broadcast_into(&mut shared[..]);
     }
-    Some(shared)
+    Ok(shared)
 }
 
 /// What `--check` prints: sizes, choices and warnings.

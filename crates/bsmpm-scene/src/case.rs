@@ -1,9 +1,11 @@
 //! A valid case: all numbers in SI and within their ranges, angles in radians.
 
+mod element;
 mod history;
 mod loads;
 
 pub use crate::words::{Base, Format, Geometry, Nonlinear, Support};
+pub use element::{ElementStage, ElementTest};
 pub use history::{Check, Column, Face, History, Quantity};
 pub use loads::{Footing, Initial, MotionPath, PointLoad, Prescribed, Site, Traction};
 
@@ -12,6 +14,7 @@ use crate::grid::{GridSpec, Line};
 use crate::region::Region;
 use crate::words::{Factor, Ksp, Pc};
 use bsmpm::background::{Extent, Kind};
+use bsmpm::boundary::Contact;
 use bsmpm::material::Material;
 use bsmpm::model::Regime;
 use bsmpm::quadrature::Quadrature;
@@ -36,8 +39,12 @@ pub struct Case {
     pub bodies: Vec<Body>,
     /// Body force, if any.
     pub gravity: Option<Gravity>,
+    /// Motion of the ground, in whose frame the case is: s, increasing, and m/s2; empty without any.
+    pub shaking: Vec<(f64, [f64; 2])>,
     /// Supports of the grid's faces: per axis the lower and the upper one.
     pub boundary: [[Support; 2]; 2],
+    /// What those of them do that are in contact with the material.
+    pub contacts: [[Option<Contact>; 2]; 2],
     /// A rigid strip, if any.
     pub footing: Option<Footing>,
     /// Prescribed motions, in the order of the file.
@@ -60,6 +67,8 @@ pub struct Case {
     pub histories: Vec<History>,
     /// Bounds that are verified at the end.
     pub checks: Vec<Check>,
+    /// Tests of one point, which a run of the case leaves alone.
+    pub elements: Vec<ElementTest>,
     /// What is doubtful but allowed.
     pub warnings: Vec<String>,
     /// What the program chose by itself.

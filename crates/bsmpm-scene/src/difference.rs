@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 use std::fmt;
 
 /// Keys with which a run may go on changed: they say how far, how finely and how it is told, not what is solved.
-const FREE: [&str; 12] = [
+const FREE: [&str; 13] = [
     "title",
     "analysis.dt",
     "analysis.steps",
@@ -23,6 +23,7 @@ const FREE: [&str; 12] = [
     "solver.reproducible",
     "output",
     "check",
+    "element",
     "analysis.end",
 ];
 /// Keys among them that belong to the tables of a run, whose columns stay.

@@ -10,7 +10,7 @@ use bsmpm::material::state_width;
 use bsmpm::method::Criteria;
 use bsmpm::method::Nonlinear;
 use bsmpm::method::QuasiNewton;
-use bsmpm::model::{Gravity, Model, Weighting};
+use bsmpm::model::{Gravity, Model, Shaking, Weighting};
 use bsmpm::points::Points;
 use bsmpm::schedule::Schedule;
 use bsmpm::stabilisation::{Groups, Stabilisation};
@@ -36,6 +36,8 @@ pub fn model(case: &Case) -> Result<Model<PlaneStrain, 2>, GridError> {
             .gravity
             .as_ref()
             .map(|gravity| Gravity { acceleration: gravity.acceleration.into(), ramp: gravity.ramp }),
+        shaking: (!case.shaking.is_empty())
+            .then(|| Shaking { rows: case.shaking.iter().map(|&(t, ground)| (t, ground.into())).collect() }),
         boundary: boundary(case, &grid),
         grid,
         stabilisation: case.stabilisation,
@@ -74,17 +76,31 @@ fn boundary(case: &Case, grid: &Grid<2>) -> Boundary<2> {
         supports: supports(case),
         strips: surfaces::strips(case, grid, penalty(case)),
         loads: surfaces::loads(case, grid),
+        reach: reach(case),
     }
+}
+
+/// Parts of a cell that the points of every material reach to each side at the start, at most.
+fn reach(case: &Case) -> Vec<f64> {
+    let mut reach = vec![0.0_f64; case.materials.len()];
+    for body in &case.bodies {
+        reach[body.material] = reach[body.material].max(0.5 / body.points_per_cell as f64);
+    }
+    reach
 }
 
 fn supports(case: &Case) -> Vec<Support<2>> {
     let mut supports = Vec::new();
     for (axis, faces) in case.boundary.iter().enumerate() {
         for (upper, support) in [false, true].into_iter().zip(faces) {
+            if let Some(contact) = case.contacts[axis][usize::from(upper)] {
+                supports.push(Support::contact(axis, upper, contact));
+                continue;
+            }
             match support {
                 crate::Support::Fixed => supports.push(Support::fixed(axis, upper)),
                 crate::Support::Roller => supports.push(Support::roller(axis, upper)),
-                crate::Support::Free => {}
+                crate::Support::Free | crate::Support::Contact => {}
             }
         }
     }
@@ -146,12 +162,13 @@ pub fn frame_times(case: &Case) -> Vec<f64> {
     times
 }
 
-/// Materials of one stiffness: what an average over the grid may mix. One that depends on the height is alike to
-/// itself; under consistent F-bar one that dilates is not alike to one that does not, as their forces are formed in
-/// other ways.
+/// Materials of one stiffness: what an average over the grid may mix. One that depends on the height or the stress is
+/// alike to itself; under consistent F-bar one that dilates is not alike to one that does not, as their forces are
+/// formed in other ways.
 pub fn groups(case: &Case) -> Groups {
     let kind = |named: &NamedMaterial| {
-        let graded = named.material.is_graded().then(|| named.name.clone());
+        let alone = named.material.is_graded() || !named.material.is_linear();
+        let graded = alone.then(|| named.name.clone());
         let adjoint = case.stabilisation == Stabilisation::ConsistentFBar && is_dilatant(&named.material);
         (named.material.elastic().clone(), graded, adjoint)
     };

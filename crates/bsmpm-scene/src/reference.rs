@@ -25,6 +25,14 @@ pub fn reference() -> String {
             page.table(table);
         }
     }
+    page.line("## Rows from a file\n");
+    page.paragraph(
+        "Where rows are told, `{ file = \"record.csv\" }` takes them from a text file beside the case: a line for each, \
+         cells between commas, semicolons, tabs or blanks, `#` before a comment. A heading may give units, as in `t [s], \
+         ux [mm]`. With `along = \"x\"` (or `\"y\"`) the file has two columns, a time and a number, and the other \
+         component is zero. The rows become part of the case: `run.json` keeps them, and a restart needs no file. `--set` \
+         and the parameters of a sweep take rows only.",
+    );
     page.histories();
     page.text
 }
@@ -161,7 +169,7 @@ fn takes(key: &Key) -> String {
         Kind::List(of, range) => ranged(format!("a list, each {of}"), range),
         Kind::Rows(columns) => {
             let columns: Vec<String> = columns.iter().map(|(of, range)| column(*of, range)).collect();
-            format!("a list of rows, each `[{}]`", columns.join(", "))
+            format!("a list of rows, each `[{}]`, or a [file](#rows-from-a-file)", columns.join(", "))
         }
         Kind::Gradient(of) => format!("{of} per metre of depth, e.g. `\"2 {}/m\"`", of.units().next().unwrap_or("")),
         Kind::Choice(_) => "one of these words".to_owned(),

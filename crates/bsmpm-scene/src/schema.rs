@@ -3,6 +3,7 @@
 //! The reader takes names, types, units, ranges and defaults from here; messages and `did you mean` do too.
 
 mod body;
+mod element;
 mod laws;
 mod loads;
 mod output;
@@ -216,7 +217,7 @@ impl fmt::Display for Kind {
             }
             Self::Rows(columns) => {
                 let columns: Vec<String> = columns.iter().map(|(dimension, _)| dimension.to_string()).collect();
-                write!(f, "a list of rows, each [{}]", columns.join(", "))
+                write!(f, "a list of rows, each [{}], or {FILE}", columns.join(", "))
             }
             Self::Measure => f.write_str("a number, or a string with a unit"),
             Self::Pair(dimension, _) => write!(f, "a list of two, each {}", Quantity(*dimension)),
@@ -235,6 +236,9 @@ impl fmt::Display for Kind {
         }
     }
 }
+
+/// Rows from a file, which is read where the case file names it.
+const FILE: &str = "`{ file = \"rows.csv\" }`";
 
 /// Words in words.
 struct OneOf<'a>(&'a Words);

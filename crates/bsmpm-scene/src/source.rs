@@ -1,5 +1,7 @@
 //! The text of a case file: read with a bound, decoded with reasons, and its lines and columns.
 
+mod rows;
+
 use crate::error::{Error, Place};
 use std::io::{self, Read};
 use std::path::Path;
@@ -11,17 +13,29 @@ pub const MAX_BYTES: usize = 1 << 20;
 const EXCERPT: usize = 100;
 
 /// Bytes of the case file at `path`, at most [`MAX_BYTES`] + 1 of them (what is larger [`crate::Case::from_bytes`]
-/// refuses).
+/// refuses); the rows of files that it names are in their places.
 ///
 /// # Errors
-/// Those of opening and reading; [`io::ErrorKind::InvalidInput`] for a directory, pipe or device, which is not opened.
+/// Those of opening and reading; [`io::ErrorKind::InvalidInput`] for a directory, pipe or device, which is not opened;
+/// [`io::ErrorKind::InvalidData`] if a file with rows does not hold them, or too many.
 pub fn load(path: &Path) -> io::Result<Vec<u8>> {
     if !std::fs::metadata(path)?.is_file() {
         return Err(io::Error::new(io::ErrorKind::InvalidInput, "not a regular file"));
     }
     let mut bytes = Vec::new();
     std::fs::File::open(path)?.take(MAX_BYTES as u64 + 1).read_to_end(&mut bytes)?;
-    Ok(bytes)
+    let Some(text) = std::str::from_utf8(&bytes).ok().filter(|text| bytes.len() <= MAX_BYTES && text.contains("file"))
+    else {
+        return Ok(bytes);
+    };
+    let whole = rows::inlined(text, path.parent().unwrap_or(Path::new(""))).map(String::into_bytes)?;
+    if whole.len() > MAX_BYTES {
+        let message = format!(
+            "with the rows of its files it has more than {MAX_BYTES} bytes, the limit of a case; thin them to the steps"
+        );
+        return Err(io::Error::new(io::ErrorKind::InvalidData, message));
+    }
+    Ok(whole)
 }
 
 /// Text of a case file: UTF-8 without its byte order mark. One error if it is too large, UTF-16, binary or no UTF-8.

@@ -53,11 +53,13 @@ pub fn loads(case: &Case, grid: &Grid<2>) -> Vec<Load<2>> {
         points: surface::along::<PlaneStrain>(grid, &place(traction.from), &place(traction.to), across),
         traction: traction.stress.into(),
         ramp: traction.ramp,
+        amplitude: traction.amplitude.clone(),
     });
     let forces = case.point_loads.iter().map(|load| Load {
         points: vec![SurfacePoint { x: place(load.at), area: 1.0 }],
         traction: load.force.into(),
         ramp: load.ramp,
+        amplitude: load.amplitude.clone(),
     });
     tractions.chain(forces).collect()
 }

@@ -65,7 +65,7 @@ const UNITS: [(Dimension, &[(&str, Worth)]); 9] = [
     (Dimension::UnitWeight, &[("N/m3", Ten(0)), ("kN/m3", Ten(3)), ("MN/m3", Ten(6))]),
     (Dimension::Angle, &[("deg", Ten(0)), ("rad", Radian)]),
     (Dimension::Velocity, &[("m/s", Ten(0)), ("cm/s", Ten(-2)), ("mm/s", Ten(-3)), ("km/s", Ten(3))]),
-    (Dimension::Acceleration, &[("m/s2", Ten(0)), ("cm/s2", Ten(-2)), ("mm/s2", Ten(-3))]),
+    (Dimension::Acceleration, &[("m/s2", Ten(0)), ("cm/s2", Ten(-2)), ("mm/s2", Ten(-3)), ("g", Times(9.806_65))]),
     (Dimension::LineForce, &[("N/m", Ten(0)), ("kN/m", Ten(3)), ("MN/m", Ten(6))]),
 ];
 

@@ -1,6 +1,7 @@
 //! The rules between keys: a record whose values fit one by one becomes a valid case, or errors.
 
 mod body;
+mod element;
 mod grid;
 mod history;
 mod lines;
@@ -17,11 +18,14 @@ use crate::case::{Analysis, Case, Gravity, Support};
 use crate::record::Record;
 use crate::report::Report;
 use crate::words::{Side, Word};
+use bsmpm::boundary::Contact;
 use bsmpm::model::Regime;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::step::mass::MassMatrix;
 use bsmpm::step::newmark::Newmark;
 
+/// Coefficient of friction up to which faces in contact were verified.
+const MOST_SHOWN_FRICTION: f64 = 1.0;
 /// Steps of a run at most.
 const MOST_STEPS: f64 = 1e9;
 /// m/s2  by which a unit weight is divided, whatever the scene's gravity is.
@@ -40,12 +44,21 @@ pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Op
     let grid = grid::read(record, boundary, report);
     let bodies = body::read_all(record, grid.as_ref(), regime, report);
     let factor = record.record("strength_reduction").and_then(|reduction| reduction.number("factor"));
+    let contacts = contacts(record, factor, report);
     let (placed, made) = (grid.as_ref(), bodies.as_deref());
     let reduction = material::Reduction::of(record);
     let around = material::Around { regime, grid: placed, bodies: made, reduction };
     let materials = material::read_all(record, around, report);
     let mut gravity = gravity(record, end, report);
-    let around = strip::AroundStrip { grid: placed, bodies: made, boundary, end };
+    let shaking =
+        load::shaking(record, (regime, analysis.as_ref().map(|analysis| (analysis.end, analysis.dt))), report);
+    let around = strip::AroundStrip {
+        grid: placed,
+        bodies: made,
+        boundary,
+        end,
+        dt: analysis.as_ref().map(|analysis| analysis.dt),
+    };
     let footing = strip::footing(record, around, report);
     let prescribed = strip::prescribed(record, around, report);
     let mut tractions = load::tractions(record, around, report);
@@ -59,8 +72,10 @@ pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Op
     let stabilisation = stabilisation(record);
     let solver = solver::read(record, regime, (grid.as_ref(), materials.as_deref()), report);
     let output = output::read(record, end, report);
-    let histories = history::read_all(record, (regime, grid.as_ref()), report);
+    let histories =
+        history::read_all(record, (regime, grid.as_ref(), materials.as_deref().zip(bodies.as_deref())), report);
     let checks = history::checks(record, &histories, end, report);
+    let elements = element::read_all(record, (materials.as_deref(), placed), report);
     let mut case = Case {
         title: record.text("title").unwrap_or_default().to_owned(),
         geometry: record.word("geometry")?,
@@ -69,7 +84,9 @@ pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Op
         materials: materials?,
         bodies: bodies?,
         gravity,
+        shaking,
         boundary: boundary?,
+        contacts: contacts?,
         footing,
         prescribed,
         tractions,
@@ -81,6 +98,7 @@ pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Op
         output: output?,
         histories,
         checks,
+        elements,
         warnings: Vec::new(),
         notes: Vec::new(),
         text,
@@ -154,8 +172,41 @@ fn mass(analysis: &Record, regime: Regime, report: &mut Report<'_>) -> MassMatri
 /// Supports of the grid's faces; none after an error.
 pub(crate) fn boundary(record: &Record) -> Option<[[Support; 2]; 2]> {
     let boundary = record.record("boundary")?;
-    let [x, y] = Side::ALL.map(|sides| sides.map(|side| boundary.word(side.word())));
+    let support = |side: Side| match boundary.record(side.word()) {
+        Some(_) => Some(Support::Contact),
+        None => boundary.word(side.word()),
+    };
+    let [x, y] = Side::ALL.map(|sides| sides.map(support));
     Some([[x[0]?, x[1]?], [y[0]?, y[1]?]])
+}
+
+/// What faces in contact do, their friction divided by the `factor` of the strength; none after an error.
+fn contacts(record: &Record, factor: Option<f64>, report: &mut Report<'_>) -> Option<[[Option<Contact>; 2]; 2]> {
+    let (boundary, supports) = (record.record("boundary")?, boundary(record)?);
+    let mut contacts = [[None; 2]; 2];
+    for (axis, upper) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+        let side = Side::ALL[axis][upper].word();
+        contacts[axis][upper] = match boundary.record(side) {
+            Some(face) => {
+                let (given, lifts) = (face.number("friction")?, face.flag("lifts")?);
+                let friction = factor.map_or(given, |factor| given / factor);
+                if friction != given {
+                    let reason = format!("strength_reduction.factor = {}", factor.unwrap_or(1.0));
+                    report.note(face.path_of("friction"), format!("{friction}"), reason);
+                }
+                if friction > MOST_SHOWN_FRICTION {
+                    report.warn(format!(
+                        "{}: {friction}: shown to be right up to {MOST_SHOWN_FRICTION}; with more, steps may find no state \
+                         that agrees with Coulomb's law, or one of several",
+                        face.path_of("friction")
+                    ));
+                }
+                Some(Contact { friction, lifts })
+            }
+            None => (supports[axis][upper] == Support::Contact).then_some(Contact { friction: 0.0, lifts: true }),
+        };
+    }
+    Some(contacts)
 }
 
 fn gravity(record: &Record, end: Option<f64>, report: &mut Report<'_>) -> Option<Gravity> {

@@ -1,5 +1,6 @@
 //! The case file of a command.
 
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use bsmpm_scene::Case;
@@ -8,7 +9,10 @@ use crate::Error;
 
 /// The bytes of a case file.
 pub(crate) fn load(path: &Path) -> Result<Vec<u8>, Error> {
-    bsmpm_scene::load(path).map_err(Error::unread("case", path))
+    bsmpm_scene::load(path).map_err(|error| match error.kind() {
+        ErrorKind::InvalidData => Error::BadCase { path: path.to_owned(), errors: vec![error.to_string()] },
+        _ => Error::unread("case", path)(error),
+    })
 }
 
 /// The case that overrides `KEY=VALUE` make of the bytes of its file.

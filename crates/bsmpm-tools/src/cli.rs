@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Parser, Subcommand};
 
-use crate::{Error, compare, estimate, fos, plot, slurm, sweep, validate, verify_case};
+use crate::{Error, compare, element, estimate, fos, plot, slurm, sweep, validate, verify_case};
 
 /// Starts runs of bsmpm-par, and looks at what they left.
 #[derive(Debug, Parser)]
@@ -33,6 +33,8 @@ pub enum Command {
     VerifyCase(verify_case::VerifyArguments),
     /// Tell what a case will cost before it is run: time, memory, disk
     Estimate(Box<estimate::EstimateArguments>),
+    /// Compute laboratory tests of a case's materials, one point each
+    Element(element::ElementArguments),
     /// Write a job script for Slurm that queues itself again until the case is done
     Slurm(slurm::SlurmArguments),
     /// Print every key of a case file with its unit, range and default, and every quantity of a history
@@ -77,6 +79,10 @@ pub fn run(cli: &Cli) -> Result<(), Error> {
             print(&table, &files);
         }
         Command::Estimate(arguments) => print(&estimate::run(arguments, say)?, &[]),
+        Command::Element(arguments) => {
+            let (table, files) = element::run(arguments, say)?;
+            print(&table, &files);
+        }
         Command::Keys => print(&bsmpm_scene::reference(), &[]),
         Command::Slurm(arguments) => {
             let script = slurm::run(arguments, |line| say(&format!("warning: {line}")))?;
@@ -132,6 +138,6 @@ mod tests {
             }
             seen += 1;
         }
-        assert_eq!(seen, 5);
+        assert_eq!(seen, 6);
     }
 }

@@ -64,6 +64,12 @@ pub enum Error {
         /// What was found, and what to try.
         reason: String,
     },
+    /// Tests of one point that a material cannot follow.
+    #[error("{} test(s) did not come to their end:\n  {}", failed.len(), failed.join("\n  "))]
+    Element {
+        /// Each with its reason.
+        failed: Vec<String>,
+    },
     /// No run of several came to its end.
     #[error("no run came to its end; {} says why", table.display())]
     NoResult {
@@ -115,7 +121,7 @@ impl Error {
             Self::Usage { .. } => exit::USAGE,
             Self::Missing { .. } => exit::MISSING,
             Self::BadReference { .. } | Self::BadCase { .. } | Self::NoFactor { .. } => exit::CASE,
-            Self::NoStableState { .. } | Self::NoResult { .. } => exit::NO_CONVERGENCE,
+            Self::NoStableState { .. } | Self::NoResult { .. } | Self::Element { .. } => exit::NO_CONVERGENCE,
             Self::Run { code, .. } => *code,
             Self::NotValid { .. } => exit::CHECK,
             Self::Launch { .. } => exit::WRITE,

@@ -8,6 +8,7 @@ mod batch;
 mod case;
 pub mod cli;
 pub mod compare;
+pub mod element;
 pub mod error;
 pub mod estimate;
 pub mod fos;

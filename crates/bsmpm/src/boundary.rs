@@ -2,10 +2,12 @@
 #![doc = include_str!("boundary.md")]
 
 pub mod anchor;
+pub mod contact;
 pub mod load;
 pub mod strip;
 pub mod surface;
 
+pub use contact::{Contact, ContactReport};
 pub use load::Load;
 pub use strip::{Path, Strip, StripReport};
 pub use surface::{Anchors, Surface, SurfacePoint};
@@ -25,19 +27,31 @@ pub struct Support<const D: usize> {
     pub upper: bool,
     /// per component: velocity of the prescribed motion (m per unit of time), 0 where it is held, `None` where free
     pub velocity: [Option<f64>; D],
+    /// what the face does to the material where nothing is prescribed
+    pub contact: Option<Contact>,
 }
 
 impl<const D: usize> Support<D> {
     /// All components held.
     pub fn fixed(axis: usize, upper: bool) -> Self {
-        Self { axis, upper, velocity: [Some(0.0); D] }
+        Self::moving(axis, upper, [Some(0.0); D])
+    }
+
+    /// These velocities prescribed, m per unit of time.
+    pub fn moving(axis: usize, upper: bool, velocity: [Option<f64>; D]) -> Self {
+        Self { axis, upper, velocity, contact: None }
+    }
+
+    /// Nothing held, but what the contact does.
+    pub fn contact(axis: usize, upper: bool, contact: Contact) -> Self {
+        Self { contact: Some(contact), ..Self::moving(axis, upper, [None; D]) }
     }
 
     /// The normal component held.
     pub fn roller(axis: usize, upper: bool) -> Self {
         let mut velocity = [None; D];
         velocity[axis] = Some(0.0);
-        Self { axis, upper, velocity }
+        Self::moving(axis, upper, velocity)
     }
 }
 
@@ -50,6 +64,9 @@ pub struct Boundary<const D: usize> {
     pub strips: Vec<Strip<D>>,
     /// Tractions and point loads.
     pub loads: Vec<Load<D>>,
+    /// Per material, parts of a cell that its points reach to each side at the start: .5 over their number along an
+    /// axis; half a cell where it is not told. For faces that material comes off.
+    pub reach: Vec<f64>,
 }
 
 impl<const D: usize> Boundary<D> {
@@ -68,7 +85,9 @@ impl<const D: usize> Boundary<D> {
     pub fn closed(&self) -> [[bool; 2]; D] {
         let mut closed = [[false; 2]; D];
         for support in &self.supports {
-            closed[support.axis][usize::from(support.upper)] = support.velocity[support.axis] == Some(0.0);
+            let held = support.contact.map(|contact| !contact.lifts);
+            closed[support.axis][usize::from(support.upper)] =
+                held.unwrap_or(support.velocity[support.axis] == Some(0.0));
         }
         closed
     }
@@ -88,19 +107,37 @@ impl<const D: usize> Boundary<D> {
         prescribed
     }
 
+    /// Whether some face has contact instead of holding.
+    pub fn has_contact(&self) -> bool {
+        self.supports.iter().any(|support| support.contact.is_some())
+    }
+
     /// Force of every support on the body: the nodal `reaction` summed over the components that it decides, N.
     pub fn reactions(&self, grid: &Grid<D>, reaction: &[f64], halo: &dyn Halo) -> Vec<Vec<f64>> {
         let owned = halo.owned();
         let mut counted = vec![false; reaction.len()];
         let mut sums = vec![Exact::default(); self.supports.len() * D];
-        for (support, sum) in self.supports.iter().zip(sums.chunks_exact_mut(D)).rev() {
+        let mut sum = |(support, sum): (&Support<D>, &mut [Exact]), acts: &dyn Fn(usize) -> bool| {
             for node in grid.face_nodes(support.axis, support.upper) {
-                for component in (0..D).filter(|&component| support.velocity[component].is_some()) {
+                for component in (0..D).filter(|&component| acts(component)) {
                     if !std::mem::replace(&mut counted[Nodal::<D>::at(node, component)], true) && owned.contains(&node)
                     {
                         sum[component].add(reaction[Nodal::<D>::at(node, component)]);
                     }
                 }
+            }
+        };
+        // Who holds goes first, then what pushes, then what rubs.
+        for (support, sums) in self.supports.iter().zip(sums.chunks_exact_mut(D)).rev() {
+            sum((support, sums), &|component| support.velocity[component].is_some());
+        }
+        if self.has_contact() {
+            let in_contact = |(support, _): &(&Support<D>, &mut [Exact])| support.contact.is_some();
+            for (support, sums) in self.supports.iter().zip(sums.chunks_exact_mut(D)).filter(in_contact) {
+                sum((support, sums), &|component| component == support.axis);
+            }
+            for (support, sums) in self.supports.iter().zip(sums.chunks_exact_mut(D)).filter(in_contact) {
+                sum((support, sums), &|component| component != support.axis);
             }
         }
         halo.total(&sums).chunks_exact(D).map(<[f64]>::to_vec).collect()

@@ -142,7 +142,7 @@ impl Stepper {
                 if self.at.tick + size == TICKS { to } else { from + (to - from) * fraction(self.at.tick + size) };
             let dt = end - self.at.t;
             let mut guess = self.scaled_guess(dt);
-            match step(model, points, &mut guess, (self.at.t, dt), (halo, solver), &mut counts) {
+            match step(&model.over(dt), points, &mut guess, (self.at.t, dt), (halo, solver), &mut counts) {
                 Ok(report) => {
                     (self.guess, self.at.guess_dt, self.at.t) = (guess, dt, end);
                     if let (Some(budget), Some(turnover)) = (&mut self.at.budget, &report.turnover) {

@@ -126,6 +126,14 @@ pub enum StepError {
         /// du . (f_old - f_new) along its direction, N m.
         work: f64,
     },
+    /// No statuses of the nodes on faces with contact were found that the displacement under them agrees with.
+    #[error(
+        "contact: {passes} corrections of what is on a face, sticks or slips led to no displacement that agrees with it"
+    )]
+    Unsettled {
+        /// Corrections made.
+        passes: usize,
+    },
     /// The steps so far have made energy: the run is wrong, though each of them is in equilibrium.
     #[error(
         "energy made: what moves, strains and is dissipated exceeds the {given:.3e} J of the start and of all work since by \

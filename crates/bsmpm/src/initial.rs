@@ -6,7 +6,7 @@ use crate::boundary::strip::StripAttachments;
 use crate::error::StepError;
 use crate::grid::{Shape, transfer};
 use crate::kinematics::Kinematics;
-use crate::material::{Branch, Elastic};
+use crate::material::{Branch, Elastic, Material};
 use crate::model::{Model, Regime};
 use crate::parallel::{Halo, LinearSolver, agreed};
 use crate::points::{Packed, Points};
@@ -45,9 +45,28 @@ pub fn set_stress<K: Kinematics<D>, const D: usize>(
     for p in 0..points.len() {
         let stress = sigma(points.material[p], &points.x[p]);
         assert!(Packed::<D, Symmetric>::holds(&stress), "a stress at the start leaves the plane: {stress:?}");
-        let strain = strain_of(&elastic_at(model, points, p), &stress);
-        set(points, p, stress, &strain);
+        let law = model.materials[usize::from(points.material[p])].at(points.height(p));
+        let state = points.state.as_mut().map_or(&mut [][..], |state| state.of_point_mut(p));
+        points.b_e.set(p, b_e_of(&law, &stress, state));
+        points.sigma.set(p, stress);
     }
+}
+
+/// The elastic left Cauchy-Green tensor that belongs to a Cauchy stress in Pa where nothing has moved, and the law's
+/// `state` there, in the place of zeros; not a number where the law has no such stress. The law is that of one height.
+pub fn b_e_of(law: &Material, stress: &Symmetric, state: &mut [f64]) -> Symmetric {
+    if law.is_linear() {
+        return exponential(&strain_of(law.elastic(), stress));
+    }
+    let spectrum = stress.full().symmetric_eigen();
+    let mut axes = [0, 1, 2];
+    axes.sort_by(|&a, &b| spectrum.eigenvalues[b].total_cmp(&spectrum.eigenvalues[a]));
+    let strain = law.start(axes.map(|k| spectrum.eigenvalues[k]), state);
+    let dyads = axes.iter().zip(strain).map(|(&k, eps)| {
+        let axis = spectrum.eigenvectors.column(k);
+        axis * axis.transpose() * (2.0 * eps).exp()
+    });
+    Symmetric::of(&dyads.sum::<Tensor>())
 }
 
 /// Gives every point the stress of linear elastic equilibrium under the loads at time 0. Fails if the system cannot be
@@ -57,7 +76,8 @@ pub fn set_elastic<K: Kinematics<D>, const D: usize>(
     points: &mut Points<D>,
     (halo, solver): (&dyn Halo, &mut dyn LinearSolver),
 ) -> Result<(), StepError> {
-    let model = &Model { regime: Regime::QuasiStatic, ..model.clone() };
+    // Nothing moves yet, whatever the ground will do.
+    let model = &Model { regime: Regime::QuasiStatic, shaking: None, ..model.clone() };
     let start = Undeformed::of(model, points, halo)?;
     let problem = start.problem(model, points, halo);
     stiffness::assemble(&problem, None, solver)?;
@@ -81,8 +101,8 @@ pub fn set_elastic<K: Kinematics<D>, const D: usize>(
     let (_, traction) = start.grips.conclude(&model.boundary.strips, &u, halo);
     points.surface.traction = traction;
     for (p, strain) in strains.iter().enumerate() {
-        let sigma = stress_of(&elastic_at(model, points, p), strain);
-        set(points, p, sigma, strain);
+        points.b_e.set(p, exponential(strain));
+        points.sigma.set(p, stress_of(&elastic_at(model, points, p), strain));
     }
     Ok(())
 }
@@ -94,7 +114,8 @@ pub fn balance<K: Kinematics<D>, const D: usize>(
     points: &Points<D>,
     halo: &dyn Halo,
 ) -> Result<Equilibrium, StepError> {
-    let model = &Model { regime: Regime::QuasiStatic, ..model.clone() };
+    // Nothing moves yet, whatever the ground will do.
+    let model = &Model { regime: Regime::QuasiStatic, shaking: None, ..model.clone() };
     let yields = |p: usize| match model.respond(points, p, &points.b_e.at(p)) {
         Ok(response) => Ok(u32::from(response.branch() != Branch::Elastic)),
         Err(source) => Err(StepError::Material { id: points.id[p], source }),
@@ -134,8 +155,8 @@ impl<const D: usize> Undeformed<D> {
     fn of<K: Kinematics<D>>(model: &Model<K, D>, points: &Points<D>, halo: &dyn Halo) -> Result<Self, StepError> {
         let shape = agreed(halo, Shape::at(&model.grid, points), StepError::OtherRank)?;
         let nodes = Nodes::map(model, &shape, points, (0.0, 0.0), halo)?;
-        let grips =
-            StripAttachments::at(&model.boundary.strips, &points.surface, (&model.grid, &nodes.free), (0.0, 0.0));
+        let movable = nodes.contacts.movable(&nodes.free);
+        let grips = StripAttachments::at(&model.boundary.strips, &points.surface, (&model.grid, &movable), (0.0, 0.0));
         Ok(Self { shape, nodes, grips })
     }
 
@@ -184,10 +205,9 @@ fn strain_of(elastic: &Elastic, stress: &Symmetric) -> Symmetric {
     strain
 }
 
-/// sigma and b^e = exp(2 eps) of a point.
-fn set<const D: usize>(points: &mut Points<D>, p: usize, sigma: Symmetric, strain: &Symmetric) {
+/// b^e = exp(2 eps).
+fn exponential(strain: &Symmetric) -> Symmetric {
     let spectrum = strain.full().symmetric_eigen();
     let stretches = Tensor::from_diagonal(&spectrum.eigenvalues.map(|eps| (2.0 * eps).exp()));
-    points.b_e.set(p, Symmetric::of(&(spectrum.eigenvectors * stretches * spectrum.eigenvectors.transpose())));
-    points.sigma.set(p, sigma);
+    Symmetric::of(&(spectrum.eigenvectors * stretches * spectrum.eigenvectors.transpose()))
 }

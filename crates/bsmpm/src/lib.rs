@@ -19,7 +19,8 @@
 //! [`boundary`] holds and loads the bodies, [`initial`] gives them stress at the start. [`control`] cuts and grows the
 //! steps so that a non-converged one is never accepted; [`parallel`] holds the two traits behind which ranks and linear
 //! algebra live, [`grid::contributions`] and [`exact`] what makes sums the same on any number of ranks and threads;
-//! [`observe`] evaluates what a history records, [`energy`] where the energy of a step went.
+//! [`observe`] evaluates what a history records, [`energy`] where the energy of a step went. [`element`] drives one
+//! point by itself.
 #![forbid(unsafe_code)]
 // The fields of section 2.4 keep the paper's letters (F, dF, J, N) where they have one meaning in mechanics.
 #![allow(non_snake_case)]
@@ -27,6 +28,7 @@
 pub mod background;
 pub mod boundary;
 pub mod control;
+pub mod element;
 pub mod energy;
 pub mod error;
 pub mod exact;

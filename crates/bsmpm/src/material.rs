@@ -4,6 +4,7 @@
 //! de Souza Neto et al. (2008) holds at large strain (Eq. 10). Stress is in Pa, tension positive, principal values
 //! descending. Nothing here knows F, J or the grid, nor stores a state: old state in, new state out.
 
+mod cam_clay;
 mod drucker_prager;
 mod elastic;
 mod graded;
@@ -17,6 +18,7 @@ mod stiffness;
 mod tangent;
 mod von_mises;
 
+pub use cam_clay::CamClay;
 pub use drucker_prager::{DruckerPrager, Match};
 pub use elastic::{Elastic, Moduli};
 pub use graded::{Graded, Profile};
@@ -24,7 +26,7 @@ pub use hencky::Hencky;
 pub use law::{Branch, Law, Projection, Separation, Variable, split};
 pub use mohr_coulomb::MohrCoulomb;
 pub use response::Response;
-pub use softening::{Decay, SofteningMohrCoulomb};
+pub use softening::{Decay, Rate, SofteningMohrCoulomb};
 pub use stiffness::Stiffness;
 pub use tangent::Tangent;
 pub use von_mises::VonMises;
@@ -110,6 +112,26 @@ macro_rules! laws {
                 }
             }
 
+            /// Whether its elastic stress is linear in the strain, so that there is a state without stress.
+            pub fn is_linear(&self) -> bool {
+                match self {
+                    $(Self::$Law(_) => <$module::$Law as Law>::LINEAR,)*
+                    Self::Graded(law) => law.most().is_linear(),
+                }
+            }
+
+            /// Principal elastic strains of a stress at the start (Pa), and the law's state there, in the place of
+            /// zeros; of a graded law through [`Material::at`] only. No numbers where the law has no such stress.
+            pub fn start(&self, tau: [f64; 3], state: &mut [f64]) -> [f64; 3] {
+                match self {
+                    $(Self::$Law(law) => {
+                        law.start(tau, state);
+                        law.strain(tau)
+                    })*
+                    Self::Graded(law) => law.most().start(tau, state),
+                }
+            }
+
             /// State variables of its points.
             pub fn state(&self) -> &'static [Variable] {
                 match self {
@@ -142,11 +164,27 @@ macro_rules! laws {
                 }
             }
 
+            /// The law in a step of the length `dt`, s; `None` where that does not matter to it.
+            pub fn over(&self, dt: f64) -> Option<Self> {
+                match self {
+                    $(Self::$Law(law) => law.over(dt).map(Self::$Law),)*
+                    Self::Graded(law) => law.over(dt).map(Self::Graded),
+                }
+            }
+
             /// The law with its strength divided by `factor` (section 3.2); a graded one has its own.
             pub fn reduced(self, factor: f64) -> Self {
                 match self {
                     $(Self::$Law(law) => Self::$Law(law.reduced(factor)),)*
                     graded => graded,
+                }
+            }
+
+            /// Energy of elastic principal strains, J/m3.
+            fn energy(&self, eps: [f64; 3]) -> f64 {
+                match self {
+                    $(Self::$Law(law) => law.energy(eps),)*
+                    Self::Graded(law) => law.stiffest().moduli().energy(eps),
                 }
             }
 
@@ -169,7 +207,7 @@ macro_rules! laws {
                 }
                 let spectrum = Spectrum::planar(b_trial)?;
                 let tau = match self {
-                    $(Self::$Law(law) if <$module::$Law as Law>::IN_LANES => law.project(law.moduli().stress(spectrum.eps), state).tau,)*
+                    $(Self::$Law(law) if <$module::$Law as Law>::IN_LANES => law.project(law.stress(spectrum.eps), state).tau,)*
                     _ => return None,
                 };
                 Some(spectrum.assemble(tau))
@@ -188,9 +226,12 @@ macro_rules! laws {
                 let (moduli, tau, flowed) = match self {
                     $(Self::$Law(law) => {
                         let moduli = law.moduli();
-                        let trial = moduli.stress(spectrum.eps);
-                        let Projection { tau, yields, flow } = law.project(trial, state);
-                        (moduli, tau, if yields { Flowed::$Law(flow) } else { Flowed::Elastic })
+                        let Projection { tau, yields, flow } = law.project(law.stress(spectrum.eps), state);
+                        let linear = <$module::$Law as Law>::LINEAR;
+                        if !linear && !(tau[0].is_finite() && tau[2].is_finite()) {
+                            return Err(MaterialError::NoStress(spectrum.eps));
+                        }
+                        (moduli, tau, if yields || !linear { Flowed::$Law(flow) } else { Flowed::Elastic })
                     })*
                     Self::Graded(law) => {
                         let moduli = law.stiffest().moduli();
@@ -229,6 +270,39 @@ macro_rules! laws {
                 }
             }
 
+            /// Whether the elastic part of the stress is linear in the strain, the same at all stresses.
+            #[inline]
+            pub fn is_linear(&self) -> bool {
+                match self {
+                    Self::Elastic => true,
+                    $(Self::$Law(_) => <$module::$Law as Law>::LINEAR,)*
+                }
+            }
+
+            /// See [`Law::elastic_strain`].
+            pub fn elastic_strain(&self, moduli: Moduli, tau: [f64; 3]) -> [f64; 3] {
+                match self {
+                    Self::Elastic => moduli.strain(tau),
+                    $(Self::$Law(flow) => $module::$Law::elastic_strain(flow, moduli, tau),)*
+                }
+            }
+
+            /// See [`Law::elastic_moduli`].
+            pub fn elastic_moduli(&self, moduli: Moduli) -> Moduli {
+                match self {
+                    Self::Elastic => moduli,
+                    $(Self::$Law(flow) => $module::$Law::elastic_moduli(flow, moduli),)*
+                }
+            }
+
+            /// See [`Law::elastic_energy`].
+            pub fn elastic_energy(&self, moduli: Moduli, eps: [f64; 3]) -> f64 {
+                match self {
+                    Self::Elastic => moduli.energy(eps),
+                    $(Self::$Law(flow) => $module::$Law::elastic_energy(flow, moduli, eps),)*
+                }
+            }
+
             /// Puts the state after the return in the place of that before it.
             pub fn advance(&self, state: &mut [f64]) {
                 match self {
@@ -251,6 +325,8 @@ laws! {
     von_mises::VonMises,
     /// Mohr-Coulomb's strength that follows the plastic strain.
     softening::SofteningMohrCoulomb,
+    /// Elastic by the pressure, plastic by the largest that it has seen: modified Cam-clay.
+    cam_clay::CamClay,
 }
 
 /// Numbers of state of one law at most.
@@ -292,7 +368,7 @@ impl Material {
     /// # Errors
     /// When `b_e` is not finite or not positive definite.
     pub fn elastic_energy(&self, b_e: &Symmetric) -> Result<f64, MaterialError> {
-        Ok(self.elastic().moduli().energy(Spectrum::of(b_e)?.eps))
+        Ok(self.energy(Spectrum::of(b_e)?.eps))
     }
 }
 
@@ -305,4 +381,8 @@ pub enum MaterialError {
     /// An eigenvalue of the trial tensor is not positive, or below 1e-100: the step has turned the material inside out.
     #[error("the trial elastic left Cauchy-Green tensor is not positive definite: smallest eigenvalue {0:e}")]
     NotPositive(f64),
+    /// The law has no stress for these principal strains, or no state: a pressure beyond all numbers, or one that was
+    /// never given at the start.
+    #[error("the material has no stress at the principal elastic strains {0:?}")]
+    NoStress([f64; 3]),
 }

@@ -8,10 +8,12 @@ use crate::material::{Material, MaterialError, Response};
 use crate::method::{Criteria, Nonlinear};
 use crate::points::Points;
 use crate::quadrature::Quadrature;
+use crate::schedule::between;
 use crate::stabilisation::{Grouped, Groups, Stabilisation};
 use crate::step::mass::MassMatrix;
 use crate::step::newmark::Newmark;
 use crate::tensor::{Symmetric, Vector};
+use std::borrow::Cow;
 use std::marker::PhantomData;
 
 /// Whether inertia acts.
@@ -51,6 +53,20 @@ impl<const D: usize> Gravity<D> {
     }
 }
 
+/// Motion of the ground, in whose frame the scene is: every mass feels the opposite of its acceleration.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shaking<const D: usize> {
+    /// s, increasing, and m/s2; linear between, from zero at time 0 to the first row, zero after the last
+    pub rows: Vec<(f64, Vector<D>)>,
+}
+
+impl<const D: usize> Shaking<D> {
+    /// Acceleration of the ground at time `t`, m/s2.
+    pub fn at(&self, t: f64) -> Vector<D> {
+        between(&self.rows, Vector::zeros(), t).unwrap_or_else(Vector::zeros)
+    }
+}
+
 /// A scene, ready to be stepped.
 #[derive(Clone, Debug)]
 pub struct Model<K, const D: usize> {
@@ -68,6 +84,8 @@ pub struct Model<K, const D: usize> {
     pub weighting: Weighting,
     /// Body force, if any.
     pub gravity: Option<Gravity<D>>,
+    /// Motion of the ground, if any.
+    pub shaking: Option<Shaking<D>>,
     /// Supports at the faces of the grid.
     pub boundary: Boundary<D>,
     /// Section 2.3.
@@ -102,6 +120,28 @@ impl<K: Kinematics<D>, const D: usize> Model<K, D> {
     pub fn elastic_energy(&self, points: &Points<D>, p: usize, b_e: &Symmetric) -> f64 {
         let material = self.materials[usize::from(points.material[p])].at(points.height(p));
         material.elastic_energy(b_e).unwrap_or(f64::NAN)
+    }
+
+    /// Force per mass at time `t`, m/s2: gravity less the ground's acceleration; `None` without either.
+    pub fn body_force(&self, t: f64) -> Option<Vector<D>> {
+        let (gravity, shaking) = (self.gravity.map(|gravity| gravity.at(t)), self.shaking.as_ref());
+        match (gravity, shaking.map(|shaking| shaking.at(t))) {
+            (Some(gravity), Some(ground)) => Some(gravity - ground),
+            (gravity, ground) => gravity.or(ground.map(|ground| -ground)),
+        }
+    }
+
+    /// The model in a step of the length `dt`, s: another one only where a strength follows the rate.
+    pub fn over(&self, dt: f64) -> Cow<'_, Self>
+    where
+        K: Clone,
+    {
+        let over = |material: &Material| material.over(dt);
+        if self.materials.iter().all(|material| over(material).is_none()) {
+            return Cow::Borrowed(self);
+        }
+        let materials = self.materials.iter().map(|material| over(material).unwrap_or_else(|| material.clone()));
+        Cow::Owned(Self { materials: materials.collect(), ..self.clone() })
     }
 
     /// Largest Young's modulus, Pa.

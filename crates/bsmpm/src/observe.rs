@@ -64,16 +64,53 @@ pub fn heave<const D: usize>(points: &Points<D>, halo: &dyn Halo) -> f64 {
     largest[0]
 }
 
-/// Total mass, kg: the same bits however the points are distributed and ordered.
-pub fn mass<const D: usize>(points: &Points<D>, halo: &dyn Halo) -> f64 {
-    halo.total(&[points.mass.iter().copied().collect()])[0]
+/// Sums over the points that carry the number of a material, or all: the same bits however they are distributed and
+/// ordered.
+fn total<const D: usize, const N: usize>(
+    points: &Points<D>,
+    material: Option<u16>,
+    halo: &dyn Halo,
+    term: impl Fn(usize, usize) -> f64,
+) -> [f64; N] {
+    let chosen = || (0..points.len()).filter(|&p| material.is_none_or(|of| points.material[p] == of));
+    let sums: [Exact; N] = std::array::from_fn(|k| chosen().map(|p| term(p, k)).collect());
+    let sums = halo.total(&sums);
+    std::array::from_fn(|k| sums[k])
 }
 
-/// Total momentum, kg m/s; zero in quasi-static scenes.
-pub fn momentum<const D: usize>(points: &Points<D>, halo: &dyn Halo) -> Vector<D> {
+/// Mass of the points of a material, or of all, kg.
+pub fn mass<const D: usize>(points: &Points<D>, material: Option<u16>, halo: &dyn Halo) -> f64 {
+    let [mass] = total(points, material, halo, |p, _| points.mass[p]);
+    mass
+}
+
+/// Momentum of the points of a material, or of all, kg m/s; zero in quasi-static scenes.
+pub fn momentum<const D: usize>(points: &Points<D>, material: Option<u16>, halo: &dyn Halo) -> Vector<D> {
     let Some(motion) = &points.motion else { return Vector::zeros() };
-    let along = |c: usize| motion.v.iter().zip(&points.mass).map(|(v, mass)| v[c] * mass).collect();
-    Vector::from_vec(halo.total(&(0..D).map(along).collect::<Vec<Exact>>()))
+    Vector::from(total(points, material, halo, |p, axis| motion.v[p][axis] * points.mass[p]))
+}
+
+/// Centre of mass of the points of a material, or of all, from the grid's lower corner (m); `None` without mass.
+pub fn centre_of_mass<const D: usize>(points: &Points<D>, material: Option<u16>, halo: &dyn Halo) -> Option<Vector<D>> {
+    let moment: [f64; D] = total(points, material, halo, |p, axis| points.mass[p] * points.x[p][axis]);
+    let mass = mass(points, material, halo);
+    (mass > 0.0).then(|| Vector::from(moment) / mass)
+}
+
+/// Angular momentum of the points of a material, or of all, in the plane of the axes 0 and 1 about `place` (m, from the
+/// grid's lower corner): sum m (x v_y - y v_x), kg m2/s; zero in quasi-static scenes.
+pub fn angular_momentum<const D: usize>(
+    points: &Points<D>,
+    material: Option<u16>,
+    place: &Vector<D>,
+    halo: &dyn Halo,
+) -> f64 {
+    let Some(motion) = &points.motion else { return 0.0 };
+    let [sum] = total(points, material, halo, |p, _| {
+        let (arm, v) = (points.x[p] - place, motion.v[p]);
+        points.mass[p] * (arm[0] * v[1] - arm[1] * v[0])
+    });
+    sum
 }
 
 /// Id of the point nearest to `at` (m, from the grid's lower corner); of equally near ones the smallest id.

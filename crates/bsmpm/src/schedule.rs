@@ -1,7 +1,23 @@
-//! Where the nominal steps end: multiples of dt from the last wanted time, and every wanted time exactly.
+//! Where the nominal steps end: multiples of dt from the last wanted time, and every wanted time exactly; and what is
+//! given by rows at times, so that a cut step follows the same course.
+
+use std::ops::{Add, Mul, Sub};
 
 /// Steps this much too long or too short (relative to dt) are taken as hitting a wanted time.
 const SAME: f64 = 1e-6;
+
+/// What rows of a time, increasing, and a value have at time `t` >= 0: linear between them, from `start` at time 0 to
+/// the first; `None` after the last.
+pub fn between<T>(rows: &[(f64, T)], start: T, t: f64) -> Option<T>
+where
+    T: Copy + Add<Output = T> + Sub<Output = T> + Mul<f64, Output = T>,
+{
+    let next = rows.partition_point(|(time, _)| *time < t);
+    let before = if next == 0 { (0.0, start) } else { rows[next - 1] };
+    let after = rows.get(next)?;
+    let is_later = after.0 > before.0;
+    Some(if is_later { before.1 + (after.1 - before.1) * ((t - before.0) / (after.0 - before.0)) } else { after.1 })
+}
 
 /// Nominal step, end of the run, and the times that must be hit exactly.
 #[derive(Clone, Debug, PartialEq)]
@@ -56,6 +72,16 @@ mod tests {
         let found = stations(&Schedule::new(0.25e-3, 0.607, frames));
         assert_eq!(found.len(), 2428);
         assert!(frames.iter().all(|frame| found.contains(frame)));
+    }
+
+    #[test]
+    fn rows_are_linear_between_and_tell_where_they_end() {
+        let rows = [(0.0, 2.0), (1.0, 4.0), (3.0, 0.0)];
+        assert_eq!(
+            [0.0, 0.5, 1.0, 2.0, 3.0, 3.1].map(|t| between(&rows, 0.0, t)),
+            [Some(2.0), Some(3.0), Some(4.0), Some(2.0), Some(0.0), None]
+        );
+        assert_eq!(between(&rows[1..], 0.0, 0.25), Some(1.0));
     }
 
     #[test]

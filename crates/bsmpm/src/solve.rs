@@ -2,6 +2,7 @@
 #![doc = include_str!("solve.md")]
 
 pub mod broyden;
+pub mod contact;
 pub mod convergence;
 pub mod found;
 pub mod linearised;

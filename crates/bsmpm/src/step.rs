@@ -45,18 +45,19 @@ pub fn step<K: Kinematics<D>, const D: usize>(
     counts: &mut Counts,
 ) -> Result<StepReport, StepError> {
     let shape = agreed(halo, Shape::at(&model.grid, points), StepError::OtherRank)?; // (1)
-    let mut nodes = Nodes::map(model, &shape, points, (t, dt), halo)?; // (2)
+    let mut nodes = Nodes::after(model, (&shape, points), guess, (t, dt), halo)?; // (2)
     if let Some(inertia) = nodes.inertia.as_mut().filter(|_| t == 0.0)
         && initial::is_pushed(model, points, halo)?
     {
         inertia.newmark = Newmark::of_the_end();
     }
-    let grips = StripAttachments::at(&model.boundary.strips, &points.surface, (&model.grid, &nodes.free), (t, dt));
+    let movable = nodes.contacts.movable(&nodes.free);
+    let grips = StripAttachments::at(&model.boundary.strips, &points.surface, (&model.grid, &movable), (t, dt));
+    let found = solve::contact::find(model, &shape, &mut nodes, (&grips, points), guess, (halo, solver), counts)?; // (3)-(9)
     let problem = Problem { model, shape: &shape, nodes: &nodes, grips: &grips, points, halo };
-    let found = solve::find(&problem, guess, solver, counts)?; // (3)-(9)
     commit::check_inside(model, &shape, points, &found.u, halo)?;
     let (strips, traction) = grips.conclude(&model.boundary.strips, &found.u, halo);
-    let mut report = StepReport { strips, ..StepReport::of(&problem, &found) };
+    let mut report = StepReport { dt, strips, ..StepReport::of(&problem, &found) };
     let anchors = Anchors::of(&model.boundary, &points.surface.anchors, points.anchored(), halo);
     let position = load::moved(&model.boundary.loads, &points.surface, (&model.grid, &nodes.active), &found.u, halo);
     let mut surface = Surface { traction, position, anchors };

@@ -56,7 +56,7 @@ pub(super) fn of(name: &str, case: &Case) -> &'static str {
         }
         "support-pull" => {
             "faces of the grid hold both ways: where the body is meant to hang on this one, or it is a plane of symmetry, all is \
-             well, but a body that should come off a wall hangs on it; leave such a face free and put a body of its own there"
+             well, but a body that should come off a wall hangs on it; [boundary] \"contact\" lets it go"
         }
         "front-setback" => {
             "the tip has thinned out to less than half a cell, and the front is where the body is thicker: no front of this \

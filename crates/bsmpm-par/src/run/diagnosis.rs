@@ -88,8 +88,13 @@ fn advice(error: &StepError, case: &Case) -> Vec<String> {
         StepError::EnergyMade { .. } => &[
             "another [stabilisation]: f-bar, modified-f-bar and f-bar-zhao make energy where material flows without \
              strength or dilates, consistent-f-bar less, none none",
+            "where bodies meet a face in contact: shorter steps, or [analysis] gamma = 1",
             "a smaller dilation, or some friction; see where it begins: [[history]] quantity = \"energy\", and the frames",
             "the state that is saved is wrong, too: do not go on from it",
+        ],
+        StepError::Unsettled { .. } => &[
+            "more steps ([analysis] steps or dt), so that less changes at the face in each",
+            "a smaller friction of the face in [boundary]: from about 1 on there may be no state, or several, that agree with it",
         ],
         StepError::Inverted { .. } => &[
             "material turned inside out: more steps ([analysis] steps or dt), or a larger [solver] background",

@@ -30,10 +30,26 @@ pub enum Quantity {
     },
     /// m  the largest displacement of any point
     MaxDisplacement,
-    /// kg/m  of all points
-    Mass,
-    /// kg/s  of all points, per metre of thickness (kg m/s per m)
-    Momentum,
+    /// kg/m
+    Mass {
+        /// number of the material of the points; `None`: all points
+        of: Option<u16>,
+    },
+    /// kg/s  per metre of thickness (kg m/s per m)
+    Momentum {
+        /// number of the material of the points; `None`: all points
+        of: Option<u16>,
+    },
+    /// m  in the case's coordinates
+    CentreOfMass {
+        /// number of the material of the points; `None`: all points
+        of: Option<u16>,
+    },
+    /// kg m/s  about the origin of the case's coordinates, per metre of thickness (kg m2/s per m)
+    AngularMomentum {
+        /// number of the material of the points; `None`: all points
+        of: Option<u16>,
+    },
     /// N/m  force of a face's supports on the body
     Reaction {
         /// The face.
@@ -71,6 +87,26 @@ pub enum Quantity {
     Penetration,
     /// -  largest distance that the material has slipped from the footing in the step, over the footing's motion
     Slip,
+    /// -  part of a face's nodes that material is on, and of its normal force where it slides
+    Contact {
+        /// The face.
+        face: Face,
+    },
+    /// m  least and largest distance of the material from a face
+    Gap {
+        /// The face.
+        face: Face,
+    },
+    /// m/s  of the material along a face
+    SlipRate {
+        /// The face.
+        face: Face,
+    },
+    /// W/m  dissipated by friction at a face
+    FrictionPower {
+        /// The face.
+        face: Face,
+    },
     /// J/m  where the energy is, and where it went since the start
     Energy,
 }
@@ -113,8 +149,10 @@ impl Quantity {
             Self::Front => Measurement::Front,
             Self::Height { .. } => Measurement::Height,
             Self::MaxDisplacement => Measurement::MaxDisplacement,
-            Self::Mass => Measurement::Mass,
-            Self::Momentum => Measurement::Momentum,
+            Self::Mass { .. } => Measurement::Mass,
+            Self::Momentum { .. } => Measurement::Momentum,
+            Self::CentreOfMass { .. } => Measurement::CentreOfMass,
+            Self::AngularMomentum { .. } => Measurement::AngularMomentum,
             Self::Reaction { .. } => Measurement::Reaction,
             Self::Displacement { .. } => Measurement::Displacement,
             Self::Velocity { .. } => Measurement::Velocity,
@@ -126,6 +164,10 @@ impl Quantity {
             Self::FootingForce => Measurement::FootingForce,
             Self::Penetration => Measurement::Penetration,
             Self::Slip => Measurement::Slip,
+            Self::Contact { .. } => Measurement::Contact,
+            Self::Gap { .. } => Measurement::Gap,
+            Self::SlipRate { .. } => Measurement::SlipRate,
+            Self::FrictionPower { .. } => Measurement::FrictionPower,
             Self::Energy => Measurement::Energy,
         }
     }

@@ -58,6 +58,8 @@ pub struct Traction {
     pub stress: [f64; 2],
     /// s (quasi-static: pseudo-time)  over which it grows linearly; 0: at once
     pub ramp: f64,
+    /// s (quasi-static: pseudo-time), increasing, and the share that acts then; empty: the ramp holds
+    pub amplitude: Vec<(f64, f64)>,
 }
 
 /// A force at a point of the body, which follows the body.
@@ -69,6 +71,8 @@ pub struct PointLoad {
     pub force: [f64; 2],
     /// s (quasi-static: pseudo-time)  over which it grows linearly; 0: at once
     pub ramp: f64,
+    /// s (quasi-static: pseudo-time), increasing, and the share that acts then; empty: the ramp holds
+    pub amplitude: Vec<(f64, f64)>,
 }
 
 /// The stress at the start.

@@ -64,6 +64,10 @@ impl<'a> PresetScene<'a> {
                 }
             }
         };
+        let (steps, why) = match self.interval().map(|interval| self.end() / interval).filter(|rows| *rows > steps) {
+            Some(rows) => (rows, "one for each row of [shaking] or of an amplitude".to_owned()),
+            None => (steps, why),
+        };
         // Rounding makes no step more.
         let steps = (steps * (1.0 - 1e-9)).ceil().max(1.0);
         (steps <= MOST_STEPS).then_some((steps as u64, why))
@@ -142,6 +146,16 @@ impl<'a> PresetScene<'a> {
         moved.extend(record.pair("displacement"));
         let places = |way: [f64; 2]| segment.ends.map(|at| [at[0] + way[0], at[1] + way[1]]);
         moved.into_iter().flat_map(places).collect()
+    }
+
+    /// s  the shortest time between two rows of the ground's acceleration or of a load's amplitude
+    fn interval(&self) -> Option<f64> {
+        let loads = self.root.records("traction").iter().chain(self.root.records("point_load"));
+        let amplitudes = loads.filter_map(|load| load.rows("amplitude"));
+        let shaking = self.root.record("shaking").and_then(|shaking| shaking.rows("acceleration"));
+        let pairs = amplitudes.chain(shaking).flat_map(|rows| rows.windows(2));
+        let intervals = pairs.map(|pair| pair[1].numbers[0] - pair[0].numbers[0]);
+        intervals.filter(|interval| *interval > 0.0).reduce(f64::min)
     }
 
     /// m  ends of the straight sides of all bodies

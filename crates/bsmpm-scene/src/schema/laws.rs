@@ -6,9 +6,10 @@ use super::{Dimension as In, Range, Table, key, loads, one_of};
 use crate::record::Record;
 use crate::words::Word;
 use bsmpm::material::{
-    Decay, DruckerPrager, Elastic, Hencky, Match, Material, MohrCoulomb, Separation, SofteningMohrCoulomb, VonMises,
+    CamClay, Decay, DruckerPrager, Elastic, Hencky, Match, Material, MohrCoulomb, Rate, Separation,
+    SofteningMohrCoulomb, VonMises,
 };
-use std::ops::Bound::{Excluded, Included};
+use std::ops::Bound::{Excluded, Included, Unbounded};
 
 choice! {
     /// Constitutive law.
@@ -25,6 +26,10 @@ choice! {
         VonMises = "von-mises",
         /// Mohr-Coulomb whose strength goes from a first to a last value with plastic strain.
         Softening = "mohr-coulomb-softening",
+        /// Clay without drainage whose strength falls with plastic shear and grows with its rate.
+        SensitiveClay = "sensitive-clay",
+        /// Clay whose stiffness and strength come from the pressure that it has seen.
+        CamClay = "modified-cam-clay",
     }
 }
 
@@ -33,7 +38,8 @@ impl LawName {
     pub(crate) fn is_plastic(self) -> bool {
         match self {
             Self::Hencky => false,
-            Self::MohrCoulomb | Self::Tresca | Self::DruckerPrager | Self::VonMises | Self::Softening => true,
+            Self::MohrCoulomb | Self::Tresca | Self::DruckerPrager | Self::VonMises => true,
+            Self::Softening | Self::SensitiveClay | Self::CamClay => true,
         }
     }
 
@@ -45,6 +51,10 @@ impl LawName {
             Self::MohrCoulomb => (&["friction", "cohesion"], &["dilation", "separation"]),
             Self::DruckerPrager => (&["friction", "cohesion"], &["dilation", "match"]),
             Self::VonMises => (&["yield_stress"], &["hardening"]),
+            Self::SensitiveClay => {
+                (&["cohesion", "sensitivity", "softening_strain"], &["band_width", "rate_parameter", "reference_rate"])
+            }
+            Self::CamClay => (&["kappa", "lambda", "critical_ratio"], &["preconsolidation", "ocr"]),
             Self::Softening => (
                 &["friction", "cohesion", "residual_friction", "residual_cohesion", "softening_strain"],
                 &["dilation", "residual_dilation", "softening", "band_width"],
@@ -64,6 +74,17 @@ impl LawName {
                 let fit = record.word("match").unwrap_or_default();
                 Material::DruckerPrager(DruckerPrager::new(elastic, (0.0, 0.0, 0.0), fit))
             }
+            Self::SensitiveClay => {
+                let none = (0.0, 0.0, 0.0);
+                let law = SofteningMohrCoulomb::new(elastic, none, none, 1.0, Decay::Exponential);
+                let rate = record.number("rate_parameter").zip(record.number("reference_rate"));
+                let rate = rate.map(|(per_decade, reference)| Rate { per_decade, reference });
+                Material::SofteningMohrCoulomb(match rate {
+                    Some(rate) => law.at_rate(rate),
+                    None => law,
+                })
+            }
+            Self::CamClay => Material::CamClay(CamClay::new(elastic, [0.0; 5])),
             Self::VonMises => Material::VonMises(VonMises::new(elastic, 0.0, 0.0)),
             Self::Softening => {
                 let (decay, none) = (record.word("softening").unwrap_or_default(), (0.0, 0.0, 0.0));
@@ -137,7 +158,25 @@ pub(crate) static MATERIAL: Table = Table {
             Quantity(In::Number, Range::POSITIVE),
             Optional,
             "plastic shear strain sqrt(2/3) |dev| at which the strength has its last value (mohr-coulomb-softening: \
-             required)",
+             required); of sensitive-clay the accumulated largest plastic shear at 95 % of the way, xi_95 (required)",
+        ),
+        key(
+            "sensitivity",
+            Quantity(In::Number, Range::of(Included(1.0), Unbounded)),
+            Optional,
+            "cohesion over that of the remoulded clay (sensitive-clay: required)",
+        ),
+        key(
+            "rate_parameter",
+            Quantity(In::Number, Range::NOT_NEGATIVE),
+            Optional,
+            "growth of the cohesion per decade of the rate of plastic shear (sensitive-clay in dynamics); none unless given",
+        ),
+        key(
+            "reference_rate",
+            Quantity(In::Number, Range::POSITIVE),
+            Optional,
+            "the rate of the laboratory that cohesion is of, 1/s (with rate_parameter)",
         ),
         key("softening", Choice(Decay::WORDS), Optional, "how the strength gets there; linear unless given"),
         key(
@@ -147,6 +186,38 @@ pub(crate) static MATERIAL: Table = Table {
             "of the shear band that softening_strain is of: cells of size h take softening_strain band_width / h, so \
              that a band does the same work in any grid (crack band; cells of one size only); without it results depend \
              on the cells",
+        ),
+        key(
+            "kappa",
+            Quantity(In::Number, BELOW_1),
+            Optional,
+            "slope of swelling, ln v over ln p: that over e divided by 1 + e (modified-cam-clay: required); the bulk \
+             modulus is p/kappa, the shear modulus that of young and poisson, which hold together at one pressure",
+        ),
+        key(
+            "lambda",
+            Quantity(In::Number, BELOW_1),
+            Optional,
+            "slope of first loading, ln v over ln p, above kappa (modified-cam-clay: required)",
+        ),
+        key(
+            "critical_ratio",
+            Quantity(In::Number, BELOW_3),
+            Optional,
+            "M = q/p at the critical state, 6 sin(phi)/(3 - sin(phi)) in triaxial compression (modified-cam-clay: \
+             required); the same in all directions of shear",
+        ),
+        key(
+            "preconsolidation",
+            Profile(In::Stress, Range::POSITIVE, &loads::STRESS_PROFILE),
+            Optional,
+            "pressure at the tip of the yield surface at the start (modified-cam-clay: this or ocr)",
+        ),
+        key(
+            "ocr",
+            Quantity(In::Number, Range::of(Included(1.0), Unbounded)),
+            Optional,
+            "size of the yield surface over that through the stress at the start (modified-cam-clay)",
         ),
         key(
             "match",
@@ -176,7 +247,7 @@ pub(crate) static MATERIAL: Table = Table {
         key("density", Quantity(In::Density, Range::POSITIVE), Optional, "neither: weightless, in dynamics an error"),
         key("k0", Quantity(In::Number, loads::COEFFICIENT), Optional, "horizontal over vertical stress at the start"),
     ],
-    exclusive: &[one_of(&["unit_weight", "density"], false)],
+    exclusive: &[one_of(&["unit_weight", "density"], false), one_of(&["preconsolidation", "ocr"], false)],
 };
 
 const POISSON: Range = Range {
@@ -184,5 +255,9 @@ const POISSON: Range = Range {
     upper: Excluded(0.5),
     why: "at 0.5 the material is incompressible and its elastic stiffness singular",
 };
+/// Slopes of compression.
+const BELOW_1: Range = Range::of(Excluded(0.0), Excluded(1.0));
+/// Stress ratio: that of 90 degrees is 3.
+const BELOW_3: Range = Range::of(Excluded(0.0), Excluded(3.0));
 /// Friction and dilation angles, degrees.
 const BELOW_90: Range = Range::of(Included(0.0), Excluded(90.0));

@@ -10,6 +10,7 @@ const PLACE: Kind = Pair(In::Length, Range::ANY);
 const DISPLACEMENT: Kind = Pair(In::Length, Range::ANY);
 const VELOCITY: Kind = Pair(In::Velocity, Range::ANY);
 const PATH: Kind = Rows(&[(In::Time, Range::NOT_NEGATIVE), (In::Length, Range::ANY), (In::Length, Range::ANY)]);
+const AMPLITUDE: Kind = Rows(&[(In::Time, Range::NOT_NEGATIVE), (In::Number, Range::ANY)]);
 const RAMP: Kind = Quantity(In::Time, Range::NOT_NEGATIVE);
 /// Horizontal over vertical stress: from nothing to far beyond passive pressure.
 pub(super) const COEFFICIENT: Range = Range::of(Included(0.0), Included(100.0));
@@ -65,7 +66,27 @@ pub(super) static TRACTION: Table = Table {
         key("to", PLACE, Required, "the other end"),
         key("stress", Pair(In::Stress, Range::ANY), Required, "force per area of the start, along x and y"),
         key("ramp", RAMP, Default("0.0"), "time over which it grows; 0: at once"),
+        key(
+            "amplitude",
+            AMPLITUDE,
+            Optional,
+            "instead of ramp: rows [t, share that acts], t increasing; linear \
+            between, from 0 at time 0, constant after the last",
+        ),
     ],
+    exclusive: &[one_of(&["ramp", "amplitude"], false)],
+};
+
+pub(super) static SHAKING: Table = Table {
+    header: "[shaking]",
+    doc: "Acceleration of the ground, in whose frame the case is (dynamic): supports rest, displacements and velocities \
+          are those relative to the ground",
+    keys: &[key(
+        "acceleration",
+        Rows(&[(In::Time, Range::NOT_NEGATIVE), (In::Acceleration, Range::ANY), (In::Acceleration, Range::ANY)]),
+        Required,
+        "rows [t, ax, ay], t increasing; linear between, from 0 at time 0, and 0 after the last",
+    )],
     exclusive: &[],
 };
 
@@ -76,8 +97,15 @@ pub(super) static POINT_LOAD: Table = Table {
         key("at", PLACE, Required, "where at the start"),
         key("force", Pair(In::LineForce, Range::ANY), Required, "along x and y, per metre of thickness"),
         key("ramp", RAMP, Default("0.0"), "time over which it grows; 0: at once"),
+        key(
+            "amplitude",
+            AMPLITUDE,
+            Optional,
+            "instead of ramp: rows [t, share that acts], t increasing; linear \
+            between, from 0 at time 0, constant after the last",
+        ),
     ],
-    exclusive: &[],
+    exclusive: &[one_of(&["ramp", "amplitude"], false)],
 };
 
 pub(super) static REDUCTION: Table = Table {

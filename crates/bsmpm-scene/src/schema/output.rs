@@ -68,6 +68,12 @@ pub(super) static HISTORY: Table = Table {
             Optional,
             "of displacement: the place at the start; of velocity and stress: the point nearest to it then",
         ),
+        key(
+            "material",
+            Name,
+            Optional,
+            "of mass, momentum, centre-of-mass and angular-momentum: the points of a material; all unless given",
+        ),
         key("box", Kind::Table(&body::BOX), Optional, "of pressure-noise: the points inside; all unless given"),
     ],
     exclusive: &[],

@@ -2,7 +2,7 @@
 
 use super::Kind::*;
 use super::Presence::{Default, Optional, Required};
-use super::{Dimension as In, Kind, Range, Table, body, key, later, laws, loads, one_of, output};
+use super::{Dimension as In, Kind, Range, Table, body, element, key, later, laws, loads, one_of, output};
 use crate::words::{Accuracy, C0Lines, Factor, Geometry, Ksp, LinearSolver, Nonlinear, Order, Pc, Support, Word};
 use bsmpm::background::{Extent, Kind as Background};
 use bsmpm::model::Regime;
@@ -24,6 +24,7 @@ pub static ROOT: Table = Table {
         key("material", Named(&laws::MATERIAL), Required, "materials by name"),
         key("body", Tables(&body::BODY), Required, "bodies made of material points"),
         key("gravity", Kind::Table(&GRAVITY), Optional, "body force; absent: none"),
+        key("shaking", Kind::Table(&loads::SHAKING), Optional, "motion of the ground; absent: none"),
         key("boundary", Kind::Table(&BOUNDARY), Default("{}"), "supports at the faces of the grid"),
         key("stabilisation", Kind::Table(&STABILISATION), Optional, "against locking and oscillation; absent: none"),
         key("solver", Kind::Table(&SOLVER), Default("{}"), "the non-linear iteration and the linear solver"),
@@ -36,6 +37,7 @@ pub static ROOT: Table = Table {
         key("point_load", Tables(&loads::POINT_LOAD), Optional, "a force at a point"),
         key("strength_reduction", Kind::Table(&loads::REDUCTION), Optional, "strength divided by a factor"),
         key("initial", Kind::Table(&loads::INITIAL), Optional, "stress at the start; absent: none"),
+        key("element", Named(&element::ELEMENT), Optional, "tests of one point, for `bsmpm element`"),
         later("stage", "staged loading"),
         later("profile", "strength with depth"),
     ],
@@ -104,11 +106,31 @@ static GRAVITY: Table = Table {
     exclusive: &[],
 };
 
-const SUPPORT: Kind = Choice(Support::WORDS);
+const SUPPORT: Kind = ChoiceOr(Support::WORDS, &CONTACT);
+
+static CONTACT: Table = Table {
+    header: "FACE = { friction, lifts }",
+    doc: "A face that material slides along with Coulomb friction, and comes off",
+    keys: &[
+        key(
+            "friction",
+            Quantity(In::Number, Range::of(Included(0.0), Included(2.0))),
+            Required,
+            "tangent of the angle of friction between face and material; [strength_reduction] divides it, too",
+        ),
+        key(
+            "lifts",
+            Flag,
+            Default("true"),
+            "whether material comes off the face; false: it is held there both ways, and nothing rubs where it pulls",
+        ),
+    ],
+    exclusive: &[],
+};
 
 static BOUNDARY: Table = Table {
     header: "[boundary]",
-    doc: "Support of every face of the grid: all components held, the normal one, or none",
+    doc: "Support of every face of the grid: all components held, the normal one, none, or contact",
     keys: &[
         key("left", SUPPORT, Default("\"free\""), "face at the lowest x"),
         key("right", SUPPORT, Default("\"free\""), "face at the highest x"),

@@ -1,6 +1,7 @@
 //! Histories and the checks of their columns.
 
-use crate::case::{Check, History, Quantity};
+use super::boundary;
+use crate::case::{Body, Check, Face, History, NamedMaterial, Quantity, Support};
 use crate::grid::GridSpec;
 use crate::nearest::hint;
 use crate::record::Record;
@@ -13,10 +14,13 @@ use std::collections::HashSet;
 /// Histories at most, each a column or several of every row.
 const MOST: usize = 1000;
 
+/// Materials and bodies of the case, without errors.
+type Made<'a> = Option<(&'a [NamedMaterial], &'a [Body])>;
+
 /// All histories in the order of the file, without those that have an error.
 pub(super) fn read_all(
     root: &Record,
-    (regime, grid): (Option<Regime>, Option<&GridSpec>),
+    (regime, grid, made): (Option<Regime>, Option<&GridSpec>, Made<'_>),
     report: &mut Report<'_>,
 ) -> Vec<History> {
     let records = root.records("history");
@@ -27,7 +31,7 @@ pub(super) fn read_all(
     let mut taken = HashSet::from(["step".to_owned(), "time".to_owned()]);
     let mut histories = Vec::new();
     for record in records {
-        let Some(history) = read((root, record), (regime, grid), report) else { continue };
+        let Some(history) = read((root, record), (regime, grid, made), report) else { continue };
         if let Some(column) = history.columns().into_iter().find(|column| !taken.insert(column.name.clone())) {
             let message = format!("there is a column `{}` already; give this one another `name`", column.name);
             record.error("name", message, report);
@@ -39,19 +43,19 @@ pub(super) fn read_all(
 
 fn read(
     (root, record): (&Record, &Record),
-    (regime, grid): (Option<Regime>, Option<&GridSpec>),
+    (regime, grid, made): (Option<Regime>, Option<&GridSpec>, Made<'_>),
     report: &mut Report<'_>,
 ) -> Option<History> {
     let measured: Measurement = record.word("quantity")?;
     let own = own_key(measured);
-    let others = ["percentile", "face", "at", "at_x", "box"].into_iter().filter(|key| Some(*key) != own);
+    let others = ["percentile", "face", "at", "at_x", "box", "material"].into_iter().filter(|key| Some(*key) != own);
     for key in others.filter(|key| record.gives(key)) {
         record.error(key, format!("has no meaning for quantity \"{measured}\""), report);
     }
     if let Some(own) = own.filter(|own| matches!(*own, "face" | "at") && !record.gives(own)) {
         report.error(record.origin, &record.path_of(own), format!("missing; quantity \"{measured}\" needs it"));
     }
-    if regime == Some(Regime::QuasiStatic) && matches!(measured, Measurement::Velocity | Measurement::Momentum) {
+    if regime == Some(Regime::QuasiStatic) && is_of_motion(measured) {
         record.error("quantity", format!("there is no {measured} in a quasi-static analysis"), report);
     }
     if measured.is_of_footing() && !root.gives("footing") {
@@ -60,9 +64,21 @@ fn read(
     if record.number("scale") == Some(0.0) {
         record.error("scale", "0 is out of range: the column would be zero; allowed: any scale but 0", report);
     }
-    let quantity = quantity(measured, record, grid, report)?;
+    if let Some(side) = record.word::<Side>("face").filter(|_| measured.is_of_contact()) {
+        let Face { axis, upper } = side.into();
+        if boundary(root).is_some_and(|supports| supports[axis][usize::from(upper)] != Support::Contact) {
+            let message = format!("\"{measured}\" is about a face in contact, and [boundary] {side} is none");
+            record.error("face", message, report);
+        }
+    }
+    let quantity = quantity(measured, record, (grid, made), report)?;
     let name = if record.gives("name") { record.text("name")? } else { measured.word() };
     Some(History { quantity, name: name.to_owned(), scale: record.number("scale")? })
+}
+
+/// Whether it is nothing where nothing has a velocity.
+fn is_of_motion(measured: Measurement) -> bool {
+    matches!(measured, Measurement::Velocity | Measurement::Momentum | Measurement::AngularMomentum)
 }
 
 /// The key that belongs to a quantity.
@@ -71,10 +87,11 @@ fn own_key(measured: Measurement) -> Option<&'static str> {
     match measured {
         Runout => Some("percentile"),
         Height => Some("at_x"),
-        Reaction => Some("face"),
+        Reaction | Contact | Gap | SlipRate | FrictionPower => Some("face"),
         Displacement | Velocity | Stress => Some("at"),
         PressureNoise => Some("box"),
-        Front | MaxDisplacement | Mass | Momentum | StressNoise | Heave | Energy => None,
+        Mass | Momentum | CentreOfMass | AngularMomentum => Some("material"),
+        Front | MaxDisplacement | StressNoise | Heave | Energy => None,
         FootingPressure | FootingForce | Penetration | Slip => None,
     }
 }
@@ -82,7 +99,7 @@ fn own_key(measured: Measurement) -> Option<&'static str> {
 fn quantity(
     measured: Measurement,
     record: &Record,
-    grid: Option<&GridSpec>,
+    (grid, made): (Option<&GridSpec>, Made<'_>),
     report: &mut Report<'_>,
 ) -> Option<Quantity> {
     Some(match measured {
@@ -93,8 +110,10 @@ fn quantity(
         Measurement::Front => Quantity::Front,
         Measurement::Height => Quantity::Height { at_x: at_x(record, grid, report)? },
         Measurement::MaxDisplacement => Quantity::MaxDisplacement,
-        Measurement::Mass => Quantity::Mass,
-        Measurement::Momentum => Quantity::Momentum,
+        Measurement::Mass => Quantity::Mass { of: material(record, made, report)? },
+        Measurement::Momentum => Quantity::Momentum { of: material(record, made, report)? },
+        Measurement::CentreOfMass => Quantity::CentreOfMass { of: weighing(record, made, report)? },
+        Measurement::AngularMomentum => Quantity::AngularMomentum { of: material(record, made, report)? },
         Measurement::Reaction => Quantity::Reaction { face: record.word::<Side>("face")?.into() },
         Measurement::Displacement => Quantity::Displacement { at: at(record, grid, report)? },
         Measurement::Velocity => Quantity::Velocity { at: at(record, grid, report)? },
@@ -109,8 +128,43 @@ fn quantity(
         Measurement::FootingForce => Quantity::FootingForce,
         Measurement::Penetration => Quantity::Penetration,
         Measurement::Slip => Quantity::Slip,
+        Measurement::Contact => Quantity::Contact { face: record.word::<Side>("face")?.into() },
+        Measurement::Gap => Quantity::Gap { face: record.word::<Side>("face")?.into() },
+        Measurement::SlipRate => Quantity::SlipRate { face: record.word::<Side>("face")?.into() },
+        Measurement::FrictionPower => Quantity::FrictionPower { face: record.word::<Side>("face")?.into() },
         Measurement::Energy => Quantity::Energy,
     })
+}
+
+/// Number of the material of the points that count, if the history names one that a body is made of; the outer option
+/// is `None` after an error.
+fn material(record: &Record, made: Made<'_>, report: &mut Report<'_>) -> Option<Option<u16>> {
+    if !record.gives("material") {
+        return Some(None);
+    }
+    let (name, (materials, bodies)) = (record.text("material")?, made?);
+    let Some(number) = materials.iter().position(|material| material.name == name) else {
+        let near = hint(name, materials.iter().map(|material| &*material.name));
+        record.error("material", format!("there is no material `{name}`{near}"), report);
+        return None;
+    };
+    if bodies.iter().all(|body| body.material != number) {
+        record.error("material", format!("no body is made of `{name}`"), report);
+        return None;
+    }
+    u16::try_from(number).ok().map(Some)
+}
+
+/// The same of points that have mass.
+fn weighing(record: &Record, made: Made<'_>, report: &mut Report<'_>) -> Option<Option<u16>> {
+    let (of, (materials, bodies)) = (material(record, made, report)?, made?);
+    let counts = |number: usize| of.is_none_or(|of| usize::from(of) == number);
+    let mut numbers = bodies.iter().map(|body| body.material).filter(|&number| counts(number));
+    if !numbers.any(|number| materials[number].density.is_some()) {
+        record.error("quantity", "there is no centre of mass: nothing of it has any", report);
+        return None;
+    }
+    Some(of)
 }
 
 /// The x of a height, if it has one; the outer option is `None` after an error.

@@ -6,6 +6,7 @@ use crate::case::{Body, Gravity, Initial, NamedMaterial, PointLoad, Traction};
 use crate::record::Record;
 use crate::report::Report;
 use crate::words::Start;
+use bsmpm::model::Regime;
 
 /// All tractions in the order of the file, without those that have an error.
 pub(super) fn tractions(root: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Vec<Traction> {
@@ -14,10 +15,10 @@ pub(super) fn tractions(root: &Record, around: AroundStrip<'_>, report: &mut Rep
         if let Some(ends) = ends {
             acts_on_body(record, "from", along(ends), around, report);
         }
-        let ramp = ramp(record, around.end, report);
-        let ([from, to], stress, ramp) = (ends?, record.pair("stress")?, ramp?);
+        let course = course(record, around, report);
+        let ([from, to], stress, (ramp, amplitude)) = (ends?, record.pair("stress")?, course?);
         warn_of_nothing(record, "stress", stress, report);
-        Some(Traction { from, to, stress, ramp })
+        Some(Traction { from, to, stress, ramp, amplitude })
     };
     root.records("traction").iter().filter_map(&mut read).collect()
 }
@@ -25,7 +26,7 @@ pub(super) fn tractions(root: &Record, around: AroundStrip<'_>, report: &mut Rep
 /// All point loads in the order of the file, without those that have an error.
 pub(super) fn point_loads(root: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Vec<PointLoad> {
     let mut read = |record: &Record| {
-        let (at, ramp) = (record.pair("at")?, ramp(record, around.end, report));
+        let (at, course) = (record.pair("at")?, course(record, around, report));
         let grid = around.grid?;
         if let Some(message) = beyond(grid, at) {
             record.error("at", message, report);
@@ -34,7 +35,8 @@ pub(super) fn point_loads(root: &Record, around: AroundStrip<'_>, report: &mut R
         }
         let force = record.pair("force")?;
         warn_of_nothing(record, "force", force, report);
-        Some(PointLoad { at, force, ramp: ramp? })
+        let (ramp, amplitude) = course?;
+        Some(PointLoad { at, force, ramp, amplitude })
     };
     root.records("point_load").iter().filter_map(&mut read).collect()
 }
@@ -60,12 +62,54 @@ fn acts_on_body(
     }
 }
 
-fn ramp(record: &Record, end: Option<f64>, report: &mut Report<'_>) -> Option<f64> {
-    let ramp = record.number("ramp")?;
-    if end.is_some_and(|end| ramp > end) {
-        report.warn(format!("{}: {ramp} is beyond the end of the run; it never acts in full", record.path_of("ramp")));
+/// Ramp and amplitude of a load, of which one holds.
+fn course(record: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Option<(f64, Vec<(f64, f64)>)> {
+    let beyond = |t: f64| around.end.is_some_and(|end| t > end);
+    if !record.gives("amplitude") {
+        let ramp = record.number("ramp")?;
+        if beyond(ramp) {
+            let path = record.path_of("ramp");
+            report.warn(format!("{path}: {ramp} is beyond the end of the run; it never acts in full"));
+        }
+        return Some((ramp, Vec::new()));
     }
-    Some(ramp)
+    let rows: Vec<(f64, f64)> = increasing(record, "amplitude", report)?.map(|row| (row[0], row[1])).collect();
+    if let Some((t, _)) = rows.iter().find(|(t, _)| beyond(*t)) {
+        report.warn(format!("{}: the row at t = {t} is beyond the end of the run", record.path_of("amplitude")));
+    }
+    coarse(&record.path_of("amplitude"), rows.iter().map(|row| row.0), around.dt, report);
+    Some((0.0, rows))
+}
+
+/// Warns of steps that are longer than the time between two rows.
+fn coarse(path: &str, times: impl Iterator<Item = f64> + Clone, dt: Option<f64>, report: &mut Report<'_>) {
+    let intervals = times.clone().skip(1).zip(times).map(|(later, earlier)| later - earlier);
+    let interval = intervals.fold(f64::INFINITY, f64::min);
+    if let Some(dt) = dt.filter(|dt| interval < 0.999 * dt) {
+        report.warn(format!(
+            "{path}: rows are {interval} apart and steps {dt}: what lies between is passed over; give analysis.dt = {interval}"
+        ));
+    }
+}
+
+/// Rows whose first number, a time, increases; at least one.
+fn increasing<'a>(
+    record: &'a Record,
+    key: &str,
+    report: &mut Report<'_>,
+) -> Option<impl Iterator<Item = &'a [f64]> + use<'a>> {
+    let rows = record.rows(key)?;
+    if rows.is_empty() {
+        record.error(key, "it needs at least one row", report);
+        return None;
+    }
+    if let Some(late) = (1..rows.len()).find(|&k| rows[k].numbers[0] <= rows[k - 1].numbers[0]) {
+        let message =
+            format!("t = {} is not above {}, that of the row before", rows[late].numbers[0], rows[late - 1].numbers[0]);
+        report.error(rows[late].origin, &record.path_of(key), message);
+        return None;
+    }
+    Some(rows.iter().map(|row| &row.numbers[..]))
 }
 
 /// The stress at the start, if any: the whole gravity acts from time 0 then.
@@ -97,6 +141,33 @@ pub(super) fn initial(
     at_rest(root, record, bodies?, report).map(Initial::AtRest)
 }
 
+/// Rows of the ground's acceleration; none without it, or after an error. The run ends and steps by the second numbers.
+pub(super) fn shaking(
+    root: &Record,
+    (regime, times): (Option<Regime>, Option<(f64, f64)>),
+    report: &mut Report<'_>,
+) -> Vec<(f64, [f64; 2])> {
+    const KEY: &str = "acceleration";
+    let Some(record) = root.record("shaking") else { return Vec::new() };
+    if regime == Some(Regime::QuasiStatic) {
+        let message = "a quasi-static analysis has no inertia that would feel the ground move: analysis.type = \"dynamic\", \
+                       or a constant part of gravity.acceleration along x";
+        report.error(record.origin, &record.path, message);
+    }
+    let Some(rows) = increasing(record, KEY, report) else { return Vec::new() };
+    let rows: Vec<(f64, [f64; 2])> = rows.map(|row| (row[0], [row[1], row[2]])).collect();
+    if rows.iter().all(|(_, ground)| *ground == [0.0; 2]) {
+        record.error(KEY, "the ground rests; leave [shaking] out", report);
+        return Vec::new();
+    }
+    let (Some((end, dt)), path) = (times, record.path_of(KEY)) else { return rows };
+    if let Some((t, _)) = rows.iter().find(|(t, _)| *t > end) {
+        report.warn(format!("{path}: the row at t = {t} is beyond the end of the run"));
+    }
+    coarse(&path, rows.iter().map(|row| row.0), Some(dt), report);
+    rows
+}
+
 /// Whether the case starts without stress, whatever its [initial] says.
 pub(super) fn is_unloaded(root: &Record) -> bool {
     root.record("strength_reduction").and_then(|reduction| reduction.flag("unloaded")).unwrap_or(false)
@@ -110,8 +181,10 @@ pub(super) fn grow(
 ) {
     let gravity = gravity.map(|gravity| ("gravity.ramp".to_owned(), &mut gravity.ramp));
     let named = |name, number| format!("{name}.{number}.ramp");
-    let tractions = tractions.iter_mut().enumerate().map(|(k, load)| (named("traction", k), &mut load.ramp));
-    let loads = loads.iter_mut().enumerate().map(|(k, load)| (named("point_load", k), &mut load.ramp));
+    let tractions = tractions.iter_mut().enumerate().filter(|(_, load)| load.amplitude.is_empty());
+    let tractions = tractions.map(|(k, load)| (named("traction", k), &mut load.ramp));
+    let loads = loads.iter_mut().enumerate().filter(|(_, load)| load.amplitude.is_empty());
+    let loads = loads.map(|(k, load)| (named("point_load", k), &mut load.ramp));
     for (key, ramp) in gravity.into_iter().chain(tractions).chain(loads).filter(|(_, ramp)| **ramp == 0.0) {
         *ramp = end;
         report.note(key, format!("{end:?}"), "strength_reduction.unloaded");
@@ -123,9 +196,13 @@ pub(super) fn sudden(tractions: &[Traction], loads: &[PointLoad], initial: Optio
     if !matches!(initial, Some(Initial::AtRest(_))) {
         return;
     }
-    let tractions = tractions.iter().map(|traction| ("traction", traction.ramp)).enumerate();
-    let loads = loads.iter().map(|load| ("point_load", load.ramp)).enumerate();
-    for (number, (name, _)) in tractions.chain(loads).filter(|(_, (_, ramp))| *ramp == 0.0) {
+    let is_sudden = |ramp: f64, amplitude: &[(f64, f64)]| match amplitude.first() {
+        Some((t, share)) => *t == 0.0 && *share != 0.0,
+        None => ramp == 0.0,
+    };
+    let tractions = tractions.iter().map(|load| ("traction", is_sudden(load.ramp, &load.amplitude))).enumerate();
+    let loads = loads.iter().map(|load| ("point_load", is_sudden(load.ramp, &load.amplitude))).enumerate();
+    for (number, (name, _)) in tractions.chain(loads).filter(|(_, (_, is_sudden))| *is_sudden) {
         report.warn(format!(
             "{name}.{number}: acts in full from time 0, and the stress at the start by k0 does not hold it; give it a ramp"
         ));

@@ -8,6 +8,7 @@ use crate::grid::GridSpec;
 use crate::record::Record;
 use crate::report::Report;
 use crate::schema::Range;
+use crate::words::{Side, Word};
 use bsmpm::material::{Material, Profile};
 use bsmpm::model::Regime;
 use law::{Parameters, law};
@@ -59,7 +60,9 @@ pub(super) fn read_all(root: &Record, around: Around<'_>, report: &mut Report<'_
     let read: Vec<_> = read.collect();
     let materials = read.into_iter().collect::<Option<Vec<_>>>()?;
     let is_limited = |named: &NamedMaterial| named.material.yields();
-    if root.gives("strength_reduction") && !around.reduction.elastic && !materials.iter().any(is_limited) {
+    let rubs = |side: &Side| root.record("boundary").is_some_and(|faces| faces.record(side.word()).is_some());
+    let rubs = Side::ALL.as_flattened().iter().any(rubs);
+    if root.gives("strength_reduction") && !around.reduction.elastic && !rubs && !materials.iter().any(is_limited) {
         report.warn("strength_reduction: no material has strength: it does nothing");
     }
     Some(materials)

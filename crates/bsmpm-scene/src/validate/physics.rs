@@ -3,11 +3,12 @@
 use super::NEARLY_INCOMPRESSIBLE;
 use super::place;
 use super::strip::{moves, normal};
-use crate::case::{Base, Case, Prescribed, Site, Support};
+use crate::case::{Base, Body, Case, Initial, Prescribed, Site, Support};
 use crate::record::Record;
 use crate::report::Report;
 use bsmpm::model::Regime;
 use bsmpm::stabilisation::Stabilisation;
+use bsmpm::step::newmark::Newmark;
 
 /// Components of a normal below which it does not hold them.
 const ALONG: f64 = 1e-9;
@@ -17,7 +18,11 @@ pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
     if case.analysis.regime == Regime::QuasiStatic {
         held(case, record, report);
     }
+    shaken(case, report);
+    thrown_back(case, report);
     too_soon(case, record, report);
+    stressed(case, record, report);
+    timed(case, record, report);
     warn_of_materials(case, report);
     if case.stabilisation == Stabilisation::None && !record.gives("stabilisation") {
         warn_of_locking(case, report);
@@ -40,24 +45,107 @@ fn too_soon(case: &Case, record: &Record, report: &mut Report<'_>) {
     }
 }
 
+/// Material that has no state without stress begins with one, and the weight above it gives that.
+fn stressed(case: &Case, record: &Record, report: &mut Report<'_>) {
+    let made = |number: usize| case.bodies.iter().any(|body| body.material == number);
+    for (number, (name, written)) in record.named("material").iter().enumerate() {
+        let named = &case.materials[number];
+        if named.material.is_linear() || !made(number) {
+            continue;
+        }
+        if !matches!(case.initial, Some(Initial::AtRest(_))) {
+            let message = "its stiffness is that of its pressure, so it has no state without stress: give [initial] k0";
+            written.error("model", message, report);
+        } else if named.density.is_none() {
+            let message = format!("missing: unit_weight or density; without weight material.{name} has no pressure");
+            report.error(written.origin, &written.path, message);
+        }
+    }
+}
+
+/// A rate needs a time: that of quasi-static analyses is none.
+fn timed(case: &Case, record: &Record, report: &mut Report<'_>) {
+    let named = case.materials.iter().zip(record.named("material")).enumerate();
+    let made = |number: usize| case.bodies.iter().any(|body| body.material == number);
+    for (_, (named, (_, written))) in named.filter(|(number, _)| made(*number)) {
+        if case.analysis.regime == Regime::QuasiStatic && named.material.over(1.0).is_some() {
+            let message = "the time of a quasi-static analysis is no time: a strength by the rate needs a dynamic one";
+            written.error("rate_parameter", message, report);
+        }
+    }
+}
+
 /// A quasi-static body that nothing holds against a translation has no equilibrium: the stiffness is singular.
 fn held(case: &Case, record: &Record, report: &mut Report<'_>) {
     for (component, name) in ["x", "y"].into_iter().enumerate() {
-        let holds = |axis: usize, upper: bool| match case.boundary[axis][usize::from(upper)] {
-            Support::Fixed => true,
-            Support::Roller => axis == component,
-            Support::Free => false,
-        };
-        let mut faces = [(0, false), (0, true), (1, false), (1, true)].into_iter();
-        let by_face = faces.any(|(axis, upper)| holds(axis, upper) && reached(case, axis, upper));
-        if !by_face && !held_by_strip(case, component) {
+        if !holds(case, component) {
             let message = format!(
-                "nothing holds the bodies along {name}: no fixed face or roller that a body reaches prescribes it, nor does \
-                 a strip that a body is at, and a quasi-static analysis is singular then"
+                "nothing holds the bodies along {name}: no fixed face, roller or face in contact that a body reaches prescribes \
+                 it, nor does a strip that a body is at, and a quasi-static analysis is singular then"
             );
             report.error(record.place("boundary"), "boundary", message);
         }
     }
+}
+
+/// Bodies that do not go along with the ground drift away in its frame.
+fn shaken(case: &Case, report: &mut Report<'_>) {
+    for (component, name) in ["x", "y"].into_iter().enumerate() {
+        if case.shaking.iter().any(|(_, ground)| ground[component] != 0.0) && !holds(case, component) {
+            report.warn(format!(
+                "shaking: the ground moves along {name}, and nothing holds the bodies along {name}: they do not go with it"
+            ));
+        }
+    }
+}
+
+/// Crossings of a body by a wave in a step up to which no energy was made at a face in contact: none at 1.3, some at
+/// 2.6.
+const MOST_CROSSINGS: f64 = 2.0;
+
+/// What meets a face in contact stops at the face's nodes first; in a step in which waves cross the whole body
+/// Newmark's formula throws the rest of it back with energy that it did not have.
+fn thrown_back(case: &Case, report: &mut Report<'_>) {
+    let meets = case.contacts.as_flattened().iter().any(Option::is_some);
+    let dynamic = case.analysis.regime == Regime::Dynamic;
+    let crossing = |body: &Body| {
+        let named = &case.materials[body.material];
+        let [lower, upper] = body.bounds();
+        let thickness = (0..2).map(|axis| upper[axis] - lower[axis]).fold(f64::INFINITY, f64::min);
+        let heights = [lower[1], upper[1]].map(|y| named.material.young_at(y - case.grid.lower()[1]));
+        let poisson = named.material.elastic().poisson;
+        let stiffness = heights[0].max(heights[1]) * (1.0 - poisson) / ((1.0 + poisson) * (1.0 - 2.0 * poisson));
+        Some((thickness * (named.density? / stiffness).sqrt(), named.name.clone()))
+    };
+    let shortest = case.bodies.iter().filter_map(crossing).min_by(|a, b| a.0.total_cmp(&b.0));
+    let Some((time, name)) = shortest.filter(|(time, _)| meets && dynamic && MOST_CROSSINGS * *time < case.analysis.dt)
+    else {
+        return;
+    };
+    if case.analysis.newmark == Newmark::of_gamma(1.0) {
+        return;
+    }
+    report.warn(format!(
+        "analysis.dt = {}: a wave crosses a body of {name} in {time:.3e} s: what meets a face in contact in so long steps is \
+         thrown back with energy that it did not have; give analysis.dt <= {:.1e}, or gamma = 1",
+        case.analysis.dt,
+        MOST_CROSSINGS * time
+    ));
+}
+
+/// Whether a face, a strip or a prescribed motion holds a component of a body.
+fn holds(case: &Case, component: usize) -> bool {
+    let holds = |axis: usize, upper: bool| match case.boundary[axis][usize::from(upper)] {
+        Support::Fixed => true,
+        Support::Roller => axis == component,
+        Support::Contact => {
+            let rubs = case.contacts[axis][usize::from(upper)].is_some_and(|contact| contact.friction > 0.0);
+            axis == component || rubs
+        }
+        Support::Free => false,
+    };
+    let mut faces = [(0, false), (0, true), (1, false), (1, true)].into_iter();
+    faces.any(|(axis, upper)| holds(axis, upper) && reached(case, axis, upper)) || held_by_strip(case, component)
 }
 
 /// Whether the footing or a prescribed motion holds a component of a body.
@@ -102,6 +190,7 @@ fn warn_of_materials(case: &Case, report: &mut Report<'_>) {
 fn loaded(case: &Case) -> bool {
     let pulls = |load: [f64; 2]| load != [0.0; 2];
     case.gravity.is_some()
+        || !case.shaking.is_empty()
         || case.footing.iter().any(|footing| moves(&footing.path))
         || case.prescribed.iter().any(|prescribed| moves(&prescribed.path))
         || case.tractions.iter().any(|traction| pulls(traction.stress))

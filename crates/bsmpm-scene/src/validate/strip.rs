@@ -17,6 +17,7 @@ pub(super) struct AroundStrip<'a> {
     pub(super) bodies: Option<&'a [Body]>,
     pub(super) boundary: Option<[[Support; 2]; 2]>,
     pub(super) end: Option<f64>,
+    pub(super) dt: Option<f64>,
 }
 
 /// The footing, if there is one and it is right.

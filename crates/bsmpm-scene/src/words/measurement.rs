@@ -13,10 +13,15 @@ choice! {
         Height = "height",
         /// The largest displacement of any point.
         MaxDisplacement = "max-displacement",
-        /// Mass of all points, per metre of thickness.
+        /// Mass of all points, or those of `material`, per metre of thickness.
         Mass = "mass",
-        /// Momentum of all points (kg m/s), per metre of thickness.
+        /// Momentum of all points, or those of `material` (kg m/s), per metre of thickness.
         Momentum = "momentum",
+        /// Where the mass of all points, or those of `material`, is in the mean.
+        CentreOfMass = "centre-of-mass",
+        /// Angular momentum of all points, or those of `material`, about the origin of the case's coordinates (kg
+        /// m2/s), counter-clockwise, per metre of thickness.
+        AngularMomentum = "angular-momentum",
         /// Force of a face's supports on the body, per metre of thickness.
         Reaction = "reaction",
         /// Displacement of the material that is at `at` at the start, by the motion about the point nearest to it.
@@ -41,6 +46,16 @@ choice! {
         /// The largest distance that the material has slipped from the footing in the step, over the footing's
         /// motion in it.
         Slip = "slip",
+        /// Of a face in contact, the part of its nodes near material that is on it, and the part of its normal force
+        /// where material slides.
+        Contact = "contact",
+        /// The least and the largest distance of the material from a face in contact, over the nodes of the face whose
+        /// cells have some; 0 without any, and before the first step.
+        Gap = "gap",
+        /// How fast material slides along a face in contact: the step's mean, weighted with the normal force.
+        SlipRate = "slip-rate",
+        /// What friction at a face in contact dissipates, per unit of time and metre of thickness: the step's mean.
+        FrictionPower = "friction-power",
         /// Where the energy of the points is, and where it went since the start, per metre of thickness: external =
         /// change of kinetic + change of elastic + plastic + numerical + closure.
         Energy = "energy",
@@ -53,11 +68,13 @@ const STRESS: &[(&str, &str)] =
     &[("-xx", "normal to x"), ("-yy", "normal to y"), ("-zz", "out of the plane"), ("-xy", "shear")];
 const NOISE: &[(&str, &str)] =
     &[("-average", "about the average over the grid"), ("-plane", "about the plane through the points around")];
+const CONTACT: &[(&str, &str)] = &[("-closed", "part of the nodes"), ("-sliding", "part of the normal force")];
+const GAP: &[(&str, &str)] = &[("-least", "the least"), ("-largest", "the largest")];
 const ENERGY: &[(&str, &str)] = &[
     ("-kinetic", "kinetic energy of the points"),
     ("-elastic", "elastic energy of the points"),
     ("-plastic", "dissipated by plastic flow"),
-    ("-external", "work of gravity, loads and what moves"),
+    ("-external", "work of gravity, loads and what moves, less what friction at faces dissipates"),
     ("-numerical", "loss of the algorithm: the sum of the next five"),
     ("-transfer", "lost between points and nodes"),
     ("-integration", "lost by integration in time and along the strain"),
@@ -73,14 +90,22 @@ impl Measurement {
         matches!(self, Self::FootingPressure | Self::FootingForce | Self::Penetration | Self::Slip)
     }
 
+    /// Whether its face must be in contact.
+    pub fn is_of_contact(self) -> bool {
+        matches!(self, Self::Contact | Self::Gap | Self::SlipRate | Self::FrictionPower)
+    }
+
     /// What the names of its columns get appended, in the order of the numbers, and what each is; nothing is appended
     /// to the one column of a scalar.
     pub fn columns(self) -> &'static [(&'static str, &'static str)] {
         match self {
-            Self::Momentum | Self::Reaction | Self::Displacement | Self::Velocity => VECTOR,
+            Self::Momentum | Self::CentreOfMass | Self::Reaction | Self::Displacement | Self::Velocity => VECTOR,
             Self::Stress => STRESS,
             Self::StressNoise | Self::PressureNoise => NOISE,
             Self::Energy => ENERGY,
+            Self::Contact => CONTACT,
+            Self::Gap => GAP,
+            Self::SlipRate | Self::FrictionPower | Self::AngularMomentum => &[("", "")],
             Self::Runout | Self::Front | Self::Height | Self::MaxDisplacement | Self::Heave => &[("", "")],
             Self::Mass | Self::FootingPressure | Self::FootingForce | Self::Penetration | Self::Slip => &[("", "")],
         }
@@ -90,13 +115,15 @@ impl Measurement {
     pub fn unit(self) -> &'static str {
         match self {
             Self::Runout | Self::Front | Self::Height | Self::Heave | Self::Penetration => "m",
-            Self::MaxDisplacement | Self::Displacement => "m",
+            Self::MaxDisplacement | Self::Displacement | Self::Gap | Self::CentreOfMass => "m",
             Self::Mass => "kg/m",
             Self::Momentum => "kg/s",
+            Self::AngularMomentum => "kg m/s",
             Self::Reaction | Self::FootingForce => "N/m",
-            Self::Velocity => "m/s",
+            Self::Velocity | Self::SlipRate => "m/s",
+            Self::FrictionPower => "W/m",
             Self::Stress | Self::PressureNoise | Self::FootingPressure => "Pa",
-            Self::StressNoise | Self::Slip => "-",
+            Self::StressNoise | Self::Slip | Self::Contact => "-",
             Self::Energy => "J/m",
         }
     }

@@ -60,6 +60,8 @@ choice! {
         Fixed = "fixed",
         /// The normal component held.
         Roller = "roller",
+        /// Smooth, and material comes off it: pushes and does not pull; with friction it is a table.
+        Contact = "contact",
         /// Nothing held.
         Free = "free",
     }
@@ -119,6 +121,24 @@ choice! {
     pub enum Start {
         /// Elastic equilibrium under the loads at time 0.
         Elastic = "elastic",
+    }
+}
+
+choice! {
+    /// What is held in a test of one point.
+    pub enum Path {
+        /// The total stress along x and z, while y is driven.
+        Triaxial = "triaxial",
+        /// The total stress along x and the strain along z, while y is driven.
+        Biaxial = "biaxial",
+        /// The strain along x and z, while y is driven.
+        Oedometer = "oedometer",
+        /// Nothing: all sides are driven alike.
+        Isotropic = "isotropic",
+        /// The total stress along y and the strain along x and z, while y moves along x.
+        SimpleShear = "simple-shear",
+        /// What its components say.
+        Mixed = "mixed",
     }
 }
 

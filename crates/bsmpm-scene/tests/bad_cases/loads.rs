@@ -5,13 +5,14 @@ use super::{Row, row};
 const BOX: &str = "box = { lower = [0.0, 0.0], upper = [4.0, 1.0] }";
 const POLYGON: &str = "polygon = [[2.5, 1.5], [3.75, 1.5], [\"3 m\", 2.5], [2.5, 2.5]]";
 const NOBODY: &str = "at the start; allowed: half a spacing of points from one";
+const SHAKEN: &str = "[[0.0, 0.1, 0.0], [\"1 s\", \"-0.1 g\", \"5 cm/s2\"]]";
 const CIRCLE: &str = "circle = { center = [0.5, 2.0], radius = 0.4 }";
 
 /// Polygons, circles and what is cut out.
 pub const SHAPES: &[Row] = &[
     row(POLYGON, "polygon = [[2.5, 1.5], [3.5, 1.5]]", "body.3.polygon", "2 corners; a polygon has three at least"),
     row(POLYGON, "polygon = []", "body.3.polygon", "0 corners"),
-    row(POLYGON, "polygon = [1, 2, 3]", "body.3.polygon", "a list of rows, each [a length, a length], found 1"),
+    row(POLYGON, "polygon = [1, 2, 3]", "body.3.polygon", "found 1"),
     row(POLYGON, "polygon = [[1, 2], [1, 2, 3], [2, 2]]", "body.3.polygon", "found a list of 3"),
     row(POLYGON, "polygon = [[1, 2], [1, \"2 s\"], [2, 2]]", "body.3.polygon", "`s` is a unit of time"),
     row(POLYGON, "polygon = [[1, 2], [1, inf], [2, 2]]", "body.3.polygon", "no finite number"),
@@ -200,6 +201,22 @@ pub const STRIPS: &[Row] = &[
     row("\"-1 kN/m\"", "\"-1 kN\"", "point_load.0.force", "takes forces per metre (N/m, kN/m, MN/m)"),
     row("\"-1 kN/m\"", "\"-1 kPa\"", "point_load.0.force", "expected a force per metre of thickness"),
     row("ramp = \"0.5 s\"", "ramp = -1", "traction.0.ramp", "allowed: ramp >= 0"),
+    row(
+        "ramp = \"0.5 s\"",
+        "ramp = 0.5\namplitude = [[1.0, 1.0]]",
+        "traction.0.amplitude",
+        "only one of ramp, amplitude",
+    )
+    .down(1),
+    row("ramp = \"0.5 s\"", "amplitude = []", "traction.0.amplitude", "at least one row"),
+    row("ramp = \"0.5 s\"", "amplitude = [[0.5, 1.0], [0.5, 0.0]]", "traction.0.amplitude", "not above 0.5"),
+    row("ramp = \"0.5 s\"", "amplitude = [[0.5, \"1 kPa\"]]", "traction.0.amplitude", "expected"),
+    row(SHAKEN, "[]", "shaking.acceleration", "at least one row"),
+    row(SHAKEN, "[[0.1, 0.0, 0.0]]", "shaking.acceleration", "the ground rests"),
+    row(SHAKEN, "[[0.1, 1.0, 0.0], [0.1, 0.0, 0.0]]", "shaking.acceleration", "not above 0.1"),
+    row(SHAKEN, "[[0.1, 1.0]]", "shaking.acceleration", "found a list of 2"),
+    row(SHAKEN, "[[0.1, \"1 m\", 0.0]]", "shaking.acceleration", "`m` is a unit of length"),
+    row(SHAKEN, "{ file = \"kobe.csv\" }", "shaking.acceleration", "found a table"),
     // Points of the block are .25 m apart, those of sand .167 m and of clay .25 m.
     row("from = [1.0, 2.5]\nto   = [\"2 m\", 2.5]", "from = [1.25, 2.63]\nto = [1.75, 2.63]", "footing.from", NOBODY),
     row("from = [2.5, 2.5]\nto   = [3.0, 2.5]", "from = [2.5, 2.63]\nto = [3.0, 2.63]", "prescribed.1.from", NOBODY),

@@ -257,6 +257,16 @@ const MATRIX: &[Input] = &[
         taken: &[
             ("dt   = \"10 ms\"", "steps = 1", ""),
             ("every  = \"0.1 s\"", "every = 3", "output.every: 3 is beyond the end"),
+            (
+                "[\"1 s\", \"-0.1 g\"",
+                "[\"3 s\", \"-0.1 g\"",
+                "shaking.acceleration: the row at t = 3 is beyond the end",
+            ),
+            ("[\"1 s\", \"-0.1 g\"", "[\"2 ms\", \"-0.1 g\"", "rows are 0.002 apart and steps 0.01"),
+            ("bottom = \"fixed\"", "bottom = { friction = 1.5 }", "shown to be right up to 1"),
+            ("bottom = \"fixed\"", "bottom = \"contact\"", "thrown back with energy that it did not have"),
+            ("ramp = \"0.5 s\"", "amplitude = [[2, 1]]", "traction.0.amplitude: the row at t = 2 is beyond the end"),
+            ("ramp = \"0.5 s\"", "amplitude = [[0, 1]]", "traction.0: acts in full from time 0"),
         ],
         ..NONE
     },
@@ -324,6 +334,65 @@ const MATRIX: &[Input] = &[
                 "18",
                 "material.clay: a density of 1.834862 kg/m3 (unit weight 0.018000 kN/m3) is unusual",
             ),
+        ],
+        ..NONE
+    },
+    Input {
+        id: "tests of one point",
+        refused: &[
+            row(
+                "material = \"sand\"\npressure",
+                "material = \"snad\"\npressure",
+                "element.consolidated.material",
+                "there is no material `snad`; did you mean `sand`?",
+            ),
+            row(
+                "material = \"sand\"\npressure",
+                "pressure",
+                "element.consolidated.material",
+                "missing; there are 4 materials",
+            )
+            .up(1),
+            row(
+                "height = \"2 m\"\n",
+                "",
+                "element.mixed.height",
+                "missing; parameters of material.till depend on the height",
+            )
+            .up(2),
+            row(
+                "{ test = \"isotropic\", pressure = \"100 kPa\", steps = 10 }",
+                "{ test = \"isotropic\", shear = 0.1 }",
+                "element.consolidated.stage.0.shear",
+                "has no meaning in test \"isotropic\"",
+            ),
+            row(
+                "{ test = \"isotropic\", pressure = \"100 kPa\", steps = 10 }",
+                "{ test = \"isotropic\" }",
+                "element.consolidated.stage.0",
+                "missing: compression or pressure (test \"isotropic\")",
+            ),
+            row(
+                "{ test = \"isotropic\", pressure",
+                "{ test = \"isotropic\", undrained = true, pressure",
+                "element.consolidated.stage.0.undrained",
+                "nothing can move without drainage",
+            ),
+            row(
+                "duration = \"1 h\" },",
+                "duration = \"1 h\" },\n    { test = \"oedometer\", compression = 0.1 },",
+                "element.consolidated.stage.2",
+                "a drained stage after an undrained one",
+            )
+            .down(1),
+            row("strain_yy = -0.01\n", "", "element.mixed.stage.0", "missing: strain_yy or stress_yy").up(3),
+            row(
+                "strain_yy = -0.01\n",
+                "strain_yy = -0.01\nstress_yy = 0\n",
+                "element.mixed.stage.0.stress_yy",
+                "`strain_yy` is given too",
+            )
+            .down(1),
         ],
         ..NONE
     },

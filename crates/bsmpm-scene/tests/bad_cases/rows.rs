@@ -10,6 +10,14 @@ pub const LANGUAGE: &[Row] = &[
     row("title    =", "colour   =", "colour", "unknown key `colour`"),
     row("[gravity]", "[gravitation]", "gravitation", "unknown key"),
     row("[solver]", "[slover]", "slover", "did you mean `solver`?"),
+    row("bottom = \"fixed\"", "bottom = \"friction\"", "boundary.bottom", "expected one of"),
+    row("bottom = \"fixed\"", "bottom = 0.3", "boundary.bottom", "expected"),
+    row("bottom = \"fixed\"", "bottom = { lifts = false }", "boundary.bottom.friction", "missing"),
+    row("bottom = \"fixed\"", "bottom = { friction = -0.3 }", "boundary.bottom.friction", "0 <= friction <= 2"),
+    row("bottom = \"fixed\"", "bottom = { friction = 2.1 }", "boundary.bottom.friction", "0 <= friction <= 2"),
+    row("bottom = \"fixed\"", "bottom = { friction = \"20 deg\" }", "boundary.bottom.friction", ""),
+    row("bottom = \"fixed\"", "bottom = { friction = 0.3, lifts = 1 }", "boundary.bottom.lifts", "true or false"),
+    row("bottom = \"fixed\"", "bottom = { friction = 0.3, type = \"fixed\" }", "boundary.bottom.type", "unknown key"),
     row("top    = \"fixed\"", "upper = \"free\"", "boundary.upper", "known: left, right, bottom, top"),
     row("percentile = 99.9", "precentile = 99.9", "history.0.precentile", "did you mean `percentile`?"),
     row("ksp = \"preonly\",", "kps = \"preonly\",", "solver.linear.kps", "did you mean `ksp`?"),
@@ -38,7 +46,7 @@ pub const LANGUAGE: &[Row] = &[
     row("\"10 ms\"", "\"10 mm\"", "analysis.dt", "expected a time"),
     row("\"2 t/m3\"", "\"20 kN/m3\"", "material.sand.density", "expected a density"),
     row("\"-1 m/s\"", "\"-1 m/s2\"", "body.2.velocity", "expected a velocity"),
-    row("-9.81]", "\"-1 g\"]", "gravity.acceleration", "no known unit (m/s2"),
+    row("-9.81]", "\"-1 gee\"]", "gravity.acceleration", "no known unit (m/s2"),
     row("\"4 m\"", "\"4 s\"", "check.0.max", "takes a length"),
     row("\"0 kPa\"", "\"0 m\"", "check.1.max", "takes a stress"),
     row("material = \"sand\"", "material = 5", "body.0.material", "expected a name"),
@@ -223,6 +231,30 @@ pub const RULES: &[Row] = &[
     row("at       = \"0.5 s\"", "at = 2", "check.0.at", "beyond the end"),
     row("min      = 3.0", "min = 5.0", "check.0.min", "above max = 4"),
     row("max      = \"0 kPa\"", "", "check.1", "missing: min, max").up(2),
+    row(
+        "quantity = \"heave\"",
+        "quantity = \"mass\"\nmaterial = \"sandy\"",
+        "history.5.material",
+        "no material `sandy`",
+    )
+    .down(1),
+    row("quantity = \"heave\"", "quantity = \"heave\"\nmaterial = \"sand\"", "history.5.material", "has no meaning")
+        .down(1),
+    row("quantity = \"heave\"", "quantity = \"gap\"", "history.5.face", "missing; quantity \"gap\" needs it").up(1),
+    row(
+        "quantity = \"heave\"",
+        "quantity = \"contact\"\nface = \"bottom\"",
+        "history.5.face",
+        "\"contact\" is about a face in contact, and [boundary] bottom is none",
+    )
+    .down(1),
+    row(
+        "quantity = \"heave\"",
+        "quantity = \"heave\"\nface = \"left\"",
+        "history.5.face",
+        "has no meaning for quantity \"heave\"",
+    )
+    .down(1),
 ];
 
 /// Quasi-static cases (I13, I16, I18).
@@ -232,7 +264,8 @@ pub const QUASI_STATIC: &[Row] = &[
     row("bottom = \"fixed\"", "bottom = \"free\"", "boundary", "nothing holds the bodies along x").up(1),
     row("bottom = \"fixed\"", "bottom = \"roller\"", "boundary", "nothing holds the bodies along x").up(1),
     row("bottom = \"fixed\"", "left = \"roller\"", "boundary", "nothing holds the bodies along y").up(1),
-    row("bottom = \"fixed\"", "top = \"fixed\"", "boundary", "no fixed face or roller that a body reaches").up(1),
+    row("bottom = \"fixed\"", "top = \"fixed\"", "boundary", "no fixed face, roller or face in contact that").up(1),
+    row("bottom = \"fixed\"", "bottom = \"contact\"", "boundary", "nothing holds the bodies along x").up(1),
     row("points_per_cell = 3", "points_per_cell = 3\nvelocity = [1, 0]", "body.0.velocity", "quasi-static").down(1),
     row("[output]", "[[history]]\nquantity = \"momentum\"\n[output]", "history.0.quantity", "no momentum").down(1),
     row("steps = 4", "steps = 4\nspectral_radius = 0.8", "analysis.spectral_radius", "no inertia").down(1),

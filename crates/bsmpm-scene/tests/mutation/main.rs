@@ -46,9 +46,12 @@ const OTHERWISE: [&[(&str, &str)]; 6] = [
         ("cohesion    = 2e4", "yield_stress = 2e4\nhardening = 1e3"),
         ("every  = \"0.1 s\"", "every_steps = 20\ncheckpoint = { wall = \"10 min\", every_steps = 50, keep = 3 }"),
         ("quantity = \"heave\"", "quantity = \"height\"\nat_x = 1.0"),
+        ("bottom = \"fixed\"", "bottom = { friction = 0.3, lifts = true }"),
     ],
     &[
         ("dt   = \"10 ms\"", "dt = 0.01\ngamma = 0.6"),
+        ("\"tresca\"", "\"modified-cam-clay\""),
+        ("cohesion    = 2e4", "kappa = 0.02\nlambda = 0.1\ncritical_ratio = 1.2\npreconsolidation = \"50 kPa\""),
         ("model    = \"mohr-coulomb\"", "model = \"drucker-prager\""),
         ("separation = \"forgotten\"", "match = \"inner\""),
         ("cell  = [0.5, \"50 cm\"]", "knots = { x = [0, 0.5, 1.5, \"4 m\"], y = [0, 1, 2, 3] }"),
@@ -66,13 +69,24 @@ const OTHERWISE: [&[(&str, &str)]; 6] = [
     ],
     &[
         ("displacement = [0.0, \"-10 cm\"]", "velocity = [0.0, -0.1]"),
+        ("\"tresca\"", "\"modified-cam-clay\""),
+        ("cohesion    = 2e4", "kappa = 0.02\nlambda = 0.1\ncritical_ratio = 1.2\nocr = 1.5"),
         ("velocity = [0.0, \"-10 mm/s\"]", "displacement = [-0.1, 0.0]"),
         (
             "{ circle = { center = [2.75, 2.0], radius = \"10 cm\" } }",
             "{ polygon = [[2.6, 1.6], [2.9, 1.6], [2.9, 1.9]] }",
         ),
     ],
-    &[("displacement = [0.0, \"-10 cm\"]", "path = [[0.5, 0.0, -0.1], [\"1 s\", 0.0, \"-20 cm\"]]")],
+    &[
+        ("ramp = \"0.5 s\"", "amplitude = [[\"0.2 s\", 1.5], [0.5, 0.0]]"),
+        ("ramp = 0.5\n", "amplitude = [[0.0, 1.0]]\n"),
+        ("displacement = [0.0, \"-10 cm\"]", "path = [[0.5, 0.0, -0.1], [\"1 s\", 0.0, \"-20 cm\"]]"),
+        ("\"tresca\"", "\"sensitive-clay\""),
+        (
+            "cohesion    = 2e4",
+            "cohesion = 2e4\nsensitivity = 4\nsoftening_strain = 20\nrate_parameter = 0.1\nreference_rate = 1e-4",
+        ),
+    ],
 ];
 
 fn bases() -> Vec<String> {

@@ -162,8 +162,11 @@ fn the_full_case_in_si() {
         "pressure-noise-average",
         "pressure-noise-plane",
         "heave",
+        "centre-of-mass-x",
+        "centre-of-mass-y",
     ];
     assert_eq!(columns, expected);
+    assert_eq!(case.histories[6].quantity, Quantity::CentreOfMass { of: Some(0) });
     assert_eq!(case.histories[4].quantity, Quantity::PressureNoise { within: Some([[0.0, 0.0], [2.0, 1.0]]) });
     assert_eq!((case.checks[0].at, case.checks[0].max, case.checks[1].at), (0.5, Some(4.0), 1.0));
     assert!(case.warnings.is_empty(), "{:?}", case.warnings);

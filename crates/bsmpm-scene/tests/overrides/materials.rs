@@ -1,6 +1,6 @@
 //! What materials become: laws by their words, heights, reduced strength.
 
-use super::{FULL, set, valid};
+use super::{FULL, STATIC, set, valid};
 use bsmpm::material::{Law, Match, Material, Separation};
 use bsmpm_scene::Case;
 
@@ -34,6 +34,17 @@ fn cones_and_cylinders() {
                     yield_stress = { value = 1e4, at_y = 2.0, per_metre = -1e5 } }";
     let message = format!("{:?}", set(FULL, &[negative]).expect_err("no strength below"));
     assert!(message.contains("allowed: yield_stress > 0"), "{message}");
+}
+
+/// Faces that rub lose strength as the ground does; a word stands for a face without friction.
+#[test]
+fn friction_of_faces_is_strength() {
+    let case = valid(FULL, &["boundary.bottom={ friction = 0.5 }", "boundary.left=contact"]);
+    let found = |axis: usize| case.contacts[axis][0].map(|contact| (contact.friction, contact.lifts));
+    assert_eq!((found(0), found(1)), (Some((0.0, true)), Some((0.4, true))));
+    assert!(case.notes.iter().any(|note| note.key == "boundary.bottom.friction" && note.value == "0.4"));
+    let held = valid(FULL, &["boundary.bottom={ friction = 0.5, lifts = false }", "strength_reduction.factor=1.0"]);
+    assert_eq!(held.contacts[1][0].map(|contact| (contact.friction, contact.lifts)), Some((0.5, false)));
 }
 
 /// Strength that falls: its last values, the strain of a band in cells of one size, and what is doubtful or refused.
@@ -148,4 +159,76 @@ fn a_material_without_cohesion_may_close_its_gaps() {
     assert_eq!(case.strength_reduction, Some(1.25));
     assert_eq!([0, 3].map(|material| separation(&case, material)), [Separation::Closing; 2]);
     assert_eq!(case.materials[3].material.at(2.5).separation(), Separation::Closing);
+}
+
+/// Modified Cam-clay: its numbers, by the height too, where its linear moduli hold, and what it needs to begin with.
+#[test]
+fn cam_clay_and_its_start() {
+    let keys = "young = 1e7, poisson = 0.3, density = 2e3, model = \"modified-cam-clay\", kappa = 0.02, lambda = 0.1, \
+                critical_ratio = 1.2";
+    let whole = ["strength_reduction.factor=1.0", "initial.k0=0.5"];
+    let with = |text: &str| set(FULL, &[&whole[..], &[&format!("material.clay={{ {keys}, {text} }}")]].concat());
+    let case = with("ocr = 2").expect("a valid case");
+    let Material::CamClay(clay) = &case.materials[1].material else { panic!() };
+    assert_eq!(clay.parameters(), [0.02, 0.1, 1.2, 0.0, 2.0]);
+    // K = p/kappa of Cauchy's pressure is p/(kappa/(1 - kappa)) of Kirchhoff's.
+    let pressure = 1e7 / 1.2 * 0.02 / 0.98;
+    assert!((clay.reference_pressure() / pressure - 1.0).abs() < 1e-14);
+    assert!(case.notes.iter().any(|note| note.value.contains("p = 170068")), "{:?}", case.notes);
+    let grows = "preconsolidation = { value = \"50 kPa\", at_y = 2.0, per_metre = 5e3 }";
+    let graded = &with(grows).expect("a valid case").materials[1].material;
+    assert_eq!((graded.at(1.0).parameters()[3], graded.is_linear(), graded.softens()), (55e3, false, true));
+    for (text, told) in [
+        ("poisson = 0.3", "duplicate key"),
+        ("k0 = 0.5", "missing; model \\\"modified-cam-clay\\\" needs it, or ocr"),
+        ("ocr = 0.9", "allowed: ocr >= 1"),
+        ("ocr = 2, preconsolidation = 1e5", "only one of"),
+        ("ocr = 2, cohesion = 1e3", "has no meaning"),
+    ] {
+        let message = format!("{:?}", with(text).expect_err("refused"));
+        assert!(message.contains(told), "{text}: {message}");
+    }
+    let clay = format!("material.clay={{ {keys}, ocr = 2 }}");
+    let text = FULL.replace("k0          = 0.6\n", "");
+    let refused = |sets: &[&str], told: &str| {
+        let message = format!("{:?}", set(&text, &[&[clay.as_str()], sets].concat()).expect_err("refused"));
+        assert!(message.contains(told), "{sets:?}: {message}");
+    };
+    refused(&["material.clay.lambda=0.02"], "lambda > kappa = 0.02");
+    refused(&["initial.gravity=elastic"], "no state without stress: give [initial] k0");
+    refused(&["strength_reduction.unloaded=true"], "no state without stress: give [initial] k0");
+    // Under the weight of others, but with none of its own.
+    let weightless = "material.soil={ young = 1e7, poisson = 0.3, model = \"modified-cam-clay\", kappa = 0.02, \
+                      lambda = 0.1, critical_ratio = 1.2, ocr = 2 }";
+    let (weight, start) = ("gravity.acceleration=[0.0, -9.81]", "initial.k0=0.5");
+    let fill = "material.fill={ model = \"hencky\", young = 1e7, poisson = 0.3, density = 2e3 }";
+    let body = "body.1={ material = \"fill\", box = { lower = [0.0, 1.0], upper = [2.0, 2.0] }, points_per_cell = 3 }";
+    let message = format!("{:?}", set(STATIC, &[weightless, fill, body, weight, start]).expect_err("no pressure"));
+    assert!(message.contains("without weight material.soil has no pressure"), "{message}");
+}
+
+/// Sensitive clay: what is left of its cohesion at every height, the strain in the law's own measure, and its rate.
+#[test]
+fn sensitive_clay_softens_by_its_sensitivity_and_follows_the_rate_in_dynamics() {
+    let keys = "model = \"sensitive-clay\", young = 1e7, poisson = 0.49, density = 1.7e3, softening_strain = 20, \
+                cohesion = { value = 2e4, at_y = 2.0, per_metre = 2e3 }, sensitivity = 4";
+    let rate = "rate_parameter = 0.1, reference_rate = 1e-4";
+    let with =
+        |text: &str| set(FULL, &["strength_reduction.factor=1.0", &format!("material.clay={{ {keys}, {text} }}")]);
+    let clay = with(rate).expect("a valid case").materials[1].material.clone();
+    let numbers = clay.at(1.0).parameters();
+    assert_eq!((numbers[0], numbers[2], numbers[5]), (0.0, 2.2e4, 5.5e3));
+    assert!((numbers[6] - 20.0 / 3.0_f64.sqrt()).abs() < 1e-14);
+    assert!(clay.over(0.1).is_some() && with("k0 = 0.5").expect("no rate").materials[1].material.over(0.1).is_none());
+    for (text, told) in [
+        ("rate_parameter = 0.1", "missing; a rate needs both"),
+        ("sensitivity = 0.5", "duplicate key"),
+        ("friction = 10", "has no meaning"),
+    ] {
+        let message = format!("{:?}", with(text).expect_err("refused"));
+        assert!(message.contains(told), "{text}: {message}");
+    }
+    let clay = format!("material.soil={{ {keys}, {rate} }}");
+    let message = format!("{:?}", set(STATIC, &[&clay]).expect_err("no time"));
+    assert!(message.contains("a strength by the rate needs a dynamic one"), "{message}");
 }

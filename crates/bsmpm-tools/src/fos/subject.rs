@@ -179,6 +179,8 @@ fn refusals(case: &Case) -> Vec<String> {
     let is_plastic = case.materials.iter().any(|named| named.material.yields());
     let hardens = case.materials.iter().any(|named| named.material.hardens());
     let softens = case.materials.iter().any(|named| named.material.softens());
+    let has_amplitude = case.tractions.iter().map(|load| &load.amplitude).any(|rows| !rows.is_empty())
+        || case.point_loads.iter().any(|load| !load.amplitude.is_empty());
     let never_full = ramps(case).any(|ramp| ramp > case.analysis.end);
     let reasons = [
         (
@@ -194,10 +196,15 @@ fn refusals(case: &Case) -> Vec<String> {
             softens,
             "a material's strength follows its plastic strain: what it carries depends on how far it is strained, and trials \
              stiffen the ground so that it hardly is; give its peak or its residual strength as \"mohr-coulomb\", which \
-             bounds the factor from both sides",
+             bounds the factor from both sides, of cam-clay its undrained or its critical-state strength",
         ),
         (!is_plastic, "no material is plastic: there is no strength to be reduced"),
         (!is_loaded(case), "nothing loads the body at `end`: no weight under gravity, no traction, no point load"),
+        (
+            has_amplitude,
+            "a load follows an amplitude: its factor would be that of whatever acts at `end`; give the load that is meant, \
+             with a ramp",
+        ),
         (never_full, "a load grows beyond `end`: it never acts in full, and the factor would be that of a part of it"),
         (
             is_moved(case),

@@ -86,7 +86,7 @@ fn falling() -> (f64, f64) {
             acceleration = acceleration.max((Vector::from([u[0], u[1]]) - before * dt).norm() * 2.0 / (dt * dt) / g);
         }
         before = speed + Vector::from([0.0, -g * t]);
-        let momentum = observe::momentum(&scene.points, &halo);
+        let momentum = observe::momentum(&scene.points, None, &halo);
         lost = lost.max((momentum - before * mass).norm() / (speed.norm() * mass));
     }
     (acceleration, lost)

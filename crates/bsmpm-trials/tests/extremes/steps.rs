@@ -25,7 +25,7 @@ pub fn bar() -> Scene<PlaneStrain, 2> {
     let velocity = |x: f64| SPEED * (PI * x / (2.0 * LENGTH)).sin();
     let mut scene = Scene::new([axis(h, 24, 2), axis(h, 1, 2)], hencky(100.0, 0.0), Regime::Dynamic)
         .body([0..20, 0..1], 3, 1.0, |x| [velocity(x[0]), 0.0].into())
-        .support(Support { axis: 0, upper: false, velocity: [Some(0.0), None] })
+        .support(Support::moving(0, false, [Some(0.0), None]))
         .rollers([1]);
     scene.model.criteria.force = 1e-9;
     scene

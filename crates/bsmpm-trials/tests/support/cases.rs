@@ -52,6 +52,15 @@ quantity = "mass"
 quantity = "momentum"
 "#;
 
+/// The same block on a floor that rubs, .3 mm above it at the start, so that it drops, slides and rocks.
+pub fn rubbed_block() -> String {
+    let text = changed(SLIDING_BLOCK, "bottom = \"roller\"", "bottom = { friction = 0.4 }");
+    let text = changed(&text, "box = { lower = [0.1, 0.0]", "box = { lower = [0.1, 0.0003]");
+    let histories = ["contact", "gap", "slip-rate", "friction-power", "reaction"];
+    let history = |quantity| format!("\n[[history]]\nquantity = \"{quantity}\"\nface = \"bottom\"\n");
+    text + &histories.map(history).concat()
+}
+
 /// Quasi-static, five steps of next to no work.
 pub const COLUMN: &str = r#"geometry = "plane-strain"
 

@@ -1,6 +1,6 @@
 //! The number of ranks changes nothing but the time that a run takes.
 
-use crate::support::cases::{SLIDING_BLOCK, changed};
+use crate::support::cases::{SLIDING_BLOCK, changed, rubbed_block};
 use crate::support::results::{all_frames, differences, history, ids, last_frame, manifest, steps};
 use crate::support::{Scratch, example, processes, shipped};
 use std::collections::BTreeSet;
@@ -31,6 +31,23 @@ fn agree(scratch: &Scratch, case: &str, further: &[&str], ranks: &[usize], toler
 #[test]
 fn an_elastic_block_that_slides_from_slab_to_slab_is_the_same_on_1_2_3_and_4_ranks() {
     agree(&Scratch::with_case(SLIDING_BLOCK), "case.toml", &[], &[1, 2, 3, 4], 1e-9);
+}
+
+/// Nodes on a face stick, slip and lift as the whole of them says, also where two ranks share them.
+#[test]
+fn a_block_that_rubs_is_the_same_on_1_2_3_and_4_ranks() {
+    let scratch = Scratch::with_case(&rubbed_block());
+    agree(&scratch, "case.toml", &[], &[1, 2, 3, 4], 1e-8);
+    let histories = [1, 4].map(|count| history(&scratch.path(&format!("{count}.out"))));
+    for column in ["contact-closed", "contact-sliding", "gap-largest", "slip-rate", "friction-power", "reaction-x"] {
+        let [one, four] = histories.each_ref().map(|history| history.get(column).unwrap());
+        let largest = one.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+        assert!(largest > 0.0 && one.iter().zip(four).all(|(a, b)| (a - b).abs() <= 1e-6 * largest), "{column}");
+    }
+    let [closed, pushed, rubbed] =
+        ["contact-closed", "reaction-y", "reaction-x"].map(|column| histories[0].get(column).unwrap());
+    assert!(closed[1..].contains(&0.0) && closed.contains(&1.0));
+    assert!(pushed.iter().zip(rubbed).all(|(push, rub)| *push >= 0.0 && rub.abs() <= 0.4 * push * (1.0 + 1e-9)));
 }
 
 /// Zhao's F-bar gives the points a state of its own, the consistent one exchanges functions of the degree below.

@@ -1,6 +1,6 @@
 //! Going on from checkpoints: on as many ranks to the bit, on others within tolerances, and never with another case.
 
-use crate::support::cases::{COLUMN, SLIDING_BLOCK, changed};
+use crate::support::cases::{COLUMN, SLIDING_BLOCK, changed, rubbed_block};
 use crate::support::results::{all_frames, differences, history, last_frame, manifest, steps};
 use crate::support::{Scratch, entries};
 use bsmpm_io::manifest::Status;
@@ -42,6 +42,19 @@ fn a_run_that_was_stopped_goes_on_to_the_bit() {
             std::fs::remove_dir_all(scratch.path("part")).unwrap();
         }
     }
+}
+
+/// What sticks, slips and lifts follows from the points and the last displacement: there is nothing else to keep.
+#[test]
+fn a_block_that_rubs_goes_on_to_the_bit() {
+    let scratch = Scratch::with_case(&rubbed_block());
+    let part = ["case.toml", "-q", "-o", "part", "--restart", "auto"];
+    scratch.mpirun(2, &["case.toml", "-q", "-o", "whole"]).expect(0);
+    for stop in ["9", "17", "31"] {
+        scratch.mpirun(2, &[&part[..], &["--max-steps", stop]].concat()).expect(75);
+    }
+    scratch.mpirun(2, &part).expect(0);
+    assert!(results(&scratch.path("whole")) == results(&scratch.path("part")));
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! The scenes of geotechnics on the real program: strips, loads, layers and stress at the start, on any number of
 //! ranks.
 
-use crate::support::cases::changed;
+use crate::support::cases::{SLIDING_BLOCK, changed};
 use crate::support::results::{all_finite, at, differences, history, last_frame, manifest};
 use crate::support::{Scratch, shipped};
 
@@ -302,4 +302,29 @@ fn a_start_that_is_out_of_balance_or_beyond_yield_is_warned_of() {
     assert!(told(&far, "traction.0: acts in full from time 0"), "{far:?}");
     let near = warnings(LOADED);
     assert!(!told(&near, "unbalanced") && !told(&near, "beyond yield") && !told(&near, "from time 0"), "{near:?}");
+}
+
+#[test]
+fn rows_from_a_file_are_those_of_the_case_on_any_number_of_ranks_and_wrong_ones_are_told() {
+    let shaken = |rows: &str| format!("{SLIDING_BLOCK}\n[shaking]\nacceleration = {rows}\n");
+    let inline = Scratch::with_case(&shaken("[[0.01, 3.0, 0.0], [0.03, -2.0, 0.0]]"));
+    inline.mpirun(1, &["case.toml", "-q"]).expect(0);
+    let named = Scratch::with_case(&shaken("{ file = \"quake.csv\", along = \"x\" }"));
+    named.write("quake.csv", "# a record\nt [ms], a [cm/s2]\n10, 300\n30, -200\n");
+    named.mpirun(1, &["case.toml", "-q"]).expect(0);
+    let of = |scratch: &Scratch| std::fs::read_to_string(scratch.path("case.out/history.csv")).unwrap();
+    assert_eq!(of(&inline), of(&named));
+    let still = Scratch::with_case(SLIDING_BLOCK);
+    still.mpirun(1, &["case.toml", "-q"]).expect(0);
+    assert_ne!(of(&inline), of(&still));
+    let warnings = manifest(&named.path("case.out")).warnings;
+    assert!(warnings.iter().any(|told| told.contains("moves along x, and nothing holds the bodies along x")));
+    // The case that is kept has the rows, so that a restart needs no file.
+    let text = manifest(&named.path("case.out")).case.text;
+    assert!(text.contains("300.0 cm/s2") && !text.contains("quake.csv"), "{text}");
+    named.write("quake.csv", "t [ms], a [cm/s2]\n10, 300\n30, fast\n");
+    let told = named.mpirun(2, &["case.toml", "-q", "--force"]).expect(65);
+    told.says_once("quake.csv: line 3: `fast` is no number");
+    std::fs::remove_file(named.path("quake.csv")).unwrap();
+    named.mpirun(2, &["case.toml", "-q", "--force"]).expect(66).says_once("quake.csv: ");
 }

@@ -5,6 +5,7 @@ use super::surface::{Attachment, Surface, SurfacePoint};
 use crate::error::StepError;
 use crate::grid::{Contributions, Grid};
 use crate::parallel::Halo;
+use crate::schedule::between;
 use crate::tensor::Vector;
 
 /// A load whose force, direction and area are those of the start.
@@ -16,12 +17,19 @@ pub struct Load<const D: usize> {
     pub traction: Vector<D>,
     /// s (or pseudo-time) over which it grows linearly; 0: at once
     pub ramp: f64,
+    /// s (or pseudo-time), increasing, and the share that acts, instead of a ramp: linear between, from 0 at time 0 to
+    /// the first row, constant after the last; empty: the ramp holds
+    pub amplitude: Vec<(f64, f64)>,
 }
 
 impl<const D: usize> Load<D> {
     /// Share of the load that acts at time `t`.
     fn grown(&self, t: f64) -> f64 {
-        if self.ramp > 0.0 { (t / self.ramp).clamp(0.0, 1.0) } else { 1.0 }
+        match self.amplitude.last() {
+            Some((_, stays)) => between(&self.amplitude, 0.0, t).unwrap_or(*stays),
+            None if self.ramp > 0.0 => (t / self.ramp).clamp(0.0, 1.0),
+            None => 1.0,
+        }
     }
 }
 

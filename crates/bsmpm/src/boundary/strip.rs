@@ -9,6 +9,7 @@ use crate::exact::Exact;
 use crate::grid::{Contributions, Grid};
 use crate::nodal::Nodal;
 use crate::parallel::{Halo, LinearSolver};
+use crate::schedule::between;
 use crate::tensor::Vector;
 
 /// A displacement as a function of time, linear between its rows: a cut step follows the same path.
@@ -21,13 +22,8 @@ pub struct Path<const D: usize> {
 impl<const D: usize> Path<D> {
     /// Displacement at time `t`, m.
     pub fn at(&self, t: f64) -> Vector<D> {
-        let next = self.rows.partition_point(|(time, _)| *time < t);
-        let start = (0.0, Vector::zeros());
-        let before = if next == 0 { &start } else { &self.rows[next - 1] };
-        match self.rows.get(next) {
-            Some(after) => before.1 + (after.1 - before.1) * ((t - before.0) / (after.0 - before.0)),
-            None => before.1,
-        }
+        let stays = || self.rows.last().map_or_else(Vector::zeros, |(_, u)| *u);
+        between(&self.rows, Vector::zeros(), t).unwrap_or_else(stays)
     }
 }
 

@@ -21,7 +21,8 @@ const SLACK: f64 = 0.05;
 /// What a step took in and dissipated, and what the points have after it, J.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Turnover {
-    /// work of gravity, loads and what moves
+    /// work of gravity, loads and what moves; without friction at faces, which takes energy away, but is known at the
+    /// end of a step alone: in the first one of a load that grows that is twice its mean
     pub external: f64,
     /// dissipated by plastic flow
     pub plastic: f64,

@@ -56,6 +56,11 @@ impl Graded {
         Self { young, law: Box::new(law.with(stiffest.clone(), &most)), stiffest, parameters, reduction }
     }
 
+    /// The same in a step of the length `dt`, s; `None` where that does not matter to it.
+    pub(super) fn over(&self, dt: f64) -> Option<Self> {
+        Some(Self { law: Box::new(self.law.over(dt)?), ..self.clone() })
+    }
+
     /// The elastic part where it is stiffest.
     pub fn stiffest(&self) -> &Elastic {
         &self.stiffest

@@ -36,6 +36,11 @@ pub trait Law {
     /// Whether its points are computed side by side; a long law's are not, so that the code of the others stays short.
     const IN_LANES: bool = true;
 
+    /// Whether its elastic stress is linear in the strain, by [`Law::moduli`]. A law whose is not has its own
+    /// [`Law::stress`], [`Law::strain`] and [`Law::energy`], and keeps what a projection leaves also where the trial
+    /// does not yield: that tells tangent and elastic state then, and its branch is [`Branch::Elastic`].
+    const LINEAR: bool = true;
+
     /// The elastic part.
     fn elastic(&self) -> &Elastic;
 
@@ -45,8 +50,36 @@ pub trait Law {
     /// The law with other numbers, in the order of [`Law::PARAMETERS`]; what is no number stays.
     fn with(&self, elastic: Elastic, parameters: &[f64]) -> Self;
 
-    /// Its moduli.
+    /// Its moduli; of elasticity that is not linear those at b_e = I.
     fn moduli(&self) -> Moduli;
+
+    /// Elastic stress of principal strains, Pa.
+    #[inline(always)]
+    fn stress<R: Real>(&self, eps: [R; 3]) -> [R; 3] {
+        self.moduli().stress(eps)
+    }
+
+    /// Principal strains of an elastic stress, Pa; no numbers where there are none.
+    fn strain(&self, tau: [f64; 3]) -> [f64; 3] {
+        self.moduli().strain(tau)
+    }
+
+    /// Energy of elastic principal strains, J/m3.
+    fn energy(&self, eps: [f64; 3]) -> f64 {
+        self.moduli().energy(eps)
+    }
+
+    /// Puts the state that belongs to a principal stress at the start, Pa, into the place of zeros; of a law whose
+    /// elasticity is not linear.
+    fn start(&self, _tau: [f64; 3], _state: &mut [f64]) {}
+
+    /// The law in a step of the length `dt`, s; `None` where that does not matter to it.
+    fn over(&self, _dt: f64) -> Option<Self>
+    where
+        Self: Sized,
+    {
+        None
+    }
 
     /// The yield function of a stress, Pa; positive where that is outside.
     fn excess<R: Real>(&self, tau: [R; 3], state: &[R]) -> R;
@@ -68,6 +101,24 @@ pub trait Law {
     /// it. The bounds keep rounding of a tiny difference inside.
     fn chord(_flow: &Self::Flow<f64>, moduli: Moduli, (tau, eps): (f64, f64)) -> f64 {
         if eps > 0.0 { (tau / eps).max(0.0).min(2.0 * moduli.mu) } else { 0.0 }
+    }
+
+    /// Principal elastic strains after a return to the stress `tau`, Pa.
+    #[inline]
+    fn elastic_strain(_flow: &Self::Flow<f64>, moduli: Moduli, tau: [f64; 3]) -> [f64; 3] {
+        moduli.strain(tau)
+    }
+
+    /// Elastic moduli after a return.
+    #[inline]
+    fn elastic_moduli(_flow: &Self::Flow<f64>, moduli: Moduli) -> Moduli {
+        moduli
+    }
+
+    /// Energy of the elastic strains `eps` after a return, J/m3.
+    #[inline]
+    fn elastic_energy(_flow: &Self::Flow<f64>, moduli: Moduli, eps: [f64; 3]) -> f64 {
+        moduli.energy(eps)
     }
 
     /// Puts the state after a return in the place of that before it.

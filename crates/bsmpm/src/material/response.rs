@@ -80,9 +80,9 @@ impl Response {
         (0..3).map(|k| self.tau[k] * (eps[k] - eps_e[k])).sum()
     }
 
-    /// Elastic energy per reference volume after the return, J/m3: `½ λ tr(εᵉ)² + μ εᵉ : εᵉ`.
+    /// Elastic energy per reference volume after the return, J/m3: `½ λ tr(εᵉ)² + μ εᵉ : εᵉ` where it is linear.
     pub fn elastic_energy(&self) -> f64 {
-        self.moduli.energy(self.principal_eps_e())
+        self.flowed.elastic_energy(self.moduli, self.principal_eps_e())
     }
 
     /// Principal Kirchhoff stress in Pa, descending.
@@ -99,7 +99,11 @@ impl Response {
 
     /// Principal elastic Hencky strain after the return, descending: `εᵉ = D⁻¹ τ`.
     pub fn principal_eps_e(&self) -> [f64; 3] {
-        if self.branch() == Branch::Elastic { self.trial.eps } else { self.moduli.strain(self.tau) }
+        if self.branch() == Branch::Elastic {
+            self.trial.eps
+        } else {
+            self.flowed.elastic_strain(self.moduli, self.tau)
+        }
     }
 
     /// Puts the law's state after the return in the place of that before it.

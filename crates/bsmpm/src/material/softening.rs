@@ -6,6 +6,9 @@
 //! The return is implicit: that of the pyramid at the end of the step, whose κ it makes itself. A strength that falls
 //! has no width of its own: a band of shear is as wide as a cell, and its work as large as that. The regularisation
 //! of the scene scales the strain by the cell (crack band: Bažant and Oh, 1983, Mater. Struct. 16, 155-177).
+//!
+//! Its cohesion may grow with the rate of plastic shear, `1 + μ_r max(0, log₁₀(γ̇ᵖ/γ̇_ref))`, γ̇ᵖ = √3 Δκ/Δt that of
+//! the step's end (Einav and Randolph, 2005, Int. J. Numer. Meth. Engng 63, 991-1016).
 
 use super::law::{Branch, Law, Projection, Variable, reduced, split};
 use super::mohr_coulomb::{Corners, Pyramid, Slopes};
@@ -21,6 +24,15 @@ pub enum Decay {
     Linear,
     /// `1 - exp(-3 κ/κ_r)`: 95 % of the way at κ_r.
     Exponential,
+}
+
+/// How the cohesion grows with the rate of plastic shear γ̇ᵖ.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rate {
+    /// growth per decade, μ_r
+    pub per_decade: f64,
+    /// 1/s  the rate below which there is none
+    pub reference: f64,
 }
 
 /// Rate of the exponential decay.
@@ -42,6 +54,8 @@ pub struct SofteningMohrCoulomb {
     decay: Decay,
     first: [f64; 3],  // sin φ, sin ψ, c cos φ (Pa)
     change: [f64; 3], // from the first to the last
+    rate: Option<Rate>,
+    dt: f64, // s  of the step; without end outside of one
 }
 
 /// φ and ψ in rad, c in Pa.
@@ -73,7 +87,24 @@ impl SofteningMohrCoulomb {
         };
         let (first, last) = (numbers(peak), numbers(residual));
         let (moduli, change) = (elastic.moduli(), [0, 1, 2].map(|k| last[k] - first[k]));
-        Self { elastic, moduli, peak, residual, strain, decay, first, change }
+        Self { elastic, moduli, peak, residual, strain, decay, first, change, rate: None, dt: f64::INFINITY }
+    }
+
+    /// The same law with a cohesion that grows with the rate of shear.
+    pub fn at_rate(self, rate: Rate) -> Self {
+        Self { rate: Some(rate), ..self }
+    }
+
+    /// How much more the cohesion is where κ has grown by `growth` in the step, and what that grows by with it.
+    #[inline(always)]
+    fn quickened<R: Real>(&self, growth: R) -> (R, R) {
+        let Some(Rate { per_decade, reference }) = self.rate else { return (growth.like(1.0), growth.like(0.0)) };
+        let least = self.dt * reference / 3.0_f64.sqrt(); // growth at the reference rate
+        let quick = growth.like(least).below(growth);
+        let over = growth / least;
+        let decades = growth.like(0.0).unless(quick, [over, over], |[over, _]| over.log10());
+        let slope = growth.like(per_decade / std::f64::consts::LN_10) / growth;
+        (decades * per_decade + 1.0, R::choose(quick, slope, growth.like(0.0)))
     }
 
     /// How far the strength has come after the plastic strain κ, 0 to 1, and its rate with κ.
@@ -94,11 +125,12 @@ impl SofteningMohrCoulomb {
         }
     }
 
-    /// The pyramid after the plastic strain κ.
+    /// The pyramid after the plastic strain κ that has grown by `growth` in the step.
     #[inline(always)]
-    fn pyramid<R: Real>(&self, kappa: R) -> Pyramid<R> {
+    fn pyramid<R: Real>(&self, kappa: R, growth: R) -> Pyramid<R> {
         let (progress, _) = self.progress(kappa);
         let [sin_phi, sin_psi, strength] = three(|k| progress * self.change[k] + self.first[k]);
+        let strength = if self.rate.is_some() { strength * self.quickened(growth).0 } else { strength };
         Pyramid::new(self.moduli, Slopes { sin_phi, sin_psi }, strength)
     }
 
@@ -120,7 +152,7 @@ impl SofteningMohrCoulomb {
         let mut found = none.like(f64::NAN);
         let mut sought = none.at_most(none);
         for _ in 0..EVALUATIONS {
-            let made = self.growth(trial, self.pyramid(kappa + growth).project(trial).0);
+            let made = self.growth(trial, self.pyramid(kappa + growth, growth).project(trial).0);
             let gap = made - growth;
             // Where strength falls faster than stress does, the bounds meet before the two agree to all digits.
             let bounded = high.below(none.like(f64::INFINITY));
@@ -180,24 +212,32 @@ impl Law for SofteningMohrCoulomb {
             unreachable!("seven numbers")
         };
         let (peak, residual) = ((friction, dilation, cohesion), (last_friction, last_dilation, last_cohesion));
-        Self::new(elastic, peak, residual, strain, self.decay)
+        Self { rate: self.rate, dt: self.dt, ..Self::new(elastic, peak, residual, strain, self.decay) }
+    }
+
+    fn over(&self, dt: f64) -> Option<Self> {
+        self.rate.map(|_| Self { dt, ..self.clone() })
     }
 
     #[inline(always)]
     fn excess<R: Real>(&self, tau: [R; 3], state: &[R]) -> R {
-        self.pyramid(state[0]).excess(tau)
+        self.pyramid(state[0], state[0].like(0.0)).excess(tau)
     }
 
     #[inline(never)]
     fn project<R: Real>(&self, trial: [R; 3], state: &[R]) -> Projection<R, SofteningReturn<R>> {
         let kappa = state[0];
-        let (_, yields, _) = self.pyramid(kappa).project(trial);
+        let (_, yields, _) = self.pyramid(kappa, kappa.like(0.0)).project(trial);
         let growth = if R::any(yields) { self.solve(trial, kappa) } else { kappa.like(0.0) };
         let growth = R::choose(yields, growth, kappa.like(0.0));
-        let (pyramid, (_, rate)) = (self.pyramid(kappa + growth), self.progress(kappa + growth));
+        let (pyramid, (_, rate)) = (self.pyramid(kappa + growth, growth), self.progress(kappa + growth));
         let (projected, _, corners) = pyramid.project(trial);
         let tau = three(|k| R::choose(yields, projected[k], trial[k]));
-        let rates = three(|k| rate * self.change[k]);
+        let mut rates = three(|k| rate * self.change[k]);
+        if self.rate.is_some() {
+            let (quickened, slope) = self.quickened(growth);
+            rates[2] = rates[2] * quickened + pyramid.strength / quickened * slope;
+        }
         let (slopes, strength) = (pyramid.slopes, pyramid.strength);
         Projection { tau, yields, flow: SofteningReturn { corners, trial, tau, slopes, strength, rates, growth } }
     }
@@ -233,11 +273,11 @@ impl Law for SofteningMohrCoulomb {
             return self;
         }
         let (peak, residual) = (reduced(self.peak, factor), reduced(self.residual, factor));
-        Self::new(self.elastic, peak, residual, self.strain, self.decay)
+        Self { rate: self.rate, dt: self.dt, ..Self::new(self.elastic, peak, residual, self.strain, self.decay) }
     }
 
     fn softens(&self) -> bool {
-        self.change != [0.0; 3]
+        self.change != [0.0; 3] || self.rate.is_some()
     }
 
     fn dilation(&self) -> f64 {

@@ -34,7 +34,8 @@ pub struct Stiffness {
 
 impl Stiffness {
     pub(super) fn of(response: &Response) -> Self {
-        let (moduli, tangent) = (response.moduli, response.flowed.tangent(response.moduli));
+        let moduli = response.flowed.elastic_moduli(response.moduli);
+        let tangent = response.flowed.tangent(response.moduli);
         let plastic = |plastic: f64, elastic: f64| plastic + ELASTIC * (elastic - plastic);
         let deviatoric = positive([[0, 0], [1, 1], [0, 1]].map(|[i, j]| {
             let entry = |k: usize| 0.5 * (tangent[(k / 3, k % 3)] + tangent[(k % 3, k / 3)]);
@@ -83,15 +84,16 @@ impl Stiffness {
 }
 
 impl Response {
-    /// The stiffness of a response that yields, for use with many gradients; `None` where it is the elastic one, or as
-    /// good as.
+    /// The stiffness of a response that yields, for use with many gradients; `None` where it is the linear elastic one,
+    /// or as good as.
     #[inline]
     pub fn yielding(&self) -> Option<Stiffness> {
         if self.branch() == Branch::Elastic {
-            return None;
+            return (!self.flowed.is_linear()).then(|| Stiffness::of(self));
         }
         let (trial, elastic) = (self.principal_eps_trial(), self.principal_eps_e());
-        (0..3).any(|k| (trial[k] - elastic[k]).abs() > FLOW).then(|| Stiffness::of(self))
+        let flows = (0..3).any(|k| (trial[k] - elastic[k]).abs() > FLOW);
+        (flows || !self.flowed.is_linear()).then(|| Stiffness::of(self))
     }
 }
 

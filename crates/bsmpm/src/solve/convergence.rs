@@ -42,7 +42,8 @@ impl Convergence {
     /// Nothing iterated yet.
     pub fn new<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>) -> Self {
         let (criteria, round_off) = (problem.model.criteria, RoundOff::of(problem));
-        Self { criteria, round_off, first_energy: None, history: Vec::new(), settled: None }
+        let first_energy = problem.nodes.contacts.first_energy;
+        Self { criteria, round_off, first_energy, history: Vec::new(), settled: None }
     }
 
     /// Whether a state is in equilibrium before any direction is known: a guess far below the force tolerance, or
@@ -71,6 +72,11 @@ impl Convergence {
     /// Whether any direction has been measured yet.
     pub fn has_begun(&self) -> bool {
         self.first_energy.is_some()
+    }
+
+    /// |du_0 . f_0|, if any direction has been measured yet, N m.
+    pub fn first_energy(&self) -> Option<f64> {
+        self.first_energy
     }
 
     /// |du_0 . f_0|, which the later energies are measured by.

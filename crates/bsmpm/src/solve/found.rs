@@ -19,6 +19,10 @@ pub struct Found<K: Kinematics<D>, const D: usize> {
     pub history: Vec<Measures>,
     /// force measure
     pub force: f64,
+    /// N  largest force, norm of all nodes
+    pub scale: f64,
+    /// N m  |du_0 . f_0|, which energies were measured by; none where no direction was needed
+    pub first_energy: Option<f64>,
     /// J  of all internal forces, with a background
     pub work: f64,
     /// Newton iterations
@@ -34,8 +38,22 @@ impl<K: Kinematics<D>, const D: usize> Found<K, D> {
     pub fn new(u: Vec<f64>, residual: Residual<K, D>, convergence: &Convergence) -> Self {
         let newton_iterations = convergence.by_newton();
         let (force, work) = (convergence.measure(&residual.balance), residual.balance.work);
+        let scale = residual.balance.scale;
         let Residual { trial, balance, .. } = residual;
         let (history, reaction) = (convergence.history().to_vec(), balance.reaction);
-        Self { u, trial, reaction, history, force, work, newton_iterations, settled: false, first_guess: true }
+        let first_energy = convergence.first_energy();
+        Self {
+            u,
+            trial,
+            reaction,
+            history,
+            force,
+            scale,
+            first_energy,
+            work,
+            newton_iterations,
+            settled: false,
+            first_guess: true,
+        }
     }
 }

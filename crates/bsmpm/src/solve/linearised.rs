@@ -22,6 +22,7 @@ use crate::tensor::{Tensor, Vector};
 pub struct Linearised<'a, K: Kinematics<D>, const D: usize> {
     problem: &'a Problem<'a, K, D>,
     trial: &'a Trial<K, D>,
+    reaction: &'a [f64], // N
     /// N m  V0 d(tau dF^-T)/d(grad v), one unit gradient after the other
     moduli: Vec<Moduli<K, D>>,
     /// under F-bar
@@ -106,7 +107,7 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
                 dilation.push(Dilation { trace: K::working(&inverse.transpose()), flux });
             }
         }
-        Self { problem, trial, moduli, dilation, adjoint }
+        Self { problem, trial, reaction: &residual.balance.reaction, moduli, dilation, adjoint }
     }
 
     /// K v on nodal arrays, `v` zero where it is not free: one exchange with the neighbours, one more under F-bar.
@@ -139,10 +140,16 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
         self.problem.grips.multiply(v, &mut force);
         out.copy_from_slice(&halo.sum(&force));
         if let Some(inertia) = &nodes.inertia {
+            let factor = inertia.factor();
+            let alike = inertia.moving.is_empty();
+            let scaled = |(c, v): (usize, &f64)| inertia.factor_of(c) / factor * v;
+            let scaled: Vec<f64> = if alike { Vec::new() } else { v.iter().enumerate().map(scaled).collect() };
+            let v = if alike { v } else { &scaled };
             for (out, momentum) in out.iter_mut().zip(self.problem.mass().times(v)) {
-                *out += inertia.factor() * momentum;
+                *out += factor * momentum;
             }
         }
+        nodes.contacts.add_derivative(self.reaction, out);
         out.iter_mut().zip(&nodes.free).filter(|(_, free)| !**free).for_each(|(out, _)| *out = 0.0);
     }
 

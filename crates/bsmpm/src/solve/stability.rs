@@ -17,7 +17,8 @@ const NEAR: f64 = 1e-3;
 /// Whether anything follows from the work of a direction that is taken at this state: not far from equilibrium, nor in
 /// dynamics, where inertia decides where an unstable body goes, nor without symmetry.
 pub fn tells<K, const D: usize>(problem: &Problem<'_, K, D>, before: &Balance) -> bool {
-    before.measure() < NEAR && problem.nodes.inertia.is_none() && is_symmetric(problem.model)
+    let rubs = problem.model.boundary.supports.iter().any(|face| face.contact.is_some_and(|law| law.friction > 0.0));
+    before.measure() < NEAR && problem.nodes.inertia.is_none() && !rubs && is_symmetric(problem.model)
 }
 
 /// Refuses a direction du (m, nodal; how much of it was taken changes no sign) near static equilibrium whose

@@ -58,11 +58,11 @@ pub fn complete<K: Kinematics<D>, const D: usize>(
         background.assemble::<D>(solver);
     }
     if let Some(inertia) = &nodes.inertia {
-        let factor = match problem.model.mass {
-            MassMatrix::Lumped => inertia.factor(),
+        let factor = |c: usize| match problem.model.mass {
+            MassMatrix::Lumped => inertia.factor_of(c),
             MassMatrix::Consistent => (1.0 - SHARE) * inertia.factor(),
         };
-        let diagonal: Vec<f64> = (0..nodes.free.len()).map(|c| factor * nodes.weight[Nodal::<D>::node(c)]).collect();
+        let diagonal: Vec<f64> = (0..nodes.free.len()).map(|c| factor(c) * nodes.weight[Nodal::<D>::node(c)]).collect();
         solver.add_diagonal(&diagonal);
     }
     solver.finish(symmetry)

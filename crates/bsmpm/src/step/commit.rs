@@ -143,6 +143,11 @@ fn move_with_inertia<const D: usize>(
         let gained = transfer::to_points::<D, D, _>(shape, &gained, |_, v| Vector::from(v));
         motion.v.iter_mut().zip(gained).for_each(|(v, gained)| *v += gained);
     }
+    if matrix == MassMatrix::Lumped && !inertia.stopped.is_empty() {
+        let blows: Vec<f64> = u.iter().enumerate().map(|(c, &u)| inertia.blow_of(c, u)).collect();
+        let blows = transfer::to_points::<D, D, _>(shape, &blows, |_, v| Vector::from(v));
+        motion.v.iter_mut().zip(blows).for_each(|(v, blow)| *v += blow);
+    }
     let a: Vec<f64> = u.iter().enumerate().map(|(c, &u)| inertia.acceleration(c, u)).collect();
     let a = transfer::to_points::<D, D, _>(shape, &a, |_, a| Vector::from(a));
     for (p, a) in a.into_iter().enumerate() {

@@ -21,6 +21,11 @@ pub struct Inertia {
     /// does: with the lumped mass the nodes of a support see the velocity of the points above them, and would take it
     /// away in every step.
     pub blow: Vec<f64>,
+    /// components that a face with contact may stop in this step, which go by backward Euler, as Newmark's formula
+    /// would throw back what is stopped; empty where there is none
+    pub moving: Vec<bool>,
+    /// those of them that it holds
+    pub stopped: Vec<bool>,
     /// s  length of the step
     pub dt: f64,
     /// time integration
@@ -36,19 +41,48 @@ impl Inertia {
     /// m/s2  acceleration of a component at the end (steps 5b, 10a); 4/dt^2 u - 4/dt v - a without numerical damping.
     #[inline]
     pub fn acceleration(&self, component: usize, u: f64) -> f64 {
+        if self.is_moving(component) {
+            return if self.stopped[component] { 0.0 } else { self.gained_by(component, u) / self.dt };
+        }
         self.newmark.acceleration(self.dt, u, (self.v[component], self.a[component]))
     }
 
     /// m/s2  what the mass of a component resists with: times the mass, its inertia in the balance of forces.
     #[inline]
     pub fn acting(&self, component: usize, u: f64) -> f64 {
+        if self.is_moving(component) {
+            return self.gained_by(component, u) / self.dt;
+        }
         self.newmark.acting(self.a[component], self.acceleration(component, u))
     }
 
     /// m/s  velocity of a component at the end (step 10b).
     #[inline]
     pub fn velocity(&self, component: usize, u: f64) -> f64 {
+        if self.is_moving(component) {
+            return u / self.dt;
+        }
         self.v[component] + self.newmark.gained(self.dt, self.a[component], self.acceleration(component, u))
+    }
+
+    /// 1/s2  the factor of a component's mass.
+    pub fn factor_of(&self, component: usize) -> f64 {
+        if self.is_moving(component) { 1.0 / (self.dt * self.dt) } else { self.factor() }
+    }
+
+    /// m/s  what a component gains as a face stops it, of lumped mass: the points gain their part of it at once.
+    pub fn blow_of(&self, component: usize, u: f64) -> f64 {
+        if self.stopped.get(component) == Some(&true) { self.gained_by(component, u) } else { 0.0 }
+    }
+
+    #[inline]
+    fn is_moving(&self, component: usize) -> bool {
+        self.moving.get(component) == Some(&true)
+    }
+
+    /// m/s  what a component gains that goes by backward Euler.
+    fn gained_by(&self, component: usize, u: f64) -> f64 {
+        u / self.dt - self.v[component]
     }
 }
 
@@ -63,7 +97,16 @@ pub(super) fn map<const D: usize>(
     let zeros = || vec![0.0; prescribed.len()];
     let (nowhere, still) =
         (vec![None; prescribed.len()], prescribed.iter().map(|v| v.map(|_| 0.0)).collect::<Vec<_>>());
-    let mut inertia = Inertia { v: zeros(), a: zeros(), struck: Vec::new(), blow: Vec::new(), dt, newmark };
+    let mut inertia = Inertia {
+        v: zeros(),
+        a: zeros(),
+        struck: Vec::new(),
+        blow: Vec::new(),
+        moving: Vec::new(),
+        stopped: Vec::new(),
+        dt,
+        newmark,
+    };
     let Some(motion) = &points.motion else { return inertia };
     let momentum = |field: &[Vector<D>]| {
         mass.halo.sum(&transfer::to_nodes::<D, D>(mass.shape, |p| (field[p] * points.mass[p]).into()))

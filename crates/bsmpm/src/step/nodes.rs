@@ -1,6 +1,7 @@
 //! Step (2): what the points tell the nodes: mass, velocity, acceleration, external force, and which are unknowns.
 
 use crate::background::Blocks;
+use crate::boundary::contact::Contacts;
 use crate::boundary::load;
 use crate::error::StepError;
 use crate::grid::{Shape, transfer};
@@ -46,6 +47,8 @@ pub struct Nodes<const D: usize> {
     pub free: Vec<bool>,
     /// per node: supported by an occupied cell
     pub active: Vec<bool>,
+    /// nodes on faces with contact
+    pub contacts: Contacts<D>,
     /// nodes of one material alone, in a scene of several
     pub apart: Option<Apart>,
     /// soft background of the step
@@ -71,6 +74,18 @@ impl<const D: usize> Nodes<D> {
         model: &Model<K, D>,
         shape: &Shape<D>,
         points: &Points<D>,
+        times: (f64, f64),
+        halo: &dyn Halo,
+    ) -> Result<Self, StepError> {
+        Self::after(model, (shape, points), &[], times, halo)
+    }
+
+    /// The same after a step that had the displacement `last`, m, nodal, up to a factor: faces with contact go on as
+    /// they were in it.
+    pub fn after<K: Kinematics<D>>(
+        model: &Model<K, D>,
+        (shape, points): (&Shape<D>, &Points<D>),
+        last: &[f64],
         (t, dt): (f64, f64),
         halo: &dyn Halo,
     ) -> Result<Self, StepError> {
@@ -79,9 +94,6 @@ impl<const D: usize> Nodes<D> {
         let weight = scatter_weight(weighting, shape, points, halo);
         let threshold = threshold(&weight, halo);
         let velocities = model.boundary.velocities(&model.grid);
-        let mass = Mass { matrix: model.mass, shape, of_points: &points.mass, lumped: &weight, threshold, halo };
-        let inertia =
-            (model.regime == Regime::Dynamic).then(|| inertia::map(&mass, points, &velocities, (dt, model.newmark)));
         let background =
             model.background.map(|soft| soft.blocks::<K, D>(&model.grid, shape, points, &model.materials, halo));
         let fitted = (model.quadrature == Quadrature::Fitted)
@@ -89,7 +101,21 @@ impl<const D: usize> Nodes<D> {
         let volume = fitted.as_deref().unwrap_or(&points.volume);
         let (active, stiff) = supported(shape, volume, background.as_ref(), nodes, halo);
         let unknown = |node: usize| active[node] && (weight[node] > threshold || stiff[node]);
-        let free = velocities.iter().enumerate().map(|(c, v)| v.is_none() && unknown(Nodal::<D>::node(c))).collect();
+        let free: Vec<bool> =
+            velocities.iter().enumerate().map(|(c, v)| v.is_none() && unknown(Nodal::<D>::node(c))).collect();
+        let prescribed = velocities.iter().map(|velocity| velocity.map(|v| v * dt)).collect();
+        let contacts = match model.boundary.has_contact() {
+            true => Contacts::of((&model.boundary, &model.grid), (shape, points), &free, (t, last), halo),
+            false => Contacts::default(),
+        };
+        let mut starting = velocities;
+        contacts.rest(&mut starting);
+        let mass = Mass { matrix: model.mass, shape, of_points: &points.mass, lumped: &weight, threshold, halo };
+        let mut inertia =
+            (model.regime == Regime::Dynamic).then(|| inertia::map(&mass, points, &starting, (dt, model.newmark)));
+        if let Some(inertia) = &mut inertia {
+            inertia.moving = contacts.moving(&inertia.v, dt);
+        }
         let mut f_ext = external_force((model, shape, points), t + dt, (weighting, &weight), halo);
         let window = (&model.grid, &active[..]);
         load::add_forces(&model.boundary.loads, &points.surface, window, t + dt, halo, &mut f_ext)?;
@@ -97,8 +123,9 @@ impl<const D: usize> Nodes<D> {
         let apart = Apart::of(model.materials.len(), shape, points, nodes, halo);
         let mut mapped = Self {
             apart,
+            contacts,
             f_ext,
-            prescribed: velocities.iter().map(|velocity| velocity.map(|v| v * dt)).collect(),
+            prescribed,
             inertia,
             free,
             background,
@@ -112,8 +139,17 @@ impl<const D: usize> Nodes<D> {
             averages,
             fitted,
         };
+        mapped.meet();
         mapped.count(halo);
         Ok(mapped)
+    }
+
+    /// Holds, stops and frees the nodes on faces with contact as their statuses say.
+    pub fn meet(&mut self) {
+        self.contacts.apply(&mut self.free, &mut self.prescribed);
+        if let Some(inertia) = &mut self.inertia {
+            inertia.stopped = inertia.moving.iter().zip(&self.free).map(|(moving, free)| *moving && !free).collect();
+        }
     }
 
     /// What `found` makes of S(a)_p = sum_I N_Ip a_I, for every point: a_I = 1/m_I sum_p N_Ip m_p a_p (Eqs 16, 17),
@@ -186,7 +222,8 @@ impl<const D: usize> Nodes<D> {
         Mass { matrix: model.mass, shape, of_points: &points.mass, lumped: weight, threshold: *threshold, halo }
     }
 
-    fn count(&mut self, halo: &dyn Halo) {
+    /// Counts what is told of the nodes, over all ranks.
+    pub fn count(&mut self, halo: &dyn Halo) {
         let owned = halo.owned();
         let count = |marks: &mut dyn Iterator<Item = bool>| marks.filter(|&mark| mark).count() as f64;
         let mut counts = [
@@ -278,7 +315,7 @@ fn external_force<K: Kinematics<D>, const D: usize>(
     halo: &dyn Halo,
 ) -> Vec<f64> {
     let mut f_ext = vec![0.0; weight.len() * D];
-    let Some(gravity) = &model.gravity else { return f_ext };
+    let Some(g) = model.body_force(t) else { return f_ext };
     let own;
     let mass = match weighting {
         Weighting::Mass => weight,
@@ -287,7 +324,6 @@ fn external_force<K: Kinematics<D>, const D: usize>(
             &own
         }
     };
-    let g = gravity.at(t);
     for (force, mass) in f_ext.chunks_exact_mut(D).zip(mass) {
         for component in 0..D {
             force[component] = mass * g[component];

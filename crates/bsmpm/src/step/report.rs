@@ -1,6 +1,6 @@
 //! What a step tells of itself.
 
-use crate::boundary::StripReport;
+use crate::boundary::{ContactReport, StripReport};
 use crate::energy::{Flows, Turnover};
 use crate::error::Measures;
 use crate::kinematics::Kinematics;
@@ -25,6 +25,8 @@ pub struct Counts {
 /// What an accepted step did.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StepReport {
+    /// s  length of the step
+    pub dt: f64,
     /// iterations from the guess that led to convergence
     pub iterations: usize,
     /// Newton iterations among them; 0 where the quasi-Newton method got there
@@ -47,6 +49,8 @@ pub struct StepReport {
     pub first_guess: bool,
     /// N  force of every support on the body, by component, in the order of the model's supports
     pub reactions: Vec<Vec<f64>>,
+    /// what every face with contact did
+    pub contacts: Vec<ContactReport>,
     /// what every rigid strip did
     pub strips: Vec<StripReport>,
     /// J  work u . B u on the soft background, and f_int . u of all internal forces, the background's among them; if
@@ -69,6 +73,7 @@ impl StepReport {
         let nodes = problem.nodes;
         let soft = nodes.background.as_ref().map(|blocks| blocks.work::<D>(problem.shape, &found.u));
         Self {
+            dt: 0.0,
             iterations: found.history.len(),
             history: found.history.clone(),
             force: found.force,
@@ -80,6 +85,7 @@ impl StepReport {
             settled: found.settled,
             first_guess: found.first_guess,
             reactions: problem.model.boundary.reactions(&problem.model.grid, &found.reaction, problem.halo),
+            contacts: nodes.contacts.report(&problem.model.boundary, &found.u, &found.reaction, problem.halo),
             strips: Vec::new(),
             background: soft.map(|work| [problem.halo.total(&[work])[0], found.work]),
             energy: None,

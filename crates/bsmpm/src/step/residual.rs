@@ -29,9 +29,10 @@ pub struct Residual<K: Kinematics<D>, const D: usize> {
 /// Step (5b): what is out of balance at the nodes, with the norms that judge it.
 #[derive(Clone, Debug)]
 pub struct Balance {
-    /// N  f_ext + strips - f_int - M a - background (a: `Inertia::acting`), zero at components that are not free
+    /// N  f_ext + strips + friction - f_int - M a - background (a: `Inertia::acting`), zero at components that are not
+    /// free
     pub f_oob: Vec<f64>,
-    /// N  force of the supports on the body, zero at components that are not prescribed
+    /// N  force of the supports on the body, zero at components that are neither prescribed nor rubbed
     pub reaction: Vec<f64>,
     /// N  |f_oob|
     pub norm: f64,
@@ -244,6 +245,7 @@ impl Forces {
                 forces.reaction[component] = -balance;
             }
         }
+        nodes.contacts.add_friction(&mut forces.f_oob, &mut forces.reaction);
         forces
     }
 }

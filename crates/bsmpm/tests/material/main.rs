@@ -1,9 +1,11 @@
 //! Constitution (section 2.2): reference values, properties and closed forms, each named by its source.
 
+mod cam_clay;
 mod continuity;
 mod driver;
 mod drucker_prager;
 mod eigen;
+mod element;
 mod gap;
 mod input;
 mod lanes;

@@ -134,7 +134,7 @@ fn a_step_that_throws_points_out_of_the_grid_is_cut_and_ends_where_they_are_abou
 fn a_step_that_turns_material_inside_out_is_cut_and_then_finds_equilibrium() {
     let mut scene = block(Regime::QuasiStatic);
     scene.model.gravity = None;
-    let push = Support { axis: 0, upper: true, velocity: [Some(-0.4), None] };
+    let push = Support::moving(0, true, [Some(-0.4), None]);
     scene = scene.support(push);
     let steps = run(&mut scene, &Schedule::new(1.0, 1.0, []), 0).unwrap();
     let rejected: Vec<_> = steps.iter().flat_map(|step| &step.rejected).collect();

@@ -61,6 +61,7 @@ impl<K: Kinematics<D>, const D: usize> Scene<K, D> {
             mass: MassMatrix::default(),
             weighting: Weighting::Mass,
             gravity: None,
+            shaking: None,
             boundary: Boundary::default(),
             stabilisation: Stabilisation::None,
             groups: Groups::default(),
@@ -109,6 +110,7 @@ impl<K: Kinematics<D>, const D: usize> Scene<K, D> {
         };
         let mut added = Points::from_seeds((0..total).map(seed), self.points.motion.is_some());
         append(&mut self.points, &mut added);
+        self.model.boundary.reach = vec![0.5 / per_axis as f64];
         self.points.sort_by_cell(&self.model.grid);
         self
     }

@@ -16,7 +16,7 @@ pub const PERIOD: f64 = 10.0;
 
 pub fn bar(method: Stabilisation) -> Scene<PlaneStrain, 2> {
     let h = LENGTH / CELLS as f64;
-    let fixed = Support { axis: 0, upper: false, velocity: [Some(0.0), None] };
+    let fixed = Support::moving(0, false, [Some(0.0), None]);
     let speed = |x: f64| 1e-3 * WAVE * (PI * x / (2.0 * LENGTH)).sin();
     let mut scene = Scene::new([axis(h, CELLS + 4, 2), axis(h, 1, 2)], hencky(100.0, 0.0), Regime::Dynamic)
         .body([0..CELLS, 0..1], 3, 1.0, |x| [speed(x[0]), 0.0].into())

@@ -5,6 +5,7 @@ mod axisymmetric;
 mod bar;
 mod cauchy;
 mod column;
+mod contact;
 mod damping;
 mod discs;
 mod dynamics;

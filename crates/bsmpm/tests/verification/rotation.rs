@@ -11,13 +11,6 @@ use bsmpm::step::mass::MassMatrix;
 use bsmpm::tensor::Vector;
 use std::f64::consts::TAU;
 
-/// Angular momentum about a centre.
-fn angular_momentum(points: &Points<2>, centre: &Vector<2>) -> f64 {
-    let v = &points.motion.as_ref().expect("dynamic").v;
-    let of = |p: usize| points.mass[p] * (points.x[p] - centre).perp(&v[p]);
-    (0..points.len()).map(of).sum()
-}
-
 /// A free block of `cells` x `cells` cells, 1 m wide, through a quarter of a turn in `steps` steps: parts of the
 /// angular momentum and of the energy that are lost, and the momentum gained over mass times speed.
 fn lost(mass: MassMatrix, cells: usize, steps: usize) -> [f64; 3] {
@@ -36,11 +29,11 @@ fn lost(mass: MassMatrix, cells: usize, steps: usize) -> [f64; 3] {
         let stored = Stored::of(&model, points, &halo);
         stored.kinetic + stored.elastic
     };
-    let start = [angular_momentum(&scene.points, &centre), energy(&scene.points)];
+    let start = [observe::angular_momentum(&scene.points, None, &centre, &halo), energy(&scene.points)];
     let end = 0.25 * TAU;
     scene.march(end / steps as f64, end, |_, _| ());
-    let now = [angular_momentum(&scene.points, &centre), energy(&scene.points)];
-    [1.0 - now[0] / start[0], 1.0 - now[1] / start[1], observe::momentum(&scene.points, &halo).norm()]
+    let now = [observe::angular_momentum(&scene.points, None, &centre, &halo), energy(&scene.points)];
+    [1.0 - now[0] / start[0], 1.0 - now[1] / start[1], observe::momentum(&scene.points, None, &halo).norm()]
 }
 
 #[test]

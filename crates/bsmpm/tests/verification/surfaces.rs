@@ -114,7 +114,7 @@ fn a_uniform_traction_gives_uniform_stress_before_the_body_has_moved_and_follows
     let mut scene = block([4, 4], 2);
     scene.model.background = None;
     let points = surface::along::<PlaneStrain>(&scene.model.grid, &at(0.0, 1.0), &at(1.0, 1.0), 3);
-    scene = scene.load(Load { points, traction: at(0.0, -100.0), ramp: 1.0 });
+    scene = scene.load(Load { points, traction: at(0.0, -100.0), ramp: 1.0, amplitude: Vec::new() });
     let M = scene.model.materials[0].elastic().oedometric();
     let (mut first, mut last) = (f64::INFINITY, 0.0);
     scene.march(0.125, 1.0, |points, accepted| {
@@ -142,7 +142,7 @@ fn a_load_stays_on_the_surface_of_a_column_that_is_compressed_by_a_third() {
     let M = scene.model.materials[0].elastic().oedometric();
     // tau = M ln l = sigma l under a dead load: l = 2/3 at the end.
     let pressure = -1.5 * (2.0_f64 / 3.0).ln() * M;
-    scene = scene.load(Load { points, traction: at(0.0, -pressure), ramp: 1.0 });
+    scene = scene.load(Load { points, traction: at(0.0, -pressure), ramp: 1.0, amplitude: Vec::new() });
     scene.march(1.0 / 64.0, 1.0, |_, _| {});
     let heights = scene.points.surface.position[0].iter().map(|x| x[1]);
     let (lowest, highest) = heights.fold((f64::INFINITY, 0.0), |(a, b), y| (f64::min(a, y), f64::max(b, y)));
@@ -154,7 +154,12 @@ fn a_load_stays_on_the_surface_of_a_column_that_is_compressed_by_a_third() {
 
 #[test]
 fn a_point_load_is_carried_by_the_supports_and_its_work_is_positive() {
-    let load = Load { points: vec![SurfacePoint { x: at(0.5, 1.0), area: 1.0 }], traction: at(3.0, -20.0), ramp: 0.0 };
+    let load = Load {
+        points: vec![SurfacePoint { x: at(0.5, 1.0), area: 1.0 }],
+        traction: at(3.0, -20.0),
+        ramp: 0.0,
+        amplitude: Vec::new(),
+    };
     let mut scene = block([4, 4], 2).load(load);
     scene.march(1.0, 1.0, |points, accepted| {
         let reactions = &accepted.report.reactions;
@@ -167,8 +172,27 @@ fn a_point_load_is_carried_by_the_supports_and_its_work_is_positive() {
 }
 
 #[test]
+fn a_load_follows_its_amplitude() {
+    let points = vec![SurfacePoint { x: at(0.5, 1.0), area: 1.0 }];
+    let amplitude = vec![(0.2, 1.0), (0.6, -1.0)];
+    let mut scene = block([4, 4], 2).load(Load { points, traction: at(0.0, -20.0), ramp: 0.0, amplitude });
+    let mut held = Vec::new();
+    scene.march(0.1, 0.8, |_, accepted| {
+        held.push(accepted.report.reactions.iter().map(|force| force[1]).sum::<f64>() / 20.0);
+    });
+    for (held, share) in held.iter().zip([0.5, 1.0, 0.5, 0.0, -0.5, -1.0, -1.0, -1.0]) {
+        assert!((held - share).abs() <= 1e-8, "{held} for {share}");
+    }
+}
+
+#[test]
 fn a_load_without_material_is_an_error() {
-    let load = Load { points: vec![SurfacePoint { x: at(0.5, 1.8), area: 1.0 }], traction: at(0.0, -1.0), ramp: 0.0 };
+    let load = Load {
+        points: vec![SurfacePoint { x: at(0.5, 1.8), area: 1.0 }],
+        traction: at(0.0, -1.0),
+        ramp: 0.0,
+        amplitude: Vec::new(),
+    };
     let mut scene = block([4, 4], 2).load(load);
     let (halo, schedule) = (scene.halo(), Schedule::new(1.0, 1.0, []));
     let mut solver = crate::support::solver::Skyline::new(&scene.model.grid);

@@ -1,0 +1,173 @@
+//! Rows of numbers from text files beside the case: `{ file = "record.csv", along = "x" }` in the place of a list.
+
+use super::MAX_BYTES;
+use std::io::{self, Error, ErrorKind, Read};
+use std::ops::Range;
+use std::path::Path;
+use toml::de::{DeTable, DeValue};
+
+/// A table in the place of rows, as it is written.
+struct Reference<'a> {
+    span: Range<usize>,
+    file: &'a str,
+    along: Option<&'a str>,
+}
+
+/// The text of a case with the rows of all files that it names in their places, so that the case is whole by itself
+/// from then on. Files are looked for beside the case, in `folder`.
+///
+/// # Errors
+/// Those of reading; [`ErrorKind::InvalidData`] where a file does not hold rows of numbers.
+pub(super) fn inlined(text: &str, folder: &Path) -> io::Result<String> {
+    let (table, _) = DeTable::parse_recoverable(text);
+    let mut references = Vec::new();
+    for value in table.get_ref().values() {
+        collect(value, text, &mut references);
+    }
+    references.sort_by_key(|reference: &Reference<'_>| reference.span.start);
+    let (mut whole, mut from) = (String::with_capacity(text.len()), 0);
+    for Reference { span, file, along } in references {
+        let told = |error: Error| Error::new(error.kind(), format!("{file}: {error}"));
+        whole.push_str(&text[from..span.start]);
+        let bytes = read(&folder.join(file)).map_err(told)?;
+        let text = String::from_utf8(bytes).map_err(|_| told(Error::new(ErrorKind::InvalidData, "no UTF-8 text")))?;
+        whole.push_str(&rows(&text, along).map_err(told)?);
+        from = span.end;
+    }
+    whole.push_str(&text[from..]);
+    Ok(whole)
+}
+
+/// The bytes of a file that is not longer than a case may be.
+fn read(path: &Path) -> io::Result<Vec<u8>> {
+    if !std::fs::metadata(path)?.is_file() {
+        return Err(Error::new(ErrorKind::InvalidInput, "not a regular file"));
+    }
+    let mut bytes = Vec::new();
+    std::fs::File::open(path)?.take(MAX_BYTES as u64 + 1).read_to_end(&mut bytes)?;
+    if bytes.len() > MAX_BYTES {
+        let message = format!("more than {MAX_BYTES} bytes, the limit of a whole case; thin the rows to the steps");
+        return Err(Error::new(ErrorKind::InvalidData, message));
+    }
+    Ok(bytes)
+}
+
+/// Inline tables with a `file`, and nothing else but perhaps `along`.
+fn collect<'a>(value: &'a toml::Spanned<DeValue<'_>>, text: &str, references: &mut Vec<Reference<'a>>) {
+    match value.get_ref() {
+        DeValue::Array(items) => items.iter().for_each(|item| collect(item, text, references)),
+        DeValue::Table(table) => {
+            let word = |key: &str| table.get(key).and_then(|value| value.get_ref().as_str());
+            let is_known = table.keys().all(|key| ["file", "along"].contains(&&**key.get_ref()));
+            match word("file") {
+                Some(file) if is_known && text[value.span()].starts_with('{') => {
+                    references.push(Reference { span: value.span(), file, along: word("along") });
+                }
+                _ => table.values().for_each(|value| collect(value, text, references)),
+            }
+        }
+        _ => {}
+    }
+}
+
+/// Rows as TOML: numbers, with the units of a header if there is one. Cells stand between commas, semicolons or blanks;
+/// `#` starts a comment. Rows of two, a time and a number `along` x or y, get a zero along the other.
+fn rows(text: &str, along: Option<&str>) -> io::Result<String> {
+    let bad = |message: String| Error::new(ErrorKind::InvalidData, message);
+    if let Some(other) = along.filter(|along| !["x", "y"].contains(along)) {
+        return Err(bad(format!("along = \"{other}\"; allowed: \"x\", \"y\"")));
+    }
+    if let Some(heading) = hidden(text) {
+        return Err(bad(format!("`{heading}` looks like a heading with units behind a `#`; take the # away")));
+    }
+    let lines = text.trim_start_matches('\u{feff}').lines().enumerate();
+    let lines = lines.map(|(number, line)| (number + 1, line.split('#').next().unwrap_or_default().trim()));
+    let (mut units, mut width, mut whole) = (Vec::new(), None, String::from("["));
+    for (number, line) in lines.filter(|(_, line)| !line.is_empty()) {
+        let cells = cells(line);
+        if width.is_none() && units.is_empty() && cells.iter().all(|cell| cell.parse::<f64>().is_err()) {
+            units = cells.iter().map(|cell| unit(cell).map(str::to_owned)).collect();
+            continue;
+        }
+        let expected = *width.get_or_insert(if units.is_empty() { cells.len() } else { units.len() });
+        if cells.len() != expected {
+            return Err(bad(format!("line {number} has {} cells, not {expected}", cells.len())));
+        }
+        if along.is_some() && expected != 2 {
+            return Err(bad(format!("along needs two columns, a time and a number; line {number} has {expected}")));
+        }
+        let mut row = Vec::with_capacity(cells.len() + 1);
+        for (column, cell) in cells.iter().enumerate() {
+            let value = cell.parse::<f64>().ok().filter(|value| value.is_finite());
+            let value = value.ok_or_else(|| bad(format!("line {number}: `{cell}` is no number")))?;
+            row.push(match units.get(column) {
+                Some(Some(unit)) => format!("\"{value:?} {unit}\""),
+                _ => format!("{value:?}"),
+            });
+        }
+        match along {
+            Some("x") => row.push("0.0".to_owned()),
+            Some(_) => row.insert(1, "0.0".to_owned()),
+            None => {}
+        }
+        whole.push_str(&format!("[{}],", row.join(",")));
+    }
+    if width.is_none() {
+        return Err(bad("no row of numbers".to_owned()));
+    }
+    whole.push(']');
+    Ok(whole)
+}
+
+/// A comment before the first row that has a unit, where no plain heading has any: its units would be lost.
+fn hidden(text: &str) -> Option<&str> {
+    let mut lines = text.trim_start_matches('\u{feff}').lines().map(str::trim).filter(|line| !line.is_empty());
+    let before = lines.by_ref().take_while(|line| line.starts_with('#'));
+    let comment =
+        before.filter(|line| cells(line).len() > 1 && cells(line).into_iter().all(|cell| unit(cell).is_some()));
+    comment.last()
+}
+
+fn cells(line: &str) -> Vec<&str> {
+    let separator = [';', ',', '\t'].into_iter().find(|separator| line.contains(*separator));
+    match separator {
+        Some(separator) => line.split(separator).map(|cell| cell.trim().trim_matches('"')).collect(),
+        None => line.split_whitespace().collect(),
+    }
+}
+
+/// The unit in a heading such as `ax [m/s2]` or `t (s)`.
+fn unit(heading: &str) -> Option<&str> {
+    let heading = heading.strip_suffix([']', ')'])?;
+    let (_, unit) = heading.rsplit_once(['[', '('])?;
+    Some(unit.trim()).filter(|unit| !["", "-", "1"].contains(unit) && !unit.contains('"'))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::rows;
+
+    #[test]
+    fn units_comments_and_separators_are_read() {
+        let plain = "[[0.0,1.5],[0.1,-2.0],]";
+        for text in ["0 1.5\n0.1 -2\n", "# a record\n0,1.5\n\n.1, -2.0 # end\n", "\u{feff}0;1.5\r\n1e-1;-2\r\n"] {
+            assert_eq!(rows(text, None).unwrap(), plain);
+        }
+        let told = rows("t [s], a (cm/s2)\n0.02, 3\n", Some("x")).unwrap();
+        assert_eq!(told, "[[\"0.02 s\",\"3.0 cm/s2\",0.0],]");
+        assert_eq!(rows("t a\n1 2", Some("y")).unwrap(), "[[1.0,0.0,2.0],]");
+    }
+
+    #[test]
+    fn what_is_no_row_of_numbers_is_refused_with_its_line() {
+        let message = |text: &str, along| rows(text, along).unwrap_err().to_string();
+        assert_eq!(message("0,1\n2,x", None), "line 2: `x` is no number");
+        assert_eq!(message("0,1\n2", None), "line 2 has 1 cells, not 2");
+        assert_eq!(message("t, ax\n", None), "no row of numbers");
+        assert_eq!(message("0,nan", None), "line 1: `nan` is no number");
+        assert_eq!(message("0,1,2", Some("x")), "along needs two columns, a time and a number; line 1 has 3");
+        let hidden = "`# t [s], a [g]` looks like a heading with units behind a `#`; take the # away";
+        assert_eq!(message("# t [s], a [g]\n0,1", Some("x")), hidden);
+        assert_eq!(message("0,1", Some("z")), "along = \"z\"; allowed: \"x\", \"y\"");
+    }
+}

@@ -1,0 +1,163 @@
+//! Tests of one material point.
+
+use crate::case::{ElementStage, ElementTest, NamedMaterial};
+use crate::grid::GridSpec;
+use crate::nearest::hint;
+use crate::record::Record;
+use crate::report::{Report, shortened};
+use crate::words::Path;
+use bsmpm::element::Target;
+
+/// Keys of a stage that say what is driven.
+const DRIVES: [&str; 10] = [
+    "compression",
+    "pressure",
+    "shear",
+    "shear_stress",
+    "strain_xx",
+    "strain_yy",
+    "strain_zz",
+    "stress_xx",
+    "stress_yy",
+    "stress_zz",
+];
+/// Those of a mixed stage, by components.
+const MIXED: [[&str; 2]; 3] = [["strain_xx", "stress_xx"], ["strain_yy", "stress_yy"], ["strain_zz", "stress_zz"]];
+
+/// All tests in the order of the file, without those that have an error.
+pub(super) fn read_all(
+    root: &Record,
+    (materials, grid): (Option<&[NamedMaterial]>, Option<&GridSpec>),
+    report: &mut Report<'_>,
+) -> Vec<ElementTest> {
+    let named = root.named("element").iter();
+    named.filter_map(|(name, record)| read(name, record, (materials?, grid?), report)).collect()
+}
+
+fn read(
+    name: &str,
+    record: &Record,
+    (materials, grid): (&[NamedMaterial], &GridSpec),
+    report: &mut Report<'_>,
+) -> Option<ElementTest> {
+    let material = material(record, materials, report);
+    let stages = record.records("stage");
+    if record.gives("stage") && stages.is_empty() {
+        record.error("stage", "at least one stage is needed", report);
+    }
+    let mut undrained = false;
+    let mut read = Vec::with_capacity(stages.len());
+    for stage in stages {
+        read.push(self::stage(stage, report));
+        let now = stage.flag("undrained").unwrap_or(false);
+        if undrained && !now {
+            let message = "a drained stage after an undrained one: how the pore pressure goes is not known; \
+                           make it a test of its own";
+            report.error(stage.origin, &stage.path, message);
+        }
+        undrained = now;
+    }
+    let material = material?;
+    let graded = materials[material].material.is_graded();
+    if graded && !record.gives("height") {
+        let message = format!("missing; parameters of material.{} depend on the height", materials[material].name);
+        report.error(record.origin, &record.path_of("height"), message);
+        return None;
+    }
+    if !graded && record.gives("height") {
+        record.error("height", format!("material.{} is the same everywhere", materials[material].name), report);
+    }
+    let height = if graded { Some(record.number("height")? - grid.lower()[1]) } else { None };
+    let (pressure, k0) = (record.number("pressure")?, record.number("k0")?);
+    let stages: Option<Vec<_>> = read.into_iter().collect();
+    Some(ElementTest { name: name.to_owned(), material, height, pressure, k0, stages: stages? })
+}
+
+/// The number of its material.
+fn material(record: &Record, materials: &[NamedMaterial], report: &mut Report<'_>) -> Option<usize> {
+    if !record.gives("material") {
+        if materials.len() > 1 {
+            let message = format!("missing; there are {} materials", materials.len());
+            report.error(record.origin, &record.path_of("material"), message);
+            return None;
+        }
+        return Some(0);
+    }
+    let wanted = record.text("material")?;
+    let found = materials.iter().position(|named| named.name == wanted);
+    if found.is_none() {
+        let hint = hint(wanted, materials.iter().map(|named| named.name.as_str()));
+        record.error("material", format!("there is no material `{}`{hint}", shortened(wanted)), report);
+    }
+    found
+}
+
+fn stage(record: &Record, report: &mut Report<'_>) -> Option<ElementStage> {
+    let path: Path = record.word("test")?;
+    let known: &[&str] = match path {
+        Path::Triaxial | Path::Biaxial | Path::Oedometer | Path::Isotropic => &DRIVES[..2],
+        Path::SimpleShear => &DRIVES[2..4],
+        Path::Mixed => &DRIVES[2..],
+    };
+    for key in DRIVES.iter().filter(|key| !known.contains(key) && record.gives(key)) {
+        record.error(key, format!("has no meaning in test \"{path}\""), report);
+    }
+    let missing = |keys: &[&str], report: &mut Report<'_>| {
+        report.error(record.origin, &record.path, format!("missing: {} (test \"{path}\")", keys.join(" or ")));
+    };
+    let given = |keys: &[&'static str]| keys.iter().copied().find(|key| record.gives(key));
+    let driven = match path {
+        Path::Mixed => None,
+        _ => match given(known) {
+            None => {
+                missing(known, report);
+                return None;
+            }
+            Some(key) => Some(target(record, key)?),
+        },
+    };
+    let held = Some(Target::Strain(0.0));
+    let targets = match (path, driven) {
+        (Path::Triaxial, yy) => [None, yy, None, held],
+        (Path::Biaxial, yy) => [None, yy, held, held],
+        (Path::Oedometer, yy) => [held, yy, held, held],
+        (Path::Isotropic, Some(Target::Strain(volume))) => {
+            let each = Some(Target::Strain(volume / 3.0));
+            [each, each, each, held]
+        }
+        (Path::Isotropic, stress) => [stress, stress, stress, held],
+        (Path::SimpleShear, xy) => [held, None, held, xy],
+        (Path::Mixed, _) => {
+            let mut targets = [None, None, None, held];
+            for (axis, keys) in MIXED.iter().enumerate() {
+                match given(keys) {
+                    Some(key) => targets[axis] = Some(target(record, key)?),
+                    None => missing(keys, report),
+                }
+            }
+            if let Some(key) = given(&DRIVES[2..4]) {
+                targets[3] = Some(target(record, key)?);
+            }
+            targets
+        }
+    };
+    let undrained = record.flag("undrained")?;
+    let is_held = |target: &Option<Target>| matches!(target, Some(Target::Strain(_)));
+    if undrained && (path == Path::Isotropic || targets[..3].iter().all(is_held) || path == Path::Oedometer) {
+        record.error("undrained", format!("nothing can move without drainage in test \"{path}\" so"), report);
+        return None;
+    }
+    let duration = if record.gives("duration") { record.number("duration")? } else { f64::INFINITY };
+    Some(ElementStage { targets, undrained, steps: record.count("steps")?, duration })
+}
+
+/// What a key drives its component to, positive in tension.
+fn target(record: &Record, key: &str) -> Option<Target> {
+    let value = record.number(key)?;
+    Some(match key {
+        "compression" => Target::Strain(-value),
+        "pressure" => Target::Stress(-value),
+        "shear" | "strain_xx" | "strain_yy" | "strain_zz" => Target::Strain(value),
+        _ => Target::Stress(value),
+    })
+}

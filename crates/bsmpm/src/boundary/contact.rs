@@ -1,0 +1,232 @@
+//! Faces that push and rub but do not pull: unilateral contact with Coulomb friction, node by node.
+#![doc = include_str!("contact.md")]
+
+mod gap;
+mod node;
+
+pub use node::{Contact, Status};
+
+use super::Boundary;
+use crate::exact::Exact;
+use crate::grid::{Grid, Shape};
+use crate::nodal::Nodal;
+use crate::parallel::Halo;
+use crate::points::Points;
+use gap::{ROUNDING, face_cell, gaps};
+use node::ContactNode;
+
+/// Steps ahead of the meeting from which on material is near the face: it may be faster or slower than it starts.
+const MEETING: f64 = 2.0;
+
+/// All nodes on faces with contact in one step: the same on every rank that shares a node.
+#[derive(Clone, Debug, Default)]
+pub struct Contacts<const D: usize> {
+    nodes: Vec<ContactNode<D>>,
+    /// N m  first energy of the step's iteration, by which those that follow with other statuses are judged
+    pub first_energy: Option<f64>,
+}
+
+/// What a face with contact did in a step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ContactReport {
+    /// number of the support
+    pub support: usize,
+    /// nodes of the face that see material
+    pub nodes: usize,
+    /// -  part of them that is on the face
+    pub closed: f64,
+    /// -  part of the normal force that is on nodes that slip; 0 without force
+    pub sliding: f64,
+    /// m  mean of the slip of the step, by normal force
+    pub slip: f64,
+    /// J  dissipated by friction in the step
+    pub dissipated: f64,
+    /// m  least and largest distance of the material at the end of the step; 0 without material
+    pub gap: [f64; 2],
+}
+
+impl<const D: usize> Contacts<D> {
+    /// Of the `boundary` in a step from `t`: of nodes with components that are `free`, in the statuses that the last
+    /// displacement had, `guess`, if there is one. One exchange with the neighbours a face that lifts.
+    pub fn of(
+        (boundary, grid): (&Boundary<D>, &Grid<D>),
+        (shape, points): (&Shape<D>, &Points<D>),
+        free: &[bool],
+        (t, guess): (f64, &[f64]),
+        halo: &dyn Halo,
+    ) -> Self {
+        let mut nodes = Vec::new();
+        let on_face = |node: usize, axis: usize, upper: bool| {
+            grid.node_at(node)[axis] == if upper { grid.axes()[axis].functions() - 1 } else { 0 }
+        };
+        for (support, face) in boundary.supports.iter().enumerate() {
+            let Some(law) = face.contact else { continue };
+            let gaps = law.lifts.then(|| gaps((boundary, grid, shape, points), (face.axis, face.upper), halo));
+            let rivals = || boundary.supports.iter().filter(|other| other.contact.is_some() && other.axis != face.axis);
+            for node in grid.face_nodes(face.axis, face.upper) {
+                if !free[Nodal::<D>::at(node, face.axis)] {
+                    continue;
+                }
+                let along = std::array::from_fn(|component| {
+                    let other = rivals().any(|other| other.axis == component && on_face(node, component, other.upper));
+                    component != face.axis && free[Nodal::<D>::at(node, component)] && !other
+                });
+                let inward = if face.upper { -1.0 } else { 1.0 };
+                let gap = gaps.as_ref().map_or(0.0, |gaps| gaps[node]);
+                let mut at = ContactNode {
+                    node,
+                    support,
+                    axis: face.axis,
+                    inward,
+                    law,
+                    along,
+                    gap,
+                    status: Status::Open,
+                    rested: [false; D],
+                };
+                let behind = grid.node_at(node);
+                let behind = std::array::from_fn(|axis| match (axis == face.axis, face.upper) {
+                    (true, true) => behind[axis].saturating_sub(1),
+                    (true, false) => behind[axis] + 1,
+                    (false, _) => behind[axis],
+                });
+                let moved = |node: usize| guess.get(Nodal::<D>::of(node)).is_some_and(|u| u.iter().any(|u| *u != 0.0));
+                let had_material = grid.node_index(&behind).is_some_and(moved);
+                at.recall((t, guess), face_cell(grid, face.axis, face.upper), had_material);
+                nodes.push(at);
+            }
+        }
+        Self { nodes, first_energy: None }
+    }
+
+    /// Whether there is no such node on this rank.
+    pub fn is_empty(&self) -> bool {
+        self.nodes.is_empty()
+    }
+
+    /// The components that are `free`, and those that the statuses decide.
+    pub fn movable(&self, free: &[bool]) -> Vec<bool> {
+        let mut movable = free.to_vec();
+        for at in &self.nodes {
+            for component in (0..D).filter(|&component| at.decides(component)) {
+                movable[Nodal::<D>::at(at.node, component)] = true;
+            }
+        }
+        movable
+    }
+
+    /// Marks what is an unknown, and prescribes what is not (m), as the statuses say.
+    pub fn apply(&self, free: &mut [bool], prescribed: &mut [Option<f64>]) {
+        for at in &self.nodes {
+            for (component, held) in at.holds().into_iter().enumerate().filter(|(c, _)| at.decides(*c)) {
+                let place = Nodal::<D>::at(at.node, component);
+                (free[place], prescribed[place]) = (held.is_none(), held);
+            }
+        }
+    }
+
+    /// Adds to the velocities (m/s) that are prescribed those of components that have been at rest on a face and stay
+    /// there as far as is known: what they start the step with, as components that supports hold.
+    pub fn rest(&self, velocities: &mut [Option<f64>]) {
+        for at in &self.nodes {
+            for component in (0..D).filter(|&component| at.rested[component]) {
+                velocities[Nodal::<D>::at(at.node, component)] = Some(0.0);
+            }
+        }
+    }
+
+    /// Marks components that the face may stop in a step of `dt` (s) in which the nodes start with `v`, m/s: those on
+    /// or near it that have not been at rest.
+    pub fn moving(&self, v: &[f64], dt: f64) -> Vec<bool> {
+        let mut moving = if self.is_empty() { Vec::new() } else { vec![false; v.len()] };
+        for at in &self.nodes {
+            let near = at.gap <= MEETING * dt * v[Nodal::<D>::at(at.node, at.axis)].abs();
+            for component in (0..D).filter(|&component| near && at.decides(component) && !at.rested[component]) {
+                moving[Nodal::<D>::at(at.node, component)] = true;
+            }
+        }
+        moving
+    }
+
+    /// Adds friction, N, to what is out of balance and to the `reaction`, which has the normal forces.
+    pub fn add_friction(&self, f_oob: &mut [f64], reaction: &mut [f64]) {
+        for at in &self.nodes {
+            let Status::Slip(direction) = at.status else { continue };
+            let limit = at.limit(reaction);
+            for component in (0..D).filter(|&component| at.along[component] && limit > 0.0) {
+                let friction = -limit * direction[component];
+                f_oob[Nodal::<D>::at(at.node, component)] += friction;
+                reaction[Nodal::<D>::at(at.node, component)] = friction;
+            }
+        }
+    }
+
+    /// Adds what friction adds to the product of the derivative of the forces, which `out` holds at all components,
+    /// where `reaction` acts.
+    pub fn add_derivative(&self, reaction: &[f64], out: &mut [f64]) {
+        for at in &self.nodes {
+            let Status::Slip(direction) = at.status else { continue };
+            let factor = if at.limit(reaction) > 0.0 { at.law.friction * at.inward } else { 0.0 };
+            let normal = out[Nodal::<D>::at(at.node, at.axis)];
+            for component in (0..D).filter(|&component| at.along[component]) {
+                out[Nodal::<D>::at(at.node, component)] += factor * direction[component] * normal;
+            }
+        }
+    }
+
+    /// Corrects every status that the displacement `u` (m) and the `reaction` (N) under it contradict by more than
+    /// `force`, N; how many there were over all ranks.
+    pub fn correct(&mut self, u: &[f64], reaction: &[f64], (force, edge): (f64, f64), halo: &dyn Halo) -> usize {
+        let owned = halo.owned();
+        let mut corrected = [0.0];
+        for at in &mut self.nodes {
+            let status = at.corrected(u, reaction, (force, ROUNDING * edge));
+            corrected[0] += f64::from(u8::from(status != at.status && owned.contains(&at.node)));
+            at.status = status;
+        }
+        halo.reduce(&mut corrected);
+        corrected[0] as usize
+    }
+
+    /// J  work of the faces' forces on this rank: of the normal ones that of the blows by which gaps close, as a face
+    /// at rest works nothing; and that of friction.
+    pub fn work(&self, u: &[f64], reaction: &[f64], halo: &dyn Halo) -> [Exact; 2] {
+        let owned = halo.owned();
+        let mut work = [Exact::ZERO; 2];
+        for at in self.nodes.iter().filter(|at| at.status != Status::Open && owned.contains(&at.node)) {
+            let normal = Nodal::<D>::at(at.node, at.axis);
+            work[0].add(reaction[normal] * u[normal]);
+            work[1].add(0.5 * at.friction(reaction).dot(&at.slip(u)));
+        }
+        work
+    }
+
+    /// What every face with contact did under the converged displacement `u`, m, with the `reaction`, N.
+    pub fn report(&self, boundary: &Boundary<D>, u: &[f64], reaction: &[f64], halo: &dyn Halo) -> Vec<ContactReport> {
+        let (owned, mut reports) = (halo.owned(), Vec::new());
+        for (support, _) in boundary.supports.iter().enumerate().filter(|(_, support)| support.contact.is_some()) {
+            let mut sums: [Exact; 6] = std::array::from_fn(|_| Exact::ZERO);
+            let mut ends = [f64::NEG_INFINITY; 2];
+            let own = |at: &&ContactNode<D>| at.support == support && owned.contains(&at.node) && at.gap.is_finite();
+            for at in self.nodes.iter().filter(own) {
+                let (pushed, slip) = (at.pushed(reaction).max(0.0), at.slip(u));
+                let slides = matches!(at.status, Status::Slip(_)) && slip.norm() > 0.0;
+                let friction = at.friction(reaction);
+                let gap = (at.gap + at.inward * u[Nodal::<D>::at(at.node, at.axis)]).max(0.0);
+                let closed = f64::from(u8::from(at.status != Status::Open));
+                let sliding = if slides { pushed } else { 0.0 };
+                let each = [1.0, closed, pushed, sliding, pushed * slip.norm(), -friction.dot(&slip)];
+                sums.iter_mut().zip(each).for_each(|(sum, value)| sum.add(value));
+                ends = [ends[0].max(-gap), ends[1].max(gap)];
+            }
+            let [nodes, closed, pushed, sliding, slipped, dissipated] =
+                halo.total(&sums).try_into().unwrap_or([0.0; 6]);
+            halo.maximum(&mut ends);
+            let share = |part: f64, whole: f64| if whole > 0.0 { part / whole } else { 0.0 };
+            let gap = if nodes > 0.0 { [-ends[0], ends[1]] } else { [0.0; 2] };
+            let (closed, sliding, slip) = (share(closed, nodes), share(sliding, pushed), share(slipped, pushed));
+            reports.push(ContactReport { support, nodes: nodes as usize, closed, sliding, slip, dissipated, gap });
+        }
+        reports
+    }
+}

@@ -1,0 +1,55 @@
+//! How far the material is from a face, as its points tell.
+
+use crate::boundary::Boundary;
+use crate::grid::{Grid, Shape};
+use crate::parallel::Halo;
+use crate::points::Points;
+
+/// Part of a cell below which a gap, and a displacement against what is allowed, is round-off.
+pub(super) const ROUNDING: f64 = 1e-9;
+
+/// m  edge of the cells at a face, normal to it.
+pub(super) fn face_cell<const D: usize>(grid: &Grid<D>, axis: usize, upper: bool) -> f64 {
+    let knots = &grid.axes()[axis];
+    let cell = if upper { knots.cells() - 1 } else { 0 };
+    knots.breakpoint(cell + 1) - knots.breakpoint(cell)
+}
+
+/// m  per node of the window: how far the nearest material is from a face; infinite but at nodes of the face that see
+/// some. A point reaches as far as its box in the lattice of the cell that it was in at the start, deformed by its F.
+pub(super) fn gaps<const D: usize>(
+    (boundary, grid, shape, points): (&Boundary<D>, &Grid<D>, &Shape<D>, &Points<D>),
+    (axis, upper): (usize, bool),
+    halo: &dyn Halo,
+) -> Vec<f64> {
+    let width = grid.order() + 1;
+    let on_face = |k: usize| k / width.pow((D - 1 - axis) as u32) % width == if upper { width - 1 } else { 0 };
+    let offsets: Vec<usize> =
+        shape.offsets().iter().enumerate().filter(|(k, _)| on_face(*k)).map(|(_, o)| *o).collect();
+    let knots = &grid.axes()[axis];
+    let last = if upper { knots.cells() - 1 } else { 0 };
+    let mut near = vec![f64::NEG_INFINITY; grid.nodes()];
+    for patch in shape.patches() {
+        let cell = grid.cell_at(patch.cell);
+        if cell[axis] != last {
+            continue;
+        }
+        let clear = |p: usize| {
+            let start = grid.locate(&(points.x[p] - points.u[p])).unwrap_or(cell);
+            let share = boundary.reach.get(usize::from(points.material[p])).copied().unwrap_or(0.5);
+            let (half, F) = (grid.cell_box(&start).1 * share, points.F.at(p));
+            let reach: f64 = (0..D).map(|j| F[(axis, j)].abs() * half[j]).sum();
+            let from_face = if upper { knots.length() - points.x[p][axis] } else { points.x[p][axis] };
+            from_face - reach
+        };
+        let least = patch.points.clone().map(clear).fold(f64::INFINITY, f64::min).max(0.0);
+        let least = if least < ROUNDING * face_cell(grid, axis, upper) { 0.0 } else { least };
+        for offset in &offsets {
+            let node = &mut near[patch.first_node + offset];
+            *node = node.max(-least);
+        }
+    }
+    halo.max(&mut near, 1);
+    near.iter_mut().for_each(|gap| *gap = -*gap);
+    near
+}

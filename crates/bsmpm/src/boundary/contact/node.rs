@@ -1,0 +1,146 @@
+//! A node on a face with contact: its statuses, and what displacement and reaction ask of them.
+
+use crate::nodal::Nodal;
+use crate::tensor::Vector;
+
+/// Part of a cell within which material cannot have come since the last step, if its node was not free to move then:
+/// what F tells of the gap is off by the curvature of the motion.
+const KEPT: f64 = 0.05;
+/// Cosine of the angle between slip and friction from which on they are opposite.
+const ALIGNED: f64 = 1.0 - 1e-12;
+
+/// What a face does to the material at it, instead of holding it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Contact {
+    /// -  coefficient of friction mu
+    pub friction: f64,
+    /// whether material comes off it; else its normal component is held both ways, and nothing rubs where it pulls
+    pub lifts: bool,
+}
+
+/// What a node of such a face does in a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Status<const D: usize> {
+    /// Off the face: no force.
+    Open,
+    /// On the face, and held along it.
+    Stick,
+    /// On the face, and free along it but for the friction against this unit vector; zero without friction.
+    Slip(Vector<D>),
+}
+
+/// A node on a face with contact whose normal component nothing else holds.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ContactNode<const D: usize> {
+    /// of the window
+    pub node: usize,
+    /// number of the face among the supports
+    pub support: usize,
+    /// that the face is normal to
+    pub axis: usize,
+    /// sign along the axis of what leads off the face
+    pub inward: f64,
+    /// of the face
+    pub law: Contact,
+    /// components that friction acts on: not those that a support, or another such face, decides
+    pub along: [bool; D],
+    /// m  at the start of the step; infinite without material
+    pub gap: f64,
+    /// what it does
+    pub status: Status<D>,
+    /// components that did not move in the last step
+    pub rested: [bool; D],
+}
+
+impl<const D: usize> ContactNode<D> {
+    /// The status that the last displacement had, and which components were at rest; `edge` is that of the cell, m,
+    /// `had_material` whether something moved behind the node: where nothing was, nothing rested.
+    pub fn recall(&mut self, (t, guess): (f64, &[f64]), edge: f64, had_material: bool) {
+        let of = |component: usize| guess.get(Nodal::<D>::at(self.node, component)).copied().unwrap_or(0.0);
+        let normal = self.inward * of(self.axis);
+        if t > 0.0 && had_material && normal == 0.0 && self.gap < KEPT * edge {
+            self.gap = 0.0;
+        }
+        let slip = Vector::from_fn(|component, _| if self.along[component] { of(component) } else { 0.0 });
+        self.status = if self.law.lifts && normal > -self.gap { Status::Open } else { self.met(&slip) };
+        let rubs = self.law.friction > 0.0;
+        self.rested = std::array::from_fn(|component| {
+            let held = component == self.axis || rubs && self.along[component];
+            t > 0.0 && had_material && self.gap == 0.0 && held && of(component) == 0.0
+        });
+    }
+
+    /// On the face, coming along it by `slip`.
+    pub fn met(&self, slip: &Vector<D>) -> Status<D> {
+        match slip.try_normalize(0.0) {
+            _ if self.law.friction == 0.0 => Status::Slip(Vector::zeros()),
+            Some(direction) => Status::Slip(direction),
+            None => Status::Stick,
+        }
+    }
+
+    /// Whether the statuses decide a component.
+    pub fn decides(&self, component: usize) -> bool {
+        component == self.axis || self.along[component]
+    }
+
+    /// m  where the status holds a component.
+    pub fn holds(&self) -> [Option<f64>; D] {
+        std::array::from_fn(|component| match self.status {
+            Status::Stick | Status::Slip(_) if component == self.axis => Some(-self.inward * self.gap),
+            Status::Stick if self.along[component] => Some(0.0),
+            _ => None,
+        })
+    }
+
+    /// N  normal force of the face on the body, positive where it pushes.
+    pub fn pushed(&self, reaction: &[f64]) -> f64 {
+        let normal = reaction[Nodal::<D>::at(self.node, self.axis)];
+        if self.status == Status::Open { 0.0 } else { self.inward * normal }
+    }
+
+    /// N  most that friction can be.
+    pub fn limit(&self, reaction: &[f64]) -> f64 {
+        self.law.friction * self.pushed(reaction).max(0.0)
+    }
+
+    /// N  force of the face along itself on the body.
+    pub fn friction(&self, reaction: &[f64]) -> Vector<D> {
+        let on = |component: usize| self.along[component] && self.status != Status::Open;
+        Vector::from_fn(|c, _| if on(c) { reaction[Nodal::<D>::at(self.node, c)] } else { 0.0 })
+    }
+
+    /// m  displacement along the face.
+    pub fn slip(&self, u: &[f64]) -> Vector<D> {
+        let on = |component: usize| self.along[component] && self.status != Status::Open;
+        Vector::from_fn(|c, _| if on(c) { u[Nodal::<D>::at(self.node, c)] } else { 0.0 })
+    }
+
+    /// The status that displacement and reaction ask for.
+    pub fn corrected(&self, u: &[f64], reaction: &[f64], (force, length): (f64, f64)) -> Status<D> {
+        if self.status == Status::Open {
+            let beyond = -self.gap - self.inward * u[Nodal::<D>::at(self.node, self.axis)];
+            let slip = Vector::from_fn(|c, _| if self.along[c] { u[Nodal::<D>::at(self.node, c)] } else { 0.0 });
+            return if beyond > length { self.met(&slip) } else { Status::Open };
+        }
+        if self.law.lifts && self.pushed(reaction) < -force {
+            return Status::Open;
+        }
+        match self.status {
+            Status::Stick => {
+                let held = self.friction(reaction);
+                if held.norm() > self.limit(reaction) + force { Status::Slip(-held.normalize()) } else { Status::Stick }
+            }
+            Status::Slip(direction) if self.law.friction > 0.0 => {
+                let slip = self.slip(u);
+                let along = slip.dot(&direction);
+                match slip.try_normalize(0.0) {
+                    _ if along < -length => Status::Stick,
+                    Some(now) if slip.norm() > length && along < ALIGNED * slip.norm() => Status::Slip(now),
+                    _ => self.status,
+                }
+            }
+            status => status,
+        }
+    }
+}

@@ -1,0 +1,314 @@
+//! One material point driven along a path of strains and stresses: a laboratory test of what a law's parameters mean.
+//!
+//! Lines along x stay along x, `F = [[a, γ b, 0], [0, b, 0], [0, 0, c]]`, and the path is told in the logarithms of a,
+//! b and c and in γ. Each of the four components is given, or follows from a Cauchy stress that is; without drainage
+//! the volume stays and what the stress lacks is pore pressure. It is the constitution of the solver, point for point,
+//! and knows no grid: no inertia, no F-bar.
+
+use crate::initial;
+use crate::material::{Branch, Material, MaterialError, Response, Separation};
+use crate::tensor::{Symmetric, Tensor};
+use nalgebra::{DMatrix, DVector};
+use thiserror::Error;
+
+/// Components that are driven: xx, yy, zz and xy, the first ones of a [`Symmetric`].
+pub const COMPONENTS: usize = 4;
+/// Iterations of one step at most.
+const ITERATIONS: usize = 60;
+/// Halvings of a correction that does not come nearer.
+const HALVINGS: usize = 12;
+/// Smallest part of a step that is tried.
+const SMALLEST: f64 = 1.0 / 1024.0;
+/// What is left of a stress that is held: by the largest stress, and by Young's modulus, whose digits it comes from.
+const BALANCED: [f64; 2] = [1e-11, 1e-14];
+/// Singular values below this share of the largest are none: at an edge of the yield surface two directions are alike,
+/// and the smallest correction takes both alike.
+const SINGULAR: f64 = 1e-10;
+/// Plastic strain of a state that lies on the yield surface, but for round-off.
+const AT_YIELD: f64 = 1e-9;
+
+/// What a component is driven to at the end of a stage, in proportion to its part.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Target {
+    /// (-)  growth of the logarithmic strain in the stage, positive in extension; of γ
+    Strain(f64),
+    /// Pa  total Cauchy stress at its end, positive in tension
+    Stress(f64),
+}
+
+/// A part of a path.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Control {
+    /// of xx, yy, zz and the shear
+    pub targets: [Target; COMPONENTS],
+    /// whether the volume stays, and stresses that are given are those of soil and water
+    pub undrained: bool,
+    /// equal steps
+    pub steps: u64,
+    /// s  that it takes, for strength that follows the rate; without end it has no rate
+    pub duration: f64,
+}
+
+/// Why a path has no beginning, or no end.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum ElementError {
+    /// The stress at the start is none of the material.
+    #[error("the stress at the start is beyond the material's strength: plastic strain of {0:.1e} at once")]
+    BeyondYield(f64),
+    /// The stress at the start pulls, or is none, and the material's stiffness is that of its pressure.
+    #[error("the material has no state without pressure: give it one at the start")]
+    NoPressure,
+    /// The material has no response at the start.
+    #[error("no stress at the start: {0}")]
+    Start(MaterialError),
+    /// No state carries what is wanted.
+    #[error("no state of the material carries the stress that is wanted {done:.4} of the way; {reason}")]
+    NoEquilibrium {
+        /// part of the stage that was reached
+        done: f64,
+        /// what the last attempt found
+        reason: String,
+    },
+}
+
+/// The point, at rest in a converged state.
+#[derive(Clone, Debug)]
+pub struct Element {
+    law: Material,
+    b_e: Symmetric,
+    state: Vec<f64>,
+    gap: f64,
+    strain: [f64; COMPONENTS],
+    /// Pa  Cauchy
+    sigma: Symmetric,
+    pore_pressure: f64,
+    plastic_strain: f64,
+}
+
+/// A strain and what it causes.
+struct Attempt {
+    strain: [f64; COMPONENTS],
+    pore_pressure: f64,
+    response: Response,
+    /// Pa  effective Cauchy stress
+    sigma: Symmetric,
+    /// what is out of balance, by the unknowns' order
+    residual: DVector<f64>,
+}
+
+impl Element {
+    /// A point of `law`, the same at all heights, under the Cauchy stress `sigma`, Pa.
+    ///
+    /// # Errors
+    /// Where the material cannot have that stress.
+    pub fn new(law: Material, sigma: Symmetric) -> Result<Self, ElementError> {
+        let mut state = vec![0.0; law.state().len()];
+        let b_e = initial::b_e_of(&law, &sigma, &mut state);
+        if !law.is_linear() && b_e.0.iter().any(|component| !component.is_finite()) {
+            return Err(ElementError::NoPressure);
+        }
+        let response = law.respond(&b_e, &state).map_err(ElementError::Start)?;
+        if response.branch() != Branch::Elastic && response.plastic_increment() > AT_YIELD {
+            return Err(ElementError::BeyondYield(response.plastic_increment()));
+        }
+        Ok(Self { law, b_e, state, gap: 0.0, strain: [0.0; 4], sigma, pore_pressure: 0.0, plastic_strain: 0.0 })
+    }
+
+    /// Logarithmic strains along x, y and z since the start, positive in extension, and the shear γ.
+    pub fn strain(&self) -> [f64; COMPONENTS] {
+        self.strain
+    }
+
+    /// Logarithm of the volume since the start.
+    pub fn volume_strain(&self) -> f64 {
+        self.strain[0] + self.strain[1] + self.strain[2]
+    }
+
+    /// Effective Cauchy stress, Pa.
+    pub fn sigma(&self) -> Symmetric {
+        self.sigma
+    }
+
+    /// Pressure of the pore water since the start, Pa; 0 of drained paths.
+    pub fn pore_pressure(&self) -> f64 {
+        self.pore_pressure
+    }
+
+    /// State variables of the law, in their order.
+    pub fn state(&self) -> &[f64] {
+        &self.state
+    }
+
+    /// Accumulated plastic strain.
+    pub fn plastic_strain(&self) -> f64 {
+        self.plastic_strain
+    }
+
+    /// Total stress of a component, Pa.
+    pub fn total(&self, component: usize) -> f64 {
+        total(&self.sigma, self.pore_pressure, component)
+    }
+
+    /// Follows a part of a path; `each` sees every step's end.
+    ///
+    /// # Errors
+    /// Where no state carries the stress; the point then stands where the path was left.
+    pub fn follow(&mut self, control: &Control, mut each: impl FnMut(&Self)) -> Result<(), ElementError> {
+        let start: [f64; COMPONENTS] = std::array::from_fn(|k| match control.targets[k] {
+            Target::Strain(_) => self.strain[k],
+            Target::Stress(_) => self.total(k),
+        });
+        let volume = self.volume_strain();
+        let wanted = |share: f64| -> [Target; COMPONENTS] {
+            std::array::from_fn(|k| match control.targets[k] {
+                Target::Strain(growth) => Target::Strain(start[k] + share * growth),
+                Target::Stress(end) => Target::Stress(start[k] + share * (end - start[k])),
+            })
+        };
+        let own = self.law.clone();
+        for step in 0..control.steps {
+            let (mut done, mut part) = (0.0_f64, 1.0_f64);
+            while done < 1.0 {
+                let share = (step as f64 + (done + part).min(1.0)) / control.steps as f64;
+                let undrained = control.undrained.then_some(volume);
+                self.law = own.over(part * control.duration / control.steps as f64).unwrap_or_else(|| own.clone());
+                match self.solve(&wanted(share), undrained) {
+                    Ok(found) => {
+                        self.accept(found);
+                        done += part;
+                    }
+                    Err(_) if part > SMALLEST => part *= 0.5,
+                    Err(reason) => {
+                        let done = (step as f64 + done) / control.steps as f64;
+                        return Err(ElementError::NoEquilibrium { done, reason });
+                    }
+                }
+            }
+            each(self);
+        }
+        Ok(())
+    }
+
+    fn accept(&mut self, found: Attempt) {
+        let Attempt { strain, pore_pressure, response, sigma, .. } = found;
+        response.advance(&mut self.state);
+        self.b_e = response.b_e();
+        self.gap = if self.law.separation() == Separation::Closing { response.gap() } else { 0.0 };
+        self.plastic_strain += response.plastic_increment();
+        (self.strain, self.pore_pressure, self.sigma) = (strain, pore_pressure, sigma);
+    }
+
+    /// Newton's method for what is not given. `undrained`: the volume that stays.
+    fn solve(&self, wanted: &[Target; COMPONENTS], undrained: Option<f64>) -> Result<Attempt, String> {
+        let free: Vec<usize> = (0..COMPONENTS).filter(|&k| matches!(wanted[k], Target::Stress(_))).collect();
+        let mut strain = self.strain;
+        for (strain, target) in strain.iter_mut().zip(wanted) {
+            if let Target::Strain(given) = target {
+                *strain = *given;
+            }
+        }
+        let young = self.law.elastic().young;
+        let attempt = |strain, pore| self.attempt((strain, pore), (wanted, &free, undrained));
+        let mut now = attempt(strain, self.pore_pressure)?;
+        for _ in 0..ITERATIONS {
+            let size = (0..COMPONENTS).map(|k| total(&now.sigma, now.pore_pressure, k).abs()).fold(0.0, f64::max);
+            let size = size.max(now.sigma.0.iter().fold(0.0, |most: f64, s| most.max(s.abs())));
+            if now.residual.amax() * young <= BALANCED[0] * size + BALANCED[1] * young {
+                return Ok(now);
+            }
+            let by = self.correction(&now, (&free, undrained.is_some())).ok_or("the stiffness is not finite")?;
+            let mut length = 1.0;
+            now = loop {
+                let mut strain = now.strain;
+                free.iter().enumerate().for_each(|(row, &k)| strain[k] += length * by[row]);
+                let pore = if undrained.is_some() { length * young * by[free.len()] } else { 0.0 };
+                match attempt(strain, now.pore_pressure + pore) {
+                    Ok(next) if next.residual.norm() < now.residual.norm() => break next,
+                    _ if length * 2_f64.powi(HALVINGS as i32) <= 1.0 => return Err(not_carried(&now, &free, wanted)),
+                    _ => length *= 0.5,
+                }
+            };
+        }
+        Err(not_carried(&now, &free, wanted))
+    }
+
+    fn attempt(
+        &self,
+        (strain, pore_pressure): ([f64; COMPONENTS], f64),
+        (wanted, free, undrained): (&[Target; COMPONENTS], &[usize], Option<f64>),
+    ) -> Result<Attempt, String> {
+        let before = deformation(&self.strain).try_inverse().ok_or("the point has no volume")?;
+        let step = deformation(&strain) * before;
+        let b_trial = Symmetric::of(&(step * self.b_e.full() * step.transpose())).scaled((2.0 / 3.0 * self.gap).exp());
+        let response = self.law.respond(&b_trial, &self.state).map_err(|error| error.to_string())?;
+        let sigma = response.tau().scaled((-(strain[0] + strain[1] + strain[2])).exp());
+        let young = self.law.elastic().young;
+        let mut residual: Vec<f64> = Vec::with_capacity(COMPONENTS + 1);
+        for &k in free {
+            let Target::Stress(given) = wanted[k] else { continue };
+            residual.push((total(&sigma, pore_pressure, k) - given) / young);
+        }
+        residual.extend(undrained.map(|volume| strain[0] + strain[1] + strain[2] - volume));
+        let residual = DVector::from_vec(residual);
+        if residual.iter().any(|number| !number.is_finite()) {
+            return Err("the stress is not finite".to_owned());
+        }
+        Ok(Attempt { strain, pore_pressure, response, sigma, residual })
+    }
+
+    /// The smallest correction of what is free, strains and the pore pressure over Young's modulus, by the consistent
+    /// tangent: `dσ = dτ/J - σ tr l`.
+    fn correction(&self, now: &Attempt, (free, undrained): (&[usize], bool)) -> Option<DVector<f64>> {
+        let size = now.residual.len();
+        let (young, volume) = (self.law.elastic().young, (now.strain[0] + now.strain[1] + now.strain[2]).exp());
+        let mut jacobian = DMatrix::zeros(size, size);
+        for (column, &k) in free.iter().enumerate() {
+            let l = velocity(now.strain[3], k);
+            let change = Symmetric::of(&now.response.linearise(&l)).scaled(1.0 / volume);
+            for (row, &i) in free.iter().enumerate() {
+                jacobian[(row, column)] = (change.0[i] - now.sigma.0[i] * l.trace()) / young;
+            }
+            if undrained {
+                jacobian[(size - 1, column)] = l.trace();
+                jacobian[(column, size - 1)] = if k < 3 { -1.0 } else { 0.0 };
+            }
+        }
+        if jacobian.iter().any(|entry| !entry.is_finite()) {
+            return None;
+        }
+        let svd = jacobian.svd(true, true);
+        let least = SINGULAR * svd.singular_values.amax();
+        svd.solve(&-&now.residual, least).ok()
+    }
+}
+
+/// Why an iteration ended, in words.
+fn not_carried(now: &Attempt, free: &[usize], wanted: &[Target; COMPONENTS]) -> String {
+    let found = free.iter().filter_map(|&k| {
+        let Target::Stress(given) = wanted[k] else { return None };
+        let name = ["xx", "yy", "zz", "xy"][k];
+        Some(format!("stress-{name} is {:.6e} Pa for {given:.6e} Pa", total(&now.sigma, now.pore_pressure, k)))
+    });
+    found.collect::<Vec<_>>().join(", ")
+}
+
+/// Stress of soil and water, Pa.
+fn total(sigma: &Symmetric, pore_pressure: f64, component: usize) -> f64 {
+    sigma.0[component] - if component < 3 { pore_pressure } else { 0.0 }
+}
+
+/// F of a strain.
+fn deformation(strain: &[f64; COMPONENTS]) -> Tensor {
+    let [x, y, z] = [0, 1, 2].map(|k| strain[k].exp());
+    Tensor::new(x, strain[3] * y, 0.0, 0.0, y, 0.0, 0.0, 0.0, z)
+}
+
+/// `∂F/∂ε_k F⁻¹` at a shear γ.
+fn velocity(shear: f64, component: usize) -> Tensor {
+    match component {
+        0 => Tensor::new(1.0, -shear, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+        1 => Tensor::new(0.0, shear, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0),
+        2 => Tensor::new(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0),
+        _ => Tensor::new(0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+    }
+}

@@ -1,0 +1,322 @@
+//! Modified Cam-clay at finite strain (Roscoe and Burland, 1968; Borja and Tamagnini, 1998, Comput. Methods Appl. Mech.
+//! Engrg. 155, 73-95): clay whose stiffness and strength come from the pressure that it has seen.
+//!
+//! With P the mean Kirchhoff stress (positive in tension) and Q its deviatoric invariant, `f = Q²/M² + P (P + p_c)`,
+//! associated. Inside, `P = -p_r exp(-ε_v/κ̂)`, p_r the pressure at b_e = I, and Q = 3 μ ε_s with a μ that is constant:
+//! where it follows the pressure, an elastic law that keeps energy cannot reach the stress ratio M (at ν = .3 it ends
+//! at .83). p_c grows with the plastic compression, `p_c' = p_c exp(-Δε_v^p/(λ̂ - κ̂))`: exact in a step of any size.
+//!
+//! κ and λ are slopes of ln v over ln p of the Cauchy pressure (Butterfield, 1979, Géotechnique 29, 469-480). The
+//! formulas are of Kirchhoff's, J p, in which the slope is `κ̂ = κ/(1 - κ)`, so that the lines of a case are straight.
+//! The return is implicit, and a single number: the stress ratio at its end over M.
+
+use super::law::{Branch, Law, Projection, Variable, split};
+use super::{Elastic, Moduli};
+use crate::real::{Real, three};
+use crate::tensor::Tensor;
+
+/// Evaluations of the return at most: bisection alone needs as many.
+const EVALUATIONS: usize = 100;
+
+/// Elastic by the pressure inside an ellipse that plastic compression widens and dilation shrinks.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CamClay {
+    elastic: Elastic,
+    moduli: Moduli,
+    numbers: [f64; 5],
+    constants: Constants,
+}
+
+/// What its formulas take.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Constants {
+    swelling: f64,  // κ̂
+    hardening: f64, // λ̂ - κ̂
+    ratio: f64,     // M
+    mu: f64,        // Pa
+    reference: f64, // Pa  p_r
+}
+
+/// What a return leaves; where the trial does not yield, too.
+#[derive(Clone, Copy, Debug)]
+pub struct CamClayReturn<R: Real> {
+    constants: Constants,
+    yields: R::Mask,
+    /// (-)  principal deviator of the trial over its norm; 0 without one
+    direction: [R; 3],
+    /// (-)  volume strain of the elastic state
+    volume: R,
+    /// Pa  mean pressure, and the deviatoric invariant
+    pressure: R,
+    deviator: R,
+    /// Pa  p_c
+    preconsolidation: R,
+    /// 1/Pa  plastic multiplier, of the gradient of f
+    multiplier: R,
+}
+
+impl CamClay {
+    /// A law with the slopes 0 < κ < λ < 1 of swelling and first loading in ln v over ln p, M > 0, and at the start
+    /// either the pressure p_c (Pa), or, where that is 0, an ellipse `ocr` ≥ 1 times as large as the one through the
+    /// stress. Shear modulus and κ are those of `elastic`: its bulk modulus is met at the pressure κ̂ K.
+    pub fn new(elastic: Elastic, [kappa, lambda, ratio, preconsolidation, ocr]: [f64; 5]) -> Self {
+        let moduli = elastic.moduli();
+        let (swelling, compression) = (kappa / (1.0 - kappa), lambda / (1.0 - lambda));
+        let (hardening, reference) = (compression - swelling, swelling * moduli.bulk());
+        let constants = Constants { swelling, hardening, ratio, mu: moduli.mu, reference };
+        Self { elastic, moduli, numbers: [kappa, lambda, ratio, preconsolidation, ocr], constants }
+    }
+
+    /// The pressure at which the bulk modulus is that of the elastic part, Pa.
+    pub fn reference_pressure(&self) -> f64 {
+        self.constants.reference
+    }
+}
+
+impl Constants {
+    /// `f/p_c`, Pa.
+    #[inline(always)]
+    fn excess<R: Real>(&self, (pressure, deviator): (R, R), preconsolidation: R) -> R {
+        let slope = deviator / self.ratio;
+        slope * slope / preconsolidation + pressure * (pressure / preconsolidation - 1.0)
+    }
+
+    /// At the stress ratio η = r M at the end of a return, whose trial has the pressure π and the elastic shear strain
+    /// s: what the volume strain has lost, p_c, the elastic shear strain.
+    ///
+    /// On the ellipse p = p_c/(1 + r²); with p and p_c from the change of volume d, both are its exponentials, so that
+    /// `d = κ̂ (λ̂ - κ̂)/λ̂ ln(p_c,n/(π (1 + r²)))`.
+    #[inline(always)]
+    fn at_ratio<R: Real>(&self, r: R, pressure: R, before: R) -> (R, R, R) {
+        let share = self.swelling * self.hardening / (self.swelling + self.hardening);
+        let lost = logarithm(before / (pressure * (r * r + 1.0))) * share;
+        let preconsolidation = before * exponential(lost / -self.hardening);
+        (lost, preconsolidation, preconsolidation * r * (self.ratio / (3.0 * self.mu)) / (r * r + 1.0))
+    }
+
+    /// The stress ratio over M at which the plastic strain lies along the normal of the ellipse: where
+    /// `2 r d/M + (s_trial - s)(1 - r²) = 0`. Left of the critical state, r = 1, and right of it a root lies between
+    /// that and the ratio that makes no change of volume; Newton's steps are kept between its bounds.
+    #[inline(always)]
+    fn solve<R: Real>(&self, (pressure, shear): (R, R), before: R) -> R {
+        let (one, none) = (pressure.like(1.0), pressure.like(0.0));
+        let wet = (before * 0.5).at_most(pressure);
+        let highest = (before / pressure - 1.0).magnitude().root();
+        let (mut low, mut high) = (R::choose(wet, none, one), R::choose(wet, one, highest));
+        let trial = shear * (3.0 * self.mu / self.ratio) / pressure;
+        let inside = low.below(trial) & trial.below(high);
+        let mut r = R::choose(inside, trial, (low + high) * 0.5);
+        let mut sought = none.at_most(none);
+        for _ in 0..EVALUATIONS {
+            let (lost, preconsolidation, kept) = self.at_ratio(r, pressure, before);
+            let (square, rest) = (r * r, shear - kept);
+            let value = r * lost * (2.0 / self.ratio) + rest * (one - square);
+            low = R::choose(none.below(value), r, low);
+            high = R::choose(value.below(none), r, high);
+            let share = self.swelling * self.hardening / (self.swelling + self.hardening);
+            let along = r * (-2.0 * share) / (square + 1.0);
+            let grown = preconsolidation * along / -self.hardening;
+            let of_shear = (grown * r + preconsolidation * (one - square) / (square + 1.0))
+                * (self.ratio / (3.0 * self.mu))
+                / (square + 1.0);
+            let slope = (lost + r * along) * (2.0 / self.ratio) - of_shear * (one - square) - r * rest * 2.0;
+            let step = r - value / slope;
+            let next = R::choose(low.at_most(step) & step.at_most(high), step, (low + high) * 0.5);
+            // Also where the bounds have met: the middle of neighbours is one of them.
+            let found = (next - r).magnitude().at_most(r * 2e-16) | value.at_most(none) & none.at_most(value);
+            r = R::choose(sought & !found, next, r);
+            sought = sought & !found;
+            if !R::any(sought) {
+                break;
+            }
+        }
+        r
+    }
+}
+
+impl Law for CamClay {
+    type Flow<R: Real> = CamClayReturn<R>;
+    const PARAMETERS: &'static [Variable] = &[
+        Variable::new("kappa", "-"),
+        Variable::new("lambda", "-"),
+        Variable::new("critical_ratio", "-"),
+        Variable::new("preconsolidation", "Pa"),
+        Variable::new("ocr", "-"),
+    ];
+    const STATE: &'static [Variable] = &[Variable::new("preconsolidation", "Pa")];
+    const IN_LANES: bool = false;
+    const LINEAR: bool = false;
+
+    fn elastic(&self) -> &Elastic {
+        &self.elastic
+    }
+
+    #[inline]
+    fn moduli(&self) -> Moduli {
+        self.moduli
+    }
+
+    fn parameters(&self) -> Vec<f64> {
+        self.numbers.to_vec()
+    }
+
+    fn with(&self, elastic: Elastic, parameters: &[f64]) -> Self {
+        Self::new(elastic, std::array::from_fn(|k| parameters[k]))
+    }
+
+    #[inline(always)]
+    fn stress<R: Real>(&self, eps: [R; 3]) -> [R; 3] {
+        let volume = eps[0] + eps[1] + eps[2];
+        let mean = exponential(volume / -self.constants.swelling) * -self.constants.reference;
+        three(|k| mean + (eps[k] - volume / 3.0) * (2.0 * self.constants.mu))
+    }
+
+    /// The pressure of a stress that pulls is none: not a number.
+    fn strain(&self, tau: [f64; 3]) -> [f64; 3] {
+        let mean = (tau[0] + tau[1] + tau[2]) / 3.0;
+        let volume = -self.constants.swelling * (-mean / self.constants.reference).ln();
+        tau.map(|tau| (tau - mean) / (2.0 * self.constants.mu) + volume / 3.0)
+    }
+
+    /// `p_r κ̂ exp(-ε_v/κ̂) + μ |dev ε|²`, above that of no pressure.
+    fn energy(&self, eps: [f64; 3]) -> f64 {
+        let volume = eps[0] + eps[1] + eps[2];
+        let squares: f64 = eps.iter().map(|eps| (eps - volume / 3.0).powi(2)).sum();
+        let Constants { swelling, reference, mu, .. } = self.constants;
+        swelling * reference * (-volume / swelling).exp() + mu * squares
+    }
+
+    fn start(&self, tau: [f64; 3], state: &mut [f64]) {
+        let (mean, _, norm) = split(tau);
+        let [.., preconsolidation, ocr] = self.numbers;
+        let slope = 1.5_f64.sqrt() * norm / self.constants.ratio;
+        state[0] = if preconsolidation > 0.0 { preconsolidation } else { ocr * (slope * slope / -mean - mean) };
+    }
+
+    #[inline(always)]
+    fn excess<R: Real>(&self, tau: [R; 3], state: &[R]) -> R {
+        let (mean, _, norm) = split(tau);
+        self.constants.excess((-mean, norm * 1.5_f64.sqrt()), state[0])
+    }
+
+    #[inline(never)]
+    fn project<R: Real>(&self, trial: [R; 3], state: &[R]) -> Projection<R, CamClayReturn<R>> {
+        let (constants, before) = (self.constants, state[0]);
+        let (mean, part, norm) = split(trial);
+        let (none, pressure, q) = (mean.like(0.0), -mean, norm * 1.5_f64.sqrt());
+        let yields = !constants.excess((pressure, q), before).at_most(none);
+        let shear = q / (3.0 * constants.mu);
+        let r = if R::any(yields) { constants.solve((pressure, shear), before) } else { none };
+        let (lost, after, kept) = constants.at_ratio(r, pressure, before);
+        let square = r * r + 1.0;
+        // Of the two parts of the plastic strain along the normal: one of them may be none.
+        let along = [after * (r * r - 1.0) / square, after * r * (2.0 / constants.ratio) / square];
+        let multiplier = (lost * along[0] + (shear - kept) * along[1]) / (along[0] * along[0] + along[1] * along[1]);
+        let returned = after / square;
+        let over = R::choose(none.below(q), returned * r * constants.ratio / q, none);
+        let direction = three(|k| R::choose(none.below(norm), part[k] / norm, none));
+        let tau = three(|k| R::choose(yields, over * part[k] - returned, trial[k]));
+        // What is torn so far that its pressure is below all numbers has no elastic state.
+        let tau = three(|k| R::choose(none.below(pressure), tau[k], none.like(f64::NAN)));
+        let volume = logarithm(pressure / constants.reference) * -constants.swelling;
+        let flow = CamClayReturn {
+            constants,
+            yields,
+            direction,
+            volume: R::choose(yields, volume - lost, volume),
+            pressure: R::choose(yields, returned, pressure),
+            deviator: R::choose(yields, returned * r * constants.ratio, q),
+            preconsolidation: R::choose(yields, after, before),
+            multiplier: R::choose(yields, multiplier, none),
+        };
+        Projection { tau, yields, flow }
+    }
+
+    fn branch(flow: &CamClayReturn<f64>) -> Branch {
+        if flow.yields { Branch::Face } else { Branch::Elastic }
+    }
+
+    /// `∂P/∂ε_v, ∂P/∂ε_s; ∂Q/∂ε_v, ∂Q/∂ε_s` of a return along the normal (Borja and Tamagnini, 1998, section 3.3), its
+    /// three equations linearised and the multiplier eliminated.
+    fn tangent(flow: &CamClayReturn<f64>, _moduli: Moduli) -> Tensor {
+        let CamClayReturn { constants, direction: n, preconsolidation, multiplier, .. } = *flow;
+        let Constants { swelling, hardening, ratio, mu, .. } = constants;
+        let (mean, bulk) = (-flow.pressure, flow.pressure / swelling);
+        let growth = preconsolidation / hardening; // of p_c with the volume
+        let normal = [2.0 * mean + preconsolidation, 2.0 * flow.deviator / (ratio * ratio)];
+        let scale = [1.0 + multiplier * (2.0 * bulk + growth), 1.0 + multiplier * 6.0 * mu / (ratio * ratio)];
+        let rate = [normal[0] * bulk + mean * growth, 3.0 * mu * normal[1]]; // of f with elastic strains
+        let drive = rate[0] * normal[0] / scale[0] + rate[1] * normal[1] / scale[1];
+        let moved = |volume: f64, shear: f64| {
+            if !flow.yields {
+                return [bulk * volume, 3.0 * mu * shear];
+            }
+            let right = [(1.0 + multiplier * growth) * volume, shear];
+            let by = (rate[0] * right[0] / scale[0] + rate[1] * right[1] / scale[1] - mean * growth * volume) / drive;
+            [bulk * (right[0] - normal[0] * by) / scale[0], 3.0 * mu * (right[1] - normal[1] * by) / scale[1]]
+        };
+        let turned = 2.0 * mu * flow.kept();
+        let along = (2.0_f64 / 3.0).sqrt();
+        Tensor::from_fn(|a, b| {
+            let [mean, deviator] = moved(1.0, along * n[b]);
+            let across = if a == b { 2.0 / 3.0 } else { -1.0 / 3.0 } - n[a] * n[b];
+            mean + along * deviator * n[a] + turned * across
+        })
+    }
+
+    /// All differences are kept alike.
+    fn chord(flow: &CamClayReturn<f64>, moduli: Moduli, _differences: (f64, f64)) -> f64 {
+        2.0 * moduli.mu * flow.kept()
+    }
+
+    fn elastic_strain(flow: &CamClayReturn<f64>, moduli: Moduli, tau: [f64; 3]) -> [f64; 3] {
+        tau.map(|tau| (tau + flow.pressure) / (2.0 * moduli.mu) + flow.volume / 3.0)
+    }
+
+    fn elastic_moduli(flow: &CamClayReturn<f64>, moduli: Moduli) -> Moduli {
+        let bulk = flow.pressure / flow.constants.swelling;
+        Moduli { lambda: bulk - moduli.mu * (2.0 / 3.0), ..moduli }
+    }
+
+    fn elastic_energy(flow: &CamClayReturn<f64>, moduli: Moduli, _eps: [f64; 3]) -> f64 {
+        flow.constants.swelling * flow.pressure + flow.deviator.powi(2) / (6.0 * moduli.mu)
+    }
+
+    fn advance(flow: &CamClayReturn<f64>, state: &mut [f64]) {
+        state[0] = flow.preconsolidation;
+    }
+
+    /// The critical state's friction angle in triaxial compression, `M = 6 sin φ/(3 - sin φ)`, is reduced; p_c stays.
+    fn reduced(self, factor: f64) -> Self {
+        if factor == 1.0 {
+            return self;
+        }
+        let [kappa, lambda, ratio, preconsolidation, ocr] = self.numbers;
+        let sin = (3.0 * ratio / (6.0 + ratio)).min(1.0);
+        let reduced = (sin.asin().tan() / factor).atan().sin();
+        let ratio = 6.0 * reduced / (3.0 - reduced);
+        Self::new(self.elastic, [kappa, lambda, ratio, preconsolidation, ocr])
+    }
+
+    fn softens(&self) -> bool {
+        true
+    }
+}
+
+impl CamClayReturn<f64> {
+    /// (-)  elastic shear strain over that of the trial
+    fn kept(&self) -> f64 {
+        let Constants { mu, ratio, .. } = self.constants;
+        1.0 / (1.0 + 6.0 * mu * self.multiplier / (ratio * ratio))
+    }
+}
+
+#[inline(always)]
+fn exponential<R: Real>(x: R) -> R {
+    x.unless(!x.below(x), [x, x], |[x, _]| x.exp())
+}
+
+#[inline(always)]
+fn logarithm<R: Real>(x: R) -> R {
+    x.unless(!x.below(x), [x, x], |[x, _]| x.ln())
+}

@@ -1,0 +1,61 @@
+//! Equilibrium of a step whose faces push and rub: sought with the nodes' statuses of the last displacement, corrected
+//! where the found one contradicts them, until it contradicts none (an active set; see
+//! [`contact`](crate::boundary::contact)).
+
+use crate::boundary::strip::StripAttachments;
+use crate::error::StepError;
+use crate::grid::Shape;
+use crate::kinematics::Kinematics;
+use crate::method::Criteria;
+use crate::model::Model;
+use crate::parallel::{Halo, LinearSolver};
+use crate::points::Points;
+use crate::solve::found::Found;
+use crate::step::nodes::Nodes;
+use crate::step::problem::Problem;
+use crate::step::report::Counts;
+
+/// Corrections after which a step is given up.
+const MOST: usize = 40;
+/// Part of the force tolerance, of the largest force, by which forces may contradict a status: they are known no
+/// better.
+const DOUBT: f64 = 1e-2;
+/// Criteria of both measures while statuses change: where they will, more would be for nothing.
+const ROUGH: f64 = 1e-2;
+
+/// Finds equilibrium from the last displacement `guess`, and leaves the statuses that it has in the `nodes`.
+pub fn find<K: Kinematics<D>, const D: usize>(
+    model: &Model<K, D>,
+    shape: &Shape<D>,
+    nodes: &mut Nodes<D>,
+    (grips, points): (&StripAttachments<D>, &Points<D>),
+    guess: &[f64],
+    (halo, solver): (&dyn Halo, &mut dyn LinearSolver),
+    counts: &mut Counts,
+) -> Result<Found<K, D>, StepError> {
+    if !model.boundary.has_contact() {
+        return super::find(&Problem { model, shape, nodes, grips, points, halo }, guess, solver, counts);
+    }
+    let Criteria { energy, force, max_iterations } = model.criteria;
+    let criteria = Criteria { energy: energy.max(ROUGH), force: force.max(ROUGH), max_iterations };
+    let rough = Model { criteria, ..model.clone() };
+    let (mut u, mut history, mut is_rough, mut first_guess) = (guess.to_vec(), Vec::new(), true, true);
+    for _ in 0..MOST {
+        let judged = if is_rough { &rough } else { model };
+        let problem = Problem { model: judged, shape, nodes, grips, points, halo };
+        let found = super::find(&problem, &u, solver, counts)?;
+        history.extend(found.history.iter().copied());
+        first_guess &= found.first_guess;
+        let doubt = (DOUBT * judged.criteria.force * found.scale, model.grid.smallest_edge());
+        let corrected = nodes.contacts.correct(&found.u, &found.reaction, doubt, halo);
+        nodes.contacts.first_energy = found.first_energy;
+        nodes.meet();
+        nodes.count(halo);
+        if corrected == 0 && !is_rough {
+            return Ok(Found { history, first_guess, ..found });
+        }
+        is_rough &= corrected > 0;
+        u = found.u;
+    }
+    Err(StepError::Unsettled { passes: MOST })
+}
