@@ -4,7 +4,7 @@
 use crate::draw;
 use arbitrary::{Result, Unstructured};
 use bsmpm::material::{
-    CamClay, Decay, DruckerPrager, Elastic, Graded, Hencky, Match, Material, MohrCoulomb, Profile, Response,
+    CamClay, Decay, DruckerPrager, Elastic, Graded, Hencky, Law, Match, Material, MohrCoulomb, MuI, Profile, Response,
     Separation, SofteningMohrCoulomb, VonMises,
 };
 use bsmpm::tensor::{Symmetric, Tensor};
@@ -44,7 +44,7 @@ fn draw(u: &mut Unstructured<'_>) -> Result<()> {
 }
 
 /// What [`bsmpm_scene`] admits: E > 0, -1 < ν < ½, 0 ≤ ψ ≤ φ < 90°, c ≥ 0, σ_y > 0, H ≥ 0, a strength reduction of 0.1
-/// to 100, a strength that falls, 0 < κ < λ < 1, 0 < M < 3; of any law also by height.
+/// to 100, a strength that falls, 0 < κ < λ < 1, 0 < M < 3, μ_s ≤ μ_2; of any law also by height.
 fn material(u: &mut Unstructured<'_>) -> Result<Material> {
     let elastic = Elastic { young: draw::size(u, -12.0, 20.0)?, poisson: poisson(u)? };
     let friction = draw::between(u, 0.0, 89.999)?.to_radians() * if u.ratio(1, 8)? { 1e-9 } else { 1.0 };
@@ -52,7 +52,7 @@ fn material(u: &mut Unstructured<'_>) -> Result<Material> {
     let cohesion = if u.ratio(1, 4)? { 0.0 } else { draw::size(u, -12.0, 20.0)? };
     let separation = if u.arbitrary()? { Separation::Forgotten } else { Separation::Closing };
     let reduction = if u.arbitrary()? { 1.0 } else { draw::size(u, -1.0, 2.0)? };
-    let law = match u.int_in_range(0..=10)? {
+    let law = match u.int_in_range(0..=11)? {
         0 => Material::Hencky(Hencky { elastic }),
         1 | 2 => {
             let fit = *u.choose(&[Match::PlaneStrain, Match::Inner, Match::Outer])?;
@@ -71,6 +71,12 @@ fn material(u: &mut Unstructured<'_>) -> Result<Material> {
             let (kappa, ratio) = (lambda * draw::between(u, 0.01, 0.99)?, draw::between(u, 0.01, 2.99)?);
             let (given, ocr) = (if u.arbitrary()? { 0.0 } else { draw::size(u, -3.0, 9.0)? }, draw::size(u, 0.0, 3.0)?);
             Material::CamClay(CamClay::new(elastic, [kappa, lambda, ratio, given, ocr]))
+        }
+        7 => {
+            let [fast, i_0] = [friction * draw::between(u, 1.0, 2.0)?, draw::size(u, -6.0, 3.0)?];
+            let [diameter, density] = [draw::size(u, -9.0, 3.0)?, draw::size(u, -3.0, 6.0)?];
+            let law = MuI::new(elastic, [friction, fast, i_0, diameter, density]);
+            Material::MuI(law.over(draw::size(u, -12.0, 6.0)?).filter(|_| u.ratio(3, 4).unwrap_or(true)).unwrap_or(law))
         }
         _ => Material::MohrCoulomb(MohrCoulomb::new(elastic, friction, dilation, cohesion).separating(separation)),
     };

@@ -118,6 +118,8 @@ pub struct NamedMaterial {
     pub material: Material,
     /// kg/m3; `None`: weightless
     pub density: Option<f64>,
+    /// s  of its damping; 0: none
+    pub retardation: f64,
 }
 
 /// A body of material points.

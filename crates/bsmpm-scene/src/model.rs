@@ -49,6 +49,7 @@ pub fn model(case: &Case) -> Result<Model<PlaneStrain, 2>, GridError> {
             force: case.solver.force_tolerance,
             max_iterations: case.solver.max_iterations,
         },
+        damping: damping(case),
         nonlinear: match case.solver.nonlinear {
             crate::Nonlinear::Auto => Nonlinear::Auto,
             crate::Nonlinear::Broyden => Nonlinear::QuasiNewton(QuasiNewton::Broyden),
@@ -57,6 +58,12 @@ pub fn model(case: &Case) -> Result<Model<PlaneStrain, 2>, GridError> {
         balances_energy: case.histories.iter().any(|history| history.quantity == Quantity::Energy),
         kinematics: PhantomData,
     })
+}
+
+/// s  of every material; empty where none is damped.
+fn damping(case: &Case) -> Vec<f64> {
+    let times = || case.materials.iter().map(|named| named.retardation);
+    if times().all(|time| time == 0.0) { Vec::new() } else { times().collect() }
 }
 
 /// The grid of a case.

@@ -12,7 +12,8 @@
 //!   `Σ A (p0 + p1)/2 · motion` of rigid strips, `r1 · u` of supports of the grid that move, and of friction at faces,
 //!   and the blow `v · M (v - v_p)` with which supports meet material that the points bring along with v_p. The mean
 //!   force of a step: its work is exact for dead loads and of second order in dt else.
-//! - **plastic**: `Σ_p V0 τ : (ε_trial - εᵉ)`, backward Euler like the return.
+//! - **plastic**: `Σ_p V0 τ : (ε_trial - εᵉ)`, backward Euler like the return, and what damping takes, `Σ_p V0 τ_v : e`
+//!   (see [`damping`](crate::step::damping)).
 //! - **transfer** between points and nodes: `(T0 - ½ v_I0 · M v_I0) + (½ v_I1 · M v_I1 - T1)` and what the blow did,
 //!   what PIC/FLIP loses on the way there and back; it can be negative, as the points' velocity grows by the
 //!   accelerations that they keep for themselves,
@@ -60,7 +61,7 @@ use std::ops::AddAssign;
 pub struct Flows<T = f64> {
     /// work of gravity, loads and what moves, less what friction at faces dissipates
     pub external: T,
-    /// dissipated by plastic flow
+    /// dissipated by plastic flow and damping
     pub plastic: T,
     /// lost between points and nodes
     pub transfer: T,
@@ -171,6 +172,10 @@ impl Draft {
         flows.penalty -= &strips.taken;
         let volumes = || responses.iter().zip(&points.volume);
         flows.plastic = volumes().map(|(response, volume)| volume * response.dissipation()).collect();
+        if !model.damping.is_empty() {
+            let damped = |p: usize| found.trial.viscous(model, points, p).map_or(0.0, |viscous| viscous.dissipation);
+            flows.plastic.extend((0..points.len()).map(|p| points.volume[p] * damped(p)));
+        }
         let elastic = volumes().map(|(response, volume)| volume * response.elastic_energy()).collect();
         let mut draft = Self { flows, elastic, rubbed, t, dt };
         if model.balances_energy {
@@ -190,6 +195,7 @@ impl Draft {
         let (pressures, volume) = (Pressures::of(problem, &found.trial), problem.volume());
         let work_of = |p: usize, grad: K::Gradient| {
             let tau = pressures.acting::<K, D>(p, volume[p], responses[p].tau());
+            let tau = found.trial.damped(model, points, p, tau);
             volume[p] * K::flux(&tau, &found.trial.dF(p)).dot(&grad)
         };
         flows.integration.extend(transfer::gradients::<K, D, _>((shape, &points.x), u, work_of));

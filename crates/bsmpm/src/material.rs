@@ -11,6 +11,7 @@ mod graded;
 mod hencky;
 mod law;
 mod mohr_coulomb;
+mod mu_i;
 mod response;
 mod softening;
 mod spectral;
@@ -25,6 +26,7 @@ pub use graded::{Graded, Profile};
 pub use hencky::Hencky;
 pub use law::{Branch, Law, Projection, Separation, Variable, split};
 pub use mohr_coulomb::MohrCoulomb;
+pub use mu_i::MuI;
 pub use response::Response;
 pub use softening::{Decay, Rate, SofteningMohrCoulomb};
 pub use stiffness::Stiffness;
@@ -327,6 +329,8 @@ laws! {
     softening::SofteningMohrCoulomb,
     /// Elastic by the pressure, plastic by the largest that it has seen: modified Cam-clay.
     cam_clay::CamClay,
+    /// Dense granular flow whose friction grows with the rate of shear.
+    mu_i::MuI,
 }
 
 /// Numbers of state of one law at most.

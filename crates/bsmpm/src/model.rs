@@ -98,6 +98,8 @@ pub struct Model<K, const D: usize> {
     pub background: Option<Background>,
     /// Convergence.
     pub criteria: Criteria,
+    /// s  retardation time of every material, in dynamics; empty: no damping
+    pub damping: Vec<f64>,
     /// How equilibrium is sought.
     pub nonlinear: Nonlinear,
     /// Whether every step reports where its energy went.

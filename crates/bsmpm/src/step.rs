@@ -5,6 +5,7 @@ pub mod apart;
 pub mod blocks;
 pub mod commit;
 pub mod coupling;
+pub mod damping;
 pub mod inertia;
 pub mod mass;
 pub mod newmark;

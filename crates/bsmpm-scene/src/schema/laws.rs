@@ -1,12 +1,12 @@
 //! Constitutive laws in the language: a law's word, its keys, and what it is made of.
 
-use super::Kind::*;
+use super::Kind::{self, *};
 use super::Presence::{Optional, Required};
 use super::{Dimension as In, Range, Table, key, loads, one_of};
 use crate::record::Record;
 use crate::words::Word;
 use bsmpm::material::{
-    CamClay, Decay, DruckerPrager, Elastic, Hencky, Match, Material, MohrCoulomb, Rate, Separation,
+    CamClay, Decay, DruckerPrager, Elastic, Hencky, Match, Material, MohrCoulomb, MuI, Rate, Separation,
     SofteningMohrCoulomb, VonMises,
 };
 use std::ops::Bound::{Excluded, Included, Unbounded};
@@ -30,6 +30,8 @@ choice! {
         SensitiveClay = "sensitive-clay",
         /// Clay whose stiffness and strength come from the pressure that it has seen.
         CamClay = "modified-cam-clay",
+        /// Dense granular flow whose friction grows with the rate of shear.
+        MuI = "mu-i",
     }
 }
 
@@ -39,7 +41,7 @@ impl LawName {
         match self {
             Self::Hencky => false,
             Self::MohrCoulomb | Self::Tresca | Self::DruckerPrager | Self::VonMises => true,
-            Self::Softening | Self::SensitiveClay | Self::CamClay => true,
+            Self::Softening | Self::SensitiveClay | Self::CamClay | Self::MuI => true,
         }
     }
 
@@ -55,6 +57,7 @@ impl LawName {
                 (&["cohesion", "sensitivity", "softening_strain"], &["band_width", "rate_parameter", "reference_rate"])
             }
             Self::CamClay => (&["kappa", "lambda", "critical_ratio"], &["preconsolidation", "ocr"]),
+            Self::MuI => (&["mu_s", "mu_2", "inertial_number", "grain_diameter", "grain_density"], &[]),
             Self::Softening => (
                 &["friction", "cohesion", "residual_friction", "residual_cohesion", "softening_strain"],
                 &["dilation", "residual_dilation", "softening", "band_width"],
@@ -85,6 +88,7 @@ impl LawName {
                 })
             }
             Self::CamClay => Material::CamClay(CamClay::new(elastic, [0.0; 5])),
+            Self::MuI => Material::MuI(MuI::new(elastic, [0.0; 5])),
             Self::VonMises => Material::VonMises(VonMises::new(elastic, 0.0, 0.0)),
             Self::Softening => {
                 let (decay, none) = (record.word("softening").unwrap_or_default(), (0.0, 0.0, 0.0));
@@ -220,6 +224,22 @@ pub(crate) static MATERIAL: Table = Table {
             "size of the yield surface over that through the stress at the start (modified-cam-clay)",
         ),
         key(
+            "mu_s",
+            Quantity(In::Number, BELOW_3),
+            Optional,
+            "friction of slow shear, the tangent of the slope at rest (mu-i: required, in dynamics)",
+        ),
+        key("mu_2", Quantity(In::Number, BELOW_3), Optional, "friction of fast shear, at least mu_s (mu-i: required)"),
+        key(
+            "inertial_number",
+            Quantity(In::Number, Range::POSITIVE),
+            Optional,
+            "I_0 at which half of mu_2 - mu_s is gained; I = rate of shear times grain_diameter sqrt(grain_density/p) \
+             (mu-i: required)",
+        ),
+        key("grain_diameter", Quantity(In::Length, Range::POSITIVE), Optional, "of the grains (mu-i: required)"),
+        key("grain_density", Quantity(In::Density, Range::POSITIVE), Optional, "of the grains (mu-i: required)"),
+        key(
             "match",
             Choice(Match::WORDS),
             Optional,
@@ -246,8 +266,25 @@ pub(crate) static MATERIAL: Table = Table {
         key("unit_weight", Quantity(In::UnitWeight, Range::POSITIVE), Optional, "density = unit_weight / 9.81 m/s2"),
         key("density", Quantity(In::Density, Range::POSITIVE), Optional, "neither: weightless, in dynamics an error"),
         key("k0", Quantity(In::Number, loads::COEFFICIENT), Optional, "horizontal over vertical stress at the start"),
+        key(
+            "damping",
+            Kind::Table(&DAMPING),
+            Optional,
+            "viscous stress beside that of the law (dynamic); none unless given",
+        ),
     ],
     exclusive: &[one_of(&["unit_weight", "density"], false), one_of(&["preconsolidation", "ocr"], false)],
+};
+
+static DAMPING: Table = Table {
+    header: "[material.NAME] damping",
+    doc: "Kelvin-Voigt damping: the elastic stiffness times ratio/(pi frequency) times the rate of strain. Higher \
+          frequencies are damped more, in proportion; motion without strain is not",
+    keys: &[
+        key("ratio", Quantity(In::Number, BELOW_1), Required, "of the damping to the critical one, at the frequency"),
+        key("frequency", Quantity(In::Number, Range::POSITIVE), Required, "Hz"),
+    ],
+    exclusive: &[],
 };
 
 const POISSON: Range = Range {

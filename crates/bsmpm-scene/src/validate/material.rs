@@ -77,6 +77,7 @@ fn read(
     let density = density(record, around.regime, report);
     let layer = Layer::of(number, around);
     let law = law(record, (layer.as_ref(), around.grid), report);
+    let retardation = retardation(record, around.regime, report);
     let (young, poisson) = (profile(record, "young"), record.number("poisson"));
     if let (Some(young), Some(layer)) = (&young, &layer) {
         layer.check(record, ("young", &Range::POSITIVE), young, report);
@@ -94,7 +95,7 @@ fn read(
     if let Some(layer) = layer.filter(|_| factor != 1.0) {
         note_reduction(record, &material, &layer, factor, report);
     }
-    Some(NamedMaterial { name: name.clone(), material, density: density? })
+    Some(NamedMaterial { name: name.clone(), material, density: density?, retardation: retardation? })
 }
 
 /// Heights (m, in the case's coordinates) between which bodies of a material lie; the grid's if there are none.
@@ -184,6 +185,19 @@ fn density(record: &Record, regime: Option<Regime>, report: &mut Report<'_>) -> 
         ));
     }
     Some(Some(density))
+}
+
+/// s  of its damping, 0 without; `None` after an error.
+fn retardation(record: &Record, regime: Option<Regime>, report: &mut Report<'_>) -> Option<f64> {
+    let Some(damping) = record.record("damping") else { return Some(0.0) };
+    if regime == Some(Regime::QuasiStatic) {
+        let message = "the time of a quasi-static analysis is no time: damping needs a dynamic one";
+        record.error("damping", message, report);
+    }
+    let (ratio, frequency) = (damping.number("ratio")?, damping.number("frequency")?);
+    let time = ratio / (std::f64::consts::PI * frequency);
+    report.note(&damping.path, format!("retardation time {time:.6} s"), "ratio/(pi frequency)");
+    Some(time)
 }
 
 fn warn_of_stiffness(record: &Record, young: Option<f64>, poisson: Option<f64>, report: &mut Report<'_>) {

@@ -70,7 +70,8 @@ fn timed(case: &Case, record: &Record, report: &mut Report<'_>) {
     for (_, (named, (_, written))) in named.filter(|(number, _)| made(*number)) {
         if case.analysis.regime == Regime::QuasiStatic && named.material.over(1.0).is_some() {
             let message = "the time of a quasi-static analysis is no time: a strength by the rate needs a dynamic one";
-            written.error("rate_parameter", message, report);
+            let key = if written.gives("rate_parameter") { "rate_parameter" } else { "model" };
+            written.error(key, message, report);
         }
     }
 }

@@ -38,7 +38,7 @@ const VALUES: [&str; 22] = [
 ];
 
 /// Changes of [`FULL`] to what excludes what is there.
-const OTHERWISE: [&[(&str, &str)]; 6] = [
+const OTHERWISE: [&[(&str, &str)]; 7] = [
     &[("geometry = \"plane-strain\"", "geometry = \"plane-strain\"\naccuracy = \"draft\"")],
     &[
         ("dt   = \"10 ms\"", "steps = 100\nspectral_radius = 0.8\nmass = \"consistent\""),
@@ -85,6 +85,13 @@ const OTHERWISE: [&[(&str, &str)]; 6] = [
         (
             "cohesion    = 2e4",
             "cohesion = 2e4\nsensitivity = 4\nsoftening_strain = 20\nrate_parameter = 0.1\nreference_rate = 1e-4",
+        ),
+    ],
+    &[
+        ("\"tresca\"", "\"mu-i\""),
+        (
+            "cohesion    = 2e4",
+            "damping = { ratio = 0.05, frequency = 2.0 }\nmu_s = 0.38\nmu_2 = 0.64\ninertial_number = 0.28\ngrain_diameter = \"1 mm\"\ngrain_density = 2500",
         ),
     ],
 ];

@@ -232,3 +232,26 @@ fn sensitive_clay_softens_by_its_sensitivity_and_follows_the_rate_in_dynamics() 
     let message = format!("{:?}", set(STATIC, &[&clay]).expect_err("no time"));
     assert!(message.contains("a strength by the rate needs a dynamic one"), "{message}");
 }
+
+/// mu(I): its numbers in SI, and that it is for dynamics.
+#[test]
+fn granular_flow_has_its_numbers_and_a_time() {
+    let keys = "model = \"mu-i\", young = 1e7, poisson = 0.3, density = 1.5e3, mu_s = 0.38, inertial_number = 0.3, \
+                grain_diameter = \"2 mm\"";
+    let with = |fast: &str| {
+        set(
+            FULL,
+            &[
+                "strength_reduction.factor=1.0",
+                &format!("material.clay={{ {keys}, mu_2 = {fast}, grain_density = 2.6e3 }}"),
+            ],
+        )
+    };
+    let flow = with("0.64").expect("a valid case").materials[1].material.clone();
+    assert_eq!(flow.parameters(), [0.38, 0.64, 0.3, 0.002, 2.6e3]);
+    let message = format!("{:?}", with("0.3").expect_err("faster is not weaker"));
+    assert!(message.contains("allowed: mu_2 >= mu_s = 0.38"), "{message}");
+    let flow = format!("material.soil={{ {keys}, mu_2 = 0.64, grain_density = 2.6e3 }}");
+    let message = format!("{:?}", set(STATIC, &[&flow]).expect_err("no time"));
+    assert!(message.contains("a strength by the rate needs a dynamic one"), "{message}");
+}

@@ -12,6 +12,7 @@ use crate::parallel::{LinearSolver, Symmetry};
 use crate::step::adjoint::{Adjoint, Pressures, transposed, works};
 use crate::step::blocks::{MOST, Pairs, add_mass, add_point, complete};
 use crate::step::coupling::{Coupling, Dilations, Raised, Share};
+use crate::step::damping::Viscous;
 use crate::step::nodes::weights;
 use crate::step::problem::Problem;
 use crate::step::residual::Residual;
@@ -93,7 +94,11 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
                 }
                 K::working(&(change * inverse.transpose())) * volume
             };
-            moduli.push(K::Gradient::moduli(unit));
+            let viscous = trial.viscous(problem.model, points, p);
+            moduli.push(K::Gradient::moduli(|k, l| match &viscous {
+                Some(viscous) => unit(k, l) + viscous_flux::<K, D>(viscous, &inverse, (k, l)) * volume,
+                None => unit(k, l),
+            }));
             if let Some(dilation) = &mut dilation {
                 let mut change = tangent.apply(&K::dilation());
                 if let Some((_, at)) = &mut adjoint {
@@ -101,6 +106,9 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
                 }
                 if pressures.at(p).is_some() {
                     change -= Tensor::identity() * works::<K, D>(&change);
+                }
+                if let Some(viscous) = &viscous {
+                    change += viscous.apply(&K::dilation());
                 }
                 let change = change * inverse.transpose();
                 let flux = K::working(&change) * volume;
@@ -219,6 +227,16 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
         let group = model.groups.of(points.material[p]);
         dilations.add(nodes, p, &Share { group, weight, bulk: 0.0, dilation, force });
     }
+}
+
+/// Change of the flux of a viscous stress for a unit gradient, per volume: (d tau_v - tau_v l^T) dF^-T.
+fn viscous_flux<K: Kinematics<D>, const D: usize>(
+    viscous: &Viscous,
+    inverse: &Tensor,
+    (row, column): (usize, usize),
+) -> K::Gradient {
+    let l = K::gradient::<f64>(&K::Gradient::unit(row, column)) * inverse;
+    K::working(&((viscous.apply(&l) - viscous.tau.full() * l.transpose()) * inverse.transpose()))
 }
 
 /// Change of the flux for a gradient: sum_kl moduli_kl grad_kl.

@@ -99,7 +99,8 @@ pub fn commit<K: Kinematics<D>, const D: usize>(
     for (p, response) in responses.iter().enumerate() {
         let F = trial.dF(p) * points.F.at(p);
         points.F.set(p, F);
-        points.sigma.set(p, response.tau().scaled(1.0 / (F.determinant() * points.dilation_of(p))));
+        let tau = trial.damped(model, points, p, response.tau());
+        points.sigma.set(p, tau.scaled(1.0 / (F.determinant() * points.dilation_of(p))));
         points.b_e.set(p, response.b_e());
         points.eps_p[p] += response.plastic_increment();
     }

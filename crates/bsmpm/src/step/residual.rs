@@ -82,6 +82,7 @@ impl InternalForce {
         let flux = |p: usize| match trial.respond(model, points, p) {
             Ok(response) => {
                 let tau = pressures.acting::<K, D>(p, volume[p], response.tau());
+                let tau = trial.damped(model, points, p, tau);
                 K::flux(&tau, &trial.dF(p)) * volume[p]
             }
             Err(_) => {

@@ -16,6 +16,7 @@ use crate::parallel::{LinearSolver, Symmetry};
 use crate::points::Points;
 use crate::step::blocks::{MOST, Pairs, add_mass, add_point, complete};
 use crate::step::coupling::{Coupling, Dilations, Raised, Share};
+use crate::step::damping::Damping;
 use crate::step::nodes::Nodes;
 use crate::step::problem::Problem;
 use crate::step::trial::Trial;
@@ -33,11 +34,13 @@ pub fn assemble<K: Kinematics<D>, const D: usize>(
     let Problem { model, shape, nodes, points, halo, .. } = *problem;
     let volume = problem.volume();
     solver.begin(&nodes.free);
+    let damping = Damping::of(model, nodes);
     let mut coupling = at.and_then(|_| Coupling::of(model, nodes, Raised::Along));
     // Threads work on a column each; what they found is added in the order of the patches.
     let threads = rayon::current_num_threads();
     for columns in shape.columns().chunks(threads) {
-        let state = Assembly { model, shape, nodes, points, volume, at, coupling: coupling.as_ref() };
+        let state =
+            Assembly { model, shape, nodes, points, volume, at, coupling: coupling.as_ref(), damping: &damping };
         let of_column = |column: &PatchColumn| column.patches.clone().map(|patch| state.part(patch)).collect();
         let parts: Vec<Vec<PatchPart>> = columns.par_iter().map(of_column).collect();
         let patches = columns.iter().flat_map(|column| column.patches.clone());
@@ -71,6 +74,7 @@ struct Assembly<'a, K: Kinematics<D>, const D: usize> {
     volume: &'a [f64],
     at: Option<&'a Trial<K, D>>,
     coupling: Option<&'a Coupling<'a, D>>,
+    damping: &'a Damping,
 }
 
 impl<K: Kinematics<D>, const D: usize> Assembly<'_, K, D> {
@@ -124,25 +128,26 @@ impl<K: Kinematics<D>, const D: usize> Assembly<'_, K, D> {
         let Self { model, shape, nodes, points, coupling, .. } = *self;
         transfer::slopes_of::<K, D>((shape, &points.x), p, slopes);
         let volume = self.volume[p];
-        let bulk = match stiffness {
-            Some(stiffness) => {
-                let (moduli, bulk) = of_point::<K, D>(stiffness, volume, coupling.is_some());
-                add_point::<K, D>(&moduli, slopes, Pairs::Upper, &mut part.block);
-                bulk
-            }
-            None => {
-                let material = &model.materials[usize::from(points.material[p])];
-                let relative = material.relative_stiffness(points.height(p));
-                accumulate::<K, D>(volume * relative, slopes, moments);
-                bulk * relative
-            }
-        };
+        let damped = self.damping.relative(points.material[p]);
+        let mut raised = 0.0;
+        if let Some(stiffness) = stiffness {
+            let (moduli, bulk) = of_point::<K, D>(stiffness, volume, coupling.is_some());
+            add_point::<K, D>(&moduli, slopes, Pairs::Upper, &mut part.block);
+            raised = bulk;
+        }
+        // Of a point that yields only what damps it is elastic.
+        if let Some(share) = if stiffness.is_some() { damped } else { Some(1.0 + damped.unwrap_or(0.0)) } {
+            let material = &model.materials[usize::from(points.material[p])];
+            let relative = share * material.relative_stiffness(points.height(p));
+            accumulate::<K, D>(volume * relative, slopes, moments);
+            raised += bulk * relative;
+        }
         if let Some(dilations) = &mut part.dilations {
             let mut dilation = [Vector::zeros(); MOST];
             let dilation = &mut dilation[..slopes.len()];
             dilation.iter_mut().zip(slopes).for_each(|(of_node, slope)| *of_node = K::divergence(slope) * volume);
             let group = model.groups.of(points.material[p]);
-            dilations.add(nodes, p, &Share { group, weight: volume, bulk, dilation, force: &[] });
+            dilations.add(nodes, p, &Share { group, weight: volume, bulk: raised, dilation, force: &[] });
         }
     }
 }

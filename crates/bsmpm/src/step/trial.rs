@@ -9,6 +9,7 @@ use crate::parallel::Halo;
 use crate::points::Points;
 use crate::real::Real;
 use crate::stabilisation::Stabilisation;
+use crate::step::damping::{self, Damping, Viscous};
 use crate::step::nodes::Nodes;
 use crate::step::problem::Problem;
 use crate::tensor::{Symmetric, Tensor};
@@ -23,6 +24,8 @@ pub struct Trial<K: Kinematics<D>, const D: usize> {
     grad: Vec<K::Gradient>,
     /// -  S(w dJ) of every point, w dJ: dJ, or J under Zhao's F-bar (steps 4c, 4e); under F-bar only
     mean: Option<Vec<f64>>,
+    /// beside the stress of the law
+    damping: Damping,
 }
 
 impl<K: Kinematics<D>, const D: usize> Trial<K, D> {
@@ -40,7 +43,7 @@ impl<K: Kinematics<D>, const D: usize> Trial<K, D> {
             let dJ = K::jacobian::<f64>(&grad);
             if dJ > 0.0 && dJ.is_finite() { grad } else { K::Gradient::from_element(f64::NAN) }
         });
-        let trial = Self { grad, mean: None };
+        let trial = Self { grad, mean: None, damping: Damping::of(model, nodes) };
         let own = |p: usize| match trial.own(model, points, p) {
             inverted if inverted.is_nan() => weight(model.stabilisation, points, p), // no other point shall suffer for it
             own => own,
@@ -137,7 +140,30 @@ impl<K: Kinematics<D>, const D: usize> Trial<K, D> {
         for (k, variable) in state[..width].iter_mut().enumerate() {
             *variable = Lanes::from_fn(simd, |lane| points.state_of(eight.point(lane))[k]);
         }
-        Some((dF, law.stress([xx, yy, zz, xy], &state[..width])?))
+        let mut tau = law.stress([xx, yy, zz, xy], &state[..width])?;
+        if let Some(lame) = self.damping.lame(model, points, eight.point(0)) {
+            let one = Lanes::splat(simd, 1.0);
+            let stretch = K::push_forward(&dF_bar, &Symmetric([one, one, one, zero, zero, zero]));
+            let viscous = damping::stress(&stretch, lame).0;
+            tau = Symmetric(std::array::from_fn(|k| tau.0[k] + viscous[k]));
+        }
+        Some((dF, tau))
+    }
+
+    /// The viscous stress of point `p` beside that of its law, if it has any.
+    #[inline]
+    pub fn viscous(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> Option<Viscous> {
+        let lame = self.damping.lame(model, points, p)?;
+        Some(Viscous::of(&K::dilate(&self.dF(p), self.ratio(model, points, p)), lame))
+    }
+
+    /// `tau` and the viscous stress of point `p`, Pa.
+    #[inline]
+    pub fn damped(&self, model: &Model<K, D>, points: &Points<D>, p: usize, mut tau: Symmetric) -> Symmetric {
+        if let Some(viscous) = self.viscous(model, points, p) {
+            tau.0.iter_mut().zip(viscous.tau.0).for_each(|(tau, more)| *tau += more);
+        }
+        tau
     }
 
     /// Steps (4f)-(4i): trial b^e of point `p` under dF-bar, widened by its gap, and the constitution's answer.

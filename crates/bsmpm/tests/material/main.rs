@@ -9,6 +9,7 @@ mod element;
 mod gap;
 mod input;
 mod lanes;
+mod mu_i;
 mod projection;
 mod random;
 mod reference;

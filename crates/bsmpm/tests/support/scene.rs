@@ -68,6 +68,7 @@ impl<K: Kinematics<D>, const D: usize> Scene<K, D> {
             quadrature: Quadrature::Points,
             background: None,
             criteria: Criteria { energy: 1e-14, force: 1e-10, max_iterations: 200 },
+            damping: Vec::new(),
             nonlinear: Nonlinear::default(),
             balances_energy: false,
             kinematics: PhantomData,

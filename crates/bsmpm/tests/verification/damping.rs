@@ -1,9 +1,12 @@
-//! Numerical damping against the theory of the methods: one degree of freedom exactly, a mode of the elastic bar.
+//! Damping: that of the methods against their theory, one degree of freedom exactly and a mode of the elastic bar; that
+//! of materials (Kelvin-Voigt) by the same mode, in bodies that turn, and in Newton's tangent.
 
 use super::bar::{CELLS, PERIOD, bar};
 use crate::support::scene::{Scene, axis, hencky};
-use bsmpm::boundary::{Path, Strip, SurfacePoint};
+use bsmpm::boundary::{Path, Strip, Support, SurfacePoint};
 use bsmpm::kinematics::PlaneStrain;
+use bsmpm::material::{Elastic, Material, MohrCoulomb};
+use bsmpm::method::Nonlinear;
 use bsmpm::model::Regime;
 use bsmpm::points::Points;
 use bsmpm::stabilisation::Stabilisation;
@@ -155,6 +158,11 @@ fn a_spectral_radius_of_one_is_the_papers_method_to_the_bit() {
 fn mode(scheme: Scheme, steps: usize) -> (f64, f64, f64) {
     let mut scene = bar(Stabilisation::None);
     scene.model.newmark = scheme.newmark();
+    swing(scene, steps)
+}
+
+/// The same of any bar.
+fn swing(mut scene: Scene<PlaneStrain, 2>, steps: usize) -> (f64, f64, f64) {
     let mut course: Vec<f64> = vec![0.0];
     scene.march(PERIOD / steps as f64, 5.0 * PERIOD, |points, _| {
         let tip = (0..points.len()).max_by(|&a, &b| points.x[a][0].total_cmp(&points.x[b][0])).expect("points");
@@ -193,4 +201,72 @@ fn a_mode_of_the_bar_decays_and_slows_down_as_the_theory_says() {
             assert!((slower.0 - slower.1).abs() <= 2e-4); // measured 1.0e-4
         }
     }
+}
+
+/// A quarter wave of circular frequency omega with the damping ratio `xi = beta omega/2` loses `exp(-xi omega t)`; the
+/// frequency is higher by `xi omega dt/2`, as the force comes half a step late, of which the decay knows nothing.
+#[test]
+fn a_damped_mode_decays_by_its_ratio_to_second_order_and_is_late_by_half_a_step() {
+    let (ratio, omega) = (0.05, 2.0 * PI / PERIOD);
+    let error = |method: Stabilisation, steps: usize| {
+        let plain = swing(bar(method), steps);
+        let mut damped = bar(method);
+        damped.model.damping = vec![2.0 * ratio / omega];
+        let (left, passed, period) = swing(damped, steps);
+        let dt = PERIOD / steps as f64;
+        let decay = -(left.ln() / passed - plain.0.ln() / plain.1) / (omega * dt);
+        (decay / ratio - 1.0, (plain.2 / period - 1.0) + 0.5 * ratio * ratio, 0.5 * ratio * omega * dt)
+    };
+    for method in [Stabilisation::None, Stabilisation::FBar, Stabilisation::ConsistentFBar] {
+        let [coarse, fine] = [40, 80].map(|steps| error(method, steps));
+        println!("{method:?}: decay {:.1e} {:.1e}, frequency {:.2e} for {:.2e}", coarse.0, fine.0, fine.1, fine.2);
+        assert!(coarse.0.abs() <= 0.02 && fine.0.abs() <= 0.006, "{coarse:?} {fine:?}");
+        assert!((fine.1 / fine.2 - 1.0).abs() <= 0.2, "{fine:?}");
+    }
+}
+
+/// A yielding block that turns and is struck: without damping, with it by the secants, and by Newton's method.
+#[test]
+fn newtons_tangent_knows_the_viscous_stress() {
+    let run = |nonlinear: Nonlinear, time: f64, method: Stabilisation| {
+        let sand = MohrCoulomb::new(Elastic { young: 100.0, poisson: 0.3 }, 0.3, 0.0, 0.2);
+        let law = Material::MohrCoulomb(sand);
+        let thrown = |x: &Vector<2>| [1.0 - 2.0 * x[1], 2.0 * x[0] - 3.0].into();
+        let mut scene = Scene::<PlaneStrain, 2>::new([axis(0.5, 8, 2), axis(0.5, 6, 2)], law, Regime::Dynamic)
+            .body([2..5, 1..4], 3, 1.0, thrown)
+            .support(Support::fixed(1, false))
+            .stabilised(method);
+        scene.model.damping = if time > 0.0 { vec![time] } else { Vec::new() };
+        scene.model.nonlinear = nonlinear;
+        scene.model.criteria.force = 1e-10;
+        scene.solved(0.05, 0.4)
+    };
+    for method in [Stabilisation::None, Stabilisation::ConsistentFBar] {
+        let (plain, _) = run(Nonlinear::Auto, 0.0, method);
+        let [(auto, _), (newton, steps)] = [Nonlinear::Auto, Nonlinear::Newton].map(|how| run(how, 0.05, method));
+        let far = |a: &Scene<PlaneStrain, 2>, b: &Scene<PlaneStrain, 2>| {
+            a.points.x.iter().zip(&b.points.x).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max)
+        };
+        let most = steps.iter().map(|step| step.report.iterations).max().expect("steps");
+        println!("{method:?}: {:.1e}, undamped {:.1e}, {most} iterations", far(&auto, &newton), far(&auto, &plain));
+        assert!(far(&auto, &newton) <= 1e-7 && far(&auto, &plain) > 1e-3 && most <= 9);
+    }
+}
+
+/// Bodies that move and turn as if rigid keep their energy: strain alone is damped.
+#[test]
+fn a_rotation_is_not_damped() {
+    let spin =
+        |time: f64| {
+            let mut scene =
+                Scene::<PlaneStrain, 2>::new([axis(0.5, 8, 2), axis(0.5, 8, 2)], hencky(1e4, 0.3), Regime::Dynamic)
+                    .body([3..5, 3..5], 3, 1.0, |x| [0.1 - (x[1] - 2.0), x[0] - 2.0].into());
+            scene.model.damping = vec![time];
+            scene.march(0.01, 0.5, |_, _| {});
+            let v = &scene.points.motion.as_ref().expect("dynamic").v;
+            v.iter().zip(&scene.points.mass).map(|(v, m)| 0.5 * m * v.norm_squared()).sum::<f64>()
+        };
+    let (plain, damped) = (spin(0.0), spin(0.05));
+    println!("{plain} {damped}");
+    assert!((damped / plain - 1.0).abs() <= 2e-3, "{plain} {damped}");
 }

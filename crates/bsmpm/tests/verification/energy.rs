@@ -72,6 +72,21 @@ fn a_model_that_does_not_balance_energy_reports_none() {
     bar(Stabilisation::None).march(0.1, 0.2, |_, accepted| assert_eq!(accepted.report.energy, None));
 }
 
+/// What a material's damping takes stands with what flow does: `1 - exp(-2 xi omega t)` of the bar's energy.
+#[test]
+fn the_books_tell_what_damping_takes() {
+    let (ratio, omega) = (0.02, 2.0 * std::f64::consts::PI / PERIOD);
+    for method in [Stabilisation::None, Stabilisation::ConsistentFBar] {
+        let mut damped = bar(method);
+        damped.model.damping = vec![2.0 * ratio / omega];
+        let course = kept(damped, PERIOD / 80.0, 2.0 * PERIOD);
+        tell(&format!("{method:?}"), &course);
+        let taken = course.books.flows.plastic / course.books.start;
+        let expected = 1.0 - (-2.0 * ratio * omega * 2.0 * PERIOD).exp();
+        assert!(course.relative() <= 1e-9 && (taken / expected - 1.0).abs() <= 5e-3, "{taken} for {expected}");
+    }
+}
+
 #[test]
 fn the_bars_books_close_and_say_where_its_energy_went() {
     for method in METHODS {

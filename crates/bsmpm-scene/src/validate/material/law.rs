@@ -88,7 +88,7 @@ pub(super) fn law(
     for &key in required.iter().chain(known).filter(|key| record.gives(key)) {
         let (profile, range) = match MATERIAL.key(key).map(|key| &key.kind) {
             Some(Kind::Profile(_, range, _)) => (profile(record, key)?, range),
-            Some(Kind::Quantity(Dimension::Number, range)) => (Profile::constant(record.number(key)?), range),
+            Some(Kind::Quantity(_, range)) => (Profile::constant(record.number(key)?), range),
             _ => continue,
         };
         if let Some(layer) = layer {
@@ -101,6 +101,11 @@ pub(super) fn law(
         remould(record, &mut parameters, report)?;
     }
     check(record, &parameters, layer, report)?;
+    let [slow, fast] = ["mu_s", "mu_2"].map(|key| parameters.of(key).value);
+    if model == LawName::MuI && slow > fast {
+        record.error("mu_2", format!("{fast} is out of range; allowed: mu_2 >= mu_s = {slow}"), report);
+        return None;
+    }
     if model == LawName::CamClay {
         check_cam_clay(record, &parameters, report)?;
     }

@@ -1,0 +1,155 @@
+//! Dense granular flow, μ(I) (Jop, Forterre and Pouliquen, 2006, Nature 441, 727-730), elastic below its strength: a
+//! cone whose friction grows with the rate of shear, at constant volume.
+//!
+//! `√J₂ = μ(I) p`, `μ = μ_s + (μ_2 - μ_s)/(1 + I_0/I)`, `I = γ̇ d √(ρ_s/p)`: p the pressure, γ̇ = √(2 ε̇ᵖ : ε̇ᵖ) that of
+//! the step's end, d and ρ_s diameter and density of the grains. Outside of a step, and in a quasi-static one, `μ = μ_s`.
+
+use super::law::{Branch, Law, Projection, Variable, split};
+use super::{Elastic, Moduli};
+use crate::real::{Real, three};
+use crate::tensor::Tensor;
+use std::f64::consts::SQRT_2;
+
+/// Elastic inside `√J₂ - μ_s p ≤ 0`; no tension.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MuI {
+    elastic: Elastic,
+    parameters: [f64; 5], // μ_s, μ_2, I_0, d (m), ρ_s (kg/m3)
+    moduli: Moduli,
+    quickness: f64, // √Pa  d √ρ_s/Δt: I √p over the plastic shear of a step; 0 outside of one
+}
+
+/// What a return leaves.
+#[derive(Clone, Copy, Debug)]
+pub struct MuIReturn<R: Real> {
+    /// to the tip, where the rest has no meaning
+    apex: R::Mask,
+    /// (-)  principal deviator of the trial over its norm
+    direction: [R; 3],
+    /// (-)  √J₂ after the return over that of the trial
+    kept: R,
+    /// (-)  of the √J₂ that the return took, with that of the trial and with its pressure
+    rates: [R; 2],
+}
+
+impl MuI {
+    /// A law by `[μ_s, μ_2, I_0, d, ρ_s]`: 0 ≤ μ_s ≤ μ_2, the others positive, d in m and ρ_s in kg/m3.
+    pub fn new(elastic: Elastic, parameters: [f64; 5]) -> Self {
+        let moduli = elastic.moduli();
+        Self { elastic, parameters, moduli, quickness: 0.0 }
+    }
+
+    /// The plastic shear γ of a return from √J₂ = T at the pressure p: the root of `(T - G γ)(I_0 √p + k γ) =
+    /// p (μ_s I_0 √p + μ_2 k γ)`, k the quickness, where T > μ_s p > 0; and of it the rates with T and p.
+    #[inline(always)]
+    fn sheared<R: Real>(&self, root: R, pressure: R) -> (R, [R; 2]) {
+        let ([mu_s, mu_2, i_0, ..], mu, quick) = (self.parameters, self.moduli.mu, self.quickness);
+        let slow = pressure.root() * i_0;
+        let over = root - pressure * mu_s;
+        let linear = slow * mu + (pressure * mu_2 - root) * quick;
+        let (square, constant) = (mu * quick, slow * over);
+        let discriminant = (linear * linear + constant * (4.0 * square)).root();
+        // Of the two forms of the root that without a difference of like numbers.
+        let falls = linear.below(linear.like(0.0));
+        let denominator = R::choose(falls, linear.like(2.0 * square), linear + discriminant);
+        let numerator = R::choose(falls, discriminant - linear, constant * 2.0);
+        let gamma = numerator / denominator;
+        let with_root = (gamma * quick + slow) / discriminant;
+        let with_pressure =
+            (slow / (pressure * 2.0)) * (root - pressure * (3.0 * mu_s) - gamma * mu) - gamma * (quick * mu_2);
+        (gamma, [with_root, with_pressure / discriminant])
+    }
+}
+
+impl Law for MuI {
+    type Flow<R: Real> = MuIReturn<R>;
+    const PARAMETERS: &'static [Variable] = &[
+        Variable::new("mu_s", "-"),
+        Variable::new("mu_2", "-"),
+        Variable::new("inertial_number", "-"),
+        Variable::new("grain_diameter", "m"),
+        Variable::new("grain_density", "kg/m3"),
+    ];
+
+    fn elastic(&self) -> &Elastic {
+        &self.elastic
+    }
+
+    #[inline]
+    fn moduli(&self) -> Moduli {
+        self.moduli
+    }
+
+    fn parameters(&self) -> Vec<f64> {
+        self.parameters.to_vec()
+    }
+
+    /// μ_2 is at least μ_s.
+    fn with(&self, elastic: Elastic, parameters: &[f64]) -> Self {
+        let mut own: [f64; 5] = std::array::from_fn(|k| parameters[k]);
+        own[1] = own[1].max(own[0]);
+        Self { quickness: self.quickness, ..Self::new(elastic, own) }
+    }
+
+    fn over(&self, dt: f64) -> Option<Self> {
+        let [.., diameter, density] = self.parameters;
+        Some(Self { quickness: diameter * density.sqrt() / dt, ..self.clone() })
+    }
+
+    /// `f = √J₂ - μ_s p`.
+    #[inline(always)]
+    fn excess<R: Real>(&self, tau: [R; 3], _state: &[R]) -> R {
+        let (mean, _, norm) = split(tau);
+        norm / SQRT_2 + mean * self.parameters[0]
+    }
+
+    /// Along the deviator at constant pressure; without pressure to the tip, τ = 0.
+    #[inline(always)]
+    fn project<R: Real>(&self, trial: [R; 3], _state: &[R]) -> Projection<R, MuIReturn<R>> {
+        let (mean, deviator, norm) = split(trial);
+        let (root, pressure, zero) = (norm / SQRT_2, -mean, mean.like(0.0));
+        let yields = !(root + mean * self.parameters[0]).at_most(zero);
+        let (apex, (gamma, rates)) = (pressure.at_most(zero), self.sheared(root, pressure));
+        let (kept, mu) = (-(gamma * self.moduli.mu / root) + 1.0, self.moduli.mu);
+        let tau = three(|k| {
+            let returned = R::choose(apex, zero, mean + kept * deviator[k]);
+            R::choose(yields, returned, trial[k])
+        });
+        let flow =
+            MuIReturn { apex, direction: three(|k| deviator[k] / norm), kept, rates: [rates[0] * mu, rates[1] * mu] };
+        Projection { tau, yields, flow }
+    }
+
+    #[inline]
+    fn branch(flow: &MuIReturn<f64>) -> Branch {
+        if flow.apex { Branch::Apex } else { Branch::Face }
+    }
+
+    /// With n the direction, r what is kept of √J₂ and a, b the rates of what is taken with T and p:
+    /// `2μ r (I₄ - ⅓ I ⊗ I) + 2μ (1 - r - a) n ⊗ n + √2 K b n ⊗ I + K I ⊗ I`; at the tip 0.
+    fn tangent(flow: &MuIReturn<f64>, moduli: Moduli) -> Tensor {
+        let MuIReturn { apex, direction: n, kept, rates: [with_root, with_pressure] } = *flow;
+        if apex {
+            return Tensor::zeros();
+        }
+        let (mu, bulk) = (moduli.mu, moduli.bulk());
+        Tensor::from_fn(|a, b| {
+            let deviator = if a == b { 2.0 / 3.0 } else { -1.0 / 3.0 };
+            2.0 * mu * (kept * deviator + (1.0 - kept - with_root) * n[a] * n[b])
+                + SQRT_2 * bulk * with_pressure * n[a]
+                + bulk
+        })
+    }
+
+    /// All differences are kept alike.
+    fn chord(flow: &MuIReturn<f64>, moduli: Moduli, _differences: (f64, f64)) -> f64 {
+        if flow.apex { 0.0 } else { 2.0 * moduli.mu * flow.kept }
+    }
+
+    fn reduced(self, factor: f64) -> Self {
+        let [mu_s, mu_2, rest @ ..] = self.parameters;
+        let [i_0, diameter, density] = rest;
+        let parameters = [mu_s / factor, mu_2 / factor, i_0, diameter, density];
+        Self { parameters, ..self }
+    }
+}
