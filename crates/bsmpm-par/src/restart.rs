@@ -209,7 +209,9 @@ impl Resumed<'_> {
         let surface = model.boundary.surface();
         let sizes = |lists: &[Vec<_>]| lists.iter().map(Vec::len).collect::<Vec<_>>();
         let same = sizes(&points.surface.traction) == sizes(&surface.traction)
-            && sizes(&points.surface.position) == sizes(&surface.position);
+            && sizes(&points.surface.position) == sizes(&surface.position)
+            && sizes(&points.surface.pressure) == sizes(&surface.pressure)
+            && sizes(&points.surface.pressure_rate) == sizes(&surface.pressure_rate);
         let anchors = &points.surface.anchors;
         let lengths = |lists: &[Vec<u64>]| lists.iter().map(Vec::len).collect::<Vec<_>>();
         let anchored = (anchors.strips.is_empty() && anchors.loads.is_empty())

@@ -7,7 +7,7 @@ mod loads;
 pub use crate::words::{Base, Format, Geometry, Nonlinear, Support};
 pub use element::{ElementStage, ElementTest};
 pub use history::{Check, Column, Face, History, Quantity};
-pub use loads::{Footing, Initial, MotionPath, PointLoad, Prescribed, Site, Traction};
+pub use loads::{Footing, Initial, Line as LoadedLine, MotionPath, PointLoad, Prescribed, Push, Site, Traction};
 
 use crate::error::Choice;
 use crate::grid::{GridSpec, Line};
@@ -133,6 +133,8 @@ pub struct Body {
     pub points_per_cell: usize,
     /// m/s  at the start; `None`: at rest
     pub velocity: Option<[f64; 2]>,
+    /// rad/s  rotation at the start, counter-clockwise, and about which place, m
+    pub spin: Option<(f64, [f64; 2])>,
 }
 
 impl Body {

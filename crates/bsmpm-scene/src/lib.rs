@@ -42,8 +42,8 @@ pub use bsmpm::points::Seed;
 pub use bsmpm::quadrature::Quadrature;
 pub use case::{
     Analysis, Base, Body, Case, Check, Checkpoint, Column, ElementStage, ElementTest, Every, Face, Footing, Format,
-    Geometry, Gravity, History, Initial, Linear, MotionPath, NamedMaterial, Nonlinear, Output, PointLoad, Prescribed,
-    Quantity, Site, Solver, Support, Traction,
+    Geometry, Gravity, History, Initial, Linear, LoadedLine, MotionPath, NamedMaterial, Nonlinear, Output, PointLoad,
+    Prescribed, Push, Quantity, Site, Solver, Support, Traction,
 };
 pub use difference::{Difference, differences};
 pub use error::{Choice, Error, Place};

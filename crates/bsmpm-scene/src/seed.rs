@@ -182,6 +182,13 @@ fn of_cell(n: usize, [across, up]: [[f64; 2]; 2]) -> impl Iterator<Item = CellPl
 }
 
 impl Body {
+    /// m/s  what its spin makes of a place, m from the grid's lower corner.
+    fn spun(&self, case: &Case, x: [f64; 2]) -> Vector<2> {
+        let Some((rate, about)) = self.spin else { return Vector::<2>::zeros() };
+        let about = case.grid.local(about);
+        Vector::<2>::new(-rate * (x[1] - about[1]), rate * (x[0] - about[0]))
+    }
+
     fn seed(&self, case: &Case, id: u64, place: CellPlace) -> Seed<2> {
         Seed {
             id,
@@ -189,7 +196,7 @@ impl Body {
             x: place.x.into(),
             volume: place.area,
             mass: case.materials[self.material].density.unwrap_or(0.0) * place.area,
-            v: self.velocity.map_or(Vector::<2>::zeros(), Vector::from),
+            v: self.velocity.map_or(Vector::<2>::zeros(), Vector::from) + self.spun(case, place.x),
         }
     }
 }

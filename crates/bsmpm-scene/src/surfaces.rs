@@ -1,6 +1,6 @@
 //! Strips and loads of a case as the physics wants them, and the footing's gauges.
 
-use crate::{Base, Case, Face, Footing, Prescribed, Site};
+use crate::{Base, Case, Face, Footing, LoadedLine, Prescribed, Push, Site};
 use bsmpm::boundary::{Load, Path, Strip, StripReport, SurfacePoint, surface};
 use bsmpm::grid::Grid;
 use bsmpm::kinematics::PlaneStrain;
@@ -49,19 +49,43 @@ pub fn name_of_strip(case: &Case, strip: usize) -> String {
 pub fn loads(case: &Case, grid: &Grid<2>) -> Vec<Load<2>> {
     let place = |at: [f64; 2]| Vector::from(case.grid.local(at));
     let across = case.bodies.iter().map(|body| body.points_per_cell).max().unwrap_or(1);
-    let tractions = case.tractions.iter().map(|traction| Load {
-        points: surface::along::<PlaneStrain>(grid, &place(traction.from), &place(traction.to), across),
-        traction: traction.stress.into(),
-        ramp: traction.ramp,
-        amplitude: traction.amplitude.clone(),
+    let tractions = case.tractions.iter().map(|traction| {
+        let (points, left): (Vec<_>, Vec<_>) = match traction.line {
+            LoadedLine::Segment { from, to } => {
+                let (from, to) = (place(from), place(to));
+                let points = surface::along::<PlaneStrain>(grid, &from, &to, across);
+                points.into_iter().map(|point| (point, normal(&from, &to))).unzip()
+            }
+            LoadedLine::Circle { center, radius } => around(grid, &place(center), radius, across).into_iter().unzip(),
+        };
+        let height = |point: &SurfacePoint<2>| point.x[1] + case.grid.lower()[1];
+        let (values, follows) = match traction.push {
+            Push::Stress(stress) => (vec![stress.into(); points.len()], false),
+            Push::Pressure { profile, side } => {
+                let pressed = points.iter().zip(left).map(|(point, left)| left * (side * profile.at(height(point))));
+                (pressed.collect(), true)
+            }
+        };
+        Load { points, traction: values, follows, ramp: traction.ramp, amplitude: traction.amplitude.clone() }
     });
     let forces = case.point_loads.iter().map(|load| Load {
-        points: vec![SurfacePoint { x: place(load.at), area: 1.0 }],
-        traction: load.force.into(),
-        ramp: load.ramp,
         amplitude: load.amplitude.clone(),
+        ..Load::dead(vec![SurfacePoint { x: place(load.at), area: 1.0 }], load.force.into(), load.ramp)
     });
     tractions.chain(forces).collect()
+}
+
+/// Points of a circle inside the grid with unit vectors towards its centre, `count` and more in a cell.
+fn around(grid: &Grid<2>, center: &Vector<2>, radius: f64, count: usize) -> Vec<(SurfacePoint<2>, Vector<2>)> {
+    let length = std::f64::consts::TAU * radius;
+    // In fours, so that a circle has the grid's symmetries.
+    let pieces = 4 * (length / grid.smallest_edge() * count as f64 / 4.0).ceil() as usize;
+    let point = |k: usize| {
+        let (sin, cos) = ((k as f64 + 0.5) * std::f64::consts::TAU / pieces as f64).sin_cos();
+        let outward = Vector::<2>::new(cos, sin);
+        (SurfacePoint { x: center + outward * radius, area: length / pieces as f64 }, -outward)
+    };
+    (0..pieces).map(point).filter(|(point, _)| grid.locate(&point.x).is_some()).collect()
 }
 
 /// Ends of the footing's base, m from the grid's lower corner.

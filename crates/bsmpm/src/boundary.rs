@@ -76,6 +76,8 @@ impl<const D: usize> Boundary<D> {
         Surface {
             traction: self.strips.iter().map(at_rest).collect(),
             position: self.loads.iter().map(|load| load.points.iter().map(|point| point.x).collect()).collect(),
+            pressure: self.loads.iter().map(Load::at_rest).collect(),
+            pressure_rate: self.loads.iter().map(|load| vec![Vector::zeros(); load.at_rest().len()]).collect(),
             anchors: Anchors::default(),
         }
     }

@@ -61,7 +61,7 @@ pub fn step<K: Kinematics<D>, const D: usize>(
     let mut report = StepReport { dt, strips, ..StepReport::of(&problem, &found) };
     let anchors = Anchors::of(&model.boundary, &points.surface.anchors, points.anchored(), halo);
     let position = load::moved(&model.boundary.loads, &points.surface, (&model.grid, &nodes.active), &found.u, halo);
-    let mut surface = Surface { traction, position, anchors };
+    let mut surface = Surface { traction, position, anchors, ..points.surface.clone() };
     let responses = commit::responses(model, &found.trial, points, halo)?;
     let accounts = model.balances_energy || model.regime == Regime::Dynamic;
     let draft = accounts.then(|| Draft::of(&problem, (&found, &responses), (t, dt)));
@@ -77,6 +77,7 @@ pub fn step<K: Kinematics<D>, const D: usize>(
         report.strips[number].left_behind = places.left_behind(number, strip, t + dt, &model.grid);
     }
     surface.position = places.loads;
+    surface.follow(places.pressure, dt);
     points.surface = surface;
     let (energy, turnover) = account.map_or((None, None), |(flows, turnover)| (flows, Some(turnover)));
     Ok(StepReport { energy, turnover, advance, smoothed, ..report })

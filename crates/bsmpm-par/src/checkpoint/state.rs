@@ -37,6 +37,9 @@ pub struct CheckpointState {
     pub traction: Vec<Vec<[f64; 2]>>,
     /// m  position of every load's points.
     pub position: Vec<Vec<[f64; 2]>>,
+    /// Pa  traction of loads that follow the surface, and its rate, Pa per s; none of a run by a version that had none.
+    #[serde(default, skip_serializing_if = "follow_nothing")]
+    pub pressure: [Vec<Vec<[f64; 2]>>; 2],
     /// Ids of the points that the points of strips, and those of loads, are anchored to; none of a run by a version
     /// that had none, or before the first step.
     #[serde(default)]
@@ -128,8 +131,24 @@ impl CheckpointState {
         };
         let [strips, loads] = self.anchors.clone();
         let anchors = Anchors { strips, loads };
-        Surface { traction: vectors(&self.traction), position: vectors(&self.position), anchors }
+        // Without any, as many empty lists as there are loads.
+        let of_loads = |lists: &[Vec<[f64; 2]>]| {
+            if lists.is_empty() { vec![Vec::new(); self.position.len()] } else { vectors(lists) }
+        };
+        let [pressure, pressure_rate] = self.pressure.each_ref().map(|lists| of_loads(lists));
+        Surface {
+            traction: vectors(&self.traction),
+            position: vectors(&self.position),
+            pressure,
+            pressure_rate,
+            anchors,
+        }
     }
+}
+
+/// Whether no load follows the surface.
+fn follow_nothing(pressure: &[Vec<Vec<[f64; 2]>>; 2]) -> bool {
+    pressure.iter().all(Vec::is_empty)
 }
 
 /// The components of the vectors of all strips or loads.

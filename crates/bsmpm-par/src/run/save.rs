@@ -148,6 +148,8 @@ impl Run<'_> {
             traction: pairs(&surface.traction),
             anchors: [surface.anchors.strips.clone(), surface.anchors.loads.clone()],
             position: pairs(&surface.position),
+            pressure: [&surface.pressure, &surface.pressure_rate]
+                .map(|lists| if lists.iter().all(Vec::is_empty) { Vec::new() } else { pairs(lists) }),
             record: self.recorder.state(),
             told_strips: self.told_strips.clone(),
             last_frame: self.last_frame,

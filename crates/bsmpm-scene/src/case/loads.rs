@@ -1,6 +1,7 @@
 //! What acts on the bodies besides gravity: rigid strips, prescribed motions, tractions, point loads, initial stress.
 
 use super::{Base, Face};
+use bsmpm::material::Profile;
 
 /// A displacement as a function of time, linear between its rows; zero at the start, constant after the last row.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,19 +48,75 @@ pub enum Site {
     },
 }
 
-/// A load on a segment of the body's surface that follows the body; its direction and the force on it stay.
+/// A load on the body's surface that follows the body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Traction {
-    /// m  one end at the start
-    pub from: [f64; 2],
-    /// m  the other end
-    pub to: [f64; 2],
-    /// Pa  force per area of the start
-    pub stress: [f64; 2],
+    /// where at the start
+    pub line: Line,
+    /// what acts there
+    pub push: Push,
     /// s (quasi-static: pseudo-time)  over which it grows linearly; 0: at once
     pub ramp: f64,
     /// s (quasi-static: pseudo-time), increasing, and the share that acts then; empty: the ramp holds
     pub amplitude: Vec<(f64, f64)>,
+}
+
+/// Where a traction acts at the start.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Line {
+    /// m  a segment
+    Segment {
+        /// one end
+        from: [f64; 2],
+        /// the other
+        to: [f64; 2],
+    },
+    /// m  the part of a circle inside the grid
+    Circle {
+        /// its centre
+        center: [f64; 2],
+        /// its radius
+        radius: f64,
+    },
+}
+
+/// What a traction is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Push {
+    /// Pa  force per area of the start; direction and force stay
+    Stress([f64; 2]),
+    /// Pa  against the body, by the height at the start in the case's coordinates; it turns and stretches with the
+    /// surface
+    Pressure {
+        /// the pressure
+        profile: Profile,
+        /// 1 where the body lies on the left of a segment from its first end, or inside a circle, else -1
+        side: f64,
+    },
+}
+
+impl Traction {
+    /// Ends of a segment, m.
+    pub fn ends(&self) -> Option<[[f64; 2]; 2]> {
+        match self.line {
+            Line::Segment { from, to } => Some([from, to]),
+            Line::Circle { .. } => None,
+        }
+    }
+
+    /// Pa  the largest force per area when fully applied.
+    pub fn largest(&self) -> f64 {
+        match self.push {
+            Push::Stress([x, y]) => x.hypot(y),
+            Push::Pressure { profile, .. } => {
+                let [low, high] = match self.line {
+                    Line::Segment { from, to } => [from[1], to[1]],
+                    Line::Circle { center, radius } => [center[1] - radius, center[1] + radius],
+                };
+                profile.at(low).abs().max(profile.at(high).abs())
+            }
+        }
+    }
 }
 
 /// A force at a point of the body, which follows the body.

@@ -15,13 +15,24 @@ pub(super) static BODY: Table = Table {
         key("subtract", Tables(&SUBTRACT), Optional, "boxes, polygons and circles that are cut out"),
         key("points_per_cell", Count(1, 100), Required, "points along each axis of a cell"),
         key("velocity", Pair(In::Velocity, Range::ANY), Optional, "at the start; absent: at rest"),
+        key("spin", Kind::Table(&SPIN), Optional, "rotation as if rigid at the start, besides velocity"),
     ],
     exclusive: &[one_of(&["box", "polygon", "circle"], true)],
 };
 
 const POLYGON: Kind = Rows(&[(In::Length, Range::ANY), (In::Length, Range::ANY)]);
 
-static CIRCLE: Table = Table {
+static SPIN: Table = Table {
+    header: "spin = { rate, about }",
+    doc: "Rotation at the start: v = velocity + rate x (x - about)",
+    keys: &[
+        key("rate", Quantity(In::Number, Range::ANY), Required, "rad/s, counter-clockwise"),
+        key("about", Pair(In::Length, Range::ANY), Required, "the place that it leaves at rest"),
+    ],
+    exclusive: &[],
+};
+
+pub(super) static CIRCLE: Table = Table {
     header: "circle = { center, radius }",
     doc: "A circle",
     keys: &[

@@ -2,7 +2,7 @@
 
 use super::Kind::*;
 use super::Presence::{Default, Optional, Required};
-use super::{Dimension as In, Kind, Range, Table, key, one_of};
+use super::{Dimension as In, Kind, Range, Table, body, key, one_of};
 use crate::words::{Base, Components, Side, Start, Word};
 use std::ops::Bound::Included;
 
@@ -60,11 +60,18 @@ pub(super) static PRESCRIBED: Table = Table {
 
 pub(super) static TRACTION: Table = Table {
     header: "[[traction]]",
-    doc: "A load on a segment of a body's surface, which it follows",
+    doc: "A load on a segment of a body's surface, or on a circle, which it follows",
     keys: &[
-        key("from", PLACE, Required, "one end of the segment at the start"),
-        key("to", PLACE, Required, "the other end"),
-        key("stress", Pair(In::Stress, Range::ANY), Required, "force per area of the start, along x and y"),
+        key("from", PLACE, Optional, "one end of the segment at the start"),
+        key("to", PLACE, Optional, "the other end"),
+        key("circle", Kind::Table(&body::CIRCLE), Optional, "a circle instead: the part of it inside the grid"),
+        key("stress", Pair(In::Stress, Range::ANY), Optional, "force per area of the start, along x and y"),
+        key(
+            "pressure",
+            Profile(In::Stress, Range::ANY, &STRESS_PROFILE),
+            Optional,
+            "instead of stress: normal to the surface as it turns and stretches, against the body that lies on one side",
+        ),
         key("ramp", RAMP, Default("0.0"), "time over which it grows; 0: at once"),
         key(
             "amplitude",
@@ -74,7 +81,12 @@ pub(super) static TRACTION: Table = Table {
             between, from 0 at time 0, constant after the last",
         ),
     ],
-    exclusive: &[one_of(&["ramp", "amplitude"], false)],
+    exclusive: &[
+        one_of(&["from", "circle"], true),
+        one_of(&["to", "circle"], true),
+        one_of(&["stress", "pressure"], true),
+        one_of(&["ramp", "amplitude"], false),
+    ],
 };
 
 pub(super) static SHAKING: Table = Table {

@@ -51,8 +51,10 @@ fn read(
     report: &mut Report<'_>,
 ) -> Option<Body> {
     let material = material(record, root, report);
-    if record.gives("velocity") && regime == Some(Regime::QuasiStatic) {
-        record.error("velocity", "has no meaning in a quasi-static analysis", report);
+    for key in ["velocity", "spin"].into_iter().filter(|key| record.gives(key)) {
+        if regime == Some(Regime::QuasiStatic) {
+            record.error(key, "has no meaning in a quasi-static analysis", report);
+        }
     }
     let points_per_cell = record.count("points_per_cell").map(|count| count as usize);
     if points_per_cell == Some(1) {
@@ -67,7 +69,11 @@ fn read(
     }
     let region = shape::region(record, (grid, points_per_cell), report);
     let velocity = record.pair("velocity");
-    let body = Body { material: material?, region: region?, points_per_cell: points_per_cell?, velocity };
+    let spin = match record.record("spin") {
+        Some(spin) => Some((spin.number("rate")?, spin.pair("about")?)),
+        None => None,
+    };
+    let body = Body { material: material?, region: region?, points_per_cell: points_per_cell?, velocity, spin };
     if grid.is_some_and(|grid| body.points(grid) == 0) {
         let message = "the body is thinner than 1e-9 of a cell: it has no points";
         match record.record("box") {

@@ -239,11 +239,9 @@ fn all_segments(case: &Case) -> Vec<Segment<'_>> {
         }),
         Site::Face(_) => None,
     });
-    let tractions = case.tractions.iter().enumerate().map(|(number, traction)| Segment {
-        name: format!("traction.{number}"),
-        table: ("traction", number),
-        ends: [traction.from, traction.to],
-        path: None,
+    let tractions = case.tractions.iter().enumerate().filter_map(|(number, traction)| {
+        let ends = traction.ends()?;
+        Some(Segment { name: format!("traction.{number}"), table: ("traction", number), ends, path: None })
     });
     footing.chain(prescribed).chain(tractions).collect()
 }

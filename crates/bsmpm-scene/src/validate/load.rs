@@ -1,26 +1,83 @@
 //! Tractions, point loads, and the stress at the start.
 
+use super::material::profile;
 use super::place::{along, at_body, beyond};
 use super::strip::{AroundStrip, segment};
-use crate::case::{Body, Gravity, Initial, NamedMaterial, PointLoad, Traction};
+use crate::case::{Body, Gravity, Initial, LoadedLine, NamedMaterial, PointLoad, Push, Traction};
 use crate::record::Record;
 use crate::report::Report;
 use crate::words::Start;
 use bsmpm::model::Regime;
 
+/// Places of a circle at which bodies are looked for.
+const RING: usize = 180;
+
 /// All tractions in the order of the file, without those that have an error.
 pub(super) fn tractions(root: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Vec<Traction> {
     let mut read = |record: &Record| {
-        let ends = segment(record, around, report);
-        if let Some(ends) = ends {
-            acts_on_body(record, "from", along(ends), around, report);
-        }
+        let line = line(record, around, report);
+        let push = line.and_then(|line| push(record, line, around, report));
         let course = course(record, around, report);
-        let ([from, to], stress, (ramp, amplitude)) = (ends?, record.pair("stress")?, course?);
-        warn_of_nothing(record, "stress", stress, report);
-        Some(Traction { from, to, stress, ramp, amplitude })
+        let (line, push, (ramp, amplitude)) = (line?, push?, course?);
+        let traction = Traction { line, push, ramp, amplitude };
+        let key = if record.gives("pressure") { "pressure" } else { "stress" };
+        warn_of_nothing(record, key, [traction.largest(); 2], report);
+        Some(traction)
     };
     root.records("traction").iter().filter_map(&mut read).collect()
+}
+
+/// Where a traction acts: on a body everywhere.
+fn line(record: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Option<LoadedLine> {
+    if let Some(circle) = record.record("circle") {
+        let (center, radius) = (circle.pair("center")?, circle.number("radius")?);
+        let (lower, upper) = (around.grid?.lower(), around.grid?.upper());
+        let inside = |at: &[f64; 2]| (0..2).all(|axis| lower[axis] <= at[axis] && at[axis] <= upper[axis]);
+        let places: Vec<[f64; 2]> = ring(center, radius).filter(inside).collect();
+        if places.is_empty() {
+            record.error("circle", "no part of it is inside the grid", report);
+            return None;
+        }
+        acts_on_body(record, "circle", places.into_iter(), around, report);
+        return Some(LoadedLine::Circle { center, radius });
+    }
+    let [from, to] = segment(record, around, report)?;
+    acts_on_body(record, "from", along([from, to]), around, report);
+    Some(LoadedLine::Segment { from, to })
+}
+
+/// Places on a circle.
+fn ring(center: [f64; 2], radius: f64) -> impl Iterator<Item = [f64; 2]> {
+    (0..RING).map(move |k| {
+        let (sin, cos) = ((k as f64 + 0.5) * std::f64::consts::TAU / RING as f64).sin_cos();
+        [center[0] + radius * cos, center[1] + radius * sin]
+    })
+}
+
+/// What a traction is; of a pressure on which side the body lies.
+fn push(record: &Record, line: LoadedLine, around: AroundStrip<'_>, report: &mut Report<'_>) -> Option<Push> {
+    if !record.gives("pressure") {
+        return Some(Push::Stress(record.pair("stress")?));
+    }
+    let profile = profile(record, "pressure")?;
+    let (grid, bodies) = (around.grid?, around.bodies?);
+    let off = 0.25 * grid.axes[0].shortest().min(grid.axes[1].shortest());
+    let holds = |at: [f64; 2]| bodies.iter().any(|body| body.region.contains(at));
+    let count = |side: f64| match line {
+        LoadedLine::Segment { from, to } => {
+            let (x, y) = (to[0] - from[0], to[1] - from[1]);
+            let (x, y) = (-y / x.hypot(y) * off * side, x / x.hypot(y) * off * side);
+            along([from, to]).filter(|at| holds([at[0] + x, at[1] + y])).count()
+        }
+        LoadedLine::Circle { center, radius } => ring(center, radius - side * off).filter(|at| holds(*at)).count(),
+    };
+    let (left, right) = (count(1.0), count(-1.0));
+    if left.abs_diff(right) * 2 < left.max(right) {
+        let message = "bodies lie on both sides of it: a pressure acts on a free surface";
+        record.error("pressure", message, report);
+        return None;
+    }
+    Some(Push::Pressure { profile, side: if left > right { 1.0 } else { -1.0 } })
 }
 
 /// All point loads in the order of the file, without those that have an error.

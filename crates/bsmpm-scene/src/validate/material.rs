@@ -133,7 +133,7 @@ impl Layer {
 }
 
 /// The parameter in its own unit (degrees for angles) by the height in the case's coordinates.
-fn profile(record: &Record, key: &str) -> Option<Profile> {
+pub(super) fn profile(record: &Record, key: &str) -> Option<Profile> {
     let Some(table) = record.record(key) else { return record.number(key).map(Profile::constant) };
     Some(Profile { value: table.number("value")?, at: table.number("at_y")?, per_metre: table.number("per_metre")? })
 }

@@ -194,7 +194,7 @@ fn loaded(case: &Case) -> bool {
         || !case.shaking.is_empty()
         || case.footing.iter().any(|footing| moves(&footing.path))
         || case.prescribed.iter().any(|prescribed| moves(&prescribed.path))
-        || case.tractions.iter().any(|traction| pulls(traction.stress))
+        || case.tractions.iter().any(|traction| traction.largest() > 0.0)
         || case.point_loads.iter().any(|load| pulls(load.force))
 }
 

@@ -196,7 +196,7 @@ pub const STRIPS: &[Row] = &[
     row("to   = [1.0, 1.25]", "to = [9.0, 1.25]", "traction.0.to", "outside the grid"),
     row("to   = [1.0, 1.25]", "to = [0.0, 1.25]", "traction.0.to", "the length is zero"),
     row("stress = [0.0, \"-20 kPa\"]", "stress = [0.0, \"-20 kN/m\"]", "traction.0.stress", "expected a stress"),
-    row("stress = [0.0, \"-20 kPa\"]", "", "traction.0.stress", "missing").up(3),
+    row("stress = [0.0, \"-20 kPa\"]", "", "traction.0", "missing: one of stress, pressure").up(3),
     row("at = [3.5, 1.25]", "at = [3.5, 3.25]", "point_load.0.at", "outside the grid, which ends at y = 3"),
     row("\"-1 kN/m\"", "\"-1 kN\"", "point_load.0.force", "takes forces per metre (N/m, kN/m, MN/m)"),
     row("\"-1 kN/m\"", "\"-1 kPa\"", "point_load.0.force", "expected a force per metre of thickness"),

@@ -88,6 +88,9 @@ const OTHERWISE: [&[(&str, &str)]; 7] = [
         ),
     ],
     &[
+        ("from = [0.0, 1.25]\nto   = [1.0, 1.25]", "circle = { center = [2.75, 2.0], radius = \"10 cm\" }"),
+        ("stress = [0.0, \"-20 kPa\"]", "pressure = { value = 1e3, at_y = 3.0, per_metre = \"10 kPa/m\" }"),
+        ("velocity = [0.0, \"-1 m/s\"]", "spin = { rate = 2.0, about = [1.5, \"2 m\"] }"),
         ("\"tresca\"", "\"mu-i\""),
         (
             "cohesion    = 2e4",

@@ -4,10 +4,11 @@ mod materials;
 
 use bsmpm::material::{Law, Material, MohrCoulomb};
 use bsmpm::stabilisation::Stabilisation;
+use bsmpm::tensor::Vector;
 use bsmpm_scene::words::{Factor, Ksp, Pc};
 use bsmpm_scene::{
-    BackgroundKind, Base, Case, Error, Every, Extent, Face, GridAxis, Initial, Place, Quadrature, Quantity, Site,
-    Support,
+    BackgroundKind, Base, Case, Error, Every, Extent, Face, GridAxis, Initial, LoadedLine, Place, Push, Quadrature,
+    Quantity, Site, Support, seed,
 };
 
 const FULL: &str = include_str!("../full.toml");
@@ -281,7 +282,7 @@ fn strips_loads_and_initial_stress_arrive() {
     assert_eq!(case.prescribed[0].site, Site::Face(Face { axis: 0, upper: true }));
     assert_eq!(case.prescribed[0].path.rows, [(1.0, [0.0, -0.01])]);
     assert_eq!(case.prescribed[1].path.rows, [(0.5, [0.0, -0.1]), (1.0, [0.0, 0.0])]);
-    assert_eq!((case.tractions[0].stress, case.tractions[0].ramp), ([0.0, -2e4], 0.5));
+    assert_eq!((case.tractions[0].push, case.tractions[0].ramp), (Push::Stress([0.0, -2e4]), 0.5));
     assert_eq!((case.point_loads[0].at, case.point_loads[0].force), ([3.5, 1.25], [0.0, -1e3]));
     assert_eq!(case.initial, Some(Initial::AtRest(vec![0.5, 0.5, 0.5, 0.6])));
     let elastic = FULL.replace("k0          = 0.6\n", "").replace("k0 = 0.5\n", "gravity = \"elastic\"\n");
@@ -371,4 +372,54 @@ fn doubtful_cases_are_warned_of() {
     assert!(warned("2") && !warned("3"));
     let plastic = FULL.replace("[stabilisation]\nmethod = \"f-bar\"", "");
     assert!(valid(&plastic, &[]).warnings.iter().any(|warning| warning.contains("material.sand is plastic")));
+}
+
+/// A pressure: on the side where the body lies, by depth, on segments and on circles.
+#[test]
+fn a_pressure_finds_the_body_that_it_presses_on() {
+    let with = |traction: &str| set(FULL, &[&format!("traction.0={{ ramp = 0.5, {traction} }}")]);
+    let push = |traction: &str| with(traction).expect("a valid case").tractions[0].clone();
+    let push = |traction: &str| (push(traction).line, push(traction).push, push(traction).largest());
+    let side = |traction: &str| match push(traction).1 {
+        Push::Pressure { side, .. } => side,
+        Push::Stress(_) => panic!(),
+    };
+    assert_eq!(side("from = [0.0, 1.25], to = [1.0, 1.25], pressure = 1e3"), -1.0, "below, on the right of its way");
+    assert_eq!(side("from = [1.0, 1.25], to = [0.0, 1.25], pressure = 1e3"), 1.0);
+    assert_eq!(side("circle = { center = [0.5, 2.0], radius = 0.4 }, pressure = 1e3"), 1.0, "a disc");
+    let hole = "circle = { center = [2.75, 2.0], radius = 0.1 }, pressure = { value = 0.0, at_y = \"3 m\", per_metre = \"10 kPa/m\" }";
+    assert_eq!(side(hole), -1.0, "what surrounds it");
+    let (line, _, largest) = push(hole);
+    assert_eq!(line, LoadedLine::Circle { center: [2.75, 2.0], radius: 0.1 });
+    assert!((largest - 11e3).abs() < 1e-9, "at its lowest place: {largest}");
+    for (traction, told) in [
+        ("from = [0.0, 0.5], to = [1.0, 0.5], pressure = 1e3", "bodies lie on both sides of it"),
+        ("circle = { center = [9.0, 2.0], radius = 0.4 }, pressure = 1e3", "no part of it is inside the grid"),
+        ("circle = { center = [0.5, 2.0], radius = 0.9 }, pressure = 1e3", "no body is at"),
+        ("from = [0.0, 1.25], to = [1.0, 1.25], pressure = 1e3, stress = [0, 1]", "only one of stress, pressure"),
+        (
+            "from = [0.0, 1.25], circle = { center = [0.5, 2.0], radius = 0.4 }, pressure = 1e3",
+            "only one of from, circle",
+        ),
+        ("from = [0.0, 1.25], to = [1.0, 1.25]", "missing: one of stress, pressure"),
+        ("from = [0.0, 1.25], to = [1.0, 1.25], pressure = [0, 1]", "expected"),
+    ] {
+        let message = format!("{:?}", with(traction).expect_err("refused"));
+        assert!(message.contains(told), "{traction}: {message}");
+    }
+}
+
+#[test]
+fn a_body_spins_about_its_place() {
+    let case = set(FULL, &["body.2.spin={ rate = 2.0, about = [\"1 m\", 2.0] }"]).expect("a valid case");
+    let mut seen = 0;
+    for point in seed(&case, 0..case.grid.axes[0].cells()).filter(|point| point.material == 2 && point.x[0] >= 1.0) {
+        // The block's own velocity besides; the grid begins at the origin.
+        let expected = [-2.0 * (point.x[1] - 2.0), -1.0 + 2.0 * (point.x[0] - 1.0)];
+        assert!((point.v - Vector::from(expected)).norm() < 1e-14, "{:?} at {:?}", point.v, point.x);
+        seen += 1;
+    }
+    assert_eq!(seen, 8, "two cells of four points");
+    let message = format!("{:?}", set(STATIC, &["body.0.spin={ rate = 2.0, about = [0, 0] }"]).expect_err("at rest"));
+    assert!(message.contains("has no meaning in a quasi-static analysis"), "{message}");
 }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use bsmpm::model::Regime;
 use bsmpm_scene::words::Word;
-use bsmpm_scene::{Case, GridAxis, MotionPath, Quantity};
+use bsmpm_scene::{Case, GridAxis, MotionPath, Quantity, Traction};
 use serde::Serialize;
 
 use super::search::{ELASTIC, LEAST};
@@ -169,7 +169,7 @@ fn stiffness(case: &Case) -> f64 {
     let densities = case.bodies.iter().filter_map(|body| case.materials[body.material].density);
     let gravity = case.gravity.as_ref().map_or(0.0, |gravity| gravity.acceleration[0].hypot(gravity.acceleration[1]));
     let weight = densities.fold(0.0, f64::max) * gravity * (high - low);
-    let tractions = case.tractions.iter().map(|traction| traction.stress[0].hypot(traction.stress[1]));
+    let tractions = case.tractions.iter().map(Traction::largest);
     let needed = (weight + tractions.fold(0.0, f64::max)) / softest / SMALL;
     if needed < UNCHANGED { 1.0 } else { format!("{needed:.2e}").parse().unwrap_or(needed) }
 }
@@ -235,7 +235,7 @@ fn is_moved(case: &Case) -> bool {
 fn is_loaded(case: &Case) -> bool {
     let falls = case.gravity.as_ref().is_some_and(|gravity| gravity.acceleration != [0.0; 2]);
     let weighs = case.bodies.iter().any(|body| case.materials[body.material].density.is_some());
-    let is_pushed = case.tractions.iter().any(|traction| traction.stress != [0.0; 2])
+    let is_pushed = case.tractions.iter().any(|traction| traction.largest() > 0.0)
         || case.point_loads.iter().any(|load| load.force != [0.0; 2]);
     (falls && weighs) || is_pushed
 }

@@ -61,6 +61,15 @@ pub fn rubbed_block() -> String {
     text + &histories.map(history).concat()
 }
 
+/// The same block of clay whose strength follows strain and rate, damped, with a pressure on two of its sides.
+pub fn pressed_block() -> String {
+    let clay = "model = \"sensitive-clay\"\ncohesion = 2e3\nsensitivity = 3\nsoftening_strain = 5\nrate_parameter = 0.1\n\
+                reference_rate = 1e-2\ndamping = { ratio = 0.1, frequency = 20.0 }";
+    let press = "\n[[traction]]\nfrom = [0.5, 0.0]\nto = [0.5, 0.2]\npressure = { value = 1e3, at_y = 0.2, per_metre = 1e4 }\n\
+                 ramp = 0.02\n[[traction]]\nfrom = [0.1, 0.2]\nto = [0.5, 0.2]\npressure = 2e3\nramp = 0.02\n";
+    changed(SLIDING_BLOCK, "model   = \"hencky\"", clay) + press
+}
+
 /// Quasi-static, five steps of next to no work.
 pub const COLUMN: &str = r#"geometry = "plane-strain"
 

@@ -1,6 +1,6 @@
 //! The number of ranks changes nothing but the time that a run takes.
 
-use crate::support::cases::{SLIDING_BLOCK, changed, rubbed_block};
+use crate::support::cases::{SLIDING_BLOCK, changed, pressed_block, rubbed_block};
 use crate::support::results::{all_frames, differences, history, ids, last_frame, manifest, steps};
 use crate::support::{Scratch, example, processes, shipped};
 use std::collections::BTreeSet;
@@ -31,6 +31,7 @@ fn agree(scratch: &Scratch, case: &str, further: &[&str], ranks: &[usize], toler
 #[test]
 fn an_elastic_block_that_slides_from_slab_to_slab_is_the_same_on_1_2_3_and_4_ranks() {
     agree(&Scratch::with_case(SLIDING_BLOCK), "case.toml", &[], &[1, 2, 3, 4], 1e-9);
+    agree(&Scratch::with_case(&pressed_block()), "case.toml", &[], &[1, 3], 1e-8);
 }
 
 /// Nodes on a face stick, slip and lift as the whole of them says, also where two ranks share them.

@@ -1,6 +1,6 @@
 //! Going on from checkpoints: on as many ranks to the bit, on others within tolerances, and never with another case.
 
-use crate::support::cases::{COLUMN, SLIDING_BLOCK, changed, rubbed_block};
+use crate::support::cases::{COLUMN, SLIDING_BLOCK, changed, pressed_block, rubbed_block};
 use crate::support::results::{all_frames, differences, history, last_frame, manifest, steps};
 use crate::support::{Scratch, entries};
 use bsmpm_io::manifest::Status;
@@ -44,10 +44,15 @@ fn a_run_that_was_stopped_goes_on_to_the_bit() {
     }
 }
 
-/// What sticks, slips and lifts follows from the points and the last displacement: there is nothing else to keep.
+/// What sticks, slips and lifts follows from the points and the last displacement: there is nothing else to keep. Of a
+/// pressure its direction and how that changes are kept.
 #[test]
-fn a_block_that_rubs_goes_on_to_the_bit() {
-    let scratch = Scratch::with_case(&rubbed_block());
+fn a_block_that_rubs_goes_on_to_the_bit_and_so_does_one_that_is_pressed() {
+    [rubbed_block(), pressed_block()].iter().for_each(|case| goes_on_to_the_bit(case));
+}
+
+fn goes_on_to_the_bit(case: &str) {
+    let scratch = Scratch::with_case(case);
     let part = ["case.toml", "-q", "-o", "part", "--restart", "auto"];
     scratch.mpirun(2, &["case.toml", "-q", "-o", "whole"]).expect(0);
     for stop in ["9", "17", "31"] {

@@ -56,8 +56,24 @@ pub struct Surface<const D: usize> {
     pub traction: Vec<Vec<Vector<D>>>,
     /// m  position of every load's points, which move with the material that they are anchored to
     pub position: Vec<Vec<Vector<D>>>,
+    /// Pa  of every load that follows the surface its traction when fully applied, per area of the start, turned and
+    /// stretched with the material; empty for the others
+    pub pressure: Vec<Vec<Vector<D>>>,
+    /// Pa per s (pseudo-time)  how fast that changed in the last step
+    pub pressure_rate: Vec<Vec<Vector<D>>>,
     /// that material
     pub anchors: Anchors,
+}
+
+impl<const D: usize> Surface<D> {
+    /// Goes on to these pressures after a step of the length `dt`.
+    pub(crate) fn follow(&mut self, pressure: Vec<Vec<Vector<D>>>, dt: f64) {
+        for (load, (rates, before)) in pressure.iter().zip(self.pressure_rate.iter_mut().zip(&self.pressure)) {
+            let of = |(now, before): (&Vector<D>, &Vector<D>)| (now - before) / dt;
+            *rates = load.iter().zip(before).map(of).collect();
+        }
+        self.pressure = pressure;
+    }
 }
 
 /// Ids of the points that the points of all strips and of all loads are anchored to; the same on every rank, and empty

@@ -118,7 +118,7 @@ impl<const D: usize> Nodes<D> {
         }
         let mut f_ext = external_force((model, shape, points), t + dt, (weighting, &weight), halo);
         let window = (&model.grid, &active[..]);
-        load::add_forces(&model.boundary.loads, &points.surface, window, t + dt, halo, &mut f_ext)?;
+        load::add_forces(&model.boundary.loads, &points.surface, window, (t + dt, dt), halo, &mut f_ext)?;
         let averages = Averages::of(model, (shape, points), threshold, halo);
         let apart = Apart::of(model.materials.len(), shape, points, nodes, halo);
         let mut mapped = Self {

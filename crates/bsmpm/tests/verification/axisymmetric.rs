@@ -57,9 +57,7 @@ fn cylinder(cells: usize, method: Stabilisation) -> f64 {
     scene.model.weighting = Weighting::Volume;
     let (from, to) = ([inner, 0.0].into(), [inner, 2.0 * h].into());
     let points = surface::along::<Axisymmetric>(&scene.model.grid, &from, &to, 3);
-    let (scene, _) = scene
-        .load(Load { points, traction: [pressure, 0.0].into(), ramp: 1.0, amplitude: Vec::new() })
-        .solved(1.0, 1.0);
+    let (scene, _) = scene.load(Load::dead(points, [pressure, 0.0].into(), 1.0)).solved(1.0, 1.0);
     // Lame (1852) in plane strain: u = A r + B/r.
     let factor = (1.0 + poisson) * pressure * inner * inner / (outer * outer - inner * inner);
     let exact = |r: f64| factor * ((1.0 - 2.0 * poisson) * r + outer * outer / r);

@@ -248,7 +248,7 @@ fn block(ramp: f64) -> Scene<PlaneStrain, 2> {
         .rollers([0])
         .support(Support::roller(1, false));
     let points = surface::along::<PlaneStrain>(&scene.model.grid, &[0.0, 1.0].into(), &[1.0, 1.0].into(), 3);
-    scene.gravity(5.0, ramp).load(Load { points, traction: [0.0, -100.0].into(), ramp, amplitude: Vec::new() })
+    scene.gravity(5.0, ramp).load(Load::dead(points, [0.0, -100.0].into(), ramp))
 }
 
 #[test]
