@@ -1,9 +1,9 @@
 //! Kelvin-Voigt damping: beside the law's stress a viscous one, the elastic stiffness times the rate of the strain.
 //!
 //! `τ_v = (β/Δt) (λ tr e I + 2μ e)`, `e = ½ (ΔF̄ ΔF̄ᵀ - I)` the strain of the step and β the material's retardation
-//! time: a wave of the circular frequency ω has the damping ratio βω/2. By the mean rate of the step it takes energy in every
-//! step, however long, and a motion at constant velocity or a rotation feels nothing of it. It comes half a step late,
-//! which raises the frequency by the share βω²Δt/4.
+//! time: a wave of the circular frequency ω has the damping ratio βω/2. By the mean rate of the step it takes energy in
+//! every step, however long, and a motion at constant velocity or a rotation feels nothing of it. It comes half a step
+//! late, which raises the frequency by the share βω²Δt/4.
 
 use crate::model::Model;
 use crate::points::Points;
