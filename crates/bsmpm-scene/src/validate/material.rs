@@ -84,6 +84,11 @@ fn read(
     }
     warn_of_stiffness(record, young.map(|young| young.value), poisson, report);
     let Reduction { factor, elastic, stiffness } = around.reduction;
+    if factor != 1.0 && !elastic && record.gives("ocr") {
+        let message = "with a strength_reduction.factor the yield surface through the stress at the start, which this is the \
+                       multiple of, would grow as its strength falls; give preconsolidation";
+        record.error("ocr", message, report);
+    }
     let (young, poisson, law) = (young?, poisson?, law?);
     let law = if elastic { Parameters::elastic() } else { law };
     let young = Profile { value: stiffness * young.value, per_metre: stiffness * young.per_metre, ..young };

@@ -71,6 +71,7 @@ const OTHERWISE: [&[(&str, &str)]; 7] = [
         ("displacement = [0.0, \"-10 cm\"]", "velocity = [0.0, -0.1]"),
         ("\"tresca\"", "\"modified-cam-clay\""),
         ("cohesion    = 2e4", "kappa = 0.02\nlambda = 0.1\ncritical_ratio = 1.2\nocr = 1.5"),
+        ("factor = 1.25", "factor = 1.0"),
         ("velocity = [0.0, \"-10 mm/s\"]", "displacement = [-0.1, 0.0]"),
         (
             "{ circle = { center = [2.75, 2.0], radius = \"10 cm\" } }",

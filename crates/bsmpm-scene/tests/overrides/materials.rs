@@ -196,6 +196,7 @@ fn cam_clay_and_its_start() {
     };
     refused(&["material.clay.lambda=0.02"], "lambda > kappa = 0.02");
     refused(&["initial.gravity=elastic"], "no state without stress: give [initial] k0");
+    refused(&["strength_reduction.factor=1.25"], "would grow as its strength falls; give preconsolidation");
     refused(&["strength_reduction.unloaded=true"], "no state without stress: give [initial] k0");
     // Under the weight of others, but with none of its own.
     let weightless = "material.soil={ young = 1e7, poisson = 0.3, model = \"modified-cam-clay\", kappa = 0.02, \

@@ -178,7 +178,10 @@ fn check_cam_clay(record: &Record, law: &Parameters, report: &mut Report<'_>) ->
     let at = clay.reference_pressure();
     report.note(
         &record.path,
-        format!("young and poisson hold at p = {at:.6} Pa"),
+        format!(
+            "young and poisson hold at p = {at:.6} Pa; below {:.6} Pa Poisson's ratio is negative",
+            at * (1.0 - 2.0 * poisson) / (1.0 + poisson)
+        ),
         "K = p (1 - kappa)/kappa, G constant",
     );
     if record.number("ocr").is_some_and(|ocr| ocr > 2.0) {
