@@ -39,9 +39,9 @@ pub fn percentile<const D: usize>(points: &Points<D>, axis: usize, percentile: f
     upper
 }
 
-/// Largest displacement of any point, m.
+/// Largest displacement of any point since displacements were last set to zero, m.
 pub fn largest_displacement<const D: usize>(points: &Points<D>, halo: &dyn Halo) -> f64 {
-    let mut largest = [points.u.iter().map(|u| u.norm()).fold(0.0, f64::max)];
+    let mut largest = [(0..points.len()).map(|p| points.displacement(p).norm()).fold(0.0, f64::max)];
     halo.maximum(&mut largest);
     largest[0]
 }
@@ -59,7 +59,7 @@ pub fn surface<const D: usize>(grid: &Grid<D>, points: &Points<D>, x: f64, halo:
 
 /// Largest displacement of any point along the last axis, m; 0 if none has risen.
 pub fn heave<const D: usize>(points: &Points<D>, halo: &dyn Halo) -> f64 {
-    let mut largest = [points.u.iter().map(|u| u[D - 1]).fold(0.0, f64::max)];
+    let mut largest = [(0..points.len()).map(|p| points.displacement(p)[D - 1]).fold(0.0, f64::max)];
     halo.maximum(&mut largest);
     largest[0]
 }
