@@ -33,12 +33,13 @@ impl Recorder {
     /// Finds the points nearest to the wanted places.
     pub fn new(case: &Case, points: &Points<2>, halo: &dyn Halo) -> Self {
         let (histories, lower) = (&case.histories, Vector::from(case.grid.lower()));
+        let lasting = case.lasting();
         let comes_later = |number: usize| case.stages.iter().any(|stage| stage.follows.contains(&number));
         let follow = |(number, history): (usize, &History)| match history.quantity {
             Quantity::Displacement { at } | Quantity::Velocity { at } | Quantity::Stress { at }
                 if !comes_later(number) =>
             {
-                observe::nearest(points, &(Vector::from(at) - lower), halo)
+                observe::nearest(points, &(Vector::from(at) - lower), |id| !history.lasts || lasting(id), halo)
             }
             _ => None,
         };
@@ -77,13 +78,13 @@ impl Recorder {
 
     /// Follows points of the bodies that a stage has placed, and sets displacements to zero where it wants that.
     pub fn begin_stage(&mut self, (case, stage): (&Case, &Stage), points: &Points<2>, halo: &dyn Halo) {
-        let taken = case.taken_by(stage);
+        let (taken, placed) = (case.taken_by(stage), case.placed_by(stage));
         self.followed.iter_mut().filter(|followed| followed.is_some_and(&taken)).for_each(|lost| *lost = None);
         for &number in &stage.follows {
             if let Quantity::Displacement { at } | Quantity::Velocity { at } | Quantity::Stress { at } =
                 self.histories[number].quantity
             {
-                self.followed[number] = observe::nearest(points, &(Vector::from(at) - self.lower), halo);
+                self.followed[number] = observe::nearest(points, &(Vector::from(at) - self.lower), &placed, halo);
             }
         }
         if stage.resets_displacements {

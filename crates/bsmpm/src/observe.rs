@@ -113,12 +113,18 @@ pub fn angular_momentum<const D: usize>(
     sum
 }
 
-/// Id of the point nearest to `at` (m, from the grid's lower corner); of equally near ones the smallest id.
-pub fn nearest<const D: usize>(points: &Points<D>, at: &Vector<D>, halo: &dyn Halo) -> Option<u64> {
-    let distance = |p: usize| (points.x[p] - at).norm_squared();
+/// Id of the point nearest to `at` (m, from the grid's lower corner) among those whose ids are `wanted`; of equally near
+/// ones the smallest id.
+pub fn nearest<const D: usize>(
+    points: &Points<D>,
+    at: &Vector<D>,
+    wanted: impl Fn(u64) -> bool,
+    halo: &dyn Halo,
+) -> Option<u64> {
+    let distance = |p: usize| if wanted(points.id[p]) { (points.x[p] - at).norm_squared() } else { f64::INFINITY };
     let mut closest = [-(0..points.len()).map(distance).fold(f64::INFINITY, f64::min)];
     halo.maximum(&mut closest);
-    let candidates = (0..points.len()).filter(|&p| -distance(p) == closest[0]);
+    let candidates = (0..points.len()).filter(|&p| wanted(points.id[p]) && -distance(p) == closest[0]);
     let mut id = [candidates.map(|p| -(points.id[p] as f64)).fold(f64::NEG_INFINITY, f64::max)];
     halo.maximum(&mut id);
     id[0].is_finite().then(|| -id[0] as u64)

@@ -37,6 +37,11 @@ impl Case {
         came && !self.stages.iter().filter(begun).any(removes)
     }
 
+    /// Whether a body is there from the start to the end.
+    pub fn lasts(&self, body: usize) -> bool {
+        self.stages.iter().all(|stage| !stage.add.contains(&body) && !stage.remove.contains(&body))
+    }
+
     /// The bodies that are there before the first step.
     pub fn bodies_at_start(&self) -> impl Iterator<Item = &Body> {
         self.bodies.iter().enumerate().filter(|(number, _)| self.is_there(*number, 0.0)).map(|(_, body)| body)
@@ -54,14 +59,32 @@ impl Case {
     }
 
     /// Whether a stage takes a point away, by its id.
-    pub fn taken_by<'a>(&self, stage: &'a Stage) -> impl Fn(u64) -> bool + use<'a> {
-        let ids = self.ids();
-        move |id| stage.remove.iter().any(|&body| ids[body].contains(&id))
+    pub fn taken_by(&self, stage: &Stage) -> impl Fn(u64) -> bool + use<> {
+        is_in(self.ids_of(|body| stage.remove.contains(&body)))
+    }
+
+    /// Whether a stage places a point, by its id.
+    pub fn placed_by(&self, stage: &Stage) -> impl Fn(u64) -> bool + use<> {
+        is_in(self.ids_of(|body| stage.add.contains(&body)))
+    }
+
+    /// Whether a point is of a body that is there from the start to the end, by its id.
+    pub fn lasting(&self) -> impl Fn(u64) -> bool + use<> {
+        is_in(self.ids_of(|body| self.lasts(body)))
+    }
+
+    fn ids_of(&self, wanted: impl Fn(usize) -> bool) -> Vec<Range<u64>> {
+        let of = self.ids().into_iter().enumerate().filter(|(body, _)| wanted(*body));
+        of.map(|(_, ids)| ids).collect()
     }
 
     /// Ids of the points of the bodies that are there once the stages until the time `t` have begun.
     pub fn ids_at(&self, t: f64) -> Vec<Range<u64>> {
-        let there = self.ids().into_iter().enumerate().filter(|(number, _)| self.is_there(*number, t));
-        there.map(|(_, ids)| ids).collect()
+        self.ids_of(|body| self.is_there(body, t))
     }
+}
+
+/// Whether an id lies in one of the ranges.
+fn is_in(ids: Vec<Range<u64>>) -> impl Fn(u64) -> bool {
+    move |id| ids.iter().any(|range| range.contains(&id))
 }

@@ -129,12 +129,12 @@ pub(super) fn check(case: &mut Case, root: &Record, report: &mut Report<'_>) {
             }
         }
     }
-    follow(case);
     let of = |wanted: &dyn Fn(usize) -> bool| {
         let numbers = (0..case.bodies.len()).filter(|&body| wanted(body));
         numbers.map(|body| case.bodies[body].clone()).collect::<Vec<Body>>()
     };
-    let lasting = of(&|body| lasts(case, body));
+    let lasting = of(&|body| case.lasts(body));
+    follow(case, &lasting);
     for (record, key, places) in surfaces(case, root) {
         if let Some(at) = places.into_iter().find(|at| !place::at_body(&lasting, &case.grid, *at)) {
             let message =
@@ -144,16 +144,16 @@ pub(super) fn check(case: &mut Case, root: &Record, report: &mut Report<'_>) {
     }
 }
 
-/// Histories of places that no body of the start is at follow a point of the first one that comes there.
-fn follow(case: &mut Case) {
+/// Histories follow a point of a body that lasts, where one is at their place; where none of the start is, one of the
+/// first body that comes there.
+fn follow(case: &mut Case, lasting: &[Body]) {
     let first: Vec<Body> = case.bodies_at_start().cloned().collect();
     let mut places = Vec::new();
-    for (number, history) in case.histories.iter().enumerate() {
+    for (number, history) in case.histories.iter_mut().enumerate() {
         match history.quantity {
-            Quantity::Displacement { at } | Quantity::Velocity { at } | Quantity::Stress { at }
-                if !place::at_body(&first, &case.grid, at) =>
-            {
-                places.push((number, at));
+            Quantity::Displacement { at } | Quantity::Velocity { at } | Quantity::Stress { at } => {
+                history.lasts = place::at_body(lasting, &case.grid, at);
+                places.extend((!place::at_body(&first, &case.grid, at)).then_some((number, at)));
             }
             _ => {}
         }
@@ -166,11 +166,6 @@ fn follow(case: &mut Case) {
             !comes
         });
     }
-}
-
-/// Whether a body is there from the start to the end.
-fn lasts(case: &Case, body: usize) -> bool {
-    case.stages.iter().all(|stage| !stage.add.contains(&body) && !stage.remove.contains(&body))
 }
 
 /// Records of strips and loads, the key of their place, and places along them.
