@@ -136,7 +136,8 @@ pub(super) fn check(case: &mut Case, root: &Record, report: &mut Report<'_>) {
     let lasting = of(&|body| case.lasts(body));
     follow(case, &lasting);
     for (record, key, places) in surfaces(case, root) {
-        if let Some(at) = places.into_iter().find(|at| !place::at_body(&lasting, &case.grid, *at)) {
+        let at = |bodies: &[Body], place: &[f64; 2]| place::at_body(bodies, &case.grid, *place);
+        if let Some(at) = places.into_iter().find(|place| at(&case.bodies, place) && !at(&lasting, place)) {
             let message =
                 format!("at {at:?} there is no body from the start to the end: stages add or remove what it is on");
             record.error(key, message, report);
