@@ -91,7 +91,7 @@ fn errors_cite_the_override() {
         ("grid.cell=5 s", "grid.cell", "unit of time"),
         ("grid.cel=5 mm", "grid.cel", "did you mean `cell`?"),
         ("body.6.points_per_cell=3", "body.6", "missing"),
-        ("body.9.points_per_cell=3", "body.9.points_per_cell", "index 9 is beyond the list of 5"),
+        ("body.9.points_per_cell=3", "body.9.points_per_cell", "index 9 is beyond the list of 6"),
         ("body.x.points_per_cell=3", "body.x.points_per_cell", "`x` is no index of a list"),
         ("title.x=3", "title.x", "which is no table"),
         ("grid.cell", "", "expected KEY=VALUE"),
