@@ -188,10 +188,7 @@ impl Stepper {
     }
 
     /// The model in the first step of a stage: forces act at once which the points' acceleration knows nothing of.
-    fn suddenly<'a, K: Kinematics<D>, const D: usize>(&self, model: Cow<'a, Model<K, D>>) -> Cow<'a, Model<K, D>>
-    where
-        K: Clone,
-    {
+    fn suddenly<'a, K: Kinematics<D>, const D: usize>(&self, model: Cow<'a, Model<K, D>>) -> Cow<'a, Model<K, D>> {
         let begins = self.at.guess_dt == 0.0 && self.at.t > 0.0 && model.regime == Regime::Dynamic;
         if begins { Cow::Owned(Model { newmark: Newmark::of_the_end(), ..model.into_owned() }) } else { model }
     }
