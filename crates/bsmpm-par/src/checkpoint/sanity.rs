@@ -29,7 +29,9 @@ pub fn require(
     let refused =
         |reason| Refusal::new(exit::CHECKPOINT, format!("the checkpoint {} cannot be used: {reason}", file.display()));
     agree(world, finite(points).and_then(|()| possible(points, grid, materials)).map_err(refused))?;
-    agree(world, once(world, &points.id, present.unwrap_or(&[0..u64::MAX])).map_err(refused))
+    let all = 0..u64::MAX;
+    let present = present.unwrap_or(std::slice::from_ref(&all));
+    agree(world, once(world, &points.id, present).map_err(refused))
 }
 
 fn finite(points: &mut Points<2>) -> Result<(), String> {
