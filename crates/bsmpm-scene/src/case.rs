@@ -153,9 +153,9 @@ impl Body {
 }
 
 impl Case {
-    /// Weight of all bodies that are there at the start vertically above `at` (m, in the case's coordinates) under the full gravity, Pa:
-    /// `Σ ρ |g_y| l`, l the length of the vertical ray inside a body. What lies beside each other is counted once: a
-    /// body's left side belongs to it, its right side does not.
+    /// Weight of all bodies that are there at the start vertically above `at` (m, in the case's coordinates) under the
+    /// full gravity, Pa: `Σ ρ |g_y| l`, l the length of the vertical ray inside a body. What lies beside each other is
+    /// counted once: a body's left side belongs to it, its right side does not.
     pub fn overburden(&self, at: [f64; 2]) -> f64 {
         let Some(gravity) = &self.gravity else { return 0.0 };
         let above = |body: &Body| self.materials[body.material].density.map_or(0.0, |rho| rho * body.region.above(at));

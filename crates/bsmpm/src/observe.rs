@@ -113,8 +113,8 @@ pub fn angular_momentum<const D: usize>(
     sum
 }
 
-/// Id of the point nearest to `at` (m, from the grid's lower corner) among those whose ids are `wanted`; of equally near
-/// ones the smallest id.
+/// Id of the point nearest to `at` (m, from the grid's lower corner) among those whose ids are `wanted`; of equally
+/// near ones the smallest id.
 pub fn nearest<const D: usize>(
     points: &Points<D>,
     at: &Vector<D>,
