@@ -18,7 +18,7 @@ pub mod parts;
 pub use indicator::Indicator;
 pub use parts::{
     Communication, EnergyBalance, GridExtent, ManifestCase, ManifestCheck, ManifestChoice, ManifestFailure,
-    ManifestInitial, ManifestOutput, ManifestRestart, SolverNames, Status, Summary, Worst,
+    ManifestInitial, ManifestOutput, ManifestRestart, ManifestStage, SolverNames, Status, Summary, Worst,
 };
 
 /// The manifest's file.
@@ -88,6 +88,9 @@ pub struct Manifest {
     /// How the state at the start was balanced, if the case gives it a stress.
     #[serde(default)]
     pub initial: Option<ManifestInitial>,
+    /// The stages of the case that have begun, in the order of time.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub stages: Vec<ManifestStage>,
     /// The case's checks, once they were made.
     #[serde(default)]
     pub checks: Vec<ManifestCheck>,
@@ -133,6 +136,7 @@ impl Manifest {
             summary: Summary::default(),
             indicators: BTreeMap::new(),
             initial: None,
+            stages: Vec::new(),
             checks: Vec::new(),
             outputs: Vec::new(),
             frame_units: BTreeMap::new(),

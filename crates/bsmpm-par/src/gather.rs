@@ -82,6 +82,9 @@ impl<'a> FieldSource<'a> {
     /// Its numbers of point `p`.
     fn put(&self, points: &Points<2>, p: usize, row: &mut Vec<f64>) {
         match self {
+            Self::Column(info, _) if info.name == "u" => {
+                row.extend([points.displacement(p)[0], points.displacement(p)[1], 0.0])
+            }
             Self::Column(_, column) => {
                 column.show(p, row);
                 row.extend((column.width()..self.components()).map(|_| 0.0));

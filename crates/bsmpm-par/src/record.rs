@@ -12,7 +12,7 @@ use bsmpm::points::Points;
 use bsmpm::step::StepReport;
 use bsmpm::tensor::Vector;
 use bsmpm_scene::surfaces::{self, Gauge};
-use bsmpm_scene::{Case, Face, GridSpec, History, Quantity};
+use bsmpm_scene::{Case, Face, GridSpec, History, Quantity, Stage};
 
 /// Place of the vertical normal stress among XX YY ZZ XY YZ XZ.
 const VERTICAL: usize = 1;
@@ -24,6 +24,7 @@ pub struct Recorder {
     reacting: Vec<Option<usize>>, // strip whose force a reaction is
     gauge: Option<Gauge>,
     books: Option<Books>, // of energy, opened by the first row
+    datum: Vec<[f64; 2]>, // m, of every history's displacement when they were last set to zero, if they ever were
     grid: GridSpec,
     lower: Vector<2>,
 }
@@ -32,14 +33,18 @@ impl Recorder {
     /// Finds the points nearest to the wanted places.
     pub fn new(case: &Case, points: &Points<2>, halo: &dyn Halo) -> Self {
         let (histories, lower) = (&case.histories, Vector::from(case.grid.lower()));
-        let follow = |history: &History| match history.quantity {
-            Quantity::Displacement { at } | Quantity::Velocity { at } | Quantity::Stress { at } => {
-                observe::nearest(points, &(Vector::from(at) - lower), halo)
+        let lasting = case.lasting();
+        let comes_later = |number: usize| case.stages.iter().any(|stage| stage.follows.contains(&number));
+        let follow = |(number, history): (usize, &History)| match history.quantity {
+            Quantity::Displacement { at } | Quantity::Velocity { at } | Quantity::Stress { at }
+                if !comes_later(number) =>
+            {
+                observe::nearest(points, &(Vector::from(at) - lower), |id| !history.lasts || lasting(id), halo)
             }
             _ => None,
         };
-        let followed = histories.iter().map(follow).collect();
-        let state = RecordState { followed, books: None };
+        let followed = histories.iter().enumerate().map(follow).collect();
+        let state = RecordState { followed, ..RecordState::default() };
         Self::of(case, state)
     }
 
@@ -59,6 +64,7 @@ impl Recorder {
             reacting: case.histories.iter().map(react).collect(),
             gauge: Gauge::of(case),
             books: state.books.map(|BooksForm(books)| books),
+            datum: state.datum,
             grid: case.grid.clone(),
             lower: Vector::from(case.grid.lower()),
         }
@@ -66,7 +72,33 @@ impl Recorder {
 
     /// What must be known to go on.
     pub fn state(&self) -> RecordState {
-        RecordState { followed: self.followed.clone(), books: self.books.map(BooksForm) }
+        let (followed, books) = (self.followed.clone(), self.books.map(BooksForm));
+        RecordState { followed, books, datum: self.datum.clone() }
+    }
+
+    /// Follows points of the bodies that a stage has placed, and sets displacements to zero where it wants that.
+    pub fn begin_stage(&mut self, (case, stage): (&Case, &Stage), points: &Points<2>, halo: &dyn Halo) {
+        let (taken, placed) = (case.taken_by(stage), case.placed_by(stage));
+        self.followed.iter_mut().filter(|followed| followed.is_some_and(&taken)).for_each(|lost| *lost = None);
+        for &number in &stage.follows {
+            if let Quantity::Displacement { at } | Quantity::Velocity { at } | Quantity::Stress { at } =
+                self.histories[number].quantity
+            {
+                self.followed[number] = observe::nearest(points, &(Vector::from(at) - self.lower), &placed, halo);
+            }
+        }
+        if stage.resets_displacements {
+            let raw = |(history, followed): (&History, &Option<u64>)| match (&history.quantity, followed) {
+                (Quantity::Displacement { at }, Some(id)) => displacement((*at, self.lower), *id, points, halo),
+                _ => [0.0; 2],
+            };
+            self.datum = self.histories.iter().zip(&self.followed).map(raw).collect();
+        }
+    }
+
+    /// Enters what a stage has changed the energy of the points by.
+    pub fn exchange(&mut self, before: Stored, after: Stored) {
+        self.books.iter_mut().for_each(|books| books.exchange(before, after));
     }
 
     /// The books of energy, if they are kept.
@@ -108,7 +140,7 @@ impl Recorder {
                 | Quantity::Gap { face }
                 | Quantity::SlipRate { face }
                 | Quantity::FrictionPower { face } => contact(&history.quantity, model, *face, report),
-                quantity => self.values(quantity, self.followed[number], model, points, halo)?,
+                quantity => self.values((number, quantity), model, points, halo)?,
             };
             row.extend(values.iter().map(|value| history.scale * value));
         }
@@ -118,13 +150,12 @@ impl Recorder {
     /// A quantity of all points.
     fn values<K: Kinematics<2>>(
         &self,
-        quantity: &Quantity,
-        followed: Option<u64>,
+        (number, quantity): (usize, &Quantity),
         model: &Model<K, 2>,
         points: &Points<2>,
         halo: &dyn Halo,
     ) -> Result<Vec<f64>, StepError> {
-        let [left, bottom] = self.lower.into();
+        let ([left, bottom], followed) = (self.lower.into(), self.followed[number]);
         Ok(match quantity {
             Quantity::Runout { percentile } if *percentile < 100.0 => {
                 vec![left + observe::percentile(points, 0, *percentile, halo)]
@@ -152,7 +183,13 @@ impl Recorder {
                 let window = within.map(|corners| corners.map(|corner| Vector::from(corner) - self.lower));
                 both(noise::pressure_noise(&model.grid, points, model.weighting, window, halo)?)
             }
-            quantity => at_followed((quantity, self.lower), followed.unwrap_or(u64::MAX), points, halo),
+            Quantity::Displacement { at } => {
+                let Some(id) = followed else { return Ok(vec![0.0; 2]) };
+                let total = displacement((*at, self.lower), id, points, halo);
+                let datum = self.datum.get(number).copied().unwrap_or_default();
+                vec![total[0] - datum[0], total[1] - datum[1]]
+            }
+            quantity => at_followed(quantity, followed.unwrap_or(u64::MAX), points, halo),
         })
     }
 
@@ -225,15 +262,17 @@ fn both(noise: noise::Noise) -> Vec<f64> {
     vec![noise.about_average, noise.about_plane]
 }
 
-/// A quantity of the point `id`, or of the place that it is the nearest one to (`lower` is the grid's corner); of other
-/// quantities there is none.
-fn at_followed((quantity, lower): (&Quantity, Vector<2>), id: u64, points: &Points<2>, halo: &dyn Halo) -> Vec<f64> {
+/// Displacement (m) of the place that the point `id` is the nearest one to, since the start; `lower` is the grid's
+/// corner. Zero where there is no such point.
+fn displacement((at, lower): ([f64; 2], Vector<2>), id: u64, points: &Points<2>, halo: &dyn Halo) -> [f64; 2] {
+    let place = Vector::from(at) - lower;
+    observe::at_point(points, id, halo, |p| observe::displacement(points, p, &place).into())
+}
+
+/// A quantity of the point `id`, zero where there is none; of other quantities there is none.
+fn at_followed(quantity: &Quantity, id: u64, points: &Points<2>, halo: &dyn Halo) -> Vec<f64> {
     let velocity = |p: usize| points.motion.as_ref().map_or([0.0; 2], |motion| motion.v[p].into());
     match quantity {
-        Quantity::Displacement { at } => {
-            let place = Vector::from(*at) - lower;
-            observe::at_point(points, id, halo, |p| observe::displacement(points, p, &place).into()).to_vec()
-        }
         Quantity::Velocity { .. } => observe::at_point(points, id, halo, velocity).to_vec(),
         Quantity::Stress { .. } => observe::at_point(points, id, halo, |p| points.sigma.at(p).0)[..4].to_vec(),
         _ => Vec::new(),

@@ -184,6 +184,7 @@ impl Resumed<'_> {
     pub fn read(
         &self,
         universe: &Universe,
+        case: &Case,
         model: &mut Model<PlaneStrain, 2>,
         schedule: &Schedule,
     ) -> Result<(Slabs, Points<2>, Stepper), Refusal> {
@@ -197,7 +198,9 @@ impl Resumed<'_> {
         let names: Vec<&str> = self.found.record.arrays.iter().map(|array| array.name.as_str()).collect();
         let mut points = Points::holding(&names, bsmpm::material::state_width(&model.materials));
         self.opened.points(points.named_columns())?;
-        checkpoint::require(&world, &self.found.path, &mut points, &model.grid, model.materials.len())?;
+        let present = (!case.stages.is_empty()).then(|| case.ids_at(self.state.progress.t));
+        let known = (model.materials.len(), present.as_deref());
+        checkpoint::require(&world, &self.found.path, &mut points, &model.grid, known)?;
         let held = self.state.within(&model.grid).ok_or_else(|| foreign("its room is not of this grid"))?;
         model.grid = held.with_columns(world.size().unsigned_abs() as usize);
         let slabs =

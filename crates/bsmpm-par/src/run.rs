@@ -4,6 +4,7 @@ mod diagnosis;
 mod end;
 mod failure;
 mod save;
+mod stage;
 mod start;
 
 use crate::cli::Arguments;
@@ -191,6 +192,7 @@ impl<'p> Run<'p> {
         if self.wants_frame(accepted.t) {
             self.frame();
         }
+        self.begin_stages(accepted.t);
     }
 
     /// Misspelt options of PETSc would do nothing in silence.

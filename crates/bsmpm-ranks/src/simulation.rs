@@ -17,11 +17,12 @@ use bsmpm::kinematics::Kinematics;
 use bsmpm::model::Model;
 use bsmpm::nodal::Nodal;
 use bsmpm::parallel::Halo;
-use bsmpm::points::{Column, Points};
+use bsmpm::points::{Column, Points, Seed};
 use bsmpm::schedule::Schedule;
 use bsmpm::tensor::{Symmetric, Vector};
 use mpi::environment::Universe;
 use petsc_rs::Petsc;
+use std::ops::Range;
 use std::rc::Rc;
 
 /// Steps between two looks at the balance.
@@ -177,15 +178,52 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         Some(outcome)
     }
 
+    /// Begins a stage: takes the points away whose ids `gone` says, and places those that `placed` has for columns of
+    /// the grid. Returns how many of all ranks went and came. Collective.
+    pub fn begin_stage<P: Iterator<Item = Seed<D>>>(
+        &mut self,
+        gone: impl Fn(u64) -> bool,
+        placed: impl FnOnce(Range<usize>) -> P,
+    ) -> [u64; 2] {
+        let before = self.points.len();
+        self.points.remove(&gone);
+        let left = self.points.len();
+        let anchored = self.points.anchored();
+        let anchors = self.points.surface.anchors.without(&self.model.boundary, &gone, anchored, &*self.halo);
+        self.points.surface.anchors = anchors;
+        self.points.place(placed(self.columns()));
+        let mut numbers = [(before - left) as f64, (self.points.len() - left) as f64, f64::from(self.lacks_room())];
+        self.halo.reduce(&mut numbers);
+        if numbers[2] > 0.0 {
+            self.make_room();
+        }
+        self.points.sort_by_cell(&self.model.grid);
+        if numbers[..2] != [0.0; 2] {
+            self.stepper.begin_stage();
+        }
+        [numbers[0] as u64, numbers[1] as u64]
+    }
+
+    /// Columns of the whole grid whose points come to this rank.
+    fn columns(&self) -> Range<usize> {
+        let (rank, own) = (self.petsc.rank(), self.slabs.columns(self.petsc.rank()));
+        let end = if rank + 1 == self.slabs.ranks() { self.model.grid.axes()[0].cells() } else { own.end };
+        if rank == 0 { 0..end } else { own.start..end }
+    }
+
+    /// Whether the grid has no room for a point of this rank.
+    fn lacks_room(&self) -> bool {
+        let grid = &self.model.grid;
+        grid.occupied(&self.points.x).is_some_and(|occupied| !grid.has_room(&occupied))
+    }
+
     /// What has been told since `before` by all ranks, and how even this one's `load` and the others' are; and whether
     /// the grid has room for the points of all. One reduction.
     fn count(&self, before: TrafficCounts, load: f64) -> (Cost, bool) {
         let told = self.timers.traffic().counts().since(&before);
-        let grid = &self.model.grid;
-        let lacks_room = grid.occupied(&self.points.x).is_some_and(|occupied| !grid.has_room(&occupied));
         let mut numbers = vec![0.0; 3 + self.slabs.ranks()];
         numbers[..2].copy_from_slice(&told.sent().map(|count| count as f64));
-        numbers[2] = f64::from(u8::from(lacks_room));
+        numbers[2] = f64::from(self.lacks_room());
         numbers[3 + self.petsc.rank()] = load;
         self.halo.reduce(&mut numbers);
         let cost = Cost {

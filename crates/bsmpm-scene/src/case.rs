@@ -3,11 +3,13 @@
 mod element;
 mod history;
 mod loads;
+mod stage;
 
 pub use crate::words::{Base, Format, Geometry, Nonlinear, Support};
 pub use element::{ElementStage, ElementTest};
 pub use history::{Check, Column, Face, History, Quantity};
 pub use loads::{Footing, Initial, Line as LoadedLine, MotionPath, PointLoad, Prescribed, Push, Site, Traction};
+pub use stage::Stage;
 
 use crate::error::Choice;
 use crate::grid::{GridSpec, Line};
@@ -37,6 +39,8 @@ pub struct Case {
     pub materials: Vec<NamedMaterial>,
     /// Bodies in the order of the file.
     pub bodies: Vec<Body>,
+    /// What changes at a time, in the order of time.
+    pub stages: Vec<Stage>,
     /// Body force, if any.
     pub gravity: Option<Gravity>,
     /// Motion of the ground, in whose frame the case is: s, increasing, and m/s2; empty without any.
@@ -125,6 +129,8 @@ pub struct NamedMaterial {
 /// A body of material points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Body {
+    /// What stages call it.
+    pub name: Option<String>,
     /// Number of its material.
     pub material: usize,
     /// What it fills.
@@ -151,13 +157,13 @@ impl Body {
 }
 
 impl Case {
-    /// Weight of all bodies vertically above `at` (m, in the case's coordinates) under the full gravity, Pa:
-    /// `Σ ρ |g_y| l`, l the length of the vertical ray inside a body. What lies beside each other is counted once: a
-    /// body's left side belongs to it, its right side does not.
+    /// Weight of all bodies that are there at the start vertically above `at` (m, in the case's coordinates) under the
+    /// full gravity, Pa: `Σ ρ |g_y| l`, l the length of the vertical ray inside a body. What lies beside each other is
+    /// counted once: a body's left side belongs to it, its right side does not.
     pub fn overburden(&self, at: [f64; 2]) -> f64 {
         let Some(gravity) = &self.gravity else { return 0.0 };
         let above = |body: &Body| self.materials[body.material].density.map_or(0.0, |rho| rho * body.region.above(at));
-        gravity.acceleration[1].abs() * self.bodies.iter().map(above).sum::<f64>()
+        gravity.acceleration[1].abs() * self.bodies_at_start().map(above).sum::<f64>()
     }
 }
 

@@ -125,6 +125,7 @@ fn collect(record: &Record, values: &mut BTreeMap<String, DifferenceValue>) {
             Datum::Count(count) => count.to_string(),
             Datum::Word(word) => format!("\"{word}\""),
             Datum::Text(text) => format!("{text:?}"),
+            Datum::Names(names) => format!("{names:?}"),
             Datum::Flag(flag) => flag.to_string(),
         };
         values.insert(record.path_of(key), DifferenceValue { shown, written: record.gives(key) });

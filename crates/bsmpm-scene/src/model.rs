@@ -1,6 +1,7 @@
 //! From a valid case to the physics' model, its points and its steps.
 
-use crate::{Case, Every, GridAxis, NamedMaterial, Quantity, Regime, surfaces};
+use crate::seed::seed_bodies;
+use crate::{Case, Every, GridAxis, NamedMaterial, Quantity, Regime, Stage, surfaces};
 use bsmpm::background::Background;
 use bsmpm::boundary::{Boundary, Support};
 use bsmpm::error::GridError;
@@ -11,7 +12,7 @@ use bsmpm::method::Criteria;
 use bsmpm::method::Nonlinear;
 use bsmpm::method::QuasiNewton;
 use bsmpm::model::{Gravity, Model, Shaking, Weighting};
-use bsmpm::points::Points;
+use bsmpm::points::{Points, Seed};
 use bsmpm::schedule::Schedule;
 use bsmpm::stabilisation::{Groups, Stabilisation};
 use bsmpm::step::adjoint::is_dilatant;
@@ -133,11 +134,21 @@ pub fn penalty(case: &Case) -> f64 {
     surfaces::penalty(stiffest, case.grid.axes.iter().map(GridAxis::shortest).fold(f64::INFINITY, f64::min))
 }
 
-/// The points of the columns of one slab, by the numbers of the physics' grid.
+/// The points of the columns of one slab at the start, by the numbers of the physics' grid.
 pub fn points(case: &Case, columns: std::ops::Range<usize>) -> Points<2> {
-    let points =
-        Points::from_seeds(crate::seed(case, case.grid.cells_in(0, &columns)), case.analysis.regime == Regime::Dynamic);
+    let there = |body| case.is_there(body, 0.0);
+    let seeds = seed_bodies(case, case.grid.cells_in(0, &columns), there);
+    let points = Points::from_seeds(seeds, case.analysis.regime == Regime::Dynamic);
     points.with_state(state_width(case.materials.iter().map(|named| &named.material)))
+}
+
+/// The points that a stage places in the columns of one slab.
+pub fn placed<'a>(
+    case: &'a Case,
+    stage: &'a Stage,
+    columns: std::ops::Range<usize>,
+) -> impl Iterator<Item = Seed<2>> + 'a {
+    seed_bodies(case, case.grid.cells_in(0, &columns), |body| stage.add.contains(&body))
 }
 
 /// Stress of ground at rest, Pa, at `x` (m, from the grid's lower corner); `k0` by material.
@@ -148,10 +159,11 @@ pub fn at_rest(case: &Case, k0: &[f64], material: u16, x: &Vector<2>) -> Symmetr
     Symmetric([horizontal, vertical, horizontal, 0.0, 0.0, 0.0])
 }
 
-/// Steps and the times that they must hit: frames, pictures and checks.
+/// Steps and the times that they must hit: frames, pictures, checks and stages.
 pub fn schedule(case: &Case) -> Schedule {
     let checks = case.checks.iter().map(|check| check.at);
-    Schedule::new(case.analysis.dt, case.analysis.end, frame_times(case).into_iter().chain(checks))
+    let stages = case.stages.iter().map(|stage| stage.at);
+    Schedule::new(case.analysis.dt, case.analysis.end, frame_times(case).into_iter().chain(checks).chain(stages))
 }
 
 /// Relative error of a quotient of two times.

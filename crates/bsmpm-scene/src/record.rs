@@ -41,6 +41,7 @@ pub(crate) enum Datum {
     Count(u64),
     Word(&'static str),
     Text(String),
+    Names(Vec<String>),
     Flag(bool),
     Record(Record),
     Named(Vec<(String, Record)>),

@@ -179,7 +179,9 @@ fn takes(key: &Key) -> String {
             Kind::Tables(_) => format!("any number of `{}`", table.header),
             _ => format!("a table, `{}`", table.header),
         },
-        Kind::Measure | Kind::Count(..) | Kind::Text(_) | Kind::Name | Kind::Flag | Kind::Open => key.kind.to_string(),
+        Kind::Measure | Kind::Count(..) | Kind::Text(_) | Kind::Name | Kind::Names | Kind::Flag | Kind::Open => {
+            key.kind.to_string()
+        }
     }
 }
 

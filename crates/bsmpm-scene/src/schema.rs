@@ -7,6 +7,7 @@ mod element;
 mod laws;
 mod loads;
 mod output;
+mod stage;
 mod tables;
 
 pub use crate::unit::Dimension;
@@ -106,6 +107,8 @@ pub enum Kind {
     Text(usize),
     /// A name: ASCII letters, digits, `-` and `_`.
     Name,
+    /// Any number of names.
+    Names,
     /// `true` or `false`.
     Flag,
     /// A table.
@@ -228,6 +231,7 @@ impl fmt::Display for Kind {
             Self::ChoiceOr(words, table) => write!(f, "{}, or a table, {}", OneOf(words), table.header),
             Self::Text(most) => write!(f, "a text of at most {most} characters without control characters"),
             Self::Name => f.write_str("a name of at most 64 ASCII letters, digits, `-` and `_`"),
+            Self::Names => f.write_str("a list of names"),
             Self::Flag => f.write_str("true or false"),
             Self::Table(table) => write!(f, "a table, {}", table.header),
             Self::Named(table) => write!(f, "tables with names, {}", table.header),

@@ -114,10 +114,18 @@ impl Case {
 /// `columns`. Positions are relative to the grid's lower corner (m), volumes and masses per metre of thickness (m²,
 /// kg/m).
 pub fn seed(case: &Case, columns: Range<usize>) -> impl Iterator<Item = Seed<2>> + '_ {
-    let mut offset = 0;
-    case.bodies.iter().flat_map(move |body| {
-        let first_id = offset;
-        offset += body.points(&case.grid) as u64;
+    seed_bodies(case, columns, |_| true)
+}
+
+/// The same of those bodies only whose number is `wanted`.
+pub fn seed_bodies<'a>(
+    case: &'a Case,
+    columns: Range<usize>,
+    wanted: impl Fn(usize) -> bool + 'a,
+) -> impl Iterator<Item = Seed<2>> + 'a {
+    let bodies = case.bodies.iter().zip(case.ids()).enumerate().filter(move |(number, _)| wanted(*number));
+    bodies.flat_map(move |(_, (body, ids))| {
+        let first_id = ids.start;
         let of_box = body.extents(&case.grid).map(|extents| of_box(case, body, first_id, extents, columns.clone()));
         let of_outline = match &body.region {
             Region::Outline(outline) => Some(of_outline(case, body, first_id, outline, columns.clone())),

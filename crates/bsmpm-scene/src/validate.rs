@@ -12,6 +12,7 @@ mod physics;
 mod place;
 mod shape;
 mod solver;
+mod stage;
 mod strip;
 
 use crate::case::{Analysis, Case, Gravity, Support};
@@ -43,6 +44,8 @@ pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Op
     let boundary = boundary(record);
     let grid = grid::read(record, boundary, report);
     let bodies = body::read_all(record, grid.as_ref(), regime, report);
+    let time = analysis.as_ref().map(|analysis| (analysis.end, analysis.dt));
+    let stages = stage::read_all(record, bodies.as_deref(), time, report);
     let factor = record.record("strength_reduction").and_then(|reduction| reduction.number("factor"));
     let contacts = contacts(record, factor, report);
     let (placed, made) = (grid.as_ref(), bodies.as_deref());
@@ -83,6 +86,7 @@ pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Op
         grid: grid?,
         materials: materials?,
         bodies: bodies?,
+        stages: stages?,
         gravity,
         shaking,
         boundary: boundary?,
@@ -106,6 +110,8 @@ pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Op
     if report.failed() {
         return None;
     }
+    body::warn_of_overlap(&case, report);
+    stage::check(&mut case, record, report);
     lines::place(&mut case, record, report);
     physics::check(&case, record, report);
     Some(Case { warnings: std::mem::take(&mut report.warnings), notes: std::mem::take(&mut report.notes), ..case })

@@ -10,7 +10,9 @@ use crate::model::{Model, Regime};
 use crate::parallel::{Halo, LinearSolver};
 use crate::points::Points;
 use crate::schedule::Schedule;
+use crate::step::newmark::Newmark;
 use crate::step::{Counts, StepReport, step};
+use std::borrow::Cow;
 
 /// Halvings of the nominal step before the run gives up.
 const MOST_CUTS: u32 = 10;
@@ -102,6 +104,12 @@ impl Stepper {
         Some(Self { guess, at })
     }
 
+    /// Begins a stage: what was moving or straining the points may be gone, so that the next step starts from no
+    /// displacement, and the energy that it may have is that of the points which are there now.
+    pub fn begin_stage(&mut self) {
+        (self.at.guess_dt, self.at.budget) = (0.0, None);
+    }
+
     /// Where it stands.
     pub fn progress(&self) -> Progress {
         self.at
@@ -142,7 +150,8 @@ impl Stepper {
                 if self.at.tick + size == TICKS { to } else { from + (to - from) * fraction(self.at.tick + size) };
             let dt = end - self.at.t;
             let mut guess = self.scaled_guess(dt);
-            match step(&model.over(dt), points, &mut guess, (self.at.t, dt), (halo, solver), &mut counts) {
+            let model = self.suddenly(model.over(dt));
+            match step(&model, points, &mut guess, (self.at.t, dt), (halo, solver), &mut counts) {
                 Ok(report) => {
                     (self.guess, self.at.guess_dt, self.at.t) = (guess, dt, end);
                     if let (Some(budget), Some(turnover)) = (&mut self.at.budget, &report.turnover) {
@@ -176,6 +185,12 @@ impl Stepper {
                 }
             }
         }
+    }
+
+    /// The model in the first step of a stage: forces act at once which the points' acceleration knows nothing of.
+    fn suddenly<'a, K: Kinematics<D>, const D: usize>(&self, model: Cow<'a, Model<K, D>>) -> Cow<'a, Model<K, D>> {
+        let begins = self.at.guess_dt == 0.0 && self.at.t > 0.0 && model.regime == Regime::Dynamic;
+        if begins { Cow::Owned(Model { newmark: Newmark::of_the_end(), ..model.into_owned() }) } else { model }
     }
 
     /// The last displacement, scaled by the ratio of the steps (step 3b).

@@ -127,6 +127,11 @@ impl Books {
         Self { start: stored.kinetic + stored.elastic, flows: Flows::default() }
     }
 
+    /// Enters what points that were placed bring along, and those that were removed take away.
+    pub fn exchange(&mut self, before: Stored, after: Stored) {
+        self.start += (after.kinetic + after.elastic) - (before.kinetic + before.elastic);
+    }
+
     /// What is left over in a state: `external - Δ(T + E) - plastic - numerical`.
     pub fn closure(&self, now: Stored) -> f64 {
         let spent = self.flows.plastic + self.flows.numerical();

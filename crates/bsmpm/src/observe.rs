@@ -39,9 +39,9 @@ pub fn percentile<const D: usize>(points: &Points<D>, axis: usize, percentile: f
     upper
 }
 
-/// Largest displacement of any point, m.
+/// Largest displacement of any point since displacements were last set to zero, m.
 pub fn largest_displacement<const D: usize>(points: &Points<D>, halo: &dyn Halo) -> f64 {
-    let mut largest = [points.u.iter().map(|u| u.norm()).fold(0.0, f64::max)];
+    let mut largest = [(0..points.len()).map(|p| points.displacement(p).norm()).fold(0.0, f64::max)];
     halo.maximum(&mut largest);
     largest[0]
 }
@@ -59,7 +59,7 @@ pub fn surface<const D: usize>(grid: &Grid<D>, points: &Points<D>, x: f64, halo:
 
 /// Largest displacement of any point along the last axis, m; 0 if none has risen.
 pub fn heave<const D: usize>(points: &Points<D>, halo: &dyn Halo) -> f64 {
-    let mut largest = [points.u.iter().map(|u| u[D - 1]).fold(0.0, f64::max)];
+    let mut largest = [(0..points.len()).map(|p| points.displacement(p)[D - 1]).fold(0.0, f64::max)];
     halo.maximum(&mut largest);
     largest[0]
 }
@@ -113,12 +113,18 @@ pub fn angular_momentum<const D: usize>(
     sum
 }
 
-/// Id of the point nearest to `at` (m, from the grid's lower corner); of equally near ones the smallest id.
-pub fn nearest<const D: usize>(points: &Points<D>, at: &Vector<D>, halo: &dyn Halo) -> Option<u64> {
-    let distance = |p: usize| (points.x[p] - at).norm_squared();
+/// Id of the point nearest to `at` (m, from the grid's lower corner) among those whose ids are `wanted`; of equally
+/// near ones the smallest id.
+pub fn nearest<const D: usize>(
+    points: &Points<D>,
+    at: &Vector<D>,
+    wanted: impl Fn(u64) -> bool,
+    halo: &dyn Halo,
+) -> Option<u64> {
+    let distance = |p: usize| if wanted(points.id[p]) { (points.x[p] - at).norm_squared() } else { f64::INFINITY };
     let mut closest = [-(0..points.len()).map(distance).fold(f64::INFINITY, f64::min)];
     halo.maximum(&mut closest);
-    let candidates = (0..points.len()).filter(|&p| -distance(p) == closest[0]);
+    let candidates = (0..points.len()).filter(|&p| wanted(points.id[p]) && -distance(p) == closest[0]);
     let mut id = [candidates.map(|p| -(points.id[p] as f64)).fold(f64::NEG_INFINITY, f64::max)];
     halo.maximum(&mut id);
     id[0].is_finite().then(|| -id[0] as u64)

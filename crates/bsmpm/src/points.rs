@@ -29,7 +29,8 @@ macro_rules! columns {
         every { $($(#[$doc:meta])+ $name:ident: $Type:ty, $unit:literal, $frame:expr, |$seed:ident| $start:expr;)+ }
         dynamic { $($(#[$moving_doc:meta])+
             $moving:ident: $MovingType:ty, $moving_unit:literal, $moving_frame:expr, |$moving_seed:ident| $moving_start:expr;)+ }
-        some { $($(#[$some_doc:meta])+ $some:ident: $SomeType:ty, $some_unit:literal, $some_frame:expr;)+ }
+        some { $($(#[$some_doc:meta])+
+            $some:ident: $SomeType:ty, $some_unit:literal, $some_frame:expr, || $some_start:expr;)+ }
     ) => {
         /// Velocity and acceleration; absent in quasi-static scenes.
         #[derive(Clone, Debug, Default, PartialEq)]
@@ -58,12 +59,16 @@ macro_rules! columns {
                 $(ColumnInfo { name: stringify!($some), unit: $some_unit, frame: $some_frame },)+
             ];
 
-            /// Adds a stress-free point at rest or with its initial velocity.
+            /// Adds a stress-free point at rest or with its initial velocity, with every column that is there.
             fn push(&mut self, seed: &Seed<D>) {
                 $({ let $seed = seed; self.$name.push($start); })+
                 if let Some(motion) = &mut self.motion {
                     $({ let $moving_seed = seed; motion.$moving.push($moving_start); })+
                 }
+                $(if let Some(column) = &mut self.$some {
+                    column.push($some_start);
+                })+
+                self.state.iter_mut().for_each(Rows::push_zeros);
             }
 
             /// No points, with room for the columns of these names: those that a scene does without are there if they
@@ -143,10 +148,12 @@ columns! {
     some {
         /// -  J-bar/J, J-bar the dilation that the stress has felt, under F-bar from its first step on; before that it
         ///   is 1
-        dilation: Vec<f64>, "-", None;
+        dilation: Vec<f64>, "-", None, || 1.0;
         /// -  logarithm of the volume that gapes, where a material closes its gaps, from its first step on; before that
         ///   it is 0
-        gap: Vec<f64>, "-", None;
+        gap: Vec<f64>, "-", None, || 0.0;
+        /// m  displacement when displacements were last set to zero, from that stage on; before that it is 0
+        datum: Vec<Vector<D>>, "m", None, || Vector::zeros();
     }
 }
 
@@ -193,6 +200,30 @@ impl<const D: usize> Points<D> {
     pub fn with_state(self, width: usize) -> Self {
         let state = (width > 0).then(|| Rows { width, numbers: vec![0.0; width * self.len()] });
         Self { state, ..self }
+    }
+
+    /// Places further points, which start as others did.
+    pub fn place(&mut self, seeds: impl IntoIterator<Item = Seed<D>>) {
+        seeds.into_iter().for_each(|seed| self.push(&seed));
+    }
+
+    /// Takes the points away whose ids `gone` says.
+    pub fn remove(&mut self, gone: impl Fn(u64) -> bool) {
+        let stay: Vec<u32> = (0..self.len() as u32).filter(|&p| !gone(self.id[p as usize])).collect();
+        if stay.len() < self.len() {
+            self.columns().into_iter().for_each(|column| column.reorder(&stay));
+        }
+    }
+
+    /// Displacements count from here.
+    pub fn reset_displacements(&mut self) {
+        self.datum = Some(self.u.clone());
+    }
+
+    /// Displacement of a point since displacements were last set to zero, m.
+    #[inline]
+    pub fn displacement(&self, p: usize) -> Vector<D> {
+        self.datum.as_ref().map_or(self.u[p], |datum| self.u[p] - datum[p])
     }
 
     /// Number of points.

@@ -253,6 +253,23 @@ impl ManifestOutput {
     }
 }
 
+/// What a stage has changed.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ManifestStage {
+    /// What the case calls it.
+    pub name: Option<String>,
+    /// Steps that were made before.
+    pub step: u64,
+    /// s (quasi-static: pseudo-time)  when it began.
+    pub time: f64,
+    /// Points that it took away.
+    pub removed: u64,
+    /// Points that it placed.
+    pub added: u64,
+    /// Whether displacements count from there.
+    pub reset: bool,
+}
+
 /// Where and how a run went on.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ManifestRestart {

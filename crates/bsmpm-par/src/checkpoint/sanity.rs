@@ -8,12 +8,14 @@ use bsmpm::points::{Column, Number, Points};
 use bsmpm_io::exit;
 use mpi::collective::{CommunicatorCollectives, SystemOperation};
 use mpi::topology::SimpleCommunicator;
+use std::ops::Range;
 use std::path::Path;
 
 /// Bits of a word.
 const WORD: u64 = u64::BITS as u64;
 
-/// Refuses points that cannot be a state of a run in this grid with so many materials. Collective.
+/// Refuses points that cannot be a state of a run in this grid with so many materials and the ids `present`, or from
+/// 0 on without a gap. Collective.
 ///
 /// # Errors
 /// The same on all ranks (76): what is wrong with which point.
@@ -22,12 +24,14 @@ pub fn require(
     file: &Path,
     points: &mut Points<2>,
     grid: &Grid<2>,
-    materials: usize,
+    (materials, present): (usize, Option<&[Range<u64>]>),
 ) -> Result<(), Refusal> {
     let refused =
         |reason| Refusal::new(exit::CHECKPOINT, format!("the checkpoint {} cannot be used: {reason}", file.display()));
     agree(world, finite(points).and_then(|()| possible(points, grid, materials)).map_err(refused))?;
-    agree(world, once(world, &points.id).map_err(refused))
+    let all = 0..u64::MAX;
+    let present = present.unwrap_or(std::slice::from_ref(&all));
+    agree(world, once(world, &points.id, present).map_err(refused))
 }
 
 fn finite(points: &mut Points<2>) -> Result<(), String> {
@@ -62,18 +66,32 @@ fn possible(points: &Points<2>, grid: &Grid<2>, materials: usize) -> Result<(), 
     Ok(())
 }
 
-/// Every number from 0 on once: a bit for each. Collective; `Err` on all ranks or none.
-fn once(world: &SimpleCommunicator, ids: &[u64]) -> Result<(), String> {
+/// Every number of `present` once, as far as there are points: a bit for each. Collective; `Err` on all ranks or none.
+fn once(world: &SimpleCommunicator, ids: &[u64], present: &[Range<u64>]) -> Result<(), String> {
     let (own, mut all) = (ids.len() as u64, 0_u64);
     world.all_reduce_into(&own, &mut all, SystemOperation::sum());
+    let expected: u64 = present.iter().map(|range| range.end - range.start).sum();
+    if expected < all || (expected > all && expected != u64::MAX) {
+        return Err(format!("it has {all} points, where the case has {expected} at that time"));
+    }
+    let place = |id: u64| {
+        let mut before = 0;
+        let range = present.iter().find(|range| {
+            let holds = range.contains(&id);
+            before += if holds { 0 } else { range.end - range.start };
+            holds
+        })?;
+        Some(before + id - range.start)
+    };
     let mut seen = vec![0_u64; all.div_ceil(WORD).max(1) as usize];
-    for &id in ids.iter().filter(|&&id| id < all) {
-        seen[(id / WORD) as usize] |= 1 << (id % WORD);
+    for at in ids.iter().filter_map(|&id| place(id)).filter(|at| *at < all) {
+        seen[(at / WORD) as usize] |= 1 << (at % WORD);
     }
     let mut seen_by_all = vec![0_u64; seen.len()];
     world.all_reduce_into(&seen[..], &mut seen_by_all[..], SystemOperation::bitwise_or());
-    let bit = |id: u64| seen_by_all[(id / WORD) as usize] >> (id % WORD) & 1;
+    let bit = |at: u64| seen_by_all[(at / WORD) as usize] >> (at % WORD) & 1;
     // As many points as numbers: if none is missing, none is there twice.
-    let missing = (0..all).find(|&id| bit(id) == 0);
-    missing.map_or(Ok(()), |id| Err(format!("it has {all} points, but none is point {id}: another is there twice")))
+    let missing = (0..).zip(present.iter().cloned().flatten()).take(all as usize).find(|(at, _)| bit(*at) == 0);
+    missing
+        .map_or(Ok(()), |(_, id)| Err(format!("it has {all} points, but none is point {id}: another is there twice")))
 }

@@ -62,6 +62,9 @@ pub struct RecordState {
     pub followed: Vec<Option<u64>>,
     /// J  kinetic and elastic energy at the start, and all flows since; none without an energy history.
     pub books: Option<BooksForm>,
+    /// m  displacement of every history when displacements were last set to zero; empty if they never were.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub datum: Vec<[f64; 2]>,
 }
 
 /// How far the files of a run have come.

@@ -193,6 +193,7 @@ fn manifest(new: Manifest, resumed: &Resumed<'_>) -> (Manifest, Vec<String>) {
         balance: old.balance,
         summary: old.summary,
         initial: old.initial,
+        stages: old.stages,
         outputs,
         checkpoint: Some(checkpoint),
         restarts,

@@ -83,7 +83,7 @@ fn scene<'p>(
     let mut model = model(case).map_err(|error| Refusal::new(exit::CASE, error.to_string()))?;
     let schedule = schedule(case);
     if let RunStart::Resumed(resumed) = start {
-        let (slabs, points, stepper) = resumed.read(universe, &mut model, &schedule)?;
+        let (slabs, points, stepper) = resumed.read(universe, case, &mut model, &schedule)?;
         let surface = points.surface.clone();
         let mut simulation = Simulation::new(seam, model, (slabs, points), schedule, shared);
         simulation.resume(resumed.state.steps, stepper, surface);

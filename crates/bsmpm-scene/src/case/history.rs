@@ -11,6 +11,8 @@ pub struct History {
     pub name: String,
     /// -  multiplies
     pub scale: f64,
+    /// Whether its place is at a body that no stage places or removes: the point that it follows is one of those.
+    pub lasts: bool,
 }
 
 /// What a history records.

@@ -24,6 +24,7 @@ impl Record {
         rows: &[ListRow], Kind::Rows(_) => Datum::Rows(rows) => rows;
         count: u64, Kind::Count(..) => Datum::Count(count) => *count;
         text: &str, Kind::Text(_) | Kind::Name => Datum::Text(text) => text;
+        names: &[String], Kind::Names => Datum::Names(names) => names;
         flag: bool, Kind::Flag => Datum::Flag(flag) => *flag;
         /// A table, also where it may stand for a number or a word.
         record: &Record, Kind::Table(_) | Kind::Profile(..) | Kind::ChoiceOr(..) => Datum::Record(record) => record;

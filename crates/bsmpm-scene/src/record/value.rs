@@ -33,6 +33,19 @@ pub(super) fn read(kind: &Kind, node: &Node, path: &str, pseudo_time: bool, repo
             Value::Text(text) if is_name(text) => Some(Datum::Text(text.clone())),
             _ => reader.unexpected(node),
         },
+        Kind::Names => match &node.value {
+            Value::List(items) => {
+                let name = |item: &Node| match &item.value {
+                    Value::Text(text) if is_name(text) => Some(text.clone()),
+                    _ => None,
+                };
+                match items.iter().map(name).collect() {
+                    Some(names) => Some(Datum::Names(names)),
+                    None => reader.unexpected(node),
+                }
+            }
+            _ => reader.unexpected(node),
+        },
         Kind::Flag => match node.value {
             Value::Flag(flag) => Some(Datum::Flag(flag)),
             _ => reader.unexpected(node),

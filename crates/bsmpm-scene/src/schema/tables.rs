@@ -2,7 +2,7 @@
 
 use super::Kind::*;
 use super::Presence::{Default, Optional, Required};
-use super::{Dimension as In, Kind, Range, Table, body, element, key, later, laws, loads, one_of, output};
+use super::{Dimension as In, Kind, Range, Table, body, element, key, later, laws, loads, one_of, output, stage};
 use crate::words::{Accuracy, C0Lines, Factor, Geometry, Ksp, LinearSolver, Nonlinear, Order, Pc, Support, Word};
 use bsmpm::background::{Extent, Kind as Background};
 use bsmpm::model::Regime;
@@ -38,7 +38,7 @@ pub static ROOT: Table = Table {
         key("strength_reduction", Kind::Table(&loads::REDUCTION), Optional, "strength divided by a factor"),
         key("initial", Kind::Table(&loads::INITIAL), Optional, "stress at the start; absent: none"),
         key("element", Named(&element::ELEMENT), Optional, "tests of one point, for `bsmpm element`"),
-        later("stage", "staged loading"),
+        key("stage", Tables(&stage::STAGE), Optional, "bodies that are removed or placed at a time"),
         later("profile", "strength with depth"),
     ],
     exclusive: &[],

@@ -1,7 +1,7 @@
 //! Bodies: their material, their place in the grid and the number of their points.
 
 use super::shape;
-use crate::case::Body;
+use crate::case::{Body, Case};
 use crate::estimate::MOST_POINTS;
 use crate::grid::GridSpec;
 use crate::nearest::hint;
@@ -37,9 +37,6 @@ pub(super) fn read_all(
         root.error("body", format!("{points} material points in all; at most {MOST_POINTS} are possible"), report);
         return None;
     }
-    if let Some(grid) = grid {
-        warn_of_overlap(&bodies, grid, report);
-    }
     Some(bodies)
 }
 
@@ -73,7 +70,8 @@ fn read(
         Some(spin) => Some((spin.number("rate")?, spin.pair("about")?)),
         None => None,
     };
-    let body = Body { material: material?, region: region?, points_per_cell: points_per_cell?, velocity, spin };
+    let name = record.text("name").map(str::to_owned);
+    let body = Body { name, material: material?, region: region?, points_per_cell: points_per_cell?, velocity, spin };
     if grid.is_some_and(|grid| body.points(grid) == 0) {
         let message = "the body is thinner than 1e-9 of a cell: it has no points";
         match record.record("box") {
@@ -95,11 +93,15 @@ fn material(record: &Record, root: &Record, report: &mut Report<'_>) -> Option<u
     found
 }
 
-/// Tells of the first pair of bodies that have an area in common.
-fn warn_of_overlap(bodies: &[Body], grid: &GridSpec, report: &mut Report<'_>) {
+/// Tells of the first pair of bodies that have an area in common, and are there at the same time.
+pub(super) fn warn_of_overlap(case: &Case, report: &mut Report<'_>) {
+    let (bodies, grid) = (&case.bodies, &case.grid);
+    let times = || std::iter::once(0.0).chain(case.stages.iter().map(|stage| stage.at));
+    let together = |i: usize, j: usize| times().any(|t| case.is_there(i, t) && case.is_there(j, t));
     let mut work = 0;
     let mut pairs = (0..bodies.len()).flat_map(|i| (i + 1..bodies.len()).map(move |j| (i, j)));
-    if let Some((i, j)) = pairs.find(|(i, j)| overlap(&bodies[*i], &bodies[*j], grid, &mut work)) {
+    let both = |(i, j): &(usize, usize)| overlap(&bodies[*i], &bodies[*j], grid, &mut work) && together(*i, *j);
+    if let Some((i, j)) = pairs.find(both) {
         report.warn(format!("body.{i} and body.{j} overlap: the common part holds the points of both"));
     }
 }

@@ -73,7 +73,7 @@ fn read(
     }
     let quantity = quantity(measured, record, (grid, made), report)?;
     let name = if record.gives("name") { record.text("name")? } else { measured.word() };
-    Some(History { quantity, name: name.to_owned(), scale: record.number("scale")? })
+    Some(History { quantity, name: name.to_owned(), scale: record.number("scale")?, lasts: false })
 }
 
 /// Whether it is nothing where nothing has a velocity.

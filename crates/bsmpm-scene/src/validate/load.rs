@@ -1,16 +1,13 @@
 //! Tractions, point loads, and the stress at the start.
 
 use super::material::profile;
-use super::place::{along, at_body, beyond};
+use super::place::{along, at_body, beyond, ring};
 use super::strip::{AroundStrip, segment};
 use crate::case::{Body, Gravity, Initial, LoadedLine, NamedMaterial, PointLoad, Push, Traction};
 use crate::record::Record;
 use crate::report::Report;
 use crate::words::Start;
 use bsmpm::model::Regime;
-
-/// Places of a circle at which bodies are looked for.
-const RING: usize = 180;
 
 /// All tractions in the order of the file, without those that have an error.
 pub(super) fn tractions(root: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Vec<Traction> {
@@ -44,14 +41,6 @@ fn line(record: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Op
     let [from, to] = segment(record, around, report)?;
     acts_on_body(record, "from", along([from, to]), around, report);
     Some(LoadedLine::Segment { from, to })
-}
-
-/// Places on a circle.
-fn ring(center: [f64; 2], radius: f64) -> impl Iterator<Item = [f64; 2]> {
-    (0..RING).map(move |k| {
-        let (sin, cos) = ((k as f64 + 0.5) * std::f64::consts::TAU / RING as f64).sin_cos();
-        [center[0] + radius * cos, center[1] + radius * sin]
-    })
 }
 
 /// What a traction is; of a pressure on which side the body lies.

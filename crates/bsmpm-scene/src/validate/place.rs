@@ -7,6 +7,8 @@ use crate::grid::GridSpec;
 const ROUNDING: f64 = 1e-9;
 /// Places along a line at which bodies are looked for.
 const SAMPLES: usize = 101;
+/// Places of a circle at which bodies are looked for.
+const RING: usize = 180;
 /// Directions in which a body is looked for around a place.
 const DIRECTIONS: usize = 16;
 /// Parts of half the spacing of its points at which a body is looked for: a body may be thinner than that.
@@ -32,6 +34,14 @@ pub(super) fn along([from, to]: [[f64; 2]; 2]) -> impl Iterator<Item = [f64; 2]>
     (0..SAMPLES).map(move |k| {
         let part = (k as f64 + 0.5) / SAMPLES as f64;
         [0, 1].map(|axis| from[axis] + part * (to[axis] - from[axis]))
+    })
+}
+
+/// Places on a circle.
+pub(super) fn ring(center: [f64; 2], radius: f64) -> impl Iterator<Item = [f64; 2]> {
+    (0..RING).map(move |k| {
+        let (sin, cos) = ((k as f64 + 0.5) * std::f64::consts::TAU / RING as f64).sin_cos();
+        [center[0] + radius * cos, center[1] + radius * sin]
     })
 }
 

@@ -108,6 +108,12 @@ fn initial_stress_and_histories() {
 }
 
 #[test]
+fn stages() {
+    verify_all(DYNAMIC, rows::STAGES);
+    verify_all(STATIC, rows::STAGES_OF_ONE);
+}
+
+#[test]
 fn known_but_not_available_yet() {
     let later =
         |(find, put, key): &(&'static str, &'static str, &'static str)| row(find, put, key, "not available yet");

@@ -286,7 +286,54 @@ pub const LATER: &[(&str, &str, &str)] = &[
     ("geometry = \"plane-strain\"", "geometry = \"axisymmetric\"", "geometry"),
     ("geometry = \"plane-strain\"", "geometry = \"solid\"", "geometry"),
     ("format = \"vtu\"", "format = \"vtkhdf\"", "output.format"),
-    ("[gravity]", "[stage]", "stage"),
-    ("[gravity]", "[[stage]]", "stage"),
     ("[gravity]", "[profile.depth]", "profile"),
+];
+
+/// Stages: bodies that come and go.
+pub const STAGES: &[Row] = &[
+    row("add  = [\"fill\"]", "add = [\"fil\"]", "stage.0.add", "did you mean `fill`?"),
+    row("add  = [\"fill\"]", "add = \"fill\"", "stage.0.add", "expected a list of names"),
+    row("add  = [\"fill\"]", "add = []", "stage.0", "it changes nothing").up(3),
+    row("add  = [\"fill\"]", "add = [\"fill\", \"fill\"]", "stage.0.add", "has been placed before"),
+    row("remove = [\"fill\"]", "remove = [\"fill\", \"fill\"]", "stage.1.remove", "has been removed before"),
+    row("add  = [\"fill\"]", "add = [\"fill\"]\nremove = [\"fill\"]", "stage.0.remove", "is not there yet").down(1),
+    row("at     = \"500 ms\"", "at = 0.25", "stage.1.at", "stages follow in time"),
+    row("at     = \"500 ms\"", "at = \"1 s\"", "stage.1.at", "not before the end of the run"),
+    row("at   = \"0.25 s\"", "at = 0", "stage.0.at", "out of range"),
+    row("name     = \"fill\"", "name = \"a b\"", "body.5.name", "expected a name"),
+    row(
+        "[[stage]]\nname",
+        "[[body]]\nname = \"fill\"\nmaterial = \"clay\"\npoints_per_cell = 2\nbox = { lower = \
+        [3.5, 2.7], upper = [3.8, 2.9] }\n[[stage]]\nname",
+        "body.6.name",
+        "body.5 has that name",
+    )
+    .down(1),
+];
+
+/// The quasi-static base has one body only.
+pub const STAGES_OF_ONE: &[Row] = &[
+    row(
+        "points_per_cell = 3",
+        "points_per_cell = 3\nname = \"all\"\n[[stage]]\nat = 0.5\nremove = [\"all\"]",
+        "stage.0.remove",
+        "nothing is left after it",
+    )
+    .down(4),
+    row(
+        "points_per_cell = 3",
+        "points_per_cell = 3\nname = \"all\"\n[[stage]]\nat = 0.5\nadd = [\"all\"]",
+        "body",
+        "none is there at the start",
+    )
+    .up(3),
+    row(
+        "points_per_cell = 3",
+        "points_per_cell = 3\nname = \"top\"\n[[body]]\nmaterial = \"soil\"\npoints_per_cell = 2\n\
+         box = { lower = [0.0, 1.0], upper = [2.0, 2.0] }\n[[stage]]\nat = 0.5\nremove = [\"top\"]\n\
+         [[point_load]]\nat = [1.0, 0.5]\nforce = [0, -1]\nramp = 1.0",
+        "point_load.0.at",
+        "there is no body from the start to the end",
+    )
+    .down(10),
 ];

@@ -55,7 +55,7 @@ fn lists_are_reached_by_index_and_absent_tables_are_made() {
 fn a_star_is_every_item_of_a_list_and_every_name() {
     let case = valid(FULL, &["body.*.points_per_cell=5", "material.*.poisson=0.25", "body.1.points_per_cell=3"]);
     let points: Vec<usize> = case.bodies.iter().map(|body| body.points_per_cell).collect();
-    assert_eq!(points, [5, 3, 5, 5, 5]);
+    assert_eq!(points, [5, 3, 5, 5, 5, 5]);
     assert!(case.materials.iter().all(|named| named.material.elastic().poisson == 0.25));
     for (text, change) in [(FULL, "body.*=3"), (STATIC, "traction.*.ramp=1"), (FULL, "grid.*=1")] {
         assert!(set(text, &[change]).is_err(), "{change}");
@@ -91,8 +91,8 @@ fn errors_cite_the_override() {
         ("grid.cell=-1", "grid.cell", "allowed: cell > 0"),
         ("grid.cell=5 s", "grid.cell", "unit of time"),
         ("grid.cel=5 mm", "grid.cel", "did you mean `cell`?"),
-        ("body.5.points_per_cell=3", "body.5", "missing"),
-        ("body.9.points_per_cell=3", "body.9.points_per_cell", "index 9 is beyond the list of 5"),
+        ("body.6.points_per_cell=3", "body.6", "missing"),
+        ("body.9.points_per_cell=3", "body.9.points_per_cell", "index 9 is beyond the list of 6"),
         ("body.x.points_per_cell=3", "body.x.points_per_cell", "`x` is no index of a list"),
         ("title.x=3", "title.x", "which is no table"),
         ("grid.cell", "", "expected KEY=VALUE"),
@@ -104,7 +104,7 @@ fn errors_cite_the_override() {
         ("footing.base=soft", "footing.base", "expected one of \"smooth\", \"rough\""),
         ("strength_reduction.factor=0.01", "strength_reduction.factor", "0.1 <= factor <= 100"),
         ("body.3.subtract.0.circle.radius=0", "body.3.subtract.0.circle.radius", "radius > 0"),
-        ("stage.0.end=1", "stage", "not available yet"),
+        ("profile.0.end=1", "profile", "not available yet"),
     ];
     for (text, key, says) in rows {
         let errors = set(FULL, &[text]).unwrap_err();

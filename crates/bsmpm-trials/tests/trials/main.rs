@@ -18,6 +18,7 @@ mod restart;
 mod room;
 mod scenes;
 mod signals;
+mod stages;
 mod sweep;
 mod told;
 

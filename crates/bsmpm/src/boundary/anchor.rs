@@ -56,6 +56,25 @@ impl Anchors {
         }
     }
 
+    /// The anchors with those that `gone` says replaced by the points that were the nearest ones of the others at the
+    /// start. Two reductions if there are such.
+    pub fn without<const D: usize>(
+        &self,
+        boundary: &Boundary<D>,
+        gone: impl Fn(u64) -> bool,
+        points: Anchored<'_, D>,
+        halo: &dyn Halo,
+    ) -> Self {
+        let mut anchors = self.clone();
+        let each = anchors.strips.iter_mut().chain(&mut anchors.loads).flatten();
+        let (mut lost, places): (Vec<&mut u64>, Vec<Vector<D>>) =
+            each.zip(starts(boundary)).filter(|(id, _)| gone(**id)).unzip();
+        if !lost.is_empty() {
+            lost.iter_mut().zip(nearest(&places, points, halo)).for_each(|(id, found)| **id = found);
+        }
+        anchors
+    }
+
     /// Where the material is now. One reduction, if there are surface points at all.
     pub fn places<const D: usize>(
         &self,

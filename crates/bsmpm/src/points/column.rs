@@ -52,6 +52,11 @@ impl Rows {
         Self { width, numbers: Vec::new() }
     }
 
+    /// Adds a row of zeros.
+    pub(super) fn push_zeros(&mut self) {
+        self.numbers.resize(self.numbers.len() + self.width, 0.0);
+    }
+
     /// Row `p`.
     #[inline]
     pub fn of_point(&self, p: usize) -> &[f64] {

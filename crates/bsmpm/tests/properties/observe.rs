@@ -75,7 +75,7 @@ fn numbers_of_a_known_block() {
     assert_eq!(farthest(points, 0, &halo), 2.375);
     assert_eq!(front(&scene.model, points, &halo), 2.375);
     assert!((percentile(points, 1, 50.0, &halo) - 1.375).abs() <= 1e-12); // half of the rows lie below and on it
-    let id = nearest(points, &[0.7, 0.6].into(), &halo).unwrap();
+    let id = nearest(points, &[0.7, 0.6].into(), |_| true, &halo).unwrap();
     let found = points.id.iter().position(|&other| other == id).unwrap();
     assert_eq!(points.x[found], Vector::from([0.625, 0.625]));
 }

@@ -1,0 +1,48 @@
+//! Stages: what is removed and placed once a step has ended at their time. The rows and frame of that time are of the
+//! state before; checkpoints are of the state after.
+
+use super::Run;
+use bsmpm::energy::Stored;
+use bsmpm_io::manifest::ManifestStage;
+use bsmpm_ranks::simulation::Simulation;
+use bsmpm_scene::{Stage, model};
+
+impl Run<'_> {
+    /// Begins the stages of the time `t`.
+    pub(super) fn begin_stages(&mut self, t: f64) {
+        let stages: Vec<Stage> = self.case.stages_at(t).cloned().collect();
+        stages.iter().for_each(|stage| self.begin_stage(stage));
+    }
+
+    fn begin_stage(&mut self, stage: &Stage) {
+        let stored = |simulation: &Simulation<'_, _, 2>| {
+            let Simulation { model, points, halo, .. } = simulation;
+            model.balances_energy.then(|| Stored::of(model, points, &**halo))
+        };
+        let before = stored(&self.simulation);
+        let taken = self.case.taken_by(stage);
+        let [removed, added] = self.simulation.begin_stage(taken, |columns| model::placed(&self.case, stage, columns));
+        if stage.resets_displacements {
+            self.simulation.points.reset_displacements();
+        }
+        let Simulation { points, halo, .. } = &self.simulation;
+        self.recorder.begin_stage((&self.case, stage), points, &**halo);
+        if let (Some(before), Some(after)) = (before, stored(&self.simulation)) {
+            self.recorder.exchange(before, after);
+        }
+        let (step, time) = (self.simulation.steps(), self.simulation.time());
+        let name = stage.name.as_deref().map_or(String::new(), |name| format!(" {name}"));
+        let changes = [
+            (removed > 0).then(|| format!("{removed} points removed")),
+            (added > 0).then(|| format!("{added} points added")),
+            stage.resets_displacements.then(|| "displacements set to zero".to_owned()),
+        ];
+        let changes: Vec<String> = changes.into_iter().flatten().collect();
+        self.log.line("stage", &format!("stage{name} at t = {time}: {}", changes.join(", ")));
+        if let Some(ledger) = &mut self.ledger {
+            let name = stage.name.clone();
+            let reset = stage.resets_displacements;
+            ledger.manifest().stages.push(ManifestStage { name, step, time, removed, added, reset });
+        }
+    }
+}

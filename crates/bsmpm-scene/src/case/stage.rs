@@ -1,0 +1,90 @@
+//! Stages: which bodies are there when.
+
+use super::{Body, Case};
+use std::ops::Range;
+
+/// What changes at a time, between two steps.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stage {
+    /// What it is called.
+    pub name: Option<String>,
+    /// s (quasi-static: pseudo-time)  when it begins; a step ends there
+    pub at: f64,
+    /// Numbers of the bodies that are taken away.
+    pub remove: Vec<usize>,
+    /// Numbers of the bodies that are placed.
+    pub add: Vec<usize>,
+    /// Whether displacements that are told count from here.
+    pub resets_displacements: bool,
+    /// Numbers of the histories that follow a point of what is placed.
+    pub follows: Vec<usize>,
+}
+
+/// Parts of a step by which the time of a stage may be missed: what the schedule takes as the same time.
+const SAME: f64 = 1e-6;
+
+impl Case {
+    /// The stages that begin at the time `t` at which a step has ended.
+    pub fn stages_at(&self, t: f64) -> impl Iterator<Item = &Stage> {
+        self.stages.iter().filter(move |stage| (stage.at - t).abs() <= SAME * self.analysis.dt)
+    }
+
+    /// Whether a body is there once the stages until the time `t` have begun.
+    pub fn is_there(&self, body: usize, t: f64) -> bool {
+        let begun = |stage: &&Stage| stage.at <= t + SAME * self.analysis.dt;
+        let (adds, removes) = (|s: &Stage| s.add.contains(&body), |s: &Stage| s.remove.contains(&body));
+        let came = !self.stages.iter().any(adds) || self.stages.iter().filter(begun).any(adds);
+        came && !self.stages.iter().filter(begun).any(removes)
+    }
+
+    /// Whether a body is there from the start to the end.
+    pub fn lasts(&self, body: usize) -> bool {
+        self.stages.iter().all(|stage| !stage.add.contains(&body) && !stage.remove.contains(&body))
+    }
+
+    /// The bodies that are there before the first step.
+    pub fn bodies_at_start(&self) -> impl Iterator<Item = &Body> {
+        self.bodies.iter().enumerate().filter(|(number, _)| self.is_there(*number, 0.0)).map(|(_, body)| body)
+    }
+
+    /// Ids of every body's points: they count body by body.
+    pub fn ids(&self) -> Vec<Range<u64>> {
+        let mut end = 0;
+        let ids = self.bodies.iter().map(|body| {
+            let start = end;
+            end += body.points(&self.grid) as u64;
+            start..end
+        });
+        ids.collect()
+    }
+
+    /// Whether a stage takes a point away, by its id.
+    pub fn taken_by(&self, stage: &Stage) -> impl Fn(u64) -> bool + use<> {
+        is_in(self.ids_of(|body| stage.remove.contains(&body)))
+    }
+
+    /// Whether a stage places a point, by its id.
+    pub fn placed_by(&self, stage: &Stage) -> impl Fn(u64) -> bool + use<> {
+        is_in(self.ids_of(|body| stage.add.contains(&body)))
+    }
+
+    /// Whether a point is of a body that is there from the start to the end, by its id.
+    pub fn lasting(&self) -> impl Fn(u64) -> bool + use<> {
+        is_in(self.ids_of(|body| self.lasts(body)))
+    }
+
+    fn ids_of(&self, wanted: impl Fn(usize) -> bool) -> Vec<Range<u64>> {
+        let of = self.ids().into_iter().enumerate().filter(|(body, _)| wanted(*body));
+        of.map(|(_, ids)| ids).collect()
+    }
+
+    /// Ids of the points of the bodies that are there once the stages until the time `t` have begun.
+    pub fn ids_at(&self, t: f64) -> Vec<Range<u64>> {
+        self.ids_of(|body| self.is_there(body, t))
+    }
+}
+
+/// Whether an id lies in one of the ranges.
+fn is_in(ids: Vec<Range<u64>>) -> impl Fn(u64) -> bool {
+    move |id| ids.iter().any(|range| range.contains(&id))
+}

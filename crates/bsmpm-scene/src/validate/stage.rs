@@ -1,0 +1,194 @@
+//! Stages: times that follow each other, bodies that can be removed and placed then, and what must not lose its body.
+
+use super::place;
+use crate::case::{Body, Case, LoadedLine, Quantity, Site, Stage};
+use crate::nearest::hint;
+use crate::record::Record;
+use crate::report::{Report, shortened};
+
+/// Parts of a step by which stages must lie apart: a step ends at each.
+const APART: f64 = 1e-6;
+
+/// All stages in the order of the file, which must be that of time; `time` is the end of the run and the nominal step.
+pub(super) fn read_all(
+    root: &Record,
+    bodies: Option<&[Body]>,
+    time: Option<(f64, f64)>,
+    report: &mut Report<'_>,
+) -> Option<Vec<Stage>> {
+    let (bodies, (end, dt)) = (bodies?, time?);
+    for (number, record) in root.records("body").iter().enumerate() {
+        let name = &bodies[number].name;
+        if let Some(first) = bodies[..number].iter().position(|body| name.is_some() && body.name == *name) {
+            record.error("name", format!("body.{first} has that name"), report);
+        }
+    }
+    let mut before = 0.0;
+    let mut read = Vec::new();
+    for record in root.records("stage") {
+        let stage = stage(record, bodies, report);
+        if let Some(stage) = &stage {
+            timed(stage.at, (before, end, dt), record, report);
+            before = stage.at;
+        }
+        read.push(stage);
+    }
+    let stages: Vec<Stage> = read.into_iter().collect::<Option<_>>()?;
+    (0..bodies.len()).for_each(|body| once(body, &stages, root, report));
+    Some(stages)
+}
+
+fn stage(record: &Record, bodies: &[Body], report: &mut Report<'_>) -> Option<Stage> {
+    let (remove, add) = (numbers("remove", record, bodies, report), numbers("add", record, bodies, report));
+    let (at, resets_displacements) = (record.number("at")?, record.flag("reset_displacements")?);
+    let (remove, add) = (remove?, add?);
+    if remove.is_empty() && add.is_empty() && !resets_displacements {
+        let message = "it changes nothing: give remove, add or reset_displacements = true";
+        report.error(record.origin, &record.path, message);
+    }
+    let name = record.text("name").map(str::to_owned);
+    Some(Stage { name, at, remove, add, resets_displacements, follows: Vec::new() })
+}
+
+/// Numbers of the bodies that a key names.
+fn numbers(key: &str, record: &Record, bodies: &[Body], report: &mut Report<'_>) -> Option<Vec<usize>> {
+    if !record.gives(key) {
+        return Some(Vec::new());
+    }
+    let known = || bodies.iter().filter_map(|body| body.name.as_deref());
+    let mut number = |name: &String| {
+        let found = bodies.iter().position(|body| body.name.as_ref() == Some(name));
+        if found.is_none() {
+            let hint = hint(name, known());
+            let message = format!("there is no [[body]] with name = \"{}\"{hint}", shortened(name));
+            record.error(key, message, report);
+        }
+        found
+    };
+    let found: Vec<Option<usize>> = record.names(key)?.iter().map(&mut number).collect();
+    found.into_iter().collect()
+}
+
+fn timed(at: f64, (before, end, dt): (f64, f64, f64), record: &Record, report: &mut Report<'_>) {
+    if at >= end {
+        record.error("at", format!("{at} is not before the end of the run, {end}: no step would follow"), report);
+    } else if at - before <= APART * dt {
+        let message = format!("{at} is no step after {before}, the start or the stage before; stages follow in time");
+        record.error("at", message, report);
+    }
+}
+
+/// A body is placed once at most, and removed once at most, after that.
+fn once(body: usize, stages: &[Stage], root: &Record, report: &mut Report<'_>) {
+    let records = root.records("stage");
+    let all = |list: fn(&Stage) -> &Vec<usize>| {
+        let times = |(number, stage): (usize, &Stage)| {
+            let count = list(stage).iter().filter(|&&own| own == body).count();
+            std::iter::repeat_n(number, count)
+        };
+        stages.iter().enumerate().flat_map(times).collect::<Vec<usize>>()
+    };
+    let (added, removed) = (all(|stage| &stage.add), all(|stage| &stage.remove));
+    if let Some(&again) = added.get(1) {
+        records[again].error("add", format!("body.{body} has been placed before, by stage.{}", added[0]), report);
+    }
+    if let Some(&again) = removed.get(1) {
+        records[again].error("remove", format!("body.{body} has been removed before, by stage.{}", removed[0]), report);
+    }
+    if let (Some(&added), Some(&removed)) = (added.first(), removed.first())
+        && removed <= added
+    {
+        let message = format!("body.{body} is not there yet: stage.{added} adds it; it may be removed later");
+        records[removed].error("remove", message, report);
+    }
+}
+
+/// What only the whole case shows: something is always left, it can be there without stress, and strips and loads have
+/// a body under them from the start to the end.
+pub(super) fn check(case: &mut Case, root: &Record, report: &mut Report<'_>) {
+    if case.stages.is_empty() {
+        return;
+    }
+    let records = root.records("stage");
+    if case.bodies_at_start().next().is_none() {
+        root.error("body", "none is there at the start: stages add all of them", report);
+    }
+    for (stage, record) in case.stages.iter().zip(records) {
+        if !(0..case.bodies.len()).any(|body| case.is_there(body, stage.at)) {
+            record.error("remove", "nothing is left after it", report);
+        }
+        for &body in &stage.add {
+            let named = &case.materials[case.bodies[body].material];
+            if !named.material.is_linear() {
+                let message = format!(
+                    "body.{body} comes without stress, and material.{} has no state without: place material of a \
+                     linear elastic law",
+                    named.name
+                );
+                record.error("add", message, report);
+            }
+        }
+    }
+    let of = |wanted: &dyn Fn(usize) -> bool| {
+        let numbers = (0..case.bodies.len()).filter(|&body| wanted(body));
+        numbers.map(|body| case.bodies[body].clone()).collect::<Vec<Body>>()
+    };
+    let lasting = of(&|body| case.lasts(body));
+    follow(case, &lasting);
+    for (record, key, places) in surfaces(case, root) {
+        let at = |bodies: &[Body], place: &[f64; 2]| place::at_body(bodies, &case.grid, *place);
+        if let Some(at) = places.into_iter().find(|place| at(&case.bodies, place) && !at(&lasting, place)) {
+            let message =
+                format!("at {at:?} there is no body from the start to the end: stages add or remove what it is on");
+            record.error(key, message, report);
+        }
+    }
+}
+
+/// Histories follow a point of a body that lasts, where one is at their place; where none of the start is, one of the
+/// first body that comes there.
+fn follow(case: &mut Case, lasting: &[Body]) {
+    let first: Vec<Body> = case.bodies_at_start().cloned().collect();
+    let mut places = Vec::new();
+    for (number, history) in case.histories.iter_mut().enumerate() {
+        match history.quantity {
+            Quantity::Displacement { at } | Quantity::Velocity { at } | Quantity::Stress { at } => {
+                history.lasts = place::at_body(lasting, &case.grid, at);
+                places.extend((!place::at_body(&first, &case.grid, at)).then_some((number, at)));
+            }
+            _ => {}
+        }
+    }
+    for stage in &mut case.stages {
+        let placed: Vec<Body> = stage.add.iter().map(|&body| case.bodies[body].clone()).collect();
+        places.retain(|&(number, at)| {
+            let comes = place::at_body(&placed, &case.grid, at);
+            stage.follows.extend(comes.then_some(number));
+            !comes
+        });
+    }
+}
+
+/// Records of strips and loads, the key of their place, and places along them.
+fn surfaces<'a>(case: &Case, root: &'a Record) -> Vec<(&'a Record, &'static str, Vec<[f64; 2]>)> {
+    let mut found = Vec::new();
+    let line = |ends| place::along(ends).collect::<Vec<_>>();
+    if let (Some(footing), Some(record)) = (&case.footing, root.record("footing")) {
+        found.push((record, "from", line([footing.from, footing.to])));
+    }
+    for (prescribed, record) in case.prescribed.iter().zip(root.records("prescribed")) {
+        if let Site::Segment { from, to } = prescribed.site {
+            found.push((record, "from", line([from, to])));
+        }
+    }
+    for (traction, record) in case.tractions.iter().zip(root.records("traction")) {
+        found.push(match traction.line {
+            LoadedLine::Segment { from, to } => (record, "from", line([from, to])),
+            LoadedLine::Circle { center, radius } => (record, "circle", place::ring(center, radius).collect()),
+        });
+    }
+    for (load, record) in case.point_loads.iter().zip(root.records("point_load")) {
+        found.push((record, "at", vec![load.at]));
+    }
+    found
+}

@@ -1,0 +1,133 @@
+//! Stages: what is removed and placed leaves what closed forms say, and the run is the same however it is cut.
+
+use crate::support::Scratch;
+use crate::support::cases::{SLIDING_BLOCK, changed};
+use crate::support::results::{at, differences, history, last_frame, manifest};
+
+/// Pa, N/m3, m: constrained modulus, unit weight and thickness of the lifts; so stiff that strains are small.
+const MODULUS: f64 = 1.2e11;
+const WEIGHT: f64 = 2e4;
+const LIFT: f64 = 2.0;
+/// Lifts of the column, the first one there from the start.
+const LIFTS: usize = 4;
+
+/// A column of four lifts between smooth walls, with `stages`, and the displacement of every interface.
+fn column(stages: &str, cell: f64) -> String {
+    let body = |k: usize| {
+        let [from, to] = [k, k + 1].map(|k| k as f64 * LIFT);
+        format!(
+            "[[body]]\nname = \"lift-{k}\"\nmaterial = \"soil\"\nbox = {{ lower = [0, {from}], upper = [2, {to}] }}\n\
+             points_per_cell = 3\n[[history]]\nquantity = \"displacement\"\nat = [1, {to}]\nname = \"top-{k}\"\n"
+        )
+    };
+    let bodies: String = (0..LIFTS).map(body).collect();
+    format!(
+        "geometry = \"plane-strain\"\n[analysis]\ntype = \"quasi-static\"\nend = 4\nsteps = 4\n\
+         [grid]\nlower = [0, 0]\nupper = [2, 10]\ncell = {cell}\norder = \"quadratic\"\n\
+         [material.soil]\nmodel = \"hencky\"\nyoung = \"100 GPa\"\npoisson = 0.25\nunit_weight = \"20 kN/m3\"\n\
+         [gravity]\nacceleration = [0, -9.81]\n[boundary]\nbottom = \"fixed\"\nleft = \"roller\"\nright = \"roller\"\n\
+         [solver]\ntolerance = 1e-14\nforce_tolerance = 1e-9\nbackground = 0\n\
+         [[history]]\nquantity = \"mass\"\n[[history]]\nquantity = \"energy\"\n{bodies}{stages}"
+    )
+}
+
+fn run(case: &str) -> bsmpm_io::table::Columns {
+    let scratch = Scratch::with_case(case);
+    scratch.mpirun(1, &["case.toml", "-q", "-o", "out"]).expect(0);
+    history(&scratch.path("out"))
+}
+
+/// A lift settles under itself and what follows: the top of the lift i of thickness h at z = i h by
+/// gamma/M (z (H - z) + h z - h²/2), in the limit of thin ones gamma z (H - z)/M.
+#[test]
+fn an_embankment_in_lifts_settles_as_layers_that_are_placed_one_after_the_other() {
+    let stages: String = (1..LIFTS).map(|k| format!("[[stage]]\nat = {k}\nadd = [\"lift-{k}\"]\n")).collect();
+    let [coarse, found] = [0.5, 0.25].map(|cell| run(&column(&stages, cell)));
+    let height = LIFTS as f64 * LIFT;
+    for k in 0..LIFTS {
+        let z = (k + 1) as f64 * LIFT;
+        let exact = WEIGHT / MODULUS * (z * (height - z) + LIFT * z - 0.5 * LIFT * LIFT);
+        // What is followed is off by the curvature of the motion: of second order.
+        let [first, second] =
+            [&coarse, &found].map(|found| (at(found, &format!("top-{k}-y"), 4.0) / -exact - 1.0).abs());
+        assert!(
+            second < 2e-4 && second < first / 3.0,
+            "top of lift {k}: off by {first:e}, {second:e} in half the cells"
+        );
+        let mass = WEIGHT / 9.81 * 2.0 * LIFT * (k + 1) as f64;
+        assert!((at(&found, "mass", (k + 1) as f64) / mass - 1.0).abs() < 1e-12);
+    }
+    assert_eq!(at(&found, "top-3-y", 3.0), 0.0, "it is not there yet");
+    let [closure, external] = ["energy-closure", "energy-external"].map(|name| at(&found, name, 4.0));
+    assert!(closure.abs() < 1e-6 * external, "{closure:e} of {external:e}");
+}
+
+/// What lay above by the thickness d lets the ground at z rise by gamma d z/M, in one stage or two.
+#[test]
+fn ground_heaves_by_what_is_taken_away_in_one_stage_or_two() {
+    let stage = |t: usize, names: &str| format!("[[stage]]\nat = {t}\nremove = [{names}]\n");
+    let reset = "[[stage]]\nat = 1\nreset_displacements = true\n";
+    let once = run(&column(&(reset.to_owned() + &stage(2, "\"lift-2\", \"lift-3\"")), 0.5));
+    let twice = run(&column(&(reset.to_owned() + &stage(2, "\"lift-3\"") + &stage(3, "\"lift-2\"")), 0.5));
+    for k in 0..2 {
+        let name = format!("top-{k}-y");
+        let exact = WEIGHT * 2.0 * LIFT * (k + 1) as f64 * LIFT / MODULUS;
+        let [one, two] = [&once, &twice].map(|found| at(found, &name, 4.0));
+        // The points' quadrature beside the new surface: 2.0e-4.
+        assert!((one / exact - 1.0).abs() < 3e-4, "{one:e}, exactly {exact:e}");
+        assert!((one / two - 1.0).abs() < 1e-6, "{one:e} at once, {two:e} one after the other");
+        assert!(at(&once, &name, 2.0).abs() < 1e-4 * exact, "displacements count from the stage that resets them");
+    }
+}
+
+/// Half of the sliding block is gone at .02 s, and another one falls from .03 s on.
+fn staged_block() -> String {
+    let halved = changed(SLIDING_BLOCK, "upper = [0.5, 0.2] }", "upper = [0.3, 0.2] }");
+    let body = |name: &str, lower: &str, upper: &str, velocity: &str| {
+        format!(
+            "[[body]]\nname = \"{name}\"\nmaterial = \"rubber\"\nbox = {{ lower = {lower}, upper = {upper} }}\n\
+             points_per_cell = 2\nvelocity = {velocity}\n"
+        )
+    };
+    halved
+        + &body("half", "[0.3, 0.0]", "[0.5, 0.2]", "[4.0, 0.0]")
+        + &body("late", "[0.75, 0.0]", "[0.95, 0.15]", "[-1.0, 0.0]")
+        + "[[stage]]\nname = \"half\"\nat = \"0.02 s\"\nremove = [\"half\"]\n\
+           [[stage]]\nat = \"0.03 s\"\nadd = [\"late\"]\nreset_displacements = true\n\
+           [[history]]\nquantity = \"energy\"\n[[history]]\nquantity = \"displacement\"\nat = [0.15, 0.1]\n"
+}
+
+#[test]
+fn a_dynamic_run_goes_on_to_the_bit_before_at_and_after_a_stage_and_ranks_agree() {
+    let scratch = Scratch::with_case(&staged_block());
+    for ranks in [1, 3] {
+        let whole = format!("whole{ranks}");
+        scratch.mpirun(ranks, &["case.toml", "-q", "-o", &whole]).expect(0);
+        if ranks == 1 {
+            continue;
+        }
+        let part = ["case.toml", "-q", "-o", "part", "--restart", "auto"];
+        for stop in ["19", "20", "21", "30"] {
+            scratch.mpirun(ranks, &[&part[..], &["--max-steps", stop]].concat()).expect(75);
+        }
+        scratch.mpirun(ranks, &part).expect(0);
+        let text = |name: &str| std::fs::read_to_string(scratch.path(name).join("history.csv")).unwrap();
+        assert!(text(&whole) == text("part"), "{ranks} ranks");
+        assert!(last_frame(&scratch.path(&whole)) == last_frame(&scratch.path("part")), "{ranks} ranks");
+        let stages = manifest(&scratch.path("part")).stages;
+        assert_eq!(stages, manifest(&scratch.path(&whole)).stages);
+        let told: Vec<_> = stages.iter().map(|stage| (stage.step, stage.removed, stage.added, stage.reset)).collect();
+        assert_eq!(told, [(20, 64, 0, false), (30, 0, 48, true)]);
+        std::fs::remove_dir_all(scratch.path("part")).unwrap();
+        for (field, difference) in differences(&last_frame(&scratch.path(&whole)), &last_frame(&scratch.path("whole1")))
+        {
+            assert!(difference < 1e-8, "{field} on {ranks} ranks differs by {difference:.1e}");
+        }
+    }
+    let found = history(&scratch.path("whole1"));
+    let [before, after] = [0.02, 0.021].map(|t| at(&found, "mass", t));
+    assert!((after / before - 0.5).abs() < 1e-12);
+    let [closure, external] = ["energy-closure", "energy-kinetic"].map(|name| at(&found, name, 0.05));
+    assert!(closure.abs() < 1e-6 * external, "{closure:e} of {external:e}");
+    assert!(at(&found, "displacement-x", 0.03) > 0.05 && at(&found, "displacement-x", 0.031).abs() < 0.01);
+}
