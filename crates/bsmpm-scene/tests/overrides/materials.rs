@@ -189,7 +189,7 @@ fn cam_clay_and_its_start() {
         assert!(message.contains(told), "{text}: {message}");
     }
     let clay = format!("material.clay={{ {keys}, ocr = 2 }}");
-    let text = FULL.replace("k0          = 0.6\n", "");
+    let text = FULL.replace("k0          = 0.6\n", "").replace("factor = 1.25", "factor = 1.0");
     let refused = |sets: &[&str], told: &str| {
         let message = format!("{:?}", set(&text, &[&[clay.as_str()], sets].concat()).expect_err("refused"));
         assert!(message.contains(told), "{sets:?}: {message}");
