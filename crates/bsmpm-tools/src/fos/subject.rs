@@ -198,6 +198,11 @@ fn refusals(case: &Case) -> Vec<String> {
              stiffen the ground so that it hardly is; give its peak or its residual strength as \"mohr-coulomb\", which \
              bounds the factor from both sides, of cam-clay its undrained or its critical-state strength",
         ),
+        (
+            !case.stages.is_empty(),
+            "it has stages, of which each has a factor of its own, and what they leave in the ground was made with the whole \
+             strength; give the geometry of the stage that is meant as a case of its own",
+        ),
         (!is_plastic, "no material is plastic: there is no strength to be reduced"),
         (!is_loaded(case), "nothing loads the body at `end`: no weight under gravity, no traction, no point load"),
         (

@@ -287,6 +287,7 @@ fn a_case_without_a_factor_of_safety_is_refused_before_anything_runs() {
             ],
             "give its peak or its residual strength",
         ),
+        (vec!["stage=[{ at = 0.5, reset_displacements = true }]"], "it has stages, of which each has a factor"),
         (vec!["gravity.acceleration=[0.0, 0.0]"], "nothing loads the body"),
         (vec!["gravity.ramp=2.0"], "grows beyond `end`"),
         (vec![strip], "prescribes a motion"),
