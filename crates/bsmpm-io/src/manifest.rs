@@ -18,7 +18,8 @@ pub mod parts;
 pub use indicator::Indicator;
 pub use parts::{
     Communication, EnergyBalance, GridExtent, ManifestCase, ManifestCheck, ManifestChoice, ManifestFailure,
-    ManifestInitial, ManifestOutput, ManifestRestart, ManifestStage, SolverNames, Status, Summary, Worst,
+    ManifestInitial, ManifestOutflow, ManifestOutput, ManifestRestart, ManifestStage, SolverNames, Status, Summary,
+    Worst,
 };
 
 /// The manifest's file.
@@ -91,6 +92,9 @@ pub struct Manifest {
     /// The stages of the case that have begun, in the order of time.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub stages: Vec<ManifestStage>,
+    /// What has left the grid through faces with outflow.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub outflow: Option<ManifestOutflow>,
     /// The case's checks, once they were made.
     #[serde(default)]
     pub checks: Vec<ManifestCheck>,
@@ -137,6 +141,7 @@ impl Manifest {
             indicators: BTreeMap::new(),
             initial: None,
             stages: Vec::new(),
+            outflow: None,
             checks: Vec::new(),
             outputs: Vec::new(),
             frame_units: BTreeMap::new(),

@@ -13,7 +13,7 @@ pub use refusal::Refusal;
 pub(crate) use refusal::{agree, broadcast};
 pub(crate) use sanity::require;
 pub(crate) use state::pairs;
-pub use state::{BooksForm, CheckpointState, Files, RecordState};
+pub use state::{BooksForm, CheckpointState, Files, Outlet, RecordState};
 pub(crate) use write::room;
 pub use write::{Contents, write};
 

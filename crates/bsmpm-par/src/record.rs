@@ -1,6 +1,6 @@
 //! Rows of `history.csv`: the quantities that the case asks for, in the case's own coordinates.
 
-use crate::checkpoint::{BooksForm, RecordState};
+use crate::checkpoint::{BooksForm, Outlet, RecordState};
 use bsmpm::boundary::ContactReport;
 use bsmpm::energy::{Books, Stored};
 use bsmpm::error::StepError;
@@ -10,6 +10,7 @@ use bsmpm::observe::{self, noise};
 use bsmpm::parallel::Halo;
 use bsmpm::points::Points;
 use bsmpm::step::StepReport;
+use bsmpm::step::outflow::Outflow;
 use bsmpm::tensor::Vector;
 use bsmpm_scene::surfaces::{self, Gauge};
 use bsmpm_scene::{Case, Face, GridSpec, History, Quantity, Stage};
@@ -24,6 +25,7 @@ pub struct Recorder {
     reacting: Vec<Option<usize>>, // strip whose force a reaction is
     gauge: Option<Gauge>,
     books: Option<Books>, // of energy, opened by the first row
+    left: Outlet,
     datum: Vec<[f64; 2]>, // m, of every history's displacement when they were last set to zero, if they ever were
     grid: GridSpec,
     lower: Vector<2>,
@@ -65,6 +67,7 @@ impl Recorder {
             gauge: Gauge::of(case),
             books: state.books.map(|BooksForm(books)| books),
             datum: state.datum,
+            left: state.left,
             grid: case.grid.clone(),
             lower: Vector::from(case.grid.lower()),
         }
@@ -73,7 +76,7 @@ impl Recorder {
     /// What must be known to go on.
     pub fn state(&self) -> RecordState {
         let (followed, books) = (self.followed.clone(), self.books.map(BooksForm));
-        RecordState { followed, books, datum: self.datum.clone() }
+        RecordState { followed, books, left: self.left, datum: self.datum.clone() }
     }
 
     /// Follows points of the bodies that a stage has placed, and sets displacements to zero where it wants that.
@@ -94,6 +97,28 @@ impl Recorder {
             };
             self.datum = self.histories.iter().zip(&self.followed).map(raw).collect();
         }
+    }
+
+    /// Enters what has left the grid; the histories that have lost their point by it, which read 0 from now on.
+    pub fn let_out(&mut self, outflow: &Outflow, points: &Points<2>, halo: &dyn Halo) -> Vec<String> {
+        let [before, after] = outflow.stored;
+        self.exchange(before, after);
+        self.left.points += outflow.points;
+        self.left.mass += outflow.mass;
+        let mut lost = Vec::new();
+        for (followed, history) in self.followed.iter_mut().zip(&self.histories) {
+            let is_gone = |id| observe::at_point(points, id, halo, |_| [1.0]) == [0.0];
+            if followed.is_some_and(is_gone) {
+                *followed = None;
+                lost.push(history.name.clone());
+            }
+        }
+        lost
+    }
+
+    /// What has left the grid so far.
+    pub fn left(&self) -> Outlet {
+        self.left
     }
 
     /// Enters what a stage has changed the energy of the points by.
@@ -136,6 +161,7 @@ impl Recorder {
                     vec![self.footing(&history.quantity, t, report)]
                 }
                 Quantity::Energy => energy.clone(),
+                Quantity::Outflow => vec![self.left.mass],
                 Quantity::Contact { face }
                 | Quantity::Gap { face }
                 | Quantity::SlipRate { face }

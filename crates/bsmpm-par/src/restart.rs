@@ -198,8 +198,9 @@ impl Resumed<'_> {
         let names: Vec<&str> = self.found.record.arrays.iter().map(|array| array.name.as_str()).collect();
         let mut points = Points::holding(&names, bsmpm::material::state_width(&model.materials));
         self.opened.points(points.named_columns())?;
-        let present = (!case.stages.is_empty()).then(|| case.ids_at(self.state.progress.t));
-        let known = (model.materials.len(), present.as_deref());
+        let left = self.state.record.left.points;
+        let present = (!case.stages.is_empty() || left > 0).then(|| case.ids_at(self.state.progress.t));
+        let known = (model.materials.len(), present.as_deref(), left);
         checkpoint::require(&world, &self.found.path, &mut points, &model.grid, known)?;
         let held = self.state.within(&model.grid).ok_or_else(|| foreign("its room is not of this grid"))?;
         model.grid = held.with_columns(world.size().unsigned_abs() as usize);
@@ -214,7 +215,8 @@ impl Resumed<'_> {
         let same = sizes(&points.surface.traction) == sizes(&surface.traction)
             && sizes(&points.surface.position) == sizes(&surface.position)
             && sizes(&points.surface.pressure) == sizes(&surface.pressure)
-            && sizes(&points.surface.pressure_rate) == sizes(&surface.pressure_rate);
+            && sizes(&points.surface.pressure_rate) == sizes(&surface.pressure_rate)
+            && model.boundary.fits(&model.grid, &points.surface.held);
         let anchors = &points.surface.anchors;
         let lengths = |lists: &[Vec<u64>]| lists.iter().map(Vec::len).collect::<Vec<_>>();
         let anchored = (anchors.strips.is_empty() && anchors.loads.is_empty())

@@ -7,6 +7,7 @@ mod save;
 mod stage;
 mod start;
 
+use crate::checkpoint::Outlet;
 use crate::cli::Arguments;
 use crate::fault::Fault;
 use crate::gather::{FrameMoment, Gathering};
@@ -22,7 +23,7 @@ use bsmpm::parallel::Halo;
 use bsmpm::step::StepReport;
 use bsmpm_io::exit;
 use bsmpm_io::frame::Parts;
-use bsmpm_io::manifest::{Communication, SolverNames, Status};
+use bsmpm_io::manifest::{Communication, ManifestOutflow, SolverNames, Status};
 use bsmpm_ranks::simulation::Simulation;
 use bsmpm_ranks::timers::Timers;
 use bsmpm_scene::{Case, Every};
@@ -188,6 +189,7 @@ impl<'p> Run<'p> {
             self.tell_unused_options();
         }
         self.tell_strips_without_material(accepted);
+        self.tell_outflow(accepted);
         self.record(&accepted.report);
         if self.wants_frame(accepted.t) {
             self.frame();
@@ -229,6 +231,27 @@ impl<'p> Run<'p> {
             if self.told_strips.insert(kind) {
                 self.warn(told);
             }
+        }
+    }
+
+    /// Material that leaves is told when the first does, and counted in the manifest.
+    fn tell_outflow(&mut self, accepted: &Accepted) {
+        let Some(outflow) = &accepted.report.outflow else { return };
+        if self.recorder.left().points == 0 {
+            let message = format!("material leaves the grid from t = {} on: run.json counts it", accepted.t);
+            self.log.line("outflow", &message);
+        }
+        let Simulation { points, halo, .. } = &self.simulation;
+        let lost = self.recorder.let_out(outflow, points, &**halo);
+        let Outlet { points, mass } = self.recorder.left();
+        if let Some(ledger) = &mut self.ledger {
+            ledger.manifest().outflow = Some(ManifestOutflow { points, mass });
+        }
+        for name in lost {
+            let t = accepted.t;
+            self.warn(format!(
+                "history {name}: the point that it followed has left the grid at t = {t}; it reads 0 since"
+            ));
         }
     }
 

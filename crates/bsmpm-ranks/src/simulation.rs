@@ -100,6 +100,7 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
                 initial::set_elastic(&self.model, &mut self.points, (&*self.halo, &mut self.solver))?
             }
         }
+        initial::hold(&self.model, &mut self.points, (&*self.halo, &mut self.solver))?;
         initial::balance(&self.model, &self.points, &*self.halo)
     }
 

@@ -82,6 +82,7 @@ fn grid(case: &Case) -> Result<Grid<2>, GridError> {
 fn boundary(case: &Case, grid: &Grid<2>) -> Boundary<2> {
     Boundary {
         supports: supports(case),
+        outlets: outlets(case),
         strips: surfaces::strips(case, grid, penalty(case)),
         loads: surfaces::loads(case, grid),
         reach: reach(case),
@@ -108,11 +109,18 @@ fn supports(case: &Case) -> Vec<Support<2>> {
             match support {
                 crate::Support::Fixed => supports.push(Support::fixed(axis, upper)),
                 crate::Support::Roller => supports.push(Support::roller(axis, upper)),
-                crate::Support::Free | crate::Support::Contact => {}
+                crate::Support::Absorbing => supports.push(Support::absorbing(axis, upper)),
+                crate::Support::Free | crate::Support::Outflow | crate::Support::Contact => {}
             }
         }
     }
     supports
+}
+
+/// Faces that let material out: the axis, and whether it is the upper one.
+fn outlets(case: &Case) -> Vec<(usize, bool)> {
+    let faces = [(0, false), (0, true), (1, false), (1, true)].into_iter();
+    faces.filter(|&(axis, upper)| case.boundary[axis][usize::from(upper)] == crate::Support::Outflow).collect()
 }
 
 /// Of every support, the axis that its face is normal to and the sign of the force along it with which it pushes the

@@ -1,6 +1,7 @@
 //! What holds and loads the bodies: supports at the faces of the grid, rigid strips, tractions and point loads.
 #![doc = include_str!("boundary.md")]
 
+pub mod absorbing;
 pub mod anchor;
 pub mod contact;
 pub mod load;
@@ -29,6 +30,8 @@ pub struct Support<const D: usize> {
     pub velocity: [Option<f64>; D],
     /// what the face does to the material where nothing is prescribed
     pub contact: Option<Contact>,
+    /// whether it lets waves out
+    pub absorbs: bool,
 }
 
 impl<const D: usize> Support<D> {
@@ -39,12 +42,17 @@ impl<const D: usize> Support<D> {
 
     /// These velocities prescribed, m per unit of time.
     pub fn moving(axis: usize, upper: bool, velocity: [Option<f64>; D]) -> Self {
-        Self { axis, upper, velocity, contact: None }
+        Self { axis, upper, velocity, contact: None, absorbs: false }
     }
 
     /// Nothing held, but what the contact does.
     pub fn contact(axis: usize, upper: bool, contact: Contact) -> Self {
         Self { contact: Some(contact), ..Self::moving(axis, upper, [None; D]) }
+    }
+
+    /// Nothing held but the state of the start; waves leave.
+    pub fn absorbing(axis: usize, upper: bool) -> Self {
+        Self { absorbs: true, ..Self::moving(axis, upper, [None; D]) }
     }
 
     /// The normal component held.
@@ -60,6 +68,8 @@ impl<const D: usize> Support<D> {
 pub struct Boundary<const D: usize> {
     /// Supports of the faces; where faces meet, the one named last decides a component that both prescribe.
     pub supports: Vec<Support<D>>,
+    /// Faces of the grid that material may leave through: the axis, and whether it is the upper one.
+    pub outlets: Vec<(usize, bool)>,
     /// Rigid strips.
     pub strips: Vec<Strip<D>>,
     /// Tractions and point loads.
@@ -79,6 +89,7 @@ impl<const D: usize> Boundary<D> {
             pressure: self.loads.iter().map(Load::at_rest).collect(),
             pressure_rate: self.loads.iter().map(|load| vec![Vector::zeros(); load.at_rest().len()]).collect(),
             anchors: Anchors::default(),
+            held: Vec::new(),
         }
     }
 
@@ -87,11 +98,22 @@ impl<const D: usize> Boundary<D> {
     pub fn closed(&self) -> [[bool; 2]; D] {
         let mut closed = [[false; 2]; D];
         for support in &self.supports {
-            let held = support.contact.map(|contact| !contact.lifts);
+            let held = support.contact.map(|contact| !contact.lifts).or(support.absorbs.then_some(true));
             closed[support.axis][usize::from(support.upper)] =
                 held.unwrap_or(support.velocity[support.axis] == Some(0.0));
         }
         closed
+    }
+
+    /// Whether material at `x`, m, has left the grid, and through outlets alone.
+    pub fn lets_out(&self, grid: &Grid<D>, x: &Vector<D>) -> bool {
+        let beyond = |axis: usize| match x[axis] {
+            x if x < 0.0 => Some((axis, false)),
+            x if x > grid.axes()[axis].length() => Some((axis, true)),
+            _ => None,
+        };
+        let mut left = (0..D).filter_map(beyond).peekable();
+        left.peek().is_some() && left.all(|face| self.outlets.contains(&face))
     }
 
     /// Prescribed velocity of every nodal component of the window (D per node), `None` where it is free.
@@ -141,6 +163,9 @@ impl<const D: usize> Boundary<D> {
             for (support, sums) in self.supports.iter().zip(sums.chunks_exact_mut(D)).filter(in_contact) {
                 sum((support, sums), &|component| component != support.axis);
             }
+        }
+        for (support, sums) in self.supports.iter().zip(sums.chunks_exact_mut(D)).filter(|(s, _)| s.absorbs) {
+            sum((support, sums), &|_| true);
         }
         halo.total(&sums).chunks_exact(D).map(<[f64]>::to_vec).collect()
     }

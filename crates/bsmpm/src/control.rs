@@ -156,6 +156,9 @@ impl Stepper {
                     (self.guess, self.at.guess_dt, self.at.t) = (guess, dt, end);
                     if let (Some(budget), Some(turnover)) = (&mut self.at.budget, &report.turnover) {
                         budget.enter(turnover);
+                        if let Some(outflow) = &report.outflow {
+                            budget.exchange(&outflow.stored);
+                        }
                     }
                     self.accept(size, report.first_guess && report.iterations * 2 <= model.criteria.max_iterations);
                     return Some(Ok(Accepted { t: end, dt, report, counts, rejected }));

@@ -59,7 +59,7 @@ use std::ops::AddAssign;
 /// Energy that went somewhere in a step, or in all steps so far, J; see the module.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Flows<T = f64> {
-    /// work of gravity, loads and what moves, less what friction at faces dissipates
+    /// work of gravity, loads and what moves, less what friction at faces and faces that absorb take
     pub external: T,
     /// dissipated by plastic flow and damping
     pub plastic: T,
@@ -144,7 +144,7 @@ impl Books {
 pub struct Draft {
     flows: Flows<Exact>,
     elastic: Exact,
-    rubbed: Exact, // half of the work of friction at faces, part of the external work
+    rubbed: Exact, // half of the work of friction and dashpots at faces, part of the external work
     t: f64,
     dt: f64,
 }
@@ -168,6 +168,10 @@ impl Draft {
             let blow = over_layers(halo, D, |c| inertia.struck[c]);
             flows.external += &blow;
             flows.transfer = blow;
+        }
+        let mut rubbed = rubbed;
+        if let Some(inertia) = &nodes.inertia {
+            rubbed.extend(nodes.dashpots.work::<D>(inertia, u, halo).into_iter().map(|work| 0.5 * work));
         }
         add_gravity(&mut flows, problem, u, (t, dt));
         let strips = grips.work(u);
@@ -230,7 +234,7 @@ impl Draft {
         let moving = kinetic(points);
         let mut external = own.external.clone();
         // Where loads grow in the first step, forces at its end do up to twice the work that is counted by their mean:
-        // of friction half is left out of the bound on what is made.
+        // of friction and dashpots half is left out of the bound on what is made.
         external -= &rubbed;
         let mut sums = vec![external, own.plastic.clone(), moving.clone(), strained];
         if model.balances_energy {

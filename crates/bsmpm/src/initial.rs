@@ -7,10 +7,12 @@ use crate::error::StepError;
 use crate::grid::{Shape, transfer};
 use crate::kinematics::Kinematics;
 use crate::material::{Branch, Elastic, Material};
-use crate::model::{Model, Regime};
+use crate::model::Model;
 use crate::parallel::{Halo, LinearSolver, agreed};
 use crate::points::{Packed, Points};
+use crate::solve::contact;
 use crate::solve::round_off::RoundOff;
+use crate::step::Counts;
 use crate::step::nodes::Nodes;
 use crate::step::problem::Problem;
 use crate::step::residual::{Balance, Residual};
@@ -76,8 +78,7 @@ pub fn set_elastic<K: Kinematics<D>, const D: usize>(
     points: &mut Points<D>,
     (halo, solver): (&dyn Halo, &mut dyn LinearSolver),
 ) -> Result<(), StepError> {
-    // Nothing moves yet, whatever the ground will do.
-    let model = &Model { regime: Regime::QuasiStatic, shaking: None, ..model.clone() };
+    let model = &model.at_rest();
     let start = Undeformed::of(model, points, halo)?;
     let problem = start.problem(model, points, halo);
     stiffness::assemble(&problem, None, solver)?;
@@ -107,6 +108,26 @@ pub fn set_elastic<K: Kinematics<D>, const D: usize>(
     Ok(())
 }
 
+/// Finds the forces that hold the state of the start at faces that absorb, which go on to act there: those of the
+/// equilibrium next to it. A stress that is given is in equilibrium but for the quadrature of its points, and what is
+/// left would push a body that only dashpots hold ever on. Fails if there is none.
+pub fn hold<K: Kinematics<D>, const D: usize>(
+    model: &Model<K, D>,
+    points: &mut Points<D>,
+    (halo, solver): (&dyn Halo, &mut dyn LinearSolver),
+) -> Result<(), StepError> {
+    if model.boundary.absorbing().next().is_none() {
+        return Ok(());
+    }
+    let at_rest = &model.at_rest();
+    let Undeformed { shape, mut nodes, grips } = Undeformed::of(at_rest, points, halo)?;
+    let (guess, counts) = (vec![0.0; model.grid.nodes() * D], &mut Counts::default());
+    let around = (&grips, &*points);
+    let found = contact::find(at_rest, &shape, &mut nodes, around, &guess, (halo, solver), counts)?;
+    points.surface.held = model.boundary.held(&model.grid, &found.reaction, halo);
+    Ok(())
+}
+
 /// Equilibrium of the points as they are, under the loads at time 0. Fails on all ranks if a point has no response, as
 /// its strain is beyond all bounds.
 pub fn balance<K: Kinematics<D>, const D: usize>(
@@ -114,8 +135,7 @@ pub fn balance<K: Kinematics<D>, const D: usize>(
     points: &Points<D>,
     halo: &dyn Halo,
 ) -> Result<Equilibrium, StepError> {
-    // Nothing moves yet, whatever the ground will do.
-    let model = &Model { regime: Regime::QuasiStatic, shaking: None, ..model.clone() };
+    let model = &model.at_rest();
     let yields = |p: usize| match model.respond(points, p, &points.b_e.at(p)) {
         Ok(response) => Ok(u32::from(response.branch() != Branch::Elastic)),
         Err(source) => Err(StepError::Material { id: points.id[p], source }),
@@ -137,7 +157,8 @@ pub fn is_pushed<K: Kinematics<D>, const D: usize>(
     points: &Points<D>,
     halo: &dyn Halo,
 ) -> Result<bool, StepError> {
-    let model = &Model { regime: Regime::QuasiStatic, ..model.clone() };
+    let shaking = model.shaking.clone();
+    let model = &Model { shaking, ..model.at_rest() };
     let start = Undeformed::of(model, points, halo)?;
     let problem = start.problem(model, points, halo);
     let balance = Residual::of(&problem, &vec![0.0; model.grid.nodes() * D]).balance;

@@ -156,6 +156,23 @@ impl<K: Kinematics<D>, const D: usize> Model<K, D> {
         self.materials[usize::from(points.material[p])].young_at(points.height(p))
     }
 
+    /// kg m/s  mass of point `p` times the speed of compression waves, and of shear waves, of its elastic stiffness.
+    pub fn impedance(&self, points: &Points<D>, p: usize) -> [f64; 2] {
+        let material = &self.materials[usize::from(points.material[p])];
+        let (lambda, mu) = material.elastic().lame();
+        let relative = material.relative_stiffness(points.height(p));
+        [lambda + 2.0 * mu, mu].map(|modulus| (points.mass[p] * points.volume[p] * relative * modulus).sqrt())
+    }
+
+    /// The model as nothing moves yet, whatever the ground will do: quasi-static, absorbing faces hold.
+    pub fn at_rest(&self) -> Self
+    where
+        K: Clone,
+    {
+        let boundary = self.boundary.at_rest(self.gravity.map(|gravity| gravity.acceleration));
+        Self { regime: Regime::QuasiStatic, shaking: None, boundary, ..self.clone() }
+    }
+
     /// Whether all points have one Young's modulus.
     pub fn is_uniformly_stiff(&self) -> bool {
         let uniform = |m: &Material| !matches!(m, Material::Graded(_)) && m.elastic().young == self.stiffest();

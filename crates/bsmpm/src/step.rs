@@ -10,6 +10,7 @@ pub mod inertia;
 pub mod mass;
 pub mod newmark;
 pub mod nodes;
+pub mod outflow;
 pub mod problem;
 pub mod report;
 pub mod residual;
@@ -33,6 +34,7 @@ use crate::solve;
 use commit::Committed;
 use newmark::Newmark;
 use nodes::Nodes;
+use outflow::Outflow;
 use problem::Problem;
 
 /// Steps the points from `t` to `t + dt`, starting from the nodal displacement `guess` (D numbers per node of the
@@ -79,6 +81,7 @@ pub fn step<K: Kinematics<D>, const D: usize>(
     surface.position = places.loads;
     surface.follow(places.pressure, dt);
     points.surface = surface;
+    let outflow = Outflow::of(model, points, halo);
     let (energy, turnover) = account.map_or((None, None), |(flows, turnover)| (flows, Some(turnover)));
-    Ok(StepReport { energy, turnover, advance, smoothed, ..report })
+    Ok(StepReport { energy, turnover, advance, smoothed, outflow, ..report })
 }

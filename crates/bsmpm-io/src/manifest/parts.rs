@@ -270,6 +270,15 @@ pub struct ManifestStage {
     pub reset: bool,
 }
 
+/// Material that has left the grid.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ManifestOutflow {
+    /// Points.
+    pub points: u64,
+    /// kg/m
+    pub mass: f64,
+}
+
 /// Where and how a run went on.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ManifestRestart {

@@ -14,8 +14,8 @@ use std::path::Path;
 /// Bits of a word.
 const WORD: u64 = u64::BITS as u64;
 
-/// Refuses points that cannot be a state of a run in this grid with so many materials and the ids `present`, or from
-/// 0 on without a gap. Collective.
+/// Refuses points that cannot be a state of a run in this grid with so many materials and the ids `present`, of which
+/// so many have left, or from 0 on without a gap. Collective.
 ///
 /// # Errors
 /// The same on all ranks (76): what is wrong with which point.
@@ -24,14 +24,14 @@ pub fn require(
     file: &Path,
     points: &mut Points<2>,
     grid: &Grid<2>,
-    (materials, present): (usize, Option<&[Range<u64>]>),
+    (materials, present, left): (usize, Option<&[Range<u64>]>, u64),
 ) -> Result<(), Refusal> {
     let refused =
         |reason| Refusal::new(exit::CHECKPOINT, format!("the checkpoint {} cannot be used: {reason}", file.display()));
     agree(world, finite(points).and_then(|()| possible(points, grid, materials)).map_err(refused))?;
     let all = 0..u64::MAX;
     let present = present.unwrap_or(std::slice::from_ref(&all));
-    agree(world, once(world, &points.id, present).map_err(refused))
+    agree(world, once(world, &points.id, (present, left)).map_err(refused))
 }
 
 fn finite(points: &mut Points<2>) -> Result<(), String> {
@@ -66,12 +66,13 @@ fn possible(points: &Points<2>, grid: &Grid<2>, materials: usize) -> Result<(), 
     Ok(())
 }
 
-/// Every number of `present` once, as far as there are points: a bit for each. Collective; `Err` on all ranks or none.
-fn once(world: &SimpleCommunicator, ids: &[u64], present: &[Range<u64>]) -> Result<(), String> {
+/// Every number of `present` once, as far as there are points, but for at most so many that have `left`, of which
+/// stages may have taken some: a bit for each. Collective; `Err` on all ranks or none.
+fn once(world: &SimpleCommunicator, ids: &[u64], (present, left): (&[Range<u64>], u64)) -> Result<(), String> {
     let (own, mut all) = (ids.len() as u64, 0_u64);
     world.all_reduce_into(&own, &mut all, SystemOperation::sum());
     let expected: u64 = present.iter().map(|range| range.end - range.start).sum();
-    if expected < all || (expected > all && expected != u64::MAX) {
+    if expected < all || (expected > all + left && expected != u64::MAX) {
         return Err(format!("it has {all} points, where the case has {expected} at that time"));
     }
     let place = |id: u64| {
@@ -83,15 +84,20 @@ fn once(world: &SimpleCommunicator, ids: &[u64], present: &[Range<u64>]) -> Resu
         })?;
         Some(before + id - range.start)
     };
-    let mut seen = vec![0_u64; all.div_ceil(WORD).max(1) as usize];
-    for at in ids.iter().filter_map(|&id| place(id)).filter(|at| *at < all) {
+    let places = if left > 0 { expected } else { all };
+    let mut seen = vec![0_u64; places.div_ceil(WORD).max(1) as usize];
+    for at in ids.iter().filter_map(|&id| place(id)).filter(|at| *at < places) {
         seen[(at / WORD) as usize] |= 1 << (at % WORD);
     }
     let mut seen_by_all = vec![0_u64; seen.len()];
     world.all_reduce_into(&seen[..], &mut seen_by_all[..], SystemOperation::bitwise_or());
     let bit = |at: u64| seen_by_all[(at / WORD) as usize] >> (at % WORD) & 1;
-    // As many points as numbers: if none is missing, none is there twice.
-    let missing = (0..).zip(present.iter().cloned().flatten()).take(all as usize).find(|(at, _)| bit(*at) == 0);
-    missing
-        .map_or(Ok(()), |(_, id)| Err(format!("it has {all} points, but none is point {id}: another is there twice")))
+    // As many points as numbers: if no more are missing than may be, none is there twice.
+    let mut missing =
+        (0..).zip(present.iter().cloned().flatten()).take(places as usize).filter(|(at, _)| bit(*at) == 0);
+    match missing.nth((places - all) as usize) {
+        None => Ok(()),
+        Some(_) if left > 0 => Err(format!("it has {all} points, of which one is there twice")),
+        Some((_, id)) => Err(format!("it has {all} points, but none is point {id}: another is there twice")),
+    }
 }

@@ -44,6 +44,9 @@ pub struct CheckpointState {
     /// that had none, or before the first step.
     #[serde(default)]
     pub anchors: [Vec<Vec<u64>>; 2],
+    /// N  of every node of every absorbing face what holds the state of the start; none of a run without any.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub held: Vec<Vec<[f64; 2]>>,
     /// What the histories go on from.
     pub record: RecordState,
     /// Strips of which it was told that they hold nothing; and, their number added, that they have let go.
@@ -62,9 +65,28 @@ pub struct RecordState {
     pub followed: Vec<Option<u64>>,
     /// J  kinetic and elastic energy at the start, and all flows since; none without an energy history.
     pub books: Option<BooksForm>,
+    /// Points that have left the grid, and their mass, kg/m.
+    #[serde(default, skip_serializing_if = "Outlet::is_closed")]
+    pub left: Outlet,
     /// m  displacement of every history when displacements were last set to zero; empty if they never were.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub datum: Vec<[f64; 2]>,
+}
+
+/// What has left the grid since the start.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Outlet {
+    /// Points.
+    pub points: u64,
+    /// kg/m
+    pub mass: f64,
+}
+
+impl Outlet {
+    fn is_closed(&self) -> bool {
+        self.points == 0
+    }
 }
 
 /// How far the files of a run have come.
@@ -145,6 +167,7 @@ impl CheckpointState {
             pressure,
             pressure_rate,
             anchors,
+            held: vectors(&self.held),
         }
     }
 }

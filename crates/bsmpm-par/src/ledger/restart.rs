@@ -194,6 +194,7 @@ fn manifest(new: Manifest, resumed: &Resumed<'_>) -> (Manifest, Vec<String>) {
         summary: old.summary,
         initial: old.initial,
         stages: old.stages,
+        outflow: old.outflow,
         outputs,
         checkpoint: Some(checkpoint),
         restarts,

@@ -100,9 +100,10 @@ fn advice(error: &StepError, case: &Case) -> Vec<String> {
             "material turned inside out: more steps ([analysis] steps or dt), or a larger [solver] background",
             "look at the points named: loose points at a free surface are the usual ones",
         ],
-        StepError::Left { .. } | StepError::Outside { .. } => {
-            &["a larger grid, or a support at the face where points left; steps down to 1/1024 threw them out as well"]
-        }
+        StepError::Left { .. } | StepError::Outside { .. } => &[
+            "a larger grid, or a support at the face where points left; steps down to 1/1024 threw them out as well",
+            "where material shall leave: [boundary] \"outflow\" there; what a strip or load is at stays, and not all leaves",
+        ],
         StepError::Unloaded { .. } => {
             &["a load or strip has no material any more: look where it was in the last frame"]
         }

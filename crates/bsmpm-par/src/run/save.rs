@@ -148,6 +148,7 @@ impl Run<'_> {
             traction: pairs(&surface.traction),
             anchors: [surface.anchors.strips.clone(), surface.anchors.loads.clone()],
             position: pairs(&surface.position),
+            held: pairs(&surface.held),
             pressure: [&surface.pressure, &surface.pressure_rate]
                 .map(|lists| if lists.iter().all(Vec::is_empty) { Vec::new() } else { pairs(lists) }),
             record: self.recorder.state(),

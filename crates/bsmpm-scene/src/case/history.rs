@@ -109,6 +109,8 @@ pub enum Quantity {
         /// The face.
         face: Face,
     },
+    /// kg/m  that has left the grid
+    Outflow,
     /// J/m  where the energy is, and where it went since the start
     Energy,
 }
@@ -152,6 +154,7 @@ impl Quantity {
             Self::Height { .. } => Measurement::Height,
             Self::MaxDisplacement => Measurement::MaxDisplacement,
             Self::Mass { .. } => Measurement::Mass,
+            Self::Outflow => Measurement::Outflow,
             Self::Momentum { .. } => Measurement::Momentum,
             Self::CentreOfMass { .. } => Measurement::CentreOfMass,
             Self::AngularMomentum { .. } => Measurement::AngularMomentum,

@@ -71,6 +71,10 @@ fn read(
             record.error("face", message, report);
         }
     }
+    let is_closed = |faces: [[Support; 2]; 2]| !faces.as_flattened().contains(&Support::Outflow);
+    if measured == Measurement::Outflow && boundary(root).is_some_and(is_closed) {
+        record.error("quantity", "nothing leaves: no face in [boundary] is \"outflow\"", report);
+    }
     let quantity = quantity(measured, record, (grid, made), report)?;
     let name = if record.gives("name") { record.text("name")? } else { measured.word() };
     Some(History { quantity, name: name.to_owned(), scale: record.number("scale")?, lasts: false })
@@ -91,7 +95,7 @@ fn own_key(measured: Measurement) -> Option<&'static str> {
         Displacement | Velocity | Stress => Some("at"),
         PressureNoise => Some("box"),
         Mass | Momentum | CentreOfMass | AngularMomentum => Some("material"),
-        Front | MaxDisplacement | StressNoise | Heave | Energy => None,
+        Front | MaxDisplacement | StressNoise | Heave | Energy | Outflow => None,
         FootingPressure | FootingForce | Penetration | Slip => None,
     }
 }
@@ -111,6 +115,7 @@ fn quantity(
         Measurement::Height => Quantity::Height { at_x: at_x(record, grid, report)? },
         Measurement::MaxDisplacement => Quantity::MaxDisplacement,
         Measurement::Mass => Quantity::Mass { of: material(record, made, report)? },
+        Measurement::Outflow => Quantity::Outflow,
         Measurement::Momentum => Quantity::Momentum { of: material(record, made, report)? },
         Measurement::CentreOfMass => Quantity::CentreOfMass { of: weighing(record, made, report)? },
         Measurement::AngularMomentum => Quantity::AngularMomentum { of: material(record, made, report)? },

@@ -6,6 +6,7 @@ use super::strip::{moves, normal};
 use crate::case::{Base, Body, Case, Initial, Prescribed, Site, Support};
 use crate::record::Record;
 use crate::report::Report;
+use crate::words::{Side, Word};
 use bsmpm::model::Regime;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::step::newmark::Newmark;
@@ -18,6 +19,7 @@ pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
     if case.analysis.regime == Regime::QuasiStatic {
         held(case, record, report);
     }
+    absorbed(case, record, report);
     shaken(case, report);
     thrown_back(case, report);
     too_soon(case, record, report);
@@ -89,6 +91,36 @@ fn held(case: &Case, record: &Record, report: &mut Report<'_>) {
     }
 }
 
+/// Faces that absorb hold nothing but what `[initial]` has found there; beside ground that shakes they would hold back.
+fn absorbed(case: &Case, record: &Record, report: &mut Report<'_>) {
+    let Some(boundary) = record.record("boundary") else { return };
+    for (axis, upper) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+        if case.boundary[axis][upper] != Support::Absorbing {
+            continue;
+        }
+        let side = Side::ALL[axis][upper].word();
+        let mut refuse = |message: &str| boundary.error(side, message, report);
+        if case.analysis.regime == Regime::QuasiStatic {
+            refuse("there are no waves in a quasi-static analysis: \"fixed\" or \"roller\" holds what is at rest");
+        }
+        if case.gravity.is_some() && case.initial.is_none() {
+            refuse(
+                "holds nothing at rest but the state of [initial], and gravity would press the ground through it: give \
+                    [initial]",
+            );
+        }
+        if !case.stages.is_empty() {
+            refuse("holds what [initial] has found there, which stages change: it cannot be used with [[stage]]");
+        }
+        if axis == 0 && case.shaking.iter().any(|(_, ground)| *ground != [0.0; 2]) {
+            refuse(
+                "beside ground that shakes, what comes to a side is not known without the motion of the free field there: \
+                    use \"roller\" far enough away; \"bottom\" may absorb",
+            );
+        }
+    }
+}
+
 /// Bodies that do not go along with the ground drift away in its frame.
 fn shaken(case: &Case, report: &mut Report<'_>) {
     for (component, name) in ["x", "y"].into_iter().enumerate() {
@@ -143,7 +175,8 @@ fn holds(case: &Case, component: usize) -> bool {
             let rubs = case.contacts[axis][usize::from(upper)].is_some_and(|contact| contact.friction > 0.0);
             axis == component || rubs
         }
-        Support::Free => false,
+        Support::Absorbing => true,
+        Support::Free | Support::Outflow => false,
     };
     let mut faces = [(0, false), (0, true), (1, false), (1, true)].into_iter();
     faces.any(|(axis, upper)| holds(axis, upper) && reached(case, axis, upper)) || held_by_strip(case, component)

@@ -22,6 +22,8 @@ choice! {
         /// Angular momentum of all points, or those of `material`, about the origin of the case's coordinates (kg
         /// m2/s), counter-clockwise, per metre of thickness.
         AngularMomentum = "angular-momentum",
+        /// Mass that has left the grid through faces with outflow since the start, per metre of thickness.
+        Outflow = "outflow",
         /// Force of a face's supports on the body, per metre of thickness.
         Reaction = "reaction",
         /// Displacement of the material that is at `at` at the start, by the motion about the point nearest to it.
@@ -74,7 +76,7 @@ const ENERGY: &[(&str, &str)] = &[
     ("-kinetic", "kinetic energy of the points"),
     ("-elastic", "elastic energy of the points"),
     ("-plastic", "dissipated by plastic flow"),
-    ("-external", "work of gravity, loads and what moves, less what friction at faces dissipates"),
+    ("-external", "work of gravity, loads and what moves, less what friction at faces and faces that absorb take"),
     ("-numerical", "loss of the algorithm: the sum of the next five"),
     ("-transfer", "lost between points and nodes"),
     ("-integration", "lost by integration in time and along the strain"),
@@ -107,7 +109,8 @@ impl Measurement {
             Self::Gap => GAP,
             Self::SlipRate | Self::FrictionPower | Self::AngularMomentum => &[("", "")],
             Self::Runout | Self::Front | Self::Height | Self::MaxDisplacement | Self::Heave => &[("", "")],
-            Self::Mass | Self::FootingPressure | Self::FootingForce | Self::Penetration | Self::Slip => &[("", "")],
+            Self::Mass | Self::Outflow | Self::FootingPressure | Self::FootingForce => &[("", "")],
+            Self::Penetration | Self::Slip => &[("", "")],
         }
     }
 
@@ -116,7 +119,7 @@ impl Measurement {
         match self {
             Self::Runout | Self::Front | Self::Height | Self::Heave | Self::Penetration => "m",
             Self::MaxDisplacement | Self::Displacement | Self::Gap | Self::CentreOfMass => "m",
-            Self::Mass => "kg/m",
+            Self::Mass | Self::Outflow => "kg/m",
             Self::Momentum => "kg/s",
             Self::AngularMomentum => "kg m/s",
             Self::Reaction | Self::FootingForce => "N/m",

@@ -62,6 +62,10 @@ choice! {
         Roller = "roller",
         /// Smooth, and material comes off it: pushes and does not pull; with friction it is a table.
         Contact = "contact",
+        /// Lets waves out (dynamic): nothing held but the state of `[initial]`.
+        Absorbing = "absorbing",
+        /// Nothing held; material that leaves the grid there is counted and forgotten.
+        Outflow = "outflow",
         /// Nothing held.
         Free = "free",
     }

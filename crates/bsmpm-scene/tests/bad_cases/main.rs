@@ -108,6 +108,11 @@ fn initial_stress_and_histories() {
 }
 
 #[test]
+fn faces_that_absorb() {
+    verify_all(DYNAMIC, rows::ABSORBING);
+}
+
+#[test]
 fn stages() {
     verify_all(DYNAMIC, rows::STAGES);
     verify_all(STATIC, rows::STAGES_OF_ONE);

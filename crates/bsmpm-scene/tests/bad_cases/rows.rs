@@ -257,6 +257,13 @@ pub const RULES: &[Row] = &[
     .down(1),
 ];
 
+/// Faces that let waves out, in the case with all keys, which has stages, shakes and starts without stress.
+pub const ABSORBING: &[Row] = &[
+    row("left   = \"roller\"", "left = \"absorbing\"", "boundary.left", "cannot be used with [[stage]]"),
+    row("left   = \"roller\"", "left = \"absorbing\"", "boundary.left", "the motion of the free field"),
+    row("quantity = \"heave\"", "quantity = \"outflow\"", "history.5.quantity", "nothing leaves"),
+];
+
 /// Quasi-static cases (I13, I16, I18).
 pub const QUASI_STATIC: &[Row] = &[
     row("end   = 1.0", "end = \"1 s\"", "analysis.end", "pseudo-time without unit"),
@@ -266,6 +273,7 @@ pub const QUASI_STATIC: &[Row] = &[
     row("bottom = \"fixed\"", "left = \"roller\"", "boundary", "nothing holds the bodies along y").up(1),
     row("bottom = \"fixed\"", "top = \"fixed\"", "boundary", "no fixed face, roller or face in contact that").up(1),
     row("bottom = \"fixed\"", "bottom = \"contact\"", "boundary", "nothing holds the bodies along x").up(1),
+    row("bottom = \"fixed\"", "bottom = \"absorbing\"", "boundary.bottom", "there are no waves"),
     row("points_per_cell = 3", "points_per_cell = 3\nvelocity = [1, 0]", "body.0.velocity", "quasi-static").down(1),
     row("[output]", "[[history]]\nquantity = \"momentum\"\n[output]", "history.0.quantity", "no momentum").down(1),
     row("steps = 4", "steps = 4\nspectral_radius = 0.8", "analysis.spectral_radius", "no inertia").down(1),

@@ -12,6 +12,7 @@ mod faults;
 mod indicators;
 mod lock;
 mod memory;
+mod open_faces;
 mod outputs;
 mod ranks;
 mod restart;

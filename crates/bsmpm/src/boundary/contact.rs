@@ -12,7 +12,8 @@ use crate::grid::{Grid, Shape};
 use crate::nodal::Nodal;
 use crate::parallel::Halo;
 use crate::points::Points;
-use gap::{ROUNDING, face_cell, gaps};
+pub(super) use gap::face_cell;
+use gap::{ROUNDING, gaps};
 use node::ContactNode;
 
 /// Steps ahead of the meeting from which on material is near the face: it may be faster or slower than it starts.

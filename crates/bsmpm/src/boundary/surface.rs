@@ -63,6 +63,9 @@ pub struct Surface<const D: usize> {
     pub pressure_rate: Vec<Vec<Vector<D>>>,
     /// that material
     pub anchors: Anchors,
+    /// N  of every node of every absorbing face (numbered on the face of the whole grid) what holds the state of the
+    /// start; empty without such a state
+    pub held: Vec<Vec<Vector<D>>>,
 }
 
 impl<const D: usize> Surface<D> {

@@ -68,6 +68,12 @@ impl Budget {
         }
     }
 
+    /// Takes what points that have left had with them, once the step in which they did is entered: energy before, and
+    /// after they were taken away.
+    pub fn exchange(&mut self, [before, after]: &[Stored; 2]) {
+        self.start += (after.kinetic + after.elastic) - (before.kinetic + before.elastic);
+    }
+
     /// Refuses to go on once energy has grown beyond the work done.
     ///
     /// # Errors

@@ -148,7 +148,7 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
         self.problem.grips.multiply(v, &mut force);
         out.copy_from_slice(&halo.sum(&force));
         if let Some(inertia) = &nodes.inertia {
-            let factor = inertia.factor();
+            let (factor, moved) = (inertia.factor(), v);
             let alike = inertia.moving.is_empty();
             let scaled = |(c, v): (usize, &f64)| inertia.factor_of(c) / factor * v;
             let scaled: Vec<f64> = if alike { Vec::new() } else { v.iter().enumerate().map(scaled).collect() };
@@ -156,6 +156,7 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
             for (out, momentum) in out.iter_mut().zip(self.problem.mass().times(v)) {
                 *out += factor * momentum;
             }
+            nodes.dashpots.stiffness(inertia).for_each(|(c, stiffness)| out[c] += stiffness * moved[c]);
         }
         nodes.contacts.add_derivative(self.reaction, out);
         out.iter_mut().zip(&nodes.free).filter(|(_, free)| !**free).for_each(|(out, _)| *out = 0.0);

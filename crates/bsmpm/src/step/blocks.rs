@@ -62,7 +62,9 @@ pub fn complete<K: Kinematics<D>, const D: usize>(
             MassMatrix::Lumped => inertia.factor_of(c),
             MassMatrix::Consistent => (1.0 - SHARE) * inertia.factor(),
         };
-        let diagonal: Vec<f64> = (0..nodes.free.len()).map(|c| factor(c) * nodes.weight[Nodal::<D>::node(c)]).collect();
+        let inertial = |c: usize| factor(c) * nodes.weight[Nodal::<D>::node(c)];
+        let mut diagonal: Vec<f64> = (0..nodes.free.len()).map(inertial).collect();
+        nodes.dashpots.stiffness(inertia).for_each(|(component, stiffness)| diagonal[component] += stiffness);
         solver.add_diagonal(&diagonal);
     }
     solver.finish(symmetry)

@@ -24,7 +24,8 @@ use crate::step::trial::Trial;
 use crate::tensor::Vector;
 use rayon::prelude::*;
 
-/// Refuses a displacement that takes a point out of the grid; agreed by all ranks.
+/// Refuses a displacement that takes a point out of the grid, but through an outlet; there, too, one that a strip or
+/// load is anchored to, and the last one. Agreed by all ranks.
 pub fn check_inside<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     shape: &Shape<D>,
@@ -34,13 +35,19 @@ pub fn check_inside<K: Kinematics<D>, const D: usize>(
 ) -> Result<(), StepError> {
     let leaves = transfer::to_points::<D, D, _>(shape, u, |p, du| {
         let x = points.x[p] + Vector::from(du);
-        model.grid.locate(&x).is_none().then_some((p, x))
+        model.grid.locate(&x).is_none().then(|| (p, x, model.boundary.lets_out(&model.grid, &x)))
     });
-    let mut counts = [leaves.iter().flatten().count() as f64];
+    let anchors = &points.surface.anchors;
+    let carries = |p: usize| anchors.strips.iter().chain(&anchors.loads).flatten().any(|id| *id == points.id[p]);
+    let wrongly = |(p, _, out): &(usize, Vector<D>, bool)| !out || carries(*p);
+    let mut leaves: Vec<_> = leaves.into_iter().flatten().collect();
+    let mut counts = [(points.len() - leaves.len()) as f64, 0.0];
+    leaves.retain(wrongly);
+    counts[1] = leaves.len() as f64;
     halo.reduce(&mut counts);
-    if counts[0] > 0.0 {
-        let first = leaves.into_iter().flatten().next().map(|(p, x)| (points.id[p], x.as_slice().to_vec()));
-        return Err(StepError::Left { count: counts[0] as u64, first });
+    if counts[1] > 0.0 || counts[0] == 0.0 {
+        let first = leaves.into_iter().next().map(|(p, x, _)| (points.id[p], x.as_slice().to_vec()));
+        return Err(StepError::Left { count: counts[1] as u64, first });
     }
     Ok(())
 }

@@ -70,6 +70,11 @@ impl Inertia {
         if self.is_moving(component) { 1.0 / (self.dt * self.dt) } else { self.factor() }
     }
 
+    /// 1/s  how a component's velocity at the end changes with its displacement.
+    pub fn velocity_factor(&self, component: usize) -> f64 {
+        if self.is_moving(component) { 1.0 / self.dt } else { self.newmark.velocity_factor(self.dt) }
+    }
+
     /// m/s  what a component gains as a face stops it, of lumped mass: the points gain their part of it at once.
     pub fn blow_of(&self, component: usize, u: f64) -> f64 {
         if self.stopped.get(component) == Some(&true) { self.gained_by(component, u) } else { 0.0 }

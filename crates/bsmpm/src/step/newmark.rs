@@ -69,6 +69,11 @@ impl Newmark {
         (1.0 - self.alpha) * self.stiffness(dt)
     }
 
+    /// 1/s  how v' changes with u: `γ/(β dt)`.
+    pub fn velocity_factor(&self, dt: f64) -> f64 {
+        self.gamma / (self.beta * dt)
+    }
+
     /// 1/s  what multiplies M v in the inertia: `(1 - α)/(β dt)`.
     pub fn pulse(&self, dt: f64) -> f64 {
         (1.0 - self.alpha) / (self.beta * dt)

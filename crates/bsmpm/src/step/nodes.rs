@@ -1,6 +1,7 @@
 //! Step (2): what the points tell the nodes: mass, velocity, acceleration, external force, and which are unknowns.
 
 use crate::background::Blocks;
+use crate::boundary::absorbing::Dashpots;
 use crate::boundary::contact::Contacts;
 use crate::boundary::load;
 use crate::error::StepError;
@@ -49,6 +50,8 @@ pub struct Nodes<const D: usize> {
     pub active: Vec<bool>,
     /// nodes on faces with contact
     pub contacts: Contacts<D>,
+    /// of faces that absorb waves
+    pub dashpots: Dashpots,
     /// nodes of one material alone, in a scene of several
     pub apart: Option<Apart>,
     /// soft background of the step
@@ -108,6 +111,13 @@ impl<const D: usize> Nodes<D> {
             true => Contacts::of((&model.boundary, &model.grid), (shape, points), &free, (t, last), halo),
             false => Contacts::default(),
         };
+        let dashpots = match model.boundary.absorbing().next() {
+            Some(_) if model.regime == Regime::Dynamic => {
+                let impedance = |p: usize| model.impedance(points, p);
+                Dashpots::of((&model.boundary, &model.grid), (shape, points), impedance, &free, halo)
+            }
+            _ => Dashpots::default(),
+        };
         let mut starting = velocities;
         contacts.rest(&mut starting);
         let mass = Mass { matrix: model.mass, shape, of_points: &points.mass, lumped: &weight, threshold, halo };
@@ -124,6 +134,7 @@ impl<const D: usize> Nodes<D> {
         let mut mapped = Self {
             apart,
             contacts,
+            dashpots,
             f_ext,
             prescribed,
             inertia,

@@ -5,6 +5,7 @@ use crate::energy::{Flows, Turnover};
 use crate::error::Measures;
 use crate::kinematics::Kinematics;
 use crate::solve::found::Found;
+use crate::step::outflow::Outflow;
 use crate::step::problem::Problem;
 
 /// Work of one or more attempts, failed ones included.
@@ -62,6 +63,8 @@ pub struct StepReport {
     pub turnover: Option<Turnover>,
     /// m  the farthest that a point moved, over all ranks
     pub advance: f64,
+    /// what left the grid, if anything did
+    pub outflow: Option<Outflow>,
     /// share of a pass of S by which the elastic state was smoothed, mean over the points
     pub smoothed: f64,
 }
@@ -91,6 +94,7 @@ impl StepReport {
             energy: None,
             turnover: None,
             advance: 0.0,
+            outflow: None,
             smoothed: 0.0,
         }
     }

@@ -29,10 +29,10 @@ pub struct Residual<K: Kinematics<D>, const D: usize> {
 /// Step (5b): what is out of balance at the nodes, with the norms that judge it.
 #[derive(Clone, Debug)]
 pub struct Balance {
-    /// N  f_ext + strips + friction - f_int - M a - background (a: `Inertia::acting`), zero at components that are not
-    /// free
+    /// N  f_ext + strips + dashpots + friction - f_int - M a - background (a: `Inertia::acting`), zero at components that
+    /// are not free
     pub f_oob: Vec<f64>,
-    /// N  force of the supports on the body, zero at components that are neither prescribed nor rubbed
+    /// N  force of the supports on the body, zero at components that are neither prescribed nor rubbed nor damped
     pub reaction: Vec<f64>,
     /// N  |f_oob|
     pub norm: f64,
@@ -245,6 +245,9 @@ impl Forces {
             } else if nodes.prescribed[component].is_some() {
                 forces.reaction[component] = -balance;
             }
+        }
+        if let Some(inertia) = &nodes.inertia {
+            nodes.dashpots.add_forces(inertia, u, &mut forces.f_oob, &mut forces.reaction);
         }
         nodes.contacts.add_friction(&mut forces.f_oob, &mut forces.reaction);
         forces

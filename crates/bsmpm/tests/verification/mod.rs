@@ -1,6 +1,7 @@
 #![doc = include_str!("README.md")]
 //! Numbers after `measured` in the tests are what this machine gave.
 
+mod absorbing;
 mod axisymmetric;
 mod bar;
 mod cauchy;

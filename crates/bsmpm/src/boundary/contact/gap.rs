@@ -9,7 +9,7 @@ use crate::points::Points;
 pub(super) const ROUNDING: f64 = 1e-9;
 
 /// m  edge of the cells at a face, normal to it.
-pub(super) fn face_cell<const D: usize>(grid: &Grid<D>, axis: usize, upper: bool) -> f64 {
+pub(in crate::boundary) fn face_cell<const D: usize>(grid: &Grid<D>, axis: usize, upper: bool) -> f64 {
     let knots = &grid.axes()[axis];
     let cell = if upper { knots.cells() - 1 } else { 0 };
     knots.breakpoint(cell + 1) - knots.breakpoint(cell)

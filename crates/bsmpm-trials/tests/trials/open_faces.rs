@@ -1,0 +1,157 @@
+//! Faces that let waves or material out: counted, the same on any number of ranks and over restarts.
+
+use crate::support::Scratch;
+use crate::support::cases::changed;
+use crate::support::results::{at, differences, history, last_frame, manifest};
+
+/// Ground of two layers at rest on a base that absorbs, which shakes as an outcrop would.
+const SHAKEN: &str = r#"
+geometry = "plane-strain"
+[analysis]
+type = "dynamic"
+end = 0.2
+dt = 0.005
+[grid]
+lower = [0, 0]
+upper = [6, 7]
+cell = 0.5
+order = "quadratic"
+[material.stiff]
+model = "hencky"
+young = "100 MPa"
+poisson = 0.25
+density = 2000
+[material.soft]
+model = "mohr-coulomb"
+young = "40 MPa"
+poisson = 0.3
+friction = 25
+dilation = 0
+cohesion = "2 kPa"
+density = 1800
+[[body]]
+material = "stiff"
+box = { lower = [0, 0], upper = [6, 3] }
+points_per_cell = 3
+[[body]]
+material = "soft"
+box = { lower = [0, 3], upper = [6, 6] }
+points_per_cell = 3
+[gravity]
+acceleration = [0, -9.81]
+[initial]
+k0 = 0.5
+[boundary]
+left = "roller"
+right = "roller"
+bottom = "absorbing"
+[shaking]
+acceleration = [[0.025, 2.0, 0.5], [0.075, -2.0, -0.5], [0.1, 0, 0]]
+[stabilisation]
+method = "modified-f-bar"
+[[history]]
+quantity = "reaction"
+face = "bottom"
+[[history]]
+quantity = "velocity"
+at = [3, 6]
+[[history]]
+quantity = "energy"
+"#;
+
+/// A heap that runs off a shelf of its own length.
+const SHELF: &str = r#"
+geometry = "plane-strain"
+[analysis]
+type = "dynamic"
+end = 0.5
+dt = 0.005
+[grid]
+lower = [0, 0]
+upper = [1, 0.6]
+cell = 0.05
+order = "quadratic"
+[material.sand]
+model = "mohr-coulomb"
+young = "1 MPa"
+poisson = 0.3
+friction = 25
+dilation = 0
+cohesion = 0
+density = 1600
+[[body]]
+material = "sand"
+box = { lower = [0.5, 0], upper = [0.9, 0.5] }
+points_per_cell = 3
+[gravity]
+acceleration = [0, -9.81]
+[boundary]
+left = "outflow"
+right = "outflow"
+bottom = "fixed"
+[stabilisation]
+method = "modified-f-bar"
+[[history]]
+quantity = "mass"
+[[history]]
+quantity = "outflow"
+[[history]]
+quantity = "displacement"
+at = [0.89, 0.01]
+[[history]]
+quantity = "displacement"
+at = [0.89, 0.4]
+name = "lost"
+[[history]]
+quantity = "energy"
+"#;
+
+/// The same to the bit over restarts at `stops`, on one and three ranks to 1e-8.
+fn repeats(case: &str, stops: &[&str]) -> Scratch {
+    let scratch = Scratch::with_case(case);
+    for ranks in [1, 3] {
+        let whole = format!("whole{ranks}");
+        scratch.mpirun(ranks, &["case.toml", "-q", "-o", &whole]).expect(0);
+        let part = ["case.toml", "-q", "-o", "part", "--restart", "auto"];
+        for stop in stops {
+            scratch.mpirun(ranks, &[&part[..], &["--max-steps", stop]].concat()).expect(75);
+        }
+        scratch.mpirun(ranks, &part).expect(0);
+        let text = |name: &str| std::fs::read_to_string(scratch.path(name).join("history.csv")).unwrap();
+        assert!(text(&whole) == text("part"), "{ranks} ranks");
+        assert_eq!(manifest(&scratch.path("part")).outflow, manifest(&scratch.path("whole1")).outflow);
+        std::fs::remove_dir_all(scratch.path("part")).unwrap();
+    }
+    let frames = ["whole1", "whole3"].map(|name| last_frame(&scratch.path(name)));
+    for (field, difference) in differences(&frames[0], &frames[1]) {
+        assert!(difference < 1e-8, "{field} on 3 ranks differs by {difference:.1e}");
+    }
+    scratch
+}
+
+#[test]
+fn ground_on_a_base_that_absorbs_is_the_same_on_any_number_of_ranks_and_over_restarts() {
+    let scratch = repeats(SHAKEN, &["7", "20"]);
+    let found = history(&scratch.path("whole1"));
+    let weight = 9.81 * 6.0 * 3.0 * (2000.0 + 1800.0);
+    assert!((at(&found, "reaction-y", 0.0) / weight - 1.0).abs() < 5e-3, "{}", at(&found, "reaction-y", 0.0));
+    let [closure, external] = ["energy-closure", "energy-external"].map(|name| at(&found, name, 0.2).abs());
+    assert!(closure < 1e-6 * external, "{closure:e} of {external:e}");
+    assert!(at(&found, "velocity-x", 0.05).abs() > 0.01, "it shakes");
+    scratch.write("case.toml", changed(SHAKEN, "[initial]\nk0 = 0.5\n", ""));
+    scratch.mpirun(1, &["case.toml", "--check"]).expect(65).says_once("press the ground through it: give [initial]");
+}
+
+#[test]
+fn what_leaves_is_counted_and_the_rest_goes_on() {
+    let scratch = repeats(SHELF, &["30", "31", "60"]);
+    let found = history(&scratch.path("whole1"));
+    let (mass, left) = (at(&found, "mass", 0.5), at(&found, "outflow", 0.5));
+    assert!(left > 0.1 * mass && (mass + left - 320.0).abs() < 1e-9, "{mass} kg stay, {left} leave");
+    let told = manifest(&scratch.path("whole1"));
+    assert_eq!(told.outflow.map(|outflow| outflow.mass), Some(left));
+    assert!(told.warnings.iter().any(|warning| warning.contains("history lost: the point that it followed has left")));
+    assert_eq!(at(&found, "lost-x", 0.5), 0.0);
+    let [closure, external] = ["energy-closure", "energy-external"].map(|name| at(&found, name, 0.5).abs());
+    assert!(closure < 1e-4 * external, "{closure:e} of {external:e}");
+}

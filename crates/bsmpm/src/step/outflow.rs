@@ -1,0 +1,46 @@
+//! What a step takes out of the grid: material beyond the faces that let it out is counted and forgotten.
+
+use crate::energy::Stored;
+use crate::exact::Exact;
+use crate::kinematics::Kinematics;
+use crate::model::Model;
+use crate::parallel::Halo;
+use crate::points::Points;
+use std::collections::HashSet;
+
+/// Material that has left the grid in a step, over all ranks.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Outflow {
+    /// points
+    pub points: u64,
+    /// kg
+    pub mass: f64,
+    /// J  energy of the points with it, and without it
+    pub stored: [Stored; 2],
+}
+
+impl Outflow {
+    /// Takes the points away that have left; `None` if none has. One reduction in a model with
+    /// outlets.
+    pub fn of<K: Kinematics<D>, const D: usize>(
+        model: &Model<K, D>,
+        points: &mut Points<D>,
+        halo: &dyn Halo,
+    ) -> Option<Self> {
+        if model.boundary.outlets.is_empty() {
+            return None;
+        }
+        let left = |p: &usize| model.boundary.lets_out(&model.grid, &points.x[*p]);
+        let out: Vec<usize> = (0..points.len()).filter(left).collect();
+        let mass: Exact = out.iter().map(|&p| points.mass[p]).collect();
+        let sums = halo.total(&[[out.len() as f64].into_iter().collect(), mass]);
+        if sums[0] == 0.0 {
+            return None;
+        }
+        let before = Stored::of(model, points, halo);
+        let gone: HashSet<u64> = out.iter().map(|&p| points.id[p]).collect();
+        points.remove(|id| gone.contains(&id));
+        let stored = [before, Stored::of(model, points, halo)];
+        Some(Self { points: sums[0] as u64, mass: sums[1], stored })
+    }
+}
