@@ -196,7 +196,8 @@ impl Resumed<'_> {
             )
         };
         let names: Vec<&str> = self.found.record.arrays.iter().map(|array| array.name.as_str()).collect();
-        let mut points = Points::holding(&names, bsmpm::material::state_width(&model.materials));
+        let laws = case.materials.iter().map(|named| &named.material);
+        let mut points = Points::holding(&names, bsmpm::material::state_width(laws));
         self.opened.points(points.named_columns())?;
         let left = self.state.record.left.points;
         let present = (!case.stages.is_empty() || left > 0).then(|| case.ids_at(self.state.progress.t));

@@ -152,7 +152,11 @@ impl<'p> Run<'p> {
             let begin = Instant::now();
             match self.simulation.advance() {
                 None => return self.finish(),
-                Some(Ok(accepted)) => self.accept(&accepted),
+                Some(Ok(accepted)) => {
+                    if let Err(error) = self.accept(&accepted) {
+                        return self.fail_at_stage(error);
+                    }
+                }
                 Some(Err(failure)) if failure.is_interruption() && self.simulation.halo.is_interrupted() => {
                     return self.stop_on_request();
                 }
@@ -179,7 +183,8 @@ impl<'p> Run<'p> {
         }
     }
 
-    fn accept(&mut self, accepted: &Accepted) {
+    /// Fails on all ranks if a stage that begins then cannot.
+    fn accept(&mut self, accepted: &Accepted) -> Result<(), StepError> {
         let (step, wall) = (self.simulation.steps(), self.wall());
         self.log.step(step, accepted, wall);
         let written =
@@ -194,7 +199,7 @@ impl<'p> Run<'p> {
         if self.wants_frame(accepted.t) {
             self.frame();
         }
-        self.begin_stages(accepted.t);
+        self.begin_stages(accepted.t)
     }
 
     /// Misspelt options of PETSc would do nothing in silence.
@@ -213,7 +218,11 @@ impl<'p> Run<'p> {
     /// no other number tells.
     fn tell_strips_without_material(&mut self, accepted: &Accepted) {
         for (number, strip) in accepted.report.strips.iter().enumerate() {
-            let points = self.simulation.model.boundary.strips[number].points.len();
+            let on = &self.simulation.model.boundary.strips[number];
+            if !on.acts() {
+                continue;
+            }
+            let points = on.points.len();
             let (name, t) = (bsmpm_scene::surfaces::name_of_strip(&self.case, number), accepted.t);
             let mut kind = number;
             let told = if strip.held == 0 {

@@ -205,6 +205,16 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         [numbers[0] as u64, numbers[1] as u64]
     }
 
+    /// Goes over to the laws, supports and loads of a further model, which has the same grid. Fails on all ranks if a
+    /// point has no stress before.
+    pub fn exchange(&mut self, next: Model<K, D>) -> Result<(), StepError> {
+        let next = Model { grid: self.model.grid.clone(), ..next };
+        initial::exchange((&self.model, &next), &mut self.points, &*self.halo)?;
+        self.model = next;
+        self.stepper.begin_stage();
+        Ok(())
+    }
+
     /// Columns of the whole grid whose points come to this rank.
     fn columns(&self) -> Range<usize> {
         let (rank, own) = (self.petsc.rank(), self.slabs.columns(self.petsc.rank()));

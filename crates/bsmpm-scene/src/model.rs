@@ -19,16 +19,21 @@ use bsmpm::step::adjoint::is_dilatant;
 use bsmpm::tensor::{Symmetric, Vector};
 use std::marker::PhantomData;
 
-/// The model of a plane-strain case over its whole grid.
+/// The model of a plane-strain case over its whole grid, at the start.
 pub fn model(case: &Case) -> Result<Model<PlaneStrain, 2>, GridError> {
+    model_at(case, 0.0)
+}
+
+/// The same once the stages until the time `t` have begun.
+pub fn model_at(case: &Case, t: f64) -> Result<Model<PlaneStrain, 2>, GridError> {
     let background = (case.solver.background > 0.0).then_some(Background {
         kind: case.solver.background_kind,
         coefficient: case.solver.background,
         extent: case.solver.background_cells,
     });
-    let grid = grid(case)?;
+    let (grid, materials) = (grid(case)?, case.materials_at(t));
     Ok(Model {
-        materials: case.materials.iter().map(|named| named.material.clone()).collect(),
+        materials: materials.iter().map(|named| named.material.clone()).collect(),
         regime: case.analysis.regime,
         newmark: case.analysis.newmark,
         mass: case.analysis.mass,
@@ -39,10 +44,10 @@ pub fn model(case: &Case) -> Result<Model<PlaneStrain, 2>, GridError> {
             .map(|gravity| Gravity { acceleration: gravity.acceleration.into(), ramp: gravity.ramp }),
         shaking: (!case.shaking.is_empty())
             .then(|| Shaking { rows: case.shaking.iter().map(|&(t, ground)| (t, ground.into())).collect() }),
-        boundary: boundary(case, &grid),
+        boundary: boundary(case, &grid, t),
         grid,
         stabilisation: case.stabilisation,
-        groups: groups(case),
+        groups: groups_of(case, &materials),
         quadrature: case.solver.quadrature,
         background,
         criteria: Criteria {
@@ -50,7 +55,7 @@ pub fn model(case: &Case) -> Result<Model<PlaneStrain, 2>, GridError> {
             force: case.solver.force_tolerance,
             max_iterations: case.solver.max_iterations,
         },
-        damping: damping(case),
+        damping: damping(&materials),
         nonlinear: match case.solver.nonlinear {
             crate::Nonlinear::Auto => Nonlinear::Auto,
             crate::Nonlinear::Broyden => Nonlinear::QuasiNewton(QuasiNewton::Broyden),
@@ -62,8 +67,8 @@ pub fn model(case: &Case) -> Result<Model<PlaneStrain, 2>, GridError> {
 }
 
 /// s  of every material; empty where none is damped.
-fn damping(case: &Case) -> Vec<f64> {
-    let times = || case.materials.iter().map(|named| named.retardation);
+fn damping(materials: &[NamedMaterial]) -> Vec<f64> {
+    let times = || materials.iter().map(|named| named.retardation);
     if times().all(|time| time == 0.0) { Vec::new() } else { times().collect() }
 }
 
@@ -79,12 +84,12 @@ fn grid(case: &Case) -> Result<Grid<2>, GridError> {
     Ok(Grid::new([knots(0)?, knots(1)?])?.reaching(case.beyond()))
 }
 
-fn boundary(case: &Case, grid: &Grid<2>) -> Boundary<2> {
+fn boundary(case: &Case, grid: &Grid<2>, t: f64) -> Boundary<2> {
     Boundary {
         supports: supports(case),
         outlets: outlets(case),
-        strips: surfaces::strips(case, grid, penalty(case)),
-        loads: surfaces::loads(case, grid),
+        strips: surfaces::strips(case, grid, (penalty(case), t)),
+        loads: surfaces::loads(case, grid, t),
         reach: reach(case),
     }
 }
@@ -193,13 +198,17 @@ pub fn frame_times(case: &Case) -> Vec<f64> {
 /// alike to itself; under consistent F-bar one that dilates is not alike to one that does not, as their forces are
 /// formed in other ways.
 pub fn groups(case: &Case) -> Groups {
+    groups_of(case, &case.materials)
+}
+
+fn groups_of(case: &Case, materials: &[NamedMaterial]) -> Groups {
     let kind = |named: &NamedMaterial| {
         let alone = named.material.is_graded() || !named.material.is_linear();
         let graded = alone.then(|| named.name.clone());
         let adjoint = case.stabilisation == Stabilisation::ConsistentFBar && is_dilatant(&named.material);
         (named.material.elastic().clone(), graded, adjoint)
     };
-    Groups::of_alike(&case.materials.iter().map(kind).collect::<Vec<_>>())
+    Groups::of_alike(&materials.iter().map(kind).collect::<Vec<_>>())
 }
 
 /// What averages are weighted with: mass, or volume where materials differ in density or some have none.

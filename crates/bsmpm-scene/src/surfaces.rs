@@ -1,6 +1,6 @@
 //! Strips and loads of a case as the physics wants them, and the footing's gauges.
 
-use crate::{Base, Case, Face, Footing, LoadedLine, Prescribed, Push, Site};
+use crate::{Acting, Base, Case, Face, Footing, LoadedLine, Prescribed, Push, Site};
 use bsmpm::boundary::{Load, Path, Strip, StripReport, SurfacePoint, surface};
 use bsmpm::grid::Grid;
 use bsmpm::kinematics::PlaneStrain;
@@ -17,8 +17,9 @@ pub fn penalty(young: f64, edge: f64) -> f64 {
     PENALTY * young / edge
 }
 
-/// Rigid strips: the footing first, then the prescribed motions in the order of the file.
-pub fn strips(case: &Case, grid: &Grid<2>, penalty: f64) -> Vec<Strip<2>> {
+/// Rigid strips once the stages until the time `t` have begun: the footing first, then the prescribed motions in the
+/// order of the file.
+pub fn strips(case: &Case, grid: &Grid<2>, (penalty, t): (f64, f64)) -> Vec<Strip<2>> {
     let strip = |[from, to]: [Vector<2>; 2], path: &crate::MotionPath, base: Base| Strip {
         points: surface::along::<PlaneStrain>(grid, &from, &to, HELD),
         normal: (base == Base::Smooth).then(|| normal(&from, &to)),
@@ -28,7 +29,9 @@ pub fn strips(case: &Case, grid: &Grid<2>, penalty: f64) -> Vec<Strip<2>> {
     let footing = case.footing.iter().map(|footing| strip(base(case, footing), &footing.path, footing.base));
     let prescribed =
         case.prescribed.iter().map(|prescribed| strip(ends(case, prescribed), &prescribed.path, prescribed.base));
-    footing.chain(prescribed).collect()
+    let acts = |number: usize| case.acts_since(Acting::Strip(number), t).is_some();
+    let held = |(number, strip): (usize, Strip<2>)| if acts(number) { strip } else { Strip { penalty: 0.0, ..strip } };
+    footing.chain(prescribed).enumerate().map(held).collect()
 }
 
 /// The strip that holds a face of the grid, if any.
@@ -45,8 +48,8 @@ pub fn name_of_strip(case: &Case, strip: usize) -> String {
     }
 }
 
-/// Tractions, then point loads.
-pub fn loads(case: &Case, grid: &Grid<2>) -> Vec<Load<2>> {
+/// Tractions, then point loads, once the stages until the time `t` have begun.
+pub fn loads(case: &Case, grid: &Grid<2>, t: f64) -> Vec<Load<2>> {
     let place = |at: [f64; 2]| Vector::from(case.grid.local(at));
     let across = case.bodies.iter().map(|body| body.points_per_cell).max().unwrap_or(1);
     let tractions = case.tractions.iter().map(|traction| {
@@ -72,7 +75,19 @@ pub fn loads(case: &Case, grid: &Grid<2>) -> Vec<Load<2>> {
         amplitude: load.amplitude.clone(),
         ..Load::dead(vec![SurfacePoint { x: place(load.at), area: 1.0 }], load.force.into(), load.ramp)
     });
-    tractions.chain(forces).collect()
+    let switched = |(number, load): (usize, Load<2>)| match case.acts_since(Acting::Load(number), t) {
+        None => Load { amplitude: vec![(0.0, 0.0)], ..load },
+        Some(since) if since > 0.0 => Load { amplitude: course(&load, since), ..load },
+        Some(_) => load,
+    };
+    tractions.chain(forces).enumerate().map(switched).collect()
+}
+
+/// The course of a load that begins at the time `since`, where nothing of it acts yet.
+fn course(load: &Load<2>, since: f64) -> Vec<(f64, f64)> {
+    let ramp = [(load.ramp, 1.0)];
+    let rows = if load.amplitude.is_empty() { &ramp[..] } else { &load.amplitude };
+    std::iter::once((since, 0.0)).chain(rows.iter().map(|(t, share)| (since + t, *share))).collect()
 }
 
 /// Points of a circle inside the grid with unit vectors towards its centre, `count` and more in a cell.

@@ -50,7 +50,7 @@ pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Op
     let contacts = contacts(record, factor, report);
     let (placed, made) = (grid.as_ref(), bodies.as_deref());
     let reduction = material::Reduction::of(record);
-    let around = material::Around { regime, grid: placed, bodies: made, reduction };
+    let around = material::Around { regime, grid: placed, bodies: made, stages: stages.as_deref(), reduction };
     let materials = material::read_all(record, around, report);
     let mut gravity = gravity(record, end, report);
     let shaking =
@@ -71,7 +71,6 @@ pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Op
         initial = None;
         load::grow((gravity.as_mut(), &mut tractions, &mut point_loads), end, report);
     }
-    load::sudden(&tractions, &point_loads, initial.as_ref(), report);
     let stabilisation = stabilisation(record);
     let solver = solver::read(record, regime, (grid.as_ref(), materials.as_deref()), report);
     let output = output::read(record, end, report);
@@ -112,6 +111,7 @@ pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Op
     }
     body::warn_of_overlap(&case, report);
     stage::check(&mut case, record, report);
+    load::sudden(&case, report);
     lines::place(&mut case, record, report);
     physics::check(&case, record, report);
     Some(Case { warnings: std::mem::take(&mut report.warnings), notes: std::mem::take(&mut report.notes), ..case })

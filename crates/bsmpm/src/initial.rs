@@ -54,6 +54,38 @@ pub fn set_stress<K: Kinematics<D>, const D: usize>(
     }
 }
 
+/// Lets the points go on from the laws of one model to those of another: where the law of a point is another one, it
+/// keeps its Kirchhoff stress, with the elastic strain that the new law has at it; a law of another kind begins in the
+/// state of its start. Fails on all ranks if a point has no response before.
+pub fn exchange<K: Kinematics<D>, const D: usize>(
+    (before, after): (&Model<K, D>, &Model<K, D>),
+    points: &mut Points<D>,
+    halo: &dyn Halo,
+) -> Result<(), StepError> {
+    let law = |model: &Model<K, D>, points: &Points<D>, p: usize| {
+        model.materials[usize::from(points.material[p])].at(points.height(p)).into_owned()
+    };
+    let mut exchanged = || {
+        for p in 0..points.len() {
+            let (old, new) = (law(before, points, p), law(after, points, p));
+            if old == new {
+                continue;
+            }
+            let response = before.respond(points, p, &points.b_e.at(p));
+            let tau = response.map_err(|source| StepError::Material { id: points.id[p], source })?.tau();
+            let state = points.state.as_mut().map_or(&mut [][..], |state| state.of_point_mut(p));
+            if old.state() != new.state() {
+                state.fill(0.0);
+            }
+            if !old.is_linear() || old.elastic() != new.elastic() {
+                points.b_e.set(p, b_e_of(&new, &tau, state));
+            }
+        }
+        Ok(())
+    };
+    agreed(halo, exchanged(), StepError::OtherRank)
+}
+
 /// The elastic left Cauchy-Green tensor that belongs to a Cauchy stress in Pa where nothing has moved, and the law's
 /// `state` there, in the place of zeros; not a number where the law has no such stress. The law is that of one height.
 pub fn b_e_of(law: &Material, stress: &Symmetric, state: &mut [f64]) -> Symmetric {

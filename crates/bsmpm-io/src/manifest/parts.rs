@@ -266,6 +266,15 @@ pub struct ManifestStage {
     pub removed: u64,
     /// Points that it placed.
     pub added: u64,
+    /// Names of loads and supports that act from there on.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub applied: Vec<String>,
+    /// Those that no longer do.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub released: Vec<String>,
+    /// Materials whose bodies follow the law of another one, in words.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub exchanged: Vec<String>,
     /// Whether displacements count from there.
     pub reset: bool,
 }

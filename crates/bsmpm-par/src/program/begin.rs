@@ -19,7 +19,7 @@ use bsmpm_ranks::linear::Choice;
 use bsmpm_ranks::signals::Requests;
 use bsmpm_ranks::simulation::Simulation;
 use bsmpm_ranks::timers::Timers;
-use bsmpm_scene::model::{model, points, schedule};
+use bsmpm_scene::model::{model_at, points, schedule};
 use hdf5_collective::Hdf5;
 use mpi::environment::Universe;
 use mpi::topology::Communicator;
@@ -80,7 +80,8 @@ fn scene<'p>(
     shared: (Rc<Timers>, Rc<Requests>),
 ) -> Result<Scene<'p>, Refusal> {
     let universe = seam.0;
-    let mut model = model(case).map_err(|error| Refusal::new(exit::CASE, error.to_string()))?;
+    let at = if let RunStart::Resumed(resumed) = start { resumed.state.progress.t } else { 0.0 };
+    let mut model = model_at(case, at).map_err(|error| Refusal::new(exit::CASE, error.to_string()))?;
     let schedule = schedule(case);
     if let RunStart::Resumed(resumed) = start {
         let (slabs, points, stepper) = resumed.read(universe, case, &mut model, &schedule)?;

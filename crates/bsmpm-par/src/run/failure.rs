@@ -38,6 +38,15 @@ impl Run<'_> {
         run.close(Status::Failed, code)
     }
 
+    /// Ends the run whose points cannot go on in a stage.
+    pub(super) fn fail_at_stage(self, error: StepError) -> u8 {
+        let t = self.simulation.time();
+        let failure = Failure { t, dt: 0.0, attempts: vec![error], counts: Counts::default() };
+        let told = format!("the stage at t = {t}");
+        let (run, code) = self.give_up(&failure, (&told, "; failure.json tells more"));
+        run.close(Status::Failed, code)
+    }
+
     fn give_up(mut self, failure: &Failure, (told, end): (&str, &str)) -> (Self, u8) {
         let step = self.simulation.steps() + 1;
         let code = launch::agree(&self.universe.world(), code_of(failure.attempts.last(), step));

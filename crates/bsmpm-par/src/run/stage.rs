@@ -1,26 +1,34 @@
-//! Stages: what is removed and placed once a step has ended at their time. The rows and frame of that time are of the
+//! Stages: what is removed, placed and exchanged once a step has ended at their time. The rows and frame of that time are of the
 //! state before; checkpoints are of the state after.
 
 use super::Run;
+use crate::launch;
 use bsmpm::energy::Stored;
+use bsmpm::error::StepError;
+use bsmpm_io::exit;
 use bsmpm_io::manifest::ManifestStage;
 use bsmpm_ranks::simulation::Simulation;
-use bsmpm_scene::{Stage, model};
+use bsmpm_scene::{Acting, Stage, model};
 
 impl Run<'_> {
     /// Begins the stages of the time `t`.
-    pub(super) fn begin_stages(&mut self, t: f64) {
+    pub(super) fn begin_stages(&mut self, t: f64) -> Result<(), StepError> {
         let stages: Vec<Stage> = self.case.stages_at(t).cloned().collect();
-        stages.iter().for_each(|stage| self.begin_stage(stage));
+        stages.iter().try_for_each(|stage| self.begin_stage(stage))
     }
 
-    fn begin_stage(&mut self, stage: &Stage) {
+    fn begin_stage(&mut self, stage: &Stage) -> Result<(), StepError> {
         let stored = |simulation: &Simulation<'_, _, 2>| {
             let Simulation { model, points, halo, .. } = simulation;
             model.balances_energy.then(|| Stored::of(model, points, &**halo))
         };
         let before = stored(&self.simulation);
+        let next = model::model_at(&self.case, stage.at);
+        let next = next.unwrap_or_else(|error| launch::end(&self.universe.world(), exit::BUG, &error));
         let taken = self.case.taken_by(stage);
+        if stage.exchanges() {
+            self.simulation.exchange(next)?;
+        }
         let [removed, added] = self.simulation.begin_stage(taken, |columns| model::placed(&self.case, stage, columns));
         if stage.resets_displacements {
             self.simulation.points.reset_displacements();
@@ -32,9 +40,17 @@ impl Run<'_> {
         }
         let (step, time) = (self.simulation.steps(), self.simulation.time());
         let name = stage.name.as_deref().map_or(String::new(), |name| format!(" {name}"));
+        let material = |number: usize| &self.case.materials[number].name;
+        let exchanged: Vec<String> =
+            stage.materials.iter().map(|&(from, to)| format!("{} follows {}", material(from), material(to))).collect();
+        let names = |list: &[(String, Acting)]| list.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>();
+        let (applied, released) = (names(&stage.apply), names(&stage.release));
         let changes = [
             (removed > 0).then(|| format!("{removed} points removed")),
             (added > 0).then(|| format!("{added} points added")),
+            (!applied.is_empty()).then(|| format!("{} applied", applied.join(", "))),
+            (!released.is_empty()).then(|| format!("{} released", released.join(", "))),
+            (!exchanged.is_empty()).then(|| exchanged.join(", ")),
             stage.resets_displacements.then(|| "displacements set to zero".to_owned()),
         ];
         let changes: Vec<String> = changes.into_iter().flatten().collect();
@@ -42,7 +58,9 @@ impl Run<'_> {
         if let Some(ledger) = &mut self.ledger {
             let name = stage.name.clone();
             let reset = stage.resets_displacements;
-            ledger.manifest().stages.push(ManifestStage { name, step, time, removed, added, reset });
+            let changes = ManifestStage { name, step, time, removed, added, applied, released, exchanged, reset };
+            ledger.manifest().stages.push(changes);
         }
+        Ok(())
     }
 }

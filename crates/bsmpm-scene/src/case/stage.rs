@@ -1,6 +1,6 @@
-//! Stages: which bodies are there when.
+//! Stages: which bodies are there when, what acts on them, and which laws they follow.
 
-use super::{Body, Case};
+use super::{Body, Case, NamedMaterial};
 use std::ops::Range;
 
 /// What changes at a time, between two steps.
@@ -14,10 +14,37 @@ pub struct Stage {
     pub remove: Vec<usize>,
     /// Numbers of the bodies that are placed.
     pub add: Vec<usize>,
+    /// Names of what acts from here on, and what that is.
+    pub apply: Vec<(String, Acting)>,
+    /// The same of what acts no longer.
+    pub release: Vec<(String, Acting)>,
+    /// Numbers of materials, and of those whose laws their bodies follow from here on.
+    pub materials: Vec<(usize, usize)>,
     /// Whether displacements that are told count from here.
     pub resets_displacements: bool,
     /// Numbers of the histories that follow a point of what is placed.
     pub follows: Vec<usize>,
+}
+
+impl Stage {
+    /// Whether another model goes on from here: one with other loads, supports or laws.
+    pub fn exchanges(&self) -> bool {
+        !(self.apply.is_empty() && self.release.is_empty() && self.materials.is_empty())
+    }
+
+    /// Whether it releases, and whether it applies something.
+    pub fn switches(&self, what: Acting) -> [bool; 2] {
+        [&self.release, &self.apply].map(|list| list.iter().any(|(_, other)| *other == what))
+    }
+}
+
+/// What stages apply and release.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Acting {
+    /// The number of a strip: the footing, then the prescribed motions in the order of the file.
+    Strip(usize),
+    /// The number of a load: tractions, then point loads, in the order of the file.
+    Load(usize),
 }
 
 /// Parts of a step by which the time of a stage may be missed: what the schedule takes as the same time.
@@ -29,9 +56,47 @@ impl Case {
         self.stages.iter().filter(move |stage| (stage.at - t).abs() <= SAME * self.analysis.dt)
     }
 
+    fn has_begun(&self, stage: &Stage, t: f64) -> bool {
+        stage.at <= t + SAME * self.analysis.dt
+    }
+
+    /// Since when a strip or load acts (s, or pseudo-time) once the stages until the time `t` have begun; `None` if it
+    /// does not. What a stage applies before any has released it does not act at the start.
+    pub fn acts_since(&self, what: Acting, t: f64) -> Option<f64> {
+        let comes_later = self.stages.iter().find_map(|stage| {
+            let named = stage.switches(what);
+            (named != [false; 2]).then_some(!named[0])
+        });
+        let at_start = (comes_later != Some(true)).then_some(0.0);
+        self.stages.iter().filter(|stage| self.has_begun(stage, t)).fold(at_start, |since, stage| {
+            let [releases, applies] = stage.switches(what);
+            if applies { Some(stage.at) } else { since.filter(|_| !releases) }
+        })
+    }
+
+    /// The materials once the stages until the time `t` have begun: each with the law that its bodies follow then, and
+    /// with what goes with a law.
+    pub fn materials_at(&self, t: f64) -> Vec<NamedMaterial> {
+        let mut followed: Vec<usize> = (0..self.materials.len()).collect();
+        let exchanges = self.stages.iter().filter(|stage| self.has_begun(stage, t)).flat_map(|stage| &stage.materials);
+        exchanges.for_each(|&(from, to)| followed[from] = to);
+        let of = |(own, followed): (&NamedMaterial, usize)| NamedMaterial {
+            density: own.density,
+            ..self.materials[followed].clone()
+        };
+        self.materials.iter().zip(followed).map(of).collect()
+    }
+
+    /// Whether bodies follow the law of a material at some time.
+    pub fn is_followed(&self, material: usize) -> bool {
+        let is_made = |number: usize| self.bodies.iter().any(|body| body.material == number);
+        let exchanges = || self.stages.iter().flat_map(|stage| &stage.materials);
+        is_made(material) || exchanges().any(|&(from, to)| to == material && is_made(from))
+    }
+
     /// Whether a body is there once the stages until the time `t` have begun.
     pub fn is_there(&self, body: usize, t: f64) -> bool {
-        let begun = |stage: &&Stage| stage.at <= t + SAME * self.analysis.dt;
+        let begun = |stage: &&Stage| self.has_begun(stage, t);
         let (adds, removes) = (|s: &Stage| s.add.contains(&body), |s: &Stage| s.remove.contains(&body));
         let came = !self.stages.iter().any(adds) || self.stages.iter().filter(begun).any(adds);
         came && !self.stages.iter().filter(begun).any(removes)

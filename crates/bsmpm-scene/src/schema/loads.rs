@@ -30,6 +30,7 @@ pub(super) static FOOTING: Table = Table {
             "rows [t, ux, uy], t increasing; linear between, 0 at time 0, constant after the last",
         ),
         key("base", Choice(Base::WORDS), Default("\"smooth\""), "holds the normal component, or all"),
+        key("name", Name, Optional, "what stages call it"),
     ],
     exclusive: &[one_of(&["displacement", "velocity", "path"], true)],
 };
@@ -50,6 +51,7 @@ pub(super) static PRESCRIBED: Table = Table {
             "rows [t, ux, uy], t increasing; linear between, 0 at time 0, constant after the last",
         ),
         key("components", Choice(Components::WORDS), Default("\"all\""), "what is held"),
+        key("name", Name, Optional, "what stages call it"),
     ],
     exclusive: &[
         one_of(&["face", "from"], true),
@@ -78,8 +80,9 @@ pub(super) static TRACTION: Table = Table {
             AMPLITUDE,
             Optional,
             "instead of ramp: rows [t, share that acts], t increasing; linear \
-            between, from 0 at time 0, constant after the last",
+            between, from 0 at time 0, constant after the last; time 0 is that of the stage that applies it",
         ),
+        key("name", Name, Optional, "what stages call it"),
     ],
     exclusive: &[
         one_of(&["from", "circle"], true),
@@ -114,8 +117,9 @@ pub(super) static POINT_LOAD: Table = Table {
             AMPLITUDE,
             Optional,
             "instead of ramp: rows [t, share that acts], t increasing; linear \
-            between, from 0 at time 0, constant after the last",
+            between, from 0 at time 0, constant after the last; time 0 is that of the stage that applies it",
         ),
+        key("name", Name, Optional, "what stages call it"),
     ],
     exclusive: &[one_of(&["ramp", "amplitude"], false)],
 };

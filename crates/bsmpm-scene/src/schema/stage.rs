@@ -6,7 +6,8 @@ use super::{Dimension as In, Range, Table, key};
 
 pub(super) static STAGE: Table = Table {
     header: "[[stage]]",
-    doc: "What changes at a time, between two steps: bodies are removed (excavation) and placed (lifts of an embankment)",
+    doc: "What changes at a time, between two steps: bodies are removed (excavation) and placed (lifts of an embankment), \
+          loads and supports act from there or no longer, and materials follow another law",
     keys: &[
         key("name", Text(64), Optional, "what it is called where it is told of"),
         key("at", Quantity(In::Time, Range::POSITIVE), Required, "when it begins; a step ends there"),
@@ -17,7 +18,20 @@ pub(super) static STAGE: Table = Table {
             Optional,
             "names of the bodies that are placed, where and as they are given, without stress; they are absent before",
         ),
+        key("apply", Names, Optional, "names of loads and supports that act from there on; they do nothing before"),
+        key("release", Names, Optional, "names of loads and supports that act until there"),
+        key("materials", Tables(&EXCHANGE), Optional, "laws that bodies follow from there on"),
         key("reset_displacements", Flag, Default("false"), "whether displacements that are told count from here"),
+    ],
+    exclusive: &[],
+};
+
+static EXCHANGE: Table = Table {
+    header: "materials = [{ from, to }, ...]",
+    doc: "Bodies of one material follow the law of another from there on; they keep their stress and their mass",
+    keys: &[
+        key("from", Name, Required, "name of the bodies' material"),
+        key("to", Name, Required, "name of the material whose law they follow; that of `from` again: their own"),
     ],
     exclusive: &[],
 };

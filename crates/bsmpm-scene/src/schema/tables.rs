@@ -38,7 +38,7 @@ pub static ROOT: Table = Table {
         key("strength_reduction", Kind::Table(&loads::REDUCTION), Optional, "strength divided by a factor"),
         key("initial", Kind::Table(&loads::INITIAL), Optional, "stress at the start; absent: none"),
         key("element", Named(&element::ELEMENT), Optional, "tests of one point, for `bsmpm element`"),
-        key("stage", Tables(&stage::STAGE), Optional, "bodies that are removed or placed at a time"),
+        key("stage", Tables(&stage::STAGE), Optional, "what is removed, placed or exchanged at a time"),
         later("profile", "strength with depth"),
     ],
     exclusive: &[],

@@ -3,7 +3,7 @@
 use super::material::profile;
 use super::place::{along, at_body, beyond, ring};
 use super::strip::{AroundStrip, segment};
-use crate::case::{Body, Gravity, Initial, LoadedLine, NamedMaterial, PointLoad, Push, Traction};
+use crate::case::{Acting, Body, Case, Gravity, Initial, LoadedLine, NamedMaterial, PointLoad, Push, Traction};
 use crate::record::Record;
 use crate::report::Report;
 use crate::words::Start;
@@ -238,17 +238,20 @@ pub(super) fn grow(
 }
 
 /// Warns of loads that act in full from the start: a state by k0 knows the weight alone.
-pub(super) fn sudden(tractions: &[Traction], loads: &[PointLoad], initial: Option<&Initial>, report: &mut Report<'_>) {
-    if !matches!(initial, Some(Initial::AtRest(_))) {
+pub(super) fn sudden(case: &Case, report: &mut Report<'_>) {
+    if !matches!(case.initial, Some(Initial::AtRest(_))) {
         return;
     }
     let is_sudden = |ramp: f64, amplitude: &[(f64, f64)]| match amplitude.first() {
         Some((t, share)) => *t == 0.0 && *share != 0.0,
         None => ramp == 0.0,
     };
-    let tractions = tractions.iter().map(|load| ("traction", is_sudden(load.ramp, &load.amplitude))).enumerate();
-    let loads = loads.iter().map(|load| ("point_load", is_sudden(load.ramp, &load.amplitude))).enumerate();
-    for (number, (name, _)) in tractions.chain(loads).filter(|(_, (_, is_sudden))| *is_sudden) {
+    let tractions = case.tractions.iter().map(|load| ("traction", is_sudden(load.ramp, &load.amplitude))).enumerate();
+    let loads = case.point_loads.iter().map(|load| ("point_load", is_sudden(load.ramp, &load.amplitude))).enumerate();
+    for (load, (number, (name, is_sudden))) in tractions.chain(loads).enumerate() {
+        if !is_sudden || case.acts_since(Acting::Load(load), 0.0).is_none() {
+            continue;
+        }
         report.warn(format!(
             "{name}.{number}: acts in full from time 0, and the stress at the start by k0 does not hold it; give it a ramp"
         ));

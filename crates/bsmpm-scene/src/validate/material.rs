@@ -3,7 +3,7 @@
 mod law;
 
 use super::STANDARD_GRAVITY;
-use crate::case::{Body, NamedMaterial};
+use crate::case::{Body, NamedMaterial, Stage};
 use crate::grid::GridSpec;
 use crate::record::Record;
 use crate::report::Report;
@@ -22,6 +22,7 @@ pub(super) struct Around<'a> {
     pub(super) regime: Option<Regime>,
     pub(super) grid: Option<&'a GridSpec>,
     pub(super) bodies: Option<&'a [Body]>,
+    pub(super) stages: Option<&'a [Stage]>,
     pub(super) reduction: Reduction,
 }
 
@@ -112,7 +113,9 @@ struct Layer {
 impl Layer {
     fn of(number: usize, around: Around<'_>) -> Option<Self> {
         let (grid, bodies) = (around.grid?, around.bodies?);
-        let made = bodies.iter().filter(|body| body.material == number).map(Body::bounds);
+        let exchanges = || around.stages.unwrap_or_default().iter().flat_map(|stage| &stage.materials);
+        let follows = |own: usize| own == number || exchanges().any(|exchange| *exchange == (own, number));
+        let made = bodies.iter().filter(|body| follows(body.material)).map(Body::bounds);
         let found = made.reduce(|[a, b], [c, d]| [[0.0, a[1].min(c[1])], [0.0, b[1].max(d[1])]]);
         let [lower, upper] = found.unwrap_or([grid.lower(), grid.upper()]);
         Some(Self { heights: lower[1]..upper[1], base: grid.lower()[1] })

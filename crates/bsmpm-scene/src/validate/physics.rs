@@ -68,7 +68,7 @@ fn stressed(case: &Case, record: &Record, report: &mut Report<'_>) {
 /// A rate needs a time: that of quasi-static analyses is none.
 fn timed(case: &Case, record: &Record, report: &mut Report<'_>) {
     let named = case.materials.iter().zip(record.named("material")).enumerate();
-    let made = |number: usize| case.bodies.iter().any(|body| body.material == number);
+    let made = |number: usize| case.is_followed(number);
     for (_, (named, (_, written))) in named.filter(|(number, _)| made(*number)) {
         if case.analysis.regime == Regime::QuasiStatic && named.material.over(1.0).is_some() {
             let message = "the time of a quasi-static analysis is no time: a strength by the rate needs a dynamic one";
@@ -208,9 +208,7 @@ fn reached(case: &Case, axis: usize, upper: bool) -> bool {
 }
 
 fn warn_of_materials(case: &Case, report: &mut Report<'_>) {
-    let mut used = vec![false; case.materials.len()];
-    case.bodies.iter().for_each(|body| used[body.material] = true);
-    for (material, _) in case.materials.iter().zip(used).filter(|(_, used)| !used) {
+    for (_, material) in case.materials.iter().enumerate().filter(|(number, _)| !case.is_followed(*number)) {
         report.warn(format!("material.{}: no body is made of it", material.name));
     }
     if case.gravity.is_some() && case.bodies.iter().all(|body| case.materials[body.material].density.is_none()) {

@@ -1,7 +1,7 @@
 //! Stages: times that follow each other, bodies that can be removed and placed then, and what must not lose its body.
 
 use super::place;
-use crate::case::{Body, Case, LoadedLine, Quantity, Site, Stage};
+use crate::case::{Acting, Body, Case, LoadedLine, Quantity, Site, Stage};
 use crate::nearest::hint;
 use crate::record::Record;
 use crate::report::{Report, shortened};
@@ -17,6 +17,7 @@ pub(super) fn read_all(
     report: &mut Report<'_>,
 ) -> Option<Vec<Stage>> {
     let (bodies, (end, dt)) = (bodies?, time?);
+    let acting = acting(root, report);
     for (number, record) in root.records("body").iter().enumerate() {
         let name = &bodies[number].name;
         if let Some(first) = bodies[..number].iter().position(|body| name.is_some() && body.name == *name) {
@@ -26,7 +27,7 @@ pub(super) fn read_all(
     let mut before = 0.0;
     let mut read = Vec::new();
     for record in root.records("stage") {
-        let stage = stage(record, bodies, report);
+        let stage = stage(record, (root, bodies, &acting), report);
         if let Some(stage) = &stage {
             timed(stage.at, (before, end, dt), record, report);
             before = stage.at;
@@ -35,38 +36,114 @@ pub(super) fn read_all(
     }
     let stages: Vec<Stage> = read.into_iter().collect::<Option<_>>()?;
     (0..bodies.len()).for_each(|body| once(body, &stages, root, report));
+    acting.iter().for_each(|acting| in_turn(acting, &stages, root, report));
     Some(stages)
 }
 
-fn stage(record: &Record, bodies: &[Body], report: &mut Report<'_>) -> Option<Stage> {
-    let (remove, add) = (numbers("remove", record, bodies, report), numbers("add", record, bodies, report));
+/// Something with a name that stages apply and release.
+type Named<'a> = (&'a str, Acting);
+
+/// Strips and loads with names, which are unique.
+fn acting<'a>(root: &'a Record, report: &mut Report<'_>) -> Vec<Named<'a>> {
+    let strips = root.records("footing").iter().chain(root.records("prescribed")).enumerate();
+    let loads = root.records("traction").iter().chain(root.records("point_load")).enumerate();
+    let strips = strips.map(|(number, record)| (record, Acting::Strip(number)));
+    let all = strips.chain(loads.map(|(number, record)| (record, Acting::Load(number))));
+    let mut found: Vec<(&str, Acting, &Record)> = Vec::new();
+    for (record, acting) in all {
+        let Some(name) = record.text("name") else { continue };
+        if let Some((.., first)) = found.iter().find(|(other, ..)| *other == name) {
+            record.error("name", format!("{} has that name", first.path), report);
+        }
+        found.push((name, acting, record));
+    }
+    found.into_iter().map(|(name, acting, _)| (name, acting)).collect()
+}
+
+fn stage(
+    record: &Record,
+    (root, bodies, acting): (&Record, &[Body], &[Named<'_>]),
+    report: &mut Report<'_>,
+) -> Option<Stage> {
+    let bodies: Vec<_> = bodies.iter().zip(0..).filter_map(|(body, k)| Some((body.name.as_deref()?, k))).collect();
+    let (remove, add) = (named("remove", record, &bodies, report), named("add", record, &bodies, report));
+    let (apply, release) = (named("apply", record, acting, report), named("release", record, acting, report));
+    let materials = exchanges(record, root, report);
     let (at, resets_displacements) = (record.number("at")?, record.flag("reset_displacements")?);
-    let (remove, add) = (remove?, add?);
-    if remove.is_empty() && add.is_empty() && !resets_displacements {
-        let message = "it changes nothing: give remove, add or reset_displacements = true";
+    let of_bodies = |named: Vec<(String, usize)>| named.into_iter().map(|(_, body)| body).collect::<Vec<_>>();
+    let (remove, add) = (of_bodies(remove?), of_bodies(add?));
+    let (apply, release, materials) = (apply?, release?, materials?);
+    let is_still = remove.is_empty() && add.is_empty() && apply.is_empty() && release.is_empty();
+    if is_still && materials.is_empty() && !resets_displacements {
+        let message = "it changes nothing: give remove, add, apply, release, materials or reset_displacements = true";
         report.error(record.origin, &record.path, message);
     }
     let name = record.text("name").map(str::to_owned);
-    Some(Stage { name, at, remove, add, resets_displacements, follows: Vec::new() })
+    Some(Stage { name, at, remove, add, apply, release, materials, resets_displacements, follows: Vec::new() })
 }
 
-/// Numbers of the bodies that a key names.
-fn numbers(key: &str, record: &Record, bodies: &[Body], report: &mut Report<'_>) -> Option<Vec<usize>> {
+/// The names of a key, and what they name.
+fn named<T: Copy>(
+    key: &str,
+    record: &Record,
+    known: &[(&str, T)],
+    report: &mut Report<'_>,
+) -> Option<Vec<(String, T)>> {
     if !record.gives(key) {
         return Some(Vec::new());
     }
-    let known = || bodies.iter().filter_map(|body| body.name.as_deref());
-    let mut number = |name: &String| {
-        let found = bodies.iter().position(|body| body.name.as_ref() == Some(name));
+    let bodies = ["remove", "add"].contains(&key);
+    let kinds = if bodies { "[[body]]" } else { "[[traction]], [[point_load]], [[prescribed]] or [footing]" };
+    let mut find = |name: &String| {
+        let found = known.iter().find(|(other, _)| other == name).map(|(_, what)| (name.clone(), *what));
         if found.is_none() {
-            let hint = hint(name, known());
-            let message = format!("there is no [[body]] with name = \"{}\"{hint}", shortened(name));
+            let hint = hint(name, known.iter().map(|(name, _)| *name));
+            let message = format!("there is no {kinds} with name = \"{}\"{hint}", shortened(name));
             record.error(key, message, report);
         }
         found
     };
-    let found: Vec<Option<usize>> = record.names(key)?.iter().map(&mut number).collect();
+    let found: Vec<Option<(String, T)>> = record.names(key)?.iter().map(&mut find).collect();
     found.into_iter().collect()
+}
+
+/// Numbers of the materials that a stage exchanges.
+fn exchanges(record: &Record, root: &Record, report: &mut Report<'_>) -> Option<Vec<(usize, usize)>> {
+    let materials = root.named("material");
+    let mut found: Vec<(usize, usize)> = Vec::new();
+    for pair in record.records("materials") {
+        let mut number = |key: &str| {
+            let name = pair.text(key)?;
+            let found = materials.iter().position(|(other, _)| other == name);
+            if found.is_none() {
+                let hint = hint(name, materials.iter().map(|(name, _)| name.as_str()));
+                pair.error(key, format!("there is no [material.{}]{hint}", shortened(name)), report);
+            }
+            found
+        };
+        let (from, to) = (number("from"), number("to"));
+        let (from, to) = (from?, to?);
+        if found.iter().any(|(other, _)| *other == from) {
+            pair.error("from", "it is exchanged already by this stage", report);
+        }
+        found.push((from, to));
+    }
+    Some(found)
+}
+
+/// What acts is released, and what does not is applied.
+fn in_turn((name, what): &Named<'_>, stages: &[Stage], root: &Record, report: &mut Report<'_>) {
+    let mut acts: Option<bool> = None;
+    for (stage, record) in stages.iter().zip(root.records("stage")) {
+        let [releases, applies] = stage.switches(*what);
+        if releases && applies {
+            record.error("apply", format!("{name} is released by this stage, too"), report);
+        } else if (releases && acts == Some(false)) || (applies && acts == Some(true)) {
+            let (key, told) = if releases { ("release", "does not act") } else { ("apply", "acts already") };
+            record.error(key, format!("{name} {told}, by a stage before"), report);
+        }
+        acts = if releases || applies { Some(applies) } else { acts };
+    }
 }
 
 fn timed(at: f64, (before, end, dt): (f64, f64, f64), record: &Record, report: &mut Report<'_>) {
@@ -117,6 +194,9 @@ pub(super) fn check(case: &mut Case, root: &Record, report: &mut Report<'_>) {
         if !(0..case.bodies.len()).any(|body| case.is_there(body, stage.at)) {
             record.error("remove", "nothing is left after it", report);
         }
+        for (&(from, to), pair) in stage.materials.iter().zip(record.records("materials")) {
+            exchanged(case, (from, to), pair, report);
+        }
         for &body in &stage.add {
             let named = &case.materials[case.bodies[body].material];
             if !named.material.is_linear() {
@@ -142,6 +222,30 @@ pub(super) fn check(case: &mut Case, root: &Record, report: &mut Report<'_>) {
                 format!("at {at:?} there is no body from the start to the end: stages add or remove what it is on");
             record.error(key, message, report);
         }
+    }
+}
+
+/// A law can go on from the stress that another one has left, with the mass that is there.
+fn exchanged(case: &Case, (from, to): (usize, usize), pair: &Record, report: &mut Report<'_>) {
+    let [from, to] = [from, to].map(|number| (number, &case.materials[number]));
+    if !case.bodies.iter().any(|body| body.material == from.0) {
+        pair.error("from", format!("no body is made of material.{}", from.1.name), report);
+    }
+    if from.1.density != to.1.density {
+        let message = format!(
+            "material.{} and material.{} differ in density, and points keep their mass: give both the same unit_weight or \
+             density",
+            from.1.name, to.1.name
+        );
+        pair.error("to", message, report);
+    }
+    if !to.1.material.is_linear() {
+        let message = format!(
+            "what material.{} was compressed by before is not told by the stress that another law leaves: exchange it for \
+             material of a linear elastic law",
+            to.1.name
+        );
+        pair.error("to", message, report);
     }
 }
 

@@ -305,6 +305,14 @@ pub const STAGES: &[Row] = &[
     row("add  = [\"fill\"]", "add = [\"fill\", \"fill\"]", "stage.0.add", "has been placed before"),
     row("remove = [\"fill\"]", "remove = [\"fill\", \"fill\"]", "stage.1.remove", "has been removed before"),
     row("add  = [\"fill\"]", "add = [\"fill\"]\nremove = [\"fill\"]", "stage.0.remove", "is not there yet").down(1),
+    row("add  = [\"fill\"]", "apply = [\"fill\"]", "stage.0.apply", "there is no [[traction]]"),
+    row(
+        "add  = [\"fill\"]",
+        "materials = [{ from = \"sand\", to = \"clai\" }]",
+        "stage.0.materials.0.to",
+        "did you mean `clay`?",
+    ),
+    row("add  = [\"fill\"]", "materials = [{ from = \"sand\" }]", "stage.0.materials.0.to", "missing"),
     row("at     = \"500 ms\"", "at = 0.25", "stage.1.at", "stages follow in time"),
     row("at     = \"500 ms\"", "at = \"1 s\"", "stage.1.at", "not before the end of the run"),
     row("at   = \"0.25 s\"", "at = 0", "stage.0.at", "out of range"),
@@ -344,4 +352,60 @@ pub const STAGES_OF_ONE: &[Row] = &[
         "there is no body from the start to the end",
     )
     .down(10),
+    row(
+        "points_per_cell = 3",
+        "points_per_cell = 3\n[[point_load]]\nname = \"push\"\nat = [1.0, 0.5]\nforce = [0, -1]\nramp = 1.0\n\
+         [[stage]]\nat = 0.5\napply = [\"push\"]\nrelease = [\"push\"]",
+        "stage.0.apply",
+        "push is released by this stage, too",
+    )
+    .down(7),
+    row(
+        "points_per_cell = 3",
+        "points_per_cell = 3\n[[point_load]]\nname = \"push\"\nat = [1.0, 0.5]\nforce = [0, -1]\nramp = 1.0\n\
+         [[stage]]\nat = 0.5\napply = [\"push\"]\n[[stage]]\nat = 0.75\napply = [\"push\"]",
+        "stage.1.apply",
+        "push acts already",
+    )
+    .down(10),
+    row(
+        "points_per_cell = 3",
+        "points_per_cell = 3\n[[point_load]]\nname = \"push\"\nat = [1.0, 0.5]\nforce = [0, -1]\nramp = 1.0\n\
+         [[stage]]\nat = 0.5\nrelease = [\"push\"]\n[[stage]]\nat = 0.75\nrelease = [\"push\"]",
+        "stage.1.release",
+        "push does not act",
+    )
+    .down(10),
+    row(
+        "points_per_cell = 3",
+        "points_per_cell = 3\n[[point_load]]\nname = \"push\"\nat = [1.0, 0.5]\nforce = [0, -1]\nramp = 1.0\n\
+         [[stage]]\nat = 0.5\nreset_displacements = true\n[[point_load]]\nname = \"push\"\nat = [0.5, 0.5]\nforce = [0, -1]",
+        "point_load.1.name",
+        "point_load.0 has that name",
+    )
+    .down(9),
+    row(
+        "points_per_cell = 3",
+        "points_per_cell = 3\n[[point_load]]\nname = \"push\"\nat = [1.0, 0.5]\nforce = [0, -1]\nramp = 1.0\n\
+         [[stage]]\nat = 0.5\nmaterials = [{ from = \"heavy\", to = \"soil\" }]\n[material.heavy]\nmodel = \"hencky\"\nyoung = 1e6\npoisson = 0.3",
+        "stage.0.materials.0.from",
+        "no body is made of material.heavy",
+    )
+    .down(7),
+    row(
+        "points_per_cell = 3",
+        "points_per_cell = 3\n[[point_load]]\nname = \"push\"\nat = [1.0, 0.5]\nforce = [0, -1]\nramp = 1.0\n\
+         [[stage]]\nat = 0.5\nmaterials = [{ from = \"soil\", to = \"heavy\" }]\n[material.heavy]\nmodel = \"hencky\"\nyoung = 1e6\npoisson = 0.3\nunit_weight = 2e4",
+        "stage.0.materials.0.to",
+        "differ in density",
+    )
+    .down(7),
+    row(
+        "points_per_cell = 3",
+        "points_per_cell = 3\n[[point_load]]\nname = \"push\"\nat = [1.0, 0.5]\nforce = [0, -1]\nramp = 1.0\n\
+         [[stage]]\nat = 0.5\nmaterials = [{ from = \"soil\", to = \"soft\" }]\n[material.soft]\nmodel = \"modified-cam-clay\"\nkappa = 0.02\nlambda = 0.1\ncritical_ratio = 1\nocr = 1.5\nspecific_volume = 2\nyoung = 1e6\npoisson = 0.3",
+        "stage.0.materials.0.to",
+        "is not told by the stress",
+    )
+    .down(7),
 ];

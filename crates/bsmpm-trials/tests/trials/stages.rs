@@ -131,3 +131,139 @@ fn a_dynamic_run_goes_on_to_the_bit_before_at_and_after_a_stage_and_ranks_agree(
     assert!(closure.abs() < 1e-6 * external, "{closure:e} of {external:e}");
     assert!(at(&found, "displacement-x", 0.03) > 0.05 && at(&found, "displacement-x", 0.031).abs() < 0.01);
 }
+
+/// Pa, m: constrained modulus of `soil`, height of the column, and what presses on it.
+const SOFT: f64 = 1.2e8;
+const COLUMN: f64 = 8.0;
+const PRESSURE: f64 = 1e4;
+
+/// A weightless column that a load compresses, a prop then holds while it stiffens to twice its modulus, and both let
+/// go of again.
+const SWITCHED: &str = r#"
+geometry = "plane-strain"
+[analysis]
+type = "quasi-static"
+end = 5
+steps = 10
+[grid]
+lower = [0, 0]
+upper = [2, 10]
+cell = 0.5
+order = "quadratic"
+[material.soil]
+model = "hencky"
+young = "100 MPa"
+poisson = 0.25
+[material.other]
+model = "hencky"
+young = "200 MPa"
+poisson = 0.25
+[[body]]
+material = "soil"
+box = { lower = [0, 0], upper = [2, 8] }
+points_per_cell = 3
+[boundary]
+bottom = "fixed"
+left = "roller"
+right = "roller"
+[solver]
+tolerance = 1e-14
+force_tolerance = 1e-9
+background = 0
+[[traction]]
+name = "load"
+from = [0, 8]
+to = [2, 8]
+stress = [0, "-10 kPa"]
+ramp = 0.5
+[[prescribed]]
+name = "prop"
+from = [0, 8]
+to = [2, 8]
+displacement = [0, 0]
+components = "normal"
+[[stage]]
+name = "loaded"
+at = 1
+apply = ["load"]
+[[stage]]
+name = "held"
+at = 2
+apply = ["prop"]
+materials = [{ from = "soil", to = "other" }]
+[[stage]]
+at = 3
+release = ["load"]
+[[stage]]
+at = 4
+release = ["prop"]
+[[history]]
+quantity = "displacement"
+at = [1, 8]
+name = "top"
+[[history]]
+quantity = "stress"
+at = [1, 4]
+[[history]]
+quantity = "energy"
+"#;
+
+/// By `q H/M` under the load, as far while the prop holds it, and back by half as much with twice the modulus.
+#[test]
+fn loads_props_and_laws_act_while_stages_say_so_and_runs_go_on_to_the_bit() {
+    let scratch = Scratch::with_case(SWITCHED);
+    scratch.mpirun(1, &["case.toml", "-q", "-o", "whole"]).expect(0);
+    let found = history(&scratch.path("whole"));
+    let settled = PRESSURE * COLUMN / SOFT;
+    assert_eq!(at(&found, "top-y", 1.0), 0.0, "nothing acts before its stage");
+    for (t, exact) in [(2.0, settled), (3.0, settled), (4.0, settled), (5.0, settled / 2.0)] {
+        let top = -at(&found, "top-y", t);
+        // Strains are 8e-5, and so is what they change.
+        assert!((top / exact - 1.0).abs() < 3e-4, "at {t}: {top:e}, exactly {exact:e}");
+    }
+    let moved = at(&found, "top-y", 3.0) - at(&found, "top-y", 2.0);
+    assert!(moved.abs() < 1e-9 * settled, "another law at the same stress moves nothing: {moved:e}");
+    assert!((at(&found, "stress-yy", 4.0) / -PRESSURE - 1.0).abs() < 1e-3, "the prop holds what the load pressed");
+    assert!(at(&found, "stress-yy", 5.0).abs() < 1e-6 * PRESSURE);
+    let [closure, external] = ["energy-closure", "energy-external"].map(|name| at(&found, name, 5.0));
+    assert!(closure.abs() < 1e-6 * external, "{closure:e} of {external:e}");
+    let told = &manifest(&scratch.path("whole")).stages;
+    assert_eq!(
+        (&told[1].applied[..], &told[1].exchanged[..]),
+        (&["prop".into()][..], &["soil follows other".into()][..])
+    );
+    for ranks in [1, 3] {
+        let whole = format!("whole{ranks}");
+        scratch.mpirun(ranks, &["case.toml", "-q", "-o", &whole]).expect(0);
+        let part = ["case.toml", "-q", "-o", "part", "--restart", "auto"];
+        for stop in ["3", "4", "5", "6", "8", "9"] {
+            scratch.mpirun(ranks, &[&part[..], &["--max-steps", stop]].concat()).expect(75);
+        }
+        scratch.mpirun(ranks, &part).expect(0);
+        let text = |name: &str| std::fs::read_to_string(scratch.path(name).join("history.csv")).unwrap();
+        assert!(text(&whole) == text("part"), "{ranks} ranks");
+        assert_eq!(manifest(&scratch.path("part")).stages, *told);
+        std::fs::remove_dir_all(scratch.path("part")).unwrap();
+        for (field, difference) in differences(&last_frame(&scratch.path(&whole)), &last_frame(&scratch.path("whole")))
+        {
+            assert!(difference < 1e-8, "{field} on {ranks} ranks differs by {difference:.1e}");
+        }
+    }
+}
+
+/// A law of less strength returns the stress that it takes over: in a column the load stays, and the sides take what
+/// the deviator loses.
+#[test]
+fn a_weaker_law_returns_the_stress_that_it_takes_over() {
+    const YIELD: f64 = 4e3;
+    let weak = "model = \"von-mises\"\nyoung = \"200 MPa\"\nyield_stress = \"4 kPa\"\n";
+    let found = run(&changed(
+        SWITCHED,
+        "[material.other]\nmodel = \"hencky\"\nyoung = \"200 MPa\"\n",
+        &format!("[material.other]\n{weak}"),
+    ));
+    let sides = |t: f64| ["stress-xx", "stress-yy"].map(|name| -at(&found, name, t) / PRESSURE);
+    let [[before, _], [after, vertical]] = [sides(2.0), sides(3.0)];
+    assert!((before - 1.0 / 3.0).abs() < 1e-3, "nu/(1 - nu): {before}");
+    assert!((vertical - after - YIELD / PRESSURE).abs() < 1e-6, "{vertical} - {after}");
+}

@@ -36,8 +36,15 @@ pub struct Strip<const D: usize> {
     pub normal: Option<Vector<D>>,
     /// its motion
     pub path: Path<D>,
-    /// Pa/m  penalty beta
+    /// Pa/m  penalty beta; 0: it holds nothing
     pub penalty: f64,
+}
+
+impl<const D: usize> Strip<D> {
+    /// Whether it holds anything.
+    pub fn acts(&self) -> bool {
+        self.penalty > 0.0
+    }
 }
 
 /// What a strip did in a step.
@@ -155,7 +162,7 @@ impl<const D: usize> StripAttachments<D> {
         (t, dt): (f64, f64),
     ) -> Self {
         let (offsets, mut held) = (if strips.is_empty() { Vec::new() } else { grid.offsets() }, Vec::new());
-        for (number, strip) in strips.iter().enumerate() {
+        for (number, strip) in strips.iter().enumerate().filter(|(_, strip)| strip.acts()) {
             let (place, motion) = (strip.path.at(t), strip.path.at(t + dt) - strip.path.at(t));
             for (index, point) in strip.points.iter().enumerate() {
                 let x = point.x + place;
