@@ -99,12 +99,17 @@ impl Ledger {
             end: case.analysis.end,
             dt: case.analysis.dt,
             criteria: [case.solver.force_tolerance, case.solver.tolerance],
-            faces: bsmpm_scene::model::faces(case),
+            faces: bsmpm_scene::model::faces(case, 0.0),
             least_reaction: bsmpm_scene::model::least_reaction(case),
             directory,
             manifest,
             columns,
         })
+    }
+
+    /// Goes on with what holds the bodies from the time `t` on.
+    pub fn begin_stage(&mut self, case: &Case, t: f64) {
+        self.faces = bsmpm_scene::model::faces(case, t);
     }
 
     /// Warnings of this start, which are still to be told.

@@ -9,7 +9,7 @@ pub use crate::words::{Base, Format, Geometry, Nonlinear, Support};
 pub use element::{ElementStage, ElementTest};
 pub use history::{Check, Column, Face, History, Quantity};
 pub use loads::{Footing, Initial, Line as LoadedLine, MotionPath, PointLoad, Prescribed, Push, Site, Traction};
-pub use stage::{Acting, Stage};
+pub use stage::{Acting, FaceSupport, Stage};
 
 use crate::error::Choice;
 use crate::grid::{GridSpec, Line};

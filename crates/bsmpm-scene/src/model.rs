@@ -1,7 +1,7 @@
 //! From a valid case to the physics' model, its points and its steps.
 
 use crate::seed::seed_bodies;
-use crate::{Case, Every, GridAxis, NamedMaterial, Quantity, Regime, Stage, surfaces};
+use crate::{Case, Every, Face, GridAxis, NamedMaterial, Quantity, Regime, Stage, surfaces};
 use bsmpm::background::Background;
 use bsmpm::boundary::{Boundary, Support};
 use bsmpm::error::GridError;
@@ -86,8 +86,8 @@ fn grid(case: &Case) -> Result<Grid<2>, GridError> {
 
 fn boundary(case: &Case, grid: &Grid<2>, t: f64) -> Boundary<2> {
     Boundary {
-        supports: supports(case),
-        outlets: outlets(case),
+        supports: supports(case, t),
+        outlets: outlets(case, t),
         strips: surfaces::strips(case, grid, (penalty(case), t)),
         loads: surfaces::loads(case, grid, t),
         reach: reach(case),
@@ -103,36 +103,35 @@ fn reach(case: &Case) -> Vec<f64> {
     reach
 }
 
-fn supports(case: &Case) -> Vec<Support<2>> {
-    let mut supports = Vec::new();
-    for (axis, faces) in case.boundary.iter().enumerate() {
-        for (upper, support) in [false, true].into_iter().zip(faces) {
-            if let Some(contact) = case.contacts[axis][usize::from(upper)] {
-                supports.push(Support::contact(axis, upper, contact));
-                continue;
-            }
-            match support {
-                crate::Support::Fixed => supports.push(Support::fixed(axis, upper)),
-                crate::Support::Roller => supports.push(Support::roller(axis, upper)),
-                crate::Support::Absorbing => supports.push(Support::absorbing(axis, upper)),
-                crate::Support::Free | crate::Support::Outflow | crate::Support::Contact => {}
-            }
+fn supports(case: &Case, t: f64) -> Vec<Support<2>> {
+    let support = |of: crate::FaceSupport| {
+        let Face { axis, upper } = of.face;
+        match (of.support, of.contact) {
+            (_, Some(contact)) => Some(Support::contact(axis, upper, contact)),
+            (crate::Support::Fixed, _) => Some(Support::fixed(axis, upper)),
+            (crate::Support::Roller, _) => Some(Support::roller(axis, upper)),
+            (crate::Support::Absorbing, _) => Some(Support::absorbing(axis, upper)),
+            (crate::Support::Free | crate::Support::Outflow | crate::Support::Contact, None) => None,
         }
-    }
-    supports
+    };
+    case.faces_at(t).into_iter().filter_map(support).collect()
 }
 
 /// Faces that let material out: the axis, and whether it is the upper one.
-fn outlets(case: &Case) -> Vec<(usize, bool)> {
-    let faces = [(0, false), (0, true), (1, false), (1, true)].into_iter();
-    faces.filter(|&(axis, upper)| case.boundary[axis][usize::from(upper)] == crate::Support::Outflow).collect()
+fn outlets(case: &Case, t: f64) -> Vec<(usize, bool)> {
+    let out = |of: &crate::FaceSupport| of.support == crate::Support::Outflow;
+    case.faces_at(t).iter().filter(|of| out(of)).map(|of| (of.face.axis, of.face.upper)).collect()
 }
 
-/// Of every support, the axis that its face is normal to and the sign of the force along it with which it pushes the
-/// body.
-pub fn faces(case: &Case) -> Vec<(usize, f64)> {
-    let push = |support: &Support<2>| (support.axis, if support.upper { -1.0 } else { 1.0 });
-    supports(case).iter().map(push).collect()
+/// Of every support once the stages until the time `t` have begun, the axis that its face is normal to and the sign of
+/// the force along it with which it pushes the body; 0 where it may pull, too.
+pub fn faces(case: &Case, t: f64) -> Vec<(usize, f64)> {
+    let push = |support: &Support<2>| match (support.absorbs, support.upper) {
+        (true, _) => 0.0,
+        (false, true) => -1.0,
+        (false, false) => 1.0,
+    };
+    supports(case, t).iter().map(|support| (support.axis, push(support))).collect()
 }
 
 /// N  reaction of a face below which it does nothing: a strain of 1e-9 of the softest material along the shortest cell.

@@ -45,8 +45,8 @@ pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Op
     let grid = grid::read(record, boundary, report);
     let bodies = body::read_all(record, grid.as_ref(), regime, report);
     let time = analysis.as_ref().map(|analysis| (analysis.end, analysis.dt));
-    let stages = stage::read_all(record, bodies.as_deref(), time, report);
     let factor = record.record("strength_reduction").and_then(|reduction| reduction.number("factor"));
+    let stages = stage::read_all((record, factor), bodies.as_deref(), time, report);
     let contacts = contacts(record, factor, report);
     let (placed, made) = (grid.as_ref(), bodies.as_deref());
     let reduction = material::Reduction::of(record);
@@ -178,41 +178,47 @@ fn mass(analysis: &Record, regime: Regime, report: &mut Report<'_>) -> MassMatri
 /// Supports of the grid's faces; none after an error.
 pub(crate) fn boundary(record: &Record) -> Option<[[Support; 2]; 2]> {
     let boundary = record.record("boundary")?;
-    let support = |side: Side| match boundary.record(side.word()) {
-        Some(_) => Some(Support::Contact),
-        None => boundary.word(side.word()),
-    };
-    let [x, y] = Side::ALL.map(|sides| sides.map(support));
+    let [x, y] = Side::ALL.map(|sides| sides.map(|side| support(boundary, side)));
     Some([[x[0]?, x[1]?], [y[0]?, y[1]?]])
 }
 
-/// What faces in contact do, their friction divided by the `factor` of the strength; none after an error.
+fn support(boundary: &Record, side: Side) -> Option<Support> {
+    match boundary.record(side.word()) {
+        Some(_) => Some(Support::Contact),
+        None => boundary.word(side.word()),
+    }
+}
+
+/// What faces in contact do; none after an error.
 fn contacts(record: &Record, factor: Option<f64>, report: &mut Report<'_>) -> Option<[[Option<Contact>; 2]; 2]> {
-    let (boundary, supports) = (record.record("boundary")?, boundary(record)?);
+    let boundary = record.record("boundary")?;
     let mut contacts = [[None; 2]; 2];
     for (axis, upper) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
-        let side = Side::ALL[axis][upper].word();
-        contacts[axis][upper] = match boundary.record(side) {
-            Some(face) => {
-                let (given, lifts) = (face.number("friction")?, face.flag("lifts")?);
-                let friction = factor.map_or(given, |factor| given / factor);
-                if friction != given {
-                    let reason = format!("strength_reduction.factor = {}", factor.unwrap_or(1.0));
-                    report.note(face.path_of("friction"), format!("{friction}"), reason);
-                }
-                if friction > MOST_SHOWN_FRICTION {
-                    report.warn(format!(
-                        "{}: {friction}: shown to be right up to {MOST_SHOWN_FRICTION}; with more, steps may find no state \
-                         that agrees with Coulomb's law, or one of several",
-                        face.path_of("friction")
-                    ));
-                }
-                Some(Contact { friction, lifts })
-            }
-            None => (supports[axis][upper] == Support::Contact).then_some(Contact { friction: 0.0, lifts: true }),
-        };
+        contacts[axis][upper] = contact(boundary, Side::ALL[axis][upper], factor, report)?;
     }
     Some(contacts)
+}
+
+/// What a face does if it is in contact, its friction divided by the `factor` of the strength; none after an error.
+fn contact(boundary: &Record, side: Side, factor: Option<f64>, report: &mut Report<'_>) -> Option<Option<Contact>> {
+    let Some(face) = boundary.record(side.word()) else {
+        let smooth = Contact { friction: 0.0, lifts: true };
+        return Some((support(boundary, side)? == Support::Contact).then_some(smooth));
+    };
+    let (given, lifts) = (face.number("friction")?, face.flag("lifts")?);
+    let friction = factor.map_or(given, |factor| given / factor);
+    if friction != given {
+        let reason = format!("strength_reduction.factor = {}", factor.unwrap_or(1.0));
+        report.note(face.path_of("friction"), format!("{friction}"), reason);
+    }
+    if friction > MOST_SHOWN_FRICTION {
+        report.warn(format!(
+            "{}: {friction}: shown to be right up to {MOST_SHOWN_FRICTION}; with more, steps may find no state that agrees \
+             with Coulomb's law, or one of several",
+            face.path_of("friction")
+        ));
+    }
+    Some(Some(Contact { friction, lifts }))
 }
 
 fn gravity(record: &Record, end: Option<f64>, report: &mut Report<'_>) -> Option<Gravity> {

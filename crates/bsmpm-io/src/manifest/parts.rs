@@ -272,6 +272,9 @@ pub struct ManifestStage {
     /// Those that no longer do.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub released: Vec<String>,
+    /// Faces of the grid that changed, and what they are from there on.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub faces: Vec<String>,
     /// Materials whose bodies follow the law of another one, in words.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub exchanged: Vec<String>,

@@ -48,7 +48,7 @@ impl Ledger {
             end: case.analysis.end,
             dt: case.analysis.dt,
             criteria: [case.solver.force_tolerance, case.solver.tolerance],
-            faces: bsmpm_scene::model::faces(case),
+            faces: bsmpm_scene::model::faces(case, resumed.state.progress.t),
             least_reaction: bsmpm_scene::model::least_reaction(case),
             directory,
             manifest,

@@ -8,6 +8,7 @@ use bsmpm::error::StepError;
 use bsmpm_io::exit;
 use bsmpm_io::manifest::ManifestStage;
 use bsmpm_ranks::simulation::Simulation;
+use bsmpm_scene::words::{Side, Word};
 use bsmpm_scene::{Acting, Stage, model};
 
 impl Run<'_> {
@@ -43,6 +44,8 @@ impl Run<'_> {
         let material = |number: usize| &self.case.materials[number].name;
         let exchanged: Vec<String> =
             stage.materials.iter().map(|&(from, to)| format!("{} follows {}", material(from), material(to))).collect();
+        let faces: Vec<String> =
+            stage.faces.iter().map(|of| format!("{} is {}", Side::from(of.face).word(), of.support.word())).collect();
         let names = |list: &[(String, Acting)]| list.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>();
         let (applied, released) = (names(&stage.apply), names(&stage.release));
         let changes = [
@@ -50,6 +53,7 @@ impl Run<'_> {
             (added > 0).then(|| format!("{added} points added")),
             (!applied.is_empty()).then(|| format!("{} applied", applied.join(", "))),
             (!released.is_empty()).then(|| format!("{} released", released.join(", "))),
+            (!faces.is_empty()).then(|| faces.join(", ")),
             (!exchanged.is_empty()).then(|| exchanged.join(", ")),
             stage.resets_displacements.then(|| "displacements set to zero".to_owned()),
         ];
@@ -58,8 +62,10 @@ impl Run<'_> {
         if let Some(ledger) = &mut self.ledger {
             let name = stage.name.clone();
             let reset = stage.resets_displacements;
-            let changes = ManifestStage { name, step, time, removed, added, applied, released, exchanged, reset };
+            let changes =
+                ManifestStage { name, step, time, removed, added, applied, released, faces, exchanged, reset };
             ledger.manifest().stages.push(changes);
+            ledger.begin_stage(&self.case, stage.at);
         }
         Ok(())
     }

@@ -136,6 +136,12 @@ impl From<Side> for Face {
     }
 }
 
+impl From<Face> for Side {
+    fn from(face: Face) -> Self {
+        Self::ALL[face.axis][usize::from(face.upper)]
+    }
+}
+
 /// One column of the history file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Column {

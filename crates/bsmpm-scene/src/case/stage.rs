@@ -1,6 +1,7 @@
 //! Stages: which bodies are there when, what acts on them, and which laws they follow.
 
-use super::{Body, Case, NamedMaterial};
+use super::{Body, Case, Face, NamedMaterial, Support};
+use bsmpm::boundary::Contact;
 use std::ops::Range;
 
 /// What changes at a time, between two steps.
@@ -18,6 +19,8 @@ pub struct Stage {
     pub apply: Vec<(String, Acting)>,
     /// The same of what acts no longer.
     pub release: Vec<(String, Acting)>,
+    /// Faces of the grid that change.
+    pub faces: Vec<FaceSupport>,
     /// Numbers of materials, and of those whose laws their bodies follow from here on.
     pub materials: Vec<(usize, usize)>,
     /// Whether displacements that are told count from here.
@@ -29,13 +32,24 @@ pub struct Stage {
 impl Stage {
     /// Whether another model goes on from here: one with other loads, supports or laws.
     pub fn exchanges(&self) -> bool {
-        !(self.apply.is_empty() && self.release.is_empty() && self.materials.is_empty())
+        !(self.apply.is_empty() && self.release.is_empty() && self.faces.is_empty() && self.materials.is_empty())
     }
 
     /// Whether it releases, and whether it applies something.
     pub fn switches(&self, what: Acting) -> [bool; 2] {
         [&self.release, &self.apply].map(|list| list.iter().any(|(_, other)| *other == what))
     }
+}
+
+/// What a face of the grid does.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FaceSupport {
+    /// The face.
+    pub face: Face,
+    /// Its support.
+    pub support: Support,
+    /// Its contact, if it is in any.
+    pub contact: Option<Contact>,
 }
 
 /// What stages apply and release.
@@ -72,6 +86,24 @@ impl Case {
             let [releases, applies] = stage.switches(what);
             if applies { Some(stage.at) } else { since.filter(|_| !releases) }
         })
+    }
+
+    /// What all faces of the grid do once the stages until the time `t` have begun.
+    pub fn faces_at(&self, t: f64) -> Vec<FaceSupport> {
+        let mut faces = Vec::new();
+        for (axis, upper) in [(0, false), (0, true), (1, false), (1, true)] {
+            let face = Face { axis, upper };
+            let (support, contact) = (self.boundary[axis][usize::from(upper)], self.contacts[axis][usize::from(upper)]);
+            let begun = self.stages.iter().filter(|stage| self.has_begun(stage, t)).flat_map(|stage| &stage.faces);
+            faces.push(*begun.filter(|of| of.face == face).last().unwrap_or(&FaceSupport { face, support, contact }));
+        }
+        faces
+    }
+
+    /// What a face of the grid is at some time of the run.
+    pub fn is_ever(&self, support: Support) -> bool {
+        let later = self.stages.iter().flat_map(|stage| &stage.faces);
+        self.boundary.as_flattened().contains(&support) || later.into_iter().any(|face| face.support == support)
     }
 
     /// The materials once the stages until the time `t` have begun: each with the law that its bodies follow then, and

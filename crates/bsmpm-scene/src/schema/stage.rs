@@ -2,12 +2,13 @@
 
 use super::Kind::*;
 use super::Presence::{Default, Optional, Required};
-use super::{Dimension as In, Range, Table, key};
+use super::tables::SUPPORT;
+use super::{Dimension as In, Kind, Range, Table, key};
 
 pub(super) static STAGE: Table = Table {
     header: "[[stage]]",
     doc: "What changes at a time, between two steps: bodies are removed (excavation) and placed (lifts of an embankment), \
-          loads and supports act from there or no longer, and materials follow another law",
+          loads and supports act from there or no longer, faces of the grid change, and materials follow another law",
     keys: &[
         key("name", Text(64), Optional, "what it is called where it is told of"),
         key("at", Quantity(In::Time, Range::POSITIVE), Required, "when it begins; a step ends there"),
@@ -20,8 +21,21 @@ pub(super) static STAGE: Table = Table {
         ),
         key("apply", Names, Optional, "names of loads and supports that act from there on; they do nothing before"),
         key("release", Names, Optional, "names of loads and supports that act until there"),
+        key("boundary", Kind::Table(&FACES), Optional, "what faces of the grid do from there on; the others go on"),
         key("materials", Tables(&EXCHANGE), Optional, "laws that bodies follow from there on"),
         key("reset_displacements", Flag, Default("false"), "whether displacements that are told count from here"),
+    ],
+    exclusive: &[],
+};
+
+static FACES: Table = Table {
+    header: "boundary = { left, right, bottom, top }",
+    doc: "Supports as in [boundary]: a gate that opens, a wall that is put up",
+    keys: &[
+        key("left", SUPPORT, Optional, "face at the lowest x"),
+        key("right", SUPPORT, Optional, "face at the highest x"),
+        key("bottom", SUPPORT, Optional, "face at the lowest y"),
+        key("top", SUPPORT, Optional, "face at the highest y"),
     ],
     exclusive: &[],
 };

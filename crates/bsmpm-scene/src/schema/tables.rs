@@ -106,7 +106,7 @@ static GRAVITY: Table = Table {
     exclusive: &[],
 };
 
-const SUPPORT: Kind = ChoiceOr(Support::WORDS, &CONTACT);
+pub(super) const SUPPORT: Kind = ChoiceOr(Support::WORDS, &CONTACT);
 
 static CONTACT: Table = Table {
     header: "FACE = { friction, lifts }",

@@ -1,7 +1,6 @@
 //! Histories and the checks of their columns.
 
-use super::boundary;
-use crate::case::{Body, Check, Face, History, NamedMaterial, Quantity, Support};
+use crate::case::{Body, Check, History, NamedMaterial, Quantity, Support};
 use crate::grid::GridSpec;
 use crate::nearest::hint;
 use crate::record::Record;
@@ -64,20 +63,25 @@ fn read(
     if record.number("scale") == Some(0.0) {
         record.error("scale", "0 is out of range: the column would be zero; allowed: any scale but 0", report);
     }
-    if let Some(side) = record.word::<Side>("face").filter(|_| measured.is_of_contact()) {
-        let Face { axis, upper } = side.into();
-        if boundary(root).is_some_and(|supports| supports[axis][usize::from(upper)] != Support::Contact) {
-            let message = format!("\"{measured}\" is about a face in contact, and [boundary] {side} is none");
-            record.error("face", message, report);
-        }
+    if let Some(side) = record.word::<Side>("face").filter(|_| measured.is_of_contact())
+        && !supports(root, side).contains(&Support::Contact)
+    {
+        let message = format!("\"{measured}\" is about a face in contact, and [boundary] {side} is none");
+        record.error("face", message, report);
     }
-    let is_closed = |faces: [[Support; 2]; 2]| !faces.as_flattened().contains(&Support::Outflow);
-    if measured == Measurement::Outflow && boundary(root).is_some_and(is_closed) {
+    let is_outlet = |side: Side| supports(root, side).contains(&Support::Outflow);
+    if measured == Measurement::Outflow && !Side::ALL.into_iter().flatten().any(is_outlet) {
         record.error("quantity", "nothing leaves: no face in [boundary] is \"outflow\"", report);
     }
     let quantity = quantity(measured, record, (grid, made), report)?;
     let name = if record.gives("name") { record.text("name")? } else { measured.word() };
     Some(History { quantity, name: name.to_owned(), scale: record.number("scale")?, lasts: false })
+}
+
+/// What a face is at the start, and what stages make of it.
+fn supports(root: &Record, side: Side) -> Vec<Support> {
+    let later = root.records("stage").iter().filter_map(|stage| stage.record("boundary"));
+    root.record("boundary").into_iter().chain(later).filter_map(|boundary| super::support(boundary, side)).collect()
 }
 
 /// Whether it is nothing where nothing has a velocity.

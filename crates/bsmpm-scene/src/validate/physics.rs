@@ -139,7 +139,7 @@ const MOST_CROSSINGS: f64 = 2.0;
 /// What meets a face in contact stops at the face's nodes first; in a step in which waves cross the whole body
 /// Newmark's formula throws the rest of it back with energy that it did not have.
 fn thrown_back(case: &Case, report: &mut Report<'_>) {
-    let meets = case.contacts.as_flattened().iter().any(Option::is_some);
+    let meets = case.is_ever(Support::Contact);
     let dynamic = case.analysis.regime == Regime::Dynamic;
     let crossing = |body: &Body| {
         let named = &case.materials[body.material];

@@ -1,17 +1,18 @@
 //! Stages: times that follow each other, bodies that can be removed and placed then, and what must not lose its body.
 
-use super::place;
-use crate::case::{Acting, Body, Case, LoadedLine, Quantity, Site, Stage};
+use super::{place, strip};
+use crate::case::{Acting, Body, Case, FaceSupport, LoadedLine, Quantity, Site, Stage, Support};
 use crate::nearest::hint;
 use crate::record::Record;
 use crate::report::{Report, shortened};
+use crate::words::{Side, Word};
 
 /// Parts of a step by which stages must lie apart: a step ends at each.
 const APART: f64 = 1e-6;
 
 /// All stages in the order of the file, which must be that of time; `time` is the end of the run and the nominal step.
 pub(super) fn read_all(
-    root: &Record,
+    (root, factor): (&Record, Option<f64>),
     bodies: Option<&[Body]>,
     time: Option<(f64, f64)>,
     report: &mut Report<'_>,
@@ -27,7 +28,7 @@ pub(super) fn read_all(
     let mut before = 0.0;
     let mut read = Vec::new();
     for record in root.records("stage") {
-        let stage = stage(record, (root, bodies, &acting), report);
+        let stage = stage((record, factor), (root, bodies, &acting), report);
         if let Some(stage) = &stage {
             timed(stage.at, (before, end, dt), record, report);
             before = stage.at;
@@ -61,25 +62,26 @@ fn acting<'a>(root: &'a Record, report: &mut Report<'_>) -> Vec<Named<'a>> {
 }
 
 fn stage(
-    record: &Record,
+    (record, factor): (&Record, Option<f64>),
     (root, bodies, acting): (&Record, &[Body], &[Named<'_>]),
     report: &mut Report<'_>,
 ) -> Option<Stage> {
     let bodies: Vec<_> = bodies.iter().zip(0..).filter_map(|(body, k)| Some((body.name.as_deref()?, k))).collect();
     let (remove, add) = (named("remove", record, &bodies, report), named("add", record, &bodies, report));
     let (apply, release) = (named("apply", record, acting, report), named("release", record, acting, report));
-    let materials = exchanges(record, root, report);
+    let (materials, faces) = (exchanges(record, root, report), faces((record, factor), root, report));
     let (at, resets_displacements) = (record.number("at")?, record.flag("reset_displacements")?);
     let of_bodies = |named: Vec<(String, usize)>| named.into_iter().map(|(_, body)| body).collect::<Vec<_>>();
     let (remove, add) = (of_bodies(remove?), of_bodies(add?));
-    let (apply, release, materials) = (apply?, release?, materials?);
+    let (apply, release, faces, materials) = (apply?, release?, faces?, materials?);
     let is_still = remove.is_empty() && add.is_empty() && apply.is_empty() && release.is_empty();
-    if is_still && materials.is_empty() && !resets_displacements {
-        let message = "it changes nothing: give remove, add, apply, release, materials or reset_displacements = true";
+    if is_still && faces.is_empty() && materials.is_empty() && !resets_displacements {
+        let message = "it changes nothing: give remove, add, apply, release, boundary, materials or \
+                       reset_displacements = true";
         report.error(record.origin, &record.path, message);
     }
     let name = record.text("name").map(str::to_owned);
-    Some(Stage { name, at, remove, add, apply, release, materials, resets_displacements, follows: Vec::new() })
+    Some(Stage { name, at, remove, add, apply, release, faces, materials, resets_displacements, follows: Vec::new() })
 }
 
 /// The names of a key, and what they name.
@@ -105,6 +107,25 @@ fn named<T: Copy>(
     };
     let found: Vec<Option<(String, T)>> = record.names(key)?.iter().map(&mut find).collect();
     found.into_iter().collect()
+}
+
+/// The faces of the grid that a stage changes.
+fn faces((record, factor): (&Record, Option<f64>), root: &Record, report: &mut Report<'_>) -> Option<Vec<FaceSupport>> {
+    let Some(boundary) = record.record("boundary") else { return Some(Vec::new()) };
+    let mut found = Vec::new();
+    for side in Side::ALL.into_iter().flatten().filter(|side| boundary.gives(side.word())) {
+        let (support, contact) = (super::support(boundary, side)?, super::contact(boundary, side, factor, report)?);
+        if support == Support::Absorbing {
+            boundary.error(side.word(), "holds what [initial] has found there: only from the start on", report);
+        }
+        let moves = |motion: &Record| motion.word::<Side>("face") == Some(side);
+        if let Some(motion) = root.records("prescribed").iter().find(|motion| support != Support::Free && moves(motion))
+        {
+            boundary.error(side.word(), format!("{} moves that face; leave it free", motion.path), report);
+        }
+        found.push(FaceSupport { face: side.into(), support, contact });
+    }
+    Some(found)
 }
 
 /// Numbers of the materials that a stage exchanges.
@@ -193,6 +214,17 @@ pub(super) fn check(case: &mut Case, root: &Record, report: &mut Report<'_>) {
     for (stage, record) in case.stages.iter().zip(records) {
         if !(0..case.bodies.len()).any(|body| case.is_there(body, stage.at)) {
             record.error("remove", "nothing is left after it", report);
+        }
+        for (name, what) in &stage.apply {
+            if let Acting::Strip(number) = what
+                && strip::has_moved(case, *number, stage.at)
+            {
+                let message = format!(
+                    "{name} has moved before it acts, and would hold what lies at its place then: let its path begin at {}",
+                    stage.at
+                );
+                record.error("apply", message, report);
+            }
         }
         for (&(from, to), pair) in stage.materials.iter().zip(record.records("materials")) {
             exchanged(case, (from, to), pair, report);

@@ -1,7 +1,7 @@
 //! The footing and prescribed motions.
 
 use super::place::{along, at_body, beyond};
-use crate::case::{Base, Body, Face, Footing, MotionPath, Prescribed, Site, Support};
+use crate::case::{Base, Body, Case, Face, Footing, MotionPath, Prescribed, Site, Support};
 use crate::grid::GridSpec;
 use crate::record::Record;
 use crate::report::Report;
@@ -198,6 +198,19 @@ pub(super) fn normal(from: [f64; 2], to: [f64; 2]) -> [f64; 2] {
     let along = [to[0] - from[0], to[1] - from[1]];
     let length = along[0].hypot(along[1]);
     [-along[1] / length, along[0] / length]
+}
+
+/// Whether the strip of that number (the footing, then prescribed motions) has moved before the time `t`.
+pub(super) fn has_moved(case: &Case, number: usize, t: f64) -> bool {
+    let footing = case.footing.iter().map(|footing| &footing.path);
+    let mut paths = footing.chain(case.prescribed.iter().map(|prescribed| &prescribed.path));
+    let earlier = |path: &MotionPath| {
+        let moved = |(_, [x, y]): &(f64, [f64; 2])| *x != 0.0 || *y != 0.0;
+        let begin = path.rows.iter().position(moved);
+        // It moves from the row before the first one that is not zero on.
+        begin.is_some_and(|row| row.checked_sub(1).map_or(0.0, |before| path.rows[before].0) < t)
+    };
+    paths.nth(number).is_some_and(earlier)
 }
 
 /// Whether a path moves at all.

@@ -359,7 +359,7 @@ pub const STAGES_OF_ONE: &[Row] = &[
         "stage.0.apply",
         "push is released by this stage, too",
     )
-    .down(7),
+    .down(8),
     row(
         "points_per_cell = 3",
         "points_per_cell = 3\n[[point_load]]\nname = \"push\"\nat = [1.0, 0.5]\nforce = [0, -1]\nramp = 1.0\n\
@@ -367,7 +367,7 @@ pub const STAGES_OF_ONE: &[Row] = &[
         "stage.1.apply",
         "push acts already",
     )
-    .down(10),
+    .down(11),
     row(
         "points_per_cell = 3",
         "points_per_cell = 3\n[[point_load]]\nname = \"push\"\nat = [1.0, 0.5]\nforce = [0, -1]\nramp = 1.0\n\
@@ -375,37 +375,41 @@ pub const STAGES_OF_ONE: &[Row] = &[
         "stage.1.release",
         "push does not act",
     )
+    .down(11),
+    row(
+        "points_per_cell = 3",
+        "points_per_cell = 3\n[[point_load]]\nname = \"push\"\nat = [1.0, 0.5]\nforce = [0, -1]\nramp = 1.0\n\
+         [[stage]]\nat = 0.5\nreset_displacements = true\n\
+         [[point_load]]\nname = \"push\"\nat = [0.5, 0.5]\nforce = [0, -1]",
+        "point_load.1.name",
+        "point_load.0 has that name",
+    )
     .down(10),
     row(
         "points_per_cell = 3",
         "points_per_cell = 3\n[[point_load]]\nname = \"push\"\nat = [1.0, 0.5]\nforce = [0, -1]\nramp = 1.0\n\
-         [[stage]]\nat = 0.5\nreset_displacements = true\n[[point_load]]\nname = \"push\"\nat = [0.5, 0.5]\nforce = [0, -1]",
-        "point_load.1.name",
-        "point_load.0 has that name",
-    )
-    .down(9),
-    row(
-        "points_per_cell = 3",
-        "points_per_cell = 3\n[[point_load]]\nname = \"push\"\nat = [1.0, 0.5]\nforce = [0, -1]\nramp = 1.0\n\
-         [[stage]]\nat = 0.5\nmaterials = [{ from = \"heavy\", to = \"soil\" }]\n[material.heavy]\nmodel = \"hencky\"\nyoung = 1e6\npoisson = 0.3",
+         [[stage]]\nat = 0.5\nmaterials = [{ from = \"heavy\", to = \"soil\" }]\n\
+         [material.heavy]\nmodel = \"hencky\"\nyoung = 1e6\npoisson = 0.3",
         "stage.0.materials.0.from",
         "no body is made of material.heavy",
     )
-    .down(7),
+    .down(8),
     row(
         "points_per_cell = 3",
         "points_per_cell = 3\n[[point_load]]\nname = \"push\"\nat = [1.0, 0.5]\nforce = [0, -1]\nramp = 1.0\n\
-         [[stage]]\nat = 0.5\nmaterials = [{ from = \"soil\", to = \"heavy\" }]\n[material.heavy]\nmodel = \"hencky\"\nyoung = 1e6\npoisson = 0.3\nunit_weight = 2e4",
+         [[stage]]\nat = 0.5\nmaterials = [{ from = \"soil\", to = \"heavy\" }]\n\
+         [material.heavy]\nmodel = \"hencky\"\nyoung = 1e6\npoisson = 0.3\nunit_weight = 2e4",
         "stage.0.materials.0.to",
         "differ in density",
     )
-    .down(7),
+    .down(8),
     row(
         "points_per_cell = 3",
         "points_per_cell = 3\n[[point_load]]\nname = \"push\"\nat = [1.0, 0.5]\nforce = [0, -1]\nramp = 1.0\n\
-         [[stage]]\nat = 0.5\nmaterials = [{ from = \"soil\", to = \"soft\" }]\n[material.soft]\nmodel = \"modified-cam-clay\"\nkappa = 0.02\nlambda = 0.1\ncritical_ratio = 1\nocr = 1.5\nspecific_volume = 2\nyoung = 1e6\npoisson = 0.3",
+         [[stage]]\nat = 0.5\nmaterials = [{ from = \"soil\", to = \"soft\" }]\n\
+         [material.soft]\nmodel = \"modified-cam-clay\"\nkappa = 0.02\nlambda = 0.1\ncritical_ratio = 1\nocr = 1.5\nyoung = 1e6\npoisson = 0.3",
         "stage.0.materials.0.to",
         "is not told by the stress",
     )
-    .down(7),
+    .down(8),
 ];

@@ -227,28 +227,74 @@ fn loads_props_and_laws_act_while_stages_say_so_and_runs_go_on_to_the_bit() {
     assert!(at(&found, "stress-yy", 5.0).abs() < 1e-6 * PRESSURE);
     let [closure, external] = ["energy-closure", "energy-external"].map(|name| at(&found, name, 5.0));
     assert!(closure.abs() < 1e-6 * external, "{closure:e} of {external:e}");
-    let told = &manifest(&scratch.path("whole")).stages;
+    let told = manifest(&scratch.path("whole")).stages;
     assert_eq!(
         (&told[1].applied[..], &told[1].exchanged[..]),
         (&["prop".into()][..], &["soil follows other".into()][..])
     );
+    repeats(&scratch, &["top-y", "stress-xx", "stress-yy"], &["3", "4", "5", "6", "8", "9"]);
+}
+
+/// The whole run on one and three ranks, to 1e-8 of the largest number of a column, and each in parts that end after so many steps, to the bit.
+fn repeats(scratch: &Scratch, columns: &[&str], stops: &[&str]) {
+    let told = manifest(&scratch.path("whole")).stages;
     for ranks in [1, 3] {
         let whole = format!("whole{ranks}");
         scratch.mpirun(ranks, &["case.toml", "-q", "-o", &whole]).expect(0);
         let part = ["case.toml", "-q", "-o", "part", "--restart", "auto"];
-        for stop in ["3", "4", "5", "6", "8", "9"] {
+        for stop in stops {
             scratch.mpirun(ranks, &[&part[..], &["--max-steps", stop]].concat()).expect(75);
         }
         scratch.mpirun(ranks, &part).expect(0);
         let text = |name: &str| std::fs::read_to_string(scratch.path(name).join("history.csv")).unwrap();
         assert!(text(&whole) == text("part"), "{ranks} ranks");
-        assert_eq!(manifest(&scratch.path("part")).stages, *told);
+        assert_eq!(manifest(&scratch.path("part")).stages, told);
         std::fs::remove_dir_all(scratch.path("part")).unwrap();
-        for (field, difference) in differences(&last_frame(&scratch.path(&whole)), &last_frame(&scratch.path("whole")))
-        {
-            assert!(difference < 1e-8, "{field} on {ranks} ranks differs by {difference:.1e}");
+        let [one, more] = ["whole", &whole].map(|name| history(&scratch.path(name)));
+        for column in columns {
+            let [one, more] = [&one, &more].map(|found| found.get(column).expect("a column"));
+            let largest = one.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+            let off = one.iter().zip(more).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            assert!(off < 1e-8 * largest, "{column} on {ranks} ranks differs by {off:.1e} of {largest:e}");
         }
     }
+}
+
+/// Between rollers by q H/M; once one of them is gone by q (1 - nu^2) H/E, and the other way by nu/(1 - nu) of that.
+#[test]
+fn a_gate_that_opens_lets_a_column_give_way() {
+    let a = SWITCHED.find("[[prescribed]]").expect("a prop");
+    let b = SWITCHED.find("[[stage]]\nat = 3").expect("stages");
+    let mut case = changed(SWITCHED, "bottom = \"fixed\"", "bottom = \"roller\"");
+    case.replace_range(
+        a + 1..b + 1,
+        "[[stage]]\nname = \"loaded\"\nat = 1\napply = [\"load\"]\n[[history]]\nquantity = \"reaction\"\nface = \"right\"\n\
+         [[history]]\nquantity = \"displacement\"\nat = [2, 4]\nname = \"side\"\n\
+         [[stage]]\nat = 2\nboundary = { right = \"free\" }\n",
+    );
+    let case = changed(
+        &case,
+        "at = 4\nrelease = [\"prop\"]",
+        "at = 4\nboundary = { right = { friction = 0.0, lifts = false } }",
+    );
+    let scratch = Scratch::with_case(&case);
+    scratch.mpirun(1, &["case.toml", "-q", "-o", "whole"]).expect(0);
+    let found = history(&scratch.path("whole"));
+    let (young, poisson) = (1e8, 0.25);
+    let between = PRESSURE * COLUMN / SOFT;
+    let free = PRESSURE * COLUMN * (1.0 - poisson * poisson) / young;
+    let side = free / COLUMN * 2.0 * poisson / (1.0 - poisson);
+    for (column, t, exact) in
+        [("top-y", 2.0, -between), ("top-y", 3.0, -free), ("side-x", 3.0, side), ("top-y", 4.0, 0.0)]
+    {
+        let off = at(&found, column, t) - exact;
+        assert!(off.abs() < 3e-4 * between, "{column} at {t}: off by {off:e} of {exact:e}");
+    }
+    let wall = at(&found, "reaction-x", 2.0);
+    assert!((wall / (-PRESSURE * COLUMN * poisson / (1.0 - poisson)) - 1.0).abs() < 1e-3, "{wall}");
+    assert_eq!(at(&found, "reaction-x", 3.0), 0.0);
+    assert_eq!(manifest(&scratch.path("whole")).stages[1].faces, ["right is free"]);
+    repeats(&scratch, &["top-y", "side-x", "stress-xx", "stress-yy", "reaction-x"], &["4", "5", "8"]);
 }
 
 /// A law of less strength returns the stress that it takes over: in a column the load stays, and the sides take what
@@ -265,5 +311,6 @@ fn a_weaker_law_returns_the_stress_that_it_takes_over() {
     let sides = |t: f64| ["stress-xx", "stress-yy"].map(|name| -at(&found, name, t) / PRESSURE);
     let [[before, _], [after, vertical]] = [sides(2.0), sides(3.0)];
     assert!((before - 1.0 / 3.0).abs() < 1e-3, "nu/(1 - nu): {before}");
-    assert!((vertical - after - YIELD / PRESSURE).abs() < 1e-6, "{vertical} - {after}");
+    // The Cauchy stress is the Kirchhoff stress over J = 1 - 8e-5.
+    assert!((vertical - after - YIELD / PRESSURE).abs() < 1e-4, "{vertical} - {after}");
 }
