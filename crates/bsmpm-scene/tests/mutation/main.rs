@@ -39,7 +39,19 @@ const VALUES: [&str; 22] = [
 
 /// Changes of [`FULL`] to what excludes what is there.
 const OTHERWISE: [&[(&str, &str)]; 7] = [
-    &[("geometry = \"plane-strain\"", "geometry = \"plane-strain\"\naccuracy = \"draft\"")],
+    &[
+        ("geometry = \"plane-strain\"", "geometry = \"plane-strain\"\naccuracy = \"draft\""),
+        ("base = \"smooth\"", "base = \"smooth\"\nname = \"strip\""),
+        ("components = \"all\"", "components = \"all\"\nname = \"plate\""),
+        ("\nramp = \"0.5 s\"", "\nramp = \"0.5 s\"\nname = \"surcharge\""),
+        ("\nramp = 0.5\n", "\nramp = 0.5\nname = \"push\"\n"),
+        (
+            "remove = [\"fill\"]",
+            "remove = [\"fill\"]\napply = [\"push\"]\nrelease = [\"surcharge\"]\n\
+             boundary = { left = \"fixed\", right = \"free\", bottom = \"roller\", top = \"free\" }\n\
+             materials = [{ from = \"block\", to = \"block\" }]",
+        ),
+    ],
     &[
         ("dt   = \"10 ms\"", "steps = 100\nspectral_radius = 0.8\nmass = \"consistent\""),
         ("\"tresca\"", "\"von-mises\""),
