@@ -43,6 +43,9 @@ impl Simulation {
                 initial::set_stress(&self.model, &mut self.points, stress);
             }
         }
+        if case.settles {
+            initial::settle(&self.model, &mut self.points, (&self.halo, &mut self.solver))?;
+        }
         initial::balance(&self.model, &self.points, &self.halo).map(|_| ())
     }
 

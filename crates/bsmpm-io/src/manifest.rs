@@ -18,8 +18,8 @@ pub mod parts;
 pub use indicator::Indicator;
 pub use parts::{
     Communication, EnergyBalance, GridExtent, ManifestCase, ManifestCheck, ManifestChoice, ManifestFailure,
-    ManifestInitial, ManifestOutflow, ManifestOutput, ManifestRestart, ManifestStage, SolverNames, Status, Summary,
-    Worst,
+    ManifestInitial, ManifestOutflow, ManifestOutput, ManifestRestart, ManifestSettling, ManifestStage, SolverNames,
+    Status, Summary, Worst,
 };
 
 /// The manifest's file.

@@ -18,7 +18,7 @@ use bsmpm_ranks::load;
 use bsmpm_ranks::migrate;
 use bsmpm_ranks::slab::Slabs;
 use bsmpm_ranks::traffic::Traffic;
-use bsmpm_scene::{Case, Line};
+use bsmpm_scene::{Case, Line, Stage};
 use hdf5_collective::Hdf5;
 use mpi::collective::{CommunicatorCollectives, SystemOperation};
 use mpi::environment::Universe;
@@ -131,6 +131,14 @@ fn resume<'h>(
     let state = CheckpointState::parse(&found.path, &opened.state()?)?;
     let past = &state.files.manifest;
     let changed = there::admissible(&format!("the checkpoint {}", found.path.display()), past, case)?;
+    let divided = |stage: &Stage| stage.strength_reduction.is_some() && stage.at <= state.progress.t;
+    if let Some(change) = changed.iter().find(|change| change.is_of_later_strength())
+        && past.stages.iter().any(|stage| stage.strength_reduction.is_some()) | case.stages.iter().any(divided)
+    {
+        let reason =
+            format!("the checkpoint {} is of a run that has divided its strength: {change}", found.path.display());
+        return Err(Refusal::new(exit::CHECKPOINT, reason));
+    }
     let changed: Vec<String> = changed.iter().map(ToString::to_string).collect();
     let (t, end) = (state.progress.t, case.analysis.end);
     if t > end {

@@ -1,15 +1,16 @@
 //! What a run needs of its case beside the model: the first cut, the linear solver, what is told of it in the manifest.
 
 use bsmpm::error::StepError;
-use bsmpm::initial::Equilibrium;
+use bsmpm::initial::{Equilibrium, Settling};
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::Weighting;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::step::smooth;
+use bsmpm::tensor::Vector;
 use bsmpm_io::manifest;
 use bsmpm_ranks::linear::Choice;
 use bsmpm_ranks::load;
-use bsmpm_ranks::simulation::{Simulation, StartStress};
+use bsmpm_ranks::simulation::{Simulation, StartBalance, StartStress};
 use bsmpm_ranks::slab::Slabs;
 use bsmpm_scene::model::{at_rest, penalty, weighting};
 use bsmpm_scene::words::{Factor, Word};
@@ -19,15 +20,23 @@ use std::ops::Range;
 /// Cells along each axis that the ranks together see ([`bsmpm::grid::room`]), and how they share them.
 pub type Cut = ([Range<usize>; 2], Slabs);
 
+/// A state at the start, and what leading it to equilibrium took, if the case wants that.
+pub type Start = (Equilibrium, Option<Settling>);
+
 /// Gives the points the stress that the case wants at the start, and tells how well it is balanced.
-pub fn start(case: &Case, simulation: &mut Simulation<'_, PlaneStrain, 2>) -> Result<Option<Equilibrium>, StepError> {
-    Ok(Some(match &case.initial {
-        None => return Ok(None),
-        Some(Initial::Elastic) => simulation.stress(StartStress::Elastic)?,
-        Some(Initial::AtRest(k0)) => {
-            simulation.stress(StartStress::Given(&|material, x| at_rest(case, k0, material, x)))?
+pub fn start(case: &Case, simulation: &mut Simulation<'_, PlaneStrain, 2>) -> Result<Option<Start>, StepError> {
+    let Some(initial) = &case.initial else { return Ok(None) };
+    let k0;
+    let (stress, settled): (StartStress<'_, 2>, StartBalance<'_>) = match initial {
+        Initial::Elastic => (StartStress::Elastic, StartBalance::Plastic),
+        Initial::AtRest(list) => {
+            k0 = (|material: u16, x: &Vector<2>| at_rest(case, list, material, x), |material: u16| {
+                list[usize::from(material)]
+            });
+            (StartStress::Given(&k0.0), StartBalance::Spread(&k0.1))
         }
-    }))
+    };
+    simulation.stress(stress, if case.settles { settled } else { StartBalance::None }).map(Some)
 }
 
 /// The room that the bodies have in the grid at the start, and its first cut: about equal loads. `None` with more ranks

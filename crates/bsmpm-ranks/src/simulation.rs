@@ -12,7 +12,7 @@ use bsmpm::boundary::Surface;
 use bsmpm::control::{Accepted, Failure, Progress, Stepper};
 use bsmpm::error::StepError;
 use bsmpm::grid::Grid;
-use bsmpm::initial::{self, Equilibrium};
+use bsmpm::initial::{self, Equilibrium, Settling};
 use bsmpm::kinematics::Kinematics;
 use bsmpm::model::Model;
 use bsmpm::nodal::Nodal;
@@ -34,6 +34,16 @@ pub enum StartStress<'a, const D: usize> {
     Given(&'a dyn Fn(u16, &Vector<D>) -> Symmetric),
     /// linear elastic equilibrium
     Elastic,
+}
+
+/// How a stress at the start is brought into equilibrium with the materials' own laws.
+pub enum StartBalance<'a> {
+    /// It is left as it is.
+    None,
+    /// From it.
+    Plastic,
+    /// From its vertical part, spread, and the horizontal one by K0, -, of every material.
+    Spread(&'a dyn Fn(u16) -> f64),
 }
 
 /// What a step cost besides its iterations; the same on all ranks.
@@ -92,16 +102,27 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         Self { model, points, halo, universe, petsc, choice, slabs, schedule, stepper, solver, steps, cost, timers }
     }
 
-    /// Gives the points a stress at the start, see [`initial`], and tells how well it is balanced.
-    pub fn stress(&mut self, start: StartStress<'_, D>) -> Result<Equilibrium, StepError> {
+    /// Gives the points a stress at the start, see [`initial`], and tells how well it is balanced, and what that took.
+    pub fn stress(
+        &mut self,
+        start: StartStress<'_, D>,
+        balance: StartBalance<'_>,
+    ) -> Result<(Equilibrium, Option<Settling>), StepError> {
         match start {
             StartStress::Given(sigma) => initial::set_stress(&self.model, &mut self.points, sigma),
             StartStress::Elastic => {
                 initial::set_elastic(&self.model, &mut self.points, (&*self.halo, &mut self.solver))?
             }
         }
+        if let StartBalance::Spread(k0) = balance {
+            initial::spread(&self.model, &mut self.points, k0, (&*self.halo, &mut self.solver))?;
+        }
+        let settles = !matches!(balance, StartBalance::None);
+        let settling = settles
+            .then(|| initial::settle(&self.model, &mut self.points, (&*self.halo, &mut self.solver)))
+            .transpose()?;
         initial::hold(&self.model, &mut self.points, (&*self.halo, &mut self.solver))?;
-        initial::balance(&self.model, &self.points, &*self.halo)
+        Ok((initial::balance(&self.model, &self.points, &*self.halo)?, settling))
     }
 
     /// Puts the run where another one stood after `steps` steps; the points are there already.

@@ -57,10 +57,12 @@ pub struct Case {
     pub tractions: Vec<Traction>,
     /// Point loads, in the order of the file.
     pub point_loads: Vec<PointLoad>,
-    /// -  factor by which the materials' strength has been divided (section 3.2), if any
+    /// -  factor by which the materials' strength is divided from the start on (section 3.2), if any
     pub strength_reduction: Option<f64>,
     /// Stress at the start, if any.
     pub initial: Option<Initial>,
+    /// Whether that is led to equilibrium with the materials' own laws before the first step.
+    pub settles: bool,
     /// Section 2.3 of the paper.
     pub stabilisation: Stabilisation,
     /// The non-linear iteration.

@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 use std::fmt;
 
 /// Keys with which a run may go on changed: they say how far, how finely and how it is told, not what is solved.
-const FREE: [&str; 13] = [
+const FREE: [&str; 15] = [
     "title",
     "analysis.dt",
     "analysis.steps",
@@ -25,7 +25,13 @@ const FREE: [&str; 13] = [
     "check",
     "element",
     "analysis.end",
+    DIVIDED[0],
+    DIVIDED[1],
 ];
+/// Keys that nothing has been solved with before the stage of `[strength_reduction]` has ended.
+const DIVIDED: [&str; 2] = ["strength_reduction.factor", "strength_reduction.steps"];
+/// The key that says which.
+const STAGE: &str = "strength_reduction.stage";
 /// Keys among them that belong to the tables of a run, whose columns stay.
 const BOUND: [&str; 1] = ["output.residuals"];
 /// Things whose motion is given by where it ends: with them, another end is another motion.
@@ -44,6 +50,14 @@ pub struct Difference {
     pub may_change: bool,
 }
 
+impl Difference {
+    /// Whether it is of the strength that is divided at the end of a stage: a run that has come further has been solved
+    /// with it.
+    pub fn is_of_later_strength(&self) -> bool {
+        DIVIDED.contains(&self.key.as_str())
+    }
+}
+
 impl fmt::Display for Difference {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let shown = |value: &Option<String>| value.clone().unwrap_or_else(|| "not given".to_owned());
@@ -58,6 +72,7 @@ impl fmt::Display for Difference {
 pub fn differences(was: &str, is: &str) -> Result<Vec<Difference>, Vec<Error>> {
     let (was, is) = (values(was)?, values(is)?);
     let moved = [&was, &is].iter().any(|values| values.keys().any(|key| MOVED.iter().any(|table| below(key, table))));
+    let divides_later = was.contains_key(STAGE) && is.contains_key(STAGE);
     let keys: std::collections::BTreeSet<&String> = was.keys().chain(is.keys()).collect();
     let differing = keys.into_iter().filter(|key| match (was.get(*key), is.get(*key)) {
         (Some(was), Some(is)) => was.shown != is.shown,
@@ -72,6 +87,7 @@ pub fn differences(was: &str, is: &str) -> Result<Vec<Difference>, Vec<Error>> {
             is: shown(is.get(key)),
             may_change: FREE.iter().any(|free| below(key, free))
                 && !BOUND.iter().any(|bound| below(key, bound))
+                && (divides_later || !DIVIDED.contains(&key.as_str()))
                 && !(moved && below(key, "analysis.end")),
         })
         .collect())

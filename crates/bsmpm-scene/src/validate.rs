@@ -10,6 +10,7 @@ mod material;
 mod output;
 mod physics;
 mod place;
+mod reduction;
 mod shape;
 mod solver;
 mod stage;
@@ -45,7 +46,7 @@ pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Op
     let grid = grid::read(record, boundary, report);
     let bodies = body::read_all(record, grid.as_ref(), regime, report);
     let time = analysis.as_ref().map(|analysis| (analysis.end, analysis.dt));
-    let factor = record.record("strength_reduction").and_then(|reduction| reduction.number("factor"));
+    let factor = reduction::at_start(record).and_then(|reduction| reduction.number("factor"));
     let stages = stage::read_all((record, factor), bodies.as_deref(), time, report);
     let contacts = contacts(record, factor, report);
     let (placed, made) = (grid.as_ref(), bodies.as_deref());
@@ -95,6 +96,7 @@ pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Op
         tractions,
         point_loads,
         strength_reduction: factor,
+        settles: initial.is_some() && load::settles(record),
         initial,
         stabilisation: stabilisation?,
         solver: solver?,
@@ -114,6 +116,7 @@ pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Op
     load::sudden(&case, report);
     lines::place(&mut case, record, report);
     physics::check(&case, record, report);
+    reduction::at_stage(&mut case, record, report);
     Some(Case { warnings: std::mem::take(&mut report.warnings), notes: std::mem::take(&mut report.notes), ..case })
 }
 

@@ -66,6 +66,7 @@ impl Batch<'_> {
             further: limit.into_iter().flatten().collect(),
             directory: self.directory(order),
             origin: self.solver.stamp().map(origin),
+            from: None,
             force: self.force,
             resume: true,
         };

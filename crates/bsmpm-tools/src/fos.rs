@@ -1,8 +1,8 @@
 //! `bsmpm fos`: the factor of safety of a case by strength reduction. The case is read in `subject`, factors are chosen
 //! in `search`, trials are made in `trial` and judged in `curve`, results are set in `report` and drawn in `picture`.
 //!
-//! Loading soil is path dependent, so every trial carries its load from zero: a state of another strength is no state
-//! on the way. What could be saved that way is taken from trials that run at the same time instead: `guess` tells which
+//! Loading soil is path dependent, so every trial carries its load from zero, or goes on from the end of a stage that was
+//! made with the whole strength: a state of another strength is no state on the way. What could be saved that way is taken from trials that run at the same time instead: `guess` tells which
 //! ones the search may ask for next, `jobs` runs them. They shorten the search and change nothing else in it.
 
 use std::fs;
@@ -47,6 +47,11 @@ The factor belongs to the body as it is drawn, and does not depend on its stiffn
 than 0.2 %, the trials' Young's moduli are multiplied until it does not, and displacements told as if they had not been.
 Loads that act at once grow over the whole run, and a stress at the start ([initial]) is left out. The notes say so.
 
+With --stage every trial goes on from the state at the end of that stage instead, which is found once, with the whole
+strength and [initial]: one step more, and then the strength falls to 1/F in 10 equal parts of the factor, a nominal step
+each. Displacements are those since, added to the elastic one of what is there and acts then, loaded from zero; so the
+factor is the one by which the strength may fall after that stage, with the stress that the stages have left.
+
 DIR gets fos.json, fos.csv, fos.png (displacement against factor), fos_plastic-strain.png and fos_displacement.png (the first
 failed trial), and trials/. Trials that are there and were made from the same case by the same solver are kept.
 
@@ -59,6 +64,7 @@ such case; 80 no stable state was found; that of a trial that broke, as 70, 71, 
 
 Examples:
   bsmpm fos cases/slope_stability.toml
+  bsmpm fos cases/excavation.toml --stage \"pit 1\"
   bsmpm fos case.toml --width 0.01 --set grid.cell=\"0.5 m\" -o fine -- mpirun -n 4 bsmpm-par")]
 pub struct FosArguments {
     /// The case file: quasi-static, with a plastic material and a load
@@ -69,6 +75,10 @@ pub struct FosArguments {
     /// The greatest factor
     #[arg(long, value_name = "FACTOR", default_value_t = 3.0)]
     pub to: f64,
+    /// At the end of the stage of this name, in the state that it leaves; "start": of what is before the first stage;
+    /// "end": of the run, as for a case that begins with [initial]. Factors are at least 1 then
+    #[arg(long, value_name = "NAME")]
+    pub stage: Option<String>,
     /// The width of the bands
     #[arg(long, value_name = "WIDTH", default_value_t = 0.02)]
     pub width: f64,
@@ -132,7 +142,7 @@ fn found(arguments: &FosArguments, mut told: impl FnMut(&str)) -> Result<(FosRep
     let (plan, jobs) = (arguments.plan()?, command::jobs(arguments.jobs, &command)?);
     // Whatever the number of jobs: threads in BLAS would sum in another order.
     let solver = SolverProgram { command: &command, side_by_side: true };
-    let subject = Subject::read(&arguments.case, &arguments.set, plan.from)?;
+    let subject = Subject::read(&arguments.case, &arguments.set, (plan.from, arguments.stage.as_deref()))?;
     solver.check()?;
     let output = arguments.directory();
     launch::make(&output)?;
@@ -142,7 +152,8 @@ fn found(arguments: &FosArguments, mut told: impl FnMut(&str)) -> Result<(FosRep
     {
         fs::remove_file(&path).map_err(bsmpm_io::Error::file("delete", &path))?;
     }
-    let trials = Trials { solver, subject: &subject, output: &output, force: arguments.force };
+    let mut trials = Trials { solver, subject: &subject, output: &output, force: arguments.force, stage: None };
+    trials.stage = trials.stage(&mut told)?;
     let (curve, made) = jobs::find(plan, jobs, &trials, |trial| told(&line(trial)))?;
     let mut report = FosReport::of(&subject, plan, &command, &curve, made);
     report.jobs = jobs;
@@ -155,6 +166,8 @@ impl FosArguments {
     fn plan(&self) -> Result<SearchPlan, Error> {
         let usage = |reason: String| Err(Error::Usage { reason });
         let Self { from, to, width, .. } = *self;
+        // A stage that came to its end stands.
+        let from = if self.stage.is_some() { from.max(1.0) } else { from };
         // Written so that what is no number is refused, too.
         if !(LEAST < from && from < to && to <= GREATEST) {
             return usage(format!("--from {from} --to {to}: allowed is {LEAST} < FROM < TO <= {GREATEST}"));

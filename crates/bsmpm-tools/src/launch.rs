@@ -51,6 +51,8 @@ pub(crate) struct LaunchTask<'a> {
     pub directory: PathBuf,
     /// Everything that the run is made from, as it stands now; none where a part cannot be told, and the run is made.
     pub origin: Option<String>,
+    /// The checkpoint of another run that it goes on from, if any.
+    pub from: Option<PathBuf>,
     /// Make it even if it is there.
     pub force: bool,
     /// Go on with it if it was stopped or killed.
@@ -101,7 +103,9 @@ impl SolverProgram<'_> {
         }
         let origin = task.origin.as_deref().unwrap_or_default();
         atomic::replace(&beside(&task.directory, "origin"), |file| file.write_all(origin.as_bytes()))?;
-        self.start(&task.arguments(&["--force"]), &log, stop).map(|code| task.left(Some(code)))
+        let from = task.from.as_ref().map(|path| path.display().to_string());
+        let how = from.as_ref().map_or(vec!["--force"], |path| vec!["--restart", path]);
+        self.start(&task.arguments(&how), &log, stop).map(|code| task.left(Some(code)))
     }
 
     fn start(&self, arguments: &[String], log: &Path, stop: &Stop) -> Result<u8, Error> {

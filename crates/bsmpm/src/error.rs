@@ -134,6 +134,14 @@ pub enum StepError {
         /// Corrections made.
         passes: usize,
     },
+    /// Rounds towards equilibrium at the start came to no end.
+    #[error("{force:.1e} of the largest force are out of balance after {rounds} rounds")]
+    Unbalanced {
+        /// Rounds made.
+        rounds: usize,
+        /// |f_oob| / largest force.
+        force: f64,
+    },
     /// The steps so far have made energy: the run is wrong, though each of them is in equilibrium.
     #[error(
         "energy made: what moves, strains and is dissipated exceeds the {given:.3e} J of the start and of all work since by \

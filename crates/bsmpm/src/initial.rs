@@ -1,6 +1,10 @@
 //! Stress at the start (a geostatic state), on the geometry as it is given: nothing has moved, displacements count from
 //! there. The elastic strain that belongs to the stress is put into b^e; F stays the identity.
 
+mod settle;
+
+pub use settle::{Settling, settle, spread};
+
 use crate::boundary::StripReport;
 use crate::boundary::strip::StripAttachments;
 use crate::error::StepError;
@@ -21,6 +25,8 @@ use crate::tensor::{Symmetric, Tensor, Vector};
 
 /// Corrections of the elastic state: the stiffness holds the soft background too, which carries nothing in the end.
 const CORRECTIONS: usize = 20;
+/// Plastic strain up to which a stress that is returned lies on the yield surface, not beyond it.
+const ON: f64 = 1e-12;
 /// Relative out-of-balance force of the elastic state that is left.
 const BALANCED: f64 = 1e-12;
 
@@ -118,7 +124,9 @@ pub fn set_elastic<K: Kinematics<D>, const D: usize>(
     let mut du = u.clone();
     let mut strains = vec![Symmetric::default(); points.len()];
     for _ in 0..CORRECTIONS {
-        let residual = elastic_residual(&problem, &strains, &u);
+        let of_strains: Vec<Symmetric> =
+            strains.iter().enumerate().map(|(p, strain)| stress_of(&elastic_at(model, points, p), strain)).collect();
+        let residual = elastic_residual(&problem, &of_strains, &u);
         if residual.measure() <= BALANCED {
             break;
         }
@@ -169,7 +177,7 @@ pub fn balance<K: Kinematics<D>, const D: usize>(
 ) -> Result<Equilibrium, StepError> {
     let model = &model.at_rest();
     let yields = |p: usize| match model.respond(points, p, &points.b_e.at(p)) {
-        Ok(response) => Ok(u32::from(response.branch() != Branch::Elastic)),
+        Ok(response) => Ok(u32::from(response.branch() != Branch::Elastic && response.plastic_increment() > ON)),
         Err(source) => Err(StepError::Material { id: points.id[p], source }),
     };
     let counted = (0..points.len()).try_fold(0.0, |sum, p| Ok(sum + f64::from(yields(p)?)));
@@ -223,16 +231,15 @@ impl<const D: usize> Undeformed<D> {
     }
 }
 
-/// Out-of-balance force of linear elastic stress on the undeformed geometry.
+/// Out-of-balance force of a stress of every point on the undeformed geometry.
 fn elastic_residual<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
-    strains: &[Symmetric],
+    stresses: &[Symmetric],
     u: &[f64],
 ) -> Balance {
     let volume = problem.volume();
     let f_int = transfer::divergence::<K, D>((problem.shape, &problem.points.x), |p| {
-        let tau = stress_of(&elastic_at(problem.model, problem.points, p), &strains[p]);
-        K::flux(&tau, &Tensor::identity()) * volume[p]
+        K::flux(&stresses[p], &Tensor::identity()) * volume[p]
     });
     Balance::of(problem, u, &problem.halo.sum(&f_int), 0)
 }

@@ -174,11 +174,11 @@ macro_rules! laws {
                 }
             }
 
-            /// The law with its strength divided by `factor` (section 3.2); a graded one has its own.
+            /// The law with its strength divided by `factor` (section 3.2).
             pub fn reduced(self, factor: f64) -> Self {
                 match self {
                     $(Self::$Law(law) => Self::$Law(law.reduced(factor)),)*
-                    graded => graded,
+                    Self::Graded(law) => Self::Graded(law.reduced(factor)),
                 }
             }
 

@@ -81,6 +81,9 @@ pub struct ManifestInitial {
     pub unbalance: f64,
     /// Points whose stress lies outside the yield surface.
     pub yielding: u64,
+    /// What leading it to equilibrium took, if the case wants that.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub settling: Option<ManifestSettling>,
 }
 
 /// Totals of a run.
@@ -253,6 +256,15 @@ impl ManifestOutput {
     }
 }
 
+/// The way to equilibrium before the first step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ManifestSettling {
+    /// Equilibria that were found on it; none where the stress was in equilibrium already.
+    pub rounds: usize,
+    /// Evaluations of the forces.
+    pub evaluations: usize,
+}
+
 /// What a stage has changed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ManifestStage {
@@ -278,6 +290,9 @@ pub struct ManifestStage {
     /// Materials whose bodies follow the law of another one, in words.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub exchanged: Vec<String>,
+    /// What the strength that the case gives is divided by from there on, if that changed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub strength_reduction: Option<f64>,
     /// Whether displacements count from there.
     pub reset: bool,
 }

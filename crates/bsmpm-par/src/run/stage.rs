@@ -48,6 +48,7 @@ impl Run<'_> {
             stage.faces.iter().map(|of| format!("{} is {}", Side::from(of.face).word(), of.support.word())).collect();
         let names = |list: &[(String, Acting)]| list.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>();
         let (applied, released) = (names(&stage.apply), names(&stage.release));
+        let strength_reduction = stage.strength_reduction;
         let changes = [
             (removed > 0).then(|| format!("{removed} points removed")),
             (added > 0).then(|| format!("{added} points added")),
@@ -55,6 +56,7 @@ impl Run<'_> {
             (!released.is_empty()).then(|| format!("{} released", released.join(", "))),
             (!faces.is_empty()).then(|| faces.join(", ")),
             (!exchanged.is_empty()).then(|| exchanged.join(", ")),
+            strength_reduction.map(|factor| format!("strength divided by {factor}")),
             stage.resets_displacements.then(|| "displacements set to zero".to_owned()),
         ];
         let changes: Vec<String> = changes.into_iter().flatten().collect();
@@ -62,8 +64,19 @@ impl Run<'_> {
         if let Some(ledger) = &mut self.ledger {
             let name = stage.name.clone();
             let reset = stage.resets_displacements;
-            let changes =
-                ManifestStage { name, step, time, removed, added, applied, released, faces, exchanged, reset };
+            let changes = ManifestStage {
+                name,
+                step,
+                time,
+                removed,
+                added,
+                applied,
+                released,
+                faces,
+                exchanged,
+                strength_reduction,
+                reset,
+            };
             ledger.manifest().stages.push(changes);
             ledger.begin_stage(&self.case, stage.at);
         }

@@ -2,11 +2,11 @@
 
 use super::Run;
 use crate::machine;
-use crate::setup;
+use crate::setup::{self, Start};
 use bsmpm::error::StepError;
-use bsmpm::initial::Equilibrium;
+use bsmpm::initial::Settling;
 use bsmpm::step::StepReport;
-use bsmpm_io::manifest;
+use bsmpm_io::manifest::{ManifestInitial, ManifestSettling};
 use bsmpm_scene::Initial;
 
 /// Part of the largest force beyond which an out-of-balance stress at the start is warned of. Level ground by k0 leaves
@@ -39,7 +39,7 @@ impl Run<'_> {
         let mut report = StepReport::default();
         if let Some(start) = setup::start(&self.case, &mut self.simulation)? {
             self.tell_start(&start);
-            (report.reactions, report.strips) = (start.reactions, start.strips);
+            (report.reactions, report.strips) = (start.0.reactions, start.0.strips);
         }
         self.record(&report);
         self.frame();
@@ -47,24 +47,30 @@ impl Run<'_> {
     }
 
     /// Tells how well the stress at the start is balanced, and warns where the first step will move the body by it.
-    fn tell_start(&mut self, start: &Equilibrium) {
+    fn tell_start(&mut self, (start, settling): &Start) {
         let (unbalance, yielding) = (start.force, start.yielding);
+        let settling = settling.map(|Settling { rounds, evaluations }| ManifestSettling { rounds, evaluations });
         if let Some(ledger) = &mut self.ledger {
-            ledger.manifest().initial = Some(manifest::ManifestInitial { unbalance, yielding });
+            ledger.manifest().initial = Some(ManifestInitial { unbalance, yielding, settling });
         }
         self.log.line(
             "initial",
             &format!(
-                "stress at the start: unbalance {unbalance:.2e} of the largest force, {yielding} point(s) beyond yield"
+                "stress at the start: unbalance {unbalance:.2e} of the largest force, {yielding} point(s) beyond yield{}",
+                settling.map_or(String::new(), |it| format!(", settled in {} round(s)", it.rounds))
             ),
         );
         if unbalance > UNBALANCED {
             // Linear elastic equilibrium is lost by nothing but yield.
             let advice = match &self.case.initial {
                 Some(Initial::Elastic) => {
-                    "the elastic stress is beyond yield; gravity with a ramp and no [initial] lets the body yield as it is loaded"
+                    "the elastic stress is beyond yield; equilibrium = \"plastic\" leads it to equilibrium before the first \
+                     step, and gravity with a ramp and no [initial] lets the body yield as it is loaded"
                 }
-                _ => "k0 is for level ground and layers; gravity = \"elastic\" balances other shapes, too",
+                _ => {
+                    "k0 is for level ground and layers; equilibrium = \"plastic\" leads it to equilibrium before the first \
+                     step, gravity = \"elastic\" balances other shapes, too"
+                }
             };
             self.warn(format!(
                 "the stress at the start leaves {:.1} % of the largest force unbalanced: the first step moves the body by it \
@@ -75,7 +81,7 @@ impl Run<'_> {
         if yielding > 0 {
             self.warn(format!(
                 "the stress at the start is beyond yield at {yielding} point(s): the first step returns it to the yield \
-                 surface, and moves the body by what is lost"
+                 surface, and moves the body by what is lost; [initial] equilibrium = \"plastic\" does so before it"
             ));
         }
     }

@@ -23,6 +23,8 @@ pub struct Stage {
     pub faces: Vec<FaceSupport>,
     /// Numbers of materials, and of those whose laws their bodies follow from here on.
     pub materials: Vec<(usize, usize)>,
+    /// -  factor by which the strength that the file gives is divided from here on, if that changes
+    pub strength_reduction: Option<f64>,
     /// Whether displacements that are told count from here.
     pub resets_displacements: bool,
     /// Numbers of the histories that follow a point of what is placed.
@@ -32,7 +34,8 @@ pub struct Stage {
 impl Stage {
     /// Whether another model goes on from here: one with other loads, supports or laws.
     pub fn exchanges(&self) -> bool {
-        !(self.apply.is_empty() && self.release.is_empty() && self.faces.is_empty() && self.materials.is_empty())
+        let switches = !(self.apply.is_empty() && self.release.is_empty());
+        switches || !(self.faces.is_empty() && self.materials.is_empty()) || self.strength_reduction.is_some()
     }
 
     /// Whether it releases, and whether it applies something.
@@ -61,6 +64,10 @@ pub enum Acting {
     Load(usize),
 }
 
+/// What is before the first stage, in the place of a stage's name.
+const START: &str = "start";
+/// The end of the run, in the place of a stage's name.
+const END: &str = "end";
 /// Parts of a step by which the time of a stage may be missed: what the schedule takes as the same time.
 const SAME: f64 = 1e-6;
 
@@ -88,14 +95,36 @@ impl Case {
         })
     }
 
+    /// What the strength of the start is divided by once the stages until the time `t` have begun.
+    fn divided_at(&self, t: f64) -> f64 {
+        let begun = self.stages.iter().filter(|stage| self.has_begun(stage, t));
+        let factor = begun.filter_map(|stage| stage.strength_reduction).last();
+        factor.map_or(1.0, |factor| factor / self.strength_reduction.unwrap_or(1.0))
+    }
+
+    /// When the stage of a name ends (s, or pseudo-time): as the next one begins. `"start"`, of what is before the first
+    /// stage; `"end"`, of the run.
+    pub fn end_of_stage(&self, name: &str) -> Option<f64> {
+        let end = |next: usize| self.stages.get(next).map_or(self.analysis.end, |stage| stage.at);
+        match self.stages.iter().position(|stage| stage.name.as_deref() == Some(name)) {
+            Some(number) => Some(end(number + 1)),
+            None if name == START && self.stages.is_empty() => Some(0.0),
+            None if name == START => Some(end(0)),
+            None => (name == END).then_some(self.analysis.end),
+        }
+    }
+
     /// What all faces of the grid do once the stages until the time `t` have begun.
     pub fn faces_at(&self, t: f64) -> Vec<FaceSupport> {
-        let mut faces = Vec::new();
+        let (mut faces, divided) = (Vec::new(), self.divided_at(t));
         for (axis, upper) in [(0, false), (0, true), (1, false), (1, true)] {
             let face = Face { axis, upper };
             let (support, contact) = (self.boundary[axis][usize::from(upper)], self.contacts[axis][usize::from(upper)]);
             let begun = self.stages.iter().filter(|stage| self.has_begun(stage, t)).flat_map(|stage| &stage.faces);
-            faces.push(*begun.filter(|of| of.face == face).last().unwrap_or(&FaceSupport { face, support, contact }));
+            let mut of =
+                *begun.filter(|of| of.face == face).last().unwrap_or(&FaceSupport { face, support, contact });
+            of.contact = of.contact.map(|contact| Contact { friction: contact.friction / divided, ..contact });
+            faces.push(of);
         }
         faces
     }
@@ -109,11 +138,16 @@ impl Case {
     /// The materials once the stages until the time `t` have begun: each with the law that its bodies follow then, and
     /// with what goes with a law.
     pub fn materials_at(&self, t: f64) -> Vec<NamedMaterial> {
+        let divided = self.divided_at(t);
         let mut followed: Vec<usize> = (0..self.materials.len()).collect();
         let exchanges = self.stages.iter().filter(|stage| self.has_begun(stage, t)).flat_map(|stage| &stage.materials);
         exchanges.for_each(|&(from, to)| followed[from] = to);
         let of = |(own, followed): (&NamedMaterial, usize)| NamedMaterial {
             density: own.density,
+            material: match divided {
+                1.0 => self.materials[followed].material.clone(),
+                further => self.materials[followed].material.clone().reduced(further),
+            },
             ..self.materials[followed].clone()
         };
         self.materials.iter().zip(followed).map(of).collect()

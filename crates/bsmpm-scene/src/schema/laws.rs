@@ -50,8 +50,8 @@ impl LawName {
         match self {
             Self::Hencky => (&[], &[]),
             Self::Tresca => (&["cohesion"], &[]),
-            Self::MohrCoulomb => (&["friction", "cohesion"], &["dilation", "separation"]),
-            Self::DruckerPrager => (&["friction", "cohesion"], &["dilation", "match"]),
+            Self::MohrCoulomb => (&["friction", "cohesion"], &["dilation", "separation", "ocr"]),
+            Self::DruckerPrager => (&["friction", "cohesion"], &["dilation", "match", "ocr"]),
             Self::VonMises => (&["yield_stress"], &["hardening"]),
             Self::SensitiveClay => {
                 (&["cohesion", "sensitivity", "softening_strain"], &["band_width", "rate_parameter", "reference_rate"])
@@ -60,7 +60,7 @@ impl LawName {
             Self::MuI => (&["mu_s", "mu_2", "inertial_number", "grain_diameter", "grain_density"], &[]),
             Self::Softening => (
                 &["friction", "cohesion", "residual_friction", "residual_cohesion", "softening_strain"],
-                &["dilation", "residual_dilation", "softening", "band_width"],
+                &["dilation", "residual_dilation", "softening", "band_width", "ocr"],
             ),
         }
     }
@@ -221,7 +221,8 @@ pub(crate) static MATERIAL: Table = Table {
             "ocr",
             Quantity(In::Number, Range::of(Included(1.0), Unbounded)),
             Optional,
-            "size of the yield surface over that through the stress at the start (modified-cam-clay)",
+            "size of the yield surface over that through the stress at the start (modified-cam-clay); of laws with friction \
+             largest vertical stress ever over that of the start, and k0 = (1 - sin(phi)) ocr^sin(phi)",
         ),
         key(
             "mu_s",

@@ -3,7 +3,7 @@
 use super::Kind::*;
 use super::Presence::{Default, Optional, Required};
 use super::{Dimension as In, Kind, Range, Table, body, key, one_of};
-use crate::words::{Base, Components, Side, Start, Word};
+use crate::words::{Base, Components, Settled, Side, Start, Word};
 use std::ops::Bound::Included;
 
 const PLACE: Kind = Pair(In::Length, Range::ANY);
@@ -12,6 +12,8 @@ const VELOCITY: Kind = Pair(In::Velocity, Range::ANY);
 const PATH: Kind = Rows(&[(In::Time, Range::NOT_NEGATIVE), (In::Length, Range::ANY), (In::Length, Range::ANY)]);
 const AMPLITUDE: Kind = Rows(&[(In::Time, Range::NOT_NEGATIVE), (In::Number, Range::ANY)]);
 const RAMP: Kind = Quantity(In::Time, Range::NOT_NEGATIVE);
+/// That strength is divided by.
+pub(super) const FACTOR: Range = Range::of(Included(0.1), Included(100.0));
 /// Horizontal over vertical stress: from nothing to far beyond passive pressure.
 pub(super) const COEFFICIENT: Range = Range::of(Included(0.0), Included(100.0));
 
@@ -128,7 +130,7 @@ pub(super) static REDUCTION: Table = Table {
     header: "[strength_reduction]",
     doc: "Strength of all materials divided by a factor: c/F, atan(tan(phi)/F), psi at most the new phi (section 3.2)",
     keys: &[
-        key("factor", Quantity(In::Number, Range::of(Included(0.1), Included(100.0))), Required, "the factor F"),
+        key("factor", Quantity(In::Number, FACTOR), Required, "the factor F"),
         key("elastic", Flag, Default("false"), "strength without bound instead: every material by its elastic law"),
         key(
             "stiffness",
@@ -141,6 +143,20 @@ pub(super) static REDUCTION: Table = Table {
             Flag,
             Default("false"),
             "start without stress: [initial] is left out, and loads that act at once grow over the run",
+        ),
+        key(
+            "stage",
+            Text(64),
+            Optional,
+            "reduce at the end of the stage of that name, in the state that it leaves; \"start\": of what is before \
+             the first stage; \"end\": of the run. Later stages do not begin; with unloaded = true: what is there \
+             then, from the start on",
+        ),
+        key(
+            "steps",
+            Count(0, 1000),
+            Default("10"),
+            "equal parts of the reduction that follow the end of the stage, a nominal step each; 0: the run ends there",
         ),
     ],
     exclusive: &[],
@@ -157,6 +173,12 @@ pub(super) static INITIAL: Table = Table {
             "weight of what lies above as vertical stress, k0 times it as horizontal; of materials without their own k0",
         ),
         key("gravity", Choice(Start::WORDS), Optional, "elastic equilibrium under the loads at time 0 instead"),
+        key(
+            "equilibrium",
+            Choice(Settled::WORDS),
+            Optional,
+            "what that stress is led to under the loads at time 0, before the first step; absent: it stays as it is",
+        ),
     ],
     exclusive: &[one_of(&["k0", "gravity"], false)],
 };

@@ -3,12 +3,12 @@
 use super::Kind::*;
 use super::Presence::{Default, Optional, Required};
 use super::tables::SUPPORT;
-use super::{Dimension as In, Kind, Range, Table, key};
+use super::{Dimension as In, Kind, Range, Table, key, loads};
 
 pub(super) static STAGE: Table = Table {
     header: "[[stage]]",
     doc: "What changes at a time, between two steps: bodies are removed (excavation) and placed (lifts of an embankment), \
-          loads and supports act from there or no longer, faces of the grid change, and materials follow another law",
+          loads and supports act from there or no longer, faces of the grid change, and materials follow another law or lose strength",
     keys: &[
         key("name", Text(64), Optional, "what it is called where it is told of"),
         key("at", Quantity(In::Time, Range::POSITIVE), Required, "when it begins; a step ends there"),
@@ -23,6 +23,12 @@ pub(super) static STAGE: Table = Table {
         key("release", Names, Optional, "names of loads and supports that act until there"),
         key("boundary", Kind::Table(&FACES), Optional, "what faces of the grid do from there on; the others go on"),
         key("materials", Tables(&EXCHANGE), Optional, "laws that bodies follow from there on"),
+        key(
+            "strength_reduction",
+            Quantity(In::Number, loads::FACTOR),
+            Optional,
+            "strength of all materials divided by this from there on, as by [strength_reduction] factor, and in its place",
+        ),
         key("reset_displacements", Flag, Default("false"), "whether displacements that are told count from here"),
     ],
     exclusive: &[],

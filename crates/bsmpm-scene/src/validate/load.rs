@@ -6,7 +6,8 @@ use super::strip::{AroundStrip, segment};
 use crate::case::{Acting, Body, Case, Gravity, Initial, LoadedLine, NamedMaterial, PointLoad, Push, Traction};
 use crate::record::Record;
 use crate::report::Report;
-use crate::words::Start;
+use crate::schema::LawName;
+use crate::words::{Settled, Start};
 use bsmpm::model::Regime;
 
 /// All tractions in the order of the file, without those that have an error.
@@ -169,8 +170,11 @@ pub(super) fn initial(
     let elastic = record.is_some_and(|record| record.gives("gravity"));
     if record.is_none() || elastic {
         let what = if elastic { "with initial.gravity" } else { "without [initial]" };
-        for (_, material) in root.named("material").iter().filter(|(_, material)| material.gives("k0")) {
-            material.error("k0", format!("has no meaning {what}"), report);
+        for (_, material) in root.named("material") {
+            let is_k0 = |key: &&str| material.gives(key) && (*key == "k0" || is_of_k0(material));
+            if let Some(key) = ["k0", "ocr"].into_iter().find(is_k0) {
+                material.error(key, format!("has no meaning {what}"), report);
+            }
         }
     }
     let record = record?;
@@ -283,6 +287,35 @@ fn loaded(
     }
 }
 
+/// Whether the stress at the start is led to equilibrium.
+pub(super) fn settles(root: &Record) -> bool {
+    root.record("initial").and_then(|initial| initial.word::<Settled>("equilibrium")) == Some(Settled::Plastic)
+}
+
+/// Whether a material's ocr stands for its k0: not that of Cam-clay, which is of its yield surface.
+fn is_of_k0(material: &Record) -> bool {
+    material.gives("ocr") && material.word("model") != Some(LawName::CamClay)
+}
+
+/// K0 = (1 - sin φ) OCR^sin φ (Mayne and Kulhawy, 1982), below passive pressure.
+fn overconsolidated(material: &Record, report: &mut Report<'_>) -> Option<f64> {
+    let (ocr, friction) = (material.number("ocr")?, profile(material, "friction")?);
+    if friction.per_metre != 0.0 {
+        material.error("ocr", "the friction angle varies, and k0 with it: give k0, or layers of one angle", report);
+        return None;
+    }
+    let sine = friction.value.to_radians().sin();
+    let (k0, passive) = ((1.0 - sine) * ocr.powf(sine), (1.0 + sine) / (1.0 - sine));
+    let cohesion = profile(material, "cohesion")?;
+    if k0 > passive && cohesion.value == 0.0 && cohesion.per_metre == 0.0 {
+        let message = format!("{ocr}: k0 = {k0:.4} would be beyond passive pressure, {passive:.4}; give a smaller one");
+        material.error("ocr", message, report);
+        return None;
+    }
+    report.note(material.path_of("k0"), format!("{k0}"), format!("(1 - sin(phi)) ocr^sin(phi), ocr = {ocr}"));
+    Some(k0)
+}
+
 /// The coefficient of every material; 0 for those without that no body is made of.
 fn at_rest(root: &Record, record: &Record, bodies: &[Body], report: &mut Report<'_>) -> Option<Vec<f64>> {
     if record.gives("k0") && record.number("k0").is_none() {
@@ -291,7 +324,14 @@ fn at_rest(root: &Record, record: &Record, bodies: &[Body], report: &mut Report<
     let named = root.named("material");
     let mut found = Vec::with_capacity(named.len());
     for (number, (name, material)) in named.iter().enumerate() {
-        let own = if material.gives("k0") { Some(material.number("k0")?) } else { record.number("k0") };
+        let own = match material.gives("k0") {
+            true => Some(material.number("k0")?),
+            false if is_of_k0(material) => Some(overconsolidated(material, report)?),
+            false => record.number("k0"),
+        };
+        if material.gives("k0") && is_of_k0(material) {
+            material.error("ocr", "k0 is given, too: of which it would be the measure; give one of them", report);
+        }
         if own.is_none() && bodies.iter().any(|body| body.material == number) {
             let message = format!("missing: k0 (or one in [material.{name}]), or gravity = \"elastic\"");
             report.error(record.origin, &record.path, message);

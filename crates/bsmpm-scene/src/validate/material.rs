@@ -2,12 +2,12 @@
 
 mod law;
 
-use super::STANDARD_GRAVITY;
+use super::{STANDARD_GRAVITY, reduction};
 use crate::case::{Body, NamedMaterial, Stage};
 use crate::grid::GridSpec;
 use crate::record::Record;
 use crate::report::Report;
-use crate::schema::Range;
+use crate::schema::{LawName, Range};
 use crate::words::{Side, Word};
 use bsmpm::material::{Material, Profile};
 use bsmpm::model::Regime;
@@ -41,9 +41,10 @@ impl Reduction {
     /// That of the case; without the table none.
     pub(super) fn of(root: &Record) -> Self {
         let table = root.record("strength_reduction");
-        let number = |key| table.and_then(|table| table.number(key)).unwrap_or(1.0);
+        let number = |table: Option<&Record>, key| table.and_then(|table| table.number(key)).unwrap_or(1.0);
         let elastic = table.and_then(|table| table.flag("elastic")).unwrap_or(false);
-        Self { factor: number("factor"), elastic, stiffness: number("stiffness") }
+        let factor = number(reduction::at_start(root), "factor");
+        Self { factor, elastic, stiffness: number(table, "stiffness") }
     }
 }
 
@@ -85,7 +86,8 @@ fn read(
     }
     warn_of_stiffness(record, young.map(|young| young.value), poisson, report);
     let Reduction { factor, elastic, stiffness } = around.reduction;
-    if factor != 1.0 && !elastic && record.gives("ocr") {
+    let of_yield = record.gives("ocr") && record.word("model") == Some(LawName::CamClay);
+    if factor != 1.0 && !elastic && of_yield {
         let message = "with a strength_reduction.factor the yield surface through the stress at the start, which this is the \
                        multiple of, would grow as its strength falls; give preconsolidation";
         record.error("ocr", message, report);

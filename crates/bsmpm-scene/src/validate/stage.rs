@@ -1,6 +1,6 @@
 //! Stages: times that follow each other, bodies that can be removed and placed then, and what must not lose its body.
 
-use super::{place, strip};
+use super::{place, reduction, strip};
 use crate::case::{Acting, Body, Case, FaceSupport, LoadedLine, Quantity, Site, Stage, Support};
 use crate::nearest::hint;
 use crate::record::Record;
@@ -75,13 +75,27 @@ fn stage(
     let (remove, add) = (of_bodies(remove?), of_bodies(add?));
     let (apply, release, faces, materials) = (apply?, release?, faces?, materials?);
     let is_still = remove.is_empty() && add.is_empty() && apply.is_empty() && release.is_empty();
+    let strength_reduction = record.number("strength_reduction");
+    let is_still = is_still && strength_reduction.is_none() && !record.gives("strength_reduction");
     if is_still && faces.is_empty() && materials.is_empty() && !resets_displacements {
-        let message = "it changes nothing: give remove, add, apply, release, boundary, materials or \
+        let message = "it changes nothing: give remove, add, apply, release, boundary, materials, strength_reduction or \
                        reset_displacements = true";
         report.error(record.origin, &record.path, message);
     }
     let name = record.text("name").map(str::to_owned);
-    Some(Stage { name, at, remove, add, apply, release, faces, materials, resets_displacements, follows: Vec::new() })
+    Some(Stage {
+        name,
+        at,
+        remove,
+        add,
+        apply,
+        release,
+        faces,
+        materials,
+        strength_reduction,
+        resets_displacements,
+        follows: Vec::new(),
+    })
 }
 
 /// The names of a key, and what they name.
@@ -228,6 +242,9 @@ pub(super) fn check(case: &mut Case, root: &Record, report: &mut Report<'_>) {
         }
         for (&(from, to), pair) in stage.materials.iter().zip(record.records("materials")) {
             exchanged(case, (from, to), pair, report);
+        }
+        if stage.strength_reduction.is_some() {
+            reduction::divisible(case, record, report);
         }
         for &body in &stage.add {
             let named = &case.materials[case.bodies[body].material];

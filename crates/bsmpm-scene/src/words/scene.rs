@@ -129,6 +129,14 @@ choice! {
 }
 
 choice! {
+    /// How the stress at the start is brought into equilibrium.
+    pub enum Settled {
+        /// With the materials' own laws: on or within their yield surfaces, and nothing moves.
+        Plastic = "plastic",
+    }
+}
+
+choice! {
     /// What is held in a test of one point.
     pub enum Path {
         /// The total stress along x and z, while y is driven.

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use bsmpm::model::Regime;
 use bsmpm_scene::words::Word;
-use bsmpm_scene::{Case, GridAxis, MotionPath, Quantity, Traction};
+use bsmpm_scene::{Acting, Case, GridAxis, MotionPath, Quantity, Traction};
 use serde::Serialize;
 
 use super::search::{ELASTIC, LEAST};
@@ -18,6 +18,10 @@ const LOOSEST: f64 = 1e-3;
 const FACTOR: &str = "strength_reduction.factor";
 /// The key that lets a trial start without stress.
 const UNLOADED: &str = "strength_reduction.unloaded";
+/// The key that says at the end of which stage.
+const STAGE: &str = "strength_reduction.stage";
+/// What ends a run there, with a checkpoint.
+const UNTIL: [&str; 2] = ["strength_reduction.steps=0", "output.checkpoint.wall=\"15 min\""];
 /// Strain by which a load may change the geometry: (weight of the body's height + traction)/E. Beyond, the branch after
 /// failure, up to 20 times the elastic displacement, is flattened by the body's settling, and with it the factor.
 const SMALL: f64 = 2e-3;
@@ -33,9 +37,13 @@ pub(super) struct Subject {
     bytes: Vec<u8>,
     /// overrides of all trials
     set: Vec<String>,
+    /// the stage at whose end the factor is wanted, and when that is
+    stage: Option<(String, f64)>,
     pub title: String,
     /// pseudo-time
     pub end: f64,
+    /// of the trial of the elastic body
+    elastic_end: f64,
     /// the column of the largest displacement
     pub column: String,
     /// whether loads that the case lets act at once grow over the run
@@ -72,20 +80,23 @@ pub(super) struct Conditions {
 }
 
 impl Subject {
-    /// The case at `path` with overrides, to be searched from the factor `from` on.
+    /// The case at `path` with overrides, to be searched from the factor `from` on, at the end of a `stage` or as the
+    /// body is drawn.
     ///
     /// # Errors
     /// [`Error::Missing`] for a file that cannot be read, [`Error::BadCase`] with all errors of the case,
     /// [`Error::NoFactor`] with all reasons why it has no factor of safety, [`Error::Usage`] for overrides of the
     /// factor.
-    pub fn read(path: &Path, set: &[String], from: f64) -> Result<Self, Error> {
+    pub fn read(path: &Path, set: &[String], (from, stage): (f64, Option<&str>)) -> Result<Self, Error> {
         if set.iter().any(|set| set.trim_start().starts_with("strength_reduction")) {
             return Err(Error::Usage { reason: format!("--set {FACTOR}: the factor is what the search sets") });
         }
         let bytes = case::load(path)?;
         let mut set = set.to_vec();
         let case = parsed(path, &bytes, &[&set[..], &reduction(from, 1.0)].concat())?;
-        let reasons = refusals(&case);
+        let until = |name: &str| until(&case, name).map(|until| (name.to_owned(), until));
+        let stage = stage.map(until).transpose()?;
+        let reasons = refusals(&case, stage.as_ref().map(|(_, until)| *until));
         if !reasons.is_empty() {
             return Err(Error::NoFactor { path: path.to_owned(), reasons });
         }
@@ -97,18 +108,66 @@ impl Subject {
         if recorded.is_empty() {
             set.push(format!("history.{}.quantity={QUANTITY}", case.histories.len()));
         }
-        let (title, end, conditions) = (case.title.clone(), case.analysis.end, Conditions::of(&case));
-        let (is_grown, is_stressed) = (ramps(&case).any(|ramp| ramp == 0.0), case.initial.is_some());
+        let (title, mut conditions) = (case.title.clone(), Conditions::of(&case));
+        let is_whole = stage.is_none();
+        let is_grown = is_whole && ramps(&case).any(|ramp| ramp == 0.0);
         if is_grown {
             set.push(format!("{UNLOADED}=true"));
         }
-        let path = path.to_owned();
-        Ok(Self { path, bytes, set, title, end, column, is_grown, is_stressed, is_scaled, conditions })
+        if let Some((name, _)) = &stage {
+            set.push(format!("{STAGE}={name:?}"));
+        }
+        let trial = |factor: f64| [&set[..], &reduction(factor, conditions.stiffness)].concat();
+        let end = |factor: f64, further: &[String]| {
+            parsed(path, &bytes, &[&trial(factor)[..], further].concat()).map(|case| case.analysis.end)
+        };
+        let unloaded = if is_whole { Vec::new() } else { vec![format!("{UNLOADED}=true")] };
+        let (end, elastic_end) = (end(from, &[])?, end(ELASTIC, &unloaded)?);
+        if let Some((_, until)) = &stage {
+            // The first one is of the whole strength.
+            conditions.steps = ((end - until) / case.analysis.dt).round() as u64 - 1;
+        }
+        let (path, is_stressed) = (path.to_owned(), is_whole && case.initial.is_some());
+        Ok(Self {
+            path,
+            bytes,
+            set,
+            stage,
+            title,
+            end,
+            elastic_end,
+            column,
+            is_grown,
+            is_stressed,
+            is_scaled,
+            conditions,
+        })
+    }
+
+    /// The name and the time of the end of the stage that is meant, if one is.
+    pub fn stage(&self) -> Option<(&str, f64)> {
+        self.stage.as_ref().map(|(name, until)| (name.as_str(), *until))
+    }
+
+    /// The overrides, and the case's text, of the run until then.
+    pub fn until_the_stage(&self) -> Result<(Vec<String>, String), Error> {
+        let set = [&self.overrides(1.0)[..], &UNTIL.map(str::to_owned)].concat();
+        parsed(&self.path, &self.bytes, &set).map(|case| (set, case.text))
+    }
+
+    /// When a trial begins, and when it ends.
+    pub fn times(&self, factor: f64) -> [f64; 2] {
+        match &self.stage {
+            Some((_, until)) if factor != ELASTIC => [*until, self.end],
+            _ => [0.0, self.elastic_end],
+        }
     }
 
     /// The overrides of a trial.
     pub fn overrides(&self, factor: f64) -> Vec<String> {
-        [&self.set[..], &reduction(factor, self.conditions.stiffness)].concat()
+        let unloaded = self.stage.is_some() && factor == ELASTIC;
+        let unloaded = if unloaded { vec![format!("{UNLOADED}=true")] } else { Vec::new() };
+        [&self.set[..], &reduction(factor, self.conditions.stiffness), &unloaded].concat()
     }
 
     /// What was done to the case that its reader should know.
@@ -128,7 +187,13 @@ impl Subject {
              depend on the stress before it (exactly so with dilation = friction)"
                 .to_owned()
         });
-        stiffened.into_iter().chain(grown).chain(unstressed).collect()
+        let staged = self.stage.as_ref().map(|(name, until)| {
+            format!(
+                "the strength falls at the end of the stage \"{name}\", t = {until}, with the stress that it leaves; \
+                 displacements are those since, added to the elastic one"
+            )
+        });
+        staged.into_iter().chain(stiffened).chain(grown).chain(unstressed).collect()
     }
 
     /// The text of a trial's case as its `run.json` has it.
@@ -175,13 +240,13 @@ fn stiffness(case: &Case) -> f64 {
 }
 
 /// Why a case has no factor of safety, or none that could be trusted.
-fn refusals(case: &Case) -> Vec<String> {
+fn refusals(case: &Case, until: Option<f64>) -> Vec<String> {
     let is_plastic = case.materials.iter().any(|named| named.material.yields());
     let hardens = case.materials.iter().any(|named| named.material.hardens());
     let softens = case.materials.iter().any(|named| named.material.softens());
     let has_amplitude = case.tractions.iter().map(|load| &load.amplitude).any(|rows| !rows.is_empty())
         || case.point_loads.iter().any(|load| !load.amplitude.is_empty());
-    let never_full = ramps(case).any(|ramp| ramp > case.analysis.end);
+    let never_full = until.is_none() && ramps(case).any(|ramp| ramp > case.analysis.end);
     let reasons = [
         (
             case.analysis.regime == Regime::Dynamic,
@@ -199,9 +264,8 @@ fn refusals(case: &Case) -> Vec<String> {
              bounds the factor from both sides, of cam-clay its undrained or its critical-state strength",
         ),
         (
-            !case.stages.is_empty(),
-            "it has stages, of which each has a factor of its own, and what they leave in the ground was made with the whole \
-             strength; give the geometry of the stage that is meant as a case of its own",
+            until.is_none() && !case.stages.is_empty(),
+            "it has stages, of which each has a factor of its own: give --stage NAME, at whose end it is wanted, or \"end\"",
         ),
         (!is_plastic, "no material is plastic: there is no strength to be reduced"),
         (!is_loaded(case), "nothing loads the body at `end`: no weight under gravity, no traction, no point load"),
@@ -212,6 +276,10 @@ fn refusals(case: &Case) -> Vec<String> {
         ),
         (never_full, "a load grows beyond `end`: it never acts in full, and the factor would be that of a part of it"),
         (
+            until.is_some_and(|until| still_grows(case, until)),
+            "a load still grows at the end of that stage, and would go on while the strength falls: let its ramp end before",
+        ),
+        (
             is_moved(case),
             "the case prescribes a motion: what moves as told shows no failure, however little strength is left; give the \
              load instead of the motion, or run the case itself and read its force against the motion",
@@ -219,6 +287,23 @@ fn refusals(case: &Case) -> Vec<String> {
     ];
     let found = reasons.into_iter().filter(|(holds, _)| *holds).map(|(_, reason)| reason.to_owned());
     loose_tolerances(case).chain(found).collect()
+}
+
+/// When the stage of a name ends.
+fn until(case: &Case, name: &str) -> Result<f64, Error> {
+    case.end_of_stage(name).ok_or_else(|| {
+        let names = case.stages.iter().filter_map(|stage| stage.name.as_ref()).map(|name| format!("{name:?}"));
+        let names: Vec<String> = names.chain(["start", "end"].map(|name| format!("{name:?}"))).collect();
+        Error::Usage { reason: format!("--stage {name:?}: the case has {}", names.join(", ")) }
+    })
+}
+
+/// Whether a load that acts at a time does not act in full then.
+fn still_grows(case: &Case, until: f64) -> bool {
+    let ends = |load: usize, ramp: f64| case.acts_since(Acting::Load(load), until).map_or(0.0, |since| since + ramp);
+    let ramps = case.tractions.iter().map(|load| load.ramp).chain(case.point_loads.iter().map(|load| load.ramp));
+    let gravity = case.gravity.iter().map(|gravity| gravity.ramp);
+    ramps.enumerate().map(|(load, ramp)| ends(load, ramp)).chain(gravity).any(|end| end > until * (1.0 + 1e-9))
 }
 
 fn loose_tolerances(case: &Case) -> impl Iterator<Item = String> {

@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use super::curve::CurveState;
 use super::jobs::JobSource;
+use super::search::ELASTIC;
 use super::subject::Subject;
 use crate::Error;
 use crate::launch::{self, LaunchTask, Outcome, RunCost, RunState, SolverProgram, Stop};
@@ -32,7 +33,7 @@ pub(super) struct Trial {
     #[serde(flatten)]
     pub end: End,
     /// the largest one, in the unit of the case's history, as of its own stiffness; at the end of the load that was
-    /// reached
+    /// reached; of a stage the one since, and the elastic one
     pub displacement: f64,
     /// the largest accumulated one of any point; none where no frame holds it
     pub plastic_strain: Option<f64>,
@@ -54,6 +55,16 @@ pub(super) struct Trials<'a> {
     pub subject: &'a Subject,
     pub output: &'a Path,
     pub force: bool,
+    /// what they go on from; none: from zero
+    pub stage: Option<StageState>,
+}
+
+/// The state at the end of a stage.
+pub(super) struct StageState {
+    checkpoint: PathBuf,
+    cost: RunCost,
+    /// the displacement of the elastic body, as of its own stiffness
+    elastic: f64,
 }
 
 impl Trial {
@@ -105,6 +116,47 @@ impl JobSource for Trials<'_> {
 }
 
 impl Trials<'_> {
+    /// The state that the trials go on from, if they are of a stage: found now, unless it is there.
+    ///
+    /// # Errors
+    /// [`Error::NoStableState`] if the case does not stand until then.
+    pub fn stage(&self, told: &mut dyn FnMut(&str)) -> Result<Option<StageState>, Error> {
+        let Some((name, until)) = self.subject.stage() else { return Ok(None) };
+        let (set, text) = self.subject.until_the_stage()?;
+        let origin = self.solver.stamp().map(|stamp| format!("{stamp}\n\n{text}"));
+        let directory = self.output.join("trials").join("stage.out");
+        let task = LaunchTask { directory: directory.clone(), origin, ..self.task(1.0, &set, &text) };
+        let checkpoint = |manifest: &Manifest| Some(directory.join(manifest.checkpoint.as_ref()?));
+        let outcome = self.solver.outcome(&task, |manifest| {
+            manifest.case.text == text && checkpoint(manifest).is_some_and(|path| path.exists())
+        })?;
+        let what = format!("the run to the end of the stage \"{name}\"");
+        if [RunState::NoConvergence, RunState::Left].contains(&outcome.state) {
+            let at = outcome.manifest.as_ref().and_then(|manifest| manifest.failure.as_ref()).map_or(0.0, |it| it.time);
+            let reason = format!(
+                "with its whole strength the case does not stand until the end of the stage \"{name}\", t = {until}: it ended \
+                 at t = {at} ({}); look at {}",
+                outcome.reason,
+                directory.display()
+            );
+            return Err(Error::NoStableState { reason });
+        }
+        let from = outcome.manifest.as_ref().and_then(checkpoint).filter(|_| outcome.state == RunState::Done);
+        let Some(checkpoint) = from else { return Err(outcome.error(what)) };
+        let kept = if outcome.kept { ", kept" } else { "" };
+        told(&format!("{what}: {} iterations, {:.1} s{kept}", outcome.cost.iterations, outcome.cost.wall_seconds));
+        let elastic = match self.kept(ELASTIC)? {
+            Some(trial) => trial,
+            None => self.make(ELASTIC, &Stop::default())?,
+        };
+        Ok(Some(StageState { checkpoint, cost: outcome.cost, elastic: elastic.displacement }))
+    }
+
+    /// What a trial goes on from.
+    fn beginning(&self, factor: f64) -> Option<&StageState> {
+        self.stage.as_ref().filter(|_| factor != ELASTIC)
+    }
+
     /// The run of a factor, which makes a case of the text.
     fn task<'b>(&'b self, factor: f64, set: &'b [String], text: &str) -> LaunchTask<'b> {
         LaunchTask {
@@ -115,6 +167,7 @@ impl Trials<'_> {
             // The same text is the same trial, on whatever ranks; but not of another solver.
             origin: self.solver.stamp().map(|stamp| format!("{stamp}\n\n{text}")),
             force: self.force,
+            from: self.beginning(factor).map(|state| state.checkpoint.clone()),
             resume: false,
         }
     }
@@ -126,7 +179,10 @@ impl Trials<'_> {
             code,
             reason: format!("{reason} (whole in {})", launch::beside(directory, "log").display()),
         };
-        let carried = |manifest: &Manifest| manifest.failure.as_ref().map_or(0.0, |it| it.time / self.subject.end);
+        let [begin, whole] = self.subject.times(factor);
+        let carried = |manifest: &Manifest| {
+            manifest.failure.as_ref().map_or(0.0, |it| (it.time - begin).max(0.0) / (whole - begin))
+        };
         let (reason, load) = (outcome.reason.clone(), outcome.manifest.as_ref().map(carried));
         let end = match (outcome.state, load) {
             (RunState::Done, Some(_)) => End::Equilibrium,
@@ -136,19 +192,21 @@ impl Trials<'_> {
         };
         let column = outcome.history.as_ref().and_then(|history| history.get(&self.subject.column)?.last().copied());
         let displacement = column.ok_or_else(|| broken("it left no displacement".to_owned()))?;
-        let frames = RunRecord::read(directory)?.frames(&[self.subject.end])?;
+        let frames = RunRecord::read(directory)?.frames(&[whole])?;
         let strains = frames.last().and_then(|frame| FieldName::PlasticStrain.values(frame));
         let RunCost { cpu_seconds, wall_seconds, steps, iterations, cuts, .. } = outcome.cost;
+        let before = self.beginning(factor).map_or(RunCost::default(), |state| state.cost);
+        let elastic = self.beginning(factor).map_or(0.0, |state| state.elastic);
         Ok(Trial {
             factor,
             end,
-            displacement: displacement * self.subject.conditions.stiffness,
+            displacement: elastic + displacement * self.subject.conditions.stiffness,
             plastic_strain: strains.and_then(|strains| strains.into_iter().reduce(f64::max)),
-            steps,
-            iterations,
-            cuts,
-            cpu_seconds,
-            seconds: wall_seconds,
+            steps: steps - before.steps,
+            iterations: iterations - before.iterations,
+            cuts: cuts - before.cuts,
+            cpu_seconds: cpu_seconds - before.cpu_seconds,
+            seconds: wall_seconds - before.wall_seconds,
             kept: outcome.kept,
             directory: within(factor),
         })

@@ -23,6 +23,7 @@ pub(super) fn outcome(batch: &Batch, order: &RunOrder) -> Outcome {
         case: batch.path.to_owned(),
         from: RANGE[0],
         to: RANGE[1],
+        stage: None,
         width: WIDTH,
         jobs: Some(1),
         set: order.set.clone(),

@@ -36,6 +36,7 @@ impl Launcher<'_> {
             further: Vec::new(),
             directory: self.output.join("runs").join(slug(&study.title)).join(format!("{}.out", run.name)),
             origin: None,
+            from: None,
             force: self.force,
             resume: false,
         };

@@ -17,6 +17,7 @@ fn between((from, to): (f64, f64), case: &str, set: &[&str], jobs: usize, output
         case: Path::new(CASES).join(case),
         from,
         to,
+        stage: None,
         width: 0.05,
         jobs: Some(jobs),
         set: set.iter().map(|&set| set.to_owned()).collect(),

@@ -61,6 +61,11 @@ impl Graded {
         Some(Self { law: Box::new(self.law.over(dt)?), ..self.clone() })
     }
 
+    /// The same with its strength divided by a further `factor`.
+    pub(super) fn reduced(self, factor: f64) -> Self {
+        Self { reduction: self.reduction * factor, ..self }
+    }
+
     /// The elastic part where it is stiffest.
     pub fn stiffest(&self) -> &Elastic {
         &self.stiffest
