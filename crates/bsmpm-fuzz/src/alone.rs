@@ -38,6 +38,10 @@ impl Simulation {
             Some(Initial::Elastic) => {
                 initial::set_elastic(&self.model, &mut self.points, (&self.halo, &mut self.solver))?;
             }
+            Some(Initial::AtRest(k0)) if case.settles => {
+                let k0 = |material: u16| k0[usize::from(material)];
+                initial::set_spread(&self.model, &mut self.points, k0, (&self.halo, &mut self.solver))?;
+            }
             Some(Initial::AtRest(k0)) => {
                 let stress = |material, x: &_| model::at_rest(case, k0, material, x);
                 initial::set_stress(&self.model, &mut self.points, stress);

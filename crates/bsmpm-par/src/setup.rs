@@ -10,7 +10,7 @@ use bsmpm::tensor::Vector;
 use bsmpm_io::manifest;
 use bsmpm_ranks::linear::Choice;
 use bsmpm_ranks::load;
-use bsmpm_ranks::simulation::{Simulation, StartBalance, StartStress};
+use bsmpm_ranks::simulation::{Simulation, StartStress};
 use bsmpm_ranks::slab::Slabs;
 use bsmpm_scene::model::{at_rest, penalty, weighting};
 use bsmpm_scene::words::{Factor, Word};
@@ -25,18 +25,20 @@ pub type Start = (Equilibrium, Option<Settling>);
 
 /// Gives the points the stress that the case wants at the start, and tells how well it is balanced.
 pub fn start(case: &Case, simulation: &mut Simulation<'_, PlaneStrain, 2>) -> Result<Option<Start>, StepError> {
-    let Some(initial) = &case.initial else { return Ok(None) };
-    let k0;
-    let (stress, settled): (StartStress<'_, 2>, StartBalance<'_>) = match initial {
-        Initial::Elastic => (StartStress::Elastic, StartBalance::Plastic),
-        Initial::AtRest(list) => {
-            k0 = (|material: u16, x: &Vector<2>| at_rest(case, list, material, x), |material: u16| {
-                list[usize::from(material)]
-            });
-            (StartStress::Given(&k0.0), StartBalance::Spread(&k0.1))
+    let (by_weight, by_k0);
+    let stress: StartStress<'_, 2> = match &case.initial {
+        None => return Ok(None),
+        Some(Initial::Elastic) => StartStress::Elastic,
+        Some(Initial::AtRest(k0)) if case.settles => {
+            by_k0 = |material: u16| k0[usize::from(material)];
+            StartStress::Spread(&by_k0)
+        }
+        Some(Initial::AtRest(k0)) => {
+            by_weight = |material: u16, x: &Vector<2>| at_rest(case, k0, material, x);
+            StartStress::Given(&by_weight)
         }
     };
-    simulation.stress(stress, if case.settles { settled } else { StartBalance::None }).map(Some)
+    simulation.stress(stress, case.settles).map(Some)
 }
 
 /// The room that the bodies have in the grid at the start, and its first cut: about equal loads. `None` with more ranks

@@ -34,15 +34,7 @@ pub enum StartStress<'a, const D: usize> {
     Given(&'a dyn Fn(u16, &Vector<D>) -> Symmetric),
     /// linear elastic equilibrium
     Elastic,
-}
-
-/// How a stress at the start is brought into equilibrium with the materials' own laws.
-pub enum StartBalance<'a> {
-    /// It is left as it is.
-    None,
-    /// From it.
-    Plastic,
-    /// From its vertical part, spread, and the horizontal one by K0, -, of every material.
+    /// its vertical part, and the horizontal one by K0, -, of every material
     Spread(&'a dyn Fn(u16) -> f64),
 }
 
@@ -102,27 +94,22 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         Self { model, points, halo, universe, petsc, choice, slabs, schedule, stepper, solver, steps, cost, timers }
     }
 
-    /// Gives the points a stress at the start, see [`initial`], and tells how well it is balanced, and what that took.
+    /// Gives the points a stress at the start, see [`initial`], which `settles` to equilibrium with the materials' laws,
+    /// and tells how well it is balanced, and what that took.
     pub fn stress(
         &mut self,
         start: StartStress<'_, D>,
-        balance: StartBalance<'_>,
+        settles: bool,
     ) -> Result<(Equilibrium, Option<Settling>), StepError> {
+        let Self { model, points, halo, solver, .. } = self;
         match start {
-            StartStress::Given(sigma) => initial::set_stress(&self.model, &mut self.points, sigma),
-            StartStress::Elastic => {
-                initial::set_elastic(&self.model, &mut self.points, (&*self.halo, &mut self.solver))?
-            }
+            StartStress::Given(sigma) => initial::set_stress(model, points, sigma),
+            StartStress::Elastic => initial::set_elastic(model, points, (&**halo, solver))?,
+            StartStress::Spread(k0) => initial::set_spread(model, points, k0, (&**halo, solver))?,
         }
-        if let StartBalance::Spread(k0) = balance {
-            initial::spread(&self.model, &mut self.points, k0, (&*self.halo, &mut self.solver))?;
-        }
-        let settles = !matches!(balance, StartBalance::None);
-        let settling = settles
-            .then(|| initial::settle(&self.model, &mut self.points, (&*self.halo, &mut self.solver)))
-            .transpose()?;
-        initial::hold(&self.model, &mut self.points, (&*self.halo, &mut self.solver))?;
-        Ok((initial::balance(&self.model, &self.points, &*self.halo)?, settling))
+        let settling = settles.then(|| initial::settle(model, points, (&**halo, solver))).transpose()?;
+        initial::hold(model, points, (&**halo, solver))?;
+        Ok((initial::balance(model, points, &**halo)?, settling))
     }
 
     /// Puts the run where another one stood after `steps` steps; the points are there already.

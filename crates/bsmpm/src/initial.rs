@@ -3,7 +3,7 @@
 
 mod settle;
 
-pub use settle::{Settling, settle, spread};
+pub use settle::{Settling, set_spread, settle};
 
 use crate::boundary::StripReport;
 use crate::boundary::strip::StripAttachments;
@@ -124,9 +124,7 @@ pub fn set_elastic<K: Kinematics<D>, const D: usize>(
     let mut du = u.clone();
     let mut strains = vec![Symmetric::default(); points.len()];
     for _ in 0..CORRECTIONS {
-        let of_strains: Vec<Symmetric> =
-            strains.iter().enumerate().map(|(p, strain)| stress_of(&elastic_at(model, points, p), strain)).collect();
-        let residual = elastic_residual(&problem, &of_strains, &u);
+        let residual = elastic_residual(&problem, &strains, &u);
         if residual.measure() <= BALANCED {
             break;
         }
@@ -231,15 +229,16 @@ impl<const D: usize> Undeformed<D> {
     }
 }
 
-/// Out-of-balance force of a stress of every point on the undeformed geometry.
+/// Out-of-balance force of linear elastic stress on the undeformed geometry.
 fn elastic_residual<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
-    stresses: &[Symmetric],
+    strains: &[Symmetric],
     u: &[f64],
 ) -> Balance {
     let volume = problem.volume();
     let f_int = transfer::divergence::<K, D>((problem.shape, &problem.points.x), |p| {
-        K::flux(&stresses[p], &Tensor::identity()) * volume[p]
+        let tau = stress_of(&elastic_at(problem.model, problem.points, p), &strains[p]);
+        K::flux(&tau, &Tensor::identity()) * volume[p]
     });
     Balance::of(problem, u, &problem.halo.sum(&f_int), 0)
 }

@@ -121,8 +121,7 @@ impl Case {
             let face = Face { axis, upper };
             let (support, contact) = (self.boundary[axis][usize::from(upper)], self.contacts[axis][usize::from(upper)]);
             let begun = self.stages.iter().filter(|stage| self.has_begun(stage, t)).flat_map(|stage| &stage.faces);
-            let mut of =
-                *begun.filter(|of| of.face == face).last().unwrap_or(&FaceSupport { face, support, contact });
+            let mut of = *begun.filter(|of| of.face == face).last().unwrap_or(&FaceSupport { face, support, contact });
             of.contact = of.contact.map(|contact| Contact { friction: contact.friction / divided, ..contact });
             faces.push(of);
         }

@@ -243,7 +243,7 @@ pub(super) fn grow(
 
 /// Warns of loads that act in full from the start: a state by k0 knows the weight alone.
 pub(super) fn sudden(case: &Case, report: &mut Report<'_>) {
-    if !matches!(case.initial, Some(Initial::AtRest(_))) {
+    if case.settles || !matches!(case.initial, Some(Initial::AtRest(_))) {
         return;
     }
     let is_sudden = |ramp: f64, amplitude: &[(f64, f64)]| match amplitude.first() {

@@ -65,7 +65,11 @@ pub(super) fn at_stage(case: &mut Case, root: &Record, report: &mut Report<'_>) 
         report.note("check", "none", "strength_reduction.stage: they are of the case as it is");
         case.checks.clear();
     }
-    if unloaded { load_at_once(case, until, steps) } else { reduce(case, (until, steps), factor) }
+    if unloaded {
+        load_at_once(case, until, steps)
+    } else {
+        reduce(case, (until, steps), factor)
+    }
     let end = case.analysis.end;
     case.output.times.retain(|t| *t <= end);
 }

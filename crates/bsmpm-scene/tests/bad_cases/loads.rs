@@ -230,6 +230,11 @@ pub const INITIAL: &[Row] = &[
     row("k0 = 0.5", "k0 = -0.5", "initial.k0", "0 <= k0 <= 100"),
     row("k0 = 0.5", "k0 = 0.5\ngravity = \"elastic\"", "initial.gravity", "only one of k0, gravity").down(1),
     row("k0 = 0.5", "gravity = \"plastic\"", "initial.gravity", "expected one of \"elastic\""),
+    row("k0 = 0.5", "k0 = 0.5\nequilibrium = \"elastic\"", "initial.equilibrium", "expected one of \"plastic\"")
+        .down(1),
+    row("k0          = 0.6", "k0 = 0.6\nocr = 2", "material.till.ocr", "k0 is given, too").down(1),
+    row("k0          = 0.6", "ocr = 0.5", "material.till.ocr", "ocr >= 1"),
+    row("k0          = 0.6", "ocr = 2", "material.till.ocr", "the friction angle varies"),
     row("k0 = 0.5", "", "initial", "missing: k0 (or one in [material.sand])").up(1),
     row("k0 = 0.5", "gravity = \"elastic\"", "material.till.k0", "no meaning with initial.gravity").up(37),
     row("[initial]\nk0 = 0.5\n", "", "material.till.k0", "no meaning without [initial]").up(36),

@@ -313,6 +313,15 @@ pub const STAGES: &[Row] = &[
         "did you mean `clay`?",
     ),
     row("add  = [\"fill\"]", "materials = [{ from = \"sand\" }]", "stage.0.materials.0.to", "missing"),
+    row(
+        "add  = [\"fill\"]",
+        "strength_reduction = 0.05",
+        "stage.0.strength_reduction",
+        "0.1 <= strength_reduction <= 100",
+    ),
+    row("factor = 1.25", "factor = 1.25\nstage = \"filled\"", "strength_reduction.stage", "needs a quasi-static")
+        .down(1),
+    row("factor = 1.25", "factor = 1.25\nsteps = 1001", "strength_reduction.steps", "0 <= steps <= 1000").down(1),
     row("at     = \"500 ms\"", "at = 0.25", "stage.1.at", "stages follow in time"),
     row("at     = \"500 ms\"", "at = \"1 s\"", "stage.1.at", "not before the end of the run"),
     row("at   = \"0.25 s\"", "at = 0", "stage.0.at", "out of range"),
@@ -412,4 +421,35 @@ pub const STAGES_OF_ONE: &[Row] = &[
         "is not told by the stress",
     )
     .down(8),
+    row(
+        "[output]",
+        "[strength_reduction]\nfactor = 1.2\nstage = \"dig\"\n[[stage]]\nname = \"dug\"\nat = 0.5\n\
+         reset_displacements = true\n[output]",
+        "strength_reduction.stage",
+        "did you mean `dug`?",
+    )
+    .down(2),
+    row(
+        "[output]",
+        "[strength_reduction]\nfactor = 1.2\nstage = \"start\"\n[output]",
+        "strength_reduction.stage",
+        "nothing has loaded the ground",
+    )
+    .down(2),
+    row(
+        "[output]",
+        "[strength_reduction]\nfactor = 1.2\nstage = \"end\"\n[[stage]]\nat = 0.5\nstrength_reduction = 1.1\n[output]",
+        "strength_reduction.stage",
+        "stage.0 divides the strength, too",
+    )
+    .down(2),
+    row(
+        "[material.soil]\nmodel   = \"hencky\"",
+        "[gravity]\nacceleration = [0, -9.81]\n[initial]\nk0 = 0.6\n[[stage]]\nat = 0.5\nstrength_reduction = 1.1\n\
+         [material.soil]\nunit_weight = 2e4\nkappa = 0.02\nlambda = 0.1\ncritical_ratio = 1\nocr = 1.5\n\
+         model = \"modified-cam-clay\"",
+        "stage.0.strength_reduction",
+        "cannot be divided under the stress",
+    )
+    .down(6),
 ];

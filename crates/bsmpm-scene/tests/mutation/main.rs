@@ -41,6 +41,8 @@ const VALUES: [&str; 22] = [
 const OTHERWISE: [&[(&str, &str)]; 7] = [
     &[
         ("geometry = \"plane-strain\"", "geometry = \"plane-strain\"\naccuracy = \"draft\""),
+        ("\nk0 = 0.5", "\nk0 = 0.5\nequilibrium = \"plastic\""),
+        ("reset_displacements = true", "reset_displacements = true\nstrength_reduction = 1.2"),
         ("base = \"smooth\"", "base = \"smooth\"\nname = \"strip\""),
         ("components = \"all\"", "components = \"all\"\nname = \"plate\""),
         ("\nramp = \"0.5 s\"", "\nramp = \"0.5 s\"\nname = \"surcharge\""),
@@ -113,7 +115,8 @@ const OTHERWISE: [&[(&str, &str)]; 7] = [
 ];
 
 fn bases() -> Vec<String> {
-    let mut bases = vec![FULL.to_owned(), STATIC.to_owned()];
+    let later = format!("{STATIC}\n[strength_reduction]\nfactor = 1.2\nstage = \"end\"\nsteps = 5\n");
+    let mut bases = vec![FULL.to_owned(), STATIC.to_owned(), later];
     for changes in OTHERWISE {
         let mut text = FULL.to_owned();
         for (part, by) in changes {

@@ -251,7 +251,16 @@ impl Probes<'_> {
         let solver = SolverProgram { command: &command, side_by_side: true };
         solver.check()?;
         let (origin, force, resume) = (None, true, false);
-        let task = LaunchTask { case: &case, set: &[], further, directory: directory.clone(), origin, from: None, force, resume };
+        let task = LaunchTask {
+            case: &case,
+            set: &[],
+            further,
+            directory: directory.clone(),
+            origin,
+            from: None,
+            force,
+            resume,
+        };
         let outcome = solver.outcome(&task, |_| false)?;
         Ok(ProbeRun { outcome, rows: rows(&directory), directory })
     }

@@ -206,7 +206,7 @@ impl Trials<'_> {
             iterations: iterations - before.iterations,
             cuts: cuts - before.cuts,
             cpu_seconds: cpu_seconds - before.cpu_seconds,
-            seconds: wall_seconds - before.wall_seconds,
+            seconds: (wall_seconds - before.wall_seconds).max(0.0),
             kept: outcome.kept,
             directory: within(factor),
         })

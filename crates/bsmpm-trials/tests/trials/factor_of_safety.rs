@@ -12,13 +12,23 @@ fn search(case: &str, set: &[&str], jobs: usize, output: &Path) -> (Value, usize
     between((1.0, 2.0), case, set, jobs, output)
 }
 
-fn between((from, to): (f64, f64), case: &str, set: &[&str], jobs: usize, output: &Path) -> (Value, usize) {
+fn between(range: (f64, f64), case: &str, set: &[&str], jobs: usize, output: &Path) -> (Value, usize) {
+    of_stage((range, 0.05, None), case, set, jobs, output)
+}
+
+fn of_stage(
+    ((from, to), width, stage): ((f64, f64), f64, Option<&str>),
+    case: &str,
+    set: &[&str],
+    jobs: usize,
+    output: &Path,
+) -> (Value, usize) {
     let arguments = FosArguments {
         case: Path::new(CASES).join(case),
         from,
         to,
-        stage: None,
-        width: 0.05,
+        stage: stage.map(str::to_owned),
+        width,
         jobs: Some(jobs),
         set: set.iter().map(|&set| set.to_owned()).collect(),
         output: Some(output.to_owned()),
@@ -101,4 +111,42 @@ fn an_embankment_on_clay_whose_weight_acts_from_the_start_has_a_factor() {
     // Bishop's simplified circles: 1.428.
     assert!((found / 1.428 - 1.0).abs() < 0.05, "{found}");
     assert!(notes.contains("a load acts at once") && notes.contains("begins with a stress"), "{notes}");
+}
+
+/// Built by gravity with the whole strength, which then falls: the factor of the slope that is loaded with less.
+#[test]
+fn a_slope_that_is_built_and_then_weakened_has_the_same_factor() {
+    let found = |stage: Option<&str>| {
+        let dir = tempfile::tempdir().unwrap();
+        let plan = ((1.0, 2.0), 0.05, stage);
+        let (found, made) = of_stage(plan, "short/slope_stability.toml", &["grid.cell=2.0"], 1, dir.path());
+        if stage.is_some() {
+            let (again, none) = of_stage(plan, "short/slope_stability.toml", &["grid.cell=2.0"], 1, dir.path());
+            assert_eq!((&again["factor_of_safety"], none), (&found["factor_of_safety"], 0));
+        }
+        (estimate(&found), made, found)
+    };
+    let ((plain, ..), (staged, made, whole)) = (found(None), found(Some("end")));
+    println!("{plain} loaded with less strength, {staged} weakened after it was built");
+    assert!((plain - staged).abs() < 0.05, "{plain} {staged}");
+    let trials = whole["trials"].as_array().unwrap();
+    assert!(made > trials.len() - 1, "the run to the stage, too: {made}");
+    let steps = |row: &Value| row["steps"].as_u64().unwrap();
+    assert!(trials.iter().all(|row| steps(row) <= 11), "they go on from its checkpoint: {whole}");
+}
+
+/// Deeper is less safe, and what is asked for is each stage's own. Cells of 2 m are as large as the first pit is deep.
+#[test]
+fn a_pit_is_less_safe_after_every_stage() {
+    let of = |stage: &str| {
+        let dir = tempfile::tempdir().unwrap();
+        let plan = ((2.0, 12.0), 0.5, Some(stage));
+        let (found, _) = of_stage(plan, "excavation.toml", &["grid.cell=2.0"], 2, dir.path());
+        let notes = found["notes"].to_string();
+        assert!(notes.contains(&format!("the stage \\\"{stage}\\\"")), "{notes}");
+        found["factor_of_safety"]["last_stable"].as_f64().unwrap_or_else(|| panic!("{found}"))
+    };
+    let [first, second] = ["pit 1", "pit 2"].map(of);
+    println!("{first} after the first stage, {second} after the second");
+    assert!(first > second + 1.0 && second > 2.0, "{first} {second}");
 }

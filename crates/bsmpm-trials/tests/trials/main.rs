@@ -18,6 +18,7 @@ mod ranks;
 mod restart;
 mod room;
 mod scenes;
+mod settled_start;
 mod signals;
 mod stages;
 mod sweep;

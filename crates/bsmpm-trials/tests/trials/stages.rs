@@ -1,8 +1,8 @@
 //! Stages: what is removed and placed leaves what closed forms say, and the run is the same however it is cut.
 
-use crate::support::Scratch;
 use crate::support::cases::{SLIDING_BLOCK, changed};
 use crate::support::results::{at, differences, history, last_frame, manifest};
+use crate::support::{Scratch, shipped};
 
 /// Pa, N/m3, m: constrained modulus, unit weight and thickness of the lifts; so stiff that strains are small.
 const MODULUS: f64 = 1.2e11;
@@ -313,4 +313,59 @@ fn a_weaker_law_returns_the_stress_that_it_takes_over() {
     assert!((before - 1.0 / 3.0).abs() < 1e-3, "nu/(1 - nu): {before}");
     // The Cauchy stress is the Kirchhoff stress over J = 1 - 8e-5.
     assert!((vertical - after - YIELD / PRESSURE).abs() < 1e-4, "{vertical} - {after}");
+}
+
+/// The same by a stage that divides the strength: of a yield stress of 8 kPa a half, and then all of it again. What has
+/// flowed does not come back.
+#[test]
+fn a_stage_divides_the_strength_under_the_stress_that_is_there() {
+    let soil = "[material.soil]\nmodel = \"hencky\"\nyoung = \"100 MPa\"\npoisson = 0.25\n";
+    let yields =
+        "[material.soil]\nmodel = \"von-mises\"\nyoung = \"100 MPa\"\npoisson = 0.25\nyield_stress = \"8 kPa\"\n";
+    let case = changed(SWITCHED, soil, yields);
+    let case = changed(
+        &case,
+        "apply = [\"prop\"]\nmaterials = [{ from = \"soil\", to = \"other\" }]",
+        "strength_reduction = 2",
+    );
+    let case = changed(&case, "at = 3\nrelease = [\"load\"]", "at = 3\nstrength_reduction = 1");
+    let a = case.find("[[stage]]\nat = 4").expect("the last stage");
+    let b = case.find("[[history]]").expect("histories");
+    let c = case.find("[[prescribed]]").expect("a prop");
+    let d = case.find("[[stage]]").expect("stages");
+    let scratch = Scratch::with_case(&(case[..c].to_owned() + &case[d..a] + &case[b..]));
+    scratch.mpirun(1, &["case.toml", "-q", "-o", "whole"]).expect(0);
+    let found = history(&scratch.path("whole"));
+    let deviator = |t: f64| (at(&found, "stress-xx", t) - at(&found, "stress-yy", t)) / PRESSURE;
+    assert!((deviator(2.0) - 2.0 / 3.0).abs() < 1e-3, "{}", deviator(2.0));
+    for t in [3.0, 5.0] {
+        // The Cauchy stress is the Kirchhoff stress over J = 1 - 8e-5.
+        assert!((deviator(t) - 0.4).abs() < 1e-4, "{t}: {}", deviator(t));
+    }
+    let told: Vec<_> = manifest(&scratch.path("whole")).stages.iter().map(|stage| stage.strength_reduction).collect();
+    assert_eq!(told, [None, Some(2.0), Some(1.0)]);
+    repeats(&scratch, &["top-y", "stress-xx", "stress-yy"], &["3", "4", "5", "6", "7"]);
+}
+
+/// A run goes on with another factor until it has divided the strength by one.
+#[test]
+fn a_checkpoint_before_the_reduction_is_of_any_factor_and_one_after_it_of_its_own() {
+    let slope = std::fs::read_to_string(shipped("short/slope_stability.toml")).unwrap();
+    let case = changed(&slope, "factor = 1.3", "factor = 1.0\nstage = \"end\"\nsteps = 4");
+    let case = changed(&case, "cell  = \"1 m\"", "cell = \"2 m\"");
+    let scratch = Scratch::with_case(&case);
+    let run = |to: &str, more: &[&str]| scratch.mpirun(1, &[&["case.toml", "-q", "-o", to][..], more].concat());
+    let factor = ["--set", "strength_reduction.factor=1.2"];
+    run("base", &["--max-steps", "10"]).expect(75);
+    run("late", &["--max-steps", "12"]).expect(75);
+    let checkpoint = |name: &str| {
+        let name = scratch.path(name).join(manifest(&scratch.path(name)).checkpoint.expect("a checkpoint"));
+        name.to_str().expect("UTF-8").to_owned()
+    };
+    run("branch", &[&factor[..], &["--restart", &checkpoint("base")]].concat()).expect(0);
+    run("whole", &factor).expect(0);
+    let [branch, whole] = ["branch", "whole"].map(|name| last_frame(&scratch.path(name)));
+    assert!(branch == whole, "a trial that goes on from the common part is the trial");
+    let refused = run("other", &[&factor[..], &["--restart", &checkpoint("late")]].concat()).expect(76);
+    assert!(refused.stderr.contains("has divided its strength"), "{}", refused.stderr);
 }

@@ -3,20 +3,22 @@
 //! the displacement go; what the lost displacement did to the lever arms is a part in the strain of the forces of that
 //! round, and the next one mends it.
 
-use super::{BALANCED, CORRECTIONS, Undeformed, b_e_of, elastic_at, elastic_residual, stress_of};
+use super::{Undeformed, b_e_of, set_elastic};
 use crate::error::StepError;
-use crate::grid::transfer;
 use crate::kinematics::Kinematics;
+use crate::method::Criteria;
 use crate::model::Model;
 use crate::parallel::{Halo, LinearSolver};
 use crate::points::Points;
 use crate::solve;
 use crate::step::commit;
-use crate::step::residual::Residual;
 use crate::step::report::Counts;
-use crate::step::stiffness;
-use crate::tensor::Symmetric;
+use crate::step::residual::Residual;
 
+/// Energy measure of a round: the displacement, which goes, need not be known.
+const ANY: f64 = 1.0;
+/// Force measure of a round, of the tolerance: what the lost displacement does comes on top.
+const WITHIN: f64 = 0.5;
 /// Rounds after which the search is given up.
 const MOST_ROUNDS: usize = 60;
 /// Least part of what is out of balance that a round takes on.
@@ -31,49 +33,23 @@ pub struct Settling {
     pub evaluations: usize,
 }
 
-/// Puts the vertical stress of linear elastic equilibrium next to the given one in its place, with the shear that goes
-/// with it, and `k0(material)` times it as horizontal stress: of level ground that is an equilibrium, in which no
-/// quadrature is left, and beneath a step of the surface the weight above is spread. Fails as
-/// [`set_elastic`](super::set_elastic).
-pub fn spread<K: Kinematics<D>, const D: usize>(
+/// Gives every point the vertical stress of linear elastic equilibrium under the loads at time 0, with the shear that goes
+/// with it, and `k0(material)` times it as horizontal stress: of level ground that is the weight above, without what the
+/// points' quadrature is off; beneath a step of the surface it is spread, which a jump across a vertical line, in balance
+/// as it is, would never be. Fails as [`set_elastic`].
+pub fn set_spread<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     points: &mut Points<D>,
     k0: impl Fn(u16) -> f64,
     (halo, solver): (&dyn Halo, &mut dyn LinearSolver),
 ) -> Result<(), StepError> {
-    let model = &model.at_rest();
-    let start = Undeformed::of(model, points, halo)?;
-    let problem = start.problem(model, points, halo);
-    stiffness::assemble(&problem, None, solver)?;
-    let mut u = vec![0.0; model.grid.nodes() * D];
-    let mut du = u.clone();
-    let given: Vec<Symmetric> = (0..points.len()).map(|p| points.sigma.at(p)).collect();
-    let mut stresses = given.clone();
-    for _ in 0..CORRECTIONS {
-        let residual = elastic_residual(&problem, &stresses, &u);
-        if residual.measure() <= BALANCED {
-            break;
-        }
-        if halo.is_interrupted() {
-            return Err(StepError::Interrupted);
-        }
-        solver.solve(&residual.f_oob, &mut du)?;
-        u.iter_mut().zip(&du).for_each(|(u, du)| *u += du);
-        let strains = transfer::gradients::<K, D, _>((&start.shape, &points.x), &u, |_, grad| {
-            Symmetric::of(&K::gradient::<f64>(&grad))
-        });
-        for (p, strain) in strains.iter().enumerate() {
-            let added = stress_of(&elastic_at(model, points, p), strain);
-            stresses[p] = Symmetric(std::array::from_fn(|k| given[p].0[k] + added.0[k]));
-        }
-    }
-    for (p, mut stress) in stresses.into_iter().enumerate() {
-        let vertical = stress.0[D - 1];
-        let side = k0(points.material[p]) * vertical;
+    set_elastic(model, points, (halo, solver))?;
+    for p in 0..points.len() {
+        let mut stress = points.sigma.at(p);
+        let side = k0(points.material[p]) * stress.0[D - 1];
         (0..3).filter(|k| *k != D - 1).for_each(|k| stress.0[k] = side);
         let law = model.materials[usize::from(points.material[p])].at(points.height(p));
         let state = points.state.as_mut().map_or(&mut [][..], |state| state.of_point_mut(p));
-        state.fill(0.0);
         points.b_e.set(p, b_e_of(&law, &stress, state));
         points.sigma.set(p, stress);
     }
@@ -89,6 +65,9 @@ pub fn settle<K: Kinematics<D>, const D: usize>(
     (halo, solver): (&dyn Halo, &mut dyn LinearSolver),
 ) -> Result<Settling, StepError> {
     let model = &model.at_rest();
+    let Criteria { force, max_iterations, .. } = model.criteria;
+    let criteria = Criteria { energy: ANY, force: WITHIN * force, max_iterations };
+    let sought = &Model { criteria, ..model.clone() };
     let at_rest = vec![0.0; model.grid.nodes() * D];
     let (mut held, mut counts, mut rounds) = (None::<Vec<f64>>, Counts::default(), 0);
     let (mut left, mut part) = (1.0_f64, 1.0_f64);
@@ -107,7 +86,7 @@ pub fn settle<K: Kinematics<D>, const D: usize>(
         start.nodes.f_ext.iter_mut().zip(&*held).for_each(|(force, held)| *force -= next * held);
         let around = (&start.grips, &*points);
         let found =
-            solve::contact::find(model, &start.shape, &mut start.nodes, around, &at_rest, (halo, solver), &mut counts);
+            solve::contact::find(sought, &start.shape, &mut start.nodes, around, &at_rest, (halo, solver), &mut counts);
         match found {
             Ok(found) => {
                 let responses = commit::responses(model, &found.trial, points, halo)?;

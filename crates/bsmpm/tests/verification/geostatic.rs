@@ -74,6 +74,55 @@ fn a_state_beyond_yield_is_counted() {
     assert_eq!(found.yielding, scene.points.len() as u64 / 2);
 }
 
+/// Elastic gravity gives K0 = nu/(1 - nu) = .43, and active pressure is (1 - sin phi)/(1 + sin phi) = .55 of the
+/// vertical stress: all ground is beyond yield, and settles on it.
+fn settled<K: Kinematics<D>, const D: usize>(method: Stabilisation) {
+    let friction = 0.3_f64;
+    let law = MohrCoulomb::new(Elastic { young: 1e6, poisson: 0.3 }, friction, 0.0, 0.0);
+    let mut scene = ground::<K, D>(Material::MohrCoulomb(law)).stabilised(method);
+    let halo = scene.halo();
+    let mut solver = Skyline::new(&scene.model.grid);
+    let before = scene.points.clone();
+    initial::set_elastic(&scene.model, &mut scene.points, (&halo, &mut solver)).expect("an elastic state");
+    let elastic = initial::balance(&scene.model, &scene.points, &halo).expect("forces");
+    let settling = initial::settle(&scene.model, &mut scene.points, (&halo, &mut solver)).expect("an equilibrium");
+    let found = initial::balance(&scene.model, &scene.points, &halo).expect("forces");
+    let active = (1.0 - friction.sin()) / (1.0 + friction.sin());
+    let off = |p: usize| {
+        let stress = scene.points.sigma.at(p).0;
+        (stress[0] / stress[D - 1] - active).abs()
+    };
+    let off = (0..scene.points.len()).map(off).fold(0.0, f64::max);
+    println!("{D}-D {method:?}: {} beyond yield, then {found:?}, {settling:?}, off by {off:.1e}", elastic.yielding);
+    assert_eq!(elastic.yielding, scene.points.len() as u64);
+    assert!(found.force <= scene.model.criteria.force && found.yielding == 0 && settling.rounds > 0, "{found:?}");
+    assert!(off <= 1e-9, "active pressure: {off:e}");
+    let still = (&scene.points.x, &scene.points.F, &scene.points.u, &scene.points.eps_p);
+    assert_eq!(still, (&before.x, &before.F, &before.u, &before.eps_p));
+}
+
+#[test]
+fn ground_beyond_yield_settles_at_active_pressure_where_it_is() {
+    settled::<PlaneStrain, 2>(Stabilisation::None);
+    settled::<PlaneStrain, 2>(Stabilisation::ConsistentFBar);
+    settled::<Solid, 3>(Stabilisation::None);
+}
+
+#[test]
+fn level_ground_keeps_k0_and_loses_the_quadrature_of_its_weight() {
+    let law = MohrCoulomb::new(Elastic { young: 1e4, poisson: 0.3 }, 0.5, 0.0, 0.0);
+    let mut scene = ground::<PlaneStrain, 2>(Material::MohrCoulomb(law));
+    let halo = scene.halo();
+    let mut solver = Skyline::new(&scene.model.grid);
+    initial::set_spread(&scene.model, &mut scene.points, |_| 0.7, (&halo, &mut solver)).expect("a state");
+    let settling = initial::settle(&scene.model, &mut scene.points, (&halo, &mut solver)).expect("an equilibrium");
+    let found = initial::balance(&scene.model, &scene.points, &halo).expect("forces");
+    let stress = |p: usize| scene.points.sigma.at(p).0;
+    let off = (0..scene.points.len()).map(|p| (stress(p)[0] / stress(p)[1] - 0.7).abs()).fold(0.0, f64::max);
+    assert!(found.force <= 1e-11 && found.yielding == 0 && settling.rounds == 0, "{found:?} {settling:?}");
+    assert!(off <= 1e-14, "{off:e}");
+}
+
 #[test]
 fn a_stress_whose_strain_has_no_response_is_an_error() {
     // 80 Pa at the bottom against E = 1e-2 Pa: strains of thousands, whose b no f64 holds.
