@@ -298,6 +298,15 @@ fn a_case_without_a_factor_of_safety_is_refused_before_anything_runs() {
         let said = text(&output.stderr);
         assert!(output.status.code() == Some(65) && said.contains(told), "{set:?}: {output:?}");
     }
+    let stage = "stage=[{ at = 0.5, name = \"dug\", reset_displacements = true }]";
+    let output = bench.fos(&["--set", stage, "--stage", "start"]);
+    let said = text(&output.stderr);
+    assert!(output.status.code() == Some(65) && said.contains("a load still grows at the end"), "{output:?}");
+    let output = bench.fos(&["--set", stage, "--stage", "dig"]);
+    assert!(
+        output.status.code() == Some(2) && text(&output.stderr).contains("\"dug\", \"start\", \"end\""),
+        "{output:?}"
+    );
     let output = bench.fos(&["--set", "solver.tolerance=1e-2", "--set", "gravity.ramp=2.0"]);
     assert_eq!(text(&output.stderr).lines().filter(|line| line.starts_with("  ")).count(), 2, "{output:?}");
     fs::remove_file(bench.path("slope.toml")).unwrap();
@@ -316,6 +325,8 @@ fn a_wrong_command_line_is_refused_with_2() {
         &["--width", "0"],
         &["--width", "5"],
         &["--width", "wide"],
+        &["--stage", "end", "--from", "0.5", "--to", "0.9"],
+        &["--stage", "nowhere"],
         &["--set", "strength_reduction.factor=2"],
         &["--set", "strength_reduction={factor = 2}"],
         &["--unknown"],
