@@ -95,7 +95,11 @@ impl Case {
             let face = Face { axis, upper };
             let (support, contact) = (self.boundary[axis][usize::from(upper)], self.contacts[axis][usize::from(upper)]);
             let begun = self.stages.iter().filter(|stage| self.has_begun(stage, t)).flat_map(|stage| &stage.faces);
-            faces.push(*begun.filter(|of| of.face == face).last().unwrap_or(&FaceSupport { face, support, contact }));
+            faces.push(*begun.filter(|of| of.face == face).next_back().unwrap_or(&FaceSupport {
+                face,
+                support,
+                contact,
+            }));
         }
         faces
     }
