@@ -94,12 +94,9 @@ impl Case {
         for (axis, upper) in [(0, false), (0, true), (1, false), (1, true)] {
             let face = Face { axis, upper };
             let (support, contact) = (self.boundary[axis][usize::from(upper)], self.contacts[axis][usize::from(upper)]);
-            let begun = self.stages.iter().filter(|stage| self.has_begun(stage, t)).flat_map(|stage| &stage.faces);
-            faces.push(*begun.filter(|of| of.face == face).next_back().unwrap_or(&FaceSupport {
-                face,
-                support,
-                contact,
-            }));
+            let mut begun = self.stages.iter().rev().filter(|stage| self.has_begun(stage, t));
+            let changed = begun.find_map(|stage| stage.faces.iter().find(|of| of.face == face));
+            faces.push(*changed.unwrap_or(&FaceSupport { face, support, contact }));
         }
         faces
     }
