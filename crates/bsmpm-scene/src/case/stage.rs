@@ -97,8 +97,8 @@ impl Case {
 
     /// What the strength of the start is divided by once the stages until the time `t` have begun.
     fn divided_at(&self, t: f64) -> f64 {
-        let begun = self.stages.iter().filter(|stage| self.has_begun(stage, t));
-        let factor = begun.filter_map(|stage| stage.strength_reduction).last();
+        let mut begun = self.stages.iter().rev().filter(|stage| self.has_begun(stage, t));
+        let factor = begun.find_map(|stage| stage.strength_reduction);
         factor.map_or(1.0, |factor| factor / self.strength_reduction.unwrap_or(1.0))
     }
 
@@ -120,8 +120,9 @@ impl Case {
         for (axis, upper) in [(0, false), (0, true), (1, false), (1, true)] {
             let face = Face { axis, upper };
             let (support, contact) = (self.boundary[axis][usize::from(upper)], self.contacts[axis][usize::from(upper)]);
-            let begun = self.stages.iter().filter(|stage| self.has_begun(stage, t)).flat_map(|stage| &stage.faces);
-            let mut of = *begun.filter(|of| of.face == face).last().unwrap_or(&FaceSupport { face, support, contact });
+            let mut begun = self.stages.iter().rev().filter(|stage| self.has_begun(stage, t));
+            let changed = begun.find_map(|stage| stage.faces.iter().find(|of| of.face == face));
+            let mut of = *changed.unwrap_or(&FaceSupport { face, support, contact });
             of.contact = of.contact.map(|contact| Contact { friction: contact.friction / divided, ..contact });
             faces.push(of);
         }

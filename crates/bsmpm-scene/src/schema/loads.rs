@@ -3,7 +3,7 @@
 use super::Kind::*;
 use super::Presence::{Default, Optional, Required};
 use super::{Dimension as In, Kind, Range, Table, body, key, one_of};
-use crate::words::{Base, Components, Settled, Side, Start, Word};
+use crate::words::{Base, Components, Settled, Side, Start, Support, Word};
 use std::ops::Bound::Included;
 
 const PLACE: Kind = Pair(In::Length, Range::ANY);
@@ -16,6 +16,29 @@ const RAMP: Kind = Quantity(In::Time, Range::NOT_NEGATIVE);
 pub(super) const FACTOR: Range = Range::of(Included(0.1), Included(100.0));
 /// Horizontal over vertical stress: from nothing to far beyond passive pressure.
 pub(super) const COEFFICIENT: Range = Range::of(Included(0.0), Included(100.0));
+
+/// What a face of the grid is.
+pub(super) const SUPPORT: Kind = ChoiceOr(Support::WORDS, &CONTACT);
+
+static CONTACT: Table = Table {
+    header: "FACE = { friction, lifts }",
+    doc: "A face that material slides along with Coulomb friction, and comes off",
+    keys: &[
+        key(
+            "friction",
+            Quantity(In::Number, Range::of(Included(0.0), Included(2.0))),
+            Required,
+            "tangent of the angle of friction between face and material; [strength_reduction] divides it, too",
+        ),
+        key(
+            "lifts",
+            Flag,
+            Default("true"),
+            "whether material comes off the face; false: it is held there both ways, and nothing rubs where it pulls",
+        ),
+    ],
+    exclusive: &[],
+};
 
 pub(super) static FOOTING: Table = Table {
     header: "[footing]",

@@ -2,7 +2,7 @@
 
 use super::Kind::*;
 use super::Presence::{Default, Optional, Required};
-use super::tables::SUPPORT;
+use super::loads::SUPPORT;
 use super::{Dimension as In, Kind, Range, Table, key, loads};
 
 pub(super) static STAGE: Table = Table {

@@ -3,7 +3,7 @@
 use super::Kind::*;
 use super::Presence::{Default, Optional, Required};
 use super::{Dimension as In, Kind, Range, Table, body, element, key, later, laws, loads, one_of, output, stage};
-use crate::words::{Accuracy, C0Lines, Factor, Geometry, Ksp, LinearSolver, Nonlinear, Order, Pc, Support, Word};
+use crate::words::{Accuracy, C0Lines, Factor, Geometry, Ksp, LinearSolver, Nonlinear, Order, Pc, Word};
 use bsmpm::background::{Extent, Kind as Background};
 use bsmpm::model::Regime;
 use bsmpm::quadrature::Quadrature;
@@ -106,36 +106,14 @@ static GRAVITY: Table = Table {
     exclusive: &[],
 };
 
-pub(super) const SUPPORT: Kind = ChoiceOr(Support::WORDS, &CONTACT);
-
-static CONTACT: Table = Table {
-    header: "FACE = { friction, lifts }",
-    doc: "A face that material slides along with Coulomb friction, and comes off",
-    keys: &[
-        key(
-            "friction",
-            Quantity(In::Number, Range::of(Included(0.0), Included(2.0))),
-            Required,
-            "tangent of the angle of friction between face and material; [strength_reduction] divides it, too",
-        ),
-        key(
-            "lifts",
-            Flag,
-            Default("true"),
-            "whether material comes off the face; false: it is held there both ways, and nothing rubs where it pulls",
-        ),
-    ],
-    exclusive: &[],
-};
-
 static BOUNDARY: Table = Table {
     header: "[boundary]",
     doc: "Support of every face of the grid: all components held, the normal one, none, or contact",
     keys: &[
-        key("left", SUPPORT, Default("\"free\""), "face at the lowest x"),
-        key("right", SUPPORT, Default("\"free\""), "face at the highest x"),
-        key("bottom", SUPPORT, Default("\"free\""), "face at the lowest y"),
-        key("top", SUPPORT, Default("\"free\""), "face at the highest y"),
+        key("left", loads::SUPPORT, Default("\"free\""), "face at the lowest x"),
+        key("right", loads::SUPPORT, Default("\"free\""), "face at the highest x"),
+        key("bottom", loads::SUPPORT, Default("\"free\""), "face at the lowest y"),
+        key("top", loads::SUPPORT, Default("\"free\""), "face at the highest y"),
         later("front", "face of a three-dimensional grid"),
         later("back", "face of a three-dimensional grid"),
     ],

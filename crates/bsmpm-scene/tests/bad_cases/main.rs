@@ -4,6 +4,7 @@
 
 mod loads;
 mod matrix;
+mod page;
 mod rows;
 mod texts;
 

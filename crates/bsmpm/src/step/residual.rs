@@ -29,8 +29,8 @@ pub struct Residual<K: Kinematics<D>, const D: usize> {
 /// Step (5b): what is out of balance at the nodes, with the norms that judge it.
 #[derive(Clone, Debug)]
 pub struct Balance {
-    /// N  f_ext + strips + dashpots + friction - f_int - M a - background (a: `Inertia::acting`), zero at components that
-    /// are not free
+    /// N  f_ext + strips + dashpots + friction - f_int - M a - background (a: `Inertia::acting`), zero at components
+    /// that are not free
     pub f_oob: Vec<f64>,
     /// N  force of the supports on the body, zero at components that are neither prescribed nor rubbed nor damped
     pub reaction: Vec<f64>,

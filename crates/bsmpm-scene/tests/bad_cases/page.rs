@@ -1,0 +1,118 @@
+//! What a user sees of wrong soils and scenes: `cases/results/wrong_cases.md`, which is made here.
+
+use super::{DYNAMIC, STATIC};
+use bsmpm_scene::Case;
+use std::path::Path;
+
+/// What is wrong, a base, and changes of it: the first error of the case that they make is shown.
+struct Wrong {
+    what: &'static str,
+    base: &'static str,
+    changes: &'static [(&'static str, &'static str)],
+}
+
+const fn dynamic(what: &'static str, changes: &'static [(&'static str, &'static str)]) -> Wrong {
+    Wrong { what, base: DYNAMIC, changes }
+}
+
+const fn at_rest(what: &'static str, changes: &'static [(&'static str, &'static str)]) -> Wrong {
+    Wrong { what, base: STATIC, changes }
+}
+
+const CLAY: &str = "cohesion    = 2e4\n";
+const RECORD: &str = "acceleration = [[0.0, 0.1, 0.0], [\"1 s\", \"-0.1 g\", \"5 cm/s2\"]]";
+
+const WRONG: &[Wrong] = &[
+    dynamic("a law that is none", &[("\"tresca\"", "\"cam-clay\"")]),
+    dynamic(
+        "clay that is stronger once it is remoulded",
+        &[("\"tresca\"", "\"sensitive-clay\""), (CLAY, "cohesion = 2e4\nsensitivity = 0.5\nsoftening_strain = 20\n")],
+    ),
+    dynamic("Cam-clay without its swelling", &[("\"tresca\"", "\"modified-cam-clay\""), (CLAY, "lambda = 0.1\n")]),
+    dynamic(
+        "a granular law that flows fastest with less friction",
+        &[
+            ("\"tresca\"", "\"mu-i\""),
+            (
+                CLAY,
+                "mu_s = 0.64\nmu_2 = 0.38\ninertial_number = 0.28\ngrain_diameter = \"1 mm\"\ngrain_density = 2500\n",
+            ),
+        ],
+    ),
+    at_rest(
+        "damping where nothing vibrates",
+        &[("poisson = 0.3", "poisson = 0.3\ndamping = { ratio = 0.05, frequency = 2.0 }")],
+    ),
+    dynamic("friction as an angle", &[("bottom = \"fixed\"", "bottom = { friction = \"20 deg\" }")]),
+    dynamic(
+        "a face that rubs and is fixed",
+        &[("bottom = \"fixed\"", "bottom = { friction = 0.3, type = \"fixed\" }")],
+    ),
+    at_rest("a body that only friction would hold", &[("bottom = \"fixed\"", "bottom = \"contact\"")]),
+    dynamic(
+        "the gap at a face that is in no contact",
+        &[("quantity = \"heave\"", "quantity = \"gap\"\nface = \"left\"")],
+    ),
+    at_rest("waves in a quasi-static analysis", &[("bottom = \"fixed\"", "bottom = \"absorbing\"")]),
+    dynamic("what leaves, where nothing can", &[("quantity = \"heave\"", "quantity = \"outflow\"")]),
+    dynamic("a record that goes back in time", &[(RECORD, "acceleration = [[0.5, 0.1, 0.0], [0.4, 0.2, 0.0]]")]),
+    dynamic(
+        "a pressure and a stress at once",
+        &[("stress = [0.0, \"-20 kPa\"]", "stress = [0.0, \"-20 kPa\"]\npressure = \"20 kPa\"")],
+    ),
+    dynamic(
+        "a body that spins and flies",
+        &[(
+            "velocity = [0.0, \"-1 m/s\"]",
+            "velocity = [0.0, \"-1 m/s\"]\nspin = { rate = \"2 m/s\", about = [1.5, \"2 m\"] }",
+        )],
+    ),
+    dynamic("a stage that places what has no name", &[("add  = [\"fill\"]", "add = [\"fil\"]")]),
+    dynamic("a body that is placed twice", &[("add  = [\"fill\"]", "add = [\"fill\", \"fill\"]")]),
+    dynamic("stages that go back in time", &[("at     = \"500 ms\"", "at = 0.25")]),
+    dynamic("a stage that changes nothing", &[("add  = [\"fill\"]", "add = []")]),
+    dynamic(
+        "a law for a material that there is none of",
+        &[("add  = [\"fill\"]", "add = [\"fill\"]\nmaterials = [{ from = \"clai\", to = \"sand\" }]")],
+    ),
+    dynamic(
+        "bodies that would change their mass",
+        &[("add  = [\"fill\"]", "add = [\"fill\"]\nmaterials = [{ from = \"sand\", to = \"clay\" }]")],
+    ),
+    dynamic(
+        "a face that opens and is driven",
+        &[("add  = [\"fill\"]", "add = [\"fill\"]\nboundary = { right = \"roller\" }")],
+    ),
+];
+
+/// The page: of every wrong case what was changed, and what the program says.
+fn page() -> String {
+    let mut page = String::from(
+        "# Wrong cases\n\nWhat the program says of wrong soils, contacts, loads, motions, stages and histories: the first \
+         error of each, as it\nis printed, with exit code 65. All errors of a case are told at once. Made by the test \
+         `page` of `bsmpm-scene`, which\ncompares; `BSMPM_RENEW=1 cargo test -p bsmpm-scene --test bad_cases page` writes \
+         it anew.\n",
+    );
+    for wrong in WRONG {
+        let mut text = wrong.base.to_owned();
+        for (find, put) in wrong.changes {
+            assert!(text.contains(find), "{}: `{find}` is not in the base", wrong.what);
+            text = text.replacen(find, put, 1);
+        }
+        let errors = Case::from_text("case.toml", &text, &[]).err();
+        let errors = errors.unwrap_or_else(|| panic!("{}: the case is accepted", wrong.what));
+        let first = format!("{:#}", errors[0]);
+        let changed: String = wrong.changes.iter().map(|(_, put)| format!("{}\n", put.trim_end())).collect();
+        page += &format!("\n## {}\n\n```toml\n{changed}```\n\n```text\n{first}\n```\n", wrong.what);
+    }
+    page
+}
+
+#[test]
+fn the_page_of_wrong_cases_is_what_a_user_sees() {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases/results/wrong_cases.md");
+    if std::env::var_os("BSMPM_RENEW").is_some() {
+        std::fs::write(&file, page()).unwrap();
+    }
+    assert!(std::fs::read_to_string(&file).unwrap() == page(), "renew it, as its head says, and read what has changed");
+}
