@@ -114,6 +114,11 @@ impl Case {
         }
     }
 
+    /// A time at which nothing has begun that begins at the time `t`, and everything that began before.
+    pub fn just_before(&self, t: f64) -> f64 {
+        t - 1.5 * SAME * self.analysis.dt
+    }
+
     /// What all faces of the grid do once the stages until the time `t` have begun.
     pub fn faces_at(&self, t: f64) -> Vec<FaceSupport> {
         let (mut faces, divided) = (Vec::new(), self.divided_at(t));

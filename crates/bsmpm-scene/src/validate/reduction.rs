@@ -66,7 +66,7 @@ pub(super) fn at_stage(case: &mut Case, root: &Record, report: &mut Report<'_>) 
         case.checks.clear();
     }
     if unloaded {
-        load_at_once(case, until, steps)
+        load_at_once(case, case.just_before(until), steps)
     } else {
         reduce(case, (until, steps), factor)
     }
@@ -77,7 +77,10 @@ pub(super) fn at_stage(case: &mut Case, root: &Record, report: &mut Report<'_>) 
 /// Goes on from `until` with one step more of whole strength, and then with so many of less and less.
 fn reduce(case: &mut Case, (until, steps): (f64, u64), factor: f64) {
     let dt = case.analysis.dt;
-    case.stages.retain(|stage| stage.at < until - APART * dt);
+    let ahead = case.stages.iter().position(|stage| stage.at > until - APART * dt).unwrap_or(case.stages.len());
+    // What they would place and apply stays away.
+    let mut never = case.stages.split_off(ahead);
+    never.iter_mut().for_each(|stage| stage.at = f64::INFINITY);
     let nothing = Stage {
         name: None,
         at: until,
@@ -97,6 +100,7 @@ fn reduce(case: &mut Case, (until, steps): (f64, u64), factor: f64) {
         resets_displacements: step == 1,
         ..nothing.clone()
     }));
+    case.stages.append(&mut never);
     case.analysis.end = if steps == 0 { until } else { until + (steps + 1) as f64 * dt };
 }
 
@@ -134,4 +138,100 @@ fn load_at_once(case: &mut Case, until: f64, steps: u64) {
 fn retain<T>(all: &mut Vec<T>, kept: &[bool]) {
     let mut kept = kept.iter();
     all.retain(|_| kept.next() == Some(&true));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LIFTS: &str = r#"
+        geometry = "plane-strain"
+        [analysis]
+        type = "quasi-static"
+        end = 3
+        steps = 6
+        [grid]
+        lower = [0, 0]
+        upper = [4, 4]
+        cell = "1 m"
+        order = "quadratic"
+        [material.fill]
+        model = "mohr-coulomb"
+        young = "10 MPa"
+        poisson = 0.3
+        friction = 30
+        cohesion = "5 kPa"
+        unit_weight = "18 kN/m3"
+        [[body]]
+        material = "fill"
+        box = { lower = [0, 0], upper = [4, 1] }
+        points_per_cell = 2
+        [[body]]
+        name = "lift-1"
+        material = "fill"
+        box = { lower = [0, 1], upper = [4, 2] }
+        points_per_cell = 2
+        [[body]]
+        name = "lift-2"
+        material = "fill"
+        box = { lower = [0, 2], upper = [4, 3] }
+        points_per_cell = 2
+        [[point_load]]
+        name = "load"
+        at = [1, 1]
+        force = [0, "-1 kN/m"]
+        [[stage]]
+        name = "first"
+        at = 1
+        add = ["lift-1"]
+        [[stage]]
+        name = "second"
+        at = 2
+        add = ["lift-2"]
+        apply = ["load"]
+        [gravity]
+        acceleration = [0, -9.81]
+        [boundary]
+        bottom = "fixed"
+        left = "roller"
+        right = "roller"
+        [strength_reduction]
+        factor = 1.5
+        stage = "first"
+        steps = 2
+    "#;
+
+    fn case(set: &[&str]) -> Case {
+        let set: Vec<String> = set.iter().map(|&set| set.to_owned()).collect();
+        Case::from_text("case", LIFTS, &set).unwrap_or_else(|errors| panic!("{errors:?}"))
+    }
+
+    fn there(case: &Case, t: f64) -> Vec<bool> {
+        (0..case.bodies.len()).map(|body| case.is_there(body, t)).collect()
+    }
+
+    #[test]
+    fn the_case_ends_with_the_reduction_and_what_comes_later_stays_away() {
+        let case = case(&[]);
+        assert_eq!(case.analysis.end, 3.5, "the stage ends at 2, then a step of the whole strength and two of less");
+        let cohesion = |t: f64| case.materials_at(t)[0].material.parameters()[2];
+        assert_eq!([0.0, 2.0, 2.5, 3.0, 3.5].map(cohesion), [5e3, 5e3, 5e3 / 1.25, 5e3 / 1.5, 5e3 / 1.5]);
+        assert_eq!(there(&case, 0.0), [true, false, false]);
+        assert_eq!(there(&case, 3.5), [true, true, false]);
+        assert_eq!(case.acts_since(Acting::Load(0), 3.5), None);
+        let resets: Vec<f64> = case.stages.iter().filter(|stage| stage.resets_displacements).map(|it| it.at).collect();
+        assert_eq!(resets, [2.5]);
+    }
+
+    #[test]
+    fn without_steps_it_ends_with_the_stage_and_unloaded_it_is_what_is_there_then() {
+        assert_eq!(case(&["strength_reduction.steps=0"]).analysis.end, 2.0);
+        let first = case(&["strength_reduction.unloaded=true"]);
+        assert_eq!((first.bodies.len(), first.stages.len(), first.point_loads.len()), (2, 0, 0));
+        assert_eq!(first.gravity.map(|gravity| gravity.ramp), Some(first.analysis.end));
+        let last = case(&["strength_reduction.unloaded=true", "strength_reduction.stage=end"]);
+        assert_eq!((last.bodies.len(), last.point_loads.len()), (3, 1));
+        let before = case(&["strength_reduction.unloaded=true", "strength_reduction.stage=start"]);
+        assert_eq!((before.bodies.len(), before.point_loads.len()), (1, 0));
+    }
 }

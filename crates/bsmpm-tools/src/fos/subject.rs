@@ -298,9 +298,10 @@ fn until(case: &Case, name: &str) -> Result<f64, Error> {
     })
 }
 
-/// Whether a load that acts at a time does not act in full then.
+/// Whether a load that acts until a time does not act in full then.
 fn still_grows(case: &Case, until: f64) -> bool {
-    let ends = |load: usize, ramp: f64| case.acts_since(Acting::Load(load), until).map_or(0.0, |since| since + ramp);
+    let before = case.just_before(until);
+    let ends = |load: usize, ramp: f64| case.acts_since(Acting::Load(load), before).map_or(0.0, |since| since + ramp);
     let ramps = case.tractions.iter().map(|load| load.ramp).chain(case.point_loads.iter().map(|load| load.ramp));
     let gravity = case.gravity.iter().map(|gravity| gravity.ramp);
     ramps.enumerate().map(|(load, ramp)| ends(load, ramp)).chain(gravity).any(|end| end > until * (1.0 + 1e-9))

@@ -11,6 +11,7 @@ use crate::model::Model;
 use crate::parallel::{Halo, LinearSolver};
 use crate::points::Points;
 use crate::solve;
+use crate::solve::round_off::RoundOff;
 use crate::step::commit;
 use crate::step::report::Counts;
 use crate::step::residual::Residual;
@@ -73,8 +74,10 @@ pub fn settle<K: Kinematics<D>, const D: usize>(
     let (mut left, mut part) = (1.0_f64, 1.0_f64);
     loop {
         let mut start = Undeformed::of(model, points, halo)?;
-        let balance = Residual::of(&start.problem(model, points, halo), &at_rest).balance;
-        let is_balanced = balance.measure() <= model.criteria.force;
+        let problem = start.problem(model, points, halo);
+        let balance = Residual::of(&problem, &at_rest).balance;
+        let is_balanced =
+            balance.measure() <= model.criteria.force || RoundOff::of(&problem).covers(&balance, &problem);
         if is_balanced && (left == 0.0 || rounds == 0 && super::balance(model, points, halo)?.yielding == 0) {
             return Ok(Settling { rounds, evaluations: counts.evaluations });
         }
