@@ -3,12 +3,14 @@
 //! is `bsmpm_io::checkpoint`'s part.
 
 mod read;
+mod free_field;
 mod refusal;
 mod sanity;
 mod state;
 mod write;
 
 pub use read::{Opened, Wanted, find};
+pub use free_field::FreeFieldState;
 pub use refusal::Refusal;
 pub(crate) use refusal::{agree, broadcast};
 pub(crate) use sanity::require;

@@ -2,6 +2,7 @@
 //! Numbers after `measured` in the tests are what this machine gave.
 
 mod absorbing;
+mod free_field;
 mod axisymmetric;
 mod bar;
 mod cauchy;
