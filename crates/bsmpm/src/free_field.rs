@@ -91,7 +91,7 @@ fn less<const D: usize>(forces: &[Vector<D>], start: Option<&[Vector<D>]>) -> Ve
 
 /// The scene beside a face: its cells, one across, between the faces that meet it.
 fn beside<K: Kinematics<D>, const D: usize>(model: &Model<K, D>, face: &Support<D>) -> Result<Model<K, D>, StepError> {
-    let wrong = |_| StepError::OtherRank;
+    let wrong = |_| StepError::OtherRank; // cannot be: of axes that a grid has
     let (mut axes, axis) = (model.grid.axes().clone(), face.axis);
     debug_assert!(axis == 0, "layers of nodes across axis 0 are tied");
     let width = model.grid.axes()[axis].breakpoint(face.last_cell(&model.grid) + 1)

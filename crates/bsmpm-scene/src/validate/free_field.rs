@@ -31,7 +31,8 @@ pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
         }
         let (lower, higher) = column(case, upper == 1);
         let in_column = |body: &Body| body.bounds()[0][0] < higher && body.bounds()[1][0] > lower;
-        if case.bodies.iter().any(|body| in_column(body) && body.velocity.is_some_and(|v| v != [0.0; 2])) {
+        let moves = |body: &Body| body.velocity.is_some_and(|v| v != [0.0; 2]) || body.spin.is_some();
+        if case.bodies.iter().any(|body| in_column(body) && moves(body)) {
             refuse("ground with a velocity at the start is no free field: it goes with [shaking]".into());
         }
         if let Some(what) = acts_between(case, (lower, higher)) {

@@ -1,9 +1,9 @@
 //! A column whose layers of nodes are one: the seams of the physics as such a column has them, on one rank.
 
 use crate::error::SolveError;
+use crate::exact::Exact;
 use crate::grid::{Contributions, Grid};
 use crate::parallel::{Halo, Krylov, LinearSolver, Solved, Symmetry};
-use crate::exact::Exact;
 use std::ops::Range;
 
 /// Corrections after which a product is solved no better.
@@ -64,7 +64,7 @@ pub struct Band {
     layer: usize,               // components of a layer
     half: usize,                // entries on each side of the diagonal, at most
     number: Vec<Option<usize>>, // of the unknown, per component of a layer
-    rows: Vec<f64>,             // 2 half + 1 entries of every unknown's row; then L below the diagonal and U on and above
+    rows: Vec<f64>, // 2 half + 1 entries of every unknown's row; then L below the diagonal and U on and above
 }
 
 impl Band {
