@@ -205,7 +205,8 @@ impl Resumed<'_> {
         };
         let names: Vec<&str> = self.found.record.arrays.iter().map(|array| array.name.as_str()).collect();
         let laws = case.materials.iter().map(|named| &named.material);
-        let mut points = Points::holding(&names, bsmpm::material::state_width(laws));
+        let width = bsmpm::material::state_width(laws);
+        let mut points = Points::holding(&names, width);
         self.opened.points(points.named_columns())?;
         let left = self.state.record.left.points;
         let present = (!case.stages.is_empty() || left > 0).then(|| case.ids_at(self.state.progress.t));
@@ -234,6 +235,14 @@ impl Resumed<'_> {
         if !same || !anchored {
             return Err(foreign("its surfaces are not of this case"));
         }
+        let columns = self.state.free_field.iter().map(|column| column.points(width)).collect::<Option<Vec<_>>>();
+        let sound = |column: &Points<2>| column.material.iter().all(|&law| usize::from(law) < model.materials.len());
+        let columns = columns.filter(|columns| columns.iter().all(sound));
+        let followers = model.boundary.absorbing().filter(|face| face.follows).count();
+        let expected = if self.state.steps > 0 { followers } else { 0 };
+        points.free_field = columns
+            .filter(|columns| columns.len() == expected)
+            .ok_or_else(|| foreign("the columns of its free field are not of this case"))?;
         let guess = self.opened.guess(&held.layers(), &window.layers(), window.layer_nodes() * 2)?;
         let is_finite = guess.iter().all(|value| value.is_finite());
         agree(&world, if is_finite { Ok(()) } else { Err(foreign("a nodal displacement is not finite")) })?;

@@ -111,6 +111,7 @@ fn supports(case: &Case, t: f64) -> Vec<Support<2>> {
             (crate::Support::Fixed, _) => Some(Support::fixed(axis, upper)),
             (crate::Support::Roller, _) => Some(Support::roller(axis, upper)),
             (crate::Support::Absorbing, _) => Some(Support::absorbing(axis, upper)),
+            (crate::Support::FreeField, _) => Some(Support::free_field(axis, upper)),
             (crate::Support::Free | crate::Support::Outflow | crate::Support::Contact, None) => None,
         }
     };

@@ -2,6 +2,7 @@
 
 mod body;
 mod element;
+mod free_field;
 mod grid;
 mod history;
 mod lines;
@@ -117,6 +118,7 @@ pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Op
     lines::place(&mut case, record, report);
     physics::check(&case, record, report);
     reduction::at_stage(&mut case, record, report);
+    free_field::check(&case, record, report);
     Some(Case { warnings: std::mem::take(&mut report.warnings), notes: std::mem::take(&mut report.notes), ..case })
 }
 

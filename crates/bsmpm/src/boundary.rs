@@ -32,6 +32,8 @@ pub struct Support<const D: usize> {
     pub contact: Option<Contact>,
     /// whether it lets waves out
     pub absorbs: bool,
+    /// whether the ground beside it moves as a free field, by whose motion and stress it is driven; it absorbs then
+    pub follows: bool,
 }
 
 impl<const D: usize> Support<D> {
@@ -42,7 +44,7 @@ impl<const D: usize> Support<D> {
 
     /// These velocities prescribed, m per unit of time.
     pub fn moving(axis: usize, upper: bool, velocity: [Option<f64>; D]) -> Self {
-        Self { axis, upper, velocity, contact: None, absorbs: false }
+        Self { axis, upper, velocity, contact: None, absorbs: false, follows: false }
     }
 
     /// Nothing held, but what the contact does.
@@ -53,6 +55,11 @@ impl<const D: usize> Support<D> {
     /// Nothing held but the state of the start; waves leave.
     pub fn absorbing(axis: usize, upper: bool) -> Self {
         Self { absorbs: true, ..Self::moving(axis, upper, [None; D]) }
+    }
+
+    /// Beside a free field: what differs from its motion leaves.
+    pub fn free_field(axis: usize, upper: bool) -> Self {
+        Self { follows: true, ..Self::absorbing(axis, upper) }
     }
 
     /// The normal component held.

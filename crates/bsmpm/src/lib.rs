@@ -32,6 +32,7 @@ pub mod element;
 pub mod energy;
 pub mod error;
 pub mod exact;
+pub mod free_field;
 pub mod grid;
 pub mod initial;
 pub mod kinematics;

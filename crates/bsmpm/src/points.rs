@@ -49,6 +49,9 @@ macro_rules! columns {
             pub state: Option<Rows>,
             /// what strips and loads carry on; no column: it is the same on every rank
             pub surface: Surface<D>,
+            /// the columns of the free field, in the order of the faces that have one; no column: the same on every rank,
+            /// and none before the first step
+            pub free_field: Vec<Points<D>>,
         }
 
         impl<const D: usize> Points<D> {
@@ -205,6 +208,13 @@ impl<const D: usize> Points<D> {
     /// Places further points, which start as others did.
     pub fn place(&mut self, seeds: impl IntoIterator<Item = Seed<D>>) {
         seeds.into_iter().for_each(|seed| self.push(&seed));
+    }
+
+    /// The points `kept`, in that order, without what is the same on every rank.
+    pub fn only(&self, kept: &[u32]) -> Self {
+        let mut some = Self { surface: Surface::default(), free_field: Vec::new(), ..self.clone() };
+        some.columns().into_iter().for_each(|column| column.reorder(kept));
+        some
     }
 
     /// Takes the points away whose ids `gone` says.

@@ -24,6 +24,7 @@ use crate::boundary::strip::StripAttachments;
 use crate::boundary::{Anchors, Surface, load};
 use crate::energy::Draft;
 use crate::error::StepError;
+use crate::free_field::FreeField;
 use crate::grid::Shape;
 use crate::initial;
 use crate::kinematics::Kinematics;
@@ -49,6 +50,8 @@ pub fn step<K: Kinematics<D>, const D: usize>(
 ) -> Result<StepReport, StepError> {
     let shape = agreed(halo, Shape::at(&model.grid, points), StepError::OtherRank)?; // (1)
     let mut nodes = Nodes::after(model, (&shape, points), guess, (t, dt), halo)?; // (2)
+    let free_field = FreeField::after(model, points, (t, dt), halo)?;
+    free_field.drive(&mut nodes);
     if let Some(inertia) = nodes.inertia.as_mut().filter(|_| t == 0.0)
         && initial::is_pushed(model, points, halo)?
     {
@@ -80,7 +83,9 @@ pub fn step<K: Kinematics<D>, const D: usize>(
     }
     surface.position = places.loads;
     surface.follow(places.pressure, dt);
+    free_field.settle(&mut surface.held);
     points.surface = surface;
+    points.free_field = free_field.columns;
     let outflow = Outflow::of(model, points, halo);
     let (energy, turnover) = account.map_or((None, None), |(flows, turnover)| (flows, Some(turnover)));
     Ok(StepReport { energy, turnover, advance, smoothed, outflow, ..report })

@@ -1,6 +1,7 @@
 //! What a checkpoint says in words and single numbers: everything that is no array of the points or nodes.
 
 use super::Refusal;
+use super::free_field::FreeFieldState;
 use bsmpm::boundary::{Anchors, Surface};
 use bsmpm::control::Progress;
 use bsmpm::energy::{Books, Budget, Flows};
@@ -47,6 +48,9 @@ pub struct CheckpointState {
     /// N  of every node of every absorbing face what holds the state of the start; none of a run without any.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub held: Vec<Vec<[f64; 2]>>,
+    /// The columns of the free field; none of a run without any, or before the first step.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub free_field: Vec<FreeFieldState>,
     /// What the histories go on from.
     pub record: RecordState,
     /// Strips of which it was told that they hold nothing; and, their number added, that they have let go.

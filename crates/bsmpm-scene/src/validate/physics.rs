@@ -95,7 +95,7 @@ fn held(case: &Case, record: &Record, report: &mut Report<'_>) {
 fn absorbed(case: &Case, record: &Record, report: &mut Report<'_>) {
     let Some(boundary) = record.record("boundary") else { return };
     for (axis, upper) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
-        if case.boundary[axis][upper] != Support::Absorbing {
+        if !matches!(case.boundary[axis][upper], Support::Absorbing | Support::FreeField) {
             continue;
         }
         let side = Side::ALL[axis][upper].word();
@@ -112,10 +112,11 @@ fn absorbed(case: &Case, record: &Record, report: &mut Report<'_>) {
         if !case.stages.is_empty() {
             refuse("holds what [initial] has found there, which stages change: it cannot be used with [[stage]]");
         }
-        if axis == 0 && case.shaking.iter().any(|(_, ground)| *ground != [0.0; 2]) {
+        let absorbs = case.boundary[axis][upper] == Support::Absorbing;
+        if absorbs && axis == 0 && case.shaking.iter().any(|(_, ground)| *ground != [0.0; 2]) {
             refuse(
                 "beside ground that shakes, what comes to a side is not known without the motion of the free field there: \
-                    use \"roller\" far enough away; \"bottom\" may absorb",
+                    use \"free-field\", or \"roller\" far enough away; \"bottom\" may absorb",
             );
         }
     }
@@ -175,7 +176,7 @@ fn holds(case: &Case, component: usize) -> bool {
             let rubs = case.contacts[axis][usize::from(upper)].is_some_and(|contact| contact.friction > 0.0);
             axis == component || rubs
         }
-        Support::Absorbing => true,
+        Support::Absorbing | Support::FreeField => true,
         Support::Free | Support::Outflow => false,
     };
     let mut faces = [(0, false), (0, true), (1, false), (1, true)].into_iter();
@@ -200,7 +201,7 @@ fn held_by_strip(case: &Case, component: usize) -> bool {
 }
 
 /// Whether a body reaches into the cells along a face, and so has nodes on it.
-fn reached(case: &Case, axis: usize, upper: bool) -> bool {
+pub(super) fn reached(case: &Case, axis: usize, upper: bool) -> bool {
     case.bodies.iter().any(|body| {
         let cells = &body.occupied(&case.grid)[axis];
         if upper { cells.end == case.grid.axes[axis].cells() } else { cells.start == 0 }

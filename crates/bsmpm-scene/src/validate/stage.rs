@@ -129,7 +129,7 @@ fn faces((record, factor): (&Record, Option<f64>), root: &Record, report: &mut R
     let mut found = Vec::new();
     for side in Side::ALL.into_iter().flatten().filter(|side| boundary.gives(side.word())) {
         let (support, contact) = (super::support(boundary, side)?, super::contact(boundary, side, factor, report)?);
-        if support == Support::Absorbing {
+        if matches!(support, Support::Absorbing | Support::FreeField) {
             boundary.error(side.word(), "holds what [initial] has found there: only from the start on", report);
         }
         let moves = |motion: &Record| motion.word::<Side>("face") == Some(side);

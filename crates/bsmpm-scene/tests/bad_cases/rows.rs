@@ -261,6 +261,10 @@ pub const RULES: &[Row] = &[
 pub const ABSORBING: &[Row] = &[
     row("left   = \"roller\"", "left = \"absorbing\"", "boundary.left", "cannot be used with [[stage]]"),
     row("left   = \"roller\"", "left = \"absorbing\"", "boundary.left", "the motion of the free field"),
+    row("left   = \"roller\"", "left = \"free-field\"", "boundary.left", "cannot be used with [[stage]]"),
+    row("left   = \"roller\"", "left = \"free-field\"", "boundary.left", "under a free \"top\""),
+    row("left   = \"roller\"", "left = \"free-field\"", "boundary.left", "a traction acts on the cells"),
+    row("bottom = \"fixed\"", "bottom = \"free-field\"", "boundary.bottom", "for \"left\" and \"right\" only"),
     row("quantity = \"heave\"", "quantity = \"outflow\"", "history.5.quantity", "nothing leaves"),
 ];
 
@@ -274,6 +278,8 @@ pub const QUASI_STATIC: &[Row] = &[
     row("bottom = \"fixed\"", "top = \"fixed\"", "boundary", "no fixed face, roller or face in contact that").up(1),
     row("bottom = \"fixed\"", "bottom = \"contact\"", "boundary", "nothing holds the bodies along x").up(1),
     row("bottom = \"fixed\"", "bottom = \"absorbing\"", "boundary.bottom", "there are no waves"),
+    row("bottom = \"fixed\"", "left = \"free-field\"", "boundary.left", "nothing moves the free field"),
+    row("bottom = \"fixed\"", "left = \"free-field\"", "boundary.left", "there are no waves"),
     row("points_per_cell = 3", "points_per_cell = 3\nvelocity = [1, 0]", "body.0.velocity", "quasi-static").down(1),
     row("[output]", "[[history]]\nquantity = \"momentum\"\n[output]", "history.0.quantity", "no momentum").down(1),
     row("steps = 4", "steps = 4\nspectral_radius = 0.8", "analysis.spectral_radius", "no inertia").down(1),

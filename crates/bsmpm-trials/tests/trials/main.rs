@@ -9,6 +9,7 @@ mod energy_made;
 mod estimate;
 mod factor_of_safety;
 mod faults;
+mod free_field;
 mod indicators;
 mod lock;
 mod memory;

@@ -17,8 +17,12 @@ struct Dashpot {
     component: usize,
     /// N s/m  ∫ N_I ρ c dA
     impedance: f64,
-    /// N  in the state of the start
+    /// N  in the state of the start; beside a free field its stress among it
     held: f64,
+    /// m/s  velocity beside it that it does not resist
+    beside: f64,
+    /// number of the face among those that absorb, and of the node on it
+    place: [usize; 2],
 }
 
 /// The dashpots of one step: the same on every rank that shares a node.
@@ -46,20 +50,32 @@ impl Dashpots {
             let held = points.surface.held.get(number);
             for node in grid.face_nodes(face.axis, face.upper) {
                 let [compression, shear] = across(grid, face, node, &nodal);
+                let place = [number, number_on(grid, face, node)];
                 for component in (0..D).filter(|&component| free[Nodal::<D>::at(node, component)]) {
                     let impedance = if component == face.axis { compression } else { shear };
-                    let held = held.map_or(0.0, |held| held[number_on(grid, face, node)][component]);
-                    dashpots.push(Dashpot { component: Nodal::<D>::at(node, component), impedance, held });
+                    let held = held.map_or(0.0, |held| held[place[1]][component]);
+                    let component = Nodal::<D>::at(node, component);
+                    dashpots.push(Dashpot { component, impedance, held, beside: 0.0, place });
                 }
             }
         }
         Self(dashpots)
     }
 
+    /// Drives those of a face, by its number among those that absorb, by the force of what is beside every node of it, N,
+    /// and by its velocity, m/s.
+    pub fn drive<const D: usize>(&mut self, face: usize, force: &[Vector<D>], velocity: &[Vector<D>]) {
+        for at in self.0.iter_mut().filter(|at| at.place[0] == face) {
+            let component = at.component % D;
+            at.held += force[at.place[1]][component];
+            at.beside = velocity[at.place[1]][component];
+        }
+    }
+
     /// Adds their forces at the end of the step, N, to what is out of balance and to the `reaction`.
     pub fn add_forces(&self, inertia: &Inertia, u: &[f64], f_oob: &mut [f64], reaction: &mut [f64]) {
-        for &Dashpot { component, impedance, held } in &self.0 {
-            let force = held - impedance * inertia.velocity(component, u[component]);
+        for &Dashpot { component, impedance, held, beside, .. } in &self.0 {
+            let force = held - impedance * (inertia.velocity(component, u[component]) - beside);
             f_oob[component] += force;
             reaction[component] += force;
         }
@@ -70,17 +86,22 @@ impl Dashpots {
         self.0.iter().map(|at| (at.component, at.impedance * inertia.velocity_factor(at.component)))
     }
 
-    /// J  work of the dashpots on this rank's own nodes, without that of what holds the start.
+    /// J  work of the dashpots on this rank's own nodes, relative to what is beside them, and without that of what holds
+    /// the start.
     pub fn work<const D: usize>(&self, inertia: &Inertia, u: &[f64], halo: &dyn Halo) -> Vec<f64> {
         let owned = Nodal::<D>::all(&halo.owned());
         let own = self.0.iter().filter(|at| owned.contains(&at.component));
-        own.map(|at| -at.impedance * inertia.velocity(at.component, u[at.component]) * u[at.component]).collect()
+        let work = |at: &Dashpot| {
+            let faster = inertia.velocity(at.component, u[at.component]) - at.beside;
+            -at.impedance * faster * (u[at.component] - at.beside * inertia.dt)
+        };
+        own.map(work).collect()
     }
 }
 
 impl<const D: usize> Support<D> {
     /// The cell at the face along its axis.
-    fn last_cell(&self, grid: &Grid<D>) -> usize {
+    pub fn last_cell(&self, grid: &Grid<D>) -> usize {
         if self.upper { grid.axes()[self.axis].cells() - 1 } else { 0 }
     }
 }

@@ -12,6 +12,7 @@ mod discs;
 mod dynamics;
 mod energy;
 mod entering;
+mod free_field;
 mod geostatic;
 mod inf_sup;
 mod interface;

@@ -1,0 +1,70 @@
+//! Sides that follow a free field.
+
+use super::physics::reached;
+use crate::case::{Body, Case, LoadedLine, Site, Support};
+use crate::record::Record;
+use crate::report::Report;
+use crate::words::{Side, Word};
+
+/// The free field is columns of what lies at them, on the base, which nothing else holds or loads.
+pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
+    let Some(boundary) = record.record("boundary") else { return };
+    for (axis, upper) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+        if case.boundary[axis][upper] != Support::FreeField {
+            continue;
+        }
+        let mut refuse = |message: String| boundary.error(Side::ALL[axis][upper].word(), message, report);
+        if axis == 1 {
+            refuse("the free field is that beside the ground: for \"left\" and \"right\" only".into());
+            continue;
+        }
+        if case.shaking.iter().all(|(_, ground)| *ground == [0.0; 2]) {
+            refuse("nothing moves the free field: give [shaking], or use \"absorbing\"".into());
+        }
+        if !matches!(case.boundary[1][0], Support::Fixed | Support::Absorbing) || case.boundary[1][1] != Support::Free {
+            refuse(
+                "the free field stands on the \"bottom\", which must be \"fixed\" or \"absorbing\", under a free \"top\"".into(),
+            );
+        }
+        if !reached(case, axis, upper == 1) {
+            refuse("no body reaches it: there is no ground to be the free field".into());
+        }
+        let (lower, higher) = column(case, upper == 1);
+        let in_column = |body: &Body| body.bounds()[0][0] < higher && body.bounds()[1][0] > lower;
+        let moves = |body: &Body| body.velocity.is_some_and(|v| v != [0.0; 2]) || body.spin.is_some();
+        if case.bodies.iter().any(|body| in_column(body) && moves(body)) {
+            refuse("ground with a velocity at the start is no free field: it goes with [shaking]".into());
+        }
+        if let Some(what) = acts_between(case, (lower, higher)) {
+            refuse(format!("{what} acts on the cells at it, which are the free field: keep it more than a cell away"));
+        }
+    }
+}
+
+/// From and to along x, m, the cells at a side.
+fn column(case: &Case, upper: bool) -> (f64, f64) {
+    let (of, lower) = (&case.grid.axes[0], case.grid.lower()[0]);
+    let cells = of.cells();
+    let cell = if upper { cells - 1 } else { 0 };
+    (lower + of.breakpoint(cell), lower + of.breakpoint(cell + 1))
+}
+
+/// What holds or loads material between two places along x.
+fn acts_between(case: &Case, (lower, higher): (f64, f64)) -> Option<&'static str> {
+    let within = |from: f64, to: f64| from.min(to) < higher && from.max(to) > lower;
+    let line = |line: &LoadedLine| match line {
+        LoadedLine::Segment { from, to } => within(from[0], to[0]),
+        LoadedLine::Circle { center, radius } => within(center[0] - radius, center[0] + radius),
+    };
+    let site = |site: &Site| match site {
+        Site::Face(face) => face.axis == 1,
+        Site::Segment { from, to } => within(from[0], to[0]),
+    };
+    let acting = [
+        ("the footing", case.footing.as_ref().is_some_and(|footing| within(footing.from[0], footing.to[0]))),
+        ("a prescribed motion", case.prescribed.iter().any(|motion| site(&motion.site))),
+        ("a traction", case.tractions.iter().any(|traction| line(&traction.line))),
+        ("a point load", case.point_loads.iter().any(|load| within(load.at[0], load.at[0]))),
+    ];
+    acting.into_iter().find(|(_, acts)| *acts).map(|(what, _)| what)
+}

@@ -1,0 +1,215 @@
+//! The free field beside the ground: columns of soil that shake for themselves and drive the sides.
+#![doc = include_str!("free_field.md")]
+
+mod tied;
+
+use crate::boundary::strip::StripAttachments;
+use crate::boundary::{Boundary, Support};
+use crate::error::StepError;
+use crate::grid::{Grid, KnotVector, Shape, transfer};
+use crate::initial;
+use crate::kinematics::Kinematics;
+use crate::model::Model;
+use crate::nodal::Nodal;
+use crate::parallel::Halo;
+use crate::points::Points;
+use crate::solve;
+use crate::step::adjoint::Pressures;
+use crate::step::commit;
+use crate::step::newmark::Newmark;
+use crate::step::nodes::Nodes;
+use crate::step::problem::Problem;
+use crate::step::report::Counts;
+use crate::step::trial::Trial;
+use crate::tensor::Vector;
+use tied::{Band, TiedHalo};
+
+/// The free field after a step, beside every face that follows it.
+#[derive(Clone, Debug, Default)]
+pub struct FreeField<const D: usize> {
+    /// the columns at the end of the step
+    pub columns: Vec<Points<D>>,
+    beside: Vec<Beside<D>>,
+}
+
+/// What a column is to its face, node by node.
+#[derive(Clone, Debug)]
+struct Beside<const D: usize> {
+    face: usize,                   // among those that absorb
+    force: Vec<Vector<D>>,         // N, of its stress
+    start: Option<Vec<Vector<D>>>, // N, the same at the start, in the first step
+    velocity: Vec<Vector<D>>,      // m/s
+}
+
+impl<const D: usize> FreeField<D> {
+    /// Steps every column from `t` to `t + dt`, each by itself and alike on every rank; the first step begins with
+    /// those of the `points` at the faces. Nothing of a model without such faces.
+    pub fn after<K: Kinematics<D>>(
+        model: &Model<K, D>,
+        points: &Points<D>,
+        (t, dt): (f64, f64),
+        halo: &dyn Halo,
+    ) -> Result<Self, StepError> {
+        let mut field = Self::default();
+        let followers = model.boundary.absorbing().enumerate().filter(|(_, face)| face.follows);
+        for (number, (face, support)) in followers.enumerate() {
+            let alone = beside(model, support)?;
+            let (column, start) = match points.free_field.get(number) {
+                Some(column) => (column.clone(), None),
+                None => begin((model, &alone), support, points, halo)?,
+            };
+            let (column, beside) = advance(&alone, support, column, (t, dt))?;
+            field.beside.push(Beside { face, start, ..beside });
+            field.columns.push(column);
+        }
+        Ok(field)
+    }
+
+    /// Drives the sides in the step.
+    pub fn drive(&self, nodes: &mut Nodes<D>) {
+        for Beside { face, force, start, velocity } in &self.beside {
+            nodes.dashpots.drive(*face, &less(force, start.as_deref()), velocity);
+        }
+    }
+
+    /// Takes what the stress of the start holds from what holds the `held` start: from then on the column has it.
+    pub fn settle(&self, held: &mut [Vec<Vector<D>>]) {
+        for Beside { face, start, .. } in &self.beside {
+            if let Some(held) = held.get_mut(*face) {
+                *held = less(held, start.as_deref());
+            }
+        }
+    }
+}
+
+fn less<const D: usize>(forces: &[Vector<D>], start: Option<&[Vector<D>]>) -> Vec<Vector<D>> {
+    match start {
+        Some(start) => forces.iter().zip(start).map(|(force, start)| force - start).collect(),
+        None => forces.to_vec(),
+    }
+}
+
+/// The scene beside a face: its cells, one across, between the faces that meet it.
+fn beside<K: Kinematics<D>, const D: usize>(model: &Model<K, D>, face: &Support<D>) -> Result<Model<K, D>, StepError> {
+    let wrong = |_| StepError::OtherRank; // cannot be: of axes that a grid has
+    let (mut axes, axis) = (model.grid.axes().clone(), face.axis);
+    debug_assert!(axis == 0, "layers of nodes across axis 0 are tied");
+    let width = model.grid.axes()[axis].breakpoint(face.last_cell(&model.grid) + 1)
+        - model.grid.axes()[axis].breakpoint(face.last_cell(&model.grid));
+    axes[axis] = KnotVector::uniform(width, 1, model.grid.order()).map_err(wrong)?;
+    let grid = Grid::new(axes).map_err(wrong)?.reaching(model.grid.beyond());
+    let supports = model.boundary.supports.iter().filter(|support| support.axis != axis).copied().collect();
+    let boundary = Boundary { supports, reach: model.boundary.reach.clone(), ..Boundary::default() };
+    Ok(Model { grid, boundary, balances_energy: false, ..model.clone() })
+}
+
+/// The column at the start, and the force of its stress on the face if something holds that; one exchange of its
+/// points.
+#[allow(clippy::type_complexity)]
+fn begin<K: Kinematics<D>, const D: usize>(
+    (model, alone): (&Model<K, D>, &Model<K, D>),
+    face: &Support<D>,
+    points: &Points<D>,
+    halo: &dyn Halo,
+) -> Result<(Points<D>, Option<Vec<Vector<D>>>), StepError> {
+    let last = face.last_cell(&model.grid);
+    let at_face = |p: &usize| model.grid.locate(&points.x[*p]).is_some_and(|cell| cell[face.axis] == last);
+    let own: Vec<u32> = (0..points.len()).filter(at_face).map(|p| p as u32).collect();
+    let mut column = everywhere(points.only(&own), halo);
+    let lower = model.grid.axes()[face.axis].breakpoint(last);
+    column.x.iter_mut().for_each(|x| x[face.axis] -= lower);
+    column.sort_by_cell(&alone.grid);
+    if points.surface.held.is_empty() {
+        return Ok((column, None));
+    }
+    let (tied, mut solver) = (TiedHalo::of(&alone.grid), Band::of(&alone.grid));
+    initial::hold(alone, &mut column, (&tied, &mut solver))?;
+    for held in &mut column.surface.held {
+        let row = held.len() / (alone.grid.order() + 1);
+        let first = held[..row].to_vec();
+        held.chunks_exact_mut(row).for_each(|layer| layer.copy_from_slice(&first));
+    }
+    let shape = Shape::at(&alone.grid, &column)?;
+    let nodes = Nodes::map(alone, &shape, &column, (0.0, 0.0), &tied)?;
+    let grips = StripAttachments::at(&[], &column.surface, (&alone.grid, &nodes.free), (0.0, 0.0));
+    let problem = Problem { model: alone, shape: &shape, nodes: &nodes, grips: &grips, points: &column, halo: &tied };
+    let trial = Trial::of(alone, &shape, &nodes, &column, &vec![0.0; nodes.free.len()], &tied);
+    let force = force(&problem, &trial, face)?;
+    Ok((column, Some(force)))
+}
+
+/// The points of the one rank that has some, on every rank.
+fn everywhere<const D: usize>(mut own: Points<D>, halo: &dyn Halo) -> Points<D> {
+    let mut message = Vec::new();
+    for p in 0..own.len() {
+        own.columns().into_iter().for_each(|column| column.put(p, &mut message));
+    }
+    let mut length = [message.len() as f64];
+    halo.reduce(&mut length);
+    let mut bytes: Vec<f64> = message.iter().map(|&byte| f64::from(byte)).collect();
+    bytes.resize(length[0] as usize, 0.0);
+    halo.reduce(&mut bytes);
+    let message: Vec<u8> = bytes.iter().map(|&byte| byte as u8).collect();
+    let (mut all, mut rest) = (own.only(&[]), &message[..]);
+    while !rest.is_empty() {
+        all.columns().into_iter().for_each(|column| column.take(&mut rest));
+    }
+    all
+}
+
+/// Steps a column, and tells what it is then to the nodes of its face.
+fn advance<K: Kinematics<D>, const D: usize>(
+    alone: &Model<K, D>,
+    face: &Support<D>,
+    mut column: Points<D>,
+    (t, dt): (f64, f64),
+) -> Result<(Points<D>, Beside<D>), StepError> {
+    let (tied, mut solver) = (TiedHalo::of(&alone.grid), Band::of(&alone.grid));
+    let shape = Shape::at(&alone.grid, &column)?;
+    let mut nodes = Nodes::map(alone, &shape, &column, (t, dt), &tied)?;
+    if let Some(inertia) = nodes.inertia.as_mut().filter(|_| t == 0.0)
+        && initial::is_pushed(alone, &column, &tied)?
+    {
+        inertia.newmark = Newmark::of_the_end();
+    }
+    let grips = StripAttachments::at(&[], &column.surface, (&alone.grid, &nodes.free), (t, dt));
+    let problem = Problem { model: alone, shape: &shape, nodes: &nodes, grips: &grips, points: &column, halo: &tied };
+    let guess: Vec<f64> = nodes.inertia.iter().flat_map(|inertia| inertia.v.iter().map(|v| v * dt)).collect();
+    let found = solve::find(&problem, &guess, &mut solver, &mut Counts::default())?;
+    commit::check_inside(alone, &shape, &column, &found.u, &tied)?;
+    let force = force(&problem, &found.trial, face)?;
+    let layer = Nodal::<D>::all(&tied.owned());
+    let velocity_of = |c: usize| nodes.inertia.as_ref().map_or(0.0, |inertia| inertia.velocity(c, found.u[c]));
+    let velocity: Vec<f64> = layer.map(velocity_of).collect();
+    let velocity = velocity.chunks_exact(D).map(Vector::from_column_slice).collect();
+    let responses = commit::responses(alone, &found.trial, &column, &tied)?;
+    let across: Vec<f64> = column.x.iter().map(|x| x[face.axis]).collect();
+    commit::commit(alone, (&shape, &nodes), (found, &responses), &mut column, &tied);
+    // Nothing differs across the column: its material stays before the face.
+    column.x.iter_mut().zip(across).for_each(|(x, across)| x[face.axis] = across);
+    column.sort_by_cell(&alone.grid);
+    Ok((column, Beside { face: 0, force, start: None, velocity }))
+}
+
+/// N  of every node of the face, what the stress of the column does there: the flux that the internal forces of the
+/// ground have, so that these balance where the ground moves as the column does.
+fn force<K: Kinematics<D>, const D: usize>(
+    problem: &Problem<'_, K, D>,
+    trial: &Trial<K, D>,
+    face: &Support<D>,
+) -> Result<Vec<Vector<D>>, StepError> {
+    let Problem { model, shape, points, halo, .. } = *problem;
+    let (pressures, volume) = (Pressures::of(problem, trial), problem.volume());
+    let width = model.grid.axes()[face.axis].length();
+    let outward = if face.upper { 1.0 } else { -1.0 };
+    let flux = |p: usize| {
+        let response = trial.respond(model, points, p);
+        let response = response.map_err(|source| StepError::Material { id: points.id[p], source })?;
+        let tau = pressures.acting::<K, D>(p, volume[p], response.tau());
+        let flux = K::flux(&trial.damped(model, points, p, tau), &trial.dF(p));
+        Ok(std::array::from_fn(|i| outward * flux[(i, face.axis)] * volume[p] / width))
+    };
+    let fluxes: Vec<[f64; D]> = (0..points.len()).map(flux).collect::<Result<_, StepError>>()?;
+    let nodal = halo.sum(&transfer::to_nodes::<D, D>(shape, |p| fluxes[p]));
+    Ok(nodal[Nodal::<D>::all(&halo.owned())].chunks_exact(D).map(Vector::from_column_slice).collect())
+}
