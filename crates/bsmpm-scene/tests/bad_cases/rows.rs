@@ -294,7 +294,7 @@ pub const LATER: &[(&str, &str, &str)] = &[
     ("geometry = \"plane-strain\"", "geometry = \"axisymmetric\"", "geometry"),
     ("geometry = \"plane-strain\"", "geometry = \"solid\"", "geometry"),
     ("format = \"vtu\"", "format = \"vtkhdf\"", "output.format"),
-    ("[gravity]", "[profile.depth]", "profile"),
+    ("top    = \"fixed\"", "front = \"free\"", "boundary.front"),
 ];
 
 /// Stages: bodies that come and go.

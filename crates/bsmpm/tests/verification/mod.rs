@@ -21,5 +21,6 @@ mod newton;
 mod oedometer;
 mod penalty;
 mod rotation;
+mod sections;
 mod stability;
 mod surfaces;
