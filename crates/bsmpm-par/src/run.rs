@@ -199,7 +199,12 @@ impl<'p> Run<'p> {
         self.tell_outflow(accepted);
         self.record(&accepted.report);
         let t = accepted.t;
-        self.profile(|run, profile| profile.times.iter().any(|wanted| run.is_now(*wanted, t)));
+        // Not with the frames of early stops, so that the rows are the same however often the run stops.
+        let framed = self.wants_frame(t) || self.is_now(self.case.analysis.end, t);
+        self.profile(|run, profile| match profile.times.is_empty() {
+            true => framed,
+            false => profile.times.iter().any(|wanted| run.is_now(*wanted, t)),
+        });
         if self.wants_frame(accepted.t) {
             self.frame();
         }
@@ -353,7 +358,6 @@ impl<'p> Run<'p> {
         };
         self.require(written);
         self.last_frame = Some(step);
-        self.profile(|_, profile| profile.times.is_empty());
         self.saving.frame_took(begin.elapsed());
     }
 

@@ -42,6 +42,7 @@ impl Run<'_> {
             (report.reactions, report.strips) = (start.reactions, start.strips);
         }
         self.record(&report);
+        self.profile(|_, profile| profile.times.is_empty());
         self.frame();
         Ok(())
     }

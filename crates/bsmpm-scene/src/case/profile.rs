@@ -14,7 +14,8 @@ pub struct Profile {
     pub count: usize,
     /// What is told of each.
     pub quantities: Vec<ProfileQuantity>,
-    /// s (quasi-static: pseudo-time)  when, increasing, within (0, end], hit exactly; empty: with every frame
+    /// s (quasi-static: pseudo-time)  when, increasing, within (0, end], hit exactly; empty: at the start, with
+    /// every frame that is wanted, and at the end
     pub times: Vec<f64>,
     /// The places stay where they are in space; they belong to the material else.
     pub fixed: bool,

@@ -107,7 +107,12 @@ pub(super) static PROFILE: Table = Table {
         key("to", Pair(In::Length, Range::ANY), Required, "where it ends"),
         key("count", Count(1, 1000), Required, "places, equally spaced, the ends among them; one: the middle"),
         key("quantities", Choices(ProfileQuantity::WORDS), Required, "what is told of each place"),
-        key("times", List(In::Time, Range::POSITIVE), Optional, "when, hit exactly; with every frame unless given"),
+        key(
+            "times",
+            List(In::Time, Range::POSITIVE),
+            Optional,
+            "when, hit exactly; unless given at the start, with every frame that [output] wants, and at the end",
+        ),
         key(
             "fixed",
             Flag,

@@ -22,6 +22,7 @@ mod signals;
 mod stages;
 mod sweep;
 mod told;
+mod told_parts;
 
 #[path = "../support/mod.rs"]
 mod support;
