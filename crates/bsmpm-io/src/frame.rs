@@ -23,6 +23,8 @@ pub struct Parts<'a> {
     pub head: Frame,
     /// How many points come.
     pub points: usize,
+    /// Names of what fields number, each list under its own name; kept in the file for readers.
+    pub names: &'a [(String, Vec<String>)],
     /// The next points, with the same step, time and fields; `None` after the last ones.
     pub next: &'a mut dyn FnMut() -> Option<Frame>,
 }

@@ -104,6 +104,9 @@ pub struct Manifest {
     /// Units of the frames' fields, by name, once a frame was written.
     #[serde(default)]
     pub frame_units: BTreeMap<String, String>,
+    /// Names of what the frames' fields number, by field, where frames have fields on request.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub frame_names: BTreeMap<String, Vec<String>>,
     /// The newest good checkpoint, relative to the directory.
     pub checkpoint: Option<String>,
     /// Where the run went on after it had stopped, first one first.
@@ -145,6 +148,7 @@ impl Manifest {
             checks: Vec::new(),
             outputs: Vec::new(),
             frame_units: BTreeMap::new(),
+            frame_names: BTreeMap::new(),
             checkpoint: None,
             restarts: Vec::new(),
             failure: None,

@@ -23,7 +23,10 @@ const LENGTH: u64 = size_of::<u64>() as u64;
 pub fn write(path: &Path, frame: &Frame) -> Result<(), Error> {
     frame.check(path)?;
     let mut left = Some(frame.clone());
-    write_parts(path, Parts { head: frame.without_points(), points: frame.position.len(), next: &mut || left.take() })
+    write_parts(
+        path,
+        Parts { head: frame.without_points(), points: frame.position.len(), names: &[], next: &mut || left.take() },
+    )
 }
 
 /// Writes a frame to the file `path` as its points come, replacing it in one go: the same bytes, whatever the parts.
@@ -40,11 +43,11 @@ pub fn write_parts(path: &Path, parts: Parts<'_>) -> Result<(), Error> {
 fn fill(
     file: &mut (impl Write + Seek),
     path: &Path,
-    Parts { head, points, next }: Parts<'_>,
+    Parts { head, points, names, next }: Parts<'_>,
     refused: &mut Option<Error>,
 ) -> io::Result<()> {
     let mut places = Vec::new(); // of every array in the file, behind its length
-    write_head(file, &head, points, &mut places)?;
+    write_head(file, (&head, names), points, &mut places)?;
     file.write_all(b"  <AppendedData encoding=\"raw\">\n_")?;
     let start = file.stream_position()?;
     let mut given = 0;
@@ -87,7 +90,12 @@ pub fn point_bytes(frame: &Frame) -> u64 {
 }
 
 /// The text, and where the numbers of each array begin from where their bytes do.
-fn write_head(file: &mut impl Write, head: &Frame, points: usize, places: &mut Vec<u64>) -> io::Result<()> {
+fn write_head(
+    file: &mut impl Write,
+    (head, names): (&Frame, &[(String, Vec<String>)]),
+    points: usize,
+    places: &mut Vec<u64>,
+) -> io::Result<()> {
     let mut data = arrays(head, 0);
     let mut offset = 0;
     let mut array = |file: &mut dyn Write, name: &str, components: usize| {
@@ -100,7 +108,7 @@ fn write_head(file: &mut impl Write, head: &Frame, points: usize, places: &mut V
     writeln!(file, "<?xml version=\"1.0\"?>")?;
     let order = "byte_order=\"LittleEndian\" header_type=\"UInt64\"";
     writeln!(file, "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" {order}>\n  <UnstructuredGrid>")?;
-    write_moment(file, head)?;
+    write_moment(file, head, names)?;
     writeln!(file, "    <Piece NumberOfPoints=\"{points}\" NumberOfCells=\"{points}\">\n      <PointData>")?;
     for Field { name, components, .. } in &head.fields {
         array(file, name, *components)?;
@@ -114,13 +122,20 @@ fn write_head(file: &mut impl Write, head: &Frame, points: usize, places: &mut V
     writeln!(file, "      </Cells>\n    </Piece>\n  </UnstructuredGrid>")
 }
 
-/// Time and step as text: exact, and legible without a program. `TimeValue` is the name that ParaView looks for.
-fn write_moment(file: &mut impl Write, frame: &Frame) -> io::Result<()> {
+/// Time and step as text: exact, and legible without a program. `TimeValue` is the name that ParaView looks for. Names
+/// are lists of characters by their codes, each ended by 0, as VTK has them.
+fn write_moment(file: &mut impl Write, frame: &Frame, names: &[(String, Vec<String>)]) -> io::Result<()> {
     let Frame { step, time, .. } = frame;
     let one = "NumberOfTuples=\"1\" format=\"ascii\"";
     writeln!(file, "    <FieldData>")?;
     writeln!(file, "      <DataArray type=\"Float64\" Name=\"TimeValue\" {one}>{time:?}</DataArray>")?;
     writeln!(file, "      <DataArray type=\"UInt64\" Name=\"Step\" {one}>{step}</DataArray>")?;
+    for (name, list) in names {
+        let codes = list.iter().flat_map(|name| name.bytes().chain([0])).map(|code| code.to_string());
+        let (codes, count) = (codes.collect::<Vec<_>>().join(" "), list.len());
+        let array = format!("Array type=\"String\" Name=\"{name}\" NumberOfTuples=\"{count}\" format=\"ascii\"");
+        writeln!(file, "      <{array}>{codes}</Array>")?;
+    }
     writeln!(file, "    </FieldData>")
 }
 

@@ -2,13 +2,16 @@
 //! 0, so that no rank holds more of them than its own and a block.
 
 use bsmpm::material::{Material, Variable};
+use bsmpm::observe::invariants;
 use bsmpm::points::{Column, ColumnInfo, Number, Points};
 use bsmpm_io::frame::{Field, FieldValues, Frame};
 use bsmpm_io::vtu;
+use bsmpm_scene::words::FrameField;
 use mpi::collective::{CommunicatorCollectives, Root, SystemOperation};
 use mpi::datatype::PartitionMut;
 use mpi::topology::{Communicator, SimpleCommunicator};
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 /// Ids of a block: 2 MB of numbers on their way.
 const BLOCK: u64 = 1 << 14;
@@ -35,12 +38,26 @@ enum FieldSource<'a> {
     /// of the materials that have it
     State(Variable, &'a [Material]),
     Volume,
+    /// what the case asks for
+    Asked(FrameField, Around<'a>),
+}
+
+/// What points belong to.
+#[derive(Clone, Copy)]
+pub struct Around<'a> {
+    /// laws by number
+    pub materials: &'a [Material],
+    /// ids of every body's points; empty if no frame tells bodies
+    pub bodies: &'a [Range<u64>],
+    /// what frames show on request
+    pub fields: &'a [FrameField],
 }
 
 impl<'a> FieldSource<'a> {
     /// All of a scene, in the order of the files; the same on all ranks: vectors and tensors, then numbers, then who a
     /// point is.
-    fn all(points: &'a Points<2>, projected: Option<&'a [f64]>, materials: &'a [Material]) -> Vec<Self> {
+    fn all(points: &'a Points<2>, projected: Option<&'a [f64]>, around: Around<'a>) -> Vec<Self> {
+        let materials = around.materials;
         let shown = Points::<2>::COLUMNS.iter().filter(|info| info.frame.is_some());
         let shown = shown.filter_map(|info| points.column(info.name).map(|column| (info, column)));
         let (real, whole): (Vec<_>, Vec<_>) = shown.partition(|(_, column)| column.number() == Number::F64);
@@ -57,7 +74,9 @@ impl<'a> FieldSource<'a> {
         }
         let state = variables.into_iter().map(|variable| Self::State(variable, materials));
         let first = columns(shaped).chain([Self::Pressure]).chain(projected.map(Self::Projected));
-        first.chain(columns(numbers)).chain(state).chain([Self::Volume]).chain(columns(whole).rev()).collect()
+        let asked = around.fields.iter().map(|&field| Self::Asked(field, around));
+        let numbers = first.chain(columns(numbers)).chain(state).chain([Self::Volume]).chain(asked);
+        numbers.chain(columns(whole).rev()).collect()
     }
 
     /// Its name and unit.
@@ -68,6 +87,7 @@ impl<'a> FieldSource<'a> {
             Self::Projected(_) => ("projected_pressure", "Pa"),
             Self::State(variable, _) => (variable.name, variable.unit),
             Self::Volume => ("volume", "m^D"),
+            Self::Asked(field, _) => (field.field(), field.unit()),
         }
     }
 
@@ -75,6 +95,7 @@ impl<'a> FieldSource<'a> {
         match self {
             Self::Column(_, column) if column.width() == 2 => 3,
             Self::Column(_, column) => column.width(),
+            Self::Asked(FrameField::PrincipalStresses, _) => 3,
             _ => 1,
         }
     }
@@ -89,7 +110,7 @@ impl<'a> FieldSource<'a> {
                 column.show(p, row);
                 row.extend((column.width()..self.components()).map(|_| 0.0));
             }
-            Self::Pressure => row.push(-points.sigma.at(p).0[..3].iter().sum::<f64>() / 3.0),
+            Self::Pressure => row.push(invariants::pressure(&points.sigma.at(p))),
             Self::Projected(pressure) => row.push(pressure[p]),
             Self::State(variable, materials) => {
                 let state = materials[usize::from(points.material[p])].state();
@@ -97,13 +118,18 @@ impl<'a> FieldSource<'a> {
                 row.push(place.map_or(0.0, |place| points.state_of(p)[place]));
             }
             Self::Volume => row.push(points.volume[p] * points.F.at(p).determinant()),
+            Self::Asked(field, around) => around.put(*field, points, p, row),
         }
     }
 
     /// The field of the rows, in which its numbers begin at `at`.
     fn field(&self, rows: &[&[f64]], at: usize) -> Field {
         let (name, components) = (self.label().0, self.components());
-        let number = if let Self::Column(_, column) = self { column.number() } else { Number::F64 };
+        let number = match self {
+            Self::Column(_, column) => column.number(),
+            Self::Asked(FrameField::Body, _) => Number::U64,
+            _ => Number::F64,
+        };
         let numbers = rows.iter().flat_map(|row| &row[at..at + components]).copied();
         let values = match number {
             Number::U16 => FieldValues::U16(numbers.map(|number| number as u16).collect()),
@@ -111,6 +137,24 @@ impl<'a> FieldSource<'a> {
             Number::F64 => return Field::real(name, components, numbers.collect()),
         };
         Field { name: name.into(), components, values }
+    }
+}
+
+impl Around<'_> {
+    fn put(&self, field: FrameField, points: &Points<2>, p: usize, row: &mut Vec<f64>) {
+        let sigma = || points.sigma.at(p);
+        row.push(match field {
+            FrameField::Q => invariants::deviatoric(&sigma()),
+            FrameField::PrincipalStresses => return row.extend(invariants::principal(&sigma())),
+            FrameField::MobilisedStrength => invariants::mobilised(self.materials, points, p),
+            FrameField::DeviatoricStrain => invariants::deviatoric_strain(points, p),
+            FrameField::Yielding => {
+                let mobilised = invariants::mobilised(self.materials, points, p);
+                f64::from(u8::from(Material::is_yielding(mobilised)))
+            }
+            FrameField::Density => invariants::density(points, p),
+            FrameField::Body => self.bodies.partition_point(|ids| ids.end <= points.id[p]) as f64,
+        });
     }
 }
 
@@ -127,11 +171,11 @@ pub struct Gathering<'a> {
 }
 
 impl<'a> Gathering<'a> {
-    /// The points of all ranks with what their materials carry, and with their projected pressures (Pa) if these are
-    /// wanted. Collective.
+    /// The points of all ranks with what they belong to, and with their projected pressures (Pa) if these are wanted.
+    /// Collective.
     pub fn new(
         world: &'a SimpleCommunicator,
-        (points, materials): (&'a Points<2>, &'a [Material]),
+        (points, around): (&'a Points<2>, Around<'a>),
         projected: Option<&'a [f64]>,
         moment: FrameMoment,
     ) -> Self {
@@ -141,7 +185,7 @@ impl<'a> Gathering<'a> {
         let (mut end, mut total) = (0_u64, 0_u64);
         world.all_reduce_into(&own, &mut end, SystemOperation::max());
         world.all_reduce_into(&(points.len() as u64), &mut total, SystemOperation::sum());
-        let sources = FieldSource::all(points, projected, materials);
+        let sources = FieldSource::all(points, projected, around);
         Self { world, points, sources, moment, by_id, gone: 0, ids: 0..end, total: total as usize }
     }
 
@@ -221,9 +265,9 @@ fn no_points(dynamic: bool) -> Points<2> {
 }
 
 /// Bytes that a point takes in a frame's file.
-pub fn point_bytes(dynamic: bool, projected: bool, materials: &[Material]) -> u64 {
+pub fn point_bytes(dynamic: bool, projected: bool, around: Around<'_>) -> u64 {
     let points = no_points(dynamic);
-    let sources = FieldSource::all(&points, projected.then_some(&[]), materials);
+    let sources = FieldSource::all(&points, projected.then_some(&[]), around);
     vtu::point_bytes(&unpack(&[], FrameMoment { step: 0, time: 0.0, lower: [0.0; 2] }, &sources))
 }
 

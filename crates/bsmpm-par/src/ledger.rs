@@ -24,6 +24,7 @@ use bsmpm_io::steps::{STEPS, StepRow};
 use bsmpm_io::table::{Cell, CsvTable, TableColumn};
 use bsmpm_ranks::simulation::Cost;
 use bsmpm_scene::Case;
+use bsmpm_scene::Profile;
 use bsmpm_scene::Regime;
 use bsmpm_scene::surfaces;
 
@@ -35,6 +36,7 @@ pub struct Ledger {
     history: CsvTable,
     steps: CsvTable,
     residuals: Option<CsvTable>, // if the case asks for it
+    profiles: Vec<CsvTable>,
     frames: Frames,
     store: Option<Store>, // once there is a checkpoint
     news: Vec<String>,    // warnings of this start
@@ -51,7 +53,8 @@ pub struct Ledger {
 struct Headings {
     history: Vec<TableColumn>,
     steps: Vec<TableColumn>,
-    residuals: Option<Vec<TableColumn>>, // if the case asks for them
+    residuals: Option<Vec<TableColumn>>,       // if the case asks for them
+    profiles: Vec<(String, Vec<TableColumn>)>, // with the names of the files
 }
 
 impl Headings {
@@ -60,10 +63,17 @@ impl Headings {
             Regime::Dynamic => "s",
             Regime::QuasiStatic => "-",
         };
-        let mut history = vec![TableColumn::new("step", "-"), TableColumn::new("time", time)];
+        let first = || vec![TableColumn::new("step", "-"), TableColumn::new("time", time)];
+        let mut history = first();
         history.extend(columns.iter().cloned());
+        let profile = |profile: &Profile| {
+            let columns = profile.columns();
+            let columns = columns.iter().map(|column| TableColumn::new(&column.name, &column.unit));
+            (profile.file(), first().into_iter().chain(columns).collect())
+        };
+        let profiles = case.profiles.iter().map(profile).collect();
         let residuals = case.output.residuals.then(|| Iterate::columns(time).into());
-        Self { history, steps: StepRow::columns(time).into(), residuals }
+        Self { history, steps: StepRow::columns(time).into(), residuals, profiles }
     }
 }
 
@@ -81,13 +91,16 @@ impl Ledger {
         if case.output.residuals {
             manifest.name_output(RESIDUALS);
         }
+        case.profiles.iter().for_each(|profile| manifest.name_output(&profile.file()));
         manifest.warnings.extend(held.note().map(str::to_owned).into_iter().chain(beginning.warnings.clone()));
         manifest.restarts.clone_from(&beginning.restarts);
         let directory = held.claim(beginning.existing, &manifest)?;
         let headings = Headings::of(case, &columns);
         let path = directory.path();
         let residuals = headings.residuals.map(|headings| CsvTable::create(&path.join(RESIDUALS), &headings));
+        let profiles = headings.profiles.iter().map(|(file, headings)| CsvTable::create(&path.join(file), headings));
         Ok(Self {
+            profiles: profiles.collect::<Result<_, _>>()?,
             residuals: residuals.transpose()?,
             history: CsvTable::create(&path.join(HISTORY), &headings.history)?,
             steps: CsvTable::create(&path.join(STEPS), &headings.steps)?,
@@ -150,6 +163,17 @@ impl Ledger {
             }
         }
         self.history.row(&cells)
+    }
+
+    /// The rows of a profile at a time.
+    pub fn profile(&mut self, number: usize, (step, time): (u64, f64), rows: &[Vec<f64>]) -> Result<(), Error> {
+        let cells = |row: &Vec<f64>| -> Vec<Cell> {
+            [Cell::Int(step), Cell::Float(time)]
+                .into_iter()
+                .chain(row.iter().map(|&value| Cell::Float(value)))
+                .collect()
+        };
+        rows.iter().try_for_each(|row| self.profiles[number].row(&cells(row)))
     }
 
     /// A row of `steps.csv`, its share of the totals, and the rows of its iterations where they are wanted.

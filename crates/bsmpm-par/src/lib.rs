@@ -11,6 +11,7 @@ pub mod ledger;
 pub mod log;
 pub mod machine;
 pub mod memory;
+pub mod profile;
 pub mod program;
 pub mod record;
 pub mod restart;

@@ -6,21 +6,25 @@ use bsmpm::energy::{Books, Stored};
 use bsmpm::error::StepError;
 use bsmpm::kinematics::Kinematics;
 use bsmpm::model::Model;
-use bsmpm::observe::{self, noise};
+use bsmpm::observe::place::{self, Configuration};
+use bsmpm::observe::{self, Part, noise};
 use bsmpm::parallel::Halo;
 use bsmpm::points::Points;
 use bsmpm::step::StepReport;
 use bsmpm::step::outflow::Outflow;
 use bsmpm::tensor::Vector;
 use bsmpm_scene::surfaces::{self, Gauge};
-use bsmpm_scene::{Case, Face, GridSpec, History, Quantity, Stage};
+use bsmpm_scene::{Case, Counted, Face, GridSpec, History, Quantity, Stage};
 
 /// Place of the vertical normal stress among XX YY ZZ XY YZ XZ.
 const VERTICAL: usize = 1;
+/// Components of a stress in a plane among them: the first ones.
+const PLANE: usize = 4;
 
 /// The histories of a run, with the points that they follow.
 pub struct Recorder {
     histories: Vec<History>,
+    parts: Vec<Part>, // the points that each of them counts
     followed: Vec<Option<u64>>,
     reacting: Vec<Option<usize>>, // strip whose force a reaction is
     gauge: Option<Gauge>,
@@ -37,13 +41,9 @@ impl Recorder {
         let (histories, lower) = (&case.histories, Vector::from(case.grid.lower()));
         let lasting = case.lasting();
         let comes_later = |number: usize| case.stages.iter().any(|stage| stage.follows.contains(&number));
-        let follow = |(number, history): (usize, &History)| match history.quantity {
-            Quantity::Displacement { at } | Quantity::Velocity { at } | Quantity::Stress { at }
-                if !comes_later(number) =>
-            {
-                observe::nearest(points, &(Vector::from(at) - lower), |id| !history.lasts || lasting(id), halo)
-            }
-            _ => None,
+        let follow = |(number, history): (usize, &History)| {
+            let at = followed_place(&history.quantity).filter(|_| !comes_later(number))?;
+            observe::nearest(points, &(Vector::from(at) - lower), |id| !history.lasts || lasting(id), halo)
         };
         let followed = histories.iter().enumerate().map(follow).collect();
         let state = RecordState { followed, ..RecordState::default() };
@@ -62,6 +62,7 @@ impl Recorder {
         };
         Self {
             histories: case.histories.clone(),
+            parts: parts(case),
             followed: state.followed,
             reacting: case.histories.iter().map(react).collect(),
             gauge: Gauge::of(case),
@@ -84,9 +85,7 @@ impl Recorder {
         let (taken, placed) = (case.taken_by(stage), case.placed_by(stage));
         self.followed.iter_mut().filter(|followed| followed.is_some_and(&taken)).for_each(|lost| *lost = None);
         for &number in &stage.follows {
-            if let Quantity::Displacement { at } | Quantity::Velocity { at } | Quantity::Stress { at } =
-                self.histories[number].quantity
-            {
+            if let Some(at) = followed_place(&self.histories[number].quantity) {
                 self.followed[number] = observe::nearest(points, &(Vector::from(at) - self.lower), &placed, halo);
             }
         }
@@ -182,28 +181,48 @@ impl Recorder {
         halo: &dyn Halo,
     ) -> Result<Vec<f64>, StepError> {
         let ([left, bottom], followed) = (self.lower.into(), self.followed[number]);
+        let part = &self.parts[number];
         Ok(match quantity {
-            Quantity::Runout { percentile } if *percentile < 100.0 => {
-                vec![left + observe::percentile(points, 0, *percentile, halo)]
+            Quantity::Runout { percentile, .. } if *percentile < 100.0 => {
+                vec![left + observe::percentile(points, part, (0, *percentile), halo)]
             }
-            Quantity::Runout { .. } => vec![left + observe::farthest(points, 0, halo)],
+            Quantity::Runout { .. } => vec![left + observe::farthest(points, part, 0, halo)],
             Quantity::Front => vec![left + observe::front(model, points, halo)],
-            Quantity::Height { at_x: None } => vec![bottom + observe::farthest(points, 1, halo)],
-            Quantity::Height { at_x: Some(x) } => {
+            Quantity::Height { at_x: None, .. } => vec![bottom + observe::farthest(points, part, 1, halo)],
+            Quantity::Height { at_x: Some(x), .. } => {
                 let [x, _] = self.grid.local([*x, bottom]);
-                vec![bottom + observe::surface(&model.grid, points, x, halo)]
+                vec![bottom + observe::surface(&model.grid, (points, part), x, halo)]
             }
-            Quantity::MaxDisplacement => vec![observe::largest_displacement(points, halo)],
-            Quantity::Mass { of } => vec![observe::mass(points, *of, halo)],
-            Quantity::Momentum { of } => observe::momentum(points, *of, halo).as_slice().to_vec(),
-            Quantity::CentreOfMass { of } => {
-                let centre = observe::centre_of_mass(points, *of, halo).unwrap_or_else(Vector::zeros);
+            Quantity::MaxDisplacement { .. } => vec![observe::largest_displacement(points, part, halo)],
+            Quantity::Mass { .. } => vec![observe::mass(points, part, halo)],
+            Quantity::Momentum { .. } => observe::momentum(points, part, halo).as_slice().to_vec(),
+            Quantity::CentreOfMass { .. } => {
+                let centre = observe::centre_of_mass(points, part, halo).unwrap_or_else(Vector::zeros);
                 (self.lower + centre).as_slice().to_vec()
             }
-            Quantity::AngularMomentum { of } => {
-                vec![observe::angular_momentum(points, *of, &-self.lower, halo)]
+            Quantity::AngularMomentum { .. } => {
+                vec![observe::angular_momentum(points, part, &-self.lower, halo)]
             }
-            Quantity::Heave => vec![observe::heave(points, halo)],
+            Quantity::KineticEnergy { .. } => vec![observe::kinetic_energy(points, part, halo)],
+            Quantity::MeanStress { .. } => observe::mean_stress(points, part, halo)[..PLANE].to_vec(),
+            Quantity::SectionForces { ends, fixed } => {
+                let ends = ends.map(|end| Vector::from(end) - self.lower);
+                let placed = |end: Vector<2>| if *fixed { Some(end) } else { observe::moved(points, &end, halo) };
+                let [from, to] = ends.map(placed);
+                let forces =
+                    from.zip(to).map(|(from, to)| observe::section_forces(&model.grid, points, [from, to], halo));
+                let forces = forces.unwrap_or_default();
+                vec![forces.normal, forces.shear, forces.moment]
+            }
+            Quantity::Velocity { at, surface: true } => {
+                let velocity = |p: usize| points.motion.as_ref().map_or([0.0; 2], |motion| motion.v[p].into());
+                at_surface((model, points), Vector::from(*at) - self.lower, velocity, halo)
+            }
+            Quantity::Stress { at, surface: true } => {
+                at_surface((model, points), Vector::from(*at) - self.lower, |p| points.sigma.at(p).0, halo)[..PLANE]
+                    .to_vec()
+            }
+            Quantity::Heave { .. } => vec![observe::heave(points, part, halo)],
             Quantity::StressNoise => both(noise::stress_noise(&model.grid, points, model.weighting, VERTICAL, halo)?),
             Quantity::PressureNoise { within } => {
                 let window = within.map(|corners| corners.map(|corner| Vector::from(corner) - self.lower));
@@ -284,6 +303,39 @@ fn contact<K: Kinematics<2>>(quantity: &Quantity, model: &Model<K, 2>, face: Fac
     }
 }
 
+/// The place of a history that follows the point nearest to it.
+fn followed_place(quantity: &Quantity) -> Option<[f64; 2]> {
+    match *quantity {
+        Quantity::Displacement { at } => Some(at),
+        Quantity::Velocity { at, surface: false } | Quantity::Stress { at, surface: false } => Some(at),
+        _ => None,
+    }
+}
+
+/// The points that every history counts.
+fn parts(case: &Case) -> Vec<Part> {
+    // Bodies are counted for those alone who name one.
+    let mut ids = None;
+    let mut part = |history: &History| match history.quantity.counted() {
+        Counted::All => Part::Whole,
+        Counted::Material(number) => Part::Material(number),
+        Counted::Body(number) => Part::Ids(ids.get_or_insert_with(|| case.ids())[number].clone()),
+    };
+    case.histories.iter().map(&mut part).collect()
+}
+
+/// A field at the material place that was at `at` (m, from the grid's lower corner) before anything moved; zero where
+/// there is no material.
+fn at_surface<K: Kinematics<2>, const C: usize>(
+    (model, points): (&Model<K, 2>, &Points<2>),
+    at: Vector<2>,
+    field: impl Fn(usize) -> [f64; C],
+    halo: &dyn Halo,
+) -> Vec<f64> {
+    let found = place::values(&model.grid, points, (&[at], Configuration::Initial), field, halo);
+    found[0].map_or_else(|| vec![0.0; C], |values| values.to_vec())
+}
+
 fn both(noise: noise::Noise) -> Vec<f64> {
     vec![noise.about_average, noise.about_plane]
 }
@@ -300,7 +352,7 @@ fn at_followed(quantity: &Quantity, id: u64, points: &Points<2>, halo: &dyn Halo
     let velocity = |p: usize| points.motion.as_ref().map_or([0.0; 2], |motion| motion.v[p].into());
     match quantity {
         Quantity::Velocity { .. } => observe::at_point(points, id, halo, velocity).to_vec(),
-        Quantity::Stress { .. } => observe::at_point(points, id, halo, |p| points.sigma.at(p).0)[..4].to_vec(),
+        Quantity::Stress { .. } => observe::at_point(points, id, halo, |p| points.sigma.at(p).0)[..PLANE].to_vec(),
         _ => Vec::new(),
     }
 }

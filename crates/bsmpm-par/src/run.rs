@@ -10,10 +10,11 @@ mod start;
 use crate::checkpoint::Outlet;
 use crate::cli::Arguments;
 use crate::fault::Fault;
-use crate::gather::{FrameMoment, Gathering};
+use crate::gather::{Around, FrameMoment, Gathering};
 use crate::launch;
 use crate::ledger::Ledger;
 use crate::log::Log;
+use crate::profile;
 use crate::record::Recorder;
 use bsmpm::control::Accepted;
 use bsmpm::error::StepError;
@@ -26,7 +27,8 @@ use bsmpm_io::frame::Parts;
 use bsmpm_io::manifest::{Communication, ManifestOutflow, SolverNames, Status};
 use bsmpm_ranks::simulation::Simulation;
 use bsmpm_ranks::timers::Timers;
-use bsmpm_scene::{Case, Every};
+use bsmpm_scene::words::FrameField;
+use bsmpm_scene::{Case, Every, Profile};
 use hdf5_collective::Hdf5;
 use mpi::environment::Universe;
 use mpi::topology::Communicator;
@@ -196,6 +198,13 @@ impl<'p> Run<'p> {
         self.tell_strips_without_material(accepted);
         self.tell_outflow(accepted);
         self.record(&accepted.report);
+        let t = accepted.t;
+        // Not with the frames of early stops, so that the rows are the same however often the run stops.
+        let framed = self.wants_frame(t) || self.is_now(self.case.analysis.end, t);
+        self.profile(|run, profile| match profile.times.is_empty() {
+            true => framed,
+            false => profile.times.iter().any(|wanted| run.is_now(*wanted, t)),
+        });
         if self.wants_frame(accepted.t) {
             self.frame();
         }
@@ -285,9 +294,38 @@ impl<'p> Run<'p> {
     fn wants_frame(&self, time: f64) -> bool {
         let every =
             matches!(self.case.output.every, Some(Every::Steps(n)) if self.simulation.steps().is_multiple_of(n));
-        // The schedule hits wanted times to the bit, unless two of them are closer than a millionth of a step.
-        let close = |wanted: &f64| (wanted - time).abs() <= 1e-6 * self.case.analysis.dt;
-        every || self.frame_times.iter().any(close)
+        every || self.frame_times.iter().any(|wanted| self.is_now(*wanted, time))
+    }
+
+    /// The schedule hits wanted times to the bit, unless two of them are closer than a millionth of a step.
+    fn is_now(&self, wanted: f64, time: f64) -> bool {
+        (wanted - time).abs() <= 1e-6 * self.case.analysis.dt
+    }
+
+    /// Rows of the profiles that are wanted now. Collective.
+    fn profile(&mut self, wanted: impl Fn(&Self, &Profile) -> bool) {
+        let (step, time) = (self.simulation.steps(), self.simulation.time());
+        for number in 0..self.case.profiles.len() {
+            let profile = &self.case.profiles[number];
+            if !wanted(self, profile) {
+                continue;
+            }
+            let Simulation { model, points, halo, .. } = &self.simulation;
+            let rows = profile::rows(profile, (model, self.case.grid.lower()), points, &**halo);
+            let ledger = self.ledger.as_mut();
+            let written = ledger.map_or(Ok(()), |ledger| ledger.profile(number, (step, time), &rows));
+            self.require(written);
+        }
+    }
+
+    /// Names of what the frames' fields number, where frames have fields on request.
+    fn names(&self) -> Vec<(&'static str, Vec<String>)> {
+        let case = &self.case;
+        let materials = case.materials.iter().map(|material| material.name.clone()).collect();
+        let bodies = || case.bodies.iter().map(|body| body.name.clone().unwrap_or_default()).collect();
+        let of_bodies = case.output.fields.contains(&FrameField::Body).then(|| (FrameField::Body.field(), bodies()));
+        let of_materials = (!case.output.fields.is_empty()).then_some(("material", materials));
+        of_materials.into_iter().chain(of_bodies).collect()
     }
 
     fn frame(&mut self) {
@@ -300,12 +338,18 @@ impl<'p> Run<'p> {
         let projected = self.case.output.projected_pressure.then(|| projected_pressure(model, points, &**halo));
         let projected = projected.transpose().unwrap_or_else(|error| launch::end(&world, exit::BUG, &error));
         let moment = FrameMoment { step, time, lower: self.case.grid.lower() };
-        let mut frame = Gathering::new(&world, (points, &model.materials), projected.as_deref(), moment);
+        let (names, fields) = (self.names(), &self.case.output.fields);
+        let bodies = if fields.contains(&FrameField::Body) { self.case.ids() } else { Vec::new() };
+        let around = Around { materials: &model.materials, bodies: &bodies, fields };
+        let mut frame = Gathering::new(&world, (points, around), projected.as_deref(), moment);
         let written = match &mut self.ledger {
             Some(ledger) => {
                 let (head, points) = (frame.head(), frame.points());
                 ledger.manifest().frame_units = frame.units();
-                ledger.frame(Parts { head, points, next: &mut || frame.block() })
+                ledger.manifest().frame_names =
+                    names.iter().map(|(field, names)| ((*field).to_owned(), names.clone())).collect();
+                let names: Vec<_> = names.into_iter().map(|(field, names)| (format!("{field}_names"), names)).collect();
+                ledger.frame(Parts { head, points, names: &names, next: &mut || frame.block() })
             }
             None => {
                 while frame.block().is_some() {}

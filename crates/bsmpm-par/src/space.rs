@@ -69,7 +69,11 @@ impl Need {
                     * gather::point_bytes(
                         case.analysis.regime == Regime::Dynamic,
                         case.output.projected_pressure,
-                        &simulation.model.materials,
+                        gather::Around {
+                            materials: &simulation.model.materials,
+                            bodies: &[],
+                            fields: &case.output.fields,
+                        },
                     ),
             // A new one is whole before the oldest goes.
             checkpoints: (case.output.checkpoint.keep.max(1) + 1).saturating_sub(there),

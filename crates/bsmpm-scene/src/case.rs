@@ -3,18 +3,20 @@
 mod element;
 mod history;
 mod loads;
+mod profile;
 mod stage;
 
 pub use crate::words::{Base, Format, Geometry, Nonlinear, Support};
 pub use element::{ElementStage, ElementTest};
-pub use history::{Check, Column, Face, History, Quantity};
+pub use history::{Check, Column, Counted, Face, History, Quantity};
 pub use loads::{Footing, Initial, Line as LoadedLine, MotionPath, PointLoad, Prescribed, Push, Site, Traction};
+pub use profile::Profile;
 pub use stage::{Acting, FaceSupport, Stage};
 
 use crate::error::Choice;
 use crate::grid::{GridSpec, Line};
 use crate::region::Region;
-use crate::words::{Factor, Ksp, Pc};
+use crate::words::{Factor, FrameField, Ksp, Pc};
 use bsmpm::background::{Extent, Kind};
 use bsmpm::boundary::Contact;
 use bsmpm::material::Material;
@@ -71,6 +73,8 @@ pub struct Case {
     pub output: Output,
     /// What is recorded every step.
     pub histories: Vec<History>,
+    /// Fields along lines, in the order of the file.
+    pub profiles: Vec<Profile>,
     /// Bounds that are verified at the end.
     pub checks: Vec<Check>,
     /// Tests of one point, which a run of the case leaves alone.
@@ -228,6 +232,8 @@ pub struct Output {
     pub residuals: bool,
     /// Whether frames have the projected pressure besides the points' own.
     pub projected_pressure: bool,
+    /// What frames show besides.
+    pub fields: Vec<FrameField>,
     /// When restart files are written.
     pub checkpoint: Checkpoint,
 }

@@ -41,9 +41,9 @@ pub use bsmpm::model::Regime;
 pub use bsmpm::points::Seed;
 pub use bsmpm::quadrature::Quadrature;
 pub use case::{
-    Acting, Analysis, Base, Body, Case, Check, Checkpoint, Column, ElementStage, ElementTest, Every, Face, FaceSupport,
-    Footing, Format, Geometry, Gravity, History, Initial, Linear, LoadedLine, MotionPath, NamedMaterial, Nonlinear,
-    Output, PointLoad, Prescribed, Push, Quantity, Site, Solver, Stage, Support, Traction,
+    Acting, Analysis, Base, Body, Case, Check, Checkpoint, Column, Counted, ElementStage, ElementTest, Every, Face,
+    FaceSupport, Footing, Format, Geometry, Gravity, History, Initial, Linear, LoadedLine, MotionPath, NamedMaterial,
+    Nonlinear, Output, PointLoad, Prescribed, Profile, Push, Quantity, Site, Solver, Stage, Support, Traction,
 };
 pub use difference::{Difference, differences};
 pub use error::{Choice, Error, Place};

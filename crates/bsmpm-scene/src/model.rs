@@ -172,11 +172,13 @@ pub fn at_rest(case: &Case, k0: &[f64], material: u16, x: &Vector<2>) -> Symmetr
     Symmetric([horizontal, vertical, horizontal, 0.0, 0.0, 0.0])
 }
 
-/// Steps and the times that they must hit: frames, pictures, checks and stages.
+/// Steps and the times that they must hit: frames, pictures, profiles, checks and stages.
 pub fn schedule(case: &Case) -> Schedule {
     let checks = case.checks.iter().map(|check| check.at);
     let stages = case.stages.iter().map(|stage| stage.at);
-    Schedule::new(case.analysis.dt, case.analysis.end, frame_times(case).into_iter().chain(checks).chain(stages))
+    let profiles = case.profiles.iter().flat_map(|profile| profile.times.iter().copied());
+    let times = frame_times(case).into_iter().chain(checks).chain(stages).chain(profiles);
+    Schedule::new(case.analysis.dt, case.analysis.end, times)
 }
 
 /// Relative error of a quotient of two times.

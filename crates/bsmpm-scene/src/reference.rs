@@ -105,7 +105,7 @@ impl Page {
         }
         let _ = write!(text, " {}.", presence(key.presence));
         self.wrapped("- ", &text);
-        if let Kind::Choice(words) | Kind::ChoiceOr(words, _) = key.kind {
+        if let Kind::Choice(words) | Kind::ChoiceOr(words, _) | Kind::Choices(words) = key.kind {
             if words.words().eq(Measurement::WORDS.words()) {
                 return self.wrapped("  - ", "its words are [at the end of the page](#quantities-of-a-history)");
             }
@@ -173,6 +173,7 @@ fn takes(key: &Key) -> String {
         }
         Kind::Gradient(of) => format!("{of} per metre of depth, e.g. `\"2 {}/m\"`", of.units().next().unwrap_or("")),
         Kind::Choice(_) => "one of these words".to_owned(),
+        Kind::Choices(_) => "a list of these words".to_owned(),
         Kind::ChoiceOr(_, table) => format!("one of these words, or a table, `{}`", table.header),
         Kind::Table(table) | Kind::Named(table) | Kind::Tables(table) => match key.kind {
             Kind::Named(_) => format!("tables with names, `{}`", table.header),

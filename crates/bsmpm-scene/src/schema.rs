@@ -109,6 +109,8 @@ pub enum Kind {
     Name,
     /// Any number of names.
     Names,
+    /// Any number of several words, each at most once.
+    Choices(Words),
     /// `true` or `false`.
     Flag,
     /// A table.
@@ -232,6 +234,7 @@ impl fmt::Display for Kind {
             Self::Text(most) => write!(f, "a text of at most {most} characters without control characters"),
             Self::Name => f.write_str("a name of at most 64 ASCII letters, digits, `-` and `_`"),
             Self::Names => f.write_str("a list of names"),
+            Self::Choices(words) => write!(f, "a list of words, each {}", OneOf(words)),
             Self::Flag => f.write_str("true or false"),
             Self::Table(table) => write!(f, "a table, {}", table.header),
             Self::Named(table) => write!(f, "tables with names, {}", table.header),

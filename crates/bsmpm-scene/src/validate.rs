@@ -11,6 +11,7 @@ mod material;
 mod output;
 mod physics;
 mod place;
+mod profile;
 mod reduction;
 mod shape;
 mod solver;
@@ -78,6 +79,7 @@ pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Op
     let output = output::read(record, end, report);
     let histories =
         history::read_all(record, (regime, grid.as_ref(), materials.as_deref().zip(bodies.as_deref())), report);
+    let profiles = profile::read_all(record, (regime, grid.as_ref(), end), report);
     let checks = history::checks(record, &histories, end, report);
     let elements = element::read_all(record, (materials.as_deref(), placed), report);
     let mut case = Case {
@@ -103,6 +105,7 @@ pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Op
         solver: solver?,
         output: output?,
         histories,
+        profiles,
         checks,
         elements,
         warnings: Vec::new(),

@@ -6,11 +6,13 @@
 #[macro_use]
 mod define;
 mod measurement;
+mod output;
 mod physics;
 mod scene;
 mod solver;
 
 pub use measurement::Measurement;
+pub use output::{FrameField, ProfileQuantity};
 pub use scene::{Accuracy, Base, C0Lines, Components, Format, Geometry, Order, Path, Settled, Side, Start, Support};
 pub use solver::{Factor, Ksp, LinearSolver, Nonlinear, Pc};
 

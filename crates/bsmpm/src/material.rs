@@ -10,6 +10,7 @@ mod elastic;
 mod graded;
 mod hencky;
 mod law;
+mod mobilised;
 mod mohr_coulomb;
 mod mu_i;
 mod response;

@@ -2,11 +2,17 @@
 #![doc = include_str!("observe.md")]
 
 mod front;
+pub mod invariants;
 pub mod noise;
+mod part;
+pub mod place;
 pub mod projection;
 pub mod quadrature;
+mod section;
 
 pub use front::front;
+pub use part::Part;
+pub use section::{SectionForces, section_forces};
 
 use crate::exact::Exact;
 use crate::grid::Grid;
@@ -17,96 +23,111 @@ use crate::tensor::Vector;
 /// Bisections of a percentile: the interval shrinks to 1e-15 of the grid.
 const BISECTIONS: usize = 50;
 
-/// Largest coordinate of any point along `axis`, from the grid's lower corner (m); 0 without points.
-pub fn farthest<const D: usize>(points: &Points<D>, axis: usize, halo: &dyn Halo) -> f64 {
-    let mut largest = [points.x.iter().map(|x| x[axis]).fold(0.0, f64::max)];
+/// Largest coordinate of any point of a part along `axis`, from the grid's lower corner (m); 0 without points.
+pub fn farthest<const D: usize>(points: &Points<D>, part: &Part, axis: usize, halo: &dyn Halo) -> f64 {
+    let mut largest = [part.of(points).map(|p| points.x[p][axis]).fold(0.0, f64::max)];
     halo.maximum(&mut largest);
     largest[0]
 }
 
-/// Coordinate along `axis` (m) below which `percentile` per cent of the points lie.
-pub fn percentile<const D: usize>(points: &Points<D>, axis: usize, percentile: f64, halo: &dyn Halo) -> f64 {
-    let mut count = [points.len() as f64];
+/// Coordinate along `axis` (m) below which `percentile` per cent of the points of a part lie.
+pub fn percentile<const D: usize>(
+    points: &Points<D>,
+    part: &Part,
+    (axis, percentile): (usize, f64),
+    halo: &dyn Halo,
+) -> f64 {
+    let mut count = [part.of(points).count() as f64];
     halo.reduce(&mut count);
     let wanted = percentile / 100.0 * count[0];
-    let (mut lower, mut upper) = (0.0, farthest(points, axis, halo));
+    let (mut lower, mut upper) = (0.0, farthest(points, part, axis, halo));
     for _ in 0..BISECTIONS {
         let middle = 0.5 * (lower + upper);
-        let mut below = [points.x.iter().filter(|x| x[axis] <= middle).count() as f64];
+        let mut below = [part.of(points).filter(|&p| points.x[p][axis] <= middle).count() as f64];
         halo.reduce(&mut below);
         if below[0] >= wanted { upper = middle } else { lower = middle }
     }
     upper
 }
 
-/// Largest displacement of any point since displacements were last set to zero, m.
-pub fn largest_displacement<const D: usize>(points: &Points<D>, halo: &dyn Halo) -> f64 {
-    let mut largest = [(0..points.len()).map(|p| points.displacement(p).norm()).fold(0.0, f64::max)];
+/// Largest displacement of any point of a part since displacements were last set to zero, m.
+pub fn largest_displacement<const D: usize>(points: &Points<D>, part: &Part, halo: &dyn Halo) -> f64 {
+    let mut largest = [part.of(points).map(|p| points.displacement(p).norm()).fold(0.0, f64::max)];
     halo.maximum(&mut largest);
     largest[0]
 }
 
-/// Largest coordinate along the last axis (m) of the points that lie within half a cell of `x` along axis 0 (m); 0 if
-/// there are none.
-pub fn surface<const D: usize>(grid: &Grid<D>, points: &Points<D>, x: f64, halo: &dyn Halo) -> f64 {
+/// Largest coordinate along the last axis (m) of the points of a part that lie within half a cell of `x` along axis 0
+/// (m); 0 if there are none.
+pub fn surface<const D: usize>(grid: &Grid<D>, (points, part): (&Points<D>, &Part), x: f64, halo: &dyn Halo) -> f64 {
     let axis = &grid.axes()[0];
     let half = axis.cell_of(x).map_or(0.0, |cell| 0.5 * (axis.breakpoint(cell + 1) - axis.breakpoint(cell)));
-    let near = points.x.iter().filter(|at| (at[0] - x).abs() <= half);
+    let near = part.of(points).map(|p| &points.x[p]).filter(|at| (at[0] - x).abs() <= half);
     let mut highest = [near.map(|at| at[D - 1]).fold(0.0, f64::max)];
     halo.maximum(&mut highest);
     highest[0]
 }
 
-/// Largest displacement of any point along the last axis, m; 0 if none has risen.
-pub fn heave<const D: usize>(points: &Points<D>, halo: &dyn Halo) -> f64 {
-    let mut largest = [(0..points.len()).map(|p| points.displacement(p)[D - 1]).fold(0.0, f64::max)];
+/// Largest displacement of any point of a part along the last axis, m; 0 if none has risen.
+pub fn heave<const D: usize>(points: &Points<D>, part: &Part, halo: &dyn Halo) -> f64 {
+    let mut largest = [part.of(points).map(|p| points.displacement(p)[D - 1]).fold(0.0, f64::max)];
     halo.maximum(&mut largest);
     largest[0]
 }
 
-/// Sums over the points that carry the number of a material, or all: the same bits however they are distributed and
-/// ordered.
+/// Sums over the points of a part: the same bits however they are distributed and ordered.
 fn total<const D: usize, const N: usize>(
     points: &Points<D>,
-    material: Option<u16>,
+    part: &Part,
     halo: &dyn Halo,
     term: impl Fn(usize, usize) -> f64,
 ) -> [f64; N] {
-    let chosen = || (0..points.len()).filter(|&p| material.is_none_or(|of| points.material[p] == of));
-    let sums: [Exact; N] = std::array::from_fn(|k| chosen().map(|p| term(p, k)).collect());
+    let sums: [Exact; N] = std::array::from_fn(|k| part.of(points).map(|p| term(p, k)).collect());
     let sums = halo.total(&sums);
     std::array::from_fn(|k| sums[k])
 }
 
-/// Mass of the points of a material, or of all, kg.
-pub fn mass<const D: usize>(points: &Points<D>, material: Option<u16>, halo: &dyn Halo) -> f64 {
-    let [mass] = total(points, material, halo, |p, _| points.mass[p]);
+/// Mass of the points of a part, kg.
+pub fn mass<const D: usize>(points: &Points<D>, part: &Part, halo: &dyn Halo) -> f64 {
+    let [mass] = total(points, part, halo, |p, _| points.mass[p]);
     mass
 }
 
-/// Momentum of the points of a material, or of all, kg m/s; zero in quasi-static scenes.
-pub fn momentum<const D: usize>(points: &Points<D>, material: Option<u16>, halo: &dyn Halo) -> Vector<D> {
+/// Momentum of the points of a part, kg m/s; zero in quasi-static scenes.
+pub fn momentum<const D: usize>(points: &Points<D>, part: &Part, halo: &dyn Halo) -> Vector<D> {
     let Some(motion) = &points.motion else { return Vector::zeros() };
-    Vector::from(total(points, material, halo, |p, axis| motion.v[p][axis] * points.mass[p]))
+    Vector::from(total(points, part, halo, |p, axis| motion.v[p][axis] * points.mass[p]))
 }
 
-/// Centre of mass of the points of a material, or of all, from the grid's lower corner (m); `None` without mass.
-pub fn centre_of_mass<const D: usize>(points: &Points<D>, material: Option<u16>, halo: &dyn Halo) -> Option<Vector<D>> {
-    let moment: [f64; D] = total(points, material, halo, |p, axis| points.mass[p] * points.x[p][axis]);
-    let mass = mass(points, material, halo);
+/// Centre of mass of the points of a part, from the grid's lower corner (m); `None` without mass.
+pub fn centre_of_mass<const D: usize>(points: &Points<D>, part: &Part, halo: &dyn Halo) -> Option<Vector<D>> {
+    let moment: [f64; D] = total(points, part, halo, |p, axis| points.mass[p] * points.x[p][axis]);
+    let mass = mass(points, part, halo);
     (mass > 0.0).then(|| Vector::from(moment) / mass)
 }
 
-/// Angular momentum of the points of a material, or of all, in the plane of the axes 0 and 1 about `place` (m, from the
-/// grid's lower corner): sum m (x v_y - y v_x), kg m2/s; zero in quasi-static scenes.
-pub fn angular_momentum<const D: usize>(
-    points: &Points<D>,
-    material: Option<u16>,
-    place: &Vector<D>,
-    halo: &dyn Halo,
-) -> f64 {
+/// Kinetic energy of the points of a part, J: sum m v^2 / 2; zero in quasi-static scenes.
+pub fn kinetic_energy<const D: usize>(points: &Points<D>, part: &Part, halo: &dyn Halo) -> f64 {
     let Some(motion) = &points.motion else { return 0.0 };
-    let [sum] = total(points, material, halo, |p, _| {
+    let [energy] = total(points, part, halo, |p, _| 0.5 * points.mass[p] * motion.v[p].norm_squared());
+    energy
+}
+
+/// Mean Cauchy stress of the points of a part by components XX YY ZZ XY YZ XZ, Pa, weighted with their present volumes;
+/// zero without points.
+pub fn mean_stress<const D: usize>(points: &Points<D>, part: &Part, halo: &dyn Halo) -> [f64; 6] {
+    let sums: [f64; 7] = total(points, part, halo, |p, k| {
+        let volume = points.volume[p] * points.F.at(p).determinant();
+        points.sigma.at(p).0.get(k).map_or(volume, |stress| volume * stress)
+    });
+    std::array::from_fn(|k| if sums[6] > 0.0 { sums[k] / sums[6] } else { 0.0 })
+}
+
+/// Angular momentum of the points of a part, in the plane of the axes 0 and 1 about `place` (m, from the
+/// grid's lower corner): sum m (x v_y - y v_x), kg m2/s; zero in quasi-static scenes.
+pub fn angular_momentum<const D: usize>(points: &Points<D>, part: &Part, place: &Vector<D>, halo: &dyn Halo) -> f64 {
+    let Some(motion) = &points.motion else { return 0.0 };
+    let [sum] = total(points, part, halo, |p, _| {
         let (arm, v) = (points.x[p] - place, motion.v[p]);
         points.mass[p] * (arm[0] * v[1] - arm[1] * v[0])
     });
@@ -121,10 +142,14 @@ pub fn nearest<const D: usize>(
     wanted: impl Fn(u64) -> bool,
     halo: &dyn Halo,
 ) -> Option<u64> {
-    let distance = |p: usize| if wanted(points.id[p]) { (points.x[p] - at).norm_squared() } else { f64::INFINITY };
-    let mut closest = [-(0..points.len()).map(distance).fold(f64::INFINITY, f64::min)];
+    nearest_by(points, |p| if wanted(points.id[p]) { (points.x[p] - at).norm_squared() } else { f64::INFINITY }, halo)
+}
+
+/// Id of the point whose `distance` is the smallest, if that is finite; of equally near ones the smallest id.
+fn nearest_by<const D: usize>(points: &Points<D>, distance: impl Fn(usize) -> f64, halo: &dyn Halo) -> Option<u64> {
+    let mut closest = [-(0..points.len()).map(&distance).fold(f64::INFINITY, f64::min)];
     halo.maximum(&mut closest);
-    let candidates = (0..points.len()).filter(|&p| wanted(points.id[p]) && -distance(p) == closest[0]);
+    let candidates = (0..points.len()).filter(|&p| closest[0].is_finite() && -distance(p) == closest[0]);
     let mut id = [candidates.map(|p| -(points.id[p] as f64)).fold(f64::NEG_INFINITY, f64::max)];
     halo.maximum(&mut id);
     id[0].is_finite().then(|| -id[0] as u64)
@@ -136,6 +161,15 @@ pub fn nearest<const D: usize>(
 pub fn displacement<const D: usize>(points: &Points<D>, p: usize, place: &Vector<D>) -> Vector<D> {
     let apart = place - (points.x[p] - points.u[p]);
     points.u[p] + points.F.at(p).fixed_view::<D, D>(0, 0) * apart - apart
+}
+
+/// Where the material is now (m, from the grid's lower corner) that was at `place` before anything moved, by the motion
+/// about the point that was the nearest to it then; `None` without points.
+pub fn moved<const D: usize>(points: &Points<D>, place: &Vector<D>, halo: &dyn Halo) -> Option<Vector<D>> {
+    let apart = |p: usize| (points.x[p] - points.u[p] - place).norm_squared();
+    let id = nearest_by(points, apart, halo)?;
+    let along: [f64; D] = at_point(points, id, halo, |p| displacement(points, p, place).into());
+    Some(place + Vector::from(along))
 }
 
 /// A vector or tensor of the point `id`, wherever it is: `value` is called on the rank that has it.

@@ -70,7 +70,7 @@ fn part(frame: &Frame, range: std::ops::Range<usize>) -> Frame {
 /// Writes `told` points of which `frame` has `parts`.
 fn write_parts(path: &Path, frame: &Frame, told: usize, parts: &[std::ops::Range<usize>]) -> Result<(), Error> {
     let mut parts = parts.iter().map(|range| part(frame, range.clone()));
-    vtu::write_parts(path, Parts { head: frame.without_points(), points: told, next: &mut || parts.next() })
+    vtu::write_parts(path, Parts { head: frame.without_points(), points: told, names: &[], next: &mut || parts.next() })
 }
 
 #[test]

@@ -105,6 +105,9 @@ pub struct Files {
     pub steps: TableMark,
     /// `residuals.csv`, if there is one.
     pub residuals: Option<TableMark>,
+    /// The profiles in the order of the case; none of a run without any.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub profiles: Vec<TableMark>,
     /// The frames.
     pub frames: Vec<Entry>,
 }

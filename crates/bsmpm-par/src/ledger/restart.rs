@@ -38,6 +38,7 @@ impl Ledger {
         manifest.warnings.extend(news.iter().filter(|warning| !older.contains(warning)).cloned());
         Ok(Self {
             residuals: tables.residuals,
+            profiles: tables.profiles,
             history: tables.history,
             steps: tables.steps,
             frames: Frames::resume(&here, resumed.state.files.frames.clone())?,
@@ -66,6 +67,7 @@ impl Ledger {
             history: self.history.mark()?,
             steps: self.steps.mark()?,
             residuals: self.residuals.as_ref().map(CsvTable::mark).transpose()?,
+            profiles: self.profiles.iter().map(CsvTable::mark).collect::<Result<_, _>>()?,
             frames: self.frames.entries().to_vec(),
         })
     }
@@ -98,6 +100,7 @@ struct Tables {
     history: CsvTable,
     steps: CsvTable,
     residuals: Option<CsvTable>,
+    profiles: Vec<CsvTable>,
 }
 
 impl Headings {
@@ -114,7 +117,9 @@ impl Headings {
         };
         let files = &state.files;
         let residuals = self.residuals.as_ref().zip(files.residuals.as_ref());
+        let profiles = self.profiles.iter().zip(&files.profiles);
         Ok(Tables {
+            profiles: profiles.map(|((file, of), mark)| table(file, of, mark)).collect::<Result<_, _>>()?,
             residuals: residuals.map(|(headings, mark)| table(RESIDUALS, headings, mark)).transpose()?,
             history: table(HISTORY, &self.history, &files.history)?,
             steps: table(STEPS, &self.steps, &files.steps)?,
@@ -126,7 +131,9 @@ impl Headings {
         let marked =
             [(HISTORY, Some(&self.history), Some(&files.history)), (STEPS, Some(&self.steps), Some(&files.steps))];
         let residuals = (RESIDUALS, self.residuals.as_ref(), files.residuals.as_ref());
-        for (name, headings, mark) in marked.into_iter().chain([residuals]) {
+        let profiles =
+            self.profiles.iter().zip(&files.profiles).map(|((file, of), mark)| (&**file, Some(of), Some(mark)));
+        for (name, headings, mark) in marked.into_iter().chain([residuals]).chain(profiles) {
             let path = directory.join(name);
             if let (Some(headings), Some(mark), true) = (headings, mark, path.exists()) {
                 CsvTable::verify(&path, headings, mark)?;
@@ -154,7 +161,7 @@ fn claim(
     there.as_ref().map_or(Ok(()), |there| headings.verify(there, &resumed.state.files))?;
     manifest.outputs.retain(|output| !output.path.contains('/'));
     let directory = held.claim(Existing::Refuse, manifest)?;
-    there.map_or(Ok(()), |there| copy_tables(&there, &here))?;
+    there.map_or(Ok(()), |there| copy_tables(&there, &here, headings))?;
     Ok(directory)
 }
 
@@ -207,8 +214,9 @@ fn manifest(new: Manifest, resumed: &Resumed<'_>) -> (Manifest, Vec<String>) {
 }
 
 /// Copies the tables of a run to a directory that has none.
-fn copy_tables(from: &Path, to: &Path) -> Result<(), Error> {
-    for name in [HISTORY, STEPS, RESIDUALS] {
+fn copy_tables(from: &Path, to: &Path, headings: &Headings) -> Result<(), Error> {
+    let profiles = headings.profiles.iter().map(|(file, _)| &**file);
+    for name in [HISTORY, STEPS, RESIDUALS].into_iter().chain(profiles) {
         let (from, to) = (from.join(name), to.join(name));
         if from.is_file() {
             fs::copy(&from, &to).map_err(Error::file("copy", &from))?;

@@ -42,6 +42,7 @@ impl Run<'_> {
             (report.reactions, report.strips) = (start.0.reactions, start.0.strips);
         }
         self.record(&report);
+        self.profile(|_, profile| profile.times.is_empty());
         self.frame();
         Ok(())
     }

@@ -15,6 +15,18 @@ pub struct History {
     pub lasts: bool,
 }
 
+/// The points that a history counts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Counted {
+    /// All of them.
+    #[default]
+    All,
+    /// Those of the material of this number.
+    Material(u16),
+    /// Those of the body of this number.
+    Body(usize),
+}
+
 /// What a history records.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Quantity {
@@ -22,6 +34,8 @@ pub enum Quantity {
     Runout {
         /// %  100: the farthest point
         percentile: f64,
+        /// the points that count
+        of: Counted,
     },
     /// m  the farthest x of the lowest occupied row up to which the last cell's length is at least half filled
     Front,
@@ -29,28 +43,50 @@ pub enum Quantity {
     Height {
         /// m  of the points within half a cell of this x; `None`: of all
         at_x: Option<f64>,
+        /// the points that count
+        of: Counted,
     },
     /// m  the largest displacement of any point
-    MaxDisplacement,
+    MaxDisplacement {
+        /// the points that count
+        of: Counted,
+    },
     /// kg/m
     Mass {
-        /// number of the material of the points; `None`: all points
-        of: Option<u16>,
+        /// the points that count
+        of: Counted,
     },
     /// kg/s  per metre of thickness (kg m/s per m)
     Momentum {
-        /// number of the material of the points; `None`: all points
-        of: Option<u16>,
+        /// the points that count
+        of: Counted,
     },
     /// m  in the case's coordinates
     CentreOfMass {
-        /// number of the material of the points; `None`: all points
-        of: Option<u16>,
+        /// the points that count
+        of: Counted,
     },
     /// kg m/s  about the origin of the case's coordinates, per metre of thickness (kg m2/s per m)
     AngularMomentum {
-        /// number of the material of the points; `None`: all points
-        of: Option<u16>,
+        /// the points that count
+        of: Counted,
+    },
+    /// J/m
+    KineticEnergy {
+        /// the points that count
+        of: Counted,
+    },
+    /// Pa  positive in tension
+    MeanStress {
+        /// the points that count
+        of: Counted,
+    },
+    /// N/m, N/m, N m/m  normal force, shear force and moment
+    SectionForces {
+        /// m  ends of the line, in the case's coordinates
+        ends: [[f64; 2]; 2],
+        /// The line stays where it is in space; it goes with the material else.
+        fixed: bool,
     },
     /// N/m  force of a face's supports on the body
     Reaction {
@@ -66,11 +102,15 @@ pub enum Quantity {
     Velocity {
         /// m  in the case's coordinates
         at: [f64; 2],
+        /// of the place itself instead, by a plane through the points around it
+        surface: bool,
     },
     /// Pa  Cauchy stress of the point nearest to `at` at the start
     Stress {
         /// m  in the case's coordinates
         at: [f64; 2],
+        /// of the place itself instead, by a plane through the points around it
+        surface: bool,
     },
     /// -  oscillation of sigma_yy about its average over the grid and about a plane
     StressNoise,
@@ -80,7 +120,10 @@ pub enum Quantity {
         within: Option<[[f64; 2]; 2]>,
     },
     /// m  the largest upward displacement of any point
-    Heave,
+    Heave {
+        /// the points that count
+        of: Counted,
+    },
     /// Pa  mean normal pressure on the footing's base
     FootingPressure,
     /// N/m  force of the soil on the footing against its motion
@@ -152,25 +195,38 @@ pub struct Column {
 }
 
 impl Quantity {
+    /// The points that it counts.
+    pub fn counted(&self) -> Counted {
+        match *self {
+            Self::Mass { of } | Self::Momentum { of } | Self::CentreOfMass { of } | Self::AngularMomentum { of } => of,
+            Self::KineticEnergy { of } | Self::MeanStress { of } | Self::Runout { of, .. } => of,
+            Self::Height { of, .. } | Self::MaxDisplacement { of } | Self::Heave { of } => of,
+            _ => Counted::All,
+        }
+    }
+
     /// Its kind, which has its definition, unit and columns.
     pub fn measurement(&self) -> Measurement {
         match self {
             Self::Runout { .. } => Measurement::Runout,
             Self::Front => Measurement::Front,
             Self::Height { .. } => Measurement::Height,
-            Self::MaxDisplacement => Measurement::MaxDisplacement,
+            Self::MaxDisplacement { .. } => Measurement::MaxDisplacement,
             Self::Mass { .. } => Measurement::Mass,
             Self::Outflow => Measurement::Outflow,
             Self::Momentum { .. } => Measurement::Momentum,
             Self::CentreOfMass { .. } => Measurement::CentreOfMass,
             Self::AngularMomentum { .. } => Measurement::AngularMomentum,
+            Self::KineticEnergy { .. } => Measurement::KineticEnergy,
+            Self::MeanStress { .. } => Measurement::MeanStress,
+            Self::SectionForces { .. } => Measurement::SectionForces,
             Self::Reaction { .. } => Measurement::Reaction,
             Self::Displacement { .. } => Measurement::Displacement,
             Self::Velocity { .. } => Measurement::Velocity,
             Self::Stress { .. } => Measurement::Stress,
             Self::StressNoise => Measurement::StressNoise,
             Self::PressureNoise { .. } => Measurement::PressureNoise,
-            Self::Heave => Measurement::Heave,
+            Self::Heave { .. } => Measurement::Heave,
             Self::FootingPressure => Measurement::FootingPressure,
             Self::FootingForce => Measurement::FootingForce,
             Self::Penetration => Measurement::Penetration,
@@ -182,20 +238,18 @@ impl Quantity {
             Self::Energy => Measurement::Energy,
         }
     }
-
-    /// Unit of its numbers.
-    pub fn unit(&self) -> &'static str {
-        self.measurement().unit()
-    }
 }
 
 impl History {
     /// Its columns in the history file.
     pub fn columns(&self) -> Vec<Column> {
-        let unit = self.quantity.unit();
-        let unit = if self.scale == 1.0 { unit.to_owned() } else { format!("scaled {unit}") };
-        let column = |(suffix, _): &(&str, &str)| Column { name: format!("{}{suffix}", self.name), unit: unit.clone() };
-        self.quantity.measurement().columns().iter().map(column).collect()
+        let measured = self.quantity.measurement();
+        let unit = |unit: &str| if self.scale == 1.0 { unit.to_owned() } else { format!("scaled {unit}") };
+        let column = |(number, (suffix, _)): (usize, &(&str, &str))| Column {
+            name: format!("{}{suffix}", self.name),
+            unit: unit(measured.unit_of(number)),
+        };
+        measured.columns().iter().enumerate().map(column).collect()
     }
 }
 

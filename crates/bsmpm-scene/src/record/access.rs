@@ -43,6 +43,13 @@ impl Record {
         if let Datum::Word(word) = self.datum(key, is_of)? { T::of(word) } else { None }
     }
 
+    /// What the words of a key's list stand for; `T` is the choice that the schema names.
+    pub(crate) fn choices<T: Word>(&self, key: &str) -> Option<Vec<T>> {
+        let is_of = |kind: &Kind| matches!(kind, Kind::Choices(words) if words.words().eq(T::WORDS.words()));
+        let Datum::Names(words) = self.datum(key, is_of)? else { return None };
+        words.iter().map(|word| T::of(word)).collect()
+    }
+
     /// The same of a key that may be absent; the outer option is `None` after an error.
     pub(crate) fn word_if_given<T: Word>(&self, key: &str) -> Option<Option<T>> {
         if self.gives(key) { self.word(key).map(Some) } else { Some(None) }

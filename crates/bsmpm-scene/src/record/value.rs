@@ -46,6 +46,7 @@ pub(super) fn read(kind: &Kind, node: &Node, path: &str, pseudo_time: bool, repo
             }
             _ => reader.unexpected(node),
         },
+        Kind::Choices(words) => reader.choices(node, words),
         Kind::Flag => match node.value {
             Value::Flag(flag) => Some(Datum::Flag(flag)),
             _ => reader.unexpected(node),
@@ -184,6 +185,23 @@ impl ValueReader<'_, '_> {
         }
         let near = hint(text, words.words());
         self.fail(node, format!("expected {}, found {}{near}", self.kind, node.show()))
+    }
+
+    /// Words of a list, in its order; none twice.
+    fn choices(&mut self, node: &Node, words: &Words) -> Option<Datum> {
+        let Value::List(items) = &node.value else { return self.unexpected(node) };
+        let mut found: Vec<String> = Vec::new();
+        for item in items {
+            let word = match self.choice(item, words)? {
+                Datum::Word(word) if found.iter().any(|other| other == word) => {
+                    return self.fail(item, format!("\"{word}\" is named twice"));
+                }
+                Datum::Word(word) => word,
+                _ => return None,
+            };
+            found.push(word.to_owned());
+        }
+        Some(Datum::Names(found))
     }
 
     fn text(&mut self, node: &Node, most: usize) -> Option<Datum> {

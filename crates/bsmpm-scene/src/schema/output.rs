@@ -3,7 +3,7 @@
 use super::Kind::*;
 use super::Presence::{Default, Optional, Required};
 use super::{Dimension as In, Kind, Range, Table, body, key, one_of};
-use crate::words::{Format, Measurement, Side, Word};
+use crate::words::{Format, FrameField, Measurement, ProfileQuantity, Side, Word};
 use std::ops::Bound::{Excluded, Included};
 
 pub(super) static OUTPUT: Table = Table {
@@ -21,6 +21,7 @@ pub(super) static OUTPUT: Table = Table {
             Default("false"),
             "whether frames have the pressure projected onto splines of the order below, too",
         ),
+        key("fields", Choices(FrameField::WORDS), Optional, "what frames show besides what they always do"),
         key(
             "checkpoint",
             Kind::Table(&CHECKPOINT),
@@ -72,9 +73,52 @@ pub(super) static HISTORY: Table = Table {
             "material",
             Name,
             Optional,
-            "of mass, momentum, centre-of-mass and angular-momentum: the points of a material; all unless given",
+            "of quantities of all points: those of a material, of mass, momentum, centre-of-mass, angular-momentum, \
+             kinetic-energy, mean-stress, runout, height, max-displacement and heave",
+        ),
+        key("body", Name, Optional, "of the same quantities: the points of a body by its name, instead of material"),
+        key("from", Pair(In::Length, Range::ANY), Optional, "of section-forces: where the line begins"),
+        key("to", Pair(In::Length, Range::ANY), Optional, "of section-forces: where it ends"),
+        key(
+            "fixed",
+            Flag,
+            Optional,
+            "of section-forces: whether the line stays where it is in space; it goes with the material that is at its ends at \
+             the start unless given",
+        ),
+        key(
+            "surface",
+            Flag,
+            Optional,
+            "of velocity and stress: of the place itself, by the plane through the points around it, also where these are on \
+             one side; of the nearest point unless given",
         ),
         key("box", Kind::Table(&body::BOX), Optional, "of pressure-noise: the points inside; all unless given"),
+    ],
+    exclusive: &[one_of(&["material", "body"], false)],
+};
+
+pub(super) static PROFILE: Table = Table {
+    header: "[[profile]]",
+    doc: "Fields at places along a line, a file `profile_NAME.csv` with a row for every time and place in material",
+    keys: &[
+        key("name", Name, Required, "what its file is called after"),
+        key("from", Pair(In::Length, Range::ANY), Required, "where the line begins"),
+        key("to", Pair(In::Length, Range::ANY), Required, "where it ends"),
+        key("count", Count(1, 1000), Required, "places, equally spaced, the ends among them; one: the middle"),
+        key("quantities", Choices(ProfileQuantity::WORDS), Required, "what is told of each place"),
+        key(
+            "times",
+            List(In::Time, Range::POSITIVE),
+            Optional,
+            "when, hit exactly; unless given at the start, with every frame that [output] wants, and at the end",
+        ),
+        key(
+            "fixed",
+            Flag,
+            Default("false"),
+            "whether the places stay where they are in space; else they belong to the material that is there at the start",
+        ),
     ],
     exclusive: &[],
 };

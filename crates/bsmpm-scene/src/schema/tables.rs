@@ -39,7 +39,7 @@ pub static ROOT: Table = Table {
         key("initial", Kind::Table(&loads::INITIAL), Optional, "stress at the start; absent: none"),
         key("element", Named(&element::ELEMENT), Optional, "tests of one point, for `bsmpm element`"),
         key("stage", Tables(&stage::STAGE), Optional, "what is removed, placed or exchanged at a time"),
-        later("profile", "strength with depth"),
+        key("profile", Tables(&output::PROFILE), Optional, "fields along a line"),
     ],
     exclusive: &[],
 };

@@ -1,6 +1,7 @@
 //! Histories and the checks of their columns.
 
-use crate::case::{Body, Check, History, NamedMaterial, Quantity, Support};
+use super::place;
+use crate::case::{Body, Check, Column, Counted, History, NamedMaterial, Quantity, Support};
 use crate::grid::GridSpec;
 use crate::nearest::hint;
 use crate::record::Record;
@@ -46,13 +47,13 @@ fn read(
     report: &mut Report<'_>,
 ) -> Option<History> {
     let measured: Measurement = record.word("quantity")?;
-    let own = own_key(measured);
-    let others = ["percentile", "face", "at", "at_x", "box", "material"].into_iter().filter(|key| Some(*key) != own);
+    let (own, needed) = own_keys(measured);
+    let others = KEYS.into_iter().filter(|key| !own.contains(key) && !needed.contains(key));
     for key in others.filter(|key| record.gives(key)) {
         record.error(key, format!("has no meaning for quantity \"{measured}\""), report);
     }
-    if let Some(own) = own.filter(|own| matches!(*own, "face" | "at") && !record.gives(own)) {
-        report.error(record.origin, &record.path_of(own), format!("missing; quantity \"{measured}\" needs it"));
+    for key in needed.iter().filter(|key| !record.gives(key)) {
+        report.error(record.origin, &record.path_of(key), format!("missing; quantity \"{measured}\" needs it"));
     }
     if regime == Some(Regime::QuasiStatic) && is_of_motion(measured) {
         record.error("quantity", format!("there is no {measured} in a quasi-static analysis"), report);
@@ -86,21 +87,27 @@ fn supports(root: &Record, side: Side) -> Vec<Support> {
 
 /// Whether it is nothing where nothing has a velocity.
 fn is_of_motion(measured: Measurement) -> bool {
-    matches!(measured, Measurement::Velocity | Measurement::Momentum | Measurement::AngularMomentum)
+    use Measurement::*;
+    matches!(measured, Velocity | Momentum | AngularMomentum | KineticEnergy)
 }
 
-/// The key that belongs to a quantity.
-fn own_key(measured: Measurement) -> Option<&'static str> {
+/// Keys that belong to some quantities.
+const KEYS: [&str; 11] =
+    ["percentile", "face", "at", "at_x", "box", "material", "body", "from", "to", "fixed", "surface"];
+
+/// The keys that belong to a quantity, and those that it needs.
+fn own_keys(measured: Measurement) -> (&'static [&'static str], &'static [&'static str]) {
     use Measurement::*;
     match measured {
-        Runout => Some("percentile"),
-        Height => Some("at_x"),
-        Reaction | Contact | Gap | SlipRate | FrictionPower => Some("face"),
-        Displacement | Velocity | Stress => Some("at"),
-        PressureNoise => Some("box"),
-        Mass | Momentum | CentreOfMass | AngularMomentum => Some("material"),
-        Front | MaxDisplacement | StressNoise | Heave | Energy | Outflow => None,
-        FootingPressure | FootingForce | Penetration | Slip => None,
+        Runout => (&["percentile", "material", "body"], &[]),
+        Height => (&["at_x", "material", "body"], &[]),
+        Reaction | Contact | Gap | SlipRate | FrictionPower => (&[], &["face"]),
+        Displacement => (&[], &["at"]),
+        Velocity | Stress => (&["surface"], &["at"]),
+        SectionForces => (&["fixed"], &["from", "to"]),
+        PressureNoise => (&["box"], &[]),
+        _ if measured.is_of_part() => (&["material", "body"], &[]),
+        _ => (&[], &[]),
     }
 }
 
@@ -113,26 +120,37 @@ fn quantity(
     Some(match measured {
         Measurement::Runout => {
             let given = record.gives("percentile");
-            Quantity::Runout { percentile: if given { record.number("percentile")? } else { 100.0 } }
+            Quantity::Runout {
+                percentile: if given { record.number("percentile")? } else { 100.0 },
+                of: counted(record, made, report)?,
+            }
         }
         Measurement::Front => Quantity::Front,
-        Measurement::Height => Quantity::Height { at_x: at_x(record, grid, report)? },
-        Measurement::MaxDisplacement => Quantity::MaxDisplacement,
-        Measurement::Mass => Quantity::Mass { of: material(record, made, report)? },
+        Measurement::Height => {
+            Quantity::Height { at_x: at_x(record, grid, report)?, of: counted(record, made, report)? }
+        }
+        Measurement::MaxDisplacement => Quantity::MaxDisplacement { of: counted(record, made, report)? },
+        Measurement::Mass => Quantity::Mass { of: counted(record, made, report)? },
         Measurement::Outflow => Quantity::Outflow,
-        Measurement::Momentum => Quantity::Momentum { of: material(record, made, report)? },
+        Measurement::Momentum => Quantity::Momentum { of: counted(record, made, report)? },
         Measurement::CentreOfMass => Quantity::CentreOfMass { of: weighing(record, made, report)? },
-        Measurement::AngularMomentum => Quantity::AngularMomentum { of: material(record, made, report)? },
+        Measurement::AngularMomentum => Quantity::AngularMomentum { of: counted(record, made, report)? },
+        Measurement::KineticEnergy => Quantity::KineticEnergy { of: counted(record, made, report)? },
+        Measurement::MeanStress => Quantity::MeanStress { of: counted(record, made, report)? },
+        Measurement::SectionForces => Quantity::SectionForces {
+            ends: ends(record, grid, report)?,
+            fixed: record.gives("fixed") && record.flag("fixed")?,
+        },
         Measurement::Reaction => Quantity::Reaction { face: record.word::<Side>("face")?.into() },
         Measurement::Displacement => Quantity::Displacement { at: at(record, grid, report)? },
-        Measurement::Velocity => Quantity::Velocity { at: at(record, grid, report)? },
-        Measurement::Stress => Quantity::Stress { at: at(record, grid, report)? },
+        Measurement::Velocity => Quantity::Velocity { at: at(record, grid, report)?, surface: at_surface(record)? },
+        Measurement::Stress => Quantity::Stress { at: at(record, grid, report)?, surface: at_surface(record)? },
         Measurement::StressNoise => Quantity::StressNoise,
         Measurement::PressureNoise if record.gives("box") => {
             Quantity::PressureNoise { within: Some(within(record.record("box")?, grid, report)?) }
         }
         Measurement::PressureNoise => Quantity::PressureNoise { within: None },
-        Measurement::Heave => Quantity::Heave,
+        Measurement::Heave => Quantity::Heave { of: counted(record, made, report)? },
         Measurement::FootingPressure => Quantity::FootingPressure,
         Measurement::FootingForce => Quantity::FootingForce,
         Measurement::Penetration => Quantity::Penetration,
@@ -145,12 +163,17 @@ fn quantity(
     })
 }
 
-/// Number of the material of the points that count, if the history names one that a body is made of; the outer option
-/// is `None` after an error.
-fn material(record: &Record, made: Made<'_>, report: &mut Report<'_>) -> Option<Option<u16>> {
-    if !record.gives("material") {
-        return Some(None);
+/// The points that count: of a material that a body is made of, of a body, or all.
+fn counted(record: &Record, made: Made<'_>, report: &mut Report<'_>) -> Option<Counted> {
+    match (record.gives("material"), record.gives("body")) {
+        (true, _) => material(record, made, report).map(Counted::Material),
+        (_, true) => body(record, made?.1, report).map(Counted::Body),
+        _ => Some(Counted::All),
     }
+}
+
+/// Number of the history's material, which a body is made of.
+fn material(record: &Record, made: Made<'_>, report: &mut Report<'_>) -> Option<u16> {
     let (name, (materials, bodies)) = (record.text("material")?, made?);
     let Some(number) = materials.iter().position(|material| material.name == name) else {
         let near = hint(name, materials.iter().map(|material| &*material.name));
@@ -161,19 +184,54 @@ fn material(record: &Record, made: Made<'_>, report: &mut Report<'_>) -> Option<
         record.error("material", format!("no body is made of `{name}`"), report);
         return None;
     }
-    u16::try_from(number).ok().map(Some)
+    u16::try_from(number).ok()
 }
 
-/// The same of points that have mass.
-fn weighing(record: &Record, made: Made<'_>, report: &mut Report<'_>) -> Option<Option<u16>> {
-    let (of, (materials, bodies)) = (material(record, made, report)?, made?);
-    let counts = |number: usize| of.is_none_or(|of| usize::from(of) == number);
-    let mut numbers = bodies.iter().map(|body| body.material).filter(|&number| counts(number));
-    if !numbers.any(|number| materials[number].density.is_some()) {
+/// Number of the history's body.
+fn body(record: &Record, bodies: &[Body], report: &mut Report<'_>) -> Option<usize> {
+    let name = record.text("body")?;
+    let found = bodies.iter().position(|body| body.name.as_deref() == Some(name));
+    if found.is_none() {
+        let near = hint(name, bodies.iter().filter_map(|body| body.name.as_deref()));
+        record.error("body", format!("there is no body with name = \"{name}\"{near}"), report);
+    }
+    found
+}
+
+/// The points that count, if they have mass.
+fn weighing(record: &Record, made: Made<'_>, report: &mut Report<'_>) -> Option<Counted> {
+    let (of, (materials, bodies)) = (counted(record, made, report)?, made?);
+    let counts = |number: usize, body: &Body| match of {
+        Counted::All => true,
+        Counted::Material(of) => usize::from(of) == body.material,
+        Counted::Body(of) => of == number,
+    };
+    let mut counted = bodies.iter().enumerate().filter(|(number, body)| counts(*number, body));
+    if !counted.any(|(_, body)| materials[body.material].density.is_some()) {
         record.error("quantity", "there is no centre of mass: nothing of it has any", report);
         return None;
     }
     Some(of)
+}
+
+/// Ends of a line that has a length.
+pub(super) fn ends(record: &Record, grid: Option<&GridSpec>, report: &mut Report<'_>) -> Option<[[f64; 2]; 2]> {
+    let [from, to] = [record.pair("from"), record.pair("to")];
+    let ends = [from?, to?];
+    if ends[0] == ends[1] {
+        record.error("to", format!("{:?} is where the line begins: it has no length", ends[1]), report);
+        return None;
+    }
+    for (key, end) in ["from", "to"].into_iter().zip(ends) {
+        if let Some(beyond) = grid.and_then(|grid| place::beyond(grid, end)) {
+            record.error(key, beyond, report);
+        }
+    }
+    Some(ends)
+}
+
+fn at_surface(record: &Record) -> Option<bool> {
+    if record.gives("surface") { record.flag("surface") } else { Some(false) }
 }
 
 /// The x of a height, if it has one; the outer option is `None` after an error.
@@ -224,7 +282,7 @@ fn check(record: &Record, histories: &[History], end: Option<f64>, report: &mut 
     let quantity = record.text("quantity")?;
     let columns =
         || histories.iter().flat_map(|history| history.columns().into_iter().map(move |column| (history, column)));
-    let Some((history, _)) = columns().find(|(_, column)| column.name == quantity) else {
+    let Some((_, column)) = columns().find(|(_, column)| column.name == quantity) else {
         let names: Vec<String> = columns().map(|(_, column)| column.name).collect();
         let hint = hint(quantity, names.iter().map(String::as_str));
         let known = if names.is_empty() { "there is no [[history]]".to_owned() } else { names.join(", ") };
@@ -236,7 +294,7 @@ fn check(record: &Record, histories: &[History], end: Option<f64>, report: &mut 
     if end.is_some_and(|end| at > end) {
         record.error("at", format!("{at} is beyond the end of the run"), report);
     }
-    let (min, max) = (bound("min", record, history, report)?, bound("max", record, history, report)?);
+    let (min, max) = (bound("min", record, &column, report)?, bound("max", record, &column, report)?);
     match (min, max) {
         (None, None) => report.error(record.origin, &record.path, "missing: min, max or both"),
         (Some(min), Some(max)) if min > max => {
@@ -248,17 +306,17 @@ fn check(record: &Record, histories: &[History], end: Option<f64>, report: &mut 
 }
 
 /// A bound in the column's unit; the outer option is `None` after an error.
-fn bound(key: &str, record: &Record, history: &History, report: &mut Report<'_>) -> Option<Option<f64>> {
+fn bound(key: &str, record: &Record, column: &Column, report: &mut Report<'_>) -> Option<Option<f64>> {
     if !record.gives(key) {
         return Some(None);
     }
     let (value, dimension) = record.measure(key)?;
     let Some(dimension) = dimension else { return Some(Some(value)) };
-    let expected = Dimension::of_unit(history.quantity.unit()).filter(|_| history.scale == 1.0);
+    let expected = Dimension::of_unit(&column.unit);
     if expected == Some(dimension) {
         return Some(Some(value));
     }
     let allowed = expected.map_or("a number".to_owned(), |expected| expected.to_string());
-    record.error(key, format!("{dimension} was found; the column `{}` takes {allowed}", history.name), report);
+    record.error(key, format!("{dimension} was found; the column `{}` takes {allowed}", column.name), report);
     None
 }

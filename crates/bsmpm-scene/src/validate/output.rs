@@ -38,6 +38,7 @@ pub(super) fn read(root: &Record, end: Option<f64>, report: &mut Report<'_>) -> 
         format: output.word("format")?,
         residuals: output.flag("residuals")?,
         projected_pressure: output.flag("projected_pressure")?,
+        fields: if output.gives("fields") { output.choices("fields")? } else { Vec::new() },
         checkpoint,
     })
 }
@@ -49,6 +50,7 @@ fn nothing() -> Output {
         format: Format::Vtu,
         residuals: false,
         projected_pressure: false,
+        fields: Vec::new(),
         checkpoint: Checkpoint::default(),
     }
 }

@@ -1,7 +1,7 @@
 //! Strength that is divided not from the start on but in a stage, or at the end of one: what is left of the case until
 //! then, and the steps that follow.
 
-use crate::case::{Acting, Case, Gravity, PointLoad, Quantity, Stage, Traction};
+use crate::case::{Acting, Case, Counted, Gravity, PointLoad, Quantity, Stage, Traction};
 use crate::nearest::hint;
 use crate::record::Record;
 use crate::report::{Report, shortened};
@@ -126,7 +126,7 @@ fn load_at_once(case: &mut Case, until: f64, steps: u64) {
     retain(&mut case.bodies, &bodies);
     case.stages.clear();
     // Others may be of what is not there.
-    case.histories.retain(|history| history.quantity == Quantity::MaxDisplacement);
+    case.histories.retain(|history| history.quantity == Quantity::MaxDisplacement { of: Counted::All });
     case.analysis.end = steps.max(1) as f64 * case.analysis.dt;
     let end = case.analysis.end;
     let ramps = (case.gravity.iter_mut().map(|Gravity { ramp, .. }| ramp))

@@ -13,24 +13,32 @@ choice! {
         Height = "height",
         /// The largest displacement of any point.
         MaxDisplacement = "max-displacement",
-        /// Mass of all points, or those of `material`, per metre of thickness.
+        /// Mass, per metre of thickness.
         Mass = "mass",
-        /// Momentum of all points, or those of `material` (kg m/s), per metre of thickness.
+        /// Momentum (kg m/s), per metre of thickness.
         Momentum = "momentum",
-        /// Where the mass of all points, or those of `material`, is in the mean.
+        /// Where the mass is in the mean; the grid's lower corner without any.
         CentreOfMass = "centre-of-mass",
-        /// Angular momentum of all points, or those of `material`, about the origin of the case's coordinates (kg
-        /// m2/s), counter-clockwise, per metre of thickness.
+        /// Angular momentum about the origin of the case's coordinates (kg m2/s), counter-clockwise, per metre of
+        /// thickness.
         AngularMomentum = "angular-momentum",
+        /// Kinetic energy, per metre of thickness.
+        KineticEnergy = "kinetic-energy",
+        /// Mean Cauchy stress, positive in tension, weighted with the points' present volumes.
+        MeanStress = "mean-stress",
+        /// What the stress transmits across the line from `from` to `to`, per metre of thickness: of the material on
+        /// its right on that on its left. What of the line is out of the body counts for nothing.
+        SectionForces = "section-forces",
         /// Mass that has left the grid through faces with outflow since the start, per metre of thickness.
         Outflow = "outflow",
         /// Force of a face's supports on the body, per metre of thickness.
         Reaction = "reaction",
         /// Displacement of the material that is at `at` at the start, by the motion about the point nearest to it.
         Displacement = "displacement",
-        /// Velocity of the point nearest to `at` at the start.
+        /// Velocity of the point nearest to `at` at the start; with `surface` of the place itself.
         Velocity = "velocity",
-        /// Cauchy stress of the point nearest to `at` at the start, positive in tension.
+        /// Cauchy stress of the point nearest to `at` at the start, positive in tension; with `surface` of the place
+        /// itself.
         Stress = "stress",
         /// Oscillation of sigma_yy over all points from point to point: a root mean square, over the mean of
         /// |sigma_yy|.
@@ -68,6 +76,11 @@ choice! {
 const VECTOR: &[(&str, &str)] = &[("-x", "along x"), ("-y", "along y")];
 const STRESS: &[(&str, &str)] =
     &[("-xx", "normal to x"), ("-yy", "normal to y"), ("-zz", "out of the plane"), ("-xy", "shear")];
+const SECTION: &[(&str, &str)] = &[
+    ("-n", "normal force, positive in tension"),
+    ("-q", "shear force: on what is on the left of the line, along it"),
+    ("-m", "moment about the line's middle (N m/m), positive where the side of `to` is in tension"),
+];
 const NOISE: &[(&str, &str)] =
     &[("-average", "about the average over the grid"), ("-plane", "about the plane through the points around")];
 const CONTACT: &[(&str, &str)] = &[("-closed", "part of the nodes"), ("-sliding", "part of the normal force")];
@@ -102,12 +115,13 @@ impl Measurement {
     pub fn columns(self) -> &'static [(&'static str, &'static str)] {
         match self {
             Self::Momentum | Self::CentreOfMass | Self::Reaction | Self::Displacement | Self::Velocity => VECTOR,
-            Self::Stress => STRESS,
+            Self::Stress | Self::MeanStress => STRESS,
+            Self::SectionForces => SECTION,
             Self::StressNoise | Self::PressureNoise => NOISE,
             Self::Energy => ENERGY,
             Self::Contact => CONTACT,
             Self::Gap => GAP,
-            Self::SlipRate | Self::FrictionPower | Self::AngularMomentum => &[("", "")],
+            Self::SlipRate | Self::FrictionPower | Self::AngularMomentum | Self::KineticEnergy => &[("", "")],
             Self::Runout | Self::Front | Self::Height | Self::MaxDisplacement | Self::Heave => &[("", "")],
             Self::Mass | Self::Outflow | Self::FootingPressure | Self::FootingForce => &[("", "")],
             Self::Penetration | Self::Slip => &[("", "")],
@@ -122,12 +136,26 @@ impl Measurement {
             Self::Mass | Self::Outflow => "kg/m",
             Self::Momentum => "kg/s",
             Self::AngularMomentum => "kg m/s",
-            Self::Reaction | Self::FootingForce => "N/m",
+            Self::Reaction | Self::FootingForce | Self::SectionForces => "N/m",
             Self::Velocity | Self::SlipRate => "m/s",
             Self::FrictionPower => "W/m",
-            Self::Stress | Self::PressureNoise | Self::FootingPressure => "Pa",
+            Self::Stress | Self::MeanStress | Self::PressureNoise | Self::FootingPressure => "Pa",
             Self::StressNoise | Self::Slip | Self::Contact => "-",
-            Self::Energy => "J/m",
+            Self::Energy | Self::KineticEnergy => "J/m",
+        }
+    }
+
+    /// Unit of the numbers of a column.
+    pub fn unit_of(self, column: usize) -> &'static str {
+        if self == Self::SectionForces && column == 2 { "N m/m" } else { self.unit() }
+    }
+
+    /// Whether it is of the points of a material or a body, if one is given.
+    pub fn is_of_part(self) -> bool {
+        match self {
+            Self::Mass | Self::Momentum | Self::CentreOfMass | Self::AngularMomentum | Self::KineticEnergy => true,
+            Self::MeanStress | Self::Runout | Self::Height | Self::MaxDisplacement | Self::Heave => true,
+            _ => false,
         }
     }
 }

@@ -114,6 +114,12 @@ fn faces_that_absorb() {
 }
 
 #[test]
+fn what_is_told_of_parts_lines_and_places() {
+    verify_all(DYNAMIC, rows::TOLD);
+    verify_all(STATIC, rows::TOLD_QUASI_STATIC);
+}
+
+#[test]
 fn stages() {
     verify_all(DYNAMIC, rows::STAGES);
     verify_all(STATIC, rows::STAGES_OF_ONE);

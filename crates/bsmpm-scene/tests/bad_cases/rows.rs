@@ -238,7 +238,7 @@ pub const RULES: &[Row] = &[
         "no material `sandy`",
     )
     .down(1),
-    row("quantity = \"heave\"", "quantity = \"heave\"\nmaterial = \"sand\"", "history.5.material", "has no meaning")
+    row("quantity = \"heave\"", "quantity = \"front\"\nmaterial = \"sand\"", "history.5.material", "has no meaning")
         .down(1),
     row("quantity = \"heave\"", "quantity = \"gap\"", "history.5.face", "missing; quantity \"gap\" needs it").up(1),
     row(
@@ -256,6 +256,60 @@ pub const RULES: &[Row] = &[
     )
     .down(1),
 ];
+
+/// Parts of histories, lines, surfaces, profiles and fields of frames.
+pub const TOLD: &[Row] = &[
+    row("body     = \"fill\"", "body = \"fil\"", "history.7.body", "did you mean `fill`?"),
+    row(
+        "body     = \"fill\"",
+        "material = \"sand\"\nbody = \"fill\"",
+        "history.7.body",
+        "`material` is given too; only one of material, body may be",
+    )
+    .down(1),
+    row("quantity = \"kinetic-energy\"", "quantity = \"energy\"", "history.7.body", "has no meaning").down(1),
+    row("to       = [\"1 m\", 1.25]\n", "", "history.8.to", "quantity \"section-forces\" needs it").up(3),
+    row("to       = [\"1 m\", 1.25]", "to = [1.0, 0.0]", "history.8.to", "it has no length"),
+    row("to       = [\"1 m\", 1.25]", "to = [1.0, 9.0]", "history.8.to", "outside the grid"),
+    row("quantity = \"heave\"", "quantity = \"heave\"\nsurface = true", "history.5.surface", "has no meaning").down(1),
+    row(
+        "quantity = \"heave\"",
+        "quantity = \"displacement\"\nat = [1, 1]\nfixed = true",
+        "history.5.fixed",
+        "no meaning",
+    )
+    .down(2),
+    row("count = 11", "count = 0", "profile.0.count", "1 <= count <= 1000"),
+    row("to    = [2.0, 0.0]", "to = [2.0, -1.0]", "profile.0.to", "outside the grid"),
+    row("to    = [2.0, 0.0]", "to = [2.0, 1.25]", "profile.0.to", "it has no length"),
+    row("times = [\"0.5 s\", 1.0]", "times = [0.5, 2.0]", "profile.0.times", "beyond the end"),
+    row("times = [\"0.5 s\", 1.0]", "times = []", "profile.0.times", "never told"),
+    row(
+        "quantities = [\"displacement\", ",
+        "quantities = [\"disp\", ",
+        "profile.0.quantities",
+        "expected a list of words",
+    ),
+    row("quantities = [\"displacement\", ", "quantities = [\"q\", ", "profile.0.quantities", "\"q\" is named twice"),
+    row(
+        "fixed = false",
+        "[[profile]]\nname = \"Depth\"\nfrom = [0, 0]\nto = [1, 1]\ncount = 2\nquantities = [\"p\"]",
+        "profile.1.name",
+        "there is a profile `Depth` already",
+    )
+    .down(1),
+    row("fields = [\"q\", ", "fields = [\"p\", ", "output.fields", "expected a list of words"),
+    row("fields = [\"q\", ", "fields = [\"density\", ", "output.fields", "\"density\" is named twice"),
+];
+
+/// Profiles in a quasi-static case.
+pub const TOLD_QUASI_STATIC: &[Row] = &[row(
+    "[output]",
+    "[[profile]]\nname = \"a\"\nfrom = [0, 0]\nto = [1, 1]\ncount = 2\nquantities = [\"velocity\"]\n[output]",
+    "profile.0.quantities",
+    "there is no velocity in a quasi-static analysis",
+)
+.down(5)];
 
 /// Faces that let waves out, in the case with all keys, which has stages, shakes and starts without stress.
 pub const ABSORBING: &[Row] = &[
@@ -300,7 +354,7 @@ pub const LATER: &[(&str, &str, &str)] = &[
     ("geometry = \"plane-strain\"", "geometry = \"axisymmetric\"", "geometry"),
     ("geometry = \"plane-strain\"", "geometry = \"solid\"", "geometry"),
     ("format = \"vtu\"", "format = \"vtkhdf\"", "output.format"),
-    ("[gravity]", "[profile.depth]", "profile"),
+    ("top    = \"fixed\"", "front = \"free\"", "boundary.front"),
 ];
 
 /// Stages: bodies that come and go.

@@ -117,7 +117,7 @@ impl Fits {
             Kind::Choice(..) | Kind::Open => true,
             Kind::Text(_) => !is_text,
             Kind::Name => put != "\"abc\"",
-            Kind::Names => put != "[]",
+            Kind::Names | Kind::Choices(_) => put != "[]",
             Kind::Flag => put != "true",
             Kind::Table(_) | Kind::Named(_) | Kind::ChoiceOr(..) => put != "{}",
             Kind::Tables(_) => put != "[]",

@@ -7,8 +7,8 @@ use bsmpm::stabilisation::Stabilisation;
 use bsmpm::tensor::Vector;
 use bsmpm_scene::words::{Factor, Ksp, Pc};
 use bsmpm_scene::{
-    BackgroundKind, Base, Case, Error, Every, Extent, Face, GridAxis, Initial, LoadedLine, Place, Push, Quadrature,
-    Quantity, Site, Support, seed,
+    BackgroundKind, Base, Case, Counted, Error, Every, Extent, Face, GridAxis, Initial, LoadedLine, Place, Push,
+    Quadrature, Quantity, Site, Support, seed,
 };
 
 const FULL: &str = include_str!("../full.toml");
@@ -104,7 +104,7 @@ fn errors_cite_the_override() {
         ("footing.base=soft", "footing.base", "expected one of \"smooth\", \"rough\""),
         ("strength_reduction.factor=0.01", "strength_reduction.factor", "0.1 <= factor <= 100"),
         ("body.3.subtract.0.circle.radius=0", "body.3.subtract.0.circle.radius", "radius > 0"),
-        ("profile.0.end=1", "profile", "not available yet"),
+        ("profile.0.end=1", "profile.0.end", "unknown key"),
     ];
     for (text, key, says) in rows {
         let errors = set(FULL, &[text]).unwrap_err();
@@ -167,7 +167,7 @@ fn the_full_case_in_si() {
         "centre-of-mass-y",
     ];
     assert_eq!(columns, expected);
-    assert_eq!(case.histories[6].quantity, Quantity::CentreOfMass { of: Some(0) });
+    assert_eq!(case.histories[6].quantity, Quantity::CentreOfMass { of: Counted::Material(0) });
     assert_eq!(case.histories[4].quantity, Quantity::PressureNoise { within: Some([[0.0, 0.0], [2.0, 1.0]]) });
     assert_eq!((case.checks[0].at, case.checks[0].max, case.checks[1].at), (0.5, Some(4.0), 1.0));
     assert!(case.warnings.is_empty(), "{:?}", case.warnings);

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use bsmpm::model::Regime;
 use bsmpm_scene::words::Word;
-use bsmpm_scene::{Acting, Case, GridAxis, MotionPath, Quantity, Traction};
+use bsmpm_scene::{Acting, Case, Counted, GridAxis, MotionPath, Quantity, Traction};
 use serde::Serialize;
 
 use super::search::{ELASTIC, LEAST};
@@ -100,8 +100,8 @@ impl Subject {
         if !reasons.is_empty() {
             return Err(Error::NoFactor { path: path.to_owned(), reasons });
         }
-        let mut recorded: Vec<_> =
-            case.histories.iter().filter(|history| history.quantity == Quantity::MaxDisplacement).collect();
+        let whole = Quantity::MaxDisplacement { of: Counted::All };
+        let mut recorded: Vec<_> = case.histories.iter().filter(|history| history.quantity == whole).collect();
         recorded.sort_by_key(|history| history.scale == 1.0);
         let column = recorded.first().map_or(QUANTITY, |history| &history.name).to_owned();
         let is_scaled = recorded.first().is_some_and(|history| history.scale != 1.0);

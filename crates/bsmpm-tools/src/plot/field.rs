@@ -1,6 +1,6 @@
 //! What can colour the body.
 
-use bsmpm_io::frame::Frame;
+use bsmpm_io::frame::{FieldValues, Frame};
 use clap::ValueEnum;
 
 use crate::picture::ticks::padded;
@@ -27,6 +27,22 @@ pub enum FieldName {
     Displacement,
     /// Length of the velocity, m/s
     Velocity,
+    /// Deviatoric stress, kPa, of frames with `q`
+    Q,
+    /// Largest principal stress, kPa, of frames with `principal-stresses`
+    PrincipalLargest,
+    /// Smallest principal stress, kPa, of frames with `principal-stresses`
+    PrincipalSmallest,
+    /// Mobilised strength, of frames with `mobilised-strength`
+    MobilisedStrength,
+    /// Deviatoric strain, of frames with `deviatoric-strain`
+    DeviatoricStrain,
+    /// Where the stress is on the yield surface, of frames with `yielding`
+    Yielding,
+    /// Present density, kg/m3, of frames with `density`
+    Density,
+    /// Number of the body, of frames with `body`
+    Body,
 }
 
 /// How a quantity is taken from a frame.
@@ -45,6 +61,14 @@ impl FieldName {
         let stress = |component, quantity| PlotSource {
             field: "stress",
             components: 6,
+            component: Some(component),
+            scale: 1e-3,
+            quantity,
+            unit: "kPa",
+        };
+        let principal = |component, quantity| PlotSource {
+            field: "principal_stresses",
+            components: 3,
             component: Some(component),
             scale: 1e-3,
             quantity,
@@ -69,6 +93,14 @@ impl FieldName {
             Self::PlasticStrain => scalar("plastic_strain", 1.0, "Accumulated plastic strain", "-"),
             Self::Displacement => vector("displacement", "Displacement", "m"),
             Self::Velocity => vector("velocity", "Velocity", "m/s"),
+            Self::Q => scalar("q", 1e-3, "Deviatoric stress", "kPa"),
+            Self::PrincipalLargest => principal(0, "Largest principal stress"),
+            Self::PrincipalSmallest => principal(2, "Smallest principal stress"),
+            Self::MobilisedStrength => scalar("mobilised_strength", 1.0, "Mobilised strength", "-"),
+            Self::DeviatoricStrain => scalar("deviatoric_strain", 1.0, "Deviatoric strain", "-"),
+            Self::Yielding => scalar("yielding", 1.0, "Yielding", "-"),
+            Self::Density => scalar("density", 1.0, "Density", "kg/m3"),
+            Self::Body => scalar("body", 1.0, "Body", "-"),
         }
     }
 
@@ -91,6 +123,11 @@ impl FieldName {
     /// The quantity at every point of a frame, in the unit of [`FieldName::label`].
     pub(crate) fn values(self, frame: &Frame) -> Option<Vec<f64>> {
         let PlotSource { field, components, component, scale, .. } = self.source();
+        if self == Self::Body {
+            let body = frame.fields.iter().find(|of| of.name == field)?;
+            let FieldValues::U64(numbers) = &body.values else { return None };
+            return Some(numbers.iter().map(|&number| number as f64).collect());
+        }
         let values = frame.real(field, components)?.chunks_exact(components);
         Some(match component {
             Some(component) => values.map(|point| scale * point[component]).collect(),
@@ -106,10 +143,19 @@ impl FieldName {
             |share: f64| all.get((share * all.len().saturating_sub(1) as f64).round() as usize).copied().unwrap_or(0.0);
         let (low, high) = (at(BEYOND), at(1.0 - BEYOND));
         match self {
-            Self::PlasticStrain | Self::Displacement | Self::Velocity if high > 0.0 => (0.0, high),
-            Self::PlasticStrain | Self::Displacement | Self::Velocity => (0.0, 1.0),
+            _ if self.begins_at_zero() && high > 0.0 => (0.0, high),
+            _ if self.begins_at_zero() => (0.0, 1.0),
             _ if high > low => (low, high),
             _ => padded(low, high, 0.0),
+        }
+    }
+
+    /// Whether it is never negative, and 0 is where nothing is.
+    fn begins_at_zero(self) -> bool {
+        match self {
+            Self::PlasticStrain | Self::Displacement | Self::Velocity | Self::Q => true,
+            Self::MobilisedStrength | Self::DeviatoricStrain | Self::Yielding => true,
+            _ => false,
         }
     }
 }

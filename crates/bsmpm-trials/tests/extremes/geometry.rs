@@ -10,7 +10,7 @@ use bsmpm::boundary::Support;
 use bsmpm::control::Stepper;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::{Gravity, Regime};
-use bsmpm::observe;
+use bsmpm::observe::{self, Part};
 use bsmpm::points::Points;
 use bsmpm::schedule::Schedule;
 use bsmpm::stabilisation::Stabilisation;
@@ -86,7 +86,7 @@ fn falling() -> (f64, f64) {
             acceleration = acceleration.max((Vector::from([u[0], u[1]]) - before * dt).norm() * 2.0 / (dt * dt) / g);
         }
         before = speed + Vector::from([0.0, -g * t]);
-        let momentum = observe::momentum(&scene.points, None, &halo);
+        let momentum = observe::momentum(&scene.points, &Part::Whole, &halo);
         lost = lost.max((momentum - before * mass).norm() / (speed.norm() * mass));
     }
     (acceleration, lost)

@@ -24,6 +24,7 @@ mod signals;
 mod stages;
 mod sweep;
 mod told;
+mod told_parts;
 
 #[path = "../support/mod.rs"]
 mod support;

@@ -9,6 +9,7 @@ mod element;
 mod gap;
 mod input;
 mod lanes;
+mod mobilised;
 mod mu_i;
 mod projection;
 mod random;

@@ -5,7 +5,7 @@ use bsmpm::boundary::Support;
 use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
 use bsmpm::model::{Regime, Weighting};
 use bsmpm::observe::projection::projected_pressure;
-use bsmpm::observe::{angular_momentum, centre_of_mass, momentum};
+use bsmpm::observe::{Part, angular_momentum, centre_of_mass, heave, kinetic_energy, mean_stress, momentum};
 use bsmpm::observe::{farthest, front, mass, nearest, noise::stress_noise, percentile};
 use bsmpm::tensor::{Symmetric, Vector};
 
@@ -71,10 +71,10 @@ fn the_projected_pressure_keeps_what_is_uniform_and_damps_what_alternates() {
 fn numbers_of_a_known_block() {
     let scene = block::<PlaneStrain, 2>(2);
     let (points, halo) = (&scene.points, scene.halo());
-    assert!((mass(points, None, &halo) - 3.0 * 4.0).abs() <= 1e-14);
-    assert_eq!(farthest(points, 0, &halo), 2.375);
+    assert!((mass(points, &Part::Whole, &halo) - 3.0 * 4.0).abs() <= 1e-14);
+    assert_eq!(farthest(points, &Part::Whole, 0, &halo), 2.375);
     assert_eq!(front(&scene.model, points, &halo), 2.375);
-    assert!((percentile(points, 1, 50.0, &halo) - 1.375).abs() <= 1e-12); // half of the rows lie below and on it
+    assert!((percentile(points, &Part::Whole, (1, 50.0), &halo) - 1.375).abs() <= 1e-12); // half of the rows lie below and on it
     let id = nearest(points, &[0.7, 0.6].into(), |_| true, &halo).unwrap();
     let found = points.id.iter().position(|&other| other == id).unwrap();
     assert_eq!(points.x[found], Vector::from([0.625, 0.625]));
@@ -90,25 +90,41 @@ fn totals_are_those_of_a_material_or_of_all() {
         .body([1..5, 1..5], 2, 3.0, spin)
         .with(hencky(1.0, 0.3), right);
     let (points, halo) = (&scene.points, scene.halo());
-    let of = |material: Option<u16>| {
-        let middle = centre_of_mass(points, material, &halo).unwrap();
-        let (p, spin) = (momentum(points, material, &halo), angular_momentum(points, material, &middle, &halo));
-        (mass(points, material, &halo), middle, p, spin)
+    let of = |part: &Part| {
+        let middle = centre_of_mass(points, part, &halo).unwrap();
+        let (p, spin) = (momentum(points, part, &halo), angular_momentum(points, part, &middle, &halo));
+        (mass(points, part, &halo), middle, p, spin)
     };
     // A rectangle of a x b cells of points has m (a^2 + b^2 - 2/n^2)/12 about its middle, its points at theirs.
     let inertia = |m: f64, a: f64, b: f64| m * (a * a + b * b - 2.0 * 0.25_f64.powi(2)) / 12.0;
     let close = |a: f64, b: f64| assert!((a - b).abs() <= 1e-12, "{a} for {b}");
-    for (material, m, x, a) in [(None, 12.0, 1.5, 2.0), (Some(0), 6.0, 1.0, 1.0), (Some(1), 6.0, 2.0, 1.0)] {
-        let (mass, middle, p, spin) = of(material);
+    let parts = [
+        (Part::Whole, 12.0, 1.5, 2.0),
+        (Part::Material(0), 6.0, 1.0, 1.0),
+        (Part::Material(1), 6.0, 2.0, 1.0),
+        // Ids count column by column.
+        (Part::Ids(0..32), 6.0, 1.0, 1.0),
+        (Part::Ids(32..64), 6.0, 2.0, 1.0),
+    ];
+    for (part, m, x, a) in &parts {
+        let (m, x, a) = (*m, *x, *a);
+        let (mass, middle, p, spin) = of(part);
         close(mass, m);
         close((middle - Vector::from([x, 1.5])).norm(), 0.0);
         close((p - Vector::from([2.0 * m, 3.0 * (x - 1.5) * m])).norm(), 0.0);
         close(spin, 3.0 * inertia(m, a, 2.0));
         // About another place the momentum has an arm.
-        let about = angular_momentum(points, material, &center, &halo);
+        let about = angular_momentum(points, part, &center, &halo);
         close(about, spin + (middle - center).perp(&p));
+        // By Koenig, with the rotation of 3 rad/s about the middle.
+        close(kinetic_energy(points, part, &halo), 0.5 * (p.norm_squared() / m + 3.0 * spin));
+        // The farthest point is half a spacing within.
+        close(farthest(points, part, 0, &halo), x + 0.5 * a - 0.125);
+        close(percentile(points, part, (0, 50.0), &halo), x - 0.125);
+        close(heave(points, part, &halo), 0.0);
     }
-    assert_eq!(centre_of_mass(points, Some(2), &halo), None);
+    assert_eq!(centre_of_mass(points, &Part::Material(2), &halo), None);
+    assert_eq!(mean_stress(points, &Part::Ids(64..99), &halo), [0.0; 6]);
 }
 
 #[test]

@@ -4,7 +4,7 @@ use crate::support::scene::{METHODS, Scene, axis, hencky};
 use bsmpm::boundary::Support;
 use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
 use bsmpm::model::{Regime, Shaking};
-use bsmpm::observe;
+use bsmpm::observe::{self, Part};
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::tensor::Vector;
 
@@ -19,12 +19,12 @@ fn collision<K: Kinematics<D>, const D: usize>(method: Stabilisation, steps: usi
         .body(right, 2, 2.0, velocity)
         .stabilised(method);
     let halo = scene.halo();
-    let start = observe::momentum(&scene.points, None, &halo);
+    let start = observe::momentum(&scene.points, &Part::Whole, &halo);
     let v = &scene.points.motion.as_ref().unwrap().v;
     let scale: f64 = v.iter().zip(&scene.points.mass).map(|(v, m)| m * v.norm()).sum();
     let (mut drift, mut stress) = (0.0_f64, 0.0_f64);
     scene.march(1.0 / steps as f64, 1.0, |points, _| {
-        drift = drift.max((observe::momentum(points, None, &halo) - start).norm() / scale);
+        drift = drift.max((observe::momentum(points, &Part::Whole, &halo) - start).norm() / scale);
         stress = points.sigma.iter().flat_map(|s| s.0).fold(stress, |most, s| most.max(s.abs() / 100.0));
     });
     (drift, stress)

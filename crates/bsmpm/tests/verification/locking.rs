@@ -7,7 +7,7 @@ use bsmpm::method::Criteria;
 use bsmpm::method::Nonlinear;
 use bsmpm::method::QuasiNewton;
 use bsmpm::model::{Regime, Weighting};
-use bsmpm::observe::{largest_displacement, noise};
+use bsmpm::observe::{Part, largest_displacement, noise};
 use bsmpm::stabilisation::Stabilisation;
 
 /// A block of 6 x 6 cells with nu = .49 on a fixed base beside a wall, under its weight: noise of the vertical stress
@@ -30,7 +30,7 @@ fn pressed_by(quasi_newton: QuasiNewton, method: Stabilisation) -> (f64, f64, us
     let (scene, steps) = scene.solved(1.0, 4.0);
     let halo = scene.halo();
     let noise = noise::stress_noise(&scene.model.grid, &scene.points, Weighting::Mass, 1, &halo).expect("inside");
-    let displacement = largest_displacement(&scene.points, &halo);
+    let displacement = largest_displacement(&scene.points, &Part::Whole, &halo);
     let iterations: Vec<usize> = steps.iter().map(|step| step.report.iterations).collect();
     println!("{method:?}, {quasi_newton:?}: {noise:.3?}, displacement {displacement:.4} m, iterations {iterations:?}");
     (noise.about_plane, displacement, iterations.iter().sum())

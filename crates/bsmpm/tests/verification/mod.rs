@@ -22,5 +22,6 @@ mod newton;
 mod oedometer;
 mod penalty;
 mod rotation;
+mod sections;
 mod stability;
 mod surfaces;

@@ -5,7 +5,7 @@ use bsmpm::boundary::Support;
 use bsmpm::energy::Stored;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::Regime;
-use bsmpm::observe;
+use bsmpm::observe::{self, Part};
 use bsmpm::points::Points;
 use bsmpm::step::mass::MassMatrix;
 use bsmpm::tensor::Vector;
@@ -29,11 +29,11 @@ fn lost(mass: MassMatrix, cells: usize, steps: usize) -> [f64; 3] {
         let stored = Stored::of(&model, points, &halo);
         stored.kinetic + stored.elastic
     };
-    let start = [observe::angular_momentum(&scene.points, None, &centre, &halo), energy(&scene.points)];
+    let start = [observe::angular_momentum(&scene.points, &Part::Whole, &centre, &halo), energy(&scene.points)];
     let end = 0.25 * TAU;
     scene.march(end / steps as f64, end, |_, _| ());
-    let now = [observe::angular_momentum(&scene.points, None, &centre, &halo), energy(&scene.points)];
-    [1.0 - now[0] / start[0], 1.0 - now[1] / start[1], observe::momentum(&scene.points, None, &halo).norm()]
+    let now = [observe::angular_momentum(&scene.points, &Part::Whole, &centre, &halo), energy(&scene.points)];
+    [1.0 - now[0] / start[0], 1.0 - now[1] / start[1], observe::momentum(&scene.points, &Part::Whole, &halo).norm()]
 }
 
 #[test]

@@ -1,0 +1,50 @@
+//! Fields along a line.
+
+use super::Column;
+use crate::words::ProfileQuantity;
+
+/// Fields at equally spaced places of a line.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Profile {
+    /// What its file is called after.
+    pub name: String,
+    /// m  ends of the line, in the case's coordinates
+    pub ends: [[f64; 2]; 2],
+    /// Places, the ends among them; one stands in the middle.
+    pub count: usize,
+    /// What is told of each.
+    pub quantities: Vec<ProfileQuantity>,
+    /// s (quasi-static: pseudo-time)  when, increasing, within (0, end], hit exactly; empty: at the start, with
+    /// every frame that is wanted, and at the end
+    pub times: Vec<f64>,
+    /// The places stay where they are in space; they belong to the material else.
+    pub fixed: bool,
+}
+
+impl Profile {
+    /// The name of its file.
+    pub fn file(&self) -> String {
+        format!("profile_{}.csv", self.name)
+    }
+
+    /// Columns of the file after step and time.
+    pub fn columns(&self) -> Vec<Column> {
+        let column = |name: &str, unit: &str| Column { name: name.to_owned(), unit: unit.to_owned() };
+        let quantities = self.quantities.iter().flat_map(|quantity| {
+            let (names, unit) = quantity.columns();
+            names.iter().map(move |name| column(name, unit))
+        });
+        ["distance", "x", "y"].map(|name| column(name, "m")).into_iter().chain(quantities).collect()
+    }
+
+    /// Places on the line (m, in the case's coordinates), and their distances from its beginning, m.
+    pub fn places(&self) -> Vec<(f64, [f64; 2])> {
+        let [from, to] = self.ends;
+        let length = (to[0] - from[0]).hypot(to[1] - from[1]);
+        let place = |number: usize| {
+            let part = if self.count == 1 { 0.5 } else { number as f64 / (self.count - 1) as f64 };
+            (part * length, [0, 1].map(|axis| (1.0 - part) * from[axis] + part * to[axis]))
+        };
+        (0..self.count).map(place).collect()
+    }
+}

@@ -1,0 +1,68 @@
+//! Profiles along lines.
+
+use super::history;
+use crate::case::Profile;
+use crate::grid::GridSpec;
+use crate::record::Record;
+use crate::report::Report;
+use crate::words::ProfileQuantity;
+use bsmpm::model::Regime;
+
+/// Profiles at most, each a file.
+const MOST: usize = 100;
+
+/// All profiles in the order of the file, without those that have an error.
+pub(super) fn read_all(
+    root: &Record,
+    (regime, grid, end): (Option<Regime>, Option<&GridSpec>, Option<f64>),
+    report: &mut Report<'_>,
+) -> Vec<Profile> {
+    let records = root.records("profile");
+    if records.len() > MOST {
+        root.error("profile", format!("{} profiles; at most {MOST} are possible", records.len()), report);
+        return Vec::new();
+    }
+    let mut profiles: Vec<Profile> = Vec::new();
+    for record in records {
+        let Some(profile) = read(record, (regime, grid, end), report) else { continue };
+        // Files of some systems are not told apart by the case of letters.
+        if profiles.iter().any(|other| other.name.eq_ignore_ascii_case(&profile.name)) {
+            record.error("name", format!("there is a profile `{}` already", profile.name), report);
+        }
+        profiles.push(profile);
+    }
+    profiles
+}
+
+fn read(
+    record: &Record,
+    (regime, grid, end): (Option<Regime>, Option<&GridSpec>, Option<f64>),
+    report: &mut Report<'_>,
+) -> Option<Profile> {
+    let ends = history::ends(record, grid, report);
+    let quantities: Vec<ProfileQuantity> = record.choices("quantities")?;
+    if quantities.is_empty() {
+        record.error("quantities", "nothing is told: name at least one", report);
+    }
+    if regime == Some(Regime::QuasiStatic) && quantities.contains(&ProfileQuantity::Velocity) {
+        record.error("quantities", "there is no velocity in a quasi-static analysis", report);
+    }
+    let mut times = if record.gives("times") { record.numbers("times")?.to_vec() } else { Vec::new() };
+    if record.gives("times") && times.is_empty() {
+        record.error("times", "it is never told: give a time, or leave the key out for all frames", report);
+    }
+    if let Some(late) = times.iter().find(|time| end.is_some_and(|end| **time > end)) {
+        record.error("times", format!("{late} is beyond the end of the run"), report);
+        return None;
+    }
+    times.sort_by(f64::total_cmp);
+    times.dedup();
+    Some(Profile {
+        name: record.text("name")?.to_owned(),
+        ends: ends?,
+        count: record.count("count")? as usize,
+        quantities,
+        times,
+        fixed: record.flag("fixed")?,
+    })
+}

@@ -1,0 +1,78 @@
+//! Words of what frames and profiles show of the points.
+
+choice! {
+    /// A field that frames have on request.
+    pub enum FrameField {
+        /// Deviatoric stress (Pa), sqrt(3/2 s:s).
+        Q = "q",
+        /// Principal Cauchy stresses (Pa), descending, positive in tension.
+        PrincipalStresses = "principal-stresses",
+        /// 1/F, F the factor by which the strength may be divided until the stress is on the yield surface; 1 at
+        /// yield, 0 of a law without strength.
+        MobilisedStrength = "mobilised-strength",
+        /// Deviatoric part of the logarithmic strain since the start, sqrt(2/3 e:e).
+        DeviatoricStrain = "deviatoric-strain",
+        /// 1 where the stress is on the yield surface, to 1e-4 of the strength, or beyond; 0 elsewhere.
+        Yielding = "yielding",
+        /// Present density (kg/m3).
+        Density = "density",
+        /// Number of the body, in the order of the file; run.json and the frame have the names.
+        Body = "body",
+    }
+}
+
+impl FrameField {
+    /// Its name in frames.
+    pub fn field(self) -> &'static str {
+        match self {
+            Self::Q => "q",
+            Self::PrincipalStresses => "principal_stresses",
+            Self::MobilisedStrength => "mobilised_strength",
+            Self::DeviatoricStrain => "deviatoric_strain",
+            Self::Yielding => "yielding",
+            Self::Density => "density",
+            Self::Body => "body",
+        }
+    }
+
+    /// Unit of its numbers.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::Q | Self::PrincipalStresses => "Pa",
+            Self::MobilisedStrength | Self::DeviatoricStrain | Self::Yielding | Self::Body => "-",
+            Self::Density => "kg/m3",
+        }
+    }
+}
+
+choice! {
+    /// What a profile tells at its places.
+    pub enum ProfileQuantity {
+        /// Displacement (m).
+        Displacement = "displacement",
+        /// Velocity (m/s); dynamic.
+        Velocity = "velocity",
+        /// Cauchy stress (Pa), positive in tension.
+        Stress = "stress",
+        /// Mean stress (Pa), positive in compression.
+        P = "p",
+        /// Deviatoric stress (Pa), sqrt(3/2 s:s).
+        Q = "q",
+        /// Accumulated plastic strain.
+        PlasticStrain = "plastic-strain",
+    }
+}
+
+impl ProfileQuantity {
+    /// Names and unit of its columns.
+    pub fn columns(self) -> (&'static [&'static str], &'static str) {
+        match self {
+            Self::Displacement => (&["displacement-x", "displacement-y"], "m"),
+            Self::Velocity => (&["velocity-x", "velocity-y"], "m/s"),
+            Self::Stress => (&["stress-xx", "stress-yy", "stress-zz", "stress-xy"], "Pa"),
+            Self::P => (&["p"], "Pa"),
+            Self::Q => (&["q"], "Pa"),
+            Self::PlasticStrain => (&["plastic-strain"], "-"),
+        }
+    }
+}

@@ -1,0 +1,33 @@
+//! Which points a number counts.
+
+use crate::points::Points;
+use std::ops::Range;
+
+/// A part of all points.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum Part {
+    /// All of them.
+    #[default]
+    Whole,
+    /// Those that carry the number of a material.
+    Material(u16),
+    /// Those with these ids: a body.
+    Ids(Range<u64>),
+}
+
+impl Part {
+    /// Whether a point is of the part.
+    #[inline]
+    pub fn holds<const D: usize>(&self, points: &Points<D>, p: usize) -> bool {
+        match self {
+            Self::Whole => true,
+            Self::Material(number) => points.material[p] == *number,
+            Self::Ids(ids) => ids.contains(&points.id[p]),
+        }
+    }
+
+    /// The points of the part.
+    pub fn of<'a, const D: usize>(&'a self, points: &'a Points<D>) -> impl Iterator<Item = usize> + Clone + 'a {
+        (0..points.len()).filter(|&p| self.holds(points, p))
+    }
+}

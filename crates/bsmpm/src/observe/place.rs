@@ -1,0 +1,163 @@
+//! What fields of the points are at places: planes through the points around.
+//!
+//! A plane reproduces a field that is linear, also where points are on one side only: at a surface. Averages over the
+//! grid do so inside, and pull a value at the surface inwards.
+
+use crate::exact::Exact;
+use crate::grid::Grid;
+use crate::parallel::Halo;
+use crate::points::Points;
+use crate::tensor::Vector;
+use nalgebra::{Matrix4, Vector4};
+
+/// Terms 1, x, y, .. of a plane in up to three dimensions.
+const TERMS: usize = 4;
+/// Products of two of them.
+const PRODUCTS: usize = TERMS * TERMS;
+/// Determinant of the moments, relative to points spread over cells, below which they span no plane.
+const SINGULAR: f64 = 1e-6;
+
+/// Which places of points are compared with the places that are asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Configuration {
+    /// Where points were before anything moved, or where a stage placed them: the places belong to the material.
+    Initial,
+    /// Where points are.
+    Present,
+}
+
+/// Values of `C` fields at places (m, from the grid's lower corner), each by the weighted least-squares plane through
+/// the points of the material of the nearest one; `None` where no material is.
+///
+/// Weights are the quadratic B-spline that reaches one and a half cells of the place's own cell to each side, times the
+/// points' reference volumes. A place is in material if a point is nearer than its size, the D-th root of its volume:
+/// half of that is where its material ends.
+pub fn values<const D: usize, const C: usize>(
+    grid: &Grid<D>,
+    points: &Points<D>,
+    (places, configuration): (&[Vector<D>], Configuration),
+    field: impl Fn(usize) -> [f64; C],
+    halo: &dyn Halo,
+) -> Vec<Option<[f64; C]>> {
+    let fit = Fit { points, places, configuration, scale: places.iter().map(|at| cell_about(grid, at)).collect() };
+    let materials = fit.materials(halo);
+    let width = PRODUCTS + TERMS * C;
+    let mut sums = vec![Exact::ZERO; places.len() * width];
+    for p in 0..points.len() {
+        let mut fields = None;
+        for (number, sums) in sums.chunks_exact_mut(width).enumerate() {
+            let Some(terms) = fit.terms(number, p) else { continue };
+            if materials[number] != Some(points.material[p]) {
+                continue;
+            }
+            let weight = points.volume[p] * (0..D).map(|axis| spline(terms[axis + 1])).product::<f64>();
+            let fields = fields.get_or_insert_with(|| field(p));
+            for i in 0..=D {
+                (0..=D).for_each(|j| sums[i * TERMS + j].add(weight * terms[i] * terms[j]));
+                (0..C).for_each(|c| sums[PRODUCTS + c * TERMS + i].add(weight * terms[i] * fields[c]));
+            }
+        }
+    }
+    let totals = halo.total(&sums);
+    let value = |(totals, material): (&[f64], &Option<u16>)| {
+        material.and_then(|_| (totals[0] > 0.0).then(|| solved::<D, C>(totals)))
+    };
+    totals.chunks_exact(width).zip(&materials).map(value).collect()
+}
+
+/// Places among points.
+struct Fit<'a, const D: usize> {
+    points: &'a Points<D>,
+    places: &'a [Vector<D>],
+    configuration: Configuration,
+    scale: Vec<Option<Vector<D>>>, // m  edges of the cell of every place that is in the grid
+}
+
+impl<const D: usize> Fit<'_, D> {
+    fn place_of(&self, p: usize) -> Vector<D> {
+        match self.configuration {
+            Configuration::Initial => self.points.x[p] - self.points.u[p],
+            Configuration::Present => self.points.x[p],
+        }
+    }
+
+    /// Terms of a plane about a place at point `p`, in units of the cell; `None` out of reach.
+    fn terms(&self, number: usize, p: usize) -> Option<[f64; TERMS]> {
+        let (scale, apart) = (self.scale[number]?, self.place_of(p) - self.places[number]);
+        let mut terms = [1.0, 0.0, 0.0, 0.0];
+        for axis in 0..D {
+            terms[axis + 1] = apart[axis] / scale[axis];
+            if terms[axis + 1].abs() >= REACH {
+                return None;
+            }
+        }
+        Some(terms)
+    }
+
+    /// Material of the point nearest to every place, if that is so near that the place is in material; of equally near
+    /// ones that of the smallest id.
+    fn materials(&self, halo: &dyn Halo) -> Vec<Option<u16>> {
+        let distance = |number: usize, p: usize| -> Option<f64> {
+            let apart = (self.place_of(p) - self.places[number]).norm_squared();
+            let volume = match self.configuration {
+                Configuration::Initial => self.points.volume[p],
+                Configuration::Present => self.points.volume[p] * self.points.F.at(p).determinant(),
+            };
+            let within = apart <= volume.powf(2.0 / D as f64);
+            self.terms(number, p).and_then(|_| within.then_some(apart))
+        };
+        let mut nearest = vec![(f64::INFINITY, u64::MAX, 0_u16); self.places.len()];
+        for p in 0..self.points.len() {
+            for (number, nearest) in nearest.iter_mut().enumerate() {
+                let Some(apart) = distance(number, p) else { continue };
+                let found = (apart, self.points.id[p], self.points.material[p]);
+                if (found.0, found.1) < (nearest.0, nearest.1) {
+                    *nearest = found;
+                }
+            }
+        }
+        let mut closest: Vec<f64> = nearest.iter().map(|(apart, ..)| -apart).collect();
+        halo.maximum(&mut closest);
+        let as_near =
+            |(&(apart, id, _), closest): (&(f64, u64, u16), &f64)| match apart.is_finite() && -apart == *closest {
+                true => -(id as f64),
+                false => f64::NEG_INFINITY,
+            };
+        let mut ids: Vec<f64> = nearest.iter().zip(&closest).map(as_near).collect();
+        halo.maximum(&mut ids);
+        let own = |(&(_, id, material), first): (&(f64, u64, u16), &f64)| match -(id as f64) == *first {
+            true => f64::from(material),
+            false => -1.0,
+        };
+        let mut materials: Vec<f64> = nearest.iter().zip(&ids).map(own).collect();
+        halo.maximum(&mut materials);
+        materials.iter().map(|&material| (material >= 0.0).then_some(material as u16)).collect()
+    }
+}
+
+/// Cells that a point's weight reaches to each side.
+const REACH: f64 = 1.5;
+
+/// The quadratic B-spline about 0 whose pieces have the length 1.
+fn spline(x: f64) -> f64 {
+    let x = x.abs();
+    if x <= 0.5 { 0.75 - x * x } else { 0.5 * (REACH - x).powi(2) }
+}
+
+/// Edges of the cell that a place is in, m; `None` outside the grid.
+fn cell_about<const D: usize>(grid: &Grid<D>, place: &Vector<D>) -> Option<Vector<D>> {
+    grid.locate(place).map(|cell| grid.cell_box(&cell).1)
+}
+
+/// Values of the planes at the place itself from the moments; means where the points span no plane.
+fn solved<const D: usize, const C: usize>(sums: &[f64]) -> [f64; C] {
+    let mut matrix = Matrix4::from_row_slice(&sums[..PRODUCTS]);
+    let whole = matrix[(0, 0)];
+    (D + 1..TERMS).for_each(|unused| matrix[(unused, unused)] = whole);
+    let flat = matrix.determinant() <= SINGULAR * whole.powi(TERMS as i32);
+    let inverse = if flat { None } else { matrix.try_inverse() };
+    std::array::from_fn(|c| {
+        let right = Vector4::from_column_slice(&sums[PRODUCTS + c * TERMS..][..TERMS]);
+        inverse.map_or(right[0] / whole, |inverse| (inverse * right)[0])
+    })
+}
