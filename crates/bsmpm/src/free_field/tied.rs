@@ -145,10 +145,10 @@ impl LinearSolver for Band {
     }
 
     fn add_diagonal(&mut self, diagonal: &[f64]) {
-        for c in 0..self.layer {
+        for (c, value) in diagonal.iter().enumerate().take(self.layer) {
             if let Some(row) = self.number[c] {
                 let at = self.at(row, row);
-                self.rows[at] += diagonal[c];
+                self.rows[at] += value;
             }
         }
     }

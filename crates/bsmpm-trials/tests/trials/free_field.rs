@@ -1,0 +1,95 @@
+//! Sides beside a free field: the same on any number of ranks and over restarts, and the run says what it refuses.
+
+use crate::support::Scratch;
+use crate::support::cases::changed;
+use crate::support::results::{at, differences, history, last_frame};
+
+/// Two layers, of which the upper one yields, that rise by a step in their middle, on a base that absorbs; they shake
+/// both ways.
+const SLOPE: &str = r#"
+geometry = "plane-strain"
+[analysis]
+type = "dynamic"
+end = 0.15
+dt = 0.005
+[grid]
+lower = [1, 2]
+upper = [9, 8]
+cell = 0.5
+order = "quadratic"
+[material.stiff]
+model = "hencky"
+young = "100 MPa"
+poisson = 0.25
+density = 2000
+[material.soft]
+model = "mohr-coulomb"
+young = "40 MPa"
+poisson = 0.3
+friction = 25
+dilation = 0
+cohesion = "2 kPa"
+density = 1800
+[[body]]
+material = "stiff"
+box = { lower = [1, 2], upper = [9, 4] }
+points_per_cell = 2
+[[body]]
+material = "soft"
+polygon = [[1, 4], [9, 4], [9, 5], [6, 5], [4, 6], [1, 6]]
+points_per_cell = 2
+[gravity]
+acceleration = [0, -9.81]
+[initial]
+k0 = 0.5
+[boundary]
+left = "free-field"
+right = "free-field"
+bottom = "absorbing"
+[shaking]
+acceleration = [[0.025, 2.0, 0.5], [0.075, -2.0, -0.5], [0.1, 0, 0]]
+[stabilisation]
+method = "modified-f-bar"
+[[history]]
+quantity = "reaction"
+face = "left"
+[[history]]
+quantity = "velocity"
+at = [1, 6]
+[[history]]
+quantity = "energy"
+"#;
+
+#[test]
+fn ground_beside_a_free_field_is_the_same_on_any_number_of_ranks_and_over_restarts() {
+    let scratch = Scratch::with_case(SLOPE);
+    for ranks in [1, 3] {
+        let whole = format!("whole{ranks}");
+        scratch.mpirun(ranks, &["case.toml", "-q", "-o", &whole]).expect(0);
+        let part = ["case.toml", "-q", "-o", "part", "--restart", "auto"];
+        for stop in ["1", "12"] {
+            scratch.mpirun(ranks, &[&part[..], &["--max-steps", stop]].concat()).expect(75);
+        }
+        scratch.mpirun(ranks, &part).expect(0);
+        let text = |name: &str| std::fs::read_to_string(scratch.path(name).join("history.csv")).unwrap();
+        assert!(text(&whole) == text("part"), "{ranks} ranks");
+        std::fs::remove_dir_all(scratch.path("part")).unwrap();
+    }
+    let frames = ["whole1", "whole3"].map(|name| last_frame(&scratch.path(name)));
+    for (field, difference) in differences(&frames[0], &frames[1]) {
+        assert!(difference < 1e-8, "{field} on 3 ranks differs by {difference:.1e}");
+    }
+    let found = history(&scratch.path("whole1"));
+    // Earth pressure at rest of both layers, k0 = .5.
+    let [upper, lower] = [1800.0, 2000.0].map(|density| 9.81 * density);
+    let at_rest = 0.5 * (0.5 * upper * 4.0 + upper * 4.0 + 0.5 * lower * 4.0);
+    assert!((at(&found, "reaction-x", 0.0) / at_rest - 1.0).abs() < 0.1, "{}", at(&found, "reaction-x", 0.0));
+    let [closure, external] = ["energy-closure", "energy-external"].map(|name| at(&found, name, 0.15).abs());
+    assert!(closure < 1e-6 * external, "{closure:e} of {external:e}");
+    assert!(at(&found, "velocity-x", 0.05).abs() > 0.01, "it shakes");
+    scratch.write(
+        "case.toml",
+        changed(SLOPE, "right = \"free-field\"\nbottom = \"absorbing\"", "right = \"roller\"\nbottom = \"roller\""),
+    );
+    scratch.mpirun(1, &["case.toml", "--check"]).expect(65).says_once("must be \"fixed\" or \"absorbing\"");
+}
