@@ -1,0 +1,105 @@
+//! Rigid bodies of any polygon: closed forms of friction, blows, Hertz and punches, free bodies, lifting.
+
+use crate::support::scene::{Scene, axis, hencky};
+use bsmpm::boundary::rigid::Outline;
+use bsmpm::boundary::{RigidBody, Support};
+use bsmpm::energy::{Books, Stored};
+use bsmpm::kinematics::PlaneStrain;
+use bsmpm::method::Nonlinear;
+use bsmpm::model::{Gravity, Regime};
+use bsmpm::points::Points;
+use bsmpm::tensor::Vector;
+
+const G: f64 = 9.81;
+const RAMP: f64 = 0.1;
+
+fn polygon(center: [f64; 2], corners: &[[f64; 2]]) -> RigidBody {
+    let corners = corners.iter().map(|corner| Vector::from(*corner) - Vector::from(center)).collect();
+    of(Outline::Polygon(corners), center)
+}
+
+fn of(outline: Outline, center: [f64; 2]) -> RigidBody {
+    RigidBody {
+        outline,
+        center: center.into(),
+        friction: 0.0,
+        free: [false; 3],
+        path: Vec::new(),
+        mass: Vector::zeros(),
+        load: Vec::new(),
+        velocity: Vector::zeros(),
+    }
+}
+
+/// A rectangle.
+fn slab([left, bottom]: [f64; 2], [right, top]: [f64; 2]) -> RigidBody {
+    let center = [0.5 * (left + right), 0.5 * (bottom + top)];
+    polygon(center, &[[left, bottom], [right, bottom], [right, top], [left, top]])
+}
+
+fn path(rows: &[(f64, [f64; 3])]) -> Vec<(f64, Vector<3>)> {
+    rows.iter().map(|(t, moved)| (*t, Vector::from(*moved))).collect()
+}
+
+fn mean(points: &Points<2>, of: impl Fn(usize) -> f64) -> f64 {
+    let sum: f64 = (0..points.len()).map(|p| of(p) * points.mass[p]).sum();
+    sum / points.mass.iter().sum::<f64>()
+}
+
+/// A block of 1 x .5 m, of cells of 1/`n` m, on a rigid plate; gravity is inclined by `slope` = tan(theta).
+fn block(n: usize, slope: f64, friction: f64, regime: Regime) -> Scene<PlaneStrain, 2> {
+    let h = 1.0 / n as f64;
+    let plate = RigidBody { friction, ..slab([-1.0, -0.5], [5.0, 0.5]) };
+    let mut scene = Scene::<PlaneStrain, 2>::new([axis(h, 3 * n, 2), axis(h, 2 * n, 2)], hencky(1e7, 0.3), regime)
+        .body([n / 2..n / 2 + n, n / 2..n], 2, 1000.0, |_| Vector::zeros())
+        .rigid(plate);
+    let theta = slope.atan();
+    scene.model.gravity = Some(Gravity { acceleration: Vector::from([G * theta.sin(), -G * theta.cos()]), ramp: RAMP });
+    (scene.model.criteria.energy, scene.model.criteria.force) = (1e-10, 1e-6);
+    scene
+}
+
+/// Way and velocity under gravity that grows over the ramp, at .5 s, over those of a rigid block, less 1.
+fn slid(n: usize, dt: f64, friction: f64, method: Nonlinear) -> (f64, f64, usize) {
+    const END: f64 = 0.5;
+    let theta = 0.5_f64.atan();
+    let a = G * (theta.sin() - friction * theta.cos());
+    let mut scene = block(n, 0.5, friction, Regime::Dynamic);
+    (scene.model.nonlinear, scene.model.balances_energy) = (method, true);
+    let mut books = Books::open(Stored::of(&scene.model, &scene.points, &scene.halo()));
+    let (mut iterations, mut cuts) = (0, 0);
+    let mut last = Default::default();
+    scene.march(dt, END, |_, accepted| {
+        books.flows += accepted.report.energy.expect("it is balanced");
+        iterations = iterations.max(accepted.report.iterations);
+        cuts += accepted.rejected.len();
+        last = accepted.report.rigid[0];
+    });
+    println!("{last:?} cuts {cuts}");
+    let way = mean(&scene.points, |p| scene.points.u[p][0]);
+    let velocity = mean(&scene.points, |p| scene.points.motion.as_ref().expect("dynamic").v[p][0]);
+    let now = Stored::of(&scene.model, &scene.points, &scene.halo());
+    println!("closure {:.1e} of {:.1e}", books.closure(now), now.kinetic);
+    let rigid = [0.5 * (END - RAMP).powi(2) + 0.5 * RAMP * (END - RAMP) + RAMP * RAMP / 6.0, END - 0.5 * RAMP];
+    (way / (a * rigid[0]) - 1.0, velocity / (a * rigid[1]) - 1.0, iterations)
+}
+
+#[test]
+fn a_block_slides_down_a_rigid_plate_as_coulomb_says() {
+    for (n, dt, method) in [(4, 0.02, Nonlinear::Auto), (4, 0.01, Nonlinear::Auto), (4, 0.01, Nonlinear::Newton), (8, 0.01, Nonlinear::Auto)] {
+        println!("{n} {dt} {method:?} {:?}", slid(n, dt, 0.3, method));
+    }
+}
+
+#[test]
+fn a_block_sticks() {
+    let mut scene = block(4, 0.5, 0.6, Regime::Dynamic);
+    let mut last = Default::default();
+    scene.march(0.01, 0.5, |_, accepted| last = accepted.report.rigid[0]);
+    let way = mean(&scene.points, |p| scene.points.u[p][0]);
+    println!("{way:.1e} {last:?}");
+    let mut scene = block(4, 0.3, 0.31, Regime::QuasiStatic);
+    scene.march(0.05, 0.1, |_, accepted| last = accepted.report.rigid[0]);
+    let way = mean(&scene.points, |p| scene.points.u[p][0]);
+    println!("{way:.1e} {last:?}");
+}
