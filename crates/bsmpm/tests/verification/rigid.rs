@@ -103,3 +103,48 @@ fn a_block_sticks() {
     let way = mean(&scene.points, |p| scene.points.u[p][0]);
     println!("{way:.1e} {last:?}");
 }
+
+/// An elastic bar that hits a rigid wall.
+fn bar(cells: usize, steps_per_transit: f64, method: Nonlinear) {
+    let (l, e, rho, v) = (1.0, 1e6, 1000.0, std::env::var("V").map_or(0.1, |v| v.parse().unwrap()));
+    let h = l / cells as f64;
+    let c = (e / rho as f64).sqrt();
+    let gap: f64 = std::env::var("GAP").map_or(0.02, |v| v.parse().unwrap()) * h;
+    let wall = slab([0.0, -1.0], [2.0 * h - gap, 2.0]);
+    let mut scene = Scene::<PlaneStrain, 2>::new([axis(h, cells + 8, 2), axis(h, 1, 2)], hencky(e, 0.0), Regime::Dynamic)
+        .body([2..2 + cells, 0..1], 2, rho, |_| Vector::from([-v, 0.0]))
+        .rollers([1])
+        .rigid(wall);
+    scene.model.nonlinear = method;
+    (scene.model.criteria.energy, scene.model.criteria.force) = (1e-10, 1e-6);
+    scene.model.balances_energy = true;
+    let dt = l / c / steps_per_transit;
+    let (mut first, mut last, mut impulse, mut t) = (0.0, 0.0, 0.0, 0.0);
+    let mut most: f64 = 0.0;
+    let mut books = Books::open(Stored::of(&scene.model, &scene.points, &scene.halo()));
+    scene.march(dt, 4.0 * l / c, |_, accepted| {
+        t += accepted.dt;
+        books.flows += accepted.report.energy.unwrap();
+        let push = -accepted.report.rigid[0].force[0];
+        assert!(push >= 0.0);
+        if push > 0.0 {
+            if first == 0.0 { first = t; }
+            last = t;
+            most = most.max(push);
+        }
+        if cells == 20 && steps_per_transit == 20.0 { println!("{:.3} {:.3} gap {:.2e} v {:.3}", t * c / l, push / (rho * c * v * h), accepted.report.rigid[0].gap / h, 0.0); }
+        impulse += push * accepted.dt;
+    });
+    let mass: f64 = scene.points.mass.iter().sum();
+    let after = mean(&scene.points, |p| scene.points.motion.as_ref().unwrap().v[p][0]);
+    let now = Stored::of(&scene.model, &scene.points, &scene.halo());
+    println!("{cells} {steps_per_transit}: contact {:.3} of 2L/c, rebound {:.4}, impulse {:.4}, peak {:.3} of rho c v, energy {:.4} closure {:.1e}", (last - first) * c / (2.0 * l), after / v, impulse / (mass * v), most / (rho * c * v * h), (now.kinetic + now.elastic) / (0.5 * mass * v * v), books.closure(now));
+}
+
+#[test]
+fn a_bar_that_hits_a_wall_leaves_again() {
+    for (cells, steps) in [(20, 20.0), (20, 40.0), (40, 40.0), (40, 80.0)] {
+        bar(cells, steps, Nonlinear::Auto);
+    }
+    bar(20, 20.0, Nonlinear::Newton);
+}

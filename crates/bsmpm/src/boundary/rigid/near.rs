@@ -4,7 +4,6 @@ use super::body::{RigidBody, RigidState};
 use super::point::{Grip, RigidPoint};
 use super::{BodyInStep, RigidContacts};
 use crate::error::StepError;
-use crate::grid::shape::with_width;
 use crate::grid::{Grid, Shape};
 use crate::nodal::Nodal;
 use crate::parallel::Halo;
@@ -18,6 +17,8 @@ const PENALTY: f64 = 1e3;
 const CLOSE: f64 = 1e-6;
 /// Steps ahead of the meeting from which on material is near a body: it may be faster or slower than it starts.
 const MEETING: f64 = 2.0;
+/// Value of a node's function at a body from which on the body may stop the node.
+const SEEN: f64 = 1e-3;
 /// What a point reaches to a side at least and at most, over what it did at the start: large shear makes of a box what
 /// no material fills.
 const STRETCH: [f64; 2] = [0.25, 1.5];
@@ -74,8 +75,8 @@ impl<const D: usize> RigidContacts<D> {
             for point in &mut contacts.points[found..] {
                 near[2 * number] = 1.0;
                 if around.dynamic && point.gap <= MEETING * comes(point, &at, around, dt) + CLOSE * contacts.edge {
-                    let of_cell = contacts.offsets.iter().map(|offset| point.first_node + offset);
-                    of_cell.for_each(|node| moving[node] = 1.0);
+                    let seen = point.N.iter().zip(&contacts.offsets).filter(|(N, _)| **N > SEEN);
+                    seen.for_each(|(_, offset)| moving[point.first_node + offset] = 1.0);
                 }
             }
             near[2 * number + 1] = -at.least;
@@ -143,7 +144,7 @@ impl<const D: usize> RigidContacts<D> {
                     body: number,
                     point: p,
                     first_node: patch.first_node,
-                    N: values(grid, grid.cell_at(patch.cell), &points.x[p], &place),
+                    N: values(shape, p, &(place - x)),
                     normal,
                     gap,
                     motion: along.dot(&(after.place(&seen) - place)),
@@ -223,16 +224,11 @@ fn reach<const D: usize>(around: &Surroundings<'_, D>, p: usize, normal: &Vector
     (reach.clamp(STRETCH[0] * share * edge, STRETCH[1] * share * size.max()), edge)
 }
 
-/// N_I of the nodes of a cell at a place beside the point `x` of it: as they go on beyond the cell, so that a force
-/// there keeps its moment.
-fn values<const D: usize>(grid: &Grid<D>, cell: [usize; D], x: &Vector<D>, place: &Vector<2>) -> Vec<f64> {
-    let at = |axis: usize| if axis < 2 { place[axis] } else { x[axis] };
-    let of = |axis: usize| -> Vec<f64> {
-        let knots = &grid.axes()[axis];
-        with_width!(knots.order() + 1, W => knots.basis::<W>(at(axis), cell[axis]).0.to_vec())
-    };
-    let rows: Vec<Vec<f64>> = (0..D).map(of).collect();
-    let width = grid.order() + 1;
-    let along = |k: usize, axis: usize| k / width.pow((D - 1 - axis) as u32) % width;
-    (0..width.pow(D as u32)).map(|k| (0..D).map(|axis| rows[axis][along(k, axis)]).product()).collect()
+/// What the nodes of a point's cell have to say of a place beside it: N_I + grad N_I . (place - x), so that a force there
+/// keeps its moment. The functions themselves, gone on with to the place, would let a node that the point hardly touches
+/// take up all that is asked there; linear ones do so either way, and speak of the point alone.
+fn values<const D: usize>(shape: &Shape<D>, p: usize, offset: &Vector<2>) -> Vec<f64> {
+    let reaches = if shape.width() > 2 { 1.0 } else { 0.0 };
+    let of = |(N, grad): (f64, Vector<D>)| N + reaches * (grad[0] * offset[0] + grad[1] * offset[1]);
+    shape.of(p).into_iter().map(of).collect()
 }
