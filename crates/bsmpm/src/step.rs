@@ -31,12 +31,12 @@ use crate::model::{Model, Regime};
 use crate::parallel::{Halo, LinearSolver, agreed};
 use crate::points::Points;
 use crate::solve;
+use crate::tensor::Vector;
 use commit::Committed;
 use newmark::Newmark;
 use nodes::Nodes;
 use outflow::Outflow;
 use problem::Problem;
-use crate::tensor::Vector;
 
 /// Steps the points from `t` to `t + dt`, starting from the nodal displacement `guess` (D numbers per node of the
 /// window; replaced by the converged one). On an error nothing has changed but `counts`, which tells the work done.

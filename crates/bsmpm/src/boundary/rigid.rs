@@ -51,10 +51,10 @@ pub struct RigidReport {
 struct BodyInStep {
     body: RigidBody,
     before: RigidState,
-    predicted: Vector<3>,     // m, m, rad  since the start, without the soil
-    external: Vector<3>,      // N, N, N m  but for the soil's
-    inertia: Vector<3>,       // kg/s2, kg/s2, kg m2/s2  by which motions resist; 0 without inertia
-    resists: Matrix3<f64>,    // inverse of what free motions resist with, the soil held; 0 for the others
+    predicted: Vector<3>,      // m, m, rad  since the start, without the soil
+    external: Vector<3>,       // N, N, N m  but for the soil's
+    inertia: Vector<3>,        // kg/s2, kg/s2, kg m2/s2  by which motions resist; 0 without inertia
+    resists: Matrix3<f64>,     // inverse of what free motions resist with, the soil held; 0 for the others
     flight: Option<Vector<3>>, // m/s, m/s, rad/s  at the end of the step, if no material is near
     least: f64,                // m  distance of the nearest material at the start, as the body is at the end
 }

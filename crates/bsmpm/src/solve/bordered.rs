@@ -11,9 +11,9 @@ use nalgebra::{DMatrix, DVector};
 pub struct Bordered<'a, const D: usize> {
     solver: &'a mut dyn LinearSolver,
     halo: &'a dyn Halo,
-    columns: Vec<Vec<f64>>,       // C
-    resists: DMatrix<f64>,        // B
-    solved: Vec<Vec<f64>>,        // K^-1 C
+    columns: Vec<Vec<f64>>,        // C
+    resists: DMatrix<f64>,         // B
+    solved: Vec<Vec<f64>>,         // K^-1 C
     inverse: Option<DMatrix<f64>>, // of B - C^T K^-1 C
 }
 

@@ -86,7 +86,12 @@ fn slid(n: usize, dt: f64, friction: f64, method: Nonlinear) -> (f64, f64, usize
 
 #[test]
 fn a_block_slides_down_a_rigid_plate_as_coulomb_says() {
-    for (n, dt, method) in [(4, 0.02, Nonlinear::Auto), (4, 0.01, Nonlinear::Auto), (4, 0.01, Nonlinear::Newton), (8, 0.01, Nonlinear::Auto)] {
+    for (n, dt, method) in [
+        (4, 0.02, Nonlinear::Auto),
+        (4, 0.01, Nonlinear::Auto),
+        (4, 0.01, Nonlinear::Newton),
+        (8, 0.01, Nonlinear::Auto),
+    ] {
         println!("{n} {dt} {method:?} {:?}", slid(n, dt, 0.3, method));
     }
 }
@@ -111,10 +116,11 @@ fn bar(cells: usize, steps_per_transit: f64, method: Nonlinear) {
     let c = (e / rho as f64).sqrt();
     let gap: f64 = std::env::var("GAP").map_or(0.02, |v| v.parse().unwrap()) * h;
     let wall = slab([0.0, -1.0], [2.0 * h - gap, 2.0]);
-    let mut scene = Scene::<PlaneStrain, 2>::new([axis(h, cells + 8, 2), axis(h, 1, 2)], hencky(e, 0.0), Regime::Dynamic)
-        .body([2..2 + cells, 0..1], 2, rho, |_| Vector::from([-v, 0.0]))
-        .rollers([1])
-        .rigid(wall);
+    let mut scene =
+        Scene::<PlaneStrain, 2>::new([axis(h, cells + 8, 2), axis(h, 1, 2)], hencky(e, 0.0), Regime::Dynamic)
+            .body([2..2 + cells, 0..1], 2, rho, |_| Vector::from([-v, 0.0]))
+            .rollers([1])
+            .rigid(wall);
     scene.model.nonlinear = method;
     (scene.model.criteria.energy, scene.model.criteria.force) = (1e-10, 1e-6);
     scene.model.balances_energy = true;
@@ -128,17 +134,38 @@ fn bar(cells: usize, steps_per_transit: f64, method: Nonlinear) {
         let push = -accepted.report.rigid[0].force[0];
         assert!(push >= 0.0);
         if push > 0.0 {
-            if first == 0.0 { first = t; }
+            if first == 0.0 {
+                first = t;
+            }
             last = t;
             most = most.max(push);
         }
-        if cells == 20 && steps_per_transit == 20.0 { ();if false {println!("{:.3} {:.3} gap {:.2e} v {:.3}", t * c / l, push / (rho * c * v * h), accepted.report.rigid[0].gap / h, 0.0);} }
+        if cells == 20 && steps_per_transit == 20.0 {
+            ();
+            if false {
+                println!(
+                    "{:.3} {:.3} gap {:.2e} v {:.3}",
+                    t * c / l,
+                    push / (rho * c * v * h),
+                    accepted.report.rigid[0].gap / h,
+                    0.0
+                );
+            }
+        }
         impulse += push * accepted.dt;
     });
     let mass: f64 = scene.points.mass.iter().sum();
     let after = mean(&scene.points, |p| scene.points.motion.as_ref().unwrap().v[p][0]);
     let now = Stored::of(&scene.model, &scene.points, &scene.halo());
-    println!("{cells} {steps_per_transit}: contact {:.3} of 2L/c, rebound {:.4}, impulse {:.4}, peak {:.3} of rho c v, energy {:.4} closure {:.1e}", (last - first) * c / (2.0 * l), after / v, impulse / (mass * v), most / (rho * c * v * h), (now.kinetic + now.elastic) / (0.5 * mass * v * v), books.closure(now));
+    println!(
+        "{cells} {steps_per_transit}: contact {:.3} of 2L/c, rebound {:.4}, impulse {:.4}, peak {:.3} of rho c v, energy {:.4} closure {:.1e}",
+        (last - first) * c / (2.0 * l),
+        after / v,
+        impulse / (mass * v),
+        most / (rho * c * v * h),
+        (now.kinetic + now.elastic) / (0.5 * mass * v * v),
+        books.closure(now)
+    );
 }
 
 #[test]
@@ -174,7 +201,19 @@ fn a_free_block_falls_bounces_and_keeps_the_momentum_that_it_was_given() {
         let now = accepted.report.rigid[0];
         momentum += (now.force[1] - mass * G) * accepted.dt;
         worst = worst.max((mass * now.velocity[1] - momentum).abs() / (mass * G * 0.1));
-        if (t / 0.01).fract() < 0.2 { println!("{t:.3} y {:.4} v {:.4} F {:.3} rot {:.1e} touched {} gap {:.1e} it {} cuts {}", now.moved[1], now.velocity[1], now.force[1] / (mass * G), now.moved[2], now.touched, now.gap, accepted.report.iterations, accepted.rejected.len()); }
+        if (t / 0.01).fract() < 0.2 {
+            println!(
+                "{t:.3} y {:.4} v {:.4} F {:.3} rot {:.1e} touched {} gap {:.1e} it {} cuts {}",
+                now.moved[1],
+                now.velocity[1],
+                now.force[1] / (mass * G),
+                now.moved[2],
+                now.touched,
+                now.gap,
+                accepted.report.iterations,
+                accepted.rejected.len()
+            );
+        }
     });
     println!("momentum off by {worst:.1e}");
 }
@@ -186,11 +225,12 @@ fn hertz(h: f64, method: Nonlinear) {
     let (nx, ny) = ((w / h) as usize, (d / h) as usize);
     let down = 0.02;
     let cylinder = RigidBody { path: path(&[(1.0, [0.0, -down, 0.0])]), ..of(Outline::Circle(r), [0.0, d + r]) };
-    let mut scene = Scene::<PlaneStrain, 2>::new([axis(h, nx, 2), axis(h, ny + 4, 2)], hencky(e, nu), Regime::QuasiStatic)
-        .body([0..nx, 0..ny], 2, 1000.0, |_| Vector::zeros())
-        .rollers([0])
-        .support(Support::fixed(1, false))
-        .rigid(cylinder);
+    let mut scene =
+        Scene::<PlaneStrain, 2>::new([axis(h, nx, 2), axis(h, ny + 4, 2)], hencky(e, nu), Regime::QuasiStatic)
+            .body([0..nx, 0..ny], 2, 1000.0, |_| Vector::zeros())
+            .rollers([0])
+            .support(Support::fixed(1, false))
+            .rigid(cylinder);
     scene.model.nonlinear = method;
     (scene.model.criteria.energy, scene.model.criteria.force) = (1e-8, 1e-5);
     let mut rows = Vec::new();
@@ -200,10 +240,24 @@ fn hertz(h: f64, method: Nonlinear) {
         let star = e / (1.0 - nu * nu);
         let a = (4.0 * p * r / (std::f64::consts::PI * star)).sqrt();
         let peak = 2.0 * p / (std::f64::consts::PI * a);
-        let top = (0..points.len()).filter(|&q| points.x[q][0] < h).map(|q| -points.sigma.at(q).0[1]).fold(0.0, f64::max);
-        rows.push((p, a / h, top / peak, report.touched, accepted.report.iterations, accepted.rejected.len(), report.penetration));
+        let top =
+            (0..points.len()).filter(|&q| points.x[q][0] < h).map(|q| -points.sigma.at(q).0[1]).fold(0.0, f64::max);
+        rows.push((
+            p,
+            a / h,
+            top / peak,
+            report.touched,
+            accepted.report.iterations,
+            accepted.rejected.len(),
+            report.penetration,
+        ));
     });
-    for row in rows { println!("{h} {method:?} P {:.1} a/h {:.2} peak {:.3} touched {} iterations {} cuts {} pen {:.1e}", row.0, row.1, row.2, row.3, row.4, row.5, row.6); }
+    for row in rows {
+        println!(
+            "{h} {method:?} P {:.1} a/h {:.2} peak {:.3} touched {} iterations {} cuts {} pen {:.1e}",
+            row.0, row.1, row.2, row.3, row.4, row.5, row.6
+        );
+    }
 }
 
 #[test]
