@@ -130,18 +130,23 @@ impl RigidPoint {
         }
     }
 
-    /// The status that a displacement asks for, as far as forces are known to `force`, N, and lengths to `length`, m.
-    pub fn corrected(&self, moved: &Vector<2>, (force, length): (f64, f64)) -> Grip {
+    /// The status that a displacement asks for, as far as forces are known to `force`, N, and lengths to `length`, m; and
+    /// by how much it contradicts the one that is, N: of what has moved too far, what soil would have resisted with.
+    pub fn corrected(&self, moved: &Vector<2>, (force, length): (f64, f64)) -> (Grip, f64) {
+        let soil = 1.0 / super::near::PENALTY;
         if self.grip == Grip::Open {
-            return if self.gap_after(moved) < -length { self.met(moved) } else { Grip::Open };
+            let depth = -self.gap_after(moved);
+            return if depth > length { (self.met(moved), soil * self.stiffness * depth) } else { (Grip::Open, 0.0) };
         }
         let [normal, along] = self.pushed(moved);
         let limit = self.friction * normal.max(0.0);
         match self.grip {
-            _ if normal < -force => Grip::Open,
-            Grip::Stick if along.abs() > limit + force => Grip::Slip(along.signum()),
-            Grip::Slip(sign) if sign != 0.0 && sign * self.held(moved) < limit - force => Grip::Stick,
-            grip => grip,
+            _ if normal < -force => (Grip::Open, -normal),
+            Grip::Stick if along.abs() > limit + force => (Grip::Slip(along.signum()), along.abs() - limit),
+            Grip::Slip(sign) if sign != 0.0 && sign * self.held(moved) < limit - force => {
+                (Grip::Stick, soil * (limit - sign * self.held(moved)))
+            }
+            grip => (grip, 0.0),
         }
     }
 
