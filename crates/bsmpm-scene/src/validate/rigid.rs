@@ -256,9 +256,11 @@ fn sharpest(outline: &Outline) -> Option<([f64; 2], f64)> {
 pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
     for (rigid, record) in case.rigid.iter().zip(root.records("rigid")) {
         if case.initial == Some(Initial::Elastic) {
-            let message = "the elastic equilibrium of [initial] gravity knows nothing of rigid bodies; give k0, or let gravity \
-                           grow over a ramp";
-            record.error("name", message, report);
+            report.warn(format!(
+                "{}: the elastic equilibrium of [initial] gravity is one without rigid bodies; where they hold soil give k0, \
+                 or let gravity grow over a ramp",
+                record.path
+            ));
         }
         if let Some((at, body)) = overlap(case, rigid) {
             let message = format!(

@@ -243,12 +243,7 @@ impl<const D: usize> RigidContacts<D> {
     /// Corrects the statuses that the displacement `u` (m) contradicts by more than `force`, N: all of them in the first
     /// `passes`, later those that it contradicts most, as all at once may go round in a circle; how many there were over
     /// all ranks.
-    pub fn correct(
-        &mut self,
-        u: &[f64],
-        (force, passes): (f64, usize),
-        halo: &dyn Halo,
-    ) -> Result<usize, StepError> {
+    pub fn correct(&mut self, u: &[f64], (force, passes): (f64, usize), halo: &dyn Halo) -> Result<usize, StepError> {
         if self.is_empty() {
             return Ok(0);
         }

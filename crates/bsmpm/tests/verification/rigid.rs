@@ -226,24 +226,36 @@ fn hertz(h: f64, method: Nonlinear) {
     let (nx, ny) = ((w / h) as usize, (d / h) as usize);
     let down = 0.02;
     let cylinder = RigidBody { path: path(&[(1.0, [0.0, -down, 0.0])]), ..of(Outline::Circle(r), [0.0, d + r]) };
-    let mut scene = Scene::<PlaneStrain, 2>::new([axis(h, nx, 2), axis(h, ny + 2, 2)], hencky(e, nu), Regime::QuasiStatic)
-        .body([0..nx, 0..ny], 2, 1000.0, |_| Vector::zeros())
-        .rollers([0])
-        .support(Support::fixed(1, false))
-        .rigid(cylinder);
+    let mut scene =
+        Scene::<PlaneStrain, 2>::new([axis(h, nx, 2), axis(h, ny + 2, 2)], hencky(e, nu), Regime::QuasiStatic)
+            .body([0..nx, 0..ny], 2, 1000.0, |_| Vector::zeros())
+            .rollers([0])
+            .support(Support::fixed(1, false))
+            .rigid(cylinder);
     scene.model.nonlinear = method;
     (scene.model.criteria.energy, scene.model.criteria.force) = (1e-8, 1e-5);
     let mut last = Default::default();
     let mut iterations = 0;
-    scene.march(0.25, 1.0, |_, accepted| { last = accepted.report.rigid[0]; iterations = iterations.max(accepted.report.iterations) });
+    scene.march(0.25, 1.0, |_, accepted| {
+        last = accepted.report.rigid[0];
+        iterations = iterations.max(accepted.report.iterations)
+    });
     let p = 2.0 * last.force[1];
     let star = e / (1.0 - nu * nu);
     let a = (4.0 * p * r / (std::f64::consts::PI * star)).sqrt();
     let peak = 2.0 * p / (std::f64::consts::PI * a);
     let points = &scene.points;
-    print!("{h} {method:?} P {p:.1} a {a:.3} touched {} of {:.1} its {iterations} pen {:.1e};", last.touched, a / h * 2.0, last.penetration);
+    print!(
+        "{h} {method:?} P {p:.1} a {a:.3} touched {} of {:.1} its {iterations} pen {:.1e};",
+        last.touched,
+        a / h * 2.0,
+        last.penetration
+    );
     for wanted in [0.1, 0.2, 0.3, 0.4, 0.5, 0.8] {
-        let near = (0..points.len()).filter(|&q| points.x[q][0] < 0.5 * h).min_by(|&p, &q| (points.x[p][1] - (d - wanted)).abs().total_cmp(&(points.x[q][1] - (d - wanted)).abs())).unwrap();
+        let near = (0..points.len())
+            .filter(|&q| points.x[q][0] < 0.5 * h)
+            .min_by(|&p, &q| (points.x[p][1] - (d - wanted)).abs().total_cmp(&(points.x[q][1] - (d - wanted)).abs()))
+            .unwrap();
         let z = d - points.x[near][1];
         let exact = peak / (1.0 + (z / a).powi(2)).sqrt();
         print!(" {wanted}: {:.3}", -points.sigma.at(near).0[1] / exact);
@@ -264,19 +276,29 @@ fn a_flat_punch_is_a_strip() {
         let n = (1.0 / h) as usize;
         let down = 0.01;
         let scene = || {
-            let mut scene = Scene::<PlaneStrain, 2>::new([axis(h, 3 * n, 2), axis(h, 3 * n, 2)], hencky(1e6, 0.3), Regime::QuasiStatic)
-                .body([0..3 * n, 0..2 * n], 2, 1000.0, |_| Vector::zeros())
-                .rollers([0])
-                .support(Support::fixed(1, false));
+            let mut scene = Scene::<PlaneStrain, 2>::new(
+                [axis(h, 3 * n, 2), axis(h, 3 * n, 2)],
+                hencky(1e6, 0.3),
+                Regime::QuasiStatic,
+            )
+            .body([0..3 * n, 0..2 * n], 2, 1000.0, |_| Vector::zeros())
+            .rollers([0])
+            .support(Support::fixed(1, false));
             (scene.model.criteria.energy, scene.model.criteria.force) = (1e-8, 1e-5);
             scene
         };
         for (friction, smooth) in [(0.0, true), (1.0, false)] {
-            let punch = RigidBody { friction, path: path(&[(1.0, [0.0, -down, 0.0])]), ..slab([-1.0, 2.0], [1.0, 2.5]) };
+            let punch =
+                RigidBody { friction, path: path(&[(1.0, [0.0, -down, 0.0])]), ..slab([-1.0, 2.0], [1.0, 2.5]) };
             let mut with_body = scene().rigid(punch);
             let mut last = Default::default();
             with_body.march(0.5, 1.0, |_, accepted| last = accepted.report.rigid[0]);
-            let points = surface::along::<PlaneStrain>(&with_body.model.grid, &Vector::from([0.0, 2.0]), &Vector::from([1.0, 2.0]), 4);
+            let points = surface::along::<PlaneStrain>(
+                &with_body.model.grid,
+                &Vector::from([0.0, 2.0]),
+                &Vector::from([1.0, 2.0]),
+                4,
+            );
             let strip = Strip {
                 points,
                 normal: smooth.then(|| Vector::from([0.0, 1.0])),
@@ -285,7 +307,12 @@ fn a_flat_punch_is_a_strip() {
             };
             let mut force = 0.0;
             scene().strip(strip).march(0.5, 1.0, |_, accepted| force = -accepted.report.strips[0].force[1]);
-            println!("{h} smooth {smooth}: {:.1} {force:.1} {:.4} touched {}", last.force[1], last.force[1] / force, last.touched);
+            println!(
+                "{h} smooth {smooth}: {:.1} {force:.1} {:.4} touched {}",
+                last.force[1],
+                last.force[1] / force,
+                last.touched
+            );
         }
     }
 }
@@ -293,12 +320,17 @@ fn a_flat_punch_is_a_strip() {
 /// A block that is pressed and let go: its force ends with the last touch, and the plate leaves.
 #[test]
 fn nothing_is_pulled() {
-    let plate = RigidBody { friction: 0.5, path: path(&[(1.0, [0.0, -0.01, 0.0]), (3.0, [0.0, 0.01, 0.0])]), ..slab([-1.0, 1.0], [2.0, 1.5]) };
-    let mut scene = Scene::<PlaneStrain, 2>::new([axis(0.25, 4, 2), axis(0.25, 8, 2)], hencky(1e6, 0.3), Regime::QuasiStatic)
-        .body([0..4, 0..4], 2, 1000.0, |_| Vector::zeros())
-        .rollers([0])
-        .support(Support::fixed(1, false))
-        .rigid(plate);
+    let plate = RigidBody {
+        friction: 0.5,
+        path: path(&[(1.0, [0.0, -0.01, 0.0]), (3.0, [0.0, 0.01, 0.0])]),
+        ..slab([-1.0, 1.0], [2.0, 1.5])
+    };
+    let mut scene =
+        Scene::<PlaneStrain, 2>::new([axis(0.25, 4, 2), axis(0.25, 8, 2)], hencky(1e6, 0.3), Regime::QuasiStatic)
+            .body([0..4, 0..4], 2, 1000.0, |_| Vector::zeros())
+            .rollers([0])
+            .support(Support::fixed(1, false))
+            .rigid(plate);
     scene.march(0.25, 3.0, |points, accepted| {
         let now = accepted.report.rigid[0];
         println!("{} {:.3} gap {:.2e} stress {:.3e}", accepted.t, now.force[1], now.gap, points.sigma.at(0).0[1]);
@@ -309,29 +341,42 @@ fn nothing_is_pulled() {
 #[test]
 fn a_rigid_block_slides_on_soil() {
     let slope = 0.5_f64.atan();
-    let block = RigidBody { friction: 0.3, free: [true; 3], mass: Vector::from([200.0, 200.0, 200.0 * (1.0 + 0.0625) / 12.0]), ..slab([0.5, 1.0], [1.5, 1.25]) };
+    let block = RigidBody {
+        friction: 0.3,
+        free: [true; 3],
+        mass: Vector::from([200.0, 200.0, 200.0 * (1.0 + 0.0625) / 12.0]),
+        ..slab([0.5, 1.0], [1.5, 1.25])
+    };
     for (dt, method) in [(0.01, Nonlinear::Auto)] {
-        let mut scene = Scene::<PlaneStrain, 2>::new([axis(0.25, 16, 2), axis(0.25, 6, 2)], hencky(1e6, 0.3), Regime::Dynamic)
-            .body([0..16, 0..4], 2, 1000.0, |_| Vector::zeros())
-            .rollers([0])
-            .support(Support::fixed(1, false))
-            .rigid(block.clone());
+        let mut scene =
+            Scene::<PlaneStrain, 2>::new([axis(0.25, 16, 2), axis(0.25, 6, 2)], hencky(1e6, 0.3), Regime::Dynamic)
+                .body([0..16, 0..4], 2, 1000.0, |_| Vector::zeros())
+                .rollers([0])
+                .support(Support::fixed(1, false))
+                .rigid(block.clone());
         scene.model.nonlinear = method;
         (scene.model.criteria.energy, scene.model.criteria.force) = (1e-8, 1e-5);
-        scene.model.gravity = Some(Gravity { acceleration: Vector::from([G * slope.sin(), -G * slope.cos()]), ramp: RAMP });
+        scene.model.gravity =
+            Some(Gravity { acceleration: Vector::from([G * slope.sin(), -G * slope.cos()]), ramp: RAMP });
         let (mut worst, mut momentum, mut its, mut cuts): (f64, Vector<2>, usize, usize) = (0.0, Vector::zeros(), 0, 0);
         let mut last = Default::default();
         scene.march(dt, 0.5, |_, accepted| {
             last = accepted.report.rigid[0];
             its = its.max(accepted.report.iterations);
             cuts += accepted.rejected.len();
-            for error in &accepted.rejected { println!("{} {}", accepted.t, &error.to_string()[..100.min(error.to_string().len())]); }
+            for error in &accepted.rejected {
+                println!("{} {}", accepted.t, &error.to_string()[..100.min(error.to_string().len())]);
+            }
             let grown = (accepted.t / RAMP).min(1.0);
-            let force = Vector::<2>::new(last.force[0], last.force[1]) + Vector::<2>::new(slope.sin(), -slope.cos()) * (200.0 * G * grown);
+            let force = Vector::<2>::new(last.force[0], last.force[1])
+                + Vector::<2>::new(slope.sin(), -slope.cos()) * (200.0 * G * grown);
             momentum += force * accepted.dt;
             worst = worst.max((momentum - 200.0 * Vector::<2>::new(last.velocity[0], last.velocity[1])).norm());
         });
         let exact = G * (slope.sin() - 0.3 * slope.cos()) * (0.5 - 0.5 * RAMP);
-        println!("{dt} {method:?} v {:.4} of it; momentum off {worst:.1e} its {its} cuts {cuts} {last:?}", last.velocity[0] / exact);
+        println!(
+            "{dt} {method:?} v {:.4} of it; momentum off {worst:.1e} its {its} cuts {cuts} {last:?}",
+            last.velocity[0] / exact
+        );
     }
 }
