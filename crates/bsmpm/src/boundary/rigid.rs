@@ -306,7 +306,7 @@ impl<const D: usize> RigidContacts<D> {
             let moved = self.moved(point, u, &motions);
             let gap = point.gap_after(&moved);
             let [pushed, _] = point.pushed(&moved);
-            let advance = point.carried_by(&motions[point.body]).norm().max(point.motion.abs());
+            let advance = point.carried_by(&motions[point.body]).norm().max(point.way);
             let touched = f64::from(u8::from(pushed > 0.0));
             let each = [touched, pushed.max(0.0), pushed.max(0.0) * point.slip(&moved).abs(), -point.rubbed(&moved)];
             sums[4 * point.body..].iter_mut().zip(each).for_each(|(sum, value)| sum.add(value));

@@ -29,8 +29,10 @@ pub(super) struct RigidPoint {
     pub normal: Vector<2>,
     /// m  from the body as it is at the end of the step, of the point as it is at the start
     pub gap: f64,
-    /// m  of the body along the outline in the step
+    /// m  of the body along the outline in the step, as predicted
     pub motion: f64,
+    /// m  of the body there in any direction
+    pub way: f64,
     /// m  from the body's reference point to the place, at the end
     pub arm: Vector<2>,
     /// N/m
