@@ -204,6 +204,7 @@ impl<'p> Run<'p> {
         }
         self.tell_strips_without_material(accepted);
         self.tell_rigid(accepted);
+        self.tell_meeting(accepted);
         self.tell_outflow(accepted);
         self.record(&accepted.report);
         if self.wants_frame(accepted.t) {
@@ -239,6 +240,23 @@ impl<'p> Run<'p> {
                 self.warn(format!(
                     "rigid `{name}`: at t = {t} points are {depth:.2} cells in it, usually 1e-5: it was pushed over them, or \
                      its force is beyond what its penalty is made for; more steps"
+                ));
+            }
+        }
+    }
+
+    /// Rigid bodies do not touch each other.
+    fn tell_meeting(&mut self, accepted: &Accepted) {
+        let (bodies, reports) = (&self.simulation.model.boundary.rigid, &accepted.report.rigid);
+        let meets = |a: usize, b: usize| bodies[a].reaches_into(&reports[a].moved, (&bodies[b], &reports[b].moved));
+        let pairs = (0..reports.len()).flat_map(|a| (0..a).map(move |b| (a, b)));
+        let meeting: Vec<(usize, usize)> = pairs.filter(|&(a, b)| meets(a, b) || meets(b, a)).collect();
+        for (a, b) in meeting {
+            let (one, other) = (self.case.rigid[a].name.clone(), self.case.rigid[b].name.clone());
+            if self.told_rigid.insert(2 * self.case.rigid.len() + a * self.case.rigid.len() + b) {
+                self.warn(format!(
+                    "rigid `{one}`: at t = {} it is in rigid `{other}`: rigid bodies do not touch each other, and go through",
+                    accepted.t
                 ));
             }
         }

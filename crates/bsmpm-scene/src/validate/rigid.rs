@@ -270,18 +270,6 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
             record.error(shape::key(record), message, report);
         }
     }
-    for (k, rigid) in case.rigid.iter().enumerate() {
-        let moves = |of: &Rigid| !of.path.rows.is_empty() || !of.rotation.is_empty() || of.free.contains(&true);
-        let others = case.rigid[..k].iter().filter(|other| moves(other) || moves(rigid));
-        let names: Vec<&str> = others.map(|other| &*other.name).collect();
-        if !names.is_empty() {
-            report.warn(format!(
-                "rigid `{}`: rigid bodies do not touch each other; should it meet {}, they go through each other",
-                rigid.name,
-                names.join(", ")
-            ));
-        }
-    }
 }
 
 /// A place of a body that is inside a rigid one at the start, if there is one.

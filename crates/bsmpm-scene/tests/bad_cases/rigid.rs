@@ -2,7 +2,7 @@
 
 use super::{Row, row};
 
-const POLYGON: &str = "polygon  = [[2.1, 1.4], [2.4, \"140 cm\"], [2.4, 1.8], [2.1, 1.8]]";
+const POLYGON: &str = "polygon  = [[1.9, 1.35], [2.45, \"135 cm\"], [2.45, 1.9], [1.9, 1.9]]";
 const FREE: &str = "free    = [\"x\", \"y\", \"rotation\"]";
 const PATH: &str = "path     = [[\"0.5 s\", -0.1, 0.0], [1.0, 0.0, \"5 cm\"]]";
 const WEIGHED: &str = "free    = [\"x\", \"y\", \"rotation\"]\ndensity = \"0.5 t/m3\"";

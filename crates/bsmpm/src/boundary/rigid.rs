@@ -20,6 +20,8 @@ use crate::tensor::Vector;
 use nalgebra::Matrix3;
 use point::RigidPoint;
 
+/// Stiffness of a point at an outline over that of its material, E A/h, and over its inertia.
+const PENALTY: f64 = 1e3;
 /// Passes in which all statuses are corrected, and those until which the ones that are off by half of the most are.
 const AT_ONCE: usize = 8;
 const BY_HALF: usize = 16;

@@ -2,7 +2,7 @@
 
 use super::body::{RigidBody, RigidState};
 use super::point::{Grip, RigidPoint};
-use super::{BodyInStep, RigidContacts};
+use super::{BodyInStep, PENALTY, RigidContacts};
 use crate::error::StepError;
 use crate::grid::{Grid, Shape};
 use crate::nodal::Nodal;
@@ -11,8 +11,6 @@ use crate::points::Points;
 use crate::tensor::Vector;
 use nalgebra::Matrix3;
 
-/// Stiffness of a point at an outline over that of its material, E A/h, and over its inertia.
-pub(super) const PENALTY: f64 = 1e3;
 /// Part of a cell within which a point is on the outline as a step begins.
 const CLOSE: f64 = 1e-6;
 /// Steps ahead of the meeting from which on material is near a body: it may be faster or slower than it starts.
