@@ -4,6 +4,7 @@ mod element;
 mod history;
 mod loads;
 mod profile;
+mod rigid;
 mod stage;
 
 pub use crate::words::{Base, Format, Geometry, Nonlinear, Support};
@@ -11,6 +12,7 @@ pub use element::{ElementStage, ElementTest};
 pub use history::{Check, Column, Counted, Face, History, Quantity};
 pub use loads::{Footing, Initial, Line as LoadedLine, MotionPath, PointLoad, Prescribed, Push, Site, Traction};
 pub use profile::Profile;
+pub use rigid::{Rigid, RigidShape};
 pub use stage::{Acting, FaceSupport, Stage};
 
 use crate::error::Choice;
@@ -55,6 +57,8 @@ pub struct Case {
     pub footing: Option<Footing>,
     /// Prescribed motions, in the order of the file.
     pub prescribed: Vec<Prescribed>,
+    /// Rigid bodies, in the order of the file.
+    pub rigid: Vec<Rigid>,
     /// Tractions, in the order of the file.
     pub tractions: Vec<Traction>,
     /// Point loads, in the order of the file.

@@ -13,7 +13,9 @@ mod solver;
 
 pub use measurement::Measurement;
 pub use output::{FrameField, ProfileQuantity};
-pub use scene::{Accuracy, Base, C0Lines, Components, Format, Geometry, Order, Path, Settled, Side, Start, Support};
+pub use scene::{
+    Accuracy, Base, C0Lines, Components, Format, Geometry, Order, Path, RigidMotion, Settled, Side, Start, Support,
+};
 pub use solver::{Factor, Ksp, LinearSolver, Nonlinear, Pc};
 
 /// What one of several words stands for.

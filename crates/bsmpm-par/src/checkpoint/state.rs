@@ -2,7 +2,7 @@
 
 use super::Refusal;
 use super::free_field::FreeFieldState;
-use bsmpm::boundary::{Anchors, Surface};
+use bsmpm::boundary::{Anchors, RigidState, Surface};
 use bsmpm::control::Progress;
 use bsmpm::energy::{Books, Budget, Flows};
 use bsmpm::grid::Grid;
@@ -51,10 +51,18 @@ pub struct CheckpointState {
     /// The columns of the free field; none of a run without any, or before the first step.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub free_field: Vec<FreeFieldState>,
+    /// Of every rigid body its motions (m, m, rad), their velocities, and the way of the material along it, m; none of a
+    /// run without any.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub rigid: Vec<[f64; 7]>,
     /// What the histories go on from.
     pub record: RecordState,
     /// Strips of which it was told that they hold nothing; and, their number added, that they have let go.
     pub told_strips: BTreeSet<usize>,
+    /// Rigid bodies of which it was told that they came too fast (twice their number) or go into the soil (and one), and
+    /// behind those pairs that have met.
+    #[serde(default, skip_serializing_if = "BTreeSet::is_empty")]
+    pub told_rigid: BTreeSet<usize>,
     /// The step of the newest frame.
     pub last_frame: Option<u64>,
     /// The files.
@@ -175,8 +183,21 @@ impl CheckpointState {
             pressure_rate,
             anchors,
             held: vectors(&self.held),
+            bodies: self.rigid.iter().map(rigid_state).collect(),
         }
     }
+}
+
+/// A rigid body's state from its numbers.
+fn rigid_state(&[x, y, angle, vx, vy, spin, slipped]: &[f64; 7]) -> RigidState {
+    RigidState { moved: [x, y, angle].into(), velocity: [vx, vy, spin].into(), slipped }
+}
+
+/// The numbers of a rigid body's state.
+pub(crate) fn rigid_numbers(state: &RigidState) -> [f64; 7] {
+    let [x, y, angle]: [f64; 3] = state.moved.into();
+    let [vx, vy, spin]: [f64; 3] = state.velocity.into();
+    [x, y, angle, vx, vy, spin, state.slipped]
 }
 
 /// Whether no load follows the surface.

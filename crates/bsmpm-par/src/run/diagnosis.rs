@@ -99,6 +99,10 @@ fn advice(error: &StepError, case: &Case) -> Vec<String> {
         StepError::Unbalanced { .. } => &[
             "a larger [solver] force_tolerance; gravity with a ramp and no [initial] lets the body yield as it is loaded",
         ],
+        StepError::Loose { .. } => &[
+            "a quasi-static analysis knows no rigid body that nothing holds: leave a motion out of `free`, let it start on the \
+             soil, or make the analysis dynamic",
+        ],
         StepError::Inverted { .. } => &[
             "material turned inside out: more steps ([analysis] steps or dt), or a larger [solver] background",
             "look at the points named: loose points at a free surface are the usual ones",

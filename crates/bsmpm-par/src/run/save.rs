@@ -1,7 +1,7 @@
 //! Checkpoints and frames of the last converged state: when they are due, and what is in them.
 
 use super::Run;
-use crate::checkpoint::{self, CheckpointState, Contents, FreeFieldState, Refusal, pairs};
+use crate::checkpoint::{self, CheckpointState, Contents, FreeFieldState, Refusal, pairs, rigid_numbers};
 use crate::launch;
 use bsmpm::parallel::Halo;
 use bsmpm_io::checkpoint::{Facts, FoundCheckpoint, Phase};
@@ -150,10 +150,12 @@ impl Run<'_> {
             position: pairs(&surface.position),
             held: pairs(&surface.held),
             free_field: simulation.points.free_field.iter().map(FreeFieldState::of).collect(),
+            rigid: surface.bodies.iter().map(rigid_numbers).collect(),
             pressure: [&surface.pressure, &surface.pressure_rate]
                 .map(|lists| if lists.iter().all(Vec::is_empty) { Vec::new() } else { pairs(lists) }),
             record: self.recorder.state(),
             told_strips: self.told_strips.clone(),
+            told_rigid: self.told_rigid.clone(),
             last_frame: self.last_frame,
             files: ledger.files(step)?,
         };

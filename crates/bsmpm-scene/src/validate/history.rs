@@ -74,7 +74,7 @@ fn read(
     if measured == Measurement::Outflow && !Side::ALL.into_iter().flatten().any(is_outlet) {
         record.error("quantity", "nothing leaves: no face in [boundary] is \"outflow\"", report);
     }
-    let quantity = quantity(measured, record, (grid, made), report)?;
+    let quantity = quantity(measured, record, (root, grid, made), report)?;
     let name = if record.gives("name") { record.text("name")? } else { measured.word() };
     Some(History { quantity, name: name.to_owned(), scale: record.number("scale")?, lasts: false })
 }
@@ -88,12 +88,12 @@ fn supports(root: &Record, side: Side) -> Vec<Support> {
 /// Whether it is nothing where nothing has a velocity.
 fn is_of_motion(measured: Measurement) -> bool {
     use Measurement::*;
-    matches!(measured, Velocity | Momentum | AngularMomentum | KineticEnergy)
+    matches!(measured, Velocity | Momentum | AngularMomentum | KineticEnergy | RigidVelocity)
 }
 
 /// Keys that belong to some quantities.
-const KEYS: [&str; 11] =
-    ["percentile", "face", "at", "at_x", "box", "material", "body", "from", "to", "fixed", "surface"];
+const KEYS: [&str; 12] =
+    ["percentile", "face", "at", "at_x", "box", "material", "body", "from", "to", "fixed", "surface", "rigid"];
 
 /// The keys that belong to a quantity, and those that it needs.
 fn own_keys(measured: Measurement) -> (&'static [&'static str], &'static [&'static str]) {
@@ -102,6 +102,8 @@ fn own_keys(measured: Measurement) -> (&'static [&'static str], &'static [&'stat
         Runout => (&["percentile", "material", "body"], &[]),
         Height => (&["at_x", "material", "body"], &[]),
         Reaction | Contact | Gap | SlipRate | FrictionPower => (&[], &["face"]),
+        RigidForce | RigidMoment | RigidDisplacement | RigidRotation | RigidVelocity => (&[], &["rigid"]),
+        RigidSlip | RigidGap => (&[], &["rigid"]),
         Displacement => (&[], &["at"]),
         Velocity | Stress => (&["surface"], &["at"]),
         SectionForces => (&["fixed"], &["from", "to"]),
@@ -114,7 +116,7 @@ fn own_keys(measured: Measurement) -> (&'static [&'static str], &'static [&'stat
 fn quantity(
     measured: Measurement,
     record: &Record,
-    (grid, made): (Option<&GridSpec>, Made<'_>),
+    (root, grid, made): (&Record, Option<&GridSpec>, Made<'_>),
     report: &mut Report<'_>,
 ) -> Option<Quantity> {
     Some(match measured {
@@ -160,7 +162,25 @@ fn quantity(
         Measurement::SlipRate => Quantity::SlipRate { face: record.word::<Side>("face")?.into() },
         Measurement::FrictionPower => Quantity::FrictionPower { face: record.word::<Side>("face")?.into() },
         Measurement::Energy => Quantity::Energy,
+        Measurement::RigidForce
+        | Measurement::RigidMoment
+        | Measurement::RigidDisplacement
+        | Measurement::RigidRotation
+        | Measurement::RigidVelocity
+        | Measurement::RigidSlip
+        | Measurement::RigidGap => Quantity::Rigid { what: measured, body: rigid(record, root, report)? },
     })
+}
+
+/// Number of the rigid body that a history is of.
+fn rigid(record: &Record, root: &Record, report: &mut Report<'_>) -> Option<usize> {
+    let name = record.text("rigid")?;
+    let names = || root.records("rigid").iter().filter_map(|rigid| rigid.text("name"));
+    let found = names().position(|known| known == name);
+    if found.is_none() {
+        record.error("rigid", format!("there is no rigid body `{name}`{}", hint(name, names())), report);
+    }
+    found
 }
 
 /// The points that count: of a material that a body is made of, of a body, or all.

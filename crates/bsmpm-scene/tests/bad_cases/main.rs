@@ -5,6 +5,7 @@
 mod loads;
 mod matrix;
 mod page;
+mod rigid;
 mod rows;
 mod texts;
 
@@ -95,6 +96,11 @@ fn shapes() {
 #[test]
 fn layers_and_strength_reduction() {
     verify_all(DYNAMIC, loads::LAYERS);
+}
+
+#[test]
+fn rigid_bodies() {
+    verify_all(DYNAMIC, rigid::RIGID);
 }
 
 #[test]

@@ -280,6 +280,11 @@ fn refusals(case: &Case, until: Option<f64>) -> Vec<String> {
             "a load still grows at the end of that stage, and would go on while the strength falls: let its ramp end before",
         ),
         (
+            !case.rigid.is_empty(),
+            "it has rigid bodies: what they carry changes with what is displaced, and no factor was shown with them; give \
+             tractions instead",
+        ),
+        (
             is_moved(case),
             "the case prescribes a motion: what moves as told shows no failure, however little strength is left; give the \
              load instead of the motion, or run the case itself and read its force against the motion",

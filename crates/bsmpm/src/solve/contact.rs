@@ -1,4 +1,4 @@
-//! Equilibrium of a step whose faces push and rub: sought with the nodes' statuses of the last displacement, corrected
+//! Equilibrium of a step whose faces or rigid bodies push and rub: sought with the nodes' statuses of the last displacement, corrected
 //! where the found one contradicts them, until it contradicts none (an active set; see
 //! [`contact`](crate::boundary::contact)).
 
@@ -10,6 +10,7 @@ use crate::method::Criteria;
 use crate::model::Model;
 use crate::parallel::{Halo, LinearSolver};
 use crate::points::Points;
+use crate::solve::bordered::Bordered;
 use crate::solve::found::Found;
 use crate::step::nodes::Nodes;
 use crate::step::problem::Problem;
@@ -17,6 +18,8 @@ use crate::step::report::Counts;
 
 /// Corrections after which a step is given up.
 const MOST: usize = 40;
+/// The same with rigid bodies, whose statuses are corrected one by one in the end.
+const MOST_AT_BODIES: usize = 60;
 /// Part of the force tolerance, of the largest force, by which forces may contradict a status: they are known no
 /// better.
 const DOUBT: f64 = 1e-2;
@@ -33,21 +36,26 @@ pub fn find<K: Kinematics<D>, const D: usize>(
     (halo, solver): (&dyn Halo, &mut dyn LinearSolver),
     counts: &mut Counts,
 ) -> Result<Found<K, D>, StepError> {
-    if !model.boundary.has_contact() {
+    if !model.boundary.has_contact() && nodes.rigid.is_empty() {
         return super::find(&Problem { model, shape, nodes, grips, points, halo }, guess, solver, counts);
     }
     let Criteria { energy, force, max_iterations } = model.criteria;
     let criteria = Criteria { energy: energy.max(ROUGH), force: force.max(ROUGH), max_iterations };
     let rough = Model { criteria, ..model.clone() };
     let (mut u, mut history, mut is_rough, mut first_guess) = (guess.to_vec(), Vec::new(), true, true);
-    for _ in 0..MOST {
+    let most = if nodes.rigid.is_empty() { MOST } else { MOST_AT_BODIES };
+    for pass in 0..most {
         let judged = if is_rough { &rough } else { model };
         let problem = Problem { model: judged, shape, nodes, grips, points, halo };
-        let found = super::find(&problem, &u, solver, counts)?;
+        let found = match nodes.rigid.is_coupled() {
+            true => super::find(&problem, &u, &mut Bordered::of(&problem, solver), counts)?,
+            false => super::find(&problem, &u, solver, counts)?,
+        };
         history.extend(found.history.iter().copied());
         first_guess &= found.first_guess;
         let doubt = (DOUBT * judged.criteria.force * found.scale, model.grid.smallest_edge());
         let corrected = nodes.contacts.correct(&found.u, &found.reaction, doubt, halo);
+        let corrected = corrected + nodes.rigid.correct(&found.u, (doubt.0, pass), halo)?;
         nodes.contacts.first_energy = found.first_energy;
         nodes.meet();
         nodes.count(halo);
@@ -57,5 +65,5 @@ pub fn find<K: Kinematics<D>, const D: usize>(
         is_rough &= corrected > 0;
         u = found.u;
     }
-    Err(StepError::Unsettled { passes: MOST })
+    Err(StepError::Unsettled { passes: most })
 }

@@ -21,6 +21,7 @@ mod locking;
 mod newton;
 mod oedometer;
 mod penalty;
+mod rigid;
 mod rotation;
 mod sections;
 mod stability;
