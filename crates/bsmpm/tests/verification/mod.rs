@@ -22,4 +22,5 @@ mod oedometer;
 mod penalty;
 mod rotation;
 mod stability;
+mod strips;
 mod surfaces;
