@@ -109,6 +109,13 @@ pub enum Quantity {
         /// The face.
         face: Face,
     },
+    /// of a strip: the footing, then the prescribed motions in the order of the file
+    Strip {
+        /// Its number.
+        number: usize,
+        /// What of it.
+        measured: Measurement,
+    },
     /// kg/m  that has left the grid
     Outflow,
     /// J/m  where the energy is, and where it went since the start
@@ -180,6 +187,7 @@ impl Quantity {
             Self::SlipRate { .. } => Measurement::SlipRate,
             Self::FrictionPower { .. } => Measurement::FrictionPower,
             Self::Energy => Measurement::Energy,
+            Self::Strip { measured, .. } => *measured,
         }
     }
 

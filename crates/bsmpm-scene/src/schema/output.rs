@@ -57,6 +57,13 @@ pub(super) static HISTORY: Table = Table {
         key("percentile", Quantity(In::Number, PERCENT), Optional, "of runout: share of the points; 100 unless given"),
         key("face", Choice(Side::WORDS), Optional, "of reaction: the face"),
         key(
+            "of",
+            Name,
+            Optional,
+            "of moment and work, and instead of face: the name of a [[prescribed]] motion or of the [footing], \"footing\" \
+             unless it has one",
+        ),
+        key(
             "at_x",
             Quantity(In::Length, Range::ANY),
             Optional,

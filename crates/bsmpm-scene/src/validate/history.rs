@@ -47,11 +47,16 @@ fn read(
 ) -> Option<History> {
     let measured: Measurement = record.word("quantity")?;
     let own = own_key(measured);
-    let others = ["percentile", "face", "at", "at_x", "box", "material"].into_iter().filter(|key| Some(*key) != own);
+    let of_strip = record.gives("of") && measured.is_of_strip();
+    let others = ["percentile", "face", "at", "at_x", "box", "material", "of"].into_iter();
+    let others = others.filter(|key| Some(*key) != own && !(*key == "of" && of_strip));
     for key in others.filter(|key| record.gives(key)) {
         record.error(key, format!("has no meaning for quantity \"{measured}\""), report);
     }
-    if let Some(own) = own.filter(|own| matches!(*own, "face" | "at") && !record.gives(own)) {
+    if of_strip && record.gives("face") {
+        record.error("of", "give `face` or `of`", report);
+    }
+    if let Some(own) = own.filter(|own| matches!(*own, "face" | "at" | "of") && !record.gives(own) && !of_strip) {
         report.error(record.origin, &record.path_of(own), format!("missing; quantity \"{measured}\" needs it"));
     }
     if regime == Some(Regime::QuasiStatic) && is_of_motion(measured) {
@@ -73,9 +78,33 @@ fn read(
     if measured == Measurement::Outflow && !Side::ALL.into_iter().flatten().any(is_outlet) {
         record.error("quantity", "nothing leaves: no face in [boundary] is \"outflow\"", report);
     }
-    let quantity = quantity(measured, record, (grid, made), report)?;
+    let quantity = match of_strip {
+        true => Quantity::Strip { number: strip((root, record), measured, report)?, measured },
+        false => quantity(measured, record, (grid, made), report)?,
+    };
     let name = if record.gives("name") { record.text("name")? } else { measured.word() };
     Some(History { quantity, name: name.to_owned(), scale: record.number("scale")?, lasts: false })
+}
+
+/// Number of the strip that a history is of, if the history has a meaning for it; `None` after an error.
+fn strip((root, record): (&Record, &Record), measured: Measurement, report: &mut Report<'_>) -> Option<usize> {
+    let wanted = record.text("of")?;
+    let footing = root.records("footing").iter().map(|strip| (strip, strip.text("name").unwrap_or("footing"), "base"));
+    let motions = root.records("prescribed").iter().map(|strip| (strip, strip.text("name").unwrap_or(""), "components"));
+    let strips: Vec<_> = footing.chain(motions).collect();
+    let Some(number) = strips.iter().position(|(_, name, _)| *name == wanted) else {
+        let near = hint(wanted, strips.iter().map(|(_, name, _)| *name));
+        let message = format!("no [[prescribed]] motion and no [footing] has the name `{}`{near}", shortened(wanted));
+        record.error("of", message, report);
+        return None;
+    };
+    let (strip, _, key) = strips[number];
+    if measured.is_of_contact() && strip.record(key).is_none() {
+        let message = format!("\"{measured}\" is about what rubs or lets go, and {} holds", strip.path);
+        record.error("of", message, report);
+        return None;
+    }
+    Some(number)
 }
 
 /// What a face is at the start, and what stages make of it.
@@ -96,6 +125,7 @@ fn own_key(measured: Measurement) -> Option<&'static str> {
         Runout => Some("percentile"),
         Height => Some("at_x"),
         Reaction | Contact | Gap | SlipRate | FrictionPower => Some("face"),
+        Moment | Work => Some("of"),
         Displacement | Velocity | Stress => Some("at"),
         PressureNoise => Some("box"),
         Mass | Momentum | CentreOfMass | AngularMomentum => Some("material"),
@@ -123,6 +153,7 @@ fn quantity(
         Measurement::Momentum => Quantity::Momentum { of: material(record, made, report)? },
         Measurement::CentreOfMass => Quantity::CentreOfMass { of: weighing(record, made, report)? },
         Measurement::AngularMomentum => Quantity::AngularMomentum { of: material(record, made, report)? },
+        Measurement::Moment | Measurement::Work => return None,
         Measurement::Reaction => Quantity::Reaction { face: record.word::<Side>("face")?.into() },
         Measurement::Displacement => Quantity::Displacement { at: at(record, grid, report)? },
         Measurement::Velocity => Quantity::Velocity { at: at(record, grid, report)? },
