@@ -90,7 +90,8 @@ fn read(
 fn strip((root, record): (&Record, &Record), measured: Measurement, report: &mut Report<'_>) -> Option<usize> {
     let wanted = record.text("of")?;
     let footing = root.records("footing").iter().map(|strip| (strip, strip.text("name").unwrap_or("footing"), "base"));
-    let motions = root.records("prescribed").iter().map(|strip| (strip, strip.text("name").unwrap_or(""), "components"));
+    let motions =
+        root.records("prescribed").iter().map(|strip| (strip, strip.text("name").unwrap_or(""), "components"));
     let strips: Vec<_> = footing.chain(motions).collect();
     let Some(number) = strips.iter().position(|(_, name, _)| *name == wanted) else {
         let near = hint(wanted, strips.iter().map(|(_, name, _)| *name));

@@ -65,7 +65,8 @@ pub(super) fn prescribed(root: &Record, around: AroundStrip<'_>, report: &mut Re
             Site::Segment { from, to } => rubs((root, record), "components", [from, to], around, report),
             Site::Face(_) => {
                 if record.record("components").is_some() {
-                    let message = "a face that moves does not rub or let go; a segment does, and a face that rests in [boundary]";
+                    let message =
+                        "a face that moves does not rub or let go; a segment does, and a face that rests in [boundary]";
                     record.error("components", message, report);
                 }
                 None

@@ -20,6 +20,7 @@ mod room;
 mod scenes;
 mod signals;
 mod stages;
+mod strips;
 mod sweep;
 mod told;
 

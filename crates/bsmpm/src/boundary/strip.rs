@@ -219,8 +219,7 @@ impl<const D: usize> StripPoint<D> {
         let far = grip.moved_on(&self.carried, self.penalty) > FAR * edge;
         let rubbed = self.mean(offsets, u).dot(&slid);
         let sliding = if slid.norm() > 0.0 { pushed } else { 0.0 };
-        let each =
-            [flag(grip.status != Status::Open), pushed, sliding, pushed * slid.norm(), rubbed, flag(far)];
+        let each = [flag(grip.status != Status::Open), pushed, sliding, pushed * slid.norm(), rubbed, flag(far)];
         sums.contact.iter_mut().zip(each).for_each(|(sum, value)| sum.add(value));
         [slip, accumulated, motion, -gap, gap]
     }
@@ -271,9 +270,10 @@ impl<const D: usize> StripAttachments<D> {
                 let carried = surface.traction[number][index];
                 let grip = strip.contact.map(|contact| Grip::of(contact, &carried));
                 // The material across a gap is what the gap is to.
-                let off = strip.contact.zip(grip).map(|(contact, grip)| {
-                    contact.inward * grip.gap_before(&carried, strip.penalty)
-                });
+                let off = strip
+                    .contact
+                    .zip(grip)
+                    .map(|(contact, grip)| contact.inward * grip.gap_before(&carried, strip.penalty));
                 let x = point.x + place;
                 let x = off.map_or(x, |off| x + off);
                 let attachment = std::array::from_fn(|c| {
