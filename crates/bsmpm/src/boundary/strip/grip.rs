@@ -1,5 +1,4 @@
 //! The law at a point of a strip that the material rubs along and comes off.
-#![doc = include_str!("grip.md")]
 
 use super::super::contact::{Contact, Status};
 use crate::tensor::Vector;
@@ -8,6 +7,8 @@ use crate::tensor::Vector;
 const ALIGNED: f64 = 1.0 - 1e-12;
 
 /// Contact of a strip.
+///
+#[doc = include_str!("grip.md")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StripContact<const D: usize> {
     /// friction, and whether material comes off it
