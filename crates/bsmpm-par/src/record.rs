@@ -31,6 +31,7 @@ pub struct Recorder {
     gauge: Option<Gauge>,
     books: Option<Books>, // of energy, opened by the first row
     left: Outlet,
+    work: Vec<f64>,       // J/m, of every strip; empty where no history wants it
     datum: Vec<[f64; 2]>, // m, of every history's displacement when they were last set to zero, if they ever were
     grid: GridSpec,
     lower: Vector<2>,
@@ -61,7 +62,13 @@ impl Recorder {
             Quantity::Reaction { face } => surfaces::strip_of_face(case, face),
             _ => None,
         };
+        let wants_work =
+            |history: &History| matches!(history.quantity, Quantity::Strip { measured: Measurement::Work, .. });
+        let strips = case.prescribed.len() + usize::from(case.footing.is_some());
+        let mut work = state.work;
+        work.resize(if case.histories.iter().any(wants_work) { strips } else { 0 }, 0.0);
         Self {
+            work,
             histories: case.histories.clone(),
             parts: parts(case),
             followed: state.followed,
@@ -78,7 +85,7 @@ impl Recorder {
     /// What must be known to go on.
     pub fn state(&self) -> RecordState {
         let (followed, books) = (self.followed.clone(), self.books.map(BooksForm));
-        RecordState { followed, books, left: self.left, datum: self.datum.clone() }
+        RecordState { followed, books, left: self.left, work: self.work.clone(), datum: self.datum.clone() }
     }
 
     /// Follows points of the bodies that a stage has placed, and sets displacements to zero where it wants that.
@@ -153,6 +160,7 @@ impl Recorder {
         halo: &dyn Halo,
     ) -> Result<Vec<f64>, StepError> {
         let energy = if model.balances_energy { self.energy(model, points, report, halo) } else { Vec::new() };
+        self.work.iter_mut().zip(&report.strips).for_each(|(sum, strip)| *sum += strip.work);
         let mut row = Vec::new();
         for (number, history) in self.histories.iter().enumerate() {
             let values = match &history.quantity {
@@ -162,10 +170,13 @@ impl Recorder {
                 }
                 Quantity::Energy => energy.clone(),
                 Quantity::Outflow => vec![self.left.mass],
+                Quantity::Strip { number, measured } => self.strip(*number, *measured, report),
                 Quantity::Contact { face }
                 | Quantity::Gap { face }
                 | Quantity::SlipRate { face }
-                | Quantity::FrictionPower { face } => contact(&history.quantity, model, *face, report),
+                | Quantity::FrictionPower { face } => {
+                    contact(history.quantity.measurement(), at_face(model, *face, report), report.dt)
+                }
                 Quantity::Rigid { what, body } => rigid(*what, *body, (t, model), report),
                 quantity => self.values((number, quantity), model, points, halo)?,
             };
@@ -271,6 +282,17 @@ impl Recorder {
         }
     }
 
+    /// A quantity of a strip; zero before the first step.
+    fn strip(&self, number: usize, measured: Measurement, report: &StepReport) -> Vec<f64> {
+        let strip = report.strips.get(number);
+        match measured {
+            Measurement::Reaction => strip.map_or_else(|| vec![0.0; 2], |strip| strip.force.clone()),
+            Measurement::Moment => vec![strip.map_or(0.0, |strip| strip.moment)],
+            Measurement::Work => vec![self.work.get(number).copied().unwrap_or(0.0)],
+            measured => contact(measured, strip.and_then(|strip| strip.contact), report.dt),
+        }
+    }
+
     /// Force of what holds a face on the body; zero where there is nothing, and before the first step.
     fn reaction<K: Kinematics<2>>(
         &self,
@@ -288,19 +310,24 @@ impl Recorder {
     }
 }
 
-/// A quantity of a face in contact; zero before the first step.
-fn contact<K: Kinematics<2>>(quantity: &Quantity, model: &Model<K, 2>, face: Face, report: &StepReport) -> Vec<f64> {
+/// What a face in contact did.
+fn at_face<K: Kinematics<2>>(model: &Model<K, 2>, face: Face, report: &StepReport) -> Option<ContactReport> {
     let supports = &model.boundary.supports;
     let of_face = |found: &&ContactReport| {
         let support = &supports[found.support];
         support.axis == face.axis && support.upper == face.upper
     };
-    let found = report.contacts.iter().find(of_face).copied().unwrap_or_default();
-    let rate = |sum: f64| if report.dt > 0.0 { sum / report.dt } else { 0.0 };
-    match quantity {
-        Quantity::Contact { .. } => vec![found.closed, found.sliding],
-        Quantity::Gap { .. } => found.gap.to_vec(),
-        Quantity::SlipRate { .. } => vec![rate(found.slip)],
+    report.contacts.iter().find(of_face).copied()
+}
+
+/// A quantity of a face or strip in contact in a step of the length `dt`; zero before the first step.
+fn contact(measured: Measurement, found: Option<ContactReport>, dt: f64) -> Vec<f64> {
+    let found = found.unwrap_or_default();
+    let rate = |sum: f64| if dt > 0.0 { sum / dt } else { 0.0 };
+    match measured {
+        Measurement::Contact => vec![found.closed, found.sliding],
+        Measurement::Gap => found.gap.to_vec(),
+        Measurement::SlipRate => vec![rate(found.slip)],
         _ => vec![rate(found.dissipated)],
     }
 }

@@ -291,6 +291,12 @@ impl<'p> Run<'p> {
                      start, and its force is no longer that of a strip that holds; smaller cells and more points_per_cell \
                      hold longer, and soil that must not be pulled wants a motion without it"
                 )
+            } else if strip.moved_on > 0 {
+                kind += 2 * accepted.report.strips.len();
+                format!(
+                    "{name} comes down at t = {t} more than half a cell from where it had come off: it meets the material as \
+                     high as where it left it, which is right on a level surface only"
+                )
             } else {
                 continue;
             };

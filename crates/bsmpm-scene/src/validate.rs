@@ -29,7 +29,7 @@ use bsmpm::stabilisation::Stabilisation;
 use bsmpm::step::mass::MassMatrix;
 use bsmpm::step::newmark::Newmark;
 
-/// Coefficient of friction up to which faces in contact were verified.
+/// Coefficient of friction up to which faces and strips in contact were verified.
 const MOST_SHOWN_FRICTION: f64 = 1.0;
 /// Steps of a run at most.
 const MOST_STEPS: f64 = 1e9;
@@ -63,6 +63,7 @@ pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Op
         grid: placed,
         bodies: made,
         boundary,
+        factor,
         end,
         dt: analysis.as_ref().map(|analysis| analysis.dt),
     };
@@ -217,6 +218,11 @@ fn contact(boundary: &Record, side: Side, factor: Option<f64>, report: &mut Repo
         let smooth = Contact { friction: 0.0, lifts: true };
         return Some((support(boundary, side)? == Support::Contact).then_some(smooth));
     };
+    Some(Some(law(face, factor, report)?))
+}
+
+/// Friction, divided by the `factor` of the strength, and whether material comes off; none after an error.
+fn law(face: &Record, factor: Option<f64>, report: &mut Report<'_>) -> Option<Contact> {
     let (given, lifts) = (face.number("friction")?, face.flag("lifts")?);
     let friction = factor.map_or(given, |factor| given / factor);
     if friction != given {
@@ -230,7 +236,7 @@ fn contact(boundary: &Record, side: Side, factor: Option<f64>, report: &mut Repo
             face.path_of("friction")
         ));
     }
-    Some(Some(Contact { friction, lifts }))
+    Some(Contact { friction, lifts })
 }
 
 fn gravity(record: &Record, end: Option<f64>, report: &mut Report<'_>) -> Option<Gravity> {

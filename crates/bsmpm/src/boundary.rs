@@ -12,7 +12,7 @@ pub mod surface;
 pub use contact::{Contact, ContactReport};
 pub use load::Load;
 pub use rigid::{RigidBody, RigidReport, RigidState};
-pub use strip::{Path, Strip, StripReport};
+pub use strip::{Path, Strip, StripContact, StripReport};
 pub use surface::{Anchors, Surface, SurfacePoint};
 
 use crate::exact::Exact;
@@ -146,6 +146,11 @@ impl<const D: usize> Boundary<D> {
     /// Whether some face has contact instead of holding.
     pub fn has_contact(&self) -> bool {
         self.supports.iter().any(|support| support.contact.is_some())
+    }
+
+    /// Whether some strip has.
+    pub fn has_strip_contact(&self) -> bool {
+        self.strips.iter().any(|strip| strip.contact.is_some())
     }
 
     /// Force of every support on the body: the nodal `reaction` summed over the components that it decides, N.

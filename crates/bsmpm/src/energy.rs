@@ -9,8 +9,8 @@
 //! a_I the nodes' motion:
 //!
 //! - **external**: `Σ_p m_p (g0 + g1)/2 · Δu_p` of gravity, `Σ A (q0 + q1)/2 · Δx` of tractions and point loads,
-//!   `Σ A (p0 + p1)/2 · motion` of rigid strips, `r1 · u` of supports of the grid that move, and of friction at faces,
-//!   and the blow `v · M (v - v_p)` with which supports meet material that the points bring along with v_p. The mean
+//!   `Σ A (p0 + p1)/2 · motion` of rigid strips, `r1 · u` of supports of the grid that move, and of friction at faces
+//!   and strips,   and the blow `v · M (v - v_p)` with which supports meet material that the points bring along with v_p. The mean
 //!   force of a step: its work is exact for dead loads and of second order in dt else.
 //! - **plastic**: `Σ_p V0 τ : (ε_trial - εᵉ)`, backward Euler like the return, and what damping takes, `Σ_p V0 τ_v : e`
 //!   (see [`damping`](crate::step::damping)).
@@ -31,7 +31,7 @@
 //!   more than the body stores.
 //! - **smoothing**: E before less E after bᵉ is changed once the step has converged.
 //! - **background**: `u · B u`; the background forgets it after every step.
-//! - **penalty**: `Σ A (p0 + p1)/2 · (motion - u)`, by which material slips from strips.
+//! - **penalty**: `Σ A (p0 + p1)/2 · (motion - u)`, by which material slips from strips, but for what friction takes of it.
 //!
 //! **closure** is then the work of what is out of balance, `f_oob · u`, that of the iteration's tolerance, and
 //! round-off. Supports that do not move, and strips at rest, do no work. In J (plane strain: per metre).
@@ -59,7 +59,7 @@ use std::ops::AddAssign;
 /// Energy that went somewhere in a step, or in all steps so far, J; see the module.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Flows<T = f64> {
-    /// work of gravity, loads and what moves, less what friction at faces and faces that absorb take
+    /// work of gravity, loads and what moves, less what friction and faces that absorb take
     pub external: T,
     /// dissipated by plastic flow and damping
     pub plastic: T,
@@ -181,9 +181,11 @@ impl Draft {
         add_gravity(&mut flows, problem, u, (t, dt));
         let strips = grips.work(u);
         flows.external += &strips.given;
+        flows.external -= &strips.rubbed;
         flows.integration -= &strips.grown;
         flows.penalty = strips.given;
         flows.penalty -= &strips.taken;
+        flows.penalty -= &strips.rubbed;
         let volumes = || responses.iter().zip(&points.volume);
         flows.plastic = volumes().map(|(response, volume)| volume * response.dissipation()).collect();
         if !model.damping.is_empty() {

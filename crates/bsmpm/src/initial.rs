@@ -137,7 +137,7 @@ pub fn set_elastic<K: Kinematics<D>, const D: usize>(
             Symmetric::of(&K::gradient::<f64>(&grad))
         });
     }
-    let (_, traction) = start.grips.conclude(&model.boundary.strips, &u, halo);
+    let (_, traction) = start.grips.conclude((&model.boundary.strips, &model.grid), &points.surface, &u, halo);
     points.surface.traction = traction;
     for (p, strain) in strains.iter().enumerate() {
         points.b_e.set(p, exponential(strain));
@@ -158,9 +158,9 @@ pub fn hold<K: Kinematics<D>, const D: usize>(
         return Ok(());
     }
     let at_rest = &model.at_rest();
-    let Undeformed { shape, mut nodes, grips } = Undeformed::of(at_rest, points, halo)?;
+    let Undeformed { shape, mut nodes, mut grips } = Undeformed::of(at_rest, points, halo)?;
     let (guess, counts) = (vec![0.0; model.grid.nodes() * D], &mut Counts::default());
-    let around = (&grips, &*points);
+    let around = (&mut grips, &*points);
     let found = contact::find(at_rest, &shape, &mut nodes, around, &guess, (halo, solver), counts)?;
     points.surface.held = model.boundary.held(&model.grid, &found.reaction, halo);
     Ok(())
@@ -185,7 +185,7 @@ pub fn balance<K: Kinematics<D>, const D: usize>(
     let balance = Residual::of(&start.problem(model, points, halo), &at_rest).balance;
     halo.reduce(&mut yielding);
     let reactions = model.boundary.reactions(&model.grid, &balance.reaction, halo);
-    let (strips, _) = start.grips.conclude(&model.boundary.strips, &at_rest, halo);
+    let (strips, _) = start.grips.conclude((&model.boundary.strips, &model.grid), &points.surface, &at_rest, halo);
     Ok(Equilibrium { force: balance.measure(), yielding: yielding[0] as u64, reactions, strips })
 }
 

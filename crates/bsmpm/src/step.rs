@@ -59,11 +59,11 @@ pub fn step<K: Kinematics<D>, const D: usize>(
         inertia.newmark = Newmark::of_the_end();
     }
     let movable = nodes.contacts.movable(&nodes.free);
-    let grips = StripAttachments::at(&model.boundary.strips, &points.surface, (&model.grid, &movable), (t, dt));
-    let found = solve::contact::find(model, &shape, &mut nodes, (&grips, points), guess, (halo, solver), counts)?; // (3)-(9)
+    let mut grips = StripAttachments::at(&model.boundary.strips, &points.surface, (&model.grid, &movable), (t, dt));
+    let found = solve::contact::find(model, &shape, &mut nodes, (&mut grips, points), guess, (halo, solver), counts)?; // (3)-(9)
     let problem = Problem { model, shape: &shape, nodes: &nodes, grips: &grips, points, halo };
     commit::check_inside(model, &shape, points, &found.u, halo)?;
-    let (strips, traction) = grips.conclude(&model.boundary.strips, &found.u, halo);
+    let (strips, traction) = grips.conclude((&model.boundary.strips, &model.grid), &points.surface, &found.u, halo);
     let (rigid, bodies) = nodes.rigid.conclude(&found.u, halo);
     let carried = nodes.rigid.rubs().then(|| nodes.rigid.carried(&found.u, halo));
     let mut report = StepReport { dt, strips, rigid, ..StepReport::of(&problem, &found) };

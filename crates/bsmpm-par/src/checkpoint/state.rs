@@ -80,6 +80,9 @@ pub struct RecordState {
     /// Points that have left the grid, and their mass, kg/m.
     #[serde(default, skip_serializing_if = "Outlet::is_closed")]
     pub left: Outlet,
+    /// J/m  work of every strip since the start; empty where no history wants it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub work: Vec<f64>,
     /// m  displacement of every history when displacements were last set to zero; empty if they never were.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub datum: Vec<[f64; 2]>,

@@ -159,6 +159,13 @@ pub enum Quantity {
         /// number of the body
         body: usize,
     },
+    /// of a strip: the footing, then the prescribed motions in the order of the file
+    Strip {
+        /// Its number.
+        number: usize,
+        /// What of it.
+        measured: Measurement,
+    },
     /// kg/m  that has left the grid
     Outflow,
     /// J/m  where the energy is, and where it went since the start
@@ -244,6 +251,7 @@ impl Quantity {
             Self::FrictionPower { .. } => Measurement::FrictionPower,
             Self::Rigid { what, .. } => *what,
             Self::Energy => Measurement::Energy,
+            Self::Strip { measured, .. } => *measured,
         }
     }
 }

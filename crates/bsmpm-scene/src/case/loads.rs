@@ -1,6 +1,7 @@
 //! What acts on the bodies besides gravity: rigid strips, prescribed motions, tractions, point loads, initial stress.
 
 use super::{Base, Face};
+use bsmpm::boundary::StripContact;
 use bsmpm::material::Profile;
 
 /// A displacement as a function of time, linear between its rows; zero at the start, constant after the last row.
@@ -19,8 +20,10 @@ pub struct Footing {
     pub to: [f64; 2],
     /// its motion
     pub path: MotionPath,
-    /// what it holds
+    /// what it holds; of one in contact what it may hold
     pub base: Base,
+    /// friction, and whether material comes off, instead
+    pub contact: Option<StripContact<2>>,
 }
 
 /// Prescribed motion of what lies at a face of the grid or at a segment.
@@ -30,8 +33,10 @@ pub struct Prescribed {
     pub site: Site,
     /// its motion
     pub path: MotionPath,
-    /// which components
+    /// which components; of one in contact what it may hold
     pub base: Base,
+    /// friction, and whether material comes off, instead
+    pub contact: Option<StripContact<2>>,
 }
 
 /// Where a prescribed motion acts at the start.

@@ -55,7 +55,7 @@ pub(super) static FOOTING: Table = Table {
             Optional,
             "rows [t, ux, uy], t increasing; linear between, 0 at time 0, constant after the last",
         ),
-        key("base", Choice(Base::WORDS), Default("\"smooth\""), "holds the normal component, or all"),
+        key("base", ChoiceOr(Base::WORDS, &RUBS), Default("\"smooth\""), "holds the normal component, or all; or rubs"),
         key("name", Name, Optional, "what stages call it"),
     ],
     exclusive: &[one_of(&["displacement", "velocity", "path"], true)],
@@ -76,7 +76,12 @@ pub(super) static PRESCRIBED: Table = Table {
             Optional,
             "rows [t, ux, uy], t increasing; linear between, 0 at time 0, constant after the last",
         ),
-        key("components", Choice(Components::WORDS), Default("\"all\""), "what is held"),
+        key(
+            "components",
+            ChoiceOr(Components::WORDS, &RUBS),
+            Default("\"all\""),
+            "what is held; of a segment also what rubs",
+        ),
         key("name", Name, Optional, "what stages call it"),
     ],
     exclusive: &[
@@ -84,6 +89,26 @@ pub(super) static PRESCRIBED: Table = Table {
         one_of(&["face", "to"], true),
         one_of(&["displacement", "velocity", "path"], true),
     ],
+};
+
+static RUBS: Table = Table {
+    header: "STRIP = { friction, lifts }",
+    doc: "A strip that material slides along with Coulomb friction, and comes off; bodies lie on one side of it",
+    keys: &[
+        key(
+            "friction",
+            Quantity(In::Number, Range::of(Included(0.0), Included(2.0))),
+            Required,
+            "tangent of the angle of friction between strip and material; [strength_reduction] divides it, too",
+        ),
+        key(
+            "lifts",
+            Flag,
+            Default("true"),
+            "whether material comes off the strip; false: it is held there both ways, and nothing rubs where it pulls",
+        ),
+    ],
+    exclusive: &[],
 };
 
 pub(super) static TRACTION: Table = Table {

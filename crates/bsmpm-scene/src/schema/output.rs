@@ -59,6 +59,13 @@ pub(super) static HISTORY: Table = Table {
         key("face", Choice(Side::WORDS), Optional, "of reaction: the face"),
         key("rigid", Name, Optional, "of rigid-force and the like: name of the rigid body"),
         key(
+            "of",
+            Name,
+            Optional,
+            "of moment and work, and instead of face: the name of a [[prescribed]] motion or of the [footing], \"footing\" \
+             unless it has one",
+        ),
+        key(
             "at_x",
             Quantity(In::Length, Range::ANY),
             Optional,

@@ -47,12 +47,16 @@ fn read(
     report: &mut Report<'_>,
 ) -> Option<History> {
     let measured: Measurement = record.word("quantity")?;
+    let of_strip = record.gives("of") && measured.is_of_strip();
     let (own, needed) = own_keys(measured);
-    let others = KEYS.into_iter().filter(|key| !own.contains(key) && !needed.contains(key));
-    for key in others.filter(|key| record.gives(key)) {
+    let belongs = |key: &&str| own.contains(key) || needed.contains(key) || (*key == "of" && of_strip);
+    for key in KEYS.into_iter().filter(|key| !belongs(key) && record.gives(key)) {
         record.error(key, format!("has no meaning for quantity \"{measured}\""), report);
     }
-    for key in needed.iter().filter(|key| !record.gives(key)) {
+    if of_strip && record.gives("face") {
+        record.error("of", "give `face` or `of`", report);
+    }
+    for key in needed.iter().filter(|key| !record.gives(key) && !of_strip) {
         report.error(record.origin, &record.path_of(key), format!("missing; quantity \"{measured}\" needs it"));
     }
     if regime == Some(Regime::QuasiStatic) && is_of_motion(measured) {
@@ -74,9 +78,34 @@ fn read(
     if measured == Measurement::Outflow && !Side::ALL.into_iter().flatten().any(is_outlet) {
         record.error("quantity", "nothing leaves: no face in [boundary] is \"outflow\"", report);
     }
-    let quantity = quantity(measured, record, (root, grid, made), report)?;
+    let quantity = match of_strip {
+        true => Quantity::Strip { number: strip((root, record), measured, report)?, measured },
+        false => quantity(measured, record, (root, grid, made), report)?,
+    };
     let name = if record.gives("name") { record.text("name")? } else { measured.word() };
     Some(History { quantity, name: name.to_owned(), scale: record.number("scale")?, lasts: false })
+}
+
+/// Number of the strip that a history is of, if the history has a meaning for it; `None` after an error.
+fn strip((root, record): (&Record, &Record), measured: Measurement, report: &mut Report<'_>) -> Option<usize> {
+    let wanted = record.text("of")?;
+    let footing = root.records("footing").iter().map(|strip| (strip, strip.text("name").unwrap_or("footing"), "base"));
+    let motions =
+        root.records("prescribed").iter().map(|strip| (strip, strip.text("name").unwrap_or(""), "components"));
+    let strips: Vec<_> = footing.chain(motions).collect();
+    let Some(number) = strips.iter().position(|(_, name, _)| *name == wanted) else {
+        let near = hint(wanted, strips.iter().map(|(_, name, _)| *name));
+        let message = format!("no [[prescribed]] motion and no [footing] has the name `{}`{near}", shortened(wanted));
+        record.error("of", message, report);
+        return None;
+    };
+    let (strip, _, key) = strips[number];
+    if measured.is_of_contact() && strip.record(key).is_none() {
+        let message = format!("\"{measured}\" is about what rubs or lets go, and {} holds", strip.path);
+        record.error("of", message, report);
+        return None;
+    }
+    Some(number)
 }
 
 /// What a face is at the start, and what stages make of it.
@@ -92,8 +121,8 @@ fn is_of_motion(measured: Measurement) -> bool {
 }
 
 /// Keys that belong to some quantities.
-const KEYS: [&str; 12] =
-    ["percentile", "face", "at", "at_x", "box", "material", "body", "from", "to", "fixed", "surface", "rigid"];
+const KEYS: [&str; 13] =
+    ["percentile", "face", "at", "at_x", "box", "material", "body", "from", "to", "fixed", "surface", "rigid", "of"];
 
 /// The keys that belong to a quantity, and those that it needs.
 fn own_keys(measured: Measurement) -> (&'static [&'static str], &'static [&'static str]) {
@@ -102,6 +131,7 @@ fn own_keys(measured: Measurement) -> (&'static [&'static str], &'static [&'stat
         Runout => (&["percentile", "material", "body"], &[]),
         Height => (&["at_x", "material", "body"], &[]),
         Reaction | Contact | Gap | SlipRate | FrictionPower => (&[], &["face"]),
+        Moment | Work => (&[], &["of"]),
         RigidForce | RigidMoment | RigidDisplacement | RigidRotation | RigidVelocity => (&[], &["rigid"]),
         RigidSlip | RigidGap => (&[], &["rigid"]),
         Displacement => (&[], &["at"]),
@@ -143,6 +173,7 @@ fn quantity(
             ends: ends(record, grid, report)?,
             fixed: record.gives("fixed") && record.flag("fixed")?,
         },
+        Measurement::Moment | Measurement::Work => return None,
         Measurement::Reaction => Quantity::Reaction { face: record.word::<Side>("face")?.into() },
         Measurement::Displacement => Quantity::Displacement { at: at(record, grid, report)? },
         Measurement::Velocity => Quantity::Velocity { at: at(record, grid, report)?, surface: at_surface(record)? },

@@ -6,6 +6,8 @@ use crate::grid::GridSpec;
 use crate::record::Record;
 use crate::report::Report;
 use crate::words::{Components, Side};
+use bsmpm::boundary::StripContact;
+use bsmpm::model::Regime;
 
 /// Parts of a motion below which it does not count.
 const NOTHING: f64 = 1e-12;
@@ -16,6 +18,8 @@ pub(super) struct AroundStrip<'a> {
     pub(super) grid: Option<&'a GridSpec>,
     pub(super) bodies: Option<&'a [Body]>,
     pub(super) boundary: Option<[[Support; 2]; 2]>,
+    /// of the strength reduction
+    pub(super) factor: Option<f64>,
     pub(super) end: Option<f64>,
     pub(super) dt: Option<f64>,
 }
@@ -30,12 +34,15 @@ pub(super) fn footing(root: &Record, around: AroundStrip<'_>, report: &mut Repor
     }
     let (path, [from, to]) = (path?, ends?);
     stays_inside(record, [from, to], &path, around, report);
-    let base = record.word("base")?;
-    if base == Base::Smooth && normal_part(&path, from, to) <= NOTHING * size(&path) {
+    let (base, contact) = match rubs((root, record), "base", [from, to], around, report) {
+        Some(rubs) => rubs?,
+        None => (record.word("base")?, None),
+    };
+    if base == Base::Smooth && contact.is_none() && normal_part(&path, from, to) <= NOTHING * size(&path) {
         let message = "a smooth base holds its normal component only, and the motion has none";
         record.error(motion(record), message, report);
     }
-    Some(Footing { from, to, path, base })
+    Some(Footing { from, to, path, base, contact })
 }
 
 /// All prescribed motions in the order of the file, without those that have an error.
@@ -54,10 +61,63 @@ pub(super) fn prescribed(root: &Record, around: AroundStrip<'_>, report: &mut Re
             }
             Site::Segment { from, to } => stays_inside(record, [from, to], &path, around, report),
         }
-        let components = record.word("components").unwrap_or(Components::All);
-        found.push(Prescribed { site, path, base: components.base() });
+        let rubs = match site {
+            Site::Segment { from, to } => rubs((root, record), "components", [from, to], around, report),
+            Site::Face(_) => {
+                if record.record("components").is_some() {
+                    let message =
+                        "a face that moves does not rub or let go; a segment does, and a face that rests in [boundary]";
+                    record.error("components", message, report);
+                }
+                None
+            }
+        };
+        let (base, contact) = match rubs {
+            Some(Some(rubs)) => rubs,
+            Some(None) => continue,
+            None => (record.word("components").unwrap_or(Components::All).base(), None),
+        };
+        found.push(Prescribed { site, path, base, contact });
     }
     found
+}
+
+/// Parts of the shortest cell beside a strip at which bodies are looked for.
+const BESIDE: f64 = 0.25;
+
+/// What a strip does that rubs and lets go, and what it may hold so; `None` where the key is a word, `Some(None)` after an
+/// error.
+fn rubs(
+    (root, record): (&Record, &Record),
+    key: &str,
+    ends: [[f64; 2]; 2],
+    around: AroundStrip<'_>,
+    report: &mut Report<'_>,
+) -> Option<Option<(Base, Option<StripContact<2>>)>> {
+    let table = record.record(key)?;
+    let Some(law) = super::law(table, around.factor, report) else { return Some(None) };
+    let (Some(grid), Some(bodies)) = (around.grid, around.bodies) else { return Some(None) };
+    let (off, normal) = (BESIDE * grid.axes[0].shortest().min(grid.axes[1].shortest()), normal(ends[0], ends[1]));
+    let count = |side: f64| {
+        let beside = |at: [f64; 2]| [at[0] + side * off * normal[0], at[1] + side * off * normal[1]];
+        along(ends).filter(|at| bodies.iter().any(|body| body.region.contains(beside(*at)))).count()
+    };
+    let (left, right) = (count(1.0), count(-1.0));
+    if left.abs_diff(right) * 2 < left.max(right) {
+        record.error(key, "bodies lie on both sides of it: it rubs and lets go on one", report);
+        return Some(None);
+    }
+    let regime = root.record("analysis").and_then(|analysis| analysis.word("type"));
+    if regime == Some(Regime::Dynamic) {
+        report.warn(format!(
+            "{}: strips that rub and let go were shown to be right in quasi-static analysis only; look at the energy history \
+             for what impacts make or lose",
+            record.path_of(key)
+        ));
+    }
+    let side = if left > right { 1.0 } else { -1.0 };
+    let base = if law.friction > 0.0 { Base::Rough } else { Base::Smooth };
+    Some(Some((base, Some(StripContact { law, inward: normal.map(|n| side * n).into() }))))
 }
 
 /// A segment's ends inside the grid.

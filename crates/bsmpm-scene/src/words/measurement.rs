@@ -31,8 +31,13 @@ choice! {
         SectionForces = "section-forces",
         /// Mass that has left the grid through faces with outflow since the start, per metre of thickness.
         Outflow = "outflow",
-        /// Force of a face's supports on the body, per metre of thickness.
+        /// Force of a face's supports, or of a strip or what else moves, on the body, per metre of thickness.
         Reaction = "reaction",
+        /// Moment of the force of a strip or what else moves about its middle, counter-clockwise, per metre of thickness.
+        Moment = "moment",
+        /// Work of a strip or what else moves on the body since the start, per metre of thickness: by the mean force of
+        /// every step.
+        Work = "work",
         /// Displacement of the material that is at `at` at the start, by the motion about the point nearest to it.
         Displacement = "displacement",
         /// Velocity of the point nearest to `at` at the start; with `surface` of the place itself.
@@ -129,6 +134,11 @@ impl Measurement {
         )
     }
 
+    /// Whether it can be of a strip.
+    pub fn is_of_strip(self) -> bool {
+        self.is_of_contact() || matches!(self, Self::Reaction | Self::Moment | Self::Work)
+    }
+
     /// Whether its face must be in contact.
     pub fn is_of_contact(self) -> bool {
         matches!(self, Self::Contact | Self::Gap | Self::SlipRate | Self::FrictionPower)
@@ -148,6 +158,7 @@ impl Measurement {
             Self::Contact => CONTACT,
             Self::Gap => GAP,
             Self::SlipRate | Self::FrictionPower | Self::AngularMomentum | Self::KineticEnergy => &[("", "")],
+            Self::Moment | Self::Work => &[("", "")],
             Self::Runout | Self::Front | Self::Height | Self::MaxDisplacement | Self::Heave => &[("", "")],
             Self::Mass | Self::Outflow | Self::FootingPressure | Self::FootingForce => &[("", "")],
             Self::Penetration | Self::Slip => &[("", "")],
@@ -170,7 +181,8 @@ impl Measurement {
             Self::FrictionPower => "W/m",
             Self::Stress | Self::MeanStress | Self::PressureNoise | Self::FootingPressure => "Pa",
             Self::StressNoise | Self::Slip | Self::Contact => "-",
-            Self::Energy | Self::KineticEnergy => "J/m",
+            Self::Moment => "N",
+            Self::Energy | Self::KineticEnergy | Self::Work => "J/m",
         }
     }
 

@@ -288,3 +288,36 @@ pub const QUASI_STATIC: &[Row] = &[
     row("[output]", "[gravity]\nacceleration = [0, -9.81]\n[initial]\nk0 = 1\n[output]", "initial", "no body has any")
         .down(2),
 ];
+
+/// Strips that rub and let go, and histories of strips by name, in a quasi-static case.
+pub const RUBBING: &[Row] = &[
+    row("base = { friction = 0.5, lifts = true }", "base = {}", "footing.base.friction", "missing"),
+    row("base = { friction = 0.5,", "base = { friction = -0.5,", "footing.base.friction", "out of range"),
+    row("base = { friction = 0.5,", "base = { friction = 3,", "footing.base.friction", "out of range"),
+    row("lifts = true", "lifts = 1", "footing.base.lifts", "expected true or false"),
+    row("lifts = true", "lift = true", "footing.base.lift", "did you mean `lifts`?"),
+    row(
+        "from = [0.0, 1.0]\nto = [1.0, 1.0]",
+        "from = [0.0, 0.5]\nto = [1.0, 0.5]",
+        "footing.base",
+        "bodies lie on both sides of it",
+    )
+    .down(3),
+    row(
+        "components = { friction = 0.5 }\nfrom = [1.0, 1.0]\nto = [2.0, 1.0]",
+        "components = { friction = 0.5 }\nface = \"right\"",
+        "prescribed.0.components",
+        "a face that moves does not rub or let go",
+    ),
+    row("of = \"footing\"", "of = \"foting\"", "history.0.of", "did you mean `footing`?"),
+    row("of = \"footing\"", "", "history.0.of", "missing; quantity \"work\" needs it").up(2),
+    row("of = \"footing\"", "of = \"footing\"\nface = \"left\"", "history.0.face", "has no meaning").down(1),
+    row("quantity = \"work\"", "quantity = \"heave\"", "history.0.of", "has no meaning for quantity").down(1),
+    row(
+        "components = { friction = 0.5 }",
+        "components = \"all\"",
+        "history.1.of",
+        "is about what rubs or lets go, and prescribed.0 holds",
+    )
+    .down(12),
+];

@@ -13,6 +13,7 @@ use bsmpm_scene::{Case, Error, Place};
 
 const DYNAMIC: &str = include_str!("../full.toml");
 const STATIC: &str = include_str!("static.toml");
+const RUBBING: &str = include_str!("rubbing.toml");
 
 /// One malformed case: `find` in the base becomes `put`, and an error must say `says` of `key`, `moved` lines below.
 pub struct Row {
@@ -63,7 +64,7 @@ fn verify_all(base: &str, rows: &[Row]) {
 
 #[test]
 fn the_bases_are_valid() {
-    for base in [DYNAMIC, STATIC] {
+    for base in [DYNAMIC, STATIC, RUBBING] {
         Case::from_text("case.toml", base, &[]).unwrap_or_else(|errors| panic!("{errors:#?}"));
     }
 }
@@ -112,6 +113,7 @@ fn strips_and_loads() {
 fn initial_stress_and_histories() {
     verify_all(DYNAMIC, loads::INITIAL);
     verify_all(STATIC, loads::QUASI_STATIC);
+    verify_all(RUBBING, loads::RUBBING);
 }
 
 #[test]

@@ -22,6 +22,7 @@ mod scenes;
 mod settled_start;
 mod signals;
 mod stages;
+mod strips;
 mod sweep;
 mod told;
 mod told_parts;

@@ -116,6 +116,7 @@ impl<const D: usize> Boundary<D> {
     /// the face lies across the `pull` of gravity.
     pub fn at_rest(&self, pull: Option<Vector<D>>) -> Self {
         let mut held = self.clone();
+        held.rigid.clear();
         for face in held.supports.iter_mut().filter(|support| support.absorbs) {
             let across = pull.is_some_and(|pull| pull.iamax() == face.axis && pull[face.axis] != 0.0);
             *face = match across {

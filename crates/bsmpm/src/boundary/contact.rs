@@ -27,12 +27,12 @@ pub struct Contacts<const D: usize> {
     pub first_energy: Option<f64>,
 }
 
-/// What a face with contact did in a step.
+/// What a face or strip with contact did in a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ContactReport {
-    /// number of the support
+    /// number of the support, or of the strip
     pub support: usize,
-    /// nodes of the face that see material
+    /// nodes of the face, or points of the strip, that see material
     pub nodes: usize,
     /// -  part of them that is on the face
     pub closed: f64,

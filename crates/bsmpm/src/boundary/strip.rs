@@ -2,8 +2,14 @@
 //!
 //! The paper holds the material by a penalty on boundary points (Cortis et al., 2018), whose slip is lost every step.
 //! Here the traction of the last step is carried on, as a multiplier: p = p(t) + beta (motion - sum N u). What has
-//! slipped in all steps together is then p / beta, so that a moderate penalty does. The hold is bilateral.
+//! slipped in all steps together is then p / beta, so that a moderate penalty does. The hold is bilateral, unless the strip
+//! has a [contact](StripContact).
 
+mod grip;
+
+pub use grip::StripContact;
+
+use super::contact::{ContactReport, Status};
 use super::surface::{Attachment, Surface, SurfacePoint};
 use crate::exact::Exact;
 use crate::grid::{Contributions, Grid};
@@ -11,6 +17,7 @@ use crate::nodal::Nodal;
 use crate::parallel::{Halo, LinearSolver};
 use crate::schedule::between;
 use crate::tensor::Vector;
+use grip::Grip;
 
 /// A displacement as a function of time, linear between its rows: a cut step follows the same path.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,6 +41,8 @@ pub struct Strip<const D: usize> {
     pub points: Vec<SurfacePoint<D>>,
     /// unit normal, if only the normal component is held; `None`: all are
     pub normal: Option<Vector<D>>,
+    /// what it does instead of holding, if it does
+    pub contact: Option<StripContact<D>>,
     /// its motion
     pub path: Path<D>,
     /// Pa/m  penalty beta; 0: it holds nothing
@@ -45,6 +54,26 @@ impl<const D: usize> Strip<D> {
     pub fn acts(&self) -> bool {
         self.penalty > 0.0
     }
+
+    /// Whether material comes off it.
+    pub fn lifts(&self) -> bool {
+        self.contact.is_some_and(|contact| contact.law.lifts)
+    }
+
+    /// N  its force on the body by component, and N m  the moment of it about the middle of the strip in the plane of the
+    /// axes 0 and 1, counter-clockwise, of what its points carry.
+    fn force(&self, carried: &[Vector<D>]) -> (Vector<D>, f64) {
+        let area: f64 = self.points.iter().map(|point| point.area).sum();
+        let middle = self.points.iter().fold(Vector::<D>::zeros(), |sum, point| sum + point.x * point.area) / area;
+        let (mut force, mut moment) = (Vector::zeros(), 0.0);
+        for (point, carried) in self.points.iter().zip(carried) {
+            let share = self.contact.map_or(*carried, |contact| contact.acting(carried)) * point.area;
+            let arm = point.x - middle;
+            force += share;
+            moment += arm[0] * share[1] - arm[1] * share[0];
+        }
+        (force, moment)
+    }
 }
 
 /// What a strip did in a step.
@@ -52,6 +81,10 @@ impl<const D: usize> Strip<D> {
 pub struct StripReport {
     /// N  force of the strip on the body, by component
     pub force: Vec<f64>,
+    /// N m  moment of it about the strip's middle, in the plane of the axes 0 and 1, counter-clockwise
+    pub moment: f64,
+    /// J  work of it on the strip's motion in the step
+    pub work: f64,
     /// m  largest distance that the material has slipped from it in the step
     pub slip: f64,
     /// m  largest distance that the material has slipped from it in all steps together: held traction over the penalty
@@ -62,6 +95,10 @@ pub struct StripReport {
     pub held: usize,
     /// points that are more than half a cell ahead of the material that they held at the start
     pub left_behind: usize,
+    /// of a strip in contact
+    pub contact: Option<ContactReport>,
+    /// points that came back to material in the step more than half a cell from where they had come off it
+    pub moved_on: usize,
 }
 
 /// Work of strips in a step, by the mean of their tractions at its ends, N m.
@@ -73,12 +110,29 @@ pub struct GripWork {
     pub taken: Exact,
     /// half of what the tractions have grown, times that displacement
     pub grown: Exact,
+    /// of the first, what friction at strips dissipates
+    pub rubbed: Exact,
+}
+
+/// Lengths of a strip's points of which the largest count.
+const LENGTHS: usize = 5;
+/// Parts of a cell from which on a point that comes back to material has moved on.
+const FAR: f64 = 0.5;
+
+/// Sums over the points of a strip.
+#[derive(Clone, Debug, Default)]
+struct Sums {
+    held: Exact,
+    given: Exact, // J
+    // closed, their normal force, that of those that slide, that times what they slid, dissipated, moved on
+    contact: [Exact; 6],
 }
 
 /// The strips' points of this rank in one step.
 #[derive(Clone, Debug)]
 pub struct StripAttachments<const D: usize> {
     offsets: Vec<usize>,
+    span: (f64, f64), // s  when the step starts, and its length
     held: Vec<StripPoint<D>>,
 }
 
@@ -92,6 +146,7 @@ struct StripPoint<const D: usize> {
     normal: Option<Vector<D>>,
     motion: Vector<D>,
     carried: Vector<D>,
+    grip: Option<Grip<D>>,
 }
 
 impl<const D: usize> StripPoint<D> {
@@ -103,6 +158,9 @@ impl<const D: usize> StripPoint<D> {
     /// The part of a vector that is held.
     fn part(&self, vector: Vector<D>) -> Vector<D> {
         let own = self.own(vector);
+        if let Some(grip) = &self.grip {
+            return self.own(grip.part(&own));
+        }
         self.normal.map_or(own, |normal| self.own(normal * normal.dot(&own)))
     }
 
@@ -120,9 +178,50 @@ impl<const D: usize> StripPoint<D> {
         self.part(self.motion - self.displacement(offsets, u))
     }
 
+    /// Pa  elastic trial of a point in contact.
+    fn trial(&self, grip: &Grip<D>, offsets: &[usize], u: &[f64]) -> Vector<D> {
+        self.own(grip.start(&self.carried) + (self.motion - self.displacement(offsets, u)) * self.penalty)
+    }
+
+    /// Pa  on the body at the start of the step.
+    fn before(&self) -> Vector<D> {
+        self.own(self.grip.map_or(self.carried, |grip| grip.before(&self.carried)))
+    }
+
     /// Pa  on the body.
     fn traction(&self, offsets: &[usize], u: &[f64]) -> Vector<D> {
+        if let Some(grip) = &self.grip {
+            return self.own(grip.traction(&self.trial(grip, offsets, u)));
+        }
         self.own(self.carried) + self.slip(offsets, u) * self.penalty
+    }
+
+    /// N  the mean force of the step; where the point comes off or meets the material, of the part of the step in
+    /// which it is on it, as a part of the whole.
+    fn mean(&self, offsets: &[usize], u: &[f64]) -> Vector<D> {
+        let mean = (self.before() + self.traction(offsets, u)) * (0.5 * self.area);
+        match &self.grip {
+            Some(grip) => mean * grip.share(&self.own(self.carried), &self.trial(grip, offsets, u)),
+            None => mean,
+        }
+    }
+
+    /// m  slip, what has slipped in all steps, motion, and of a point in contact less the gap and the gap; what it adds
+    /// to the sums. `edge`, m, is that of the shortest cell.
+    fn lengths(&self, offsets: &[usize], u: &[f64], edge: f64, sums: &mut Sums) -> [f64; LENGTHS] {
+        let (motion, after) = (self.part(self.motion).norm(), self.traction(offsets, u));
+        let (slip, accumulated) = (self.slip(offsets, u).norm(), after.norm() / self.penalty);
+        let Some(grip) = &self.grip else { return [slip, accumulated, motion, 0.0, 0.0] };
+        let trial = self.trial(grip, offsets, u);
+        let (slid, gap) = (self.own(grip.slid(&trial, self.penalty)), grip.gap(&trial, self.penalty));
+        let pushed = grip.pressure(&trial).max(0.0) * self.area;
+        let flag = |is: bool| f64::from(u8::from(is));
+        let far = grip.moved_on(&self.carried, self.penalty) > FAR * edge;
+        let rubbed = self.mean(offsets, u).dot(&slid);
+        let sliding = if slid.norm() > 0.0 { pushed } else { 0.0 };
+        let each = [flag(grip.status != Status::Open), pushed, sliding, pushed * slid.norm(), rubbed, flag(far)];
+        sums.contact.iter_mut().zip(each).for_each(|(sum, value)| sum.add(value));
+        [slip, accumulated, motion, -gap, gap]
     }
 
     /// Adds a force at the point to the nodes.
@@ -138,6 +237,9 @@ impl<const D: usize> StripPoint<D> {
 
     /// Dense block of beta A N_a N_b in the held direction, over the nodes of the cell.
     fn block(&self, size: usize) -> Option<(usize, Vec<f64>)> {
+        if self.grip.is_some_and(|grip| grip.status == Status::Open) {
+            return None;
+        }
         let first = self.attachment.iter().flatten().next()?.first_node();
         let direction = |j: usize| {
             let mut unit = Vector::zeros();
@@ -165,7 +267,15 @@ impl<const D: usize> StripAttachments<D> {
         for (number, strip) in strips.iter().enumerate().filter(|(_, strip)| strip.acts()) {
             let (place, motion) = (strip.path.at(t), strip.path.at(t + dt) - strip.path.at(t));
             for (index, point) in strip.points.iter().enumerate() {
+                let carried = surface.traction[number][index];
+                let grip = strip.contact.map(|contact| Grip::of(contact, &carried));
+                // The material across a gap is what the gap is to.
+                let off = strip
+                    .contact
+                    .zip(grip)
+                    .map(|(contact, grip)| contact.inward * grip.gap_before(&carried, strip.penalty));
                 let x = point.x + place;
+                let x = off.map_or(x, |off| x + off);
                 let attachment = std::array::from_fn(|c| {
                     Attachment::at(grid, &offsets, |node: usize| free[Nodal::<D>::at(node, c)], &x)
                 });
@@ -180,11 +290,37 @@ impl<const D: usize> StripAttachments<D> {
                     penalty: strip.penalty,
                     normal: strip.normal,
                     motion,
-                    carried: surface.traction[number][index],
+                    carried,
+                    grip,
                 });
             }
         }
-        Self { offsets, held }
+        Self { offsets, span: (t, dt), held }
+    }
+
+    /// Expects of points in contact what the last displacement, `guess`, makes likely.
+    pub fn recall(&mut self, guess: &[f64]) {
+        let offsets = &self.offsets;
+        for held in &mut self.held {
+            let Some(mut grip) = held.grip else { continue };
+            let (trial, before) = (held.trial(&grip, offsets, guess), held.own(grip.start(&held.carried)));
+            grip.recall(&trial, &before);
+            held.grip = Some(grip);
+        }
+    }
+
+    /// Corrects what the displacement `u` (m) contradicts by more than `force`, N; how many points over all ranks.
+    pub fn correct(&mut self, u: &[f64], force: f64, halo: &dyn Halo) -> usize {
+        let (offsets, mut corrected) = (&self.offsets, [0.0]);
+        for held in &mut self.held {
+            let Some(mut grip) = held.grip else { continue };
+            let status = grip.corrected(&held.trial(&grip, offsets, u), force / held.area);
+            corrected[0] += f64::from(u8::from(status != grip.status));
+            grip.status = status;
+            held.grip = Some(grip);
+        }
+        halo.reduce(&mut corrected);
+        corrected[0] as usize
     }
 
     /// Adds the strips' forces on the body to the nodes; other ranks' parts are not yet in them.
@@ -197,7 +333,12 @@ impl<const D: usize> StripAttachments<D> {
     /// Adds the product of [`StripAttachments::assemble`]'s stiffness with `v`; other ranks' parts are not yet in it.
     pub fn multiply(&self, v: &[f64], out: &mut Contributions) {
         for held in &self.held {
-            let force = held.part(held.displacement(&self.offsets, v)) * (held.penalty * held.area);
+            let moved = held.displacement(&self.offsets, v);
+            let force = held.part(moved) * (held.penalty * held.area);
+            let force = match &held.grip {
+                Some(grip) => force + held.own(grip.rubbing(&moved)) * (held.penalty * held.area),
+                None => force,
+            };
             held.spread(&self.offsets, &force, out);
         }
     }
@@ -222,42 +363,126 @@ impl<const D: usize> StripAttachments<D> {
     pub fn work(&self, u: &[f64]) -> GripWork {
         let mut work = GripWork::default();
         for held in &self.held {
-            let (before, after) = (held.own(held.carried), held.traction(&self.offsets, u));
-            let (moved, mean) = (held.displacement(&self.offsets, u), (before + after) * (0.5 * held.area));
+            let (before, after) = (held.before(), held.traction(&self.offsets, u));
+            let (moved, mean) = (held.displacement(&self.offsets, u), held.mean(&self.offsets, u));
             work.given.add(mean.dot(&held.motion));
             work.taken.add(mean.dot(&moved));
-            work.grown.add(0.5 * held.area * (after - before).dot(&moved));
+            if let Some(grip) = &held.grip {
+                work.rubbed.add(mean.dot(&grip.slid(&held.trial(grip, &self.offsets, u), held.penalty)));
+                // The force at the end, less the one that is counted.
+                work.grown.add((after * held.area - mean).dot(&moved));
+            } else {
+                work.grown.add(0.5 * held.area * (after - before).dot(&moved));
+            }
         }
         work
     }
 
     /// What every strip did under the converged displacement `u`, and the tractions that the next step starts from.
-    pub fn conclude(&self, strips: &[Strip<D>], u: &[f64], halo: &dyn Halo) -> (Vec<StripReport>, Vec<Vec<Vector<D>>>) {
+    pub fn conclude(
+        &self,
+        (strips, grid): (&[Strip<D>], &Grid<D>),
+        surface: &Surface<D>,
+        u: &[f64],
+        halo: &dyn Halo,
+    ) -> (Vec<StripReport>, Vec<Vec<Vector<D>>>) {
         if strips.is_empty() {
             return (Vec::new(), Vec::new());
         }
-        let mut traction: Vec<Vec<Vector<D>>> = strips.iter().map(|s| vec![Vector::zeros(); s.points.len()]).collect();
-        let (mut held_count, mut longest) = (vec![0.0; strips.len()], vec![0.0; 3 * strips.len()]);
+        let at_rest = || strips.iter().map(|s| vec![Vector::zeros(); s.points.len()]);
+        let mut traction: Vec<Vec<Vector<D>>> = at_rest().collect();
+        // Which points of strips that lift are held by some rank.
+        let lifting = |(strip, list): (&Strip<D>, Vec<Vector<D>>)| if strip.lifts() { list } else { Vec::new() };
+        let mut there: Vec<Vec<Vector<D>>> = strips.iter().zip(at_rest()).map(lifting).collect();
+        let mut sums: Vec<Sums> = strips.iter().map(|_| Sums::default()).collect();
+        let mut longest = vec![0.0; LENGTHS * strips.len()];
+        for (number, _) in strips.iter().enumerate().filter(|(_, strip)| strip.contact.is_some()) {
+            longest[LENGTHS * number + 3] = f64::NEG_INFINITY;
+        }
         for held in &self.held {
-            traction[held.strip][held.point] = held.traction(&self.offsets, u);
-            held_count[held.strip] += 1.0;
-            let (slip, motion) = (held.slip(&self.offsets, u).norm(), held.part(held.motion).norm());
-            let accumulated = traction[held.strip][held.point].norm() / held.penalty;
-            for (most, length) in longest[3 * held.strip..].iter_mut().zip([slip, accumulated, motion]) {
-                *most = f64::max(*most, length);
+            let sums = &mut sums[held.strip];
+            let lengths = held.lengths(&self.offsets, u, grid.smallest_edge(), sums);
+            let acting = held.traction(&self.offsets, u);
+            sums.held.add(1.0);
+            sums.given.add(held.mean(&self.offsets, u).dot(&held.motion));
+            let most = longest[LENGTHS * held.strip..].iter_mut().zip(lengths);
+            most.for_each(|(most, length)| *most = f64::max(*most, length));
+            traction[held.strip][held.point] = match &held.grip {
+                Some(grip) => held.own(grip.carry(&held.trial(grip, &self.offsets, u), &held.carried)),
+                None => acting,
+            };
+            if let Some(there) = there[held.strip].get_mut(held.point) {
+                there[0] = 1.0;
             }
         }
         halo.maximum(&mut longest);
-        halo.reduce(&mut held_count);
+        let contact = strips.iter().any(|strip| strip.contact.is_some());
+        let totals = halo.total(&sums.iter().flat_map(|sums| sums.each(contact)).collect::<Vec<_>>());
+        let count = traction.len();
+        traction.extend(there);
         reduce(&mut traction, halo);
+        let there = traction.split_off(count);
+        self.keep_apart((strips, &there), surface, &mut traction);
+        let of_strip = totals.len() / strips.len();
         let report = |number: usize| {
-            let shares = strips[number].points.iter().zip(&traction[number]);
-            let force = shares.fold(Vector::<D>::zeros(), |sum, (point, traction)| sum + traction * point.area);
-            let [slip, accumulated, motion] = [0, 1, 2].map(|k| longest[3 * number + k]);
-            let (force, held) = (force.as_slice().to_vec(), held_count[number] as usize);
-            StripReport { force, slip, accumulated, motion, held, left_behind: 0 }
+            let totals = &totals[of_strip * number..][..of_strip];
+            let (force, moment) = strips[number].force(&traction[number]);
+            let lengths = &longest[LENGTHS * number..][..LENGTHS];
+            let contact = strips[number].contact.map(|_| contact_report(number, totals, lengths));
+            StripReport {
+                force: force.as_slice().to_vec(),
+                moment,
+                work: totals[1],
+                slip: lengths[0],
+                accumulated: lengths[1],
+                motion: lengths[2],
+                held: totals[0] as usize,
+                left_behind: 0,
+                moved_on: totals.get(7).map_or(0, |count| *count as usize),
+                contact,
+            }
         };
         ((0..strips.len()).map(report).collect(), traction)
+    }
+
+    /// Goes on with the gaps of points that have no material across them, which is then taken to rest.
+    fn keep_apart(
+        &self,
+        (strips, there): (&[Strip<D>], &[Vec<Vector<D>>]),
+        surface: &Surface<D>,
+        traction: &mut [Vec<Vector<D>>],
+    ) {
+        for (number, strip) in strips.iter().enumerate().filter(|(_, strip)| strip.acts() && strip.lifts()) {
+            let Some(StripContact { inward, .. }) = strip.contact else { continue };
+            let closer = (strip.path.at(self.span.0 + self.span.1) - strip.path.at(self.span.0)).dot(&inward);
+            for (point, _) in there[number].iter().enumerate().filter(|(_, there)| there[0] == 0.0) {
+                let before = inward.dot(&surface.traction[number][point]).min(0.0);
+                traction[number][point] = inward * (before + strip.penalty * closer).min(0.0);
+            }
+        }
+    }
+}
+
+impl Sums {
+    /// Two of all strips, and where one is in `contact` eight.
+    fn each(&self, contact: bool) -> impl Iterator<Item = Exact> {
+        let of_contact = if contact { &self.contact[..] } else { &[] };
+        [&self.held, &self.given].into_iter().chain(of_contact).cloned()
+    }
+}
+
+/// What the `totals` and the lengths of a strip's points say of its contact.
+fn contact_report(strip: usize, totals: &[f64], lengths: &[f64]) -> ContactReport {
+    let share = |part: f64, whole: f64| if whole > 0.0 { part / whole } else { 0.0 };
+    let [held, _, closed, pushed, sliding, slid, dissipated] = std::array::from_fn(|k| totals[k]);
+    ContactReport {
+        support: strip,
+        nodes: held as usize,
+        closed: share(closed, held),
+        sliding: share(sliding, pushed),
+        slip: share(slid, pushed),
+        dissipated,
+        gap: if held > 0.0 { [-lengths[3], lengths[4]] } else { [0.0; 2] },
     }
 }
 

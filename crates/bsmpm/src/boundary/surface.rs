@@ -53,7 +53,8 @@ pub fn along<K: Kinematics<2>>(grid: &Grid<2>, from: &Vector<2>, to: &Vector<2>,
 /// What the surfaces carry from step to step; the same on every rank.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Surface<const D: usize> {
-    /// Pa  traction of every strip on the body at its points, in the last converged state
+    /// Pa  traction of every strip on the body at its points, in the last converged state; of points that are off the
+    /// material the penalty times what they are ahead of it (see [`strip`](super::strip))
     pub traction: Vec<Vec<Vector<D>>>,
     /// m  position of every load's points, which move with the material that they are anchored to
     pub position: Vec<Vec<Vector<D>>>,

@@ -1,5 +1,5 @@
-//! Equilibrium of a step whose faces or rigid bodies push and rub: sought with the nodes' statuses of the last displacement, corrected
-//! where the found one contradicts them, until it contradicts none (an active set; see
+//! Equilibrium of a step whose faces, strips or rigid bodies push and rub: sought with the statuses of the last
+//! displacement, corrected where the found one contradicts them, until it contradicts none (an active set; see
 //! [`contact`](crate::boundary::contact)).
 
 use crate::boundary::strip::StripAttachments;
@@ -31,14 +31,16 @@ pub fn find<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     shape: &Shape<D>,
     nodes: &mut Nodes<D>,
-    (grips, points): (&StripAttachments<D>, &Points<D>),
+    (grips, points): (&mut StripAttachments<D>, &Points<D>),
     guess: &[f64],
     (halo, solver): (&dyn Halo, &mut dyn LinearSolver),
     counts: &mut Counts,
 ) -> Result<Found<K, D>, StepError> {
-    if !model.boundary.has_contact() && nodes.rigid.is_empty() {
+    let (faces, strips) = (model.boundary.has_contact(), model.boundary.has_strip_contact());
+    if !faces && !strips && nodes.rigid.is_empty() {
         return super::find(&Problem { model, shape, nodes, grips, points, halo }, guess, solver, counts);
     }
+    grips.recall(guess);
     let Criteria { energy, force, max_iterations } = model.criteria;
     let criteria = Criteria { energy: energy.max(ROUGH), force: force.max(ROUGH), max_iterations };
     let rough = Model { criteria, ..model.clone() };
@@ -54,11 +56,14 @@ pub fn find<K: Kinematics<D>, const D: usize>(
         history.extend(found.history.iter().copied());
         first_guess &= found.first_guess;
         let doubt = (DOUBT * judged.criteria.force * found.scale, model.grid.smallest_edge());
-        let corrected = nodes.contacts.correct(&found.u, &found.reaction, doubt, halo);
-        let corrected = corrected + nodes.rigid.correct(&found.u, (doubt.0, pass), halo)?;
+        let mut corrected = if strips { grips.correct(&found.u, doubt.0, halo) } else { 0 };
+        corrected += nodes.rigid.correct(&found.u, (doubt.0, pass), halo)?;
         nodes.contacts.first_energy = found.first_energy;
-        nodes.meet();
-        nodes.count(halo);
+        if faces {
+            corrected += nodes.contacts.correct(&found.u, &found.reaction, doubt, halo);
+            nodes.meet();
+            nodes.count(halo);
+        }
         if corrected == 0 && !is_rough {
             return Ok(Found { history, first_guess, ..found });
         }

@@ -25,4 +25,5 @@ mod rigid;
 mod rotation;
 mod sections;
 mod stability;
+mod strips;
 mod surfaces;

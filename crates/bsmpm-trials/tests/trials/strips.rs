@@ -1,0 +1,133 @@
+//! Strips that rub and let go on the real program, and the histories of strips by name.
+
+use crate::support::Scratch;
+use crate::support::results::history;
+
+/// A block that a strip presses, drags, leaves and meets again.
+const DRAGGED: &str = r#"geometry = "plane-strain"
+
+[analysis]
+type  = "quasi-static"
+steps = 20
+
+[grid]
+lower = [0.0, 0.0]
+upper = [4.0, 1.5]
+cell  = "0.25 m"
+order = "quadratic"
+
+[material.soil]
+model   = "hencky"
+young   = "10 MPa"
+poisson = 0.2
+
+[[body]]
+material = "soil"
+box = { lower = [0.5, 0.0], upper = [3.5, 1.0] }
+points_per_cell = 2
+
+[boundary]
+bottom = "fixed"
+
+[solver]
+tolerance = 1e-12
+force_tolerance = 1e-8
+
+[[prescribed]]
+name = "plate"
+from = [1.5, 1.0]
+to   = [2.5, 1.0]
+path = [[0.2, 0.0, -0.004], [0.6, 0.008, -0.004], [0.75, 0.008, 0.02], [1.0, 0.008, -0.004]]
+components = { friction = 0.4 }
+
+[[history]]
+quantity = "reaction"
+of = "plate"
+
+[[history]]
+quantity = "reaction"
+name = "ground"
+face = "bottom"
+
+[[history]]
+quantity = "moment"
+of = "plate"
+
+[[history]]
+quantity = "work"
+of = "plate"
+
+[[history]]
+quantity = "contact"
+of = "plate"
+
+[[history]]
+quantity = "gap"
+of = "plate"
+
+[[history]]
+quantity = "slip-rate"
+of = "plate"
+
+[[history]]
+quantity = "friction-power"
+of = "plate"
+
+[[history]]
+quantity = "energy"
+"#;
+
+#[test]
+fn a_strip_that_rubs_and_lets_go_is_the_same_on_any_ranks_by_newton_and_after_restarts() {
+    let scratch = Scratch::with_case(DRAGGED);
+    scratch.mpirun(1, &["case.toml", "-q", "-o", "one"]).expect(0);
+    let one = history(&scratch.path("one"));
+    let of = |name: &str| one.get(name).unwrap();
+    let rows = of("time").len();
+    let (x, y) = (of("reaction-x"), of("reaction-y"));
+    let most = y.iter().fold(0.0_f64, |most, y| most.max(y.abs()));
+    let [mut work, mut slid, mut open] = [0.0, 0, 0];
+    for row in 1..rows {
+        let (time, dt) = (of("time")[row], of("time")[row] - of("time")[row - 1]);
+        for (strip, ground) in [(x, of("ground-x")), (y, of("ground-y"))] {
+            assert!((strip[row] + ground[row]).abs() < 1e-6 * most, "t = {time}: {} {}", strip[row], ground[row]);
+        }
+        work += dt * of("friction-power")[row];
+        assert!(x[row].abs() <= 0.4 * -y[row] * (1.0 + 1e-6) + 1e-6 * most, "t = {time}: {} {}", x[row], y[row]);
+        if of("contact-sliding")[row] == 1.0 {
+            assert!((x[row] / -y[row] / 0.4 - 1.0).abs() < 1e-6, "t = {time}: {} {}", x[row], y[row]);
+            slid += 1;
+        }
+        if of("contact-closed")[row] == 0.0 {
+            assert!(x[row] == 0.0 && y[row] == 0.0 && of("gap-least")[row] > 0.0);
+            open += 1;
+        }
+        let lost = of("work")[row] - work - of("energy-external")[row];
+        let scale = of("work").iter().fold(0.0_f64, |most, work| most.max(work.abs()));
+        assert!(lost.abs() < 1e-10 * scale, "t = {time}: {lost} of {scale}");
+    }
+    assert!(slid >= 2 && open >= 4, "{slid} {open}");
+    let pressed = (0..rows).find(|&row| (of("time")[row] - 0.2).abs() < 1e-9).expect("a row");
+    println!("pressed {} and again {}; slid {slid}, open {open}", y[pressed], y[rows - 1]);
+    assert!((y[rows - 1] / y[pressed] - 1.0).abs() < 2e-3, "{} {}", y[rows - 1], y[pressed]);
+    let newton = ["case.toml", "-q", "-o", "newton", "--set", "solver.nonlinear=\"newton\""];
+    scratch.mpirun(1, &newton).expect(0);
+    scratch.mpirun(3, &["case.toml", "-q", "-o", "three"]).expect(0);
+    for (run, tolerance) in [("newton", 1e-5), ("three", 1e-8)] {
+        let other = history(&scratch.path(run));
+        for name in ["reaction-x", "reaction-y", "moment", "work"] {
+            let (a, b) = (of(name), other.get(name).unwrap());
+            let scale = a.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+            let off = a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / scale;
+            println!("{run} {name}: {off:.1e}");
+            assert!(a.len() == b.len() && off < tolerance, "{run} {name}: {off:.1e}");
+        }
+    }
+    let part = ["case.toml", "-q", "-o", "part", "--restart", "auto"];
+    for stop in ["9", "14", "18"] {
+        scratch.mpirun(3, &[&part[..], &["--max-steps", stop]].concat()).expect(75);
+    }
+    scratch.mpirun(3, &part).expect(0);
+    let text = |run: &str| std::fs::read_to_string(scratch.path(run).join("history.csv")).unwrap();
+    assert!(text("three") == text("part"));
+}
