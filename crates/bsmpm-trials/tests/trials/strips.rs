@@ -86,7 +86,7 @@ fn a_strip_that_rubs_and_lets_go_is_the_same_on_any_ranks_by_newton_and_after_re
     let rows = of("time").len();
     let (x, y) = (of("reaction-x"), of("reaction-y"));
     let most = y.iter().fold(0.0_f64, |most, y| most.max(y.abs()));
-    let [mut work, mut slid, mut open] = [0.0, 0, 0];
+    let (mut work, mut slid, mut open) = (0.0, 0, 0);
     for row in 1..rows {
         let (time, dt) = (of("time")[row], of("time")[row] - of("time")[row - 1]);
         for (strip, ground) in [(x, of("ground-x")), (y, of("ground-y"))] {
