@@ -217,6 +217,7 @@ fn a_flat_punch_is_a_strip() {
                 normal: (friction == 0.0).then(|| Vector::from([0.0, 1.0])),
                 path: Path { rows: vec![(1.0, Vector::from([0.0, -0.01]))] },
                 penalty: 1e10 / h,
+                contact: None,
             };
             let mut by_strip = 0.0;
             scene().strip(strip).march(0.5, 1.0, |_, accepted| by_strip = -accepted.report.strips[0].force[1]);
