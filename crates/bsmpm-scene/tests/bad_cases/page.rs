@@ -83,6 +83,20 @@ const WRONG: &[Wrong] = &[
         "a face that opens and is driven",
         &[("add  = [\"fill\"]", "add = [\"fill\"]\nboundary = { right = \"roller\" }")],
     ),
+    dynamic("a rigid body within the soil", &[("[1.9, 1.35], [2.45, \"135 cm\"]", "[1.9, 1.0], [2.45, 1.0]")]),
+    dynamic("a rigid body that flies without mass", &[("density = \"0.5 t/m3\"\n", "")]),
+    dynamic("the force on a rigid body that there is none of", &[("rigid    = \"pipe\"", "rigid = \"pip\"")]),
+    dynamic("friction by a word", &[("base = \"smooth\"", "base = { friction = \"smooth\" }")]),
+    dynamic("the work of a strip without a name", &[("quantity = \"heave\"", "quantity = \"work\"\nof = \"strip\"")]),
+    dynamic("a cut through nothing", &[("from     = [1.0, 0.0]", "from = [1.0, 1.25]")]),
+    dynamic("a profile of a field that is none", &[("\"plastic-strain\"]", "\"plastic strain\"]")]),
+    at_rest("a field of frames that stands there already", &[("every = 0.5", "every = 0.5\nfields = [\"q\", \"p\"]")]),
+    at_rest(
+        "a free field where nothing shakes",
+        &[("bottom = \"fixed\"", "bottom = \"fixed\"\nleft = \"free-field\"")],
+    ),
+    dynamic("a start that is settled by a word that is none", &[("k0 = 0.5", "k0 = 0.5\nequilibrium = \"elastic\"")]),
+    dynamic("strength that is divided by nothing", &[("add  = [\"fill\"]", "add = [\"fill\"]\nstrength_reduction = 0.0")]),
 ];
 
 /// The page: of every wrong case what was changed, and what the program says.

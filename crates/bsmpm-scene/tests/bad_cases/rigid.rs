@@ -49,13 +49,13 @@ pub const RIGID: &[Row] = &[
     row(
         "rigid    = \"pipe\"",
         "rigid    = \"pip\"",
-        "history.7.rigid",
+        "history.10.rigid",
         "there is no rigid body `pip`; did you mean `pipe`",
     ),
     row(
         "[[history]]\nquantity = \"rigid-force\"\nrigid    = \"pipe\"",
         "[[history]]\nquantity = \"rigid-force\"",
-        "history.7.rigid",
+        "history.10.rigid",
         "missing; quantity \"rigid-force\" needs it",
     ),
     row("quantity = \"heave\"", "quantity = \"heave\"\nrigid = \"pipe\"", "history.5.rigid", "has no meaning").down(1),

@@ -17,6 +17,7 @@ mod open_faces;
 mod outputs;
 mod ranks;
 mod restart;
+mod rigid;
 mod room;
 mod scenes;
 mod settled_start;

@@ -1,0 +1,123 @@
+//! Rigid bodies: the same on any number of ranks and over restarts, and what is told of them.
+
+use crate::support::Scratch;
+use crate::support::cases::changed;
+use crate::support::results::{at, history, manifest};
+
+/// A block falls on soil beside a plough that goes through its surface.
+const CASE: &str = r#"
+geometry = "plane-strain"
+[analysis]
+type = "dynamic"
+end = 0.12
+dt = 0.003
+[grid]
+lower = [0, 0]
+upper = [4, 2]
+cell = 0.25
+order = "quadratic"
+[material.soil]
+model = "hencky"
+young = "1 MPa"
+poisson = 0.3
+density = 1800
+[[body]]
+material = "soil"
+box = { lower = [0, 0], upper = [4, 1] }
+points_per_cell = 2
+[[rigid]]
+name = "block"
+polygon = [[0.6, 1.02], [1.2, 1.02], [1.2, 1.4], [0.6, 1.4]]
+density = 2500
+friction = 0.4
+free = ["x", "y", "rotation"]
+start_velocity = [0.3, -0.5]
+[[rigid]]
+name = "roller"
+circle = { center = [2.8, 1.5], radius = 0.5 }
+friction = 0.3
+path = [[0.06, 0.0, -0.03], [0.12, 0.05, -0.03]]
+rotation = [[0.06, 0.0], [0.12, -10.0]]
+[gravity]
+acceleration = [0, -9.81]
+[initial]
+k0 = 0.43
+[boundary]
+left = "roller"
+right = "roller"
+bottom = "fixed"
+[solver]
+tolerance = 1e-12
+force_tolerance = 1e-9
+[[history]]
+quantity = "rigid-force"
+rigid = "block"
+name = "block"
+[[history]]
+quantity = "rigid-velocity"
+rigid = "block"
+[[history]]
+quantity = "rigid-rotation"
+rigid = "block"
+[[history]]
+quantity = "rigid-force"
+rigid = "roller"
+name = "roller"
+[[history]]
+quantity = "rigid-moment"
+rigid = "roller"
+[[history]]
+quantity = "rigid-slip"
+rigid = "roller"
+[[history]]
+quantity = "rigid-gap"
+rigid = "block"
+[[history]]
+quantity = "rigid-displacement"
+rigid = "roller"
+[[history]]
+quantity = "energy"
+"#;
+
+#[test]
+fn rigid_bodies_are_the_same_on_any_number_of_ranks_and_over_restarts() {
+    let scratch = Scratch::with_case(CASE);
+    for ranks in [1, 3] {
+        let whole = format!("whole{ranks}");
+        scratch.mpirun(ranks, &["case.toml", "-q", "-o", &whole]).expect(0);
+        let part = ["case.toml", "-q", "-o", "part", "--restart", "auto"];
+        for stop in ["5", "22"] {
+            scratch.mpirun(ranks, &[&part[..], &["--max-steps", stop]].concat()).expect(75);
+        }
+        scratch.mpirun(ranks, &part).expect(0);
+        let text = |name: &str| std::fs::read_to_string(scratch.path(name).join("history.csv")).unwrap();
+        assert!(text(&whole) == text("part"), "{ranks} ranks");
+        std::fs::remove_dir_all(scratch.path("part")).unwrap();
+    }
+    let [one, three] = ["whole1", "whole3"].map(|name| history(&scratch.path(name)));
+    for name in ["block-y", "rigid-velocity-x", "rigid-velocity-y", "roller-x", "roller-y", "rigid-moment"] {
+        let (a, b) = (at(&one, name, 0.12), at(&three, name, 0.12));
+        assert!((a - b).abs() < 1e-8 * a.abs(), "{name}: {a} and {b}");
+    }
+    assert!(at(&one, "block-y", 0.12) > 0.0 && at(&one, "roller-y", 0.06) > 1e3 && at(&one, "rigid-slip", 0.12) > 0.0);
+    assert!(at(&one, "roller-x", 0.12) < -0.1 * at(&one, "roller-y", 0.12), "it is dragged");
+    assert!((at(&one, "rigid-displacement-x", 0.12) - 0.05).abs() < 1e-12);
+    let [closure, external] = ["energy-closure", "energy-external"].map(|name| at(&one, name, 0.12).abs());
+    assert!(closure < 1e-6 * external, "{closure:e} of {external:e}");
+}
+
+#[test]
+fn what_is_doubtful_of_rigid_bodies_is_told_and_what_nothing_holds_ends_the_run() {
+    let scratch = Scratch::with_case(&changed(CASE, "dt = 0.003", "dt = 0.03"));
+    scratch.mpirun(1, &["case.toml", "--check"]).expect(0).says_once("it moves up to");
+    let met = changed(CASE, "center = [2.8, 1.5], radius = 0.5", "center = [1.3, 1.9], radius = 0.5");
+    scratch.write("case.toml", changed(&met, "[0.06, 0.0, -0.03]", "[0.06, -0.1, -0.3]"));
+    scratch.mpirun(1, &["case.toml", "-q", "-o", "met", "--max-steps", "20"]).expect(75);
+    let told = manifest(&scratch.path("met")).warnings;
+    assert_eq!(told.iter().filter(|warning| warning.contains("is in rigid `block`")).count(), 1, "{told:?}");
+    let free = changed(CASE, "type = \"dynamic\"", "type = \"quasi-static\"");
+    let free = changed(&free, "start_velocity = [0.3, -0.5]\n", "");
+    let free = changed(&free, "[[history]]\nquantity = \"rigid-velocity\"\nrigid = \"block\"\n", "");
+    scratch.write("case.toml", free);
+    scratch.mpirun(1, &["case.toml", "-q", "-o", "loose"]).expect(80).says_once("nothing holds rigid body 0");
+}
