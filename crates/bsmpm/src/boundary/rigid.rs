@@ -253,10 +253,12 @@ impl<const D: usize> RigidContacts<D> {
         let doubt = (force, ROUNDING * self.edge);
         let grips = self.points.iter().map(|point| point.corrected(&self.moved(point, u, &motions), doubt));
         let grips: Vec<(Grip, f64)> = grips.collect();
-        let share = match passes {
-            ..AT_ONCE => 0.0,
-            ..BY_HALF => 0.5,
-            _ => 1.0,
+        let share = if passes < AT_ONCE {
+            0.0
+        } else if passes < BY_HALF {
+            0.5
+        } else {
+            1.0
         };
         let mut most = [grips.iter().map(|(_, by)| *by).fold(0.0, f64::max)];
         halo.maximum(&mut most);
