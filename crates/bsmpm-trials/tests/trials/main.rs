@@ -15,6 +15,7 @@ mod memory;
 mod open_faces;
 mod outputs;
 mod ranks;
+mod references;
 mod restart;
 mod room;
 mod scenes;
