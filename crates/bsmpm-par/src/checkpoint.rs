@@ -12,8 +12,8 @@ pub use read::{Opened, Wanted, find};
 pub use refusal::Refusal;
 pub(crate) use refusal::{agree, broadcast};
 pub(crate) use sanity::require;
-pub(crate) use state::pairs;
 pub use state::{BooksForm, CheckpointState, Files, Outlet, RecordState};
+pub(crate) use state::{pairs, rigid_numbers};
 pub(crate) use write::room;
 pub use write::{Contents, write};
 

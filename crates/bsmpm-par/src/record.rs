@@ -1,7 +1,7 @@
 //! Rows of `history.csv`: the quantities that the case asks for, in the case's own coordinates.
 
 use crate::checkpoint::{BooksForm, Outlet, RecordState};
-use bsmpm::boundary::ContactReport;
+use bsmpm::boundary::{ContactReport, RigidReport};
 use bsmpm::energy::{Books, Stored};
 use bsmpm::error::StepError;
 use bsmpm::kinematics::Kinematics;
@@ -13,6 +13,7 @@ use bsmpm::step::StepReport;
 use bsmpm::step::outflow::Outflow;
 use bsmpm::tensor::Vector;
 use bsmpm_scene::surfaces::{self, Gauge};
+use bsmpm_scene::words::Measurement;
 use bsmpm_scene::{Case, Face, GridSpec, History, Quantity, Stage};
 
 /// Place of the vertical normal stress among XX YY ZZ XY YZ XZ.
@@ -166,6 +167,7 @@ impl Recorder {
                 | Quantity::Gap { face }
                 | Quantity::SlipRate { face }
                 | Quantity::FrictionPower { face } => contact(&history.quantity, model, *face, report),
+                Quantity::Rigid { what, body } => rigid(*what, *body, (t, model), report),
                 quantity => self.values((number, quantity), model, points, halo)?,
             };
             row.extend(values.iter().map(|value| history.scale * value));
@@ -281,6 +283,30 @@ fn contact<K: Kinematics<2>>(quantity: &Quantity, model: &Model<K, 2>, face: Fac
         Quantity::Gap { .. } => found.gap.to_vec(),
         Quantity::SlipRate { .. } => vec![rate(found.slip)],
         _ => vec![rate(found.dissipated)],
+    }
+}
+
+/// A quantity of a rigid body; before the first step that of the start.
+fn rigid<K: Kinematics<2>>(
+    what: Measurement,
+    body: usize,
+    (t, model): (f64, &Model<K, 2>),
+    report: &StepReport,
+) -> Vec<f64> {
+    let at_start = || {
+        let body = &model.boundary.rigid[body];
+        let state = body.at_rest();
+        RigidReport { moved: body.on_path(t), velocity: state.velocity, ..RigidReport::default() }
+    };
+    let found = report.rigid.get(body).copied().unwrap_or_else(at_start);
+    match what {
+        Measurement::RigidForce => found.force.as_slice()[..2].to_vec(),
+        Measurement::RigidMoment => vec![found.force[2]],
+        Measurement::RigidDisplacement => found.moved.as_slice()[..2].to_vec(),
+        Measurement::RigidRotation => vec![found.moved[2].to_degrees()],
+        Measurement::RigidVelocity => found.velocity.as_slice()[..2].to_vec(),
+        Measurement::RigidSlip => vec![found.slipped],
+        _ => vec![found.gap],
     }
 }
 

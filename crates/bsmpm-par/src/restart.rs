@@ -217,6 +217,7 @@ impl Resumed<'_> {
             && sizes(&points.surface.position) == sizes(&surface.position)
             && sizes(&points.surface.pressure) == sizes(&surface.pressure)
             && sizes(&points.surface.pressure_rate) == sizes(&surface.pressure_rate)
+            && points.surface.bodies.len() == surface.bodies.len()
             && model.boundary.fits(&model.grid, &points.surface.held);
         let anchors = &points.surface.anchors;
         let lengths = |lists: &[Vec<u64>]| lists.iter().map(Vec::len).collect::<Vec<_>>();

@@ -3,12 +3,14 @@
 mod element;
 mod history;
 mod loads;
+mod rigid;
 mod stage;
 
 pub use crate::words::{Base, Format, Geometry, Nonlinear, Support};
 pub use element::{ElementStage, ElementTest};
 pub use history::{Check, Column, Face, History, Quantity};
 pub use loads::{Footing, Initial, Line as LoadedLine, MotionPath, PointLoad, Prescribed, Push, Site, Traction};
+pub use rigid::{Rigid, RigidShape};
 pub use stage::{Acting, FaceSupport, Stage};
 
 use crate::error::Choice;
@@ -53,6 +55,8 @@ pub struct Case {
     pub footing: Option<Footing>,
     /// Prescribed motions, in the order of the file.
     pub prescribed: Vec<Prescribed>,
+    /// Rigid bodies, in the order of the file.
+    pub rigid: Vec<Rigid>,
     /// Tractions, in the order of the file.
     pub tractions: Vec<Traction>,
     /// Point loads, in the order of the file.

@@ -29,7 +29,7 @@ const FREE: [&str; 13] = [
 /// Keys among them that belong to the tables of a run, whose columns stay.
 const BOUND: [&str; 1] = ["output.residuals"];
 /// Things whose motion is given by where it ends: with them, another end is another motion.
-const MOVED: [&str; 2] = ["footing", "prescribed"];
+const MOVED: [&str; 3] = ["footing", "prescribed", "rigid"];
 
 /// A key whose value is not the same in two cases.
 #[derive(Clone, Debug, PartialEq, Eq)]

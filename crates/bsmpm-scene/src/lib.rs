@@ -43,7 +43,7 @@ pub use bsmpm::quadrature::Quadrature;
 pub use case::{
     Acting, Analysis, Base, Body, Case, Check, Checkpoint, Column, ElementStage, ElementTest, Every, Face, FaceSupport,
     Footing, Format, Geometry, Gravity, History, Initial, Linear, LoadedLine, MotionPath, NamedMaterial, Nonlinear,
-    Output, PointLoad, Prescribed, Push, Quantity, Site, Solver, Stage, Support, Traction,
+    Output, PointLoad, Prescribed, Push, Quantity, Rigid, RigidShape, Site, Solver, Stage, Support, Traction,
 };
 pub use difference::{Difference, differences};
 pub use error::{Choice, Error, Place};

@@ -7,6 +7,7 @@ mod element;
 mod laws;
 mod loads;
 mod output;
+mod rigid;
 mod stage;
 mod tables;
 

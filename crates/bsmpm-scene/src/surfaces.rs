@@ -1,9 +1,11 @@
-//! Strips and loads of a case as the physics wants them, and the footing's gauges.
+//! Strips, rigid bodies and loads of a case as the physics wants them, and the footing's gauges.
 
-use crate::{Acting, Base, Case, Face, Footing, LoadedLine, Prescribed, Push, Site};
-use bsmpm::boundary::{Load, Path, Strip, StripReport, SurfacePoint, surface};
+use crate::{Acting, Base, Case, Face, Footing, LoadedLine, Prescribed, Push, Rigid, RigidShape, Site};
+use bsmpm::boundary::rigid::Outline;
+use bsmpm::boundary::{Load, Path, RigidBody, Strip, StripReport, SurfacePoint, surface};
 use bsmpm::grid::Grid;
 use bsmpm::kinematics::PlaneStrain;
+use bsmpm::schedule::between;
 use bsmpm::tensor::Vector;
 
 /// Stiffness of the penalty over E/h of the stiffest material and the smallest cell. The traction is carried from step
@@ -101,6 +103,52 @@ fn around(grid: &Grid<2>, center: &Vector<2>, radius: f64, count: usize) -> Vec<
         (SurfacePoint { x: center + outward * radius, area: length / pieces as f64 }, -outward)
     };
     (0..pieces).map(point).filter(|(point, _)| grid.locate(&point.x).is_some()).collect()
+}
+
+/// Rigid bodies in the order of the file.
+pub fn rigid(case: &Case) -> Vec<RigidBody> {
+    case.rigid.iter().map(|rigid| rigid_body(rigid, case.grid.lower())).collect()
+}
+
+/// An outline about a reference point, both in m.
+pub(crate) fn outline(shape: &RigidShape, about: [f64; 2]) -> Outline {
+    match shape {
+        RigidShape::Polygon(corners) => {
+            Outline::Polygon(corners.iter().map(|corner| Vector::from(*corner) - Vector::from(about)).collect())
+        }
+        RigidShape::Circle { radius, .. } => Outline::Circle(*radius),
+    }
+}
+
+/// A rigid body as the physics wants it, of a grid with this lower corner.
+pub(crate) fn rigid_body(rigid: &Rigid, lower: [f64; 2]) -> RigidBody {
+    let mut times: Vec<f64> =
+        rigid.path.rows.iter().map(|row| row.0).chain(rigid.rotation.iter().map(|row| row.0)).collect();
+    times.sort_by(f64::total_cmp);
+    times.dedup();
+    let path = |t: f64| {
+        let stays = || rigid.path.rows.last().map_or_else(Vector::zeros, |(_, moved)| Vector::from(*moved));
+        let rows: Vec<(f64, Vector<2>)> = rigid.path.rows.iter().map(|(t, moved)| (*t, Vector::from(*moved))).collect();
+        let moved = between(&rows, Vector::zeros(), t).unwrap_or_else(stays);
+        let turned = rigid.rotation.last().map_or(0.0, |(_, angle)| *angle);
+        Vector::<3>::new(moved[0], moved[1], between(&rigid.rotation, 0.0, t).unwrap_or(turned))
+    };
+    let force = Vector::from(rigid.force);
+    let load = match (rigid.force == [0.0; 3], rigid.amplitude.is_empty()) {
+        (true, _) => Vec::new(),
+        (_, true) => vec![(rigid.ramp, force)],
+        (_, false) => rigid.amplitude.iter().map(|(t, share)| (*t, force * *share)).collect(),
+    };
+    RigidBody {
+        outline: outline(&rigid.shape, rigid.about),
+        center: Vector::from(rigid.about) - Vector::from(lower),
+        friction: rigid.friction,
+        free: rigid.free,
+        path: times.into_iter().map(|t| (t, path(t))).collect(),
+        mass: Vector::<3>::new(rigid.mass[0], rigid.mass[0], rigid.mass[1]),
+        load,
+        velocity: Vector::from(rigid.velocity),
+    }
 }
 
 /// Ends of the footing's base, m from the grid's lower corner.

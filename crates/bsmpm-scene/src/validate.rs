@@ -10,6 +10,7 @@ mod material;
 mod output;
 mod physics;
 mod place;
+mod rigid;
 mod shape;
 mod solver;
 mod stage;
@@ -64,6 +65,7 @@ pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Op
     };
     let footing = strip::footing(record, around, report);
     let prescribed = strip::prescribed(record, around, report);
+    let rigid = rigid::read_all(record, (around, regime), factor, report);
     let mut tractions = load::tractions(record, around, report);
     let mut point_loads = load::point_loads(record, around, report);
     let mut initial = load::initial(record, (materials.as_deref(), made), gravity.as_ref(), report);
@@ -92,6 +94,7 @@ pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Op
         contacts: contacts?,
         footing,
         prescribed,
+        rigid,
         tractions,
         point_loads,
         strength_reduction: factor,
@@ -110,6 +113,7 @@ pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Op
         return None;
     }
     body::warn_of_overlap(&case, report);
+    rigid::check(&case, record, report);
     stage::check(&mut case, record, report);
     load::sudden(&case, report);
     lines::place(&mut case, record, report);

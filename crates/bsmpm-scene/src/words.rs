@@ -11,7 +11,9 @@ mod scene;
 mod solver;
 
 pub use measurement::Measurement;
-pub use scene::{Accuracy, Base, C0Lines, Components, Format, Geometry, Order, Path, Side, Start, Support};
+pub use scene::{
+    Accuracy, Base, C0Lines, Components, Format, Geometry, Order, Path, RigidMotion, Side, Start, Support,
+};
 pub use solver::{Factor, Ksp, LinearSolver, Nonlinear, Pc};
 
 /// What one of several words stands for.

@@ -5,11 +5,13 @@ pub mod absorbing;
 pub mod anchor;
 pub mod contact;
 pub mod load;
+pub mod rigid;
 pub mod strip;
 pub mod surface;
 
 pub use contact::{Contact, ContactReport};
 pub use load::Load;
+pub use rigid::{RigidBody, RigidReport, RigidState};
 pub use strip::{Path, Strip, StripReport};
 pub use surface::{Anchors, Surface, SurfacePoint};
 
@@ -74,6 +76,8 @@ pub struct Boundary<const D: usize> {
     pub strips: Vec<Strip<D>>,
     /// Tractions and point loads.
     pub loads: Vec<Load<D>>,
+    /// Rigid bodies.
+    pub rigid: Vec<RigidBody>,
     /// Per material, parts of a cell that its points reach to each side at the start: .5 over their number along an
     /// axis; half a cell where it is not told. For faces that material comes off.
     pub reach: Vec<f64>,
@@ -90,6 +94,7 @@ impl<const D: usize> Boundary<D> {
             pressure_rate: self.loads.iter().map(|load| vec![Vector::zeros(); load.at_rest().len()]).collect(),
             anchors: Anchors::default(),
             held: Vec::new(),
+            bodies: self.rigid.iter().map(RigidBody::at_rest).collect(),
         }
     }
 

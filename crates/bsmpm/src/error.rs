@@ -134,6 +134,12 @@ pub enum StepError {
         /// Corrections made.
         passes: usize,
     },
+    /// Nothing holds a rigid body that moves freely, and it has no inertia: no equilibrium of it is known.
+    #[error("nothing holds rigid body {body} in a motion that is free")]
+    Loose {
+        /// Number of the body.
+        body: usize,
+    },
     /// The steps so far have made energy: the run is wrong, though each of them is in equilibrium.
     #[error(
         "energy made: what moves, strains and is dissipated exceeds the {given:.3e} J of the start and of all work since by \

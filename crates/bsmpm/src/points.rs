@@ -154,6 +154,8 @@ columns! {
         gap: Vec<f64>, "-", None, || 0.0;
         /// m  displacement when displacements were last set to zero, from that stage on; before that it is 0
         datum: Vec<Vector<D>>, "m", None, || Vector::zeros();
+        /// N  force of a rigid body along its outline, where bodies rub, from the first step on; before that it is 0
+        grip: Vec<Vector<D>>, "N", None, || Vector::zeros();
     }
 }
 

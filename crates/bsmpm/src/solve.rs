@@ -1,6 +1,7 @@
 //! Steps (3), (7)-(9): how equilibrium is sought: from which guess, by which method, and what comes after a failure.
 #![doc = include_str!("solve.md")]
 
+pub mod bordered;
 pub mod broyden;
 pub mod contact;
 pub mod convergence;

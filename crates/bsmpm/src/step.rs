@@ -31,6 +31,7 @@ use crate::model::{Model, Regime};
 use crate::parallel::{Halo, LinearSolver, agreed};
 use crate::points::Points;
 use crate::solve;
+use crate::tensor::Vector;
 use commit::Committed;
 use newmark::Newmark;
 use nodes::Nodes;
@@ -60,10 +61,12 @@ pub fn step<K: Kinematics<D>, const D: usize>(
     let problem = Problem { model, shape: &shape, nodes: &nodes, grips: &grips, points, halo };
     commit::check_inside(model, &shape, points, &found.u, halo)?;
     let (strips, traction) = grips.conclude(&model.boundary.strips, &found.u, halo);
-    let mut report = StepReport { dt, strips, ..StepReport::of(&problem, &found) };
+    let (rigid, bodies) = nodes.rigid.conclude(&found.u, halo);
+    let carried = nodes.rigid.rubs().then(|| nodes.rigid.carried(&found.u, halo));
+    let mut report = StepReport { dt, strips, rigid, ..StepReport::of(&problem, &found) };
     let anchors = Anchors::of(&model.boundary, &points.surface.anchors, points.anchored(), halo);
     let position = load::moved(&model.boundary.loads, &points.surface, (&model.grid, &nodes.active), &found.u, halo);
-    let mut surface = Surface { traction, position, anchors, ..points.surface.clone() };
+    let mut surface = Surface { traction, position, anchors, bodies, ..points.surface.clone() };
     let responses = commit::responses(model, &found.trial, points, halo)?;
     let accounts = model.balances_energy || model.regime == Regime::Dynamic;
     let draft = accounts.then(|| Draft::of(&problem, (&found, &responses), (t, dt)));
@@ -73,6 +76,9 @@ pub fn step<K: Kinematics<D>, const D: usize>(
     // (10), (11)
     let Committed { u, advance, smoothed } = commit::commit(model, (&shape, &nodes), (found, &responses), points, halo);
     *guess = u;
+    if let Some(carried) = carried {
+        points.grip = Some(carried_by_points(points.len(), &carried));
+    }
     let account = draft.map(|draft| draft.close(model, points, &surface, halo));
     let places = surface.anchors.places(&model.boundary, points.anchored(), halo);
     for (number, strip) in model.boundary.strips.iter().enumerate() {
@@ -84,4 +90,13 @@ pub fn step<K: Kinematics<D>, const D: usize>(
     let outflow = Outflow::of(model, points, halo);
     let (energy, turnover) = account.map_or((None, None), |(flows, turnover)| (flows, Some(turnover)));
     Ok(StepReport { energy, turnover, advance, smoothed, outflow, ..report })
+}
+
+/// Vectors of some points, zero for the others.
+fn carried_by_points<const D: usize>(count: usize, some: &[(usize, Vector<2>)]) -> Vec<Vector<D>> {
+    let mut all = vec![Vector::zeros(); count];
+    for (p, force) in some {
+        (0..2).for_each(|component| all[*p][component] = force[component]);
+    }
+    all
 }

@@ -1,7 +1,7 @@
 //! What a checkpoint says in words and single numbers: everything that is no array of the points or nodes.
 
 use super::Refusal;
-use bsmpm::boundary::{Anchors, Surface};
+use bsmpm::boundary::{Anchors, RigidState, Surface};
 use bsmpm::control::Progress;
 use bsmpm::energy::{Books, Budget, Flows};
 use bsmpm::grid::Grid;
@@ -47,6 +47,10 @@ pub struct CheckpointState {
     /// N  of every node of every absorbing face what holds the state of the start; none of a run without any.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub held: Vec<Vec<[f64; 2]>>,
+    /// Of every rigid body its motions (m, m, rad), their velocities, and the way of the material along it, m; none of a
+    /// run without any.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub rigid: Vec<[f64; 7]>,
     /// What the histories go on from.
     pub record: RecordState,
     /// Strips of which it was told that they hold nothing; and, their number added, that they have let go.
@@ -168,8 +172,21 @@ impl CheckpointState {
             pressure_rate,
             anchors,
             held: vectors(&self.held),
+            bodies: self.rigid.iter().map(rigid_state).collect(),
         }
     }
+}
+
+/// A rigid body's state from its numbers.
+fn rigid_state(&[x, y, angle, vx, vy, spin, slipped]: &[f64; 7]) -> RigidState {
+    RigidState { moved: [x, y, angle].into(), velocity: [vx, vy, spin].into(), slipped }
+}
+
+/// The numbers of a rigid body's state.
+pub(crate) fn rigid_numbers(state: &RigidState) -> [f64; 7] {
+    let [x, y, angle]: [f64; 3] = state.moved.into();
+    let [vx, vy, spin]: [f64; 3] = state.velocity.into();
+    [x, y, angle, vx, vy, spin, state.slipped]
 }
 
 /// Whether no load follows the surface.

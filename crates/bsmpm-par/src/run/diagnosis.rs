@@ -96,6 +96,10 @@ fn advice(error: &StepError, case: &Case) -> Vec<String> {
             "more steps ([analysis] steps or dt), so that less changes at the face in each",
             "a smaller friction of the face in [boundary]: from about 1 on there may be no state, or several, that agree with it",
         ],
+        StepError::Loose { .. } => &[
+            "a quasi-static analysis knows no rigid body that nothing holds: leave a motion out of `free`, let it start on the \
+             soil, or make the analysis dynamic",
+        ],
         StepError::Inverted { .. } => &[
             "material turned inside out: more steps ([analysis] steps or dt), or a larger [solver] background",
             "look at the points named: loose points at a free surface are the usual ones",

@@ -1,7 +1,7 @@
 //! Checkpoints and frames of the last converged state: when they are due, and what is in them.
 
 use super::Run;
-use crate::checkpoint::{self, CheckpointState, Contents, Refusal, pairs};
+use crate::checkpoint::{self, CheckpointState, Contents, Refusal, pairs, rigid_numbers};
 use crate::launch;
 use bsmpm::parallel::Halo;
 use bsmpm_io::checkpoint::{Facts, FoundCheckpoint, Phase};
@@ -149,6 +149,7 @@ impl Run<'_> {
             anchors: [surface.anchors.strips.clone(), surface.anchors.loads.clone()],
             position: pairs(&surface.position),
             held: pairs(&surface.held),
+            rigid: surface.bodies.iter().map(rigid_numbers).collect(),
             pressure: [&surface.pressure, &surface.pressure_rate]
                 .map(|lists| if lists.iter().all(Vec::is_empty) { Vec::new() } else { pairs(lists) }),
             record: self.recorder.state(),

@@ -109,6 +109,13 @@ pub enum Quantity {
         /// The face.
         face: Face,
     },
+    /// of a rigid body: force, moment, displacement, rotation, velocity, slip or gap
+    Rigid {
+        /// which of them
+        what: Measurement,
+        /// number of the body
+        body: usize,
+    },
     /// kg/m  that has left the grid
     Outflow,
     /// J/m  where the energy is, and where it went since the start
@@ -179,6 +186,7 @@ impl Quantity {
             Self::Gap { .. } => Measurement::Gap,
             Self::SlipRate { .. } => Measurement::SlipRate,
             Self::FrictionPower { .. } => Measurement::FrictionPower,
+            Self::Rigid { what, .. } => *what,
             Self::Energy => Measurement::Energy,
         }
     }

@@ -21,7 +21,7 @@ pub(super) static BODY: Table = Table {
     exclusive: &[one_of(&["box", "polygon", "circle"], true)],
 };
 
-const POLYGON: Kind = Rows(&[(In::Length, Range::ANY), (In::Length, Range::ANY)]);
+pub(super) const POLYGON: Kind = Rows(&[(In::Length, Range::ANY), (In::Length, Range::ANY)]);
 
 static SPIN: Table = Table {
     header: "spin = { rate, about }",

@@ -7,11 +7,12 @@ use crate::words::{Base, Components, Side, Start, Word};
 use std::ops::Bound::Included;
 
 const PLACE: Kind = Pair(In::Length, Range::ANY);
-const DISPLACEMENT: Kind = Pair(In::Length, Range::ANY);
-const VELOCITY: Kind = Pair(In::Velocity, Range::ANY);
-const PATH: Kind = Rows(&[(In::Time, Range::NOT_NEGATIVE), (In::Length, Range::ANY), (In::Length, Range::ANY)]);
-const AMPLITUDE: Kind = Rows(&[(In::Time, Range::NOT_NEGATIVE), (In::Number, Range::ANY)]);
-const RAMP: Kind = Quantity(In::Time, Range::NOT_NEGATIVE);
+pub(super) const DISPLACEMENT: Kind = Pair(In::Length, Range::ANY);
+pub(super) const VELOCITY: Kind = Pair(In::Velocity, Range::ANY);
+pub(super) const PATH: Kind =
+    Rows(&[(In::Time, Range::NOT_NEGATIVE), (In::Length, Range::ANY), (In::Length, Range::ANY)]);
+pub(super) const AMPLITUDE: Kind = Rows(&[(In::Time, Range::NOT_NEGATIVE), (In::Number, Range::ANY)]);
+pub(super) const RAMP: Kind = Quantity(In::Time, Range::NOT_NEGATIVE);
 /// Horizontal over vertical stress: from nothing to far beyond passive pressure.
 pub(super) const COEFFICIENT: Range = Range::of(Included(0.0), Included(100.0));
 

@@ -2,7 +2,9 @@
 
 use super::Kind::*;
 use super::Presence::{Default, Optional, Required};
-use super::{Dimension as In, Kind, Range, Table, body, element, key, later, laws, loads, one_of, output, stage};
+use super::{
+    Dimension as In, Kind, Range, Table, body, element, key, later, laws, loads, one_of, output, rigid, stage,
+};
 use crate::words::{Accuracy, C0Lines, Factor, Geometry, Ksp, LinearSolver, Nonlinear, Order, Pc, Support, Word};
 use bsmpm::background::{Extent, Kind as Background};
 use bsmpm::model::Regime;
@@ -33,6 +35,7 @@ pub static ROOT: Table = Table {
         key("check", Tables(&output::CHECK), Optional, "bounds that are verified at the end"),
         key("footing", Kind::Table(&loads::FOOTING), Optional, "a rigid strip that moves"),
         key("prescribed", Tables(&loads::PRESCRIBED), Optional, "motion of a face or segment"),
+        key("rigid", Tables(&rigid::RIGID), Optional, "a rigid body that pushes and rubs the soil"),
         key("traction", Tables(&loads::TRACTION), Optional, "stress on the body's surface"),
         key("point_load", Tables(&loads::POINT_LOAD), Optional, "a force at a point"),
         key("strength_reduction", Kind::Table(&loads::REDUCTION), Optional, "strength divided by a factor"),

@@ -47,11 +47,12 @@ fn read(
 ) -> Option<History> {
     let measured: Measurement = record.word("quantity")?;
     let own = own_key(measured);
-    let others = ["percentile", "face", "at", "at_x", "box", "material"].into_iter().filter(|key| Some(*key) != own);
+    let others =
+        ["percentile", "face", "rigid", "at", "at_x", "box", "material"].into_iter().filter(|key| Some(*key) != own);
     for key in others.filter(|key| record.gives(key)) {
         record.error(key, format!("has no meaning for quantity \"{measured}\""), report);
     }
-    if let Some(own) = own.filter(|own| matches!(*own, "face" | "at") && !record.gives(own)) {
+    if let Some(own) = own.filter(|own| matches!(*own, "face" | "at" | "rigid") && !record.gives(own)) {
         report.error(record.origin, &record.path_of(own), format!("missing; quantity \"{measured}\" needs it"));
     }
     if regime == Some(Regime::QuasiStatic) && is_of_motion(measured) {
@@ -73,7 +74,7 @@ fn read(
     if measured == Measurement::Outflow && !Side::ALL.into_iter().flatten().any(is_outlet) {
         record.error("quantity", "nothing leaves: no face in [boundary] is \"outflow\"", report);
     }
-    let quantity = quantity(measured, record, (grid, made), report)?;
+    let quantity = quantity(measured, record, (root, grid, made), report)?;
     let name = if record.gives("name") { record.text("name")? } else { measured.word() };
     Some(History { quantity, name: name.to_owned(), scale: record.number("scale")?, lasts: false })
 }
@@ -86,7 +87,10 @@ fn supports(root: &Record, side: Side) -> Vec<Support> {
 
 /// Whether it is nothing where nothing has a velocity.
 fn is_of_motion(measured: Measurement) -> bool {
-    matches!(measured, Measurement::Velocity | Measurement::Momentum | Measurement::AngularMomentum)
+    matches!(
+        measured,
+        Measurement::Velocity | Measurement::Momentum | Measurement::AngularMomentum | Measurement::RigidVelocity
+    )
 }
 
 /// The key that belongs to a quantity.
@@ -99,6 +103,8 @@ fn own_key(measured: Measurement) -> Option<&'static str> {
         Displacement | Velocity | Stress => Some("at"),
         PressureNoise => Some("box"),
         Mass | Momentum | CentreOfMass | AngularMomentum => Some("material"),
+        RigidForce | RigidMoment | RigidDisplacement | RigidRotation | RigidVelocity => Some("rigid"),
+        RigidSlip | RigidGap => Some("rigid"),
         Front | MaxDisplacement | StressNoise | Heave | Energy | Outflow => None,
         FootingPressure | FootingForce | Penetration | Slip => None,
     }
@@ -107,7 +113,7 @@ fn own_key(measured: Measurement) -> Option<&'static str> {
 fn quantity(
     measured: Measurement,
     record: &Record,
-    (grid, made): (Option<&GridSpec>, Made<'_>),
+    (root, grid, made): (&Record, Option<&GridSpec>, Made<'_>),
     report: &mut Report<'_>,
 ) -> Option<Quantity> {
     Some(match measured {
@@ -142,7 +148,25 @@ fn quantity(
         Measurement::SlipRate => Quantity::SlipRate { face: record.word::<Side>("face")?.into() },
         Measurement::FrictionPower => Quantity::FrictionPower { face: record.word::<Side>("face")?.into() },
         Measurement::Energy => Quantity::Energy,
+        Measurement::RigidForce
+        | Measurement::RigidMoment
+        | Measurement::RigidDisplacement
+        | Measurement::RigidRotation
+        | Measurement::RigidVelocity
+        | Measurement::RigidSlip
+        | Measurement::RigidGap => Quantity::Rigid { what: measured, body: rigid(record, root, report)? },
     })
+}
+
+/// Number of the rigid body that a history is of.
+fn rigid(record: &Record, root: &Record, report: &mut Report<'_>) -> Option<usize> {
+    let name = record.text("rigid")?;
+    let names = || root.records("rigid").iter().filter_map(|rigid| rigid.text("name"));
+    let found = names().position(|known| known == name);
+    if found.is_none() {
+        record.error("rigid", format!("there is no rigid body `{name}`{}", hint(name, names())), report);
+    }
+    found
 }
 
 /// Number of the material of the points that count, if the history names one that a body is made of; the outer option

@@ -109,7 +109,11 @@ fn acts_on_body(
 }
 
 /// Ramp and amplitude of a load, of which one holds.
-fn course(record: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Option<(f64, Vec<(f64, f64)>)> {
+pub(super) fn course(
+    record: &Record,
+    around: AroundStrip<'_>,
+    report: &mut Report<'_>,
+) -> Option<(f64, Vec<(f64, f64)>)> {
     let beyond = |t: f64| around.end.is_some_and(|end| t > end);
     if !record.gives("amplitude") {
         let ramp = record.number("ramp")?;
@@ -139,7 +143,7 @@ fn coarse(path: &str, times: impl Iterator<Item = f64> + Clone, dt: Option<f64>,
 }
 
 /// Rows whose first number, a time, increases; at least one.
-fn increasing<'a>(
+pub(super) fn increasing<'a>(
     record: &'a Record,
     key: &str,
     report: &mut Report<'_>,

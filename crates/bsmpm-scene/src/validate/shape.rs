@@ -1,11 +1,13 @@
 //! Shapes of bodies and of what is cut out of them.
 
 use super::place;
+use crate::case::RigidShape;
 use crate::error::Origin;
 use crate::grid::GridSpec;
 use crate::record::Record;
 use crate::region::{self, Edge, Outline, PolygonFault, Region};
 use crate::report::Report;
+use bsmpm::boundary::rigid;
 
 /// A shape as it is written, m in the case's coordinates.
 #[derive(Clone, Debug)]
@@ -74,6 +76,21 @@ pub(super) fn region(
 /// The key that gives a body's or a cut's shape.
 pub(super) fn key(record: &Record) -> &'static str {
     ["polygon", "circle"].into_iter().find(|key| record.gives(key)).unwrap_or("box")
+}
+
+/// The shape of a rigid body, which may reach beyond the grid.
+pub(super) fn rigid(record: &Record, report: &mut Report<'_>) -> Option<RigidShape> {
+    Some(match read(record, report)? {
+        BodyShape::Circle { center, radius } => RigidShape::Circle { center, radius },
+        BodyShape::Polygon(mut corners) => {
+            let outline = rigid::Outline::Polygon(corners.iter().map(|&corner| corner.into()).collect());
+            if outline.sizes().area < 0.0 {
+                corners.reverse();
+            }
+            RigidShape::Polygon(corners)
+        }
+        BodyShape::Box { .. } => return None,
+    })
 }
 
 fn read(record: &Record, report: &mut Report<'_>) -> Option<BodyShape> {

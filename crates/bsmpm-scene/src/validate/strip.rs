@@ -115,7 +115,7 @@ fn motion(record: &Record) -> &'static str {
     ["displacement", "velocity"].into_iter().find(|key| record.gives(key)).unwrap_or("path")
 }
 
-fn path(record: &Record, end: Option<f64>, report: &mut Report<'_>) -> Option<MotionPath> {
+pub(super) fn path(record: &Record, end: Option<f64>, report: &mut Report<'_>) -> Option<MotionPath> {
     let rows = if record.gives("displacement") {
         vec![(end?, record.pair("displacement")?)]
     } else if record.gives("velocity") {

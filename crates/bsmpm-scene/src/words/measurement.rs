@@ -58,6 +58,21 @@ choice! {
         SlipRate = "slip-rate",
         /// What friction at a face in contact dissipates, per unit of time and metre of thickness: the step's mean.
         FrictionPower = "friction-power",
+        /// Force of the soil on a rigid body, per metre of thickness.
+        RigidForce = "rigid-force",
+        /// Moment of that force about the body's reference point (N m), counter-clockwise, per metre of thickness.
+        RigidMoment = "rigid-moment",
+        /// Displacement of a rigid body's reference point.
+        RigidDisplacement = "rigid-displacement",
+        /// Rotation of a rigid body, counter-clockwise.
+        RigidRotation = "rigid-rotation",
+        /// Velocity of a rigid body's reference point.
+        RigidVelocity = "rigid-velocity",
+        /// Way that soil has gone along a rigid body's outline where it touches it: the sum of every step's mean, weighted
+        /// with the normal force.
+        RigidSlip = "rigid-slip",
+        /// The least distance of soil from a rigid body; 0 where it is touched, and before the first step.
+        RigidGap = "rigid-gap",
         /// Where the energy of the points is, and where it went since the start, per metre of thickness: external =
         /// change of kinetic + change of elastic + plastic + numerical + closure.
         Energy = "energy",
@@ -92,6 +107,15 @@ impl Measurement {
         matches!(self, Self::FootingPressure | Self::FootingForce | Self::Penetration | Self::Slip)
     }
 
+    /// Whether it is of a rigid body.
+    pub fn is_of_rigid_body(self) -> bool {
+        use Measurement::*;
+        matches!(
+            self,
+            RigidForce | RigidMoment | RigidDisplacement | RigidRotation | RigidVelocity | RigidSlip | RigidGap
+        )
+    }
+
     /// Whether its face must be in contact.
     pub fn is_of_contact(self) -> bool {
         matches!(self, Self::Contact | Self::Gap | Self::SlipRate | Self::FrictionPower)
@@ -101,6 +125,8 @@ impl Measurement {
     /// to the one column of a scalar.
     pub fn columns(self) -> &'static [(&'static str, &'static str)] {
         match self {
+            Self::RigidForce | Self::RigidDisplacement | Self::RigidVelocity => VECTOR,
+            Self::RigidMoment | Self::RigidRotation | Self::RigidSlip | Self::RigidGap => &[("", "")],
             Self::Momentum | Self::CentreOfMass | Self::Reaction | Self::Displacement | Self::Velocity => VECTOR,
             Self::Stress => STRESS,
             Self::StressNoise | Self::PressureNoise => NOISE,
@@ -119,11 +145,14 @@ impl Measurement {
         match self {
             Self::Runout | Self::Front | Self::Height | Self::Heave | Self::Penetration => "m",
             Self::MaxDisplacement | Self::Displacement | Self::Gap | Self::CentreOfMass => "m",
+            Self::RigidDisplacement | Self::RigidSlip | Self::RigidGap => "m",
+            Self::RigidRotation => "deg",
+            Self::RigidMoment => "N",
             Self::Mass | Self::Outflow => "kg/m",
             Self::Momentum => "kg/s",
             Self::AngularMomentum => "kg m/s",
-            Self::Reaction | Self::FootingForce => "N/m",
-            Self::Velocity | Self::SlipRate => "m/s",
+            Self::Reaction | Self::FootingForce | Self::RigidForce => "N/m",
+            Self::Velocity | Self::SlipRate | Self::RigidVelocity => "m/s",
             Self::FrictionPower => "W/m",
             Self::Stress | Self::PressureNoise | Self::FootingPressure => "Pa",
             Self::StressNoise | Self::Slip | Self::Contact => "-",

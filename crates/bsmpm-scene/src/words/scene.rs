@@ -121,6 +121,18 @@ impl Components {
 }
 
 choice! {
+    /// A motion of a rigid body.
+    pub enum RigidMotion {
+        /// Along x.
+        X = "x",
+        /// Along y.
+        Y = "y",
+        /// About its reference point.
+        Rotation = "rotation",
+    }
+}
+
+choice! {
     /// How the stress at the start is found, other than by k0.
     pub enum Start {
         /// Elastic equilibrium under the loads at time 0.

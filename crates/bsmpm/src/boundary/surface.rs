@@ -2,6 +2,7 @@
 //!
 //! They are few and the same on every rank; each is worked on by the rank whose slab it lies in.
 
+use super::rigid::RigidState;
 use crate::grid::shape::with_width;
 use crate::grid::{Contributions, Grid, KnotVector};
 use crate::kinematics::Kinematics;
@@ -66,6 +67,8 @@ pub struct Surface<const D: usize> {
     /// N  of every node of every absorbing face (numbered on the face of the whole grid) what holds the state of the
     /// start; empty without such a state
     pub held: Vec<Vec<Vector<D>>>,
+    /// motions of every rigid body
+    pub bodies: Vec<RigidState>,
 }
 
 impl<const D: usize> Surface<D> {

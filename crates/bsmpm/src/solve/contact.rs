@@ -1,4 +1,4 @@
-//! Equilibrium of a step whose faces push and rub: sought with the nodes' statuses of the last displacement, corrected
+//! Equilibrium of a step whose faces or rigid bodies push and rub: sought with the nodes' statuses of the last displacement, corrected
 //! where the found one contradicts them, until it contradicts none (an active set; see
 //! [`contact`](crate::boundary::contact)).
 
@@ -10,6 +10,7 @@ use crate::method::Criteria;
 use crate::model::Model;
 use crate::parallel::{Halo, LinearSolver};
 use crate::points::Points;
+use crate::solve::bordered::Bordered;
 use crate::solve::found::Found;
 use crate::step::nodes::Nodes;
 use crate::step::problem::Problem;
@@ -33,7 +34,7 @@ pub fn find<K: Kinematics<D>, const D: usize>(
     (halo, solver): (&dyn Halo, &mut dyn LinearSolver),
     counts: &mut Counts,
 ) -> Result<Found<K, D>, StepError> {
-    if !model.boundary.has_contact() {
+    if !model.boundary.has_contact() && nodes.rigid.is_empty() {
         return super::find(&Problem { model, shape, nodes, grips, points, halo }, guess, solver, counts);
     }
     let Criteria { energy, force, max_iterations } = model.criteria;
@@ -43,11 +44,15 @@ pub fn find<K: Kinematics<D>, const D: usize>(
     for _ in 0..MOST {
         let judged = if is_rough { &rough } else { model };
         let problem = Problem { model: judged, shape, nodes, grips, points, halo };
-        let found = super::find(&problem, &u, solver, counts)?;
+        let found = match nodes.rigid.is_coupled() {
+            true => super::find(&problem, &u, &mut Bordered::of(&problem, solver), counts)?,
+            false => super::find(&problem, &u, solver, counts)?,
+        };
         history.extend(found.history.iter().copied());
         first_guess &= found.first_guess;
         let doubt = (DOUBT * judged.criteria.force * found.scale, model.grid.smallest_edge());
         let corrected = nodes.contacts.correct(&found.u, &found.reaction, doubt, halo);
+        let corrected = corrected + nodes.rigid.correct(&found.u, doubt.0, halo)?;
         nodes.contacts.first_energy = found.first_energy;
         nodes.meet();
         nodes.count(halo);

@@ -144,14 +144,17 @@ impl Convergence {
     }
 }
 
-/// |du_0 . (f_0 - K_strips du_0)|: the energy of the first direction without that of the strips' penalty, which
-/// takes up their motion in it and would make the measure as much too lenient as the penalty is stiff. `work`:
+/// |du_0 . (f_0 - K_strips du_0)|: the energy of the first direction without that of the penalty of strips and
+/// rigid bodies, which takes up their motion in it and would make the measure as much too lenient as the penalty is stiff. `work`:
 /// du_0 . f_0.
 pub fn first_energy<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>, du: &[f64], work: f64) -> f64 {
-    if problem.model.boundary.strips.is_empty() {
+    let rigid = &problem.nodes.rigid;
+    if problem.model.boundary.strips.is_empty() && rigid.is_empty() {
         return work.abs();
     }
-    let penalty = problem.halo.total(&[problem.grips.energy(du)]);
+    let mut penalty = problem.grips.energy(du);
+    penalty += &rigid.energy(du, problem.halo);
+    let penalty = problem.halo.total(&[penalty]);
     (work - penalty[0]).abs()
 }
 

@@ -146,6 +146,7 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
             background.multiply::<D>(shape, v, &mut force);
         }
         self.problem.grips.multiply(v, &mut force);
+        nodes.rigid.multiply(v, &mut force, halo);
         out.copy_from_slice(&halo.sum(&force));
         if let Some(inertia) = &nodes.inertia {
             let (factor, moved) = (inertia.factor(), v);

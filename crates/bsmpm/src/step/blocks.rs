@@ -46,7 +46,7 @@ pub fn add_point<K: Kinematics<D>, const D: usize>(
     }
 }
 
-/// Adds strips, faces of the background and inertia to a matrix whose patches are assembled, and factorises it.
+/// Adds strips, rigid bodies, faces of the background and inertia to a matrix whose patches are assembled, and factorises it.
 pub fn complete<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
     solver: &mut dyn LinearSolver,
@@ -54,6 +54,7 @@ pub fn complete<K: Kinematics<D>, const D: usize>(
 ) -> Result<(), SolveError> {
     let nodes = problem.nodes;
     problem.grips.assemble(solver);
+    nodes.rigid.assemble(solver);
     if let Some(background) = &nodes.background {
         background.assemble::<D>(solver);
     }

@@ -4,6 +4,7 @@ use crate::background::Blocks;
 use crate::boundary::absorbing::Dashpots;
 use crate::boundary::contact::Contacts;
 use crate::boundary::load;
+use crate::boundary::rigid::{RigidContacts, Surroundings};
 use crate::error::StepError;
 use crate::grid::{Shape, transfer};
 use crate::kinematics::Kinematics;
@@ -16,6 +17,7 @@ use crate::stabilisation::Stabilisation;
 use crate::step::apart::Apart;
 use crate::step::inertia::{self, Inertia};
 use crate::step::mass::Mass;
+use crate::tensor::Vector;
 
 /// Nodes lighter than this fraction of the heaviest one have no velocity, acceleration or average: 1/m is never formed.
 const MASSLESS: f64 = 1e-14;
@@ -50,6 +52,8 @@ pub struct Nodes<const D: usize> {
     pub active: Vec<bool>,
     /// nodes on faces with contact
     pub contacts: Contacts<D>,
+    /// points near rigid bodies
+    pub rigid: RigidContacts<D>,
     /// of faces that absorb waves
     pub dashpots: Dashpots,
     /// nodes of one material alone, in a scene of several
@@ -129,11 +133,33 @@ impl<const D: usize> Nodes<D> {
         let mut f_ext = external_force((model, shape, points), t + dt, (weighting, &weight), halo);
         let window = (&model.grid, &active[..]);
         load::add_forces(&model.boundary.loads, &points.surface, window, (t + dt, dt), halo, &mut f_ext)?;
+        let rigid = match model.boundary.rigid.is_empty() {
+            true => RigidContacts::default(),
+            false => {
+                let around = Surroundings {
+                    bodies: (&model.boundary.rigid, &points.surface.bodies),
+                    reach: &model.boundary.reach,
+                    grid: &model.grid,
+                    shape,
+                    points,
+                    body_force: model.body_force(t + dt).unwrap_or_else(Vector::zeros),
+                    free: &free,
+                    dynamic: model.regime == Regime::Dynamic,
+                };
+                let young = |p: usize| model.young(points, p);
+                RigidContacts::of(&around, young, (t, dt), last, halo)?
+            }
+        };
+        if let Some(inertia) = inertia.as_mut().filter(|_| !rigid.moving.is_empty()) {
+            inertia.moving.resize(rigid.moving.len(), false);
+            inertia.moving.iter_mut().zip(&rigid.moving).for_each(|(moving, by_body)| *moving |= by_body);
+        }
         let averages = Averages::of(model, (shape, points), threshold, halo);
         let apart = Apart::of(model.materials.len(), shape, points, nodes, halo);
         let mut mapped = Self {
             apart,
             contacts,
+            rigid,
             dashpots,
             f_ext,
             prescribed,
@@ -160,6 +186,7 @@ impl<const D: usize> Nodes<D> {
         self.contacts.apply(&mut self.free, &mut self.prescribed);
         if let Some(inertia) = &mut self.inertia {
             inertia.stopped = inertia.moving.iter().zip(&self.free).map(|(moving, free)| *moving && !free).collect();
+            inertia.stopped.iter_mut().zip(&self.rigid.moving).for_each(|(stopped, by_body)| *stopped |= by_body);
         }
     }
 

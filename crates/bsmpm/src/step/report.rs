@@ -1,6 +1,6 @@
 //! What a step tells of itself.
 
-use crate::boundary::{ContactReport, StripReport};
+use crate::boundary::{ContactReport, RigidReport, StripReport};
 use crate::energy::{Flows, Turnover};
 use crate::error::Measures;
 use crate::kinematics::Kinematics;
@@ -52,6 +52,8 @@ pub struct StepReport {
     pub reactions: Vec<Vec<f64>>,
     /// what every face with contact did
     pub contacts: Vec<ContactReport>,
+    /// what every rigid body did
+    pub rigid: Vec<RigidReport>,
     /// what every rigid strip did
     pub strips: Vec<StripReport>,
     /// J  work u . B u on the soft background, and f_int . u of all internal forces, the background's among them; if
@@ -89,6 +91,7 @@ impl StepReport {
             first_guess: found.first_guess,
             reactions: problem.model.boundary.reactions(&problem.model.grid, &found.reaction, problem.halo),
             contacts: nodes.contacts.report(&problem.model.boundary, &found.u, &found.reaction, problem.halo),
+            rigid: Vec::new(),
             strips: Vec::new(),
             background: soft.map(|work| [problem.halo.total(&[work])[0], found.work]),
             energy: None,

@@ -29,7 +29,7 @@ pub struct Residual<K: Kinematics<D>, const D: usize> {
 /// Step (5b): what is out of balance at the nodes, with the norms that judge it.
 #[derive(Clone, Debug)]
 pub struct Balance {
-    /// N  f_ext + strips + dashpots + friction - f_int - M a - background (a: `Inertia::acting`), zero at components that
+    /// N  f_ext + strips and rigid bodies + dashpots + friction - f_int - M a - background (a: `Inertia::acting`), zero at components that
     /// are not free
     pub f_oob: Vec<f64>,
     /// N  force of the supports on the body, zero at components that are neither prescribed nor rubbed nor damped
@@ -156,9 +156,10 @@ impl Balance {
         inverted: u64,
     ) -> Self {
         let mut f_strips = Vec::new();
-        if !problem.model.boundary.strips.is_empty() {
+        if !problem.model.boundary.strips.is_empty() || !problem.nodes.rigid.is_empty() {
             let mut held = Contributions::none(&problem.model.grid, D, Vec::new());
             problem.grips.add_forces(u, &mut held);
+            problem.nodes.rigid.add_forces(u, &mut held, problem.halo);
             f_strips = problem.halo.sum(&held);
         }
         let forces = Forces::of(problem, u, f_int, &f_strips);

@@ -2,7 +2,7 @@
 
 use super::solver::Skyline;
 use bsmpm::background::Background;
-use bsmpm::boundary::{Boundary, Load, Strip, Support};
+use bsmpm::boundary::{Boundary, Load, RigidBody, Strip, Support};
 use bsmpm::control::{Accepted, Stepper};
 use bsmpm::grid::{Grid, KnotVector};
 use bsmpm::kinematics::Kinematics;
@@ -149,6 +149,13 @@ impl<K: Kinematics<D>, const D: usize> Scene<K, D> {
     /// Adds a rigid strip.
     pub fn strip(mut self, strip: Strip<D>) -> Self {
         self.model.boundary.strips.push(strip);
+        self.points.surface = self.model.boundary.surface();
+        self
+    }
+
+    /// Adds a rigid body.
+    pub fn rigid(mut self, body: RigidBody) -> Self {
+        self.model.boundary.rigid.push(body);
         self.points.surface = self.model.boundary.surface();
         self
     }

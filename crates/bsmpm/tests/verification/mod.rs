@@ -20,6 +20,7 @@ mod locking;
 mod newton;
 mod oedometer;
 mod penalty;
+mod rigid;
 mod rotation;
 mod stability;
 mod surfaces;

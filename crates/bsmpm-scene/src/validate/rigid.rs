@@ -1,0 +1,319 @@
+//! Rigid bodies.
+
+use super::strip::{self, AroundStrip};
+use super::{MOST_SHOWN_FRICTION, load, place, shape};
+use crate::case::{Case, Initial, MotionPath, Rigid, RigidShape};
+use crate::nearest::hint;
+use crate::record::Record;
+use crate::report::Report;
+use crate::surfaces;
+use crate::words::{RigidMotion, Word};
+use bsmpm::boundary::rigid::Outline;
+use bsmpm::model::Regime;
+
+/// Parts of a cell by which a rigid body may overlap a body at the start.
+const OVERLAP: f64 = 0.05;
+/// Parts of a cell that a rigid body may move in a step: material is looked for a cell around it.
+const ADVANCE: f64 = 0.5;
+
+/// All rigid bodies in the order of the file, without those that have an error; their friction divided by the `factor`
+/// of the strength.
+pub(super) fn read_all(
+    root: &Record,
+    around: (AroundStrip<'_>, Option<Regime>),
+    factor: Option<f64>,
+    report: &mut Report<'_>,
+) -> Vec<Rigid> {
+    let mut found: Vec<Rigid> = Vec::new();
+    for record in root.records("rigid") {
+        let Some(rigid) = read(record, around, factor, report) else { continue };
+        if found.iter().any(|other| other.name == rigid.name) {
+            record.error("name", format!("there is a rigid body `{}` already", rigid.name), report);
+        }
+        found.push(rigid);
+    }
+    found
+}
+
+fn read(
+    record: &Record,
+    (around, regime): (AroundStrip<'_>, Option<Regime>),
+    factor: Option<f64>,
+    report: &mut Report<'_>,
+) -> Option<Rigid> {
+    let shape = shape::rigid(record, report);
+    let free = free(record, report);
+    let path = way(record, around.end, report);
+    let rotation = rotation(record, report);
+    let course = load::course(record, around, report);
+    let (name, shape, free, path, rotation, (ramp, amplitude)) =
+        (record.text("name")?.to_owned(), shape?, free?, path?, rotation?, course?);
+    let sizes = surfaces::outline(&shape, [0.0; 2]).sizes();
+    let centroid = match &shape {
+        RigidShape::Polygon(_) => [sizes.centroid[0], sizes.centroid[1]],
+        RigidShape::Circle { center, .. } => *center,
+    };
+    let about = if record.gives("about") { record.pair("about")? } else { centroid };
+    let mass = mass(record, (sizes.area, sizes.polar))?;
+    let [fx, fy] = if record.gives("force") { record.pair("force")? } else { [0.0; 2] };
+    let moment = if record.gives("moment") { record.number("moment")? } else { 0.0 };
+    let [vx, vy] = if record.gives("start_velocity") { record.pair("start_velocity")? } else { [0.0; 2] };
+    let spin = if record.gives("start_spin") { record.number("start_spin")? } else { 0.0 };
+    let friction = friction(record, factor, report)?;
+    let (force, velocity) = ([fx, fy, moment], [vx, vy, spin]);
+    let rigid = Rigid { name, shape, about, friction, path, rotation, free, mass, force, ramp, amplitude, velocity };
+    moves_as_given(record, &rigid, report);
+    of_free_motions(record, &rigid, regime, report);
+    fine_enough(record, &rigid, around, report);
+    Some(rigid)
+}
+
+/// Which motions follow from forces; `None` after an error.
+fn free(record: &Record, report: &mut Report<'_>) -> Option<[bool; 3]> {
+    let mut free = [false; 3];
+    if !record.gives("free") {
+        return Some(free);
+    }
+    for name in record.names("free")? {
+        let Some(motion) = RigidMotion::of(name) else {
+            let words = || RigidMotion::WORDS.words();
+            let allowed: Vec<&str> = words().collect();
+            let message = format!("`{name}`{}; allowed: {}", hint(name, words()), allowed.join(", "));
+            record.error("free", message, report);
+            return None;
+        };
+        free[motion as usize] = true;
+    }
+    Some(free)
+}
+
+/// The way of its reference point; of a body that has none an empty one.
+fn way(record: &Record, end: Option<f64>, report: &mut Report<'_>) -> Option<MotionPath> {
+    let moves = ["displacement", "velocity", "path"].into_iter().any(|key| record.gives(key));
+    if moves { strip::path(record, end, report) } else { Some(MotionPath { rows: Vec::new() }) }
+}
+
+/// Its rotation, rad.
+fn rotation(record: &Record, report: &mut Report<'_>) -> Option<Vec<(f64, f64)>> {
+    if !record.gives("rotation") {
+        return Some(Vec::new());
+    }
+    let rows: Vec<(f64, f64)> =
+        load::increasing(record, "rotation", report)?.map(|row| (row[0], row[1].to_radians())).collect();
+    if rows[0].0 == 0.0 && rows[0].1 != 0.0 {
+        record.error("rotation", "it starts at time 0 with the angle 0", report);
+        return None;
+    }
+    Some(rows)
+}
+
+/// kg/m and kg m  of a shape with this area and polar moment; 0 without mass.
+fn mass(record: &Record, (area, polar): (f64, f64)) -> Option<[f64; 2]> {
+    let mass = match (record.gives("mass"), record.gives("density")) {
+        (true, _) => record.number("mass")?,
+        (_, true) => record.number("density")? * area,
+        _ => 0.0,
+    };
+    let inertia = if record.gives("inertia") { record.number("inertia")? } else { mass * polar / area };
+    Some([mass, inertia])
+}
+
+fn friction(record: &Record, factor: Option<f64>, report: &mut Report<'_>) -> Option<f64> {
+    let given = record.number("friction")?;
+    let friction = factor.map_or(given, |factor| given / factor);
+    if friction != given {
+        let reason = format!("strength_reduction.factor = {}", factor.unwrap_or(1.0));
+        report.note(record.path_of("friction"), format!("{friction}"), reason);
+    }
+    if friction > MOST_SHOWN_FRICTION {
+        report.warn(format!(
+            "{}: {friction}: shown to be right up to {MOST_SHOWN_FRICTION}; with more, steps may find no state that agrees \
+             with Coulomb's law, or one of several",
+            record.path_of("friction")
+        ));
+    }
+    Some(friction)
+}
+
+/// A motion is on a way or follows from forces.
+fn moves_as_given(record: &Record, rigid: &Rigid, report: &mut Report<'_>) {
+    let way = ["displacement", "velocity", "path"].into_iter().find(|key| record.gives(key)).unwrap_or("path");
+    for (axis, name) in ["x", "y"].into_iter().enumerate() {
+        if rigid.free[axis] && rigid.path.rows.iter().any(|(_, moved)| moved[axis] != 0.0) {
+            record.error(way, format!("it moves along {name}, which is `free`"), report);
+        }
+        if !rigid.free[axis] && rigid.force[axis] != 0.0 {
+            record.error("force", format!("acts along {name}, which is not `free`"), report);
+        }
+        if !rigid.free[axis] && rigid.velocity[axis] != 0.0 {
+            record.error("start_velocity", format!("along {name}, which is not `free`"), report);
+        }
+    }
+    if rigid.free[2] && !rigid.rotation.is_empty() {
+        record.error("rotation", "it is `free`", report);
+    }
+    for (key, value) in [("moment", rigid.force[2]), ("start_spin", rigid.velocity[2])] {
+        if !rigid.free[2] && value != 0.0 {
+            record.error(key, "its rotation is not `free`", report);
+        }
+    }
+    if rigid.free.contains(&true) && record.gives("about") {
+        record.error("about", "a body that moves freely does so about its centre of mass", report);
+    }
+}
+
+/// What moves freely has mass in dynamics, and what has mass moves freely.
+fn of_free_motions(record: &Record, rigid: &Rigid, regime: Option<Regime>, report: &mut Report<'_>) {
+    let is_free = rigid.free.contains(&true);
+    if !is_free {
+        for key in ["mass", "density", "inertia"].into_iter().filter(|key| record.gives(key)) {
+            record.error(key, "has no meaning where no motion is `free`", report);
+        }
+    }
+    let massless = rigid.mass[0] == 0.0 || rigid.free[2] && rigid.mass[1] == 0.0;
+    if is_free && massless && regime == Some(Regime::Dynamic) {
+        record.error("free", "it has no mass: give `mass` or `density`", report);
+    }
+    if is_free && rigid.mass[0] == 0.0 && rigid.force == [0.0; 3] {
+        record.error("free", "nothing acts on it: give `mass`, `density`, `force` or `moment`", report);
+    }
+    for key in ["start_velocity", "start_spin"] {
+        if record.gives(key) && regime == Some(Regime::QuasiStatic) {
+            record.error(key, "nothing has a velocity in a quasi-static analysis", report);
+        }
+    }
+}
+
+/// Cells and steps resolve it.
+fn fine_enough(record: &Record, rigid: &Rigid, around: AroundStrip<'_>, report: &mut Report<'_>) {
+    let (Some(grid), Some(dt)) = (around.grid, around.dt) else { return };
+    let cell = grid.axes[0].shortest().min(grid.axes[1].shortest());
+    let outline = surfaces::outline(&rigid.shape, rigid.about);
+    let radius = outline.radius();
+    let body = surfaces::rigid_body(rigid, [0.0; 2]);
+    let times = std::iter::once(0.0).chain(body.path.iter().map(|row| row.0));
+    let steps = times.zip(&body.path).filter(|(from, row)| row.0 > *from);
+    let fastest = steps.map(|(from, row)| {
+        let moved = (row.1 - body.on_path(from)) * ((dt / (row.0 - from)).min(1.0));
+        moved[0].hypot(moved[1]) + moved[2].abs() * radius
+    });
+    let most = fastest.fold(0.0, f64::max);
+    if most > ADVANCE * cell {
+        report.warn(format!(
+            "{}: it moves up to {:.2} cells in a step; material is pushed right up to {ADVANCE}: more steps",
+            record.path_of("path"),
+            most / cell
+        ));
+    }
+    if let Some((corner, angle)) = sharpest(&outline).filter(|(_, angle)| 2.0 * (0.5 * angle).sin() < 1.0) {
+        report.warn(format!(
+            "{}: the corner at [{}, {}] has {:.0} degrees: a cell within it is less than a cell wide, and what it cuts is \
+             rounded by the grid",
+            record.path_of("polygon"),
+            corner[0] + rigid.about[0],
+            corner[1] + rigid.about[1],
+            angle.to_degrees()
+        ));
+    }
+    let thickness = match &rigid.shape {
+        RigidShape::Circle { radius, .. } => 2.0 * radius,
+        RigidShape::Polygon(corners) => thickness(corners),
+    };
+    if thickness < cell {
+        report.warn(format!(
+            "{}: it is {thickness:.3e} m thick and cells are {cell:.3e} m: points on its two sides share nodes, which it \
+             cannot part",
+            record.path_of(shape::key(record))
+        ));
+    }
+}
+
+/// The least extent of corners across any edge, m.
+fn thickness(corners: &[[f64; 2]]) -> f64 {
+    let across = |k: usize| {
+        let normal = strip::normal(corners[k], corners[(k + 1) % corners.len()]);
+        let reach = |corner: &[f64; 2]| normal[0] * corner[0] + normal[1] * corner[1];
+        let (least, most) =
+            corners.iter().map(reach).fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)));
+        most - least
+    };
+    (0..corners.len()).map(across).fold(f64::INFINITY, f64::min)
+}
+
+/// The corner with the smallest angle inside, rad.
+fn sharpest(outline: &Outline) -> Option<([f64; 2], f64)> {
+    let Outline::Polygon(corners) = outline else { return None };
+    let of = |k: usize| {
+        let (at, count) = (corners[k], corners.len());
+        let (before, after) = (corners[(k + count - 1) % count] - at, corners[(k + 1) % count] - at);
+        let angle = after.perp(&before).atan2(after.dot(&before));
+        ([at[0], at[1]], if angle < 0.0 { angle + std::f64::consts::TAU } else { angle })
+    };
+    (0..corners.len()).map(of).min_by(|a, b| a.1.total_cmp(&b.1))
+}
+
+/// What the rest of the case says to rigid bodies.
+pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
+    for (rigid, record) in case.rigid.iter().zip(root.records("rigid")) {
+        if case.initial == Some(Initial::Elastic) {
+            let message = "the elastic equilibrium of [initial] gravity knows nothing of rigid bodies; give k0, or let gravity \
+                           grow over a ramp";
+            record.error("name", message, report);
+        }
+        if let Some((at, body)) = overlap(case, rigid) {
+            let message = format!(
+                "body {body} (from 0) is in it at [{}, {}], by more than {OVERLAP} cells; subtract it from that body",
+                at[0], at[1]
+            );
+            record.error(shape::key(record), message, report);
+        }
+    }
+    for (k, rigid) in case.rigid.iter().enumerate() {
+        let moves = |of: &Rigid| !of.path.rows.is_empty() || !of.rotation.is_empty() || of.free.contains(&true);
+        let others = case.rigid[..k].iter().filter(|other| moves(other) || moves(rigid));
+        let names: Vec<&str> = others.map(|other| &*other.name).collect();
+        if !names.is_empty() {
+            report.warn(format!(
+                "rigid `{}`: rigid bodies do not touch each other; should it meet {}, they go through each other",
+                rigid.name,
+                names.join(", ")
+            ));
+        }
+    }
+}
+
+/// A place of a body that is inside a rigid one at the start, if there is one.
+fn overlap(case: &Case, rigid: &Rigid) -> Option<([f64; 2], usize)> {
+    let cell = case.grid.axes[0].shortest().min(case.grid.axes[1].shortest());
+    let inset = OVERLAP * cell;
+    let places: Vec<[f64; 2]> = match &rigid.shape {
+        RigidShape::Circle { center, radius } => place::ring(*center, (radius - inset).max(0.0)).collect(),
+        RigidShape::Polygon(corners) => {
+            let edges = corners.iter().zip(corners.iter().cycle().skip(1));
+            let inside = |(from, to): (&[f64; 2], &[f64; 2])| {
+                let normal = strip::normal(*from, *to); // to the left, inside
+                let into = move |at: [f64; 2]| [at[0] + inset * normal[0], at[1] + inset * normal[1]];
+                place::along([*from, *to]).map(into)
+            };
+            edges.flat_map(inside).collect()
+        }
+    };
+    let outline = surfaces::outline(&rigid.shape, rigid.about);
+    let is_in = |at: &[f64; 2]| {
+        let seen = bsmpm::tensor::Vector::<2>::new(at[0] - rigid.about[0], at[1] - rigid.about[1]);
+        outline.nearest(&seen).distance < -0.5 * inset
+    };
+    let there = |number: usize| case.is_there(number, 0.0);
+    let bodies = || case.bodies.iter().enumerate().filter(|(number, _)| there(*number));
+    let holds = |at: &[f64; 2]| bodies().find(|(_, body)| body.region.contains(*at)).map(|(number, _)| (*at, number));
+    let found = places.iter().filter(|at| is_in(at)).find_map(holds);
+    // A small body may lie in it whole.
+    let whole = || {
+        bodies().find_map(|(number, body)| {
+            let [lower, upper] = body.bounds();
+            let middle = [0, 1].map(|axis| 0.5 * (lower[axis] + upper[axis]));
+            (is_in(&middle) && body.region.contains(middle)).then_some((middle, number))
+        })
+    };
+    found.or_else(whole)
+}

@@ -1,0 +1,327 @@
+//! Rigid bodies of any polygon, and circles, that push and rub the material points at them and do not pull.
+#![doc = include_str!("rigid.md")]
+
+mod body;
+mod near;
+mod outline;
+mod point;
+
+pub use body::{MOTIONS, RigidBody, RigidState};
+pub use near::Surroundings;
+pub use outline::{Nearest, Outline, Sizes};
+pub use point::Grip;
+
+use crate::error::StepError;
+use crate::exact::Exact;
+use crate::grid::{Contributions, Grid};
+use crate::nodal::Nodal;
+use crate::parallel::{Halo, LinearSolver};
+use crate::tensor::Vector;
+use nalgebra::Matrix3;
+use point::RigidPoint;
+
+/// Part of a cell below which a penetration is round-off.
+const ROUNDING: f64 = 1e-9;
+
+/// What a rigid body did in a step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RigidReport {
+    /// N, N and N m  of the material on the body, about its reference point
+    pub force: Vector<3>,
+    /// m, m and rad  since the start
+    pub moved: Vector<3>,
+    /// m/s, m/s and rad/s
+    pub velocity: Vector<3>,
+    /// m  way of the material along its outline since the start
+    pub slipped: f64,
+    /// J  dissipated by friction in the step
+    pub dissipated: f64,
+    /// m  least distance of material from it at the end of the step; 0 where it is touched, and without material
+    pub gap: f64,
+    /// points that it pushes
+    pub touched: usize,
+    /// -  largest depth that a point is in it, over the cell
+    pub penetration: f64,
+    /// -  largest motion of the body at a point that it pushes, over the cell
+    pub advance: f64,
+}
+
+/// A body in one step.
+#[derive(Clone, Debug)]
+struct BodyInStep {
+    body: RigidBody,
+    before: RigidState,
+    predicted: Vector<3>,      // m, m, rad  since the start, without the soil
+    external: Vector<3>,       // N, N, N m  but for the soil's
+    inertia: Vector<3>,        // kg/s2, kg/s2, kg m2/s2  by which motions resist; 0 without inertia
+    resists: Matrix3<f64>,     // inverse of what free motions resist with, the soil held; 0 for the others
+    flight: Option<Vector<3>>, // m/s, m/s, rad/s  at the end of the step, if no material is near
+    least: f64,                // m  distance of the nearest material at the start, as the body is at the end
+}
+
+/// All rigid bodies in one step, with the points of this rank that are near them.
+#[derive(Clone, Debug, Default)]
+pub struct RigidContacts<const D: usize> {
+    offsets: Vec<usize>,
+    points: Vec<RigidPoint>,
+    bodies: Vec<BodyInStep>,
+    dt: f64, // s; 0 without inertia
+    edge: f64,
+    /// components of nodes that a body may stop in this step, which go by backward Euler; empty without inertia
+    pub moving: Vec<bool>,
+}
+
+impl<const D: usize> RigidContacts<D> {
+    /// Whether there is no body at all.
+    pub fn is_empty(&self) -> bool {
+        self.bodies.is_empty()
+    }
+
+    /// Whether motions of bodies follow from the forces at points of any rank.
+    pub fn is_coupled(&self) -> bool {
+        self.bodies.iter().any(|at| at.body.is_free())
+    }
+
+    /// Whether any point may rub.
+    pub fn rubs(&self) -> bool {
+        self.bodies.iter().any(|at| at.body.friction > 0.0)
+    }
+
+    /// Finds what free motions resist with once statuses have changed. Fails on all ranks where nothing holds one.
+    pub fn settle(&mut self, halo: &dyn Halo) -> Result<(), StepError> {
+        if !self.is_coupled() {
+            return Ok(());
+        }
+        let stiffness = self.stiffness(true, halo);
+        for (number, (at, stiffness)) in self.bodies.iter_mut().zip(stiffness).enumerate() {
+            let free = |k: usize| if at.body.free[k] { 1.0 } else { 0.0 };
+            let mut whole = Matrix3::from_diagonal(&at.inertia) + stiffness;
+            for k in 0..MOTIONS {
+                for l in 0..MOTIONS {
+                    whole[(k, l)] *= free(k) * free(l);
+                }
+                whole[(k, k)] += 1.0 - free(k);
+            }
+            let inverse = whole.try_inverse().filter(|inverse| inverse.iter().all(|entry| entry.is_finite()));
+            let Some(mut inverse) = inverse else { return Err(StepError::Loose { body: number }) };
+            (0..MOTIONS).for_each(|k| inverse[(k, k)] -= 1.0 - free(k));
+            at.resists = inverse;
+        }
+        Ok(())
+    }
+
+    /// Of every body what all points resist its motions with, the soil held: N/m, N and N m. One reduction.
+    fn stiffness(&self, whole: bool, halo: &dyn Halo) -> Vec<Matrix3<f64>> {
+        let mut sums = vec![Exact::ZERO; self.bodies.len() * MOTIONS * MOTIONS];
+        for point in &self.points {
+            for l in 0..MOTIONS {
+                let mut unit = Vector::<3>::zeros();
+                unit[l] = 1.0;
+                let force = point.on_motions(&-point.rate(&point.carried_by(&unit), whole));
+                for k in 0..MOTIONS {
+                    sums[(point.body * MOTIONS + k) * MOTIONS + l].add(force[k]);
+                }
+            }
+        }
+        halo.total(&sums).chunks_exact(MOTIONS * MOTIONS).map(Matrix3::from_row_slice).collect()
+    }
+
+    /// What the bodies' free motions add to what was predicted, in balance with the forces under `u`; one reduction.
+    fn found(&self, u: &[f64], halo: &dyn Halo) -> Vec<Vector<3>> {
+        if !self.is_coupled() {
+            return vec![Vector::zeros(); self.bodies.len()];
+        }
+        let force = |point: &RigidPoint| point.force(&point.displacement::<D>(&self.offsets, u));
+        let external = |at: &BodyInStep| if self.dt > 0.0 { Vector::zeros() } else { at.external };
+        let forces = self.on_bodies(force, halo);
+        self.bodies.iter().zip(forces).map(|(at, force)| at.resists * (external(at) + force)).collect()
+    }
+
+    /// How the free motions change with `v`; one reduction.
+    fn follow(&self, v: &[f64], whole: bool, halo: &dyn Halo) -> Vec<Vector<3>> {
+        if !self.is_coupled() {
+            return vec![Vector::zeros(); self.bodies.len()];
+        }
+        let force = |point: &RigidPoint| point.rate(&point.displacement::<D>(&self.offsets, v), whole);
+        let forces = self.on_bodies(force, halo);
+        self.bodies.iter().zip(forces).map(|(at, force)| at.resists * force).collect()
+    }
+
+    /// What the opposite of the points' forces does to every body, N, N and N m.
+    fn on_bodies(&self, force: impl Fn(&RigidPoint) -> Vector<2>, halo: &dyn Halo) -> Vec<Vector<3>> {
+        let mut sums = vec![Exact::ZERO; self.bodies.len() * MOTIONS];
+        for point in &self.points {
+            let on = point.on_motions(&-force(point));
+            (0..MOTIONS).for_each(|k| sums[point.body * MOTIONS + k].add(on[k]));
+        }
+        halo.total(&sums).chunks_exact(MOTIONS).map(Vector::<3>::from_column_slice).collect()
+    }
+
+    /// What the material at a point has moved, as seen from its body.
+    fn moved(&self, point: &RigidPoint, u: &[f64], motions: &[Vector<3>]) -> Vector<2> {
+        point.displacement::<D>(&self.offsets, u) - point.carried_by(&motions[point.body])
+    }
+
+    /// Adds the bodies' forces on the material to the nodes; other ranks' parts are not yet in them.
+    pub fn add_forces(&self, u: &[f64], out: &mut Contributions, halo: &dyn Halo) {
+        let motions = self.found(u, halo);
+        self.scatter(|point| point.force(&self.moved(point, u, &motions)), out);
+    }
+
+    /// Adds the product of the derivative of the opposite of the forces with `v`; other ranks' parts are not yet in it.
+    pub fn multiply(&self, v: &[f64], out: &mut Contributions, halo: &dyn Halo) {
+        let motions = self.follow(v, true, halo);
+        self.scatter(|point| -point.rate(&self.moved(point, v, &motions), true), out);
+    }
+
+    fn scatter(&self, force: impl Fn(&RigidPoint) -> Vector<2>, out: &mut Contributions) {
+        for point in self.points.iter().filter(|point| point.grip != Grip::Open) {
+            let force = force(point);
+            let out = out.patch(point.first_node);
+            for (N, offset) in point.N.iter().zip(&self.offsets) {
+                (0..2).for_each(|component| out[Nodal::<D>::at(*offset, component)] += N * force[component]);
+            }
+        }
+    }
+
+    /// Adds the symmetric part of the stiffness of all points, the bodies held, to the matrix.
+    pub fn assemble(&self, solver: &mut dyn LinearSolver) {
+        for point in self.points.iter().filter(|point| point.grip != Grip::Open) {
+            solver.add(point.first_node, &point.block::<D>());
+        }
+    }
+
+    /// How the symmetric part of the points' forces couples every free motion with the nodes, N/m or N, a nodal array
+    /// each, and of every body what its motions resist with.
+    pub fn coupling(&self, grid: &Grid<D>, halo: &dyn Halo) -> (Vec<Vec<f64>>, Vec<Matrix3<f64>>) {
+        let columns = self.free_motions().map(|(body, k)| {
+            let mut unit = Vector::<3>::zeros();
+            unit[k] = 1.0;
+            let mut out = Contributions::none(grid, D, Vec::new());
+            let force = |point: &RigidPoint| match point.body == body {
+                true => -point.rate(&point.carried_by(&unit), false),
+                false => Vector::zeros(),
+            };
+            self.scatter(force, &mut out);
+            halo.sum(&out)
+        });
+        let columns = columns.collect();
+        let stiffness = self.stiffness(false, halo);
+        let whole = |(at, stiffness): (&BodyInStep, _)| Matrix3::from_diagonal(&at.inertia) + stiffness;
+        (columns, self.bodies.iter().zip(stiffness).map(whole).collect())
+    }
+
+    /// Body and number of every free motion.
+    pub fn free_motions(&self) -> impl Iterator<Item = (usize, usize)> {
+        let free = |(body, at): (usize, &BodyInStep)| {
+            let free = at.body.free;
+            (0..MOTIONS).filter(move |&k| free[k]).map(move |k| (body, k))
+        };
+        self.bodies.iter().enumerate().flat_map(free)
+    }
+
+    /// du . K du of the symmetric part on this rank, N m.
+    pub fn energy(&self, du: &[f64], halo: &dyn Halo) -> Exact {
+        let motions = self.follow(du, false, halo);
+        let of = |point: &RigidPoint| {
+            let moved = self.moved(point, du, &motions);
+            -moved.dot(&point.rate(&moved, false))
+        };
+        self.points.iter().map(of).collect()
+    }
+
+    /// Corrects every status that the displacement `u` (m) contradicts by more than `force`, N; how many there were
+    /// over all ranks.
+    pub fn correct(&mut self, u: &[f64], force: f64, halo: &dyn Halo) -> Result<usize, StepError> {
+        if self.is_empty() {
+            return Ok(0);
+        }
+        let motions = self.found(u, halo);
+        let doubt = (force, ROUNDING * self.edge);
+        let grips = self.points.iter().map(|point| point.corrected(&self.moved(point, u, &motions), doubt));
+        let grips: Vec<Grip> = grips.collect();
+        let mut corrected = [0.0];
+        for (point, grip) in self.points.iter_mut().zip(grips) {
+            corrected[0] += f64::from(u8::from(point.grip != grip));
+            point.grip = grip;
+        }
+        halo.reduce(&mut corrected);
+        self.settle(halo)?;
+        Ok(corrected[0] as usize)
+    }
+
+    /// J  work of the bodies on the material of this rank, and what of it friction takes, not positive.
+    pub fn work(&self, u: &[f64], halo: &dyn Halo) -> [Exact; 2] {
+        let motions = self.found(u, halo);
+        let mut work = [Exact::ZERO; 2];
+        for point in &self.points {
+            let moved = self.moved(point, u, &motions);
+            work[0].add(point.force(&moved).dot(&point.displacement::<D>(&self.offsets, u)));
+            work[1].add(point.rubbed(&moved));
+        }
+        work
+    }
+
+    /// N  tangential forces on points of this rank, by their numbers, which the next step starts from.
+    pub fn carried(&self, u: &[f64], halo: &dyn Halo) -> Vec<(usize, Vector<2>)> {
+        let motions = self.found(u, halo);
+        let held = |point: &RigidPoint| {
+            let [_, along] = point.pushed(&self.moved(point, u, &motions));
+            (point.point, point.along() * along)
+        };
+        self.points.iter().map(held).filter(|(_, force)| force.norm_squared() > 0.0).collect()
+    }
+
+    /// What every body did under the converged displacement `u`, and its state then.
+    pub fn conclude(&self, u: &[f64], halo: &dyn Halo) -> (Vec<RigidReport>, Vec<RigidState>) {
+        if self.is_empty() {
+            return (Vec::new(), Vec::new());
+        }
+        let motions = self.found(u, halo);
+        let forces = self.on_bodies(|point| point.force(&self.moved(point, u, &motions)), halo);
+        let count = self.bodies.len();
+        let mut sums = vec![Exact::ZERO; 4 * count]; // touched, pushed, pushed slip, dissipated
+        let mut most = vec![f64::NEG_INFINITY; 3 * count]; // gap, penetration, advance
+        for point in &self.points {
+            let moved = self.moved(point, u, &motions);
+            let gap = point.gap_after(&moved);
+            let [pushed, _] = point.pushed(&moved);
+            let advance = point.carried_by(&motions[point.body]).norm().max(point.motion.abs());
+            let touched = f64::from(u8::from(pushed > 0.0));
+            let each = [touched, pushed.max(0.0), pushed.max(0.0) * point.slip(&moved).abs(), -point.rubbed(&moved)];
+            sums[4 * point.body..].iter_mut().zip(each).for_each(|(sum, value)| sum.add(value));
+            let each = [-gap, -gap * touched / self.edge, advance * touched / self.edge];
+            most[3 * point.body..].iter_mut().zip(each).for_each(|(most, value)| *most = most.max(value));
+        }
+        let sums = halo.total(&sums);
+        halo.maximum(&mut most);
+        let report = |number: usize| {
+            let (at, [touched, pushed, slipped, dissipated]) =
+                (&self.bodies[number], [0, 1, 2, 3].map(|k| sums[4 * number + k]));
+            let state = self.state(at, &motions[number], if pushed > 0.0 { slipped / pushed } else { 0.0 });
+            let [near, penetration, advance] = [0, 1, 2].map(|k| most[3 * number + k]);
+            let gap = at.least.min(-near).max(0.0);
+            let report = RigidReport {
+                force: forces[number],
+                moved: state.moved,
+                velocity: state.velocity,
+                slipped: state.slipped,
+                dissipated,
+                gap: if gap.is_finite() { gap } else { 0.0 },
+                touched: touched as usize,
+                penetration: penetration.max(0.0),
+                advance: advance.max(0.0),
+            };
+            (report, state)
+        };
+        (0..count).map(report).unzip()
+    }
+
+    /// The state of a body after the step.
+    fn state(&self, at: &BodyInStep, motions: &Vector<3>, slip: f64) -> RigidState {
+        let moved = at.predicted + motions;
+        let mean = if self.dt > 0.0 { (moved - at.before.moved) / self.dt } else { Vector::zeros() };
+        let velocity = at.flight.map_or(mean, |end| at.body.pick(&end, &mean));
+        RigidState { moved, velocity, slipped: at.before.slipped + slip }
+    }
+}

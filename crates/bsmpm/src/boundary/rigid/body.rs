@@ -1,0 +1,107 @@
+//! A rigid body by itself: where it is, where it goes, and what acts on it besides the soil.
+
+use super::outline::Outline;
+use crate::schedule::between;
+use crate::tensor::Vector;
+
+/// Motions of a body in the plane: along x, along y, and its rotation.
+pub const MOTIONS: usize = 3;
+
+/// A rigid body. Its three motions are those of its reference point along x and y, m, and its rotation about it, rad,
+/// counter-clockwise; per metre of thickness.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RigidBody {
+    /// about the reference point, as it stands at the start
+    pub outline: Outline,
+    /// m  the reference point at the start, from the grid's lower corner; of a body with mass its centre
+    pub center: Vector<2>,
+    /// -  coefficient of friction
+    pub friction: f64,
+    /// which motions follow from forces; the others are on the path
+    pub free: [bool; MOTIONS],
+    /// s (or pseudo-time), increasing, and the motions; linear between, from 0 at time 0, constant after the last
+    pub path: Vec<(f64, Vector<3>)>,
+    /// kg, kg and kg m2
+    pub mass: Vector<3>,
+    /// s (or pseudo-time), increasing, and what acts: N, N and N m; linear between, constant after the last
+    pub load: Vec<(f64, Vector<3>)>,
+    /// m/s, m/s and rad/s  at the start, of motions that are free
+    pub velocity: Vector<3>,
+}
+
+/// What a body carries from step to step; the same on every rank.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RigidState {
+    /// m, m and rad  since the start
+    pub moved: Vector<3>,
+    /// m/s, m/s and rad/s
+    pub velocity: Vector<3>,
+    /// m  way of the material along its outline, mean by normal force of every step
+    pub slipped: f64,
+}
+
+/// Where a body is.
+#[derive(Clone, Copy, Debug)]
+pub struct Pose {
+    /// m  its reference point
+    pub center: Vector<2>,
+    cos: f64,
+    sin: f64,
+}
+
+impl RigidBody {
+    /// Its state at the start.
+    pub fn at_rest(&self) -> RigidState {
+        RigidState { velocity: self.pick(&self.velocity, &Vector::zeros()), ..RigidState::default() }
+    }
+
+    /// On the path at time `t`.
+    pub fn on_path(&self, t: f64) -> Vector<3> {
+        course(&self.path, t)
+    }
+
+    /// What acts on it at time `t` but for the soil: its load, and the force per mass `g`, m/s2.
+    pub fn acting(&self, t: f64, g: &Vector<2>) -> Vector<3> {
+        course(&self.load, t) + Vector::<3>::new(self.mass[0] * g[0], self.mass[1] * g[1], 0.0)
+    }
+
+    /// Whether any motion follows from forces.
+    pub fn is_free(&self) -> bool {
+        self.free.contains(&true)
+    }
+
+    /// Of motions that are free those of one, else those of the other.
+    pub fn pick(&self, free: &Vector<3>, other: &Vector<3>) -> Vector<3> {
+        Vector::from_fn(|k, _| if self.free[k] { free[k] } else { other[k] })
+    }
+
+    /// Where it is once it has `moved`.
+    pub fn pose(&self, moved: &Vector<3>) -> Pose {
+        let (sin, cos) = moved[2].sin_cos();
+        Pose { center: self.center + moved.fixed_rows::<2>(0), cos, sin }
+    }
+}
+
+impl Pose {
+    /// A vector of the body as it stood at the start, turned with it.
+    pub fn turned(&self, v: &Vector<2>) -> Vector<2> {
+        Vector::<2>::new(self.cos * v[0] - self.sin * v[1], self.sin * v[0] + self.cos * v[1])
+    }
+
+    /// A place as the body sees it, from its reference point and turned back.
+    pub fn seen(&self, x: &Vector<2>) -> Vector<2> {
+        let v = x - self.center;
+        Vector::<2>::new(self.cos * v[0] + self.sin * v[1], self.cos * v[1] - self.sin * v[0])
+    }
+
+    /// Where a place that the body sees is.
+    pub fn place(&self, seen: &Vector<2>) -> Vector<2> {
+        self.center + self.turned(seen)
+    }
+}
+
+/// Linear between rows, from zero at time 0, constant after the last.
+fn course(rows: &[(f64, Vector<3>)], t: f64) -> Vector<3> {
+    let stays = || rows.last().map_or_else(Vector::zeros, |(_, value)| *value);
+    between(rows, Vector::zeros(), t).unwrap_or_else(stays)
+}

@@ -1,0 +1,234 @@
+//! Which points are near a rigid body in a step, how far from it, and what they start the step as.
+
+use super::body::{RigidBody, RigidState};
+use super::point::{Grip, RigidPoint};
+use super::{BodyInStep, RigidContacts};
+use crate::error::StepError;
+use crate::grid::{Grid, Shape};
+use crate::nodal::Nodal;
+use crate::parallel::Halo;
+use crate::points::Points;
+use crate::tensor::Vector;
+use nalgebra::Matrix3;
+
+/// Stiffness of a point at an outline over that of its material, E A/h, and over its inertia.
+const PENALTY: f64 = 1e3;
+/// Part of a cell within which a point is on the outline as a step begins.
+const CLOSE: f64 = 1e-6;
+/// Steps ahead of the meeting from which on material is near a body: it may be faster or slower than it starts.
+const MEETING: f64 = 2.0;
+/// Value of a node's function at a body from which on the body may stop the node.
+const SEEN: f64 = 1e-3;
+/// What a point reaches to a side at least and at most, over what it did at the start: large shear makes of a box what
+/// no material fills.
+const STRETCH: [f64; 2] = [0.25, 1.5];
+
+/// What of the scene the bodies see.
+pub struct Surroundings<'a, const D: usize> {
+    /// the bodies, and what they carry
+    pub bodies: (&'a [RigidBody], &'a [RigidState]),
+    /// parts of a cell that the points of a material reach to each side at the start, at most
+    pub reach: &'a [f64],
+    /// the grid
+    pub grid: &'a Grid<D>,
+    /// shape functions
+    pub shape: &'a Shape<D>,
+    /// the points
+    pub points: &'a Points<D>,
+    /// m/s2  force per mass at the end of the step
+    pub body_force: Vector<D>,
+    /// components that nothing else holds
+    pub free: &'a [bool],
+    /// whether inertia acts
+    pub dynamic: bool,
+}
+
+impl<const D: usize> RigidContacts<D> {
+    /// In a step from `t` to `t + dt`, with the statuses that the last displacement, `guess`, asks for; `young` of a
+    /// point, Pa. Two reductions, and an exchange with the neighbours in dynamics. Fails on all ranks where nothing
+    /// holds a body.
+    pub fn of(
+        around: &Surroundings<'_, D>,
+        young: impl Fn(usize) -> f64,
+        (t, dt): (f64, f64),
+        guess: &[f64],
+        halo: &dyn Halo,
+    ) -> Result<Self, StepError> {
+        let (bodies, states) = around.bodies;
+        if bodies.is_empty() || dt == 0.0 {
+            return Ok(Self::default());
+        }
+        let mut contacts = Self {
+            offsets: around.shape.offsets().to_vec(),
+            points: Vec::new(),
+            bodies: Vec::new(),
+            dt: if around.dynamic { dt } else { 0.0 },
+            edge: around.grid.smallest_edge(),
+            moving: Vec::new(),
+        };
+        let mut moving = vec![0.0; if around.dynamic { around.grid.nodes() } else { 0 }];
+        let mut near = vec![0.0; 2 * bodies.len()];
+        for (number, (body, state)) in bodies.iter().zip(states).enumerate() {
+            let mut at = BodyInStep::of(body, state, (t, dt), around);
+            let found = contacts.points.len();
+            at.least = contacts.gather((number, &at), (around, &young), dt);
+            for point in &mut contacts.points[found..] {
+                near[2 * number] = 1.0;
+                if around.dynamic && point.gap <= MEETING * comes(point, &at, around, dt) + CLOSE * contacts.edge {
+                    let seen = point.N.iter().zip(&contacts.offsets).filter(|(N, _)| **N > SEEN);
+                    seen.for_each(|(_, offset)| moving[point.first_node + offset] = 1.0);
+                }
+            }
+            near[2 * number + 1] = -at.least;
+            contacts.bodies.push(at);
+        }
+        halo.maximum(&mut near);
+        for (at, near) in contacts.bodies.iter_mut().zip(near.chunks_exact(2)) {
+            at.least = -near[1];
+            if around.dynamic && near[0] == 0.0 {
+                at.fly(dt);
+            }
+        }
+        if around.dynamic {
+            halo.max(&mut moving, 1);
+            let marked = |(c, free): (usize, &bool)| *free && moving[Nodal::<D>::node(c)] > 0.0;
+            contacts.moving = around.free.iter().enumerate().map(marked).collect();
+        }
+        let motions = vec![Vector::zeros(); bodies.len()];
+        let grip = |point: &RigidPoint| {
+            let moved = contacts.moved(point, guess, &motions);
+            if point.gap_after(&moved) <= CLOSE * contacts.edge { point.met(&moved) } else { Grip::Open }
+        };
+        let grips: Vec<Grip> = contacts.points.iter().map(grip).collect();
+        contacts.points.iter_mut().zip(grips).for_each(|(point, grip)| point.grip = grip);
+        contacts.settle(halo)?;
+        Ok(contacts)
+    }
+
+    /// Adds the points near a body; the distance of the nearest, m.
+    fn gather(
+        &mut self,
+        (number, at): (usize, &BodyInStep),
+        (around, young): (&Surroundings<'_, D>, &impl Fn(usize) -> f64),
+        dt: f64,
+    ) -> f64 {
+        let (body, before, after) = (&at.body, at.body.pose(&at.before.moved), at.body.pose(&at.predicted));
+        let (Surroundings { grid, shape, points, .. }, mut least) = (around, f64::INFINITY);
+        let longest = (0..2).map(|axis| longest_edge(grid, axis)).fold(0.0, f64::max);
+        let radius = body.outline.radius();
+        for patch in shape.patches() {
+            for p in patch.points.clone() {
+                let x = plane(&points.x[p]);
+                let bound = (x - after.center).norm() - radius - 2.0 * longest;
+                if bound > least.max(longest) {
+                    continue;
+                }
+                let near = body.outline.nearest(&after.seen(&x));
+                let normal = after.turned(&near.normal);
+                let (reach, half) = reach(around, p, &normal);
+                let gap = near.distance - reach;
+                least = least.min(gap);
+                if gap > longest {
+                    continue;
+                }
+                let volume = points.volume[p] * points.F.at(p).determinant();
+                let mut stiffness = young(p) * volume / (2.0 * reach * half);
+                if around.dynamic {
+                    stiffness += points.mass[p] / (dt * dt);
+                }
+                let place = x - normal * reach;
+                let seen = before.seen(&place);
+                let along = Vector::<2>::new(-normal[1], normal[0]);
+                let carried = points.grip.as_ref().map_or(0.0, |grip| along.dot(&plane(&grip[p])));
+                self.points.push(RigidPoint {
+                    body: number,
+                    point: p,
+                    first_node: patch.first_node,
+                    N: values(shape, p, &(place - x)),
+                    normal,
+                    gap,
+                    motion: along.dot(&(after.place(&seen) - place)),
+                    arm: after.turned(&seen),
+                    stiffness: PENALTY * stiffness,
+                    friction: body.friction,
+                    carried,
+                    grip: Grip::Open,
+                });
+            }
+        }
+        least
+    }
+}
+
+impl BodyInStep {
+    /// With its motions as they are without the soil.
+    fn of<const D: usize>(
+        body: &RigidBody,
+        state: &RigidState,
+        (t, dt): (f64, f64),
+        around: &Surroundings<'_, D>,
+    ) -> Self {
+        let external = body.acting(t + dt, &plane(&around.body_force));
+        let (mut step, mut inertia) = (Vector::zeros(), Vector::zeros());
+        if around.dynamic {
+            inertia = body.mass / (dt * dt);
+            step = state.velocity * dt + external.component_div(&body.mass) * (dt * dt);
+        }
+        let before = RigidState { moved: body.pick(&state.moved, &body.on_path(t)), ..*state };
+        let predicted = body.pick(&(before.moved + step), &body.on_path(t + dt));
+        let resists = Matrix3::zeros();
+        Self { body: body.clone(), before, predicted, external, inertia, resists, flight: None, least: f64::INFINITY }
+    }
+
+    /// Goes on as nothing is near: a constant force is then exact.
+    fn fly(&mut self, dt: f64) {
+        let gained = self.external.component_div(&self.body.mass) * dt;
+        let moved = self.before.moved + (self.before.velocity + gained * 0.5) * dt;
+        self.predicted = self.body.pick(&moved, &self.predicted);
+        self.flight = Some(self.before.velocity + gained);
+    }
+}
+
+/// How far a point and the body at it come in a step as they start it, m.
+fn comes<const D: usize>(point: &RigidPoint, at: &BodyInStep, around: &Surroundings<'_, D>, dt: f64) -> f64 {
+    let v = around.points.motion.as_ref().map_or_else(Vector::zeros, |motion| plane(&motion.v[point.point]));
+    let step = at.predicted - at.before.moved;
+    dt * v.norm() + point.carried_by(&step).norm()
+}
+
+/// The components in the plane that the bodies are in.
+fn plane<const D: usize>(v: &Vector<D>) -> Vector<2> {
+    Vector::<2>::new(v[0], v[1])
+}
+
+/// m  longest edge of the cells along an axis.
+fn longest_edge<const D: usize>(grid: &Grid<D>, axis: usize) -> f64 {
+    let knots = &grid.axes()[axis];
+    (0..knots.cells()).map(|cell| knots.breakpoint(cell + 1) - knots.breakpoint(cell)).fold(0.0, f64::max)
+}
+
+/// m  how far a point reaches along a normal, by the ellipse in its box in the lattice of the cell that it was in at the
+/// start, deformed by its F; and an edge of that cell.
+fn reach<const D: usize>(around: &Surroundings<'_, D>, p: usize, normal: &Vector<2>) -> (f64, f64) {
+    let Surroundings { grid, points, reach, .. } = around;
+    let start = grid.locate(&(points.x[p] - points.u[p])).or_else(|| grid.locate(&points.x[p]));
+    let size = start.map_or_else(|| Vector::repeat(grid.smallest_edge()), |cell| grid.cell_box(&cell).1);
+    let share = reach.get(usize::from(points.material[p])).copied().unwrap_or(0.5);
+    let box_volume: f64 = size.iter().map(|edge| 2.0 * share * edge).product();
+    // A box that was cut holds less.
+    let share = share * (points.volume[p] / box_volume).min(1.0).powf(1.0 / D as f64);
+    let F = points.F.at(p);
+    let along = |j: usize| (F[(0, j)] * normal[0] + F[(1, j)] * normal[1]) * share * size[j];
+    let reach = (0..2).map(|j| along(j).powi(2)).sum::<f64>().sqrt();
+    let edge = size.min();
+    (reach.clamp(STRETCH[0] * share * edge, STRETCH[1] * share * size.max()), edge)
+}
+
+/// What the nodes of a point's cell have to say of a place beside it: N_I + grad N_I . (place - x), so that a force there
+/// keeps its moment. The functions themselves, gone on with to the place, would let a node that the point hardly touches
+/// take up all that is asked there; linear ones do so either way, and speak of the point alone.
+fn values<const D: usize>(shape: &Shape<D>, p: usize, offset: &Vector<2>) -> Vec<f64> {
+    let reaches = if shape.width() > 2 { 1.0 } else { 0.0 };
+    let of = |(N, grad): (f64, Vector<D>)| N + reaches * (grad[0] * offset[0] + grad[1] * offset[1]);
+    shape.of(p).into_iter().map(of).collect()
+}

@@ -1,0 +1,143 @@
+//! The outline of a rigid body: how far a place is from it, and what the body weighs by its shape.
+
+use crate::tensor::Vector;
+use std::f64::consts::PI;
+
+/// Part of an outline's size below which a place counts as on it, whose normal is then that of the edge.
+const ON: f64 = 1e-12;
+
+/// The outline of a body, m from its reference point.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Outline {
+    /// Corners, counter-clockwise.
+    Polygon(Vec<Vector<2>>),
+    /// Radius about the reference point.
+    Circle(f64),
+}
+
+/// What is nearest to a place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Nearest {
+    /// m  from the outline, negative inside
+    pub distance: f64,
+    /// unit normal of the outline, out of the body
+    pub normal: Vector<2>,
+}
+
+/// Integrals over a shape.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sizes {
+    /// m2
+    pub area: f64,
+    /// m  centroid
+    pub centroid: Vector<2>,
+    /// m4  polar second moment about the centroid
+    pub polar: f64,
+}
+
+impl Outline {
+    /// Of the place `x`, m from the reference point.
+    pub fn nearest(&self, x: &Vector<2>) -> Nearest {
+        match self {
+            Self::Circle(radius) => {
+                let normal = x.try_normalize(ON * radius).unwrap_or_else(Vector::y);
+                Nearest { distance: x.norm() - radius, normal }
+            }
+            Self::Polygon(corners) => nearest_of(corners, x),
+        }
+    }
+
+    /// Largest distance of the outline from the reference point, m.
+    pub fn radius(&self) -> f64 {
+        match self {
+            Self::Circle(radius) => *radius,
+            Self::Polygon(corners) => corners.iter().map(Vector::norm).fold(0.0, f64::max),
+        }
+    }
+
+    /// Area, centroid and polar moment.
+    pub fn sizes(&self) -> Sizes {
+        match self {
+            Self::Circle(radius) => {
+                Sizes { area: PI * radius.powi(2), centroid: Vector::zeros(), polar: 0.5 * PI * radius.powi(4) }
+            }
+            Self::Polygon(corners) => {
+                let (mut area, mut first, mut second) = (0.0, Vector::<2>::zeros(), 0.0);
+                for (a, b) in edges(corners) {
+                    let cross = a.perp(b);
+                    area += 0.5 * cross;
+                    first += (a + b) * (cross / 6.0);
+                    second += cross * (a.dot(a) + a.dot(b) + b.dot(b)) / 12.0;
+                }
+                let centroid = first / area;
+                Sizes { area, centroid, polar: second - area * centroid.norm_squared() }
+            }
+        }
+    }
+}
+
+/// Edges of a closed polygon, from corner to corner.
+fn edges(corners: &[Vector<2>]) -> impl Iterator<Item = (&Vector<2>, &Vector<2>)> {
+    corners.iter().zip(corners.iter().cycle().skip(1))
+}
+
+fn nearest_of(corners: &[Vector<2>], x: &Vector<2>) -> Nearest {
+    let (mut least, mut foot, mut edge) = (f64::INFINITY, Vector::zeros(), Vector::<2>::x());
+    let (mut inside, mut size) = (false, 0.0_f64);
+    for (a, b) in edges(corners) {
+        let (along, from) = (b - a, x - a);
+        size = size.max(along.amax());
+        let share = (from.dot(&along) / along.norm_squared()).clamp(0.0, 1.0);
+        let on = a + along * share;
+        let square = (x - on).norm_squared();
+        if square < least {
+            (least, foot, edge) = (square, on, along);
+        }
+        if (a[1] > x[1]) != (b[1] > x[1]) && x[0] < a[0] + along[0] * (x[1] - a[1]) / along[1] {
+            inside = !inside;
+        }
+    }
+    let side = if inside { -1.0 } else { 1.0 };
+    let off = (x - foot) * side;
+    // Counter-clockwise, the body is on the left of its edges.
+    let normal = off.try_normalize(ON * size).unwrap_or_else(|| Vector::<2>::new(edge[1], -edge[0]).normalize());
+    Nearest { distance: side * least.sqrt(), normal }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn square() -> Outline {
+        Outline::Polygon([[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]].map(Vector::from).to_vec())
+    }
+
+    #[test]
+    fn distance_and_normal_are_those_of_the_nearest_edge_or_corner() {
+        let of = |x: [f64; 2]| square().nearest(&Vector::from(x));
+        assert_eq!(of([1.0, 1.5]), Nearest { distance: 0.5, normal: Vector::<2>::new(0.0, 1.0) });
+        assert_eq!(of([1.0, 0.75]), Nearest { distance: -0.25, normal: Vector::<2>::new(0.0, 1.0) });
+        assert_eq!(of([0.5, 0.0]), Nearest { distance: 0.0, normal: Vector::<2>::new(0.0, -1.0) });
+        let corner = of([2.3, 1.4]);
+        assert!((corner.distance - 0.5).abs() < 1e-15 && (corner.normal - Vector::<2>::new(0.6, 0.8)).norm() < 1e-15);
+        let circle = Outline::Circle(2.0).nearest(&Vector::<2>::new(0.0, -3.0));
+        assert_eq!(circle, Nearest { distance: 1.0, normal: Vector::<2>::new(0.0, -1.0) });
+    }
+
+    #[test]
+    fn a_notch_is_outside() {
+        let corners = [[0.0, 0.0], [3.0, 0.0], [3.0, 2.0], [2.0, 2.0], [2.0, 1.0], [1.0, 1.0], [1.0, 2.0], [0.0, 2.0]];
+        let notched = Outline::Polygon(corners.map(Vector::from).to_vec());
+        assert_eq!(notched.nearest(&Vector::<2>::new(1.5, 1.5)).distance, 0.5);
+        assert_eq!(notched.nearest(&Vector::<2>::new(0.5, 1.5)).distance, -0.5);
+    }
+
+    #[test]
+    fn sizes_are_those_of_the_shape_wherever_it_is() {
+        let Outline::Polygon(corners) = square() else { panic!() };
+        let moved = Outline::Polygon(corners.iter().map(|x| x + Vector::<2>::new(-3.0, 7.0)).collect());
+        let sizes = moved.sizes();
+        assert!((sizes.area - 2.0).abs() < 1e-13 && (sizes.centroid - Vector::<2>::new(-2.0, 7.5)).norm() < 1e-13);
+        assert!((sizes.polar - 2.0 * (4.0 + 1.0) / 12.0).abs() < 1e-11);
+    }
+}

@@ -1,0 +1,106 @@
+//! A linear system whose nodes are coupled by rigid bodies that move freely: the few unknowns of their motions border
+//! the matrix of the nodes, and are taken out of it (Sherman, Morrison and Woodbury).
+
+use crate::boundary::rigid::MOTIONS;
+use crate::error::SolveError;
+use crate::parallel::{Halo, Krylov, LinearSolver, Solved, Symmetry, dots};
+use crate::step::problem::Problem;
+use nalgebra::{DMatrix, DVector};
+
+/// K - C B^-1 C^T behind a solver that knows K: C couples nodes and motions, B is what the motions resist with.
+pub struct Bordered<'a, const D: usize> {
+    solver: &'a mut dyn LinearSolver,
+    halo: &'a dyn Halo,
+    columns: Vec<Vec<f64>>,        // C
+    resists: DMatrix<f64>,         // B
+    solved: Vec<Vec<f64>>,         // K^-1 C
+    inverse: Option<DMatrix<f64>>, // of B - C^T K^-1 C
+}
+
+impl<'a, const D: usize> Bordered<'a, D> {
+    /// Of a problem whose bodies move freely.
+    pub fn of<K>(problem: &Problem<'a, K, D>, solver: &'a mut dyn LinearSolver) -> Self {
+        let (rigid, halo) = (&problem.nodes.rigid, problem.halo);
+        let (mut columns, blocks) = rigid.coupling(&problem.model.grid, halo);
+        for column in &mut columns {
+            column.iter_mut().zip(&problem.nodes.free).filter(|(_, free)| !**free).for_each(|(c, _)| *c = 0.0);
+        }
+        let motions: Vec<(usize, usize)> = rigid.free_motions().collect();
+        let entry = |row: usize, column: usize| {
+            let ((body, k), (other, l)) = (motions[row], motions[column]);
+            if body == other { blocks[body][(k, l)] } else { 0.0 }
+        };
+        let resists = DMatrix::from_fn(motions.len(), motions.len(), entry);
+        debug_assert!(blocks.iter().all(|block| block.len() == MOTIONS * MOTIONS));
+        Self { solver, halo, columns, resists, solved: Vec::new(), inverse: None }
+    }
+
+    /// C^T of a nodal array.
+    fn seen(&self, nodal: &[f64]) -> Vec<f64> {
+        let pairs: Vec<(&[f64], &[f64])> = self.columns.iter().map(|column| (&column[..], nodal)).collect();
+        dots(self.halo, D, &pairs)
+    }
+}
+
+impl<const D: usize> LinearSolver for Bordered<'_, D> {
+    fn begin(&mut self, free: &[bool]) {
+        self.solver.begin(free);
+    }
+
+    fn add(&mut self, first_node: usize, block: &[f64]) {
+        self.solver.add(first_node, block);
+    }
+
+    fn add_among(&mut self, nodes: &[usize], block: &[f64]) {
+        self.solver.add_among(nodes, block);
+    }
+
+    fn add_diagonal(&mut self, diagonal: &[f64]) {
+        self.solver.add_diagonal(diagonal);
+    }
+
+    fn finish(&mut self, symmetry: Symmetry) -> Result<(), SolveError> {
+        self.solver.finish(symmetry)?;
+        (self.solved, self.inverse) = (Vec::new(), None);
+        if symmetry == Symmetry::General {
+            return Ok(());
+        }
+        let mut condensed = self.resists.clone();
+        for (number, column) in self.columns.iter().enumerate() {
+            let mut solved = vec![0.0; column.len()];
+            // All ranks or none: a body that touches nothing couples nothing.
+            let mut couples = [f64::from(u8::from(column.iter().any(|entry| *entry != 0.0)))];
+            self.halo.maximum(&mut couples);
+            if couples[0] > 0.0 {
+                self.solver.solve(column, &mut solved)?;
+            }
+            let seen = self.seen(&solved);
+            seen.iter().enumerate().for_each(|(row, seen)| condensed[(row, number)] -= seen);
+            self.solved.push(solved);
+        }
+        self.inverse = condensed.try_inverse().filter(|inverse| inverse.iter().all(|entry| entry.is_finite()));
+        Ok(())
+    }
+
+    fn solve(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<Solved, SolveError> {
+        let solved = self.solver.solve(rhs, solution)?;
+        if let Some(inverse) = &self.inverse {
+            let motions = inverse * DVector::from_vec(self.seen(solution));
+            for (column, motion) in self.solved.iter().zip(motions.iter()) {
+                solution.iter_mut().zip(column).for_each(|(u, column)| *u += motion * column);
+            }
+        }
+        Ok(solved)
+    }
+
+    /// The product has the coupling; what preconditions it has not.
+    fn solve_with(
+        &mut self,
+        product: &mut dyn FnMut(&[f64], &mut [f64]),
+        relative: f64,
+        rhs: &[f64],
+        solution: &mut [f64],
+    ) -> Result<Krylov, SolveError> {
+        self.solver.solve_with(product, relative, rhs, solution)
+    }
+}
