@@ -76,6 +76,9 @@ pub fn step<K: Kinematics<D>, const D: usize>(
     // (10), (11)
     let Committed { u, advance, smoothed } = commit::commit(model, (&shape, &nodes), (found, &responses), points, halo);
     *guess = u;
+    if let Some(extent) = nodes.rigid.extent() {
+        points.extent = Some(extent.to_vec());
+    }
     if let Some(carried) = carried {
         points.grip = Some(carried_by_points(points.len(), &carried));
     }

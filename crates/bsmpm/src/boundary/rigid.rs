@@ -65,13 +65,20 @@ pub struct RigidContacts<const D: usize> {
     offsets: Vec<usize>,
     points: Vec<RigidPoint>,
     bodies: Vec<BodyInStep>,
-    dt: f64, // s; 0 without inertia
+    length: f64, // s (or pseudo-time)
+    dt: f64,     // s; 0 without inertia
     edge: f64,
+    extent: Option<Vec<f64>>, // of all points, if it is not yet known
     /// components of nodes that a body may stop in this step, which go by backward Euler; empty without inertia
     pub moving: Vec<bool>,
 }
 
 impl<const D: usize> RigidContacts<D> {
+    /// Part of what all points of this rank reach that bodies leave them at the start, once it has been found.
+    pub fn extent(&self) -> Option<&[f64]> {
+        self.extent.as_deref()
+    }
+
     /// Whether there is no body at all.
     pub fn is_empty(&self) -> bool {
         self.bodies.is_empty()
@@ -320,7 +327,7 @@ impl<const D: usize> RigidContacts<D> {
     /// The state of a body after the step.
     fn state(&self, at: &BodyInStep, motions: &Vector<3>, slip: f64) -> RigidState {
         let moved = at.predicted + motions;
-        let mean = if self.dt > 0.0 { (moved - at.before.moved) / self.dt } else { Vector::zeros() };
+        let mean = (moved - at.before.moved) / self.length;
         let velocity = at.flight.map_or(mean, |end| at.body.pick(&end, &mean));
         RigidState { moved, velocity, slipped: at.before.slipped + slip }
     }

@@ -34,7 +34,7 @@ pub struct RigidBody {
 pub struct RigidState {
     /// m, m and rad  since the start
     pub moved: Vector<3>,
-    /// m/s, m/s and rad/s
+    /// m/s, m/s and rad/s; without inertia per pseudo-time
     pub velocity: Vector<3>,
     /// m  way of the material along its outline, mean by normal force of every step
     pub slipped: f64,

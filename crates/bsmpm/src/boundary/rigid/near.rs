@@ -62,8 +62,10 @@ impl<const D: usize> RigidContacts<D> {
             offsets: around.shape.offsets().to_vec(),
             points: Vec::new(),
             bodies: Vec::new(),
+            length: dt,
             dt: if around.dynamic { dt } else { 0.0 },
             edge: around.grid.smallest_edge(),
+            extent: around.points.extent.is_none().then(|| extents(around)),
             moving: Vec::new(),
         };
         let mut moving = vec![0.0; if around.dynamic { around.grid.nodes() } else { 0 }];
@@ -97,7 +99,9 @@ impl<const D: usize> RigidContacts<D> {
         let motions = vec![Vector::zeros(); bodies.len()];
         let grip = |point: &RigidPoint| {
             let moved = contacts.moved(point, guess, &motions);
-            if point.gap_after(&moved) <= CLOSE * contacts.edge { point.met(&moved) } else { Grip::Open }
+            let least = if bodies[point.body].is_free() { point.gap } else { f64::INFINITY };
+            let is_met = point.gap_after(&moved).min(least) <= CLOSE * contacts.edge;
+            if is_met { point.met(&moved) } else { Grip::Open }
         };
         let grips: Vec<Grip> = contacts.points.iter().map(grip).collect();
         contacts.points.iter_mut().zip(grips).for_each(|(point, grip)| point.grip = grip);
@@ -125,14 +129,16 @@ impl<const D: usize> RigidContacts<D> {
                 }
                 let near = body.outline.nearest(&after.seen(&x));
                 let normal = after.turned(&near.normal);
-                let (reach, half) = reach(around, p, &normal);
+                let (whole, edge) = reach(around, p, &normal);
+                let extent = self.extent.as_ref().or(points.extent.as_ref()).map_or(1.0, |extent| extent[p]);
+                let reach = whole * extent;
                 let gap = near.distance - reach;
                 least = least.min(gap);
                 if gap > longest {
                     continue;
                 }
                 let volume = points.volume[p] * points.F.at(p).determinant();
-                let mut stiffness = young(p) * volume / (2.0 * reach * half);
+                let mut stiffness = young(p) * volume / (2.0 * whole * edge);
                 if around.dynamic {
                     stiffness += points.mass[p] / (dt * dt);
                 }
@@ -169,10 +175,11 @@ impl BodyInStep {
         around: &Surroundings<'_, D>,
     ) -> Self {
         let external = body.acting(t + dt, &plane(&around.body_force));
-        let (mut step, mut inertia) = (Vector::zeros(), Vector::zeros());
+        // Without inertia it goes on as it did: soil is expected to.
+        let (mut step, mut inertia) = (state.velocity * dt, Vector::zeros());
         if around.dynamic {
             inertia = body.mass / (dt * dt);
-            step = state.velocity * dt + external.component_div(&body.mass) * (dt * dt);
+            step += external.component_div(&body.mass) * (dt * dt);
         }
         let before = RigidState { moved: body.pick(&state.moved, &body.on_path(t)), ..*state };
         let predicted = body.pick(&(before.moved + step), &body.on_path(t + dt));
@@ -187,6 +194,26 @@ impl BodyInStep {
         self.predicted = self.body.pick(&moved, &self.predicted);
         self.flight = Some(self.before.velocity + gained);
     }
+}
+
+/// Part of what every point reaches that the bodies leave it as they stand before the step: points of bodies that were
+/// cut lie as near to a rigid one as the rule of their cell puts them, and are not thrown out.
+fn extents<const D: usize>(around: &Surroundings<'_, D>) -> Vec<f64> {
+    let (bodies, states) = around.bodies;
+    let of = |p: usize| {
+        let left = bodies.iter().zip(states).map(|(body, state)| {
+            let pose = body.pose(&state.moved);
+            let x = plane(&around.points.x[p]);
+            if (x - pose.center).norm() > body.outline.radius() + 2.0 * around.grid.smallest_edge() {
+                return 1.0;
+            }
+            let near = body.outline.nearest(&pose.seen(&x));
+            let (reach, _) = reach(around, p, &pose.turned(&near.normal));
+            (near.distance / reach).clamp(0.0, 1.0)
+        });
+        left.fold(1.0, f64::min)
+    };
+    (0..around.points.len()).map(of).collect()
 }
 
 /// How far a point and the body at it come in a step as they start it, m.
