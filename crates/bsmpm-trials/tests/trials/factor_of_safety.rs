@@ -103,8 +103,8 @@ fn an_embankment_on_clay_whose_weight_acts_from_the_start_has_a_factor() {
     assert!(notes.contains("a load acts at once") && notes.contains("begins with a stress"), "{notes}");
 }
 
-/// `cases/embankment.toml` at its end. With a fill that has no friction the circles are an upper bound: 1.507, where the
-/// program finds 1.502; it finds 1.497 with the case's own, in cells of 1 m and of .5 m.
+/// `cases/embankment.toml` at its end. With a fill that has no friction the circles are an upper bound: 1.507, where
+/// the program finds 1.502; it finds 1.497 with the case's own, in cells of 1 m and of .5 m.
 #[test]
 fn the_embankment_of_the_scenes_has_the_factor_of_bishops_circles() {
     let fill = [19e3, 5e3, 30.0];
