@@ -223,6 +223,7 @@ fn loaded(case: &Case) -> bool {
     let pulls = |load: [f64; 2]| load != [0.0; 2];
     case.gravity.is_some()
         || !case.shaking.is_empty()
+        || case.rigid.iter().any(|rigid| !rigid.path.rows.is_empty() || rigid.free.contains(&true))
         || case.footing.iter().any(|footing| moves(&footing.path))
         || case.prescribed.iter().any(|prescribed| moves(&prescribed.path))
         || case.tractions.iter().any(|traction| traction.largest() > 0.0)
