@@ -46,6 +46,11 @@ pub struct Task {
     pub fault: Option<Fault>,
 }
 
+/// Cells that a rigid body may move in a step at the soil that it touches.
+const FASTEST: f64 = 0.5;
+/// Cells that points may be in a rigid body.
+const DEEPEST: f64 = 0.05;
+
 /// A run under way.
 pub struct Run<'p> {
     universe: &'p Universe,
@@ -61,6 +66,7 @@ pub struct Run<'p> {
     frame_times: Vec<f64>,
     last_frame: Option<u64>,
     told_strips: BTreeSet<usize>,
+    told_rigid: BTreeSet<usize>,
     hdf5: &'p Hdf5<'p>,
     saving: Saving,
     before: Before,
@@ -77,6 +83,8 @@ pub struct Before {
     pub last_frame: Option<u64>,
     /// strips of which it was told that they hold nothing
     pub told_strips: BTreeSet<usize>,
+    /// rigid bodies of which it was told what is doubtful of them
+    pub told_rigid: BTreeSet<usize>,
     /// s  by phase; on rank 0
     pub timers: BTreeMap<String, f64>,
     /// what the ranks had told each other, by kind; on rank 0
@@ -116,6 +124,7 @@ impl<'p> Run<'p> {
             frame_times,
             last_frame,
             told_strips: std::mem::take(&mut before.told_strips),
+            told_rigid: std::mem::take(&mut before.told_rigid),
             hdf5,
             saving,
             before,
@@ -194,6 +203,8 @@ impl<'p> Run<'p> {
             self.tell_unused_options();
         }
         self.tell_strips_without_material(accepted);
+        self.tell_rigid(accepted);
+        self.tell_meeting(accepted);
         self.tell_outflow(accepted);
         self.record(&accepted.report);
         if self.wants_frame(accepted.t) {
@@ -211,6 +222,43 @@ impl<'p> Run<'p> {
             let warning =
                 format!("the PETSc option -{name} was not used: it is misspelt, or the solver has no such part");
             self.warn(warning);
+        }
+    }
+
+    /// A rigid body that comes so fast that points are met too late, or so light a penalty that they go into it.
+    fn tell_rigid(&mut self, accepted: &Accepted) {
+        for (number, report) in accepted.report.rigid.iter().enumerate() {
+            let (name, t) = (self.case.rigid[number].name.clone(), accepted.t);
+            let (advance, depth) = (report.advance, report.penetration);
+            if advance > FASTEST && self.told_rigid.insert(2 * number) {
+                self.warn(format!(
+                    "rigid `{name}`: at t = {t} it moves {advance:.2} cells in a step at soil that it touches; points are met \
+                     right up to {FASTEST}: more steps"
+                ));
+            }
+            if depth > DEEPEST && self.told_rigid.insert(2 * number + 1) {
+                self.warn(format!(
+                    "rigid `{name}`: at t = {t} points are {depth:.2} cells in it, usually 1e-5: it was pushed over them, or \
+                     its force is beyond what its penalty is made for; more steps"
+                ));
+            }
+        }
+    }
+
+    /// Rigid bodies do not touch each other.
+    fn tell_meeting(&mut self, accepted: &Accepted) {
+        let (bodies, reports) = (&self.simulation.model.boundary.rigid, &accepted.report.rigid);
+        let meets = |a: usize, b: usize| bodies[a].reaches_into(&reports[a].moved, (&bodies[b], &reports[b].moved));
+        let pairs = (0..reports.len()).flat_map(|a| (0..a).map(move |b| (a, b)));
+        let meeting: Vec<(usize, usize)> = pairs.filter(|&(a, b)| meets(a, b) || meets(b, a)).collect();
+        for (a, b) in meeting {
+            let (one, other) = (self.case.rigid[a].name.clone(), self.case.rigid[b].name.clone());
+            if self.told_rigid.insert(2 * self.case.rigid.len() + a * self.case.rigid.len() + b) {
+                self.warn(format!(
+                    "rigid `{one}`: at t = {} it is in rigid `{other}`: rigid bodies do not touch each other, and go through",
+                    accepted.t
+                ));
+            }
         }
     }
 

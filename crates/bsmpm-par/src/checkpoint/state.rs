@@ -55,6 +55,10 @@ pub struct CheckpointState {
     pub record: RecordState,
     /// Strips of which it was told that they hold nothing; and, their number added, that they have let go.
     pub told_strips: BTreeSet<usize>,
+    /// Rigid bodies of which it was told that they came too fast (twice their number) or go into the soil (and one), and
+    /// behind those pairs that have met.
+    #[serde(default, skip_serializing_if = "BTreeSet::is_empty")]
+    pub told_rigid: BTreeSet<usize>,
     /// The step of the newest frame.
     pub last_frame: Option<u64>,
     /// The files.

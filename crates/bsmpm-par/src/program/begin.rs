@@ -108,6 +108,7 @@ fn before(start: &RunStart<'_>, directory: &Path) -> Before {
         is_branch: !resumed.is_in(directory),
         last_frame: state.last_frame,
         told_strips: state.told_strips.clone(),
+        told_rigid: state.told_rigid.clone(),
         timers: state.files.manifest.timers.clone(),
         communication: state.files.manifest.communication.clone(),
         linear: state.files.manifest.linear.clone(),

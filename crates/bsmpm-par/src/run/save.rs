@@ -154,6 +154,7 @@ impl Run<'_> {
                 .map(|lists| if lists.iter().all(Vec::is_empty) { Vec::new() } else { pairs(lists) }),
             record: self.recorder.state(),
             told_strips: self.told_strips.clone(),
+            told_rigid: self.told_rigid.clone(),
             last_frame: self.last_frame,
             files: ledger.files(step)?,
         };

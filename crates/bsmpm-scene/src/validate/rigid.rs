@@ -256,9 +256,11 @@ fn sharpest(outline: &Outline) -> Option<([f64; 2], f64)> {
 pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
     for (rigid, record) in case.rigid.iter().zip(root.records("rigid")) {
         if case.initial == Some(Initial::Elastic) {
-            let message = "the elastic equilibrium of [initial] gravity knows nothing of rigid bodies; give k0, or let gravity \
-                           grow over a ramp";
-            record.error("name", message, report);
+            report.warn(format!(
+                "{}: the elastic equilibrium of [initial] gravity is one without rigid bodies; where they hold soil give k0, \
+                 or let gravity grow over a ramp",
+                record.path
+            ));
         }
         if let Some((at, body)) = overlap(case, rigid) {
             let message = format!(
@@ -266,18 +268,6 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
                 at[0], at[1]
             );
             record.error(shape::key(record), message, report);
-        }
-    }
-    for (k, rigid) in case.rigid.iter().enumerate() {
-        let moves = |of: &Rigid| !of.path.rows.is_empty() || !of.rotation.is_empty() || of.free.contains(&true);
-        let others = case.rigid[..k].iter().filter(|other| moves(other) || moves(rigid));
-        let names: Vec<&str> = others.map(|other| &*other.name).collect();
-        if !names.is_empty() {
-            report.warn(format!(
-                "rigid `{}`: rigid bodies do not touch each other; should it meet {}, they go through each other",
-                rigid.name,
-                names.join(", ")
-            ));
         }
     }
 }

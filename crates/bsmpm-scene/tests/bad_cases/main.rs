@@ -4,6 +4,7 @@
 
 mod loads;
 mod matrix;
+mod rigid;
 mod rows;
 mod texts;
 
@@ -94,6 +95,11 @@ fn shapes() {
 #[test]
 fn layers_and_strength_reduction() {
     verify_all(DYNAMIC, loads::LAYERS);
+}
+
+#[test]
+fn rigid_bodies() {
+    verify_all(DYNAMIC, rigid::RIGID);
 }
 
 #[test]

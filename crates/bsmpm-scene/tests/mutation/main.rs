@@ -69,6 +69,8 @@ const OTHERWISE: [&[(&str, &str)]; 7] = [
     ],
     &[
         ("displacement = [0.0, \"-10 cm\"]", "velocity = [0.0, -0.1]"),
+        ("path     = [[\"0.5 s\", -0.1, 0.0], [1.0, 0.0, \"5 cm\"]]", "velocity = [-0.1, 0.0]"),
+        ("density = \"0.5 t/m3\"", "mass = 50"),
         ("\"tresca\"", "\"modified-cam-clay\""),
         ("cohesion    = 2e4", "kappa = 0.02\nlambda = 0.1\ncritical_ratio = 1.2\nocr = 1.5"),
         ("factor = 1.25", "factor = 1.0"),
@@ -79,6 +81,8 @@ const OTHERWISE: [&[(&str, &str)]; 7] = [
         ),
     ],
     &[
+        ("path     = [[\"0.5 s\", -0.1, 0.0], [1.0, 0.0, \"5 cm\"]]", "displacement = [-0.1, \"1 cm\"]"),
+        ("ramp    = \"0.25 s\"", "amplitude = [[\"0.2 s\", 1.0], [1.0, 0.0]]"),
         ("ramp = \"0.5 s\"", "amplitude = [[\"0.2 s\", 1.5], [0.5, 0.0]]"),
         ("ramp = 0.5\n", "amplitude = [[0.0, 1.0]]\n"),
         ("displacement = [0.0, \"-10 cm\"]", "path = [[0.5, 0.0, -0.1], [\"1 s\", 0.0, \"-20 cm\"]]"),

@@ -212,6 +212,11 @@ fn refusals(case: &Case) -> Vec<String> {
         ),
         (never_full, "a load grows beyond `end`: it never acts in full, and the factor would be that of a part of it"),
         (
+            !case.rigid.is_empty(),
+            "it has rigid bodies: what they carry changes with what is displaced, and no factor was shown with them; give \
+             tractions instead",
+        ),
+        (
             is_moved(case),
             "the case prescribes a motion: what moves as told shows no failure, however little strength is left; give the \
              load instead of the motion, or run the case itself and read its force against the motion",

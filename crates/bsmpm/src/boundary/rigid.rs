@@ -20,6 +20,11 @@ use crate::tensor::Vector;
 use nalgebra::Matrix3;
 use point::RigidPoint;
 
+/// Stiffness of a point at an outline over that of its material, E A/h, and over its inertia.
+const PENALTY: f64 = 1e3;
+/// Passes in which all statuses are corrected, and those until which the ones that are off by half of the most are.
+const AT_ONCE: usize = 8;
+const BY_HALF: usize = 16;
 /// Part of a cell below which a penetration is round-off.
 const ROUNDING: f64 = 1e-9;
 
@@ -237,20 +242,30 @@ impl<const D: usize> RigidContacts<D> {
         self.points.iter().map(of).collect()
     }
 
-    /// Corrects every status that the displacement `u` (m) contradicts by more than `force`, N; how many there were
-    /// over all ranks.
-    pub fn correct(&mut self, u: &[f64], force: f64, halo: &dyn Halo) -> Result<usize, StepError> {
+    /// Corrects the statuses that the displacement `u` (m) contradicts by more than `force`, N: all of them in the first
+    /// `passes`, later those that it contradicts most, as all at once may go round in a circle; how many there were over
+    /// all ranks.
+    pub fn correct(&mut self, u: &[f64], (force, passes): (f64, usize), halo: &dyn Halo) -> Result<usize, StepError> {
         if self.is_empty() {
             return Ok(0);
         }
         let motions = self.found(u, halo);
         let doubt = (force, ROUNDING * self.edge);
         let grips = self.points.iter().map(|point| point.corrected(&self.moved(point, u, &motions), doubt));
-        let grips: Vec<Grip> = grips.collect();
+        let grips: Vec<(Grip, f64)> = grips.collect();
+        let share = match passes {
+            ..AT_ONCE => 0.0,
+            ..BY_HALF => 0.5,
+            _ => 1.0,
+        };
+        let mut most = [grips.iter().map(|(_, by)| *by).fold(0.0, f64::max)];
+        halo.maximum(&mut most);
         let mut corrected = [0.0];
-        for (point, grip) in self.points.iter_mut().zip(grips) {
-            corrected[0] += f64::from(u8::from(point.grip != grip));
-            point.grip = grip;
+        for (point, (grip, by)) in self.points.iter_mut().zip(grips) {
+            if point.grip != grip && by >= share * most[0] {
+                corrected[0] += 1.0;
+                point.grip = grip;
+            }
         }
         halo.reduce(&mut corrected);
         self.settle(halo)?;
@@ -293,7 +308,7 @@ impl<const D: usize> RigidContacts<D> {
             let moved = self.moved(point, u, &motions);
             let gap = point.gap_after(&moved);
             let [pushed, _] = point.pushed(&moved);
-            let advance = point.carried_by(&motions[point.body]).norm().max(point.motion.abs());
+            let advance = point.carried_by(&motions[point.body]).norm().max(point.way);
             let touched = f64::from(u8::from(pushed > 0.0));
             let each = [touched, pushed.max(0.0), pushed.max(0.0) * point.slip(&moved).abs(), -point.rubbed(&moved)];
             sums[4 * point.body..].iter_mut().zip(each).for_each(|(sum, value)| sum.add(value));

@@ -18,6 +18,8 @@ use crate::step::report::Counts;
 
 /// Corrections after which a step is given up.
 const MOST: usize = 40;
+/// The same with rigid bodies, whose statuses are corrected one by one in the end.
+const MOST_AT_BODIES: usize = 60;
 /// Part of the force tolerance, of the largest force, by which forces may contradict a status: they are known no
 /// better.
 const DOUBT: f64 = 1e-2;
@@ -41,7 +43,8 @@ pub fn find<K: Kinematics<D>, const D: usize>(
     let criteria = Criteria { energy: energy.max(ROUGH), force: force.max(ROUGH), max_iterations };
     let rough = Model { criteria, ..model.clone() };
     let (mut u, mut history, mut is_rough, mut first_guess) = (guess.to_vec(), Vec::new(), true, true);
-    for _ in 0..MOST {
+    let most = if nodes.rigid.is_empty() { MOST } else { MOST_AT_BODIES };
+    for pass in 0..most {
         let judged = if is_rough { &rough } else { model };
         let problem = Problem { model: judged, shape, nodes, grips, points, halo };
         let found = match nodes.rigid.is_coupled() {
@@ -52,7 +55,7 @@ pub fn find<K: Kinematics<D>, const D: usize>(
         first_guess &= found.first_guess;
         let doubt = (DOUBT * judged.criteria.force * found.scale, model.grid.smallest_edge());
         let corrected = nodes.contacts.correct(&found.u, &found.reaction, doubt, halo);
-        let corrected = corrected + nodes.rigid.correct(&found.u, doubt.0, halo)?;
+        let corrected = corrected + nodes.rigid.correct(&found.u, (doubt.0, pass), halo)?;
         nodes.contacts.first_energy = found.first_energy;
         nodes.meet();
         nodes.count(halo);
@@ -62,5 +65,5 @@ pub fn find<K: Kinematics<D>, const D: usize>(
         is_rough &= corrected > 0;
         u = found.u;
     }
-    Err(StepError::Unsettled { passes: MOST })
+    Err(StepError::Unsettled { passes: most })
 }

@@ -1,22 +1,18 @@
-//! Rigid bodies of any polygon: closed forms of friction, blows, Hertz and punches, free bodies, lifting.
+//! Rigid bodies of any polygon: friction, blows, Hertz, punches, lifting, and bodies that move freely.
 
 use crate::support::scene::{Scene, axis, hencky};
 use bsmpm::boundary::rigid::Outline;
-use bsmpm::boundary::{RigidBody, Support};
+use bsmpm::boundary::{Path, RigidBody, RigidReport, Strip, Support, surface};
 use bsmpm::energy::{Books, Stored};
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::method::Nonlinear;
 use bsmpm::model::{Gravity, Regime};
 use bsmpm::points::Points;
 use bsmpm::tensor::Vector;
+use std::f64::consts::PI;
 
 const G: f64 = 9.81;
 const RAMP: f64 = 0.1;
-
-fn polygon(center: [f64; 2], corners: &[[f64; 2]]) -> RigidBody {
-    let corners = corners.iter().map(|corner| Vector::from(*corner) - Vector::from(center)).collect();
-    of(Outline::Polygon(corners), center)
-}
 
 fn of(outline: Outline, center: [f64; 2]) -> RigidBody {
     RigidBody {
@@ -34,7 +30,14 @@ fn of(outline: Outline, center: [f64; 2]) -> RigidBody {
 /// A rectangle.
 fn slab([left, bottom]: [f64; 2], [right, top]: [f64; 2]) -> RigidBody {
     let center = [0.5 * (left + right), 0.5 * (bottom + top)];
-    polygon(center, &[[left, bottom], [right, bottom], [right, top], [left, top]])
+    let corners = [[left, bottom], [right, bottom], [right, top], [left, top]];
+    of(Outline::Polygon(corners.map(|corner| Vector::from(corner) - Vector::from(center)).to_vec()), center)
+}
+
+/// A rectangle that moves freely.
+fn free(lower: [f64; 2], upper: [f64; 2], mass: f64) -> RigidBody {
+    let polar = mass * ((upper[0] - lower[0]).powi(2) + (upper[1] - lower[1]).powi(2)) / 12.0;
+    RigidBody { free: [true; 3], mass: [mass, mass, polar].into(), ..slab(lower, upper) }
 }
 
 fn path(rows: &[(f64, [f64; 3])]) -> Vec<(f64, Vector<3>)> {
@@ -46,223 +49,270 @@ fn mean(points: &Points<2>, of: impl Fn(usize) -> f64) -> f64 {
     sum / points.mass.iter().sum::<f64>()
 }
 
-/// A block of 1 x .5 m, of cells of 1/`n` m, on a rigid plate; gravity is inclined by `slope` = tan(theta).
+fn velocity(points: &Points<2>) -> f64 {
+    mean(points, |p| points.motion.as_ref().expect("dynamic").v[p][0])
+}
+
+/// Gravity that grows over a ramp, inclined by `slope` = tan(theta).
+fn inclined(slope: f64) -> Gravity<2> {
+    let theta = slope.atan();
+    Gravity { acceleration: Vector::from([G * theta.sin(), -G * theta.cos()]), ramp: RAMP }
+}
+
+/// Elastic ground of `cells` of `h` m, held at its sides and bottom.
+fn ground(h: f64, cells: [usize; 2], above: usize, regime: Regime) -> Scene<PlaneStrain, 2> {
+    let axes = [axis(h, cells[0], 2), axis(h, cells[1] + above, 2)];
+    let mut scene = Scene::<PlaneStrain, 2>::new(axes, hencky(1e6, 0.3), regime)
+        .body([0..cells[0], 0..cells[1]], 2, 1000.0, |_| Vector::zeros())
+        .rollers([0])
+        .support(Support::fixed(1, false));
+    (scene.model.criteria.energy, scene.model.criteria.force) = (1e-8, 1e-5);
+    scene
+}
+
+/// A block of 1 x .5 m, of cells of 1/`n` m, on a rigid plate that is inclined by `slope`.
 fn block(n: usize, slope: f64, friction: f64, regime: Regime) -> Scene<PlaneStrain, 2> {
     let h = 1.0 / n as f64;
     let plate = RigidBody { friction, ..slab([-1.0, -0.5], [5.0, 0.5]) };
     let mut scene = Scene::<PlaneStrain, 2>::new([axis(h, 3 * n, 2), axis(h, 2 * n, 2)], hencky(1e7, 0.3), regime)
         .body([n / 2..n / 2 + n, n / 2..n], 2, 1000.0, |_| Vector::zeros())
         .rigid(plate);
-    let theta = slope.atan();
-    scene.model.gravity = Some(Gravity { acceleration: Vector::from([G * theta.sin(), -G * theta.cos()]), ramp: RAMP });
+    scene.model.gravity = Some(inclined(slope));
     (scene.model.criteria.energy, scene.model.criteria.force) = (1e-10, 1e-6);
     scene
 }
 
-/// Way and velocity under gravity that grows over the ramp, at .5 s, over those of a rigid block, less 1.
-fn slid(n: usize, dt: f64, friction: f64, method: Nonlinear) -> (f64, f64, usize) {
+fn last(scene: &mut Scene<PlaneStrain, 2>, dt: f64, end: f64) -> RigidReport {
+    let mut last = RigidReport::default();
+    scene.march(dt, end, |_, accepted| last = accepted.report.rigid[0]);
+    last
+}
+
+/// Velocity under gravity that grows over the ramp, at .5 s, over that of a rigid block, less 1; and most iterations.
+fn slid(n: usize, dt: f64, method: Nonlinear) -> (f64, usize) {
     const END: f64 = 0.5;
+    const FRICTION: f64 = 0.3;
     let theta = 0.5_f64.atan();
-    let a = G * (theta.sin() - friction * theta.cos());
-    let mut scene = block(n, 0.5, friction, Regime::Dynamic);
+    let mut scene = block(n, 0.5, FRICTION, Regime::Dynamic);
     (scene.model.nonlinear, scene.model.balances_energy) = (method, true);
     let mut books = Books::open(Stored::of(&scene.model, &scene.points, &scene.halo()));
-    let (mut iterations, mut cuts) = (0, 0);
-    let mut last = Default::default();
+    let mut iterations = 0;
     scene.march(dt, END, |_, accepted| {
         books.flows += accepted.report.energy.expect("it is balanced");
         iterations = iterations.max(accepted.report.iterations);
-        cuts += accepted.rejected.len();
-        last = accepted.report.rigid[0];
+        let force = accepted.report.rigid[0].force;
+        assert!(accepted.rejected.is_empty() && force[0] <= FRICTION * -force[1] * (1.0 + 1e-12));
     });
-    println!("{last:?} cuts {cuts}");
-    let way = mean(&scene.points, |p| scene.points.u[p][0]);
-    let velocity = mean(&scene.points, |p| scene.points.motion.as_ref().expect("dynamic").v[p][0]);
     let now = Stored::of(&scene.model, &scene.points, &scene.halo());
-    println!("closure {:.1e} of {:.1e}", books.closure(now), now.kinetic);
-    let rigid = [0.5 * (END - RAMP).powi(2) + 0.5 * RAMP * (END - RAMP) + RAMP * RAMP / 6.0, END - 0.5 * RAMP];
-    (way / (a * rigid[0]) - 1.0, velocity / (a * rigid[1]) - 1.0, iterations)
+    assert!(books.closure(now).abs() < 1e-6 * now.kinetic, "the books close: {:.1e}", books.closure(now));
+    let exact = G * (theta.sin() - FRICTION * theta.cos()) * (END - 0.5 * RAMP);
+    (velocity(&scene.points) / exact - 1.0, iterations)
 }
 
+/// Of first order in the step, as nodes at a body go by backward Euler: gravity that grows is counted by its end.
 #[test]
 fn a_block_slides_down_a_rigid_plate_as_coulomb_says() {
-    for (n, dt, method) in [
-        (4, 0.02, Nonlinear::Auto),
-        (4, 0.01, Nonlinear::Auto),
-        (4, 0.01, Nonlinear::Newton),
-        (8, 0.01, Nonlinear::Auto),
-    ] {
-        println!("{n} {dt} {method:?} {:?}", slid(n, dt, 0.3, method));
-    }
+    let [coarse, middle, fine] = [0.02, 0.01, 0.005].map(|dt| slid(4, dt, Nonlinear::Auto).0);
+    let (cells, newton) = (slid(8, 0.01, Nonlinear::Auto).0, slid(4, 0.01, Nonlinear::Newton));
+    println!("{coarse:.4} {middle:.4} {fine:.4}; cells half as large {cells:.4}; Newton {newton:?}");
+    // measured .0110, .0055, .0028; .0028
+    let order = (coarse / middle).log2();
+    assert!(coarse < 0.012 && (0.8..1.2).contains(&order) && fine < 0.0035 && cells < 0.0035);
+    assert!((newton.0 - middle).abs() < 1e-6 && newton.1 <= 10);
 }
 
 #[test]
-fn a_block_sticks() {
+fn a_block_sticks_where_friction_is_larger_than_the_slope_and_else_does_not() {
     let mut scene = block(4, 0.5, 0.6, Regime::Dynamic);
-    let mut last = Default::default();
-    scene.march(0.01, 0.5, |_, accepted| last = accepted.report.rigid[0]);
+    last(&mut scene, 0.01, 0.5);
     let way = mean(&scene.points, |p| scene.points.u[p][0]);
-    println!("{way:.1e} {last:?}");
+    assert!((0.0..5e-4).contains(&way) && velocity(&scene.points).abs() < 5e-3, "{way} m");
     let mut scene = block(4, 0.3, 0.31, Regime::QuasiStatic);
-    scene.march(0.05, 0.1, |_, accepted| last = accepted.report.rigid[0]);
-    let way = mean(&scene.points, |p| scene.points.u[p][0]);
-    println!("{way:.1e} {last:?}");
+    let force = last(&mut scene, 0.05, RAMP).force;
+    let (theta, weight) = (0.3_f64.atan(), 500.0 * G);
+    let off = (force[0] - theta.sin() * weight).hypot(force[1] + theta.cos() * weight);
+    assert!(off < 1e-6 * weight, "{force}");
 }
 
-/// An elastic bar that hits a rigid wall.
-fn bar(cells: usize, steps_per_transit: f64, method: Nonlinear) {
-    let (l, e, rho, v) = (1.0, 1e6, 1000.0, std::env::var("V").map_or(0.1, |v| v.parse().unwrap()));
-    let h = l / cells as f64;
-    let c = (e / rho as f64).sqrt();
-    let gap: f64 = std::env::var("GAP").map_or(0.02, |v| v.parse().unwrap()) * h;
-    let wall = slab([0.0, -1.0], [2.0 * h - gap, 2.0]);
-    let mut scene =
-        Scene::<PlaneStrain, 2>::new([axis(h, cells + 8, 2), axis(h, 1, 2)], hencky(e, 0.0), Regime::Dynamic)
-            .body([2..2 + cells, 0..1], 2, rho, |_| Vector::from([-v, 0.0]))
-            .rollers([1])
-            .rigid(wall);
-    scene.model.nonlinear = method;
+/// A bar of `cells` that comes along x with 1 m/s over `gap` cells to a wall: time of contact over 2 L/c, velocity with
+/// which it leaves, and energy over that of the start.
+fn bar(cells: usize, gap: f64) -> [f64; 3] {
+    let (young, density, v) = (1e6_f64, 1000.0, 0.4);
+    let (h, c) = (1.0 / cells as f64, (young / density).sqrt());
+    let wall = slab([0.0, -1.0], [(2.0 - gap) * h, 2.0]);
+    let axes = [axis(h, cells + 8, 2), axis(h, 1, 2)];
+    let mut scene = Scene::<PlaneStrain, 2>::new(axes, hencky(young, 0.0), Regime::Dynamic)
+        .body([2..2 + cells, 0..1], 2, density, |_| Vector::from([-v, 0.0]))
+        .rollers([1])
+        .rigid(wall);
     (scene.model.criteria.energy, scene.model.criteria.force) = (1e-10, 1e-6);
-    scene.model.balances_energy = true;
-    let dt = l / c / steps_per_transit;
-    let (mut first, mut last, mut impulse, mut t) = (0.0, 0.0, 0.0, 0.0);
-    let mut most: f64 = 0.0;
-    let mut books = Books::open(Stored::of(&scene.model, &scene.points, &scene.halo()));
-    scene.march(dt, 4.0 * l / c, |_, accepted| {
-        t += accepted.dt;
-        books.flows += accepted.report.energy.unwrap();
-        let push = -accepted.report.rigid[0].force[0];
-        assert!(push >= 0.0);
-        if push > 0.0 {
-            if first == 0.0 {
-                first = t;
-            }
-            last = t;
-            most = most.max(push);
-        }
-        if cells == 20 && steps_per_transit == 20.0 {
-            ();
-            if false {
-                println!(
-                    "{:.3} {:.3} gap {:.2e} v {:.3}",
-                    t * c / l,
-                    push / (rho * c * v * h),
-                    accepted.report.rigid[0].gap / h,
-                    0.0
-                );
-            }
-        }
-        impulse += push * accepted.dt;
+    let (dt, mut pushed) = (1.0 / c / cells as f64, 0);
+    scene.march(dt, gap * h / v + 3.0 / c, |_, accepted| {
+        assert!(accepted.report.rigid[0].force[0] <= 0.0, "it pulls");
+        pushed += usize::from(accepted.report.rigid[0].touched > 0);
     });
-    let mass: f64 = scene.points.mass.iter().sum();
-    let after = mean(&scene.points, |p| scene.points.motion.as_ref().unwrap().v[p][0]);
     let now = Stored::of(&scene.model, &scene.points, &scene.halo());
-    println!(
-        "{cells} {steps_per_transit}: contact {:.3} of 2L/c, rebound {:.4}, impulse {:.4}, peak {:.3} of rho c v, energy {:.4} closure {:.1e}",
-        (last - first) * c / (2.0 * l),
-        after / v,
-        impulse / (mass * v),
-        most / (rho * c * v * h),
-        (now.kinetic + now.elastic) / (0.5 * mass * v * v),
-        books.closure(now)
-    );
+    let mass: f64 = scene.points.mass.iter().sum();
+    let energy = (now.kinetic + now.elastic) / (0.5 * mass * v * v);
+    [(pushed - 1) as f64 * dt * c / 2.0, velocity(&scene.points) / v, energy]
 }
 
+/// Wherever its points are in their cells as it comes: with .25 they have just come into new ones, whose nodes hold next
+/// to nothing.
 #[test]
-fn a_bar_that_hits_a_wall_leaves_again() {
-    for (cells, steps) in [(20, 20.0), (20, 40.0), (40, 40.0), (40, 80.0)] {
-        bar(cells, steps, Nonlinear::Auto);
-    }
-    bar(20, 20.0, Nonlinear::Newton);
-}
-
-/// A rigid block that falls on an elastic bed and leaves it again.
-#[test]
-fn a_free_block_falls_bounces_and_keeps_the_momentum_that_it_was_given() {
-    let h = 0.25;
-    let (mass, drop) = (500.0, 0.05);
-    let block = RigidBody {
-        free: [true; 3],
-        mass: Vector::from([mass, mass, mass * (0.5_f64.powi(2) + 0.5_f64.powi(2)) / 12.0]),
-        ..slab([0.75, 1.0 + drop], [1.25, 1.5 + drop])
-    };
-    let mut scene = Scene::<PlaneStrain, 2>::new([axis(h, 8, 2), axis(h, 8, 2)], hencky(1e6, 0.2), Regime::Dynamic)
-        .body([0..8, 0..4], 2, 1000.0, |_| Vector::zeros())
-        .rollers([0])
-        .support(Support::fixed(1, false))
-        .rigid(block)
-        .gravity(G, 0.0);
-    scene.model.gravity.as_mut().unwrap().ramp = 0.0;
-    (scene.model.criteria.energy, scene.model.criteria.force) = (1e-9, 1e-6);
-    let dt = 0.002;
-    let (mut momentum, mut worst, mut t): (f64, f64, f64) = (0.0, 0.0, 0.0);
-    scene.march(dt, 0.4, |_, accepted| {
-        t += accepted.dt;
-        let now = accepted.report.rigid[0];
-        momentum += (now.force[1] - mass * G) * accepted.dt;
-        worst = worst.max((mass * now.velocity[1] - momentum).abs() / (mass * G * 0.1));
-        if (t / 0.01).fract() < 0.2 {
-            println!(
-                "{t:.3} y {:.4} v {:.4} F {:.3} rot {:.1e} touched {} gap {:.1e} it {} cuts {}",
-                now.moved[1],
-                now.velocity[1],
-                now.force[1] / (mass * G),
-                now.moved[2],
-                now.touched,
-                now.gap,
-                accepted.report.iterations,
-                accepted.rejected.len()
-            );
+fn a_bar_hits_a_wall_and_leaves_it() {
+    for gap in [0.02, 0.25, 0.5] {
+        let (coarse, fine) = (bar(20, gap), bar(40, gap));
+        println!("{gap}: {coarse:.3?} {fine:.3?}");
+        for (of, bounds) in [(coarse, [0.06, 0.12, 0.15]), (fine, [0.03, 0.07, 0.09])] {
+            assert!((of[0] - 1.0).abs() < bounds[0] && (1.0 - bounds[1]..1.0).contains(&of[1]), "{of:?}");
+            assert!((1.0 - bounds[2]..1.0).contains(&of[2]), "{of:?}");
         }
-    });
-    println!("momentum off by {worst:.1e}");
+    }
 }
 
-/// Hertz: a rigid cylinder on an elastic half plane.
-fn hertz(h: f64, method: Nonlinear) {
-    let (e, nu, r): (f64, f64, f64) = (1e6, 0.3, 2.0);
-    let (w, d) = (2.0, 2.0);
-    let (nx, ny) = ((w / h) as usize, (d / h) as usize);
-    let down = 0.02;
-    let cylinder = RigidBody { path: path(&[(1.0, [0.0, -down, 0.0])]), ..of(Outline::Circle(r), [0.0, d + r]) };
-    let mut scene =
-        Scene::<PlaneStrain, 2>::new([axis(h, nx, 2), axis(h, ny + 4, 2)], hencky(e, nu), Regime::QuasiStatic)
-            .body([0..nx, 0..ny], 2, 1000.0, |_| Vector::zeros())
-            .rollers([0])
-            .support(Support::fixed(1, false))
-            .rigid(cylinder);
-    scene.model.nonlinear = method;
-    (scene.model.criteria.energy, scene.model.criteria.force) = (1e-8, 1e-5);
-    let mut rows = Vec::new();
-    scene.march(0.1, 1.0, |points, accepted| {
-        let report = accepted.report.rigid[0];
-        let p = 2.0 * report.force[1];
-        let star = e / (1.0 - nu * nu);
-        let a = (4.0 * p * r / (std::f64::consts::PI * star)).sqrt();
-        let peak = 2.0 * p / (std::f64::consts::PI * a);
-        let top =
-            (0..points.len()).filter(|&q| points.x[q][0] < h).map(|q| -points.sigma.at(q).0[1]).fold(0.0, f64::max);
-        rows.push((
-            p,
-            a / h,
-            top / peak,
-            report.touched,
-            accepted.report.iterations,
-            accepted.rejected.len(),
-            report.penetration,
-        ));
-    });
-    for row in rows {
-        println!(
-            "{h} {method:?} P {:.1} a/h {:.2} peak {:.3} touched {} iterations {} cuts {} pen {:.1e}",
-            row.0, row.1, row.2, row.3, row.4, row.5, row.6
-        );
-    }
+/// Stress below a rigid cylinder that is pressed into ground, over Hertz's 2 P/(pi a)/sqrt(1 + (z/a)^2), and whether the
+/// width of the contact, by the points that are touched, is 2 a up to the spacing of points.
+fn hertz(h: f64) -> (Vec<f64>, f64) {
+    let (radius, depth, side) = (2.0, 4.0, (4.0 / h) as usize);
+    let cylinder =
+        RigidBody { path: path(&[(1.0, [0.0, -0.02, 0.0])]), ..of(Outline::Circle(radius), [0.0, depth + radius]) };
+    let mut scene = ground(h, [side; 2], 2, Regime::QuasiStatic).rigid(cylinder);
+    let found = last(&mut scene, 0.25, 1.0);
+    let load = 2.0 * found.force[1];
+    let a = (4.0 * load * radius / (PI * 1e6 / (1.0 - 0.3 * 0.3))).sqrt();
+    let points = &scene.points;
+    let below = |z: f64| {
+        let off = |p: usize| (points.x[p][1] - (depth - z)).abs();
+        let axis = (0..points.len()).filter(|&p| points.x[p][0] < 0.5 * h);
+        let p = axis.min_by(|&p, &q| off(p).total_cmp(&off(q))).expect("a point");
+        let exact = 2.0 * load / (PI * a) / (1.0 + ((depth - points.x[p][1]) / a).powi(2)).sqrt();
+        -points.sigma.at(p).0[1] / exact
+    };
+    ([0.2, 0.3, 0.4, 0.5, 0.8].map(below).to_vec(), (found.touched as f64 * 0.5 * h - a) / (0.5 * h))
 }
 
 #[test]
 fn a_cylinder_on_a_half_plane_is_hertz() {
-    hertz(0.1, Nonlinear::Auto);
-    hertz(0.1, Nonlinear::Newton);
-    hertz(0.05, Nonlinear::Auto);
+    let (coarse, fine) = (hertz(0.2), hertz(0.1));
+    println!("{coarse:.3?} {fine:.3?}");
+    // measured: up to 21 % with a cell of 1.4 a, 4 % with half of it, of which 2 % are the sides and bottom of the ground
+    let off = |found: &[f64]| found.iter().map(|share| (share - 1.0).abs()).fold(0.0, f64::max);
+    assert!(off(&fine.0) < 0.05 && off(&fine.0) < 0.5 * off(&coarse.0) && fine.1.abs() < 1.0);
+}
+
+/// The load on a smooth or rough punch, over that on a strip that holds the ground.
+#[test]
+fn a_flat_punch_is_a_strip() {
+    let found = [0.25, 0.125].map(|h: f64| {
+        let n = (1.0 / h) as usize;
+        [0.0, 1.0].map(|friction| {
+            let moves = [0.0, -0.01, 0.0];
+            let punch = RigidBody { friction, path: path(&[(1.0, moves)]), ..slab([-1.0, 2.0], [1.0, 2.5]) };
+            let scene = || ground(h, [3 * n, 2 * n], n, Regime::QuasiStatic);
+            let by_body = last(&mut scene().rigid(punch), 0.5, 1.0).force[1];
+            let (from, to) = (Vector::from([0.0, 2.0]), Vector::from([1.0, 2.0]));
+            let strip = Strip {
+                points: surface::along::<PlaneStrain>(&scene().model.grid, &from, &to, 4),
+                normal: (friction == 0.0).then(|| Vector::from([0.0, 1.0])),
+                path: Path { rows: vec![(1.0, Vector::from([0.0, -0.01]))] },
+                penalty: 1e10 / h,
+            };
+            let mut by_strip = 0.0;
+            scene().strip(strip).march(0.5, 1.0, |_, accepted| by_strip = -accepted.report.strips[0].force[1]);
+            by_body / by_strip
+        })
+    });
+    println!("{found:.4?}");
+    // measured .9405 and .9416, with half the cells .9680 and .9690: a strip holds the whole cell at its end
+    assert!(found[0].iter().all(|share| (0.93..1.0).contains(share)));
+    assert!(found[1].iter().all(|share| (0.96..1.0).contains(share)));
+}
+
+#[test]
+fn nothing_is_pulled_and_what_was_pressed_comes_back() {
+    let moves = path(&[(1.0, [0.0, -0.01, 0.0]), (3.0, [0.0, 0.01, 0.0])]);
+    let plate = RigidBody { friction: 0.5, path: moves, ..slab([-1.0, 1.0], [2.0, 1.5]) };
+    let mut scene = ground(0.25, [4, 4], 4, Regime::QuasiStatic).rigid(plate);
+    let (mut most, oedometer) = (0.0_f64, 1e6 * 0.7 / (1.3 * 0.4));
+    scene.march(0.25, 3.0, |_, accepted| {
+        let now = accepted.report.rigid[0];
+        most = most.max(now.force[1]);
+        assert!(now.force[1] >= 0.0);
+        if accepted.t > 2.1 {
+            let left = now.gap - (accepted.t - 2.0) * 0.01;
+            assert!(now.touched == 0 && now.force.norm() == 0.0 && left.abs() < 1e-6, "{now:?}");
+        }
+    });
+    // Of small strains; Hencky's are .5 % off at 1 %.
+    assert!((most / (oedometer * 0.01) - 1.0).abs() < 0.02, "{most}");
+    let left = (0..scene.points.len()).map(|p| scene.points.sigma.at(p).0[1].abs()).fold(0.0, f64::max);
+    assert!(left < 2e-3 * most, "{left} Pa of {most}");
+}
+
+/// A footing that moves freely under a load beside its middle: what acts on it is what it gives on, and where the load is
+/// beyond a sixth of its width it lifts.
+#[test]
+fn a_free_footing_lifts_under_an_eccentric_load() {
+    let footing = RigidBody { friction: 0.5, ..free([1.5, 1.0], [2.5, 1.25], 0.0) };
+    let turned = [0.05, 0.1, 0.3].map(|eccentricity| {
+        let load = vec![(1.0, Vector::<3>::new(0.0, -1e4, -1e4 * eccentricity))];
+        let body = RigidBody { load, ..footing.clone() };
+        let mut scene = ground(0.125, [32, 8], 4, Regime::QuasiStatic).rigid(body);
+        let found = last(&mut scene, 0.25, 1.0);
+        println!("{eccentricity}: {found:?}");
+        let off = found.force - Vector::<3>::new(0.0, 1e4, 1e4 * eccentricity);
+        assert!(off.norm() < 1e-6 * 1e4 && found.moved[2] < 0.0 && found.moved[1] < 0.0, "{found:?}");
+        found.moved[2]
+    });
+    println!("{turned:?}");
+    // measured 2.00; 3.25, where a bilateral hold has 3
+    assert!((turned[1] / turned[0] - 2.0).abs() < 0.02 && turned[2] / turned[1] > 3.1);
+}
+
+/// A block falls, meets ground and leaves it: its momentum is what the ground and gravity gave it, to round-off.
+#[test]
+fn a_free_block_falls_and_bounces() {
+    let mass = 500.0;
+    for method in [Nonlinear::Auto, Nonlinear::Newton] {
+        let mut scene = ground(0.25, [8, 4], 4, Regime::Dynamic).rigid(free([0.75, 1.05], [1.25, 1.55], mass));
+        scene = scene.gravity(G, 0.0);
+        scene.model.nonlinear = method;
+        let (mut momentum, mut touches, mut leaves) = (0.0, false, false);
+        scene.march(0.004, 0.26, |_, accepted| {
+            let now = accepted.report.rigid[0];
+            momentum += (now.force[1] - mass * G) * accepted.dt;
+            assert!((mass * now.velocity[1] - momentum).abs() < 1e-10 * mass && now.force[1] >= 0.0);
+            if !touches && now.gap > 0.02 {
+                let fallen = 0.5 * G * accepted.t.powi(2);
+                assert!((now.moved[1] + fallen).abs() < 1e-12, "it falls freely");
+            }
+            touches |= now.touched > 0;
+            leaves |= touches && now.touched == 0 && now.velocity[1] > 0.3;
+            assert!(now.moved[2].abs() < 1e-9 && now.moved[0].abs() < 1e-9, "upright");
+        });
+        assert!(touches && leaves, "{method:?}");
+    }
+}
+
+/// A free rigid block slides on soft ground, at last as fast as Coulomb says.
+#[test]
+fn a_rigid_block_slides_on_soil() {
+    let (theta, mass) = (0.5_f64.atan(), 200.0);
+    let body = RigidBody { friction: 0.3, ..free([0.5, 1.0], [1.5, 1.25], mass) };
+    let mut scene = ground(0.25, [16, 4], 2, Regime::Dynamic).rigid(body);
+    scene.model.gravity = Some(inclined(0.5));
+    let (mut momentum, mut velocity, mut cuts) = (Vector::<2>::zeros(), 0.0, 0);
+    scene.march(0.01, 0.5, |_, accepted| {
+        let now = accepted.report.rigid[0];
+        let weight = Vector::<2>::new(theta.sin(), -theta.cos()) * (mass * G * (accepted.t / RAMP).min(1.0));
+        momentum += (now.force.fixed_rows::<2>(0) + weight) * accepted.dt;
+        let off = (momentum - now.velocity.fixed_rows::<2>(0) * mass).norm();
+        assert!(off < 1e-10 * mass, "{off}");
+        (velocity, cuts) = (now.velocity[0], cuts + accepted.rejected.len());
+    });
+    let exact = G * (theta.sin() - 0.3 * theta.cos()) * (0.5 - 0.5 * RAMP);
+    println!("{:.4} of it, {cuts} cuts", velocity / exact);
+    // measured .9998; without correcting statuses one by one 22 cuts
+    assert!((velocity / exact - 1.0).abs() < 0.005 && cuts == 0);
 }

@@ -4,6 +4,8 @@ use super::outline::Outline;
 use crate::schedule::between;
 use crate::tensor::Vector;
 
+/// Part of a body's size by which another one that only touches it may be in it.
+const TOUCHING: f64 = 1e-6;
 /// Motions of a body in the plane: along x, along y, and its rotation.
 pub const MOTIONS: usize = 3;
 
@@ -73,6 +75,17 @@ impl RigidBody {
     /// Of motions that are free those of one, else those of the other.
     pub fn pick(&self, free: &Vector<3>, other: &Vector<3>) -> Vector<3> {
         Vector::from_fn(|k, _| if self.free[k] { free[k] } else { other[k] })
+    }
+
+    /// Whether its outline, once it has `moved`, has a part inside of another body's, which has moved, too: looked for at
+    /// places along it.
+    pub fn reaches_into(&self, moved: &Vector<3>, (other, there): (&Self, &Vector<3>)) -> bool {
+        let (own, others) = (self.pose(moved), other.pose(there));
+        let apart = (own.center - others.center).norm() - self.outline.radius() - other.outline.radius();
+        let is_inside = |x: &Vector<2>| {
+            other.outline.nearest(&others.seen(&own.place(x))).distance < -TOUCHING * other.outline.radius()
+        };
+        apart < 0.0 && self.outline.places().iter().any(is_inside)
     }
 
     /// Where it is once it has `moved`.

@@ -2,7 +2,7 @@
 
 use super::body::{RigidBody, RigidState};
 use super::point::{Grip, RigidPoint};
-use super::{BodyInStep, RigidContacts};
+use super::{BodyInStep, PENALTY, RigidContacts};
 use crate::error::StepError;
 use crate::grid::{Grid, Shape};
 use crate::nodal::Nodal;
@@ -11,8 +11,6 @@ use crate::points::Points;
 use crate::tensor::Vector;
 use nalgebra::Matrix3;
 
-/// Stiffness of a point at an outline over that of its material, E A/h, and over its inertia.
-const PENALTY: f64 = 1e3;
 /// Part of a cell within which a point is on the outline as a step begins.
 const CLOSE: f64 = 1e-6;
 /// Steps ahead of the meeting from which on material is near a body: it may be faster or slower than it starts.
@@ -74,12 +72,13 @@ impl<const D: usize> RigidContacts<D> {
             let mut at = BodyInStep::of(body, state, (t, dt), around);
             let found = contacts.points.len();
             at.least = contacts.gather((number, &at), (around, &young), dt);
-            for point in &mut contacts.points[found..] {
-                near[2 * number] = 1.0;
-                if around.dynamic && point.gap <= MEETING * comes(point, &at, around, dt) + CLOSE * contacts.edge {
-                    let seen = point.N.iter().zip(&contacts.offsets).filter(|(N, _)| **N > SEEN);
-                    seen.for_each(|(_, offset)| moving[point.first_node + offset] = 1.0);
+            for point in &contacts.points[found..] {
+                if !around.dynamic || point.gap > MEETING * comes(point, &at, around, dt) + CLOSE * contacts.edge {
+                    continue;
                 }
+                near[2 * number] = 1.0;
+                let seen = point.N.iter().zip(&contacts.offsets).filter(|(N, _)| **N > SEEN);
+                seen.for_each(|(_, offset)| moving[point.first_node + offset] = 1.0);
             }
             near[2 * number + 1] = -at.least;
             contacts.bodies.push(at);
@@ -91,6 +90,8 @@ impl<const D: usize> RigidContacts<D> {
                 at.fly(dt);
             }
         }
+        let Self { points, bodies: at, .. } = &mut contacts;
+        points.retain(|point| at[point.body].flight.is_none());
         if around.dynamic {
             halo.max(&mut moving, 1);
             let marked = |(c, free): (usize, &bool)| *free && moving[Nodal::<D>::node(c)] > 0.0;
@@ -145,6 +146,7 @@ impl<const D: usize> RigidContacts<D> {
                 let place = x - normal * reach;
                 let seen = before.seen(&place);
                 let along = Vector::<2>::new(-normal[1], normal[0]);
+                let step = after.place(&seen) - place;
                 let carried = points.grip.as_ref().map_or(0.0, |grip| along.dot(&plane(&grip[p])));
                 self.points.push(RigidPoint {
                     body: number,
@@ -153,7 +155,8 @@ impl<const D: usize> RigidContacts<D> {
                     N: values(shape, p, &(place - x)),
                     normal,
                     gap,
-                    motion: along.dot(&(after.place(&seen) - place)),
+                    motion: along.dot(&step),
+                    way: step.norm(),
                     arm: after.turned(&seen),
                     stiffness: PENALTY * stiffness,
                     friction: body.friction,

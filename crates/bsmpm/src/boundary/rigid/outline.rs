@@ -6,6 +6,9 @@ use std::f64::consts::PI;
 /// Part of an outline's size below which a place counts as on it, whose normal is then that of the edge.
 const ON: f64 = 1e-12;
 
+/// Places along an edge or a circle at which others are looked for.
+const PLACES: usize = 32;
+
 /// The outline of a body, m from its reference point.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Outline {
@@ -52,6 +55,23 @@ impl Outline {
         match self {
             Self::Circle(radius) => *radius,
             Self::Polygon(corners) => corners.iter().map(Vector::norm).fold(0.0, f64::max),
+        }
+    }
+
+    /// Places along it, corners among them.
+    pub fn places(&self) -> Vec<Vector<2>> {
+        match self {
+            Self::Circle(radius) => {
+                let place = |k: usize| (k as f64 / PLACES as f64 * 2.0 * PI).sin_cos();
+                (0..PLACES).map(place).map(|(sin, cos)| Vector::<2>::new(cos, sin) * *radius).collect()
+            }
+            Self::Polygon(corners) => {
+                let along = |(a, b): (&Vector<2>, &Vector<2>)| {
+                    let (from, way) = (*a, b - a);
+                    (0..PLACES).map(move |k| from + way * (k as f64 / PLACES as f64))
+                };
+                edges(corners).flat_map(along).collect()
+            }
         }
     }
 

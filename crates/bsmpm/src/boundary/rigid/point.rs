@@ -29,8 +29,10 @@ pub(super) struct RigidPoint {
     pub normal: Vector<2>,
     /// m  from the body as it is at the end of the step, of the point as it is at the start
     pub gap: f64,
-    /// m  of the body along the outline in the step
+    /// m  of the body along the outline in the step, as predicted
     pub motion: f64,
+    /// m  of the body there in any direction
+    pub way: f64,
     /// m  from the body's reference point to the place, at the end
     pub arm: Vector<2>,
     /// N/m
@@ -130,18 +132,23 @@ impl RigidPoint {
         }
     }
 
-    /// The status that a displacement asks for, as far as forces are known to `force`, N, and lengths to `length`, m.
-    pub fn corrected(&self, moved: &Vector<2>, (force, length): (f64, f64)) -> Grip {
+    /// The status that a displacement asks for, as far as forces are known to `force`, N, and lengths to `length`, m; and
+    /// by how much it contradicts the one that is, N: of what has moved too far, what soil would have resisted with.
+    pub fn corrected(&self, moved: &Vector<2>, (force, length): (f64, f64)) -> (Grip, f64) {
+        let soil = 1.0 / super::PENALTY;
         if self.grip == Grip::Open {
-            return if self.gap_after(moved) < -length { self.met(moved) } else { Grip::Open };
+            let depth = -self.gap_after(moved);
+            return if depth > length { (self.met(moved), soil * self.stiffness * depth) } else { (Grip::Open, 0.0) };
         }
         let [normal, along] = self.pushed(moved);
         let limit = self.friction * normal.max(0.0);
         match self.grip {
-            _ if normal < -force => Grip::Open,
-            Grip::Stick if along.abs() > limit + force => Grip::Slip(along.signum()),
-            Grip::Slip(sign) if sign != 0.0 && sign * self.held(moved) < limit - force => Grip::Stick,
-            grip => grip,
+            _ if normal < -force => (Grip::Open, -normal),
+            Grip::Stick if along.abs() > limit + force => (Grip::Slip(along.signum()), along.abs() - limit),
+            Grip::Slip(sign) if sign != 0.0 && sign * self.held(moved) < limit - force => {
+                (Grip::Stick, soil * (limit - sign * self.held(moved)))
+            }
+            grip => (grip, 0.0),
         }
     }
 

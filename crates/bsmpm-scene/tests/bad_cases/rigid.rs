@@ -1,0 +1,62 @@
+//! Rows about rigid bodies.
+
+use super::{Row, row};
+
+const POLYGON: &str = "polygon  = [[1.9, 1.35], [2.45, \"135 cm\"], [2.45, 1.9], [1.9, 1.9]]";
+const FREE: &str = "free    = [\"x\", \"y\", \"rotation\"]";
+const PATH: &str = "path     = [[\"0.5 s\", -0.1, 0.0], [1.0, 0.0, \"5 cm\"]]";
+const WEIGHED: &str = "free    = [\"x\", \"y\", \"rotation\"]\ndensity = \"0.5 t/m3\"";
+const INERTIA: &str = "inertia = 10.0\n";
+
+/// Shapes, motions and what acts on rigid bodies.
+pub const RIGID: &[Row] = &[
+    row("name    = \"pipe\"", "name    = \"plough\"", "rigid.1.name", "there is a rigid body `plough` already"),
+    row(POLYGON, "polygon = [[2.1, 1.4], [2.4, 1.8]]", "rigid.0.polygon", "2 corners"),
+    row(
+        POLYGON,
+        "polygon = [[2.1, 1.4], [2.9, 1.4], [2.9, 1.8], [2.1, 1.8]]",
+        "rigid.0.polygon",
+        "subtract it from that body",
+    ),
+    row(POLYGON, "polygon = [[0, 0.5], [4, 0.5], [4, 3], [0, 3]]", "rigid.0.polygon", "body 0 (from 0) is in it"),
+    row(POLYGON, "circle = { center = [0.5, 2.0], radius = 0.6 }", "rigid.0.circle", "is in it at"),
+    row("friction = 0.4", "friction = 2.1", "rigid.0.friction", "out of range"),
+    row(PATH, "path = [[0.5, -0.1, 0.0], [0.5, 0.0, 0.0]]", "rigid.0.path", "t = 0.5 is not above 0.5"),
+    row(
+        "rotation = [[\"0.5 s\", \"10 deg\"], [1.0, 0.0]]",
+        "rotation = [[0.0, 1.0]]",
+        "rigid.0.rotation",
+        "with the angle 0",
+    ),
+    row(FREE, "free = [\"x\", \"z\"]", "rigid.1.free", "allowed: x, y, rotation"),
+    row(FREE, "free = [\"x\", \"y\"]", "rigid.1.moment", "its rotation is not `free`").down(4),
+    row(FREE, "free = [\"y\", \"rotation\"]", "rigid.1.start_velocity", "along x, which is not `free`").down(6),
+    row(FREE, "free = [\"x\", \"rotation\"]", "rigid.1.force", "acts along y, which is not `free`").down(3),
+    row(
+        FREE,
+        "free = [\"x\", \"y\", \"rotation\"]\npath = [[1.0, 0.0, 0.1]]",
+        "rigid.1.path",
+        "moves along y, which is `free`",
+    )
+    .down(1),
+    row(FREE, "free = [\"x\", \"y\", \"rotation\"]\nabout = [3.6, 2.5]", "rigid.1.about", "about its centre of mass")
+        .down(1),
+    row(FREE, "free = [\"x\", \"y\", \"rotation\"]\nrotation = [[1.0, 1.0]]", "rigid.1.rotation", "it is `free`")
+        .down(1),
+    row(WEIGHED, FREE, "rigid.1.free", "it has no mass"),
+    row(INERTIA, "inertia = 0\n", "rigid.1.inertia", "allowed: inertia > 0"),
+    row("friction = 0.4\n", "friction = 0.4\nmass = 5\n", "rigid.0.mass", "no motion is `free`").down(1),
+    row(
+        "rigid    = \"pipe\"",
+        "rigid    = \"pip\"",
+        "history.7.rigid",
+        "there is no rigid body `pip`; did you mean `pipe`",
+    ),
+    row(
+        "[[history]]\nquantity = \"rigid-force\"\nrigid    = \"pipe\"",
+        "[[history]]\nquantity = \"rigid-force\"",
+        "history.7.rigid",
+        "missing; quantity \"rigid-force\" needs it",
+    ),
+    row("quantity = \"heave\"", "quantity = \"heave\"\nrigid = \"pipe\"", "history.5.rigid", "has no meaning").down(1),
+];
