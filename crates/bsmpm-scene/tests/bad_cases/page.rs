@@ -96,7 +96,10 @@ const WRONG: &[Wrong] = &[
         &[("bottom = \"fixed\"", "bottom = \"fixed\"\nleft = \"free-field\"")],
     ),
     dynamic("a start that is settled by a word that is none", &[("k0 = 0.5", "k0 = 0.5\nequilibrium = \"elastic\"")]),
-    dynamic("strength that is divided by nothing", &[("add  = [\"fill\"]", "add = [\"fill\"]\nstrength_reduction = 0.0")]),
+    dynamic(
+        "strength that is divided by nothing",
+        &[("add  = [\"fill\"]", "add = [\"fill\"]\nstrength_reduction = 0.0")],
+    ),
 ];
 
 /// The page: of every wrong case what was changed, and what the program says.

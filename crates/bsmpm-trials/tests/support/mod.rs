@@ -3,6 +3,7 @@
 #![allow(dead_code)] // every test program takes its part of this
 
 pub mod cases;
+pub mod circles;
 pub mod driver;
 pub mod processes;
 pub mod results;

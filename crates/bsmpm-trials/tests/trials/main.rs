@@ -16,6 +16,7 @@ mod memory;
 mod open_faces;
 mod outputs;
 mod ranks;
+mod references;
 mod restart;
 mod rigid;
 mod room;
