@@ -33,7 +33,7 @@ pub struct Turnover {
 /// The bound on the energy of a run: all that must be kept to go on with it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Budget {
-    /// J  kinetic and elastic energy when it was opened
+    /// J  kinetic and elastic energy when it was opened; without any then, with what the first step seemed to make
     pub start: f64,
     /// J  work of gravity, loads and what moves since
     pub external: f64,
@@ -61,7 +61,14 @@ impl Budget {
     pub fn enter(&mut self, step: &Turnover) {
         self.external += step.external;
         self.plastic += step.plastic;
-        let (given, energy) = (self.start + self.external, step.stored.kinetic + step.stored.elastic + self.plastic);
+        let energy = step.stored.kinetic + step.stored.elastic + self.plastic;
+        if self.largest == 0.0 {
+            // The mean of a force that grows from nothing is not what numerical damping has moved by: after a first step
+            // of masses without springs energy is 4 % beyond its work at a spectral radius of .9, 15 % at .5; after the
+            // second 1 %.
+            self.start = self.start.max(energy - self.external);
+        }
+        let given = self.start + self.external;
         self.largest = self.largest.max(given).max(energy);
         if self.largest > 0.0 {
             self.growth = self.growth.max((energy - given) / self.largest);
@@ -82,5 +89,30 @@ impl Budget {
         let given = self.start + self.external;
         let grown = StepError::EnergyMade { growth: self.growth, given, slack: SLACK };
         if self.growth > SLACK { Err(grown) } else { Ok(()) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A step that took that in, J, and what there is after it.
+    fn turnover(external: f64, kinetic: f64) -> Turnover {
+        Turnover { external, stored: Stored { kinetic, ..Stored::default() }, ..Turnover::default() }
+    }
+
+    #[test]
+    fn a_first_step_from_nothing_opens_the_books_and_what_is_made_later_is_found() {
+        let mut budget = Budget::open(Stored::default());
+        // A mass under a force that grows by 1 N a second, steps of 1 s, spectral radius .5.
+        for step in [turnover(0.1667, 0.1953), turnover(2.02, 2.2)] {
+            budget.enter(&step);
+            assert!(budget.require().is_ok(), "{budget:?}");
+        }
+        budget.enter(&turnover(0.0, 2.4));
+        assert!(budget.require().is_err(), "{budget:?}");
+        let mut moving = Budget::open(Stored { kinetic: 1.0, ..Stored::default() });
+        moving.enter(&turnover(0.0, 1.1));
+        assert!(moving.require().is_err());
     }
 }

@@ -57,7 +57,7 @@ fn a_strip_that_lifts_leaves_the_block_and_meets_it_where_it_left_it() {
         scene.march(0.1, 1.0, |_, accepted| {
             let (strip, found) = of(accepted);
             match accepted.t {
-                t if t < 0.21 || t > 0.99 => pushed.push(strip.force[1]),
+                t if !(0.21..=0.99).contains(&t) => pushed.push(strip.force[1]),
                 t => {
                     assert!(strip.force == [0.0; 2] && strip.moment == 0.0 && found.closed == 0.0, "{strip:?}");
                     let high = if t < 0.5 { 0.67 * (t - 0.2) - 1e-3 } else { 0.2 - 0.402 * (t - 0.5) };
