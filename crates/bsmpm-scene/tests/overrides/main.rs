@@ -165,6 +165,8 @@ fn the_full_case_in_si() {
         "heave",
         "centre-of-mass-x",
         "centre-of-mass-y",
+        "rigid-force-x",
+        "rigid-force-y",
     ];
     assert_eq!(columns, expected);
     assert_eq!(case.histories[6].quantity, Quantity::CentreOfMass { of: Counted::Material(0) });
