@@ -152,10 +152,8 @@ impl Measurement {
 
     /// Whether it is of the points of a material or a body, if one is given.
     pub fn is_of_part(self) -> bool {
-        match self {
-            Self::Mass | Self::Momentum | Self::CentreOfMass | Self::AngularMomentum | Self::KineticEnergy => true,
-            Self::MeanStress | Self::Runout | Self::Height | Self::MaxDisplacement | Self::Heave => true,
-            _ => false,
-        }
+        use Measurement::*;
+        let sums = matches!(self, Mass | Momentum | CentreOfMass | AngularMomentum | KineticEnergy | MeanStress);
+        sums || matches!(self, Runout | Height | MaxDisplacement | Heave)
     }
 }

@@ -165,6 +165,12 @@ fn the_full_case_in_si() {
         "heave",
         "centre-of-mass-x",
         "centre-of-mass-y",
+        "kinetic-energy",
+        "section-forces-n",
+        "section-forces-q",
+        "section-forces-m",
+        "velocity-x",
+        "velocity-y",
     ];
     assert_eq!(columns, expected);
     assert_eq!(case.histories[6].quantity, Quantity::CentreOfMass { of: Counted::Material(0) });

@@ -152,10 +152,8 @@ impl FieldName {
 
     /// Whether it is never negative, and 0 is where nothing is.
     fn begins_at_zero(self) -> bool {
-        match self {
-            Self::PlasticStrain | Self::Displacement | Self::Velocity | Self::Q => true,
-            Self::MobilisedStrength | Self::DeviatoricStrain | Self::Yielding => true,
-            _ => false,
-        }
+        let of_motion =
+            matches!(self, Self::PlasticStrain | Self::DeviatoricStrain | Self::Displacement | Self::Velocity);
+        of_motion || matches!(self, Self::Q | Self::MobilisedStrength | Self::Yielding)
     }
 }
