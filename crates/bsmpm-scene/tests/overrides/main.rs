@@ -165,6 +165,12 @@ fn the_full_case_in_si() {
         "heave",
         "centre-of-mass-x",
         "centre-of-mass-y",
+        "kinetic-energy",
+        "section-forces-n",
+        "section-forces-q",
+        "section-forces-m",
+        "velocity-x",
+        "velocity-y",
         "rigid-force-x",
         "rigid-force-y",
     ];
