@@ -62,7 +62,7 @@ impl Dashpots {
         Self(dashpots)
     }
 
-    /// Drives those of a face, by its number among those that absorb, by the force of what is beside every node of it, N,
+    /// Drives those of a face, by its number among those that absorb, by the force of what is beside its nodes, N,
     /// and by its velocity, m/s.
     pub fn drive<const D: usize>(&mut self, face: usize, force: &[Vector<D>], velocity: &[Vector<D>]) {
         for at in self.0.iter_mut().filter(|at| at.place[0] == face) {
