@@ -49,8 +49,8 @@ macro_rules! columns {
             pub state: Option<Rows>,
             /// what strips and loads carry on; no column: it is the same on every rank
             pub surface: Surface<D>,
-            /// the columns of the free field, in the order of the faces that have one; no column: the same on every rank,
-            /// and none before the first step
+            /// the columns of the free field, in the order of the faces that have one; the same on every
+            /// rank, none before the first step
             pub free_field: Vec<Points<D>>,
         }
 

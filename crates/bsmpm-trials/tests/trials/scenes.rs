@@ -322,6 +322,8 @@ fn rows_from_a_file_are_those_of_the_case_on_any_number_of_ranks_and_wrong_ones_
     // The case that is kept has the rows, so that a restart needs no file.
     let text = manifest(&named.path("case.out")).case.text;
     assert!(text.contains("300.0 cm/s2") && !text.contains("quake.csv"), "{text}");
+    named.write("quake.csv", "t [ms], a [cm/s2]\n10, 300\n30, -100\n");
+    named.mpirun(1, &["case.toml", "-q", "--restart", "auto"]).expect(76).says_once("shaking.acceleration was");
     named.write("quake.csv", "t [ms], a [cm/s2]\n10, 300\n30, fast\n");
     let told = named.mpirun(2, &["case.toml", "-q", "--force"]).expect(65);
     told.says_once("quake.csv: line 3: `fast` is no number");

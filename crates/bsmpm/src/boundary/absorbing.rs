@@ -62,7 +62,7 @@ impl Dashpots {
         Self(dashpots)
     }
 
-    /// Drives those of a face, by its number among those that absorb, by the force of what is beside every node of it, N,
+    /// Drives those of a face, by its number among those that absorb, by the force of what is beside its nodes, N,
     /// and by its velocity, m/s.
     pub fn drive<const D: usize>(&mut self, face: usize, force: &[Vector<D>], velocity: &[Vector<D>]) {
         for at in self.0.iter_mut().filter(|at| at.place[0] == face) {
@@ -86,8 +86,8 @@ impl Dashpots {
         self.0.iter().map(|at| (at.component, at.impedance * inertia.velocity_factor(at.component)))
     }
 
-    /// J  work of the dashpots on this rank's own nodes, relative to what is beside them, and without that of what holds
-    /// the start.
+    /// J  work of the dashpots on this rank's own nodes, relative to what is beside them, without that of what
+    /// holds the start.
     pub fn work<const D: usize>(&self, inertia: &Inertia, u: &[f64], halo: &dyn Halo) -> Vec<f64> {
         let owned = Nodal::<D>::all(&halo.owned());
         let own = self.0.iter().filter(|at| owned.contains(&at.component));
