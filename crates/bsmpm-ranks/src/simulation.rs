@@ -94,8 +94,8 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         Self { model, points, halo, universe, petsc, choice, slabs, schedule, stepper, solver, steps, cost, timers }
     }
 
-    /// Gives the points a stress at the start, see [`initial`], which `settles` to equilibrium with the materials' laws,
-    /// and tells how well it is balanced, and what that took.
+    /// Gives the points a stress at the start, see [`initial`], which `settles` to equilibrium with the materials'
+    /// laws, and tells how well it is balanced, and what that took.
     pub fn stress(
         &mut self,
         start: StartStress<'_, D>,

@@ -1,9 +1,10 @@
 //! `bsmpm fos`: the factor of safety of a case by strength reduction. The case is read in `subject`, factors are chosen
 //! in `search`, trials are made in `trial` and judged in `curve`, results are set in `report` and drawn in `picture`.
 //!
-//! Loading soil is path dependent, so every trial carries its load from zero, or goes on from the end of a stage that was
-//! made with the whole strength: a state of another strength is no state on the way. What could be saved that way is taken from trials that run at the same time instead: `guess` tells which
-//! ones the search may ask for next, `jobs` runs them. They shorten the search and change nothing else in it.
+//! Loading soil is path dependent, so every trial carries its load from zero, or goes on from the end of a stage that
+//! was made with the whole strength: a state of another strength is no state on the way. What could be saved that way
+//! is taken from trials that run at the same time instead: `guess` tells which ones the search may ask for next, `jobs`
+//! runs them. They shorten the search and change nothing else in it.
 
 use std::fs;
 use std::path::PathBuf;

@@ -10,8 +10,8 @@
 //!
 //! - **external**: `Σ_p m_p (g0 + g1)/2 · Δu_p` of gravity, `Σ A (q0 + q1)/2 · Δx` of tractions and point loads,
 //!   `Σ A (p0 + p1)/2 · motion` of rigid strips, `r1 · u` of supports of the grid that move, and of friction at faces
-//!   and strips,   and the blow `v · M (v - v_p)` with which supports meet material that the points bring along with v_p. The mean
-//!   force of a step: its work is exact for dead loads and of second order in dt else.
+//!   and strips,   and the blow `v · M (v - v_p)` with which supports meet material that the points bring along with
+//!   v_p. The mean force of a step: its work is exact for dead loads and of second order in dt else.
 //! - **plastic**: `Σ_p V0 τ : (ε_trial - εᵉ)`, backward Euler like the return, and what damping takes, `Σ_p V0 τ_v : e`
 //!   (see [`damping`](crate::step::damping)).
 //! - **transfer** between points and nodes: `(T0 - ½ v_I0 · M v_I0) + (½ v_I1 · M v_I1 - T1)` and what the blow did,
@@ -31,7 +31,8 @@
 //!   more than the body stores.
 //! - **smoothing**: E before less E after bᵉ is changed once the step has converged.
 //! - **background**: `u · B u`; the background forgets it after every step.
-//! - **penalty**: `Σ A (p0 + p1)/2 · (motion - u)`, by which material slips from strips, but for what friction takes of it.
+//! - **penalty**: `Σ A (p0 + p1)/2 · (motion - u)`, by which material slips from strips, but for what friction takes of
+//!   it.
 //!
 //! **closure** is then the work of what is out of balance, `f_oob · u`, that of the iteration's tolerance, and
 //! round-off. Supports that do not move, and strips at rest, do no work. In J (plane strain: per metre).

@@ -51,16 +51,16 @@ pub struct CheckpointState {
     /// The columns of the free field; none of a run without any, or before the first step.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub free_field: Vec<FreeFieldState>,
-    /// Of every rigid body its motions (m, m, rad), their velocities, and the way of the material along it, m; none of a
-    /// run without any.
+    /// Of every rigid body its motions (m, m, rad), their velocities, and the way of the material along it, m; none of
+    /// a run without any.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub rigid: Vec<[f64; 7]>,
     /// What the histories go on from.
     pub record: RecordState,
     /// Strips of which it was told that they hold nothing; and, their number added, that they have let go.
     pub told_strips: BTreeSet<usize>,
-    /// Rigid bodies of which it was told that they came too fast (twice their number) or go into the soil (and one), and
-    /// behind those pairs that have met.
+    /// Rigid bodies of which it was told that they came too fast (twice their number) or go into the soil (and one),
+    /// and behind those pairs that have met.
     #[serde(default, skip_serializing_if = "BTreeSet::is_empty")]
     pub told_rigid: BTreeSet<usize>,
     /// The step of the newest frame.

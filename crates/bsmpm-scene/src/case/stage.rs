@@ -102,8 +102,8 @@ impl Case {
         factor.map_or(1.0, |factor| factor / self.strength_reduction.unwrap_or(1.0))
     }
 
-    /// When the stage of a name ends (s, or pseudo-time): as the next one begins. `"start"`, of what is before the first
-    /// stage; `"end"`, of the run.
+    /// When the stage of a name ends (s, or pseudo-time): as the next one begins. `"start"`, of what is before the
+    /// first stage; `"end"`, of the run.
     pub fn end_of_stage(&self, name: &str) -> Option<f64> {
         let end = |next: usize| self.stages.get(next).map_or(self.analysis.end, |stage| stage.at);
         match self.stages.iter().position(|stage| stage.name.as_deref() == Some(name)) {

@@ -85,8 +85,8 @@ pub(super) fn prescribed(root: &Record, around: AroundStrip<'_>, report: &mut Re
 /// Parts of the shortest cell beside a strip at which bodies are looked for.
 const BESIDE: f64 = 0.25;
 
-/// What a strip does that rubs and lets go, and what it may hold so; `None` where the key is a word, `Some(None)` after an
-/// error.
+/// What a strip does that rubs and lets go, and what it may hold so; `None` where the key is a word, `Some(None)` after
+/// an error.
 fn rubs(
     (root, record): (&Record, &Record),
     key: &str,

@@ -33,7 +33,8 @@ choice! {
         Outflow = "outflow",
         /// Force of a face's supports, or of a strip or what else moves, on the body, per metre of thickness.
         Reaction = "reaction",
-        /// Moment of the force of a strip or what else moves about its middle, counter-clockwise, per metre of thickness.
+        /// Moment of the force of a strip or what else moves about its middle, counter-clockwise, per metre of
+        /// thickness.
         Moment = "moment",
         /// Work of a strip or what else moves on the body since the start, per metre of thickness: by the mean force of
         /// every step.
@@ -81,8 +82,8 @@ choice! {
         RigidRotation = "rigid-rotation",
         /// Velocity of a rigid body's reference point.
         RigidVelocity = "rigid-velocity",
-        /// Way that soil has gone along a rigid body's outline where it touches it: the sum of every step's mean, weighted
-        /// with the normal force.
+        /// Way that soil has gone along a rigid body's outline where it touches it: the sum of every step's mean,
+        /// weighted with the normal force.
         RigidSlip = "rigid-slip",
         /// The least distance of soil from a rigid body; 0 where it is touched, and before the first step.
         RigidGap = "rigid-gap",

@@ -64,8 +64,8 @@ choice! {
         Contact = "contact",
         /// Lets waves out (dynamic): nothing held but the state of `[initial]`.
         Absorbing = "absorbing",
-        /// A side beside ground that shakes (dynamic): a column of soil moves there as the free field and drives it, what
-        /// differs leaves.
+        /// A side beside ground that shakes (dynamic): a column of soil moves there as the free field and drives it,
+        /// what differs leaves.
         FreeField = "free-field",
         /// Nothing held; material that leaves the grid there is counted and forgotten.
         Outflow = "outflow",

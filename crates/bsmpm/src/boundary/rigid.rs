@@ -242,9 +242,9 @@ impl<const D: usize> RigidContacts<D> {
         self.points.iter().map(of).collect()
     }
 
-    /// Corrects the statuses that the displacement `u` (m) contradicts by more than `force`, N: all of them in the first
-    /// `passes`, later those that it contradicts most, as all at once may go round in a circle; how many there were over
-    /// all ranks.
+    /// Corrects the statuses that the displacement `u` (m) contradicts by more than `force`, N: all of them in the
+    /// first `passes`, later those that it contradicts most, as all at once may go round in a circle; how many there
+    /// were over all ranks.
     pub fn correct(&mut self, u: &[f64], (force, passes): (f64, usize), halo: &dyn Halo) -> Result<usize, StepError> {
         if self.is_empty() {
             return Ok(0);

@@ -2,8 +2,8 @@
 //!
 //! The paper holds the material by a penalty on boundary points (Cortis et al., 2018), whose slip is lost every step.
 //! Here the traction of the last step is carried on, as a multiplier: p = p(t) + beta (motion - sum N u). What has
-//! slipped in all steps together is then p / beta, so that a moderate penalty does. The hold is bilateral, unless the strip
-//! has a [contact](StripContact).
+//! slipped in all steps together is then p / beta, so that a moderate penalty does. The hold is bilateral, unless the
+//! strip has a [contact](StripContact).
 
 mod grip;
 
@@ -60,8 +60,8 @@ impl<const D: usize> Strip<D> {
         self.contact.is_some_and(|contact| contact.law.lifts)
     }
 
-    /// N  its force on the body by component, and N m  the moment of it about the middle of the strip in the plane of the
-    /// axes 0 and 1, counter-clockwise, of what its points carry.
+    /// N  its force on the body by component, and N m  the moment of it about the middle of the strip in the plane of
+    /// the axes 0 and 1, counter-clockwise, of what its points carry.
     fn force(&self, carried: &[Vector<D>]) -> (Vector<D>, f64) {
         let area: f64 = self.points.iter().map(|point| point.area).sum();
         let middle = self.points.iter().fold(Vector::<D>::zeros(), |sum, point| sum + point.x * point.area) / area;

@@ -63,9 +63,9 @@ impl Budget {
         self.plastic += step.plastic;
         let energy = step.stored.kinetic + step.stored.elastic + self.plastic;
         if self.largest == 0.0 {
-            // The mean of a force that grows from nothing is not what numerical damping has moved by: after a first step
-            // of masses without springs energy is 4 % beyond its work at a spectral radius of .9, 15 % at .5; after the
-            // second 1 %.
+            // The mean of a force that grows from nothing is not what numerical damping has moved by: after a first
+            // step of masses without springs energy is 4 % beyond its work at a spectral radius of .9, 15 % at .5;
+            // after the second 1 %.
             self.start = self.start.max(energy - self.external);
         }
         let given = self.start + self.external;

@@ -34,10 +34,10 @@ pub struct Settling {
     pub evaluations: usize,
 }
 
-/// Gives every point the vertical stress of linear elastic equilibrium under the loads at time 0, with the shear that goes
-/// with it, and `k0(material)` times it as horizontal stress: of level ground that is the weight above, without what the
-/// points' quadrature is off; beneath a step of the surface it is spread, which a jump across a vertical line, in balance
-/// as it is, would never be. Fails as [`set_elastic`].
+/// Gives every point the vertical stress of linear elastic equilibrium under the loads at time 0, with the shear that
+/// goes with it, and `k0(material)` times it as horizontal stress: of level ground that is the weight above, without
+/// what the points' quadrature is off; beneath a step of the surface it is spread, which a jump across a vertical line,
+/// in balance as it is, would never be. Fails as [`set_elastic`].
 pub fn set_spread<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     points: &mut Points<D>,

@@ -1,8 +1,8 @@
 //! Section forces: what the stress transmits across a line.
 //!
 //! They are the virtual work of the stress on motions of the grid that move one side of the line as a rigid body and
-//! leave the other one. Forces on the nodes balance for such motions, so normal force, shear force and moment have their
-//! equilibrium as exactly as the step has its own, however the stress oscillates from point to point.
+//! leave the other one. Forces on the nodes balance for such motions, so normal force, shear force and moment have
+//! their equilibrium as exactly as the step has its own, however the stress oscillates from point to point.
 
 use crate::exact::Exact;
 use crate::grid::Grid;
@@ -80,8 +80,8 @@ impl Cut {
         (inside / (2.0 * half)).clamp(0.0, 1.0)
     }
 
-    /// Virtual work of the stress of a point per volume, Pa or N/m, on the motion of what is beyond the line: by 1 along
-    /// n, by 1 along t, by a rotation of 1 about the line's middle, clockwise.
+    /// Virtual work of the stress of a point per volume, Pa or N/m, on the motion of what is beyond the line: by 1
+    /// along n, by 1 along t, by a rotation of 1 about the line's middle, clockwise.
     fn work<const W: usize>(&self, grid: &Grid<2>, points: &Points<2>, p: usize) -> Option<[f64; 3]> {
         let cell = grid.locate(&points.x[p])?;
         let [(Nx, dNx), (Ny, dNy)] = [0, 1].map(|axis| grid.axes()[axis].basis::<W>(points.x[p][axis], cell[axis]));

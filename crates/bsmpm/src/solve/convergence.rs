@@ -145,8 +145,8 @@ impl Convergence {
 }
 
 /// |du_0 . (f_0 - K_strips du_0)|: the energy of the first direction without that of the penalty of strips and
-/// rigid bodies, which takes up their motion in it and would make the measure as much too lenient as the penalty is stiff. `work`:
-/// du_0 . f_0.
+/// rigid bodies, which takes up their motion in it and would make the measure as much too lenient as the penalty is
+/// stiff. `work`: du_0 . f_0.
 pub fn first_energy<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>, du: &[f64], work: f64) -> f64 {
     let rigid = &problem.nodes.rigid;
     if problem.model.boundary.strips.is_empty() && rigid.is_empty() {

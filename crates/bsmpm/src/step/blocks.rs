@@ -46,7 +46,8 @@ pub fn add_point<K: Kinematics<D>, const D: usize>(
     }
 }
 
-/// Adds strips, rigid bodies, faces of the background and inertia to a matrix whose patches are assembled, and factorises it.
+/// Adds strips, rigid bodies, faces of the background and inertia to a matrix whose patches are assembled, and
+/// factorises it.
 pub fn complete<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
     solver: &mut dyn LinearSolver,

@@ -157,8 +157,8 @@ fn bar(cells: usize, gap: f64) -> [f64; 3] {
     [(pushed - 1) as f64 * dt * c / 2.0, velocity(&scene.points) / v, energy]
 }
 
-/// Wherever its points are in their cells as it comes: with .25 they have just come into new ones, whose nodes hold next
-/// to nothing.
+/// Wherever its points are in their cells as it comes: with .25 they have just come into new ones, whose nodes hold
+/// next to nothing.
 #[test]
 fn a_bar_hits_a_wall_and_leaves_it() {
     for gap in [0.02, 0.25, 0.5] {
@@ -171,8 +171,8 @@ fn a_bar_hits_a_wall_and_leaves_it() {
     }
 }
 
-/// Stress below a rigid cylinder that is pressed into ground, over Hertz's 2 P/(pi a)/sqrt(1 + (z/a)^2), and whether the
-/// width of the contact, by the points that are touched, is 2 a up to the spacing of points.
+/// Stress below a rigid cylinder that is pressed into ground, over Hertz's 2 P/(pi a)/sqrt(1 + (z/a)^2), and whether
+/// the width of the contact, by the points that are touched, is 2 a up to the spacing of points.
 fn hertz(h: f64) -> (Vec<f64>, f64) {
     let (radius, depth, side) = (2.0, 4.0, (4.0 / h) as usize);
     let cylinder =
@@ -196,7 +196,8 @@ fn hertz(h: f64) -> (Vec<f64>, f64) {
 fn a_cylinder_on_a_half_plane_is_hertz() {
     let (coarse, fine) = (hertz(0.2), hertz(0.1));
     println!("{coarse:.3?} {fine:.3?}");
-    // measured: up to 21 % with a cell of 1.4 a, 4 % with half of it, of which 2 % are the sides and bottom of the ground
+    // measured: up to 21 % with a cell of 1.4 a, 4 % with half of it, of which 2 % are the sides and bottom of the
+    // ground
     let off = |found: &[f64]| found.iter().map(|share| (share - 1.0).abs()).fold(0.0, f64::max);
     assert!(off(&fine.0) < 0.05 && off(&fine.0) < 0.5 * off(&coarse.0) && fine.1.abs() < 1.0);
 }
@@ -251,8 +252,8 @@ fn nothing_is_pulled_and_what_was_pressed_comes_back() {
     assert!(left < 2e-3 * most, "{left} Pa of {most}");
 }
 
-/// A footing that moves freely under a load beside its middle: what acts on it is what it gives on, and where the load is
-/// beyond a sixth of its width it lifts.
+/// A footing that moves freely under a load beside its middle: what acts on it is what it gives on, and where the load
+/// is beyond a sixth of its width it lifts.
 #[test]
 fn a_free_footing_lifts_under_an_eccentric_load() {
     let footing = RigidBody { friction: 0.5, ..free([1.5, 1.0], [2.5, 1.25], 0.0) };

@@ -77,8 +77,8 @@ impl RigidBody {
         Vector::from_fn(|k, _| if self.free[k] { free[k] } else { other[k] })
     }
 
-    /// Whether its outline, once it has `moved`, has a part inside of another body's, which has moved, too: looked for at
-    /// places along it.
+    /// Whether its outline, once it has `moved`, has a part inside of another body's, which has moved, too: looked for
+    /// at places along it.
     pub fn reaches_into(&self, moved: &Vector<3>, (other, there): (&Self, &Vector<3>)) -> bool {
         let (own, others) = (self.pose(moved), other.pose(there));
         let apart = (own.center - others.center).norm() - self.outline.radius() - other.outline.radius();

@@ -237,8 +237,8 @@ fn longest_edge<const D: usize>(grid: &Grid<D>, axis: usize) -> f64 {
     (0..knots.cells()).map(|cell| knots.breakpoint(cell + 1) - knots.breakpoint(cell)).fold(0.0, f64::max)
 }
 
-/// m  how far a point reaches along a normal, by the ellipse in its box in the lattice of the cell that it was in at the
-/// start, deformed by its F; and an edge of that cell.
+/// m  how far a point reaches along a normal, by the ellipse in its box in the lattice of the cell that it was in at
+/// the start, deformed by its F; and an edge of that cell.
 fn reach<const D: usize>(around: &Surroundings<'_, D>, p: usize, normal: &Vector<2>) -> (f64, f64) {
     let Surroundings { grid, points, reach, .. } = around;
     let start = grid.locate(&(points.x[p] - points.u[p])).or_else(|| grid.locate(&points.x[p]));
@@ -254,9 +254,9 @@ fn reach<const D: usize>(around: &Surroundings<'_, D>, p: usize, normal: &Vector
     (reach.clamp(STRETCH[0] * share * edge, STRETCH[1] * share * size.max()), edge)
 }
 
-/// What the nodes of a point's cell have to say of a place beside it: N_I + grad N_I . (place - x), so that a force there
-/// keeps its moment. The functions themselves, gone on with to the place, would let a node that the point hardly touches
-/// take up all that is asked there; linear ones do so either way, and speak of the point alone.
+/// What the nodes of a point's cell have to say of a place beside it: N_I + grad N_I . (place - x), so that a force
+/// there keeps its moment. The functions themselves, gone on with to the place, would let a node that the point hardly
+/// touches take up all that is asked there; linear ones do so either way, and speak of the point alone.
 fn values<const D: usize>(shape: &Shape<D>, p: usize, offset: &Vector<2>) -> Vec<f64> {
     let reaches = if shape.width() > 2 { 1.0 } else { 0.0 };
     let of = |(N, grad): (f64, Vector<D>)| N + reaches * (grad[0] * offset[0] + grad[1] * offset[1]);

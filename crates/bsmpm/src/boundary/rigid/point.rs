@@ -132,8 +132,9 @@ impl RigidPoint {
         }
     }
 
-    /// The status that a displacement asks for, as far as forces are known to `force`, N, and lengths to `length`, m; and
-    /// by how much it contradicts the one that is, N: of what has moved too far, what soil would have resisted with.
+    /// The status that a displacement asks for, as far as forces are known to `force`, N, and lengths to `length`, m;
+    /// and by how much it contradicts the one that is, N: of what has moved too far, what soil would have resisted
+    /// with.
     pub fn corrected(&self, moved: &Vector<2>, (force, length): (f64, f64)) -> (Grip, f64) {
         let soil = 1.0 / super::PENALTY;
         if self.grip == Grip::Open {

@@ -147,7 +147,8 @@ impl<const D: usize> Grip<D> {
                 let shear = trial - self.normal(trial);
                 match shear.dot(&along) {
                     _ if pressure < -doubt => Status::Slip(Vector::zeros()),
-                    // Whoever slid against friction has to stick first: to turn it at once goes back and forth for ever.
+                    // Whoever slid against friction has to stick first: to turn it at once goes back and forth for
+                    // ever.
                     slid if slid < self.contact.law.friction * pressure - doubt => Status::Stick,
                     slid if slid < ALIGNED * shear.norm() => Status::Slip(shear.normalize()),
                     _ => self.status,
