@@ -2,19 +2,17 @@
 //! each, and a text of everything that is the same everywhere, the [`CheckpointState`]. What makes a file a checkpoint
 //! is `bsmpm_io::checkpoint`'s part.
 
-mod free_field;
 mod read;
 mod refusal;
 mod sanity;
 mod state;
 mod write;
 
-pub use free_field::FreeFieldState;
 pub use read::{Opened, Wanted, find};
 pub use refusal::Refusal;
 pub(crate) use refusal::{agree, broadcast};
 pub(crate) use sanity::require;
-pub use state::{BooksForm, CheckpointState, Files, Outlet, RecordState};
+pub use state::{BooksForm, CheckpointState, Files, FreeFieldState, Outlet, RecordState};
 pub(crate) use state::{pairs, rigid_numbers};
 pub(crate) use write::room;
 pub use write::{Contents, write};

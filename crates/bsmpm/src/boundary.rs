@@ -4,12 +4,13 @@
 pub mod absorbing;
 pub mod anchor;
 pub mod contact;
+pub mod coulomb;
 pub mod load;
 pub mod rigid;
 pub mod strip;
 pub mod surface;
 
-pub use contact::{Contact, ContactReport};
+pub use coulomb::{Contact, ContactReport};
 pub use load::Load;
 pub use rigid::{RigidBody, RigidReport, RigidState};
 pub use strip::{Path, Strip, StripContact, StripReport};

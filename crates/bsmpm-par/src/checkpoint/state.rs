@@ -1,7 +1,10 @@
 //! What a checkpoint says in words and single numbers: everything that is no array of the points or nodes.
 
+mod free_field;
+
+pub use free_field::FreeFieldState;
+
 use super::Refusal;
-use super::free_field::FreeFieldState;
 use bsmpm::boundary::{Anchors, RigidState, Surface};
 use bsmpm::control::Progress;
 use bsmpm::energy::{Books, Budget, Flows};

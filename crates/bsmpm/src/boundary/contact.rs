@@ -4,9 +4,8 @@
 mod gap;
 mod node;
 
-pub use node::{Contact, Status};
-
 use super::Boundary;
+use super::coulomb::{ContactReport, Status};
 use crate::exact::Exact;
 use crate::grid::{Grid, Shape};
 use crate::nodal::Nodal;
@@ -25,25 +24,6 @@ pub struct Contacts<const D: usize> {
     nodes: Vec<ContactNode<D>>,
     /// N m  first energy of the step's iteration, by which those that follow with other statuses are judged
     pub first_energy: Option<f64>,
-}
-
-/// What a face or strip with contact did in a step.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct ContactReport {
-    /// number of the support, or of the strip
-    pub support: usize,
-    /// nodes of the face, or points of the strip, that see material
-    pub nodes: usize,
-    /// -  part of them that is on the face
-    pub closed: f64,
-    /// -  part of the normal force that is on nodes that slip; 0 without force
-    pub sliding: f64,
-    /// m  mean of the slip of the step, by normal force
-    pub slip: f64,
-    /// J  dissipated by friction in the step
-    pub dissipated: f64,
-    /// m  least and largest distance of the material at the end of the step; 0 without material
-    pub gap: [f64; 2],
 }
 
 impl<const D: usize> Contacts<D> {

@@ -9,7 +9,7 @@ mod grip;
 
 pub use grip::StripContact;
 
-use super::contact::{ContactReport, Status};
+use super::coulomb::{ContactReport, Status};
 use super::surface::{Attachment, Surface, SurfacePoint};
 use crate::exact::Exact;
 use crate::grid::{Contributions, Grid};

@@ -1,5 +1,6 @@
 //! A node on a face with contact: its statuses, and what displacement and reaction ask of them.
 
+use crate::boundary::coulomb::{Contact, Status};
 use crate::nodal::Nodal;
 use crate::tensor::Vector;
 
@@ -8,26 +9,6 @@ use crate::tensor::Vector;
 const KEPT: f64 = 0.05;
 /// Cosine of the angle between slip and friction from which on they are opposite.
 const ALIGNED: f64 = 1.0 - 1e-12;
-
-/// What a face does to the material at it, instead of holding it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Contact {
-    /// -  coefficient of friction mu
-    pub friction: f64,
-    /// whether material comes off it; else its normal component is held both ways, and nothing rubs where it pulls
-    pub lifts: bool,
-}
-
-/// What a node of such a face does in a step.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Status<const D: usize> {
-    /// Off the face: no force.
-    Open,
-    /// On the face, and held along it.
-    Stick,
-    /// On the face, and free along it but for the friction against this unit vector; zero without friction.
-    Slip(Vector<D>),
-}
 
 /// A node on a face with contact whose normal component nothing else holds.
 #[derive(Clone, Copy, Debug)]

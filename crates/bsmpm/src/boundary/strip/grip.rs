@@ -1,6 +1,6 @@
 //! The law at a point of a strip that the material rubs along and comes off.
 
-use super::super::contact::{Contact, Status};
+use crate::boundary::coulomb::{Contact, Status};
 use crate::tensor::Vector;
 
 /// Cosine of the angle between trial and friction from which on they are one.

@@ -1,6 +1,6 @@
 //! Columns of the free field in a checkpoint: few points, the same on every rank, so that numbers in its text do.
 
-use super::state::pairs;
+use super::pairs;
 use bsmpm::points::{Number, Points};
 use bsmpm::tensor::Vector;
 use serde::{Deserialize, Serialize};
