@@ -77,7 +77,7 @@ pub struct FosArguments {
     #[arg(long, value_name = "FACTOR", default_value_t = 3.0)]
     pub to: f64,
     /// At the end of the stage of this name, in the state that it leaves; "start": of what is before the first stage;
-    /// "end": of the run, as for a case that begins with [initial]. Factors are at least 1 then
+    /// "end": of the run, as for a case that begins with `[initial]`. Factors are at least 1 then
     #[arg(long, value_name = "NAME")]
     pub stage: Option<String>,
     /// The width of the bands

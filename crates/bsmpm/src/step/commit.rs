@@ -38,7 +38,9 @@ pub fn check_inside<K: Kinematics<D>, const D: usize>(
         model.grid.locate(&x).is_none().then(|| (p, x, model.boundary.lets_out(&model.grid, &x)))
     });
     let anchors = &points.surface.anchors;
-    let carries = |p: usize| anchors.strips.iter().chain(&anchors.loads).flatten().any(|id| *id == points.id[p]);
+    let acting = anchors.strips.iter().zip(&model.boundary.strips).filter(|(_, strip)| strip.acts());
+    let acting: Vec<&Vec<u64>> = acting.map(|(ids, _)| ids).chain(&anchors.loads).collect();
+    let carries = |p: usize| acting.iter().any(|ids| ids.contains(&points.id[p]));
     let wrongly = |(p, _, out): &(usize, Vector<D>, bool)| !out || carries(*p);
     let mut leaves: Vec<_> = leaves.into_iter().flatten().collect();
     let mut counts = [(points.len() - leaves.len()) as f64, 0.0];
