@@ -22,8 +22,10 @@ fn valid(text: &str, overrides: &[&str]) -> Case {
     set(text, overrides).unwrap_or_else(|errors| panic!("{overrides:?}: {errors:#?}"))
 }
 
+/// What is warned of but for what the base itself is: rigid bodies of the full one are thinner than two of its cells.
 fn doubts(text: &str, overrides: &[&str]) -> Vec<String> {
-    valid(text, overrides).warnings
+    let base = valid(text, &[]).warnings;
+    valid(text, overrides).warnings.into_iter().filter(|told| !base.contains(told)).collect()
 }
 
 #[test]
@@ -178,7 +180,8 @@ fn the_full_case_in_si() {
     assert_eq!(case.histories[6].quantity, Quantity::CentreOfMass { of: Counted::Material(0) });
     assert_eq!(case.histories[4].quantity, Quantity::PressureNoise { within: Some([[0.0, 0.0], [2.0, 1.0]]) });
     assert_eq!((case.checks[0].at, case.checks[0].max, case.checks[1].at), (0.5, Some(4.0), 1.0));
-    assert!(case.warnings.is_empty(), "{:?}", case.warnings);
+    let thin = |told: &&String| told.starts_with("rigid.") && told.contains("points on its two sides share nodes");
+    assert!(case.warnings.len() == 2 && case.warnings.iter().all(|told| thin(&told)), "{:?}", case.warnings);
 }
 
 #[test]
