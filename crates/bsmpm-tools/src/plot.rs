@@ -16,6 +16,7 @@ mod body;
 mod convergence;
 mod curves;
 mod field;
+mod rigid;
 mod surface;
 
 pub use field::FieldName;

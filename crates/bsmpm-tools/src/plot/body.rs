@@ -1,9 +1,10 @@
 //! The body at chosen times, coloured by a quantity of its points; one range of colours for all times.
 
 use bsmpm_io::frame::Frame;
-use bsmpm_scene::Regime;
+use bsmpm_scene::{Case, Regime};
 
 use super::field::FieldName;
+use super::rigid;
 use crate::Error;
 use crate::picture::axes::{self, ChartAxes, title};
 use crate::picture::bar::{self, Bar};
@@ -31,17 +32,25 @@ pub(super) fn draw(
     let values = values.ok_or_else(missing)?;
     let colours = wanted.unwrap_or_else(|| field.range(&values));
     let region = region(record, frames);
+    // A case of another version, which is none today, has no rigid bodies either.
+    let case = Case::from_text("case", &record.manifest.case.text, &[]).ok();
     let mut names = Vec::new();
     for (frame, values) in frames.iter().zip(&values) {
         let name = format!("{}_{}.png", field.name(), short(frame.time));
-        picture(record, frame, values, region, Bar { range: colours, label: field.label() })
-            .save(&record.directory.join(&name))?;
+        let bar = Bar { range: colours, label: field.label() };
+        picture((record, case.as_ref()), frame, values, region, bar).save(&record.directory.join(&name))?;
         names.push(name);
     }
     Ok(names)
 }
 
-fn picture(record: &RunRecord, frame: &Frame, values: &[f64], region: [(f64, f64); 2], bar: Bar) -> Canvas {
+fn picture(
+    (record, case): (&RunRecord, Option<&Case>),
+    frame: &Frame,
+    values: &[f64],
+    region: [(f64, f64); 2],
+    bar: Bar,
+) -> Canvas {
     // A low and long body has its bar of colours lying below it.
     let lying = aspect(region) < 0.5;
     let layout = Layout::of(region, if lying { RIGHT } else { bar::BESIDE }, 0.0);
@@ -60,6 +69,9 @@ fn picture(record: &RunRecord, frame: &Frame, values: &[f64], region: [(f64, f64
     };
     let inside = splat::SplatWindow { ranges, walls };
     splat::draw(&mut canvas, &axes, &inside, (&frame.position, &sizes), &shades);
+    if let Some(case) = case {
+        rigid::draw(&mut canvas, (&axes, region), (record, case), frame);
+    }
     outline(&mut canvas, &axes, record);
     axes.draw(&mut canvas, Some(("x", "m")), ("y", "m"));
     if lying {
