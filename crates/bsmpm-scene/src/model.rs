@@ -89,7 +89,7 @@ fn boundary(case: &Case, grid: &Grid<2>, t: f64) -> Boundary<2> {
         supports: supports(case, t),
         outlets: outlets(case, t),
         strips: surfaces::strips(case, grid, (penalty(case), t)),
-        rigid: surfaces::rigid(case),
+        rigid: surfaces::rigid(case, t),
         loads: surfaces::loads(case, grid, t),
         reach: reach(case),
     }

@@ -33,9 +33,16 @@ pub fn strips(case: &Case, grid: &Grid<2>, (penalty, t): (f64, f64)) -> Vec<Stri
         path: Path { rows: path.rows.iter().map(|(time, moved)| (*time, Vector::from(*moved))).collect() },
         penalty: if contact.is_some() { RUBBING * penalty } else { penalty },
     };
+    let divided = case.divided_at(t);
+    let rubs = |contact: Option<StripContact<2>>| {
+        contact.map(|mut contact| {
+            contact.law.friction /= divided;
+            contact
+        })
+    };
     let footing = case.footing.iter();
-    let footing = footing.map(|of| strip(base(case, of), &of.path, (of.base, of.contact)));
-    let prescribed = case.prescribed.iter().map(|of| strip(ends(case, of), &of.path, (of.base, of.contact)));
+    let footing = footing.map(|of| strip(base(case, of), &of.path, (of.base, rubs(of.contact))));
+    let prescribed = case.prescribed.iter().map(|of| strip(ends(case, of), &of.path, (of.base, rubs(of.contact))));
     let acts = |number: usize| case.acts_since(Acting::Strip(number), t).is_some();
     let held = |(number, strip): (usize, Strip<2>)| if acts(number) { strip } else { Strip { penalty: 0.0, ..strip } };
     footing.chain(prescribed).enumerate().map(held).collect()
@@ -110,9 +117,11 @@ fn around(grid: &Grid<2>, center: &Vector<2>, radius: f64, count: usize) -> Vec<
     (0..pieces).map(point).filter(|(point, _)| grid.locate(&point.x).is_some()).collect()
 }
 
-/// Rigid bodies in the order of the file.
-pub fn rigid(case: &Case) -> Vec<RigidBody> {
-    case.rigid.iter().map(|rigid| rigid_body(rigid, case.grid.lower())).collect()
+/// Rigid bodies in the order of the file, once the stages until the time `t` have begun.
+pub fn rigid(case: &Case, t: f64) -> Vec<RigidBody> {
+    let divided = case.divided_at(t);
+    let of = |rigid: &Rigid| RigidBody { friction: rigid.friction / divided, ..rigid_body(rigid, case.grid.lower()) };
+    case.rigid.iter().map(of).collect()
 }
 
 /// An outline about a reference point, both in m.

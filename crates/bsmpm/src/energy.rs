@@ -174,7 +174,7 @@ impl Draft {
         if !nodes.rigid.is_empty() {
             let [given, friction] = nodes.rigid.work(u, halo);
             flows.external += &given;
-            rubbed.add(0.5 * friction.value());
+            rubbed += &friction;
         }
         if let Some(inertia) = &nodes.inertia {
             rubbed.extend(nodes.dashpots.work::<D>(inertia, u, halo).into_iter().map(|work| 0.5 * work));

@@ -10,7 +10,7 @@ use crate::boundary::strip::StripAttachments;
 use crate::error::StepError;
 use crate::grid::{Shape, transfer};
 use crate::kinematics::Kinematics;
-use crate::material::{Branch, Elastic, Material};
+use crate::material::{Branch, Elastic, Material, Separation};
 use crate::model::Model;
 use crate::parallel::{Halo, LinearSolver, agreed};
 use crate::points::{Packed, Points};
@@ -79,6 +79,11 @@ pub fn exchange<K: Kinematics<D>, const D: usize>(
             }
             let response = before.respond(points, p, &points.b_e.at(p));
             let tau = response.map_err(|source| StepError::Material { id: points.id[p], source })?.tau();
+            if new.separation() != Separation::Closing
+                && let Some(gap) = &mut points.gap
+            {
+                gap[p] = 0.0;
+            }
             let state = points.state.as_mut().map_or(&mut [][..], |state| state.of_point_mut(p));
             if old.state() != new.state() {
                 state.fill(0.0);

@@ -64,6 +64,9 @@ impl Run<'_> {
         if unbalance > UNBALANCED {
             // Linear elastic equilibrium is lost by nothing but yield.
             let advice = match &self.case.initial {
+                _ if !self.case.rigid.is_empty() => {
+                    "rigid bodies have no part in it: where they hold soil let gravity grow over a ramp, without [initial]"
+                }
                 Some(Initial::Elastic) => {
                     "the elastic stress is beyond yield; equilibrium = \"plastic\" leads it to equilibrium before the first \
                      step, and gravity with a ramp and no [initial] lets the body yield as it is loaded"

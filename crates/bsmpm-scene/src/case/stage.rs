@@ -96,7 +96,7 @@ impl Case {
     }
 
     /// What the strength of the start is divided by once the stages until the time `t` have begun.
-    fn divided_at(&self, t: f64) -> f64 {
+    pub(crate) fn divided_at(&self, t: f64) -> f64 {
         let mut begun = self.stages.iter().rev().filter(|stage| self.has_begun(stage, t));
         let factor = begun.find_map(|stage| stage.strength_reduction);
         factor.map_or(1.0, |factor| factor / self.strength_reduction.unwrap_or(1.0))

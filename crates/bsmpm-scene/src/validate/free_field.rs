@@ -1,7 +1,7 @@
 //! Sides that follow a free field.
 
 use super::physics::reached;
-use crate::case::{Body, Case, LoadedLine, Site, Support};
+use crate::case::{Body, Case, LoadedLine, RigidShape, Site, Support};
 use crate::record::Record;
 use crate::report::Report;
 use crate::words::{Side, Word};
@@ -60,10 +60,18 @@ fn acts_between(case: &Case, (lower, higher): (f64, f64)) -> Option<&'static str
         Site::Face(face) => face.axis == 1,
         Site::Segment { from, to } => within(from[0], to[0]),
     };
+    let shape = |shape: &RigidShape| match shape {
+        RigidShape::Circle { center, radius } => within(center[0] - radius, center[0] + radius),
+        RigidShape::Polygon(corners) => {
+            let ends = corners.iter().map(|corner| corner[0]);
+            within(ends.clone().fold(f64::INFINITY, f64::min), ends.fold(f64::NEG_INFINITY, f64::max))
+        }
+    };
     let acting = [
         ("the footing", case.footing.as_ref().is_some_and(|footing| within(footing.from[0], footing.to[0]))),
         ("a prescribed motion", case.prescribed.iter().any(|motion| site(&motion.site))),
         ("a traction", case.tractions.iter().any(|traction| line(&traction.line))),
+        ("a rigid body", case.rigid.iter().any(|rigid| shape(&rigid.shape))),
         ("a point load", case.point_loads.iter().any(|load| within(load.at[0], load.at[0]))),
     ];
     acting.into_iter().find(|(_, acts)| *acts).map(|(what, _)| what)

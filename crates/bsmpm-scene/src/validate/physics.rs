@@ -112,6 +112,12 @@ fn absorbed(case: &Case, record: &Record, report: &mut Report<'_>) {
         if !case.stages.is_empty() {
             refuse("holds what [initial] has found there, which stages change: it cannot be used with [[stage]]");
         }
+        if case.boundary[1 - axis].contains(&Support::Contact) {
+            refuse(
+                "beside a face in contact: who holds the node that both have, and what it holds of [initial], is not \
+                    settled; fix or absorb there, too",
+            );
+        }
         let absorbs = case.boundary[axis][upper] == Support::Absorbing;
         if absorbs && axis == 0 && case.shaking.iter().any(|(_, ground)| *ground != [0.0; 2]) {
             refuse(

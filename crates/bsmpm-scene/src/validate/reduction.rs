@@ -27,7 +27,10 @@ pub(super) fn divisible(case: &Case, record: &Record, report: &mut Report<'_>) {
         );
         record.error(key, message, report);
     }
-    let rubs = case.faces_at(case.analysis.end).into_iter().any(|face| face.contact.is_some());
+    let rubs = case.faces_at(case.analysis.end).into_iter().any(|face| face.contact.is_some())
+        || case.footing.iter().any(|footing| footing.contact.is_some())
+        || case.prescribed.iter().any(|prescribed| prescribed.contact.is_some())
+        || case.rigid.iter().any(|rigid| rigid.friction > 0.0);
     if !rubs && !case.materials.iter().any(|named| named.material.yields()) {
         report.warn(format!("{}: no material has strength: it does nothing", record.path_of(key)));
     }
@@ -41,6 +44,11 @@ pub(super) fn at_stage(case: &mut Case, root: &Record, report: &mut Report<'_>) 
     if case.analysis.regime == Regime::Dynamic {
         let message = "it looks for equilibrium, and needs a quasi-static analysis; in a dynamic one a [[stage]] with \
                        strength_reduction lets the body fail in time";
+        table.error("stage", message, report);
+    }
+    if !case.rigid.is_empty() {
+        let message = "rigid bodies would go on their ways while the strength falls, which was not shown: a [[stage]] with \
+                       strength_reduction divides it while they move";
         table.error("stage", message, report);
     }
     let Some(until) = case.end_of_stage(name) else {

@@ -2,7 +2,7 @@
 
 use super::strip::{self, AroundStrip};
 use super::{MOST_SHOWN_FRICTION, load, place, shape};
-use crate::case::{Case, Initial, MotionPath, Rigid, RigidShape};
+use crate::case::{Case, Initial, MotionPath, Rigid, RigidShape, Support};
 use crate::nearest::hint;
 use crate::record::Record;
 use crate::report::Report;
@@ -202,15 +202,15 @@ fn fine_enough(record: &Record, rigid: &Rigid, around: AroundStrip<'_>, report: 
     let most = fastest.fold(0.0, f64::max);
     if most > ADVANCE * cell {
         report.warn(format!(
-            "{}: it moves up to {:.2} cells in a step; material is pushed right up to {ADVANCE}: more steps",
+            "{}: it moves up to {:.2} cells in a step; shown to be right up to {ADVANCE}: give more steps",
             record.path_of("path"),
             most / cell
         ));
     }
     if let Some((corner, angle)) = sharpest(&outline).filter(|(_, angle)| 2.0 * (0.5 * angle).sin() < 1.0) {
         report.warn(format!(
-            "{}: the corner at [{}, {}] has {:.0} degrees: a cell within it is less than a cell wide, and what it cuts is \
-             rounded by the grid",
+            "{}: the corner at [{}, {}] has {:.0} degrees: soil is pushed right by corners of 60 and more; a sharper one \
+             acts as if rounded over a cell",
             record.path_of("polygon"),
             corner[0] + rigid.about[0],
             corner[1] + rigid.about[1],
@@ -224,8 +224,7 @@ fn fine_enough(record: &Record, rigid: &Rigid, around: AroundStrip<'_>, report: 
     if thickness < THICK * cell {
         report.warn(format!(
             "{}: it is {thickness:.3e} m thick, {:.1} cells: points on its two sides share nodes, which it cannot part, so \
-             that it pulls (a plate of one cell in clay carried nearly three times its load, one of two cells 1 % more): \
-             give cells of at most {:.3e} m where soil is on both sides",
+             that it pulls (cases/results/scenes.md: a plate of one cell carries 11.8 c B, of two cells 4.05): give cells of at most {:.3e} m where soil is on both sides",
             record.path_of(shape::key(record)),
             thickness / cell,
             thickness / THICK
@@ -267,18 +266,76 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
                 record.path
             ));
         }
-        if let Some((at, body)) = overlap(case, rigid) {
+        if root.gives("accuracy") {
+            report.warn(format!(
+                "{}: accuracy knows no rigid bodies: give [grid] cells that are small beside it, and steps",
+                record.path
+            ));
+        }
+        if case.settles {
+            report.warn(format!(
+                "{}: [initial] equilibrium is sought without rigid bodies: soil that leans on one finds none, or another; \
+                 give k0 without it, or let gravity grow over a ramp",
+                record.path
+            ));
+        }
+        let absorbs = case.is_ever(Support::Absorbing) || case.is_ever(Support::FreeField);
+        if absorbs && case.gravity.is_some() {
+            report.warn(format!(
+                "{}: faces that absorb hold what [initial] has found, which has no rigid bodies: one that rests on the \
+                 ground, or holds it, lets it drift away",
+                record.path
+            ));
+        }
+        if let Some((at, body)) = overlap(case, rigid, |body| case.is_there(body, 0.0)) {
             let message = format!(
-                "body {body} (from 0) is in it at [{}, {}], by more than {OVERLAP} cells; subtract it from that body",
+                "body.{body} is in it at [{:.4}, {:.4}], by more than {OVERLAP} cells; subtract it from that body",
                 at[0], at[1]
             );
             record.error(shape::key(record), message, report);
         }
+        placed(case, (rigid, record), report);
     }
 }
 
-/// A place of a body that is inside a rigid one at the start, if there is one.
-fn overlap(case: &Case, rigid: &Rigid) -> Option<([f64; 2], usize)> {
+/// What stages place is not in a rigid body, nor within reach of one.
+fn placed(case: &Case, (rigid, record): (&Rigid, &Record), report: &mut Report<'_>) {
+    let Some((at, body)) = overlap(case, rigid, |body| case.stages.iter().any(|stage| stage.add.contains(&body)))
+    else {
+        let (outline, cell) = (surfaces::outline(&rigid.shape, rigid.about), longest(case));
+        let moves = rigid.free.contains(&true) || !rigid.path.rows.is_empty() || !rigid.rotation.is_empty();
+        let is_near = |body: &usize| {
+            let [lower, upper] = case.bodies[*body].bounds();
+            let reach = outline.radius() + cell;
+            moves || (0..2).all(|k| lower[k] < rigid.about[k] + reach && upper[k] > rigid.about[k] - reach)
+        };
+        if let Some(body) = case.stages.iter().flat_map(|stage| &stage.add).find(|body| is_near(body)) {
+            report.warn(format!(
+                "{}: a stage places body.{body} at it, or where it may be then: points that lie nearer than they reach, up to \
+                 half a spacing, are pushed off it at once, and are strained by that; leave that gap",
+                record.path
+            ));
+        }
+        return;
+    };
+    let message = format!(
+        "a stage places body.{body} in it at [{:.4}, {:.4}], by more than {OVERLAP} cells; subtract it from that body",
+        at[0], at[1]
+    );
+    record.error(shape::key(record), message, report);
+}
+
+/// m  longest edge of all cells.
+fn longest(case: &Case) -> f64 {
+    let edges = |axis: usize| {
+        let knots = &case.grid.axes[axis];
+        (0..knots.cells()).map(|cell| knots.breakpoint(cell + 1) - knots.breakpoint(cell)).fold(0.0, f64::max)
+    };
+    edges(0).max(edges(1))
+}
+
+/// A place of a body among those that are `there` that is inside a rigid one as it is at the start, if there is one.
+fn overlap(case: &Case, rigid: &Rigid, there: impl Fn(usize) -> bool) -> Option<([f64; 2], usize)> {
     let cell = case.grid.axes[0].shortest().min(case.grid.axes[1].shortest());
     let inset = OVERLAP * cell;
     let places: Vec<[f64; 2]> = match &rigid.shape {
@@ -298,7 +355,6 @@ fn overlap(case: &Case, rigid: &Rigid) -> Option<([f64; 2], usize)> {
         let seen = bsmpm::tensor::Vector::<2>::new(at[0] - rigid.about[0], at[1] - rigid.about[1]);
         outline.nearest(&seen).distance < -0.5 * inset
     };
-    let there = |number: usize| case.is_there(number, 0.0);
     let bodies = || case.bodies.iter().enumerate().filter(|(number, _)| there(*number));
     let holds = |at: &[f64; 2]| bodies().find(|(_, body)| body.region.contains(*at)).map(|(number, _)| (*at, number));
     let found = places.iter().filter(|at| is_in(at)).find_map(holds);

@@ -18,7 +18,7 @@ pub const RIGID: &[Row] = &[
         "rigid.0.polygon",
         "subtract it from that body",
     ),
-    row(POLYGON, "polygon = [[0, 0.5], [4, 0.5], [4, 3], [0, 3]]", "rigid.0.polygon", "body 0 (from 0) is in it"),
+    row(POLYGON, "polygon = [[0, 0.5], [4, 0.5], [4, 3], [0, 3]]", "rigid.0.polygon", "body.0 is in it"),
     row(POLYGON, "circle = { center = [0.5, 2.0], radius = 0.6 }", "rigid.0.circle", "is in it at"),
     row("friction = 0.4", "friction = 2.1", "rigid.0.friction", "out of range"),
     row(PATH, "path = [[0.5, -0.1, 0.0], [0.5, 0.0, 0.0]]", "rigid.0.path", "t = 0.5 is not above 0.5"),

@@ -114,6 +114,20 @@ fn layers_by_height_and_reduced_strength() {
 
 /// What a search for the factor of safety takes as its reference: the same stiffness, and no strength.
 #[test]
+fn strength_that_falls_in_a_stage_takes_the_friction_of_rigid_bodies_and_strips_with_it() {
+    let base = "footing.base={ friction = 0.5 }";
+    let case = valid(FULL, &[base, "stage.0.strength_reduction=2.5"]);
+    // Of the start, and from .25 s on.
+    let friction = |t: f64| {
+        let boundary = bsmpm_scene::model::model_at(&case, t).unwrap().boundary;
+        [boundary.rigid[0].friction, boundary.strips[0].contact.expect("it rubs").law.friction]
+    };
+    let (start, later) = (friction(0.0), friction(0.3));
+    assert!((start[0] - 0.4 / 1.25).abs() < 1e-15 && (start[1] - 0.5 / 1.25).abs() < 1e-15, "{start:?}");
+    assert!((later[0] - 0.4 / 2.5).abs() < 1e-15 && (later[1] - 0.5 / 2.5).abs() < 1e-15, "{later:?}");
+}
+
+#[test]
 fn strength_reduction_makes_every_material_elastic_and_stiffer() {
     let set = ["strength_reduction.elastic=true", "strength_reduction.stiffness=20"];
     let (own, case) = (valid(FULL, &[]), valid(FULL, &set));

@@ -25,7 +25,7 @@ pub(super) fn draw(
     (record, case): (&RunRecord, &Case),
     frame: &Frame,
 ) {
-    for (number, body) in surfaces::rigid(case).iter().enumerate() {
+    for (number, body) in surfaces::rigid(case, 0.0).iter().enumerate() {
         let Some(moved) = moved((record, case), (number, body), frame) else { continue };
         let lower = case.grid.lower();
         let place = |x: &Vector<2>| {

@@ -126,7 +126,8 @@ impl<const D: usize> AnchorPlaces<D> {
     /// held.
     pub fn left_behind(&self, number: usize, strip: &Strip<D>, t: f64, grid: &Grid<D>) -> usize {
         let moved = strip.path.at(t);
-        let held = strip.normal.map_or(moved, |normal| normal * normal.dot(&moved));
+        let normal = strip.normal.or(strip.contact.map(|contact| contact.inward));
+        let held = normal.map_or(moved, |normal| normal * normal.dot(&moved));
         let Some(ahead) = held.try_normalize(0.0).filter(|_| strip.acts() && !strip.lifts()) else { return 0 };
         let reach =
             |x: &Vector<D>| 0.5 * grid.locate(x).map_or(grid.smallest_edge(), |cell| grid.cell_box(&cell).1.min());

@@ -274,14 +274,14 @@ impl<const D: usize> RigidContacts<D> {
         Ok(corrected[0] as usize)
     }
 
-    /// J  work of the bodies on the material of this rank, and what of it friction takes, not positive.
+    /// J  work of the bodies on the material of this rank, and half of what of it friction takes, not positive.
     pub fn work(&self, u: &[f64], halo: &dyn Halo) -> [Exact; 2] {
         let motions = self.found(u, halo);
         let mut work = [Exact::ZERO; 2];
         for point in &self.points {
             let moved = self.moved(point, u, &motions);
             work[0].add(point.force(&moved).dot(&point.displacement::<D>(&self.offsets, u)));
-            work[1].add(point.rubbed(&moved));
+            work[1].add(0.5 * point.rubbed(&moved));
         }
         work
     }
@@ -324,7 +324,8 @@ impl<const D: usize> RigidContacts<D> {
                 (&self.bodies[number], [0, 1, 2, 3].map(|k| sums[4 * number + k]));
             let state = self.state(at, &motions[number], if pushed > 0.0 { slipped / pushed } else { 0.0 });
             let [near, penetration, advance] = [0, 1, 2].map(|k| most[3 * number + k]);
-            let gap = at.least.min(-near).max(0.0);
+            // Where no point is near enough to be looked at, the least is that of the start.
+            let gap = if near.is_finite() { -near } else { at.least }.max(0.0);
             let report = RigidReport {
                 force: forces[number],
                 moved: state.moved,

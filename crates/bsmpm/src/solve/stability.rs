@@ -18,6 +18,8 @@ const NEAR: f64 = 1e-3;
 /// dynamics, where inertia decides where an unstable body goes, nor without symmetry.
 pub fn tells<K, const D: usize>(problem: &Problem<'_, K, D>, before: &Balance) -> bool {
     let rubs = problem.model.boundary.supports.iter().any(|face| face.contact.is_some_and(|law| law.friction > 0.0));
+    let strips = &problem.model.boundary.strips;
+    let rubs = rubs || strips.iter().any(|strip| strip.contact.is_some_and(|contact| contact.law.friction > 0.0));
     let rubs = rubs || problem.nodes.rigid.rubs();
     before.measure() < NEAR && problem.nodes.inertia.is_none() && !rubs && is_symmetric(problem.model)
 }

@@ -43,13 +43,14 @@ pub fn check_inside<K: Kinematics<D>, const D: usize>(
     let carries = |p: usize| acting.iter().any(|ids| ids.contains(&points.id[p]));
     let wrongly = |(p, _, out): &(usize, Vector<D>, bool)| !out || carries(*p);
     let mut leaves: Vec<_> = leaves.into_iter().flatten().collect();
-    let mut counts = [(points.len() - leaves.len()) as f64, 0.0];
+    let mut counts = [(points.len() - leaves.len()) as f64, 0.0, leaves.len() as f64];
     leaves.retain(wrongly);
     counts[1] = leaves.len() as f64;
     halo.reduce(&mut counts);
     if counts[1] > 0.0 || counts[0] == 0.0 {
         let first = leaves.into_iter().next().map(|(p, x, _)| (points.id[p], x.as_slice().to_vec()));
-        return Err(StepError::Left { count: counts[1] as u64, first });
+        let count = if counts[1] > 0.0 { counts[1] } else { counts[2] };
+        return Err(StepError::Left { count: count as u64, first });
     }
     Ok(())
 }

@@ -203,11 +203,12 @@ impl BodyInStep {
 /// cut lie as near to a rigid one as the rule of their cell puts them, and are not thrown out.
 fn extents<const D: usize>(around: &Surroundings<'_, D>) -> Vec<f64> {
     let (bodies, states) = around.bodies;
+    let longest = (0..2).map(|axis| longest_edge(around.grid, axis)).fold(0.0, f64::max);
     let of = |p: usize| {
         let left = bodies.iter().zip(states).map(|(body, state)| {
             let pose = body.pose(&state.moved);
             let x = plane(&around.points.x[p]);
-            if (x - pose.center).norm() > body.outline.radius() + 2.0 * around.grid.smallest_edge() {
+            if (x - pose.center).norm() > body.outline.radius() + 2.0 * longest {
                 return 1.0;
             }
             let near = body.outline.nearest(&pose.seen(&x));
