@@ -180,8 +180,10 @@ fn the_full_case_in_si() {
     assert_eq!(case.histories[6].quantity, Quantity::CentreOfMass { of: Counted::Material(0) });
     assert_eq!(case.histories[4].quantity, Quantity::PressureNoise { within: Some([[0.0, 0.0], [2.0, 1.0]]) });
     assert_eq!((case.checks[0].at, case.checks[0].max, case.checks[1].at), (0.5, Some(4.0), 1.0));
-    let thin = |told: &&String| told.starts_with("rigid.") && told.contains("points on its two sides share nodes");
-    assert!(case.warnings.len() == 2 && case.warnings.iter().all(|told| thin(&told)), "{:?}", case.warnings);
+    let told =
+        |what: &str| case.warnings.iter().filter(|told| told.starts_with("rigid.") && told.contains(what)).count();
+    let (thin, placed) = (told("points on its two sides share nodes"), told("a stage places body.5 at it"));
+    assert_eq!((case.warnings.len(), thin, placed), (4, 2, 2), "{:?}", case.warnings);
 }
 
 #[test]

@@ -34,7 +34,7 @@ pub fn section_forces(grid: &Grid<2>, points: &Points<2>, ends: [Vector<2>; 2], 
                 continue;
             }
             if let Some(work) = with_width!(grid.order() + 1, W => cut.work::<W>(grid, points, p)) {
-                // The force that balances is that of tau over the reference volume; sigma is tau over the mean dilation.
+                // The force that balances is that of tau over the reference volume; sigma is tau over F-bar's J.
                 let weight = share * volume * points.dilation_of(p);
                 sums.iter_mut().zip(work).for_each(|(sum, work)| sum.add(weight * work));
             }
