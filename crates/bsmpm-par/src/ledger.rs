@@ -240,7 +240,8 @@ impl Ledger {
             summary.background_work = Some(summary.background_work.unwrap_or(0.0) + soft);
             summary.internal_work = Some(summary.internal_work.unwrap_or(0.0) + all.abs());
         }
-        if let Some(last) = report.history.last().filter(|last| !report.settled && last.force == report.force) {
+        // Where statuses of contacts were corrected, histories go on from search to search: the last alone judges.
+        if let Some(last) = report.judged.filter(|_| !report.settled) {
             let larger =
                 |so_far: &mut Option<f64>, ratio: f64| *so_far = Some(so_far.map_or(ratio, |so| so.max(ratio)));
             larger(&mut summary.largest_force_measure, last.force / force);

@@ -17,6 +17,8 @@ pub struct Found<K: Kinematics<D>, const D: usize> {
     pub reaction: Vec<f64>,
     /// both measures of every iteration
     pub history: Vec<Measures>,
+    /// the measures that it was accepted by; none of a state that was in balance before any direction was known
+    pub judged: Option<Measures>,
     /// force measure
     pub force: f64,
     /// N  largest force, norm of all nodes
@@ -42,11 +44,13 @@ impl<K: Kinematics<D>, const D: usize> Found<K, D> {
         let Residual { trial, balance, .. } = residual;
         let (history, reaction) = (convergence.history().to_vec(), balance.reaction);
         let first_energy = convergence.first_energy();
+        let judged = history.last().copied().filter(|last| last.force == force);
         Self {
             u,
             trial,
             reaction,
             history,
+            judged,
             force,
             scale,
             first_energy,

@@ -34,6 +34,8 @@ pub struct StepReport {
     pub newton_iterations: usize,
     /// both measures of every iteration
     pub history: Vec<Measures>,
+    /// those that it was accepted by; none of a state that was in balance before any direction was known
+    pub judged: Option<Measures>,
     /// force measure |f_oob| / largest force of the accepted state
     pub force: f64,
     /// nodes that carry material, over all ranks
@@ -81,6 +83,7 @@ impl StepReport {
             dt: 0.0,
             iterations: found.history.len(),
             history: found.history.clone(),
+            judged: found.judged,
             force: found.force,
             newton_iterations: found.newton_iterations,
             active_nodes: nodes.active_nodes,
