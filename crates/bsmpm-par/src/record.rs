@@ -385,6 +385,7 @@ fn rigid<K: Kinematics<2>>(
         Measurement::RigidRotation => vec![found.moved[2].to_degrees()],
         Measurement::RigidVelocity => found.velocity.as_slice()[..2].to_vec(),
         Measurement::RigidSlip => vec![found.slipped],
+        Measurement::RigidWork => vec![found.work],
         _ => vec![found.gap],
     }
 }

@@ -54,10 +54,10 @@ pub struct CheckpointState {
     /// The columns of the free field; none of a run without any, or before the first step.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub free_field: Vec<FreeFieldState>,
-    /// Of every rigid body its motions (m, m, rad), their velocities, and the way of the material along it, m; none of
-    /// a run without any.
+    /// Of every rigid body its motions (m, m, rad), their velocities, the way of the material along it, m, and its work,
+    /// J; none of a run without any.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub rigid: Vec<[f64; 7]>,
+    pub rigid: Vec<[f64; 8]>,
     /// What the histories go on from.
     pub record: RecordState,
     /// Strips of which it was told that they hold nothing; and, their number added, that they have let go.
@@ -195,15 +195,15 @@ impl CheckpointState {
 }
 
 /// A rigid body's state from its numbers.
-fn rigid_state(&[x, y, angle, vx, vy, spin, slipped]: &[f64; 7]) -> RigidState {
-    RigidState { moved: [x, y, angle].into(), velocity: [vx, vy, spin].into(), slipped }
+fn rigid_state(&[x, y, angle, vx, vy, spin, slipped, work]: &[f64; 8]) -> RigidState {
+    RigidState { moved: [x, y, angle].into(), velocity: [vx, vy, spin].into(), slipped, work }
 }
 
 /// The numbers of a rigid body's state.
-pub(crate) fn rigid_numbers(state: &RigidState) -> [f64; 7] {
+pub(crate) fn rigid_numbers(state: &RigidState) -> [f64; 8] {
     let [x, y, angle]: [f64; 3] = state.moved.into();
     let [vx, vy, spin]: [f64; 3] = state.velocity.into();
-    [x, y, angle, vx, vy, spin, state.slipped]
+    [x, y, angle, vx, vy, spin, state.slipped, state.work]
 }
 
 /// Whether no load follows the surface.

@@ -133,7 +133,7 @@ fn own_keys(measured: Measurement) -> (&'static [&'static str], &'static [&'stat
         Reaction | Contact | Gap | SlipRate | FrictionPower => (&[], &["face"]),
         Moment | Work => (&[], &["of"]),
         RigidForce | RigidMoment | RigidDisplacement | RigidRotation | RigidVelocity => (&[], &["rigid"]),
-        RigidSlip | RigidGap => (&[], &["rigid"]),
+        RigidSlip | RigidGap | RigidWork => (&[], &["rigid"]),
         Displacement => (&[], &["at"]),
         Velocity | Stress => (&["surface"], &["at"]),
         SectionForces => (&["fixed"], &["from", "to"]),
@@ -199,7 +199,8 @@ fn quantity(
         | Measurement::RigidRotation
         | Measurement::RigidVelocity
         | Measurement::RigidSlip
-        | Measurement::RigidGap => Quantity::Rigid { what: measured, body: rigid(record, root, report)? },
+        | Measurement::RigidGap
+        | Measurement::RigidWork => Quantity::Rigid { what: measured, body: rigid(record, root, report)? },
     })
 }
 

@@ -87,6 +87,8 @@ choice! {
         RigidSlip = "rigid-slip",
         /// The least distance of soil from a rigid body; 0 where it is touched, and before the first step.
         RigidGap = "rigid-gap",
+        /// Work of a rigid body on the soil since the start, friction among it, per metre of thickness.
+        RigidWork = "rigid-work",
         /// Where the energy of the points is, and where it went since the start, per metre of thickness: external =
         /// change of kinetic + change of elastic + plastic + numerical + closure.
         Energy = "energy",
@@ -129,10 +131,8 @@ impl Measurement {
     /// Whether it is of a rigid body.
     pub fn is_of_rigid_body(self) -> bool {
         use Measurement::*;
-        matches!(
-            self,
-            RigidForce | RigidMoment | RigidDisplacement | RigidRotation | RigidVelocity | RigidSlip | RigidGap
-        )
+        matches!(self, RigidForce | RigidMoment | RigidDisplacement | RigidRotation | RigidVelocity)
+            || matches!(self, RigidSlip | RigidGap | RigidWork)
     }
 
     /// Whether it can be of a strip.
@@ -150,7 +150,8 @@ impl Measurement {
     pub fn columns(self) -> &'static [(&'static str, &'static str)] {
         match self {
             Self::RigidForce | Self::RigidDisplacement | Self::RigidVelocity => VECTOR,
-            Self::RigidMoment | Self::RigidRotation | Self::RigidSlip | Self::RigidGap => &[("", "")],
+            Self::RigidMoment | Self::RigidRotation | Self::RigidSlip => &[("", "")],
+            Self::RigidGap | Self::RigidWork => &[("", "")],
             Self::Momentum | Self::CentreOfMass | Self::Reaction | Self::Displacement | Self::Velocity => VECTOR,
             Self::Stress | Self::MeanStress => STRESS,
             Self::SectionForces => SECTION,
@@ -183,7 +184,7 @@ impl Measurement {
             Self::Stress | Self::MeanStress | Self::PressureNoise | Self::FootingPressure => "Pa",
             Self::StressNoise | Self::Slip | Self::Contact => "-",
             Self::Moment => "N",
-            Self::Energy | Self::KineticEnergy | Self::Work => "J/m",
+            Self::Energy | Self::KineticEnergy | Self::Work | Self::RigidWork => "J/m",
         }
     }
 

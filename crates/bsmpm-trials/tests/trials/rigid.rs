@@ -70,6 +70,9 @@ rigid = "roller"
 quantity = "rigid-slip"
 rigid = "roller"
 [[history]]
+quantity = "rigid-work"
+rigid = "roller"
+[[history]]
 quantity = "rigid-gap"
 rigid = "block"
 [[history]]
@@ -95,13 +98,16 @@ fn rigid_bodies_are_the_same_on_any_number_of_ranks_and_over_restarts() {
         std::fs::remove_dir_all(scratch.path("part")).unwrap();
     }
     let [one, three] = ["whole1", "whole3"].map(|name| history(&scratch.path(name)));
-    for name in ["block-y", "rigid-velocity-x", "rigid-velocity-y", "roller-x", "roller-y", "rigid-moment"] {
+    for name in
+        ["block-y", "rigid-velocity-x", "rigid-velocity-y", "roller-x", "roller-y", "rigid-moment", "rigid-work"]
+    {
         let (a, b) = (at(&one, name, 0.12), at(&three, name, 0.12));
         assert!((a - b).abs() < 1e-8 * a.abs(), "{name}: {a} and {b}");
     }
     assert!(at(&one, "block-y", 0.12) > 0.0 && at(&one, "roller-y", 0.06) > 1e3 && at(&one, "rigid-slip", 0.12) > 0.0);
     assert!(at(&one, "roller-x", 0.12) < -0.1 * at(&one, "roller-y", 0.12), "it is dragged");
     assert!((at(&one, "rigid-displacement-x", 0.12) - 0.05).abs() < 1e-12);
+    assert!(at(&one, "rigid-work", 0.12) > 0.0, "it goes into the soil");
     let [closure, external] = ["energy-closure", "energy-external"].map(|name| at(&one, name, 0.12).abs());
     assert!(closure < 1e-6 * external, "{closure:e} of {external:e}");
 }

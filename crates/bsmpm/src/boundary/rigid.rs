@@ -39,6 +39,8 @@ pub struct RigidReport {
     pub velocity: Vector<3>,
     /// m  way of the material along its outline since the start
     pub slipped: f64,
+    /// J  its work on the material since the start, friction among it
+    pub work: f64,
     /// J  dissipated by friction in the step
     pub dissipated: f64,
     /// m  least distance of material from it at the end of the step; 0 where it is touched, and without material
@@ -304,7 +306,7 @@ impl<const D: usize> RigidContacts<D> {
         let motions = self.found(u, halo);
         let forces = self.on_bodies(|point| point.force(&self.moved(point, u, &motions)), halo);
         let count = self.bodies.len();
-        let mut sums = vec![Exact::ZERO; 4 * count]; // touched, pushed, pushed slip, dissipated
+        let mut sums = vec![Exact::ZERO; 5 * count]; // touched, pushed, pushed slip, dissipated, work
         let mut most = vec![f64::NEG_INFINITY; 3 * count]; // gap, penetration, advance
         for point in &self.points {
             let moved = self.moved(point, u, &motions);
@@ -312,17 +314,20 @@ impl<const D: usize> RigidContacts<D> {
             let [pushed, _] = point.pushed(&moved);
             let advance = point.carried_by(&motions[point.body]).norm().max(point.way);
             let touched = f64::from(u8::from(pushed > 0.0));
-            let each = [touched, pushed.max(0.0), pushed.max(0.0) * point.slip(&moved).abs(), -point.rubbed(&moved)];
-            sums[4 * point.body..].iter_mut().zip(each).for_each(|(sum, value)| sum.add(value));
+            let work = point.force(&moved).dot(&point.displacement::<D>(&self.offsets, u));
+            let slipped = pushed.max(0.0) * point.slip(&moved).abs();
+            let each = [touched, pushed.max(0.0), slipped, -point.rubbed(&moved), work];
+            sums[5 * point.body..].iter_mut().zip(each).for_each(|(sum, value)| sum.add(value));
             let each = [-gap, -gap * touched / self.edge, advance * touched / self.edge];
             most[3 * point.body..].iter_mut().zip(each).for_each(|(most, value)| *most = most.max(value));
         }
         let sums = halo.total(&sums);
         halo.maximum(&mut most);
         let report = |number: usize| {
-            let (at, [touched, pushed, slipped, dissipated]) =
-                (&self.bodies[number], [0, 1, 2, 3].map(|k| sums[4 * number + k]));
-            let state = self.state(at, &motions[number], if pushed > 0.0 { slipped / pushed } else { 0.0 });
+            let (at, [touched, pushed, slipped, dissipated, work]) =
+                (&self.bodies[number], [0, 1, 2, 3, 4].map(|k| sums[5 * number + k]));
+            let slip = if pushed > 0.0 { slipped / pushed } else { 0.0 };
+            let state = self.state(at, &motions[number], (slip, work));
             let [near, penetration, advance] = [0, 1, 2].map(|k| most[3 * number + k]);
             // Where no point is near enough to be looked at, the least is that of the start.
             let gap = if near.is_finite() { -near } else { at.least }.max(0.0);
@@ -331,6 +336,7 @@ impl<const D: usize> RigidContacts<D> {
                 moved: state.moved,
                 velocity: state.velocity,
                 slipped: state.slipped,
+                work: state.work,
                 dissipated,
                 gap: if gap.is_finite() { gap } else { 0.0 },
                 touched: touched as usize,
@@ -343,10 +349,10 @@ impl<const D: usize> RigidContacts<D> {
     }
 
     /// The state of a body after the step.
-    fn state(&self, at: &BodyInStep, motions: &Vector<3>, slip: f64) -> RigidState {
+    fn state(&self, at: &BodyInStep, motions: &Vector<3>, (slip, work): (f64, f64)) -> RigidState {
         let moved = at.predicted + motions;
         let mean = (moved - at.before.moved) / self.length;
         let velocity = at.flight.map_or(mean, |end| at.body.pick(&end, &mean));
-        RigidState { moved, velocity, slipped: at.before.slipped + slip }
+        RigidState { moved, velocity, slipped: at.before.slipped + slip, work: at.before.work + work }
     }
 }

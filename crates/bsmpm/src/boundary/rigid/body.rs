@@ -40,6 +40,8 @@ pub struct RigidState {
     pub velocity: Vector<3>,
     /// m  way of the material along its outline, mean by normal force of every step
     pub slipped: f64,
+    /// J  its work on the material so far
+    pub work: f64,
 }
 
 /// Where a body is.
