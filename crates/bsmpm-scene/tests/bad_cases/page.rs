@@ -119,9 +119,8 @@ fn page() -> String {
         let errors = Case::from_text("case.toml", &text, &[]).err();
         let errors = errors.unwrap_or_else(|| panic!("{}: the case is accepted", wrong.what));
         let first = format!("{:#}", errors[0]);
-        let shown = |&(find, put): &(&str, &str)| match put.trim_end() {
-            "" => format!("# left out: {}\n", find.trim_end()),
-            put => format!("{put}\n"),
+        let shown = |(find, put): &(&str, &str)| {
+            if put.is_empty() { format!("# left out: {find}") } else { format!("{}\n", put.trim_end()) }
         };
         let changed: String = wrong.changes.iter().map(shown).collect();
         page += &format!("\n## {}\n\n```toml\n{changed}```\n\n```text\n{first}\n```\n", wrong.what);
