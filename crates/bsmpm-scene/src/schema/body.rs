@@ -9,7 +9,7 @@ pub(super) static BODY: Table = Table {
     doc: "A body made of material points",
     keys: &[
         key("material", Name, Required, "name of its material"),
-        key("name", Name, Optional, "what stages call it"),
+        key("name", Name, Optional, "what stages and histories call it"),
         key("box", Kind::Table(&BOX), Optional, "a rectangle"),
         key("polygon", POLYGON, Optional, "corners of a polygon, in either direction; its points are those inside"),
         key("circle", Kind::Table(&CIRCLE), Optional, "a circle; its points are those inside"),

@@ -55,8 +55,13 @@ pub(super) static FOOTING: Table = Table {
             Optional,
             "rows [t, ux, uy], t increasing; linear between, 0 at time 0, constant after the last",
         ),
-        key("base", ChoiceOr(Base::WORDS, &RUBS), Default("\"smooth\""), "holds the normal component, or all; or rubs"),
-        key("name", Name, Optional, "what stages call it"),
+        key(
+            "base",
+            ChoiceOr(Base::WORDS, &RUBS),
+            Default("\"smooth\""),
+            "\"smooth\" holds the normal component, \"rough\" all; or a table: it rubs, and lets go",
+        ),
+        key("name", Name, Optional, "what stages and histories call it"),
     ],
     exclusive: &[one_of(&["displacement", "velocity", "path"], true)],
 };
@@ -82,7 +87,7 @@ pub(super) static PRESCRIBED: Table = Table {
             Default("\"all\""),
             "what is held; of a segment also what rubs",
         ),
-        key("name", Name, Optional, "what stages call it"),
+        key("name", Name, Optional, "what stages and histories call it"),
     ],
     exclusive: &[
         one_of(&["face", "from"], true),

@@ -56,7 +56,7 @@ pub(super) static HISTORY: Table = Table {
         key("name", Name, Optional, "name of the column; the quantity's unless given"),
         key("scale", Quantity(In::Number, Range::ANY), Default("1.0"), "multiplies"),
         key("percentile", Quantity(In::Number, PERCENT), Optional, "of runout: share of the points; 100 unless given"),
-        key("face", Choice(Side::WORDS), Optional, "of reaction: the face"),
+        key("face", Choice(Side::WORDS), Optional, "of reaction, contact, gap, slip-rate, friction-power: the face"),
         key("rigid", Name, Optional, "of rigid-force and the like: name of the rigid body"),
         key(
             "of",

@@ -111,7 +111,8 @@ static GRAVITY: Table = Table {
 
 static BOUNDARY: Table = Table {
     header: "[boundary]",
-    doc: "Support of every face of the grid: all components held, the normal one, none, or contact",
+    doc: "What every face of the grid does to the bodies: holds, rubs, absorbs, follows a free field, lets out, or \
+          nothing",
     keys: &[
         key("left", loads::SUPPORT, Default("\"free\""), "face at the lowest x"),
         key("right", loads::SUPPORT, Default("\"free\""), "face at the highest x"),

@@ -71,7 +71,9 @@ fn read(
     if let Some(side) = record.word::<Side>("face").filter(|_| measured.is_of_contact())
         && !supports(root, side).contains(&Support::Contact)
     {
-        let message = format!("\"{measured}\" is about a face in contact, and [boundary] {side} is none");
+        let message = format!(
+            "\"{measured}\" is about a face in contact, and [boundary] {side} is not one: give {{ friction }} or \"contact\""
+        );
         record.error("face", message, report);
     }
     let is_outlet = |side: Side| supports(root, side).contains(&Support::Outflow);

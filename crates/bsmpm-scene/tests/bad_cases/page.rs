@@ -61,7 +61,7 @@ const WRONG: &[Wrong] = &[
         &[("stress = [0.0, \"-20 kPa\"]", "stress = [0.0, \"-20 kPa\"]\npressure = \"20 kPa\"")],
     ),
     dynamic(
-        "a body that spins and flies",
+        "a spin in metres per second",
         &[(
             "velocity = [0.0, \"-1 m/s\"]",
             "velocity = [0.0, \"-1 m/s\"]\nspin = { rate = \"2 m/s\", about = [1.5, \"2 m\"] }",
@@ -92,7 +92,7 @@ const WRONG: &[Wrong] = &[
     dynamic("a profile of a field that is none", &[("\"plastic-strain\"]", "\"plastic strain\"]")]),
     at_rest("a field of frames that stands there already", &[("every = 0.5", "every = 0.5\nfields = [\"q\", \"p\"]")]),
     at_rest(
-        "a free field where nothing shakes",
+        "a free field in a quasi-static analysis",
         &[("bottom = \"fixed\"", "bottom = \"fixed\"\nleft = \"free-field\"")],
     ),
     dynamic("a start that is settled by a word that is none", &[("k0 = 0.5", "k0 = 0.5\nequilibrium = \"elastic\"")]),
@@ -106,9 +106,9 @@ const WRONG: &[Wrong] = &[
 fn page() -> String {
     let mut page = String::from(
         "# Wrong cases\n\nWhat the program says of wrong soils, contacts, loads, motions, stages and histories: the first \
-         error of each, as it\nis printed, with exit code 65. All errors of a case are told at once. Made by the test \
-         `page` of `bsmpm-scene`, which\ncompares; `BSMPM_RENEW=1 cargo test -p bsmpm-scene --test bad_cases page` writes \
-         it anew.\n",
+         error of each, as it\nis printed, with exit code 65. All errors of a case are told at once. The toml block is what \
+         was put into a valid case\n(`tests/full.toml`, `tests/bad_cases/static.toml` of `bsmpm-scene`). Made by the test \
+         `page`, which compares;\n`BSMPM_RENEW=1 cargo test -p bsmpm-scene --test bad_cases page` writes it anew.\n",
     );
     for wrong in WRONG {
         let mut text = wrong.base.to_owned();
@@ -119,7 +119,10 @@ fn page() -> String {
         let errors = Case::from_text("case.toml", &text, &[]).err();
         let errors = errors.unwrap_or_else(|| panic!("{}: the case is accepted", wrong.what));
         let first = format!("{:#}", errors[0]);
-        let changed: String = wrong.changes.iter().map(|(_, put)| format!("{}\n", put.trim_end())).collect();
+        let shown = |(find, put): &(&str, &str)| {
+            if put.is_empty() { format!("# left out: {find}") } else { format!("{}\n", put.trim_end()) }
+        };
+        let changed: String = wrong.changes.iter().map(shown).collect();
         page += &format!("\n## {}\n\n```toml\n{changed}```\n\n```text\n{first}\n```\n", wrong.what);
     }
     page

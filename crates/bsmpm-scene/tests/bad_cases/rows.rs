@@ -245,7 +245,7 @@ pub const RULES: &[Row] = &[
         "quantity = \"heave\"",
         "quantity = \"contact\"\nface = \"bottom\"",
         "history.5.face",
-        "\"contact\" is about a face in contact, and [boundary] bottom is none",
+        "\"contact\" is about a face in contact, and [boundary] bottom is not one: give { friction } or \"contact\"",
     )
     .down(1),
     row(
