@@ -105,7 +105,9 @@ fn rigid_bodies_are_the_same_on_any_number_of_ranks_and_over_restarts() {
         assert!((a - b).abs() < 1e-8 * a.abs(), "{name}: {a} and {b}");
     }
     assert!(at(&one, "block-y", 0.12) > 0.0 && at(&one, "roller-y", 0.06) > 1e3 && at(&one, "rigid-slip", 0.12) > 0.0);
-    assert!(at(&one, "roller-x", 0.12) < -0.1 * at(&one, "roller-y", 0.12), "it is dragged");
+    // Where it touches it goes back, .05 - 10 degrees of .5 m: friction drives it on, and turns against it.
+    let [x, y, moment] = ["roller-x", "roller-y", "rigid-moment"].map(|name| at(&one, name, 0.12));
+    assert!(x > 0.25 * y && moment > 0.25 * 0.5 * y, "{x} {y} {moment}");
     assert!((at(&one, "rigid-displacement-x", 0.12) - 0.05).abs() < 1e-12);
     assert!(at(&one, "rigid-work", 0.12) > 0.0, "it goes into the soil");
     let [closure, external] = ["energy-closure", "energy-external"].map(|name| at(&one, name, 0.12).abs());

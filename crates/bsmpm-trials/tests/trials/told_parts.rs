@@ -52,6 +52,9 @@ ramp = 1.0
 bottom = "fixed"
 left = "roller"
 right = "roller"
+[solver]
+tolerance = 1e-12
+force_tolerance = 1e-9
 [output]
 every_steps = 2
 fields = ["q", "principal-stresses", "mobilised-strength", "deviatoric-strain", "yielding", "density", "body"]
