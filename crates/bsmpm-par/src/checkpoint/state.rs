@@ -54,8 +54,8 @@ pub struct CheckpointState {
     /// The columns of the free field; none of a run without any, or before the first step.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub free_field: Vec<FreeFieldState>,
-    /// Of every rigid body its motions (m, m, rad), their velocities, the way of the material along it, m, and its work,
-    /// J; none of a run without any.
+    /// Of every rigid body its motions (m, m, rad), their velocities, the way of the material along it, m, and its
+    /// work, J; none of a run without any.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub rigid: Vec<[f64; 8]>,
     /// What the histories go on from.
