@@ -6,7 +6,9 @@ use crate::support::solver::Skyline;
 use bsmpm::error::StepError;
 use bsmpm::initial;
 use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
-use bsmpm::material::{Branch, DruckerPrager, Elastic, Graded, Match, Material, MohrCoulomb, Profile, VonMises};
+use bsmpm::material::{
+    Branch, DruckerPrager, Elastic, Graded, Match, Material, MohrCoulomb, Profile, Separation, VonMises,
+};
 use bsmpm::model::Regime;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::tensor::Symmetric;
@@ -180,4 +182,20 @@ fn strength_of_any_law_follows_the_height_at_which_a_point_was_placed() {
             assert!(excess.abs() <= 1e-10 * strength, "{uniform:?}: {excess:e}");
         }
     }
+}
+
+/// What has come apart goes over to a law that does not close gaps as it is: without stress.
+#[test]
+fn a_gap_is_no_stress_of_a_law_that_does_not_close() {
+    let sand = MohrCoulomb::new(Elastic { young: 1e4, poisson: 0.3 }, 0.5, 0.0, 0.0).separating(Separation::Closing);
+    let mut scene = ground::<PlaneStrain, 2>(Material::MohrCoulomb(sand));
+    scene.points.gap = Some(vec![0.01; scene.points.len()]);
+    let mut next = scene.model.clone();
+    (next.materials, next.gravity) = (vec![hencky(1e4, 0.3)], None);
+    let halo = scene.halo();
+    initial::exchange((&scene.model, &next), &mut scene.points, &halo).expect("a stress of every point");
+    scene.model = next;
+    let (after, _) = scene.solved(1.0, 1.0);
+    let largest = (0..after.points.len()).map(|p| after.points.sigma.at(p).0[1].abs()).fold(0.0, f64::max);
+    assert!(largest < 1e-9, "{largest} Pa");
 }
