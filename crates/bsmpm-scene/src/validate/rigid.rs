@@ -224,7 +224,8 @@ fn fine_enough(record: &Record, rigid: &Rigid, around: AroundStrip<'_>, report: 
     if thickness < THICK * cell {
         report.warn(format!(
             "{}: it is {thickness:.3e} m thick, {:.1} cells: points on its two sides share nodes, which it cannot part, so \
-             that it pulls (cases/results/scenes.md: a plate of one cell carries 11.8 c B, of two cells 4.05): give cells of at most {:.3e} m where soil is on both sides",
+             that it pulls (cases/results/scenes.md: a plate of one cell carries 11.8 c B, of two cells 4.05): give cells \
+             of at most {:.3e} m where soil is on both sides",
             record.path_of(shape::key(record)),
             thickness / cell,
             thickness / THICK

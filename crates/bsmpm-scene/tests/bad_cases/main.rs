@@ -7,6 +7,7 @@ mod matrix;
 mod page;
 mod rigid;
 mod rows;
+mod stages;
 mod texts;
 
 use bsmpm_scene::{Case, Error, Place};
@@ -129,8 +130,8 @@ fn what_is_told_of_parts_lines_and_places() {
 
 #[test]
 fn stages() {
-    verify_all(DYNAMIC, rows::STAGES);
-    verify_all(STATIC, rows::STAGES_OF_ONE);
+    verify_all(DYNAMIC, stages::STAGES);
+    verify_all(STATIC, stages::STAGES_OF_ONE);
 }
 
 #[test]

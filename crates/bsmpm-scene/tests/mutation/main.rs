@@ -114,7 +114,8 @@ const OTHERWISE: [&[(&str, &str)]; 7] = [
         ("\"tresca\"", "\"mu-i\""),
         (
             "cohesion    = 2e4",
-            "damping = { ratio = 0.05, frequency = 2.0 }\nmu_s = 0.38\nmu_2 = 0.64\ninertial_number = 0.28\ngrain_diameter = \"1 mm\"\ngrain_density = 2500",
+            "damping = { ratio = 0.05, frequency = 2.0 }\nmu_s = 0.38\nmu_2 = 0.64\n\
+             inertial_number = 0.28\ngrain_diameter = \"1 mm\"\ngrain_density = 2500",
         ),
     ],
 ];

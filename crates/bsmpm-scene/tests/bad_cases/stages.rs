@@ -1,0 +1,161 @@
+//! Wrong stages: what comes and goes, acts and is released, and changes its law.
+
+use super::{Row, row};
+
+/// Stages: bodies that come and go.
+pub const STAGES: &[Row] = &[
+    row("add  = [\"fill\"]", "add = [\"fil\"]", "stage.0.add", "did you mean `fill`?"),
+    row("add  = [\"fill\"]", "add = \"fill\"", "stage.0.add", "expected a list of names"),
+    row("add  = [\"fill\"]", "add = []", "stage.0", "it changes nothing").up(3),
+    row("add  = [\"fill\"]", "add = [\"fill\", \"fill\"]", "stage.0.add", "has been placed before"),
+    row("remove = [\"fill\"]", "remove = [\"fill\", \"fill\"]", "stage.1.remove", "has been removed before"),
+    row("add  = [\"fill\"]", "add = [\"fill\"]\nremove = [\"fill\"]", "stage.0.remove", "is not there yet").down(1),
+    row("add  = [\"fill\"]", "apply = [\"fill\"]", "stage.0.apply", "there is no [[traction]]"),
+    row(
+        "add  = [\"fill\"]",
+        "materials = [{ from = \"sand\", to = \"clai\" }]",
+        "stage.0.materials.0.to",
+        "did you mean `clay`?",
+    ),
+    row("add  = [\"fill\"]", "materials = [{ from = \"sand\" }]", "stage.0.materials.0.to", "missing"),
+    row(
+        "add  = [\"fill\"]",
+        "strength_reduction = 0.05",
+        "stage.0.strength_reduction",
+        "0.1 <= strength_reduction <= 100",
+    ),
+    row("factor = 1.25", "factor = 1.25\nstage = \"filled\"", "strength_reduction.stage", "needs a quasi-static")
+        .down(1),
+    row("factor = 1.25", "factor = 1.25\nsteps = 1001", "strength_reduction.steps", "0 <= steps <= 1000").down(1),
+    row("at     = \"500 ms\"", "at = 0.25", "stage.1.at", "stages follow in time"),
+    row("at     = \"500 ms\"", "at = \"1 s\"", "stage.1.at", "not before the end of the run"),
+    row("at   = \"0.25 s\"", "at = 0", "stage.0.at", "out of range"),
+    row("name     = \"fill\"", "name = \"a b\"", "body.5.name", "expected a name"),
+    row(
+        "[[stage]]\nname",
+        "[[body]]\nname = \"fill\"\nmaterial = \"clay\"\npoints_per_cell = 2\nbox = { lower = \
+        [3.5, 2.7], upper = [3.8, 2.9] }\n[[stage]]\nname",
+        "body.6.name",
+        "body.5 has that name",
+    )
+    .down(1),
+];
+
+/// The quasi-static base has one body only.
+pub const STAGES_OF_ONE: &[Row] = &[
+    row(
+        "points_per_cell = 3",
+        "points_per_cell = 3\nname = \"all\"\n[[stage]]\nat = 0.5\nremove = [\"all\"]",
+        "stage.0.remove",
+        "nothing is left after it",
+    )
+    .down(4),
+    row(
+        "points_per_cell = 3",
+        "points_per_cell = 3\nname = \"all\"\n[[stage]]\nat = 0.5\nadd = [\"all\"]",
+        "body",
+        "none is there at the start",
+    )
+    .up(3),
+    row(
+        "points_per_cell = 3",
+        "points_per_cell = 3\nname = \"top\"\n[[body]]\nmaterial = \"soil\"\npoints_per_cell = 2\n\
+         box = { lower = [0.0, 1.0], upper = [2.0, 2.0] }\n[[stage]]\nat = 0.5\nremove = [\"top\"]\n\
+         [[point_load]]\nat = [1.0, 0.5]\nforce = [0, -1]\nramp = 1.0",
+        "point_load.0.at",
+        "there is no body from the start to the end",
+    )
+    .down(10),
+    row(
+        "points_per_cell = 3",
+        "points_per_cell = 3\n[[point_load]]\nname = \"push\"\nat = [1.0, 0.5]\nforce = [0, -1]\nramp = 1.0\n\
+         [[stage]]\nat = 0.5\napply = [\"push\"]\nrelease = [\"push\"]",
+        "stage.0.apply",
+        "push is released by this stage, too",
+    )
+    .down(8),
+    row(
+        "points_per_cell = 3",
+        "points_per_cell = 3\n[[point_load]]\nname = \"push\"\nat = [1.0, 0.5]\nforce = [0, -1]\nramp = 1.0\n\
+         [[stage]]\nat = 0.5\napply = [\"push\"]\n[[stage]]\nat = 0.75\napply = [\"push\"]",
+        "stage.1.apply",
+        "push acts already",
+    )
+    .down(11),
+    row(
+        "points_per_cell = 3",
+        "points_per_cell = 3\n[[point_load]]\nname = \"push\"\nat = [1.0, 0.5]\nforce = [0, -1]\nramp = 1.0\n\
+         [[stage]]\nat = 0.5\nrelease = [\"push\"]\n[[stage]]\nat = 0.75\nrelease = [\"push\"]",
+        "stage.1.release",
+        "push does not act",
+    )
+    .down(11),
+    row(
+        "points_per_cell = 3",
+        "points_per_cell = 3\n[[point_load]]\nname = \"push\"\nat = [1.0, 0.5]\nforce = [0, -1]\nramp = 1.0\n\
+         [[stage]]\nat = 0.5\nreset_displacements = true\n\
+         [[point_load]]\nname = \"push\"\nat = [0.5, 0.5]\nforce = [0, -1]",
+        "point_load.1.name",
+        "point_load.0 has that name",
+    )
+    .down(10),
+    row(
+        "points_per_cell = 3",
+        "points_per_cell = 3\n[[point_load]]\nname = \"push\"\nat = [1.0, 0.5]\nforce = [0, -1]\nramp = 1.0\n\
+         [[stage]]\nat = 0.5\nmaterials = [{ from = \"heavy\", to = \"soil\" }]\n\
+         [material.heavy]\nmodel = \"hencky\"\nyoung = 1e6\npoisson = 0.3",
+        "stage.0.materials.0.from",
+        "no body is made of material.heavy",
+    )
+    .down(8),
+    row(
+        "points_per_cell = 3",
+        "points_per_cell = 3\n[[point_load]]\nname = \"push\"\nat = [1.0, 0.5]\nforce = [0, -1]\nramp = 1.0\n\
+         [[stage]]\nat = 0.5\nmaterials = [{ from = \"soil\", to = \"heavy\" }]\n\
+         [material.heavy]\nmodel = \"hencky\"\nyoung = 1e6\npoisson = 0.3\nunit_weight = 2e4",
+        "stage.0.materials.0.to",
+        "differ in density",
+    )
+    .down(8),
+    row(
+        "points_per_cell = 3",
+        "points_per_cell = 3\n[[point_load]]\nname = \"push\"\nat = [1.0, 0.5]\nforce = [0, -1]\nramp = 1.0\n\
+         [[stage]]\nat = 0.5\nmaterials = [{ from = \"soil\", to = \"soft\" }]\n\
+         [material.soft]\nmodel = \"modified-cam-clay\"\nkappa = 0.02\nlambda = 0.1\ncritical_ratio = 1\n\
+         ocr = 1.5\nyoung = 1e6\npoisson = 0.3",
+        "stage.0.materials.0.to",
+        "is not told by the stress",
+    )
+    .down(8),
+    row(
+        "[output]",
+        "[strength_reduction]\nfactor = 1.2\nstage = \"dig\"\n[[stage]]\nname = \"dug\"\nat = 0.5\n\
+         reset_displacements = true\n[output]",
+        "strength_reduction.stage",
+        "did you mean `dug`?",
+    )
+    .down(2),
+    row(
+        "[output]",
+        "[strength_reduction]\nfactor = 1.2\nstage = \"start\"\n[output]",
+        "strength_reduction.stage",
+        "nothing has loaded the ground",
+    )
+    .down(2),
+    row(
+        "[output]",
+        "[strength_reduction]\nfactor = 1.2\nstage = \"end\"\n[[stage]]\nat = 0.5\nstrength_reduction = 1.1\n[output]",
+        "strength_reduction.stage",
+        "stage.0 divides the strength, too",
+    )
+    .down(2),
+    row(
+        "[material.soil]\nmodel   = \"hencky\"",
+        "[gravity]\nacceleration = [0, -9.81]\n[initial]\nk0 = 0.6\n[[stage]]\nat = 0.5\nstrength_reduction = 1.1\n\
+         [material.soil]\nunit_weight = 2e4\nkappa = 0.02\nlambda = 0.1\ncritical_ratio = 1\nocr = 1.5\n\
+         model = \"modified-cam-clay\"",
+        "stage.0.strength_reduction",
+        "cannot be divided under the stress",
+    )
+    .down(6),
+];
