@@ -32,7 +32,6 @@ use crate::model::{Model, Regime};
 use crate::parallel::{Halo, LinearSolver, agreed};
 use crate::points::Points;
 use crate::solve;
-use crate::tensor::Vector;
 use commit::Committed;
 use newmark::Newmark;
 use nodes::Nodes;
@@ -65,7 +64,7 @@ pub fn step<K: Kinematics<D>, const D: usize>(
     commit::check_inside(model, &shape, points, &found.u, halo)?;
     let (strips, traction) = grips.conclude((&model.boundary.strips, &model.grid), &points.surface, &found.u, halo);
     let (rigid, bodies) = nodes.rigid.conclude(&found.u, halo);
-    let carried = nodes.rigid.rubs().then(|| nodes.rigid.carried(&found.u, halo));
+    let carried = nodes.rigid.carried(&found.u, points.len(), halo);
     let mut report = StepReport { dt, strips, rigid, ..StepReport::of(&problem, &found) };
     let anchors = Anchors::of(&model.boundary, &points.surface.anchors, points.anchored(), halo);
     let position = load::moved(&model.boundary.loads, &points.surface, (&model.grid, &nodes.active), &found.u, halo);
@@ -82,8 +81,8 @@ pub fn step<K: Kinematics<D>, const D: usize>(
     if let Some(extent) = nodes.rigid.extent() {
         points.extent = Some(extent.to_vec());
     }
-    if let Some(carried) = carried {
-        points.grip = Some(carried_by_points(points.len(), &carried));
+    if carried.is_some() {
+        points.grip = carried;
     }
     let account = draft.map(|draft| draft.close(model, points, &surface, halo));
     let places = surface.anchors.places(&model.boundary, points.anchored(), halo);
@@ -98,13 +97,4 @@ pub fn step<K: Kinematics<D>, const D: usize>(
     let outflow = Outflow::of(model, points, halo);
     let (energy, turnover) = account.map_or((None, None), |(flows, turnover)| (flows, Some(turnover)));
     Ok(StepReport { energy, turnover, advance, smoothed, outflow, ..report })
-}
-
-/// Vectors of some points, zero for the others.
-fn carried_by_points<const D: usize>(count: usize, some: &[(usize, Vector<2>)]) -> Vec<Vector<D>> {
-    let mut all = vec![Vector::zeros(); count];
-    for (p, force) in some {
-        (0..2).for_each(|component| all[*p][component] = force[component]);
-    }
-    all
 }

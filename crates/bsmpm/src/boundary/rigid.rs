@@ -288,14 +288,21 @@ impl<const D: usize> RigidContacts<D> {
         work
     }
 
-    /// N  tangential forces on points of this rank, by their numbers, which the next step starts from.
-    pub fn carried(&self, u: &[f64], halo: &dyn Halo) -> Vec<(usize, Vector<2>)> {
-        let motions = self.found(u, halo);
-        let held = |point: &RigidPoint| {
+    /// N  tangential forces on each of this rank's `count` points, which the next step starts from; none where nothing
+    /// rubs.
+    pub fn carried(&self, u: &[f64], count: usize, halo: &dyn Halo) -> Option<Vec<Vector<D>>> {
+        if !self.rubs() {
+            return None;
+        }
+        let (motions, mut carried) = (self.found(u, halo), vec![Vector::zeros(); count]);
+        for point in &self.points {
             let [_, along] = point.pushed(&self.moved(point, u, &motions));
-            (point.point, point.along() * along)
-        };
-        self.points.iter().map(held).filter(|(_, force)| force.norm_squared() > 0.0).collect()
+            let force = point.along() * along;
+            if force.norm_squared() > 0.0 {
+                (0..2).for_each(|component| carried[point.point][component] = force[component]);
+            }
+        }
+        Some(carried)
     }
 
     /// What every body did under the converged displacement `u`, and its state then.
