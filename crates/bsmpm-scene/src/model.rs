@@ -61,6 +61,7 @@ pub fn model_at(case: &Case, t: f64) -> Result<Model<PlaneStrain, 2>, GridError>
             crate::Nonlinear::Broyden => Nonlinear::QuasiNewton(QuasiNewton::Broyden),
             crate::Nonlinear::Newton => Nonlinear::Newton,
         },
+        water: None,
         balances_energy: case.histories.iter().any(|history| history.quantity == Quantity::Energy),
         kinematics: PhantomData,
     })

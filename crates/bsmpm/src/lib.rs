@@ -51,3 +51,4 @@ pub mod solve;
 pub mod stabilisation;
 pub mod step;
 pub mod tensor;
+pub mod water;

@@ -13,6 +13,7 @@ use crate::stabilisation::{Grouped, Groups, Stabilisation};
 use crate::step::mass::MassMatrix;
 use crate::step::newmark::Newmark;
 use crate::tensor::{Symmetric, Vector};
+use crate::water::Water;
 use std::borrow::Cow;
 use std::marker::PhantomData;
 
@@ -102,6 +103,8 @@ pub struct Model<K, const D: usize> {
     pub damping: Vec<f64>,
     /// How equilibrium is sought.
     pub nonlinear: Nonlinear,
+    /// Water in the ground, if any.
+    pub water: Option<Water<D>>,
     /// Whether every step reports where its energy went.
     pub balances_energy: bool,
     /// The geometry, a type without data.

@@ -70,6 +70,7 @@ impl<K: Kinematics<D>, const D: usize> Scene<K, D> {
             criteria: Criteria { energy: 1e-14, force: 1e-10, max_iterations: 200 },
             damping: Vec::new(),
             nonlinear: Nonlinear::default(),
+            water: None,
             balances_energy: false,
             kinematics: PhantomData,
         };
