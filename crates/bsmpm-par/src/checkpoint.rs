@@ -12,7 +12,7 @@ pub use read::{Opened, Wanted, find};
 pub use refusal::Refusal;
 pub(crate) use refusal::{agree, broadcast};
 pub(crate) use sanity::require;
-pub use state::{BooksForm, CheckpointState, Files, FreeFieldState, Outlet, RecordState};
+pub use state::{BooksForm, CheckpointState, CrossedState, Files, FreeFieldState, Outlet, RecordState};
 pub(crate) use state::{pairs, rigid_numbers};
 pub(crate) use write::room;
 pub use write::{Contents, write};

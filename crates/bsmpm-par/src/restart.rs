@@ -233,6 +233,10 @@ impl Resumed<'_> {
         let anchored = (anchors.strips.is_empty() && anchors.loads.is_empty())
             || (lengths(&anchors.strips) == sizes(&surface.traction)
                 && lengths(&anchors.loads) == sizes(&surface.position));
+        let wet = model.surfaces().water;
+        let anchored = anchored
+            && (anchors.water.is_empty()
+                || lengths(&anchors.water) == wet.iter().map(|points| points.len()).collect::<Vec<_>>());
         if !same || !anchored {
             return Err(foreign("its surfaces are not of this case"));
         }

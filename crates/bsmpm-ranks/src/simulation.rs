@@ -198,7 +198,7 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         self.points.remove(&gone);
         let left = self.points.len();
         let anchored = self.points.anchored();
-        let anchors = self.points.surface.anchors.without(&self.model.boundary, &gone, anchored, &*self.halo);
+        let anchors = self.points.surface.anchors.without(&self.model.surfaces(), &gone, anchored, &*self.halo);
         self.points.surface.anchors = anchors;
         self.points.place(placed(self.columns()));
         let mut numbers = [(before - left) as f64, (self.points.len() - left) as f64, f64::from(self.lacks_room())];

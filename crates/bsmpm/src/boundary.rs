@@ -21,6 +21,7 @@ use crate::grid::Grid;
 use crate::nodal::Nodal;
 use crate::parallel::Halo;
 use crate::tensor::Vector;
+use crate::water::crossed::Crossed;
 
 /// Motion of one face of the grid.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -103,6 +104,7 @@ impl<const D: usize> Boundary<D> {
             anchors: Anchors::default(),
             held: Vec::new(),
             bodies: self.rigid.iter().map(RigidBody::at_rest).collect(),
+            crossed: Crossed::default(),
         }
     }
 

@@ -174,6 +174,7 @@ impl Stepper {
                         error,
                         StepError::Outside { .. }
                             | StepError::Unloaded { .. }
+                            | StepError::Undrained { .. }
                             | StepError::Material { .. }
                             | StepError::OtherRank
                     );

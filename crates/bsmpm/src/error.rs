@@ -82,6 +82,14 @@ pub enum StepError {
         /// Points without material.
         points: usize,
     },
+    /// A drain or inflow is on material through which no water flows.
+    #[error("{points} point(s) of drain or inflow {drain} are on material that lets no water through")]
+    Undrained {
+        /// Number of the drain; the inflows behind the drains.
+        drain: usize,
+        /// Points on such material.
+        points: usize,
+    },
     /// Material turned inside out or became non-finite, also with shortened iterations.
     #[error("{count} point(s) inverted or not finite in iteration {iteration}")]
     Inverted {

@@ -178,8 +178,17 @@ impl<const D: usize> Grid<D> {
 
     /// Offsets of a cell's nodes from its first one, axis 0 slowest: the paper's p2N, which is the same for all cells.
     pub fn offsets(&self) -> Vec<usize> {
-        let width = self.order() + 1;
-        (0..self.cell_nodes())
+        self.offsets_of(self.order() + 1)
+    }
+
+    /// The same of the functions of degree q - 1, which are numbered within the nodes ([`Shape::lowered`]).
+    pub fn lowered_offsets(&self) -> Vec<usize> {
+        self.offsets_of(self.order())
+    }
+
+    /// Offsets of the first `width` nodes of a cell along each axis.
+    fn offsets_of(&self, width: usize) -> Vec<usize> {
+        (0..width.pow(D as u32))
             .map(|k| {
                 (0..D).fold(0, |offset, axis| {
                     let a = k / width.pow((D - 1 - axis) as u32) % width;

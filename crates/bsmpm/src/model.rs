@@ -2,6 +2,7 @@
 
 use crate::background::Background;
 use crate::boundary::Boundary;
+use crate::boundary::anchor::Surfaces;
 use crate::grid::Grid;
 use crate::kinematics::Kinematics;
 use crate::material::{Material, MaterialError, Response};
@@ -184,6 +185,13 @@ impl<K: Kinematics<D>, const D: usize> Model<K, D> {
 }
 
 impl<K, const D: usize> Model<K, D> {
+    /// All that has points on surfaces of bodies.
+    pub fn surfaces(&self) -> Surfaces<'_, D> {
+        let flow = self.water.as_ref().and_then(|water| water.flow.as_ref());
+        let water = flow.into_iter().flat_map(|flow| flow.surfaces().map(|(points, _)| points)).collect();
+        Surfaces { boundary: &self.boundary, water }
+    }
+
     /// What the nodes' own weights are made of: mass in dynamics.
     pub fn inertial_weighting(&self) -> Weighting {
         if self.regime == Regime::Dynamic { Weighting::Mass } else { self.weighting }

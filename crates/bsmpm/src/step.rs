@@ -66,7 +66,7 @@ pub fn step<K: Kinematics<D>, const D: usize>(
     let (rigid, bodies) = nodes.rigid.conclude(&found.u, halo);
     let carried = nodes.rigid.carried(&found.u, points.len(), halo);
     let mut report = StepReport { dt, strips, rigid, ..StepReport::of(&problem, &found) };
-    let anchors = Anchors::of(&model.boundary, &points.surface.anchors, points.anchored(), halo);
+    let anchors = Anchors::of(&model.surfaces(), &points.surface.anchors, points.anchored(), halo);
     let position = load::moved(&model.boundary.loads, &points.surface, (&model.grid, &nodes.active), &found.u, halo);
     let mut surface = Surface { traction, position, anchors, bodies, ..points.surface.clone() };
     let responses = commit::responses(model, &found.trial, points, halo)?;

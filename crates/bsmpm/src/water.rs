@@ -5,6 +5,8 @@
 //! gradient acts as a force on the material, and the excess p_e, an unknown where water flows.
 
 pub mod ambient;
+pub mod crossed;
+pub mod drain;
 pub mod flow;
 
 use ambient::Ambient;

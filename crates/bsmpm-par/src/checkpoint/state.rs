@@ -10,6 +10,7 @@ use bsmpm::control::Progress;
 use bsmpm::energy::{Books, Budget, Flows};
 use bsmpm::grid::Grid;
 use bsmpm::tensor::Vector;
+use bsmpm::water::crossed::Crossed;
 use bsmpm_io::exit;
 use bsmpm_io::frames::Entry;
 use bsmpm_io::manifest::Manifest;
@@ -48,6 +49,12 @@ pub struct CheckpointState {
     /// that had none, or before the first step.
     #[serde(default)]
     pub anchors: [Vec<Vec<u64>>; 2],
+    /// The same of drains and then inflows; none of a run without any, or before the first step.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub water_anchors: Vec<Vec<u64>>,
+    /// Water that has gone through drains and inflows.
+    #[serde(default, skip_serializing_if = "CrossedState::is_none")]
+    pub crossed: CrossedState,
     /// N  of every node of every absorbing face what holds the state of the start; none of a run without any.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub held: Vec<Vec<[f64; 2]>>,
@@ -70,6 +77,33 @@ pub struct CheckpointState {
     pub last_frame: Option<u64>,
     /// The files.
     pub files: Files,
+}
+
+/// Water that has gone through surfaces of the ground, m3 per metre; nothing of a run without any.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CrossedState {
+    /// Out of every drain.
+    pub drains: Vec<f64>,
+    /// Out of every drained face.
+    pub faces: Vec<f64>,
+    /// In by every inflow.
+    pub inflows: Vec<f64>,
+}
+
+impl CrossedState {
+    pub(crate) fn of(Crossed { drains, faces, inflows }: &Crossed) -> Self {
+        Self { drains: drains.clone(), faces: faces.clone(), inflows: inflows.clone() }
+    }
+
+    fn volumes(&self) -> Crossed {
+        let Self { drains, faces, inflows } = self.clone();
+        Crossed { drains, faces, inflows }
+    }
+
+    fn is_none(&self) -> bool {
+        self.drains.is_empty() && self.faces.is_empty() && self.inflows.is_empty()
+    }
 }
 
 /// Points that histories follow, and the books of energy.
@@ -176,7 +210,7 @@ impl CheckpointState {
             lists.iter().map(|list| list.iter().map(|&pair| Vector::from(pair)).collect()).collect()
         };
         let [strips, loads] = self.anchors.clone();
-        let anchors = Anchors { strips, loads };
+        let anchors = Anchors { strips, loads, water: self.water_anchors.clone() };
         // Without any, as many empty lists as there are loads.
         let of_loads = |lists: &[Vec<[f64; 2]>]| {
             if lists.is_empty() { vec![Vec::new(); self.position.len()] } else { vectors(lists) }
@@ -190,6 +224,7 @@ impl CheckpointState {
             anchors,
             held: vectors(&self.held),
             bodies: self.rigid.iter().map(rigid_state).collect(),
+            crossed: self.crossed.volumes(),
         }
     }
 }

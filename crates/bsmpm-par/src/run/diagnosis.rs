@@ -114,6 +114,10 @@ fn advice(error: &StepError, case: &Case) -> Vec<String> {
         StepError::Unloaded { .. } => {
             &["a load or strip has no material any more: look where it was in the last frame"]
         }
+        StepError::Undrained { .. } => &[
+            "drains and inflows belong where the soil at the surface has a permeability: in a part of it that has none \
+             nothing flows",
+        ],
         StepError::Solve(SolveError::Failed(_) | SolveError::NotFinite | SolveError::Residual(_)) => &[
             "is every body held? In a quasi-static analysis nothing else stops a rigid motion",
             "another factorisation: [solver] linear = { factor = \"mumps\" }, and a larger [solver] background",

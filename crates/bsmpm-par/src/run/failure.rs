@@ -67,6 +67,7 @@ impl Run<'_> {
 fn code_of(error: Option<&StepError>, step: u64) -> u8 {
     match error {
         Some(StepError::Unloaded { .. }) if step == 1 => exit::CASE,
+        Some(StepError::Undrained { .. }) => exit::CASE,
         Some(StepError::Unloaded { .. } | StepError::Left { .. } | StepError::Outside { .. }) => exit::LEFT,
         _ => exit::NO_CONVERGENCE,
     }

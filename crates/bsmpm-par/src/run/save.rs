@@ -1,7 +1,7 @@
 //! Checkpoints and frames of the last converged state: when they are due, and what is in them.
 
 use super::Run;
-use crate::checkpoint::{self, CheckpointState, Contents, FreeFieldState, Refusal, pairs, rigid_numbers};
+use crate::checkpoint::{self, CheckpointState, Contents, CrossedState, FreeFieldState, Refusal, pairs, rigid_numbers};
 use crate::launch;
 use bsmpm::parallel::Halo;
 use bsmpm_io::checkpoint::{Facts, FoundCheckpoint, Phase};
@@ -147,6 +147,8 @@ impl Run<'_> {
             progress: simulation.progress(),
             traction: pairs(&surface.traction),
             anchors: [surface.anchors.strips.clone(), surface.anchors.loads.clone()],
+            water_anchors: surface.anchors.water.clone(),
+            crossed: CrossedState::of(&surface.crossed),
             position: pairs(&surface.position),
             held: pairs(&surface.held),
             free_field: simulation.points.free_field.iter().map(FreeFieldState::of).collect(),

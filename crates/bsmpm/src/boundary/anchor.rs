@@ -5,7 +5,7 @@
 //! a load would come to lie .013 m of .70 m below the surface. And it tells where a strip has let go of its material.
 
 use super::strip::{Strip, reduce};
-use super::surface::Anchors;
+use super::surface::{Anchors, SurfacePoint};
 use super::{Boundary, Load};
 use crate::grid::Grid;
 use crate::parallel::Halo;
@@ -25,6 +25,22 @@ pub struct Anchored<'a, const D: usize> {
     pub F: &'a Packed<D, Tensor>,
 }
 
+/// All that has points on surfaces of bodies.
+#[derive(Clone)]
+pub struct Surfaces<'a, const D: usize> {
+    /// strips and loads
+    pub boundary: &'a Boundary<D>,
+    /// points of every drain, then of every inflow of water
+    pub water: Vec<&'a [SurfacePoint<D>]>,
+}
+
+impl<const D: usize> Surfaces<'_, D> {
+    /// Places of all surface points of water at the start, m.
+    fn starts_of_water(&self) -> impl Iterator<Item = Vector<D>> {
+        self.water.iter().copied().flatten().map(|point| point.x)
+    }
+}
+
 /// Places of the material now, m.
 pub struct AnchorPlaces<const D: usize> {
     /// per strip and point of it: as far from the anchor as at the start, without what the material between has
@@ -39,36 +55,44 @@ pub struct AnchorPlaces<const D: usize> {
 impl Anchors {
     /// The anchors that are `carried`; before the first step, the nearest points. Two reductions then.
     pub fn of<const D: usize>(
-        boundary: &Boundary<D>,
+        surfaces: &Surfaces<'_, D>,
         carried: &Self,
         points: Anchored<'_, D>,
         halo: &dyn Halo,
     ) -> Self {
-        let starts = starts(boundary);
-        if starts.is_empty() || !(carried.strips.is_empty() && carried.loads.is_empty()) {
+        let boundary = surfaces.boundary;
+        let found = [!(carried.strips.is_empty() && carried.loads.is_empty()), !carried.water.is_empty()];
+        let mut starts = if found[0] { Vec::new() } else { starts(boundary) };
+        starts.extend(surfaces.starts_of_water().filter(|_| !found[1]));
+        if starts.is_empty() {
             return carried.clone();
         }
         let mut ids = nearest(&starts, points, halo).into_iter();
         let mut take = |count: usize| ids.by_ref().take(count).collect::<Vec<u64>>();
-        Self {
-            strips: boundary.strips.iter().map(|strip| take(strip.points.len())).collect(),
-            loads: boundary.loads.iter().map(|load| take(load.points.len())).collect(),
+        let mut anchors = carried.clone();
+        if !found[0] {
+            anchors.strips = boundary.strips.iter().map(|strip| take(strip.points.len())).collect();
+            anchors.loads = boundary.loads.iter().map(|load| take(load.points.len())).collect();
         }
+        if !found[1] {
+            anchors.water = surfaces.water.iter().map(|points| take(points.len())).collect();
+        }
+        anchors
     }
 
     /// The anchors with those that `gone` says replaced by the points that were the nearest ones of the others at the
     /// start. Two reductions if there are such.
     pub fn without<const D: usize>(
         &self,
-        boundary: &Boundary<D>,
+        surfaces: &Surfaces<'_, D>,
         gone: impl Fn(u64) -> bool,
         points: Anchored<'_, D>,
         halo: &dyn Halo,
     ) -> Self {
         let mut anchors = self.clone();
-        let each = anchors.strips.iter_mut().chain(&mut anchors.loads).flatten();
-        let (mut lost, places): (Vec<&mut u64>, Vec<Vector<D>>) =
-            each.zip(starts(boundary)).filter(|(id, _)| gone(**id)).unzip();
+        let held = anchors.strips.iter_mut().chain(&mut anchors.loads).flatten().zip(starts(surfaces.boundary));
+        let wet = anchors.water.iter_mut().flatten().zip(surfaces.starts_of_water());
+        let (mut lost, places): (Vec<&mut u64>, Vec<Vector<D>>) = held.chain(wet).filter(|(id, _)| gone(**id)).unzip();
         if !lost.is_empty() {
             lost.iter_mut().zip(nearest(&places, points, halo)).for_each(|(id, found)| **id = found);
         }
@@ -83,26 +107,19 @@ impl Anchors {
         halo: &dyn Halo,
     ) -> AnchorPlaces<D> {
         let starts = starts(boundary);
-        let mut anchored: Vec<(u64, usize)> =
-            self.strips.iter().chain(&self.loads).flatten().copied().zip(0..).collect();
-        anchored.sort_unstable();
         let of_strips: usize = self.strips.iter().map(Vec::len).sum();
         let pressed = pressures(boundary);
         let mut found = vec![vec![Vector::zeros(); starts.len()]];
         found.extend(pressed.as_ref().map(|pressed| vec![Vector::zeros(); pressed.len()]));
-        if let (Some(first), Some(last)) = (anchored.first(), anchored.last()) {
-            for p in (0..points.id.len()).filter(|&p| (first.0..=last.0).contains(&points.id[p])) {
-                let from = anchored.partition_point(|(id, _)| *id < points.id[p]);
-                for (_, at) in anchored[from..].iter().take_while(|(id, _)| *id == points.id[p]) {
-                    let offset = starts[*at] - (points.x[p] - points.u[p]);
-                    let F = points.F.at(p);
-                    let now = if *at < of_strips { offset } else { F.fixed_view::<D, D>(0, 0) * offset };
-                    found[0][*at] = points.x[p] + now;
-                    if let (Some(pressed), Some(k)) = (&pressed, at.checked_sub(of_strips)) {
-                        found[1][k] = cofactor(&F).fixed_view::<D, D>(0, 0) * pressed[k];
-                    }
+        if !starts.is_empty() {
+            points.visit(self.strips.iter().chain(&self.loads).flatten(), |p, at| {
+                let F = points.F.at(p);
+                let now = if at < of_strips { points.ahead(p, &starts[at]) } else { points.along(p, &starts[at]) };
+                found[0][at] = now;
+                if let (Some(pressed), Some(k)) = (&pressed, at.checked_sub(of_strips)) {
+                    found[1][k] = turned(&F, &pressed[k]);
                 }
-            }
+            });
             reduce(&mut found, halo);
         }
         let mut found = found.into_iter().flatten();
@@ -147,6 +164,40 @@ fn pressures<const D: usize>(boundary: &Boundary<D>) -> Option<Vec<Vector<D>>> {
         };
         boundary.loads.iter().flat_map(of).collect()
     })
+}
+
+impl<const D: usize> Anchored<'_, D> {
+    /// Calls with every one of these ids that is of a point of this rank: the point, and which one of the ids.
+    pub(crate) fn visit<'i>(&self, ids: impl Iterator<Item = &'i u64>, mut each: impl FnMut(usize, usize)) {
+        let mut anchored: Vec<(u64, usize)> = ids.copied().zip(0..).collect();
+        anchored.sort_unstable();
+        let (Some(first), Some(last)) = (anchored.first(), anchored.last()) else { return };
+        for p in (0..self.id.len()).filter(|&p| (first.0..=last.0).contains(&self.id[p])) {
+            let from = anchored.partition_point(|(id, _)| *id < self.id[p]);
+            for (_, at) in anchored[from..].iter().take_while(|(id, _)| *id == self.id[p]) {
+                each(p, *at);
+            }
+        }
+    }
+
+    /// Where the material is now, m, that was at `start`, if it is the one of the point `p`.
+    pub(crate) fn along(&self, p: usize, start: &Vector<D>) -> Vector<D> {
+        self.x[p] + self.F.at(p).fixed_view::<D, D>(0, 0) * self.offset(p, start)
+    }
+
+    /// The place, m, that is as far from the point `p` as `start` was.
+    fn ahead(&self, p: usize, start: &Vector<D>) -> Vector<D> {
+        self.x[p] + self.offset(p, start)
+    }
+
+    fn offset(&self, p: usize, start: &Vector<D>) -> Vector<D> {
+        start - (self.x[p] - self.u[p])
+    }
+}
+
+/// An area of the start, as a vector along its normal, after the deformation F: cof(F) N dA (Nanson).
+pub(crate) fn turned<const D: usize>(F: &Tensor, area: &Vector<D>) -> Vector<D> {
+    cofactor(F).fixed_view::<D, D>(0, 0) * area
 }
 
 /// Cofactors: J F^-T.

@@ -8,6 +8,7 @@ use crate::grid::{Contributions, Grid, KnotVector};
 use crate::kinematics::Kinematics;
 use crate::nodal::Nodal;
 use crate::tensor::Vector;
+use crate::water::crossed::Crossed;
 
 /// Share of a surface point's shape functions that the nodes that count must have: below it no material is near enough.
 /// It sets the reach beyond the cells that hold points: .75, 1.29 and 1.85 cells for the orders 1, 2 and 3. With a much
@@ -70,6 +71,8 @@ pub struct Surface<const D: usize> {
     pub held: Vec<Vec<Vector<D>>>,
     /// motions of every rigid body
     pub bodies: Vec<RigidState>,
+    /// water that has gone through drains and inflows since the start
+    pub crossed: Crossed,
 }
 
 impl<const D: usize> Surface<D> {
@@ -83,21 +86,23 @@ impl<const D: usize> Surface<D> {
     }
 }
 
-/// Ids of the points that the points of all strips and of all loads are anchored to; the same on every rank, and empty
-/// before the first step.
+/// Ids of the points that the points of all surfaces are anchored to; the same on every rank, and empty before the first
+/// step.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Anchors {
     /// per strip and point of it
     pub strips: Vec<Vec<u64>>,
     /// per load and point of it
     pub loads: Vec<Vec<u64>>,
+    /// per drain and then per inflow, and point of it
+    pub water: Vec<Vec<u64>>,
 }
 
 /// A surface point as some nodes of its cell see it.
 #[derive(Clone, Debug)]
 pub struct Attachment {
     first_node: usize,
-    N: Vec<f64>, // of the cell's (q+1)^D nodes, zero at those that do not count, sum 1
+    N: Vec<f64>, // of the cell's functions, zero at those that do not count, sum 1
 }
 
 impl Attachment {
@@ -108,11 +113,30 @@ impl Attachment {
         counts: impl Fn(usize) -> bool,
         x: &Vector<D>,
     ) -> Option<Self> {
+        Self::by(grid, (grid.order() + 1, offsets), counts, x)
+    }
+
+    /// The same by the functions of degree q - 1, which have their own `offsets` ([`Grid::lowered_offsets`]).
+    pub fn lowered_at<const D: usize>(
+        grid: &Grid<D>,
+        offsets: &[usize],
+        counts: impl Fn(usize) -> bool,
+        x: &Vector<D>,
+    ) -> Option<Self> {
+        Self::by(grid, (grid.order(), offsets), counts, x)
+    }
+
+    fn by<const D: usize>(
+        grid: &Grid<D>,
+        (width, offsets): (usize, &[usize]),
+        counts: impl Fn(usize) -> bool,
+        x: &Vector<D>,
+    ) -> Option<Self> {
         let x = on_grid(grid, x);
         let cell = grid.locate(&x).filter(|cell| grid.holds(cell))?;
         let first_node = grid.first_node(&cell);
-        let rows: Vec<Vec<f64>> = (0..D).map(|axis| values(&grid.axes()[axis], x[axis], cell[axis])).collect();
-        let width = grid.order() + 1;
+        let row = |axis: usize| values(&grid.axes()[axis], width, x[axis], cell[axis]);
+        let rows: Vec<Vec<f64>> = (0..D).map(row).collect();
         let along = |k: usize, axis: usize| k / width.pow((D - 1 - axis) as u32) % width;
         let product = |k: usize| (0..D).map(|axis| rows[axis][along(k, axis)]).product::<f64>();
         let seen = |(k, offset): (usize, &usize)| if counts(first_node + offset) { product(k) } else { 0.0 };
@@ -133,6 +157,20 @@ impl Attachment {
     /// N_I of the cell's nodes.
     pub fn N(&self) -> &[f64] {
         &self.N
+    }
+
+    /// sum_I N_I p_I of a nodal array of one number a node.
+    pub fn value(&self, offsets: &[usize], nodal: &[f64]) -> f64 {
+        self.N.iter().zip(offsets).map(|(N, offset)| N * nodal[self.first_node + offset]).sum()
+    }
+
+    /// out_I += N_I value, the last of the numbers of every node.
+    pub fn scatter_value(&self, offsets: &[usize], value: f64, out: &mut Contributions) {
+        let width = out.width();
+        let out = out.patch(self.first_node);
+        for (N, offset) in self.N.iter().zip(offsets) {
+            out[offset * width + width - 1] += N * value;
+        }
     }
 
     /// sum_I N_I u_I, m.
@@ -167,7 +205,7 @@ fn on_grid<const D: usize>(grid: &Grid<D>, x: &Vector<D>) -> Vector<D> {
     })
 }
 
-/// Values of the functions of a cell of one axis.
-fn values(axis: &KnotVector, x: f64, cell: usize) -> Vec<f64> {
-    with_width!(axis.order() + 1, W => axis.basis::<W>(x, cell).0.to_vec())
+/// Values of the `width` functions of a cell of one axis.
+fn values(axis: &KnotVector, width: usize, x: f64, cell: usize) -> Vec<f64> {
+    with_width!(lowered width, W => axis.basis::<W>(x, cell).0.to_vec())
 }

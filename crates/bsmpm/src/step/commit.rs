@@ -24,8 +24,8 @@ use crate::step::trial::Trial;
 use crate::tensor::Vector;
 use rayon::prelude::*;
 
-/// Refuses a displacement that takes a point out of the grid, but through an outlet; there, too, one that a strip or
-/// load is anchored to, and the last one. Agreed by all ranks.
+/// Refuses a displacement that takes a point out of the grid, but through an outlet; there, too, one that a strip,
+/// load or drain is anchored to, and the last one. Agreed by all ranks.
 pub fn check_inside<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     shape: &Shape<D>,
@@ -39,7 +39,7 @@ pub fn check_inside<K: Kinematics<D>, const D: usize>(
     });
     let anchors = &points.surface.anchors;
     let acting = anchors.strips.iter().zip(&model.boundary.strips).filter(|(_, strip)| strip.acts());
-    let acting: Vec<&Vec<u64>> = acting.map(|(ids, _)| ids).chain(&anchors.loads).collect();
+    let acting: Vec<&Vec<u64>> = acting.map(|(ids, _)| ids).chain(&anchors.loads).chain(&anchors.water).collect();
     let carries = |p: usize| acting.iter().any(|ids| ids.contains(&points.id[p]));
     let wrongly = |(p, _, out): &(usize, Vector<D>, bool)| !out || carries(*p);
     let mut leaves: Vec<_> = leaves.into_iter().flatten().collect();

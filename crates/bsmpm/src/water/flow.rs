@@ -19,6 +19,34 @@ pub struct Flow<const D: usize> {
     pub inflows: Vec<Inflow<D>>,
 }
 
+impl<const D: usize> Flow<D> {
+    /// Points and normals of all surfaces of bodies that water crosses: those of the drains, then those of the inflows.
+    pub fn surfaces(&self) -> impl Iterator<Item = (&[SurfacePoint<D>], &[Vector<D>])> {
+        let drains = self.drains.iter().map(|drain| (&drain.points[..], &drain.normals[..]));
+        drains.chain(self.inflows.iter().map(|inflow| (&inflow.points[..], &inflow.normals[..])))
+    }
+}
+
+impl<const D: usize> Flow<D> {
+    /// m/s  of a material, along the axes, where it has become `J` times the volume of the start; `None` where nothing
+    /// flows
+    pub fn permeability(&self, material: u16, J: f64) -> Option<Vector<D>> {
+        let soil = self.soils[usize::from(material)].as_ref()?;
+        soil.permeability.as_ref().map(|permeability| permeability.along * permeability.law.relative(soil.porosity, J))
+    }
+}
+
+impl PermeabilityLaw {
+    /// Permeability over that of the start, of a soil of this porosity then that has become `J` times its volume.
+    pub fn relative(self, porosity: f64, J: f64) -> f64 {
+        let of = |n: f64| n.powi(3) / (1.0 - n).powi(2);
+        match self {
+            Self::Constant => 1.0,
+            Self::KozenyCarman => of((1.0 - (1.0 - porosity) / J).max(0.0)) / of(porosity),
+        }
+    }
+}
+
 /// What a soil is to water.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Soil<const D: usize> {
@@ -75,6 +103,8 @@ impl Course {
 pub struct Drain<const D: usize> {
     /// on the surface, at the start
     pub points: Vec<SurfacePoint<D>>,
+    /// -  of every point: unit normal of the surface at the start, to either side
+    pub normals: Vec<Vector<D>>,
     /// the pressure there
     pub given: Given,
 }
@@ -95,6 +125,8 @@ pub struct DrainedFace {
 pub struct Inflow<const D: usize> {
     /// on the surface, at the start
     pub points: Vec<SurfacePoint<D>>,
+    /// -  of every point: unit normal of the surface at the start, to either side
+    pub normals: Vec<Vector<D>>,
     /// m/s  into the ground
     pub rate: Course,
 }

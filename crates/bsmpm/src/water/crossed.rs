@@ -1,0 +1,28 @@
+//! Water that has gone through the surface of the ground.
+
+/// m3 (per metre in plane strain)  volumes of water, per surface
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Crossed {
+    /// out of the ground, through every drain
+    pub drains: Vec<f64>,
+    /// out of the ground, through every drained face of the grid
+    pub faces: Vec<f64>,
+    /// into the ground, through every inflow
+    pub inflows: Vec<f64>,
+}
+
+impl Crossed {
+    /// Adds what has gone through since.
+    pub fn add(&mut self, more: &Self) {
+        let lists = [&mut self.drains, &mut self.faces, &mut self.inflows];
+        for (sums, more) in lists.into_iter().zip([&more.drains, &more.faces, &more.inflows]) {
+            sums.resize(more.len(), 0.0);
+            sums.iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
+        }
+    }
+
+    /// All that has left the ground, less what has come in.
+    pub fn out(&self) -> f64 {
+        self.drains.iter().chain(&self.faces).sum::<f64>() - self.inflows.iter().sum::<f64>()
+    }
+}

@@ -1,0 +1,195 @@
+//! Drains and inflows: surfaces of bodies at which the pore pressure is given, or through which water is put in.
+//!
+//! Their points move with the material that they are anchored to, as those of loads do. A drain lets out c (p - p-bar)
+//! per area and time; the conductance c is that of the soil over 1e-4 of a cell. No function of the pressure need be
+//! nought anywhere for it: the surface may cut the cells.
+
+use crate::boundary::anchor::turned;
+use crate::boundary::surface::Attachment;
+use crate::boundary::{Anchors, SurfacePoint};
+use crate::error::StepError;
+use crate::exact::Exact;
+use crate::grid::Contributions;
+use crate::model::Model;
+use crate::parallel::{Halo, LinearSolver};
+use crate::points::Points;
+use crate::tensor::Vector;
+use crate::water::flow::{Flow, Given};
+
+/// Conductance of a drain over that of the soil of a cell, k/(gamma_w h). With 1e2 a drain that cuts the cells is off by
+/// .001 of a consolidation, with 1e4 by .0005, as one on the grid's lines.
+const CONDUCTANCE: f64 = 1e4;
+
+/// What a drain or inflow did in a step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct DrainReport {
+    /// m3  of water that went through: out of a drain, into the ground by an inflow
+    pub through: f64,
+    /// points with material near
+    pub held: usize,
+}
+
+/// Drains and inflows of one step: the points of this rank.
+#[derive(Clone, Debug, Default)]
+pub struct Drainage {
+    offsets: Vec<usize>,
+    of: [usize; 2], // drains, inflows
+    outlets: Vec<Outlet>,
+}
+
+/// A surface point that water goes through.
+#[derive(Clone, Debug)]
+struct Outlet {
+    surface: usize, // of the drains, then of the inflows
+    attachment: Attachment,
+    conductance: f64, // m3/Pa  in the step
+    given: f64,       // Pa  excess
+    inflow: f64,      // m3  in the step
+}
+
+impl Outlet {
+    /// m3  out of the ground in the step, under the excess pressures `p`, Pa, nodal.
+    fn out(&self, offsets: &[usize], p: &[f64]) -> f64 {
+        self.conductance * (self.attachment.value(offsets, p) - self.given) - self.inflow
+    }
+}
+
+impl Drainage {
+    /// Of the step from `t` to `t + dt` and the points at `t`; by the functions of degree q - 1 that `counts` says.
+    /// `still` is the pressure of the still water at `t + dt`, Pa. One reduction, before the first step three. Fails on
+    /// all ranks where a surface is on material that lets no water through.
+    pub fn at<K, const D: usize>(
+        model: &Model<K, D>,
+        points: &Points<D>,
+        (t, dt): (f64, f64),
+        counts: impl Fn(usize) -> bool,
+        still: impl Fn(&Vector<D>) -> f64,
+        halo: &dyn Halo,
+    ) -> Result<Self, StepError> {
+        let Some((water, flow)) = model.water.as_ref().and_then(|water| Some((water, water.flow.as_ref()?))) else {
+            return Ok(Self::default());
+        };
+        if flow.surfaces().next().is_none() {
+            return Ok(Self::default());
+        }
+        let (grid, offsets) = (&model.grid, model.grid.lowered_offsets());
+        let anchors = Anchors::of(&model.surfaces(), &points.surface.anchors, points.anchored(), halo).water;
+        let mut places = places(flow, points, &anchors, halo).into_iter();
+        let mut outlets = Vec::new();
+        for (surface, (starts, _)) in flow.surfaces().enumerate() {
+            let here: Vec<Place<D>> = places.by_ref().take(starts.len()).collect();
+            let tight = here.iter().filter(|place| !place.drained).count();
+            if tight > 0 {
+                return Err(StepError::Undrained { drain: surface, points: tight });
+            }
+            for (place, SurfacePoint { area, .. }) in here.iter().zip(starts) {
+                let attachment = Attachment::lowered_at(grid, &offsets, &counts, &place.x);
+                let Some(attachment) = attachment else { continue };
+                let through = dt * area * place.stretch;
+                let none = Outlet { surface, attachment, conductance: 0.0, given: 0.0, inflow: 0.0 };
+                outlets.push(match flow.drains.get(surface) {
+                    Some(drain) => {
+                        let edge = grid.locate(&place.x).map_or(grid.smallest_edge(), |c| grid.cell_box(&c).1.min());
+                        let conductance = CONDUCTANCE * place.permeability / (water.unit_weight * edge);
+                        let given = drain.given.excess(water.unit_weight, &place.x, t + dt, &still);
+                        Outlet { conductance: through * conductance, given, ..none }
+                    }
+                    None => {
+                        let rate = flow.inflows[surface - flow.drains.len()].rate.at(t + dt);
+                        Outlet { inflow: through * rate, ..none }
+                    }
+                });
+            }
+        }
+        Ok(Self { offsets, of: [flow.drains.len(), flow.inflows.len()], outlets })
+    }
+
+    /// Adds what leaves the ground in the step under the excess pressures `p` (Pa, nodal, one number a node) to the
+    /// balance of the water, m3, the last of the numbers of every node; other ranks' parts are not yet in it.
+    pub fn add_to(&self, p: &[f64], out: &mut Contributions) {
+        for outlet in &self.outlets {
+            outlet.attachment.scatter_value(&self.offsets, outlet.out(&self.offsets, p), out);
+        }
+    }
+
+    /// Adds the derivative of that to the matrix of the pressures, m3/Pa.
+    pub fn assemble(&self, solver: &mut dyn LinearSolver) {
+        for outlet in self.outlets.iter().filter(|outlet| outlet.conductance > 0.0) {
+            let N = outlet.attachment.N();
+            let block: Vec<f64> =
+                N.iter().flat_map(|row| N.iter().map(move |column| outlet.conductance * row * column)).collect();
+            solver.add(outlet.attachment.first_node(), &block);
+        }
+    }
+
+    /// Adds the product of [`Drainage::assemble`]'s matrix with `v`, Pa; other ranks' parts are not yet in it.
+    pub fn multiply(&self, v: &[f64], out: &mut Contributions) {
+        for outlet in &self.outlets {
+            let through = outlet.conductance * outlet.attachment.value(&self.offsets, v);
+            outlet.attachment.scatter_value(&self.offsets, through, out);
+        }
+    }
+
+    /// What every drain, and every inflow, did under the converged excess pressures `p`, Pa. One reduction.
+    pub fn report(&self, p: &[f64], halo: &dyn Halo) -> [Vec<DrainReport>; 2] {
+        let surfaces: usize = self.of.iter().sum();
+        if surfaces == 0 {
+            return Default::default();
+        }
+        let mut sums = vec![Exact::default(); 2 * surfaces];
+        for outlet in &self.outlets {
+            let out = outlet.out(&self.offsets, p);
+            sums[2 * outlet.surface].add(if outlet.surface < self.of[0] { out } else { -out });
+            sums[2 * outlet.surface + 1].add(1.0);
+        }
+        let totals = halo.total(&sums);
+        let mut each = totals.chunks_exact(2).map(|sums| DrainReport { through: sums[0], held: sums[1] as usize });
+        self.of.map(|count| each.by_ref().take(count).collect())
+    }
+}
+
+/// What a surface point is at.
+struct Place<const D: usize> {
+    x: Vector<D>,      // m
+    stretch: f64,      // area now over that of the start
+    permeability: f64, // m/s  the largest one of all directions
+    drained: bool,     // whether the material lets water through at all
+}
+
+/// Those of all surface points, now. One reduction.
+fn places<const D: usize>(flow: &Flow<D>, points: &Points<D>, anchors: &[Vec<u64>], halo: &dyn Halo) -> Vec<Place<D>> {
+    let starts: Vec<(&SurfacePoint<D>, &Vector<D>)> =
+        flow.surfaces().flat_map(|(points, normals)| points.iter().zip(normals)).collect();
+    let (width, anchored) = (D + 3, points.anchored());
+    let mut numbers = vec![0.0; width * starts.len()];
+    anchored.visit(anchors.iter().flatten(), |p, at| {
+        let ((start, normal), F) = (starts[at], points.F.at(p));
+        let permeability = flow.permeability(points.material[p], F.determinant());
+        let numbers = &mut numbers[width * at..][..width];
+        numbers[..D].copy_from_slice(anchored.along(p, &start.x).as_slice());
+        numbers[D] = turned(&F, normal).norm();
+        numbers[D + 1] = permeability.map_or(0.0, |along| along.max());
+        numbers[D + 2] = f64::from(u8::from(permeability.is_some()));
+    });
+    // Each number is of one rank alone.
+    halo.reduce(&mut numbers);
+    let place = |numbers: &[f64]| Place {
+        x: Vector::from_column_slice(&numbers[..D]),
+        stretch: numbers[D],
+        permeability: numbers[D + 1],
+        drained: numbers[D + 2] > 0.0,
+    };
+    numbers.chunks_exact(width).map(place).collect()
+}
+
+impl Given {
+    /// Pa  excess pressure at the place `x` at time `t`, where `still` is the pressure of the still water; `weight`:
+    /// the water's, N/m3
+    fn excess<const D: usize>(&self, weight: f64, x: &Vector<D>, t: f64, still: impl Fn(&Vector<D>) -> f64) -> f64 {
+        match self {
+            Self::StillWater => 0.0,
+            Self::Head(head) => weight * (head.at(t) - x[D - 1]) - still(x),
+            Self::Pressure(pressure) => pressure.at(t) - still(x),
+        }
+    }
+}
