@@ -4,6 +4,7 @@
 mod background;
 mod broyden;
 mod dilation;
+mod drainage;
 mod gap;
 mod ghost;
 mod indicators;

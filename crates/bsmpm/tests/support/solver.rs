@@ -210,7 +210,12 @@ pub struct Dense {
 impl Dense {
     /// For the systems of `grid`.
     pub fn new<const D: usize>(grid: &Grid<D>) -> Self {
-        Self { components: D, offsets: grid.offsets(), number: Vec::new(), matrix: DMatrix::zeros(0, 0) }
+        Self::of_patches(D, grid.offsets())
+    }
+
+    /// For patches whose nodes stand at `offsets` from their first one, with `components` unknowns a node.
+    pub fn of_patches(components: usize, offsets: Vec<usize>) -> Self {
+        Self { components, offsets, number: Vec::new(), matrix: DMatrix::zeros(0, 0) }
     }
 
     /// Entry of two nodal components; zero where one of them is no unknown.
