@@ -3,6 +3,7 @@
 //!
 //! Stresses are effective ones. The pore pressure is p = p_a + p_e: p_a of the still water around (`ambient`), whose
 //! gradient acts as a force on the material, and the excess p_e, an unknown where water flows.
+#![doc = include_str!("water.md")]
 
 pub mod ambient;
 pub mod crossed;
