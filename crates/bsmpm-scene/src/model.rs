@@ -1,7 +1,7 @@
 //! From a valid case to the physics' model, its points and its steps.
 
 use crate::seed::seed_bodies;
-use crate::{Case, Every, Face, GridAxis, NamedMaterial, Quantity, Regime, Stage, surfaces};
+use crate::{Body, Case, Every, Face, GridAxis, NamedMaterial, Quantity, Regime, Stage, surfaces};
 use bsmpm::background::Background;
 use bsmpm::boundary::{Boundary, Support};
 use bsmpm::error::GridError;
@@ -17,6 +17,7 @@ use bsmpm::schedule::Schedule;
 use bsmpm::stabilisation::{Groups, Stabilisation};
 use bsmpm::step::adjoint::is_dilatant;
 use bsmpm::tensor::{Symmetric, Vector};
+use bsmpm::water::Water;
 use std::marker::PhantomData;
 
 /// The model of a plane-strain case over its whole grid, at the start.
@@ -61,7 +62,11 @@ pub fn model_at(case: &Case, t: f64) -> Result<Model<PlaneStrain, 2>, GridError>
             crate::Nonlinear::Broyden => Nonlinear::QuasiNewton(QuasiNewton::Broyden),
             crate::Nonlinear::Newton => Nonlinear::Newton,
         },
-        water: None,
+        water: case.water.as_ref().map(|water| Water {
+            unit_weight: water.unit_weight,
+            ambient: water.from(case.grid.lower()),
+            flow: None,
+        }),
         balances_energy: case.histories.iter().any(|history| history.quantity == Quantity::Energy),
         kinematics: PhantomData,
     })
@@ -217,6 +222,13 @@ fn groups_of(case: &Case, materials: &[NamedMaterial]) -> Groups {
 
 /// What averages are weighted with: mass, or volume where materials differ in density or some have none.
 pub fn weighting(case: &Case) -> Weighting {
+    let wets = |body: &Body| {
+        let named = &case.materials[body.material];
+        case.water.is_some() && named.saturated.is_some_and(|saturated| Some(saturated) != named.density)
+    };
+    if case.bodies.iter().any(wets) {
+        return Weighting::Volume;
+    }
     let mut densities = case.bodies.iter().map(|body| case.materials[body.material].density);
     match densities.next() {
         Some(Some(first)) if densities.all(|density| density == Some(first)) => Weighting::Mass,

@@ -10,6 +10,7 @@ mod output;
 mod rigid;
 mod stage;
 mod tables;
+mod water;
 
 pub use crate::unit::Dimension;
 pub use crate::words::Words;

@@ -112,6 +112,11 @@ pub enum Quantity {
         /// of the place itself instead, by a plane through the points around it
         surface: bool,
     },
+    /// Pa  of the water, positive in compression, at the point nearest to `at` at the start
+    PorePressure {
+        /// m  in the case's coordinates
+        at: [f64; 2],
+    },
     /// -  oscillation of sigma_yy about its average over the grid and about a plane
     StressNoise,
     /// Pa  oscillation of the pressure about its average over the grid and about a plane
@@ -238,6 +243,7 @@ impl Quantity {
             Self::Displacement { .. } => Measurement::Displacement,
             Self::Velocity { .. } => Measurement::Velocity,
             Self::Stress { .. } => Measurement::Stress,
+            Self::PorePressure { .. } => Measurement::PorePressure,
             Self::StressNoise => Measurement::StressNoise,
             Self::PressureNoise { .. } => Measurement::PressureNoise,
             Self::Heave { .. } => Measurement::Heave,

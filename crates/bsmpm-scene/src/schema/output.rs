@@ -75,7 +75,7 @@ pub(super) static HISTORY: Table = Table {
             "at",
             Pair(In::Length, Range::ANY),
             Optional,
-            "of displacement: the place at the start; of velocity and stress: the point nearest to it then",
+            "of displacement: the place at the start; of velocity, stress and pore-pressure: the point nearest to it then",
         ),
         key(
             "material",

@@ -3,7 +3,7 @@
 use super::Kind::*;
 use super::Presence::{Default, Optional, Required};
 use super::{
-    Dimension as In, Kind, Range, Table, body, element, key, later, laws, loads, one_of, output, rigid, stage,
+    Dimension as In, Kind, Range, Table, body, element, key, later, laws, loads, one_of, output, rigid, stage, water,
 };
 use crate::words::{Accuracy, C0Lines, Factor, Geometry, Ksp, LinearSolver, Nonlinear, Order, Pc, Word};
 use bsmpm::background::{Extent, Kind as Background};
@@ -26,6 +26,7 @@ pub static ROOT: Table = Table {
         key("material", Named(&laws::MATERIAL), Required, "materials by name"),
         key("body", Tables(&body::BODY), Required, "bodies made of material points"),
         key("gravity", Kind::Table(&GRAVITY), Optional, "body force; absent: none"),
+        key("water", Kind::Table(&water::WATER), Optional, "water in the ground; absent: none"),
         key("shaking", Kind::Table(&loads::SHAKING), Optional, "motion of the ground; absent: none"),
         key("boundary", Kind::Table(&BOUNDARY), Default("{}"), "supports at the faces of the grid"),
         key("stabilisation", Kind::Table(&STABILISATION), Optional, "against locking and oscillation; absent: none"),

@@ -136,7 +136,7 @@ fn own_keys(measured: Measurement) -> (&'static [&'static str], &'static [&'stat
         Moment | Work => (&[], &["of"]),
         RigidForce | RigidMoment | RigidDisplacement | RigidRotation | RigidVelocity => (&[], &["rigid"]),
         RigidSlip | RigidGap | RigidWork => (&[], &["rigid"]),
-        Displacement => (&[], &["at"]),
+        Displacement | PorePressure => (&[], &["at"]),
         Velocity | Stress => (&["surface"], &["at"]),
         SectionForces => (&["fixed"], &["from", "to"]),
         PressureNoise => (&["box"], &[]),
@@ -180,6 +180,7 @@ fn quantity(
         Measurement::Displacement => Quantity::Displacement { at: at(record, grid, report)? },
         Measurement::Velocity => Quantity::Velocity { at: at(record, grid, report)?, surface: at_surface(record)? },
         Measurement::Stress => Quantity::Stress { at: at(record, grid, report)?, surface: at_surface(record)? },
+        Measurement::PorePressure => Quantity::PorePressure { at: at(record, grid, report)? },
         Measurement::StressNoise => Quantity::StressNoise,
         Measurement::PressureNoise if record.gives("box") => {
             Quantity::PressureNoise { within: Some(within(record.record("box")?, grid, report)?) }

@@ -46,6 +46,8 @@ choice! {
         /// Cauchy stress of the point nearest to `at` at the start, positive in tension; with `surface` of the place
         /// itself.
         Stress = "stress",
+        /// Pressure of the water in the pores of the point nearest to `at` at the start, positive in compression.
+        PorePressure = "pore-pressure",
         /// Oscillation of sigma_yy over all points from point to point: a root mean square, over the mean of
         /// |sigma_yy|.
         StressNoise = "stress-noise",
@@ -163,7 +165,7 @@ impl Measurement {
             Self::Moment | Self::Work => &[("", "")],
             Self::Runout | Self::Front | Self::Height | Self::MaxDisplacement | Self::Heave => &[("", "")],
             Self::Mass | Self::Outflow | Self::FootingPressure | Self::FootingForce => &[("", "")],
-            Self::Penetration | Self::Slip => &[("", "")],
+            Self::Penetration | Self::Slip | Self::PorePressure => &[("", "")],
         }
     }
 
@@ -182,6 +184,7 @@ impl Measurement {
             Self::Velocity | Self::SlipRate | Self::RigidVelocity => "m/s",
             Self::FrictionPower => "W/m",
             Self::Stress | Self::MeanStress | Self::PressureNoise | Self::FootingPressure => "Pa",
+            Self::PorePressure => "Pa",
             Self::StressNoise | Self::Slip | Self::Contact => "-",
             Self::Moment => "N",
             Self::Energy | Self::KineticEnergy | Self::Work | Self::RigidWork => "J/m",

@@ -16,6 +16,8 @@ choice! {
         Yielding = "yielding",
         /// Present density (kg/m3).
         Density = "density",
+        /// Pressure of the water in the pores (Pa), positive in compression.
+        PorePressure = "pore-pressure",
         /// Number of the body, in the order of the file; run.json and the frame have the names.
         Body = "body",
     }
@@ -31,6 +33,7 @@ impl FrameField {
             Self::DeviatoricStrain => "deviatoric_strain",
             Self::Yielding => "yielding",
             Self::Density => "density",
+            Self::PorePressure => "pore_pressure",
             Self::Body => "body",
         }
     }
@@ -38,7 +41,7 @@ impl FrameField {
     /// Unit of its numbers.
     pub fn unit(self) -> &'static str {
         match self {
-            Self::Q | Self::PrincipalStresses => "Pa",
+            Self::Q | Self::PrincipalStresses | Self::PorePressure => "Pa",
             Self::MobilisedStrength | Self::DeviatoricStrain | Self::Yielding | Self::Body => "-",
             Self::Density => "kg/m3",
         }
