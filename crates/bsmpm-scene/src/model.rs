@@ -13,10 +13,11 @@ use bsmpm::method::Nonlinear;
 use bsmpm::method::QuasiNewton;
 use bsmpm::model::{Gravity, Model, Shaking, Weighting};
 use bsmpm::points::{Points, Seed};
-use bsmpm::schedule::Schedule;
+use bsmpm::schedule::{Growth, Schedule};
 use bsmpm::stabilisation::{Groups, Stabilisation};
 use bsmpm::step::adjoint::is_dilatant;
 use bsmpm::tensor::{Symmetric, Vector};
+use bsmpm::water::Water;
 use std::marker::PhantomData;
 
 /// The model of a plane-strain case over its whole grid, at the start.
@@ -32,6 +33,7 @@ pub fn model_at(case: &Case, t: f64) -> Result<Model<PlaneStrain, 2>, GridError>
         extent: case.solver.background_cells,
     });
     let (grid, materials) = (grid(case)?, case.materials_at(t));
+    let flow = surfaces::flow(case, &grid);
     Ok(Model {
         materials: materials.iter().map(|named| named.material.clone()).collect(),
         regime: case.analysis.regime,
@@ -57,11 +59,17 @@ pub fn model_at(case: &Case, t: f64) -> Result<Model<PlaneStrain, 2>, GridError>
         },
         damping: damping(&materials),
         nonlinear: match case.solver.nonlinear {
+            // Newton's method does not know water that flows: steps that stall are cut.
+            crate::Nonlinear::Auto if case.flow.is_some() => Nonlinear::QuasiNewton(QuasiNewton::Multisecant),
             crate::Nonlinear::Auto => Nonlinear::Auto,
             crate::Nonlinear::Broyden => Nonlinear::QuasiNewton(QuasiNewton::Broyden),
             crate::Nonlinear::Newton => Nonlinear::Newton,
         },
-        water: None,
+        water: flow.map(|flow| Water {
+            unit_weight: 9810.0,
+            ambient: bsmpm::water::ambient::Ambient::None,
+            flow: Some(flow),
+        }),
         balances_energy: case.histories.iter().any(|history| history.quantity == Quantity::Energy),
         kinematics: PhantomData,
     })
@@ -180,7 +188,9 @@ pub fn schedule(case: &Case) -> Schedule {
     let stages = case.stages.iter().map(|stage| stage.at);
     let profiles = case.profiles.iter().flat_map(|profile| profile.times.iter().copied());
     let times = frame_times(case).into_iter().chain(checks).chain(stages).chain(profiles);
-    Schedule::new(case.analysis.dt, case.analysis.end, times)
+    let schedule = Schedule::new(case.analysis.dt, case.analysis.end, times);
+    let Some((factor, most)) = case.analysis.growth else { return schedule };
+    schedule.growing(Growth { factor, most, restarts: case.stages.iter().map(|stage| stage.at).collect() })
 }
 
 /// Relative error of a quotient of two times.

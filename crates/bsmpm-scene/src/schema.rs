@@ -4,12 +4,14 @@
 
 mod body;
 mod element;
+mod flow;
 mod laws;
 mod loads;
 mod output;
 mod rigid;
 mod stage;
 mod tables;
+mod water;
 
 pub use crate::unit::Dimension;
 pub use crate::words::Words;

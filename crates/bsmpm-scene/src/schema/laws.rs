@@ -4,11 +4,12 @@ use super::Kind::{self, *};
 use super::Presence::{Optional, Required};
 use super::{Dimension as In, Range, Table, key, loads, one_of};
 use crate::record::Record;
-use crate::words::Word;
+use crate::words::{Drainage, Word};
 use bsmpm::material::{
     CamClay, Decay, DruckerPrager, Elastic, Hencky, Match, Material, MohrCoulomb, MuI, Rate, Separation,
     SofteningMohrCoulomb, VonMises,
 };
+use bsmpm::water::flow::PermeabilityLaw;
 use std::ops::Bound::{Excluded, Included, Unbounded};
 
 choice! {
@@ -267,6 +268,30 @@ pub(crate) static MATERIAL: Table = Table {
         key("unit_weight", Quantity(In::UnitWeight, Range::POSITIVE), Optional, "density = unit_weight / 9.81 m/s2"),
         key("density", Quantity(In::Density, Range::POSITIVE), Optional, "neither: weightless, in dynamics an error"),
         key("k0", Quantity(In::Number, loads::COEFFICIENT), Optional, "horizontal over vertical stress at the start"),
+        key(
+            "drainage",
+            Choice(Drainage::WORDS),
+            Optional,
+            "what its pore water does (consolidation); that of [water] unless given",
+        ),
+        key(
+            "porosity",
+            Quantity(In::Number, BELOW_1),
+            Optional,
+            "share of pores in the volume at the start (coupled and undrained: required)",
+        ),
+        key(
+            "permeability",
+            Either(In::Velocity, Range::POSITIVE),
+            Optional,
+            "hydraulic conductivity, or [kx, ky] (coupled: required)",
+        ),
+        key(
+            "permeability_law",
+            Choice(PermeabilityLaw::WORDS),
+            Optional,
+            "how it follows the porosity; constant unless given",
+        ),
         key(
             "damping",
             Kind::Table(&DAMPING),
