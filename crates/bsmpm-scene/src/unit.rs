@@ -25,6 +25,8 @@ pub enum Dimension {
     Angle,
     /// m/s
     Velocity,
+    /// m/s  of water through soil, in real time
+    Seepage,
     /// m/s2
     Acceleration,
     /// N/m
@@ -109,6 +111,15 @@ impl Dimension {
         table(self).iter().map(|(name, _)| *name)
     }
 
+    /// The dimension whose units it has.
+    fn units_of(self) -> Self {
+        match self {
+            Self::Duration => Self::Time,
+            Self::Seepage => Self::Velocity,
+            other => other,
+        }
+    }
+
     /// The dimension whose SI unit is called so.
     pub(crate) fn of_unit(name: &str) -> Option<Self> {
         UNITS.iter().find(|(_, units)| units[0].0 == name).map(|(dimension, _)| *dimension)
@@ -119,6 +130,7 @@ impl Dimension {
         match self {
             Self::Number => 1e100,
             Self::Length | Self::Density | Self::Velocity => 1e9,
+            Self::Seepage => 1e18,
             Self::Time | Self::Duration | Self::Acceleration => 1e12,
             Self::Stress | Self::LineForce => 1e18,
             Self::UnitWeight => 1e10,
@@ -144,6 +156,7 @@ impl fmt::Display for Dimension {
             Self::UnitWeight => "a unit weight",
             Self::Angle => "an angle",
             Self::Velocity => "a velocity",
+            Self::Seepage => "a velocity of water",
             Self::Acceleration => "an acceleration",
             Self::LineForce => "a force per metre of thickness",
         })
@@ -156,7 +169,7 @@ impl fmt::Display for Dimension {
 /// In words: no number, no unit, an unknown unit, a unit of another dimension, or a number that no double holds.
 pub fn parse(text: &str, expected: Dimension) -> Result<f64, String> {
     let (value, found) = parse_any(text, Some(expected))?;
-    if found == expected || (found, expected) == (Dimension::Time, Dimension::Duration) {
+    if found == expected.units_of() {
         return Ok(value);
     }
     let unit = split(text).map_or("", |(_, unit)| unit);
@@ -253,8 +266,7 @@ fn split(text: &str) -> Option<(&str, &str)> {
 }
 
 fn table(dimension: Dimension) -> &'static [(&'static str, Worth)] {
-    let dimension = if dimension == Dimension::Duration { Dimension::Time } else { dimension };
-    UNITS.iter().find(|(known, _)| *known == dimension).map_or(&[], |(_, units)| *units)
+    UNITS.iter().find(|(known, _)| *known == dimension.units_of()).map_or(&[], |(_, units)| *units)
 }
 
 fn list(dimension: Dimension) -> String {

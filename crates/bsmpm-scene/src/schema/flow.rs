@@ -46,10 +46,10 @@ pub(super) static INFLOW: Table = Table {
         key("name", Name, Optional, "what it is called where it is told of"),
         key("from", PLACE, super::Presence::Required, "one end of the segment at the start"),
         key("to", PLACE, super::Presence::Required, "the other end"),
-        key("rate", Quantity(In::Velocity, Range::ANY), Optional, "volume of water per area and time, into the ground"),
+        key("rate", Quantity(In::Seepage, Range::ANY), Optional, "volume of water per area and time, into the ground"),
         key(
             "rate_path",
-            Rows(&[(In::Time, Range::NOT_NEGATIVE), (In::Velocity, Range::ANY)]),
+            Rows(&[(In::Time, Range::NOT_NEGATIVE), (In::Seepage, Range::ANY)]),
             Optional,
             "rows [t, rate] instead, t increasing; linear between, constant before the first and after the last",
         ),

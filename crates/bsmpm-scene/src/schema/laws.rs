@@ -282,7 +282,7 @@ pub(crate) static MATERIAL: Table = Table {
         ),
         key(
             "permeability",
-            Either(In::Velocity, Range::POSITIVE),
+            Either(In::Seepage, Range::POSITIVE),
             Optional,
             "hydraulic conductivity, or [kx, ky] (coupled: required)",
         ),

@@ -245,21 +245,41 @@ fn inflow(record: &Record, ground: Ground<'_>, report: &mut Report<'_>) -> Optio
     Some(Inflow { ends: ground.segment(record, report)?, rate: rate? })
 }
 
-/// The number of the drain of a name, in the order of the file.
-pub(super) fn number(record: &Record, root: &Record, report: &mut Report<'_>) -> Option<usize> {
-    let name = record.text("drain")?;
-    let names = || root.records("drain").iter().filter_map(|drain| drain.text("name"));
-    let found = root.records("drain").iter().position(|drain| drain.text("name") == Some(name));
+/// Whether water flows, or is kept from flowing, in any material.
+pub(super) fn flows(root: &Record) -> bool {
+    root.named("material").iter().any(|(_, record)| drainage(root, record) != Drainage::Given)
+}
+
+/// The number of the drain that a history names, in the order of the file, by its name or its face; the outer option is
+/// `None` after an error.
+pub(super) fn drain_of(record: &Record, root: &Record, report: &mut Report<'_>) -> Option<Option<usize>> {
+    let drains = root.records("drain");
+    let (key, found) = if record.gives("drain") {
+        let name = record.text("drain")?;
+        ("drain", drains.iter().position(|drain| drain.text("name") == Some(name)))
+    } else if record.gives("face") {
+        let side: Side = record.word("face")?;
+        ("face", drains.iter().position(|drain| drain.gives("face") && drain.word("face") == Some(side)))
+    } else {
+        return Some(None);
+    };
     if found.is_none() {
-        record.error("drain", format!("there is no [[drain]] with name = \"{name}\"{}", hint(name, names())), report);
+        let names = || drains.iter().filter_map(|drain| drain.text("name"));
+        let near = record.text("drain").map(|name| hint(name, names())).unwrap_or_default();
+        record.error(key, format!("there is no such [[drain]]{near}"), report);
+        return None;
     }
-    found
+    Some(found)
 }
 
 /// What the whole case says of a flow: refusals of what is not shown to be right with it.
 pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
     let consolidates = case.analysis.kind == AnalysisType::Consolidation;
     let Some(flow) = &case.flow else {
+        let of_flow = case.output.fields.iter().find(|field| field.is_of_flow());
+        if let (Some(field), Some(output)) = (of_flow, root.record("output")) {
+            output.error("fields", format!("no water flows: there is no \"{field}\""), report);
+        }
         if let Some(analysis) = root.record("analysis").filter(|_| consolidates) {
             let message = "no water flows: give a material drainage = \"coupled\" (or \"undrained\"), or take \
                            \"quasi-static\"";

@@ -16,12 +16,25 @@ choice! {
         Yielding = "yielding",
         /// Present density (kg/m3).
         Density = "density",
+        /// Pore pressure above that of the still water (Pa), where water flows.
+        ExcessPressure = "excess-pressure",
+        /// Volume of water that flows through the soil per area and time (m/s), relative to the grains.
+        Flux = "flux",
+        /// Share of pores in the volume, where water flows.
+        Porosity = "porosity",
+        /// Effective stress less the pore pressure (Pa), positive in tension.
+        TotalStress = "total-stress",
         /// Number of the body, in the order of the file; run.json and the frame have the names.
         Body = "body",
     }
 }
 
 impl FrameField {
+    /// Whether it is of water that flows.
+    pub fn is_of_flow(self) -> bool {
+        matches!(self, Self::ExcessPressure | Self::Flux | Self::Porosity)
+    }
+
     /// Its name in frames.
     pub fn field(self) -> &'static str {
         match self {
@@ -31,6 +44,10 @@ impl FrameField {
             Self::DeviatoricStrain => "deviatoric_strain",
             Self::Yielding => "yielding",
             Self::Density => "density",
+            Self::ExcessPressure => "excess_pressure",
+            Self::Flux => "flux",
+            Self::Porosity => "porosity",
+            Self::TotalStress => "total_stress",
             Self::Body => "body",
         }
     }
@@ -39,6 +56,9 @@ impl FrameField {
     pub fn unit(self) -> &'static str {
         match self {
             Self::Q | Self::PrincipalStresses => "Pa",
+            Self::ExcessPressure | Self::TotalStress => "Pa",
+            Self::Flux => "m/s",
+            Self::Porosity => "-",
             Self::MobilisedStrength | Self::DeviatoricStrain | Self::Yielding | Self::Body => "-",
             Self::Density => "kg/m3",
         }

@@ -11,6 +11,7 @@ use written::{STRESS, Written};
 const FULL: &str = include_str!("../full.toml");
 const STATIC: &str = include_str!("../bad_cases/static.toml");
 const RUBBING: &str = include_str!("../bad_cases/rubbing.toml");
+const SEEPING: &str = include_str!("../bad_cases/seeping.toml");
 
 /// Values that a key may be given by mistake.
 const VALUES: [&str; 22] = [
@@ -122,7 +123,7 @@ const OTHERWISE: [&[(&str, &str)]; 7] = [
 
 fn bases() -> Vec<String> {
     let later = format!("{STATIC}\n[strength_reduction]\nfactor = 1.2\nstage = \"end\"\nsteps = 5\n");
-    let mut bases = vec![FULL.to_owned(), STATIC.to_owned(), later, RUBBING.to_owned()];
+    let mut bases = vec![FULL.to_owned(), STATIC.to_owned(), later, RUBBING.to_owned(), SEEPING.to_owned()];
     for changes in OTHERWISE {
         let mut text = FULL.to_owned();
         for (part, by) in changes {
