@@ -4,6 +4,7 @@
 use bsmpm::material::{Material, Variable};
 use bsmpm::observe::invariants;
 use bsmpm::points::{Column, ColumnInfo, Number, Points};
+use bsmpm::water::ambient::StillWater;
 use bsmpm_io::frame::{Field, FieldValues, Frame};
 use bsmpm_io::vtu;
 use bsmpm_scene::words::FrameField;
@@ -49,6 +50,8 @@ pub struct Around<'a> {
     pub materials: &'a [Material],
     /// ids of every body's points; empty if no frame tells bodies
     pub bodies: &'a [Range<u64>],
+    /// still water at the time of the frame
+    pub water: Option<StillWater<'a>>,
     /// what frames show on request
     pub fields: &'a [FrameField],
 }
@@ -153,6 +156,7 @@ impl Around<'_> {
                 f64::from(u8::from(Material::is_yielding(mobilised)))
             }
             FrameField::Density => invariants::density(points, p),
+            FrameField::PorePressure => self.water.map_or(0.0, |water| water.pressure(&points.x[p])),
             FrameField::Body => self.bodies.partition_point(|ids| ids.end <= points.id[p]) as f64,
         });
     }

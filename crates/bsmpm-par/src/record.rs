@@ -177,6 +177,11 @@ impl Recorder {
                 | Quantity::FrictionPower { face } => {
                     contact(history.quantity.measurement(), at_face(model, *face, report), report.dt)
                 }
+                Quantity::PorePressure { .. } => {
+                    let pressure = |p: usize| model.still_water(t).map_or(0.0, |water| water.pressure(&points.x[p]));
+                    let id = self.followed[number].unwrap_or(u64::MAX);
+                    observe::at_point(points, id, halo, |p| [pressure(p)]).to_vec()
+                }
                 Quantity::Rigid { what, body } => rigid(*what, *body, (t, model), report),
                 quantity => self.values((number, quantity), model, points, halo)?,
             };
@@ -335,7 +340,7 @@ fn contact(measured: Measurement, found: Option<ContactReport>, dt: f64) -> Vec<
 /// The place of a history that follows the point nearest to it.
 fn followed_place(quantity: &Quantity) -> Option<[f64; 2]> {
     match *quantity {
-        Quantity::Displacement { at } => Some(at),
+        Quantity::Displacement { at } | Quantity::PorePressure { at } => Some(at),
         Quantity::Velocity { at, surface: false } | Quantity::Stress { at, surface: false } => Some(at),
         _ => None,
     }

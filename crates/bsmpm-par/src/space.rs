@@ -72,6 +72,7 @@ impl Need {
                         gather::Around {
                             materials: &simulation.model.materials,
                             bodies: &[],
+                            water: None,
                             fields: &case.output.fields,
                         },
                     ),

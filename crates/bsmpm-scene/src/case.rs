@@ -7,6 +7,7 @@ mod loads;
 mod profile;
 mod rigid;
 mod stage;
+mod water;
 
 pub use crate::words::{Base, Format, Geometry, Nonlinear, Support};
 pub use element::{ElementStage, ElementTest};
@@ -16,6 +17,7 @@ pub use loads::{Footing, Initial, Line as LoadedLine, MotionPath, PointLoad, Pre
 pub use profile::Profile;
 pub use rigid::{Rigid, RigidShape};
 pub use stage::{Acting, FaceSupport, Stage};
+pub use water::Water;
 
 use crate::error::Choice;
 use crate::grid::{GridSpec, Line};
@@ -49,6 +51,8 @@ pub struct Case {
     pub stages: Vec<Stage>,
     /// Body force, if any.
     pub gravity: Option<Gravity>,
+    /// Water in the ground, if any.
+    pub water: Option<Water>,
     /// Water that flows, if any does.
     pub flow: Option<Flow>,
     /// Motion of the ground, in whose frame the case is: s, increasing, and m/s2; empty without any.
@@ -141,6 +145,8 @@ pub struct NamedMaterial {
     pub material: Material,
     /// kg/m3; `None`: weightless
     pub density: Option<f64>,
+    /// kg/m3  of points below the water table at the start; `None`: the same
+    pub saturated: Option<f64>,
     /// s  of its damping; 0: none
     pub retardation: f64,
 }
@@ -178,9 +184,13 @@ impl Body {
 impl Case {
     /// Weight of all bodies that are there at the start vertically above `at` (m, in the case's coordinates) under the
     /// full gravity, Pa: `Σ ρ |g_y| l`, l the length of the vertical ray inside a body. What lies beside each other is
-    /// counted once: a body's left side belongs to it, its right side does not.
+    /// counted once: a body's left side belongs to it, its right side does not. With water less its uplift.
     pub fn overburden(&self, at: [f64; 2]) -> f64 {
         let Some(gravity) = &self.gravity else { return 0.0 };
+        if self.water.is_some() {
+            let g = gravity.acceleration[1].abs();
+            return self.bodies_at_start().map(|body| self.weight_above(body, at, g)).sum();
+        }
         let above = |body: &Body| self.materials[body.material].density.map_or(0.0, |rho| rho * body.region.above(at));
         gravity.acceleration[1].abs() * self.bodies_at_start().map(above).sum::<f64>()
     }

@@ -1,7 +1,7 @@
 //! From a valid case to the physics' model, its points and its steps.
 
 use crate::seed::seed_bodies;
-use crate::{Case, Every, Face, GridAxis, NamedMaterial, Quantity, Regime, Stage, surfaces};
+use crate::{Body, Case, Every, Face, GridAxis, NamedMaterial, Quantity, Regime, Stage, surfaces};
 use bsmpm::background::Background;
 use bsmpm::boundary::{Boundary, Support};
 use bsmpm::error::GridError;
@@ -18,6 +18,8 @@ use bsmpm::stabilisation::{Groups, Stabilisation};
 use bsmpm::step::adjoint::is_dilatant;
 use bsmpm::tensor::{Symmetric, Vector};
 use bsmpm::water::Water;
+use bsmpm::water::ambient::Ambient;
+use bsmpm::water::flow::Flow;
 use std::marker::PhantomData;
 
 /// The model of a plane-strain case over its whole grid, at the start.
@@ -65,14 +67,17 @@ pub fn model_at(case: &Case, t: f64) -> Result<Model<PlaneStrain, 2>, GridError>
             crate::Nonlinear::Broyden => Nonlinear::QuasiNewton(QuasiNewton::Broyden),
             crate::Nonlinear::Newton => Nonlinear::Newton,
         },
-        water: flow.map(|flow| Water {
-            unit_weight: 9810.0,
-            ambient: bsmpm::water::ambient::Ambient::None,
-            flow: Some(flow),
-        }),
+        water: water(case, flow),
         balances_energy: case.histories.iter().any(|history| history.quantity == Quantity::Energy),
         kinematics: PhantomData,
     })
+}
+
+/// Still water, and water that flows; of the latter alone the pore pressure is all excess.
+fn water(case: &Case, flow: Option<Flow<2>>) -> Option<Water<2>> {
+    let still = case.water.as_ref();
+    let unit_weight = still.map(|still| still.unit_weight).or(case.flow.as_ref().map(|flow| flow.unit_weight))?;
+    Some(Water { unit_weight, ambient: still.map_or(Ambient::None, |still| still.from(case.grid.lower())), flow })
 }
 
 /// s  of every material; empty where none is damped.
@@ -227,6 +232,13 @@ fn groups_of(case: &Case, materials: &[NamedMaterial]) -> Groups {
 
 /// What averages are weighted with: mass, or volume where materials differ in density or some have none.
 pub fn weighting(case: &Case) -> Weighting {
+    let wets = |body: &Body| {
+        let named = &case.materials[body.material];
+        case.water.is_some() && named.saturated.is_some_and(|saturated| Some(saturated) != named.density)
+    };
+    if case.bodies.iter().any(wets) {
+        return Weighting::Volume;
+    }
     let mut densities = case.bodies.iter().map(|body| case.materials[body.material].density);
     match densities.next() {
         Some(Some(first)) if densities.all(|density| density == Some(first)) => Weighting::Mass,

@@ -197,13 +197,19 @@ impl Body {
         Vector::<2>::new(-rate * (x[1] - about[1]), rate * (x[0] - about[0]))
     }
 
+    /// kg/m3  at a place, m from the grid's lower corner.
+    fn density(&self, case: &Case, x: [f64; 2]) -> f64 {
+        let lower = case.grid.lower();
+        case.density_at(self, [lower[0] + x[0], lower[1] + x[1]])
+    }
+
     fn seed(&self, case: &Case, id: u64, place: CellPlace) -> Seed<2> {
         Seed {
             id,
             material: self.material as u16,
             x: place.x.into(),
             volume: place.area,
-            mass: case.materials[self.material].density.unwrap_or(0.0) * place.area,
+            mass: self.density(case, place.x) * place.area,
             v: self.velocity.map_or(Vector::<2>::zeros(), Vector::from) + self.spun(case, place.x),
         }
     }

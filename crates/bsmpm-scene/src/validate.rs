@@ -19,6 +19,7 @@ mod shape;
 mod solver;
 mod stage;
 mod strip;
+mod water;
 
 use crate::case::{Analysis, Case, Gravity, Support};
 use crate::record::Record;
@@ -59,6 +60,7 @@ pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Op
     let around = material::Around { regime, grid: placed, bodies: made, stages: stages.as_deref(), reduction };
     let materials = material::read_all(record, around, report);
     let mut gravity = gravity(record, end, report);
+    let water = water::read(record, (placed, gravity.as_ref()), end, report);
     let shaking =
         load::shaking(record, (regime, analysis.as_ref().map(|analysis| (analysis.end, analysis.dt))), report);
     let around = strip::AroundStrip {
@@ -97,6 +99,7 @@ pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Op
         bodies: bodies?,
         stages: stages?,
         gravity,
+        water,
         flow: flow?,
         shaking,
         boundary: boundary?,
@@ -131,6 +134,7 @@ pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Op
     physics::check(&case, record, report);
     reduction::at_stage(&mut case, record, report);
     free_field::check(&case, record, report);
+    water::check(&case, record, report);
     flow::check(&case, record, report);
     Some(Case { warnings: std::mem::take(&mut report.warnings), notes: std::mem::take(&mut report.notes), ..case })
 }

@@ -60,7 +60,7 @@ use std::ops::AddAssign;
 /// Energy that went somewhere in a step, or in all steps so far, J; see the module.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Flows<T = f64> {
-    /// work of gravity, loads and what moves, less what friction and faces that absorb take
+    /// work of gravity, water, loads and what moves, less what friction and faces that absorb take
     pub external: T,
     /// dissipated by plastic flow and damping
     pub plastic: T,
@@ -180,6 +180,7 @@ impl Draft {
             rubbed.extend(nodes.dashpots.work::<D>(inertia, u, halo).into_iter().map(|work| 0.5 * work));
         }
         add_gravity(&mut flows, problem, u, (t, dt));
+        add_water(&mut flows, problem, u, (t, dt));
         let strips = grips.work(u);
         flows.external += &strips.given;
         flows.external -= &strips.rubbed;
@@ -276,7 +277,7 @@ fn elastic<K: Kinematics<D>, const D: usize>(model: &Model<K, D>, points: &Point
     (0..points.len()).map(|p| points.volume[p] * model.elastic_energy(points, p, &points.b_e.at(p))).collect()
 }
 
-/// Work of gravity by its mean, and half of what it has grown times u.
+/// Work of gravity and still water by their mean, and half of what they have grown times u.
 fn add_gravity<K: Kinematics<D>, const D: usize>(
     flows: &mut Flows<Exact>,
     problem: &Problem<'_, K, D>,
@@ -287,6 +288,22 @@ fn add_gravity<K: Kinematics<D>, const D: usize>(
     let moved = transfer::to_points::<D, D, _>(problem.shape, u, |p, du| Vector::from(du) * problem.points.mass[p]);
     flows.external.extend(moved.iter().map(|moved| 0.5 * (before + after).dot(moved)));
     flows.integration.extend(moved.iter().map(|moved| -0.5 * (after - before).dot(moved)));
+}
+
+fn add_water<K: Kinematics<D>, const D: usize>(
+    flows: &mut Flows<Exact>,
+    problem: &Problem<'_, K, D>,
+    u: &[f64],
+    (t, dt): (f64, f64),
+) {
+    let Problem { model, points, .. } = *problem;
+    let (Some(before), Some(after)) = (model.still_water(t), model.still_water(t + dt)) else { return };
+    let work = transfer::to_points::<D, D, _>(problem.shape, u, |p, du| {
+        let [before, after] = [before, after].map(|water| water.force(points, p).dot(&Vector::from(du)));
+        [0.5 * (before + after), -0.5 * (after - before)]
+    });
+    flows.external.extend(work.iter().map(|work| work[0]));
+    flows.integration.extend(work.iter().map(|work| work[1]));
 }
 
 /// Work of the inertia, and the kinetic energy of this rank's own nodes at both ends of the step.

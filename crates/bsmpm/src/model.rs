@@ -15,6 +15,7 @@ use crate::step::mass::MassMatrix;
 use crate::step::newmark::Newmark;
 use crate::tensor::{Symmetric, Vector};
 use crate::water::Water;
+use crate::water::ambient::{Ambient, StillWater};
 use std::borrow::Cow;
 use std::marker::PhantomData;
 
@@ -50,8 +51,12 @@ pub struct Gravity<const D: usize> {
 impl<const D: usize> Gravity<D> {
     /// Acceleration at time `t`, m/s2.
     pub fn at(&self, t: f64) -> Vector<D> {
-        let grown = if self.ramp > 0.0 { (t / self.ramp).clamp(0.0, 1.0) } else { 1.0 };
-        self.acceleration * grown
+        self.acceleration * self.grown(t)
+    }
+
+    /// Part of it that acts at time `t`.
+    pub fn grown(&self, t: f64) -> f64 {
+        if self.ramp > 0.0 { (t / self.ramp).clamp(0.0, 1.0) } else { 1.0 }
     }
 }
 
@@ -135,6 +140,13 @@ impl<K: Kinematics<D>, const D: usize> Model<K, D> {
             (Some(gravity), Some(ground)) => Some(gravity - ground),
             (gravity, ground) => gravity.or(ground.map(|ground| -ground)),
         }
+    }
+
+    /// Still water at time `t`, if there is any: it weighs as much as gravity has grown, and nothing without.
+    pub fn still_water(&self, t: f64) -> Option<StillWater<'_>> {
+        let Water { unit_weight, ambient, .. } = self.water.as_ref().filter(|water| water.ambient != Ambient::None)?;
+        let grown = self.gravity.as_ref().map_or(0.0, |gravity| gravity.grown(t));
+        Some(StillWater::new(ambient, unit_weight * grown, t))
     }
 
     /// The model in a step of the length `dt`, s: another one only where a strength follows the rate.

@@ -6,6 +6,8 @@ use bsmpm::water::flow::{Course, Given, Soil};
 /// Pore water whose excess pressure is an unknown.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Flow {
+    /// N/m3  of the water, where there is none that is still
+    pub unit_weight: f64,
     /// Pa  bulk modulus of the water; infinite: incompressible
     pub bulk: f64,
     /// By the number of the material; `None` where the pressure is that of the still water.

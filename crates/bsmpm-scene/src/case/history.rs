@@ -112,6 +112,11 @@ pub enum Quantity {
         /// of the place itself instead, by a plane through the points around it
         surface: bool,
     },
+    /// Pa  of the water, positive in compression, at the point nearest to `at` at the start
+    PorePressure {
+        /// m  in the case's coordinates
+        at: [f64; 2],
+    },
     /// of the pore water of the point nearest to `at` at the start: excess pressure, porosity or flux
     Pore {
         /// which of them
@@ -252,6 +257,7 @@ impl Quantity {
             Self::Displacement { .. } => Measurement::Displacement,
             Self::Velocity { .. } => Measurement::Velocity,
             Self::Stress { .. } => Measurement::Stress,
+            Self::PorePressure { .. } => Measurement::PorePressure,
             Self::Pore { what, .. } => *what,
             Self::WaterOutflow { .. } => Measurement::WaterOutflow,
             Self::WaterBalance => Measurement::WaterBalance,

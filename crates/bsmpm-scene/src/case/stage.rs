@@ -149,6 +149,7 @@ impl Case {
         exchanges.for_each(|&(from, to)| followed[from] = to);
         let of = |(own, followed): (&NamedMaterial, usize)| NamedMaterial {
             density: own.density,
+            saturated: own.saturated,
             material: match divided {
                 1.0 => self.materials[followed].material.clone(),
                 further => self.materials[followed].material.clone().reduced(further),

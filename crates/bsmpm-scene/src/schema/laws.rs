@@ -267,6 +267,12 @@ pub(crate) static MATERIAL: Table = Table {
         ),
         key("unit_weight", Quantity(In::UnitWeight, Range::POSITIVE), Optional, "density = unit_weight / 9.81 m/s2"),
         key("density", Quantity(In::Density, Range::POSITIVE), Optional, "neither: weightless, in dynamics an error"),
+        key(
+            "saturated_unit_weight",
+            Quantity(In::UnitWeight, Range::POSITIVE),
+            Optional,
+            "of what lies below the water table at the start; unit_weight, or what density is, unless given",
+        ),
         key("k0", Quantity(In::Number, loads::COEFFICIENT), Optional, "horizontal over vertical stress at the start"),
         key(
             "drainage",

@@ -81,8 +81,8 @@ pub(super) static HISTORY: Table = Table {
             "at",
             Pair(In::Length, Range::ANY),
             Optional,
-            "of displacement: the place at the start; of velocity, stress, excess-pressure, porosity and flux: the point \
-             nearest to it then",
+            "of displacement: the place at the start; of velocity, stress, pore-pressure, excess-pressure, porosity and \
+             flux: the point nearest to it then",
         ),
         key(
             "material",

@@ -1,6 +1,7 @@
 //! Water that flows: soils, drains and inflows, and what is not shown to be right together with it.
 
 use super::load::increasing;
+use super::STANDARD_GRAVITY;
 use super::place::{self, along};
 use super::strip::{AroundStrip, segment};
 use crate::case::{Body, Case, Drain, DrainSite, Face, Flow, Inflow, Initial, NamedMaterial, Quantity, Support};
@@ -14,6 +15,8 @@ use bsmpm::quadrature::Quadrature;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::water::flow::{Course, Given, Permeability, PermeabilityLaw, Soil};
 
+/// N/m3  of water, unless a case gives it.
+const WATER: f64 = 9810.0;
 /// Parts of a cell by which a body may be off a face that it lies at.
 const AT: f64 = 1e-9;
 /// Points along each axis of a cell with cubic splines: with fewer the pressure oscillates at surfaces that cut cells.
@@ -57,7 +60,15 @@ pub(super) fn read(
     let (drains, inflows) = (read.into_iter().collect::<Option<_>>()?, put.into_iter().collect::<Option<_>>()?);
     let bulk = root.record("water").filter(|water| water.gives("bulk"));
     let bulk = bulk.map_or(Some(f64::INFINITY), |water| water.number("bulk"))?;
-    Some(Some(Flow { bulk, soils, drains, inflows }))
+    Some(Some(Flow { unit_weight: unit_weight(root)?, bulk, soils, drains, inflows }))
+}
+
+/// N/m3  of water under the case's gravity; under the standard one without any.
+fn unit_weight(root: &Record) -> Option<f64> {
+    let given = root.record("water").map_or(Some(WATER), |water| water.number("unit_weight"))?;
+    let Some(gravity) = root.record("gravity") else { return Some(given) };
+    let [x, y] = gravity.pair("acceleration")?;
+    Some(given / STANDARD_GRAVITY * x.hypot(y))
 }
 
 /// What a material is to water; the outer option is `None` after an error.
@@ -298,7 +309,7 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
     of_soils(case, flow, root, report);
     acting(case, root, report);
     timed(case, root, report);
-    drained(flow, report);
+    drained(case, flow, report);
 }
 
 /// Splines, points, averages and iterations that carry the pressure.
@@ -440,10 +451,16 @@ fn timed(case: &Case, root: &Record, report: &mut Report<'_>) {
     }
 }
 
-/// Water that can leave nowhere.
-fn drained(flow: &Flow, report: &mut Report<'_>) {
+/// Water that can leave nowhere, or begins without the pressure of its own weight.
+fn drained(case: &Case, flow: &Flow, report: &mut Report<'_>) {
     let permeable = flow.soils.iter().flatten().any(|soil| soil.permeability.is_some());
     if permeable && flow.drains.is_empty() {
         report.warn("drain: there is none, and no water leaves the ground; give [[drain]] surface = true, or face");
+    }
+    if case.gravity.is_some() && case.water.is_none() {
+        report.warn(
+            "water: there is none that is still, and the pore pressure at the start is zero everywhere: what the water weighs \
+             has to build up in time; give [water] level",
+        );
     }
 }

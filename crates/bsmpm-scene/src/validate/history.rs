@@ -140,7 +140,7 @@ fn own_keys(measured: Measurement) -> (&'static [&'static str], &'static [&'stat
         Moment | Work => (&[], &["of"]),
         RigidForce | RigidMoment | RigidDisplacement | RigidRotation | RigidVelocity => (&[], &["rigid"]),
         RigidSlip | RigidGap | RigidWork => (&[], &["rigid"]),
-        Displacement | ExcessPressure | Porosity | Flux => (&[], &["at"]),
+        Displacement | PorePressure | ExcessPressure | Porosity | Flux => (&[], &["at"]),
         WaterOutflow => (&["drain", "face"], &[]),
         Velocity | Stress => (&["surface"], &["at"]),
         SectionForces => (&["fixed"], &["from", "to"]),
@@ -185,6 +185,7 @@ fn quantity(
         Measurement::Displacement => Quantity::Displacement { at: at(record, grid, report)? },
         Measurement::Velocity => Quantity::Velocity { at: at(record, grid, report)?, surface: at_surface(record)? },
         Measurement::Stress => Quantity::Stress { at: at(record, grid, report)?, surface: at_surface(record)? },
+        Measurement::PorePressure => Quantity::PorePressure { at: at(record, grid, report)? },
         Measurement::ExcessPressure | Measurement::Porosity | Measurement::Flux => {
             Quantity::Pore { what: measured, at: at(record, grid, report)? }
         }

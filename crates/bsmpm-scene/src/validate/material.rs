@@ -2,7 +2,7 @@
 
 mod law;
 
-use super::{STANDARD_GRAVITY, reduction};
+use super::{STANDARD_GRAVITY, reduction, water};
 use crate::case::{Body, NamedMaterial, Stage};
 use crate::grid::GridSpec;
 use crate::record::Record;
@@ -77,6 +77,7 @@ fn read(
     report: &mut Report<'_>,
 ) -> Option<NamedMaterial> {
     let density = density(record, around.regime, report);
+    let saturated = density.and_then(|density| water::saturated(record, density, report));
     let layer = Layer::of(number, around);
     let law = law(record, (layer.as_ref(), around.grid), report);
     let retardation = retardation(record, around.regime, report);
@@ -103,7 +104,8 @@ fn read(
     if let Some(layer) = layer.filter(|_| factor != 1.0) {
         note_reduction(record, &material, &layer, factor, report);
     }
-    Some(NamedMaterial { name: name.clone(), material, density: density?, retardation: retardation? })
+    let (density, saturated, retardation) = (density?, saturated?, retardation?);
+    Some(NamedMaterial { name: name.clone(), material, density, saturated, retardation })
 }
 
 /// Heights (m, in the case's coordinates) between which bodies of a material lie; the grid's if there are none.

@@ -305,7 +305,10 @@ fn follow(case: &mut Case, lasting: &[Body]) {
     let mut places = Vec::new();
     for (number, history) in case.histories.iter_mut().enumerate() {
         match history.quantity {
-            Quantity::Displacement { at } | Quantity::Velocity { at, .. } | Quantity::Stress { at, .. } => {
+            Quantity::Displacement { at }
+            | Quantity::PorePressure { at }
+            | Quantity::Velocity { at, .. }
+            | Quantity::Stress { at, .. } => {
                 history.lasts = place::at_body(lasting, &case.grid, at);
                 places.extend((!place::at_body(&first, &case.grid, at)).then_some((number, at)));
             }

@@ -46,6 +46,8 @@ choice! {
         /// Cauchy stress of the point nearest to `at` at the start, positive in tension; with `surface` of the place
         /// itself.
         Stress = "stress",
+        /// Pressure of the water in the pores of the point nearest to `at` at the start, positive in compression.
+        PorePressure = "pore-pressure",
         /// Pore pressure above that of the still water, of the point nearest to `at` at the start, where water flows.
         ExcessPressure = "excess-pressure",
         /// Share of pores in the volume of the point nearest to `at` at the start, where water flows.
@@ -182,8 +184,8 @@ impl Measurement {
             Self::Moment | Self::Work => &[("", "")],
             Self::Runout | Self::Front | Self::Height | Self::MaxDisplacement | Self::Heave => &[("", "")],
             Self::Mass | Self::Outflow | Self::FootingPressure | Self::FootingForce => &[("", "")],
-            Self::Penetration | Self::Slip => &[("", "")],
-            Self::ExcessPressure | Self::Porosity | Self::WaterOutflow | Self::WaterBalance => &[("", "")],
+            Self::Penetration | Self::Slip | Self::PorePressure | Self::ExcessPressure | Self::Porosity => &[("", "")],
+            Self::WaterOutflow | Self::WaterBalance => &[("", "")],
         }
     }
 
@@ -202,7 +204,7 @@ impl Measurement {
             Self::Velocity | Self::SlipRate | Self::RigidVelocity | Self::Flux => "m/s",
             Self::FrictionPower => "W/m",
             Self::Stress | Self::MeanStress | Self::PressureNoise | Self::FootingPressure => "Pa",
-            Self::ExcessPressure => "Pa",
+            Self::PorePressure | Self::ExcessPressure => "Pa",
             Self::StressNoise | Self::Slip | Self::Contact | Self::Porosity | Self::WaterBalance => "-",
             Self::WaterOutflow => "m3/m",
             Self::Moment => "N",

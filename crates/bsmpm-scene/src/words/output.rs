@@ -16,6 +16,8 @@ choice! {
         Yielding = "yielding",
         /// Present density (kg/m3).
         Density = "density",
+        /// Pressure of the water in the pores (Pa), positive in compression.
+        PorePressure = "pore-pressure",
         /// Pore pressure above that of the still water (Pa), where water flows.
         ExcessPressure = "excess-pressure",
         /// Volume of water that flows through the soil per area and time (m/s), relative to the grains.
@@ -44,6 +46,7 @@ impl FrameField {
             Self::DeviatoricStrain => "deviatoric_strain",
             Self::Yielding => "yielding",
             Self::Density => "density",
+            Self::PorePressure => "pore_pressure",
             Self::ExcessPressure => "excess_pressure",
             Self::Flux => "flux",
             Self::Porosity => "porosity",
@@ -55,7 +58,7 @@ impl FrameField {
     /// Unit of its numbers.
     pub fn unit(self) -> &'static str {
         match self {
-            Self::Q | Self::PrincipalStresses => "Pa",
+            Self::Q | Self::PrincipalStresses | Self::PorePressure => "Pa",
             Self::ExcessPressure | Self::TotalStress => "Pa",
             Self::Flux => "m/s",
             Self::Porosity => "-",

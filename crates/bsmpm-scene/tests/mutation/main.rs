@@ -123,7 +123,16 @@ const OTHERWISE: [&[(&str, &str)]; 7] = [
 
 fn bases() -> Vec<String> {
     let later = format!("{STATIC}\n[strength_reduction]\nfactor = 1.2\nstage = \"end\"\nsteps = 5\n");
+    let wet = |table: &str| {
+        let soil = "poisson = 0.3\nunit_weight = \"19 kN/m3\"\nsaturated_unit_weight = \"20 kN/m3\"";
+        let fields = "every = 0.5\nfields = [\"pore-pressure\"]";
+        let rest = "[gravity]\nacceleration = [0.0, -9.81]\n\n[[history]]\nquantity = \"pore-pressure\"\nat = [1.0, 0.5]";
+        let dry = STATIC.replacen("poisson = 0.3", soil, 1).replacen("every = 0.5", fields, 1);
+        format!("{dry}\n[water]\n{table}\nunit_weight = \"10 kN/m3\"\n\n{rest}\n")
+    };
+    let still = ["level = 0.75", "level_path = [[0.0, \"2 m\"], [1.0, 0.5]]", "line = [[0.0, 0.75], [\"2 m\", 0.5]]"];
     let mut bases = vec![FULL.to_owned(), STATIC.to_owned(), later, RUBBING.to_owned(), SEEPING.to_owned()];
+    bases.extend(still.map(wet));
     for changes in OTHERWISE {
         let mut text = FULL.to_owned();
         for (part, by) in changes {

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use bsmpm::model::Regime;
+use bsmpm::water::ambient::Ambient;
 use bsmpm_scene::words::Word;
 use bsmpm_scene::{Acting, Case, Counted, GridAxis, MotionPath, Quantity, Traction};
 use serde::Serialize;
@@ -231,7 +232,10 @@ fn stiffness(case: &Case) -> f64 {
         at(body.bounds()[0][1]).min(at(body.bounds()[1][1]))
     };
     let softest = case.bodies.iter().map(of_body).fold(f64::INFINITY, f64::min);
-    let densities = case.bodies.iter().filter_map(|body| case.materials[body.material].density);
+    let densities = case.bodies.iter().filter_map(|body| {
+        let named = &case.materials[body.material];
+        named.saturated.or(named.density)
+    });
     let gravity = case.gravity.as_ref().map_or(0.0, |gravity| gravity.acceleration[0].hypot(gravity.acceleration[1]));
     let weight = densities.fold(0.0, f64::max) * gravity * (high - low);
     let tractions = case.tractions.iter().map(Traction::largest);
@@ -280,6 +284,11 @@ fn refusals(case: &Case, until: Option<f64>) -> Vec<String> {
             "a load still grows at the end of that stage, and would go on while the strength falls: let its ramp end before",
         ),
         (
+            level_moves(case, until),
+            "water.level_path: the factor would be that of whatever the level is as strength falls: give the level that is \
+             meant, or --stage NAME of a stage at whose end the level rests",
+        ),
+        (
             !case.rigid.is_empty(),
             "it has rigid bodies: what they carry changes with what is displaced, and no factor was shown with them; give \
              tractions instead",
@@ -310,6 +319,13 @@ fn still_grows(case: &Case, until: f64) -> bool {
     let ramps = case.tractions.iter().map(|load| load.ramp).chain(case.point_loads.iter().map(|load| load.ramp));
     let gravity = case.gravity.iter().map(|gravity| gravity.ramp);
     ramps.enumerate().map(|(load, ramp)| ends(load, ramp)).chain(gravity).any(|end| end > until * (1.0 + 1e-9))
+}
+
+/// Whether the water rises or falls while strength is reduced.
+fn level_moves(case: &Case, until: Option<f64>) -> bool {
+    let Some(Ambient::Level(rows)) = case.water.as_ref().map(|water| &water.table) else { return false };
+    let after = |t: f64| rows.partition_point(|row| row.0 <= t).saturating_sub(1);
+    rows[after(until.unwrap_or(0.0))..].windows(2).any(|pair| pair[0].1 != pair[1].1)
 }
 
 fn loose_tolerances(case: &Case) -> impl Iterator<Item = String> {

@@ -24,6 +24,7 @@ mod scenes;
 mod settled_start;
 mod signals;
 mod stages;
+mod still_water;
 mod strips;
 mod sweep;
 mod told;

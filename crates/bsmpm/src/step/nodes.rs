@@ -345,7 +345,7 @@ fn supported<const D: usize>(
     (touched.chunks_exact(2).map(|marks| marks[0] > 0.0).collect(), held.collect())
 }
 
-/// Body force (step 2d): sum_p N_Ip m_p g(t + dt).
+/// Body force (step 2d): sum_p N_Ip m_p g(t + dt), and that of still water.
 fn external_force<K: Kinematics<D>, const D: usize>(
     (model, shape, points): (&Model<K, D>, &Shape<D>, &Points<D>),
     t: f64,
@@ -353,19 +353,24 @@ fn external_force<K: Kinematics<D>, const D: usize>(
     halo: &dyn Halo,
 ) -> Vec<f64> {
     let mut f_ext = vec![0.0; weight.len() * D];
-    let Some(g) = model.body_force(t) else { return f_ext };
-    let own;
-    let mass = match weighting {
-        Weighting::Mass => weight,
-        Weighting::Volume => {
-            own = scatter_weight(Weighting::Mass, shape, points, halo);
-            &own
+    if let Some(g) = model.body_force(t) {
+        let own;
+        let mass = match weighting {
+            Weighting::Mass => weight,
+            Weighting::Volume => {
+                own = scatter_weight(Weighting::Mass, shape, points, halo);
+                &own
+            }
+        };
+        for (force, mass) in f_ext.chunks_exact_mut(D).zip(mass) {
+            for component in 0..D {
+                force[component] = mass * g[component];
+            }
         }
-    };
-    for (force, mass) in f_ext.chunks_exact_mut(D).zip(mass) {
-        for component in 0..D {
-            force[component] = mass * g[component];
-        }
+    }
+    if let Some(water) = model.still_water(t) {
+        let force = halo.sum(&transfer::to_nodes(shape, |p| <[f64; D]>::from(water.force(points, p))));
+        f_ext.iter_mut().zip(force).for_each(|(all, force)| *all += force);
     }
     f_ext
 }

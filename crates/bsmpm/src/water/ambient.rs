@@ -1,4 +1,8 @@
-//! Still water: its pressure and what it does to the ground.
+//! Still water: its pressure and what it does to the ground (see `water.md` beside the parent).
+
+use crate::points::Points;
+use crate::schedule::between;
+use crate::tensor::Vector;
 
 /// Still water, by its level.
 #[derive(Clone, Debug, PartialEq)]
@@ -9,4 +13,89 @@ pub enum Ambient {
     Level(Vec<(f64, f64)>),
     /// m  phreatic line: rows of x, increasing, and height, both from the grid's lower corner; constant beyond its ends
     Line(Vec<(f64, f64)>),
+}
+
+impl Ambient {
+    /// m  height of the water table at `x` (m, along axis 0) and time `t`, and its slope along `x` (-).
+    pub fn table(&self, x: f64, t: f64) -> Option<(f64, f64)> {
+        match self {
+            Self::None => None,
+            Self::Level(rows) => {
+                let (first, last) = rows.first().zip(rows.last())?;
+                Some((between(rows, first.1, t).unwrap_or(last.1), 0.0))
+            }
+            Self::Line(rows) => {
+                let next = rows.partition_point(|row| row.0 <= x);
+                let Some(before) = next.checked_sub(1).map(|before| rows[before]) else {
+                    return rows.first().map(|first| (first.1, 0.0));
+                };
+                let Some(after) = rows.get(next) else { return Some((before.1, 0.0)) };
+                let slope = (after.1 - before.1) / (after.0 - before.0);
+                Some((before.1 + slope * (x - before.0), slope))
+            }
+        }
+    }
+}
+
+/// Still water at a time.
+#[derive(Clone, Copy, Debug)]
+pub struct StillWater<'a> {
+    ambient: &'a Ambient,
+    unit_weight: f64, // N/m3  as far as gravity has grown
+    t: f64,
+}
+
+impl<'a> StillWater<'a> {
+    /// At time `t`, of the `unit_weight` (N/m3) that it has then.
+    pub fn new(ambient: &'a Ambient, unit_weight: f64, t: f64) -> Self {
+        Self { ambient, unit_weight, t }
+    }
+
+    /// Pa  p_a at the place `x` (m, from the grid's lower corner): unit weight times the depth below the water table
+    /// straight above; 0 above the table.
+    pub fn pressure<const D: usize>(&self, x: &Vector<D>) -> f64 {
+        let table = self.ambient.table(x[0], self.t);
+        table.map_or(0.0, |(height, _)| self.unit_weight * (height - x[D - 1]).max(0.0))
+    }
+
+    /// N  force of the water on point `p`: -J V0 grad p_a, and what the water weighs that its pores have taken up or
+    /// given off, which the point's mass does not know. Nothing above the water table.
+    pub fn force<const D: usize>(&self, points: &Points<D>, p: usize) -> Vector<D> {
+        let (x, volume) = (&points.x[p], points.volume[p]);
+        let mut force = Vector::zeros();
+        if let Some((height, slope)) = self.ambient.table(x[0], self.t)
+            && x[D - 1] < height
+        {
+            if slope != 0.0 {
+                force[0] = -self.unit_weight * slope * volume * points.F.at(p).determinant();
+            }
+            force[D - 1] = self.unit_weight * volume;
+        }
+        force
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_table_is_linear_between_its_rows_and_level_beyond_them() {
+        let line = Ambient::Line(vec![(1.0, 2.0), (3.0, 6.0), (4.0, 5.0)]);
+        let at = |x: f64| line.table(x, 7.0);
+        assert_eq!([at(0.0), at(1.0), at(2.0)], [Some((2.0, 0.0)), Some((2.0, 2.0)), Some((4.0, 2.0))]);
+        assert_eq!([at(3.5), at(4.0), at(9.0)], [Some((5.5, -1.0)), Some((5.0, 0.0)), Some((5.0, 0.0))]);
+        let path = Ambient::Level(vec![(1.0, 8.0), (3.0, 4.0)]);
+        let at = |t: f64| path.table(0.0, t);
+        assert_eq!([at(0.0), at(2.0), at(5.0)], [Some((8.0, 0.0)), Some((6.0, 0.0)), Some((4.0, 0.0))]);
+        assert_eq!(Ambient::None.table(1.0, 1.0), None);
+    }
+
+    #[test]
+    fn pressure_is_that_of_the_depth_straight_below_the_table() {
+        let line = Ambient::Line(vec![(0.0, 2.0), (2.0, 4.0)]);
+        let water = StillWater::new(&line, 10.0, 0.0);
+        let at = |x: f64, y: f64| water.pressure(&Vector::<2>::new(x, y));
+        assert_eq!([at(1.0, 1.0), at(1.0, 3.0), at(1.0, 3.5), at(5.0, 0.0)], [20.0, 0.0, 0.0, 40.0]);
+    }
 }

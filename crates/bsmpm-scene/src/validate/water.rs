@@ -1,0 +1,173 @@
+//! Water in the ground.
+
+use super::load::increasing;
+use super::STANDARD_GRAVITY;
+use crate::case::{Case, Gravity, Support, Water};
+use crate::grid::GridSpec;
+use crate::record::Record;
+use crate::report::Report;
+use crate::words::{Side, Word};
+use bsmpm::water::ambient::Ambient;
+
+/// Slope of a phreatic line up to which the depth straight below it is taken for the pressure without a word: along a
+/// slope that water flows down in parallel it is cos^2 less, 6 % here.
+const GENTLE: f64 = 0.25;
+
+/// Water, if any; none after an error.
+pub(super) fn read(
+    root: &Record,
+    (grid, gravity): (Option<&GridSpec>, Option<&Gravity>),
+    end: Option<f64>,
+    report: &mut Report<'_>,
+) -> Option<Water> {
+    let Some(record) = root.record("water") else {
+        for (_, material) in root.named("material") {
+            if material.gives("saturated_unit_weight") {
+                material.error("saturated_unit_weight", "has no meaning without [water]", report);
+            }
+        }
+        return None;
+    };
+    if ["level", "level_path", "line"].iter().all(|key| !record.gives(key)) {
+        if !super::flow::flows(root) {
+            let message = "missing: one of level, level_path, line: no water flows, and there is none that is still";
+            report.error(record.origin, &record.path, message);
+        }
+        return None;
+    }
+    let table = table(record, (grid?, end), report)?;
+    let given = record.number("unit_weight")?;
+    if !root.gives("gravity") {
+        report.error(record.origin, &record.path, "water weighs nothing without [gravity]");
+    }
+    let [across, along] = gravity?.acceleration;
+    if across != 0.0 || along >= 0.0 {
+        let message = format!("[{across:?}, {along:?}] is not straight down, which still water needs");
+        root.record("gravity")?.error("acceleration", message, report);
+    }
+    if !(8_000.0..=12_000.0).contains(&given) {
+        report.warn(format!("{}: {given} N/m3 is unusual for water: check the unit", record.path_of("unit_weight")));
+    }
+    let unit_weight = given / STANDARD_GRAVITY * along.abs();
+    if unit_weight != given {
+        let reason = format!("{given} N/m3 is that under 9.81 m/s2, as of materials");
+        report.note(record.path_of("unit_weight"), format!("{unit_weight}"), reason);
+    }
+    Some(Water { unit_weight, table })
+}
+
+/// The water table, somewhere above the grid's base.
+fn table(record: &Record, (grid, end): (&GridSpec, Option<f64>), report: &mut Report<'_>) -> Option<Ambient> {
+    let (key, rows) = if record.gives("level") {
+        ("level", vec![(0.0, record.number("level")?)])
+    } else {
+        let key = if record.gives("line") { "line" } else { "level_path" };
+        (key, increasing(record, key, report)?.map(|row| (row[0], row[1])).collect())
+    };
+    let base = grid.lower()[1];
+    if rows.iter().all(|row| row.1 <= base) {
+        let message = format!("the water table is nowhere above the grid's lower face, y = {base}: leave [water] out");
+        record.error(key, message, report);
+        return None;
+    }
+    if key != "line" {
+        if let Some((t, _)) = rows.iter().find(|(t, _)| end.is_some_and(|end| *t > end)) {
+            report.warn(format!("{}: the row at t = {t} is beyond the end of the run", record.path_of(key)));
+        }
+        return Some(Ambient::Level(rows));
+    }
+    let slope = |pair: &[(f64, f64)]| (pair[1].1 - pair[0].1) / (pair[1].0 - pair[0].0);
+    let steepest = rows.windows(2).map(|pair| slope(pair).abs()).fold(0.0, f64::max);
+    if steepest > GENTLE {
+        report.warn(format!(
+            "{}: a slope of {steepest:.3}: the pressure is that of the depth straight below the line; where water flows along \
+             it, it is less, by {:.0} % there, and factors of safety are on the safe side",
+            record.path_of(key),
+            100.0 * steepest * steepest / (1.0 + steepest * steepest)
+        ));
+    }
+    Some(Ambient::Line(rows))
+}
+
+/// kg/m3  of a material below the water table; the outer option is `None` after an error.
+pub(super) fn saturated(record: &Record, density: Option<f64>, report: &mut Report<'_>) -> Option<Option<f64>> {
+    const KEY: &str = "saturated_unit_weight";
+    if !record.gives(KEY) {
+        return Some(None);
+    }
+    let saturated = record.number(KEY)? / STANDARD_GRAVITY;
+    match density {
+        None => record.error(KEY, "it has none above the water: give unit_weight or density, too", report),
+        Some(dry) if saturated < dry => {
+            let [wet, dry] = [saturated, dry].map(|density| density * STANDARD_GRAVITY * 1e-3);
+            let message = format!("{wet:.6} kN/m3 is lighter than above the water, {dry:.6} kN/m3");
+            record.error(KEY, message, report);
+        }
+        Some(_) => {}
+    }
+    report.note(record.path_of("saturated density"), format!("{saturated}"), "saturated_unit_weight / 9.81 m/s2");
+    Some(Some(saturated))
+}
+
+/// What only the whole case shows.
+pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
+    let (Some(water), Some(written)) = (&case.water, record.record("water")) else { return };
+    if case.shaking.iter().any(|(_, ground)| *ground != [0.0; 2]) {
+        let message = "the pressure of still water does not follow ground that shakes: [shaking] cannot be used with [water]";
+        report.error(written.origin, &written.path, message);
+    }
+    for (axis, upper) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+        if matches!(case.boundary[axis][upper], Support::Absorbing | Support::FreeField) {
+            let message = "with [water]: what absorbs was not shown to be right beside water: use \"roller\"";
+            let side = Side::ALL[axis][upper].word();
+            report.error(record.place("boundary"), &format!("boundary.{side}"), message);
+        }
+    }
+    floating(case, water, record, report);
+    if !case.rigid.is_empty() {
+        report.warn("water: it does not press on rigid bodies: their weights and forces are those besides the water's");
+    }
+    let highest = |rows: &[(f64, f64)]| rows.iter().map(|row| row.1).fold(f64::NEG_INFINITY, f64::max);
+    let highest = match &water.table {
+        Ambient::None => return,
+        Ambient::Level(rows) | Ambient::Line(rows) => highest(rows),
+    };
+    let low = case.bodies.iter().map(|body| body.bounds()[0][1]).fold(f64::INFINITY, f64::min);
+    if highest <= low {
+        report.warn("water: the water table is below all bodies: it does nothing");
+    }
+    if !case.tractions.is_empty() || !case.point_loads.is_empty() {
+        let reason = "the water presses on wet surfaces by itself; loads are what acts besides";
+        report.note("water", "loads besides", reason);
+    }
+    let moves = matches!(&water.table, Ambient::Level(rows) if rows.len() > 1);
+    let wets = |body: &usize| case.materials[case.bodies[*body].material].saturated.is_some();
+    if moves && case.stages.iter().any(|stage| stage.add.iter().any(wets)) {
+        report.warn(
+            "water.level_path: bodies that a stage places weigh saturated_unit_weight below the level at time 0, wherever it \
+             is when they come",
+        );
+    }
+}
+
+/// Ground that the water lifts.
+fn floating(case: &Case, water: &Water, record: &Record, report: &mut Report<'_>) {
+    let Some(gravity) = &case.gravity else { return };
+    let weight = |number: usize| {
+        let named = &case.materials[number];
+        named.saturated.or(named.density).unwrap_or(0.0) * gravity.acceleration[1].abs()
+    };
+    for (number, (name, written)) in record.named("material").iter().enumerate() {
+        if weight(number) < water.unit_weight && case.bodies.iter().any(|body| body.material == number) {
+            let message = format!(
+                "missing or too little: material.{name} is lighter than water, {:.6} kN/m3, and would float",
+                water.unit_weight * 1e-3
+            );
+            let key = ["saturated_unit_weight", "unit_weight", "density"].into_iter().find(|key| written.gives(key));
+            match key {
+                Some(key) => written.error(key, message, report),
+                None => report.error(written.origin, &written.path, message),
+            }
+        }
+    }
+}

@@ -1,0 +1,121 @@
+//! Still water by the real binary: level and sloping ground below it is in equilibrium as ground of buoyant weight, a
+//! level may fall, and runs go on to the bit.
+
+use crate::support::Scratch;
+use crate::support::cases::changed;
+use crate::support::results::{all_frames, at, differences, history, last_frame, manifest};
+
+/// Level ground below a level of 12 m, its top at 7 m.
+const GROUND: &str = r#"
+geometry = "plane-strain"
+[analysis]
+type = "quasi-static"
+end = 1.0
+steps = 4
+[grid]
+lower = [-1, 2]
+upper = [3, 12]
+cell = "1 m"
+order = "quadratic"
+[material.soil]
+model = "mohr-coulomb"
+young = "100 MPa"
+poisson = 0.3
+cohesion = "5 kPa"
+friction = 30.0
+unit_weight = "17 kN/m3"
+saturated_unit_weight = "20 kN/m3"
+[[body]]
+material = "soil"
+polygon = [[-1, 2], [3, 2], [3, 9], [-1, 9]]
+points_per_cell = 3
+[gravity]
+acceleration = [0, -9.81]
+[water]
+level = 12.0
+[initial]
+k0 = 0.5
+equilibrium = "plastic"
+[boundary]
+bottom = "fixed"
+left = "roller"
+right = "roller"
+[stabilisation]
+method = "consistent-f-bar"
+[output]
+every = 0.5
+fields = ["pore-pressure"]
+[[history]]
+quantity = "max-displacement"
+[[history]]
+quantity = "pore-pressure"
+at = [1, 5.5]
+"#;
+const SLOPE: &str = "polygon = [[-1, 2], [3, 2], [3, 5], [0, 9], [-1, 9]]";
+const LEVEL: &str = "polygon = [[-1, 2], [3, 2], [3, 9], [-1, 9]]";
+/// Pa  of the water over the ground's height
+const PRESSURE: f64 = 9810.0 * 7.0;
+
+/// V1: sigma_v' = -gamma' z, nothing moves, the pressure is that of the depth.
+#[test]
+fn submerged_level_ground_has_its_buoyant_weight_and_rests() {
+    let scratch = Scratch::with_case(GROUND);
+    scratch.mpirun(1, &["case.toml", "-q", "-o", "out"]).expect(0);
+    let found = manifest(&scratch.path("out")).initial.expect("a stress at the start");
+    assert!(found.unbalance < 1e-12 && found.yielding == 0, "{found:?}");
+    let moved = at(&history(&scratch.path("out")), "max-displacement", 1.0);
+    assert!(moved < 1e-12, "{moved}");
+    for frame in all_frames(&scratch.path("out")) {
+        let (stress, pore) = (frame.real("stress", 6).unwrap(), frame.real("pore_pressure", 1).unwrap());
+        for (p, place) in frame.position.iter().enumerate() {
+            let [side, vertical, shear] = [stress[6 * p], stress[6 * p + 1], stress[6 * p + 3]];
+            // Points on thirds hold the mean of the linear stress in a cell, not its value.
+            let buoyant = (20_000.0 - 9810.0) * (9.0 - place[1]);
+            assert!((vertical + buoyant).abs() < 1e-8 * PRESSURE + 0.05 * 10_190.0, "{place:?} {vertical}");
+            assert!((side - 0.5 * vertical).abs() < 1e-8 * PRESSURE && shear.abs() < 1e-8 * PRESSURE, "{place:?}");
+            assert!((pore[p] - 9810.0 * (12.0 - place[1])).abs() < 1e-8 * PRESSURE, "{place:?} {}", pore[p]);
+        }
+    }
+}
+
+/// The same points, stresses and displacements, of a cut slope below water and of one of buoyant weight.
+#[test]
+fn a_submerged_slope_is_one_of_buoyant_weight() {
+    let slope = changed(GROUND, LEVEL, SLOPE).replace("k0 = 0.5", "gravity = \"elastic\"");
+    let dry = changed(&slope, "[water]\nlevel = 12.0\n", "");
+    let dry = dry.replace("saturated_unit_weight = \"20 kN/m3\"\n", "").replace("17 kN/m3", "10.19 kN/m3");
+    let dry = dry.replace("fields = [\"pore-pressure\"]", "").replace("at = [1, 5.5]", "at = [1, 5.5]\nname = \"none\"");
+    let scratch = Scratch::with_case(&slope);
+    scratch.write("dry.toml", &dry);
+    scratch.mpirun(1, &["case.toml", "-q", "-o", "wet"]).expect(0);
+    scratch.mpirun(1, &["dry.toml", "-q", "-o", "dry"]).expect(0);
+    let [wet, dry] = ["wet", "dry"].map(|name| last_frame(&scratch.path(name)));
+    let [wet, dry] = [&wet, &dry].map(|frame| frame.real("stress", 6).unwrap().to_vec());
+    let largest = wet.iter().zip(&dry).map(|(wet, dry)| (wet - dry).abs()).fold(0.0, f64::max);
+    println!("submerged and buoyant: {largest} Pa of {PRESSURE}");
+    assert!(wet.len() == dry.len() && largest < 1e-8 * PRESSURE, "{largest}");
+    let [wet, dry] = ["wet", "dry"].map(|name| at(&history(&scratch.path(name)), "max-displacement", 1.0));
+    assert!((wet - dry).abs() < 1e-12, "{wet} {dry}");
+}
+
+/// The level falls through the ground, on two ranks and with a restart between.
+#[test]
+fn a_level_that_falls_is_followed_and_goes_on_to_the_bit() {
+    let falling = changed(GROUND, "level = 12.0", "level_path = [[0.0, 12.0], [1.0, 4.0]]");
+    let scratch = Scratch::with_case(&falling);
+    scratch.mpirun(1, &["case.toml", "-q", "-o", "one"]).expect(0);
+    scratch.mpirun(2, &["case.toml", "-q", "-o", "two"]).expect(0);
+    let [one, two] = ["one", "two"].map(|name| history(&scratch.path(name)));
+    for (t, level) in [(0.0, 12.0), (0.5, 8.0), (1.0, 4.0)] {
+        // The point next to y = 5.5 is in the middle of its cell.
+        let expected = 9810.0 * f64::max(0.0, level - 5.5);
+        let found = at(&one, "pore-pressure", t);
+        assert!((found - expected).abs() < 0.01 * 9810.0, "{t}: {found} {expected}");
+    }
+    let [one, two] = [&one, &two].map(|table| at(table, "max-displacement", 1.0));
+    assert!(one > 1e-4 && (one - two).abs() < 1e-8 * one, "{one} {two}");
+    scratch.mpirun(1, &["case.toml", "-q", "-o", "cut", "--stop-after-steps", "2"]).expect(3);
+    scratch.mpirun(1, &["--restart", "cut", "-q"]).expect(0);
+    let found = differences(&scratch.path("one"), &scratch.path("cut"));
+    assert!(found.is_empty(), "{found:?}");
+}
