@@ -283,7 +283,7 @@ impl Ledger {
             Iterate { step, time: accepted.t, iteration, method, energy, force }
         };
         let mut iteration = 0;
-        for &Measures { energy, force, method } in &report.history {
+        for &Measures { energy, force, method, .. } in &report.history {
             iteration += 1;
             table.row(&row(iteration, Some(method), energy, force).cells())?;
         }

@@ -40,6 +40,8 @@ pub struct Measures {
     pub energy: f64,
     /// |f_oob| / largest force, of all nodes or of one material's own: the larger one
     pub force: f64,
+    /// water out of balance over what is stored, flows or leaves, where water flows
+    pub water: Option<f64>,
     /// what gave du
     pub method: Method,
 }
@@ -82,6 +84,14 @@ pub enum StepError {
         /// Points without material.
         points: usize,
     },
+    /// Material was pressed together by more than its pores.
+    #[error("the pores of {count} point(s) close in iteration {iteration}")]
+    Closed {
+        /// Number of points over all ranks.
+        count: u64,
+        /// Iteration.
+        iteration: usize,
+    },
     /// A drain or inflow is on material through which no water flows.
     #[error("{points} point(s) of drain or inflow {drain} are on material that lets no water through")]
     Undrained {
@@ -102,9 +112,10 @@ pub enum StepError {
     },
     /// The iteration limit was reached, or no direction led on.
     #[error(
-        "not converged after {iterations} iterations{}: {}{}",
+        "not converged after {iterations} iterations{}: {}{}{}",
         if *iterations < criteria.max_iterations { "" } else { ", their limit" },
         criteria.judged(*energy, (*force, *material)),
+        water.map_or_else(String::new, |(water, tolerance)| format!("; {}", Criteria::judged_water(water, tolerance))),
         unsolved.as_ref().map_or_else(String::new, |reason| format!("; no direction from there: {reason}"))
     )]
     NotConverged {
@@ -116,6 +127,8 @@ pub enum StepError {
         force: f64,
         /// Number of that material; `None` where it is that of all nodes.
         material: Option<usize>,
+        /// Water out of balance over what is stored, flows or leaves, and what it should be below; where water flows.
+        water: Option<(f64, f64)>,
         /// What was asked for.
         criteria: Box<Criteria>,
         /// Both measures of every iteration.

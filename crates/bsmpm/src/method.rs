@@ -47,11 +47,17 @@ impl Criteria {
     /// Both measures beside their tolerances, in words; the force measure with the number of the material that it is
     /// of.
     pub fn judged(&self, energy: f64, (force, material): (f64, Option<usize>)) -> String {
-        let against = |measure: f64, tolerance: f64| {
-            let side = if measure < tolerance { "within" } else { "above" };
-            format!("{measure:.2e}, {side} its tolerance {tolerance:e}")
-        };
         let of = material.map_or_else(String::new, |material| format!(" of material {material} alone"));
         format!("energy measure {}; force measure{of} {}", against(energy, self.energy), against(force, self.force))
     }
+
+    /// The measure of the water beside its tolerance, in words.
+    pub fn judged_water(water: f64, tolerance: f64) -> String {
+        format!("water out of balance {}", against(water, tolerance))
+    }
+}
+
+fn against(measure: f64, tolerance: f64) -> String {
+    let side = if measure < tolerance { "within" } else { "above" };
+    format!("{measure:.2e}, {side} its tolerance {tolerance:e}")
 }

@@ -162,6 +162,11 @@ columns! {
         extent: Vec<f64>, "-", None, || 1.0;
         /// N  force of a rigid body along its outline, where bodies rub, from the first step on; before that it is 0
         grip: Vec<Vector<D>>, "N", None, || Vector::zeros();
+        /// Pa  excess pore pressure, where water flows, from the first step on; before that it is 0
+        pore_pressure: Vec<f64>, "Pa", None, || 0.0;
+        /// Pa/m  gradient of the whole pore pressure, where water flows, from the first step on; before that it is that
+        ///   of the still water
+        pressure_gradient: Vec<Vector<D>>, "Pa/m", None, || Vector::zeros();
     }
 }
 

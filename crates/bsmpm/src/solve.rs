@@ -23,6 +23,7 @@ use crate::step::problem::Problem;
 use crate::step::report::Counts;
 use crate::step::residual::Residual;
 use crate::step::stiffness;
+use crate::water::{matrix, split};
 use convergence::{Convergence, inverted};
 use found::Found;
 use quasi_newton::Stopped;
@@ -37,7 +38,11 @@ pub fn find<K: Kinematics<D>, const D: usize>(
     let (last, zero) = (admissible(problem.nodes, guess), admissible(problem.nodes, &vec![0.0; guess.len()]));
     let mut differs = [f64::from(u8::from(last != zero))];
     problem.halo.maximum(&mut differs);
-    let method = problem.model.nonlinear;
+    let method = match &problem.nodes.pores {
+        // Newton's derivative does not know of water, nor does a rank-one update of pressures.
+        Some(_) => Nonlinear::QuasiNewton(QuasiNewton::Multisecant),
+        None => problem.model.nonlinear,
+    };
     match search(problem, method, last, (solver, counts)) {
         Err(error) if !error.is_final() && differs[0] > 0.0 => {
             let method = if method == Nonlinear::Auto { Nonlinear::Newton } else { method };
@@ -119,18 +124,24 @@ fn by_secants<K: Kinematics<D>, const D: usize>(
     if problem.nodes.unknowns > 0 && !convergence.is_balanced(&residual.balance, problem) {
         stiffness::assemble(problem, Some(&residual.trial), solver)?;
         counts.factorisations += 1;
+        if let Some(pores) = &problem.nodes.pores {
+            matrix::assemble(problem, pores, split::system(solver)?)?;
+            counts.factorisations += 1;
+        }
     }
     quasi_newton::iterate(problem, method, (u, residual), solver, counts, convergence)
 }
 
-/// The guess where it is free, the prescribed values, zero elsewhere.
+/// The guess where it is free, the prescribed values, zero elsewhere; behind it the pressures that the points have, where
+/// water flows.
 fn admissible<const D: usize>(nodes: &Nodes<D>, guess: &[f64]) -> Vec<f64> {
     let component = |(c, &value): (usize, &f64)| match nodes.prescribed[c] {
         Some(prescribed) => prescribed,
         None if nodes.free[c] => value,
         None => 0.0,
     };
-    guess.iter().enumerate().map(component).collect()
+    let pressures = nodes.pores.iter().flat_map(|pores| pores.guess.iter().copied());
+    guess.iter().enumerate().map(component).chain(pressures).collect()
 }
 
 /// The forces under `u`, counted.

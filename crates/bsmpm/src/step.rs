@@ -70,13 +70,15 @@ pub fn step<K: Kinematics<D>, const D: usize>(
     let position = load::moved(&model.boundary.loads, &points.surface, (&model.grid, &nodes.active), &found.u, halo);
     let mut surface = Surface { traction, position, anchors, bodies, ..points.surface.clone() };
     let responses = commit::responses(model, &found.trial, points, halo)?;
-    let accounts = model.balances_energy || model.regime == Regime::Dynamic;
+    // What flows through the pores is in no account yet.
+    let accounts = (model.balances_energy || model.regime == Regime::Dynamic) && nodes.pores.is_none();
     let draft = accounts.then(|| Draft::of(&problem, (&found, &responses), (t, dt)));
     if halo.rejects() {
         return Err(StepError::Interrupted);
     }
     // (10), (11)
-    let Committed { u, advance, smoothed } = commit::commit(model, (&shape, &nodes), (found, &responses), points, halo);
+    let Committed { u, advance, smoothed, content } =
+        commit::commit(model, (&shape, &nodes), (found, &responses), points, halo);
     *guess = u;
     if let Some(extent) = nodes.rigid.extent() {
         points.extent = Some(extent.to_vec());
@@ -95,6 +97,9 @@ pub fn step<K: Kinematics<D>, const D: usize>(
     points.surface = surface;
     points.free_field = free_field.columns;
     let outflow = Outflow::of(model, points, halo);
+    if let Some(water) = &mut report.water {
+        water.stored = content;
+    }
     let (energy, turnover) = account.map_or((None, None), |(flows, turnover)| (flows, Some(turnover)));
     Ok(StepReport { energy, turnover, advance, smoothed, outflow, ..report })
 }

@@ -6,9 +6,16 @@
 #![doc = include_str!("water.md")]
 
 pub mod ambient;
+pub mod content;
 pub mod crossed;
 pub mod drain;
 pub mod flow;
+pub mod matrix;
+pub mod nodes;
+pub mod residual;
+pub mod saved;
+pub mod split;
+pub mod still;
 
 use ambient::Ambient;
 use flow::Flow;

@@ -6,3 +6,4 @@ mod allocation;
 mod properties;
 mod support;
 mod verification;
+mod water;

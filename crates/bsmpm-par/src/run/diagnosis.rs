@@ -81,6 +81,10 @@ fn advice(error: &StepError, case: &Case) -> Vec<String> {
             let name = material.map(|number| case.materials[number].name.as_str());
             return not_converged(*iterations, (*energy, *force), name, criteria);
         }
+        StepError::Closed { .. } => &[
+            "a larger porosity of the soil, or a stiffer one: its grains keep their volume, and the skeleton is pressed into them",
+            "a permeability that follows the porosity (permeability_law = \"kozeny-carman\"), and shorter steps",
+        ],
         StepError::Unstable { .. } => &[
             "nearly incompressible material under a pressure of several times its shear modulus: more points_per_cell",
             "where the body itself buckles, a dynamic analysis follows it",

@@ -127,7 +127,17 @@ impl<const D: usize> Shape<D> {
     /// Function `a` of a cell is number `cell + a` in either degree, so that the lower ones are numbered as the first
     /// q + (cells - 1) nodes along an axis, and nodal arrays and their exchange serve both.
     pub fn lowered(&self, grid: &Grid<D>, points: &impl Located<D>) -> Self {
+        self.lower(grid, points, false)
+    }
+
+    /// The same with their derivatives.
+    pub fn lowered_with_derivatives(&self, grid: &Grid<D>, points: &impl Located<D>) -> Self {
+        self.lower(grid, points, true)
+    }
+
+    fn lower(&self, grid: &Grid<D>, points: &impl Located<D>, derivatives: bool) -> Self {
         let width = self.width - 1;
+        let stride = if derivatives { 2 * width } else { width };
         let inside = |k: usize| (0..D).all(|axis| k / self.width.pow(axis as u32) % self.width < width);
         let mut lower = Self {
             width,
@@ -135,8 +145,8 @@ impl<const D: usize> Shape<D> {
             patches: self.patches.clone(),
             columns: self.columns.clone(),
             extent: self.extent,
-            rows: Vec::with_capacity(points.places().len() * D * width + BEHIND),
-            stride: width,
+            rows: Vec::with_capacity(points.places().len() * D * stride + BEHIND),
+            stride,
             merged: None,
         };
         with_width!(lowered width, W => lower.evaluate_lower::<W>(grid, points));
@@ -149,8 +159,11 @@ impl<const D: usize> Shape<D> {
             let cell = grid.cell_at(patch.cell);
             for x in &points.places()[patch.points.clone()] {
                 for axis in 0..D {
-                    let (N, _) = grid.axes()[axis].basis::<W>(x[axis], cell[axis]);
+                    let (N, dN) = grid.axes()[axis].basis::<W>(x[axis], cell[axis]);
                     self.rows.extend_from_slice(&N);
+                    if self.stride > W {
+                        self.rows.extend_from_slice(&dN);
+                    }
                 }
             }
         }

@@ -98,6 +98,11 @@ impl KnotVector {
         self.knots[i + 1..=i + self.order].iter().sum::<f64>() / self.order as f64
     }
 
+    /// The same of function `i` of the splines of degree q - 1 on the same cells, q > 1.
+    pub fn lowered_greville(&self, i: usize) -> f64 {
+        self.knots[i + 2..=i + self.order].iter().sum::<f64>() / (self.order - 1) as f64
+    }
+
     /// Integral of function `i`, the length of its support over q + 1, and its mean place, that of its knots, m.
     pub fn integral(&self, i: usize) -> (f64, f64) {
         integral(&self.knots[i..=i + self.order + 1])

@@ -6,6 +6,7 @@
 
 mod columns;
 mod patch;
+pub mod scalars;
 
 use super::contributions::Contributions;
 use super::shape::{PatchColumn, Shape, with_width};

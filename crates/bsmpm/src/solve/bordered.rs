@@ -103,4 +103,8 @@ impl<const D: usize> LinearSolver for Bordered<'_, D> {
     ) -> Result<Krylov, SolveError> {
         self.solver.solve_with(product, relative, rhs, solution)
     }
+
+    fn water(&mut self) -> Option<&mut dyn LinearSolver> {
+        self.solver.water()
+    }
 }

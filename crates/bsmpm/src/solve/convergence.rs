@@ -19,6 +19,9 @@ const ALREADY: f64 = 1e-2;
 /// criteria have such forces (.01 to .07 of the tolerance in a wall's active wedge, .5 at most), so that none is
 /// balanced worse.
 const SETTLED: f64 = 1e-1;
+/// Largest part of the water that is stored, flows or leaves that may be out of balance: the forces' tolerance where that
+/// is smaller.
+const WATER: f64 = 1e-4;
 /// Iterations over which the rate of convergence is taken.
 const WINDOW: usize = 20;
 /// Iterations that a quasi-Newton method may still need to be left going: about the cost of the exact iterations that
@@ -49,8 +52,11 @@ impl Convergence {
     /// Whether a state is in equilibrium before any direction is known: a guess far below the force tolerance, or
     /// forces that no node has further out of balance than by round-off.
     pub fn is_balanced<K, const D: usize>(&self, balance: &Balance, problem: &Problem<'_, K, D>) -> bool {
-        (self.history.is_empty() && self.measure(balance) <= ALREADY * self.criteria.force)
-            || self.round_off.covers(balance, problem)
+        let water = self.water(balance).unwrap_or(0.0);
+        (self.history.is_empty()
+            && self.measure(balance) <= ALREADY * self.criteria.force
+            && water <= ALREADY * self.tolerance_of_water())
+            || (self.round_off.covers(balance, problem) && water == 0.0)
     }
 
     /// The first state whose forces balanced far below their tolerance, m, nodal: later ones only wander from it where
@@ -62,6 +68,16 @@ impl Convergence {
     /// The force measure: the largest of the whole and of every material.
     pub fn measure(&self, balance: &Balance) -> f64 {
         self.round_off.measure(balance).0
+    }
+
+    /// The measure of the water, where it flows: what is out of balance over what is stored, flows or leaves.
+    pub fn water(&self, balance: &Balance) -> Option<f64> {
+        balance.water.as_ref().map(|water| water.measure(self.round_off.of_water()))
+    }
+
+    /// What that must be below.
+    fn tolerance_of_water(&self) -> f64 {
+        WATER.min(self.criteria.force)
     }
 
     /// Norm of what is round-off in the forces, N.
@@ -87,11 +103,13 @@ impl Convergence {
     /// Takes the measures of a state `u` and the direction that `method` found there; whether both criteria hold.
     pub fn reaches(&mut self, method: Method, energy: f64, (u, balance): (&[f64], &Balance)) -> bool {
         let (energy, force) = (energy / self.first_energy.unwrap_or(f64::INFINITY), self.measure(balance));
-        self.history.push(Measures { energy, force, method });
+        let water = self.water(balance);
+        self.history.push(Measures { energy, force, water, method });
         if self.settled.is_none() && force <= SETTLED * self.criteria.force {
             self.settled = Some(u.to_vec());
         }
-        energy < self.criteria.energy && force < self.criteria.force
+        let is_dry_or_balanced = water.is_none_or(|water| water < self.tolerance_of_water());
+        energy < self.criteria.energy && force < self.criteria.force && is_dry_or_balanced
     }
 
     /// The measures so far.
@@ -136,6 +154,7 @@ impl Convergence {
             energy: self.history.last().map_or(f64::INFINITY, |measures| measures.energy),
             force,
             material,
+            water: self.water(&residual.balance).map(|water| (water, self.tolerance_of_water())),
             criteria: Box::new(self.criteria),
             history: self.history.clone(),
             worst: worst_nodes(problem, residual),
@@ -158,12 +177,17 @@ pub fn first_energy<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D
     (work - penalty[0]).abs()
 }
 
-/// The error of a state in which points have inverted.
+/// The error of a state in which points have inverted, or have no pores left.
 pub fn inverted<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
     residual: &Residual<K, D>,
     iteration: usize,
 ) -> StepError {
+    if let Some(water) = residual.balance.water.as_ref().filter(|water| water.closed > 0)
+        && residual.balance.inverted == 0
+    {
+        return StepError::Closed { count: water.closed, iteration };
+    }
     let first = residual.first_inverted.map(|p| (problem.points.id[p], problem.points.x[p].as_slice().to_vec()));
     StepError::Inverted { count: residual.balance.inverted, iteration, first }
 }

@@ -5,12 +5,17 @@ use crate::kinematics::Kinematics;
 use crate::solve::convergence::Convergence;
 use crate::step::residual::Residual;
 use crate::step::trial::Trial;
+use crate::water::residual::WaterBalance;
 
 /// A converged displacement.
 #[derive(Clone, Debug)]
 pub struct Found<K: Kinematics<D>, const D: usize> {
     /// m, nodal
     pub u: Vec<f64>,
+    /// Pa, nodal  excess pore pressure, where water flows
+    pub p: Vec<f64>,
+    /// balance of the water, where it flows
+    pub water: Option<WaterBalance>,
     /// deformation under `u`
     pub trial: Trial<K, D>,
     /// N  force of the supports on the body, nodal
@@ -36,17 +41,20 @@ pub struct Found<K: Kinematics<D>, const D: usize> {
 }
 
 impl<K: Kinematics<D>, const D: usize> Found<K, D> {
-    /// The state that an iteration reached.
-    pub fn new(u: Vec<f64>, residual: Residual<K, D>, convergence: &Convergence) -> Self {
+    /// The state that an iteration reached: displacements, and pressures behind them where water flows.
+    pub fn new(mut u: Vec<f64>, residual: Residual<K, D>, convergence: &Convergence) -> Self {
         let newton_iterations = convergence.by_newton();
         let (force, work) = (convergence.measure(&residual.balance), residual.balance.work);
         let scale = residual.balance.scale;
         let Residual { trial, balance, .. } = residual;
         let (history, reaction) = (convergence.history().to_vec(), balance.reaction);
         let first_energy = convergence.first_energy();
+        let p = u.split_off(reaction.len());
         let judged = history.last().copied().filter(|last| last.force == force);
         Self {
             u,
+            p,
+            water: balance.water,
             trial,
             reaction,
             history,

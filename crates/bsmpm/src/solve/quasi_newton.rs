@@ -13,7 +13,8 @@ use crate::solve::stability;
 use crate::solve::unknowns::Unknowns;
 use crate::step::problem::Problem;
 use crate::step::report::Counts;
-use crate::step::residual::Residual;
+use crate::step::residual::{Balance, Residual};
+use crate::water::split::Split;
 
 /// Shortest part of a direction that is tried when points invert.
 const SHORTEST: f64 = 1.0 / 16.0;
@@ -21,7 +22,7 @@ const SHORTEST: f64 = 1.0 / 16.0;
 /// A direction and what it took.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Direction {
-    /// m, nodal
+    /// m, nodal; and Pa behind them, where water flows
     pub du: Vec<f64>,
     /// du . f, N m
     pub energy: f64,
@@ -47,6 +48,14 @@ impl Secants {
         }
     }
 
+    /// The same of the unknowns of a problem, pressures among them where water flows: there by all secants.
+    fn of<K, const D: usize>(method: QuasiNewton, problem: &Problem<'_, K, D>) -> Self {
+        let (free, halo) = (&problem.nodes.free, problem.halo);
+        let Some(pores) = &problem.nodes.pores else { return Self::new::<D>(method, free, halo) };
+        let unknowns = Unknowns::of::<D>(free, halo).with_pressures(free.len(), &pores.free, halo);
+        Self::Multisecant(Multisecant::new(unknowns))
+    }
+
     /// Direction du = H f for the out-of-balance force `f`, `D` components a node.
     pub fn direction<const D: usize>(
         &mut self,
@@ -56,6 +65,27 @@ impl Secants {
     ) -> Result<Direction, SolveError> {
         let mut w = vec![0.0; f.len()];
         let solved = solver.solve(f, &mut w)?;
+        Ok(self.corrected::<D>(w, f, halo, solved))
+    }
+
+    /// Direction of a problem's displacements, and of its pressures behind them where water flows.
+    fn towards<K: Kinematics<D>, const D: usize>(
+        &mut self,
+        problem: &Problem<'_, K, D>,
+        balance: &Balance,
+        solver: &mut dyn LinearSolver,
+    ) -> Result<Direction, SolveError> {
+        match problem.nodes.pores.as_ref().zip(balance.water.as_ref()) {
+            Some((pores, water)) => {
+                let Split { z, f, solved } = Split::of(problem, (pores, balance, water), solver)?;
+                Ok(self.corrected::<D>(z, &f, problem.halo, solved))
+            }
+            None => self.direction::<D>(&balance.f_oob, problem.halo, solver),
+        }
+    }
+
+    /// Direction from w = K_0^-1 f.
+    fn corrected<const D: usize>(&mut self, mut w: Vec<f64>, f: &[f64], halo: &dyn Halo, solved: Solved) -> Direction {
         let (du, energy) = match self {
             Self::Multisecant(secants) => {
                 let energy = secants.correct(&mut w, f, halo);
@@ -67,7 +97,7 @@ impl Secants {
                 (du, energy)
             }
         };
-        Ok(Direction { du, energy, solved })
+        Direction { du, energy, solved }
     }
 
     /// Tells how much of the last direction was taken: 1 for a full step.
@@ -120,7 +150,7 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
     counts: &mut Counts,
     convergence: &mut Convergence,
 ) -> Result<Found<K, D>, Stopped> {
-    let mut secants = Secants::new::<D>(method, &problem.nodes.free, problem.halo);
+    let mut secants = Secants::of(method, problem);
     let (mut best, mut least) = (u.clone(), residual.balance.norm);
     while convergence.iterations() < problem.model.criteria.max_iterations && (patient || !convergence.stalls()) {
         if convergence.is_balanced(&residual.balance, problem) {
@@ -129,7 +159,7 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
         if problem.halo.is_interrupted() {
             return Err(StepError::Interrupted.into());
         }
-        let direction = match secants.direction::<D>(&residual.balance.f_oob, problem.halo, solver) {
+        let direction = match secants.towards(problem, &residual.balance, solver) {
             Ok(direction) => direction, // (6), (7)
             Err(unsolved) => return Err(Stopped::without_direction(problem, (best, &residual), convergence, unsolved)),
         };
@@ -137,7 +167,8 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
         counts.linear_iterations += direction.solved.iterations;
         counts.factorisations += direction.solved.factorisations;
         if !convergence.has_begun() {
-            convergence.begin(first_energy(problem, &direction.du, direction.energy));
+            let du = &direction.du[..problem.nodes.free.len()];
+            convergence.begin(first_energy(problem, du, direction.energy));
         }
         if convergence.reaches(Method::QuasiNewton(method), direction.energy.abs(), (&u, &residual.balance)) {
             return Ok(Found::new(u, residual, convergence)); // (9)

@@ -19,6 +19,7 @@ pub struct RoundOff {
     force: Vec<f64>, // N  1e-13 E h^(D-1), E the largest at the node, and of 4/dt^2 u, 4/dt v, which cancel if dt is tiny
     norm: f64,       // N  of all nodes
     apart: Vec<f64>, // N  of each material's own nodes; empty in a scene of one material
+    water: f64,      // m3  in the balance of the water
 }
 
 impl RoundOff {
@@ -42,12 +43,18 @@ impl RoundOff {
         sums.extend(nodes.apart.iter().flat_map(|apart| apart.sums(problem.halo, D, |c| [square(c)])));
         let sums = problem.halo.total(&sums);
         let (norm, apart) = (sums[0].sqrt(), sums[1..].iter().map(|sum| sum.sqrt()).collect());
-        Self { force, norm, apart }
+        let water = nodes.pores.as_ref().map_or(0.0, |pores| pores.round_off);
+        Self { force, norm, apart, water }
     }
 
     /// Norm of the round-off of all nodes' forces, N.
     pub fn norm(&self) -> f64 {
         self.norm
+    }
+
+    /// Norm of the round-off of the water's balance, m3.
+    pub fn of_water(&self) -> f64 {
+        self.water
     }
 
     /// The force measure: the larger of |f_oob| / largest force of all nodes and that of any material's own nodes,

@@ -21,7 +21,8 @@ pub fn tells<K, const D: usize>(problem: &Problem<'_, K, D>, before: &Balance) -
     let strips = &problem.model.boundary.strips;
     let rubs = rubs || strips.iter().any(|strip| strip.contact.is_some_and(|contact| contact.law.friction > 0.0));
     let rubs = rubs || problem.nodes.rigid.rubs();
-    before.measure() < NEAR && problem.nodes.inertia.is_none() && !rubs && is_symmetric(problem.model)
+    let flows = problem.nodes.pores.is_some();
+    before.measure() < NEAR && problem.nodes.inertia.is_none() && !rubs && !flows && is_symmetric(problem.model)
 }
 
 /// Refuses a direction du (m, nodal; how much of it was taken changes no sign) near static equilibrium whose

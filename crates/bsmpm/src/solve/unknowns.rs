@@ -11,7 +11,7 @@ const LANES: usize = 8;
 /// The components without zeros by definition, packed one after the other.
 #[derive(Clone, Debug)]
 pub struct Unknowns {
-    places: Vec<u32>,          // nodal component of each
+    places: Vec<u32>,          // nodal component of each, those of pressures behind those of displacements
     layers: Vec<Range<usize>>, // those of this rank's own nodes, layer by layer
 }
 
@@ -24,6 +24,15 @@ impl Unknowns {
         let firsts = Nodal::<D>::all(&owned).step_by(layer.max(1));
         let layers = firsts.map(|first| number(first)..number(first + layer)).collect();
         Self { places, layers }
+    }
+
+    /// The same with the `free` pressures of the pore water behind those `components`, one a node.
+    pub fn with_pressures(mut self, components: usize, free: &[bool], halo: &dyn Halo) -> Self {
+        let pressures = Self::of::<1>(free, halo);
+        let before = self.places.len();
+        self.places.extend(pressures.places.iter().map(|place| place + components as u32));
+        self.layers.extend(pressures.layers.iter().map(|layer| layer.start + before..layer.end + before));
+        self
     }
 
     /// The packed vector of a nodal array.

@@ -22,6 +22,7 @@ use crate::step::nodes::Nodes;
 use crate::step::smooth;
 use crate::step::trial::Trial;
 use crate::tensor::Vector;
+use crate::water::saved;
 use rayon::prelude::*;
 
 /// Refuses a displacement that takes a point out of the grid, but through an outlet; there, too, one that a strip,
@@ -63,6 +64,8 @@ pub struct Committed {
     pub smoothed: f64,
     /// m  the farthest that a point moved, over all ranks
     pub advance: f64,
+    /// m3  of water that the points took in, over all ranks
+    pub content: f64,
 }
 
 /// The constitution's answers to the converged step. Fails on all ranks if it refuses a state that it answered during
@@ -89,7 +92,7 @@ pub fn commit<K: Kinematics<D>, const D: usize>(
     points: &mut Points<D>,
     halo: &dyn Halo,
 ) -> Committed {
-    let Found { u, trial, .. } = found;
+    let Found { u, p: pressures, trial, .. } = found;
     if let Some(inertia) = &nodes.inertia {
         move_with_inertia((shape, model.mass), inertia, &u, points);
     }
@@ -114,6 +117,7 @@ pub fn commit<K: Kinematics<D>, const D: usize>(
         points.b_e.set(p, response.b_e());
         points.eps_p[p] += response.plastic_increment();
     }
+    let content = nodes.pores.as_ref().map_or(0.0, |pores| saved::save(model, pores, &trial, &pressures, points, halo));
     let smoothed = match model.stabilisation {
         Stabilisation::ModifiedFBar => {
             smooth::average_b_e(model, shape, nodes, points, halo);
@@ -127,7 +131,7 @@ pub fn commit<K: Kinematics<D>, const D: usize>(
         Stabilisation::None | Stabilisation::FBar | Stabilisation::FBarZhao => 0.0,
     };
     points.gap = gaps(model, points, responses);
-    Committed { u, advance: advance[0], smoothed }
+    Committed { u, advance: advance[0], smoothed, content }
 }
 
 /// Gap of every point after the step, if some material closes its gaps.

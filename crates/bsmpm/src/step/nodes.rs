@@ -18,6 +18,7 @@ use crate::step::apart::Apart;
 use crate::step::inertia::{self, Inertia};
 use crate::step::mass::Mass;
 use crate::tensor::Vector;
+use crate::water::nodes::Pores;
 
 /// Nodes lighter than this fraction of the heaviest one have no velocity, acceleration or average: 1/m is never formed.
 const MASSLESS: f64 = 1e-14;
@@ -58,6 +59,8 @@ pub struct Nodes<const D: usize> {
     pub dashpots: Dashpots,
     /// nodes of one material alone, in a scene of several
     pub apart: Option<Apart>,
+    /// pressures of the pore water, where it flows
+    pub pores: Option<Pores<D>>,
     /// soft background of the step
     pub background: Option<Blocks>,
     /// active nodes, over all ranks
@@ -154,10 +157,12 @@ impl<const D: usize> Nodes<D> {
             inertia.moving.resize(rigid.moving.len(), false);
             inertia.moving.iter_mut().zip(&rigid.moving).for_each(|(moving, by_body)| *moving |= by_body);
         }
+        let pores = Pores::of(model, (shape, points), (t, dt), halo)?;
         let averages = Averages::of(model, (shape, points), threshold, halo);
         let apart = Apart::of(model.materials.len(), shape, points, nodes, halo);
         let mut mapped = Self {
             apart,
+            pores,
             contacts,
             rigid,
             dashpots,

@@ -7,6 +7,7 @@ use crate::kinematics::Kinematics;
 use crate::solve::found::Found;
 use crate::step::outflow::Outflow;
 use crate::step::problem::Problem;
+use crate::water::saved::WaterReport;
 
 /// Work of one or more attempts, failed ones included.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -69,6 +70,8 @@ pub struct StepReport {
     pub advance: f64,
     /// what left the grid, if anything did
     pub outflow: Option<Outflow>,
+    /// what the water did, where it flows
+    pub water: Option<WaterReport>,
     /// share of a pass of S by which the elastic state was smoothed, mean over the points
     pub smoothed: f64,
 }
@@ -101,6 +104,7 @@ impl StepReport {
             turnover: None,
             advance: 0.0,
             outflow: None,
+            water: WaterReport::of(problem, found),
             smoothed: 0.0,
         }
     }

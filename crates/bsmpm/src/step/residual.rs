@@ -11,6 +11,7 @@ use crate::points::Points;
 use crate::step::adjoint::Pressures;
 use crate::step::problem::Problem;
 use crate::step::trial::Trial;
+use crate::water::residual::WaterBalance;
 use std::ops::Range;
 use std::sync::atomic::Ordering::Relaxed;
 use std::sync::atomic::{AtomicU64, AtomicUsize};
@@ -44,21 +45,29 @@ pub struct Balance {
     pub work: f64,
     /// points inverted or not finite, over all ranks
     pub inverted: u64,
+    /// of the water, where it flows
+    pub water: Option<WaterBalance>,
     /// no norm overflowed
     finite: bool,
 }
 
 impl<K: Kinematics<D>, const D: usize> Residual<K, D> {
-    /// Evaluates the forces under `u`: one exchange with the neighbours, one more each for F-bar, its adjoint and
-    /// strips, and one reduction.
-    pub fn of(problem: &Problem<'_, K, D>, u: &[f64]) -> Self {
+    /// Evaluates the forces under `x`, the displacements, and behind them the excess pressures where water flows (none:
+    /// zero): one exchange with the neighbours, one more each for F-bar, its adjoint, strips and water, and one
+    /// reduction, with water two.
+    pub fn of(problem: &Problem<'_, K, D>, x: &[f64]) -> Self {
         let Problem { model, shape, nodes, points, halo, .. } = *problem;
-        let trial = Trial::of(model, shape, nodes, points, u, halo);
+        let (u, p) = x.split_at(nodes.free.len());
+        let mut trial = Trial::of(model, shape, nodes, points, u, halo);
+        let water = nodes.pores.as_ref().map(|pores| match p {
+            [] => WaterBalance::of((problem, pores), &mut trial, &vec![0.0; pores.free.len()]),
+            p => WaterBalance::of((problem, pores), &mut trial, p),
+        });
         let InternalForce { mut f_int, inverted, first_inverted } = InternalForce::of(problem, &trial);
         if let Some(background) = &nodes.background {
             background.multiply::<D>(shape, u, &mut f_int);
         }
-        let balance = Balance::of(problem, u, &halo.sum(&f_int), inverted);
+        let balance = Balance { water, ..Balance::of(problem, u, &halo.sum(&f_int), inverted) };
         Self { trial, balance, first_inverted }
     }
 }
@@ -82,7 +91,7 @@ impl InternalForce {
         let flux = |p: usize| match trial.respond(model, points, p) {
             Ok(response) => {
                 let tau = pressures.acting::<K, D>(p, volume[p], response.tau());
-                let tau = trial.damped(model, points, p, tau);
+                let tau = trial.pressed(p, trial.damped(model, points, p, tau));
                 K::flux(&tau, &trial.dF(p)) * volume[p]
             }
             Err(_) => {
@@ -196,6 +205,7 @@ impl Balance {
             apart: apart.chunks_exact(kinds).map(|sums| if acts(sums) { norms(sums) } else { [0.0; 2] }).collect(),
             work: sums[kinds + 1],
             inverted: sums[0] as u64,
+            water: None,
             finite: sums.iter().all(|sum| sum.is_finite()),
         }
     }
@@ -205,9 +215,10 @@ impl Balance {
         if self.norm == 0.0 { 0.0 } else { self.norm / self.scale }
     }
 
-    /// No point inverted and no number overflowed, on any rank.
+    /// No point inverted or without pores, and no number overflowed, on any rank.
     pub fn is_sound(&self) -> bool {
-        self.inverted == 0 && self.finite
+        let of_water = self.water.as_ref().is_none_or(|water| water.closed == 0 && water.finite);
+        self.inverted == 0 && self.finite && of_water
     }
 }
 

@@ -26,6 +26,8 @@ pub struct Trial<K: Kinematics<D>, const D: usize> {
     mean: Option<Vec<f64>>,
     /// beside the stress of the law
     damping: Damping,
+    /// Pa  J p of every point, where water flows: what it presses with beside the skeleton's Kirchhoff stress
+    pub(crate) pore: Option<Vec<f64>>,
 }
 
 impl<K: Kinematics<D>, const D: usize> Trial<K, D> {
@@ -43,7 +45,7 @@ impl<K: Kinematics<D>, const D: usize> Trial<K, D> {
             let dJ = K::jacobian::<f64>(&grad);
             if dJ > 0.0 && dJ.is_finite() { grad } else { K::Gradient::from_element(f64::NAN) }
         });
-        let trial = Self { grad, mean: None, damping: Damping::of(model, nodes) };
+        let trial = Self { grad, mean: None, damping: Damping::of(model, nodes), pore: None };
         let own = |p: usize| match trial.own(model, points, p) {
             inverted if inverted.is_nan() => weight(model.stabilisation, points, p), // no other point shall suffer for it
             own => own,
@@ -147,6 +149,11 @@ impl<K: Kinematics<D>, const D: usize> Trial<K, D> {
             let viscous = damping::stress(&stretch, lame).0;
             tau = Symmetric(std::array::from_fn(|k| tau.0[k] + viscous[k]));
         }
+        if let Some(pore) = &self.pore {
+            let pore = eight.of(pore);
+            let pore = Lanes::from_fn(simd, |lane| *pore[lane]);
+            tau = Symmetric(std::array::from_fn(|k| if k < 3 { tau.0[k] - pore } else { tau.0[k] }));
+        }
         Some((dF, tau))
     }
 
@@ -162,6 +169,15 @@ impl<K: Kinematics<D>, const D: usize> Trial<K, D> {
     pub fn damped(&self, model: &Model<K, D>, points: &Points<D>, p: usize, mut tau: Symmetric) -> Symmetric {
         if let Some(viscous) = self.viscous(model, points, p) {
             tau.0.iter_mut().zip(viscous.tau.0).for_each(|(tau, more)| *tau += more);
+        }
+        tau
+    }
+
+    /// `tau` of the skeleton less what the water presses with at point `p`, Pa.
+    #[inline]
+    pub fn pressed(&self, p: usize, mut tau: Symmetric) -> Symmetric {
+        if let Some(pore) = &self.pore {
+            tau.0[..3].iter_mut().for_each(|normal| *normal -= pore[p]);
         }
         tau
     }

@@ -193,7 +193,13 @@ fn places<const D: usize>(flow: &Flow<D>, points: &Points<D>, anchors: &[Vec<u64
 impl Given {
     /// Pa  excess pressure at the place `x` at time `t`, where `still` is the pressure of the still water; `weight`:
     /// the water's, N/m3
-    fn excess<const D: usize>(&self, weight: f64, x: &Vector<D>, t: f64, still: impl Fn(&Vector<D>) -> f64) -> f64 {
+    pub(super) fn excess<const D: usize>(
+        &self,
+        weight: f64,
+        x: &Vector<D>,
+        t: f64,
+        still: impl Fn(&Vector<D>) -> f64,
+    ) -> f64 {
         match self {
             Self::StillWater => 0.0,
             Self::Head(head) => weight * (head.at(t) - x[D - 1]) - still(x),

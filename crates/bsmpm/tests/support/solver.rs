@@ -14,17 +14,19 @@ pub struct Skyline {
     number: Vec<Option<usize>>, // of the unknown, per nodal component
     first: Vec<usize>,          // first column of each row's profile
     entries: Vec<f64>,          // row-major square: the matrix, then L below the diagonal and D on it
+    water: Option<Box<Skyline>>,
 }
 
 impl Skyline {
-    /// For the systems of `grid`.
+    /// For the systems of `grid`, of the displacements and beside it of pore pressures.
     pub fn new<const D: usize>(grid: &Grid<D>) -> Self {
-        Self::of_patches(D, grid.offsets())
+        let water = Some(Box::new(Self::of_patches(1, grid.lowered_offsets())));
+        Self { water, ..Self::of_patches(D, grid.offsets()) }
     }
 
     /// For patches whose nodes stand at `offsets` from their first one, with `components` unknowns a node.
     pub fn of_patches(components: usize, offsets: Vec<usize>) -> Self {
-        Self { components, offsets, number: Vec::new(), first: Vec::new(), entries: Vec::new() }
+        Self { components, offsets, number: Vec::new(), first: Vec::new(), entries: Vec::new(), water: None }
     }
 
     fn size(&self) -> usize {
@@ -128,6 +130,10 @@ impl LinearSolver for Skyline {
             *value = number.map_or(0.0, |i| x[i]);
         }
         Ok(Solved { iterations: 1, ..Solved::default() })
+    }
+
+    fn water(&mut self) -> Option<&mut dyn LinearSolver> {
+        self.water.as_deref_mut().map(|water| water as &mut dyn LinearSolver)
     }
 
     /// Solves with the dense matrix of the product's columns: exact, whatever the operator is.

@@ -1,0 +1,43 @@
+//! The matrix of the pressures, S = C + M_p/M: what a pressure stores and lets flow, and what the skeleton gives way by
+//! against its stiffness in one direction (fixed stress).
+
+use crate::error::SolveError;
+use crate::grid::transfer::scalars::{self, MOST_FUNCTIONS};
+use crate::kinematics::Kinematics;
+use crate::parallel::{LinearSolver, Symmetry};
+use crate::step::problem::Problem;
+use crate::tensor::Vector;
+use crate::water::nodes::Pores;
+
+/// Assembles S at the state of the step's start into `solver` and factorises it.
+pub fn assemble<K: Kinematics<D>, const D: usize>(
+    problem: &Problem<'_, K, D>,
+    pores: &Pores<D>,
+    solver: &mut dyn LinearSolver,
+) -> Result<(), SolveError> {
+    let Problem { model, points, .. } = *problem;
+    let Some((water, flow)) = model.water.as_ref().and_then(|water| Some((water, water.flow.as_ref()?))) else {
+        return Ok(());
+    };
+    solver.begin(&pores.free);
+    let size = pores.shape.offsets().len();
+    let mut block = vec![0.0; size * size];
+    let mut functions = [(0.0, Vector::zeros()); MOST_FUNCTIONS];
+    for patch in pores.shape.patches() {
+        block.fill(0.0);
+        for p in patch.points.clone() {
+            let Some(wet) = &pores.wet[p] else { continue };
+            scalars::functions_of(&pores.shape, p, &mut functions);
+            let stored = wet.volume * (wet.content / flow.bulk + wet.J.powi(2) / wet.stiffness);
+            let conductivity = flow.permeability(points.material[p], wet.J).unwrap_or_else(Vector::zeros);
+            let along = wet.tau + conductivity * (pores.dt * wet.volume * wet.J / water.unit_weight);
+            for (row, (A, gradient)) in block.chunks_exact_mut(size).zip(&functions) {
+                let (A, gradient) = (A * stored, gradient.component_mul(&along));
+                row.iter_mut().zip(&functions).for_each(|(entry, (B, other))| *entry += A * B + gradient.dot(other));
+            }
+        }
+        solver.add(patch.first_node, &block);
+    }
+    pores.drainage.assemble(solver);
+    solver.finish(Symmetry::Definite)
+}

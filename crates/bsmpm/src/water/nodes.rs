@@ -1,0 +1,156 @@
+//! What the points tell the nodes of the water, for one step: which pressures are unknowns, and from where they start.
+
+use crate::error::StepError;
+use crate::grid::transfer::scalars;
+use crate::grid::{Grid, Shape};
+use crate::kinematics::Kinematics;
+use crate::model::Model;
+use crate::parallel::{Halo, over_layers};
+use crate::points::Points;
+use crate::tensor::Vector;
+use crate::water::Water;
+use crate::water::drain::Drainage;
+use crate::water::flow::Flow;
+
+/// Share of the tau term, of h^2/M: with it the pair of splines of degree q and q - 1 is stable, and in one dimension the
+/// storage is lumped; see `water.md`.
+const TAU: f64 = 1.0 / 6.0;
+/// Functions that see less than this part of the largest volume have no pressure.
+const UNSEEN: f64 = 1e-14;
+/// Round-off of the water's balance, of the volume that a function sees.
+const ROUND_OFF: f64 = 1e-13;
+
+/// A point that water flows through, at the start of a step.
+#[derive(Clone, Copy, Debug)]
+pub struct Wet<const D: usize> {
+    /// m^D  reference volume
+    pub volume: f64,
+    /// -  J at t
+    pub J: f64,
+    /// -  water per reference volume at t
+    pub content: f64,
+    /// Pa  lambda + 2 mu
+    pub stiffness: f64,
+    /// m^D m2/Pa  V0 J tau h_i^2/M along the axes
+    pub tau: Vector<D>,
+    /// Pa/m  gradient of the whole pore pressure at t
+    pub before: Vector<D>,
+    /// Pa/m  of the still water at t + dt
+    pub still: Vector<D>,
+    /// Pa/m  what drives water against the excess pressure's gradient: that of the still water less the water's weight
+    pub drive: Vector<D>,
+}
+
+/// The pore pressures of one step; nodal arrays of one number a node, by the functions of degree q - 1.
+#[derive(Clone, Debug)]
+pub struct Pores<const D: usize> {
+    /// those functions at the points
+    pub shape: Shape<D>,
+    /// per node: an unknown
+    pub free: Vec<bool>,
+    /// Pa  excess pressure at t + dt where it is given
+    pub prescribed: Vec<Option<f64>>,
+    /// Pa  excess pressure to begin with: the points' mean, or what is given
+    pub guess: Vec<f64>,
+    /// per point: of those that water flows through
+    pub wet: Vec<Option<Wet<D>>>,
+    /// drains and inflows
+    pub drainage: Drainage,
+    /// s  length of the step, and its end
+    pub dt: f64,
+    /// s
+    pub end: f64,
+    /// unknowns, over all ranks
+    pub unknowns: usize,
+    /// m3  norm of what is round-off in the balance
+    pub round_off: f64,
+}
+
+impl<const D: usize> Pores<D> {
+    /// Of the step from `t` to `t + dt`; `None` where no water flows. Fails where a drain is on tight material.
+    pub fn of<K: Kinematics<D>>(
+        model: &Model<K, D>,
+        (full, points): (&Shape<D>, &Points<D>),
+        (t, dt): (f64, f64),
+        halo: &dyn Halo,
+    ) -> Result<Option<Self>, StepError> {
+        let Some((water, flow)) = model.water.as_ref().and_then(|water| Some((water, water.flow.as_ref()?))) else {
+            return Ok(None);
+        };
+        let (shape, end) = (full.lowered_with_derivatives(&model.grid, points), t + dt);
+        let wet: Vec<Option<Wet<D>>> =
+            (0..points.len()).map(|p| Wet::of(model, (water, flow), points, p, (t, end))).collect();
+        let pressure = points.pore_pressure.as_ref();
+        let sums = halo.sum(&scalars::of_scalars(&shape, |p| {
+            let volume = wet[p].as_ref().map_or(0.0, |wet| wet.volume);
+            [volume, volume * pressure.map_or(0.0, |pressure| pressure[p])].map(|value| (value, Vector::zeros()))
+        }));
+        let mut largest = [sums.chunks_exact(2).map(|of| of[0]).fold(0.0, f64::max)];
+        halo.maximum(&mut largest);
+        let seen: Vec<bool> = sums.chunks_exact(2).map(|of| of[0] > UNSEEN * largest[0]).collect();
+        let mut prescribed = vec![None; seen.len()];
+        given(&model.grid, (water, flow), end, &mut prescribed);
+        let free: Vec<bool> = seen.iter().zip(&prescribed).map(|(seen, given)| *seen && given.is_none()).collect();
+        let mean = |node: usize| if seen[node] { sums[2 * node + 1] / sums[2 * node] } else { 0.0 };
+        let guess = (0..seen.len()).map(|node| prescribed[node].unwrap_or_else(|| mean(node))).collect();
+        let still = |x: &Vector<D>| water.still_pressure(x, end);
+        let drainage = Drainage::at(model, points, (t, dt), |node| seen[node], still, halo)?;
+        let limit = |node: usize| if free[node] { (ROUND_OFF * sums[2 * node]).powi(2) } else { 0.0 };
+        let round_off = halo.total(&[over_layers(halo, 1, limit)])[0].sqrt();
+        let mut unknowns = [free[halo.owned()].iter().filter(|free| **free).count() as f64];
+        halo.reduce(&mut unknowns);
+        let unknowns = unknowns[0] as usize;
+        Ok(Some(Self { shape, free, prescribed, guess, wet, drainage, dt, end, unknowns, round_off }))
+    }
+}
+
+impl<const D: usize> Wet<D> {
+    fn of<K: Kinematics<D>>(
+        model: &Model<K, D>,
+        (water, flow): (&Water<D>, &Flow<D>),
+        points: &Points<D>,
+        p: usize,
+        (t, end): (f64, f64),
+    ) -> Option<Self> {
+        let material = usize::from(points.material[p]);
+        let soil = flow.soils[material].as_ref()?;
+        let law = &model.materials[material];
+        let stiffness = law.elastic().oedometric() * law.relative_stiffness(points.height(p));
+        let (volume, J, x) = (points.volume[p], points.F.at(p).determinant(), &points.x[p]);
+        let pressure = points.pore_pressure.as_ref().map_or(0.0, |pressure| pressure[p]);
+        let edges = model.grid.locate(x).map_or_else(Vector::zeros, |cell| model.grid.cell_box(&cell).1);
+        let still = water.still_gradient(x, end);
+        let flows = if soil.permeability.is_some() { 1.0 } else { 0.0 };
+        Some(Self {
+            volume,
+            J,
+            content: soil.content(flow.bulk, J, pressure),
+            stiffness,
+            tau: edges.component_mul(&edges) * (volume * J * TAU / stiffness),
+            before: points.pressure_gradient.as_ref().map_or_else(|| water.still_gradient(x, t), |before| before[p]),
+            still,
+            drive: (still - water.weight(model, end)) * flows,
+        })
+    }
+}
+
+/// Puts the pressures that faces of the grid have in the place of their nodes.
+fn given<const D: usize>(grid: &Grid<D>, (water, flow): (&Water<D>, &Flow<D>), t: f64, prescribed: &mut [Option<f64>]) {
+    for face in &flow.faces {
+        for node in face_functions(grid, face.axis, face.upper) {
+            let number = grid.node_at(node);
+            // One function more than there are of degree q - 1 has the last node's number.
+            if (0..D).any(|axis| number[axis] + 2 > grid.axes()[axis].functions()) {
+                continue;
+            }
+            let x = Vector::from_fn(|axis, _| grid.axes()[axis].lowered_greville(number[axis]));
+            prescribed[node] = Some(face.given.excess(water.unit_weight, &x, t, |x| water.still_pressure(x, t)));
+        }
+    }
+}
+
+/// Nodes of the functions of degree q - 1 that are not zero on a face.
+pub fn face_functions<const D: usize>(grid: &Grid<D>, axis: usize, upper: bool) -> Vec<usize> {
+    let wanted = if upper { grid.axes()[axis].functions() - 2 } else { 0 };
+    (0..grid.nodes()).filter(|&node| grid.node_at(node)[axis] == wanted).collect()
+}

@@ -1,0 +1,173 @@
+//! The balance of the water at the nodes: what points take in, what flows through them, what leaves.
+
+use crate::grid::transfer::scalars;
+use crate::kinematics::{Gradient, Kinematics};
+use crate::model::Model;
+use crate::parallel::over_layers;
+use crate::points::Points;
+use crate::step::problem::Problem;
+use crate::step::trial::Trial;
+use crate::tensor::{Tensor, Vector};
+use crate::water::nodes::{Pores, Wet};
+use std::sync::atomic::AtomicU64;
+use std::sync::atomic::Ordering::Relaxed;
+
+/// Numbers of a node in the balance: what is stored, what flows, the tau term, and what drains and inflows let through.
+const TERMS: usize = 4;
+
+/// What is out of balance in the water, m3, nodal.
+#[derive(Clone, Debug, Default)]
+pub struct WaterBalance {
+    /// R: more than came in; zero where the pressure is no unknown
+    pub excess: Vec<f64>,
+    /// what leaves where the pressure is given at a face: -R there, else zero
+    pub out: Vec<f64>,
+    /// |R|
+    pub norm: f64,
+    /// the largest of the norms of what is stored, flows, and leaves
+    pub scale: f64,
+    /// sum of R, which conservation is short of
+    pub left: f64,
+    /// points whose pores are closed, over all ranks
+    pub closed: u64,
+    /// no norm overflowed
+    pub finite: bool,
+}
+
+impl WaterBalance {
+    /// Of nodal excess pressures `p` (Pa; none: zero) under the deformation of `trial`, which then carries what the
+    /// water presses with. One exchange with the neighbours and one reduction.
+    pub fn of<K: Kinematics<D>, const D: usize>(
+        (problem, pores): (&Problem<'_, K, D>, &Pores<D>),
+        trial: &mut Trial<K, D>,
+        p: &[f64],
+    ) -> Self {
+        let Problem { model, points, halo, .. } = *problem;
+        let pressures = scalars::scalars(&pores.shape, p, |_, value, gradient| (value, gradient));
+        let closed = AtomicU64::new(0);
+        let mut sums = scalars::of_scalars(&pores.shape, |p| {
+            let Some(wet) = &pores.wet[p] else { return [(0.0, Vector::zeros()); TERMS] };
+            let (pressure, gradient) = pressures[p];
+            let state = Flowing::at(model, (points, p), wet, &trial.dF(p), (pressure, gradient));
+            if state.pores.is_nan() || state.pores <= 0.0 {
+                closed.fetch_add(1, Relaxed);
+            }
+            let stored = wet.volume * (state.content - wet.content);
+            let tau = wet.tau.component_mul(&(gradient + wet.still - wet.before));
+            let zero = Vector::zeros();
+            [(stored, zero), (0.0, state.flux * -(pores.dt * wet.volume)), (0.0, tau), (0.0, zero)]
+        });
+        pores.drainage.add_to(p, &mut sums);
+        trial.pore = Some(of_points(pores, trial, &pressures));
+        Self::at_nodes(problem, pores, &halo.sum(&sums), closed.into_inner())
+    }
+
+    fn at_nodes<K, const D: usize>(problem: &Problem<'_, K, D>, pores: &Pores<D>, sums: &[f64], closed: u64) -> Self {
+        let halo = problem.halo;
+        let whole = |node: usize| sums[node * TERMS..][..TERMS].iter().sum::<f64>();
+        let (mut excess, mut out) = (vec![0.0; pores.free.len()], vec![0.0; pores.free.len()]);
+        for node in 0..pores.free.len() {
+            if pores.free[node] {
+                excess[node] = whole(node);
+            } else if pores.prescribed[node].is_some() {
+                out[node] = -whole(node);
+            }
+        }
+        let term = |k: usize| over_layers(halo, 1, |node| sums[node * TERMS + k].powi(2));
+        let totals = halo.total(&[
+            over_layers(halo, 1, |node| excess[node].powi(2)),
+            over_layers(halo, 1, |node| excess[node]),
+            std::iter::once(closed as f64).collect(),
+            term(0),
+            term(1),
+            term(3),
+            over_layers(halo, 1, |node| out[node].powi(2)),
+        ]);
+        Self {
+            norm: totals[0].sqrt(),
+            scale: totals[3..].iter().copied().fold(0.0, f64::max).sqrt(),
+            left: totals[1],
+            closed: totals[2] as u64,
+            finite: totals.iter().all(|total| total.is_finite()),
+            excess,
+            out,
+        }
+    }
+
+    /// |R| over the largest of what is stored, flows and leaves; zero where it is no more than `round_off`, m3.
+    pub fn measure(&self, round_off: f64) -> f64 {
+        if self.norm <= round_off { 0.0 } else { self.norm / self.scale }
+    }
+}
+
+/// J p of every point, Pa: what the water presses with, beside the Kirchhoff stress of the skeleton.
+fn of_points<K: Kinematics<D>, const D: usize>(
+    pores: &Pores<D>,
+    trial: &Trial<K, D>,
+    pressures: &[(f64, Vector<D>)],
+) -> Vec<f64> {
+    let of = |(p, wet): (usize, &Option<Wet<D>>)| {
+        wet.as_ref().map_or(0.0, |wet| wet.J * trial.dF(p).determinant() * pressures[p].0)
+    };
+    pores.wet.iter().enumerate().map(of).collect()
+}
+
+/// What water does at a point under a trial.
+pub struct Flowing<const D: usize> {
+    /// -  pores per reference volume
+    pub pores: f64,
+    /// -  water per reference volume
+    pub content: f64,
+    /// m/s  J dF^-1 w: what flows, per area at the start of the step and J there
+    pub flux: Vector<D>,
+    /// Pa/m  gradient of the excess pressure, now
+    pub gradient: Vector<D>,
+}
+
+impl<const D: usize> Flowing<D> {
+    /// Of a wet point with dF, and with the excess pressure, Pa, and its gradient by the places at t, Pa/m.
+    pub fn at<K>(
+        model: &Model<K, D>,
+        (points, p): (&Points<D>, usize),
+        wet: &Wet<D>,
+        dF: &Tensor,
+        (pressure, gradient): (f64, Vector<D>),
+    ) -> Self {
+        let J = wet.J * dF.determinant();
+        let nan = || Vector::from_element(f64::NAN);
+        let none = Self { pores: f64::NAN, content: f64::NAN, flux: nan(), gradient: nan() };
+        let (Some(water), Some(inverse)) = (&model.water, dF.try_inverse()) else { return none };
+        let Some(flow) = &water.flow else { return none };
+        let Some(soil) = &flow.soils[usize::from(points.material[p])] else { return none };
+        let now = pushed(&inverse, &gradient);
+        let conductivity = flow.permeability(points.material[p], J).unwrap_or_else(Vector::zeros);
+        let w = (now + wet.drive).component_mul(&conductivity) * (-1.0 / water.unit_weight);
+        let flux = Vector::from_fn(|i, _| J * (0..D).map(|j| inverse[(i, j)] * w[j]).sum::<f64>());
+        Self { pores: soil.pores(J), content: soil.content(flow.bulk, J, pressure), flux, gradient: now }
+    }
+}
+
+/// dF^-T times a gradient.
+fn pushed<const D: usize>(inverse: &Tensor, gradient: &Vector<D>) -> Vector<D> {
+    Vector::from_fn(|i, _| (0..D).map(|j| inverse[(j, i)] * gradient[j]).sum())
+}
+
+/// Sum over the points of V0 J p grad N with the shape functions of the displacement: the force of a nodal pressure at
+/// t (Q p), N, of this rank's and the others' points.
+pub fn pressing<K: Kinematics<D>, const D: usize>(
+    problem: &Problem<'_, K, D>,
+    pores: &Pores<D>,
+    p: &[f64],
+) -> Vec<f64> {
+    let at_points = scalars::scalars(&pores.shape, p, |_, value, _| value);
+    let identity = K::working::<f64>(&Tensor::identity());
+    let volume = problem.volume();
+    let flux = |p: usize| match &pores.wet[p] {
+        Some(wet) => identity * (volume[p] * wet.J * at_points[p]),
+        None => K::Gradient::zeros(),
+    };
+    let force = crate::grid::transfer::divergence::<K, D>((problem.shape, &problem.points.x), flux);
+    let mut force = problem.halo.sum(&force);
+    force.iter_mut().zip(&problem.nodes.free).filter(|(_, free)| !**free).for_each(|(force, _)| *force = 0.0);
+    force
+}

@@ -1,0 +1,88 @@
+//! The converged water, saved into the points, and what a step tells of it.
+
+use crate::exact::Exact;
+use crate::grid::transfer::scalars;
+use crate::kinematics::Kinematics;
+use crate::model::Model;
+use crate::parallel::Halo;
+use crate::points::Points;
+use crate::solve::found::Found;
+use crate::step::problem::Problem;
+use crate::step::trial::Trial;
+use crate::tensor::Vector;
+use crate::water::crossed::Crossed;
+use crate::water::nodes::{Pores, face_functions};
+use crate::water::residual::Flowing;
+
+/// What the water of an accepted step did, over all ranks.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct WaterReport {
+    /// m3  that the points took in: what they hold now less what they held before
+    pub stored: f64,
+    /// m3  that crossed the surface of the ground
+    pub crossed: Crossed,
+    /// points of every drain with material near, then of every inflow
+    pub held: Vec<usize>,
+    /// m3  sum of what is left out of balance: stored + out of the ground - this is round-off
+    pub left: f64,
+    /// measure that the step was accepted by: |R| over the largest of what is stored, flows and leaves
+    pub measure: f64,
+    /// unknown pressures
+    pub unknowns: usize,
+}
+
+impl WaterReport {
+    /// Of what was found, before the points have taken it; `None` where no water flows. Two reductions.
+    pub fn of<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>, found: &Found<K, D>) -> Option<Self> {
+        let Problem { model, nodes, halo, .. } = *problem;
+        let (pores, water) = (nodes.pores.as_ref()?, found.water.as_ref()?);
+        let flow = model.water.as_ref()?.flow.as_ref()?;
+        let owned = halo.owned();
+        let mut counted = vec![false; water.out.len()];
+        let of_face = |(axis, upper): (usize, bool)| -> Exact {
+            let mine = face_functions(&model.grid, axis, upper).into_iter().filter(|node| owned.contains(node));
+            mine.filter(|&node| !std::mem::replace(&mut counted[node], true)).map(|node| water.out[node]).collect()
+        };
+        // The face that is named last decides a pressure of two.
+        let sums: Vec<Exact> = flow.faces.iter().rev().map(|face| (face.axis, face.upper)).map(of_face).collect();
+        let mut faces = halo.total(&sums);
+        faces.reverse();
+        let [drains, inflows] = pores.drainage.report(&found.p, halo);
+        let held = drains.iter().chain(&inflows).map(|report| report.held).collect();
+        let through =
+            |reports: &[crate::water::drain::DrainReport]| reports.iter().map(|report| report.through).collect();
+        let crossed = Crossed { drains: through(&drains), faces, inflows: through(&inflows) };
+        let measure = water.measure(pores.round_off);
+        Some(Self { stored: 0.0, crossed, held, left: water.left, measure, unknowns: pores.unknowns })
+    }
+}
+
+/// Saves nodal excess pressures `p`, Pa, into the points, which have moved, and the mass of the water that they took in;
+/// m3 of it, over all ranks.
+pub fn save<K: Kinematics<D>, const D: usize>(
+    model: &Model<K, D>,
+    pores: &Pores<D>,
+    trial: &Trial<K, D>,
+    p: &[f64],
+    points: &mut Points<D>,
+    halo: &dyn Halo,
+) -> f64 {
+    let Some(water) = &model.water else { return 0.0 };
+    let states = scalars::scalars(&pores.shape, p, |p, pressure, gradient| {
+        let wet = pores.wet[p].as_ref()?;
+        Some((pressure, Flowing::at(model, (points, p), wet, &trial.dF(p), (pressure, gradient))))
+    });
+    let density = water.density(model);
+    let (mut pressures, mut gradients) = (vec![0.0; states.len()], vec![Vector::zeros(); states.len()]);
+    let mut stored = Vec::with_capacity(states.len());
+    for (p, (state, wet)) in states.iter().zip(&pores.wet).enumerate() {
+        let (Some((pressure, state)), Some(wet)) = (state, wet) else { continue };
+        pressures[p] = *pressure;
+        gradients[p] = state.gradient + water.still_gradient(&points.x[p], pores.end);
+        let taken = wet.volume * (state.content - wet.content);
+        points.mass[p] += density * taken;
+        stored.push(taken);
+    }
+    (points.pore_pressure, points.pressure_gradient) = (Some(pressures), Some(gradients));
+    halo.total(&[stored.into_iter().collect()])[0]
+}

@@ -1,0 +1,48 @@
+//! Directions of displacements and pressures together, by the fixed-stress split: two symmetric definite systems, one
+//! after the other.
+//!
+//! z_p = -S^-1 R, f' = (f_oob + Q z_p, -R), z_u = K^-1 (f_oob + Q z_p). f' is a linear map of (f_oob, R) that stays in a
+//! step, and z = diag(K, S)^-1 f': secants that are fed with these minimise in the energy of diag(K, S).
+
+use crate::error::SolveError;
+use crate::kinematics::Kinematics;
+use crate::parallel::{LinearSolver, Solved};
+use crate::step::problem::Problem;
+use crate::step::residual::Balance;
+use crate::water::nodes::Pores;
+use crate::water::residual::{WaterBalance, pressing};
+
+/// A direction before secants, the forces that it balances, and what it took.
+pub struct Split {
+    /// m and Pa, nodal
+    pub z: Vec<f64>,
+    /// N and m3, nodal
+    pub f: Vec<f64>,
+    /// both systems
+    pub solved: Solved,
+}
+
+impl Split {
+    /// Of what is out of balance. One exchange with the neighbours besides those of the solutions.
+    pub fn of<K: Kinematics<D>, const D: usize>(
+        problem: &Problem<'_, K, D>,
+        (pores, balance, water): (&Pores<D>, &Balance, &WaterBalance),
+        solver: &mut dyn LinearSolver,
+    ) -> Result<Self, SolveError> {
+        let mut f: Vec<f64> = balance.f_oob.iter().copied().chain(water.excess.iter().map(|excess| -excess)).collect();
+        let (f_u, f_p) = f.split_at_mut(balance.f_oob.len());
+        let mut z = vec![0.0; f_u.len() + f_p.len()];
+        let (z_u, z_p) = z.split_at_mut(f_u.len());
+        let of_water = system(solver)?.solve(f_p, z_p)?;
+        f_u.iter_mut().zip(pressing(problem, pores, z_p)).for_each(|(f, pressed)| *f += pressed);
+        let mut solved = solver.solve(f_u, z_u)?;
+        solved.iterations += of_water.iterations;
+        solved.factorisations += of_water.factorisations;
+        Ok(Self { z, f, solved })
+    }
+}
+
+/// The system of the pressures.
+pub fn system(solver: &mut dyn LinearSolver) -> Result<&mut dyn LinearSolver, SolveError> {
+    solver.water().ok_or_else(|| SolveError::Failed("there is no system of the pore pressures".into()))
+}

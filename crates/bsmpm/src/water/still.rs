@@ -1,0 +1,67 @@
+//! Still water as flow sees it: its pressure, its gradient, and what drives water of this weight against it.
+
+use crate::model::Model;
+use crate::schedule::between;
+use crate::tensor::Vector;
+use crate::water::Water;
+use crate::water::ambient::Ambient;
+
+/// m/s2  by which a weight is a mass, where a model has no gravity
+const GRAVITY: f64 = 9.81;
+
+impl<const D: usize> Water<D> {
+    /// m above the grid's lower corner: the still water's surface over the place `x` at time `t`, and its slope along
+    /// the first axis; `None` where there is none.
+    fn surface(&self, x: &Vector<D>, t: f64) -> Option<(f64, f64)> {
+        let constant = |rows: &[(f64, f64)], at: f64| {
+            let value = |row: Option<&(f64, f64)>| row.map(|row| row.1);
+            between(rows, value(rows.first())?, at).or(value(rows.last()))
+        };
+        match &self.ambient {
+            Ambient::None => None,
+            Ambient::Level(rows) => Some((constant(rows, t)?, 0.0)),
+            Ambient::Line(rows) => {
+                let pair = rows.windows(2).find(|pair| (pair[0].0..pair[1].0).contains(&x[0]));
+                let slope = pair.map_or(0.0, |pair| (pair[1].1 - pair[0].1) / (pair[1].0 - pair[0].0));
+                Some((constant(rows, x[0])?, slope))
+            }
+        }
+    }
+
+    /// Pa  pressure of the still water at the place `x` at time `t`
+    pub fn still_pressure(&self, x: &Vector<D>, t: f64) -> f64 {
+        self.surface(x, t).map_or(0.0, |(height, _)| self.unit_weight * (height - x[D - 1]).max(0.0))
+    }
+
+    /// Pa/m  its gradient
+    pub fn still_gradient(&self, x: &Vector<D>, t: f64) -> Vector<D> {
+        let Some((_, slope)) = self.surface(x, t).filter(|(height, _)| *height > x[D - 1]) else {
+            return Vector::zeros();
+        };
+        let mut gradient = Vector::zeros();
+        gradient[0] += self.unit_weight * slope;
+        gradient[D - 1] -= self.unit_weight;
+        gradient
+    }
+
+    /// Pa/m  the water's own weight at time `t`: against the last axis where there is still water, which it holds in
+    /// balance; else as the model's gravity acts
+    pub fn weight<K>(&self, model: &Model<K, D>, t: f64) -> Vector<D> {
+        if self.ambient != Ambient::None {
+            let mut down = Vector::zeros();
+            down[D - 1] = -self.unit_weight;
+            return down;
+        }
+        let whole = model.gravity.map_or(0.0, |gravity| gravity.acceleration.norm());
+        match model.gravity {
+            Some(gravity) if whole > 0.0 => gravity.at(t) * (self.unit_weight / whole),
+            _ => Vector::zeros(),
+        }
+    }
+
+    /// kg/m3
+    pub fn density<K>(&self, model: &Model<K, D>) -> f64 {
+        let whole = model.gravity.map_or(0.0, |gravity| gravity.acceleration.norm());
+        self.unit_weight / if whole > 0.0 { whole } else { GRAVITY }
+    }
+}

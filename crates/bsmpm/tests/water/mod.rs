@@ -1,0 +1,109 @@
+//! Water that flows through a skeleton which deforms, against closed forms.
+
+mod terzaghi;
+
+use crate::support::scene::{Scene, axis, hencky};
+use crate::support::solver::Skyline;
+use bsmpm::boundary::{Load, Support, SurfacePoint};
+use bsmpm::kinematics::PlaneStrain;
+use bsmpm::model::Regime;
+use bsmpm::points::Points;
+use bsmpm::step::{Counts, StepReport, step};
+use bsmpm::tensor::Vector;
+use bsmpm::water::Water;
+use bsmpm::water::ambient::Ambient;
+use bsmpm::water::flow::{Drain, DrainedFace, Flow, Given, Permeability, PermeabilityLaw, Soil};
+
+/// Plane strain.
+pub type Plane = Scene<PlaneStrain, 2>;
+
+/// N/m3
+pub const WEIGHT: f64 = 1e4;
+/// Pa  stiffness of the columns in one direction
+pub const M: f64 = 1e6;
+
+fn at(x: f64, y: f64) -> Vector<2> {
+    Vector::<2>::new(x, y)
+}
+
+/// Water that flows through one soil of porosity .6, at the rate that makes the coefficient of consolidation 1 m2/s in a
+/// skeleton of the stiffness M; incompressible.
+pub fn flowing(law: PermeabilityLaw) -> Water<2> {
+    let permeability = Permeability { along: at(WEIGHT / M, WEIGHT / M), law };
+    let soil = Soil { porosity: 0.6, permeability: Some(permeability) };
+    let (soils, bulk) = (vec![Some(soil)], f64::INFINITY);
+    let flow = Flow { bulk, soils, drains: Vec::new(), faces: Vec::new(), inflows: Vec::new() };
+    Water { unit_weight: WEIGHT, ambient: Ambient::None, flow: Some(flow) }
+}
+
+/// A column of the height 1 m, `cells` of them in it, one across, in a grid of `more` cells above it; its top in the
+/// middle of the cell above by the share `cut` of it, which is then drained by surface points, else by the grid's face.
+/// The `load`, Pa, acts on top at once.
+pub fn column(cells: usize, cut: f64, load: f64, law: PermeabilityLaw) -> Plane {
+    let h = 1.0 / (cells as f64 - 1.0 + cut);
+    let is_cut = cut < 1.0;
+    let rows = if is_cut { cells + 1 } else { cells };
+    let mut scene = Plane::new([axis(h, 1, 2), axis(h, rows, 2)], hencky(M, 0.0), Regime::QuasiStatic);
+    scene = scene.body([0..1, 0..cells], 3, 1.0, |x| x * 0.0).rollers([0]).support(Support::roller(1, false));
+    let surface: Vec<SurfacePoint<2>> =
+        (0..3).map(|k| SurfacePoint { x: at(h * (k as f64 + 0.5) / 3.0, 1.0), area: h / 3.0 }).collect();
+    let mut water = flowing(law);
+    let flow = water.flow.as_mut().expect("it flows");
+    if is_cut {
+        let normals = vec![at(0.0, 1.0); 3];
+        flow.drains.push(Drain { points: surface.clone(), normals, given: Given::StillWater });
+        let top = cells as f64 - 1.0;
+        // Rows of points that follow the surface: those of the cut cell fill its height.
+        let (mut x, mut volume) = (scene.points.x.clone(), scene.points.volume.clone());
+        for (x, volume) in x.iter_mut().zip(&mut volume) {
+            if x[1] > top * h {
+                x[1] = top * h + (x[1] - top * h) * cut;
+                *volume *= cut;
+            }
+        }
+        (scene.points.x, scene.points.volume) = (x, volume);
+    } else {
+        flow.faces.push(DrainedFace { axis: 1, upper: true, given: Given::StillWater });
+    }
+    scene.model.water = Some(water);
+    if load > 0.0 {
+        scene = scene.load(Load::dead(surface, at(0.0, -load), 0.0));
+    }
+    scene.model.criteria.energy = 1e-12;
+    scene.model.criteria.force = 1e-8;
+    scene
+}
+
+/// Steps a scene to these times one after the other; `watch` sees the state after each. Panics on a failure.
+pub fn run(
+    scene: &mut Plane,
+    times: impl IntoIterator<Item = f64>,
+    mut watch: impl FnMut(f64, &Points<2>, &StepReport),
+) {
+    let halo = scene.halo();
+    let mut solver = Skyline::new(&scene.model.grid);
+    let (mut guess, mut t, mut last) = (vec![0.0; scene.model.grid.nodes() * 2], 0.0, 0.0);
+    for next in times {
+        let (dt, mut counts) = (next - t, Counts::default());
+        if last > 0.0 {
+            guess.iter_mut().for_each(|u| *u *= dt / last);
+        }
+        let report = step(&scene.model, &mut scene.points, &mut guess, (t, dt), (&halo, &mut solver), &mut counts)
+            .unwrap_or_else(|error| panic!("from {t} to {next}: {error}"));
+        (t, last) = (next, dt);
+        scene.points.sort_by_cell(&scene.model.grid);
+        watch(t, &scene.points, &report);
+    }
+}
+
+/// Times of `count` steps that grow geometrically from `first` to `end`.
+pub fn geometric(first: f64, end: f64, count: usize) -> Vec<f64> {
+    (0..count).map(|k| first * (end / first).powf(k as f64 / (count - 1) as f64)).collect()
+}
+
+/// Settlement of the top of a column, m: its topmost point's, and the strain there over what is above.
+pub fn settlement(points: &Points<2>) -> f64 {
+    let top = (0..points.len()).max_by(|a, b| points.x[*a][1].total_cmp(&points.x[*b][1])).expect("points");
+    let above = 1.0 - points.height(top);
+    -points.u[top][1] + above * (1.0 - points.F.at(top)[(1, 1)])
+}

@@ -1,0 +1,52 @@
+//! Consolidation in one direction of a column that is loaded at once and drained at its top (Terzaghi).
+
+use super::{M, column, geometric, run, settlement};
+use bsmpm::water::flow::PermeabilityLaw;
+
+/// T, U, and p/p0 at depths of .25, .5 and 1 of the column below its top.
+const TABLE: [(f64, f64, [f64; 3]); 5] = [
+    (0.05, 0.252313, [0.570805, 0.886152, 0.996869]),
+    (0.1, 0.356823, [0.423759, 0.735651, 0.949305]),
+    (0.2, 0.504088, [0.302084, 0.553176, 0.772312]),
+    (0.5, 0.763950, [0.141899, 0.262188, 0.370777]),
+    (1.0, 0.931260, [0.041321, 0.076351, 0.107977]),
+];
+
+const LOAD: f64 = 1e-5 * M;
+
+/// Degree of consolidation.
+fn degree(points: &bsmpm::points::Points<2>) -> f64 {
+    settlement(points) * M / LOAD
+}
+
+#[test]
+fn settlement_and_pressures_follow_the_closed_form() {
+    let mut times = geometric(1e-5, 1.0, 900);
+    times.extend(TABLE.map(|row| row.0));
+    times.sort_by(f64::total_cmp);
+    times.dedup();
+    let mut scene = column(20, 1.0, LOAD, PermeabilityLaw::Constant);
+    let (mut worst, mut iterations, mut steps, mut left) = ([0.0_f64; 2], 0, 0, 0.0_f64);
+    run(&mut scene, times, |t, points, report| {
+        iterations += report.iterations;
+        steps += 1;
+        let water = report.water.as_ref().expect("water flows");
+        left = left.max((water.stored + water.crossed.out() - water.left).abs() / water.crossed.out());
+        let Some((_, U, p)) = TABLE.iter().find(|row| row.0 == t) else { return };
+        let pressures = points.pore_pressure.as_ref().expect("water flows");
+        let of = |depth: f64| {
+            let nearest = |a: &usize, b: &usize| {
+                (points.x[*a][1] - 1.0 + depth).abs().total_cmp(&(points.x[*b][1] - 1.0 + depth).abs())
+            };
+            let p = (0..points.len()).min_by(nearest).expect("points");
+            let gradient = points.pressure_gradient.as_ref().expect("water flows")[p][1];
+            (pressures[p] + gradient * (1.0 - depth - points.x[p][1])) / LOAD
+        };
+        let found = [0.25, 0.5, 1.0].map(of);
+        println!("T {t}: U {:.5} ({U:.5}), p {found:.5?} ({p:?})", degree(points));
+        worst[0] = worst[0].max((degree(points) - U).abs());
+        worst[1] = found.iter().zip(p).map(|(found, p)| (found - p).abs()).fold(worst[1], f64::max);
+    });
+    println!("errors {worst:.5?}, {iterations} iterations in {steps} steps, balance {left:.1e}");
+    assert!(worst[0] < 0.002 && worst[1] < 0.003 && left < 1e-12);
+}
