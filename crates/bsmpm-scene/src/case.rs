@@ -1,6 +1,7 @@
 //! A valid case: all numbers in SI and within their ranges, angles in radians.
 
 mod element;
+mod flow;
 mod history;
 mod loads;
 mod profile;
@@ -10,6 +11,7 @@ mod water;
 
 pub use crate::words::{Base, Format, Geometry, Nonlinear, Support};
 pub use element::{ElementStage, ElementTest};
+pub use flow::{Drain, DrainSite, Flow, Inflow};
 pub use history::{Check, Column, Counted, Face, History, Quantity};
 pub use loads::{Footing, Initial, Line as LoadedLine, MotionPath, PointLoad, Prescribed, Push, Site, Traction};
 pub use profile::Profile;
@@ -20,7 +22,7 @@ pub use water::Water;
 use crate::error::Choice;
 use crate::grid::{GridSpec, Line};
 use crate::region::Region;
-use crate::words::{Factor, FrameField, Ksp, Pc};
+use crate::words::{AnalysisType, Factor, FrameField, Ksp, Pc};
 use bsmpm::background::{Extent, Kind};
 use bsmpm::boundary::Contact;
 use bsmpm::material::Material;
@@ -51,6 +53,8 @@ pub struct Case {
     pub gravity: Option<Gravity>,
     /// Water in the ground, if any.
     pub water: Option<Water>,
+    /// Water that flows, if any does.
+    pub flow: Option<Flow>,
     /// Motion of the ground, in whose frame the case is: s, increasing, and m/s2; empty without any.
     pub shaking: Vec<(f64, [f64; 2])>,
     /// Supports of the grid's faces: per axis the lower and the upper one.
@@ -115,12 +119,17 @@ impl Case {
 /// Kind and time of the analysis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Analysis {
+    /// What it is called.
+    pub kind: AnalysisType,
     /// Whether inertia acts.
     pub regime: Regime,
     /// s (quasi-static: pseudo-time)  end of the run
     pub end: f64,
-    /// s (quasi-static: pseudo-time)  nominal step; the step before a wanted time or the end is shortened
+    /// s (quasi-static: pseudo-time)  nominal step, the first one where steps grow; the step before a wanted time or the
+    /// end is shortened
     pub dt: f64,
+    /// -, s  a step over the one before it, and the longest to which they grow; `None`: all are alike
+    pub growth: Option<(f64, f64)>,
     /// Time integration in dynamics.
     pub newmark: Newmark,
     /// Mass matrix of the nodes in dynamics.

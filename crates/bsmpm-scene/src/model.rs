@@ -13,11 +13,13 @@ use bsmpm::method::Nonlinear;
 use bsmpm::method::QuasiNewton;
 use bsmpm::model::{Gravity, Model, Shaking, Weighting};
 use bsmpm::points::{Points, Seed};
-use bsmpm::schedule::Schedule;
+use bsmpm::schedule::{Growth, Schedule};
 use bsmpm::stabilisation::{Groups, Stabilisation};
 use bsmpm::step::adjoint::is_dilatant;
 use bsmpm::tensor::{Symmetric, Vector};
 use bsmpm::water::Water;
+use bsmpm::water::ambient::Ambient;
+use bsmpm::water::flow::Flow;
 use std::marker::PhantomData;
 
 /// The model of a plane-strain case over its whole grid, at the start.
@@ -33,6 +35,7 @@ pub fn model_at(case: &Case, t: f64) -> Result<Model<PlaneStrain, 2>, GridError>
         extent: case.solver.background_cells,
     });
     let (grid, materials) = (grid(case)?, case.materials_at(t));
+    let flow = surfaces::flow(case, &grid);
     Ok(Model {
         materials: materials.iter().map(|named| named.material.clone()).collect(),
         regime: case.analysis.regime,
@@ -58,18 +61,23 @@ pub fn model_at(case: &Case, t: f64) -> Result<Model<PlaneStrain, 2>, GridError>
         },
         damping: damping(&materials),
         nonlinear: match case.solver.nonlinear {
+            // Newton's method does not know water that flows: steps that stall are cut.
+            crate::Nonlinear::Auto if case.flow.is_some() => Nonlinear::QuasiNewton(QuasiNewton::Multisecant),
             crate::Nonlinear::Auto => Nonlinear::Auto,
             crate::Nonlinear::Broyden => Nonlinear::QuasiNewton(QuasiNewton::Broyden),
             crate::Nonlinear::Newton => Nonlinear::Newton,
         },
-        water: case.water.as_ref().map(|water| Water {
-            unit_weight: water.unit_weight,
-            ambient: water.from(case.grid.lower()),
-            flow: None,
-        }),
+        water: water(case, flow),
         balances_energy: case.histories.iter().any(|history| history.quantity == Quantity::Energy),
         kinematics: PhantomData,
     })
+}
+
+/// Still water, and water that flows; of the latter alone the pore pressure is all excess.
+fn water(case: &Case, flow: Option<Flow<2>>) -> Option<Water<2>> {
+    let still = case.water.as_ref();
+    let unit_weight = still.map(|still| still.unit_weight).or(case.flow.as_ref().map(|flow| flow.unit_weight))?;
+    Some(Water { unit_weight, ambient: still.map_or(Ambient::None, |still| still.from(case.grid.lower())), flow })
 }
 
 /// s  of every material; empty where none is damped.
@@ -185,7 +193,9 @@ pub fn schedule(case: &Case) -> Schedule {
     let stages = case.stages.iter().map(|stage| stage.at);
     let profiles = case.profiles.iter().flat_map(|profile| profile.times.iter().copied());
     let times = frame_times(case).into_iter().chain(checks).chain(stages).chain(profiles);
-    Schedule::new(case.analysis.dt, case.analysis.end, times)
+    let schedule = Schedule::new(case.analysis.dt, case.analysis.end, times);
+    let Some((factor, most)) = case.analysis.growth else { return schedule };
+    schedule.growing(Growth { factor, most, restarts: case.stages.iter().map(|stage| stage.at).collect() })
 }
 
 /// Relative error of a quotient of two times.

@@ -9,8 +9,7 @@ use crate::nearest::nearest;
 use crate::report::{Report, shortened};
 use crate::schema::{Group, Key, Kind, Presence, Table};
 use crate::unit::Dimension;
-use crate::words::Word;
-use bsmpm::model::Regime;
+use crate::words::{AnalysisType, Word};
 
 /// A table whose keys and values are as the schema says.
 #[derive(Clone, Debug)]
@@ -70,11 +69,11 @@ pub(crate) fn read(root: &'static Table, document: &document::Table, report: &mu
         Value::Table(analysis) => analysis.get("type"),
         _ => None,
     });
-    let regime = kind.and_then(|entry| match &entry.node.value {
-        Value::Text(text) => Regime::of(text),
+    let kind = kind.and_then(|entry| match &entry.node.value {
+        Value::Text(text) => AnalysisType::of(text),
         _ => None,
     });
-    let pseudo_time = regime == Some(Regime::QuasiStatic);
+    let pseudo_time = kind.is_some_and(AnalysisType::is_timeless);
     Context { root, pseudo_time }.record(root, document, Origin::Nowhere, "", report)
 }
 

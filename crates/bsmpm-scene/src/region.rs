@@ -3,10 +3,12 @@
 mod cells;
 mod edge;
 mod simple;
+mod skin;
 mod sweep;
 
 pub(crate) use cells::{CellPlace, RegionPart, place};
 pub(crate) use edge::Edge;
+pub(crate) use skin::skin;
 pub(crate) use simple::{PolygonFault, area, bounds, fault};
 pub(crate) use sweep::{Window, solid, sweep};
 

@@ -4,6 +4,7 @@
 
 mod body;
 mod element;
+mod flow;
 mod laws;
 mod loads;
 mod output;

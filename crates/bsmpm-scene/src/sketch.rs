@@ -6,7 +6,7 @@ use crate::record::{self, Record};
 use crate::report::Report;
 use crate::schema::ROOT;
 use crate::source::Source;
-use crate::words::Measurement;
+use crate::words::{AnalysisType, Measurement};
 use crate::{document, validate};
 use bsmpm::model::Regime;
 use bsmpm::stabilisation::Stabilisation;
@@ -49,7 +49,8 @@ impl Sketch {
             return Self::default();
         }
         let root = record::read(&ROOT, &document, &mut report);
-        let regime = root.record("analysis").and_then(|analysis| analysis.word("type"));
+        let regime = root.record("analysis").and_then(|analysis| analysis.word::<AnalysisType>("type"));
+        let regime = regime.map(AnalysisType::regime);
         let ends = |strip: &Record| Some([strip.pair("from")?, strip.pair("to")?]);
         Self {
             regime,

@@ -1,12 +1,13 @@
 //! Strips, rigid bodies and loads of a case as the physics wants them, and the footing's gauges.
 
-use crate::{Acting, Base, Case, Face, Footing, LoadedLine, Prescribed, Push, Rigid, RigidShape, Site};
+use crate::{Acting, Base, Case, DrainSite, Face, Footing, LoadedLine, Prescribed, Push, Rigid, RigidShape, Site};
 use bsmpm::boundary::rigid::Outline;
 use bsmpm::boundary::{Load, Path, RigidBody, Strip, StripContact, StripReport, SurfacePoint, surface};
 use bsmpm::grid::Grid;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::schedule::between;
 use bsmpm::tensor::Vector;
+use bsmpm::water::flow::{Course, Drain, DrainedFace, Given, Inflow};
 
 /// Stiffness of the penalty over E/h of the stiffest material and the smallest cell. The traction is carried from step
 /// to step, so that all slips together stay at p/beta: measured on the footing, 1e2 to 1e5 give the same pressure.
@@ -118,6 +119,48 @@ fn around(grid: &Grid<2>, center: &Vector<2>, radius: f64, count: usize) -> Vec<
         (SurfacePoint { x: center + outward * radius, area: length / pieces as f64 }, -outward)
     };
     (0..pieces).map(point).filter(|(point, _)| grid.locate(&point.x).is_some()).collect()
+}
+
+/// What flow is to the soils and to surfaces, if water flows.
+pub fn flow(case: &Case, grid: &Grid<2>) -> Option<bsmpm::water::flow::Flow<2>> {
+    let flow = case.flow.as_ref()?;
+    let across = case.bodies.iter().map(|body| body.points_per_cell).max().unwrap_or(1);
+    let surface = |lines: &[[[f64; 2]; 2]]| -> (Vec<SurfacePoint<2>>, Vec<Vector<2>>) {
+        let of = |line: &[[f64; 2]; 2]| {
+            let [from, to] = line.map(|at| Vector::from(case.grid.local(at)));
+            let points = surface::along::<PlaneStrain>(grid, &from, &to, across);
+            points.into_iter().map(move |point| (point, normal(&from, &to)))
+        };
+        lines.iter().flat_map(of).unzip()
+    };
+    let given = |given: &Given| match given {
+        Given::Head(Course(rows)) => {
+            Given::Head(Course(rows.iter().map(|(t, head)| (*t, head - case.grid.lower()[1])).collect()))
+        }
+        other => other.clone(),
+    };
+    let drain = |drain: &crate::Drain| match &drain.site {
+        DrainSite::Face(_) => None,
+        DrainSite::Lines(lines) => {
+            let (points, normals) = surface(lines);
+            Some(Drain { points, normals, given: given(&drain.given) })
+        }
+    };
+    let face = |drain: &crate::Drain| match drain.site {
+        DrainSite::Face(Face { axis, upper }) => Some(DrainedFace { axis, upper, given: given(&drain.given) }),
+        DrainSite::Lines(_) => None,
+    };
+    let inflow = |inflow: &crate::Inflow| {
+        let (points, normals) = surface(&[inflow.ends]);
+        Inflow { points, normals, rate: inflow.rate.clone() }
+    };
+    Some(bsmpm::water::flow::Flow {
+        bulk: flow.bulk,
+        soils: flow.soils.clone(),
+        drains: flow.drains.iter().filter_map(drain).collect(),
+        faces: flow.drains.iter().filter_map(face).collect(),
+        inflows: flow.inflows.iter().map(inflow).collect(),
+    })
 }
 
 /// Rigid bodies in the order of the file, once the stages until the time `t` have begun.

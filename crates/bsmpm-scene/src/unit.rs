@@ -25,6 +25,8 @@ pub enum Dimension {
     Angle,
     /// m/s
     Velocity,
+    /// m/s  of water through soil, in real time
+    Seepage,
     /// m/s2
     Acceleration,
     /// N/m
@@ -36,9 +38,13 @@ pub enum Dimension {
 enum Worth {
     Ten(i32),
     Times(f64),
+    Over(f64),
     Radian,
 }
-use Worth::{Radian, Ten, Times};
+use Worth::{Over, Radian, Ten, Times};
+
+/// s  of a day
+const DAY: f64 = 86_400.0;
 
 const UNITS: [(Dimension, &[(&str, Worth)]); 9] = [
     (
@@ -47,7 +53,18 @@ const UNITS: [(Dimension, &[(&str, Worth)]); 9] = [
     ),
     (
         Dimension::Time,
-        &[("s", Ten(0)), ("ms", Ten(-3)), ("us", Ten(-6)), ("ns", Ten(-9)), ("min", Times(60.0)), ("h", Times(3600.0))],
+        &[
+            ("s", Ten(0)),
+            ("ms", Ten(-3)),
+            ("us", Ten(-6)),
+            ("ns", Ten(-9)),
+            ("min", Times(60.0)),
+            ("h", Times(3600.0)),
+            ("d", Times(DAY)),
+            ("day", Times(DAY)),
+            ("week", Times(7.0 * DAY)),
+            ("year", Times(365.25 * DAY)),
+        ],
     ),
     (
         Dimension::Stress,
@@ -64,7 +81,21 @@ const UNITS: [(Dimension, &[(&str, Worth)]); 9] = [
     (Dimension::Density, &[("kg/m3", Ten(0)), ("t/m3", Ten(3)), ("g/cm3", Ten(3))]),
     (Dimension::UnitWeight, &[("N/m3", Ten(0)), ("kN/m3", Ten(3)), ("MN/m3", Ten(6))]),
     (Dimension::Angle, &[("deg", Ten(0)), ("rad", Radian)]),
-    (Dimension::Velocity, &[("m/s", Ten(0)), ("cm/s", Ten(-2)), ("mm/s", Ten(-3)), ("km/s", Ten(3))]),
+    (
+        Dimension::Velocity,
+        &[
+            ("m/s", Ten(0)),
+            ("cm/s", Ten(-2)),
+            ("mm/s", Ten(-3)),
+            ("km/s", Ten(3)),
+            ("mm/h", Over(3.6e6)),
+            ("m/h", Over(3600.0)),
+            ("mm/day", Over(1e3 * DAY)),
+            ("cm/day", Over(1e2 * DAY)),
+            ("m/day", Over(DAY)),
+            ("m/year", Over(365.25 * DAY)),
+        ],
+    ),
     (Dimension::Acceleration, &[("m/s2", Ten(0)), ("cm/s2", Ten(-2)), ("mm/s2", Ten(-3)), ("g", Times(9.806_65))]),
     (Dimension::LineForce, &[("N/m", Ten(0)), ("kN/m", Ten(3)), ("MN/m", Ten(6))]),
 ];
@@ -80,6 +111,15 @@ impl Dimension {
         table(self).iter().map(|(name, _)| *name)
     }
 
+    /// The dimension whose units it has.
+    fn units_of(self) -> Self {
+        match self {
+            Self::Duration => Self::Time,
+            Self::Seepage => Self::Velocity,
+            other => other,
+        }
+    }
+
     /// The dimension whose SI unit is called so.
     pub(crate) fn of_unit(name: &str) -> Option<Self> {
         UNITS.iter().find(|(_, units)| units[0].0 == name).map(|(dimension, _)| *dimension)
@@ -90,6 +130,7 @@ impl Dimension {
         match self {
             Self::Number => 1e100,
             Self::Length | Self::Density | Self::Velocity => 1e9,
+            Self::Seepage => 1e18,
             Self::Time | Self::Duration | Self::Acceleration => 1e12,
             Self::Stress | Self::LineForce => 1e18,
             Self::UnitWeight => 1e10,
@@ -115,6 +156,7 @@ impl fmt::Display for Dimension {
             Self::UnitWeight => "a unit weight",
             Self::Angle => "an angle",
             Self::Velocity => "a velocity",
+            Self::Seepage => "a velocity of water",
             Self::Acceleration => "an acceleration",
             Self::LineForce => "a force per metre of thickness",
         })
@@ -127,7 +169,7 @@ impl fmt::Display for Dimension {
 /// In words: no number, no unit, an unknown unit, a unit of another dimension, or a number that no double holds.
 pub fn parse(text: &str, expected: Dimension) -> Result<f64, String> {
     let (value, found) = parse_any(text, Some(expected))?;
-    if found == expected || (found, expected) == (Dimension::Time, Dimension::Duration) {
+    if found == expected.units_of() {
         return Ok(value);
     }
     let unit = split(text).map_or("", |(_, unit)| unit);
@@ -195,6 +237,7 @@ fn value(number: &str, worth: Worth) -> Result<f64, String> {
             finite(&format!("{mantissa}e{}", exponent.saturating_add(shift.into())))
         }
         Times(factor) => finite(number).map(|value| value * factor),
+        Over(divisor) => finite(number).map(|value| value / divisor),
         Radian => finite(number).map(f64::to_degrees),
     }
 }
@@ -223,8 +266,7 @@ fn split(text: &str) -> Option<(&str, &str)> {
 }
 
 fn table(dimension: Dimension) -> &'static [(&'static str, Worth)] {
-    let dimension = if dimension == Dimension::Duration { Dimension::Time } else { dimension };
-    UNITS.iter().find(|(known, _)| *known == dimension).map_or(&[], |(_, units)| *units)
+    UNITS.iter().find(|(known, _)| *known == dimension.units_of()).map_or(&[], |(_, units)| *units)
 }
 
 fn list(dimension: Dimension) -> String {
@@ -259,6 +301,14 @@ mod tests {
             ("5 µm", Length, 5e-6),
             ("2.5 kN/m", LineForce, 2500.0),
             (".5 km", Length, 500.0),
+            ("20 year", Time, 631_152_000.0),
+            ("60 d", Time, 5_184_000.0),
+            ("1 day", Time, 86_400.0),
+            ("2 week", Time, 1_209_600.0),
+            ("1e-9 m/s", Velocity, 1e-9),
+            ("10 mm/h", Velocity, 10.0 / 3.6e6),
+            ("0.1 m/day", Velocity, 0.1 / 86_400.0),
+            ("2.2 GPa", Stress, 2.2e9),
         ];
         for (text, dimension, value) in rows {
             assert_eq!(parse(text, dimension).map(f64::to_bits), Ok(f64::to_bits(value)), "{text}");

@@ -2,6 +2,7 @@
 
 mod body;
 mod element;
+mod flow;
 mod free_field;
 mod grid;
 mod history;
@@ -23,7 +24,7 @@ mod water;
 use crate::case::{Analysis, Case, Gravity, Support};
 use crate::record::Record;
 use crate::report::Report;
-use crate::words::{Side, Word};
+use crate::words::{AnalysisType, Side, Word};
 use bsmpm::boundary::Contact;
 use bsmpm::model::Regime;
 use bsmpm::stabilisation::Stabilisation;
@@ -43,8 +44,9 @@ pub(crate) const NEARLY_INCOMPRESSIBLE: f64 = 0.45;
 
 /// The case that `record` describes; `text` is what was read. `None` after an error.
 pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Option<Case> {
-    let regime = record.record("analysis").and_then(|analysis| analysis.word("type"));
-    let analysis = analysis(record, regime, report);
+    let kind = record.record("analysis").and_then(|analysis| analysis.word("type"));
+    let regime = kind.map(AnalysisType::regime);
+    let analysis = analysis(record, kind, report);
     let end = analysis.as_ref().map(|analysis| analysis.end);
     let boundary = boundary(record);
     let grid = grid::read(record, boundary, report);
@@ -71,6 +73,7 @@ pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Op
     };
     let footing = strip::footing(record, around, report);
     let prescribed = strip::prescribed(record, around, report);
+    let flow = flow::read(record, materials.as_deref(), around, report);
     let rigid = rigid::read_all(record, (around, regime), factor, report);
     let mut tractions = load::tractions(record, around, report);
     let mut point_loads = load::point_loads(record, around, report);
@@ -97,6 +100,7 @@ pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Op
         stages: stages?,
         gravity,
         water,
+        flow: flow?,
         shaking,
         boundary: boundary?,
         contacts: contacts?,
@@ -131,20 +135,23 @@ pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Op
     reduction::at_stage(&mut case, record, report);
     free_field::check(&case, record, report);
     water::check(&case, record, report);
+    flow::check(&case, record, report);
     Some(Case { warnings: std::mem::take(&mut report.warnings), notes: std::mem::take(&mut report.notes), ..case })
 }
 
-fn analysis(record: &Record, regime: Option<Regime>, report: &mut Report<'_>) -> Option<Analysis> {
+fn analysis(record: &Record, kind: Option<AnalysisType>, report: &mut Report<'_>) -> Option<Analysis> {
     let analysis = record.record("analysis")?;
-    let regime = regime?;
-    let end = match (analysis.gives("end"), regime) {
+    let kind = kind?;
+    let regime = kind.regime();
+    let end = match (analysis.gives("end"), kind) {
         (true, _) => analysis.number("end")?,
-        (false, Regime::QuasiStatic) => {
+        (false, AnalysisType::QuasiStatic) => {
             report.note("analysis.end", "1.0", "pseudo-time of a quasi-static analysis");
             1.0
         }
-        (false, Regime::Dynamic) => {
-            report.error(analysis.origin, &analysis.path_of("end"), "missing; a dynamic analysis needs its end");
+        (false, AnalysisType::Dynamic | AnalysisType::Consolidation) => {
+            let message = format!("missing; a {kind} analysis needs its end");
+            report.error(analysis.origin, &analysis.path_of("end"), message);
             return None;
         }
     };
@@ -156,18 +163,41 @@ fn analysis(record: &Record, regime: Option<Regime>, report: &mut Report<'_>) ->
         analysis.error("dt", format!("{dt} is out of range; allowed: dt <= end = {end}"), report);
         return None;
     }
-    if end / dt > MOST_STEPS {
+    let growth = growth(analysis, (kind, dt), report)?;
+    if growth.is_none() && end / dt > MOST_STEPS {
         let message = format!("{:.3e} steps to the end; at most {MOST_STEPS:e} are possible", end / dt);
         analysis.error("dt", message, report);
         return None;
     }
     Some(Analysis {
+        kind,
         regime,
         end,
         dt,
+        growth,
         newmark: newmark(analysis, regime, report)?,
         mass: mass(analysis, regime, report),
     })
+}
+
+/// By which steps grow, and to which length, if they do; the outer option is `None` after an error.
+fn growth(analysis: &Record, (kind, dt): (AnalysisType, f64), report: &mut Report<'_>) -> Option<Option<(f64, f64)>> {
+    let keys = ["growth", "dt_max"].into_iter().filter(|key| analysis.gives(key));
+    for key in keys.clone().filter(|_| kind != AnalysisType::Consolidation) {
+        analysis.error(key, format!("steps grow in a consolidation analysis only, and this one is {kind}"), report);
+        return None;
+    }
+    if let Some(key) = keys.into_iter().next().filter(|_| analysis.gives("steps")) {
+        analysis.error(key, "`steps` are equal steps: give dt, the first one", report);
+        return None;
+    }
+    let most = if analysis.gives("dt_max") { analysis.number("dt_max")? } else { f64::INFINITY };
+    if most < dt {
+        analysis.error("dt_max", format!("{most} is out of range; allowed: dt_max >= dt = {dt}"), report);
+        return None;
+    }
+    let factor = if analysis.gives("growth") { analysis.number("growth")? } else { 1.0 };
+    Some((factor > 1.0 && most > dt).then_some((factor, most)))
 }
 
 /// Numerical damping, of which only a dynamic analysis can have any.

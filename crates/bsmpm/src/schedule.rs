@@ -1,5 +1,5 @@
-//! Where the nominal steps end: multiples of dt from the last wanted time, and every wanted time exactly; and what is
-//! given by rows at times, so that a cut step follows the same course.
+//! Where the nominal steps end: multiples of dt from the last wanted time, or steps that grow, and every wanted time
+//! exactly; and what is given by rows at times, so that a cut step follows the same course.
 
 use std::ops::{Add, Mul, Sub};
 
@@ -19,10 +19,53 @@ where
     Some(if is_later { before.1 + (after.1 - before.1) * ((t - before.0) / (after.0 - before.0)) } else { after.1 })
 }
 
+/// Steps of which each is longer than the one before, from dt on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Growth {
+    /// -  a step over the one before it, above 1
+    pub factor: f64,
+    /// s  the longest step, at least dt; infinite: they grow without bound
+    pub most: f64,
+    /// s  ascending: times from which steps begin with dt again
+    pub restarts: Vec<f64>,
+}
+
+impl Growth {
+    /// The last time at or before `t` at which steps begin with dt.
+    fn start(&self, t: f64, slack: f64) -> f64 {
+        let begun = self.restarts.partition_point(|&start| start <= t + slack);
+        begun.checked_sub(1).map_or(0.0, |last| self.restarts[last])
+    }
+
+    /// Steps after which they no longer grow, and the time that these take.
+    fn bound(&self, dt: f64) -> (f64, f64) {
+        ((self.most / dt).ln() / self.factor.ln(), (self.most - dt) / (self.factor - 1.0))
+    }
+
+    /// Steps that lie within `time` from their start, a real number.
+    fn steps(&self, dt: f64, time: f64) -> f64 {
+        let (steps, bound) = self.bound(dt);
+        if time > bound {
+            return steps + (time - bound) / self.most;
+        }
+        (time * (self.factor - 1.0) / dt).ln_1p() / self.factor.ln()
+    }
+
+    /// The time that so many steps take.
+    fn time(&self, dt: f64, steps: f64) -> f64 {
+        let (most, bound) = self.bound(dt);
+        if steps > most {
+            return bound + (steps - most) * self.most;
+        }
+        dt * (steps * self.factor.ln()).exp_m1() / (self.factor - 1.0)
+    }
+}
+
 /// Nominal step, end of the run, and the times that must be hit exactly.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Schedule {
     dt: f64,
+    growth: Option<Growth>,
     wanted: Vec<f64>, // ascending, the last one is the end
 }
 
@@ -33,7 +76,14 @@ impl Schedule {
         wanted.push(end);
         wanted.sort_by(f64::total_cmp);
         wanted.dedup_by(|later, earlier| (*later - *earlier) < SAME * dt);
-        Self { dt, wanted }
+        Self { dt, growth: None, wanted }
+    }
+
+    /// The same with steps that grow. Between two wanted times there are as few as may be, none longer than a step
+    /// that grows from the start (or the last restart) would be there, and each longer than the one before by the same
+    /// factor, up to the bound.
+    pub fn growing(self, growth: Growth) -> Self {
+        Self { growth: Some(growth), ..self }
     }
 
     /// End of the run.
@@ -52,9 +102,23 @@ impl Schedule {
         let reached = self.wanted.partition_point(|&wanted| wanted <= t + SAME * self.dt);
         let target = *self.wanted.get(reached)?;
         let from = if reached == 0 { 0.0 } else { self.wanted[reached - 1] };
+        if let Some(growth) = &self.growth {
+            return Some(self.grown(growth, t, (from, target)));
+        }
         let steps = ((t - from) / self.dt + SAME).floor() + 1.0;
         let station = from + steps * self.dt;
         Some(if station > target - SAME * self.dt { target } else { station })
+    }
+
+    /// The same between two wanted times, of steps that grow.
+    fn grown(&self, growth: &Growth, t: f64, (from, target): (f64, f64)) -> f64 {
+        let start = growth.start(from, SAME * self.dt);
+        let steps = |time: f64| growth.steps(self.dt, time - start);
+        let (first, last) = (steps(from), steps(target));
+        let count = (last - first - SAME).ceil().max(1.0);
+        let each = (last - first) / count;
+        let done = ((steps(t) - first) / each + SAME).floor() + 1.0;
+        if done >= count { target } else { start + growth.time(self.dt, first + done * each) }
     }
 }
 
@@ -72,6 +136,47 @@ mod tests {
         let found = stations(&Schedule::new(0.25e-3, 0.607, frames));
         assert_eq!(found.len(), 2428);
         assert!(frames.iter().all(|frame| found.contains(frame)));
+    }
+
+    /// Each step over the one before it, the wanted times passed over.
+    fn ratios(stations: &[f64]) -> Vec<f64> {
+        let steps: Vec<f64> = std::iter::once(0.0)
+            .chain(stations.iter().copied())
+            .zip(stations)
+            .map(|(from, to)| to - from)
+            .collect();
+        steps.windows(2).map(|pair| pair[1] / pair[0]).collect()
+    }
+
+    #[test]
+    fn steps_grow_to_their_bound_and_hit_what_is_wanted() {
+        let growth = Growth { factor: 1.2, most: 50.0, restarts: Vec::new() };
+        let schedule = Schedule::new(1.0, 1000.0, [100.0]).growing(growth);
+        let found = stations(&schedule);
+        assert!(found.contains(&100.0) && found.last() == Some(&1000.0));
+        let longest = std::iter::once(&0.0).chain(&found).zip(&found).map(|(from, to)| to - from).fold(0.0, f64::max);
+        assert!((found[0] - 1.0).abs() < 0.1 && found[0] <= 1.0 + 1e-9 && longest <= 50.0 + 1e-9, "{found:?}");
+        // 100 = (1.2^16.7 - 1)/.2: 17 steps; the bound of 50 is reached at 245, after 21.5 from the start.
+        assert_eq!(found.iter().position(|&t| t == 100.0), Some(16));
+        assert!(ratios(&found)[..15].iter().all(|ratio| *ratio > 1.15 && *ratio < 1.2 + 1e-9), "{:?}", ratios(&found));
+        assert_eq!(found.len(), 17 + 20);
+    }
+
+    #[test]
+    fn growing_steps_are_a_function_of_time_alone() {
+        let growth = |restarts: Vec<f64>| Growth { factor: 1.3, most: f64::INFINITY, restarts };
+        let schedule = Schedule::new(1e-3, 6.3e8, [86_400.0, 3e8]).growing(growth(Vec::new()));
+        let found = stations(&schedule);
+        assert!(found.len() < 120 && found.windows(2).all(|pair| pair[0] < pair[1]), "{}", found.len());
+        // From every one of them on, as from the start.
+        for (k, &t) in found.iter().enumerate().take(found.len() - 1) {
+            assert_eq!(schedule.next(t), Some(found[k + 1]));
+        }
+        let again = Schedule::new(1.0, 1e4, [5e3]).growing(growth(vec![5e3]));
+        let found = stations(&again);
+        let at = found.iter().position(|&t| t == 5e3).unwrap();
+        let (first, after) = (found[0], found[at + 1] - 5e3);
+        assert!((after / first - 1.0).abs() < 0.3 && after <= 1.0 + 1e-9, "{first} {after}");
     }
 
     #[test]

@@ -117,6 +117,20 @@ pub enum Quantity {
         /// m  in the case's coordinates
         at: [f64; 2],
     },
+    /// of the pore water of the point nearest to `at` at the start: excess pressure, porosity or flux
+    Pore {
+        /// which of them
+        what: Measurement,
+        /// m  in the case's coordinates
+        at: [f64; 2],
+    },
+    /// m3/m  water that has left the ground, per metre of thickness
+    WaterOutflow {
+        /// Number of the drain, in the order of the file; `None`: all, less the inflows.
+        drain: Option<usize>,
+    },
+    /// -  what the ground has gained of water and what has left it, over the larger of the two
+    WaterBalance,
     /// -  oscillation of sigma_yy about its average over the grid and about a plane
     StressNoise,
     /// Pa  oscillation of the pressure about its average over the grid and about a plane
@@ -244,6 +258,9 @@ impl Quantity {
             Self::Velocity { .. } => Measurement::Velocity,
             Self::Stress { .. } => Measurement::Stress,
             Self::PorePressure { .. } => Measurement::PorePressure,
+            Self::Pore { what, .. } => *what,
+            Self::WaterOutflow { .. } => Measurement::WaterOutflow,
+            Self::WaterBalance => Measurement::WaterBalance,
             Self::StressNoise => Measurement::StressNoise,
             Self::PressureNoise { .. } => Measurement::PressureNoise,
             Self::Heave { .. } => Measurement::Heave,

@@ -5,11 +5,12 @@ use crate::record::{ListRow, Record};
 use crate::region;
 use crate::schema::LawName;
 use crate::validate::{NEARLY_INCOMPRESSIBLE, STANDARD_GRAVITY};
-use bsmpm::model::Regime;
+use crate::words::AnalysisType;
 
 /// What steps follow from.
 pub(super) const STEPS: &str = "`type`, the cells and, in dynamics, `end` and young, poisson and density of the bodies' \
-                                materials, in statics what is moved; 1e8 at most";
+                                materials, in statics what is moved, and never with \
+                                type \"consolidation\": give dt and growth; 1e8 at most";
 
 /// Steps at most that are filled in: more are the author's to ask for.
 const MOST_STEPS: f64 = 1e8;
@@ -49,11 +50,11 @@ impl<'a> PresetScene<'a> {
         let analysis = self.root.record("analysis")?;
         let cell = self.shortest().or(chosen)?;
         let (steps, why) = match analysis.word("type")? {
-            Regime::Dynamic => {
+            AnalysisType::Dynamic => {
                 let (crossed, way) = (preset.crossed, analysis.number("end")? * self.shear_wave()?);
                 (way / (crossed * cell), format!("a shear wave crosses {crossed} cells in each"))
             }
-            Regime::QuasiStatic => {
+            AnalysisType::QuasiStatic => {
                 let steps = |moved: (f64, f64)| moved.0 / (moved.1 * cell);
                 let moved = self.moved(preset).reduce(|a, b| if steps(b) > steps(a) { b } else { a });
                 let (steps, advance) = moved.map_or((0.0, 0.0), |moved| (steps(moved), moved.1));
@@ -63,6 +64,8 @@ impl<'a> PresetScene<'a> {
                     (preset.steps, "so many at least".to_owned())
                 }
             }
+            // Water needs first steps that suit its own pace, which no rule knows.
+            AnalysisType::Consolidation => return None,
         };
         let (steps, why) = match self.interval().map(|interval| self.end() / interval).filter(|rows| *rows > steps) {
             Some(rows) => (rows, "one for each row of [shaking] or of an amplitude".to_owned()),

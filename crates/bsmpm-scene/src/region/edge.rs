@@ -33,6 +33,11 @@ impl Edge {
         [false, true].map(|upper| Self { a, b, shape, arc: Some(Arc { center, radius, upper }) })
     }
 
+    /// Whether it is straight.
+    pub(crate) fn is_straight(&self) -> bool {
+        self.arc.is_none()
+    }
+
     /// Whether it is straight along an axis: 0, or 1 of a vertical one.
     pub(crate) fn is_along(&self, axis: usize) -> bool {
         self.arc.is_none() && self.a[1 - axis] == self.b[1 - axis]

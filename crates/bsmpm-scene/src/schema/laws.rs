@@ -4,11 +4,12 @@ use super::Kind::{self, *};
 use super::Presence::{Optional, Required};
 use super::{Dimension as In, Range, Table, key, loads, one_of};
 use crate::record::Record;
-use crate::words::Word;
+use crate::words::{Drainage, Word};
 use bsmpm::material::{
     CamClay, Decay, DruckerPrager, Elastic, Hencky, Match, Material, MohrCoulomb, MuI, Rate, Separation,
     SofteningMohrCoulomb, VonMises,
 };
+use bsmpm::water::flow::PermeabilityLaw;
 use std::ops::Bound::{Excluded, Included, Unbounded};
 
 choice! {
@@ -273,6 +274,30 @@ pub(crate) static MATERIAL: Table = Table {
             "of what lies below the water table at the start; unit_weight, or what density is, unless given",
         ),
         key("k0", Quantity(In::Number, loads::COEFFICIENT), Optional, "horizontal over vertical stress at the start"),
+        key(
+            "drainage",
+            Choice(Drainage::WORDS),
+            Optional,
+            "what its pore water does (consolidation); that of [water] unless given",
+        ),
+        key(
+            "porosity",
+            Quantity(In::Number, BELOW_1),
+            Optional,
+            "share of pores in the volume at the start (coupled and undrained: required)",
+        ),
+        key(
+            "permeability",
+            Either(In::Seepage, Range::POSITIVE),
+            Optional,
+            "hydraulic conductivity, or [kx, ky] (coupled: required)",
+        ),
+        key(
+            "permeability_law",
+            Choice(PermeabilityLaw::WORDS),
+            Optional,
+            "how it follows the porosity; constant unless given",
+        ),
         key(
             "damping",
             Kind::Table(&DAMPING),

@@ -56,7 +56,13 @@ pub(super) static HISTORY: Table = Table {
         key("name", Name, Optional, "name of the column; the quantity's unless given"),
         key("scale", Quantity(In::Number, Range::ANY), Default("1.0"), "multiplies"),
         key("percentile", Quantity(In::Number, PERCENT), Optional, "of runout: share of the points; 100 unless given"),
-        key("face", Choice(Side::WORDS), Optional, "of reaction, contact, gap, slip-rate, friction-power: the face"),
+        key(
+            "face",
+            Choice(Side::WORDS),
+            Optional,
+            "of reaction, contact, gap, slip-rate, friction-power: the face; of water-outflow: a drained one",
+        ),
+        key("drain", Name, Optional, "of water-outflow: name of the drain; all drains less all inflows unless given"),
         key("rigid", Name, Optional, "of rigid-force and the like: name of the rigid body"),
         key(
             "of",
@@ -75,7 +81,8 @@ pub(super) static HISTORY: Table = Table {
             "at",
             Pair(In::Length, Range::ANY),
             Optional,
-            "of displacement: the place at the start; of velocity, stress and pore-pressure: the point nearest to it then",
+            "of displacement: the place at the start; of velocity, stress, pore-pressure, excess-pressure, porosity and \
+             flux: the point nearest to it then",
         ),
         key(
             "material",
@@ -103,7 +110,7 @@ pub(super) static HISTORY: Table = Table {
         ),
         key("box", Kind::Table(&body::BOX), Optional, "of pressure-noise: the points inside; all unless given"),
     ],
-    exclusive: &[one_of(&["material", "body"], false)],
+    exclusive: &[one_of(&["material", "body"], false), one_of(&["drain", "face"], false)],
 };
 
 pub(super) static PROFILE: Table = Table {

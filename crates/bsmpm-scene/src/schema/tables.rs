@@ -3,11 +3,10 @@
 use super::Kind::*;
 use super::Presence::{Default, Optional, Required};
 use super::{
-    Dimension as In, Kind, Range, Table, body, element, key, later, laws, loads, one_of, output, rigid, stage, water,
+    Dimension as In, Kind, Range, Table, body, element, flow, key, later, laws, loads, one_of, output, rigid, stage, water,
 };
-use crate::words::{Accuracy, C0Lines, Factor, Geometry, Ksp, LinearSolver, Nonlinear, Order, Pc, Word};
+use crate::words::{Accuracy, AnalysisType, C0Lines, Factor, Geometry, Ksp, LinearSolver, Nonlinear, Order, Pc, Word};
 use bsmpm::background::{Extent, Kind as Background};
-use bsmpm::model::Regime;
 use bsmpm::quadrature::Quadrature;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::step::mass::MassMatrix;
@@ -27,6 +26,8 @@ pub static ROOT: Table = Table {
         key("body", Tables(&body::BODY), Required, "bodies made of material points"),
         key("gravity", Kind::Table(&GRAVITY), Optional, "body force; absent: none"),
         key("water", Kind::Table(&water::WATER), Optional, "water in the ground; absent: none"),
+        key("drain", Tables(&flow::DRAIN), Optional, "a surface that lets water through"),
+        key("inflow", Tables(&flow::INFLOW), Optional, "a surface through which water is put in"),
         key("shaking", Kind::Table(&loads::SHAKING), Optional, "motion of the ground; absent: none"),
         key("boundary", Kind::Table(&BOUNDARY), Default("{}"), "supports at the faces of the grid"),
         key("stabilisation", Kind::Table(&STABILISATION), Optional, "against locking and oscillation; absent: none"),
@@ -50,12 +51,20 @@ pub static ROOT: Table = Table {
 
 static ANALYSIS: Table = Table {
     header: "[analysis]",
-    doc: "Dynamic (Newmark 1/4, 1/2 unless damped) or quasi-static (no inertia; time is a pseudo-time without unit)",
+    doc: "Dynamic (Newmark 1/4, 1/2 unless damped), quasi-static (no inertia; time is a pseudo-time without unit), or \
+          consolidation (no inertia; water flows in real time)",
     keys: &[
-        key("type", Choice(Regime::WORDS), Required, "whether inertia acts"),
+        key("type", Choice(AnalysisType::WORDS), Required, "whether inertia acts, and what time is"),
         key("end", Quantity(In::Time, Range::POSITIVE), Optional, "end of the run; quasi-static: 1.0 unless given"),
         key("dt", Quantity(In::Time, Range::POSITIVE), Optional, "nominal step"),
         key("steps", Count(1, 1_000_000_000), Optional, "number of equal steps, instead of dt"),
+        key(
+            "growth",
+            Quantity(In::Number, GROWTH),
+            Optional,
+            "a step over the one before it (consolidation), from dt on at the start and after every stage; 1 unless given",
+        ),
+        key("dt_max", Quantity(In::Time, Range::POSITIVE), Optional, "the longest step to which they grow; no bound unless given"),
         key(
             "spectral_radius",
             Quantity(In::Number, UP_TO_1),
@@ -68,6 +77,7 @@ static ANALYSIS: Table = Table {
     exclusive: &[one_of(&["dt", "steps"], true), one_of(&["spectral_radius", "gamma"], false)],
 };
 
+const GROWTH: Range = Range::of(Included(1.0), Included(10.0));
 const GAMMA: Range = Range { lower: Included(0.5), upper: Included(1.0), why: "below 1/2 it gains energy" };
 
 static GRID: Table = Table {

@@ -3,6 +3,7 @@
 use super::Kind::*;
 use super::Presence::{Default, Optional};
 use super::{Dimension as In, Range, Table, key, one_of};
+use crate::words::{Drainage, Word};
 
 pub(super) static WATER: Table = Table {
     header: "[water]",
@@ -24,6 +25,13 @@ pub(super) static WATER: Table = Table {
              depth straight below it",
         ),
         key("unit_weight", Quantity(In::UnitWeight, Range::POSITIVE), Default("\"9.81 kN/m3\""), "of the water"),
+        key("bulk", Quantity(In::Stress, Range::POSITIVE), Optional, "bulk modulus of the water; absent: incompressible"),
+        key(
+            "drainage",
+            Choice(Drainage::WORDS),
+            Optional,
+            "what the pore water of materials without their own drainage does; given unless given",
+        ),
     ],
-    exclusive: &[one_of(&["level", "level_path", "line"], true)],
+    exclusive: &[one_of(&["level", "level_path", "line"], false)],
 };

@@ -1,6 +1,6 @@
 //! Histories and the checks of their columns.
 
-use super::place;
+use super::{flow, place};
 use crate::case::{Body, Check, Column, Counted, History, NamedMaterial, Quantity, Support};
 use crate::grid::GridSpec;
 use crate::nearest::hint;
@@ -65,6 +65,10 @@ fn read(
     if measured.is_of_footing() && !root.gives("footing") {
         record.error("quantity", format!("\"{measured}\" is about the footing, and there is no [footing]"), report);
     }
+    if measured.is_of_flow() && !flow::flows(root) {
+        let message = format!("\"{measured}\" is about water that flows, and no material is \"coupled\" or \"undrained\"");
+        record.error("quantity", message, report);
+    }
     if record.number("scale") == Some(0.0) {
         record.error("scale", "0 is out of range: the column would be zero; allowed: any scale but 0", report);
     }
@@ -123,8 +127,8 @@ fn is_of_motion(measured: Measurement) -> bool {
 }
 
 /// Keys that belong to some quantities.
-const KEYS: [&str; 13] =
-    ["percentile", "face", "at", "at_x", "box", "material", "body", "from", "to", "fixed", "surface", "rigid", "of"];
+const KEYS: [&str; 14] =
+    ["percentile", "face", "at", "at_x", "box", "material", "body", "from", "to", "fixed", "surface", "rigid", "of", "drain"];
 
 /// The keys that belong to a quantity, and those that it needs.
 fn own_keys(measured: Measurement) -> (&'static [&'static str], &'static [&'static str]) {
@@ -136,7 +140,8 @@ fn own_keys(measured: Measurement) -> (&'static [&'static str], &'static [&'stat
         Moment | Work => (&[], &["of"]),
         RigidForce | RigidMoment | RigidDisplacement | RigidRotation | RigidVelocity => (&[], &["rigid"]),
         RigidSlip | RigidGap | RigidWork => (&[], &["rigid"]),
-        Displacement | PorePressure => (&[], &["at"]),
+        Displacement | PorePressure | ExcessPressure | Porosity | Flux => (&[], &["at"]),
+        WaterOutflow => (&["drain", "face"], &[]),
         Velocity | Stress => (&["surface"], &["at"]),
         SectionForces => (&["fixed"], &["from", "to"]),
         PressureNoise => (&["box"], &[]),
@@ -181,6 +186,11 @@ fn quantity(
         Measurement::Velocity => Quantity::Velocity { at: at(record, grid, report)?, surface: at_surface(record)? },
         Measurement::Stress => Quantity::Stress { at: at(record, grid, report)?, surface: at_surface(record)? },
         Measurement::PorePressure => Quantity::PorePressure { at: at(record, grid, report)? },
+        Measurement::ExcessPressure | Measurement::Porosity | Measurement::Flux => {
+            Quantity::Pore { what: measured, at: at(record, grid, report)? }
+        }
+        Measurement::WaterOutflow => Quantity::WaterOutflow { drain: flow::drain_of(record, root, report)? },
+        Measurement::WaterBalance => Quantity::WaterBalance,
         Measurement::StressNoise => Quantity::StressNoise,
         Measurement::PressureNoise if record.gives("box") => {
             Quantity::PressureNoise { within: Some(within(record.record("box")?, grid, report)?) }

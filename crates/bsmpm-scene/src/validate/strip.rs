@@ -5,9 +5,8 @@ use crate::case::{Base, Body, Case, Face, Footing, MotionPath, Prescribed, Site,
 use crate::grid::GridSpec;
 use crate::record::Record;
 use crate::report::Report;
-use crate::words::{Components, Side};
+use crate::words::{AnalysisType, Components, Side};
 use bsmpm::boundary::StripContact;
-use bsmpm::model::Regime;
 
 /// Parts of a motion below which it does not count.
 const NOTHING: f64 = 1e-12;
@@ -108,7 +107,7 @@ fn rubs(
         return Some(None);
     }
     let regime = root.record("analysis").and_then(|analysis| analysis.word("type"));
-    if regime == Some(Regime::Dynamic) {
+    if regime == Some(AnalysisType::Dynamic) {
         report.warn(format!(
             "{}: strips that rub and let go were shown to be right in quasi-static analysis only; look at the energy history \
              for what impacts make or lose",

@@ -28,6 +28,13 @@ pub(super) fn read(
         }
         return None;
     };
+    if ["level", "level_path", "line"].iter().all(|key| !record.gives(key)) {
+        if !super::flow::flows(root) {
+            let message = "missing: one of level, level_path, line: no water flows, and there is none that is still";
+            report.error(record.origin, &record.path, message);
+        }
+        return None;
+    }
     let table = table(record, (grid?, end), report)?;
     let given = record.number("unit_weight")?;
     if !root.gives("gravity") {

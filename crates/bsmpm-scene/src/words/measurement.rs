@@ -48,6 +48,19 @@ choice! {
         Stress = "stress",
         /// Pressure of the water in the pores of the point nearest to `at` at the start, positive in compression.
         PorePressure = "pore-pressure",
+        /// Pore pressure above that of the still water, of the point nearest to `at` at the start, where water flows.
+        ExcessPressure = "excess-pressure",
+        /// Share of pores in the volume of the point nearest to `at` at the start, where water flows.
+        Porosity = "porosity",
+        /// Volume of water that flows through the soil per area and time (Darcy), relative to the grains, of the point
+        /// nearest to `at` at the start.
+        Flux = "flux",
+        /// Volume of water that has left the ground through a drain since the start, per metre of thickness; all drains
+        /// less all inflows unless one is named.
+        WaterOutflow = "water-outflow",
+        /// What the ground has gained of water since the start and what has left it: their sum over the larger of the
+        /// two. 0 where no water is lost.
+        WaterBalance = "water-balance",
         /// Oscillation of sigma_yy over all points from point to point: a root mean square, over the mean of
         /// |sigma_yy|.
         StressNoise = "stress-noise",
@@ -130,6 +143,12 @@ impl Measurement {
         matches!(self, Self::FootingPressure | Self::FootingForce | Self::Penetration | Self::Slip)
     }
 
+    /// Whether it is of water that flows.
+    pub fn is_of_flow(self) -> bool {
+        use Measurement::*;
+        matches!(self, ExcessPressure | Porosity | Flux | WaterOutflow | WaterBalance)
+    }
+
     /// Whether it is of a rigid body.
     pub fn is_of_rigid_body(self) -> bool {
         use Measurement::*;
@@ -154,7 +173,7 @@ impl Measurement {
             Self::RigidForce | Self::RigidDisplacement | Self::RigidVelocity => VECTOR,
             Self::RigidMoment | Self::RigidRotation | Self::RigidSlip => &[("", "")],
             Self::RigidGap | Self::RigidWork => &[("", "")],
-            Self::Momentum | Self::CentreOfMass | Self::Reaction | Self::Displacement | Self::Velocity => VECTOR,
+            Self::Momentum | Self::CentreOfMass | Self::Reaction | Self::Displacement | Self::Velocity | Self::Flux => VECTOR,
             Self::Stress | Self::MeanStress => STRESS,
             Self::SectionForces => SECTION,
             Self::StressNoise | Self::PressureNoise => NOISE,
@@ -165,7 +184,8 @@ impl Measurement {
             Self::Moment | Self::Work => &[("", "")],
             Self::Runout | Self::Front | Self::Height | Self::MaxDisplacement | Self::Heave => &[("", "")],
             Self::Mass | Self::Outflow | Self::FootingPressure | Self::FootingForce => &[("", "")],
-            Self::Penetration | Self::Slip | Self::PorePressure => &[("", "")],
+            Self::Penetration | Self::Slip | Self::PorePressure | Self::ExcessPressure | Self::Porosity => &[("", "")],
+            Self::WaterOutflow | Self::WaterBalance => &[("", "")],
         }
     }
 
@@ -181,11 +201,12 @@ impl Measurement {
             Self::Momentum => "kg/s",
             Self::AngularMomentum => "kg m/s",
             Self::Reaction | Self::FootingForce | Self::SectionForces | Self::RigidForce => "N/m",
-            Self::Velocity | Self::SlipRate | Self::RigidVelocity => "m/s",
+            Self::Velocity | Self::SlipRate | Self::RigidVelocity | Self::Flux => "m/s",
             Self::FrictionPower => "W/m",
             Self::Stress | Self::MeanStress | Self::PressureNoise | Self::FootingPressure => "Pa",
-            Self::PorePressure => "Pa",
-            Self::StressNoise | Self::Slip | Self::Contact => "-",
+            Self::PorePressure | Self::ExcessPressure => "Pa",
+            Self::StressNoise | Self::Slip | Self::Contact | Self::Porosity | Self::WaterBalance => "-",
+            Self::WaterOutflow => "m3/m",
             Self::Moment => "N",
             Self::Energy | Self::KineticEnergy | Self::Work | Self::RigidWork => "J/m",
         }

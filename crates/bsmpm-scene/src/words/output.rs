@@ -18,12 +18,25 @@ choice! {
         Density = "density",
         /// Pressure of the water in the pores (Pa), positive in compression.
         PorePressure = "pore-pressure",
+        /// Pore pressure above that of the still water (Pa), where water flows.
+        ExcessPressure = "excess-pressure",
+        /// Volume of water that flows through the soil per area and time (m/s), relative to the grains.
+        Flux = "flux",
+        /// Share of pores in the volume, where water flows.
+        Porosity = "porosity",
+        /// Effective stress less the pore pressure (Pa), positive in tension.
+        TotalStress = "total-stress",
         /// Number of the body, in the order of the file; run.json and the frame have the names.
         Body = "body",
     }
 }
 
 impl FrameField {
+    /// Whether it is of water that flows.
+    pub fn is_of_flow(self) -> bool {
+        matches!(self, Self::ExcessPressure | Self::Flux | Self::Porosity)
+    }
+
     /// Its name in frames.
     pub fn field(self) -> &'static str {
         match self {
@@ -34,6 +47,10 @@ impl FrameField {
             Self::Yielding => "yielding",
             Self::Density => "density",
             Self::PorePressure => "pore_pressure",
+            Self::ExcessPressure => "excess_pressure",
+            Self::Flux => "flux",
+            Self::Porosity => "porosity",
+            Self::TotalStress => "total_stress",
             Self::Body => "body",
         }
     }
@@ -42,6 +59,9 @@ impl FrameField {
     pub fn unit(self) -> &'static str {
         match self {
             Self::Q | Self::PrincipalStresses | Self::PorePressure => "Pa",
+            Self::ExcessPressure | Self::TotalStress => "Pa",
+            Self::Flux => "m/s",
+            Self::Porosity => "-",
             Self::MobilisedStrength | Self::DeviatoricStrain | Self::Yielding | Self::Body => "-",
             Self::Density => "kg/m3",
         }

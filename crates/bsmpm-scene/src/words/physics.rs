@@ -1,15 +1,10 @@
 //! Words of choices that the physics defines.
 
 use bsmpm::background::{Extent, Kind};
-use bsmpm::model::Regime;
 use bsmpm::quadrature::Quadrature;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::step::mass::MassMatrix;
-
-words! { Regime {
-    Dynamic = "dynamic": "inertia acts",
-    QuasiStatic = "quasi-static": "no inertia; time is a pseudo-time",
-} }
+use bsmpm::water::flow::PermeabilityLaw;
 
 words! { MassMatrix {
     Lumped = "lumped": "diagonal, the paper's",
@@ -28,6 +23,11 @@ words! { Stabilisation {
 words! { Quadrature {
     Points = "points": "points weigh their own volumes",
     Fitted = "fitted": "volumes that integrate splines inside bodies exactly",
+} }
+
+words! { PermeabilityLaw {
+    Constant = "constant": "it stays as it is",
+    KozenyCarman = "kozeny-carman": "it follows the porosity n as n^3/(1-n)^2",
 } }
 
 words! { Kind {

@@ -1,11 +1,52 @@
 //! Words of what is solved and of what is kept of it.
 
+use bsmpm::model::Regime;
+
 choice! {
     /// Kind of the geometry.
     pub enum Geometry {
         /// Plane strain, 1 m thick.
         PlaneStrain = "plane-strain",
     } later ["axisymmetric", "solid"]
+}
+
+choice! {
+    /// Kind of the analysis.
+    pub enum AnalysisType {
+        /// Inertia acts.
+        Dynamic = "dynamic",
+        /// No inertia; time is a pseudo-time.
+        QuasiStatic = "quasi-static",
+        /// No inertia; water flows in real time.
+        Consolidation = "consolidation",
+    }
+}
+
+impl AnalysisType {
+    /// Whether inertia acts.
+    pub fn regime(self) -> Regime {
+        match self {
+            Self::Dynamic => Regime::Dynamic,
+            Self::QuasiStatic | Self::Consolidation => Regime::QuasiStatic,
+        }
+    }
+
+    /// Whether its time is a pseudo-time without unit.
+    pub fn is_timeless(self) -> bool {
+        self == Self::QuasiStatic
+    }
+}
+
+choice! {
+    /// What a soil's pore water does.
+    pub enum Drainage {
+        /// Its pressure is that of the still water.
+        Given = "given",
+        /// It flows, and its excess pressure is an unknown.
+        Coupled = "coupled",
+        /// It stays where it is, and its excess pressure is an unknown.
+        Undrained = "undrained",
+    }
 }
 
 choice! {

@@ -1,6 +1,6 @@
 //! What a user sees of wrong soils and scenes: `cases/results/wrong_cases.md`, which is made here.
 
-use super::{DYNAMIC, STATIC};
+use super::{DYNAMIC, SEEPING, STATIC};
 use bsmpm_scene::Case;
 use std::path::Path;
 
@@ -17,6 +17,10 @@ const fn dynamic(what: &'static str, changes: &'static [(&'static str, &'static 
 
 const fn at_rest(what: &'static str, changes: &'static [(&'static str, &'static str)]) -> Wrong {
     Wrong { what, base: STATIC, changes }
+}
+
+const fn wet(what: &'static str, changes: &'static [(&'static str, &'static str)]) -> Wrong {
+    Wrong { what, base: SEEPING, changes }
 }
 
 const CLAY: &str = "cohesion    = 2e4\n";
@@ -100,15 +104,35 @@ const WRONG: &[Wrong] = &[
         "strength that is divided by nothing",
         &[("add  = [\"fill\"]", "add = [\"fill\"]\nstrength_reduction = 0.0")],
     ),
+    at_rest(
+        "water that flows in no time",
+        &[("poisson = 0.3", "poisson = 0.3\ndrainage = \"coupled\"\nporosity = 0.4\npermeability = \"1e-9 m/s\"")],
+    ),
+    at_rest("consolidation of dry ground", &[("\"quasi-static\"\nend   = 1.0", "\"consolidation\"\nend   = \"1 day\"")]),
+    at_rest("a drain in ground without flow", &[("[output]", "[[drain]]\nsurface = true\n\n[output]")]),
+    wet("steps that shrink", &[("growth = 1.2", "growth = 0.9")]),
+    wet("equal steps that grow", &[("dt     = \"1 h\"", "steps  = 100")]),
+    wet("a permeability in m2", &[("\"1e-9 m/s\"", "\"1e-16 m2\"")]),
+    wet("a porosity in per cent", &[("porosity         = 0.6", "porosity         = 60")]),
+    wet("clay that drains without a permeability", &[("permeability     = \"1e-9 m/s\"\n", "")]),
+    wet("a permeability where nothing flows", &[("porosity = 0.5", "porosity = 0.5\npermeability = \"1e-9 m/s\"")]),
+    wet("a drained face away from the ground", &[("face    = \"bottom\"", "face    = \"top\"")]),
+    wet("a drain on undrained clay", &[("from      = [2.0, 2.0]", "from      = [0.5, 3.0]")]),
+    wet("a head in kPa", &[("\"3 m\"", "\"30 kPa\"")]),
+    wet("rain as a depth", &[("\"10 mm/h\"", "\"10 mm\"")]),
+    wet("the outflow of a drain that there is none of", &[("drain    = \"base\"", "drain    = \"bas\"")]),
+    wet("water in linear cells", &[("\"quadratic\"", "\"linear\"")]),
+    wet("water and Newton's method", &[("\"auto\"", "\"newton\"")]),
+    wet("water beside a face that rubs", &[("right  = \"roller\"", "right  = { friction = 0.3 }")]),
 ];
 
 /// The page: of every wrong case what was changed, and what the program says.
 fn page() -> String {
     let mut page = String::from(
-        "# Wrong cases\n\nWhat the program says of wrong soils, contacts, loads, motions, stages and histories: the first \
+        "# Wrong cases\n\nWhat the program says of wrong soils, contacts, loads, motions, stages, histories and water: the first \
          error of each, as it\nis printed, with exit code 65. All errors of a case are told at once. The toml block is what \
-         was put into a valid case\n(`tests/full.toml`, `tests/bad_cases/static.toml` of `bsmpm-scene`). Made by the test \
-         `page`, which compares;\n`BSMPM_RENEW=1 cargo test -p bsmpm-scene --test bad_cases page` writes it anew.\n",
+         was put into a valid case\n(`tests/full.toml` of `bsmpm-scene`, `static.toml` and `seeping.toml` of its `tests/bad_cases`). Made by the\ntest \
+         `page`, which compares; `BSMPM_RENEW=1 cargo test -p bsmpm-scene --test bad_cases page` writes it anew.\n",
     );
     for wrong in WRONG {
         let mut text = wrong.base.to_owned();

@@ -11,6 +11,7 @@ use written::{STRESS, Written};
 const FULL: &str = include_str!("../full.toml");
 const STATIC: &str = include_str!("../bad_cases/static.toml");
 const RUBBING: &str = include_str!("../bad_cases/rubbing.toml");
+const SEEPING: &str = include_str!("../bad_cases/seeping.toml");
 
 /// Values that a key may be given by mistake.
 const VALUES: [&str; 22] = [
@@ -134,7 +135,7 @@ fn bases() -> Vec<String> {
         format!("{dry}\n[water]\n{table}\nunit_weight = \"10 kN/m3\"\n\n{rest}\n")
     };
     let still = ["level = 0.75", "level_path = [[0.0, \"2 m\"], [1.0, 0.5]]", "line = [[0.0, 0.75], [\"2 m\", 0.5]]"];
-    let mut bases = vec![FULL.to_owned(), STATIC.to_owned(), later, RUBBING.to_owned()];
+    let mut bases = vec![FULL.to_owned(), STATIC.to_owned(), later, RUBBING.to_owned(), SEEPING.to_owned()];
     bases.extend(still.map(wet));
     for changes in OTHERWISE {
         let mut text = FULL.to_owned();

@@ -1,0 +1,58 @@
+//! The tables of where water flows in and out.
+
+use super::Kind::{self, *};
+use super::Presence::Optional;
+use super::{Dimension as In, Range, Table, key, one_of};
+use crate::words::{Side, Word};
+
+const PLACE: Kind = Pair(In::Length, Range::ANY);
+
+pub(super) static DRAIN: Table = Table {
+    header: "[[drain]]",
+    doc: "A surface through which water flows freely, at a pressure that is given: that of the still water unless it \
+          says another. A body's surface goes with the material; what is not named lets no water through",
+    keys: &[
+        key("name", Name, Optional, "what histories call it"),
+        key("face", Choice(Side::WORDS), Optional, "a face of the grid, at which bodies lie"),
+        key("from", PLACE, Optional, "one end of a segment of a body's surface at the start"),
+        key("to", PLACE, Optional, "the other end"),
+        key(
+            "surface",
+            Flag,
+            Optional,
+            "true: all that is surface of bodies of permeable soil at the start, but for what lies at faces of the grid \
+             that hold it",
+        ),
+        key("head", Quantity(In::Length, Range::ANY), Optional, "height to which the water there would rise"),
+        key(
+            "head_path",
+            Rows(&[(In::Time, Range::NOT_NEGATIVE), (In::Length, Range::ANY)]),
+            Optional,
+            "rows [t, y] instead, t increasing; linear between, constant before the first and after the last",
+        ),
+        key("pressure", Quantity(In::Stress, Range::ANY), Optional, "pore pressure there instead"),
+    ],
+    exclusive: &[
+        one_of(&["face", "from", "surface"], true),
+        one_of(&["face", "to", "surface"], true),
+        one_of(&["head", "head_path", "pressure"], false),
+    ],
+};
+
+pub(super) static INFLOW: Table = Table {
+    header: "[[inflow]]",
+    doc: "Water that is put in through a segment of a body's surface, with which it goes",
+    keys: &[
+        key("name", Name, Optional, "what it is called where it is told of"),
+        key("from", PLACE, super::Presence::Required, "one end of the segment at the start"),
+        key("to", PLACE, super::Presence::Required, "the other end"),
+        key("rate", Quantity(In::Seepage, Range::ANY), Optional, "volume of water per area and time, into the ground"),
+        key(
+            "rate_path",
+            Rows(&[(In::Time, Range::NOT_NEGATIVE), (In::Seepage, Range::ANY)]),
+            Optional,
+            "rows [t, rate] instead, t increasing; linear between, constant before the first and after the last",
+        ),
+    ],
+    exclusive: &[one_of(&["rate", "rate_path"], true)],
+};

@@ -1,0 +1,466 @@
+//! Water that flows: soils, drains and inflows, and what is not shown to be right together with it.
+
+use super::load::increasing;
+use super::STANDARD_GRAVITY;
+use super::place::{self, along};
+use super::strip::{AroundStrip, segment};
+use crate::case::{Body, Case, Drain, DrainSite, Face, Flow, Inflow, Initial, NamedMaterial, Quantity, Support};
+use crate::nearest::hint;
+use crate::record::Record;
+use crate::region::{Region, skin};
+use crate::report::Report;
+use crate::schema::LawName;
+use crate::words::{AnalysisType, Drainage, Side, Word};
+use bsmpm::quadrature::Quadrature;
+use bsmpm::stabilisation::Stabilisation;
+use bsmpm::water::flow::{Course, Given, Permeability, PermeabilityLaw, Soil};
+
+/// N/m3  of water, unless a case gives it.
+const WATER: f64 = 9810.0;
+/// Parts of a cell by which a body may be off a face that it lies at.
+const AT: f64 = 1e-9;
+/// Points along each axis of a cell with cubic splines: with fewer the pressure oscillates at surfaces that cut cells.
+const POINTS_OF_CUBIC: usize = 4;
+/// Permeability, m/s, beyond which a number is taken for a slip: that of gravel without sand.
+const MOST_PERMEABLE: f64 = 1.0;
+
+/// Drainage that the case gives a material.
+fn drainage(root: &Record, material: &Record) -> Drainage {
+    let given = |record: &Record| if record.gives("drainage") { record.word("drainage") } else { None };
+    given(material).or_else(|| given(root.record("water")?)).unwrap_or(Drainage::Given)
+}
+
+/// The flow of water, if any material has it; the outer option is `None` after an error.
+pub(super) fn read(
+    root: &Record,
+    materials: Option<&[NamedMaterial]>,
+    around: AroundStrip<'_>,
+    report: &mut Report<'_>,
+) -> Option<Option<Flow>> {
+    let soils: Vec<Option<Option<Soil<2>>>> =
+        root.named("material").iter().map(|(_, record)| soil(root, record, report)).collect();
+    let flows = soils.iter().any(|soil| !matches!(soil, Some(None)));
+    for key in ["drain", "inflow"] {
+        if let Some(record) = root.records(key).first().filter(|_| !flows) {
+            let message = "no material lets water flow: give it drainage = \"coupled\", a porosity and a permeability";
+            report.error(record.origin, &record.path, message);
+        }
+    }
+    if let Some(water) = root.record("water").filter(|water| !flows && water.gives("bulk")) {
+        water.error("bulk", "water that does not flow is not compressed: no material is \"coupled\"", report);
+    }
+    if !flows {
+        return Some(None);
+    }
+    let soils: Vec<Option<Soil<2>>> = soils.into_iter().collect::<Option<_>>()?;
+    let ground = Ground { soils: &soils, materials: materials?, around };
+    let read: Vec<Option<Drain>> = root.records("drain").iter().map(|record| drain(record, ground, report)).collect();
+    named(root, report);
+    let put: Vec<Option<Inflow>> = root.records("inflow").iter().map(|record| inflow(record, ground, report)).collect();
+    let (drains, inflows) = (read.into_iter().collect::<Option<_>>()?, put.into_iter().collect::<Option<_>>()?);
+    let bulk = root.record("water").filter(|water| water.gives("bulk"));
+    let bulk = bulk.map_or(Some(f64::INFINITY), |water| water.number("bulk"))?;
+    Some(Some(Flow { unit_weight: unit_weight(root)?, bulk, soils, drains, inflows }))
+}
+
+/// N/m3  of water under the case's gravity; under the standard one without any.
+fn unit_weight(root: &Record) -> Option<f64> {
+    let given = root.record("water").map_or(Some(WATER), |water| water.number("unit_weight"))?;
+    let Some(gravity) = root.record("gravity") else { return Some(given) };
+    let [x, y] = gravity.pair("acceleration")?;
+    Some(given / STANDARD_GRAVITY * x.hypot(y))
+}
+
+/// What a material is to water; the outer option is `None` after an error.
+fn soil(root: &Record, record: &Record, report: &mut Report<'_>) -> Option<Option<Soil<2>>> {
+    const FLOWING: [&str; 3] = ["porosity", "permeability", "permeability_law"];
+    let drainage = drainage(root, record);
+    let needs: &[&str] = match drainage {
+        Drainage::Given => &[],
+        Drainage::Undrained => &FLOWING[..1],
+        Drainage::Coupled => &FLOWING[..2],
+    };
+    let known = if drainage == Drainage::Coupled { 3 } else { needs.len() };
+    let mut failed = false;
+    for key in needs.iter().filter(|key| !record.gives(key)) {
+        report.error(record.origin, &record.path_of(key), format!("missing; drainage = \"{drainage}\" needs it"));
+        failed = true;
+    }
+    for key in FLOWING[known..].iter().filter(|key| record.gives(key)) {
+        let message = format!("has no meaning with drainage = \"{drainage}\"; give drainage = \"coupled\"");
+        record.error(key, message, report);
+        failed = true;
+    }
+    if failed {
+        return None;
+    }
+    if drainage == Drainage::Given {
+        return Some(None);
+    }
+    let porosity = record.number("porosity")?;
+    let permeability = match drainage {
+        Drainage::Coupled => Some(permeability(record, report)?),
+        Drainage::Given | Drainage::Undrained => None,
+    };
+    Some(Some(Soil { porosity, permeability }))
+}
+
+fn permeability(record: &Record, report: &mut Report<'_>) -> Option<Permeability<2>> {
+    let given = record.numbers("permeability")?;
+    let along = [given[0], given[given.len() - 1]];
+    if let Some(much) = along.into_iter().find(|k| *k > MOST_PERMEABLE) {
+        let path = record.path_of("permeability");
+        report.warn(format!("{path}: {much} m/s is more than that of gravel: check the unit"));
+    }
+    let law = record.word_if_given("permeability_law")?.unwrap_or(PermeabilityLaw::Constant);
+    Some(Permeability { along: along.into(), law })
+}
+
+/// What drains and inflows lie at.
+#[derive(Clone, Copy)]
+struct Ground<'a> {
+    soils: &'a [Option<Soil<2>>],
+    materials: &'a [NamedMaterial],
+    around: AroundStrip<'a>,
+}
+
+impl Ground<'_> {
+    fn lets_through(&self, body: &Body) -> bool {
+        self.soils[body.material].as_ref().is_some_and(|soil| soil.permeability.is_some())
+    }
+
+    /// Bodies of soil that lets water through.
+    fn permeable(&self) -> Vec<Body> {
+        let bodies = self.around.bodies.unwrap_or_default();
+        bodies.iter().filter(|body| self.lets_through(body)).cloned().collect()
+    }
+
+    /// A segment of the surface of bodies that let water through.
+    fn segment(&self, record: &Record, report: &mut Report<'_>) -> Option<[[f64; 2]; 2]> {
+        let ends = segment(record, self.around, report)?;
+        let (grid, permeable) = (self.around.grid?, self.permeable());
+        if let Some(at) = along(ends).find(|at| !place::at_body(&permeable, grid, *at)) {
+            let bodies = self.around.bodies.unwrap_or_default();
+            let under = bodies.iter().find(|body| place::at_body(std::slice::from_ref(*body), grid, at));
+            let message = match under {
+                Some(body) => format!(
+                    "the body at {at:?} is of material.{}, which lets no water through: give it a permeability",
+                    self.materials[body.material].name
+                ),
+                None => {
+                    format!("no body is at {at:?} at the start; allowed: half a spacing of points from one")
+                }
+            };
+            record.error("from", message, report);
+            return None;
+        }
+        Some(ends)
+    }
+}
+
+/// Names of drains, which are unique.
+fn named(root: &Record, report: &mut Report<'_>) {
+    let drains = root.records("drain");
+    for (number, record) in drains.iter().enumerate() {
+        let Some(name) = record.text("name") else { continue };
+        if drains[..number].iter().any(|other| other.text("name") == Some(name)) {
+            record.error("name", format!("there is a drain `{name}` already"), report);
+        }
+    }
+}
+
+fn drain(record: &Record, ground: Ground<'_>, report: &mut Report<'_>) -> Option<Drain> {
+    let given = given(record, report);
+    let site = if record.gives("face") {
+        DrainSite::Face(face(record, ground, report)?)
+    } else if record.gives("surface") {
+        if !record.flag("surface")? {
+            record.error("surface", "false names nothing: give face, from and to, or true", report);
+            return None;
+        }
+        DrainSite::Lines(surface(record, ground, report)?)
+    } else {
+        DrainSite::Lines(vec![ground.segment(record, report)?])
+    };
+    Some(Drain { name: record.text("name").map(str::to_owned), site, given: given? })
+}
+
+/// The pressure at a drain.
+fn given(record: &Record, report: &mut Report<'_>) -> Option<Given> {
+    if record.gives("head_path") {
+        return Some(Given::Head(course(record, "head_path", report)?));
+    }
+    let constant = |key: &str| Some(Course(vec![(0.0, record.number(key)?)]));
+    if record.gives("head") {
+        return constant("head").map(Given::Head);
+    }
+    if record.gives("pressure") {
+        return constant("pressure").map(Given::Pressure);
+    }
+    Some(Given::StillWater)
+}
+
+/// Rows of a number that follows time.
+fn course(record: &Record, key: &str, report: &mut Report<'_>) -> Option<Course> {
+    Some(Course(increasing(record, key, report)?.map(|row| (row[0], row[1])).collect()))
+}
+
+/// A face of the grid at which a body of permeable soil lies.
+fn face(record: &Record, ground: Ground<'_>, report: &mut Report<'_>) -> Option<Face> {
+    let face: Face = record.word::<Side>("face")?.into();
+    let grid = ground.around.grid?;
+    let slack = AT * grid.axes[face.axis].shortest();
+    let (at, side) = ([grid.lower(), grid.upper()][usize::from(face.upper)][face.axis], usize::from(face.upper));
+    if !ground.permeable().iter().any(|body| (body.bounds()[side][face.axis] - at).abs() <= slack) {
+        let message = format!(
+            "no body of permeable soil lies at the face, which is at {} = {at}: give surface = true, or from and to",
+            ["x", "y"][face.axis]
+        );
+        record.error("face", message, report);
+        return None;
+    }
+    Some(face)
+}
+
+/// The surface of bodies of permeable soil, but for what lies at faces of the grid that hold it.
+fn surface(record: &Record, ground: Ground<'_>, report: &mut Report<'_>) -> Option<Vec<[[f64; 2]; 2]>> {
+    let (grid, bodies, boundary) = (ground.around.grid?, ground.around.bodies?, ground.around.boundary?);
+    let all: Vec<&Region> = bodies.iter().map(|body| &body.region).collect();
+    let (lower, length) = (grid.lower(), [0, 1].map(|axis| grid.axes[axis].length()));
+    let is_held = |piece: &[[f64; 2]; 2]| {
+        [(0, false), (0, true), (1, false), (1, true)].into_iter().any(|(axis, upper)| {
+            let (at, slack) = (if upper { length[axis] } else { 0.0 }, AT * grid.axes[axis].shortest());
+            let lies = piece.iter().all(|end| (end[axis] - at).abs() <= slack);
+            lies && boundary[axis][usize::from(upper)] != Support::Free
+        })
+    };
+    let pieces = bodies.iter().filter(|body| ground.lets_through(body)).flat_map(|body| skin(&body.region, &all, grid));
+    let pieces: Vec<[[f64; 2]; 2]> = pieces.filter(|piece| !is_held(piece)).collect();
+    let shift = |at: [f64; 2]| [0, 1].map(|axis| lower[axis] + at[axis]);
+    let pieces: Vec<[[f64; 2]; 2]> = pieces.into_iter().map(|piece| piece.map(shift)).collect();
+    if pieces.is_empty() {
+        record.error("surface", "no body of permeable soil has a surface that nothing holds", report);
+        return None;
+    }
+    let long: f64 = pieces.iter().map(|[p, q]| (q[0] - p[0]).hypot(q[1] - p[1])).sum();
+    let reason = "what is surface of permeable soil at the start; what spills there later is closed";
+    report.note(record.path_of("surface"), format!("{long:.6} m in {} pieces", pieces.len()), reason);
+    Some(pieces)
+}
+
+fn inflow(record: &Record, ground: Ground<'_>, report: &mut Report<'_>) -> Option<Inflow> {
+    let rate = match record.gives("rate_path") {
+        true => course(record, "rate_path", report),
+        false => record.number("rate").map(|rate| Course(vec![(0.0, rate)])),
+    };
+    Some(Inflow { ends: ground.segment(record, report)?, rate: rate? })
+}
+
+/// Whether water flows, or is kept from flowing, in any material.
+pub(super) fn flows(root: &Record) -> bool {
+    root.named("material").iter().any(|(_, record)| drainage(root, record) != Drainage::Given)
+}
+
+/// The number of the drain that a history names, in the order of the file, by its name or its face; the outer option is
+/// `None` after an error.
+pub(super) fn drain_of(record: &Record, root: &Record, report: &mut Report<'_>) -> Option<Option<usize>> {
+    let drains = root.records("drain");
+    let (key, found) = if record.gives("drain") {
+        let name = record.text("drain")?;
+        ("drain", drains.iter().position(|drain| drain.text("name") == Some(name)))
+    } else if record.gives("face") {
+        let side: Side = record.word("face")?;
+        ("face", drains.iter().position(|drain| drain.gives("face") && drain.word("face") == Some(side)))
+    } else {
+        return Some(None);
+    };
+    if found.is_none() {
+        let names = || drains.iter().filter_map(|drain| drain.text("name"));
+        let near = record.text("drain").map(|name| hint(name, names())).unwrap_or_default();
+        record.error(key, format!("there is no such [[drain]]{near}"), report);
+        return None;
+    }
+    Some(found)
+}
+
+/// What the whole case says of a flow: refusals of what is not shown to be right with it.
+pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
+    let consolidates = case.analysis.kind == AnalysisType::Consolidation;
+    let Some(flow) = &case.flow else {
+        let of_flow = case.output.fields.iter().find(|field| field.is_of_flow());
+        if let (Some(field), Some(output)) = (of_flow, root.record("output")) {
+            output.error("fields", format!("no water flows: there is no \"{field}\""), report);
+        }
+        if let Some(analysis) = root.record("analysis").filter(|_| consolidates) {
+            let message = "no water flows: give a material drainage = \"coupled\" (or \"undrained\"), or take \
+                           \"quasi-static\"";
+            analysis.error("type", message, report);
+        }
+        return;
+    };
+    if let Some(analysis) = root.record("analysis").filter(|_| !consolidates) {
+        let message = match case.analysis.kind {
+            AnalysisType::QuasiStatic => "its time has no unit, and water flows in real time: take \"consolidation\"",
+            _ => "water that flows is not shown to be right with inertia: take \"consolidation\"",
+        };
+        analysis.error("type", message, report);
+    }
+    discretised(case, root, report);
+    of_soils(case, flow, root, report);
+    acting(case, root, report);
+    timed(case, root, report);
+    drained(case, flow, report);
+}
+
+/// Splines, points, averages and iterations that carry the pressure.
+fn discretised(case: &Case, root: &Record, report: &mut Report<'_>) {
+    if let Some(grid) = root.record("grid") {
+        if case.grid.order == 1 {
+            let message = "\"linear\" splines leave the pore pressure no gradient: take \"quadratic\"";
+            grid.error("order", message, report);
+        }
+    }
+    let few = |body: &Body| body.points_per_cell < POINTS_OF_CUBIC;
+    for (body, record) in case.bodies.iter().zip(root.records("body")) {
+        if case.grid.order == 3 && few(body) {
+            let message = format!(
+                "{} with cubic splines: the pore pressure oscillates where a surface cuts cells; allowed: at least {POINTS_OF_CUBIC}",
+                body.points_per_cell
+            );
+            record.error("points_per_cell", message, report);
+        }
+    }
+    let shown = matches!(case.stabilisation, Stabilisation::None | Stabilisation::ConsistentFBar);
+    if let Some(record) = root.record("stabilisation").filter(|_| !shown) {
+        let message = format!(
+            "\"{}\" is not shown to be right with water that flows: take \"consistent-f-bar\"",
+            case.stabilisation.word()
+        );
+        record.error("method", message, report);
+    }
+    let Some(solver) = root.record("solver") else { return };
+    if case.solver.nonlinear != crate::Nonlinear::Auto {
+        let message = format!(
+            "\"{}\" is not available with water that flows: take \"auto\", which halves steps that stall",
+            case.solver.nonlinear
+        );
+        solver.error("nonlinear", message, report);
+    }
+    if case.solver.quadrature == Quadrature::Fitted {
+        solver.error("quadrature", "\"fitted\" is not shown to be right with water that flows: take \"points\"", report);
+    }
+}
+
+/// Laws of effective stress, and soils side by side.
+fn of_soils(case: &Case, flow: &Flow, root: &Record, report: &mut Report<'_>) {
+    let made = |number: usize| case.bodies.iter().any(|body| body.material == number);
+    let named = root.named("material").iter().enumerate().filter(|(number, _)| made(*number));
+    for (number, (name, record)) in named {
+        let Some(law) = record.word::<LawName>("model") else { continue };
+        if flow.soils[number].is_none() {
+            let message = format!(
+                "material.{name} has drainage = \"given\" beside soil in which water flows: what crosses between them is not \
+                 shown to be right; make it \"coupled\", of a high permeability"
+            );
+            report.error(record.origin, &record.path, message);
+        }
+        let why = match law {
+            LawName::SensitiveClay => "is a law of clay without drainage, of total stress",
+            LawName::MuI => "is a law of dry grains that flow",
+            LawName::CamClay => "has a stiffness that follows the effective pressure, which the pressures' system does not",
+            LawName::Hencky | LawName::MohrCoulomb | LawName::Tresca => continue,
+            LawName::DruckerPrager | LawName::VonMises | LawName::Softening => continue,
+        };
+        record.error("model", format!("\"{law}\" {why}: it is not shown to be right with water that flows"), report);
+    }
+    for (_, record) in root.named("material") {
+        if record.word::<bsmpm::material::Separation>("separation") == Some(bsmpm::material::Separation::Closing) {
+            record.error("separation", "gaps that close are not shown to be right with water that flows", report);
+        }
+    }
+}
+
+/// What acts on the bodies.
+fn acting(case: &Case, root: &Record, report: &mut Report<'_>) {
+    let not_shown = |what: &str| format!("{what} not shown to be right with water that flows");
+    if let Some(rigid) = root.records("rigid").first() {
+        report.error(rigid.origin, &rigid.path, not_shown("rigid bodies are"));
+    }
+    for (axis, upper) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+        let support = case.boundary[axis][upper];
+        let side = Side::ALL[axis][upper].word();
+        if let Some(boundary) = root.record("boundary") {
+            match support {
+                Support::Fixed | Support::Roller | Support::Free => {}
+                Support::Contact => boundary.error(side, not_shown("faces in contact are"), report),
+                Support::Absorbing | Support::FreeField | Support::Outflow => {
+                    boundary.error(side, not_shown(&format!("\"{support}\" is")), report);
+                }
+            }
+        }
+    }
+    let rubs = case.footing.iter().map(|of| of.contact.is_some()).chain(case.prescribed.iter().map(|of| of.contact.is_some()));
+    let strips = root.records("footing").iter().chain(root.records("prescribed"));
+    for (_, record) in rubs.zip(strips).filter(|(rubs, _)| *rubs) {
+        report.error(record.origin, &record.path, not_shown("strips that rub and let go are"));
+    }
+    for (stage, record) in case.stages.iter().zip(root.records("stage")) {
+        let (bodies, laws) = ("bodies that are removed or placed are", "laws that are exchanged are");
+        let changes = [
+            (!stage.remove.is_empty(), "remove", bodies),
+            (!stage.add.is_empty(), "add", bodies),
+            (!stage.materials.is_empty(), "materials", laws),
+            (!stage.faces.is_empty(), "boundary", "faces that change are"),
+            (stage.strength_reduction.is_some(), "strength_reduction", "strength that changes is"),
+        ];
+        for (_, key, what) in changes.into_iter().filter(|(changes, ..)| *changes) {
+            record.error(key, not_shown(what), report);
+        }
+    }
+    if let Some(reduction) = root.record("strength_reduction") {
+        let message = "a reduced strength is not shown to be right with water that flows; with drainage = \"given\" it is";
+        report.error(reduction.origin, &reduction.path, message);
+    }
+    if let Some(initial) = root.record("initial") {
+        let elastic = matches!(case.initial, Some(Initial::Elastic));
+        for (_, key) in [(elastic, "gravity"), (case.settles, "equilibrium")].into_iter().filter(|(given, _)| *given) {
+            let message = "a state that is led to equilibrium before the first step is not shown to be right with water that \
+                           flows; give k0";
+            initial.error(key, message, report);
+        }
+    }
+    for (history, record) in case.histories.iter().zip(root.records("history")) {
+        if history.quantity == Quantity::Energy {
+            record.error("quantity", "the books of energy do not know water that flows", report);
+        }
+    }
+}
+
+/// Growth per step above which steps are warned of: their own error is first order in them.
+const MOST_GROWTH: f64 = 1.25;
+
+fn timed(case: &Case, root: &Record, report: &mut Report<'_>) {
+    if let Some((growth, _)) = case.analysis.growth.filter(|(growth, _)| *growth > MOST_GROWTH) {
+        report.warn(format!(
+            "analysis.growth: {growth}: the error of a step is as large as it is long; shown to be right up to {MOST_GROWTH}"
+        ));
+    }
+    let alike = case.analysis.growth.is_none() && root.record("analysis").is_some_and(|record| record.gives("dt_max"));
+    if alike {
+        report.warn("analysis.dt_max: without growth steps are alike; it does nothing");
+    }
+}
+
+/// Water that can leave nowhere, or begins without the pressure of its own weight.
+fn drained(case: &Case, flow: &Flow, report: &mut Report<'_>) {
+    let permeable = flow.soils.iter().flatten().any(|soil| soil.permeability.is_some());
+    if permeable && flow.drains.is_empty() {
+        report.warn("drain: there is none, and no water leaves the ground; give [[drain]] surface = true, or face");
+    }
+    if case.gravity.is_some() && case.water.is_none() {
+        report.warn(
+            "water: there is none that is still, and the pore pressure at the start is zero everywhere: what the water weighs \
+             has to build up in time; give [water] level",
+        );
+    }
+}

@@ -1,0 +1,83 @@
+//! Rows about water that flows.
+
+use super::{Row, row};
+
+const TYPE: &str = "type   = \"consolidation\"";
+const CLAY: &str = "model            = \"hencky\"";
+
+/// Time, splines, soils, drains and inflows, and what is not shown to be right with them.
+pub const FLOW: &[Row] = &[
+    // Time.
+    row(TYPE, "type = \"consolidate\"", "analysis.type", "did you mean `consolidation`?"),
+    row(TYPE, "type = \"dynamic\"", "analysis.growth", "steps grow in a consolidation analysis only").down(3),
+    row("end    = \"20 year\"\n", "", "analysis.end", "missing; a consolidation analysis needs its end").up(2),
+    row("dt     = \"1 h\"", "steps = 100", "analysis.growth", "give dt, the first one").down(1),
+    row("growth = 1.2", "growth = 0.9", "analysis.growth", "1 <= growth <= 10"),
+    row("dt_max = \"60 d\"", "dt_max = \"1 min\"", "analysis.dt_max", "allowed: dt_max >= dt = 3600"),
+    row("dt_max = \"60 d\"", "dt_max = \"60 days\"", "analysis.dt_max", "did you mean `day`?"),
+    // Splines, points, averages, iterations.
+    row("order = \"quadratic\"", "order = \"linear\"", "grid.order", "no gradient: take \"quadratic\""),
+    row("order = \"quadratic\"", "order = \"cubic\"", "body.0.points_per_cell", "3 with cubic splines").down(27),
+    row("\"consistent-f-bar\"", "\"subgrid-f-bar\"", "stabilisation.method", "take \"consistent-f-bar\""),
+    row("\"auto\"", "\"newton\"", "solver.nonlinear", "take \"auto\""),
+    row("nonlinear = \"auto\"", "quadrature = \"fitted\"", "solver.quadrature", "take \"points\""),
+    // Soils.
+    row("porosity         = 0.6\n", "", "material.clay.porosity", "drainage = \"coupled\" needs it").up(5),
+    row("permeability     = \"1e-9 m/s\"\n", "", "material.clay.permeability", "needs it").up(6),
+    row("permeability     = \"1e-9 m/s\"", "permeability = \"1e-9 m\"", "material.clay.permeability", "a velocity"),
+    row("permeability     = \"1e-9 m/s\"", "permeability = [1e-9, -1e-9]", "material.clay.permeability", "> 0"),
+    row("porosity         = 0.6", "porosity = 60", "material.clay.porosity", "0 < porosity < 1"),
+    row("porosity = 0.5", "porosity = 0.5\npermeability = 1e-9", "material.tight.permeability", "no meaning").down(1),
+    row("drainage = \"undrained\"", "drainage = \"drained\"", "material.tight.drainage", "expected one of \"given\""),
+    row("drainage = \"undrained\"\nporosity = 0.5", "drainage = \"given\"", "material.tight", "beside soil in which").up(6),
+    row(CLAY, "model = \"modified-cam-clay\"\nkappa = 0.02\nlambda = 0.1\ncritical_ratio = 1\npreconsolidation = 1e5",
+        "material.clay.model", "not shown to be right"),
+    row("bulk     = \"2.2 GPa\"", "bulk = 0", "water.bulk", "bulk > 0"),
+    row("bulk     = \"2.2 GPa\"", "bulk = \"2.2 m\"", "water.bulk", "expected a stress"),
+    // Drains and inflows.
+    row("face    = \"bottom\"", "face    = \"top\"", "drain.0.face", "no body of permeable soil lies at the face"),
+    row("face    = \"bottom\"", "surface = false", "drain.0.surface", "give face, from and to, or true"),
+    row("face    = \"bottom\"\n", "", "drain.0", "one of face, from, surface").up(2),
+    row("head    = \"3 m\"", "head = 3\npressure = 0", "drain.0.pressure", "").down(1),
+    row("head    = \"3 m\"", "head = \"3 kPa\"", "drain.0.head", "expected a length"),
+    row("from      = [2.0, 2.0]", "from = [0.5, 3.0]", "drain.1.from", "lets no water through"),
+    row("from      = [2.0, 2.0]", "from = [2.0, 3.5]", "drain.1.from", "no body is at"),
+    row("[\"30 d\", 3.0]", "[\"0 d\", 3.0]", "drain.1.head_path", "t = 0 is not above 0"),
+    row("surface  = true", "name = \"base\"\nsurface = true", "drain.2.name", "there is a drain `base` already"),
+    row("rate = \"10 mm/h\"", "rate = \"10 mm\"", "inflow.0.rate", "expected a velocity"),
+    row("rate = \"10 mm/h\"\n", "", "inflow.0", "one of rate, rate_path").up(4),
+    row("to   = [4.0, 2.0]\nrate = ", "to = [4.0, 9.0]\nrate = ", "inflow.0.to", "outside the grid"),
+    // Histories.
+    row("drain    = \"base\"", "drain = \"bas\"", "history.1.drain", "did you mean `base`?"),
+    row("face     = \"bottom\"\nname", "face = \"top\"\nname", "history.2.face", "there is no such [[drain]]"),
+    row("quantity = \"water-balance\"", "quantity = \"energy\"", "history.3.quantity", "the books of energy"),
+    row("quantity = \"water-balance\"", "quantity = \"flux\"", "history.3.at", "missing").up(1),
+    // What acts.
+    row("right  = \"roller\"", "right = \"contact\"", "boundary.right", "faces in contact are not shown"),
+    row("right  = \"roller\"", "right = \"outflow\"", "boundary.right", "\"outflow\" is not shown"),
+    row("[solver]", "[strength_reduction]\nfactor = 1.2\n[solver]", "strength_reduction", "is not shown to be right"),
+    row(
+        "[solver]",
+        "[[stage]]\nat = \"1 day\"\nboundary = { left = \"fixed\" }\n[solver]",
+        "stage.0.boundary",
+        "faces that change are not shown",
+    )
+    .down(2),
+];
+
+/// Words of water that flows in a case without any.
+pub const WITHOUT_FLOW: &[Row] = &[
+    row("type  = \"quasi-static\"\nend   = 1.0", "type = \"consolidation\"\nend = 1.0", "analysis.type", "no water flows"),
+    row("[output]", "[[drain]]\nsurface = true\n[output]", "drain.0", "no material lets water flow"),
+    row("[output]", "[water]\nbulk = 2e9\nlevel = 1\n[output]", "water.bulk", "no material is \"coupled\"").down(1),
+    row("poisson = 0.3", "poisson = 0.3\nporosity = 0.4", "material.soil.porosity", "no meaning with drainage").down(1),
+    row(
+        "poisson = 0.3",
+        "poisson = 0.3\ndrainage = \"coupled\"\nporosity = 0.4\npermeability = 1e-9",
+        "analysis.type",
+        "its time has no unit",
+    )
+    .up(13),
+    row("[output]", "[[history]]\nquantity = \"water-balance\"\n[output]", "history.0.quantity", "no material is").down(1),
+    row("every = 0.5", "every = 0.5\nfields = [\"flux\"]", "output.fields", "no water flows").down(1),
+];
