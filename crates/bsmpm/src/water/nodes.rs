@@ -29,6 +29,12 @@ pub struct Wet<const D: usize> {
     pub J: f64,
     /// -  water per reference volume at t
     pub content: f64,
+    /// Pa  whole pore pressure at t; of pores that stay full the excess alone
+    pub pressure: f64,
+    /// Pa  still water at t + dt, which with the excess is the whole pressure; 0 where all pores stay full
+    pub ambient: f64,
+    /// Pa  as much of it as acts on the ground as a force of its own
+    pub borne: f64,
     /// Pa  lambda + 2 mu
     pub stiffness: f64,
     /// m^D m2/Pa  V0 J tau h_i^2/M along the axes
@@ -120,11 +126,17 @@ impl<const D: usize> Wet<D> {
         let pressure = points.pore_pressure.as_ref().map_or(0.0, |pressure| pressure[p]);
         let edges = model.grid.locate(x).map_or_else(Vector::zeros, |cell| model.grid.cell_box(&cell).1);
         let still = water.still_gradient(x, end);
+        let holds = flow.retains();
+        let whole = if holds { pressure + water.still_pressure(x, t) } else { pressure };
+        let retained = soil.retained(whole, water.unit_weight);
         let flows = if soil.permeability.is_some() { 1.0 } else { 0.0 };
         Some(Self {
             volume,
             J,
-            content: soil.content(flow.bulk, J, pressure),
+            content: soil.content(flow.bulk, J, whole) * retained.saturation,
+            pressure: whole,
+            ambient: if holds { water.still_pressure(x, end) } else { 0.0 },
+            borne: model.still_water(end).filter(|_| holds).map_or(0.0, |still| still.pressure(x)),
             stiffness,
             tau: edges.component_mul(&edges) * (volume * J * TAU / stiffness),
             before: points.pressure_gradient.as_ref().map_or_else(|| water.still_gradient(x, t), |before| before[p]),

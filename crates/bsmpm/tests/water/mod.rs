@@ -30,7 +30,7 @@ fn at(x: f64, y: f64) -> Vector<2> {
 /// skeleton of the stiffness M; incompressible.
 pub fn flowing(law: PermeabilityLaw) -> Water<2> {
     let permeability = Permeability { along: at(WEIGHT / M, WEIGHT / M), law };
-    let soil = Soil { porosity: 0.6, permeability: Some(permeability) };
+    let soil = Soil { porosity: 0.6, permeability: Some(permeability), retention: None };
     let (soils, bulk) = (vec![Some(soil)], f64::INFINITY);
     let flow = Flow { bulk, soils, drains: Vec::new(), faces: Vec::new(), inflows: Vec::new() };
     Water { unit_weight: WEIGHT, ambient: Ambient::None, flow: Some(flow) }
