@@ -160,7 +160,7 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
         if problem.halo.is_interrupted() {
             return Err(StepError::Interrupted.into());
         }
-        let direction = match secants.towards(problem, &residual.balance, solver) {
+        let mut direction = match secants.towards(problem, &residual.balance, solver) {
             Ok(direction) => direction, // (6), (7)
             Err(unsolved) => return Err(Stopped::without_direction(problem, (best, &residual), convergence, unsolved)),
         };
@@ -177,6 +177,10 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
         // The direction's own energy is a sum of products with secants, whose round-off is another.
         let work = stability::tells(problem, &residual.balance)
             .then(|| dots(problem.halo, D, &[(&direction.du, &residual.balance.f_oob)])[0]);
+        let of_water = convergence.water(&residual.balance).unwrap_or(0.0);
+        if let Some(pores) = &problem.nodes.pores {
+            follow.tame((problem, pores), (&u, &mut direction.du), of_water);
+        }
         match advance(problem, &mut u, &direction.du, &mut residual, counts) {
             Ok(length) => secants.took(length), // (8), (4), (5)
             Err(inverted) => return Err(Stopped { error: Box::new(inverted), best: Some(best) }),

@@ -110,11 +110,7 @@ impl Drainage {
                     None => {
                         let inflow = &flow.inflows[surface - flow.drains.len()];
                         let rain = Outlet { inflow: through * inflow.rate.at(t + dt), ..none };
-                        if inflow.runs_off {
-                            Outlet { conductance, given: dry, one_way: true, ..rain }
-                        } else {
-                            rain
-                        }
+                        if inflow.runs_off { Outlet { conductance, given: dry, one_way: true, ..rain } } else { rain }
                     }
                 });
             }

@@ -33,6 +33,12 @@ impl<const D: usize> Flow<D> {
         self.drains.iter().any(seeps) || self.inflows.iter().any(|inflow| inflow.runs_off)
     }
 
+    /// m  the largest suction head at which air enters a soil
+    pub fn entry(&self) -> f64 {
+        let retention = self.soils.iter().flatten().filter_map(|soil| soil.retention.as_ref());
+        retention.map(|retention| 1.0 / retention.alpha).fold(0.0, f64::max)
+    }
+
     /// Whether a soil may be partly saturated.
     pub fn retains(&self) -> bool {
         self.soils.iter().flatten().any(|soil| soil.retention.is_some())

@@ -58,6 +58,8 @@ pub struct Pores<const D: usize> {
     pub prescribed: Vec<Option<f64>>,
     /// Pa  excess pressure to begin with: the points' mean, or what is given
     pub guess: Vec<f64>,
+    /// Pa  still water at the functions' places, where pores may empty; else none
+    pub still: Vec<f64>,
     /// per point: of those that water flows through
     pub wet: Vec<Option<Wet<D>>>,
     /// drains and inflows
@@ -100,13 +102,22 @@ impl<const D: usize> Pores<D> {
         let mean = |node: usize| if seen[node] { sums[2 * node + 1] / sums[2 * node] } else { 0.0 };
         let guess = (0..seen.len()).map(|node| prescribed[node].unwrap_or_else(|| mean(node))).collect();
         let still = |x: &Vector<D>| water.still_pressure(x, end);
+        let at_nodes = (0..if flow.retains() { seen.len() } else { 0 }).map(|node| {
+            let number = model.grid.node_at(node);
+            let place = |axis: usize| {
+                let axis_of = &model.grid.axes()[axis];
+                axis_of.lowered_greville(number[axis].min(axis_of.functions() - 2))
+            };
+            still(&Vector::from_fn(|axis, _| place(axis)))
+        });
+        let at_nodes = at_nodes.collect();
         let drainage = Drainage::at(model, points, (t, dt), |node| seen[node], still, halo)?;
         let limit = |node: usize| if free[node] { (ROUND_OFF * sums[2 * node]).powi(2) } else { 0.0 };
         let round_off = halo.total(&[over_layers(halo, 1, limit)])[0].sqrt();
         let mut unknowns = [free[halo.owned()].iter().filter(|free| **free).count() as f64];
         halo.reduce(&mut unknowns);
         let unknowns = unknowns[0] as usize;
-        Ok(Some(Self { shape, free, prescribed, guess, wet, drainage, dt, end, unknowns, round_off }))
+        Ok(Some(Self { shape, free, prescribed, guess, still: at_nodes, wet, drainage, dt, end, unknowns, round_off }))
     }
 }
 
