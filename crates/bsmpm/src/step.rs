@@ -99,6 +99,7 @@ pub fn step<K: Kinematics<D>, const D: usize>(
     let outflow = Outflow::of(model, points, halo);
     if let Some(water) = &mut report.water {
         water.stored = content;
+        points.surface.crossed.add(&water.crossed);
     }
     let (energy, turnover) = account.map_or((None, None), |(flows, turnover)| (flows, Some(turnover)));
     Ok(StepReport { energy, turnover, advance, smoothed, outflow, ..report })

@@ -12,6 +12,7 @@ pub mod drain;
 pub mod flow;
 pub mod matrix;
 pub mod nodes;
+pub mod observed;
 pub mod residual;
 pub mod saved;
 pub mod split;

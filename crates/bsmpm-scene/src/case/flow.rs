@@ -46,10 +46,3 @@ pub struct Inflow {
     /// m/s  into the ground
     pub rate: Course,
 }
-
-impl Flow {
-    /// Drains that are faces of the grid, and those that are surfaces of bodies: each in the order of the file.
-    pub fn parted(&self) -> (Vec<&Drain>, Vec<&Drain>) {
-        self.drains.iter().partition(|drain| matches!(drain.site, DrainSite::Face(_)))
-    }
-}

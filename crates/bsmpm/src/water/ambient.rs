@@ -58,8 +58,8 @@ impl<'a> StillWater<'a> {
         table.map_or(0.0, |(height, _)| self.unit_weight * (height - x[D - 1]).max(0.0))
     }
 
-    /// N  force of the water on point `p`: -J V0 grad p_a, and what the water weighs that its pores have taken up or
-    /// given off, which the point's mass does not know. Nothing above the water table.
+    /// N  force of the water on point `p`: -J V0 grad p_a, and, where no water flows, what the water weighs that its
+    /// pores have taken up or given off, which the point's mass does not know then. Nothing above the water table.
     pub fn force<const D: usize>(&self, points: &Points<D>, p: usize) -> Vector<D> {
         let (x, volume) = (&points.x[p], points.volume[p]);
         let mut force = Vector::zeros();
@@ -69,7 +69,9 @@ impl<'a> StillWater<'a> {
             if slope != 0.0 {
                 force[0] = -self.unit_weight * slope * volume * points.F.at(p).determinant();
             }
-            force[D - 1] = self.unit_weight * volume;
+            // Water that flows changes the mass of the points by itself.
+            let weighed = if points.pore_pressure.is_some() { points.F.at(p).determinant() } else { 1.0 };
+            force[D - 1] = self.unit_weight * volume * weighed;
         }
         force
     }
