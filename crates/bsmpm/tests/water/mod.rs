@@ -1,5 +1,6 @@
 //! Water that flows through a skeleton which deforms, against closed forms.
 
+mod draining;
 mod terzaghi;
 
 use crate::support::scene::{Scene, axis, hencky};
