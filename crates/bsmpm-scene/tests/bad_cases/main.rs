@@ -9,12 +9,14 @@ mod rigid;
 mod rows;
 mod stages;
 mod texts;
+mod water;
 
 use bsmpm_scene::{Case, Error, Place};
 
 const DYNAMIC: &str = include_str!("../full.toml");
 const STATIC: &str = include_str!("static.toml");
 const RUBBING: &str = include_str!("rubbing.toml");
+const WET: &str = include_str!("wet.toml");
 
 /// One malformed case: `find` in the base becomes `put`, and an error must say `says` of `key`, `moved` lines below.
 pub struct Row {
@@ -65,7 +67,7 @@ fn verify_all(base: &str, rows: &[Row]) {
 
 #[test]
 fn the_bases_are_valid() {
-    for base in [DYNAMIC, STATIC, RUBBING] {
+    for base in [DYNAMIC, STATIC, RUBBING, WET] {
         Case::from_text("case.toml", base, &[]).unwrap_or_else(|errors| panic!("{errors:#?}"));
     }
 }
@@ -115,6 +117,12 @@ fn initial_stress_and_histories() {
     verify_all(DYNAMIC, loads::INITIAL);
     verify_all(STATIC, loads::QUASI_STATIC);
     verify_all(RUBBING, loads::RUBBING);
+}
+
+#[test]
+fn still_water() {
+    verify_all(WET, water::WATER);
+    verify_all(DYNAMIC, water::SHAKEN);
 }
 
 #[test]

@@ -3,7 +3,7 @@
 
 use crate::support::Scratch;
 use crate::support::cases::changed;
-use crate::support::results::{all_frames, at, differences, history, last_frame, manifest};
+use crate::support::results::{all_frames, at, history, last_frame, manifest};
 
 /// Level ground below a level of 12 m, its top at 7 m.
 const GROUND: &str = r#"
@@ -84,7 +84,8 @@ fn a_submerged_slope_is_one_of_buoyant_weight() {
     let slope = changed(GROUND, LEVEL, SLOPE).replace("k0 = 0.5", "gravity = \"elastic\"");
     let dry = changed(&slope, "[water]\nlevel = 12.0\n", "");
     let dry = dry.replace("saturated_unit_weight = \"20 kN/m3\"\n", "").replace("17 kN/m3", "10.19 kN/m3");
-    let dry = dry.replace("fields = [\"pore-pressure\"]", "").replace("at = [1, 5.5]", "at = [1, 5.5]\nname = \"none\"");
+    let dry =
+        dry.replace("fields = [\"pore-pressure\"]", "").replace("at = [1, 5.5]", "at = [1, 5.5]\nname = \"none\"");
     let scratch = Scratch::with_case(&slope);
     scratch.write("dry.toml", &dry);
     scratch.mpirun(1, &["case.toml", "-q", "-o", "wet"]).expect(0);
@@ -114,8 +115,9 @@ fn a_level_that_falls_is_followed_and_goes_on_to_the_bit() {
     }
     let [one, two] = [&one, &two].map(|table| at(table, "max-displacement", 1.0));
     assert!(one > 1e-4 && (one - two).abs() < 1e-8 * one, "{one} {two}");
-    scratch.mpirun(1, &["case.toml", "-q", "-o", "cut", "--stop-after-steps", "2"]).expect(3);
-    scratch.mpirun(1, &["--restart", "cut", "-q"]).expect(0);
-    let found = differences(&scratch.path("one"), &scratch.path("cut"));
-    assert!(found.is_empty(), "{found:?}");
+    let part = ["case.toml", "-q", "-o", "part", "--restart", "auto"];
+    scratch.mpirun(1, &[&part[..], &["--max-steps", "2"]].concat()).expect(75);
+    scratch.mpirun(1, &part).expect(0);
+    let text = |name: &str| std::fs::read_to_string(scratch.path(name).join("history.csv")).unwrap();
+    assert!(text("one") == text("part"));
 }
