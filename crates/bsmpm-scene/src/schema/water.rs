@@ -10,7 +10,12 @@ pub(super) static WATER: Table = Table {
     doc: "Still water in and above the ground. Stresses are effective ones; the water lifts, seeps and presses on wet \
           surfaces by itself. Below the level, or the line, ground is wet; above there is no pore pressure",
     keys: &[
-        key("level", Quantity(In::Length, Range::ANY), Optional, "height of the water table, in the ground or above it"),
+        key(
+            "level",
+            Quantity(In::Length, Range::ANY),
+            Optional,
+            "height of the water table, in the ground or above it",
+        ),
         key(
             "level_path",
             Rows(&[(In::Time, Range::NOT_NEGATIVE), (In::Length, Range::ANY)]),

@@ -1,7 +1,7 @@
 //! Water in the ground.
 
-use super::load::increasing;
 use super::STANDARD_GRAVITY;
+use super::load::increasing;
 use crate::case::{Case, Gravity, Support, Water};
 use crate::grid::GridSpec;
 use crate::record::Record;
@@ -113,7 +113,8 @@ pub(super) fn saturated(record: &Record, density: Option<f64>, report: &mut Repo
 pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
     let (Some(water), Some(written)) = (&case.water, record.record("water")) else { return };
     if case.shaking.iter().any(|(_, ground)| *ground != [0.0; 2]) {
-        let message = "the pressure of still water does not follow ground that shakes: [shaking] cannot be used with [water]";
+        let message =
+            "the pressure of still water does not follow ground that shakes: [shaking] cannot be used with [water]";
         report.error(written.origin, &written.path, message);
     }
     for (axis, upper) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
