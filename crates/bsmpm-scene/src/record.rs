@@ -133,9 +133,10 @@ impl Context {
 
     fn datum(self, kind: &Kind, node: &Node, path: &str, report: &mut Report<'_>) -> Option<Datum> {
         match (kind, &node.value) {
-            (Kind::Table(table) | Kind::Profile(.., table) | Kind::ChoiceOr(_, table), Value::Table(written)) => {
-                Some(Datum::Record(self.record(table, written, node.origin, path, report)))
-            }
+            (
+                Kind::Table(table) | Kind::Profile(.., table) | Kind::PairProfile(.., table) | Kind::ChoiceOr(_, table),
+                Value::Table(written),
+            ) => Some(Datum::Record(self.record(table, written, node.origin, path, report))),
             (Kind::Named(table), Value::Table(written)) => Some(self.named(table, written, path, report)),
             (Kind::Tables(table), Value::List(items)) => self.records(table, items, path, report),
             (Kind::Table(_) | Kind::Named(_) | Kind::Tables(_), _) => {

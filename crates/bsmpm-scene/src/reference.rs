@@ -165,6 +165,7 @@ fn takes(key: &Key) -> String {
         Kind::Quantity(of, range) => ranged(of.to_string(), range),
         Kind::Profile(of, range, table) => ranged(format!("{of}, or {}", quoted(table)), range),
         Kind::Pair(of, range) => ranged(format!("`[x, y]`, each {of}"), range),
+        Kind::PairProfile(of, range, table) => ranged(format!("`[x, y]`, each {of}, or {}", quoted(table)), range),
         Kind::Either(of, range) => ranged(format!("{of}, or `[x, y]`"), range),
         Kind::List(of, range) => ranged(format!("a list, each {of}"), range),
         Kind::Rows(columns) => {
@@ -172,6 +173,9 @@ fn takes(key: &Key) -> String {
             format!("a list of rows, each `[{}]`, or a [file](#rows-from-a-file)", columns.join(", "))
         }
         Kind::Gradient(of) => format!("{of} per metre of depth, e.g. `\"2 {}/m\"`", of.units().next().unwrap_or("")),
+        Kind::GradientPair(of) => {
+            format!("`[x, y]`, each {of} per metre of depth, e.g. `\"2 {}/m\"`", of.units().next().unwrap_or(""))
+        }
         Kind::Choice(_) => "one of these words".to_owned(),
         Kind::Choices(_) => "a list of these words".to_owned(),
         Kind::ChoiceOr(_, table) => format!("one of these words, or a table, `{}`", table.header),

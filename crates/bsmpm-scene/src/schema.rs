@@ -90,10 +90,14 @@ pub enum Kind {
     Profile(Dimension, Range, &'static Table),
     /// Growth of a quantity per metre: a number in SI per metre (degrees per metre), or a string such as `"2 kPa/m"`.
     Gradient(Dimension),
+    /// Two of these, x and y.
+    GradientPair(Dimension),
     /// A number, or a string with a unit of whatever the key is about.
     Measure,
     /// Two quantities, x and y.
     Pair(Dimension, Range),
+    /// Like `Pair`, or a table that says how they grow with depth.
+    PairProfile(Dimension, Range, &'static Table),
     /// One quantity for both axes, or two.
     Either(Dimension, Range),
     /// Any number of quantities.
@@ -208,7 +212,7 @@ impl Kind {
     pub fn table(&self) -> Option<&'static Table> {
         match self {
             Self::Table(table) | Self::Named(table) | Self::Tables(table) => Some(table),
-            Self::Profile(.., table) | Self::ChoiceOr(_, table) => Some(table),
+            Self::Profile(.., table) | Self::PairProfile(.., table) | Self::ChoiceOr(_, table) => Some(table),
             _ => None,
         }
     }
@@ -219,16 +223,17 @@ impl fmt::Display for Kind {
         match self {
             Self::Quantity(dimension, _) => write!(f, "{}", Quantity(*dimension)),
             Self::Profile(dimension, _, table) => write!(f, "{}, or {}", Quantity(*dimension), table.header),
-            Self::Gradient(dimension) => {
-                let units: Vec<String> = dimension.units().map(|unit| format!("{unit}/m")).collect();
-                write!(f, "a number ({}) or a string with a unit ({})", units[0], units.join(", "))
-            }
+            Self::Gradient(dimension) => write!(f, "{}", PerMetre(*dimension)),
+            Self::GradientPair(dimension) => write!(f, "a list of two, each {}", PerMetre(*dimension)),
             Self::Rows(columns) => {
                 let columns: Vec<String> = columns.iter().map(|(dimension, _)| dimension.to_string()).collect();
                 write!(f, "a list of rows, each [{}], or {FILE}", columns.join(", "))
             }
             Self::Measure => f.write_str("a number, or a string with a unit"),
             Self::Pair(dimension, _) => write!(f, "a list of two, each {}", Quantity(*dimension)),
+            Self::PairProfile(dimension, _, table) => {
+                write!(f, "a list of two, each {}, or {}", Quantity(*dimension), table.header)
+            }
             Self::Either(dimension, _) => write!(f, "{}, or a list of two", Quantity(*dimension)),
             Self::List(dimension, _) => write!(f, "a list, each item {}", Quantity(*dimension)),
             Self::Count(least, most) => write!(f, "a whole number from {least} to {most}"),
@@ -257,6 +262,16 @@ impl fmt::Display for OneOf<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let words: Vec<String> = self.0.words().map(|word| format!("\"{word}\"")).collect();
         write!(f, "one of {}", words.join(", "))
+    }
+}
+
+/// Growth of a quantity in words.
+struct PerMetre(Dimension);
+
+impl fmt::Display for PerMetre {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let units: Vec<String> = self.0.units().map(|unit| format!("{unit}/m")).collect();
+        write!(f, "a number ({}) or a string with a unit ({})", units[0], units.join(", "))
     }
 }
 

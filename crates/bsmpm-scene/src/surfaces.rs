@@ -78,7 +78,10 @@ pub fn loads(case: &Case, grid: &Grid<2>, t: f64) -> Vec<Load<2>> {
         };
         let height = |point: &SurfacePoint<2>| point.x[1] + case.grid.lower()[1];
         let (values, follows) = match traction.push {
-            Push::Stress(stress) => (vec![stress.into(); points.len()], false),
+            Push::Stress(stress) => {
+                let pushed = points.iter().map(|point| stress.map(|along| along.at(height(point))).into());
+                (pushed.collect(), false)
+            }
             Push::Pressure { profile, side } => {
                 let pressed = points.iter().zip(left).map(|(point, left)| left * (side * profile.at(height(point))));
                 (pressed.collect(), true)

@@ -88,8 +88,9 @@ pub enum Line {
 /// What a traction is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Push {
-    /// Pa  force per area of the start; direction and force stay
-    Stress([f64; 2]),
+    /// Pa  force per area of the start, along x and y, by the height at the start in the case's coordinates; direction
+    /// and force stay
+    Stress([Profile; 2]),
     /// Pa  against the body, by the height at the start in the case's coordinates; it turns and stretches with the
     /// surface
     Pressure {
@@ -111,16 +112,15 @@ impl Traction {
 
     /// Pa  the largest force per area when fully applied.
     pub fn largest(&self) -> f64 {
-        match self.push {
-            Push::Stress([x, y]) => x.hypot(y),
-            Push::Pressure { profile, .. } => {
-                let [low, high] = match self.line {
-                    Line::Segment { from, to } => [from[1], to[1]],
-                    Line::Circle { center, radius } => [center[1] - radius, center[1] + radius],
-                };
-                profile.at(low).abs().max(profile.at(high).abs())
-            }
-        }
+        let ends = match self.line {
+            Line::Segment { from, to } => [from[1], to[1]],
+            Line::Circle { center, radius } => [center[1] - radius, center[1] + radius],
+        };
+        let [low, high] = ends.map(|y| match self.push {
+            Push::Stress([along_x, along_y]) => along_x.at(y).hypot(along_y.at(y)),
+            Push::Pressure { profile, .. } => profile.at(y).abs(),
+        });
+        low.max(high)
     }
 }
 

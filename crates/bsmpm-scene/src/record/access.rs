@@ -20,14 +20,17 @@ impl Record {
     typed! {
         number: f64, Kind::Quantity(..) | Kind::Profile(..) | Kind::Gradient(_) => Datum::Number(number) => *number;
         measure: (f64, Option<Dimension>), Kind::Measure => Datum::Measure(number, unit) => (*number, *unit);
-        numbers: &[f64], Kind::Pair(..) | Kind::Either(..) | Kind::List(..) => Datum::Numbers(numbers) => numbers;
+        numbers: &[f64],
+            Kind::Pair(..) | Kind::PairProfile(..) | Kind::GradientPair(_) | Kind::Either(..) | Kind::List(..)
+            => Datum::Numbers(numbers) => numbers;
         rows: &[ListRow], Kind::Rows(_) => Datum::Rows(rows) => rows;
         count: u64, Kind::Count(..) => Datum::Count(count) => *count;
         text: &str, Kind::Text(_) | Kind::Name => Datum::Text(text) => text;
         names: &[String], Kind::Names => Datum::Names(names) => names;
         flag: bool, Kind::Flag => Datum::Flag(flag) => *flag;
         /// A table, also where it may stand for a number or a word.
-        record: &Record, Kind::Table(_) | Kind::Profile(..) | Kind::ChoiceOr(..) => Datum::Record(record) => record;
+        record: &Record,
+            Kind::Table(_) | Kind::Profile(..) | Kind::PairProfile(..) | Kind::ChoiceOr(..) => Datum::Record(record) => record;
     }
 
     pub(crate) fn pair(&self, key: &str) -> Option<[f64; 2]> {

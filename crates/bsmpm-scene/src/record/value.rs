@@ -18,9 +18,18 @@ pub(super) fn read(kind: &Kind, node: &Node, path: &str, pseudo_time: bool, repo
         Kind::Quantity(dimension, range) => reader.quantity(node, *dimension, range).map(Datum::Number),
         Kind::Profile(dimension, range, _) => reader.quantity(node, *dimension, range).map(Datum::Number),
         Kind::Gradient(dimension) => reader.gradient(node, *dimension).map(Datum::Number),
+        Kind::GradientPair(dimension) => match &node.value {
+            Value::List(items) if items.len() == 2 => {
+                let read: Vec<Option<f64>> = items.iter().map(|item| reader.gradient(item, *dimension)).collect();
+                read.into_iter().collect::<Option<_>>().map(Datum::Numbers)
+            }
+            _ => reader.unexpected(node),
+        },
         Kind::Rows(columns) => reader.rows(node, columns),
         Kind::Measure => reader.measure(node),
-        Kind::Pair(dimension, range) => reader.quantities(node, *dimension, range, Some(2)),
+        Kind::Pair(dimension, range) | Kind::PairProfile(dimension, range, _) => {
+            reader.quantities(node, *dimension, range, Some(2))
+        }
         Kind::List(dimension, range) => reader.quantities(node, *dimension, range, None),
         Kind::Either(dimension, range) => match node.value {
             Value::List(_) => reader.quantities(node, *dimension, range, Some(2)),

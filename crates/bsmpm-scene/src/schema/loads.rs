@@ -123,7 +123,12 @@ pub(super) static TRACTION: Table = Table {
         key("from", PLACE, Optional, "one end of the segment at the start"),
         key("to", PLACE, Optional, "the other end"),
         key("circle", Kind::Table(&body::CIRCLE), Optional, "a circle instead: the part of it inside the grid"),
-        key("stress", Pair(In::Stress, Range::ANY), Optional, "force per area of the start, along x and y"),
+        key(
+            "stress",
+            PairProfile(In::Stress, Range::ANY, &STRESSES_PROFILE),
+            Optional,
+            "force per area of the start, along x and y",
+        ),
         key(
             "pressure",
             Profile(In::Stress, Range::ANY, &STRESS_PROFILE),
@@ -244,6 +249,17 @@ pub(super) static STRESS_PROFILE: Table = Table {
         key("value", Quantity(In::Stress, Range::ANY), Required, "at the height at_y"),
         key("at_y", Quantity(In::Length, Range::ANY), Required, "the height"),
         key("per_metre", Gradient(In::Stress), Required, "growth per metre of depth"),
+    ],
+    exclusive: &[],
+};
+
+static STRESSES_PROFILE: Table = Table {
+    header: "{ value, at_y, per_metre } of stresses",
+    doc: "value + per_metre (at_y - y) along x and y: linear everywhere, above at_y too, by the height at the start",
+    keys: &[
+        key("value", Pair(In::Stress, Range::ANY), Required, "along x and y, at the height at_y"),
+        key("at_y", Quantity(In::Length, Range::ANY), Required, "the height"),
+        key("per_metre", GradientPair(In::Stress), Required, "growth per metre of depth, along x and y"),
     ],
     exclusive: &[],
 };

@@ -8,6 +8,7 @@ use crate::record::Record;
 use crate::report::Report;
 use crate::schema::LawName;
 use crate::words::{Settled, Start};
+use bsmpm::material::Profile;
 use bsmpm::model::Regime;
 
 /// All tractions in the order of the file, without those that have an error.
@@ -44,10 +45,17 @@ fn line(record: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Op
     Some(LoadedLine::Segment { from, to })
 }
 
+/// A stress along x and y, by depth.
+fn stresses(record: &Record) -> Option<[Profile; 2]> {
+    let Some(table) = record.record("stress") else { return record.pair("stress").map(|of| of.map(Profile::constant)) };
+    let (value, at, growth) = (table.pair("value")?, table.number("at_y")?, table.pair("per_metre")?);
+    Some([0, 1].map(|axis| Profile { value: value[axis], at, per_metre: growth[axis] }))
+}
+
 /// What a traction is; of a pressure on which side the body lies.
 fn push(record: &Record, line: LoadedLine, around: AroundStrip<'_>, report: &mut Report<'_>) -> Option<Push> {
     if !record.gives("pressure") {
-        return Some(Push::Stress(record.pair("stress")?));
+        return Some(Push::Stress(stresses(record)?));
     }
     let profile = profile(record, "pressure")?;
     let (grid, bodies) = (around.grid?, around.bodies?);

@@ -6,6 +6,7 @@ const BOX: &str = "box = { lower = [0.0, 0.0], upper = [4.0, 1.0] }";
 const POLYGON: &str = "polygon = [[2.5, 1.5], [3.75, 1.5], [\"3 m\", 2.5], [2.5, 2.5]]";
 const NOBODY: &str = "at the start; allowed: half a spacing of points from one";
 const SHAKEN: &str = "[[0.0, 0.1, 0.0], [\"1 s\", \"-0.1 g\", \"5 cm/s2\"]]";
+const STRESS: &str = "stress = [0.0, \"-20 kPa\"]";
 const CIRCLE: &str = "circle = { center = [0.5, 2.0], radius = 0.4 }";
 
 /// Polygons, circles and what is cut out.
@@ -197,6 +198,26 @@ pub const STRIPS: &[Row] = &[
     row("to   = [1.0, 1.25]", "to = [0.0, 1.25]", "traction.0.to", "the length is zero"),
     row("stress = [0.0, \"-20 kPa\"]", "stress = [0.0, \"-20 kN/m\"]", "traction.0.stress", "expected a stress"),
     row("stress = [0.0, \"-20 kPa\"]", "", "traction.0", "missing: one of stress, pressure").up(3),
+    row(STRESS, "stress = { value = [0, 1], at_y = 1 }", "traction.0.stress.per_metre", "missing"),
+    row(STRESS, "stress = { value = 1e3, at_y = 1, per_metre = [0, 1] }", "traction.0.stress.value", "a list of two"),
+    row(
+        STRESS,
+        "stress = { value = [0, 1], at_y = 1, per_metre = \"2 kPa/m\" }",
+        "traction.0.stress.per_metre",
+        "expected a list of two, each a number (Pa/m) or a string with a unit (Pa/m, kPa/m",
+    ),
+    row(
+        STRESS,
+        "stress = { value = [0, 1], at_y = 1, per_metre = [0, \"2 kPa\"] }",
+        "traction.0.stress.per_metre",
+        "no unit per metre (Pa/m",
+    ),
+    row(
+        STRESS,
+        "stress = { value = [0, 0], at_y = 1, per_metre = [0, 1], k0 = 1 }",
+        "traction.0.stress.k0",
+        "unknown key",
+    ),
     row("at = [3.5, 1.25]", "at = [3.5, 3.25]", "point_load.0.at", "outside the grid, which ends at y = 3"),
     row("\"-1 kN/m\"", "\"-1 kN\"", "point_load.0.force", "takes forces per metre (N/m, kN/m, MN/m)"),
     row("\"-1 kN/m\"", "\"-1 kPa\"", "point_load.0.force", "expected a force per metre of thickness"),

@@ -100,6 +100,10 @@ const OTHERWISE: [&[(&str, &str)]; 7] = [
         ("path     = [[\"0.5 s\", -0.1, 0.0], [1.0, 0.0, \"5 cm\"]]", "displacement = [-0.1, \"1 cm\"]"),
         ("ramp    = \"0.25 s\"", "amplitude = [[\"0.2 s\", 1.0], [1.0, 0.0]]"),
         ("ramp = \"0.5 s\"", "amplitude = [[\"0.2 s\", 1.5], [0.5, 0.0]]"),
+        (
+            "stress = [0.0, \"-20 kPa\"]",
+            "stress = { value = [0.0, \"-20 kPa\"], at_y = 1.25, per_metre = [\"1 kPa/m\", -500] }",
+        ),
         ("ramp = 0.5\n", "amplitude = [[0.0, 1.0]]\n"),
         ("displacement = [0.0, \"-10 cm\"]", "path = [[0.5, 0.0, -0.1], [\"1 s\", 0.0, \"-20 cm\"]]"),
         ("\"tresca\"", "\"sensitive-clay\""),

@@ -63,7 +63,10 @@ fn below(kind: &'static Kind, value: &DeValue<'_>, path: &str, text: &str, found
     let mut item =
         |fits, value| found.push(Written { fits, value, name: None, presence: Presence::Optional, ..whole.clone() });
     match (kind, value) {
-        (Kind::Table(schema) | Kind::Profile(.., schema) | Kind::ChoiceOr(_, schema), DeValue::Table(written)) => {
+        (
+            Kind::Table(schema) | Kind::Profile(.., schema) | Kind::PairProfile(.., schema) | Kind::ChoiceOr(_, schema),
+            DeValue::Table(written),
+        ) => {
             table(schema, written, &format!("{path}."), text, found);
         }
         (Kind::Named(schema), DeValue::Table(named)) => {
@@ -79,7 +82,10 @@ fn below(kind: &'static Kind, value: &DeValue<'_>, path: &str, text: &str, found
             }
         }
         (
-            Kind::Pair(dimension, range) | Kind::Either(dimension, range) | Kind::List(dimension, range),
+            Kind::Pair(dimension, range)
+            | Kind::PairProfile(dimension, range, _)
+            | Kind::Either(dimension, range)
+            | Kind::List(dimension, range),
             DeValue::Array(items),
         ) => items.iter().for_each(|value| item(Fits::Number(*dimension, *range), value.span())),
         (Kind::Rows(columns), DeValue::Array(rows)) => {
@@ -110,7 +116,8 @@ impl Fits {
             Kind::Either(dimension, range) => !is_number(put, *dimension, range),
             Kind::Gradient(dimension) => !is_number(put, *dimension, &Range::ANY) || is_text,
             Kind::Measure => !is_number(put, Dimension::Number, &Range::ANY) && put != STRESS,
-            Kind::Pair(..) => true,
+            Kind::Pair(..) | Kind::GradientPair(_) => true,
+            Kind::PairProfile(..) => put != "{}",
             Kind::List(dimension, _) if put == "[1, 2, 3]" => dimension.units().next().is_none(),
             Kind::List(..) | Kind::Rows(_) => !is_list || (put != "[]" && matches!(kind, Kind::Rows(_))),
             Kind::Count(least, most) => !put.parse().is_ok_and(|count: u64| (*least..=*most).contains(&count)),

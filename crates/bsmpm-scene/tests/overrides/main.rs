@@ -2,7 +2,7 @@
 
 mod materials;
 
-use bsmpm::material::{Law, Material, MohrCoulomb};
+use bsmpm::material::{Law, Material, MohrCoulomb, Profile};
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::tensor::Vector;
 use bsmpm_scene::words::{Factor, Ksp, Pc};
@@ -295,7 +295,10 @@ fn strips_loads_and_initial_stress_arrive() {
     assert_eq!(case.prescribed[0].site, Site::Face(Face { axis: 0, upper: true }));
     assert_eq!(case.prescribed[0].path.rows, [(1.0, [0.0, -0.01])]);
     assert_eq!(case.prescribed[1].path.rows, [(0.5, [0.0, -0.1]), (1.0, [0.0, 0.0])]);
-    assert_eq!((case.tractions[0].push, case.tractions[0].ramp), (Push::Stress([0.0, -2e4]), 0.5));
+    assert_eq!(
+        (case.tractions[0].push, case.tractions[0].ramp),
+        (Push::Stress([0.0, -2e4].map(Profile::constant)), 0.5)
+    );
     assert_eq!((case.point_loads[0].at, case.point_loads[0].force), ([3.5, 1.25], [0.0, -1e3]));
     assert_eq!(case.initial, Some(Initial::AtRest(vec![0.5, 0.5, 0.5, 0.6])));
     let elastic = FULL.replace("k0          = 0.6\n", "").replace("k0 = 0.5\n", "gravity = \"elastic\"\n");
@@ -420,6 +423,28 @@ fn a_pressure_finds_the_body_that_it_presses_on() {
         let message = format!("{:?}", with(traction).expect_err("refused"));
         assert!(message.contains(told), "{traction}: {message}");
     }
+}
+
+/// Stress by depth on an upright surface, 1 m high, in a few pieces: its resultant to round-off, its moment about the
+/// foot to the midpoint rule's error, growth times piece^2 times height/12.
+#[test]
+fn stress_that_grows_with_depth_has_the_resultant_of_a_trapezium() {
+    let (value, growth) = ([-2e3, 1e3], [-8e3, 500.0]);
+    let traction = "traction.0={ from = [1.0, 0.25], to = [1.0, 1.25], ramp = 0.5, \
+                    stress = { value = [-2e3, \"1 kPa\"], at_y = 1.25, per_metre = [\"-8 kPa/m\", 500] } }";
+    let case = set(FULL, &[traction]).expect("a valid case");
+    let load = bsmpm_scene::model::model(&case).expect("a model").boundary.loads.remove(0);
+    assert!(!load.follows && load.points.len() > 1, "{}", load.points.len());
+    let pieces = || load.points.iter().zip(&load.traction);
+    for axis in 0..2 {
+        let force: f64 = pieces().map(|(point, stress)| point.area * stress[axis]).sum();
+        assert!((force / (value[axis] + growth[axis] / 2.0) - 1.0).abs() < 1e-12, "{force}");
+        let moment: f64 = pieces().map(|(point, stress)| point.area * stress[axis] * (point.x[1] - 0.25)).sum();
+        let within: f64 = pieces().map(|(point, _)| growth[axis] * point.area.powi(3) / 12.0).sum();
+        assert!((moment - within - value[axis] / 2.0 - growth[axis] / 6.0).abs() < 1e-9, "{moment} {within}");
+    }
+    let foot = [value[0] + growth[0], value[1] + growth[1]];
+    assert!((case.tractions[0].largest() - foot[0].hypot(foot[1])).abs() < 1e-9);
 }
 
 #[test]
