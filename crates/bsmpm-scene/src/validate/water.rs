@@ -89,26 +89,6 @@ fn table(record: &Record, (grid, end): (&GridSpec, Option<f64>), report: &mut Re
     Some(Ambient::Line(rows))
 }
 
-/// kg/m3  of a material below the water table; the outer option is `None` after an error.
-pub(super) fn saturated(record: &Record, density: Option<f64>, report: &mut Report<'_>) -> Option<Option<f64>> {
-    const KEY: &str = "saturated_unit_weight";
-    if !record.gives(KEY) {
-        return Some(None);
-    }
-    let saturated = record.number(KEY)? / STANDARD_GRAVITY;
-    match density {
-        None => record.error(KEY, "it has none above the water: give unit_weight or density, too", report),
-        Some(dry) if saturated < dry => {
-            let [wet, dry] = [saturated, dry].map(|density| density * STANDARD_GRAVITY * 1e-3);
-            let message = format!("{wet:.6} kN/m3 is lighter than above the water, {dry:.6} kN/m3");
-            record.error(KEY, message, report);
-        }
-        Some(_) => {}
-    }
-    report.note(record.path_of("saturated density"), format!("{saturated}"), "saturated_unit_weight / 9.81 m/s2");
-    Some(Some(saturated))
-}
-
 /// What only the whole case shows.
 pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
     let (Some(water), Some(written)) = (&case.water, record.record("water")) else { return };
