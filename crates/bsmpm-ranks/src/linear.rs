@@ -2,6 +2,7 @@
 //! its solutions are checked those of PETSc's preconditioners all, of the program's own factor the first one.
 
 mod choice;
+mod coupled;
 mod direct;
 mod dissection;
 mod shell;
@@ -9,6 +10,7 @@ mod system;
 mod tally;
 
 pub use choice::{Choice, probe};
+pub use coupled::Solvers;
 pub use tally::Tally;
 
 use crate::halo::MpiHalo;
@@ -51,15 +53,32 @@ pub struct Tallies {
     pub definite: Option<Tally>,
     /// Newton's
     pub general: Option<Tally>,
+    /// the pore pressures'
+    pub water: Option<Tally>,
 }
 
 impl<'p, const D: usize, const C: usize> KspSolver<'p, D, C> {
     /// A solver for a window of the grid.
     pub fn new(petsc: &'p Petsc<'p>, choice: Choice, grid: &Grid<D>, halo: Rc<MpiHalo>, timers: Rc<Timers>) -> Self {
+        Self::of(petsc, (choice, Stencil::new(grid)), grid, halo, timers)
+    }
+
+    /// The same for functions of degree q - 1, numbered within the nodes.
+    fn lowered(petsc: &'p Petsc<'p>, choice: Choice, grid: &Grid<D>, halo: Rc<MpiHalo>, timers: Rc<Timers>) -> Self {
+        Self::of(petsc, (choice, Stencil::lowered(grid)), grid, halo, timers)
+    }
+
+    fn of(
+        petsc: &'p Petsc<'p>,
+        (choice, stencil): (Choice, Stencil<D, C>),
+        grid: &Grid<D>,
+        halo: Rc<MpiHalo>,
+        timers: Rc<Timers>,
+    ) -> Self {
         // Where every rank factorises the whole, the same bits on any number of ranks; else sums depend on the cut
         // anyway.
         let whole = choice.redundant && !choice.dissection;
-        let stencil = if whole { Stencil::by_columns(grid, halo.owned()) } else { Stencil::new(grid) };
+        let stencil = if whole { stencil.by_columns(grid, halo.owned()) } else { stencil };
         let (free, numbers) = (Vec::new(), Vec::new());
         Self {
             petsc,

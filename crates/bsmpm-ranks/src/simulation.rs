@@ -1,7 +1,7 @@
 //! A scene on the ranks: steps, migration, and the cut of the grid that follows the points.
 
 use crate::halo::MpiHalo;
-use crate::linear::{Choice, KspSolver, Tallies};
+use crate::linear::{Choice, Solvers, Tallies};
 use crate::load;
 use crate::migrate;
 use crate::signals::Requests;
@@ -67,7 +67,7 @@ pub struct Simulation<'p, K, const D: usize> {
     slabs: Slabs,
     schedule: Schedule,
     stepper: Stepper,
-    solver: KspSolver<'p, D, D>,
+    solver: Solvers<'p, D>,
     steps: u64,
     cost: Cost, // of the last step
     timers: Rc<Timers>,
@@ -88,7 +88,7 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         points.surface = model.boundary.surface();
         let halo = MpiHalo::new(universe.world(), &slabs, &model.grid, (Rc::clone(&timers), requests));
         let halo = Rc::new(halo);
-        let solver = KspSolver::new(petsc, choice.clone(), &model.grid, Rc::clone(&halo), Rc::clone(&timers));
+        let solver = Solvers::new(petsc, &choice, &model, &halo, &timers);
         let stepper = Stepper::new(model.grid.nodes() * D);
         let (steps, cost) = (0, Cost::default());
         Self { model, points, halo, universe, petsc, choice, slabs, schedule, stepper, solver, steps, cost, timers }
@@ -147,7 +147,7 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
     }
 
     /// How the linear solves of this program have ended so far.
-    pub fn tallies(&self) -> &Tallies {
+    pub fn tallies(&self) -> Tallies {
         self.solver.tallies()
     }
 
@@ -301,8 +301,8 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         let shared = (Rc::clone(&timers), Rc::clone(self.halo.requests()));
         self.halo = Rc::new(MpiHalo::new(world, &self.slabs, &self.model.grid, shared));
         let halo = Rc::clone(&self.halo);
-        let tallies = self.solver.tallies().clone();
-        self.solver = KspSolver::new(self.petsc, self.choice.clone(), &self.model.grid, halo, timers);
+        let tallies = self.solver.tallies();
+        self.solver = Solvers::new(self.petsc, &self.choice, &self.model, &halo, &timers);
         self.solver.count_on(tallies);
     }
 }

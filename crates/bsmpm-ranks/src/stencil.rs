@@ -50,12 +50,22 @@ pub struct Coordinates {
 impl<const D: usize, const C: usize> Stencil<D, C> {
     /// Stencils over a window, of no node yet: see [`Stencil::keep`].
     pub fn new(grid: &Grid<D>) -> Self {
+        Self::of_patches(grid, grid.order() + 1, grid.offsets())
+    }
+
+    /// The same of the functions of degree q - 1, numbered within the nodes, which have blocks of q^D of them a patch.
+    pub fn lowered(grid: &Grid<D>) -> Self {
+        Self::of_patches(grid, grid.order(), grid.lowered_offsets())
+    }
+
+    /// Whose patches have `width` nodes along an axis, at `offsets` from the first.
+    fn of_patches(grid: &Grid<D>, width: usize, offsets: Vec<usize>) -> Self {
         let places = Places::new(grid);
-        let (width, patch) = (grid.order() + 1, grid.cell_nodes());
+        let patch = offsets.len();
         let at = |k: usize| std::array::from_fn(|axis| k / width.pow((D - 1 - axis) as u32) % width);
         let number = |k: usize| places.number(at(k));
         let slot = (0..patch * patch).map(|pair| places.of(number(pair / patch), number(pair % patch))).collect();
-        let (offsets, rows, values) = (grid.offsets(), vec![NONE; grid.nodes()], Vec::new());
+        let (rows, values) = (vec![NONE; grid.nodes()], Vec::new());
         Self { places, slot, offsets, rows, values, columns: None }
     }
 
@@ -77,8 +87,8 @@ impl<const D: usize, const C: usize> Stencil<D, C> {
     /// Zero stencils whose sums do not depend on the cut: the columns of cells add to a row in their order, whichever
     /// rank has them. An entry is handed over once, by the owner of the lower one of its two nodes, whose window holds
     /// both. `owned` nodes of the window are this rank's. Takes q + 1 times the memory.
-    pub fn by_columns(grid: &Grid<D>, owned: Range<usize>) -> Self {
-        let stencil = Self::new(grid);
+    pub fn by_columns(self, grid: &Grid<D>, owned: Range<usize>) -> Self {
+        let stencil = self;
         let none = Contributions::none(grid, stencil.width(), Vec::new());
         let (sums, diagonal) = (none.clone(), vec![0.0; grid.nodes() * C]);
         let columns = StencilColumns { none, sums, diagonal, owned };
@@ -321,7 +331,7 @@ mod tests {
         let (grid, cut) = (grid(), 2);
         let stencil = |columns: Range<usize>| {
             let window = grid.window(columns.clone());
-            let mut stencil = Stencil::<2, 2>::by_columns(&window, 0..window.nodes());
+            let mut stencil = Stencil::<2, 2>::new(&window).by_columns(&window, 0..window.nodes());
             for cell in 0..window.cells() {
                 let cell = window.cell_at(cell);
                 let value = |entry: usize| 1.0 / (entry + 7 * cell[0] + 3 * cell[1] + 1) as f64;

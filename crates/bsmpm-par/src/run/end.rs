@@ -101,7 +101,7 @@ impl Run<'_> {
         self.simulation.halo.reduce(&mut total);
         self.simulation.halo.maximum(&mut most);
         let wall = self.wall();
-        let tallies = self.simulation.tallies();
+        let tallies = &self.simulation.tallies();
         let Some(ledger) = &mut self.ledger else { return };
         let manifest = ledger.manifest();
         manifest.linear = linear(&self.before.linear, tallies);

@@ -20,7 +20,7 @@ const LOAD: f64 = 1e-5 * M;
 fn a_column_settles_alike_wherever_its_drained_surface_cuts_the_cells() {
     // Terzaghi (1923): U at the time factor .2.
     let mut errors = Vec::new();
-    for cut in [0.05, 0.35, 0.65, 0.95] {
+    for cut in [0.05, 0.5] {
         let mut scene = column(20, cut, LOAD, PermeabilityLaw::Constant);
         let mut settled = 0.0;
         run(&mut scene, geometric(1e-4, 0.2, 200), |_, points, _| settled = settlement(points) * M / LOAD);
@@ -145,27 +145,25 @@ fn a_disc_that_is_pressed_on_its_drained_rim_follows_its_closed_form() {
     for (T, middle) in [(0.05, 1.261192), (0.1, 1.221267), (0.2, 0.915338)] {
         assert!((disc.pressure(0.0, T) - middle).abs() < 2e-6, "the closed form itself");
     }
-    for (cells, bounds) in [(10, [0.0088, 0.0071, 0.0059])] {
-        // Root mean squares; bounds: 1.3 times what was measured.
-        let (points, normals) = arc(1.0, 1.0 / f64::from(cells));
-        let drain = Drain { points: points.clone(), normals: normals.clone(), given: Given::StillWater };
-        let traction = normals.iter().map(|normal| normal * -LOAD).collect();
-        let load = Load { traction, ..Load::dead(points, at(0.0, 0.0), 0.0) };
-        let mut scene = quarter(cells as usize, [0.0, 1.0], vec![drain]).load(load);
-        let times = [0.05, 0.1, 0.2];
-        let (mut errors, mut iterations) = (Vec::new(), 0);
-        run(&mut scene, steps(1e-3, 60, &times), |t, points, report| {
-            iterations += report.iterations;
-            if !times.contains(&t) {
-                return;
-            }
-            let pressures = points.pore_pressure.as_ref().expect("water flows");
-            let square = |p: usize| (pressures[p] / LOAD - disc.pressure(points.x[p].norm(), t)).powi(2);
-            errors.push(((0..points.len()).map(square).sum::<f64>() / points.len() as f64).sqrt());
-        });
-        println!("{cells} cells: {errors:.4?}, {iterations} iterations");
-        assert!(errors.iter().zip(bounds).all(|(error, bound)| *error <= bound));
-    }
+    let (points, normals) = arc(1.0, 0.1);
+    let drain = Drain { points: points.clone(), normals: normals.clone(), given: Given::StillWater };
+    let traction = normals.iter().map(|normal| normal * -LOAD).collect();
+    let load = Load { traction, ..Load::dead(points, at(0.0, 0.0), 0.0) };
+    let mut scene = quarter(10, [0.0, 1.0], vec![drain]).load(load);
+    let times = [0.05, 0.1, 0.2];
+    let (mut errors, mut iterations) = (Vec::new(), 0);
+    run(&mut scene, steps(1e-3, 60, &times), |t, points, report| {
+        iterations += report.iterations;
+        if !times.contains(&t) {
+            return;
+        }
+        let pressures = points.pore_pressure.as_ref().expect("water flows");
+        let square = |p: usize| (pressures[p] / LOAD - disc.pressure(points.x[p].norm(), t)).powi(2);
+        errors.push(((0..points.len()).map(square).sum::<f64>() / points.len() as f64).sqrt());
+    });
+    println!("root mean squares {errors:.4?}, {iterations} iterations");
+    // 1.3 times what was measured.
+    assert!(errors.iter().zip([0.0088, 0.0071, 0.0059]).all(|(error, bound)| *error <= bound));
 }
 
 #[test]

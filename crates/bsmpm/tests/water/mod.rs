@@ -1,6 +1,11 @@
 //! Water that flows through a skeleton which deforms, against closed forms.
 
 mod draining;
+mod dynamic;
+mod element;
+mod large;
+mod mandel;
+mod pair;
 mod terzaghi;
 
 use crate::support::scene::{Scene, axis, hencky};
@@ -14,6 +19,9 @@ use bsmpm::tensor::Vector;
 use bsmpm::water::Water;
 use bsmpm::water::ambient::Ambient;
 use bsmpm::water::flow::{Drain, DrainedFace, Flow, Given, Permeability, PermeabilityLaw, Soil};
+
+/// Where the points of a load on an edge of 1 m are.
+pub const LOAD_PARTS: [f64; 6] = [1.0 / 12.0, 3.0 / 12.0, 5.0 / 12.0, 7.0 / 12.0, 9.0 / 12.0, 11.0 / 12.0];
 
 /// Plane strain.
 pub type Plane = Scene<PlaneStrain, 2>;
@@ -76,14 +84,20 @@ pub fn column(cells: usize, cut: f64, load: f64, law: PermeabilityLaw) -> Plane 
 }
 
 /// Steps a scene to these times one after the other; `watch` sees the state after each. Panics on a failure.
-pub fn run(
+pub fn run(scene: &mut Plane, times: impl IntoIterator<Item = f64>, watch: impl FnMut(f64, &Points<2>, &StepReport)) {
+    run_from(scene, 0.0, times, watch);
+}
+
+/// The same from a time on, with no displacement to start from.
+pub fn run_from(
     scene: &mut Plane,
+    from: f64,
     times: impl IntoIterator<Item = f64>,
     mut watch: impl FnMut(f64, &Points<2>, &StepReport),
 ) {
     let halo = scene.halo();
     let mut solver = Skyline::new(&scene.model.grid);
-    let (mut guess, mut t, mut last) = (vec![0.0; scene.model.grid.nodes() * 2], 0.0, 0.0);
+    let (mut guess, mut t, mut last) = (vec![0.0; scene.model.grid.nodes() * 2], from, 0.0);
     for next in times {
         let (dt, mut counts) = (next - t, Counts::default());
         if last > 0.0 {

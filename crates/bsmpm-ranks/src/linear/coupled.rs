@@ -1,0 +1,88 @@
+//! The linear systems of a run: that of the displacements, and where water flows that of the pore pressures beside it.
+
+use super::{Choice, KspSolver, Tallies};
+use crate::halo::MpiHalo;
+use crate::timers::Timers;
+use bsmpm::error::SolveError;
+use bsmpm::model::Model;
+use bsmpm::parallel::{Krylov, LinearSolver, Solved, Symmetry};
+use petsc_rs::Petsc;
+use std::rc::Rc;
+
+/// Both.
+pub struct Solvers<'p, const D: usize> {
+    displacements: KspSolver<'p, D, D>,
+    water: Option<KspSolver<'p, D, 1>>,
+}
+
+impl<'p, const D: usize> Solvers<'p, D> {
+    /// For the window of a model's grid.
+    pub fn new<K>(
+        petsc: &'p Petsc<'p>,
+        choice: &Choice,
+        model: &Model<K, D>,
+        halo: &Rc<MpiHalo>,
+        timers: &Rc<Timers>,
+    ) -> Self {
+        let shared = || (Rc::clone(halo), Rc::clone(timers));
+        let (own, more) = (shared(), shared());
+        let flows = model.water.as_ref().is_some_and(|water| water.flow.is_some());
+        let displacements = KspSolver::new(petsc, choice.clone(), &model.grid, own.0, own.1);
+        let water = flows.then(|| KspSolver::lowered(petsc, choice.clone(), &model.grid, more.0, more.1));
+        Self { displacements, water }
+    }
+
+    /// How the solves have ended so far.
+    pub fn tallies(&self) -> Tallies {
+        let water = self.water.as_ref().and_then(|water| water.tallies().definite.clone());
+        Tallies { water, ..self.displacements.tallies().clone() }
+    }
+
+    /// Goes on counting where other solvers of the run have ended.
+    pub fn count_on(&mut self, tallies: Tallies) {
+        if let Some(water) = &mut self.water {
+            water.count_on(Tallies { definite: tallies.water.clone(), ..Tallies::default() });
+        }
+        self.displacements.count_on(tallies);
+    }
+}
+
+impl<const D: usize> LinearSolver for Solvers<'_, D> {
+    fn begin(&mut self, free: &[bool]) {
+        self.displacements.begin(free);
+    }
+
+    fn add(&mut self, first_node: usize, block: &[f64]) {
+        self.displacements.add(first_node, block);
+    }
+
+    fn add_among(&mut self, nodes: &[usize], block: &[f64]) {
+        self.displacements.add_among(nodes, block);
+    }
+
+    fn add_diagonal(&mut self, diagonal: &[f64]) {
+        self.displacements.add_diagonal(diagonal);
+    }
+
+    fn finish(&mut self, symmetry: Symmetry) -> Result<(), SolveError> {
+        self.displacements.finish(symmetry)
+    }
+
+    fn solve(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<Solved, SolveError> {
+        self.displacements.solve(rhs, solution)
+    }
+
+    fn solve_with(
+        &mut self,
+        product: &mut dyn FnMut(&[f64], &mut [f64]),
+        relative: f64,
+        rhs: &[f64],
+        solution: &mut [f64],
+    ) -> Result<Krylov, SolveError> {
+        self.displacements.solve_with(product, relative, rhs, solution)
+    }
+
+    fn water(&mut self) -> Option<&mut dyn LinearSolver> {
+        self.water.as_mut().map(|water| water as &mut dyn LinearSolver)
+    }
+}
