@@ -9,6 +9,9 @@ use crate::step::problem::Problem;
 use crate::tensor::Vector;
 use crate::water::nodes::Pores;
 
+/// Square of the wave number of the shortest wave, over that of the cells, 1/h^2.
+const SHORTEST_WAVE: f64 = 10.0;
+
 /// Assembles S at the state of the step's start into `solver` and factorises it.
 pub fn assemble<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
@@ -20,6 +23,8 @@ pub fn assemble<K: Kinematics<D>, const D: usize>(
         return Ok(());
     };
     solver.begin(&pores.free);
+    let wave = model.grid.smallest_edge().powi(2) / SHORTEST_WAVE;
+    let inertia = problem.nodes.inertia.as_ref().map_or(0.0, |inertia| wave * inertia.factor());
     let size = pores.shape.offsets().len();
     let mut block = vec![0.0; size * size];
     let mut functions = [(0.0, Vector::zeros()); MOST_FUNCTIONS];
@@ -28,7 +33,9 @@ pub fn assemble<K: Kinematics<D>, const D: usize>(
         for p in patch.points.clone() {
             let Some(wet) = &pores.wet[p] else { continue };
             scalars::functions_of(&pores.shape, p, &mut functions);
-            let stored = wet.volume * (wet.content / flow.bulk + wet.J.powi(2) / wet.stiffness);
+            // With inertia the shortest waves that cells hold, of k^2 = 10/h^2, are stiffer.
+            let stiffness = wet.stiffness + inertia * points.mass[p] / wet.volume;
+            let stored = wet.volume * (wet.content / flow.bulk + wet.J.powi(2) / stiffness);
             let conductivity = flow.permeability(points.material[p], wet.J).unwrap_or_else(Vector::zeros);
             let along = wet.tau + conductivity * (pores.dt * wet.volume * wet.J / water.unit_weight);
             for (row, (A, gradient)) in block.chunks_exact_mut(size).zip(&functions) {

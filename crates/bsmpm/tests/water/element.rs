@@ -49,7 +49,7 @@ fn undrained_strength_follows_from_the_effective_stress() {
         initial::set_stress(&scene.model, &mut scene.points, |_, _| isotropic);
         (scene.model.criteria.energy, scene.model.criteria.force) = (1e-10, 1e-7);
         let mut last = [0.0; 3];
-        run(&mut scene, (1..=8).map(|k| 0.5 * f64::from(k)), |t, points, report| {
+        run(&mut scene, (1..=4).map(|k| 0.5 * f64::from(k)), |t, points, report| {
             let sum = |of: &dyn Fn(usize) -> f64| (0..points.len()).map(of).sum::<f64>() / points.len() as f64;
             let sigma = |p: usize| points.sigma.at(p).0;
             last = [
@@ -59,8 +59,8 @@ fn undrained_strength_follows_from_the_effective_stress() {
             ];
             println!("{method:?} {t}: p, s', t {last:.1?}, {} iterations", report.iterations);
         });
-        // The dead load is of the first surface, which stretches by .2 %.
-        assert!((last[0] / 5e4 - 1.0).abs() < 0.01 && (last[1] / 1e5 - 1.0).abs() < 0.01);
-        assert!((last[2] / 5e4 - 1.0).abs() < 0.01);
+        // The dead load is of the first surface, which stretches by .1 %.
+        assert!((last[0] / 5e4 - 1.0).abs() < 0.005 && (last[1] / 1e5 - 1.0).abs() < 0.005);
+        assert!((last[2] / 5e4 - 1.0).abs() < 0.005);
     }
 }

@@ -28,6 +28,8 @@ pub type Plane = Scene<PlaneStrain, 2>;
 
 /// N/m3
 pub const WEIGHT: f64 = 1e4;
+/// kg/m3  of grains and water together
+pub const DENSITY: f64 = 2e3;
 /// Pa  stiffness of the columns in one direction
 pub const M: f64 = 1e6;
 
@@ -53,7 +55,7 @@ pub fn column(cells: usize, cut: f64, load: f64, law: PermeabilityLaw) -> Plane 
     let is_cut = cut < 1.0;
     let rows = if is_cut { cells + 1 } else { cells };
     let mut scene = Plane::new([axis(h, 1, 2), axis(h, rows, 2)], hencky(M, 0.0), Regime::QuasiStatic);
-    scene = scene.body([0..1, 0..cells], 3, 1.0, |x| x * 0.0).rollers([0]).support(Support::roller(1, false));
+    scene = scene.body([0..1, 0..cells], 3, DENSITY, |x| x * 0.0).rollers([0]).support(Support::roller(1, false));
     let surface: Vec<SurfacePoint<2>> =
         (0..3).map(|k| SurfacePoint { x: at(h * (k as f64 + 0.5) / 3.0, 1.0), area: h / 3.0 }).collect();
     let mut water = flowing(law);
