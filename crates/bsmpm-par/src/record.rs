@@ -31,7 +31,7 @@ pub struct Recorder {
     reacting: Vec<Option<usize>>, // strip whose force a reaction is
     gauge: Option<Gauge>,
     drains: Vec<DrainPlace>, // where the physics has each
-    books: Option<Books>, // of energy, opened by the first row
+    books: Option<Books>,    // of energy, opened by the first row
     left: Outlet,
     work: Vec<f64>,       // J/m, of every strip; empty where no history wants it
     datum: Vec<[f64; 2]>, // m, of every history's displacement when they were last set to zero, if they ever were

@@ -395,7 +395,8 @@ impl<'p> Run<'p> {
         let moment = FrameMoment { step, time, lower: self.case.grid.lower() };
         let (names, fields) = (self.names(), &self.case.output.fields);
         let bodies = if fields.contains(&FrameField::Body) { self.case.ids() } else { Vec::new() };
-        let around = Around { materials: &model.materials, bodies: &bodies, water: PoreWater::of(model, points, time), fields };
+        let around =
+            Around { materials: &model.materials, bodies: &bodies, water: PoreWater::of(model, points, time), fields };
         let mut frame = Gathering::new(&world, (points, around), projected.as_deref(), moment);
         let written = match &mut self.ledger {
             Some(ledger) => {

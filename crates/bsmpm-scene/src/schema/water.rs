@@ -30,7 +30,12 @@ pub(super) static WATER: Table = Table {
              depth straight below it",
         ),
         key("unit_weight", Quantity(In::UnitWeight, Range::POSITIVE), Default("\"9.81 kN/m3\""), "of the water"),
-        key("bulk", Quantity(In::Stress, Range::POSITIVE), Optional, "bulk modulus of the water; absent: incompressible"),
+        key(
+            "bulk",
+            Quantity(In::Stress, Range::POSITIVE),
+            Optional,
+            "bulk modulus of the water; absent: incompressible",
+        ),
         key(
             "drainage",
             Choice(Drainage::WORDS),

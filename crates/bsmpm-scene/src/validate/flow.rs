@@ -1,7 +1,7 @@
 //! Water that flows: soils, drains and inflows, and what is not shown to be right together with it.
 
-use super::load::increasing;
 use super::STANDARD_GRAVITY;
+use super::load::increasing;
 use super::place::{self, along};
 use super::strip::{AroundStrip, segment};
 use crate::case::{Body, Case, Drain, DrainSite, Face, Flow, Inflow, Initial, NamedMaterial, Quantity, Support};
@@ -319,6 +319,11 @@ fn discretised(case: &Case, root: &Record, report: &mut Report<'_>) {
             let message = "\"linear\" splines leave the pore pressure no gradient: take \"quadratic\"";
             grid.error("order", message, report);
         }
+        if case.grid.lines.iter().any(|lines| !lines.is_empty()) {
+            let message =
+                "a breakpoint that stands more than once tears the pore pressure of water that flows: give each once";
+            grid.error("knots", message, report);
+        }
     }
     let few = |body: &Body| body.points_per_cell < POINTS_OF_CUBIC;
     for (body, record) in case.bodies.iter().zip(root.records("body")) {
@@ -347,7 +352,11 @@ fn discretised(case: &Case, root: &Record, report: &mut Report<'_>) {
         solver.error("nonlinear", message, report);
     }
     if case.solver.quadrature == Quadrature::Fitted {
-        solver.error("quadrature", "\"fitted\" is not shown to be right with water that flows: take \"points\"", report);
+        solver.error(
+            "quadrature",
+            "\"fitted\" is not shown to be right with water that flows: take \"points\"",
+            report,
+        );
     }
 }
 
@@ -367,7 +376,9 @@ fn of_soils(case: &Case, flow: &Flow, root: &Record, report: &mut Report<'_>) {
         let why = match law {
             LawName::SensitiveClay => "is a law of clay without drainage, of total stress",
             LawName::MuI => "is a law of dry grains that flow",
-            LawName::CamClay => "has a stiffness that follows the effective pressure, which the pressures' system does not",
+            LawName::CamClay => {
+                "has a stiffness that follows the effective pressure, which the pressures' system does not"
+            }
             LawName::Hencky | LawName::MohrCoulomb | LawName::Tresca => continue,
             LawName::DruckerPrager | LawName::VonMises | LawName::Softening => continue,
         };
@@ -399,7 +410,8 @@ fn acting(case: &Case, root: &Record, report: &mut Report<'_>) {
             }
         }
     }
-    let rubs = case.footing.iter().map(|of| of.contact.is_some()).chain(case.prescribed.iter().map(|of| of.contact.is_some()));
+    let rubs =
+        case.footing.iter().map(|of| of.contact.is_some()).chain(case.prescribed.iter().map(|of| of.contact.is_some()));
     let strips = root.records("footing").iter().chain(root.records("prescribed"));
     for (_, record) in rubs.zip(strips).filter(|(rubs, _)| *rubs) {
         report.error(record.origin, &record.path, not_shown("strips that rub and let go are"));
@@ -418,8 +430,14 @@ fn acting(case: &Case, root: &Record, report: &mut Report<'_>) {
         }
     }
     if let Some(reduction) = root.record("strength_reduction") {
-        let message = "a reduced strength is not shown to be right with water that flows; with drainage = \"given\" it is";
+        let message =
+            "a reduced strength is not shown to be right with water that flows; with drainage = \"given\" it is";
         report.error(reduction.origin, &reduction.path, message);
+    }
+    if let (Some(gravity), Some(record)) = (&case.gravity, root.record("gravity"))
+        && gravity.ramp > 0.0
+    {
+        record.error("ramp", not_shown("gravity that grows is"), report);
     }
     if let Some(initial) = root.record("initial") {
         let elastic = matches!(case.initial, Some(Initial::Elastic));

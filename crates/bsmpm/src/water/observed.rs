@@ -62,8 +62,7 @@ impl<'a, const D: usize> PoreWater<'a, D> {
     /// m/s  Darcy's flux relative to the grains at point `p`; zero where nothing flows, and before the first step
     pub fn flux(&self, p: usize) -> Vector<D> {
         let J = self.points.F.at(p).determinant();
-        let conductivity =
-            self.water.flow.as_ref().and_then(|flow| flow.permeability(self.points.material[p], J));
+        let conductivity = self.water.flow.as_ref().and_then(|flow| flow.permeability(self.points.material[p], J));
         let (Some(conductivity), Some(gradient)) = (conductivity, &self.points.pressure_gradient) else {
             return Vector::zeros();
         };
