@@ -4,7 +4,8 @@
 use bsmpm::material::{Material, Variable};
 use bsmpm::observe::invariants;
 use bsmpm::points::{Column, ColumnInfo, Number, Points};
-use bsmpm::water::ambient::StillWater;
+use bsmpm::tensor::Vector;
+use bsmpm::water::observed::PoreWater;
 use bsmpm_io::frame::{Field, FieldValues, Frame};
 use bsmpm_io::vtu;
 use bsmpm_scene::words::FrameField;
@@ -50,8 +51,8 @@ pub struct Around<'a> {
     pub materials: &'a [Material],
     /// ids of every body's points; empty if no frame tells bodies
     pub bodies: &'a [Range<u64>],
-    /// still water at the time of the frame
-    pub water: Option<StillWater<'a>>,
+    /// water at the time of the frame
+    pub water: Option<PoreWater<'a, 2>>,
     /// what frames show on request
     pub fields: &'a [FrameField],
 }
@@ -98,7 +99,8 @@ impl<'a> FieldSource<'a> {
         match self {
             Self::Column(_, column) if column.width() == 2 => 3,
             Self::Column(_, column) => column.width(),
-            Self::Asked(FrameField::PrincipalStresses, _) => 3,
+            Self::Asked(FrameField::PrincipalStresses | FrameField::Flux, _) => 3,
+            Self::Asked(FrameField::TotalStress, _) => 6,
             _ => 1,
         }
     }
@@ -146,6 +148,7 @@ impl<'a> FieldSource<'a> {
 impl Around<'_> {
     fn put(&self, field: FrameField, points: &Points<2>, p: usize, row: &mut Vec<f64>) {
         let sigma = || points.sigma.at(p);
+        let of_water = |number: &dyn Fn(PoreWater<'_, 2>) -> f64| self.water.map_or(0.0, number);
         row.push(match field {
             FrameField::Q => invariants::deviatoric(&sigma()),
             FrameField::PrincipalStresses => return row.extend(invariants::principal(&sigma())),
@@ -156,7 +159,16 @@ impl Around<'_> {
                 f64::from(u8::from(Material::is_yielding(mobilised)))
             }
             FrameField::Density => invariants::density(points, p),
-            FrameField::PorePressure => self.water.map_or(0.0, |water| water.pressure(&points.x[p])),
+            FrameField::PorePressure => of_water(&|water| water.pressure(p)),
+            FrameField::ExcessPressure => of_water(&|water| water.excess(p)),
+            FrameField::Porosity => of_water(&|water| water.porosity(p)),
+            FrameField::Flux => {
+                let flux = self.water.map_or_else(Vector::zeros, |water| water.flux(p));
+                return row.extend([flux[0], flux[1], 0.0]);
+            }
+            FrameField::TotalStress => {
+                return row.extend(self.water.map_or_else(sigma, |water| water.total_stress(p)).0);
+            }
             FrameField::Body => self.bodies.partition_point(|ids| ids.end <= points.id[p]) as f64,
         });
     }

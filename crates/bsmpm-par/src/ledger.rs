@@ -25,7 +25,6 @@ use bsmpm_io::table::{Cell, CsvTable, TableColumn};
 use bsmpm_ranks::simulation::Cost;
 use bsmpm_scene::Case;
 use bsmpm_scene::Profile;
-use bsmpm_scene::Regime;
 use bsmpm_scene::surfaces;
 
 /// The open files of a run, and what its manifest will say.
@@ -59,10 +58,7 @@ struct Headings {
 
 impl Headings {
     fn of(case: &Case, columns: &[TableColumn]) -> Self {
-        let time = match case.analysis.regime {
-            Regime::Dynamic => "s",
-            Regime::QuasiStatic => "-",
-        };
+        let time = if case.analysis.kind.is_timeless() { "-" } else { "s" };
         let first = || vec![TableColumn::new("step", "-"), TableColumn::new("time", time)];
         let mut history = first();
         history.extend(columns.iter().cloned());

@@ -13,7 +13,8 @@ use bsmpm::points::Points;
 use bsmpm::step::StepReport;
 use bsmpm::step::outflow::Outflow;
 use bsmpm::tensor::Vector;
-use bsmpm_scene::surfaces::{self, Gauge};
+use bsmpm::water::observed::PoreWater;
+use bsmpm_scene::surfaces::{self, DrainPlace, Gauge};
 use bsmpm_scene::words::Measurement;
 use bsmpm_scene::{Case, Counted, Face, GridSpec, History, Quantity, Stage};
 
@@ -29,7 +30,8 @@ pub struct Recorder {
     followed: Vec<Option<u64>>,
     reacting: Vec<Option<usize>>, // strip whose force a reaction is
     gauge: Option<Gauge>,
-    books: Option<Books>, // of energy, opened by the first row
+    drains: Vec<DrainPlace>, // where the physics has each
+    books: Option<Books>,    // of energy, opened by the first row
     left: Outlet,
     work: Vec<f64>,       // J/m, of every strip; empty where no history wants it
     datum: Vec<[f64; 2]>, // m, of every history's displacement when they were last set to zero, if they ever were
@@ -74,6 +76,7 @@ impl Recorder {
             followed: state.followed,
             reacting: case.histories.iter().map(react).collect(),
             gauge: Gauge::of(case),
+            drains: surfaces::drain_places(case),
             books: state.books.map(|BooksForm(books)| books),
             datum: state.datum,
             left: state.left,
@@ -177,10 +180,19 @@ impl Recorder {
                 | Quantity::FrictionPower { face } => {
                     contact(history.quantity.measurement(), at_face(model, *face, report), report.dt)
                 }
-                Quantity::PorePressure { .. } => {
-                    let pressure = |p: usize| model.still_water(t).map_or(0.0, |water| water.pressure(&points.x[p]));
+                Quantity::PorePressure { .. } | Quantity::Pore { .. } => {
                     let id = self.followed[number].unwrap_or(u64::MAX);
-                    observe::at_point(points, id, halo, |p| [pressure(p)]).to_vec()
+                    let water = PoreWater::of(model, points, t);
+                    pore((history.quantity.measurement(), water), id, points, halo)
+                }
+                Quantity::WaterOutflow { drain } => {
+                    vec![drain.map_or(points.surface.crossed.out(), |drain| self.drained(drain, points))]
+                }
+                Quantity::WaterBalance => {
+                    let gained = PoreWater::of(model, points, t).map_or(0.0, |water| water.gained(halo));
+                    let out = points.surface.crossed.out();
+                    let scale = gained.abs().max(out.abs());
+                    vec![if scale > 0.0 { (gained + out) / scale } else { 0.0 }]
                 }
                 Quantity::Rigid { what, body } => rigid(*what, *body, (t, model), report),
                 quantity => self.values((number, quantity), model, points, halo)?,
@@ -188,6 +200,17 @@ impl Recorder {
             row.extend(values.iter().map(|value| history.scale * value));
         }
         Ok(row)
+    }
+
+    /// m3/m  out of a drain so far, by its number in the file.
+    fn drained(&self, drain: usize, points: &Points<2>) -> f64 {
+        let crossed = &points.surface.crossed;
+        let found = match self.drains.get(drain) {
+            Some(DrainPlace::Face(number)) => crossed.faces.get(*number),
+            Some(DrainPlace::Surface(number)) => crossed.drains.get(*number),
+            None => None,
+        };
+        found.copied().unwrap_or(0.0)
     }
 
     /// A quantity of all points.
@@ -340,9 +363,30 @@ fn contact(measured: Measurement, found: Option<ContactReport>, dt: f64) -> Vec<
 /// The place of a history that follows the point nearest to it.
 fn followed_place(quantity: &Quantity) -> Option<[f64; 2]> {
     match *quantity {
-        Quantity::Displacement { at } | Quantity::PorePressure { at } => Some(at),
+        Quantity::Displacement { at } | Quantity::PorePressure { at } | Quantity::Pore { at, .. } => Some(at),
         Quantity::Velocity { at, surface: false } | Quantity::Stress { at, surface: false } => Some(at),
         _ => None,
+    }
+}
+
+/// A quantity of the pore water of the point of an id; zero without it.
+fn pore(
+    (measured, water): (Measurement, Option<PoreWater<'_, 2>>),
+    id: u64,
+    points: &Points<2>,
+    halo: &dyn Halo,
+) -> Vec<f64> {
+    let number = |of: &dyn Fn(PoreWater<'_, 2>, usize) -> f64| {
+        observe::at_point(points, id, halo, |p| [water.map_or(0.0, |water| of(water, p))]).to_vec()
+    };
+    match measured {
+        Measurement::Flux => {
+            let flux = |p: usize| water.map_or([0.0; 2], |water| water.flux(p).into());
+            observe::at_point(points, id, halo, flux).to_vec()
+        }
+        Measurement::ExcessPressure => number(&|water, p| water.excess(p)),
+        Measurement::Porosity => number(&|water, p| water.porosity(p)),
+        _ => number(&|water, p| water.pressure(p)),
     }
 }
 

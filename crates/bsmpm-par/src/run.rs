@@ -22,6 +22,7 @@ use bsmpm::kinematics::PlaneStrain;
 use bsmpm::observe::projection::projected_pressure;
 use bsmpm::parallel::Halo;
 use bsmpm::step::StepReport;
+use bsmpm::water::observed::PoreWater;
 use bsmpm_io::exit;
 use bsmpm_io::frame::Parts;
 use bsmpm_io::manifest::{Communication, ManifestOutflow, SolverNames, Status};
@@ -394,7 +395,8 @@ impl<'p> Run<'p> {
         let moment = FrameMoment { step, time, lower: self.case.grid.lower() };
         let (names, fields) = (self.names(), &self.case.output.fields);
         let bodies = if fields.contains(&FrameField::Body) { self.case.ids() } else { Vec::new() };
-        let around = Around { materials: &model.materials, bodies: &bodies, water: model.still_water(time), fields };
+        let around =
+            Around { materials: &model.materials, bodies: &bodies, water: PoreWater::of(model, points, time), fields };
         let mut frame = Gathering::new(&world, (points, around), projected.as_deref(), moment);
         let written = match &mut self.ledger {
             Some(ledger) => {

@@ -76,6 +76,10 @@ fn decides(option: &str) -> bool {
 
 /// Nominal number of steps.
 pub fn nominal_steps(case: &Case) -> u64 {
+    if case.analysis.growth.is_some() {
+        let schedule = bsmpm_scene::model::schedule(case);
+        return std::iter::successors(schedule.next(0.0), |&t| schedule.next(t)).count() as u64;
+    }
     (case.analysis.end / case.analysis.dt - 1e-6).ceil() as u64
 }
 
@@ -87,7 +91,10 @@ pub fn choices(case: &Case, ranks: usize, options: &[String]) -> Vec<manifest::M
         reason: reason.into(),
     };
     let mut choices = Vec::new();
-    if case.solver.nonlinear == bsmpm_scene::Nonlinear::Auto {
+    if case.flow.is_some() {
+        let reason = "water that flows: all recent secants on both systems by turns (fixed stress); then shorter steps";
+        choices.push(choice("solver.nonlinear", "multisecant", reason));
+    } else if case.solver.nonlinear == bsmpm_scene::Nonlinear::Auto {
         let reason = "all recent secants on the stiffness at the first guess, in fewer iterations than Broyden's update; \
                       Newton's method with the complete derivative where they stall; then shorter steps";
         choices.push(choice("solver.nonlinear", "multisecant, newton", reason));

@@ -182,7 +182,8 @@ pub fn placed<'a>(
 /// Stress of ground at rest, Pa, at `x` (m, from the grid's lower corner); `k0` by material.
 pub fn at_rest(case: &Case, k0: &[f64], material: u16, x: &Vector<2>) -> Symmetric {
     let lower = case.grid.lower();
-    let vertical = -case.overburden([lower[0] + x[0], lower[1] + x[1]]);
+    let at = [lower[0] + x[0], lower[1] + x[1]];
+    let vertical = -case.overburden(at) - case.suction_at(material, at);
     let horizontal = k0[usize::from(material)] * vertical;
     Symmetric([horizontal, vertical, horizontal, 0.0, 0.0, 0.0])
 }

@@ -8,8 +8,8 @@ mod sweep;
 
 pub(crate) use cells::{CellPlace, RegionPart, place};
 pub(crate) use edge::Edge;
-pub(crate) use skin::skin;
 pub(crate) use simple::{PolygonFault, area, bounds, fault};
+pub(crate) use skin::skin;
 pub(crate) use sweep::{Window, solid, sweep};
 
 use crate::grid::{GridAxis, GridSpec};

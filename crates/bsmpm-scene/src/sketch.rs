@@ -16,6 +16,8 @@ use bsmpm::stabilisation::Stabilisation;
 pub struct Sketch {
     /// Whether inertia acts.
     pub regime: Option<Regime>,
+    /// Whether time is a pseudo-time without unit.
+    pub is_timeless: Option<bool>,
     /// Section 2.3 of the paper; of a text without [`Sketch::regime`], which is no case, none.
     pub stabilisation: Option<Stabilisation>,
     /// Supports of the grid's faces: per axis the lower and the upper one.
@@ -49,11 +51,12 @@ impl Sketch {
             return Self::default();
         }
         let root = record::read(&ROOT, &document, &mut report);
-        let regime = root.record("analysis").and_then(|analysis| analysis.word::<AnalysisType>("type"));
-        let regime = regime.map(AnalysisType::regime);
+        let kind = root.record("analysis").and_then(|analysis| analysis.word::<AnalysisType>("type"));
+        let (regime, is_timeless) = (kind.map(AnalysisType::regime), kind.map(AnalysisType::is_timeless));
         let ends = |strip: &Record| Some([strip.pair("from")?, strip.pair("to")?]);
         Self {
             regime,
+            is_timeless,
             stabilisation: regime.and_then(|_| validate::stabilisation(&root)),
             boundary: validate::boundary(&root),
             footing: root.record("footing").and_then(ends),

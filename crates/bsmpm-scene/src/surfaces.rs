@@ -121,6 +121,25 @@ fn around(grid: &Grid<2>, center: &Vector<2>, radius: f64, count: usize) -> Vec<
     (0..pieces).map(point).filter(|(point, _)| grid.locate(&point.x).is_some()).collect()
 }
 
+/// Where the physics has a drain.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DrainPlace {
+    /// Number among the drained faces of the grid.
+    Face(usize),
+    /// Number among the drained surfaces of bodies.
+    Surface(usize),
+}
+
+/// Where every drain of a case is, in the order of the file.
+pub fn drain_places(case: &Case) -> Vec<DrainPlace> {
+    let (mut faces, mut surfaces) = (0.., 0..);
+    let place = |drain: &crate::Drain| match drain.site {
+        DrainSite::Face(_) => faces.next().map(DrainPlace::Face),
+        DrainSite::Lines(_) => surfaces.next().map(DrainPlace::Surface),
+    };
+    case.flow.iter().flat_map(|flow| &flow.drains).filter_map(place).collect()
+}
+
 /// What flow is to the soils and to surfaces, if water flows.
 pub fn flow(case: &Case, grid: &Grid<2>) -> Option<bsmpm::water::flow::Flow<2>> {
     let flow = case.flow.as_ref()?;
@@ -152,7 +171,7 @@ pub fn flow(case: &Case, grid: &Grid<2>) -> Option<bsmpm::water::flow::Flow<2>> 
     };
     let inflow = |inflow: &crate::Inflow| {
         let (points, normals) = surface(&[inflow.ends]);
-        Inflow { points, normals, rate: inflow.rate.clone() }
+        Inflow { points, normals, rate: inflow.rate.clone(), runs_off: inflow.runs_off }
     };
     Some(bsmpm::water::flow::Flow {
         bulk: flow.bulk,
@@ -160,6 +179,7 @@ pub fn flow(case: &Case, grid: &Grid<2>) -> Option<bsmpm::water::flow::Flow<2>> 
         drains: flow.drains.iter().filter_map(drain).collect(),
         faces: flow.drains.iter().filter_map(face).collect(),
         inflows: flow.inflows.iter().map(inflow).collect(),
+        suction: flow.suction,
     })
 }
 

@@ -77,20 +77,19 @@ impl RunRecord {
         of_column.max_by_key(|history| history.name.len())
     }
 
+    /// Whether time is a pseudo-time without unit.
+    fn is_timeless(&self) -> bool {
+        self.case.is_timeless.unwrap_or_else(|| self.regime() == Regime::QuasiStatic)
+    }
+
     /// The axis label of time.
     pub fn time_label(&self) -> (&'static str, &'static str) {
-        match self.regime() {
-            Regime::Dynamic => ("Time", "s"),
-            Regime::QuasiStatic => ("Pseudo-time", "-"),
-        }
+        if self.is_timeless() { ("Pseudo-time", "-") } else { ("Time", "s") }
     }
 
     /// A moment in words, for titles and legends.
     pub fn moment(&self, time: f64) -> String {
-        match self.regime() {
-            Regime::Dynamic => format!("t = {} s", short(time)),
-            Regime::QuasiStatic => format!("pseudo-time {}", short(time)),
-        }
+        if self.is_timeless() { format!("pseudo-time {}", short(time)) } else { format!("t = {} s", short(time)) }
     }
 
     /// Whether the grid's lower and upper faces along x and y hold the body.

@@ -115,7 +115,7 @@ pub enum StepError {
         "not converged after {iterations} iterations{}: {}{}{}",
         if *iterations < criteria.max_iterations { "" } else { ", their limit" },
         criteria.judged(*energy, (*force, *material)),
-        water.map_or_else(String::new, |(water, tolerance)| format!("; {}", Criteria::judged_water(water, tolerance))),
+        history.last().and_then(|last| last.water).map_or_else(String::new, |water| criteria.judged_water(water)),
         unsolved.as_ref().map_or_else(String::new, |reason| format!("; no direction from there: {reason}"))
     )]
     NotConverged {
@@ -127,8 +127,6 @@ pub enum StepError {
         force: f64,
         /// Number of that material; `None` where it is that of all nodes.
         material: Option<usize>,
-        /// Water out of balance over what is stored, flows or leaves, and what it should be below; where water flows.
-        water: Option<(f64, f64)>,
         /// What was asked for.
         criteria: Box<Criteria>,
         /// Both measures of every iteration.

@@ -51,11 +51,21 @@ impl Criteria {
         format!("energy measure {}; force measure{of} {}", against(energy, self.energy), against(force, self.force))
     }
 
-    /// The measure of the water beside its tolerance, in words.
-    pub fn judged_water(water: f64, tolerance: f64) -> String {
-        format!("water out of balance {}", against(water, tolerance))
+    /// What the measure of the water must be below, where it flows: |R| over the largest of what is stored, flows and
+    /// leaves.
+    pub fn water(&self) -> f64 {
+        WATER.min(self.force)
+    }
+
+    /// That measure beside its tolerance, in words that follow those of [`Criteria::judged`].
+    pub fn judged_water(&self, water: f64) -> String {
+        format!("; water out of balance {}", against(water, self.water()))
     }
 }
+
+/// Largest part of the water that is stored, flows or leaves that may be out of balance: the forces' tolerance where that
+/// is smaller.
+const WATER: f64 = 1e-4;
 
 fn against(measure: f64, tolerance: f64) -> String {
     let side = if measure < tolerance { "within" } else { "above" };

@@ -140,11 +140,8 @@ mod tests {
 
     /// Each step over the one before it, the wanted times passed over.
     fn ratios(stations: &[f64]) -> Vec<f64> {
-        let steps: Vec<f64> = std::iter::once(0.0)
-            .chain(stations.iter().copied())
-            .zip(stations)
-            .map(|(from, to)| to - from)
-            .collect();
+        let steps: Vec<f64> =
+            std::iter::once(0.0).chain(stations.iter().copied()).zip(stations).map(|(from, to)| to - from).collect();
         steps.windows(2).map(|pair| pair[1] / pair[0]).collect()
     }
 

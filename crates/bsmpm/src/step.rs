@@ -94,12 +94,13 @@ pub fn step<K: Kinematics<D>, const D: usize>(
     surface.position = places.loads;
     surface.follow(places.pressure, dt);
     free_field.settle(&mut surface.held);
+    if let Some(water) = &mut report.water {
+        water.stored = content;
+        surface.crossed.add(&water.crossed);
+    }
     points.surface = surface;
     points.free_field = free_field.columns;
     let outflow = Outflow::of(model, points, halo);
-    if let Some(water) = &mut report.water {
-        water.stored = content;
-    }
     let (energy, turnover) = account.map_or((None, None), |(flows, turnover)| (flows, Some(turnover)));
     Ok(StepReport { energy, turnover, advance, smoothed, outflow, ..report })
 }

@@ -13,6 +13,7 @@ pub mod flow;
 pub mod follow;
 pub mod matrix;
 pub mod nodes;
+pub mod observed;
 pub mod residual;
 pub mod retention;
 pub mod saved;

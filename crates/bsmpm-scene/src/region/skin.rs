@@ -23,7 +23,8 @@ pub(crate) fn skin(of: &Region, all: &[&Region], grid: &GridSpec) -> Vec<[[f64; 
         let along = [q[0] - p[0], q[1] - p[1]];
         let length = along[0].hypot(along[1]);
         let middle = [0, 1].map(|axis| 0.5 * (p[axis] + q[axis]));
-        let beside = |side: f64| [middle[0] - side * off * along[1] / length, middle[1] + side * off * along[0] / length];
+        let beside =
+            |side: f64| [middle[0] - side * off * along[1] / length, middle[1] + side * off * along[0] / length];
         length > off && holds(beside(1.0)) != holds(beside(-1.0))
     };
     let edges = of.edges(grid).0;

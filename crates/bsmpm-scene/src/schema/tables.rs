@@ -3,7 +3,8 @@
 use super::Kind::*;
 use super::Presence::{Default, Optional, Required};
 use super::{
-    Dimension as In, Kind, Range, Table, body, element, flow, key, later, laws, loads, one_of, output, rigid, stage, water,
+    Dimension as In, Kind, Range, Table, body, element, flow, key, later, laws, loads, one_of, output, rigid, stage,
+    water,
 };
 use crate::words::{Accuracy, AnalysisType, C0Lines, Factor, Geometry, Ksp, LinearSolver, Nonlinear, Order, Pc, Word};
 use bsmpm::background::{Extent, Kind as Background};
@@ -64,7 +65,12 @@ static ANALYSIS: Table = Table {
             Optional,
             "a step over the one before it (consolidation), from dt on at the start and after every stage; 1 unless given",
         ),
-        key("dt_max", Quantity(In::Time, Range::POSITIVE), Optional, "the longest step to which they grow; no bound unless given"),
+        key(
+            "dt_max",
+            Quantity(In::Time, Range::POSITIVE),
+            Optional,
+            "the longest step to which they grow; no bound unless given",
+        ),
         key(
             "spectral_radius",
             Quantity(In::Number, UP_TO_1),

@@ -10,7 +10,12 @@ pub(super) static WATER: Table = Table {
     doc: "Still water in and above the ground. Stresses are effective ones; the water lifts, seeps and presses on wet \
           surfaces by itself. Below the level, or the line, ground is wet; above there is no pore pressure",
     keys: &[
-        key("level", Quantity(In::Length, Range::ANY), Optional, "height of the water table, in the ground or above it"),
+        key(
+            "level",
+            Quantity(In::Length, Range::ANY),
+            Optional,
+            "height of the water table, in the ground or above it",
+        ),
         key(
             "level_path",
             Rows(&[(In::Time, Range::NOT_NEGATIVE), (In::Length, Range::ANY)]),
@@ -25,7 +30,19 @@ pub(super) static WATER: Table = Table {
              depth straight below it",
         ),
         key("unit_weight", Quantity(In::UnitWeight, Range::POSITIVE), Default("\"9.81 kN/m3\""), "of the water"),
-        key("bulk", Quantity(In::Stress, Range::POSITIVE), Optional, "bulk modulus of the water; absent: incompressible"),
+        key(
+            "bulk",
+            Quantity(In::Stress, Range::POSITIVE),
+            Optional,
+            "bulk modulus of the water; absent: incompressible",
+        ),
+        key(
+            "suction",
+            Quantity(In::Stress, Range::NOT_NEGATIVE),
+            Optional,
+            "largest suction above the level at the start, where materials have a retention; as the level makes it unless \
+             given",
+        ),
         key(
             "drainage",
             Choice(Drainage::WORDS),

@@ -66,7 +66,8 @@ fn read(
         record.error("quantity", format!("\"{measured}\" is about the footing, and there is no [footing]"), report);
     }
     if measured.is_of_flow() && !flow::flows(root) {
-        let message = format!("\"{measured}\" is about water that flows, and no material is \"coupled\" or \"undrained\"");
+        let message =
+            format!("\"{measured}\" is about water that flows, and no material is \"coupled\" or \"undrained\"");
         record.error("quantity", message, report);
     }
     if record.number("scale") == Some(0.0) {
@@ -127,8 +128,22 @@ fn is_of_motion(measured: Measurement) -> bool {
 }
 
 /// Keys that belong to some quantities.
-const KEYS: [&str; 14] =
-    ["percentile", "face", "at", "at_x", "box", "material", "body", "from", "to", "fixed", "surface", "rigid", "of", "drain"];
+const KEYS: [&str; 14] = [
+    "percentile",
+    "face",
+    "at",
+    "at_x",
+    "box",
+    "material",
+    "body",
+    "from",
+    "to",
+    "fixed",
+    "surface",
+    "rigid",
+    "of",
+    "drain",
+];
 
 /// The keys that belong to a quantity, and those that it needs.
 fn own_keys(measured: Measurement) -> (&'static [&'static str], &'static [&'static str]) {

@@ -163,8 +163,12 @@ pub(super) fn increasing<'a>(
         return None;
     }
     if let Some(late) = (1..rows.len()).find(|&k| rows[k].numbers[0] <= rows[k - 1].numbers[0]) {
-        let message =
-            format!("t = {} is not above {}, that of the row before", rows[late].numbers[0], rows[late - 1].numbers[0]);
+        let message = format!(
+            "{} = {} is not above {}, that of the row before",
+            if key == "line" { "x" } else { "t" },
+            rows[late].numbers[0],
+            rows[late - 1].numbers[0]
+        );
         report.error(rows[late].origin, &record.path_of(key), message);
         return None;
     }

@@ -2,7 +2,7 @@
 
 mod law;
 
-use super::{STANDARD_GRAVITY, reduction, water};
+use super::{STANDARD_GRAVITY, reduction};
 use crate::case::{Body, NamedMaterial, Stage};
 use crate::grid::GridSpec;
 use crate::record::Record;
@@ -77,7 +77,7 @@ fn read(
     report: &mut Report<'_>,
 ) -> Option<NamedMaterial> {
     let density = density(record, around.regime, report);
-    let saturated = density.and_then(|density| water::saturated(record, density, report));
+    let saturated = density.and_then(|density| saturated(record, density, report));
     let layer = Layer::of(number, around);
     let law = law(record, (layer.as_ref(), around.grid), report);
     let retardation = retardation(record, around.regime, report);
@@ -197,6 +197,26 @@ fn density(record: &Record, regime: Option<Regime>, report: &mut Report<'_>) -> 
         ));
     }
     Some(Some(density))
+}
+
+/// kg/m3  of a material below the water table; the outer option is `None` after an error.
+fn saturated(record: &Record, density: Option<f64>, report: &mut Report<'_>) -> Option<Option<f64>> {
+    const KEY: &str = "saturated_unit_weight";
+    if !record.gives(KEY) {
+        return Some(None);
+    }
+    let saturated = record.number(KEY)? / STANDARD_GRAVITY;
+    match density {
+        None => record.error(KEY, "it has none above the water: give unit_weight or density, too", report),
+        Some(dry) if saturated < dry => {
+            let [wet, dry] = [saturated, dry].map(|density| density * STANDARD_GRAVITY * 1e-3);
+            let message = format!("{wet:.6} kN/m3 is lighter than above the water, {dry:.6} kN/m3");
+            record.error(KEY, message, report);
+        }
+        Some(_) => {}
+    }
+    report.note(record.path_of("saturated density"), format!("{saturated}"), "saturated_unit_weight / 9.81 m/s2");
+    Some(Some(saturated))
 }
 
 /// s  of its damping, 0 without; `None` after an error.

@@ -1,7 +1,7 @@
 //! Water in the ground.
 
-use super::load::increasing;
 use super::STANDARD_GRAVITY;
+use super::load::increasing;
 use crate::case::{Case, Gravity, Support, Water};
 use crate::grid::GridSpec;
 use crate::record::Record;
@@ -89,31 +89,12 @@ fn table(record: &Record, (grid, end): (&GridSpec, Option<f64>), report: &mut Re
     Some(Ambient::Line(rows))
 }
 
-/// kg/m3  of a material below the water table; the outer option is `None` after an error.
-pub(super) fn saturated(record: &Record, density: Option<f64>, report: &mut Report<'_>) -> Option<Option<f64>> {
-    const KEY: &str = "saturated_unit_weight";
-    if !record.gives(KEY) {
-        return Some(None);
-    }
-    let saturated = record.number(KEY)? / STANDARD_GRAVITY;
-    match density {
-        None => record.error(KEY, "it has none above the water: give unit_weight or density, too", report),
-        Some(dry) if saturated < dry => {
-            let [wet, dry] = [saturated, dry].map(|density| density * STANDARD_GRAVITY * 1e-3);
-            let message = format!("{wet:.6} kN/m3 is lighter than above the water, {dry:.6} kN/m3");
-            record.error(KEY, message, report);
-        }
-        Some(_) => {}
-    }
-    report.note(record.path_of("saturated density"), format!("{saturated}"), "saturated_unit_weight / 9.81 m/s2");
-    Some(Some(saturated))
-}
-
 /// What only the whole case shows.
 pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
     let (Some(water), Some(written)) = (&case.water, record.record("water")) else { return };
     if case.shaking.iter().any(|(_, ground)| *ground != [0.0; 2]) {
-        let message = "the pressure of still water does not follow ground that shakes: [shaking] cannot be used with [water]";
+        let message =
+            "the pressure of still water does not follow ground that shakes: [shaking] cannot be used with [water]";
         report.error(written.origin, &written.path, message);
     }
     for (axis, upper) in [(0, 0), (0, 1), (1, 0), (1, 1)] {

@@ -173,7 +173,9 @@ impl Measurement {
             Self::RigidForce | Self::RigidDisplacement | Self::RigidVelocity => VECTOR,
             Self::RigidMoment | Self::RigidRotation | Self::RigidSlip => &[("", "")],
             Self::RigidGap | Self::RigidWork => &[("", "")],
-            Self::Momentum | Self::CentreOfMass | Self::Reaction | Self::Displacement | Self::Velocity | Self::Flux => VECTOR,
+            Self::Momentum | Self::CentreOfMass | Self::Reaction | Self::Displacement | Self::Velocity | Self::Flux => {
+                VECTOR
+            }
             Self::Stress | Self::MeanStress => STRESS,
             Self::SectionForces => SECTION,
             Self::StressNoise | Self::PressureNoise => NOISE,

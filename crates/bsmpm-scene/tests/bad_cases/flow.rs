@@ -29,9 +29,14 @@ pub const FLOW: &[Row] = &[
     row("porosity         = 0.6", "porosity = 60", "material.clay.porosity", "0 < porosity < 1"),
     row("porosity = 0.5", "porosity = 0.5\npermeability = 1e-9", "material.tight.permeability", "no meaning").down(1),
     row("drainage = \"undrained\"", "drainage = \"drained\"", "material.tight.drainage", "expected one of \"given\""),
-    row("drainage = \"undrained\"\nporosity = 0.5", "drainage = \"given\"", "material.tight", "beside soil in which").up(6),
-    row(CLAY, "model = \"modified-cam-clay\"\nkappa = 0.02\nlambda = 0.1\ncritical_ratio = 1\npreconsolidation = 1e5",
-        "material.clay.model", "not shown to be right"),
+    row("drainage = \"undrained\"\nporosity = 0.5", "drainage = \"given\"", "material.tight", "beside soil in which")
+        .up(6),
+    row(
+        CLAY,
+        "model = \"modified-cam-clay\"\nkappa = 0.02\nlambda = 0.1\ncritical_ratio = 1\npreconsolidation = 1e5",
+        "material.clay.model",
+        "not shown to be right",
+    ),
     row("bulk     = \"2.2 GPa\"", "bulk = 0", "water.bulk", "bulk > 0"),
     row("bulk     = \"2.2 GPa\"", "bulk = \"2.2 m\"", "water.bulk", "expected a stress"),
     // Drains and inflows.
@@ -67,7 +72,12 @@ pub const FLOW: &[Row] = &[
 
 /// Words of water that flows in a case without any.
 pub const WITHOUT_FLOW: &[Row] = &[
-    row("type  = \"quasi-static\"\nend   = 1.0", "type = \"consolidation\"\nend = 1.0", "analysis.type", "no water flows"),
+    row(
+        "type  = \"quasi-static\"\nend   = 1.0",
+        "type = \"consolidation\"\nend = 1.0",
+        "analysis.type",
+        "no water flows",
+    ),
     row("[output]", "[[drain]]\nsurface = true\n[output]", "drain.0", "no material lets water flow"),
     row("[output]", "[water]\nbulk = 2e9\nlevel = 1\n[output]", "water.bulk", "no material is \"coupled\"").down(1),
     row("poisson = 0.3", "poisson = 0.3\nporosity = 0.4", "material.soil.porosity", "no meaning with drainage").down(1),
@@ -78,6 +88,7 @@ pub const WITHOUT_FLOW: &[Row] = &[
         "its time has no unit",
     )
     .up(13),
-    row("[output]", "[[history]]\nquantity = \"water-balance\"\n[output]", "history.0.quantity", "no material is").down(1),
+    row("[output]", "[[history]]\nquantity = \"water-balance\"\n[output]", "history.0.quantity", "no material is")
+        .down(1),
     row("every = 0.5", "every = 0.5\nfields = [\"flux\"]", "output.fields", "no water flows").down(1),
 ];

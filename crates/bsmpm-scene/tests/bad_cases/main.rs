@@ -10,6 +10,7 @@ mod rigid;
 mod rows;
 mod stages;
 mod texts;
+mod water;
 
 use bsmpm_scene::{Case, Error, Place};
 
@@ -17,6 +18,7 @@ const DYNAMIC: &str = include_str!("../full.toml");
 const STATIC: &str = include_str!("static.toml");
 const RUBBING: &str = include_str!("rubbing.toml");
 const SEEPING: &str = include_str!("seeping.toml");
+const WET: &str = include_str!("wet.toml");
 
 /// One malformed case: `find` in the base becomes `put`, and an error must say `says` of `key`, `moved` lines below.
 pub struct Row {
@@ -67,7 +69,7 @@ fn verify_all(base: &str, rows: &[Row]) {
 
 #[test]
 fn the_bases_are_valid() {
-    for base in [DYNAMIC, STATIC, RUBBING, SEEPING] {
+    for base in [DYNAMIC, STATIC, RUBBING, SEEPING, WET] {
         Case::from_text("case.toml", base, &[]).unwrap_or_else(|errors| panic!("{errors:#?}"));
     }
 }
@@ -123,6 +125,12 @@ fn initial_stress_and_histories() {
 fn water_that_flows() {
     verify_all(SEEPING, flow::FLOW);
     verify_all(STATIC, flow::WITHOUT_FLOW);
+}
+
+#[test]
+fn still_water() {
+    verify_all(WET, water::WATER);
+    verify_all(DYNAMIC, water::SHAKEN);
 }
 
 #[test]

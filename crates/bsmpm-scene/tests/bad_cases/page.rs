@@ -108,7 +108,10 @@ const WRONG: &[Wrong] = &[
         "water that flows in no time",
         &[("poisson = 0.3", "poisson = 0.3\ndrainage = \"coupled\"\nporosity = 0.4\npermeability = \"1e-9 m/s\"")],
     ),
-    at_rest("consolidation of dry ground", &[("\"quasi-static\"\nend   = 1.0", "\"consolidation\"\nend   = \"1 day\"")]),
+    at_rest(
+        "consolidation of dry ground",
+        &[("\"quasi-static\"\nend   = 1.0", "\"consolidation\"\nend   = \"1 day\"")],
+    ),
     at_rest("a drain in ground without flow", &[("[output]", "[[drain]]\nsurface = true\n\n[output]")]),
     wet("steps that shrink", &[("growth = 1.2", "growth = 0.9")]),
     wet("equal steps that grow", &[("dt     = \"1 h\"", "steps  = 100")]),

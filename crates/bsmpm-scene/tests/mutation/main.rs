@@ -130,7 +130,8 @@ fn bases() -> Vec<String> {
     let wet = |table: &str| {
         let soil = "poisson = 0.3\nunit_weight = \"19 kN/m3\"\nsaturated_unit_weight = \"20 kN/m3\"";
         let fields = "every = 0.5\nfields = [\"pore-pressure\"]";
-        let rest = "[gravity]\nacceleration = [0.0, -9.81]\n\n[[history]]\nquantity = \"pore-pressure\"\nat = [1.0, 0.5]";
+        let rest =
+            "[gravity]\nacceleration = [0.0, -9.81]\n\n[[history]]\nquantity = \"pore-pressure\"\nat = [1.0, 0.5]";
         let dry = STATIC.replacen("poisson = 0.3", soil, 1).replacen("every = 0.5", fields, 1);
         format!("{dry}\n[water]\n{table}\nunit_weight = \"10 kN/m3\"\n\n{rest}\n")
     };

@@ -3,7 +3,7 @@
 
 use crate::support::Scratch;
 use crate::support::cases::changed;
-use crate::support::results::{all_frames, at, differences, history, last_frame, manifest};
+use crate::support::results::{all_frames, at, history, last_frame, manifest};
 
 /// Level ground below a level of 12 m, its top at 7 m.
 const GROUND: &str = r#"
@@ -53,6 +53,7 @@ at = [1, 5.5]
 "#;
 const SLOPE: &str = "polygon = [[-1, 2], [3, 2], [3, 5], [0, 9], [-1, 9]]";
 const LEVEL: &str = "polygon = [[-1, 2], [3, 2], [3, 9], [-1, 9]]";
+const TIGHT: &str = "[solver]\ntolerance = 1e-14\nforce_tolerance = 1e-10\n";
 /// Pa  of the water over the ground's height
 const PRESSURE: f64 = 9810.0 * 7.0;
 
@@ -81,10 +82,12 @@ fn submerged_level_ground_has_its_buoyant_weight_and_rests() {
 /// The same points, stresses and displacements, of a cut slope below water and of one of buoyant weight.
 #[test]
 fn a_submerged_slope_is_one_of_buoyant_weight() {
-    let slope = changed(GROUND, LEVEL, SLOPE).replace("k0 = 0.5", "gravity = \"elastic\"");
+    let slope = changed(GROUND, LEVEL, SLOPE).replace("[initial]\nk0 = 0.5\nequilibrium = \"plastic\"\n", TIGHT);
+    let slope = changed(&slope, "-9.81]", "-9.81]\nramp = 1.0");
     let dry = changed(&slope, "[water]\nlevel = 12.0\n", "");
     let dry = dry.replace("saturated_unit_weight = \"20 kN/m3\"\n", "").replace("17 kN/m3", "10.19 kN/m3");
-    let dry = dry.replace("fields = [\"pore-pressure\"]", "").replace("at = [1, 5.5]", "at = [1, 5.5]\nname = \"none\"");
+    let dry =
+        dry.replace("fields = [\"pore-pressure\"]", "").replace("at = [1, 5.5]", "at = [1, 5.5]\nname = \"none\"");
     let scratch = Scratch::with_case(&slope);
     scratch.write("dry.toml", &dry);
     scratch.mpirun(1, &["case.toml", "-q", "-o", "wet"]).expect(0);
@@ -95,13 +98,14 @@ fn a_submerged_slope_is_one_of_buoyant_weight() {
     println!("submerged and buoyant: {largest} Pa of {PRESSURE}");
     assert!(wet.len() == dry.len() && largest < 1e-8 * PRESSURE, "{largest}");
     let [wet, dry] = ["wet", "dry"].map(|name| at(&history(&scratch.path(name)), "max-displacement", 1.0));
-    assert!((wet - dry).abs() < 1e-12, "{wet} {dry}");
+    println!("moved {wet:e} and {dry:e} m");
+    assert!(dry > 1e-5 && (wet - dry).abs() < 1e-8 * dry, "{wet} {dry}");
 }
 
 /// The level falls through the ground, on two ranks and with a restart between.
 #[test]
 fn a_level_that_falls_is_followed_and_goes_on_to_the_bit() {
-    let falling = changed(GROUND, "level = 12.0", "level_path = [[0.0, 12.0], [1.0, 4.0]]");
+    let falling = changed(GROUND, "level = 12.0", "level_path = [[0.0, 12.0], [1.0, 4.0]]") + TIGHT;
     let scratch = Scratch::with_case(&falling);
     scratch.mpirun(1, &["case.toml", "-q", "-o", "one"]).expect(0);
     scratch.mpirun(2, &["case.toml", "-q", "-o", "two"]).expect(0);
@@ -114,8 +118,9 @@ fn a_level_that_falls_is_followed_and_goes_on_to_the_bit() {
     }
     let [one, two] = [&one, &two].map(|table| at(table, "max-displacement", 1.0));
     assert!(one > 1e-4 && (one - two).abs() < 1e-8 * one, "{one} {two}");
-    scratch.mpirun(1, &["case.toml", "-q", "-o", "cut", "--stop-after-steps", "2"]).expect(3);
-    scratch.mpirun(1, &["--restart", "cut", "-q"]).expect(0);
-    let found = differences(&scratch.path("one"), &scratch.path("cut"));
-    assert!(found.is_empty(), "{found:?}");
+    let part = ["case.toml", "-q", "-o", "part", "--restart", "auto"];
+    scratch.mpirun(1, &[&part[..], &["--max-steps", "2"]].concat()).expect(75);
+    scratch.mpirun(1, &part).expect(0);
+    let text = |name: &str| std::fs::read_to_string(scratch.path(name).join("history.csv")).unwrap();
+    assert!(text("one") == text("part"));
 }

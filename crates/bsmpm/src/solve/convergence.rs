@@ -19,9 +19,6 @@ const ALREADY: f64 = 1e-2;
 /// criteria have such forces (.01 to .07 of the tolerance in a wall's active wedge, .5 at most), so that none is
 /// balanced worse.
 const SETTLED: f64 = 1e-1;
-/// Largest part of the water that is stored, flows or leaves that may be out of balance: the forces' tolerance where that
-/// is smaller.
-const WATER: f64 = 1e-4;
 /// Iterations over which the rate of convergence is taken.
 const WINDOW: usize = 20;
 /// Iterations that a quasi-Newton method may still need to be left going: about the cost of the exact iterations that
@@ -55,7 +52,7 @@ impl Convergence {
         let water = self.water(balance).unwrap_or(0.0);
         (self.history.is_empty()
             && self.measure(balance) <= ALREADY * self.criteria.force
-            && water <= ALREADY * self.tolerance_of_water())
+            && water <= ALREADY * self.criteria.water())
             || (self.round_off.covers(balance, problem) && water == 0.0)
     }
 
@@ -73,11 +70,6 @@ impl Convergence {
     /// The measure of the water, where it flows: what is out of balance over what is stored, flows or leaves.
     pub fn water(&self, balance: &Balance) -> Option<f64> {
         balance.water.as_ref().map(|water| water.measure(self.round_off.of_water()))
-    }
-
-    /// What that must be below.
-    fn tolerance_of_water(&self) -> f64 {
-        WATER.min(self.criteria.force)
     }
 
     /// Norm of what is round-off in the forces, N.
@@ -108,7 +100,7 @@ impl Convergence {
         if self.settled.is_none() && force <= SETTLED * self.criteria.force {
             self.settled = Some(u.to_vec());
         }
-        let is_dry_or_balanced = water.is_none_or(|water| water < self.tolerance_of_water());
+        let is_dry_or_balanced = water.is_none_or(|water| water < self.criteria.water());
         energy < self.criteria.energy && force < self.criteria.force && is_dry_or_balanced
     }
 
@@ -154,7 +146,6 @@ impl Convergence {
             energy: self.history.last().map_or(f64::INFINITY, |measures| measures.energy),
             force,
             material,
-            water: self.water(&residual.balance).map(|water| (water, self.tolerance_of_water())),
             criteria: Box::new(self.criteria),
             history: self.history.clone(),
             worst: worst_nodes(problem, residual),

@@ -1,4 +1,5 @@
-//! Still water: its pressure and what it does to the ground (see `water.md` beside the parent).
+//! Still water: its pressure and what it does to the ground.
+#![doc = include_str!("../water.md")]
 
 use crate::points::Points;
 use crate::schedule::between;
@@ -58,8 +59,8 @@ impl<'a> StillWater<'a> {
         table.map_or(0.0, |(height, _)| self.unit_weight * (height - x[D - 1]).max(0.0))
     }
 
-    /// N  force of the water on point `p`: -J V0 grad p_a, and what the water weighs that its pores have taken up or
-    /// given off, which the point's mass does not know. Nothing above the water table.
+    /// N  force of the water on point `p`: -J V0 grad p_a, and, where no water flows, what the water weighs that its
+    /// pores have taken up or given off, which the point's mass does not know then. Nothing above the water table.
     pub fn force<const D: usize>(&self, points: &Points<D>, p: usize) -> Vector<D> {
         let (x, volume) = (&points.x[p], points.volume[p]);
         let mut force = Vector::zeros();
@@ -69,7 +70,9 @@ impl<'a> StillWater<'a> {
             if slope != 0.0 {
                 force[0] = -self.unit_weight * slope * volume * points.F.at(p).determinant();
             }
-            force[D - 1] = self.unit_weight * volume;
+            // Water that flows changes the mass of the points by itself.
+            let weighed = if points.pore_pressure.is_some() { points.F.at(p).determinant() } else { 1.0 };
+            force[D - 1] = self.unit_weight * volume * weighed;
         }
         force
     }
@@ -78,6 +81,24 @@ impl<'a> StillWater<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::points::Seed;
+
+    /// An infinite slope of 20 degrees whose water table is its surface: what a point weighs and what the water does to
+    /// it, along the slope and normal to it, give tan phi/tan beta (1 - gamma_w/(gamma cos^2 beta)).
+    #[test]
+    fn seepage_along_a_slope_lowers_its_factor_of_safety() {
+        let (beta, phi) = (20.0_f64.to_radians(), 35.0_f64.to_radians());
+        let line = Ambient::Line(vec![(0.0, 0.0), (100.0, 100.0 * beta.tan())]);
+        let (x, v) = (Vector::<2>::new(50.0, 10.0), Vector::<2>::zeros());
+        let seed = Seed { id: 0, material: 0, x, volume: 0.25, mass: 0.25 * 20.0 / 9.81, v };
+        let points = Points::<2>::from_seeds([seed], false);
+        let weight = Vector::<2>::new(0.0, -9.81) * points.mass[0];
+        let acts = weight + StillWater::new(&line, 9.81, 0.0).force(&points, 0);
+        let (down, into) = (Vector::<2>::new(-beta.cos(), -beta.sin()), Vector::<2>::new(beta.sin(), -beta.cos()));
+        let factor = phi.tan() * acts.dot(&into) / acts.dot(&down);
+        assert!((factor - 0.8552).abs() < 5e-5, "{factor}");
+        assert!((factor - phi.tan() / beta.tan() * (1.0 - 9.81 / (20.0 * beta.cos().powi(2)))).abs() < 1e-12);
+    }
 
     #[test]
     fn a_table_is_linear_between_its_rows_and_level_beyond_them() {

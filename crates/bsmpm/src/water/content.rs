@@ -4,8 +4,8 @@ use crate::water::flow::Soil;
 use crate::water::retention::Retained;
 
 impl<const D: usize> Soil<D> {
-    /// -  water per volume of the start, of soil that has become `J` times that volume, under the excess pressure `p`,
-    /// Pa; `bulk`: of the water, Pa. Grains keep their volume.
+    /// Water per volume of the start, of soil that has become `J` times that volume, under the excess pressure `p`, Pa;
+    /// `bulk`: of the water, Pa. Grains keep their volume.
     #[inline]
     pub fn content(&self, bulk: f64, J: f64, p: f64) -> f64 {
         self.pores(J) * (p / bulk).exp()
@@ -23,7 +23,7 @@ impl<const D: usize> Soil<D> {
         self.retention.as_ref().map_or(0.0, |retention| retention.chord(before, now, weight))
     }
 
-    /// -  pores per volume of the start; none is left where that is not positive
+    /// Pores per volume of the start; none is left where that is not positive
     #[inline]
     pub fn pores(&self, J: f64) -> f64 {
         J - 1.0 + self.porosity

@@ -18,6 +18,8 @@ pub struct Flow<const D: usize> {
     pub faces: Vec<DrainedFace>,
     /// surfaces of bodies through which water is put in
     pub inflows: Vec<Inflow<D>>,
+    /// Pa  the largest suction above still water at the start, where soils keep water under suction
+    pub suction: f64,
 }
 
 impl<const D: usize> Flow<D> {

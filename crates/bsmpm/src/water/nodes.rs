@@ -91,7 +91,7 @@ impl<const D: usize> Pores<D> {
         let pressure = points.pore_pressure.as_ref();
         let sums = halo.sum(&scalars::of_scalars(&shape, |p| {
             let volume = wet[p].as_ref().map_or(0.0, |wet| wet.volume);
-            [volume, volume * pressure.map_or(0.0, |pressure| pressure[p])].map(|value| (value, Vector::zeros()))
+            [volume, volume * pressure.map_or_else(|| water.excess_at_start(&points.x[p]), |pressure| pressure[p])].map(|value| (value, Vector::zeros()))
         }));
         let mut largest = [sums.chunks_exact(2).map(|of| of[0]).fold(0.0, f64::max)];
         halo.maximum(&mut largest);
@@ -134,7 +134,7 @@ impl<const D: usize> Wet<D> {
         let law = &model.materials[material];
         let stiffness = law.elastic().oedometric() * law.relative_stiffness(points.height(p));
         let (volume, J, x) = (points.volume[p], points.F.at(p).determinant(), &points.x[p]);
-        let pressure = points.pore_pressure.as_ref().map_or(0.0, |pressure| pressure[p]);
+        let pressure = points.pore_pressure.as_ref().map_or_else(|| water.excess_at_start(x), |pressure| pressure[p]);
         let edges = model.grid.locate(x).map_or_else(Vector::zeros, |cell| model.grid.cell_box(&cell).1);
         let still = water.still_gradient(x, end);
         let holds = flow.retains();

@@ -83,7 +83,10 @@ pub fn save<K: Kinematics<D>, const D: usize>(
         pressures[p] = *pressure + moved;
         gradients[p] = state.gradient + water.still_gradient(&points.x[p], pores.end);
         let taken = wet.volume * (state.content - wet.content);
-        points.mass[p] += density * taken;
+        // What is weightless stays so.
+        if points.mass[p] > 0.0 {
+            points.mass[p] += density * taken;
+        }
         stored.push(taken);
     }
     (points.pore_pressure, points.pressure_gradient) = (Some(pressures), Some(gradients));

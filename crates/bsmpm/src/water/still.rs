@@ -39,6 +39,13 @@ impl<const D: usize> Water<D> {
         self.surface(x, t).map_or(0.0, |(height, _)| self.unit_weight * (height - x[D - 1]).max(least))
     }
 
+    /// Pa  excess pressure at the place `x` before the first step: none, but where the suction above the level has its
+    /// limit
+    pub fn excess_at_start(&self, x: &Vector<D>) -> f64 {
+        let Some(flow) = self.flow.as_ref().filter(|flow| flow.retains()) else { return 0.0 };
+        (-flow.suction - self.still_pressure(x, 0.0)).max(0.0)
+    }
+
     /// Pa/m  its gradient
     pub fn still_gradient(&self, x: &Vector<D>, t: f64) -> Vector<D> {
         let Some((_, slope)) = self.surface(x, t).filter(|(height, _)| *height > x[D - 1] || self.holds()) else {

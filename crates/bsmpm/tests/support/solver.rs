@@ -224,6 +224,11 @@ impl Dense {
         Self { components, offsets, number: Vec::new(), matrix: DMatrix::zeros(0, 0) }
     }
 
+    /// For the systems of pore pressures of `grid`.
+    pub fn of_pressures<const D: usize>(grid: &Grid<D>) -> Self {
+        Self { components: 1, offsets: grid.lowered_offsets(), number: Vec::new(), matrix: DMatrix::zeros(0, 0) }
+    }
+
     /// Entry of two nodal components; zero where one of them is no unknown.
     pub fn entry(&self, row: usize, column: usize) -> f64 {
         self.number[row].zip(self.number[column]).map_or(0.0, |at| self.matrix[at])

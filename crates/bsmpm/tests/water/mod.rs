@@ -1,5 +1,11 @@
 //! Water that flows through a skeleton which deforms, against closed forms.
 
+mod draining;
+mod dynamic;
+mod element;
+mod large;
+mod mandel;
+mod pair;
 mod partial;
 mod terzaghi;
 
@@ -15,11 +21,16 @@ use bsmpm::water::Water;
 use bsmpm::water::ambient::Ambient;
 use bsmpm::water::flow::{Drain, DrainedFace, Flow, Given, Permeability, PermeabilityLaw, Soil};
 
+/// Where the points of a load on an edge of 1 m are.
+pub const LOAD_PARTS: [f64; 6] = [1.0 / 12.0, 3.0 / 12.0, 5.0 / 12.0, 7.0 / 12.0, 9.0 / 12.0, 11.0 / 12.0];
+
 /// Plane strain.
 pub type Plane = Scene<PlaneStrain, 2>;
 
 /// N/m3
 pub const WEIGHT: f64 = 1e4;
+/// kg/m3  of grains and water together
+pub const DENSITY: f64 = 2e3;
 /// Pa  stiffness of the columns in one direction
 pub const M: f64 = 1e6;
 
@@ -33,7 +44,7 @@ pub fn flowing(law: PermeabilityLaw) -> Water<2> {
     let permeability = Permeability { along: at(WEIGHT / M, WEIGHT / M), law };
     let soil = Soil { porosity: 0.6, permeability: Some(permeability), retention: None };
     let (soils, bulk) = (vec![Some(soil)], f64::INFINITY);
-    let flow = Flow { bulk, soils, drains: Vec::new(), faces: Vec::new(), inflows: Vec::new() };
+    let flow = Flow { bulk, soils, drains: Vec::new(), faces: Vec::new(), inflows: Vec::new(), suction: 0.0 };
     Water { unit_weight: WEIGHT, ambient: Ambient::None, flow: Some(flow) }
 }
 
@@ -45,7 +56,7 @@ pub fn column(cells: usize, cut: f64, load: f64, law: PermeabilityLaw) -> Plane 
     let is_cut = cut < 1.0;
     let rows = if is_cut { cells + 1 } else { cells };
     let mut scene = Plane::new([axis(h, 1, 2), axis(h, rows, 2)], hencky(M, 0.0), Regime::QuasiStatic);
-    scene = scene.body([0..1, 0..cells], 3, 1.0, |x| x * 0.0).rollers([0]).support(Support::roller(1, false));
+    scene = scene.body([0..1, 0..cells], 3, DENSITY, |x| x * 0.0).rollers([0]).support(Support::roller(1, false));
     let surface: Vec<SurfacePoint<2>> =
         (0..3).map(|k| SurfacePoint { x: at(h * (k as f64 + 0.5) / 3.0, 1.0), area: h / 3.0 }).collect();
     let mut water = flowing(law);
@@ -76,14 +87,20 @@ pub fn column(cells: usize, cut: f64, load: f64, law: PermeabilityLaw) -> Plane 
 }
 
 /// Steps a scene to these times one after the other; `watch` sees the state after each. Panics on a failure.
-pub fn run(
+pub fn run(scene: &mut Plane, times: impl IntoIterator<Item = f64>, watch: impl FnMut(f64, &Points<2>, &StepReport)) {
+    run_from(scene, 0.0, times, watch);
+}
+
+/// The same from a time on, with no displacement to start from.
+pub fn run_from(
     scene: &mut Plane,
+    from: f64,
     times: impl IntoIterator<Item = f64>,
     mut watch: impl FnMut(f64, &Points<2>, &StepReport),
 ) {
     let halo = scene.halo();
     let mut solver = Skyline::new(&scene.model.grid);
-    let (mut guess, mut t, mut last) = (vec![0.0; scene.model.grid.nodes() * 2], 0.0, 0.0);
+    let (mut guess, mut t, mut last) = (vec![0.0; scene.model.grid.nodes() * 2], from, 0.0);
     for next in times {
         let (dt, mut counts) = (next - t, Counts::default());
         if last > 0.0 {

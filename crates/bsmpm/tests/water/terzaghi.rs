@@ -50,3 +50,55 @@ fn settlement_and_pressures_follow_the_closed_form() {
     println!("errors {worst:.5?}, {iterations} iterations in {steps} steps, balance {left:.1e}");
     assert!(worst[0] < 0.002 && worst[1] < 0.003 && left < 1e-12);
 }
+
+/// Largest pore pressure of the points over the load.
+fn largest(points: &bsmpm::points::Points<2>) -> f64 {
+    points.pore_pressure.iter().flatten().copied().fold(0.0, f64::max) / LOAD
+}
+
+#[test]
+fn pressures_do_not_oscillate_in_the_shortest_step() {
+    for cut in [1.0, 0.35] {
+        let mut scene = column(20, cut, LOAD, PermeabilityLaw::Constant);
+        let mut most = 0.0;
+        run(&mut scene, [1e-6 / 400.0], |_, points, report| {
+            most = largest(points);
+            println!("cut {cut}: largest p/p0 - 1 {:.1e}, {} iterations", most - 1.0, report.iterations);
+        });
+        assert!(most - 1.0 < 0.01);
+    }
+}
+
+#[test]
+fn fifty_times_as_many_steps_change_nothing() {
+    let settled = [20, 1000].map(|count| {
+        let mut scene = column(20, 1.0, LOAD, PermeabilityLaw::Constant);
+        let mut last = 0.0;
+        run(&mut scene, (1..=count).map(|k| 0.2 * f64::from(k) / f64::from(count)), |_, points, _| {
+            last = degree(points)
+        });
+        last
+    });
+    println!("U(.2) {settled:.5?} in 20 and 1000 steps");
+    assert!((settled[0] - settled[1]).abs() < 0.004 && (settled[1] - 0.504088).abs() < 0.002);
+}
+
+#[test]
+fn a_drained_surface_may_cut_the_cells() {
+    let of = |cut: f64| {
+        let mut scene = column(20, cut, LOAD, PermeabilityLaw::Constant);
+        let mut last = 0.0;
+        run(&mut scene, geometric(1e-4, 0.2, 100), |_, points, report| {
+            last = degree(points);
+            let water = report.water.as_ref().expect("water flows");
+            assert!((water.stored + water.crossed.out() - water.left).abs() < 1e-12 * water.crossed.out());
+        });
+        last
+    };
+    let whole = of(1.0);
+    for cut in [0.05, 0.2, 0.35, 0.5, 0.65, 0.8, 0.95] {
+        let found = of(cut);
+        println!("cut {cut}: U(.2) {found:.5}, {:+.5}", found - whole);
+        assert!((found - whole).abs() < 0.002);
+    }
+}

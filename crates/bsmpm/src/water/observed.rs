@@ -1,0 +1,106 @@
+//! The pore water at the points, as histories and frames tell it.
+
+use crate::exact::Exact;
+use crate::model::Model;
+use crate::parallel::Halo;
+use crate::points::Points;
+use crate::tensor::{Symmetric, Vector};
+use crate::water::Water;
+use crate::water::flow::{Flow, Soil};
+
+/// A scene's water and the points at a time, if it has water.
+#[derive(Clone, Copy)]
+pub struct PoreWater<'a, const D: usize> {
+    water: &'a Water<D>,
+    points: &'a Points<D>,
+    t: f64,
+    weight: Vector<D>, // Pa/m  of the water
+    grown: f64,        // part of its weight that still water has
+}
+
+impl<'a, const D: usize> PoreWater<'a, D> {
+    /// At time `t`.
+    pub fn of<K>(model: &'a Model<K, D>, points: &'a Points<D>, t: f64) -> Option<Self> {
+        let water = model.water.as_ref()?;
+        let grown = model.gravity.as_ref().map_or(0.0, |gravity| gravity.grown(t));
+        Some(Self { water, points, t, weight: water.weight(model, t), grown })
+    }
+
+    fn flow(&self, p: usize) -> Option<(&'a Flow<D>, &'a Soil<D>)> {
+        let flow = self.water.flow.as_ref()?;
+        Some((flow, flow.soils[usize::from(self.points.material[p])].as_ref()?))
+    }
+
+    /// Pa  pressure of the still water at point `p`
+    fn still(&self, p: usize) -> f64 {
+        self.grown * self.water.still_pressure(&self.points.x[p], self.t)
+    }
+
+    /// Pa  excess pressure at point `p`; 0 where no water flows
+    pub fn excess(&self, p: usize) -> f64 {
+        let start = || self.water.excess_at_start(&self.points.x[p]);
+        self.points.pore_pressure.as_ref().map_or_else(start, |pressure| pressure[p])
+    }
+
+    /// Pa  pore pressure at point `p`, positive in compression
+    pub fn pressure(&self, p: usize) -> f64 {
+        self.still(p) + self.excess(p)
+    }
+
+    /// Pa  as much of it as acts in the total stress: chi p
+    fn borne(&self, p: usize) -> f64 {
+        let pressure = self.pressure(p);
+        self.flow(p).map_or(1.0, |(_, soil)| soil.retained(pressure, self.water.unit_weight).effective) * pressure
+    }
+
+    /// -  share of the pores that water fills at point `p`; 1 where none may empty
+    pub fn saturation(&self, p: usize) -> f64 {
+        self.flow(p).map_or(1.0, |(_, soil)| soil.retained(self.pressure(p), self.water.unit_weight).saturation)
+    }
+
+    /// Pa  Cauchy stress of grains and water together at point `p`
+    pub fn total_stress(&self, p: usize) -> Symmetric {
+        let mut stress = self.points.sigma.at(p);
+        stress.0[..3].iter_mut().for_each(|normal| *normal -= self.borne(p));
+        stress
+    }
+
+    /// -  share of pores in the volume at point `p`; 0 where no water flows
+    pub fn porosity(&self, p: usize) -> f64 {
+        let J = self.points.F.at(p).determinant();
+        self.flow(p).map_or(0.0, |(_, soil)| soil.pores(J) / J)
+    }
+
+    /// m/s  Darcy's flux relative to the grains at point `p`; zero where nothing flows, and before the first step
+    pub fn flux(&self, p: usize) -> Vector<D> {
+        let J = self.points.F.at(p).determinant();
+        let conductivity = self.water.flow.as_ref().and_then(|flow| flow.permeability(self.points.material[p], J));
+        let (Some(conductivity), Some(gradient)) = (conductivity, &self.points.pressure_gradient) else {
+            return Vector::zeros();
+        };
+        let relative = self
+            .flow(p)
+            .map_or(1.0, |(_, soil)| soil.retained(self.pressure(p), self.water.unit_weight).permeability);
+        -conductivity.component_mul(&(gradient[p] - self.weight)) * relative / self.water.unit_weight
+    }
+
+    /// m3  (per metre in plane strain)  of water that all points have taken in since the start, at its density then.
+    /// One reduction.
+    pub fn gained(&self, halo: &dyn Halo) -> f64 {
+        let of = |p: usize| {
+            let Some((flow, soil)) = self.flow(p) else { return 0.0 };
+            let J = self.points.F.at(p).determinant();
+            if !flow.retains() {
+                return self.points.volume[p] * (soil.content(flow.bulk, J, self.excess(p)) - soil.porosity);
+            }
+            let held = |J: f64, p: f64| {
+                soil.content(flow.bulk, J, p) * soil.retained(p, self.water.unit_weight).saturation
+            };
+            let x = self.points.x[p] - self.points.u[p];
+            let start = self.water.still_pressure(&x, 0.0) + self.water.excess_at_start(&x);
+            self.points.volume[p] * (held(J, self.pressure(p)) - held(1.0, start))
+        };
+        let gained: Exact = (0..self.points.len()).map(of).collect();
+        halo.total(&[gained])[0]
+    }
+}

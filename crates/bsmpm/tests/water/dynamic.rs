@@ -1,0 +1,43 @@
+//! A column with inertia under a load that comes at once: waves that the water damps (telegraph equation).
+
+use super::{M, column, run, settlement};
+use bsmpm::model::Regime;
+use bsmpm::points::Motion;
+use bsmpm::step::mass::MassMatrix;
+use bsmpm::tensor::Vector;
+use bsmpm::water::flow::PermeabilityLaw;
+
+/// s M/(q H) at t sqrt(M/rho)/H = .5, 1, 2, 4, of gamma_w H/(k sqrt(M rho)) = 1, 10, 100.
+const TABLE: [(f64, [f64; 4]); 3] = [
+    (1.0, [0.444565, 0.801456, 1.347154, 0.882610]),
+    (10.0, [0.238316, 0.347513, 0.498192, 0.697688]),
+    (100.0, [0.079386, 0.112555, 0.159377, 0.225535]),
+];
+const TIMES: [f64; 4] = [0.5, 1.0, 2.0, 4.0];
+
+#[test]
+fn water_damps_the_waves_of_a_column_as_the_telegraph_equation_says() {
+    let load = 1e-5 * M;
+    for (damping, expected) in TABLE {
+        let mut scene = column(20, 1.0, load, PermeabilityLaw::Constant);
+        scene.model.regime = Regime::Dynamic;
+        // rho = M, in which the unit of time is H sqrt(rho/M) = 1 s.
+        scene.points.mass = scene.points.volume.iter().map(|volume| volume * M).collect();
+        scene.model.mass = MassMatrix::Consistent; // lumped: off by .029
+        let rest = vec![Vector::<2>::zeros(); scene.points.len()];
+        scene.points.motion = Some(Motion { v: rest.clone(), a: rest });
+        let flow = scene.model.water.as_mut().and_then(|water| water.flow.as_mut()).expect("it flows");
+        let along = &mut flow.soils[0].as_mut().and_then(|soil| soil.permeability.as_mut()).expect("a soil").along;
+        *along *= 1.0 / (damping * along[1] * M / super::WEIGHT);
+        let (mut found, mut iterations) = (Vec::new(), 0);
+        run(&mut scene, (1..=400).map(|k| 0.01 * f64::from(k)), |t, points, report| {
+            iterations += report.iterations;
+            if TIMES.iter().any(|of| (of - t).abs() < 1e-9) {
+                found.push(settlement(points) * M / load);
+            }
+        });
+        let off = found.iter().zip(expected).map(|(found, expected)| (found - expected).abs()).fold(0.0, f64::max);
+        println!("b = {damping}: {found:.5?} ({expected:?}), off by {off:.4}, {iterations} iterations in 400 steps");
+        assert!(off < 0.02);
+    }
+}

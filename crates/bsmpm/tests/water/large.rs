@@ -1,0 +1,92 @@
+//! Consolidation by large strains, against a solution by lines (200 and 400 cells, extrapolated).
+
+use super::{DENSITY, M, Plane, column, geometric, run};
+use bsmpm::background::{Background, Extent, Kind};
+use bsmpm::points::Points;
+use bsmpm::stabilisation::Stabilisation;
+use bsmpm::water::flow::{Course, Given, PermeabilityLaw};
+
+/// N/m3  of water whose own weight does nothing to a column of the stiffness M
+const LIGHT: f64 = 1.0;
+
+const T: [f64; 5] = [0.05, 0.1, 0.2, 0.5, 1.0];
+
+/// A column whose top leaves the cells behind: drained by points of its surface.
+fn settling(cells: usize, load: f64, law: PermeabilityLaw) -> Plane {
+    let mut scene = column(cells, 0.999, load, law)
+        .stabilised(Stabilisation::ConsistentFBar)
+        .background(Some(Background { kind: Kind::Strain, coefficient: 1e-2, extent: Extent::PartlyFilled }));
+    (scene.model.criteria.energy, scene.model.criteria.force) = (1e-8, 1e-5);
+    scene
+}
+
+/// Settlement of the surface over the height, and excess pressure at the base over M, of the table's times.
+fn consolidated(mut scene: Plane, (first, steps): (f64, usize)) -> Vec<[f64; 2]> {
+    let mut times = geometric(first, 1.0, steps);
+    times.extend(T);
+    times.sort_by(f64::total_cmp);
+    times.dedup_by(|a, b| (*a - *b).abs() < 1e-9);
+    let (mut found, mut iterations, mut steps, mut worst) = (Vec::new(), 0, 0, 0.0_f64);
+    run(&mut scene, times, |t, points, report| {
+        (iterations, steps) = (iterations + report.iterations, steps + 1);
+        let water = report.water.as_ref().expect("water flows");
+        worst = worst.max((water.stored + water.crossed.out() - water.left).abs() / water.crossed.out().abs());
+        if T.iter().any(|of| (of - t).abs() < 1e-9) {
+            found.push([surface(points), base(points)]);
+        }
+    });
+    println!("{iterations} iterations in {steps} steps, balance of the water {worst:.1e}");
+    assert!(worst < 1e-12);
+    found
+}
+
+/// From the volumes of the points, which fill the column.
+fn surface(points: &Points<2>) -> f64 {
+    let volume = |p: usize| points.volume[p] * points.F.at(p).determinant();
+    let all = (0..points.len()).map(volume).sum::<f64>() / points.volume.iter().sum::<f64>();
+    1.0 - all
+}
+
+fn base(points: &Points<2>) -> f64 {
+    let lowest = (0..points.len()).min_by(|a, b| points.x[*a][1].total_cmp(&points.x[*b][1])).expect("points");
+    points.pore_pressure.as_ref().expect("water flows")[lowest] / M
+}
+
+fn compare(name: &str, found: &[[f64; 2]], expected: &[[f64; 2]]) -> f64 {
+    let last = expected[expected.len() - 1][0];
+    let mut worst = 0.0_f64;
+    for ((t, found), expected) in T.iter().zip(found).zip(expected) {
+        println!("{name} T {t}: {found:.5?} ({expected:?})");
+        worst = worst.max((found[0] - expected[0]).abs() / last);
+    }
+    worst
+}
+
+#[test]
+fn a_load_of_half_the_stiffness_settles_as_the_solution_by_lines() {
+    let load = 0.5 * M;
+    let of = |law| consolidated(settling(20, load, law), (5e-3, 120));
+    let constant = [[0.11619, 0.49616], [0.16429, 0.4396], [0.22932, 0.25553], [0.29163, 0.02082], [0.29649, 0.00018]];
+    let kozeny = [[0.06991, 0.49917], [0.09887, 0.48623], [0.1397, 0.4334], [0.21296, 0.27687], [0.26489, 0.12175]];
+    let found = [
+        compare("constant", &of(PermeabilityLaw::Constant), &constant),
+        compare("Kozeny-Carman", &of(PermeabilityLaw::KozenyCarman), &kozeny),
+    ];
+    println!("off by {found:.4?} of the last settlement");
+    assert!(found.iter().all(|off| *off < 0.02));
+}
+
+/// The water is so light that no level of it matters, and the ground's weight is that in it.
+#[test]
+fn weight_of_half_the_stiffness_settles_as_the_solution_by_lines() {
+    let mut scene = settling(20, 0.0, PermeabilityLaw::Constant).gravity(0.5 * M / DENSITY, 0.0);
+    let water = scene.model.water.as_mut().expect("water");
+    water.unit_weight = LIGHT;
+    let flow = water.flow.as_mut().expect("it flows");
+    flow.soils[0].as_mut().and_then(|soil| soil.permeability.as_mut()).expect("a soil").along *= LIGHT / super::WEIGHT;
+    flow.drains[0].given = Given::Head(Course(vec![(0.0, 1.0)]));
+    let expected = [[0.02499, 0.36294], [0.04944, 0.29968], [0.09169, 0.2045], [0.15508, 0.04901], [0.17177, 0.00295]];
+    let off = compare("weight", &consolidated(scene, (1e-4, 200)), &expected);
+    println!("off by {off:.4} of the last settlement");
+    assert!(off < 0.02);
+}
