@@ -13,6 +13,7 @@ pub mod flow;
 pub mod matrix;
 pub mod nodes;
 pub mod observed;
+pub mod ratio;
 pub mod residual;
 pub mod saved;
 pub mod split;
