@@ -147,6 +147,8 @@ pub struct NamedMaterial {
     pub density: Option<f64>,
     /// kg/m3  of points below the water table at the start; `None`: the same
     pub saturated: Option<f64>,
+    /// -  pore pressure over the weight above at the start, r_u; 0: none
+    pub ratio: f64,
     /// s  of its damping; 0: none
     pub retardation: f64,
 }

@@ -73,10 +73,12 @@ pub fn model_at(case: &Case, t: f64) -> Result<Model<PlaneStrain, 2>, GridError>
     })
 }
 
-/// Still water, and water that flows; of the latter alone the pore pressure is all excess.
+/// Still water, and water that flows; of the latter alone the pore pressure is all excess. One that points carry asks
+/// for no unit weight.
 fn water(case: &Case, flow: Option<Flow<2>>) -> Option<Water<2>> {
     let still = case.water.as_ref();
-    let unit_weight = still.map(|still| still.unit_weight).or(case.flow.as_ref().map(|flow| flow.unit_weight))?;
+    let unit_weight = still.map(|still| still.unit_weight).or(case.flow.as_ref().map(|flow| flow.unit_weight));
+    let unit_weight = unit_weight.or(case.carries_pressure().then_some(0.0))?;
     Some(Water { unit_weight, ambient: still.map_or(Ambient::None, |still| still.from(case.grid.lower())), flow })
 }
 
@@ -167,7 +169,18 @@ pub fn points(case: &Case, columns: std::ops::Range<usize>) -> Points<2> {
     let there = |body| case.is_there(body, 0.0);
     let seeds = seed_bodies(case, case.grid.cells_in(0, &columns), there);
     let points = Points::from_seeds(seeds, case.analysis.regime == Regime::Dynamic);
-    points.with_state(state_width(case.materials.iter().map(|named| &named.material)))
+    let mut points = points.with_state(state_width(case.materials.iter().map(|named| &named.material)));
+    if case.carries_pressure() {
+        let carried = points.material.iter().zip(&points.x);
+        points.carried_pressure = Some(carried.map(|(&material, x)| carried_pressure(case, material, x)).collect());
+    }
+    points
+}
+
+/// Pa  pore pressure that a point carries, at `x` (m, from the grid's lower corner) at the start.
+fn carried_pressure(case: &Case, material: u16, x: &Vector<2>) -> f64 {
+    let (ratio, lower) = (case.materials[usize::from(material)].ratio, case.grid.lower());
+    if ratio > 0.0 { ratio * case.overburden([lower[0] + x[0], lower[1] + x[1]]) } else { 0.0 }
 }
 
 /// The points that a stage places in the columns of one slab.
@@ -183,7 +196,8 @@ pub fn placed<'a>(
 pub fn at_rest(case: &Case, k0: &[f64], material: u16, x: &Vector<2>) -> Symmetric {
     let lower = case.grid.lower();
     let at = [lower[0] + x[0], lower[1] + x[1]];
-    let vertical = -case.overburden(at) - case.suction_at(material, at);
+    let vertical = -case.overburden(at) * (1.0 - case.materials[usize::from(material)].ratio);
+    let vertical = vertical - case.suction_at(material, at);
     let horizontal = k0[usize::from(material)] * vertical;
     Symmetric([horizontal, vertical, horizontal, 0.0, 0.0, 0.0])
 }

@@ -13,6 +13,7 @@ mod output;
 mod physics;
 mod place;
 mod profile;
+mod ratio;
 mod reduction;
 mod rigid;
 mod shape;
@@ -135,6 +136,7 @@ pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Op
     reduction::at_stage(&mut case, record, report);
     free_field::check(&case, record, report);
     water::check(&case, record, report);
+    ratio::check(&case, record, report);
     flow::check(&case, record, report);
     Some(Case { warnings: std::mem::take(&mut report.warnings), notes: std::mem::take(&mut report.notes), ..case })
 }

@@ -55,6 +55,7 @@ use crate::solve::found::Found;
 use crate::step::adjoint::Pressures;
 use crate::step::problem::Problem;
 use crate::tensor::Vector;
+use crate::water::ratio;
 use std::ops::AddAssign;
 
 /// Energy that went somewhere in a step, or in all steps so far, J; see the module.
@@ -296,7 +297,14 @@ fn add_water<K: Kinematics<D>, const D: usize>(
     u: &[f64],
     (t, dt): (f64, f64),
 ) {
-    let Problem { model, points, .. } = *problem;
+    let Problem { model, points, shape, .. } = *problem;
+    if let Some(gravity) = model.gravity.as_ref()
+        && let Some(work) = ratio::work::<K, D>((shape, points), problem.volume(), u)
+    {
+        let [before, after] = [t, t + dt].map(|t| gravity.grown(t));
+        flows.external.extend(work.iter().map(|work| 0.5 * (before + after) * work));
+        flows.integration.extend(work.iter().map(|work| -0.5 * (after - before) * work));
+    }
     let (Some(before), Some(after)) = (model.still_water(t), model.still_water(t + dt)) else { return };
     let work = transfer::to_points::<D, D, _>(problem.shape, u, |p, du| {
         let [before, after] = [before, after].map(|water| water.force(points, p).dot(&Vector::from(du)));

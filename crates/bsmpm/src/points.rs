@@ -167,6 +167,9 @@ columns! {
         /// Pa/m  gradient of the whole pore pressure, where water flows, from the first step on; before that it is that
         ///   of the still water
         pressure_gradient: Vec<Vector<D>>, "Pa/m", None, || Vector::zeros();
+        /// Pa  pore pressure as a share of the weight above at the start, under the full gravity, where some material
+        ///   has one; of points that come later it is 0
+        carried_pressure: Vec<f64>, "Pa", None, || 0.0;
     }
 }
 

@@ -14,6 +14,7 @@ pub mod follow;
 pub mod matrix;
 pub mod nodes;
 pub mod observed;
+pub mod ratio;
 pub mod residual;
 pub mod retention;
 pub mod saved;

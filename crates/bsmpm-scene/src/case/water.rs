@@ -25,6 +25,11 @@ impl Water {
 }
 
 impl Case {
+    /// Whether some body's points carry a pore pressure of their own.
+    pub fn carries_pressure(&self) -> bool {
+        self.bodies.iter().any(|body| self.materials[body.material].ratio > 0.0)
+    }
+
     /// m  height of the water table at time 0 at `x`, in the case's coordinates, if there is water.
     fn table(&self, x: f64) -> Option<f64> {
         Some(self.water.as_ref()?.table.table(x, 0.0)?.0)

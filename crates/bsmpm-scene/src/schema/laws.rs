@@ -273,6 +273,12 @@ pub(crate) static MATERIAL: Table = Table {
             Optional,
             "of what lies below the water table at the start; unit_weight, or what density is, unless given",
         ),
+        key(
+            "ru",
+            Quantity(In::Number, BELOW_1),
+            Optional,
+            "pore pressure over the weight straight above at the start, instead of [water]; its points carry it",
+        ),
         key("k0", Quantity(In::Number, loads::COEFFICIENT), Optional, "horizontal over vertical stress at the start"),
         key(
             "drainage",

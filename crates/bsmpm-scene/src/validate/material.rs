@@ -78,6 +78,7 @@ fn read(
 ) -> Option<NamedMaterial> {
     let density = density(record, around.regime, report);
     let saturated = density.and_then(|density| saturated(record, density, report));
+    let ratio = if record.gives("ru") { record.number("ru") } else { Some(0.0) };
     let layer = Layer::of(number, around);
     let law = law(record, (layer.as_ref(), around.grid), report);
     let retardation = retardation(record, around.regime, report);
@@ -105,7 +106,7 @@ fn read(
         note_reduction(record, &material, &layer, factor, report);
     }
     let (density, saturated, retardation) = (density?, saturated?, retardation?);
-    Some(NamedMaterial { name: name.clone(), material, density, saturated, retardation })
+    Some(NamedMaterial { name: name.clone(), material, density, saturated, ratio: ratio?, retardation })
 }
 
 /// Heights (m, in the case's coordinates) between which bodies of a material lie; the grid's if there are none.

@@ -3,6 +3,7 @@
 
 mod checkpoints;
 mod command_line;
+mod consolidation;
 mod convergence;
 mod energy;
 mod energy_made;

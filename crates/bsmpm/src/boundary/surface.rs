@@ -86,8 +86,8 @@ impl<const D: usize> Surface<D> {
     }
 }
 
-/// Ids of the points that the points of all surfaces are anchored to; the same on every rank, and empty before the first
-/// step.
+/// Ids of the points that the points of all surfaces are anchored to; the same on every rank, and empty before the
+/// first step.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Anchors {
     /// per strip and point of it

@@ -19,6 +19,7 @@ use crate::step::inertia::{self, Inertia};
 use crate::step::mass::Mass;
 use crate::tensor::Vector;
 use crate::water::nodes::Pores;
+use crate::water::ratio;
 
 /// Nodes lighter than this fraction of the heaviest one have no velocity, acceleration or average: 1/m is never formed.
 const MASSLESS: f64 = 1e-14;
@@ -134,6 +135,9 @@ impl<const D: usize> Nodes<D> {
             inertia.moving = contacts.moving(&inertia.v, dt);
         }
         let mut f_ext = external_force((model, shape, points), t + dt, (weighting, &weight), halo);
+        if let Some(force) = ratio::force(model, (shape, points), volume, t + dt) {
+            f_ext.iter_mut().zip(halo.sum(&force)).for_each(|(all, force)| *all += force);
+        }
         let window = (&model.grid, &active[..]);
         load::add_forces(&model.boundary.loads, &points.surface, window, (t + dt, dt), halo, &mut f_ext)?;
         let rigid = match model.boundary.rigid.is_empty() {

@@ -12,8 +12,8 @@ use crate::water::Water;
 use crate::water::drain::Drainage;
 use crate::water::flow::Flow;
 
-/// Share of the tau term, of h^2/M: with it the pair of splines of degree q and q - 1 is stable, and in one dimension the
-/// storage is lumped; see `water.md`.
+/// Share of the tau term, of h^2/M: with it the pair of splines of degree q and q - 1 is stable, and in one dimension
+/// the storage is lumped; see `water.md`.
 const TAU: f64 = 1.0 / 6.0;
 /// Functions that see less than this part of the largest volume have no pressure.
 const UNSEEN: f64 = 1e-14;

@@ -44,7 +44,8 @@ impl<'a, const D: usize> PoreWater<'a, D> {
 
     /// Pa  pore pressure at point `p`, positive in compression
     pub fn pressure(&self, p: usize) -> f64 {
-        self.still(p) + self.excess(p)
+        let carried = self.points.carried_pressure.as_ref().map_or(0.0, |carried| self.grown * carried[p]);
+        self.still(p) + self.excess(p) + carried
     }
 
     /// Pa  as much of it as acts in the total stress: chi p

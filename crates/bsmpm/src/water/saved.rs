@@ -57,8 +57,8 @@ impl WaterReport {
     }
 }
 
-/// Saves nodal excess pressures `p`, Pa, into the points, which have moved, and the mass of the water that they took in;
-/// m3 of it, over all ranks.
+/// Saves nodal excess pressures `p`, Pa, into the points, which have moved, and the mass of the water that they took
+/// in; m3 of it, over all ranks.
 pub fn save<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     pores: &Pores<D>,

@@ -38,7 +38,7 @@ fn height(points: &Points<2>) -> f64 {
 
 #[test]
 fn a_drained_surface_that_settles_through_rows_of_cells_stays_drained() {
-    // Reference by lines (200 and 400 cells, extrapolated), Hencky's law, .5 M on top: settlement at these time factors.
+    // Reference by lines (200 and 400 cells, extrapolated), Hencky's law, .5 M on top: settlement at these times.
     let times = [0.1, 0.2, 0.5, 1.0];
     let cases = [
         (PermeabilityLaw::Constant, [0.16429, 0.22932, 0.29163, 0.29649]),
@@ -211,9 +211,9 @@ fn noise(scene: &Plane) -> f64 {
     (squares / points.len() as f64).sqrt()
 }
 
-/// Pressure of incompressible water in an elastic layer over the load of a strip, |x| < 1 m, on it; smooth base and sides
-/// of the layer, which is 8 m deep (`y` from its base) and 8 m wide to each side. From Airy's functions
-/// (A cosh ky + B ky sinh ky) cos kx, k = n pi/8 m; where nothing flows -p is the mean of the total stress in the plane.
+/// Pressure of incompressible water in an elastic layer over the load of a strip, |x| < 1 m, on it; smooth base and
+/// sides of the layer, which is 8 m deep (`y` from its base) and 8 m wide to each side. From Airy's functions
+/// (A cosh ky + B ky sinh ky) cos kx, k = n pi/8 m; -p is the mean of the total stress in the plane, as nothing flows.
 fn under_a_strip(x: f64, y: f64) -> f64 {
     let size = 8.0;
     let mode = |n: i32| {

@@ -37,8 +37,8 @@ fn square(cells: usize, cut: f64) -> Plane {
     scene
 }
 
-/// beta: the square root of the smallest eigenvalue of Q^T K^-1 Q + C against the mass of the pressures, K = grad u : grad
-/// u, where nothing flows; without C, which is the tau term, and with it.
+/// beta: the square root of the smallest eigenvalue of Q^T K^-1 Q + C against the mass of the pressures, K = grad u :
+/// grad u, where nothing flows; without C, which is the tau term, and with it.
 fn constants(cells: usize, cut: f64) -> [f64; 2] {
     let mut scene = square(cells, cut);
     let flow = scene.model.water.as_mut().and_then(|water| water.flow.as_mut()).expect("it flows");

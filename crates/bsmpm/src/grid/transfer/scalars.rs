@@ -33,7 +33,8 @@ pub fn scalars<const D: usize, T: Send>(
     found: impl Fn(usize, f64, Vector<D>) -> T + Sync,
 ) -> Vec<T> {
     let scratch = || [[0.0; 1]; MOST_NODES];
-    with_functions!(shape.width(), W => at_points(shape, scratch, |number, block: &mut PatchBlock<1>, out: &mut Vec<T>| {
+    type Block = PatchBlock<1>;
+    with_functions!(shape.width(), W => at_points(shape, scratch, |number, block: &mut Block, out: &mut Vec<T>| {
         let patch = &shape.patches()[number];
         gather(nodal, shape.offsets(), patch.first_node, (0, 1), block);
         for p in patch.points.clone() {

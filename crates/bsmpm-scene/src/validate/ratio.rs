@@ -1,0 +1,56 @@
+//! Pore pressure that points carry, `ru`, and what is not shown to be right together with it.
+
+use crate::case::{Case, Support};
+use crate::record::Record;
+use crate::report::Report;
+use crate::words::{Side, Word};
+
+const KEY: &str = "ru";
+
+/// What only the whole case shows.
+pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
+    let wet = |number: usize| case.materials[number].ratio > 0.0;
+    let bodies = || case.bodies.iter().map(|body| body.material);
+    let Some((_, material)) = root.named("material").iter().enumerate().find(|(number, _)| wet(*number)) else {
+        return;
+    };
+    let material = &material.1;
+    if !case.carries_pressure() {
+        report.warn(format!("{}: no body is of this material: it does nothing", material.path_of(KEY)));
+        return;
+    }
+    if root.gives("water") || case.flow.is_some() {
+        let message = "[water] gives the pore pressure, too: give one of them";
+        material.error(KEY, message, report);
+    }
+    match &case.gravity {
+        None => material.error(KEY, "nothing weighs without [gravity]", report),
+        Some(gravity) if gravity.acceleration[0] != 0.0 || gravity.acceleration[1] >= 0.0 => {
+            let message = format!("{:?} is not straight down, which ru needs", gravity.acceleration);
+            material.error(KEY, format!("gravity.acceleration = {message}"), report);
+        }
+        Some(_) => {}
+    }
+    let changes = |stage: &crate::case::Stage| !(stage.add.is_empty() && stage.remove.is_empty());
+    let exchanges = |stage: &crate::case::Stage| stage.materials.iter().any(|&(from, to)| wet(from) || wet(to));
+    if case.stages.iter().any(|stage| changes(stage) || exchanges(stage)) {
+        let message = "points carry it from the start, whatever stages place, take away or exchange: it cannot be used \
+                       with those";
+        material.error(KEY, message, report);
+    }
+    if case.shaking.iter().any(|(_, ground)| *ground != [0.0; 2]) {
+        material.error(KEY, "it does not follow ground that shakes: it cannot be used with [shaking]", report);
+    }
+    for (axis, upper) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+        if matches!(case.boundary[axis][upper], Support::Absorbing | Support::FreeField) {
+            let side = Side::ALL[axis][upper].word();
+            material.error(KEY, format!("boundary.{side} absorbs, which was not shown to be right beside it"), report);
+        }
+    }
+    if bodies().any(|number| !wet(number)) {
+        report.note(material.path_of(KEY), "this material only", "pores of the others hold no pressure");
+    }
+    if !case.tractions.is_empty() || !case.point_loads.is_empty() {
+        report.note(material.path_of(KEY), "of the weight alone", "loads raise no pore pressure: they are drained");
+    }
+}

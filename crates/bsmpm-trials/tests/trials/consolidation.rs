@@ -1,0 +1,103 @@
+//! Water that flows by the real binary: Terzaghi's column, drained at a face of the grid or at the surface of a body
+//! within a cell; ranks agree, and a run that was cut in two goes on to the bit.
+
+use crate::support::Scratch;
+use crate::support::cases::changed;
+use crate::support::results::{at, history};
+
+/// A column 1 m high of M = 1 MPa and c_v = 1e-6 m2/s under 100 Pa.
+const COLUMN: &str = r#"
+geometry = "plane-strain"
+[analysis]
+type = "consolidation"
+end = "5e5 s"
+dt = "100 s"
+growth = 1.1
+[grid]
+lower = [0, 0]
+upper = [0.4, 1.0]
+cell = [0.1, 0.05]
+order = "quadratic"
+[material.clay]
+model = "hencky"
+young = "1 MPa"
+poisson = 0.0
+drainage = "coupled"
+porosity = 0.5
+permeability = "9.81e-9 m/s"
+[[body]]
+material = "clay"
+box = { lower = [0, 0], upper = [0.4, 1.0] }
+points_per_cell = 3
+[boundary]
+bottom = "fixed"
+left = "roller"
+right = "roller"
+[[drain]]
+name = "top"
+face = "top"
+[[traction]]
+from = [0, 1.0]
+to = [0.4, 1.0]
+stress = [0, "-100 Pa"]
+[solver]
+tolerance = 1e-12
+force_tolerance = 1e-8
+[[history]]
+quantity = "displacement"
+at = [0.2, 1.0]
+[[history]]
+quantity = "excess-pressure"
+at = [0.2, 0.0]
+[[history]]
+quantity = "water-outflow"
+drain = "top"
+[[history]]
+quantity = "water-balance"
+[output]
+times = ["2e5 s"]
+"#;
+
+/// T, consolidation and p/p0 at the base (Terzaghi).
+const TERZAGHI: [(f64, f64, f64); 2] = [(0.2, 0.504088, 0.772312), (0.5, 0.763950, 0.370777)];
+/// m  settlement at the end; load, Pa
+const FINAL: f64 = 1e-4;
+const LOAD: f64 = 100.0;
+
+#[test]
+fn terzaghis_column_by_a_face_and_by_a_surface_within_a_cell() {
+    let surface = changed(COLUMN, "face = \"top\"", "surface = true");
+    let cut = changed(&surface, "upper = [0.4, 1.0]\ncell", "upper = [0.4, 1.12]\ncell");
+    let cut = changed(&cut, "cell = [0.1, 0.05]", "cell = [0.1, 0.07]");
+    for case in [COLUMN, &cut] {
+        let scratch = Scratch::with_case(case);
+        scratch.mpirun(1, &["case.toml", "-q", "-o", "one"]).expect(0);
+        let table = history(&scratch.path("one"));
+        for (T, consolidated, pressure) in TERZAGHI {
+            let of = |column: &str| at(&table, column, T * 1e6);
+            let errors = [-of("displacement-y") / FINAL - consolidated, of("excess-pressure") / LOAD - pressure];
+            assert!(errors.iter().all(|error| error.abs() < 0.01), "{T}: {errors:?}");
+            assert!(of("water-balance").abs() < 1e-4, "{T}: {}", of("water-balance"));
+        }
+    }
+}
+
+#[test]
+fn ranks_agree_and_a_run_in_two_parts_is_one() {
+    let scratch = Scratch::with_case(COLUMN);
+    let names = ["one", "two", "three"];
+    for (ranks, name) in names.into_iter().enumerate() {
+        scratch.mpirun(ranks + 1, &["case.toml", "-q", "-o", name]).expect(0);
+    }
+    let tables = names.map(|name| history(&scratch.path(name)));
+    for column in ["displacement-y", "excess-pressure", "water-outflow"] {
+        let [one, two, three] = [0, 1, 2].map(|k| at(&tables[k], column, 5e5));
+        let apart = (two - one).abs().max((three - one).abs());
+        assert!(apart < 1e-8 * one.abs(), "{column}: {one} {two} {three}");
+    }
+    let part = ["case.toml", "-q", "-o", "part", "--restart", "auto"];
+    scratch.mpirun(1, &[&part[..], &["--max-steps", "20"]].concat()).expect(75);
+    scratch.mpirun(1, &part).expect(0);
+    let text = |name: &str| std::fs::read_to_string(scratch.path(name).join("history.csv")).unwrap();
+    assert!(text("one") == text("part"));
+}
