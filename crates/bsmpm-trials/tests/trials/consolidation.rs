@@ -12,7 +12,7 @@ geometry = "plane-strain"
 type = "consolidation"
 end = "5e5 s"
 dt = "100 s"
-growth = 1.1
+growth = 1.04
 [grid]
 lower = [0, 0]
 upper = [0.4, 1.0]
