@@ -18,6 +18,7 @@ pub mod residual;
 pub mod saved;
 pub mod split;
 pub mod still;
+pub mod work;
 
 use ambient::Ambient;
 use flow::Flow;
