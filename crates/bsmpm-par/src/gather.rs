@@ -162,6 +162,7 @@ impl Around<'_> {
             FrameField::PorePressure => of_water(&|water| water.pressure(p)),
             FrameField::ExcessPressure => of_water(&|water| water.excess(p)),
             FrameField::Porosity => of_water(&|water| water.porosity(p)),
+            FrameField::Saturation => of_water(&|water| water.saturation(p)),
             FrameField::Flux => {
                 let flux = self.water.map_or_else(Vector::zeros, |water| water.flux(p));
                 return row.extend([flux[0], flux[1], 0.0]);

@@ -195,8 +195,9 @@ pub fn placed<'a>(
 /// Stress of ground at rest, Pa, at `x` (m, from the grid's lower corner); `k0` by material.
 pub fn at_rest(case: &Case, k0: &[f64], material: u16, x: &Vector<2>) -> Symmetric {
     let lower = case.grid.lower();
-    let vertical = -case.overburden([lower[0] + x[0], lower[1] + x[1]]);
-    let vertical = vertical * (1.0 - case.materials[usize::from(material)].ratio);
+    let at = [lower[0] + x[0], lower[1] + x[1]];
+    let vertical = -case.overburden(at) * (1.0 - case.materials[usize::from(material)].ratio);
+    let vertical = vertical - case.suction_at(material, at);
     let horizontal = k0[usize::from(material)] * vertical;
     Symmetric([horizontal, vertical, horizontal, 0.0, 0.0, 0.0])
 }

@@ -171,7 +171,7 @@ pub fn flow(case: &Case, grid: &Grid<2>) -> Option<bsmpm::water::flow::Flow<2>> 
     };
     let inflow = |inflow: &crate::Inflow| {
         let (points, normals) = surface(&[inflow.ends]);
-        Inflow { points, normals, rate: inflow.rate.clone() }
+        Inflow { points, normals, rate: inflow.rate.clone(), runs_off: inflow.runs_off }
     };
     Some(bsmpm::water::flow::Flow {
         bulk: flow.bulk,
@@ -179,6 +179,7 @@ pub fn flow(case: &Case, grid: &Grid<2>) -> Option<bsmpm::water::flow::Flow<2>> 
         drains: flow.drains.iter().filter_map(drain).collect(),
         faces: flow.drains.iter().filter_map(face).collect(),
         inflows: flow.inflows.iter().map(inflow).collect(),
+        suction: flow.suction,
     })
 }
 

@@ -1,6 +1,6 @@
 //! Water that flows.
 
-use super::Face;
+use super::{Case, Face};
 use bsmpm::water::flow::{Course, Given, Soil};
 
 /// Pore water whose excess pressure is an unknown.
@@ -16,6 +16,8 @@ pub struct Flow {
     pub drains: Vec<Drain>,
     /// Surfaces through which water is put in, in the order of the file.
     pub inflows: Vec<Inflow>,
+    /// Pa  the largest suction at the start; without [water] level there is none
+    pub suction: f64,
 }
 
 /// A surface at which the pressure is given.
@@ -45,4 +47,27 @@ pub struct Inflow {
     pub ends: [[f64; 2]; 2],
     /// m/s  into the ground
     pub rate: Course,
+    /// What the ground does not take runs off.
+    pub runs_off: bool,
+}
+
+impl Case {
+    /// Pa  suction at the start at `at` (m, in the case's coordinates) as it presses the grains of a material together:
+    /// chi s; 0 where its pores stay full, or below the water
+    pub(crate) fn suction_at(&self, material: u16, at: [f64; 2]) -> f64 {
+        let (Some(flow), Some(water)) = (self.flow.as_ref().filter(|flow| flow.retains()), &self.water) else {
+            return 0.0;
+        };
+        let Some((height, _)) = water.table.table(at[0], 0.0) else { return 0.0 };
+        let suction = (water.unit_weight * (at[1] - height)).clamp(0.0, flow.suction);
+        let soil = flow.soils[usize::from(material)].as_ref();
+        soil.map_or(0.0, |soil| soil.retained(-suction, water.unit_weight).effective * suction)
+    }
+}
+
+impl Flow {
+    /// Whether a soil may be partly saturated.
+    pub(crate) fn retains(&self) -> bool {
+        self.soils.iter().flatten().any(|soil| soil.retention.is_some())
+    }
 }

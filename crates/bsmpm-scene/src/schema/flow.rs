@@ -31,11 +31,17 @@ pub(super) static DRAIN: Table = Table {
             "rows [t, y] instead, t increasing; linear between, constant before the first and after the last",
         ),
         key("pressure", Quantity(In::Stress, Range::ANY), Optional, "pore pressure there instead"),
+        key(
+            "seepage",
+            Flag,
+            Optional,
+            "true: a seepage face instead: above still water no pressure, and water only comes out",
+        ),
     ],
     exclusive: &[
         one_of(&["face", "from", "surface"], true),
         one_of(&["face", "to", "surface"], true),
-        one_of(&["head", "head_path", "pressure"], false),
+        one_of(&["head", "head_path", "pressure", "seepage"], false),
     ],
 };
 
@@ -52,6 +58,12 @@ pub(super) static INFLOW: Table = Table {
             Rows(&[(In::Time, Range::NOT_NEGATIVE), (In::Seepage, Range::ANY)]),
             Optional,
             "rows [t, rate] instead, t increasing; linear between, constant before the first and after the last",
+        ),
+        key(
+            "runs_off",
+            Flag,
+            super::Presence::Default("false"),
+            "true: no more goes in than without pressure at the surface: rain",
         ),
     ],
     exclusive: &[one_of(&["rate", "rate_path"], true)],

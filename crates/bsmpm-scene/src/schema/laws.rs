@@ -305,6 +305,12 @@ pub(crate) static MATERIAL: Table = Table {
             "how it follows the porosity; constant unless given",
         ),
         key(
+            "retention",
+            Kind::Table(&RETENTION),
+            Optional,
+            "how much water it keeps under suction (coupled); its pores stay full unless given",
+        ),
+        key(
             "damping",
             Kind::Table(&DAMPING),
             Optional,
@@ -313,6 +319,21 @@ pub(crate) static MATERIAL: Table = Table {
     ],
     exclusive: &[one_of(&["unit_weight", "density"], false), one_of(&["preconsolidation", "ocr"], false)],
 };
+
+static RETENTION: Table = Table {
+    header: "[material.NAME] retention",
+    doc: "Van Genuchten's curve: effective saturation (1 + (alpha s)^n)^(1/n - 1) under the suction head s; Mualem's \
+          permeability goes with it, and Bishop's effective stress",
+    keys: &[
+        key("alpha", Quantity(In::Number, Range::POSITIVE), Required, "1/m, over the head at which air enters"),
+        key("n", Quantity(In::Number, PORES), Required, "the larger, the more alike the pores"),
+        key("residual", Quantity(In::Number, SHARE), super::Presence::Default("0"), "saturation that no suction removes"),
+    ],
+    exclusive: &[],
+};
+
+const PORES: Range = Range::of(Included(1.05), Included(20.0));
+const SHARE: Range = Range::of(Included(0.0), Excluded(1.0));
 
 static DAMPING: Table = Table {
     header: "[material.NAME] damping",

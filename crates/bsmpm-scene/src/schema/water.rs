@@ -37,6 +37,13 @@ pub(super) static WATER: Table = Table {
             "bulk modulus of the water; absent: incompressible",
         ),
         key(
+            "suction",
+            Quantity(In::Stress, Range::NOT_NEGATIVE),
+            Optional,
+            "largest suction above the level at the start, where materials have a retention; as the level makes it unless \
+             given",
+        ),
+        key(
             "drainage",
             Choice(Drainage::WORDS),
             Optional,

@@ -14,6 +14,7 @@ use crate::words::{AnalysisType, Drainage, Side, Word};
 use bsmpm::quadrature::Quadrature;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::water::flow::{Course, Given, Permeability, PermeabilityLaw, Soil};
+use bsmpm::water::retention::Retention;
 
 /// N/m3  of water, unless a case gives it.
 const WATER: f64 = 9810.0;
@@ -60,7 +61,21 @@ pub(super) fn read(
     let (drains, inflows) = (read.into_iter().collect::<Option<_>>()?, put.into_iter().collect::<Option<_>>()?);
     let bulk = root.record("water").filter(|water| water.gives("bulk"));
     let bulk = bulk.map_or(Some(f64::INFINITY), |water| water.number("bulk"))?;
-    Some(Some(Flow { unit_weight: unit_weight(root)?, bulk, soils, drains, inflows }))
+    let suction = suction(root, soils.iter().flatten().any(|soil| soil.retention.is_some()), report)?;
+    Some(Some(Flow { unit_weight: unit_weight(root)?, bulk, soils, drains, inflows, suction }))
+}
+
+/// Pa  the largest suction at the start.
+fn suction(root: &Record, retains: bool, report: &mut Report<'_>) -> Option<f64> {
+    const KEY: &str = "suction";
+    let Some(water) = root.record("water").filter(|water| water.gives(KEY)) else { return Some(f64::INFINITY) };
+    if !retains {
+        water.error(KEY, "no soil keeps water under suction: give a material a retention", report);
+    }
+    if ["level", "level_path", "line"].iter().all(|key| !water.gives(key)) {
+        water.error(KEY, "is that above a level: give level, level_path or line", report);
+    }
+    water.number(KEY)
 }
 
 /// N/m3  of water under the case's gravity; under the standard one without any.
@@ -73,14 +88,14 @@ fn unit_weight(root: &Record) -> Option<f64> {
 
 /// What a material is to water; the outer option is `None` after an error.
 fn soil(root: &Record, record: &Record, report: &mut Report<'_>) -> Option<Option<Soil<2>>> {
-    const FLOWING: [&str; 3] = ["porosity", "permeability", "permeability_law"];
+    const FLOWING: [&str; 4] = ["porosity", "permeability", "permeability_law", "retention"];
     let drainage = drainage(root, record);
     let needs: &[&str] = match drainage {
         Drainage::Given => &[],
         Drainage::Undrained => &FLOWING[..1],
         Drainage::Coupled => &FLOWING[..2],
     };
-    let known = if drainage == Drainage::Coupled { 3 } else { needs.len() };
+    let known = if drainage == Drainage::Coupled { FLOWING.len() } else { needs.len() };
     let mut failed = false;
     for key in needs.iter().filter(|key| !record.gives(key)) {
         report.error(record.origin, &record.path_of(key), format!("missing; drainage = \"{drainage}\" needs it"));
@@ -98,11 +113,20 @@ fn soil(root: &Record, record: &Record, report: &mut Report<'_>) -> Option<Optio
         return Some(None);
     }
     let porosity = record.number("porosity")?;
+    let retention = match record.record("retention") {
+        Some(of) => Some(retention(of)?),
+        None => None,
+    };
     let permeability = match drainage {
         Drainage::Coupled => Some(permeability(record, report)?),
         Drainage::Given | Drainage::Undrained => None,
     };
-    Some(Some(Soil { porosity, permeability }))
+    Some(Some(Soil { porosity, permeability, retention }))
+}
+
+/// How much water a soil keeps under suction.
+fn retention(of: &Record) -> Option<Retention> {
+    Some(Retention { alpha: of.number("alpha")?, n: of.number("n")?, residual: of.number("residual")? })
 }
 
 fn permeability(record: &Record, report: &mut Report<'_>) -> Option<Permeability<2>> {
@@ -197,6 +221,16 @@ fn given(record: &Record, report: &mut Report<'_>) -> Option<Given> {
     if record.gives("pressure") {
         return constant("pressure").map(Given::Pressure);
     }
+    if record.gives("seepage") {
+        if !record.flag("seepage")? {
+            record.error("seepage", "false says nothing: give true, or leave it out", report);
+        }
+        if record.gives("face") {
+            let message = "a face of the grid lets water both ways: name the surface of the body there by from and to";
+            record.error("seepage", message, report);
+        }
+        return Some(Given::Seepage);
+    }
     Some(Given::StillWater)
 }
 
@@ -253,7 +287,8 @@ fn inflow(record: &Record, ground: Ground<'_>, report: &mut Report<'_>) -> Optio
         true => course(record, "rate_path", report),
         false => record.number("rate").map(|rate| Course(vec![(0.0, rate)])),
     };
-    Some(Inflow { ends: ground.segment(record, report)?, rate: rate? })
+    let runs_off = record.flag("runs_off")?;
+    Some(Inflow { ends: ground.segment(record, report)?, rate: rate?, runs_off })
 }
 
 /// Whether water flows, or is kept from flowing, in any material.

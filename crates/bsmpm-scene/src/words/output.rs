@@ -24,6 +24,8 @@ choice! {
         Flux = "flux",
         /// Share of pores in the volume, where water flows.
         Porosity = "porosity",
+        /// Share of the pores that water fills, where water flows.
+        Saturation = "saturation",
         /// Effective stress less the pore pressure (Pa), positive in tension.
         TotalStress = "total-stress",
         /// Number of the body, in the order of the file; run.json and the frame have the names.
@@ -34,7 +36,7 @@ choice! {
 impl FrameField {
     /// Whether it is of water that flows.
     pub fn is_of_flow(self) -> bool {
-        matches!(self, Self::ExcessPressure | Self::Flux | Self::Porosity)
+        matches!(self, Self::ExcessPressure | Self::Flux | Self::Porosity | Self::Saturation)
     }
 
     /// Its name in frames.
@@ -50,6 +52,7 @@ impl FrameField {
             Self::ExcessPressure => "excess_pressure",
             Self::Flux => "flux",
             Self::Porosity => "porosity",
+            Self::Saturation => "saturation",
             Self::TotalStress => "total_stress",
             Self::Body => "body",
         }
@@ -61,7 +64,7 @@ impl FrameField {
             Self::Q | Self::PrincipalStresses | Self::PorePressure => "Pa",
             Self::ExcessPressure | Self::TotalStress => "Pa",
             Self::Flux => "m/s",
-            Self::Porosity => "-",
+            Self::Porosity | Self::Saturation => "-",
             Self::MobilisedStrength | Self::DeviatoricStrain | Self::Yielding | Self::Body => "-",
             Self::Density => "kg/m3",
         }

@@ -17,7 +17,7 @@ pub const FLOW: &[Row] = &[
     row("dt_max = \"60 d\"", "dt_max = \"60 days\"", "analysis.dt_max", "did you mean `day`?"),
     // Splines, points, averages, iterations.
     row("order = \"quadratic\"", "order = \"linear\"", "grid.order", "no gradient: take \"quadratic\""),
-    row("order = \"quadratic\"", "order = \"cubic\"", "body.0.points_per_cell", "3 with cubic splines").down(27),
+    row("order = \"quadratic\"", "order = \"cubic\"", "body.0.points_per_cell", "3 with cubic splines").down(28),
     row("\"consistent-f-bar\"", "\"subgrid-f-bar\"", "stabilisation.method", "take \"consistent-f-bar\""),
     row("\"auto\"", "\"newton\"", "solver.nonlinear", "take \"auto\""),
     row("nonlinear = \"auto\"", "quadrature = \"fitted\"", "solver.quadrature", "take \"points\""),
@@ -37,6 +37,17 @@ pub const FLOW: &[Row] = &[
         "material.clay.model",
         "not shown to be right",
     ),
+    row("alpha = 2.0", "alpha = 0", "material.clay.retention.alpha", "alpha > 0"),
+    row("n = 1.5", "n = 1", "material.clay.retention.n", "1.05 <= n <= 20"),
+    row("residual = 0.1", "residual = 1", "material.clay.retention.residual", "0 <= residual < 1"),
+    row(
+        "porosity = 0.5",
+        "porosity = 0.5\nretention = { alpha = 1, n = 2 }",
+        "material.tight.retention",
+        "no meaning with drainage",
+    )
+    .down(1),
+    row("bulk     = \"2.2 GPa\"", "suction = \"20 kPa\"", "water.suction", "is that above a level"),
     row("bulk     = \"2.2 GPa\"", "bulk = 0", "water.bulk", "bulk > 0"),
     row("bulk     = \"2.2 GPa\"", "bulk = \"2.2 m\"", "water.bulk", "expected a stress"),
     // Drains and inflows.
@@ -49,6 +60,9 @@ pub const FLOW: &[Row] = &[
     row("from      = [2.0, 2.0]", "from = [2.0, 3.5]", "drain.1.from", "no body is at"),
     row("[\"30 d\", 3.0]", "[\"0 d\", 3.0]", "drain.1.head_path", "t = 0 is not above 0"),
     row("surface  = true", "name = \"base\"\nsurface = true", "drain.2.name", "there is a drain `base` already"),
+    row("seepage = true", "seepage = false", "drain.3.seepage", "give true, or leave it out"),
+    row("head    = \"3 m\"", "seepage = true", "drain.0.seepage", "a face of the grid lets water both ways"),
+    row("seepage = true", "seepage = true\nhead = 2", "drain.3.seepage", "give one of head, head_path, pressure, seepage"),
     row("rate = \"10 mm/h\"", "rate = \"10 mm\"", "inflow.0.rate", "expected a velocity"),
     row("rate = \"10 mm/h\"\n", "", "inflow.0", "one of rate, rate_path").up(4),
     row("to   = [4.0, 2.0]\nrate = ", "to = [4.0, 9.0]\nrate = ", "inflow.0.to", "outside the grid"),

@@ -14,6 +14,7 @@ use crate::solve::unknowns::Unknowns;
 use crate::step::problem::Problem;
 use crate::step::report::Counts;
 use crate::step::residual::{Balance, Residual};
+use crate::water::follow::Follow;
 use crate::water::split::Split;
 
 /// Shortest part of a direction that is tried when points invert.
@@ -150,7 +151,7 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
     counts: &mut Counts,
     convergence: &mut Convergence,
 ) -> Result<Found<K, D>, Stopped> {
-    let mut secants = Secants::of(method, problem);
+    let (mut secants, mut follow) = (Secants::of(method, problem), Follow::of(problem, &u));
     let (mut best, mut least) = (u.clone(), residual.balance.norm);
     while convergence.iterations() < problem.model.criteria.max_iterations && (patient || !convergence.stalls()) {
         if convergence.is_balanced(&residual.balance, problem) {
@@ -159,7 +160,7 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
         if problem.halo.is_interrupted() {
             return Err(StepError::Interrupted.into());
         }
-        let direction = match secants.towards(problem, &residual.balance, solver) {
+        let mut direction = match secants.towards(problem, &residual.balance, solver) {
             Ok(direction) => direction, // (6), (7)
             Err(unsolved) => return Err(Stopped::without_direction(problem, (best, &residual), convergence, unsolved)),
         };
@@ -176,11 +177,21 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
         // The direction's own energy is a sum of products with secants, whose round-off is another.
         let work = stability::tells(problem, &residual.balance)
             .then(|| dots(problem.halo, D, &[(&direction.du, &residual.balance.f_oob)])[0]);
+        let of_water = convergence.water(&residual.balance).unwrap_or(0.0);
+        if let Some(pores) = &problem.nodes.pores {
+            follow.tame((problem, pores), (&u, &mut direction.du), of_water);
+        }
         match advance(problem, &mut u, &direction.du, &mut residual, counts) {
             Ok(length) => secants.took(length), // (8), (4), (5)
             Err(inverted) => return Err(Stopped { error: Box::new(inverted), best: Some(best) }),
         }
         stability::check(problem, convergence, (&direction.du, work), &residual.balance)?;
+        if let Some(pores) = &problem.nodes.pores
+            && follow.up((problem, pores), &u, convergence.water(&residual.balance).unwrap_or(0.0), solver)?
+        {
+            counts.factorisations += 1;
+            secants = Secants::of(method, problem);
+        }
         if residual.balance.norm < least {
             (least, best) = (residual.balance.norm, u.clone());
         }

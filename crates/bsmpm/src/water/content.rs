@@ -1,6 +1,7 @@
 //! How much water a soil holds.
 
 use crate::water::flow::Soil;
+use crate::water::retention::Retained;
 
 impl<const D: usize> Soil<D> {
     /// Water per volume of the start, of soil that has become `J` times that volume, under the excess pressure `p`, Pa;
@@ -8,6 +9,18 @@ impl<const D: usize> Soil<D> {
     #[inline]
     pub fn content(&self, bulk: f64, J: f64, p: f64) -> f64 {
         self.pores(J) * (p / bulk).exp()
+    }
+
+    /// Under the whole pore pressure `p`, Pa, of water of the unit weight `weight`, N/m3.
+    #[inline]
+    pub fn retained(&self, p: f64, weight: f64) -> Retained {
+        self.retention.as_ref().map_or(Retained::FULL, |retention| retention.under(p, weight))
+    }
+
+    /// 1/Pa  see [`Retention::chord`](crate::water::retention::Retention::chord); 0 of pores that stay full
+    #[inline]
+    pub fn chord(&self, before: f64, now: f64, weight: f64) -> f64 {
+        self.retention.as_ref().map_or(0.0, |retention| retention.chord(before, now, weight))
     }
 
     /// Pores per volume of the start; none is left where that is not positive

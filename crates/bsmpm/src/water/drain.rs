@@ -48,12 +48,21 @@ struct Outlet {
     conductance: f64, // m3/Pa  in the step
     given: f64,       // Pa  excess
     inflow: f64,      // m3  in the step
+    one_way: bool,    // lets water out only, where the pressure is above the given one
 }
 
 impl Outlet {
     /// m3  out of the ground in the step, under the excess pressures `p`, Pa, nodal.
     fn out(&self, offsets: &[usize], p: &[f64]) -> f64 {
+        if !self.is_open(offsets, p) {
+            return -self.inflow;
+        }
         self.conductance * (self.attachment.value(offsets, p) - self.given) - self.inflow
+    }
+
+    /// Whether its conductance acts.
+    fn is_open(&self, offsets: &[usize], p: &[f64]) -> bool {
+        !self.one_way || self.attachment.value(offsets, p) > self.given
     }
 }
 
@@ -89,16 +98,19 @@ impl Drainage {
                 let attachment = Attachment::lowered_at(grid, &offsets, &counts, &place.x);
                 let Some(attachment) = attachment else { continue };
                 let through = dt * area * place.normal.norm();
-                let none = Outlet { surface, attachment, conductance: 0.0, given: 0.0, inflow: 0.0 };
+                let none = Outlet { surface, attachment, conductance: 0.0, given: 0.0, inflow: 0.0, one_way: false };
+                let conductance = through * CONDUCTANCE * place.leads(grid) / water.unit_weight;
+                let dry = Given::Seepage.excess(water.unit_weight, &place.x, t + dt, &still);
                 outlets.push(match flow.drains.get(surface) {
                     Some(drain) => {
                         let given = drain.given.excess(water.unit_weight, &place.x, t + dt, &still);
-                        let conductance = CONDUCTANCE * place.leads(grid) / water.unit_weight;
-                        Outlet { conductance: through * conductance, given, ..none }
+                        let one_way = drain.given == Given::Seepage && still(&place.x) <= 0.0;
+                        Outlet { conductance, given, one_way, ..none }
                     }
                     None => {
-                        let rate = flow.inflows[surface - flow.drains.len()].rate.at(t + dt);
-                        Outlet { inflow: through * rate, ..none }
+                        let inflow = &flow.inflows[surface - flow.drains.len()];
+                        let rain = Outlet { inflow: through * inflow.rate.at(t + dt), ..none };
+                        if inflow.runs_off { Outlet { conductance, given: dry, one_way: true, ..rain } } else { rain }
                     }
                 });
             }
@@ -114,9 +126,25 @@ impl Drainage {
         }
     }
 
-    /// Adds the derivative of that to the matrix of the pressures, m3/Pa.
+    /// Which of the surface points of this rank let water through under the excess pressures `p`, Pa: of those that let
+    /// it out only.
+    pub fn open(&self, p: &[f64]) -> Vec<bool> {
+        let one_way = self.outlets.iter().filter(|outlet| outlet.one_way);
+        one_way.map(|outlet| outlet.is_open(&self.offsets, p)).collect()
+    }
+
+    /// Adds the derivative of that to the matrix of the pressures, m3/Pa; of a drain that lets water out only none.
     pub fn assemble(&self, solver: &mut dyn LinearSolver) {
-        for outlet in self.outlets.iter().filter(|outlet| outlet.conductance > 0.0) {
+        self.add_matrix(solver, |outlet| !outlet.one_way);
+    }
+
+    /// The same under the excess pressures `p`, Pa, with the drains that are open then.
+    pub fn assemble_at(&self, p: &[f64], solver: &mut dyn LinearSolver) {
+        self.add_matrix(solver, |outlet| outlet.is_open(&self.offsets, p));
+    }
+
+    fn add_matrix(&self, solver: &mut dyn LinearSolver, is_open: impl Fn(&Outlet) -> bool) {
+        for outlet in self.outlets.iter().filter(|outlet| outlet.conductance > 0.0 && is_open(outlet)) {
             let N = outlet.attachment.N();
             let block: Vec<f64> =
                 N.iter().flat_map(|row| N.iter().map(move |column| outlet.conductance * row * column)).collect();
@@ -126,7 +154,7 @@ impl Drainage {
 
     /// Adds the product of [`Drainage::assemble`]'s matrix with `v`, Pa; other ranks' parts are not yet in it.
     pub fn multiply(&self, v: &[f64], out: &mut Contributions) {
-        for outlet in &self.outlets {
+        for outlet in self.outlets.iter().filter(|outlet| !outlet.one_way) {
             let through = outlet.conductance * outlet.attachment.value(&self.offsets, v);
             outlet.attachment.scatter_value(&self.offsets, through, out);
         }
@@ -207,7 +235,11 @@ impl Given {
         still: impl Fn(&Vector<D>) -> f64,
     ) -> f64 {
         match self {
-            Self::StillWater => 0.0,
+            // Suction above the level is of the ground, not of its surface.
+            Self::StillWater | Self::Seepage => {
+                let still = still(x);
+                if still < 0.0 { -still } else { 0.0 }
+            }
             Self::Head(head) => weight * (head.at(t) - x[D - 1]) - still(x),
             Self::Pressure(pressure) => pressure.at(t) - still(x),
         }

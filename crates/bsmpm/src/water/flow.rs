@@ -3,6 +3,7 @@
 use crate::boundary::SurfacePoint;
 use crate::schedule::between;
 use crate::tensor::Vector;
+use crate::water::retention::Retention;
 
 /// Everything that makes the excess pressure an unknown.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,6 +18,8 @@ pub struct Flow<const D: usize> {
     pub faces: Vec<DrainedFace>,
     /// surfaces of bodies through which water is put in
     pub inflows: Vec<Inflow<D>>,
+    /// Pa  the largest suction above still water at the start, where soils keep water under suction
+    pub suction: f64,
 }
 
 impl<const D: usize> Flow<D> {
@@ -24,6 +27,23 @@ impl<const D: usize> Flow<D> {
     pub fn surfaces(&self) -> impl Iterator<Item = (&[SurfacePoint<D>], &[Vector<D>])> {
         let drains = self.drains.iter().map(|drain| (&drain.points[..], &drain.normals[..]));
         drains.chain(self.inflows.iter().map(|inflow| (&inflow.points[..], &inflow.normals[..])))
+    }
+
+    /// Whether a surface lets water through one way only.
+    pub fn is_one_way(&self) -> bool {
+        let seeps = |drain: &Drain<D>| drain.given == Given::Seepage;
+        self.drains.iter().any(seeps) || self.inflows.iter().any(|inflow| inflow.runs_off)
+    }
+
+    /// m  the largest suction head at which air enters a soil
+    pub fn entry(&self) -> f64 {
+        let retention = self.soils.iter().flatten().filter_map(|soil| soil.retention.as_ref());
+        retention.map(|retention| 1.0 / retention.alpha).fold(0.0, f64::max)
+    }
+
+    /// Whether a soil may be partly saturated.
+    pub fn retains(&self) -> bool {
+        self.soils.iter().flatten().any(|soil| soil.retention.is_some())
     }
 }
 
@@ -54,6 +74,8 @@ pub struct Soil<const D: usize> {
     pub porosity: f64,
     /// `None`: undrained, nothing flows
     pub permeability: Option<Permeability<D>>,
+    /// how much water it keeps under suction; `None`: its pores stay full
+    pub retention: Option<Retention>,
 }
 
 /// Hydraulic conductivity.
@@ -83,6 +105,8 @@ pub enum Given {
     Head(Course),
     /// Pa  of the pore water
     Pressure(Course),
+    /// that of the still water below its level; above it no pressure, and water only comes out: a seepage face
+    Seepage,
 }
 
 /// A number that follows time (s): rows, increasing in time; linear between, constant before the first and after the
@@ -129,4 +153,6 @@ pub struct Inflow<const D: usize> {
     pub normals: Vec<Vector<D>>,
     /// m/s  into the ground
     pub rate: Course,
+    /// no more than the ground takes without pressure at its surface: what is left runs off (rain)
+    pub runs_off: bool,
 }

@@ -18,11 +18,22 @@ pub fn assemble<K: Kinematics<D>, const D: usize>(
     pores: &Pores<D>,
     solver: &mut dyn LinearSolver,
 ) -> Result<(), SolveError> {
+    assemble_at(problem, pores, &pores.guess, solver)
+}
+
+/// The same where pores empty and seepage faces are open as under the nodal excess pressures `p`, Pa.
+pub fn assemble_at<K: Kinematics<D>, const D: usize>(
+    problem: &Problem<'_, K, D>,
+    pores: &Pores<D>,
+    p: &[f64],
+    solver: &mut dyn LinearSolver,
+) -> Result<(), SolveError> {
     let Problem { model, points, .. } = *problem;
     let Some((water, flow)) = model.water.as_ref().and_then(|water| Some((water, water.flow.as_ref()?))) else {
         return Ok(());
     };
     solver.begin(&pores.free);
+    let pressures = if flow.retains() { scalars::scalars(&pores.shape, p, |_, value, _| value) } else { Vec::new() };
     let wave = model.grid.smallest_edge().powi(2) / SHORTEST_WAVE;
     let inertia = problem.nodes.inertia.as_ref().map_or(0.0, |inertia| wave * inertia.factor());
     let size = pores.shape.offsets().len();
@@ -35,9 +46,21 @@ pub fn assemble<K: Kinematics<D>, const D: usize>(
             scalars::functions_of(&pores.shape, p, &mut functions);
             // With inertia the shortest waves that cells hold, of k^2 = 10/h^2, are stiffer.
             let stiffness = wet.stiffness + inertia * points.mass[p] / wet.volume;
-            let stored = wet.volume * (wet.content / flow.bulk + wet.J.powi(2) / stiffness);
-            let conductivity = flow.permeability(points.material[p], wet.J).unwrap_or_else(Vector::zeros);
-            let along = wet.tau + conductivity * (pores.dt * wet.volume * wet.J / water.unit_weight);
+            let mut conductivity = flow.permeability(points.material[p], wet.J).unwrap_or_else(Vector::zeros);
+            let mut stored = wet.volume * (wet.content / flow.bulk + wet.J.powi(2) / stiffness);
+            let mut tau = wet.tau;
+            let soil = flow.soils[usize::from(points.material[p])].as_ref();
+            if let Some(soil) = soil.filter(|soil| soil.retention.is_some()) {
+                let (whole, weight) = (pressures[p] + wet.ambient, water.unit_weight);
+                let (retained, pores) = (soil.retained(whole, weight), soil.pores(wet.J));
+                let chord = soil.chord(wet.pressure, whole, weight);
+                let gives_way = retained.effective * retained.saturation * wet.J.powi(2) / stiffness;
+                let empties = pores * chord.max(retained.slope);
+                stored = wet.volume * (wet.content / flow.bulk + gives_way + empties);
+                conductivity *= retained.permeability;
+                tau *= 1.0 + wet.stiffness / wet.J * pores * chord;
+            }
+            let along = tau + conductivity * (pores.dt * wet.volume * wet.J / water.unit_weight);
             for (row, (A, gradient)) in block.chunks_exact_mut(size).zip(&functions) {
                 let (A, gradient) = (A * stored, gradient.component_mul(&along));
                 row.iter_mut().zip(&functions).for_each(|(entry, (B, other))| *entry += A * B + gradient.dot(other));
@@ -45,6 +68,6 @@ pub fn assemble<K: Kinematics<D>, const D: usize>(
         }
         solver.add(patch.first_node, &block);
     }
-    pores.drainage.assemble(solver);
+    pores.drainage.assemble_at(p, solver);
     solver.finish(Symmetry::Definite)
 }

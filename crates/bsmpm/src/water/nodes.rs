@@ -29,6 +29,12 @@ pub struct Wet<const D: usize> {
     pub J: f64,
     /// -  water per reference volume at t
     pub content: f64,
+    /// Pa  whole pore pressure at t; of pores that stay full the excess alone
+    pub pressure: f64,
+    /// Pa  still water at t + dt, which with the excess is the whole pressure; 0 where all pores stay full
+    pub ambient: f64,
+    /// Pa  as much of it as acts on the ground as a force of its own
+    pub borne: f64,
     /// Pa  lambda + 2 mu
     pub stiffness: f64,
     /// m^D m2/Pa  V0 J tau h_i^2/M along the axes
@@ -52,6 +58,8 @@ pub struct Pores<const D: usize> {
     pub prescribed: Vec<Option<f64>>,
     /// Pa  excess pressure to begin with: the points' mean, or what is given
     pub guess: Vec<f64>,
+    /// Pa  still water at the functions' places, where pores may empty; else none
+    pub still: Vec<f64>,
     /// per point: of those that water flows through
     pub wet: Vec<Option<Wet<D>>>,
     /// drains and inflows
@@ -83,7 +91,7 @@ impl<const D: usize> Pores<D> {
         let pressure = points.pore_pressure.as_ref();
         let sums = halo.sum(&scalars::of_scalars(&shape, |p| {
             let volume = wet[p].as_ref().map_or(0.0, |wet| wet.volume);
-            [volume, volume * pressure.map_or(0.0, |pressure| pressure[p])].map(|value| (value, Vector::zeros()))
+            [volume, volume * pressure.map_or_else(|| water.excess_at_start(&points.x[p]), |pressure| pressure[p])].map(|value| (value, Vector::zeros()))
         }));
         let mut largest = [sums.chunks_exact(2).map(|of| of[0]).fold(0.0, f64::max)];
         halo.maximum(&mut largest);
@@ -94,13 +102,22 @@ impl<const D: usize> Pores<D> {
         let mean = |node: usize| if seen[node] { sums[2 * node + 1] / sums[2 * node] } else { 0.0 };
         let guess = (0..seen.len()).map(|node| prescribed[node].unwrap_or_else(|| mean(node))).collect();
         let still = |x: &Vector<D>| water.still_pressure(x, end);
+        let at_nodes = (0..if flow.retains() { seen.len() } else { 0 }).map(|node| {
+            let number = model.grid.node_at(node);
+            let place = |axis: usize| {
+                let axis_of = &model.grid.axes()[axis];
+                axis_of.lowered_greville(number[axis].min(axis_of.functions() - 2))
+            };
+            still(&Vector::from_fn(|axis, _| place(axis)))
+        });
+        let at_nodes = at_nodes.collect();
         let drainage = Drainage::at(model, points, (t, dt), |node| seen[node], still, halo)?;
         let limit = |node: usize| if free[node] { (ROUND_OFF * sums[2 * node]).powi(2) } else { 0.0 };
         let round_off = halo.total(&[over_layers(halo, 1, limit)])[0].sqrt();
         let mut unknowns = [free[halo.owned()].iter().filter(|free| **free).count() as f64];
         halo.reduce(&mut unknowns);
         let unknowns = unknowns[0] as usize;
-        Ok(Some(Self { shape, free, prescribed, guess, wet, drainage, dt, end, unknowns, round_off }))
+        Ok(Some(Self { shape, free, prescribed, guess, still: at_nodes, wet, drainage, dt, end, unknowns, round_off }))
     }
 }
 
@@ -117,14 +134,20 @@ impl<const D: usize> Wet<D> {
         let law = &model.materials[material];
         let stiffness = law.elastic().oedometric() * law.relative_stiffness(points.height(p));
         let (volume, J, x) = (points.volume[p], points.F.at(p).determinant(), &points.x[p]);
-        let pressure = points.pore_pressure.as_ref().map_or(0.0, |pressure| pressure[p]);
+        let pressure = points.pore_pressure.as_ref().map_or_else(|| water.excess_at_start(x), |pressure| pressure[p]);
         let edges = model.grid.locate(x).map_or_else(Vector::zeros, |cell| model.grid.cell_box(&cell).1);
         let still = water.still_gradient(x, end);
+        let holds = flow.retains();
+        let whole = if holds { pressure + water.still_pressure(x, t) } else { pressure };
+        let retained = soil.retained(whole, water.unit_weight);
         let flows = if soil.permeability.is_some() { 1.0 } else { 0.0 };
         Some(Self {
             volume,
             J,
-            content: soil.content(flow.bulk, J, pressure),
+            content: soil.content(flow.bulk, J, whole) * retained.saturation,
+            pressure: whole,
+            ambient: if holds { water.still_pressure(x, end) } else { 0.0 },
+            borne: model.still_water(end).filter(|_| holds).map_or(0.0, |still| still.pressure(x)),
             stiffness,
             tau: edges.component_mul(&edges) * (volume * J * TAU / stiffness),
             before: points.pressure_gradient.as_ref().map_or_else(|| water.still_gradient(x, t), |before| before[p]),

@@ -38,7 +38,8 @@ impl<'a, const D: usize> PoreWater<'a, D> {
 
     /// Pa  excess pressure at point `p`; 0 where no water flows
     pub fn excess(&self, p: usize) -> f64 {
-        self.points.pore_pressure.as_ref().map_or(0.0, |pressure| pressure[p])
+        let start = || self.water.excess_at_start(&self.points.x[p]);
+        self.points.pore_pressure.as_ref().map_or_else(start, |pressure| pressure[p])
     }
 
     /// Pa  pore pressure at point `p`, positive in compression
@@ -47,10 +48,21 @@ impl<'a, const D: usize> PoreWater<'a, D> {
         self.still(p) + self.excess(p) + carried
     }
 
+    /// Pa  as much of it as acts in the total stress: chi p
+    fn borne(&self, p: usize) -> f64 {
+        let pressure = self.pressure(p);
+        self.flow(p).map_or(1.0, |(_, soil)| soil.retained(pressure, self.water.unit_weight).effective) * pressure
+    }
+
+    /// -  share of the pores that water fills at point `p`; 1 where none may empty
+    pub fn saturation(&self, p: usize) -> f64 {
+        self.flow(p).map_or(1.0, |(_, soil)| soil.retained(self.pressure(p), self.water.unit_weight).saturation)
+    }
+
     /// Pa  Cauchy stress of grains and water together at point `p`
     pub fn total_stress(&self, p: usize) -> Symmetric {
         let mut stress = self.points.sigma.at(p);
-        stress.0[..3].iter_mut().for_each(|normal| *normal -= self.pressure(p));
+        stress.0[..3].iter_mut().for_each(|normal| *normal -= self.borne(p));
         stress
     }
 
@@ -67,7 +79,10 @@ impl<'a, const D: usize> PoreWater<'a, D> {
         let (Some(conductivity), Some(gradient)) = (conductivity, &self.points.pressure_gradient) else {
             return Vector::zeros();
         };
-        -conductivity.component_mul(&(gradient[p] - self.weight)) / self.water.unit_weight
+        let relative = self
+            .flow(p)
+            .map_or(1.0, |(_, soil)| soil.retained(self.pressure(p), self.water.unit_weight).permeability);
+        -conductivity.component_mul(&(gradient[p] - self.weight)) * relative / self.water.unit_weight
     }
 
     /// m3  (per metre in plane strain)  of water that all points have taken in since the start, at its density then.
@@ -75,8 +90,16 @@ impl<'a, const D: usize> PoreWater<'a, D> {
     pub fn gained(&self, halo: &dyn Halo) -> f64 {
         let of = |p: usize| {
             let Some((flow, soil)) = self.flow(p) else { return 0.0 };
-            let content = soil.content(flow.bulk, self.points.F.at(p).determinant(), self.excess(p));
-            self.points.volume[p] * (content - soil.porosity)
+            let J = self.points.F.at(p).determinant();
+            if !flow.retains() {
+                return self.points.volume[p] * (soil.content(flow.bulk, J, self.excess(p)) - soil.porosity);
+            }
+            let held = |J: f64, p: f64| {
+                soil.content(flow.bulk, J, p) * soil.retained(p, self.water.unit_weight).saturation
+            };
+            let x = self.points.x[p] - self.points.u[p];
+            let start = self.water.still_pressure(&x, 0.0) + self.water.excess_at_start(&x);
+            self.points.volume[p] * (held(J, self.pressure(p)) - held(1.0, start))
         };
         let gained: Exact = (0..self.points.len()).map(of).collect();
         halo.total(&[gained])[0]

@@ -8,7 +8,9 @@ use crate::points::Points;
 use crate::step::problem::Problem;
 use crate::step::trial::Trial;
 use crate::tensor::{Tensor, Vector};
+use crate::water::Water;
 use crate::water::nodes::{Pores, Wet};
+use crate::water::retention::Retained;
 use std::sync::atomic::AtomicU64;
 use std::sync::atomic::Ordering::Relaxed;
 
@@ -53,12 +55,12 @@ impl WaterBalance {
                 closed.fetch_add(1, Relaxed);
             }
             let stored = wet.volume * (state.content - wet.content);
-            let tau = wet.tau.component_mul(&(gradient + wet.still - wet.before));
+            let tau = wet.tau.component_mul(&(gradient + wet.still - wet.before)) * state.lumped;
             let zero = Vector::zeros();
             [(stored, zero), (0.0, state.flux * -(pores.dt * wet.volume)), (0.0, tau), (0.0, zero)]
         });
         pores.drainage.add_to(p, &mut sums);
-        trial.pore = Some(of_points(pores, trial, &pressures));
+        trial.pore = Some(of_points(problem, pores, trial, &pressures));
         Self::at_nodes(problem, pores, &halo.sum(&sums), closed.into_inner())
     }
 
@@ -100,16 +102,31 @@ impl WaterBalance {
     }
 }
 
-/// J p of every point, Pa: what the water presses with, beside the Kirchhoff stress of the skeleton.
+/// J p of every point, Pa: what the water presses with, beside the Kirchhoff stress of the skeleton; of pores that it
+/// does not fill chi p, less what acts as a force of its own.
 fn of_points<K: Kinematics<D>, const D: usize>(
+    problem: &Problem<'_, K, D>,
     pores: &Pores<D>,
     trial: &Trial<K, D>,
     pressures: &[(f64, Vector<D>)],
 ) -> Vec<f64> {
     let of = |(p, wet): (usize, &Option<Wet<D>>)| {
-        wet.as_ref().map_or(0.0, |wet| wet.J * trial.dF(p).determinant() * pressures[p].0)
+        wet.as_ref().map_or(0.0, |wet| {
+            let whole = pressures[p].0 + wet.ambient;
+            let chi = retained(problem.model, problem.points.material[p], whole).effective;
+            wet.J * trial.dF(p).determinant() * (chi * whole - wet.borne)
+        })
     };
     pores.wet.iter().enumerate().map(of).collect()
+}
+
+/// The water of a material under the whole pore pressure `p`, Pa.
+fn retained<K, const D: usize>(model: &Model<K, D>, material: u16, p: f64) -> Retained {
+    let soil = |water: &Water<D>| {
+        let soil = water.flow.as_ref()?.soils[usize::from(material)].as_ref()?;
+        Some(soil.retained(p, water.unit_weight))
+    };
+    model.water.as_ref().and_then(soil).unwrap_or(Retained::FULL)
 }
 
 /// What water does at a point under a trial.
@@ -122,6 +139,8 @@ pub struct Flowing<const D: usize> {
     pub flux: Vector<D>,
     /// Pa/m  gradient of the excess pressure, now
     pub gradient: Vector<D>,
+    /// -  share of the tau term: 1, and more where pores fill or empty, whose storage it lumps as well
+    pub lumped: f64,
 }
 
 impl<const D: usize> Flowing<D> {
@@ -135,15 +154,19 @@ impl<const D: usize> Flowing<D> {
     ) -> Self {
         let J = wet.J * dF.determinant();
         let nan = || Vector::from_element(f64::NAN);
-        let none = Self { pores: f64::NAN, content: f64::NAN, flux: nan(), gradient: nan() };
+        let none = Self { pores: f64::NAN, content: f64::NAN, flux: nan(), gradient: nan(), lumped: f64::NAN };
         let (Some(water), Some(inverse)) = (&model.water, dF.try_inverse()) else { return none };
         let Some(flow) = &water.flow else { return none };
         let Some(soil) = &flow.soils[usize::from(points.material[p])] else { return none };
         let now = pushed(&inverse, &gradient);
         let conductivity = flow.permeability(points.material[p], J).unwrap_or_else(Vector::zeros);
-        let w = (now + wet.drive).component_mul(&conductivity) * (-1.0 / water.unit_weight);
+        let (whole, weight) = (pressure + wet.ambient, water.unit_weight);
+        let retained = soil.retained(whole, weight);
+        let w = (now + wet.drive).component_mul(&conductivity) * (-retained.permeability / weight);
         let flux = Vector::from_fn(|i, _| J * (0..D).map(|j| inverse[(i, j)] * w[j]).sum::<f64>());
-        Self { pores: soil.pores(J), content: soil.content(flow.bulk, J, pressure), flux, gradient: now }
+        let content = soil.content(flow.bulk, J, whole) * retained.saturation;
+        let lumped = 1.0 + wet.stiffness / wet.J * soil.pores(wet.J) * soil.chord(wet.pressure, whole, weight);
+        Self { pores: soil.pores(J), content, flux, gradient: now, lumped }
     }
 }
 
@@ -163,7 +186,10 @@ pub fn pressing<K: Kinematics<D>, const D: usize>(
     let identity = K::working::<f64>(&Tensor::identity());
     let volume = problem.volume();
     let flux = |p: usize| match &pores.wet[p] {
-        Some(wet) => identity * (volume[p] * wet.J * at_points[p]),
+        Some(wet) => {
+            let chi = retained(problem.model, problem.points.material[p], wet.pressure).effective;
+            identity * (volume[p] * wet.J * (chi * at_points[p]))
+        }
         None => K::Gradient::zeros(),
     };
     let force = crate::grid::transfer::divergence::<K, D>((problem.shape, &problem.points.x), flux);

@@ -73,11 +73,14 @@ pub fn save<K: Kinematics<D>, const D: usize>(
         Some((pressure, Flowing::at(model, (points, p), wet, &trial.dF(p), (pressure, gradient))))
     });
     let density = water.density(model);
+    let holds = water.flow.as_ref().is_some_and(|flow| flow.retains());
     let (mut pressures, mut gradients) = (vec![0.0; states.len()], vec![Vector::zeros(); states.len()]);
     let mut stored = Vec::with_capacity(states.len());
     for (p, (state, wet)) in states.iter().zip(&pores.wet).enumerate() {
         let (Some((pressure, state)), Some(wet)) = (state, wet) else { continue };
-        pressures[p] = *pressure;
+        // What the whole pressure is now is what counts where it empties pores: the excess is over the place it came to.
+        let moved = if holds { wet.ambient - water.still_pressure(&points.x[p], pores.end) } else { 0.0 };
+        pressures[p] = *pressure + moved;
         gradients[p] = state.gradient + water.still_gradient(&points.x[p], pores.end);
         let taken = wet.volume * (state.content - wet.content);
         // What is weightless stays so.

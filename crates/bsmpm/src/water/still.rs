@@ -28,14 +28,27 @@ impl<const D: usize> Water<D> {
         }
     }
 
-    /// Pa  pressure of the still water at the place `x` at time `t`
+    /// Whether a soil may be partly saturated: the still water then goes on above its level, as suction.
+    fn holds(&self) -> bool {
+        self.flow.as_ref().is_some_and(|flow| flow.retains())
+    }
+
+    /// Pa  pressure of the still water at the place `x` at time `t`: 0 above its level, or suction where soils hold it
     pub fn still_pressure(&self, x: &Vector<D>, t: f64) -> f64 {
-        self.surface(x, t).map_or(0.0, |(height, _)| self.unit_weight * (height - x[D - 1]).max(0.0))
+        let least = if self.holds() { f64::NEG_INFINITY } else { 0.0 };
+        self.surface(x, t).map_or(0.0, |(height, _)| self.unit_weight * (height - x[D - 1]).max(least))
+    }
+
+    /// Pa  excess pressure at the place `x` before the first step: none, but where the suction above the level has its
+    /// limit
+    pub fn excess_at_start(&self, x: &Vector<D>) -> f64 {
+        let Some(flow) = self.flow.as_ref().filter(|flow| flow.retains()) else { return 0.0 };
+        (-flow.suction - self.still_pressure(x, 0.0)).max(0.0)
     }
 
     /// Pa/m  its gradient
     pub fn still_gradient(&self, x: &Vector<D>, t: f64) -> Vector<D> {
-        let Some((_, slope)) = self.surface(x, t).filter(|(height, _)| *height > x[D - 1]) else {
+        let Some((_, slope)) = self.surface(x, t).filter(|(height, _)| *height > x[D - 1] || self.holds()) else {
             return Vector::zeros();
         };
         let mut gradient = Vector::zeros();

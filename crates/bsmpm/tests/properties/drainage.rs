@@ -36,7 +36,7 @@ fn at(x: f64, y: f64) -> Vector<2> {
 }
 
 fn soil(law: PermeabilityLaw) -> Soil<2> {
-    Soil { porosity: 0.4, permeability: Some(Permeability { along: K.into(), law }) }
+    Soil { porosity: 0.4, permeability: Some(Permeability { along: K.into(), law }), retention: None }
 }
 
 /// Two columns of 4 cells beside each other, in a grid with two further cells around, of soil with this law; water
@@ -53,7 +53,8 @@ fn scene(order: usize, law: PermeabilityLaw, [from, to]: [Vector<2>; 2], given: 
         soils: vec![Some(soil(law))],
         drains: vec![Drain { points: points.clone(), normals: normals.clone(), given }],
         faces: Vec::new(),
-        inflows: vec![Inflow { points, normals, rate: Course(vec![(0.0, 2e-7), (2.0 * DT, 4e-7)]) }],
+        inflows: vec![Inflow { points, normals, rate: Course(vec![(0.0, 2e-7), (2.0 * DT, 4e-7)]), runs_off: false }],
+        suction: 0.0,
     };
     scene.model.water = Some(Water { unit_weight: WEIGHT, ambient: Ambient::None, flow: Some(flow) });
     scene
@@ -231,7 +232,7 @@ fn water_goes_through_no_surface_without_material_near_nor_one_of_tight_soil() {
     let all = out(&grid, &some, &p);
     assert!((0..grid.nodes()).all(|node| left(node) || all[node] == 0.0));
     let flow = scene.model.water.as_mut().and_then(|water| water.flow.as_mut()).expect("water flows");
-    flow.soils.push(Some(Soil { porosity: 0.4, permeability: None }));
+    flow.soils.push(Some(Soil { porosity: 0.4, permeability: None, retention: None }));
     scene = scene.with(hencky(1e6, 0.2), |x| x[0] > 1.2);
     // The columns of points beside 1.2 m are at 1.125 and 1.2083 m: half way begins what is nearest to the tight ones.
     let tight = scene.model.surfaces().water[0].iter().filter(|point| point.x[0] > 7.0 / 6.0).count();

@@ -77,16 +77,17 @@ fn ring(fineness: usize, inner: Option<f64>) -> Plane {
     let fixed = |value: f64| Course(vec![(0.0, value)]);
     let inflow = || {
         let (points, normals) = arc(0.5, fineness);
-        Inflow { points, normals, rate: fixed(1e-6) }
+        Inflow { points, normals, rate: fixed(1e-6), runs_off: false }
     };
     let mut drains = vec![drain(2.0, Given::StillWater)];
     drains.extend(inner.map(|pressure| drain(0.5, Given::Pressure(fixed(pressure)))));
     let flow = Flow {
         bulk: f64::INFINITY,
-        soils: vec![Some(Soil { porosity: 0.4, permeability })],
+        soils: vec![Some(Soil { porosity: 0.4, permeability, retention: None })],
         drains,
         faces: Vec::new(),
         inflows: if inner.is_none() { vec![inflow()] } else { Vec::new() },
+        suction: 0.0,
     };
     scene.model.water = Some(Water { unit_weight: WEIGHT, ambient: Ambient::None, flow: Some(flow) });
     scene

@@ -6,6 +6,7 @@ mod element;
 mod large;
 mod mandel;
 mod pair;
+mod partial;
 mod terzaghi;
 
 use crate::support::scene::{Scene, axis, hencky};
@@ -41,9 +42,9 @@ fn at(x: f64, y: f64) -> Vector<2> {
 /// a skeleton of the stiffness M; incompressible.
 pub fn flowing(law: PermeabilityLaw) -> Water<2> {
     let permeability = Permeability { along: at(WEIGHT / M, WEIGHT / M), law };
-    let soil = Soil { porosity: 0.6, permeability: Some(permeability) };
+    let soil = Soil { porosity: 0.6, permeability: Some(permeability), retention: None };
     let (soils, bulk) = (vec![Some(soil)], f64::INFINITY);
-    let flow = Flow { bulk, soils, drains: Vec::new(), faces: Vec::new(), inflows: Vec::new() };
+    let flow = Flow { bulk, soils, drains: Vec::new(), faces: Vec::new(), inflows: Vec::new(), suction: 0.0 };
     Water { unit_weight: WEIGHT, ambient: Ambient::None, flow: Some(flow) }
 }
 

@@ -1,0 +1,120 @@
+//! How much water a soil keeps under suction, and how well it still conducts (van Genuchten 1980, Mualem 1976).
+
+/// Least relative permeability: what a soil lets through as films and vapour, and what keeps a dry one from being cut off.
+/// A flux of a millionth of the saturated one changes no balance; the flow past a dry zone would lose its only way.
+const LEAST: f64 = 1e-6;
+
+/// Retention curve of a soil: effective saturation (1 + (alpha s)^n)^-m, m = 1 - 1/n, under the suction head s, m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Retention {
+    /// 1/m  over the head at which air enters
+    pub alpha: f64,
+    /// -  above 1: the larger, the more alike the pores
+    pub n: f64,
+    /// -  saturation that no suction removes
+    pub residual: f64,
+}
+
+/// A soil under a pore pressure.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Retained {
+    /// -  share of the pores that water fills
+    pub saturation: f64,
+    /// 1/Pa  its derivative by the pressure, not negative
+    pub slope: f64,
+    /// -  effective saturation: 0 where only the residual water is left; what Bishop's chi is taken as
+    pub effective: f64,
+    /// -  permeability over that of the saturated soil
+    pub permeability: f64,
+}
+
+impl Retained {
+    /// All pores full of water.
+    pub const FULL: Self = Self { saturation: 1.0, slope: 0.0, effective: 1.0, permeability: 1.0 };
+}
+
+impl Retention {
+    /// Under the pore pressure `p`, Pa, of water of the unit weight `weight`, N/m3.
+    pub fn under(&self, p: f64, weight: f64) -> Retained {
+        if p >= 0.0 {
+            return Retained::FULL;
+        }
+        let (n, m) = (self.n, 1.0 - 1.0 / self.n);
+        let head = self.alpha * -p / weight;
+        let drawn = head.powf(n);
+        let effective = (1.0 + drawn).powf(-m);
+        // (alpha s)^(n-1): where n is near 1 and s near 0 the quotient of the powers has no meaning.
+        let by_head = m * n * self.alpha * head.powf(n - 1.0) * effective / (1.0 + drawn);
+        // 1 - Se^(1/m) = drawn/(1 + drawn), which does not cancel.
+        let wide = 1.0 - (drawn / (1.0 + drawn)).powf(m);
+        Retained {
+            saturation: self.residual + (1.0 - self.residual) * effective,
+            slope: (1.0 - self.residual) * by_head / weight,
+            effective,
+            permeability: (effective.sqrt() * wide.powi(2)).max(LEAST),
+        }
+    }
+
+    /// 1/Pa  what the saturation changes by over what the pressure does between `before` and `now`, Pa.
+    pub fn chord(&self, before: f64, now: f64, weight: f64) -> f64 {
+        let change = now - before;
+        // Below a thousandth of a millimetre of water the difference is round-off.
+        if change.abs() < 1e-6 * weight {
+            return self.under(now, weight).slope;
+        }
+        ((self.under(now, weight).saturation - self.under(before, weight).saturation) / change).max(0.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LOAM: Retention = Retention { alpha: 3.6, n: 1.56, residual: 0.18 };
+    const SAND: Retention = Retention { alpha: 14.5, n: 2.68, residual: 0.1 };
+    const WEIGHT: f64 = 9810.0;
+
+    #[test]
+    fn saturation_and_permeability_follow_their_formulas() {
+        for soil in [LOAM, SAND] {
+            let m = 1.0 - 1.0 / soil.n;
+            for head in [0.01, 0.1, 1.0, 3.0] {
+                let found = soil.under(-head * WEIGHT, WEIGHT);
+                let effective = (1.0 + (soil.alpha * head).powf(soil.n)).powf(-m);
+                let k = effective.sqrt() * (1.0 - (1.0 - effective.powf(1.0 / m)).powf(m)).powi(2);
+                assert!((found.effective - effective).abs() < 1e-14);
+                assert!((found.saturation - soil.residual - (1.0 - soil.residual) * effective).abs() < 1e-14);
+                assert!((found.permeability / k.max(LEAST) - 1.0).abs() < 1e-9, "{found:?} {k}");
+            }
+            assert_eq!(soil.under(0.0, WEIGHT), Retained::FULL);
+            assert_eq!(soil.under(1e4, WEIGHT), Retained::FULL);
+        }
+        // Half of what can leave has left where (alpha s)^n = 2^(1/m) - 1; fully dry soil keeps the residual water.
+        assert!((SAND.under(-1e12, WEIGHT).saturation - 0.1).abs() < 1e-6);
+        assert_eq!(SAND.under(-1e12, WEIGHT).permeability, LEAST);
+    }
+
+    #[test]
+    fn the_slope_is_the_derivative() {
+        for soil in [LOAM, SAND] {
+            for head in [0.02, 0.3, 2.0] {
+                let (p, step) = (-head * WEIGHT, 1e-5 * head * WEIGHT);
+                let found = soil.under(p, WEIGHT).slope;
+                let chord = soil.chord(p - step, p + step, WEIGHT);
+                assert!((chord / found - 1.0).abs() < 1e-8, "{chord} {found}");
+            }
+        }
+    }
+
+    #[test]
+    fn saturation_rises_with_the_pressure_and_so_does_permeability() {
+        for soil in [LOAM, SAND] {
+            let under = |k: i32| soil.under(-WEIGHT * 1.3_f64.powi(k), WEIGHT);
+            for k in -40..20 {
+                let (more, less) = (under(k), under(k + 1));
+                assert!(more.saturation > less.saturation && more.permeability >= less.permeability);
+                assert!(more.slope > 0.0);
+            }
+        }
+    }
+}
