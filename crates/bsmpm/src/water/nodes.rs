@@ -91,7 +91,8 @@ impl<const D: usize> Pores<D> {
         let pressure = points.pore_pressure.as_ref();
         let sums = halo.sum(&scalars::of_scalars(&shape, |p| {
             let volume = wet[p].as_ref().map_or(0.0, |wet| wet.volume);
-            [volume, volume * pressure.map_or_else(|| water.excess_at_start(&points.x[p]), |pressure| pressure[p])].map(|value| (value, Vector::zeros()))
+            [volume, volume * pressure.map_or_else(|| water.excess_at_start(&points.x[p]), |pressure| pressure[p])]
+                .map(|value| (value, Vector::zeros()))
         }));
         let mut largest = [sums.chunks_exact(2).map(|of| of[0]).fold(0.0, f64::max)];
         halo.maximum(&mut largest);
