@@ -52,8 +52,9 @@ const WEIGHT: &str = "poisson = 0.3\n";
 const WET_WEIGHT: &str = "poisson = 0.3\nru = 0.3\nunit_weight = \"19 kN/m3\"\n";
 const ADDED_GRAVITY: &str =
     "poisson = 0.3\nunit_weight = \"19 kN/m3\"\nru = 0.3\n[gravity]\nacceleration = [1.0, -9.81]\n";
-const ADDED_STAGE: &str = "poisson = 0.3\nunit_weight = \"19 kN/m3\"\nru = 0.3\n[gravity]\nacceleration = [0.0, -9.81]\n\
-    [[stage]]\nat = 0.5\nremove = [\"upper\"]\n[[body]]\nname = \"upper\"\nmaterial = \"soil\"\n\
+const ADDED_STAGE: &str = "poisson = 0.3\nunit_weight = \"19 kN/m3\"\nru = 0.3\n\
+    [gravity]\nacceleration = [0.0, -9.81]\n[[stage]]\nat = 0.5\nremove = [\"upper\"]\n\
+    [[body]]\nname = \"upper\"\nmaterial = \"soil\"\n\
     box = { lower = [0.0, 1.0], upper = [1.0, 2.0] }\npoints_per_cell = 3\n";
 const SATURATED_KEY: &str = "material.soil.saturated_unit_weight";
 
