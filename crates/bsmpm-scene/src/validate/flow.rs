@@ -354,11 +354,6 @@ fn discretised(case: &Case, root: &Record, report: &mut Report<'_>) {
             let message = "\"linear\" splines leave the pore pressure no gradient: take \"quadratic\"";
             grid.error("order", message, report);
         }
-        if case.grid.lines.iter().any(|lines| !lines.is_empty()) {
-            let message =
-                "a breakpoint that stands more than once tears the pore pressure of water that flows: give each once";
-            grid.error("knots", message, report);
-        }
     }
     let few = |body: &Body| body.points_per_cell < POINTS_OF_CUBIC;
     for (body, record) in case.bodies.iter().zip(root.records("body")) {
