@@ -16,7 +16,7 @@
 //!   work is exact for dead loads and of second order in dt else.
 //! - **plastic**: `Σ_p V0 τ : (ε_trial - εᵉ)`, backward Euler like the return, and what damping takes, `Σ_p V0 τ_v : e`
 //!   (see [`damping`](crate::step::damping)).
-//!   Where water flows also what its seepage takes, `- dt Σ_p V0 J w · (grad p + drive)`, w Darcy's flux (see [`work`]).
+//!   Where water flows also what its seepage takes, `- dt Σ_p V0 J w · (grad p + drive)`, w Darcy's flux.
 //! - **transfer** between points and nodes: `(T0 - ½ v_I0 · M v_I0) + (½ v_I1 · M v_I1 - T1)` and what the blow did,
 //!   what PIC/FLIP loses on the way there and back; it can be negative, as the points' velocity grows by the
 //!   accelerations that they keep for themselves,

@@ -1,5 +1,5 @@
-//! A saturated column with inertia by the real binary: waves that the water damps (telegraph equation); ranks agree, and
-//! a run that was cut in two goes on to the bit.
+//! A saturated column with inertia by the real binary: waves that the water damps (telegraph equation); ranks agree,
+//! and a run that was cut in two goes on to the bit.
 
 use crate::support::Scratch;
 use crate::support::cases::changed;
