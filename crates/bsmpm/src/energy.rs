@@ -10,14 +10,13 @@
 //!
 //! - **external**: `Σ_p m_p (g0 + g1)/2 · Δu_p` of gravity, `Σ A (q0 + q1)/2 · Δx` of tractions and point loads,
 //!   `Σ A (p0 + p1)/2 · motion` of rigid strips, `r1 · u` of supports of the grid that move, and of friction at faces
-//!   and strips, and the blow `v · M (v - v_p)` with which supports meet material that the points bring along with v_p.
-//!   Of water that flows, what drives it beside its excess pressure p, what it brings in or takes out through drains and
-//!   inflows, `- dt Σ_p V0 J w · drive - Σ p out`, and `½ Δm v²` of the mass that points take in. The mean force of a
-//!   step: its work is exact for dead loads and of second order in dt else.
+//!   and strips,   and the blow `v · M (v - v_p)` with which supports meet material that the points bring along with
+//!   v_p. Of water that flows, what drives it beside its excess pressure p, and what drains and inflows let through,
+//!   `- dt Σ_p V0 J w · drive - Σ p out`, and `½ Δm v²` of the mass that points take in. The mean force of a step: its
+//!   work is exact for dead loads and of second order in dt else.
 //! - **plastic**: `Σ_p V0 τ : (ε_trial - εᵉ)`, backward Euler like the return, and what damping takes, `Σ_p V0 τ_v : e`
 //!   (see [`damping`](crate::step::damping)).
-//!   Where water flows also what its seepage takes, `- dt Σ_p V0 J w · (grad p + drive)`, w Darcy's flux (see
-//!   [`work`]).
+//!   Where water flows also what its seepage takes, `- dt Σ_p V0 J w · (grad p + drive)`, w Darcy's flux.
 //! - **transfer** between points and nodes: `(T0 - ½ v_I0 · M v_I0) + (½ v_I1 · M v_I1 - T1)` and what the blow did,
 //!   what PIC/FLIP loses on the way there and back; it can be negative, as the points' velocity grows by the
 //!   accelerations that they keep for themselves,

@@ -74,7 +74,6 @@ pub const FLOW: &[Row] = &[
     // Histories.
     row("drain    = \"base\"", "drain = \"bas\"", "history.1.drain", "did you mean `base`?"),
     row("face     = \"bottom\"\nname", "face = \"top\"\nname", "history.2.face", "there is no such [[drain]]"),
-    row("quantity = \"water-balance\"", "quantity = \"energy\"", "history.3.quantity", "the books of energy"),
     row("quantity = \"water-balance\"", "quantity = \"flux\"", "history.3.at", "missing").up(1),
     // What acts.
     row("right  = \"roller\"", "right = \"contact\"", "boundary.right", "faces in contact are not shown"),

@@ -13,8 +13,7 @@ use crate::water::residual::Flowing;
 /// J, on this rank; see the [books](crate::energy).
 #[derive(Clone, Debug)]
 pub struct Work {
-    /// `- dt sum V0 J w . drive - sum p out`: what drives water through the ground, and what brings it in or lets it
-    /// out
+    /// `- dt sum V0 J w . drive - sum p out`: what drives water through the ground, and what comes in or goes out
     pub external: Exact,
     /// `- dt sum V0 J w . (dF^-T grad p + drive)`, never negative
     pub seepage: Exact,
