@@ -347,11 +347,9 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
 
 /// Splines, points, averages and iterations that carry the pressure.
 fn discretised(case: &Case, root: &Record, report: &mut Report<'_>) {
-    if let Some(grid) = root.record("grid") {
-        if case.grid.order == 1 {
-            let message = "\"linear\" splines leave the pore pressure no gradient: take \"quadratic\"";
-            grid.error("order", message, report);
-        }
+    if let Some(grid) = root.record("grid").filter(|_| case.grid.order == 1) {
+        let message = "\"linear\" splines leave the pore pressure no gradient: take \"quadratic\"";
+        grid.error("order", message, report);
     }
     let few = |body: &Body| body.points_per_cell < POINTS_OF_CUBIC;
     for (body, record) in case.bodies.iter().zip(root.records("body")) {

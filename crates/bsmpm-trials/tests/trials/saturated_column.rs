@@ -61,7 +61,7 @@ const TELEGRAPH: [(f64, [f64; 2]); 4] = [
 /// m  settlement at rest
 const FINAL: f64 = 1e-5;
 /// s
-const UNIT: f64 = 0.031622776601683794;
+const UNIT: f64 = 0.031_622_776_601_683_79;
 
 #[test]
 fn telegraph_equation_on_ranks_and_in_two_parts() {
