@@ -125,8 +125,8 @@ pub struct Analysis {
     pub regime: Regime,
     /// s (quasi-static: pseudo-time)  end of the run
     pub end: f64,
-    /// s (quasi-static: pseudo-time)  nominal step, the first one where steps grow; the step before a wanted time or the
-    /// end is shortened
+    /// s (quasi-static: pseudo-time)  nominal step, the first one where steps grow; the step before a wanted time or
+    /// the end is shortened
     pub dt: f64,
     /// -, s  a step over the one before it, and the longest to which they grow; `None`: all are alike
     pub growth: Option<(f64, f64)>,

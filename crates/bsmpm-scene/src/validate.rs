@@ -184,14 +184,17 @@ fn analysis(record: &Record, kind: Option<AnalysisType>, report: &mut Report<'_>
 
 /// By which steps grow, and to which length, if they do; the outer option is `None` after an error.
 fn growth(analysis: &Record, (kind, dt): (AnalysisType, f64), report: &mut Report<'_>) -> Option<Option<(f64, f64)>> {
-    let keys = ["growth", "dt_max"].into_iter().filter(|key| analysis.gives(key));
-    for key in keys.clone().filter(|_| kind != AnalysisType::Consolidation) {
-        analysis.error(key, format!("steps grow in a consolidation analysis only, and this one is {kind}"), report);
-        return None;
-    }
-    if let Some(key) = keys.into_iter().next().filter(|_| analysis.gives("steps")) {
-        analysis.error(key, "`steps` are equal steps: give dt, the first one", report);
-        return None;
+    let mut keys = ["growth", "dt_max"].into_iter().filter(|key| analysis.gives(key));
+    if let Some(key) = keys.next() {
+        if kind != AnalysisType::Consolidation {
+            let message = format!("steps grow in a consolidation analysis only, and this one is {kind}");
+            analysis.error(key, message, report);
+            return None;
+        }
+        if analysis.gives("steps") {
+            analysis.error(key, "`steps` are equal steps: give dt, the first one", report);
+            return None;
+        }
     }
     let most = if analysis.gives("dt_max") { analysis.number("dt_max")? } else { f64::INFINITY };
     if most < dt {

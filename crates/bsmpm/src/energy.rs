@@ -11,9 +11,12 @@
 //! - **external**: `Σ_p m_p (g0 + g1)/2 · Δu_p` of gravity, `Σ A (q0 + q1)/2 · Δx` of tractions and point loads,
 //!   `Σ A (p0 + p1)/2 · motion` of rigid strips, `r1 · u` of supports of the grid that move, and of friction at faces
 //!   and strips,   and the blow `v · M (v - v_p)` with which supports meet material that the points bring along with
-//!   v_p. The mean force of a step: its work is exact for dead loads and of second order in dt else.
+//!   v_p. Of water that flows, what drives it beside its excess pressure p, and what drains and inflows let through,
+//!   `- dt Σ_p V0 J w · drive - Σ p out`, and `½ Δm v²` of the mass that points take in. The mean force of a step: its
+//!   work is exact for dead loads and of second order in dt else.
 //! - **plastic**: `Σ_p V0 τ : (ε_trial - εᵉ)`, backward Euler like the return, and what damping takes, `Σ_p V0 τ_v : e`
 //!   (see [`damping`](crate::step::damping)).
+//!   Where water flows also what its seepage takes, `- dt Σ_p V0 J w · (grad p + drive)`, w Darcy's flux.
 //! - **transfer** between points and nodes: `(T0 - ½ v_I0 · M v_I0) + (½ v_I1 · M v_I1 - T1)` and what the blow did,
 //!   what PIC/FLIP loses on the way there and back; it can be negative, as the points' velocity grows by the
 //!   accelerations that they keep for themselves,
@@ -55,7 +58,7 @@ use crate::solve::found::Found;
 use crate::step::adjoint::Pressures;
 use crate::step::problem::Problem;
 use crate::tensor::Vector;
-use crate::water::ratio;
+use crate::water::{ratio, work};
 use std::ops::AddAssign;
 
 /// Energy that went somewhere in a step, or in all steps so far, J; see the module.
@@ -63,7 +66,7 @@ use std::ops::AddAssign;
 pub struct Flows<T = f64> {
     /// work of gravity, water, loads and what moves, less what friction and faces that absorb take
     pub external: T,
-    /// dissipated by plastic flow and damping
+    /// dissipated by plastic flow, damping and seepage
     pub plastic: T,
     /// lost between points and nodes
     pub transfer: T,
@@ -102,7 +105,7 @@ impl AddAssign for Flows {
 pub struct Stored {
     /// `Σ ½ m |v|²`
     pub kinetic: f64,
-    /// `Σ V0 (½ λ tr(ε)² + μ ε : ε)`, ε = ½ ln bᵉ
+    /// `Σ V0 (½ λ tr(ε)² + μ ε : ε)`, ε = ½ ln bᵉ, and `Σ V0 n p²/(2 K_w)` of water that flows
     pub elastic: f64,
 }
 
@@ -146,7 +149,8 @@ impl Books {
 pub struct Draft {
     flows: Flows<Exact>,
     elastic: Exact,
-    rubbed: Exact, // half of the work of friction and dashpots at faces, part of the external work
+    dry: Option<Vec<f64>>, // kg  masses before the points take water in, where it flows
+    rubbed: Exact,         // half of the work of friction and dashpots at faces, part of the external work
     t: f64,
     dt: f64,
 }
@@ -195,8 +199,19 @@ impl Draft {
             let damped = |p: usize| found.trial.viscous(model, points, p).map_or(0.0, |viscous| viscous.dissipation);
             flows.plastic.extend((0..points.len()).map(|p| points.volume[p] * damped(p)));
         }
-        let elastic = volumes().map(|(response, volume)| volume * response.elastic_energy()).collect();
-        let mut draft = Self { flows, elastic, rubbed, t, dt };
+        let mut elastic: Exact = volumes().map(|(response, volume)| volume * response.elastic_energy()).collect();
+        if model.balances_energy {
+            flows.integration -= &flows.plastic;
+        }
+        if let Some(water) = work::Work::of(problem, found) {
+            flows.external += &water.external;
+            flows.plastic += &water.seepage;
+            flows.integration += &water.stored;
+            flows.integration += &water.tau;
+            elastic += &water.compressed;
+        }
+        let dry = nodes.pores.is_some().then(|| points.mass.to_vec());
+        let mut draft = Self { flows, elastic, dry, rubbed, t, dt };
         if model.balances_energy {
             draft.add_losses(problem, (found, responses));
         }
@@ -214,11 +229,10 @@ impl Draft {
         let (pressures, volume) = (Pressures::of(problem, &found.trial), problem.volume());
         let work_of = |p: usize, grad: K::Gradient| {
             let tau = pressures.acting::<K, D>(p, volume[p], responses[p].tau());
-            let tau = found.trial.damped(model, points, p, tau);
+            let tau = found.trial.pressed(p, found.trial.damped(model, points, p, tau));
             volume[p] * K::flux(&tau, &found.trial.dF(p)).dot(&grad)
         };
         flows.integration.extend(transfer::gradients::<K, D, _>((shape, &points.x), u, work_of));
-        flows.integration -= &flows.plastic;
         flows.integration -= &self.elastic;
         flows.integration += &elastic(model, points);
         flows.smoothing += &self.elastic;
@@ -240,8 +254,15 @@ impl Draft {
         surface: &Surface<D>,
         halo: &dyn Halo,
     ) -> (Option<Flows>, Turnover) {
-        let Self { flows: mut own, elastic: strained, rubbed, t, dt } = self;
+        let Self { flows: mut own, elastic: strained, dry, rubbed, t, dt } = self;
         let moving = kinetic(points);
+        if let Some((dry, motion)) = dry.zip(points.motion.as_ref()) {
+            let masses = points.mass.iter().zip(dry);
+            let brought = masses.zip(&motion.v).map(|((mass, dry), v)| 0.5 * (mass - dry) * v.norm_squared());
+            let brought: Exact = brought.collect();
+            own.external += &brought;
+            own.transfer += &brought;
+        }
         let mut external = own.external.clone();
         // Where loads grow in the first step, forces at its end do up to twice the work that is counted by their mean:
         // of friction and dashpots half is left out of the bound on what is made.
@@ -275,7 +296,10 @@ fn kinetic<const D: usize>(points: &Points<D>) -> Exact {
 
 /// A state that is no strain has no energy: not a number, like the step that led to it.
 fn elastic<K: Kinematics<D>, const D: usize>(model: &Model<K, D>, points: &Points<D>) -> Exact {
-    (0..points.len()).map(|p| points.volume[p] * model.elastic_energy(points, p, &points.b_e.at(p))).collect()
+    let mut energy: Exact =
+        (0..points.len()).map(|p| points.volume[p] * model.elastic_energy(points, p, &points.b_e.at(p))).collect();
+    energy += &work::in_points(model, points);
+    energy
 }
 
 /// Work of gravity and still water by their mean, and half of what they have grown times u.

@@ -63,8 +63,8 @@ impl Criteria {
     }
 }
 
-/// Largest part of the water that is stored, flows or leaves that may be out of balance: the forces' tolerance where that
-/// is smaller.
+/// Largest part of the water that is stored, flows or leaves that may be out of balance: the forces' tolerance where
+/// that is smaller.
 const WATER: f64 = 1e-4;
 
 fn against(measure: f64, tolerance: f64) -> String {

@@ -85,8 +85,8 @@ pub trait LinearSolver {
         rhs: &[f64],
         solution: &mut [f64],
     ) -> Result<Krylov, SolveError>;
-    /// The system of the pore pressures beside this one of the displacements: one unknown a node, kept at the node whose
-    /// number the pressure's function has; where water flows.
+    /// The system of the pore pressures beside this one of the displacements: one unknown a node, kept at the node
+    /// whose number the pressure's function has; where water flows.
     fn water(&mut self) -> Option<&mut dyn LinearSolver> {
         None
     }

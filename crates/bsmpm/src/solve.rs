@@ -132,8 +132,8 @@ fn by_secants<K: Kinematics<D>, const D: usize>(
     quasi_newton::iterate(problem, method, (u, residual), solver, counts, convergence)
 }
 
-/// The guess where it is free, the prescribed values, zero elsewhere; behind it the pressures that the points have, where
-/// water flows.
+/// The guess where it is free, the prescribed values, zero elsewhere; behind it the pressures that the points have,
+/// where water flows.
 fn admissible<const D: usize>(nodes: &Nodes<D>, guess: &[f64]) -> Vec<f64> {
     let component = |(c, &value): (usize, &f64)| match nodes.prescribed[c] {
         Some(prescribed) => prescribed,

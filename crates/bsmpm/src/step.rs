@@ -70,8 +70,7 @@ pub fn step<K: Kinematics<D>, const D: usize>(
     let position = load::moved(&model.boundary.loads, &points.surface, (&model.grid, &nodes.active), &found.u, halo);
     let mut surface = Surface { traction, position, anchors, bodies, ..points.surface.clone() };
     let responses = commit::responses(model, &found.trial, points, halo)?;
-    // What flows through the pores is in no account yet.
-    let accounts = (model.balances_energy || model.regime == Regime::Dynamic) && nodes.pores.is_none();
+    let accounts = model.balances_energy || model.regime == Regime::Dynamic;
     let draft = accounts.then(|| Draft::of(&problem, (&found, &responses), (t, dt)));
     if halo.rejects() {
         return Err(StepError::Interrupted);

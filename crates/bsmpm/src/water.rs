@@ -20,6 +20,8 @@ pub mod retention;
 pub mod saved;
 pub mod split;
 pub mod still;
+pub mod ties;
+pub mod work;
 
 use ambient::Ambient;
 use flow::Flow;

@@ -16,7 +16,7 @@ pub struct Flow {
     pub drains: Vec<Drain>,
     /// Surfaces through which water is put in, in the order of the file.
     pub inflows: Vec<Inflow>,
-    /// Pa  the largest suction at the start; without [water] level there is none
+    /// Pa  the largest suction at the start; without a level of `[water]` there is none
     pub suction: f64,
 }
 

@@ -327,7 +327,12 @@ static RETENTION: Table = Table {
     keys: &[
         key("alpha", Quantity(In::Number, Range::POSITIVE), Required, "1/m, over the head at which air enters"),
         key("n", Quantity(In::Number, PORES), Required, "the larger, the more alike the pores"),
-        key("residual", Quantity(In::Number, SHARE), super::Presence::Default("0"), "saturation that no suction removes"),
+        key(
+            "residual",
+            Quantity(In::Number, SHARE),
+            super::Presence::Default("0"),
+            "saturation that no suction removes",
+        ),
     ],
     exclusive: &[],
 };

@@ -4,7 +4,7 @@ use super::STANDARD_GRAVITY;
 use super::load::increasing;
 use super::place::{self, along};
 use super::strip::{AroundStrip, segment};
-use crate::case::{Body, Case, Drain, DrainSite, Face, Flow, Inflow, Initial, NamedMaterial, Quantity, Support};
+use crate::case::{Body, Case, Drain, DrainSite, Face, Flow, Inflow, Initial, NamedMaterial, Support};
 use crate::nearest::hint;
 use crate::record::Record;
 use crate::region::{Region, skin};
@@ -333,11 +333,9 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
         }
         return;
     };
-    if let Some(analysis) = root.record("analysis").filter(|_| !consolidates) {
-        let message = match case.analysis.kind {
-            AnalysisType::QuasiStatic => "its time has no unit, and water flows in real time: take \"consolidation\"",
-            _ => "water that flows is not shown to be right with inertia: take \"consolidation\"",
-        };
+    let timeless = case.analysis.kind == AnalysisType::QuasiStatic;
+    if let Some(analysis) = root.record("analysis").filter(|_| timeless) {
+        let message = "its time has no unit, and water flows in real time: take \"consolidation\" or \"dynamic\"";
         analysis.error("type", message, report);
     }
     discretised(case, root, report);
@@ -349,16 +347,9 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
 
 /// Splines, points, averages and iterations that carry the pressure.
 fn discretised(case: &Case, root: &Record, report: &mut Report<'_>) {
-    if let Some(grid) = root.record("grid") {
-        if case.grid.order == 1 {
-            let message = "\"linear\" splines leave the pore pressure no gradient: take \"quadratic\"";
-            grid.error("order", message, report);
-        }
-        if case.grid.lines.iter().any(|lines| !lines.is_empty()) {
-            let message =
-                "a breakpoint that stands more than once tears the pore pressure of water that flows: give each once";
-            grid.error("knots", message, report);
-        }
+    if let Some(grid) = root.record("grid").filter(|_| case.grid.order == 1) {
+        let message = "\"linear\" splines leave the pore pressure no gradient: take \"quadratic\"";
+        grid.error("order", message, report);
     }
     let few = |body: &Body| body.points_per_cell < POINTS_OF_CUBIC;
     for (body, record) in case.bodies.iter().zip(root.records("body")) {
@@ -482,10 +473,8 @@ fn acting(case: &Case, root: &Record, report: &mut Report<'_>) {
             initial.error(key, message, report);
         }
     }
-    for (history, record) in case.histories.iter().zip(root.records("history")) {
-        if history.quantity == Quantity::Energy {
-            record.error("quantity", "the books of energy do not know water that flows", report);
-        }
+    if let Some(shaking) = root.record("shaking") {
+        report.error(shaking.origin, &shaking.path, not_shown("ground that shakes is"));
     }
 }
 

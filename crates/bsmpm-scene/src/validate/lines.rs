@@ -44,11 +44,7 @@ pub(super) fn place(case: &mut Case, record: &Record, report: &mut Report<'_>) {
     }
     let lines = std::mem::take(&mut found.lines);
     let chosen = record.record("grid").and_then(|grid| grid.word("c0_lines")).unwrap_or(C0Lines::Automatic);
-    let torn = case.flow.is_some() && chosen == C0Lines::Automatic;
-    if torn {
-        report.note("grid.c0_lines", "none", "the pore pressure of water that flows would be torn there");
-    }
-    match if torn { C0Lines::None } else { chosen } {
+    match chosen {
         C0Lines::None => {
             if let Some(((axis, line), reason)) = lines.iter().find(|((axis, line), _)| !has(case, *axis, *line)) {
                 let at = coordinate(case, *axis, *line);

@@ -26,8 +26,8 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
     match &case.gravity {
         None => material.error(KEY, "nothing weighs without [gravity]", report),
         Some(gravity) if gravity.acceleration[0] != 0.0 || gravity.acceleration[1] >= 0.0 => {
-            let message = format!("{:?} is not straight down, which ru needs", gravity.acceleration);
-            material.error(KEY, format!("gravity.acceleration = {message}"), report);
+            let message = format!("gravity.acceleration = {:?} is not straight down", gravity.acceleration);
+            material.error(KEY, message, report);
         }
         Some(_) => {}
     }

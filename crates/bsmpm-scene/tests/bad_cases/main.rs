@@ -131,6 +131,8 @@ fn water_that_flows() {
 fn still_water() {
     verify_all(WET, water::WATER);
     verify_all(DYNAMIC, water::SHAKEN);
+    verify_all(WET, water::RATIO_AND_WATER);
+    verify_all(STATIC, water::RATIO);
 }
 
 #[test]

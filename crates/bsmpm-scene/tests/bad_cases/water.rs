@@ -33,6 +33,29 @@ pub const WATER: &[Row] = &[
     row("[water]\nlevel = 0.75\n", "", SATURATED_KEY, "has no meaning without [water]").up(16),
     row("at       = [1.0, 0.5]", "", "history.0.at", "missing; quantity \"pore-pressure\" needs it").up(2),
 ];
+/// Pressure that points carry, beside other water.
+pub const RATIO_AND_WATER: &[Row] = &[
+    row(SATURATED, "saturated_unit_weight = \"20 kN/m3\"\nru = 0.3", RU, "[water] gives the pore pressure, too")
+        .down(1),
+    row(SATURATED, "saturated_unit_weight = \"20 kN/m3\"\nru = 1.0", RU, "allowed: 0 < ru < 1").down(1),
+    row("[water]\nlevel = 0.75\n", "[water]\nlevel = 0.75\nru = 0.3\n", "water.ru", "unknown key").down(2),
+];
+
+/// Pressure that points carry, beside what it is not right with.
+pub const RATIO: &[Row] = &[
+    row(WEIGHT, WET_WEIGHT, RU, "nothing weighs without [gravity]").down(1),
+    row("poisson = 0.3\n", ADDED_GRAVITY, RU, "is not straight down").down(2),
+    row("poisson = 0.3\n", ADDED_STAGE, RU, "whatever stages place, take away or exchange").down(2),
+];
+const RU: &str = "material.soil.ru";
+const WEIGHT: &str = "poisson = 0.3\n";
+const WET_WEIGHT: &str = "poisson = 0.3\nru = 0.3\nunit_weight = \"19 kN/m3\"\n";
+const ADDED_GRAVITY: &str =
+    "poisson = 0.3\nunit_weight = \"19 kN/m3\"\nru = 0.3\n[gravity]\nacceleration = [1.0, -9.81]\n";
+const ADDED_STAGE: &str = "poisson = 0.3\nunit_weight = \"19 kN/m3\"\nru = 0.3\n\
+    [gravity]\nacceleration = [0.0, -9.81]\n[[stage]]\nat = 0.5\nremove = [\"upper\"]\n\
+    [[body]]\nname = \"upper\"\nmaterial = \"soil\"\n\
+    box = { lower = [0.0, 1.0], upper = [1.0, 2.0] }\npoints_per_cell = 3\n";
 const SATURATED_KEY: &str = "material.soil.saturated_unit_weight";
 
 /// Ground that shakes.

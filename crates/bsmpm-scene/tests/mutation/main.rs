@@ -138,6 +138,8 @@ fn bases() -> Vec<String> {
     let still = ["level = 0.75", "level_path = [[0.0, \"2 m\"], [1.0, 0.5]]", "line = [[0.0, 0.75], [\"2 m\", 0.5]]"];
     let mut bases = vec![FULL.to_owned(), STATIC.to_owned(), later, RUBBING.to_owned(), SEEPING.to_owned()];
     bases.extend(still.map(wet));
+    let ratio = STATIC.replacen("poisson = 0.3", "poisson = 0.3\nunit_weight = \"19 kN/m3\"\nru = 0.3", 1);
+    bases.push(format!("{ratio}\n[gravity]\nacceleration = [0.0, -9.81]\n"));
     for changes in OTHERWISE {
         let mut text = FULL.to_owned();
         for (part, by) in changes {

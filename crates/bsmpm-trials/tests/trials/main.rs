@@ -21,6 +21,7 @@ mod references;
 mod restart;
 mod rigid;
 mod room;
+mod saturated_column;
 mod scenes;
 mod settled_start;
 mod signals;

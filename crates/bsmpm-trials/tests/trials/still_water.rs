@@ -124,3 +124,45 @@ fn a_level_that_falls_is_followed_and_goes_on_to_the_bit() {
     let text = |name: &str| std::fs::read_to_string(scratch.path(name).join("history.csv")).unwrap();
     assert!(text("one") == text("part"));
 }
+
+/// Ground whose points carry .3 of the weight above them as a pore pressure.
+fn by_ratio() -> String {
+    let case = changed(GROUND, "[water]\nlevel = 12.0\n", "");
+    changed(&case, "saturated_unit_weight = \"20 kN/m3\"", "ru = 0.3")
+}
+
+/// sigma_v' = -(1 - r_u) gamma z, nothing moves.
+#[test]
+fn level_ground_by_a_ratio_has_the_rest_of_its_weight_and_rests() {
+    let scratch = Scratch::with_case(&by_ratio());
+    scratch.mpirun(1, &["case.toml", "-q", "-o", "out"]).expect(0);
+    let found = manifest(&scratch.path("out")).initial.expect("a stress at the start");
+    assert!(found.unbalance < 1e-12 && found.yielding == 0, "{found:?}");
+    assert!(at(&history(&scratch.path("out")), "max-displacement", 1.0) < 1e-12);
+    let frame = last_frame(&scratch.path("out"));
+    let (stress, pore) = (frame.real("stress", 6).unwrap(), frame.real("pore_pressure", 1).unwrap());
+    for (p, place) in frame.position.iter().enumerate() {
+        let [side, vertical] = [stress[6 * p], stress[6 * p + 1]];
+        let weight = 17_000.0 * (9.0 - place[1]);
+        assert!((vertical + 0.7 * weight).abs() < 0.05 * 17_000.0, "{place:?} {vertical}");
+        assert!((side - 0.5 * vertical).abs() < 1e-8 * weight, "{place:?} {side} {vertical}");
+        assert!((pore[p] - 0.3 * weight).abs() < 1e-8 * weight, "{place:?} {}", pore[p]);
+    }
+}
+
+/// A slope whose points carry it, on two ranks and with a restart between.
+#[test]
+fn a_slope_by_a_ratio_moves_the_same_on_two_ranks_and_goes_on_to_the_bit() {
+    let slope = changed(&by_ratio(), LEVEL, SLOPE).replace("[initial]\nk0 = 0.5\nequilibrium = \"plastic\"\n", TIGHT);
+    let slope = changed(&slope, "-9.81]", "-9.81]\nramp = 1.0");
+    let scratch = Scratch::with_case(&slope);
+    scratch.mpirun(1, &["case.toml", "-q", "-o", "one"]).expect(0);
+    scratch.mpirun(2, &["case.toml", "-q", "-o", "two"]).expect(0);
+    let part = ["case.toml", "-q", "-o", "part", "--restart", "auto"];
+    scratch.mpirun(1, &[&part[..], &["--max-steps", "2"]].concat()).expect(75);
+    scratch.mpirun(1, &part).expect(0);
+    let text = |name: &str| std::fs::read_to_string(scratch.path(name).join("history.csv")).unwrap();
+    assert!(text("one") == text("part"));
+    let [one, two] = ["one", "two"].map(|name| at(&history(&scratch.path(name)), "max-displacement", 1.0));
+    assert!(one > 1e-4 && (one - two).abs() < 1e-8 * one, "{one} {two}");
+}

@@ -24,7 +24,7 @@ pub struct Turnover {
     /// work of gravity, loads and what moves; without friction at faces, which takes energy away, but is known at the
     /// end of a step alone: in the first one of a load that grows that is twice its mean
     pub external: f64,
-    /// dissipated by plastic flow
+    /// dissipated by plastic flow, damping and seepage
     pub plastic: f64,
     /// energy of the points; the elastic one is that of the stress in equilibrium, before any smoothing
     pub stored: Stored,

@@ -160,6 +160,12 @@ impl Drainage {
         }
     }
 
+    /// J  what the water that leaves under the excess pressures `p`, Pa, takes along, on this rank.
+    pub fn work(&self, p: &[f64]) -> Exact {
+        let of = |outlet: &Outlet| outlet.attachment.value(&self.offsets, p) * outlet.out(&self.offsets, p);
+        self.outlets.iter().map(of).collect()
+    }
+
     /// What every drain, and every inflow, did under the converged excess pressures `p`, Pa. One reduction.
     pub fn report(&self, p: &[f64], halo: &dyn Halo) -> [Vec<DrainReport>; 2] {
         let surfaces: usize = self.of.iter().sum();

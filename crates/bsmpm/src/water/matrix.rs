@@ -69,5 +69,6 @@ pub fn assemble_at<K: Kinematics<D>, const D: usize>(
         solver.add(patch.first_node, &block);
     }
     pores.drainage.assemble_at(p, solver);
+    pores.ties.assemble(problem.halo, solver);
     solver.finish(Symmetry::Definite)
 }

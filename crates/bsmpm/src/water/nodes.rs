@@ -11,6 +11,7 @@ use crate::tensor::Vector;
 use crate::water::Water;
 use crate::water::drain::Drainage;
 use crate::water::flow::Flow;
+use crate::water::ties::Ties;
 
 /// Share of the tau term, of h^2/M: with it the pair of splines of degree q and q - 1 is stable, and in one dimension
 /// the storage is lumped; see `water.md`.
@@ -19,6 +20,8 @@ const TAU: f64 = 1.0 / 6.0;
 const UNSEEN: f64 = 1e-14;
 /// Round-off of the water's balance, of the volume that a function sees.
 const ROUND_OFF: f64 = 1e-13;
+/// Numbers of a function: the volume that it sees, that times the pressure, and what it stores and lets flow.
+const SUMS: usize = 3;
 
 /// A point that water flows through, at the start of a step.
 #[derive(Clone, Copy, Debug)]
@@ -64,6 +67,8 @@ pub struct Pores<const D: usize> {
     pub wet: Vec<Option<Wet<D>>>,
     /// drains and inflows
     pub drainage: Drainage,
+    /// across lines where strains may jump
+    pub ties: Ties,
     /// s  length of the step, and its end
     pub dt: f64,
     /// s
@@ -91,15 +96,21 @@ impl<const D: usize> Pores<D> {
         let pressure = points.pore_pressure.as_ref();
         let sums = halo.sum(&scalars::of_scalars(&shape, |p| {
             let volume = wet[p].as_ref().map_or(0.0, |wet| wet.volume);
-            [volume, volume * pressure.map_or_else(|| water.excess_at_start(&points.x[p]), |pressure| pressure[p])].map(|value| (value, Vector::zeros()))
+            let takes = wet[p].as_ref().map_or(0.0, |wet| wet.takes(model, (water, flow), points.material[p], dt));
+            let values = [
+                volume,
+                volume * pressure.map_or_else(|| water.excess_at_start(&points.x[p]), |pressure| pressure[p]),
+                takes,
+            ];
+            values.map(|value| (value, Vector::zeros()))
         }));
-        let mut largest = [sums.chunks_exact(2).map(|of| of[0]).fold(0.0, f64::max)];
+        let mut largest = [sums.chunks_exact(SUMS).map(|of| of[0]).fold(0.0, f64::max)];
         halo.maximum(&mut largest);
-        let seen: Vec<bool> = sums.chunks_exact(2).map(|of| of[0] > UNSEEN * largest[0]).collect();
+        let seen: Vec<bool> = sums.chunks_exact(SUMS).map(|of| of[0] > UNSEEN * largest[0]).collect();
         let mut prescribed = vec![None; seen.len()];
         given(&model.grid, (water, flow), end, &mut prescribed);
         let free: Vec<bool> = seen.iter().zip(&prescribed).map(|(seen, given)| *seen && given.is_none()).collect();
-        let mean = |node: usize| if seen[node] { sums[2 * node + 1] / sums[2 * node] } else { 0.0 };
+        let mean = |node: usize| if seen[node] { sums[SUMS * node + 1] / sums[SUMS * node] } else { 0.0 };
         let guess = (0..seen.len()).map(|node| prescribed[node].unwrap_or_else(|| mean(node))).collect();
         let still = |x: &Vector<D>| water.still_pressure(x, end);
         let at_nodes = (0..if flow.retains() { seen.len() } else { 0 }).map(|node| {
@@ -112,12 +123,27 @@ impl<const D: usize> Pores<D> {
         });
         let at_nodes = at_nodes.collect();
         let drainage = Drainage::at(model, points, (t, dt), |node| seen[node], still, halo)?;
-        let limit = |node: usize| if free[node] { (ROUND_OFF * sums[2 * node]).powi(2) } else { 0.0 };
+        let takes: Vec<f64> = sums.chunks_exact(SUMS).map(|of| of[2]).collect();
+        let ties = Ties::of(&model.grid, &seen, &takes);
+        let limit = |node: usize| if free[node] { (ROUND_OFF * sums[SUMS * node]).powi(2) } else { 0.0 };
         let round_off = halo.total(&[over_layers(halo, 1, limit)])[0].sqrt();
         let mut unknowns = [free[halo.owned()].iter().filter(|free| **free).count() as f64];
         halo.reduce(&mut unknowns);
         let unknowns = unknowns[0] as usize;
-        Ok(Some(Self { shape, free, prescribed, guess, still: at_nodes, wet, drainage, dt, end, unknowns, round_off }))
+        Ok(Some(Self {
+            shape,
+            free,
+            prescribed,
+            guess,
+            still: at_nodes,
+            wet,
+            drainage,
+            ties,
+            dt,
+            end,
+            unknowns,
+            round_off,
+        }))
     }
 }
 
@@ -154,6 +180,15 @@ impl<const D: usize> Wet<D> {
             still,
             drive: (still - water.weight(model, end)) * flows,
         })
+    }
+}
+
+impl<const D: usize> Wet<D> {
+    /// m3/Pa  what the point stores and lets flow through a cell in a step, per pressure.
+    fn takes<K>(&self, model: &Model<K, D>, (water, flow): (&Water<D>, &Flow<D>), material: u16, dt: f64) -> f64 {
+        let conductivity = flow.permeability(material, self.J).unwrap_or_else(Vector::zeros);
+        let flows = dt * conductivity.max() / (water.unit_weight * model.grid.smallest_edge().powi(2));
+        self.volume * (self.content / flow.bulk + self.J.powi(2) / self.stiffness + self.J * flows)
     }
 }
 

@@ -79,9 +79,8 @@ impl<'a, const D: usize> PoreWater<'a, D> {
         let (Some(conductivity), Some(gradient)) = (conductivity, &self.points.pressure_gradient) else {
             return Vector::zeros();
         };
-        let relative = self
-            .flow(p)
-            .map_or(1.0, |(_, soil)| soil.retained(self.pressure(p), self.water.unit_weight).permeability);
+        let relative =
+            self.flow(p).map_or(1.0, |(_, soil)| soil.retained(self.pressure(p), self.water.unit_weight).permeability);
         -conductivity.component_mul(&(gradient[p] - self.weight)) * relative / self.water.unit_weight
     }
 
@@ -94,9 +93,8 @@ impl<'a, const D: usize> PoreWater<'a, D> {
             if !flow.retains() {
                 return self.points.volume[p] * (soil.content(flow.bulk, J, self.excess(p)) - soil.porosity);
             }
-            let held = |J: f64, p: f64| {
-                soil.content(flow.bulk, J, p) * soil.retained(p, self.water.unit_weight).saturation
-            };
+            let held =
+                |J: f64, p: f64| soil.content(flow.bulk, J, p) * soil.retained(p, self.water.unit_weight).saturation;
             let x = self.points.x[p] - self.points.u[p];
             let start = self.water.still_pressure(&x, 0.0) + self.water.excess_at_start(&x);
             self.points.volume[p] * (held(J, self.pressure(p)) - held(1.0, start))

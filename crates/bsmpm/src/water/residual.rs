@@ -16,6 +16,8 @@ use std::sync::atomic::Ordering::Relaxed;
 
 /// Numbers of a node in the balance: what is stored, what flows, the tau term, and what drains and inflows let through.
 const TERMS: usize = 4;
+/// Place of what flows among them.
+const FLOWS: usize = 1;
 
 /// What is out of balance in the water, m3, nodal.
 #[derive(Clone, Debug, Default)]
@@ -61,7 +63,9 @@ impl WaterBalance {
         });
         pores.drainage.add_to(p, &mut sums);
         trial.pore = Some(of_points(problem, pores, trial, &pressures));
-        Self::at_nodes(problem, pores, &halo.sum(&sums), closed.into_inner())
+        let mut sums = halo.sum(&sums);
+        pores.ties.add_to(p, &mut sums, |node| node * TERMS + FLOWS);
+        Self::at_nodes(problem, pores, &sums, closed.into_inner())
     }
 
     fn at_nodes<K, const D: usize>(problem: &Problem<'_, K, D>, pores: &Pores<D>, sums: &[f64], closed: u64) -> Self {

@@ -78,7 +78,8 @@ pub fn save<K: Kinematics<D>, const D: usize>(
     let mut stored = Vec::with_capacity(states.len());
     for (p, (state, wet)) in states.iter().zip(&pores.wet).enumerate() {
         let (Some((pressure, state)), Some(wet)) = (state, wet) else { continue };
-        // What the whole pressure is now is what counts where it empties pores: the excess is over the place it came to.
+        // What the whole pressure is now is what counts where it empties pores: the excess is over the place it came
+        // to.
         let moved = if holds { wet.ambient - water.still_pressure(&points.x[p], pores.end) } else { 0.0 };
         pressures[p] = *pressure + moved;
         gradients[p] = state.gradient + water.still_gradient(&points.x[p], pores.end);

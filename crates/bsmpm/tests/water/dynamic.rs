@@ -1,6 +1,7 @@
 //! A column with inertia under a load that comes at once: waves that the water damps (telegraph equation).
 
 use super::{M, column, run, settlement};
+use bsmpm::energy::{Books, Budget, Stored};
 use bsmpm::model::Regime;
 use bsmpm::points::Motion;
 use bsmpm::step::mass::MassMatrix;
@@ -29,9 +30,16 @@ fn water_damps_the_waves_of_a_column_as_the_telegraph_equation_says() {
         let flow = scene.model.water.as_mut().and_then(|water| water.flow.as_mut()).expect("it flows");
         let along = &mut flow.soils[0].as_mut().and_then(|soil| soil.permeability.as_mut()).expect("a soil").along;
         *along *= 1.0 / (damping * along[1] * M / super::WEIGHT);
+        scene.model.balances_energy = true;
         let (mut found, mut iterations) = (Vec::new(), 0);
+        let (mut books, mut budget) = (Books::open(Stored::default()), Budget::open(Stored::default()));
+        let mut now = Stored::default();
         run(&mut scene, (1..=400).map(|k| 0.01 * f64::from(k)), |t, points, report| {
             iterations += report.iterations;
+            let turnover = report.turnover.expect("dynamic");
+            budget.enter(&turnover);
+            books.flows += report.energy.expect("books are kept");
+            now = turnover.stored;
             if TIMES.iter().any(|of| (of - t).abs() < 1e-9) {
                 found.push(settlement(points) * M / load);
             }
@@ -39,5 +47,13 @@ fn water_damps_the_waves_of_a_column_as_the_telegraph_equation_says() {
         let off = found.iter().zip(expected).map(|(found, expected)| (found - expected).abs()).fold(0.0, f64::max);
         println!("b = {damping}: {found:.5?} ({expected:?}), off by {off:.4}, {iterations} iterations in 400 steps");
         assert!(off < 0.02);
+        let (given, closure, growth) = (books.flows.external, books.closure(now), budget.growth);
+        let parts = [now.kinetic + now.elastic, books.flows.plastic, books.flows.numerical()].map(|part| part / given);
+        println!(
+            "  of {given:.4e} J stored, seepage, numerical {parts:.4?}, left {:.1e}, made {growth:.4}",
+            closure / given
+        );
+        assert!((closure / given).abs() < 1e-6 && growth < 0.01);
+        assert!(parts[2].abs() < 0.05);
     }
 }

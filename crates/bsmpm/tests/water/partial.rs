@@ -167,7 +167,8 @@ fn a_front_of_rain_goes_down_without_oscillations() {
 
 #[test]
 fn suction_presses_the_skeleton_as_bishop_says() {
-    // A column free on two sides, without weight and without flow: E ln J = 2 J chi p, and the water that it holds stays.
+    // A column free on two sides, without weight and without flow: E ln J = 2 J chi p, and the water that it holds
+    // stays.
     let (young, start) = (1e6, -0.8 * WEIGHT);
     let mut scene = column(4, 0.0, false);
     scene.model.materials = vec![hencky(young, 0.0)];

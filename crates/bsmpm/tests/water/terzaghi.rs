@@ -1,6 +1,7 @@
 //! Consolidation in one direction of a column that is loaded at once and drained at its top (Terzaghi).
 
 use super::{M, column, geometric, run, settlement};
+use bsmpm::grid::{Grid, KnotVector};
 use bsmpm::water::flow::PermeabilityLaw;
 
 /// T, U, and p/p0 at depths of .25, .5 and 1 of the column below its top.
@@ -101,4 +102,32 @@ fn a_drained_surface_may_cut_the_cells() {
         println!("cut {cut}: U(.2) {found:.5}, {:+.5}", found - whole);
         assert!((found - whole).abs() < 0.002);
     }
+}
+
+#[test]
+fn a_line_across_which_strains_may_jump_does_not_tear_the_pressure() {
+    let of = |line: bool| {
+        let mut scene = column(20, 1.0, LOAD, PermeabilityLaw::Constant);
+        if line {
+            let mut breakpoints: Vec<f64> = (0..=20).map(|k| f64::from(k) / 20.0).collect();
+            breakpoints.insert(10, 0.5);
+            let [across, _] = scene.model.grid.axes().clone();
+            scene.model.grid = Grid::new([across, KnotVector::graded(&breakpoints, 2).expect("knots")]).expect("grid");
+            scene.points.sort_by_cell(&scene.model.grid);
+        }
+        let mut last = Vec::new();
+        run(&mut scene, geometric(1e-4, 0.2, 100), |_, points, report| {
+            let mut by_height: Vec<(f64, f64)> =
+                points.x.iter().map(|x| x[1]).zip(points.pore_pressure.iter().flatten().copied()).collect();
+            by_height.sort_by(|a, b| a.0.total_cmp(&b.0));
+            last = by_height.iter().map(|(_, p)| p / LOAD).chain([degree(points)]).collect();
+            let water = report.water.as_ref().expect("water flows");
+            assert!((water.stored + water.crossed.out() - water.left).abs() < 1e-12 * water.crossed.out());
+        });
+        last
+    };
+    let (whole, lined) = (of(false), of(true));
+    let off = whole.iter().zip(&lined).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    println!("pressures and U(.2) with a line at half the height: off by {off:.1e}");
+    assert!(off < 5e-4);
 }
