@@ -66,7 +66,7 @@ pub const FLOW: &[Row] = &[
         "seepage = true",
         "seepage = true\nhead = 2",
         "drain.3.seepage",
-        "only one of head, head_path, pressure, seepage",
+        "only one of head, head_path, pressure, seepage may be",
     ),
     row("rate = \"10 mm/h\"", "rate = \"10 mm\"", "inflow.0.rate", "expected a velocity"),
     row("rate = \"10 mm/h\"\n", "", "inflow.0", "one of rate, rate_path").up(4),

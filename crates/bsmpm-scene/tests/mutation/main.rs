@@ -39,6 +39,30 @@ const VALUES: [&str; 22] = [
     "1979-05-27",
 ];
 
+/// The least that suction above a level needs.
+const SUCTION: &str = r#"geometry = "plane-strain"
+analysis = { type = "consolidation", end = "1 d", dt = "1 h" }
+grid = { lower = [0.0, 0.0], upper = [2.0, 2.0], cell = 1, order = "quadratic" }
+water = { level = 0.5, suction = "5 kPa", drainage = "coupled" }
+gravity = { acceleration = [0.0, -9.81] }
+boundary = { bottom = "fixed" }
+stabilisation = { method = "consistent-f-bar" }
+
+[material.silt]
+model        = "hencky"
+young        = "1 MPa"
+poisson      = 0.3
+unit_weight  = "18 kN/m3"
+porosity     = 0.5
+permeability = "1e-6 m/s"
+retention    = { alpha = 2.0, n = 1.5 }
+
+[[body]]
+material = "silt"
+box = { lower = [0.0, 0.0], upper = [2.0, 1.0] }
+points_per_cell = 3
+"#;
+
 /// Changes of [`FULL`] to what excludes what is there.
 const OTHERWISE: [&[(&str, &str)]; 7] = [
     &[
@@ -140,6 +164,7 @@ fn bases() -> Vec<String> {
     bases.extend(still.map(wet));
     let ratio = STATIC.replacen("poisson = 0.3", "poisson = 0.3\nunit_weight = \"19 kN/m3\"\nru = 0.3", 1);
     bases.push(format!("{ratio}\n[gravity]\nacceleration = [0.0, -9.81]\n"));
+    bases.push(SUCTION.to_owned());
     for changes in OTHERWISE {
         let mut text = FULL.to_owned();
         for (part, by) in changes {
