@@ -11,7 +11,7 @@ use crate::record::Record;
 use crate::region::Edge;
 use crate::report::Report;
 use crate::words::C0Lines;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Parts of a cell by which a place may miss a grid line: rounding.
 const ROUNDING: f64 = 1e-6;
@@ -44,25 +44,23 @@ pub(super) fn place(case: &mut Case, record: &Record, report: &mut Report<'_>) {
     }
     let lines = std::mem::take(&mut found.lines);
     let chosen = record.record("grid").and_then(|grid| grid.word("c0_lines")).unwrap_or(C0Lines::Automatic);
-    match chosen {
-        C0Lines::None => {
-            if let Some(((axis, line), reason)) = lines.iter().find(|((axis, line), _)| !has(case, *axis, *line)) {
-                let at = coordinate(case, *axis, *line);
-                let name = NAMES[*axis];
-                report.warn(format!(
-                    "grid.c0_lines: with \"none\" the splines cannot follow the jump of strain at {name} = {at} ({reason}): \
-                     stress is wrong, up to by tens of per cent, within about three cells, and a strip holds a cell more \
-                     than its length"
-                ));
-            }
-        }
-        C0Lines::Automatic => {
-            for ((axis, line), reason) in lines {
-                insert(case, axis, line);
-                let at = format!("{} = {}", NAMES[axis], coordinate(case, axis, line));
-                report.note("grid.c0_lines", at, reason);
-            }
-        }
+    // Where water flows they are shown to be right at the ends of strips only.
+    let is_placed =
+        |place: &(usize, usize)| chosen == C0Lines::Automatic && (case.flow.is_none() || found.held.contains(place));
+    let (placed, left): (Vec<_>, Vec<_>) = lines.into_iter().partition(|(place, _)| is_placed(place));
+    if let Some(((axis, line), reason)) = left.iter().find(|((axis, line), _)| !has(case, *axis, *line)) {
+        let at = coordinate(case, *axis, *line);
+        let name = NAMES[*axis];
+        let why = if chosen == C0Lines::None { "with \"none\"" } else { "where water flows, without a line there," };
+        report.warn(format!(
+            "grid.c0_lines: {why} the splines cannot follow the jump of strain at {name} = {at} ({reason}): stress is \
+             wrong, up to by tens of per cent, within about three cells, and a strip holds a cell more than its length"
+        ));
+    }
+    for ((axis, line), reason) in placed {
+        insert(case, axis, line);
+        let at = format!("{} = {}", NAMES[axis], coordinate(case, axis, line));
+        report.note("grid.c0_lines", at, reason);
     }
     found.doubts.into_values().for_each(|doubt| report.warn(doubt));
 }
@@ -71,6 +69,7 @@ pub(super) fn place(case: &mut Case, record: &Record, report: &mut Report<'_>) {
 #[derive(Default)]
 struct FoundLine {
     lines: BTreeMap<(usize, usize), String>,
+    held: BTreeSet<(usize, usize)>, // those of them at the ends of strips
     doubts: BTreeMap<String, String>,
     narrow: Vec<(&'static str, usize, String)>,
 }
@@ -275,6 +274,9 @@ fn end(case: &Case, segment: &Segment<'_>, (along, at, outward): (usize, [f64; 2
         Some(line) if line == 0 || line == axis.cells() => {}
         Some(line) if segment.stays(along) => {
             found.lines.entry((along, line)).or_insert(reason);
+            if segment.path.is_some() {
+                found.held.insert((along, line));
+            }
         }
         _ if segment.path.is_none() => {}
         Some(_) => {
