@@ -125,7 +125,7 @@ fn by_secants<K: Kinematics<D>, const D: usize>(
         stiffness::assemble(problem, Some(&residual.trial), solver)?;
         counts.factorisations += 1;
         if let Some(pores) = &problem.nodes.pores {
-            matrix::assemble_at(problem, pores, &u[problem.nodes.free.len()..], split::system(solver)?)?;
+            matrix::assemble(problem, pores, &u[problem.nodes.free.len()..], split::system(solver)?)?;
             counts.factorisations += 1;
         }
     }

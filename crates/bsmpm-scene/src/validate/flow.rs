@@ -1,18 +1,19 @@
-//! Water that flows: soils, drains and inflows, and what is not shown to be right together with it.
+//! Water that flows: soils, drains and inflows.
+
+mod shown;
+
+pub(super) use shown::check;
 
 use super::STANDARD_GRAVITY;
 use super::load::increasing;
 use super::place::{self, along};
 use super::strip::{AroundStrip, segment};
-use crate::case::{Body, Case, Drain, DrainSite, Face, Flow, Inflow, Initial, NamedMaterial, Support};
+use crate::case::{Body, Drain, DrainSite, Face, Flow, Inflow, NamedMaterial, Support};
 use crate::nearest::hint;
 use crate::record::Record;
 use crate::region::{Region, skin};
 use crate::report::Report;
-use crate::schema::LawName;
-use crate::words::{AnalysisType, Drainage, Side, Word};
-use bsmpm::quadrature::Quadrature;
-use bsmpm::stabilisation::Stabilisation;
+use crate::words::{Drainage, Side};
 use bsmpm::water::flow::{Course, Given, Permeability, PermeabilityLaw, Soil};
 use bsmpm::water::retention::Retention;
 
@@ -20,8 +21,6 @@ use bsmpm::water::retention::Retention;
 const WATER: f64 = 9810.0;
 /// Parts of a cell by which a body may be off a face that it lies at.
 const AT: f64 = 1e-9;
-/// Points along each axis of a cell with cubic splines: with fewer the pressure oscillates at surfaces that cut cells.
-const POINTS_OF_CUBIC: usize = 4;
 /// Permeability, m/s, beyond which a number is taken for a slip: that of gravel without sand.
 const MOST_PERMEABLE: f64 = 1.0;
 
@@ -316,193 +315,4 @@ pub(super) fn drain_of(record: &Record, root: &Record, report: &mut Report<'_>) 
         return None;
     }
     Some(found)
-}
-
-/// What the whole case says of a flow: refusals of what is not shown to be right with it.
-pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
-    let consolidates = case.analysis.kind == AnalysisType::Consolidation;
-    let Some(flow) = &case.flow else {
-        let of_flow = case.output.fields.iter().find(|field| field.is_of_flow());
-        if let (Some(field), Some(output)) = (of_flow, root.record("output")) {
-            output.error("fields", format!("no water flows: there is no \"{field}\""), report);
-        }
-        if let Some(analysis) = root.record("analysis").filter(|_| consolidates) {
-            let message = "no water flows: give a material drainage = \"coupled\" (or \"undrained\"), or take \
-                           \"quasi-static\"";
-            analysis.error("type", message, report);
-        }
-        return;
-    };
-    let timeless = case.analysis.kind == AnalysisType::QuasiStatic;
-    if let Some(analysis) = root.record("analysis").filter(|_| timeless) {
-        let message = "its time has no unit, and water flows in real time: take \"consolidation\" or \"dynamic\"";
-        analysis.error("type", message, report);
-    }
-    discretised(case, root, report);
-    of_soils(case, flow, root, report);
-    acting(case, root, report);
-    timed(case, root, report);
-    drained(case, flow, report);
-}
-
-/// Splines, points, averages and iterations that carry the pressure.
-fn discretised(case: &Case, root: &Record, report: &mut Report<'_>) {
-    if let Some(grid) = root.record("grid").filter(|_| case.grid.order == 1) {
-        let message = "\"linear\" splines leave the pore pressure no gradient: take \"quadratic\"";
-        grid.error("order", message, report);
-    }
-    let few = |body: &Body| body.points_per_cell < POINTS_OF_CUBIC;
-    for (body, record) in case.bodies.iter().zip(root.records("body")) {
-        if case.grid.order == 3 && few(body) {
-            let message = format!(
-                "{} with cubic splines: the pore pressure oscillates where a surface cuts cells; allowed: at least {POINTS_OF_CUBIC}",
-                body.points_per_cell
-            );
-            record.error("points_per_cell", message, report);
-        }
-    }
-    let shown = matches!(case.stabilisation, Stabilisation::None | Stabilisation::ConsistentFBar);
-    if let Some(record) = root.record("stabilisation").filter(|_| !shown) {
-        let message = format!(
-            "\"{}\" is not shown to be right with water that flows: take \"consistent-f-bar\"",
-            case.stabilisation.word()
-        );
-        record.error("method", message, report);
-    }
-    let Some(solver) = root.record("solver") else { return };
-    if case.solver.nonlinear != crate::Nonlinear::Auto {
-        let message = format!(
-            "\"{}\" is not available with water that flows: take \"auto\", which halves steps that stall",
-            case.solver.nonlinear
-        );
-        solver.error("nonlinear", message, report);
-    }
-    if case.solver.quadrature == Quadrature::Fitted {
-        solver.error(
-            "quadrature",
-            "\"fitted\" is not shown to be right with water that flows: take \"points\"",
-            report,
-        );
-    }
-}
-
-/// Laws of effective stress, and soils side by side.
-fn of_soils(case: &Case, flow: &Flow, root: &Record, report: &mut Report<'_>) {
-    let made = |number: usize| case.bodies.iter().any(|body| body.material == number);
-    let named = root.named("material").iter().enumerate().filter(|(number, _)| made(*number));
-    for (number, (name, record)) in named {
-        let Some(law) = record.word::<LawName>("model") else { continue };
-        if flow.soils[number].is_none() {
-            let message = format!(
-                "material.{name} has drainage = \"given\" beside soil in which water flows: what crosses between them is not \
-                 shown to be right; make it \"coupled\", of a high permeability"
-            );
-            report.error(record.origin, &record.path, message);
-        }
-        let why = match law {
-            LawName::SensitiveClay => "is a law of clay without drainage, of total stress",
-            LawName::MuI => "is a law of dry grains that flow",
-            LawName::CamClay => {
-                "has a stiffness that follows the effective pressure, which the pressures' system does not"
-            }
-            LawName::Hencky | LawName::MohrCoulomb | LawName::Tresca => continue,
-            LawName::DruckerPrager | LawName::VonMises | LawName::Softening => continue,
-        };
-        record.error("model", format!("\"{law}\" {why}: it is not shown to be right with water that flows"), report);
-    }
-    for (_, record) in root.named("material") {
-        if record.word::<bsmpm::material::Separation>("separation") == Some(bsmpm::material::Separation::Closing) {
-            record.error("separation", "gaps that close are not shown to be right with water that flows", report);
-        }
-    }
-}
-
-/// What acts on the bodies.
-fn acting(case: &Case, root: &Record, report: &mut Report<'_>) {
-    let not_shown = |what: &str| format!("{what} not shown to be right with water that flows");
-    if let Some(rigid) = root.records("rigid").first() {
-        report.error(rigid.origin, &rigid.path, not_shown("rigid bodies are"));
-    }
-    for (axis, upper) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
-        let support = case.boundary[axis][upper];
-        let side = Side::ALL[axis][upper].word();
-        if let Some(boundary) = root.record("boundary") {
-            match support {
-                Support::Fixed | Support::Roller | Support::Free => {}
-                Support::Contact => boundary.error(side, not_shown("faces in contact are"), report),
-                Support::Absorbing | Support::FreeField | Support::Outflow => {
-                    boundary.error(side, not_shown(&format!("\"{support}\" is")), report);
-                }
-            }
-        }
-    }
-    let rubs =
-        case.footing.iter().map(|of| of.contact.is_some()).chain(case.prescribed.iter().map(|of| of.contact.is_some()));
-    let strips = root.records("footing").iter().chain(root.records("prescribed"));
-    for (_, record) in rubs.zip(strips).filter(|(rubs, _)| *rubs) {
-        report.error(record.origin, &record.path, not_shown("strips that rub and let go are"));
-    }
-    for (stage, record) in case.stages.iter().zip(root.records("stage")) {
-        let (bodies, laws) = ("bodies that are removed or placed are", "laws that are exchanged are");
-        let changes = [
-            (!stage.remove.is_empty(), "remove", bodies),
-            (!stage.add.is_empty(), "add", bodies),
-            (!stage.materials.is_empty(), "materials", laws),
-            (!stage.faces.is_empty(), "boundary", "faces that change are"),
-            (stage.strength_reduction.is_some(), "strength_reduction", "strength that changes is"),
-        ];
-        for (_, key, what) in changes.into_iter().filter(|(changes, ..)| *changes) {
-            record.error(key, not_shown(what), report);
-        }
-    }
-    if let Some(reduction) = root.record("strength_reduction") {
-        let message =
-            "a reduced strength is not shown to be right with water that flows; with drainage = \"given\" it is";
-        report.error(reduction.origin, &reduction.path, message);
-    }
-    if let (Some(gravity), Some(record)) = (&case.gravity, root.record("gravity"))
-        && gravity.ramp > 0.0
-    {
-        record.error("ramp", not_shown("gravity that grows is"), report);
-    }
-    if let Some(initial) = root.record("initial") {
-        let elastic = matches!(case.initial, Some(Initial::Elastic));
-        for (_, key) in [(elastic, "gravity"), (case.settles, "equilibrium")].into_iter().filter(|(given, _)| *given) {
-            let message = "a state that is led to equilibrium before the first step is not shown to be right with water that \
-                           flows; give k0";
-            initial.error(key, message, report);
-        }
-    }
-    if let Some(shaking) = root.record("shaking") {
-        report.error(shaking.origin, &shaking.path, not_shown("ground that shakes is"));
-    }
-}
-
-/// Growth per step above which steps are warned of: their own error is first order in them.
-const MOST_GROWTH: f64 = 1.25;
-
-fn timed(case: &Case, root: &Record, report: &mut Report<'_>) {
-    if let Some((growth, _)) = case.analysis.growth.filter(|(growth, _)| *growth > MOST_GROWTH) {
-        report.warn(format!(
-            "analysis.growth: {growth}: the error of a step is as large as it is long; shown to be right up to {MOST_GROWTH}"
-        ));
-    }
-    let alike = case.analysis.growth.is_none() && root.record("analysis").is_some_and(|record| record.gives("dt_max"));
-    if alike {
-        report.warn("analysis.dt_max: without growth steps are alike; it does nothing");
-    }
-}
-
-/// Water that can leave nowhere, or begins without the pressure of its own weight.
-fn drained(case: &Case, flow: &Flow, report: &mut Report<'_>) {
-    let permeable = flow.soils.iter().flatten().any(|soil| soil.permeability.is_some());
-    if permeable && flow.drains.is_empty() {
-        report.warn("drain: there is none, and no water leaves the ground; give [[drain]] surface = true, or face");
-    }
-    if case.gravity.is_some() && case.water.is_none() {
-        report.warn(
-            "water: there is none that is still, and the pore pressure at the start is zero everywhere: what the water weighs \
-             has to build up in time; give [water] level",
-        );
-    }
 }

@@ -133,30 +133,15 @@ impl Drainage {
         one_way.map(|outlet| outlet.is_open(&self.offsets, p)).collect()
     }
 
-    /// Adds the derivative of that to the matrix of the pressures, m3/Pa; of a drain that lets water out only none.
-    pub fn assemble(&self, solver: &mut dyn LinearSolver) {
-        self.add_matrix(solver, |outlet| !outlet.one_way);
-    }
-
-    /// The same under the excess pressures `p`, Pa, with the drains that are open then.
-    pub fn assemble_at(&self, p: &[f64], solver: &mut dyn LinearSolver) {
-        self.add_matrix(solver, |outlet| outlet.is_open(&self.offsets, p));
-    }
-
-    fn add_matrix(&self, solver: &mut dyn LinearSolver, is_open: impl Fn(&Outlet) -> bool) {
-        for outlet in self.outlets.iter().filter(|outlet| outlet.conductance > 0.0 && is_open(outlet)) {
+    /// Adds the derivative of that to the matrix of the pressures, m3/Pa: of drains that let water out only where they are
+    /// open under `p`.
+    pub fn assemble(&self, p: &[f64], solver: &mut dyn LinearSolver) {
+        let acts = |outlet: &&Outlet| outlet.conductance > 0.0 && outlet.is_open(&self.offsets, p);
+        for outlet in self.outlets.iter().filter(acts) {
             let N = outlet.attachment.N();
             let block: Vec<f64> =
                 N.iter().flat_map(|row| N.iter().map(move |column| outlet.conductance * row * column)).collect();
             solver.add(outlet.attachment.first_node(), &block);
-        }
-    }
-
-    /// Adds the product of [`Drainage::assemble`]'s matrix with `v`, Pa; other ranks' parts are not yet in it.
-    pub fn multiply(&self, v: &[f64], out: &mut Contributions) {
-        for outlet in self.outlets.iter().filter(|outlet| !outlet.one_way) {
-            let through = outlet.conductance * outlet.attachment.value(&self.offsets, v);
-            outlet.attachment.scatter_value(&self.offsets, through, out);
         }
     }
 

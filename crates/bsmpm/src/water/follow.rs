@@ -3,9 +3,8 @@
 //!
 //! A seepage face is a complementarity, whose derivative jumps with the points that are open: the matrix is assembled
 //! anew with those (a semismooth Newton method), and the secants, which are of the matrix before, start anew. What
-//! pores
-//! hold and let through under suction changes by orders of magnitude within a step: the first iterations follow it too,
-//! and go no further with a pressure at once than the matrix knows.
+//! pores hold and let through under suction changes by orders of magnitude within a step: the first iterations follow
+//! it too, and go no further with a pressure at once than the matrix knows.
 
 use crate::error::SolveError;
 use crate::kinematics::Kinematics;
@@ -88,7 +87,7 @@ impl Follow {
         self.first += usize::from(first);
         self.changes += usize::from(change);
         (self.open, self.tamed) = (open, false);
-        matrix::assemble_at(problem, pores, p, split::system(solver)?)?;
+        matrix::assemble(problem, pores, p, split::system(solver)?)?;
         Ok(true)
     }
 }

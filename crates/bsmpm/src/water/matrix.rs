@@ -12,17 +12,9 @@ use crate::water::nodes::Pores;
 /// Square of the wave number of the shortest wave, over that of the cells, 1/h^2.
 const SHORTEST_WAVE: f64 = 10.0;
 
-/// Assembles S at the state of the step's start into `solver` and factorises it.
+/// Assembles S at the state of the step's start into `solver` and factorises it; pores empty and seepage faces are open
+/// as under the nodal excess pressures `p`, Pa.
 pub fn assemble<K: Kinematics<D>, const D: usize>(
-    problem: &Problem<'_, K, D>,
-    pores: &Pores<D>,
-    solver: &mut dyn LinearSolver,
-) -> Result<(), SolveError> {
-    assemble_at(problem, pores, &pores.guess, solver)
-}
-
-/// The same where pores empty and seepage faces are open as under the nodal excess pressures `p`, Pa.
-pub fn assemble_at<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
     pores: &Pores<D>,
     p: &[f64],
@@ -68,7 +60,7 @@ pub fn assemble_at<K: Kinematics<D>, const D: usize>(
         }
         solver.add(patch.first_node, &block);
     }
-    pores.drainage.assemble_at(p, solver);
+    pores.drainage.assemble(p, solver);
     pores.ties.assemble(problem.halo, solver);
     solver.finish(Symmetry::Definite)
 }

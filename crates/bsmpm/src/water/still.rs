@@ -1,7 +1,6 @@
 //! Still water as flow sees it: its pressure, its gradient, and what drives water of this weight against it.
 
 use crate::model::Model;
-use crate::schedule::between;
 use crate::tensor::Vector;
 use crate::water::Water;
 use crate::water::ambient::Ambient;
@@ -10,24 +9,6 @@ use crate::water::ambient::Ambient;
 const GRAVITY: f64 = 9.81;
 
 impl<const D: usize> Water<D> {
-    /// m above the grid's lower corner: the still water's surface over the place `x` at time `t`, and its slope along
-    /// the first axis; `None` where there is none.
-    fn surface(&self, x: &Vector<D>, t: f64) -> Option<(f64, f64)> {
-        let constant = |rows: &[(f64, f64)], at: f64| {
-            let value = |row: Option<&(f64, f64)>| row.map(|row| row.1);
-            between(rows, value(rows.first())?, at).or(value(rows.last()))
-        };
-        match &self.ambient {
-            Ambient::None => None,
-            Ambient::Level(rows) => Some((constant(rows, t)?, 0.0)),
-            Ambient::Line(rows) => {
-                let pair = rows.windows(2).find(|pair| (pair[0].0..pair[1].0).contains(&x[0]));
-                let slope = pair.map_or(0.0, |pair| (pair[1].1 - pair[0].1) / (pair[1].0 - pair[0].0));
-                Some((constant(rows, x[0])?, slope))
-            }
-        }
-    }
-
     /// Whether a soil may be partly saturated: the still water then goes on above its level, as suction.
     fn holds(&self) -> bool {
         self.flow.as_ref().is_some_and(|flow| flow.retains())
@@ -36,7 +17,7 @@ impl<const D: usize> Water<D> {
     /// Pa  pressure of the still water at the place `x` at time `t`: 0 above its level, or suction where soils hold it
     pub fn still_pressure(&self, x: &Vector<D>, t: f64) -> f64 {
         let least = if self.holds() { f64::NEG_INFINITY } else { 0.0 };
-        self.surface(x, t).map_or(0.0, |(height, _)| self.unit_weight * (height - x[D - 1]).max(least))
+        self.ambient.table(x[0], t).map_or(0.0, |(height, _)| self.unit_weight * (height - x[D - 1]).max(least))
     }
 
     /// Pa  excess pressure at the place `x` before the first step: none, but where the suction above the level has its
@@ -48,7 +29,8 @@ impl<const D: usize> Water<D> {
 
     /// Pa/m  its gradient
     pub fn still_gradient(&self, x: &Vector<D>, t: f64) -> Vector<D> {
-        let Some((_, slope)) = self.surface(x, t).filter(|(height, _)| *height > x[D - 1] || self.holds()) else {
+        let Some((_, slope)) = self.ambient.table(x[0], t).filter(|(height, _)| *height > x[D - 1] || self.holds())
+        else {
             return Vector::zeros();
         };
         let mut gradient = Vector::zeros();

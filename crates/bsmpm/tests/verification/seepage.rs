@@ -52,7 +52,7 @@ fn steady(scene: &Plane) -> (Vec<f64>, [Vec<DrainReport>; 2]) {
         let block: Vec<f64> = gradients.iter().flat_map(|a| gradients.iter().map(move |b| weight * a.dot(b))).collect();
         solver.add(grid.first_node(cell), &block);
     }
-    drainage.assemble(&mut solver);
+    drainage.assemble(&vec![0.0; grid.nodes()], &mut solver);
     solver.finish(Symmetry::Definite).expect("definite");
     let (mut out, mut p) = (Contributions::none(grid, 1, Vec::new()), vec![0.0; grid.nodes()]);
     drainage.add_to(&p, &mut out);

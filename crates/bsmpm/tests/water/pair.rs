@@ -61,7 +61,7 @@ fn constants(cells: usize, cut: f64) -> [f64; 2] {
         free.iter().enumerate().for_each(|(row, &c)| stiffness[(row, column)] = force[c]);
     }
     let mut stand_in = Dense::of_pressures(&model.grid);
-    matrix::assemble(&problem, pores, &mut stand_in).expect("assembled");
+    matrix::assemble(&problem, pores, &pores.guess, &mut stand_in).expect("assembled");
     let (mut q, mut mass) =
         (DMatrix::zeros(free.len(), pressures.len()), DMatrix::zeros(pressures.len(), pressures.len()));
     let mut unit = vec![0.0; pores.free.len()];

@@ -1,30 +1,14 @@
-//! The passes of a scalar field with its gradient, as the pore pressure has them, on the splines of degree q - 1.
+//! The passes of a scalar field with its gradient, as the pore pressure has them, on the splines of degree q - 1, q > 1: constant
+//! ones have no gradient.
 
 use super::{MOST_NODES, PatchBlock, at_points, gather, scatter};
+use crate::grid::shape::with_width;
 use crate::grid::{Contributions, Shape};
 use crate::stabilisation::Grouped;
 use crate::tensor::Vector;
 
 /// Functions of a patch at a point, at most: quadratic ones in three dimensions.
 pub const MOST_FUNCTIONS: usize = 27;
-
-/// Runs `$body` with the constant `W` = functions along an axis, of splines of degree 1 or 2: constant ones have no
-/// gradient.
-macro_rules! with_functions {
-    ($width:expr, $W:ident => $body:expr) => {
-        match $width {
-            2 => {
-                const $W: usize = 2;
-                $body
-            }
-            3 => {
-                const $W: usize = 3;
-                $body
-            }
-            width => unreachable!("{width} functions per axis"),
-        }
-    };
-}
 
 /// Gather: what `found` makes of p_p = sum_h A_hp p_h and of grad p_p = sum_h p_h grad A_hp, for every point.
 pub fn scalars<const D: usize, T: Send>(
@@ -34,7 +18,7 @@ pub fn scalars<const D: usize, T: Send>(
 ) -> Vec<T> {
     let scratch = || [[0.0; 1]; MOST_NODES];
     type Block = PatchBlock<1>;
-    with_functions!(shape.width(), W => at_points(shape, scratch, |number, block: &mut Block, out: &mut Vec<T>| {
+    with_width!(shape.width(), W => at_points(shape, scratch, |number, block: &mut Block, out: &mut Vec<T>| {
         let patch = &shape.patches()[number];
         gather(nodal, shape.offsets(), patch.first_node, (0, 1), block);
         for p in patch.points.clone() {
@@ -54,7 +38,7 @@ pub fn of_scalars<const D: usize, const C: usize>(
     shape: &Shape<D>,
     of_point: impl Fn(usize) -> [(f64, Vector<D>); C] + Sync,
 ) -> Contributions {
-    with_functions!(shape.width(), W => scatter(shape, Grouped::NOT, |points, block: &mut PatchBlock<C>| {
+    with_width!(shape.width(), W => scatter(shape, Grouped::NOT, |points, block: &mut PatchBlock<C>| {
         for p in points {
             let (support, of_point) = (shape.support::<W>(p), of_point(p));
             for (k, sums) in block[..const { W.pow(D as u32) }].iter_mut().enumerate() {
@@ -69,7 +53,7 @@ pub fn of_scalars<const D: usize, const C: usize>(
 
 /// A_hp and grad A_hp of every function of point `p`, for pair sums over a patch; how many there are.
 pub fn functions_of<const D: usize>(shape: &Shape<D>, p: usize, out: &mut [(f64, Vector<D>)]) -> usize {
-    with_functions!(shape.width(), W => {
+    with_width!(shape.width(), W => {
         let support = shape.support::<W>(p);
         let count = const { W.pow(D as u32) };
         out[..count].iter_mut().enumerate().for_each(|(k, of)| *of = (support.value(k), support.gradient(k)));
