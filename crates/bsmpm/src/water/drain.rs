@@ -133,8 +133,8 @@ impl Drainage {
         one_way.map(|outlet| outlet.is_open(&self.offsets, p)).collect()
     }
 
-    /// Adds the derivative of that to the matrix of the pressures, m3/Pa: of drains that let water out only where they are
-    /// open under `p`.
+    /// Adds the derivative of that to the matrix of the pressures, m3/Pa: of drains that let water out only where they
+    /// are open under `p`.
     pub fn assemble(&self, p: &[f64], solver: &mut dyn LinearSolver) {
         let acts = |outlet: &&Outlet| outlet.conductance > 0.0 && outlet.is_open(&self.offsets, p);
         for outlet in self.outlets.iter().filter(acts) {

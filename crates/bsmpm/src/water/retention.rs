@@ -1,7 +1,8 @@
 //! How much water a soil keeps under suction, and how well it still conducts (van Genuchten 1980, Mualem 1976).
 
 /// Least relative permeability: what a soil lets through as films and vapour, and what keeps a dry one from being cut
-/// off. A flux of a millionth of the saturated one changes no balance; the flow past a dry zone would lose its only way.
+/// off. A flux of a millionth of the saturated one changes no balance; the flow past a dry zone would lose its only
+/// way.
 const LEAST: f64 = 1e-6;
 
 /// Retention curve of a soil: effective saturation (1 + (alpha s)^n)^-m, m = 1 - 1/n, under the suction head s, m.
