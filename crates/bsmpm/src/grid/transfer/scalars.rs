@@ -1,5 +1,5 @@
-//! The passes of a scalar field with its gradient, as the pore pressure has them, on the splines of degree q - 1, where q
-//! is above 1: constant ones have no gradient.
+//! The passes of a scalar field with its gradient, as the pore pressure has them, on the splines of degree q - 1 for q
+//! above 1: constant ones have no gradient.
 
 use super::{MOST_NODES, PatchBlock, at_points, gather, scatter};
 use crate::grid::shape::with_width;
