@@ -6,10 +6,11 @@
 //! strip has a [contact](StripContact).
 
 mod grip;
+mod point;
 
 pub use grip::StripContact;
 
-use super::coulomb::{ContactReport, Status};
+use super::coulomb::ContactReport;
 use super::surface::{Attachment, Surface, SurfacePoint};
 use crate::exact::Exact;
 use crate::grid::{Contributions, Grid};
@@ -18,6 +19,7 @@ use crate::parallel::{Halo, LinearSolver};
 use crate::schedule::between;
 use crate::tensor::Vector;
 use grip::Grip;
+use point::{LENGTHS, StripPoint, Sums, contact_report};
 
 /// A displacement as a function of time, linear between its rows: a cut step follows the same path.
 #[derive(Clone, Debug, PartialEq)]
@@ -114,144 +116,12 @@ pub struct GripWork {
     pub rubbed: Exact,
 }
 
-/// Lengths of a strip's points of which the largest count.
-const LENGTHS: usize = 5;
-/// Parts of a cell from which on a point that comes back to material has moved on.
-const FAR: f64 = 0.5;
-
-/// Sums over the points of a strip.
-#[derive(Clone, Debug, Default)]
-struct Sums {
-    held: Exact,
-    given: Exact, // J
-    // closed, their normal force, that of those that slide, that times what they slid, dissipated, moved on
-    contact: [Exact; 6],
-}
-
 /// The strips' points of this rank in one step.
 #[derive(Clone, Debug)]
 pub struct StripAttachments<const D: usize> {
     offsets: Vec<usize>,
     span: (f64, f64), // s  when the step starts, and its length
     held: Vec<StripPoint<D>>,
-}
-
-#[derive(Clone, Debug)]
-struct StripPoint<const D: usize> {
-    strip: usize,
-    point: usize,
-    attachment: [Option<Attachment>; D], // per component: where a support holds all of its nodes, the strip does not
-    area: f64,
-    penalty: f64,
-    normal: Option<Vector<D>>,
-    motion: Vector<D>,
-    carried: Vector<D>,
-    grip: Option<Grip<D>>,
-}
-
-impl<const D: usize> StripPoint<D> {
-    /// The components that the strip and no support holds.
-    fn own(&self, vector: Vector<D>) -> Vector<D> {
-        Vector::from_fn(|component, _| if self.attachment[component].is_some() { vector[component] } else { 0.0 })
-    }
-
-    /// The part of a vector that is held.
-    fn part(&self, vector: Vector<D>) -> Vector<D> {
-        let own = self.own(vector);
-        if let Some(grip) = &self.grip {
-            return self.own(grip.part(&own));
-        }
-        self.normal.map_or(own, |normal| self.own(normal * normal.dot(&own)))
-    }
-
-    /// m  of the material at the point; zero in components that are not held.
-    fn displacement(&self, offsets: &[usize], u: &[f64]) -> Vector<D> {
-        let along = |component: usize| {
-            let attachment = self.attachment[component].as_ref();
-            attachment.map_or(0.0, |attachment| attachment.displacement::<D>(offsets, u)[component])
-        };
-        Vector::from_fn(|component, _| along(component))
-    }
-
-    /// m  what the material lags behind the strip.
-    fn slip(&self, offsets: &[usize], u: &[f64]) -> Vector<D> {
-        self.part(self.motion - self.displacement(offsets, u))
-    }
-
-    /// Pa  elastic trial of a point in contact.
-    fn trial(&self, grip: &Grip<D>, offsets: &[usize], u: &[f64]) -> Vector<D> {
-        self.own(grip.start(&self.carried) + (self.motion - self.displacement(offsets, u)) * self.penalty)
-    }
-
-    /// Pa  on the body at the start of the step.
-    fn before(&self) -> Vector<D> {
-        self.own(self.grip.map_or(self.carried, |grip| grip.before(&self.carried)))
-    }
-
-    /// Pa  on the body.
-    fn traction(&self, offsets: &[usize], u: &[f64]) -> Vector<D> {
-        if let Some(grip) = &self.grip {
-            return self.own(grip.traction(&self.trial(grip, offsets, u)));
-        }
-        self.own(self.carried) + self.slip(offsets, u) * self.penalty
-    }
-
-    /// N  the mean force of the step; where the point comes off or meets the material, of the part of the step in
-    /// which it is on it, as a part of the whole.
-    fn mean(&self, offsets: &[usize], u: &[f64]) -> Vector<D> {
-        let mean = (self.before() + self.traction(offsets, u)) * (0.5 * self.area);
-        match &self.grip {
-            Some(grip) => mean * grip.share(&self.own(self.carried), &self.trial(grip, offsets, u)),
-            None => mean,
-        }
-    }
-
-    /// m  slip, what has slipped in all steps, motion, and of a point in contact less the gap and the gap; what it adds
-    /// to the sums. `edge`, m, is that of the shortest cell.
-    fn lengths(&self, offsets: &[usize], u: &[f64], edge: f64, sums: &mut Sums) -> [f64; LENGTHS] {
-        let (motion, after) = (self.part(self.motion).norm(), self.traction(offsets, u));
-        let (slip, accumulated) = (self.slip(offsets, u).norm(), after.norm() / self.penalty);
-        let Some(grip) = &self.grip else { return [slip, accumulated, motion, 0.0, 0.0] };
-        let trial = self.trial(grip, offsets, u);
-        let (slid, gap) = (self.own(grip.slid(&trial, self.penalty)), grip.gap(&trial, self.penalty));
-        let pushed = grip.pressure(&trial).max(0.0) * self.area;
-        let flag = |is: bool| f64::from(u8::from(is));
-        let far = grip.moved_on(&self.carried, self.penalty) > FAR * edge;
-        let rubbed = self.mean(offsets, u).dot(&slid);
-        let sliding = if slid.norm() > 0.0 { pushed } else { 0.0 };
-        let each = [flag(grip.status != Status::Open), pushed, sliding, pushed * slid.norm(), rubbed, flag(far)];
-        sums.contact.iter_mut().zip(each).for_each(|(sum, value)| sum.add(value));
-        [slip, accumulated, motion, -gap, gap]
-    }
-
-    /// Adds a force at the point to the nodes.
-    fn spread(&self, offsets: &[usize], force: &Vector<D>, out: &mut Contributions) {
-        for (component, attachment) in self.attachment.iter().enumerate() {
-            let mut along = Vector::<D>::zeros();
-            along[component] = force[component];
-            if let Some(attachment) = attachment {
-                attachment.scatter(offsets, &along, out);
-            }
-        }
-    }
-
-    /// Dense block of beta A N_a N_b in the held direction, over the nodes of the cell.
-    fn block(&self, size: usize) -> Option<(usize, Vec<f64>)> {
-        if self.grip.is_some_and(|grip| grip.status == Status::Open) {
-            return None;
-        }
-        let first = self.attachment.iter().flatten().next()?.first_node();
-        let direction = |j: usize| {
-            let mut unit = Vector::zeros();
-            unit[j] = self.penalty * self.area;
-            self.part(unit)
-        };
-        let directions: [Vector<D>; D] = std::array::from_fn(direction);
-        let N = |row: usize| self.attachment[row % D].as_ref().map_or(0.0, |attachment| attachment.N()[row / D]);
-        let order = size * D;
-        let entry = |at: usize| N(at / order) * N(at % order) * directions[at % order % D][at / order % D];
-        Some((first, (0..order * order).map(entry).collect()))
-    }
 }
 
 impl<const D: usize> StripAttachments<D> {
@@ -460,29 +330,6 @@ impl<const D: usize> StripAttachments<D> {
                 traction[number][point] = inward * (before + strip.penalty * closer).min(0.0);
             }
         }
-    }
-}
-
-impl Sums {
-    /// Two of all strips, and where one is in `contact` eight.
-    fn each(&self, contact: bool) -> impl Iterator<Item = Exact> {
-        let of_contact = if contact { &self.contact[..] } else { &[] };
-        [&self.held, &self.given].into_iter().chain(of_contact).cloned()
-    }
-}
-
-/// What the `totals` and the lengths of a strip's points say of its contact.
-fn contact_report(strip: usize, totals: &[f64], lengths: &[f64]) -> ContactReport {
-    let share = |part: f64, whole: f64| if whole > 0.0 { part / whole } else { 0.0 };
-    let [held, _, closed, pushed, sliding, slid, dissipated] = std::array::from_fn(|k| totals[k]);
-    ContactReport {
-        support: strip,
-        nodes: held as usize,
-        closed: share(closed, held),
-        sliding: share(sliding, pushed),
-        slip: share(slid, pushed),
-        dissipated,
-        gap: if held > 0.0 { [-lengths[3], lengths[4]] } else { [0.0; 2] },
     }
 }
 
