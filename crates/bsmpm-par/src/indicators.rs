@@ -71,9 +71,9 @@ struct Energy {
 
 impl IndicatorState {
     /// Of the points of all ranks. Collective; the same on all.
-    pub fn of<K: Kinematics<2>>(
-        (model, points): (&Model<K, 2>, &Points<2>),
-        (recorder, budget): (&Recorder, Option<Budget>),
+    pub fn of<K: Kinematics<D>, const D: usize>(
+        (model, points): (&Model<K, D>, &Points<D>),
+        (recorder, budget): (&Recorder<D>, Option<Budget>),
         halo: &dyn Halo,
     ) -> Result<Self, StepError> {
         let defect = quadrature::defect(model, points, halo);
