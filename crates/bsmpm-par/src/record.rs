@@ -185,6 +185,10 @@ impl Recorder {
                     let water = PoreWater::of(model, points, t);
                     pore((history.quantity.measurement(), water), id, points, halo)
                 }
+                Quantity::PorePressures { .. } => {
+                    let water = PoreWater::of(model, points, t);
+                    water.map_or([0.0; 3], |water| water.range(&self.parts[number], halo)).to_vec()
+                }
                 Quantity::WaterOutflow { drain } => {
                     vec![drain.map_or(points.surface.crossed.out(), |drain| self.drained(drain, points))]
                 }

@@ -117,6 +117,11 @@ pub enum Quantity {
         /// m  in the case's coordinates
         at: [f64; 2],
     },
+    /// Pa  of the water in the pores of all points that count, positive in compression: mean, least, largest
+    PorePressures {
+        /// the points that count
+        of: Counted,
+    },
     /// of the pore water of the point nearest to `at` at the start: excess pressure, porosity or flux
     Pore {
         /// which of them
@@ -233,6 +238,7 @@ impl Quantity {
         match *self {
             Self::Mass { of } | Self::Momentum { of } | Self::CentreOfMass { of } | Self::AngularMomentum { of } => of,
             Self::KineticEnergy { of } | Self::MeanStress { of } | Self::Runout { of, .. } => of,
+            Self::PorePressures { of } => of,
             Self::Height { of, .. } | Self::MaxDisplacement { of } | Self::Heave { of } => of,
             _ => Counted::All,
         }
@@ -258,6 +264,7 @@ impl Quantity {
             Self::Velocity { .. } => Measurement::Velocity,
             Self::Stress { .. } => Measurement::Stress,
             Self::PorePressure { .. } => Measurement::PorePressure,
+            Self::PorePressures { .. } => Measurement::PorePressures,
             Self::Pore { what, .. } => *what,
             Self::WaterOutflow { .. } => Measurement::WaterOutflow,
             Self::WaterBalance => Measurement::WaterBalance,
