@@ -89,7 +89,7 @@ impl IndicatorState {
             let largest = numbers.into_iter().fold(f64::MIN_POSITIVE, f64::max);
             Energy { closure: books.closure(now).abs() / largest, loss: books.flows.numerical() / largest }
         });
-        let water = PoreWater::of(model, points, t).and_then(|water| water.lost(halo));
+        let water = PoreWater::of(model, points, t).and_then(|water| water.balance(halo)).map(f64::abs);
         Ok(Self { defect, compression, noise, energy, growth: budget.map(|budget| budget.growth), water })
     }
 

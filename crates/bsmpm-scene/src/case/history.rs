@@ -134,7 +134,8 @@ pub enum Quantity {
         /// Number of the drain, in the order of the file; `None`: all, less the inflows.
         drain: Option<usize>,
     },
-    /// -  what the ground has gained of water and what has left it, over the larger of the two
+    /// -  what the ground has gained of water and what has left it, over the larger of what crossed its surface and what
+    /// its points took in and gave off
     WaterBalance,
     /// -  oscillation of sigma_yy about its average over the grid and about a plane
     StressNoise,

@@ -60,8 +60,8 @@ choice! {
         /// Volume of water that has left the ground through a drain since the start, per metre of thickness; all drains
         /// less all inflows unless one is named.
         WaterOutflow = "water-outflow",
-        /// What the ground has gained of water since the start and what has left it: their sum over the larger of the
-        /// two. 0 where no water is lost.
+        /// What the ground has gained of water since the start and what has left it: their sum over the larger of what
+        /// crossed its surface and what its points took in and gave off. 0 where no water is lost.
         WaterBalance = "water-balance",
         /// Oscillation of sigma_yy over all points from point to point: a root mean square, over the mean of
         /// |sigma_yy|.

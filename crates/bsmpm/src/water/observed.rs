@@ -102,16 +102,10 @@ impl<'a, const D: usize> PoreWater<'a, D> {
         -conductivity.component_mul(&(gradient[p] - self.weight)) * relative / self.water.unit_weight
     }
 
-    /// m3  (per metre in plane strain)  of water that all points have taken in since the start, at its density then.
-    /// One reduction.
-    pub fn gained(&self, halo: &dyn Halo) -> f64 {
-        halo.total(&[self.taken().collect()])[0]
-    }
-
-    /// -  what has come to the ground less what crossed its surface, over the larger of what crossed it and what the
-    /// points have taken in and given off; a billionth of the pores counts for nothing. `None` where no water flows.
-    /// One reduction.
-    pub fn lost(&self, halo: &dyn Halo) -> Option<f64> {
+    /// -  what the points have gained of water since the start and what has left the ground, over the larger of what
+    /// crossed its surface and what the points have taken in and given off, added; a billionth of the pores counts for
+    /// nothing. 0 where no water is lost, `None` where none flows. One reduction.
+    pub fn balance(&self, halo: &dyn Halo) -> Option<f64> {
         self.water.flow.as_ref()?;
         let pores: Exact = (0..self.points.len())
             .map(|p| self.flow(p).map_or(0.0, |(_, soil)| self.points.volume[p] * soil.porosity))
@@ -119,10 +113,10 @@ impl<'a, const D: usize> PoreWater<'a, D> {
         let sums = halo.total(&[self.taken().collect(), self.taken().map(f64::abs).collect(), pores]);
         let out = self.points.surface.crossed.out();
         let scale = sums[1].max(out.abs()).max(NOTHING * sums[2]);
-        Some(if scale > 0.0 { (sums[0] + out).abs() / scale } else { 0.0 })
+        Some(if scale > 0.0 { (sums[0] + out) / scale } else { 0.0 })
     }
 
-    /// m3  that every point has taken in since the start
+    /// m3  (per metre in plane strain)  of water that every point has taken in since the start, at its density then
     fn taken(&self) -> impl Iterator<Item = f64> {
         let of = move |p: usize| {
             let Some((flow, soil)) = self.flow(p) else { return 0.0 };
