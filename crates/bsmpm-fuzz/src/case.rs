@@ -1,5 +1,6 @@
 //! The parser of case files: bytes and overrides give a case or errors, and what it accepts holds together.
 
+use bsmpm::kinematics::PlaneStrain;
 use bsmpm_scene::{Case, Error, seed};
 
 /// Between the file and its overrides, and between those; no TOML holds it.
@@ -32,12 +33,12 @@ fn accepted(case: &Case) {
         return;
     }
     if estimate.cells <= MOST {
-        bsmpm_scene::model::model(case).expect("a model of what is accepted");
+        bsmpm_scene::model::model::<PlaneStrain, 2>(case).expect("a model of what is accepted");
     }
     let by_column = case.points_by_column();
     assert_eq!((by_column.len(), by_column.iter().sum()), (case.grid.spans(0), estimate.points));
     let mut count = 0;
-    for (number, seed) in seed(case, 0..columns).enumerate() {
+    for (number, seed) in seed::<PlaneStrain, 2>(case, 0..columns).enumerate() {
         assert_eq!(seed.id, number as u64);
         assert!(usize::from(seed.material) < case.materials.len());
         assert!(seed.volume > 0.0 && seed.volume.is_finite() && seed.mass >= 0.0 && seed.mass.is_finite(), "{seed:?}");

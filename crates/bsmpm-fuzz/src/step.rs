@@ -5,6 +5,7 @@ mod scene;
 use crate::alone::Simulation;
 use arbitrary::Unstructured;
 use bsmpm::grid::Grid;
+use bsmpm::kinematics::PlaneStrain;
 use bsmpm::points::Points;
 use bsmpm_scene::{Case, model};
 
@@ -25,8 +26,8 @@ pub fn target(data: &[u8]) {
 
 fn try_steps(case: &Case) {
     let told = || format!("in\n{}", case.text);
-    let scene = model::model(case).unwrap_or_else(|error| panic!("{error} {}", told()));
-    let points = model::points(case, 0..case.grid.spans(0));
+    let scene = model::model::<PlaneStrain, 2>(case).unwrap_or_else(|error| panic!("{error} {}", told()));
+    let points = model::points::<PlaneStrain, 2>(case, 0..case.grid.spans(0));
     let mut run = Simulation::new(scene, points);
     if run.start(case).is_err() {
         return;

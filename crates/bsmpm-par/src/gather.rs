@@ -26,12 +26,12 @@ pub struct FrameMoment {
     /// s, or pseudo-time
     pub time: f64,
     /// m  the grid's lower corner
-    pub lower: [f64; 2],
+    pub lower: [f64; 3],
 }
 
 /// What a point is in a frame besides its place, field by field.
 #[derive(Clone, Copy)]
-enum FieldSource<'a> {
+enum FieldSource<'a, const D: usize> {
     /// a column of the points as it is, vectors with three components
     Column(&'static ColumnInfo, &'a dyn Column),
     Pressure,
@@ -41,28 +41,28 @@ enum FieldSource<'a> {
     State(Variable, &'a [Material]),
     Volume,
     /// what the case asks for
-    Asked(FrameField, Around<'a>),
+    Asked(FrameField, Around<'a, D>),
 }
 
 /// What points belong to.
 #[derive(Clone, Copy)]
-pub struct Around<'a> {
+pub struct Around<'a, const D: usize> {
     /// laws by number
     pub materials: &'a [Material],
     /// ids of every body's points; empty if no frame tells bodies
     pub bodies: &'a [Range<u64>],
     /// water at the time of the frame
-    pub water: Option<PoreWater<'a, 2>>,
+    pub water: Option<PoreWater<'a, D>>,
     /// what frames show on request
     pub fields: &'a [FrameField],
 }
 
-impl<'a> FieldSource<'a> {
+impl<'a, const D: usize> FieldSource<'a, D> {
     /// All of a scene, in the order of the files; the same on all ranks: vectors and tensors, then numbers, then who a
     /// point is.
-    fn all(points: &'a Points<2>, projected: Option<&'a [f64]>, around: Around<'a>) -> Vec<Self> {
+    fn all(points: &'a Points<D>, projected: Option<&'a [f64]>, around: Around<'a, D>) -> Vec<Self> {
         let materials = around.materials;
-        let shown = Points::<2>::COLUMNS.iter().filter(|info| info.frame.is_some());
+        let shown = Points::<D>::COLUMNS.iter().filter(|info| info.frame.is_some());
         let shown = shown.filter_map(|info| points.column(info.name).map(|column| (info, column)));
         let (real, whole): (Vec<_>, Vec<_>) = shown.partition(|(_, column)| column.number() == Number::F64);
         let (numbers, mut shaped): (Vec<_>, Vec<_>) = real.into_iter().partition(|(_, column)| column.width() == 1);
@@ -97,7 +97,7 @@ impl<'a> FieldSource<'a> {
 
     fn components(&self) -> usize {
         match self {
-            Self::Column(_, column) if column.width() == 2 => 3,
+            Self::Column(_, column) if column.width() == D => 3,
             Self::Column(_, column) => column.width(),
             Self::Asked(FrameField::PrincipalStresses | FrameField::Flux, _) => 3,
             Self::Asked(FrameField::TotalStress, _) => 6,
@@ -106,10 +106,10 @@ impl<'a> FieldSource<'a> {
     }
 
     /// Its numbers of point `p`.
-    fn put(&self, points: &Points<2>, p: usize, row: &mut Vec<f64>) {
+    fn put(&self, points: &Points<D>, p: usize, row: &mut Vec<f64>) {
         match self {
             Self::Column(info, _) if info.name == "u" => {
-                row.extend([points.displacement(p)[0], points.displacement(p)[1], 0.0])
+                row.extend(spatial(&points.displacement(p)));
             }
             Self::Column(_, column) => {
                 column.show(p, row);
@@ -145,10 +145,10 @@ impl<'a> FieldSource<'a> {
     }
 }
 
-impl Around<'_> {
-    fn put(&self, field: FrameField, points: &Points<2>, p: usize, row: &mut Vec<f64>) {
+impl<const D: usize> Around<'_, D> {
+    fn put(&self, field: FrameField, points: &Points<D>, p: usize, row: &mut Vec<f64>) {
         let sigma = || points.sigma.at(p);
-        let of_water = |number: &dyn Fn(PoreWater<'_, 2>) -> f64| self.water.map_or(0.0, number);
+        let of_water = |number: &dyn Fn(PoreWater<'_, D>) -> f64| self.water.map_or(0.0, number);
         row.push(match field {
             FrameField::Q => invariants::deviatoric(&sigma()),
             FrameField::PrincipalStresses => return row.extend(invariants::principal(&sigma())),
@@ -165,7 +165,7 @@ impl Around<'_> {
             FrameField::Saturation => of_water(&|water| water.saturation(p)),
             FrameField::Flux => {
                 let flux = self.water.map_or_else(Vector::zeros, |water| water.flux(p));
-                return row.extend([flux[0], flux[1], 0.0]);
+                return row.extend(spatial(&flux));
             }
             FrameField::TotalStress => {
                 return row.extend(self.water.map_or_else(sigma, |water| water.total_stress(p)).0);
@@ -176,10 +176,10 @@ impl Around<'_> {
 }
 
 /// The frame of the present state, on its way to rank 0.
-pub struct Gathering<'a> {
+pub struct Gathering<'a, const D: usize> {
     world: &'a SimpleCommunicator,
-    points: &'a Points<2>,
-    sources: Vec<FieldSource<'a>>,
+    points: &'a Points<D>,
+    sources: Vec<FieldSource<'a, D>>,
     moment: FrameMoment,
     by_id: Vec<u32>, // this rank's points, those that have gone first
     gone: usize,
@@ -187,12 +187,12 @@ pub struct Gathering<'a> {
     total: usize,
 }
 
-impl<'a> Gathering<'a> {
+impl<'a, const D: usize> Gathering<'a, D> {
     /// The points of all ranks with what they belong to, and with their projected pressures (Pa) if these are wanted.
     /// Collective.
     pub fn new(
         world: &'a SimpleCommunicator,
-        (points, around): (&'a Points<2>, Around<'a>),
+        (points, around): (&'a Points<D>, Around<'a, D>),
         projected: Option<&'a [f64]>,
         moment: FrameMoment,
     ) -> Self {
@@ -207,11 +207,11 @@ impl<'a> Gathering<'a> {
     }
 
     /// Units of the fields, by name.
-    pub fn units(&self) -> BTreeMap<String, String> {
+    pub fn units(&self, volume: &str) -> BTreeMap<String, String> {
         self.sources
             .iter()
             .map(FieldSource::label)
-            .map(|(name, unit)| (name.into(), unit.replace("m^D", "m2")))
+            .map(|(name, unit)| (name.into(), unit.replace("m^D", volume)))
             .collect()
     }
 
@@ -256,7 +256,8 @@ impl<'a> Gathering<'a> {
         let count = rest.partition_point(|&p| points.id[p as usize] < end);
         let mut rows = Vec::with_capacity(count * width(&self.sources));
         for p in rest[..count].iter().map(|&p| p as usize) {
-            rows.extend([points.id[p] as f64, points.x[p][0], points.x[p][1]]);
+            rows.push(points.id[p] as f64);
+            rows.extend(spatial(&points.x[p]));
             self.sources.iter().for_each(|source| source.put(points, p, &mut rows));
         }
         self.gone += count;
@@ -268,33 +269,42 @@ impl<'a> Gathering<'a> {
     }
 }
 
-/// Numbers of a point before its fields: id, x, y.
-const HEAD: usize = 3;
+/// Numbers of a point before its fields: id, x, y, z.
+const HEAD: usize = 4;
+
+/// The components of a vector in space.
+pub fn spatial<const D: usize>(vector: &Vector<D>) -> [f64; 3] {
+    std::array::from_fn(|axis| if axis < D { vector[axis] } else { 0.0 })
+}
 
 /// Numbers of a point on its way to rank 0.
-fn width(sources: &[FieldSource<'_>]) -> usize {
+fn width<const D: usize>(sources: &[FieldSource<'_, D>]) -> usize {
     HEAD + sources.iter().map(FieldSource::components).sum::<usize>()
 }
 
 /// No points, with the columns of a scene.
-fn no_points(dynamic: bool) -> Points<2> {
+fn no_points<const D: usize>(dynamic: bool) -> Points<D> {
     Points::from_seeds([], dynamic)
 }
 
 /// Bytes that a point takes in a frame's file.
-pub fn point_bytes(dynamic: bool, projected: bool, around: Around<'_>) -> u64 {
+pub fn point_bytes<const D: usize>(dynamic: bool, projected: bool, around: Around<'_, D>) -> u64 {
     let points = no_points(dynamic);
     let sources = FieldSource::all(&points, projected.then_some(&[]), around);
-    vtu::point_bytes(&unpack(&[], FrameMoment { step: 0, time: 0.0, lower: [0.0; 2] }, &sources))
+    vtu::point_bytes(&unpack(&[], FrameMoment { step: 0, time: 0.0, lower: [0.0; 3] }, &sources))
 }
 
-fn unpack(rows: &[&[f64]], FrameMoment { step, time, lower }: FrameMoment, sources: &[FieldSource<'_>]) -> Frame {
+fn unpack<const D: usize>(
+    rows: &[&[f64]],
+    FrameMoment { step, time, lower }: FrameMoment,
+    sources: &[FieldSource<'_, D>],
+) -> Frame {
     let mut at = HEAD;
-    let field = |source: &FieldSource<'_>| {
+    let field = |source: &FieldSource<'_, D>| {
         at += source.components();
         source.field(rows, at - source.components())
     };
     let fields = sources.iter().map(field).collect();
-    let position = rows.iter().map(|row| [lower[0] + row[1], lower[1] + row[2], 0.0]).collect();
+    let position = rows.iter().map(|row| std::array::from_fn(|axis| lower[axis] + row[1 + axis])).collect();
     Frame { step, time, position, fields }
 }

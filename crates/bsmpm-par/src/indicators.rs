@@ -75,9 +75,9 @@ struct Energy {
 
 impl IndicatorState {
     /// Of the points of all ranks at a time. Collective; the same on all.
-    pub fn of<K: Kinematics<2>>(
-        (model, points, t): (&Model<K, 2>, &Points<2>, f64),
-        (recorder, budget): (&Recorder, Option<Budget>),
+    pub fn of<K: Kinematics<D>, const D: usize>(
+        (model, points, t): (&Model<K, D>, &Points<D>, f64),
+        (recorder, budget): (&Recorder<D>, Option<Budget>),
         halo: &dyn Halo,
     ) -> Result<Self, StepError> {
         let defect = quadrature::defect(model, points, halo);

@@ -1,5 +1,6 @@
 //! Rows of profiles: fields at places along a line, in the case's own coordinates.
 
+use crate::gather;
 use bsmpm::kinematics::Kinematics;
 use bsmpm::model::Model;
 use bsmpm::observe::invariants;
@@ -8,34 +9,35 @@ use bsmpm::parallel::Halo;
 use bsmpm::points::Points;
 use bsmpm::tensor::{Symmetric, Vector};
 use bsmpm_scene::Profile;
+use bsmpm_scene::model::vector;
 use bsmpm_scene::words::ProfileQuantity;
 
 /// Numbers that a row is made of: displacement since the start and since displacements count, velocity, stress, plastic
 /// strain.
-const FIELDS: usize = 2 + 2 + 2 + 6 + 1;
+const FIELDS: usize = 3 + 3 + 3 + 6 + 1;
 
 /// A row for every place that material is at: distance along the line, present place, then what the profile tells;
 /// `lower` is the grid's corner. Collective.
-pub fn rows<K: Kinematics<2>>(
+pub fn rows<K: Kinematics<D>, const D: usize>(
     profile: &Profile,
-    (model, lower): (&Model<K, 2>, [f64; 2]),
-    points: &Points<2>,
+    (model, lower): (&Model<K, D>, [f64; 2]),
+    points: &Points<D>,
     halo: &dyn Halo,
 ) -> Vec<Vec<f64>> {
     let places = profile.places();
-    let local: Vec<Vector<2>> = places.iter().map(|(_, at)| Vector::from(*at) - Vector::from(lower)).collect();
+    let local: Vec<Vector<D>> = places.iter().map(|(_, at)| vector::<D>(*at) - vector(lower)).collect();
     let configuration = if profile.fixed { Configuration::Present } else { Configuration::Initial };
     let fields = |p: usize| {
-        let velocity = points.motion.as_ref().map_or([0.0; 2], |motion| motion.v[p].into());
-        let vectors = [points.u[p].into(), points.displacement(p).into(), velocity];
+        let velocity = points.motion.as_ref().map_or(Vector::zeros(), |motion| motion.v[p]);
+        let vectors = [points.u[p], points.displacement(p), velocity].map(|vector| gather::spatial(&vector));
         let numbers = vectors.into_iter().flatten().chain(points.sigma.at(p).0).chain([points.eps_p[p]]);
         let mut fields = [0.0; FIELDS];
         fields.iter_mut().zip(numbers).for_each(|(field, number)| *field = number);
         fields
     };
-    let found = place::values(&model.grid, points, (&local, configuration), fields, halo);
+    let found = place::values::<K, D, _>(&model.grid, points, (&local, configuration), fields, halo);
     let row = |((distance, at), found): (&(f64, [f64; 2]), &Option<[f64; FIELDS]>)| {
-        let [ux, uy, dx, dy, vx, vy, xx, yy, zz, xy, yz, xz, plastic] = (*found)?;
+        let [ux, uy, _, dx, dy, _, vx, vy, _, xx, yy, zz, xy, yz, xz, plastic] = (*found)?;
         let moved = if profile.fixed { [0.0; 2] } else { [ux, uy] };
         let stress = Symmetric([xx, yy, zz, xy, yz, xz]);
         let mut row = vec![*distance, at[0] + moved[0], at[1] + moved[1]];

@@ -1,22 +1,25 @@
 //! Rows of `history.csv`: the quantities that the case asks for, in the case's own coordinates.
 
-use crate::checkpoint::{BooksForm, Outlet, RecordState};
+use crate::checkpoint::{BooksForm, Outlet, RecordState, Row};
 use bsmpm::boundary::{ContactReport, RigidReport};
 use bsmpm::energy::{Books, Stored};
 use bsmpm::error::StepError;
+use bsmpm::grid::Grid;
 use bsmpm::kinematics::Kinematics;
 use bsmpm::model::Model;
 use bsmpm::observe::place::{self, Configuration};
-use bsmpm::observe::{self, Part, noise};
+use bsmpm::observe::{self, Part, SectionForces, noise};
 use bsmpm::parallel::Halo;
 use bsmpm::points::Points;
 use bsmpm::step::StepReport;
 use bsmpm::step::outflow::Outflow;
 use bsmpm::tensor::Vector;
 use bsmpm::water::observed::PoreWater;
+use bsmpm_scene::model::vector;
 use bsmpm_scene::surfaces::{self, DrainPlace, Gauge};
 use bsmpm_scene::words::Measurement;
 use bsmpm_scene::{Case, Counted, Face, GridSpec, History, Quantity, Stage};
+use std::any::Any;
 
 /// Place of the vertical normal stress among XX YY ZZ XY YZ XZ.
 const VERTICAL: usize = 1;
@@ -24,7 +27,7 @@ const VERTICAL: usize = 1;
 const PLANE: usize = 4;
 
 /// The histories of a run, with the points that they follow.
-pub struct Recorder {
+pub struct Recorder<const D: usize> {
     histories: Vec<History>,
     parts: Vec<Part>, // the points that each of them counts
     followed: Vec<Option<u64>>,
@@ -33,21 +36,21 @@ pub struct Recorder {
     drains: Vec<DrainPlace>, // where the physics has each
     books: Option<Books>,    // of energy, opened by the first row
     left: Outlet,
-    work: Vec<f64>,       // J/m, of every strip; empty where no history wants it
-    datum: Vec<[f64; 2]>, // m, of every history's displacement when they were last set to zero, if they ever were
+    work: Vec<f64>,  // J/m, of every strip; empty where no history wants it
+    datum: Vec<Row>, // m, of every history's displacement when they were last set to zero, if they ever were
     grid: GridSpec,
-    lower: Vector<2>,
+    lower: Vector<D>,
 }
 
-impl Recorder {
+impl<const D: usize> Recorder<D> {
     /// Finds the points nearest to the wanted places.
-    pub fn new(case: &Case, points: &Points<2>, halo: &dyn Halo) -> Self {
-        let (histories, lower) = (&case.histories, Vector::from(case.grid.lower()));
+    pub fn new(case: &Case, points: &Points<D>, halo: &dyn Halo) -> Self {
+        let (histories, lower) = (&case.histories, vector::<D>(case.grid.lower()));
         let lasting = case.lasting();
         let comes_later = |number: usize| case.stages.iter().any(|stage| stage.follows.contains(&number));
         let follow = |(number, history): (usize, &History)| {
             let at = followed_place(&history.quantity).filter(|_| !comes_later(number))?;
-            observe::nearest(points, &(Vector::from(at) - lower), |id| !history.lasts || lasting(id), halo)
+            observe::nearest(points, &(vector(at) - lower), |id| !history.lasts || lasting(id), halo)
         };
         let followed = histories.iter().enumerate().map(follow).collect();
         let state = RecordState { followed, ..RecordState::default() };
@@ -81,7 +84,7 @@ impl Recorder {
             datum: state.datum,
             left: state.left,
             grid: case.grid.clone(),
-            lower: Vector::from(case.grid.lower()),
+            lower: vector(case.grid.lower()),
         }
     }
 
@@ -92,25 +95,27 @@ impl Recorder {
     }
 
     /// Follows points of the bodies that a stage has placed, and sets displacements to zero where it wants that.
-    pub fn begin_stage(&mut self, (case, stage): (&Case, &Stage), points: &Points<2>, halo: &dyn Halo) {
+    pub fn begin_stage(&mut self, (case, stage): (&Case, &Stage), points: &Points<D>, halo: &dyn Halo) {
         let (taken, placed) = (case.taken_by(stage), case.placed_by(stage));
         self.followed.iter_mut().filter(|followed| followed.is_some_and(&taken)).for_each(|lost| *lost = None);
         for &number in &stage.follows {
             if let Some(at) = followed_place(&self.histories[number].quantity) {
-                self.followed[number] = observe::nearest(points, &(Vector::from(at) - self.lower), &placed, halo);
+                self.followed[number] = observe::nearest(points, &(vector(at) - self.lower), &placed, halo);
             }
         }
         if stage.resets_displacements {
             let raw = |(history, followed): (&History, &Option<u64>)| match (&history.quantity, followed) {
-                (Quantity::Displacement { at }, Some(id)) => displacement((*at, self.lower), *id, points, halo),
-                _ => [0.0; 2],
+                (Quantity::Displacement { at }, Some(id)) => {
+                    displacement((*at, self.lower), *id, points, halo).to_vec()
+                }
+                _ => vec![0.0; D],
             };
             self.datum = self.histories.iter().zip(&self.followed).map(raw).collect();
         }
     }
 
     /// Enters what has left the grid; the histories that have lost their point by it, which read 0 from now on.
-    pub fn let_out(&mut self, outflow: &Outflow, points: &Points<2>, halo: &dyn Halo) -> Vec<String> {
+    pub fn let_out(&mut self, outflow: &Outflow, points: &Points<D>, halo: &dyn Halo) -> Vec<String> {
         let [before, after] = outflow.stored;
         self.exchange(before, after);
         self.left.points += outflow.points;
@@ -151,14 +156,14 @@ impl Recorder {
     pub fn front(&self, row: &[f64]) -> Option<f64> {
         let at = self.histories.iter().position(|history| history.quantity == Quantity::Front)?;
         let column: usize = self.histories[..at].iter().map(|history| history.columns().len()).sum();
-        Some(row.get(column)? / self.histories[at].scale).filter(|front| front.is_finite())
+        Some(row.get(column)? / self.histories[at].factor()).filter(|front| front.is_finite())
     }
 
     /// The row of the state at time `t`; `report` is that of the step that led to it, empty at the start.
-    pub fn row<K: Kinematics<2>>(
+    pub fn row<K: Kinematics<D>>(
         &mut self,
-        model: &Model<K, 2>,
-        points: &Points<2>,
+        model: &Model<K, D>,
+        points: &Points<D>,
         (t, report): (f64, &StepReport),
         halo: &dyn Halo,
     ) -> Result<Vec<f64>, StepError> {
@@ -198,13 +203,13 @@ impl Recorder {
                 Quantity::Rigid { what, body } => rigid(*what, *body, (t, model), report),
                 quantity => self.values((number, quantity), model, points, halo)?,
             };
-            row.extend(values.iter().map(|value| history.scale * value));
+            row.extend(values.iter().map(|value| history.factor() * value));
         }
         Ok(row)
     }
 
     /// m3/m  out of a drain so far, by its number in the file.
-    fn drained(&self, drain: usize, points: &Points<2>) -> f64 {
+    fn drained(&self, drain: usize, points: &Points<D>) -> f64 {
         let crossed = &points.surface.crossed;
         let found = match self.drains.get(drain) {
             Some(DrainPlace::Face(number)) => crossed.faces.get(*number),
@@ -215,14 +220,14 @@ impl Recorder {
     }
 
     /// A quantity of all points.
-    fn values<K: Kinematics<2>>(
+    fn values<K: Kinematics<D>>(
         &self,
         (number, quantity): (usize, &Quantity),
-        model: &Model<K, 2>,
-        points: &Points<2>,
+        model: &Model<K, D>,
+        points: &Points<D>,
         halo: &dyn Halo,
     ) -> Result<Vec<f64>, StepError> {
-        let ([left, bottom], followed) = (self.lower.into(), self.followed[number]);
+        let (left, bottom, followed) = (self.lower[0], self.lower[D - 1], self.followed[number]);
         let part = &self.parts[number];
         Ok(match quantity {
             Quantity::Runout { percentile, .. } if *percentile < 100.0 => {
@@ -230,7 +235,7 @@ impl Recorder {
             }
             Quantity::Runout { .. } => vec![left + observe::farthest(points, part, 0, halo)],
             Quantity::Front => vec![left + observe::front(model, points, halo)],
-            Quantity::Height { at_x: None, .. } => vec![bottom + observe::farthest(points, part, 1, halo)],
+            Quantity::Height { at_x: None, .. } => vec![bottom + observe::farthest(points, part, D - 1, halo)],
             Quantity::Height { at_x: Some(x), .. } => {
                 let [x, _] = self.grid.local([*x, bottom]);
                 vec![bottom + observe::surface(&model.grid, (points, part), x, halo)]
@@ -248,43 +253,37 @@ impl Recorder {
             Quantity::KineticEnergy { .. } => vec![observe::kinetic_energy(points, part, halo)],
             Quantity::MeanStress { .. } => observe::mean_stress(points, part, halo)[..PLANE].to_vec(),
             Quantity::SectionForces { ends, fixed } => {
-                let ends = ends.map(|end| Vector::from(end) - self.lower);
-                let placed = |end: Vector<2>| if *fixed { Some(end) } else { observe::moved(points, &end, halo) };
-                let [from, to] = ends.map(placed);
-                let forces =
-                    from.zip(to).map(|(from, to)| observe::section_forces(&model.grid, points, [from, to], halo));
-                let forces = forces.unwrap_or_default();
+                let forces = section((&model.grid, points), ends.map(|end| vector(end) - self.lower), *fixed, halo);
                 vec![forces.normal, forces.shear, forces.moment]
             }
             Quantity::Velocity { at, surface: true } => {
-                let velocity = |p: usize| points.motion.as_ref().map_or([0.0; 2], |motion| motion.v[p].into());
-                at_surface((model, points), Vector::from(*at) - self.lower, velocity, halo)
+                let velocity = |p: usize| points.motion.as_ref().map_or([0.0; D], |motion| motion.v[p].into());
+                at_surface((model, points), vector(*at) - self.lower, velocity, halo)
             }
             Quantity::Stress { at, surface: true } => {
-                at_surface((model, points), Vector::from(*at) - self.lower, |p| points.sigma.at(p).0, halo)[..PLANE]
-                    .to_vec()
+                at_surface((model, points), vector(*at) - self.lower, |p| points.sigma.at(p).0, halo)[..PLANE].to_vec()
             }
             Quantity::Heave { .. } => vec![observe::heave(points, part, halo)],
             Quantity::StressNoise => both(noise::stress_noise(&model.grid, points, model.weighting, VERTICAL, halo)?),
             Quantity::PressureNoise { within } => {
-                let window = within.map(|corners| corners.map(|corner| Vector::from(corner) - self.lower));
+                let window = within.map(|corners| corners.map(|corner| vector(corner) - self.lower));
                 both(noise::pressure_noise(&model.grid, points, model.weighting, window, halo)?)
             }
             Quantity::Displacement { at } => {
-                let Some(id) = followed else { return Ok(vec![0.0; 2]) };
+                let Some(id) = followed else { return Ok(vec![0.0; D]) };
                 let total = displacement((*at, self.lower), id, points, halo);
-                let datum = self.datum.get(number).copied().unwrap_or_default();
-                vec![total[0] - datum[0], total[1] - datum[1]]
+                let datum = |axis: usize| self.datum.get(number).map_or(0.0, |datum| datum[axis]);
+                (0..D).map(|axis| total[axis] - datum(axis)).collect()
             }
             quantity => at_followed(quantity, followed.unwrap_or(u64::MAX), points, halo),
         })
     }
 
     /// Where the energy is and went, in the order of the quantity's columns, with the step of `report` entered.
-    fn energy<K: Kinematics<2>>(
+    fn energy<K: Kinematics<D>>(
         &mut self,
-        model: &Model<K, 2>,
-        points: &Points<2>,
+        model: &Model<K, D>,
+        points: &Points<D>,
         report: &StepReport,
         halo: &dyn Halo,
     ) -> Vec<f64> {
@@ -315,7 +314,7 @@ impl Recorder {
     fn strip(&self, number: usize, measured: Measurement, report: &StepReport) -> Vec<f64> {
         let strip = report.strips.get(number);
         match measured {
-            Measurement::Reaction => strip.map_or_else(|| vec![0.0; 2], |strip| strip.force.clone()),
+            Measurement::Reaction => strip.map_or_else(|| vec![0.0; D], |strip| strip.force.clone()),
             Measurement::Moment => vec![strip.map_or(0.0, |strip| strip.moment)],
             Measurement::Work => vec![self.work.get(number).copied().unwrap_or(0.0)],
             measured => contact(measured, strip.and_then(|strip| strip.contact), report.dt),
@@ -323,10 +322,10 @@ impl Recorder {
     }
 
     /// Force of what holds a face on the body; zero where there is nothing, and before the first step.
-    fn reaction<K: Kinematics<2>>(
+    fn reaction<K: Kinematics<D>>(
         &self,
         number: usize,
-        model: &Model<K, 2>,
+        model: &Model<K, D>,
         face: Face,
         report: &StepReport,
     ) -> Vec<f64> {
@@ -335,12 +334,16 @@ impl Recorder {
         }
         let supports = model.boundary.supports.iter().zip(&report.reactions);
         let mut at_face = supports.filter(|(support, _)| support.axis == face.axis && support.upper == face.upper);
-        at_face.next().map_or_else(|| vec![0.0; 2], |(_, force)| force.clone())
+        at_face.next().map_or_else(|| vec![0.0; D], |(_, force)| force.clone())
     }
 }
 
 /// What a face in contact did.
-fn at_face<K: Kinematics<2>>(model: &Model<K, 2>, face: Face, report: &StepReport) -> Option<ContactReport> {
+fn at_face<K: Kinematics<D>, const D: usize>(
+    model: &Model<K, D>,
+    face: Face,
+    report: &StepReport,
+) -> Option<ContactReport> {
     let supports = &model.boundary.supports;
     let of_face = |found: &&ContactReport| {
         let support = &supports[found.support];
@@ -371,18 +374,18 @@ fn followed_place(quantity: &Quantity) -> Option<[f64; 2]> {
 }
 
 /// A quantity of the pore water of the point of an id; zero without it.
-fn pore(
-    (measured, water): (Measurement, Option<PoreWater<'_, 2>>),
+fn pore<const D: usize>(
+    (measured, water): (Measurement, Option<PoreWater<'_, D>>),
     id: u64,
-    points: &Points<2>,
+    points: &Points<D>,
     halo: &dyn Halo,
 ) -> Vec<f64> {
-    let number = |of: &dyn Fn(PoreWater<'_, 2>, usize) -> f64| {
+    let number = |of: &dyn Fn(PoreWater<'_, D>, usize) -> f64| {
         observe::at_point(points, id, halo, |p| [water.map_or(0.0, |water| of(water, p))]).to_vec()
     };
     match measured {
         Measurement::Flux => {
-            let flux = |p: usize| water.map_or([0.0; 2], |water| water.flux(p).into());
+            let flux = |p: usize| water.map_or([0.0; D], |water| water.flux(p).into());
             observe::at_point(points, id, halo, flux).to_vec()
         }
         Measurement::ExcessPressure => number(&|water, p| water.excess(p)),
@@ -405,21 +408,21 @@ fn parts(case: &Case) -> Vec<Part> {
 
 /// A field at the material place that was at `at` (m, from the grid's lower corner) before anything moved; zero where
 /// there is no material.
-fn at_surface<K: Kinematics<2>, const C: usize>(
-    (model, points): (&Model<K, 2>, &Points<2>),
-    at: Vector<2>,
+fn at_surface<K: Kinematics<D>, const D: usize, const C: usize>(
+    (model, points): (&Model<K, D>, &Points<D>),
+    at: Vector<D>,
     field: impl Fn(usize) -> [f64; C],
     halo: &dyn Halo,
 ) -> Vec<f64> {
-    let found = place::values(&model.grid, points, (&[at], Configuration::Initial), field, halo);
+    let found = place::values::<K, D, _>(&model.grid, points, (&[at], Configuration::Initial), field, halo);
     found[0].map_or_else(|| vec![0.0; C], |values| values.to_vec())
 }
 
 /// A quantity of a rigid body; before the first step that of the start.
-fn rigid<K: Kinematics<2>>(
+fn rigid<K: Kinematics<D>, const D: usize>(
     what: Measurement,
     body: usize,
-    (t, model): (f64, &Model<K, 2>),
+    (t, model): (f64, &Model<K, D>),
     report: &StepReport,
 ) -> Vec<f64> {
     let at_start = || {
@@ -440,20 +443,43 @@ fn rigid<K: Kinematics<2>>(
     }
 }
 
+/// Resultants of the stress in a section; none out of a plane.
+fn section<const D: usize>(
+    (grid, points): (&Grid<D>, &Points<D>),
+    ends: [Vector<D>; 2],
+    fixed: bool,
+    halo: &dyn Halo,
+) -> SectionForces {
+    let placed = |end: Vector<D>| if fixed { Some(end) } else { observe::moved(points, &end, halo) };
+    let [from, to] = ends.map(placed);
+    let plane = |end: Vector<D>| Vector::<2>::new(end[0], end[1]);
+    let (grid, points): (&dyn Any, &dyn Any) = (grid, points);
+    let (Some(grid), Some(points)) = (grid.downcast_ref(), points.downcast_ref()) else {
+        return SectionForces::default();
+    };
+    let forces = from.zip(to).map(|(from, to)| observe::section_forces(grid, points, [from, to].map(plane), halo));
+    forces.unwrap_or_default()
+}
+
 fn both(noise: noise::Noise) -> Vec<f64> {
     vec![noise.about_average, noise.about_plane]
 }
 
 /// Displacement (m) of the place that the point `id` is the nearest one to, since the start; `lower` is the grid's
 /// corner. Zero where there is no such point.
-fn displacement((at, lower): ([f64; 2], Vector<2>), id: u64, points: &Points<2>, halo: &dyn Halo) -> [f64; 2] {
-    let place = Vector::from(at) - lower;
+fn displacement<const D: usize>(
+    (at, lower): ([f64; 2], Vector<D>),
+    id: u64,
+    points: &Points<D>,
+    halo: &dyn Halo,
+) -> [f64; D] {
+    let place = vector(at) - lower;
     observe::at_point(points, id, halo, |p| observe::displacement(points, p, &place).into())
 }
 
 /// A quantity of the point `id`, zero where there is none; of other quantities there is none.
-fn at_followed(quantity: &Quantity, id: u64, points: &Points<2>, halo: &dyn Halo) -> Vec<f64> {
-    let velocity = |p: usize| points.motion.as_ref().map_or([0.0; 2], |motion| motion.v[p].into());
+fn at_followed<const D: usize>(quantity: &Quantity, id: u64, points: &Points<D>, halo: &dyn Halo) -> Vec<f64> {
+    let velocity = |p: usize| points.motion.as_ref().map_or([0.0; D], |motion| motion.v[p].into());
     match quantity {
         Quantity::Velocity { .. } => observe::at_point(points, id, halo, velocity).to_vec(),
         Quantity::Stress { .. } => observe::at_point(points, id, halo, |p| points.sigma.at(p).0)[..PLANE].to_vec(),

@@ -6,7 +6,7 @@ use crate::checkpoint::{self, CheckpointState, Opened, Refusal, Wanted, agree, b
 use crate::cli::{Arguments, Restart};
 use bsmpm::control::Stepper;
 use bsmpm::grid::Grid;
-use bsmpm::kinematics::PlaneStrain;
+use bsmpm::kinematics::Kinematics;
 use bsmpm::model::Model;
 use bsmpm::points::Points;
 use bsmpm::schedule::Schedule;
@@ -189,13 +189,13 @@ impl Resumed<'_> {
     ///
     /// # Errors
     /// The same on all ranks (76): they are not those of this case.
-    pub fn read(
+    pub fn read<K: Kinematics<D>, const D: usize>(
         &self,
         universe: &Universe,
         case: &Case,
-        model: &mut Model<PlaneStrain, 2>,
+        model: &mut Model<K, D>,
         schedule: &Schedule,
-    ) -> Result<(Slabs, Points<2>, Stepper), Refusal> {
+    ) -> Result<(Slabs, Points<D>, Stepper), Refusal> {
         let world = universe.world();
         let foreign = |what: &str| {
             Refusal::new(
@@ -219,7 +219,7 @@ impl Resumed<'_> {
         let rank = world.rank().unsigned_abs() as usize;
         let window = model.grid.window(slabs.columns(rank));
         migrate::points((&world, &Traffic::default()), &slabs, &window, &mut points);
-        points.surface = self.state.surface();
+        points.surface = self.state.surface().ok_or_else(|| foreign("its surfaces are not of this case"))?;
         let surface = model.boundary.surface();
         let sizes = |lists: &[Vec<_>]| lists.iter().map(Vec::len).collect::<Vec<_>>();
         let same = sizes(&points.surface.traction) == sizes(&surface.traction)
@@ -241,14 +241,14 @@ impl Resumed<'_> {
             return Err(foreign("its surfaces are not of this case"));
         }
         let columns = self.state.free_field.iter().map(|column| column.points(width)).collect::<Option<Vec<_>>>();
-        let sound = |column: &Points<2>| column.material.iter().all(|&law| usize::from(law) < model.materials.len());
+        let sound = |column: &Points<D>| column.material.iter().all(|&law| usize::from(law) < model.materials.len());
         let columns = columns.filter(|columns| columns.iter().all(sound));
         let followers = model.boundary.absorbing().filter(|face| face.follows).count();
         let expected = if self.state.steps > 0 { followers } else { 0 };
         points.free_field = columns
             .filter(|columns| columns.len() == expected)
             .ok_or_else(|| foreign("the columns of its free field are not of this case"))?;
-        let guess = self.opened.guess(&held.layers(), &window.layers(), window.layer_nodes() * 2)?;
+        let guess = self.opened.guess(&held.layers(), &window.layers(), window.layer_nodes() * D)?;
         let is_finite = guess.iter().all(|value| value.is_finite());
         agree(&world, if is_finite { Ok(()) } else { Err(foreign("a nodal displacement is not finite")) })?;
         let stepper = Stepper::resume(guess, self.state.progress, schedule);
@@ -256,7 +256,7 @@ impl Resumed<'_> {
     }
 
     /// The cut of the grid: as it was, or on another number of ranks one into about equal loads.
-    fn slabs(&self, universe: &Universe, grid: &Grid<2>, points: &Points<2>) -> Option<Slabs> {
+    fn slabs<const D: usize>(&self, universe: &Universe, grid: &Grid<D>, points: &Points<D>) -> Option<Slabs> {
         let world = universe.world();
         let ranks = world.size().unsigned_abs() as usize;
         if self.found.record.ranks as usize == ranks {

@@ -10,7 +10,7 @@ mod start;
 use crate::checkpoint::Outlet;
 use crate::cli::Arguments;
 use crate::fault::Fault;
-use crate::gather::{Around, FrameMoment, Gathering};
+use crate::gather::{self, Around, FrameMoment, Gathering};
 use crate::launch;
 use crate::ledger::Ledger;
 use crate::log::Log;
@@ -18,7 +18,7 @@ use crate::profile;
 use crate::record::Recorder;
 use bsmpm::control::Accepted;
 use bsmpm::error::StepError;
-use bsmpm::kinematics::PlaneStrain;
+use bsmpm::kinematics::Kinematics;
 use bsmpm::observe::projection::projected_pressure;
 use bsmpm::parallel::Halo;
 use bsmpm::step::StepReport;
@@ -28,6 +28,7 @@ use bsmpm_io::frame::Parts;
 use bsmpm_io::manifest::{Communication, ManifestOutflow, SolverNames, Status};
 use bsmpm_ranks::simulation::Simulation;
 use bsmpm_ranks::timers::Timers;
+use bsmpm_scene::model::vector;
 use bsmpm_scene::words::FrameField;
 use bsmpm_scene::{Case, Every, Profile};
 use hdf5_collective::Hdf5;
@@ -55,13 +56,13 @@ const FASTEST: f64 = 0.5;
 const DEEPEST: f64 = 0.05;
 
 /// A run under way.
-pub struct Run<'p> {
+pub struct Run<'p, K, const D: usize> {
     universe: &'p Universe,
     case: Case,
     arguments: Arguments,
     fault: Option<Fault>,
-    simulation: Simulation<'p, PlaneStrain, 2>,
-    recorder: Recorder,
+    simulation: Simulation<'p, K, D>,
+    recorder: Recorder<D>,
     ledger: Option<Ledger>, // on rank 0
     log: Log,
     timers: Rc<Timers>,
@@ -98,12 +99,12 @@ pub struct Before {
     pub cpu_seconds: f64,
 }
 
-impl<'p> Run<'p> {
+impl<'p, K: Kinematics<D>, const D: usize> Run<'p, K, D> {
     /// A run at its start, or where it goes on, which is now.
     pub fn new(
         (universe, hdf5): (&'p Universe, &'p Hdf5<'p>),
         Task { case, arguments, fault }: Task,
-        (simulation, recorder): (Simulation<'p, PlaneStrain, 2>, Recorder),
+        (simulation, recorder): (Simulation<'p, K, D>, Recorder<D>),
         (ledger, log): (Option<Ledger>, Log),
         timers: Rc<Timers>,
         mut before: Before,
@@ -336,7 +337,7 @@ impl<'p> Run<'p> {
         let lost = self.recorder.let_out(outflow, points, &**halo);
         let Outlet { points, mass } = self.recorder.left();
         if let Some(ledger) = &mut self.ledger {
-            ledger.manifest().outflow = Some(ManifestOutflow { points, mass });
+            ledger.manifest().outflow = Some(ManifestOutflow { points, mass: mass * self.case.geometry.whole() });
         }
         for name in lost {
             let t = accepted.t;
@@ -410,7 +411,7 @@ impl<'p> Run<'p> {
         let Simulation { model, points, halo, .. } = &self.simulation;
         let projected = self.case.output.projected_pressure.then(|| projected_pressure(model, points, &**halo));
         let projected = projected.transpose().unwrap_or_else(|error| launch::end(&world, exit::BUG, &error));
-        let moment = FrameMoment { step, time, lower: self.case.grid.lower() };
+        let moment = FrameMoment { step, time, lower: gather::spatial(&vector::<D>(self.case.grid.lower())) };
         let (names, fields) = (self.names(), &self.case.output.fields);
         let bodies = if fields.contains(&FrameField::Body) { self.case.ids() } else { Vec::new() };
         let around =
@@ -419,7 +420,7 @@ impl<'p> Run<'p> {
         let written = match &mut self.ledger {
             Some(ledger) => {
                 let (head, points) = (frame.head(), frame.points());
-                ledger.manifest().frame_units = frame.units();
+                ledger.manifest().frame_units = frame.units(self.case.geometry.volume_unit());
                 ledger.manifest().frame_names =
                     names.iter().map(|(field, names)| ((*field).to_owned(), names.clone())).collect();
                 let names: Vec<_> = names.into_iter().map(|(field, names)| (format!("{field}_names"), names)).collect();

@@ -2,7 +2,7 @@
 
 use bsmpm::error::StepError;
 use bsmpm::initial::{Equilibrium, Settling};
-use bsmpm::kinematics::PlaneStrain;
+use bsmpm::kinematics::Kinematics;
 use bsmpm::model::Weighting;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::step::smooth;
@@ -14,7 +14,7 @@ use bsmpm_ranks::simulation::{Simulation, StartStress};
 use bsmpm_ranks::slab::Slabs;
 use bsmpm_scene::model::{at_rest, penalty, weighting};
 use bsmpm_scene::words::{Factor, Word};
-use bsmpm_scene::{Case, GridAxis, Initial};
+use bsmpm_scene::{Case, Geometry, GridAxis, Initial};
 use std::ops::Range;
 
 /// Cells along each axis that the ranks together see ([`bsmpm::grid::room`]), and how they share them.
@@ -24,9 +24,12 @@ pub type Cut = ([Range<usize>; 2], Slabs);
 pub type Start = (Equilibrium, Option<Settling>);
 
 /// Gives the points the stress that the case wants at the start, and tells how well it is balanced.
-pub fn start(case: &Case, simulation: &mut Simulation<'_, PlaneStrain, 2>) -> Result<Option<Start>, StepError> {
+pub fn start<K: Kinematics<D>, const D: usize>(
+    case: &Case,
+    simulation: &mut Simulation<'_, K, D>,
+) -> Result<Option<Start>, StepError> {
     let (by_weight, by_k0);
-    let stress: StartStress<'_, 2> = match &case.initial {
+    let stress: StartStress<'_, D> = match &case.initial {
         None => return Ok(None),
         Some(Initial::Elastic) => StartStress::Elastic,
         Some(Initial::AtRest(k0)) if case.settles => {
@@ -34,7 +37,7 @@ pub fn start(case: &Case, simulation: &mut Simulation<'_, PlaneStrain, 2>) -> Re
             StartStress::Spread(&by_k0)
         }
         Some(Initial::AtRest(k0)) => {
-            by_weight = |material: u16, x: &Vector<2>| at_rest(case, k0, material, x);
+            by_weight = |material: u16, x: &Vector<D>| at_rest(case, k0, material, x);
             StartStress::Given(&by_weight)
         }
     };
@@ -91,6 +94,11 @@ pub fn choices(case: &Case, ranks: usize, options: &[String]) -> Vec<manifest::M
         reason: reason.into(),
     };
     let mut choices = Vec::new();
+    if case.geometry == Geometry::Axisymmetric {
+        let reason = "x is the radius: histories and this file are of the whole circle (N, J, kg, m3), 2 pi times what acts \
+                      on a radian, of which frames have the points' volumes; a point load is all of its ring";
+        choices.push(choice("geometry", "axisymmetric", reason));
+    }
     if case.flow.is_some() {
         let reason = "water that flows: all recent secants on both systems by turns (fixed stress); then shorter steps";
         choices.push(choice("solver.nonlinear", "multisecant", reason));

@@ -4,7 +4,7 @@
 use crate::checkpoint::{self, Contents, Refusal, agree};
 use crate::cli::Arguments;
 use crate::gather;
-use bsmpm::kinematics::PlaneStrain;
+use bsmpm::kinematics::Kinematics;
 use bsmpm_io::directory::OutputDirectory;
 use bsmpm_io::exit;
 use bsmpm_io::{checkpoint as kept, disk};
@@ -29,11 +29,11 @@ struct Need {
 
 /// A warning for the first rank where its disk has less room than the run may need, or with `--strict-space` the
 /// refusal (74). Collective.
-pub fn admit(
+pub fn admit<K: Kinematics<D>, const D: usize>(
     world: &SimpleCommunicator,
     held: Option<&OutputDirectory>,
     (arguments, case): (&Arguments, &Case),
-    simulation: &mut Simulation<'_, PlaneStrain, 2>,
+    simulation: &mut Simulation<'_, K, D>,
 ) -> Result<Option<String>, Refusal> {
     let need = Need::of(world, (held, arguments.force), case, simulation);
     let shortage = held.and_then(|held| need.shortage(held, arguments.force));
@@ -46,11 +46,11 @@ pub fn admit(
 }
 
 impl Need {
-    fn of(
+    fn of<K: Kinematics<D>, const D: usize>(
         world: &SimpleCommunicator,
         (held, emptied): (Option<&OutputDirectory>, bool),
         case: &Case,
-        simulation: &mut Simulation<'_, PlaneStrain, 2>,
+        simulation: &mut Simulation<'_, K, D>,
     ) -> Self {
         let (own, mut points) = (simulation.points.len() as u64, 0_u64);
         world.all_reduce_into(&own, &mut points, SystemOperation::sum());
@@ -66,7 +66,7 @@ impl Need {
             frames: frames(case, time, begun),
             frame: HEAD
                 + points
-                    * gather::point_bytes(
+                    * gather::point_bytes::<D>(
                         case.analysis.regime == Regime::Dynamic,
                         case.output.projected_pressure,
                         gather::Around {

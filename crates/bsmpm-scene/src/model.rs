@@ -6,7 +6,7 @@ use bsmpm::background::Background;
 use bsmpm::boundary::{Boundary, Support};
 use bsmpm::error::GridError;
 use bsmpm::grid::{Grid, KnotVector};
-use bsmpm::kinematics::PlaneStrain;
+use bsmpm::kinematics::Kinematics;
 use bsmpm::material::state_width;
 use bsmpm::method::Criteria;
 use bsmpm::method::Nonlinear;
@@ -22,8 +22,13 @@ use bsmpm::water::ambient::Ambient;
 use bsmpm::water::flow::Flow;
 use std::marker::PhantomData;
 
-/// The model of a plane-strain case over its whole grid, at the start.
-pub fn model(case: &Case) -> Result<Model<PlaneStrain, 2>, GridError> {
+/// A vector of the plane in which a case is described, in the dimension of its geometry.
+pub fn vector<const D: usize>(plane: [f64; 2]) -> Vector<D> {
+    Vector::from_fn(|axis, _| plane[axis])
+}
+
+/// The model of a case over its whole grid, at the start.
+pub fn model<K: Kinematics<D>, const D: usize>(case: &Case) -> Result<Model<K, D>, GridError> {
     model_at(case, 0.0)
 }
 
@@ -34,14 +39,14 @@ pub fn criteria(case: &Case) -> Criteria {
 }
 
 /// The same once the stages until the time `t` have begun.
-pub fn model_at(case: &Case, t: f64) -> Result<Model<PlaneStrain, 2>, GridError> {
+pub fn model_at<K: Kinematics<D>, const D: usize>(case: &Case, t: f64) -> Result<Model<K, D>, GridError> {
     let background = (case.solver.background > 0.0).then_some(Background {
         kind: case.solver.background_kind,
         coefficient: case.solver.background,
         extent: case.solver.background_cells,
     });
     let (grid, materials) = (grid(case)?, case.materials_at(t));
-    let flow = surfaces::flow(case, &grid);
+    let flow = surfaces::flow::<K, D>(case, &grid);
     Ok(Model {
         materials: materials.iter().map(|named| named.material.clone()).collect(),
         regime: case.analysis.regime,
@@ -51,10 +56,10 @@ pub fn model_at(case: &Case, t: f64) -> Result<Model<PlaneStrain, 2>, GridError>
         gravity: case
             .gravity
             .as_ref()
-            .map(|gravity| Gravity { acceleration: gravity.acceleration.into(), ramp: gravity.ramp }),
+            .map(|gravity| Gravity { acceleration: vector(gravity.acceleration), ramp: gravity.ramp }),
         shaking: (!case.shaking.is_empty())
-            .then(|| Shaking { rows: case.shaking.iter().map(|&(t, ground)| (t, ground.into())).collect() }),
-        boundary: boundary(case, &grid, t),
+            .then(|| Shaking { rows: case.shaking.iter().map(|&(t, ground)| (t, vector(ground))).collect() }),
+        boundary: boundary::<K, D>(case, &grid, t),
         grid,
         stabilisation: case.stabilisation,
         groups: groups_of(case, &materials),
@@ -77,7 +82,7 @@ pub fn model_at(case: &Case, t: f64) -> Result<Model<PlaneStrain, 2>, GridError>
 
 /// Still water, and water that flows; of the latter alone the pore pressure is all excess. One that points carry asks
 /// for no unit weight.
-fn water(case: &Case, flow: Option<Flow<2>>) -> Option<Water<2>> {
+fn water<const D: usize>(case: &Case, flow: Option<Flow<D>>) -> Option<Water<D>> {
     let still = case.water.as_ref();
     let unit_weight = still.map(|still| still.unit_weight).or(case.flow.as_ref().map(|flow| flow.unit_weight));
     let unit_weight = unit_weight.or(case.carries_pressure().then_some(0.0))?;
@@ -91,7 +96,7 @@ fn damping(materials: &[NamedMaterial]) -> Vec<f64> {
 }
 
 /// The grid of a case.
-fn grid(case: &Case) -> Result<Grid<2>, GridError> {
+fn grid<const D: usize>(case: &Case) -> Result<Grid<D>, GridError> {
     let order = case.grid.order;
     let knots = |axis: usize| match &case.grid.axes[axis] {
         GridAxis::Uniform { cell, cells, .. } if case.grid.lines[axis].is_empty() => {
@@ -99,16 +104,18 @@ fn grid(case: &Case) -> Result<Grid<2>, GridError> {
         }
         _ => KnotVector::graded(&case.grid.repeated(axis), order),
     };
-    Ok(Grid::new([knots(0)?, knots(1)?])?.reaching(case.beyond()))
+    let axes = (0..D).map(knots).collect::<Result<Vec<_>, _>>()?;
+    let axes = std::array::from_fn(|axis| axes[axis].clone());
+    Ok(Grid::new(axes)?.reaching(case.beyond()))
 }
 
-fn boundary(case: &Case, grid: &Grid<2>, t: f64) -> Boundary<2> {
+fn boundary<K: Kinematics<D>, const D: usize>(case: &Case, grid: &Grid<D>, t: f64) -> Boundary<D> {
     Boundary {
         supports: supports(case, t),
         outlets: outlets(case, t),
-        strips: surfaces::strips(case, grid, (penalty(case), t)),
+        strips: surfaces::strips::<K, D>(case, grid, (penalty(case), t)),
         rigid: surfaces::rigid(case, t),
-        loads: surfaces::loads(case, grid, t),
+        loads: surfaces::loads::<K, D>(case, grid, t),
         reach: reach(case),
     }
 }
@@ -122,7 +129,7 @@ fn reach(case: &Case) -> Vec<f64> {
     reach
 }
 
-fn supports(case: &Case, t: f64) -> Vec<Support<2>> {
+fn supports<const D: usize>(case: &Case, t: f64) -> Vec<Support<D>> {
     let support = |of: crate::FaceSupport| {
         let Face { axis, upper } = of.face;
         match (of.support, of.contact) {
@@ -167,9 +174,9 @@ pub fn penalty(case: &Case) -> f64 {
 }
 
 /// The points of the columns of one slab at the start, by the numbers of the physics' grid.
-pub fn points(case: &Case, columns: std::ops::Range<usize>) -> Points<2> {
+pub fn points<K: Kinematics<D>, const D: usize>(case: &Case, columns: std::ops::Range<usize>) -> Points<D> {
     let there = |body| case.is_there(body, 0.0);
-    let seeds = seed_bodies(case, case.grid.cells_in(0, &columns), there);
+    let seeds = seed_bodies::<K, D>(case, case.grid.cells_in(0, &columns), there);
     let points = Points::from_seeds(seeds, case.analysis.regime == Regime::Dynamic);
     let mut points = points.with_state(state_width(case.materials.iter().map(|named| &named.material)));
     if case.carries_pressure() {
@@ -180,22 +187,22 @@ pub fn points(case: &Case, columns: std::ops::Range<usize>) -> Points<2> {
 }
 
 /// Pa  pore pressure that a point carries, at `x` (m, from the grid's lower corner) at the start.
-fn carried_pressure(case: &Case, material: u16, x: &Vector<2>) -> f64 {
+fn carried_pressure<const D: usize>(case: &Case, material: u16, x: &Vector<D>) -> f64 {
     let (ratio, lower) = (case.materials[usize::from(material)].ratio, case.grid.lower());
     if ratio > 0.0 { ratio * case.overburden([lower[0] + x[0], lower[1] + x[1]]) } else { 0.0 }
 }
 
 /// The points that a stage places in the columns of one slab.
-pub fn placed<'a>(
+pub fn placed<'a, K: Kinematics<D>, const D: usize>(
     case: &'a Case,
     stage: &'a Stage,
     columns: std::ops::Range<usize>,
-) -> impl Iterator<Item = Seed<2>> + 'a {
-    seed_bodies(case, case.grid.cells_in(0, &columns), |body| stage.add.contains(&body))
+) -> impl Iterator<Item = Seed<D>> + 'a {
+    seed_bodies::<K, D>(case, case.grid.cells_in(0, &columns), |body| stage.add.contains(&body))
 }
 
 /// Stress of ground at rest, Pa, at `x` (m, from the grid's lower corner); `k0` by material.
-pub fn at_rest(case: &Case, k0: &[f64], material: u16, x: &Vector<2>) -> Symmetric {
+pub fn at_rest<const D: usize>(case: &Case, k0: &[f64], material: u16, x: &Vector<D>) -> Symmetric {
     let lower = case.grid.lower();
     let at = [lower[0] + x[0], lower[1] + x[1]];
     let vertical = -case.overburden(at) * (1.0 - case.materials[usize::from(material)].ratio);

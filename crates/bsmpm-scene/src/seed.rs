@@ -3,7 +3,9 @@
 
 use crate::case::{Body, Case};
 use crate::grid::{GridAxis, GridSpec};
+use crate::model::vector;
 use crate::region::{self, CellPlace, Outline, Region, RegionPart};
+use bsmpm::kinematics::Kinematics;
 use bsmpm::points::Seed;
 use bsmpm::tensor::Vector;
 use std::ops::Range;
@@ -111,37 +113,42 @@ impl Case {
 /// body's; where an outline, but not a box, covers less than 1e-9 of a cell, that is left out.
 ///
 /// Ids count body by body, cell by cell and point by point, axis 0 slowest; they and the points do not depend on
-/// `columns`. Positions are relative to the grid's lower corner (m), volumes and masses per metre of thickness (m²,
+/// `columns`. Positions are relative to the grid's lower corner (m), volumes and masses what the geometry makes of an
+/// area: of plane strain per metre of thickness (m²,
 /// kg/m).
-pub fn seed(case: &Case, columns: Range<usize>) -> impl Iterator<Item = Seed<2>> + '_ {
-    seed_bodies(case, columns, |_| true)
+pub fn seed<K: Kinematics<D>, const D: usize>(
+    case: &Case,
+    columns: Range<usize>,
+) -> impl Iterator<Item = Seed<D>> + '_ {
+    seed_bodies::<K, D>(case, columns, |_| true)
 }
 
 /// The same of those bodies only whose number is `wanted`.
-pub fn seed_bodies<'a>(
+pub fn seed_bodies<'a, K: Kinematics<D>, const D: usize>(
     case: &'a Case,
     columns: Range<usize>,
     wanted: impl Fn(usize) -> bool + 'a,
-) -> impl Iterator<Item = Seed<2>> + 'a {
+) -> impl Iterator<Item = Seed<D>> + 'a {
     let bodies = case.bodies.iter().zip(case.ids()).enumerate().filter(move |(number, _)| wanted(*number));
     bodies.flat_map(move |(_, (body, ids))| {
         let first_id = ids.start;
-        let of_box = body.extents(&case.grid).map(|extents| of_box(case, body, first_id, extents, columns.clone()));
+        let of_box =
+            body.extents(&case.grid).map(|extents| of_box::<K, D>(case, body, first_id, extents, columns.clone()));
         let of_outline = match &body.region {
-            Region::Outline(outline) => Some(of_outline(case, body, first_id, outline, columns.clone())),
+            Region::Outline(outline) => Some(of_outline::<K, D>(case, body, first_id, outline, columns.clone())),
             Region::Box { .. } => None,
         };
         of_box.into_iter().flatten().chain(of_outline.into_iter().flatten())
     })
 }
 
-fn of_box<'a>(
+fn of_box<'a, K: Kinematics<D>, const D: usize>(
     case: &'a Case,
     body: &'a Body,
     first_id: u64,
     [across, up]: [SeedExtent<'a>; 2],
     columns: Range<usize>,
-) -> impl Iterator<Item = Seed<2>> + 'a {
+) -> impl Iterator<Item = Seed<D>> + 'a {
     let cells = across.cells.start.max(columns.start)..across.cells.end.min(columns.end);
     cells.flat_map(move |i| {
         let (across, up) = (across.clone(), up.clone());
@@ -152,18 +159,18 @@ fn of_box<'a>(
             let first_id = first_id + cell * count;
             of_cell(body.points_per_cell, [across.part(i), up.part(j)])
                 .zip(first_id..)
-                .map(move |(place, id)| body.seed(case, id, place))
+                .map(move |(place, id)| body.seed::<K, D>(case, id, place))
         })
     })
 }
 
-fn of_outline<'a>(
+fn of_outline<'a, K: Kinematics<D>, const D: usize>(
     case: &'a Case,
     body: &'a Body,
     first_id: u64,
     outline: &'a Outline,
     columns: Range<usize>,
-) -> impl Iterator<Item = Seed<2>> + 'a {
+) -> impl Iterator<Item = Seed<D>> + 'a {
     let tally = outline.tally();
     let occupied = &tally.occupied[0];
     let (grid, n) = (&case.grid, body.points_per_cell);
@@ -178,7 +185,7 @@ fn of_outline<'a>(
             let y = move |j: usize| [grid.axes[1].breakpoint(j), grid.axes[1].breakpoint(j + 1)];
             whole.flat_map(move |j| of_cell(n, [x, y(j)])).chain(cut)
         });
-        places.zip(first_id..).map(move |(place, id)| body.seed(case, id, place))
+        places.zip(first_id..).map(move |(place, id)| body.seed::<K, D>(case, id, place))
     })
 }
 
@@ -191,10 +198,10 @@ fn of_cell(n: usize, [across, up]: [[f64; 2]; 2]) -> impl Iterator<Item = CellPl
 
 impl Body {
     /// m/s  what its spin makes of a place, m from the grid's lower corner.
-    fn spun(&self, case: &Case, x: [f64; 2]) -> Vector<2> {
-        let Some((rate, about)) = self.spin else { return Vector::<2>::zeros() };
+    fn spun<const D: usize>(&self, case: &Case, x: [f64; 2]) -> Vector<D> {
+        let Some((rate, about)) = self.spin else { return Vector::zeros() };
         let about = case.grid.local(about);
-        Vector::<2>::new(-rate * (x[1] - about[1]), rate * (x[0] - about[0]))
+        vector([-rate * (x[1] - about[1]), rate * (x[0] - about[0])])
     }
 
     /// kg/m3  at a place, m from the grid's lower corner.
@@ -203,14 +210,16 @@ impl Body {
         case.density_at(self, [lower[0] + x[0], lower[1] + x[1]])
     }
 
-    fn seed(&self, case: &Case, id: u64, place: CellPlace) -> Seed<2> {
+    fn seed<K: Kinematics<D>, const D: usize>(&self, case: &Case, id: u64, place: CellPlace) -> Seed<D> {
+        let x = vector(place.x);
+        let volume = place.area * K::weight(&x);
         Seed {
             id,
             material: self.material as u16,
-            x: place.x.into(),
-            volume: place.area,
-            mass: self.density(case, place.x) * place.area,
-            v: self.velocity.map_or(Vector::<2>::zeros(), Vector::from) + self.spun(case, place.x),
+            x,
+            volume,
+            mass: self.density(case, place.x) * volume,
+            v: self.velocity.map_or(Vector::zeros(), vector) + self.spun(case, place.x),
         }
     }
 }

@@ -1,13 +1,16 @@
 //! Strips, rigid bodies and loads of a case as the physics wants them, and the footing's gauges.
 
-use crate::{Acting, Base, Case, DrainSite, Face, Footing, LoadedLine, Prescribed, Push, Rigid, RigidShape, Site};
+use crate::model::vector;
+use crate::{
+    Acting, Base, Case, DrainSite, Face, Footing, Geometry, LoadedLine, Prescribed, Push, Rigid, RigidShape, Site,
+};
 use bsmpm::boundary::rigid::Outline;
 use bsmpm::boundary::{Load, Path, RigidBody, Strip, StripContact, StripReport, SurfacePoint, surface};
 use bsmpm::grid::Grid;
-use bsmpm::kinematics::PlaneStrain;
+use bsmpm::kinematics::{Axisymmetric, Kinematics};
 use bsmpm::schedule::between;
 use bsmpm::tensor::Vector;
-use bsmpm::water::flow::{Course, Drain, DrainedFace, Given, Inflow};
+use bsmpm::water::flow::{Course, Drain, DrainedFace, Given, Inflow, Permeability, Soil};
 
 /// Stiffness of the penalty over E/h of the stiffest material and the smallest cell. The traction is carried from step
 /// to step, so that all slips together stay at p/beta: measured on the footing, 1e2 to 1e5 give the same pressure.
@@ -25,27 +28,31 @@ pub fn penalty(young: f64, edge: f64) -> f64 {
 
 /// Rigid strips once the stages until the time `t` have begun: the footing first, then the prescribed motions in the
 /// order of the file.
-pub fn strips(case: &Case, grid: &Grid<2>, (penalty, t): (f64, f64)) -> Vec<Strip<2>> {
-    type Hold = (Base, Option<StripContact<2>>);
-    let strip = |[from, to]: [Vector<2>; 2], path: &crate::MotionPath, (base, contact): Hold| Strip {
-        points: surface::along::<PlaneStrain>(grid, &from, &to, HELD),
+pub fn strips<K: Kinematics<D>, const D: usize>(
+    case: &Case,
+    grid: &Grid<D>,
+    (penalty, t): (f64, f64),
+) -> Vec<Strip<D>> {
+    type Hold<const D: usize> = (Base, Option<StripContact<D>>);
+    let strip = |[from, to]: [Vector<D>; 2], path: &crate::MotionPath, (base, contact): Hold<D>| Strip {
+        points: surface::along::<K, D>(grid, &from, &to, HELD),
         normal: (base == Base::Smooth && contact.is_none()).then(|| normal(&from, &to)),
         contact,
-        path: Path { rows: path.rows.iter().map(|(time, moved)| (*time, Vector::from(*moved))).collect() },
+        path: Path { rows: path.rows.iter().map(|(time, moved)| (*time, vector(*moved))).collect() },
         penalty: if contact.is_some() { RUBBING * penalty } else { penalty },
     };
     let divided = case.divided_at(t);
     let rubs = |contact: Option<StripContact<2>>| {
-        contact.map(|mut contact| {
-            contact.law.friction /= divided;
-            contact
+        contact.map(|StripContact { mut law, inward }| {
+            law.friction /= divided;
+            StripContact { law, inward: vector(inward.into()) }
         })
     };
     let footing = case.footing.iter();
     let footing = footing.map(|of| strip(base(case, of), &of.path, (of.base, rubs(of.contact))));
     let prescribed = case.prescribed.iter().map(|of| strip(ends(case, of), &of.path, (of.base, rubs(of.contact))));
     let acts = |number: usize| case.acts_since(Acting::Strip(number), t).is_some();
-    let held = |(number, strip): (usize, Strip<2>)| if acts(number) { strip } else { Strip { penalty: 0.0, ..strip } };
+    let held = |(number, strip): (usize, Strip<D>)| if acts(number) { strip } else { Strip { penalty: 0.0, ..strip } };
     footing.chain(prescribed).enumerate().map(held).collect()
 }
 
@@ -64,22 +71,24 @@ pub fn name_of_strip(case: &Case, strip: usize) -> String {
 }
 
 /// Tractions, then point loads, once the stages until the time `t` have begun.
-pub fn loads(case: &Case, grid: &Grid<2>, t: f64) -> Vec<Load<2>> {
-    let place = |at: [f64; 2]| Vector::from(case.grid.local(at));
+pub fn loads<K: Kinematics<D>, const D: usize>(case: &Case, grid: &Grid<D>, t: f64) -> Vec<Load<D>> {
+    let place = |at: [f64; 2]| vector(case.grid.local(at));
     let across = case.bodies.iter().map(|body| body.points_per_cell).max().unwrap_or(1);
     let tractions = case.tractions.iter().map(|traction| {
         let (points, left): (Vec<_>, Vec<_>) = match traction.line {
             LoadedLine::Segment { from, to } => {
                 let (from, to) = (place(from), place(to));
-                let points = surface::along::<PlaneStrain>(grid, &from, &to, across);
+                let points = surface::along::<K, D>(grid, &from, &to, across);
                 points.into_iter().map(|point| (point, normal(&from, &to))).unzip()
             }
-            LoadedLine::Circle { center, radius } => around(grid, &place(center), radius, across).into_iter().unzip(),
+            LoadedLine::Circle { center, radius } => {
+                around::<K, D>(grid, &place(center), radius, across).into_iter().unzip()
+            }
         };
-        let height = |point: &SurfacePoint<2>| point.x[1] + case.grid.lower()[1];
+        let height = |point: &SurfacePoint<D>| point.x[1] + case.grid.lower()[1];
         let (values, follows) = match traction.push {
             Push::Stress(stress) => {
-                let pushed = points.iter().map(|point| stress.map(|along| along.at(height(point))).into());
+                let pushed = points.iter().map(|point| vector(stress.map(|along| along.at(height(point)))));
                 (pushed.collect(), false)
             }
             Push::Pressure { profile, side } => {
@@ -91,9 +100,13 @@ pub fn loads(case: &Case, grid: &Grid<2>, t: f64) -> Vec<Load<2>> {
     });
     let forces = case.point_loads.iter().map(|load| Load {
         amplitude: load.amplitude.clone(),
-        ..Load::dead(vec![SurfacePoint { x: place(load.at), area: 1.0 }], load.force.into(), load.ramp)
+        ..Load::dead(
+            vec![SurfacePoint { x: place(load.at), area: 1.0 / case.geometry.whole() }],
+            vector(load.force),
+            load.ramp,
+        )
     });
-    let switched = |(number, load): (usize, Load<2>)| match case.acts_since(Acting::Load(number), t) {
+    let switched = |(number, load): (usize, Load<D>)| match case.acts_since(Acting::Load(number), t) {
         None => Load { amplitude: vec![(0.0, 0.0)], ..load },
         Some(since) if since > 0.0 => Load { amplitude: course(&load, since), ..load },
         Some(_) => load,
@@ -102,21 +115,27 @@ pub fn loads(case: &Case, grid: &Grid<2>, t: f64) -> Vec<Load<2>> {
 }
 
 /// The course of a load that begins at the time `since`, where nothing of it acts yet.
-fn course(load: &Load<2>, since: f64) -> Vec<(f64, f64)> {
+fn course<const D: usize>(load: &Load<D>, since: f64) -> Vec<(f64, f64)> {
     let ramp = [(load.ramp, 1.0)];
     let rows = if load.amplitude.is_empty() { &ramp[..] } else { &load.amplitude };
     std::iter::once((since, 0.0)).chain(rows.iter().map(|(t, share)| (since + t, *share))).collect()
 }
 
 /// Points of a circle inside the grid with unit vectors towards its centre, `count` and more in a cell.
-fn around(grid: &Grid<2>, center: &Vector<2>, radius: f64, count: usize) -> Vec<(SurfacePoint<2>, Vector<2>)> {
+fn around<K: Kinematics<D>, const D: usize>(
+    grid: &Grid<D>,
+    center: &Vector<D>,
+    radius: f64,
+    count: usize,
+) -> Vec<(SurfacePoint<D>, Vector<D>)> {
     let length = std::f64::consts::TAU * radius;
     // In fours, so that a circle has the grid's symmetries.
     let pieces = 4 * (length / grid.smallest_edge() * count as f64 / 4.0).ceil() as usize;
     let point = |k: usize| {
         let (sin, cos) = ((k as f64 + 0.5) * std::f64::consts::TAU / pieces as f64).sin_cos();
-        let outward = Vector::<2>::new(cos, sin);
-        (SurfacePoint { x: center + outward * radius, area: length / pieces as f64 }, -outward)
+        let outward = vector([cos, sin]);
+        let x = center + outward * radius;
+        (SurfacePoint { x, area: length / pieces as f64 * K::weight(&x) }, -outward)
     };
     (0..pieces).map(point).filter(|(point, _)| grid.locate(&point.x).is_some()).collect()
 }
@@ -153,13 +172,13 @@ pub fn name_of_drain(case: &Case, surface: usize) -> String {
 }
 
 /// What flow is to the soils and to surfaces, if water flows.
-pub fn flow(case: &Case, grid: &Grid<2>) -> Option<bsmpm::water::flow::Flow<2>> {
+pub fn flow<K: Kinematics<D>, const D: usize>(case: &Case, grid: &Grid<D>) -> Option<bsmpm::water::flow::Flow<D>> {
     let flow = case.flow.as_ref()?;
     let across = case.bodies.iter().map(|body| body.points_per_cell).max().unwrap_or(1);
-    let surface = |lines: &[[[f64; 2]; 2]]| -> (Vec<SurfacePoint<2>>, Vec<Vector<2>>) {
+    let surface = |lines: &[[[f64; 2]; 2]]| -> (Vec<SurfacePoint<D>>, Vec<Vector<D>>) {
         let of = |line: &[[f64; 2]; 2]| {
-            let [from, to] = line.map(|at| Vector::from(case.grid.local(at)));
-            let points = surface::along::<PlaneStrain>(grid, &from, &to, across);
+            let [from, to] = line.map(|at| vector(case.grid.local(at)));
+            let points = surface::along::<K, D>(grid, &from, &to, across);
             points.into_iter().map(move |point| (point, normal(&from, &to)))
         };
         lines.iter().flat_map(of).unzip()
@@ -175,7 +194,7 @@ pub fn flow(case: &Case, grid: &Grid<2>) -> Option<bsmpm::water::flow::Flow<2>> 
             DrainSite::Face(_) => return None,
             DrainSite::Lines(lines) => surface(lines),
             DrainSite::Circle { center, radius } => {
-                around(grid, &case.grid.local(*center).into(), *radius, across).into_iter().unzip()
+                around::<K, D>(grid, &vector(case.grid.local(*center)), *radius, across).into_iter().unzip()
             }
         };
         Some(Drain { points, normals, given: given(&drain.given) })
@@ -190,12 +209,21 @@ pub fn flow(case: &Case, grid: &Grid<2>) -> Option<bsmpm::water::flow::Flow<2>> 
     };
     Some(bsmpm::water::flow::Flow {
         bulk: flow.bulk,
-        soils: flow.soils.clone(),
+        soils: flow.soils.iter().map(|soil| soil.as_ref().map(of_ground)).collect(),
         drains: flow.drains.iter().filter_map(drain).collect(),
         faces: flow.drains.iter().filter_map(face).collect(),
         inflows: flow.inflows.iter().map(inflow).collect(),
         suction: flow.suction,
     })
+}
+
+/// A soil in the dimension of the geometry.
+fn of_ground<const D: usize>(soil: &Soil<2>) -> Soil<D> {
+    let along = |permeability: &Permeability<2>| Permeability {
+        along: vector(permeability.along.into()),
+        law: permeability.law,
+    };
+    Soil { porosity: soil.porosity, permeability: soil.permeability.as_ref().map(along), retention: soil.retention }
 }
 
 /// Rigid bodies in the order of the file, once the stages until the time `t` have begun.
@@ -247,35 +275,35 @@ pub(crate) fn rigid_body(rigid: &Rigid, lower: [f64; 2]) -> RigidBody {
 }
 
 /// Ends of the footing's base, m from the grid's lower corner.
-fn base(case: &Case, footing: &Footing) -> [Vector<2>; 2] {
-    [footing.from, footing.to].map(|at| case.grid.local(at).into())
+fn base<const D: usize>(case: &Case, footing: &Footing) -> [Vector<D>; 2] {
+    [footing.from, footing.to].map(|at| vector(case.grid.local(at)))
 }
 
 /// Ends of what is held, m from the grid's lower corner; a face is where the knots end.
-fn ends(case: &Case, prescribed: &Prescribed) -> [Vector<2>; 2] {
+fn ends<const D: usize>(case: &Case, prescribed: &Prescribed) -> [Vector<D>; 2] {
     match prescribed.site {
-        Site::Segment { from, to } => [from, to].map(|at| case.grid.local(at).into()),
+        Site::Segment { from, to } => [from, to].map(|at| vector(case.grid.local(at))),
         Site::Face(face) => {
             let upper = [0, 1].map(|axis| case.grid.axes[axis].length());
             let (mut from, mut to) = ([0.0; 2], upper);
             let at = if face.upper { upper[face.axis] } else { 0.0 };
             (from[face.axis], to[face.axis]) = (at, at);
-            [from.into(), to.into()]
+            [vector(from), vector(to)]
         }
     }
 }
 
 /// Unit normal of a segment.
-fn normal(from: &Vector<2>, to: &Vector<2>) -> Vector<2> {
+fn normal<const D: usize>(from: &Vector<D>, to: &Vector<D>) -> Vector<D> {
     let along = (to - from).normalize();
-    Vector::<2>::new(-along[1], along[0])
+    vector([-along[1], along[0]])
 }
 
 /// What the footing's histories need.
 #[derive(Clone, Debug)]
 pub struct Gauge {
     path: Path<2>,
-    length: f64,
+    area: f64,           // m per metre of thickness, or m2 per radian
     pressing: Vector<2>, // unit normal of the base, towards the material
     moving: Vector<2>,   // unit direction of the whole motion
 }
@@ -285,7 +313,7 @@ impl Gauge {
     pub fn of(case: &Case) -> Option<Self> {
         let footing = case.footing.as_ref()?;
         let rows = footing.path.rows.iter().map(|(time, moved)| (*time, Vector::from(*moved))).collect();
-        let [from, to] = base(case, footing);
+        let [from, to]: [Vector<2>; 2] = base(case, footing);
         let down = Vector::<2>::new(0.0, -1.0);
         let path = Path { rows };
         let whole = path.at(case.analysis.end);
@@ -293,15 +321,20 @@ impl Gauge {
         let normal = normal(&from, &to);
         // A base that only slides along itself presses downwards.
         let side = if normal.dot(&moving).abs() > 1e-9 { normal.dot(&moving) } else { normal.dot(&down) };
-        Some(Self { length: (to - from).norm(), pressing: normal * side.signum(), moving, path })
+        let area = (to - from).norm()
+            * match case.geometry {
+                Geometry::PlaneStrain => 1.0,
+                Geometry::Axisymmetric => Axisymmetric::weight(&((from + to) * 0.5)),
+            };
+        Some(Self { area, pressing: normal * side.signum(), moving, path })
     }
 
     /// Mean normal pressure on the base, Pa, compression positive.
     pub fn pressure(&self, report: &StripReport) -> f64 {
-        Vector::<2>::from_column_slice(&report.force).dot(&self.pressing) / self.length
+        Vector::<2>::from_column_slice(&report.force).dot(&self.pressing) / self.area
     }
 
-    /// Force of the soil against the motion, N/m.
+    /// Force of the soil against the motion, N per metre of thickness or per radian.
     pub fn force(&self, report: &StripReport) -> f64 {
         Vector::<2>::from_column_slice(&report.force).dot(&self.moving)
     }

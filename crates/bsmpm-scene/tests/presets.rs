@@ -1,5 +1,6 @@
 //! `accuracy`: what it fills in, from which parts of a scene, and that everything given by hand wins.
 
+use bsmpm::kinematics::PlaneStrain;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm_scene::{Case, Error, GridAxis, Place, differences, seed};
 
@@ -249,7 +250,7 @@ fn cells_are_small_around_a_strip_and_on_its_way_and_grow_away_from_it() {
         assert!(zone.reason.contains("the width of footing, 2 m, 1 m cut at a roller"), "{}", zone.reason);
         assert!(rest.value.starts_with("up to ") && rest.value.ends_with(" elsewhere"), "{}", rest.value);
         // Points fill the ground, whose volume does not depend on the cells; the estimate counts them.
-        let seeds: Vec<f64> = seed(&case, 0..x.cells()).map(|seed| seed.volume).collect();
+        let seeds: Vec<f64> = seed::<PlaneStrain, 2>(&case, 0..x.cells()).map(|seed| seed.volume).collect();
         assert_eq!(case.estimate().points, seeds.len() as u64);
         assert!((seeds.iter().sum::<f64>() - 100.0).abs() < 1e-9);
     }

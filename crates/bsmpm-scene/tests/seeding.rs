@@ -1,5 +1,6 @@
 //! Points of bodies: areas add up, ids are unique, and a range of columns gives the same points as the whole.
 
+use bsmpm::kinematics::PlaneStrain;
 use bsmpm_scene::{Body, Case, Seed, seed};
 use std::collections::HashSet;
 
@@ -20,7 +21,7 @@ fn case(grid: &str, boxes: &[[f64; 4]], n: usize) -> Case {
 /// Everything that must hold of any case's points.
 fn verify(case: &Case) -> Vec<Seed<2>> {
     let columns = case.grid.axes[0].cells();
-    let seeds: Vec<Seed<2>> = seed(case, 0..columns).collect();
+    let seeds: Vec<Seed<2>> = seed::<PlaneStrain, 2>(case, 0..columns).collect();
     assert_eq!(seeds.len() as u64, case.points());
     let mut ids: Vec<u64> = seeds.iter().map(|seed| seed.id).collect();
     assert_eq!(ids.iter().collect::<HashSet<_>>().len(), seeds.len());
@@ -36,7 +37,8 @@ fn verify(case: &Case) -> Vec<Seed<2>> {
             case.bodies.iter().map(Body::bounds).any(|[low, high]| (0..2).all(|i| low[i] < x[i] && x[i] < high[i]));
         assert!(inside && seed.volume > 0.0 && (seed.mass / seed.volume / 2000.0 - 1.0).abs() < 1e-14, "{seed:?}");
     }
-    let mut parts: Vec<Seed<2>> = (0..columns).flat_map(|column| seed(case, column..column + 1)).collect();
+    let mut parts: Vec<Seed<2>> =
+        (0..columns).flat_map(|column| seed::<PlaneStrain, 2>(case, column..column + 1)).collect();
     parts.sort_by_key(|seed| seed.id);
     let mut whole = seeds.clone();
     whole.sort_by_key(|seed| seed.id);
@@ -94,6 +96,6 @@ fn breakpoints_that_round() {
 #[test]
 fn a_column_range_without_bodies_is_empty() {
     let case = case("lower = [0, 0]\nupper = [4, 1]\ncell = 1", &[[0.0, 0.0, 1.0, 1.0]], 2);
-    assert_eq!(seed(&case, 2..4).count(), 0);
-    assert_eq!(seed(&case, 0..0).count(), 0);
+    assert_eq!(seed::<PlaneStrain, 2>(&case, 2..4).count(), 0);
+    assert_eq!(seed::<PlaneStrain, 2>(&case, 0..0).count(), 0);
 }

@@ -1,5 +1,6 @@
 //! Polygons, circles and what is cut out of them: areas add up, points lie inside, and none depends on the columns.
 
+use bsmpm::kinematics::PlaneStrain;
 use bsmpm_scene::{Body, Case, Error, Region, Seed, seed};
 use std::collections::HashSet;
 
@@ -26,7 +27,7 @@ const GRADED: &str = "knots.x = [0, 0.1, 0.25, 0.5, 1, 2, 5, 9, 9.5, 40]\nknots.
 /// Everything that must hold of any case's points; the seeds, with positions in the case's coordinates.
 fn verify(case: &Case, tolerance: f64) -> Vec<Seed<2>> {
     let columns = case.grid.axes[0].cells();
-    let mut seeds: Vec<Seed<2>> = seed(case, 0..columns).collect();
+    let mut seeds: Vec<Seed<2>> = seed::<PlaneStrain, 2>(case, 0..columns).collect();
     assert_eq!(seeds.len() as u64, case.points());
     assert_eq!(case.points_by_column().iter().sum::<u64>(), case.points());
     let ids: HashSet<u64> = seeds.iter().map(|seed| seed.id).collect();
@@ -36,7 +37,7 @@ fn verify(case: &Case, tolerance: f64) -> Vec<Seed<2>> {
     assert!((sum / area - 1.0).abs() < tolerance, "{sum} {area}");
     let mut parts = Vec::new();
     for (column, count) in case.points_by_column().into_iter().enumerate() {
-        let part: Vec<Seed<2>> = seed(case, column..column + 1).collect();
+        let part: Vec<Seed<2>> = seed::<PlaneStrain, 2>(case, column..column + 1).collect();
         assert_eq!(part.len() as u64, count, "column {column}");
         parts.extend(part);
     }

@@ -208,7 +208,20 @@ macro_rules! laws {
                 if !self.is_in_lanes() {
                     return None;
                 }
-                let spectrum = Spectrum::planar(b_trial)?;
+                self.stress_of(&Spectrum::planar(b_trial)?, state)
+            }
+
+            /// The same by all components; `None` also where XZ and YZ of one are none.
+            #[inline(always)]
+            pub fn stress_in_space<R: Real>(&self, b_trial: [R; 6], state: &[R]) -> Option<Symmetric<R>> {
+                if !self.is_in_lanes() {
+                    return None;
+                }
+                self.stress_of(&Spectrum::general(b_trial)?, state)
+            }
+
+            #[inline(always)]
+            fn stress_of<R: Real>(&self, spectrum: &Spectrum<R>, state: &[R]) -> Option<Symmetric<R>> {
                 let tau = match self {
                     $(Self::$Law(law) if <$module::$Law as Law>::IN_LANES => law.project(law.stress(spectrum.eps), state).tau,)*
                     _ => return None,

@@ -77,7 +77,7 @@ fn measure(
     rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build_global()?;
     let text = bsmpm_scene::load(Path::new(case))?;
     let case = Case::from_bytes(case, &text, set).map_err(|errors| format!("{errors:?}"))?;
-    let mut model = bsmpm_scene::model::model(&case)?;
+    let mut model = bsmpm_scene::model::model::<PlaneStrain, 2>(&case)?;
     let (points, guess, time) = state(universe, Path::new(path), &mut model)?;
     let columns = model.grid.columns();
     let slabs = Slabs::new(vec![columns.start, columns.end], 1, columns).ok_or("no columns")?;

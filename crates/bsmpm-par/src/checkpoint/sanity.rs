@@ -19,11 +19,11 @@ const WORD: u64 = u64::BITS as u64;
 ///
 /// # Errors
 /// The same on all ranks (76): what is wrong with which point.
-pub fn require(
+pub fn require<const D: usize>(
     world: &SimpleCommunicator,
     file: &Path,
-    points: &mut Points<2>,
-    grid: &Grid<2>,
+    points: &mut Points<D>,
+    grid: &Grid<D>,
     (materials, present, left): (usize, Option<&[Range<u64>]>, u64),
 ) -> Result<(), Refusal> {
     let refused =
@@ -34,7 +34,7 @@ pub fn require(
     agree(world, once(world, &points.id, (present, left)).map_err(refused))
 }
 
-fn finite(points: &mut Points<2>) -> Result<(), String> {
+fn finite<const D: usize>(points: &mut Points<D>) -> Result<(), String> {
     let real = |column: &dyn Column| column.number() == Number::F64;
     let found = points.named_columns().into_iter().filter(|(_, column)| real(&**column)).find_map(|(name, column)| {
         let (p, value) = infinite(&*column)?;
@@ -44,7 +44,7 @@ fn finite(points: &mut Points<2>) -> Result<(), String> {
     found.map_or(Ok(()), |found| Err(told(found)))
 }
 
-fn possible(points: &Points<2>, grid: &Grid<2>, materials: usize) -> Result<(), String> {
+fn possible<const D: usize>(points: &Points<D>, grid: &Grid<D>, materials: usize) -> Result<(), String> {
     for p in 0..points.len() {
         let wrong = if usize::from(points.material[p]) >= materials {
             "its material is none of the case"

@@ -20,6 +20,9 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use std::path::Path;
 
+/// Components of a vector.
+pub type Row = Vec<f64>;
+
 /// The state of a run between two steps, besides the arrays; the same on all ranks.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -31,20 +34,20 @@ pub struct CheckpointState {
     /// The room, cells from and to along each axis; none of a run by a version that kept the whole grid, which then
     /// stays.
     #[serde(default)]
-    pub room: Option<[[usize; 2]; 2]>,
+    pub room: Option<Vec<[usize; 2]>>,
     /// Repeated breakpoints along each axis, with how often they stand; none of a run by a version that had none.
     #[serde(default)]
-    pub lines: [Vec<[usize; 2]>; 2],
+    pub lines: Vec<Vec<[usize; 2]>>,
     /// The step control.
     #[serde(with = "ProgressForm")]
     pub progress: Progress,
     /// Pa  traction of every strip at its points.
-    pub traction: Vec<Vec<[f64; 2]>>,
+    pub traction: Vec<Vec<Row>>,
     /// m  position of every load's points.
-    pub position: Vec<Vec<[f64; 2]>>,
+    pub position: Vec<Vec<Row>>,
     /// Pa  traction of loads that follow the surface, and its rate, Pa per s; none of a run by a version that had none.
     #[serde(default, skip_serializing_if = "follow_nothing")]
-    pub pressure: [Vec<Vec<[f64; 2]>>; 2],
+    pub pressure: [Vec<Vec<Row>>; 2],
     /// Ids of the points that the points of strips, and those of loads, are anchored to; none of a run by a version
     /// that had none, or before the first step.
     #[serde(default)]
@@ -57,7 +60,7 @@ pub struct CheckpointState {
     pub crossed: CrossedState,
     /// N  of every node of every absorbing face what holds the state of the start; none of a run without any.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub held: Vec<Vec<[f64; 2]>>,
+    pub held: Vec<Vec<Row>>,
     /// The columns of the free field; none of a run without any, or before the first step.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub free_field: Vec<FreeFieldState>,
@@ -123,7 +126,7 @@ pub struct RecordState {
     pub work: Vec<f64>,
     /// m  displacement of every history when displacements were last set to zero; empty if they never were.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub datum: Vec<[f64; 2]>,
+    pub datum: Vec<Row>,
 }
 
 /// What has left the grid since the start.
@@ -189,44 +192,44 @@ impl CheckpointState {
 
     /// The repeated breakpoints of the run's grid; `None` if they are not of a grid like this one.
     pub fn lines(&self, grid: &GridSpec) -> Option<[Vec<Line>; 2]> {
+        let of = |axis: usize| self.lines.get(axis).map_or(&[][..], Vec::as_slice);
         let fits = |axis: usize| {
             let inner = 1..grid.axes[axis].cells();
             let sound = |line: &[usize; 2]| inner.contains(&line[0]) && (2..=grid.order).contains(&line[1]);
-            self.lines[axis].iter().all(sound) && self.lines[axis].is_sorted_by(|a, b| a[0] < b[0])
+            of(axis).iter().all(sound) && of(axis).is_sorted_by(|a, b| a[0] < b[0])
         };
         let line = |&[breakpoint, multiplicity]: &[usize; 2]| Line { breakpoint, multiplicity };
-        (fits(0) && fits(1)).then(|| self.lines.each_ref().map(|lines| lines.iter().map(line).collect()))
+        let all = std::array::from_fn(|axis| of(axis).iter().map(line).collect());
+        (self.lines.len() <= all.len() && (0..all.len()).all(fits)).then_some(all)
     }
 
     /// The grid with the room that the run had; `None` if it is no part of that grid.
-    pub fn within(&self, grid: &Grid<2>) -> Option<Grid<2>> {
-        let Some(room) = self.room else { return Some(grid.clone()) };
+    pub fn within<const D: usize>(&self, grid: &Grid<D>) -> Option<Grid<D>> {
+        let Some(room) = &self.room else { return Some(grid.clone()) };
+        let room: [[usize; 2]; D] = room.as_slice().try_into().ok()?;
         let fits = |axis: usize| room[axis][0] < room[axis][1] && room[axis][1] <= grid.axes()[axis].cells();
-        (fits(0) && fits(1)).then(|| grid.within(room.map(|[start, end]| start..end)))
+        (0..D).all(fits).then(|| grid.within(room.map(|[start, end]| start..end)))
     }
 
-    /// The surfaces.
-    pub fn surface(&self) -> Surface<2> {
-        let vectors = |lists: &[Vec<[f64; 2]>]| -> Vec<Vec<Vector<2>>> {
-            lists.iter().map(|list| list.iter().map(|&pair| Vector::from(pair)).collect()).collect()
-        };
+    /// The surfaces; `None` if they are of another dimension.
+    pub fn surface<const D: usize>(&self) -> Option<Surface<D>> {
         let [strips, loads] = self.anchors.clone();
         let anchors = Anchors { strips, loads, water: self.water_anchors.clone() };
         // Without any, as many empty lists as there are loads.
-        let of_loads = |lists: &[Vec<[f64; 2]>]| {
-            if lists.is_empty() { vec![Vec::new(); self.position.len()] } else { vectors(lists) }
+        let of_loads = |lists: &[Vec<Row>]| {
+            if lists.is_empty() { Some(vec![Vec::new(); self.position.len()]) } else { vectors(lists) }
         };
         let [pressure, pressure_rate] = self.pressure.each_ref().map(|lists| of_loads(lists));
-        Surface {
-            traction: vectors(&self.traction),
-            position: vectors(&self.position),
-            pressure,
-            pressure_rate,
+        Some(Surface {
+            traction: vectors(&self.traction)?,
+            position: vectors(&self.position)?,
+            pressure: pressure?,
+            pressure_rate: pressure_rate?,
             anchors,
-            held: vectors(&self.held),
+            held: vectors(&self.held)?,
             bodies: self.rigid.iter().map(rigid_state).collect(),
             crossed: self.crossed.volumes(),
-        }
+        })
     }
 }
 
@@ -243,13 +246,19 @@ pub(crate) fn rigid_numbers(state: &RigidState) -> [f64; 8] {
 }
 
 /// Whether no load follows the surface.
-fn follow_nothing(pressure: &[Vec<Vec<[f64; 2]>>; 2]) -> bool {
+fn follow_nothing(pressure: &[Vec<Vec<Row>>; 2]) -> bool {
     pressure.iter().all(Vec::is_empty)
 }
 
 /// The components of the vectors of all strips or loads.
-pub(crate) fn pairs(lists: &[Vec<Vector<2>>]) -> Vec<Vec<[f64; 2]>> {
-    lists.iter().map(|list| list.iter().map(|&vector| vector.into()).collect()).collect()
+pub(crate) fn rows<const D: usize>(lists: &[Vec<Vector<D>>]) -> Vec<Vec<Row>> {
+    lists.iter().map(|list| list.iter().map(|vector| vector.as_slice().to_vec()).collect()).collect()
+}
+
+/// The vectors again; `None` if one has another number of components.
+pub(crate) fn vectors<const D: usize>(lists: &[Vec<Row>]) -> Option<Vec<Vec<Vector<D>>>> {
+    let vector = |row: &Row| <[f64; D]>::try_from(row.as_slice()).ok().map(Vector::from);
+    lists.iter().map(|list| list.iter().map(vector).collect()).collect()
 }
 
 #[derive(Serialize, Deserialize)]

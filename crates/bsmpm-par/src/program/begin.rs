@@ -10,7 +10,7 @@ use crate::restart::{self, Resumed, RunStart};
 use crate::run::{Before, Run, Task};
 use crate::setup::Cut;
 use crate::space;
-use bsmpm::kinematics::PlaneStrain;
+use bsmpm::kinematics::{Axisymmetric, Kinematics, PlaneStrain};
 use bsmpm_io::directory::OutputDirectory;
 use bsmpm_io::exit;
 use bsmpm_io::lock::Unseen;
@@ -19,6 +19,7 @@ use bsmpm_ranks::linear::Choice;
 use bsmpm_ranks::signals::Requests;
 use bsmpm_ranks::simulation::Simulation;
 use bsmpm_ranks::timers::Timers;
+use bsmpm_scene::Geometry;
 use bsmpm_scene::model::{model_at, points, schedule};
 use hdf5_collective::Hdf5;
 use mpi::environment::Universe;
@@ -27,8 +28,22 @@ use petsc_rs::Petsc;
 use std::path::Path;
 use std::rc::Rc;
 
-/// Runs the task with the libraries that have started; `Err` holds the exit code, and rank 0 has said why.
+/// Runs the task, whatever its geometry, with the libraries that have started; `Err` holds the exit code, and rank 0
+/// has said why.
 pub(super) fn run(
+    libraries: (&Universe, &Hdf5<'_>),
+    solver: (&Petsc<'_>, Choice),
+    task: Task,
+    cut: Cut,
+    requests: Rc<Requests>,
+) -> Result<u8, u8> {
+    match task.case.geometry {
+        Geometry::PlaneStrain => run_in::<PlaneStrain, 2>(libraries, solver, task, cut, requests),
+        Geometry::Axisymmetric => run_in::<Axisymmetric, 2>(libraries, solver, task, cut, requests),
+    }
+}
+
+fn run_in<K: Kinematics<D>, const D: usize>(
     (universe, hdf5): (&Universe, &Hdf5<'_>),
     (petsc, choice): (&Petsc<'_>, Choice),
     mut task: Task,
@@ -48,7 +63,7 @@ pub(super) fn run(
     }
     let timers = Rc::new(Timers::default());
     let seam = (universe, petsc, choice);
-    let mut scene = scene(seam, case, cut, &start, (Rc::clone(&timers), requests)).map_err(refused)?;
+    let mut scene = scene::<K, D>(seam, case, cut, &start, (Rc::clone(&timers), requests)).map_err(refused)?;
     let told = space::admit(&universe.world(), held.as_ref(), (arguments, case), &mut scene.0).map_err(refused)?;
     start.warn(told);
     let before = before(&start, &arguments.directory());
@@ -69,19 +84,19 @@ fn hold(universe: &Universe, arguments: &Arguments) -> Result<Option<OutputDirec
     agree(&world, held.transpose().map_err(Refusal::from))
 }
 
-type Scene<'p> = (Simulation<'p, PlaneStrain, 2>, Recorder);
+type Scene<'p, K, const D: usize> = (Simulation<'p, K, D>, Recorder<D>);
 
 /// The points, on the ranks of their slabs, and what is recorded of them. Collective.
-fn scene<'p>(
+fn scene<'p, K: Kinematics<D>, const D: usize>(
     seam: (&'p Universe, &'p Petsc<'p>, Choice),
     case: &bsmpm_scene::Case,
     (room, slabs): Cut,
     start: &RunStart<'_>,
     shared: (Rc<Timers>, Rc<Requests>),
-) -> Result<Scene<'p>, Refusal> {
+) -> Result<Scene<'p, K, D>, Refusal> {
     let universe = seam.0;
     let at = if let RunStart::Resumed(resumed) = start { resumed.state.progress.t } else { 0.0 };
-    let mut model = model_at(case, at).map_err(|error| Refusal::new(exit::CASE, error.to_string()))?;
+    let mut model = model_at::<K, D>(case, at).map_err(|error| Refusal::new(exit::CASE, error.to_string()))?;
     let schedule = schedule(case);
     if let RunStart::Resumed(resumed) = start {
         let (slabs, points, stepper) = resumed.read(universe, case, &mut model, &schedule)?;
@@ -92,8 +107,8 @@ fn scene<'p>(
         let foreign = || Refusal::new(exit::CHECKPOINT, "the checkpoint is of a run with other histories");
         return Ok((simulation, recorder.ok_or_else(foreign)?));
     }
-    model.grid = model.grid.within(room);
-    let points = points(case, slabs.columns(universe.world().rank().unsigned_abs() as usize));
+    model.grid = model.grid.within(std::array::from_fn(|axis| room[axis].clone()));
+    let points = points::<K, D>(case, slabs.columns(universe.world().rank().unsigned_abs() as usize));
     let simulation = Simulation::new(seam, model, (slabs, points), schedule, shared);
     let recorder = Recorder::new(case, &simulation.points, &*simulation.halo);
     Ok((simulation, recorder))

@@ -4,6 +4,7 @@ use super::Run;
 use crate::indicators::{self, IndicatorState};
 use crate::launch;
 use crate::machine;
+use bsmpm::kinematics::Kinematics;
 use bsmpm::parallel::Halo;
 use bsmpm_io::exit;
 use bsmpm_io::manifest::{Communication, SolverNames, Status};
@@ -15,7 +16,7 @@ use mpi::topology::Communicator;
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
-impl Run<'_> {
+impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
     /// Ends the run at the last converged state; the work of a step that was given up counts for nothing.
     pub(super) fn stop_on_request(self) -> u8 {
         self.log.line("stop", "stopped by a signal; the last converged state is saved");

@@ -3,12 +3,13 @@
 use super::{Run, diagnosis};
 use bsmpm::control::Failure;
 use bsmpm::error::StepError;
+use bsmpm::kinematics::Kinematics;
 use bsmpm::step::Counts;
 use bsmpm_io::exit;
 use bsmpm_io::manifest::Status;
 use bsmpm_ranks::launch;
 
-impl Run<'_> {
+impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
     /// Ends the run after a step that failed.
     pub(super) fn fail(mut self, failure: &Failure) -> u8 {
         let told = match failure.attempts.last() {

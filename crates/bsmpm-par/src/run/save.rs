@@ -1,8 +1,9 @@
 //! Checkpoints and frames of the last converged state: when they are due, and what is in them.
 
 use super::Run;
-use crate::checkpoint::{self, CheckpointState, Contents, CrossedState, FreeFieldState, Refusal, pairs, rigid_numbers};
+use crate::checkpoint::{self, CheckpointState, Contents, CrossedState, FreeFieldState, Refusal, rigid_numbers, rows};
 use crate::launch;
+use bsmpm::kinematics::Kinematics;
 use bsmpm::parallel::Halo;
 use bsmpm_io::checkpoint::{Facts, FoundCheckpoint, Phase};
 use mpi::topology::Communicator;
@@ -49,7 +50,7 @@ pub struct Due {
     pub reject: bool,
 }
 
-impl Run<'_> {
+impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
     /// What is due, if a step may take as long as the `slowest` (s) so far and half as long again.
     pub(super) fn due(&self, slowest: f64) -> Due {
         let (steps, wanted) = (self.simulation.steps(), &self.case.output.checkpoint);
@@ -141,20 +142,21 @@ impl Run<'_> {
                 .case
                 .grid
                 .lines
-                .each_ref()
-                .map(|lines| lines.iter().map(|line| [line.breakpoint, line.multiplicity]).collect()),
-            room: Some(simulation.model.grid.room().clone().map(|range| [range.start, range.end])),
+                .iter()
+                .map(|lines| lines.iter().map(|line| [line.breakpoint, line.multiplicity]).collect())
+                .collect(),
+            room: Some(simulation.model.grid.room().iter().map(|range| [range.start, range.end]).collect()),
             progress: simulation.progress(),
-            traction: pairs(&surface.traction),
+            traction: rows(&surface.traction),
             anchors: [surface.anchors.strips.clone(), surface.anchors.loads.clone()],
             water_anchors: surface.anchors.water.clone(),
             crossed: CrossedState::of(&surface.crossed),
-            position: pairs(&surface.position),
-            held: pairs(&surface.held),
+            position: rows(&surface.position),
+            held: rows(&surface.held),
             free_field: simulation.points.free_field.iter().map(FreeFieldState::of).collect(),
             rigid: surface.bodies.iter().map(rigid_numbers).collect(),
             pressure: [&surface.pressure, &surface.pressure_rate]
-                .map(|lists| if lists.iter().all(Vec::is_empty) { Vec::new() } else { pairs(lists) }),
+                .map(|lists| if lists.iter().all(Vec::is_empty) { Vec::new() } else { rows(lists) }),
             record: self.recorder.state(),
             told_strips: self.told_strips.clone(),
             told_rigid: self.told_rigid.clone(),

@@ -5,13 +5,14 @@ use super::Run;
 use crate::launch;
 use bsmpm::energy::Stored;
 use bsmpm::error::StepError;
+use bsmpm::kinematics::Kinematics;
 use bsmpm_io::exit;
 use bsmpm_io::manifest::ManifestStage;
 use bsmpm_ranks::simulation::Simulation;
 use bsmpm_scene::words::{Side, Word};
 use bsmpm_scene::{Acting, Stage, model};
 
-impl Run<'_> {
+impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
     /// Begins the stages of the time `t`.
     pub(super) fn begin_stages(&mut self, t: f64) -> Result<(), StepError> {
         let stages: Vec<Stage> = self.case.stages_at(t).cloned().collect();
@@ -19,7 +20,7 @@ impl Run<'_> {
     }
 
     fn begin_stage(&mut self, stage: &Stage) -> Result<(), StepError> {
-        let stored = |simulation: &Simulation<'_, _, 2>| {
+        let stored = |simulation: &Simulation<'_, K, D>| {
             let Simulation { model, points, halo, .. } = simulation;
             model.balances_energy.then(|| Stored::of(model, points, &**halo))
         };
@@ -30,7 +31,8 @@ impl Run<'_> {
         if stage.exchanges() {
             self.simulation.exchange(next)?;
         }
-        let [removed, added] = self.simulation.begin_stage(taken, |columns| model::placed(&self.case, stage, columns));
+        let [removed, added] =
+            self.simulation.begin_stage(taken, |columns| model::placed::<K, D>(&self.case, stage, columns));
         if stage.resets_displacements {
             self.simulation.points.reset_displacements();
         }

@@ -5,6 +5,7 @@ use crate::machine;
 use crate::setup::{self, Start};
 use bsmpm::error::StepError;
 use bsmpm::initial::Settling;
+use bsmpm::kinematics::Kinematics;
 use bsmpm::step::StepReport;
 use bsmpm_io::manifest::{ManifestInitial, ManifestSettling};
 use bsmpm_scene::Initial;
@@ -13,7 +14,7 @@ use bsmpm_scene::Initial;
 /// .8 % in four cells of depth: the points' quadrature of linear stress.
 const UNBALANCED: f64 = 0.02;
 
-impl Run<'_> {
+impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
     /// Tells what is to be told, and gives the points their stress at the start. Fails on all ranks.
     pub(super) fn begin(&mut self) -> Result<(), StepError> {
         if let Some(ledger) = &mut self.ledger {

@@ -1,6 +1,6 @@
 //! What is recorded every step, and what is verified of it at the end.
 
-use crate::words::{Measurement, Side};
+use crate::words::{Geometry, Measurement, Side};
 
 /// A quantity that is recorded every step.
 #[derive(Clone, Debug, PartialEq)]
@@ -11,6 +11,8 @@ pub struct History {
     pub name: String,
     /// -  multiplies
     pub scale: f64,
+    /// Kind of the geometry: what extensive numbers are of.
+    pub geometry: Geometry,
     /// Whether its place is at a body that no stage places or removes: the point that it follows is one of those.
     pub lasts: bool,
 }
@@ -288,13 +290,20 @@ impl Quantity {
 }
 
 impl History {
+    /// What the physics' numbers are multiplied with.
+    pub fn factor(&self) -> f64 {
+        let measured = self.quantity.measurement();
+        let whole = self.geometry.unit(measured.unit()).map_or(1.0, |_| self.geometry.whole());
+        self.scale * whole
+    }
+
     /// Its columns in the history file.
     pub fn columns(&self) -> Vec<Column> {
         let measured = self.quantity.measurement();
         let unit = |unit: &str| if self.scale == 1.0 { unit.to_owned() } else { format!("scaled {unit}") };
         let column = |(number, (suffix, _)): (usize, &(&str, &str))| Column {
             name: format!("{}{suffix}", self.name),
-            unit: unit(measured.unit_of(number)),
+            unit: unit(self.geometry.unit(measured.unit_of(number)).unwrap_or(measured.unit_of(number))),
         };
         measured.columns().iter().enumerate().map(column).collect()
     }

@@ -90,7 +90,8 @@ fn read(
         false => quantity(measured, record, (root, grid, made), report)?,
     };
     let name = if record.gives("name") { record.text("name")? } else { measured.word() };
-    Some(History { quantity, name: name.to_owned(), scale: record.number("scale")?, lasts: false })
+    let (scale, geometry) = (record.number("scale")?, root.word("geometry")?);
+    Some(History { quantity, name: name.to_owned(), scale, geometry, lasts: false })
 }
 
 /// Number of the strip that a history is of, if the history has a meaning for it; `None` after an error.

@@ -3,7 +3,7 @@
 use super::NEARLY_INCOMPRESSIBLE;
 use super::place;
 use super::strip::{moves, normal};
-use crate::case::{Base, Body, Case, Drain, Initial, Prescribed, Site, Support};
+use crate::case::{Base, Body, Case, Drain, Geometry, Initial, Prescribed, Site, Support};
 use crate::record::Record;
 use crate::report::Report;
 use crate::words::{Side, Word};
@@ -186,6 +186,10 @@ fn holds(case: &Case, component: usize) -> bool {
         Support::Absorbing | Support::FreeField => true,
         Support::Free | Support::Outflow => false,
     };
+    // All around an axis no body goes along the radius as a whole.
+    if case.geometry == Geometry::Axisymmetric && component == 0 {
+        return true;
+    }
     let mut faces = [(0, false), (0, true), (1, false), (1, true)].into_iter();
     faces.any(|(axis, upper)| holds(axis, upper) && reached(case, axis, upper)) || held_by_strip(case, component)
 }

@@ -3,6 +3,7 @@
 
 mod written;
 
+use bsmpm::kinematics::PlaneStrain;
 use bsmpm_scene::schema::{Kind, Presence, ROOT, Table};
 use bsmpm_scene::{Case, Error, Place, seed};
 use std::collections::HashSet;
@@ -189,7 +190,7 @@ fn read(text: &str) -> Result<Case, Vec<Error>> {
     })?;
     let counted: u64 = case.points_by_column().iter().sum();
     assert!(case.estimate().points == case.points() && case.points() == counted && counted > 0);
-    for point in seed(&case, 0..case.grid.axes[0].cells()).take(20) {
+    for point in seed::<PlaneStrain, 2>(&case, 0..case.grid.axes[0].cells()).take(20) {
         assert!(point.volume > 0.0 && point.mass >= 0.0 && (point.x.norm() + point.v.norm() + point.mass).is_finite());
     }
     Ok(case)

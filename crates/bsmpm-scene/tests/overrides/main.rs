@@ -2,6 +2,7 @@
 
 mod materials;
 
+use bsmpm::kinematics::PlaneStrain;
 use bsmpm::material::{Law, Material, MohrCoulomb, Profile};
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::tensor::Vector;
@@ -449,7 +450,7 @@ fn stress_that_grows_with_depth_has_the_resultant_of_a_trapezium() {
     let traction = "traction.0={ from = [1.0, 0.25], to = [1.0, 1.25], ramp = 0.5, \
                     stress = { value = [-2e3, \"1 kPa\"], at_y = 1.25, per_metre = [\"-8 kPa/m\", 500] } }";
     let case = set(FULL, &[traction]).expect("a valid case");
-    let load = bsmpm_scene::model::model(&case).expect("a model").boundary.loads.remove(0);
+    let load = bsmpm_scene::model::model::<PlaneStrain, 2>(&case).expect("a model").boundary.loads.remove(0);
     assert!(!load.follows && load.points.len() > 1, "{}", load.points.len());
     let pieces = || load.points.iter().zip(&load.traction);
     for axis in 0..2 {
@@ -467,7 +468,9 @@ fn stress_that_grows_with_depth_has_the_resultant_of_a_trapezium() {
 fn a_body_spins_about_its_place() {
     let case = set(FULL, &["body.2.spin={ rate = 2.0, about = [\"1 m\", 2.0] }"]).expect("a valid case");
     let mut seen = 0;
-    for point in seed(&case, 0..case.grid.axes[0].cells()).filter(|point| point.material == 2 && point.x[0] >= 1.0) {
+    for point in seed::<PlaneStrain, 2>(&case, 0..case.grid.axes[0].cells())
+        .filter(|point| point.material == 2 && point.x[0] >= 1.0)
+    {
         // The block's own velocity besides; the grid begins at the origin.
         let expected = [-2.0 * (point.x[1] - 2.0), -1.0 + 2.0 * (point.x[0] - 1.0)];
         assert!((point.v - Vector::from(expected)).norm() < 1e-14, "{:?} at {:?}", point.v, point.x);

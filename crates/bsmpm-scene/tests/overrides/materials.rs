@@ -1,6 +1,7 @@
 //! What materials become: laws by their words, heights, reduced strength.
 
 use super::{FULL, STATIC, set, valid};
+use bsmpm::kinematics::PlaneStrain;
 use bsmpm::material::{Law, Match, Material, Separation};
 use bsmpm_scene::Case;
 
@@ -119,7 +120,7 @@ fn strength_that_falls_in_a_stage_takes_the_friction_of_rigid_bodies_and_strips_
     let case = valid(FULL, &[base, "stage.0.strength_reduction=2.5"]);
     // Of the start, and from .25 s on.
     let friction = |t: f64| {
-        let boundary = bsmpm_scene::model::model_at(&case, t).unwrap().boundary;
+        let boundary = bsmpm_scene::model::model_at::<PlaneStrain, 2>(&case, t).unwrap().boundary;
         [boundary.rigid[0].friction, boundary.strips[0].contact.expect("it rubs").law.friction]
     };
     let (start, later) = (friction(0.0), friction(0.3));

@@ -31,7 +31,12 @@ pub struct SurfacePoint<const D: usize> {
 /// Points in the middles of `count` equal pieces of every part of a straight segment that the grid's lines cut off;
 /// `from` and `to` in m from the grid's lower corner. With as many pieces as a cell has points across, a load is in
 /// exact balance with uniform stress: the points' quadrature is the same rule.
-pub fn along<K: Kinematics<2>>(grid: &Grid<2>, from: &Vector<2>, to: &Vector<2>, count: usize) -> Vec<SurfacePoint<2>> {
+pub fn along<K: Kinematics<D>, const D: usize>(
+    grid: &Grid<D>,
+    from: &Vector<D>,
+    to: &Vector<D>,
+    count: usize,
+) -> Vec<SurfacePoint<D>> {
     let mut cuts = vec![0.0, 1.0];
     for (axis, knots) in grid.axes().iter().enumerate() {
         let reach = to[axis] - from[axis];

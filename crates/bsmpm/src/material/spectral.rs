@@ -1,8 +1,11 @@
 //! Spectral form of b with its Hencky strains (section 2.2, Eq. 9), accurate from strains of 1e-16 to several.
 //!
-//! Jacobi rotations: one is exact when z is a principal axis (plane strain, axisymmetry), a few sweeps serve otherwise.
-//! They resolve nearly equal eigenvalues without a branch, and give them as a component of b plus a small gain; the
-//! logarithm uses both, so the digits that their sum would round away are not lost near b = I.
+//! A Jacobi rotation makes a pair of axes principal; it resolves nearly equal eigenvalues without a branch. One is exact
+//! when z is a principal axis (plane strain, axisymmetry); otherwise the axis of the most distinct eigenvalue comes
+//! first ([`solid`]). Eigenvalues are given as a number near them plus a small gain; the logarithm uses both, so the
+//! digits that their sum would round away are not lost near b = I.
+
+mod solid;
 
 use super::MaterialError;
 use crate::real::{Real, three};
@@ -14,8 +17,6 @@ const LARGEST: f64 = 1e100;
 const SMALLEST: f64 = 1e-100;
 /// Distance of an eigenvalue from 1 up to which the series of its logarithm has 17 digits in seven terms.
 const NEAR: f64 = 0.1;
-/// Sweeps of the cyclic Jacobi iteration; it converges quadratically, in 3 to 5.
-const SWEEPS: usize = 12;
 
 /// Principal values of b and of ε = ½ ln b, descending, with their orthonormal axes.
 #[derive(Clone, Copy, Debug)]
@@ -34,7 +35,7 @@ enum Axes<R> {
     /// x and y turned about z by the angle of this tangent
     Plane { tan: R },
     /// one a row
-    Solid([[R; 3]; 3]),
+    Solid(solid::Rows<R>),
 }
 
 impl Spectrum {
@@ -47,37 +48,11 @@ impl Spectrum {
             return Err(MaterialError::NotFinite(b.0));
         }
         if yz != 0.0 || xz != 0.0 {
-            return Self::solid(b);
+            let (sums, axes) = solid::solid(b.0);
+            return Self::of_sums(sums, Axes::Solid(axes));
         }
         let (sums, axes) = plane([xx, yy, zz], xy);
         Self::of_sums(sums, axes)
-    }
-
-    fn solid(b: &Symmetric) -> Result<Self, MaterialError> {
-        let [xx, yy, zz, xy, yz, xz] = b.0;
-        let start = [xx, yy, zz];
-        // off[k] couples the two axes other than k; gain is what the rotations have added to the diagonal.
-        let mut off = [yz, xz, xy];
-        let mut gain = [0.0; 3];
-        let mut axis = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-        let norm = |off: &[f64; 3]| off[0].abs() + off[1].abs() + off[2].abs();
-        let enough = 1e-18 * ((xx - yy).abs() + (yy - zz).abs() + norm(&off));
-        for _ in 0..SWEEPS {
-            if norm(&off) <= enough {
-                break;
-            }
-            for (p, q, k) in [(0, 1, 2), (1, 2, 0), (0, 2, 1)] {
-                let tan = tangent(0.5 * ((start[p] - start[q]) + (gain[p] - gain[q])), off[k]);
-                gain[p] += tan * off[k];
-                gain[q] -= tan * off[k];
-                off[k] = 0.0;
-                let turn = Turn::by(tan);
-                (off[q], off[p]) = turn.apply(off[q], off[p]);
-                let pair = [0, 1, 2].map(|i| turn.apply(axis[p][i], axis[q][i]));
-                (axis[p], axis[q]) = (pair.map(|x| x.0), pair.map(|x| x.1));
-            }
-        }
-        Self::of_sums([0, 1, 2].map(|k| (start[k], gain[k])), Axes::Solid(axis))
     }
 
     /// Of eigenvalues that are sums of a component of b and a gain.
@@ -107,10 +82,28 @@ impl<R: Real> Spectrum<R> {
     /// definite.
     #[inline(always)]
     pub fn planar([xx, yy, zz, xy]: [R; 4]) -> Option<Self> {
-        let (sums, axes) = plane([xx, yy, zz], xy);
         let largest = xx.magnitude() + yy.magnitude() + zz.magnitude() + xy.magnitude();
+        let (sums, axes) = plane([xx, yy, zz], xy);
+        Self::admitted(largest, sums, axes)
+    }
+
+    /// The same of a tensor of which no plane is principal by its components alone; `None` also where one is, of which
+    /// [`Spectrum::of`] has other bits.
+    #[inline(always)]
+    pub fn general(b: [R; 6]) -> Option<Self> {
+        let [xx, yy, zz, xy, yz, xz] = b.map(R::magnitude);
+        let coupling = yz + xz;
+        if R::any(coupling.at_most(coupling.like(0.0))) {
+            return None;
+        }
+        let (sums, axes) = solid::solid(b);
+        Self::admitted(xx + yy + zz + xy + yz + xz, sums, Axes::Solid(axes))
+    }
+
+    #[inline(always)]
+    fn admitted(largest: R, sums: [(R, R); 3], axes: Axes<R>) -> Option<Self> {
         let positive = |(start, gain): (R, R)| start.like(SMALLEST).at_most(start + gain);
-        let finite = largest.at_most(xx.like(LARGEST));
+        let finite = largest.at_most(largest.like(LARGEST));
         if R::any(!(finite & positive(sums[0]) & positive(sums[1]) & positive(sums[2]))) {
             return None;
         }
@@ -165,9 +158,11 @@ impl<R: Real> Spectrum<R> {
     }
 
     /// `s₂ I + (s₁ - s₂) n₁ ⊗ n₁ + (s₃ - s₂) n₃ ⊗ n₃`.
+    #[inline(always)]
     fn assemble_solid(&self, axes: &[[R; 3]; 3], s: [R; 3]) -> Symmetric<R> {
+        // Not by closures that are given away: see `planar`.
         let component = |i: usize| self.descending([axes[0][i], axes[1][i], axes[2][i]]);
-        let (first, third, n) = (s[0] - s[1], s[2] - s[1], three(component));
+        let (first, third, n) = (s[0] - s[1], s[2] - s[1], [component(0), component(1), component(2)]);
         let at = |i: usize, j: usize| first * (n[i][0] * n[j][0]) + third * (n[i][2] * n[j][2]);
         let spherical = s[1];
         Symmetric([spherical + at(0, 0), spherical + at(1, 1), spherical + at(2, 2), at(0, 1), at(1, 2), at(0, 2)])
@@ -236,21 +231,27 @@ fn tangent<R: Real>(half: R, coupling: R) -> R {
 }
 
 /// A rotation of a pair of axes.
-struct Turn {
-    cos: f64,
-    sin: f64,
+struct Turn<R = f64> {
+    cos: R,
+    sin: R,
 }
 
-impl Turn {
-    fn by(tan: f64) -> Self {
-        let cos = 1.0 / (1.0 + tan * tan).sqrt();
+impl<R: Real> Turn<R> {
+    #[inline(always)]
+    fn by(tan: R) -> Self {
+        let cos = tan.like(1.0) / (tan * tan + 1.0).root();
         Self { cos, sin: tan * cos }
     }
 
-    fn apply(&self, p: f64, q: f64) -> (f64, f64) {
+    #[inline(always)]
+    fn apply(&self, p: R, q: R) -> (R, R) {
         (self.cos * p + self.sin * q, self.cos * q - self.sin * p)
     }
 }
+
+#[cfg(test)]
+#[path = "spectral/tests.rs"]
+mod oracle;
 
 #[cfg(test)]
 mod tests {

@@ -141,4 +141,10 @@ impl<const D: usize> Packed<D, Symmetric> {
     pub fn planar(&self) -> Option<&[[f64; 4]]> {
         (D == 2).then(|| self.numbers.as_chunks().0)
     }
+
+    /// All components of every tensor, where none is known to be zero.
+    #[inline(always)]
+    pub fn whole(&self) -> Option<&[[f64; 6]]> {
+        (D != 2).then(|| self.numbers.as_chunks().0)
+    }
 }

@@ -123,7 +123,7 @@ impl<K: Kinematics<D>, const D: usize> Trial<K, D> {
         }
         let grad = eight.of(&self.grad);
         let grad = K::Gradient::of(|i, j| Lanes::from_fn(simd, |lane| grad[lane][(i, j)]));
-        let (dF, b_e) = (K::deformation(&grad), eight.of(points.b_e.planar()?));
+        let dF = K::deformation(&grad);
         let mut dF_bar = dF;
         if let Some(mean) = &self.mean {
             let (mean, mut own) = (eight.of(mean), K::jacobian::<Lanes<S>>(&grad));
@@ -134,15 +134,31 @@ impl<K: Kinematics<D>, const D: usize> Trial<K, D> {
             }
             dF_bar = K::dilate(&dF, ratio(Lanes::from_fn(simd, |lane| *mean[lane]), own, before));
         }
-        let b_e = |k: usize| Lanes::from_fn(simd, |lane| b_e[lane][k]);
         let zero = Lanes::splat(simd, 0.0);
-        let [xx, yy, zz, xy, ..] = K::push_forward(&dF_bar, &Symmetric([b_e(0), b_e(1), b_e(2), b_e(3), zero, zero])).0;
+        let b_e = match (points.b_e.planar(), points.b_e.whole()) {
+            (Some(planar), _) => {
+                let b_e = eight.of(planar);
+                let b_e = |k: usize| Lanes::from_fn(simd, |lane| b_e[lane][k]);
+                Symmetric([b_e(0), b_e(1), b_e(2), b_e(3), zero, zero])
+            }
+            (_, whole) => {
+                let b_e = eight.of(whole?);
+                let b_e = |k: usize| Lanes::from_fn(simd, |lane| b_e[lane][k]);
+                Symmetric([b_e(0), b_e(1), b_e(2), b_e(3), b_e(4), b_e(5)])
+            }
+        };
+        let b_trial = K::push_forward(&dF_bar, &b_e).0;
         let mut state = [zero; MOST_STATE];
         let width = points.state_of(eight.point(0)).len();
         for (k, variable) in state[..width].iter_mut().enumerate() {
             *variable = Lanes::from_fn(simd, |lane| points.state_of(eight.point(lane))[k]);
         }
-        let mut tau = law.stress([xx, yy, zz, xy], &state[..width])?;
+        let mut tau = if D == 2 {
+            let [xx, yy, zz, xy, ..] = b_trial;
+            law.stress([xx, yy, zz, xy], &state[..width])?
+        } else {
+            law.stress_in_space(b_trial, &state[..width])?
+        };
         if let Some(lame) = self.damping.lame(model, points, eight.point(0)) {
             let one = Lanes::splat(simd, 1.0);
             let stretch = K::push_forward(&dF_bar, &Symmetric([one, one, one, zero, zero, zero]));

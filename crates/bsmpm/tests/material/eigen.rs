@@ -2,7 +2,9 @@
 
 use super::{difference, hencky, largest, mohr_coulomb, respond, stretched, turned};
 use crate::random::Random;
+use bsmpm::kinematics::{Kinematics, Solid};
 use bsmpm::tensor::{Symmetric, Tensor};
+use nalgebra::{Rotation3, Vector3};
 
 #[test]
 fn rotated_b_gives_rotated_tau() {
@@ -115,6 +117,23 @@ fn nearly_equal_eigenvalues_rebuild_b() {
     }
     println!("b rebuilt to {worst:.2e}");
     assert!(worst <= 1e-13, "{worst:e}");
+}
+
+/// A hundred turns about any axis, ten degrees at a time: the strain is turned back to what it was.
+#[test]
+fn a_hundred_turns_leave_the_stress() {
+    let mut random = Random::new(44);
+    for material in [hencky(1e3, 0.3), mohr_coulomb(1e3, 0.3, 30.0, 10.0, 1e3)] {
+        for _ in 0..20 {
+            let start = turned(&random.rotation(), &stretched(random.strains(-4.0, 0.1)));
+            let about = Vector3::new(random.signed(), random.signed(), random.signed()).normalize();
+            let step = Rotation3::new(about * 10.0_f64.to_radians()).into_inner();
+            let b = (0..3_600).fold(start, |b, _| respond(&material, &Solid::push_forward(&step, &b)).b_e());
+            let (before, after) = (respond(&material, &start).tau(), respond(&material, &b).tau());
+            // 3600 roundings of b.
+            assert!(difference(&before, &after) <= 1e3 * 3_600.0 * 4e-16, "{:e}", difference(&before, &after));
+        }
+    }
 }
 
 /// Taylor series with scaling and squaring.

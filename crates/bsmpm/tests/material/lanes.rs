@@ -1,6 +1,6 @@
 //! Lanes: eight points at a time have the bits of each by itself.
 
-use super::{REGIONS, hencky, mohr_coulomb};
+use super::{REGIONS, hencky, mohr_coulomb, turned};
 use crate::random::Random;
 use bsmpm::lanes::{self, InLanes, LANES, Lanes, Simd};
 use bsmpm::material::{DruckerPrager, Elastic, Match, Material, VonMises};
@@ -21,8 +21,13 @@ impl InLanes for Stresses<'_> {
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> Self::Output {
-        let b_trial = from_fn(|k| Lanes::from_fn(simd, |lane| self.b_trial[lane].0[k]));
-        let tau = self.material.stress(b_trial, &[Lanes::from_fn(simd, |lane| self.state[lane])])?;
+        let b_trial: [Lanes<S>; 6] = from_fn(|k| Lanes::from_fn(simd, |lane| self.b_trial[lane].0[k]));
+        let state = [Lanes::from_fn(simd, |lane| self.state[lane])];
+        let tau = if self.b_trial.iter().any(|b_trial| b_trial.0[4..] != [0.0; 2]) {
+            self.material.stress_in_space(b_trial, &state)?
+        } else {
+            self.material.stress(from_fn(|k| b_trial[k]), &state)?
+        };
         let components = tau.0.map(Lanes::numbers);
         Some(from_fn(|lane| Symmetric(from_fn(|k| components[k][lane]))))
     }
@@ -46,6 +51,20 @@ fn laws() -> Vec<Material> {
 /// Points inside and in every region of the yield surface side by side, on axes and turned, and at rest.
 #[test]
 fn eight_points_have_the_stresses_of_each() {
+    compare(false);
+}
+
+/// The same with any axes; of a point that has its axis along z all eight are left.
+#[test]
+fn eight_points_in_space_have_the_stresses_of_each() {
+    compare(true);
+    let (material, mut b_trial) = (hencky(1e3, 0.3), [Symmetric([1.0, 1.0, 1.0, 0.1, 0.1, 0.0]); LANES]);
+    assert!(lanes::run(Stresses { material: &material, b_trial: &b_trial, state: [0.0; LANES] }).is_some());
+    b_trial[3] = Symmetric([1.0, 1.0, 1.1, 0.1, 0.0, 0.0]);
+    assert!(lanes::run(Stresses { material: &material, b_trial: &b_trial, state: [0.0; LANES] }).is_none());
+}
+
+fn compare(in_space: bool) {
     const GROUPS: usize = 4_000;
     let mut random = Random::new(90);
     let mut seen = BTreeMap::new();
@@ -57,7 +76,14 @@ fn eight_points_have_the_stresses_of_each() {
                 let turn = random.pick(&[0.0, 1e-9, 1.0]);
                 let strain: [f64; 4] = from_fn(|_| size * random.signed());
                 let [xx, yy, zz, xy] = random.pick(&[strain, strain, [0.0; 4]]);
-                Symmetric([1.0 + xx, 1.0 + yy, 1.0 + zz, turn * xy, 0.0, 0.0])
+                let plane = Symmetric([1.0 + xx, 1.0 + yy, 1.0 + zz, turn * xy, 0.0, 0.0]);
+                if !in_space {
+                    return plane;
+                }
+                let plane =
+                    if plane == Symmetric::IDENTITY { Symmetric([1.0, 1.0, 1.0, 1e-9, 0.0, 0.0]) } else { plane };
+                let mut turns = std::iter::repeat_with(|| turned(&random.rotation(), &plane));
+                turns.find(|b_trial| b_trial.0[4..] != [0.0; 2]).expect("without an end")
             });
             let state: [f64; LANES] = from_fn(|_| 0.1 * random.unit());
             for (vectors, found) in lanes::with_each(&Stresses { material: &material, b_trial: &b_trial, state }) {

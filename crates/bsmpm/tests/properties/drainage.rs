@@ -45,7 +45,7 @@ fn scene(order: usize, law: PermeabilityLaw, [from, to]: [Vector<2>; 2], given: 
     let axes = [axis(CELL, 8, order), axis(CELL, 8, order)];
     let mut scene =
         Plane::new(axes, hencky(1e6, 0.2), Regime::QuasiStatic).body([2..6, 2..6], 3, 1.0, |_| at(0.0, 0.0));
-    let points = surface::along::<PlaneStrain>(&scene.model.grid, &from, &to, 3);
+    let points = surface::along::<PlaneStrain, 2>(&scene.model.grid, &from, &to, 3);
     let along = (to - from).normalize();
     let normals = vec![at(-along[1], along[0]); points.len()];
     let flow = Flow {

@@ -85,8 +85,11 @@ fn compared<K: Kinematics<D>, const D: usize>(method: Stabilisation, seed: u64) 
 #[test]
 fn points_that_are_alike_have_their_own_bits_and_others_are_left() {
     for (method, seed) in METHODS.into_iter().zip(1..) {
-        let counts = [compared::<PlaneStrain, 2>(method, seed), compared::<Axisymmetric, 2>(method, seed)];
+        let counts = [
+            compared::<PlaneStrain, 2>(method, seed),
+            compared::<Axisymmetric, 2>(method, seed),
+            compared::<Solid, 3>(method, seed),
+        ];
         assert!(counts.iter().all(|&count| count > 60), "{method:?}: {counts:?}");
-        assert_eq!(compared::<Solid, 3>(method, seed), 0, "three dimensions have one point at a time");
     }
 }

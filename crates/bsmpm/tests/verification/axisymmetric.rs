@@ -56,7 +56,7 @@ fn cylinder(cells: usize, method: Stabilisation) -> f64 {
         .stabilised(method);
     scene.model.weighting = Weighting::Volume;
     let (from, to) = ([inner, 0.0].into(), [inner, 2.0 * h].into());
-    let points = surface::along::<Axisymmetric>(&scene.model.grid, &from, &to, 3);
+    let points = surface::along::<Axisymmetric, 2>(&scene.model.grid, &from, &to, 3);
     let (scene, _) = scene.load(Load::dead(points, [pressure, 0.0].into(), 1.0)).solved(1.0, 1.0);
     // Lame (1852) in plane strain: u = A r + B/r.
     let factor = (1.0 + poisson) * pressure * inner * inner / (outer * outer - inner * inner);

@@ -221,7 +221,7 @@ fn footing(method: Stabilisation) -> Scene<PlaneStrain, 2> {
         .stabilised(method);
     scene.model.weighting = Weighting::Volume;
     scene.model.background = Some(Background { kind: Kind::Strain, coefficient: 1e-3, extent: Extent::Occupied });
-    let points = surface::along::<PlaneStrain>(&scene.model.grid, &[0.0, 1.0].into(), &[0.5, 1.0].into(), 2);
+    let points = surface::along::<PlaneStrain, 2>(&scene.model.grid, &[0.0, 1.0].into(), &[0.5, 1.0].into(), 2);
     let path = Path { rows: vec![(1.0, [0.0, -0.05].into())] };
     scene.strip(Strip { contact: None, points, normal: Some([0.0, 1.0].into()), path, penalty: 4e9 })
 }
@@ -247,7 +247,7 @@ fn block(ramp: f64) -> Scene<PlaneStrain, 2> {
         .body([0..2, 0..2], 3, 1.0, |x| x * 0.0)
         .rollers([0])
         .support(Support::roller(1, false));
-    let points = surface::along::<PlaneStrain>(&scene.model.grid, &[0.0, 1.0].into(), &[1.0, 1.0].into(), 3);
+    let points = surface::along::<PlaneStrain, 2>(&scene.model.grid, &[0.0, 1.0].into(), &[1.0, 1.0].into(), 3);
     scene.gravity(5.0, ramp).load(Load::dead(points, [0.0, -100.0].into(), ramp))
 }
 

@@ -26,7 +26,7 @@ fn indented(nonlinear: Nonlinear, method: Stabilisation) -> (Plane, Vec<Accepted
     scene.model.criteria = Criteria { energy: 1e-16, force: 1e-9, max_iterations: 400 };
     scene.model.background = Some(Background { kind: Kind::Strain, coefficient: 1e-3, extent: Extent::Occupied });
     scene.model.nonlinear = nonlinear;
-    let points = surface::along::<PlaneStrain>(&scene.model.grid, &[0.0, 1.5].into(), &[1.0, 1.5].into(), 3);
+    let points = surface::along::<PlaneStrain, 2>(&scene.model.grid, &[0.0, 1.5].into(), &[1.0, 1.5].into(), 3);
     let path = Path { rows: vec![(1.0, [0.0, -0.1].into())] };
     scene.strip(Strip { contact: None, points, normal: Some([0.0, 1.0].into()), path, penalty: 2e5 }).solved(0.1, 1.0)
 }

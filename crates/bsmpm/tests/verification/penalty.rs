@@ -27,7 +27,7 @@ fn pressure(factor: f64) -> f64 {
     scene.model.criteria = Criteria { energy: 1e-10, force: 1e-6, max_iterations: 1000 };
     scene.model.background = Some(Background { kind: Kind::Strain, coefficient: 1e-3, extent: Extent::Occupied });
     let at = |x: f64, y: f64| Vector::<2>::new(x, y);
-    let points = surface::along::<PlaneStrain>(&scene.model.grid, &at(0.0, 2.0), &at(1.0, 2.0), 4);
+    let points = surface::along::<PlaneStrain, 2>(&scene.model.grid, &at(0.0, 2.0), &at(1.0, 2.0), 4);
     let path = Path { rows: vec![(1.0, at(0.0, -0.4))] };
     let mut scene =
         scene.strip(Strip { contact: None, points, normal: Some(at(0.0, 1.0)), path, penalty: factor * YOUNG / CELL });

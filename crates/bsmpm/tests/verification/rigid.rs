@@ -214,7 +214,7 @@ fn a_flat_punch_is_a_strip() {
             let by_body = last(&mut scene().rigid(punch), 0.5, 1.0).force[1];
             let (from, to) = (Vector::from([0.0, 2.0]), Vector::from([1.0, 2.0]));
             let strip = Strip {
-                points: surface::along::<PlaneStrain>(&scene().model.grid, &from, &to, 4),
+                points: surface::along::<PlaneStrain, 2>(&scene().model.grid, &from, &to, 4),
                 normal: (friction == 0.0).then(|| Vector::from([0.0, 1.0])),
                 path: Path { rows: vec![(1.0, Vector::from([0.0, -0.01]))] },
                 penalty: 1e10 / h,

@@ -18,7 +18,7 @@ fn pressed(law: Contact, (from, to): (f64, f64), rows: &[(f64, [f64; 2])]) -> Sc
     let scene = Scene::new(axes, hencky(YOUNG, 0.2), Regime::QuasiStatic);
     let scene = scene.body([2..6, 0..4], 2, 1e3, |_| Vector::zeros()).support(Support::fixed(1, false));
     let [from, to] = [[from, 1.0], [to, 1.0]].map(Vector::from);
-    let points = surface::along::<PlaneStrain>(&scene.model.grid, &from, &to, 4);
+    let points = surface::along::<PlaneStrain, 2>(&scene.model.grid, &from, &to, 4);
     let rows = rows.iter().map(|(t, u)| (*t, Vector::from(*u))).collect();
     let contact = Some(StripContact { law, inward: [0.0, -1.0].into() });
     let strip = Strip { points, normal: None, contact, path: Path { rows }, penalty: 1e3 * YOUNG / CELL };

@@ -32,7 +32,7 @@ fn block(cells: [usize; 2], order: usize) -> Plane {
 
 /// A strip on top of a 1 m x 1 m block that presses it down by `depth` until t = 1; `rough`: holds x too.
 fn pressed(scene: Plane, depth: f64, rough: bool, penalty: f64) -> Plane {
-    let points = surface::along::<PlaneStrain>(&scene.model.grid, &at(0.0, 1.0), &at(1.0, 1.0), 3);
+    let points = surface::along::<PlaneStrain, 2>(&scene.model.grid, &at(0.0, 1.0), &at(1.0, 1.0), 3);
     let path = Path { rows: vec![(1.0, at(0.0, -depth))] };
     scene.strip(Strip { contact: None, points, normal: (!rough).then(|| at(0.0, 1.0)), path, penalty })
 }
@@ -41,7 +41,7 @@ fn pressed(scene: Plane, depth: f64, rough: bool, penalty: f64) -> Plane {
 fn surface_points_share_the_length_of_their_segment_cell_by_cell() {
     let grid = block([4, 4], 2).model.grid;
     let (from, to) = (at(0.1, 0.3), at(0.9, 0.7));
-    let points = surface::along::<PlaneStrain>(&grid, &from, &to, 3);
+    let points = surface::along::<PlaneStrain, 2>(&grid, &from, &to, 3);
     let sum = |value: &dyn Fn(&Vector<2>) -> f64| points.iter().map(|point| point.area * value(&point.x)).sum::<f64>();
     let length = (to - from).norm();
     assert_eq!(points.len(), 12, "the grid's lines cut the segment into four parts");
@@ -113,7 +113,7 @@ fn a_cut_step_follows_the_same_path() {
 fn a_uniform_traction_gives_uniform_stress_before_the_body_has_moved_and_follows_it() {
     let mut scene = block([4, 4], 2);
     scene.model.background = None;
-    let points = surface::along::<PlaneStrain>(&scene.model.grid, &at(0.0, 1.0), &at(1.0, 1.0), 3);
+    let points = surface::along::<PlaneStrain, 2>(&scene.model.grid, &at(0.0, 1.0), &at(1.0, 1.0), 3);
     scene = scene.load(Load::dead(points, at(0.0, -100.0), 1.0));
     let M = scene.model.materials[0].elastic().oedometric();
     let (mut first, mut last) = (f64::INFINITY, 0.0);
@@ -138,7 +138,7 @@ fn a_uniform_traction_gives_uniform_stress_before_the_body_has_moved_and_follows
 #[test]
 fn a_load_stays_on_the_surface_of_a_column_that_is_compressed_by_a_third() {
     let mut scene = block([2, 8], 2);
-    let points = surface::along::<PlaneStrain>(&scene.model.grid, &at(0.0, 2.0), &at(0.5, 2.0), 3);
+    let points = surface::along::<PlaneStrain, 2>(&scene.model.grid, &at(0.0, 2.0), &at(0.5, 2.0), 3);
     let M = scene.model.materials[0].elastic().oedometric();
     // tau = M ln l = sigma l under a dead load: l = 2/3 at the end.
     let pressure = -1.5 * (2.0_f64 / 3.0).ln() * M;
@@ -240,7 +240,7 @@ fn a_pressure_turns_with_the_surface() {
             [([1.0, 1.0], [2.0, 1.0]), ([2.0, 1.0], [2.0, 2.0]), ([2.0, 2.0], [1.0, 2.0]), ([1.0, 2.0], [1.0, 1.0])]
         {
             let (from, to) = (Vector::from(from), Vector::from(to));
-            let points = surface::along::<PlaneStrain>(&scene.model.grid, &from, &to, 3);
+            let points = surface::along::<PlaneStrain, 2>(&scene.model.grid, &from, &to, 3);
             let inward: Vector<2> = at(from[1] - to[1], to[0] - from[0]);
             scene = scene.load(Load { follows, ..Load::dead(points, inward * push, 0.5) });
         }

@@ -234,7 +234,7 @@ fn pressures_under_a_strip_load_that_nothing_drains_are_smooth_and_those_of_the_
         .body([0..cells, 0..cells], 3, 1.0, |x| x * 0.0)
         .rollers([0])
         .support(Support::roller(1, false));
-    let points = surface::along::<PlaneStrain>(&scene.model.grid, &at(0.0, 8.0), &at(1.0, 8.0), 3);
+    let points = surface::along::<PlaneStrain, 2>(&scene.model.grid, &at(0.0, 8.0), &at(1.0, 8.0), 3);
     scene = scene.load(Load::dead(points, at(0.0, -LOAD), 0.0));
     let mut water = flowing(PermeabilityLaw::Constant);
     water.flow.as_mut().expect("it flows").soils[0].as_mut().expect("a soil").permeability = None;

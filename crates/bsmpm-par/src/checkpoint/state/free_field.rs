@@ -1,8 +1,7 @@
 //! Columns of the free field in a checkpoint: few points, the same on every rank, so that numbers in its text do.
 
-use super::pairs;
+use super::{Row, rows, vectors};
 use bsmpm::points::{Number, Points};
-use bsmpm::tensor::Vector;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -14,23 +13,23 @@ pub struct FreeFieldState {
     pub arrays: BTreeMap<String, Vec<f64>>,
     /// N  what holds the state of the start at the nodes of a base that absorbs.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub held: Vec<Vec<[f64; 2]>>,
+    pub held: Vec<Vec<Row>>,
 }
 
 impl FreeFieldState {
     /// Of the points of a column.
-    pub fn of(points: &Points<2>) -> Self {
+    pub fn of<const D: usize>(points: &Points<D>) -> Self {
         let mut points = points.clone();
         let arrays = points.named_columns().into_iter().map(|(name, column)| {
             let mut numbers = Vec::with_capacity(column.rows() * column.width());
             (0..column.rows()).for_each(|p| column.show(p, &mut numbers));
             (name.to_owned(), numbers)
         });
-        Self { arrays: arrays.collect(), held: pairs(&points.surface.held) }
+        Self { arrays: arrays.collect(), held: rows(&points.surface.held) }
     }
 
     /// The points, whose laws have so many numbers of state; `None` if they are not whole.
-    pub fn points(&self, state: usize) -> Option<Points<2>> {
+    pub fn points<const D: usize>(&self, state: usize) -> Option<Points<D>> {
         let names: Vec<&str> = self.arrays.keys().map(String::as_str).collect();
         let mut points = Points::holding(&names, state);
         let mut columns = points.named_columns();
@@ -48,8 +47,7 @@ impl FreeFieldState {
         if columns.len() != names.len() {
             return None;
         }
-        let vectors = |list: &Vec<[f64; 2]>| list.iter().map(|&pair| Vector::from(pair)).collect();
-        points.surface.held = self.held.iter().map(vectors).collect();
+        points.surface.held = vectors(&self.held)?;
         Some(points)
     }
 }

@@ -1,0 +1,98 @@
+//! Eigenvalues and axes of any symmetric tensor, without a branch, in lanes as for one point.
+//!
+//! After Scherzinger and Dohrmann (2008): of the deviator first the eigenvalue that is most distinct from the others,
+//! whose axis is well conditioned whatever the gap between these; then one exact rotation in the plane beside it. The
+//! eigenvalue is a root of a cubic between √3 and 2 in units of √(J₂/3), found by Newton's method instead of a cosine.
+
+use super::{Turn, tangent};
+use crate::real::Real;
+
+/// Vectors, one a row.
+pub(super) type Rows<R> = [[R; 3]; 3];
+
+/// Distance of b from I up to which its eigenvalues are told from 1, which loses no digit there.
+const NEAR: f64 = 0.5;
+/// Below this a deviator counts as none: its squares would lose digits.
+const NONE: f64 = 1e-140;
+/// Of a root between √3 and 2: a first guess that is off by 3e-3, 7e-6, 4e-11, and less than a digit.
+const NEWTON: usize = 3;
+
+/// Eigenvalues, as sums, of the tensor with the components XX, YY, ZZ, XY, YZ, XZ, and its axes.
+#[inline(always)]
+pub(super) fn solid<R: Real>(b: [R; 6]) -> ([(R, R); 3], Rows<R>) {
+    let [xx, yy, zz, xy, yz, xz] = b;
+    let one = xx.like(1.0);
+    let far = (xx - 1.0).magnitude() + (yy - 1.0).magnitude() + (zz - 1.0).magnitude();
+    let start = R::choose(far.below(xx.like(NEAR)), one, xx.like(0.0));
+    let mean = ((xx - start) + (yy - start) + (zz - start)) / 3.0;
+    let (a, b, c) = (xx - yy, yy - zz, zz - xx);
+    let deviator = [(a - c) / 3.0, (b - a) / 3.0, (c - b) / 3.0, xy, yz, xz];
+    let n = distinct(deviator);
+    let (u, v) = beside(n);
+    let (of_n, of_u, of_v) = (times(deviator, n), times(deviator, u), times(deviator, v));
+    let (uu, vv, uv) = (dot(u, of_u), dot(v, of_v), dot(u, of_v));
+    let tan = tangent((uu - vv) * 0.5, uv);
+    let gain = tan * uv;
+    let turn = Turn::by(tan);
+    let ((ux, vx), (uy, vy), (uz, vz)) = (turn.apply(u[0], v[0]), turn.apply(u[1], v[1]), turn.apply(u[2], v[2]));
+    let sums = [(start, mean + dot(n, of_n)), (start, mean + (uu + gain)), (start, mean + (vv - gain))];
+    (sums, [n, [ux, uy, uz], [vx, vy, vz]])
+}
+
+/// Unit axis of the most distinct eigenvalue of a deviator; of none axis x.
+#[inline(always)]
+fn distinct<R: Real>([xx, yy, zz, xy, yz, xz]: [R; 6]) -> [R; 3] {
+    let (zero, one) = (xx.like(0.0), xx.like(1.0));
+    let squares = xx * xx + yy * yy + zz * zz + (xy * xy + yz * yz + xz * xz) * 2.0;
+    let size = (squares / 6.0).root();
+    let unit = R::choose(size.below(xx.like(NONE)), zero, one / size);
+    let (x, y, z) = (xx * unit, yy * unit, zz * unit);
+    let (p, q, s) = (xy * unit, yz * unit, xz * unit);
+    let half = (x * (y * z - q * q) - p * (p * z - q * s) + s * (p * q - y * s)) * 0.5;
+    let root = root(half.magnitude()).signed(half);
+    let (x, y, z) = (x - root, y - root, z - root);
+    // Of the matrix with rows (x p s), (p y q), (s q z), whose rank is 2.
+    let products = [
+        [y * z - q * q, q * s - p * z, p * q - y * s],
+        [q * s - p * z, x * z - s * s, p * s - x * q],
+        [p * q - y * s, p * s - x * q, x * y - p * p],
+    ];
+    let lengths = [dot(products[0], products[0]), dot(products[1], products[1]), dot(products[2], products[2])];
+    let second = lengths[0].below(lengths[1]);
+    let length = R::choose(second, lengths[1], lengths[0]);
+    let third = length.below(lengths[2]);
+    let scale = one / R::choose(third, lengths[2], length).root();
+    let at = |k: usize| R::choose(third, products[2][k], R::choose(second, products[1][k], products[0][k])) * scale;
+    [at(0), at(1), at(2)]
+}
+
+/// The root `t ≥ √3` of `t³ - 3 t - 2 r` for 0 <= r <= 1: `2 cos(acos(r)/3)`.
+#[inline(always)]
+fn root<R: Real>(r: R) -> R {
+    let r = R::choose(r.below(r.like(1.0)), r, r.like(1.0));
+    let mut t = (r * -0.0653841 + 0.3333333) * r + 1.7320508;
+    for _ in 0..NEWTON {
+        let square = t * t;
+        t = (square * t + r) * 2.0 / ((square - 1.0) * 3.0);
+    }
+    t
+}
+
+/// Two unit vectors that are orthogonal to one and to each other (Duff et al. 2017).
+#[inline(always)]
+fn beside<R: Real>([x, y, z]: [R; 3]) -> ([R; 3], [R; 3]) {
+    let sign = z.like(1.0).signed(z);
+    let a = z.like(-1.0) / (sign + z);
+    let b = x * y * a;
+    ([sign * x * x * a + 1.0, sign * b, -(sign * x)], [b, y * y * a + sign, -y])
+}
+
+#[inline(always)]
+fn dot<R: Real>(a: [R; 3], b: [R; 3]) -> R {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+#[inline(always)]
+fn times<R: Real>([xx, yy, zz, xy, yz, xz]: [R; 6], n: [R; 3]) -> [R; 3] {
+    [dot([xx, xy, xz], n), dot([xy, yy, yz], n), dot([xz, yz, zz], n)]
+}
