@@ -136,8 +136,7 @@ pub enum Quantity {
         /// Number of the drain, in the order of the file; `None`: all, less the inflows.
         drain: Option<usize>,
     },
-    /// -  what the ground has gained of water and what has left it, over the larger of what crossed its surface and what
-    /// its points took in and gave off
+    /// -  what the ground has gained of water and what has left it, over what crossed its surface or moved in it
     WaterBalance,
     /// -  oscillation of sigma_yy about its average over the grid and about a plane
     StressNoise,

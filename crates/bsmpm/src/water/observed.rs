@@ -107,7 +107,7 @@ impl<'a, const D: usize> PoreWater<'a, D> {
         -conductivity.component_mul(&(gradient[p] - self.weight)) * relative / self.water.unit_weight
     }
 
-    /// -  what the points have gained of water since the start and what has left the ground, over the larger of what
+    /// What the points have gained of water since the start and what has left the ground, over the larger of what
     /// crossed its surface and what the points have taken in and given off, added; a billionth of the pores counts for
     /// nothing. 0 where no water is lost, `None` where none flows. One reduction.
     pub fn balance(&self, halo: &dyn Halo) -> Option<f64> {
