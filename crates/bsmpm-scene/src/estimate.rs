@@ -104,7 +104,10 @@ struct Systems {
 impl Systems {
     /// `entries` of the stiffness of so many `unknowns`, which couples layers of nodes up to `reach` apart: separators
     /// are as wide, in which the constants are those of quadratic splines.
-    fn of(solver: &Solver, unknowns: u128, entries: u128, reach: u128) -> Self {
+    ///
+    /// Where water `flows` Newton's directions are preconditioned by those of the secants, and have one unknown a node
+    /// more.
+    fn of(solver: &Solver, (unknowns, entries): (u128, u128), reach: u128, flows: bool) -> Self {
         let direct = solver.linear.factor.is_some();
         let levels = u128::from(unknowns.max(2).ilog2());
         let factor = if direct { unknowns * levels * LEVEL * reach / 2 } else { 0 };
@@ -116,9 +119,16 @@ impl Systems {
         };
         let krylov = unknowns * KRYLOV;
         let repeated = again * (entries * REPEATED + 2 * factor);
-        let general = [entries * ENTRY + 2 * factor + krylov, repeated, entries * BUILT];
+        let general = match flows {
+            true => [elastic[0] + krylov * 3 / 2, elastic[1], elastic[2]],
+            false => [entries * ENTRY + 2 * factor + krylov, repeated, entries * BUILT],
+        };
         let [held, repeated, built] = if solver.nonlinear == Nonlinear::Newton { general } else { elastic };
-        let perhaps = if solver.nonlinear == Nonlinear::Auto { [general[0], general[1]] } else { [0; 2] };
+        let perhaps = match solver.nonlinear {
+            Nonlinear::Auto if flows => [krylov * 3 / 2, 0],
+            Nonlinear::Auto => [general[0], general[1]],
+            _ => [0; 2],
+        };
         Self { held, repeated, built, perhaps }
     }
 }
@@ -154,7 +164,8 @@ impl Case {
         let (stencil, every) = (places * 4 * 8, 8 + 2);
         let occupied = occupied_nodes(self).min(nodes);
         let entries = 2 * occupied * 2 * places;
-        let systems = Systems::of(&self.solver, 2 * occupied, entries, self.grid.order as u128 + self.beyond() as u128);
+        let reach = self.grid.order as u128 + self.beyond() as u128;
+        let systems = Systems::of(&self.solver, (2 * occupied, entries), reach, self.flow.is_some());
         let lowered = if self.stabilisation.lowers() { LOWERED } else { 0 };
         let passing = systems.built.max(points * SAVED);
         let bytes = points * (POINT + lowered)
