@@ -99,9 +99,10 @@ pub fn choices(case: &Case, ranks: usize, options: &[String]) -> Vec<manifest::M
                       on a radian, of which frames have the points' volumes; a point load is all of its ring";
         choices.push(choice("geometry", "axisymmetric", reason));
     }
-    if case.flow.is_some() {
-        let reason = "water that flows: all recent secants on both systems by turns (fixed stress); then shorter steps";
-        choices.push(choice("solver.nonlinear", "multisecant", reason));
+    if case.flow.is_some() && case.solver.nonlinear == bsmpm_scene::Nonlinear::Auto {
+        let reason = "water that flows: all recent secants on both systems by turns (fixed stress); Newton's method with \
+                      the complete derivative where they come to no end, preconditioned by both; then shorter steps";
+        choices.push(choice("solver.nonlinear", "multisecant, newton", reason));
     } else if case.solver.nonlinear == bsmpm_scene::Nonlinear::Auto {
         let reason = "all recent secants on the stiffness at the first guess, in fewer iterations than Broyden's update; \
                       Newton's method with the complete derivative where they stall; then shorter steps";

@@ -109,7 +109,15 @@ struct Systems {
 impl Systems {
     /// `entries` of the stiffness of so many `unknowns`, which couples layers of nodes up to `reach` apart: separators
     /// are as wide, in which the constants are those of quadratic splines. By `nonlinear`.
-    fn of((solver, nonlinear): (&Solver, Nonlinear), unknowns: u128, entries: u128, reach: u128) -> Self {
+    ///
+    /// Where water `flows` Newton's directions are preconditioned by those of the secants, and have one unknown a node
+    /// more.
+    fn of(
+        (solver, nonlinear): (&Solver, Nonlinear),
+        (unknowns, entries): (u128, u128),
+        reach: u128,
+        flows: bool,
+    ) -> Self {
         let direct = solver.linear.factor.is_some();
         let levels = u128::from(unknowns.max(2).ilog2());
         let factor = if direct { unknowns * levels * LEVEL * reach / 2 } else { 0 };
@@ -121,9 +129,16 @@ impl Systems {
         };
         let krylov = unknowns * KRYLOV;
         let repeated = again * (entries * REPEATED + 2 * factor);
-        let general = [entries * ENTRY + 2 * factor + krylov, repeated, entries * BUILT];
+        let general = match flows {
+            true => [elastic[0] + krylov * 3 / 2, elastic[1], elastic[2]],
+            false => [entries * ENTRY + 2 * factor + krylov, repeated, entries * BUILT],
+        };
         let [held, repeated, built] = if nonlinear == Nonlinear::Newton { general } else { elastic };
-        let perhaps = if nonlinear == Nonlinear::Auto { [general[0], general[1]] } else { [0; 2] };
+        let perhaps = match nonlinear {
+            Nonlinear::Auto if flows => [krylov * 3 / 2, 0],
+            Nonlinear::Auto => [general[0], general[1]],
+            _ => [0; 2],
+        };
         Self { held, repeated, built, perhaps }
     }
 }
@@ -169,14 +184,14 @@ impl Case {
         let order = self.grid.order as u128;
         let occupied = occupied_nodes(self, order).min(nodes);
         let entries = 2 * occupied * 2 * places;
-        // Newton's method does not know water that flows: secants alone.
-        let nonlinear = if self.flow.is_some() { Nonlinear::Broyden } else { self.solver.nonlinear };
-        let by = (&self.solver, nonlinear);
-        let systems = Systems::of(by, 2 * occupied, entries, order + self.beyond() as u128);
+        let by = (&self.solver, self.solver.nonlinear);
+        let systems = Systems::of(by, (2 * occupied, entries), order + self.beyond() as u128, self.flow.is_some());
         let lowered = if self.stabilisation.lowers() { LOWERED } else { 0 };
         let passing = systems.built.max(points * SAVED);
         let water = self.pressures().map(|(pressures, entries)| {
-            let system = Systems::of(by, pressures, entries, order - 1);
+            // Solved by itself, as a part of the directions.
+            let by = (&self.solver, Nonlinear::Broyden);
+            let system = Systems::of(by, (pressures, entries), order - 1, true);
             // A third number of every node's vectors, secants included.
             let held = points * WET + entries * 8 + room_nodes(self) * VECTORS / 2;
             (pressures, held + system.held, system.repeated)

@@ -68,8 +68,6 @@ pub fn model_at<K: Kinematics<D>, const D: usize>(case: &Case, t: f64) -> Result
         criteria: criteria(case),
         damping: damping(&materials),
         nonlinear: match case.solver.nonlinear {
-            // Newton's method does not know water that flows: steps that stall are cut.
-            crate::Nonlinear::Auto if case.flow.is_some() => Nonlinear::QuasiNewton(QuasiNewton::Multisecant),
             crate::Nonlinear::Auto => Nonlinear::Auto,
             crate::Nonlinear::Broyden => Nonlinear::QuasiNewton(QuasiNewton::Broyden),
             crate::Nonlinear::Newton => Nonlinear::Newton,

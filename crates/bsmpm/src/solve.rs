@@ -5,6 +5,7 @@ pub mod bordered;
 pub mod broyden;
 pub mod contact;
 pub mod convergence;
+pub mod fgmres;
 pub mod found;
 pub mod linearised;
 pub mod multisecant;
@@ -38,18 +39,23 @@ pub fn find<K: Kinematics<D>, const D: usize>(
     let (last, zero) = (admissible(problem.nodes, guess), admissible(problem.nodes, &vec![0.0; guess.len()]));
     let mut differs = [f64::from(u8::from(last != zero))];
     problem.halo.maximum(&mut differs);
-    let method = match &problem.nodes.pores {
-        // Newton's derivative does not know of water, nor does a rank-one update of pressures.
-        Some(_) => Nonlinear::QuasiNewton(QuasiNewton::Multisecant),
-        None => problem.model.nonlinear,
+    let flows = problem.nodes.pores.is_some();
+    let method = match problem.model.nonlinear {
+        // A rank-one update does not know of pressures; an exact iteration takes as long as ten to thirty of secants.
+        Nonlinear::QuasiNewton(_) | Nonlinear::Auto if flows => Nonlinear::QuasiNewton(QuasiNewton::Multisecant),
+        method => method,
     };
-    match search(problem, method, last, (solver, counts)) {
-        Err(error) if !error.is_final() && differs[0] > 0.0 => {
-            let method = if method == Nonlinear::Auto { Nonlinear::Newton } else { method };
-            let found = search(problem, method, zero, (solver, counts))?;
-            Ok(Found { first_guess: false, ..found })
+    let by_newton = (flows && problem.model.nonlinear == Nonlinear::Auto).then(|| last.clone());
+    let mut found = search(problem, method, last, (solver, counts));
+    if found.as_ref().is_err_and(|error| !error.is_final()) && differs[0] > 0.0 {
+        let method = if method == Nonlinear::Auto { Nonlinear::Newton } else { method };
+        found = search(problem, method, zero, (solver, counts)).map(|found| Found { first_guess: false, ..found });
+    }
+    match by_newton {
+        Some(last) if found.as_ref().is_err_and(|error| !error.is_final()) => {
+            search(problem, Nonlinear::Newton, last, (solver, counts))
         }
-        found => found,
+        _ => found,
     }
 }
 

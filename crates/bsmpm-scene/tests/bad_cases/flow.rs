@@ -19,7 +19,7 @@ pub const FLOW: &[Row] = &[
     row("order = \"quadratic\"", "order = \"linear\"", "grid.order", "no gradient: take \"quadratic\""),
     row("order = \"quadratic\"", "order = \"cubic\"", "body.0.points_per_cell", "3 with cubic splines").down(29),
     row("\"consistent-f-bar\"", "\"subgrid-f-bar\"", "stabilisation.method", "take \"consistent-f-bar\""),
-    row("\"auto\"", "\"newton\"", "solver.nonlinear", "take \"auto\""),
+    row("\"auto\"", "\"broyden\"", "solver.nonlinear", "take \"auto\""),
     row("nonlinear = \"auto\"", "quadrature = \"fitted\"", "solver.quadrature", "take \"points\""),
     // Soils.
     row("porosity         = 0.6\n", "", "material.clay.porosity", "drainage = \"coupled\" needs it").up(5),

@@ -137,7 +137,7 @@ const WRONG: &[Wrong] = &[
     wet("rain as a depth", &[("\"10 mm/h\"", "\"10 mm\"")]),
     wet("the outflow of a drain that there is none of", &[("drain    = \"base\"", "drain    = \"bas\"")]),
     wet("water in linear cells", &[("\"quadratic\"", "\"linear\"")]),
-    wet("water and Newton's method", &[("\"auto\"", "\"newton\"")]),
+    wet("water and Broyden's update", &[("\"auto\"", "\"broyden\"")]),
     wet("water beside a face that rubs", &[("right  = \"roller\"", "right  = { friction = 0.3 }")]),
 ];
 

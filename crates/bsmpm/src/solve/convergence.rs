@@ -97,7 +97,8 @@ impl Convergence {
         let (energy, force) = (energy / self.first_energy.unwrap_or(f64::INFINITY), self.measure(balance));
         let water = self.water(balance);
         self.history.push(Measures { energy, force, water, method });
-        if self.settled.is_none() && force <= SETTLED * self.criteria.force {
+        let far_below = water.is_none_or(|water| water <= SETTLED * self.criteria.water());
+        if self.settled.is_none() && force <= SETTLED * self.criteria.force && far_below {
             self.settled = Some(u.to_vec());
         }
         let is_dry_or_balanced = water.is_none_or(|water| water < self.criteria.water());

@@ -2,7 +2,8 @@
 //!
 //! K v = sum_p V0 (dtau - tau l^T) dF^-T grad N + 4/dt^2 M v + background + strips, where l = (grad v) dF^-1, and dtau
 //! follows l-bar = l + (d ln(dJ-bar/dJ)) / dof I under F-bar, whose average couples points beyond a patch: the product
-//! is complete, the matrix that preconditions it has that term under consistent F-bar only.
+//! is complete, the matrix that preconditions it has that term under consistent F-bar only. Where water flows, v has the
+//! change of the pressures behind that of the displacements, and K v that of the water's balance.
 
 use crate::error::SolveError;
 use crate::grid::transfer;
@@ -18,6 +19,7 @@ use crate::step::problem::Problem;
 use crate::step::residual::Residual;
 use crate::step::trial::Trial;
 use crate::tensor::{Tensor, Vector};
+use crate::water::linearised::LinearisedWater;
 
 /// The derivative at one displacement.
 pub struct Linearised<'a, K: Kinematics<D>, const D: usize> {
@@ -30,6 +32,8 @@ pub struct Linearised<'a, K: Kinematics<D>, const D: usize> {
     dilation: Option<Vec<Dilation<K::Gradient>>>,
     /// under consistent F-bar in dilatant material; of all points
     adjoint: Option<(Adjoint, Vec<Pressure<K::Gradient>>)>,
+    /// where water flows
+    water: Option<LinearisedWater<'a, D>>,
 }
 
 /// What the adjoint force adds at a point: its pressure is that of an average.
@@ -92,6 +96,9 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
                     change -= l.transpose() * (pressure - own);
                     change += Tensor::identity() * (pressure * l.trace() - works::<K, D>(&tangent.apply(&l)));
                 }
+                if let Some(pore) = trial.pore_at(p) {
+                    change += (l.transpose() - Tensor::identity() * l.trace()) * pore;
+                }
                 K::working(&(change * inverse.transpose())) * volume
             };
             let viscous = trial.viscous(problem.model, points, p);
@@ -115,12 +122,23 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
                 dilation.push(Dilation { trace: K::working(&inverse.transpose()), flux });
             }
         }
-        Self { problem, trial, reaction: &residual.balance.reaction, moduli, dilation, adjoint }
+        Self { problem, trial, reaction: &residual.balance.reaction, moduli, dilation, adjoint, water: None }
     }
 
-    /// K v on nodal arrays, `v` zero where it is not free: one exchange with the neighbours, one more under F-bar.
+    /// The same with the water that flows, where `x` has the nodal excess pressures behind the displacements, Pa.
+    pub fn with_water(mut self, x: &'a [f64]) -> Self {
+        let Problem { nodes, .. } = *self.problem;
+        let p = &x[nodes.free.len()..];
+        let of = |pores: &'a _| LinearisedWater::at((self.problem, pores), self.trial, p);
+        self.water = nodes.pores.as_ref().map(of);
+        self
+    }
+
+    /// K v on nodal arrays, `v` zero where it is not free: one exchange with the neighbours, one more under F-bar and
+    /// one with water.
     pub fn multiply(&self, v: &[f64], out: &mut [f64]) {
         let Problem { shape, nodes, points, halo, .. } = *self.problem;
+        let ((v, v_p), (out, out_p)) = (v.split_at(nodes.free.len()), out.split_at_mut(nodes.free.len()));
         let grad = transfer::gradients::<K, D, _>((shape, &points.x), v, |_, grad| grad);
         let rate = self.dilation.as_ref().and_then(|dilation| {
             let trace: Vec<f64> = dilation.iter().zip(&grad).map(|(at, grad)| at.trace.dot(grad)).collect();
@@ -137,10 +155,17 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
             };
             Some((dilation, transposed(self.problem, adjoint, self.trial, raised)))
         });
+        let water = self.water.as_ref().map(|water| (water, water.pressures(v_p)));
+        if let Some((water, pressures)) = &water {
+            let averaged = rate.as_ref().map(|(_, rate)| &rate[..]);
+            out_p.copy_from_slice(&water.multiply(self.problem, (&grad, averaged), pressures, v_p));
+        }
+        let volume = self.problem.volume();
         let mut force = transfer::divergence::<K, D>((shape, &points.x), |p| {
             let flux = contract::<K, D>(&moduli[p], &grad[p]);
             let flux = rate.as_ref().map_or(flux, |(dilation, rate)| flux + dilation[p].flux * rate[p]);
-            pressed.as_ref().map_or(flux, |(dilation, pressed)| flux + dilation[p].trace * pressed[p])
+            let flux = pressed.as_ref().map_or(flux, |(dilation, pressed)| flux + dilation[p].trace * pressed[p]);
+            water.as_ref().map_or(flux, |(water, changes)| flux + water.pressed::<K>(p, changes[p].0) * volume[p])
         });
         if let Some(background) = &nodes.background {
             background.multiply::<D>(shape, v, &mut force);

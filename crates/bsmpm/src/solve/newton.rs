@@ -13,13 +13,16 @@ use crate::solve::quasi_newton::Stopped;
 use crate::solve::stability;
 use crate::step::problem::Problem;
 use crate::step::report::Counts;
-use crate::step::residual::Residual;
+use crate::step::residual::{Balance, Residual};
+use crate::water::newton::{Exact, Scales, direction as coupled};
 
 /// Iterations after which a step is given up: near a solution five or six do.
 const MOST: usize = 30;
 /// Loosest and tightest relative residual of a direction; between them it follows the force measure, so that the
 /// convergence stays quadratic (Dembo, Eisenstat and Steihaug, 1982).
 const FORCING: (f64, f64) = (1e-10, 1e-3);
+/// The loosest where water flows: what preconditions is no factor of the derivative, and each tenth takes products.
+const LOOSE: f64 = 1e-1;
 /// Relative residual above which a direction is none.
 const USELESS: f64 = 0.5;
 /// Shortest part of a direction that is tried.
@@ -46,14 +49,12 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
         if problem.halo.is_interrupted() {
             return Err(StepError::Interrupted.into());
         }
-        let du = match direction(problem, &residual, solver, counts) {
-            Ok(du) => du,
+        let (du, energy) = match direction(problem, (&u, &residual), solver, counts) {
+            Ok(found) => found,
             Err(unsolved) => return Err(Stopped::without_direction(problem, (u, &residual), convergence, unsolved)),
         };
-        let f = &residual.balance.f_oob;
-        let energy = dots(problem.halo, D, &[(&du, f)])[0];
         if !convergence.has_begun() {
-            convergence.begin(first_energy(problem, &du, energy));
+            convergence.begin(first_energy(problem, &du[..problem.nodes.free.len()], energy));
         }
         if convergence.reaches(Method::Newton, energy.abs(), (&u, &residual.balance)) {
             return Ok(Found::new(u, residual, convergence));
@@ -66,13 +67,23 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
     Err(Stopped { error: Box::new(convergence.failed(problem, &residual, None)), best: Some(u) })
 }
 
-/// K du = f_oob with the complete K at this state.
+/// K du = f_oob with the complete K at this state, and du . f_oob; with the pressures behind them where water flows.
 fn direction<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
-    residual: &Residual<K, D>,
+    (x, residual): (&[f64], &Residual<K, D>),
     solver: &mut dyn LinearSolver,
     counts: &mut Counts,
-) -> Result<Vec<f64>, SolveError> {
+) -> Result<(Vec<f64>, f64), SolveError> {
+    if let Some((pores, water)) = problem.nodes.pores.as_ref().zip(residual.balance.water.as_ref()) {
+        let measure = Scales::of(problem, &residual.balance).measure(&residual.balance);
+        let forcing = measure.clamp(FORCING.0, LOOSE);
+        let Exact { dx, energy, krylov } = coupled((problem, pores), (x, residual, water), forcing, solver)?;
+        counts.factorisations += 2;
+        counts.iterations += 1;
+        counts.products += krylov.iterations + 1;
+        counts.linear_iterations += krylov.iterations;
+        return if krylov.residual < USELESS { Ok((dx, energy)) } else { Err(SolveError::Residual(krylov.residual)) };
+    }
     let linearised = Linearised::at(problem, residual);
     linearised.factorise(solver)?;
     counts.factorisations += 1;
@@ -83,10 +94,15 @@ fn direction<K: Kinematics<D>, const D: usize>(
     let krylov = solver.solve_with(&mut product, forcing, &residual.balance.f_oob, &mut du)?;
     counts.products += krylov.iterations + 1;
     counts.linear_iterations += krylov.iterations;
-    if krylov.residual < USELESS { Ok(du) } else { Err(SolveError::Residual(krylov.residual)) }
+    if krylov.residual >= USELESS {
+        return Err(SolveError::Residual(krylov.residual));
+    }
+    let energy = dots(problem.halo, D, &[(&du, &residual.balance.f_oob)])[0];
+    Ok((du, energy))
 }
 
-/// The longest of the direction's first part, half, quarter, .. that lessens the out-of-balance force.
+/// The longest of the direction's first part, half, quarter, .. that lessens the out-of-balance force, and where water
+/// flows what is out of balance in both.
 fn search<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
     u: &[f64],
@@ -94,11 +110,14 @@ fn search<K: Kinematics<D>, const D: usize>(
     residual: &Residual<K, D>,
     counts: &mut Counts,
 ) -> Option<(Vec<f64>, Residual<K, D>)> {
+    let scales = problem.nodes.pores.as_ref().map(|_| Scales::of(problem, &residual.balance));
+    let measure = |of: &Balance| scales.as_ref().map_or(of.norm, |scales| scales.measure(of));
+    let before = measure(&residual.balance);
     let mut length = 1.0;
     while length >= SHORTEST {
         let next: Vec<f64> = u.iter().zip(du).map(|(u, du)| u + length * du).collect();
         let found = evaluate(problem, &next, counts);
-        if found.balance.is_sound() && found.balance.norm <= (1.0 - DECREASE * length) * residual.balance.norm {
+        if found.balance.is_sound() && measure(&found.balance) <= (1.0 - DECREASE * length) * before {
             return Some((next, found));
         }
         length *= 0.5;

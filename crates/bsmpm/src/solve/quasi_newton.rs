@@ -78,7 +78,9 @@ impl Secants {
     ) -> Result<Direction, SolveError> {
         match problem.nodes.pores.as_ref().zip(balance.water.as_ref()) {
             Some((pores, water)) => {
-                let Split { z, f, solved } = Split::of(problem, (pores, balance, water), solver)?;
+                let lacking = water.excess.iter().map(|excess| -excess);
+                let f: Vec<f64> = balance.f_oob.iter().copied().chain(lacking).collect();
+                let Split { z, f, solved } = Split::of(problem, (pores, &f), solver)?;
                 Ok(self.corrected::<D>(z, &f, problem.halo, solved))
             }
             None => self.direction::<D>(&balance.f_oob, problem.halo, solver),

@@ -198,6 +198,12 @@ impl<K: Kinematics<D>, const D: usize> Trial<K, D> {
         tau
     }
 
+    /// J p of point `p`, Pa, where water flows.
+    #[inline]
+    pub(crate) fn pore_at(&self, p: usize) -> Option<f64> {
+        self.pore.as_ref().map(|pore| pore[p])
+    }
+
     /// Steps (4f)-(4i): trial b^e of point `p` under dF-bar, widened by its gap, and the constitution's answer.
     #[inline(always)]
     pub fn respond(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> Result<Response, MaterialError> {

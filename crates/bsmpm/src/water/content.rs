@@ -1,7 +1,7 @@
 //! How much water a soil holds.
 
 use crate::water::flow::Soil;
-use crate::water::retention::Retained;
+use crate::water::retention::{Retained, RetainedChange, Retention};
 
 impl<const D: usize> Soil<D> {
     /// Water per volume of the start, of soil that has become `J` times that volume, under the excess pressure `p`, Pa;
@@ -15,6 +15,13 @@ impl<const D: usize> Soil<D> {
     #[inline]
     pub fn retained(&self, p: f64, weight: f64) -> Retained {
         self.retention.as_ref().map_or(Retained::FULL, |retention| retention.under(p, weight))
+    }
+
+    /// What those change by with the whole pore pressure, which was `before`, Pa.
+    #[inline]
+    pub fn retained_change(&self, before: f64, now: f64, weight: f64) -> RetainedChange {
+        let change = |retention: &Retention| retention.change(before, now, weight);
+        self.retention.as_ref().map_or(RetainedChange::default(), change)
     }
 
     /// 1/Pa  see [`Retention::chord`](crate::water::retention::Retention::chord); 0 of pores that stay full

@@ -126,6 +126,14 @@ impl Drainage {
         }
     }
 
+    /// Adds what that changes by where the pressures `p` change by `v`, Pa.
+    pub fn add_changes(&self, p: &[f64], v: &[f64], out: &mut Contributions) {
+        for outlet in self.outlets.iter().filter(|outlet| outlet.is_open(&self.offsets, p)) {
+            let change = outlet.conductance * outlet.attachment.value(&self.offsets, v);
+            outlet.attachment.scatter_value(&self.offsets, change, out);
+        }
+    }
+
     /// Which of the surface points of this rank let water through under the excess pressures `p`, Pa: of those that let
     /// it out only.
     pub fn open(&self, p: &[f64]) -> Vec<bool> {

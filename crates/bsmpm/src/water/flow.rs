@@ -65,6 +65,15 @@ impl PermeabilityLaw {
             Self::KozenyCarman => of((1.0 - (1.0 - porosity) / J).max(0.0)) / of(porosity),
         }
     }
+
+    /// What the logarithm of that changes by per change of ln J.
+    pub fn relative_change(self, porosity: f64, J: f64) -> f64 {
+        let solid = (1.0 - porosity) / J;
+        match self {
+            Self::KozenyCarman if solid < 1.0 => solid * (3.0 / (1.0 - solid) + 2.0 / solid),
+            _ => 0.0,
+        }
+    }
 }
 
 /// What a soil is to water.

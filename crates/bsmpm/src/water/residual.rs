@@ -177,7 +177,7 @@ impl<const D: usize> Flowing<D> {
 }
 
 /// dF^-T times a gradient.
-fn pushed<const D: usize>(inverse: &Tensor, gradient: &Vector<D>) -> Vector<D> {
+pub fn pushed<const D: usize>(inverse: &Tensor, gradient: &Vector<D>) -> Vector<D> {
     Vector::from_fn(|i, _| (0..D).map(|j| inverse[(j, i)] * gradient[j]).sum())
 }
 

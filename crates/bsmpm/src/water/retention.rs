@@ -29,6 +29,17 @@ pub struct Retained {
     pub permeability: f64,
 }
 
+/// Derivatives by the pore pressure.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RetainedChange {
+    /// 1/Pa  of the effective saturation
+    pub effective: f64,
+    /// 1/Pa  of the relative permeability
+    pub permeability: f64,
+    /// 1/Pa2  of [`Retention::chord`]
+    pub chord: f64,
+}
+
 impl Retained {
     /// All pores full of water.
     pub const FULL: Self = Self { saturation: 1.0, slope: 0.0, effective: 1.0, permeability: 1.0 };
@@ -54,6 +65,38 @@ impl Retention {
             effective,
             permeability: (effective.sqrt() * wide.powi(2)).max(LEAST),
         }
+    }
+
+    /// What changes with the pore pressure `now`, Pa, which was `before`; where its functions have kinks on their sides
+    /// of the full and of the driest soil.
+    pub fn change(&self, before: f64, now: f64, weight: f64) -> RetainedChange {
+        if now >= 0.0 {
+            return RetainedChange { chord: self.chord_change(before, now, weight), ..RetainedChange::default() };
+        }
+        let (n, m, found) = (self.n, 1.0 - 1.0 / self.n, self.under(now, weight));
+        let head = self.alpha * -now / weight;
+        let drawn = head.powf(n);
+        let effective = found.slope / (1.0 - self.residual);
+        let wide = 1.0 - (drawn / (1.0 + drawn)).powf(m);
+        // (drawn/(1 + drawn))^(m-1) has the factor head^-1, as n (1 - m) = 1.
+        let widens = m * n * self.alpha / weight * head.powf(n - 2.0) * (1.0 + drawn).powf(-1.0 - m);
+        let root = found.effective.sqrt();
+        let permeability = 0.5 * effective / root * wide.powi(2) + 2.0 * root * wide * widens;
+        let conducts = found.permeability > LEAST;
+        RetainedChange {
+            effective,
+            permeability: if conducts { permeability } else { 0.0 },
+            chord: self.chord_change(before, now, weight),
+        }
+    }
+
+    fn chord_change(&self, before: f64, now: f64, weight: f64) -> f64 {
+        let change = now - before;
+        // Where the chord is the slope itself, half of what that changes by; next to nothing of the tau term.
+        if change.abs() < 1e-6 * weight {
+            return 0.0;
+        }
+        (self.under(now, weight).slope - self.chord(before, now, weight)) / change
     }
 
     /// 1/Pa  what the saturation changes by over what the pressure does between `before` and `now`, Pa.

@@ -8,9 +8,8 @@ use crate::error::SolveError;
 use crate::kinematics::Kinematics;
 use crate::parallel::{LinearSolver, Solved};
 use crate::step::problem::Problem;
-use crate::step::residual::Balance;
 use crate::water::nodes::Pores;
-use crate::water::residual::{WaterBalance, pressing};
+use crate::water::residual::pressing;
 
 /// A direction before secants, the forces that it balances, and what it took.
 pub struct Split {
@@ -23,14 +22,15 @@ pub struct Split {
 }
 
 impl Split {
-    /// Of what is out of balance. One exchange with the neighbours besides those of the solutions.
+    /// Of forces, N, and behind them what the water lacks, m3: (f_oob, -R). One exchange with the neighbours besides
+    /// those of the solutions.
     pub fn of<K: Kinematics<D>, const D: usize>(
         problem: &Problem<'_, K, D>,
-        (pores, balance, water): (&Pores<D>, &Balance, &WaterBalance),
+        (pores, out_of_balance): (&Pores<D>, &[f64]),
         solver: &mut dyn LinearSolver,
     ) -> Result<Self, SolveError> {
-        let mut f: Vec<f64> = balance.f_oob.iter().copied().chain(water.excess.iter().map(|excess| -excess)).collect();
-        let (f_u, f_p) = f.split_at_mut(balance.f_oob.len());
+        let mut f = out_of_balance.to_vec();
+        let (f_u, f_p) = f.split_at_mut(problem.nodes.free.len());
         let mut z = vec![0.0; f_u.len() + f_p.len()];
         let (z_u, z_p) = z.split_at_mut(f_u.len());
         let of_water = system(solver)?.solve(f_p, z_p)?;

@@ -5,6 +5,7 @@ mod dynamic;
 mod element;
 mod large;
 mod mandel;
+mod newton;
 mod pair;
 mod partial;
 mod terzaghi;

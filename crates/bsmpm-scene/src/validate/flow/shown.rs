@@ -72,11 +72,8 @@ fn discretised(case: &Case, root: &Record, report: &mut Report<'_>) {
         record.error("method", message, report);
     }
     let Some(solver) = root.record("solver") else { return };
-    if case.solver.nonlinear != crate::Nonlinear::Auto {
-        let message = format!(
-            "\"{}\" is not available with water that flows: take \"auto\", which halves steps that stall",
-            case.solver.nonlinear
-        );
+    if case.solver.nonlinear == crate::Nonlinear::Broyden {
+        let message = "\"broyden\" knows no pressures of water that flows: take \"auto\"";
         solver.error("nonlinear", message, report);
     }
     if case.solver.quadrature == Quadrature::Fitted {

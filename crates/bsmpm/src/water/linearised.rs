@@ -1,0 +1,156 @@
+//! The derivative of the water's balance, and of what the water presses with, for Newton's method.
+//!
+//! With l = (grad v) dF^-1: dJ = J tr l, d(dF^-T grad p) = dF^-T grad dp - l^T dF^-T grad p, d(J dF^-1 w) = J dF^-1
+//! (tr l w - l w + dw), where w follows the gradient, the porosity by J-bar, and the saturation.
+
+use crate::grid::transfer::scalars;
+use crate::kinematics::{Gradient, Kinematics};
+use crate::model::Model;
+use crate::points::Points;
+use crate::step::problem::Problem;
+use crate::step::trial::Trial;
+use crate::tensor::{Tensor, Vector};
+use crate::water::nodes::{Pores, Wet};
+use crate::water::residual::pushed;
+
+/// The derivative at one state.
+pub struct LinearisedWater<'a, const D: usize> {
+    pores: &'a Pores<D>,
+    p: &'a [f64], // Pa, nodal
+    points: Vec<Option<Change<D>>>,
+}
+
+/// What changes at a point that water flows through.
+struct Change<const D: usize> {
+    inverse: Tensor, // dF^-1
+    J: f64,
+    stored: (f64, f64),          // per reference volume, by tr l and, 1/Pa, by the pressure
+    w: Vector<D>,                // m/s
+    now: Vector<D>,              // Pa/m  dF^-T grad p
+    conducts: Vector<D>,         // m/s per Pa/m  k k_r/gamma_w
+    relative: (f64, f64),        // of w, by d ln J-bar and, 1/Pa, by the pressure
+    tau: (Vector<D>, Vector<D>), // of the tau term, by the pressure's gradient and by the pressure
+    presses: f64,                // -  d(J chi p)/dp
+}
+
+/// Changes at a point for displacements and pressures.
+pub struct Changed<const D: usize> {
+    /// m3
+    pub stored: f64,
+    /// m3 m  what flows in the step, and the tau term
+    pub flux: Vector<D>,
+}
+
+impl<'a, const D: usize> LinearisedWater<'a, D> {
+    /// Where the nodal excess pressures are `p`, Pa.
+    pub fn at<K: Kinematics<D>>(
+        (problem, pores): (&Problem<'_, K, D>, &'a Pores<D>),
+        trial: &Trial<K, D>,
+        p: &'a [f64],
+    ) -> Self {
+        let points = scalars::scalars(&pores.shape, p, |p, pressure, gradient| {
+            let (wet, dF) = (pores.wet[p].as_ref()?, trial.dF(p));
+            let deformed = (&dF, trial.dilation(problem.model, problem.points, p));
+            Change::at(problem.model, (problem.points, p), wet, deformed, (pressure, gradient))
+        });
+        Self { pores, p, points }
+    }
+
+    /// What a change `v` of the nodal pressures (Pa), with the gradients of the displacements `grad`, and what they make of
+    /// ln(J-bar/J) under F-bar, makes of the water's balance, m3, nodal, zero where the pressure is no unknown. One
+    /// exchange with the neighbours.
+    pub fn multiply<K: Kinematics<D>>(
+        &self,
+        problem: &Problem<'_, K, D>,
+        (grad, averaged): (&[K::Gradient], Option<&[f64]>),
+        pressures: &[(f64, Vector<D>)],
+        v: &[f64],
+    ) -> Vec<f64> {
+        let pores = self.pores;
+        let mut sums = scalars::of_scalars(&pores.shape, |p| {
+            let none = (0.0, Vector::zeros());
+            let Some((change, wet)) = self.points[p].as_ref().zip(pores.wet[p].as_ref()) else { return [none] };
+            let l = K::gradient::<f64>(&grad[p]) * change.inverse;
+            let Changed { stored, flux } =
+                change.of((&l, averaged.map_or(0.0, |rate| rate[p])), pressures[p], (wet, pores.dt));
+            [(stored, flux)]
+        });
+        pores.drainage.add_changes(self.p, v, &mut sums);
+        let mut sums = problem.halo.sum(&sums);
+        pores.ties.add_to(v, &mut sums, |node| node);
+        sums.iter_mut().zip(&pores.free).filter(|(_, free)| !**free).for_each(|(sum, _)| *sum = 0.0);
+        sums
+    }
+
+    /// Changes of the pressure at the points, and of its gradient, for one of the nodal pressures, Pa.
+    pub fn pressures(&self, v: &[f64]) -> Vec<(f64, Vector<D>)> {
+        scalars::scalars(&self.pores.shape, v, |_, value, gradient| (value, gradient))
+    }
+
+    /// What the pressure's change at point `p`, Pa, adds to what works on the gradients there, per volume.
+    pub fn pressed<K: Kinematics<D>>(&self, p: usize, change: f64) -> K::Gradient {
+        self.points[p]
+            .as_ref()
+            .map_or_else(K::Gradient::zeros, |at| K::working::<f64>(&at.inverse.transpose()) * (-at.presses * change))
+    }
+}
+
+impl<const D: usize> Change<D> {
+    fn at<K>(
+        model: &Model<K, D>,
+        (points, p): (&Points<D>, usize),
+        wet: &Wet<D>,
+        (dF, dilation): (&Tensor, f64),
+        (pressure, gradient): (f64, Vector<D>),
+    ) -> Option<Self> {
+        let water = model.water.as_ref()?;
+        let flow = water.flow.as_ref()?;
+        let soil = flow.soils[usize::from(points.material[p])].as_ref()?;
+        let (inverse, J) = (dF.try_inverse()?, wet.J * dF.determinant());
+        let (whole, weight) = (pressure + wet.ambient, water.unit_weight);
+        let (retained, change) = (soil.retained(whole, weight), soil.retained_change(wet.pressure, whole, weight));
+        let denser = (whole / flow.bulk).exp();
+        let content = soil.content(flow.bulk, J, whole);
+        let stored = (denser * retained.saturation * J, content * (retained.saturation / flow.bulk + retained.slope));
+        let now = pushed(&inverse, &gradient);
+        let permeability = flow.permeability(points.material[p], J * dilation).unwrap_or_else(Vector::zeros);
+        let conducts = permeability * (retained.permeability / weight);
+        let w = -(now + wet.drive).component_mul(&conducts);
+        let by_volume =
+            soil.permeability.as_ref().map_or(0.0, |law| law.law.relative_change(soil.porosity, J * dilation));
+        let lumps = wet.stiffness / wet.J * soil.pores(wet.mean_J);
+        let lumped = 1.0 + lumps * soil.chord(wet.pressure, whole, weight);
+        let tau = wet.tau.component_mul(&(gradient + wet.still - wet.before)) * (lumps * change.chord);
+        Some(Self {
+            inverse,
+            J,
+            stored,
+            w,
+            now,
+            conducts,
+            relative: (by_volume, change.permeability / retained.permeability),
+            tau: (wet.tau * lumped, tau),
+            presses: J * (retained.effective + change.effective * whole),
+        })
+    }
+
+    fn of(
+        &self,
+        (l, averaged): (&Tensor, f64),
+        (pressure, gradient): (f64, Vector<D>),
+        (wet, dt): (&Wet<D>, f64),
+    ) -> Changed<D> {
+        let trace = l.trace();
+        let turned = |along: &Vector<D>| -> Vector<D> {
+            Vector::from_fn(|i, _| (0..D).map(|j| l[(j, i)] * along[j]).sum::<f64>())
+        };
+        let now = pushed(&self.inverse, &gradient) - turned(&self.now);
+        let relative = self.relative.0 * (trace + averaged) + self.relative.1 * pressure;
+        let w = self.w * (relative + trace) - now.component_mul(&self.conducts);
+        let w = w - Vector::from_fn(|i, _| (0..D).map(|j| l[(i, j)] * self.w[j]).sum::<f64>());
+        let flux = Vector::from_fn(|i, _| self.J * (0..D).map(|j| self.inverse[(i, j)] * w[j]).sum::<f64>());
+        let stored = wet.volume * (self.stored.0 * trace + self.stored.1 * pressure);
+        let tau = self.tau.0.component_mul(&gradient) + self.tau.1 * pressure;
+        Changed { stored, flux: tau - flux * (dt * wet.volume) }
+    }
+}

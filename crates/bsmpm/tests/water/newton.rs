@@ -1,0 +1,220 @@
+//! Newton's method where water flows: the product is the derivative, the forces and the water fall with their squares,
+//! and steps that secants do not do.
+
+use super::{DENSITY, Plane, at, flowing};
+use crate::support::random::Random;
+use crate::support::scene::{Scene, axis};
+use crate::support::solver::Skyline;
+use bsmpm::background::{Background, Extent, Kind};
+use bsmpm::boundary::strip::StripAttachments;
+use bsmpm::boundary::{Load, Support, SurfacePoint};
+use bsmpm::error::StepError;
+use bsmpm::grid::Shape;
+use bsmpm::kinematics::{Axisymmetric, Kinematics, PlaneStrain, Solid};
+use bsmpm::material::{Elastic, Material, MohrCoulomb};
+use bsmpm::method::{Criteria, Method, Nonlinear, QuasiNewton};
+use bsmpm::model::Regime;
+use bsmpm::observe::{Part, largest_displacement};
+use bsmpm::solve::linearised::Linearised;
+use bsmpm::stabilisation::Stabilisation;
+use bsmpm::step::nodes::Nodes;
+use bsmpm::step::problem::Problem;
+use bsmpm::step::residual::Residual;
+use bsmpm::step::{Counts, StepReport, step};
+use bsmpm::tensor::{Symmetric, Tensor, Vector};
+use bsmpm::water::Water;
+use bsmpm::water::ambient::Ambient;
+use bsmpm::water::flow::{Course, Drain, DrainedFace, Flow, Given, Inflow, Permeability, PermeabilityLaw, Soil};
+use bsmpm::water::retention::Retention;
+
+/// Soil of which some yields, with water that flows, a drain, a seepage face and rain that runs off.
+fn wet<K: Kinematics<D>, const D: usize>(
+    (method, regime): (Stabilisation, Regime),
+    dilation: f64,
+    retention: Option<Retention>,
+) -> Scene<K, D> {
+    let soil = MohrCoulomb::new(Elastic { young: 1000.0, poisson: 0.3 }, 0.5, dilation, 1.0);
+    let axes = std::array::from_fn(|k| axis(1.0, if k == 0 { 3 } else { 2 }, 2));
+    let mut scene = Scene::<K, D>::new(axes, Material::MohrCoulomb(soil), regime).stabilised(method);
+    scene = scene.body([const { 0..2 }; D], 3, 1.0, |_| Vector::zeros()).support(Support::fixed(D - 1, false));
+    scene = scene.gravity(10.0, 0.0);
+    scene.model.background = Some(Background { kind: Kind::Strain, coefficient: 1e-3, extent: Extent::Occupied });
+    let mut random = Random::new(3);
+    for p in 0..scene.points.len() {
+        scene.points.x[p] += random.vector::<D>() * 0.02;
+        let strain: Vec<f64> = random.array(6).iter().map(|r| 0.01 * r).collect();
+        let strain = Symmetric(std::array::from_fn(|c| if D == 2 && c > 3 { 0.0 } else { strain[c] }));
+        scene.points.b_e.set(p, Symmetric::of(&(Tensor::from_diagonal_element(0.995) + strain.full())));
+    }
+    scene.points.pore_pressure = Some((0..scene.points.len()).map(|_| 20.0 * random.signed()).collect());
+    scene.points.sort_by_cell(&scene.model.grid);
+    let side = |height: f64| {
+        let mut x = Vector::<D>::from_element(0.7);
+        (x[0], x[D - 1]) = (1.9, height);
+        vec![SurfacePoint { x, area: 0.5 }]
+    };
+    let normals = vec![Vector::<D>::from_fn(|k, _| f64::from(u8::from(k == 0)))];
+    let permeability =
+        Permeability { along: Vector::from_fn(|k, _| 0.02 * (k + 1) as f64), law: PermeabilityLaw::KozenyCarman };
+    let soil = Soil { porosity: 0.4, permeability: Some(permeability), retention };
+    let drain = |height: f64, given: Given| Drain { points: side(height), normals: normals.clone(), given };
+    let rate = Course(vec![(0.0, 0.3)]);
+    let inflow = Inflow { points: side(1.3), normals: normals.clone(), rate, runs_off: true };
+    let flow = Flow {
+        bulk: 3000.0,
+        soils: vec![Some(soil)],
+        drains: vec![drain(0.3, Given::StillWater), drain(0.8, Given::Seepage), drain(1.8, Given::Seepage)],
+        faces: vec![DrainedFace { axis: 0, upper: false, given: Given::Pressure(Course(vec![(0.0, 5.0)])) }],
+        inflows: vec![inflow],
+        suction: 0.0,
+    };
+    scene.model.water = Some(Water { unit_weight: 10.0, ambient: Ambient::Level(vec![(0.0, 0.9)]), flow: Some(flow) });
+    scene
+}
+
+/// Largest distances between the product and the central difference of the forces and of the water's balance, each over
+/// the largest of its kind; points that yield.
+fn product_errors<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>) -> ([f64; 2], usize) {
+    let (model, points, halo) = (&scene.model, &scene.points, scene.halo());
+    let shape = Shape::at(&model.grid, points).unwrap();
+    let nodes = Nodes::map(model, &shape, points, (0.0, 0.1), &halo).expect("no loads");
+    let grips = StripAttachments::at(&[], &points.surface, (&model.grid, &nodes.free), (0.0, 0.1));
+    let pieces = Problem { model, shape: &shape, nodes: &nodes, grips: &grips, points, halo: &halo };
+    let pores = nodes.pores.as_ref().expect("water flows");
+    let mut random = Random::new(11);
+    let mut free = |(length, pressure): (f64, f64)| -> Vec<f64> {
+        let all = nodes.free.iter().map(|free| (free, length)).chain(pores.free.iter().map(|free| (free, pressure)));
+        all.map(|(free, size)| if *free { size * random.signed() } else { 0.0 }).collect()
+    };
+    let (mut x, v) = (free((0.01, 10.0)), free((1.0, 1e3)));
+    for (at, given) in pores.prescribed.iter().enumerate() {
+        x[nodes.free.len() + at] += given.unwrap_or(0.0);
+    }
+    let residual = Residual::of(&pieces, &x);
+    assert!(residual.balance.is_sound());
+    let yielding = (0..points.len())
+        .filter(|&p| residual.trial.respond(model, points, p).is_ok_and(|response| response.plastic_increment() > 0.0));
+    let mut product = vec![0.0; x.len()];
+    Linearised::at(&pieces, &residual).with_water(&x).multiply(&v, &mut product);
+    let step = 1e-7;
+    let lacking = |by: f64| -> Vec<f64> {
+        let x: Vec<f64> = x.iter().zip(&v).map(|(x, v)| x + by * v).collect();
+        let balance = Residual::of(&pieces, &x).balance;
+        balance
+            .f_oob
+            .iter()
+            .copied()
+            .chain(balance.water.iter().flat_map(|water| water.excess.iter().map(|R| -R)))
+            .collect()
+    };
+    let (after, before) = (lacking(step), lacking(-step));
+    let errors = [0..nodes.free.len(), nodes.free.len()..x.len()].map(|range| {
+        let size = product[range.clone()].iter().fold(0.0_f64, |size, value| size.max(value.abs()));
+        assert!(size > 0.0);
+        range.map(|c| (product[c] + (after[c] - before[c]) / (2.0 * step)).abs() / size).fold(0.0, f64::max)
+    });
+    (errors, yielding.count())
+}
+
+#[test]
+fn the_product_is_the_derivative_of_both_balances() {
+    let loam = Retention { alpha: 0.3, n: 1.6, residual: 0.1 };
+    for method in [Stabilisation::None, Stabilisation::ConsistentFBar] {
+        for regime in [Regime::QuasiStatic, Regime::Dynamic] {
+            for (dilation, retention) in [(0.0, None), (0.3, None), (0.1, Some(loam))] {
+                let found = [
+                    product_errors(&wet::<PlaneStrain, 2>((method, regime), dilation, retention)),
+                    product_errors(&wet::<Axisymmetric, 2>((method, regime), dilation, retention)),
+                    product_errors(&wet::<Solid, 3>((method, regime), dilation, retention)),
+                ];
+                println!("{method:?}, {regime:?}, {dilation}, {}: {found:?}", retention.is_some());
+                for (errors, yielding) in found {
+                    assert!(errors.iter().all(|error| *error < 1e-6), "{errors:?}"); // central differences
+                    assert!(yielding > 0, "both responses are seen");
+                }
+            }
+        }
+    }
+}
+
+/// Clay under a load on the left half of its surface that grows to `load`, Pa, in 1 s; drained on top.
+fn loaded(nonlinear: Nonlinear, method: Stabilisation, load: f64, law: PermeabilityLaw) -> Plane {
+    let clay = MohrCoulomb::new(Elastic { young: 1e6, poisson: 0.3 }, 25_f64.to_radians(), 0.0, 2e3);
+    let mut scene = Plane::new([axis(0.5, 6, 2), axis(0.5, 4, 2)], Material::MohrCoulomb(clay), Regime::QuasiStatic)
+        .body([0..6, 0..4], 3, DENSITY, |x| x * 0.0)
+        .rollers(0..1)
+        .support(Support::fixed(1, false))
+        .stabilised(method);
+    let mut water = flowing(law);
+    let flow = water.flow.as_mut().expect("it flows");
+    flow.faces.push(DrainedFace { axis: 1, upper: true, given: Given::StillWater });
+    flow.soils[0].as_mut().and_then(|soil| soil.permeability.as_mut()).expect("a soil").along *= 0.1;
+    scene.model.water = Some(water);
+    scene.model.nonlinear = nonlinear;
+    scene.model.criteria = Criteria { energy: 1e-16, force: 1e-9, max_iterations: 400 };
+    let surface = (0..9).map(|k| SurfacePoint { x: at((f64::from(k) + 0.5) / 6.0, 2.0), area: 1.0 / 6.0 });
+    scene.load(Load::dead(surface.collect(), at(0.0, -load), 1.0))
+}
+
+/// Steps a scene to these times; largest displacement, m, what the steps took, and products of the derivative.
+fn steps(scene: &mut Plane, times: &[f64]) -> Result<(f64, Vec<StepReport>, usize), StepError> {
+    let halo = scene.halo();
+    let mut solver = Skyline::new(&scene.model.grid);
+    let (mut guess, mut t, mut reports) = (vec![0.0; scene.model.grid.nodes() * 2], 0.0, Vec::new());
+    let mut products = 0;
+    for next in times {
+        let (dt, mut counts) = (next - t, Counts::default());
+        reports.push(step(&scene.model, &mut scene.points, &mut guess, (t, dt), (&halo, &mut solver), &mut counts)?);
+        products += counts.products;
+        t = *next;
+        scene.points.sort_by_cell(&scene.model.grid);
+    }
+    Ok((largest_displacement(&scene.points, &Part::Whole, &halo), reports, products))
+}
+
+#[test]
+fn forces_and_water_fall_with_their_squares() {
+    for method in [Stabilisation::None, Stabilisation::ConsistentFBar] {
+        for law in [PermeabilityLaw::Constant, PermeabilityLaw::KozenyCarman] {
+            let mut found = Vec::new();
+            for nonlinear in [Nonlinear::Newton, Nonlinear::Auto] {
+                let mut scene = loaded(nonlinear, method, 9e3, law);
+                let (u, reports, products) = steps(&mut scene, &[0.25, 0.5, 0.75, 1.0]).expect("it converges");
+                found.push((u, reports.iter().map(|report| report.iterations).sum::<usize>(), products));
+                let last = reports.last().expect("steps");
+                let measures: Vec<(f64, f64)> =
+                    last.history.iter().map(|m| (m.force, m.water.expect("flows"))).collect();
+                if nonlinear == Nonlinear::Auto {
+                    continue;
+                }
+                println!("{method:?}, {law:?}: {measures:?}");
+                assert!(last.history.iter().all(|measures| measures.method == Method::Newton) && measures.len() <= 5);
+                // Once the plastic set no longer changes; measured C, of the larger of both: 3.1 to 3.8.
+                let [.., before, after] = measures[..] else { panic!("too few iterations") };
+                assert!(after.0.max(after.1) <= 10.0 * before.0.max(before.1).powi(2), "{measures:?}");
+            }
+            println!("displacement, iterations, products: {found:?}");
+            let ([newton, auto], [quick, slow]) = ([found[0].0, found[1].0], [found[0].1, found[1].1]);
+            assert!((newton / auto - 1.0).abs() < 1e-6 && quick < slow, "the same state in fewer iterations");
+            assert!(found[0].2 < 10 * quick, "the split is near the derivative: {} products", found[0].2);
+        }
+    }
+}
+
+/// Next to what the clay bears without drainage, in one step: secants take 53 iterations, and are given 40.
+#[test]
+fn it_does_a_step_that_secants_do_not() {
+    let attempt = |nonlinear: Nonlinear| {
+        let law = PermeabilityLaw::KozenyCarman;
+        let mut scene = loaded(nonlinear, Stabilisation::ConsistentFBar, 1.014e4, law);
+        scene.model.criteria = Criteria { energy: 1e-8, force: 1e-4, max_iterations: 40 };
+        let found =
+            steps(&mut scene, &[1.0]).map(|(_, reports, _)| (reports[0].iterations, reports[0].newton_iterations));
+        println!("{nonlinear:?}: {:?}", found.as_ref().map_err(|error| error.to_string()));
+        found.ok()
+    };
+    assert_eq!(attempt(Nonlinear::QuasiNewton(QuasiNewton::Multisecant)), None, "secants alone do not");
+    let (iterations, newton) = attempt(Nonlinear::Auto).expect("a step");
+    assert!(newton == iterations && newton <= 15, "from the same guess");
+    assert_eq!(attempt(Nonlinear::Newton), Some((iterations, newton)));
+}
