@@ -5,8 +5,7 @@ use crate::support::cases::changed;
 use crate::support::results::{at, differences, history, last_frame, manifest};
 use std::f64::consts::PI;
 
-/// A cylinder of soil that stands on a fixed base under its weight, in a sleeve that a ring of load rests on; a rigid cone
-/// comes down on it.
+/// A cylinder of soil that stands on a fixed base under its weight and a ring of load; a rigid cone comes down on it.
 const CASE: &str = r#"
 geometry = "axisymmetric"
 [analysis]
@@ -106,8 +105,8 @@ fn a_body_of_revolution_is_the_same_on_1_2_and_3_ranks_and_over_restarts() {
     assert!(whole.reason.contains("of the whole circle"));
 }
 
-/// A disc that is pressed elastically: work of the footing is its energy, its force the pressure times the area, and that of
-/// the base.
+/// A disc that is pressed elastically: its work is the body's energy, its force the pressure times the area, and that
+/// of the base.
 #[test]
 fn forces_and_works_of_a_disc_are_of_the_whole_of_it() {
     let pressed = changed(CASE, "type = \"dynamic\"\nend = 0.06\ndt = 0.002", "type = \"quasi-static\"\nsteps = 4");
