@@ -74,7 +74,8 @@ pub struct Manifest {
     /// What the ranks told each other, by kind.
     #[serde(default)]
     pub communication: BTreeMap<String, Communication>,
-    /// What solved the linear systems: `stiffness`, which the secants correct, and `newton`, Newton's general ones.
+    /// What solved the linear systems: `stiffness`, which the secants correct, `newton`, Newton's general ones, and
+    /// `water`, those of the pore pressures.
     #[serde(default)]
     pub linear: BTreeMap<String, SolverNames>,
     /// How evenly the work lay on them; none on one rank.

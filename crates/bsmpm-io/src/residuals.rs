@@ -53,31 +53,36 @@ pub struct Iterate {
     pub energy: f64,
     /// The force measure.
     pub force: f64,
+    /// The measure of the water, where some flows; NaN where none flows.
+    pub water: f64,
 }
 
 impl Iterate {
-    /// The file's columns; `time_unit` is `s`, or `-` for pseudo-time.
-    pub fn columns(time_unit: &str) -> [TableColumn; 6] {
-        [("step", "-"), ("time", time_unit), ("iteration", "-"), ("method", "-"), ("energy", "-"), ("force", "-")]
-            .map(|(name, unit)| TableColumn::new(name, unit))
+    /// The file's columns, the last one where water flows; `time_unit` is `s`, or `-` for pseudo-time.
+    pub fn columns(time_unit: &str, flows: bool) -> Vec<TableColumn> {
+        let all = ["step", "time", "iteration", "method", "energy", "force", "water"];
+        let unit = |name: &str| if name == "time" { time_unit } else { "-" };
+        all[..6 + usize::from(flows)].iter().map(|name| TableColumn::new(name, unit(name))).collect()
     }
 
     /// The iteration as a row under [`Iterate::columns`].
-    pub fn cells(&self) -> [Cell; 6] {
+    pub fn cells(&self, flows: bool) -> Vec<Cell> {
         let measure = |value: f64| if value.is_finite() { Cell::Float(value) } else { Cell::Empty };
-        [
+        let mut cells = vec![
             Cell::Int(self.step),
             Cell::Float(self.time),
             Cell::Int(self.iteration),
             self.method.map_or(Cell::Empty, |method| Cell::Word(method.word())),
             measure(self.energy),
             measure(self.force),
-        ]
+        ];
+        cells.extend(flows.then(|| measure(self.water)));
+        cells
     }
 
     fn parse(line: &str) -> Option<Self> {
         let cells: Vec<&str> = line.split(',').collect();
-        let [step, time, iteration, method, energy, force] = cells[..] else { return None };
+        let [step, time, iteration, method, energy, force, ref water @ ..] = cells[..] else { return None };
         let measure = |cell: &str| if cell.is_empty() { Some(f64::NAN) } else { cell.parse().ok() };
         Some(Self {
             step: step.parse().ok()?,
@@ -86,6 +91,11 @@ impl Iterate {
             method: if method.is_empty() { None } else { Some(ResidualMethod::of(method)?) },
             energy: measure(energy)?,
             force: measure(force)?,
+            water: match water {
+                [] => f64::NAN,
+                [water] => measure(water)?,
+                _ => return None,
+            },
         })
     }
 }

@@ -17,6 +17,7 @@ use bsmpm::parallel::Halo;
 use bsmpm::points::Points;
 use bsmpm::quadrature::Quadrature;
 use bsmpm::stabilisation::Stabilisation;
+use bsmpm::water::observed::PoreWater;
 use bsmpm_io::manifest::{Indicator, Summary};
 use bsmpm_scene::{Body, Case, GridAxis};
 use std::collections::BTreeMap;
@@ -36,6 +37,8 @@ const NOISE: [f64; 2] = [0.25, 0.3];
 const ENERGY: [f64; 2] = [1e-4, 0.1];
 /// Usual growth of energy beyond the work done; the run ends at .05.
 const GROWTH: f64 = 0.02;
+/// Usual part of the water that is lost: a step may leave so much of its own.
+const WATER: f64 = 1e-4;
 /// Part of the thinnest body along which smoothing is usual: of all strain in every step, and of the elastic dilation
 /// in proportion to plastic flow, which renews it.
 const SMOOTHED: [f64; 2] = [0.1, 1.5];
@@ -60,6 +63,7 @@ pub struct IndicatorState {
     noise: Noise,
     energy: Option<Energy>,
     growth: Option<f64>,
+    water: Option<f64>, // part of it that was lost
 }
 
 /// Energy that is not accounted for, and that the algorithm lost, over the largest energy.
@@ -70,9 +74,9 @@ struct Energy {
 }
 
 impl IndicatorState {
-    /// Of the points of all ranks. Collective; the same on all.
+    /// Of the points of all ranks at a time. Collective; the same on all.
     pub fn of<K: Kinematics<D>, const D: usize>(
-        (model, points): (&Model<K, D>, &Points<D>),
+        (model, points, t): (&Model<K, D>, &Points<D>, f64),
         (recorder, budget): (&Recorder<D>, Option<Budget>),
         halo: &dyn Halo,
     ) -> Result<Self, StepError> {
@@ -85,14 +89,18 @@ impl IndicatorState {
             let largest = numbers.into_iter().fold(f64::MIN_POSITIVE, f64::max);
             Energy { closure: books.closure(now).abs() / largest, loss: books.flows.numerical() / largest }
         });
-        Ok(Self { defect, compression, noise, energy, growth: budget.map(|budget| budget.growth) })
+        let water = PoreWater::of(model, points, t).and_then(|water| water.balance(halo)).map(f64::abs);
+        Ok(Self { defect, compression, noise, energy, growth: budget.map(|budget| budget.growth), water })
     }
 
     /// The indicators of a run of a case, by name: of what is in it.
     pub fn indicators(&self, case: &Case, summary: &Summary) -> BTreeMap<String, Indicator> {
         let mut all = self.rows();
-        let measures =
-            [("force-measure", summary.largest_force_measure), ("energy-measure", summary.largest_energy_measure)];
+        let measures = [
+            ("force-measure", summary.largest_force_measure),
+            ("energy-measure", summary.largest_energy_measure),
+            ("water-measure", summary.largest_water_measure),
+        ];
         for (name, value) in measures {
             let meaning = "largest of a step that was accepted by it, over its tolerance";
             all.extend(value.map(|value| (name, Indicator::new(value, "-", meaning, [0.0, 1.0]))));
@@ -156,6 +164,11 @@ impl IndicatorState {
             let meaning = "largest excess of kinetic, elastic and dissipated energy over that of the start and all work \
                            since, over the largest energy";
             rows.push(row("energy-growth", growth, meaning, GROWTH));
+        }
+        if let Some(lost) = self.water {
+            let meaning = "water that is not accounted for, over the larger of what crossed the ground's surface and what its \
+                           points took in and gave off";
+            rows.push(row("water-balance", lost, meaning, WATER));
         }
         rows
     }

@@ -9,6 +9,7 @@ use crate::cli::Arguments;
 use crate::restart::Beginning;
 use bsmpm::control::Accepted;
 use bsmpm::error::Measures;
+use bsmpm::method::Criteria;
 use bsmpm::method::Method;
 use bsmpm::method::QuasiNewton;
 use bsmpm::step::{Counts, StepReport};
@@ -43,7 +44,7 @@ pub struct Ledger {
     keep: u64,
     end: f64,
     dt: f64,
-    criteria: [f64; 2],       // of the force and of the energy measure
+    criteria: Criteria,
     faces: Vec<(usize, f64)>, // of every support, the axis it is normal to, and the sign of its push along it
     least_reaction: f64,      // N, below which a reaction is none
     whole: f64,               // that forces and works are multiplied with
@@ -69,7 +70,7 @@ impl Headings {
             (profile.file(), first().into_iter().chain(columns).collect())
         };
         let profiles = case.profiles.iter().map(profile).collect();
-        let residuals = case.output.residuals.then(|| Iterate::columns(time).into());
+        let residuals = case.output.residuals.then(|| Iterate::columns(time, case.flow.is_some()));
         Self { history, steps: StepRow::columns(time).into(), residuals, profiles }
     }
 }
@@ -108,7 +109,7 @@ impl Ledger {
             keep: case.output.checkpoint.keep,
             end: case.analysis.end,
             dt: case.analysis.dt,
-            criteria: [case.solver.force_tolerance, case.solver.tolerance],
+            criteria: bsmpm_scene::model::criteria(case),
             faces: bsmpm_scene::model::faces(case, 0.0),
             least_reaction: bsmpm_scene::model::least_reaction(case),
             whole: case.geometry.whole(),
@@ -194,6 +195,9 @@ impl Ledger {
         let sizes = &mut self.manifest.sizes;
         sizes.insert("active_nodes".into(), report.active_nodes as u64);
         sizes.insert("unknowns".into(), report.unknowns as u64);
+        if let Some(water) = &report.water {
+            sizes.insert("water_unknowns".into(), water.unknowns as u64);
+        }
         for (name, count) in
             [("most_massless_nodes", report.massless_nodes), ("most_background_cells", report.background_cells)]
         {
@@ -226,7 +230,7 @@ impl Ledger {
     /// What a step tells of how far its state can be trusted. A state without a direction from it was accepted as
     /// balanced to round-off, or far below the tolerance; one that settled, by its forces alone.
     fn measures(&mut self, report: &StepReport) {
-        let [force, energy] = self.criteria;
+        let criteria = self.criteria;
         let summary = &mut self.manifest.summary;
         if let Some(passes) = &mut summary.smoothing_passes {
             *passes += report.smoothed;
@@ -242,8 +246,11 @@ impl Ledger {
         if let Some(last) = report.judged.filter(|_| !report.settled) {
             let larger =
                 |so_far: &mut Option<f64>, ratio: f64| *so_far = Some(so_far.map_or(ratio, |so| so.max(ratio)));
-            larger(&mut summary.largest_force_measure, last.force / force);
-            larger(&mut summary.largest_energy_measure, last.energy / energy);
+            larger(&mut summary.largest_force_measure, last.force / criteria.force);
+            larger(&mut summary.largest_energy_measure, last.energy / criteria.energy);
+            if let Some(water) = last.water {
+                larger(&mut summary.largest_water_measure, water / criteria.water());
+            }
         }
     }
 
@@ -273,21 +280,23 @@ impl Ledger {
     fn residuals(&mut self, step: u64, accepted: &Accepted) -> Result<(), Error> {
         let Some(table) = &mut self.residuals else { return Ok(()) };
         let report = &accepted.report;
-        let row = |iteration, method: Option<Method>, energy, force| {
+        let flows = report.water.is_some();
+        let row = |iteration, method: Option<Method>, [energy, force, water]: [f64; 3]| {
             let method = method.map(|method| match method {
                 Method::QuasiNewton(QuasiNewton::Multisecant) => residuals::ResidualMethod::Multisecant,
                 Method::QuasiNewton(QuasiNewton::Broyden) => residuals::ResidualMethod::Broyden,
                 Method::Newton => residuals::ResidualMethod::Newton,
             });
-            Iterate { step, time: accepted.t, iteration, method, energy, force }
+            Iterate { step, time: accepted.t, iteration, method, energy, force, water }.cells(flows)
         };
         let mut iteration = 0;
-        for &Measures { energy, force, method, .. } in &report.history {
+        for &Measures { energy, force, water, method } in &report.history {
             iteration += 1;
-            table.row(&row(iteration, Some(method), energy, force).cells())?;
+            table.row(&row(iteration, Some(method), [energy, force, water.unwrap_or(f64::NAN)]))?;
         }
         if report.history.last().is_none_or(|last| last.force != report.force) {
-            table.row(&row(iteration + 1, None, f64::NAN, report.force).cells())?;
+            let water = report.water.as_ref().map_or(f64::NAN, |water| water.measure);
+            table.row(&row(iteration + 1, None, [f64::NAN, report.force, water]))?;
         }
         Ok(())
     }

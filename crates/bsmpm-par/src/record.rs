@@ -190,14 +190,15 @@ impl<const D: usize> Recorder<D> {
                     let water = PoreWater::of(model, points, t);
                     pore((history.quantity.measurement(), water), id, points, halo)
                 }
+                Quantity::PorePressures { .. } => {
+                    let water = PoreWater::of(model, points, t);
+                    water.map_or([0.0; 3], |water| water.range(&self.parts[number], halo)).to_vec()
+                }
                 Quantity::WaterOutflow { drain } => {
                     vec![drain.map_or(points.surface.crossed.out(), |drain| self.drained(drain, points))]
                 }
                 Quantity::WaterBalance => {
-                    let gained = PoreWater::of(model, points, t).map_or(0.0, |water| water.gained(halo));
-                    let out = points.surface.crossed.out();
-                    let scale = gained.abs().max(out.abs());
-                    vec![if scale > 0.0 { (gained + out) / scale } else { 0.0 }]
+                    vec![PoreWater::of(model, points, t).and_then(|water| water.balance(halo)).unwrap_or(0.0)]
                 }
                 Quantity::Rigid { what, body } => rigid(*what, *body, (t, model), report),
                 quantity => self.values((number, quantity), model, points, halo)?,

@@ -207,6 +207,7 @@ impl<'p, K: Kinematics<D>, const D: usize> Run<'p, K, D> {
             self.tell_unused_options();
         }
         self.tell_strips_without_material(accepted);
+        self.tell_drains(accepted);
         self.tell_rigid(accepted);
         self.tell_meeting(accepted);
         self.tell_outflow(accepted);
@@ -304,6 +305,23 @@ impl<'p, K: Kinematics<D>, const D: usize> Run<'p, K, D> {
             };
             if self.told_strips.insert(kind) {
                 self.warn(told);
+            }
+        }
+    }
+
+    /// A drain or an inflow most of which has no ground near lets nothing through there.
+    fn tell_drains(&mut self, accepted: &Accepted) {
+        let (Some(water), t) = (&accepted.report.water, accepted.t) else { return };
+        let wanted = self.simulation.model.surfaces().water;
+        let points: Vec<usize> = wanted.iter().map(|points| points.len()).collect();
+        let of_strips = 3 * self.simulation.model.boundary.strips.len();
+        for number in (0..points.len()).filter(|&number| 2 * water.held[number] < points[number]) {
+            let name = bsmpm_scene::surfaces::name_of_drain(&self.case, number);
+            if self.told_strips.insert(of_strips + number) {
+                self.warn(format!(
+                    "{name}: at t = {t} most of it is out of the grid or has no ground near, and lets no water through; where the \
+                     surface heaves, a grid that goes on a cell beyond it"
+                ));
             }
         }
     }

@@ -18,6 +18,9 @@ pub(crate) const MOST_POINTS: u128 = i32::MAX as u128;
 const POINT: u128 = 536;
 /// Bytes of a point's functions of the degree below, which `consistent-f-bar` averages with.
 const LOWERED: u128 = 64;
+/// Bytes of a point that water flows through: pressure and gradient, shape functions of the degree below with their
+/// derivatives, what it is at the start of the step.
+const WET: u128 = 24 + 96 + 200;
 /// Bytes of a point while a step is saved; not there while the system is built.
 const SAVED: u128 = 380;
 /// Bytes of a node's vectors: about a dozen, and twenty secants of three, all of two doubles.
@@ -55,6 +58,8 @@ pub struct Estimate {
     pub unknowns: u64,
     /// Nodal components that the bodies' cells touch at the start.
     pub active: u64,
+    /// Pore pressures that the bodies' cells touch at the start, unknowns besides; 0 where no water flows.
+    pub pressures: u64,
     /// Entries of the stiffness among those.
     pub entries: u64,
     /// Material points.
@@ -103,8 +108,8 @@ struct Systems {
 
 impl Systems {
     /// `entries` of the stiffness of so many `unknowns`, which couples layers of nodes up to `reach` apart: separators
-    /// are as wide, in which the constants are those of quadratic splines.
-    fn of(solver: &Solver, unknowns: u128, entries: u128, reach: u128) -> Self {
+    /// are as wide, in which the constants are those of quadratic splines. By `nonlinear`.
+    fn of((solver, nonlinear): (&Solver, Nonlinear), unknowns: u128, entries: u128, reach: u128) -> Self {
         let direct = solver.linear.factor.is_some();
         let levels = u128::from(unknowns.max(2).ilog2());
         let factor = if direct { unknowns * levels * LEVEL * reach / 2 } else { 0 };
@@ -117,8 +122,8 @@ impl Systems {
         let krylov = unknowns * KRYLOV;
         let repeated = again * (entries * REPEATED + 2 * factor);
         let general = [entries * ENTRY + 2 * factor + krylov, repeated, entries * BUILT];
-        let [held, repeated, built] = if solver.nonlinear == Nonlinear::Newton { general } else { elastic };
-        let perhaps = if solver.nonlinear == Nonlinear::Auto { [general[0], general[1]] } else { [0; 2] };
+        let [held, repeated, built] = if nonlinear == Nonlinear::Newton { general } else { elastic };
+        let perhaps = if nonlinear == Nonlinear::Auto { [general[0], general[1]] } else { [0; 2] };
         Self { held, repeated, built, perhaps }
     }
 }
@@ -146,33 +151,55 @@ impl Case {
         room::around(&occupied, cells, (self.grid.order, self.beyond()), columns)
     }
 
+    /// Pore pressures that the bodies' cells touch at the start, and entries of their matrix; `None` where no water
+    /// flows.
+    fn pressures(&self) -> Option<(u128, u128)> {
+        self.flow.as_ref()?;
+        let order = self.grid.order as u128 - 1;
+        let pressures = occupied_nodes(self, order).min(nodes(&self.grid));
+        Some((pressures, pressures * (2 * order + 1).pow(2)))
+    }
+
     /// Sizes of the case.
     pub fn estimate(&self) -> Estimate {
         let (nodes, points) = (nodes(&self.grid), u128::from(self.points()));
         let places = places(self);
         // The stencil of the stiffness: 2 x 2 doubles a place; of every node where it stands, and of which kind it is.
         let (stencil, every) = (places * 4 * 8, 8 + 2);
-        let occupied = occupied_nodes(self).min(nodes);
+        let order = self.grid.order as u128;
+        let occupied = occupied_nodes(self, order).min(nodes);
         let entries = 2 * occupied * 2 * places;
-        let systems = Systems::of(&self.solver, 2 * occupied, entries, self.grid.order as u128 + self.beyond() as u128);
+        // Newton's method does not know water that flows: secants alone.
+        let nonlinear = if self.flow.is_some() { Nonlinear::Broyden } else { self.solver.nonlinear };
+        let by = (&self.solver, nonlinear);
+        let systems = Systems::of(by, 2 * occupied, entries, order + self.beyond() as u128);
         let lowered = if self.stabilisation.lowers() { LOWERED } else { 0 };
         let passing = systems.built.max(points * SAVED);
+        let water = self.pressures().map(|(pressures, entries)| {
+            let system = Systems::of(by, pressures, entries, order - 1);
+            // A third number of every node's vectors, secants included.
+            let held = points * WET + entries * 8 + room_nodes(self) * VECTORS / 2;
+            (pressures, held + system.held, system.repeated)
+        });
+        let (pressures, wet, wet_repeated) = water.unwrap_or_default();
         let bytes = points * (POINT + lowered)
             + occupied * stencil
             + room_nodes(self) * (every + VECTORS)
             + systems.held
-            + passing;
+            + passing
+            + wet;
         let bounded = |number: u128| u64::try_from(number).unwrap_or(u64::MAX);
         Estimate {
             cells: bounded(cells(&self.grid)),
             nodes: bounded(nodes),
             unknowns: bounded(2 * nodes),
             active: bounded(2 * occupied),
+            pressures: bounded(pressures),
             entries: bounded(entries),
             points: self.points(),
             useful_ranks: bounded((2 * occupied / FEWEST).clamp(1, self.grid.spans(0) as u128)),
             bytes: bounded(bytes),
-            repeated: bounded(systems.repeated),
+            repeated: bounded(systems.repeated + wet_repeated),
             newton: bounded(systems.perhaps[0]),
             newton_repeated: bounded(systems.perhaps[1]),
         }
@@ -199,9 +226,9 @@ fn room_nodes(case: &Case) -> u128 {
     case.room(1).iter().map(|cells| (cells.len() + case.grid.order) as u128).product()
 }
 
-/// Nodes that the bodies' cells touch at the start: exact for boxes, and for shapes without holes or bays.
-fn occupied_nodes(case: &Case) -> u128 {
-    let order = case.grid.order as u128;
+/// Functions of an order that the bodies' cells touch at the start: exact for boxes, and for shapes without holes or
+/// bays.
+fn occupied_nodes(case: &Case, order: u128) -> u128 {
     let of_body = |body: &Body| -> u128 {
         let cells = body.occupied(&case.grid);
         let further = |axis: usize| case.grid.spans_of(axis, &cells[axis]).len() - cells[axis].len();

@@ -32,6 +32,12 @@ pub fn model<K: Kinematics<D>, const D: usize>(case: &Case) -> Result<Model<K, D
     model_at(case, 0.0)
 }
 
+/// What a step must fulfil.
+pub fn criteria(case: &Case) -> Criteria {
+    let solver = &case.solver;
+    Criteria { energy: solver.tolerance, force: solver.force_tolerance, max_iterations: solver.max_iterations }
+}
+
 /// The same once the stages until the time `t` have begun.
 pub fn model_at<K: Kinematics<D>, const D: usize>(case: &Case, t: f64) -> Result<Model<K, D>, GridError> {
     let background = (case.solver.background > 0.0).then_some(Background {
@@ -59,11 +65,7 @@ pub fn model_at<K: Kinematics<D>, const D: usize>(case: &Case, t: f64) -> Result
         groups: groups_of(case, &materials),
         quadrature: case.solver.quadrature,
         background,
-        criteria: Criteria {
-            energy: case.solver.tolerance,
-            force: case.solver.force_tolerance,
-            max_iterations: case.solver.max_iterations,
-        },
+        criteria: criteria(case),
         damping: damping(&materials),
         nonlinear: match case.solver.nonlinear {
             // Newton's method does not know water that flows: steps that stall are cut.

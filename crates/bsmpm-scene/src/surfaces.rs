@@ -154,9 +154,21 @@ pub fn drain_places(case: &Case) -> Vec<DrainPlace> {
     let (mut faces, mut surfaces) = (0.., 0..);
     let place = |drain: &crate::Drain| match drain.site {
         DrainSite::Face(_) => faces.next().map(DrainPlace::Face),
-        DrainSite::Lines(_) => surfaces.next().map(DrainPlace::Surface),
+        DrainSite::Lines(_) | DrainSite::Circle { .. } => surfaces.next().map(DrainPlace::Surface),
     };
     case.flow.iter().flat_map(|flow| &flow.drains).filter_map(place).collect()
+}
+
+/// What the case calls a drained surface or, behind those, an inflow, by the numbers that the physics has.
+pub fn name_of_drain(case: &Case, surface: usize) -> String {
+    let places = drain_places(case);
+    match places.iter().position(|place| *place == DrainPlace::Surface(surface)) {
+        Some(number) => format!("drain.{number}"),
+        None => {
+            let drains = places.iter().filter(|place| matches!(place, DrainPlace::Surface(_))).count();
+            format!("inflow.{}", surface - drains)
+        }
+    }
 }
 
 /// What flow is to the soils and to surfaces, if water flows.
@@ -177,16 +189,19 @@ pub fn flow<K: Kinematics<D>, const D: usize>(case: &Case, grid: &Grid<D>) -> Op
         }
         other => other.clone(),
     };
-    let drain = |drain: &crate::Drain| match &drain.site {
-        DrainSite::Face(_) => None,
-        DrainSite::Lines(lines) => {
-            let (points, normals) = surface(lines);
-            Some(Drain { points, normals, given: given(&drain.given) })
-        }
+    let drain = |drain: &crate::Drain| {
+        let (points, normals) = match &drain.site {
+            DrainSite::Face(_) => return None,
+            DrainSite::Lines(lines) => surface(lines),
+            DrainSite::Circle { center, radius } => {
+                around::<K, D>(grid, &vector(case.grid.local(*center)), *radius, across).into_iter().unzip()
+            }
+        };
+        Some(Drain { points, normals, given: given(&drain.given) })
     };
     let face = |drain: &crate::Drain| match drain.site {
         DrainSite::Face(Face { axis, upper }) => Some(DrainedFace { axis, upper, given: given(&drain.given) }),
-        DrainSite::Lines(_) => None,
+        DrainSite::Lines(_) | DrainSite::Circle { .. } => None,
     };
     let inflow = |inflow: &crate::Inflow| {
         let (points, normals) = surface(&[inflow.ends]);

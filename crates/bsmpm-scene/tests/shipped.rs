@@ -185,6 +185,13 @@ const MEASURED: &[(&str, &[&str], usize, f64)] = &[
         1,
         512.9e6,
     ),
+    ("embankment_consolidation", &["grid.cell=0.5"], 1, 70.6e6),
+    ("embankment_consolidation", &["grid.cell=0.25"], 1, 131.6e6),
+    ("embankment_consolidation", &["grid.cell=0.25"], 2, 189.9e6),
+    ("rapid_drawdown", &["grid.cell=0.5"], 1, 93.7e6),
+    ("rapid_drawdown", &["grid.cell=0.5"], 2, 147.6e6),
+    ("validation/undrained_strip", &["grid.cell=0.0625"], 1, 351.3e6),
+    ("validation/undrained_strip", &["grid.cell=0.0625"], 2, 413.7e6),
 ];
 
 /// The same by secants and, where they stalled, Newton's method.

@@ -128,6 +128,9 @@ pub struct Summary {
     /// The same of the energy measure.
     #[serde(default)]
     pub largest_energy_measure: Option<f64>,
+    /// The same of the measure of the water, where some flows.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub largest_water_measure: Option<f64>,
     /// N  largest force of a face's support on the body; none without supports.
     #[serde(default)]
     pub largest_reaction: Option<f64>,

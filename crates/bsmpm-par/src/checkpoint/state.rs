@@ -70,7 +70,8 @@ pub struct CheckpointState {
     pub rigid: Vec<[f64; 8]>,
     /// What the histories go on from.
     pub record: RecordState,
-    /// Strips of which it was told that they hold nothing; and, their number added, that they have let go.
+    /// Strips of which it was told that they hold nothing and, their number added, that they have let go; drains and
+    /// inflows without ground, three times that number added.
     pub told_strips: BTreeSet<usize>,
     /// Rigid bodies of which it was told that they came too fast (twice their number) or go into the soil (and one),
     /// and behind those pairs that have met.

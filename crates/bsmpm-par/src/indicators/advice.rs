@@ -8,7 +8,7 @@ use bsmpm_scene::Case;
 pub(super) fn of(name: &str, case: &Case) -> &'static str {
     let may_fit = case.analysis.regime == Regime::QuasiStatic && case.solver.quadrature == Quadrature::Points;
     match name {
-        "force-measure" | "energy-measure" => {
+        "force-measure" | "energy-measure" | "water-measure" => {
             "a step was accepted above its tolerance, which is a fault of the program: report it"
         }
         "pressure-noise-average" | "pressure-noise-plane" => {
@@ -41,6 +41,10 @@ pub(super) fn of(name: &str, case: &Case) -> &'static str {
         "energy-closure" => {
             "energy has gone that no account names: the steps are not converged well enough; a smaller [solver] tolerance and \
              force_tolerance"
+        }
+        "water-balance" => {
+            "water has come from nowhere or gone: the steps are not converged well enough, or material with pores has left; a \
+             smaller [solver] force_tolerance"
         }
         "energy-loss" => {
             "the algorithm damps what should move on, or (negative) drives it: look at the history's parts for which one does; \

@@ -48,7 +48,7 @@ impl Ledger {
             keep: case.output.checkpoint.keep,
             end: case.analysis.end,
             dt: case.analysis.dt,
-            criteria: [case.solver.force_tolerance, case.solver.tolerance],
+            criteria: bsmpm_scene::model::criteria(case),
             faces: bsmpm_scene::model::faces(case, resumed.state.progress.t),
             least_reaction: bsmpm_scene::model::least_reaction(case),
             whole: case.geometry.whole(),

@@ -80,7 +80,8 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         let timers = Rc::clone(&self.timers);
         let _timed = timers.time("indicators");
         let Simulation { model, points, halo, .. } = &self.simulation;
-        match IndicatorState::of((model, points), (&self.recorder, self.simulation.progress().budget), &**halo) {
+        let (time, budget) = (self.simulation.time(), self.simulation.progress().budget);
+        match IndicatorState::of((model, points, time), (&self.recorder, budget), &**halo) {
             Ok(state) => {
                 if let Some(ledger) = &mut self.ledger {
                     let manifest = ledger.manifest();
@@ -153,7 +154,8 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
 /// How the linear solves `before` ended and those since then.
 fn linear(before: &BTreeMap<String, SolverNames>, tallies: &Tallies) -> BTreeMap<String, SolverNames> {
     let mut all = before.clone();
-    for (name, tally) in [("stiffness", &tallies.definite), ("newton", &tallies.general)] {
+    let kinds = [("stiffness", &tallies.definite), ("newton", &tallies.general), ("water", &tallies.water)];
+    for (name, tally) in kinds {
         let Some(tally) = tally else { continue };
         let solver = all.entry(name.to_owned()).or_default();
         (solver.ksp, solver.pc) = (tally.ksp.clone(), tally.pc.clone());

@@ -38,6 +38,13 @@ pub enum DrainSite {
     Face(Face),
     /// m  straight pieces of bodies' surfaces at the start, each by its ends
     Lines(Vec<[[f64; 2]; 2]>),
+    /// m  the part of a circle inside the grid
+    Circle {
+        /// its middle
+        center: [f64; 2],
+        /// its radius
+        radius: f64,
+    },
 }
 
 /// A surface through which water is put in.

@@ -119,6 +119,11 @@ pub enum Quantity {
         /// m  in the case's coordinates
         at: [f64; 2],
     },
+    /// Pa  of the water in the pores of all points that count, positive in compression: mean, least, largest
+    PorePressures {
+        /// the points that count
+        of: Counted,
+    },
     /// of the pore water of the point nearest to `at` at the start: excess pressure, porosity or flux
     Pore {
         /// which of them
@@ -131,7 +136,7 @@ pub enum Quantity {
         /// Number of the drain, in the order of the file; `None`: all, less the inflows.
         drain: Option<usize>,
     },
-    /// -  what the ground has gained of water and what has left it, over the larger of the two
+    /// -  what the ground has gained of water and what has left it, over what crossed its surface or moved in it
     WaterBalance,
     /// -  oscillation of sigma_yy about its average over the grid and about a plane
     StressNoise,
@@ -235,6 +240,7 @@ impl Quantity {
         match *self {
             Self::Mass { of } | Self::Momentum { of } | Self::CentreOfMass { of } | Self::AngularMomentum { of } => of,
             Self::KineticEnergy { of } | Self::MeanStress { of } | Self::Runout { of, .. } => of,
+            Self::PorePressures { of } => of,
             Self::Height { of, .. } | Self::MaxDisplacement { of } | Self::Heave { of } => of,
             _ => Counted::All,
         }
@@ -260,6 +266,7 @@ impl Quantity {
             Self::Velocity { .. } => Measurement::Velocity,
             Self::Stress { .. } => Measurement::Stress,
             Self::PorePressure { .. } => Measurement::PorePressure,
+            Self::PorePressures { .. } => Measurement::PorePressures,
             Self::Pore { what, .. } => *what,
             Self::WaterOutflow { .. } => Measurement::WaterOutflow,
             Self::WaterBalance => Measurement::WaterBalance,

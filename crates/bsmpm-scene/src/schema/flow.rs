@@ -2,7 +2,7 @@
 
 use super::Kind::{self, *};
 use super::Presence::Optional;
-use super::{Dimension as In, Range, Table, key, one_of};
+use super::{Dimension as In, Range, Table, body, key, one_of};
 use crate::words::{Side, Word};
 
 const PLACE: Kind = Pair(In::Length, Range::ANY);
@@ -16,6 +16,7 @@ pub(super) static DRAIN: Table = Table {
         key("face", Choice(Side::WORDS), Optional, "a face of the grid, at which bodies lie"),
         key("from", PLACE, Optional, "one end of a segment of a body's surface at the start"),
         key("to", PLACE, Optional, "the other end"),
+        key("circle", Kind::Table(&body::CIRCLE), Optional, "a circle instead: the part of it inside the grid"),
         key(
             "surface",
             Flag,
@@ -39,8 +40,8 @@ pub(super) static DRAIN: Table = Table {
         ),
     ],
     exclusive: &[
-        one_of(&["face", "from", "surface"], true),
-        one_of(&["face", "to", "surface"], true),
+        one_of(&["face", "from", "circle", "surface"], true),
+        one_of(&["face", "to", "circle", "surface"], true),
         one_of(&["head", "head_path", "pressure", "seepage"], false),
     ],
 };

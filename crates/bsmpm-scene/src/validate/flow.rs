@@ -5,7 +5,7 @@ mod shown;
 pub(super) use shown::check;
 
 use super::STANDARD_GRAVITY;
-use super::load::increasing;
+use super::load::{circle, increasing};
 use super::place::{self, along};
 use super::strip::{AroundStrip, segment};
 use crate::case::{Body, Drain, DrainSite, Face, Flow, Inflow, NamedMaterial, Support};
@@ -161,8 +161,19 @@ impl Ground<'_> {
     /// A segment of the surface of bodies that let water through.
     fn segment(&self, record: &Record, report: &mut Report<'_>) -> Option<[[f64; 2]; 2]> {
         let ends = segment(record, self.around, report)?;
+        self.lies_at(record, ("from", along(ends)), report)?;
+        Some(ends)
+    }
+
+    /// Whether bodies that let water through are at all of these places, which a key gives.
+    fn lies_at(
+        &self,
+        record: &Record,
+        (key, mut places): (&str, impl Iterator<Item = [f64; 2]>),
+        report: &mut Report<'_>,
+    ) -> Option<()> {
         let (grid, permeable) = (self.around.grid?, self.permeable());
-        if let Some(at) = along(ends).find(|at| !place::at_body(&permeable, grid, *at)) {
+        if let Some(at) = places.find(|at| !place::at_body(&permeable, grid, *at)) {
             let bodies = self.around.bodies.unwrap_or_default();
             let under = bodies.iter().find(|body| place::at_body(std::slice::from_ref(*body), grid, at));
             let message = match under {
@@ -174,10 +185,10 @@ impl Ground<'_> {
                     format!("no body is at {at:?} at the start; allowed: half a spacing of points from one")
                 }
             };
-            record.error("from", message, report);
+            record.error(key, message, report);
             return None;
         }
-        Some(ends)
+        Some(())
     }
 }
 
@@ -198,10 +209,14 @@ fn drain(record: &Record, ground: Ground<'_>, report: &mut Report<'_>) -> Option
         DrainSite::Face(face(record, ground, report)?)
     } else if record.gives("surface") {
         if !record.flag("surface")? {
-            record.error("surface", "false names nothing: give face, from and to, or true", report);
+            record.error("surface", "false names nothing: give face, from and to, circle, or true", report);
             return None;
         }
         DrainSite::Lines(surface(record, ground, report)?)
+    } else if record.gives("circle") {
+        let (center, radius, places) = circle(record, ground.around, report)?;
+        ground.lies_at(record, ("circle", places.into_iter()), report)?;
+        DrainSite::Circle { center, radius }
     } else {
         DrainSite::Lines(vec![ground.segment(record, report)?])
     };

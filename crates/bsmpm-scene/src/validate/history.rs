@@ -202,6 +202,7 @@ fn quantity(
         Measurement::Velocity => Quantity::Velocity { at: at(record, grid, report)?, surface: at_surface(record)? },
         Measurement::Stress => Quantity::Stress { at: at(record, grid, report)?, surface: at_surface(record)? },
         Measurement::PorePressure => Quantity::PorePressure { at: at(record, grid, report)? },
+        Measurement::PorePressures => Quantity::PorePressures { of: counted(record, made, report)? },
         Measurement::ExcessPressure | Measurement::Porosity | Measurement::Flux => {
             Quantity::Pore { what: measured, at: at(record, grid, report)? }
         }

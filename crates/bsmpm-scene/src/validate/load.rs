@@ -28,21 +28,32 @@ pub(super) fn tractions(root: &Record, around: AroundStrip<'_>, report: &mut Rep
 
 /// Where a traction acts: on a body everywhere.
 fn line(record: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Option<LoadedLine> {
-    if let Some(circle) = record.record("circle") {
-        let (center, radius) = (circle.pair("center")?, circle.number("radius")?);
-        let (lower, upper) = (around.grid?.lower(), around.grid?.upper());
-        let inside = |at: &[f64; 2]| (0..2).all(|axis| lower[axis] <= at[axis] && at[axis] <= upper[axis]);
-        let places: Vec<[f64; 2]> = ring(center, radius).filter(inside).collect();
-        if places.is_empty() {
-            record.error("circle", "no part of it is inside the grid", report);
-            return None;
-        }
+    if record.gives("circle") {
+        let (center, radius, places) = circle(record, around, report)?;
         acts_on_body(record, "circle", places.into_iter(), around, report);
         return Some(LoadedLine::Circle { center, radius });
     }
     let [from, to] = segment(record, around, report)?;
     acts_on_body(record, "from", along([from, to]), around, report);
     Some(LoadedLine::Segment { from, to })
+}
+
+/// Centre, radius and places of a circle, some of which are inside the grid.
+pub(super) fn circle(
+    record: &Record,
+    around: AroundStrip<'_>,
+    report: &mut Report<'_>,
+) -> Option<([f64; 2], f64, Vec<[f64; 2]>)> {
+    let circle = record.record("circle")?;
+    let (center, radius) = (circle.pair("center")?, circle.number("radius")?);
+    let (lower, upper) = (around.grid?.lower(), around.grid?.upper());
+    let inside = |at: &[f64; 2]| (0..2).all(|axis| lower[axis] <= at[axis] && at[axis] <= upper[axis]);
+    let places: Vec<[f64; 2]> = ring(center, radius).filter(inside).collect();
+    if places.is_empty() {
+        record.error("circle", "no part of it is inside the grid", report);
+        return None;
+    }
+    Some((center, radius, places))
 }
 
 /// A stress along x and y, by depth.

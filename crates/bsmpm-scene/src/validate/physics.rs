@@ -3,13 +3,14 @@
 use super::NEARLY_INCOMPRESSIBLE;
 use super::place;
 use super::strip::{moves, normal};
-use crate::case::{Base, Body, Case, Geometry, Initial, Prescribed, Site, Support};
+use crate::case::{Base, Body, Case, Drain, Geometry, Initial, Prescribed, Site, Support};
 use crate::record::Record;
 use crate::report::Report;
 use crate::words::{Side, Word};
 use bsmpm::model::Regime;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::step::newmark::Newmark;
+use bsmpm::water::flow::Given;
 
 /// Components of a normal below which it does not hold them.
 const ALONG: f64 = 1e-9;
@@ -232,6 +233,7 @@ fn warn_of_materials(case: &Case, report: &mut Report<'_>) {
 
 fn loaded(case: &Case) -> bool {
     let pulls = |load: [f64; 2]| load != [0.0; 2];
+    let presses = |drain: &Drain| !matches!(drain.given, Given::StillWater | Given::Seepage);
     case.gravity.is_some()
         || !case.shaking.is_empty()
         || case.rigid.iter().any(|rigid| !rigid.path.rows.is_empty() || rigid.free.contains(&true))
@@ -239,6 +241,7 @@ fn loaded(case: &Case) -> bool {
         || case.prescribed.iter().any(|prescribed| moves(&prescribed.path))
         || case.tractions.iter().any(|traction| traction.largest() > 0.0)
         || case.point_loads.iter().any(|load| pulls(load.force))
+        || case.flow.iter().any(|flow| !flow.inflows.is_empty() || flow.drains.iter().any(presses))
 }
 
 fn warn_of_locking(case: &Case, report: &mut Report<'_>) {

@@ -48,6 +48,8 @@ choice! {
         Stress = "stress",
         /// Pressure of the water in the pores of the point nearest to `at` at the start, positive in compression.
         PorePressure = "pore-pressure",
+        /// Pore pressure of all points, or of those of a material or body, positive in compression.
+        PorePressures = "pore-pressures",
         /// Pore pressure above that of the still water, of the point nearest to `at` at the start, where water flows.
         ExcessPressure = "excess-pressure",
         /// Share of pores in the volume of the point nearest to `at` at the start, where water flows.
@@ -58,8 +60,8 @@ choice! {
         /// Volume of water that has left the ground through a drain since the start, per metre of thickness; all drains
         /// less all inflows unless one is named.
         WaterOutflow = "water-outflow",
-        /// What the ground has gained of water since the start and what has left it: their sum over the larger of the
-        /// two. 0 where no water is lost.
+        /// What the ground has gained of water since the start and what has left it: their sum over the larger of what
+        /// crossed its surface and what its points took in and gave off. 0 where no water is lost.
         WaterBalance = "water-balance",
         /// Oscillation of sigma_yy over all points from point to point: a root mean square, over the mean of
         /// |sigma_yy|.
@@ -119,6 +121,8 @@ const SECTION: &[(&str, &str)] = &[
     ("-q", "shear force: on what is on the left of the line, along it"),
     ("-m", "moment about the line's middle (N m/m), positive where the side of `to` is in tension"),
 ];
+const RANGE: &[(&str, &str)] =
+    &[("-mean", "their mean, weighted with present volumes"), ("-least", "the least"), ("-largest", "the largest")];
 const NOISE: &[(&str, &str)] =
     &[("-average", "about the average over the grid"), ("-plane", "about the plane through the points around")];
 const CONTACT: &[(&str, &str)] = &[("-closed", "part of the nodes"), ("-sliding", "part of the normal force")];
@@ -178,6 +182,7 @@ impl Measurement {
             }
             Self::Stress | Self::MeanStress => STRESS,
             Self::SectionForces => SECTION,
+            Self::PorePressures => RANGE,
             Self::StressNoise | Self::PressureNoise => NOISE,
             Self::Energy => ENERGY,
             Self::Contact => CONTACT,
@@ -206,7 +211,7 @@ impl Measurement {
             Self::Velocity | Self::SlipRate | Self::RigidVelocity | Self::Flux => "m/s",
             Self::FrictionPower => "W/m",
             Self::Stress | Self::MeanStress | Self::PressureNoise | Self::FootingPressure => "Pa",
-            Self::PorePressure | Self::ExcessPressure => "Pa",
+            Self::PorePressure | Self::PorePressures | Self::ExcessPressure => "Pa",
             Self::StressNoise | Self::Slip | Self::Contact | Self::Porosity | Self::WaterBalance => "-",
             Self::WaterOutflow => "m3/m",
             Self::Moment => "N",
@@ -223,6 +228,6 @@ impl Measurement {
     pub fn is_of_part(self) -> bool {
         use Measurement::*;
         let of_mass = matches!(self, Mass | Momentum | CentreOfMass | AngularMomentum | KineticEnergy | MeanStress);
-        of_mass || matches!(self, Runout | Height | MaxDisplacement | Heave)
+        of_mass || matches!(self, PorePressures | Runout | Height | MaxDisplacement | Heave)
     }
 }

@@ -17,7 +17,7 @@ pub const FLOW: &[Row] = &[
     row("dt_max = \"60 d\"", "dt_max = \"60 days\"", "analysis.dt_max", "did you mean `day`?"),
     // Splines, points, averages, iterations.
     row("order = \"quadratic\"", "order = \"linear\"", "grid.order", "no gradient: take \"quadratic\""),
-    row("order = \"quadratic\"", "order = \"cubic\"", "body.0.points_per_cell", "3 with cubic splines").down(28),
+    row("order = \"quadratic\"", "order = \"cubic\"", "body.0.points_per_cell", "3 with cubic splines").down(29),
     row("\"consistent-f-bar\"", "\"subgrid-f-bar\"", "stabilisation.method", "take \"consistent-f-bar\""),
     row("\"auto\"", "\"newton\"", "solver.nonlinear", "take \"auto\""),
     row("nonlinear = \"auto\"", "quadrature = \"fitted\"", "solver.quadrature", "take \"points\""),
@@ -52,8 +52,15 @@ pub const FLOW: &[Row] = &[
     row("bulk     = \"2.2 GPa\"", "bulk = \"2.2 m\"", "water.bulk", "expected a stress"),
     // Drains and inflows.
     row("face    = \"bottom\"", "face    = \"top\"", "drain.0.face", "no body of permeable soil lies at the face"),
-    row("face    = \"bottom\"", "surface = false", "drain.0.surface", "give face, from and to, or true"),
-    row("face    = \"bottom\"\n", "", "drain.0", "one of face, from, surface").up(2),
+    row("face    = \"bottom\"", "surface = false", "drain.0.surface", "give face, from and to, circle, or true"),
+    row("face    = \"bottom\"\n", "", "drain.0", "one of face, from, circle, surface").up(2),
+    row(
+        "face    = \"bottom\"",
+        "circle  = { center = [2.0, 2.0], radius = 9.0 }",
+        "drain.0.circle",
+        "no part of it is inside the grid",
+    ),
+    row("face    = \"bottom\"", "circle  = { center = [2.0, 2.0], radius = 1.5 }", "drain.0.circle", "no body is at"),
     row("head    = \"3 m\"", "head = 3\npressure = 0", "drain.0.pressure", "").down(1),
     row("head    = \"3 m\"", "head = \"3 kPa\"", "drain.0.head", "expected a length"),
     row("from      = [2.0, 2.0]", "from = [0.5, 3.0]", "drain.1.from", "lets no water through"),
@@ -86,6 +93,41 @@ pub const FLOW: &[Row] = &[
         "faces that change are not shown",
     )
     .down(2),
+    row(
+        "[solver]",
+        "[[stage]]\nat = \"1 day\"\nremove = [\"fill\"]\n[solver]",
+        "stage.0.remove",
+        "bodies that are removed or placed are not shown",
+    )
+    .down(2),
+    row(
+        "[solver]",
+        "[[stage]]\nat = \"1 day\"\nstrength_reduction = 1.2\n[solver]",
+        "stage.0.strength_reduction",
+        "strength that changes is not shown",
+    )
+    .down(2),
+    row(
+        "[solver]",
+        "[gravity]\nacceleration = [0, -9.81]\n[initial]\ngravity = \"elastic\"\n[solver]",
+        "initial.gravity",
+        "give k0",
+    )
+    .down(3),
+    row(
+        "[solver]",
+        "[gravity]\nacceleration = [0, -9.81]\n[initial]\nk0 = 0.5\nequilibrium = \"plastic\"\n[solver]",
+        "initial.equilibrium",
+        "give k0",
+    )
+    .down(4),
+    row(
+        "type   = \"consolidation\"\nend    = \"20 year\"\ndt     = \"1 h\"\ngrowth = 1.2\ndt_max = \"60 d\"",
+        "type = \"dynamic\"\nend = 1.0\ndt = 0.1\n[shaking]\nacceleration = [[0.5, 1.0, 0.0]]",
+        "shaking",
+        "ground that shakes is not shown to be right with water that flows",
+    )
+    .down(3),
 ];
 
 /// Words of water that flows in a case without any.

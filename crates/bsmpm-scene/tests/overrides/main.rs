@@ -14,6 +14,7 @@ use bsmpm_scene::{
 
 const FULL: &str = include_str!("../full.toml");
 const STATIC: &str = include_str!("../bad_cases/static.toml");
+const SEEPING: &str = include_str!("../bad_cases/seeping.toml");
 
 fn set(text: &str, overrides: &[&str]) -> Result<Case, Vec<Error>> {
     Case::from_text("case.toml", text, &overrides.iter().map(ToString::to_string).collect::<Vec<_>>())
@@ -389,6 +390,21 @@ fn doubtful_cases_are_warned_of() {
     assert!(warned("2") && !warned("3"));
     let plastic = FULL.replace("[stabilisation]\nmethod = \"f-bar\"", "");
     assert!(valid(&plastic, &[]).warnings.iter().any(|warning| warning.contains("material.sand is plastic")));
+}
+
+/// A drain above the water table is a pond where the ground takes in what a step brings.
+#[test]
+fn drains_that_feed_the_ground_are_warned_of() {
+    let warned = |set: &[&str]| {
+        let common = ["gravity={ acceleration = [0, -9.81] }", "water.level=0.2"];
+        let warnings = valid(SEEPING, &[&common[..], set].concat()).warnings;
+        warnings.iter().filter(|warning| warning.contains("is fed as by a pond")).cloned().collect::<Vec<_>>()
+    };
+    let (permeable, quick) = ("material.clay.permeability=1e-5", "analysis.dt_max=3600");
+    let found = warned(&[permeable]);
+    assert!(found.len() == 1 && found[0].starts_with("drain.4: ") && found[0].contains("51.8 cells"), "{found:?}");
+    assert!(warned(&[]).is_empty() && warned(&[permeable, quick]).is_empty());
+    assert!(warned(&[permeable, "water.level=1.0"]).is_empty());
 }
 
 /// A pressure: on the side where the body lies, by depth, on segments and on circles.

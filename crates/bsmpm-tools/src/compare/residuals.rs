@@ -191,6 +191,7 @@ mod tests {
             method: Some(ResidualMethod::Newton),
             energy: force * force,
             force,
+            water: f64::NAN,
         };
         forces.iter().zip(1..).map(row).collect()
     }

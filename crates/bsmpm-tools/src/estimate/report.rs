@@ -21,6 +21,9 @@ pub(super) struct EstimateReport {
     points: u64,
     /// of the first steps, where such were made; else those that the bodies' cells touch at the start
     unknowns: u64,
+    /// pore pressures, unknowns besides; where water flows
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pressures: Option<u64>,
     /// entries of the stiffness
     non_zeros: u64,
     /// bytes  of each rank; the same once a step needs Newton's method
@@ -77,6 +80,7 @@ impl EstimateReport {
             useful_ranks: estimate.useful_ranks,
             points: estimate.points,
             unknowns: found.unknowns.unwrap_or(estimate.active),
+            pressures: Some(estimate.pressures).filter(|pressures| *pressures > 0),
             non_zeros: estimate.entries,
             memory_per_rank: [estimate.bytes_on(ranks), estimate.bytes_with_newton_on(ranks)]
                 .map(|all| all / ranks as u64),
@@ -150,6 +154,9 @@ impl EstimateReport {
             ),
             row("ranks of use", &format!("up to {}", self.useful_ranks), String::new()),
         ];
+        if let Some(pressures) = self.pressures {
+            rows.insert(3, row("pore pressures besides", &pressures.to_string(), String::new()));
+        }
         rows.extend(
             self.ratio.map(|ratio| row("estimated / actual", &format!("{ratio:.2} (processor time)"), String::new())),
         );

@@ -10,6 +10,8 @@ const COUNTED: f64 = 1e6;
 const FRAME: [u64; 2] = [147, 171];
 /// Bytes of a point in a checkpoint, the same.
 const CHECKPOINT: [u64; 2] = [272, 304];
+/// Bytes of a point in a checkpoint where water flows, besides: pore pressure and its gradient.
+const WET: u64 = 24;
 /// Bytes of a row of `steps.csv` with its share of the log, and of a number of `history.csv`.
 const ROW: [u64; 2] = [110, 20];
 
@@ -31,7 +33,7 @@ impl Bytes {
         let numbers: u64 = case.histories.iter().map(|history| history.columns().len() as u64).sum();
         Self {
             frame: points * FRAME[dynamic],
-            checkpoint: points * CHECKPOINT[dynamic],
+            checkpoint: points * (CHECKPOINT[dynamic] + if case.flow.is_some() { WET } else { 0 }),
             step: ROW[0] + ROW[1] * numbers,
         }
     }

@@ -120,10 +120,11 @@ fn iterated(directory: &Path) {
         ("old.out", [(secants, 0.1), (secants, 1e-2), (None, 1e-12)]),
     ];
     for (run, course) in courses {
-        let mut table = CsvTable::create(&directory.join(run).join(RESIDUALS), &Iterate::columns("-")).unwrap();
+        let mut table = CsvTable::create(&directory.join(run).join(RESIDUALS), &Iterate::columns("-", false)).unwrap();
         for ((method, force), iteration) in course.into_iter().zip(1..) {
             let energy = if method.is_some() { force * force } else { f64::NAN };
-            table.row(&Iterate { step: 7, time: 0.175, iteration, method, energy, force }.cells()).unwrap();
+            let row = Iterate { step: 7, time: 0.175, iteration, method, energy, force, water: f64::NAN };
+            table.row(&row.cells(false)).unwrap();
         }
     }
 }

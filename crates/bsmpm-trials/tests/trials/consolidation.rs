@@ -3,7 +3,8 @@
 
 use crate::support::Scratch;
 use crate::support::cases::changed;
-use crate::support::results::{at, history};
+use crate::support::results::{at, history, manifest};
+use bsmpm_io::residuals;
 
 /// A column 1 m high of M = 1 MPa and c_v = 1e-6 m2/s under 100 Pa.
 const COLUMN: &str = r#"
@@ -100,4 +101,38 @@ fn ranks_agree_and_a_run_in_two_parts_is_one() {
     scratch.mpirun(1, &part).expect(0);
     let text = |name: &str| std::fs::read_to_string(scratch.path(name).join("history.csv")).unwrap();
     assert!(text("one") == text("part"));
+}
+
+#[test]
+fn a_run_tells_how_its_water_was_solved_for_and_balanced() {
+    let scratch = Scratch::with_case(COLUMN);
+    scratch.mpirun(2, &["case.toml", "-q", "-o", "out", "--set", "output.residuals=true"]).expect(0);
+    let found = manifest(&scratch.path("out"));
+    let balance = &found.indicators["water-balance"];
+    println!("balance {:e}, {:?}", balance.value, found.linear["water"]);
+    assert!(balance.value < 1e-8 && !balance.unusual);
+    assert!(found.linear["water"].reasons.values().sum::<u64>() >= found.summary.iterations);
+    assert!(found.sizes["water_unknowns"] > 0);
+    let rows = residuals::read(&scratch.path("out/residuals.csv")).unwrap();
+    assert!(rows.len() > 100 && rows.iter().all(|row| row.water.is_finite()));
+}
+
+/// Water pressed in from below lifts the column out of the grid that ends at its top.
+#[test]
+fn a_drain_that_leaves_the_grid_is_told_of() {
+    let lifted =
+        changed(COLUMN, "face = \"top\"", "surface = true\n[[drain]]\nface = \"bottom\"\npressure = \"200 Pa\"");
+    let load = "[[traction]]\nfrom = [0, 1.0]\nto = [0.4, 1.0]\nstress = [0, \"-100 Pa\"]\n";
+    let scratch = Scratch::with_case(&changed(&lifted, load, ""));
+    let run = |name: &str, set: &str| {
+        scratch.mpirun(1, &["case.toml", "-q", "-o", name, "--set", set]).expect(0);
+        manifest(&scratch.path(name)).warnings
+    };
+    let told = run("short", "title=short");
+    assert!(
+        told.len() == 1 && told[0].starts_with("drain.0: at t = ") && told[0].contains("out of the grid"),
+        "{told:?}"
+    );
+    let further = run("further", "grid.upper=[0.4, 1.1]");
+    assert!(further.is_empty(), "{further:?}");
 }

@@ -2,11 +2,15 @@
 
 use crate::exact::Exact;
 use crate::model::Model;
+use crate::observe::Part;
 use crate::parallel::Halo;
 use crate::points::Points;
 use crate::tensor::{Symmetric, Vector};
 use crate::water::Water;
 use crate::water::flow::{Flow, Soil};
+
+/// Part of the pores that counts for nothing beside what is lost: of ground at rest round-off is all that moves.
+const NOTHING: f64 = 1e-9;
 
 /// A scene's water and the points at a time, if it has water.
 #[derive(Clone, Copy)]
@@ -53,6 +57,20 @@ impl<'a, const D: usize> PoreWater<'a, D> {
         self.still(p) + self.excess(p) + carried
     }
 
+    /// Pa  mean pore pressure of the points of a part, weighted with their present volumes, the least and the largest; 0
+    /// without points. Two reductions.
+    pub fn range(&self, part: &Part, halo: &dyn Halo) -> [f64; 3] {
+        let volume = |p: usize| self.points.volume[p] * self.points.F.at(p).determinant();
+        let weighted = part.of(self.points).map(|p| volume(p) * self.pressure(p));
+        let sums = halo.total(&[weighted.collect(), part.of(self.points).map(volume).collect()]);
+        let mut ends = [f64::NEG_INFINITY; 2];
+        for pressure in part.of(self.points).map(|p| self.pressure(p)) {
+            ends = [ends[0].max(-pressure), ends[1].max(pressure)];
+        }
+        halo.maximum(&mut ends);
+        if sums[1] > 0.0 { [sums[0] / sums[1], -ends[0], ends[1]] } else { [0.0; 3] }
+    }
+
     /// Pa  as much of it as acts in the total stress: chi p
     fn borne(&self, p: usize) -> f64 {
         let pressure = self.pressure(p);
@@ -89,10 +107,23 @@ impl<'a, const D: usize> PoreWater<'a, D> {
         -conductivity.component_mul(&(gradient[p] - self.weight)) * relative / self.water.unit_weight
     }
 
-    /// m3  (per metre in plane strain)  of water that all points have taken in since the start, at its density then.
-    /// One reduction.
-    pub fn gained(&self, halo: &dyn Halo) -> f64 {
-        let of = |p: usize| {
+    /// What the points have gained of water since the start and what has left the ground, over the larger of what
+    /// crossed its surface and what the points have taken in and given off, added; a billionth of the pores counts for
+    /// nothing. 0 where no water is lost, `None` where none flows. One reduction.
+    pub fn balance(&self, halo: &dyn Halo) -> Option<f64> {
+        self.water.flow.as_ref()?;
+        let pores: Exact = (0..self.points.len())
+            .map(|p| self.flow(p).map_or(0.0, |(_, soil)| self.points.volume[p] * soil.porosity))
+            .collect();
+        let sums = halo.total(&[self.taken().collect(), self.taken().map(f64::abs).collect(), pores]);
+        let out = self.points.surface.crossed.out();
+        let scale = sums[1].max(out.abs()).max(NOTHING * sums[2]);
+        Some(if scale > 0.0 { (sums[0] + out) / scale } else { 0.0 })
+    }
+
+    /// m3  (per metre in plane strain)  of water that every point has taken in since the start, at its density then
+    fn taken(&self) -> impl Iterator<Item = f64> {
+        let of = move |p: usize| {
             let Some((flow, soil)) = self.flow(p) else { return 0.0 };
             let J = self.points.F.at(p).determinant();
             if !flow.retains() {
@@ -104,7 +135,6 @@ impl<'a, const D: usize> PoreWater<'a, D> {
             let start = self.water.still_pressure(&x, 0.0) + self.water.excess_at_start(&x);
             self.points.volume[p] * (held(J, self.pressure(p)) - held(1.0, start))
         };
-        let gained: Exact = (0..self.points.len()).map(of).collect();
-        halo.total(&[gained])[0]
+        (0..self.points.len()).map(of)
     }
 }

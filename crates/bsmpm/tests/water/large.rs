@@ -90,3 +90,45 @@ fn weight_of_half_the_stiffness_settles_as_the_solution_by_lines() {
     println!("off by {off:.4} of the last settlement");
     assert!(off < 0.02);
 }
+
+/// k = k0 J^3/(1 - ln J): with it Hencky's law makes the volume follow Terzaghi's equation exactly, J = 1 - (1 - J_inf)
+/// (1 - U), ln J_inf = -q/M. No soil has it: every row of points has its own permeability, that of its J before the step.
+#[test]
+fn a_load_under_which_the_volume_follows_terzaghis_equation_settles_exactly_so() {
+    let (cells, load) = (20, 0.5);
+    let mut scene = settling(cells, load * M, PermeabilityLaw::Constant);
+    let rows = 3 * cells;
+    let height = |p: usize, scene: &Plane| ((scene.points.height(p) * rows as f64) as usize).min(rows - 1);
+    let own: Vec<u16> = (0..scene.points.len()).map(|p| height(p, &scene) as u16).collect();
+    scene.points.material = own;
+    scene.model.materials = vec![scene.model.materials[0].clone(); rows];
+    let flow = scene.model.water.as_mut().and_then(|water| water.flow.as_mut()).expect("it flows");
+    flow.soils[0].as_mut().expect("a soil").porosity = 0.9; // it has no part in the exact solution
+    flow.soils = vec![flow.soils[0].clone(); rows];
+    let first = flow.soils[0].as_ref().and_then(|soil| soil.permeability.as_ref()).expect("a soil").along;
+    let expected =
+        [[0.074819, 0.49907], [0.10581, 0.48462], [0.149478, 0.42503], [0.226536, 0.24612], [0.276149, 0.08229]];
+    let mut times = geometric(5e-3, 1.0, 240);
+    times.extend(T);
+    times.sort_by(f64::total_cmp);
+    times.dedup_by(|a, b| (*a - *b).abs() < 1e-9);
+    let (mut found, mut t) = (Vec::new(), 0.0);
+    for next in times {
+        let flow = scene.model.water.as_mut().and_then(|water| water.flow.as_mut()).expect("it flows");
+        for p in 0..scene.points.len() {
+            let J = scene.points.F.at(p).determinant();
+            let soil = flow.soils[usize::from(scene.points.material[p])].as_mut();
+            soil.and_then(|soil| soil.permeability.as_mut()).expect("a soil").along =
+                first * (J.powi(3) / (1.0 - J.ln()));
+        }
+        super::run_from(&mut scene, t, [next], |_, points, _| {
+            if T.iter().any(|of| (of - next).abs() < 1e-9) {
+                found.push([surface(points), base(points)]);
+            }
+        });
+        t = next;
+    }
+    let off = compare("exact", &found, &expected);
+    println!("off by {off:.4} of the last settlement");
+    assert!(found.len() == T.len() && off < 0.02);
+}

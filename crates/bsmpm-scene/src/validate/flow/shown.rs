@@ -1,15 +1,21 @@
 //! What is not shown to be right together with water that flows, and what is doubtful with it.
 
-use crate::case::{Body, Case, Flow, Initial, Support};
+use crate::case::{Body, Case, Drain, DrainSite, Face, Flow, Initial, Support};
+use crate::grid::{GridAxis, GridSpec};
 use crate::record::Record;
 use crate::report::Report;
 use crate::schema::LawName;
+use crate::validate::place;
 use crate::words::{AnalysisType, Side, Word};
 use bsmpm::quadrature::Quadrature;
 use bsmpm::stabilisation::Stabilisation;
+use bsmpm::water::ambient::Ambient;
+use bsmpm::water::flow::{Given, Soil};
 
 /// Points along each axis of a cell with cubic splines: with fewer the pressure oscillates at surfaces that cut cells.
 const POINTS_OF_CUBIC: usize = 4;
+/// Cells of water that a step may let into the ground where a drain lies above the water table.
+const FILM: f64 = 0.1;
 /// Growth per step above which steps are warned of: their own error is first order in them.
 const MOST_GROWTH: f64 = 1.25;
 
@@ -38,6 +44,7 @@ pub(in crate::validate) fn check(case: &Case, root: &Record, report: &mut Report
     acting(case, root, report);
     timed(case, root, report);
     drained(case, flow, report);
+    ponds(case, flow, report);
 }
 
 /// Splines, points, averages and iterations that carry the pressure.
@@ -197,5 +204,45 @@ fn drained(case: &Case, flow: &Flow, report: &mut Report<'_>) {
             "water: there is none that is still, and the pore pressure at the start is zero everywhere: what the water weighs \
              has to build up in time; give [water] level",
         );
+    }
+}
+
+/// Drains above the water table, which let water in without end where the ground would take it.
+fn ponds(case: &Case, flow: &Flow, report: &mut Report<'_>) {
+    let Some(water) = &case.water else { return };
+    let times = match &water.table {
+        Ambient::Level(rows) => rows.iter().map(|row| row.0).collect(),
+        _ => vec![0.0],
+    };
+    let cell = case.grid.axes.iter().map(GridAxis::shortest).fold(f64::INFINITY, f64::min);
+    let dry = |at: &[f64; 2]| {
+        let table = |t: f64| water.table.table(at[0], t).map_or(f64::INFINITY, |(height, _)| height);
+        at[1] > times.iter().map(|t| table(*t)).fold(f64::INFINITY, f64::min) + 0.5 * cell
+    };
+    let permeability = |soil: &Soil<2>| soil.permeability.as_ref().map_or(0.0, |k| k.along[0].max(k.along[1]));
+    let most = flow.soils.iter().flatten().map(permeability).fold(0.0, f64::max);
+    let dt = case.analysis.growth.map_or(case.analysis.dt, |(_, longest)| longest.min(case.analysis.end));
+    let way = most * dt / cell;
+    for (number, drain) in flow.drains.iter().enumerate().filter(|(_, drain)| drain.given == Given::StillWater) {
+        if way > FILM && places(drain, &case.grid).iter().any(dry) {
+            report.warn(format!(
+                "drain.{number}: above the water table it holds the pressure of the air, and the ground there is fed as by a pond, by up to \
+                 {way:.1} cells of water in a step: give seepage = true (and soils a retention), or head where a pond stands"
+            ));
+        }
+    }
+}
+
+/// m  where a drain is, in the case's coordinates
+fn places(drain: &Drain, grid: &GridSpec) -> Vec<[f64; 2]> {
+    match &drain.site {
+        DrainSite::Lines(lines) => lines.iter().flatten().copied().collect(),
+        DrainSite::Circle { center, radius } => place::ring(*center, *radius).collect(),
+        DrainSite::Face(Face { axis, upper }) => {
+            let mut ends = [grid.lower(), grid.upper()];
+            let at = ends[usize::from(*upper)][*axis];
+            ends.iter_mut().for_each(|end| end[*axis] = at);
+            ends.to_vec()
+        }
     }
 }
