@@ -30,8 +30,9 @@ fn near(case: &Case, report: &mut Report<'_>) {
     let few = |body: &&Body| body.points_per_cell < ENOUGH && body.occupied(&case.grid)[0].start == 0;
     if let Some(body) = case.bodies.iter().find(few).filter(|_| case.solver.quadrature == Quadrature::Points) {
         report.warn(format!(
-            "points_per_cell = {}: stress in the cells at the axis is off by 10 % with 2 points along an axis, by 5 and 3 % with 3 \
-             and 4, however small the cells are; give 3, or in quasi-static analysis [solver] quadrature = \"fitted\" (4, 2, 1 %)",
+            "points_per_cell = {}: stress in the cells at the axis is off by 10 % with 2 points along an axis, by 5 and 3 % \
+             with 3 and 4, however small the cells are; give 3, or in quasi-static analysis [solver] \
+             quadrature = \"fitted\" (4, 2, 1 %)",
             body.points_per_cell
         ));
     }
