@@ -208,7 +208,7 @@ fn of_ground<const D: usize>(soil: &Soil<2>) -> Soil<D> {
 /// Rigid bodies in the order of the file, once the stages until the time `t` have begun.
 pub fn rigid(case: &Case, t: f64) -> Vec<RigidBody> {
     let divided = case.divided_at(t);
-    let of = |rigid: &Rigid| RigidBody { friction: rigid.friction / divided, ..rigid_body(rigid, case.grid.lower()) };
+    let of = |rigid: &Rigid| RigidBody { friction: rigid.friction / divided, ..rigid_body(rigid, case.grid.corner()) };
     case.rigid.iter().map(of).collect()
 }
 

@@ -7,7 +7,16 @@ choice! {
     pub enum Geometry {
         /// Plane strain, 1 m thick.
         PlaneStrain = "plane-strain",
-    } later ["axisymmetric", "solid"]
+        /// Three dimensions: z is the vertical.
+        Solid = "solid",
+    } later ["axisymmetric"]
+}
+
+impl Geometry {
+    /// Number of axes; the last one is the vertical.
+    pub fn dims(self) -> usize {
+        if self == Self::Solid { 3 } else { 2 }
+    }
 }
 
 choice! {
@@ -122,16 +131,39 @@ choice! {
         Left = "left",
         /// At the highest x.
         Right = "right",
-        /// At the lowest y.
+        /// At the lowest y, of a solid z.
         Bottom = "bottom",
-        /// At the highest y.
+        /// At the highest y, of a solid z.
         Top = "top",
+        /// At the lowest y of a solid.
+        Front = "front",
+        /// At the highest y of a solid.
+        Back = "back",
     }
 }
 
 impl Side {
-    /// Per axis the lower and the upper one.
+    /// Per axis of a plane the lower and the upper one.
     pub const ALL: [[Self; 2]; 2] = [[Self::Left, Self::Right], [Self::Bottom, Self::Top]];
+    /// Per axis of a solid.
+    pub const OF_SOLID: [[Self; 2]; 3] = [Self::ALL[0], [Self::Front, Self::Back], Self::ALL[1]];
+
+    /// Per axis of a geometry the lower and the upper one.
+    pub fn of(geometry: Geometry) -> &'static [[Self; 2]] {
+        if geometry == Geometry::Solid { &Self::OF_SOLID } else { &Self::ALL }
+    }
+}
+
+choice! {
+    /// An axis of a solid.
+    pub enum Axis {
+        /// Across.
+        X = "x",
+        /// Backwards.
+        Y = "y",
+        /// Upwards.
+        Z = "z",
+    }
 }
 
 choice! {

@@ -8,6 +8,7 @@ mod matrix;
 mod page;
 mod rigid;
 mod rows;
+mod solid;
 mod stages;
 mod texts;
 mod water;
@@ -18,6 +19,7 @@ const DYNAMIC: &str = include_str!("../full.toml");
 const STATIC: &str = include_str!("static.toml");
 const RUBBING: &str = include_str!("rubbing.toml");
 const SEEPING: &str = include_str!("seeping.toml");
+const SOLID: &str = include_str!("solid.toml");
 const WET: &str = include_str!("wet.toml");
 
 /// One malformed case: `find` in the base becomes `put`, and an error must say `says` of `key`, `moved` lines below.
@@ -69,7 +71,7 @@ fn verify_all(base: &str, rows: &[Row]) {
 
 #[test]
 fn the_bases_are_valid() {
-    for base in [DYNAMIC, STATIC, RUBBING, SEEPING, WET] {
+    for base in [DYNAMIC, STATIC, RUBBING, SEEPING, SOLID, WET] {
         Case::from_text("case.toml", base, &[]).unwrap_or_else(|errors| panic!("{errors:#?}"));
     }
 }
@@ -133,6 +135,12 @@ fn still_water() {
     verify_all(DYNAMIC, water::SHAKEN);
     verify_all(WET, water::RATIO_AND_WATER);
     verify_all(STATIC, water::RATIO);
+}
+
+#[test]
+fn three_dimensions() {
+    verify_all(SOLID, solid::SOLID);
+    verify_all(STATIC, solid::IN_A_PLANE);
 }
 
 #[test]

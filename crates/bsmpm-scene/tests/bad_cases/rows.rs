@@ -352,7 +352,5 @@ pub const QUASI_STATIC: &[Row] = &[
 /// What is reserved and not done yet.
 pub const LATER: &[(&str, &str, &str)] = &[
     ("geometry = \"plane-strain\"", "geometry = \"axisymmetric\"", "geometry"),
-    ("geometry = \"plane-strain\"", "geometry = \"solid\"", "geometry"),
     ("format = \"vtu\"", "format = \"vtkhdf\"", "output.format"),
-    ("top    = \"fixed\"", "front = \"free\"", "boundary.front"),
 ];

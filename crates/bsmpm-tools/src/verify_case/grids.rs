@@ -59,7 +59,9 @@ impl VerifyArguments {
     /// The settings that make each grid.
     fn grids(&self, own: &Case) -> Result<Vec<Vec<String>>, Error> {
         let usage = |reason: String| Err(Error::Usage { reason });
-        let [x, y] = &own.grid.axes;
+        let [x, y] = &own.grid.axes[..] else {
+            return usage("of a solid --cells gives the three sizes".to_owned());
+        };
         let graded = [x, y].iter().any(|axis| matches!(axis, GridAxis::Graded(_)));
         if let Some(cells) = &self.cells {
             let cells = split(cells);
