@@ -207,11 +207,11 @@ impl<'a, const D: usize> Gathering<'a, D> {
     }
 
     /// Units of the fields, by name.
-    pub fn units(&self) -> BTreeMap<String, String> {
+    pub fn units(&self, volume: &str) -> BTreeMap<String, String> {
         self.sources
             .iter()
             .map(FieldSource::label)
-            .map(|(name, unit)| (name.into(), unit.replace("m^D", "m2")))
+            .map(|(name, unit)| (name.into(), unit.replace("m^D", volume)))
             .collect()
     }
 

@@ -46,6 +46,7 @@ pub struct Ledger {
     criteria: [f64; 2],       // of the force and of the energy measure
     faces: Vec<(usize, f64)>, // of every support, the axis it is normal to, and the sign of its push along it
     least_reaction: f64,      // N, below which a reaction is none
+    whole: f64,               // that forces and works are multiplied with
 }
 
 /// Headings of the tables.
@@ -110,6 +111,7 @@ impl Ledger {
             criteria: [case.solver.force_tolerance, case.solver.tolerance],
             faces: bsmpm_scene::model::faces(case, 0.0),
             least_reaction: bsmpm_scene::model::least_reaction(case),
+            whole: case.geometry.whole(),
             directory,
             manifest,
             columns,
@@ -233,8 +235,8 @@ impl Ledger {
             Some(summary.largest_advance.map_or(report.advance, |so_far| so_far.max(report.advance)));
         summary.settled_steps += u64::from(report.settled);
         if let Some([soft, all]) = report.background {
-            summary.background_work = Some(summary.background_work.unwrap_or(0.0) + soft);
-            summary.internal_work = Some(summary.internal_work.unwrap_or(0.0) + all.abs());
+            summary.background_work = Some(summary.background_work.unwrap_or(0.0) + soft * self.whole);
+            summary.internal_work = Some(summary.internal_work.unwrap_or(0.0) + all.abs() * self.whole);
         }
         // Where statuses of contacts were corrected, histories go on from search to search: the last alone judges.
         if let Some(last) = report.judged.filter(|_| !report.settled) {
@@ -251,6 +253,7 @@ impl Ledger {
         for (&(axis, push), force) in self.faces.iter().zip(&report.reactions) {
             let size = force.iter().map(|f| f * f).sum::<f64>().sqrt();
             let pull = if size > self.least_reaction { (-push * force[axis]).max(0.0) } else { 0.0 };
+            let [size, pull] = [size, pull].map(|force| force * self.whole);
             summary.largest_reaction = Some(summary.largest_reaction.map_or(size, |so_far| so_far.max(size)));
             summary.largest_pull = Some(summary.largest_pull.map_or(pull, |so_far| so_far.max(pull)));
         }

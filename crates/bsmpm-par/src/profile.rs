@@ -35,7 +35,7 @@ pub fn rows<K: Kinematics<D>, const D: usize>(
         fields.iter_mut().zip(numbers).for_each(|(field, number)| *field = number);
         fields
     };
-    let found = place::values(&model.grid, points, (&local, configuration), fields, halo);
+    let found = place::values::<K, D, _>(&model.grid, points, (&local, configuration), fields, halo);
     let row = |((distance, at), found): (&(f64, [f64; 2]), &Option<[f64; FIELDS]>)| {
         let [ux, uy, _, dx, dy, _, vx, vy, _, xx, yy, zz, xy, yz, xz, plastic] = (*found)?;
         let moved = if profile.fixed { [0.0; 2] } else { [ux, uy] };

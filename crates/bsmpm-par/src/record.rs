@@ -156,7 +156,7 @@ impl<const D: usize> Recorder<D> {
     pub fn front(&self, row: &[f64]) -> Option<f64> {
         let at = self.histories.iter().position(|history| history.quantity == Quantity::Front)?;
         let column: usize = self.histories[..at].iter().map(|history| history.columns().len()).sum();
-        Some(row.get(column)? / self.histories[at].scale).filter(|front| front.is_finite())
+        Some(row.get(column)? / self.histories[at].factor()).filter(|front| front.is_finite())
     }
 
     /// The row of the state at time `t`; `report` is that of the step that led to it, empty at the start.
@@ -202,7 +202,7 @@ impl<const D: usize> Recorder<D> {
                 Quantity::Rigid { what, body } => rigid(*what, *body, (t, model), report),
                 quantity => self.values((number, quantity), model, points, halo)?,
             };
-            row.extend(values.iter().map(|value| history.scale * value));
+            row.extend(values.iter().map(|value| history.factor() * value));
         }
         Ok(row)
     }
@@ -413,7 +413,7 @@ fn at_surface<K: Kinematics<D>, const D: usize, const C: usize>(
     field: impl Fn(usize) -> [f64; C],
     halo: &dyn Halo,
 ) -> Vec<f64> {
-    let found = place::values(&model.grid, points, (&[at], Configuration::Initial), field, halo);
+    let found = place::values::<K, D, _>(&model.grid, points, (&[at], Configuration::Initial), field, halo);
     found[0].map_or_else(|| vec![0.0; C], |values| values.to_vec())
 }
 

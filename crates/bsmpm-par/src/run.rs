@@ -319,7 +319,7 @@ impl<'p, K: Kinematics<D>, const D: usize> Run<'p, K, D> {
         let lost = self.recorder.let_out(outflow, points, &**halo);
         let Outlet { points, mass } = self.recorder.left();
         if let Some(ledger) = &mut self.ledger {
-            ledger.manifest().outflow = Some(ManifestOutflow { points, mass });
+            ledger.manifest().outflow = Some(ManifestOutflow { points, mass: mass * self.case.geometry.whole() });
         }
         for name in lost {
             let t = accepted.t;
@@ -402,7 +402,7 @@ impl<'p, K: Kinematics<D>, const D: usize> Run<'p, K, D> {
         let written = match &mut self.ledger {
             Some(ledger) => {
                 let (head, points) = (frame.head(), frame.points());
-                ledger.manifest().frame_units = frame.units();
+                ledger.manifest().frame_units = frame.units(self.case.geometry.volume_unit());
                 ledger.manifest().frame_names =
                     names.iter().map(|(field, names)| ((*field).to_owned(), names.clone())).collect();
                 let names: Vec<_> = names.into_iter().map(|(field, names)| (format!("{field}_names"), names)).collect();

@@ -14,7 +14,7 @@ use bsmpm_ranks::simulation::{Simulation, StartStress};
 use bsmpm_ranks::slab::Slabs;
 use bsmpm_scene::model::{at_rest, penalty, weighting};
 use bsmpm_scene::words::{Factor, Word};
-use bsmpm_scene::{Case, GridAxis, Initial};
+use bsmpm_scene::{Case, Geometry, GridAxis, Initial};
 use std::ops::Range;
 
 /// Cells along each axis that the ranks together see ([`bsmpm::grid::room`]), and how they share them.
@@ -94,6 +94,11 @@ pub fn choices(case: &Case, ranks: usize, options: &[String]) -> Vec<manifest::M
         reason: reason.into(),
     };
     let mut choices = Vec::new();
+    if case.geometry == Geometry::Axisymmetric {
+        let reason = "x is the radius: histories and this file are of the whole circle (N, J, kg, m3), 2 pi times what acts \
+                      on a radian, of which frames have the points' volumes; a point load is all of its ring";
+        choices.push(choice("geometry", "axisymmetric", reason));
+    }
     if case.flow.is_some() {
         let reason = "water that flows: all recent secants on both systems by turns (fixed stress); then shorter steps";
         choices.push(choice("solver.nonlinear", "multisecant", reason));

@@ -1,11 +1,13 @@
 //! Strips, rigid bodies and loads of a case as the physics wants them, and the footing's gauges.
 
 use crate::model::vector;
-use crate::{Acting, Base, Case, DrainSite, Face, Footing, LoadedLine, Prescribed, Push, Rigid, RigidShape, Site};
+use crate::{
+    Acting, Base, Case, DrainSite, Face, Footing, Geometry, LoadedLine, Prescribed, Push, Rigid, RigidShape, Site,
+};
 use bsmpm::boundary::rigid::Outline;
 use bsmpm::boundary::{Load, Path, RigidBody, Strip, StripContact, StripReport, SurfacePoint, surface};
 use bsmpm::grid::Grid;
-use bsmpm::kinematics::Kinematics;
+use bsmpm::kinematics::{Axisymmetric, Kinematics};
 use bsmpm::schedule::between;
 use bsmpm::tensor::Vector;
 use bsmpm::water::flow::{Course, Drain, DrainedFace, Given, Inflow, Permeability, Soil};
@@ -98,7 +100,11 @@ pub fn loads<K: Kinematics<D>, const D: usize>(case: &Case, grid: &Grid<D>, t: f
     });
     let forces = case.point_loads.iter().map(|load| Load {
         amplitude: load.amplitude.clone(),
-        ..Load::dead(vec![SurfacePoint { x: place(load.at), area: 1.0 }], vector(load.force), load.ramp)
+        ..Load::dead(
+            vec![SurfacePoint { x: place(load.at), area: 1.0 / case.geometry.whole() }],
+            vector(load.force),
+            load.ramp,
+        )
     });
     let switched = |(number, load): (usize, Load<D>)| match case.acts_since(Acting::Load(number), t) {
         None => Load { amplitude: vec![(0.0, 0.0)], ..load },
@@ -282,7 +288,7 @@ fn normal<const D: usize>(from: &Vector<D>, to: &Vector<D>) -> Vector<D> {
 #[derive(Clone, Debug)]
 pub struct Gauge {
     path: Path<2>,
-    length: f64,
+    area: f64,           // m per metre of thickness, or m2 per radian
     pressing: Vector<2>, // unit normal of the base, towards the material
     moving: Vector<2>,   // unit direction of the whole motion
 }
@@ -300,15 +306,20 @@ impl Gauge {
         let normal = normal(&from, &to);
         // A base that only slides along itself presses downwards.
         let side = if normal.dot(&moving).abs() > 1e-9 { normal.dot(&moving) } else { normal.dot(&down) };
-        Some(Self { length: (to - from).norm(), pressing: normal * side.signum(), moving, path })
+        let area = (to - from).norm()
+            * match case.geometry {
+                Geometry::PlaneStrain | Geometry::Solid => 1.0,
+                Geometry::Axisymmetric => Axisymmetric::weight(&((from + to) * 0.5)),
+            };
+        Some(Self { area, pressing: normal * side.signum(), moving, path })
     }
 
     /// Mean normal pressure on the base, Pa, compression positive.
     pub fn pressure(&self, report: &StripReport) -> f64 {
-        Vector::<2>::from_column_slice(&report.force).dot(&self.pressing) / self.length
+        Vector::<2>::from_column_slice(&report.force).dot(&self.pressing) / self.area
     }
 
-    /// Force of the soil against the motion, N/m.
+    /// Force of the soil against the motion, N per metre of thickness or per radian.
     pub fn force(&self, report: &StripReport) -> f64 {
         Vector::<2>::from_column_slice(&report.force).dot(&self.moving)
     }

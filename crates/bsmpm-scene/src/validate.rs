@@ -1,5 +1,6 @@
 //! The rules between keys: a record whose values fit one by one becomes a valid case, or errors.
 
+mod axisymmetric;
 mod body;
 mod element;
 mod flow;
@@ -141,6 +142,7 @@ pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Op
     water::check(&case, record, report);
     ratio::check(&case, record, report);
     flow::check(&case, record, report);
+    axisymmetric::check(&case, record, report);
     Some(Case { warnings: std::mem::take(&mut report.warnings), notes: std::mem::take(&mut report.notes), ..case })
 }
 

@@ -39,6 +39,11 @@ impl RunRecord {
         })
     }
 
+    /// What the axis across is called in pictures.
+    pub fn across(&self) -> &'static str {
+        if self.manifest.case.geometry == "axisymmetric" { "r" } else { "x" }
+    }
+
     /// Whether inertia acts: as the case says, else by the unit of time, which a quasi-static analysis does not have.
     pub fn regime(&self) -> Regime {
         let by_unit = || {

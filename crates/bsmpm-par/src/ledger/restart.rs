@@ -51,6 +51,7 @@ impl Ledger {
             criteria: [case.solver.force_tolerance, case.solver.tolerance],
             faces: bsmpm_scene::model::faces(case, resumed.state.progress.t),
             least_reaction: bsmpm_scene::model::least_reaction(case),
+            whole: case.geometry.whole(),
             directory,
             manifest,
             columns,

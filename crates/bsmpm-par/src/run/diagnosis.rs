@@ -86,7 +86,7 @@ fn advice(error: &StepError, case: &Case) -> Vec<String> {
     let lines: &[&str] = match error {
         StepError::NotConverged { iterations, energy, force, material, criteria, .. } => {
             let name = material.map(|number| case.materials[number].name.as_str());
-            return not_converged(*iterations, (*energy, *force), name, criteria);
+            return not_converged(*iterations, (*energy, *force), name, criteria, case);
         }
         StepError::Closed { .. } => &[
             "a larger porosity of the soil, or a stiffer one: its grains keep their volume, and the skeleton is pressed into them",
@@ -146,8 +146,17 @@ fn not_converged(
     (energy, force): (f64, f64),
     material: Option<&str>,
     criteria: &Criteria,
+    case: &Case,
 ) -> Vec<String> {
     let mut lines = Vec::new();
+    if case.rigid.iter().any(|body| body.friction > 0.0) {
+        // What stops is what the state became in steps too coarse, not how far the step goes (`boundary/rigid.md`).
+        lines.push(
+            "several times as many steps from the start: a rough rigid body in soil that yields may stop where with shorter \
+             steps it goes on"
+                .into(),
+        );
+    }
     if iterations >= criteria.max_iterations {
         lines.push(format!(
             "a larger [solver] max_iterations than {}, if the measures still fell",

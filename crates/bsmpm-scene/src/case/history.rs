@@ -280,13 +280,20 @@ impl Quantity {
 }
 
 impl History {
+    /// What the physics' numbers are multiplied with.
+    pub fn factor(&self) -> f64 {
+        let measured = self.quantity.measurement();
+        let whole = self.geometry.unit(measured.unit()).map_or(1.0, |_| self.geometry.whole());
+        self.scale * whole
+    }
+
     /// Its columns in the history file.
     pub fn columns(&self) -> Vec<Column> {
         let measured = self.quantity.measurement();
         let unit = |unit: &str| if self.scale == 1.0 { unit.to_owned() } else { format!("scaled {unit}") };
         let column = |(number, (suffix, _)): (usize, &(&str, &str))| Column {
             name: format!("{}{suffix}", self.name),
-            unit: unit(measured.unit_of(number)),
+            unit: unit(self.geometry.unit(measured.unit_of(number)).unwrap_or(measured.unit_of(number))),
         };
         measured.columns_in(self.geometry.dims()).iter().enumerate().map(column).collect()
     }

@@ -3,7 +3,7 @@
 use super::NEARLY_INCOMPRESSIBLE;
 use super::place;
 use super::strip::{moves, normal};
-use crate::case::{Base, Body, Case, Initial, Prescribed, Site, Support};
+use crate::case::{Base, Body, Case, Geometry, Initial, Prescribed, Site, Support};
 use crate::record::Record;
 use crate::report::Report;
 use crate::words::{Side, Word};
@@ -185,6 +185,10 @@ fn holds(case: &Case, component: usize) -> bool {
         Support::Absorbing | Support::FreeField => true,
         Support::Free | Support::Outflow => false,
     };
+    // All around an axis no body goes along the radius as a whole.
+    if case.geometry == Geometry::Axisymmetric && component == 0 {
+        return true;
+    }
     let mut faces = (0..case.grid.dims()).flat_map(|axis| [(axis, false), (axis, true)]);
     faces.any(|(axis, upper)| holds(axis, upper) && reached(case, axis, upper)) || held_by_strip(case, component)
 }

@@ -8,7 +8,6 @@ use bsmpm::stabilisation::Stabilisation;
 
 /// Tables and keys that only a plane knows, with what to do instead.
 const IN_A_PLANE: &[(&str, &str)] = &[
-    ("accuracy", "give cells, points, steps and tolerances"),
     ("water", "leave it out, with the weights of the soil under water"),
     ("drain", "leave it out: water does not flow here yet"),
     ("inflow", "leave it out: water does not flow here yet"),
@@ -36,6 +35,9 @@ const QUANTITIES: &[Measurement] = &[
     Measurement::FrictionPower,
     Measurement::Outflow,
 ];
+
+/// Unknowns beyond which a factor is told to be large: its fronts are planes of nodes.
+const MANY: u64 = 30_000;
 
 /// Errors about keys that the case's geometry has not.
 pub(super) fn refuse(root: &Record, report: &mut Report<'_>) {
@@ -109,6 +111,15 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
         key.into_iter().for_each(|of| {
             of.error("method", "not shown to be right in a solid yet: \"consistent-f-bar\" or \"f-bar\"", report);
         });
+    }
+    let estimate = case.estimate();
+    if estimate.active > MANY && case.solver.linear.factor.is_some() {
+        report.warn(format!(
+            "solver.linear: a factor of up to {} unknowns in space, about {:.1} GB in all, and every doubling of the points takes \
+             2.5 times the memory; linear = \"multigrid\" with reproducible = false takes less where poisson <= 0.45",
+            estimate.active,
+            estimate.bytes as f64 / 1e9
+        ));
     }
     let stiffness = |body: &crate::case::Body| case.materials[body.material].material.elastic().young;
     let mut stiff: Vec<f64> = case.bodies.iter().map(stiffness).collect();

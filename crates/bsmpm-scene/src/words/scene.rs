@@ -7,15 +7,50 @@ choice! {
     pub enum Geometry {
         /// Plane strain, 1 m thick.
         PlaneStrain = "plane-strain",
+        /// Rotational symmetry about the axis x = 0, without torsion: x is the radius, y is along the axis, zz in the
+        /// direction around it; forces, masses and energies in histories are of the whole circle.
+        Axisymmetric = "axisymmetric",
         /// Three dimensions: z is the vertical.
         Solid = "solid",
-    } later ["axisymmetric"]
+    }
 }
 
 impl Geometry {
     /// Number of axes; the last one is the vertical.
     pub fn dims(self) -> usize {
         if self == Self::Solid { 3 } else { 2 }
+    }
+
+    /// What the physics' extensive numbers, of a metre of thickness or of a radian, are multiplied with to be of what
+    /// tables tell.
+    pub fn whole(self) -> f64 {
+        match self {
+            Self::PlaneStrain | Self::Solid => 1.0,
+            Self::Axisymmetric => std::f64::consts::TAU,
+        }
+    }
+
+    /// What a number in this unit, of a metre of thickness in plane strain, is in; `None` if it is the same in all.
+    pub fn unit(self, in_plane: &str) -> Option<&'static str> {
+        let whole = match in_plane {
+            "kg/m" => "kg",
+            "kg/s" => "kg m/s",
+            "N/m" => "N",
+            "J/m" => "J",
+            "W/m" => "W",
+            "m3/m" => "m3",
+            _ => return None,
+        };
+        (self != Self::PlaneStrain).then_some(whole)
+    }
+
+    /// Unit of a point's volume in frames.
+    pub fn volume_unit(self) -> &'static str {
+        match self {
+            Self::PlaneStrain => "m2",
+            Self::Solid => "m3",
+            Self::Axisymmetric => "m3/rad",
+        }
     }
 }
 

@@ -2,6 +2,7 @@
 //!
 //! A row changes one place of a valid case; the line expected is that of the change, moved where the row says so.
 
+mod axisymmetric;
 mod flow;
 mod loads;
 mod matrix;
@@ -19,6 +20,7 @@ const DYNAMIC: &str = include_str!("../full.toml");
 const STATIC: &str = include_str!("static.toml");
 const RUBBING: &str = include_str!("rubbing.toml");
 const SEEPING: &str = include_str!("seeping.toml");
+const ROUND: &str = include_str!("round.toml");
 const SOLID: &str = include_str!("solid.toml");
 const WET: &str = include_str!("wet.toml");
 
@@ -71,7 +73,7 @@ fn verify_all(base: &str, rows: &[Row]) {
 
 #[test]
 fn the_bases_are_valid() {
-    for base in [DYNAMIC, STATIC, RUBBING, SEEPING, SOLID, WET] {
+    for base in [DYNAMIC, STATIC, RUBBING, SEEPING, ROUND, SOLID, WET] {
         Case::from_text("case.toml", base, &[]).unwrap_or_else(|errors| panic!("{errors:#?}"));
     }
 }
@@ -121,6 +123,11 @@ fn initial_stress_and_histories() {
     verify_all(DYNAMIC, loads::INITIAL);
     verify_all(STATIC, loads::QUASI_STATIC);
     verify_all(RUBBING, loads::RUBBING);
+}
+
+#[test]
+fn axisymmetric_cases() {
+    verify_all(ROUND, axisymmetric::AXISYMMETRIC);
 }
 
 #[test]

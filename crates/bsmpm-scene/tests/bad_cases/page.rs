@@ -57,6 +57,14 @@ const WRONG: &[Wrong] = &[
         "the gap at a face that is in no contact",
         &[("quantity = \"heave\"", "quantity = \"gap\"\nface = \"left\"")],
     ),
+    wet(
+        "an axis that is drained",
+        &[("\"plane-strain\"", "\"axisymmetric\""), ("face    = \"bottom\"", "face    = \"left\"")],
+    ),
+    at_rest(
+        "an axis in the middle of the grid",
+        &[("\"plane-strain\"", "\"axisymmetric\""), ("lower = [0.0, 0.0]", "lower = [-1.0, 0.0]")],
+    ),
     at_rest("waves in a quasi-static analysis", &[("bottom = \"fixed\"", "bottom = \"absorbing\"")]),
     dynamic("what leaves, where nothing can", &[("quantity = \"heave\"", "quantity = \"outflow\"")]),
     dynamic("a record that goes back in time", &[(RECORD, "acceleration = [[0.5, 0.1, 0.0], [0.4, 0.2, 0.0]]")]),

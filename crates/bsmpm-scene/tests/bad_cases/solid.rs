@@ -14,7 +14,7 @@ pub const SOLID: &[Row] = &[
     row(BOX, "box = { lower = [0.0, 0.0, 1.0], upper = [2.0, 3.0, 1.0] }", "body.0.box.upper", "is not above lower"),
     row(BOX, "box = { lower = [0.0, 0.0, 0.0], upper = [2.0, 3.0, 4.0] }", "body.0.box", "ends at z = 3"),
     row(BOX, "polygon = [[0, 0], [1, 0], [0, 1]]", "body.0.polygon", "give it a length, extrude"),
-    row("radius = 0.7", "radius = 1.7", "body.1.extrude", "ends at x = 4"),
+    row("radius = 0.7", "radius = 1.7", "body.1.extrude", "outside the grid"),
     row("to = 1.0 }\n", "to = 0.0 }\n", "body.1.extrude.to", "is not above from"),
     row("along = \"z\"", "along = \"r\"", "body.1.extrude.along", "expected one of"),
     row("radius = 0.5 }\npoints", "radius = 1.5 }\npoints", "body.2.sphere", "outside the grid"),

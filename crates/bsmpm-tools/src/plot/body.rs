@@ -73,7 +73,7 @@ fn picture(
         rigid::draw(&mut canvas, (&axes, region), (record, case), frame);
     }
     outline(&mut canvas, &axes, record);
-    axes.draw(&mut canvas, Some(("x", "m")), ("y", "m"));
+    axes.draw(&mut canvas, Some((record.across(), "m")), ("y", "m"));
     if lying {
         bar.lying(&mut canvas, &axes);
     } else {

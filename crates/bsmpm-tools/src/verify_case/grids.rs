@@ -203,7 +203,7 @@ mod tests {
         assert!(found.orders.iter().all(|order| order.case.bodies[0].points_per_cell == 2));
         let knots_moved = ["--set", "grid.knots.x=[-0.1, 0.3, 0.55]", "--set", "grid.knots.y=[-0.2, 0.05, 0.1025]"];
         let found = grids(&[&["--set", "grid.lower=[-0.1, -0.2]"][..], &knots_moved].concat()).unwrap();
-        assert!(found.orders.iter().all(|order| order.case.grid.lower() == [-0.1, -0.2]));
+        assert!(found.orders.iter().all(|order| order.case.grid.lower() == [-0.1, -0.2, 0.0]));
         assert_eq!(found.orders[2].case.grid, found.own.grid);
         assert_eq!(grids(&[&knots[..], &["--ratio", "1.5"]].concat()).err().unwrap().exit_code(), 2);
         let line = Line::parse_from(["verify-case", "case.toml"]);

@@ -1,6 +1,7 @@
 //! The programs from outside, a file for each of what is tried. One test program: each by itself would be linked with
 //! the same crates again.
 
+mod axisymmetric;
 mod checkpoints;
 mod command_line;
 mod consolidation;

@@ -5,6 +5,7 @@
 
 use crate::exact::Exact;
 use crate::grid::Grid;
+use crate::kinematics::Kinematics;
 use crate::parallel::Halo;
 use crate::points::Points;
 use crate::tensor::Vector;
@@ -30,16 +31,18 @@ pub enum Configuration {
 /// the points of the material of the nearest one; `None` where no material is.
 ///
 /// Weights are the quadratic B-spline that reaches one and a half cells of the place's own cell to each side, times the
-/// points' reference volumes. A place is in material if a point is nearer than its size, the D-th root of its volume:
+/// points' reference volumes. A place is in material if a point is nearer than its size, the D-th root of what it has of
+/// the grid:
 /// half of that is where its material ends.
-pub fn values<const D: usize, const C: usize>(
+pub fn values<K: Kinematics<D>, const D: usize, const C: usize>(
     grid: &Grid<D>,
     points: &Points<D>,
     (places, configuration): (&[Vector<D>], Configuration),
     field: impl Fn(usize) -> [f64; C],
     halo: &dyn Halo,
 ) -> Vec<Option<[f64; C]>> {
-    let fit = Fit { points, places, configuration, scale: places.iter().map(|at| cell_about(grid, at)).collect() };
+    let scale = places.iter().map(|at| cell_about(grid, at)).collect();
+    let fit = Fit { points, places, configuration, weight: K::weight, scale };
     let materials = fit.materials(halo);
     let width = PRODUCTS + TERMS * C;
     let mut sums = vec![Exact::ZERO; places.len() * width];
@@ -70,6 +73,7 @@ struct Fit<'a, const D: usize> {
     points: &'a Points<D>,
     places: &'a [Vector<D>],
     configuration: Configuration,
+    weight: fn(&Vector<D>) -> f64, // volume per m^D of the grid
     scale: Vec<Option<Vector<D>>>, // m  edges of the cell of every place that is in the grid
 }
 
@@ -103,7 +107,8 @@ impl<const D: usize> Fit<'_, D> {
                 Configuration::Initial => self.points.volume[p],
                 Configuration::Present => self.points.volume[p] * self.points.F.at(p).determinant(),
             };
-            let within = apart <= volume.powf(2.0 / D as f64);
+            let size = volume / (self.weight)(&self.place_of(p));
+            let within = apart <= size.powf(2.0 / D as f64);
             self.terms(number, p).and_then(|_| within.then_some(apart))
         };
         let mut nearest = vec![(f64::INFINITY, u64::MAX, 0_u16); self.places.len()];

@@ -146,6 +146,7 @@ impl<const D: usize> Nodes<D> {
                 let around = Surroundings {
                     bodies: (&model.boundary.rigid, &points.surface.bodies),
                     reach: &model.boundary.reach,
+                    weight: K::weight,
                     grid: &model.grid,
                     shape,
                     points,

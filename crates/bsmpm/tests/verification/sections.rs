@@ -87,7 +87,8 @@ fn planes_reproduce_what_is_linear_to_the_surface_and_a_column_has_its_own_weigh
         move |p: usize| [3.0 - 2.0 * places_of[p][0] + 7.0 * places_of[p][1]]
     };
     let (grid, points, halo) = (&scene.model.grid, &scene.points, scene.halo());
-    let found = place::values(grid, points, (&places, Configuration::Initial), linear(points), &halo);
+    let found =
+        place::values::<PlaneStrain, 2, _>(grid, points, (&places, Configuration::Initial), linear(points), &halo);
     for (place, found) in places.iter().zip(&found) {
         let inside = place[0] <= 1.0 && place[1] <= 3.0;
         assert_eq!(found.is_some(), inside, "{place}");
@@ -95,7 +96,7 @@ fn planes_reproduce_what_is_linear_to_the_surface_and_a_column_has_its_own_weigh
         assert!(found.is_none_or(|[found]| (found - exact).abs() < 1e-10), "{place} {found:?}");
     }
     let stress = |p: usize| [points.sigma.at(p).0[1]];
-    let found = place::values(grid, points, (&places, Configuration::Initial), stress, &halo);
+    let found = place::values::<PlaneStrain, 2, _>(grid, points, (&places, Configuration::Initial), stress, &halo);
     for number in [0, 1, 2, 6] {
         let off = found[number].unwrap()[0] + DENSITY * G * (3.0 - places[number][1]);
         let id = nearest(points, &places[number], |_| true, &halo).unwrap();

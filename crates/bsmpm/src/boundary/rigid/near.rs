@@ -35,6 +35,8 @@ pub struct Surroundings<'a, const D: usize> {
     pub points: &'a Points<D>,
     /// m/s2  force per mass at the end of the step
     pub body_force: Vector<D>,
+    /// volume per m^D of the grid at a place
+    pub weight: fn(&Vector<D>) -> f64,
     /// components that nothing else holds
     pub free: &'a [bool],
     /// whether inertia acts
@@ -241,13 +243,14 @@ fn longest_edge<const D: usize>(grid: &Grid<D>, axis: usize) -> f64 {
 /// m  how far a point reaches along a normal, by the ellipse in its box in the lattice of the cell that it was in at
 /// the start, deformed by its F; and an edge of that cell.
 fn reach<const D: usize>(around: &Surroundings<'_, D>, p: usize, normal: &Vector<2>) -> (f64, f64) {
-    let Surroundings { grid, points, reach, .. } = around;
-    let start = grid.locate(&(points.x[p] - points.u[p])).or_else(|| grid.locate(&points.x[p]));
+    let Surroundings { grid, points, reach, weight, .. } = around;
+    let placed = points.x[p] - points.u[p];
+    let start = grid.locate(&placed).or_else(|| grid.locate(&points.x[p]));
     let size = start.map_or_else(|| Vector::repeat(grid.smallest_edge()), |cell| grid.cell_box(&cell).1);
     let share = reach.get(usize::from(points.material[p])).copied().unwrap_or(0.5);
     let box_volume: f64 = size.iter().map(|edge| 2.0 * share * edge).product();
     // A box that was cut holds less.
-    let share = share * (points.volume[p] / box_volume).min(1.0).powf(1.0 / D as f64);
+    let share = share * (points.volume[p] / weight(&placed) / box_volume).min(1.0).powf(1.0 / D as f64);
     let F = points.F.at(p);
     let along = |j: usize| (F[(0, j)] * normal[0] + F[(1, j)] * normal[1]) * share * size[j];
     let reach = (0..2).map(|j| along(j).powi(2)).sum::<f64>().sqrt();

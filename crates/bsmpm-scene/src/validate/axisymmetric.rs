@@ -1,0 +1,117 @@
+//! What an axisymmetric case must and must not have: the axis is the grid's left face, and nothing moves or acts
+//! sideways that would not do so all around it.
+
+use crate::case::{Case, DrainSite, Face, Geometry, Support};
+use crate::record::Record;
+use crate::report::Report;
+use crate::words::{Measurement, Side, Word};
+
+/// The face at the axis.
+const AXIS: Face = Face { axis: 0, upper: false };
+const SIDEWAYS: &str = "x is the radius: nothing has one direction along it all around the axis; allowed: 0 along x";
+
+/// Errors of a case that is valid in its parts.
+pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
+    if case.geometry != Geometry::Axisymmetric {
+        return;
+    }
+    axis(case, record, report);
+    sideways(case, record, report);
+    rigid(case, record, report);
+    told(case, record, report);
+}
+
+/// The grid begins at r = 0, where no displacement leads away from the axis.
+fn axis(case: &Case, record: &Record, report: &mut Report<'_>) {
+    if let Some(grid) = record.record("grid")
+        && case.grid.lower()[0] != 0.0
+    {
+        let key = if grid.gives("knots") { "knots" } else { "lower" };
+        let message = "x is the radius, and the grid of an axisymmetric case begins at the axis, x = 0; cells without \
+                       material cost nothing";
+        grid.error(key, message, report);
+    }
+    let tables = std::iter::once(record).chain(record.records("stage")).filter_map(|table| table.record("boundary"));
+    for boundary in tables {
+        for side in Side::ALL.into_iter().flatten() {
+            let (found, word) = (super::support(boundary, side), side.word());
+            if Face::of(side, Geometry::Axisymmetric) == Some(AXIS)
+                && found.is_some_and(|found| found != Support::Roller)
+            {
+                boundary.error(word, "is the axis of an axisymmetric case; allowed: \"roller\"", report);
+            }
+            if matches!(found, Some(Support::Absorbing | Support::FreeField)) {
+                boundary.error(
+                    word,
+                    "faces absorb in plane strain only: what they do to waves from an axis was not shown",
+                    report,
+                );
+            }
+        }
+    }
+    let drains = case.flow.iter().flat_map(|flow| &flow.drains).zip(record.records("drain"));
+    for (drain, record) in drains {
+        if drain.site == DrainSite::Face(AXIS) {
+            record.error("face", "is the axis of an axisymmetric case: it has no area to drain", report);
+        }
+    }
+}
+
+/// Vectors that are the same all around the axis have nothing along x.
+fn sideways(case: &Case, record: &Record, report: &mut Report<'_>) {
+    if let Some(gravity) = record.record("gravity")
+        && case.gravity.as_ref().is_some_and(|gravity| gravity.acceleration[0] != 0.0)
+    {
+        gravity.error("acceleration", SIDEWAYS, report);
+    }
+    if case.shaking.iter().any(|(_, ground)| ground[0] != 0.0) {
+        record.error("shaking", SIDEWAYS, report);
+    }
+    for (body, record) in case.bodies.iter().zip(record.records("body")) {
+        if body.velocity.is_some_and(|v| v[0] != 0.0) {
+            record.error("velocity", SIDEWAYS, report);
+        }
+        if body.spin.is_some() {
+            record.error("spin", "nothing turns in the plane of an axisymmetric case", report);
+        }
+    }
+    if let Some(footing) = &case.footing
+        && footing.path.rows.iter().any(|(_, moved)| moved[0] != 0.0)
+        && let Some(record) = record.record("footing")
+    {
+        let moves = ["displacement", "velocity", "path"].into_iter().find(|key| record.gives(key));
+        record.error(moves.unwrap_or("path"), SIDEWAYS, report);
+    }
+    for (load, record) in case.point_loads.iter().zip(record.records("point_load")) {
+        if load.at[0] == 0.0 && load.force[0] != 0.0 {
+            record.error("force", "on the axis a force has no component along the radius x", report);
+        }
+    }
+}
+
+/// Rigid bodies are bodies of revolution, on a way along the axis.
+fn rigid(case: &Case, record: &Record, report: &mut Report<'_>) {
+    for (rigid, record) in case.rigid.iter().zip(record.records("rigid")) {
+        if rigid.path.rows.iter().any(|(_, moved)| moved[0] != 0.0) {
+            let moves = ["displacement", "velocity", "path"].into_iter().find(|key| record.gives(key));
+            record.error(moves.unwrap_or("path"), SIDEWAYS, report);
+        }
+        if !rigid.rotation.is_empty() {
+            record.error("rotation", "nothing turns in the plane of an axisymmetric case", report);
+        }
+        if rigid.free != [false; 3] {
+            record.error("free", "in an axisymmetric case a rigid body is on a given way along the axis only", report);
+        }
+    }
+}
+
+/// Quantities that have no meaning, or that are told of plane sections only.
+fn told(case: &Case, record: &Record, report: &mut Report<'_>) {
+    use Measurement::{AngularMomentum, Moment, RigidMoment, RigidRotation, SectionForces};
+    for (history, record) in case.histories.iter().zip(record.records("history")) {
+        let measured = history.quantity.measurement();
+        if matches!(measured, AngularMomentum | Moment | RigidMoment | RigidRotation | SectionForces) {
+            record.error("quantity", format!("there is no {measured} in an axisymmetric case"), report);
+        }
+    }
+}

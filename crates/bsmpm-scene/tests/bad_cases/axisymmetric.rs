@@ -1,0 +1,51 @@
+//! Rows of what is not the same all around an axis.
+
+use super::{Row, row};
+
+/// What an axisymmetric case must not have.
+pub const AXISYMMETRIC: &[Row] = &[
+    row("lower = [0.0, 0.0]\nupper = [2.0", "lower = [-1.0, 0.0]\nupper = [2.0", "grid.lower", "begins at the axis"),
+    row("left   = \"roller\"", "left   = \"fixed\"", "boundary.left", "is the axis"),
+    row("left   = \"roller\"", "left   = \"free\"", "boundary.left", "is the axis"),
+    row("right  = \"free\"", "right  = \"absorbing\"", "boundary.right", "in plane strain only"),
+    row(
+        "[boundary]",
+        "[[stage]]\nat = 0.05\nboundary = { left = \"free\" }\n\n[boundary]",
+        "stage.0.boundary.left",
+        "",
+    )
+    .down(2),
+    row("acceleration = [0.0", "acceleration = [1.0", "gravity.acceleration", "x is the radius"),
+    row("velocity = [0.0", "velocity = [1.0", "body.0.velocity", "x is the radius"),
+    row(
+        "points_per_cell",
+        "spin = { rate = 1.0, about = [0.5, 0.5] }\npoints_per_cell",
+        "body.0.spin",
+        "nothing turns",
+    ),
+    row("displacement = [0.0, -0.01]", "displacement = [0.1, -0.01]", "footing.displacement", "x is the radius"),
+    row("force = [0.0", "force = [1.0", "point_load.0.force", "no component along the radius"),
+    row("displacement = [0.0, -0.1]", "displacement = [0.1, -0.1]", "rigid.0.displacement", "x is the radius"),
+    row("displacement = [0.0, -0.1]", "rotation = [[0.1, 0.1]]", "rigid.0.rotation", "nothing turns"),
+    row("displacement = [0.0, -0.1]", "free = [\"y\"]\nmass = 10", "rigid.0.free", "on a given way"),
+    row("quantity = \"mass\"", "quantity = \"angular-momentum\"", "history.0.quantity", "no angular-momentum"),
+    row("quantity = \"reaction\"", "quantity = \"moment\"", "history.1.quantity", "no moment"),
+    row(
+        "quantity = \"mass\"",
+        "quantity = \"rigid-moment\"\nrigid = \"cone\"",
+        "history.0.quantity",
+        "no rigid-moment",
+    ),
+    row(
+        "quantity = \"mass\"",
+        "quantity = \"rigid-rotation\"\nrigid = \"cone\"",
+        "history.0.quantity",
+        "no rigid-rotation",
+    ),
+    row(
+        "quantity = \"mass\"",
+        "quantity = \"section-forces\"\nfrom = [0.1, 0.5]\nto = [0.9, 0.5]",
+        "history.0.quantity",
+        "no section-forces",
+    ),
+];

@@ -1,0 +1,132 @@
+//! Bodies of revolution: histories of the whole circle, the same on any number of ranks and over restarts.
+
+use crate::support::Scratch;
+use crate::support::cases::changed;
+use crate::support::results::{at, differences, history, last_frame, manifest};
+use std::f64::consts::PI;
+
+/// A cylinder of soil that stands on a fixed base under its weight, in a sleeve that a ring of load rests on; a rigid cone
+/// comes down on it.
+const CASE: &str = r#"
+geometry = "axisymmetric"
+[analysis]
+type = "dynamic"
+end = 0.06
+dt = 0.002
+[grid]
+lower = [0, 0]
+upper = [1.5, 1.5]
+cell = 0.125
+order = "quadratic"
+[material.soil]
+model = "drucker-prager"
+young = "2 MPa"
+poisson = 0.3
+density = 1800
+friction = 30
+cohesion = "1 kPa"
+[[body]]
+material = "soil"
+box = { lower = [0, 0], upper = [1, 1] }
+points_per_cell = 2
+[[rigid]]
+name = "cone"
+polygon = [[0.0, 1.0], [0.4, 1.2], [0.4, 1.4], [-0.4, 1.4], [-0.4, 1.2]]
+friction = 0.3
+displacement = [0.0, -0.06]
+[[traction]]
+from = [0.75, 1.0]
+to = [1.0, 1.0]
+stress = [0.0, "-1 kPa"]
+ramp = 0.06
+[gravity]
+acceleration = [0, -9.81]
+[initial]
+k0 = 0.5
+[boundary]
+left = "roller"
+bottom = "fixed"
+right = "free"
+[stabilisation]
+method = "consistent-f-bar"
+[solver]
+tolerance = 1e-12
+force_tolerance = 1e-9
+[output]
+every = 0.03
+[[history]]
+quantity = "mass"
+[[history]]
+quantity = "reaction"
+face = "bottom"
+[[history]]
+quantity = "rigid-force"
+rigid = "cone"
+[[history]]
+quantity = "rigid-work"
+rigid = "cone"
+[[history]]
+quantity = "momentum"
+[[history]]
+quantity = "kinetic-energy"
+[[history]]
+quantity = "energy"
+"#;
+
+#[test]
+fn a_body_of_revolution_is_the_same_on_1_2_and_3_ranks_and_over_restarts() {
+    let scratch = Scratch::with_case(CASE);
+    for ranks in [1, 2, 3] {
+        let whole = format!("whole{ranks}");
+        scratch.mpirun(ranks, &["case.toml", "-q", "-o", &whole]).expect(0);
+        let part = ["case.toml", "-q", "-o", "part", "--restart", "auto"];
+        scratch.mpirun(ranks, &[&part[..], &["--max-steps", "17"]].concat()).expect(75);
+        scratch.mpirun(ranks, &part).expect(0);
+        let text = |name: &str| std::fs::read_to_string(scratch.path(name).join("history.csv")).unwrap();
+        assert!(text(&whole) == text("part"), "{ranks} ranks");
+        std::fs::remove_dir_all(scratch.path("part")).unwrap();
+        for (field, difference) in differences(&last_frame(&scratch.path(&whole)), &last_frame(&scratch.path("whole1")))
+        {
+            assert!(difference <= 1e-8, "{field} on {ranks} ranks differs by {difference:.1e}");
+        }
+    }
+    let table = history(&scratch.path("whole1"));
+    let units = ["mass", "reaction-y", "rigid-force-y", "momentum-y", "energy-external"].map(|name| table.unit(name));
+    assert_eq!(units, ["kg", "N", "N", "kg m/s", "J"].map(Some));
+    let of = |name: &str, t: f64| at(&table, name, t);
+    assert!((of("mass", 0.06) / (1800.0 * PI) - 1.0).abs() < 1e-12);
+    assert!((of("reaction-y", 0.0) / (1800.0 * PI * 9.81) - 1.0).abs() < 1e-6, "{}", of("reaction-y", 0.0));
+    assert!(of("rigid-force-y", 0.06) < -100.0 && of("rigid-work", 0.06) > 0.0);
+    let [closure, external] = ["energy-closure", "energy-external"].map(|name| of(name, 0.06).abs());
+    assert!(closure < 1e-5 * external, "{closure:e} of {external:e}");
+    let told = manifest(&scratch.path("whole1"));
+    assert_eq!((told.case.geometry.as_str(), told.frame_units["volume"].as_str()), ("axisymmetric", "m3/rad"));
+    let whole = told.choices.iter().find(|choice| choice.key == "geometry").expect("what forces are of");
+    assert!(whole.reason.contains("of the whole circle"));
+}
+
+/// A disc that is pressed elastically: work of the footing is its energy, its force the pressure times the area, and that of
+/// the base.
+#[test]
+fn forces_and_works_of_a_disc_are_of_the_whole_of_it() {
+    let pressed = changed(CASE, "type = \"dynamic\"\nend = 0.06\ndt = 0.002", "type = \"quasi-static\"\nsteps = 4");
+    let pressed = changed(&pressed, "model = \"drucker-prager\"", "model = \"hencky\"");
+    let pressed = changed(&pressed, "friction = 30\ncohesion = \"1 kPa\"\n", "");
+    let (before, _) = pressed.split_once("[[rigid]]").unwrap();
+    let (_, after) = pressed.split_once("[boundary]").unwrap();
+    let (after, _) = after.split_once("[output]").unwrap();
+    let footing = "[footing]\nfrom = [0.0, 1.0]\nto = [0.5, 1.0]\ndisplacement = [0.0, -0.001]\nbase = \"smooth\"\n";
+    let wanted =
+        ["footing-force", "footing-pressure", "energy"].map(|name| format!("[[history]]\nquantity = \"{name}\"\n"));
+    let base = "[[history]]\nquantity = \"reaction\"\nface = \"bottom\"\n";
+    let work = "[[history]]\nquantity = \"work\"\nof = \"footing\"\n";
+    let scratch = Scratch::with_case(&format!("{before}{footing}[boundary]{after}{}{base}{work}", wanted.concat()));
+    scratch.mpirun(2, &["case.toml", "-q", "-o", "disc"]).expect(0);
+    let table = history(&scratch.path("disc"));
+    let of = |name: &str| at(&table, name, 1.0);
+    let (force, pressure) = (of("footing-force"), of("footing-pressure"));
+    assert!(force > 100.0 && (pressure * PI * 0.25 / force - 1.0).abs() < 1e-12, "{force} {pressure}");
+    assert!((of("reaction-y") / force - 1.0).abs() < 1e-6);
+    assert!((of("work") / (0.5 * force * 1e-3) - 1.0).abs() < 0.02, "{} {}", of("work"), 0.5 * force * 1e-3);
+    assert!((of("energy-elastic") / of("work") - 1.0).abs() < 0.02);
+}
