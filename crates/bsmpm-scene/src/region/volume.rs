@@ -26,7 +26,7 @@ enum Filling {
     Box,
     /// The points of an outline in the plane beside an axis, a lattice in the part of every cell along it: the volumes
     /// are exact.
-    Prism { outline: Outline, plane: GridSpec, along: usize, ends: [f64; 2] },
+    Prism { outline: Box<Outline>, plane: GridSpec, along: usize, ends: [f64; 2] },
     /// By vertical lines; of cells that are cut the volumes are multiplied by the factor, by which the body's is exact.
     Lattice { scale: f64 },
 }
@@ -217,7 +217,7 @@ impl Filling {
             let lower = plane.lower();
             let bounds = section.bounds.map(|corner| [0, 1].map(|axis| corner[axis] + lower[axis]));
             let outline = Outline::new(edges, 1 + cut.len(), (bounds, section.area), (&plane, n))?;
-            return Ok(Self::Prism { outline, plane, along, ends });
+            return Ok(Self::Prism { outline: Box::new(outline), plane, along, ends });
         }
         let [lower, upper] = whole.bounds();
         let columns = (0..2).map(|axis| reached(&axes[axis], [lower[axis], upper[axis]]).len() as u128);

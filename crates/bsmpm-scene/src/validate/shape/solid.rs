@@ -66,7 +66,7 @@ fn read(record: &Record, report: &mut Report<'_>) -> Option<SolidShape> {
         }
         return Some(SolidShape::Revolved { outline, about: shape.pair("about")? });
     }
-    for key in ["polygon", "circle"].into_iter().filter(|key| record.gives(key)) {
+    if let Some(key) = ["polygon", "circle"].into_iter().find(|key| record.gives(key)) {
         record.error(key, "is an outline in a plane: give it a length, extrude = { ... }", report);
         return None;
     }
