@@ -59,7 +59,11 @@ const WRONG: &[Wrong] = &[
     ),
     wet(
         "an axis that is drained",
-        &[("\"plane-strain\"", "\"axisymmetric\""), ("face    = \"bottom\"", "face    = \"left\"")],
+        &[
+            ("\"plane-strain\"", "\"axisymmetric\""),
+            ("face    = \"bottom\"", "face    = \"left\""),
+            ("face     = \"bottom\"", "face     = \"left\""),
+        ],
     ),
     at_rest(
         "an axis in the middle of the grid",

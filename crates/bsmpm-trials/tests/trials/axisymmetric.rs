@@ -5,8 +5,7 @@ use crate::support::cases::changed;
 use crate::support::results::{at, differences, history, last_frame, manifest};
 use std::f64::consts::PI;
 
-/// A cylinder of soil that stands on a fixed base under its weight, in a sleeve that a ring of load rests on; a rigid cone
-/// comes down on it.
+/// A cylinder of soil that stands on a fixed base under its weight and a ring of load; a rigid cone comes down on it.
 const CASE: &str = r#"
 geometry = "axisymmetric"
 [analysis]
@@ -95,8 +94,9 @@ fn a_body_of_revolution_is_the_same_on_1_2_and_3_ranks_and_over_restarts() {
     assert_eq!(units, ["kg", "N", "N", "kg m/s", "J"].map(Some));
     let of = |name: &str, t: f64| at(&table, name, t);
     assert!((of("mass", 0.06) / (1800.0 * PI) - 1.0).abs() < 1e-12);
-    assert!((of("reaction-y", 0.0) / (1800.0 * PI * 9.81) - 1.0).abs() < 1e-6, "{}", of("reaction-y", 0.0));
-    assert!(of("rigid-force-y", 0.06) < -100.0 && of("rigid-work", 0.06) > 0.0);
+    // k0 leaves .8 % in so few cells.
+    assert!((of("reaction-y", 0.0) / (1800.0 * PI * 9.81) - 1.0).abs() < 0.01, "{}", of("reaction-y", 0.0));
+    assert!(of("rigid-force-y", 0.06) > 100.0 && of("rigid-work", 0.06) > 0.0);
     let [closure, external] = ["energy-closure", "energy-external"].map(|name| of(name, 0.06).abs());
     assert!(closure < 1e-5 * external, "{closure:e} of {external:e}");
     let told = manifest(&scratch.path("whole1"));
@@ -105,8 +105,8 @@ fn a_body_of_revolution_is_the_same_on_1_2_and_3_ranks_and_over_restarts() {
     assert!(whole.reason.contains("of the whole circle"));
 }
 
-/// A disc that is pressed elastically: work of the footing is its energy, its force the pressure times the area, and that of
-/// the base.
+/// A disc that is pressed elastically: its work is the body's energy, its force the pressure times the area, and that
+/// of the base.
 #[test]
 fn forces_and_works_of_a_disc_are_of_the_whole_of_it() {
     let pressed = changed(CASE, "type = \"dynamic\"\nend = 0.06\ndt = 0.002", "type = \"quasi-static\"\nsteps = 4");

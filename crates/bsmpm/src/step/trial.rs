@@ -74,7 +74,7 @@ impl<K: Kinematics<D>, const D: usize> Trial<K, D> {
     }
 
     /// J-bar/J of point `p` at the end of the step.
-    pub(super) fn dilation(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> f64 {
+    pub(crate) fn dilation(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> f64 {
         let before = if model.stabilisation == Stabilisation::FBarZhao { 1.0 } else { points.dilation_of(p) };
         self.averaged(model, points, p) * before
     }

@@ -195,7 +195,7 @@ fn places<const D: usize>(flow: &Flow<D>, points: &Points<D>, anchors: &[Vec<u64
     let mut numbers = vec![0.0; width * starts.len()];
     anchored.visit(anchors.iter().flatten(), |p, at| {
         let ((start, normal), F) = (starts[at], points.F.at(p));
-        let permeability = flow.permeability(points.material[p], F.determinant());
+        let permeability = flow.permeability(points.material[p], F.determinant() * points.dilation_of(p));
         let vectors = [anchored.along(p, &start.x), turned(&F, normal), permeability.unwrap_or_else(Vector::zeros)];
         let all = vectors.iter().flatten().copied().chain([f64::from(u8::from(permeability.is_some()))]);
         numbers[width * at..].iter_mut().zip(all).for_each(|(number, value)| *number = value);

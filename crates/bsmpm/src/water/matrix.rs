@@ -38,13 +38,13 @@ pub fn assemble<K: Kinematics<D>, const D: usize>(
             scalars::functions_of(&pores.shape, p, &mut functions);
             // With inertia the shortest waves that cells hold, of k^2 = 10/h^2, are stiffer.
             let stiffness = wet.stiffness + inertia * points.mass[p] / wet.volume;
-            let mut conductivity = flow.permeability(points.material[p], wet.J).unwrap_or_else(Vector::zeros);
+            let mut conductivity = flow.permeability(points.material[p], wet.mean_J).unwrap_or_else(Vector::zeros);
             let mut stored = wet.volume * (wet.content / flow.bulk + wet.J.powi(2) / stiffness);
             let mut tau = wet.tau;
             let soil = flow.soils[usize::from(points.material[p])].as_ref();
             if let Some(soil) = soil.filter(|soil| soil.retention.is_some()) {
                 let (whole, weight) = (pressures[p] + wet.ambient, water.unit_weight);
-                let (retained, pores) = (soil.retained(whole, weight), soil.pores(wet.J));
+                let (retained, pores) = (soil.retained(whole, weight), soil.pores(wet.mean_J));
                 let chord = soil.chord(wet.pressure, whole, weight);
                 let gives_way = retained.effective * retained.saturation * wet.J.powi(2) / stiffness;
                 let empties = pores * chord.max(retained.slope);

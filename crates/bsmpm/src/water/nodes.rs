@@ -30,6 +30,8 @@ pub struct Wet<const D: usize> {
     pub volume: f64,
     /// -  J at t
     pub J: f64,
+    /// -  J-bar at t, which the skeleton's stress has felt, and the pores with it
+    pub mean_J: f64,
     /// -  water per reference volume at t
     pub content: f64,
     /// Pa  whole pore pressure at t; of pores that stay full the excess alone
@@ -170,6 +172,7 @@ impl<const D: usize> Wet<D> {
         Some(Self {
             volume,
             J,
+            mean_J: J * points.dilation_of(p),
             content: soil.content(flow.bulk, J, whole) * retained.saturation,
             pressure: whole,
             ambient: if holds { water.still_pressure(x, end) } else { 0.0 },
@@ -186,7 +189,7 @@ impl<const D: usize> Wet<D> {
 impl<const D: usize> Wet<D> {
     /// m3/Pa  what the point stores and lets flow through a cell in a step, per pressure.
     fn takes<K>(&self, model: &Model<K, D>, (water, flow): (&Water<D>, &Flow<D>), material: u16, dt: f64) -> f64 {
-        let conductivity = flow.permeability(material, self.J).unwrap_or_else(Vector::zeros);
+        let conductivity = flow.permeability(material, self.mean_J).unwrap_or_else(Vector::zeros);
         let flows = dt * conductivity.max() / (water.unit_weight * model.grid.smallest_edge().powi(2));
         self.volume * (self.content / flow.bulk + self.J.powi(2) / self.stiffness + self.J * flows)
     }

@@ -31,6 +31,11 @@ impl<'a, const D: usize> PoreWater<'a, D> {
         Some((flow, flow.soils[usize::from(self.points.material[p])].as_ref()?))
     }
 
+    /// J-bar of point `p`
+    fn mean_J(&self, p: usize) -> f64 {
+        self.points.F.at(p).determinant() * self.points.dilation_of(p)
+    }
+
     /// Pa  pressure of the still water at point `p`
     fn still(&self, p: usize) -> f64 {
         self.grown * self.water.still_pressure(&self.points.x[p], self.t)
@@ -68,13 +73,13 @@ impl<'a, const D: usize> PoreWater<'a, D> {
 
     /// -  share of pores in the volume at point `p`; 0 where no water flows
     pub fn porosity(&self, p: usize) -> f64 {
-        let J = self.points.F.at(p).determinant();
+        let J = self.mean_J(p);
         self.flow(p).map_or(0.0, |(_, soil)| soil.pores(J) / J)
     }
 
     /// m/s  Darcy's flux relative to the grains at point `p`; zero where nothing flows, and before the first step
     pub fn flux(&self, p: usize) -> Vector<D> {
-        let J = self.points.F.at(p).determinant();
+        let J = self.mean_J(p);
         let conductivity = self.water.flow.as_ref().and_then(|flow| flow.permeability(self.points.material[p], J));
         let (Some(conductivity), Some(gradient)) = (conductivity, &self.points.pressure_gradient) else {
             return Vector::zeros();

@@ -52,7 +52,8 @@ impl WaterBalance {
         let mut sums = scalars::of_scalars(&pores.shape, |p| {
             let Some(wet) = &pores.wet[p] else { return [(0.0, Vector::zeros()); TERMS] };
             let (pressure, gradient) = pressures[p];
-            let state = Flowing::at(model, (points, p), wet, &trial.dF(p), (pressure, gradient));
+            let deformed = (&trial.dF(p), trial.dilation(model, points, p));
+            let state = Flowing::at(model, (points, p), wet, deformed, (pressure, gradient));
             if state.pores.is_nan() || state.pores <= 0.0 {
                 closed.fetch_add(1, Relaxed);
             }
@@ -135,7 +136,7 @@ fn retained<K, const D: usize>(model: &Model<K, D>, material: u16, p: f64) -> Re
 
 /// What water does at a point under a trial.
 pub struct Flowing<const D: usize> {
-    /// -  pores per reference volume
+    /// -  pores per reference volume, by J-bar: those that the skeleton's stress has felt
     pub pores: f64,
     /// -  water per reference volume
     pub content: f64,
@@ -148,12 +149,13 @@ pub struct Flowing<const D: usize> {
 }
 
 impl<const D: usize> Flowing<D> {
-    /// Of a wet point with dF, and with the excess pressure, Pa, and its gradient by the places at t, Pa/m.
+    /// Of a wet point with dF and J-bar/J at the end of the step, and with the excess pressure, Pa, and its gradient by
+    /// the places at t, Pa/m.
     pub fn at<K>(
         model: &Model<K, D>,
         (points, p): (&Points<D>, usize),
         wet: &Wet<D>,
-        dF: &Tensor,
+        (dF, dilation): (&Tensor, f64),
         (pressure, gradient): (f64, Vector<D>),
     ) -> Self {
         let J = wet.J * dF.determinant();
@@ -163,14 +165,14 @@ impl<const D: usize> Flowing<D> {
         let Some(flow) = &water.flow else { return none };
         let Some(soil) = &flow.soils[usize::from(points.material[p])] else { return none };
         let now = pushed(&inverse, &gradient);
-        let conductivity = flow.permeability(points.material[p], J).unwrap_or_else(Vector::zeros);
+        let conductivity = flow.permeability(points.material[p], J * dilation).unwrap_or_else(Vector::zeros);
         let (whole, weight) = (pressure + wet.ambient, water.unit_weight);
         let retained = soil.retained(whole, weight);
         let w = (now + wet.drive).component_mul(&conductivity) * (-retained.permeability / weight);
         let flux = Vector::from_fn(|i, _| J * (0..D).map(|j| inverse[(i, j)] * w[j]).sum::<f64>());
         let content = soil.content(flow.bulk, J, whole) * retained.saturation;
-        let lumped = 1.0 + wet.stiffness / wet.J * soil.pores(wet.J) * soil.chord(wet.pressure, whole, weight);
-        Self { pores: soil.pores(J), content, flux, gradient: now, lumped }
+        let lumped = 1.0 + wet.stiffness / wet.J * soil.pores(wet.mean_J) * soil.chord(wet.pressure, whole, weight);
+        Self { pores: soil.pores(J * dilation), content, flux, gradient: now, lumped }
     }
 }
 

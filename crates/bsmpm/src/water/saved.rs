@@ -70,7 +70,8 @@ pub fn save<K: Kinematics<D>, const D: usize>(
     let Some(water) = &model.water else { return 0.0 };
     let states = scalars::scalars(&pores.shape, p, |p, pressure, gradient| {
         let wet = pores.wet[p].as_ref()?;
-        Some((pressure, Flowing::at(model, (points, p), wet, &trial.dF(p), (pressure, gradient))))
+        let deformed = (&trial.dF(p), points.dilation_of(p)); // the points have it from the trial
+        Some((pressure, Flowing::at(model, (points, p), wet, deformed, (pressure, gradient))))
     });
     let density = water.density(model);
     let holds = water.flow.as_ref().is_some_and(|flow| flow.retains());

@@ -34,7 +34,8 @@ impl Work {
         let each = scalars::scalars(&pores.shape, &found.p, |p, pressure, gradient| {
             let Some(wet) = &pores.wet[p] else { return [0.0; 5] };
             let dF = found.trial.dF(p);
-            let state = Flowing::at(model, (points, p), wet, &dF, (pressure, gradient));
+            let deformed = (&dF, found.trial.dilation(model, points, p));
+            let state = Flowing::at(model, (points, p), wet, deformed, (pressure, gradient));
             let through = pores.dt * wet.volume;
             let fall = (0..D).map(|i| wet.drive[i] * (0..D).map(|j| dF[(i, j)] * state.flux[j]).sum::<f64>());
             let fall = -through * fall.sum::<f64>();
@@ -61,7 +62,7 @@ pub fn in_points<K, const D: usize>(model: &Model<K, D>, points: &Points<D>) -> 
     let of = |p: usize| {
         let soil = flow.soils[usize::from(points.material[p])].as_ref();
         soil.map_or(0.0, |soil| {
-            let pores = soil.pores(points.F.at(p).determinant());
+            let pores = soil.pores(points.F.at(p).determinant() * points.dilation_of(p));
             points.volume[p] * compressed(pores, pressure[p], flow.bulk)
         })
     };
