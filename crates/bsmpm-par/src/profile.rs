@@ -20,12 +20,12 @@ const FIELDS: usize = 3 + 3 + 3 + 6 + 1;
 /// `lower` is the grid's corner. Collective.
 pub fn rows<K: Kinematics<D>, const D: usize>(
     profile: &Profile,
-    (model, lower): (&Model<K, D>, [f64; 2]),
+    (model, lower): (&Model<K, D>, [f64; 3]),
     points: &Points<D>,
     halo: &dyn Halo,
 ) -> Vec<Vec<f64>> {
     let places = profile.places();
-    let local: Vec<Vector<D>> = places.iter().map(|(_, at)| vector::<D>(*at) - vector(lower)).collect();
+    let local: Vec<Vector<D>> = places.iter().map(|(_, at)| vector::<D, _>(*at) - vector(lower)).collect();
     let configuration = if profile.fixed { Configuration::Present } else { Configuration::Initial };
     let fields = |p: usize| {
         let velocity = points.motion.as_ref().map_or(Vector::zeros(), |motion| motion.v[p]);

@@ -45,7 +45,7 @@ pub struct Recorder<const D: usize> {
 impl<const D: usize> Recorder<D> {
     /// Finds the points nearest to the wanted places.
     pub fn new(case: &Case, points: &Points<D>, halo: &dyn Halo) -> Self {
-        let (histories, lower) = (&case.histories, vector::<D>(case.grid.lower()));
+        let (histories, lower) = (&case.histories, vector::<D, _>(case.grid.lower()));
         let lasting = case.lasting();
         let comes_later = |number: usize| case.stages.iter().any(|stage| stage.follows.contains(&number));
         let follow = |(number, history): (usize, &History)| {
@@ -251,7 +251,7 @@ impl<const D: usize> Recorder<D> {
                 vec![observe::angular_momentum(points, part, &-self.lower, halo)]
             }
             Quantity::KineticEnergy { .. } => vec![observe::kinetic_energy(points, part, halo)],
-            Quantity::MeanStress { .. } => observe::mean_stress(points, part, halo)[..PLANE].to_vec(),
+            Quantity::MeanStress { .. } => shown::<D>(observe::mean_stress(points, part, halo)),
             Quantity::SectionForces { ends, fixed } => {
                 let forces = section((&model.grid, points), ends.map(|end| vector(end) - self.lower), *fixed, halo);
                 vec![forces.normal, forces.shear, forces.moment]
@@ -365,7 +365,7 @@ fn contact(measured: Measurement, found: Option<ContactReport>, dt: f64) -> Vec<
 }
 
 /// The place of a history that follows the point nearest to it.
-fn followed_place(quantity: &Quantity) -> Option<[f64; 2]> {
+fn followed_place(quantity: &Quantity) -> Option<[f64; 3]> {
     match *quantity {
         Quantity::Displacement { at } | Quantity::PorePressure { at } | Quantity::Pore { at, .. } => Some(at),
         Quantity::Velocity { at, surface: false } | Quantity::Stress { at, surface: false } => Some(at),
@@ -468,7 +468,7 @@ fn both(noise: noise::Noise) -> Vec<f64> {
 /// Displacement (m) of the place that the point `id` is the nearest one to, since the start; `lower` is the grid's
 /// corner. Zero where there is no such point.
 fn displacement<const D: usize>(
-    (at, lower): ([f64; 2], Vector<D>),
+    (at, lower): ([f64; 3], Vector<D>),
     id: u64,
     points: &Points<D>,
     halo: &dyn Halo,
@@ -477,12 +477,17 @@ fn displacement<const D: usize>(
     observe::at_point(points, id, halo, |p| observe::displacement(points, p, &place).into())
 }
 
+/// The components of a stress that a geometry has: in a plane without those that couple it with its normal.
+fn shown<const D: usize>(stress: [f64; 6]) -> Vec<f64> {
+    stress[..if D == 2 { PLANE } else { stress.len() }].to_vec()
+}
+
 /// A quantity of the point `id`, zero where there is none; of other quantities there is none.
 fn at_followed<const D: usize>(quantity: &Quantity, id: u64, points: &Points<D>, halo: &dyn Halo) -> Vec<f64> {
     let velocity = |p: usize| points.motion.as_ref().map_or([0.0; D], |motion| motion.v[p].into());
     match quantity {
         Quantity::Velocity { .. } => observe::at_point(points, id, halo, velocity).to_vec(),
-        Quantity::Stress { .. } => observe::at_point(points, id, halo, |p| points.sigma.at(p).0)[..PLANE].to_vec(),
+        Quantity::Stress { .. } => shown::<D>(observe::at_point(points, id, halo, |p| points.sigma.at(p).0)),
         _ => Vec::new(),
     }
 }

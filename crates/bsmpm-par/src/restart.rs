@@ -173,7 +173,7 @@ impl Resumed<'_> {
     ///
     /// # Errors
     /// The same on all ranks (76): they are not of this case.
-    pub fn lines(&self, case: &Case) -> Result<[Vec<Line>; 2], Refusal> {
+    pub fn lines(&self, case: &Case) -> Result<[Vec<Line>; 3], Refusal> {
         let foreign = || {
             let path = self.found.path.display();
             Refusal::new(

@@ -411,7 +411,7 @@ impl<'p, K: Kinematics<D>, const D: usize> Run<'p, K, D> {
         let Simulation { model, points, halo, .. } = &self.simulation;
         let projected = self.case.output.projected_pressure.then(|| projected_pressure(model, points, &**halo));
         let projected = projected.transpose().unwrap_or_else(|error| launch::end(&world, exit::BUG, &error));
-        let moment = FrameMoment { step, time, lower: gather::spatial(&vector::<D>(self.case.grid.lower())) };
+        let moment = FrameMoment { step, time, lower: gather::spatial(&vector::<D, _>(self.case.grid.lower())) };
         let (names, fields) = (self.names(), &self.case.output.fields);
         let bodies = if fields.contains(&FrameField::Body) { self.case.ids() } else { Vec::new() };
         let around =

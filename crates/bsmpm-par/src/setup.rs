@@ -18,7 +18,7 @@ use bsmpm_scene::{Case, Geometry, GridAxis, Initial};
 use std::ops::Range;
 
 /// Cells along each axis that the ranks together see ([`bsmpm::grid::room`]), and how they share them.
-pub type Cut = ([Range<usize>; 2], Slabs);
+pub type Cut = (Vec<Range<usize>>, Slabs);
 
 /// A state at the start, and what leading it to equilibrium took, if the case wants that.
 pub type Start = (Equilibrium, Option<Settling>);
@@ -49,7 +49,7 @@ pub fn start<K: Kinematics<D>, const D: usize>(
 pub fn cut(case: &Case, ranks: usize) -> Option<Cut> {
     let room = case.room(ranks);
     let counts: Vec<f64> = case.points_by_column()[room[0].clone()].iter().map(|&count| count as f64).collect();
-    let layer_nodes = room[1].len() + case.grid.order;
+    let layer_nodes = room[1..].iter().map(|cells| cells.len() + case.grid.order).product();
     let slabs = Slabs::cut(&load::by_column(&counts, layer_nodes), ranks)?.starting_at(room[0].start);
     Some((room, slabs))
 }
@@ -185,8 +185,8 @@ pub fn smoothing_length(case: &Case, passes: f64) -> f64 {
 /// Smallest edge (m) of the box around any body.
 pub fn thinnest(case: &Case) -> f64 {
     let edges = case.bodies.iter().flat_map(|body| {
-        let [lower, upper] = body.bounds();
-        [0, 1].map(|axis| upper[axis] - lower[axis])
+        let [lower, upper] = body.region.corners();
+        (0..case.grid.dims()).map(move |axis| upper[axis] - lower[axis])
     });
     edges.fold(f64::INFINITY, f64::min)
 }

@@ -57,10 +57,10 @@ pub struct Case {
     pub flow: Option<Flow>,
     /// Motion of the ground, in whose frame the case is: s, increasing, and m/s2; empty without any.
     pub shaking: Vec<(f64, [f64; 2])>,
-    /// Supports of the grid's faces: per axis the lower and the upper one.
-    pub boundary: [[Support; 2]; 2],
+    /// Supports of the grid's faces: per axis the lower and the upper one; a plane has free ones along its third.
+    pub boundary: [[Support; 2]; 3],
     /// What those of them do that are in contact with the material.
-    pub contacts: [[Option<Contact>; 2]; 2],
+    pub contacts: [[Option<Contact>; 2]; 3],
     /// A rigid strip, if any.
     pub footing: Option<Footing>,
     /// Prescribed motions, in the order of the file.
@@ -101,7 +101,7 @@ pub struct Case {
 
 impl Case {
     /// Takes over the repeated breakpoints of a run that goes on, whatever the program would place today.
-    pub fn keep_lines(&mut self, lines: [Vec<Line>; 2]) {
+    pub fn keep_lines(&mut self, lines: [Vec<Line>; 3]) {
         if self.grid.lines == lines {
             return;
         }
@@ -110,7 +110,12 @@ impl Case {
         let number = self.grid.lines.each_ref().map(Vec::len);
         self.notes.push(Choice {
             key: "grid.c0_lines".to_owned(),
-            value: format!("{} along x, {} along y", number[0], number[1]),
+            value: ["x", "y", "z"][..self.geometry.dims()]
+                .iter()
+                .zip(number)
+                .map(|(name, number)| format!("{number} along {name}"))
+                .collect::<Vec<_>>()
+                .join(", "),
             reason: "those of the run that is resumed".to_owned(),
         });
     }
@@ -165,7 +170,7 @@ pub struct Body {
     /// Points along each axis of a cell.
     pub points_per_cell: usize,
     /// m/s  at the start; `None`: at rest
-    pub velocity: Option<[f64; 2]>,
+    pub velocity: Option<[f64; 3]>,
     /// rad/s  rotation at the start, counter-clockwise, and about which place, m
     pub spin: Option<(f64, [f64; 2])>,
 }
@@ -185,16 +190,17 @@ impl Body {
 
 impl Case {
     /// Weight of all bodies that are there at the start vertically above `at` (m, in the case's coordinates) under the
-    /// full gravity, Pa: `Σ ρ |g_y| l`, l the length of the vertical ray inside a body. What lies beside each other is
+    /// full gravity, Pa: `Σ ρ |g| l`, g its vertical component, l the length of the vertical ray inside a body. What lies beside each other is
     /// counted once: a body's left side belongs to it, its right side does not. With water less its uplift.
-    pub fn overburden(&self, at: [f64; 2]) -> f64 {
+    pub fn overburden(&self, at: [f64; 3]) -> f64 {
         let Some(gravity) = &self.gravity else { return 0.0 };
+        let g = gravity.acceleration[self.grid.dims() - 1].abs();
         if self.water.is_some() {
-            let g = gravity.acceleration[1].abs();
-            return self.bodies_at_start().map(|body| self.weight_above(body, at, g)).sum();
+            let [x, y, _] = at;
+            return self.bodies_at_start().map(|body| self.weight_above(body, [x, y], g)).sum();
         }
         let above = |body: &Body| self.materials[body.material].density.map_or(0.0, |rho| rho * body.region.above(at));
-        gravity.acceleration[1].abs() * self.bodies_at_start().map(above).sum::<f64>()
+        g * self.bodies_at_start().map(above).sum::<f64>()
     }
 }
 
@@ -202,7 +208,7 @@ impl Case {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gravity {
     /// m/s2  when fully applied
-    pub acceleration: [f64; 2],
+    pub acceleration: [f64; 3],
     /// s (quasi-static: pseudo-time)  over which it grows linearly; 0: at once
     pub ramp: f64,
 }

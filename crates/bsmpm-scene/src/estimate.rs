@@ -16,6 +16,8 @@ pub(crate) const MOST_POINTS: u128 = i32::MAX as u128;
 /// Bytes of a point that are always there: its state in a plane (about 200), shape functions (96), trial states and
 /// their answers. Measured, as all that follows, in the runs of `tests/shipped.rs`.
 const POINT: u128 = 536;
+/// The same in space: functions of 27 nodes by axes, whole tensors.
+const POINT_IN_SPACE: u128 = 780;
 /// Bytes of a point's functions of the degree below, which `consistent-f-bar` averages with.
 const LOWERED: u128 = 64;
 /// Bytes of a point that water flows through: pressure and gradient, shape functions of the degree below with their
@@ -38,10 +40,15 @@ const REPEATED: u128 = 60;
 const LEVEL: u128 = 15 * 8;
 /// The same of a factorisation by dissection, which holds nothing else of the system.
 const FRONT: u128 = 12 * 8;
+/// The same in space per unknown and cube root of their number: separators are planes. Measured on 30,000 and 77,000.
+const DENSE: u128 = 480;
 /// Bytes of an unknown in the Krylov space of Newton's directions: two doubles for each of a hundred products.
 const KRYLOV: u128 = 100 * 16;
 /// Bytes of a process that has next to nothing to solve: libraries and buffers of MPI and PETSc.
 const PROCESS: u64 = 47_000_000;
+
+/// Poisson's ratio up to which the stiffness that secants correct is without F-bar's coupling in space.
+pub(crate) const LOCAL: f64 = 0.45;
 
 /// Unknowns of a rank below which it mostly waits for others, in two dimensions.
 const FEWEST: u128 = 1000;
@@ -107,23 +114,28 @@ struct Systems {
 }
 
 impl Systems {
-    /// `entries` of the stiffness of so many `unknowns`, which couples layers of nodes up to `reach` apart: separators
-    /// are as wide, in which the constants are those of quadratic splines. By `nonlinear`.
+    /// `entries` of the stiffness of so many `unknowns` along so many axes, which couples layers of nodes up to `reach`
+    /// apart: separators are as wide, in which the constants are those of quadratic splines. By `nonlinear`.
     ///
     /// Where water `flows` Newton's directions are preconditioned by those of the secants, and have one unknown a node
     /// more.
     fn of(
-        (solver, nonlinear): (&Solver, Nonlinear),
+        (solver, nonlinear, dims): (&Solver, Nonlinear, usize),
         (unknowns, entries): (u128, u128),
         reach: u128,
         flows: bool,
     ) -> Self {
         let direct = solver.linear.factor.is_some();
         let levels = u128::from(unknowns.max(2).ilog2());
-        let factor = if direct { unknowns * levels * LEVEL * reach / 2 } else { 0 };
+        let flat = |level: u128| unknowns * levels * level;
+        let [factor, fronts] = match dims {
+            2 => [flat(LEVEL) * reach / 2, flat(FRONT) * reach.pow(2) / 4],
+            _ => [DENSE * (unknowns as f64).powf(4.0 / 3.0) as u128; 2],
+        };
+        let factor = if direct { factor } else { 0 };
         let again = u128::from(direct && solver.reproducible);
         let elastic = if solver.linear.factor == Some(Factor::Dissection) {
-            [unknowns * levels * FRONT * reach.pow(2) / 4, 0, 0]
+            [fronts, 0, 0]
         } else {
             [entries * ENTRY + factor, again * (entries * REPEATED + factor), entries * BUILT]
         };
@@ -147,23 +159,32 @@ impl Case {
     /// Layers of nodes, beyond those of a cell, with which a node is coupled along an axis.
     pub(crate) fn beyond(&self) -> usize {
         let background = if self.solver.background > 0.0 { self.solver.background_kind.beyond() } else { 0 };
+        let poisson = self.materials.iter().map(|named| named.material.elastic().poisson).fold(0.0, f64::max);
+        // In space the coupled stiffness has 343 blocks a node instead of 125, which pays near incompressibility only.
+        if self.grid.dims() == 3 && poisson <= LOCAL {
+            return background;
+        }
         background.max(self.stabilisation.beyond(self.grid.order))
     }
 
     /// Knot spans along each axis for which a run holds nodes at the start, see [`bsmpm::grid::room`]: at least so many
     /// `columns`.
-    pub fn room(&self, columns: usize) -> [Range<usize>; 2] {
-        let around = |a: [Range<usize>; 2], b: [Range<usize>; 2]| {
+    pub fn room(&self, columns: usize) -> Vec<Range<usize>> {
+        if self.grid.dims() == 3 { self.room_in::<3>(columns) } else { self.room_in::<2>(columns) }
+    }
+
+    fn room_in<const D: usize>(&self, columns: usize) -> Vec<Range<usize>> {
+        let around = |a: [Range<usize>; D], b: [Range<usize>; D]| {
             std::array::from_fn(|axis| a[axis].start.min(b[axis].start)..a[axis].end.max(b[axis].end))
         };
-        let cells = [0, 1].map(|axis| self.grid.spans(axis));
-        let spans = |body: &Body| {
-            let [x, y] = body.occupied(&self.grid);
-            [self.grid.spans_of(0, &x), self.grid.spans_of(1, &y)]
+        let cells: [usize; D] = std::array::from_fn(|axis| self.grid.spans(axis));
+        let spans = |body: &Body| -> [Range<usize>; D] {
+            let cells = body.occupied(&self.grid);
+            std::array::from_fn(|axis| self.grid.spans_of(axis, &cells[axis]))
         };
         let occupied = self.bodies.iter().map(spans).reduce(around);
         let occupied = occupied.unwrap_or_else(|| cells.map(|cells| 0..cells));
-        room::around(&occupied, cells, (self.grid.order, self.beyond()), columns)
+        room::around(&occupied, cells, (self.grid.order, self.beyond()), columns).to_vec()
     }
 
     /// Pore pressures that the bodies' cells touch at the start, and entries of their matrix; `None` where no water
@@ -179,27 +200,31 @@ impl Case {
     pub fn estimate(&self) -> Estimate {
         let (nodes, points) = (nodes(&self.grid), u128::from(self.points()));
         let places = places(self);
-        // The stencil of the stiffness: 2 x 2 doubles a place; of every node where it stands, and of which kind it is.
-        let (stencil, every) = (places * 4 * 8, 8 + 2);
+        let dims = self.grid.dims() as u128;
+        // The stencil of the stiffness: a double for each pair of components a place; of every node where it stands, and
+        // of which kind it is.
+        let (stencil, every) = (places * dims.pow(2) * 8, 8 + 2);
         let order = self.grid.order as u128;
         let occupied = occupied_nodes(self, order).min(nodes);
-        let entries = 2 * occupied * 2 * places;
-        let by = (&self.solver, self.solver.nonlinear);
-        let systems = Systems::of(by, (2 * occupied, entries), order + self.beyond() as u128, self.flow.is_some());
+        let entries = dims * occupied * dims * places;
+        let reach = order + self.beyond() as u128;
+        let by = (&self.solver, self.solver.nonlinear, self.grid.dims());
+        let systems = Systems::of(by, (dims * occupied, entries), reach, self.flow.is_some());
+        let (point, vectors) = if dims == 3 { (POINT_IN_SPACE, VECTORS * 3 / 2) } else { (POINT, VECTORS) };
         let lowered = if self.stabilisation.lowers() { LOWERED } else { 0 };
         let passing = systems.built.max(points * SAVED);
         let water = self.pressures().map(|(pressures, entries)| {
             // Solved by itself, as a part of the directions.
-            let by = (&self.solver, Nonlinear::Broyden);
+            let by = (&self.solver, Nonlinear::Broyden, self.grid.dims());
             let system = Systems::of(by, (pressures, entries), order - 1, true);
             // A third number of every node's vectors, secants included.
             let held = points * WET + entries * 8 + room_nodes(self) * VECTORS / 2;
             (pressures, held + system.held, system.repeated)
         });
         let (pressures, wet, wet_repeated) = water.unwrap_or_default();
-        let bytes = points * (POINT + lowered)
+        let bytes = points * (point + lowered)
             + occupied * stencil
-            + room_nodes(self) * (every + VECTORS)
+            + room_nodes(self) * (every + vectors)
             + systems.held
             + passing
             + wet;
@@ -207,12 +232,12 @@ impl Case {
         Estimate {
             cells: bounded(cells(&self.grid)),
             nodes: bounded(nodes),
-            unknowns: bounded(2 * nodes),
-            active: bounded(2 * occupied),
+            unknowns: bounded(dims * nodes),
+            active: bounded(dims * occupied),
             pressures: bounded(pressures),
             entries: bounded(entries),
             points: self.points(),
-            useful_ranks: bounded((2 * occupied / FEWEST).clamp(1, self.grid.spans(0) as u128)),
+            useful_ranks: bounded((dims * occupied / FEWEST).clamp(1, self.grid.spans(0) as u128)),
             bytes: bounded(bytes),
             repeated: bounded(systems.repeated + wet_repeated),
             newton: bounded(systems.perhaps[0]),
@@ -228,12 +253,12 @@ pub(crate) fn cells(grid: &GridSpec) -> u128 {
 
 /// Nodes of the grid.
 pub(crate) fn nodes(grid: &GridSpec) -> u128 {
-    [0, 1].iter().map(|&axis| (grid.spans(axis) + grid.order) as u128).product()
+    (0..grid.dims()).map(|axis| (grid.spans(axis) + grid.order) as u128).product()
 }
 
 /// Nodes with which a node is coupled: those of the cells around it, and of the layers beyond.
 fn places(case: &Case) -> u128 {
-    (2 * (case.grid.order as u128 + case.beyond() as u128) + 1).pow(2)
+    (2 * (case.grid.order as u128 + case.beyond() as u128) + 1).pow(case.grid.dims() as u32)
 }
 
 /// Nodes of the room that the bodies have at the start.
@@ -247,6 +272,15 @@ fn occupied_nodes(case: &Case, order: u128) -> u128 {
     let of_body = |body: &Body| -> u128 {
         let cells = body.occupied(&case.grid);
         let further = |axis: usize| case.grid.spans_of(axis, &cells[axis]).len() - cells[axis].len();
+        if cells.len() == 3 {
+            // Layers on all sides: of a cuboid exact.
+            let within = body.cells(&case.grid) as f64;
+            let around = cells.iter().enumerate().map(|(axis, cells)| {
+                (cells.len() + further(axis)) as f64 / cells.len().max(1) as f64
+                    + order as f64 / cells.len().max(1) as f64
+            });
+            return (within * around.product::<f64>()).round() as u128;
+        }
         let [columns, rows] = [0, 1].map(|axis| cells[axis].len() as u128);
         let repeated = further(0) as u128 * rows + further(1) as u128 * columns;
         body.cells(&case.grid) + repeated + order * (columns + rows + order)

@@ -8,12 +8,12 @@ use std::ops::Range;
 /// The parametric grid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GridSpec {
-    /// Cells along x and y.
-    pub axes: [GridAxis; 2],
+    /// Cells along x and y, and of a solid z.
+    pub axes: Vec<GridAxis>,
     /// Order of the B-splines, 1 to 3.
     pub order: usize,
-    /// Repeated inner breakpoints along x and y, in ascending order.
-    pub lines: [Vec<Line>; 2],
+    /// Repeated inner breakpoints along x, y and z, in ascending order.
+    pub lines: [Vec<Line>; 3],
 }
 
 /// A grid line across which the splines of order q are less smooth: with `multiplicity` m, q - m derivatives are
@@ -43,14 +43,25 @@ pub enum GridAxis {
 }
 
 impl GridSpec {
-    /// Lower corner, m: positions of points are relative to it.
-    pub fn lower(&self) -> [f64; 2] {
-        [self.axes[0].lower(), self.axes[1].lower()]
+    /// Number of axes; the last one is the vertical.
+    pub fn dims(&self) -> usize {
+        self.axes.len()
+    }
+
+    /// Lower corner, m: positions of points are relative to it; 0 along an axis that it does not have.
+    pub fn lower(&self) -> [f64; 3] {
+        std::array::from_fn(|axis| self.axes.get(axis).map_or(0.0, GridAxis::lower))
+    }
+
+    /// Lower corner in a plane, m.
+    pub(crate) fn corner(&self) -> [f64; 2] {
+        let [x, y, _] = self.lower();
+        [x, y]
     }
 
     /// Upper corner, m.
-    pub fn upper(&self) -> [f64; 2] {
-        [0, 1].map(|axis| self.axes[axis].lower() + self.axes[axis].length())
+    pub fn upper(&self) -> [f64; 3] {
+        std::array::from_fn(|axis| self.axes.get(axis).map_or(0.0, |axis| axis.lower() + axis.length()))
     }
 
     /// Knot spans along an axis: its cells, and those without length between the copies of a breakpoint.

@@ -51,7 +51,7 @@ pub use error::{Choice, Error, Place};
 pub use estimate::Estimate;
 pub use grid::{GridAxis, GridSpec, Line};
 pub use reference::reference;
-pub use region::{Outline, Region};
+pub use region::{Outline, Region, Volume};
 pub use seed::seed;
 pub use sketch::{Sketch, SketchedHistory};
 pub use source::{MAX_BYTES, load};

@@ -22,9 +22,9 @@ use bsmpm::water::ambient::Ambient;
 use bsmpm::water::flow::Flow;
 use std::marker::PhantomData;
 
-/// A vector of the plane in which a case is described, in the dimension of its geometry.
-pub fn vector<const D: usize>(plane: [f64; 2]) -> Vector<D> {
-    Vector::from_fn(|axis, _| plane[axis])
+/// A vector of a case in the dimension of its geometry; what is described in a plane has no further component.
+pub fn vector<const D: usize, const N: usize>(of: [f64; N]) -> Vector<D> {
+    Vector::from_fn(|axis, _| of.get(axis).copied().unwrap_or(0.0))
 }
 
 /// The model of a case over its whole grid, at the start.
@@ -84,7 +84,7 @@ fn water<const D: usize>(case: &Case, flow: Option<Flow<D>>) -> Option<Water<D>>
     let still = case.water.as_ref();
     let unit_weight = still.map(|still| still.unit_weight).or(case.flow.as_ref().map(|flow| flow.unit_weight));
     let unit_weight = unit_weight.or(case.carries_pressure().then_some(0.0))?;
-    Some(Water { unit_weight, ambient: still.map_or(Ambient::None, |still| still.from(case.grid.lower())), flow })
+    Some(Water { unit_weight, ambient: still.map_or(Ambient::None, |still| still.from(case.grid.corner())), flow })
 }
 
 /// s  of every material; empty where none is damped.
@@ -151,7 +151,11 @@ fn outlets(case: &Case, t: f64) -> Vec<(usize, bool)> {
 /// Of every support once the stages until the time `t` have begun, the axis that its face is normal to and the sign of
 /// the force along it with which it pushes the body; 0 where it may pull, too.
 pub fn faces(case: &Case, t: f64) -> Vec<(usize, f64)> {
-    let push = |support: &Support<2>| match (support.absorbs, support.upper) {
+    if case.grid.dims() == 3 { pushes::<3>(case, t) } else { pushes::<2>(case, t) }
+}
+
+fn pushes<const D: usize>(case: &Case, t: f64) -> Vec<(usize, f64)> {
+    let push = |support: &Support<D>| match (support.absorbs, support.upper) {
         (true, _) => 0.0,
         (false, true) => -1.0,
         (false, false) => 1.0,
@@ -187,7 +191,7 @@ pub fn points<K: Kinematics<D>, const D: usize>(case: &Case, columns: std::ops::
 /// Pa  pore pressure that a point carries, at `x` (m, from the grid's lower corner) at the start.
 fn carried_pressure<const D: usize>(case: &Case, material: u16, x: &Vector<D>) -> f64 {
     let (ratio, lower) = (case.materials[usize::from(material)].ratio, case.grid.lower());
-    if ratio > 0.0 { ratio * case.overburden([lower[0] + x[0], lower[1] + x[1]]) } else { 0.0 }
+    if ratio > 0.0 { ratio * case.overburden(placed_at(lower, x)) } else { 0.0 }
 }
 
 /// The points that a stage places in the columns of one slab.
@@ -201,12 +205,18 @@ pub fn placed<'a, K: Kinematics<D>, const D: usize>(
 
 /// Stress of ground at rest, Pa, at `x` (m, from the grid's lower corner); `k0` by material.
 pub fn at_rest<const D: usize>(case: &Case, k0: &[f64], material: u16, x: &Vector<D>) -> Symmetric {
-    let lower = case.grid.lower();
-    let at = [lower[0] + x[0], lower[1] + x[1]];
+    let at = placed_at(case.grid.lower(), x);
     let vertical = -case.overburden(at) * (1.0 - case.materials[usize::from(material)].ratio);
-    let vertical = vertical - case.suction_at(material, at);
+    let vertical = vertical - case.suction_at(material, [at[0], at[1]]);
     let horizontal = k0[usize::from(material)] * vertical;
-    Symmetric([horizontal, vertical, horizontal, 0.0, 0.0, 0.0])
+    let mut stress = Symmetric([horizontal, horizontal, horizontal, 0.0, 0.0, 0.0]);
+    stress.0[D - 1] = vertical;
+    stress
+}
+
+/// A place in the case's coordinates.
+fn placed_at<const D: usize>(lower: [f64; 3], x: &Vector<D>) -> [f64; 3] {
+    std::array::from_fn(|axis| lower[axis] + x.get(axis).copied().unwrap_or(0.0))
 }
 
 /// Steps and the times that they must hit: frames, pictures, profiles, checks and stages.

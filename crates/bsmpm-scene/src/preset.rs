@@ -14,7 +14,7 @@ use crate::record;
 use crate::report::Report;
 use crate::schema::ROOT;
 use crate::source::Source;
-use crate::words::{Accuracy, Order, Word};
+use crate::words::{Accuracy, Geometry, Order, Word};
 use bsmpm::stabilisation::Stabilisation;
 use cells::Cells;
 use scene::PresetScene;
@@ -106,6 +106,11 @@ pub(crate) fn fill(
     let preset = &Preset::of(accuracy);
     // Its errors are told when the filled document is read.
     let record = record::read(&ROOT, document, &mut Report::new(source, overrides));
+    if record.word("geometry") == Some(Geometry::Solid) {
+        let message = "not available in a solid yet: give cells, points, steps and tolerances";
+        report.error(origin, ACCURACY, message);
+        return false;
+    }
     let scene = PresetScene::of(&record);
     let mut filling = Filling { document, origin, accuracy, report, filled: false };
     filling.put("grid", &["order"], &quoted(ORDER), "");

@@ -9,7 +9,7 @@ use crate::nearest::nearest;
 use crate::report::{Report, shortened};
 use crate::schema::{Group, Key, Kind, Presence, Table};
 use crate::unit::Dimension;
-use crate::words::{AnalysisType, Word};
+use crate::words::{AnalysisType, Geometry, Word};
 
 /// A table whose keys and values are as the schema says.
 #[derive(Clone, Debug)]
@@ -61,6 +61,8 @@ struct Context {
     root: &'static Table,
     /// time is a pseudo-time without unit
     pseudo_time: bool,
+    /// axes of the geometry
+    dims: usize,
 }
 
 /// The whole file, whose table is `root`, as a record; what does not fit goes to `report`.
@@ -74,7 +76,17 @@ pub(crate) fn read(root: &'static Table, document: &document::Table, report: &mu
         _ => None,
     });
     let pseudo_time = kind.is_some_and(AnalysisType::is_timeless);
-    Context { root, pseudo_time }.record(root, document, Origin::Nowhere, "", report)
+    let geometry = document.get("geometry").and_then(|entry| match &entry.node.value {
+        Value::Text(text) => Geometry::of(text),
+        _ => None,
+    });
+    Context { root, pseudo_time, dims: geometry.map_or(2, Geometry::dims) }.record(
+        root,
+        document,
+        Origin::Nowhere,
+        "",
+        report,
+    )
 }
 
 impl Context {
@@ -143,7 +155,7 @@ impl Context {
                 report.error(node.origin, path, format!("expected {kind}, found {}", node.show()));
                 None
             }
-            _ => value::read(kind, node, path, self.pseudo_time, report),
+            _ => value::read(kind, node, path, (self.pseudo_time, self.dims), report),
         }
     }
 

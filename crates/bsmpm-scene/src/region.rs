@@ -2,15 +2,23 @@
 
 mod cells;
 mod edge;
+mod extent;
+mod lattice;
 mod simple;
 mod skin;
+mod solid;
 mod sweep;
+mod volume;
 
-pub(crate) use cells::{CellPlace, RegionPart, place};
+pub(crate) use cells::{CellPlace, RegionPart, of_cell};
 pub(crate) use edge::Edge;
+pub(crate) use extent::Extent;
 pub(crate) use simple::{PolygonFault, area, bounds, fault};
 pub(crate) use skin::skin;
+pub(crate) use solid::{Section, SolidShape};
 pub(crate) use sweep::{Window, solid, sweep};
+
+pub use volume::Volume;
 
 use crate::grid::{GridAxis, GridSpec};
 use cells::column;
@@ -37,6 +45,8 @@ pub enum Region {
     },
     /// Another shape, or a shape with something cut out.
     Outline(Outline),
+    /// A shape in space.
+    Solid(Box<Volume>),
 }
 
 /// A shape of straight edges and arcs, less others.
@@ -63,25 +73,38 @@ pub(crate) struct CellTally {
 
 impl Region {
     /// Lower and upper corner of the smallest rectangle around it, m, in the case's coordinates; around the whole
-    /// shape where something is cut out.
+    /// shape where something is cut out. Of a shape in space the first two components.
     pub fn bounds(&self) -> [[f64; 2]; 2] {
         match self {
             Self::Box { lower, upper } => [*lower, *upper],
             Self::Outline(outline) => outline.bounds,
+            Self::Solid(volume) => volume.bounds().map(|[x, y, _]| [x, y]),
         }
     }
 
-    /// Area, m².
+    /// The same with all components; 0 along an axis that there is not.
+    pub fn corners(&self) -> [[f64; 3]; 2] {
+        match self {
+            Self::Solid(volume) => volume.bounds(),
+            _ => self.bounds().map(|[x, y]| [x, y, 0.0]),
+        }
+    }
+
+    /// Area, m²; of a shape in space its volume, m³.
     pub fn area(&self) -> f64 {
         match self {
             Self::Box { lower, upper } => (upper[0] - lower[0]) * (upper[1] - lower[1]),
             Self::Outline(outline) => outline.area,
+            Self::Solid(volume) => volume.volume(),
         }
     }
 
     /// Length of the vertical ray above `at` (m, in the case's coordinates) inside it, m. A left side belongs to it, a
     /// right one does not, so that a ray between two bodies counts once.
-    pub(crate) fn above(&self, at: [f64; 2]) -> f64 {
+    pub(crate) fn above(&self, at: [f64; 3]) -> f64 {
+        if let Self::Solid(volume) = self {
+            return volume.above(at);
+        }
         let length = |[lower, upper]: [f64; 2]| (upper - lower.max(at[1])).max(0.0);
         self.vertical(at[0]).into_iter().map(length).sum()
     }
@@ -100,14 +123,16 @@ impl Region {
                 let found = intervals(&outline.edges, outline.shapes, x - outline.origin[0]);
                 found.into_iter().map(|ends| ends.map(|y| y + outline.origin[1])).collect()
             }
+            Self::Solid(_) => Vec::new(), // in space there is more than one
         }
     }
 
     /// Its edges from the grid's lower corner.
     pub(crate) fn edges(&self, grid: &GridSpec) -> (Vec<Edge>, usize) {
         match self {
-            Self::Box { lower, upper } => (rectangle(*lower, *upper, grid.lower(), 0), 1),
+            Self::Box { lower, upper } => (rectangle(*lower, *upper, grid.corner(), 0), 1),
             Self::Outline(outline) => (outline.edges.clone(), outline.shapes),
+            Self::Solid(_) => (Vec::new(), 0), // no edge of a plane is one of its
         }
     }
 }
@@ -122,7 +147,7 @@ impl Outline {
         (grid, points_per_cell): (&GridSpec, usize),
     ) -> Result<Self, String> {
         affordable(&edges, grid, points_per_cell)?;
-        let origin = grid.lower();
+        let origin = grid.corner();
         let mut outline = Self { origin, edges, shapes, bounds, area, tally: CellTally::default() };
         let columns = outline.columns(grid).len();
         if columns > MOST_COLUMNS {

@@ -64,10 +64,6 @@ const fn key(name: &'static str, kind: Kind, presence: Presence, doc: &'static s
     Key { name, kind, presence, doc }
 }
 
-const fn later(name: &'static str, doc: &'static str) -> Key {
-    key(name, Kind::Open, Presence::Later, doc)
-}
-
 /// Whether a key must be given, and what holds if it is not.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Presence {
@@ -96,9 +92,11 @@ pub enum Kind {
     Measure,
     /// Two quantities, x and y.
     Pair(Dimension, Range),
+    /// As many as the geometry has axes: x and y, and of a solid z.
+    Vector(Dimension, Range),
     /// Like `Pair`, or a table that says how they grow with depth.
     PairProfile(Dimension, Range, &'static Table),
-    /// One quantity for both axes, or two.
+    /// One quantity for all axes, or one each.
     Either(Dimension, Range),
     /// Any number of quantities.
     List(Dimension, Range),
@@ -234,7 +232,12 @@ impl fmt::Display for Kind {
             Self::PairProfile(dimension, _, table) => {
                 write!(f, "a list of two, each {}, or {}", Quantity(*dimension), table.header)
             }
-            Self::Either(dimension, _) => write!(f, "{}, or a list of two", Quantity(*dimension)),
+            Self::Vector(dimension, _) => {
+                write!(f, "a list of two (solid: of three), each {}", Quantity(*dimension))
+            }
+            Self::Either(dimension, _) => {
+                write!(f, "{}, or a list of two (solid: of three)", Quantity(*dimension))
+            }
             Self::List(dimension, _) => write!(f, "a list, each item {}", Quantity(*dimension)),
             Self::Count(least, most) => write!(f, "a whole number from {least} to {most}"),
             Self::Choice(words) => write!(f, "{}", OneOf(words)),

@@ -21,7 +21,7 @@ pub struct Sketch {
     /// Section 2.3 of the paper; of a text without [`Sketch::regime`], which is no case, none.
     pub stabilisation: Option<Stabilisation>,
     /// Supports of the grid's faces: per axis the lower and the upper one.
-    pub boundary: Option<[[Support; 2]; 2]>,
+    pub boundary: Option<[[Support; 2]; 3]>,
     /// m  the ends of the rigid strip's base at the start
     pub footing: Option<[[f64; 2]; 2]>,
     /// -  factor by which the materials' strength has been divided
@@ -103,7 +103,7 @@ mod tests {
         assert!(crate::Case::from_text("case", HALF, &[]).is_err());
         let case = Sketch::of(HALF);
         assert_eq!((case.regime, case.stabilisation), (Some(Regime::QuasiStatic), Some(Stabilisation::None)));
-        assert_eq!(case.boundary, Some([[Support::Roller, Support::Fixed], [Support::Free; 2]]));
+        assert_eq!(case.boundary, Some([[Support::Roller, Support::Fixed], [Support::Free; 2], [Support::Free; 2]]));
         assert_eq!(case.footing, Some([[0.0, 10.0], [1.0, 10.0]]));
         assert_eq!(case.strength_reduction, None);
         assert_eq!(Sketch::of("strength_reduction.factor = 2").strength_reduction, Some(2.0));
@@ -123,7 +123,7 @@ mod tests {
             let case = Sketch::of(text);
             let nothing = Sketch { boundary: case.boundary, ..Sketch::default() };
             assert_eq!(case, nothing, "{text}");
-            assert!(case.boundary.is_none_or(|axes| axes == [[Support::Free; 2]; 2]), "{text}");
+            assert!(case.boundary.is_none_or(|axes| axes == [[Support::Free; 2]; 3]), "{text}");
         }
     }
 }

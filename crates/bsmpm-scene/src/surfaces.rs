@@ -229,7 +229,7 @@ fn of_ground<const D: usize>(soil: &Soil<2>) -> Soil<D> {
 /// Rigid bodies in the order of the file, once the stages until the time `t` have begun.
 pub fn rigid(case: &Case, t: f64) -> Vec<RigidBody> {
     let divided = case.divided_at(t);
-    let of = |rigid: &Rigid| RigidBody { friction: rigid.friction / divided, ..rigid_body(rigid, case.grid.lower()) };
+    let of = |rigid: &Rigid| RigidBody { friction: rigid.friction / divided, ..rigid_body(rigid, case.grid.corner()) };
     case.rigid.iter().map(of).collect()
 }
 
@@ -323,7 +323,7 @@ impl Gauge {
         let side = if normal.dot(&moving).abs() > 1e-9 { normal.dot(&moving) } else { normal.dot(&down) };
         let area = (to - from).norm()
             * match case.geometry {
-                Geometry::PlaneStrain => 1.0,
+                Geometry::PlaneStrain | Geometry::Solid => 1.0,
                 Geometry::Axisymmetric => Axisymmetric::weight(&((from + to) * 0.5)),
             };
         Some(Self { area, pressing: normal * side.signum(), moving, path })

@@ -18,6 +18,7 @@ mod ratio;
 mod reduction;
 mod rigid;
 mod shape;
+mod solid;
 mod solver;
 mod stage;
 mod strip;
@@ -26,7 +27,7 @@ mod water;
 use crate::case::{Analysis, Case, Gravity, Support};
 use crate::record::Record;
 use crate::report::Report;
-use crate::words::{AnalysisType, Side, Word};
+use crate::words::{AnalysisType, Geometry, Side, Word};
 use bsmpm::boundary::Contact;
 use bsmpm::model::Regime;
 use bsmpm::stabilisation::Stabilisation;
@@ -46,6 +47,7 @@ pub(crate) const NEARLY_INCOMPRESSIBLE: f64 = 0.45;
 
 /// The case that `record` describes; `text` is what was read. `None` after an error.
 pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Option<Case> {
+    solid::refuse(record, report);
     let kind = record.record("analysis").and_then(|analysis| analysis.word("type"));
     let regime = kind.map(AnalysisType::regime);
     let analysis = analysis(record, kind, report);
@@ -129,6 +131,7 @@ pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Op
         return None;
     }
     body::warn_of_overlap(&case, report);
+    solid::check(&case, record, report);
     rigid::check(&case, record, report);
     stage::check(&mut case, record, report);
     load::sudden(&case, report);
@@ -230,25 +233,29 @@ fn mass(analysis: &Record, regime: Regime, report: &mut Report<'_>) -> MassMatri
 }
 
 /// Supports of the grid's faces; none after an error.
-pub(crate) fn boundary(record: &Record) -> Option<[[Support; 2]; 2]> {
+pub(crate) fn boundary(record: &Record) -> Option<[[Support; 2]; 3]> {
     let boundary = record.record("boundary")?;
-    let [x, y] = Side::ALL.map(|sides| sides.map(|side| support(boundary, side)));
-    Some([[x[0]?, x[1]?], [y[0]?, y[1]?]])
+    let mut supports = [[Support::Free; 2]; 3];
+    for (own, sides) in supports.iter_mut().zip(Side::of(record.word("geometry").unwrap_or(Geometry::PlaneStrain))) {
+        *own = [support(boundary, sides[0])?, support(boundary, sides[1])?];
+    }
+    Some(supports)
 }
 
 fn support(boundary: &Record, side: Side) -> Option<Support> {
     match boundary.record(side.word()) {
         Some(_) => Some(Support::Contact),
+        None if matches!(side, Side::Front | Side::Back) && !boundary.gives(side.word()) => Some(Support::Free),
         None => boundary.word(side.word()),
     }
 }
 
 /// What faces in contact do; none after an error.
-fn contacts(record: &Record, factor: Option<f64>, report: &mut Report<'_>) -> Option<[[Option<Contact>; 2]; 2]> {
+fn contacts(record: &Record, factor: Option<f64>, report: &mut Report<'_>) -> Option<[[Option<Contact>; 2]; 3]> {
     let boundary = record.record("boundary")?;
-    let mut contacts = [[None; 2]; 2];
-    for (axis, upper) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
-        contacts[axis][upper] = contact(boundary, Side::ALL[axis][upper], factor, report)?;
+    let mut contacts = [[None; 2]; 3];
+    for (own, sides) in contacts.iter_mut().zip(Side::of(record.word("geometry").unwrap_or(Geometry::PlaneStrain))) {
+        *own = [contact(boundary, sides[0], factor, report)?, contact(boundary, sides[1], factor, report)?];
     }
     Some(contacts)
 }
@@ -282,9 +289,9 @@ fn law(face: &Record, factor: Option<f64>, report: &mut Report<'_>) -> Option<Co
 
 fn gravity(record: &Record, end: Option<f64>, report: &mut Report<'_>) -> Option<Gravity> {
     let gravity = record.record("gravity")?;
-    let acceleration = gravity.pair("acceleration")?;
+    let acceleration = gravity.vector("acceleration")?;
     let ramp = gravity.number("ramp")?;
-    let size = acceleration[0].hypot(acceleration[1]);
+    let size = acceleration[0].hypot(acceleration[1]).hypot(acceleration[2]);
     let off = (size / STANDARD_GRAVITY - 1.0).abs();
     if off <= 0.01 && off > NEARLY_STANDARD {
         report.warn(format!(

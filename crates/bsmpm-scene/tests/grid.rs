@@ -13,7 +13,7 @@ fn a_place_on_a_face_has_a_cell_wherever_the_grid_starts() {
         for cells in [1, 3, 7, 12, 29, 60] {
             let (lower, cell) = (f64::from(tenths) / 10.0, 0.1);
             let grid = GridSpec {
-                axes: [axis(lower, cell, cells), axis(1.0 - lower, cell, cells)],
+                axes: vec![axis(lower, cell, cells), axis(1.0 - lower, cell, cells)],
                 order: 2,
                 lines: Default::default(),
             };
@@ -24,7 +24,7 @@ fn a_place_on_a_face_has_a_cell_wherever_the_grid_starts() {
                 let found = grid.local([upper, grid.upper()[1]]);
                 assert!(found.iter().all(|x| *x <= length && *x >= length - 1e-13), "{lower} {cells}: {found:?}");
             }
-            assert_eq!(grid.local(grid.lower()), [0.0; 2]);
+            assert_eq!(grid.local([grid.lower()[0], grid.lower()[1]]), [0.0; 2]);
         }
     }
     assert!(missed > 100, "differences that miss the grid: {missed}");

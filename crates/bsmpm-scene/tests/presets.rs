@@ -134,7 +134,7 @@ fn the_effective_text_is_complete_and_stays_the_same() {
 fn cells_fit_between_faces_that_stay() {
     // .55 m between rollers, where 27.5 cells of 20 mm would be.
     let case = valid(COLUMN, &["body.0.box.upper=[0.2, 0.333]", "grid.upper=[0.55, 0.4]", "accuracy=draft"]);
-    let [x, y] = &case.grid.axes;
+    let (x, y) = (&case.grid.axes[0], &case.grid.axes[1]);
     assert_eq!((x.cells(), y.shortest()), (28, 0.02));
     assert!((x.length() - 0.55).abs() < 1e-12, "{x:?}");
     // A face that is moved stays where it is, too.
@@ -235,7 +235,7 @@ fn cells_are_small_around_a_strip_and_on_its_way_and_grow_away_from_it() {
         [("draft", 0.25, 0.25, 1.0, 1.5), ("standard", 0.125, 0.5, 0.5, 1.2), ("reference", 1.0 / 12.0, 1.0, 0.25, 1.1)]
     {
         let case = valid(FOOTING, &[&format!("accuracy={word}")]);
-        let [x, y] = &case.grid.axes;
+        let (x, y) = (&case.grid.axes[0], &case.grid.axes[1]);
         assert_sound(&case, [[0.0, 0.0], [10.0, 12.0]], 1.1 * longest, 1.15 * growth);
         // From the strip's axis to beyond its end; from below its last place to above its first, all breakpoints.
         assert!(is_fine(x, [0.0, 1.0], edge) && is_fine(x, [1.0, 1.0 + reach], edge), "{x:?}");
@@ -261,7 +261,7 @@ fn cells_are_small_around_a_strip_and_on_its_way_and_grow_away_from_it() {
 fn every_strip_and_load_has_small_cells_of_its_own() {
     let load = "traction.0={ from = [6.0, 10.0], to = [6.5, 10.0], stress = [0.0, -100.0], ramp = 1.0 }";
     let case = valid(FOOTING, &[load]);
-    let [x, y] = &case.grid.axes;
+    let (x, y) = (&case.grid.axes[0], &case.grid.axes[1]);
     assert!(is_fine(x, [0.0, 1.5], 0.125) && is_fine(x, [6.0, 6.5], 0.03125), "{x:?}");
     assert!(is_fine(y, [9.875, 10.0], 0.03125), "{y:?}");
     assert_sound(&case, [[0.0, 0.0], [10.0, 12.0]], 0.55, 1.5);

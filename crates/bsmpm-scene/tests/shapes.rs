@@ -46,7 +46,7 @@ fn verify(case: &Case, tolerance: f64) -> Vec<Seed<2>> {
     assert_eq!(seeds, parts, "columns one by one give the same points");
     for seed in &mut seeds {
         assert!(seed.volume > 0.0 && (seed.mass / seed.volume / 2000.0 - 1.0).abs() < 1e-14, "{seed:?}");
-        seed.x += bsmpm::tensor::Vector::<2>::from(case.grid.lower());
+        seed.x += bsmpm_scene::model::vector::<2, _>(case.grid.lower());
     }
     seeds
 }
@@ -278,10 +278,11 @@ fn weight_above_a_place() {
         ([15.0, 12.0], 0.0),
         ([30.0, 1.0], 0.0),
     ];
-    for (at, length) in rows {
-        assert!((case.overburden(at) - 20_000.0 * length).abs() < 1e-9, "{at:?}: {}", case.overburden(at));
+    for ([x, y], length) in rows {
+        let found = case.overburden([x, y, 0.0]);
+        assert!((found - 20_000.0 * length).abs() < 1e-9, "{x} {y}: {found}");
     }
-    assert_eq!(Case { gravity: None, ..case }.overburden([1.0, 1.0]), 0.0);
+    assert_eq!(Case { gravity: None, ..case }.overburden([1.0, 1.0, 0.0]), 0.0);
 }
 
 #[test]

@@ -230,7 +230,7 @@ fn the_slopes_of_the_paper() {
             (points, area, Some(1.3)),
             "{name}"
         );
-        assert!((case.overburden([0.5, 5.0]) - 20e3 * (case.bodies[0].bounds()[1][1] - 5.0)).abs() < 1e-6);
+        assert!((case.overburden([0.5, 5.0, 0.0]) - 20e3 * (case.bodies[0].bounds()[1][1] - 5.0)).abs() < 1e-6);
         assert!((case.histories[0].scale - 1e8 / (20e3 * 100.0)).abs() < 1e-12);
     }
     assert_eq!(read(&cases().join("short/slope_stability.toml")).points(), 1980);
@@ -243,7 +243,7 @@ fn the_footing_of_the_paper() {
         let footing = case.footing.as_ref().unwrap();
         assert_eq!((case.points(), footing.from, footing.to), (points, [0.0, ground], [1.0, ground]), "{name}");
         assert_eq!((footing.base, &footing.path.rows[..]), (Base::Smooth, &[(1.0, [0.0, -2.0])][..]));
-        let within = Some([[0.0, ground - 2.5], [2.5, ground - 0.5]]);
+        let within = Some([[0.0, ground - 2.5, 0.0], [2.5, ground - 0.5, 0.0]]);
         assert_eq!(case.histories[5].quantity, Quantity::PressureNoise { within });
     }
 }

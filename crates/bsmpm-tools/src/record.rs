@@ -99,9 +99,8 @@ impl RunRecord {
 
     /// Whether the grid's lower and upper faces along x and y hold the body.
     pub fn walls(&self) -> [[bool; 2]; 2] {
-        self.case
-            .boundary
-            .map_or_else(Default::default, |axes| axes.map(|faces| faces.map(|face| face != Support::Free)))
+        let held = |axes: [[Support; 2]; 3]| [0, 1].map(|axis: usize| axes[axis].map(|face| face != Support::Free));
+        self.case.boundary.map_or_else(Default::default, held)
     }
 
     /// m  The whole width of the footing, of which a half model that begins or ends at a plane of symmetry has only the

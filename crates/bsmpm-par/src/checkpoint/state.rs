@@ -191,9 +191,12 @@ impl CheckpointState {
     }
 
     /// The repeated breakpoints of the run's grid; `None` if they are not of a grid like this one.
-    pub fn lines(&self, grid: &GridSpec) -> Option<[Vec<Line>; 2]> {
+    pub fn lines(&self, grid: &GridSpec) -> Option<[Vec<Line>; 3]> {
         let of = |axis: usize| self.lines.get(axis).map_or(&[][..], Vec::as_slice);
         let fits = |axis: usize| {
+            if axis >= grid.dims() {
+                return of(axis).is_empty();
+            }
             let inner = 1..grid.axes[axis].cells();
             let sound = |line: &[usize; 2]| inner.contains(&line[0]) && (2..=grid.order).contains(&line[1]);
             of(axis).iter().all(sound) && of(axis).is_sorted_by(|a, b| a[0] < b[0])

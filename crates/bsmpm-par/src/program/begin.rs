@@ -10,7 +10,7 @@ use crate::restart::{self, Resumed, RunStart};
 use crate::run::{Before, Run, Task};
 use crate::setup::Cut;
 use crate::space;
-use bsmpm::kinematics::{Axisymmetric, Kinematics, PlaneStrain};
+use bsmpm::kinematics::{Axisymmetric, Kinematics, PlaneStrain, Solid};
 use bsmpm_io::directory::OutputDirectory;
 use bsmpm_io::exit;
 use bsmpm_io::lock::Unseen;
@@ -40,6 +40,7 @@ pub(super) fn run(
     match task.case.geometry {
         Geometry::PlaneStrain => run_in::<PlaneStrain, 2>(libraries, solver, task, cut, requests),
         Geometry::Axisymmetric => run_in::<Axisymmetric, 2>(libraries, solver, task, cut, requests),
+        Geometry::Solid => run_in::<Solid, 3>(libraries, solver, task, cut, requests),
     }
 }
 

@@ -5,7 +5,7 @@ use bsmpm::error::{SolveError, StepError};
 use bsmpm::method::Criteria;
 use bsmpm_io::failure::{FailureMeasures, FailureReport};
 use bsmpm_io::manifest::Worst;
-use bsmpm_scene::Case;
+use bsmpm_scene::{Case, GridSpec};
 use mpi::topology::{Communicator, SimpleCommunicator};
 use mpi::traits::CommunicatorCollectives;
 
@@ -14,7 +14,6 @@ const MOST_PLACES: usize = 10;
 
 /// The report of `failure` in step `step` of a case, from all ranks. Collective.
 pub(super) fn of(world: &SimpleCommunicator, failure: &Failure, step: u64, case: &Case) -> FailureReport {
-    let lower = case.grid.lower();
     let last = failure.attempts.last();
     // The last attempt may have ended before it iterated; all ranks have the same kinds of errors.
     let iterated = |error: &&StepError| matches!(error, StepError::NotConverged { .. });
@@ -33,7 +32,7 @@ pub(super) fn of(world: &SimpleCommunicator, failure: &Failure, step: u64, case:
         attempts: failure.attempts.iter().map(ToString::to_string).collect(),
         history,
         tolerances,
-        worst: last.map_or_else(Vec::new, |error| worst(world, places_of(error, iterated), lower)),
+        worst: last.map_or_else(Vec::new, |error| worst(world, places_of(error, iterated), &case.grid)),
         advice: last.map_or_else(Vec::new, |error| advice(error, case)),
     }
 }
@@ -43,34 +42,42 @@ fn places_of<'a>(last: &'a StepError, iterated: Option<&'a StepError>) -> &'a St
     if matches!(last, StepError::Solve(_)) { iterated.unwrap_or(last) } else { last }
 }
 
-/// Order among the places, number, x and y, force or 0.
-type NodePlace = [f64; 5];
+/// Order among the places, number, force or 0, x, y and z.
+type NodePlace = [f64; 6];
 
 /// The nodes whose forces are the least balanced, or the points that the ranks name, of all ranks.
-fn worst(world: &SimpleCommunicator, error: &StepError, lower: [f64; 2]) -> Vec<Worst> {
+fn worst(world: &SimpleCommunicator, error: &StepError, grid: &GridSpec) -> Vec<Worst> {
+    let (lower, dims) = (grid.lower(), grid.dims());
     let kind = if matches!(error, StepError::NotConverged { .. }) { "node" } else { "point" };
+    let at = |x: &[f64]| -> [f64; 3] { std::array::from_fn(|axis| lower[axis] + x.get(axis).copied().unwrap_or(0.0)) };
     let mut own: Vec<NodePlace> = match error {
         StepError::NotConverged { worst, .. } => worst
             .iter()
-            .map(|node| [-node.force, node.number as f64, lower[0] + node.x[0], lower[1] + node.x[1], node.force])
+            .map(|node| {
+                let [x, y, z] = at(&node.x);
+                [-node.force, node.number as f64, node.force, x, y, z]
+            })
             .collect(),
         other => other
             .point()
-            .map(|(id, x)| [id as f64, id as f64, lower[0] + x[0], lower[1] + x[1], 0.0])
+            .map(|(id, x)| {
+                let [x, y, z] = at(x);
+                [id as f64, id as f64, 0.0, x, y, z]
+            })
             .into_iter()
             .collect(),
     };
-    own.resize(MOST_PLACES, [f64::INFINITY; 5]);
+    own.resize(MOST_PLACES, [f64::INFINITY; 6]);
     let own: Vec<f64> = own.into_iter().flatten().collect();
     let mut all = vec![0.0_f64; own.len() * world.size().unsigned_abs() as usize];
     world.all_gather_into(&own[..], &mut all[..]);
-    let mut places: Vec<&[f64]> = all.chunks_exact(5).filter(|place| place.iter().all(|n| n.is_finite())).collect();
+    let mut places: Vec<&[f64]> = all.chunks_exact(6).filter(|place| place.iter().all(|n| n.is_finite())).collect();
     places.sort_by(|a, b| a[0].total_cmp(&b[0]));
     let told = |place: &&[f64]| Worst {
         kind: kind.into(),
         id: place[1] as u64,
-        position: place[2..4].to_vec(),
-        force: (kind == "node").then_some(place[4]),
+        position: place[3..3 + dims].to_vec(),
+        force: (kind == "node").then_some(place[2]),
     };
     places.iter().take(MOST_PLACES).map(told).collect()
 }

@@ -143,6 +143,7 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
                 .grid
                 .lines
                 .iter()
+                .take(self.case.grid.dims())
                 .map(|lines| lines.iter().map(|line| [line.breakpoint, line.multiplicity]).collect())
                 .collect(),
             room: Some(simulation.model.grid.room().iter().map(|range| [range.start, range.end]).collect()),

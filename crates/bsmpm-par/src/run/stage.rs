@@ -9,7 +9,7 @@ use bsmpm::kinematics::Kinematics;
 use bsmpm_io::exit;
 use bsmpm_io::manifest::ManifestStage;
 use bsmpm_ranks::simulation::Simulation;
-use bsmpm_scene::words::{Side, Word};
+use bsmpm_scene::words::Word;
 use bsmpm_scene::{Acting, Stage, model};
 
 impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
@@ -46,8 +46,11 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         let material = |number: usize| &self.case.materials[number].name;
         let exchanged: Vec<String> =
             stage.materials.iter().map(|&(from, to)| format!("{} follows {}", material(from), material(to))).collect();
-        let faces: Vec<String> =
-            stage.faces.iter().map(|of| format!("{} is {}", Side::from(of.face).word(), of.support.word())).collect();
+        let faces: Vec<String> = stage
+            .faces
+            .iter()
+            .map(|of| format!("{} is {}", of.face.side(self.case.geometry).word(), of.support.word()))
+            .collect();
         let names = |list: &[(String, Acting)]| list.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>();
         let (applied, released) = (names(&stage.apply), names(&stage.release));
         let strength_reduction = stage.strength_reduction;

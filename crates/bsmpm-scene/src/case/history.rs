@@ -98,26 +98,26 @@ pub enum Quantity {
     /// m  of the material that is at `at` at the start, by the motion about the point nearest to it
     Displacement {
         /// m  in the case's coordinates
-        at: [f64; 2],
+        at: [f64; 3],
     },
     /// m/s  of the point nearest to `at` at the start
     Velocity {
         /// m  in the case's coordinates
-        at: [f64; 2],
+        at: [f64; 3],
         /// of the place itself instead, by a plane through the points around it
         surface: bool,
     },
     /// Pa  Cauchy stress of the point nearest to `at` at the start
     Stress {
         /// m  in the case's coordinates
-        at: [f64; 2],
+        at: [f64; 3],
         /// of the place itself instead, by a plane through the points around it
         surface: bool,
     },
     /// Pa  of the water, positive in compression, at the point nearest to `at` at the start
     PorePressure {
         /// m  in the case's coordinates
-        at: [f64; 2],
+        at: [f64; 3],
     },
     /// Pa  of the water in the pores of all points that count, positive in compression: mean, least, largest
     PorePressures {
@@ -129,7 +129,7 @@ pub enum Quantity {
         /// which of them
         what: Measurement,
         /// m  in the case's coordinates
-        at: [f64; 2],
+        at: [f64; 3],
     },
     /// m3/m  water that has left the ground, per metre of thickness
     WaterOutflow {
@@ -143,7 +143,7 @@ pub enum Quantity {
     /// Pa  oscillation of the pressure about its average over the grid and about a plane
     PressureNoise {
         /// m  lower and upper corner of the points that count, in the case's coordinates; `None`: all points
-        within: Option<[[f64; 2]; 2]>,
+        within: Option<[[f64; 3]; 2]>,
     },
     /// m  the largest upward displacement of any point
     Heave {
@@ -207,21 +207,19 @@ pub struct Face {
     pub upper: bool,
 }
 
-impl From<Side> for Face {
-    fn from(side: Side) -> Self {
-        let (axis, upper) = match side {
-            Side::Left => (0, false),
-            Side::Right => (0, true),
-            Side::Bottom => (1, false),
-            Side::Top => (1, true),
+impl Face {
+    /// The face at a side, if the geometry has one there.
+    pub fn of(side: Side, geometry: Geometry) -> Option<Self> {
+        let axes = Side::of(geometry).iter().enumerate();
+        let at = |(axis, sides): (usize, &[Side; 2])| {
+            sides.iter().position(|own| *own == side).map(|upper| Self { axis, upper: upper == 1 })
         };
-        Self { axis, upper }
+        axes.into_iter().find_map(at)
     }
-}
 
-impl From<Face> for Side {
-    fn from(face: Face) -> Self {
-        Self::ALL[face.axis][usize::from(face.upper)]
+    /// Where it is.
+    pub fn side(self, geometry: Geometry) -> Side {
+        Side::of(geometry)[self.axis][usize::from(self.upper)]
     }
 }
 
@@ -304,7 +302,7 @@ impl History {
             name: format!("{}{suffix}", self.name),
             unit: unit(self.geometry.unit(measured.unit_of(number)).unwrap_or(measured.unit_of(number))),
         };
-        measured.columns().iter().enumerate().map(column).collect()
+        measured.columns_in(self.geometry.dims()).iter().enumerate().map(column).collect()
     }
 }
 

@@ -122,7 +122,7 @@ impl Case {
     /// What all faces of the grid do once the stages until the time `t` have begun.
     pub fn faces_at(&self, t: f64) -> Vec<FaceSupport> {
         let (mut faces, divided) = (Vec::new(), self.divided_at(t));
-        for (axis, upper) in [(0, false), (0, true), (1, false), (1, true)] {
+        for (axis, upper) in (0..self.geometry.dims()).flat_map(|axis| [(axis, false), (axis, true)]) {
             let face = Face { axis, upper };
             let (support, contact) = (self.boundary[axis][usize::from(upper)], self.contacts[axis][usize::from(upper)]);
             let mut begun = self.stages.iter().rev().filter(|stage| self.has_begun(stage, t));

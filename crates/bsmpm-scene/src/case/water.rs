@@ -45,9 +45,9 @@ impl Case {
     /// Pa  weight of a body vertically above `at` (m, in the case's coordinates) under the acceleration `g` (m/s2),
     /// less the water's uplift.
     pub(super) fn weight_above(&self, body: &Body, at: [f64; 2], g: f64) -> f64 {
-        let (named, all) = (&self.materials[body.material], body.region.above(at));
+        let (named, all) = (&self.materials[body.material], body.region.above([at[0], at[1], 0.0]));
         let Some((water, table)) = self.water.as_ref().zip(self.table(at[0])) else { return 0.0 };
-        let dry = if table > at[1] { body.region.above([at[0], table]) } else { all };
+        let dry = if table > at[1] { body.region.above([at[0], table, 0.0]) } else { all };
         let density = named.density.unwrap_or(0.0);
         let saturated = named.saturated.unwrap_or(density);
         g * density * dry + (g * saturated - water.unit_weight) * (all - dry)

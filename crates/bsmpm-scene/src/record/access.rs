@@ -21,7 +21,8 @@ impl Record {
         number: f64, Kind::Quantity(..) | Kind::Profile(..) | Kind::Gradient(_) => Datum::Number(number) => *number;
         measure: (f64, Option<Dimension>), Kind::Measure => Datum::Measure(number, unit) => (*number, *unit);
         numbers: &[f64],
-            Kind::Pair(..) | Kind::PairProfile(..) | Kind::GradientPair(_) | Kind::Either(..) | Kind::List(..)
+            Kind::Pair(..) | Kind::Vector(..) | Kind::PairProfile(..) | Kind::GradientPair(_) | Kind::Either(..)
+            | Kind::List(..)
             => Datum::Numbers(numbers) => numbers;
         rows: &[ListRow], Kind::Rows(_) => Datum::Rows(rows) => rows;
         count: u64, Kind::Count(..) => Datum::Count(count) => *count;
@@ -35,6 +36,12 @@ impl Record {
 
     pub(crate) fn pair(&self, key: &str) -> Option<[f64; 2]> {
         self.numbers(key)?.try_into().ok()
+    }
+
+    /// As many numbers as the geometry has axes, and zeros behind.
+    pub(crate) fn vector(&self, key: &str) -> Option<[f64; 3]> {
+        let numbers = self.numbers(key)?;
+        Some(std::array::from_fn(|axis| numbers.get(axis).copied().unwrap_or(0.0)))
     }
 
     /// What the key's word stands for; `T` is the choice that the schema names.

@@ -11,7 +11,13 @@ use crate::unit::{self, Dimension};
 const LONGEST_NAME: usize = 64;
 
 /// The value of `node` as `kind` says; `None` after an error.
-pub(super) fn read(kind: &Kind, node: &Node, path: &str, pseudo_time: bool, report: &mut Report<'_>) -> Option<Datum> {
+pub(super) fn read(
+    kind: &Kind,
+    node: &Node,
+    path: &str,
+    (pseudo_time, dims): (bool, usize),
+    report: &mut Report<'_>,
+) -> Option<Datum> {
     let name = path.rsplit('.').next().unwrap_or(path);
     let mut reader = ValueReader { kind, path, name, pseudo_time, report };
     match kind {
@@ -30,9 +36,10 @@ pub(super) fn read(kind: &Kind, node: &Node, path: &str, pseudo_time: bool, repo
         Kind::Pair(dimension, range) | Kind::PairProfile(dimension, range, _) => {
             reader.quantities(node, *dimension, range, Some(2))
         }
+        Kind::Vector(dimension, range) => reader.quantities(node, *dimension, range, Some(dims)),
         Kind::List(dimension, range) => reader.quantities(node, *dimension, range, None),
         Kind::Either(dimension, range) => match node.value {
-            Value::List(_) => reader.quantities(node, *dimension, range, Some(2)),
+            Value::List(_) => reader.quantities(node, *dimension, range, Some(dims)),
             _ => reader.quantity(node, *dimension, range).map(|number| Datum::Numbers(vec![number])),
         },
         Kind::Count(least, most) => reader.count(node, *least, *most),

@@ -7,7 +7,7 @@ use crate::grid::GridSpec;
 use std::ops::Range;
 
 /// Parts of a cell: less area makes no point, and a lattice point is not so near to an edge.
-const SLIVER: f64 = 1e-9;
+pub(super) const SLIVER: f64 = 1e-9;
 
 /// What an outline has in a column of cells.
 #[derive(Clone, Debug)]
@@ -27,10 +27,10 @@ pub(crate) enum RegionPart {
     Cut(usize, Vec<CellPlace>),
 }
 
-/// A point's place (m, from the grid's lower corner) and area (m²).
+/// A point's place (m, from the grid's lower corner) and area (m²), or volume (m³).
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct CellPlace {
-    pub(crate) x: [f64; 2],
+pub(crate) struct CellPlace<const D: usize = 2> {
+    pub(crate) x: [f64; D],
     pub(crate) area: f64,
 }
 
@@ -57,6 +57,13 @@ impl RegionPart {
             Self::Cut(_, places) => places.len() as u64,
         }
     }
+}
+
+/// Points of a rectangle that lies in one cell.
+pub(crate) fn of_cell(n: usize, [across, up]: [[f64; 2]; 2]) -> impl Iterator<Item = CellPlace> {
+    let count = n * n;
+    let area = (across[1] - across[0]) * (up[1] - up[0]) / count as f64;
+    (0..count).map(move |k| CellPlace { x: [place(across, k / n, n), place(up, k % n, n)], area })
 }
 
 /// Place of lattice point `k` of `n` between two ends.
@@ -213,13 +220,13 @@ impl CellStrip {
 }
 
 /// Part `k` of `n` equal ones of an interval.
-fn part([lower, upper]: [f64; 2], k: usize, n: usize) -> [f64; 2] {
+pub(super) fn part([lower, upper]: [f64; 2], k: usize, n: usize) -> [f64; 2] {
     [k, k + 1].map(|k| if k == n { upper } else { lower + (upper - lower) * (k as f64 / n as f64) })
 }
 
 /// Gives the area of a place to the nearest of others, the first of several.
-fn give(places: &mut [CellPlace], left: &CellPlace) {
-    let distance = |place: &CellPlace| (place.x[0] - left.x[0]).hypot(place.x[1] - left.x[1]);
+pub(super) fn give<const D: usize>(places: &mut [CellPlace<D>], left: &CellPlace<D>) {
+    let distance = |place: &CellPlace<D>| (0..D).fold(0.0_f64, |sum, k| sum.hypot(place.x[k] - left.x[k]));
     if let Some(nearest) = places.iter_mut().min_by(|a, b| distance(a).total_cmp(&distance(b))) {
         nearest.area += left.area;
     }

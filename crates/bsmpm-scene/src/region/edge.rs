@@ -48,6 +48,13 @@ impl Edge {
         Self { shape, ..self }
     }
 
+    /// The same edge, moved by some way.
+    pub(crate) fn moved(self, by: [f64; 2]) -> Self {
+        let moved = |at: [f64; 2]| [at[0] + by[0], at[1] + by[1]];
+        let arc = self.arc.map(|arc| Arc { center: moved(arc.center), ..arc });
+        Self { a: moved(self.a), b: moved(self.b), arc, ..self }
+    }
+
     /// Its height at `x` between its ends; beyond them that of the nearer end.
     pub(crate) fn y(&self, x: f64) -> f64 {
         match self.arc {

@@ -3,6 +3,7 @@
 use super::Kind::*;
 use super::Presence::{Optional, Required};
 use super::{Dimension as In, Kind, Range, Table, key, one_of};
+use crate::words::{Axis, Word};
 
 pub(super) static BODY: Table = Table {
     header: "[[body]]",
@@ -10,16 +11,21 @@ pub(super) static BODY: Table = Table {
     keys: &[
         key("material", Name, Required, "name of its material"),
         key("name", Name, Optional, "what stages and histories call it"),
-        key("box", Kind::Table(&BOX), Optional, "a rectangle"),
+        key("box", Kind::Table(&BOX), Optional, "a rectangle, of a solid a cuboid"),
         key("polygon", POLYGON, Optional, "corners of a polygon, in either direction; its points are those inside"),
         key("circle", Kind::Table(&CIRCLE), Optional, "a circle; its points are those inside"),
-        key("subtract", Tables(&SUBTRACT), Optional, "boxes, polygons and circles that are cut out"),
+        key("extrude", Kind::Table(&EXTRUDE), Optional, "of a solid: an outline along an axis, e.g. a cylinder"),
+        key("sphere", Kind::Table(&SPHERE), Optional, "of a solid: a sphere"),
+        key("revolve", Kind::Table(&REVOLVE), Optional, "of a solid: an outline about a vertical"),
+        key("subtract", Tables(&SUBTRACT), Optional, "shapes that are cut out"),
         key("points_per_cell", Count(1, 100), Required, "points along each axis of a cell"),
-        key("velocity", Pair(In::Velocity, Range::ANY), Optional, "at the start; absent: at rest"),
+        key("velocity", Vector(In::Velocity, Range::ANY), Optional, "at the start; absent: at rest"),
         key("spin", Kind::Table(&SPIN), Optional, "rotation as if rigid at the start, besides velocity"),
     ],
-    exclusive: &[one_of(&["box", "polygon", "circle"], true)],
+    exclusive: &[one_of(SHAPES, true)],
 };
+
+const SHAPES: &[&str] = &["box", "polygon", "circle", "extrude", "sphere", "revolve"];
 
 pub(super) const POLYGON: Kind = Rows(&[(In::Length, Range::ANY), (In::Length, Range::ANY)]);
 
@@ -50,16 +56,54 @@ static SUBTRACT: Table = Table {
         key("box", Kind::Table(&BOX), Optional, "a rectangle"),
         key("polygon", POLYGON, Optional, "corners of a polygon, in either direction"),
         key("circle", Kind::Table(&CIRCLE), Optional, "a circle"),
+        key("extrude", Kind::Table(&EXTRUDE), Optional, "of a solid: an outline along an axis"),
+        key("sphere", Kind::Table(&SPHERE), Optional, "of a solid: a sphere"),
+        key("revolve", Kind::Table(&REVOLVE), Optional, "of a solid: an outline about a vertical"),
     ],
-    exclusive: &[one_of(&["box", "polygon", "circle"], true)],
+    exclusive: &[one_of(SHAPES, true)],
+};
+
+static EXTRUDE: Table = Table {
+    header: "extrude = { polygon, circle, along, from, to }",
+    doc: "An outline in the plane of the other two axes, in their order, between two places of an axis; a circle makes a \
+          cylinder",
+    keys: &[
+        key("polygon", POLYGON, Optional, "corners of a polygon, in either direction"),
+        key("circle", Kind::Table(&CIRCLE), Optional, "a circle"),
+        key("along", Choice(Axis::WORDS), Required, "the axis"),
+        key("from", Quantity(In::Length, Range::ANY), Required, "where it begins"),
+        key("to", Quantity(In::Length, Range::ANY), Required, "where it ends"),
+    ],
+    exclusive: &[one_of(&["polygon", "circle"], true)],
+};
+
+static SPHERE: Table = Table {
+    header: "sphere = { center, radius }",
+    doc: "A sphere",
+    keys: &[
+        key("center", Vector(In::Length, Range::ANY), Required, "its centre"),
+        key("radius", Quantity(In::Length, Range::POSITIVE), Required, "its radius"),
+    ],
+    exclusive: &[],
+};
+
+static REVOLVE: Table = Table {
+    header: "revolve = { polygon, circle, about }",
+    doc: "An outline of the radius and z, turned about a vertical",
+    keys: &[
+        key("polygon", POLYGON, Optional, "corners of a polygon, [radius, z], in either direction"),
+        key("circle", Kind::Table(&CIRCLE), Optional, "a circle, which makes a ring"),
+        key("about", Pair(In::Length, Range::ANY), Required, "x and y of the vertical"),
+    ],
+    exclusive: &[one_of(&["polygon", "circle"], true)],
 };
 
 pub(super) static BOX: Table = Table {
     header: "box = { lower, upper }",
-    doc: "A rectangle along the axes; it may cut cells",
+    doc: "A rectangle, of a solid a cuboid, along the axes; it may cut cells",
     keys: &[
-        key("lower", Pair(In::Length, Range::ANY), Required, "lower corner"),
-        key("upper", Pair(In::Length, Range::ANY), Required, "upper corner"),
+        key("lower", Vector(In::Length, Range::ANY), Required, "lower corner"),
+        key("upper", Vector(In::Length, Range::ANY), Required, "upper corner"),
     ],
     exclusive: &[],
 };

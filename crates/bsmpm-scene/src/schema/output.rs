@@ -79,7 +79,7 @@ pub(super) static HISTORY: Table = Table {
         ),
         key(
             "at",
-            Pair(In::Length, Range::ANY),
+            Vector(In::Length, Range::ANY),
             Optional,
             "of displacement: the place at the start; of velocity, stress, pore-pressure, excess-pressure, porosity and \
              flux: the point nearest to it then",

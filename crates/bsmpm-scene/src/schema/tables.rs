@@ -3,8 +3,7 @@
 use super::Kind::*;
 use super::Presence::{Default, Optional, Required};
 use super::{
-    Dimension as In, Kind, Range, Table, body, element, flow, key, later, laws, loads, one_of, output, rigid, stage,
-    water,
+    Dimension as In, Kind, Range, Table, body, element, flow, key, laws, loads, one_of, output, rigid, stage, water,
 };
 use crate::words::{Accuracy, AnalysisType, C0Lines, Factor, Geometry, Ksp, LinearSolver, Nonlinear, Order, Pc, Word};
 use bsmpm::background::{Extent, Kind as Background};
@@ -90,9 +89,9 @@ static GRID: Table = Table {
     header: "[grid]",
     doc: "The background grid: open knot vectors, one patch per cell",
     keys: &[
-        key("lower", Pair(In::Length, Range::ANY), Optional, "lower corner; cells start here"),
-        key("upper", Pair(In::Length, Range::ANY), Optional, "upper corner; a free face moves out to a whole cell"),
-        key("cell", Either(In::Length, Range::POSITIVE), Optional, "edge of the cells, or [hx, hy]"),
+        key("lower", Vector(In::Length, Range::ANY), Optional, "lower corner; cells start here"),
+        key("upper", Vector(In::Length, Range::ANY), Optional, "upper corner; a free face moves out to a whole cell"),
+        key("cell", Either(In::Length, Range::POSITIVE), Optional, "edge of the cells, or one along each axis"),
         key("knots", Kind::Table(&KNOTS), Optional, "explicit breakpoints instead of cell"),
         key("order", Choice(Order::WORDS), Required, "order of the B-splines"),
         key(
@@ -112,6 +111,7 @@ static KNOTS: Table = Table {
     keys: &[
         key("x", List(In::Length, Range::ANY), Required, "breakpoints along x"),
         key("y", List(In::Length, Range::ANY), Required, "breakpoints along y"),
+        key("z", List(In::Length, Range::ANY), Optional, "of a solid: breakpoints along z"),
     ],
     exclusive: &[],
 };
@@ -120,7 +120,7 @@ static GRAVITY: Table = Table {
     header: "[gravity]",
     doc: "Body force per mass",
     keys: &[
-        key("acceleration", Pair(In::Acceleration, Range::ANY), Required, "when fully applied"),
+        key("acceleration", Vector(In::Acceleration, Range::ANY), Required, "when fully applied"),
         key("ramp", Quantity(In::Time, Range::NOT_NEGATIVE), Default("0.0"), "time over which it grows; 0: at once"),
     ],
     exclusive: &[],
@@ -133,10 +133,10 @@ static BOUNDARY: Table = Table {
     keys: &[
         key("left", loads::SUPPORT, Default("\"free\""), "face at the lowest x"),
         key("right", loads::SUPPORT, Default("\"free\""), "face at the highest x"),
-        key("bottom", loads::SUPPORT, Default("\"free\""), "face at the lowest y"),
-        key("top", loads::SUPPORT, Default("\"free\""), "face at the highest y"),
-        later("front", "face of a three-dimensional grid"),
-        later("back", "face of a three-dimensional grid"),
+        key("bottom", loads::SUPPORT, Default("\"free\""), "face at the lowest y, of a solid z"),
+        key("top", loads::SUPPORT, Default("\"free\""), "face at the highest y, of a solid z"),
+        key("front", loads::SUPPORT, Optional, "of a solid: face at the lowest y; free unless given"),
+        key("back", loads::SUPPORT, Optional, "of a solid: face at the highest y; free unless given"),
     ],
     exclusive: &[],
 };

@@ -52,7 +52,9 @@ fn axis(case: &Case, record: &Record, report: &mut Report<'_>) {
     for boundary in tables {
         for side in Side::ALL.into_iter().flatten() {
             let (found, word) = (super::support(boundary, side), side.word());
-            if Face::from(side) == AXIS && found.is_some_and(|found| found != Support::Roller) {
+            if Face::of(side, Geometry::Axisymmetric) == Some(AXIS)
+                && found.is_some_and(|found| found != Support::Roller)
+            {
                 boundary.error(word, "is the axis of an axisymmetric case; allowed: \"roller\"", report);
             }
             if matches!(found, Some(Support::Absorbing | Support::FreeField)) {

@@ -6,7 +6,7 @@ use crate::estimate::MOST_POINTS;
 use crate::grid::GridSpec;
 use crate::nearest::hint;
 use crate::record::Record;
-use crate::region::{self, Region, Window};
+use crate::region::{self, Region, Volume, Window};
 use crate::report::{Report, shortened};
 use bsmpm::model::Regime;
 
@@ -64,8 +64,8 @@ fn read(
             record.path
         ));
     }
-    let region = shape::region(record, (grid, points_per_cell), report);
-    let velocity = record.pair("velocity");
+    let region = shape::region((record, root.word("geometry")?), (grid, points_per_cell), report);
+    let velocity = record.vector("velocity");
     let spin = match record.record("spin") {
         Some(spin) => Some((spin.number("rate")?, spin.pair("about")?)),
         None => None,
@@ -108,6 +108,9 @@ pub(super) fn warn_of_overlap(case: &Case, report: &mut Report<'_>) {
 
 /// Whether two bodies overlap by more than rounding; for shapes only as long as the `work` so far is bearable.
 fn overlap(a: &Body, b: &Body, grid: &GridSpec, work: &mut usize) -> bool {
+    if let (Region::Solid(a), Region::Solid(b)) = (&a.region, &b.region) {
+        return overlap_in_space(a, b);
+    }
     let ([a_lower, a_upper], [b_lower, b_upper]) = (a.bounds(), b.bounds());
     let origin = grid.lower();
     let common = [0, 1].map(|axis| [a_lower[axis].max(b_lower[axis]), a_upper[axis].min(b_upper[axis])]);
@@ -132,4 +135,26 @@ fn overlap(a: &Body, b: &Body, grid: &GridSpec, work: &mut usize) -> bool {
     let mut area = 0.0;
     region::sweep(&edges, of_a + of_b, &Window { x, y }, &both, &mut |slice| area += slice.area());
     area > 1e-9 * a.area().min(b.area())
+}
+
+/// Places along an axis at which it is tried whether two shapes in space overlap.
+const SAMPLES: usize = 16;
+
+/// Whether two shapes in space have more than a sixteenth of the extent of the smaller in common.
+fn overlap_in_space(a: &Volume, b: &Volume) -> bool {
+    let ([a_lower, a_upper], [b_lower, b_upper]) = (a.bounds(), b.bounds());
+    let common = [0, 1, 2].map(|axis| [a_lower[axis].max(b_lower[axis]), a_upper[axis].min(b_upper[axis])]);
+    let apart = |axis: usize| {
+        let smaller = (a_upper[axis] - a_lower[axis]).min(b_upper[axis] - b_lower[axis]);
+        common[axis][1] - common[axis][0] <= 1e-9 * smaller
+    };
+    if (0..3).any(apart) || a.is_box() && b.is_box() {
+        return !(0..3).any(apart);
+    }
+    let place = |axis: usize, k: usize| {
+        let [lower, upper] = common[axis];
+        lower + (upper - lower) * (k as f64 + 0.5) / SAMPLES as f64
+    };
+    let at = |k: usize| [place(0, k / (SAMPLES * SAMPLES)), place(1, k / SAMPLES % SAMPLES), place(2, k % SAMPLES)];
+    (0..SAMPLES.pow(3)).map(at).any(|at| a.contains(at) && b.contains(at))
 }

@@ -31,7 +31,7 @@ pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
         }
         let (lower, higher) = column(case, upper == 1);
         let in_column = |body: &Body| body.bounds()[0][0] < higher && body.bounds()[1][0] > lower;
-        let moves = |body: &Body| body.velocity.is_some_and(|v| v != [0.0; 2]) || body.spin.is_some();
+        let moves = |body: &Body| body.velocity.is_some_and(|v| v != [0.0; 3]) || body.spin.is_some();
         if case.bodies.iter().any(|body| in_column(body) && moves(body)) {
             refuse("ground with a velocity at the start is no free field: it goes with [shaking]".into());
         }

@@ -6,24 +6,25 @@ use crate::grid::{GridAxis, GridSpec, Line};
 use crate::record::Record;
 use crate::report::Report;
 use crate::unit::Dimension;
-use crate::words::Order;
+use crate::words::{Geometry, Order};
 
 /// Parts of a cell by which a length may miss a whole number of cells.
 const WHOLE: f64 = 1e-9;
-const NAMES: [&str; 2] = ["x", "y"];
+const NAMES: [&str; 3] = ["x", "y", "z"];
 
 /// The grid, once the supports of its faces are known.
-pub(super) fn read(root: &Record, boundary: Option<[[Support; 2]; 2]>, report: &mut Report<'_>) -> Option<GridSpec> {
+pub(super) fn read(root: &Record, boundary: Option<[[Support; 2]; 3]>, report: &mut Report<'_>) -> Option<GridSpec> {
     let grid = root.record("grid")?;
     // The rest is checked without it, too.
     let order = grid.word("order").unwrap_or(Order::Quadratic).degree();
+    let dims = root.word::<Geometry>("geometry")?.dims();
     let (axes, lines) = if grid.gives("knots") {
-        graded(grid, order, report)?
+        graded(grid, order, dims, report)?
     } else {
-        (uniform(grid, boundary?, report)?, [Vec::new(), Vec::new()])
+        (uniform(grid, boundary?, dims, report)?, <[Vec<Line>; 3]>::default())
     };
     let spec = GridSpec { axes, order, lines };
-    let (cells, unknowns) = (estimate::cells(&spec), 2 * estimate::nodes(&spec));
+    let (cells, unknowns) = (estimate::cells(&spec), dims as u128 * estimate::nodes(&spec));
     if cells > MOST_UNKNOWNS || unknowns > MOST_UNKNOWNS {
         let message = format!("{cells} cells and {unknowns} unknowns; at most {MOST_UNKNOWNS} of each are possible");
         report.error(grid.place("cell"), &grid.path_of("cell"), message);
@@ -50,8 +51,18 @@ fn bounded(spec: &GridSpec, grid: &Record, report: &mut Report<'_>) -> Option<()
 }
 
 /// Breakpoints as written; equal ones are copies of one.
-fn graded(grid: &Record, order: usize, report: &mut Report<'_>) -> Option<([GridAxis; 2], [Vec<Line>; 2])> {
+fn graded(
+    grid: &Record,
+    order: usize,
+    dims: usize,
+    report: &mut Report<'_>,
+) -> Option<(Vec<GridAxis>, [Vec<Line>; 3])> {
     let knots = grid.record("knots")?;
+    if knots.gives("z") != (dims == 3) {
+        let message = if dims == 3 { "missing; a solid has breakpoints along z" } else { "a plane has no z" };
+        knots.error("z", message, report);
+        return None;
+    }
     let mut axis = |number: usize| {
         let name = NAMES[number];
         let copies: Vec<&[f64]> = knots.numbers(name)?.chunk_by(|a, b| a == b).collect();
@@ -73,28 +84,32 @@ fn graded(grid: &Record, order: usize, report: &mut Report<'_>) -> Option<([Grid
         let repeated = copies.iter().enumerate().filter(|(_, copies)| copies.len() > 1);
         let lines = repeated.map(|(breakpoint, copies)| Line { breakpoint, multiplicity: copies.len() }).collect();
         for (key, end) in [("lower", breakpoints[0]), ("upper", breakpoints[breakpoints.len() - 1])] {
-            if let Some(corner) = grid.pair(key).filter(|corner| corner[number] != end) {
+            if let Some(corner) = grid.vector(key).filter(|corner| corner[number] != end) {
                 let message = format!("{} differs from the breakpoints of {name}, which end at {end}", corner[number]);
                 grid.error(key, message, report);
             }
         }
         Some((GridAxis::Graded(breakpoints), lines))
     };
-    let (x, y) = (axis(0), axis(1));
-    let ((x, of_x), (y, of_y)) = (x?, y?);
-    Some(([x, y], [of_x, of_y]))
+    let read: Vec<_> = (0..dims).map(&mut axis).collect();
+    let (axes, found): (Vec<GridAxis>, Vec<Vec<Line>>) =
+        read.into_iter().collect::<Option<Vec<_>>>()?.into_iter().unzip();
+    let mut lines = <[Vec<Line>; 3]>::default();
+    lines.iter_mut().zip(found).for_each(|(own, found)| *own = found);
+    Some((axes, lines))
 }
 
-fn uniform(grid: &Record, boundary: [[Support; 2]; 2], report: &mut Report<'_>) -> Option<[GridAxis; 2]> {
+fn uniform(grid: &Record, boundary: [[Support; 2]; 3], dims: usize, report: &mut Report<'_>) -> Option<Vec<GridAxis>> {
     for key in ["lower", "upper"] {
         if !grid.gives(key) {
             report.error(grid.origin, &grid.path_of(key), "missing; it is needed with `cell`");
         }
     }
-    let (lower, upper) = (grid.pair("lower")?, grid.pair("upper")?);
+    let (lower, upper) = (grid.vector("lower")?, grid.vector("upper")?);
     let cell = match *grid.numbers("cell")? {
-        [both] => [both, both],
-        [x, y] => [x, y],
+        [all] => [all; 3],
+        [x, y] => [x, y, y],
+        [x, y, z] => [x, y, z],
         _ => return None,
     };
     let mut axis = |number: usize| {
@@ -105,8 +120,8 @@ fn uniform(grid: &Record, boundary: [[Support; 2]; 2], report: &mut Report<'_>) 
         }
         Faces { grid, number, supports: boundary[number] }.cells(lower[number], upper[number], cell[number], report)
     };
-    let (x, y) = (axis(0), axis(1));
-    Some([x?, y?])
+    let read: Vec<Option<GridAxis>> = (0..dims).map(&mut axis).collect();
+    read.into_iter().collect()
 }
 
 /// The two faces of an axis.

@@ -1,13 +1,13 @@
 //! Histories and the checks of their columns.
 
 use super::{flow, place};
-use crate::case::{Body, Check, Column, Counted, History, NamedMaterial, Quantity, Support};
+use crate::case::{Body, Check, Column, Counted, Face, History, NamedMaterial, Quantity, Support};
 use crate::grid::GridSpec;
 use crate::nearest::hint;
 use crate::record::Record;
 use crate::report::{Report, shortened};
 use crate::unit::Dimension;
-use crate::words::{Measurement, Side, Word};
+use crate::words::{Geometry, Measurement, Side, Word};
 use bsmpm::model::Regime;
 use std::collections::HashSet;
 
@@ -197,7 +197,7 @@ fn quantity(
             fixed: record.gives("fixed") && record.flag("fixed")?,
         },
         Measurement::Moment | Measurement::Work => return None,
-        Measurement::Reaction => Quantity::Reaction { face: record.word::<Side>("face")?.into() },
+        Measurement::Reaction => Quantity::Reaction { face: face(record, root, report)? },
         Measurement::Displacement => Quantity::Displacement { at: at(record, grid, report)? },
         Measurement::Velocity => Quantity::Velocity { at: at(record, grid, report)?, surface: at_surface(record)? },
         Measurement::Stress => Quantity::Stress { at: at(record, grid, report)?, surface: at_surface(record)? },
@@ -218,10 +218,10 @@ fn quantity(
         Measurement::FootingForce => Quantity::FootingForce,
         Measurement::Penetration => Quantity::Penetration,
         Measurement::Slip => Quantity::Slip,
-        Measurement::Contact => Quantity::Contact { face: record.word::<Side>("face")?.into() },
-        Measurement::Gap => Quantity::Gap { face: record.word::<Side>("face")?.into() },
-        Measurement::SlipRate => Quantity::SlipRate { face: record.word::<Side>("face")?.into() },
-        Measurement::FrictionPower => Quantity::FrictionPower { face: record.word::<Side>("face")?.into() },
+        Measurement::Contact => Quantity::Contact { face: face(record, root, report)? },
+        Measurement::Gap => Quantity::Gap { face: face(record, root, report)? },
+        Measurement::SlipRate => Quantity::SlipRate { face: face(record, root, report)? },
+        Measurement::FrictionPower => Quantity::FrictionPower { face: face(record, root, report)? },
         Measurement::Energy => Quantity::Energy,
         Measurement::RigidForce
         | Measurement::RigidMoment
@@ -312,6 +312,16 @@ pub(super) fn ends(record: &Record, grid: Option<&GridSpec>, report: &mut Report
     Some(ends)
 }
 
+/// The face of a history.
+fn face(record: &Record, root: &Record, report: &mut Report<'_>) -> Option<Face> {
+    let (side, geometry) = (record.word::<Side>("face")?, root.word::<Geometry>("geometry")?);
+    let face = Face::of(side, geometry);
+    if face.is_none() {
+        record.error("face", format!("a grid in {geometry} has no face \"{side}\""), report);
+    }
+    face
+}
+
 fn at_surface(record: &Record) -> Option<bool> {
     if record.gives("surface") { record.flag("surface") } else { Some(false) }
 }
@@ -330,25 +340,29 @@ fn at_x(record: &Record, grid: Option<&GridSpec>, report: &mut Report<'_>) -> Op
 }
 
 /// A box that has something in common with the grid.
-fn within(record: &Record, grid: Option<&GridSpec>, report: &mut Report<'_>) -> Option<[[f64; 2]; 2]> {
-    let (lower, upper) = (record.pair("lower")?, record.pair("upper")?);
-    if (0..2).any(|axis| lower[axis] >= upper[axis]) {
-        record.error("upper", format!("{upper:?} is not above lower = {lower:?}: the box is empty"), report);
-    }
+fn within(record: &Record, grid: Option<&GridSpec>, report: &mut Report<'_>) -> Option<[[f64; 3]; 2]> {
+    let (lower, upper) = (record.vector("lower")?, record.vector("upper")?);
     if let Some(grid) = grid {
+        let axes = grid.dims();
+        let (low, high) = (&lower[..axes], &upper[..axes]);
+        if (0..axes).any(|axis| lower[axis] >= upper[axis]) {
+            record.error("upper", format!("{high:?} is not above lower = {low:?}: the box is empty"), report);
+        }
         let (start, end) = (grid.lower(), grid.upper());
-        if (0..2).any(|axis| upper[axis] <= start[axis] || lower[axis] >= end[axis]) {
-            report.error(record.origin, &record.path, format!("it is outside the grid, {start:?} to {end:?}"));
+        if (0..axes).any(|axis| upper[axis] <= start[axis] || lower[axis] >= end[axis]) {
+            let message = format!("it is outside the grid, {:?} to {:?}", &start[..axes], &end[..axes]);
+            report.error(record.origin, &record.path, message);
         }
     }
     Some([lower, upper])
 }
 
-fn at(record: &Record, grid: Option<&GridSpec>, report: &mut Report<'_>) -> Option<[f64; 2]> {
-    let at = record.pair("at")?;
+fn at(record: &Record, grid: Option<&GridSpec>, report: &mut Report<'_>) -> Option<[f64; 3]> {
+    let at = record.vector("at")?;
     if let Some(grid) = grid {
-        let (lower, upper) = (grid.lower(), grid.upper());
-        if (0..2).any(|axis| at[axis] < lower[axis] || at[axis] > upper[axis]) {
+        let (axes, lower, upper) = (grid.dims(), grid.lower(), grid.upper());
+        if (0..axes).any(|axis| at[axis] < lower[axis] || at[axis] > upper[axis]) {
+            let (at, lower, upper) = (&at[..axes], &lower[..axes], &upper[..axes]);
             record.error("at", format!("{at:?} is outside the grid, {lower:?} to {upper:?}"), report);
         }
     }

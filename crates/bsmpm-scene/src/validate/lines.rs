@@ -32,8 +32,8 @@ const NAMES: [&str; 2] = ["x", "y"];
 
 /// Adds the lines to a case's grid, tells where and why, and warns of places where none can be.
 pub(super) fn place(case: &mut Case, record: &Record, report: &mut Report<'_>) {
-    if case.grid.order == 1 {
-        return; // Every grid line is one.
+    if case.grid.order == 1 || case.grid.dims() == 3 {
+        return; // Every grid line is one; of a solid none is placed, see `solid`.
     }
     let mut found = FoundLine::default();
     interfaces(case, &mut found);

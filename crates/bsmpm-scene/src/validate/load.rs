@@ -7,7 +7,7 @@ use crate::case::{Acting, Body, Case, Gravity, Initial, LoadedLine, NamedMateria
 use crate::record::Record;
 use crate::report::Report;
 use crate::schema::LawName;
-use crate::words::{Settled, Start};
+use crate::words::{Geometry, Settled, Start};
 use bsmpm::material::Profile;
 use bsmpm::model::Regime;
 
@@ -211,8 +211,10 @@ pub(super) fn initial(
             Start::Elastic => Initial::Elastic,
         });
     }
-    if let Some(gravity) = gravity.filter(|gravity| gravity.acceleration[0] != 0.0 || gravity.acceleration[1] >= 0.0) {
-        let message = format!("{:?} is not straight down, which a state by k0 needs", gravity.acceleration);
+    let dims = root.word::<Geometry>("geometry")?.dims();
+    let is_level = |gravity: &&Gravity| gravity.acceleration[..dims - 1].iter().all(|along| *along == 0.0);
+    if let Some(gravity) = gravity.filter(|of| !is_level(of) || of.acceleration[dims - 1] >= 0.0) {
+        let message = format!("{:?} is not straight down, which a state by k0 needs", &gravity.acceleration[..dims]);
         root.record("gravity")?.error("acceleration", message, report);
     }
     at_rest(root, record, bodies?, report).map(Initial::AtRest)

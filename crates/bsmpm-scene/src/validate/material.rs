@@ -120,10 +120,12 @@ impl Layer {
         let (grid, bodies) = (around.grid?, around.bodies?);
         let exchanges = || around.stages.unwrap_or_default().iter().flat_map(|stage| &stage.materials);
         let follows = |own: usize| own == number || exchanges().any(|exchange| *exchange == (own, number));
-        let made = bodies.iter().filter(|body| follows(body.material)).map(Body::bounds);
-        let found = made.reduce(|[a, b], [c, d]| [[0.0, a[1].min(c[1])], [0.0, b[1].max(d[1])]]);
-        let [lower, upper] = found.unwrap_or([grid.lower(), grid.upper()]);
-        Some(Self { heights: lower[1]..upper[1], base: grid.lower()[1] })
+        let up = grid.dims() - 1;
+        let made = bodies.iter().filter(|body| follows(body.material)).map(|body| body.region.corners());
+        let made = made.map(|corners| corners.map(|corner| corner[up]));
+        let found = made.reduce(|[a, b], [c, d]| [a.min(c), b.max(d)]);
+        let [lower, upper] = found.unwrap_or([grid.lower(), grid.upper()].map(|corner| corner[up]));
+        Some(Self { heights: lower..upper, base: grid.lower()[up] })
     }
 
     /// An error where a parameter that varies leaves its range; what does not has been held against it already.

@@ -81,7 +81,7 @@ fn timed(case: &Case, record: &Record, report: &mut Report<'_>) {
 
 /// A quasi-static body that nothing holds against a translation has no equilibrium: the stiffness is singular.
 fn held(case: &Case, record: &Record, report: &mut Report<'_>) {
-    for (component, name) in ["x", "y"].into_iter().enumerate() {
+    for (component, name) in ["x", "y", "z"].into_iter().enumerate().take(case.grid.dims()) {
         if !holds(case, component) {
             let message = format!(
                 "nothing holds the bodies along {name}: no fixed face, roller or face in contact that a body reaches prescribes \
@@ -190,7 +190,7 @@ fn holds(case: &Case, component: usize) -> bool {
     if case.geometry == Geometry::Axisymmetric && component == 0 {
         return true;
     }
-    let mut faces = [(0, false), (0, true), (1, false), (1, true)].into_iter();
+    let mut faces = (0..case.grid.dims()).flat_map(|axis| [(axis, false), (axis, true)]);
     faces.any(|(axis, upper)| holds(axis, upper) && reached(case, axis, upper)) || held_by_strip(case, component)
 }
 

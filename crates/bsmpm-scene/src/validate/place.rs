@@ -15,12 +15,12 @@ const DIRECTIONS: usize = 16;
 const DISTANCES: [f64; 3] = [0.02, 0.5, 1.0];
 
 /// Says that a place lies outside the grid, if it does.
-pub(super) fn beyond(grid: &GridSpec, at: [f64; 2]) -> Option<String> {
+pub(super) fn beyond<const D: usize>(grid: &GridSpec, at: [f64; D]) -> Option<String> {
     let (lower, upper) = (grid.lower(), grid.upper());
-    (0..2).find_map(|axis| {
+    (0..D).find_map(|axis| {
         let spacing = f64::EPSILON * lower[axis].abs().max(upper[axis].abs());
         let slack = ROUNDING * grid.axes[axis].shortest() + 4.0 * spacing;
-        let name = ["x", "y"][axis];
+        let name = ["x", "y", "z"][axis];
         if at[axis] < lower[axis] - slack {
             return Some(format!("{} is outside the grid, which starts at {name} = {}", at[axis], lower[axis]));
         }

@@ -1,5 +1,9 @@
 //! Shapes of bodies and of what is cut out of them.
 
+mod solid;
+
+pub(super) use solid::key;
+
 use super::place;
 use crate::case::RigidShape;
 use crate::error::Origin;
@@ -7,6 +11,7 @@ use crate::grid::GridSpec;
 use crate::record::Record;
 use crate::region::{self, Edge, Outline, PolygonFault, Region};
 use crate::report::Report;
+use crate::words::Geometry;
 use bsmpm::boundary::rigid;
 
 /// A shape as it is written, m in the case's coordinates.
@@ -47,10 +52,13 @@ impl BodyShape {
 
 /// What a body fills, with `points_per_cell` along an axis; place and size are checked only if the grid is valid.
 pub(super) fn region(
-    body: &Record,
+    (body, geometry): (&Record, Geometry),
     (grid, points_per_cell): (Option<&GridSpec>, Option<usize>),
     report: &mut Report<'_>,
 ) -> Option<Region> {
+    if geometry == Geometry::Solid {
+        return solid::region(body, (grid, points_per_cell), report);
+    }
     let whole = read(body, report);
     let cut: Option<Vec<BodyShape>> = body.records("subtract").iter().map(|record| read(record, report)).collect();
     let (whole, cut) = (whole?, cut?);
@@ -63,7 +71,7 @@ pub(super) fn region(
         return Some(Region::Box { lower: *lower, upper: *upper });
     }
     let shapes = std::iter::once(&whole).chain(&cut).enumerate();
-    let edges = shapes.flat_map(|(number, shape)| shape.edges(grid.lower(), number)).collect();
+    let edges = shapes.flat_map(|(number, shape)| shape.edges(grid.corner(), number)).collect();
     match Outline::new(edges, 1 + cut.len(), (whole.bounds(), whole.area()), (grid, points_per_cell?)) {
         Ok(outline) => Some(Region::Outline(outline)),
         Err(message) => {
@@ -71,11 +79,6 @@ pub(super) fn region(
             None
         }
     }
-}
-
-/// The key that gives a body's or a cut's shape.
-pub(super) fn key(record: &Record) -> &'static str {
-    ["polygon", "circle"].into_iter().find(|key| record.gives(key)).unwrap_or("box")
 }
 
 /// The shape of a rigid body, which may reach beyond the grid.
@@ -102,7 +105,7 @@ fn read(record: &Record, report: &mut Report<'_>) -> Option<BodyShape> {
         return Some(BodyShape::Circle { center: circle.pair("center")?, radius: circle.number("radius")? });
     }
     let shape = record.record("box")?;
-    let (lower, upper) = (shape.pair("lower")?, shape.pair("upper")?);
+    let [lower, upper] = [shape.vector("lower")?, shape.vector("upper")?].map(|[x, y, _]| [x, y]);
     if lower[0] >= upper[0] || lower[1] >= upper[1] {
         shape.error("upper", format!("{upper:?} is not above lower = {lower:?}: the body is empty"), report);
         return None;

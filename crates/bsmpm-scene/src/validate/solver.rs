@@ -21,7 +21,7 @@ pub(super) fn read(
     let quadrature = weights(solver, regime, grid.map(|grid| grid.order), report);
     let (kind, background) = background(solver, regime, grid.map(|grid| grid.order), report);
     let poisson = materials.unwrap_or_default().iter().map(|material| material.material.elastic().poisson);
-    let unknowns = 2 * grid.map_or(0, estimate::nodes);
+    let unknowns = grid.map_or(0, |grid| grid.dims() as u128 * estimate::nodes(grid));
     let size = Size { unknowns, poisson: poisson.fold(0.0, f64::max), reproducible: solver.flag("reproducible")? };
     let linear = match solver.record("linear") {
         Some(linear) => read_linear(linear, size, report),

@@ -1,7 +1,7 @@
 //! Stages: times that follow each other, bodies that can be removed and placed then, and what must not lose its body.
 
 use super::{place, reduction, strip};
-use crate::case::{Acting, Body, Case, FaceSupport, LoadedLine, Quantity, Site, Stage, Support};
+use crate::case::{Acting, Body, Case, Face, FaceSupport, LoadedLine, Quantity, Site, Stage, Support};
 use crate::nearest::hint;
 use crate::record::Record;
 use crate::report::{Report, shortened};
@@ -123,11 +123,18 @@ fn named<T: Copy>(
     found.into_iter().collect()
 }
 
+/// A place in the plane.
+fn flat([x, y, _]: [f64; 3]) -> [f64; 2] {
+    [x, y]
+}
+
 /// The faces of the grid that a stage changes.
 fn faces((record, factor): (&Record, Option<f64>), root: &Record, report: &mut Report<'_>) -> Option<Vec<FaceSupport>> {
     let Some(boundary) = record.record("boundary") else { return Some(Vec::new()) };
     let mut found = Vec::new();
-    for side in Side::ALL.into_iter().flatten().filter(|side| boundary.gives(side.word())) {
+    let axes = Side::ALL.iter().enumerate();
+    let sides = axes.flat_map(|(axis, sides)| [(sides[0], axis, false), (sides[1], axis, true)]);
+    for (side, axis, upper) in sides.filter(|(side, ..)| boundary.gives(side.word())) {
         let (support, contact) = (super::support(boundary, side)?, super::contact(boundary, side, factor, report)?);
         if matches!(support, Support::Absorbing | Support::FreeField) {
             boundary.error(side.word(), "holds what [initial] has found there: only from the start on", report);
@@ -137,7 +144,7 @@ fn faces((record, factor): (&Record, Option<f64>), root: &Record, report: &mut R
         {
             boundary.error(side.word(), format!("{} moves that face; leave it free", motion.path), report);
         }
-        found.push(FaceSupport { face: side.into(), support, contact });
+        found.push(FaceSupport { face: Face { axis, upper }, support, contact });
     }
     Some(found)
 }
@@ -309,8 +316,8 @@ fn follow(case: &mut Case, lasting: &[Body]) {
             | Quantity::PorePressure { at }
             | Quantity::Velocity { at, .. }
             | Quantity::Stress { at, .. } => {
-                history.lasts = place::at_body(lasting, &case.grid, at);
-                places.extend((!place::at_body(&first, &case.grid, at)).then_some((number, at)));
+                history.lasts = place::at_body(lasting, &case.grid, flat(at));
+                places.extend((!place::at_body(&first, &case.grid, flat(at))).then_some((number, at)));
             }
             _ => {}
         }
@@ -318,7 +325,7 @@ fn follow(case: &mut Case, lasting: &[Body]) {
     for stage in &mut case.stages {
         let placed: Vec<Body> = stage.add.iter().map(|&body| case.bodies[body].clone()).collect();
         places.retain(|&(number, at)| {
-            let comes = place::at_body(&placed, &case.grid, at);
+            let comes = place::at_body(&placed, &case.grid, flat(at));
             stage.follows.extend(comes.then_some(number));
             !comes
         });

@@ -16,7 +16,7 @@ const NOTHING: f64 = 1e-12;
 pub(super) struct AroundStrip<'a> {
     pub(super) grid: Option<&'a GridSpec>,
     pub(super) bodies: Option<&'a [Body]>,
-    pub(super) boundary: Option<[[Support; 2]; 2]>,
+    pub(super) boundary: Option<[[Support; 2]; 3]>,
     /// of the strength reduction
     pub(super) factor: Option<f64>,
     pub(super) end: Option<f64>,
@@ -154,15 +154,14 @@ fn site(record: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Op
         starts_at_body(record, "from", [from, to], around, report);
         return Some(Site::Segment { from, to });
     }
-    let side: Side = record.word("face")?;
-    let face = Face::from(side);
+    let (side, face) = (record.word::<Side>("face")?, super::flow::face_in_plane(record, report)?);
     let support = around.boundary?[face.axis][usize::from(face.upper)];
     if support != Support::Free {
         let message = format!("[boundary] holds \"{side}\" too; leave it free there");
         record.error("face", message, report);
         return None;
     }
-    let (mut from, mut to) = (around.grid?.lower(), around.grid?.upper());
+    let [mut from, mut to] = [around.grid?.lower(), around.grid?.upper()].map(|[x, y, _]| [x, y]);
     let at = if face.upper { to[face.axis] } else { from[face.axis] };
     (from[face.axis], to[face.axis]) = (at, at);
     starts_at_body(record, "face", [from, to], around, report);

@@ -40,7 +40,7 @@ pub(super) fn read(
     if !root.gives("gravity") {
         report.error(record.origin, &record.path, "water weighs nothing without [gravity]");
     }
-    let [across, along] = gravity?.acceleration;
+    let [across, along, _] = gravity?.acceleration;
     if across != 0.0 || along >= 0.0 {
         let message = format!("[{across:?}, {along:?}] is not straight down, which still water needs");
         root.record("gravity")?.error("acceleration", message, report);

@@ -116,6 +116,9 @@ choice! {
 const VECTOR: &[(&str, &str)] = &[("-x", "along x"), ("-y", "along y")];
 const STRESS: &[(&str, &str)] =
     &[("-xx", "normal to x"), ("-yy", "normal to y"), ("-zz", "out of the plane"), ("-xy", "shear")];
+const VECTOR_IN_SPACE: &[(&str, &str)] = &[VECTOR[0], VECTOR[1], ("-z", "along z")];
+const STRESS_IN_SPACE: &[(&str, &str)] =
+    &[STRESS[0], STRESS[1], ("-zz", "normal to z"), ("-xy", "shear"), ("-yz", "shear"), ("-xz", "shear")];
 const SECTION: &[(&str, &str)] = &[
     ("-n", "normal force, positive in tension"),
     ("-q", "shear force: on what is on the left of the line, along it"),
@@ -193,6 +196,15 @@ impl Measurement {
             Self::Mass | Self::Outflow | Self::FootingPressure | Self::FootingForce => &[("", "")],
             Self::Penetration | Self::Slip | Self::PorePressure | Self::ExcessPressure | Self::Porosity => &[("", "")],
             Self::WaterOutflow | Self::WaterBalance => &[("", "")],
+        }
+    }
+
+    /// The same along so many axes.
+    pub fn columns_in(self, dims: usize) -> &'static [(&'static str, &'static str)] {
+        match (dims, self) {
+            (3, Self::Stress | Self::MeanStress) => STRESS_IN_SPACE,
+            (3, of) if of.columns() == VECTOR => VECTOR_IN_SPACE,
+            (_, of) => of.columns(),
         }
     }
 

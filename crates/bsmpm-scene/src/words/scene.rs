@@ -10,15 +10,22 @@ choice! {
         /// Rotational symmetry about the axis x = 0, without torsion: x is the radius, y is along the axis, zz in the
         /// direction around it; forces, masses and energies in histories are of the whole circle.
         Axisymmetric = "axisymmetric",
-    } later ["solid"]
+        /// Three dimensions: z is the vertical.
+        Solid = "solid",
+    }
 }
 
 impl Geometry {
+    /// Number of axes; the last one is the vertical.
+    pub fn dims(self) -> usize {
+        if self == Self::Solid { 3 } else { 2 }
+    }
+
     /// What the physics' extensive numbers, of a metre of thickness or of a radian, are multiplied with to be of what
     /// tables tell.
     pub fn whole(self) -> f64 {
         match self {
-            Self::PlaneStrain => 1.0,
+            Self::PlaneStrain | Self::Solid => 1.0,
             Self::Axisymmetric => std::f64::consts::TAU,
         }
     }
@@ -34,13 +41,14 @@ impl Geometry {
             "m3/m" => "m3",
             _ => return None,
         };
-        (self == Self::Axisymmetric).then_some(whole)
+        (self != Self::PlaneStrain).then_some(whole)
     }
 
     /// Unit of a point's volume in frames.
     pub fn volume_unit(self) -> &'static str {
         match self {
             Self::PlaneStrain => "m2",
+            Self::Solid => "m3",
             Self::Axisymmetric => "m3/rad",
         }
     }
@@ -158,16 +166,39 @@ choice! {
         Left = "left",
         /// At the highest x.
         Right = "right",
-        /// At the lowest y.
+        /// At the lowest y, of a solid z.
         Bottom = "bottom",
-        /// At the highest y.
+        /// At the highest y, of a solid z.
         Top = "top",
+        /// At the lowest y of a solid.
+        Front = "front",
+        /// At the highest y of a solid.
+        Back = "back",
     }
 }
 
 impl Side {
-    /// Per axis the lower and the upper one.
+    /// Per axis of a plane the lower and the upper one.
     pub const ALL: [[Self; 2]; 2] = [[Self::Left, Self::Right], [Self::Bottom, Self::Top]];
+    /// Per axis of a solid.
+    pub const OF_SOLID: [[Self; 2]; 3] = [Self::ALL[0], [Self::Front, Self::Back], Self::ALL[1]];
+
+    /// Per axis of a geometry the lower and the upper one.
+    pub fn of(geometry: Geometry) -> &'static [[Self; 2]] {
+        if geometry == Geometry::Solid { &Self::OF_SOLID } else { &Self::ALL }
+    }
+}
+
+choice! {
+    /// An axis of a solid.
+    pub enum Axis {
+        /// Across.
+        X = "x",
+        /// Backwards.
+        Y = "y",
+        /// Upwards.
+        Z = "z",
+    }
 }
 
 choice! {

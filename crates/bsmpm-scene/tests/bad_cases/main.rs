@@ -9,6 +9,7 @@ mod matrix;
 mod page;
 mod rigid;
 mod rows;
+mod solid;
 mod stages;
 mod texts;
 mod water;
@@ -20,6 +21,7 @@ const STATIC: &str = include_str!("static.toml");
 const RUBBING: &str = include_str!("rubbing.toml");
 const SEEPING: &str = include_str!("seeping.toml");
 const ROUND: &str = include_str!("round.toml");
+const SOLID: &str = include_str!("solid.toml");
 const WET: &str = include_str!("wet.toml");
 
 /// One malformed case: `find` in the base becomes `put`, and an error must say `says` of `key`, `moved` lines below.
@@ -71,7 +73,7 @@ fn verify_all(base: &str, rows: &[Row]) {
 
 #[test]
 fn the_bases_are_valid() {
-    for base in [DYNAMIC, STATIC, RUBBING, SEEPING, ROUND, WET] {
+    for base in [DYNAMIC, STATIC, RUBBING, SEEPING, ROUND, SOLID, WET] {
         Case::from_text("case.toml", base, &[]).unwrap_or_else(|errors| panic!("{errors:#?}"));
     }
 }
@@ -140,6 +142,12 @@ fn still_water() {
     verify_all(DYNAMIC, water::SHAKEN);
     verify_all(WET, water::RATIO_AND_WATER);
     verify_all(STATIC, water::RATIO);
+}
+
+#[test]
+fn three_dimensions() {
+    verify_all(SOLID, solid::SOLID);
+    verify_all(STATIC, solid::IN_A_PLANE);
 }
 
 #[test]

@@ -350,8 +350,4 @@ pub const QUASI_STATIC: &[Row] = &[
 ];
 
 /// What is reserved and not done yet.
-pub const LATER: &[(&str, &str, &str)] = &[
-    ("geometry = \"plane-strain\"", "geometry = \"solid\"", "geometry"),
-    ("format = \"vtu\"", "format = \"vtkhdf\"", "output.format"),
-    ("top    = \"fixed\"", "front = \"free\"", "boundary.front"),
-];
+pub const LATER: &[(&str, &str, &str)] = &[("format = \"vtu\"", "format = \"vtkhdf\"", "output.format")];

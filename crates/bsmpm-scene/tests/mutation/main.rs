@@ -3,9 +3,9 @@
 
 mod written;
 
-use bsmpm::kinematics::PlaneStrain;
+use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
 use bsmpm_scene::schema::{Kind, Presence, ROOT, Table};
-use bsmpm_scene::{Case, Error, Place, seed};
+use bsmpm_scene::{Case, Error, Geometry, Place, seed};
 use std::collections::HashSet;
 use written::{STRESS, Written};
 
@@ -13,6 +13,7 @@ const FULL: &str = include_str!("../full.toml");
 const STATIC: &str = include_str!("../bad_cases/static.toml");
 const RUBBING: &str = include_str!("../bad_cases/rubbing.toml");
 const SEEPING: &str = include_str!("../bad_cases/seeping.toml");
+const SOLID: &str = include_str!("../bad_cases/solid.toml");
 
 /// Values that a key may be given by mistake.
 const VALUES: [&str; 22] = [
@@ -166,6 +167,9 @@ fn bases() -> Vec<String> {
     let ratio = STATIC.replacen("poisson = 0.3", "poisson = 0.3\nunit_weight = \"19 kN/m3\"\nru = 0.3", 1);
     bases.push(format!("{ratio}\n[gravity]\nacceleration = [0.0, -9.81]\n"));
     bases.push(SUCTION.to_owned());
+    bases.push(SOLID.to_owned());
+    let knots = "knots = { x = [0.0, 2.0, 4.0], y = [0.0, 1.0, 3.0], z = [0.0, 1.0, 1.0, 3.0] }";
+    bases.push(SOLID.replacen("cell  = [0.5, 1.0, 0.5]", knots, 1));
     for changes in OTHERWISE {
         let mut text = FULL.to_owned();
         for (part, by) in changes {
@@ -190,10 +194,17 @@ fn read(text: &str) -> Result<Case, Vec<Error>> {
     })?;
     let counted: u64 = case.points_by_column().iter().sum();
     assert!(case.estimate().points == case.points() && case.points() == counted && counted > 0);
-    for point in seed::<PlaneStrain, 2>(&case, 0..case.grid.axes[0].cells()).take(20) {
-        assert!(point.volume > 0.0 && point.mass >= 0.0 && (point.x.norm() + point.v.norm() + point.mass).is_finite());
+    match case.geometry {
+        Geometry::Solid => seeded::<Solid, 3>(&case),
+        _ => seeded::<PlaneStrain, 2>(&case),
     }
     Ok(case)
+}
+
+fn seeded<K: Kinematics<D>, const D: usize>(case: &Case) {
+    for point in seed::<K, D>(case, 0..case.grid.axes[0].cells()).take(20) {
+        assert!(point.volume > 0.0 && point.mass >= 0.0 && (point.x.norm() + point.v.norm() + point.mass).is_finite());
+    }
 }
 
 fn line(text: &str, at: usize) -> usize {

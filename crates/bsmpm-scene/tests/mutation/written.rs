@@ -83,6 +83,7 @@ fn below(kind: &'static Kind, value: &DeValue<'_>, path: &str, text: &str, found
         }
         (
             Kind::Pair(dimension, range)
+            | Kind::Vector(dimension, range)
             | Kind::PairProfile(dimension, range, _)
             | Kind::Either(dimension, range)
             | Kind::List(dimension, range),
@@ -117,6 +118,7 @@ impl Fits {
             Kind::Gradient(dimension) => !is_number(put, *dimension, &Range::ANY) || is_text,
             Kind::Measure => !is_number(put, Dimension::Number, &Range::ANY) && put != STRESS,
             Kind::Pair(..) | Kind::GradientPair(_) => true,
+            Kind::Vector(..) => put != "[1, 2, 3]",
             Kind::PairProfile(..) => put != "{}",
             Kind::List(dimension, _) if put == "[1, 2, 3]" => dimension.units().next().is_none(),
             Kind::List(..) | Kind::Rows(_) => !is_list || (put != "[]" && matches!(kind, Kind::Rows(_))),

@@ -47,7 +47,7 @@ fn lists_are_reached_by_index_and_absent_tables_are_made() {
     let case = valid(FULL, &["body.0.points_per_cell=5", "grid.upper.1=4.0", "body.2.box.upper.0=3"]);
     assert_eq!((case.bodies[0].points_per_cell, case.grid.upper()[1], case.bodies[2].bounds()[1][0]), (5, 4.0, 3.0));
     let case = valid(STATIC, &["gravity.acceleration=[0, -9.81]", "material.soil.density=2000"]);
-    assert_eq!(case.gravity.unwrap().acceleration, [0.0, -9.81]);
+    assert_eq!(case.gravity.unwrap().acceleration, [0.0, -9.81, 0.0]);
     let case =
         valid(STATIC, &["history.0.quantity=height", "history.1.quantity=mass", "check.0={quantity=\"mass\", min=0}"]);
     assert_eq!((case.histories.len(), case.checks[0].min), (2, Some(0.0)));
@@ -148,8 +148,8 @@ fn the_full_case_in_si() {
     let Material::MohrCoulomb(clay) = &case.materials[1].material else { panic!() };
     assert_eq!(clay.parameters(), [0.0, 0.0, 1.6e4]);
     assert!(matches!(case.materials[2].material, Material::Hencky(_)));
-    assert_eq!(case.bodies[2].velocity, Some([0.0, -1.0]));
-    assert_eq!(case.boundary, [[Support::Roller, Support::Free], [Support::Fixed; 2]]);
+    assert_eq!(case.bodies[2].velocity, Some([0.0, -1.0, 0.0]));
+    assert_eq!(case.boundary, [[Support::Roller, Support::Free], [Support::Fixed; 2], [Support::Free; 2]]);
     assert_eq!((case.solver.background, case.solver.background_cells), (0.0, Extent::Occupied));
     assert_eq!(case.solver.background_kind, BackgroundKind::Strain);
     assert_eq!(case.output.times, [0.25, 0.75]);
@@ -180,7 +180,10 @@ fn the_full_case_in_si() {
     ];
     assert_eq!(columns, expected);
     assert_eq!(case.histories[6].quantity, Quantity::CentreOfMass { of: Counted::Material(0) });
-    assert_eq!(case.histories[4].quantity, Quantity::PressureNoise { within: Some([[0.0, 0.0], [2.0, 1.0]]) });
+    assert_eq!(
+        case.histories[4].quantity,
+        Quantity::PressureNoise { within: Some([[0.0, 0.0, 0.0], [2.0, 1.0, 0.0]]) }
+    );
     assert_eq!((case.checks[0].at, case.checks[0].max, case.checks[1].at), (0.5, Some(4.0), 1.0));
     let told =
         |what: &str| case.warnings.iter().filter(|told| told.starts_with("rigid.") && told.contains(what)).count();
@@ -348,9 +351,9 @@ fn strips_and_loads_start_within_half_a_spacing_of_points() {
 #[test]
 fn free_faces_move_outward() {
     let case = valid(STATIC, &["grid.upper=[2.5, 1.9]"]);
-    assert_eq!(case.grid.upper(), [3.0, 2.0]);
+    assert_eq!(case.grid.upper(), [3.0, 2.0, 0.0]);
     let case = valid(STATIC, &["grid.upper=[2.5, 2]", "boundary.right=roller"]);
-    assert_eq!((case.grid.lower(), case.grid.upper()), ([-0.5, 0.0], [2.5, 2.0]));
+    assert_eq!((case.grid.lower(), case.grid.upper()), ([-0.5, 0.0, 0.0], [2.5, 2.0, 0.0]));
     assert!(case.notes.iter().any(|note| note.key == "grid.lower.0" && note.value == "-0.5"));
 }
 

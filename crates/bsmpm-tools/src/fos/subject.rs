@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use bsmpm::model::Regime;
 use bsmpm::water::ambient::Ambient;
 use bsmpm_scene::words::Word;
-use bsmpm_scene::{Acting, Case, Counted, GridAxis, MotionPath, Quantity, Traction};
+use bsmpm_scene::{Acting, Case, Counted, MotionPath, Quantity, Traction};
 use serde::Serialize;
 
 use super::search::{ELASTIC, LEAST};
@@ -345,7 +345,7 @@ fn is_moved(case: &Case) -> bool {
 }
 
 fn is_loaded(case: &Case) -> bool {
-    let falls = case.gravity.as_ref().is_some_and(|gravity| gravity.acceleration != [0.0; 2]);
+    let falls = case.gravity.as_ref().is_some_and(|gravity| gravity.acceleration != [0.0; 3]);
     let weighs = case.bodies.iter().any(|body| case.materials[body.material].density.is_some());
     let is_pushed = case.tractions.iter().any(|traction| traction.largest() > 0.0)
         || case.point_loads.iter().any(|load| load.force != [0.0; 2]);
@@ -363,7 +363,7 @@ impl Conditions {
         let mut points_per_cell: Vec<usize> = case.bodies.iter().map(|body| body.points_per_cell).collect();
         points_per_cell.dedup();
         Self {
-            cell: case.grid.axes.each_ref().map(GridAxis::longest),
+            cell: [0, 1].map(|axis| case.grid.axes[axis].longest()),
             order: case.grid.order,
             points_per_cell,
             stabilisation: case.stabilisation.word().to_owned(),

@@ -59,7 +59,9 @@ impl VerifyArguments {
     /// The settings that make each grid.
     fn grids(&self, own: &Case) -> Result<Vec<Vec<String>>, Error> {
         let usage = |reason: String| Err(Error::Usage { reason });
-        let [x, y] = &own.grid.axes;
+        let [x, y] = &own.grid.axes[..] else {
+            return usage("of a solid --cells gives the three sizes".to_owned());
+        };
         let graded = [x, y].iter().any(|axis| matches!(axis, GridAxis::Graded(_)));
         if let Some(cells) = &self.cells {
             let cells = split(cells);
@@ -201,7 +203,7 @@ mod tests {
         assert!(found.orders.iter().all(|order| order.case.bodies[0].points_per_cell == 2));
         let knots_moved = ["--set", "grid.knots.x=[-0.1, 0.3, 0.55]", "--set", "grid.knots.y=[-0.2, 0.05, 0.1025]"];
         let found = grids(&[&["--set", "grid.lower=[-0.1, -0.2]"][..], &knots_moved].concat()).unwrap();
-        assert!(found.orders.iter().all(|order| order.case.grid.lower() == [-0.1, -0.2]));
+        assert!(found.orders.iter().all(|order| order.case.grid.lower() == [-0.1, -0.2, 0.0]));
         assert_eq!(found.orders[2].case.grid, found.own.grid);
         assert_eq!(grids(&[&knots[..], &["--ratio", "1.5"]].concat()).err().unwrap().exit_code(), 2);
         let line = Line::parse_from(["verify-case", "case.toml"]);

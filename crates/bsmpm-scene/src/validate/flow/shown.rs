@@ -239,7 +239,7 @@ fn places(drain: &Drain, grid: &GridSpec) -> Vec<[f64; 2]> {
             let mut ends = [grid.lower(), grid.upper()];
             let at = ends[usize::from(*upper)][*axis];
             ends.iter_mut().for_each(|end| end[*axis] = at);
-            ends.to_vec()
+            ends.map(|[x, y, _]| [x, y]).to_vec()
         }
     }
 }

@@ -1,0 +1,177 @@
+//! Shapes in space. What all of them tell is what they cover of a vertical line, which is all that points need.
+
+use super::Edge;
+use super::simple::{area, bounds};
+use super::sweep::intervals;
+use std::f64::consts::PI;
+
+/// Shape 0 of the outlines here, which have no other.
+const OUTLINE: usize = 1;
+
+/// A shape in space, m from the grid's lower corner; axis 2 is the vertical.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum SolidShape {
+    /// A cuboid along the axes.
+    Box {
+        /// lower and upper corner
+        corners: [[f64; 3]; 2],
+    },
+    /// An outline, of the other two axes in their order, between two places of an axis.
+    Prism {
+        outline: Section,
+        /// the axis
+        along: usize,
+        ends: [f64; 2],
+    },
+    Sphere {
+        center: [f64; 3],
+        radius: f64,
+    },
+    /// An outline of the radius and the height, turned about a vertical.
+    Revolved {
+        outline: Section,
+        /// the vertical's place
+        about: [f64; 2],
+    },
+}
+
+/// An outline in a plane.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Section {
+    /// of shape 0
+    pub(crate) edges: Vec<Edge>,
+    /// lower and upper corner of the rectangle around it
+    pub(crate) bounds: [[f64; 2]; 2],
+    /// m²
+    pub(crate) area: f64,
+    /// m³  of a turn about the line at 0 of its first axis
+    turned: f64,
+}
+
+impl Section {
+    /// A polygon.
+    pub(crate) fn polygon(corners: &[[f64; 2]]) -> Self {
+        // Pappus: 2 pi times the first moment, a sum of trapezoids beside the axis.
+        let pair = |k: usize| (corners[k], corners[(k + 1) % corners.len()]);
+        let beside = |([r, z], [s, w]): ([f64; 2], [f64; 2])| (w - z) * (r * r + r * s + s * s);
+        let turned = PI / 3.0 * (0..corners.len()).map(|k| beside(pair(k))).sum::<f64>().abs();
+        Self { edges: super::polygon(corners, [0.0; 2], 0), bounds: bounds(corners), area: area(corners), turned }
+    }
+
+    /// A circle.
+    pub(crate) fn circle(center: [f64; 2], radius: f64) -> Self {
+        let area = PI * radius * radius;
+        Self {
+            edges: Edge::circle(center, radius, 0).to_vec(),
+            bounds: [-radius, radius].map(|reach| center.map(|x| x + reach)),
+            area,
+            turned: 2.0 * PI * center[0].abs() * area,
+        }
+    }
+
+    fn moved(self, by: [f64; 2]) -> Self {
+        let moved = |at: [f64; 2]| [at[0] + by[0], at[1] + by[1]];
+        let edges = self.edges.into_iter().map(|edge| edge.moved(by)).collect();
+        Self { edges, bounds: self.bounds.map(moved), ..self }
+    }
+
+    /// What it covers of the line at `x`, upwards.
+    fn at(&self, x: f64) -> Vec<[f64; 2]> {
+        intervals(&self.edges, OUTLINE, x)
+    }
+}
+
+impl SolidShape {
+    /// The shape, moved by some way.
+    pub(crate) fn moved(self, by: [f64; 3]) -> Self {
+        let moved = |at: [f64; 3]| [0, 1, 2].map(|axis| at[axis] + by[axis]);
+        match self {
+            Self::Box { corners } => Self::Box { corners: corners.map(moved) },
+            Self::Prism { outline, along, ends } => {
+                let [across, up] = plane(along);
+                let outline = outline.moved([by[across], by[up]]);
+                Self::Prism { outline, along, ends: ends.map(|end| end + by[along]) }
+            }
+            Self::Sphere { center, radius } => Self::Sphere { center: moved(center), radius },
+            Self::Revolved { outline, about } => {
+                Self::Revolved { outline: outline.moved([0.0, by[2]]), about: [about[0] + by[0], about[1] + by[1]] }
+            }
+        }
+    }
+
+    /// Lower and upper corner of the smallest cuboid around it.
+    pub(crate) fn bounds(&self) -> [[f64; 3]; 2] {
+        match self {
+            Self::Box { corners } => *corners,
+            Self::Prism { outline, along, ends } => [0, 1].map(|side| {
+                let [across, up] = plane(*along);
+                let mut corner = [0.0; 3];
+                (corner[across], corner[up]) = (outline.bounds[side][0], outline.bounds[side][1]);
+                corner[*along] = ends[side];
+                corner
+            }),
+            Self::Sphere { center, radius } => [-radius, *radius].map(|reach| center.map(|x| x + reach)),
+            Self::Revolved { outline, about } => {
+                let far = outline.bounds[1][0];
+                [(0, -far), (1, far)].map(|(side, reach)| [about[0] + reach, about[1] + reach, outline.bounds[side][1]])
+            }
+        }
+    }
+
+    /// Its volume, m³.
+    pub(crate) fn volume(&self) -> f64 {
+        match self {
+            Self::Box { corners: [lower, upper] } => (0..3).map(|axis| upper[axis] - lower[axis]).product(),
+            Self::Prism { outline, ends, .. } => outline.area * (ends[1] - ends[0]),
+            Self::Sphere { radius, .. } => 4.0 / 3.0 * PI * radius.powi(3),
+            Self::Revolved { outline, .. } => outline.turned,
+        }
+    }
+
+    /// What it covers of the vertical line at a place, upwards. Lower sides belong to it, upper ones do not.
+    pub(crate) fn vertical(&self, [x, y]: [f64; 2]) -> Vec<[f64; 2]> {
+        let within = |[lower, upper]: [f64; 2], at: f64| lower <= at && at < upper;
+        match self {
+            Self::Box { corners: [lower, upper] } => {
+                let there = within([lower[0], upper[0]], x) && within([lower[1], upper[1]], y);
+                if there { vec![[lower[2], upper[2]]] } else { Vec::new() }
+            }
+            Self::Prism { outline, along: 0, ends } if within(*ends, x) => outline.at(y),
+            Self::Prism { outline, along: 1, ends } if within(*ends, y) => outline.at(x),
+            Self::Prism { outline, along: 2, ends } if outline.at(x).iter().any(|line| within(*line, y)) => vec![*ends],
+            Self::Prism { .. } => Vec::new(),
+            Self::Sphere { center, radius } => {
+                let away = (x - center[0]).hypot(y - center[1]);
+                let half = ((radius - away) * (radius + away)).max(0.0).sqrt();
+                if half > 0.0 { vec![[center[2] - half, center[2] + half]] } else { Vec::new() }
+            }
+            Self::Revolved { outline, about } => outline.at((x - about[0]).hypot(y - about[1])),
+        }
+    }
+
+    /// The outline and the ends of the same shape along an axis, if it is a prism or cuboid there.
+    pub(crate) fn along(&self, axis: usize) -> Option<(Section, [f64; 2])> {
+        match self {
+            Self::Box { corners: [lower, upper] } => {
+                let [across, up] = plane(axis);
+                let ([a, b], [c, d]) = ([lower[across], lower[up]], [upper[across], upper[up]]);
+                Some((Section::polygon(&[[a, b], [c, b], [c, d], [a, d]]), [lower[axis], upper[axis]]))
+            }
+            Self::Prism { outline, along, ends } if *along == axis => Some((outline.clone(), *ends)),
+            _ => None,
+        }
+    }
+}
+
+/// The axes beside one, in their order.
+pub(crate) const fn plane(along: usize) -> [usize; 2] {
+    [[1, 2], [0, 2], [0, 1]][along]
+}
+
+/// What is left of intervals, which ascend, where others are cut out.
+pub(crate) fn less(of: Vec<[f64; 2]>, cut: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    cut.iter().fold(of, |left, [from, to]| {
+        let pieces = left.into_iter().flat_map(|[lower, upper]| [[lower, upper.min(*from)], [lower.max(*to), upper]]);
+        pieces.filter(|[lower, upper]| lower < upper).collect()
+    })
+}

@@ -1,0 +1,322 @@
+//! What a body fills in space: a cuboid, an outline along an axis, or any shape less others.
+
+use super::cells::{CellPlace, of_cell, place};
+use super::extent::Extent;
+use super::lattice::{self, LINES};
+use super::solid::{SolidShape, less, plane};
+use super::{Edge, MOST_WORK, Outline, RegionPart, reached};
+use crate::grid::{GridAxis, GridSpec};
+use std::ops::Range;
+
+/// A shape in space, less others.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Volume {
+    origin: [f64; 3], // m  the grid's lower corner, from which shapes are measured
+    whole: SolidShape,
+    cut: Vec<SolidShape>,
+    filling: Filling,
+    volume: f64, // m³
+    tally: SlabTally,
+}
+
+/// How it is filled with points.
+#[derive(Clone, Debug, PartialEq)]
+enum Filling {
+    /// A lattice in the part of every cell that a cuboid covers.
+    Box,
+    /// The points of an outline in the plane beside an axis, a lattice in the part of every cell along it: the volumes
+    /// are exact.
+    Prism { outline: Box<Outline>, plane: GridSpec, along: usize, ends: [f64; 2] },
+    /// By vertical lines; of cells that are cut the volumes are multiplied by the factor, by which the body's is exact.
+    Lattice { scale: f64 },
+}
+
+/// Points and cells of a volume, counted once.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct SlabTally {
+    /// cells that hold points, per axis
+    pub(crate) occupied: [Range<usize>; 3],
+    /// of the first slab of cells along axis 0 in `occupied` and all later ones: number of the body's points before it;
+    /// and of all
+    pub(crate) before: Vec<u64>,
+    /// cells that hold points
+    pub(crate) cells: u64,
+}
+
+impl Volume {
+    /// The shape less others, m from the lower corner of the grid with these `axes`, with `n` points along each axis of
+    /// a cell. Says in words what makes it too costly.
+    pub(crate) fn new(whole: SolidShape, cut: Vec<SolidShape>, axes: &[GridAxis], n: usize) -> Result<Self, String> {
+        let origin = [0, 1, 2].map(|axis| axes[axis].lower());
+        let filling = Filling::of(&whole, &cut, axes, n)?;
+        let volume = whole.volume();
+        let mut made = Self { origin, whole, cut, filling, volume, tally: SlabTally::default() };
+        made.count(axes, n);
+        Ok(made)
+    }
+
+    /// Lower and upper corner of the smallest cuboid around it, m, in the case's coordinates; around the whole shape
+    /// where something is cut out.
+    pub fn bounds(&self) -> [[f64; 3]; 2] {
+        self.whole.bounds().map(|corner| [0, 1, 2].map(|axis| corner[axis] + self.origin[axis]))
+    }
+
+    /// Its volume, m³: that of its points.
+    pub fn volume(&self) -> f64 {
+        self.volume
+    }
+
+    /// Whether it is a cuboid with nothing cut out.
+    pub fn is_box(&self) -> bool {
+        self.filling == Filling::Box
+    }
+
+    pub(crate) fn tally(&self) -> &SlabTally {
+        &self.tally
+    }
+
+    /// Length of the vertical ray above `at` (m, in the case's coordinates) inside it, m.
+    pub(crate) fn above(&self, at: [f64; 3]) -> f64 {
+        let at = self.local(at);
+        self.vertical([at[0], at[1]]).into_iter().map(|[lower, upper]| (upper - lower.max(at[2])).max(0.0)).sum()
+    }
+
+    /// Whether a place lies inside, m in the case's coordinates.
+    pub(crate) fn contains(&self, at: [f64; 3]) -> bool {
+        let at = self.local(at);
+        self.vertical([at[0], at[1]]).iter().any(|[lower, upper]| *lower < at[2] && at[2] < *upper)
+    }
+
+    fn local(&self, at: [f64; 3]) -> [f64; 3] {
+        [0, 1, 2].map(|axis| at[axis] - self.origin[axis])
+    }
+
+    /// What it covers of a vertical line, from the grid's lower corner.
+    fn vertical(&self, at: [f64; 2]) -> Vec<[f64; 2]> {
+        self.cut.iter().fold(self.whole.vertical(at), |left, cut| less(left, &cut.vertical(at)))
+    }
+
+    /// Points of slab `i` of the cells along axis 0.
+    pub(crate) fn slab(&self, axes: &[GridAxis], n: usize, i: usize) -> Vec<CellPlace<3>> {
+        match &self.filling {
+            Filling::Box => self.slab_of_box(axes, n, i),
+            Filling::Prism { outline, plane, along, ends } => {
+                let extent = Extent::between(&axes[*along], *ends);
+                prism_slab((outline, plane), (*along, &extent), n, i)
+            }
+            Filling::Lattice { scale } => {
+                let scaled = |(_, cell): (usize, lattice::LatticeCell)| {
+                    let by = if cell.whole { 1.0 } else { *scale };
+                    cell.places.into_iter().map(move |at| CellPlace { area: by * at.area, ..at })
+                };
+                self.lattice_slab(axes, n, i).into_iter().flat_map(scaled).collect()
+            }
+        }
+    }
+
+    fn slab_of_box(&self, axes: &[GridAxis], n: usize, i: usize) -> Vec<CellPlace<3>> {
+        let [lower, upper] = self.whole.bounds();
+        let extents = [0, 1, 2].map(|axis| Extent::between(&axes[axis], [lower[axis], upper[axis]]));
+        if !extents[0].cells.contains(&i) {
+            return Vec::new();
+        }
+        let mut places = Vec::new();
+        let [of_x, of_y, of_z] = &extents;
+        for j in of_y.cells.clone() {
+            for k in of_z.cells.clone() {
+                let parts = [of_x.part(i), of_y.part(j), of_z.part(k)];
+                let area = parts.iter().map(|part| part[1] - part[0]).product::<f64>() / n.pow(3) as f64;
+                let number = |point: usize| [point / (n * n), point / n % n, point % n];
+                let at = |point: usize| [0, 1, 2].map(|axis| place(parts[axis], number(point)[axis], n));
+                places.extend((0..n.pow(3)).map(|point| CellPlace { x: at(point), area }));
+            }
+        }
+        places
+    }
+
+    /// Cells of slab `i`, each with its number along axis 1.
+    fn lattice_slab(&self, axes: &[GridAxis], n: usize, i: usize) -> Vec<(usize, lattice::LatticeCell)> {
+        let [lower, upper] = self.whole.bounds();
+        let sides = |axis: usize, cell: usize| [axes[axis].breakpoint(cell), axes[axis].breakpoint(cell + 1)];
+        let ends = [0, 1].map(|axis| {
+            let shapes = std::iter::once(&self.whole).chain(&self.cut);
+            let mut ends: Vec<f64> = shapes.flat_map(|shape| shape.bounds().map(|corner| corner[axis])).collect();
+            ends.sort_by(f64::total_cmp);
+            ends.dedup();
+            ends
+        });
+        let lines = lattice::Lines { covers: &|at| self.vertical(at), ends: &ends };
+        let column = |j: usize| lattice::column(&lines, [sides(0, i), sides(1, j)], &axes[2], n);
+        reached(&axes[1], [lower[1], upper[1]]).flat_map(|j| column(j).into_iter().map(move |cell| (j, cell))).collect()
+    }
+
+    fn count(&mut self, axes: &[GridAxis], n: usize) {
+        let [lower, upper] = self.whole.bounds();
+        let extent = |axis: usize| Extent::between(&axes[axis], [lower[axis], upper[axis]]).cells;
+        match &self.filling {
+            Filling::Box => {
+                let occupied = [0, 1, 2].map(extent);
+                let in_slab = (occupied[1].len() * occupied[2].len()) as u64;
+                let before = (0..=occupied[0].len() as u64).map(|slab| slab * in_slab * n.pow(3) as u64).collect();
+                self.tally = SlabTally { before, cells: occupied[0].len() as u64 * in_slab, occupied };
+            }
+            Filling::Prism { outline, along, ends, .. } => {
+                self.tally = prism_tally(outline, (*along, extent(*along)), n);
+                self.volume = outline.area * (ends[1] - ends[0]);
+            }
+            Filling::Lattice { .. } => self.count_lattice(axes, n),
+        }
+    }
+
+    /// Counts, and scales the cells that are cut where the volume is known.
+    fn count_lattice(&mut self, axes: &[GridAxis], n: usize) {
+        let [lower, upper] = self.whole.bounds();
+        let (mut tally, mut total, mut sums) = (SlabTally::default(), 0_u64, [0.0; 2]);
+        for i in reached(&axes[0], [lower[0], upper[0]]) {
+            let cells = self.lattice_slab(axes, n, i);
+            if cells.is_empty() {
+                continue;
+            }
+            if tally.before.is_empty() {
+                tally.occupied = [i..i, cells[0].0..cells[0].0, cells[0].1.row..cells[0].1.row];
+            }
+            tally.before.extend(std::iter::repeat_n(total, i + 1 - tally.occupied[0].end));
+            tally.occupied[0].end = i + 1;
+            tally.cells += cells.len() as u64;
+            for (j, cell) in &cells {
+                total += cell.places.len() as u64;
+                sums[usize::from(cell.whole)] += cell.places.iter().map(|place| place.area).sum::<f64>();
+                for (axis, number) in [(1, *j), (2, cell.row)] {
+                    let range = &mut tally.occupied[axis];
+                    *range = range.start.min(number)..range.end.max(number + 1);
+                }
+            }
+        }
+        tally.before.push(total);
+        self.tally = tally;
+        let [partly, wholly] = sums;
+        if self.cut.is_empty() && partly > 0.0 {
+            self.filling = Filling::Lattice { scale: (self.volume - wholly) / partly };
+        } else {
+            self.volume = partly + wholly;
+        }
+    }
+}
+
+impl Filling {
+    fn of(whole: &SolidShape, cut: &[SolidShape], axes: &[GridAxis], n: usize) -> Result<Self, String> {
+        if cut.is_empty() && matches!(whole, SolidShape::Box { .. }) {
+            return Ok(Self::Box);
+        }
+        let prism = (0..3).find_map(|along| Some((along, through(whole, cut, along)?)));
+        if let Some((along, (edges, ends))) = prism {
+            let [across, up] = plane(along);
+            let plane =
+                GridSpec { axes: vec![axes[across].clone(), axes[up].clone()], order: 1, lines: Default::default() };
+            let Some((section, _)) = whole.along(along) else { return Err("no prism".to_owned()) };
+            let lower = plane.lower();
+            let bounds = section.bounds.map(|corner| [0, 1].map(|axis| corner[axis] + lower[axis]));
+            let outline = Outline::new(edges, 1 + cut.len(), (bounds, section.area), (&plane, n))?;
+            return Ok(Self::Prism { outline: Box::new(outline), plane, along, ends });
+        }
+        let [lower, upper] = whole.bounds();
+        let columns = (0..2).map(|axis| reached(&axes[axis], [lower[axis], upper[axis]]).len() as u128);
+        let lines = columns.product::<u128>() * (n * n * (1 + LINES * LINES)) as u128;
+        let rows = reached(&axes[2], [lower[2], upper[2]]).len() * n;
+        if lines * (edges(whole) + cut.iter().map(edges).sum::<usize>() + rows) as u128 > MOST_WORK {
+            return Err(
+                "it has too many cells for its shape, whose points would take too long; take larger cells".into()
+            );
+        }
+        Ok(Self::Lattice { scale: 1.0 })
+    }
+}
+
+/// Edges that a vertical line is held against.
+fn edges(shape: &SolidShape) -> usize {
+    match shape {
+        SolidShape::Prism { outline, .. } | SolidShape::Revolved { outline, .. } => outline.edges.len(),
+        SolidShape::Box { .. } | SolidShape::Sphere { .. } => 1,
+    }
+}
+
+/// The edges and ends of a prism along an axis from which only prisms are cut that go through it.
+fn through(whole: &SolidShape, cut: &[SolidShape], along: usize) -> Option<(Vec<Edge>, [f64; 2])> {
+    let (section, ends) = whole.along(along)?;
+    let mut edges = section.edges;
+    for (number, shape) in cut.iter().enumerate() {
+        let (section, of_cut) = shape.along(along)?;
+        if of_cut[0] > ends[0] || of_cut[1] < ends[1] {
+            return None;
+        }
+        edges.extend(section.edges.into_iter().map(|edge| edge.of(1 + number)));
+    }
+    Some((edges, ends))
+}
+
+/// Points of slab `i` along axis 0 of a prism.
+fn prism_slab(
+    (outline, plane): (&Outline, &GridSpec),
+    (along, extent): (usize, &Extent<'_>),
+    n: usize,
+    i: usize,
+) -> Vec<CellPlace<3>> {
+    let (columns, cells) = if along == 0 {
+        let cells = if extent.cells.contains(&i) { i..i + 1 } else { 0..0 };
+        (outline.tally().occupied[0].clone(), cells)
+    } else {
+        (i..i + 1, extent.cells.clone())
+    };
+    let mut places = Vec::new();
+    for column in columns {
+        let section = section(outline, plane, n, column);
+        for cell in cells.clone() {
+            let part = extent.part(cell);
+            let thickness = (part[1] - part[0]) / n as f64;
+            for k in 0..n {
+                let at = place(part, k, n);
+                places.extend(
+                    section.iter().map(|of| CellPlace { x: beside(along, at, of.x), area: thickness * of.area }),
+                );
+            }
+        }
+    }
+    places
+}
+
+/// Points of a column of an outline.
+fn section(outline: &Outline, plane: &GridSpec, n: usize, column: usize) -> Vec<CellPlace> {
+    let sides = |axis: usize, cell: usize| [plane.axes[axis].breakpoint(cell), plane.axes[axis].breakpoint(cell + 1)];
+    let of_part = |part: RegionPart| match part {
+        RegionPart::Whole(rows) => rows.flat_map(|row| of_cell(n, [sides(0, column), sides(1, row)])).collect(),
+        RegionPart::Cut(_, places) => places,
+    };
+    outline.column(plane, n, column).parts.into_iter().flat_map(of_part).collect()
+}
+
+/// A place by that along an axis and those beside it.
+fn beside(along: usize, at: f64, others: [f64; 2]) -> [f64; 3] {
+    let mut place = [at; 3];
+    let [across, up] = plane(along);
+    (place[across], place[up]) = (others[0], others[1]);
+    place
+}
+
+fn prism_tally(outline: &Outline, (along, cells): (usize, Range<usize>), n: usize) -> SlabTally {
+    let of_plane = outline.tally();
+    let in_plane = of_plane.before.last().copied().unwrap_or(0);
+    let thick = (cells.len() * n) as u64;
+    let [across, up] = plane(along);
+    let mut occupied = [0..0, 0..0, 0..0];
+    (occupied[across], occupied[up]) = (of_plane.occupied[0].clone(), of_plane.occupied[1].clone());
+    occupied[along] = cells.clone();
+    let before = if along == 0 {
+        (0..=cells.len() as u64).map(|slab| slab * n as u64 * in_plane).collect()
+    } else {
+        of_plane.before.iter().map(|before| before * thick).collect()
+    };
+    SlabTally { occupied, before, cells: of_plane.cells * cells.len() as u64 }
+}
+
+#[cfg(test)]
+mod tests;

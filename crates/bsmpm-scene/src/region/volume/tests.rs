@@ -1,0 +1,89 @@
+//! Volumes of points against closed forms.
+
+use super::super::solid::Section;
+use super::*;
+use std::f64::consts::PI;
+
+fn axes() -> Vec<GridAxis> {
+    vec![
+        GridAxis::Uniform { lower: -3.0, cell: 0.25, cells: 24 },
+        GridAxis::Graded(vec![-1.0, -0.8, -0.5, -0.1, 0.2, 0.4, 0.7, 1.1, 1.6, 2.2, 3.0]),
+        GridAxis::Uniform { lower: 0.0, cell: 0.3, cells: 12 },
+    ]
+}
+
+/// The points of a shape, after every slab was held against the tally; and the volume.
+fn points(whole: SolidShape, cut: Vec<SolidShape>, n: usize) -> (Vec<CellPlace<3>>, Volume) {
+    let axes = axes();
+    let volume = Volume::new(whole, cut, &axes, n).unwrap();
+    let tally = volume.tally();
+    let slabs: Vec<_> = (0..axes[0].cells()).map(|i| volume.slab(&axes, n, i)).collect();
+    for (i, slab) in slabs.iter().enumerate() {
+        let counted = match i.checked_sub(tally.occupied[0].start) {
+            Some(number) if i < tally.occupied[0].end => tally.before[number + 1] - tally.before[number],
+            _ => 0,
+        };
+        assert_eq!(slab.len() as u64, counted, "slab {i}");
+    }
+    let all: Vec<_> = slabs.into_iter().flatten().collect();
+    for place in &all {
+        assert!(place.area > 0.0, "{place:?}");
+        let at = [0, 1, 2].map(|axis| place.x[axis] + axes[axis].lower());
+        assert!(volume.contains(at), "{at:?} is outside");
+    }
+    (all, volume)
+}
+
+fn off(found: f64, exact: f64) -> f64 {
+    (found / exact - 1.0).abs()
+}
+
+fn total(points: &[CellPlace<3>]) -> f64 {
+    points.iter().map(|place| place.area).sum()
+}
+
+#[test]
+fn prisms_and_boxes_have_their_exact_volume() {
+    for along in 0..3 {
+        let outline = Section::circle([1.3, 1.4], 0.93);
+        let (found, volume) = points(SolidShape::Prism { outline, along, ends: [0.33, 2.77] }, Vec::new(), 2);
+        let exact = PI * 0.93_f64.powi(2) * 2.44;
+        assert!(off(total(&found), exact) < 1e-13 && off(volume.volume(), exact) < 1e-13, "along {along}");
+    }
+    let (found, _) = points(SolidShape::Box { corners: [[0.1, 0.2, 0.3], [2.05, 1.9, 2.2]] }, Vec::new(), 3);
+    assert!(off(total(&found), 1.95 * 1.7 * 1.9) < 1e-12, "off by {:e}", off(total(&found), 1.95 * 1.7 * 1.9));
+}
+
+#[test]
+fn what_goes_through_is_cut_out_exactly() {
+    let whole = SolidShape::Box { corners: [[0.1, 0.2, 0.3], [2.1, 2.2, 2.3]] };
+    let hole = SolidShape::Prism { outline: Section::circle([1.1, 1.2], 0.5), along: 1, ends: [0.0, 3.0] };
+    let (found, volume) = points(whole, vec![hole], 2);
+    let exact = 8.0 - 2.0 * PI * 0.25;
+    assert!(off(total(&found), exact) < 1e-12 && off(volume.volume(), exact) < 1e-12);
+}
+
+#[test]
+fn spheres_and_turned_outlines_are_scaled_to_their_volume() {
+    let (found, _) = points(SolidShape::Sphere { center: [2.0, 1.5, 1.6], radius: 1.2 }, Vec::new(), 2);
+    assert!(off(total(&found), 4.0 / 3.0 * PI * 1.2_f64.powi(3)) < 1e-12);
+    let centroid = [0, 1, 2].map(|axis| found.iter().map(|at| at.area * at.x[axis]).sum::<f64>() / total(&found));
+    for (axis, exact) in [2.0, 1.5, 1.6].into_iter().enumerate() {
+        assert!((centroid[axis] - exact).abs() < 5e-3, "centroid {centroid:?}");
+    }
+    let frustum = Section::polygon(&[[0.0, 0.2], [1.3, 0.2], [0.4, 2.9], [0.0, 2.9]]);
+    let (found, _) = points(SolidShape::Revolved { outline: frustum, about: [2.0, 1.5] }, Vec::new(), 2);
+    let exact = PI * 2.7 / 3.0 * (1.3_f64.powi(2) + 1.3 * 0.4 + 0.4_f64.powi(2));
+    assert!(off(total(&found), exact) < 1e-12);
+}
+
+/// Of what is cut out anyhow the lines alone tell the volume.
+#[test]
+fn a_cavity_is_cut_out_to_a_thousandth() {
+    let whole = SolidShape::Box { corners: [[0.1, 0.2, 0.3], [2.6, 2.7, 2.8]] };
+    let cavity = SolidShape::Sphere { center: [1.3, 1.5, 1.6], radius: 0.9 };
+    let (found, volume) = points(whole, vec![cavity], 2);
+    let exact = 2.5_f64.powi(3) - 4.0 / 3.0 * PI * 0.9_f64.powi(3);
+    assert!(off(total(&found), exact) < 1e-3, "off by {:e}", off(total(&found), exact));
+    assert!(off(volume.volume(), total(&found)) < 1e-13);
+}

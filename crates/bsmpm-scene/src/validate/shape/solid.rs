@@ -1,0 +1,89 @@
+//! Shapes in space.
+
+use super::super::place;
+use super::BodyShape;
+use crate::grid::GridSpec;
+use crate::record::Record;
+use crate::region::{Region, Section, SolidShape, Volume};
+use crate::report::Report;
+use crate::words::Axis;
+
+/// What a body of a solid fills.
+pub(super) fn region(
+    body: &Record,
+    (grid, points_per_cell): (Option<&GridSpec>, Option<usize>),
+    report: &mut Report<'_>,
+) -> Option<Region> {
+    let whole = read(body, report);
+    let cut: Option<Vec<SolidShape>> = body.records("subtract").iter().map(|record| read(record, report)).collect();
+    let (whole, cut, grid, key) = (whole?, cut?, grid?, key(body));
+    if body.gives("subtract") && cut.len() != body.records("subtract").len() {
+        return None;
+    }
+    let outside = whole.bounds().into_iter().find_map(|corner| place::beyond(grid, corner));
+    if let Some(message) = outside {
+        body.error(key, message, report);
+        return None;
+    }
+    let lower = grid.lower();
+    let local = |shape: SolidShape| shape.moved(lower.map(|by| -by));
+    let cut = cut.into_iter().map(local).collect();
+    match Volume::new(local(whole), cut, &grid.axes, points_per_cell?) {
+        Ok(volume) => Some(Region::Solid(Box::new(volume))),
+        Err(message) => {
+            body.error(key, message, report);
+            None
+        }
+    }
+}
+
+/// The key that gives a body's or a cut's shape.
+pub(in super::super) fn key(record: &Record) -> &'static str {
+    ["extrude", "sphere", "revolve", "polygon", "circle"].into_iter().find(|key| record.gives(key)).unwrap_or("box")
+}
+
+/// A shape in the case's coordinates.
+fn read(record: &Record, report: &mut Report<'_>) -> Option<SolidShape> {
+    if let Some(sphere) = record.record("sphere").filter(|_| record.gives("sphere")) {
+        return Some(SolidShape::Sphere { center: sphere.vector("center")?, radius: sphere.number("radius")? });
+    }
+    if let Some(shape) = record.record("extrude").filter(|_| record.gives("extrude")) {
+        let outline = section(shape, report)?;
+        let (along, from, to) = (shape.word::<Axis>("along")?, shape.number("from")?, shape.number("to")?);
+        if from >= to {
+            shape.error("to", format!("{to} is not above from = {from}: the body is empty"), report);
+            return None;
+        }
+        let along = [Axis::X, Axis::Y, Axis::Z].iter().position(|axis| *axis == along)?;
+        return Some(SolidShape::Prism { outline, along, ends: [from, to] });
+    }
+    if let Some(shape) = record.record("revolve").filter(|_| record.gives("revolve")) {
+        let outline = section(shape, report)?;
+        if outline.bounds[0][0] < 0.0 {
+            let message = format!("it reaches to the radius {}; allowed: radius >= 0", outline.bounds[0][0]);
+            shape.error(if shape.gives("circle") { "circle" } else { "polygon" }, message, report);
+            return None;
+        }
+        return Some(SolidShape::Revolved { outline, about: shape.pair("about")? });
+    }
+    if let Some(key) = ["polygon", "circle"].into_iter().find(|key| record.gives(key)) {
+        record.error(key, "is an outline in a plane: give it a length, extrude = { ... }", report);
+        return None;
+    }
+    let shape = record.record("box")?;
+    let (lower, upper) = (shape.vector("lower")?, shape.vector("upper")?);
+    if (0..3).any(|axis| lower[axis] >= upper[axis]) {
+        shape.error("upper", format!("{upper:?} is not above lower = {lower:?}: the body is empty"), report);
+        return None;
+    }
+    Some(SolidShape::Box { corners: [lower, upper] })
+}
+
+/// The outline of an extruded or revolved shape.
+fn section(record: &Record, report: &mut Report<'_>) -> Option<Section> {
+    match super::read(record, report)? {
+        BodyShape::Polygon(corners) => Some(Section::polygon(&corners)),
+        BodyShape::Circle { center, radius } => Some(Section::circle(center, radius)),
+        BodyShape::Box { .. } => None,
+    }
+}

@@ -1,0 +1,133 @@
+//! What has no meaning in three dimensions yet, and what has none in a plane.
+
+use crate::case::{Case, Support};
+use crate::record::Record;
+use crate::report::Report;
+use crate::words::{AnalysisType, Geometry, Measurement, Side, Word};
+use bsmpm::stabilisation::Stabilisation;
+
+/// Tables and keys that only a plane knows, with what to do instead.
+const IN_A_PLANE: &[(&str, &str)] = &[
+    ("water", "leave it out, with the weights of the soil under water"),
+    ("drain", "leave it out: water does not flow here yet"),
+    ("inflow", "leave it out: water does not flow here yet"),
+    ("shaking", "use plane strain"),
+    ("footing", "use plane strain or another geometry that has strips"),
+    ("prescribed", "use plane strain or another geometry that has strips"),
+    ("rigid", "use plane strain"),
+    ("traction", "load it by gravity or by the weight of another body"),
+    ("point_load", "load it by gravity or by the weight of another body"),
+    ("stage", "write a case for every stage, or use plane strain"),
+    ("profile", "use histories at places, or frames"),
+];
+
+/// Quantities of histories that only a plane knows.
+const QUANTITIES: &[Measurement] = &[
+    Measurement::Front,
+    Measurement::AngularMomentum,
+    Measurement::SectionForces,
+    Measurement::StressNoise,
+    Measurement::PressureNoise,
+    Measurement::PorePressure,
+    Measurement::Contact,
+    Measurement::Gap,
+    Measurement::SlipRate,
+    Measurement::FrictionPower,
+    Measurement::Outflow,
+];
+
+/// Unknowns beyond which a factor is told to be large: its fronts are planes of nodes.
+const MANY: u64 = 30_000;
+
+/// Errors about keys that the case's geometry has not.
+pub(super) fn refuse(root: &Record, report: &mut Report<'_>) {
+    let Some(geometry) = root.word::<Geometry>("geometry") else { return };
+    if geometry != Geometry::Solid {
+        return in_space(root, report);
+    }
+    for (key, instead) in IN_A_PLANE.iter().filter(|(key, _)| root.gives(key)) {
+        root.error(key, format!("not available in a solid yet: {instead}"), report);
+    }
+    if let Some(analysis) = root.record("analysis")
+        && analysis.word::<AnalysisType>("type") == Some(AnalysisType::Consolidation)
+    {
+        analysis.error("type", "water does not flow in a solid yet: \"quasi-static\" or \"dynamic\"", report);
+    }
+    for body in root.records("body").iter().filter(|body| body.gives("spin")) {
+        body.error("spin", "not available in a solid yet: give velocity", report);
+    }
+    for history in root.records("history") {
+        if let Some(quantity) = history.word::<Measurement>("quantity").filter(|of| QUANTITIES.contains(of)) {
+            history.error("quantity", format!("\"{quantity}\" is not available in a solid yet: use frames"), report);
+        }
+        for key in ["at_x", "surface"].into_iter().filter(|key| history.gives(key)) {
+            history.error(key, "not available in a solid yet: leave it out", report);
+        }
+    }
+    for (_, material) in root.named("material") {
+        for key in ["saturated_unit_weight", "ru", "drainage", "porosity", "permeability"] {
+            if material.gives(key) {
+                material.error(
+                    key,
+                    "not available in a solid yet: leave it out, and give the weight that acts",
+                    report,
+                );
+            }
+        }
+    }
+}
+
+/// Of a plane what only a solid has.
+fn in_space(root: &Record, report: &mut Report<'_>) {
+    if let Some(boundary) = root.record("boundary") {
+        for side in [Side::Front, Side::Back].into_iter().filter(|side| boundary.gives(side.word())) {
+            boundary.error(side.word(), "a plane has no such face: geometry = \"solid\" has", report);
+        }
+    }
+    let shapes = root.records("body").iter().flat_map(|body| std::iter::once(body).chain(body.records("subtract")));
+    for shape in shapes {
+        for key in ["extrude", "sphere", "revolve"].into_iter().filter(|key| shape.gives(key)) {
+            shape.error(key, "is a shape in space: geometry = \"solid\" has it", report);
+        }
+    }
+}
+
+/// Errors and warnings about a whole case in three dimensions.
+pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
+    if case.geometry != Geometry::Solid {
+        return;
+    }
+    let Some(boundary) = root.record("boundary") else { return };
+    for (axis, sides) in Side::OF_SOLID.iter().enumerate() {
+        for (side, support) in sides.iter().zip(case.boundary[axis]) {
+            if !matches!(support, Support::Fixed | Support::Roller | Support::Free) {
+                let message = "not available in a solid yet: \"fixed\", \"roller\" or \"free\"";
+                boundary.error(side.word(), message, report);
+            }
+        }
+    }
+    if matches!(case.stabilisation, Stabilisation::SubgridFBar | Stabilisation::ModifiedFBar) {
+        let key = root.record("stabilisation");
+        key.into_iter().for_each(|of| {
+            of.error("method", "not shown to be right in a solid yet: \"consistent-f-bar\" or \"f-bar\"", report);
+        });
+    }
+    let estimate = case.estimate();
+    if estimate.active > MANY && case.solver.linear.factor.is_some() {
+        report.warn(format!(
+            "solver.linear: a factor of up to {} unknowns in space, about {:.1} GB in all, and every doubling of the points takes \
+             2.5 times the memory; linear = \"multigrid\" with reproducible = false takes less where poisson <= 0.45",
+            estimate.active,
+            estimate.bytes as f64 / 1e9
+        ));
+    }
+    let stiffness = |body: &crate::case::Body| case.materials[body.material].material.elastic().young;
+    let mut stiff: Vec<f64> = case.bodies.iter().map(stiffness).collect();
+    stiff.dedup();
+    if stiff.len() > 1 && case.grid.order > 1 {
+        report.warn(
+            "grid.c0_lines: of a solid no line is placed where bodies of unlike stiffness meet: stress there is wrong, up to \
+             by tens of per cent, within about three cells; repeat breakpoints by knots",
+        );
+    }
+}

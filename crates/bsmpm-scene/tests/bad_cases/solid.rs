@@ -1,0 +1,77 @@
+//! What a case in three dimensions must not say, and a case in a plane not of a third one.
+
+use super::{Row, row};
+
+const BOX: &str = "box = { lower = [0.0, 0.0, 0.0], upper = [2.0, 3.0, 1.0] }";
+
+/// Changes of `solid.toml`.
+pub const SOLID: &[Row] = &[
+    row("lower = [0.0, 0.0, 0.0]", "lower = [0.0, 0.0]", "grid.lower", "solid: of three"),
+    row("cell  = [0.5, 1.0, 0.5]", "cell  = [0.5, 1.0]", "grid.cell", "solid: of three"),
+    row("upper = [4.0, 3.0, 3.0]", "upper = [4.0, 3.0, -1.0]", "grid.upper", "along z is not above"),
+    row("velocity = [0.0, 0.0, -1.0]", "velocity = [0.0, -1.0]", "body.0.velocity", "solid: of three"),
+    row("[0.0, 0.0, -9.81]", "[0.0, -9.81]", "gravity.acceleration", "solid: of three"),
+    row(BOX, "box = { lower = [0.0, 0.0, 1.0], upper = [2.0, 3.0, 1.0] }", "body.0.box.upper", "is not above lower"),
+    row(BOX, "box = { lower = [0.0, 0.0, 0.0], upper = [2.0, 3.0, 4.0] }", "body.0.box", "ends at z = 3"),
+    row(BOX, "polygon = [[0, 0], [1, 0], [0, 1]]", "body.0.polygon", "give it a length, extrude"),
+    row("radius = 0.7", "radius = 1.7", "body.1.extrude", "outside the grid"),
+    row("to = 1.0 }\n", "to = 0.0 }\n", "body.1.extrude.to", "is not above from"),
+    row("along = \"z\"", "along = \"r\"", "body.1.extrude.along", "expected one of"),
+    row("radius = 0.5 }\npoints", "radius = 1.5 }\npoints", "body.2.sphere", "outside the grid"),
+    row("[[0.0, 1.0]", "[[-0.5, 1.0]", "body.3.revolve.polygon", "radius >= 0"),
+    row("left   = \"roller\"", "left   = \"absorbing\"", "boundary.left", "not available in a solid yet"),
+    row("back   = \"roller\"", "back   = { friction = 0.3 }", "boundary.back", "not available in a solid yet"),
+    row("\"consistent-f-bar\"", "\"subgrid-f-bar\"", "stabilisation.method", "not shown to be right in a solid"),
+    row("at = [1.0, 1.5, 1.0]", "at = [1.0, 1.5]", "history.0.at", "solid: of three"),
+    row("at = [1.0, 1.5, 1.0]", "at = [1.0, 3.5, 1.0]", "history.0.at", "is outside the grid"),
+    row("at = [1.0, 1.5, 1.0]", "at = [1.0, 1.5, 1.0]\nsurface = true", "history.0.surface", "not available").down(1),
+    row(
+        "quantity = \"reaction\"\nface = \"back\"",
+        "quantity = \"front\"",
+        "history.1.quantity",
+        "not available in a solid",
+    ),
+    row(
+        "order = \"quadratic\"\n",
+        "order = \"quadratic\"\n\n[shaking]\nacceleration = [[0, 0, 0]]\n",
+        "shaking",
+        "use plane strain",
+    )
+    .down(2),
+    row(
+        "[gravity]",
+        "[[rigid]]\nname = \"a\"\ncircle = { center = [3, 2], radius = 0.5 }\n[gravity]",
+        "rigid",
+        "not available",
+    ),
+    row("[gravity]", "[[stage]]\nat = 0.5\nremove = [\"block\"]\n[gravity]", "stage", "a case for every stage"),
+    row("[gravity]", "[water]\nlevel = 1.0\n[gravity]", "water", "not available in a solid yet"),
+    row(
+        "[gravity]",
+        "[[point_load]]\nat = [1, 1]\nforce = [0, -1]\n[gravity]",
+        "point_load",
+        "not available in a solid yet",
+    ),
+    row("density = 2000", "density = 2000\nru = 0.2", "material.soil.ru", "not available in a solid yet").down(1),
+    row(
+        "velocity = [0.0, 0.0, -1.0]",
+        "spin = { rate = 1, about = [0, 0] }",
+        "body.0.spin",
+        "not available in a solid yet",
+    ),
+    row("geometry = \"solid\"", "geometry = \"solid\"\naccuracy = \"draft\"", "accuracy", "give cells").down(1),
+    row("cell  = [0.5, 1.0, 0.5]", "knots = { x = [0, 2, 4], y = [0, 3] }", "grid.knots.z", "has breakpoints along z"),
+];
+
+/// Changes of a case in a plane.
+pub const IN_A_PLANE: &[Row] = &[
+    row("bottom = \"fixed\"", "bottom = \"fixed\"\nfront = \"fixed\"", "boundary.front", "a plane has no such face")
+        .down(1),
+    row("lower = [0.0, 0.0]\nupper", "lower = [0.0, 0.0, 0.0]\nupper", "grid.lower", "a list of two"),
+    row(
+        "box = { lower = [0.0, 0.0], upper = [2.0, 1.0] }",
+        "sphere = { center = [1.0, 1.0], radius = 0.5 }",
+        "body.0.sphere",
+        "is a shape in space",
+    ),
+];
