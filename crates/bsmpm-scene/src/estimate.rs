@@ -201,8 +201,8 @@ impl Case {
         let (nodes, points) = (nodes(&self.grid), u128::from(self.points()));
         let places = places(self);
         let dims = self.grid.dims() as u128;
-        // The stencil of the stiffness: a double for each pair of components a place; of every node where it stands, and
-        // of which kind it is.
+        // The stencil of the stiffness: a double for each pair of components a place; of every node where it stands,
+        // and of which kind it is.
         let (stencil, every) = (places * dims.pow(2) * 8, 8 + 2);
         let order = self.grid.order as u128;
         let occupied = occupied_nodes(self, order).min(nodes);

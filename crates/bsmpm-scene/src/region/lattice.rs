@@ -13,8 +13,8 @@ pub(super) const LINES: usize = 4;
 pub(super) struct Lines<'a> {
     /// what it covers of the line at a place
     pub(super) covers: &'a dyn Fn([f64; 2]) -> Vec<[f64; 2]>,
-    /// places along axes 0 and 1, ascending, at which it may begin or end: a part of a cell is split there, so that what
-    /// is flat there is exact
+    /// places along axes 0 and 1, ascending, at which it may begin or end: a part of a cell is split there, so that
+    /// what is flat there is exact
     pub(super) ends: &'a [Vec<f64>; 2],
 }
 

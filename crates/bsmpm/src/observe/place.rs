@@ -31,9 +31,8 @@ pub enum Configuration {
 /// the points of the material of the nearest one; `None` where no material is.
 ///
 /// Weights are the quadratic B-spline that reaches one and a half cells of the place's own cell to each side, times the
-/// points' reference volumes. A place is in material if a point is nearer than its size, the D-th root of what it has of
-/// the grid:
-/// half of that is where its material ends.
+/// points' reference volumes. A place is in material if a point is nearer than its size, the D-th root of what it has
+/// of the grid: half of that is where its material ends.
 pub fn values<K: Kinematics<D>, const D: usize, const C: usize>(
     grid: &Grid<D>,
     points: &Points<D>,

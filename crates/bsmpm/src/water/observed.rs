@@ -57,8 +57,8 @@ impl<'a, const D: usize> PoreWater<'a, D> {
         self.still(p) + self.excess(p) + carried
     }
 
-    /// Pa  mean pore pressure of the points of a part, weighted with their present volumes, the least and the largest; 0
-    /// without points. Two reductions.
+    /// Pa  mean pore pressure of the points of a part, weighted with their present volumes, the least and the largest;
+    /// 0 without points. Two reductions.
     pub fn range(&self, part: &Part, halo: &dyn Halo) -> [f64; 3] {
         let volume = |p: usize| self.points.volume[p] * self.points.F.at(p).determinant();
         let weighted = part.of(self.points).map(|p| volume(p) * self.pressure(p));

@@ -92,7 +92,8 @@ fn weight_of_half_the_stiffness_settles_as_the_solution_by_lines() {
 }
 
 /// k = k0 J^3/(1 - ln J): with it Hencky's law makes the volume follow Terzaghi's equation exactly, J = 1 - (1 - J_inf)
-/// (1 - U), ln J_inf = -q/M. No soil has it: every row of points has its own permeability, that of its J before the step.
+/// (1 - U), ln J_inf = -q/M. No soil has it: every row of points has its own permeability, that of its J before the
+/// step.
 #[test]
 fn a_load_under_which_the_volume_follows_terzaghis_equation_settles_exactly_so() {
     let (cells, load) = (20, 0.5);

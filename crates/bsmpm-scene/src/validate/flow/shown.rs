@@ -223,8 +223,8 @@ fn ponds(case: &Case, flow: &Flow, report: &mut Report<'_>) {
     for (number, drain) in flow.drains.iter().enumerate().filter(|(_, drain)| drain.given == Given::StillWater) {
         if way > FILM && places(drain, &case.grid).iter().any(dry) {
             report.warn(format!(
-                "drain.{number}: above the water table it holds the pressure of the air, and the ground there is fed as by a pond, by up to \
-                 {way:.1} cells of water in a step: give seepage = true (and soils a retention), or head where a pond stands"
+                "drain.{number}: above the water table it holds the pressure of the air, and the ground there is fed as by \
+                 a pond, by up to {way:.1} cells of water in a step: give seepage = true (and soils a retention), or head where a pond stands"
             ));
         }
     }
