@@ -190,9 +190,9 @@ impl Body {
 
 impl Case {
     /// Weight of all bodies that are there at the start vertically above `at` (m, in the case's coordinates) under the
-    /// full gravity, Pa: `Σ ρ |g| l`, g its vertical component, l the length of the vertical ray inside a body. What lies
-    /// beside each other is counted once: a body's left side belongs to it, its right side does not. With water less its
-    /// uplift.
+    /// full gravity, Pa: `Σ ρ |g| l`, g its vertical component, l the length of the vertical ray inside a body. What
+    /// lies beside each other is counted once: a body's left side belongs to it, its right side does not. With water
+    /// less its uplift.
     pub fn overburden(&self, at: [f64; 3]) -> f64 {
         let Some(gravity) = &self.gravity else { return 0.0 };
         let g = gravity.acceleration[self.grid.dims() - 1].abs();

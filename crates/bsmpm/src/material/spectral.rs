@@ -2,8 +2,8 @@
 //!
 //! A Jacobi rotation makes a pair of axes principal; it resolves nearly equal eigenvalues without a branch. One is
 //! exact when z is a principal axis (plane strain, axisymmetry); otherwise the axis of the most distinct eigenvalue
-//! comes first ([`solid`]). Eigenvalues are given as a number near them plus a small gain; the logarithm uses both, so the
-//! digits that their sum would round away are not lost near b = I.
+//! comes first ([`solid`]). Eigenvalues are given as a number near them plus a small gain; the logarithm uses both,
+//! so the digits that their sum would round away are not lost near b = I.
 
 mod solid;
 

@@ -56,8 +56,8 @@ impl<'a, const D: usize> LinearisedWater<'a, D> {
         Self { pores, p, points }
     }
 
-    /// What a change `v` of the nodal pressures (Pa), with the gradients of the displacements `grad`, and what they make
-    /// of ln(J-bar/J) under F-bar, makes of the water's balance, m3, nodal, zero where the pressure is no unknown. One
+    /// What a change `v` of the nodal pressures (Pa), with the gradients of the displacements `grad`, and what they
+    /// make of ln(J-bar/J) under F-bar, makes of the water's balance, m3, nodal, zero where the pressure is no unknown. One
     /// exchange with the neighbours.
     pub fn multiply<K: Kinematics<D>>(
         &self,
