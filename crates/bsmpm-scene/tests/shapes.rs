@@ -39,6 +39,9 @@ fn verify(case: &Case, tolerance: f64) -> Vec<Seed<2>> {
     for (column, count) in case.points_by_column().into_iter().enumerate() {
         let part: Vec<Seed<2>> = seed::<PlaneStrain, 2>(case, column..column + 1).collect();
         assert_eq!(part.len() as u64, count, "column {column}");
+        let ends = [column, column + 1].map(|at| case.grid.axes[0].breakpoint(at));
+        let out = part.iter().find(|seed| !(ends[0] <= seed.x[0] && seed.x[0] <= ends[1]));
+        assert!(out.is_none(), "column {column} has {out:?}");
         parts.extend(part);
     }
     parts.sort_by_key(|seed| seed.id);
@@ -176,9 +179,13 @@ fn a_polygon_along_the_cells_is_a_box() {
 #[test]
 fn circles_and_rings() {
     let pi = std::f64::consts::PI;
-    for (n, center, radius) in
-        [(1, [10.0, 9.0], 4.0), (3, [10.3, 9.7], 0.3), (4, [5.123, 4.567], 4.5), (2, [5.0, 5.0], 5.0)]
-    {
+    for (n, center, radius) in [
+        (1, [10.0, 9.0], 4.0),
+        (3, [10.3, 9.7], 0.3),
+        (4, [5.123, 4.567], 4.5),
+        (2, [5.0, 5.0], 5.0),
+        (2, [6.0, 6.0], 2.4),
+    ] {
         let circle = format!("circle = {{ center = {center:?}, radius = {radius:?} }}");
         let case = case(METRES, &[&circle], n);
         assert!((case.bodies[0].area() / (pi * radius * radius) - 1.0).abs() < 1e-14);
@@ -238,6 +245,22 @@ fn a_cell_without_a_place_inside_has_one_point() {
     assert!(sliver[0].message.contains("it has no points"), "{sliver:?}");
     let gone = "box = { lower = [1, 1], upper = [2, 2] }\nsubtract = [{ box = { lower = [0, 0], upper = [3, 3] } }]";
     assert!(try_case(METRES, &[gone], 2).unwrap_err()[0].message.contains("it has no points"));
+}
+
+#[test]
+fn the_one_point_of_a_cap_is_its_centroid() {
+    // What a circle has above y = 12 where no place of the lattice is: chord 2 m, height .2 m.
+    let radius: f64 = (1.0 + 0.2 * 0.2) / (2.0 * 0.2);
+    let circle = format!("circle = {{ center = [12.5, {:?}], radius = {radius:?} }}", 12.2 - radius);
+    let grid = "lower = [0, 0]\nupper = [40, 20]\ncell = [5.0, 4.0]";
+    let seeds = verify(&case(grid, &[&circle], 1), 1e-12);
+    let caps: Vec<_> = seeds.iter().filter(|seed| seed.x[1] > 12.0).collect();
+    let angle = 2.0 * (1.0 / radius).asin();
+    let area = 0.5 * radius * radius * (angle - angle.sin());
+    let centroid = 12.2 - radius + 8.0 / (12.0 * area);
+    assert_eq!(caps.len(), 1);
+    assert!((caps[0].x[0] - 12.5).abs() < 1e-9, "{:?}", caps[0]);
+    assert!((caps[0].x[1] - centroid).abs() < 1e-9 && (caps[0].volume / area - 1.0).abs() < 1e-9, "{:?}", caps[0]);
 }
 
 #[test]

@@ -20,6 +20,24 @@ struct Arc {
     upper: bool,
 }
 
+/// What lies between an edge and its chord.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Bulge {
+    /// m²
+    pub(crate) area: f64,
+    /// m³
+    pub(crate) moment: [f64; 2],
+}
+
+impl std::ops::Sub for Bulge {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        let moment = [self.moment[0] - other.moment[0], self.moment[1] - other.moment[1]];
+        Self { area: self.area - other.area, moment }
+    }
+}
+
 impl Edge {
     /// A straight edge between two places.
     pub(crate) fn line(p: [f64; 2], q: [f64; 2], shape: usize) -> Self {
@@ -113,13 +131,18 @@ impl Edge {
         }
     }
 
-    /// Area between the edge and its chord from `x[0]` to `x[1]`, m²; negative where the edge lies below.
-    pub(crate) fn bulge(&self, x: [f64; 2]) -> f64 {
-        let Some(Arc { radius, upper, .. }) = self.arc else { return 0.0 };
-        let chord = (x[1] - x[0]).hypot(self.y(x[1]) - self.y(x[0]));
+    /// Area between the edge and its chord from `x[0]` to `x[1]`, m², and its first moments, m³; negative where the edge
+    /// lies below.
+    pub(crate) fn bulge(&self, x: [f64; 2]) -> Bulge {
+        let Some(Arc { center, radius, upper }) = self.arc else { return Bulge::default() };
+        let sign = if upper { 1.0 } else { -1.0 };
+        let along = [x[1] - x[0], self.y(x[1]) - self.y(x[0])];
+        let chord = along[0].hypot(along[1]);
         let angle = 2.0 * (chord / (2.0 * radius)).min(1.0).asin();
-        let segment = 0.5 * radius * radius * (angle - angle.sin());
-        if upper { segment } else { -segment }
+        let area = sign * 0.5 * radius * radius * (angle - angle.sin());
+        // About the centre of its circle a segment has chord³/12 along its axis, which is across the chord.
+        let about_center = [-along[1], along[0]].map(|across| across * chord * chord / 12.0);
+        Bulge { area, moment: [0, 1].map(|axis| about_center[axis] + center[axis] * area) }
     }
 
     /// Distance of a place from the edge (from the whole circle, if it is half of one), m.

@@ -1,7 +1,7 @@
 //! Areas of shapes cut out of shapes, inside a window: vertical slices between all places where an edge begins, ends or
 //! crosses another one or the window. Between them edges keep their order, and each slice is exact.
 
-use super::edge::Edge;
+use super::edge::{Bulge, Edge};
 
 /// A rectangle, m from the grid's lower corner.
 #[derive(Clone, Copy, Debug)]
@@ -22,7 +22,7 @@ pub(crate) struct Slice {
     x: [f64; 2],
     bottom: [f64; 2],
     top: [f64; 2],
-    bulge: f64, // m²  by which arcs add to the trapezoid of the chords
+    bulge: Bulge, // by which arcs add to the trapezoid of the chords
     /// a place inside
     pub(crate) middle: [f64; 2],
 }
@@ -30,17 +30,18 @@ pub(crate) struct Slice {
 impl Slice {
     pub(crate) fn area(&self) -> f64 {
         let heights = (self.top[0] - self.bottom[0]) + (self.top[1] - self.bottom[1]);
-        (0.5 * heights * (self.x[1] - self.x[0]) + self.bulge).max(0.0)
+        (0.5 * heights * (self.x[1] - self.x[0]) + self.bulge.area).max(0.0)
     }
 
-    /// First moments of the area, m³; arcs are taken for their chords.
+    /// First moments of the area, m³.
     pub(crate) fn moment(&self) -> [f64; 2] {
         let width = self.x[1] - self.x[0];
         let heights = [self.top[0] - self.bottom[0], self.top[1] - self.bottom[1]];
         let about_left = width * width * (heights[0] + 2.0 * heights[1]) / 6.0;
         let squares = |[p, q]: [f64; 2]| p * p + p * q + q * q;
         let area = 0.5 * (heights[0] + heights[1]) * width;
-        [self.x[0] * area + about_left, width * (squares(self.top) - squares(self.bottom)) / 6.0]
+        let chords = [self.x[0] * area + about_left, width * (squares(self.top) - squares(self.bottom)) / 6.0];
+        [chords[0] + self.bulge.moment[0], chords[1] + self.bulge.moment[1]]
     }
 }
 
@@ -104,7 +105,7 @@ pub(crate) fn sweep(
             }
         }
         crossed.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let line = |y: f64| ([y; 2], y, 0.0);
+        let line = |y: f64| ([y; 2], y, Bulge::default());
         let mut bottom = line(window.y[0]);
         let curves = crossed.iter().map(|(y, edge)| {
             let ends = x.map(|x| edge.y(x).clamp(window.y[0], window.y[1]));

@@ -57,8 +57,8 @@ impl<'a, const D: usize> LinearisedWater<'a, D> {
     }
 
     /// What a change `v` of the nodal pressures (Pa), with the gradients of the displacements `grad`, and what they
-    /// make of ln(J-bar/J) under F-bar, makes of the water's balance, m3, nodal, zero where the pressure is no unknown. One
-    /// exchange with the neighbours.
+    /// make of ln(J-bar/J) under F-bar, makes of the water's balance, m3, nodal, zero where the pressure is no unknown.
+    /// One exchange with the neighbours.
     pub fn multiply<K: Kinematics<D>>(
         &self,
         problem: &Problem<'_, K, D>,
