@@ -140,3 +140,23 @@ fn knots_may_be_repeated_by_hand() {
     assert_eq!([count(0..1), count(1..2), count(2..3), count(0..5)], [16, 0, 16, 64]);
     assert_eq!(case.points_by_column(), [16, 0, 16, 16, 16]);
 }
+
+#[test]
+fn where_water_fills_ground_that_moves_through_lines_they_are_told_of() {
+    let wet = LAYERS
+        .replace("young = 1e7", "young = 1e6")
+        .replace("type = \"quasi-static\"", "type = \"consolidation\"\n    end = 1.0")
+        .replace("density = 2000.0", "density = 2000.0\n    drainage = \"undrained\"\n    porosity = 0.4");
+    let loses = |text: &str| lines(text).2.iter().any(|told| told.contains("it loses volume"));
+    let strip = format!("{wet}{STRIP}");
+    assert_eq!(lines(&strip).0, [vec![6, 10], vec![]]);
+    assert!(!loses(&strip), ".2 of a cell");
+    let deeper = strip.replace("[0.0, -0.1]", "[0.0, -0.4]");
+    assert!(loses(&deeper));
+    let by_hand = "knots = { x = [0, 2, 2, 4, 6, 8], y = [0, 1, 2, 3, 4, 5, 6] }";
+    assert!(loses(&wet.replace("lower = [0.0, 0.0]\n    upper = [8.0, 6.0]\n    cell  = 0.5", by_hand)));
+    let load = "[[traction]]\nfrom = [2.0, 4.0]\nto = [4.0, 4.0]\nstress = [0.0, -1e3]\nramp = 1.0\n";
+    let (found, _, warnings) = lines(&format!("{wet}{load}"));
+    assert_eq!(found, [vec![], vec![]]);
+    assert!(warnings.iter().any(|told| told.contains("where water flows, without a line there")), "{warnings:?}");
+}

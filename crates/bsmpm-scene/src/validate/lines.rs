@@ -11,7 +11,7 @@ use crate::record::Record;
 use crate::region::Edge;
 use crate::report::Report;
 use crate::words::C0Lines;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 /// Parts of a cell by which a place may miss a grid line: rounding.
 const ROUNDING: f64 = 1e-6;
@@ -28,6 +28,8 @@ const UNLIKE: f64 = 1.5;
 const DENSER: f64 = 2.0;
 /// Ratio of two moduli up to which a stiff body on yielding soil was shown to be right once it has left its grid line.
 const SHOWN: f64 = 100.0;
+/// Parts of the shortest cell that a strip may go before ground under water is told to lose volume at its lines.
+const CROSSED: f64 = 0.25;
 const NAMES: [&str; 2] = ["x", "y"];
 
 /// Adds the lines to a case's grid, tells where and why, and warns of places where none can be.
@@ -44,9 +46,10 @@ pub(super) fn place(case: &mut Case, record: &Record, report: &mut Report<'_>) {
     }
     let lines = std::mem::take(&mut found.lines);
     let chosen = record.record("grid").and_then(|grid| grid.word("c0_lines")).unwrap_or(C0Lines::Automatic);
-    // Where water flows they are shown to be right at the ends of strips only.
-    let is_placed =
-        |place: &(usize, usize)| chosen == C0Lines::Automatic && (case.flow.is_none() || found.held.contains(place));
+    // Where water flows, ground loses volume as it moves through them: they are at the ends of strips only.
+    let is_placed = |place: &(usize, usize)| {
+        chosen == C0Lines::Automatic && (case.flow.is_none() || found.held.contains_key(place))
+    };
     let (placed, left): (Vec<_>, Vec<_>) = lines.into_iter().partition(|(place, _)| is_placed(place));
     if let Some(((axis, line), reason)) = left.iter().find(|((axis, line), _)| !has(case, *axis, *line)) {
         let at = coordinate(case, *axis, *line);
@@ -57,19 +60,39 @@ pub(super) fn place(case: &mut Case, record: &Record, report: &mut Report<'_>) {
              wrong, up to by tens of per cent, within about three cells, and a strip holds a cell more than its length"
         ));
     }
+    let mut crossed = own(case);
     for ((axis, line), reason) in placed {
+        if found.held.get(&(axis, line)).is_some_and(|far| *far > CROSSED * case.grid.axes[axis].shortest()) {
+            crossed = crossed.or(Some((axis, line)));
+        }
         insert(case, axis, line);
         let at = format!("{} = {}", NAMES[axis], coordinate(case, axis, line));
         report.note("grid.c0_lines", at, reason);
     }
+    if let Some((axis, line)) = crossed.filter(|_| case.flow.is_some()) {
+        report.warn(format!(
+            "grid.c0_lines: strains may jump at {} = {}, and water fills the ground: as that moves across the line its points \
+             integrate volumes less well, and where water cannot leave it loses volume (.07 of .4 m2 that a strip pushes aside \
+             in cells of .5 m); more points_per_cell, or no such line",
+            NAMES[axis],
+            coordinate(case, axis, line)
+        ));
+    }
     found.doubts.into_values().for_each(|doubt| report.warn(doubt));
+}
+
+/// The first line of the grid's own knots across which strains may jump.
+fn own(case: &Case) -> Option<(usize, usize)> {
+    let along = |axis: usize| case.grid.lines[axis].iter().map(move |line| (axis, line));
+    let found = [0, 1].into_iter().flat_map(along).find(|(_, line)| line.multiplicity >= case.grid.order)?;
+    Some((found.0, found.1.breakpoint))
 }
 
 /// Lines by axis and breakpoint with their reasons, and what cannot be on one.
 #[derive(Default)]
 struct FoundLine {
     lines: BTreeMap<(usize, usize), String>,
-    held: BTreeSet<(usize, usize)>, // those of them at the ends of strips
+    held: BTreeMap<(usize, usize), f64>, // those of them at the ends of strips: how far these go, m
     doubts: BTreeMap<String, String>,
     narrow: Vec<(&'static str, usize, String)>,
 }
@@ -221,6 +244,12 @@ impl Segment<'_> {
     fn stays(&self, axis: usize) -> bool {
         self.path.is_none_or(|path| path.rows.iter().all(|(_, moved)| moved[axis] == 0.0))
     }
+
+    /// How far it goes, m.
+    fn goes(&self) -> f64 {
+        let rows = self.path.iter().flat_map(|path| &path.rows);
+        rows.map(|(_, moved)| moved[0].hypot(moved[1])).fold(0.0, f64::max)
+    }
 }
 
 fn all_segments(case: &Case) -> Vec<Segment<'_>> {
@@ -275,7 +304,8 @@ fn end(case: &Case, segment: &Segment<'_>, (along, at, outward): (usize, [f64; 2
         Some(line) if segment.stays(along) => {
             found.lines.entry((along, line)).or_insert(reason);
             if segment.path.is_some() {
-                found.held.insert((along, line));
+                let far = found.held.entry((along, line)).or_default();
+                *far = far.max(segment.goes());
             }
         }
         _ if segment.path.is_none() => {}

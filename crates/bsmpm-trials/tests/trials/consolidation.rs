@@ -1,9 +1,9 @@
 //! Water that flows by the real binary: Terzaghi's column, drained at a face of the grid or at the surface of a body
 //! within a cell; ranks agree, and a run that was cut in two goes on to the bit.
 
-use crate::support::Scratch;
 use crate::support::cases::changed;
 use crate::support::results::{at, history, manifest};
+use crate::support::{Scratch, shipped};
 use bsmpm_io::residuals;
 
 /// A column 1 m high of M = 1 MPa and c_v = 1e-6 m2/s under 100 Pa.
@@ -135,4 +135,19 @@ fn a_drain_that_leaves_the_grid_is_told_of() {
     );
     let further = run("further", "grid.upper=[0.4, 1.1]");
     assert!(further.is_empty(), "{further:?}");
+}
+
+/// Under F-bar permeability and closure go by J-bar: by the points' own J pores at the drain close at T = .19.
+#[test]
+fn a_load_of_half_the_stiffness_leaves_pores_open_under_f_bar() {
+    let scratch = Scratch::new();
+    let case = shipped("validation/large_consolidation.toml");
+    let law = "material.clay.permeability_law=kozeny-carman";
+    scratch.direct(&[case.to_str().expect("UTF-8"), "--set", law, "-q", "-o", "out"]).expect(0);
+    let found = history(&scratch.path("out"));
+    // By lines, 200 and 400 cells, extrapolated.
+    for (time, settled) in [(1e5, 0.09887), (2e5, 0.13970), (5e5, 0.21296), (1e6, 0.26489)] {
+        let ours = -at(&found, "top-y", time);
+        assert!((ours / settled - 1.0).abs() < 0.02, "{time}: {ours} for {settled}");
+    }
 }

@@ -8,7 +8,6 @@ use bsmpm::boundary::{Load, Support, SurfacePoint};
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::{Regime, Weighting};
 use bsmpm::points::Points;
-use bsmpm::stabilisation::Stabilisation;
 use bsmpm::tensor::Vector;
 use bsmpm::water::flow::{Course, Drain, Given, PermeabilityLaw};
 use nalgebra::{DMatrix, DVector};
@@ -67,26 +66,6 @@ fn a_drained_surface_that_settles_through_rows_of_cells_stays_drained() {
         println!("{law:?}: settlement off by {errors:.4?}, {iterations} iterations, water by {out:.1e}");
         assert!(errors.iter().all(|error| error.abs() <= 0.0135) && out.abs() <= 2e-6);
     }
-}
-
-#[test]
-fn under_consistent_f_bar_pores_close_by_the_average_and_not_point_by_point() {
-    // The same column under Kozeny-Carman's law; a first step in which the load is carried by .04 of a cell.
-    let times = [0.1, 0.2, 0.5, 1.0];
-    let exact = [0.09887, 0.13970, 0.21296, 0.26489];
-    let mut scene = column(20, 0.999, 0.5 * M, PermeabilityLaw::KozenyCarman);
-    scene.model.stabilisation = Stabilisation::ConsistentFBar;
-    let soft = Background { kind: Kind::Strain, coefficient: 1e-2, extent: Extent::PartlyFilled };
-    scene = scene.background(Some(soft));
-    scene.model.weighting = Weighting::Volume;
-    let mut errors = Vec::new();
-    run(&mut scene, steps(1e-4, 100, &times), |t, points, _| {
-        if let Some(k) = times.iter().position(|time| *time == t) {
-            errors.push((1.0 - height(points)) / exact[k] - 1.0);
-        }
-    });
-    println!("settlement off by {errors:.4?}");
-    assert!(errors.len() == times.len() && errors.iter().all(|error| error.abs() <= 0.02));
 }
 
 /// Times of `count` steps that grow from `first` to the last of `times`, which all are among them.
