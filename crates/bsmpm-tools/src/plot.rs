@@ -17,6 +17,7 @@ mod convergence;
 mod curves;
 mod field;
 mod rigid;
+mod section;
 mod surface;
 
 pub use field::FieldName;
@@ -30,8 +31,8 @@ pub struct PlotArguments {
     /// case, or three]
     #[arg(long, value_delimiter = ',', value_parser = time)]
     pub times: Vec<f64>,
-    /// What colours the body [default: stress-yy, in quasi-static analyses also plastic-strain where
-    /// there is any]
+    /// What colours the body [default: stress-yy, of a solid stress-zz, in quasi-static analyses also plastic-strain
+    /// where there is any]
     #[arg(long, value_enum)]
     pub field: Option<FieldName>,
     /// Ends of the colours, in the unit of the picture, so that runs can be compared [default: from the values]
@@ -88,13 +89,13 @@ pub fn draw(arguments: &PlotArguments) -> Result<Vec<String>, Error> {
 fn pictures(arguments: &PlotArguments) -> Result<(RunRecord, Vec<String>), Error> {
     let record = RunRecord::read(&arguments.directory)?;
     let reference = arguments.reference.as_deref().map(reference::columns).transpose()?;
-    let frames = record.frames(&arguments.times)?;
+    let (frames, section) = section::of(&record, record.frames(&arguments.times)?);
     let mut names = Vec::new();
     if !frames.is_empty() {
         // Given ends of the colours are those of the first field.
         let ranges = [arguments.range].into_iter().chain(std::iter::repeat(None));
         for (field, range) in fields(&record, &frames, arguments.field).into_iter().zip(ranges) {
-            names.extend(body::draw(&record, &frames, field, range)?);
+            names.extend(body::draw(&record, &frames, field, (range, section))?);
         }
         if has_surface(&record, reference.as_ref()) {
             names.push(surface::draw(&record, &frames, reference.as_ref())?);
@@ -111,14 +112,15 @@ fn pictures(arguments: &PlotArguments) -> Result<(RunRecord, Vec<String>), Error
 
 /// The wanted field, or those that show how a scene of this kind stands; the plastic strain only if there is any.
 fn fields(record: &RunRecord, frames: &[Frame], wanted: Option<FieldName>) -> Vec<FieldName> {
+    let vertical = if record.is_solid() { FieldName::StressZz } else { FieldName::StressYy };
     match (wanted, record.regime()) {
         (Some(field), _) => vec![field],
-        (None, Regime::Dynamic) => vec![FieldName::StressYy],
+        (None, Regime::Dynamic) => vec![vertical],
         (None, Regime::QuasiStatic) => {
             let strains: Option<Vec<_>> = frames.iter().map(|frame| FieldName::PlasticStrain.values(frame)).collect();
             let has_strain = strains.is_some_and(|strains| strains.iter().flatten().any(|&strain| strain != 0.0));
             let strain = has_strain.then_some(FieldName::PlasticStrain);
-            [FieldName::StressYy].into_iter().chain(strain).collect()
+            [vertical].into_iter().chain(strain).collect()
         }
     }
 }

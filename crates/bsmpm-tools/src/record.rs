@@ -39,9 +39,24 @@ impl RunRecord {
         })
     }
 
-    /// What the axis across is called in pictures.
-    pub fn across(&self) -> &'static str {
-        if self.manifest.case.geometry == "axisymmetric" { "r" } else { "x" }
+    /// Whether it is in three dimensions, and pictures show a section.
+    pub fn is_solid(&self) -> bool {
+        self.manifest.case.geometry == "solid"
+    }
+
+    /// The axes that pictures show: the one across, and the vertical one.
+    pub fn plane(&self) -> [usize; 2] {
+        if self.is_solid() { [0, 2] } else { [0, 1] }
+    }
+
+    /// What they are called, with their unit.
+    pub fn axes(&self) -> [(&'static str, &'static str); 2] {
+        let [across, up] = match self.manifest.case.geometry.as_str() {
+            "axisymmetric" => ["r", "y"],
+            "solid" => ["x", "z"],
+            _ => ["x", "y"],
+        };
+        [(across, "m"), (up, "m")]
     }
 
     /// Whether inertia acts: as the case says, else by the unit of time, which a quasi-static analysis does not have.
@@ -97,9 +112,9 @@ impl RunRecord {
         if self.is_timeless() { format!("pseudo-time {}", short(time)) } else { format!("t = {} s", short(time)) }
     }
 
-    /// Whether the grid's lower and upper faces along x and y hold the body.
+    /// Whether the grid's lower and upper faces along the axes of pictures hold the body.
     pub fn walls(&self) -> [[bool; 2]; 2] {
-        let held = |axes: [[Support; 2]; 3]| [0, 1].map(|axis: usize| axes[axis].map(|face| face != Support::Free));
+        let held = |axes: [[Support; 2]; 3]| self.plane().map(|axis| axes[axis].map(|face| face != Support::Free));
         self.case.boundary.map_or_else(Default::default, held)
     }
 

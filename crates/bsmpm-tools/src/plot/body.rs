@@ -18,12 +18,13 @@ use crate::record::{RunRecord, short};
 const ABOVE: f64 = 130.0;
 const RIGHT: f64 = 60.0;
 
-/// Draws a picture for every frame, with the `wanted` range of colours or one from the values; returns their names.
+/// Draws a picture for every frame, with the `wanted` range of colours or one from the values, of the `section` of a
+/// solid; returns their names.
 pub(super) fn draw(
     record: &RunRecord,
     frames: &[Frame],
     field: FieldName,
-    wanted: Option<(f64, f64)>,
+    (wanted, section): (Option<(f64, f64)>, Option<f64>),
 ) -> Result<Vec<String>, Error> {
     let values: Option<Vec<_>> = frames.iter().map(|frame| field.values(frame)).collect();
     let missing = || Error::Missing {
@@ -37,15 +38,15 @@ pub(super) fn draw(
     let mut names = Vec::new();
     for (frame, values) in frames.iter().zip(&values) {
         let name = format!("{}_{}.png", field.name(), short(frame.time));
-        let bar = Bar { range: colours, label: field.label() };
-        picture((record, case.as_ref()), frame, values, region, bar).save(&record.directory.join(&name))?;
+        let bar = Bar { range: colours, label: field.label(section.is_some()) };
+        picture((record, case.as_ref(), section), frame, values, region, bar).save(&record.directory.join(&name))?;
         names.push(name);
     }
     Ok(names)
 }
 
 fn picture(
-    (record, case): (&RunRecord, Option<&Case>),
+    (record, case, section): (&RunRecord, Option<&Case>, Option<f64>),
     frame: &Frame,
     values: &[f64],
     region: [(f64, f64); 2],
@@ -57,7 +58,8 @@ fn picture(
     let axes = layout.axes(ABOVE);
     let mut canvas = Canvas::new(layout.width, axes.bottom + axes::BELOW + if lying { bar::BELOW } else { 0.0 });
     let reduction = record.case.strength_reduction.map(|factor| format!(", strength divided by {factor}"));
-    let below = record.moment(frame.time) + &reduction.unwrap_or_default();
+    let section = section.map(|y| format!(", section at y = {} m", short(y)));
+    let below = record.moment(frame.time) + &reduction.unwrap_or_default() + &section.unwrap_or_default();
     title(&mut canvas, layout.width, &record.manifest.case.title, &below);
     let shades: Vec<_> = values.iter().map(|&value| colour::map(bar.share(value))).collect();
     let sizes = splat::sizes(frame, &record.manifest.case.geometry);
@@ -73,7 +75,8 @@ fn picture(
         rigid::draw(&mut canvas, (&axes, region), (record, case), frame);
     }
     outline(&mut canvas, &axes, record);
-    axes.draw(&mut canvas, Some((record.across(), "m")), ("y", "m"));
+    let [across, up] = record.axes();
+    axes.draw(&mut canvas, Some(across), up);
     if lying {
         bar.lying(&mut canvas, &axes);
     } else {
@@ -82,12 +85,13 @@ fn picture(
     canvas
 }
 
-/// The ranges of x and y where points can be: the grid's box, or without one that of all points.
+/// The ranges along the axes of the picture where points can be: the grid's box, or without one that of all points.
 fn window(record: &RunRecord, frames: &[Frame]) -> [(f64, f64); 2] {
     let extent = record.manifest.grid.as_ref();
-    [0, 1].map(|axis| {
-        let grid = extent.and_then(|grid| Some((*grid.lower.get(axis)?, *grid.upper.get(axis)?)));
-        let points = || range(frames.iter().flat_map(|frame| &frame.position).map(|point| point[axis]));
+    let plane = record.plane();
+    [0, 1].map(|shown| {
+        let grid = extent.and_then(|grid| Some((*grid.lower.get(plane[shown])?, *grid.upper.get(plane[shown])?)));
+        let points = || range(frames.iter().flat_map(|frame| &frame.position).map(|point| point[shown]));
         grid.or_else(points).unwrap_or((0.0, 1.0))
     })
 }
@@ -103,7 +107,11 @@ pub(super) fn region(record: &RunRecord, frames: &[Frame]) -> [(f64, f64); 2] {
 /// The box of the grid, if the manifest tells it.
 pub(super) fn outline(canvas: &mut Canvas, axes: &ChartAxes, record: &RunRecord) {
     let Some(grid) = &record.manifest.grid else { return };
-    if let ([left, bottom, ..], [right, top, ..]) = (&grid.lower[..], &grid.upper[..]) {
-        canvas.frame(axes.place((*left, *top)), axes.place((*right, *bottom)), 1.5, OUTLINE);
+    let corner = |of: &[f64]| {
+        let [across, up] = record.plane().map(|axis| of.get(axis).copied());
+        Some((across?, up?))
+    };
+    if let (Some((left, bottom)), Some((right, top))) = (corner(&grid.lower), corner(&grid.upper)) {
+        canvas.frame(axes.place((left, top)), axes.place((right, bottom)), 1.5, OUTLINE);
     }
 }

@@ -13,9 +13,9 @@ const BEYOND: f64 = 0.005;
 pub enum FieldName {
     /// Horizontal Cauchy stress, kPa
     StressXx,
-    /// Vertical Cauchy stress, kPa
+    /// Vertical Cauchy stress, kPa; of a solid along y, across the section
     StressYy,
-    /// Cauchy stress out of the plane, kPa
+    /// Cauchy stress out of the plane, kPa; of a solid the vertical one
     StressZz,
     /// Shear stress, kPa
     StressXy,
@@ -114,10 +114,15 @@ impl FieldName {
         self.source().field
     }
 
-    /// The label of the colour bar.
-    pub(super) fn label(self) -> (&'static str, &'static str) {
+    /// The label of the colour bar, of a plane or of a solid.
+    pub(super) fn label(self, is_solid: bool) -> (&'static str, &'static str) {
         let source = self.source();
-        (source.quantity, source.unit)
+        let quantity = match self {
+            Self::StressYy if is_solid => "Stress σyy across the section",
+            Self::StressZz if is_solid => "Vertical stress σzz",
+            _ => source.quantity,
+        };
+        (quantity, source.unit)
     }
 
     /// The quantity at every point of a frame, in the unit of [`FieldName::label`].

@@ -43,7 +43,8 @@ pub(super) fn draw(record: &RunRecord, frames: &[Frame], reference: Option<&Colu
         canvas.disc(axes.place(*place), 8.0, WHITE);
         canvas.disc(axes.place(*place), 6.0, colour);
     }
-    axes.draw(&mut canvas, Some((record.across(), "m")), ("y", "m"));
+    let [across, up] = record.axes();
+    axes.draw(&mut canvas, Some(across), up);
     canvas.save(&record.directory.join(NAME))?;
     Ok(NAME.to_owned())
 }
