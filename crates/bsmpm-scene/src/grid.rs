@@ -3,6 +3,7 @@
 //! The cells here are those that have a length. The knot vectors of the physics count the spans between knots, among
 //! them those without length between the copies of a repeated breakpoint.
 
+use bsmpm::tensor::Vector;
 use std::ops::Range;
 
 /// The parametric grid.
@@ -160,4 +161,9 @@ impl GridAxis {
         }
         lower
     }
+}
+
+/// A vector of a case in the dimension of its geometry; what is described in a plane has no further component.
+pub fn vector<const D: usize, const N: usize>(of: [f64; N]) -> Vector<D> {
+    Vector::from_fn(|axis, _| of.get(axis).copied().unwrap_or(0.0))
 }

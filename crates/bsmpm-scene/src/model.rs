@@ -22,10 +22,7 @@ use bsmpm::water::ambient::Ambient;
 use bsmpm::water::flow::Flow;
 use std::marker::PhantomData;
 
-/// A vector of a case in the dimension of its geometry; what is described in a plane has no further component.
-pub fn vector<const D: usize, const N: usize>(of: [f64; N]) -> Vector<D> {
-    Vector::from_fn(|axis, _| of.get(axis).copied().unwrap_or(0.0))
-}
+pub use crate::grid::vector;
 
 /// The model of a case over its whole grid, at the start.
 pub fn model<K: Kinematics<D>, const D: usize>(case: &Case) -> Result<Model<K, D>, GridError> {

@@ -3,7 +3,7 @@
 
 use crate::case::{Body, Case};
 use crate::grid::GridSpec;
-use crate::model::vector;
+use crate::grid::vector;
 use crate::region::{CellPlace, Extent, Outline, Region, RegionPart, Volume, of_cell};
 use bsmpm::kinematics::Kinematics;
 use bsmpm::points::Seed;

@@ -1,6 +1,6 @@
 //! Strips, rigid bodies and loads of a case as the physics wants them, and the footing's gauges.
 
-use crate::model::vector;
+use crate::grid::vector;
 use crate::{
     Acting, Base, Case, DrainSite, Face, Footing, Geometry, LoadedLine, Prescribed, Push, Rigid, RigidShape, Site,
 };

@@ -131,8 +131,8 @@ impl Edge {
         }
     }
 
-    /// Area between the edge and its chord from `x[0]` to `x[1]`, m², and its first moments, m³; negative where the edge
-    /// lies below.
+    /// Area between the edge and its chord from `x[0]` to `x[1]`, m², and its first moments, m³; negative where the
+    /// edge lies below.
     pub(crate) fn bulge(&self, x: [f64; 2]) -> Bulge {
         let Some(Arc { center, radius, upper }) = self.arc else { return Bulge::default() };
         let sign = if upper { 1.0 } else { -1.0 };

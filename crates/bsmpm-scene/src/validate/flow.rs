@@ -13,7 +13,7 @@ use crate::nearest::hint;
 use crate::record::Record;
 use crate::region::{Region, skin};
 use crate::report::Report;
-use crate::words::{Drainage, Geometry, Side};
+use crate::words::{Drainage, Side};
 use bsmpm::water::flow::{Course, Given, Permeability, PermeabilityLaw, Soil};
 use bsmpm::water::retention::Retention;
 
@@ -255,7 +255,7 @@ fn course(record: &Record, key: &str, report: &mut Report<'_>) -> Option<Course>
 
 /// A face of the grid at which a body of permeable soil lies.
 fn face(record: &Record, ground: Ground<'_>, report: &mut Report<'_>) -> Option<Face> {
-    let face = face_in_plane(record, report)?;
+    let face = place::face_in_plane(record, report)?;
     let grid = ground.around.grid?;
     let slack = AT * grid.axes[face.axis].shortest();
     let (at, side) = ([grid.lower(), grid.upper()][usize::from(face.upper)][face.axis], usize::from(face.upper));
@@ -268,16 +268,6 @@ fn face(record: &Record, ground: Ground<'_>, report: &mut Report<'_>) -> Option<
         return None;
     }
     Some(face)
-}
-
-/// The face of a plane's grid that a record names.
-pub(super) fn face_in_plane(record: &Record, report: &mut Report<'_>) -> Option<Face> {
-    let side: Side = record.word("face")?;
-    let face = Face::of(side, Geometry::PlaneStrain);
-    if face.is_none() {
-        record.error("face", format!("a grid in a plane has no face \"{side}\""), report);
-    }
-    face
 }
 
 /// The surface of bodies of permeable soil, but for what lies at faces of the grid that hold it.

@@ -1,7 +1,10 @@
 //! Whether places lie in the grid, and whether there is a body at them.
 
-use crate::case::Body;
+use crate::case::{Body, Face, Geometry};
 use crate::grid::GridSpec;
+use crate::record::Record;
+use crate::report::Report;
+use crate::words::Side;
 
 /// Parts of a cell by which a place may lie beyond the grid: rounding.
 const ROUNDING: f64 = 1e-9;
@@ -59,4 +62,14 @@ pub(super) fn at_body(bodies: &[Body], grid: &GridSpec, at: [f64; 2]) -> bool {
         let near = (0..2).all(|axis| at[axis] >= lower[axis] - half && at[axis] <= upper[axis] + half);
         near && DISTANCES.iter().any(|part| (0..DIRECTIONS).any(|k| body.region.contains(around(k, *part))))
     })
+}
+
+/// The face of a plane's grid that a record names.
+pub(super) fn face_in_plane(record: &Record, report: &mut Report<'_>) -> Option<Face> {
+    let side: Side = record.word("face")?;
+    let face = Face::of(side, Geometry::PlaneStrain);
+    if face.is_none() {
+        record.error("face", format!("a grid in a plane has no face \"{side}\""), report);
+    }
+    face
 }

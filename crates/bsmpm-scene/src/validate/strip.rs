@@ -154,7 +154,7 @@ fn site(record: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Op
         starts_at_body(record, "from", [from, to], around, report);
         return Some(Site::Segment { from, to });
     }
-    let (side, face) = (record.word::<Side>("face")?, super::flow::face_in_plane(record, report)?);
+    let (side, face) = (record.word::<Side>("face")?, super::place::face_in_plane(record, report)?);
     let support = around.boundary?[face.axis][usize::from(face.upper)];
     if support != Support::Free {
         let message = format!("[boundary] holds \"{side}\" too; leave it free there");

@@ -18,8 +18,8 @@ const SKIN: f64 = 0.5;
 /// dots  The most that is looked at beyond the window, which bounds the memory for huge points.
 const MARGIN: f64 = 600.0;
 
-/// The side of each point's share of the body, in m: from its volume in a plane of 1 m thickness, of a radian about x = 0
-/// or in space, else the mean one.
+/// The side of each point's share of the body, in m: from its volume in a plane of 1 m thickness, of a radian about
+/// x = 0 or in space, else the mean one.
 pub(crate) fn sizes(frame: &Frame, geometry: &str) -> Vec<f64> {
     match frame.real("volume", 1) {
         Some(volumes) if geometry == "plane-strain" => volumes.iter().map(|volume| volume.abs().sqrt()).collect(),
