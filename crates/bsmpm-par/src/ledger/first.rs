@@ -21,8 +21,8 @@ pub(super) fn manifest(arguments: &Arguments, case: &Case, ranks: usize) -> Mani
     let longest = |axis: &bsmpm_scene::GridAxis| (0..axis.cells()).map(|i| axis.cell(i)).fold(0.0, f64::max);
     (manifest.ranks, manifest.threads) = (ranks as u32, arguments.threads);
     manifest.grid = Some(GridExtent {
-        lower: case.grid.lower().to_vec(),
-        upper: case.grid.upper().to_vec(),
+        lower: case.grid.lower()[..axes.len()].to_vec(),
+        upper: case.grid.upper()[..axes.len()].to_vec(),
         cell: axes.iter().map(longest).collect(),
     });
     let estimate = case.estimate();

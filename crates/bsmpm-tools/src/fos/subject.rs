@@ -223,20 +223,24 @@ fn reduction(factor: f64, stiffness: f64) -> Vec<String> {
 /// What Young's moduli must be multiplied with so that the load strains no body by more than [`SMALL`], to three
 /// digits.
 fn stiffness(case: &Case) -> f64 {
-    let heights = case.bodies.iter().map(|body| [body.bounds()[0][1], body.bounds()[1][1]]);
+    let up = case.grid.dims() - 1;
+    let heights = case.bodies.iter().map(|body| body.bounds().map(|corner| corner[up]));
     let [low, high] = heights.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], [c, d]| [a.min(c), b.max(d)]);
-    let base = case.grid.lower()[1];
+    let base = case.grid.lower()[up];
     let of_body = |body: &bsmpm_scene::Body| {
         let material = &case.materials[body.material].material;
         let at = |y: f64| material.at(y - base).elastic().young;
-        at(body.bounds()[0][1]).min(at(body.bounds()[1][1]))
+        at(body.bounds()[0][up]).min(at(body.bounds()[1][up]))
     };
     let softest = case.bodies.iter().map(of_body).fold(f64::INFINITY, f64::min);
     let densities = case.bodies.iter().filter_map(|body| {
         let named = &case.materials[body.material];
         named.saturated.or(named.density)
     });
-    let gravity = case.gravity.as_ref().map_or(0.0, |gravity| gravity.acceleration[0].hypot(gravity.acceleration[1]));
+    let gravity = case
+        .gravity
+        .as_ref()
+        .map_or(0.0, |gravity| gravity.acceleration.iter().fold(0.0, |length: f64, g| length.hypot(*g)));
     let weight = densities.fold(0.0, f64::max) * gravity * (high - low);
     let tractions = case.tractions.iter().map(Traction::largest);
     let needed = (weight + tractions.fold(0.0, f64::max)) / softest / SMALL;

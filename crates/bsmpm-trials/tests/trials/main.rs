@@ -26,6 +26,7 @@ mod saturated_column;
 mod scenes;
 mod settled_start;
 mod signals;
+mod solid;
 mod stages;
 mod still_water;
 mod strips;
