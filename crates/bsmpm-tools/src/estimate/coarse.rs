@@ -32,7 +32,8 @@ pub(super) fn text(case: &Case, factor: usize) -> Option<String> {
         let lines: Vec<usize> = case.grid.lines[axis].iter().map(|line| line.breakpoint).collect();
         knots(&case.grid.axes[axis], &lines, factor)
     };
-    let knots = ["x", "y"].into_iter().zip([of(0), of(1)]).map(|(name, knots)| (name.to_owned(), knots));
+    let axes = (0..case.grid.dims()).map(of);
+    let knots = ["x", "y", "z"].into_iter().zip(axes).map(|(name, knots)| (name.to_owned(), knots));
     grid.insert("knots".to_owned(), Value::Table(knots.collect()));
     for body in table.get_mut("body")?.as_array_mut()? {
         let points = body.get_mut("points_per_cell")?;
