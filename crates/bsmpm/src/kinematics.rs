@@ -9,7 +9,7 @@ pub use axisymmetric::Axisymmetric;
 pub use plane_strain::PlaneStrain;
 pub use solid::Solid;
 
-use crate::real::{Real, three};
+use crate::real::Real;
 use crate::tensor::{Square, Symmetric, Tensor, Vector};
 use nalgebra::{ArrayStorage, SMatrix, SVector};
 use std::fmt::Debug;
@@ -26,8 +26,7 @@ pub trait Kinematics<const D: usize>: Copy + Debug + Default + Send + Sync + 'st
     /// dF = I + grad u, -.
     #[inline(always)]
     fn deformation<R: Real>(grad: &GradientOf<Self, R, D>) -> Tensor<R> {
-        let gradient = Self::gradient::<R>(grad);
-        Tensor::from_fn(|i, j| gradient[(i, j)] + if i == j { 1.0 } else { 0.0 })
+        plus_identity(&Self::gradient::<R>(grad))
     }
 
     /// Displacement gradient as a tensor.
@@ -43,7 +42,7 @@ pub trait Kinematics<const D: usize>: Copy + Debug + Default + Send + Sync + 'st
     #[inline(always)]
     fn dilate<R: Real>(dF: &Tensor<R>, ratio: R) -> Tensor<R> {
         let root = ratio.cube_root();
-        Tensor::from_fn(|i, j| dF[(i, j)] * root)
+        of_rows(scaled(row(dF, 0), root), scaled(row(dF, 1), root), scaled(row(dF, 2), root))
     }
 
     /// The part of a tensor that works on gradients: the adjoint of [`Kinematics::gradient`].
@@ -60,10 +59,9 @@ pub trait Kinematics<const D: usize>: Copy + Debug + Default + Send + Sync + 'st
     fn push_forward<R: Real>(dF: &Tensor<R>, b_e: &Symmetric<R>) -> Symmetric<R> {
         let [xx, yy, zz, xy, yz, xz] = b_e.0;
         let b = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
-        let row = |i: usize| three(|k| dF[(i, 0)] * b[0][k] + dF[(i, 1)] * b[1][k] + dF[(i, 2)] * b[2][k]);
-        let rows = [row(0), row(1), row(2)];
-        let at = |i: usize, j: usize| rows[i][0] * dF[(j, 0)] + rows[i][1] * dF[(j, 1)] + rows[i][2] * dF[(j, 2)];
-        Symmetric([at(0, 0), at(1, 1), at(2, 2), at(0, 1), at(1, 2), at(0, 2)])
+        let F = [row(dF, 0), row(dF, 1), row(dF, 2)];
+        let [x, y, z] = [times(b, F[0]), times(b, F[1]), times(b, F[2])];
+        Symmetric([dot(x, F[0]), dot(y, F[1]), dot(z, F[2]), dot(x, F[1]), dot(y, F[2]), dot(x, F[2])])
     }
 
     /// Elastic stiffness of a node pair from T = sum V0 g_a (x) g_b, g their numbers: where these are derivatives,
@@ -202,23 +200,84 @@ fn isotropic<const D: usize>(moment: &Square<D>, (lambda, mu): (f64, f64)) -> Sq
     moment * lambda + moment.transpose() * mu + Square::<D>::identity() * (mu * moment.trace())
 }
 
+// Of lanes closures and nalgebra's `from_fn` may be left out of the function with the wide vectors, each operation in
+// them a call: products of tensors are written out in functions that are always inlined.
+
+/// Row `i`.
+#[inline(always)]
+fn row<R: Real>(F: &Tensor<R>, i: usize) -> [R; 3] {
+    [F[(i, 0)], F[(i, 1)], F[(i, 2)]]
+}
+
+/// The tensor of its rows.
+#[inline(always)]
+fn of_rows<R: Real>(x: [R; 3], y: [R; 3], z: [R; 3]) -> Tensor<R> {
+    Tensor::new(x[0], x[1], x[2], y[0], y[1], y[2], z[0], z[1], z[2])
+}
+
+/// a . b
+#[inline(always)]
+fn dot<R: Real>(a: [R; 3], b: [R; 3]) -> R {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// Products of a vector with three rows.
+#[inline(always)]
+fn times<R: Real>(rows: [[R; 3]; 3], vector: [R; 3]) -> [R; 3] {
+    [dot(vector, rows[0]), dot(vector, rows[1]), dot(vector, rows[2])]
+}
+
+/// I + grad.
+#[inline(always)]
+fn plus_identity<R: Real>(grad: &Tensor<R>) -> Tensor<R> {
+    let [x, y, z] = [row(grad, 0), row(grad, 1), row(grad, 2)];
+    of_rows(
+        [x[0] + 1.0, x[1] + 0.0, x[2] + 0.0],
+        [y[0] + 0.0, y[1] + 1.0, y[2] + 0.0],
+        [z[0] + 0.0, z[1] + 0.0, z[2] + 1.0],
+    )
+}
+
+/// Cofactor of an element.
+#[inline(always)]
+fn cofactor<R: Real>(F: &Tensor<R>, i: usize, j: usize) -> R {
+    let [i, next_i, j, next_j] = [(i + 1) % 3, (i + 2) % 3, (j + 1) % 3, (j + 2) % 3];
+    F[(i, j)] * F[(next_i, next_j)] - F[(i, next_j)] * F[(next_i, j)]
+}
+
+/// Cofactors of a column.
+#[inline(always)]
+fn cofactors<R: Real>(F: &Tensor<R>, j: usize) -> [R; 3] {
+    [cofactor(F, 0, j), cofactor(F, 1, j), cofactor(F, 2, j)]
+}
+
 /// tau dF^-T.
 #[inline(always)]
 fn pull_back<R: Real>(tau: &Symmetric<R>, dF: &Tensor<R>) -> Tensor<R> {
     let [xx, yy, zz, xy, yz, xz] = tau.0;
-    let tau = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
-    let at = |i: usize, j: usize| dF[(i % 3, j % 3)];
-    // Cofactors of dF: its inverse is their transpose over the determinant.
-    let cofactor = |i: usize, j: usize| at(i + 1, j + 1) * at(i + 2, j + 2) - at(i + 1, j + 2) * at(i + 2, j + 1);
-    let inverse = at(0, 0).like(1.0) / determinant(dF);
-    let element =
-        |i: usize, j: usize| tau[i][0] * cofactor(0, j) + tau[i][1] * cofactor(1, j) + tau[i][2] * cofactor(2, j);
-    Tensor::from_fn(|i, j| element(i, j) * inverse)
+    // The inverse of dF is the transpose of its cofactors over the determinant.
+    let columns = [cofactors(dF, 0), cofactors(dF, 1), cofactors(dF, 2)];
+    let inverse = xx.like(1.0) / determinant(dF);
+    let x = scaled(times(columns, [xx, xy, xz]), inverse);
+    let y = scaled(times(columns, [xy, yy, yz]), inverse);
+    let z = scaled(times(columns, [xz, yz, zz]), inverse);
+    of_rows(x, y, z)
+}
+
+/// A vector times a number.
+#[inline(always)]
+fn scaled<R: Real>(vector: [R; 3], by: R) -> [R; 3] {
+    [vector[0] * by, vector[1] * by, vector[2] * by]
 }
 
 /// det F.
 #[inline(always)]
 fn determinant<R: Real>(F: &Tensor<R>) -> R {
-    let minor = |i: usize, j: usize| F[(1, i)] * F[(2, j)] - F[(2, i)] * F[(1, j)];
-    F[(0, 0)] * minor(1, 2) - F[(0, 1)] * minor(0, 2) + F[(0, 2)] * minor(0, 1)
+    F[(0, 0)] * minor(F, 1, 2) - F[(0, 1)] * minor(F, 0, 2) + F[(0, 2)] * minor(F, 0, 1)
+}
+
+/// Of the rows 1 and 2.
+#[inline(always)]
+fn minor<R: Real>(F: &Tensor<R>, i: usize, j: usize) -> R {
+    F[(1, i)] * F[(2, j)] - F[(1, j)] * F[(2, i)]
 }

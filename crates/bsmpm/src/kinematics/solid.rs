@@ -1,6 +1,6 @@
 //! Three dimensions.
 
-use super::{Kinematics, determinant, isotropic, pull_back};
+use super::{Kinematics, determinant, isotropic, plus_identity, pull_back};
 use crate::real::Real;
 use crate::tensor::{Square, Symmetric, Tensor, Vector};
 
@@ -28,7 +28,7 @@ impl Kinematics<3> for Solid {
 
     #[inline(always)]
     fn jacobian<R: Real>(grad: &Tensor<R>) -> R {
-        determinant(&Tensor::from_fn(|i, j| if i == j { grad[(i, j)] + 1.0 } else { grad[(i, j)] }))
+        determinant(&plus_identity(grad))
     }
 
     #[inline(always)]

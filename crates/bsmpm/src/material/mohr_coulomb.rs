@@ -5,7 +5,7 @@
 
 use super::law::{Branch, FRICTIONAL, Law, Projection, Separation, Variable, frictional, reduced};
 use super::{Elastic, Moduli};
-use crate::real::{Real, three};
+use crate::real::{Real, choose};
 use crate::tensor::Tensor;
 use std::ops::{Add, Div, Mul, Sub};
 
@@ -192,7 +192,7 @@ impl<P: Real> Pyramid<P> {
         let mut tau = trial;
         if R::any(!inside) {
             let (face, keeps_order) = self.face(trial, excess);
-            tau = three(|k| R::choose(inside, trial[k], face[k]));
+            tau = choose(inside, trial, face);
             let beyond = !(inside | keeps_order);
             if R::any(beyond) {
                 let (edge, is_right, is_edge) = self.edge(trial);
@@ -200,7 +200,7 @@ impl<P: Real> Pyramid<P> {
                 corners.left_edge = beyond & is_edge & !is_right;
                 corners.apex = beyond & !is_edge;
                 let tip = excess.like(0.0) + self.strength / self.slopes.sin_phi;
-                tau = three(|k| R::choose(beyond, R::choose(is_edge, edge[k], tip), tau[k]));
+                tau = choose(beyond, choose(is_edge, edge, [tip; 3]), tau);
             }
         }
         (tau, !inside, corners)

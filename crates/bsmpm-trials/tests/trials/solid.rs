@@ -1,0 +1,178 @@
+//! Three dimensions by the real binary: a slice is plane strain, a box weighs what it weighs, a cylinder is the same on
+//! any number of ranks and over restarts.
+
+use crate::support::Scratch;
+use crate::support::cases::changed;
+use crate::support::results::{at, differences, history, last_frame};
+use std::f64::consts::PI;
+
+/// Cohesive sand that slumps in plane strain.
+const PLANE: &str = r#"
+geometry = "plane-strain"
+[analysis]
+type = "dynamic"
+end = 0.3
+dt = 0.02
+[grid]
+lower = [0, 0]
+upper = [4, 2]
+cell = 0.25
+order = "quadratic"
+[material.sand]
+model = "mohr-coulomb"
+young = "1 MPa"
+poisson = 0.3
+density = 2000
+friction = 25
+dilation = 0
+cohesion = "1 kPa"
+[[body]]
+material = "sand"
+box = { lower = [0, 0], upper = [1, 1.5] }
+points_per_cell = 2
+[gravity]
+acceleration = [0, -9.81]
+[boundary]
+left = "roller"
+bottom = "fixed"
+[solver]
+background = 0
+tolerance = 1e-18
+force_tolerance = 1e-13
+[output]
+every = 0.1
+[[history]]
+quantity = "displacement"
+at = [1, 1.5]
+[[history]]
+quantity = "stress"
+at = [0.5, 0.25]
+"#;
+
+/// The same, one cell thick, between rollers.
+fn slice() -> String {
+    let mut slice = PLANE.to_owned();
+    for (plane, solid) in [
+        ("geometry = \"plane-strain\"", "geometry = \"solid\""),
+        ("lower = [0, 0]\nupper = [4, 2]", "lower = [0, 0, 0]\nupper = [4, 0.25, 2]"),
+        ("{ lower = [0, 0], upper = [1, 1.5] }", "{ lower = [0, 0, 0], upper = [1, 0.25, 1.5] }"),
+        ("[0, -9.81]", "[0, 0, -9.81]"),
+        ("bottom = \"fixed\"", "bottom = \"fixed\"\nfront = \"roller\"\nback = \"roller\""),
+        ("at = [1, 1.5]", "at = [1, 0.125, 1.5]"),
+        ("at = [0.5, 0.25]", "at = [0.5, 0.125, 0.25]"),
+    ] {
+        slice = changed(&slice, plane, solid);
+    }
+    slice
+}
+
+#[test]
+fn a_slice_between_rollers_is_plane_strain() {
+    let run = |case: &str, name: &str| {
+        let scratch = Scratch::with_case(case);
+        scratch.direct(&["case.toml", "-q", "-o", name]).expect(0);
+        history(&scratch.path(name))
+    };
+    let (plane, solid) = (run(PLANE, "plane"), run(&slice(), "solid"));
+    let pairs = [("displacement-x", "displacement-x"), ("displacement-y", "displacement-z")];
+    let stresses = [("stress-xx", "stress-xx"), ("stress-yy", "stress-zz"), ("stress-zz", "stress-yy")];
+    for (of_plane, of_solid) in pairs.into_iter().chain(stresses) {
+        let [expected, found] = [at(&plane, of_plane, 0.3), at(&solid, of_solid, 0.3)];
+        println!("{of_solid}: {:e}", found / expected - 1.0);
+        assert!((found / expected - 1.0).abs() < 1e-11, "{of_solid}: {found} for {expected}");
+    }
+    assert!(at(&solid, "displacement-y", 0.3).abs() < 1e-14 && at(&plane, "displacement-x", 0.3) > 0.05);
+}
+
+/// A round column of sand that is let go.
+const COLUMN: &str = r#"
+geometry = "solid"
+[analysis]
+type = "dynamic"
+end = 0.2
+dt = 0.01
+[grid]
+lower = [0, 0, 0]
+upper = [3, 3, 1.25]
+cell = 0.25
+order = "quadratic"
+[material.sand]
+model = "mohr-coulomb"
+young = "1 MPa"
+poisson = 0.3
+density = 2000
+friction = 30
+dilation = 0
+cohesion = 0
+[[body]]
+material = "sand"
+extrude = { circle = { center = [1.5, 1.5], radius = 0.6 }, along = "z", from = 0, to = 1 }
+points_per_cell = 2
+[gravity]
+acceleration = [0, 0, -9.81]
+[boundary]
+bottom = "fixed"
+[stabilisation]
+method = "consistent-f-bar"
+[solver]
+tolerance = 1e-12
+force_tolerance = 1e-9
+[output]
+every = 0.1
+[[history]]
+quantity = "mass"
+[[history]]
+quantity = "reaction"
+face = "bottom"
+[[history]]
+quantity = "energy"
+"#;
+
+#[test]
+fn a_round_column_is_the_same_on_1_2_and_3_ranks_and_over_restarts() {
+    let scratch = Scratch::with_case(COLUMN);
+    for ranks in [1, 2, 3] {
+        let whole = format!("whole{ranks}");
+        scratch.mpirun(ranks, &["case.toml", "-q", "-o", &whole]).expect(0);
+        let part = ["case.toml", "-q", "-o", "part", "--restart", "auto"];
+        scratch.mpirun(ranks, &[&part[..], &["--max-steps", "11"]].concat()).expect(75);
+        scratch.mpirun(ranks, &part).expect(0);
+        let text = |name: &str| std::fs::read_to_string(scratch.path(name).join("history.csv")).unwrap();
+        assert!(text(&whole) == text("part"), "{ranks} ranks");
+        std::fs::remove_dir_all(scratch.path("part")).unwrap();
+        for (field, difference) in differences(&last_frame(&scratch.path(&whole)), &last_frame(&scratch.path("whole1")))
+        {
+            assert!(difference <= 1e-8, "{field} on {ranks} ranks differs by {difference:.1e}");
+        }
+    }
+    let table = history(&scratch.path("whole1"));
+    let of = |name: &str| at(&table, name, 0.2);
+    assert!((of("mass") / (2000.0 * PI * 0.36) - 1.0).abs() < 1e-12);
+    assert!(of("energy-plastic") > 0.0 && of("energy-closure").abs() < 1e-4 * of("energy-external"));
+    // Round: nothing pushes the base sideways.
+    assert!(of("reaction-x").abs() < 1e-3 * of("reaction-z") && of("reaction-y").abs() < 1e-3 * of("reaction-z"));
+}
+
+#[test]
+fn a_box_weighs_what_it_weighs() {
+    let still = changed(COLUMN, "type = \"dynamic\"\nend = 0.2\ndt = 0.01", "type = \"quasi-static\"\nsteps = 2");
+    let circle = "extrude = { circle = { center = [1.5, 1.5], radius = 0.6 }, along = \"z\", from = 0, to = 1 }";
+    let still = changed(&still, circle, "box = { lower = [0, 0, 0], upper = [1, 1, 1] }");
+    let still = changed(&still, "upper = [3, 3, 1.25]", "upper = [1, 1, 1.25]");
+    let rollers = ["left", "right", "front", "back", "bottom"].map(|side| format!("{side} = \"roller\"\n")).concat();
+    let still = changed(&still, "bottom = \"fixed\"\n", &rollers);
+    let still = changed(&still, "model = \"mohr-coulomb\"", "model = \"hencky\"");
+    let still = changed(&still, "friction = 30\ndilation = 0\ncohesion = 0\n", "");
+    let still = changed(&still, "every = 0.1", "every = 1.0");
+    let wanted = "[[history]]\nquantity = \"displacement\"\nat = [0.5, 0.5, 1]\n";
+    let scratch = Scratch::with_case(&format!("{still}{wanted}"));
+    scratch.mpirun(2, &["case.toml", "-q", "-o", "out"]).expect(0);
+    let table = history(&scratch.path("out"));
+    let (weight, constrained) = (2000.0 * 9.81, 1e6 * 0.7 / (1.3 * 0.4));
+    assert!((at(&table, "reaction-z", 1.0) / weight - 1.0).abs() < 1e-6);
+    // Hencky's law in one direction, P = M ln(lambda)/lambda: lambda = 1 - p + 3/2 p^2 under P = -p M.
+    let share = weight / constrained;
+    let settled = -at(&table, "displacement-z", 1.0) / (0.5 * share - 0.5 * share * share);
+    println!("settlement over the closed form: {settled}");
+    assert!((settled - 1.0).abs() < 0.01);
+}
