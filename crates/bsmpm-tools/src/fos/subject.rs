@@ -224,13 +224,13 @@ fn reduction(factor: f64, stiffness: f64) -> Vec<String> {
 /// digits.
 fn stiffness(case: &Case) -> f64 {
     let up = case.grid.dims() - 1;
-    let heights = case.bodies.iter().map(|body| body.bounds().map(|corner| corner[up]));
+    let heights = case.bodies.iter().map(|body| body.region.corners().map(|corner| corner[up]));
     let [low, high] = heights.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], [c, d]| [a.min(c), b.max(d)]);
     let base = case.grid.lower()[up];
     let of_body = |body: &bsmpm_scene::Body| {
         let material = &case.materials[body.material].material;
         let at = |y: f64| material.at(y - base).elastic().young;
-        at(body.bounds()[0][up]).min(at(body.bounds()[1][up]))
+        at(body.region.corners()[0][up]).min(at(body.region.corners()[1][up]))
     };
     let softest = case.bodies.iter().map(of_body).fold(f64::INFINITY, f64::min);
     let densities = case.bodies.iter().filter_map(|body| {

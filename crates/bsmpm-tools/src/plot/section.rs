@@ -1,5 +1,4 @@
-//! The section of a solid that pictures show: its points near the upright plane through their middle, across from the
-//! front to the back.
+//! The section of a solid that pictures show: its points near the upright plane halfway from the front to the back.
 
 use bsmpm_io::frame::{FieldValues, Frame};
 
@@ -11,16 +10,22 @@ const ACROSS: usize = 1;
 
 /// The frames as sections, with places (x, z), and the y of the section; those of a plane as they are.
 ///
-/// The section is where the middle of the points is in the first frame, and has the points that are nearer to it than
-/// half a cell.
+/// The section is in the middle of the grid, or if no point is near in that of the first frame's points, and has the
+/// points that are nearer to it than half a cell.
 pub(super) fn of(record: &RunRecord, frames: Vec<Frame>) -> (Vec<Frame>, Option<f64>) {
     if !record.is_solid() {
         return (frames, None);
     }
     let ends = frames.first().and_then(|frame| range(frame.position.iter().map(|point| point[ACROSS])));
     let Some((low, high)) = ends else { return (frames, None) };
-    let (middle, cell) = (0.5 * (low + high), record.manifest.grid.as_ref().and_then(|grid| grid.cell.get(ACROSS)));
-    let reach = 0.5 * cell.copied().unwrap_or(high - low);
+    let of_grid = record.manifest.grid.as_ref().and_then(|grid| {
+        let ends = [&grid.lower, &grid.upper, &grid.cell].map(|of| of.get(ACROSS).copied());
+        Some((0.5 * (ends[0]? + ends[1]?), 0.5 * ends[2]?))
+    });
+    let (middle, reach) = of_grid.unwrap_or((0.5 * (low + high), 0.5 * (high - low)));
+    let is_near = |point: &[f64; 3]| (point[ACROSS] - middle).abs() <= reach;
+    let middle =
+        if frames.iter().all(|frame| frame.position.iter().any(is_near)) { middle } else { 0.5 * (low + high) };
     (frames.iter().map(|frame| section(frame, middle, reach)).collect(), Some(middle))
 }
 
