@@ -41,7 +41,7 @@ pub fn find<K: Kinematics<D>, const D: usize>(
     problem.halo.maximum(&mut differs);
     let flows = problem.nodes.pores.is_some();
     let method = match problem.model.nonlinear {
-        // A rank-one update does not know of pressures; an exact iteration takes as long as ten to thirty of secants.
+        // A rank-one update does not know of pressures; an exact iteration takes as long as 6 to 23 of secants.
         Nonlinear::QuasiNewton(_) | Nonlinear::Auto if flows => Nonlinear::QuasiNewton(QuasiNewton::Multisecant),
         method => method,
     };

@@ -43,7 +43,7 @@ pub(super) fn of(name: &str, case: &Case) -> &'static str {
              force_tolerance"
         }
         "water-balance" => {
-            "water has come from nowhere or gone: the steps are not converged well enough, or material with pores has left; a \
+            "water was created or lost: the steps are not converged well enough, or material with pores has left; a \
              smaller [solver] force_tolerance"
         }
         "energy-loss" => {

@@ -17,7 +17,7 @@ use crate::water::nodes::Pores;
 use crate::water::residual::WaterBalance;
 use crate::water::split::{Split, system};
 
-/// What is out of balance is measured by, in both equations.
+/// By what both out-of-balance vectors are measured.
 #[derive(Clone, Copy, Debug)]
 pub struct Scales {
     force: f64, // N

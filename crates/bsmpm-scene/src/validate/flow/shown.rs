@@ -212,8 +212,10 @@ fn ponds(case: &Case, flow: &Flow, report: &mut Report<'_>) {
         _ => vec![0.0],
     };
     let cell = case.grid.axes.iter().map(GridAxis::shortest).fold(f64::INFINITY, f64::min);
+    // Without a table all of the ground is above it: what is let in sinks, if it has weight.
+    let none = if case.gravity.is_some() { f64::NEG_INFINITY } else { f64::INFINITY };
     let dry = |at: &[f64; 2]| {
-        let table = |t: f64| water.table.table(at[0], t).map_or(f64::INFINITY, |(height, _)| height);
+        let table = |t: f64| water.table.table(at[0], t).map_or(none, |(height, _)| height);
         at[1] > times.iter().map(|t| table(*t)).fold(f64::INFINITY, f64::min) + 0.5 * cell
     };
     let permeability = |soil: &Soil<2>| soil.permeability.as_ref().map_or(0.0, |k| k.along[0].max(k.along[1]));
