@@ -1,7 +1,7 @@
 //! The parser of case files: bytes and overrides give a case or errors, and what it accepts holds together.
 
-use bsmpm::kinematics::PlaneStrain;
-use bsmpm_scene::{Case, Error, seed};
+use bsmpm::kinematics::{Axisymmetric, Kinematics, PlaneStrain, Solid};
+use bsmpm_scene::{Case, Error, Estimate, Geometry, seed};
 
 /// Between the file and its overrides, and between those; no TOML holds it.
 const SEPARATOR: u8 = 0x1e;
@@ -32,13 +32,23 @@ fn accepted(case: &Case) {
     if estimate.points > MOST || columns as u64 > MOST {
         return;
     }
+    match case.geometry {
+        Geometry::PlaneStrain => seeded::<PlaneStrain, 2>(case, &estimate),
+        Geometry::Axisymmetric => seeded::<Axisymmetric, 2>(case, &estimate),
+        Geometry::Solid => seeded::<Solid, 3>(case, &estimate),
+    }
+}
+
+/// A case that is accepted has a model, and as many points as it says.
+fn seeded<K: Kinematics<D>, const D: usize>(case: &Case, estimate: &Estimate) {
+    let columns = case.grid.axes[0].cells();
     if estimate.cells <= MOST {
-        bsmpm_scene::model::model::<PlaneStrain, 2>(case).expect("a model of what is accepted");
+        bsmpm_scene::model::model::<K, D>(case).expect("a model of what is accepted");
     }
     let by_column = case.points_by_column();
     assert_eq!((by_column.len(), by_column.iter().sum()), (case.grid.spans(0), estimate.points));
     let mut count = 0;
-    for (number, seed) in seed::<PlaneStrain, 2>(case, 0..columns).enumerate() {
+    for (number, seed) in seed::<K, D>(case, 0..columns).enumerate() {
         assert_eq!(seed.id, number as u64);
         assert!(usize::from(seed.material) < case.materials.len());
         assert!(seed.volume > 0.0 && seed.volume.is_finite() && seed.mass >= 0.0 && seed.mass.is_finite(), "{seed:?}");

@@ -160,10 +160,12 @@ fn pushes<const D: usize>(case: &Case, t: f64) -> Vec<(usize, f64)> {
     supports(case, t).iter().map(|support| (support.axis, push(support))).collect()
 }
 
-/// N  reaction of a face below which it does nothing: a strain of 1e-9 of the softest material along the shortest cell.
+/// N/m, of a solid N  reaction of a face below which it does nothing: a strain of 1e-9 of the softest material over the
+/// shortest cell.
 pub fn least_reaction(case: &Case) -> f64 {
     let softest = case.materials.iter().map(|named| named.material.elastic().young).fold(f64::INFINITY, f64::min);
-    1e-9 * softest * case.grid.axes.iter().map(GridAxis::shortest).fold(f64::INFINITY, f64::min)
+    let shortest = case.grid.axes.iter().map(GridAxis::shortest).fold(f64::INFINITY, f64::min);
+    1e-9 * softest * (1..case.grid.dims()).map(|_| shortest).product::<f64>()
 }
 
 /// Penalty of the rigid strips, Pa/m.

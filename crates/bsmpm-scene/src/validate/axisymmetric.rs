@@ -1,7 +1,7 @@
 //! What an axisymmetric case must and must not have: the axis is the grid's left face, and nothing moves or acts
 //! sideways that would not do so all around it.
 
-use crate::case::{Body, Case, DrainSite, Face, Geometry, Support};
+use crate::case::{Body, Case, DrainSite, Face, Geometry, LoadedLine, Site, Support};
 use crate::record::Record;
 use crate::report::Report;
 use crate::words::{Measurement, Side, Word};
@@ -99,6 +99,16 @@ fn sideways(case: &Case, record: &Record, report: &mut Report<'_>) {
         let moves = ["displacement", "velocity", "path"].into_iter().find(|key| record.gives(key));
         record.error(moves.unwrap_or("path"), SIDEWAYS, report);
     }
+    for (prescribed, record) in case.prescribed.iter().zip(record.records("prescribed")) {
+        if let Site::Segment { from, to } = prescribed.site {
+            on_axis([from, to], record, report);
+        }
+    }
+    for (traction, record) in case.tractions.iter().zip(record.records("traction")) {
+        if let LoadedLine::Segment { from, to } = traction.line {
+            on_axis([from, to], record, report);
+        }
+    }
     for (load, record) in case.point_loads.iter().zip(record.records("point_load")) {
         if load.at[0] == 0.0 && load.force[0] != 0.0 {
             record.error("force", "on the axis a force has no component along the radius x", report);
@@ -130,5 +140,12 @@ fn told(case: &Case, record: &Record, report: &mut Report<'_>) {
         if matches!(measured, AngularMomentum | Moment | RigidMoment | RigidRotation | SectionForces) {
             record.error("quantity", format!("there is no {measured} in an axisymmetric case"), report);
         }
+    }
+}
+
+/// What lies on the axis has no area.
+fn on_axis(ends: [[f64; 2]; 2], record: &Record, report: &mut Report<'_>) {
+    if ends.iter().all(|end| end[0] == 0.0) {
+        record.error("from", "lies on the axis, where a surface has no area; allowed: one end off it", report);
     }
 }

@@ -29,6 +29,7 @@ const QUANTITIES: &[Measurement] = &[
     Measurement::StressNoise,
     Measurement::PressureNoise,
     Measurement::PorePressure,
+    Measurement::PorePressures,
     Measurement::Contact,
     Measurement::Gap,
     Measurement::SlipRate,

@@ -12,9 +12,16 @@ pub const AXISYMMETRIC: &[Row] = &[
         "[boundary]",
         "[[stage]]\nat = 0.05\nboundary = { left = \"free\" }\n\n[boundary]",
         "stage.0.boundary.left",
-        "",
+        "is the axis",
     )
     .down(2),
+    row(
+        "[[point_load]]",
+        "[[traction]]\nfrom = [0.0, 0.5]\nto = [0.0, 1.0]\nstress = [0.0, -1.0]\n\n[[point_load]]",
+        "traction.0.from",
+        "lies on the axis",
+    )
+    .down(1),
     row("acceleration = [0.0", "acceleration = [1.0", "gravity.acceleration", "x is the radius"),
     row("velocity = [0.0", "velocity = [1.0", "body.0.velocity", "x is the radius"),
     row(

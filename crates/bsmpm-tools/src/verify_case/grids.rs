@@ -59,10 +59,6 @@ impl VerifyArguments {
     /// The settings that make each grid.
     fn grids(&self, own: &Case) -> Result<Vec<Vec<String>>, Error> {
         let usage = |reason: String| Err(Error::Usage { reason });
-        let [x, y] = &own.grid.axes[..] else {
-            return usage("of a solid --cells gives the three sizes".to_owned());
-        };
-        let graded = [x, y].iter().any(|axis| matches!(axis, GridAxis::Graded(_)));
         if let Some(cells) = &self.cells {
             let cells = split(cells);
             let count = cells.len();
@@ -73,6 +69,10 @@ impl VerifyArguments {
                 usage(format!("--cells: three are needed, found {count}"))
             };
         }
+        let [x, y] = &own.grid.axes[..] else {
+            return usage("of a solid --cells gives the three sizes".to_owned());
+        };
+        let graded = [x, y].iter().any(|axis| matches!(axis, GridAxis::Graded(_)));
         if !(LEAST..=MOST).contains(&self.ratio) {
             return usage(format!("--ratio {}: allowed is {LEAST} to {MOST}", self.ratio));
         }

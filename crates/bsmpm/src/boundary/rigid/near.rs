@@ -245,7 +245,8 @@ fn longest_edge<const D: usize>(grid: &Grid<D>, axis: usize) -> f64 {
 fn reach<const D: usize>(around: &Surroundings<'_, D>, p: usize, normal: &Vector<2>) -> (f64, f64) {
     let Surroundings { grid, points, reach, weight, .. } = around;
     let placed = points.x[p] - points.u[p];
-    let start = grid.locate(&placed).or_else(|| grid.locate(&points.x[p]));
+    let placed = if grid.locate(&placed).is_some() { placed } else { points.x[p] };
+    let start = grid.locate(&placed);
     let size = start.map_or_else(|| Vector::repeat(grid.smallest_edge()), |cell| grid.cell_box(&cell).1);
     let share = reach.get(usize::from(points.material[p])).copied().unwrap_or(0.5);
     let box_volume: f64 = size.iter().map(|edge| 2.0 * share * edge).product();
