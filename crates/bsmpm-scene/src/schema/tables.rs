@@ -156,7 +156,8 @@ static SOLVER: Table = Table {
             "nonlinear",
             Choice(Nonlinear::WORDS),
             Default("\"auto\""),
-            "auto: all recent secants, newton where they stall (with water that flows: do not converge); broyden: the paper's update; newton: the complete tangent",
+            "auto: all recent secants, newton where they stall (with water that flows: do not converge); broyden: the \
+             paper's update; newton: the complete tangent",
         ),
         key("tolerance", Quantity(In::Number, FRACTION), Default("1e-8"), "energy measure"),
         key("force_tolerance", Quantity(In::Number, FRACTION), Default("1e-4"), "force measure; both must hold"),

@@ -226,7 +226,8 @@ fn ponds(case: &Case, flow: &Flow, report: &mut Report<'_>) {
         if way > FILM && places(drain, &case.grid).iter().any(dry) {
             report.warn(format!(
                 "drain.{number}: above the water table it holds the pressure of the air, and the ground there is fed as by \
-                 a pond, by up to {way:.1} cells of water in a step: give seepage = true (and soils a retention), or head where a pond stands"
+                 a pond, by up to {way:.1} cells of water in a step: give seepage = true (and soils a retention), or \
+                 head where a pond stands"
             ));
         }
     }
