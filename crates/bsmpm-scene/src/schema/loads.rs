@@ -171,7 +171,12 @@ pub(super) static POINT_LOAD: Table = Table {
     doc: "A force at a point of a body, which it follows",
     keys: &[
         key("at", PLACE, Required, "where at the start"),
-        key("force", Pair(In::LineForce, Range::ANY), Required, "along x and y, per metre of thickness"),
+        key(
+            "force",
+            Pair(In::LineForce, Range::ANY),
+            Required,
+            "along x and y, per metre of thickness; in axisymmetry of the whole ring",
+        ),
         key("ramp", RAMP, Default("0.0"), "time over which it grows; 0: at once"),
         key(
             "amplitude",

@@ -60,7 +60,7 @@ pub(super) struct Subject {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(super) struct Conditions {
     /// m  the largest size of a cell along each axis
-    pub cell: [f64; 2],
+    pub cell: Vec<f64>,
     /// of the B-splines
     pub order: usize,
     /// along each axis, of every body
@@ -367,7 +367,7 @@ impl Conditions {
         let mut points_per_cell: Vec<usize> = case.bodies.iter().map(|body| body.points_per_cell).collect();
         points_per_cell.dedup();
         Self {
-            cell: [0, 1].map(|axis| case.grid.axes[axis].longest()),
+            cell: case.grid.axes.iter().map(bsmpm_scene::GridAxis::longest).collect(),
             order: case.grid.order,
             points_per_cell,
             stabilisation: case.stabilisation.word().to_owned(),
@@ -382,9 +382,11 @@ impl Conditions {
 
     /// Cells and points in words.
     pub fn mesh(&self) -> String {
-        let [x, y] = self.cell.map(shown);
-        let cell = if x == y { format!("h = {x} m") } else { format!("h = {x} m x {y} m") };
-        let points: Vec<String> = self.points_per_cell.iter().map(|points| format!("{points} x {points}")).collect();
+        let mut sizes: Vec<String> = self.cell.iter().map(|size| format!("{} m", shown(*size))).collect();
+        sizes.dedup();
+        let cell = format!("h = {}", sizes.join(" x "));
+        let along = |points: &usize| vec![points.to_string(); self.cell.len()].join(" x ");
+        let points: Vec<String> = self.points_per_cell.iter().map(along).collect();
         format!("{cell}, {} points a cell, order {}", points.join(" and "), self.order)
     }
 
