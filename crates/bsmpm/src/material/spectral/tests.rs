@@ -60,7 +60,6 @@ fn the_strain_is_that_of_jacobi_rotations() {
             }
         }
     }
-    println!("apart by {worst:.2e}");
     assert!(worst <= 4e-15, "apart by {worst:e}");
 }
 
