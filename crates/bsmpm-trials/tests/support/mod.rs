@@ -68,6 +68,21 @@ impl Scratch {
         self.job(Some(ranks), arguments).run()
     }
 
+    /// The case on so many ranks in one run, to `whole{ranks}`, and in parts that end after so many steps, to
+    /// `part{ranks}`: their histories are the same to the bit.
+    #[track_caller]
+    pub fn goes_on(&self, ranks: usize, stops: &[&str]) {
+        let [whole, part] = ["whole", "part"].map(|name| format!("{name}{ranks}"));
+        self.mpirun(ranks, &["case.toml", "-q", "-o", &whole]).expect(0);
+        let on = ["case.toml", "-q", "-o", &part, "--restart", "auto"];
+        for stop in stops {
+            self.mpirun(ranks, &[&on[..], &["--max-steps", stop]].concat()).expect(75);
+        }
+        self.mpirun(ranks, &on).expect(0);
+        let text = |name: &str| std::fs::read_to_string(self.path(name).join("history.csv")).unwrap();
+        assert!(text(&whole) == text(&part), "{ranks} ranks");
+    }
+
     /// A run without a launcher.
     pub fn direct(&self, arguments: &[&str]) -> Output {
         self.job(None, arguments).run()

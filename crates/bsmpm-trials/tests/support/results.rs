@@ -61,6 +61,14 @@ pub fn differences(found: &Frame, expected: &Frame) -> Vec<(String, f64)> {
     std::iter::once(position).chain(fields).collect()
 }
 
+/// Asserts that the last frames of two directories agree to 1e-8 of the largest number of each field.
+#[track_caller]
+pub fn agree(found: &Path, expected: &Path) {
+    for (field, difference) in differences(&last_frame(found), &last_frame(expected)) {
+        assert!(difference < 1e-8, "{field} of {} differs by {difference:.1e}", found.display());
+    }
+}
+
 fn relative(found: &[f64], expected: &[f64]) -> f64 {
     assert_eq!(found.len(), expected.len());
     let largest = expected.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));

@@ -2,7 +2,7 @@
 
 use crate::support::Scratch;
 use crate::support::cases::changed;
-use crate::support::results::{at, differences, history, last_frame};
+use crate::support::results::{agree, at, history};
 
 /// Two layers, of which the upper one yields, that rise by a step in their middle, on a base that absorbs; they shake
 /// both ways.
@@ -64,21 +64,9 @@ quantity = "energy"
 fn ground_beside_a_free_field_is_the_same_on_any_number_of_ranks_and_over_restarts() {
     let scratch = Scratch::with_case(SLOPE);
     for ranks in [1, 3] {
-        let whole = format!("whole{ranks}");
-        scratch.mpirun(ranks, &["case.toml", "-q", "-o", &whole]).expect(0);
-        let part = ["case.toml", "-q", "-o", "part", "--restart", "auto"];
-        for stop in ["1", "12"] {
-            scratch.mpirun(ranks, &[&part[..], &["--max-steps", stop]].concat()).expect(75);
-        }
-        scratch.mpirun(ranks, &part).expect(0);
-        let text = |name: &str| std::fs::read_to_string(scratch.path(name).join("history.csv")).unwrap();
-        assert!(text(&whole) == text("part"), "{ranks} ranks");
-        std::fs::remove_dir_all(scratch.path("part")).unwrap();
+        scratch.goes_on(ranks, &["1", "12"]);
     }
-    let frames = ["whole1", "whole3"].map(|name| last_frame(&scratch.path(name)));
-    for (field, difference) in differences(&frames[0], &frames[1]) {
-        assert!(difference < 1e-8, "{field} on 3 ranks differs by {difference:.1e}");
-    }
+    agree(&scratch.path("whole3"), &scratch.path("whole1"));
     let found = history(&scratch.path("whole1"));
     // Earth pressure at rest of both layers, k0 = .5.
     let [upper, lower] = [1800.0, 2000.0].map(|density| 9.81 * density);

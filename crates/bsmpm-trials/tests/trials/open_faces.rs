@@ -2,7 +2,7 @@
 
 use crate::support::Scratch;
 use crate::support::cases::changed;
-use crate::support::results::{at, differences, history, last_frame, manifest};
+use crate::support::results::{agree, at, history, manifest};
 
 /// Ground of two layers at rest on a base that absorbs, which shakes as an outcrop would.
 const SHAKEN: &str = r#"
@@ -110,22 +110,11 @@ quantity = "energy"
 fn repeats(case: &str, stops: &[&str]) -> Scratch {
     let scratch = Scratch::with_case(case);
     for ranks in [1, 3] {
-        let whole = format!("whole{ranks}");
-        scratch.mpirun(ranks, &["case.toml", "-q", "-o", &whole]).expect(0);
-        let part = ["case.toml", "-q", "-o", "part", "--restart", "auto"];
-        for stop in stops {
-            scratch.mpirun(ranks, &[&part[..], &["--max-steps", stop]].concat()).expect(75);
-        }
-        scratch.mpirun(ranks, &part).expect(0);
-        let text = |name: &str| std::fs::read_to_string(scratch.path(name).join("history.csv")).unwrap();
-        assert!(text(&whole) == text("part"), "{ranks} ranks");
-        assert_eq!(manifest(&scratch.path("part")).outflow, manifest(&scratch.path("whole1")).outflow);
-        std::fs::remove_dir_all(scratch.path("part")).unwrap();
+        scratch.goes_on(ranks, stops);
+        let part = scratch.path(&format!("part{ranks}"));
+        assert_eq!(manifest(&part).outflow, manifest(&scratch.path("whole1")).outflow);
     }
-    let frames = ["whole1", "whole3"].map(|name| last_frame(&scratch.path(name)));
-    for (field, difference) in differences(&frames[0], &frames[1]) {
-        assert!(difference < 1e-8, "{field} on 3 ranks differs by {difference:.1e}");
-    }
+    agree(&scratch.path("whole3"), &scratch.path("whole1"));
     scratch
 }
 

@@ -86,16 +86,7 @@ quantity = "energy"
 fn rigid_bodies_are_the_same_on_any_number_of_ranks_and_over_restarts() {
     let scratch = Scratch::with_case(CASE);
     for ranks in [1, 3] {
-        let whole = format!("whole{ranks}");
-        scratch.mpirun(ranks, &["case.toml", "-q", "-o", &whole]).expect(0);
-        let part = ["case.toml", "-q", "-o", "part", "--restart", "auto"];
-        for stop in ["5", "22"] {
-            scratch.mpirun(ranks, &[&part[..], &["--max-steps", stop]].concat()).expect(75);
-        }
-        scratch.mpirun(ranks, &part).expect(0);
-        let text = |name: &str| std::fs::read_to_string(scratch.path(name).join("history.csv")).unwrap();
-        assert!(text(&whole) == text("part"), "{ranks} ranks");
-        std::fs::remove_dir_all(scratch.path("part")).unwrap();
+        scratch.goes_on(ranks, &["5", "22"]);
     }
     let [one, three] = ["whole1", "whole3"].map(|name| history(&scratch.path(name)));
     for name in

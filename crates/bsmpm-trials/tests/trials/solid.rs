@@ -3,7 +3,7 @@
 
 use crate::support::Scratch;
 use crate::support::cases::changed;
-use crate::support::results::{at, differences, history, last_frame};
+use crate::support::results::{agree, at, history};
 use std::f64::consts::PI;
 
 /// Cohesive sand that slumps in plane strain.
@@ -132,18 +132,8 @@ quantity = "energy"
 fn a_round_column_is_the_same_on_1_2_and_3_ranks_and_over_restarts() {
     let scratch = Scratch::with_case(COLUMN);
     for ranks in [1, 2, 3] {
-        let whole = format!("whole{ranks}");
-        scratch.mpirun(ranks, &["case.toml", "-q", "-o", &whole]).expect(0);
-        let part = ["case.toml", "-q", "-o", "part", "--restart", "auto"];
-        scratch.mpirun(ranks, &[&part[..], &["--max-steps", "11"]].concat()).expect(75);
-        scratch.mpirun(ranks, &part).expect(0);
-        let text = |name: &str| std::fs::read_to_string(scratch.path(name).join("history.csv")).unwrap();
-        assert!(text(&whole) == text("part"), "{ranks} ranks");
-        std::fs::remove_dir_all(scratch.path("part")).unwrap();
-        for (field, difference) in differences(&last_frame(&scratch.path(&whole)), &last_frame(&scratch.path("whole1")))
-        {
-            assert!(difference <= 1e-8, "{field} on {ranks} ranks differs by {difference:.1e}");
-        }
+        scratch.goes_on(ranks, &["11"]);
+        agree(&scratch.path(&format!("whole{ranks}")), &scratch.path("whole1"));
     }
     let table = history(&scratch.path("whole1"));
     let of = |name: &str| at(&table, name, 0.2);

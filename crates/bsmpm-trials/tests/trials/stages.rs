@@ -1,7 +1,7 @@
 //! Stages: what is removed and placed leaves what closed forms say, and the run is the same however it is cut.
 
 use crate::support::cases::{SLIDING_BLOCK, changed};
-use crate::support::results::{at, differences, history, last_frame, manifest};
+use crate::support::results::{agree, at, history, last_frame, manifest};
 use crate::support::{Scratch, shipped};
 
 /// Pa, N/m3, m: constrained modulus, unit weight and thickness of the lifts; so stiff that strains are small.
@@ -100,30 +100,15 @@ fn staged_block() -> String {
 #[test]
 fn a_dynamic_run_goes_on_to_the_bit_before_at_and_after_a_stage_and_ranks_agree() {
     let scratch = Scratch::with_case(&staged_block());
-    for ranks in [1, 3] {
-        let whole = format!("whole{ranks}");
-        scratch.mpirun(ranks, &["case.toml", "-q", "-o", &whole]).expect(0);
-        if ranks == 1 {
-            continue;
-        }
-        let part = ["case.toml", "-q", "-o", "part", "--restart", "auto"];
-        for stop in ["19", "20", "21", "30"] {
-            scratch.mpirun(ranks, &[&part[..], &["--max-steps", stop]].concat()).expect(75);
-        }
-        scratch.mpirun(ranks, &part).expect(0);
-        let text = |name: &str| std::fs::read_to_string(scratch.path(name).join("history.csv")).unwrap();
-        assert!(text(&whole) == text("part"), "{ranks} ranks");
-        assert!(last_frame(&scratch.path(&whole)) == last_frame(&scratch.path("part")), "{ranks} ranks");
-        let stages = manifest(&scratch.path("part")).stages;
-        assert_eq!(stages, manifest(&scratch.path(&whole)).stages);
-        let told: Vec<_> = stages.iter().map(|stage| (stage.step, stage.removed, stage.added, stage.reset)).collect();
-        assert_eq!(told, [(20, 64, 0, false), (30, 0, 48, true)]);
-        std::fs::remove_dir_all(scratch.path("part")).unwrap();
-        for (field, difference) in differences(&last_frame(&scratch.path(&whole)), &last_frame(&scratch.path("whole1")))
-        {
-            assert!(difference < 1e-8, "{field} on {ranks} ranks differs by {difference:.1e}");
-        }
-    }
+    scratch.mpirun(1, &["case.toml", "-q", "-o", "whole1"]).expect(0);
+    scratch.goes_on(3, &["19", "20", "21", "30"]);
+    let [one, whole, part] = ["whole1", "whole3", "part3"].map(|name| scratch.path(name));
+    assert!(last_frame(&whole) == last_frame(&part));
+    let stages = manifest(&part).stages;
+    assert_eq!(stages, manifest(&whole).stages);
+    let told: Vec<_> = stages.iter().map(|stage| (stage.step, stage.removed, stage.added, stage.reset)).collect();
+    assert_eq!(told, [(20, 64, 0, false), (30, 0, 48, true)]);
+    agree(&whole, &one);
     let found = history(&scratch.path("whole1"));
     let [before, after] = [0.02, 0.021].map(|t| at(&found, "mass", t));
     assert!((after / before - 0.5).abs() < 1e-12);
@@ -240,17 +225,9 @@ fn loads_props_and_laws_act_while_stages_say_so_and_runs_go_on_to_the_bit() {
 fn repeats(scratch: &Scratch, columns: &[&str], stops: &[&str]) {
     let told = manifest(&scratch.path("whole")).stages;
     for ranks in [1, 3] {
-        let whole = format!("whole{ranks}");
-        scratch.mpirun(ranks, &["case.toml", "-q", "-o", &whole]).expect(0);
-        let part = ["case.toml", "-q", "-o", "part", "--restart", "auto"];
-        for stop in stops {
-            scratch.mpirun(ranks, &[&part[..], &["--max-steps", stop]].concat()).expect(75);
-        }
-        scratch.mpirun(ranks, &part).expect(0);
-        let text = |name: &str| std::fs::read_to_string(scratch.path(name).join("history.csv")).unwrap();
-        assert!(text(&whole) == text("part"), "{ranks} ranks");
-        assert_eq!(manifest(&scratch.path("part")).stages, told);
-        std::fs::remove_dir_all(scratch.path("part")).unwrap();
+        scratch.goes_on(ranks, stops);
+        let [whole, part] = ["whole", "part"].map(|name| format!("{name}{ranks}"));
+        assert_eq!(manifest(&scratch.path(&part)).stages, told);
         let [one, more] = ["whole", &whole].map(|name| history(&scratch.path(name)));
         for column in columns {
             let [one, more] = [&one, &more].map(|found| found.get(column).expect("a column"));
