@@ -16,7 +16,7 @@ use bsmpm::stabilisation::Stabilisation;
 use bsmpm::step::nodes::Nodes;
 use bsmpm::step::problem::Problem;
 use bsmpm::step::residual::Residual;
-use bsmpm::tensor::{Symmetric, Tensor, Vector};
+use bsmpm::tensor::{Symmetric, Vector};
 
 const METHODS: [Stabilisation; 6] = [
     Stabilisation::None,
@@ -38,12 +38,7 @@ fn loaded<K: Kinematics<D>, const D: usize>(method: Stabilisation, regime: Regim
     scene = scene.body(cells, 2, 1.0, |_| Vector::zeros()).support(Support::fixed(D - 1, false));
     scene.model.background = Some(Background { kind: Kind::Strain, coefficient: 1e-3, extent: Extent::Occupied });
     let mut random = Random::new(3);
-    for p in 0..scene.points.len() {
-        scene.points.x[p] += random.vector::<D>() * 0.02;
-        let strain: Vec<f64> = random.array(6).iter().map(|r| 0.01 * r).collect();
-        let strain = Symmetric(std::array::from_fn(|c| if D == 2 && c > 3 { 0.0 } else { strain[c] }));
-        scene.points.b_e.set(p, Symmetric::of(&(Tensor::from_diagonal_element(0.995) + strain.full())));
-    }
+    scene = scene.scattered(&mut random);
     scene.points.sort_by_cell(&scene.model.grid);
     scene
 }

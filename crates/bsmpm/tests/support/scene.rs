@@ -1,5 +1,6 @@
 //! Small scenes in any dimension: a grid, elastic bodies of whole cells, points placed n^D per cell.
 
+use super::random::Random;
 use super::solver::Skyline;
 use bsmpm::background::Background;
 use bsmpm::boundary::{Boundary, Load, RigidBody, Strip, Support};
@@ -17,7 +18,7 @@ use bsmpm::schedule::Schedule;
 use bsmpm::stabilisation::{Groups, Stabilisation};
 use bsmpm::step::mass::MassMatrix;
 use bsmpm::step::newmark::Newmark;
-use bsmpm::tensor::Vector;
+use bsmpm::tensor::{Symmetric, Tensor, Vector};
 use std::marker::PhantomData;
 use std::ops::Range;
 
@@ -172,6 +173,17 @@ impl<K: Kinematics<D>, const D: usize> Scene<K, D> {
     pub fn rollers(self, axes: impl IntoIterator<Item = usize>) -> Self {
         axes.into_iter()
             .fold(self, |scene, axis| scene.support(Support::roller(axis, false)).support(Support::roller(axis, true)))
+    }
+
+    /// Points out of their lattice by up to 2e-2 m, each with an elastic strain of its own, about 1e-2.
+    pub fn scattered(mut self, random: &mut Random) -> Self {
+        for p in 0..self.points.len() {
+            self.points.x[p] += random.vector::<D>() * 0.02;
+            let strain: Vec<f64> = random.array(6).iter().map(|r| 0.01 * r).collect();
+            let strain = Symmetric(std::array::from_fn(|c| if D == 2 && c > 3 { 0.0 } else { strain[c] }));
+            self.points.b_e.set(p, Symmetric::of(&(Tensor::from_diagonal_element(0.995) + strain.full())));
+        }
+        self
     }
 
     /// Gravity `g` against the last axis, growing over `ramp`.

@@ -21,7 +21,7 @@ use bsmpm::step::nodes::Nodes;
 use bsmpm::step::problem::Problem;
 use bsmpm::step::residual::Residual;
 use bsmpm::step::{Counts, StepReport, step};
-use bsmpm::tensor::{Symmetric, Tensor, Vector};
+use bsmpm::tensor::Vector;
 use bsmpm::water::Water;
 use bsmpm::water::ambient::Ambient;
 use bsmpm::water::flow::{Course, Drain, DrainedFace, Flow, Given, Inflow, Permeability, PermeabilityLaw, Soil};
@@ -40,12 +40,7 @@ fn wet<K: Kinematics<D>, const D: usize>(
     scene = scene.gravity(10.0, 0.0);
     scene.model.background = Some(Background { kind: Kind::Strain, coefficient: 1e-3, extent: Extent::Occupied });
     let mut random = Random::new(3);
-    for p in 0..scene.points.len() {
-        scene.points.x[p] += random.vector::<D>() * 0.02;
-        let strain: Vec<f64> = random.array(6).iter().map(|r| 0.01 * r).collect();
-        let strain = Symmetric(std::array::from_fn(|c| if D == 2 && c > 3 { 0.0 } else { strain[c] }));
-        scene.points.b_e.set(p, Symmetric::of(&(Tensor::from_diagonal_element(0.995) + strain.full())));
-    }
+    scene = scene.scattered(&mut random);
     scene.points.pore_pressure = Some((0..scene.points.len()).map(|_| 20.0 * random.signed()).collect());
     scene.points.sort_by_cell(&scene.model.grid);
     let side = |height: f64| {
@@ -73,8 +68,9 @@ fn wet<K: Kinematics<D>, const D: usize>(
 }
 
 /// Largest distances between the product and the central difference of the forces and of the water's balance, each over
-/// the largest of its kind; points that yield.
-fn product_errors<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>) -> ([f64; 2], usize) {
+/// the largest of its kind, about a mean excess pressure, Pa, under which all outlets are open or closed; points that
+/// yield, and all.
+fn product_errors<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>, mean: f64) -> ([f64; 2], [usize; 2]) {
     let (model, points, halo) = (&scene.model, &scene.points, scene.halo());
     let shape = Shape::at(&model.grid, points).unwrap();
     let nodes = Nodes::map(model, &shape, points, (0.0, 0.1), &halo).expect("no loads");
@@ -87,9 +83,14 @@ fn product_errors<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>) -> ([f6
         all.map(|(free, size)| if *free { size * random.signed() } else { 0.0 }).collect()
     };
     let (mut x, v) = (free((0.01, 10.0)), free((1.0, 1e3)));
+    for (x, free) in x[nodes.free.len()..].iter_mut().zip(&pores.free) {
+        *x += if *free { mean } else { 0.0 };
+    }
     for (at, given) in pores.prescribed.iter().enumerate() {
         x[nodes.free.len() + at] += given.unwrap_or(0.0);
     }
+    let open = pores.drainage.open(&x[nodes.free.len()..]);
+    assert!(!open.is_empty() && open.iter().all(|open| *open == (mean > 0.0)), "{open:?} under {mean} Pa");
     let residual = Residual::of(&pieces, &x);
     assert!(residual.balance.is_sound());
     let yielding = (0..points.len())
@@ -113,7 +114,7 @@ fn product_errors<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>) -> ([f6
         assert!(size > 0.0);
         range.map(|c| (product[c] + (after[c] - before[c]) / (2.0 * step)).abs() / size).fold(0.0, f64::max)
     });
-    (errors, yielding.count())
+    (errors, [yielding.count(), points.len()])
 }
 
 #[test]
@@ -122,15 +123,17 @@ fn the_product_is_the_derivative_of_both_balances() {
     for method in [Stabilisation::None, Stabilisation::ConsistentFBar] {
         for regime in [Regime::QuasiStatic, Regime::Dynamic] {
             for (dilation, retention) in [(0.0, None), (0.3, None), (0.1, Some(loam))] {
-                let found = [
-                    product_errors(&wet::<PlaneStrain, 2>((method, regime), dilation, retention)),
-                    product_errors(&wet::<Axisymmetric, 2>((method, regime), dilation, retention)),
-                    product_errors(&wet::<Solid, 3>((method, regime), dilation, retention)),
-                ];
+                let found = [-30.0, 30.0].map(|mean| {
+                    [
+                        product_errors(&wet::<PlaneStrain, 2>((method, regime), dilation, retention), mean),
+                        product_errors(&wet::<Axisymmetric, 2>((method, regime), dilation, retention), mean),
+                        product_errors(&wet::<Solid, 3>((method, regime), dilation, retention), mean),
+                    ]
+                });
                 println!("{method:?}, {regime:?}, {dilation}, {}: {found:?}", retention.is_some());
-                for (errors, yielding) in found {
+                for (errors, [yielding, points]) in found.into_iter().flatten() {
                     assert!(errors.iter().all(|error| *error < 1e-6), "{errors:?}"); // central differences
-                    assert!(yielding > 0, "both responses are seen");
+                    assert!(yielding > 0 && yielding < points, "both responses are seen: {yielding} of {points}");
                 }
             }
         }
