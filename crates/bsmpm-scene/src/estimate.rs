@@ -16,7 +16,7 @@ pub(crate) const MOST_POINTS: u128 = i32::MAX as u128;
 /// Bytes of a point that are always there: its state in a plane (about 200), shape functions (96), trial states and
 /// their answers. Measured, as all that follows, in the runs of `tests/shipped.rs`.
 const POINT: u128 = 536;
-/// The same in space: functions of 27 nodes by axes, whole tensors.
+/// The same in space: functions of 27 nodes by axes, whole tensors. Not measured in those runs.
 const POINT_IN_SPACE: u128 = 780;
 /// Bytes of a point's functions of the degree below, which `consistent-f-bar` averages with.
 const LOWERED: u128 = 64;
