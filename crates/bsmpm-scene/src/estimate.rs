@@ -197,7 +197,7 @@ impl Case {
         self.flow.as_ref()?;
         let order = self.grid.order as u128 - 1;
         let pressures = occupied_nodes(self, order).min(nodes(&self.grid));
-        Some((pressures, pressures * (2 * order + 1).pow(2)))
+        Some((pressures, pressures * (2 * order + 1).pow(self.grid.dims() as u32)))
     }
 
     /// Sizes of the case.

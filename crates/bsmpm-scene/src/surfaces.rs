@@ -183,9 +183,10 @@ pub fn flow<K: Kinematics<D>, const D: usize>(case: &Case, grid: &Grid<D>) -> Op
         };
         lines.iter().flat_map(of).unzip()
     };
+    let base = case.grid.lower()[D - 1];
     let given = |given: &Given| match given {
         Given::Head(Course(rows)) => {
-            Given::Head(Course(rows.iter().map(|(t, head)| (*t, head - case.grid.lower()[1])).collect()))
+            Given::Head(Course(rows.iter().map(|(t, head)| (*t, head - base)).collect()))
         }
         other => other.clone(),
     };
@@ -218,8 +219,8 @@ pub fn flow<K: Kinematics<D>, const D: usize>(case: &Case, grid: &Grid<D>) -> Op
 }
 
 /// A soil in the dimension of the geometry.
-fn of_ground<const D: usize>(soil: &Soil<2>) -> Soil<D> {
-    let along = |permeability: &Permeability<2>| Permeability {
+fn of_ground<const D: usize>(soil: &Soil<3>) -> Soil<D> {
+    let along = |permeability: &Permeability<3>| Permeability {
         along: vector(permeability.along.into()),
         law: permeability.law,
     };
