@@ -64,6 +64,7 @@ pub fn linear(case: &Case, ranks: usize, options: &[String]) -> Choice {
         pc: linear.pc.word().into(),
         factor: linear.factor.map(|package| if dissection { Factor::Mumps } else { package }.word().into()),
         // On one rank, too, where the matrix goes to PETSc: the same factorisation, bit by bit, on any number of ranks.
+        applications: linear.applications,
         redundant: case.solver.reproducible && linear.pc.factorises() && (ranks > 1 || !dissection),
     }
 }

@@ -56,7 +56,7 @@ fn main() -> ExitCode {
 
 fn choice(method: &str, ksp: &str, pc: &str, factor: Option<String>) -> Choice {
     let (dissection, redundant) = (method == "direct", method == "redundant");
-    Choice { dissection, ksp: ksp.into(), pc: pc.into(), factor, redundant }
+    Choice { dissection, ksp: ksp.into(), pc: pc.into(), factor, redundant, applications: 0 }
 }
 
 fn measure(solver: &mut dyn LinearSolver, grid: &Grid<2>, halo: &dyn Halo, nu: f64, name: &str) {

@@ -145,7 +145,12 @@ impl<'p, const D: usize, const C: usize> KspSolver<'p, D, C> {
             none => {
                 let places = self.stencil.coordinates(&self.numbers, &self.free);
                 let block = if self.choice.whole_nodes() { C } else { 1 };
-                let mut matrix = Matrix::from_coo(self.petsc, self.own, block, &places.rows, &places.columns)?;
+                let mut matrix = if self.petsc.ranks() == 1 {
+                    // All rows are whole and in order: no sorting, and two thirds of the memory.
+                    Matrix::from_csr(self.petsc, self.own, block, &places.starts(self.own), &places.columns, &values)?
+                } else {
+                    Matrix::from_coo(self.petsc, self.own, block, &places.rows, &places.columns)?
+                };
                 if block > 1 && C == D {
                     matrix.set_rigid_body_modes(&places_of::<D, C>(&self.grid, &self.halo, &self.numbers))?;
                 }
@@ -192,6 +197,27 @@ impl<'p, const D: usize, const C: usize> KspSolver<'p, D, C> {
         let shell = self.shell.as_mut()?;
         let tally = self.tallies.definite.get_or_insert_with(|| shell.tally());
         Some((shell, matrix, tally))
+    }
+
+    /// A nodal solution of the assembled system, as `by` finds it.
+    fn solve_assembled(
+        &mut self,
+        by: impl FnOnce(&mut System<'p>, &[f64], &mut Tally) -> Result<(usize, Vec<f64>), SolveError>,
+        rhs: &[f64],
+        solution: &mut [f64],
+    ) -> Result<Solved, SolveError> {
+        let timers = Rc::clone(&self.timers);
+        let _timed = timers.time("linear solve");
+        let unknowns = self.unknowns();
+        let own: Vec<f64> = unknowns.iter().map(|&at| if self.free[at] { rhs[at] } else { 0.0 }).collect();
+        let tally = self.tallies.definite.get_or_insert_default();
+        let (iterations, mut x) = by(self.definite.as_mut().ok_or_else(missing)?, &own, tally)?;
+        if self.choice.is_rough() {
+            // Of nodes that keep what is held, coarse functions move that, too.
+            x.iter_mut().zip(&unknowns).filter(|(_, at)| !self.free[**at]).for_each(|(x, _)| *x = 0.0);
+        }
+        spread::<C>(&self.halo, &unknowns, &x, solution);
+        Ok(Solved { iterations, ..Solved::default() })
     }
 
     /// Components of this rank's unknowns, in the order of their numbers.
@@ -276,14 +302,21 @@ impl<const D: usize, const C: usize> LinearSolver for KspSolver<'_, D, C> {
         if self.choice.dissection {
             return self.solve_shell(rhs, solution);
         }
-        let timers = Rc::clone(&self.timers);
-        let _timed = timers.time("linear solve");
-        let unknowns = self.unknowns();
-        let own: Vec<f64> = unknowns.iter().map(|&at| if self.free[at] { rhs[at] } else { 0.0 }).collect();
-        let tally = self.tallies.definite.get_or_insert_default();
-        let (iterations, x) = self.definite.as_mut().ok_or_else(missing)?.solve(&own, tally)?;
-        spread::<C>(&self.halo, &unknowns, &x, solution);
-        Ok(Solved { iterations, ..Solved::default() })
+        match self.choice.is_rough() {
+            true => self.solve_assembled(System::approach, rhs, solution),
+            false => self.solve_assembled(System::solve, rhs, solution),
+        }
+    }
+
+    fn is_rough(&self) -> bool {
+        self.choice.is_rough()
+    }
+
+    fn solve_to(&mut self, relative: f64, rhs: &[f64], solution: &mut [f64]) -> Result<Solved, SolveError> {
+        match self.choice.is_rough() {
+            true => self.solve_assembled(|system, rhs, tally| system.solve_to(relative, rhs, tally), rhs, solution),
+            false => self.solve(rhs, solution),
+        }
     }
 
     fn solve_with(

@@ -47,6 +47,16 @@ pub struct Coordinates {
     pub columns: Vec<usize>,
 }
 
+impl Coordinates {
+    /// Where each of so many rows begins, of entries that stand row by row.
+    pub fn starts(&self, rows: usize) -> Vec<usize> {
+        let mut starts = vec![0; rows + 1];
+        self.rows.iter().for_each(|row| starts[row + 1] += 1);
+        (0..rows).for_each(|row| starts[row + 1] += starts[row]);
+        starts
+    }
+}
+
 impl<const D: usize, const C: usize> Stencil<D, C> {
     /// Stencils over a window, of no node yet: see [`Stencil::keep`].
     pub fn new(grid: &Grid<D>) -> Self {

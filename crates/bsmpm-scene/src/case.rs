@@ -248,6 +248,8 @@ pub struct Linear {
     pub pc: Pc,
     /// Package of a direct solver, or `dissection`, which is this program's own; `None` for other preconditioners.
     pub factor: Option<Factor>,
+    /// So many times the preconditioner is applied in place of a solution; 0: there is a solution.
+    pub applications: usize,
 }
 
 /// What is written besides tables with a row a step; without `every` and `times` there are no frames.

@@ -25,6 +25,8 @@ use crate::tensor::{Symmetric, Tensor, Vector};
 
 /// Corrections of the elastic state: the stiffness holds the soft background too, which carries nothing in the end.
 const CORRECTIONS: usize = 20;
+/// Relative residual of one of them.
+const SOLVED: f64 = 1e-6;
 /// Plastic strain up to which a stress that is returned lies on the yield surface, not beyond it.
 const ON: f64 = 1e-12;
 /// Relative out-of-balance force of the elastic state that is left.
@@ -136,7 +138,7 @@ pub fn set_elastic<K: Kinematics<D>, const D: usize>(
         if halo.is_interrupted() {
             return Err(StepError::Interrupted);
         }
-        solver.solve(&residual.f_oob, &mut du)?;
+        solver.solve_to(SOLVED, &residual.f_oob, &mut du)?;
         u.iter_mut().zip(&du).for_each(|(u, du)| *u += du);
         strains = transfer::gradients::<K, D, _>((&start.shape, &points.x), &u, |_, grad| {
             Symmetric::of(&K::gradient::<f64>(&grad))

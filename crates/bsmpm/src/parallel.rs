@@ -73,9 +73,20 @@ pub trait LinearSolver {
     /// Completes and factorises the matrix.
     fn finish(&mut self, symmetry: Symmetry) -> Result<(), SolveError>;
     /// Solves for a nodal right-hand side; the solution is zero at components that are not free, and right at
-    /// ghost nodes too. It is a direction, the same linear function of all right-hand sides up to round-off, and no
-    /// answer: what it leaves of the first one after [`LinearSolver::finish`] is a hundredth of it at most.
+    /// ghost nodes too. It is a direction, the same linear, symmetric and positive function of all right-hand sides up
+    /// to round-off, and no answer: what it leaves of the first one after [`LinearSolver::finish`] is a hundredth of it
+    /// at most, unless the solver [is rough](LinearSolver::is_rough).
     fn solve(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<Solved, SolveError>;
+    /// Whether [`LinearSolver::solve`] is a preconditioner, applied a fixed number of times: secants correct that, too.
+    /// Newton's directions are then sought around it, without a general matrix.
+    fn is_rough(&self) -> bool {
+        false
+    }
+    /// As [`LinearSolver::solve`], to the residual `relative` to the right-hand side at most: by conjugate gradients
+    /// around it where that is rough.
+    fn solve_to(&mut self, _relative: f64, rhs: &[f64], solution: &mut [f64]) -> Result<Solved, SolveError> {
+        self.solve(rhs, solution)
+    }
     /// Solves for an operator known by its product (nodal arrays, zero where not free; collective), by a Krylov method
     /// that the general matrix preconditions, to the residual `relative` to the right-hand side or as far as it gets.
     fn solve_with(

@@ -27,6 +27,20 @@ const OPTIONS: [&str; 18] = [
     "-newton_ksp_pc_side",
     "right",
 ];
+/// Defaults of preconditioners that are applied in place of a solution: incomplete factors of the ranks' blocks, and the
+/// same as the smoother of multigrid, which what pointwise smoothers leave of nearly empty cells needs.
+const ROUGH: [&str; 10] = [
+    "-sub_pc_type",
+    "icc",
+    "-mg_levels_ksp_type",
+    "chebyshev",
+    "-mg_levels_ksp_max_it",
+    "2",
+    "-mg_levels_pc_type",
+    "bjacobi",
+    "-mg_levels_sub_pc_type",
+    "icc",
+];
 /// Prefix of the options of Newton's linear systems.
 const NEWTON: &str = "newton_";
 
@@ -43,12 +57,17 @@ pub struct Choice {
     pub factor: Option<String>,
     /// every rank factorises the whole system by itself: a parallel factorisation need not repeat to the bit
     pub redundant: bool,
+    /// so many times the preconditioner is applied in place of a solution; 0: there is a solution
+    pub applications: usize,
 }
 
 impl Choice {
     /// Options that PETSc must start with, before the user's own.
     pub fn options(&self) -> Vec<&str> {
         let mut options = OPTIONS.to_vec();
+        if self.is_rough() {
+            options.extend(ROUGH);
+        }
         if self.redundant {
             options.extend(["-redundant_pc_type", &self.pc, "-newton_redundant_pc_type", "lu"]);
             if let Some(factor) = &self.factor {
@@ -57,6 +76,11 @@ impl Choice {
             }
         }
         options
+    }
+
+    /// Whether directions are those of a preconditioner alone, see [`bsmpm::parallel::LinearSolver::is_rough`].
+    pub fn is_rough(&self) -> bool {
+        self.applications > 0
     }
 
     /// Whether nodes keep all their components, held ones too: multigrid wants blocks and the rigid-body modes.

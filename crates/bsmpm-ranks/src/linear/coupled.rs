@@ -72,6 +72,14 @@ impl<const D: usize> LinearSolver for Solvers<'_, D> {
         self.displacements.solve(rhs, solution)
     }
 
+    fn is_rough(&self) -> bool {
+        self.displacements.is_rough()
+    }
+
+    fn solve_to(&mut self, relative: f64, rhs: &[f64], solution: &mut [f64]) -> Result<Solved, SolveError> {
+        self.displacements.solve_to(relative, rhs, solution)
+    }
+
     fn solve_with(
         &mut self,
         product: &mut dyn FnMut(&[f64], &mut [f64]),

@@ -9,7 +9,10 @@ use petsc_rs::{Ksp, Matrix, Petsc, Product, Tolerances, Vector};
 /// Largest relative residual of a solution that is accepted, recomputed: direct solvers report success for NaN.
 const TRUSTED: f64 = 1e-6;
 
-/// Most products of one of them.
+/// Most iterations around a preconditioner that is applied in place of a solution elsewhere.
+const MOST_ITERATIONS: usize = 10_000;
+
+/// Most products of one of Newton's directions.
 const MOST_PRODUCTS: usize = 300;
 
 /// A matrix with its solver.
@@ -19,6 +22,8 @@ pub(super) struct System<'p> {
     b: Vector<'p>,
     x: Vector<'p>,
     r: Vector<'p>,
+    applications: usize, // of the preconditioner in place of a solution, if not 0
+    ksp_type: String,
 }
 
 impl<'p> System<'p> {
@@ -38,7 +43,47 @@ impl<'p> System<'p> {
         choice.apply(&mut ksp, symmetry)?;
         let vector = || Vector::new(petsc, matrix.local_rows());
         let (b, x, r) = (vector()?, vector()?, vector()?);
-        Ok(Self { matrix, ksp, b, x, r })
+        let (applications, ksp_type) = (choice.applications, choice.ksp.clone());
+        Ok(Self { matrix, ksp, b, x, r, applications, ksp_type })
+    }
+
+    /// The preconditioner applied to a right-hand side, and to what that leaves, so often as the choice says: a fixed,
+    /// linear and symmetric function. Only refused if it is not finite.
+    pub(super) fn approach(&mut self, rhs: &[f64], tally: &mut Tally) -> Result<(usize, Vec<f64>), SolveError> {
+        self.b.copy_from(rhs).map_err(failed)?;
+        let mut sum = vec![0.0; rhs.len()];
+        for number in 0..self.applications {
+            if number > 0 {
+                self.x.copy_from(&sum).map_err(failed)?;
+                self.matrix.residual(&self.b, &self.x, &mut self.r).map_err(failed)?;
+            }
+            let left = if number > 0 { &self.r } else { &self.b };
+            let outcome = self.ksp.solve(left, &mut self.x);
+            tally.count(&self.ksp, &outcome);
+            outcome.map_err(failed)?;
+            let add = |x: &[f64]| sum.iter_mut().zip(x).for_each(|(sum, x)| *sum += x);
+            self.x.read(add).map_err(failed)?;
+        }
+        // Of all ranks, as all or none go on.
+        if !self.x.norm().map_err(failed)?.is_finite() {
+            return Err(SolveError::NotFinite);
+        }
+        Ok((self.applications, sum))
+    }
+
+    /// Solution to the residual `relative` by conjugate gradients around the preconditioner.
+    pub(super) fn solve_to(
+        &mut self,
+        relative: f64,
+        rhs: &[f64],
+        tally: &mut Tally,
+    ) -> Result<(usize, Vec<f64>), SolveError> {
+        let tolerances = Tolerances { relative: 0.1 * relative, absolute: 0.0, max_iterations: MOST_ITERATIONS };
+        let set = |ksp: &mut Ksp<'p>, name: &str| ksp.set_type(name).and_then(|()| ksp.set_tolerances(tolerances));
+        set(&mut self.ksp, "cg").map_err(failed)?;
+        let found = self.solve(rhs, tally);
+        self.ksp.set_type(&self.ksp_type).map_err(failed)?;
+        found
     }
 
     /// Solution of this rank's unknowns, if it is finite and its recomputed residual small.

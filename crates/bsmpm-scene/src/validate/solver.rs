@@ -150,9 +150,12 @@ impl Size {
 
 /// What a word for the linear solver stands for.
 fn in_a_word(solver: LinearSolver) -> Linear {
+    let iterative = |ksp, pc, applications| Linear { ksp, pc, factor: None, applications };
     match solver {
-        LinearSolver::Direct => Linear { ksp: Ksp::Preonly, pc: Pc::Cholesky, factor: Some(Factor::Dissection) },
-        LinearSolver::Multigrid => Linear { ksp: Ksp::Cg, pc: Pc::Gamg, factor: None },
+        LinearSolver::Direct => Linear { factor: Some(Factor::Dissection), ..iterative(Ksp::Preonly, Pc::Cholesky, 0) },
+        LinearSolver::Multigrid => iterative(Ksp::Cg, Pc::Gamg, 0),
+        LinearSolver::IncompleteCholesky => iterative(Ksp::Preonly, Pc::Bjacobi, 1),
+        LinearSolver::MultigridCycles => iterative(Ksp::Preonly, Pc::Gamg, 2),
     }
 }
 
@@ -195,7 +198,7 @@ fn read_linear(linear: &Record, size: Size, report: &mut Report<'_>) -> Option<L
         }
         (false, None) => None,
     };
-    let found = Linear { ksp, pc, factor };
+    let found = Linear { ksp, pc, factor, applications: 0 };
     explain(linear, (&asked, &found), size, report);
     Some(found)
 }

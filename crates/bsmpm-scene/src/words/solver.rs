@@ -20,6 +20,10 @@ choice! {
         Direct = "direct",
         /// Conjugate gradients with PETSc's algebraic multigrid.
         Multigrid = "multigrid",
+        /// An incomplete Cholesky factor of every rank's block, applied once in place of a solution.
+        IncompleteCholesky = "incomplete-cholesky",
+        /// Two cycles of PETSc's algebraic multigrid in place of a solution.
+        MultigridCycles = "multigrid-cycles",
     }
 }
 

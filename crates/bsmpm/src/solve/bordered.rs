@@ -93,6 +93,10 @@ impl<const D: usize> LinearSolver for Bordered<'_, D> {
         Ok(solved)
     }
 
+    fn is_rough(&self) -> bool {
+        self.solver.is_rough()
+    }
+
     /// The product has the coupling; what preconditions it has not.
     fn solve_with(
         &mut self,

@@ -4,16 +4,19 @@
 use crate::error::{SolveError, StepError};
 use crate::kinematics::Kinematics;
 use crate::method::Method;
-use crate::parallel::{LinearSolver, dots};
+use crate::parallel::{Krylov, LinearSolver, dots};
 use crate::solve::convergence::{Convergence, first_energy, inverted};
 use crate::solve::evaluate;
+use crate::solve::fgmres;
 use crate::solve::found::Found;
 use crate::solve::linearised::Linearised;
 use crate::solve::quasi_newton::Stopped;
 use crate::solve::stability;
+use crate::solve::unknowns::Unknowns;
 use crate::step::problem::Problem;
 use crate::step::report::Counts;
 use crate::step::residual::{Balance, Residual};
+use crate::step::stiffness;
 use crate::water::newton::{Exact, Scales, direction as coupled};
 
 /// Iterations after which a step is given up: near a solution five or six do.
@@ -21,7 +24,7 @@ const MOST: usize = 30;
 /// Loosest and tightest relative residual of a direction; between them it follows the force measure, so that the
 /// convergence stays quadratic (Dembo, Eisenstat and Steihaug, 1982).
 const FORCING: (f64, f64) = (1e-10, 1e-3);
-/// The loosest where water flows: what preconditions is no factor of the derivative, and each tenth takes products.
+/// The loosest where water flows, and around a rough solver: what preconditions is no factor of the derivative, and each tenth takes products.
 const LOOSE: f64 = 1e-1;
 /// Relative residual above which a direction is none.
 const USELESS: f64 = 0.5;
@@ -84,14 +87,19 @@ fn direction<K: Kinematics<D>, const D: usize>(
         counts.linear_iterations += krylov.iterations;
         return if krylov.residual < USELESS { Ok((dx, energy)) } else { Err(SolveError::Residual(krylov.residual)) };
     }
-    let linearised = Linearised::at(problem, residual);
-    linearised.factorise(solver)?;
+    let forcing = |loosest: f64| residual.balance.measure().clamp(FORCING.0, loosest);
     counts.factorisations += 1;
     counts.iterations += 1;
-    let forcing = residual.balance.measure().clamp(FORCING.0, FORCING.1);
-    let mut du = vec![0.0; residual.balance.f_oob.len()];
-    let mut product = |v: &[f64], out: &mut [f64]| linearised.multiply(v, out);
-    let krylov = solver.solve_with(&mut product, forcing, &residual.balance.f_oob, &mut du)?;
+    let (du, krylov) = if solver.is_rough() {
+        around_stiffness(problem, residual, forcing(LOOSE), solver)?
+    } else {
+        let linearised = Linearised::at(problem, residual);
+        linearised.factorise(solver)?;
+        let mut du = vec![0.0; residual.balance.f_oob.len()];
+        let mut product = |v: &[f64], out: &mut [f64]| linearised.multiply(v, out);
+        let krylov = solver.solve_with(&mut product, forcing(FORCING.1), &residual.balance.f_oob, &mut du)?;
+        (du, krylov)
+    };
     counts.products += krylov.iterations + 1;
     counts.linear_iterations += krylov.iterations;
     if krylov.residual >= USELESS {
@@ -99,6 +107,36 @@ fn direction<K: Kinematics<D>, const D: usize>(
     }
     let energy = dots(problem.halo, D, &[(&du, &residual.balance.f_oob)])[0];
     Ok((du, energy))
+}
+
+/// The direction without a general matrix: the derivative's product in a Krylov method that the symmetric stiffness of
+/// the secants at this state preconditions.
+fn around_stiffness<K: Kinematics<D>, const D: usize>(
+    problem: &Problem<'_, K, D>,
+    residual: &Residual<K, D>,
+    relative: f64,
+    solver: &mut dyn LinearSolver,
+) -> Result<(Vec<f64>, Krylov), SolveError> {
+    let (halo, f) = (problem.halo, &residual.balance.f_oob);
+    let linearised = Linearised::at(problem, residual);
+    stiffness::assemble(problem, Some(&residual.trial), solver)?;
+    let unknowns = Unknowns::of::<D>(&problem.nodes.free, halo);
+    let (mut nodal, mut image) = (vec![0.0; f.len()], vec![0.0; f.len()]);
+    let product = |v: &[f64]| {
+        unknowns.unpack(v, &mut nodal);
+        linearised.multiply(&nodal, &mut image);
+        unknowns.packed(&image)
+    };
+    let (mut force, mut direction) = (vec![0.0; f.len()], vec![0.0; f.len()]);
+    let precondition = |r: &[f64]| {
+        unknowns.unpack(r, &mut force);
+        solver.solve(&force, &mut direction)?;
+        Ok(unknowns.packed(&direction))
+    };
+    let (found, krylov) = fgmres::solve((&unknowns, halo), product, precondition, (&unknowns.packed(f), relative))?;
+    let mut du = vec![0.0; f.len()];
+    unknowns.unpack(&found, &mut du);
+    Ok((du, krylov))
 }
 
 /// The longest of the direction's first part, half, quarter, .. that lessens the out-of-balance force, and where water
