@@ -143,12 +143,14 @@ impl<'p, const D: usize, const C: usize> KspSolver<'p, D, C> {
         let system = match place {
             Some(system) => system,
             none => {
-                let places = self.stencil.coordinates(&self.numbers, &self.free);
                 let block = if self.choice.whole_nodes() { C } else { 1 };
+                let pattern = (&self.numbers, &self.free[..]);
                 let mut matrix = if self.petsc.ranks() == 1 {
-                    // All rows are whole and in order: no sorting, and two thirds of the memory.
-                    Matrix::from_csr(self.petsc, self.own, block, &places.starts(self.own), &places.columns, &values)?
+                    // All rows are whole and in order: nothing to sort, and half of the memory.
+                    let (starts, columns) = self.stencil.rows_of(self.own, pattern.0, pattern.1);
+                    Matrix::from_csr(self.petsc, self.own, block, &starts, &columns, &values)?
                 } else {
+                    let places = self.stencil.coordinates(pattern.0, pattern.1);
                     Matrix::from_coo(self.petsc, self.own, block, &places.rows, &places.columns)?
                 };
                 if block > 1 && C == D {

@@ -47,16 +47,6 @@ pub struct Coordinates {
     pub columns: Vec<usize>,
 }
 
-impl Coordinates {
-    /// Where each of so many rows begins, of entries that stand row by row.
-    pub fn starts(&self, rows: usize) -> Vec<usize> {
-        let mut starts = vec![0; rows + 1];
-        self.rows.iter().for_each(|row| starts[row + 1] += 1);
-        (0..rows).for_each(|row| starts[row + 1] += starts[row]);
-        starts
-    }
-}
-
 impl<const D: usize, const C: usize> Stencil<D, C> {
     /// Stencils over a window, of no node yet: see [`Stencil::keep`].
     pub fn new(grid: &Grid<D>) -> Self {
@@ -230,6 +220,16 @@ impl<const D: usize, const C: usize> Stencil<D, C> {
             coordinates.columns.push(column);
         });
         coordinates
+    }
+
+    /// The same where all rows are this rank's: where each of so many begins, and the columns of their entries.
+    pub fn rows_of(&self, count: usize, numbers: &Numbering, free: &[bool]) -> (Vec<usize>, Vec<usize>) {
+        let (mut starts, mut columns) = (vec![0; count + 1], Vec::new());
+        self.walk(numbers, free, |row, column, _| {
+            columns.push(column);
+            starts[row + 1] = columns.len();
+        });
+        (starts, columns)
     }
 
     /// Values of the entries in the order of [`Stencil::coordinates`].

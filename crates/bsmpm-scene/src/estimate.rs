@@ -143,15 +143,19 @@ impl Systems {
         };
         // Of water one number of every node more.
         let wet = (unknowns + unknowns / dims as u128) * KRYLOV_OF_WATER;
-        let krylov = unknowns * KRYLOV;
+        // Around a preconditioner that is applied in place of solutions there is no general matrix either.
+        let around = solver.linear.applications > 0;
+        let krylov = unknowns * if around { KRYLOV_OF_WATER } else { KRYLOV };
         let repeated = again * (entries * REPEATED + 2 * factor);
         let general = match flows {
             true => [elastic[0] + wet, elastic[1], elastic[2]],
+            false if around => [elastic[0] + krylov, elastic[1], elastic[2]],
             false => [entries * ENTRY + 2 * factor + krylov, repeated, entries * BUILT],
         };
         let [held, repeated, built] = if nonlinear == Nonlinear::Newton { general } else { elastic };
         let perhaps = match nonlinear {
             Nonlinear::Auto if flows => [wet, 0],
+            Nonlinear::Auto if around => [krylov, 0],
             Nonlinear::Auto => [general[0], general[1]],
             _ => [0; 2],
         };

@@ -131,6 +131,7 @@ pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Op
         return None;
     }
     body::warn_of_overlap(&case, report);
+    solver::of_case(&mut case, record, report);
     solid::check(&case, record, report);
     rigid::check(&case, record, report);
     stage::check(&mut case, record, report);

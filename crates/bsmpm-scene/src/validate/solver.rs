@@ -1,6 +1,6 @@
 //! The solver's settings and their defaults that depend on the analysis.
 
-use crate::case::{Linear, NamedMaterial, Solver};
+use crate::case::{Case, Linear, NamedMaterial, Solver};
 use crate::estimate;
 use crate::grid::GridSpec;
 use crate::record::Record;
@@ -156,6 +156,38 @@ fn in_a_word(solver: LinearSolver) -> Linear {
         LinearSolver::Multigrid => iterative(Ksp::Cg, Pc::Gamg, 0),
         LinearSolver::IncompleteCholesky => iterative(Ksp::Preonly, Pc::Bjacobi, 1),
         LinearSolver::MultigridCycles => iterative(Ksp::Preonly, Pc::Gamg, 2),
+    }
+}
+
+/// Unknowns of a solid from which a factor takes longer than the iterations that it saves: measured in
+/// `cases/results/solid.md`.
+const FEW_IN_SPACE: u64 = 10_000;
+
+/// Takes what applies in a solid of many unknowns unless the case says it, and refuses what needs solutions of a
+/// solver that has none.
+pub(super) fn of_case(case: &mut Case, root: &Record, report: &mut Report<'_>) {
+    let Some(solver) = root.record("solver") else { return };
+    let condenses = case.rigid.iter().any(|rigid| rigid.free.contains(&true));
+    if case.solver.linear.applications > 0 && (case.flow.is_some() || condenses) {
+        let what = if condenses { "rigid bodies that move freely" } else { "water that flows" };
+        let message =
+            format!("a preconditioner in place of solutions was not shown to be right with {what}: \"direct\"");
+        solver.error("linear", message, report);
+        return;
+    }
+    let poisson = case.materials.iter().map(|named| named.material.elastic().poisson).fold(0.0, f64::max);
+    let (dims, active) = (case.grid.dims(), case.estimate().active);
+    if dims < 3 || solver.gives("linear") || case.flow.is_some() || condenses || active <= FEW_IN_SPACE {
+        return;
+    }
+    if poisson <= estimate::LOCAL {
+        let word = LinearSolver::IncompleteCholesky;
+        case.solver.linear = in_a_word(word);
+        let reason = format!(
+            "up to {active} unknowns in space: one application costs a thousandth of a factor, which beyond {FEW_IN_SPACE} \
+             takes longer than the iterations that it saves, and whose memory grows by 2.5 with every doubling"
+        );
+        report.note("solver.linear", word.word(), reason);
     }
 }
 

@@ -3,7 +3,7 @@
 
 use crate::support::Scratch;
 use crate::support::cases::changed;
-use crate::support::results::{agree, at, history};
+use crate::support::results::{agree, at, history, manifest};
 use std::f64::consts::PI;
 
 /// Cohesive sand that slumps in plane strain.
@@ -165,4 +165,51 @@ fn a_box_weighs_what_it_weighs() {
     let settled = -at(&table, "displacement-z", 1.0) / (0.5 * share - 0.5 * share * share);
     println!("settlement over the closed form: {settled}");
     assert!((settled - 1.0).abs() < 0.01);
+}
+
+/// Secants correct a preconditioner as they correct a factor; blocks of the ranks, and so their number, change its
+/// iterations, not what they lead to.
+#[test]
+fn a_preconditioner_in_place_of_solutions_leads_to_the_same_column() {
+    let rough = changed(COLUMN, "[solver]\n", "[solver]\nlinear = \"incomplete-cholesky\"\n");
+    let scratch = Scratch::with_case(&rough);
+    scratch.direct(&["case.toml", "-q", "-o", "factor", "--set", "solver.linear=\"direct\""]).expect(0);
+    for ranks in [1, 3] {
+        scratch.goes_on(ranks, &["11"]);
+        agree(&scratch.path(&format!("whole{ranks}")), &scratch.path("factor"));
+    }
+    scratch.direct(&["case.toml", "-q", "-o", "cycles", "--set", "solver.linear=\"multigrid-cycles\""]).expect(0);
+    agree(&scratch.path("cycles"), &scratch.path("factor"));
+    let solvers = |name: &str| manifest(&scratch.path(name)).linear["stiffness"].pc.clone();
+    let found = ["factor", "whole1", "cycles"].map(solvers);
+    assert_eq!(found, ["shell (dissection)", "bjacobi", "gamg"]);
+}
+
+/// Yielding ground in statics, from the elastic equilibrium of its weight, which one application does not solve, by
+/// secants and by Newton's method around a preconditioner.
+#[test]
+fn newtons_directions_are_sought_around_a_preconditioner() {
+    let still = changed(COLUMN, "type = \"dynamic\"\nend = 0.2\ndt = 0.01", "type = \"quasi-static\"\nsteps = 2");
+    let still = changed(
+        &still,
+        "[boundary]",
+        "[initial]\ngravity = \"elastic\"\n[strength_reduction]\nfactor = 1.2\n[boundary]",
+    );
+    let still = changed(&still, "cohesion = 0", "cohesion = \"4 kPa\"");
+    let still = changed(&still, "every = 0.1", "every = 1.0");
+    let scratch = Scratch::with_case(&still);
+    let run = |name: &str, ranks: usize, linear: &str, nonlinear: &str| {
+        let set = [format!("solver.linear=\"{linear}\""), format!("solver.nonlinear=\"{nonlinear}\"")];
+        scratch.mpirun(ranks, &["case.toml", "-q", "-o", name, "--set", &set[0], "--set", &set[1]]).expect(0);
+    };
+    run("factor", 1, "direct", "newton");
+    for (ranks, linear, nonlinear) in
+        [(2, "incomplete-cholesky", "newton"), (1, "incomplete-cholesky", "auto"), (1, "multigrid-cycles", "newton")]
+    {
+        let name = format!("{linear}-{nonlinear}");
+        run(&name, ranks, linear, nonlinear);
+        agree(&scratch.path(&name), &scratch.path("factor"));
+    }
+    let yielding = manifest(&scratch.path("factor")).initial.is_some();
+    assert!(yielding, "it starts from an equilibrium");
 }
