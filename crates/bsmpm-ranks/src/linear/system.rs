@@ -4,7 +4,7 @@ use super::choice::Choice;
 use super::tally::Tally;
 use bsmpm::error::SolveError;
 use bsmpm::parallel::{Krylov, Symmetry};
-use petsc_rs::{Ksp, Matrix, Petsc, Product, Tolerances, Vector};
+use petsc_rs::{Ksp, Matrix, NormType, Petsc, Product, Tolerances, Vector};
 
 /// Largest relative residual of a solution that is accepted, recomputed: direct solvers report success for NaN.
 const TRUSTED: f64 = 1e-6;
@@ -79,10 +79,11 @@ impl<'p> System<'p> {
         tally: &mut Tally,
     ) -> Result<(usize, Vec<f64>), SolveError> {
         let tolerances = Tolerances { relative: 0.1 * relative, absolute: 0.0, max_iterations: MOST_ITERATIONS };
-        let set = |ksp: &mut Ksp<'p>, name: &str| ksp.set_type(name).and_then(|()| ksp.set_tolerances(tolerances));
-        set(&mut self.ksp, "cg").map_err(failed)?;
+        let set = |ksp: &mut Ksp<'p>, name: &str, norm| ksp.set_type(name).and_then(|()| ksp.set_norm(norm));
+        self.ksp.set_tolerances(tolerances).map_err(failed)?;
+        set(&mut self.ksp, "cg", NormType::Unpreconditioned).map_err(failed)?;
         let found = self.solve(rhs, tally);
-        self.ksp.set_type(&self.ksp_type).map_err(failed)?;
+        set(&mut self.ksp, &self.ksp_type, NormType::None).map_err(failed)?;
         found
     }
 

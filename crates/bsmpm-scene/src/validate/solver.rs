@@ -162,6 +162,8 @@ fn in_a_word(solver: LinearSolver) -> Linear {
 /// Unknowns of a solid from which a factor takes longer than the iterations that it saves: measured in
 /// `cases/results/solid.md`.
 const FEW_IN_SPACE: u64 = 10_000;
+/// Unknowns of a solid at rest from which multigrid is taken: by the growth of iterations up to 116,000.
+const MANY_IN_SPACE: u64 = 300_000;
 
 /// Takes what applies in a solid of many unknowns unless the case says it, and refuses what needs solutions of a
 /// solver that has none.
@@ -181,12 +183,20 @@ pub(super) fn of_case(case: &mut Case, root: &Record, report: &mut Report<'_>) {
         return;
     }
     if poisson <= estimate::LOCAL {
-        let word = LinearSolver::IncompleteCholesky;
+        let many = case.analysis.regime == Regime::QuasiStatic && active > MANY_IN_SPACE;
+        let word = if many { LinearSolver::MultigridCycles } else { LinearSolver::IncompleteCholesky };
         case.solver.linear = in_a_word(word);
-        let reason = format!(
-            "up to {active} unknowns in space: one application costs a thousandth of a factor, which beyond {FEW_IN_SPACE} \
-             takes longer than the iterations that it saves, and whose memory grows by 2.5 with every doubling"
-        );
+        let so_many = format!("up to {active} unknowns in space");
+        let reason = match many {
+            true => format!(
+                "{so_many}, quasi-static: what one application of an incomplete factor leaves grows with the root of their \
+                 number; on several ranks it need not repeat to the bit"
+            ),
+            false => format!(
+                "{so_many}, more than {FEW_IN_SPACE}: an application of an incomplete factor in place of a solution; a factor \
+                 takes longer than the iterations that it saves, and 2.5 times the memory with every doubling"
+            ),
+        };
         report.note("solver.linear", word.word(), reason);
     }
 }
