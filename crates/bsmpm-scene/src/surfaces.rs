@@ -228,7 +228,10 @@ fn of_ground<const D: usize>(soil: &Soil<3>) -> Soil<D> {
 /// Rigid bodies in the order of the file, once the stages until the time `t` have begun.
 pub fn rigid(case: &Case, t: f64) -> Vec<RigidBody> {
     let divided = case.divided_at(t);
-    let of = |rigid: &Rigid| RigidBody { friction: rigid.friction / divided, ..rigid_body(rigid, case.grid.corner()) };
+    let of = |rigid: &Rigid| RigidBody {
+        friction: rigid.friction / divided,
+        ..rigid_body(rigid, case.grid.corner(), case.geometry)
+    };
     case.rigid.iter().map(of).collect()
 }
 
@@ -243,7 +246,7 @@ pub(crate) fn outline(shape: &RigidShape, about: [f64; 2]) -> Outline {
 }
 
 /// A rigid body as the physics wants it, of a grid with this lower corner.
-pub(crate) fn rigid_body(rigid: &Rigid, lower: [f64; 2]) -> RigidBody {
+pub(crate) fn rigid_body(rigid: &Rigid, lower: [f64; 2], geometry: Geometry) -> RigidBody {
     let mut times: Vec<f64> =
         rigid.path.rows.iter().map(|row| row.0).chain(rigid.rotation.iter().map(|row| row.0)).collect();
     times.sort_by(f64::total_cmp);
@@ -255,7 +258,7 @@ pub(crate) fn rigid_body(rigid: &Rigid, lower: [f64; 2]) -> RigidBody {
         let turned = rigid.rotation.last().map_or(0.0, |(_, angle)| *angle);
         Vector::<3>::new(moved[0], moved[1], between(&rigid.rotation, 0.0, t).unwrap_or(turned))
     };
-    let force = Vector::from(rigid.force);
+    let force = Vector::<3>::from(rigid.force) / geometry.whole();
     let load = match (rigid.force == [0.0; 3], rigid.amplitude.is_empty()) {
         (true, _) => Vec::new(),
         (_, true) => vec![(rigid.ramp, force)],
@@ -267,7 +270,7 @@ pub(crate) fn rigid_body(rigid: &Rigid, lower: [f64; 2]) -> RigidBody {
         friction: rigid.friction,
         free: rigid.free,
         path: times.into_iter().map(|t| (t, path(t))).collect(),
-        mass: Vector::<3>::new(rigid.mass[0], rigid.mass[0], rigid.mass[1]),
+        mass: Vector::<3>::new(rigid.mass[0], rigid.mass[0], rigid.mass[1]) / geometry.whole(),
         load,
         velocity: Vector::from(rigid.velocity),
     }
