@@ -13,7 +13,7 @@ pub(super) static DRAIN: Table = Table {
           says another. A body's surface goes with the material; what is not named lets no water through",
     keys: &[
         key("name", Name, Optional, "what histories call it"),
-        key("face", Choice(Side::WORDS), Optional, "a face of the grid, at which bodies lie"),
+        key("face", Choice(Side::WORDS), Optional, "a face of the grid, at which bodies lie; of a solid only this"),
         key("from", PLACE, Optional, "one end of a segment of a body's surface at the start"),
         key("to", PLACE, Optional, "the other end"),
         key("circle", Kind::Table(&body::CIRCLE), Optional, "a circle instead: the part of it inside the grid"),

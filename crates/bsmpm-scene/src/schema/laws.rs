@@ -296,7 +296,7 @@ pub(crate) static MATERIAL: Table = Table {
             "permeability",
             Either(In::Seepage, Range::POSITIVE),
             Optional,
-            "hydraulic conductivity, or [kx, ky] (coupled: required)",
+            "hydraulic conductivity, or that along each axis (coupled: required)",
         ),
         key(
             "permeability_law",

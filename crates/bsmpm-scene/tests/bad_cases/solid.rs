@@ -4,6 +4,10 @@ use super::{Row, row};
 
 const BOX: &str = "box = { lower = [0.0, 0.0, 0.0], upper = [2.0, 3.0, 1.0] }";
 
+const FLOWS: &str = "density = 2000\nporosity = 0.4\ndrainage = \"coupled\"\npermeability = [1e-6, 1e-7, 1e-6]\n\
+    [water]\nlevel = 1.0\n[[drain]]\nsurface = true\n";
+const PERMEABLE: &str = "density = 2000\nporosity = 0.4\ndrainage = \"coupled\"\npermeability = [1e-6, 1e-7]\n";
+
 /// Changes of `solid.toml`.
 pub const SOLID: &[Row] = &[
     row("lower = [0.0, 0.0, 0.0]", "lower = [0.0, 0.0]", "grid.lower", "solid: of three"),
@@ -45,14 +49,28 @@ pub const SOLID: &[Row] = &[
         "not available",
     ),
     row("[gravity]", "[[stage]]\nat = 0.5\nremove = [\"block\"]\n[gravity]", "stage", "a case for every stage"),
-    row("[gravity]", "[water]\nlevel = 1.0\n[gravity]", "water", "not available in a solid yet"),
+    row("[gravity]", "[water]\nlevel = 0.0\n[gravity]", "water.level", "lower face, z = 0").down(1),
+    row(
+        "[0.0, 0.0, -9.81]",
+        "[0.0, -1.0, -9.81]\n[water]\nlevel = 1.0",
+        "gravity.acceleration",
+        "is not straight down",
+    ),
+    row(
+        "[gravity]",
+        "[[inflow]]\nfrom = [0, 0]\nto = [1, 1]\nrate = 1e-6\n[gravity]",
+        "inflow",
+        "not available in a solid yet",
+    ),
+    row("density = 2000", FLOWS, "drain.0.surface", "name a face of the grid").down(7),
+    row("density = 2000", PERMEABLE, "material.soil.permeability", "expected").down(3),
     row(
         "[gravity]",
         "[[point_load]]\nat = [1, 1]\nforce = [0, -1]\n[gravity]",
         "point_load",
         "not available in a solid yet",
     ),
-    row("density = 2000", "density = 2000\nru = 0.2", "material.soil.ru", "not available in a solid yet").down(1),
+    row("density = 2000", "density = 2000\nru = 1.2", "material.soil.ru", "allowed: 0 < ru < 1").down(1),
     row(
         "velocity = [0.0, 0.0, -1.0]",
         "spin = { rate = 1, about = [0, 0] }",

@@ -410,6 +410,20 @@ fn drains_that_feed_the_ground_are_warned_of() {
     assert!(warned(&[permeable, "water.level=1.0"]).is_empty());
 }
 
+/// A load that takes much of the ground's height, on a background that does not hold its surface.
+#[test]
+fn large_loads_on_little_background_are_warned_of() {
+    let case = include_str!("../../../../cases/validation/large_consolidation.toml");
+    let warned = |set: &[&str]| {
+        let warnings = valid(case, set).warnings;
+        warnings.iter().filter(|warning| warning.starts_with("solver.background: ")).cloned().collect::<Vec<_>>()
+    };
+    let found = warned(&["solver.background=1e-4"]);
+    assert!(found.len() == 1 && found[0].contains("a load of 0.50") && found[0].contains("with 1e-2"), "{found:?}");
+    assert!(warned(&[]).is_empty());
+    assert!(warned(&["solver.background=1e-4", "traction.0.stress=[0.0, \"-50 kPa\"]"]).is_empty());
+}
+
 /// A pressure: on the side where the body lies, by depth, on segments and on circles.
 #[test]
 fn a_pressure_finds_the_body_that_it_presses_on() {

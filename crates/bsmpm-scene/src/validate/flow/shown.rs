@@ -7,6 +7,7 @@ use crate::report::Report;
 use crate::schema::LawName;
 use crate::validate::place;
 use crate::words::{AnalysisType, Side, Word};
+use bsmpm::model::Regime;
 use bsmpm::quadrature::Quadrature;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::water::ambient::Ambient;
@@ -18,6 +19,11 @@ const POINTS_OF_CUBIC: usize = 4;
 const FILM: f64 = 0.1;
 /// Growth per step above which steps are warned of: their own error is first order in them.
 const MOST_GROWTH: f64 = 1.25;
+
+/// Part of the softest soil's oedometric stiffness from which on a load is large, and the background that it asks for.
+const LARGE: f64 = 0.1;
+/// Young's moduli.
+const ENOUGH: f64 = 1e-2;
 
 /// What the whole case says of a flow: refusals of what is not shown to be right with it.
 pub(in crate::validate) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
@@ -45,6 +51,24 @@ pub(in crate::validate) fn check(case: &Case, root: &Record, report: &mut Report
     timed(case, root, report);
     drained(case, flow, report);
     ponds(case, flow, report);
+    pressed(case, flow, report);
+}
+
+/// Loads that take much of the height of the soil that they consolidate: its surface leaves the cells behind.
+fn pressed(case: &Case, flow: &Flow, report: &mut Report<'_>) {
+    let consolidates = |number: usize| flow.soils[number].as_ref().is_some_and(|soil| soil.permeability.is_some());
+    let soils = case.bodies.iter().map(|body| body.material).filter(|number| consolidates(*number));
+    let stiffness = |number: usize| case.materials[number].material.elastic().oedometric();
+    let softest = soils.map(stiffness).fold(f64::INFINITY, f64::min);
+    let load = case.tractions.iter().map(|traction| traction.largest()).fold(0.0, f64::max) / softest;
+    let soft = case.solver.background < 0.5 * ENOUGH && case.analysis.regime == Regime::QuasiStatic;
+    if soft && load >= LARGE {
+        report.warn(format!(
+            "solver.background: {:e}: a load of {load:.2} of the soil's stiffness takes much of its height, and the points at \
+             its surface may drift apart there: settlements off by 10 %, or an early end; shown to be right with {ENOUGH:e}",
+            case.solver.background
+        ));
+    }
 }
 
 /// Splines, points, averages and iterations that carry the pressure.
