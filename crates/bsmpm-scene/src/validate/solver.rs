@@ -197,6 +197,7 @@ pub(super) fn of_case(case: &mut Case, root: &Record, report: &mut Report<'_>) {
                  takes longer than the iterations that it saves, and 2.5 times the memory with every doubling"
             ),
         };
+        report.notes.retain(|note| !note.key.starts_with("solver.linear"));
         report.note("solver.linear", word.word(), reason);
     }
 }
