@@ -14,7 +14,7 @@ use bsmpm::kinematics::PlaneStrain;
 use bsmpm::method::Nonlinear;
 use bsmpm::method::QuasiNewton;
 use bsmpm::model::Regime;
-use bsmpm::parallel::{Alone, Halo};
+use bsmpm::parallel::{Alone, Halo, OwnedNodes};
 use bsmpm::schedule::Schedule;
 use std::cell::Cell;
 use std::ops::Range;
@@ -157,11 +157,8 @@ struct Impatient {
 }
 
 impl Halo for Impatient {
-    fn owned(&self) -> Range<usize> {
+    fn owned(&self) -> OwnedNodes {
         self.halo.owned()
-    }
-    fn layer_nodes(&self) -> usize {
-        self.halo.layer_nodes()
     }
     fn sum(&self, contributions: &Contributions) -> Vec<f64> {
         self.halo.sum(contributions)
