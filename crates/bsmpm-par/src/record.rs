@@ -1,14 +1,14 @@
 //! Rows of `history.csv`: the quantities that the case asks for, in the case's own coordinates.
 
+mod place;
+mod reported;
+
 use crate::checkpoint::{BooksForm, Outlet, RecordState, Row};
-use bsmpm::boundary::{ContactReport, RigidReport};
 use bsmpm::energy::{Books, Stored};
 use bsmpm::error::StepError;
-use bsmpm::grid::Grid;
 use bsmpm::kinematics::Kinematics;
 use bsmpm::model::Model;
-use bsmpm::observe::place::{self, Configuration};
-use bsmpm::observe::{self, Part, SectionForces, noise};
+use bsmpm::observe::{self, Part, noise};
 use bsmpm::parallel::Halo;
 use bsmpm::points::Points;
 use bsmpm::step::StepReport;
@@ -18,13 +18,12 @@ use bsmpm::water::observed::PoreWater;
 use bsmpm_scene::model::vector;
 use bsmpm_scene::surfaces::{self, DrainPlace, Gauge};
 use bsmpm_scene::words::Measurement;
-use bsmpm_scene::{Case, Counted, Face, GridSpec, History, Quantity, Stage};
-use std::any::Any;
+use bsmpm_scene::{Case, Counted, GridSpec, History, Quantity, Stage};
+use place::{PLANE, at_followed, at_surface, both, displacement, followed_place, pore, section, shown};
+use reported::{at_face, contact, rigid};
 
 /// Place of the vertical normal stress among XX YY ZZ XY YZ XZ.
 const VERTICAL: usize = 1;
-/// Components of a stress in a plane among them: the first ones.
-const PLANE: usize = 4;
 
 /// The histories of a run, with the points that they follow.
 pub struct Recorder<const D: usize> {
@@ -297,101 +296,6 @@ impl<const D: usize> Recorder<D> {
         let whole = [now.kinetic, now.elastic, flows.plastic, flows.external, flows.numerical()];
         whole.into_iter().chain(parts).chain([books.closure(now)]).collect()
     }
-
-    /// A quantity of the footing; 0 without one, and before the first step.
-    fn footing(&self, quantity: &Quantity, t: f64, report: &StepReport) -> f64 {
-        let strip = report.strips.first();
-        let Some(gauge) = &self.gauge else { return 0.0 };
-        match quantity {
-            Quantity::Penetration => gauge.penetration(t),
-            Quantity::FootingPressure => strip.map_or(0.0, |strip| gauge.pressure(strip)),
-            Quantity::FootingForce => strip.map_or(0.0, |strip| gauge.force(strip)),
-            _ => strip.map_or(0.0, surfaces::relative_slip),
-        }
-    }
-
-    /// A quantity of a strip; zero before the first step.
-    fn strip(&self, number: usize, measured: Measurement, report: &StepReport) -> Vec<f64> {
-        let strip = report.strips.get(number);
-        match measured {
-            Measurement::Reaction => strip.map_or_else(|| vec![0.0; D], |strip| strip.force.clone()),
-            Measurement::Moment => vec![strip.map_or(0.0, |strip| strip.moment)],
-            Measurement::Work => vec![self.work.get(number).copied().unwrap_or(0.0)],
-            measured => contact(measured, strip.and_then(|strip| strip.contact), report.dt),
-        }
-    }
-
-    /// Force of what holds a face on the body; zero where there is nothing, and before the first step.
-    fn reaction<K: Kinematics<D>>(
-        &self,
-        number: usize,
-        model: &Model<K, D>,
-        face: Face,
-        report: &StepReport,
-    ) -> Vec<f64> {
-        if let Some(strip) = self.reacting[number].and_then(|strip| report.strips.get(strip)) {
-            return strip.force.clone();
-        }
-        let supports = model.boundary.supports.iter().zip(&report.reactions);
-        let mut at_face = supports.filter(|(support, _)| support.axis == face.axis && support.upper == face.upper);
-        at_face.next().map_or_else(|| vec![0.0; D], |(_, force)| force.clone())
-    }
-}
-
-/// What a face in contact did.
-fn at_face<K: Kinematics<D>, const D: usize>(
-    model: &Model<K, D>,
-    face: Face,
-    report: &StepReport,
-) -> Option<ContactReport> {
-    let supports = &model.boundary.supports;
-    let of_face = |found: &&ContactReport| {
-        let support = &supports[found.support];
-        support.axis == face.axis && support.upper == face.upper
-    };
-    report.contacts.iter().find(of_face).copied()
-}
-
-/// A quantity of a face or strip in contact in a step of the length `dt`; zero before the first step.
-fn contact(measured: Measurement, found: Option<ContactReport>, dt: f64) -> Vec<f64> {
-    let found = found.unwrap_or_default();
-    let rate = |sum: f64| if dt > 0.0 { sum / dt } else { 0.0 };
-    match measured {
-        Measurement::Contact => vec![found.closed, found.sliding],
-        Measurement::Gap => found.gap.to_vec(),
-        Measurement::SlipRate => vec![rate(found.slip)],
-        _ => vec![rate(found.dissipated)],
-    }
-}
-
-/// The place of a history that follows the point nearest to it.
-fn followed_place(quantity: &Quantity) -> Option<[f64; 3]> {
-    match *quantity {
-        Quantity::Displacement { at } | Quantity::PorePressure { at } | Quantity::Pore { at, .. } => Some(at),
-        Quantity::Velocity { at, surface: false } | Quantity::Stress { at, surface: false } => Some(at),
-        _ => None,
-    }
-}
-
-/// A quantity of the pore water of the point of an id; zero without it.
-fn pore<const D: usize>(
-    (measured, water): (Measurement, Option<PoreWater<'_, D>>),
-    id: u64,
-    points: &Points<D>,
-    halo: &dyn Halo,
-) -> Vec<f64> {
-    let number = |of: &dyn Fn(PoreWater<'_, D>, usize) -> f64| {
-        observe::at_point(points, id, halo, |p| [water.map_or(0.0, |water| of(water, p))]).to_vec()
-    };
-    match measured {
-        Measurement::Flux => {
-            let flux = |p: usize| water.map_or([0.0; D], |water| water.flux(p).into());
-            observe::at_point(points, id, halo, flux).to_vec()
-        }
-        Measurement::ExcessPressure => number(&|water, p| water.excess(p)),
-        Measurement::Porosity => number(&|water, p| water.porosity(p)),
-        _ => number(&|water, p| water.pressure(p)),
-    }
 }
 
 /// The points that every history counts.
@@ -404,90 +308,4 @@ fn parts(case: &Case) -> Vec<Part> {
         Counted::Body(number) => Part::Ids(ids.get_or_insert_with(|| case.ids())[number].clone()),
     };
     case.histories.iter().map(&mut part).collect()
-}
-
-/// A field at the material place that was at `at` (m, from the grid's lower corner) before anything moved; zero where
-/// there is no material.
-fn at_surface<K: Kinematics<D>, const D: usize, const C: usize>(
-    (model, points): (&Model<K, D>, &Points<D>),
-    at: Vector<D>,
-    field: impl Fn(usize) -> [f64; C],
-    halo: &dyn Halo,
-) -> Vec<f64> {
-    let found = place::values::<K, D, _>(&model.grid, points, (&[at], Configuration::Initial), field, halo);
-    found[0].map_or_else(|| vec![0.0; C], |values| values.to_vec())
-}
-
-/// A quantity of a rigid body; before the first step that of the start.
-fn rigid<K: Kinematics<D>, const D: usize>(
-    what: Measurement,
-    body: usize,
-    (t, model): (f64, &Model<K, D>),
-    report: &StepReport,
-) -> Vec<f64> {
-    let at_start = || {
-        let body = &model.boundary.rigid[body];
-        let state = body.at_rest();
-        RigidReport { moved: body.on_path(t), velocity: state.velocity, ..RigidReport::default() }
-    };
-    let found = report.rigid.get(body).copied().unwrap_or_else(at_start);
-    match what {
-        Measurement::RigidForce => found.force.as_slice()[..2].to_vec(),
-        Measurement::RigidMoment => vec![found.force[2]],
-        Measurement::RigidDisplacement => found.moved.as_slice()[..2].to_vec(),
-        Measurement::RigidRotation => vec![found.moved[2].to_degrees()],
-        Measurement::RigidVelocity => found.velocity.as_slice()[..2].to_vec(),
-        Measurement::RigidSlip => vec![found.slipped],
-        Measurement::RigidWork => vec![found.work],
-        _ => vec![found.gap],
-    }
-}
-
-/// Resultants of the stress in a section; none out of a plane.
-fn section<const D: usize>(
-    (grid, points): (&Grid<D>, &Points<D>),
-    ends: [Vector<D>; 2],
-    fixed: bool,
-    halo: &dyn Halo,
-) -> SectionForces {
-    let placed = |end: Vector<D>| if fixed { Some(end) } else { observe::moved(points, &end, halo) };
-    let [from, to] = ends.map(placed);
-    let plane = |end: Vector<D>| Vector::<2>::new(end[0], end[1]);
-    let (grid, points): (&dyn Any, &dyn Any) = (grid, points);
-    let (Some(grid), Some(points)) = (grid.downcast_ref(), points.downcast_ref()) else {
-        return SectionForces::default();
-    };
-    let forces = from.zip(to).map(|(from, to)| observe::section_forces(grid, points, [from, to].map(plane), halo));
-    forces.unwrap_or_default()
-}
-
-fn both(noise: noise::Noise) -> Vec<f64> {
-    vec![noise.about_average, noise.about_plane]
-}
-
-/// Displacement (m) of the place that the point `id` is the nearest one to, since the start; `lower` is the grid's
-/// corner. Zero where there is no such point.
-fn displacement<const D: usize>(
-    (at, lower): ([f64; 3], Vector<D>),
-    id: u64,
-    points: &Points<D>,
-    halo: &dyn Halo,
-) -> [f64; D] {
-    let place = vector(at) - lower;
-    observe::at_point(points, id, halo, |p| observe::displacement(points, p, &place).into())
-}
-
-/// The components of a stress that a geometry has: in a plane without those that couple it with its normal.
-fn shown<const D: usize>(stress: [f64; 6]) -> Vec<f64> {
-    stress[..if D == 2 { PLANE } else { stress.len() }].to_vec()
-}
-
-/// A quantity of the point `id`, zero where there is none; of other quantities there is none.
-fn at_followed<const D: usize>(quantity: &Quantity, id: u64, points: &Points<D>, halo: &dyn Halo) -> Vec<f64> {
-    let velocity = |p: usize| points.motion.as_ref().map_or([0.0; D], |motion| motion.v[p].into());
-    match quantity {
-        Quantity::Velocity { .. } => observe::at_point(points, id, halo, velocity).to_vec(),
-        Quantity::Stress { .. } => shown::<D>(observe::at_point(points, id, halo, |p| points.sigma.at(p).0)),
-        _ => Vec::new(),
-    }
 }

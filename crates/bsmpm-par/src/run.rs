@@ -3,34 +3,28 @@
 mod diagnosis;
 mod end;
 mod failure;
+mod frame;
 mod save;
 mod stage;
 mod start;
+mod told;
 
-use crate::checkpoint::Outlet;
 use crate::cli::Arguments;
 use crate::fault::Fault;
-use crate::gather::{self, Around, FrameMoment, Gathering};
 use crate::launch;
 use crate::ledger::Ledger;
 use crate::log::Log;
-use crate::profile;
 use crate::record::Recorder;
 use bsmpm::control::Accepted;
 use bsmpm::error::StepError;
 use bsmpm::kinematics::Kinematics;
-use bsmpm::observe::projection::projected_pressure;
 use bsmpm::parallel::Halo;
 use bsmpm::step::StepReport;
-use bsmpm::water::observed::PoreWater;
 use bsmpm_io::exit;
-use bsmpm_io::frame::Parts;
-use bsmpm_io::manifest::{Communication, ManifestOutflow, SolverNames, Status};
+use bsmpm_io::manifest::{Communication, SolverNames, Status};
 use bsmpm_ranks::simulation::Simulation;
 use bsmpm_ranks::timers::Timers;
-use bsmpm_scene::model::vector;
-use bsmpm_scene::words::FrameField;
-use bsmpm_scene::{Case, Every, Profile};
+use bsmpm_scene::Case;
 use hdf5_collective::Hdf5;
 use mpi::environment::Universe;
 use mpi::topology::Communicator;
@@ -49,11 +43,6 @@ pub struct Task {
     /// a fault on demand
     pub fault: Option<Fault>,
 }
-
-/// Cells that a rigid body may move in a step at the soil that it touches.
-const FASTEST: f64 = 0.5;
-/// Cells that points may be in a rigid body.
-const DEEPEST: f64 = 0.05;
 
 /// A run under way.
 pub struct Run<'p, K, const D: usize> {
@@ -225,128 +214,6 @@ impl<'p, K: Kinematics<D>, const D: usize> Run<'p, K, D> {
         self.begin_stages(accepted.t)
     }
 
-    /// Misspelt options of PETSc would do nothing in silence.
-    fn tell_unused_options(&mut self) {
-        let unused = self.simulation.unused_options();
-        let given = |name: &String| self.arguments.petsc.iter().any(|option| option.strip_prefix('-') == Some(name));
-        let misspelt: Vec<String> = unused.into_iter().filter(given).collect();
-        for name in misspelt {
-            let warning =
-                format!("the PETSc option -{name} was not used: it is misspelt, or the solver has no such part");
-            self.warn(warning);
-        }
-    }
-
-    /// A rigid body that comes so fast that points are met too late, or so light a penalty that they go into it.
-    fn tell_rigid(&mut self, accepted: &Accepted) {
-        for (number, report) in accepted.report.rigid.iter().enumerate() {
-            let (name, t) = (self.case.rigid[number].name.clone(), accepted.t);
-            let (advance, depth) = (report.advance, report.penetration);
-            if advance > FASTEST && self.told_rigid.insert(2 * number) {
-                self.warn(format!(
-                    "rigid `{name}`: at t = {t} it moves {advance:.2} cells in a step at soil that it touches; points are met \
-                     right up to {FASTEST}: more steps"
-                ));
-            }
-            if depth > DEEPEST && self.told_rigid.insert(2 * number + 1) {
-                self.warn(format!(
-                    "rigid `{name}`: at t = {t} points are {depth:.2} cells in it, usually 1e-5: it was pushed over them, or \
-                     its force is beyond what its penalty is made for; more steps"
-                ));
-            }
-        }
-    }
-
-    /// Rigid bodies do not touch each other.
-    fn tell_meeting(&mut self, accepted: &Accepted) {
-        let (bodies, reports) = (&self.simulation.model.boundary.rigid, &accepted.report.rigid);
-        let meets = |a: usize, b: usize| bodies[a].reaches_into(&reports[a].moved, (&bodies[b], &reports[b].moved));
-        let pairs = (0..reports.len()).flat_map(|a| (0..a).map(move |b| (a, b)));
-        let meeting: Vec<(usize, usize)> = pairs.filter(|&(a, b)| meets(a, b) || meets(b, a)).collect();
-        for (a, b) in meeting {
-            let (one, other) = (self.case.rigid[a].name.clone(), self.case.rigid[b].name.clone());
-            if self.told_rigid.insert(2 * self.case.rigid.len() + a * self.case.rigid.len() + b) {
-                self.warn(format!(
-                    "rigid `{one}`: at t = {} it is in rigid `{other}`: rigid bodies do not touch each other, and go through",
-                    accepted.t
-                ));
-            }
-        }
-    }
-
-    /// A strip that holds nothing, or no longer the material that it held, does nothing of what it is there for, which
-    /// no other number tells.
-    fn tell_strips_without_material(&mut self, accepted: &Accepted) {
-        for (number, strip) in accepted.report.strips.iter().enumerate() {
-            let on = &self.simulation.model.boundary.strips[number];
-            if !on.acts() {
-                continue;
-            }
-            let points = on.points.len();
-            let (name, t) = (bsmpm_scene::surfaces::name_of_strip(&self.case, number), accepted.t);
-            let mut kind = number;
-            let told = if strip.held == 0 {
-                format!("{name} holds nothing: at t = {t} no free material is at it")
-            } else if 2 * strip.left_behind > points {
-                kind += accepted.report.strips.len();
-                format!(
-                    "{name} has let go: at t = {t} most of it is more than half a cell ahead of the material that it held at the \
-                     start, and its force is no longer that of a strip that holds; smaller cells and more points_per_cell \
-                     hold longer, and soil that must not be pulled wants a motion without it"
-                )
-            } else if strip.moved_on > 0 {
-                kind += 2 * accepted.report.strips.len();
-                format!(
-                    "{name} comes down at t = {t} more than half a cell from where it had come off: it meets the material as \
-                     high as where it left it, which is right on a level surface only"
-                )
-            } else {
-                continue;
-            };
-            if self.told_strips.insert(kind) {
-                self.warn(told);
-            }
-        }
-    }
-
-    /// A drain or an inflow most of which has no ground near lets nothing through there.
-    fn tell_drains(&mut self, accepted: &Accepted) {
-        let (Some(water), t) = (&accepted.report.water, accepted.t) else { return };
-        let wanted = self.simulation.model.surfaces().water;
-        let points: Vec<usize> = wanted.iter().map(|points| points.len()).collect();
-        let of_strips = 3 * self.simulation.model.boundary.strips.len();
-        for number in (0..points.len()).filter(|&number| 2 * water.held[number] < points[number]) {
-            let name = bsmpm_scene::surfaces::name_of_drain(&self.case, number);
-            if self.told_strips.insert(of_strips + number) {
-                self.warn(format!(
-                    "{name}: at t = {t} most of it is out of the grid or has no ground near, and lets no water through; where the \
-                     surface heaves, a grid that goes on a cell beyond it"
-                ));
-            }
-        }
-    }
-
-    /// Material that leaves is told when the first does, and counted in the manifest.
-    fn tell_outflow(&mut self, accepted: &Accepted) {
-        let Some(outflow) = &accepted.report.outflow else { return };
-        if self.recorder.left().points == 0 {
-            let message = format!("material leaves the grid from t = {} on: run.json counts it", accepted.t);
-            self.log.line("outflow", &message);
-        }
-        let Simulation { points, halo, .. } = &self.simulation;
-        let lost = self.recorder.let_out(outflow, points, &**halo);
-        let Outlet { points, mass } = self.recorder.left();
-        if let Some(ledger) = &mut self.ledger {
-            ledger.manifest().outflow = Some(ManifestOutflow { points, mass: mass * self.case.geometry.whole() });
-        }
-        for name in lost {
-            let t = accepted.t;
-            self.warn(format!(
-                "history {name}: the point that it followed has left the grid at t = {t}; it reads 0 since"
-            ));
-        }
-    }
-
     /// A row of histories.
     fn record(&mut self, report: &StepReport) {
         let timers = Rc::clone(&self.timers);
@@ -363,77 +230,6 @@ impl<'p, K: Kinematics<D>, const D: usize> Run<'p, K, D> {
         }
         let written = self.ledger.as_mut().map_or(Ok(()), |ledger| ledger.history(step, time, &row));
         self.require(written);
-    }
-
-    fn wants_frame(&self, time: f64) -> bool {
-        let every =
-            matches!(self.case.output.every, Some(Every::Steps(n)) if self.simulation.steps().is_multiple_of(n));
-        every || self.frame_times.iter().any(|wanted| self.is_now(*wanted, time))
-    }
-
-    /// The schedule hits wanted times to the bit, unless two of them are closer than a millionth of a step.
-    fn is_now(&self, wanted: f64, time: f64) -> bool {
-        (wanted - time).abs() <= 1e-6 * self.case.analysis.dt
-    }
-
-    /// Rows of the profiles that are wanted now. Collective.
-    fn profile(&mut self, wanted: impl Fn(&Self, &Profile) -> bool) {
-        let (step, time) = (self.simulation.steps(), self.simulation.time());
-        for number in 0..self.case.profiles.len() {
-            let profile = &self.case.profiles[number];
-            if !wanted(self, profile) {
-                continue;
-            }
-            let Simulation { model, points, halo, .. } = &self.simulation;
-            let rows = profile::rows(profile, (model, self.case.grid.lower()), points, &**halo);
-            let ledger = self.ledger.as_mut();
-            let written = ledger.map_or(Ok(()), |ledger| ledger.profile(number, (step, time), &rows));
-            self.require(written);
-        }
-    }
-
-    /// Names of what the frames' fields number, where frames have fields on request.
-    fn names(&self) -> Vec<(&'static str, Vec<String>)> {
-        let case = &self.case;
-        let materials = case.materials.iter().map(|material| material.name.clone()).collect();
-        let bodies = || case.bodies.iter().map(|body| body.name.clone().unwrap_or_default()).collect();
-        let of_bodies = case.output.fields.contains(&FrameField::Body).then(|| (FrameField::Body.field(), bodies()));
-        let of_materials = (!case.output.fields.is_empty()).then_some(("material", materials));
-        of_materials.into_iter().chain(of_bodies).collect()
-    }
-
-    fn frame(&mut self) {
-        let timers = Rc::clone(&self.timers);
-        let _timed = timers.time("frames");
-        let begin = Instant::now();
-        let (step, time) = (self.simulation.steps(), self.simulation.time());
-        let world = self.universe.world();
-        let Simulation { model, points, halo, .. } = &self.simulation;
-        let projected = self.case.output.projected_pressure.then(|| projected_pressure(model, points, &**halo));
-        let projected = projected.transpose().unwrap_or_else(|error| launch::end(&world, exit::BUG, &error));
-        let moment = FrameMoment { step, time, lower: gather::spatial(&vector::<D, _>(self.case.grid.lower())) };
-        let (names, fields) = (self.names(), &self.case.output.fields);
-        let bodies = if fields.contains(&FrameField::Body) { self.case.ids() } else { Vec::new() };
-        let around =
-            Around { materials: &model.materials, bodies: &bodies, water: PoreWater::of(model, points, time), fields };
-        let mut frame = Gathering::new(&world, (points, around), projected.as_deref(), moment);
-        let written = match &mut self.ledger {
-            Some(ledger) => {
-                let (head, points) = (frame.head(), frame.points());
-                ledger.manifest().frame_units = frame.units(self.case.geometry.volume_unit());
-                ledger.manifest().frame_names =
-                    names.iter().map(|(field, names)| ((*field).to_owned(), names.clone())).collect();
-                let names: Vec<_> = names.into_iter().map(|(field, names)| (format!("{field}_names"), names)).collect();
-                ledger.frame(Parts { head, points, names: &names, next: &mut || frame.block() })
-            }
-            None => {
-                while frame.block().is_some() {}
-                Ok(())
-            }
-        };
-        self.require(written);
-        self.last_frame = Some(step);
-        self.saving.frame_took(begin.elapsed());
     }
 
     /// Ends the job if rank 0 could not write: the other ranks do not know of it.

@@ -197,8 +197,7 @@ impl Case {
         let Some(gravity) = &self.gravity else { return 0.0 };
         let g = gravity.acceleration[self.grid.dims() - 1].abs();
         if self.water.is_some() {
-            let [x, y, _] = at;
-            return self.bodies_at_start().map(|body| self.weight_above(body, [x, y], g)).sum();
+            return self.bodies_at_start().map(|body| self.weight_above(body, at, g)).sum();
         }
         let above = |body: &Body| self.materials[body.material].density.map_or(0.0, |rho| rho * body.region.above(at));
         g * self.bodies_at_start().map(above).sum::<f64>()

@@ -44,6 +44,8 @@ const FRONT: u128 = 12 * 8;
 const DENSE: u128 = 480;
 /// Bytes of an unknown in the Krylov space of Newton's directions: two doubles for each of a hundred products.
 const KRYLOV: u128 = 100 * 16;
+/// The same where water flows, of as many products as there may be.
+const KRYLOV_OF_WATER: u128 = bsmpm::solve::fgmres::MOST as u128 * 16;
 /// Bytes of a process that has next to nothing to solve: libraries and buffers of MPI and PETSc.
 const PROCESS: u64 = 47_000_000;
 
@@ -139,15 +141,17 @@ impl Systems {
         } else {
             [entries * ENTRY + factor, again * (entries * REPEATED + factor), entries * BUILT]
         };
+        // Of water one number of every node more.
+        let wet = (unknowns + unknowns / dims as u128) * KRYLOV_OF_WATER;
         let krylov = unknowns * KRYLOV;
         let repeated = again * (entries * REPEATED + 2 * factor);
         let general = match flows {
-            true => [elastic[0] + krylov * 3 / 2, elastic[1], elastic[2]],
+            true => [elastic[0] + wet, elastic[1], elastic[2]],
             false => [entries * ENTRY + 2 * factor + krylov, repeated, entries * BUILT],
         };
         let [held, repeated, built] = if nonlinear == Nonlinear::Newton { general } else { elastic };
         let perhaps = match nonlinear {
-            Nonlinear::Auto if flows => [krylov * 3 / 2, 0],
+            Nonlinear::Auto if flows => [wet, 0],
             Nonlinear::Auto => [general[0], general[1]],
             _ => [0; 2],
         };
@@ -193,7 +197,7 @@ impl Case {
         self.flow.as_ref()?;
         let order = self.grid.order as u128 - 1;
         let pressures = occupied_nodes(self, order).min(nodes(&self.grid));
-        Some((pressures, pressures * (2 * order + 1).pow(2)))
+        Some((pressures, pressures * (2 * order + 1).pow(self.grid.dims() as u32)))
     }
 
     /// Sizes of the case.

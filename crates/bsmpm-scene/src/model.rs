@@ -81,7 +81,7 @@ fn water<const D: usize>(case: &Case, flow: Option<Flow<D>>) -> Option<Water<D>>
     let still = case.water.as_ref();
     let unit_weight = still.map(|still| still.unit_weight).or(case.flow.as_ref().map(|flow| flow.unit_weight));
     let unit_weight = unit_weight.or(case.carries_pressure().then_some(0.0))?;
-    Some(Water { unit_weight, ambient: still.map_or(Ambient::None, |still| still.from(case.grid.corner())), flow })
+    Some(Water { unit_weight, ambient: still.map_or(Ambient::None, |still| still.from(&case.grid)), flow })
 }
 
 /// s  of every material; empty where none is damped.
@@ -217,7 +217,7 @@ pub fn placed<'a, K: Kinematics<D>, const D: usize>(
 pub fn at_rest<const D: usize>(case: &Case, k0: &[f64], material: u16, x: &Vector<D>) -> Symmetric {
     let at = placed_at(case.grid.lower(), x);
     let vertical = -case.overburden(at) * (1.0 - case.materials[usize::from(material)].ratio);
-    let vertical = vertical - case.suction_at(material, [at[0], at[1]]);
+    let vertical = vertical - case.suction_at(material, at);
     let horizontal = k0[usize::from(material)] * vertical;
     let mut stress = Symmetric([horizontal, horizontal, horizontal, 0.0, 0.0, 0.0]);
     stress.0[D - 1] = vertical;

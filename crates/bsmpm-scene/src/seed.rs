@@ -196,7 +196,7 @@ impl Body {
     /// kg/m3  at a place, m from the grid's lower corner.
     fn density<const N: usize>(&self, case: &Case, x: [f64; N]) -> f64 {
         let lower = case.grid.lower();
-        case.density_at(self, [lower[0] + x[0], lower[1] + x[1]])
+        case.density_at(self, std::array::from_fn(|axis| lower[axis] + x.get(axis).unwrap_or(&0.0)))
     }
 
     fn seed<K: Kinematics<D>, const D: usize, const N: usize>(

@@ -183,9 +183,10 @@ pub fn flow<K: Kinematics<D>, const D: usize>(case: &Case, grid: &Grid<D>) -> Op
         };
         lines.iter().flat_map(of).unzip()
     };
+    let base = case.grid.lower()[D - 1];
     let given = |given: &Given| match given {
         Given::Head(Course(rows)) => {
-            Given::Head(Course(rows.iter().map(|(t, head)| (*t, head - case.grid.lower()[1])).collect()))
+            Given::Head(Course(rows.iter().map(|(t, head)| (*t, head - base)).collect()))
         }
         other => other.clone(),
     };
@@ -218,8 +219,8 @@ pub fn flow<K: Kinematics<D>, const D: usize>(case: &Case, grid: &Grid<D>) -> Op
 }
 
 /// A soil in the dimension of the geometry.
-fn of_ground<const D: usize>(soil: &Soil<2>) -> Soil<D> {
-    let along = |permeability: &Permeability<2>| Permeability {
+fn of_ground<const D: usize>(soil: &Soil<3>) -> Soil<D> {
+    let along = |permeability: &Permeability<3>| Permeability {
         along: vector(permeability.along.into()),
         law: permeability.law,
     };
@@ -229,7 +230,10 @@ fn of_ground<const D: usize>(soil: &Soil<2>) -> Soil<D> {
 /// Rigid bodies in the order of the file, once the stages until the time `t` have begun.
 pub fn rigid(case: &Case, t: f64) -> Vec<RigidBody> {
     let divided = case.divided_at(t);
-    let of = |rigid: &Rigid| RigidBody { friction: rigid.friction / divided, ..rigid_body(rigid, case.grid.corner()) };
+    let of = |rigid: &Rigid| RigidBody {
+        friction: rigid.friction / divided,
+        ..rigid_body(rigid, case.grid.corner(), case.geometry)
+    };
     case.rigid.iter().map(of).collect()
 }
 
@@ -244,7 +248,7 @@ pub(crate) fn outline(shape: &RigidShape, about: [f64; 2]) -> Outline {
 }
 
 /// A rigid body as the physics wants it, of a grid with this lower corner.
-pub(crate) fn rigid_body(rigid: &Rigid, lower: [f64; 2]) -> RigidBody {
+pub(crate) fn rigid_body(rigid: &Rigid, lower: [f64; 2], geometry: Geometry) -> RigidBody {
     let mut times: Vec<f64> =
         rigid.path.rows.iter().map(|row| row.0).chain(rigid.rotation.iter().map(|row| row.0)).collect();
     times.sort_by(f64::total_cmp);
@@ -256,7 +260,7 @@ pub(crate) fn rigid_body(rigid: &Rigid, lower: [f64; 2]) -> RigidBody {
         let turned = rigid.rotation.last().map_or(0.0, |(_, angle)| *angle);
         Vector::<3>::new(moved[0], moved[1], between(&rigid.rotation, 0.0, t).unwrap_or(turned))
     };
-    let force = Vector::from(rigid.force);
+    let force = Vector::<3>::from(rigid.force) / geometry.whole();
     let load = match (rigid.force == [0.0; 3], rigid.amplitude.is_empty()) {
         (true, _) => Vec::new(),
         (_, true) => vec![(rigid.ramp, force)],
@@ -268,7 +272,7 @@ pub(crate) fn rigid_body(rigid: &Rigid, lower: [f64; 2]) -> RigidBody {
         friction: rigid.friction,
         free: rigid.free,
         path: times.into_iter().map(|t| (t, path(t))).collect(),
-        mass: Vector::<3>::new(rigid.mass[0], rigid.mass[0], rigid.mass[1]),
+        mass: Vector::<3>::new(rigid.mass[0], rigid.mass[0], rigid.mass[1]) / geometry.whole(),
         load,
         velocity: Vector::from(rigid.velocity),
     }

@@ -204,7 +204,8 @@ pub(crate) fn parse_any(text: &str, meant: Option<Dimension>) -> Result<(f64, Di
     let Some((dimension, worth)) = UNITS.iter().find_map(known) else {
         if meant == Some(Dimension::LineForce) && plain.ends_with('N') {
             return Err(format!(
-                "\"{written}\" is a force; plane strain is 1 m thick and takes forces per metre{units}"
+                "\"{written}\" is a force; plane strain is 1 m thick and takes forces per metre{units}; in axisymmetry \
+                 the number is that of the whole ring"
             ));
         }
         let all = UNITS.iter().filter(|(dimension, _)| meant.is_none_or(|meant| meant == *dimension));

@@ -45,18 +45,19 @@ pub fn find<K: Kinematics<D>, const D: usize>(
         Nonlinear::QuasiNewton(_) | Nonlinear::Auto if flows => Nonlinear::QuasiNewton(QuasiNewton::Multisecant),
         method => method,
     };
+    let goes_on = |found: &Result<Found<K, D>, StepError>| found.as_ref().is_err_and(|error| !error.is_final());
     let by_newton = (flows && problem.model.nonlinear == Nonlinear::Auto).then(|| last.clone());
     let mut found = search(problem, method, last, (solver, counts));
-    if found.as_ref().is_err_and(|error| !error.is_final()) && differs[0] > 0.0 {
+    // Of water Newton's method before another guess: of the steps that secants do not do from the first one it does more,
+    // and what neither does costs the same (`water.md`).
+    if let Some(last) = by_newton.filter(|_| goes_on(&found)) {
+        found = search(problem, Nonlinear::Newton, last, (solver, counts));
+    }
+    if goes_on(&found) && differs[0] > 0.0 {
         let method = if method == Nonlinear::Auto { Nonlinear::Newton } else { method };
         found = search(problem, method, zero, (solver, counts)).map(|found| Found { first_guess: false, ..found });
     }
-    match by_newton {
-        Some(last) if found.as_ref().is_err_and(|error| !error.is_final()) => {
-            search(problem, Nonlinear::Newton, last, (solver, counts))
-        }
-        _ => found,
-    }
+    found
 }
 
 /// Seeks equilibrium from one guess.

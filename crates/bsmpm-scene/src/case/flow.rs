@@ -10,8 +10,9 @@ pub struct Flow {
     pub unit_weight: f64,
     /// Pa  bulk modulus of the water; infinite: incompressible
     pub bulk: f64,
-    /// By the number of the material; `None` where the pressure is that of the still water.
-    pub soils: Vec<Option<Soil<2>>>,
+    /// By the number of the material; `None` where the pressure is that of the still water. Of a plane nothing is
+    /// along the third axis.
+    pub soils: Vec<Option<Soil<3>>>,
     /// Surfaces at which the pressure is given, in the order of the file.
     pub drains: Vec<Drain>,
     /// Surfaces through which water is put in, in the order of the file.
@@ -61,12 +62,13 @@ pub struct Inflow {
 impl Case {
     /// Pa  suction at the start at `at` (m, in the case's coordinates) as it presses the grains of a material together:
     /// chi s; 0 where its pores stay full, or below the water
-    pub(crate) fn suction_at(&self, material: u16, at: [f64; 2]) -> f64 {
+    pub(crate) fn suction_at(&self, material: u16, at: [f64; 3]) -> f64 {
         let (Some(flow), Some(water)) = (self.flow.as_ref().filter(|flow| flow.retains()), &self.water) else {
             return 0.0;
         };
         let Some((height, _)) = water.table.table(at[0], 0.0) else { return 0.0 };
-        let suction = (water.unit_weight * (at[1] - height)).clamp(0.0, flow.suction);
+        let up = self.grid.dims() - 1;
+        let suction = (water.unit_weight * (at[up] - height)).clamp(0.0, flow.suction);
         let soil = flow.soils[usize::from(material)].as_ref();
         soil.map_or(0.0, |soil| soil.retained(-suction, water.unit_weight).effective * suction)
     }

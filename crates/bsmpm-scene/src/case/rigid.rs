@@ -19,9 +19,11 @@ pub struct Rigid {
     pub rotation: Vec<(f64, f64)>,
     /// whether its motions along x, along y and about the reference point follow from forces
     pub free: [bool; 3],
-    /// kg/m and kg m  mass, and its second moment about the centroid, per metre of thickness
+    /// kg/m and kg m  mass, and its second moment about the centroid, per metre of thickness; in axisymmetry kg, of the
+    /// whole body
     pub mass: [f64; 2],
-    /// N/m, N/m and N  when fully applied: force, and moment about the reference point, per metre of thickness
+    /// N/m, N/m and N  when fully applied: force, and moment about the reference point, per metre of thickness; in
+    /// axisymmetry N, on the whole body
     pub force: [f64; 3],
     /// s (quasi-static: pseudo-time)  over which the force grows linearly; 0: at once
     pub ramp: f64,

@@ -1,6 +1,7 @@
 //! Water in the ground.
 
 use super::{Body, Case};
+use crate::grid::GridSpec;
 use bsmpm::water::ambient::Ambient;
 
 /// Still water.
@@ -13,13 +14,14 @@ pub struct Water {
 }
 
 impl Water {
-    /// The same with heights and places from `lower`, m.
-    pub(crate) fn from(&self, lower: [f64; 2]) -> Ambient {
-        let lowered = |rows: &[(f64, f64)], by: f64| rows.iter().map(|row| (row.0 - by, row.1 - lower[1])).collect();
+    /// The same with heights and places from the lower corner of a grid.
+    pub(crate) fn from(&self, grid: &GridSpec) -> Ambient {
+        let (left, base) = (grid.lower()[0], grid.lower()[grid.dims() - 1]);
+        let lowered = |rows: &[(f64, f64)], by: f64| rows.iter().map(|row| (row.0 - by, row.1 - base)).collect();
         match &self.table {
             Ambient::None => Ambient::None,
             Ambient::Level(rows) => Ambient::Level(lowered(rows, 0.0)),
-            Ambient::Line(rows) => Ambient::Line(lowered(rows, lower[0])),
+            Ambient::Line(rows) => Ambient::Line(lowered(rows, left)),
         }
     }
 }
@@ -36,18 +38,20 @@ impl Case {
     }
 
     /// kg/m3  of a body's material at `at` (m, in the case's coordinates): saturated below the water table of time 0.
-    pub(crate) fn density_at(&self, body: &Body, at: [f64; 2]) -> f64 {
-        let named = &self.materials[body.material];
-        let wet = named.saturated.filter(|_| self.table(at[0]).is_some_and(|table| at[1] < table));
+    pub(crate) fn density_at(&self, body: &Body, at: [f64; 3]) -> f64 {
+        let (named, height) = (&self.materials[body.material], at[self.grid.dims() - 1]);
+        let wet = named.saturated.filter(|_| self.table(at[0]).is_some_and(|table| height < table));
         wet.or(named.density).unwrap_or(0.0)
     }
 
     /// Pa  weight of a body vertically above `at` (m, in the case's coordinates) under the acceleration `g` (m/s2),
     /// less the water's uplift.
-    pub(super) fn weight_above(&self, body: &Body, at: [f64; 2], g: f64) -> f64 {
-        let (named, all) = (&self.materials[body.material], body.region.above([at[0], at[1], 0.0]));
+    pub(super) fn weight_above(&self, body: &Body, at: [f64; 3], g: f64) -> f64 {
+        let (named, all, up) = (&self.materials[body.material], body.region.above(at), self.grid.dims() - 1);
         let Some((water, table)) = self.water.as_ref().zip(self.table(at[0])) else { return 0.0 };
-        let dry = if table > at[1] { body.region.above([at[0], table, 0.0]) } else { all };
+        let mut surface = at;
+        surface[up] = table;
+        let dry = if table > at[up] { body.region.above(surface) } else { all };
         let density = named.density.unwrap_or(0.0);
         let saturated = named.saturated.unwrap_or(density);
         g * density * dry + (g * saturated - water.unit_weight) * (all - dry)

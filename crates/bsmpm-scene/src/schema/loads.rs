@@ -175,7 +175,7 @@ pub(super) static POINT_LOAD: Table = Table {
             "force",
             Pair(In::LineForce, Range::ANY),
             Required,
-            "along x and y, per metre of thickness; in axisymmetry of the whole ring",
+            "along x and y, per metre of thickness; in axisymmetry of the whole ring, in N, written \"N/m\" as well",
         ),
         key("ramp", RAMP, Default("0.0"), "time over which it grows; 0: at once"),
         key(

@@ -50,7 +50,7 @@ pub(super) static RIGID: Table = Table {
             "mass",
             Quantity(In::Number, Range::POSITIVE),
             Optional,
-            "kg per metre of thickness, spread evenly over its area",
+            "kg per metre of thickness, spread evenly over its area; axisymmetric: kg of the whole body",
         ),
         key("density", Quantity(In::Density, Range::POSITIVE), Optional, "instead of mass"),
         key(
@@ -59,7 +59,12 @@ pub(super) static RIGID: Table = Table {
             Optional,
             "kg m2 per metre about its centroid; that of mass spread evenly unless given",
         ),
-        key("force", Pair(In::LineForce, Range::ANY), Optional, "on it, besides gravity, along x and y"),
+        key(
+            "force",
+            Pair(In::LineForce, Range::ANY),
+            Optional,
+            "on it, besides gravity, along x and y; axisymmetric: N on the whole body",
+        ),
         key("moment", Quantity(In::Number, Range::ANY), Optional, "N m per metre on it, counter-clockwise"),
         key("ramp", loads::RAMP, Default("0.0"), "time over which force and moment grow; 0: at once"),
         key(

@@ -116,7 +116,7 @@ fn sideways(case: &Case, record: &Record, report: &mut Report<'_>) {
     }
 }
 
-/// Rigid bodies are bodies of revolution, on a way along the axis.
+/// Rigid bodies are bodies of revolution that move along the axis.
 fn rigid(case: &Case, record: &Record, report: &mut Report<'_>) {
     for (rigid, record) in case.rigid.iter().zip(record.records("rigid")) {
         if rigid.path.rows.iter().any(|(_, moved)| moved[0] != 0.0) {
@@ -126,8 +126,8 @@ fn rigid(case: &Case, record: &Record, report: &mut Report<'_>) {
         if !rigid.rotation.is_empty() {
             record.error("rotation", "nothing turns in the plane of an axisymmetric case", report);
         }
-        if rigid.free != [false; 3] {
-            record.error("free", "in an axisymmetric case a rigid body is on a given way along the axis only", report);
+        if rigid.free[0] || rigid.free[2] {
+            record.error("free", "a body of revolution moves along its axis; allowed: y", report);
         }
     }
 }

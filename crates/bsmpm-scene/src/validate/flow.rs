@@ -13,7 +13,7 @@ use crate::nearest::hint;
 use crate::record::Record;
 use crate::region::{Region, skin};
 use crate::report::Report;
-use crate::words::{Drainage, Side};
+use crate::words::{Drainage, Geometry, Side};
 use bsmpm::water::flow::{Course, Given, Permeability, PermeabilityLaw, Soil};
 use bsmpm::water::retention::Retention;
 
@@ -37,7 +37,7 @@ pub(super) fn read(
     around: AroundStrip<'_>,
     report: &mut Report<'_>,
 ) -> Option<Option<Flow>> {
-    let soils: Vec<Option<Option<Soil<2>>>> =
+    let soils: Vec<Option<Option<Soil<3>>>> =
         root.named("material").iter().map(|(_, record)| soil(root, record, report)).collect();
     let flows = soils.iter().any(|soil| !matches!(soil, Some(None)));
     for key in ["drain", "inflow"] {
@@ -52,7 +52,7 @@ pub(super) fn read(
     if !flows {
         return Some(None);
     }
-    let soils: Vec<Option<Soil<2>>> = soils.into_iter().collect::<Option<_>>()?;
+    let soils: Vec<Option<Soil<3>>> = soils.into_iter().collect::<Option<_>>()?;
     let ground = Ground { soils: &soils, materials: materials?, around };
     let read: Vec<Option<Drain>> = root.records("drain").iter().map(|record| drain(record, ground, report)).collect();
     named(root, report);
@@ -81,12 +81,12 @@ fn suction(root: &Record, retains: bool, report: &mut Report<'_>) -> Option<f64>
 fn unit_weight(root: &Record) -> Option<f64> {
     let given = root.record("water").map_or(Some(WATER), |water| water.number("unit_weight"))?;
     let Some(gravity) = root.record("gravity") else { return Some(given) };
-    let [x, y] = gravity.pair("acceleration")?;
-    Some(given / STANDARD_GRAVITY * x.hypot(y))
+    let [x, y, z] = gravity.vector("acceleration")?;
+    Some(given / STANDARD_GRAVITY * x.hypot(y).hypot(z))
 }
 
 /// What a material is to water; the outer option is `None` after an error.
-fn soil(root: &Record, record: &Record, report: &mut Report<'_>) -> Option<Option<Soil<2>>> {
+fn soil(root: &Record, record: &Record, report: &mut Report<'_>) -> Option<Option<Soil<3>>> {
     const FLOWING: [&str; 4] = ["porosity", "permeability", "permeability_law", "retention"];
     let drainage = drainage(root, record);
     let needs: &[&str] = match drainage {
@@ -128,9 +128,10 @@ fn retention(of: &Record) -> Option<Retention> {
     Some(Retention { alpha: of.number("alpha")?, n: of.number("n")?, residual: of.number("residual")? })
 }
 
-fn permeability(record: &Record, report: &mut Report<'_>) -> Option<Permeability<2>> {
+fn permeability(record: &Record, report: &mut Report<'_>) -> Option<Permeability<3>> {
     let given = record.numbers("permeability")?;
-    let along = [given[0], given[given.len() - 1]];
+    // Of a plane the third one moves nothing.
+    let along = [0, 1, 2].map(|axis| given[axis.min(given.len() - 1)]);
     if let Some(much) = along.into_iter().find(|k| *k > MOST_PERMEABLE) {
         let path = record.path_of("permeability");
         report.warn(format!("{path}: {much} m/s is more than that of gravel: check the unit"));
@@ -142,7 +143,7 @@ fn permeability(record: &Record, report: &mut Report<'_>) -> Option<Permeability
 /// What drains and inflows lie at.
 #[derive(Clone, Copy)]
 struct Ground<'a> {
-    soils: &'a [Option<Soil<2>>],
+    soils: &'a [Option<Soil<3>>],
     materials: &'a [NamedMaterial],
     around: AroundStrip<'a>,
 }
@@ -255,14 +256,18 @@ fn course(record: &Record, key: &str, report: &mut Report<'_>) -> Option<Course>
 
 /// A face of the grid at which a body of permeable soil lies.
 fn face(record: &Record, ground: Ground<'_>, report: &mut Report<'_>) -> Option<Face> {
-    let face = place::face_in_plane(record, report)?;
-    let grid = ground.around.grid?;
+    let (grid, side): (_, Side) = (ground.around.grid?, record.word("face")?);
+    let geometry = if grid.dims() == 3 { Geometry::Solid } else { Geometry::PlaneStrain };
+    let Some(face) = Face::of(side, geometry) else {
+        record.error("face", format!("a grid in {geometry} has no face \"{side}\""), report);
+        return None;
+    };
     let slack = AT * grid.axes[face.axis].shortest();
     let (at, side) = ([grid.lower(), grid.upper()][usize::from(face.upper)][face.axis], usize::from(face.upper));
-    if !ground.permeable().iter().any(|body| (body.bounds()[side][face.axis] - at).abs() <= slack) {
+    if !ground.permeable().iter().any(|body| (body.region.corners()[side][face.axis] - at).abs() <= slack) {
         let message = format!(
             "no body of permeable soil lies at the face, which is at {} = {at}: give surface = true, or from and to",
-            ["x", "y"][face.axis]
+            ["x", "y", "z"][face.axis]
         );
         record.error("face", message, report);
         return None;

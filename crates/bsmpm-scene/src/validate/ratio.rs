@@ -25,8 +25,9 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
     }
     match &case.gravity {
         None => material.error(KEY, "nothing weighs without [gravity]", report),
-        Some(gravity) if gravity.acceleration[0] != 0.0 || gravity.acceleration[1] >= 0.0 => {
-            let message = format!("gravity.acceleration = {:?} is not straight down", gravity.acceleration);
+        Some(gravity) if !super::water::is_down(&gravity.acceleration[..case.grid.dims()]) => {
+            let message =
+                format!("gravity.acceleration = {:?} is not straight down", &gravity.acceleration[..case.grid.dims()]);
             material.error(KEY, message, report);
         }
         Some(_) => {}
@@ -41,9 +42,9 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
     if case.shaking.iter().any(|(_, ground)| *ground != [0.0; 2]) {
         material.error(KEY, "it does not follow ground that shakes: it cannot be used with [shaking]", report);
     }
-    for (axis, upper) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
-        if matches!(case.boundary[axis][upper], Support::Absorbing | Support::FreeField) {
-            let side = Side::ALL[axis][upper].word();
+    for (side, support) in Side::of(case.geometry).iter().flatten().zip(case.boundary.into_iter().flatten()) {
+        if matches!(support, Support::Absorbing | Support::FreeField) {
+            let side = side.word();
             material.error(KEY, format!("boundary.{side} absorbs, which was not shown to be right beside it"), report);
         }
     }

@@ -7,8 +7,8 @@ use crate::nearest::hint;
 use crate::record::Record;
 use crate::report::Report;
 use crate::surfaces;
-use crate::words::{RigidMotion, Word};
-use bsmpm::boundary::rigid::Outline;
+use crate::words::{Geometry, RigidMotion, Word};
+use bsmpm::boundary::rigid::{Outline, Sizes};
 use bsmpm::model::Regime;
 
 /// Cells that a rigid body should be thick, so that it parts what is on its two sides (`cases/results/scenes.md`).
@@ -27,8 +27,9 @@ pub(super) fn read_all(
     report: &mut Report<'_>,
 ) -> Vec<Rigid> {
     let mut found: Vec<Rigid> = Vec::new();
+    let geometry = root.word::<Geometry>("geometry").unwrap_or(Geometry::PlaneStrain);
     for record in root.records("rigid") {
-        let Some(rigid) = read(record, around, factor, report) else { continue };
+        let Some(rigid) = read((record, geometry), around, factor, report) else { continue };
         if found.iter().any(|other| other.name == rigid.name) {
             record.error("name", format!("there is a rigid body `{}` already", rigid.name), report);
         }
@@ -38,7 +39,7 @@ pub(super) fn read_all(
 }
 
 fn read(
-    record: &Record,
+    (record, geometry): (&Record, Geometry),
     (around, regime): (AroundStrip<'_>, Option<Regime>),
     factor: Option<f64>,
     report: &mut Report<'_>,
@@ -56,7 +57,11 @@ fn read(
         RigidShape::Circle { center, .. } => *center,
     };
     let about = if record.gives("about") { record.pair("about")? } else { centroid };
-    let mass = mass(record, (sizes.area, sizes.polar))?;
+    let volume = match geometry {
+        Geometry::Axisymmetric => geometry.whole() * surfaces::outline(&shape, centroid).swept(-centroid[0]),
+        Geometry::PlaneStrain | Geometry::Solid => sizes.area,
+    };
+    let mass = mass(record, volume, &sizes)?;
     let [fx, fy] = if record.gives("force") { record.pair("force")? } else { [0.0; 2] };
     let moment = if record.gives("moment") { record.number("moment")? } else { 0.0 };
     let [vx, vy] = if record.gives("start_velocity") { record.pair("start_velocity")? } else { [0.0; 2] };
@@ -66,7 +71,7 @@ fn read(
     let rigid = Rigid { name, shape, about, friction, path, rotation, free, mass, force, ramp, amplitude, velocity };
     moves_as_given(record, &rigid, report);
     of_free_motions(record, &rigid, regime, report);
-    fine_enough(record, &rigid, around, report);
+    fine_enough(record, (&rigid, geometry), around, report);
     Some(rigid)
 }
 
@@ -109,14 +114,14 @@ fn rotation(record: &Record, report: &mut Report<'_>) -> Option<Vec<(f64, f64)>>
     Some(rows)
 }
 
-/// kg/m and kg m  of a shape with this area and polar moment; 0 without mass.
-fn mass(record: &Record, (area, polar): (f64, f64)) -> Option<[f64; 2]> {
+/// Mass of a shape of this `volume`, and its second moment; 0 without mass.
+fn mass(record: &Record, volume: f64, sizes: &Sizes) -> Option<[f64; 2]> {
     let mass = match (record.gives("mass"), record.gives("density")) {
         (true, _) => record.number("mass")?,
-        (_, true) => record.number("density")? * area,
+        (_, true) => record.number("density")? * volume,
         _ => 0.0,
     };
-    let inertia = if record.gives("inertia") { record.number("inertia")? } else { mass * polar / area };
+    let inertia = if record.gives("inertia") { record.number("inertia")? } else { mass * sizes.polar / sizes.area };
     Some([mass, inertia])
 }
 
@@ -187,12 +192,17 @@ fn of_free_motions(record: &Record, rigid: &Rigid, regime: Option<Regime>, repor
 }
 
 /// Cells and steps resolve it.
-fn fine_enough(record: &Record, rigid: &Rigid, around: AroundStrip<'_>, report: &mut Report<'_>) {
+fn fine_enough(
+    record: &Record,
+    (rigid, geometry): (&Rigid, Geometry),
+    around: AroundStrip<'_>,
+    report: &mut Report<'_>,
+) {
     let (Some(grid), Some(dt)) = (around.grid, around.dt) else { return };
     let cell = grid.axes[0].shortest().min(grid.axes[1].shortest());
     let outline = surfaces::outline(&rigid.shape, rigid.about);
     let radius = outline.radius();
-    let body = surfaces::rigid_body(rigid, [0.0; 2]);
+    let body = surfaces::rigid_body(rigid, [0.0; 2], geometry);
     let times = std::iter::once(0.0).chain(body.path.iter().map(|row| row.0));
     let steps = times.zip(&body.path).filter(|(from, row)| row.0 > *from);
     let fastest = steps.map(|(from, row)| {

@@ -3,14 +3,12 @@
 use crate::case::{Case, Support};
 use crate::record::Record;
 use crate::report::Report;
-use crate::words::{AnalysisType, Geometry, Measurement, Side, Word};
+use crate::words::{Geometry, Measurement, Side, Word};
 use bsmpm::stabilisation::Stabilisation;
 
 /// Tables and keys that only a plane knows, with what to do instead.
 const IN_A_PLANE: &[(&str, &str)] = &[
-    ("water", "leave it out, with the weights of the soil under water"),
-    ("drain", "leave it out: water does not flow here yet"),
-    ("inflow", "leave it out: water does not flow here yet"),
+    ("inflow", "give a head or a pressure at a face of the grid by [[drain]]"),
     ("shaking", "use plane strain"),
     ("footing", "use plane strain or another geometry that has strips"),
     ("prescribed", "use plane strain or another geometry that has strips"),
@@ -28,8 +26,6 @@ const QUANTITIES: &[Measurement] = &[
     Measurement::SectionForces,
     Measurement::StressNoise,
     Measurement::PressureNoise,
-    Measurement::PorePressure,
-    Measurement::PorePressures,
     Measurement::Contact,
     Measurement::Gap,
     Measurement::SlipRate,
@@ -49,10 +45,10 @@ pub(super) fn refuse(root: &Record, report: &mut Report<'_>) {
     for (key, instead) in IN_A_PLANE.iter().filter(|(key, _)| root.gives(key)) {
         root.error(key, format!("not available in a solid yet: {instead}"), report);
     }
-    if let Some(analysis) = root.record("analysis")
-        && analysis.word::<AnalysisType>("type") == Some(AnalysisType::Consolidation)
-    {
-        analysis.error("type", "water does not flow in a solid yet: \"quasi-static\" or \"dynamic\"", report);
+    for drain in root.records("drain") {
+        for key in ["from", "to", "circle", "surface"].into_iter().filter(|key| drain.gives(key)) {
+            drain.error(key, "not available in a solid yet: name a face of the grid", report);
+        }
     }
     for body in root.records("body").iter().filter(|body| body.gives("spin")) {
         body.error("spin", "not available in a solid yet: give velocity", report);
@@ -63,17 +59,6 @@ pub(super) fn refuse(root: &Record, report: &mut Report<'_>) {
         }
         for key in ["at_x", "surface"].into_iter().filter(|key| history.gives(key)) {
             history.error(key, "not available in a solid yet: leave it out", report);
-        }
-    }
-    for (_, material) in root.named("material") {
-        for key in ["saturated_unit_weight", "ru", "drainage", "porosity", "permeability"] {
-            if material.gives(key) {
-                material.error(
-                    key,
-                    "not available in a solid yet: leave it out, and give the weight that acts",
-                    report,
-                );
-            }
         }
     }
 }

@@ -40,20 +40,25 @@ pub(super) fn read(
     if !root.gives("gravity") {
         report.error(record.origin, &record.path, "water weighs nothing without [gravity]");
     }
-    let [across, along, _] = gravity?.acceleration;
-    if across != 0.0 || along >= 0.0 {
-        let message = format!("[{across:?}, {along:?}] is not straight down, which still water needs");
+    let (acceleration, axes) = (gravity?.acceleration, grid?.dims());
+    if !is_down(&acceleration[..axes]) {
+        let message = format!("{:?} is not straight down, which still water needs", &acceleration[..axes]);
         root.record("gravity")?.error("acceleration", message, report);
     }
     if !(8_000.0..=12_000.0).contains(&given) {
         report.warn(format!("{}: {given} N/m3 is unusual for water: check the unit", record.path_of("unit_weight")));
     }
-    let unit_weight = given / STANDARD_GRAVITY * along.abs();
+    let unit_weight = given / STANDARD_GRAVITY * acceleration[axes - 1].abs();
     if unit_weight != given {
         let reason = format!("{given} N/m3 is that under 9.81 m/s2, as of materials");
         report.note(record.path_of("unit_weight"), format!("{unit_weight}"), reason);
     }
     Some(Water { unit_weight, table })
+}
+
+/// Whether a vector has something along the last axis only, and that downwards.
+pub(super) fn is_down(vector: &[f64]) -> bool {
+    vector.split_last().is_some_and(|(along, across)| *along < 0.0 && across.iter().all(|part| *part == 0.0))
 }
 
 /// The water table, somewhere above the grid's base.
@@ -64,9 +69,9 @@ fn table(record: &Record, (grid, end): (&GridSpec, Option<f64>), report: &mut Re
         let key = if record.gives("line") { "line" } else { "level_path" };
         (key, increasing(record, key, report)?.map(|row| (row[0], row[1])).collect())
     };
-    let base = grid.lower()[1];
+    let (base, axis) = (grid.lower()[grid.dims() - 1], ["x", "y", "z"][grid.dims() - 1]);
     if rows.iter().all(|row| row.1 <= base) {
-        let message = format!("the water table is nowhere above the grid's lower face, y = {base}: leave [water] out");
+        let message = format!("the water table is nowhere above the grid's lower face, {axis} = {base}: leave [water] out");
         record.error(key, message, report);
         return None;
     }
@@ -97,10 +102,10 @@ pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
             "the pressure of still water does not follow ground that shakes: [shaking] cannot be used with [water]";
         report.error(written.origin, &written.path, message);
     }
-    for (axis, upper) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
-        if matches!(case.boundary[axis][upper], Support::Absorbing | Support::FreeField) {
+    for (side, support) in Side::of(case.geometry).iter().flatten().zip(case.boundary.into_iter().flatten()) {
+        if matches!(support, Support::Absorbing | Support::FreeField) {
             let message = "with [water]: what absorbs was not shown to be right beside water: use \"roller\"";
-            let side = Side::ALL[axis][upper].word();
+            let side = side.word();
             report.error(record.place("boundary"), &format!("boundary.{side}"), message);
         }
     }
@@ -113,7 +118,8 @@ pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
         Ambient::None => return,
         Ambient::Level(rows) | Ambient::Line(rows) => highest(rows),
     };
-    let low = case.bodies.iter().map(|body| body.bounds()[0][1]).fold(f64::INFINITY, f64::min);
+    let up = case.grid.dims() - 1;
+    let low = case.bodies.iter().map(|body| body.region.corners()[0][up]).fold(f64::INFINITY, f64::min);
     if highest <= low {
         report.warn("water: the water table is below all bodies: it does nothing");
     }
@@ -136,7 +142,7 @@ fn floating(case: &Case, water: &Water, record: &Record, report: &mut Report<'_>
     let Some(gravity) = &case.gravity else { return };
     let weight = |number: usize| {
         let named = &case.materials[number];
-        named.saturated.or(named.density).unwrap_or(0.0) * gravity.acceleration[1].abs()
+        named.saturated.or(named.density).unwrap_or(0.0) * gravity.acceleration[case.grid.dims() - 1].abs()
     };
     for (number, (name, written)) in record.named("material").iter().enumerate() {
         if weight(number) < water.unit_weight && case.bodies.iter().any(|body| body.material == number) {

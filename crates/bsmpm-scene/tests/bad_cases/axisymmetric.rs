@@ -34,7 +34,7 @@ pub const AXISYMMETRIC: &[Row] = &[
     row("force = [0.0", "force = [1.0", "point_load.0.force", "no component along the radius"),
     row("displacement = [0.0, -0.1]", "displacement = [0.1, -0.1]", "rigid.0.displacement", "x is the radius"),
     row("displacement = [0.0, -0.1]", "rotation = [[0.1, 0.1]]", "rigid.0.rotation", "nothing turns"),
-    row("displacement = [0.0, -0.1]", "free = [\"y\"]\nmass = 10", "rigid.0.free", "on a given way"),
+    row("displacement = [0.0, -0.1]", "free = [\"x\"]\nmass = 10", "rigid.0.free", "allowed: y"),
     row("quantity = \"mass\"", "quantity = \"angular-momentum\"", "history.0.quantity", "no angular-momentum"),
     row("quantity = \"reaction\"", "quantity = \"moment\"", "history.1.quantity", "no moment"),
     row(

@@ -5,8 +5,8 @@ use crate::error::SolveError;
 use crate::parallel::{Halo, Krylov};
 use crate::solve::unknowns::Unknowns;
 
-/// Most products of one solution.
-const MOST: usize = 300;
+/// Most products of one solution; a vector and its image are held of each.
+pub const MOST: usize = 300;
 
 /// Solves A x = b for packed vectors of the `unknowns` from x = 0, `product` A x and `precondition` about A^-1 r, to
 /// the residual `relative` to b or as far as it gets; two reductions an iteration.

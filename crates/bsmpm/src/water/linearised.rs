@@ -11,7 +11,7 @@ use crate::step::problem::Problem;
 use crate::step::trial::Trial;
 use crate::tensor::{Tensor, Vector};
 use crate::water::nodes::{Pores, Wet};
-use crate::water::residual::pushed;
+use crate::water::residual::{Flowing, pushed};
 
 /// The derivative at one state.
 pub struct LinearisedWater<'a, const D: usize> {
@@ -100,36 +100,29 @@ impl<const D: usize> Change<D> {
         model: &Model<K, D>,
         (points, p): (&Points<D>, usize),
         wet: &Wet<D>,
-        (dF, dilation): (&Tensor, f64),
+        deformed: (&Tensor, f64),
         (pressure, gradient): (f64, Vector<D>),
     ) -> Option<Self> {
+        let state = Flowing::at(model, (points, p), wet, deformed, (pressure, gradient))?;
         let water = model.water.as_ref()?;
         let flow = water.flow.as_ref()?;
         let soil = flow.soils[usize::from(points.material[p])].as_ref()?;
-        let (inverse, J) = (dF.try_inverse()?, wet.J * dF.determinant());
-        let (whole, weight) = (pressure + wet.ambient, water.unit_weight);
-        let (retained, change) = (soil.retained(whole, weight), soil.retained_change(wet.pressure, whole, weight));
+        let Flowing { J, whole, retained, lumped, .. } = state;
+        let change = soil.retained_change(wet.pressure, whole, water.unit_weight);
         let denser = (whole / flow.bulk).exp();
         let content = soil.content(flow.bulk, J, whole);
         let stored = (denser * retained.saturation * J, content * (retained.saturation / flow.bulk + retained.slope));
-        let now = pushed(&inverse, &gradient);
-        let permeability = flow.permeability(points.material[p], J * dilation).unwrap_or_else(Vector::zeros);
-        let conducts = permeability * (retained.permeability / weight);
-        let w = -(now + wet.drive).component_mul(&conducts);
         let by_volume =
-            soil.permeability.as_ref().map_or(0.0, |law| law.law.relative_change(soil.porosity, J * dilation));
-        let lumps = wet.stiffness / wet.J * soil.pores(wet.mean_J);
-        let lumped = 1.0 + lumps * soil.chord(wet.pressure, whole, weight);
-        let tau = wet.tau.component_mul(&(gradient + wet.still - wet.before)) * (lumps * change.chord);
+            soil.permeability.as_ref().map_or(0.0, |law| law.law.relative_change(soil.porosity, J * deformed.1));
         Some(Self {
-            inverse,
+            inverse: state.inverse,
             J,
             stored,
-            w,
-            now,
-            conducts,
+            w: state.w,
+            now: state.gradient,
+            conducts: state.permeability * (retained.permeability / water.unit_weight),
             relative: (by_volume, change.permeability / retained.permeability),
-            tau: (wet.tau * lumped, tau),
+            tau: (wet.tau * lumped, wet.tau_of(gradient) * (wet.lumps(soil) * change.chord)),
             presses: J * (retained.effective + change.effective * whole),
         })
     }

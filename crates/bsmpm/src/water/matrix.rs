@@ -50,7 +50,7 @@ pub fn assemble<K: Kinematics<D>, const D: usize>(
                 let empties = pores * chord.max(retained.slope);
                 stored = wet.volume * (wet.content / flow.bulk + gives_way + empties);
                 conductivity *= retained.permeability;
-                tau *= 1.0 + wet.stiffness / wet.J * pores * chord;
+                tau *= wet.lumped(soil, chord);
             }
             let along = tau + conductivity * (pores.dt * wet.volume * wet.J / water.unit_weight);
             for (row, (A, gradient)) in block.chunks_exact_mut(size).zip(&functions) {

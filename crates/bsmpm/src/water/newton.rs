@@ -42,8 +42,8 @@ impl Scales {
     }
 }
 
-/// A direction, m and behind it Pa; the work of it that energies are measured by, N m, that of the secants; and how the
-/// Krylov method ended.
+/// A direction, m and behind it Pa; the work of it that energies are measured by, N m, that of the secants, by its
+/// magnitude in the skeleton and in the water; and how the Krylov method ended.
 pub struct Exact {
     /// m, and Pa behind them; nodal
     pub dx: Vec<f64>,
@@ -91,6 +91,7 @@ pub fn direction<K: Kinematics<D>, const D: usize>(
     let mut dx = vec![0.0; x.len()];
     unknowns.unpack(&found, &mut dx);
     let ((du, dp), (f_u, f_p)) = (dx.split_at(components), first.f.split_at(components));
-    let energy = dots(halo, D, &[(du, f_u)])[0] + dots(halo, 1, &[(dp, f_p)])[0];
+    // Of either sign by itself: what one lacks must not hide what the other does.
+    let energy = dots(halo, D, &[(du, f_u)])[0].abs() + dots(halo, 1, &[(dp, f_p)])[0].abs();
     Ok(Exact { dx, energy, krylov })
 }

@@ -10,7 +10,7 @@ use crate::points::Points;
 use crate::tensor::Vector;
 use crate::water::Water;
 use crate::water::drain::Drainage;
-use crate::water::flow::Flow;
+use crate::water::flow::{Flow, Soil};
 use crate::water::ties::Ties;
 
 /// Share of the tau term, of h^2/M: with it the pair of splines of degree q and q - 1 is stable, and in one dimension
@@ -187,6 +187,21 @@ impl<const D: usize> Wet<D> {
 }
 
 impl<const D: usize> Wet<D> {
+    /// m3 m  what the tau term makes of the gradient of the excess pressure, Pa/m, where nothing is lumped besides
+    pub fn tau_of(&self, gradient: Vector<D>) -> Vector<D> {
+        self.tau.component_mul(&(gradient + self.still - self.before))
+    }
+
+    /// -  share of the tau term whose pores fill by `chord`, 1/Pa: 1 and what it lumps of that storage
+    pub fn lumped(&self, soil: &Soil<D>, chord: f64) -> f64 {
+        1.0 + self.lumps(soil) * chord
+    }
+
+    /// Pa  what that changes by with the chord
+    pub fn lumps(&self, soil: &Soil<D>) -> f64 {
+        self.stiffness / self.J * soil.pores(self.mean_J)
+    }
+
     /// m3/Pa  what the point stores and lets flow through a cell in a step, per pressure.
     fn takes<K>(&self, model: &Model<K, D>, (water, flow): (&Water<D>, &Flow<D>), material: u16, dt: f64) -> f64 {
         let conductivity = flow.permeability(material, self.mean_J).unwrap_or_else(Vector::zeros);

@@ -53,13 +53,16 @@ impl WaterBalance {
             let Some(wet) = &pores.wet[p] else { return [(0.0, Vector::zeros()); TERMS] };
             let (pressure, gradient) = pressures[p];
             let deformed = (&trial.dF(p), trial.dilation(model, points, p));
-            let state = Flowing::at(model, (points, p), wet, deformed, (pressure, gradient));
+            let zero = Vector::zeros();
+            let Some(state) = Flowing::at(model, (points, p), wet, deformed, (pressure, gradient)) else {
+                closed.fetch_add(1, Relaxed);
+                return [(f64::NAN, zero); TERMS];
+            };
             if state.pores.is_nan() || state.pores <= 0.0 {
                 closed.fetch_add(1, Relaxed);
             }
             let stored = wet.volume * (state.content - wet.content);
-            let tau = wet.tau.component_mul(&(gradient + wet.still - wet.before)) * state.lumped;
-            let zero = Vector::zeros();
+            let tau = wet.tau_of(gradient) * state.lumped;
             [(stored, zero), (0.0, state.flux * -(pores.dt * wet.volume)), (0.0, tau), (0.0, zero)]
         });
         pores.drainage.add_to(p, &mut sums);
@@ -142,37 +145,49 @@ pub struct Flowing<const D: usize> {
     pub content: f64,
     /// m/s  J dF^-1 w: what flows, per area at the start of the step and J there
     pub flux: Vector<D>,
+    /// m/s  w: what flows, relative to the skeleton
+    pub w: Vector<D>,
     /// Pa/m  gradient of the excess pressure, now
     pub gradient: Vector<D>,
     /// -  share of the tau term: 1, and more where pores fill or empty, whose storage it lumps as well
     pub lumped: f64,
+    /// m/s  permeability of full pores along the axes; zero where nothing flows
+    pub permeability: Vector<D>,
+    /// what the pores keep
+    pub retained: Retained,
+    /// Pa  whole pore pressure; of pores that stay full the excess alone
+    pub whole: f64,
+    /// -
+    pub J: f64,
+    /// dF^-1
+    pub inverse: Tensor,
 }
 
 impl<const D: usize> Flowing<D> {
     /// Of a wet point with dF and J-bar/J at the end of the step, and with the excess pressure, Pa, and its gradient by
-    /// the places at t, Pa/m.
+    /// the places at t, Pa/m; `None` where dF has no inverse.
+    #[inline]
     pub fn at<K>(
         model: &Model<K, D>,
         (points, p): (&Points<D>, usize),
         wet: &Wet<D>,
         (dF, dilation): (&Tensor, f64),
-        (pressure, gradient): (f64, Vector<D>),
-    ) -> Self {
-        let J = wet.J * dF.determinant();
-        let nan = || Vector::from_element(f64::NAN);
-        let none = Self { pores: f64::NAN, content: f64::NAN, flux: nan(), gradient: nan(), lumped: f64::NAN };
-        let (Some(water), Some(inverse)) = (&model.water, dF.try_inverse()) else { return none };
-        let Some(flow) = &water.flow else { return none };
-        let Some(soil) = &flow.soils[usize::from(points.material[p])] else { return none };
-        let now = pushed(&inverse, &gradient);
-        let conductivity = flow.permeability(points.material[p], J * dilation).unwrap_or_else(Vector::zeros);
+        (pressure, excess): (f64, Vector<D>),
+    ) -> Option<Self> {
+        let water = model.water.as_ref()?;
+        let flow = water.flow.as_ref()?;
+        let soil = flow.soils[usize::from(points.material[p])].as_ref()?;
+        let (inverse, J) = (dF.try_inverse()?, wet.J * dF.determinant());
+        let gradient = pushed(&inverse, &excess);
+        let permeability = flow.permeability(points.material[p], J * dilation).unwrap_or_else(Vector::zeros);
         let (whole, weight) = (pressure + wet.ambient, water.unit_weight);
         let retained = soil.retained(whole, weight);
-        let w = (now + wet.drive).component_mul(&conductivity) * (-retained.permeability / weight);
+        let w = (gradient + wet.drive).component_mul(&permeability) * (-retained.permeability / weight);
         let flux = Vector::from_fn(|i, _| J * (0..D).map(|j| inverse[(i, j)] * w[j]).sum::<f64>());
         let content = soil.content(flow.bulk, J, whole) * retained.saturation;
-        let lumped = 1.0 + wet.stiffness / wet.J * soil.pores(wet.mean_J) * soil.chord(wet.pressure, whole, weight);
-        Self { pores: soil.pores(J * dilation), content, flux, gradient: now, lumped }
+        let lumped = wet.lumped(soil, soil.chord(wet.pressure, whole, weight));
+        let pores = soil.pores(J * dilation);
+        Some(Self { pores, content, flux, w, gradient, lumped, permeability, retained, whole, J, inverse })
     }
 }
 

@@ -71,7 +71,7 @@ pub fn save<K: Kinematics<D>, const D: usize>(
     let states = scalars::scalars(&pores.shape, p, |p, pressure, gradient| {
         let wet = pores.wet[p].as_ref()?;
         let deformed = (&trial.dF(p), points.dilation_of(p)); // the points have it from the trial
-        Some((pressure, Flowing::at(model, (points, p), wet, deformed, (pressure, gradient))))
+        Flowing::at(model, (points, p), wet, deformed, (pressure, gradient)).map(|state| (pressure, state))
     });
     let density = water.density(model);
     let holds = water.flow.as_ref().is_some_and(|flow| flow.retains());

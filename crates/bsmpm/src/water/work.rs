@@ -35,7 +35,9 @@ impl Work {
             let Some(wet) = &pores.wet[p] else { return [0.0; 5] };
             let dF = found.trial.dF(p);
             let deformed = (&dF, found.trial.dilation(model, points, p));
-            let state = Flowing::at(model, (points, p), wet, deformed, (pressure, gradient));
+            let Some(state) = Flowing::at(model, (points, p), wet, deformed, (pressure, gradient)) else {
+                return [f64::NAN; 5];
+            };
             let through = pores.dt * wet.volume;
             let fall = (0..D).map(|i| wet.drive[i] * (0..D).map(|j| dF[(i, j)] * state.flux[j]).sum::<f64>());
             let fall = -through * fall.sum::<f64>();
@@ -43,7 +45,7 @@ impl Work {
                 fall,
                 fall - through * state.flux.dot(&gradient),
                 wet.volume * pressure * (state.content - wet.content),
-                wet.tau.component_mul(&(gradient + wet.still - wet.before)).dot(&gradient),
+                wet.tau_of(gradient).dot(&gradient),
                 wet.volume * compressed(state.pores, pressure, bulk),
             ]
         });

@@ -122,9 +122,8 @@ fn acting(case: &Case, root: &Record, report: &mut Report<'_>) {
     if let Some(rigid) = root.records("rigid").first() {
         report.error(rigid.origin, &rigid.path, not_shown("rigid bodies are"));
     }
-    for (axis, upper) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
-        let support = case.boundary[axis][upper];
-        let side = Side::ALL[axis][upper].word();
+    for (side, support) in Side::of(case.geometry).iter().flatten().zip(case.boundary.into_iter().flatten()) {
+        let side = side.word();
         if let Some(boundary) = root.record("boundary") {
             match support {
                 Support::Fixed | Support::Roller | Support::Free => {}
@@ -214,11 +213,11 @@ fn ponds(case: &Case, flow: &Flow, report: &mut Report<'_>) {
     let cell = case.grid.axes.iter().map(GridAxis::shortest).fold(f64::INFINITY, f64::min);
     // Without a table all of the ground is above it: what is let in sinks, if it has weight.
     let none = if case.gravity.is_some() { f64::NEG_INFINITY } else { f64::INFINITY };
-    let dry = |at: &[f64; 2]| {
+    let dry = |at: &[f64; 3]| {
         let table = |t: f64| water.table.table(at[0], t).map_or(none, |(height, _)| height);
-        at[1] > times.iter().map(|t| table(*t)).fold(f64::INFINITY, f64::min) + 0.5 * cell
+        at[case.grid.dims() - 1] > times.iter().map(|t| table(*t)).fold(f64::INFINITY, f64::min) + 0.5 * cell
     };
-    let permeability = |soil: &Soil<2>| soil.permeability.as_ref().map_or(0.0, |k| k.along[0].max(k.along[1]));
+    let permeability = |soil: &Soil<3>| soil.permeability.as_ref().map_or(0.0, |k| k.along.max());
     let most = flow.soils.iter().flatten().map(permeability).fold(0.0, f64::max);
     let dt = case.analysis.growth.map_or(case.analysis.dt, |(_, longest)| longest.min(case.analysis.end));
     let way = most * dt / cell;
@@ -234,15 +233,15 @@ fn ponds(case: &Case, flow: &Flow, report: &mut Report<'_>) {
 }
 
 /// m  where a drain is, in the case's coordinates
-fn places(drain: &Drain, grid: &GridSpec) -> Vec<[f64; 2]> {
+fn places(drain: &Drain, grid: &GridSpec) -> Vec<[f64; 3]> {
     match &drain.site {
-        DrainSite::Lines(lines) => lines.iter().flatten().copied().collect(),
-        DrainSite::Circle { center, radius } => place::ring(*center, *radius).collect(),
+        DrainSite::Lines(lines) => lines.iter().flatten().map(|[x, y]| [*x, *y, 0.0]).collect(),
+        DrainSite::Circle { center, radius } => place::ring(*center, *radius).map(|[x, y]| [x, y, 0.0]).collect(),
         DrainSite::Face(Face { axis, upper }) => {
             let mut ends = [grid.lower(), grid.upper()];
             let at = ends[usize::from(*upper)][*axis];
             ends.iter_mut().for_each(|end| end[*axis] = at);
-            ends.map(|[x, y, _]| [x, y]).to_vec()
+            ends.to_vec()
         }
     }
 }

@@ -75,6 +75,34 @@ impl Outline {
         }
     }
 
+    /// m3 per radian  that it sweeps about the axis x = `axis`, m from the reference point, beyond which its part is
+    /// one half of a section of a body of revolution.
+    pub fn swept(&self, axis: f64) -> f64 {
+        match self {
+            Self::Circle(radius) => {
+                let upto = |s: f64| {
+                    let half = (radius.powi(2) - s.powi(2)).max(0.0).sqrt();
+                    -axis * (s * half + radius.powi(2) * (s / radius).asin()) - 2.0 / 3.0 * half.powi(3)
+                };
+                upto(*radius) - upto(axis.clamp(-radius, *radius))
+            }
+            Self::Polygon(corners) => {
+                let from_axis = |x: &Vector<2>| Vector::<2>::new(x[0] - axis, x[1]);
+                let beyond = |(a, b): (&Vector<2>, &Vector<2>)| {
+                    let (a, b) = (from_axis(a), from_axis(b));
+                    let cut = a + (b - a) * (a[0] / (a[0] - b[0]));
+                    match (a[0] > 0.0, b[0] > 0.0) {
+                        (true, true) => moment_about_y(&a, &b),
+                        (true, false) => moment_about_y(&a, &cut),
+                        (false, true) => moment_about_y(&cut, &b),
+                        (false, false) => 0.0,
+                    }
+                };
+                edges(corners).map(beyond).sum()
+            }
+        }
+    }
+
     /// Area, centroid and polar moment.
     pub fn sizes(&self) -> Sizes {
         match self {
@@ -99,6 +127,11 @@ impl Outline {
 /// Edges of a closed polygon, from corner to corner.
 fn edges(corners: &[Vector<2>]) -> impl Iterator<Item = (&Vector<2>, &Vector<2>)> {
     corners.iter().zip(corners.iter().cycle().skip(1))
+}
+
+/// Part of an edge in the integral of x over a polygon; edges along x = 0 have none.
+fn moment_about_y(a: &Vector<2>, b: &Vector<2>) -> f64 {
+    (b[1] - a[1]) * (a[0] * a[0] + a[0] * b[0] + b[0] * b[0]) / 6.0
 }
 
 fn nearest_of(corners: &[Vector<2>], x: &Vector<2>) -> Nearest {
@@ -159,5 +192,16 @@ mod tests {
         let sizes = moved.sizes();
         assert!((sizes.area - 2.0).abs() < 1e-13 && (sizes.centroid - Vector::<2>::new(-2.0, 7.5)).norm() < 1e-13);
         assert!((sizes.polar - 2.0 * (4.0 + 1.0) / 12.0).abs() < 1e-11);
+    }
+
+    #[test]
+    fn what_is_swept_is_the_part_beyond_the_axis() {
+        // A cylinder, a tube, a sphere, a torus, and a square that the axis cuts in two.
+        assert!((square().swept(0.0) - 2.0).abs() < 1e-15 && (square().swept(-1.0) - 4.0).abs() < 1e-15);
+        assert!((square().swept(1.0) - 0.5).abs() < 1e-15 && square().swept(3.0) == 0.0);
+        assert!((Outline::Circle(2.0).swept(0.0) - 16.0 / 3.0).abs() < 1e-14);
+        assert!((Outline::Circle(2.0).swept(-3.0) - 12.0 * PI).abs() < 1e-13);
+        let cone = Outline::Polygon([[0.0, -3.0], [1.0, 0.0], [-1.0, 0.0]].map(Vector::from).to_vec());
+        assert!((cone.swept(0.0) - 0.5).abs() < 1e-15);
     }
 }

@@ -1,0 +1,137 @@
+//! What a run tells of a step that was accepted: warnings of what no other number shows.
+
+use super::Run;
+use crate::checkpoint::Outlet;
+use bsmpm::control::Accepted;
+use bsmpm::kinematics::Kinematics;
+use bsmpm_io::manifest::ManifestOutflow;
+use bsmpm_ranks::simulation::Simulation;
+
+/// Cells that a rigid body may move in a step at the soil that it touches.
+const FASTEST: f64 = 0.5;
+/// Cells that points may be in a rigid body.
+const DEEPEST: f64 = 0.05;
+
+impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
+    /// Misspelt options of PETSc would do nothing in silence.
+    pub(super) fn tell_unused_options(&mut self) {
+        let unused = self.simulation.unused_options();
+        let given = |name: &String| self.arguments.petsc.iter().any(|option| option.strip_prefix('-') == Some(name));
+        let misspelt: Vec<String> = unused.into_iter().filter(given).collect();
+        for name in misspelt {
+            let warning =
+                format!("the PETSc option -{name} was not used: it is misspelt, or the solver has no such part");
+            self.warn(warning);
+        }
+    }
+
+    /// A rigid body that comes so fast that points are met too late, or so light a penalty that they go into it.
+    pub(super) fn tell_rigid(&mut self, accepted: &Accepted) {
+        for (number, report) in accepted.report.rigid.iter().enumerate() {
+            let (name, t) = (self.case.rigid[number].name.clone(), accepted.t);
+            let (advance, depth) = (report.advance, report.penetration);
+            if advance > FASTEST && self.told_rigid.insert(2 * number) {
+                self.warn(format!(
+                    "rigid `{name}`: at t = {t} it moves {advance:.2} cells in a step at soil that it touches; points are met \
+                     right up to {FASTEST}: more steps"
+                ));
+            }
+            if depth > DEEPEST && self.told_rigid.insert(2 * number + 1) {
+                self.warn(format!(
+                    "rigid `{name}`: at t = {t} points are {depth:.2} cells in it, usually 1e-5: it was pushed over them, or \
+                     its force is beyond what its penalty is made for; more steps"
+                ));
+            }
+        }
+    }
+
+    /// Rigid bodies do not touch each other.
+    pub(super) fn tell_meeting(&mut self, accepted: &Accepted) {
+        let (bodies, reports) = (&self.simulation.model.boundary.rigid, &accepted.report.rigid);
+        let meets = |a: usize, b: usize| bodies[a].reaches_into(&reports[a].moved, (&bodies[b], &reports[b].moved));
+        let pairs = (0..reports.len()).flat_map(|a| (0..a).map(move |b| (a, b)));
+        let meeting: Vec<(usize, usize)> = pairs.filter(|&(a, b)| meets(a, b) || meets(b, a)).collect();
+        for (a, b) in meeting {
+            let (one, other) = (self.case.rigid[a].name.clone(), self.case.rigid[b].name.clone());
+            if self.told_rigid.insert(2 * self.case.rigid.len() + a * self.case.rigid.len() + b) {
+                self.warn(format!(
+                    "rigid `{one}`: at t = {} it is in rigid `{other}`: rigid bodies do not touch each other, and go through",
+                    accepted.t
+                ));
+            }
+        }
+    }
+
+    /// A strip that holds nothing, or no longer the material that it held, does nothing of what it is there for, which
+    /// no other number tells.
+    pub(super) fn tell_strips_without_material(&mut self, accepted: &Accepted) {
+        for (number, strip) in accepted.report.strips.iter().enumerate() {
+            let on = &self.simulation.model.boundary.strips[number];
+            if !on.acts() {
+                continue;
+            }
+            let points = on.points.len();
+            let (name, t) = (bsmpm_scene::surfaces::name_of_strip(&self.case, number), accepted.t);
+            let mut kind = number;
+            let told = if strip.held == 0 {
+                format!("{name} holds nothing: at t = {t} no free material is at it")
+            } else if 2 * strip.left_behind > points {
+                kind += accepted.report.strips.len();
+                format!(
+                    "{name} has let go: at t = {t} most of it is more than half a cell ahead of the material that it held at the \
+                     start, and its force is no longer that of a strip that holds; smaller cells and more points_per_cell \
+                     hold longer, and soil that must not be pulled wants a motion without it"
+                )
+            } else if strip.moved_on > 0 {
+                kind += 2 * accepted.report.strips.len();
+                format!(
+                    "{name} comes down at t = {t} more than half a cell from where it had come off: it meets the material as \
+                     high as where it left it, which is right on a level surface only"
+                )
+            } else {
+                continue;
+            };
+            if self.told_strips.insert(kind) {
+                self.warn(told);
+            }
+        }
+    }
+
+    /// A drain or an inflow most of which has no ground near lets nothing through there.
+    pub(super) fn tell_drains(&mut self, accepted: &Accepted) {
+        let (Some(water), t) = (&accepted.report.water, accepted.t) else { return };
+        let wanted = self.simulation.model.surfaces().water;
+        let points: Vec<usize> = wanted.iter().map(|points| points.len()).collect();
+        let of_strips = 3 * self.simulation.model.boundary.strips.len();
+        for number in (0..points.len()).filter(|&number| 2 * water.held[number] < points[number]) {
+            let name = bsmpm_scene::surfaces::name_of_drain(&self.case, number);
+            if self.told_strips.insert(of_strips + number) {
+                self.warn(format!(
+                    "{name}: at t = {t} most of it is out of the grid or has no ground near, and lets no water through; where the \
+                     surface heaves, a grid that goes on a cell beyond it"
+                ));
+            }
+        }
+    }
+
+    /// Material that leaves is told when the first does, and counted in the manifest.
+    pub(super) fn tell_outflow(&mut self, accepted: &Accepted) {
+        let Some(outflow) = &accepted.report.outflow else { return };
+        if self.recorder.left().points == 0 {
+            let message = format!("material leaves the grid from t = {} on: run.json counts it", accepted.t);
+            self.log.line("outflow", &message);
+        }
+        let Simulation { points, halo, .. } = &self.simulation;
+        let lost = self.recorder.let_out(outflow, points, &**halo);
+        let Outlet { points, mass } = self.recorder.left();
+        if let Some(ledger) = &mut self.ledger {
+            ledger.manifest().outflow = Some(ManifestOutflow { points, mass: mass * self.case.geometry.whole() });
+        }
+        for name in lost {
+            let t = accepted.t;
+            self.warn(format!(
+                "history {name}: the point that it followed has left the grid at t = {t}; it reads 0 since"
+            ));
+        }
+    }
+}
