@@ -185,9 +185,7 @@ pub fn flow<K: Kinematics<D>, const D: usize>(case: &Case, grid: &Grid<D>) -> Op
     };
     let base = case.grid.lower()[D - 1];
     let given = |given: &Given| match given {
-        Given::Head(Course(rows)) => {
-            Given::Head(Course(rows.iter().map(|(t, head)| (*t, head - base)).collect()))
-        }
+        Given::Head(Course(rows)) => Given::Head(Course(rows.iter().map(|(t, head)| (*t, head - base)).collect())),
         other => other.clone(),
     };
     let drain = |drain: &crate::Drain| {

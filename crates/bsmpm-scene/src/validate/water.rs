@@ -71,7 +71,8 @@ fn table(record: &Record, (grid, end): (&GridSpec, Option<f64>), report: &mut Re
     };
     let (base, axis) = (grid.lower()[grid.dims() - 1], ["x", "y", "z"][grid.dims() - 1]);
     if rows.iter().all(|row| row.1 <= base) {
-        let message = format!("the water table is nowhere above the grid's lower face, {axis} = {base}: leave [water] out");
+        let message =
+            format!("the water table is nowhere above the grid's lower face, {axis} = {base}: leave [water] out");
         record.error(key, message, report);
         return None;
     }

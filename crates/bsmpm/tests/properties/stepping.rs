@@ -17,7 +17,6 @@ use bsmpm::model::Regime;
 use bsmpm::parallel::{Alone, Halo, OwnedNodes};
 use bsmpm::schedule::Schedule;
 use std::cell::Cell;
-use std::ops::Range;
 
 /// A block settling on a fixed base.
 fn block(regime: Regime) -> Scene<PlaneStrain, 2> {
