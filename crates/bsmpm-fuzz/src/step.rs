@@ -27,7 +27,7 @@ pub fn target(data: &[u8]) {
 fn try_steps(case: &Case) {
     let told = || format!("in\n{}", case.text);
     let scene = model::model::<PlaneStrain, 2>(case).unwrap_or_else(|error| panic!("{error} {}", told()));
-    let points = model::points::<PlaneStrain, 2>(case, 0..case.grid.spans(0));
+    let points = model::points::<PlaneStrain, 2>(case, 0..case.grid.spans(0), |_| true);
     let mut run = Simulation::new(scene, points);
     if run.start(case).is_err() {
         return;

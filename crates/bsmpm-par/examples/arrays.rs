@@ -42,8 +42,8 @@ fn print(universe: &Universe, file: &Path) -> Result<(), Refusal> {
         println!("{name} {}", blake3::hash(&bytes));
     }
     let guess = found.record.array("guess").expect("the nodal displacement");
-    let layers = 0..guess.rows as usize;
-    let guess = opened.guess(&layers, &layers, guess.width as usize)?;
+    let rows = guess.rows as usize;
+    let guess = opened.guess((rows, guess.width as usize), 0..rows)?;
     let bytes: Vec<u8> = guess.iter().flat_map(|value| value.to_le_bytes()).collect();
     println!("guess {}", blake3::hash(&bytes));
     let state = CheckpointState::parse(&found.path, &opened.state()?)?;

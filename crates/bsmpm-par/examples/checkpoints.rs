@@ -72,7 +72,7 @@ fn write(
     };
     let state = state(step);
     let guess = guess(rank, step);
-    let contents = Contents { columns: points.named_columns(), guess: (&guess, WIDTH), state: state.as_bytes() };
+    let contents = Contents { columns: points.named_columns(), guess: (guess.into(), WIDTH), state: state.as_bytes() };
     let strike = |now: Phase| {
         if rank == 0 && phase.is_some_and(|phase| phase == format!("{now:?}")) {
             std::process::abort();
@@ -98,14 +98,10 @@ fn read(universe: &Universe, hdf5: &Hdf5<'_>, wanted: Wanted<'_>, count: u64) ->
     let opened = Opened::new((hdf5, universe.world()), &found)?;
     let text = opened.state()?;
     opened.points(held.named_columns())?;
-    let layers = 0..2 * found.record.ranks as usize;
+    let layers = 2 * found.record.ranks as usize;
     for rank in 0..u64::from(found.record.ranks) {
         let at = (2 * rank) as usize;
-        assert_eq!(
-            opened.guess(&layers, &(at..at + 2), WIDTH)?,
-            guess(rank, found.record.step),
-            "another displacement"
-        );
+        assert_eq!(opened.guess((layers, WIDTH), at..at + 2)?, guess(rank, found.record.step), "another displacement");
     }
     opened.close()?;
     let (rank, ranks) = (world.rank() as u64, world.size() as u64);

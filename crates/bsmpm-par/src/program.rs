@@ -22,7 +22,7 @@ use std::rc::Rc;
 /// Runs what the command line asks for and returns the exit code; the same on every rank.
 pub fn run(universe: &Universe) -> u8 {
     match prepare(universe) {
-        Ok(Some((task, slabs))) => solve(universe, task, slabs).unwrap_or_else(|code| code),
+        Ok(Some((task, cut))) => solve(universe, task, cut).unwrap_or_else(|code| code),
         Ok(None) => exit::DONE,
         Err(code) => code,
     }
@@ -45,10 +45,7 @@ fn prepare(universe: &Universe) -> Result<Option<(Task, Cut)>, u8> {
     agreed(universe, exit::USAGE, choose_lanes())?;
     let case = source::read(&world, &arguments)?;
     let Some(cut) = setup::cut(&case, ranks) else {
-        let columns = case.grid.axes[0].cells();
-        let reason =
-            format!("{ranks} ranks are too many: the grid has {columns} columns of cells, so at most {columns} ranks");
-        return Err(refuse(universe, exit::CASE, &reason));
+        return Err(refuse(universe, exit::CASE, &case.too_many(ranks)));
     };
     if arguments.check {
         if speaks {

@@ -16,13 +16,14 @@ use bsmpm_io::exit;
 use bsmpm_io::manifest;
 use bsmpm_ranks::load;
 use bsmpm_ranks::migrate;
-use bsmpm_ranks::slab::Slabs;
+use bsmpm_ranks::slab::{NodeBox, Slabs, common};
 use bsmpm_ranks::traffic::Traffic;
 use bsmpm_scene::{Case, Line, Stage};
 use hdf5_collective::Hdf5;
 use mpi::collective::{CommunicatorCollectives, SystemOperation};
 use mpi::environment::Universe;
 use mpi::topology::Communicator;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use there::There;
 
@@ -213,11 +214,11 @@ impl Resumed<'_> {
         let known = (model.materials.len(), present.as_deref(), left);
         checkpoint::require(&world, &self.found.path, &mut points, &model.grid, known)?;
         let held = self.state.within(&model.grid).ok_or_else(|| foreign("its room is not of this grid"))?;
-        model.grid = held.with_columns(world.size().unsigned_abs() as usize);
-        let slabs =
-            self.slabs(universe, &model.grid, &points).ok_or_else(|| foreign("its slabs are not of this grid"))?;
+        let past = self.cut(&held).ok_or_else(|| foreign("its slabs are not of this grid"))?;
+        let (grid, slabs) = self.slabs(universe, case, (&held, &past), &points)?;
+        model.grid = grid;
         let rank = world.rank().unsigned_abs() as usize;
-        let window = model.grid.window(slabs.columns(rank));
+        let window = model.grid.window_of(slabs.cells(rank, model.grid.room()));
         migrate::points((&world, &Traffic::default()), &slabs, &window, &mut points);
         points.surface = self.state.surface().ok_or_else(|| foreign("its surfaces are not of this case"))?;
         let surface = model.boundary.surface();
@@ -248,25 +249,102 @@ impl Resumed<'_> {
         points.free_field = columns
             .filter(|columns| columns.len() == expected)
             .ok_or_else(|| foreign("the columns of its free field are not of this case"))?;
-        let guess = self.opened.guess(&held.layers(), &window.layers(), window.layer_nodes() * D)?;
+        let guess = self.guess((&held, &past), &window)?;
         let is_finite = guess.iter().all(|value| value.is_finite());
         agree(&world, if is_finite { Ok(()) } else { Err(foreign("a nodal displacement is not finite")) })?;
         let stepper = Stepper::resume(guess, self.state.progress, schedule);
         Ok((slabs, points, stepper.ok_or_else(|| foreign("its step control is in no state it can be in"))?))
     }
 
-    /// The cut of the grid: as it was, or on another number of ranks one into about equal loads.
-    fn slabs<const D: usize>(&self, universe: &Universe, grid: &Grid<D>, points: &Points<D>) -> Option<Slabs> {
+    /// The cut that the run had; `None` if it is not one of the grid that is `held`.
+    fn cut<const D: usize>(&self, held: &Grid<D>) -> Option<Slabs> {
+        let CheckpointState { slabs, parts, .. } = &self.state;
+        let cut = Slabs::new(slabs.clone(), slabs.len().checked_sub(1)?, held.room()[0].clone())?;
+        let cut = if parts.is_empty() { cut } else { cut.parted(parts.clone(), &held.room()[1])? };
+        (cut.ranks() == self.found.record.ranks as usize).then(|| cut.reaching(held.beyond()))
+    }
+
+    /// The room, and its cut: as they were, or on another number of ranks one into about equal loads. Collective.
+    fn slabs<const D: usize>(
+        &self,
+        universe: &Universe,
+        case: &Case,
+        (held, past): (&Grid<D>, &Slabs),
+        points: &Points<D>,
+    ) -> Result<(Grid<D>, Slabs), Refusal> {
         let world = universe.world();
         let ranks = world.size().unsigned_abs() as usize;
-        if self.found.record.ranks as usize == ranks {
-            let slabs = Slabs::new(self.state.slabs.clone(), ranks, grid.room()[0].clone());
-            return slabs.map(|slabs| slabs.reaching(grid.beyond()));
+        if past.ranks() == ranks {
+            return Ok((held.clone(), past.clone()));
         }
-        let own = load::points_by_column(grid, points);
-        let mut counts = vec![0.0; own.len()];
-        world.all_reduce_into(&own[..], &mut counts[..], SystemOperation::sum());
-        load::cut(grid, &counts, ranks)
+        let sum = |own: Vec<f64>| {
+            let mut counts = vec![0.0; own.len()];
+            world.all_reduce_into(&own[..], &mut counts[..], SystemOperation::sum());
+            counts
+        };
+        let cut = || {
+            let parts = case.parts(ranks, [held.room()[0].len(), held.room()[1].len()])?;
+            let grid = held.with_columns([ranks / parts, parts]);
+            let slabs = load::cut(&grid, &sum(load::points_by_column(&grid, points)), ranks / parts)?;
+            if parts == 1 {
+                return Some((grid, slabs));
+            }
+            let counts = sum(load::points_by_row(&grid, &slabs, points));
+            let slabs = load::parted(&grid, slabs, &counts, parts)?;
+            Some((grid, slabs))
+        };
+        cut().ok_or_else(|| Refusal::new(exit::CASE, case.too_many(ranks)))
+    }
+
+    /// The displacement from which the next step starts, m, at the nodes of a `window`: zero where the room that was
+    /// `held` under the cut `past` had none. Collective.
+    fn guess<const D: usize>(&self, (held, past): (&Grid<D>, &Slabs), window: &Grid<D>) -> Result<Vec<f64>, Refusal> {
+        let (q, layer, row) = (held.order(), held.layer_nodes(), held.layer_nodes() / held.nodes_along(1));
+        // The file's rows are the layers of all, or rank by rank the rows of nodes that it owned.
+        let (of, whole) = ((q, &held.room()[1]), past.parts().is_empty());
+        let boxes: Vec<NodeBox> = match whole {
+            true => vec![[held.layers(), held.room()[1].start..held.room()[1].end + q]],
+            false => (0..past.ranks()).map(|rank| past.owned(rank, of)).collect(),
+        };
+        let lines = |nodes: &NodeBox| nodes[0].len() * if whole { 1 } else { nodes[1].len() };
+        let mut before = vec![0];
+        before.extend(boxes.iter().scan(0, |sum, nodes| {
+            *sum += lines(nodes);
+            Some(*sum)
+        }));
+        let seen: NodeBox = std::array::from_fn(|axis| {
+            let start = window.cells_along()[axis].start;
+            start..start + window.nodes_along(axis)
+        });
+        let needed = |at: &usize| !common(&boxes[*at], &seen).iter().any(Range::is_empty);
+        let (first, last) = ((0..boxes.len()).find(needed).unwrap_or(0), (0..boxes.len()).rfind(needed));
+        let rows = match whole {
+            true => {
+                let own =
+                    last.map_or(held.layers().start..held.layers().start, |_| common(&boxes[0], &seen)[0].clone());
+                own.start - held.layers().start..own.end - held.layers().start
+            }
+            false => before[first]..last.map_or(before[first], |last| before[last + 1]),
+        };
+        let width = if whole { layer } else { row };
+        let numbers = self.opened.guess((before[boxes.len()], width * D), rows.clone())?;
+        let place = |node: usize| {
+            let at = window.node_at(node);
+            let held = held.node_index(&at)?;
+            if whole {
+                return Some(held - rows.start * layer);
+            }
+            let owner = past.owner(&[at[0], at[1]]);
+            let [layers, along] = &boxes[owner];
+            let line = before[owner] + (at[0] - layers.start) * along.len() + at[1] - along.start;
+            Some((line - rows.start) * row + held % row)
+        };
+        let value = |node: usize| {
+            let at = place(node);
+            let numbers = &numbers;
+            (0..D).map(move |component| at.map_or(0.0, |at| numbers[at * D + component]))
+        };
+        Ok((0..window.nodes()).flat_map(value).collect())
     }
 
     /// Closes the checkpoint. Collective.

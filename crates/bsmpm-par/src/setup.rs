@@ -17,8 +17,9 @@ use bsmpm_scene::words::{Factor, Word};
 use bsmpm_scene::{Case, Geometry, GridAxis, Initial};
 use std::ops::Range;
 
-/// Cells along each axis that the ranks together see ([`bsmpm::grid::room`]), and how they share them.
-pub type Cut = (Vec<Range<usize>>, Slabs);
+/// Cells along each axis that the ranks together see ([`bsmpm::grid::room`]), the slabs of them, and in how many parts
+/// each of these is to be cut.
+pub type Cut = (Vec<Range<usize>>, Slabs, usize);
 
 /// A state at the start, and what leading it to equilibrium took, if the case wants that.
 pub type Start = (Equilibrium, Option<Settling>);
@@ -45,13 +46,21 @@ pub fn start<K: Kinematics<D>, const D: usize>(
 }
 
 /// The room that the bodies have in the grid at the start, and its first cut: about equal loads. `None` with more ranks
-/// than columns.
+/// than the grid has room for.
 pub fn cut(case: &Case, ranks: usize) -> Option<Cut> {
-    let room = case.room(ranks);
+    let parts = parts(case, ranks)?;
+    let slabs = ranks / parts;
+    let room = case.room([slabs, parts]);
     let counts: Vec<f64> = case.points_by_column()[room[0].clone()].iter().map(|&count| count as f64).collect();
     let layer_nodes = room[1..].iter().map(|cells| cells.len() + case.grid.order).product();
-    let slabs = Slabs::cut(&load::by_column(&counts, layer_nodes), ranks)?.starting_at(room[0].start);
-    Some((room, slabs))
+    let slabs = Slabs::cut(&load::by_column(&counts, layer_nodes), slabs)?.starting_at(room[0].start);
+    Some((room, slabs, parts))
+}
+
+/// Parts of a slab at the start.
+fn parts(case: &Case, ranks: usize) -> Option<usize> {
+    let room = case.room([1; 2]);
+    case.parts(ranks, [room[0].len(), room[1].len()])
 }
 
 /// The linear solver of a run on so many ranks with further `options` of PETSc.
@@ -108,6 +117,13 @@ pub fn choices(case: &Case, ranks: usize, options: &[String]) -> Vec<manifest::M
         let reason = "all recent secants on the stiffness at the first guess, in fewer iterations than Broyden's update; \
                       Newton's method with the complete derivative where they stall; then shorter steps";
         choices.push(choice("solver.nonlinear", "multisecant, newton", reason));
+    }
+    if let Some(parts) = parts(case, ranks).filter(|parts| *parts > 1) {
+        let reason = match case.grid.dims() {
+            3 => "slabs along x, each cut along y: so the largest face between two ranks is the least",
+            _ => "more ranks than columns along x: slabs are cut along y, too",
+        };
+        choices.push(choice("ranks", &format!("{} slabs of {parts} parts", ranks / parts), reason));
     }
     choices.extend(linear_choices(case, &linear(case, ranks, options), ranks));
     if weighting(case) == Weighting::Volume {

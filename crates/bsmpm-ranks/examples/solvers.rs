@@ -86,7 +86,7 @@ fn measure(solver: &mut dyn LinearSolver, grid: &Grid<2>, halo: &dyn Halo, nu: f
         solver.solve(&rhs, &mut x).expect("a solution");
     }
     spent.push((cpu_seconds() - start) / SOLVES as f64);
-    let mut unknowns = [halo.owned().flat_map(|node| [2 * node, 2 * node + 1]).filter(|&c| free[c]).count() as f64];
+    let mut unknowns = [halo.owned().places::<2>().filter(|&c| free[c]).count() as f64];
     halo.reduce(&mut unknowns);
     halo.maximum(&mut spent);
     let memory = std::fs::read_to_string("/proc/self/status").unwrap_or_default();

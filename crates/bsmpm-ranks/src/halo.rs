@@ -1,15 +1,17 @@
-//! The exchange of nodal contributions: one message to and from every rank that shares node layers.
+//! The exchange of nodal contributions: one message to and from every rank that shares nodes, corners included.
 //!
 //! Ranks exchange what single columns of cells contribute to the layers that they share, and add it in the order of the
-//! columns, so that sums have the same bits on any number of ranks: q (q+1)/2 layers a neighbour in place of q.
+//! columns, so that sums have the same bits on any number of slabs: q (q+1)/2 layers a neighbour in place of q. Of a
+//! column that is cut into parts each rank has its own sum; all that see a node add those of its ranks in the ranks'
+//! order, so that they have the same bits, which depend on the parts.
 
 use crate::signals::{Requests, WIDTH};
-use crate::slab::{SharedLayer, Slabs, intersection};
+use crate::slab::{NodeBox, SharedLayer, Slabs, common};
 use crate::timers::Timers;
 use crate::traffic::TrafficKind;
 use bsmpm::exact::{Exact, WORDS};
 use bsmpm::grid::{Contributions, Grid};
-use bsmpm::parallel::Halo;
+use bsmpm::parallel::{Halo, OwnedNodes};
 use mpi::collective::{CommunicatorCollectives, SystemOperation};
 use mpi::point_to_point::{Destination, Source};
 use mpi::topology::{Communicator, SimpleCommunicator};
@@ -20,19 +22,47 @@ use std::rc::Rc;
 pub struct MpiHalo {
     world: SimpleCommunicator,
     rank: usize,
-    owned: Range<usize>,
+    slabs: Slabs,
+    owned: OwnedNodes,
     layer_nodes: usize,
     neighbours: Vec<Neighbour>, // ascending by rank
     timers: Rc<Timers>,
     requests: Rc<Requests>,
 }
 
-/// A rank that shares layers of nodes with this one.
+/// A rank that shares nodes with this one.
 struct Neighbour {
     rank: usize,
-    nodes: Range<usize>, // the shared ones, of the window
-    owned: Range<usize>, // those of them that it owns
+    nodes: Places, // the shared ones, of the window
+    mine: Places,  // those of them that this rank owns
+    theirs: Places,
     layers: Vec<SharedLayer>,
+    run: Range<usize>, // the shared ones within a layer
+}
+
+/// Nodes of the window, in a message in this order.
+struct Places(Vec<Range<usize>>);
+
+impl Places {
+    fn count(&self) -> usize {
+        self.0.iter().map(Range::len).sum()
+    }
+
+    /// Their numbers in an array of `width` a node.
+    fn packed(&self, nodal: &[f64], width: usize) -> Vec<f64> {
+        let mut message = Vec::with_capacity(self.count() * width);
+        self.0.iter().for_each(|run| message.extend_from_slice(&nodal[run.start * width..run.end * width]));
+        message
+    }
+
+    /// Puts for each number what `both` makes of it and of the message's.
+    fn unpack(&self, message: &[f64], (nodal, width): (&mut [f64], usize), both: impl Fn(f64, f64) -> f64) {
+        let mut message = message.iter();
+        for run in &self.0 {
+            let own = &mut nodal[run.start * width..run.end * width];
+            own.iter_mut().zip(&mut message).for_each(|(own, other)| *own = both(*own, *other));
+        }
+    }
 }
 
 /// Messages of numbers from rank to rank, which arrive in the order in which they were sent.
@@ -68,17 +98,26 @@ impl MpiHalo {
         (timers, requests): (Rc<Timers>, Rc<Requests>),
     ) -> Self {
         let rank = world.rank().unsigned_abs() as usize;
-        let (q, size, first) = (grid.order(), grid.layer_nodes(), grid.layers().start);
-        let nodes = |layers: Range<usize>| (layers.start - first) * size..(layers.end - first) * size;
-        let neighbour = |(other, layers): (usize, Range<usize>)| Neighbour {
+        let (q, layer, rows) = (grid.order(), grid.layer_nodes(), &grid.room()[1]);
+        let (start, row) = (grid.cells_along()[1].start, layer / grid.nodes_along(1));
+        let places = |nodes: &NodeBox| Places(grid.nodes_within(nodes));
+        let own = slabs.owned(rank, (q, rows));
+        let neighbour = |(other, nodes): (usize, NodeBox)| Neighbour {
             rank: other,
-            nodes: nodes(layers.clone()),
-            owned: nodes(intersection(&layers, &slabs.owned_layers(other, q))),
+            mine: places(&common(&nodes, &own)),
+            theirs: places(&common(&nodes, &slabs.owned(other, (q, rows)))),
             layers: slabs.shared_layers((rank, other), q),
+            run: (nodes[1].start - start) * row..(nodes[1].end - start) * row,
+            nodes: places(&nodes),
         };
-        let owned = nodes(slabs.owned_layers(rank, q));
-        let neighbours = slabs.shared(rank, q).into_iter().map(neighbour).collect();
-        Self { world, rank, owned, layer_nodes: size, neighbours, timers, requests }
+        let neighbours = slabs.shared(rank, (q, rows)).into_iter().map(neighbour).collect();
+        let owned = OwnedNodes::new(own[0].len(), layer, own[1].len() * row);
+        Self { world, rank, slabs: slabs.clone(), owned, layer_nodes: layer, neighbours, timers, requests }
+    }
+
+    /// The cut of the grid.
+    pub fn slabs(&self) -> &Slabs {
+        &self.slabs
     }
 
     /// The ranks.
@@ -107,11 +146,10 @@ impl MpiHalo {
             return;
         }
         let _timed = self.timers.time("halo");
-        let place = |other: &Neighbour| other.nodes.start * width..other.nodes.end * width;
-        let outgoing: Vec<_> = self.neighbours.iter().map(|other| nodal[place(other)].to_vec()).collect();
-        let incoming = self.exchange(kind, &outgoing, |other| other.nodes.len() * width);
+        let outgoing: Vec<_> = self.neighbours.iter().map(|other| other.nodes.packed(nodal, width)).collect();
+        let incoming = self.exchange(kind, &outgoing, |other| other.nodes.count() * width);
         for (part, other) in incoming.iter().zip(&self.neighbours) {
-            nodal[place(other)].iter_mut().zip(part).for_each(|(own, other)| *own = both(*own, *other));
+            other.nodes.unpack(part, (nodal, width), &both);
         }
     }
 
@@ -151,39 +189,47 @@ impl MpiHalo {
     }
 }
 
-/// What the columns of this rank contribute to the layers shared with another one: layer after layer, column after
-/// column.
-fn pieces(contributions: &Contributions, layers: &[SharedLayer], layer: usize) -> Vec<f64> {
-    let mut message = Vec::new();
-    for shared in layers {
-        for column in shared.own.clone() {
-            match contributions.of(column, shared.layer) {
-                Some(sums) => message.extend_from_slice(sums),
-                None => message.resize(message.len() + layer, 0.0),
+impl Neighbour {
+    /// Where the shared nodes of a layer have their numbers in it.
+    fn run(&self, width: usize) -> Range<usize> {
+        self.run.start * width..self.run.end * width
+    }
+
+    /// What the columns of this rank contribute to the shared nodes: layer after layer, column after column.
+    fn pieces(&self, contributions: &Contributions) -> Vec<f64> {
+        let (run, mut message) = (self.run(contributions.width()), Vec::new());
+        for shared in &self.layers {
+            for column in shared.own.clone() {
+                match contributions.of(column, shared.layer) {
+                    Some(sums) => message.extend_from_slice(&sums[run.clone()]),
+                    None => message.resize(message.len() + run.len(), 0.0),
+                }
             }
         }
+        message
     }
-    message
-}
 
-/// Adds such pieces of another rank to the nodal array.
-fn add_pieces(message: &[f64], layers: &[SharedLayer], layer: usize, nodal: &mut [f64]) {
-    let mut pieces = message.chunks_exact(layer);
-    for shared in layers {
-        let nodes = &mut nodal[shared.layer * layer..(shared.layer + 1) * layer];
-        for piece in pieces.by_ref().take(shared.theirs) {
-            nodes.iter_mut().zip(piece).for_each(|(total, sum)| *total += sum);
+    /// How many numbers there are in such pieces of the other rank.
+    fn pieces_of_other(&self, width: usize) -> usize {
+        self.layers.iter().map(|shared| shared.theirs).sum::<usize>() * self.run(width).len()
+    }
+
+    /// Adds them to the nodal array, whose layers have so many nodes.
+    fn add_pieces(&self, message: &[f64], (layer, width): (usize, usize), nodal: &mut [f64]) {
+        let run = self.run(width);
+        let mut pieces = message.chunks_exact(run.len());
+        for shared in &self.layers {
+            let nodes = &mut nodal[shared.layer * layer * width..][run.clone()];
+            for piece in pieces.by_ref().take(shared.theirs) {
+                nodes.iter_mut().zip(piece).for_each(|(total, sum)| *total += sum);
+            }
         }
     }
 }
 
 impl Halo for MpiHalo {
-    fn owned(&self) -> Range<usize> {
-        self.owned.clone()
-    }
-
-    fn layer_nodes(&self) -> usize {
-        self.layer_nodes
+    fn owned(&self) -> OwnedNodes {
+        self.owned
     }
 
     fn sum(&self, contributions: &Contributions) -> Vec<f64> {
@@ -191,22 +237,19 @@ impl Halo for MpiHalo {
             return contributions.alone();
         }
         let _timed = self.timers.time("halo");
-        let layer = self.layer_nodes * contributions.width();
-        let outgoing: Vec<_> =
-            self.neighbours.iter().map(|other| pieces(contributions, &other.layers, layer)).collect();
-        let incoming = self.exchange(TrafficKind::HaloSum, &outgoing, |other| {
-            other.layers.iter().map(|shared| shared.theirs).sum::<usize>() * layer
-        });
-        // The columns of lower ranks lie before this rank's: every layer adds its columns in their order.
+        let (layer, width) = (self.layer_nodes, contributions.width());
+        let outgoing: Vec<_> = self.neighbours.iter().map(|other| other.pieces(contributions)).collect();
+        let incoming = self.exchange(TrafficKind::HaloSum, &outgoing, |other| other.pieces_of_other(width));
+        // The columns of lower slabs lie before this rank's: every layer adds its columns in their order.
         let mut nodal = contributions.nodal();
         let lower = self.neighbours.partition_point(|other| other.rank < self.rank);
         let (before, after) = incoming.split_at(lower);
         for (part, other) in before.iter().zip(&self.neighbours) {
-            add_pieces(part, &other.layers, layer, &mut nodal);
+            other.add_pieces(part, (layer, width), &mut nodal);
         }
         contributions.add_to(&mut nodal);
         for (part, other) in after.iter().zip(&self.neighbours[lower..]) {
-            add_pieces(part, &other.layers, layer, &mut nodal);
+            other.add_pieces(part, (layer, width), &mut nodal);
         }
         nodal
     }
@@ -216,15 +259,10 @@ impl Halo for MpiHalo {
             return;
         }
         let _timed = self.timers.time("halo");
-        let mine = |other: &Neighbour| intersection(&other.nodes, &self.owned);
-        let outgoing: Vec<_> = self
-            .neighbours
-            .iter()
-            .map(|other| nodal[mine(other).start * width..mine(other).end * width].to_vec())
-            .collect();
-        let incoming = self.exchange(TrafficKind::HaloShare, &outgoing, |other| other.owned.len() * width);
+        let outgoing: Vec<_> = self.neighbours.iter().map(|other| other.mine.packed(nodal, width)).collect();
+        let incoming = self.exchange(TrafficKind::HaloShare, &outgoing, |other| other.theirs.count() * width);
         for (part, other) in incoming.iter().zip(&self.neighbours) {
-            nodal[other.owned.start * width..other.owned.end * width].copy_from_slice(part);
+            other.theirs.unpack(part, (nodal, width), |_, told| told);
         }
     }
 

@@ -111,8 +111,7 @@ impl<'p, const D: usize, const C: usize> KspSolver<'p, D, C> {
     /// Numbers the free components: those of rank 0 first, by node; the same number on every rank that shares a node.
     fn number(&mut self) {
         let free = &self.free;
-        let owned = self.halo.owned();
-        let owned = Nodal::<C>::all(&owned);
+        let owned = self.halo.owned().places::<C>();
         let numbered = numbered::<C>(&self.choice, free);
         self.own = owned.clone().filter(|&component| numbered(component)).count();
         let count = self.own as u64;
@@ -177,7 +176,7 @@ impl<'p, const D: usize, const C: usize> KspSolver<'p, D, C> {
         }
         let (owned, free, is_sized) = (self.halo.owned(), &self.free, self.is_sized);
         if let (Some(shell), false) = (&mut self.shell, is_sized) {
-            let unknowns = Nodal::<C>::all(&owned).filter(|&component| free[component]).collect();
+            let unknowns = owned.places::<C>().filter(|&component| free[component]).collect();
             shell.resize(unknowns).map_err(failed)?;
             self.is_sized = true;
         }
@@ -224,8 +223,7 @@ impl<'p, const D: usize, const C: usize> KspSolver<'p, D, C> {
 
     /// Components of this rank's unknowns, in the order of their numbers.
     fn unknowns(&self) -> Vec<usize> {
-        let owned = self.halo.owned();
-        Nodal::<C>::all(&owned).filter(|&component| self.numbers[component].is_some()).collect()
+        self.halo.owned().places::<C>().filter(|&component| self.numbers[component].is_some()).collect()
     }
 }
 
@@ -240,7 +238,7 @@ fn numbered<const C: usize>(choice: &Choice, free: &[bool]) -> impl Fn(usize) ->
 /// Where the nodes with rows of this rank are, m: the splines' coefficients there (Greville) give linear fields
 /// exactly.
 fn places_of<const D: usize, const C: usize>(grid: &Grid<D>, halo: &MpiHalo, numbers: &Numbering) -> Vec<f64> {
-    let with_rows = halo.owned().filter(|node| numbers[node * C].is_some());
+    let with_rows = halo.owned().nodes().filter(|node| numbers[node * C].is_some());
     with_rows
         .flat_map(|node| {
             let node = grid.node_at(node);
@@ -284,7 +282,7 @@ impl<const D: usize, const C: usize> LinearSolver for KspSolver<'_, D, C> {
     }
 
     fn add_diagonal(&mut self, diagonal: &[f64]) {
-        for node in self.halo.owned() {
+        for node in self.halo.owned().nodes() {
             for component in 0..C {
                 self.stencil.add_diagonal(node, component, diagonal[Nodal::<C>::at(node, component)]);
             }

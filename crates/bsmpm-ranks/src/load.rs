@@ -7,6 +7,7 @@
 use crate::slab::Slabs;
 use bsmpm::grid::Grid;
 use bsmpm::points::Points;
+use bsmpm::tensor::Vector;
 
 /// Work of a node of the window in an evaluation, in that of a point.
 const NODE: f64 = 1.0;
@@ -25,11 +26,57 @@ pub fn points_by_column<const D: usize>(grid: &Grid<D>, points: &Points<D>) -> V
     counts
 }
 
-/// The cut of the grid's room into about equal loads, with so many points of all ranks in every column; `None` with
-/// more ranks than columns.
-pub fn cut<const D: usize>(grid: &Grid<D>, points: &[f64], ranks: usize) -> Option<Slabs> {
-    let slabs = Slabs::cut(&by_column(points, grid.layer_nodes()), ranks)?;
+/// Points of this rank in every row of cells of every slab, slab after slab; those outside the room nowhere.
+pub fn points_by_row<const D: usize>(grid: &Grid<D>, slabs: &Slabs, points: &Points<D>) -> Vec<f64> {
+    let mut rows = Rows::none(grid, slabs);
+    points.x.iter().for_each(|x| rows.count(x));
+    rows.counts
+}
+
+/// Points by row of cells of every slab, as they are counted.
+pub struct Rows<'a, const D: usize> {
+    grid: &'a Grid<D>,
+    slabs: &'a Slabs,
+    /// slab after slab
+    pub counts: Vec<f64>,
+}
+
+impl<'a, const D: usize> Rows<'a, D> {
+    /// None yet.
+    pub fn none(grid: &'a Grid<D>, slabs: &'a Slabs) -> Self {
+        Self { grid, slabs, counts: vec![0.0; slabs.slabs() * grid.room()[1].len()] }
+    }
+
+    /// Counts a point at a place, m from the grid's lower corner.
+    pub fn count(&mut self, x: &Vector<D>) {
+        let Some(cell) = self.grid.locate(x) else { return };
+        let [columns, rows] = [0, 1].map(|axis| &self.grid.room()[axis]);
+        if columns.contains(&cell[0]) && rows.contains(&cell[1]) {
+            let slab = self.slabs.place(self.slabs.owner(&cell)).0;
+            self.counts[slab * rows.len() + cell[1] - rows.start] += 1.0;
+        }
+    }
+}
+
+/// The cut of the grid's room into slabs of about equal loads, with so many points of all ranks in every column; `None`
+/// with more slabs than columns.
+pub fn cut<const D: usize>(grid: &Grid<D>, points: &[f64], slabs: usize) -> Option<Slabs> {
+    let layer_nodes = (1..D).map(|axis| grid.room()[axis].len() + grid.order()).product();
+    let slabs = Slabs::cut(&by_column(points, layer_nodes), slabs)?;
     Some(slabs.starting_at(grid.room()[0].start).reaching(grid.beyond()))
+}
+
+/// The same slabs, each cut into so many parts of about equal loads, with so many points of all ranks in the rows of
+/// every slab; `None` with more parts than rows.
+pub fn parted<const D: usize>(grid: &Grid<D>, slabs: Slabs, points: &[f64], parts: usize) -> Option<Slabs> {
+    let rows = &grid.room()[1];
+    let across: usize = (2..D).map(|axis| grid.room()[axis].len() + grid.order()).product();
+    let of_slab = |(slab, points): (usize, &[f64])| {
+        let cut = Slabs::cut(&by_column(points, slabs.layers(slab, grid.order()).len() * across), parts)?;
+        Some(cut.starting_at(rows.start).bounds().to_vec())
+    };
+    let bounds = points.chunks_exact(rows.len()).enumerate().map(of_slab).collect::<Option<Vec<_>>>()?;
+    slabs.parted(bounds, rows)
 }
 
 /// Work of every column with so many points, and with the nodes of one layer.
@@ -52,6 +99,22 @@ pub fn of_slabs(points: &[f64], slabs: &Slabs, (layer_nodes, q): (usize, usize))
     (0..slabs.ranks()).map(|rank| of_rank(held(rank), nodes(rank))).collect()
 }
 
+/// The same of slabs with parts, by points in the rows of every slab.
+pub fn of_parts<const D: usize>(points: &[f64], slabs: &Slabs, grid: &Grid<D>) -> Vec<f64> {
+    let (rows, q) = (&grid.room()[1], grid.order());
+    let across: usize = (2..D).map(|axis| grid.room()[axis].len() + q).product();
+    let held = |rank: usize| {
+        let (slab, cells) = (slabs.place(rank).0, &slabs.cells(rank, grid.room())[1]);
+        let of_slab = &points[slab * rows.len()..(slab + 1) * rows.len()];
+        of_slab[cells.start - rows.start..cells.end - rows.start].iter().sum::<f64>() as usize
+    };
+    let nodes = |rank: usize| {
+        let [layers, rows] = slabs.nodes(rank, (q, rows));
+        layers.len() * rows.len() * across
+    };
+    (0..slabs.ranks()).map(|rank| of_rank(held(rank), nodes(rank))).collect()
+}
+
 /// Largest load over the mean.
 pub fn imbalance(loads: &[f64]) -> f64 {
     let sum: f64 = loads.iter().sum();
@@ -68,6 +131,7 @@ pub fn pays(now: f64, best: f64, evaluations: u64) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use bsmpm::grid::KnotVector;
 
     #[test]
     fn imbalance_is_the_largest_load_over_the_mean() {
@@ -84,6 +148,26 @@ mod tests {
         // Each window has the ghost layers besides its columns.
         let columns = by_column(&counts, 5);
         assert_eq!(columns[0] + of_rank(0, 10), of_rank(36, 15));
+    }
+
+    #[test]
+    fn parts_follow_the_points_of_their_slab_and_have_the_loads_of_their_ranks() {
+        let axis = |cells| KnotVector::uniform(1.0, cells, 2).unwrap();
+        let grid = Grid::new([axis(6), axis(5), axis(3)]).unwrap().within([1..5, 0..5, 0..3]);
+        let slabs = || cut(&grid, &[9.0, 9.0, 9.0, 9.0], 2).unwrap();
+        let places = [[1.5, 0.5], [2.5, 0.5], [3.5, 4.5], [4.5, 3.5], [5.5, 4.5], [0.5, 0.5]];
+        let x = places.map(|[x, y]| Vector::from([x, y, 1.5]));
+        let (slabs, of) = (slabs(), slabs());
+        let mut rows = Rows::none(&grid, &of);
+        x.iter().for_each(|x| rows.count(x)); // the last two lie outside the room
+        assert_eq!(rows.counts, [2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0]);
+        let counts: Vec<f64> = rows.counts.iter().map(|count| 200.0 * count).collect();
+        let slabs = parted(&grid, slabs, &counts, 2).unwrap();
+        assert_eq!(slabs.parts(), [vec![0, 1, 5], vec![0, 4, 5]]);
+        let nodes = [3, 6, 6, 3].into_iter().zip([4, 4, 4, 4]).map(|(rows, layers)| rows * layers * 5);
+        let loads: Vec<f64> = [400, 0, 200, 200].into_iter().zip(nodes).map(|(p, n)| of_rank(p, n)).collect();
+        assert_eq!(of_parts(&counts, &slabs, &grid), loads);
+        assert!(parted(&grid, of, &counts, 6).is_none());
     }
 
     #[test]

@@ -1,8 +1,8 @@
-//! Points and nodal values that change their rank: after every step, and when the slabs are cut anew.
+//! Points and nodal values that change their rank: after every step, and when the grid is cut anew.
 //! [`plan`](crate::plan) says who gets what.
 
-use crate::plan::{LayerPlan, PointPlan};
-use crate::slab::Slabs;
+use crate::plan::{NodePlan, PointPlan};
+use crate::slab::{NodeBox, Slabs};
 use crate::traffic::{Traffic, TrafficKind};
 use bsmpm::grid::Grid;
 use bsmpm::points::Points;
@@ -13,7 +13,7 @@ use mpi::topology::{Communicator, SimpleCommunicator};
 /// Bytes of one message; more go in several, as MPI counts with 31 bits.
 const MESSAGE: usize = 1 << 20;
 
-/// Sends every point to the rank whose slab it is in, and sorts by cell. `grid` is the window under `slabs`.
+/// Sends every point to the rank whose cells it is in, and sorts by cell. `grid` is the window under `slabs`.
 pub fn points<const D: usize>(
     (world, traffic): (&SimpleCommunicator, &Traffic),
     slabs: &Slabs,
@@ -21,7 +21,7 @@ pub fn points<const D: usize>(
     points: &mut Points<D>,
 ) {
     let rank = world.rank().unsigned_abs() as usize;
-    let owners = points.x.iter().map(|x| grid.locate(x).map_or(rank, |cell| slabs.owner(cell[0])));
+    let owners = points.x.iter().map(|x| grid.locate(x).map_or(rank, |cell| slabs.owner(&cell)));
     let PointPlan { stay, leave } = PointPlan::new(owners, rank);
     // Messages are column by column: every column then takes its rows from the message in one run.
     let mut outgoing: Vec<(usize, Vec<u8>)> = leave.iter().map(|(other, _)| (*other, Vec::new())).collect();
@@ -44,46 +44,50 @@ pub fn points<const D: usize>(
     points.sort_by_cell(grid);
 }
 
-/// Nodal values (`width` a node) of a window of `old`, as a window of `new` with the same columns' layers has them:
-/// what lies outside the old room is zero.
-pub fn across<const D: usize>(old: &Grid<D>, new: &Grid<D>, values: &[f64], width: usize) -> Vec<f64> {
-    let mut room = new.room().clone();
-    room[0] = old.room()[0].clone();
-    let new = new.within(room).window(old.columns());
+/// Nodal values (`width` a node) of a window of `old`, as the same window of the returned grid has them: `old` with the
+/// room of `new` along the axes that are not cut. What lies outside the old room is zero.
+pub fn across<const D: usize>(old: &Grid<D>, new: &Grid<D>, values: &[f64], width: usize) -> (Grid<D>, Vec<f64>) {
+    let (mut room, mut window) = (new.room().clone(), new.room().clone());
+    for axis in 0..if old.is_parted() { 2 } else { 1 } {
+        (room[axis], window[axis]) = (old.room()[axis].clone(), old.cells_along()[axis].clone());
+    }
+    let new = new.within(room).window_of(window);
     let value = |node: usize| {
         let held = old.node_index(&new.node_at(node));
         (0..width).map(move |number| held.map_or(0.0, |node| values[node * width + number]))
     };
-    (0..new.nodes()).flat_map(value).collect()
+    let values = (0..new.nodes()).flat_map(value).collect();
+    (new, values)
 }
 
-/// Nodal values (`width` a node) under the old cut, moved to the windows of the new one; zero where there was none.
+/// Nodal values (`width` a node) of this rank's window `from` under the old cut, moved to its window `to` under the new
+/// one; zero where there was none.
 pub fn nodal<const D: usize>(
     (world, traffic): (&SimpleCommunicator, &Traffic),
     (old, new): (&Slabs, &Slabs),
-    grid: &Grid<D>,
+    (from, to): (&Grid<D>, &Grid<D>),
     values: &[f64],
     width: usize,
 ) -> Vec<f64> {
     let rank = world.rank().unsigned_abs() as usize;
-    let (q, size) = (grid.order(), grid.layer_nodes() * width);
-    let (from, window) = (old.layers(rank, q).start, new.layers(rank, q));
-    let mut moved = vec![0.0; window.len() * size];
-    let LayerPlan { send, receive } = LayerPlan::new((old, new), rank, q);
+    let mut moved = vec![0.0; to.nodes() * width];
+    let NodePlan { send, receive } = NodePlan::new((old, new), rank, (to.order(), &to.room()[1]));
+    let numbers = |grid: &Grid<D>, nodes: &NodeBox| {
+        grid.nodes_within(nodes).into_iter().flat_map(move |run| run.start * width..run.end * width)
+    };
     let mut outgoing = Vec::new();
-    for (other, layers) in send {
-        let part = &values[(layers.start - from) * size..(layers.end - from) * size];
+    for (other, nodes) in send {
+        let part = numbers(from, &nodes);
         if other == rank {
-            moved[(layers.start - window.start) * size..][..part.len()].copy_from_slice(part);
+            numbers(to, &nodes).zip(part).for_each(|(slot, at)| moved[slot] = values[at]);
         } else {
-            outgoing.push((other, part.iter().flat_map(|value| value.to_le_bytes()).collect()));
+            outgoing.push((other, part.flat_map(|at| values[at].to_le_bytes()).collect()));
         }
     }
     let receive = receive.into_iter().filter(|(other, _)| *other != rank);
-    for ((_, message), (_, layers)) in exchange((world, traffic), &outgoing, MESSAGE).iter().zip(receive) {
-        let slots = &mut moved[(layers.start - window.start) * size..];
-        for (slot, bytes) in slots.iter_mut().zip(message.chunks_exact(8)) {
-            *slot = f64::from_le_bytes(bytes.try_into().unwrap_or_default());
+    for ((_, message), (_, nodes)) in exchange((world, traffic), &outgoing, MESSAGE).iter().zip(receive) {
+        for (slot, bytes) in numbers(to, &nodes).zip(message.chunks_exact(8)) {
+            moved[slot] = f64::from_le_bytes(bytes.try_into().unwrap_or_default());
         }
     }
     moved
@@ -136,18 +140,21 @@ mod tests {
     fn nodal_values_keep_their_places_in_a_wider_and_a_narrower_room() {
         let axis = |cells| KnotVector::uniform(1.0, cells, 2).unwrap();
         let whole = Grid::new([axis(12), axis(9), axis(7)]).unwrap();
-        let old = whole.within([2..9, 3..7, 0..5]).window(4..6);
+        let seen = whole.within([2..9, 3..7, 0..5]);
         let value = |grid: &Grid<3>, node: usize| 1.0 + grid.number_of(node) as f64;
-        let values: Vec<f64> = (0..old.nodes()).flat_map(|node| [value(&old, node), -value(&old, node)]).collect();
-        for room in [[0..12, 0..9, 0..7], [3..8, 4..6, 2..3], [1..11, 2..6, 1..6]] {
-            let new = whole.within(room);
-            let moved = across(&old, &new, &values, 2);
-            let layers = new.within([2..9, new.room()[1].clone(), new.room()[2].clone()]).window(4..6);
-            assert_eq!(moved.len(), 2 * layers.nodes());
-            for (node, pair) in moved.chunks_exact(2).enumerate() {
-                let held = old.node_index(&layers.node_at(node)).is_some();
-                let expected = if held { value(&layers, node) } else { 0.0 };
-                assert_eq!(pair, [expected, -expected], "{:?}", layers.node_at(node));
+        for (old, cut) in [(seen.window(4..6), 1), (seen.window_of([4..6, 4..5, 0..5]), 2)] {
+            let values: Vec<f64> = (0..old.nodes()).flat_map(|node| [value(&old, node), -value(&old, node)]).collect();
+            for room in [[0..12, 0..9, 0..7], [3..8, 4..6, 2..3], [1..11, 2..6, 1..6]] {
+                let new = whole.within(room);
+                let (same, moved) = across(&old, &new, &values, 2);
+                assert_eq!(same.cells_along()[..cut], old.cells_along()[..cut]);
+                assert_eq!(same.cells_along()[cut..], new.room()[cut..]);
+                assert_eq!(moved.len(), 2 * same.nodes());
+                for (node, pair) in moved.chunks_exact(2).enumerate() {
+                    let held = old.node_index(&same.node_at(node)).is_some();
+                    let expected = if held { value(&same, node) } else { 0.0 };
+                    assert_eq!(pair, [expected, -expected], "{:?}", same.node_at(node));
+                }
             }
         }
     }

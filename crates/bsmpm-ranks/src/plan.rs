@@ -1,6 +1,6 @@
-//! Who gets what when points leave their slab and when the slabs are cut anew: plain data, without MPI.
+//! Who gets what when points leave their rank's cells and when the grid is cut anew: plain data, without MPI.
 
-use crate::slab::{Slabs, intersection};
+use crate::slab::{NodeBox, Slabs, common};
 use std::ops::Range;
 
 /// The points of a rank, by the rank that they belong to.
@@ -30,25 +30,27 @@ impl PointPlan {
     }
 }
 
-/// Node layers that change hands between two cuts: the old owner of a layer tells it to all whose new window has it.
+/// Nodes that change hands between two cuts: the old owner of a box tells it to all whose new window has of it.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct LayerPlan {
+pub struct NodePlan {
     /// what this rank tells, itself included, ascending by rank
-    pub send: Vec<(usize, Range<usize>)>,
-    /// what it is told, ascending by rank: together what of its new window there was before, each layer once
-    pub receive: Vec<(usize, Range<usize>)>,
+    pub send: Vec<(usize, NodeBox)>,
+    /// what it is told, ascending by rank: together what of its new window there was before, each node once
+    pub receive: Vec<(usize, NodeBox)>,
 }
 
-impl LayerPlan {
-    /// The plan of `rank` from the cut `old` to the cut `new`, for splines of order `q`.
-    pub fn new((old, new): (&Slabs, &Slabs), rank: usize, q: usize) -> Self {
-        let (owned, window) = (old.owned_layers(rank, q), new.layers(rank, q));
-        let parts = |part: &dyn Fn(usize) -> Range<usize>| {
-            (0..new.ranks()).map(|other| (other, part(other))).filter(|(_, layers)| !layers.is_empty()).collect()
+impl NodePlan {
+    /// The plan of `rank` from the cut `old` to the cut `new`, for splines of order `q`, where slabs without parts have
+    /// those `rows` of cells.
+    pub fn new((old, new): (&Slabs, &Slabs), rank: usize, of: (usize, &Range<usize>)) -> Self {
+        let (owned, window) = (old.owned(rank, of), new.nodes(rank, of));
+        let parts = |part: &dyn Fn(usize) -> NodeBox| {
+            let all = (0..new.ranks()).map(|other| (other, part(other)));
+            all.filter(|(_, nodes)| !nodes.iter().any(Range::is_empty)).collect()
         };
         Self {
-            send: parts(&|other| intersection(&owned, &new.layers(other, q))),
-            receive: parts(&|other| intersection(&old.owned_layers(other, q), &window)),
+            send: parts(&|other| common(&owned, &new.nodes(other, of))),
+            receive: parts(&|other| common(&old.owned(other, of), &window)),
         }
     }
 }
@@ -67,22 +69,40 @@ mod tests {
 
     /// Bounds of 4 slabs of 12 columns: even, thinner than the splines reach, and all but one column on one rank.
     const CUTS: [[usize; 5]; 4] = [[0, 3, 6, 9, 12], [0, 1, 2, 3, 12], [0, 9, 10, 11, 12], [0, 1, 10, 11, 12]];
+    /// Bounds of two parts of 6 rows, slab by slab.
+    const PARTS: [[usize; 2]; 3] = [[3, 3], [1, 5], [5, 2]];
+
+    fn agrees((old, new): (&Slabs, &Slabs), ranks: usize, q: usize) {
+        let of = (q, &(0..6));
+        for rank in 0..ranks {
+            let plan = NodePlan::new((old, new), rank, of);
+            let nodes = |[layers, rows]: &NodeBox| -> Vec<[usize; 2]> {
+                layers.clone().flat_map(|layer| rows.clone().map(move |row| [layer, row])).collect()
+            };
+            let mut told: Vec<[usize; 2]> = plan.receive.iter().flat_map(|(_, part)| nodes(part)).collect();
+            told.sort_unstable();
+            assert_eq!(told, nodes(&new.nodes(rank, of)));
+            for (other, part) in plan.receive {
+                assert!(NodePlan::new((old, new), other, of).send.contains(&(rank, part)));
+            }
+            for (other, part) in plan.send {
+                assert!(NodePlan::new((old, new), other, of).receive.contains(&(rank, part)));
+            }
+        }
+    }
 
     #[test]
-    fn each_new_window_is_told_every_layer_once_by_its_old_owner() {
+    fn each_new_window_is_told_every_node_once_by_its_old_owner() {
         let cut = |bounds: [usize; 5]| Slabs::new(bounds.to_vec(), 4, 0..12).unwrap();
         for (old, new) in CUTS.iter().flat_map(|old| CUTS.map(|new| (cut(*old), cut(new)))) {
-            for (rank, q) in (0..4).flat_map(|rank| [1, 2, 3].map(|q| (rank, q))) {
-                let plan = LayerPlan::new((&old, &new), rank, q);
-                let told: Vec<usize> = plan.receive.iter().flat_map(|(_, layers)| layers.clone()).collect();
-                assert_eq!(told, new.layers(rank, q).collect::<Vec<_>>());
-                for (other, layers) in plan.receive {
-                    assert!(LayerPlan::new((&old, &new), other, q).send.contains(&(rank, layers)));
-                }
-                for (other, layers) in plan.send {
-                    assert!(LayerPlan::new((&old, &new), other, q).receive.contains(&(rank, layers)));
-                }
-            }
+            (1..4).for_each(|q| agrees((&old, &new), 4, q));
+        }
+        let cut = |at: usize, parts: [usize; 2]| {
+            let slabs = Slabs::new(vec![0, at, 12], 2, 0..12).unwrap();
+            slabs.parted(parts.map(|at| vec![0, at, 6]).to_vec(), &(0..6)).unwrap()
+        };
+        for (old, new) in PARTS.iter().flat_map(|old| PARTS.map(|new| (cut(4, *old), cut(9, new)))) {
+            (1..4).for_each(|q| agrees((&old, &new), 4, q));
         }
     }
 
@@ -90,16 +110,20 @@ mod tests {
     fn layers_that_were_in_no_window_before_are_told_by_nobody() {
         let (old, new) = (Slabs::new(vec![4, 6, 8], 2, 4..8), Slabs::new(vec![2, 5, 12], 2, 2..12));
         let (old, new) = (old.unwrap(), new.unwrap());
-        let [first, last] = [0, 1].map(|rank| LayerPlan::new((&old, &new), rank, 2));
-        assert_eq!((first.receive, last.receive), (vec![(0, 4..6), (1, 6..7)], vec![(0, 5..6), (1, 6..10)]));
-        assert_eq!((first.send, last.send), (vec![(0, 4..6), (1, 5..6)], vec![(0, 6..7), (1, 6..10)]));
+        let boxed = |parts: Vec<(usize, Range<usize>)>| -> Vec<(usize, NodeBox)> {
+            parts.into_iter().map(|(rank, layers)| (rank, [layers, 0..3])).collect()
+        };
+        let [first, last] = [0, 1].map(|rank| NodePlan::new((&old, &new), rank, (2, &(0..1))));
+        let told = (boxed(vec![(0, 4..6), (1, 6..7)]), boxed(vec![(0, 5..6), (1, 6..10)]));
+        assert_eq!((first.receive, last.receive), told);
+        assert_eq!((first.send, last.send), (boxed(vec![(0, 4..6), (1, 5..6)]), boxed(vec![(0, 6..7), (1, 6..10)])));
     }
 
     #[test]
     fn a_cut_that_stays_moves_only_what_neighbours_share() {
         let slabs = Slabs::new(vec![0, 3, 6, 9, 12], 4, 0..12).unwrap();
-        let plan = LayerPlan::new((&slabs, &slabs), 1, 2);
-        assert_eq!(plan.send, [(0, 3..5), (1, 3..6)]);
-        assert_eq!(plan.receive, [(1, 3..6), (2, 6..8)]);
+        let plan = NodePlan::new((&slabs, &slabs), 1, (2, &(0..1)));
+        assert_eq!(plan.send, [(0, [3..5, 0..3]), (1, [3..6, 0..3])]);
+        assert_eq!(plan.receive, [(1, [3..6, 0..3]), (2, [6..8, 0..3])]);
     }
 }

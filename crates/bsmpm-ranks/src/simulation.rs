@@ -15,13 +15,13 @@ use bsmpm::grid::Grid;
 use bsmpm::initial::{self, Equilibrium, Settling};
 use bsmpm::kinematics::Kinematics;
 use bsmpm::model::Model;
-use bsmpm::nodal::Nodal;
 use bsmpm::parallel::Halo;
 use bsmpm::points::{Column, Points, Seed};
 use bsmpm::schedule::Schedule;
 use bsmpm::tensor::{Symmetric, Vector};
 use mpi::environment::Universe;
 use petsc_rs::Petsc;
+use std::borrow::Cow;
 use std::ops::Range;
 use std::rc::Rc;
 
@@ -74,7 +74,7 @@ pub struct Simulation<'p, K, const D: usize> {
 }
 
 impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
-    /// A run at time 0. `model` has the whole room of its grid as its window, `points` are those of this rank's slab.
+    /// A run at time 0. `model` has the whole room of its grid as its window, `points` are those of this rank's cells.
     pub fn new(
         (universe, petsc, choice): (&'p Universe, &'p Petsc<'p>, Choice),
         mut model: Model<K, D>,
@@ -82,7 +82,7 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         schedule: Schedule,
         (timers, requests): (Rc<Timers>, Rc<Requests>),
     ) -> Self {
-        model.grid = model.grid.window(slabs.columns(petsc.rank()));
+        model.grid = model.grid.window_of(slabs.cells(petsc.rank(), model.grid.room()));
         let slabs = slabs.reaching(model.grid.beyond());
         points.sort_by_cell(&model.grid);
         points.surface = model.boundary.surface();
@@ -122,13 +122,20 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         self.stepper.progress()
     }
 
-    /// Everything that is large and must be kept to go on: the points' columns, and the nodal displacement of the
-    /// layers that this rank owns, from which the next step starts, with the numbers of a layer.
+    /// Everything that is large and must be kept to go on: the points' columns, and the displacement of the nodes that
+    /// this rank owns, from which the next step starts, with the numbers of a layer, or of a row where slabs have parts.
     #[allow(clippy::type_complexity)]
-    pub fn arrays(&mut self) -> (Vec<(&'static str, &mut dyn Column)>, (&[f64], usize)) {
-        let owned = self.halo.owned();
-        let guess = &self.stepper.guess[Nodal::<D>::all(&owned)];
-        (self.points.named_columns(), (guess, self.model.grid.layer_nodes() * D))
+    pub fn arrays(&mut self) -> (Vec<(&'static str, &mut dyn Column)>, (Cow<'_, [f64]>, usize)) {
+        let (owned, grid) = (self.halo.owned(), &self.model.grid);
+        let layer = grid.layer_nodes() * D;
+        let guess = if self.slabs.parts().is_empty() {
+            let end = owned.runs().last().map_or(0, |run| run.end);
+            (Cow::Borrowed(&self.stepper.guess[..end * D]), layer)
+        } else {
+            let own = owned.places::<D>().map(|place| self.stepper.guess[place]);
+            (Cow::Owned(own.collect()), layer / grid.nodes_along(1))
+        };
+        (self.points.named_columns(), guess)
     }
 
     /// The cut of the grid.
@@ -161,7 +168,7 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         self.cost
     }
 
-    /// One accepted step, after which every point is on the rank of its slab; `None` at the end.
+    /// One accepted step, after which every point is on the rank of its cell; `None` at the end.
     pub fn advance(&mut self) -> Option<Result<Accepted, Failure>> {
         let (before, load) =
             (self.timers.traffic().counts(), load::of_rank(self.points.len(), self.model.grid.nodes()));
@@ -200,7 +207,9 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         let anchored = self.points.anchored();
         let anchors = self.points.surface.anchors.without(&self.model.surfaces(), &gone, anchored, &*self.halo);
         self.points.surface.anchors = anchors;
-        self.points.place(placed(self.columns()));
+        let (slabs, rank, grid) = (self.slabs.clone(), self.petsc.rank(), self.model.grid.clone());
+        let is_ours = |seed: &Seed<D>| grid.locate(&seed.x).is_none_or(|cell| slabs.owner(&cell) == rank);
+        self.points.place(placed(self.columns()).filter(is_ours));
         let mut numbers = [(before - left) as f64, (self.points.len() - left) as f64, f64::from(self.lacks_room())];
         self.halo.reduce(&mut numbers);
         if numbers[2] > 0.0 {
@@ -223,11 +232,11 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         Ok(())
     }
 
-    /// Columns of the whole grid whose points come to this rank.
+    /// Columns of the whole grid whose points come to this rank's slab.
     fn columns(&self) -> Range<usize> {
-        let (rank, own) = (self.petsc.rank(), self.slabs.columns(self.petsc.rank()));
-        let end = if rank + 1 == self.slabs.ranks() { self.model.grid.axes()[0].cells() } else { own.end };
-        if rank == 0 { 0..end } else { own.start..end }
+        let (slab, own) = (self.slabs.place(self.petsc.rank()).0, self.slabs.columns(self.petsc.rank()));
+        let end = if slab + 1 == self.slabs.slabs() { self.model.grid.axes()[0].cells() } else { own.end };
+        if slab == 0 { 0..end } else { own.start..end }
     }
 
     /// Whether the grid has no room for a point of this rank.
@@ -261,17 +270,33 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         let grid = &self.model.grid;
         let mut counts = load::points_by_column(grid, &self.points);
         self.halo.reduce(&mut counts);
-        let most = |slabs: &Slabs| {
-            let loads = load::of_slabs(&counts, slabs, (grid.layer_nodes(), grid.order()));
-            loads.into_iter().fold(0.0, f64::max)
+        let most = |loads: Vec<f64>| loads.into_iter().fold(0.0, f64::max);
+        let Some(better) = load::cut(grid, &counts, self.slabs.slabs()) else { return false };
+        let (better, loads) = if self.slabs.parts().is_empty() {
+            let of = |slabs: &Slabs| most(load::of_slabs(&counts, slabs, (grid.layer_nodes(), grid.order())));
+            let loads = [of(&self.slabs), of(&better)];
+            (better, loads)
+        } else {
+            let Some((better, counts)) = self.parted(grid, better) else { return false };
+            let mut now = [load::of_rank(self.points.len(), grid.nodes())];
+            self.halo.maximum(&mut now);
+            let loads = [now[0], most(load::of_parts(&counts, &better, grid))];
+            (better, loads)
         };
-        let better = load::cut(grid, &counts, self.slabs.ranks());
-        let Some(better) = better.filter(|better| load::pays(most(&self.slabs), most(better), LOOK * evaluations))
-        else {
+        if !load::pays(loads[0], loads[1], LOOK * evaluations) {
             return false;
-        };
+        }
         self.recut(self.model.grid.clone(), better);
         true
+    }
+
+    /// Those slabs cut into as many parts as the present ones have, by what they hold of all ranks' points, which is
+    /// told, too; one reduction.
+    fn parted(&self, grid: &Grid<D>, slabs: Slabs) -> Option<(Slabs, Vec<f64>)> {
+        let mut counts = load::points_by_row(grid, &slabs, &self.points);
+        self.halo.reduce(&mut counts);
+        let parted = load::parted(grid, slabs, &counts, self.slabs.parts_of_slab())?;
+        Some((parted, counts))
     }
 
     /// Makes room for the points of all ranks, and cuts it anew.
@@ -281,10 +306,15 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         let mut ends = ends.unwrap_or([[f64::NEG_INFINITY; 2]; D]);
         self.halo.maximum(ends.as_flattened_mut());
         let occupied = ends.map(|[start, end]| -start as usize..end as usize);
-        let grid = self.model.grid.with_room(&occupied, self.slabs.ranks());
+        let grid = self.model.grid.with_room(&occupied, [self.slabs.slabs(), self.slabs.parts_of_slab()]);
         let mut counts = load::points_by_column(&grid, &self.points);
         self.halo.reduce(&mut counts);
-        if let Some(slabs) = load::cut(&grid, &counts, self.slabs.ranks()) {
+        let slabs = load::cut(&grid, &counts, self.slabs.slabs());
+        let slabs = match slabs {
+            Some(slabs) if !self.slabs.parts().is_empty() => self.parted(&grid, slabs).map(|(parted, _)| parted),
+            slabs => slabs,
+        };
+        if let Some(slabs) = slabs {
             self.recut(grid, slabs);
         }
     }
@@ -293,9 +323,10 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
     fn recut(&mut self, grid: Grid<D>, slabs: Slabs) {
         let timers = Rc::clone(&self.timers);
         let world = self.universe.world();
-        let guess = migrate::across(&self.model.grid, &grid, &self.stepper.guess, D);
-        self.stepper.guess = migrate::nodal((&world, timers.traffic()), (&self.slabs, &slabs), &grid, &guess, D);
-        self.model.grid = grid.window(slabs.columns(self.petsc.rank()));
+        let (from, guess) = migrate::across(&self.model.grid, &grid, &self.stepper.guess, D);
+        self.model.grid = grid.window_of(slabs.cells(self.petsc.rank(), grid.room()));
+        let (cuts, grids) = ((&self.slabs, &slabs), (&from, &self.model.grid));
+        self.stepper.guess = migrate::nodal((&world, timers.traffic()), cuts, grids, &guess, D);
         migrate::points((&world, timers.traffic()), &slabs, &self.model.grid, &mut self.points);
         self.slabs = slabs;
         let shared = (Rc::clone(&timers), Rc::clone(self.halo.requests()));

@@ -1,19 +1,25 @@
-//! The cut of the grid into slabs of columns along its first axis: plain data, known to every rank, without MPI.
+//! The cut of the grid into slabs of columns along its first axis, and of these into parts along the second one: plain
+//! data, known to every rank, without MPI.
 //!
 //! A rank owns the cells of its columns and the node layers that begin in them; the last rank owns the q layers at the
-//! far end too. Its window reaches q ghost layers further, into the slab (or, of thin slabs, the slabs) behind.
+//! far end too. Its window reaches q ghost layers further, into the slab (or, of thin slabs, the slabs) behind. So it is
+//! with the rows of cells where slabs have parts: every slab has its own bounds there, and as many parts as all others.
 
 use std::ops::Range;
 
 /// Halvings of the interval in which the least largest cost lies: to the last bit of a float.
 const BISECTIONS: usize = 60;
 
-/// Columns at which the slabs begin, and the number of columns last.
+/// Columns at which the slabs begin, and the number of columns last; the parts of a slab are ranks one after the other.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Slabs {
     bounds: Vec<usize>,
-    beyond: usize, // further layers of a window
+    parts: Vec<Vec<usize>>, // the same of the rows of each slab; none where a slab is one rank's
+    beyond: usize,          // further layers of a window
 }
+
+/// A box of nodes along the two axes that are cut: layers, and rows in them.
+pub type NodeBox = [Range<usize>; 2];
 
 impl Slabs {
     /// Cuts columns of given cost into slabs, each at least one column wide, whose largest cost is as small as it can
@@ -50,14 +56,14 @@ impl Slabs {
             bounds.push(fair.clamp(least, reach.min(cost.len() - (ranks - rank)).max(least)));
         }
         bounds.push(cost.len());
-        Some(Self { bounds, beyond: 0 })
+        Some(Self { bounds, parts: Vec::new(), beyond: 0 })
     }
 
     /// Slabs that begin at given columns; `None` if they are not one for each rank, all with cells, of all `columns` of
     /// the grid's room.
     pub fn new(bounds: Vec<usize>, ranks: usize, columns: Range<usize>) -> Option<Self> {
         let whole = bounds.len() == ranks + 1 && bounds[0] == columns.start && bounds[ranks] == columns.end;
-        (whole && bounds.is_sorted_by(|a, b| a < b)).then_some(Self { bounds, beyond: 0 })
+        (whole && bounds.is_sorted_by(|a, b| a < b)).then_some(Self { bounds, parts: Vec::new(), beyond: 0 })
     }
 
     /// The same slabs of columns of which the first is number `first`.
@@ -71,51 +77,107 @@ impl Slabs {
         Self { beyond, ..self }
     }
 
+    /// The same slabs, each of which is cut at its own rows of cells, the number of rows last: `None` if there is not such
+    /// a cut of every slab, all with as many parts that have cells, of all `rows` of the grid's room.
+    pub fn parted(self, parts: Vec<Vec<usize>>, rows: &Range<usize>) -> Option<Self> {
+        let count = parts.first().map_or(0, Vec::len);
+        let whole = |part: &Vec<usize>| {
+            part.len() == count && part.is_sorted_by(|a, b| a < b) && part.first() == Some(&rows.start)
+        };
+        let ends = parts.iter().all(|part| part.last() == Some(&rows.end));
+        let good = parts.len() + 1 == self.bounds.len() && count > 1 && ends && parts.iter().all(whole);
+        good.then_some(Self { parts, ..self })
+    }
+
     /// Columns at which they begin, and the number of columns last.
     pub fn bounds(&self) -> &[usize] {
         &self.bounds
     }
 
+    /// Rows at which the parts of each slab begin, and the number of rows last; none where a slab is one rank's.
+    pub fn parts(&self) -> &[Vec<usize>] {
+        &self.parts
+    }
+
     /// Number of slabs.
-    pub fn ranks(&self) -> usize {
+    pub fn slabs(&self) -> usize {
         self.bounds.len() - 1
+    }
+
+    /// Number of parts of each.
+    pub fn parts_of_slab(&self) -> usize {
+        self.parts.first().map_or(1, |part| part.len() - 1)
+    }
+
+    /// Number of ranks: parts of all slabs.
+    pub fn ranks(&self) -> usize {
+        self.slabs() * self.parts_of_slab()
+    }
+
+    /// The slab of a rank, and which of its parts is the rank's.
+    pub fn place(&self, rank: usize) -> (usize, usize) {
+        (rank / self.parts_of_slab(), rank % self.parts_of_slab())
     }
 
     /// Columns of cells of a rank.
     pub fn columns(&self, rank: usize) -> Range<usize> {
-        self.bounds[rank]..self.bounds[rank + 1]
+        let slab = self.place(rank).0;
+        self.bounds[slab]..self.bounds[slab + 1]
     }
 
-    /// The rank whose slab holds a column; past either end of them all, the rank there.
-    pub fn owner(&self, column: usize) -> usize {
-        self.bounds.partition_point(|&bound| bound <= column).clamp(1, self.ranks()) - 1
+    /// Cells of a rank along each axis, of those of the grid's `room`.
+    pub fn cells<const D: usize>(&self, rank: usize, room: &[Range<usize>; D]) -> [Range<usize>; D] {
+        let (slab, part) = self.place(rank);
+        let mut cells = room.clone();
+        cells[0] = self.columns(rank);
+        if let Some(rows) = self.parts.get(slab) {
+            cells[1] = rows[part]..rows[part + 1];
+        }
+        cells
+    }
+
+    /// The rank that has a cell; past the ends of them all, the rank there.
+    pub fn owner<const D: usize>(&self, cell: &[usize; D]) -> usize {
+        let slab = stretch(&self.bounds, cell[0]);
+        self.parts.get(slab).map_or(slab, |rows| slab * self.parts_of_slab() + stretch(rows, cell[1]))
     }
 
     /// Node layers in the window of a rank: those that its cells touch, for splines of order `q`, and those beyond.
     pub fn layers(&self, rank: usize, q: usize) -> Range<usize> {
-        let end = (self.bounds[rank + 1] + self.beyond).min(self.bounds[self.ranks()]);
-        self.bounds[rank]..end + q
+        window(&self.bounds, self.place(rank).0, (q, self.beyond))
     }
 
     /// Node layers that a rank owns.
     pub fn owned_layers(&self, rank: usize, q: usize) -> Range<usize> {
-        let extra = if rank + 1 == self.ranks() { q } else { 0 };
-        self.bounds[rank]..self.bounds[rank + 1] + extra
+        owned(&self.bounds, self.place(rank).0, q)
     }
 
-    /// Other ranks that share node layers with `rank`, ascending, and the layers.
-    pub fn shared(&self, rank: usize, q: usize) -> Vec<(usize, Range<usize>)> {
-        let own = self.layers(rank, q);
+    /// Nodes in the window of a rank, where the grid's room has those `rows` of cells.
+    pub fn nodes(&self, rank: usize, (q, rows): (usize, &Range<usize>)) -> NodeBox {
+        let (slab, part) = self.place(rank);
+        let rows = self.parts.get(slab).map_or(rows.start..rows.end + q, |of| window(of, part, (q, self.beyond)));
+        [self.layers(rank, q), rows]
+    }
+
+    /// Nodes that a rank owns.
+    pub fn owned(&self, rank: usize, (q, rows): (usize, &Range<usize>)) -> NodeBox {
+        let (slab, part) = self.place(rank);
+        [self.owned_layers(rank, q), self.parts.get(slab).map_or(rows.start..rows.end + q, |of| owned(of, part, q))]
+    }
+
+    /// Other ranks that share nodes with `rank`, ascending, and the nodes.
+    pub fn shared(&self, rank: usize, (q, rows): (usize, &Range<usize>)) -> Vec<(usize, NodeBox)> {
+        let own = self.nodes(rank, (q, rows));
         (0..self.ranks())
             .filter(|&other| other != rank)
-            .map(|other| (other, intersection(&own, &self.layers(other, q))))
-            .filter(|(_, layers)| !layers.is_empty())
+            .map(|other| (other, common(&own, &self.nodes(other, (q, rows)))))
+            .filter(|(_, nodes)| !nodes.iter().any(Range::is_empty))
             .collect()
     }
 
     /// Layers that a rank shares with another one, ascending, and which columns of either touch them.
     pub fn shared_layers(&self, (rank, other): (usize, usize), q: usize) -> Vec<SharedLayer> {
-        let (first, reach) = (self.bounds[rank], q + self.beyond);
+        let (first, reach) = (self.columns(rank).start, q + self.beyond);
         let touching =
             |rank: usize, layer: usize| intersection(&self.columns(rank), &(layer.saturating_sub(reach)..layer + 1));
         let shared = |layer: usize| {
@@ -128,6 +190,43 @@ impl Slabs {
         };
         intersection(&self.layers(rank, q), &self.layers(other, q)).map(shared).collect()
     }
+
+    /// Ranks from the first to the last one whose window has a node, given by its layer and its row.
+    pub fn touching(&self, [layer, row]: [usize; 2], q: usize) -> Range<usize> {
+        let slabs = stretches(&self.bounds, layer, q + self.beyond);
+        let of_slab = |slab: usize| match self.parts.get(slab) {
+            None => slab..slab + 1,
+            Some(rows) => {
+                let (first, parts) = (slab * self.parts_of_slab(), stretches(rows, row, q + self.beyond));
+                first + parts.start..first + parts.end
+            }
+        };
+        of_slab(slabs.start).start..of_slab(slabs.end - 1).end
+    }
+}
+
+/// The stretch between bounds that has a cell; past either end of them all, the one there.
+fn stretch(bounds: &[usize], cell: usize) -> usize {
+    bounds.partition_point(|&bound| bound <= cell).clamp(1, bounds.len() - 1) - 1
+}
+
+/// Stretches whose window has a node, where windows reach so far beyond their cells.
+fn stretches(bounds: &[usize], node: usize, reach: usize) -> Range<usize> {
+    let last = bounds.len() - 1;
+    let first = bounds[1..].partition_point(|&end| end + reach <= node).min(last - 1);
+    first..bounds[..last].partition_point(|&start| start <= node).max(first + 1)
+}
+
+/// Nodes along an axis in the window of a stretch of cells.
+fn window(bounds: &[usize], stretch: usize, (q, beyond): (usize, usize)) -> Range<usize> {
+    let end = (bounds[stretch + 1] + beyond).min(bounds[bounds.len() - 1]);
+    bounds[stretch]..end + q
+}
+
+/// Nodes along an axis that the rank of a stretch of cells owns.
+fn owned(bounds: &[usize], stretch: usize, q: usize) -> Range<usize> {
+    let extra = if stretch + 2 == bounds.len() { q } else { 0 };
+    bounds[stretch]..bounds[stretch + 1] + extra
 }
 
 /// A layer of nodes that two ranks share, as one of them sees it.
@@ -145,6 +244,11 @@ pub struct SharedLayer {
 pub fn intersection(a: &Range<usize>, b: &Range<usize>) -> Range<usize> {
     let start = a.start.max(b.start);
     start..a.end.min(b.end).max(start)
+}
+
+/// The common part of two boxes; one without nodes if there is none.
+pub fn common(a: &NodeBox, b: &NodeBox) -> NodeBox {
+    std::array::from_fn(|axis| intersection(&a[axis], &b[axis]))
 }
 
 /// First column at which each slab can begin if none costs more than `most`; `before` are the costs before each column,
@@ -175,7 +279,7 @@ mod tests {
             for rank in 0..ranks {
                 let (own, window) = (slabs.owned_layers(rank, q), slabs.layers(rank, q));
                 assert!(window.start <= own.start && own.end <= window.end);
-                assert!(slabs.columns(rank).all(|column| slabs.owner(column) == rank));
+                assert!(slabs.columns(rank).all(|column| slabs.owner(&[column]) == rank));
             }
         }
     }
@@ -184,11 +288,11 @@ mod tests {
     fn sharing_is_mutual_also_when_slabs_are_thinner_than_the_order() {
         let slabs = Slabs::cut(&[1.0; 4], 4).unwrap();
         for rank in 0..4 {
-            for (other, layers) in slabs.shared(rank, 3) {
-                assert!(slabs.shared(other, 3).contains(&(rank, layers)));
+            for (other, nodes) in slabs.shared(rank, (3, &(0..5))) {
+                assert!(slabs.shared(other, (3, &(0..5))).contains(&(rank, nodes)));
             }
         }
-        assert_eq!(slabs.shared(0, 3).len(), 3);
+        assert_eq!(slabs.shared(0, (3, &(0..5))).len(), 3);
     }
 
     #[test]
@@ -217,7 +321,49 @@ mod tests {
         let slabs = Slabs::new(vec![0, 2, 3, 5], 3, 0..5).unwrap().reaching(1);
         assert_eq!([0, 1, 2].map(|rank| slabs.layers(rank, 2)), [0..5, 2..6, 3..7]);
         assert_eq!([0, 1, 2].map(|rank| slabs.owned_layers(rank, 2)), [0..2, 2..3, 3..7]);
-        assert_eq!(slabs.shared(0, 2), [(1, 2..5), (2, 3..5)]);
+        assert_eq!(slabs.shared(0, (2, &(0..1))), [(1, [2..5, 0..3]), (2, [3..5, 0..3])]);
+    }
+
+    /// Three slabs of three parts each, of even and of thin ones, none of which lie side by side.
+    fn parted(beyond: usize) -> Slabs {
+        let slabs = Slabs::new(vec![2, 6, 7, 11], 3, 2..11).unwrap().reaching(beyond);
+        slabs.parted(vec![vec![1, 4, 7, 10], vec![1, 2, 3, 10], vec![1, 6, 9, 10]], &(1..10)).unwrap()
+    }
+
+    #[test]
+    fn every_node_and_cell_has_one_owner_whose_window_has_it_and_neighbours_agree_on_what_they_share() {
+        for (q, beyond) in [(1, 0), (2, 0), (2, 3), (3, 1)] {
+            let (slabs, rows) = (parted(beyond), 1..10);
+            let windows: Vec<NodeBox> = (0..9).map(|rank| slabs.nodes(rank, (q, &rows))).collect();
+            let holds = |nodes: &NodeBox, at: [usize; 2]| (0..2).all(|axis| nodes[axis].contains(&at[axis]));
+            for at in (2..11 + q).flat_map(|layer| (1..10 + q).map(move |row| [layer, row])) {
+                let owners: Vec<usize> = (0..9).filter(|&rank| holds(&slabs.owned(rank, (q, &rows)), at)).collect();
+                assert!(owners.len() == 1 && holds(&windows[owners[0]], at), "{at:?}: {owners:?}");
+                let seen: Vec<usize> = (0..9).filter(|&rank| holds(&windows[rank], at)).collect();
+                let touching = slabs.touching(at, q);
+                assert_eq!([touching.start, touching.end - 1], [seen[0], seen[seen.len() - 1]], "{at:?}");
+                if at[0] < 11 && at[1] < 10 {
+                    assert_eq!(slabs.owner(&at), owners[0]);
+                }
+            }
+            for rank in 0..9 {
+                let [columns, rows_of] = slabs.cells(rank, &[2..11, 1..10]);
+                assert!(columns.clone().all(|i| rows_of.clone().all(|j| slabs.owner(&[i, j]) == rank)));
+                for (other, nodes) in slabs.shared(rank, (q, &rows)) {
+                    assert!(slabs.shared(other, (q, &rows)).contains(&(rank, nodes)));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_cut_that_leaves_parts_without_cells_or_rows_without_a_part_is_none() {
+        let slabs = || Slabs::new(vec![0, 3, 5], 2, 0..5).unwrap();
+        assert!(slabs().parted(vec![vec![0, 2, 4], vec![0, 1, 4]], &(0..4)).is_some());
+        for parts in [vec![vec![0, 2, 4]], vec![vec![0, 2, 4], vec![0, 4]], vec![vec![0, 2, 4], vec![0, 0, 4]]] {
+            assert!(slabs().parted(parts, &(0..4)).is_none());
+        }
+        assert!(slabs().parted(vec![vec![0, 2, 4], vec![0, 1, 3]], &(0..4)).is_none());
     }
 
     #[test]

@@ -9,8 +9,8 @@ mod places;
 
 use bsmpm::grid::{Contributions, Grid};
 use bsmpm::nodal::Nodal;
+use bsmpm::parallel::OwnedNodes;
 use places::Places;
-use std::ops::Range;
 
 /// Row of a node that has none.
 const NONE: usize = usize::MAX;
@@ -32,7 +32,7 @@ struct StencilColumns {
     none: Contributions,
     sums: Contributions,
     diagonal: Vec<f64>,
-    owned: Range<usize>, // nodes of this rank
+    owned: OwnedNodes,
 }
 
 /// Global number of every nodal component of a window, `None` where it is no unknown.
@@ -85,9 +85,9 @@ impl<const D: usize, const C: usize> Stencil<D, C> {
     }
 
     /// Zero stencils whose sums do not depend on the cut: the columns of cells add to a row in their order, whichever
-    /// rank has them. An entry is handed over once, by the owner of the lower one of its two nodes, whose window holds
-    /// both. `owned` nodes of the window are this rank's. Takes q + 1 times the memory.
-    pub fn by_columns(self, grid: &Grid<D>, owned: Range<usize>) -> Self {
+    /// rank has them. An entry is handed over once, by the owner of the lowest node of the box around its two, whose
+    /// window holds both. Takes q + 1 times the memory.
+    pub fn by_columns(self, grid: &Grid<D>, owned: OwnedNodes) -> Self {
         let stencil = self;
         let none = Contributions::none(grid, stencil.width(), Vec::new());
         let (sums, diagonal) = (none.clone(), vec![0.0; grid.nodes() * C]);
@@ -241,7 +241,9 @@ impl<const D: usize, const C: usize> Stencil<D, C> {
 
     /// Visits every entry with its global row and column and its place in `values`.
     fn walk(&self, numbers: &Numbering, free: &[bool], mut visit: impl FnMut(usize, usize, usize)) {
-        let handed = |a: usize, b: usize| self.columns.as_ref().is_none_or(|columns| columns.owned.contains(&a.min(b)));
+        let handed = |a: usize, b: usize| {
+            self.columns.as_ref().is_none_or(|columns| columns.owned.contains(self.places.lowest(a, b)))
+        };
         for (component, row) in numbers.iter().enumerate() {
             let Some(row) = row else { continue };
             let (node, i) = Nodal::<C>::split(component);
@@ -269,6 +271,7 @@ impl<const D: usize, const C: usize> Stencil<D, C> {
 mod tests {
     use super::*;
     use bsmpm::grid::KnotVector;
+    use std::ops::Range;
 
     fn grid() -> Grid<2> {
         Grid::new([KnotVector::uniform(1.0, 4, 2).unwrap(), KnotVector::uniform(1.0, 3, 2).unwrap()]).unwrap()
@@ -341,7 +344,7 @@ mod tests {
         let (grid, cut) = (grid(), 2);
         let stencil = |columns: Range<usize>| {
             let window = grid.window(columns.clone());
-            let mut stencil = Stencil::<2, 2>::new(&window).by_columns(&window, 0..window.nodes());
+            let mut stencil = Stencil::<2, 2>::new(&window).by_columns(&window, OwnedNodes::first(window.nodes()));
             for cell in 0..window.cells() {
                 let cell = window.cell_at(cell);
                 let value = |entry: usize| 1.0 / (entry + 7 * cell[0] + 3 * cell[1] + 1) as f64;
@@ -365,6 +368,28 @@ mod tests {
             }
             assert_eq!(sum, whole.values[number * layer..(number + 1) * layer], "layer {number}");
         }
+    }
+
+    /// However the grid is cut into boxes, every coordinate of the whole is handed over by one of them.
+    #[test]
+    fn every_entry_is_handed_over_once() {
+        let grid = grid();
+        let handed = |cells: [Range<usize>; 2], owned: [usize; 2]| {
+            let window = grid.window_of(cells);
+            let owned = OwnedNodes::new(owned[0], window.layer_nodes(), owned[1]);
+            let stencil = Stencil::<2, 1>::new(&window).by_columns(&window, owned);
+            let numbers: Numbering = (0..window.nodes()).map(|node| Some(window.number_of(node))).collect();
+            let Coordinates { rows, columns } = stencil.coordinates(&numbers, &vec![true; window.nodes()]);
+            rows.into_iter().zip(columns).collect::<Vec<_>>()
+        };
+        let mut whole = handed([0..4, 0..3], [6, 5]);
+        let mut parts = handed([0..3, 0..2], [3, 2]);
+        parts.extend(handed([0..3, 2..3], [3, 3]));
+        parts.extend(handed([3..4, 0..1], [3, 1]));
+        parts.extend(handed([3..4, 1..3], [3, 4]));
+        whole.sort_unstable();
+        parts.sort_unstable();
+        assert_eq!(whole, parts);
     }
 
     #[test]

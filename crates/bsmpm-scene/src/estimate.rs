@@ -175,13 +175,13 @@ impl Case {
         background.max(self.stabilisation.beyond(self.grid.order))
     }
 
-    /// Knot spans along each axis for which a run holds nodes at the start, see [`bsmpm::grid::room`]: at least so many
-    /// `columns`.
-    pub fn room(&self, columns: usize) -> Vec<Range<usize>> {
-        if self.grid.dims() == 3 { self.room_in::<3>(columns) } else { self.room_in::<2>(columns) }
+    /// Knot spans along each axis for which a run holds nodes at the start, see [`bsmpm::grid::room`]: at `least` so
+    /// many columns, and rows in them.
+    pub fn room(&self, least: [usize; 2]) -> Vec<Range<usize>> {
+        if self.grid.dims() == 3 { self.room_in::<3>(least) } else { self.room_in::<2>(least) }
     }
 
-    fn room_in<const D: usize>(&self, columns: usize) -> Vec<Range<usize>> {
+    fn room_in<const D: usize>(&self, least: [usize; 2]) -> Vec<Range<usize>> {
         let around = |a: [Range<usize>; D], b: [Range<usize>; D]| {
             std::array::from_fn(|axis| a[axis].start.min(b[axis].start)..a[axis].end.max(b[axis].end))
         };
@@ -192,7 +192,7 @@ impl Case {
         };
         let occupied = self.bodies.iter().map(spans).reduce(around);
         let occupied = occupied.unwrap_or_else(|| cells.map(|cells| 0..cells));
-        room::around(&occupied, cells, (self.grid.order, self.beyond()), columns).to_vec()
+        room::around(&occupied, cells, (self.grid.order, self.beyond()), least).to_vec()
     }
 
     /// Pore pressures that the bodies' cells touch at the start, and entries of their matrix; `None` where no water
@@ -271,7 +271,7 @@ fn places(case: &Case) -> u128 {
 
 /// Nodes of the room that the bodies have at the start.
 fn room_nodes(case: &Case) -> u128 {
-    case.room(1).iter().map(|cells| (cells.len() + case.grid.order) as u128).product()
+    case.room([1; 2]).iter().map(|cells| (cells.len() + case.grid.order) as u128).product()
 }
 
 /// Functions of an order that the bodies' cells touch at the start: exact for boxes, and for shapes without holes or

@@ -13,6 +13,7 @@
 #[macro_use]
 pub mod words;
 pub mod model;
+mod parting;
 pub mod schema;
 pub mod surfaces;
 pub mod unit;

@@ -174,10 +174,21 @@ pub fn penalty(case: &Case) -> f64 {
     surfaces::penalty(stiffest, case.grid.axes.iter().map(GridAxis::shortest).fold(f64::INFINITY, f64::min))
 }
 
-/// The points of the columns of one slab at the start, by the numbers of the physics' grid.
-pub fn points<K: Kinematics<D>, const D: usize>(case: &Case, columns: std::ops::Range<usize>) -> Points<D> {
-    let there = |body| case.is_there(body, 0.0);
-    let seeds = seed_bodies::<K, D>(case, case.grid.cells_in(0, &columns), there);
+/// What bodies have at the start in the columns of one slab, by the numbers of the physics' grid.
+pub fn seeds<K: Kinematics<D>, const D: usize>(
+    case: &Case,
+    columns: std::ops::Range<usize>,
+) -> impl Iterator<Item = Seed<D>> + '_ {
+    seed_bodies::<K, D>(case, case.grid.cells_in(0, &columns), |body| case.is_there(body, 0.0))
+}
+
+/// The points of the columns of one slab at the start, of those places in it that are `wanted`.
+pub fn points<K: Kinematics<D>, const D: usize>(
+    case: &Case,
+    columns: std::ops::Range<usize>,
+    wanted: impl Fn(&Vector<D>) -> bool,
+) -> Points<D> {
+    let seeds = seeds::<K, D>(case, columns).filter(|seed| wanted(&seed.x));
     let points = Points::from_seeds(seeds, case.analysis.regime == Regime::Dynamic);
     let mut points = points.with_state(state_width(case.materials.iter().map(|named| &named.material)));
     if case.carries_pressure() {

@@ -136,7 +136,7 @@ fn knots_may_be_repeated_by_hand() {
     let model = model::model::<PlaneStrain, 2>(&case).unwrap();
     assert_eq!(model.grid.axes().each_ref().map(|axis| axis.functions()), [4 + 1 + 2, 6 + 1 + 2]);
     // The points of a slab are those of its cells with a length: columns 1 and 3 of 5 hold none and a cell's.
-    let count = |columns| model::points::<PlaneStrain, 2>(&case, columns).len();
+    let count = |columns| model::points::<PlaneStrain, 2>(&case, columns, |_| true).len();
     assert_eq!([count(0..1), count(1..2), count(2..3), count(0..5)], [16, 0, 16, 64]);
     assert_eq!(case.points_by_column(), [16, 0, 16, 16, 16]);
 }

@@ -85,10 +85,8 @@ pub fn run(arguments: &EstimateArguments, mut told: impl FnMut(&str)) -> Result<
     let case = case::parsed(&arguments.case, &case::load(&arguments.case)?, &arguments.set)?;
     let actual = arguments.against.as_deref().map(against::read).transpose()?;
     let ranks = arguments.ranks.or(actual.as_ref().map(|actual| actual.ranks)).unwrap_or(1) as usize;
-    let most = case.grid.axes[0].cells();
-    if ranks > most {
-        let reason = format!("{ranks} ranks: the grid has {most} columns of cells, so at most {most} ranks");
-        return Err(Error::Usage { reason });
+    if case.parts(ranks, [1; 2]).is_none() {
+        return Err(Error::Usage { reason: case.too_many(ranks) });
     }
     let speed = kernel::speed();
     let guess = stored::guess(&case, speed);

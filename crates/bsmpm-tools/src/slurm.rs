@@ -80,13 +80,9 @@ pub fn run(arguments: &SlurmArguments, mut told: impl FnMut(&str)) -> Result<Opt
 
 /// What is to be said of more ranks than the case has use for.
 fn doubt(case: &Case, ranks: u64) -> Option<String> {
-    let most = case.grid.axes[0].cells() as u64;
-    let useful = case.estimate().useful_ranks;
-    if ranks > most {
-        return Some(format!(
-            "{ranks} ranks are too many: the grid has {most} columns of cells, so at most {most} ranks; the run would be \
-             refused with {CASE}"
-        ));
+    let (count, useful) = (ranks as usize, case.estimate().useful_ranks);
+    if case.parts(count, [1; 2]).is_none() {
+        return Some(format!("{}; the run would be refused with {CASE}", case.too_many(count)));
     }
     (ranks > useful).then(|| {
         format!("{ranks} ranks are more than the about {useful} that the case has use for: the others would wait for each other")

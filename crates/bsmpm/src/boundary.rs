@@ -164,8 +164,7 @@ impl<const D: usize> Boundary<D> {
         let mut sum = |(support, sum): (&Support<D>, &mut [Exact]), acts: &dyn Fn(usize) -> bool| {
             for node in grid.face_nodes(support.axis, support.upper) {
                 for component in (0..D).filter(|&component| acts(component)) {
-                    if !std::mem::replace(&mut counted[Nodal::<D>::at(node, component)], true) && owned.contains(&node)
-                    {
+                    if !std::mem::replace(&mut counted[Nodal::<D>::at(node, component)], true) && owned.contains(node) {
                         sum[component].add(reaction[Nodal::<D>::at(node, component)]);
                     }
                 }

@@ -178,7 +178,7 @@ fn advance<K: Kinematics<D>, const D: usize>(
     let found = solve::find(&problem, &guess, &mut solver, &mut Counts::default())?;
     commit::check_inside(alone, &shape, &column, &found.u, &tied)?;
     let force = force(&problem, &found.trial, face)?;
-    let layer = Nodal::<D>::all(&tied.owned());
+    let layer = tied.owned().places::<D>();
     let velocity_of = |c: usize| nodes.inertia.as_ref().map_or(0.0, |inertia| inertia.velocity(c, found.u[c]));
     let velocity: Vec<f64> = layer.map(velocity_of).collect();
     let velocity = velocity.chunks_exact(D).map(Vector::from_column_slice).collect();
@@ -211,5 +211,5 @@ fn force<K: Kinematics<D>, const D: usize>(
     };
     let fluxes: Vec<[f64; D]> = (0..points.len()).map(flux).collect::<Result<_, StepError>>()?;
     let nodal = halo.sum(&transfer::to_nodes::<D, D>(shape, |p| fluxes[p]));
-    Ok(nodal[Nodal::<D>::all(&halo.owned())].chunks_exact(D).map(Vector::from_column_slice).collect())
+    Ok(halo.owned().nodes().map(|node| Vector::from_column_slice(&nodal[Nodal::<D>::of(node)])).collect())
 }

@@ -1,4 +1,4 @@
-//! The parametric grid and its tensor-product nodes (section 2.1), seen through the window of one slab.
+//! The parametric grid and its tensor-product nodes (section 2.1), seen through the window of one rank.
 //!
 //! Positions are relative to the grid's lower corner: at 1e6 m an increment of 1e-9 m would lose 5 % of itself.
 
@@ -28,7 +28,7 @@ pub trait Located<const D: usize> {
 }
 
 /// A tensor product of open knot vectors, of which the ranks together see the cells of a [`room`] around the points,
-/// and this rank those of some columns of it.
+/// and this rank those of a box in it.
 ///
 /// Axis 0 is the slowest in every numbering, so that the nodes of a slab of columns are one contiguous block.
 /// Node and cell indices are local to the window unless said otherwise.
@@ -36,7 +36,7 @@ pub trait Located<const D: usize> {
 pub struct Grid<const D: usize> {
     axes: [KnotVector; D],
     room: [Range<usize>; D],
-    columns: Range<usize>,
+    window: [Range<usize>; D],
     beyond: usize, // further layers of nodes in a window
 }
 
@@ -48,7 +48,7 @@ impl<const D: usize> Grid<D> {
             return Err(GridError::MixedOrders);
         }
         let room = axes.each_ref().map(|axis| 0..axis.cells());
-        Ok(Self { columns: room[0].clone(), axes, room, beyond: 0 })
+        Ok(Self { window: room.clone(), axes, room, beyond: 0 })
     }
 
     /// The same grid, whose windows hold `beyond` layers of nodes past those that their cells touch, as far as there
@@ -66,13 +66,22 @@ impl<const D: usize> Grid<D> {
     /// the window is all of it.
     pub fn within(&self, room: [Range<usize>; D]) -> Self {
         debug_assert!((0..D).all(|axis| !room[axis].is_empty() && room[axis].end <= self.axes[axis].cells()));
-        Self { axes: self.axes.clone(), columns: room[0].clone(), room, beyond: self.beyond }
+        Self { axes: self.axes.clone(), window: room.clone(), room, beyond: self.beyond }
     }
 
     /// The same grid seen through the cells `columns` along axis 0.
     pub fn window(&self, columns: Range<usize>) -> Self {
-        debug_assert!(!columns.is_empty() && self.room[0].start <= columns.start && columns.end <= self.room[0].end);
-        Self { columns, ..self.clone() }
+        let mut window = self.room.clone();
+        window[0] = columns;
+        self.window_of(window)
+    }
+
+    /// The same grid seen through the cells of a box.
+    pub fn window_of(&self, window: [Range<usize>; D]) -> Self {
+        let inside =
+            |axis: usize| self.room[axis].start <= window[axis].start && window[axis].end <= self.room[axis].end;
+        debug_assert!((0..D).all(|axis| !window[axis].is_empty() && inside(axis)));
+        Self { window, ..self.clone() }
     }
 
     /// Knot vectors, one per axis.
@@ -85,9 +94,19 @@ impl<const D: usize> Grid<D> {
         &self.room
     }
 
+    /// The window: cells along each axis.
+    pub fn cells_along(&self) -> &[Range<usize>; D] {
+        &self.window
+    }
+
     /// The window: cells along axis 0.
     pub fn columns(&self) -> Range<usize> {
-        self.columns.clone()
+        self.window[0].clone()
+    }
+
+    /// Whether windows end along axis 1, too: on one rank they do if they do on any.
+    pub fn is_parted(&self) -> bool {
+        D > 1 && self.window[1] != self.room[1]
     }
 
     /// Polynomial order q.
@@ -98,13 +117,15 @@ impl<const D: usize> Grid<D> {
     /// Layers of nodes along axis 0 that the window holds: those that its cells touch, of which the last q are shared
     /// with the next slab, and those beyond.
     pub fn layers(&self) -> Range<usize> {
-        let end = (self.columns.end + self.beyond).min(self.room[0].end);
-        self.columns.start..end + self.order()
+        let start = self.window[0].start;
+        start..start + self.nodes_along(0)
     }
 
     /// Nodes of the window along an axis.
+    #[inline]
     pub fn nodes_along(&self, axis: usize) -> usize {
-        if axis == 0 { self.layers().len() } else { self.room[axis].len() + self.order() }
+        let end = (self.window[axis].end + self.beyond).min(self.room[axis].end);
+        end - self.window[axis].start + self.order()
     }
 
     /// Layers of nodes that a column of cells contributes to: those that it touches, and those beyond.
@@ -119,7 +140,7 @@ impl<const D: usize> Grid<D> {
 
     /// Cells of one column across axis 0.
     pub fn column_cells(&self) -> usize {
-        self.room[1..].iter().map(Range::len).product()
+        self.window[1..].iter().map(Range::len).product()
     }
 
     /// Nodes in the window.
@@ -129,7 +150,7 @@ impl<const D: usize> Grid<D> {
 
     /// Cells in the window.
     pub fn cells(&self) -> usize {
-        self.columns.len() * self.column_cells()
+        self.window[0].len() * self.column_cells()
     }
 
     /// Functions that are non-zero in a cell: (q + 1)^D.
@@ -149,31 +170,31 @@ impl<const D: usize> Grid<D> {
     /// Whether a cell (global, along each axis) lies in the window.
     #[inline]
     pub fn holds(&self, cell: &[usize; D]) -> bool {
-        self.columns.contains(&cell[0]) && (1..D).all(|axis| self.room[axis].contains(&cell[axis]))
+        (0..D).all(|axis| self.window[axis].contains(&cell[axis]))
     }
 
     /// Local index of a cell given along each axis, which must lie in the window.
     #[inline]
     pub fn cell_index(&self, cell: &[usize; D]) -> usize {
-        let start = cell[0] - self.columns.start;
-        (1..D).fold(start, |index, axis| index * self.room[axis].len() + cell[axis] - self.room[axis].start)
+        let start = cell[0] - self.window[0].start;
+        (1..D).fold(start, |index, axis| index * self.window[axis].len() + cell[axis] - self.window[axis].start)
     }
 
     /// Cell along each axis (global) of a local index.
     pub fn cell_at(&self, mut index: usize) -> [usize; D] {
         let mut cell = [0; D];
         for axis in (1..D).rev() {
-            cell[axis] = self.room[axis].start + index % self.room[axis].len();
-            index /= self.room[axis].len();
+            cell[axis] = self.window[axis].start + index % self.window[axis].len();
+            index /= self.window[axis].len();
         }
-        cell[0] = index + self.columns.start;
+        cell[0] = index + self.window[0].start;
         cell
     }
 
     /// Local index of the first of a cell's (q+1)^D nodes; the others stand at [`Grid::offsets`] from it.
     pub fn first_node(&self, cell: &[usize; D]) -> usize {
-        let start = cell[0] - self.columns.start;
-        (1..D).fold(start, |index, axis| index * self.nodes_along(axis) + cell[axis] - self.room[axis].start)
+        let start = cell[0] - self.window[0].start;
+        (1..D).fold(start, |index, axis| index * self.nodes_along(axis) + cell[axis] - self.window[axis].start)
     }
 
     /// Offsets of a cell's nodes from its first one, axis 0 slowest: the paper's p2N, which is the same for all cells.
@@ -210,10 +231,10 @@ impl<const D: usize> Grid<D> {
     pub fn node_at(&self, mut index: usize) -> [usize; D] {
         let mut node = [0; D];
         for axis in (1..D).rev() {
-            node[axis] = self.room[axis].start + index % self.nodes_along(axis);
+            node[axis] = self.window[axis].start + index % self.nodes_along(axis);
             index /= self.nodes_along(axis);
         }
-        node[0] = index + self.columns.start;
+        node[0] = index + self.window[0].start;
         node
     }
 
@@ -224,6 +245,23 @@ impl<const D: usize> Grid<D> {
             let along = node[axis].checked_sub(first[axis]).filter(|&along| along < self.nodes_along(axis))?;
             Some(index * self.nodes_along(axis) + along)
         })
+    }
+
+    /// Local nodes of the window within a box of nodes (global) along the first two axes: as few ranges as there can be.
+    pub fn nodes_within(&self, [layers, rows]: &[Range<usize>; 2]) -> Vec<Range<usize>> {
+        let (layer, row) = (self.layer_nodes(), self.layer_nodes() / self.nodes_along(1));
+        let (first, start) = (self.window[0].start, self.window[1].start);
+        if layers.is_empty() || rows.is_empty() {
+            return Vec::new();
+        }
+        // Whole layers are one range.
+        let (runs, run) = if rows.len() == self.nodes_along(1) {
+            (1, layers.len() * layer)
+        } else {
+            (layers.len(), rows.len() * row)
+        };
+        let at = |along: usize| (layers.start + along - first) * layer + (rows.start - start) * row;
+        (0..runs).map(|along| at(along)..at(along) + run).collect()
     }
 
     /// Number of a node (local) among those of the whole grid.

@@ -5,14 +5,57 @@
 use crate::error::SolveError;
 use crate::exact::Exact;
 use crate::grid::Contributions;
+use crate::nodal::Nodal;
 use std::ops::Range;
 
-/// Exchange of nodal contributions between slabs, and reductions over all ranks.
+/// The nodes of a window that are its rank's own: as many at the start of each of its first layers. All of a layer where
+/// ranks have slabs, a part of it where slabs are cut once more.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct OwnedNodes {
+    layers: usize,
+    layer: usize, // nodes of the window's
+    run: usize,   // own ones of it
+}
+
+impl OwnedNodes {
+    /// The first `run` nodes of each of so many layers of `layer` nodes.
+    pub fn new(layers: usize, layer: usize, run: usize) -> Self {
+        debug_assert!(run <= layer);
+        Self { layers, layer, run }
+    }
+
+    /// The first so many nodes, in one layer.
+    pub fn first(nodes: usize) -> Self {
+        Self::new(1, nodes, nodes)
+    }
+
+    /// Those of each layer, ascending.
+    pub fn runs(self) -> impl Iterator<Item = Range<usize>> + Clone {
+        (0..self.layers).map(move |layer| layer * self.layer..layer * self.layer + self.run)
+    }
+
+    /// Them all, ascending.
+    pub fn nodes(self) -> impl Iterator<Item = usize> + Clone {
+        self.runs().flatten()
+    }
+
+    /// Places of all their numbers in an array of `C` a node, ascending.
+    pub fn places<const C: usize>(self) -> impl Iterator<Item = usize> + Clone {
+        self.runs().flat_map(|run| Nodal::<C>::all(&run))
+    }
+
+    /// Whether a node of the window is one of them.
+    #[inline]
+    pub fn contains(self, node: usize) -> bool {
+        node < self.layers * self.layer && (self.run == self.layer || node % self.layer < self.run)
+    }
+}
+
+/// Exchange of nodal contributions between neighbours, and reductions over all ranks.
 pub trait Halo {
-    /// Local nodes that this rank owns: every node of the grid has exactly one owner.
-    fn owned(&self) -> Range<usize>;
-    /// Nodes of a layer: every rank owns whole layers, whose sums do not depend on the cut.
-    fn layer_nodes(&self) -> usize;
+    /// Local nodes that this rank owns: every node of the grid has exactly one owner. Sums over the layers of slabs do
+    /// not depend on the cut.
+    fn owned(&self) -> OwnedNodes;
     /// Nodal sums of what the columns of all ranks contribute, right at ghost nodes too: the same bits on any number of
     /// ranks.
     fn sum(&self, contributions: &Contributions) -> Vec<f64>;
@@ -46,9 +89,7 @@ pub fn dots(halo: &dyn Halo, width: usize, pairs: &[(&[f64], &[f64])]) -> Vec<f6
 
 /// Sum over the components of this rank's own nodes, `width` a node: plainly within a layer, exactly over the layers.
 pub fn over_layers(halo: &dyn Halo, width: usize, term: impl Fn(usize) -> f64) -> Exact {
-    let (owned, layer) = (halo.owned(), halo.layer_nodes() * width);
-    let layers = (owned.start * width..owned.end * width).step_by(layer.max(1));
-    layers.map(|first| (first..first + layer).map(&term).sum::<f64>()).collect()
+    halo.owned().runs().map(|run| (run.start * width..run.end * width).map(&term).sum::<f64>()).collect()
 }
 
 /// The outcome of this rank, or `other` where only another rank failed: nobody goes on while another has returned.
@@ -140,11 +181,8 @@ pub struct Alone {
 }
 
 impl Halo for Alone {
-    fn owned(&self) -> Range<usize> {
-        0..self.nodes
-    }
-    fn layer_nodes(&self) -> usize {
-        self.nodes
+    fn owned(&self) -> OwnedNodes {
+        OwnedNodes::first(self.nodes)
     }
     fn sum(&self, contributions: &Contributions) -> Vec<f64> {
         contributions.alone()

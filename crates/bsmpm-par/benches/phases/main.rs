@@ -60,8 +60,11 @@ fn state(universe: &Universe, path: &Path, model: &mut Model<PlaneStrain, 2>) ->
     opened.points(points.named_columns()).map_err(refused)?;
     let state = opened.state().and_then(|text| checkpoint::CheckpointState::parse(path, &text)).map_err(refused)?;
     model.grid = state.within(&model.grid).ok_or("the checkpoint is of another grid")?;
-    let layers = model.grid.layers();
-    let guess = opened.guess(&layers, &layers, model.grid.layer_nodes() * 2).map_err(refused)?;
+    if !state.parts.is_empty() {
+        return Err("the checkpoint is of slabs that are cut into parts".into());
+    }
+    let layers = model.grid.layers().len();
+    let guess = opened.guess((layers, model.grid.layer_nodes() * 2), 0..layers).map_err(refused)?;
     opened.close().map_err(refused)?;
     points.surface = model.boundary.surface();
     points.sort_by_cell(&model.grid);

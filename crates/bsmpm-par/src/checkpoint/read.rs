@@ -5,7 +5,6 @@ use super::{GUESS, STATE, form, named};
 use bsmpm::points::Column;
 use bsmpm_io::checkpoint::{self, CheckpointRecord, FoundCheckpoint};
 use bsmpm_io::exit;
-use bsmpm_ranks::slab::intersection;
 use hdf5_collective::{Hdf5, Reader, Shape};
 use mpi::topology::{Communicator, SimpleCommunicator};
 use std::ffi::OsString;
@@ -112,23 +111,16 @@ impl<'h> Opened<'h> {
         Ok(())
     }
 
-    /// The nodal displacement from which the next step starts, at the nodes of some layers, `width` numbers a layer;
-    /// the file has the layers `held`, others are zero. Collective.
+    /// Some `rows` of the nodal displacement from which the next step starts, which has as many as are given, `width`
+    /// numbers each. Collective.
     ///
     /// # Errors
-    /// The same on all ranks (76): it is not there, is of other layers, or cannot be read.
-    pub fn guess(&self, held: &Range<usize>, layers: &Range<usize>, width: usize) -> Result<Vec<f64>, Refusal> {
-        let own = Some(intersection(held, layers)).filter(|own| !own.is_empty()).unwrap_or(held.start..held.start);
-        let of_room = Shape { number: hdf5_collective::Number::F64, rows: held.len() as u64, width: width as u64 };
-        let shape = self.shape(GUESS, |_| of_room)?;
-        let rows = (own.start - held.start) as u64..(own.end - held.start) as u64;
-        let bytes = self.read(self.reader.range(GUESS, shape, rows))?;
-        let mut guess = vec![0.0; layers.len() * width];
-        let places = guess.iter_mut().skip(own.start.saturating_sub(layers.start) * width);
-        for (value, bytes) in places.zip(bytes.chunks_exact(8)) {
-            *value = f64::from_le_bytes(bytes.try_into().unwrap_or_default());
-        }
-        Ok(guess)
+    /// The same on all ranks (76): it is not there, is of other nodes, or cannot be read.
+    pub fn guess(&self, (count, width): (usize, usize), rows: Range<usize>) -> Result<Vec<f64>, Refusal> {
+        let held = Shape { number: hdf5_collective::Number::F64, rows: count as u64, width: width as u64 };
+        let shape = self.shape(GUESS, |_| held)?;
+        let bytes = self.read(self.reader.range(GUESS, shape, rows.start as u64..rows.end as u64))?;
+        Ok(bytes.chunks_exact(8).map(|bytes| f64::from_le_bytes(bytes.try_into().unwrap_or_default())).collect())
     }
 
     /// Closes the file. Collective.

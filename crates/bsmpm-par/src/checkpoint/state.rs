@@ -31,6 +31,9 @@ pub struct CheckpointState {
     pub steps: u64,
     /// Where the slabs begin, and where the columns of the grid's room end.
     pub slabs: Vec<usize>,
+    /// Where the parts of each slab begin along y, and where the rows of the room end; none where a slab is one rank's.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub parts: Vec<Vec<usize>>,
     /// The room, cells from and to along each axis; none of a run by a version that kept the whole grid, which then
     /// stays.
     #[serde(default)]

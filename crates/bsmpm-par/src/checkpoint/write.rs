@@ -9,6 +9,7 @@ use bsmpm_io::exit;
 use hdf5_collective::{Hdf5, Shape, Writer};
 use mpi::collective::{CommunicatorCollectives, SystemOperation};
 use mpi::topology::{Communicator, SimpleCommunicator};
+use std::borrow::Cow;
 use std::ffi::OsStr;
 use std::os::unix::ffi::OsStrExt;
 use std::path::{Path, PathBuf};
@@ -17,8 +18,9 @@ use std::path::{Path, PathBuf};
 pub struct Contents<'a> {
     /// The columns by name, all with as many rows as this rank has points.
     pub columns: Vec<(&'static str, &'a mut dyn Column)>,
-    /// The nodal displacement of the layers that this rank owns, m, and how many numbers a layer has.
-    pub guess: (&'a [f64], usize),
+    /// The displacement of the nodes that this rank owns, m, layer by layer, or row by row where slabs have parts; and
+    /// how many numbers one has.
+    pub guess: (Cow<'a, [f64]>, usize),
     /// Everything else.
     pub state: &'a [u8],
 }
@@ -83,7 +85,7 @@ pub(crate) fn room(world: &SimpleCommunicator, contents: &Contents<'_>) -> u64 {
 /// The arrays of all ranks. Collective.
 fn shapes(world: &SimpleCommunicator, contents: &Contents<'_>) -> Vec<(&'static str, Shape)> {
     let mut own: Vec<u64> = contents.columns.iter().map(|(_, column)| column.rows() as u64).collect();
-    let (guess, width) = contents.guess;
+    let (guess, width) = (&contents.guess.0, contents.guess.1);
     own.push((guess.len() / width) as u64);
     let mut all = vec![0; own.len()];
     world.all_reduce_into(&own[..], &mut all[..], SystemOperation::sum());
@@ -172,7 +174,7 @@ impl Fill<'_> {
             }
             writer.write(name, form(&**column), &rows(&**column))?;
         }
-        let (guess, width) = contents.guess;
+        let (guess, width) = (&contents.guess.0, contents.guess.1);
         let bytes: Vec<u8> = guess.iter().flat_map(|value| value.to_le_bytes()).collect();
         writer.write(GUESS, (hdf5_collective::Number::F64, width as u64), &bytes)?;
         let text = if self.world.rank() == 0 { contents.state } else { &[] };

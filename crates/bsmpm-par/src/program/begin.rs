@@ -10,20 +10,25 @@ use crate::restart::{self, Resumed, RunStart};
 use crate::run::{Before, Run, Task};
 use crate::setup::Cut;
 use crate::space;
+use bsmpm::grid::Grid;
 use bsmpm::kinematics::{Axisymmetric, Kinematics, PlaneStrain, Solid};
+use bsmpm::tensor::Vector;
 use bsmpm_io::directory::OutputDirectory;
 use bsmpm_io::exit;
 use bsmpm_io::lock::Unseen;
 use bsmpm_io::table::TableColumn;
 use bsmpm_ranks::linear::Choice;
+use bsmpm_ranks::load::{self, Rows};
 use bsmpm_ranks::signals::Requests;
 use bsmpm_ranks::simulation::Simulation;
+use bsmpm_ranks::slab::Slabs;
 use bsmpm_ranks::timers::Timers;
 use bsmpm_scene::Geometry;
-use bsmpm_scene::model::{model_at, points, schedule};
+use bsmpm_scene::model::{model_at, points, schedule, seeds};
 use hdf5_collective::Hdf5;
+use mpi::collective::{CommunicatorCollectives, SystemOperation};
 use mpi::environment::Universe;
-use mpi::topology::Communicator;
+use mpi::topology::{Communicator, SimpleCommunicator};
 use petsc_rs::Petsc;
 use std::path::Path;
 use std::rc::Rc;
@@ -91,7 +96,7 @@ type Scene<'p, K, const D: usize> = (Simulation<'p, K, D>, Recorder<D>);
 fn scene<'p, K: Kinematics<D>, const D: usize>(
     seam: (&'p Universe, &'p Petsc<'p>, Choice),
     case: &bsmpm_scene::Case,
-    (room, slabs): Cut,
+    (room, slabs, parts): Cut,
     start: &RunStart<'_>,
     shared: (Rc<Timers>, Rc<Requests>),
 ) -> Result<Scene<'p, K, D>, Refusal> {
@@ -109,10 +114,35 @@ fn scene<'p, K: Kinematics<D>, const D: usize>(
         return Ok((simulation, recorder.ok_or_else(foreign)?));
     }
     model.grid = model.grid.within(std::array::from_fn(|axis| room[axis].clone()));
-    let points = points::<K, D>(case, slabs.columns(universe.world().rank().unsigned_abs() as usize));
+    let world = universe.world();
+    let rank = world.rank().unsigned_abs() as usize;
+    let slabs = parted::<K, D>((&world, rank), case, &model.grid, (slabs.reaching(model.grid.beyond()), parts));
+    let slabs = slabs.ok_or_else(|| Refusal::new(exit::CASE, case.too_many(world.size().unsigned_abs() as usize)))?;
+    let is_ours = |x: &Vector<D>| model.grid.locate(x).is_none_or(|cell| slabs.owner(&cell) == rank);
+    let points = points::<K, D>(case, slabs.columns(rank), is_ours);
     let simulation = Simulation::new(seam, model, (slabs, points), schedule, shared);
     let recorder = Recorder::new(case, &simulation.points, &*simulation.halo);
     Ok((simulation, recorder))
+}
+
+/// The slabs cut into their parts, by the points that they get: each of their ranks counts those of some columns.
+/// Collective.
+fn parted<K: Kinematics<D>, const D: usize>(
+    (world, rank): (&SimpleCommunicator, usize),
+    case: &bsmpm_scene::Case,
+    grid: &Grid<D>,
+    (slabs, parts): (Slabs, usize),
+) -> Option<Slabs> {
+    if parts == 1 {
+        return Some(slabs);
+    }
+    let (columns, part) = (slabs.columns(rank / parts), rank % parts);
+    let share = |part: usize| columns.start + columns.len() * part / parts;
+    let mut rows = Rows::none(grid, &slabs);
+    seeds::<K, D>(case, share(part)..share(part + 1)).for_each(|seed| rows.count(&seed.x));
+    let mut counts = vec![0.0; rows.counts.len()];
+    world.all_reduce_into(&rows.counts[..], &mut counts[..], SystemOperation::sum());
+    load::parted(grid, slabs, &counts, parts)
 }
 
 /// What there was before.

@@ -138,6 +138,7 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         let state = CheckpointState {
             steps: step,
             slabs: simulation.slabs().bounds().to_vec(),
+            parts: simulation.slabs().parts().to_vec(),
             lines: self
                 .case
                 .grid

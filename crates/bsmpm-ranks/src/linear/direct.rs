@@ -10,7 +10,6 @@ use bsmpm::error::SolveError;
 use bsmpm::grid::Grid;
 use bsmpm::nodal::Nodal;
 use bsmpm::parallel::{Halo, agreed, over_layers};
-use mpi::collective::CommunicatorCollectives;
 use mpi::topology::Communicator;
 use petsc_rs::{PcFailure, ShellPc};
 
@@ -117,13 +116,10 @@ pub(super) struct DissectionPc<'a, const D: usize, const C: usize> {
 impl<const D: usize, const C: usize> DissectionPc<'_, D, C> {
     fn factorise(&mut self, precision: Precision) -> Result<(), SolveError> {
         let StiffnessOperator { halo, grid, stencil, free, timers, .. } = self.matrix;
-        let (world, link, _timed) = (halo.world(), halo.link(), timers.time("factorisation"));
+        let (link, _timed) = (halo.link(), timers.time("factorisation"));
         if !self.factor.is_planned {
-            let mut bounds = vec![0; world.size().unsigned_abs() as usize];
-            world.all_gather_into(&grid.columns().start, &mut bounds[..]);
-            bounds.push(grid.room()[0].end);
-            let rank = world.rank().unsigned_abs() as usize;
-            self.factor.dissection.plan::<D, C>(&link, (&bounds, rank), grid, free);
+            let rank = halo.world().rank().unsigned_abs() as usize;
+            self.factor.dissection.plan::<D, C>(&link, (halo.slabs(), rank), grid, free);
             self.factor.is_planned = true;
         }
         let mut largest = [stencil.largest_diagonal()];
@@ -163,7 +159,8 @@ impl<const D: usize, const C: usize> DissectionPc<'_, D, C> {
         let _timed = self.matrix.timers.time("linear solve");
         let owned = self.matrix.halo.owned();
         let Factor { dissection, rhs, solution, .. } = &mut *self.factor;
-        dissection.solve(&self.matrix.halo.link(), Nodal::<C>::all(&owned), rhs, solution);
+        let own = |component: usize| owned.contains(Nodal::<C>::node(component));
+        dissection.solve(&self.matrix.halo.link(), own, rhs, solution);
     }
 
     /// Tells KSP of a failure, and the caller why.

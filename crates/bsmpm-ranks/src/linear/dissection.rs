@@ -1,9 +1,9 @@
-//! A direct solver for symmetric positive definite systems on slabs: nested dissection of the grid, dense fronts.
+//! A direct solver for symmetric positive definite systems on boxes of a grid: nested dissection of the grid, dense fronts.
 //!
-//! Every rank eliminates what only its own slab touches (multifrontal Cholesky factorisation, Duff and Reid 1983, ACM
+//! Every rank eliminates what only its own cells touch (multifrontal Cholesky factorisation, Duff and Reid 1983, ACM
 //! Trans. Math. Softw. 9, 302-325), then neighbours pair up. Order, schedule and sums depend on the free components and
-//! the cut only: the same bits in every run on as many ranks. A rank holds the factor of its slab and, but for the
-//! first one, a dense front of one cut, which does not become smaller with more ranks. The order comes from the grid's
+//! the cut only: the same bits in every run on as many ranks. A rank holds the factor of its box and, but for the
+//! first one, a dense front of one cut, which of slabs does not become smaller with more ranks. The order comes from the grid's
 //! box of nodes, so that unknowns that come or go cost no analysis of a graph.
 
 mod factor;
@@ -16,14 +16,15 @@ mod tests;
 pub use factor::Precision;
 
 use crate::halo::Link;
+use crate::slab::Slabs;
 use crate::stencil::Stencil;
 use bsmpm::grid::Grid;
+use bsmpm::nodal::Nodal;
 use factor::Factor;
 use plan::{NONE, Part, Plan};
 use reduction::{TreeReduction, add_packed, pack};
-use std::ops::Range;
 
-/// A factorisation of one slab's share of the matrix. Its memory is kept when the unknowns change, as they do in most
+/// A factorisation of one rank's share of the matrix. Its memory is kept when the unknowns change, as they do in most
 /// steps of a flow.
 #[derive(Default)]
 pub struct Dissection {
@@ -37,26 +38,38 @@ pub struct Dissection {
 }
 
 impl Dissection {
-    /// Plans for the `free` components of the window of `rank`, the ranks' slabs beginning at the columns `bounds`, the
-    /// last of which is the end of the grid's room; C unknowns a node. Collective.
+    /// Plans for the `free` components of the window of `rank` under the cut `slabs`; C unknowns a node. Collective.
     pub fn plan<const D: usize, const C: usize>(
         &mut self,
         link: &dyn Link,
-        (bounds, rank): (&[usize], usize),
+        (slabs, rank): (&Slabs, usize),
         grid: &Grid<D>,
         free: &[bool],
     ) {
         // How far nodes couple.
-        let (q, layers) = (grid.order() + grid.beyond(), grid.layers());
-        // Layers that no other slab touches, from the window's first.
-        let start = if rank == 0 { 0 } else { q.min(layers.len()) };
-        let end = if rank + 2 == bounds.len() { layers.len() } else { grid.columns().len() };
-        let counts = std::array::from_fn(|axis| grid.nodes_along(axis));
-        self.plan = Plan::new::<D, C>(counts, q, start..end.max(start), free);
-        let layer = grid.layer_nodes() * C;
-        let whole = |&component: &u32| layers.start * layer + component as usize;
+        let q = grid.order() + grid.beyond();
+        // Nodes that no other rank touches, from the window's first.
+        let (slab, part) = slabs.place(rank);
+        let places = [(slab, slabs.slabs()), (part, slabs.parts_of_slab())];
+        let counts: [usize; D] = std::array::from_fn(|axis| grid.nodes_along(axis));
+        let inner = std::array::from_fn(|axis| {
+            let (at, of) = places.get(axis).copied().unwrap_or((0, 1));
+            let start = if at == 0 { 0 } else { q.min(counts[axis]) };
+            let end = if at + 1 == of { counts[axis] } else { grid.cells_along()[axis].len() };
+            start..end.max(start)
+        });
+        self.plan = Plan::new::<D, C>(counts, q, &inner, free);
+        let whole = |&component: &u32| {
+            let (node, component) = Nodal::<C>::split(component as usize);
+            Nodal::<C>::at(grid.number_of(node), component)
+        };
         let shared: Vec<usize> = self.plan.shared().iter().map(whole).collect();
-        self.reduction = TreeReduction::new(link, (rank, reduction::role(bounds, q, rank)), &shared, layer);
+        let [layer, row] = [1, 2].map(|first| (first..D).map(|axis| grid.axes()[axis].functions()).product::<usize>());
+        let touching = |component: usize| {
+            let node = Nodal::<C>::node(component);
+            slabs.touching([node / layer, node % layer / row], grid.order())
+        };
+        self.reduction = TreeReduction::new(link, (rank, reduction::role(slabs.ranks(), rank)), &shared, touching);
     }
 
     /// Factorises; `false` where a pivot of this rank was not positive and finite. `largest` is about the largest
@@ -100,9 +113,9 @@ impl Dissection {
 
     /// Solves for the nodal right-hand side whose `owned` components are this rank's, with the last factorisation; the
     /// solution is right at all nodes of the window. Collective.
-    pub fn solve(&mut self, link: &dyn Link, owned: Range<usize>, rhs: &[f64], solution: &mut [f64]) {
+    pub fn solve(&mut self, link: &dyn Link, owned: impl Fn(usize) -> bool, rhs: &[f64], solution: &mut [f64]) {
         let Self { plan, factor, reduction, work, scale, .. } = self;
-        let own = |component: usize| if owned.contains(&component) { rhs[component] * *scale } else { 0.0 };
+        let own = |component: usize| if owned(component) { rhs[component] * *scale } else { 0.0 };
         work.clear();
         work.extend(plan.order.iter().map(|&component| own(component as usize)));
         let mut x = Vec::new();

@@ -54,6 +54,12 @@ impl<const D: usize> Places<D> {
         })
     }
 
+    /// The lowest node of the box around two nodes of the window.
+    pub fn lowest(&self, a: usize, b: usize) -> usize {
+        let [a, b] = [a, b].map(|node| digits(node, &self.functions));
+        (0..D).fold(0, |node, axis| node * self.functions[axis] + a[axis].min(b[axis]))
+    }
+
     /// Number of a node in a box as wide along every axis as a stencil's; differences of two are those of their places.
     pub fn number(&self, at: [usize; D]) -> usize {
         at.into_iter().fold(0, |number, step| number * (2 * self.half + 1) + step)

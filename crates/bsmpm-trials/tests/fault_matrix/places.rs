@@ -118,7 +118,7 @@ pub fn idle_ranks(_: &Ground, _: usize) -> Tried {
         } else {
             let scratch = Scratch::new();
             let case = shipped("short/self_weight_column.toml");
-            let output = scratch.mpirun(5, &[case.to_str().unwrap()]).expect(65);
+            let output = scratch.mpirun(11, &[case.to_str().unwrap()]).expect(65);
             assert!(output.said().contains("ranks"), "{output:?}");
         }
         0.0

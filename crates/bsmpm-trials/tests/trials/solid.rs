@@ -3,7 +3,7 @@
 
 use crate::support::Scratch;
 use crate::support::cases::changed;
-use crate::support::results::{agree, at, history, manifest};
+use crate::support::results::{agree, at, history, manifest, steps};
 use std::f64::consts::PI;
 
 /// Cohesive sand that slumps in plane strain.
@@ -141,6 +141,56 @@ fn a_round_column_is_the_same_on_1_2_and_3_ranks_and_over_restarts() {
     assert!(of("energy-plastic") > 0.0 && of("energy-closure").abs() < 1e-4 * of("energy-external"));
     // Round: nothing pushes the base sideways.
     assert!(of("reaction-x").abs() < 1e-3 * of("reaction-z") && of("reaction-y").abs() < 1e-3 * of("reaction-z"));
+}
+
+/// On 4 ranks the grid is cut along x and along y, as `run.json` says.
+#[test]
+fn a_round_column_is_the_same_on_2_x_2_ranks_and_goes_on_between_them_and_slabs() {
+    let scratch = Scratch::with_case(COLUMN);
+    scratch.mpirun(1, &["case.toml", "-q", "-o", "whole1"]).expect(0);
+    scratch.goes_on(4, &["11"]);
+    let whole = scratch.path("whole1");
+    agree(&scratch.path("whole4"), &whole);
+    let chosen = manifest(&scratch.path("whole4")).choices;
+    assert!(chosen.iter().any(|of| of.key == "ranks" && of.value == "2 slabs of 2 parts"), "{chosen:?}");
+    for (first, then) in [(4, 3), (4, 1), (1, 4), (3, 4)] {
+        let part = format!("{first}to{then}");
+        let on = ["case.toml", "-q", "-o", &part, "--restart", "auto"];
+        scratch.mpirun(first, &[&on[..], &["--max-steps", "11"]].concat()).expect(75);
+        scratch.mpirun(then, &on).expect(0);
+        agree(&scratch.path(&part), &whole);
+    }
+}
+
+/// Material that slides out of its room and off its ranks, with every F-bar, the ghost penalty and cubic splines.
+#[test]
+fn a_round_column_that_slides_is_the_same_on_2_x_2_ranks_whatever_couples_their_cells() {
+    let text = changed(COLUMN, "bottom = \"fixed\"", "bottom = \"roller\"");
+    let text = changed(&text, "points_per_cell = 2", "points_per_cell = 2\nvelocity = [3, 4, 0]");
+    let text = changed(&text, "center = [1.5, 1.5]", "center = [1, 1]");
+    let scratch = Scratch::with_case(&changed(&text, "cohesion = 0", "cohesion = 5e3"));
+    let ghost = ["--set", "solver.background_kind=ghost-penalty", "--set", "solver.background=1e-2"];
+    let further: [&[&str]; 4] = [&[], &["--set", "stabilisation.method=none"], &["--set", "grid.order=cubic"], &ghost];
+    for further in further {
+        for ranks in [1, 4, 6] {
+            let directory = format!("out{ranks}");
+            let arguments = [&["case.toml", "-q", "--force", "-o", &directory], further].concat();
+            scratch.mpirun(ranks, &arguments).expect(0);
+            agree(&scratch.path(&directory), &scratch.path("out1"));
+        }
+        let anew = steps(&scratch.path("out4"));
+        println!("{further:?}: imbalance {:?}", anew.get("imbalance").unwrap().last());
+    }
+}
+
+#[test]
+fn a_rank_that_dies_ends_the_job_on_2_x_2_ranks_too() {
+    for rank in [0, 3] {
+        let scratch = Scratch::with_case(COLUMN);
+        let job = scratch.job(Some(4), &["case.toml", "-q"]);
+        let output = job.variable("BSMPM_FAULT", &format!("panic:rank={rank},step=3")).run().expect(70);
+        output.says_once(&format!("panic on rank {rank}"));
+    }
 }
 
 #[test]

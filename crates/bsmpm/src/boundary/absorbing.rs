@@ -89,8 +89,8 @@ impl Dashpots {
     /// J  work of the dashpots on this rank's own nodes, relative to what is beside them, without that of what
     /// holds the start.
     pub fn work<const D: usize>(&self, inertia: &Inertia, u: &[f64], halo: &dyn Halo) -> Vec<f64> {
-        let owned = Nodal::<D>::all(&halo.owned());
-        let own = self.0.iter().filter(|at| owned.contains(&at.component));
+        let owned = halo.owned();
+        let own = self.0.iter().filter(|at| owned.contains(Nodal::<D>::node(at.component)));
         let work = |at: &Dashpot| {
             let faster = inertia.velocity(at.component, u[at.component]) - at.beside;
             -at.impedance * faster * (u[at.component] - at.beside * inertia.dt)
@@ -139,7 +139,7 @@ impl<const D: usize> Boundary<D> {
         let mut counted = vec![false; reaction.len()];
         let mut of_face = |face: &Support<D>| {
             let mut forces = vec![0.0; nodes_on(grid, face) * D];
-            for node in grid.face_nodes(face.axis, face.upper).into_iter().filter(|node| owned.contains(node)) {
+            for node in grid.face_nodes(face.axis, face.upper).into_iter().filter(|&node| owned.contains(node)) {
                 for component in 0..D {
                     let place = Nodal::<D>::at(node, component);
                     if !std::mem::replace(&mut counted[place], true) {

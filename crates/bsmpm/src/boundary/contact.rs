@@ -162,7 +162,7 @@ impl<const D: usize> Contacts<D> {
         let mut corrected = [0.0];
         for at in &mut self.nodes {
             let status = at.corrected(u, reaction, (force, ROUNDING * edge));
-            corrected[0] += f64::from(u8::from(status != at.status && owned.contains(&at.node)));
+            corrected[0] += f64::from(u8::from(status != at.status && owned.contains(at.node)));
             at.status = status;
         }
         halo.reduce(&mut corrected);
@@ -174,7 +174,7 @@ impl<const D: usize> Contacts<D> {
     pub fn work(&self, u: &[f64], reaction: &[f64], halo: &dyn Halo) -> [Exact; 2] {
         let owned = halo.owned();
         let mut work = [Exact::ZERO; 2];
-        for at in self.nodes.iter().filter(|at| at.status != Status::Open && owned.contains(&at.node)) {
+        for at in self.nodes.iter().filter(|at| at.status != Status::Open && owned.contains(at.node)) {
             let normal = Nodal::<D>::at(at.node, at.axis);
             work[0].add(reaction[normal] * u[normal]);
             work[1].add(0.5 * at.friction(reaction).dot(&at.slip(u)));
@@ -188,7 +188,7 @@ impl<const D: usize> Contacts<D> {
         for (support, _) in boundary.supports.iter().enumerate().filter(|(_, support)| support.contact.is_some()) {
             let mut sums: [Exact; 6] = std::array::from_fn(|_| Exact::ZERO);
             let mut ends = [f64::NEG_INFINITY; 2];
-            let own = |at: &&ContactNode<D>| at.support == support && owned.contains(&at.node) && at.gap.is_finite();
+            let own = |at: &&ContactNode<D>| at.support == support && owned.contains(at.node) && at.gap.is_finite();
             for at in self.nodes.iter().filter(own) {
                 let (pushed, slip) = (at.pushed(reaction).max(0.0), at.slip(u));
                 let slides = matches!(at.status, Status::Slip(_)) && slip.norm() > 0.0;

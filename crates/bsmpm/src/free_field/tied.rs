@@ -3,8 +3,7 @@
 use crate::error::SolveError;
 use crate::exact::Exact;
 use crate::grid::{Contributions, Grid};
-use crate::parallel::{Halo, Krylov, LinearSolver, Solved, Symmetry};
-use std::ops::Range;
+use crate::parallel::{Halo, Krylov, LinearSolver, OwnedNodes, Solved, Symmetry};
 
 /// Corrections after which a product is solved no better.
 const CORRECTIONS: usize = 100;
@@ -32,11 +31,8 @@ impl TiedHalo {
 }
 
 impl Halo for TiedHalo {
-    fn owned(&self) -> Range<usize> {
-        0..self.layer
-    }
-    fn layer_nodes(&self) -> usize {
-        self.layer
+    fn owned(&self) -> OwnedNodes {
+        OwnedNodes::first(self.layer)
     }
     fn sum(&self, contributions: &Contributions) -> Vec<f64> {
         let mut nodal = contributions.alone();

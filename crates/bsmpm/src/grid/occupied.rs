@@ -9,38 +9,41 @@ const SIDE: usize = 3;
 /// Which cells hold points, those beside this rank's columns included.
 pub(crate) struct Occupied<'a, const D: usize> {
     grid: &'a Grid<D>,
-    width: usize,
-    marks: Vec<f64>, // per node: whether the cell k before that of its number along axis 0 holds points, k from 0 to q
+    width: [usize; 2],
+    marks: Vec<f64>, // per node: whether the cell (k, l) before that of its number holds points, k and l from 0 to q
 }
 
 impl<'a, const D: usize> Occupied<'a, D> {
     /// Of this rank's `cells`, by their index in the window; one exchange with the neighbours.
     ///
     /// Neighbouring slabs share layers of nodes, not of cells: a cell is noted at the node of its own number, which the
-    /// rank before sees, and at the q next ones, which the rank behind sees.
+    /// rank before sees, and at the q next ones, which the rank behind sees; along axis 1, too, where slabs are cut.
     pub(crate) fn of(grid: &'a Grid<D>, cells: impl Iterator<Item = usize>, halo: &dyn Halo) -> Self {
-        let width = grid.order() + 1;
-        let mut occupied = Self { grid, width, marks: vec![0.0; width * grid.nodes()] };
+        let width = [grid.order() + 1, if grid.is_parted() { grid.order() + 1 } else { 1 }];
+        let marks = width[0] * width[1];
+        let mut occupied = Self { grid, width, marks: vec![0.0; marks * grid.nodes()] };
         for index in cells {
             let cell = grid.cell_at(index);
-            for behind in 0..width {
-                let place = occupied.place(&cell, behind);
+            for mark in 0..marks {
+                let place = occupied.place(&cell, [mark / width[1], mark % width[1]]);
                 occupied.marks[place] = 1.0;
             }
         }
-        halo.max(&mut occupied.marks, width);
+        halo.max(&mut occupied.marks, marks);
         occupied
     }
 
-    fn place(&self, cell: &[usize; D], behind: usize) -> usize {
+    fn place(&self, cell: &[usize; D], behind: [usize; 2]) -> usize {
         let mut node = *cell;
-        node[0] += behind;
-        self.width * self.grid.first_node(&node) + behind
+        node.iter_mut().zip(behind).for_each(|(node, behind)| *node += behind);
+        (self.width[0] * self.grid.first_node(&node) + behind[0]) * self.width[1] + behind[1]
     }
 
     fn has(&self, cell: &[usize; D]) -> bool {
-        let behind = self.grid.columns().start.saturating_sub(cell[0]);
-        self.marks[self.place(cell, behind)] > 0.0
+        let cells = self.grid.cells_along();
+        let behind = |axis: usize| cells[axis].start.saturating_sub(cell[axis]);
+        let along = if self.grid.is_parted() { behind(1) } else { 0 };
+        self.marks[self.place(cell, [behind(0), along])] > 0.0
     }
 
     /// Whether all neighbours hold points, those that the grid does not have at its faces counted as ones that do where

@@ -33,34 +33,38 @@ impl<const D: usize> Grid<D> {
         })
     }
 
-    /// The same grid with room for points in the cells `occupied`, and at least so many columns.
-    pub fn with_room(&self, occupied: &[Range<usize>; D], columns: usize) -> Self {
+    /// The same grid with room for points in the cells `occupied`, and at least so many columns, and rows in them.
+    pub fn with_room(&self, occupied: &[Range<usize>; D], least: [usize; 2]) -> Self {
         let cells = self.axes().each_ref().map(KnotVector::cells);
-        self.within(around(occupied, cells, (self.order(), self.beyond()), columns))
+        self.within(around(occupied, cells, (self.order(), self.beyond()), least))
     }
 
-    /// The same grid with at least so many columns in its room.
-    pub fn with_columns(&self, columns: usize) -> Self {
+    /// The same grid with at least so many columns in its room, and rows in them.
+    pub fn with_columns(&self, least: [usize; 2]) -> Self {
         let mut room = self.room().clone();
-        room[0] = at_least(columns, &room[0], self.axes()[0].cells());
+        for (axis, wanted) in least.into_iter().enumerate() {
+            room[axis] = at_least(wanted, &room[axis], self.axes()[axis].cells());
+        }
         self.within(room)
     }
 }
 
 /// Room for points in the cells `occupied` of a grid of so many `cells` along each axis, for splines of an order and
-/// `beyond` further layers that are coupled: as large as the grid at most, and at least so many columns, if it has
-/// them.
+/// `beyond` further layers that are coupled: as large as the grid at most, and at least so many columns, and rows in
+/// them, if it has them.
 pub fn around<const D: usize>(
     occupied: &[Range<usize>; D],
     cells: [usize; D],
     (order, beyond): (usize, usize),
-    columns: usize,
+    least: [usize; 2],
 ) -> [Range<usize>; D] {
     let mut room: [Range<usize>; D] = std::array::from_fn(|axis| {
         let slack = (occupied[axis].len() / SLACK).max(order);
         wider(&occupied[axis], coupled(order, beyond) + slack, cells[axis])
     });
-    room[0] = at_least(columns, &room[0], cells[0]);
+    for (axis, wanted) in least.into_iter().enumerate() {
+        room[axis] = at_least(wanted, &room[axis], cells[axis]);
+    }
     room
 }
 
@@ -86,8 +90,8 @@ mod tests {
 
     #[test]
     fn the_room_is_as_wide_as_what_is_coupled_and_a_part_of_the_extent() {
-        assert_eq!(around(&[100..164, 3..5], [1000, 1000], (2, 1), 1), [89..175, 0..10]);
-        assert_eq!(around(&[1..9, 0..20], [12, 20], (3, 0), 1), [0..12, 0..20]);
+        assert_eq!(around(&[100..164, 3..5], [1000, 1000], (2, 1), [1; 2]), [89..175, 0..10]);
+        assert_eq!(around(&[1..9, 0..20], [12, 20], (3, 0), [1; 2]), [0..12, 0..20]);
     }
 
     /// A plane grid of 40 x 20 cells.
@@ -103,7 +107,7 @@ mod tests {
         for beyond in [[12..27, 8..18], [13..28, 8..18], [13..27, 7..18]] {
             assert!(!grid.has_room(&beyond), "{beyond:?}");
         }
-        let made = grid.with_room(&[12..28, 7..18], 1);
+        let made = grid.with_room(&[12..28, 7..18], [1; 2]);
         assert!(made.has_room(&[12..28, 7..18]) && made.room() != grid.room());
     }
 
@@ -125,7 +129,7 @@ mod tests {
     #[test]
     fn there_is_a_column_for_every_rank_if_the_grid_has_one() {
         let columns = |from: usize, to: usize, wanted: usize| {
-            let [columns, rows] = around(&[from..to, 3..4], [100, 8], (1, 0), wanted);
+            let [columns, rows] = around(&[from..to, 3..4], [100, 8], (1, 0), [wanted, 1]);
             assert_eq!(rows, 1..6);
             columns
         };

@@ -191,7 +191,7 @@ fn worst_nodes<K: Kinematics<D>, const D: usize>(
 ) -> Vec<WorstNode> {
     let grid = &problem.model.grid;
     let force = |node: usize| Vector::<D>::from_column_slice(&residual.balance.f_oob[Nodal::<D>::of(node)]).norm();
-    let mut nodes: Vec<usize> = problem.halo.owned().filter(|&node| force(node) > 0.0).collect();
+    let mut nodes: Vec<usize> = problem.halo.owned().nodes().filter(|&node| force(node) > 0.0).collect();
     nodes.sort_by(|&a, &b| force(b).total_cmp(&force(a)));
     let told = |node: usize| {
         let place = grid.node_at(node);

@@ -73,9 +73,8 @@ impl RoundOff {
         if balance.norm > self.norm {
             return false;
         }
-        let owned = problem.halo.owned();
-        let mut pairs = balance.f_oob.iter().zip(&self.force).skip(owned.start * D).take(owned.len() * D);
-        let mut beyond = [f64::from(u8::from(pairs.any(|(f, limit)| f.abs() > *limit)))];
+        let mut own = problem.halo.owned().places::<D>();
+        let mut beyond = [f64::from(u8::from(own.any(|c| balance.f_oob[c].abs() > self.force[c])))];
         problem.halo.maximum(&mut beyond);
         beyond[0] == 0.0
     }

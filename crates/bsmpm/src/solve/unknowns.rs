@@ -19,10 +19,9 @@ impl Unknowns {
     /// The `free` ones among the components of the window's nodes, `D` a node.
     pub fn of<const D: usize>(free: &[bool], halo: &dyn Halo) -> Self {
         let places: Vec<u32> = (0..).zip(free).filter(|(_, free)| **free).map(|(place, _)| place).collect();
-        let (owned, layer) = (halo.owned(), halo.layer_nodes() * D);
         let number = |component: usize| places.partition_point(|&place| (place as usize) < component);
-        let firsts = Nodal::<D>::all(&owned).step_by(layer.max(1));
-        let layers = firsts.map(|first| number(first)..number(first + layer)).collect();
+        let layers = halo.owned().runs().map(|run| Nodal::<D>::all(&run));
+        let layers = layers.map(|layer| number(layer.start)..number(layer.end)).collect();
         Self { places, layers }
     }
 

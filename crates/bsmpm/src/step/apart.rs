@@ -47,11 +47,10 @@ impl Apart {
     /// For each material, sums over the components of this rank's own nodes that are the material's alone, `width` a
     /// node; all of one material behind each other. Formed like [`over_layers`](crate::parallel::over_layers).
     pub fn sums<const N: usize>(&self, halo: &dyn Halo, width: usize, terms: impl Fn(usize) -> [f64; N]) -> Vec<Exact> {
-        let (owned, layer) = (halo.owned(), halo.layer_nodes().max(1));
         let mut sums = vec![Exact::ZERO; self.materials * N];
-        for first in owned.clone().step_by(layer) {
+        for run in halo.owned().runs() {
             let mut plain = vec![[0.0; N]; self.materials];
-            for node in first..first + layer {
+            for node in run {
                 let Some(material) = self.of[node] else { continue };
                 for c in node * width..(node + 1) * width {
                     plain[usize::from(material)].iter_mut().zip(terms(c)).for_each(|(sum, term)| *sum += term);

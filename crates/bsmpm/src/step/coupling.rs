@@ -159,16 +159,19 @@ impl<'a, const D: usize> Coupling<'a, D> {
     ) {
         let (width, grid) = (sums.width(), self.grid);
         let sums = halo.sum(sums);
-        let is_ours = |first: isize| {
-            let layer = (first.max(0) as usize).checked_sub(grid.layers().start);
-            layer.is_some_and(|layer| halo.owned().contains(&(layer * grid.layer_nodes())))
+        let owned = halo.owned();
+        let is_ours = |starts: &[Option<isize>; D]| {
+            let first = starts.map(|start| start.map(|start| start.max(0) as usize));
+            let node = grid.cells_along().each_ref().map(|cells| cells.start);
+            let node = std::array::from_fn(|axis| first[axis].unwrap_or(node[axis]));
+            first[0].is_some() && grid.node_index(&node).is_some_and(|node| owned.contains(node))
         };
         let (mut nodes, mut g, mut f, mut block) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         for (function, numbers) in sums.chunks_exact(width).enumerate() {
             let (weight, bulk) = (numbers[0], numbers[1]);
             let number = grid.node_at(function);
             let starts: [Option<isize>; D] = std::array::from_fn(|axis| first(axis, number[axis]));
-            if weight <= 0.0 || !starts[0].is_some_and(is_ours) {
+            if weight <= 0.0 || !is_ours(&starts) {
                 continue;
             }
             nodes.clear();

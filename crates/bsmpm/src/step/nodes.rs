@@ -275,9 +275,9 @@ impl<const D: usize> Nodes<D> {
         let owned = halo.owned();
         let count = |marks: &mut dyn Iterator<Item = bool>| marks.filter(|&mark| mark).count() as f64;
         let mut counts = [
-            count(&mut self.active[owned.clone()].iter().copied()),
-            count(&mut self.free[Nodal::<D>::all(&owned)].iter().copied()),
-            count(&mut owned.map(|node| self.active[node] && self.weight[node] <= self.threshold)),
+            count(&mut owned.nodes().map(|node| self.active[node])),
+            count(&mut owned.places::<D>().map(|place| self.free[place])),
+            count(&mut owned.nodes().map(|node| self.active[node] && self.weight[node] <= self.threshold)),
             self.background.as_ref().map_or(0, Blocks::count) as f64,
         ];
         halo.reduce(&mut counts);

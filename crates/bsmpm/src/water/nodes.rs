@@ -129,7 +129,7 @@ impl<const D: usize> Pores<D> {
         let ties = Ties::of(&model.grid, &seen, &takes);
         let limit = |node: usize| if free[node] { (ROUND_OFF * sums[SUMS * node]).powi(2) } else { 0.0 };
         let round_off = halo.total(&[over_layers(halo, 1, limit)])[0].sqrt();
-        let mut unknowns = [free[halo.owned()].iter().filter(|free| **free).count() as f64];
+        let mut unknowns = [halo.owned().nodes().filter(|&node| free[node]).count() as f64];
         halo.reduce(&mut unknowns);
         let unknowns = unknowns[0] as usize;
         Ok(Some(Self {

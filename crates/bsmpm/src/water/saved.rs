@@ -40,7 +40,7 @@ impl WaterReport {
         let owned = halo.owned();
         let mut counted = vec![false; water.out.len()];
         let of_face = |(axis, upper): (usize, bool)| -> Exact {
-            let mine = face_functions(&model.grid, axis, upper).into_iter().filter(|node| owned.contains(node));
+            let mine = face_functions(&model.grid, axis, upper).into_iter().filter(|&node| owned.contains(node));
             mine.filter(|&node| !std::mem::replace(&mut counted[node], true)).map(|node| water.out[node]).collect()
         };
         // The face that is named last decides a pressure of two.

@@ -9,7 +9,7 @@ use bsmpm::exact::{Exact, WORDS};
 use bsmpm::grid::{Contributions, Grid};
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::{Model, Regime};
-use bsmpm::parallel::{Halo, LinearSolver};
+use bsmpm::parallel::{Halo, LinearSolver, OwnedNodes};
 use bsmpm::points::Points;
 use bsmpm::tensor::{Tensor, Vector};
 use bsmpm::water::Water;
@@ -262,11 +262,8 @@ impl Rank<'_> {
 }
 
 impl Halo for Rank<'_> {
-    fn owned(&self) -> Range<usize> {
-        0..self.nodes
-    }
-    fn layer_nodes(&self) -> usize {
-        self.nodes
+    fn owned(&self) -> OwnedNodes {
+        OwnedNodes::first(self.nodes)
     }
     fn sum(&self, contributions: &Contributions) -> Vec<f64> {
         contributions.alone()

@@ -5,7 +5,7 @@ use crate::support::solver::Skyline;
 use bsmpm::exact::Exact;
 use bsmpm::grid::Contributions;
 use bsmpm::method::QuasiNewton;
-use bsmpm::parallel::{Alone, Halo, LinearSolver, Symmetry, dots};
+use bsmpm::parallel::{Alone, Halo, LinearSolver, OwnedNodes, Symmetry, dots};
 use bsmpm::solve::quasi_newton::Secants;
 use bsmpm::solve::unknowns::Unknowns;
 use nalgebra::{DMatrix, DVector};
@@ -75,15 +75,12 @@ fn packed_vectors_have_the_products_of_nodal_ones_and_come_back() {
     assert_eq!(nodal, a.as_slice());
 }
 
-/// A rank with three layers of three nodes, of which the middle one is its own.
+/// A rank with three layers of three nodes, of which two of each of the first two are its own: a part of a slab.
 struct Between;
 
 impl Halo for Between {
-    fn owned(&self) -> std::ops::Range<usize> {
-        3..6
-    }
-    fn layer_nodes(&self) -> usize {
-        3
+    fn owned(&self) -> OwnedNodes {
+        OwnedNodes::new(2, 3, 2)
     }
     fn sum(&self, contributions: &Contributions) -> Vec<f64> {
         contributions.alone()
@@ -102,7 +99,9 @@ fn ghosts_do_not_count_twice() {
     let mut random = Random::new(5);
     let (a, b) = (random.array(SIZE), random.array(SIZE));
     let unknowns = Unknowns::of::<2>(&free(), &Between);
-    let own: f64 = (6..12).filter(|&c| free()[c]).map(|c| a[c] * b[c]).sum();
+    let own: f64 = (0..4).chain(6..10).filter(|&c| free()[c]).map(|c| a[c] * b[c]).sum();
+    assert_eq!((0..9).filter(|&node| Between.owned().contains(node)).collect::<Vec<_>>(), [0, 1, 3, 4]);
+    assert_eq!(Between.owned().places::<2>().collect::<Vec<_>>(), [0, 1, 2, 3, 6, 7, 8, 9]);
     let found = unknowns.dots([&unknowns.packed(&a)], &unknowns.packed(&b))[0].value();
     assert!((found - own).abs() <= 1e-14 && own.abs() > 1e-3, "{found} {own}");
 }

@@ -14,10 +14,9 @@ use bsmpm::kinematics::PlaneStrain;
 use bsmpm::method::Nonlinear;
 use bsmpm::method::QuasiNewton;
 use bsmpm::model::Regime;
-use bsmpm::parallel::{Alone, Halo};
+use bsmpm::parallel::{Alone, Halo, OwnedNodes};
 use bsmpm::schedule::Schedule;
 use std::cell::Cell;
-use std::ops::Range;
 
 /// A block settling on a fixed base.
 fn block(regime: Regime) -> Scene<PlaneStrain, 2> {
@@ -157,11 +156,8 @@ struct Impatient {
 }
 
 impl Halo for Impatient {
-    fn owned(&self) -> Range<usize> {
+    fn owned(&self) -> OwnedNodes {
         self.halo.owned()
-    }
-    fn layer_nodes(&self) -> usize {
-        self.halo.layer_nodes()
     }
     fn sum(&self, contributions: &Contributions) -> Vec<f64> {
         self.halo.sum(contributions)

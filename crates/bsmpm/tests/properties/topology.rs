@@ -84,9 +84,14 @@ fn windows_agree_with_the_whole<const D: usize>(axes: [KnotVector; D]) {
     places.push(Vector::from_fn(|k, _| whole.axes()[k].length()));
     places.push(Vector::from_fn(|k, _| whole.axes()[k].breakpoint(1)));
     let cells = whole.axes()[0].cells();
-    for columns in [0..2, 2..3, 3..cells, 0..cells] {
-        let window = whole.window(columns.clone());
-        let mine = |x: &&Vector<D>| whole.locate(x).is_some_and(|cell| columns.contains(&cell[0]));
+    let part = |rows: std::ops::Range<usize>| {
+        let mut cells = whole.room().clone();
+        (cells[0], cells[1]) = (1..3, rows);
+        whole.window_of(cells)
+    };
+    let slabs = [0..2, 2..3, 3..cells, 0..cells].map(|columns| whole.window(columns));
+    for window in slabs.into_iter().chain([part(0..1), part(1..2)]) {
+        let mine = |x: &&Vector<D>| whole.locate(x).is_some_and(|cell| window.holds(&cell));
         let places: Vec<Vector<D>> = places.iter().filter(mine).copied().collect();
         let (in_window, in_whole) = (points_at(&window, &places), points_at(&whole, &places));
         assert_eq!(in_window, in_whole); // the canonical order is the same
@@ -110,12 +115,17 @@ fn a_slabs_window_has_the_nodes_and_functions_of_the_whole_grid() {
 #[test]
 fn cell_and_node_numbers_are_inverse_to_each_other() {
     let whole = Grid::new([axis(1.0, 5, 2), axis(1.0, 3, 2), axis(1.0, 2, 2)]).unwrap();
-    for grid in [whole.clone(), whole.window(2..4)] {
+    for grid in [whole.clone(), whole.window(2..4), whole.window_of([2..4, 1..2, 0..2])] {
         assert!((0..grid.cells()).all(|cell| grid.cell_index(&grid.cell_at(cell)) == cell));
         assert!((0..grid.nodes()).all(|node| grid.first_node(&grid.node_at(node)) == node));
     }
     assert_eq!((whole.nodes(), whole.window(2..4).nodes()), (7 * 5 * 4, 4 * 5 * 4));
     assert_eq!(whole.window(2..4).layers(), 2..6);
+    let part = whole.window_of([2..4, 1..2, 0..2]);
+    let layers = part.nodes_within(&[3..5, 1..4]);
+    assert_eq!((layers.len(), layers[0].clone()), (1, 12..36), "whole layers are one range");
+    assert_eq!(part.nodes_within(&[2..4, 2..3]), [4..8, 16..20]);
+    assert!(part.nodes_within(&[3..3, 1..2]).is_empty() && part.is_parted() && !whole.window(2..4).is_parted());
     let reaching = whole.clone().reaching(1);
     assert_eq!([2..4, 3..5].map(|columns| reaching.window(columns).layers()), [2..7, 3..7]);
 }

@@ -1,6 +1,6 @@
-//! Order of elimination of one slab's unknowns: nested dissection of its box of nodes, without MPI or numbers.
+//! Order of elimination of one rank's unknowns: nested dissection of its box of nodes, without MPI or numbers.
 //!
-//! Splines of order q couple nodes up to q apart, so that q layers of nodes cut a box in two. Nodes that other slabs
+//! Splines of order q couple nodes up to q apart, so that q layers of nodes cut a box in two. Nodes that other ranks
 //! touch too come last. George, A. (1973), SIAM J. Numer. Anal. 10, 345-363; Liu, J. W. H. (1992), SIAM Rev. 34,
 //! 82-109.
 
@@ -44,7 +44,7 @@ impl Part {
     }
 }
 
-/// The order, children before parents. The last part eliminates nothing: its rim is what other slabs touch.
+/// The order, children before parents. The last part eliminates nothing: its rim is what other ranks touch.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Plan {
     /// component by elimination number; those of the last part's rim last, ascending
@@ -65,22 +65,24 @@ struct Cutter<'a, const D: usize, const C: usize> {
 }
 
 impl Plan {
-    /// Plan for the `free` components of a window of `counts` nodes with C each, of which no other slab touches the
-    /// layers `inner`.
+    /// Plan for the `free` components of a window of `counts` nodes with C each, of which no other rank touches the box
+    /// `inner`.
     pub fn new<const D: usize, const C: usize>(
         counts: [usize; D],
         order: usize,
-        inner: Range<usize>,
+        inner: &[Range<usize>; D],
         free: &[bool],
     ) -> Self {
         let plan = Plan { number: vec![NONE; free.len()], ..Plan::default() };
         let mut cutter = Cutter::<D, C> { counts, order, free, plan, boxes: Vec::new() };
-        let mut whole = counts.map(|count| 0..count);
-        whole[0] = inner.clone();
-        let children = usize::from(cutter.cut(whole));
-        let layer = free.len() / counts[0].max(1);
-        let shared = (0..inner.start * layer).chain(inner.end.max(inner.start) * layer..free.len());
-        cutter.number(shared.collect());
+        let children = usize::from(cutter.cut(inner.clone()));
+        let mut shared = Vec::new();
+        each_node(&counts.map(|count| 0..count), |node| {
+            if !(0..D).all(|axis| inner[axis].contains(&node[axis])) {
+                shared.extend(cutter.unknowns(cutter.index(&node)));
+            }
+        });
+        cutter.number(shared);
         cutter.rims();
         let Cutter { mut plan, .. } = cutter;
         let eliminated = plan.parts.last().map_or(0, |part| part.own.end);
@@ -95,12 +97,12 @@ impl Plan {
         self.parts.last().map_or(0, |part| part.start)
     }
 
-    /// Unknowns that only this slab touches.
+    /// Unknowns that only this rank touches.
     pub fn eliminated(&self) -> usize {
         self.parts.last().map_or(0, |part| part.own.end)
     }
 
-    /// Components that other slabs touch too.
+    /// Components that other ranks touch too.
     pub fn shared(&self) -> &[u32] {
         &self.order[self.eliminated()..]
     }

@@ -1,4 +1,4 @@
-//! Elimination of what slabs share: pairs of neighbours, pairs of pairs, up to all ranks. What a cut couples is a dense
+//! Elimination of what ranks share: pairs of neighbours, pairs of pairs, up to all ranks. What a cut couples is a dense
 //! front, and every rank but the first has one of them; which rank does what when is fixed, so that all sums repeat.
 
 use super::factor::{self, Factor, Precision};
@@ -6,22 +6,22 @@ use super::front;
 use crate::halo::Link;
 use std::ops::Range;
 
-/// What a rank does in the pairing, from the slabs upwards.
+/// What a rank does in the pairing, from the ranks' boxes upwards.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Role {
-    /// the rank, itself perhaps, that joins its slab with others; none if it is alone
+    /// the rank, itself perhaps, that joins its box with others; none if it is alone
     pub joined_by: Option<usize>,
     /// the two groups that it joins; the first rank joins none
     pub join: Option<Join>,
 }
 
-/// Two groups of slabs that become one.
+/// Two groups of ranks that become one.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Join {
     /// the ranks, itself perhaps, from which it hears of the lower and of the upper group
     pub from: [usize; 2],
-    /// the node layers of the grid that only the two of them touch
-    pub layers: Range<usize>,
+    /// the ranks of the two: what only they touch is eliminated
+    pub group: Range<usize>,
     /// the rank that joins them with others; none for the last two
     pub joined_by: Option<usize>,
 }
@@ -31,18 +31,14 @@ fn holder(group: &Range<usize>) -> usize {
     usize::midpoint(group.start, group.end)
 }
 
-/// The role of `rank`, for slabs that begin at `bounds` and splines of order `q`.
-pub fn role(bounds: &[usize], q: usize, rank: usize) -> Role {
-    let last = bounds.len() - 1;
-    let (mut group, mut role) = (0..last, Role::default());
+/// The role of a rank of so many.
+pub fn role(ranks: usize, rank: usize) -> Role {
+    let (mut group, mut role) = (0..ranks, Role::default());
     while group.len() > 1 {
         let middle = holder(&group);
         if rank == middle {
-            // A layer is touched by the slabs that begin at or before it and end less than q before it.
-            let start = bounds[middle].max(if group.start > 0 { bounds[group.start] + q } else { 0 });
-            let end = (bounds[middle] + q).min(if group.end < last { bounds[group.end] } else { usize::MAX });
             let from = [holder(&(group.start..middle)), holder(&(middle..group.end))];
-            role.join = Some(Join { from, layers: start..end.max(start), joined_by: role.joined_by });
+            role.join = Some(Join { from, group: group.clone(), joined_by: role.joined_by });
         }
         role.joined_by = Some(middle);
         group = if rank < middle { group.start..middle } else { middle..group.end };
@@ -68,16 +64,21 @@ pub struct TreeReduction {
 }
 
 impl TreeReduction {
-    /// The front of the `rank` whose slab leaves the `shared` components of the whole grid, ascending, of which `layer`
-    /// make a layer of nodes. Collective.
-    pub fn new(link: &dyn Link, (rank, role): (usize, Role), shared: &[usize], layer: usize) -> Self {
+    /// The front of the `rank` whose box leaves the `shared` components of the whole grid, ascending; `touching` are the
+    /// ranks from the first to the last one that touch a component. Collective.
+    pub fn new(
+        link: &dyn Link,
+        (rank, role): (usize, Role),
+        shared: &[usize],
+        touching: impl Fn(usize) -> Range<usize>,
+    ) -> Self {
         let mut reduction = Self { rank, joined_by: role.joined_by, joint: None };
         let slab: Vec<f64> = shared.iter().map(|&component| component as f64).collect();
         let slab = reduction.hand(link, reduction.joined_by, slab);
         if let Some(join) = role.join {
             let groups = reduction.hear(link, join.from, slab);
             let groups = groups.map(|group| group.into_iter().map(|component| component as usize).collect());
-            let (joint, left) = Joint::new(join, &groups, layer);
+            let (joint, left) = Joint::new(join, &groups, touching);
             let left = left.iter().map(|&component| component as f64).collect();
             reduction.hand(link, joint.join.joined_by, left);
             reduction.joint = Some(joint);
@@ -136,15 +137,21 @@ impl TreeReduction {
 
 impl Joint {
     /// Of two groups with their components; what is not eliminated here is left.
-    fn new(join: Join, groups: &[Vec<usize>; 2], layer: usize) -> (Self, Vec<usize>) {
-        let mut all = groups.concat();
-        let key = |&component: &usize| (!join.layers.contains(&(component / layer)), component);
-        all.sort_unstable_by_key(key);
+    fn new(join: Join, groups: &[Vec<usize>; 2], touching: impl Fn(usize) -> Range<usize>) -> (Self, Vec<usize>) {
+        let key = |&component: &usize| {
+            let ranks = touching(component);
+            (ranks.start < join.group.start || join.group.end < ranks.end, component) // what stays comes last
+        };
+        let mut all: Vec<(bool, usize)> = groups.iter().flatten().map(key).collect();
+        all.sort_unstable();
         all.dedup();
-        let own = all.partition_point(|component| !key(component).0);
-        let place = |component: &usize| all.partition_point(|other| key(other) < key(component));
+        let own = all.partition_point(|(stays, _)| !stays);
+        let place = |component: &usize| {
+            let key = key(component);
+            all.partition_point(|other| *other < key)
+        };
         let places = [0, 1].map(|group: usize| groups[group].iter().map(place).collect());
-        let left = all[own..].to_vec();
+        let left = all[own..].iter().map(|(_, component)| *component).collect();
         (Self { rows: all.len(), own, places, factor: Factor::default(), join }, left)
     }
 

@@ -6,6 +6,7 @@ use super::factor::{self, Factor, Precision};
 use super::front;
 use super::plan::{NONE, Part, Plan};
 use super::reduction::role;
+use crate::slab::Slabs;
 use nalgebra::{DMatrix, DVector};
 use system::{System, noise};
 
@@ -52,14 +53,17 @@ fn a_pivot_that_is_not_positive_and_finite_is_told() {
 /// The front of every part holds all that its unknowns couple with and all that its children leave.
 #[test]
 fn every_unknown_is_eliminated_once_and_before_what_it_is_told() {
-    fn check<const D: usize, const C: usize>(counts: [usize; D], q: usize, inner: std::ops::Range<usize>, filled: f64) {
+    fn check<const D: usize, const C: usize>(
+        counts: [usize; D],
+        q: usize,
+        inner: [std::ops::Range<usize>; D],
+        filled: f64,
+    ) {
         let nodes: usize = counts.iter().product();
         let free: Vec<bool> = (0..nodes * C).map(|component| noise(component) < filled).collect();
-        let plan = Plan::new::<D, C>(counts, q, inner.clone(), &free);
+        let plan = Plan::new::<D, C>(counts, q, &inner, &free);
         assert_eq!(plan.order.len(), free.iter().filter(|&&free| free).count());
         assert!((0..plan.order.len()).all(|number| plan.number[plan.order[number] as usize] as usize == number));
-        let layer = nodes * C / counts[0];
-        assert!(plan.shared().iter().all(|&component| !inner.contains(&(component as usize / layer))));
         let at = |mut node: usize| {
             let mut place = [0; D];
             for axis in (0..D).rev() {
@@ -67,6 +71,12 @@ fn every_unknown_is_eliminated_once_and_before_what_it_is_told() {
             }
             place
         };
+        let is_inner = |component: u32| {
+            let node = at(component as usize / C);
+            (0..D).all(|axis| inner[axis].contains(&node[axis]))
+        };
+        assert!(plan.shared().iter().all(|&component| !is_inner(component)));
+        assert!(plan.order[..plan.eliminated()].iter().all(|&component| is_inner(component)));
         let (mut next, mut stack): (usize, Vec<&Part>) = (0, Vec::new());
         for part in &plan.parts {
             assert_eq!(part.own.start, next);
@@ -88,38 +98,62 @@ fn every_unknown_is_eliminated_once_and_before_what_it_is_told() {
         }
         assert!(stack.len() == 1 && next == plan.eliminated());
     }
-    check::<2, 2>([30, 14], 2, 2..28, 0.9);
-    check::<2, 1>([9, 40], 1, 0..9, 0.5);
-    check::<2, 2>([26, 20], 3, 3..3, 1.0);
-    check::<2, 3>([12, 12], 2, 0..10, 0.02);
-    check::<3, 3>([7, 6, 5], 1, 1..6, 0.8);
-    check::<2, 2>([5, 4], 2, 0..5, 0.0);
+    check::<2, 2>([30, 14], 2, [2..28, 0..14], 0.9);
+    check::<2, 2>([30, 14], 2, [2..28, 2..12], 0.9);
+    check::<2, 1>([9, 40], 1, [0..9, 0..40], 0.5);
+    check::<2, 2>([26, 20], 3, [3..3, 0..20], 1.0);
+    check::<2, 3>([12, 12], 2, [0..10, 0..12], 0.02);
+    check::<3, 3>([7, 6, 5], 1, [1..6, 0..6, 0..5], 0.8);
+    check::<3, 3>([7, 6, 5], 1, [1..6, 1..5, 0..5], 0.8);
+    check::<2, 2>([5, 4], 2, [0..5, 0..4], 0.0);
 }
 
 #[test]
-fn every_shared_layer_is_eliminated_once_where_all_that_touch_it_have_met() {
+fn every_shared_node_is_eliminated_once_where_all_that_touch_it_have_met() {
+    let of = |bounds: Vec<usize>| {
+        let (ranks, columns) = (bounds.len() - 1, bounds[bounds.len() - 1]);
+        Slabs::new(bounds, ranks, 0..columns).unwrap()
+    };
     let unequal = [(vec![0, 5], 2), (vec![0, 1, 2, 3, 4], 3), (vec![0, 9, 10, 11, 30, 31], 2)];
-    for (bounds, q) in unequal.into_iter().chain((1..18).map(|ranks| ((0..=ranks).collect(), 2))) {
-        let ranks = bounds.len() - 1;
-        let roles: Vec<_> = (0..ranks).map(|rank| role(&bounds, q, rank)).collect();
-        let (mut eliminated, mut met) = (Vec::new(), Vec::new());
-        for join in roles.iter().filter_map(|role| role.join.as_ref()) {
-            eliminated.extend(join.layers.clone());
-            met.extend(join.from);
-        }
+    let mut cuts: Vec<(Slabs, usize)> = unequal.map(|(bounds, q)| (of(bounds), q)).to_vec();
+    cuts.extend((1..18).map(|ranks| (of((0..=ranks).collect()), 2)));
+    let parts = vec![vec![0, 2, 4, 6], vec![0, 1, 2, 6], vec![0, 4, 5, 6]];
+    cuts.push((of(vec![0, 3, 4, 9]).parted(parts, &(0..6)).unwrap(), 2));
+    for (slabs, q) in cuts {
+        let ranks = slabs.ranks();
+        let roles: Vec<_> = (0..ranks).map(|rank| role(ranks, rank)).collect();
+        let met: Vec<usize> = roles.iter().filter_map(|role| role.join.as_ref()).flat_map(|join| join.from).collect();
         // What a rank hands over is met where it goes to: its slab, and what it has joined.
         for (rank, role) in roles.iter().enumerate() {
             let joined = role.join.as_ref().and_then(|join| join.joined_by);
             for by in role.joined_by.into_iter().chain(joined) {
-                assert!(roles[by].join.as_ref().is_some_and(|join| join.from.contains(&rank)), "{rank} {bounds:?}");
+                assert!(roles[by].join.as_ref().is_some_and(|join| join.from.contains(&rank)), "{rank} {slabs:?}");
             }
         }
-        assert_eq!(met.len(), 2 * (ranks - 1), "{bounds:?}");
+        assert_eq!(met.len(), 2 * (ranks - 1), "{slabs:?}");
         assert_eq!(roles.iter().filter(|role| role.join.is_some()).count(), ranks - 1, "no rank has two fronts");
-        let touched = |layer: usize| (0..ranks).filter(|&r| bounds[r] <= layer && layer < bounds[r + 1] + q).count();
-        let shared: Vec<usize> = (0..bounds[ranks] + q).filter(|&layer| touched(layer) > 1).collect();
-        eliminated.sort_unstable();
-        assert_eq!(eliminated, shared, "{bounds:?}");
+        let columns = slabs.bounds()[slabs.slabs()];
+        for node in (0..columns + q).flat_map(|layer| (0..6 + q).map(move |row| [layer, row])) {
+            let touched: Vec<usize> = (0..ranks)
+                .filter(|&rank| {
+                    let window = slabs.nodes(rank, (q, &(0..6)));
+                    (0..2).all(|axis| window[axis].contains(&node[axis]))
+                })
+                .collect();
+            let touching = slabs.touching(node, q);
+            let group = |rank: usize| roles[rank].join.as_ref().map(|join| join.group.clone());
+            // From rank to rank, up to the group that has all of them: the first of these eliminates it.
+            let all = |rank: &usize| {
+                group(*rank).is_some_and(|group| group.start <= touching.start && touching.end <= group.end)
+            };
+            let smallest = (0..ranks).filter(all).min_by_key(|&rank| group(rank).unwrap().len());
+            assert_eq!(smallest.is_some(), ranks > 1);
+            if let (Some(rank), true) = (smallest, touched.len() > 1) {
+                let (group, middle) = (group(rank).unwrap(), rank);
+                assert!(touched.iter().all(|rank| group.contains(rank)));
+                assert!(touched.iter().any(|&rank| rank < middle) && touched.iter().any(|&rank| rank >= middle));
+            }
+        }
     }
 }
 
@@ -145,6 +179,25 @@ fn slabs_find_the_solution_of_the_dense_matrix() {
     }
 }
 
+/// Parts of slabs, side by side and not, thinner than the splines reach, and more than one to a side.
+#[test]
+fn parts_of_slabs_find_the_solution_of_the_dense_matrix() {
+    type Parts<'a> = &'a [&'a [usize]];
+    let cases: [([usize; 2], usize, &[usize], Parts<'_>); 6] = [
+        ([12, 7], 2, &[0, 6, 12], &[&[0, 4, 7], &[0, 2, 7]]),
+        ([12, 9], 2, &[0, 4, 5, 12], &[&[0, 3, 6, 9], &[0, 1, 2, 9], &[0, 5, 8, 9]]),
+        ([8, 4], 3, &[0, 3, 8], &[&[0, 1, 2, 3, 4], &[0, 1, 2, 3, 4]]),
+        ([9, 6], 1, &[0, 9], &[&[0, 2, 6]]),
+        ([9, 6], 1, &[0, 9], &[&[0, 1, 3, 6]]),
+        ([10, 6], 2, &[0, 2, 4, 6, 10], &[&[0, 3, 6], &[0, 1, 6], &[0, 5, 6], &[0, 2, 6]]),
+    ];
+    for (cells, order, bounds, parts) in cases {
+        System::<1>::parted(cells, order, bounds, parts).is_solved();
+        System::<2>::parted(cells, order, bounds, parts).is_solved();
+        System::<3>::parted(cells, order, bounds, parts).is_solved();
+    }
+}
+
 /// Between two bodies a separator may hold nothing: it does where the first of them has as many unknowns, or hardly
 /// more. What the second slab shares with the first one, which has both bodies, must not be taken for that separator's.
 #[test]
@@ -155,7 +208,7 @@ fn bodies_apart_find_the_solution_of_the_dense_matrix() {
         for bounds in [vec![0, columns], vec![0, columns - 2, columns], vec![0, side + 1, side + 3, columns]] {
             let system = System { gap: side..side + 6, ..System::<2>::new([columns, 7], 2, &bounds) };
             let counts = std::array::from_fn(|axis| system.grid.axes()[axis].functions());
-            let plan = Plan::new::<2, 2>(counts, 2, 0..counts[0], &system.free());
+            let plan = Plan::new::<2, 2>(counts, 2, &counts.map(|count| 0..count), &system.free());
             let (_, parts) = plan.parts.split_last().unwrap();
             parted += usize::from(parts.iter().any(|part| part.own.is_empty() && part.children == 2));
             system.is_solved();

@@ -6,6 +6,7 @@ use crate::halo::Link;
 use crate::slab::Slabs;
 use crate::stencil::Stencil;
 use bsmpm::grid::{Grid, KnotVector};
+use bsmpm::nodal::Nodal;
 use nalgebra::{DMatrix, DVector};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::time::Duration;
@@ -62,6 +63,24 @@ impl<const C: usize> System<C> {
         Self { grid: Grid::new([axis(columns), axis(rows)]).unwrap(), slabs, gap: 0..0 }
     }
 
+    /// The same, with every slab cut into parts.
+    pub fn parted(cells: [usize; 2], order: usize, bounds: &[usize], parts: &[&[usize]]) -> Self {
+        let system = Self::new(cells, order, bounds);
+        let parts = parts.iter().map(|part| part.to_vec()).collect();
+        let slabs = system.slabs.parted(parts, &(0..cells[1])).unwrap();
+        Self { slabs, ..system }
+    }
+
+    /// Numbers in the whole grid of the nodal components of a window.
+    fn components(&self, window: &Grid<2>) -> Vec<usize> {
+        (0..window.nodes()).flat_map(|node| Nodal::<C>::of(window.number_of(node))).collect()
+    }
+
+    /// The window of a rank.
+    fn window(&self, rank: usize) -> Grid<2> {
+        self.grid.window_of(self.slabs.cells(rank, self.grid.room()))
+    }
+
     /// Positive definite block of a cell, or none.
     fn block(&self, cell: usize) -> Option<DMatrix<f64>> {
         let size = self.grid.cell_nodes() * C;
@@ -112,12 +131,12 @@ impl<const C: usize> System<C> {
     /// What `rank` finds at the nodes of its window, after a first factorisation of another matrix in the other
     /// precision.
     fn solution(&self, (rank, precision): (usize, Precision), wire: &Wire) -> Vec<f64> {
-        let grid = self.grid.window(self.slabs.columns(rank));
-        let per_layer = grid.layer_nodes() * C;
-        let window = grid.layers().start * per_layer..grid.layers().end * per_layer;
-        let free = &self.free()[window.clone()];
+        let (grid, free, rhs) = (self.window(rank), self.free(), self.rhs());
+        let components = self.components(&grid);
+        let free: Vec<bool> = components.iter().map(|&component| free[component]).collect();
+        let rhs: Vec<f64> = components.iter().map(|&component| rhs[component]).collect();
         let mut direct = Dissection::default();
-        direct.plan::<2, C>(wire, (self.slabs.bounds(), rank), &grid, free);
+        direct.plan::<2, C>(wire, (&self.slabs, rank), &grid, &free);
         let mut stencil = Stencil::<2, C>::new(&grid);
         stencil.keep(|_| true);
         let other = if precision == Precision::Double { Precision::Single } else { Precision::Double };
@@ -131,11 +150,10 @@ impl<const C: usize> System<C> {
             }
             assert!(direct.factorise(wire, precision, &stencil, 3.0));
         }
-        let owned = self.slabs.owned_layers(rank, grid.order());
-        let start = grid.layers().start;
-        let owned = (owned.start - start) * per_layer..(owned.end - start) * per_layer;
-        let mut solution = vec![f64::NAN; window.len()];
-        direct.solve(wire, owned, &self.rhs()[window], &mut solution);
+        let owned = grid.nodes_within(&self.slabs.owned(rank, (grid.order(), &grid.room()[1])));
+        let is_owned = |component: usize| owned.iter().any(|run| run.contains(&Nodal::<C>::node(component)));
+        let mut solution = vec![f64::NAN; rhs.len()];
+        direct.solve(wire, is_owned, &rhs, &mut solution);
         solution
     }
 
@@ -146,8 +164,7 @@ impl<const C: usize> System<C> {
         for (precision, least, most) in [(Precision::Double, 0.0, 1e-9), (Precision::Single, 1e-9, 1e-3)] {
             let mut largest = 0.0_f64;
             for (rank, found) in self.solutions(precision, 0).into_iter().enumerate() {
-                let layer = self.grid.layer_nodes() * C;
-                let expected = &dense[self.slabs.layers(rank, self.grid.order()).start * layer..][..found.len()];
+                let expected = self.components(&self.window(rank)).into_iter().map(|component| dense[component]);
                 assert!(found.iter().all(|x| x.is_finite()));
                 largest = found.iter().zip(expected).fold(largest, |most, (a, b)| most.max((a - b).abs()));
             }
