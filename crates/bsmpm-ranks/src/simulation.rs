@@ -123,7 +123,8 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
     }
 
     /// Everything that is large and must be kept to go on: the points' columns, and the displacement of the nodes that
-    /// this rank owns, from which the next step starts, with the numbers of a layer, or of a row where slabs have parts.
+    /// this rank owns, from which the next step starts, with the numbers of a layer, or of a row where slabs have
+    /// parts.
     #[allow(clippy::type_complexity)]
     pub fn arrays(&mut self) -> (Vec<(&'static str, &mut dyn Column)>, (Cow<'_, [f64]>, usize)) {
         let (owned, grid) = (self.halo.owned(), &self.model.grid);

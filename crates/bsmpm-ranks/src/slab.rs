@@ -2,8 +2,9 @@
 //! data, known to every rank, without MPI.
 //!
 //! A rank owns the cells of its columns and the node layers that begin in them; the last rank owns the q layers at the
-//! far end too. Its window reaches q ghost layers further, into the slab (or, of thin slabs, the slabs) behind. So it is
-//! with the rows of cells where slabs have parts: every slab has its own bounds there, and as many parts as all others.
+//! far end too. Its window reaches q ghost layers further, into the slab (or, of thin slabs, the slabs) behind. So it
+//! is with the rows of cells where slabs have parts: every slab has its own bounds there, and as many parts as all
+//! others.
 
 use std::ops::Range;
 
@@ -77,8 +78,8 @@ impl Slabs {
         Self { beyond, ..self }
     }
 
-    /// The same slabs, each of which is cut at its own rows of cells, the number of rows last: `None` if there is not such
-    /// a cut of every slab, all with as many parts that have cells, of all `rows` of the grid's room.
+    /// The same slabs, each of which is cut at its own rows of cells, the number of rows last: `None` if there is not
+    /// such a cut of every slab, all with as many parts that have cells, of all `rows` of the grid's room.
     pub fn parted(self, parts: Vec<Vec<usize>>, rows: &Range<usize>) -> Option<Self> {
         let count = parts.first().map_or(0, Vec::len);
         let whole = |part: &Vec<usize>| {

@@ -15,8 +15,9 @@ enum Parting {
 }
 
 impl Parting {
-    /// Parts of a slab for so many `ranks`, in a grid of so many `cells` along the two axes of which the `room` is taken
-    /// up: a divisor of the number of ranks, the least of those that serve alike. `None` if there are too many ranks.
+    /// Parts of a slab for so many `ranks`, in a grid of so many `cells` along the two axes of which the `room` is
+    /// taken up: a divisor of the number of ranks, the least of those that serve alike. `None` if there are too many
+    /// ranks.
     fn parts(self, ranks: usize, cells: [usize; 2], room: [usize; 2]) -> Option<usize> {
         let most = if self == Self::Never { 1 } else { ranks };
         let fits = |parts: &usize| ranks.is_multiple_of(*parts) && ranks / parts <= cells[0] && *parts <= cells[1];

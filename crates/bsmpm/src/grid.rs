@@ -247,7 +247,8 @@ impl<const D: usize> Grid<D> {
         })
     }
 
-    /// Local nodes of the window within a box of nodes (global) along the first two axes: as few ranges as there can be.
+    /// Local nodes of the window within a box of nodes (global) along the first two axes: as few ranges as there can
+    /// be.
     pub fn nodes_within(&self, [layers, rows]: &[Range<usize>; 2]) -> Vec<Range<usize>> {
         let (layer, row) = (self.layer_nodes(), self.layer_nodes() / self.nodes_along(1));
         let (first, start) = (self.window[0].start, self.window[1].start);

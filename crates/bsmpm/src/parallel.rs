@@ -8,8 +8,8 @@ use crate::grid::Contributions;
 use crate::nodal::Nodal;
 use std::ops::Range;
 
-/// The nodes of a window that are its rank's own: as many at the start of each of its first layers. All of a layer where
-/// ranks have slabs, a part of it where slabs are cut once more.
+/// The nodes of a window that are its rank's own: as many at the start of each of its first layers. All of a layer
+/// where ranks have slabs, a part of it where slabs are cut once more.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OwnedNodes {
     layers: usize,

@@ -48,8 +48,8 @@ pub fn find<K: Kinematics<D>, const D: usize>(
     let goes_on = |found: &Result<Found<K, D>, StepError>| found.as_ref().is_err_and(|error| !error.is_final());
     let by_newton = (flows && problem.model.nonlinear == Nonlinear::Auto).then(|| last.clone());
     let mut found = search(problem, method, last, (solver, counts));
-    // Of water Newton's method before another guess: of the steps that secants do not do from the first one it does more,
-    // and what neither does costs the same (`water.md`).
+    // Of water Newton's method before another guess: of the steps that secants do not do from the first one it does
+    // more, and what neither does costs the same (`water.md`).
     if let Some(last) = by_newton.filter(|_| goes_on(&found)) {
         found = search(problem, Nonlinear::Newton, last, (solver, counts));
     }

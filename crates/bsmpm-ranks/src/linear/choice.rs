@@ -27,8 +27,8 @@ const OPTIONS: [&str; 18] = [
     "-newton_ksp_pc_side",
     "right",
 ];
-/// Defaults of preconditioners that are applied in place of a solution: incomplete factors of the ranks' blocks, and the
-/// same as the smoother of multigrid, which what pointwise smoothers leave of nearly empty cells needs.
+/// Defaults of preconditioners that are applied in place of a solution: incomplete factors of the ranks' blocks, and
+/// the same as the smoother of multigrid, which what pointwise smoothers leave of nearly empty cells needs.
 const ROUGH: [&str; 10] = [
     "-sub_pc_type",
     "icc",

@@ -1,10 +1,11 @@
-//! A direct solver for symmetric positive definite systems on boxes of a grid: nested dissection of the grid, dense fronts.
+//! A direct solver for symmetric positive definite systems on boxes of a grid: nested dissection of the grid, dense
+//! fronts.
 //!
 //! Every rank eliminates what only its own cells touch (multifrontal Cholesky factorisation, Duff and Reid 1983, ACM
 //! Trans. Math. Softw. 9, 302-325), then neighbours pair up. Order, schedule and sums depend on the free components and
 //! the cut only: the same bits in every run on as many ranks. A rank holds the factor of its box and, but for the
-//! first one, a dense front of one cut, which of slabs does not become smaller with more ranks. The order comes from the grid's
-//! box of nodes, so that unknowns that come or go cost no analysis of a graph.
+//! first one, a dense front of one cut, which of slabs does not become smaller with more ranks. The order comes from
+//! the grid's box of nodes, so that unknowns that come or go cost no analysis of a graph.
 
 mod factor;
 mod front;

@@ -222,9 +222,9 @@ fn a_factor_of_single_precision_that_is_too_coarse_is_made_anew_on_1_2_and_3_ran
     }
 }
 
-/// More ranks than columns: slabs are cut along y. Any stiffness leads to the same state, but only the same one in as many iterations, to the same rest. Here dilations
-/// couple 2 q layers of nodes, which slabs of one column are much thinner than. Of the default factor, single precision
-/// is left.
+/// More ranks than columns: slabs are cut along y. Any stiffness leads to the same state, but only the same one in as
+/// many iterations, to the same rest. Here dilations couple 2 q layers of nodes, which slabs of one column are much
+/// thinner than. Of the default factor, single precision is left.
 #[test]
 fn the_stiffness_is_the_same_on_1_3_10_and_12_ranks_of_one_column_at_most() {
     let scratch = Scratch::with_case(&std::fs::read_to_string(shipped("short/strip_footing.toml")).unwrap());

@@ -24,7 +24,8 @@ const MOST: usize = 30;
 /// Loosest and tightest relative residual of a direction; between them it follows the force measure, so that the
 /// convergence stays quadratic (Dembo, Eisenstat and Steihaug, 1982).
 const FORCING: (f64, f64) = (1e-10, 1e-3);
-/// The loosest where water flows, and around a rough solver: what preconditions is no factor of the derivative, and each tenth takes products.
+/// The loosest where water flows, and around a rough solver: what preconditions is no factor of the derivative, and
+/// each tenth takes products.
 const LOOSE: f64 = 1e-1;
 /// Relative residual above which a direction is none.
 const USELESS: f64 = 0.5;

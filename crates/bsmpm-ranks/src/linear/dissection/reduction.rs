@@ -64,8 +64,8 @@ pub struct TreeReduction {
 }
 
 impl TreeReduction {
-    /// The front of the `rank` whose box leaves the `shared` components of the whole grid, ascending; `touching` are the
-    /// ranks from the first to the last one that touch a component. Collective.
+    /// The front of the `rank` whose box leaves the `shared` components of the whole grid, ascending; `touching` are
+    /// the ranks from the first to the last one that touch a component. Collective.
     pub fn new(
         link: &dyn Link,
         (rank, role): (usize, Role),
