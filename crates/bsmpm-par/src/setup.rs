@@ -65,7 +65,7 @@ fn parts(case: &Case, ranks: usize) -> Option<usize> {
 
 /// The linear solver of a run on so many ranks with further `options` of PETSc.
 pub fn linear(case: &Case, ranks: usize, options: &[String]) -> Choice {
-    let linear = &case.solver.linear;
+    let linear = &case.solver.linear_on(ranks);
     let dissection = linear.factor == Some(DISSECTION);
     Choice {
         dissection: dissection && !options.iter().any(|option| decides(option)),
@@ -153,6 +153,11 @@ fn linear_choices(case: &Case, linear: &Choice, ranks: usize) -> Vec<manifest::M
         let reason = "solver.reproducible: every rank factorises the whole system, as a parallel factorisation need not \
                       repeat to the bit";
         rows.push((if linear.dissection { "newton_pc_type" } else { "solver.linear.pc" }, "redundant", reason));
+    }
+    if case.solver.linear_on(ranks) != case.solver.linear {
+        let reason = "multigrid on several ranks need not repeat to the bit, as solver.reproducible wants; with false it takes \
+                      fewer iterations";
+        rows.push(("solver.linear", "incomplete-cholesky", reason));
     }
     if case.solver.reproducible && ranks > 1 && linear.whole_nodes() {
         rows.push(("solver.reproducible", "false", "multigrid on several ranks need not repeat to the bit"));

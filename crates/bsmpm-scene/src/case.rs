@@ -239,6 +239,18 @@ pub struct Solver {
     pub reproducible: bool,
 }
 
+impl Solver {
+    /// The linear solver on so many ranks: of what the program takes by size, what repeats to the bit there if it must.
+    pub fn linear_on(&self, ranks: usize) -> Linear {
+        match self.linear {
+            taken if taken.by_size && taken.pc == Pc::Gamg && self.reproducible && ranks > 1 => {
+                Linear { pc: Pc::Bjacobi, applications: 1, ..taken }
+            }
+            linear => linear,
+        }
+    }
+}
+
 /// The linear solver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Linear {
@@ -250,6 +262,8 @@ pub struct Linear {
     pub factor: Option<Factor>,
     /// So many times the preconditioner is applied in place of a solution; 0: there is a solution.
     pub applications: usize,
+    /// Whether the case leaves it to the program, which has taken what suits so many unknowns of a solid.
+    pub by_size: bool,
 }
 
 /// What is written besides tables with a row a step; without `every` and `times` there are no frames.

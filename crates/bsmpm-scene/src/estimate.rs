@@ -32,6 +32,8 @@ const VECTORS: u128 = (12 + 20 * 3) * 16;
 const ENTRY: u128 = 36;
 /// Bytes of an entry while the system is built; not there while a step is saved.
 const BUILT: u128 = 44;
+/// Bytes of an entry where an incomplete factor is applied, or multigrid: rows, value, and the factor's half of them.
+const ROUGH_ENTRY: u128 = 25;
 /// Bytes of an entry that every further rank holds where all factorise the whole system: it is sent, collected and
 /// copied.
 const REPEATED: u128 = 60;
@@ -80,6 +82,8 @@ pub struct Estimate {
     pub bytes: u64,
     /// Bytes that every further rank adds: the system again, where each factorises the whole.
     pub repeated: u64,
+    /// Bytes that more than one rank add all together: coordinates of entries, as rows are summed by several.
+    pub coordinates: u64,
     /// Bytes that Newton's system adds once a step needs it, where `auto` makes it only then.
     pub newton: u64,
     /// Bytes of that system that every further rank adds.
@@ -92,7 +96,8 @@ impl Estimate {
     pub fn bytes_on(&self, ranks: usize) -> u64 {
         let ranks = ranks as u64;
         let further = self.repeated.saturating_mul(ranks.saturating_sub(1));
-        self.bytes.saturating_add(PROCESS.saturating_mul(ranks)).saturating_add(further)
+        let coordinates = if ranks > 1 { self.coordinates } else { 0 };
+        self.bytes.saturating_add(PROCESS.saturating_mul(ranks)).saturating_add(further).saturating_add(coordinates)
     }
 
     /// The same once Newton's method is needed.
@@ -138,6 +143,8 @@ impl Systems {
         let again = u128::from(direct && solver.reproducible);
         let elastic = if solver.linear.factor == Some(Factor::Dissection) {
             [fronts, 0, 0]
+        } else if solver.linear.applications > 0 {
+            [entries * ROUGH_ENTRY, 0, 0]
         } else {
             [entries * ENTRY + factor, again * (entries * REPEATED + factor), entries * BUILT]
         };
@@ -248,6 +255,7 @@ impl Case {
             useful_ranks: bounded((dims * occupied / FEWEST).clamp(1, self.grid.spans(0) as u128)),
             bytes: bounded(bytes),
             repeated: bounded(systems.repeated + wet_repeated),
+            coordinates: bounded(if self.solver.linear.applications > 0 { entries * BUILT } else { 0 }),
             newton: bounded(systems.perhaps[0]),
             newton_repeated: bounded(systems.perhaps[1]),
         }

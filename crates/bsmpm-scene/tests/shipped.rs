@@ -194,12 +194,18 @@ const MEASURED: &[(&str, &[&str], usize, f64)] = &[
     ("rapid_drawdown", &["grid.cell=0.5"], 2, 147.6e6),
     ("validation/undrained_strip", &["grid.cell=0.0625"], 1, 351.3e6),
     ("validation/undrained_strip", &["grid.cell=0.0625"], 2, 413.7e6),
+    ("round_column", &[], 1, 126.1e6),
+    ("round_column", &[], 2, 212.3e6),
+    ("round_column", &["grid.cell=0.05", "solver.linear=\"direct\""], 1, 899.0e6),
+    ("round_column", &["grid.cell=0.05"], 1, 638.4e6),
+    ("round_column", &["grid.cell=0.05"], 2, 1303.3e6),
 ];
 
 /// The same by secants and, where they stalled, Newton's method.
 const MEASURED_WITH_NEWTON: &[(&str, &[&str], usize, f64)] = &[
     ("short/strip_footing", &["grid.cell=0.1", "body.0.points_per_cell=2", "analysis.steps=40"], 1, 157.9e6),
     ("short/strip_footing", &["grid.cell=0.1", "body.0.points_per_cell=1"], 1, 142.1e6),
+    ("round_column", &["grid.cell=0.025", "solver.linear=\"incomplete-cholesky\""], 2, 11403.1e6),
 ];
 
 #[test]
@@ -255,4 +261,25 @@ fn the_coarse_column_moves_its_free_top_outward() {
     let note = case.notes.iter().find(|note| note.key == "grid.upper.1").unwrap();
     assert!(note.reason.contains("outward"), "{note:?}");
     assert_eq!(case.points(), 800);
+}
+
+/// By unknowns, Poisson's ratio and what must repeat to the bit.
+#[test]
+fn the_linear_solver_of_a_solid_is_taken_by_size() {
+    let text = load(&cases().join("round_column.toml")).unwrap();
+    let on = |ranks: usize, set: &[&str]| {
+        let overrides: Vec<String> = set.iter().map(ToString::to_string).collect();
+        let case = Case::from_bytes("round_column", &text, &overrides).unwrap();
+        let linear = case.solver.linear_on(ranks);
+        (linear.pc.to_string(), linear.applications)
+    };
+    let found = |pc: &str, applications: usize| (pc.to_owned(), applications);
+    assert_eq!(on(1, &[]), found("cholesky", 0));
+    assert_eq!(on(2, &["grid.cell=0.05"]), found("bjacobi", 1));
+    assert_eq!(on(1, &["grid.cell=0.05", "material.sand.poisson=0.49"]), found("cholesky", 0));
+    assert_eq!(on(1, &["grid.cell=0.05", "solver.linear=\"direct\""]), found("cholesky", 0));
+    let many = "grid.cell=0.025";
+    assert_eq!(on(1, &[many]), found("gamg", 2));
+    assert_eq!(on(2, &[many]), found("bjacobi", 1));
+    assert_eq!(on(2, &[many, "solver.reproducible=false"]), found("gamg", 2));
 }
