@@ -166,7 +166,9 @@ fn takes(key: &Key) -> String {
         Kind::Profile(of, range, table) => ranged(format!("{of}, or {}", quoted(table)), range),
         Kind::Pair(of, range) => ranged(format!("`[x, y]`, each {of}"), range),
         Kind::Vector(of, range) => ranged(format!("`[x, y]`, of a solid `[x, y, z]`, each {of}"), range),
-        Kind::PairProfile(of, range, table) => ranged(format!("`[x, y]`, each {of}, or {}", quoted(table)), range),
+        Kind::PairProfile(of, range, table) => {
+            ranged(format!("`[x, y]`, of a solid `[x, y, z]`, each {of}, or {}", quoted(table)), range)
+        }
         Kind::Either(of, range) => ranged(format!("{of}, or `[x, y]`, of a solid `[x, y, z]`"), range),
         Kind::List(of, range) => ranged(format!("a list, each {of}"), range),
         Kind::Rows(columns) => {

@@ -109,6 +109,11 @@ impl Region {
         self.vertical(at[0]).into_iter().map(length).sum()
     }
 
+    /// Whether a place of a solid lies inside, m in the case's coordinates.
+    pub(crate) fn contains_in_space(&self, at: [f64; 3]) -> bool {
+        matches!(self, Self::Solid(volume) if volume.contains(at))
+    }
+
     /// Whether a place lies inside, m in the case's coordinates.
     pub(crate) fn contains(&self, at: [f64; 2]) -> bool {
         self.vertical(at[0]).iter().any(|[lower, upper]| *lower < at[1] && at[1] < *upper)

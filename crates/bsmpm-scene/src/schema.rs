@@ -230,7 +230,7 @@ impl fmt::Display for Kind {
             Self::Measure => f.write_str("a number, or a string with a unit"),
             Self::Pair(dimension, _) => write!(f, "a list of two, each {}", Quantity(*dimension)),
             Self::PairProfile(dimension, _, table) => {
-                write!(f, "a list of two, each {}, or {}", Quantity(*dimension), table.header)
+                write!(f, "a list of two (solid: of three), each {}, or {}", Quantity(*dimension), table.header)
             }
             Self::Vector(dimension, _) => {
                 write!(f, "a list of two (solid: of three), each {}", Quantity(*dimension))

@@ -84,8 +84,14 @@ pub fn loads<K: Kinematics<D>, const D: usize>(case: &Case, grid: &Grid<D>, t: f
             LoadedLine::Circle { center, radius } => {
                 around::<K, D>(grid, &place(center), radius, across).into_iter().unzip()
             }
+            LoadedLine::Rectangle { lower, upper } => {
+                let [from, to] = [lower, upper].map(|corner| vector::<D, _>(corner) - vector(case.grid.lower()));
+                let flat = (0..D).find(|&axis| from[axis] == to[axis]);
+                let normal = Vector::from_fn(|axis, _| f64::from(u8::from(flat == Some(axis))));
+                surface::over::<K, D>(grid, &from, &to, across).into_iter().map(|point| (point, normal)).unzip()
+            }
         };
-        let height = |point: &SurfacePoint<D>| point.x[1] + case.grid.lower()[1];
+        let height = |point: &SurfacePoint<D>| point.x[D - 1] + case.grid.lower()[D - 1];
         let (values, follows) = match traction.push {
             Push::Stress(stress) => {
                 let pushed = points.iter().map(|point| vector(stress.map(|along| along.at(height(point)))));

@@ -83,20 +83,28 @@ pub enum Line {
         /// its radius
         radius: f64,
     },
+    /// m  of a solid a rectangle: a box without extent along one axis
+    Rectangle {
+        /// its lower corner
+        lower: [f64; 3],
+        /// its upper corner
+        upper: [f64; 3],
+    },
 }
 
 /// What a traction is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Push {
-    /// Pa  force per area of the start, along x and y, by the height at the start in the case's coordinates; direction
+    /// Pa  force per area of the start, along the axes, by the height at the start in the case's coordinates; direction
     /// and force stay
-    Stress([Profile; 2]),
+    Stress([Profile; 3]),
     /// Pa  against the body, by the height at the start in the case's coordinates; it turns and stretches with the
     /// surface
     Pressure {
         /// the pressure
         profile: Profile,
-        /// 1 where the body lies on the left of a segment from its first end, or inside a circle, else -1
+        /// 1 where the body lies on the left of a segment from its first end, inside a circle, or beyond a rectangle
+        /// along its normal, else -1
         side: f64,
     },
 }
@@ -106,7 +114,7 @@ impl Traction {
     pub fn ends(&self) -> Option<[[f64; 2]; 2]> {
         match self.line {
             Line::Segment { from, to } => Some([from, to]),
-            Line::Circle { .. } => None,
+            Line::Circle { .. } | Line::Rectangle { .. } => None,
         }
     }
 
@@ -115,10 +123,11 @@ impl Traction {
         let ends = match self.line {
             Line::Segment { from, to } => [from[1], to[1]],
             Line::Circle { center, radius } => [center[1] - radius, center[1] + radius],
+            Line::Rectangle { lower, upper } => [lower[2], upper[2]],
         };
-        let [low, high] = ends.map(|y| match self.push {
-            Push::Stress([along_x, along_y]) => along_x.at(y).hypot(along_y.at(y)),
-            Push::Pressure { profile, .. } => profile.at(y).abs(),
+        let [low, high] = ends.map(|height| match self.push {
+            Push::Stress(stress) => stress.iter().fold(0.0, |sum: f64, along| sum.hypot(along.at(height))),
+            Push::Pressure { profile, .. } => profile.at(height).abs(),
         });
         low.max(high)
     }

@@ -33,10 +33,10 @@ pub(super) fn read(
         },
         Kind::Rows(columns) => reader.rows(node, columns),
         Kind::Measure => reader.measure(node),
-        Kind::Pair(dimension, range) | Kind::PairProfile(dimension, range, _) => {
-            reader.quantities(node, *dimension, range, Some(2))
+        Kind::Pair(dimension, range) => reader.quantities(node, *dimension, range, Some(2)),
+        Kind::Vector(dimension, range) | Kind::PairProfile(dimension, range, _) => {
+            reader.quantities(node, *dimension, range, Some(dims))
         }
-        Kind::Vector(dimension, range) => reader.quantities(node, *dimension, range, Some(dims)),
         Kind::List(dimension, range) => reader.quantities(node, *dimension, range, None),
         Kind::Either(dimension, range) => match node.value {
             Value::List(_) => reader.quantities(node, *dimension, range, Some(dims)),

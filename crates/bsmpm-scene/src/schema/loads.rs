@@ -118,16 +118,22 @@ static RUBS: Table = Table {
 
 pub(super) static TRACTION: Table = Table {
     header: "[[traction]]",
-    doc: "A load on a segment of a body's surface, or on a circle, which it follows",
+    doc: "A load on a segment of a body's surface, on a circle, or of a solid on a rectangle, which it follows",
     keys: &[
         key("from", PLACE, Optional, "one end of the segment at the start"),
         key("to", PLACE, Optional, "the other end"),
         key("circle", Kind::Table(&body::CIRCLE), Optional, "a circle instead: the part of it inside the grid"),
         key(
+            "rectangle",
+            Kind::Table(&body::BOX),
+            Optional,
+            "of a solid, instead: a rectangle along the axes, a box whose corners are alike along one of them",
+        ),
+        key(
             "stress",
             PairProfile(In::Stress, Range::ANY, &STRESSES_PROFILE),
             Optional,
-            "force per area of the start, along x and y",
+            "force per area of the start, along the axes; by depth in a plane only",
         ),
         key(
             "pressure",
@@ -146,8 +152,8 @@ pub(super) static TRACTION: Table = Table {
         key("name", Name, Optional, "what stages call it"),
     ],
     exclusive: &[
-        one_of(&["from", "circle"], true),
-        one_of(&["to", "circle"], true),
+        one_of(&["from", "circle", "rectangle"], true),
+        one_of(&["to", "circle", "rectangle"], true),
         one_of(&["stress", "pressure"], true),
         one_of(&["ramp", "amplitude"], false),
     ],

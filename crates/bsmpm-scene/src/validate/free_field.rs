@@ -55,6 +55,7 @@ fn acts_between(case: &Case, (lower, higher): (f64, f64)) -> Option<&'static str
     let line = |line: &LoadedLine| match line {
         LoadedLine::Segment { from, to } => within(from[0], to[0]),
         LoadedLine::Circle { center, radius } => within(center[0] - radius, center[0] + radius),
+        LoadedLine::Rectangle { lower, upper } => within(lower[0], upper[0]),
     };
     let site = |site: &Site| match site {
         Site::Face(face) => face.axis == 1,

@@ -1,7 +1,7 @@
 //! Tractions, point loads, and the stress at the start.
 
 use super::material::profile;
-use super::place::{along, at_body, beyond, ring};
+use super::place::{along, at_body, at_volume, beyond, over, ring};
 use super::strip::{AroundStrip, segment};
 use crate::case::{Acting, Body, Case, Gravity, Initial, LoadedLine, NamedMaterial, PointLoad, Push, Traction};
 use crate::record::Record;
@@ -33,6 +33,9 @@ fn line(record: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Op
         acts_on_body(record, "circle", places.into_iter(), around, report);
         return Some(LoadedLine::Circle { center, radius });
     }
+    if record.gives("rectangle") {
+        return rectangle(record, around, report);
+    }
     let [from, to] = segment(record, around, report)?;
     acts_on_body(record, "from", along([from, to]), around, report);
     Some(LoadedLine::Segment { from, to })
@@ -56,11 +59,37 @@ pub(super) fn circle(
     Some((center, radius, places))
 }
 
-/// A stress along x and y, by depth.
-fn stresses(record: &Record) -> Option<[Profile; 2]> {
-    let Some(table) = record.record("stress") else { return record.pair("stress").map(|of| of.map(Profile::constant)) };
+/// A rectangle in space inside the grid, on a body everywhere.
+fn rectangle(record: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Option<LoadedLine> {
+    let (table, grid, bodies) = (record.record("rectangle")?, around.grid?, around.bodies?);
+    let (lower, upper) = (table.vector("lower")?, table.vector("upper")?);
+    let flat = (0..3).filter(|&axis| lower[axis] == upper[axis]).count();
+    if flat != 1 || (0..3).any(|axis| lower[axis] > upper[axis]) {
+        let message =
+            format!("{lower:?} to {upper:?} is no rectangle; allowed: alike along one axis, more along the others");
+        record.error("rectangle", message, report);
+        return None;
+    }
+    if let Some(message) = [lower, upper].into_iter().find_map(|corner| beyond(grid, corner)) {
+        record.error("rectangle", message, report);
+        return None;
+    }
+    if let Some(at) = over([lower, upper]).find(|at| !at_volume(bodies, grid, *at)) {
+        let message = format!("no body is at {at:?} at the start; allowed: half a spacing of points from one");
+        record.error("rectangle", message, report);
+        return None;
+    }
+    Some(LoadedLine::Rectangle { lower, upper })
+}
+
+/// A stress along the axes, by depth.
+fn stresses(record: &Record) -> Option<[Profile; 3]> {
+    let Some(table) = record.record("stress") else {
+        return record.vector("stress").map(|of| of.map(Profile::constant));
+    };
     let (value, at, growth) = (table.pair("value")?, table.number("at_y")?, table.pair("per_metre")?);
-    Some([0, 1].map(|axis| Profile { value: value[axis], at, per_metre: growth[axis] }))
+    let along = |axis: usize| Profile { value: value[axis], at, per_metre: growth[axis] };
+    Some([along(0), along(1), Profile::constant(0.0)])
 }
 
 /// What a traction is; of a pressure on which side the body lies.
@@ -79,6 +108,11 @@ fn push(record: &Record, line: LoadedLine, around: AroundStrip<'_>, report: &mut
             along([from, to]).filter(|at| holds([at[0] + x, at[1] + y])).count()
         }
         LoadedLine::Circle { center, radius } => ring(center, radius - side * off).filter(|at| holds(*at)).count(),
+        LoadedLine::Rectangle { lower, upper } => {
+            let by: [f64; 3] = std::array::from_fn(|axis| if lower[axis] == upper[axis] { side * off } else { 0.0 });
+            let inside = |at: [f64; 3]| bodies.iter().any(|body| body.region.contains_in_space(at));
+            over([lower, upper]).filter(|at| inside(std::array::from_fn(|axis| at[axis] + by[axis]))).count()
+        }
     };
     let (left, right) = (count(1.0), count(-1.0));
     if left.abs_diff(right) * 2 < left.max(right) {

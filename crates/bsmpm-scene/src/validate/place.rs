@@ -10,6 +10,8 @@ use crate::words::Side;
 const ROUNDING: f64 = 1e-9;
 /// Places along a line at which bodies are looked for.
 const SAMPLES: usize = 101;
+/// Places along either edge of a rectangle in space at which bodies are looked for.
+const RASTER: usize = 21;
 /// Places of a circle at which bodies are looked for.
 const RING: usize = 180;
 /// Directions in which a body is looked for around a place.
@@ -61,6 +63,28 @@ pub(super) fn at_body(bodies: &[Body], grid: &GridSpec, at: [f64; 2]) -> bool {
         let [lower, upper] = body.bounds();
         let near = (0..2).all(|axis| at[axis] >= lower[axis] - half && at[axis] <= upper[axis] + half);
         near && DISTANCES.iter().any(|part| (0..DIRECTIONS).any(|k| body.region.contains(around(k, *part))))
+    })
+}
+
+/// Places in the middles of equal pieces of a rectangle in space.
+pub(super) fn over([lower, upper]: [[f64; 3]; 2]) -> impl Iterator<Item = [f64; 3]> {
+    let pieces = move |axis: usize| if lower[axis] == upper[axis] { 1 } else { RASTER };
+    let place = move |k: [usize; 3]| -> [f64; 3] {
+        std::array::from_fn(|axis| {
+            lower[axis] + (upper[axis] - lower[axis]) * (k[axis] as f64 + 0.5) / pieces(axis) as f64
+        })
+    };
+    let [along_x, along_y, along_z] = [0, 1, 2].map(pieces);
+    (0..along_x * along_y * along_z).map(move |n| place([n / along_z / along_y, n / along_z % along_y, n % along_z]))
+}
+
+/// As [`at_body`] of a solid.
+pub(super) fn at_volume(bodies: &[Body], grid: &GridSpec, at: [f64; 3]) -> bool {
+    let shortest = grid.axes.iter().map(|axis| axis.shortest()).fold(f64::INFINITY, f64::min);
+    bodies.iter().any(|body| {
+        let half = 0.5 * shortest / body.points_per_cell as f64;
+        let off = |k: usize| [-half, 0.0, half][k];
+        (0..27).any(|n| body.region.contains_in_space([at[0] + off(n / 9), at[1] + off(n / 3 % 3), at[2] + off(n % 3)]))
     })
 }
 

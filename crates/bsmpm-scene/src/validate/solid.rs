@@ -13,8 +13,7 @@ const IN_A_PLANE: &[(&str, &str)] = &[
     ("footing", "use plane strain or another geometry that has strips"),
     ("prescribed", "use plane strain or another geometry that has strips"),
     ("rigid", "use plane strain"),
-    ("traction", "load it by gravity or by the weight of another body"),
-    ("point_load", "load it by gravity or by the weight of another body"),
+    ("point_load", "use a [[traction]] on a rectangle"),
     ("stage", "write a case for every stage, or use plane strain"),
     ("profile", "use histories at places, or frames"),
 ];
@@ -50,6 +49,14 @@ pub(super) fn refuse(root: &Record, report: &mut Report<'_>) {
             drain.error(key, "not available in a solid yet: name a face of the grid", report);
         }
     }
+    for traction in root.records("traction") {
+        for key in ["from", "to", "circle"].into_iter().filter(|key| traction.gives(key)) {
+            traction.error(key, "is in a plane; a solid is loaded on a rectangle = { lower, upper }", report);
+        }
+        for key in ["stress", "pressure"].into_iter().filter(|key| traction.record(key).is_some()) {
+            traction.error(key, "by depth in a plane only: one value", report);
+        }
+    }
     for body in root.records("body").iter().filter(|body| body.gives("spin")) {
         body.error("spin", "not available in a solid yet: give velocity", report);
     }
@@ -65,6 +72,9 @@ pub(super) fn refuse(root: &Record, report: &mut Report<'_>) {
 
 /// Of a plane what only a solid has.
 fn in_space(root: &Record, report: &mut Report<'_>) {
+    for traction in root.records("traction").iter().filter(|traction| traction.gives("rectangle")) {
+        traction.error("rectangle", "is in space: geometry = \"solid\" has it; here from and to", report);
+    }
     if let Some(boundary) = root.record("boundary") {
         for side in [Side::Front, Side::Back].into_iter().filter(|side| boundary.gives(side.word())) {
             boundary.error(side.word(), "a plane has no such face: geometry = \"solid\" has", report);

@@ -348,6 +348,7 @@ fn surfaces<'a>(case: &Case, root: &'a Record) -> Vec<(&'a Record, &'static str,
         found.push(match traction.line {
             LoadedLine::Segment { from, to } => (record, "from", line([from, to])),
             LoadedLine::Circle { center, radius } => (record, "circle", place::ring(center, radius).collect()),
+            LoadedLine::Rectangle { .. } => continue,
         });
     }
     for (load, record) in case.point_loads.iter().zip(root.records("point_load")) {

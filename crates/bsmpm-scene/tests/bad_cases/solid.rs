@@ -4,6 +4,8 @@ use super::{Row, row};
 
 const BOX: &str = "box = { lower = [0.0, 0.0, 0.0], upper = [2.0, 3.0, 1.0] }";
 
+const LOADED: &str = "rectangle = { lower = [0.5, 1.0, 1.0], upper = [1.5, 2.0, 1.0] }";
+
 const FLOWS: &str = "density = 2000\nporosity = 0.4\ndrainage = \"coupled\"\npermeability = [1e-6, 1e-7, 1e-6]\n\
     [water]\nlevel = 1.0\n[[drain]]\nsurface = true\n";
 const PERMEABLE: &str = "density = 2000\nporosity = 0.4\ndrainage = \"coupled\"\npermeability = [1e-6, 1e-7]\n";
@@ -70,6 +72,27 @@ pub const SOLID: &[Row] = &[
         "point_load",
         "not available in a solid yet",
     ),
+    row(
+        LOADED,
+        "rectangle = { lower = [0.5, 1.0, 0.5], upper = [1.5, 2.0, 1.0] }",
+        "traction.0.rectangle",
+        "no rectangle",
+    ),
+    row(
+        LOADED,
+        "rectangle = { lower = [0.5, 1.0, 1.0], upper = [1.5, 3.5, 1.0] }",
+        "traction.0.rectangle",
+        "ends at y",
+    ),
+    row(LOADED, "rectangle = { lower = [0.5, 1.0, 2.0], upper = [1.5, 2.0, 2.0] }", "traction.0.rectangle", "no body"),
+    row(LOADED, "from = [0, 1]\nto = [1, 1]", "traction.0.from", "loaded on a rectangle"),
+    row("stress = [0.0, \"1 kPa\", \"-2 kPa\"]", "stress = [0.0, \"-2 kPa\"]", "traction.0.stress", "solid: of three"),
+    row(
+        "stress = [0.0, \"1 kPa\", \"-2 kPa\"]",
+        "pressure = { value = \"2 kPa\", at_y = 1.0, per_metre = \"1 kPa/m\" }",
+        "traction.0.pressure",
+        "one value",
+    ),
     row("density = 2000", "density = 2000\nru = 1.2", "material.soil.ru", "allowed: 0 < ru < 1").down(1),
     row(
         "velocity = [0.0, 0.0, -1.0]",
@@ -86,6 +109,13 @@ pub const IN_A_PLANE: &[Row] = &[
     row("bottom = \"fixed\"", "bottom = \"fixed\"\nfront = \"fixed\"", "boundary.front", "a plane has no such face")
         .down(1),
     row("lower = [0.0, 0.0]\nupper", "lower = [0.0, 0.0, 0.0]\nupper", "grid.lower", "a list of two"),
+    row(
+        "bottom = \"fixed\"",
+        "bottom = \"fixed\"\n[[traction]]\nrectangle = { lower = [0, 1], upper = [1, 1] }\nstress = [0, 1]",
+        "traction.0.rectangle",
+        "is in space",
+    )
+    .down(2),
     row(
         "box = { lower = [0.0, 0.0], upper = [2.0, 1.0] }",
         "sphere = { center = [1.0, 1.0], radius = 0.5 }",

@@ -302,7 +302,7 @@ fn strips_loads_and_initial_stress_arrive() {
     assert_eq!(case.prescribed[1].path.rows, [(0.5, [0.0, -0.1]), (1.0, [0.0, 0.0])]);
     assert_eq!(
         (case.tractions[0].push, case.tractions[0].ramp),
-        (Push::Stress([0.0, -2e4].map(Profile::constant)), 0.5)
+        (Push::Stress([0.0, -2e4, 0.0].map(Profile::constant)), 0.5)
     );
     assert_eq!((case.point_loads[0].at, case.point_loads[0].force), ([3.5, 1.25], [0.0, -1e3]));
     assert_eq!(case.initial, Some(Initial::AtRest(vec![0.5, 0.5, 0.5, 0.6])));

@@ -37,6 +37,60 @@ pub fn along<K: Kinematics<D>, const D: usize>(
     to: &Vector<D>,
     count: usize,
 ) -> Vec<SurfacePoint<D>> {
+    let cuts = cuts(grid, from, to);
+    let length = (to - from).norm();
+    let piece = |part: &[f64], k: usize| {
+        let share = (part[1] - part[0]) / count as f64;
+        let x = from + (to - from) * (part[0] + (k as f64 + 0.5) * share);
+        SurfacePoint { x, area: share * length * K::weight(&x) }
+    };
+    cuts.windows(2).flat_map(|part| (0..count).map(move |k| piece(part, k))).collect()
+}
+
+/// Points in the middles of `count` by `count` equal pieces of every part of a rectangle along the axes that the grid's
+/// lines cut off: a box from `lower` to `upper`, m from the grid's lower corner, without extent along one axis.
+pub fn over<K: Kinematics<D>, const D: usize>(
+    grid: &Grid<D>,
+    lower: &Vector<D>,
+    upper: &Vector<D>,
+    count: usize,
+) -> Vec<SurfacePoint<D>> {
+    let mut points = vec![SurfacePoint { x: *lower, area: 1.0 }];
+    for axis in (0..D).filter(|&axis| upper[axis] > lower[axis]) {
+        let mut end = *lower;
+        end[axis] = upper[axis];
+        let line = along_axis(grid, (lower, &end), axis, count);
+        let across = |point: SurfacePoint<D>| {
+            line.iter().map(move |&(at, length)| {
+                let mut x = point.x;
+                x[axis] = at;
+                SurfacePoint { x, area: point.area * length }
+            })
+        };
+        points = points.into_iter().flat_map(across).collect();
+    }
+    points.iter_mut().for_each(|point| point.area *= K::weight(&point.x));
+    points
+}
+
+/// Middles and lengths of the pieces of an edge along an axis, m.
+fn along_axis<const D: usize>(
+    grid: &Grid<D>,
+    (from, to): (&Vector<D>, &Vector<D>),
+    axis: usize,
+    count: usize,
+) -> Vec<(f64, f64)> {
+    let (start, length) = (from[axis], to[axis] - from[axis]);
+    let piece = |part: &[f64], k: usize| {
+        let share = (part[1] - part[0]) / count as f64;
+        (start + length * (part[0] + (k as f64 + 0.5) * share), length * share)
+    };
+    let cuts = cuts(grid, from, to);
+    cuts.windows(2).flat_map(|part| (0..count).map(move |k| piece(part, k))).collect()
+}
+
+/// Parts of the way along a straight segment at which the grid's lines cut it, its ends among them.
+fn cuts<const D: usize>(grid: &Grid<D>, from: &Vector<D>, to: &Vector<D>) -> Vec<f64> {
     let mut cuts = vec![0.0, 1.0];
     for (axis, knots) in grid.axes().iter().enumerate() {
         let reach = to[axis] - from[axis];
@@ -47,13 +101,7 @@ pub fn along<K: Kinematics<D>, const D: usize>(
     }
     cuts.sort_by(f64::total_cmp);
     cuts.dedup_by(|b, a| *b - *a < 1e-9);
-    let length = (to - from).norm();
-    let piece = |part: &[f64], k: usize| {
-        let share = (part[1] - part[0]) / count as f64;
-        let x = from + (to - from) * (part[0] + (k as f64 + 0.5) * share);
-        SurfacePoint { x, area: share * length * K::weight(&x) }
-    };
-    cuts.windows(2).flat_map(|part| (0..count).map(move |k| piece(part, k))).collect()
+    cuts
 }
 
 /// What the surfaces carry from step to step; the same on every rank.

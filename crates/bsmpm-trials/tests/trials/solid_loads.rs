@@ -1,0 +1,170 @@
+//! Loads on the surfaces of solids by the real binary: against closed forms, and force against reaction.
+
+use crate::support::Scratch;
+use crate::support::cases::changed;
+use crate::support::results::{at, history};
+
+/// A cube on three rollers that is loaded along one axis.
+const CUBE: &str = r#"
+geometry = "solid"
+[analysis]
+type = "quasi-static"
+steps = 1
+[grid]
+lower = [0, 0, 0]
+upper = [1.5, 1.5, 1.5]
+cell = 0.25
+order = "quadratic"
+[material.soil]
+model = "hencky"
+young = "1 MPa"
+poisson = 0.3
+[[body]]
+material = "soil"
+box = { lower = [0, 0, 0], upper = [1, 1, 1] }
+points_per_cell = 2
+[[traction]]
+rectangle = { lower = [0, 0, 1], upper = [1, 1, 1] }
+stress = [0, 0, "-100 kPa"]
+ramp = 1.0
+[boundary]
+left = "roller"
+front = "roller"
+bottom = "roller"
+[solver]
+background = 0
+tolerance = 1e-18
+force_tolerance = 1e-12
+[[history]]
+quantity = "displacement"
+at = [1, 1, 1]
+"#;
+
+/// The root of `f` between two places, by halves.
+fn root(f: impl Fn(f64) -> f64, mut ends: [f64; 2]) -> f64 {
+    for _ in 0..60 {
+        let middle = 0.5 * (ends[0] + ends[1]);
+        ends[usize::from(f(middle) * f(ends[0]) <= 0.0)] = middle;
+    }
+    ends[0]
+}
+
+/// Kirchhoff's stress is E ln(lambda) along the load; a dead load has lambda of it, a pressure J.
+#[test]
+fn a_cube_under_a_dead_load_and_under_a_pressure_is_that_of_henckys_law() {
+    let (young, poisson, load) = (1e6, 0.3, 1e5);
+    let dead = root(|l| young * f64::ln(l) + load * l, [0.5, 1.0]);
+    let pressed = root(|l| young * f64::ln(l) + load * f64::powf(l, 1.0 - 2.0 * poisson), [0.5, 1.0]);
+    let top = "{ lower = [0, 0, 1], upper = [1, 1, 1] }\nstress = [0, 0, \"-100 kPa\"]";
+    let right = "{ lower = [1, 0, 0], upper = [1, 1, 1] }\nstress = [\"-100 kPa\", 0, 0]";
+    let back = "{ lower = [0, 1, 0], upper = [1, 1, 1] }\npressure = \"100 kPa\"";
+    for (number, (axis, line, expected)) in
+        [("z", top, dead), ("x", right, dead), ("y", back, pressed)].into_iter().enumerate()
+    {
+        // In one step points stand where they integrate exactly; a pressure knows the surface of the step before.
+        let (steps, bound) = if axis == "y" { ("steps = 2", 1e-3) } else { ("steps = 1", 1e-9) };
+        let scratch = Scratch::with_case(&changed(&changed(CUBE, top, line), "steps = 1", steps));
+        scratch.mpirun(1 + number % 2, &["case.toml", "-q", "-o", "out"]).expect(0);
+        let table = history(&scratch.path("out"));
+        for along in ["x", "y", "z"] {
+            let stretch = 1.0 + at(&table, &format!("displacement-{along}"), 1.0);
+            let expected = if along == axis { expected } else { expected.powf(-poisson) };
+            println!("{axis}, {along}: {stretch} for {expected}");
+            assert!((stretch - expected).abs() < bound, "{axis}, {along}: {stretch} for {expected}");
+        }
+    }
+}
+
+/// What acts on a part of a face that the cells do not share, in all directions, is what the base holds.
+#[test]
+fn the_base_holds_what_acts_on_a_part_of_a_face() {
+    let rollers = "left = \"roller\"\nfront = \"roller\"\nbottom = \"roller\"";
+    let held = changed(CUBE, rollers, "bottom = \"fixed\"");
+    let part = "{ lower = [0.1, 0.3, 1], upper = [0.7, 0.85, 1] }\nstress = [\"1 kPa\", \"-2 kPa\", \"3 kPa\"]";
+    let top = "{ lower = [0, 0, 1], upper = [1, 1, 1] }\nstress = [0, 0, \"-100 kPa\"]";
+    let held = changed(&held, top, part);
+    let wanted = "[[history]]\nquantity = \"reaction\"\nface = \"bottom\"\n";
+    let scratch = Scratch::with_case(&format!("{held}{wanted}"));
+    scratch.mpirun(2, &["case.toml", "-q", "-o", "out"]).expect(0);
+    let table = history(&scratch.path("out"));
+    for (along, stress) in [("x", 1e3), ("y", -2e3), ("z", 3e3)] {
+        let force = at(&table, &format!("reaction-{along}"), 1.0);
+        assert!((force + 0.6 * 0.55 * stress).abs() < 1e-6, "{along}: {force}");
+    }
+}
+
+/// A bar of square section that is held at one end, 4 and 8 cells across.
+const BAR: &str = r#"
+geometry = "solid"
+[analysis]
+type = "quasi-static"
+steps = 1
+[grid]
+lower = [0, 0, 0]
+upper = [2.25, 0.75, 0.75]
+cell = 0.125
+order = "quadratic"
+[material.soil]
+model = "hencky"
+young = "1 MPa"
+poisson = 0.3
+[[body]]
+material = "soil"
+box = { lower = [0, 0.125, 0.125], upper = [2, 0.625, 0.625] }
+points_per_cell = 2
+[boundary]
+left = "fixed"
+[solver]
+linear = "direct"
+tolerance = 1e-14
+force_tolerance = 1e-9
+"#;
+
+/// What a bar's end moves by under tractions there, of `places` along its axis and of height z.
+fn bar(loads: &[([f64; 2], [f64; 2], [f64; 3])], cell: f64, places: &[(f64, f64)]) -> Vec<[f64; 3]> {
+    let loads = loads.iter().map(|(lower, upper, stress)| {
+        let [lower, upper] = [lower, upper].map(|[y, z]| format!("[2, {y}, {z}]"));
+        format!("[[traction]]\nrectangle = {{ lower = {lower}, upper = {upper} }}\nstress = {stress:?}\nramp = 1.0\n")
+    });
+    let told = places.iter().enumerate().map(|(number, (x, z))| {
+        format!("[[history]]\nname = \"at{number}\"\nquantity = \"displacement\"\nat = [{x}, 0.375, {z}]\n")
+    });
+    let bar = changed(BAR, "cell = 0.125", &format!("cell = {cell}"));
+    let scratch = Scratch::with_case(&format!("{bar}{}{}", loads.collect::<String>(), told.collect::<String>()));
+    scratch.direct(&["case.toml", "-q", "-o", "out"]).expect(0);
+    let table = history(&scratch.path("out"));
+    let moved = |number: usize| ["x", "y", "z"].map(|along| at(&table, &format!("at{number}-{along}"), 1.0));
+    (0..places.len()).map(moved).collect()
+}
+
+/// Timoshenko's beam with Cowper's (1966) coefficient of shear; Saint-Venant's torsion of a square, whose constant is
+/// .1406 of the edge's fourth power.
+#[test]
+fn a_bar_bends_and_twists_as_beams_do() {
+    let (young, poisson, edge, length) = (1e6, 0.3, 0.5_f64, 2.0_f64);
+    let shear = young / (2.0 * (1.0 + poisson));
+    let whole = [([0.125, 0.125], [0.625, 0.625], [0.0, 0.0, -10.0])];
+    let force = 10.0 * edge * edge;
+    let bending = force * length.powi(3) / (3.0 * young * edge.powi(4) / 12.0);
+    let coefficient = 10.0 * (1.0 + poisson) / (12.0 + 11.0 * poisson);
+    let expected = bending + force * length / (coefficient * shear * edge * edge);
+    let found = -bar(&whole, 0.125, &[(2.0, 0.375)])[0][2] / expected;
+    println!("bending: {found}");
+    assert!((found - 1.0).abs() < 0.005, "{found}");
+    // Strips along the four edges of the end, a quarter of it wide.
+    let stress = 100.0;
+    let strips = [
+        ([0.125, 0.5], [0.625, 0.625], [0.0, -stress, 0.0]),
+        ([0.125, 0.125], [0.625, 0.25], [0.0, stress, 0.0]),
+        ([0.5, 0.125], [0.625, 0.625], [0.0, 0.0, stress]),
+        ([0.125, 0.125], [0.25, 0.625], [0.0, 0.0, -stress]),
+    ];
+    let torque = 4.0 * 0.1875 * 0.125 * edge * stress;
+    let rate = torque / (shear * 0.1406 * edge.powi(4));
+    for (cell, bound) in [(0.125, 0.06), (0.0625, 0.015)] {
+        let moved = bar(&strips, cell, &[(0.5, 0.625), (1.5, 0.625)]);
+        let found = (moved[0][1] - moved[1][1]) / (0.5 * edge * rate);
+        println!("torsion, cells of {cell}: {found}");
+        assert!((found - 1.0).abs() < bound, "{found} with cells of {cell}");
+    }
+}
