@@ -258,5 +258,5 @@ fn more_ranks_than_the_case_has_use_for_are_warned_of() {
     };
     assert_eq!(warned("1"), "");
     assert!(warned("8").contains("more than the about 1 that the case has use for"), "{}", warned("8"));
-    assert!(warned("67").contains("at most 10 ranks"), "{}", warned("67"));
+    assert!(warned("67").contains("at most 11 ranks"), "{}", warned("67"));
 }
