@@ -278,6 +278,7 @@ fn the_linear_solver_of_a_solid_is_taken_by_size() {
     assert_eq!(on(2, &["grid.cell=0.05"]), found("bjacobi", 1));
     assert_eq!(on(1, &["grid.cell=0.05", "material.sand.poisson=0.49"]), found("cholesky", 0));
     assert_eq!(on(1, &["grid.cell=0.05", "solver.linear=\"direct\""]), found("cholesky", 0));
+    assert_eq!(on(1, &["grid.cell=0.05", "strength_reduction.factor=1.2"]), found("cholesky", 0));
     let many = "grid.cell=0.025";
     assert_eq!(on(1, &[many]), found("gamg", 2));
     assert_eq!(on(2, &[many]), found("bjacobi", 1));

@@ -179,7 +179,9 @@ pub(super) fn of_case(case: &mut Case, root: &Record, report: &mut Report<'_>) {
     }
     let poisson = case.materials.iter().map(|named| named.material.elastic().poisson).fold(0.0, f64::max);
     let (dims, active) = (case.grid.dims(), case.estimate().active);
-    if dims < 3 || solver.gives("linear") || case.flow.is_some() || condenses || active <= FEW_IN_SPACE {
+    // Near failure the preconditioner alone may give up before the ground does, and whether it does is the answer.
+    let fails = case.strength_reduction.is_some();
+    if dims < 3 || fails || solver.gives("linear") || case.flow.is_some() || condenses || active <= FEW_IN_SPACE {
         return;
     }
     if poisson <= estimate::LOCAL {
