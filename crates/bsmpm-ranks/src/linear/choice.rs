@@ -68,6 +68,10 @@ impl Choice {
         if self.is_rough() {
             options.extend(ROUGH);
         }
+        if self.pc == "gamg" {
+            // Of the present matrix alone: a run that goes on from a checkpoint has not seen the former ones.
+            options.extend(["-pc_gamg_reuse_interpolation", "false"]);
+        }
         if self.redundant {
             options.extend(["-redundant_pc_type", &self.pc, "-newton_redundant_pc_type", "lu"]);
             if let Some(factor) = &self.factor {
