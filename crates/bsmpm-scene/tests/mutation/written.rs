@@ -119,7 +119,7 @@ impl Fits {
             Kind::Measure => !is_number(put, Dimension::Number, &Range::ANY) && put != STRESS,
             Kind::Pair(..) | Kind::GradientPair(_) => true,
             Kind::Vector(..) => put != "[1, 2, 3]",
-            Kind::PairProfile(..) => put != "{}",
+            Kind::PairProfile(..) => !["{}", "[1, 2, 3]"].contains(&put),
             Kind::List(dimension, _) if put == "[1, 2, 3]" => dimension.units().next().is_none(),
             Kind::List(..) | Kind::Rows(_) => !is_list || (put != "[]" && matches!(kind, Kind::Rows(_))),
             Kind::Count(least, most) => !put.parse().is_ok_and(|count: u64| (*least..=*most).contains(&count)),
