@@ -228,7 +228,11 @@ fn of_ground<const D: usize>(soil: &Soil<3>) -> Soil<D> {
         along: vector(permeability.along.into()),
         law: permeability.law,
     };
-    Soil { porosity: soil.porosity, permeability: soil.permeability.as_ref().map(along), retention: soil.retention }
+    Soil {
+        porosity: soil.porosity,
+        permeability: soil.permeability.as_ref().map(along),
+        retention: soil.retention.clone(),
+    }
 }
 
 /// Rigid bodies in the order of the file, once the stages until the time `t` have begun.

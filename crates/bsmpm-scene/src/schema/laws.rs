@@ -322,11 +322,18 @@ pub(crate) static MATERIAL: Table = Table {
 
 static RETENTION: Table = Table {
     header: "[material.NAME] retention",
-    doc: "Van Genuchten's curve: effective saturation (1 + (alpha s)^n)^(1/n - 1) under the suction head s; Mualem's \
-          permeability goes with it, and Bishop's effective stress",
+    doc: "Van Genuchten's curve, by alpha and n: effective saturation (1 + (alpha s)^n)^(1/n - 1) under the suction head s, \
+          with Mualem's permeability; or a measured curve. Bishop's effective stress goes with it",
     keys: &[
-        key("alpha", Quantity(In::Number, Range::POSITIVE), Required, "1/m, over the head at which air enters"),
-        key("n", Quantity(In::Number, PORES), Required, "the larger, the more alike the pores"),
+        key("alpha", Quantity(In::Number, Range::POSITIVE), Optional, "1/m, over the head at which air enters"),
+        key("n", Quantity(In::Number, PORES), Optional, "the larger, the more alike the pores; required with alpha"),
+        key(
+            "curve",
+            Rows(&[(In::Length, Range::NOT_NEGATIVE), (In::Number, SHARES), (In::Number, SHARES)]),
+            Optional,
+            "rows [suction head, saturation, relative permeability] instead, the first [0, 1, 1]; smooth and falling between, \
+             constant beyond the last",
+        ),
         key(
             "residual",
             Quantity(In::Number, SHARE),
@@ -334,11 +341,12 @@ static RETENTION: Table = Table {
             "saturation that no suction removes",
         ),
     ],
-    exclusive: &[],
+    exclusive: &[one_of(&["alpha", "curve"], true)],
 };
 
 const PORES: Range = Range::of(Included(1.05), Included(20.0));
 const SHARE: Range = Range::of(Included(0.0), Excluded(1.0));
+const SHARES: Range = Range::of(Included(0.0), Included(1.0));
 
 static DAMPING: Table = Table {
     header: "[material.NAME] damping",

@@ -15,7 +15,7 @@ use crate::region::{Region, skin};
 use crate::report::Report;
 use crate::words::{Drainage, Geometry, Side};
 use bsmpm::water::flow::{Course, Given, Permeability, PermeabilityLaw, Soil};
-use bsmpm::water::retention::Retention;
+use bsmpm::water::retention::{Curve, Measured, Retention};
 
 /// N/m3  of water, unless a case gives it.
 const WATER: f64 = 9810.0;
@@ -113,7 +113,7 @@ fn soil(root: &Record, record: &Record, report: &mut Report<'_>) -> Option<Optio
     }
     let porosity = record.number("porosity")?;
     let retention = match record.record("retention") {
-        Some(of) => Some(retention(of)?),
+        Some(of) => Some(retention(of, report)?),
         None => None,
     };
     let permeability = match drainage {
@@ -124,8 +124,46 @@ fn soil(root: &Record, record: &Record, report: &mut Report<'_>) -> Option<Optio
 }
 
 /// How much water a soil keeps under suction.
-fn retention(of: &Record) -> Option<Retention> {
-    Some(Retention { alpha: of.number("alpha")?, n: of.number("n")?, residual: of.number("residual")? })
+fn retention(of: &Record, report: &mut Report<'_>) -> Option<Retention> {
+    let residual = of.number("residual")?;
+    if !of.gives("curve") {
+        if !of.gives("n") {
+            of.error("alpha", "goes with n: give both", report);
+            return None;
+        }
+        return Some(Retention::van_genuchten(of.number("alpha")?, of.number("n")?, residual));
+    }
+    if of.gives("n") {
+        of.error("n", "has no meaning with a curve: leave it out", report);
+        return None;
+    }
+    let rows = measured(of, residual, report)?;
+    Some(Retention { curve: Curve::Measured(Measured::new(rows)), residual })
+}
+
+/// Rows of a measured curve: suction head, effective saturation, relative permeability.
+fn measured(of: &Record, residual: f64, report: &mut Report<'_>) -> Option<Vec<[f64; 3]>> {
+    const KEY: &str = "curve";
+    let rows: Vec<[f64; 3]> = increasing(of, KEY, report)?.map(|row| [row[0], row[1], row[2]]).collect();
+    let rises = |pair: &[[f64; 3]]| pair[1][1] > pair[0][1] || pair[1][2] > pair[0][2];
+    let last = rows[rows.len() - 1];
+    let wrong = if rows[0] != [0.0, 1.0, 1.0] {
+        Some("the first row is that of the full soil, [0, 1, 1]".into())
+    } else if rows.len() < 2 {
+        Some("needs two rows at least".into())
+    } else if let Some(pair) = rows.windows(2).find(|pair| rises(pair)) {
+        let (to, from) = (pair[1][0], pair[0][0]);
+        Some(format!("at the suction of {to} m it keeps or conducts more than at {from} m: both fall, or stay"))
+    } else if last[1] < residual {
+        Some(format!("its last saturation, {}, is below the residual one, {residual}", last[1]))
+    } else {
+        None
+    };
+    if let Some(message) = wrong {
+        of.error(KEY, message, report);
+        return None;
+    }
+    Some(rows.into_iter().map(|[s, kept, k]| [s, (kept - residual) / (1.0 - residual), k]).collect())
 }
 
 fn permeability(record: &Record, report: &mut Report<'_>) -> Option<Permeability<3>> {

@@ -210,7 +210,11 @@ pub(super) fn increasing<'a>(
     if let Some(late) = (1..rows.len()).find(|&k| rows[k].numbers[0] <= rows[k - 1].numbers[0]) {
         let message = format!(
             "{} = {} is not above {}, that of the row before",
-            if key == "line" { "x" } else { "t" },
+            match key {
+                "line" => "x",
+                "curve" => "the suction",
+                _ => "t",
+            },
             rows[late].numbers[0],
             rows[late - 1].numbers[0]
         );

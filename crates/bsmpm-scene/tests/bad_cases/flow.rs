@@ -5,6 +5,8 @@ use super::{Row, row};
 const TYPE: &str = "type   = \"consolidation\"";
 const CLAY: &str = "model            = \"hencky\"";
 
+const CURVE: &str = "curve = [[0, 1, 1], [1, 0.5, 0.1], [2, 0.4, 0.2]]";
+
 /// Time, splines, soils, drains and inflows, and what is not shown to be right with them.
 pub const FLOW: &[Row] = &[
     // Time.
@@ -47,6 +49,23 @@ pub const FLOW: &[Row] = &[
         "no meaning with drainage",
     )
     .down(1),
+    row("alpha = 2.0, n = 1.5", "alpha = 2.0", "material.clay.retention.alpha", "goes with n"),
+    row("alpha = 2.0", "curve = [[0, 1, 1], [1, 0.5, 0.1]]", "material.clay.retention.n", "no meaning with a curve"),
+    row(
+        "alpha = 2.0, n = 1.5",
+        CURVE,
+        "material.clay.retention.curve",
+        "at the suction of 2 m it keeps or conducts more",
+    ),
+    row("alpha = 2.0, n = 1.5", "curve = [[0, 1, 1]]", "material.clay.retention.curve", "two rows at least"),
+    row("alpha = 2.0, n = 1.5", "curve = [[1, 1, 1], [2, 0.5, 0.1]]", "material.clay.retention.curve", "[0, 1, 1]"),
+    row(
+        "alpha = 2.0, n = 1.5",
+        "curve = [[0, 1, 1], [0, 0.5, 0.1]]",
+        "material.clay.retention.curve",
+        "is not above 0",
+    ),
+    row("alpha = 2.0, n = 1.5", "curve = [[0, 1, 1], [1, 0.05, 0.1]]", "material.clay.retention.curve", "residual"),
     row("bulk     = \"2.2 GPa\"", "suction = \"20 kPa\"", "water.suction", "is that above a level"),
     row("bulk     = \"2.2 GPa\"", "bulk = 0", "water.bulk", "bulk > 0"),
     row("bulk     = \"2.2 GPa\"", "bulk = \"2.2 m\"", "water.bulk", "expected a stress"),

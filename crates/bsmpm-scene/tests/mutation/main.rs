@@ -57,7 +57,7 @@ poisson      = 0.3
 unit_weight  = "18 kN/m3"
 porosity     = 0.5
 permeability = "1e-6 m/s"
-retention    = { alpha = 2.0, n = 1.5 }
+retention    = { curve = [[0.0, 1.0, 1.0], ["50 cm", 0.8, 0.3], [10.0, 0.3, 1e-4]], residual = 0.1 }
 
 [[body]]
 material = "silt"

@@ -35,6 +35,7 @@ mod strips;
 mod sweep;
 mod told;
 mod told_parts;
+mod unsaturated_column;
 
 #[path = "../support/mod.rs"]
 mod support;

@@ -38,7 +38,7 @@ impl<const D: usize> Flow<D> {
     /// m  the largest suction head at which air enters a soil
     pub fn entry(&self) -> f64 {
         let retention = self.soils.iter().flatten().filter_map(|soil| soil.retention.as_ref());
-        retention.map(|retention| 1.0 / retention.alpha).fold(0.0, f64::max)
+        retention.map(|retention| retention.curve.entry()).fold(0.0, f64::max)
     }
 
     /// Whether a soil may be partly saturated.

@@ -1,4 +1,9 @@
-//! How much water a soil keeps under suction, and how well it still conducts (van Genuchten 1980, Mualem 1976).
+//! How much water a soil keeps under suction, and how well it still conducts: van Genuchten (1980) and Mualem (1976),
+//! or as measured.
+
+mod measured;
+
+pub use measured::Measured;
 
 /// Least relative permeability: what a soil lets through as films and vapour, and what keeps a dry one from being cut
 /// off. A flux of a millionth of the saturated one changes no balance; the flow past a dry zone would lose its only
@@ -9,15 +14,37 @@ const LEAST: f64 = 1e-6;
 /// where air enters, as (alpha s)^(n-2).
 const ENTERED: f64 = 1e-3;
 
-/// Retention curve of a soil: effective saturation (1 + (alpha s)^n)^-m, m = 1 - 1/n, under the suction head s, m.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Retention curve of a soil.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Retention {
-    /// 1/m  over the head at which air enters
-    pub alpha: f64,
-    /// -  above 1: the larger, the more alike the pores
-    pub n: f64,
-    /// -  saturation that no suction removes
+    /// what the suction lets go, and what still conducts
+    pub curve: Curve,
+    /// -  saturation that no suction removes, of which Bishop's chi takes no part
     pub residual: f64,
+}
+
+/// How the effective saturation and the relative permeability follow the suction head s, m.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Curve {
+    /// (1 + (alpha s)^n)^-m, m = 1 - 1/n (van Genuchten 1980), and the permeability of Mualem (1976)
+    VanGenuchten {
+        /// 1/m  over the head at which air enters
+        alpha: f64,
+        /// -  above 1: the larger, the more alike the pores
+        n: f64,
+    },
+    /// rows as measured
+    Measured(Measured),
+}
+
+/// What a curve says under one suction.
+struct Drawn {
+    /// -
+    effective: f64,
+    /// 1/m  what the effective saturation loses by suction, not negative
+    by_head: f64,
+    /// -  may be less than the least
+    permeability: f64,
 }
 
 /// A soil under a pore pressure.
@@ -49,49 +76,95 @@ impl Retained {
     pub const FULL: Self = Self { saturation: 1.0, slope: 0.0, effective: 1.0, permeability: 1.0 };
 }
 
+impl Curve {
+    /// m  the suction head at which air has entered: that of the rows at which half of the water has left
+    pub fn entry(&self) -> f64 {
+        match self {
+            Self::VanGenuchten { alpha, .. } => 1.0 / alpha,
+            Self::Measured(of) => {
+                let drawn = of.rows.iter().find(|row| row[1] <= 0.5);
+                drawn.unwrap_or(&of.rows[of.rows.len() - 1])[0]
+            }
+        }
+    }
+
+    /// Under the suction head `s`, m, above 0.
+    fn drawn(&self, s: f64) -> Drawn {
+        match self {
+            Self::VanGenuchten { alpha, n } => {
+                let m = 1.0 - 1.0 / n;
+                let head = alpha * s;
+                let drawn = head.powf(*n);
+                let effective = (1.0 + drawn).powf(-m);
+                // 1 - Se^(1/m) = drawn/(1 + drawn), which does not cancel.
+                let wide = 1.0 - (drawn / (1.0 + drawn)).powf(m);
+                Drawn {
+                    effective,
+                    // (alpha s)^(n-1): where n is near 1 and s near 0 the quotient of the powers has no meaning.
+                    by_head: m * n * alpha * head.powf(n - 1.0) * effective / (1.0 + drawn),
+                    permeability: effective.sqrt() * wide.powi(2),
+                }
+            }
+            Self::Measured(of) => {
+                let [[effective, slope], [permeability, _]] = of.at(s);
+                Drawn { effective, by_head: -slope, permeability }
+            }
+        }
+    }
+
+    /// 1/m  what the relative permeability loses by suction under the head `s`, m, above 0; where air enters, that at a
+    /// thousandth of the entry's suction
+    fn closes(&self, s: f64) -> f64 {
+        match self {
+            Self::VanGenuchten { alpha, n } => {
+                let (m, found) = (1.0 - 1.0 / n, self.drawn(s));
+                let head = alpha * s;
+                let drawn = head.powf(*n);
+                let wide = 1.0 - (drawn / (1.0 + drawn)).powf(m);
+                // (drawn/(1 + drawn))^(m-1) has the factor head^-1, as n (1 - m) = 1.
+                let steep = if *n < 2.0 { head.max(ENTERED) } else { head }.powf(n - 2.0);
+                let widens = m * n * alpha * steep * (1.0 + drawn).powf(-1.0 - m);
+                let root = found.effective.sqrt();
+                0.5 * found.by_head / root * wide.powi(2) + 2.0 * root * wide * widens
+            }
+            Self::Measured(of) => -of.at(s)[1][1],
+        }
+    }
+}
+
 impl Retention {
+    /// Of van Genuchten's curve: `alpha`, 1/m, `n` and `residual`, -.
+    pub const fn van_genuchten(alpha: f64, n: f64, residual: f64) -> Self {
+        Self { curve: Curve::VanGenuchten { alpha, n }, residual }
+    }
+
     /// Under the pore pressure `p`, Pa, of water of the unit weight `weight`, N/m3.
     pub fn under(&self, p: f64, weight: f64) -> Retained {
         if p >= 0.0 {
             return Retained::FULL;
         }
-        let (n, m) = (self.n, 1.0 - 1.0 / self.n);
-        let head = self.alpha * -p / weight;
-        let drawn = head.powf(n);
-        let effective = (1.0 + drawn).powf(-m);
-        // (alpha s)^(n-1): where n is near 1 and s near 0 the quotient of the powers has no meaning.
-        let by_head = m * n * self.alpha * head.powf(n - 1.0) * effective / (1.0 + drawn);
-        // 1 - Se^(1/m) = drawn/(1 + drawn), which does not cancel.
-        let wide = 1.0 - (drawn / (1.0 + drawn)).powf(m);
+        let found = self.curve.drawn(-p / weight);
         Retained {
-            saturation: self.residual + (1.0 - self.residual) * effective,
-            slope: (1.0 - self.residual) * by_head / weight,
-            effective,
-            permeability: (effective.sqrt() * wide.powi(2)).max(LEAST),
+            saturation: self.residual + (1.0 - self.residual) * found.effective,
+            slope: (1.0 - self.residual) * found.by_head / weight,
+            effective: found.effective,
+            permeability: found.permeability.max(LEAST),
         }
     }
 
     /// What changes with the pore pressure `now`, Pa, which was `before`; where its functions have kinks on their sides
     /// of the full and of the driest soil.
     pub fn change(&self, before: f64, now: f64, weight: f64) -> RetainedChange {
+        let chord = self.chord_change(before, now, weight);
         if now >= 0.0 {
-            return RetainedChange { chord: self.chord_change(before, now, weight), ..RetainedChange::default() };
+            return RetainedChange { chord, ..RetainedChange::default() };
         }
-        let (n, m, found) = (self.n, 1.0 - 1.0 / self.n, self.under(now, weight));
-        let head = self.alpha * -now / weight;
-        let drawn = head.powf(n);
-        let effective = found.slope / (1.0 - self.residual);
-        let wide = 1.0 - (drawn / (1.0 + drawn)).powf(m);
-        // (drawn/(1 + drawn))^(m-1) has the factor head^-1, as n (1 - m) = 1.
-        let steep = if n < 2.0 { head.max(ENTERED) } else { head }.powf(n - 2.0);
-        let widens = m * n * self.alpha / weight * steep * (1.0 + drawn).powf(-1.0 - m);
-        let root = found.effective.sqrt();
-        let permeability = 0.5 * effective / root * wide.powi(2) + 2.0 * root * wide * widens;
+        let found = self.under(now, weight);
         let conducts = found.permeability > LEAST;
         RetainedChange {
-            effective,
-            permeability: if conducts { permeability } else { 0.0 },
-            chord: self.chord_change(before, now, weight),
+            effective: found.slope / (1.0 - self.residual),
+            permeability: if conducts { self.curve.closes(-now / weight) / weight } else { 0.0 },
+            chord,
         }
     }
 
@@ -119,17 +192,33 @@ impl Retention {
 mod tests {
     use super::*;
 
-    const LOAM: Retention = Retention { alpha: 3.6, n: 1.56, residual: 0.18 };
-    const SAND: Retention = Retention { alpha: 14.5, n: 2.68, residual: 0.1 };
+    const LOAM: Retention = Retention::van_genuchten(3.6, 1.56, 0.18);
+    const SAND: Retention = Retention::van_genuchten(14.5, 2.68, 0.1);
     const WEIGHT: f64 = 9810.0;
+
+    /// Van Genuchten's alpha and n.
+    fn parameters(soil: &Retention) -> (f64, f64) {
+        let Curve::VanGenuchten { alpha, n } = soil.curve else { panic!("measured") };
+        (alpha, n)
+    }
+
+    /// Rows of a measured curve: what the Liakopoulos sand keeps under so many heads, m.
+    fn measured(heads: impl IntoIterator<Item = f64>) -> Retention {
+        let row = |head: f64| {
+            let left = 1.9722e-11 * (head * WEIGHT).powf(2.4279);
+            [head, 1.0 - left, 1.0 - 2.207 * left.powf(1.0121)]
+        };
+        Retention { curve: Curve::Measured(Measured::new(heads.into_iter().map(row).collect())), residual: 0.0 }
+    }
 
     #[test]
     fn saturation_and_permeability_follow_their_formulas() {
         for soil in [LOAM, SAND] {
-            let m = 1.0 - 1.0 / soil.n;
+            let (alpha, n) = parameters(&soil);
+            let m = 1.0 - 1.0 / n;
             for head in [0.01, 0.1, 1.0, 3.0] {
                 let found = soil.under(-head * WEIGHT, WEIGHT);
-                let effective = (1.0 + (soil.alpha * head).powf(soil.n)).powf(-m);
+                let effective = (1.0 + (alpha * head).powf(n)).powf(-m);
                 let k = effective.sqrt() * (1.0 - (1.0 - effective.powf(1.0 / m)).powf(m)).powi(2);
                 assert!((found.effective - effective).abs() < 1e-14);
                 assert!((found.saturation - soil.residual - (1.0 - soil.residual) * effective).abs() < 1e-14);
@@ -162,23 +251,57 @@ mod tests {
     /// Newton's method has the derivatives, which stay finite where air enters, also of fine soils.
     #[test]
     fn changes_are_derivatives_and_bounded_where_air_enters() {
-        let clay = Retention { alpha: 0.8, n: 1.09, residual: 0.07 };
+        let clay = Retention::van_genuchten(0.8, 1.09, 0.07);
         for soil in [LOAM, SAND, clay] {
+            let (alpha, n) = parameters(&soil);
             for head in [0.01, 0.3, 2.0] {
                 let (p, step) = (-head * WEIGHT, 3e-5 * head * WEIGHT);
                 let (found, of) = (soil.change(-WEIGHT, p, WEIGHT), |p: f64| soil.under(p, WEIGHT));
                 let difference = (of(p + step).permeability - of(p - step).permeability) / (2.0 * step);
-                if of(p).permeability > LEAST && soil.alpha * head > ENTERED {
+                if of(p).permeability > LEAST && alpha * head > ENTERED {
                     assert!((difference / found.permeability - 1.0).abs() < 1e-6, "{difference} {found:?}");
                 }
             }
             // The factors besides the one that is cut are at most 1.
-            let (m, steep) = (1.0 - 1.0 / soil.n, ENTERED.powf((soil.n - 2.0).min(0.0)));
-            let most = m * soil.n * soil.alpha / WEIGHT * (0.5 + 2.0 * steep);
+            let (m, steep) = (1.0 - 1.0 / n, ENTERED.powf((n - 2.0).min(0.0)));
+            let most = m * n * alpha / WEIGHT * (0.5 + 2.0 * steep);
             for k in 1..200 {
-                let near = soil.change(-WEIGHT, -WEIGHT * ENTERED / soil.alpha * 0.5_f64.powi(k), WEIGHT).permeability;
+                let near = soil.change(-WEIGHT, -WEIGHT * ENTERED / alpha * 0.5_f64.powi(k), WEIGHT).permeability;
                 assert!((0.0..=most).contains(&near), "{near} {most}");
             }
+        }
+    }
+
+    /// Between rows the cubic is the function that the rows are of, to the third order, its slopes are its derivatives,
+    /// and it rises nowhere, also where rows do not look like a curve.
+    #[test]
+    fn measured_rows_are_joined_by_curves_that_fall() {
+        let exact = |head: f64| 1.0 - 1.9722e-11 * (head * WEIGHT).powf(2.4279);
+        let error = |rows: i32| {
+            let soil = measured((0..=rows).map(|k| f64::from(k) / f64::from(rows)));
+            let off = |k: i32| {
+                (soil.under(-WEIGHT * f64::from(k) / 500.0, WEIGHT).saturation - exact(f64::from(k) / 500.0)).abs()
+            };
+            (1..500).map(off).fold(0.0, f64::max)
+        };
+        let (coarse, fine) = (error(10), error(20));
+        assert!(fine < 2e-5 && coarse / fine > 4.0, "{coarse} {fine}");
+        let steps = vec![[0.0, 1.0, 1.0], [0.1, 1.0, 1.0], [0.2, 0.4, 0.01], [1.0, 0.4, 0.01], [1.1, 0.05, 0.0]];
+        let stepped = Retention { curve: Curve::Measured(Measured::new(steps)), residual: 0.05 };
+        for soil in [measured([0.0, 0.2, 0.4, 0.7, 1.0]), measured([0.0, 1.0]), stepped] {
+            let at = |s: f64| soil.under(-s * WEIGHT, WEIGHT);
+            for k in 1..300 {
+                let s = f64::from(k) * 0.004 + 1e-4;
+                let (step, found, change) = (1e-6, at(s), soil.change(-WEIGHT, -s * WEIGHT, WEIGHT));
+                let by = |of: fn(&Retained) -> f64| (of(&at(s - step)) - of(&at(s + step))) / (2.0 * step * WEIGHT);
+                assert!((by(|of| of.saturation) - found.slope).abs() < 1e-6 / WEIGHT, "{s}");
+                assert!(found.slope >= 0.0 && change.permeability >= 0.0 && found.permeability >= LEAST);
+                if found.permeability > LEAST {
+                    assert!((by(|of| of.permeability) - change.permeability).abs() < 1e-6 / WEIGHT, "{s}");
+                }
+            }
+            let last = at(2.0);
+            assert_eq!((last.slope, at(3.0)), (0.0, last));
         }
     }
 

@@ -17,7 +17,7 @@ const K: f64 = 1e-5;
 /// Pa
 const RIGID: f64 = 1e10;
 const POROSITY: f64 = 0.4;
-const LOAM: Retention = Retention { alpha: 2.0, n: 2.0, residual: 0.1 };
+const LOAM: Retention = Retention::van_genuchten(2.0, 2.0, 0.1);
 
 /// A body of the cells h of these numbers in a grid of one column more to the right and one row more on top.
 fn ground([columns, rows]: [usize; 2], h: f64, retention: Retention) -> Plane {
@@ -207,12 +207,12 @@ fn conducted(soil: &Retention, psi: f64) -> f64 {
 fn a_dam_lets_through_what_dupuit_says() {
     // m
     let (h1, h2, length) = (1.0, 0.25, 0.75);
-    let soil = Retention { alpha: 15.0, n: 3.0, residual: 0.05 };
+    let soil = Retention::van_genuchten(15.0, 3.0, 0.05);
     let dupuit = (h1 * h1 - h2 * h2) / (2.0 * length);
     for (cells, bound) in [(8, 0.01), (16, 0.005)] {
         let h = h1 / cells as f64;
         let columns = (length / h).round() as usize;
-        let mut scene = ground([columns, cells], h, soil);
+        let mut scene = ground([columns, cells], h, soil.clone());
         let below = cells / 4;
         let drain = |x: f64, y: f64, cells: usize, given: Given| {
             let points = edge(at(x, y), at(0.0, 1.0), cells, h);
