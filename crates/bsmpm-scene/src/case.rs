@@ -13,7 +13,7 @@ pub use crate::words::{Base, Format, Geometry, Nonlinear, Support};
 pub use element::{ElementStage, ElementTest};
 pub use flow::{Drain, DrainSite, Flow, Inflow};
 pub use history::{Check, Column, Counted, Face, History, Quantity};
-pub use loads::{Footing, Initial, Line as LoadedLine, MotionPath, PointLoad, Prescribed, Push, Site, Traction};
+pub use loads::{Footing, Initial, Line as LoadedLine, MotionPath, Plate, PointLoad, Prescribed, Push, Site, Traction};
 pub use profile::Profile;
 pub use rigid::{Rigid, RigidShape};
 pub use stage::{Acting, FaceSupport, Stage};

@@ -175,6 +175,9 @@ fn takes(key: &Key) -> String {
             let columns: Vec<String> = columns.iter().map(|(of, range)| column(*of, range)).collect();
             format!("a list of rows, each `[{}]`, or a [file](#rows-from-a-file)", columns.join(", "))
         }
+        Kind::Course(of) => format!(
+            "a list of rows, each `[t, x, y]`, of a solid `[t, x, y, z]`, a time and {of}, or a [file](#rows-from-a-file)"
+        ),
         Kind::Gradient(of) => format!("{of} per metre of depth, e.g. `\"2 {}/m\"`", of.units().next().unwrap_or("")),
         Kind::GradientPair(of) => {
             format!("`[x, y]`, each {of} per metre of depth, e.g. `\"2 {}/m\"`", of.units().next().unwrap_or(""))

@@ -102,6 +102,8 @@ pub enum Kind {
     List(Dimension, Range),
     /// Any number of rows, each a list of quantities.
     Rows(&'static [(Dimension, Range)]),
+    /// Any number of rows of a time and as many quantities as the geometry has axes.
+    Course(Dimension),
     /// A whole number within bounds, both included.
     Count(u64, u64),
     /// One of several words.
@@ -226,6 +228,9 @@ impl fmt::Display for Kind {
             Self::Rows(columns) => {
                 let columns: Vec<String> = columns.iter().map(|(dimension, _)| dimension.to_string()).collect();
                 write!(f, "a list of rows, each [{}], or {FILE}", columns.join(", "))
+            }
+            Self::Course(dimension) => {
+                write!(f, "a list of rows, each [a time, {dimension}, {dimension}] (solid: of three), or {FILE}")
             }
             Self::Measure => f.write_str("a number, or a string with a unit"),
             Self::Pair(dimension, _) => write!(f, "a list of two, each {}", Quantity(*dimension)),

@@ -1,9 +1,7 @@
 //! Strips, rigid bodies and loads of a case as the physics wants them, and the footing's gauges.
 
 use crate::grid::vector;
-use crate::{
-    Acting, Base, Case, DrainSite, Face, Footing, Geometry, LoadedLine, Prescribed, Push, Rigid, RigidShape, Site,
-};
+use crate::{Acting, Base, Case, DrainSite, Face, Geometry, LoadedLine, Plate, Push, Rigid, RigidShape, Site};
 use bsmpm::boundary::rigid::Outline;
 use bsmpm::boundary::{Load, Path, RigidBody, Strip, StripContact, StripReport, SurfacePoint, surface};
 use bsmpm::grid::Grid;
@@ -34,23 +32,26 @@ pub fn strips<K: Kinematics<D>, const D: usize>(
     (penalty, t): (f64, f64),
 ) -> Vec<Strip<D>> {
     type Hold<const D: usize> = (Base, Option<StripContact<D>>);
-    let strip = |[from, to]: [Vector<D>; 2], path: &crate::MotionPath, (base, contact): Hold<D>| Strip {
-        points: surface::along::<K, D>(grid, &from, &to, HELD),
-        normal: (base == Base::Smooth && contact.is_none()).then(|| normal(&from, &to)),
-        contact,
-        path: Path { rows: path.rows.iter().map(|(time, moved)| (*time, vector(*moved))).collect() },
-        penalty: if contact.is_some() { RUBBING * penalty } else { penalty },
+    let strip = |site: &Site, path: &crate::MotionPath, (base, contact): Hold<D>| {
+        let (points, normal) = held::<K, D>(case, grid, site);
+        Strip {
+            points,
+            normal: (base == Base::Smooth && contact.is_none()).then_some(normal),
+            contact,
+            path: Path { rows: path.rows.iter().map(|(time, moved)| (*time, vector(*moved))).collect() },
+            penalty: if contact.is_some() { RUBBING * penalty } else { penalty },
+        }
     };
     let divided = case.divided_at(t);
-    let rubs = |contact: Option<StripContact<2>>| {
+    let rubs = |contact: Option<StripContact<3>>| {
         contact.map(|StripContact { mut law, inward }| {
             law.friction /= divided;
-            StripContact { law, inward: vector(inward.into()) }
+            StripContact { law, inward: vector::<D, 3>(inward.into()) }
         })
     };
     let footing = case.footing.iter();
-    let footing = footing.map(|of| strip(base(case, of), &of.path, (of.base, rubs(of.contact))));
-    let prescribed = case.prescribed.iter().map(|of| strip(ends(case, of), &of.path, (of.base, rubs(of.contact))));
+    let footing = footing.map(|of| strip(&of.site, &of.path, (of.base, rubs(of.contact))));
+    let prescribed = case.prescribed.iter().map(|of| strip(&of.site, &of.path, (of.base, rubs(of.contact))));
     let acts = |number: usize| case.acts_since(Acting::Strip(number), t).is_some();
     let held = |(number, strip): (usize, Strip<D>)| if acts(number) { strip } else { Strip { penalty: 0.0, ..strip } };
     footing.chain(prescribed).enumerate().map(held).collect()
@@ -73,6 +74,7 @@ pub fn name_of_strip(case: &Case, strip: usize) -> String {
 /// Tractions, then point loads, once the stages until the time `t` have begun.
 pub fn loads<K: Kinematics<D>, const D: usize>(case: &Case, grid: &Grid<D>, t: f64) -> Vec<Load<D>> {
     let place = |at: [f64; 2]| vector(case.grid.local(at));
+    let placed = |at: [f64; 3]| vector::<D, _>(at) - vector(case.grid.lower());
     let across = case.bodies.iter().map(|body| body.points_per_cell).max().unwrap_or(1);
     let tractions = case.tractions.iter().map(|traction| {
         let (points, left): (Vec<_>, Vec<_>) = match traction.line {
@@ -84,11 +86,9 @@ pub fn loads<K: Kinematics<D>, const D: usize>(case: &Case, grid: &Grid<D>, t: f
             LoadedLine::Circle { center, radius } => {
                 around::<K, D>(grid, &place(center), radius, across).into_iter().unzip()
             }
-            LoadedLine::Rectangle { lower, upper } => {
-                let [from, to] = [lower, upper].map(|corner| vector::<D, _>(corner) - vector(case.grid.lower()));
-                let flat = (0..D).find(|&axis| from[axis] == to[axis]);
-                let normal = Vector::from_fn(|axis, _| f64::from(u8::from(flat == Some(axis))));
-                surface::over::<K, D>(grid, &from, &to, across).into_iter().map(|point| (point, normal)).unzip()
+            LoadedLine::Plate(plate) => {
+                let points = on_plate::<K, D>(case, grid, &plate, across);
+                points.into_iter().map(|point| (point, unit(plate.normal()))).unzip()
             }
         };
         let height = |point: &SurfacePoint<D>| point.x[D - 1] + case.grid.lower()[D - 1];
@@ -107,7 +107,7 @@ pub fn loads<K: Kinematics<D>, const D: usize>(case: &Case, grid: &Grid<D>, t: f
     let forces = case.point_loads.iter().map(|load| Load {
         amplitude: load.amplitude.clone(),
         ..Load::dead(
-            vec![SurfacePoint { x: place(load.at), area: 1.0 / case.geometry.whole() }],
+            vec![SurfacePoint { x: placed(load.at), area: 1.0 / case.geometry.whole() }],
             vector(load.force),
             load.ramp,
         )
@@ -263,7 +263,7 @@ pub(crate) fn rigid_body(rigid: &Rigid, lower: [f64; 2], geometry: Geometry) -> 
     times.dedup();
     let path = |t: f64| {
         let stays = || rigid.path.rows.last().map_or_else(Vector::zeros, |(_, moved)| Vector::from(*moved));
-        let rows: Vec<(f64, Vector<2>)> = rigid.path.rows.iter().map(|(t, moved)| (*t, Vector::from(*moved))).collect();
+        let rows: Vec<(f64, Vector<3>)> = rigid.path.rows.iter().map(|(t, moved)| (*t, Vector::from(*moved))).collect();
         let moved = between(&rows, Vector::zeros(), t).unwrap_or_else(stays);
         let turned = rigid.rotation.last().map_or(0.0, |(_, angle)| *angle);
         Vector::<3>::new(moved[0], moved[1], between(&rigid.rotation, 0.0, t).unwrap_or(turned))
@@ -286,23 +286,52 @@ pub(crate) fn rigid_body(rigid: &Rigid, lower: [f64; 2], geometry: Geometry) -> 
     }
 }
 
-/// Ends of the footing's base, m from the grid's lower corner.
-fn base<const D: usize>(case: &Case, footing: &Footing) -> [Vector<D>; 2] {
-    [footing.from, footing.to].map(|at| vector(case.grid.local(at)))
-}
-
-/// Ends of what is held, m from the grid's lower corner; a face is where the knots end.
-fn ends<const D: usize>(case: &Case, prescribed: &Prescribed) -> [Vector<D>; 2] {
-    match prescribed.site {
-        Site::Segment { from, to } => [from, to].map(|at| vector(case.grid.local(at))),
+/// Points of what is held, and the unit normal of it; a face is where the knots end.
+fn held<K: Kinematics<D>, const D: usize>(
+    case: &Case,
+    grid: &Grid<D>,
+    site: &Site,
+) -> (Vec<SurfacePoint<D>>, Vector<D>) {
+    match *site {
+        Site::Segment { from, to } => {
+            let [from, to] = [from, to].map(|at| vector(case.grid.local(at)));
+            (surface::along::<K, D>(grid, &from, &to, HELD), normal(&from, &to))
+        }
+        Site::Plate(plate) => (on_plate::<K, D>(case, grid, &plate, HELD), unit(plate.normal())),
         Site::Face(face) => {
-            let upper = [0, 1].map(|axis| case.grid.axes[axis].length());
-            let (mut from, mut to) = ([0.0; 2], upper);
-            let at = if face.upper { upper[face.axis] } else { 0.0 };
+            let mut to = Vector::<D>::from_fn(|axis, _| case.grid.axes[axis].length());
+            let mut from = Vector::<D>::zeros();
+            let at = if face.upper { to[face.axis] } else { 0.0 };
             (from[face.axis], to[face.axis]) = (at, at);
-            [vector(from), vector(to)]
+            if D == 2 {
+                return (surface::along::<K, D>(grid, &from, &to, HELD), normal(&from, &to));
+            }
+            (surface::over::<K, D>(grid, &from, &to, HELD), unit(face.axis))
         }
     }
+}
+
+/// Points of a plate, `count` along each axis of a cell.
+fn on_plate<K: Kinematics<D>, const D: usize>(
+    case: &Case,
+    grid: &Grid<D>,
+    plate: &Plate,
+    count: usize,
+) -> Vec<SurfacePoint<D>> {
+    let base = vector::<D, _>(case.grid.lower());
+    let [lower, upper, middle] = [plate.lower, plate.upper, plate.middle()].map(|at| vector::<D, _>(at) - base);
+    if !plate.round {
+        return surface::over::<K, D>(grid, &lower, &upper, count);
+    }
+    // Of a disc the part inside the grid.
+    let inside = |at: Vector<D>| {
+        at.zip_map(&Vector::from_fn(|axis, _| case.grid.axes[axis].length()), |x, length| x.clamp(0.0, length))
+    };
+    surface::within::<K, D>(grid, (&inside(lower), &inside(upper)), (&middle, plate.radius()), count)
+}
+
+fn unit<const D: usize>(along: usize) -> Vector<D> {
+    Vector::from_fn(|axis, _| f64::from(u8::from(axis == along)))
 }
 
 /// Unit normal of a segment.
@@ -314,10 +343,11 @@ fn normal<const D: usize>(from: &Vector<D>, to: &Vector<D>) -> Vector<D> {
 /// What the footing's histories need.
 #[derive(Clone, Debug)]
 pub struct Gauge {
-    path: Path<2>,
-    area: f64,           // m per metre of thickness, or m2 per radian
-    pressing: Vector<2>, // unit normal of the base, towards the material
-    moving: Vector<2>,   // unit direction of the whole motion
+    path: Path<3>,
+    area: f64,           // m per metre of thickness, or m2 per radian, or m2
+    pressing: Vector<3>, // unit normal of the base, towards the material
+    moving: Vector<3>,   // unit direction of the whole motion
+    height: usize,       // the vertical axis
 }
 
 impl Gauge {
@@ -325,36 +355,46 @@ impl Gauge {
     pub fn of(case: &Case) -> Option<Self> {
         let footing = case.footing.as_ref()?;
         let rows = footing.path.rows.iter().map(|(time, moved)| (*time, Vector::from(*moved))).collect();
-        let [from, to]: [Vector<2>; 2] = base(case, footing);
-        let down = Vector::<2>::new(0.0, -1.0);
-        let path = Path { rows };
+        let height = case.grid.dims() - 1;
+        let (path, down) = (Path { rows }, -unit::<3>(height));
         let whole = path.at(case.analysis.end);
         let moving = whole.try_normalize(0.0).unwrap_or(down);
-        let normal = normal(&from, &to);
+        let (normal, area) = match footing.site {
+            Site::Segment { from, to } => {
+                let [from, to]: [Vector<3>; 2] = [from, to].map(|at| vector(case.grid.local(at)));
+                let weight = match case.geometry {
+                    Geometry::PlaneStrain | Geometry::Solid => 1.0,
+                    Geometry::Axisymmetric => Axisymmetric::weight(&((from + to) * 0.5).fixed_rows::<2>(0).into()),
+                };
+                (normal(&from, &to), (to - from).norm() * weight)
+            }
+            Site::Plate(plate) => (unit(plate.normal()), plate.area([case.grid.lower(), case.grid.upper()])),
+            Site::Face(_) => return None,
+        };
         // A base that only slides along itself presses downwards.
         let side = if normal.dot(&moving).abs() > 1e-9 { normal.dot(&moving) } else { normal.dot(&down) };
-        let area = (to - from).norm()
-            * match case.geometry {
-                Geometry::PlaneStrain | Geometry::Solid => 1.0,
-                Geometry::Axisymmetric => Axisymmetric::weight(&((from + to) * 0.5)),
-            };
-        Some(Self { area, pressing: normal * side.signum(), moving, path })
+        Some(Self { area, pressing: normal * side.signum(), moving, path, height })
     }
 
     /// Mean normal pressure on the base, Pa, compression positive.
     pub fn pressure(&self, report: &StripReport) -> f64 {
-        Vector::<2>::from_column_slice(&report.force).dot(&self.pressing) / self.area
+        padded(&report.force).dot(&self.pressing) / self.area
     }
 
-    /// Force of the soil against the motion, N per metre of thickness or per radian.
+    /// Force of the soil against the motion, N per metre of thickness or per radian; of a solid N.
     pub fn force(&self, report: &StripReport) -> f64 {
-        Vector::<2>::from_column_slice(&report.force).dot(&self.moving)
+        padded(&report.force).dot(&self.moving)
     }
 
     /// Downward motion until time `t`, m.
     pub fn penetration(&self, t: f64) -> f64 {
-        -self.path.at(t)[1]
+        -self.path.at(t)[self.height]
     }
+}
+
+/// A vector of a plane or of a solid.
+fn padded(of: &[f64]) -> Vector<3> {
+    Vector::from_fn(|axis, _| of.get(axis).copied().unwrap_or(0.0))
 }
 
 /// Largest slip of a step over its motion; 0 where nothing moved.

@@ -247,8 +247,8 @@ fn the_footing_of_the_paper() {
     for (name, points, ground) in [("strip_footing", 360_000, 10.0), ("short/strip_footing", 900, 5.0)] {
         let case = read(&cases().join(name).with_extension("toml"));
         let footing = case.footing.as_ref().unwrap();
-        assert_eq!((case.points(), footing.from, footing.to), (points, [0.0, ground], [1.0, ground]), "{name}");
-        assert_eq!((footing.base, &footing.path.rows[..]), (Base::Smooth, &[(1.0, [0.0, -2.0])][..]));
+        assert_eq!((case.points(), footing.site.ends()), (points, Some([[0.0, ground], [1.0, ground]])), "{name}");
+        assert_eq!((footing.base, &footing.path.rows[..]), (Base::Smooth, &[(1.0, [0.0, -2.0, 0.0])][..]));
         let within = Some([[0.0, ground - 2.5, 0.0], [2.5, ground - 0.5, 0.0]]);
         assert_eq!(case.histories[5].quantity, Quantity::PressureNoise { within });
     }

@@ -7,23 +7,76 @@ use bsmpm::material::Profile;
 /// A displacement as a function of time, linear between its rows; zero at the start, constant after the last row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MotionPath {
-    /// s (quasi-static: pseudo-time), increasing, and m
-    pub rows: Vec<(f64, [f64; 2])>,
+    /// s (quasi-static: pseudo-time), increasing, and m; of a plane nothing along its normal
+    pub rows: Vec<(f64, [f64; 3])>,
 }
 
-/// A rigid strip that moves, section 3.3 of the paper.
+/// A rectangle in space along the axes, or the disc inscribed in it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Plate {
+    /// m  its lower corner, like the upper one along the axis that is normal to it
+    pub lower: [f64; 3],
+    /// m  its upper corner
+    pub upper: [f64; 3],
+    /// whether it is the disc; of one the part inside the grid counts
+    pub round: bool,
+}
+
+impl Plate {
+    /// The axis that is normal to it.
+    pub fn normal(&self) -> usize {
+        (0..3).find(|&axis| self.lower[axis] == self.upper[axis]).unwrap_or(2)
+    }
+
+    /// m  its middle
+    pub fn middle(&self) -> [f64; 3] {
+        std::array::from_fn(|axis| 0.5 * (self.lower[axis] + self.upper[axis]))
+    }
+
+    /// m  of a disc
+    pub fn radius(&self) -> f64 {
+        (0..3).map(|axis| 0.5 * (self.upper[axis] - self.lower[axis])).fold(0.0, f64::max)
+    }
+
+    /// m2  of the part of it within a box
+    pub fn area(&self, [lower, upper]: [[f64; 3]; 2]) -> f64 {
+        const CHORDS: usize = 4096;
+        let axes: Vec<usize> = (0..3).filter(|axis| *axis != self.normal()).collect();
+        let within = |axis: usize, [from, to]: [f64; 2]| (to.min(upper[axis]) - from.max(lower[axis])).max(0.0);
+        let [along, across] = [axes[0], axes[1]];
+        let [length, width] = [along, across].map(|axis| within(axis, [self.lower[axis], self.upper[axis]]));
+        if !self.round {
+            return length * width;
+        }
+        let (middle, start) = (self.middle(), self.lower[along].max(lower[along]));
+        let chord = |k: usize| {
+            let off = start + (k as f64 + 0.5) / CHORDS as f64 * length - middle[along];
+            let half = (self.radius().powi(2) - off * off).max(0.0).sqrt();
+            within(across, [middle[across] - half, middle[across] + half])
+        };
+        (0..CHORDS).map(chord).sum::<f64>() * length / CHORDS as f64
+    }
+
+    /// Whether a place in its plane is part of it.
+    pub fn covers(&self, at: [f64; 3]) -> bool {
+        let within = (0..3).all(|axis| self.lower[axis] <= at[axis] && at[axis] <= self.upper[axis]);
+        let middle = self.middle();
+        let far: f64 = (0..3).map(|axis| (at[axis] - middle[axis]).powi(2)).sum();
+        within && (!self.round || far <= self.radius().powi(2))
+    }
+}
+
+/// A rigid strip that moves, section 3.3 of the paper; of a solid a plate.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Footing {
-    /// m  one end of its base at the start
-    pub from: [f64; 2],
-    /// m  the other end
-    pub to: [f64; 2],
+    /// its base at the start: a segment or a plate
+    pub site: Site,
     /// its motion
     pub path: MotionPath,
     /// what it holds; of one in contact what it may hold
     pub base: Base,
     /// friction, and whether material comes off, instead
-    pub contact: Option<StripContact<2>>,
+    pub contact: Option<StripContact<3>>,
 }
 
 /// Prescribed motion of what lies at a face of the grid or at a segment.
@@ -36,10 +89,10 @@ pub struct Prescribed {
     /// which components; of one in contact what it may hold
     pub base: Base,
     /// friction, and whether material comes off, instead
-    pub contact: Option<StripContact<2>>,
+    pub contact: Option<StripContact<3>>,
 }
 
-/// Where a prescribed motion acts at the start.
+/// Where a strip or a prescribed motion acts at the start.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Site {
     /// A face of the grid.
@@ -51,6 +104,15 @@ pub enum Site {
         /// the other
         to: [f64; 2],
     },
+    /// Of a solid.
+    Plate(Plate),
+}
+
+impl Site {
+    /// m  ends of a segment
+    pub fn ends(&self) -> Option<[[f64; 2]; 2]> {
+        if let Self::Segment { from, to } = *self { Some([from, to]) } else { None }
+    }
 }
 
 /// A load on the body's surface that follows the body.
@@ -83,13 +145,8 @@ pub enum Line {
         /// its radius
         radius: f64,
     },
-    /// m  of a solid a rectangle: a box without extent along one axis
-    Rectangle {
-        /// its lower corner
-        lower: [f64; 3],
-        /// its upper corner
-        upper: [f64; 3],
-    },
+    /// Of a solid.
+    Plate(Plate),
 }
 
 /// What a traction is.
@@ -103,8 +160,8 @@ pub enum Push {
     Pressure {
         /// the pressure
         profile: Profile,
-        /// 1 where the body lies on the left of a segment from its first end, inside a circle, or beyond a rectangle
-        /// along its normal, else -1
+        /// 1 where the body lies on the left of a segment from its first end, inside a circle, or beyond a plate along
+        /// its normal, else -1
         side: f64,
     },
 }
@@ -114,7 +171,7 @@ impl Traction {
     pub fn ends(&self) -> Option<[[f64; 2]; 2]> {
         match self.line {
             Line::Segment { from, to } => Some([from, to]),
-            Line::Circle { .. } | Line::Rectangle { .. } => None,
+            Line::Circle { .. } | Line::Plate(_) => None,
         }
     }
 
@@ -123,7 +180,7 @@ impl Traction {
         let ends = match self.line {
             Line::Segment { from, to } => [from[1], to[1]],
             Line::Circle { center, radius } => [center[1] - radius, center[1] + radius],
-            Line::Rectangle { lower, upper } => [lower[2], upper[2]],
+            Line::Plate(plate) => [plate.lower[2], plate.upper[2]],
         };
         let [low, high] = ends.map(|height| match self.push {
             Push::Stress(stress) => stress.iter().fold(0.0, |sum: f64, along| sum.hypot(along.at(height))),
@@ -137,9 +194,9 @@ impl Traction {
 #[derive(Clone, Debug, PartialEq)]
 pub struct PointLoad {
     /// m  where at the start
-    pub at: [f64; 2],
-    /// N/m
-    pub force: [f64; 2],
+    pub at: [f64; 3],
+    /// N per m of thickness; of a solid N
+    pub force: [f64; 3],
     /// s (quasi-static: pseudo-time)  over which it grows linearly; 0: at once
     pub ramp: f64,
     /// s (quasi-static: pseudo-time), increasing, and the share that acts then; empty: the ramp holds

@@ -24,7 +24,7 @@ impl Record {
             Kind::Pair(..) | Kind::Vector(..) | Kind::PairProfile(..) | Kind::GradientPair(_) | Kind::Either(..)
             | Kind::List(..)
             => Datum::Numbers(numbers) => numbers;
-        rows: &[ListRow], Kind::Rows(_) => Datum::Rows(rows) => rows;
+        rows: &[ListRow], Kind::Rows(_) | Kind::Course(_) => Datum::Rows(rows) => rows;
         count: u64, Kind::Count(..) => Datum::Count(count) => *count;
         text: &str, Kind::Text(_) | Kind::Name => Datum::Text(text) => text;
         names: &[String], Kind::Names => Datum::Names(names) => names;

@@ -32,6 +32,11 @@ pub(super) fn read(
             _ => reader.unexpected(node),
         },
         Kind::Rows(columns) => reader.rows(node, columns),
+        Kind::Course(dimension) => {
+            let mut columns = vec![(*dimension, Range::ANY); dims + 1];
+            columns[0] = (Dimension::Time, Range::NOT_NEGATIVE);
+            reader.rows(node, &columns)
+        }
         Kind::Measure => reader.measure(node),
         Kind::Pair(dimension, range) => reader.quantities(node, *dimension, range, Some(2)),
         Kind::Vector(dimension, range) | Kind::PairProfile(dimension, range, _) => {

@@ -3,14 +3,14 @@
 use super::Kind::*;
 use super::Presence::{Default, Optional, Required};
 use super::{Dimension as In, Kind, Range, Table, body, key, one_of};
-use crate::words::{Base, Components, Settled, Side, Start, Support, Word};
+use crate::words::{Axis, Base, Components, Settled, Side, Start, Support, Word};
 use std::ops::Bound::Included;
 
 const PLACE: Kind = Pair(In::Length, Range::ANY);
-pub(super) const DISPLACEMENT: Kind = Pair(In::Length, Range::ANY);
-pub(super) const VELOCITY: Kind = Pair(In::Velocity, Range::ANY);
-pub(super) const PATH: Kind =
-    Rows(&[(In::Time, Range::NOT_NEGATIVE), (In::Length, Range::ANY), (In::Length, Range::ANY)]);
+pub(super) const DISPLACEMENT: Kind = Vector(In::Length, Range::ANY);
+pub(super) const VELOCITY: Kind = Vector(In::Velocity, Range::ANY);
+pub(super) const PATH: Kind = Course(In::Length);
+const RECTANGLE: Kind = Kind::Table(&body::BOX);
 pub(super) const AMPLITUDE: Kind = Rows(&[(In::Time, Range::NOT_NEGATIVE), (In::Number, Range::ANY)]);
 pub(super) const RAMP: Kind = Quantity(In::Time, Range::NOT_NEGATIVE);
 /// That strength is divided by.
@@ -43,10 +43,12 @@ static CONTACT: Table = Table {
 
 pub(super) static FOOTING: Table = Table {
     header: "[footing]",
-    doc: "A rigid strip that moves on a given way and holds the material at its base (section 3.3)",
+    doc: "A rigid strip, of a solid a plate, that moves on a given way and holds the material at its base (section 3.3)",
     keys: &[
-        key("from", PLACE, Required, "one end of its base at the start"),
-        key("to", PLACE, Required, "the other end"),
+        key("from", PLACE, Optional, "one end of its base at the start"),
+        key("to", PLACE, Optional, "the other end"),
+        key("rectangle", RECTANGLE, Optional, "of a solid, instead: a box whose corners are alike along one axis"),
+        key("disc", Kind::Table(&DISC), Optional, "of a solid, instead: a disc, the part of it inside the grid"),
         key("displacement", DISPLACEMENT, Optional, "reached at the end, linear in time"),
         key("velocity", VELOCITY, Optional, "constant; quasi-static: m per unit of pseudo-time, numbers"),
         key(
@@ -63,16 +65,33 @@ pub(super) static FOOTING: Table = Table {
         ),
         key("name", Name, Optional, "what stages and histories call it"),
     ],
-    exclusive: &[one_of(&["displacement", "velocity", "path"], true)],
+    exclusive: &[
+        one_of(&["from", "rectangle", "disc"], true),
+        one_of(&["to", "rectangle", "disc"], true),
+        one_of(&["displacement", "velocity", "path"], true),
+    ],
+};
+
+static DISC: Table = Table {
+    header: "disc = { center, radius, normal }",
+    doc: "A flat disc",
+    keys: &[
+        key("center", Vector(In::Length, Range::ANY), Required, "its centre"),
+        key("radius", Quantity(In::Length, Range::POSITIVE), Required, "its radius"),
+        key("normal", Choice(Axis::WORDS), Default("\"z\""), "the axis that is normal to it"),
+    ],
+    exclusive: &[],
 };
 
 pub(super) static PRESCRIBED: Table = Table {
     header: "[[prescribed]]",
-    doc: "Motion of a face of the grid, or of a segment, which holds the material at it",
+    doc: "Motion of a face of the grid, or of a segment, of a solid of a plate, which holds the material at it",
     keys: &[
         key("face", Choice(Side::WORDS), Optional, "the face; free in [boundary]"),
         key("from", PLACE, Optional, "one end of a segment at the start"),
         key("to", PLACE, Optional, "the other end"),
+        key("rectangle", RECTANGLE, Optional, "of a solid: a box whose corners are alike along one axis"),
+        key("disc", Kind::Table(&DISC), Optional, "of a solid: a disc, the part of it inside the grid"),
         key("displacement", DISPLACEMENT, Optional, "reached at the end, linear in time"),
         key("velocity", VELOCITY, Optional, "constant; quasi-static: m per unit of pseudo-time, numbers"),
         key(
@@ -90,8 +109,8 @@ pub(super) static PRESCRIBED: Table = Table {
         key("name", Name, Optional, "what stages and histories call it"),
     ],
     exclusive: &[
-        one_of(&["face", "from"], true),
-        one_of(&["face", "to"], true),
+        one_of(&["face", "from", "rectangle", "disc"], true),
+        one_of(&["face", "to", "rectangle", "disc"], true),
         one_of(&["displacement", "velocity", "path"], true),
     ],
 };
@@ -118,17 +137,13 @@ static RUBS: Table = Table {
 
 pub(super) static TRACTION: Table = Table {
     header: "[[traction]]",
-    doc: "A load on a segment of a body's surface, on a circle, or of a solid on a rectangle, which it follows",
+    doc: "A load on a segment of a body's surface, on a circle, or of a solid on a rectangle or disc, which it follows",
     keys: &[
         key("from", PLACE, Optional, "one end of the segment at the start"),
         key("to", PLACE, Optional, "the other end"),
         key("circle", Kind::Table(&body::CIRCLE), Optional, "a circle instead: the part of it inside the grid"),
-        key(
-            "rectangle",
-            Kind::Table(&body::BOX),
-            Optional,
-            "of a solid, instead: a rectangle along the axes, a box whose corners are alike along one of them",
-        ),
+        key("rectangle", RECTANGLE, Optional, "of a solid, instead: a box whose corners are alike along one axis"),
+        key("disc", Kind::Table(&DISC), Optional, "of a solid, instead: a disc, the part of it inside the grid"),
         key(
             "stress",
             PairProfile(In::Stress, Range::ANY, &STRESSES_PROFILE),
@@ -152,8 +167,8 @@ pub(super) static TRACTION: Table = Table {
         key("name", Name, Optional, "what stages call it"),
     ],
     exclusive: &[
-        one_of(&["from", "circle", "rectangle"], true),
-        one_of(&["to", "circle", "rectangle"], true),
+        one_of(&["from", "circle", "rectangle", "disc"], true),
+        one_of(&["to", "circle", "rectangle", "disc"], true),
         one_of(&["stress", "pressure"], true),
         one_of(&["ramp", "amplitude"], false),
     ],
@@ -176,12 +191,13 @@ pub(super) static POINT_LOAD: Table = Table {
     header: "[[point_load]]",
     doc: "A force at a point of a body, which it follows",
     keys: &[
-        key("at", PLACE, Required, "where at the start"),
+        key("at", Vector(In::Length, Range::ANY), Required, "where at the start"),
         key(
             "force",
-            Pair(In::LineForce, Range::ANY),
+            Vector(In::LineForce, Range::ANY),
             Required,
-            "along x and y, per metre of thickness; in axisymmetry of the whole ring, in N, written \"N/m\" as well",
+            "along the axes, per metre of thickness; in axisymmetry of the whole ring, and of a solid, in N, written \"N/m\" \
+             as well",
         ),
         key("ramp", RAMP, Default("0.0"), "time over which it grows; 0: at once"),
         key(

@@ -1,7 +1,7 @@
 //! What an axisymmetric case must and must not have: the axis is the grid's left face, and nothing moves or acts
 //! sideways that would not do so all around it.
 
-use crate::case::{Body, Case, DrainSite, Face, Geometry, LoadedLine, Site, Support};
+use crate::case::{Body, Case, DrainSite, Face, Geometry, LoadedLine, Support};
 use crate::record::Record;
 use crate::report::Report;
 use crate::words::{Measurement, Side, Word};
@@ -100,9 +100,7 @@ fn sideways(case: &Case, record: &Record, report: &mut Report<'_>) {
         record.error(moves.unwrap_or("path"), SIDEWAYS, report);
     }
     for (prescribed, record) in case.prescribed.iter().zip(record.records("prescribed")) {
-        if let Site::Segment { from, to } = prescribed.site {
-            on_axis([from, to], record, report);
-        }
+        prescribed.site.ends().into_iter().for_each(|ends| on_axis(ends, record, report));
     }
     for (traction, record) in case.tractions.iter().zip(record.records("traction")) {
         if let LoadedLine::Segment { from, to } = traction.line {

@@ -13,7 +13,7 @@ use crate::nearest::hint;
 use crate::record::Record;
 use crate::region::{Region, skin};
 use crate::report::Report;
-use crate::words::{Drainage, Geometry, Side};
+use crate::words::{Drainage, Side};
 use bsmpm::water::flow::{Course, Given, Permeability, PermeabilityLaw, Soil};
 use bsmpm::water::retention::{Curve, Measured, Retention};
 
@@ -294,12 +294,8 @@ fn course(record: &Record, key: &str, report: &mut Report<'_>) -> Option<Course>
 
 /// A face of the grid at which a body of permeable soil lies.
 fn face(record: &Record, ground: Ground<'_>, report: &mut Report<'_>) -> Option<Face> {
-    let (grid, side): (_, Side) = (ground.around.grid?, record.word("face")?);
-    let geometry = if grid.dims() == 3 { Geometry::Solid } else { Geometry::PlaneStrain };
-    let Some(face) = Face::of(side, geometry) else {
-        record.error("face", format!("a grid in {geometry} has no face \"{side}\""), report);
-        return None;
-    };
+    let grid = ground.around.grid?;
+    let face = place::face(record, grid, report)?;
     let slack = AT * grid.axes[face.axis].shortest();
     let (at, side) = ([grid.lower(), grid.upper()][usize::from(face.upper)][face.axis], usize::from(face.upper));
     if !ground.permeable().iter().any(|body| (body.region.corners()[side][face.axis] - at).abs() <= slack) {

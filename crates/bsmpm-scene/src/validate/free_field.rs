@@ -55,11 +55,12 @@ fn acts_between(case: &Case, (lower, higher): (f64, f64)) -> Option<&'static str
     let line = |line: &LoadedLine| match line {
         LoadedLine::Segment { from, to } => within(from[0], to[0]),
         LoadedLine::Circle { center, radius } => within(center[0] - radius, center[0] + radius),
-        LoadedLine::Rectangle { lower, upper } => within(lower[0], upper[0]),
+        LoadedLine::Plate(plate) => within(plate.lower[0], plate.upper[0]),
     };
     let site = |site: &Site| match site {
         Site::Face(face) => face.axis == 1,
         Site::Segment { from, to } => within(from[0], to[0]),
+        Site::Plate(plate) => within(plate.lower[0], plate.upper[0]),
     };
     let shape = |shape: &RigidShape| match shape {
         RigidShape::Circle { center, radius } => within(center[0] - radius, center[0] + radius),
@@ -69,7 +70,10 @@ fn acts_between(case: &Case, (lower, higher): (f64, f64)) -> Option<&'static str
         }
     };
     let acting = [
-        ("the footing", case.footing.as_ref().is_some_and(|footing| within(footing.from[0], footing.to[0]))),
+        (
+            "the footing",
+            case.footing.iter().filter_map(|footing| footing.site.ends()).any(|[from, to]| within(from[0], to[0])),
+        ),
         ("a prescribed motion", case.prescribed.iter().any(|motion| site(&motion.site))),
         ("a traction", case.tractions.iter().any(|traction| line(&traction.line))),
         ("a rigid body", case.rigid.iter().any(|rigid| shape(&rigid.shape))),

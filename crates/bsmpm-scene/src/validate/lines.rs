@@ -5,7 +5,8 @@
 //! a line would hold or load all that the splines reach, a cell further. `cases/results/stabilisation.md` has the
 //! figures.
 
-use crate::case::{Case, MotionPath, NamedMaterial, Site};
+use super::place::is_in;
+use crate::case::{Case, LoadedLine, MotionPath, NamedMaterial, Site};
 use crate::grid::Line;
 use crate::record::Record;
 use crate::region::Edge;
@@ -30,19 +31,23 @@ const DENSER: f64 = 2.0;
 const SHOWN: f64 = 100.0;
 /// Parts of the shortest cell that a strip may go before ground under water is told to lose volume at its lines.
 const CROSSED: f64 = 0.25;
-const NAMES: [&str; 2] = ["x", "y"];
+const NAMES: [&str; 3] = ["x", "y", "z"];
 
 /// Adds the lines to a case's grid, tells where and why, and warns of places where none can be.
 pub(super) fn place(case: &mut Case, record: &Record, report: &mut Report<'_>) {
-    if case.grid.order == 1 || case.grid.dims() == 3 {
-        return; // Every grid line is one; of a solid none is placed, see `solid`.
+    if case.grid.order == 1 {
+        return; // Every grid line is one.
     }
     let mut found = FoundLine::default();
-    interfaces(case, &mut found);
-    segments(case, &mut found);
+    if case.grid.dims() == 2 {
+        interfaces(case, &mut found); // of a solid see `solid`
+        segments(case, &mut found);
+    }
+    plates(case, &mut found);
     for (table, number, message) in std::mem::take(&mut found.narrow) {
         let of = record.records(table).get(number);
-        of.into_iter().for_each(|record| record.error("to", &message, report));
+        let key = if case.grid.dims() == 2 { "to" } else { "rectangle" };
+        of.into_iter().for_each(|record| record.error(key, &message, report));
     }
     let lines = std::mem::take(&mut found.lines);
     let chosen = record.record("grid").and_then(|grid| grid.word("c0_lines")).unwrap_or(C0Lines::Automatic);
@@ -235,7 +240,7 @@ fn differ(case: &Case, (a, b): (usize, usize), height: Option<f64>) -> Option<[f
 struct Segment<'a> {
     name: String,
     table: (&'static str, usize),
-    ends: [[f64; 2]; 2],
+    ends: [[f64; 3]; 2],
     path: Option<&'a MotionPath>,
 }
 
@@ -248,31 +253,70 @@ impl Segment<'_> {
     /// How far it goes, m.
     fn goes(&self) -> f64 {
         let rows = self.path.iter().flat_map(|path| &path.rows);
-        rows.map(|(_, moved)| moved[0].hypot(moved[1])).fold(0.0, f64::max)
+        rows.map(|(_, moved)| moved[0].hypot(moved[1]).hypot(moved[2])).fold(0.0, f64::max)
     }
 }
 
+/// A place of a plane.
+fn flat([x, y]: [f64; 2]) -> [f64; 3] {
+    [x, y, 0.0]
+}
+
 fn all_segments(case: &Case) -> Vec<Segment<'_>> {
-    let footing = case.footing.iter().map(|footing| Segment {
-        name: "footing".into(),
-        table: ("footing", 0),
-        ends: [footing.from, footing.to],
-        path: Some(&footing.path),
+    let footing = case.footing.iter().filter_map(|footing| {
+        let (table, path) = (("footing", 0), Some(&footing.path));
+        footing.site.ends().map(|ends| Segment { name: "footing".into(), table, ends: ends.map(flat), path })
     });
-    let prescribed = case.prescribed.iter().enumerate().filter_map(|(number, prescribed)| match prescribed.site {
-        Site::Segment { from, to } => Some(Segment {
+    let prescribed = case.prescribed.iter().enumerate().filter_map(|(number, prescribed)| {
+        let (table, path) = (("prescribed", number), Some(&prescribed.path));
+        prescribed.site.ends().map(|ends| Segment {
             name: format!("prescribed.{number}"),
-            table: ("prescribed", number),
-            ends: [from, to],
-            path: Some(&prescribed.path),
-        }),
-        Site::Face(_) => None,
+            table,
+            ends: ends.map(flat),
+            path,
+        })
     });
     let tractions = case.tractions.iter().enumerate().filter_map(|(number, traction)| {
-        let ends = traction.ends()?;
+        let ends = traction.ends()?.map(flat);
         Some(Segment { name: format!("traction.{number}"), table: ("traction", number), ends, path: None })
     });
     footing.chain(prescribed).chain(tractions).collect()
+}
+
+/// Edges of rectangular plates and loads of a solid beyond which the surface goes on; of a disc what it holds too much is
+/// told.
+fn plates(case: &Case, found: &mut FoundLine) {
+    let footing = case.footing.iter().map(|footing| (("footing", 0), footing.site, Some(&footing.path)));
+    let prescribed = case.prescribed.iter().enumerate();
+    let prescribed = prescribed.map(|(number, of)| (("prescribed", number), of.site, Some(&of.path)));
+    let strips = footing.chain(prescribed).filter_map(|(table, site, path)| match site {
+        Site::Plate(plate) => Some((table, plate, path)),
+        Site::Segment { .. } | Site::Face(_) => None,
+    });
+    let tractions = case.tractions.iter().enumerate().filter_map(|(number, traction)| match traction.line {
+        LoadedLine::Plate(plate) => Some((("traction", number), plate, None)),
+        LoadedLine::Segment { .. } | LoadedLine::Circle { .. } => None,
+    });
+    for (table, plate, path) in strips.chain(tractions) {
+        let name = if table.0 == "footing" { "footing".into() } else { format!("{}.{}", table.0, table.1) };
+        if plate.round {
+            let told = format!(
+                "{name}: the rim of a disc lies inside cells: it holds what the splines reach, up to a cell more than its \
+                 radius, and its force is high by as much; compare two cell sizes"
+            );
+            path.into_iter().for_each(|_| drop(found.doubts.insert(name.clone(), told.clone())));
+            continue;
+        }
+        let edge = Segment { name, table, ends: [plate.lower, plate.upper], path };
+        for along in (0..3).filter(|axis| *axis != plate.normal()) {
+            let length = plate.upper[along] - plate.lower[along];
+            for (at, outward) in [(plate.lower[along], -length), (plate.upper[along], length)] {
+                let mut place = plate.middle();
+                place[along] = at;
+                end(case, &edge, (along, plate.normal()), (place, outward), found);
+            }
+        }
+    }
 }
 
 /// Ends of strips and loaded segments beyond which the surface goes on, and walls with material on both sides.
@@ -283,18 +327,24 @@ fn segments(case: &Case, found: &mut FoundLine) {
             continue;
         };
         for (at, other) in [(segment.ends[0], segment.ends[1]), (segment.ends[1], segment.ends[0])] {
-            end(case, &segment, (along, at, at[along] - other[along]), found);
+            end(case, &segment, (along, 1 - along), (at, at[along] - other[along]), found);
         }
         wall(case, &segment, 1 - along, found);
     }
 }
 
-/// The line through one end of a segment along an axis; `outward` is the direction away from the other end.
-fn end(case: &Case, segment: &Segment<'_>, (along, at, outward): (usize, [f64; 2], f64), found: &mut FoundLine) {
+/// The line through one end of a segment along an axis, normal to another one; `outward` is the way from the other end.
+fn end(
+    case: &Case,
+    segment: &Segment<'_>,
+    (along, normal): (usize, usize),
+    (at, outward): ([f64; 3], f64),
+    found: &mut FoundLine,
+) {
     let (axis, name) = (&case.grid.axes[along], &segment.name);
     let mut beyond = at;
     beyond[along] += outward.signum() * BEYOND * axis.shortest();
-    if !has_material(case, beyond, 1 - along) {
+    if !has_material(case, beyond, normal) {
         return;
     }
     let reason = format!("an end of {name}, where strains are singular");
@@ -350,9 +400,9 @@ fn wall(case: &Case, segment: &Segment<'_>, normal: usize, found: &mut FoundLine
     };
     let [from, to] = segment.ends;
     let beside = |shift: f64| {
-        let mut middle = [0, 1].map(|k| 0.5 * (from[k] + to[k]));
+        let mut middle = [0, 1, 2].map(|k| 0.5 * (from[k] + to[k]));
         middle[normal] += shift * BEYOND * axis.shortest();
-        case.bodies.iter().any(|body| body.region.contains(middle))
+        case.bodies.iter().any(|body| is_in(body, &case.grid, middle))
     };
     if beside(-1.0) && beside(1.0) {
         let reason = format!("{} holds material on both sides of it", segment.name);
@@ -361,11 +411,11 @@ fn wall(case: &Case, segment: &Segment<'_>, normal: usize, found: &mut FoundLine
 }
 
 /// Whether a body is at a place on its surface, on one side or the other.
-fn has_material(case: &Case, at: [f64; 2], normal: usize) -> bool {
+fn has_material(case: &Case, at: [f64; 3], normal: usize) -> bool {
     let aside = BESIDE * case.grid.axes[normal].shortest();
     [-aside, aside].into_iter().any(|shift| {
         let mut place = at;
         place[normal] += shift;
-        case.bodies.iter().any(|body| body.region.contains(place))
+        case.bodies.iter().any(|body| is_in(body, &case.grid, place))
     })
 }

@@ -1,9 +1,9 @@
 //! Tractions, point loads, and the stress at the start.
 
 use super::material::profile;
-use super::place::{along, at_body, at_volume, beyond, over, ring};
-use super::strip::{AroundStrip, segment};
-use crate::case::{Acting, Body, Case, Gravity, Initial, LoadedLine, NamedMaterial, PointLoad, Push, Traction};
+use super::place::{along, at_body, at_volume, beyond, is_at, is_beyond, ring};
+use super::strip::{AroundStrip, places, plate, segment};
+use crate::case::{Acting, Body, Case, Gravity, Initial, LoadedLine, NamedMaterial, PointLoad, Push, Site, Traction};
 use crate::record::Record;
 use crate::report::Report;
 use crate::schema::LawName;
@@ -20,7 +20,7 @@ pub(super) fn tractions(root: &Record, around: AroundStrip<'_>, report: &mut Rep
         let (line, push, (ramp, amplitude)) = (line?, push?, course?);
         let traction = Traction { line, push, ramp, amplitude };
         let key = if record.gives("pressure") { "pressure" } else { "stress" };
-        warn_of_nothing(record, key, [traction.largest(); 2], report);
+        warn_of_nothing(record, key, [traction.largest(); 3], report);
         Some(traction)
     };
     root.records("traction").iter().filter_map(&mut read).collect()
@@ -33,8 +33,16 @@ fn line(record: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Op
         acts_on_body(record, "circle", places.into_iter(), around, report);
         return Some(LoadedLine::Circle { center, radius });
     }
-    if record.gives("rectangle") {
-        return rectangle(record, around, report);
+    if let Some(key) = ["rectangle", "disc"].into_iter().find(|key| record.gives(key)) {
+        let plate = plate(record, around, report)?;
+        let (grid, bodies) = (around.grid?, around.bodies?);
+        let mut places = places(Site::Plate(plate), grid).into_iter();
+        if let Some(at) = places.find(|at| beyond(grid, *at).is_none() && !at_volume(bodies, grid, *at)) {
+            let message = format!("no body is at {at:?} at the start; allowed: half a spacing of points from one");
+            record.error(key, message, report);
+            return None;
+        }
+        return Some(LoadedLine::Plate(plate));
     }
     let [from, to] = segment(record, around, report)?;
     acts_on_body(record, "from", along([from, to]), around, report);
@@ -57,29 +65,6 @@ pub(super) fn circle(
         return None;
     }
     Some((center, radius, places))
-}
-
-/// A rectangle in space inside the grid, on a body everywhere.
-fn rectangle(record: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Option<LoadedLine> {
-    let (table, grid, bodies) = (record.record("rectangle")?, around.grid?, around.bodies?);
-    let (lower, upper) = (table.vector("lower")?, table.vector("upper")?);
-    let flat = (0..3).filter(|&axis| lower[axis] == upper[axis]).count();
-    if flat != 1 || (0..3).any(|axis| lower[axis] > upper[axis]) {
-        let message =
-            format!("{lower:?} to {upper:?} is no rectangle; allowed: alike along one axis, more along the others");
-        record.error("rectangle", message, report);
-        return None;
-    }
-    if let Some(message) = [lower, upper].into_iter().find_map(|corner| beyond(grid, corner)) {
-        record.error("rectangle", message, report);
-        return None;
-    }
-    if let Some(at) = over([lower, upper]).find(|at| !at_volume(bodies, grid, *at)) {
-        let message = format!("no body is at {at:?} at the start; allowed: half a spacing of points from one");
-        record.error("rectangle", message, report);
-        return None;
-    }
-    Some(LoadedLine::Rectangle { lower, upper })
 }
 
 /// A stress along the axes, by depth.
@@ -108,10 +93,12 @@ fn push(record: &Record, line: LoadedLine, around: AroundStrip<'_>, report: &mut
             along([from, to]).filter(|at| holds([at[0] + x, at[1] + y])).count()
         }
         LoadedLine::Circle { center, radius } => ring(center, radius - side * off).filter(|at| holds(*at)).count(),
-        LoadedLine::Rectangle { lower, upper } => {
-            let by: [f64; 3] = std::array::from_fn(|axis| if lower[axis] == upper[axis] { side * off } else { 0.0 });
-            let inside = |at: [f64; 3]| bodies.iter().any(|body| body.region.contains_in_space(at));
-            over([lower, upper]).filter(|at| inside(std::array::from_fn(|axis| at[axis] + by[axis]))).count()
+        LoadedLine::Plate(plate) => {
+            let inside = |mut at: [f64; 3]| {
+                at[plate.normal()] += side * off;
+                bodies.iter().any(|body| body.region.contains_in_space(at))
+            };
+            places(Site::Plate(plate), grid).into_iter().filter(|at| inside(*at)).count()
         }
     };
     let (left, right) = (count(1.0), count(-1.0));
@@ -126,14 +113,18 @@ fn push(record: &Record, line: LoadedLine, around: AroundStrip<'_>, report: &mut
 /// All point loads in the order of the file, without those that have an error.
 pub(super) fn point_loads(root: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Vec<PointLoad> {
     let mut read = |record: &Record| {
-        let (at, course) = (record.pair("at")?, course(record, around, report));
-        let grid = around.grid?;
-        if let Some(message) = beyond(grid, at) {
+        let (at, course) = (record.vector("at")?, course(record, around, report));
+        let (grid, bodies) = (around.grid?, around.bodies?);
+        if let Some(message) = is_beyond(grid, at) {
             record.error("at", message, report);
-        } else {
-            acts_on_body(record, "at", std::iter::once(at), around, report);
+        } else if !is_at(bodies, grid, at) {
+            let message = format!(
+                "no body is at {:?} at the start; allowed: half a spacing of points from one",
+                &at[..grid.dims()]
+            );
+            record.error("at", message, report);
         }
-        let force = record.pair("force")?;
+        let force = record.vector("force")?;
         warn_of_nothing(record, "force", force, report);
         let (ramp, amplitude) = course?;
         Some(PointLoad { at, force, ramp, amplitude })
@@ -141,8 +132,8 @@ pub(super) fn point_loads(root: &Record, around: AroundStrip<'_>, report: &mut R
     root.records("point_load").iter().filter_map(&mut read).collect()
 }
 
-fn warn_of_nothing(record: &Record, key: &str, load: [f64; 2], report: &mut Report<'_>) {
-    if load == [0.0; 2] {
+fn warn_of_nothing(record: &Record, key: &str, load: [f64; 3], report: &mut Report<'_>) {
+    if load == [0.0; 3] {
         report.warn(format!("{}: zero: it does nothing", record.path_of(key)));
     }
 }

@@ -2,7 +2,7 @@
 
 use super::NEARLY_INCOMPRESSIBLE;
 use super::place;
-use super::strip::{moves, normal};
+use super::strip::{moves, normal_of, places};
 use crate::case::{Base, Body, Case, Drain, Geometry, Initial, Prescribed, Site, Support};
 use crate::record::Record;
 use crate::report::Report;
@@ -196,19 +196,18 @@ fn holds(case: &Case, component: usize) -> bool {
 
 /// Whether the footing or a prescribed motion holds a component of a body.
 fn held_by_strip(case: &Case, component: usize) -> bool {
-    let by_segment = |base: Base, from: [f64; 2], to: [f64; 2]| {
-        let holds = base == Base::Rough || normal(from, to)[component].abs() > ALONG;
-        holds && place::along([from, to]).any(|at| place::at_body(&case.bodies, &case.grid, at))
+    let by_strip = |base: Base, site: Site| {
+        let holds = base == Base::Rough || normal_of(site)[component].abs() > ALONG;
+        holds && places(site, &case.grid).into_iter().any(|at| place::is_at(&case.bodies, &case.grid, at))
     };
     let by_motion = |prescribed: &Prescribed| match prescribed.site {
-        Site::Segment { from, to } => by_segment(prescribed.base, from, to),
+        site @ (Site::Segment { .. } | Site::Plate(_)) => by_strip(prescribed.base, site),
         Site::Face(face) => {
             let holds = prescribed.base == Base::Rough || face.axis == component;
             holds && reached(case, face.axis, face.upper)
         }
     };
-    case.footing.iter().any(|footing| by_segment(footing.base, footing.from, footing.to))
-        || case.prescribed.iter().any(by_motion)
+    case.footing.iter().any(|footing| by_strip(footing.base, footing.site)) || case.prescribed.iter().any(by_motion)
 }
 
 /// Whether a body reaches into the cells along a face, and so has nodes on it.
@@ -232,7 +231,7 @@ fn warn_of_materials(case: &Case, report: &mut Report<'_>) {
 }
 
 fn loaded(case: &Case) -> bool {
-    let pulls = |load: [f64; 2]| load != [0.0; 2];
+    let pulls = |load: [f64; 3]| load != [0.0; 3];
     let presses = |drain: &Drain| !matches!(drain.given, Given::StillWater | Given::Seepage);
     case.gravity.is_some()
         || !case.shaking.is_empty()

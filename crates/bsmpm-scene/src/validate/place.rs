@@ -34,6 +34,11 @@ pub(super) fn beyond<const D: usize>(grid: &GridSpec, at: [f64; D]) -> Option<St
     })
 }
 
+/// As [`beyond`], of a place that in a plane has nothing along its normal.
+pub(super) fn is_beyond(grid: &GridSpec, at: [f64; 3]) -> Option<String> {
+    if grid.dims() == 2 { beyond(grid, [at[0], at[1]]) } else { beyond(grid, at) }
+}
+
 /// Places in the middles of equal pieces of a line.
 pub(super) fn along([from, to]: [[f64; 2]; 2]) -> impl Iterator<Item = [f64; 2]> {
     (0..SAMPLES).map(move |k| {
@@ -88,10 +93,20 @@ pub(super) fn at_volume(bodies: &[Body], grid: &GridSpec, at: [f64; 3]) -> bool 
     })
 }
 
-/// The face of a plane's grid that a record names.
-pub(super) fn face_in_plane(record: &Record, report: &mut Report<'_>) -> Option<Face> {
+/// Whether some body is within half the spacing of its points of a place.
+pub(super) fn is_at(bodies: &[Body], grid: &GridSpec, at: [f64; 3]) -> bool {
+    if grid.dims() == 2 { at_body(bodies, grid, [at[0], at[1]]) } else { at_volume(bodies, grid, at) }
+}
+
+/// Whether a body is at a place.
+pub(super) fn is_in(body: &Body, grid: &GridSpec, at: [f64; 3]) -> bool {
+    if grid.dims() == 2 { body.region.contains([at[0], at[1]]) } else { body.region.contains_in_space(at) }
+}
+
+/// The face of the grid that a record names.
+pub(super) fn face(record: &Record, grid: &GridSpec, report: &mut Report<'_>) -> Option<Face> {
     let side: Side = record.word("face")?;
-    let face = Face::of(side, Geometry::PlaneStrain);
+    let face = Face::of(side, if grid.dims() == 3 { Geometry::Solid } else { Geometry::PlaneStrain });
     if face.is_none() {
         record.error("face", format!("a grid in a plane has no face \"{side}\""), report);
     }

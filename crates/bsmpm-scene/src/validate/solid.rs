@@ -10,10 +10,7 @@ use bsmpm::stabilisation::Stabilisation;
 const IN_A_PLANE: &[(&str, &str)] = &[
     ("inflow", "give a head or a pressure at a face of the grid by [[drain]]"),
     ("shaking", "use plane strain"),
-    ("footing", "use plane strain or another geometry that has strips"),
-    ("prescribed", "use plane strain or another geometry that has strips"),
     ("rigid", "use plane strain"),
-    ("point_load", "use a [[traction]] on a rectangle"),
     ("stage", "write a case for every stage, or use plane strain"),
     ("profile", "use histories at places, or frames"),
 ];
@@ -23,6 +20,7 @@ const QUANTITIES: &[Measurement] = &[
     Measurement::Front,
     Measurement::AngularMomentum,
     Measurement::SectionForces,
+    Measurement::Moment,
     Measurement::StressNoise,
     Measurement::PressureNoise,
     Measurement::Contact,
@@ -51,17 +49,28 @@ pub(super) fn refuse(root: &Record, report: &mut Report<'_>) {
     }
     for traction in root.records("traction") {
         for key in ["from", "to", "circle"].into_iter().filter(|key| traction.gives(key)) {
-            traction.error(key, "is in a plane; a solid is loaded on a rectangle = { lower, upper }", report);
+            traction.error(
+                key,
+                "is in a plane; a solid is loaded on a rectangle = { lower, upper }, or a disc",
+                report,
+            );
         }
         for key in ["stress", "pressure"].into_iter().filter(|key| traction.record(key).is_some()) {
             traction.error(key, "by depth in a plane only: one value", report);
+        }
+    }
+    for strip in root.records("footing").iter().chain(root.records("prescribed")) {
+        for key in ["from", "to"].into_iter().filter(|key| strip.gives(key)) {
+            strip.error(key, "is in a plane; a solid has plates: rectangle = { lower, upper }, or disc", report);
         }
     }
     for body in root.records("body").iter().filter(|body| body.gives("spin")) {
         body.error("spin", "not available in a solid yet: give velocity", report);
     }
     for history in root.records("history") {
-        if let Some(quantity) = history.word::<Measurement>("quantity").filter(|of| QUANTITIES.contains(of)) {
+        let of_strip = |of: &Measurement| of.is_of_contact() && history.gives("of");
+        let wanted = history.word::<Measurement>("quantity").filter(|of| QUANTITIES.contains(of) && !of_strip(of));
+        if let Some(quantity) = wanted {
             history.error("quantity", format!("\"{quantity}\" is not available in a solid yet: use frames"), report);
         }
         for key in ["at_x", "surface"].into_iter().filter(|key| history.gives(key)) {
@@ -72,8 +81,11 @@ pub(super) fn refuse(root: &Record, report: &mut Report<'_>) {
 
 /// Of a plane what only a solid has.
 fn in_space(root: &Record, report: &mut Report<'_>) {
-    for traction in root.records("traction").iter().filter(|traction| traction.gives("rectangle")) {
-        traction.error("rectangle", "is in space: geometry = \"solid\" has it; here from and to", report);
+    let strips = root.records("footing").iter().chain(root.records("prescribed"));
+    for flat in root.records("traction").iter().chain(strips) {
+        for key in ["rectangle", "disc"].into_iter().filter(|key| flat.gives(key)) {
+            flat.error(key, "is in space: geometry = \"solid\" has it; here from and to", report);
+        }
     }
     if let Some(boundary) = root.record("boundary") {
         for side in [Side::Front, Side::Back].into_iter().filter(|side| boundary.gives(side.word())) {

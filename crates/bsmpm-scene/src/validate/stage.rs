@@ -1,7 +1,7 @@
 //! Stages: times that follow each other, bodies that can be removed and placed then, and what must not lose its body.
 
 use super::{place, reduction, strip};
-use crate::case::{Acting, Body, Case, Face, FaceSupport, LoadedLine, Quantity, Site, Stage, Support};
+use crate::case::{Acting, Body, Case, Face, FaceSupport, LoadedLine, Quantity, Stage, Support};
 use crate::nearest::hint;
 use crate::record::Record;
 use crate::report::{Report, shortened};
@@ -337,22 +337,20 @@ fn surfaces<'a>(case: &Case, root: &'a Record) -> Vec<(&'a Record, &'static str,
     let mut found = Vec::new();
     let line = |ends| place::along(ends).collect::<Vec<_>>();
     if let (Some(footing), Some(record)) = (&case.footing, root.record("footing")) {
-        found.push((record, "from", line([footing.from, footing.to])));
+        footing.site.ends().into_iter().for_each(|ends| found.push((record, "from", line(ends))));
     }
     for (prescribed, record) in case.prescribed.iter().zip(root.records("prescribed")) {
-        if let Site::Segment { from, to } = prescribed.site {
-            found.push((record, "from", line([from, to])));
-        }
+        prescribed.site.ends().into_iter().for_each(|ends| found.push((record, "from", line(ends))));
     }
     for (traction, record) in case.tractions.iter().zip(root.records("traction")) {
         found.push(match traction.line {
             LoadedLine::Segment { from, to } => (record, "from", line([from, to])),
             LoadedLine::Circle { center, radius } => (record, "circle", place::ring(center, radius).collect()),
-            LoadedLine::Rectangle { .. } => continue,
+            LoadedLine::Plate(_) => continue,
         });
     }
     for (load, record) in case.point_loads.iter().zip(root.records("point_load")) {
-        found.push((record, "at", vec![load.at]));
+        found.push((record, "at", vec![[load.at[0], load.at[1]]]));
     }
     found
 }

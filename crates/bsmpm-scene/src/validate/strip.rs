@@ -1,11 +1,11 @@
 //! The footing and prescribed motions.
 
-use super::place::{along, at_body, beyond};
-use crate::case::{Base, Body, Case, Face, Footing, MotionPath, Prescribed, Site, Support};
+use super::place::{along, beyond, face, is_at, is_beyond, is_in, over};
+use crate::case::{Base, Body, Case, Face, Footing, MotionPath, Plate, Prescribed, Site, Support};
 use crate::grid::GridSpec;
 use crate::record::Record;
 use crate::report::Report;
-use crate::words::{AnalysisType, Components, Side};
+use crate::words::{AnalysisType, Axis, Components, Side};
 use bsmpm::boundary::StripContact;
 
 /// Parts of a motion below which it does not count.
@@ -27,21 +27,18 @@ pub(super) struct AroundStrip<'a> {
 pub(super) fn footing(root: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Option<Footing> {
     let record = root.record("footing")?;
     let path = path(record, around.end, report);
-    let ends = segment(record, around, report);
-    if let Some(ends) = ends {
-        starts_at_body(record, "from", ends, around, report);
-    }
-    let (path, [from, to]) = (path?, ends?);
-    stays_inside(record, [from, to], &path, around, report);
-    let (base, contact) = match rubs((root, record), "base", [from, to], around, report) {
+    let site = site(record, around, report);
+    let (path, site) = (path?, site?);
+    stays_inside(record, site, &path, around, report);
+    let (base, contact) = match rubs((root, record), "base", site, around, report) {
         Some(rubs) => rubs?,
         None => (record.word("base")?, None),
     };
-    if base == Base::Smooth && contact.is_none() && normal_part(&path, from, to) <= NOTHING * size(&path) {
+    if base == Base::Smooth && contact.is_none() && normal_part(&path, site) <= NOTHING * size(&path) {
         let message = "a smooth base holds its normal component only, and the motion has none";
         record.error(motion(record), message, report);
     }
-    Some(Footing { from, to, path, base, contact })
+    Some(Footing { site, path, base, contact })
 }
 
 /// All prescribed motions in the order of the file, without those that have an error.
@@ -58,10 +55,10 @@ pub(super) fn prescribed(root: &Record, around: AroundStrip<'_>, report: &mut Re
                     record.error("face", "its motion is prescribed already", report);
                 }
             }
-            Site::Segment { from, to } => stays_inside(record, [from, to], &path, around, report),
+            Site::Segment { .. } | Site::Plate(_) => stays_inside(record, site, &path, around, report),
         }
         let rubs = match site {
-            Site::Segment { from, to } => rubs((root, record), "components", [from, to], around, report),
+            Site::Segment { .. } | Site::Plate(_) => rubs((root, record), "components", site, around, report),
             Site::Face(_) => {
                 if record.record("components").is_some() {
                     let message =
@@ -89,17 +86,17 @@ const BESIDE: f64 = 0.25;
 fn rubs(
     (root, record): (&Record, &Record),
     key: &str,
-    ends: [[f64; 2]; 2],
+    site: Site,
     around: AroundStrip<'_>,
     report: &mut Report<'_>,
-) -> Option<Option<(Base, Option<StripContact<2>>)>> {
+) -> Option<Option<(Base, Option<StripContact<3>>)>> {
     let table = record.record(key)?;
     let Some(law) = super::law(table, around.factor, report) else { return Some(None) };
     let (Some(grid), Some(bodies)) = (around.grid, around.bodies) else { return Some(None) };
-    let (off, normal) = (BESIDE * grid.axes[0].shortest().min(grid.axes[1].shortest()), normal(ends[0], ends[1]));
+    let (off, normal) = (BESIDE * grid.axes[0].shortest().min(grid.axes[1].shortest()), normal_of(site));
     let count = |side: f64| {
-        let beside = |at: [f64; 2]| [at[0] + side * off * normal[0], at[1] + side * off * normal[1]];
-        along(ends).filter(|at| bodies.iter().any(|body| body.region.contains(beside(*at)))).count()
+        let beside = |at: [f64; 3]| std::array::from_fn(|axis| at[axis] + side * off * normal[axis]);
+        places(site, grid).into_iter().filter(|at| bodies.iter().any(|body| is_in(body, grid, beside(*at)))).count()
     };
     let (left, right) = (count(1.0), count(-1.0));
     if left.abs_diff(right) * 2 < left.max(right) {
@@ -138,33 +135,103 @@ pub(super) fn segment(record: &Record, around: AroundStrip<'_>, report: &mut Rep
 }
 
 /// A strip starts at a body, if only with a part of it.
-fn starts_at_body(record: &Record, key: &str, ends: [[f64; 2]; 2], around: AroundStrip<'_>, report: &mut Report<'_>) {
+fn starts_at_body(record: &Record, key: &str, site: Site, around: AroundStrip<'_>, report: &mut Report<'_>) {
     let (Some(grid), Some(bodies)) = (around.grid, around.bodies) else { return };
-    if !along(ends).any(|at| at_body(bodies, grid, at)) {
-        let [from, to] = ends;
+    if !places(site, grid).into_iter().any(|at| is_at(bodies, grid, at)) {
+        let [from, to] = corners(site, grid).map(|at| at[..grid.dims()].to_vec());
         let message =
             format!("no body is at {from:?} to {to:?} at the start; allowed: half a spacing of points from one");
         record.error(key, message, report);
     }
 }
 
+/// m  two opposite corners of what is held
+fn corners(site: Site, grid: &GridSpec) -> [[f64; 3]; 2] {
+    match site {
+        Site::Segment { from, to } => [from, to].map(|[x, y]| [x, y, 0.0]),
+        Site::Plate(plate) => [plate.lower, plate.upper],
+        Site::Face(face) => {
+            let (mut lower, mut upper) = (grid.lower(), grid.upper());
+            let at = if face.upper { upper[face.axis] } else { lower[face.axis] };
+            (lower[face.axis], upper[face.axis]) = (at, at);
+            [lower, upper]
+        }
+    }
+}
+
+/// Places of what is held, in the middles of equal pieces.
+pub(super) fn places(site: Site, grid: &GridSpec) -> Vec<[f64; 3]> {
+    let ends = corners(site, grid);
+    if grid.dims() == 2 {
+        return along(ends.map(|[x, y, _]| [x, y])).map(|[x, y]| [x, y, 0.0]).collect();
+    }
+    over(ends).filter(|at| !matches!(site, Site::Plate(plate) if !plate.covers(*at))).collect()
+}
+
+/// Unit normal of what is held.
+pub(super) fn normal_of(site: Site) -> [f64; 3] {
+    let along = |axis: usize| std::array::from_fn(|k| f64::from(u8::from(k == axis)));
+    match site {
+        Site::Segment { from, to } => {
+            let [x, y] = normal(from, to);
+            [x, y, 0.0]
+        }
+        Site::Plate(plate) => along(plate.normal()),
+        Site::Face(face) => along(face.axis),
+    }
+}
+
+/// A plate inside the grid; of a disc a part of it.
+pub(super) fn plate(record: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Option<Plate> {
+    let grid = around.grid?;
+    if let Some(disc) = record.record("disc") {
+        let (center, radius) = (disc.vector("center")?, disc.number("radius")?);
+        let normal = disc.word::<Axis>("normal")? as usize;
+        let corner = |side: f64| std::array::from_fn(|k| center[k] + if k == normal { 0.0 } else { side * radius });
+        let plate = Plate { lower: corner(-1.0), upper: corner(1.0), round: true };
+        let (lower, upper) = (grid.lower(), grid.upper());
+        let inside = |axis: usize| lower[axis] <= plate.upper[axis] && plate.lower[axis] <= upper[axis];
+        if !(0..3).all(inside) || plate.area([lower, upper]) == 0.0 {
+            record.error("disc", "no part of it is inside the grid", report);
+            return None;
+        }
+        return Some(plate);
+    }
+    let table = record.record("rectangle")?;
+    let (lower, upper) = (table.vector("lower")?, table.vector("upper")?);
+    let flat = (0..3).filter(|&axis| lower[axis] == upper[axis]).count();
+    if flat != 1 || (0..3).any(|axis| lower[axis] > upper[axis]) {
+        let message =
+            format!("{lower:?} to {upper:?} is no rectangle; allowed: alike along one axis, more along the others");
+        record.error("rectangle", message, report);
+        return None;
+    }
+    if let Some(message) = [lower, upper].into_iter().find_map(|corner| beyond(grid, corner)) {
+        record.error("rectangle", message, report);
+        return None;
+    }
+    Some(Plate { lower, upper, round: false })
+}
+
 fn site(record: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Option<Site> {
+    if let Some(key) = ["rectangle", "disc"].into_iter().find(|key| record.gives(key)) {
+        let site = Site::Plate(plate(record, around, report)?);
+        starts_at_body(record, key, site, around, report);
+        return Some(site);
+    }
     if !record.gives("face") {
         let [from, to] = segment(record, around, report)?;
-        starts_at_body(record, "from", [from, to], around, report);
+        starts_at_body(record, "from", Site::Segment { from, to }, around, report);
         return Some(Site::Segment { from, to });
     }
-    let (side, face) = (record.word::<Side>("face")?, super::place::face_in_plane(record, report)?);
+    let (side, face) = (record.word::<Side>("face")?, face(record, around.grid?, report)?);
     let support = around.boundary?[face.axis][usize::from(face.upper)];
     if support != Support::Free {
         let message = format!("[boundary] holds \"{side}\" too; leave it free there");
         record.error("face", message, report);
         return None;
     }
-    let [mut from, mut to] = [around.grid?.lower(), around.grid?.upper()].map(|[x, y, _]| [x, y]);
-    let at = if face.upper { to[face.axis] } else { from[face.axis] };
-    (from[face.axis], to[face.axis]) = (at, at);
-    starts_at_body(record, "face", [from, to], around, report);
+    starts_at_body(record, "face", Site::Face(face), around, report);
     Some(Site::Face(face))
 }
 
@@ -175,25 +242,30 @@ fn motion(record: &Record) -> &'static str {
 
 pub(super) fn path(record: &Record, end: Option<f64>, report: &mut Report<'_>) -> Option<MotionPath> {
     let rows = if record.gives("displacement") {
-        vec![(end?, record.pair("displacement")?)]
+        vec![(end?, record.vector("displacement")?)]
     } else if record.gives("velocity") {
-        vec![(end?, record.pair("velocity")?.map(|v| v * end.unwrap_or(0.0)))]
+        vec![(end?, record.vector("velocity")?.map(|v| v * end.unwrap_or(0.0)))]
     } else {
         rows(record, end, report)?
     };
     Some(MotionPath { rows })
 }
 
-fn rows(record: &Record, end: Option<f64>, report: &mut Report<'_>) -> Option<Vec<(f64, [f64; 2])>> {
+fn rows(record: &Record, end: Option<f64>, report: &mut Report<'_>) -> Option<Vec<(f64, [f64; 3])>> {
     let written = record.rows("path")?;
-    let mut rows: Vec<(f64, [f64; 2])> = Vec::with_capacity(written.len());
+    let mut rows: Vec<(f64, [f64; 3])> = Vec::with_capacity(written.len());
     for (k, row) in written.iter().enumerate() {
-        let (t, u) = (row.numbers[0], [row.numbers[1], row.numbers[2]]);
+        let (t, along) = (row.numbers[0], &row.numbers[1..]);
+        let u: [f64; 3] = std::array::from_fn(|axis| along.get(axis).copied().unwrap_or(0.0));
         let key = record.path_of("path");
         match rows.last() {
-            _ if k == 0 && t == 0.0 && u == [0.0; 2] => continue,
+            _ if k == 0 && t == 0.0 && u == [0.0; 3] => continue,
             _ if k == 0 && t == 0.0 => {
-                report.error(row.origin, &key, format!("{u:?} at time 0; a path starts with [0.0, 0.0] there"));
+                report.error(
+                    row.origin,
+                    &key,
+                    format!("{along:?} at time 0; a path starts with {:?} there", vec![0.0; along.len()]),
+                );
                 return None;
             }
             Some((before, _)) if *before >= t => {
@@ -218,16 +290,16 @@ fn rows(record: &Record, end: Option<f64>, report: &mut Report<'_>) -> Option<Ve
 }
 
 /// Between its rows a path is straight, and the grid convex: the rows decide.
-fn stays_inside(
-    record: &Record,
-    ends: [[f64; 2]; 2],
-    path: &MotionPath,
-    around: AroundStrip<'_>,
-    report: &mut Report<'_>,
-) {
+fn stays_inside(record: &Record, site: Site, path: &MotionPath, around: AroundStrip<'_>, report: &mut Report<'_>) {
     let Some(grid) = around.grid else { return };
-    let at = |end: [f64; 2], u: [f64; 2]| [end[0] + u[0], end[1] + u[1]];
-    let beyond = |(t, u): &(f64, [f64; 2])| Some((*t, ends.into_iter().find_map(|end| beyond(grid, at(end, *u)))?));
+    let corners = match site {
+        // Of a disc what lies inside the grid counts anyway.
+        Site::Plate(plate) if plate.round => [plate.middle(); 2],
+        site => corners(site, grid),
+    };
+    let at = |end: [f64; 3], u: [f64; 3]| std::array::from_fn(|axis| end[axis] + u[axis]);
+    let beyond =
+        |(t, u): &(f64, [f64; 3])| Some((*t, corners.into_iter().find_map(|end| is_beyond(grid, at(end, *u)))?));
     if let Some((t, message)) = path.rows.iter().find_map(beyond) {
         record.error(motion(record), format!("at t = {t} it has left the grid: {message}"), report);
     }
@@ -242,13 +314,14 @@ fn inward(record: &Record, face: Face, path: &MotionPath, report: &mut Report<'_
 }
 
 fn size(path: &MotionPath) -> f64 {
-    path.rows.iter().map(|(_, u)| u[0].hypot(u[1])).fold(0.0, f64::max)
+    path.rows.iter().map(|(_, u)| u[0].hypot(u[1]).hypot(u[2])).fold(0.0, f64::max)
 }
 
 /// The largest motion normal to a base, m.
-fn normal_part(path: &MotionPath, from: [f64; 2], to: [f64; 2]) -> f64 {
-    let normal = normal(from, to);
-    path.rows.iter().map(|(_, u)| (u[0] * normal[0] + u[1] * normal[1]).abs()).fold(0.0, f64::max)
+fn normal_part(path: &MotionPath, site: Site) -> f64 {
+    let normal = normal_of(site);
+    let along = |u: &[f64; 3]| u[0] * normal[0] + u[1] * normal[1] + u[2] * normal[2];
+    path.rows.iter().map(|(_, u)| along(u).abs()).fold(0.0, f64::max)
 }
 
 /// Unit normal of a segment.
@@ -263,7 +336,7 @@ pub(super) fn has_moved(case: &Case, number: usize, t: f64) -> bool {
     let footing = case.footing.iter().map(|footing| &footing.path);
     let mut paths = footing.chain(case.prescribed.iter().map(|prescribed| &prescribed.path));
     let earlier = |path: &MotionPath| {
-        let moved = |(_, [x, y]): &(f64, [f64; 2])| *x != 0.0 || *y != 0.0;
+        let moved = |(_, u): &(f64, [f64; 3])| *u != [0.0; 3];
         let begin = path.rows.iter().position(moved);
         // It moves from the row before the first one that is not zero on.
         begin.is_some_and(|row| row.checked_sub(1).map_or(0.0, |before| path.rows[before].0) < t)

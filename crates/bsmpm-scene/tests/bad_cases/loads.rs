@@ -112,7 +112,7 @@ pub const STRIPS: &[Row] = &[
     row("to   = [\"2 m\", 2.5]", "to = [1.0, 2.5]", "footing.to", "the length is zero"),
     row("to   = [\"2 m\", 2.5]", "to = [5, 2.5]", "footing.to", "outside the grid, which ends at x = 4"),
     row("from = [1.0, 2.5]", "from = [1.0, -2.5]", "footing.from", "outside the grid, which starts at y = 0"),
-    row("from = [1.0, 2.5]", "", "footing.from", "missing").up(1),
+    row("from = [1.0, 2.5]", "", "footing", "missing: one of from").up(1),
     row(
         "displacement = [0.0, \"-10 cm\"]",
         "displacement = [0, -3]",

@@ -6,6 +6,8 @@ const BOX: &str = "box = { lower = [0.0, 0.0, 0.0], upper = [2.0, 3.0, 1.0] }";
 
 const LOADED: &str = "rectangle = { lower = [0.5, 1.0, 1.0], upper = [1.5, 2.0, 1.0] }";
 
+const PLATE: &str = "rectangle    = { lower = [0.5, 2.0, 1.0], upper = [1.5, 3.0, 1.0] }";
+
 const FLOWS: &str = "density = 2000\nporosity = 0.4\ndrainage = \"coupled\"\npermeability = [1e-6, 1e-7, 1e-6]\n\
     [water]\nlevel = 1.0\n[[drain]]\nsurface = true\n";
 const PERMEABLE: &str = "density = 2000\nporosity = 0.4\ndrainage = \"coupled\"\npermeability = [1e-6, 1e-7]\n";
@@ -66,12 +68,30 @@ pub const SOLID: &[Row] = &[
     ),
     row("density = 2000", FLOWS, "drain.0.surface", "name a face of the grid").down(7),
     row("density = 2000", PERMEABLE, "material.soil.permeability", "expected").down(3),
+    row("at    = [0.5, 0.0, 0.5]", "at    = [0.5, 0.5]", "point_load.0.at", "solid: of three"),
+    row("at    = [0.5, 0.0, 0.5]", "at    = [3.9, 0.1, 2.9]", "point_load.0.at", "no body is at [3.9, 0.1, 2.9]"),
+    row(PLATE, "from = [0, 1]\nto = [1, 1]", "footing.from", "a solid has plates"),
+    row(PLATE, "rectangle = { lower = [0.5, 2, 1], upper = [1.5, 3, 1.2] }", "footing.rectangle", "no rectangle"),
     row(
-        "[gravity]",
-        "[[point_load]]\nat = [1, 1]\nforce = [0, -1]\n[gravity]",
-        "point_load",
-        "not available in a solid yet",
+        PLATE,
+        "rectangle = { lower = [0.6, 2, 1], upper = [0.9, 3, 1] }",
+        "footing.rectangle",
+        "inside a cell of 0.5 m",
     ),
+    row(PLATE, "rectangle = { lower = [0.5, 2, 2.8], upper = [1.5, 3, 2.8] }", "footing.rectangle", "no body is at"),
+    row(PLATE, "disc = { center = [1.0, 2.5, 1.0], radius = 0 }", "footing.disc.radius", "radius > 0"),
+    row(PLATE, "disc = { center = [9.0, 2.5, 1.0], radius = 0.5 }", "footing.disc", "no part of it"),
+    row("displacement = [0.0, 0.0, -0.01]", "displacement = [0.0, -0.01]", "footing.displacement", "solid: of three"),
+    row(
+        "displacement = [0.0, 0.0, -0.01]",
+        "displacement = [0.1, 0.0, 0.0]",
+        "footing.displacement",
+        "normal component",
+    ),
+    row("displacement = [0.0, 0.0, -0.01]", "displacement = [0, 0, -1.5]", "footing.displacement", "left the grid"),
+    row("[0.5, 0.0, 0.0, -0.01]", "[0.5, 0.0, -0.01]", "prescribed.0.path", "(solid: of three)"),
+    row("normal = \"z\"", "normal = \"up\"", "prescribed.0.disc.normal", "expected one of"),
+    row("quantity = \"contact\"", "quantity = \"moment\"", "history.2.quantity", "not available in a solid"),
     row(
         LOADED,
         "rectangle = { lower = [0.5, 1.0, 0.5], upper = [1.5, 2.0, 1.0] }",
@@ -113,6 +133,13 @@ pub const IN_A_PLANE: &[Row] = &[
         "bottom = \"fixed\"",
         "bottom = \"fixed\"\n[[traction]]\nrectangle = { lower = [0, 1], upper = [1, 1] }\nstress = [0, 1]",
         "traction.0.rectangle",
+        "is in space",
+    )
+    .down(2),
+    row(
+        "bottom = \"fixed\"",
+        "bottom = \"fixed\"\n[footing]\ndisc = { center = [0, 1], radius = 1 }\ndisplacement = [0, -1]",
+        "footing.disc",
         "is in space",
     )
     .down(2),

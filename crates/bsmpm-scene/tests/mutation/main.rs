@@ -168,8 +168,12 @@ fn bases() -> Vec<String> {
     bases.push(format!("{ratio}\n[gravity]\nacceleration = [0.0, -9.81]\n"));
     bases.push(SUCTION.to_owned());
     bases.push(SOLID.to_owned());
-    let knots = "knots = { x = [0.0, 2.0, 4.0], y = [0.0, 1.0, 3.0], z = [0.0, 1.0, 1.0, 3.0] }";
-    bases.push(SOLID.replacen("cell  = [0.5, 1.0, 0.5]", knots, 1));
+    let knots = "knots = { x = [0.0, 0.5, 1.5, 4.0], y = [0.0, 1.0, 2.0, 3.0], z = [0.0, 1.0, 1.0, 3.0] }";
+    let otherwise = SOLID.replacen("cell  = [0.5, 1.0, 0.5]", knots, 1);
+    let plate = "rectangle    = { lower = [0.5, 2.0, 1.0], upper = [1.5, 3.0, 1.0] }";
+    let disc = "disc = { center = [1.25, 0.5, 1.0], radius = 0.25, normal = \"z\" }";
+    let otherwise = otherwise.replacen(plate, "disc = { center = [1.0, 2.5, 1.0], radius = 0.25 }", 1);
+    bases.push(otherwise.replacen(disc, "rectangle = { lower = [0.5, 0.0, 1.0], upper = [1.5, 1.0, 1.0] }", 1));
     for changes in OTHERWISE {
         let mut text = FULL.to_owned();
         for (part, by) in changes {

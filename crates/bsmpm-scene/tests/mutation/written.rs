@@ -89,11 +89,20 @@ fn below(kind: &'static Kind, value: &DeValue<'_>, path: &str, text: &str, found
             | Kind::List(dimension, range),
             DeValue::Array(items),
         ) => items.iter().for_each(|value| item(Fits::Number(*dimension, *range), value.span())),
-        (Kind::Rows(columns), DeValue::Array(rows)) => {
+        (Kind::Rows(_) | Kind::Course(_), DeValue::Array(rows)) => {
             for row in rows.iter() {
                 item(Fits::Row, row.span());
                 let DeValue::Array(items) = row.get_ref() else { panic!("{path}") };
-                for (value, (dimension, range)) in items.iter().zip(*columns) {
+                let columns: Vec<(Dimension, Range)> = match kind {
+                    Kind::Rows(columns) => columns.to_vec(),
+                    Kind::Course(dimension) => {
+                        let moves = std::iter::repeat((*dimension, Range::ANY));
+                        let time = std::iter::once((Dimension::Time, Range::NOT_NEGATIVE));
+                        time.chain(moves).take(items.len()).collect()
+                    }
+                    _ => unreachable!("other kinds have no rows"),
+                };
+                for (value, (dimension, range)) in items.iter().zip(&columns) {
                     item(Fits::Number(*dimension, *range), value.span());
                 }
             }
@@ -121,7 +130,8 @@ impl Fits {
             Kind::Vector(..) => put != "[1, 2, 3]",
             Kind::PairProfile(..) => !["{}", "[1, 2, 3]"].contains(&put),
             Kind::List(dimension, _) if put == "[1, 2, 3]" => dimension.units().next().is_none(),
-            Kind::List(..) | Kind::Rows(_) => !is_list || (put != "[]" && matches!(kind, Kind::Rows(_))),
+            Kind::List(..) => !is_list,
+            Kind::Rows(_) | Kind::Course(_) => put != "[]",
             Kind::Count(least, most) => !put.parse().is_ok_and(|count: u64| (*least..=*most).contains(&count)),
             Kind::Choice(..) | Kind::Open => true,
             Kind::Text(_) => !is_text,

@@ -81,8 +81,8 @@ fn one_of_two_exclusive_keys_removes_the_other() {
     assert_eq!(round.bodies[3].bounds(), [[2.5, 1.5], [3.5, 2.5]]);
     assert_eq!(valid(FULL, &["body.4.box={lower=[0, 2], upper=[0.5, 2.5]}"]).bodies[4].area(), 0.25);
     let moved = |set: &str| valid(FULL, &[set]).footing.unwrap().path.rows;
-    assert_eq!(moved("footing.velocity=[0, -0.25]"), [(1.0, [0.0, -0.25])]);
-    assert_eq!(moved("footing.path=[[0, 0, 0], [0.5, 0, -0.25]]"), [(0.5, [0.0, -0.25])]);
+    assert_eq!(moved("footing.velocity=[0, -0.25]"), [(1.0, [0.0, -0.25, 0.0])]);
+    assert_eq!(moved("footing.path=[[0, 0, 0], [0.5, 0, -0.25]]"), [(0.5, [0.0, -0.25, 0.0])]);
     let case = valid(FULL, &["prescribed.1.face=left", "boundary.left=free", "prescribed.1.path.0=[0.5, 0.1, 0]"]);
     assert_eq!(case.prescribed[1].site, Site::Face(Face { axis: 0, upper: false }));
     let errors = set(FULL, &["initial.gravity=elastic"]).unwrap_err();
@@ -292,19 +292,19 @@ fn what_the_program_chooses_is_noted() {
 fn strips_loads_and_initial_stress_arrive() {
     let case = valid(FULL, &["footing.base=\"rough\""]);
     let footing = case.footing.unwrap();
-    assert_eq!((footing.from, footing.to, footing.base), ([1.0, 2.5], [2.0, 2.5], Base::Rough));
-    assert_eq!(footing.path.rows, [(1.0, [0.0, -0.1])]);
+    assert_eq!((footing.site.ends(), footing.base), (Some([[1.0, 2.5], [2.0, 2.5]]), Base::Rough));
+    assert_eq!(footing.path.rows, [(1.0, [0.0, -0.1, 0.0])]);
     assert_eq!(valid(FULL, &[]).footing.unwrap().base, Base::Smooth);
     let bases: Vec<Base> = case.prescribed.iter().map(|prescribed| prescribed.base).collect();
     assert_eq!(bases, [Base::Smooth, Base::Rough]);
     assert_eq!(case.prescribed[0].site, Site::Face(Face { axis: 0, upper: true }));
-    assert_eq!(case.prescribed[0].path.rows, [(1.0, [0.0, -0.01])]);
-    assert_eq!(case.prescribed[1].path.rows, [(0.5, [0.0, -0.1]), (1.0, [0.0, 0.0])]);
+    assert_eq!(case.prescribed[0].path.rows, [(1.0, [0.0, -0.01, 0.0])]);
+    assert_eq!(case.prescribed[1].path.rows, [(0.5, [0.0, -0.1, 0.0]), (1.0, [0.0; 3])]);
     assert_eq!(
         (case.tractions[0].push, case.tractions[0].ramp),
         (Push::Stress([0.0, -2e4, 0.0].map(Profile::constant)), 0.5)
     );
-    assert_eq!((case.point_loads[0].at, case.point_loads[0].force), ([3.5, 1.25], [0.0, -1e3]));
+    assert_eq!((case.point_loads[0].at, case.point_loads[0].force), ([3.5, 1.25, 0.0], [0.0, -1e3, 0.0]));
     assert_eq!(case.initial, Some(Initial::AtRest(vec![0.5, 0.5, 0.5, 0.6])));
     let elastic = FULL.replace("k0          = 0.6\n", "").replace("k0 = 0.5\n", "gravity = \"elastic\"\n");
     assert_eq!(valid(&elastic, &[]).initial, Some(Initial::Elastic));

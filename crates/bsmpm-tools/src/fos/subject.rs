@@ -343,7 +343,7 @@ fn loose_tolerances(case: &Case) -> impl Iterator<Item = String> {
 }
 
 fn is_moved(case: &Case) -> bool {
-    let moves = |path: &MotionPath| path.rows.iter().any(|(_, by)| *by != [0.0; 2]);
+    let moves = |path: &MotionPath| path.rows.iter().any(|(_, by)| *by != [0.0; 3]);
     let footing = case.footing.iter().map(|footing| &footing.path);
     footing.chain(case.prescribed.iter().map(|prescribed| &prescribed.path)).any(moves)
 }
@@ -352,7 +352,7 @@ fn is_loaded(case: &Case) -> bool {
     let falls = case.gravity.as_ref().is_some_and(|gravity| gravity.acceleration != [0.0; 3]);
     let weighs = case.bodies.iter().any(|body| case.materials[body.material].density.is_some());
     let is_pushed = case.tractions.iter().any(|traction| traction.largest() > 0.0)
-        || case.point_loads.iter().any(|load| load.force != [0.0; 2]);
+        || case.point_loads.iter().any(|load| load.force != [0.0; 3]);
     (falls && weighs) || is_pushed
 }
 

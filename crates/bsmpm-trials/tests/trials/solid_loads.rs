@@ -168,3 +168,117 @@ fn a_bar_bends_and_twists_as_beams_do() {
         assert!((found - 1.0).abs() < bound, "{found} with cells of {cell}");
     }
 }
+
+/// Ground in which a plate, or of the plane a strip, is pressed; with PLATE, PLACES and BOUNDARY.
+const GROUND: &str = r#"
+GEOMETRY
+[analysis]
+type = "quasi-static"
+steps = 6
+[material.clay]
+model = "tresca"
+young = "1 MPa"
+poisson = 0.3
+cohesion = "1 kPa"
+[[history]]
+quantity = "footing-force"
+[[history]]
+quantity = "footing-pressure"
+[[history]]
+quantity = "reaction"
+of = "footing"
+[[history]]
+quantity = "work"
+of = "footing"
+[[history]]
+quantity = "energy"
+[solver]
+background = 0
+tolerance = 1e-22
+force_tolerance = 1e-11
+"#;
+
+/// A plate across the whole of a slice, smooth, rough and with friction.
+#[test]
+fn a_plate_across_a_slice_is_the_strip_of_plane_strain() {
+    let plane = "geometry = \"plane-strain\"\ngrid = { lower = [0, 0], upper = [2, 1.25], cell = 0.25, order = \"quadratic\" }\n\
+        boundary = { left = \"roller\", right = \"roller\", bottom = \"fixed\" }\n\
+        body = [{ material = \"clay\", box = { lower = [0, 0], upper = [2, 1] }, points_per_cell = 4 }]\n\
+        footing = { from = [0.5, 1], to = [1, 1], displacement = [AHEAD, -0.005], base = BASE }";
+    let slice = "geometry = \"solid\"\ngrid = { lower = [0, 0, 0], upper = [2, 0.5, 1.25], cell = 0.25, order = \"quadratic\" }\n\
+        boundary = { left = \"roller\", right = \"roller\", front = \"roller\", back = \"roller\", bottom = \"fixed\" }\n\
+        body = [{ material = \"clay\", box = { lower = [0, 0, 0], upper = [2, 0.5, 1] }, points_per_cell = 4 }]\n\
+        footing = { rectangle = { lower = [0.5, 0, 1], upper = [1, 0.5, 1] }, displacement = [AHEAD, 0, -0.005], base = BASE }";
+    // What rubs in soil that yields needs far smaller steps.
+    let rubs = "{ friction = 0.1, lifts = true }";
+    for (base, ahead, cohesion) in [("\"smooth\"", "0", "1 kPa"), ("\"rough\"", "0", "1 kPa"), (rubs, "0.02", "1 MPa")]
+    {
+        let run = |geometry: &str, ranks: usize| {
+            let geometry = geometry.replace("BASE", base).replace("AHEAD", ahead);
+            let case = changed(&changed(GROUND, "GEOMETRY", &geometry), "1 kPa", cohesion);
+            let scratch = Scratch::with_case(&case);
+            scratch.mpirun(ranks, &["case.toml", "-q", "-o", "out"]).expect(0);
+            let table = history(&scratch.path("out"));
+            let of = |name: &str| at(&table, name, 1.0);
+            [of("footing-force"), of("footing-pressure"), of("work"), of("reaction-x"), of("energy-elastic")]
+        };
+        let expected = run(plane, 1);
+        for ranks in [1, 2] {
+            let found = run(slice, ranks);
+            // All but the pressure are of a slice half as thick as the plane's metre.
+            for (k, thickness) in [0.5, 1.0, 0.5, 0.5, 0.5].into_iter().enumerate() {
+                let off = (found[k] / thickness - expected[k]) / expected[if k == 3 { 0 } else { k }];
+                println!("{base} {ranks}: {k} {off:e} {}", expected[k]);
+                assert!(off.abs() < 1e-9, "{base}, {ranks} ranks, {k}: {off}");
+            }
+        }
+    }
+}
+
+/// What rubs is rubbed against its motion, also along none of the axes.
+#[test]
+fn a_plate_that_slides_askew_has_its_friction_against_its_motion() {
+    let ground = "geometry = \"solid\"\ngrid = { lower = [0, 0, 0], upper = [2, 2, 1.25], cell = 0.25, order = \"quadratic\" }\n\
+        boundary = { left = \"roller\", right = \"roller\", front = \"roller\", back = \"roller\", bottom = \"fixed\" }\n\
+        body = [{ material = \"clay\", box = { lower = [0, 0, 0], upper = [2, 2, 1] }, points_per_cell = 2 }]\n\
+        footing = { rectangle = { lower = [0.5, 0.5, 1], upper = [1.25, 1.25, 1] }, displacement = [0.03, -0.04, -0.005], \
+        base = { friction = 0.1 } }";
+    let case = changed(&changed(GROUND, "GEOMETRY", ground), "1 kPa", "1 MPa");
+    let slid = "[[history]]\nquantity = \"friction-power\"\nof = \"footing\"\n";
+    let scratch = Scratch::with_case(&format!("{case}{slid}"));
+    scratch.mpirun(2, &["case.toml", "-q", "-o", "out"]).expect(0);
+    let table = history(&scratch.path("out"));
+    let force = ["x", "y", "z"].map(|axis| at(&table, &format!("reaction-{axis}"), 1.0));
+    println!("{force:?}");
+    assert!((force[0].hypot(force[1]) / -force[2] - 0.1).abs() < 2e-4, "{force:?}");
+    assert!((force[0] / force[1] + 0.75).abs() < 0.01, "{force:?}");
+    let power = at(&table, "friction-power", 1.0);
+    let slides = 0.1 * -force[2] * 0.05;
+    assert!((power / slides - 1.0).abs() < 0.15, "{power} {slides}");
+}
+
+/// A disc in the corner of two rollers holds a quarter of itself, at the same force on any number of parts, and goes on
+/// from a checkpoint to the bit.
+#[test]
+fn a_disc_is_the_same_on_all_numbers_of_ranks_and_goes_on_to_the_bit() {
+    let quarter = "geometry = \"solid\"\ngrid = { lower = [0, 0, 0], upper = [2, 2, 1.25], cell = 0.25, order = \"quadratic\" }\n\
+        boundary = { left = \"roller\", right = \"roller\", front = \"roller\", back = \"roller\", bottom = \"fixed\" }\n\
+        body = [{ material = \"clay\", box = { lower = [0, 0, 0], upper = [2, 2, 1] }, points_per_cell = 2 }]\n\
+        footing = { disc = { center = [0, 0, 1], radius = 0.6 }, displacement = [0, 0, -0.01], base = \"rough\" }";
+    let scratch = Scratch::with_case(&changed(GROUND, "GEOMETRY", quarter));
+    scratch.mpirun(1, &["case.toml", "-q", "-o", "one"]).expect(0);
+    let table = history(&scratch.path("one"));
+    let force = at(&table, "reaction-z", 1.0);
+    let pressure = at(&table, "footing-pressure", 1.0);
+    let area = std::f64::consts::PI * 0.36 / 4.0;
+    println!("{force} {pressure}");
+    assert!((-force / area / pressure - 1.0).abs() < 1e-6, "{force} {pressure}");
+    assert!((at(&table, "reaction-x", 1.0) / at(&table, "reaction-y", 1.0) - 1.0).abs() < 1e-6);
+    for ranks in [2, 4] {
+        let out = format!("out{ranks}");
+        scratch.mpirun(ranks, &["case.toml", "-q", "-o", &out]).expect(0);
+        let found = at(&history(&scratch.path(&out)), "reaction-z", 1.0);
+        assert!((found / force - 1.0).abs() < 1e-8, "{ranks}: {found} {force}");
+    }
+    scratch.goes_on(2, &["2", "4"]);
+}

@@ -55,22 +55,62 @@ pub fn over<K: Kinematics<D>, const D: usize>(
     upper: &Vector<D>,
     count: usize,
 ) -> Vec<SurfacePoint<D>> {
-    let mut points = vec![SurfacePoint { x: *lower, area: 1.0 }];
+    let weighed = |(point, _): (SurfacePoint<D>, _)| SurfacePoint { area: point.area * K::weight(&point.x), ..point };
+    pieces(grid, lower, upper, count).into_iter().map(weighed).collect()
+}
+
+/// The pieces of [`over`], and their edges, m.
+fn pieces<const D: usize>(
+    grid: &Grid<D>,
+    lower: &Vector<D>,
+    upper: &Vector<D>,
+    count: usize,
+) -> Vec<(SurfacePoint<D>, Vector<D>)> {
+    let mut pieces = vec![(SurfacePoint { x: *lower, area: 1.0 }, Vector::zeros())];
     for axis in (0..D).filter(|&axis| upper[axis] > lower[axis]) {
         let mut end = *lower;
         end[axis] = upper[axis];
         let line = along_axis(grid, (lower, &end), axis, count);
-        let across = |point: SurfacePoint<D>| {
+        let across = |(point, edges): (SurfacePoint<D>, Vector<D>)| {
             line.iter().map(move |&(at, length)| {
-                let mut x = point.x;
-                x[axis] = at;
-                SurfacePoint { x, area: point.area * length }
+                let (mut x, mut edges) = (point.x, edges);
+                (x[axis], edges[axis]) = (at, length);
+                (SurfacePoint { x, area: point.area * length }, edges)
             })
         };
-        points = points.into_iter().flat_map(across).collect();
+        pieces = pieces.into_iter().flat_map(across).collect();
     }
-    points.iter_mut().for_each(|point| point.area *= K::weight(&point.x));
-    points
+    pieces
+}
+
+/// Parts of a piece, along each axis, of which those inside a disc count.
+const PARTS: usize = 16;
+
+/// As [`over`] of what of a rectangle is nearer to `center` than `radius`, m: pieces across the rim count with that part,
+/// at its middle.
+pub fn within<K: Kinematics<D>, const D: usize>(
+    grid: &Grid<D>,
+    (lower, upper): (&Vector<D>, &Vector<D>),
+    (center, radius): (&Vector<D>, f64),
+    count: usize,
+) -> Vec<SurfacePoint<D>> {
+    let clipped = |(piece, edges): (SurfacePoint<D>, Vector<D>)| {
+        let parts: Vec<usize> = edges.iter().map(|edge| if *edge > 0.0 { PARTS } else { 1 }).collect();
+        let all: usize = parts.iter().product();
+        let part = |mut number: usize| {
+            Vector::from_fn(|axis, _| {
+                let k = number % parts[axis];
+                number /= parts[axis];
+                piece.x[axis] + edges[axis] * ((k as f64 + 0.5) / parts[axis] as f64 - 0.5)
+            })
+        };
+        let is_inside = |x: &Vector<D>| (x - center).norm_squared() < radius * radius;
+        let inside: Vec<Vector<D>> = (0..all).map(part).filter(is_inside).collect();
+        let x = inside.iter().fold(Vector::zeros(), |sum, x| sum + x) / inside.len() as f64;
+        let area = piece.area * inside.len() as f64 / all as f64 * K::weight(&x);
+        (!inside.is_empty()).then_some(SurfacePoint { x, area })
+    };
+    pieces(grid, lower, upper, count).into_iter().filter_map(clipped).collect()
 }
 
 /// Middles and lengths of the pieces of an edge along an axis, m.
