@@ -52,6 +52,15 @@ impl Volume {
         let volume = whole.volume();
         let mut made = Self { origin, whole, cut, filling, volume, tally: SlabTally::default() };
         made.count(axes, n);
+        let unseen = made.cut.is_empty() && made.tally.cells == 0 && volume > 0.0;
+        // A factor below zero: cells that seem whole hold more than the body.
+        if matches!(made.filling, Filling::Lattice { .. }) && (unseen || made.scale() <= 0.0) {
+            return Err(
+                "it is so thin that it lies between the lines on which its volume is found; take smaller cells, or \
+                        thicker walls"
+                    .into(),
+            );
+        }
         Ok(made)
     }
 
@@ -69,6 +78,11 @@ impl Volume {
     /// Whether it is a cuboid with nothing cut out.
     pub fn is_box(&self) -> bool {
         self.filling == Filling::Box
+    }
+
+    /// By what the volumes of points in cells that are cut were multiplied: far from 1 the lines do not see the shape.
+    pub(crate) fn scale(&self) -> f64 {
+        if let Filling::Lattice { scale } = self.filling { scale } else { 1.0 }
     }
 
     pub(crate) fn tally(&self) -> &SlabTally {

@@ -27,6 +27,13 @@ pub const SOLID: &[Row] = &[
     row("along = \"z\"", "along = \"r\"", "body.1.extrude.along", "expected one of"),
     row("radius = 0.5 }\npoints", "radius = 1.5 }\npoints", "body.2.sphere", "outside the grid"),
     row("[[0.0, 1.0]", "[[-0.5, 1.0]", "body.3.revolve.polygon", "radius >= 0"),
+    row(
+        "revolve = { polygon = [[0.0, 1.0], [0.8, 1.0], [0.0, 2.0]], about = [1.0, 1.5] }\n\
+         subtract = [{ revolve = { circle = { center = [0.4, 1.2], radius = 0.1 }, about = [1.0, 1.5] } }]\n",
+        "revolve = { polygon = [[0.8, 1.0], [0.800000001, 1.0], [0.800000001, 2.0], [0.8, 2.0]], about = [1.0, 1.5] }\n",
+        "body.3.revolve",
+        "between the lines",
+    ),
     row("left   = \"roller\"", "left   = \"absorbing\"", "boundary.left", "not available in a solid yet"),
     row("back   = \"roller\"", "back   = { friction = 0.3 }", "boundary.back", "not available in a solid yet"),
     row("\"consistent-f-bar\"", "\"subgrid-f-bar\"", "stabilisation.method", "not shown to be right in a solid"),
@@ -150,3 +157,18 @@ pub const IN_A_PLANE: &[Row] = &[
         "is a shape in space",
     ),
 ];
+
+/// A pipe's wall of a hundredth of a cell and one of a fifth.
+#[test]
+fn thin_walls_are_warned_of() {
+    let base = super::SOLID;
+    let at = base.find("revolve =").expect("a turned outline");
+    let end = at + base[at..].find("points_per_cell").expect("its points");
+    let warned = |outer: f64| {
+        let wall = format!("polygon = [[0.8, 1.0], [{outer}, 1.0], [{outer}, 2.0], [0.8, 2.0]]");
+        let text = format!("{}revolve = {{ {wall}, about = [1.0, 1.5] }}\n{}", &base[..at], &base[end..]);
+        let warnings = bsmpm_scene::Case::from_text("case.toml", &text, &[]).expect("a valid case").warnings;
+        warnings.iter().any(|told| told.contains("body.3.revolve: it is too thin for its points"))
+    };
+    assert!(warned(0.803) && !warned(0.95));
+}
