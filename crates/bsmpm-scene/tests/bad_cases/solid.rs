@@ -30,7 +30,7 @@ pub const SOLID: &[Row] = &[
     row(
         "revolve = { polygon = [[0.0, 1.0], [0.8, 1.0], [0.0, 2.0]], about = [1.0, 1.5] }\n\
          subtract = [{ revolve = { circle = { center = [0.4, 1.2], radius = 0.1 }, about = [1.0, 1.5] } }]\n",
-        "revolve = { polygon = [[0.8, 1.0], [0.800000001, 1.0], [0.800000001, 2.0], [0.8, 2.0]], about = [1.0, 1.5] }\n",
+        "revolve = { polygon = [[0.8, 1], [0.800000001, 1], [0.800000001, 2], [0.8, 2]], about = [1.0, 1.5] }\n",
         "body.3.revolve",
         "between the lines",
     ),

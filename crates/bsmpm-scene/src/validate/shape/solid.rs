@@ -36,8 +36,8 @@ pub(super) fn region(
         Ok(volume) => {
             if (volume.scale() - 1.0).abs() > SCALED {
                 report.warn(format!(
-                    "{}: it is too thin for its points: volumes where it cuts cells were multiplied by {:.2} to make up its \
-                     own, so that they lie unevenly; take cells of at most five times its thinnest part",
+                    "{}: it is too thin for its points: volumes where it cuts cells were multiplied by {:.2} to make \
+                     up its own, so that they lie unevenly; take cells of at most five times its thinnest part",
                     body.path_of(key),
                     volume.scale()
                 ));
