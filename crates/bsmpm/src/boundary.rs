@@ -179,8 +179,14 @@ impl<const D: usize> Boundary<D> {
             for (support, sums) in self.supports.iter().zip(sums.chunks_exact_mut(D)).filter(in_contact) {
                 sum((support, sums), &|component| component == support.axis);
             }
-            for (support, sums) in self.supports.iter().zip(sums.chunks_exact_mut(D)).filter(in_contact) {
-                sum((support, sums), &|component| component != support.axis);
+            // Along an edge in space that it shares with a face that rubs, a smooth one decides nothing.
+            for rubs in [true, false] {
+                let of = |(support, _): &(&Support<D>, &mut [Exact])| {
+                    support.contact.is_some_and(|contact| (contact.friction > 0.0) == rubs)
+                };
+                for (support, sums) in self.supports.iter().zip(sums.chunks_exact_mut(D)).filter(of) {
+                    sum((support, sums), &|component| component != support.axis);
+                }
             }
         }
         for (support, sums) in self.supports.iter().zip(sums.chunks_exact_mut(D)).filter(|(s, _)| s.absorbs) {

@@ -151,9 +151,11 @@ fn thrown_back(case: &Case, report: &mut Report<'_>) {
     let dynamic = case.analysis.regime == Regime::Dynamic;
     let crossing = |body: &Body| {
         let named = &case.materials[body.material];
-        let [lower, upper] = body.bounds();
-        let thickness = (0..2).map(|axis| upper[axis] - lower[axis]).fold(f64::INFINITY, f64::min);
-        let heights = [lower[1], upper[1]].map(|y| named.material.young_at(y - case.grid.lower()[1]));
+        let ([lower, upper], dims) = (body.region.corners(), case.grid.dims());
+        let thickness = (0..dims).map(|axis| upper[axis] - lower[axis]).fold(f64::INFINITY, f64::min);
+        let vertical = dims - 1;
+        let heights =
+            [lower, upper].map(|corner| named.material.young_at(corner[vertical] - case.grid.lower()[vertical]));
         let poisson = named.material.elastic().poisson;
         let stiffness = heights[0].max(heights[1]) * (1.0 - poisson) / ((1.0 + poisson) * (1.0 - 2.0 * poisson));
         Some((thickness * (named.density? / stiffness).sqrt(), named.name.clone()))

@@ -23,10 +23,6 @@ const QUANTITIES: &[Measurement] = &[
     Measurement::Moment,
     Measurement::StressNoise,
     Measurement::PressureNoise,
-    Measurement::Contact,
-    Measurement::Gap,
-    Measurement::SlipRate,
-    Measurement::FrictionPower,
     Measurement::Outflow,
 ];
 
@@ -68,9 +64,7 @@ pub(super) fn refuse(root: &Record, report: &mut Report<'_>) {
         body.error("spin", "not available in a solid yet: give velocity", report);
     }
     for history in root.records("history") {
-        let of_strip = |of: &Measurement| of.is_of_contact() && history.gives("of");
-        let wanted = history.word::<Measurement>("quantity").filter(|of| QUANTITIES.contains(of) && !of_strip(of));
-        if let Some(quantity) = wanted {
+        if let Some(quantity) = history.word::<Measurement>("quantity").filter(|of| QUANTITIES.contains(of)) {
             history.error("quantity", format!("\"{quantity}\" is not available in a solid yet: use frames"), report);
         }
         for key in ["at_x", "surface"].into_iter().filter(|key| history.gives(key)) {
@@ -108,11 +102,20 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
     let Some(boundary) = root.record("boundary") else { return };
     for (axis, sides) in Side::OF_SOLID.iter().enumerate() {
         for (side, support) in sides.iter().zip(case.boundary[axis]) {
-            if !matches!(support, Support::Fixed | Support::Roller | Support::Free) {
-                let message = "not available in a solid yet: \"fixed\", \"roller\" or \"free\"";
+            if !matches!(support, Support::Fixed | Support::Roller | Support::Free | Support::Contact) {
+                let message =
+                    "not available in a solid yet: \"fixed\", \"roller\", \"free\", \"contact\" or { friction }";
                 boundary.error(side.word(), message, report);
             }
         }
+    }
+    let rubs = |axis: usize| case.contacts[axis].iter().flatten().any(|contact| contact.friction > 0.0);
+    if let Some(side) = (1..3).filter(|&axis| rubs(axis) && (0..axis).any(rubs)).find_map(|axis| {
+        (0..2).find(|&side| case.contacts[axis][side].is_some()).map(|side| Side::OF_SOLID[axis][side])
+    }) {
+        let message = "friction on two faces that share an edge is not available in a solid yet: one of them may rub, and \
+                       the other be \"contact\" or \"roller\"";
+        boundary.error(side.word(), message, report);
     }
     if matches!(case.stabilisation, Stabilisation::SubgridFBar | Stabilisation::ModifiedFBar) {
         let key = root.record("stabilisation");

@@ -35,7 +35,13 @@ pub const SOLID: &[Row] = &[
         "between the lines",
     ),
     row("left   = \"roller\"", "left   = \"absorbing\"", "boundary.left", "not available in a solid yet"),
-    row("back   = \"roller\"", "back   = { friction = 0.3 }", "boundary.back", "not available in a solid yet"),
+    row(
+        "back   = \"roller\"\nbottom = \"fixed\"",
+        "back   = { friction = 0.3 }\nbottom = { friction = 0.3 }",
+        "boundary.bottom",
+        "share an edge",
+    )
+    .down(1),
     row("\"consistent-f-bar\"", "\"subgrid-f-bar\"", "stabilisation.method", "not shown to be right in a solid"),
     row("at = [1.0, 1.5, 1.0]", "at = [1.0, 1.5]", "history.0.at", "solid: of three"),
     row("at = [1.0, 1.5, 1.0]", "at = [1.0, 3.5, 1.0]", "history.0.at", "is outside the grid"),

@@ -27,6 +27,7 @@ mod scenes;
 mod settled_start;
 mod signals;
 mod solid;
+mod solid_contact;
 mod solid_loads;
 mod solid_water;
 mod stages;

@@ -4,8 +4,8 @@
 mod gap;
 mod node;
 
-use super::Boundary;
 use super::coulomb::{ContactReport, Status};
+use super::{Boundary, Support};
 use crate::exact::Exact;
 use crate::grid::{Grid, Shape};
 use crate::nodal::Nodal;
@@ -50,6 +50,10 @@ impl<const D: usize> Contacts<D> {
                 }
                 let along = std::array::from_fn(|component| {
                     let other = rivals().any(|other| other.axis == component && on_face(node, component, other.upper));
+                    // Along an edge in space that it shares with a face that rubs, a smooth one decides nothing.
+                    let rubs = |of: &Support<D>| of.contact.is_some_and(|law| law.friction > 0.0);
+                    let smooth = D > 2 && law.friction == 0.0;
+                    let other = other || smooth && rivals().any(|of| rubs(of) && on_face(node, of.axis, of.upper));
                     component != face.axis && free[Nodal::<D>::at(node, component)] && !other
                 });
                 let inward = if face.upper { -1.0 } else { 1.0 };
@@ -64,6 +68,7 @@ impl<const D: usize> Contacts<D> {
                     gap,
                     status: Status::Open,
                     rested: [false; D],
+                    last: None,
                 };
                 let behind = grid.node_at(node);
                 let behind = std::array::from_fn(|axis| match (axis == face.axis, face.upper) {
@@ -163,6 +168,9 @@ impl<const D: usize> Contacts<D> {
         for at in &mut self.nodes {
             let status = at.corrected(u, reaction, (force, ROUNDING * edge));
             corrected[0] += f64::from(u8::from(status != at.status && owned.contains(at.node)));
+            if D > 2 && status != at.status {
+                at.last = Some((at.friction(reaction), at.slip(u)));
+            }
             at.status = status;
         }
         halo.reduce(&mut corrected);

@@ -7,8 +7,13 @@ use crate::tensor::Vector;
 /// Part of a cell within which material cannot have come since the last step, if its node was not free to move then:
 /// what F tells of the gap is off by the curvature of the motion.
 const KEPT: f64 = 0.05;
-/// Cosine of the angle between slip and friction from which on they are opposite.
-const ALIGNED: f64 = 1.0 - 1e-12;
+
+/// Times the force by which statuses may be contradicted, by which friction may be off the direction of the slip: the
+/// tolerance of the forces themselves.
+const TURNED: f64 = 100.0;
+
+/// Parts of the displacement that is round-off, beside friction, from which on a slip has left it.
+const BESIDE: f64 = 1e-3;
 
 /// A node on a face with contact whose normal component nothing else holds.
 #[derive(Clone, Copy, Debug)]
@@ -31,6 +36,8 @@ pub(super) struct ContactNode<const D: usize> {
     pub status: Status<D>,
     /// components that did not move in the last step
     pub rested: [bool; D],
+    /// N, m  friction and slip under the statuses before
+    pub last: Option<(Vector<D>, Vector<D>)>,
 }
 
 impl<const D: usize> ContactNode<D> {
@@ -97,6 +104,34 @@ impl<const D: usize> ContactNode<D> {
         Vector::from_fn(|c, _| if on(c) { u[Nodal::<D>::at(self.node, c)] } else { 0.0 })
     }
 
+    /// Whether friction along `direction` misses that of the slip by more than the forces are known, N, and the slip that of
+    /// friction by more than round-off, m.
+    fn is_off(
+        &self,
+        direction: &Vector<D>,
+        (slip, now): (&Vector<D>, Vector<D>),
+        limit: f64,
+        (force, length): (f64, f64),
+    ) -> bool {
+        let beside = (slip - direction * slip.dot(direction)).norm();
+        slip.norm() > length && beside > BESIDE * length && limit * (now - direction).norm() > TURNED * force
+    }
+
+    /// The direction that friction turns to where the slip has left it: to that of the slip at once it would go back and
+    /// forth where the node hardly slips, as friction then decides where it goes. So, as Alart and Curnier (1991), only as
+    /// far as the stiffness that the node has shown against its last change of friction asks for.
+    fn turned(&self, direction: Vector<D>, slip: &Vector<D>, reaction: &[f64]) -> Vector<D> {
+        let limit = self.limit(reaction);
+        let stiffness = self.last.map(|(force, place)| {
+            let (pulled, moved) = (-direction * limit - force, slip - place);
+            pulled.dot(&moved) / moved.norm_squared()
+        });
+        match stiffness.filter(|stiffness| *stiffness > 0.0 && stiffness.is_finite()) {
+            Some(stiffness) => (direction * limit + slip * stiffness).normalize(),
+            None => slip.normalize(),
+        }
+    }
+
     /// The status that displacement and reaction ask for.
     pub fn corrected(&self, u: &[f64], reaction: &[f64], (force, length): (f64, f64)) -> Status<D> {
         if self.status == Status::Open {
@@ -117,7 +152,10 @@ impl<const D: usize> ContactNode<D> {
                 let along = slip.dot(&direction);
                 match slip.try_normalize(0.0) {
                     _ if along < -length => Status::Stick,
-                    Some(now) if slip.norm() > length && along < ALIGNED * slip.norm() => Status::Slip(now),
+                    // Along a plane friction turns with the slip; on a line there is nothing to turn.
+                    Some(now) if self.is_off(&direction, (&slip, now), self.limit(reaction), (force, length)) => {
+                        Status::Slip(self.turned(direction, &slip, reaction))
+                    }
                     _ => self.status,
                 }
             }
