@@ -283,8 +283,8 @@ fn all_segments(case: &Case) -> Vec<Segment<'_>> {
     footing.chain(prescribed).chain(tractions).collect()
 }
 
-/// Edges of rectangular plates and loads of a solid beyond which the surface goes on; of a disc what it holds too much is
-/// told.
+/// Edges of rectangular plates and loads of a solid beyond which the surface goes on; of a disc what it holds too much
+/// is told.
 fn plates(case: &Case, found: &mut FoundLine) {
     let footing = case.footing.iter().map(|footing| (("footing", 0), footing.site, Some(&footing.path)));
     let prescribed = case.prescribed.iter().enumerate();

@@ -86,8 +86,8 @@ fn pieces<const D: usize>(
 /// Parts of a piece, along each axis, of which those inside a disc count.
 const PARTS: usize = 16;
 
-/// As [`over`] of what of a rectangle is nearer to `center` than `radius`, m: pieces across the rim count with that part,
-/// at its middle.
+/// As [`over`] of what of a rectangle is nearer to `center` than `radius`, m: pieces across the rim count with that
+/// part, at its middle.
 pub fn within<K: Kinematics<D>, const D: usize>(
     grid: &Grid<D>,
     (lower, upper): (&Vector<D>, &Vector<D>),

@@ -104,8 +104,8 @@ impl<const D: usize> ContactNode<D> {
         Vector::from_fn(|c, _| if on(c) { u[Nodal::<D>::at(self.node, c)] } else { 0.0 })
     }
 
-    /// Whether friction along `direction` misses that of the slip by more than the forces are known, N, and the slip that of
-    /// friction by more than round-off, m.
+    /// Whether friction along `direction` misses that of the slip by more than the forces are known, N, and the slip
+    /// that of friction by more than round-off, m.
     fn is_off(
         &self,
         direction: &Vector<D>,
@@ -117,9 +117,9 @@ impl<const D: usize> ContactNode<D> {
         slip.norm() > length && beside > BESIDE * length && limit * (now - direction).norm() > TURNED * force
     }
 
-    /// The direction that friction turns to where the slip has left it: to that of the slip at once it would go back and
-    /// forth where the node hardly slips, as friction then decides where it goes. So, as Alart and Curnier (1991), only as
-    /// far as the stiffness that the node has shown against its last change of friction asks for.
+    /// The direction that friction turns to where the slip has left it: to that of the slip at once it would go back
+    /// and forth where the node hardly slips, as friction then decides where it goes. So, as Alart and Curnier (1991),
+    /// only as far as the stiffness that the node has shown against its last change of friction asks for.
     fn turned(&self, direction: Vector<D>, slip: &Vector<D>, reaction: &[f64]) -> Vector<D> {
         let limit = self.limit(reaction);
         let stiffness = self.last.map(|(force, place)| {
