@@ -81,8 +81,8 @@ fn a_block_sticks_where_friction_is_more_than_the_slope() {
     }
 }
 
-/// The same on parts of the grid along two axes, and over restarts to the bit; sliding along a smooth wall, too, in whose
-/// edge with the base the two faces share nodes.
+/// The same on parts of the grid along two axes, and over restarts to the bit; sliding along a smooth wall, too, in
+/// whose edge with the base the two faces share nodes.
 #[test]
 fn a_block_in_a_corner_is_the_same_on_all_numbers_of_ranks() {
     let wall = changed(BLOCK, "bottom = { friction = 0.3 }", "bottom = { friction = 0.3 }\nback = \"contact\"");
