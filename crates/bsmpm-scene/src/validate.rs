@@ -18,6 +18,7 @@ mod ratio;
 mod reduction;
 mod rigid;
 mod shape;
+mod site;
 mod solid;
 mod solver;
 mod stage;
@@ -67,7 +68,7 @@ pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Op
     let water = water::read(record, (placed, gravity.as_ref()), end, report);
     let shaking =
         load::shaking(record, (regime, analysis.as_ref().map(|analysis| (analysis.end, analysis.dt))), report);
-    let around = strip::AroundStrip {
+    let around = site::AroundStrip {
         grid: placed,
         bodies: made,
         boundary,

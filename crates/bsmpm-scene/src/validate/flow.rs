@@ -7,7 +7,7 @@ pub(super) use shown::check;
 use super::STANDARD_GRAVITY;
 use super::load::{circle, increasing};
 use super::place::{self, along};
-use super::strip::{AroundStrip, segment};
+use super::site::{AroundStrip, segment};
 use crate::case::{Body, Drain, DrainSite, Face, Flow, Inflow, NamedMaterial, Support};
 use crate::nearest::hint;
 use crate::record::Record;

@@ -2,7 +2,7 @@
 
 use super::material::profile;
 use super::place::{along, at_body, at_volume, beyond, is_at, is_beyond, ring};
-use super::strip::{AroundStrip, places, plate, segment};
+use super::site::{AroundStrip, places, plate, segment};
 use crate::case::{Acting, Body, Case, Gravity, Initial, LoadedLine, NamedMaterial, PointLoad, Push, Site, Traction};
 use crate::record::Record;
 use crate::report::Report;

@@ -2,7 +2,8 @@
 
 use super::NEARLY_INCOMPRESSIBLE;
 use super::place;
-use super::strip::{moves, normal_of, places};
+use super::site::{normal_of, places};
+use super::strip::moves;
 use crate::case::{Base, Body, Case, Drain, Geometry, Initial, Prescribed, Site, Support};
 use crate::record::Record;
 use crate::report::Report;

@@ -1,6 +1,7 @@
 //! Rigid bodies.
 
-use super::strip::{self, AroundStrip};
+use super::site::{AroundStrip, normal};
+use super::strip;
 use super::{MOST_SHOWN_FRICTION, load, place, shape};
 use crate::case::{Case, Initial, MotionPath, Rigid, RigidShape, Support};
 use crate::nearest::hint;
@@ -246,7 +247,7 @@ fn fine_enough(
 /// The least extent of corners across any edge, m.
 fn thickness(corners: &[[f64; 2]]) -> f64 {
     let across = |k: usize| {
-        let normal = strip::normal(corners[k], corners[(k + 1) % corners.len()]);
+        let normal = normal(corners[k], corners[(k + 1) % corners.len()]);
         let reach = |corner: &[f64; 2]| normal[0] * corner[0] + normal[1] * corner[1];
         let (least, most) =
             corners.iter().map(reach).fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)));
@@ -354,7 +355,7 @@ fn overlap(case: &Case, rigid: &Rigid, there: impl Fn(usize) -> bool) -> Option<
         RigidShape::Polygon(corners) => {
             let edges = corners.iter().zip(corners.iter().cycle().skip(1));
             let inside = |(from, to): (&[f64; 2], &[f64; 2])| {
-                let normal = strip::normal(*from, *to); // to the left, inside
+                let normal = normal(*from, *to); // to the left, inside
                 let into = move |at: [f64; 2]| [at[0] + inset * normal[0], at[1] + inset * normal[1]];
                 place::along([*from, *to]).map(into)
             };

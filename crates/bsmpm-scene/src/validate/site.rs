@@ -1,0 +1,147 @@
+//! Where strips, plates and loads lie: segments of a plane, plates of a solid, faces of the grid.
+
+use super::place::{along, beyond, face, is_at, over};
+use crate::case::{Body, Plate, Site, Support};
+use crate::grid::GridSpec;
+use crate::record::Record;
+use crate::report::Report;
+use crate::words::{Axis, Side};
+
+/// What the rest of the case says to a strip.
+#[derive(Clone, Copy)]
+pub(super) struct AroundStrip<'a> {
+    pub(super) grid: Option<&'a GridSpec>,
+    pub(super) bodies: Option<&'a [Body]>,
+    pub(super) boundary: Option<[[Support; 2]; 3]>,
+    /// of the strength reduction
+    pub(super) factor: Option<f64>,
+    pub(super) end: Option<f64>,
+    pub(super) dt: Option<f64>,
+}
+
+/// A segment's ends inside the grid.
+pub(super) fn segment(record: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Option<[[f64; 2]; 2]> {
+    let (from, to) = (record.pair("from")?, record.pair("to")?);
+    if from == to {
+        record.error("to", format!("{to:?} is `from` too: the length is zero"), report);
+        return None;
+    }
+    let grid = around.grid?;
+    let mut inside = true;
+    for (key, at) in [("from", from), ("to", to)] {
+        if let Some(message) = beyond(grid, at) {
+            record.error(key, message, report);
+            inside = false;
+        }
+    }
+    inside.then_some([from, to])
+}
+
+/// A strip starts at a body, if only with a part of it.
+fn starts_at_body(record: &Record, key: &str, site: Site, around: AroundStrip<'_>, report: &mut Report<'_>) {
+    let (Some(grid), Some(bodies)) = (around.grid, around.bodies) else { return };
+    if !places(site, grid).into_iter().any(|at| is_at(bodies, grid, at)) {
+        let [from, to] = corners(site, grid).map(|at| at[..grid.dims()].to_vec());
+        let message =
+            format!("no body is at {from:?} to {to:?} at the start; allowed: half a spacing of points from one");
+        record.error(key, message, report);
+    }
+}
+
+/// m  two opposite corners of what is held
+pub(super) fn corners(site: Site, grid: &GridSpec) -> [[f64; 3]; 2] {
+    match site {
+        Site::Segment { from, to } => [from, to].map(|[x, y]| [x, y, 0.0]),
+        Site::Plate(plate) => [plate.lower, plate.upper],
+        Site::Face(face) => {
+            let (mut lower, mut upper) = (grid.lower(), grid.upper());
+            let at = if face.upper { upper[face.axis] } else { lower[face.axis] };
+            (lower[face.axis], upper[face.axis]) = (at, at);
+            [lower, upper]
+        }
+    }
+}
+
+/// Places of what is held, in the middles of equal pieces.
+pub(super) fn places(site: Site, grid: &GridSpec) -> Vec<[f64; 3]> {
+    let ends = corners(site, grid);
+    if grid.dims() == 2 {
+        return along(ends.map(|[x, y, _]| [x, y])).map(|[x, y]| [x, y, 0.0]).collect();
+    }
+    over(ends).filter(|at| !matches!(site, Site::Plate(plate) if !plate.covers(*at))).collect()
+}
+
+/// Unit normal of what is held.
+pub(super) fn normal_of(site: Site) -> [f64; 3] {
+    let along = |axis: usize| std::array::from_fn(|k| f64::from(u8::from(k == axis)));
+    match site {
+        Site::Segment { from, to } => {
+            let [x, y] = normal(from, to);
+            [x, y, 0.0]
+        }
+        Site::Plate(plate) => along(plate.normal()),
+        Site::Face(face) => along(face.axis),
+    }
+}
+
+/// A plate inside the grid; of a disc a part of it.
+pub(super) fn plate(record: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Option<Plate> {
+    let grid = around.grid?;
+    if let Some(disc) = record.record("disc") {
+        let (center, radius) = (disc.vector("center")?, disc.number("radius")?);
+        let normal = disc.word::<Axis>("normal")? as usize;
+        let corner = |side: f64| std::array::from_fn(|k| center[k] + if k == normal { 0.0 } else { side * radius });
+        let plate = Plate { lower: corner(-1.0), upper: corner(1.0), round: true };
+        let (lower, upper) = (grid.lower(), grid.upper());
+        let inside = |axis: usize| lower[axis] <= plate.upper[axis] && plate.lower[axis] <= upper[axis];
+        if !(0..3).all(inside) || plate.area([lower, upper]) == 0.0 {
+            record.error("disc", "no part of it is inside the grid", report);
+            return None;
+        }
+        return Some(plate);
+    }
+    let table = record.record("rectangle")?;
+    let (lower, upper) = (table.vector("lower")?, table.vector("upper")?);
+    let flat = (0..3).filter(|&axis| lower[axis] == upper[axis]).count();
+    if flat != 1 || (0..3).any(|axis| lower[axis] > upper[axis]) {
+        let message =
+            format!("{lower:?} to {upper:?} is no rectangle; allowed: alike along one axis, more along the others");
+        record.error("rectangle", message, report);
+        return None;
+    }
+    if let Some(message) = [lower, upper].into_iter().find_map(|corner| beyond(grid, corner)) {
+        record.error("rectangle", message, report);
+        return None;
+    }
+    Some(Plate { lower, upper, round: false })
+}
+
+/// Where a footing or a prescribed motion holds.
+pub(super) fn site(record: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Option<Site> {
+    if let Some(key) = ["rectangle", "disc"].into_iter().find(|key| record.gives(key)) {
+        let site = Site::Plate(plate(record, around, report)?);
+        starts_at_body(record, key, site, around, report);
+        return Some(site);
+    }
+    if !record.gives("face") {
+        let [from, to] = segment(record, around, report)?;
+        starts_at_body(record, "from", Site::Segment { from, to }, around, report);
+        return Some(Site::Segment { from, to });
+    }
+    let (side, face) = (record.word::<Side>("face")?, face(record, around.grid?, report)?);
+    let support = around.boundary?[face.axis][usize::from(face.upper)];
+    if support != Support::Free {
+        let message = format!("[boundary] holds \"{side}\" too; leave it free there");
+        record.error("face", message, report);
+        return None;
+    }
+    starts_at_body(record, "face", Site::Face(face), around, report);
+    Some(Site::Face(face))
+}
+
+/// Unit normal of a segment.
+pub(super) fn normal(from: [f64; 2], to: [f64; 2]) -> [f64; 2] {
+    let along = [to[0] - from[0], to[1] - from[1]];
+    let length = along[0].hypot(along[1]);
+    [-along[1] / length, along[0] / length]
+}
