@@ -1,6 +1,7 @@
 //! Shapes in space. What all of them tell is what they cover of a vertical line, which is all that points need.
 
 use super::Edge;
+use super::raster::Raster;
 use super::simple::{area, bounds};
 use super::sweep::intervals;
 use std::f64::consts::PI;
@@ -33,6 +34,7 @@ pub(crate) enum SolidShape {
         /// the vertical's place
         about: [f64; 2],
     },
+    Terrain(Box<Raster>),
 }
 
 /// An outline in a plane.
@@ -96,6 +98,7 @@ impl SolidShape {
             Self::Revolved { outline, about } => {
                 Self::Revolved { outline: outline.moved([0.0, by[2]]), about: [about[0] + by[0], about[1] + by[1]] }
             }
+            Self::Terrain(raster) => Self::Terrain(Box::new(raster.moved(by))),
         }
     }
 
@@ -115,6 +118,7 @@ impl SolidShape {
                 let far = outline.bounds[1][0];
                 [(0, -far), (1, far)].map(|(side, reach)| [about[0] + reach, about[1] + reach, outline.bounds[side][1]])
             }
+            Self::Terrain(raster) => raster.bounds(),
         }
     }
 
@@ -125,6 +129,7 @@ impl SolidShape {
             Self::Prism { outline, ends, .. } => outline.area * (ends[1] - ends[0]),
             Self::Sphere { radius, .. } => 4.0 / 3.0 * PI * radius.powi(3),
             Self::Revolved { outline, .. } => outline.turned,
+            Self::Terrain(raster) => raster.volume(),
         }
     }
 
@@ -146,6 +151,7 @@ impl SolidShape {
                 if half > 0.0 { vec![[center[2] - half, center[2] + half]] } else { Vec::new() }
             }
             Self::Revolved { outline, about } => outline.at((x - about[0]).hypot(y - about[1])),
+            Self::Terrain(raster) => raster.vertical([x, y]).into_iter().collect(),
         }
     }
 

@@ -250,7 +250,7 @@ impl Filling {
 fn edges(shape: &SolidShape) -> usize {
     match shape {
         SolidShape::Prism { outline, .. } | SolidShape::Revolved { outline, .. } => outline.edges.len(),
-        SolidShape::Box { .. } | SolidShape::Sphere { .. } => 1,
+        SolidShape::Box { .. } | SolidShape::Sphere { .. } | SolidShape::Terrain(_) => 1,
     }
 }
 

@@ -17,6 +17,7 @@ pub(super) static BODY: Table = Table {
         key("extrude", Kind::Table(&EXTRUDE), Optional, "of a solid: an outline along an axis, e.g. a cylinder"),
         key("sphere", Kind::Table(&SPHERE), Optional, "of a solid: a sphere"),
         key("revolve", Kind::Table(&REVOLVE), Optional, "of a solid: an outline about a vertical"),
+        key("terrain", Kind::Table(&TERRAIN), Optional, "of a solid: what lies under a raster of heights"),
         key("subtract", Tables(&SUBTRACT), Optional, "shapes that are cut out"),
         key("points_per_cell", Count(1, 100), Required, "points along each axis of a cell"),
         key("velocity", Vector(In::Velocity, Range::ANY), Optional, "at the start; absent: at rest"),
@@ -25,7 +26,7 @@ pub(super) static BODY: Table = Table {
     exclusive: &[one_of(SHAPES, true)],
 };
 
-const SHAPES: &[&str] = &["box", "polygon", "circle", "extrude", "sphere", "revolve"];
+const SHAPES: &[&str] = &["box", "polygon", "circle", "extrude", "sphere", "revolve", "terrain"];
 
 pub(super) const POLYGON: Kind = Rows(&[(In::Length, Range::ANY), (In::Length, Range::ANY)]);
 
@@ -59,9 +60,23 @@ static SUBTRACT: Table = Table {
         key("extrude", Kind::Table(&EXTRUDE), Optional, "of a solid: an outline along an axis"),
         key("sphere", Kind::Table(&SPHERE), Optional, "of a solid: a sphere"),
         key("revolve", Kind::Table(&REVOLVE), Optional, "of a solid: an outline about a vertical"),
+        key("terrain", Kind::Table(&TERRAIN), Optional, "of a solid: what lies under a raster of heights"),
     ],
     exclusive: &[one_of(SHAPES, true)],
 };
+
+static TERRAIN: Table = Table {
+    header: "terrain = { top, base, level }",
+    doc: "What lies under the posts of a regular raster of heights, bilinear between them, and above a base",
+    keys: &[
+        key("top", HEIGHTS, Required, "rows [x, y, z] in any order; a file may also be an ASCII grid, by its centres"),
+        key("base", HEIGHTS, Optional, "the same for the lower side, at the same posts; nowhere above the top"),
+        key("level", Quantity(In::Length, Range::ANY), Optional, "height of a level base instead"),
+    ],
+    exclusive: &[one_of(&["base", "level"], true)],
+};
+
+const HEIGHTS: Kind = Rows(&[(In::Length, Range::ANY), (In::Length, Range::ANY), (In::Length, Range::ANY)]);
 
 static EXTRUDE: Table = Table {
     header: "extrude = { polygon, circle, along, from, to }",

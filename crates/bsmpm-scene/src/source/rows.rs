@@ -31,7 +31,8 @@ pub(super) fn inlined(text: &str, folder: &Path) -> io::Result<String> {
         whole.push_str(&text[from..span.start]);
         let bytes = read(&folder.join(file)).map_err(told)?;
         let text = String::from_utf8(bytes).map_err(|_| told(Error::new(ErrorKind::InvalidData, "no UTF-8 text")))?;
-        whole.push_str(&rows(&text, along).map_err(told)?);
+        let is_grid = text.trim_start().get(..5).is_some_and(|word| word.eq_ignore_ascii_case("ncols"));
+        whole.push_str(&if is_grid { grid(&text) } else { rows(&text, along) }.map_err(told)?);
         from = span.end;
     }
     whole.push_str(&text[from..]);
@@ -119,6 +120,47 @@ fn rows(text: &str, along: Option<&str>) -> io::Result<String> {
     Ok(whole)
 }
 
+/// Rows [x, y, z] as TOML of an ASCII grid: a header of ncols, nrows, xllcorner or xllcenter, the same along y, cellsize and
+/// perhaps nodata_value, then heights row by row from the north. Posts are the middles of the cells.
+fn grid(text: &str) -> io::Result<String> {
+    let bad = |message: String| Error::new(ErrorKind::InvalidData, message);
+    let mut words = text.split_whitespace().peekable();
+    let mut header = std::collections::BTreeMap::new();
+    while let Some(key) = words.next_if(|word| word.parse::<f64>().is_err()) {
+        let value = words.next().and_then(|word| word.parse::<f64>().ok()).filter(|value| value.is_finite());
+        header.insert(key.to_ascii_lowercase(), value.ok_or_else(|| bad(format!("{key}: no number in the header")))?);
+    }
+    let given = |key: &str| header.get(key).copied();
+    let needed = |key: &str| given(key).ok_or_else(|| bad(format!("the header has no {key}")));
+    let (columns, lines, cell) = (needed("ncols")?, needed("nrows")?, needed("cellsize")?);
+    let first = |axis: &str| match given(&format!("{axis}llcenter")) {
+        Some(center) => Ok(center),
+        None => needed(&format!("{axis}llcorner")).map(|corner| corner + 0.5 * cell),
+    };
+    let (x, y) = (first("x")?, first("y")?);
+    let heights: Vec<&str> = words.collect();
+    if columns < 2.0 || lines < 2.0 || columns.fract() + lines.fract() != 0.0 || cell <= 0.0 {
+        return Err(bad("ncols and nrows are whole numbers above 1, and cellsize is above 0".to_owned()));
+    }
+    if heights.len() as f64 != columns * lines {
+        return Err(bad(format!("{} heights, not ncols x nrows = {}", heights.len(), columns * lines)));
+    }
+    let mut whole = String::from("[");
+    for (number, height) in heights.iter().enumerate() {
+        let (row, column) = (number / columns as usize, number % columns as usize);
+        let value = height.parse::<f64>().ok().filter(|value| value.is_finite());
+        let value =
+            value.ok_or_else(|| bad(format!("row {}, column {}: `{height}` is no number", row + 1, column + 1)))?;
+        if given("nodata_value") == Some(value) {
+            return Err(bad(format!("row {}, column {}: no data: fill it, or cut the grid", row + 1, column + 1)));
+        }
+        let at = [x + column as f64 * cell, y + (lines - 1.0 - row as f64) * cell];
+        whole.push_str(&format!("[{:?},{:?},{value:?}],", at[0], at[1]));
+    }
+    whole.push(']');
+    Ok(whole)
+}
+
 /// A comment before the first row that has a unit, where no plain heading has any: its units would be lost.
 fn hidden(text: &str) -> Option<&str> {
     let mut lines = text.trim_start_matches('\u{feff}').lines().map(str::trim).filter(|line| !line.is_empty());
@@ -145,7 +187,20 @@ fn unit(heading: &str) -> Option<&str> {
 
 #[cfg(test)]
 mod tests {
-    use super::rows;
+    use super::{grid, rows};
+
+    #[test]
+    fn ascii_grids_are_rows_of_the_middles_of_their_cells() {
+        let header = "ncols 2\nnrows 2\nxllcorner 10\nyllcorner 0\ncellsize 2\nNODATA_value -9999\n";
+        let told = grid(&format!("{header}1 2\n3 4\n")).unwrap();
+        assert_eq!(told, "[[11.0,3.0,1.0],[13.0,3.0,2.0],[11.0,1.0,3.0],[13.0,1.0,4.0],]");
+        let message = |text: &str| grid(text).unwrap_err().to_string();
+        assert_eq!(message(&format!("{header}1 2\n3 -9999\n")), "row 2, column 2: no data: fill it, or cut the grid");
+        assert_eq!(message(&format!("{header}1 2\n3\n")), "3 heights, not ncols x nrows = 4");
+        assert_eq!(message("ncols 2\nnrows 2\n1 2\n3 4"), "the header has no cellsize");
+        assert_eq!(message("ncols x\n"), "ncols: no number in the header");
+        assert_eq!(message(&format!("{header}1 2\n3 nan\n")), "row 2, column 2: `nan` is no number");
+    }
 
     #[test]
     fn units_comments_and_separators_are_read() {

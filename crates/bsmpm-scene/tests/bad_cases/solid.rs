@@ -8,6 +8,8 @@ const LOADED: &str = "rectangle = { lower = [0.5, 1.0, 1.0], upper = [1.5, 2.0, 
 
 const PLATE: &str = "rectangle    = { lower = [0.5, 2.0, 1.0], upper = [1.5, 3.0, 1.0] }";
 
+const BASE: &str = "base = [[2, 0, 1], [3, 0, 1], [2, 3, 1], [3, 3, 1]]";
+
 const FLOWS: &str = "density = 2000\nporosity = 0.4\ndrainage = \"coupled\"\npermeability = [1e-6, 1e-7, 1e-6]\n\
     [water]\nlevel = 1.0\n[[drain]]\nsurface = true\n";
 const PERMEABLE: &str = "density = 2000\nporosity = 0.4\ndrainage = \"coupled\"\npermeability = [1e-6, 1e-7]\n";
@@ -34,6 +36,11 @@ pub const SOLID: &[Row] = &[
         "body.3.revolve",
         "between the lines",
     ),
+    row("level = 2.5", "level = 2.8", "body.4.terrain.top", "at [2, 0] the top, 2.75, is below the base, 2.8"),
+    row("level = 2.5", "base = [[2, 0, 1]]", "body.4.terrain.base", "two posts along x"),
+    row("level = 2.5", BASE, "body.4.terrain.base", "not the same posts"),
+    row("[4.0, 3.0, 2.75]]", "[3.5, 3.0, 2.75]]", "body.4.terrain.top", "no regular raster"),
+    row("[4.0, 3.0, 2.75]]", "[4.0, 3.0, 3.75]]", "body.4.terrain", "ends at z = 3"),
     row("left   = \"roller\"", "left   = \"absorbing\"", "boundary.left", "not available in a solid yet"),
     row(
         "back   = \"roller\"\nbottom = \"fixed\"",
@@ -82,7 +89,7 @@ pub const SOLID: &[Row] = &[
     row("density = 2000", FLOWS, "drain.0.surface", "name a face of the grid").down(7),
     row("density = 2000", PERMEABLE, "material.soil.permeability", "expected").down(3),
     row("at    = [0.5, 0.0, 0.5]", "at    = [0.5, 0.5]", "point_load.0.at", "solid: of three"),
-    row("at    = [0.5, 0.0, 0.5]", "at    = [3.9, 0.1, 2.9]", "point_load.0.at", "no body is at [3.9, 0.1, 2.9]"),
+    row("at    = [0.5, 0.0, 0.5]", "at    = [3.9, 0.1, 1.9]", "point_load.0.at", "no body is at [3.9, 0.1, 1.9]"),
     row(PLATE, "from = [0, 1]\nto = [1, 1]", "footing.from", "a solid has plates"),
     row(PLATE, "rectangle = { lower = [0.5, 2, 1], upper = [1.5, 3, 1.2] }", "footing.rectangle", "no rectangle"),
     row(

@@ -4,7 +4,7 @@ use super::super::place;
 use super::BodyShape;
 use crate::grid::GridSpec;
 use crate::record::Record;
-use crate::region::{Region, Section, SolidShape, Volume};
+use crate::region::{Raster, Region, Section, SolidShape, Volume};
 use crate::report::Report;
 use crate::words::Axis;
 
@@ -53,7 +53,8 @@ pub(super) fn region(
 
 /// The key that gives a body's or a cut's shape.
 pub(in super::super) fn key(record: &Record) -> &'static str {
-    ["extrude", "sphere", "revolve", "polygon", "circle"].into_iter().find(|key| record.gives(key)).unwrap_or("box")
+    let keys = ["extrude", "sphere", "revolve", "terrain", "polygon", "circle"];
+    keys.into_iter().find(|key| record.gives(key)).unwrap_or("box")
 }
 
 /// A shape in the case's coordinates.
@@ -80,6 +81,9 @@ fn read(record: &Record, report: &mut Report<'_>) -> Option<SolidShape> {
         }
         return Some(SolidShape::Revolved { outline, about: shape.pair("about")? });
     }
+    if let Some(shape) = record.record("terrain").filter(|_| record.gives("terrain")) {
+        return terrain(shape, report);
+    }
     if let Some(key) = ["polygon", "circle"].into_iter().find(|key| record.gives(key)) {
         record.error(key, "is an outline in a plane: give it a length, extrude = { ... }", report);
         return None;
@@ -91,6 +95,31 @@ fn read(record: &Record, report: &mut Report<'_>) -> Option<SolidShape> {
         return None;
     }
     Some(SolidShape::Box { corners: [lower, upper] })
+}
+
+/// Heights on others, or on a level.
+fn terrain(shape: &Record, report: &mut Report<'_>) -> Option<SolidShape> {
+    let raster = |key: &str, level: f64| -> Option<Result<Raster, String>> {
+        let rows = shape.rows(key)?.iter();
+        let heights: Vec<[f64; 3]> = rows.map(|row| [row.numbers[0], row.numbers[1], row.numbers[2]]).collect();
+        Some(Raster::new(&heights, level))
+    };
+    let level = if shape.gives("level") { shape.number("level")? } else { f64::NEG_INFINITY };
+    let base = if shape.gives("base") { Some(raster("base", f64::NEG_INFINITY)?) } else { None };
+    let top = raster("top", level)?;
+    let whole = match (top, base) {
+        (Err(message), _) => Err(("top", message)),
+        (_, Some(Err(message))) => Err(("base", message)),
+        (Ok(top), Some(Ok(base))) => top.on(base).map_err(|message| ("base", message)),
+        (Ok(top), None) => Ok(top),
+    };
+    match whole {
+        Ok(raster) => Some(SolidShape::Terrain(Box::new(raster))),
+        Err((key, message)) => {
+            shape.error(key, message, report);
+            None
+        }
+    }
 }
 
 /// The outline of an extruded or revolved shape.
