@@ -12,6 +12,7 @@ use clap::Args;
 use crate::record::RunRecord;
 use crate::{Error, reference};
 
+mod above;
 mod body;
 mod convergence;
 mod curves;
@@ -89,8 +90,9 @@ pub fn draw(arguments: &PlotArguments) -> Result<Vec<String>, Error> {
 fn pictures(arguments: &PlotArguments) -> Result<(RunRecord, Vec<String>), Error> {
     let record = RunRecord::read(&arguments.directory)?;
     let reference = arguments.reference.as_deref().map(reference::columns).transpose()?;
-    let (frames, section) = section::of(&record, record.frames(&arguments.times)?);
-    let mut names = Vec::new();
+    let frames = record.frames(&arguments.times)?;
+    let mut names = above::draw(&record, &frames)?;
+    let (frames, section) = section::of(&record, frames);
     if !frames.is_empty() {
         // Given ends of the colours are those of the first field.
         let ranges = [arguments.range].into_iter().chain(std::iter::repeat(None));

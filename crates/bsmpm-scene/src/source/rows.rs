@@ -120,8 +120,8 @@ fn rows(text: &str, along: Option<&str>) -> io::Result<String> {
     Ok(whole)
 }
 
-/// Rows [x, y, z] as TOML of an ASCII grid: a header of ncols, nrows, xllcorner or xllcenter, the same along y, cellsize and
-/// perhaps nodata_value, then heights row by row from the north. Posts are the middles of the cells.
+/// Rows [x, y, z] as TOML of an ASCII grid: a header of ncols, nrows, xllcorner or xllcenter, the same along y,
+/// cellsize and perhaps nodata_value, then heights row by row from the north. Posts are the middles of the cells.
 fn grid(text: &str) -> io::Result<String> {
     let bad = |message: String| Error::new(ErrorKind::InvalidData, message);
     let mut words = text.split_whitespace().peekable();

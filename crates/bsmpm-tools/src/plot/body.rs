@@ -87,8 +87,17 @@ fn picture(
 
 /// The ranges along the axes of the picture where points can be: the grid's box, or without one that of all points.
 fn window(record: &RunRecord, frames: &[Frame]) -> [(f64, f64); 2] {
+    window_of(record, frames, record.plane())
+}
+
+/// As [`window`] and [`region`], of the plane of these axes of the case.
+pub(super) fn region_of(record: &RunRecord, frames: &[Frame], plane: [usize; 2]) -> [[(f64, f64); 2]; 2] {
+    let window = window_of(record, frames, plane);
+    [window, around(window)]
+}
+
+fn window_of(record: &RunRecord, frames: &[Frame], plane: [usize; 2]) -> [(f64, f64); 2] {
     let extent = record.manifest.grid.as_ref();
-    let plane = record.plane();
     [0, 1].map(|shown| {
         let grid = extent.and_then(|grid| Some((*grid.lower.get(plane[shown])?, *grid.upper.get(plane[shown])?)));
         let points = || range(frames.iter().flat_map(|frame| &frame.position).map(|point| point[shown]));
@@ -98,7 +107,10 @@ fn window(record: &RunRecord, frames: &[Frame]) -> [(f64, f64); 2] {
 
 /// The region that is shown: where points can be and a little more.
 pub(super) fn region(record: &RunRecord, frames: &[Frame]) -> [(f64, f64); 2] {
-    let [x, y] = window(record, frames);
+    around(window(record, frames))
+}
+
+fn around([x, y]: [(f64, f64); 2]) -> [(f64, f64); 2] {
     let room = 0.02 * (x.1 - x.0).min(y.1 - y.0).max(0.1 * (x.1 - x.0).max(y.1 - y.0));
     let room = if room > 0.0 { room } else { 0.5 };
     [(x.0 - room, x.1 + room), (y.0 - room, y.1 + room)]

@@ -1,0 +1,124 @@
+//! A solid from above: the heights of its highest points, shaded as if light came from the upper left.
+
+use bsmpm_io::frame::Frame;
+use std::collections::HashMap;
+
+use super::body::region_of;
+use crate::Error;
+use crate::picture::axes::{self, title};
+use crate::picture::bar::{self, Bar};
+use crate::picture::canvas::Canvas;
+use crate::picture::colour::{self, Rgb};
+use crate::picture::layout::Layout;
+use crate::picture::splat;
+use crate::picture::ticks::range;
+use crate::record::{RunRecord, short};
+
+const ABOVE: f64 = 130.0;
+/// The sun, towards it: from the upper left, steeply.
+const LIGHT: [f64; 3] = [-0.5, 0.5, 0.707];
+/// Share of the light that comes from everywhere.
+const AMBIENT: f64 = 0.35;
+
+/// The highest points of a frame, one in each part of a cell.
+struct Heights {
+    /// m  edges of the parts
+    part: [f64; 2],
+    /// by their numbers along x and y
+    points: HashMap<[i64; 2], [f64; 3]>,
+}
+
+impl Heights {
+    fn of(frame: &Frame, part: [f64; 2]) -> Self {
+        let mut points: HashMap<[i64; 2], [f64; 3]> = HashMap::new();
+        for point in &frame.position {
+            let highest = points.entry([0, 1].map(|axis| (point[axis] / part[axis]).floor() as i64)).or_insert(*point);
+            if point[2] > highest[2] {
+                *highest = *point;
+            }
+        }
+        Self { part, points }
+    }
+
+    /// Slope along an axis, by the neighbours that there are.
+    fn slope(&self, at: [i64; 2], axis: usize) -> f64 {
+        let beside = |by: i64| {
+            let mut place = at;
+            place[axis] += by;
+            self.points.get(&place).map(|point| point[2])
+        };
+        let (here, length) = (self.points[&at][2], self.part[axis]);
+        match (beside(-1), beside(1)) {
+            (Some(before), Some(after)) => (after - before) / (2.0 * length),
+            (Some(before), None) => (here - before) / length,
+            (None, Some(after)) => (after - here) / length,
+            (None, None) => 0.0,
+        }
+    }
+
+    /// Share of the light that falls on a part.
+    fn lit(&self, at: [i64; 2]) -> f64 {
+        let normal = [-self.slope(at, 0), -self.slope(at, 1), 1.0];
+        let size = normal.iter().map(|of| of * of).sum::<f64>().sqrt();
+        let falls = normal.iter().zip(LIGHT).map(|(of, light)| of * light).sum::<f64>() / size;
+        (AMBIENT + (1.0 - AMBIENT) * falls.max(0.0) / LIGHT[2]).min(1.0)
+    }
+}
+
+/// Draws a picture for every frame of a solid, and returns their names; of a plane none.
+pub(super) fn draw(record: &RunRecord, frames: &[Frame]) -> Result<Vec<String>, Error> {
+    let cells = record.manifest.grid.as_ref().filter(|_| record.is_solid()).map(|grid| &grid.cell);
+    let Some(&[x, y, ..]) = cells.map(Vec::as_slice) else { return Ok(Vec::new()) };
+    let heights: Vec<Heights> = frames.iter().map(|frame| Heights::of(frame, [0.5 * x, 0.5 * y])).collect();
+    let ends = range(heights.iter().flat_map(|of| of.points.values()).map(|point| point[2]));
+    let Some(ends) = ends else { return Ok(Vec::new()) };
+    let mut names = Vec::new();
+    for (frame, heights) in frames.iter().zip(&heights) {
+        let name = format!("height_{}.png", short(frame.time));
+        let bar = Bar { range: ends, label: ("Height of the surface", "m") };
+        picture(record, frame, heights, bar).save(&record.directory.join(&name))?;
+        names.push(name);
+    }
+    Ok(names)
+}
+
+fn picture(record: &RunRecord, frame: &Frame, heights: &Heights, bar: Bar) -> Canvas {
+    let [window, region] = region_of(record, std::slice::from_ref(frame), [0, 1]);
+    let layout = Layout::of(region, bar::BESIDE, 0.0);
+    let axes = layout.axes(ABOVE);
+    let mut canvas = Canvas::new(layout.width, axes.bottom + axes::BELOW);
+    let below = record.moment(frame.time) + ", from above";
+    title(&mut canvas, layout.width, &record.manifest.case.title, &below);
+    let mut parts: Vec<(&[i64; 2], &[f64; 3])> = heights.points.iter().collect();
+    parts.sort_unstable_by_key(|(at, _)| **at);
+    let shade = |(at, point): &(&[i64; 2], &[f64; 3])| -> Rgb {
+        let lit = heights.lit(**at);
+        colour::map(bar.share(point[2])).map(|part| (f64::from(part) * lit).round() as u8)
+    };
+    let shades: Vec<Rgb> = parts.iter().map(shade).collect();
+    let places: Vec<[f64; 3]> = parts.iter().map(|(_, point)| **point).collect();
+    let sizes = vec![heights.part[0].max(heights.part[1]); places.len()];
+    let inside = splat::SplatWindow { ranges: window, walls: Default::default() };
+    splat::draw(&mut canvas, &axes, &inside, (&places, &sizes), &shades);
+    axes.draw(&mut canvas, Some(("x", "m")), ("y", "m"));
+    bar.upright(&mut canvas, &axes);
+    canvas
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_highest_points_count_and_slopes_away_from_the_light_are_darker() {
+        let row = |x: f64, z: f64| [[x, 0.5, z], [x, 0.5, z - 1.0]];
+        let position = [row(0.5, 1.0), row(1.5, 3.0), row(2.5, 1.0)].concat();
+        let frame = Frame { step: 0, time: 0.0, position, fields: Vec::new() };
+        let heights = Heights::of(&frame, [1.0, 1.0]);
+        assert_eq!(heights.points.len(), 3);
+        assert_eq!(heights.points[&[1, 0]], [1.5, 0.5, 3.0]);
+        assert_eq!((heights.slope([0, 0], 0), heights.slope([1, 0], 0), heights.slope([1, 0], 1)), (2.0, 0.0, 0.0));
+        assert!(heights.lit([0, 0]) > heights.lit([2, 0]));
+        assert_eq!(heights.lit([1, 0]), 1.0);
+    }
+}
