@@ -8,6 +8,7 @@ mod raster;
 mod simple;
 mod skin;
 mod solid;
+mod surface;
 mod sweep;
 mod volume;
 
@@ -18,6 +19,7 @@ pub(crate) use raster::Raster;
 pub(crate) use simple::{PolygonFault, area, bounds, fault};
 pub(crate) use skin::skin;
 pub(crate) use solid::{Section, SolidShape};
+pub(crate) use surface::Surface;
 pub(crate) use sweep::{Window, solid, sweep};
 
 pub use volume::Volume;

@@ -1,13 +1,14 @@
 //! The text of a case file: read with a bound, decoded with reasons, and its lines and columns.
 
 mod rows;
+mod stl;
 
 use crate::error::{Error, Place};
 use std::io::{self, Read};
 use std::path::Path;
 
 /// Largest case file, in bytes; a larger one is refused before it is parsed.
-pub const MAX_BYTES: usize = 1 << 20;
+pub const MAX_BYTES: usize = 1 << 24;
 
 /// Characters of a line that an excerpt shows at most.
 const EXCERPT: usize = 100;
@@ -30,9 +31,8 @@ pub fn load(path: &Path) -> io::Result<Vec<u8>> {
     };
     let whole = rows::inlined(text, path.parent().unwrap_or(Path::new(""))).map(String::into_bytes)?;
     if whole.len() > MAX_BYTES {
-        let message = format!(
-            "with the rows of its files it has more than {MAX_BYTES} bytes, the limit of a case; thin them to the steps"
-        );
+        let message =
+            format!("with the rows of its files it has more than {MAX_BYTES} bytes, the limit of a case; thin them");
         return Err(io::Error::new(io::ErrorKind::InvalidData, message));
     }
     Ok(whole)

@@ -3,6 +3,7 @@
 use super::Edge;
 use super::raster::Raster;
 use super::simple::{area, bounds};
+use super::surface::Surface;
 use super::sweep::intervals;
 use std::f64::consts::PI;
 
@@ -35,6 +36,7 @@ pub(crate) enum SolidShape {
         about: [f64; 2],
     },
     Terrain(Box<Raster>),
+    Surface(Box<Surface>),
 }
 
 /// An outline in a plane.
@@ -99,6 +101,7 @@ impl SolidShape {
                 Self::Revolved { outline: outline.moved([0.0, by[2]]), about: [about[0] + by[0], about[1] + by[1]] }
             }
             Self::Terrain(raster) => Self::Terrain(Box::new(raster.moved(by))),
+            Self::Surface(surface) => Self::Surface(Box::new(surface.moved(by))),
         }
     }
 
@@ -119,6 +122,7 @@ impl SolidShape {
                 [(0, -far), (1, far)].map(|(side, reach)| [about[0] + reach, about[1] + reach, outline.bounds[side][1]])
             }
             Self::Terrain(raster) => raster.bounds(),
+            Self::Surface(surface) => surface.bounds(),
         }
     }
 
@@ -130,6 +134,7 @@ impl SolidShape {
             Self::Sphere { radius, .. } => 4.0 / 3.0 * PI * radius.powi(3),
             Self::Revolved { outline, .. } => outline.turned,
             Self::Terrain(raster) => raster.volume(),
+            Self::Surface(surface) => surface.volume(),
         }
     }
 
@@ -152,6 +157,7 @@ impl SolidShape {
             }
             Self::Revolved { outline, about } => outline.at((x - about[0]).hypot(y - about[1])),
             Self::Terrain(raster) => raster.vertical([x, y]).into_iter().collect(),
+            Self::Surface(surface) => surface.vertical([x, y]),
         }
     }
 

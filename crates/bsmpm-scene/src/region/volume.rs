@@ -251,6 +251,7 @@ fn edges(shape: &SolidShape) -> usize {
     match shape {
         SolidShape::Prism { outline, .. } | SolidShape::Revolved { outline, .. } => outline.edges.len(),
         SolidShape::Box { .. } | SolidShape::Sphere { .. } | SolidShape::Terrain(_) => 1,
+        SolidShape::Surface(surface) => surface.in_bin(),
     }
 }
 

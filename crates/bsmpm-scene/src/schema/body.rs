@@ -1,7 +1,7 @@
 //! The tables of bodies and their shapes.
 
 use super::Kind::*;
-use super::Presence::{Optional, Required};
+use super::Presence::{Default, Optional, Required};
 use super::{Dimension as In, Kind, Range, Table, key, one_of};
 use crate::words::{Axis, Word};
 
@@ -18,6 +18,7 @@ pub(super) static BODY: Table = Table {
         key("sphere", Kind::Table(&SPHERE), Optional, "of a solid: a sphere"),
         key("revolve", Kind::Table(&REVOLVE), Optional, "of a solid: an outline about a vertical"),
         key("terrain", Kind::Table(&TERRAIN), Optional, "of a solid: what lies under a raster of heights"),
+        key("surface", Kind::Table(&SURFACE), Optional, "of a solid: what a closed surface of triangles encloses"),
         key("subtract", Tables(&SUBTRACT), Optional, "shapes that are cut out"),
         key("points_per_cell", Count(1, 100), Required, "points along each axis of a cell"),
         key("velocity", Vector(In::Velocity, Range::ANY), Optional, "at the start; absent: at rest"),
@@ -26,7 +27,7 @@ pub(super) static BODY: Table = Table {
     exclusive: &[one_of(SHAPES, true)],
 };
 
-const SHAPES: &[&str] = &["box", "polygon", "circle", "extrude", "sphere", "revolve", "terrain"];
+const SHAPES: &[&str] = &["box", "polygon", "circle", "extrude", "sphere", "revolve", "terrain", "surface"];
 
 pub(super) const POLYGON: Kind = Rows(&[(In::Length, Range::ANY), (In::Length, Range::ANY)]);
 
@@ -61,6 +62,7 @@ static SUBTRACT: Table = Table {
         key("sphere", Kind::Table(&SPHERE), Optional, "of a solid: a sphere"),
         key("revolve", Kind::Table(&REVOLVE), Optional, "of a solid: an outline about a vertical"),
         key("terrain", Kind::Table(&TERRAIN), Optional, "of a solid: what lies under a raster of heights"),
+        key("surface", Kind::Table(&SURFACE), Optional, "of a solid: what a closed surface of triangles encloses"),
     ],
     exclusive: &[one_of(SHAPES, true)],
 };
@@ -77,6 +79,23 @@ static TERRAIN: Table = Table {
 };
 
 const HEIGHTS: Kind = Rows(&[(In::Length, Range::ANY), (In::Length, Range::ANY), (In::Length, Range::ANY)]);
+
+static SURFACE: Table = Table {
+    header: "surface = { triangles, scale }",
+    doc: "What a closed surface of triangles encloses; shells may lie inside one another, turned the other way",
+    keys: &[
+        key("triangles", TRIANGLES, Required, "rows [x, y, z] of three corners each; a file may also be STL"),
+        key(
+            "scale",
+            Quantity(In::Number, Range::POSITIVE),
+            Default("1.0"),
+            "factor of all places; 0.001 of millimetres",
+        ),
+    ],
+    exclusive: &[],
+};
+
+const TRIANGLES: Kind = Rows(&[(In::Length, Range::ANY); 9]);
 
 static EXTRUDE: Table = Table {
     header: "extrude = { polygon, circle, along, from, to }",

@@ -1,6 +1,6 @@
 //! Rows of numbers from text files beside the case: `{ file = "record.csv", along = "x" }` in the place of a list.
 
-use super::MAX_BYTES;
+use super::{MAX_BYTES, stl};
 use std::io::{self, Error, ErrorKind, Read};
 use std::ops::Range;
 use std::path::Path;
@@ -30,13 +30,23 @@ pub(super) fn inlined(text: &str, folder: &Path) -> io::Result<String> {
         let told = |error: Error| Error::new(error.kind(), format!("{file}: {error}"));
         whole.push_str(&text[from..span.start]);
         let bytes = read(&folder.join(file)).map_err(told)?;
-        let text = String::from_utf8(bytes).map_err(|_| told(Error::new(ErrorKind::InvalidData, "no UTF-8 text")))?;
-        let is_grid = text.trim_start().get(..5).is_some_and(|word| word.eq_ignore_ascii_case("ncols"));
-        whole.push_str(&if is_grid { grid(&text) } else { rows(&text, along) }.map_err(told)?);
+        let found = if stl::is_binary(&bytes) { stl::triangles(&bytes) } else { text_rows(bytes, along) };
+        whole.push_str(&found.map_err(told)?);
         from = span.end;
     }
     whole.push_str(&text[from..]);
     Ok(whole)
+}
+
+/// Rows of whatever text holds them.
+fn text_rows(bytes: Vec<u8>, along: Option<&str>) -> io::Result<String> {
+    let text = String::from_utf8(bytes).map_err(|_| Error::new(ErrorKind::InvalidData, "no UTF-8 text"))?;
+    let begins = |word: &str| text.trim_start().get(..word.len()).is_some_and(|of| of.eq_ignore_ascii_case(word));
+    match (begins("ncols"), begins("solid")) {
+        (true, _) => grid(&text),
+        (_, true) => stl::facets(&text),
+        _ => rows(&text, along),
+    }
 }
 
 /// The bytes of a file that is not longer than a case may be.

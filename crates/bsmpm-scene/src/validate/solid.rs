@@ -88,7 +88,7 @@ fn in_space(root: &Record, report: &mut Report<'_>) {
     }
     let shapes = root.records("body").iter().flat_map(|body| std::iter::once(body).chain(body.records("subtract")));
     for shape in shapes {
-        for key in ["extrude", "sphere", "revolve", "terrain"].into_iter().filter(|key| shape.gives(key)) {
+        for key in ["extrude", "sphere", "revolve", "terrain", "surface"].into_iter().filter(|key| shape.gives(key)) {
             shape.error(key, "is a shape in space: geometry = \"solid\" has it", report);
         }
     }

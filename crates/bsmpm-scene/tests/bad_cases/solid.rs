@@ -41,6 +41,10 @@ pub const SOLID: &[Row] = &[
     row("level = 2.5", BASE, "body.4.terrain.base", "not the same posts"),
     row("[4.0, 3.0, 2.75]]", "[3.5, 3.0, 2.75]]", "body.4.terrain.top", "no regular raster"),
     row("[4.0, 3.0, 2.75]]", "[4.0, 3.0, 3.75]]", "body.4.terrain", "ends at z = 3"),
+    row("  [5, 3, 4, 5, 5, 4, 7, 3, 4],", "  ", "body.5.surface.triangles", "not closed: 3 of its edges").up(1),
+    row("[5, 3, 4, 5, 5, 4, 7, 3, 4]", "[5, 3, 4, 5, 5, 4]", "body.5.surface.triangles", "a list of 6"),
+    row("5, 3, 6, 5, 5, 4],\n], scale = 0.5", "5, 3, 6, 5, 5, 4],\n], scale = 0.7", "body.5.surface", "ends at x = 4")
+        .up(1),
     row("left   = \"roller\"", "left   = \"absorbing\"", "boundary.left", "not available in a solid yet"),
     row(
         "back   = \"roller\"\nbottom = \"fixed\"",

@@ -27,7 +27,7 @@ fn i05_i06_no_text_of_a_case() {
     only(&utf16(STATIC, true)[2..], "NUL");
     only(b"\x7fELF\x02\x01\x00", "line 1 holds a NUL byte");
     only(b"title = \"a\"\ngeometry = \"\xff\"", "line 2 is no UTF-8");
-    only(&vec![b'#'; MAX_BYTES + 1], "larger than 1048576 bytes");
+    only(&vec![b'#'; MAX_BYTES + 1], "larger than 16777216 bytes");
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! Volumes of points against closed forms.
 
+use super::super::Surface;
 use super::super::solid::Section;
 use super::*;
 use std::f64::consts::PI;
@@ -75,6 +76,30 @@ fn spheres_and_turned_outlines_are_scaled_to_their_volume() {
     let (found, _) = points(SolidShape::Revolved { outline: frustum, about: [2.0, 1.5] }, Vec::new(), 2);
     let exact = PI * 2.7 / 3.0 * (1.3_f64.powi(2) + 1.3 * 0.4 + 0.4_f64.powi(2));
     assert!(off(total(&found), exact) < 1e-12);
+}
+
+/// An octahedron: its volume is 4/3 of its radius cubed.
+#[test]
+fn surfaces_of_triangles_are_scaled_to_their_volume() {
+    let (center, radius) = ([2.0, 1.5, 1.6], 1.2);
+    let tip = |axis: usize, sign: f64| {
+        let mut at = center;
+        at[axis] += sign * radius;
+        at
+    };
+    let signs = (0..8).map(|k| [0, 1, 2].map(|axis| if k >> axis & 1 == 0 { -1.0_f64 } else { 1.0 }));
+    let rows = signs.map(|[s, t, u]| {
+        let tips = [tip(0, s), tip(1, t), tip(2, u)];
+        let [a, b, c] = if s * t * u > 0.0 { tips } else { [tips[0], tips[2], tips[1]] };
+        [a, b, c].concat().try_into().unwrap()
+    });
+    let surface = Surface::new(rows).unwrap();
+    let (found, _) = points(SolidShape::Surface(Box::new(surface)), Vec::new(), 2);
+    assert!(off(total(&found), 4.0 / 3.0 * radius.powi(3)) < 1e-12);
+    for (axis, exact) in center.into_iter().enumerate() {
+        let centroid = found.iter().map(|at| at.area * at.x[axis]).sum::<f64>() / total(&found);
+        assert!((centroid - exact).abs() < 5e-3, "centroid along {axis}: {centroid}");
+    }
 }
 
 /// Of what is cut out anyhow the lines alone tell the volume.

@@ -4,7 +4,7 @@ use super::super::place;
 use super::BodyShape;
 use crate::grid::GridSpec;
 use crate::record::Record;
-use crate::region::{Raster, Region, Section, SolidShape, Volume};
+use crate::region::{Raster, Region, Section, SolidShape, Surface, Volume};
 use crate::report::Report;
 use crate::words::Axis;
 
@@ -53,7 +53,7 @@ pub(super) fn region(
 
 /// The key that gives a body's or a cut's shape.
 pub(in super::super) fn key(record: &Record) -> &'static str {
-    let keys = ["extrude", "sphere", "revolve", "terrain", "polygon", "circle"];
+    let keys = ["extrude", "sphere", "revolve", "terrain", "surface", "polygon", "circle"];
     keys.into_iter().find(|key| record.gives(key)).unwrap_or("box")
 }
 
@@ -83,6 +83,18 @@ fn read(record: &Record, report: &mut Report<'_>) -> Option<SolidShape> {
     }
     if let Some(shape) = record.record("terrain").filter(|_| record.gives("terrain")) {
         return terrain(shape, report);
+    }
+    if let Some(shape) = record.record("surface").filter(|_| record.gives("surface")) {
+        let scale = shape.number("scale")?;
+        let rows = shape.rows("triangles")?.iter();
+        let scaled = rows.map(|row| std::array::from_fn(|k| scale * row.numbers[k]));
+        return match Surface::new(scaled) {
+            Ok(surface) => Some(SolidShape::Surface(Box::new(surface))),
+            Err(message) => {
+                shape.error("triangles", message, report);
+                None
+            }
+        };
     }
     if let Some(key) = ["polygon", "circle"].into_iter().find(|key| record.gives(key)) {
         record.error(key, "is an outline in a plane: give it a length, extrude = { ... }", report);

@@ -1,0 +1,305 @@
+//! A closed surface of triangles, by what it encloses of vertical lines.
+
+use std::collections::{BTreeMap, HashMap};
+
+/// Parts of its size by which a surface may overlap itself: rounding of where its lines are cut.
+const ROUNDING: f64 = 1e-9;
+
+/// Triangles, counter-clockwise seen from outside, and the bins of the plane by which a vertical line finds its own.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Surface {
+    triangles: Vec<[[f64; 3]; 3]>,
+    /// lower and upper corner of the cuboid around it
+    bounds: [[f64; 3]; 2],
+    /// bins along x and y
+    count: [usize; 2],
+    /// triangles whose rectangle reaches a bin, x running fastest
+    bins: Vec<Vec<u32>>,
+}
+
+impl Surface {
+    /// Of rows of nine numbers, the corners of a triangle each; which way all of them turn does not matter. Says what
+    /// is wrong with them.
+    pub(crate) fn new(rows: impl Iterator<Item = [f64; 9]>) -> Result<Self, String> {
+        // -0 and 0 are one place.
+        let corner = |row: &[f64; 9], k: usize| [0, 1, 2].map(|axis| row[3 * k + axis] + 0.0);
+        let mut triangles: Vec<[[f64; 3]; 3]> =
+            rows.map(|row| [0, 1, 2].map(|k| corner(&row, k))).filter(|[a, b, c]| a != b && b != c && c != a).collect();
+        if triangles.is_empty() {
+            return Err("it has no triangle".into());
+        }
+        closed(&triangles)?;
+        let bounds = bounds(&triangles);
+        let volume = volume(&triangles, bounds[0]);
+        let size: f64 = (0..3).map(|axis| bounds[1][axis] - bounds[0][axis]).product();
+        if volume.abs() <= ROUNDING * size {
+            return Err("it encloses no volume".into());
+        }
+        if volume < 0.0 {
+            triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
+        }
+        let made = Self::binned(triangles);
+        made.simple()?;
+        Ok(made)
+    }
+
+    fn binned(triangles: Vec<[[f64; 3]; 3]>) -> Self {
+        let side = (triangles.len() as f64).sqrt().ceil() as usize;
+        let bounds = bounds(&triangles);
+        let made = Self { triangles, bounds, count: [side; 2], bins: Vec::new() };
+        let mut bins = vec![Vec::new(); side * side];
+        for (number, triangle) in (0_u32..).zip(&made.triangles) {
+            let reach = |axis: usize| {
+                let ends = triangle.map(|corner| made.bin(axis, corner[axis]));
+                ends.iter().min().copied().unwrap_or(0)..=ends.iter().max().copied().unwrap_or(0)
+            };
+            for y in reach(1) {
+                reach(0).for_each(|x| bins[y * side + x].push(number));
+            }
+        }
+        Self { bins, ..made }
+    }
+
+    /// The bin of a place within the bounds, along an axis.
+    fn bin(&self, axis: usize, at: f64) -> usize {
+        let [lower, upper] = [self.bounds[0][axis], self.bounds[1][axis]];
+        let part = (at - lower) / (upper - lower);
+        ((part * self.count[axis] as f64) as usize).min(self.count[axis] - 1)
+    }
+
+    pub(crate) fn moved(mut self, by: [f64; 3]) -> Self {
+        let moved = |at: &mut [f64; 3]| (0..3).for_each(|axis| at[axis] += by[axis]);
+        self.triangles.iter_mut().flatten().for_each(moved);
+        Self::binned(self.triangles)
+    }
+
+    /// Lower and upper corner of the cuboid around it.
+    pub(crate) fn bounds(&self) -> [[f64; 3]; 2] {
+        self.bounds
+    }
+
+    /// m³  that it encloses
+    pub(crate) fn volume(&self) -> f64 {
+        volume(&self.triangles, self.bounds[0])
+    }
+
+    /// Triangles that a vertical line is held against, in the mean.
+    pub(crate) fn in_bin(&self) -> usize {
+        self.bins.iter().map(Vec::len).sum::<usize>().div_ceil(self.bins.len())
+    }
+
+    /// What it encloses of the vertical line at a place, upwards: where the line has entered more often than left.
+    pub(crate) fn vertical(&self, at: [f64; 2]) -> Vec<[f64; 2]> {
+        let (mut inside, mut depth, mut from) = (Vec::new(), 0, 0.0);
+        for (z, crossing) in self.crossings(at) {
+            let before = depth;
+            depth -= crossing;
+            match (before > 0, depth > 0) {
+                (false, true) => from = z,
+                (true, false) if from < z => inside.push([from, z]),
+                _ => {}
+            }
+        }
+        inside
+    }
+
+    /// Heights at which the line at a place is cut, upwards, with how often it leaves there: -1 where it enters.
+    fn crossings(&self, at: [f64; 2]) -> Vec<(f64, i32)> {
+        if (0..2).any(|axis| !(self.bounds[0][axis] <= at[axis] && at[axis] <= self.bounds[1][axis])) {
+            return Vec::new();
+        }
+        let bin = &self.bins[self.bin(1, at[1]) * self.count[0] + self.bin(0, at[0])];
+        let cut = bin.iter().filter_map(|number| {
+            let triangle = &self.triangles[*number as usize];
+            let turns = around(triangle, at);
+            (turns != 0).then(|| (height(triangle, at), turns))
+        });
+        let mut cut: Vec<(f64, i32)> = cut.collect();
+        // Shells that touch: what ends there ends first.
+        cut.sort_by(|one, other| one.0.total_cmp(&other.0).then(other.1.cmp(&one.1)));
+        cut
+    }
+
+    /// Whether the lines through the triangles' insides enter and leave in turns.
+    fn simple(&self) -> Result<(), String> {
+        let size = self.bounds[1][2] - self.bounds[0][2];
+        for [a, b, c] in self.triangles.iter().filter(|triangle| !is_wall(triangle)) {
+            for shares in [[1.0, 1.0, 1.0], [4.0, 1.0, 1.0], [1.0, 4.0, 1.0], [1.0, 1.0, 4.0]] {
+                let [s, t, u] = shares.map(|share| share / shares.iter().sum::<f64>());
+                let at = [0, 1].map(|axis| s * a[axis] + t * b[axis] + u * c[axis]);
+                let (mut depth, mut last) = (0, f64::NEG_INFINITY);
+                for (z, crossing) in self.crossings(at) {
+                    if !(0..=1).contains(&depth) && z - last > ROUNDING * size {
+                        let [x, y] = at;
+                        return Err(format!(
+                            "near [{x:.6}, {y:.6}, {z:.6}] it intersects itself, or a part of it is turned inside out"
+                        ));
+                    }
+                    (depth, last) = (depth - crossing, z);
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Whether every edge has as many triangles on one side as on the other.
+fn closed(triangles: &[[[f64; 3]; 3]]) -> Result<(), String> {
+    let mut numbers = HashMap::new();
+    let mut number = |at: [f64; 3]| {
+        let next = numbers.len();
+        *numbers.entry(at.map(f64::to_bits)).or_insert(next)
+    };
+    let mut edges: BTreeMap<[usize; 2], (i64, [[f64; 3]; 2])> = BTreeMap::new();
+    for triangle in triangles {
+        for k in 0..3 {
+            let ends = [triangle[k], triangle[(k + 1) % 3]];
+            let [from, to] = ends.map(&mut number);
+            let edge = edges.entry([from.min(to), from.max(to)]).or_insert((0, ends));
+            edge.0 += if from < to { 1 } else { -1 };
+        }
+    }
+    let open = edges.values().filter(|(sum, _)| *sum != 0).count();
+    match edges.values().find(|(sum, _)| *sum != 0) {
+        None => Ok(()),
+        Some((_, [from, to])) => Err(format!(
+            "it is not closed: {open} of its edges, the first from {from:?} to {to:?}, have not one triangle on each \
+             side that turn alike; mend it with a mesh tool (weld vertices, fill holes, make normals consistent)"
+        )),
+    }
+}
+
+fn bounds(triangles: &[[[f64; 3]; 3]]) -> [[f64; 3]; 2] {
+    let corners = || triangles.iter().flatten();
+    let least = |axis: usize| corners().map(|corner| corner[axis]).fold(f64::INFINITY, f64::min);
+    let most = |axis: usize| corners().map(|corner| corner[axis]).fold(f64::NEG_INFINITY, f64::max);
+    [[0, 1, 2].map(least), [0, 1, 2].map(most)]
+}
+
+/// The sum of the tetrahedra below the triangles, m³.
+fn volume(triangles: &[[[f64; 3]; 3]], from: [f64; 3]) -> f64 {
+    let six = |triangle: &[[f64; 3]; 3]| {
+        let [a, b, c] = triangle.map(|corner| [0, 1, 2].map(|axis| corner[axis] - from[axis]));
+        a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0])
+    };
+    triangles.iter().map(six).sum::<f64>() / 6.0
+}
+
+/// How often a triangle turns around a place, seen from above. Which side of an edge a place lies on is computed alike
+/// for both of its triangles, so that over a closed surface the turns sum to zero whatever the rounding.
+fn around(triangle: &[[f64; 3]; 3], [x, y]: [f64; 2]) -> i32 {
+    let across = |from: [f64; 3], to: [f64; 3]| {
+        let (low, high, sign) = if from[1] < to[1] { (from, to, 1) } else { (to, from, -1) };
+        if !(low[1] <= y && y < high[1]) {
+            return 0;
+        }
+        let meets = low[0] + (y - low[1]) / (high[1] - low[1]) * (high[0] - low[0]);
+        // Within the edge, so that no place is found whose bin the triangle does not reach.
+        if x < meets.clamp(from[0].min(to[0]), from[0].max(to[0])) { sign } else { 0 }
+    };
+    (0..3).map(|k| across(triangle[k], triangle[(k + 1) % 3])).sum()
+}
+
+/// Whether a triangle stands upright but for rounding: where a line cuts it is arbitrary.
+fn is_wall([a, b, c]: &[[f64; 3]; 3]) -> bool {
+    let [u, v] = [b, c].map(|corner| [0, 1, 2].map(|axis| corner[axis] - a[axis]));
+    let normal = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+    normal[2].abs() <= ROUNDING * normal.iter().map(|part| part.abs()).sum::<f64>()
+}
+
+/// Height of a triangle's plane at a place, within the triangle's own.
+fn height([a, b, c]: &[[f64; 3]; 3], at: [f64; 2]) -> f64 {
+    let [u, v] = [b, c].map(|corner| [0, 1, 2].map(|axis| corner[axis] - a[axis]));
+    let way = [at[0] - a[0], at[1] - a[1]];
+    let twice = u[0] * v[1] - u[1] * v[0];
+    let (s, t) = ((way[0] * v[1] - way[1] * v[0]) / twice, (u[0] * way[1] - u[1] * way[0]) / twice);
+    let z = a[2] + s * u[2] + t * v[2];
+    // Of a wall, whose plane has no height, the clamp is all.
+    let ends = [a[2].min(b[2]).min(c[2]), a[2].max(b[2]).max(c[2])];
+    if z.is_finite() { z.clamp(ends[0], ends[1]) } else { 0.5 * (ends[0] + ends[1]) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A cuboid's twelve triangles, outwards.
+    fn cuboid(lower: [f64; 3], upper: [f64; 3]) -> Vec<[f64; 9]> {
+        let corner = |k: usize| [0, 1, 2].map(|axis| if k >> axis & 1 == 0 { lower[axis] } else { upper[axis] });
+        let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+        let halves = faces.into_iter().flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]);
+        halves.map(|half| half.map(corner).concat().try_into().unwrap()).collect()
+    }
+
+    fn turned(rows: Vec<[f64; 9]>) -> Vec<[f64; 9]> {
+        rows.into_iter().map(|[a, b, c, d, e, f, g, h, i]| [a, b, c, g, h, i, d, e, f]).collect()
+    }
+
+    fn surface(rows: Vec<[f64; 9]>) -> Result<Surface, String> {
+        Surface::new(rows.into_iter())
+    }
+
+    #[test]
+    fn what_a_cuboid_with_a_cavity_encloses_is_exact() {
+        let shell = cuboid([1.0, 2.0, 3.0], [4.0, 4.0, 7.0]);
+        let cavity = turned(cuboid([2.0, 2.5, 4.0], [3.0, 3.5, 5.0]));
+        for rows in [[shell.clone(), cavity.clone()].concat(), turned([shell, cavity].concat())] {
+            let found = surface(rows).unwrap();
+            assert!((found.volume() - 23.0).abs() < 1e-12);
+            assert_eq!(found.bounds(), [[1.0, 2.0, 3.0], [4.0, 4.0, 7.0]]);
+            // On the diagonals of the faces, on edges below (inside) and above (outside), and beside.
+            assert_eq!(found.vertical([2.5, 3.0]), [[3.0, 4.0], [5.0, 7.0]]);
+            assert_eq!(found.vertical([1.5, 3.9]), [[3.0, 7.0]]);
+            assert_eq!(found.vertical([1.0, 2.0]), [[3.0, 7.0]]);
+            assert!(found.vertical([4.0, 3.0]).is_empty() && found.vertical([0.9, 3.0]).is_empty());
+            let moved = found.moved([1.0, -1.0, 0.5]);
+            assert_eq!(moved.vertical([3.5, 2.0]), [[3.5, 4.5], [5.5, 7.5]]);
+        }
+    }
+
+    #[test]
+    fn lines_through_corners_and_edges_of_any_surface_enter_as_often_as_they_leave() {
+        // A bumpy sphere whose corners have no round numbers.
+        let (around_it, up) = (24, 12);
+        let at = |i: usize, j: usize| {
+            let (phi, theta) = (
+                std::f64::consts::TAU * (i % around_it) as f64 / around_it as f64,
+                std::f64::consts::PI * j as f64 / up as f64,
+            );
+            let r = if j.is_multiple_of(up) { 1.3 } else { 1.0 + 0.3 * (3.0 * phi).sin() * theta.sin().powi(2) };
+            let flat = if j.is_multiple_of(up) { 0.0 } else { r * theta.sin() };
+            [flat * phi.cos(), flat * phi.sin(), r * theta.cos()]
+        };
+        let quads = (0..around_it).flat_map(|i| (0..up).map(move |j| [(i, j), (i, j + 1), (i + 1, j + 1), (i + 1, j)]));
+        let halves = quads.flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]);
+        let rows = halves.map(|half| half.map(|(i, j)| at(i, j)).concat().try_into().unwrap()).collect();
+        let found = surface(rows).unwrap();
+        let corners: Vec<[f64; 3]> = found.triangles.iter().flatten().copied().collect();
+        let middles = found.triangles.iter().flat_map(|[a, b, c]| [[a, b], [b, c], [c, a]]);
+        let middles = middles.map(|[a, b]| [0, 1].map(|axis| 0.5 * (a[axis] + b[axis])));
+        for place in corners.iter().map(|at| [at[0], at[1]]).chain(middles) {
+            let crossings = found.crossings(place);
+            assert_eq!(crossings.iter().map(|(_, turns)| turns).sum::<i32>(), 0, "{place:?}");
+            assert!(crossings.len().is_multiple_of(2));
+        }
+    }
+
+    #[test]
+    fn what_is_no_closed_surface_is_refused() {
+        let says = |rows: Vec<[f64; 9]>, what: &str| {
+            let message = surface(rows).unwrap_err();
+            assert!(message.contains(what), "{message}");
+        };
+        let block = cuboid([0.0; 3], [1.0; 3]);
+        says(Vec::new(), "no triangle");
+        says(block[1..].to_vec(), "not closed: 3 of its edges");
+        let mut one_turned = block.clone();
+        one_turned[..1].clone_from_slice(&turned(block[..1].to_vec()));
+        says(one_turned, "not closed: 3 of its edges");
+        says([block.clone(), turned(block.clone())].concat(), "encloses no volume");
+        says([block.clone(), cuboid([0.5; 3], [1.5; 3])].concat(), "intersects itself");
+        says([block.clone(), turned(cuboid([2.0; 3], [2.5; 3]))].concat(), "turned inside out");
+        // Blocks that only touch are fine.
+        assert!((surface([block, cuboid([0.0, 0.0, 1.0], [1.0, 1.0, 2.0])].concat()).unwrap().volume() - 2.0) < 1e-12);
+    }
+}

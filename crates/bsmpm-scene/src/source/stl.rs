@@ -1,0 +1,89 @@
+//! Triangles from STL files, binary or text, as rows of three corners.
+
+use std::io::{self, Error, ErrorKind};
+
+/// Bytes of a binary STL before its triangles: a heading, and their number.
+const STL_HEADING: usize = 84;
+/// Bytes of a triangle there: a normal, three corners, all of three singles, and two bytes.
+const STL_TRIANGLE: usize = 50;
+
+/// Whether bytes are binary STL: as many as its number of triangles says, whatever the heading (some begin with
+/// `solid`, as the text format does).
+pub(super) fn is_binary(bytes: &[u8]) -> bool {
+    let number = bytes.get(STL_HEADING - 4..STL_HEADING).and_then(|four| four.try_into().ok()).map(u32::from_le_bytes);
+    number.is_some_and(|number| bytes.len() as u64 == STL_HEADING as u64 + u64::from(number) * STL_TRIANGLE as u64)
+}
+
+/// Rows of three corners as TOML of binary STL.
+pub(super) fn triangles(bytes: &[u8]) -> io::Result<String> {
+    let mut whole = String::from("[");
+    for (number, triangle) in bytes[STL_HEADING..].chunks_exact(STL_TRIANGLE).enumerate() {
+        let singles =
+            triangle[12..48].chunks_exact(4).map(|four| f32::from_le_bytes([four[0], four[1], four[2], four[3]]));
+        let corners: Vec<String> = singles.filter(|at| at.is_finite()).map(|at| format!("{at:?}")).collect();
+        if corners.len() != 9 {
+            let message = format!("triangle {} has a corner that is no number", number + 1);
+            return Err(Error::new(ErrorKind::InvalidData, message));
+        }
+        whole.push_str(&format!("[{}],", corners.join(",")));
+    }
+    whole.push(']');
+    Ok(whole)
+}
+
+/// Rows of three corners as TOML of STL as text. A library's reader would round its numbers to singles, by which
+/// places in a country's coordinates lie centimetres beside.
+pub(super) fn facets(text: &str) -> io::Result<String> {
+    let bad = |message: String| Error::new(ErrorKind::InvalidData, message);
+    let (mut whole, mut corners) = (String::from("["), Vec::with_capacity(9));
+    for (number, line) in text.lines().enumerate() {
+        let mut words = line.split_whitespace();
+        match words.next().map(str::to_ascii_lowercase).as_deref() {
+            Some("vertex") => {
+                let numbers: Vec<f64> =
+                    words.filter_map(|word| word.parse().ok()).filter(|at: &f64| at.is_finite()).collect();
+                if numbers.len() != 3 {
+                    return Err(bad(format!("line {}: a vertex has three numbers", number + 1)));
+                }
+                corners.extend(numbers.iter().map(|at| format!("{at:?}")));
+            }
+            Some("endfacet") if corners.len() == 9 => {
+                whole.push_str(&format!("[{}],", corners.join(",")));
+                corners.clear();
+            }
+            Some("endfacet") => return Err(bad(format!("line {}: a facet has three vertices", number + 1))),
+            _ => {}
+        }
+    }
+    if !corners.is_empty() || whole.len() == 1 {
+        return Err(bad("the text of the STL ends before its triangles do".to_owned()));
+    }
+    whole.push(']');
+    Ok(whole)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn triangles_are_rows_of_three_corners() {
+        let text = "solid a\n facet normal 0 0 1\n outer loop\n vertex 0 0 0\nvertex 50.125 0 0\n vertex 0 1e-1 0\n\
+                    endloop\nendfacet\nendsolid a\n";
+        let row = "[[0.0,0.0,0.0,50.125,0.0,0.0,0.0,0.1,0.0],]";
+        assert_eq!(facets(text).unwrap(), row);
+        let mut bytes = b"solid ".to_vec();
+        bytes.resize(80, b' ');
+        bytes.extend(1_u32.to_le_bytes());
+        let numbers = [0.0_f32, 0.0, 1.0, 0.0, 0.0, 0.0, 50.125, 0.0, 0.0, 0.0, 0.1, 0.0];
+        bytes.extend(numbers.iter().flat_map(|number| number.to_le_bytes()).chain([0, 0]));
+        assert!(is_binary(&bytes) && !is_binary(&bytes[..133]) && !is_binary(text.as_bytes()));
+        assert_eq!(triangles(&bytes).unwrap(), row);
+        bytes[96..100].copy_from_slice(&f32::NAN.to_le_bytes());
+        assert_eq!(triangles(&bytes).unwrap_err().to_string(), "triangle 1 has a corner that is no number");
+        let message = |text: &str| facets(text).unwrap_err().to_string();
+        assert_eq!(message(&text.replace("vertex 0 0 0", "vertex 0 x 0")), "line 4: a vertex has three numbers");
+        assert_eq!(message(&text.replace("vertex 0 0 0", "")), "line 8: a facet has three vertices");
+        assert_eq!(message(text.split("endloop").next().unwrap()), "the text of the STL ends before its triangles do");
+    }
+}
