@@ -247,7 +247,8 @@ impl<const D: usize> Recorder<D> {
                 (self.lower + centre).as_slice().to_vec()
             }
             Quantity::AngularMomentum { .. } => {
-                vec![observe::angular_momentum(points, part, &-self.lower, halo)]
+                let about = observe::angular_momentum(points, part, &-self.lower, halo);
+                about[if D == 3 { 0 } else { 2 }..].to_vec()
             }
             Quantity::KineticEnergy { .. } => vec![observe::kinetic_energy(points, part, halo)],
             Quantity::MeanStress { .. } => shown::<D>(observe::mean_stress(points, part, halo)),

@@ -56,7 +56,7 @@ pub struct Case {
     /// Water that flows, if any does.
     pub flow: Option<Flow>,
     /// Motion of the ground, in whose frame the case is: s, increasing, and m/s2; empty without any.
-    pub shaking: Vec<(f64, [f64; 2])>,
+    pub shaking: Vec<(f64, [f64; 3])>,
     /// Supports of the grid's faces: per axis the lower and the upper one; a plane has free ones along its third.
     pub boundary: [[Support; 2]; 3],
     /// What those of them do that are in contact with the material.
@@ -171,8 +171,8 @@ pub struct Body {
     pub points_per_cell: usize,
     /// m/s  at the start; `None`: at rest
     pub velocity: Option<[f64; 3]>,
-    /// rad/s  rotation at the start, counter-clockwise, and about which place, m
-    pub spin: Option<(f64, [f64; 2])>,
+    /// rad/s  rotation at the start, along its axis, and about which place, m
+    pub spin: Option<[[f64; 3]; 2]>,
 }
 
 impl Body {

@@ -188,9 +188,11 @@ fn of_volume<'a, K: Kinematics<D>, const D: usize>(
 impl Body {
     /// m/s  what its spin makes of a place, m from the grid's lower corner.
     fn spun<const D: usize, const N: usize>(&self, case: &Case, x: [f64; N]) -> Vector<D> {
-        let Some((rate, about)) = self.spin else { return Vector::zeros() };
-        let about = case.grid.local(about);
-        vector([-rate * (x[1] - about[1]), rate * (x[0] - about[0])])
+        let Some([rate, about]) = self.spin else { return Vector::zeros() };
+        let lower = case.grid.lower();
+        let arm = |axis: usize| if axis < D { x[axis] - (about[axis] - lower[axis]) } else { 0.0 };
+        let turned = |[a, b]: [usize; 2]| rate[a] * arm(b) - rate[b] * arm(a);
+        vector([[1, 2], [2, 0], [0, 1]].map(turned))
     }
 
     /// kg/m3  at a place, m from the grid's lower corner.

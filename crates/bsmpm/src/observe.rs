@@ -123,15 +123,19 @@ pub fn mean_stress<const D: usize>(points: &Points<D>, part: &Part, halo: &dyn H
     std::array::from_fn(|k| if sums[6] > 0.0 { sums[k] / sums[6] } else { 0.0 })
 }
 
-/// Angular momentum of the points of a part, in the plane of the axes 0 and 1 about `place` (m, from the
-/// grid's lower corner): sum m (x v_y - y v_x), kg m2/s; zero in quasi-static scenes.
-pub fn angular_momentum<const D: usize>(points: &Points<D>, part: &Part, place: &Vector<D>, halo: &dyn Halo) -> f64 {
-    let Some(motion) = &points.motion else { return 0.0 };
-    let [sum] = total(points, part, halo, |p, _| {
-        let (arm, v) = (points.x[p] - place, motion.v[p]);
-        points.mass[p] * (arm[0] * v[1] - arm[1] * v[0])
-    });
-    sum
+/// Angular momentum of the points of a part about `place` (m, from the grid's lower corner): sum m (x - place) x v
+/// along the axes, in a plane along its normal alone, kg m2/s; zero in quasi-static scenes.
+pub fn angular_momentum<const D: usize>(
+    points: &Points<D>,
+    part: &Part,
+    place: &Vector<D>,
+    halo: &dyn Halo,
+) -> [f64; 3] {
+    let Some(motion) = &points.motion else { return [0.0; 3] };
+    total(points, part, halo, |p, k| {
+        let (arm, v, [a, b]) = (points.x[p] - place, motion.v[p], [[1, 2], [2, 0], [0, 1]][k]);
+        if a.max(b) < D { points.mass[p] * (arm[a] * v[b] - arm[b] * v[a]) } else { 0.0 }
+    })
 }
 
 /// Id of the point nearest to `at` (m, from the grid's lower corner) among those whose ids are `wanted`; of equally

@@ -32,11 +32,17 @@ const SHAPES: &[&str] = &["box", "polygon", "circle", "extrude", "sphere", "revo
 pub(super) const POLYGON: Kind = Rows(&[(In::Length, Range::ANY), (In::Length, Range::ANY)]);
 
 static SPIN: Table = Table {
-    header: "spin = { rate, about }",
+    header: "spin = { rate, about, axis }",
     doc: "Rotation at the start: v = velocity + rate x (x - about)",
     keys: &[
         key("rate", Quantity(In::Number, Range::ANY), Required, "rad/s, counter-clockwise"),
-        key("about", Pair(In::Length, Range::ANY), Required, "the place that it leaves at rest"),
+        key("about", Vector(In::Length, Range::ANY), Required, "a place that it leaves at rest"),
+        key(
+            "axis",
+            Vector(In::Number, Range::ANY),
+            Optional,
+            "of a solid: towards where it is seen to turn so; up unless given",
+        ),
     ],
     exclusive: &[],
 };

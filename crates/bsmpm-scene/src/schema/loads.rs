@@ -180,9 +180,9 @@ pub(super) static SHAKING: Table = Table {
           are those relative to the ground",
     keys: &[key(
         "acceleration",
-        Rows(&[(In::Time, Range::NOT_NEGATIVE), (In::Acceleration, Range::ANY), (In::Acceleration, Range::ANY)]),
+        Course(In::Acceleration),
         Required,
-        "rows [t, ax, ay], t increasing; linear between, from 0 at time 0, and 0 after the last",
+        "rows [t, ax, ay], of a solid [t, ax, ay, az], t increasing; linear between, from 0 at time 0, and 0 after the last",
     )],
     exclusive: &[],
 };

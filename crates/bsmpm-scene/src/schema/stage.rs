@@ -35,13 +35,15 @@ pub(super) static STAGE: Table = Table {
 };
 
 static FACES: Table = Table {
-    header: "boundary = { left, right, bottom, top }",
+    header: "boundary = { left, right, front, back, bottom, top }",
     doc: "Supports as in [boundary]: a gate that opens, a wall that is put up",
     keys: &[
         key("left", SUPPORT, Optional, "face at the lowest x"),
         key("right", SUPPORT, Optional, "face at the highest x"),
-        key("bottom", SUPPORT, Optional, "face at the lowest y"),
-        key("top", SUPPORT, Optional, "face at the highest y"),
+        key("front", SUPPORT, Optional, "of a solid, face at the lowest y"),
+        key("back", SUPPORT, Optional, "of a solid, face at the highest y"),
+        key("bottom", SUPPORT, Optional, "face at the lowest y, of a solid z"),
+        key("top", SUPPORT, Optional, "face at the highest y, of a solid z"),
     ],
     exclusive: &[],
 };

@@ -1,6 +1,7 @@
 //! Rows of numbers from text files beside the case: `{ file = "record.csv", along = "x" }` in the place of a list.
 
 use super::{MAX_BYTES, stl};
+use crate::words::{Geometry, Word};
 use std::io::{self, Error, ErrorKind, Read};
 use std::ops::Range;
 use std::path::Path;
@@ -20,6 +21,8 @@ struct Reference<'a> {
 /// Those of reading; [`ErrorKind::InvalidData`] where a file does not hold rows of numbers.
 pub(super) fn inlined(text: &str, folder: &Path) -> io::Result<String> {
     let (table, _) = DeTable::parse_recoverable(text);
+    let geometry = table.get_ref().get("geometry").and_then(|value| value.get_ref().as_str());
+    let axes = if geometry == Some(Geometry::Solid.word()) { ["x", "y", "z"].as_slice() } else { &["x", "y"] };
     let mut references = Vec::new();
     for value in table.get_ref().values() {
         collect(value, text, &mut references);
@@ -30,7 +33,7 @@ pub(super) fn inlined(text: &str, folder: &Path) -> io::Result<String> {
         let told = |error: Error| Error::new(error.kind(), format!("{file}: {error}"));
         whole.push_str(&text[from..span.start]);
         let bytes = read(&folder.join(file)).map_err(told)?;
-        let found = if stl::is_binary(&bytes) { stl::triangles(&bytes) } else { text_rows(bytes, along) };
+        let found = if stl::is_binary(&bytes) { stl::triangles(&bytes) } else { text_rows(bytes, (along, axes)) };
         whole.push_str(&found.map_err(told)?);
         from = span.end;
     }
@@ -38,8 +41,11 @@ pub(super) fn inlined(text: &str, folder: &Path) -> io::Result<String> {
     Ok(whole)
 }
 
+/// The axis that a file names, if it does, and those that the geometry has.
+type Along<'a> = (Option<&'a str>, &'a [&'a str]);
+
 /// Rows of whatever text holds them.
-fn text_rows(bytes: Vec<u8>, along: Option<&str>) -> io::Result<String> {
+fn text_rows(bytes: Vec<u8>, along: Along<'_>) -> io::Result<String> {
     let text = String::from_utf8(bytes).map_err(|_| Error::new(ErrorKind::InvalidData, "no UTF-8 text"))?;
     let begins = |word: &str| text.trim_start().get(..word.len()).is_some_and(|of| of.eq_ignore_ascii_case(word));
     match (begins("ncols"), begins("solid")) {
@@ -82,11 +88,11 @@ fn collect<'a>(value: &'a toml::Spanned<DeValue<'_>>, text: &str, references: &m
 }
 
 /// Rows as TOML: numbers, with the units of a header if there is one. Cells stand between commas, semicolons or blanks;
-/// `#` starts a comment. Rows of two, a time and a number `along` x or y, get a zero along the other.
-fn rows(text: &str, along: Option<&str>) -> io::Result<String> {
+/// `#` starts a comment. Rows of two, a time and a number `along` an axis, get zeros along the others.
+fn rows(text: &str, (along, axes): Along<'_>) -> io::Result<String> {
     let bad = |message: String| Error::new(ErrorKind::InvalidData, message);
-    if let Some(other) = along.filter(|along| !["x", "y"].contains(along)) {
-        return Err(bad(format!("along = \"{other}\"; allowed: \"x\", \"y\"")));
+    if let Some(other) = along.filter(|along| !axes.contains(along)) {
+        return Err(bad(format!("along = \"{other}\"; allowed: \"{}\"", axes.join("\", \""))));
     }
     if let Some(heading) = hidden(text) {
         return Err(bad(format!("`{heading}` looks like a heading with units behind a `#`; take the # away")));
@@ -116,10 +122,9 @@ fn rows(text: &str, along: Option<&str>) -> io::Result<String> {
                 _ => format!("{value:?}"),
             });
         }
-        match along {
-            Some("x") => row.push("0.0".to_owned()),
-            Some(_) => row.insert(1, "0.0".to_owned()),
-            None => {}
+        if let (Some(along), Some(number)) = (along, row.get(1).cloned()) {
+            row.truncate(1);
+            row.extend(axes.iter().map(|axis| if *axis == along { number.clone() } else { "0.0".to_owned() }));
         }
         whole.push_str(&format!("[{}],", row.join(",")));
     }
@@ -199,6 +204,8 @@ fn unit(heading: &str) -> Option<&str> {
 mod tests {
     use super::{grid, rows};
 
+    const PLANE: &[&str] = &["x", "y"];
+
     #[test]
     fn ascii_grids_are_rows_of_the_middles_of_their_cells() {
         let header = "ncols 2\nnrows 2\nxllcorner 10\nyllcorner 0\ncellsize 2\nNODATA_value -9999\n";
@@ -216,16 +223,17 @@ mod tests {
     fn units_comments_and_separators_are_read() {
         let plain = "[[0.0,1.5],[0.1,-2.0],]";
         for text in ["0 1.5\n0.1 -2\n", "# a record\n0,1.5\n\n.1, -2.0 # end\n", "\u{feff}0;1.5\r\n1e-1;-2\r\n"] {
-            assert_eq!(rows(text, None).unwrap(), plain);
+            assert_eq!(rows(text, (None, PLANE)).unwrap(), plain);
         }
-        let told = rows("t [s], a (cm/s2)\n0.02, 3\n", Some("x")).unwrap();
+        let told = rows("t [s], a (cm/s2)\n0.02, 3\n", (Some("x"), PLANE)).unwrap();
         assert_eq!(told, "[[\"0.02 s\",\"3.0 cm/s2\",0.0],]");
-        assert_eq!(rows("t a\n1 2", Some("y")).unwrap(), "[[1.0,0.0,2.0],]");
+        assert_eq!(rows("t a\n1 2", (Some("y"), PLANE)).unwrap(), "[[1.0,0.0,2.0],]");
+        assert_eq!(rows("1 2", (Some("y"), &["x", "y", "z"])).unwrap(), "[[1.0,0.0,2.0,0.0],]");
     }
 
     #[test]
     fn what_is_no_row_of_numbers_is_refused_with_its_line() {
-        let message = |text: &str, along| rows(text, along).unwrap_err().to_string();
+        let message = |text: &str, along| rows(text, (along, PLANE)).unwrap_err().to_string();
         assert_eq!(message("0,1\n2,x", None), "line 2: `x` is no number");
         assert_eq!(message("0,1\n2", None), "line 2 has 1 cells, not 2");
         assert_eq!(message("t, ax\n", None), "no row of numbers");

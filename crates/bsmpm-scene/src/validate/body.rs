@@ -8,6 +8,7 @@ use crate::nearest::hint;
 use crate::record::Record;
 use crate::region::{self, Region, Volume, Window};
 use crate::report::{Report, shortened};
+use crate::words::Geometry;
 use bsmpm::model::Regime;
 
 /// Bodies at most; every pair is tried for overlap.
@@ -40,6 +41,19 @@ pub(super) fn read_all(
     Some(bodies)
 }
 
+/// rad/s along the axis, and the place about which, m.
+fn turning(spin: &Record, geometry: Geometry, report: &mut Report<'_>) -> Option<[[f64; 3]; 2]> {
+    let (rate, about) = (spin.number("rate")?, spin.vector("about")?);
+    let axis = if spin.gives("axis") { spin.vector("axis")? } else { [0.0, 0.0, 1.0] };
+    let length = axis.iter().map(|along| along * along).sum::<f64>().sqrt();
+    if spin.gives("axis") && (geometry != Geometry::Solid || length == 0.0) {
+        let message = if length == 0.0 { "has no direction" } else { "is of a solid: a plane turns about its normal" };
+        spin.error("axis", message, report);
+        return None;
+    }
+    Some([axis.map(|along| rate * along / length), about])
+}
+
 fn read(
     record: &Record,
     root: &Record,
@@ -67,7 +81,7 @@ fn read(
     let region = shape::region((record, root.word("geometry")?), (grid, points_per_cell), report);
     let velocity = record.vector("velocity");
     let spin = match record.record("spin") {
-        Some(spin) => Some((spin.number("rate")?, spin.pair("about")?)),
+        Some(spin) => Some(turning(spin, root.word("geometry")?, report)?),
         None => None,
     };
     let name = record.text("name").map(str::to_owned);

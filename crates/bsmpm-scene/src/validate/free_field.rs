@@ -18,7 +18,7 @@ pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
             refuse("the free field is that beside the ground: for \"left\" and \"right\" only".into());
             continue;
         }
-        if case.shaking.iter().all(|(_, ground)| *ground == [0.0; 2]) {
+        if case.shaking.iter().all(|(_, ground)| *ground == [0.0; 3]) {
             refuse("nothing moves the free field: give [shaking], or use \"absorbing\"".into());
         }
         if !matches!(case.boundary[1][0], Support::Fixed | Support::Absorbing) || case.boundary[1][1] != Support::Free {

@@ -254,7 +254,7 @@ pub(super) fn shaking(
     root: &Record,
     (regime, times): (Option<Regime>, Option<(f64, f64)>),
     report: &mut Report<'_>,
-) -> Vec<(f64, [f64; 2])> {
+) -> Vec<(f64, [f64; 3])> {
     const KEY: &str = "acceleration";
     let Some(record) = root.record("shaking") else { return Vec::new() };
     if regime == Some(Regime::QuasiStatic) {
@@ -263,8 +263,9 @@ pub(super) fn shaking(
         report.error(record.origin, &record.path, message);
     }
     let Some(rows) = increasing(record, KEY, report) else { return Vec::new() };
-    let rows: Vec<(f64, [f64; 2])> = rows.map(|row| (row[0], [row[1], row[2]])).collect();
-    if rows.iter().all(|(_, ground)| *ground == [0.0; 2]) {
+    let along = |row: &[f64], axis: usize| row.get(1 + axis).copied().unwrap_or(0.0);
+    let rows: Vec<(f64, [f64; 3])> = rows.map(|row| (row[0], [0, 1, 2].map(|axis| along(row, axis)))).collect();
+    if rows.iter().all(|(_, ground)| *ground == [0.0; 3]) {
         record.error(KEY, "the ground rests; leave [shaking] out", report);
         return Vec::new();
     }

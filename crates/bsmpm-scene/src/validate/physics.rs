@@ -121,7 +121,7 @@ fn absorbed(case: &Case, record: &Record, report: &mut Report<'_>) {
             );
         }
         let absorbs = case.boundary[axis][upper] == Support::Absorbing;
-        if absorbs && axis == 0 && case.shaking.iter().any(|(_, ground)| *ground != [0.0; 2]) {
+        if absorbs && axis == 0 && case.shaking.iter().any(|(_, ground)| *ground != [0.0; 3]) {
             refuse(
                 "beside ground that shakes, what comes to a side is not known without the motion of the free field there: \
                     use \"free-field\", or \"roller\" far enough away; \"bottom\" may absorb",
@@ -132,7 +132,7 @@ fn absorbed(case: &Case, record: &Record, report: &mut Report<'_>) {
 
 /// Bodies that do not go along with the ground drift away in its frame.
 fn shaken(case: &Case, report: &mut Report<'_>) {
-    for (component, name) in ["x", "y"].into_iter().enumerate() {
+    for (component, name) in ["x", "y", "z"].into_iter().enumerate() {
         if case.shaking.iter().any(|(_, ground)| ground[component] != 0.0) && !holds(case, component) {
             report.warn(format!(
                 "shaking: the ground moves along {name}, and nothing holds the bodies along {name}: they do not go with it"

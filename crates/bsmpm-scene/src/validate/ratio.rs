@@ -39,7 +39,7 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
                        with those";
         material.error(KEY, message, report);
     }
-    if case.shaking.iter().any(|(_, ground)| *ground != [0.0; 2]) {
+    if case.shaking.iter().any(|(_, ground)| *ground != [0.0; 3]) {
         material.error(KEY, "it does not follow ground that shakes: it cannot be used with [shaking]", report);
     }
     for (side, support) in Side::of(case.geometry).iter().flatten().zip(case.boundary.into_iter().flatten()) {

@@ -1,6 +1,6 @@
 //! What has no meaning in three dimensions yet, and what has none in a plane.
 
-use crate::case::{Body, Case, Support};
+use crate::case::{Body, Case, FaceSupport, Support};
 use crate::record::Record;
 use crate::report::Report;
 use crate::words::{Geometry, Measurement, Side, Word};
@@ -9,21 +9,17 @@ use bsmpm::stabilisation::Stabilisation;
 /// Tables and keys that only a plane knows, with what to do instead.
 const IN_A_PLANE: &[(&str, &str)] = &[
     ("inflow", "give a head or a pressure at a face of the grid by [[drain]]"),
-    ("shaking", "use plane strain"),
     ("rigid", "use plane strain"),
-    ("stage", "write a case for every stage, or use plane strain"),
     ("profile", "use histories at places, or frames"),
 ];
 
 /// Quantities of histories that only a plane knows.
 const QUANTITIES: &[Measurement] = &[
     Measurement::Front,
-    Measurement::AngularMomentum,
     Measurement::SectionForces,
     Measurement::Moment,
     Measurement::StressNoise,
     Measurement::PressureNoise,
-    Measurement::Outflow,
 ];
 
 /// Unknowns beyond which a factor is told to be large: its fronts are planes of nodes.
@@ -60,9 +56,6 @@ pub(super) fn refuse(root: &Record, report: &mut Report<'_>) {
             strip.error(key, "is in a plane; a solid has plates: rectangle = { lower, upper }, or disc", report);
         }
     }
-    for body in root.records("body").iter().filter(|body| body.gives("spin")) {
-        body.error("spin", "not available in a solid yet: give velocity", report);
-    }
     for history in root.records("history") {
         if let Some(quantity) = history.word::<Measurement>("quantity").filter(|of| QUANTITIES.contains(of)) {
             history.error("quantity", format!("\"{quantity}\" is not available in a solid yet: use frames"), report);
@@ -81,7 +74,8 @@ fn in_space(root: &Record, report: &mut Report<'_>) {
             flat.error(key, "is in space: geometry = \"solid\" has it; here from and to", report);
         }
     }
-    if let Some(boundary) = root.record("boundary") {
+    let stages = root.records("stage").iter().filter_map(|stage| stage.record("boundary"));
+    for boundary in root.record("boundary").into_iter().chain(stages) {
         for side in [Side::Front, Side::Back].into_iter().filter(|side| boundary.gives(side.word())) {
             boundary.error(side.word(), "a plane has no such face: geometry = \"solid\" has", report);
         }
@@ -94,28 +88,35 @@ fn in_space(root: &Record, report: &mut Report<'_>) {
     }
 }
 
+/// Errors about what the faces of a solid do, of which a table says some.
+fn faces(all: &[FaceSupport], boundary: &Record, report: &mut Report<'_>) {
+    let side = |of: &FaceSupport| of.face.side(Geometry::Solid);
+    for of in all.iter().filter(|of| boundary.gives(side(of).word())) {
+        if !matches!(of.support, Support::Fixed | Support::Roller | Support::Free | Support::Contact | Support::Outflow)
+        {
+            let message = "not available in a solid yet: \"fixed\", \"roller\", \"free\", \"outflow\", \"contact\" or { friction }";
+            boundary.error(side(of).word(), message, report);
+        }
+    }
+    let rubbing = || all.iter().filter(|of| of.contact.is_some_and(|contact| contact.friction > 0.0));
+    let meets = |of: &&FaceSupport| rubbing().any(|other| other.face.axis != of.face.axis);
+    if let Some(of) = rubbing().filter(|of| boundary.gives(side(of).word())).rfind(meets) {
+        let message = "friction on two faces that share an edge is not available in a solid yet: one of them may rub, and \
+                       the other be \"contact\" or \"roller\"";
+        boundary.error(side(of).word(), message, report);
+    }
+}
+
 /// Errors and warnings about a whole case in three dimensions.
 pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
     if case.geometry != Geometry::Solid {
         return;
     }
-    let Some(boundary) = root.record("boundary") else { return };
-    for (axis, sides) in Side::OF_SOLID.iter().enumerate() {
-        for (side, support) in sides.iter().zip(case.boundary[axis]) {
-            if !matches!(support, Support::Fixed | Support::Roller | Support::Free | Support::Contact) {
-                let message =
-                    "not available in a solid yet: \"fixed\", \"roller\", \"free\", \"contact\" or { friction }";
-                boundary.error(side.word(), message, report);
-            }
-        }
-    }
-    let rubs = |axis: usize| case.contacts[axis].iter().flatten().any(|contact| contact.friction > 0.0);
-    if let Some(side) = (1..3).filter(|&axis| rubs(axis) && (0..axis).any(rubs)).find_map(|axis| {
-        (0..2).find(|&side| case.contacts[axis][side].is_some()).map(|side| Side::OF_SOLID[axis][side])
-    }) {
-        let message = "friction on two faces that share an edge is not available in a solid yet: one of them may rub, and \
-                       the other be \"contact\" or \"roller\"";
-        boundary.error(side.word(), message, report);
+    let stages = root.records("stage").iter().map(|stage| stage.record("boundary"));
+    let times = std::iter::once(0.0).chain(case.stages.iter().map(|stage| stage.at));
+    let tables = std::iter::once(root.record("boundary")).chain(stages);
+    for (t, boundary) in times.zip(tables).filter_map(|(t, table)| Some((t, table?))) {
+        faces(&case.faces_at(t), boundary, report);
     }
     if matches!(case.stabilisation, Stabilisation::SubgridFBar | Stabilisation::ModifiedFBar) {
         let key = root.record("stabilisation");

@@ -1,7 +1,7 @@
 //! Stages: times that follow each other, bodies that can be removed and placed then, and what must not lose its body.
 
-use super::{place, reduction, strip};
-use crate::case::{Acting, Body, Case, Face, FaceSupport, LoadedLine, Quantity, Stage, Support};
+use super::{place, reduction, site, strip};
+use crate::case::{Acting, Body, Case, Face, FaceSupport, LoadedLine, Quantity, Site, Stage, Support};
 use crate::nearest::hint;
 use crate::record::Record;
 use crate::report::{Report, shortened};
@@ -123,16 +123,11 @@ fn named<T: Copy>(
     found.into_iter().collect()
 }
 
-/// A place in the plane.
-fn flat([x, y, _]: [f64; 3]) -> [f64; 2] {
-    [x, y]
-}
-
 /// The faces of the grid that a stage changes.
 fn faces((record, factor): (&Record, Option<f64>), root: &Record, report: &mut Report<'_>) -> Option<Vec<FaceSupport>> {
     let Some(boundary) = record.record("boundary") else { return Some(Vec::new()) };
     let mut found = Vec::new();
-    let axes = Side::ALL.iter().enumerate();
+    let axes = Side::of(root.word("geometry")?).iter().enumerate();
     let sides = axes.flat_map(|(axis, sides)| [(sides[0], axis, false), (sides[1], axis, true)]);
     for (side, axis, upper) in sides.filter(|(side, ..)| boundary.gives(side.word())) {
         let (support, contact) = (super::support(boundary, side)?, super::contact(boundary, side, factor, report)?);
@@ -272,10 +267,12 @@ pub(super) fn check(case: &mut Case, root: &Record, report: &mut Report<'_>) {
     let lasting = of(&|body| case.lasts(body));
     follow(case, &lasting);
     for (record, key, places) in surfaces(case, root) {
-        let at = |bodies: &[Body], place: &[f64; 2]| place::at_body(bodies, &case.grid, *place);
+        let at = |bodies: &[Body], place: &[f64; 3]| place::is_at(bodies, &case.grid, *place);
         if let Some(at) = places.into_iter().find(|place| at(&case.bodies, place) && !at(&lasting, place)) {
-            let message =
-                format!("at {at:?} there is no body from the start to the end: stages add or remove what it is on");
+            let message = format!(
+                "at {:?} there is no body from the start to the end: stages add or remove what it is on",
+                &at[..case.grid.dims()]
+            );
             record.error(key, message, report);
         }
     }
@@ -316,8 +313,8 @@ fn follow(case: &mut Case, lasting: &[Body]) {
             | Quantity::PorePressure { at }
             | Quantity::Velocity { at, .. }
             | Quantity::Stress { at, .. } => {
-                history.lasts = place::at_body(lasting, &case.grid, flat(at));
-                places.extend((!place::at_body(&first, &case.grid, flat(at))).then_some((number, at)));
+                history.lasts = place::is_at(lasting, &case.grid, at);
+                places.extend((!place::is_at(&first, &case.grid, at)).then_some((number, at)));
             }
             _ => {}
         }
@@ -325,7 +322,7 @@ fn follow(case: &mut Case, lasting: &[Body]) {
     for stage in &mut case.stages {
         let placed: Vec<Body> = stage.add.iter().map(|&body| case.bodies[body].clone()).collect();
         places.retain(|&(number, at)| {
-            let comes = place::at_body(&placed, &case.grid, flat(at));
+            let comes = place::is_at(&placed, &case.grid, at);
             stage.follows.extend(comes.then_some(number));
             !comes
         });
@@ -333,24 +330,29 @@ fn follow(case: &mut Case, lasting: &[Body]) {
 }
 
 /// Records of strips and loads, the key of their place, and places along them.
-fn surfaces<'a>(case: &Case, root: &'a Record) -> Vec<(&'a Record, &'static str, Vec<[f64; 2]>)> {
+fn surfaces<'a>(case: &Case, root: &'a Record) -> Vec<(&'a Record, &'static str, Vec<[f64; 3]>)> {
     let mut found = Vec::new();
-    let line = |ends| place::along(ends).collect::<Vec<_>>();
-    if let (Some(footing), Some(record)) = (&case.footing, root.record("footing")) {
-        footing.site.ends().into_iter().for_each(|ends| found.push((record, "from", line(ends))));
-    }
-    for (prescribed, record) in case.prescribed.iter().zip(root.records("prescribed")) {
-        prescribed.site.ends().into_iter().for_each(|ends| found.push((record, "from", line(ends))));
+    let held = case.footing.iter().map(|footing| footing.site);
+    let held = held.chain(case.prescribed.iter().map(|prescribed| prescribed.site));
+    let strips = root.records("footing").iter().chain(root.records("prescribed"));
+    for (site, record) in held.zip(strips).filter(|(site, _)| !matches!(site, Site::Face(_))) {
+        found.push((record, key(record), site::places(site, &case.grid)));
     }
     for (traction, record) in case.tractions.iter().zip(root.records("traction")) {
-        found.push(match traction.line {
-            LoadedLine::Segment { from, to } => (record, "from", line([from, to])),
-            LoadedLine::Circle { center, radius } => (record, "circle", place::ring(center, radius).collect()),
-            LoadedLine::Plate(_) => continue,
-        });
+        let places = match traction.line {
+            LoadedLine::Segment { from, to } => site::places(Site::Segment { from, to }, &case.grid),
+            LoadedLine::Circle { center, radius } => place::ring(center, radius).map(|[x, y]| [x, y, 0.0]).collect(),
+            LoadedLine::Plate(plate) => site::places(Site::Plate(plate), &case.grid),
+        };
+        found.push((record, key(record), places));
     }
-    for (load, record) in case.point_loads.iter().zip(root.records("point_load")) {
-        found.push((record, "at", vec![[load.at[0], load.at[1]]]));
-    }
+    found.extend(
+        case.point_loads.iter().zip(root.records("point_load")).map(|(of, record)| (record, "at", vec![of.at])),
+    );
     found
+}
+
+/// The key that gives a strip's or a load's place.
+fn key(record: &Record) -> &'static str {
+    ["rectangle", "disc", "circle"].into_iter().find(|key| record.gives(key)).unwrap_or("from")
 }

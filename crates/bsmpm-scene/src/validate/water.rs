@@ -98,7 +98,7 @@ fn table(record: &Record, (grid, end): (&GridSpec, Option<f64>), report: &mut Re
 /// What only the whole case shows.
 pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
     let (Some(water), Some(written)) = (&case.water, record.record("water")) else { return };
-    if case.shaking.iter().any(|(_, ground)| *ground != [0.0; 2]) {
+    if case.shaking.iter().any(|(_, ground)| *ground != [0.0; 3]) {
         let message =
             "the pressure of still water does not follow ground that shakes: [shaking] cannot be used with [water]";
         report.error(written.origin, &written.path, message);

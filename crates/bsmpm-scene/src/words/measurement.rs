@@ -203,6 +203,7 @@ impl Measurement {
     pub fn columns_in(self, dims: usize) -> &'static [(&'static str, &'static str)] {
         match (dims, self) {
             (3, Self::Stress | Self::MeanStress) => STRESS_IN_SPACE,
+            (3, Self::AngularMomentum) => VECTOR_IN_SPACE,
             (3, of) if of.columns() == VECTOR => VECTOR_IN_SPACE,
             (_, of) => of.columns(),
         }

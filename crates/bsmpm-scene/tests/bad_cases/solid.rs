@@ -63,20 +63,22 @@ pub const SOLID: &[Row] = &[
         "history.1.quantity",
         "not available in a solid",
     ),
-    row(
-        "order = \"quadratic\"\n",
-        "order = \"quadratic\"\n\n[shaking]\nacceleration = [[0, 0, 0]]\n",
-        "shaking",
-        "use plane strain",
-    )
-    .down(2),
+    row("[0.5, 0.0, 1.0, 0.0]", "[0.5, 0.0, 1.0]", "shaking.acceleration", "found a list of 3"),
     row(
         "[gravity]",
         "[[rigid]]\nname = \"a\"\ncircle = { center = [3, 2], radius = 0.5 }\n[gravity]",
         "rigid",
         "not available",
     ),
-    row("[gravity]", "[[stage]]\nat = 0.5\nremove = [\"block\"]\n[gravity]", "stage", "a case for every stage"),
+    row("release  = [\"plate\"]", "remove = [\"block\"]", "footing.rectangle", "no body from the start to the end")
+        .up(23),
+    row("back = \"contact\" }", "back = \"absorbing\" }", "stage.0.boundary.back", "only from the start on"),
+    row(
+        "front = \"roller\"",
+        "front = { friction = 1 }, bottom = { friction = 1 }",
+        "stage.0.boundary.bottom",
+        "an edge",
+    ),
     row("[gravity]", "[water]\nlevel = 0.0\n[gravity]", "water.level", "lower face, z = 0").down(1),
     row(
         "[0.0, 0.0, -9.81]",
@@ -138,12 +140,8 @@ pub const SOLID: &[Row] = &[
         "one value",
     ),
     row("density = 2000", "density = 2000\nru = 1.2", "material.soil.ru", "allowed: 0 < ru < 1").down(1),
-    row(
-        "velocity = [0.0, 0.0, -1.0]",
-        "spin = { rate = 1, about = [0, 0] }",
-        "body.0.spin",
-        "not available in a solid yet",
-    ),
+    row("velocity = [0.0, 0.0, -1.0]", "spin = { rate = 1, about = [0, 0] }", "body.0.spin.about", "solid: of three"),
+    row("axis = [0.0, 1.0, 1.0]", "axis = [0, 0, 0]", "body.2.spin.axis", "has no direction"),
     row("geometry = \"solid\"", "geometry = \"solid\"\naccuracy = \"draft\"", "accuracy", "give cells").down(1),
     row("cell  = [0.5, 1.0, 0.5]", "knots = { x = [0, 2, 4], y = [0, 3] }", "grid.knots.z", "has breakpoints along z"),
 ];

@@ -7,7 +7,7 @@ use crate::support::results::{agree, at, history, manifest, steps};
 use std::f64::consts::PI;
 
 /// Cohesive sand that slumps in plane strain.
-const PLANE: &str = r#"
+pub const PLANE: &str = r#"
 geometry = "plane-strain"
 [analysis]
 type = "dynamic"
@@ -50,7 +50,7 @@ at = [0.5, 0.25]
 "#;
 
 /// The same, one cell thick, between rollers.
-fn slice() -> String {
+pub fn slice() -> String {
     let mut slice = PLANE.to_owned();
     for (plane, solid) in [
         ("geometry = \"plane-strain\"", "geometry = \"solid\""),

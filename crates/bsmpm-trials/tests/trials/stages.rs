@@ -124,7 +124,7 @@ const PRESSURE: f64 = 1e4;
 
 /// A weightless column that a load compresses, a prop then holds while it stiffens to twice its modulus, and both let
 /// go of again.
-const SWITCHED: &str = r#"
+pub const SWITCHED: &str = r#"
 geometry = "plane-strain"
 [analysis]
 type = "quasi-static"
@@ -222,7 +222,7 @@ fn loads_props_and_laws_act_while_stages_say_so_and_runs_go_on_to_the_bit() {
 
 /// The whole run on one and three ranks, to 1e-8 of the largest number of a column, and each in parts that end after so
 /// many steps, to the bit.
-fn repeats(scratch: &Scratch, columns: &[&str], stops: &[&str]) {
+pub fn repeats(scratch: &Scratch, columns: &[&str], stops: &[&str]) {
     let told = manifest(&scratch.path("whole")).stages;
     for ranks in [1, 3] {
         scratch.goes_on(ranks, stops);

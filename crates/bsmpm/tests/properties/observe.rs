@@ -92,7 +92,7 @@ fn totals_are_those_of_a_material_or_of_all() {
     let (points, halo) = (&scene.points, scene.halo());
     let of = |part: &Part| {
         let middle = centre_of_mass(points, part, &halo).unwrap();
-        let (p, spin) = (momentum(points, part, &halo), angular_momentum(points, part, &middle, &halo));
+        let (p, spin) = (momentum(points, part, &halo), angular_momentum(points, part, &middle, &halo)[2]);
         (mass(points, part, &halo), middle, p, spin)
     };
     // A rectangle of a x b cells of points has m (a^2 + b^2 - 2/n^2)/12 about its middle, its points at theirs.
@@ -114,7 +114,7 @@ fn totals_are_those_of_a_material_or_of_all() {
         close((p - Vector::from([2.0 * m, 3.0 * (x - 1.5) * m])).norm(), 0.0);
         close(spin, 3.0 * inertia(m, a, 2.0));
         // About another place the momentum has an arm.
-        let about = angular_momentum(points, part, &center, &halo);
+        let about = angular_momentum(points, part, &center, &halo)[2];
         close(about, spin + (middle - center).perp(&p));
         // By Koenig, with the rotation of 3 rad/s about the middle.
         close(kinetic_energy(points, part, &halo), 0.5 * (p.norm_squared() / m + 3.0 * spin));

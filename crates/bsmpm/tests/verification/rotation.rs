@@ -29,10 +29,10 @@ fn lost(mass: MassMatrix, cells: usize, steps: usize) -> [f64; 3] {
         let stored = Stored::of(&model, points, &halo);
         stored.kinetic + stored.elastic
     };
-    let start = [observe::angular_momentum(&scene.points, &Part::Whole, &centre, &halo), energy(&scene.points)];
+    let start = [observe::angular_momentum(&scene.points, &Part::Whole, &centre, &halo)[2], energy(&scene.points)];
     let end = 0.25 * TAU;
     scene.march(end / steps as f64, end, |_, _| ());
-    let now = [observe::angular_momentum(&scene.points, &Part::Whole, &centre, &halo), energy(&scene.points)];
+    let now = [observe::angular_momentum(&scene.points, &Part::Whole, &centre, &halo)[2], energy(&scene.points)];
     [1.0 - now[0] / start[0], 1.0 - now[1] / start[1], observe::momentum(&scene.points, &Part::Whole, &halo).norm()]
 }
 
