@@ -22,6 +22,8 @@ pub(crate) use solid::{Section, SolidShape};
 pub(crate) use surface::Surface;
 pub(crate) use sweep::{Window, solid, sweep};
 
+pub(crate) use volume::bounds as solid_bounds;
+
 pub use volume::Volume;
 
 use crate::grid::{GridAxis, GridSpec};

@@ -19,6 +19,7 @@ mod curves;
 mod field;
 mod rigid;
 mod section;
+mod space;
 mod surface;
 
 pub use field::FieldName;
@@ -92,11 +93,15 @@ fn pictures(arguments: &PlotArguments) -> Result<(RunRecord, Vec<String>), Error
     let reference = arguments.reference.as_deref().map(reference::columns).transpose()?;
     let frames = record.frames(&arguments.times)?;
     let mut names = above::draw(&record, &frames)?;
+    // Given ends of the colours are those of the first field.
+    let ranges = [arguments.range].into_iter().chain(std::iter::repeat(None));
+    let coloured: Vec<_> = fields(&record, &frames, arguments.field).into_iter().zip(ranges).collect();
+    for &(field, range) in &coloured {
+        names.extend(space::draw(&record, &frames, field, range)?);
+    }
     let (frames, section) = section::of(&record, frames);
     if !frames.is_empty() {
-        // Given ends of the colours are those of the first field.
-        let ranges = [arguments.range].into_iter().chain(std::iter::repeat(None));
-        for (field, range) in fields(&record, &frames, arguments.field).into_iter().zip(ranges) {
+        for (field, range) in coloured {
             names.extend(body::draw(&record, &frames, field, (range, section))?);
         }
         if has_surface(&record, reference.as_ref()) {

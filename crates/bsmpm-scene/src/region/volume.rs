@@ -14,6 +14,7 @@ pub struct Volume {
     origin: [f64; 3], // m  the grid's lower corner, from which shapes are measured
     whole: SolidShape,
     cut: Vec<SolidShape>,
+    bounds: [[f64; 3]; 2], // m  lower and upper corner of the cuboid around it
     filling: Filling,
     volume: f64, // m³
     tally: SlabTally,
@@ -48,9 +49,10 @@ impl Volume {
     /// a cell. Says in words what makes it too costly.
     pub(crate) fn new(whole: SolidShape, cut: Vec<SolidShape>, axes: &[GridAxis], n: usize) -> Result<Self, String> {
         let origin = [0, 1, 2].map(|axis| axes[axis].lower());
-        let filling = Filling::of(&whole, &cut, axes, n)?;
+        let bounds = bounds(&whole, &cut);
+        let filling = Filling::of((&whole, &cut, bounds), axes, n)?;
         let volume = whole.volume();
-        let mut made = Self { origin, whole, cut, filling, volume, tally: SlabTally::default() };
+        let mut made = Self { origin, whole, cut, bounds, filling, volume, tally: SlabTally::default() };
         made.count(axes, n);
         let unseen = made.cut.is_empty() && made.tally.cells == 0 && volume > 0.0;
         // A factor below zero: cells that seem whole hold more than the body.
@@ -64,10 +66,10 @@ impl Volume {
         Ok(made)
     }
 
-    /// Lower and upper corner of the smallest cuboid around it, m, in the case's coordinates; around the whole shape
-    /// where something is cut out.
+    /// Lower and upper corner of a cuboid around it, m, in the case's coordinates: around the whole shape but for what
+    /// cuboids cut off.
     pub fn bounds(&self) -> [[f64; 3]; 2] {
-        self.whole.bounds().map(|corner| [0, 1, 2].map(|axis| corner[axis] + self.origin[axis]))
+        self.bounds.map(|corner| [0, 1, 2].map(|axis| corner[axis] + self.origin[axis]))
     }
 
     /// Its volume, m³: that of its points.
@@ -129,7 +131,7 @@ impl Volume {
     }
 
     fn slab_of_box(&self, axes: &[GridAxis], n: usize, i: usize) -> Vec<CellPlace<3>> {
-        let [lower, upper] = self.whole.bounds();
+        let [lower, upper] = self.bounds;
         let extents = [0, 1, 2].map(|axis| Extent::between(&axes[axis], [lower[axis], upper[axis]]));
         if !extents[0].cells.contains(&i) {
             return Vec::new();
@@ -150,7 +152,7 @@ impl Volume {
 
     /// Cells of slab `i`, each with its number along axis 1.
     fn lattice_slab(&self, axes: &[GridAxis], n: usize, i: usize) -> Vec<(usize, lattice::LatticeCell)> {
-        let [lower, upper] = self.whole.bounds();
+        let [lower, upper] = self.bounds;
         let sides = |axis: usize, cell: usize| [axes[axis].breakpoint(cell), axes[axis].breakpoint(cell + 1)];
         let ends = [0, 1].map(|axis| {
             let shapes = std::iter::once(&self.whole).chain(&self.cut);
@@ -165,7 +167,7 @@ impl Volume {
     }
 
     fn count(&mut self, axes: &[GridAxis], n: usize) {
-        let [lower, upper] = self.whole.bounds();
+        let [lower, upper] = self.bounds;
         let extent = |axis: usize| Extent::between(&axes[axis], [lower[axis], upper[axis]]).cells;
         match &self.filling {
             Filling::Box => {
@@ -184,7 +186,7 @@ impl Volume {
 
     /// Counts, and scales the cells that are cut where the volume is known.
     fn count_lattice(&mut self, axes: &[GridAxis], n: usize) {
-        let [lower, upper] = self.whole.bounds();
+        let [lower, upper] = self.bounds;
         let (mut tally, mut total, mut sums) = (SlabTally::default(), 0_u64, [0.0; 2]);
         for i in reached(&axes[0], [lower[0], upper[0]]) {
             let cells = self.lattice_slab(axes, n, i);
@@ -218,22 +220,27 @@ impl Volume {
 }
 
 impl Filling {
-    fn of(whole: &SolidShape, cut: &[SolidShape], axes: &[GridAxis], n: usize) -> Result<Self, String> {
+    fn of(
+        (whole, cut, bounds): (&SolidShape, &[SolidShape], [[f64; 3]; 2]),
+        axes: &[GridAxis],
+        n: usize,
+    ) -> Result<Self, String> {
         if cut.is_empty() && matches!(whole, SolidShape::Box { .. }) {
             return Ok(Self::Box);
         }
         let prism = (0..3).find_map(|along| Some((along, through(whole, cut, along)?)));
-        if let Some((along, (edges, ends))) = prism {
+        if let Some((along, (edges, _))) = prism {
             let [across, up] = plane(along);
             let plane =
                 GridSpec { axes: vec![axes[across].clone(), axes[up].clone()], order: 1, lines: Default::default() };
             let Some((section, _)) = whole.along(along) else { return Err("no prism".to_owned()) };
             let lower = plane.lower();
-            let bounds = section.bounds.map(|corner| [0, 1].map(|axis| corner[axis] + lower[axis]));
+            let ends = bounds.map(|corner| corner[along]);
+            let bounds = bounds.map(|corner| [corner[across] + lower[0], corner[up] + lower[1]]);
             let outline = Outline::new(edges, 1 + cut.len(), (bounds, section.area), (&plane, n))?;
             return Ok(Self::Prism { outline: Box::new(outline), plane, along, ends });
         }
-        let [lower, upper] = whole.bounds();
+        let [lower, upper] = bounds;
         let columns = (0..2).map(|axis| reached(&axes[axis], [lower[axis], upper[axis]]).len() as u128);
         let lines = columns.product::<u128>() * (n * n * (1 + LINES * LINES)) as u128;
         let rows = reached(&axes[2], [lower[2], upper[2]]).len() * n;
@@ -244,6 +251,31 @@ impl Filling {
         }
         Ok(Self::Lattice { scale: 1.0 })
     }
+}
+
+/// Lower and upper corner of the cuboid around a shape of which cuboids may cut off sides as a whole: a quarter of a
+/// cylinder between planes of symmetry.
+pub(crate) fn bounds(whole: &SolidShape, cut: &[SolidShape]) -> [[f64; 3]; 2] {
+    let [mut lower, mut upper] = whole.bounds();
+    for _ in cut {
+        for shape in cut {
+            let SolidShape::Box { corners: [from, to] } = shape else { continue };
+            let covers =
+                |axis: usize, lower: &[f64; 3], upper: &[f64; 3]| from[axis] <= lower[axis] && upper[axis] <= to[axis];
+            for axis in 0..3 {
+                if (0..3).any(|other| other != axis && !covers(other, &lower, &upper)) {
+                    continue;
+                }
+                if from[axis] <= lower[axis] && lower[axis] < to[axis] {
+                    lower[axis] = to[axis].min(upper[axis]);
+                }
+                if to[axis] >= upper[axis] && upper[axis] > from[axis] {
+                    upper[axis] = from[axis].max(lower[axis]);
+                }
+            }
+        }
+    }
+    [lower, upper]
 }
 
 /// Edges that a vertical line is held against.

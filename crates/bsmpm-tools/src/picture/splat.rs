@@ -111,7 +111,7 @@ pub(crate) fn draw(
 }
 
 /// The middle one of the sizes.
-fn median(sizes: &[f64]) -> f64 {
+pub(crate) fn median(sizes: &[f64]) -> f64 {
     let mut sorted = sizes.to_vec();
     sorted.sort_unstable_by(f64::total_cmp);
     sorted.get(sorted.len() / 2).copied().unwrap_or(0.0)

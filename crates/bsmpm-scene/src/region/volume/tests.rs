@@ -113,6 +113,29 @@ fn a_cavity_is_cut_out_to_a_thousandth() {
     assert!(off(volume.volume(), total(&found)) < 1e-13);
 }
 
+/// Parts beyond planes of symmetry may lie outside the grid.
+#[test]
+fn quarters_and_eighths_are_what_cuboids_leave() {
+    let beyond = |axis: usize| {
+        let mut upper = [9.0; 3];
+        upper[axis] = 0.0;
+        SolidShape::Box { corners: [[-9.0; 3], upper] }
+    };
+    let round = SolidShape::Prism { outline: Section::circle([0.0; 2], 1.3), along: 2, ends: [0.0, 2.0] };
+    let (found, volume) = points(round, vec![beyond(0), beyond(1)], 2);
+    assert!(off(total(&found), 0.25 * PI * 1.69 * 2.0) < 1e-12);
+    assert_eq!(volume.bounds(), [[-3.0, -1.0, 0.0], [-1.7, 0.30000000000000004, 2.0]]);
+    let sphere = SolidShape::Sphere { center: [0.0; 3], radius: 1.2 };
+    let (found, volume) = points(sphere, (0..3).map(beyond).collect(), 2);
+    assert!(
+        off(total(&found), PI / 6.0 * 1.2_f64.powi(3)) < 2e-3,
+        "{}",
+        off(total(&found), PI / 6.0 * 1.2_f64.powi(3))
+    );
+    assert_eq!(volume.bounds()[0], [-3.0, -1.0, 0.0]);
+    assert!(found.iter().all(|at| at.x.iter().all(|x| *x > 0.0)));
+}
+
 /// Factors of pipes with a wall of this thickness, in cells, at 20 places, each of a size of its own.
 fn scales_of_pipes(wall: f64, n: usize) -> Vec<Result<f64, String>> {
     let axes = vec![GridAxis::Uniform { lower: 0.0, cell: 1.0, cells: 12 }; 3];

@@ -4,7 +4,7 @@ use super::super::place;
 use super::BodyShape;
 use crate::grid::GridSpec;
 use crate::record::Record;
-use crate::region::{Raster, Region, Section, SolidShape, Surface, Volume};
+use crate::region::{Raster, Region, Section, SolidShape, Surface, Volume, solid_bounds};
 use crate::report::Report;
 use crate::words::Axis;
 
@@ -24,7 +24,7 @@ pub(super) fn region(
     if body.gives("subtract") && cut.len() != body.records("subtract").len() {
         return None;
     }
-    let outside = whole.bounds().into_iter().find_map(|corner| place::beyond(grid, corner));
+    let outside = solid_bounds(&whole, &cut).into_iter().find_map(|corner| place::beyond(grid, corner));
     if let Some(message) = outside {
         body.error(key, message, report);
         return None;

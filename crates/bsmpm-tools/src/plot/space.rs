@@ -1,0 +1,226 @@
+//! A solid as it looks from the front, the right and above: its points as balls that hide what is behind them, in the
+//! colours of a field, shaded as if light came from the upper left.
+
+use bsmpm_io::frame::Frame;
+
+use super::field::FieldName;
+use crate::Error;
+use crate::picture::axes::{LABEL, THIN, title};
+use crate::picture::bar::{self, Bar};
+use crate::picture::canvas::{Canvas, FINE, TextAlign, fine};
+use crate::picture::colour::{self, INK, OUTLINE, Rgb};
+use crate::picture::layout::Layout;
+use crate::picture::splat;
+use crate::record::{RunRecord, short};
+
+const ABOVE: f64 = 130.0;
+/// Pixels from the edges of the grid to what they are called.
+const BESIDE: f64 = 30.0;
+/// Where it is looked from: degrees from the front towards the right, and above the ground.
+const VIEW: [f64; 2] = [30.0, 28.0];
+/// The sun, towards it, on the sheet and out of it.
+const LIGHT: [f64; 3] = [-0.45, 0.55, 0.7];
+/// Share of the light that comes from everywhere.
+const AMBIENT: f64 = 0.4;
+/// Radius of a point's ball in its size: the balls of a lattice overlap.
+const RADIUS: f64 = 0.8;
+
+/// What shows from afar: places on the sheet and towards the eye, all in m.
+struct View {
+    right: [f64; 3],
+    up: [f64; 3],
+    eye: [f64; 3],
+}
+
+impl View {
+    fn new([turned, raised]: [f64; 2]) -> Self {
+        let ([sin, cos], [low, high]) = ([turned.to_radians().sin(), turned.to_radians().cos()], {
+            let raised = raised.to_radians();
+            [raised.sin(), raised.cos()]
+        });
+        Self { right: [cos, sin, 0.0], up: [-sin * low, cos * low, high], eye: [sin * high, -cos * high, low] }
+    }
+
+    fn place(&self, at: &[f64; 3]) -> [f64; 3] {
+        let along = |axis: &[f64; 3]| axis.iter().zip(at).map(|(axis, at)| axis * at).sum();
+        [along(&self.right), along(&self.up), along(&self.eye)]
+    }
+}
+
+/// The nearest ball of every dot of a sheet.
+struct Nearest {
+    width: usize,
+    /// m, towards the eye, and the point
+    dots: Vec<(f32, u32)>,
+}
+
+const NOBODY: (f32, u32) = (f32::NEG_INFINITY, u32::MAX);
+
+impl Nearest {
+    fn new([width, height]: [usize; 2]) -> Self {
+        Self { width, dots: vec![NOBODY; width * height] }
+    }
+
+    /// A ball about `(x, y)`, dots, and `depth`, m, with so many dots a metre.
+    fn add(&mut self, point: u32, ([x, y], depth): ([f64; 2], f64), radius: f64, scale: f64) {
+        let reach = (radius * scale).max(1.0);
+        let height = self.dots.len() / self.width;
+        let span = |centre: f64, end: usize| {
+            (centre - reach).ceil().clamp(0.0, end as f64) as usize
+                ..(centre + reach + 1.0).clamp(0.0, end as f64) as usize
+        };
+        for row in span(y, height) {
+            for column in span(x, self.width) {
+                let away = (column as f64 - x).powi(2) + (row as f64 - y).powi(2);
+                let depth = (depth + (reach * reach - away).max(0.0).sqrt() / scale) as f32;
+                let dot = &mut self.dots[row * self.width + column];
+                if away <= reach * reach && depth > dot.0 {
+                    *dot = (depth, point);
+                }
+            }
+        }
+    }
+
+    /// Share of the light that falls on a dot, by the depths `step` dots around it that are no farther off than that.
+    fn lit(&self, at: usize, step: usize, scale: f64) -> f64 {
+        let (row, column, height) = (at / self.width, at % self.width, self.dots.len() / self.width);
+        let here = self.dots[at].0;
+        let depth = |row: Option<usize>, column: Option<usize>| {
+            let (row, column) = (row.filter(|row| *row < height)?, column.filter(|column| *column < self.width)?);
+            let depth = self.dots[row * self.width + column].0;
+            (f64::from((depth - here).abs()) * scale <= 3.0 * step as f64).then_some(f64::from(depth))
+        };
+        let slope = |before: Option<f64>, after: Option<f64>| {
+            let here = f64::from(here);
+            let length = step as f64 / scale;
+            match (before, after) {
+                (Some(before), Some(after)) => (after - before) / (2.0 * length),
+                (Some(before), None) => (here - before) / length,
+                (None, Some(after)) => (after - here) / length,
+                (None, None) => 0.0,
+            }
+        };
+        let across = slope(depth(Some(row), column.checked_sub(step)), depth(Some(row), Some(column + step)));
+        // Rows count downward.
+        let up = slope(depth(Some(row + step), Some(column)), depth(row.checked_sub(step), Some(column)));
+        let normal = [-across, -up, 1.0];
+        let product = |a: [f64; 3], b: [f64; 3]| (0..3).map(|axis| a[axis] * b[axis]).sum::<f64>();
+        let falls = product(normal, LIGHT) / (product(normal, normal) * product(LIGHT, LIGHT)).sqrt();
+        AMBIENT + (1.0 - AMBIENT) * falls.max(0.0)
+    }
+}
+
+/// Draws a picture for every frame of a solid in the colours of a field, and returns their names; of a plane none.
+pub(super) fn draw(
+    record: &RunRecord,
+    frames: &[Frame],
+    field: FieldName,
+    ends: Option<(f64, f64)>,
+) -> Result<Vec<String>, Error> {
+    let Some(grid) = record.manifest.grid.as_ref().filter(|_| record.is_solid()) else { return Ok(Vec::new()) };
+    let (Ok(lower), Ok(upper)) = (grid.lower[..].try_into(), grid.upper[..].try_into()) else { return Ok(Vec::new()) };
+    let Some(values) = frames.iter().map(|frame| field.values(frame)).collect::<Option<Vec<_>>>() else {
+        return Ok(Vec::new());
+    };
+    let range = ends.unwrap_or_else(|| field.range(&values));
+    let mut names = Vec::new();
+    for (frame, values) in frames.iter().zip(&values) {
+        let name = format!("{}_space_{}.png", field.name(), short(frame.time));
+        let bar = Bar { range, label: field.label(true) };
+        picture((record, [lower, upper]), frame, values, bar).save(&record.directory.join(&name))?;
+        names.push(name);
+    }
+    Ok(names)
+}
+
+fn picture((record, grid): (&RunRecord, [[f64; 3]; 2]), frame: &Frame, values: &[f64], bar: Bar) -> Canvas {
+    let view = View::new(VIEW);
+    let corners = std::array::from_fn::<_, 8, _>(|k| view.place(&corner(grid, k)));
+    let ends = |axis: usize| {
+        let along = corners.iter().map(|corner| corner[axis]);
+        let [low, high] = [along.clone().fold(f64::INFINITY, f64::min), along.fold(f64::NEG_INFINITY, f64::max)];
+        let room = 0.06 * (high - low);
+        (low - room, high + room)
+    };
+    let region = [ends(0), ends(1)];
+    let layout = Layout::of(region, bar::BESIDE, 0.0);
+    let axes = layout.axes(ABOVE);
+    let mut canvas = Canvas::new(layout.width, axes.bottom + 20.0);
+    title(&mut canvas, layout.width, &record.manifest.case.title, &record.moment(frame.time));
+    let place = |k: usize| axes.place((corners[k][0], corners[k][1]));
+    // Corner 3 of the grid, at the highest x, the lowest y and the highest z, is nearest: its edges would hide.
+    for (from, to) in edges().filter(|(from, to)| *from != NEAREST && *to != NEAREST) {
+        canvas.line([place(from), place(to)], THIN, OUTLINE);
+    }
+    let scale = FINE as f64 * (axes.right - axes.left) / (region[0].1 - region[0].0);
+    let ((left, top), (right, bottom)) = (fine((axes.left, axes.top)), fine((axes.right, axes.bottom)));
+    let mut nearest = Nearest::new([(right - left).max(1) as usize, (bottom - top).max(1) as usize]);
+    let sizes = splat::sizes(frame, &record.manifest.case.geometry);
+    for ((point, size), number) in frame.position.iter().zip(&sizes).zip(0_u32..) {
+        let [across, up, depth] = view.place(point);
+        let (x, y) = axes.place((across, up));
+        let at = [FINE as f64 * x - f64::from(left), FINE as f64 * y - f64::from(top)];
+        nearest.add(number, (at, depth), RADIUS * size, scale);
+    }
+    let step = (0.7 * splat::median(&sizes) * scale).round().max(1.0) as usize;
+    for (at, &(_, point)) in nearest.dots.iter().enumerate().filter(|(_, dot)| dot.1 != NOBODY.1) {
+        let lit = nearest.lit(at, step, scale);
+        let shade: Rgb =
+            colour::map(bar.share(values[point as usize])).map(|part| (f64::from(part) * lit).round() as u8);
+        canvas.dot((left + (at % nearest.width) as i32, top + (at / nearest.width) as i32), shade);
+    }
+    let label = |name: &str, axis: usize| format!("{name} = {} to {} m", short(grid[0][axis]), short(grid[1][axis]));
+    let middle = |from: usize, to: usize| {
+        let (from, to) = (place(from), place(to));
+        (f64::midpoint(from.0, to.0), f64::midpoint(from.1, to.1))
+    };
+    let ((x, below_x), (y, below_y), (left, z)) = (middle(0, 1), middle(1, 3), middle(0, 4));
+    canvas.text(&label("x", 0), (x - 14.0, below_x + BESIDE), LABEL, TextAlign::Right, INK);
+    canvas.text(&label("y", 1), (y + 14.0, below_y + BESIDE), LABEL, TextAlign::Left, INK);
+    canvas.upward(&label("z", 2), (left - BESIDE, z), LABEL, INK);
+    bar.upright(&mut canvas, &axes);
+    canvas
+}
+
+/// The corner that is nearest to the eye: bits are of x, y and z.
+const NEAREST: usize = 5;
+
+fn corner([lower, upper]: [[f64; 3]; 2], k: usize) -> [f64; 3] {
+    [0, 1, 2].map(|axis| if k >> axis & 1 == 0 { lower[axis] } else { upper[axis] })
+}
+
+/// Pairs of corners.
+fn edges() -> impl Iterator<Item = (usize, usize)> {
+    (0..8).flat_map(|k| (0..3).filter(move |axis| k >> axis & 1 == 0).map(move |axis| (k, k | 1 << axis)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_view_is_orthonormal_and_looks_from_the_front_the_right_and_above() {
+        let View { right, up, eye } = View::new(VIEW);
+        let product = |a: [f64; 3], b: [f64; 3]| (0..3).map(|axis| a[axis] * b[axis]).sum::<f64>();
+        for (a, b, expected) in [(right, right, 1.0), (up, up, 1.0), (eye, eye, 1.0), (right, up, 0.0), (up, eye, 0.0)]
+        {
+            assert!((product(a, b) - expected).abs() < 1e-15);
+        }
+        assert!(eye[0] > 0.0 && eye[1] < 0.0 && eye[2] > 0.0 && up[2] > 0.0);
+        let depths = (0..8).map(|k| View::new(VIEW).place(&corner([[0.0; 3], [1.0; 3]], k))[2]);
+        let nearest = depths.enumerate().max_by(|a, b| a.1.total_cmp(&b.1)).unwrap();
+        assert_eq!(nearest.0, NEAREST);
+    }
+
+    #[test]
+    fn near_balls_hide_far_ones_and_slopes_towards_the_light_are_brighter() {
+        let mut nearest = Nearest::new([40, 40]);
+        nearest.add(0, ([20.0, 20.0], 0.0), 10.0, 1.0);
+        nearest.add(1, ([20.0, 20.0], -5.0), 12.0, 1.0);
+        let at = |column: usize, row: usize| row * 40 + column;
+        assert_eq!((nearest.dots[at(20, 20)].1, nearest.dots[at(20, 9)].1, nearest.dots[at(1, 1)].1), (0, 1, NOBODY.1));
+        let [upper_left, middle, lower_right] =
+            [(15, 15), (20, 20), (25, 25)].map(|(column, row)| nearest.lit(at(column, row), 2, 1.0));
+        assert!(upper_left > middle && middle > lower_right && lower_right >= AMBIENT);
+    }
+}
