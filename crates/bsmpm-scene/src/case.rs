@@ -15,7 +15,7 @@ pub use flow::{Drain, DrainSite, Flow, Inflow};
 pub use history::{Check, Column, Counted, Face, History, Quantity};
 pub use loads::{Footing, Initial, Line as LoadedLine, MotionPath, Plate, PointLoad, Prescribed, Push, Site, Traction};
 pub use profile::Profile;
-pub use rigid::{Rigid, RigidShape};
+pub use rigid::{Rigid, RigidShape, RigidSolid};
 pub use stage::{Acting, FaceSupport, Stage};
 pub use water::Water;
 

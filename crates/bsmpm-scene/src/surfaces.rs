@@ -236,11 +236,11 @@ fn of_ground<const D: usize>(soil: &Soil<3>) -> Soil<D> {
 }
 
 /// Rigid bodies in the order of the file, once the stages until the time `t` have begun.
-pub fn rigid(case: &Case, t: f64) -> Vec<RigidBody> {
+pub fn rigid<const D: usize>(case: &Case, t: f64) -> Vec<RigidBody<D>> {
     let divided = case.divided_at(t);
     let of = |rigid: &Rigid| RigidBody {
         friction: rigid.friction / divided,
-        ..rigid_body(rigid, case.grid.corner(), case.geometry)
+        ..rigid_body(rigid, case.grid.lower(), case.geometry)
     };
     case.rigid.iter().map(of).collect()
 }
@@ -252,11 +252,12 @@ pub(crate) fn outline(shape: &RigidShape, about: [f64; 2]) -> Outline {
             Outline::Polygon(corners.iter().map(|corner| Vector::from(*corner) - Vector::from(about)).collect())
         }
         RigidShape::Circle { radius, .. } => Outline::Circle(*radius),
+        RigidShape::InSpace(solid) => solid.outline(),
     }
 }
 
 /// A rigid body as the physics wants it, of a grid with this lower corner.
-pub(crate) fn rigid_body(rigid: &Rigid, lower: [f64; 2], geometry: Geometry) -> RigidBody {
+pub(crate) fn rigid_body<const D: usize>(rigid: &Rigid, lower: [f64; 3], geometry: Geometry) -> RigidBody<D> {
     let mut times: Vec<f64> =
         rigid.path.rows.iter().map(|row| row.0).chain(rigid.rotation.iter().map(|row| row.0)).collect();
     times.sort_by(f64::total_cmp);
@@ -266,7 +267,24 @@ pub(crate) fn rigid_body(rigid: &Rigid, lower: [f64; 2], geometry: Geometry) -> 
         let rows: Vec<(f64, Vector<3>)> = rigid.path.rows.iter().map(|(t, moved)| (*t, Vector::from(*moved))).collect();
         let moved = between(&rows, Vector::zeros(), t).unwrap_or_else(stays);
         let turned = rigid.rotation.last().map_or(0.0, |(_, angle)| *angle);
-        Vector::<3>::new(moved[0], moved[1], between(&rigid.rotation, 0.0, t).unwrap_or(turned))
+        let turned = between(&rigid.rotation, 0.0, t).unwrap_or(turned);
+        Vector::<3>::new(moved[0], moved[1], if D == 2 { turned } else { moved[2] })
+    };
+    let reference = match &rigid.shape {
+        RigidShape::InSpace(solid) => solid.reference(),
+        RigidShape::Polygon(_) | RigidShape::Circle { .. } => [rigid.about[0], rigid.about[1], 0.0],
+    };
+    let outline = match outline(&rigid.shape, rigid.about) {
+        Outline::Terrain(mut terrain) => {
+            (0..2).for_each(|axis| terrain.lower[axis] -= lower[axis]);
+            terrain.heights.iter_mut().for_each(|height| *height -= lower[2]);
+            Outline::Terrain(terrain)
+        }
+        outline => outline,
+    };
+    let center = match outline {
+        Outline::Terrain(_) => Vector::zeros(),
+        _ => Vector::from_fn(|axis, _| reference[axis] - lower[axis]),
     };
     let force = Vector::<3>::from(rigid.force) / geometry.whole();
     let load = match (rigid.force == [0.0; 3], rigid.amplitude.is_empty()) {
@@ -275,8 +293,8 @@ pub(crate) fn rigid_body(rigid: &Rigid, lower: [f64; 2], geometry: Geometry) -> 
         (_, false) => rigid.amplitude.iter().map(|(t, share)| (*t, force * *share)).collect(),
     };
     RigidBody {
-        outline: outline(&rigid.shape, rigid.about),
-        center: Vector::from(rigid.about) - Vector::from(lower),
+        outline,
+        center,
         friction: rigid.friction,
         free: rigid.free,
         path: times.into_iter().map(|t| (t, path(t))).collect(),

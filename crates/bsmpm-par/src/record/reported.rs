@@ -90,11 +90,11 @@ pub(super) fn rigid<K: Kinematics<D>, const D: usize>(
     };
     let found = report.rigid.get(body).copied().unwrap_or_else(at_start);
     match what {
-        Measurement::RigidForce => found.force.as_slice()[..2].to_vec(),
+        Measurement::RigidForce => found.force.as_slice()[..D].to_vec(),
         Measurement::RigidMoment => vec![found.force[2]],
-        Measurement::RigidDisplacement => found.moved.as_slice()[..2].to_vec(),
+        Measurement::RigidDisplacement => found.moved.as_slice()[..D].to_vec(),
         Measurement::RigidRotation => vec![found.moved[2].to_degrees()],
-        Measurement::RigidVelocity => found.velocity.as_slice()[..2].to_vec(),
+        Measurement::RigidVelocity => found.velocity.as_slice()[..D].to_vec(),
         Measurement::RigidSlip => vec![found.slipped],
         Measurement::RigidWork => vec![found.work],
         _ => vec![found.gap],

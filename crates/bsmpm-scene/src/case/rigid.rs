@@ -1,6 +1,7 @@
 //! Rigid bodies.
 
 use super::MotionPath;
+use bsmpm::boundary::rigid::{Outline, Terrain};
 
 /// A rigid body that pushes and rubs the soil.
 #[derive(Clone, Debug, PartialEq)]
@@ -9,11 +10,11 @@ pub struct Rigid {
     pub name: String,
     /// its shape at the start
     pub shape: RigidShape,
-    /// m  its reference point at the start
+    /// m  its reference point at the start, of a plane
     pub about: [f64; 2],
     /// -  coefficient of friction
     pub friction: f64,
-    /// along x and y
+    /// of the reference point
     pub path: MotionPath,
     /// s (quasi-static: pseudo-time), increasing, and rad, counter-clockwise
     pub rotation: Vec<(f64, f64)>,
@@ -45,4 +46,61 @@ pub enum RigidShape {
         /// its radius
         radius: f64,
     },
+    /// Of a solid.
+    InSpace(RigidSolid),
+}
+
+/// Shape of a rigid body in space at the start, m, in the case's coordinates.
+#[derive(Clone, Debug, PartialEq)]
+pub enum RigidSolid {
+    /// A cuboid along the axes.
+    Box {
+        /// its lower corner
+        lower: [f64; 3],
+        /// its upper corner
+        upper: [f64; 3],
+    },
+    /// A sphere.
+    Sphere {
+        /// its centre
+        center: [f64; 3],
+        /// its radius
+        radius: f64,
+    },
+    /// A polygon turned about a vertical.
+    Revolved {
+        /// x and y of the vertical
+        about: [f64; 2],
+        /// distance from it and height, counter-clockwise, with the mirror image of what reaches the vertical
+        corners: Vec<[f64; 2]>,
+    },
+    /// What lies under heights.
+    Terrain(Terrain),
+}
+
+impl RigidSolid {
+    /// m  its reference point
+    pub fn reference(&self) -> [f64; 3] {
+        match self {
+            Self::Box { lower, upper } => [0, 1, 2].map(|axis| 0.5 * (lower[axis] + upper[axis])),
+            Self::Sphere { center, .. } => *center,
+            Self::Revolved { about: [x, y], corners } => {
+                [*x, *y, corners.iter().map(|corner| corner[1]).fold(f64::INFINITY, f64::min)]
+            }
+            Self::Terrain(_) => [0.0; 3],
+        }
+    }
+
+    /// Its outline about the reference point.
+    pub fn outline(&self) -> Outline {
+        match self {
+            Self::Box { lower, upper } => Outline::Box([0, 1, 2].map(|axis| 0.5 * (upper[axis] - lower[axis]))),
+            Self::Sphere { radius, .. } => Outline::Circle(*radius),
+            Self::Revolved { corners, .. } => {
+                let bottom = self.reference()[2];
+                Outline::Revolved(corners.iter().map(|[r, z]| [*r, z - bottom].into()).collect())
+            }
+            Self::Terrain(terrain) => Outline::Terrain(Box::new(terrain.clone())),
+        }
+    }
 }

@@ -1,5 +1,7 @@
 //! Terrain: what lies between two rasters of heights, bilinear between their posts.
 
+use bsmpm::boundary::rigid::Terrain;
+
 /// Parts of the spacing by which posts may miss their places: rounding of what wrote them.
 const ROUNDING: f64 = 1e-3;
 
@@ -88,6 +90,11 @@ impl Raster {
             return Err("top and base are the same: the body is empty".into());
         }
         Ok(self)
+    }
+
+    /// Its top as a rigid surface.
+    pub(crate) fn surface(self) -> Terrain {
+        Terrain { lower: self.lower, spacing: self.spacing, count: self.count, heights: self.top }
     }
 
     pub(crate) fn moved(self, by: [f64; 3]) -> Self {

@@ -84,7 +84,7 @@ static TERRAIN: Table = Table {
     exclusive: &[one_of(&["base", "level"], true)],
 };
 
-const HEIGHTS: Kind = Rows(&[(In::Length, Range::ANY), (In::Length, Range::ANY), (In::Length, Range::ANY)]);
+pub(super) const HEIGHTS: Kind = Rows(&[(In::Length, Range::ANY), (In::Length, Range::ANY), (In::Length, Range::ANY)]);
 
 static SURFACE: Table = Table {
     header: "surface = { triangles, scale }",
@@ -117,7 +117,7 @@ static EXTRUDE: Table = Table {
     exclusive: &[one_of(&["polygon", "circle"], true)],
 };
 
-static SPHERE: Table = Table {
+pub(super) static SPHERE: Table = Table {
     header: "sphere = { center, radius }",
     doc: "A sphere",
     keys: &[
@@ -127,7 +127,7 @@ static SPHERE: Table = Table {
     exclusive: &[],
 };
 
-static REVOLVE: Table = Table {
+pub(super) static REVOLVE: Table = Table {
     header: "revolve = { polygon, circle, about }",
     doc: "An outline of the radius and z, turned about a vertical",
     keys: &[

@@ -7,6 +7,13 @@ use std::ops::Bound::Included;
 
 const ROTATION: Kind = Rows(&[(In::Time, Range::NOT_NEGATIVE), (In::Angle, Range::ANY)]);
 
+static GROUND: Table = Table {
+    header: "terrain = { top }",
+    doc: "What lies under the posts of a regular raster of heights, bilinear between them and level beyond",
+    keys: &[key("top", body::HEIGHTS, Required, "rows [x, y, z] in any order; a file may also be an ASCII grid")],
+    exclusive: &[],
+};
+
 pub(super) static RIGID: Table = Table {
     header: "[[rigid]]",
     doc: "A rigid body that pushes and rubs the soil and does not pull it, on a given way or moved by forces",
@@ -14,6 +21,10 @@ pub(super) static RIGID: Table = Table {
         key("name", Name, Required, "what histories call it"),
         key("polygon", body::POLYGON, Optional, "its corners at the start, in either direction"),
         key("circle", Kind::Table(&body::CIRCLE), Optional, "a circle instead"),
+        key("box", Kind::Table(&body::BOX), Optional, "of a solid: a cuboid"),
+        key("sphere", Kind::Table(&body::SPHERE), Optional, "of a solid: a sphere"),
+        key("revolve", Kind::Table(&body::REVOLVE), Optional, "of a solid: a polygon about a vertical, e.g. a cone"),
+        key("terrain", Kind::Table(&GROUND), Optional, "of a solid: what lies under a raster of heights"),
         key(
             "friction",
             Quantity(In::Number, Range::of(Included(0.0), Included(2.0))),
@@ -78,7 +89,7 @@ pub(super) static RIGID: Table = Table {
         key("start_spin", Quantity(In::Number, Range::ANY), Optional, "rad/s at the start, if its rotation is free"),
     ],
     exclusive: &[
-        one_of(&["polygon", "circle"], true),
+        one_of(&["polygon", "circle", "box", "sphere", "revolve", "terrain"], true),
         one_of(&["displacement", "velocity", "path"], false),
         one_of(&["mass", "density"], false),
         one_of(&["ramp", "amplitude"], false),

@@ -64,6 +64,7 @@ fn acts_between(case: &Case, (lower, higher): (f64, f64)) -> Option<&'static str
     };
     let shape = |shape: &RigidShape| match shape {
         RigidShape::Circle { center, radius } => within(center[0] - radius, center[0] + radius),
+        RigidShape::InSpace(_) => false,
         RigidShape::Polygon(corners) => {
             let ends = corners.iter().map(|corner| corner[0]);
             within(ends.clone().fold(f64::INFINITY, f64::min), ends.fold(f64::NEG_INFINITY, f64::max))

@@ -1,5 +1,7 @@
 //! Rigid bodies.
 
+mod solid;
+
 use super::site::{AroundStrip, normal};
 use super::strip;
 use super::{MOST_SHOWN_FRICTION, load, place, shape};
@@ -11,6 +13,7 @@ use crate::surfaces;
 use crate::words::{Geometry, RigidMotion, Word};
 use bsmpm::boundary::rigid::{Outline, Sizes};
 use bsmpm::model::Regime;
+use bsmpm::tensor::Vector;
 
 /// Cells that a rigid body should be thick, so that it parts what is on its two sides (`cases/results/scenes.md`).
 const THICK: f64 = 2.0;
@@ -45,6 +48,11 @@ fn read(
     factor: Option<f64>,
     report: &mut Report<'_>,
 ) -> Option<Rigid> {
+    if geometry == Geometry::Solid {
+        let rigid = solid::read(record, around, factor, report)?;
+        fine_enough(record, (&rigid, geometry), around, report);
+        return Some(rigid);
+    }
     let shape = shape::rigid(record, report);
     let free = free(record, report);
     let path = way(record, around.end, report);
@@ -56,6 +64,7 @@ fn read(
     let centroid = match &shape {
         RigidShape::Polygon(_) => [sizes.centroid[0], sizes.centroid[1]],
         RigidShape::Circle { center, .. } => *center,
+        RigidShape::InSpace(_) => return None,
     };
     let about = if record.gives("about") { record.pair("about")? } else { centroid };
     let volume = match geometry {
@@ -200,15 +209,19 @@ fn fine_enough(
     report: &mut Report<'_>,
 ) {
     let (Some(grid), Some(dt)) = (around.grid, around.dt) else { return };
-    let cell = grid.axes[0].shortest().min(grid.axes[1].shortest());
-    let outline = surfaces::outline(&rigid.shape, rigid.about);
+    let cell = grid.axes.iter().map(|axis| axis.shortest()).fold(f64::INFINITY, f64::min);
+    let Solidity { outline, thickness, corner: about } = Solidity::of(rigid);
     let radius = outline.radius();
-    let body = surfaces::rigid_body(rigid, [0.0; 2], geometry);
-    let times = std::iter::once(0.0).chain(body.path.iter().map(|row| row.0));
-    let steps = times.zip(&body.path).filter(|(from, row)| row.0 > *from);
+    let turns = geometry != Geometry::Solid;
+    let path = match turns {
+        true => surfaces::rigid_body::<2>(rigid, [0.0; 3], geometry).path,
+        false => surfaces::rigid_body::<3>(rigid, [0.0; 3], geometry).path,
+    };
+    let before = std::iter::once((0.0, Vector::zeros())).chain(path.iter().copied());
+    let steps = before.zip(&path).filter(|(from, row)| row.0 > from.0);
     let fastest = steps.map(|(from, row)| {
-        let moved = (row.1 - body.on_path(from)) * ((dt / (row.0 - from)).min(1.0));
-        moved[0].hypot(moved[1]) + moved[2].abs() * radius
+        let moved = (row.1 - from.1) * ((dt / (row.0 - from.0)).min(1.0));
+        if turns { moved[0].hypot(moved[1]) + moved[2].abs() * radius } else { moved.norm() }
     });
     let most = fastest.fold(0.0, f64::max);
     if most > ADVANCE * cell {
@@ -222,16 +235,12 @@ fn fine_enough(
         report.warn(format!(
             "{}: the corner at [{}, {}] has {:.0} degrees: soil is pushed right by corners of 60 and more; a sharper one \
              acts as if rounded over a cell",
-            record.path_of("polygon"),
-            corner[0] + rigid.about[0],
-            corner[1] + rigid.about[1],
+            record.path_of(shape::key(record)),
+            corner[0] + about[0],
+            corner[1] + about[1],
             angle.to_degrees()
         ));
     }
-    let thickness = match &rigid.shape {
-        RigidShape::Circle { radius, .. } => 2.0 * radius,
-        RigidShape::Polygon(corners) => thickness(corners),
-    };
     if thickness < THICK * cell {
         report.warn(format!(
             "{}: it is {thickness:.3e} m thick, {:.1} cells: points on its two sides share nodes, which it cannot part, so \
@@ -241,6 +250,24 @@ fn fine_enough(
             thickness / cell,
             thickness / THICK
         ));
+    }
+}
+
+/// What of a rigid body the cells and steps must resolve.
+struct Solidity {
+    outline: Outline, // about the reference point; of a body of revolution its section
+    thickness: f64,   // m
+    corner: [f64; 2], // m  the reference point
+}
+
+impl Solidity {
+    fn of(rigid: &Rigid) -> Self {
+        let thickness = match &rigid.shape {
+            RigidShape::Circle { radius, .. } => 2.0 * radius,
+            RigidShape::Polygon(corners) => thickness(corners),
+            RigidShape::InSpace(solid) => return solid::solidity(solid),
+        };
+        Self { outline: surfaces::outline(&rigid.shape, rigid.about), thickness, corner: rigid.about }
     }
 }
 
@@ -298,6 +325,10 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
                  ground, or holds it, lets it drift away",
                 record.path
             ));
+        }
+        if let RigidShape::InSpace(solid) = &rigid.shape {
+            solid::check(case, (rigid, solid), record, report);
+            continue;
         }
         if let Some((at, body)) = overlap(case, rigid, |body| case.is_there(body, 0.0)) {
             let message = format!(
@@ -361,6 +392,7 @@ fn overlap(case: &Case, rigid: &Rigid, there: impl Fn(usize) -> bool) -> Option<
             };
             edges.flat_map(inside).collect()
         }
+        RigidShape::InSpace(_) => Vec::new(),
     };
     let outline = surfaces::outline(&rigid.shape, rigid.about);
     let is_in = |at: &[f64; 2]| {

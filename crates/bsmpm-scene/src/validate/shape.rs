@@ -92,7 +92,10 @@ pub(super) fn rigid(record: &Record, report: &mut Report<'_>) -> Option<RigidSha
             }
             RigidShape::Polygon(corners)
         }
-        BodyShape::Box { .. } => return None,
+        BodyShape::Box { .. } => {
+            record.error("box", "of a solid; here a polygon", report);
+            return None;
+        }
     })
 }
 

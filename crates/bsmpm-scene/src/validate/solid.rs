@@ -9,7 +9,6 @@ use bsmpm::stabilisation::Stabilisation;
 /// Tables and keys that only a plane knows, with what to do instead.
 const IN_A_PLANE: &[(&str, &str)] = &[
     ("inflow", "give a head or a pressure at a face of the grid by [[drain]]"),
-    ("rigid", "use plane strain"),
     ("profile", "use histories at places, or frames"),
 ];
 
@@ -18,6 +17,8 @@ const QUANTITIES: &[Measurement] = &[
     Measurement::Front,
     Measurement::SectionForces,
     Measurement::Moment,
+    Measurement::RigidMoment,
+    Measurement::RigidRotation,
     Measurement::StressNoise,
     Measurement::PressureNoise,
 ];
@@ -81,7 +82,7 @@ fn in_space(root: &Record, report: &mut Report<'_>) {
         }
     }
     let shapes = root.records("body").iter().flat_map(|body| std::iter::once(body).chain(body.records("subtract")));
-    for shape in shapes {
+    for shape in shapes.chain(root.records("rigid")) {
         for key in ["extrude", "sphere", "revolve", "terrain", "surface"].into_iter().filter(|key| shape.gives(key)) {
             shape.error(key, "is a shape in space: geometry = \"solid\" has it", report);
         }

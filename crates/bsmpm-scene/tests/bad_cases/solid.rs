@@ -8,6 +8,8 @@ const LOADED: &str = "rectangle = { lower = [0.5, 1.0, 1.0], upper = [1.5, 2.0, 
 
 const PLATE: &str = "rectangle    = { lower = [0.5, 2.0, 1.0], upper = [1.5, 3.0, 1.0] }";
 
+const BALL: &str = "sphere = { center = [3.5, 0.5, 2.0], radius = 0.25 }";
+
 const BASE: &str = "base = [[2, 0, 1], [3, 0, 1], [2, 3, 1], [3, 3, 1]]";
 
 const FLOWS: &str = "density = 2000\nporosity = 0.4\ndrainage = \"coupled\"\npermeability = [1e-6, 1e-7, 1e-6]\n\
@@ -67,11 +69,28 @@ pub const SOLID: &[Row] = &[
     row(
         "[gravity]",
         "[[rigid]]\nname = \"a\"\ncircle = { center = [3, 2], radius = 0.5 }\n[gravity]",
-        "rigid",
-        "not available",
+        "rigid.3.circle",
+        "is of a plane",
+    )
+    .down(2),
+    row(BALL, "sphere = { center = [1.0, 1.5, 0.6], radius = 0.4 }", "rigid.0.sphere", "is in it at"),
+    row(BALL, "sphere = { center = [1.0, 1.5], radius = 0.4 }", "rigid.0.sphere.center", "solid: of three"),
+    row(BALL, "box = { lower = [0, 0, 3], upper = [1, 1, 3] }", "rigid.0.box.upper", "the body is empty"),
+    row(BALL, "terrain = { top = [[0, 0, 1], [1, 0, 1]] }", "rigid.0.terrain.top", "two posts along x"),
+    row(
+        BALL,
+        "revolve = { circle = { center = [1, 1], radius = 0.5 }, about = [0, 0] }",
+        "rigid.0.revolve.circle",
+        "give a polygon",
+    ),
+    row(
+        BALL,
+        "revolve = { polygon = [[-0.1, 3], [1, 3], [0, 4]], about = [0, 0] }",
+        "rigid.0.revolve.polygon",
+        "radius >= 0",
     ),
     row("release  = [\"plate\"]", "remove = [\"block\"]", "footing.rectangle", "no body from the start to the end")
-        .up(23),
+        .up(37),
     row("back = \"contact\" }", "back = \"absorbing\" }", "stage.0.boundary.back", "only from the start on"),
     row(
         "front = \"roller\"",

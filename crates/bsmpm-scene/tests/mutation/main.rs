@@ -175,6 +175,9 @@ fn bases() -> Vec<String> {
     let otherwise = otherwise.replacen(plate, "disc = { center = [1.0, 2.5, 1.0], radius = 0.25 }", 1);
     let base = "base = [[2.0, 0.0, 2.5], [4.0, 0.0, 2.5], [2.0, 3.0, 2.6], [4.0, 3.0, 2.75]]";
     let otherwise = otherwise.replacen("level = 2.5", base, 1);
+    let ball = "sphere = { center = [3.5, 0.5, 2.0], radius = 0.25 }";
+    let ground = "terrain = { top = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 3.0, 0.0], [4.0, 3.0, 0.0]] }";
+    let otherwise = otherwise.replacen(ball, ground, 1);
     bases.push(otherwise.replacen(disc, "rectangle = { lower = [0.5, 0.0, 1.0], upper = [1.5, 1.0, 1.0] }", 1));
     for changes in OTHERWISE {
         let mut text = FULL.to_owned();

@@ -25,7 +25,10 @@ pub(super) fn draw(
     (record, case): (&RunRecord, &Case),
     frame: &Frame,
 ) {
-    for (number, body) in surfaces::rigid(case, 0.0).iter().enumerate() {
+    if record.is_solid() {
+        return;
+    }
+    for (number, body) in surfaces::rigid::<2>(case, 0.0).iter().enumerate() {
         let Some(moved) = moved((record, case), (number, body), frame) else { continue };
         let lower = case.grid.lower();
         let place = |x: &Vector<2>| {
@@ -73,6 +76,7 @@ fn places(outline: &Outline) -> Vec<Vector<2>> {
             // The radius that is drawn shows how it has turned.
             (0..=PIECES).map(turn).chain([Vector::<2>::zeros()]).collect()
         }
+        Outline::Box(_) | Outline::Revolved(_) | Outline::Terrain(_) => Vec::new(),
         Outline::Polygon(corners) => {
             let edges = corners.iter().zip(corners.iter().cycle().skip(1));
             let pieces = |(a, b): (&Vector<2>, &Vector<2>)| {

@@ -1,7 +1,10 @@
 //! A solid as it looks from the front, the right and above: its points as balls that hide what is behind them, in the
 //! colours of a field, shaded as if light came from the upper left.
 
+use bsmpm::boundary::rigid::Outline;
 use bsmpm_io::frame::Frame;
+use bsmpm_scene::{Case, surfaces};
+use std::iter::repeat;
 
 use super::field::FieldName;
 use crate::Error;
@@ -22,6 +25,11 @@ const VIEW: [f64; 2] = [30.0, 28.0];
 const LIGHT: [f64; 3] = [-0.45, 0.55, 0.7];
 /// Share of the light that comes from everywhere.
 const AMBIENT: f64 = 0.4;
+/// Rigid terrain, and the number of its places among the points.
+const STONE: Rgb = [200, 196, 188];
+const RIGID: u32 = u32::MAX - 1;
+/// Places of terrain along an axis at most.
+const MOST_PLACES: f64 = 1500.0;
 /// Radius of a point's ball in its size: the balls of a lattice overlap.
 const RADIUS: f64 = 0.8;
 
@@ -156,17 +164,20 @@ fn picture((record, grid): (&RunRecord, [[f64; 3]; 2]), frame: &Frame, values: &
     let ((left, top), (right, bottom)) = (fine((axes.left, axes.top)), fine((axes.right, axes.bottom)));
     let mut nearest = Nearest::new([(right - left).max(1) as usize, (bottom - top).max(1) as usize]);
     let sizes = splat::sizes(frame, &record.manifest.case.geometry);
-    for ((point, size), number) in frame.position.iter().zip(&sizes).zip(0_u32..) {
+    let usual = splat::median(&sizes);
+    let ground = terrain(record, grid, usual);
+    let stones = ground.iter().zip(repeat(&usual)).zip(repeat(RIGID));
+    for ((point, size), number) in frame.position.iter().zip(&sizes).zip(0_u32..).chain(stones) {
         let [across, up, depth] = view.place(point);
         let (x, y) = axes.place((across, up));
         let at = [FINE as f64 * x - f64::from(left), FINE as f64 * y - f64::from(top)];
         nearest.add(number, (at, depth), RADIUS * size, scale);
     }
-    let step = (0.7 * splat::median(&sizes) * scale).round().max(1.0) as usize;
+    let step = (0.7 * usual * scale).round().max(1.0) as usize;
     for (at, &(_, point)) in nearest.dots.iter().enumerate().filter(|(_, dot)| dot.1 != NOBODY.1) {
         let lit = nearest.lit(at, step, scale);
-        let shade: Rgb =
-            colour::map(bar.share(values[point as usize])).map(|part| (f64::from(part) * lit).round() as u8);
+        let colour = values.get(point as usize).map_or(STONE, |value| colour::map(bar.share(*value)));
+        let shade = colour.map(|part| (f64::from(part) * lit).round() as u8);
         canvas.dot((left + (at % nearest.width) as i32, top + (at / nearest.width) as i32), shade);
     }
     let label = |name: &str, axis: usize| format!("{name} = {} to {} m", short(grid[0][axis]), short(grid[1][axis]));
@@ -180,6 +191,21 @@ fn picture((record, grid): (&RunRecord, [[f64; 3]; 2]), frame: &Frame, values: &
     canvas.upward(&label("z", 2), (left - BESIDE, z), LABEL, INK);
     bar.upright(&mut canvas, &axes);
     canvas
+}
+
+/// Places of rigid terrain inside the grid, half a point apart.
+fn terrain(record: &RunRecord, [lower, upper]: [[f64; 3]; 2], apart: f64) -> Vec<[f64; 3]> {
+    let Ok(case) = Case::from_text("case", &record.manifest.case.text, &[]) else { return Vec::new() };
+    let mut places = Vec::new();
+    let count = |axis: usize| ((upper[axis] - lower[axis]) / (0.5 * apart)).ceil().clamp(1.0, MOST_PLACES) as usize;
+    for body in surfaces::rigid::<3>(&case, 0.0) {
+        let Outline::Terrain(terrain) = &body.outline else { continue };
+        for (i, j) in (0..=count(0)).flat_map(|i| (0..=count(1)).map(move |j| (i, j))) {
+            let at = [(0, i), (1, j)].map(|(axis, k)| k as f64 / count(axis) as f64 * (upper[axis] - lower[axis]));
+            places.push([lower[0] + at[0], lower[1] + at[1], lower[2] + terrain.height(at)]);
+        }
+    }
+    places
 }
 
 /// The corner that is nearest to the eye: bits are of x, y and z.

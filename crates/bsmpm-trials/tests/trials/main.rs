@@ -29,6 +29,7 @@ mod signals;
 mod solid;
 mod solid_contact;
 mod solid_loads;
+mod solid_rigid;
 mod solid_stages;
 mod solid_water;
 mod stages;

@@ -1,15 +1,17 @@
-//! Rigid bodies of any polygon, and circles, that push and rub the material points at them and do not pull.
+//! Rigid bodies of any polygon, circles, and simple shapes and terrain in space, that push and rub the material points at them and do not pull.
 #![doc = include_str!("rigid.md")]
 
 mod body;
 mod near;
 mod outline;
 mod point;
+mod terrain;
 
 pub use body::{MOTIONS, RigidBody, RigidState};
 pub use near::Surroundings;
 pub use outline::{Nearest, Outline, Sizes};
-pub use point::Grip;
+pub use point::{Along, Grip};
+pub use terrain::Terrain;
 
 use crate::error::StepError;
 use crate::exact::Exact;
@@ -24,6 +26,8 @@ use point::RigidPoint;
 const PENALTY: f64 = 1e3;
 /// Passes in which all statuses are corrected, and those until which the ones that are off by half of the most are.
 const AT_ONCE: usize = 8;
+/// Passes in which friction in space is turned; later it keeps its direction for the step.
+const TURNS: usize = 3;
 const BY_HALF: usize = 16;
 /// Part of a cell below which a penetration is round-off.
 const ROUNDING: f64 = 1e-9;
@@ -55,8 +59,8 @@ pub struct RigidReport {
 
 /// A body in one step.
 #[derive(Clone, Debug)]
-struct BodyInStep {
-    body: RigidBody,
+struct BodyInStep<const D: usize> {
+    body: RigidBody<D>,
     before: RigidState,
     predicted: Vector<3>,      // m, m, rad  since the start, without the soil
     external: Vector<3>,       // N, N, N m  but for the soil's
@@ -70,8 +74,8 @@ struct BodyInStep {
 #[derive(Clone, Debug, Default)]
 pub struct RigidContacts<const D: usize> {
     offsets: Vec<usize>,
-    points: Vec<RigidPoint>,
-    bodies: Vec<BodyInStep>,
+    points: Vec<RigidPoint<D>>,
+    bodies: Vec<BodyInStep<D>>,
     length: f64, // s (or pseudo-time)
     dt: f64,     // s; 0 without inertia
     edge: f64,
@@ -145,8 +149,8 @@ impl<const D: usize> RigidContacts<D> {
         if !self.is_coupled() {
             return vec![Vector::zeros(); self.bodies.len()];
         }
-        let force = |point: &RigidPoint| point.force(&point.displacement::<D>(&self.offsets, u));
-        let external = |at: &BodyInStep| if self.dt > 0.0 { Vector::zeros() } else { at.external };
+        let force = |point: &RigidPoint<D>| point.force(&point.displacement(&self.offsets, u));
+        let external = |at: &BodyInStep<D>| if self.dt > 0.0 { Vector::zeros() } else { at.external };
         let forces = self.on_bodies(force, halo);
         self.bodies.iter().zip(forces).map(|(at, force)| at.resists * (external(at) + force)).collect()
     }
@@ -156,13 +160,13 @@ impl<const D: usize> RigidContacts<D> {
         if !self.is_coupled() {
             return vec![Vector::zeros(); self.bodies.len()];
         }
-        let force = |point: &RigidPoint| point.rate(&point.displacement::<D>(&self.offsets, v), whole);
+        let force = |point: &RigidPoint<D>| point.rate(&point.displacement(&self.offsets, v), whole);
         let forces = self.on_bodies(force, halo);
         self.bodies.iter().zip(forces).map(|(at, force)| at.resists * force).collect()
     }
 
     /// What the opposite of the points' forces does to every body, N, N and N m.
-    fn on_bodies(&self, force: impl Fn(&RigidPoint) -> Vector<2>, halo: &dyn Halo) -> Vec<Vector<3>> {
+    fn on_bodies(&self, force: impl Fn(&RigidPoint<D>) -> Vector<D>, halo: &dyn Halo) -> Vec<Vector<3>> {
         let mut sums = vec![Exact::ZERO; self.bodies.len() * MOTIONS];
         for point in &self.points {
             let on = point.on_motions(&-force(point));
@@ -172,8 +176,8 @@ impl<const D: usize> RigidContacts<D> {
     }
 
     /// What the material at a point has moved, as seen from its body.
-    fn moved(&self, point: &RigidPoint, u: &[f64], motions: &[Vector<3>]) -> Vector<2> {
-        point.displacement::<D>(&self.offsets, u) - point.carried_by(&motions[point.body])
+    fn moved(&self, point: &RigidPoint<D>, u: &[f64], motions: &[Vector<3>]) -> Vector<D> {
+        point.displacement(&self.offsets, u) - point.carried_by(&motions[point.body])
     }
 
     /// Adds the bodies' forces on the material to the nodes; other ranks' parts are not yet in them.
@@ -188,12 +192,12 @@ impl<const D: usize> RigidContacts<D> {
         self.scatter(|point| -point.rate(&self.moved(point, v, &motions), true), out);
     }
 
-    fn scatter(&self, force: impl Fn(&RigidPoint) -> Vector<2>, out: &mut Contributions) {
+    fn scatter(&self, force: impl Fn(&RigidPoint<D>) -> Vector<D>, out: &mut Contributions) {
         for point in self.points.iter().filter(|point| point.grip != Grip::Open) {
             let force = force(point);
             let out = out.patch(point.first_node);
             for (N, offset) in point.N.iter().zip(&self.offsets) {
-                (0..2).for_each(|component| out[Nodal::<D>::at(*offset, component)] += N * force[component]);
+                (0..D).for_each(|component| out[Nodal::<D>::at(*offset, component)] += N * force[component]);
             }
         }
     }
@@ -201,7 +205,7 @@ impl<const D: usize> RigidContacts<D> {
     /// Adds the symmetric part of the stiffness of all points, the bodies held, to the matrix.
     pub fn assemble(&self, solver: &mut dyn LinearSolver) {
         for point in self.points.iter().filter(|point| point.grip != Grip::Open) {
-            solver.add(point.first_node, &point.block::<D>());
+            solver.add(point.first_node, &point.block());
         }
     }
 
@@ -212,7 +216,7 @@ impl<const D: usize> RigidContacts<D> {
             let mut unit = Vector::<3>::zeros();
             unit[k] = 1.0;
             let mut out = Contributions::none(grid, D, Vec::new());
-            let force = |point: &RigidPoint| match point.body == body {
+            let force = |point: &RigidPoint<D>| match point.body == body {
                 true => -point.rate(&point.carried_by(&unit), false),
                 false => Vector::zeros(),
             };
@@ -221,13 +225,13 @@ impl<const D: usize> RigidContacts<D> {
         });
         let columns = columns.collect();
         let stiffness = self.stiffness(false, halo);
-        let whole = |(at, stiffness): (&BodyInStep, _)| Matrix3::from_diagonal(&at.inertia) + stiffness;
+        let whole = |(at, stiffness): (&BodyInStep<D>, _)| Matrix3::from_diagonal(&at.inertia) + stiffness;
         (columns, self.bodies.iter().zip(stiffness).map(whole).collect())
     }
 
     /// Body and number of every free motion.
     pub fn free_motions(&self) -> impl Iterator<Item = (usize, usize)> {
-        let free = |(body, at): (usize, &BodyInStep)| {
+        let free = |(body, at): (usize, &BodyInStep<D>)| {
             let free = at.body.free;
             (0..MOTIONS).filter(move |&k| free[k]).map(move |k| (body, k))
         };
@@ -237,7 +241,7 @@ impl<const D: usize> RigidContacts<D> {
     /// du . K du of the symmetric part on this rank, N m.
     pub fn energy(&self, du: &[f64], halo: &dyn Halo) -> Exact {
         let motions = self.follow(du, false, halo);
-        let of = |point: &RigidPoint| {
+        let of = |point: &RigidPoint<D>| {
             let moved = self.moved(point, du, &motions);
             -moved.dot(&point.rate(&moved, false))
         };
@@ -252,8 +256,8 @@ impl<const D: usize> RigidContacts<D> {
             return Ok(0);
         }
         let motions = self.found(u, halo);
-        let doubt = (force, ROUNDING * self.edge);
-        let grips = self.points.iter().map(|point| point.corrected(&self.moved(point, u, &motions), doubt));
+        let (doubt, turns) = ((force, ROUNDING * self.edge), passes < TURNS);
+        let grips = self.points.iter().map(|point| point.corrected(&self.moved(point, u, &motions), doubt, turns));
         let grips: Vec<(Grip, f64)> = grips.collect();
         let share = if passes < AT_ONCE {
             0.0
@@ -282,7 +286,7 @@ impl<const D: usize> RigidContacts<D> {
         let mut work = [Exact::ZERO; 2];
         for point in &self.points {
             let moved = self.moved(point, u, &motions);
-            work[0].add(point.force(&moved).dot(&point.displacement::<D>(&self.offsets, u)));
+            work[0].add(point.force(&moved).dot(&point.displacement(&self.offsets, u)));
             work[1].add(0.5 * point.rubbed(&moved));
         }
         work
@@ -296,10 +300,10 @@ impl<const D: usize> RigidContacts<D> {
         }
         let (motions, mut carried) = (self.found(u, halo), vec![Vector::zeros(); count]);
         for point in &self.points {
-            let [_, along] = point.pushed(&self.moved(point, u, &motions));
-            let force = point.along() * along;
+            let (_, along) = point.pushed(&self.moved(point, u, &motions));
+            let force = point.vector(along);
             if force.norm_squared() > 0.0 {
-                (0..2).for_each(|component| carried[point.point][component] = force[component]);
+                carried[point.point] = force;
             }
         }
         Some(carried)
@@ -318,11 +322,11 @@ impl<const D: usize> RigidContacts<D> {
         for point in &self.points {
             let moved = self.moved(point, u, &motions);
             let gap = point.gap_after(&moved);
-            let [pushed, _] = point.pushed(&moved);
+            let (pushed, _) = point.pushed(&moved);
             let advance = point.carried_by(&motions[point.body]).norm().max(point.way);
             let touched = f64::from(u8::from(pushed > 0.0));
-            let work = point.force(&moved).dot(&point.displacement::<D>(&self.offsets, u));
-            let slipped = pushed.max(0.0) * point.slip(&moved).abs();
+            let work = point.force(&moved).dot(&point.displacement(&self.offsets, u));
+            let slipped = pushed.max(0.0) * point.slipped(&moved);
             let each = [touched, pushed.max(0.0), slipped, -point.rubbed(&moved), work];
             sums[5 * point.body..].iter_mut().zip(each).for_each(|(sum, value)| sum.add(value));
             let each = [-gap, -gap * touched / self.edge, advance * touched / self.edge];
@@ -356,7 +360,7 @@ impl<const D: usize> RigidContacts<D> {
     }
 
     /// The state of a body after the step.
-    fn state(&self, at: &BodyInStep, motions: &Vector<3>, (slip, work): (f64, f64)) -> RigidState {
+    fn state(&self, at: &BodyInStep<D>, motions: &Vector<3>, (slip, work): (f64, f64)) -> RigidState {
         let moved = at.predicted + motions;
         let mean = (moved - at.before.moved) / self.length;
         let velocity = at.flight.map_or(mean, |end| at.body.pick(&end, &mean));

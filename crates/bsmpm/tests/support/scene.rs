@@ -156,7 +156,7 @@ impl<K: Kinematics<D>, const D: usize> Scene<K, D> {
     }
 
     /// Adds a rigid body.
-    pub fn rigid(mut self, body: RigidBody) -> Self {
+    pub fn rigid(mut self, body: RigidBody<D>) -> Self {
         self.model.boundary.rigid.push(body);
         self.points.surface = self.model.boundary.surface();
         self

@@ -24,9 +24,9 @@ fn a_malformed_case_ends_with_65_and_its_line_and_key_and_leaves_nothing() {
 #[test]
 fn what_is_no_text_of_a_case_ends_with_65() {
     let scratch = Scratch::new();
-    scratch.write("case.toml", vec![b'#'; (1 << 20) + 1]);
+    scratch.write("case.toml", vec![b'#'; (1 << 24) + 1]);
     let output = scratch.mpirun(2, &["case.toml"]).expect(65);
-    output.says_once("1048576");
+    output.says_once("16777216");
     output.says_once("nothing was run or written");
     assert_eq!(scratch.entries(), ["case.toml"]);
 }

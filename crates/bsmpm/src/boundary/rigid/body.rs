@@ -6,17 +6,17 @@ use crate::tensor::Vector;
 
 /// Part of a body's size by which another one that only touches it may be in it.
 const TOUCHING: f64 = 1e-6;
-/// Motions of a body in the plane: along x, along y, and its rotation.
+/// Motions of a body: in the plane along x, along y, and its rotation; in space along x, y and z.
 pub const MOTIONS: usize = 3;
 
-/// A rigid body. Its three motions are those of its reference point along x and y, m, and its rotation about it, rad,
-/// counter-clockwise; per metre of thickness.
+/// A rigid body. Its three motions in the plane are those of its reference point along x and y, m, and its rotation
+/// about it, rad, counter-clockwise, and all is per metre of thickness; in space it does not turn.
 #[derive(Clone, Debug, PartialEq)]
-pub struct RigidBody {
+pub struct RigidBody<const D: usize = 2> {
     /// about the reference point, as it stands at the start
     pub outline: Outline,
     /// m  the reference point at the start, from the grid's lower corner; of a body with mass its centre
-    pub center: Vector<2>,
+    pub center: Vector<D>,
     /// -  coefficient of friction
     pub friction: f64,
     /// which motions follow from forces; the others are on the path
@@ -46,14 +46,14 @@ pub struct RigidState {
 
 /// Where a body is.
 #[derive(Clone, Copy, Debug)]
-pub struct Pose {
+pub struct Pose<const D: usize> {
     /// m  its reference point
-    pub center: Vector<2>,
+    pub center: Vector<D>,
     cos: f64,
     sin: f64,
 }
 
-impl RigidBody {
+impl<const D: usize> RigidBody<D> {
     /// Its state at the start.
     pub fn at_rest(&self) -> RigidState {
         RigidState { velocity: self.pick(&self.velocity, &Vector::zeros()), ..RigidState::default() }
@@ -65,8 +65,8 @@ impl RigidBody {
     }
 
     /// What acts on it at time `t` but for the soil: its load, and the force per mass `g`, m/s2.
-    pub fn acting(&self, t: f64, g: &Vector<2>) -> Vector<3> {
-        course(&self.load, t) + Vector::<3>::new(self.mass[0] * g[0], self.mass[1] * g[1], 0.0)
+    pub fn acting(&self, t: f64, g: &Vector<D>) -> Vector<3> {
+        course(&self.load, t) + Vector::<3>::from_fn(|k, _| if k < D { self.mass[k] * g[k] } else { 0.0 })
     }
 
     /// Whether any motion follows from forces.
@@ -84,33 +84,40 @@ impl RigidBody {
     pub fn reaches_into(&self, moved: &Vector<3>, (other, there): (&Self, &Vector<3>)) -> bool {
         let (own, others) = (self.pose(moved), other.pose(there));
         let apart = (own.center - others.center).norm() - self.outline.radius() - other.outline.radius();
-        let is_inside = |x: &Vector<2>| {
+        let is_inside = |x: &Vector<D>| {
             other.outline.nearest(&others.seen(&own.place(x))).distance < -TOUCHING * other.outline.radius()
         };
         apart < 0.0 && self.outline.places().iter().any(is_inside)
     }
 
     /// Where it is once it has `moved`.
-    pub fn pose(&self, moved: &Vector<3>) -> Pose {
-        let (sin, cos) = moved[2].sin_cos();
-        Pose { center: self.center + moved.fixed_rows::<2>(0), cos, sin }
+    pub fn pose(&self, moved: &Vector<3>) -> Pose<D> {
+        let (sin, cos) = if D == 2 { moved[2].sin_cos() } else { (0.0, 1.0) };
+        Pose { center: self.center + Vector::<D>::from_fn(|k, _| moved[k]), cos, sin }
     }
 }
 
-impl Pose {
+impl<const D: usize> Pose<D> {
     /// A vector of the body as it stood at the start, turned with it.
-    pub fn turned(&self, v: &Vector<2>) -> Vector<2> {
-        Vector::<2>::new(self.cos * v[0] - self.sin * v[1], self.sin * v[0] + self.cos * v[1])
+    pub fn turned(&self, v: &Vector<D>) -> Vector<D> {
+        self.rotated(v, self.sin)
+    }
+
+    fn rotated(&self, v: &Vector<D>, sin: f64) -> Vector<D> {
+        let mut turned = *v;
+        if D == 2 {
+            (turned[0], turned[1]) = (self.cos * v[0] - sin * v[1], sin * v[0] + self.cos * v[1]);
+        }
+        turned
     }
 
     /// A place as the body sees it, from its reference point and turned back.
-    pub fn seen(&self, x: &Vector<2>) -> Vector<2> {
-        let v = x - self.center;
-        Vector::<2>::new(self.cos * v[0] + self.sin * v[1], self.cos * v[1] - self.sin * v[0])
+    pub fn seen(&self, x: &Vector<D>) -> Vector<D> {
+        self.rotated(&(x - self.center), -self.sin)
     }
 
     /// Where a place that the body sees is.
-    pub fn place(&self, seen: &Vector<2>) -> Vector<2> {
+    pub fn place(&self, seen: &Vector<D>) -> Vector<D> {
         self.center + self.turned(seen)
     }
 }

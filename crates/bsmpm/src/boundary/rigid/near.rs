@@ -1,7 +1,7 @@
 //! Which points are near a rigid body in a step, how far from it, and what they start the step as.
 
 use super::body::{RigidBody, RigidState};
-use super::point::{Grip, RigidPoint};
+use super::point::{Grip, RigidPoint, along, tangents};
 use super::{BodyInStep, PENALTY, RigidContacts};
 use crate::error::StepError;
 use crate::grid::{Grid, Shape};
@@ -24,7 +24,7 @@ const STRETCH: [f64; 2] = [0.25, 1.5];
 /// What of the scene the bodies see.
 pub struct Surroundings<'a, const D: usize> {
     /// the bodies, and what they carry
-    pub bodies: (&'a [RigidBody], &'a [RigidState]),
+    pub bodies: (&'a [RigidBody<D>], &'a [RigidState]),
     /// parts of a cell that the points of a material reach to each side at the start, at most
     pub reach: &'a [f64],
     /// the grid
@@ -100,9 +100,12 @@ impl<const D: usize> RigidContacts<D> {
             contacts.moving = around.free.iter().enumerate().map(marked).collect();
         }
         let motions = vec![Vector::zeros(); bodies.len()];
-        let grip = |point: &RigidPoint| {
+        let grip = |point: &RigidPoint<D>| {
             let moved = contacts.moved(point, guess, &motions);
-            let least = if bodies[point.body].is_free() { point.gap } else { f64::INFINITY };
+            // What touches as the step begins goes on to, where a body moves freely or the outline bends: the guess is of
+            // another normal.
+            let goes_on = D == 3 || bodies[point.body].is_free();
+            let least = if goes_on { point.gap } else { f64::INFINITY };
             let is_met = point.gap_after(&moved).min(least) <= CLOSE * contacts.edge;
             if is_met { point.met(&moved) } else { Grip::Open }
         };
@@ -115,17 +118,17 @@ impl<const D: usize> RigidContacts<D> {
     /// Adds the points near a body; the distance of the nearest, m.
     fn gather(
         &mut self,
-        (number, at): (usize, &BodyInStep),
+        (number, at): (usize, &BodyInStep<D>),
         (around, young): (&Surroundings<'_, D>, &impl Fn(usize) -> f64),
         dt: f64,
     ) -> f64 {
         let (body, before, after) = (&at.body, at.body.pose(&at.before.moved), at.body.pose(&at.predicted));
         let (Surroundings { grid, shape, points, .. }, mut least) = (around, f64::INFINITY);
-        let longest = (0..2).map(|axis| longest_edge(grid, axis)).fold(0.0, f64::max);
+        let longest = (0..D).map(|axis| longest_edge(grid, axis)).fold(0.0, f64::max);
         let radius = body.outline.radius();
         for patch in shape.patches() {
             for p in patch.points.clone() {
-                let x = plane(&points.x[p]);
+                let x = points.x[p];
                 let bound = (x - after.center).norm() - radius - 2.0 * longest;
                 if bound > least.max(longest) {
                     continue;
@@ -147,9 +150,9 @@ impl<const D: usize> RigidContacts<D> {
                 }
                 let place = x - normal * reach;
                 let seen = before.seen(&place);
-                let along = Vector::<2>::new(-normal[1], normal[0]);
+                let tangents = tangents(&normal);
                 let step = after.place(&seen) - place;
-                let carried = points.grip.as_ref().map_or(0.0, |grip| along.dot(&plane(&grip[p])));
+                let carried = points.grip.as_ref().map_or([0.0; 2], |grip| along(&tangents, &grip[p]));
                 self.points.push(RigidPoint {
                     body: number,
                     point: p,
@@ -157,7 +160,7 @@ impl<const D: usize> RigidContacts<D> {
                     N: values(shape, p, &(place - x)),
                     normal,
                     gap,
-                    motion: along.dot(&step),
+                    motion: along(&tangents, &step),
                     way: step.norm(),
                     arm: after.turned(&seen),
                     stiffness: PENALTY * stiffness,
@@ -171,15 +174,10 @@ impl<const D: usize> RigidContacts<D> {
     }
 }
 
-impl BodyInStep {
+impl<const D: usize> BodyInStep<D> {
     /// With its motions as they are without the soil.
-    fn of<const D: usize>(
-        body: &RigidBody,
-        state: &RigidState,
-        (t, dt): (f64, f64),
-        around: &Surroundings<'_, D>,
-    ) -> Self {
-        let external = body.acting(t + dt, &plane(&around.body_force));
+    fn of(body: &RigidBody<D>, state: &RigidState, (t, dt): (f64, f64), around: &Surroundings<'_, D>) -> Self {
+        let external = body.acting(t + dt, &around.body_force);
         // Without inertia it goes on as it did: soil is expected to.
         let (mut step, mut inertia) = (state.velocity * dt, Vector::zeros());
         if around.dynamic {
@@ -205,11 +203,11 @@ impl BodyInStep {
 /// cut lie as near to a rigid one as the rule of their cell puts them, and are not thrown out.
 fn extents<const D: usize>(around: &Surroundings<'_, D>) -> Vec<f64> {
     let (bodies, states) = around.bodies;
-    let longest = (0..2).map(|axis| longest_edge(around.grid, axis)).fold(0.0, f64::max);
+    let longest = (0..D).map(|axis| longest_edge(around.grid, axis)).fold(0.0, f64::max);
     let of = |p: usize| {
         let left = bodies.iter().zip(states).map(|(body, state)| {
             let pose = body.pose(&state.moved);
-            let x = plane(&around.points.x[p]);
+            let x = around.points.x[p];
             if (x - pose.center).norm() > body.outline.radius() + 2.0 * longest {
                 return 1.0;
             }
@@ -223,15 +221,10 @@ fn extents<const D: usize>(around: &Surroundings<'_, D>) -> Vec<f64> {
 }
 
 /// How far a point and the body at it come in a step as they start it, m.
-fn comes<const D: usize>(point: &RigidPoint, at: &BodyInStep, around: &Surroundings<'_, D>, dt: f64) -> f64 {
-    let v = around.points.motion.as_ref().map_or_else(Vector::zeros, |motion| plane(&motion.v[point.point]));
+fn comes<const D: usize>(point: &RigidPoint<D>, at: &BodyInStep<D>, around: &Surroundings<'_, D>, dt: f64) -> f64 {
+    let v = around.points.motion.as_ref().map_or_else(Vector::zeros, |motion| motion.v[point.point]);
     let step = at.predicted - at.before.moved;
     dt * v.norm() + point.carried_by(&step).norm()
-}
-
-/// The components in the plane that the bodies are in.
-fn plane<const D: usize>(v: &Vector<D>) -> Vector<2> {
-    Vector::<2>::new(v[0], v[1])
 }
 
 /// m  longest edge of the cells along an axis.
@@ -242,7 +235,7 @@ fn longest_edge<const D: usize>(grid: &Grid<D>, axis: usize) -> f64 {
 
 /// m  how far a point reaches along a normal, by the ellipse in its box in the lattice of the cell that it was in at
 /// the start, deformed by its F; and an edge of that cell.
-fn reach<const D: usize>(around: &Surroundings<'_, D>, p: usize, normal: &Vector<2>) -> (f64, f64) {
+fn reach<const D: usize>(around: &Surroundings<'_, D>, p: usize, normal: &Vector<D>) -> (f64, f64) {
     let Surroundings { grid, points, reach, weight, .. } = around;
     let placed = points.x[p] - points.u[p];
     let placed = if grid.locate(&placed).is_some() { placed } else { points.x[p] };
@@ -253,8 +246,8 @@ fn reach<const D: usize>(around: &Surroundings<'_, D>, p: usize, normal: &Vector
     // A box that was cut holds less.
     let share = share * (points.volume[p] / weight(&placed) / box_volume).min(1.0).powf(1.0 / D as f64);
     let F = points.F.at(p);
-    let along = |j: usize| (F[(0, j)] * normal[0] + F[(1, j)] * normal[1]) * share * size[j];
-    let reach = (0..2).map(|j| along(j).powi(2)).sum::<f64>().sqrt();
+    let along = |j: usize| (0..D).map(|i| F[(i, j)] * normal[i]).sum::<f64>() * share * size[j];
+    let reach = (0..D).map(|j| along(j).powi(2)).sum::<f64>().sqrt();
     let edge = size.min();
     (reach.clamp(STRETCH[0] * share * edge, STRETCH[1] * share * size.max()), edge)
 }
@@ -262,8 +255,8 @@ fn reach<const D: usize>(around: &Surroundings<'_, D>, p: usize, normal: &Vector
 /// What the nodes of a point's cell have to say of a place beside it: N_I + grad N_I . (place - x), so that a force
 /// there keeps its moment. The functions themselves, gone on with to the place, would let a node that the point hardly
 /// touches take up all that is asked there; linear ones do so either way, and speak of the point alone.
-fn values<const D: usize>(shape: &Shape<D>, p: usize, offset: &Vector<2>) -> Vec<f64> {
+fn values<const D: usize>(shape: &Shape<D>, p: usize, offset: &Vector<D>) -> Vec<f64> {
     let reaches = if shape.width() > 2 { 1.0 } else { 0.0 };
-    let of = |(N, grad): (f64, Vector<D>)| N + reaches * (grad[0] * offset[0] + grad[1] * offset[1]);
+    let of = |(N, grad): (f64, Vector<D>)| N + reaches * grad.dot(offset);
     shape.of(p).into_iter().map(of).collect()
 }

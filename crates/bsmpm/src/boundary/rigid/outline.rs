@@ -1,5 +1,6 @@
 //! The outline of a rigid body: how far a place is from it, and what the body weighs by its shape.
 
+use super::terrain::Terrain;
 use crate::tensor::Vector;
 use std::f64::consts::PI;
 
@@ -14,17 +15,24 @@ const PLACES: usize = 32;
 pub enum Outline {
     /// Corners, counter-clockwise.
     Polygon(Vec<Vector<2>>),
-    /// Radius about the reference point.
+    /// Radius about the reference point; in space a sphere.
     Circle(f64),
+    /// In space: half edges of a cuboid about the reference point.
+    Box([f64; 3]),
+    /// In space: a polygon of the distance from the vertical through the reference point and the height; what reaches
+    /// that vertical goes on as its mirror image beyond it.
+    Revolved(Vec<Vector<2>>),
+    /// In space: what lies under heights, from the grid's lower corner.
+    Terrain(Box<Terrain>),
 }
 
 /// What is nearest to a place.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Nearest {
+pub struct Nearest<const D: usize = 2> {
     /// m  from the outline, negative inside
     pub distance: f64,
     /// unit normal of the outline, out of the body
-    pub normal: Vector<2>,
+    pub normal: Vector<D>,
 }
 
 /// Integrals over a shape.
@@ -40,13 +48,26 @@ pub struct Sizes {
 
 impl Outline {
     /// Of the place `x`, m from the reference point.
-    pub fn nearest(&self, x: &Vector<2>) -> Nearest {
+    pub fn nearest<const D: usize>(&self, x: &Vector<D>) -> Nearest<D> {
         match self {
             Self::Circle(radius) => {
-                let normal = x.try_normalize(ON * radius).unwrap_or_else(Vector::y);
+                let up = Vector::from_fn(|k, _| if k + 1 == D { 1.0 } else { 0.0 });
+                let normal = x.try_normalize(ON * radius).unwrap_or(up);
                 Nearest { distance: x.norm() - radius, normal }
             }
-            Self::Polygon(corners) => nearest_of(corners, x),
+            Self::Polygon(corners) => {
+                let Nearest { distance, normal } = nearest_of(corners, &Vector::<2>::new(x[0], x[1]));
+                Nearest { distance, normal: Vector::from_fn(|k, _| if k < 2 { normal[k] } else { 0.0 }) }
+            }
+            Self::Box(half) => nearest_of_box(half, x),
+            Self::Revolved(corners) => {
+                let r = x[0].hypot(x[1]);
+                let Nearest { distance, normal } = nearest_of(corners, &Vector::<2>::new(r, x[D - 1]));
+                let out = if r > 0.0 { [x[0] / r, x[1] / r] } else { [1.0, 0.0] };
+                let of = |k: usize| if k + 1 == D { normal[1] } else { normal[0] * out[k] };
+                Nearest { distance, normal: Vector::from_fn(|k, _| of(k)) }
+            }
+            Self::Terrain(terrain) => terrain.nearest(x),
         }
     }
 
@@ -54,13 +75,17 @@ impl Outline {
     pub fn radius(&self) -> f64 {
         match self {
             Self::Circle(radius) => *radius,
-            Self::Polygon(corners) => corners.iter().map(Vector::norm).fold(0.0, f64::max),
+            Self::Polygon(corners) | Self::Revolved(corners) => corners.iter().map(Vector::norm).fold(0.0, f64::max),
+            Self::Box(half) => Vector::<3>::from(*half).norm(),
+            Self::Terrain(_) => f64::INFINITY,
         }
     }
 
-    /// Places along it, corners among them.
-    pub fn places(&self) -> Vec<Vector<2>> {
-        match self {
+    /// Places along it, corners among them; of a plane.
+    pub fn places<const D: usize>(&self) -> Vec<Vector<D>> {
+        let places: Vec<Vector<2>> = match self {
+            _ if D != 2 => Vec::new(),
+            Self::Box(_) | Self::Revolved(_) | Self::Terrain(_) => Vec::new(),
             Self::Circle(radius) => {
                 let place = |k: usize| (k as f64 / PLACES as f64 * 2.0 * PI).sin_cos();
                 (0..PLACES).map(place).map(|(sin, cos)| Vector::<2>::new(cos, sin) * *radius).collect()
@@ -72,7 +97,8 @@ impl Outline {
                 };
                 edges(corners).flat_map(along).collect()
             }
-        }
+        };
+        places.into_iter().map(|place| Vector::from_fn(|k, _| place[k])).collect()
     }
 
     /// m3 per radian  that it sweeps about the axis x = `axis`, m from the reference point, beyond which its part is
@@ -100,10 +126,11 @@ impl Outline {
                 };
                 edges(corners).map(beyond).sum()
             }
+            Self::Box(_) | Self::Revolved(_) | Self::Terrain(_) => 0.0,
         }
     }
 
-    /// Area, centroid and polar moment.
+    /// Area, centroid and polar moment, of a plane; nothing of what has no mass of its own.
     pub fn sizes(&self) -> Sizes {
         match self {
             Self::Circle(radius) => {
@@ -120,8 +147,22 @@ impl Outline {
                 let centroid = first / area;
                 Sizes { area, centroid, polar: second - area * centroid.norm_squared() }
             }
+            Self::Box(_) | Self::Revolved(_) | Self::Terrain(_) => {
+                Sizes { area: 0.0, centroid: Vector::zeros(), polar: 0.0 }
+            }
         }
     }
+}
+
+fn nearest_of_box<const D: usize>(half: &[f64; 3], x: &Vector<D>) -> Nearest<D> {
+    let beyond = Vector::<D>::from_fn(|k, _| x[k].abs() - half[k]);
+    let outside = beyond.map(|part| part.max(0.0));
+    let sign = |k: usize| if x[k] < 0.0 { -1.0 } else { 1.0 };
+    if let Some(normal) = outside.try_normalize(0.0) {
+        return Nearest { distance: outside.norm(), normal: Vector::from_fn(|k, _| sign(k) * normal[k]) };
+    }
+    let face = beyond.imax();
+    Nearest { distance: beyond[face], normal: Vector::from_fn(|k, _| if k == face { sign(k) } else { 0.0 }) }
 }
 
 /// Edges of a closed polygon, from corner to corner.

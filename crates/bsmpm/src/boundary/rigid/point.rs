@@ -10,13 +10,27 @@ pub enum Grip {
     Open,
     /// On it, and held along it.
     Stick,
-    /// On it, and rubbed along it with this sign; 0 without friction.
-    Slip(f64),
+    /// On it, and rubbed towards here along it: a unit vector of its tangents' components; 0 without friction.
+    Slip(Along),
 }
+
+/// Components along the tangents of an outline: of a plane the first.
+pub type Along = [f64; 2];
+
+fn size(along: Along) -> f64 {
+    along[0].hypot(along[1])
+}
+
+fn product(a: Along, b: Along) -> f64 {
+    if b[1] == 0.0 { a[0] * b[0] } else { a[0] * b[0] + a[1] * b[1] }
+}
+
+/// Part of the friction by which its direction in space may be off before it is turned.
+const TURNED: f64 = 0.1;
 
 /// A point near a body. Forces on it act where its box comes nearest to the outline, by the functions of its own cell.
 #[derive(Clone, Debug)]
-pub(super) struct RigidPoint {
+pub(super) struct RigidPoint<const D: usize> {
     /// number of the body
     pub body: usize,
     /// number of the point
@@ -26,36 +40,63 @@ pub(super) struct RigidPoint {
     /// N_I of the cell's nodes at that place
     pub N: Vec<f64>,
     /// unit normal out of the body, at the end of its motion
-    pub normal: Vector<2>,
+    pub normal: Vector<D>,
     /// m  from the body as it is at the end of the step, of the point as it is at the start
     pub gap: f64,
     /// m  of the body along the outline in the step, as predicted
-    pub motion: f64,
+    pub motion: Along,
     /// m  of the body there in any direction
     pub way: f64,
     /// m  from the body's reference point to the place, at the end
-    pub arm: Vector<2>,
+    pub arm: Vector<D>,
     /// N/m
     pub stiffness: f64,
     /// -
     pub friction: f64,
     /// N  along the outline, from the last step
-    pub carried: f64,
+    pub carried: Along,
     /// what it does
     pub grip: Grip,
 }
 
-impl RigidPoint {
-    /// Along the outline: the normal turned by a right angle.
-    pub fn along(&self) -> Vector<2> {
-        Vector::<2>::new(-self.normal[1], self.normal[0])
+/// The tangents of an outline: of a plane the normal turned by a right angle.
+pub(super) fn tangents<const D: usize>(normal: &Vector<D>) -> [Vector<D>; 2] {
+    let mut tangents = [Vector::zeros(); 2];
+    if D == 2 {
+        (tangents[0][0], tangents[0][1]) = (-normal[1], normal[0]);
+        return tangents;
+    }
+    // The axis that is least along the normal, without its part along it; and what is across both.
+    let least = (0..D).min_by(|a, b| normal[*a].abs().total_cmp(&normal[*b].abs())).unwrap_or(0);
+    let mut axis = Vector::<D>::zeros();
+    axis[least] = 1.0;
+    let first = (axis - normal * normal[least]).normalize();
+    let across = |[i, j]: [usize; 2]| normal[i] * first[j] - normal[j] * first[i];
+    let second = [[1, 2], [2, 0], [0, 1]].map(across);
+    [first, Vector::from_fn(|k, _| second[k])]
+}
+
+/// Components of a vector along tangents.
+pub(super) fn along<const D: usize>(tangents: &[Vector<D>; 2], v: &Vector<D>) -> Along {
+    [tangents[0].dot(v), if D == 2 { 0.0 } else { tangents[1].dot(v) }]
+}
+
+impl<const D: usize> RigidPoint<D> {
+    /// The vector of components along the outline.
+    pub fn vector(&self, along: Along) -> Vector<D> {
+        let [first, second] = tangents(&self.normal);
+        if D == 2 { first * along[0] } else { first * along[0] + second * along[1] }
+    }
+
+    fn components(&self, v: &Vector<D>) -> Along {
+        along(&tangents(&self.normal), v)
     }
 
     /// m  of the material at the place.
-    pub fn displacement<const D: usize>(&self, offsets: &[usize], u: &[f64]) -> Vector<2> {
-        let mut sum = Vector::<2>::zeros();
+    pub fn displacement(&self, offsets: &[usize], u: &[f64]) -> Vector<D> {
+        let mut sum = Vector::<D>::zeros();
         for (N, offset) in self.N.iter().zip(offsets) {
-            for component in 0..2 {
+            for component in 0..D {
                 sum[component] += N * u[Nodal::<D>::at(self.first_node + offset, component)];
             }
         }
@@ -63,106 +104,146 @@ impl RigidPoint {
     }
 
     /// m  of the body's place, of small motions of the body.
-    pub fn carried_by(&self, motions: &Vector<3>) -> Vector<2> {
-        Vector::<2>::new(motions[0] - motions[2] * self.arm[1], motions[1] + motions[2] * self.arm[0])
+    pub fn carried_by(&self, motions: &Vector<3>) -> Vector<D> {
+        let mut carried = Vector::<D>::from_fn(|k, _| motions[k]);
+        if D == 2 {
+            carried[0] -= motions[2] * self.arm[1];
+            carried[1] += motions[2] * self.arm[0];
+        }
+        carried
     }
 
-    /// N, N, N m  of a force at the place, as the body's motions feel it.
-    pub fn on_motions(&self, force: &Vector<2>) -> Vector<3> {
-        Vector::<3>::new(force[0], force[1], self.arm.perp(force))
+    /// N, N, N m  of a force at the place, as the body's motions feel it; in space N.
+    pub fn on_motions(&self, force: &Vector<D>) -> Vector<3> {
+        let turns = self.arm[0] * force[1] - self.arm[1] * force[0];
+        Vector::<3>::from_fn(|k, _| if k < D { force[k] } else { turns })
     }
 
     /// m  from the outline, of material that has `moved` as seen from the body.
-    pub fn gap_after(&self, moved: &Vector<2>) -> f64 {
+    pub fn gap_after(&self, moved: &Vector<D>) -> f64 {
         self.gap + self.normal.dot(moved)
     }
 
     /// m  of the material along the outline.
-    pub fn slip(&self, moved: &Vector<2>) -> f64 {
-        self.along().dot(moved) - self.motion
+    pub fn slip(&self, moved: &Vector<D>) -> Along {
+        let along = self.components(moved);
+        [along[0] - self.motion[0], along[1] - self.motion[1]]
+    }
+
+    /// m  its length.
+    pub fn slipped(&self, moved: &Vector<D>) -> f64 {
+        size(self.slip(moved))
     }
 
     /// N  normal and tangential force on the material, that of its status.
-    pub fn pushed(&self, moved: &Vector<2>) -> [f64; 2] {
+    pub fn pushed(&self, moved: &Vector<D>) -> (f64, Along) {
         let normal = -self.stiffness * self.gap_after(moved);
         match self.grip {
-            Grip::Open => [0.0; 2],
-            Grip::Stick => [normal, self.held(moved)],
-            Grip::Slip(sign) => [normal, sign * self.friction * normal],
+            Grip::Open => (0.0, [0.0; 2]),
+            Grip::Stick => (normal, self.held(moved)),
+            Grip::Slip(towards) => (normal, towards.map(|part| part * self.friction * normal)),
         }
     }
 
     /// N  tangential force if it sticks.
-    fn held(&self, moved: &Vector<2>) -> f64 {
-        self.carried - self.stiffness * self.slip(moved)
+    fn held(&self, moved: &Vector<D>) -> Along {
+        let slip = self.slip(moved);
+        [0, 1].map(|k| self.carried[k] - self.stiffness * slip[k])
     }
 
     /// N  force on the material.
-    pub fn force(&self, moved: &Vector<2>) -> Vector<2> {
-        let [normal, along] = self.pushed(moved);
-        self.normal * normal + self.along() * along
+    pub fn force(&self, moved: &Vector<D>) -> Vector<D> {
+        let (normal, along) = self.pushed(moved);
+        self.normal * normal + self.vector(along)
     }
 
     /// N  change of the force with a change of what has moved; `whole`: with the part that is not symmetric.
-    pub fn rate(&self, moved: &Vector<2>, whole: bool) -> Vector<2> {
+    pub fn rate(&self, moved: &Vector<D>, whole: bool) -> Vector<D> {
         let normal = -self.stiffness * self.normal.dot(moved);
         match self.grip {
             Grip::Open => Vector::zeros(),
-            Grip::Stick => self.normal * normal - self.along() * (self.stiffness * self.along().dot(moved)),
-            Grip::Slip(sign) if whole => self.normal * normal + self.along() * (sign * self.friction * normal),
+            Grip::Stick => {
+                let held = self.components(moved).map(|along| self.stiffness * along);
+                self.normal * normal - self.vector(held)
+            }
+            Grip::Slip(towards) if whole => {
+                self.normal * normal + self.vector(towards.map(|part| part * self.friction * normal))
+            }
             Grip::Slip(_) => self.normal * normal,
         }
     }
 
     /// N m  friction's work on what slides, not positive; 0 where nothing does.
-    pub fn rubbed(&self, moved: &Vector<2>) -> f64 {
+    pub fn rubbed(&self, moved: &Vector<D>) -> f64 {
         match self.grip {
-            Grip::Slip(_) => self.pushed(moved)[1] * self.slip(moved),
+            Grip::Slip(_) => product(self.pushed(moved).1, self.slip(moved)),
             Grip::Open | Grip::Stick => 0.0,
         }
     }
 
     /// The status that a displacement asks for that closes the gap.
-    pub fn met(&self, moved: &Vector<2>) -> Grip {
+    pub fn met(&self, moved: &Vector<D>) -> Grip {
         let (held, limit) = (self.held(moved), -self.friction * self.stiffness * self.gap_after(moved));
         match self.friction {
-            0.0 => Grip::Slip(0.0),
-            _ if held.abs() > limit.max(0.0) => Grip::Slip(held.signum()),
+            0.0 => Grip::Slip([0.0; 2]),
+            _ if size(held) > limit.max(0.0) => Grip::Slip(held.map(|part| part / size(held))),
             _ => Grip::Stick,
         }
     }
 
     /// The status that a displacement asks for, as far as forces are known to `force`, N, and lengths to `length`, m;
     /// and by how much it contradicts the one that is, N: of what has moved too far, what soil would have resisted
-    /// with.
-    pub fn corrected(&self, moved: &Vector<2>, (force, length): (f64, f64)) -> (Grip, f64) {
+    /// with. Friction in space is turned where `turns` says so.
+    pub fn corrected(&self, moved: &Vector<D>, (force, length): (f64, f64), turns: bool) -> (Grip, f64) {
         let soil = 1.0 / super::PENALTY;
         if self.grip == Grip::Open {
             let depth = -self.gap_after(moved);
             return if depth > length { (self.met(moved), soil * self.stiffness * depth) } else { (Grip::Open, 0.0) };
         }
-        let [normal, along] = self.pushed(moved);
+        let (normal, along) = self.pushed(moved);
         let limit = self.friction * normal.max(0.0);
         match self.grip {
             _ if normal < -force => (Grip::Open, -normal),
-            Grip::Stick if along.abs() > limit + force => (Grip::Slip(along.signum()), along.abs() - limit),
-            Grip::Slip(sign) if sign != 0.0 && sign * self.held(moved) < limit - force => {
-                (Grip::Stick, soil * (limit - sign * self.held(moved)))
+            Grip::Stick if size(along) > limit + force => {
+                (Grip::Slip(along.map(|part| part / size(along))), size(along) - limit)
             }
+            Grip::Slip(towards) if towards != [0.0; 2] => self.rubbed_on(towards, moved, (limit, force), turns),
             grip => (grip, 0.0),
         }
     }
 
+    /// As [`Self::corrected`] of what slides.
+    fn rubbed_on(&self, towards: Along, moved: &Vector<D>, (limit, force): (f64, f64), turns: bool) -> (Grip, f64) {
+        let (soil, held) = (1.0 / super::PENALTY, self.held(moved));
+        let against = product(towards, held);
+        let sticks = if D == 2 { against < limit - force } else { size(held) < limit - force || against <= 0.0 };
+        if sticks {
+            return (Grip::Stick, soil * (limit - against));
+        }
+        if D == 2 || !turns {
+            return (self.grip, 0.0);
+        }
+        // Towards where soil would push back: turned at once to the slip, what hardly slides goes to and fro.
+        let slip = self.slip(moved);
+        let pushed = [0, 1].map(|k| limit * towards[k] - soil * self.stiffness * slip[k]);
+        if size(pushed) <= 0.0 {
+            return (self.grip, 0.0);
+        }
+        let next = pushed.map(|part| part / size(pushed));
+        let off = limit * (next[0] - towards[0]).hypot(next[1] - towards[1]);
+        if off > TURNED * limit + force { (Grip::Slip(next), off) } else { (self.grip, 0.0) }
+    }
+
     /// Row-major square of the symmetric part of its stiffness, D unknowns for each node of the cell.
-    pub fn block<const D: usize>(&self) -> Vec<f64> {
+    pub fn block(&self) -> Vec<f64> {
         let order = self.N.len() * D;
         let mut block = vec![0.0; order * order];
         let across = |j: usize| -self.rate(&Vector::from_fn(|i, _| f64::from(u8::from(i == j))), false);
-        let columns: [Vector<2>; 2] = std::array::from_fn(across);
+        let columns: [Vector<D>; D] = std::array::from_fn(across);
         for (a, N_a) in self.N.iter().enumerate() {
             for (b, N_b) in self.N.iter().enumerate() {
                 for (j, column) in columns.iter().enumerate() {
-                    for i in 0..2 {
+                    for i in 0..D {
                         block[(a * D + i) * order + b * D + j] = N_a * N_b * column[i];
                     }
                 }

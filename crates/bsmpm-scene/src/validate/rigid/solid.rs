@@ -1,0 +1,159 @@
+//! Rigid bodies in space: they rest, or move on a way without turning.
+
+use super::super::site::AroundStrip;
+use super::{OVERLAP, Solidity, friction, way};
+use crate::case::{Case, Rigid, RigidShape, RigidSolid};
+use crate::record::Record;
+use crate::region::Raster;
+use crate::report::Report;
+use bsmpm::boundary::rigid::Outline;
+use bsmpm::tensor::Vector;
+
+/// Keys that only a plane knows.
+const IN_A_PLANE: &[&str] = &[
+    "polygon",
+    "circle",
+    "rotation",
+    "about",
+    "free",
+    "mass",
+    "density",
+    "inertia",
+    "force",
+    "moment",
+    "amplitude",
+    "start_velocity",
+    "start_spin",
+];
+/// Places along an edge of a body's box at which it is looked for.
+const PLACES: usize = 24;
+
+/// A rigid body; `None` after an error.
+pub(super) fn read(
+    record: &Record,
+    around: AroundStrip<'_>,
+    factor: Option<f64>,
+    report: &mut Report<'_>,
+) -> Option<Rigid> {
+    if let Some(key) = IN_A_PLANE.iter().find(|key| record.gives(key)) {
+        let message = "is of a plane: a rigid body of a solid is a box, sphere, revolve or terrain that rests, or moves by \
+                       displacement, velocity or path without turning";
+        record.error(key, message, report);
+        return None;
+    }
+    let (shape, path) = (shape(record, report), way(record, around.end, report));
+    let rigid = Rigid {
+        name: record.text("name")?.to_owned(),
+        shape: RigidShape::InSpace(shape?),
+        about: [0.0; 2],
+        friction: friction(record, factor, report)?,
+        path: path?,
+        rotation: Vec::new(),
+        free: [false; 3],
+        mass: [0.0; 2],
+        force: [0.0; 3],
+        ramp: 0.0,
+        amplitude: Vec::new(),
+        velocity: [0.0; 3],
+    };
+    Some(rigid)
+}
+
+fn shape(record: &Record, report: &mut Report<'_>) -> Option<RigidSolid> {
+    if let Some(shape) = record.record("sphere").filter(|_| record.gives("sphere")) {
+        return Some(RigidSolid::Sphere { center: shape.vector("center")?, radius: shape.number("radius")? });
+    }
+    if let Some(shape) = record.record("revolve").filter(|_| record.gives("revolve")) {
+        return revolved(shape, report);
+    }
+    if let Some(shape) = record.record("terrain").filter(|_| record.gives("terrain")) {
+        let rows = shape.rows("top")?.iter();
+        let heights: Vec<[f64; 3]> = rows.map(|row| [row.numbers[0], row.numbers[1], row.numbers[2]]).collect();
+        return match Raster::new(&heights, f64::NEG_INFINITY) {
+            Ok(raster) => Some(RigidSolid::Terrain(raster.surface())),
+            Err(message) => {
+                shape.error("top", message, report);
+                None
+            }
+        };
+    }
+    let shape = record.record("box")?;
+    let (lower, upper) = (shape.vector("lower")?, shape.vector("upper")?);
+    if (0..3).any(|axis| lower[axis] >= upper[axis]) {
+        shape.error("upper", format!("{upper:?} is not above lower = {lower:?}: the body is empty"), report);
+        return None;
+    }
+    Some(RigidSolid::Box { lower, upper })
+}
+
+/// A polygon about a vertical, with its mirror image where it reaches that.
+fn revolved(shape: &Record, report: &mut Report<'_>) -> Option<RigidSolid> {
+    let RigidShape::Polygon(mut corners) = super::shape::rigid(shape, report)? else {
+        shape.error("circle", "not available for a rigid body: give a polygon, or a sphere", report);
+        return None;
+    };
+    if let Some(corner) = corners.iter().find(|corner| corner[0] < 0.0) {
+        shape.error("polygon", format!("it reaches to the radius {}; allowed: radius >= 0", corner[0]), report);
+        return None;
+    }
+    let count = corners.len();
+    let on_axis = (0..count).find(|k| corners[*k][0] == 0.0 && corners[(k + 1) % count][0] == 0.0);
+    if let Some(last) = on_axis {
+        corners.rotate_left((last + 1) % count);
+        let mirrored: Vec<[f64; 2]> = corners[1..count - 1].iter().rev().map(|[r, z]| [-r, *z]).collect();
+        corners.extend(mirrored);
+    }
+    Some(RigidSolid::Revolved { about: shape.pair("about")?, corners })
+}
+
+/// What of a rigid body in space the cells and steps must resolve.
+pub(super) fn solidity(solid: &RigidSolid) -> Solidity {
+    let outline = match solid.outline() {
+        Outline::Revolved(corners) => Outline::Polygon(corners),
+        outline => outline,
+    };
+    let thickness = match solid {
+        RigidSolid::Box { lower, upper } => (0..3).map(|k| upper[k] - lower[k]).fold(f64::INFINITY, f64::min),
+        RigidSolid::Sphere { radius, .. } => 2.0 * radius,
+        RigidSolid::Revolved { corners, .. } => super::thickness(corners),
+        RigidSolid::Terrain(_) => f64::INFINITY,
+    };
+    Solidity { outline, thickness, corner: [solid.reference()[0], solid.reference()[2]] }
+}
+
+/// A body is not in it at the start, and its outline lies within the heights that are given.
+pub(super) fn check(case: &Case, (rigid, solid): (&Rigid, &RigidSolid), record: &Record, report: &mut Report<'_>) {
+    let cell = case.grid.axes.iter().map(|axis| axis.shortest()).fold(f64::INFINITY, f64::min);
+    let key = ["box", "sphere", "revolve", "terrain"].into_iter().find(|key| record.gives(key)).unwrap_or("box");
+    let body = crate::surfaces::rigid_body::<3>(rigid, [0.0; 3], case.geometry);
+    let depth = |at: [f64; 3]| -body.outline.nearest(&body.pose(&Vector::zeros()).seen(&Vector::from(at))).distance;
+    for (number, of) in case.bodies.iter().enumerate() {
+        let [lower, upper] = of.region.corners();
+        let place = |k: [usize; 3]| -> [f64; 3] {
+            std::array::from_fn(|axis| {
+                lower[axis] + (k[axis] as f64 + 0.5) / PLACES as f64 * (upper[axis] - lower[axis])
+            })
+        };
+        let places = (0..PLACES.pow(3)).map(|n| place([n / PLACES / PLACES, n / PLACES % PLACES, n % PLACES]));
+        let mut inside = places.filter(|at| of.region.contains_in_space(*at) && depth(*at) > OVERLAP * cell);
+        if let Some([x, y, z]) = inside.next() {
+            let message = format!(
+                "body.{number} is in it at [{x:.4}, {y:.4}, {z:.4}], by more than {OVERLAP} cells; subtract it from that body"
+            );
+            record.error(key, message, report);
+        }
+    }
+    let RigidSolid::Terrain(terrain) = solid else { return };
+    let far = |axis: usize| terrain.lower[axis] + (terrain.count[axis] - 1) as f64 * terrain.spacing[axis];
+    let outside = |axis: usize| {
+        let (lower, upper) =
+            (case.grid.axes[axis].lower(), case.grid.axes[axis].lower() + case.grid.axes[axis].length());
+        terrain.lower[axis] > lower + 0.5 * cell || far(axis) < upper - 0.5 * cell
+    };
+    if (0..2).any(outside) {
+        report.warn(format!(
+            "{}: the raster ends inside the grid; beyond it the surface is taken to go on level",
+            record.path_of(key)
+        ));
+    }
+}

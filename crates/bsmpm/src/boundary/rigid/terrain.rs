@@ -1,0 +1,111 @@
+//! A rigid surface over the plane of x and y: heights at the posts of a regular raster, bilinear between them.
+
+use super::outline::Nearest;
+use crate::tensor::Vector;
+
+/// Searches for the foot of the perpendicular.
+const SEARCHES: usize = 3;
+
+/// Heights at posts; beyond them it goes on level.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Terrain {
+    /// m  the first post, from the grid's lower corner
+    pub lower: [f64; 2],
+    /// m  between posts
+    pub spacing: [f64; 2],
+    /// posts along x and y, at least two each
+    pub count: [usize; 2],
+    /// m  of every post, x running fastest
+    pub heights: Vec<f64>,
+}
+
+impl Terrain {
+    /// The post below a place along an axis, and the part of the spacing beyond it.
+    fn post(&self, axis: usize, at: f64) -> (usize, f64) {
+        let last = (self.count[axis] - 1) as f64;
+        let part = ((at - self.lower[axis]) / self.spacing[axis]).clamp(0.0, last);
+        let post = (part as usize).min(self.count[axis] - 2);
+        (post, part - post as f64)
+    }
+
+    /// Bilinear between what posts have.
+    fn between(&self, [x, y]: [f64; 2], of: impl Fn(usize, usize) -> f64) -> f64 {
+        let ((i, s), (j, t)) = (self.post(0, x), self.post(1, y));
+        let row = |j: usize| (1.0 - s) * of(i, j) + s * of(i + 1, j);
+        (1.0 - t) * row(j) + t * row(j + 1)
+    }
+
+    /// m  over a place, m from the grid's lower corner.
+    pub fn height(&self, at: [f64; 2]) -> f64 {
+        self.between(at, |i, j| self.heights[j * self.count[0] + i])
+    }
+
+    /// Slope along an axis: central differences at the posts, bilinear between them, so that normals do not jump where
+    /// the heights have a kink.
+    fn slope(&self, at: [f64; 2], axis: usize) -> f64 {
+        let of = |i: usize, j: usize| {
+            let post = [i, j];
+            let (before, after) = (post[axis].saturating_sub(1), (post[axis] + 1).min(self.count[axis] - 1));
+            let height = |k: usize| {
+                let [i, j] = if axis == 0 { [k, j] } else { [i, k] };
+                self.heights[j * self.count[0] + i]
+            };
+            (height(after) - height(before)) / ((after - before) as f64 * self.spacing[axis])
+        };
+        self.between(at, of)
+    }
+
+    /// What is nearest to a place (m, from the grid's lower corner): the foot of a perpendicular, found in a few
+    /// searches from the place below.
+    pub(super) fn nearest<const D: usize>(&self, x: &Vector<D>) -> Nearest<D> {
+        let mut foot = [x[0], x[1]];
+        let mut found = Nearest { distance: 0.0, normal: Vector::zeros() };
+        for _ in 0..SEARCHES {
+            let (height, slopes) = (self.height(foot), [0, 1].map(|axis| self.slope(foot, axis)));
+            let size = (1.0 + slopes[0].powi(2) + slopes[1].powi(2)).sqrt();
+            let normal = Vector::<D>::from_fn(|k, _| if k + 1 == D { 1.0 } else { -slopes[k] } / size);
+            // The distance from the plane through the foot.
+            let from = Vector::<D>::from_fn(|k, _| if k + 1 == D { x[k] - height } else { x[k] - foot[k] });
+            found = Nearest { distance: normal.dot(&from), normal };
+            foot = [0, 1].map(|axis| x[axis] - found.distance * normal[axis]);
+        }
+        found
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(height: impl Fn(f64, f64) -> f64) -> Terrain {
+        let posts = (0..11 * 11).map(|k| [(k % 11) as f64 * 0.5, (k / 11) as f64 * 0.5]);
+        Terrain {
+            lower: [0.0; 2],
+            spacing: [0.5; 2],
+            count: [11; 2],
+            heights: posts.map(|[x, y]| height(x, y)).collect(),
+        }
+    }
+
+    #[test]
+    fn of_a_plane_distance_and_normal_are_exact() {
+        let plane = of(|x, y| 1.0 + 0.5 * x - 0.25 * y);
+        let normal = Vector::<3>::new(-0.5, 0.25, 1.0).normalize();
+        for (at, distance) in [([2.2, 3.1], 0.3), ([1.0, 2.5], -0.2), ([2.5, 2.5], 0.0)] {
+            let foot = Vector::<3>::new(at[0], at[1], 1.0 + 0.5 * at[0] - 0.25 * at[1]);
+            let found = plane.nearest(&(foot + normal * distance));
+            assert!((found.distance - distance).abs() < 1e-14 && (found.normal - normal).norm() < 1e-14);
+        }
+    }
+
+    #[test]
+    fn of_a_bowl_the_foot_is_found() {
+        // z = r2/10 about (2.5, 2.5): from a place on a normal, in a raster that is a chord of it.
+        let bowl = of(|x, y| ((x - 2.5).powi(2) + (y - 2.5).powi(2)) / 10.0);
+        let foot = Vector::<3>::new(3.5, 2.5, 0.1);
+        let normal = Vector::<3>::new(-0.2, 0.0, 1.0).normalize();
+        let found = bowl.nearest(&(foot + normal * 0.6));
+        assert!((found.distance - 0.6).abs() < 1e-3, "{}", found.distance);
+        assert!((found.normal - normal).norm() < 1e-2, "{}", found.normal);
+    }
+}
