@@ -1,4 +1,5 @@
-//! Rigid bodies of any polygon, circles, and simple shapes and terrain in space, that push and rub the material points at them and do not pull.
+//! Rigid bodies of any polygon, circles, and in space simple shapes and terrain, that push and rub the material
+//! points at them and do not pull.
 #![doc = include_str!("rigid.md")]
 
 mod body;

@@ -102,8 +102,8 @@ impl<const D: usize> RigidContacts<D> {
         let motions = vec![Vector::zeros(); bodies.len()];
         let grip = |point: &RigidPoint<D>| {
             let moved = contacts.moved(point, guess, &motions);
-            // What touches as the step begins goes on to, where a body moves freely or the outline bends: the guess is of
-            // another normal.
+            // What touches as the step begins goes on to, where a body moves freely or the outline bends: the guess is
+            // of another normal.
             let goes_on = D == 3 || bodies[point.body].is_free();
             let least = if goes_on { point.gap } else { f64::INFINITY };
             let is_met = point.gap_after(&moved).min(least) <= CLOSE * contacts.edge;

@@ -67,7 +67,10 @@ impl Outline {
                 let of = |k: usize| if k + 1 == D { normal[1] } else { normal[0] * out[k] };
                 Nearest { distance, normal: Vector::from_fn(|k, _| of(k)) }
             }
-            Self::Terrain(terrain) => terrain.nearest(x),
+            Self::Terrain(terrain) => {
+                let (distance, normal) = terrain.nearest(x);
+                Nearest { distance, normal }
+            }
         }
     }
 

@@ -1,6 +1,5 @@
 //! A rigid surface over the plane of x and y: heights at the posts of a regular raster, bilinear between them.
 
-use super::outline::Nearest;
 use crate::tensor::Vector;
 
 /// Searches for the foot of the perpendicular.
@@ -55,19 +54,19 @@ impl Terrain {
         self.between(at, of)
     }
 
-    /// What is nearest to a place (m, from the grid's lower corner): the foot of a perpendicular, found in a few
-    /// searches from the place below.
-    pub(super) fn nearest<const D: usize>(&self, x: &Vector<D>) -> Nearest<D> {
+    /// Distance (m) of a place (m, from the grid's lower corner) and the unit normal there: at the foot of a
+    /// perpendicular, found in a few searches from the place below.
+    pub(super) fn nearest<const D: usize>(&self, x: &Vector<D>) -> (f64, Vector<D>) {
         let mut foot = [x[0], x[1]];
-        let mut found = Nearest { distance: 0.0, normal: Vector::zeros() };
+        let mut found = (0.0, Vector::zeros());
         for _ in 0..SEARCHES {
             let (height, slopes) = (self.height(foot), [0, 1].map(|axis| self.slope(foot, axis)));
             let size = (1.0 + slopes[0].powi(2) + slopes[1].powi(2)).sqrt();
             let normal = Vector::<D>::from_fn(|k, _| if k + 1 == D { 1.0 } else { -slopes[k] } / size);
             // The distance from the plane through the foot.
             let from = Vector::<D>::from_fn(|k, _| if k + 1 == D { x[k] - height } else { x[k] - foot[k] });
-            found = Nearest { distance: normal.dot(&from), normal };
-            foot = [0, 1].map(|axis| x[axis] - found.distance * normal[axis]);
+            found = (normal.dot(&from), normal);
+            foot = [0, 1].map(|axis| x[axis] - found.0 * normal[axis]);
         }
         found
     }
@@ -94,7 +93,7 @@ mod tests {
         for (at, distance) in [([2.2, 3.1], 0.3), ([1.0, 2.5], -0.2), ([2.5, 2.5], 0.0)] {
             let foot = Vector::<3>::new(at[0], at[1], 1.0 + 0.5 * at[0] - 0.25 * at[1]);
             let found = plane.nearest(&(foot + normal * distance));
-            assert!((found.distance - distance).abs() < 1e-14 && (found.normal - normal).norm() < 1e-14);
+            assert!((found.0 - distance).abs() < 1e-14 && (found.1 - normal).norm() < 1e-14);
         }
     }
 
@@ -105,7 +104,7 @@ mod tests {
         let foot = Vector::<3>::new(3.5, 2.5, 0.1);
         let normal = Vector::<3>::new(-0.2, 0.0, 1.0).normalize();
         let found = bowl.nearest(&(foot + normal * 0.6));
-        assert!((found.distance - 0.6).abs() < 1e-3, "{}", found.distance);
-        assert!((found.normal - normal).norm() < 1e-2, "{}", found.normal);
+        assert!((found.0 - 0.6).abs() < 1e-3, "{}", found.0);
+        assert!((found.1 - normal).norm() < 1e-2, "{}", found.1);
     }
 }
