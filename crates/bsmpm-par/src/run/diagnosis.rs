@@ -5,7 +5,7 @@ use bsmpm::error::{SolveError, StepError};
 use bsmpm::method::Criteria;
 use bsmpm_io::failure::{FailureMeasures, FailureReport};
 use bsmpm_io::manifest::Worst;
-use bsmpm_scene::{Case, GridSpec};
+use bsmpm_scene::{Case, GridSpec, Initial};
 use mpi::topology::{Communicator, SimpleCommunicator};
 use mpi::traits::CommunicatorCollectives;
 
@@ -129,6 +129,11 @@ fn advice(error: &StepError, case: &Case) -> Vec<String> {
             "drains and inflows belong where the soil at the surface has a permeability: in a part of it that has none \
              nothing flows",
         ],
+        StepError::Solve(SolveError::Failed(_)) if starts_at_rest(case) && case.solver.background == 0.0 => &[
+            "[solver] background = 1e-4: in the state at rest no inertia holds nearly empty cells, and an iteration does not \
+             come to an end with them",
+            "[solver] linear = \"direct\"",
+        ],
         StepError::Solve(SolveError::Failed(_) | SolveError::NotFinite | SolveError::Residual(_)) => &[
             "is every body held? In a quasi-static analysis nothing else stops a rigid motion",
             "another factorisation: [solver] linear = { factor = \"mumps\" }, and a larger [solver] background",
@@ -137,6 +142,11 @@ fn advice(error: &StepError, case: &Case) -> Vec<String> {
         StepError::Interrupted => &[],
     };
     lines.iter().map(|line| (*line).to_owned()).collect()
+}
+
+/// Whether equilibrium is sought before the first step.
+fn starts_at_rest(case: &Case) -> bool {
+    case.settles || case.initial == Some(Initial::Elastic)
 }
 
 /// What to try where both measures did not fall below their tolerances; `material`: the one that the force measure is
