@@ -160,7 +160,9 @@ pub fn drain_places(case: &Case) -> Vec<DrainPlace> {
     let (mut faces, mut surfaces) = (0.., 0..);
     let place = |drain: &crate::Drain| match drain.site {
         DrainSite::Face(_) => faces.next().map(DrainPlace::Face),
-        DrainSite::Lines(_) | DrainSite::Circle { .. } => surfaces.next().map(DrainPlace::Surface),
+        DrainSite::Lines(_) | DrainSite::Circle { .. } | DrainSite::Plate(_) => {
+            surfaces.next().map(DrainPlace::Surface)
+        }
     };
     case.flow.iter().flat_map(|flow| &flow.drains).filter_map(place).collect()
 }
@@ -194,6 +196,10 @@ pub fn flow<K: Kinematics<D>, const D: usize>(case: &Case, grid: &Grid<D>) -> Op
         Given::Head(Course(rows)) => Given::Head(Course(rows.iter().map(|(t, head)| (*t, head - base)).collect())),
         other => other.clone(),
     };
+    let flat = |plate: &Plate| {
+        let points = on_plate::<K, D>(case, grid, plate, across);
+        points.into_iter().map(|point| (point, unit(plate.normal()))).unzip()
+    };
     let drain = |drain: &crate::Drain| {
         let (points, normals) = match &drain.site {
             DrainSite::Face(_) => return None,
@@ -201,15 +207,20 @@ pub fn flow<K: Kinematics<D>, const D: usize>(case: &Case, grid: &Grid<D>) -> Op
             DrainSite::Circle { center, radius } => {
                 around::<K, D>(grid, &vector(case.grid.local(*center)), *radius, across).into_iter().unzip()
             }
+            DrainSite::Plate(plate) => flat(plate),
         };
         Some(Drain { points, normals, given: given(&drain.given) })
     };
     let face = |drain: &crate::Drain| match drain.site {
         DrainSite::Face(Face { axis, upper }) => Some(DrainedFace { axis, upper, given: given(&drain.given) }),
-        DrainSite::Lines(_) | DrainSite::Circle { .. } => None,
+        DrainSite::Lines(_) | DrainSite::Circle { .. } | DrainSite::Plate(_) => None,
     };
     let inflow = |inflow: &crate::Inflow| {
-        let (points, normals) = surface(&[inflow.ends]);
+        let (points, normals) = match &inflow.site {
+            Site::Segment { from, to } => surface(&[[*from, *to]]),
+            Site::Plate(plate) => flat(plate),
+            Site::Face(_) => (Vec::new(), Vec::new()),
+        };
         Inflow { points, normals, rate: inflow.rate.clone(), runs_off: inflow.runs_off }
     };
     Some(bsmpm::water::flow::Flow {

@@ -1,6 +1,6 @@
 //! Water that flows.
 
-use super::{Case, Face};
+use super::{Case, Face, Plate, Site};
 use bsmpm::water::flow::{Course, Given, Soil};
 
 /// Pore water whose excess pressure is an unknown.
@@ -46,13 +46,15 @@ pub enum DrainSite {
         /// its radius
         radius: f64,
     },
+    /// Of a solid: a part of bodies' surfaces at the start.
+    Plate(Plate),
 }
 
 /// A surface through which water is put in.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Inflow {
-    /// m  ends of a segment of a body's surface at the start
-    pub ends: [[f64; 2]; 2],
+    /// A segment or plate of a body's surface at the start.
+    pub site: Site,
     /// m/s  into the ground
     pub rate: Course,
     /// What the ground does not take runs off.

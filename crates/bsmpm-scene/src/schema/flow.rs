@@ -2,7 +2,7 @@
 
 use super::Kind::{self, *};
 use super::Presence::Optional;
-use super::{Dimension as In, Range, Table, body, key, one_of};
+use super::{Dimension as In, Range, Table, body, key, loads, one_of};
 use crate::words::{Side, Word};
 
 const PLACE: Kind = Pair(In::Length, Range::ANY);
@@ -13,10 +13,17 @@ pub(super) static DRAIN: Table = Table {
           says another. A body's surface goes with the material; what is not named lets no water through",
     keys: &[
         key("name", Name, Optional, "what histories call it"),
-        key("face", Choice(Side::WORDS), Optional, "a face of the grid, at which bodies lie; of a solid only this"),
+        key(
+            "face",
+            Choice(Side::WORDS),
+            Optional,
+            "a face of the grid, at which bodies lie; of a solid this, a rectangle or a disc",
+        ),
         key("from", PLACE, Optional, "one end of a segment of a body's surface at the start"),
         key("to", PLACE, Optional, "the other end"),
         key("circle", Kind::Table(&body::CIRCLE), Optional, "a circle instead: the part of it inside the grid"),
+        key("rectangle", loads::RECTANGLE, Optional, "of a solid: a box whose corners are alike along one axis"),
+        key("disc", Kind::Table(&loads::DISC), Optional, "of a solid: a disc, the part of it inside the grid"),
         key(
             "surface",
             Flag,
@@ -40,19 +47,26 @@ pub(super) static DRAIN: Table = Table {
         ),
     ],
     exclusive: &[
-        one_of(&["face", "from", "circle", "surface"], true),
-        one_of(&["face", "to", "circle", "surface"], true),
+        one_of(&["face", "from", "circle", "surface", "rectangle", "disc"], true),
+        one_of(&["face", "to", "circle", "surface", "rectangle", "disc"], true),
         one_of(&["head", "head_path", "pressure", "seepage"], false),
     ],
 };
 
 pub(super) static INFLOW: Table = Table {
     header: "[[inflow]]",
-    doc: "Water that is put in through a segment of a body's surface, with which it goes",
+    doc: "Water that is put in through a segment of a body's surface (solid: a rectangle or disc), with which it goes",
     keys: &[
         key("name", Name, Optional, "what it is called where it is told of"),
-        key("from", PLACE, super::Presence::Required, "one end of the segment at the start"),
-        key("to", PLACE, super::Presence::Required, "the other end"),
+        key("from", PLACE, Optional, "one end of the segment at the start"),
+        key("to", PLACE, Optional, "the other end"),
+        key(
+            "rectangle",
+            loads::RECTANGLE,
+            Optional,
+            "of a solid, instead: a box whose corners are alike along one axis",
+        ),
+        key("disc", Kind::Table(&loads::DISC), Optional, "of a solid, instead: a disc, the part of it inside the grid"),
         key("rate", Quantity(In::Seepage, Range::ANY), Optional, "volume of water per area and time, into the ground"),
         key(
             "rate_path",
@@ -67,5 +81,9 @@ pub(super) static INFLOW: Table = Table {
             "true: no more goes in than without pressure at the surface: rain",
         ),
     ],
-    exclusive: &[one_of(&["rate", "rate_path"], true)],
+    exclusive: &[
+        one_of(&["from", "rectangle", "disc"], true),
+        one_of(&["to", "rectangle", "disc"], true),
+        one_of(&["rate", "rate_path"], true),
+    ],
 };

@@ -10,7 +10,7 @@ const PLACE: Kind = Pair(In::Length, Range::ANY);
 pub(super) const DISPLACEMENT: Kind = Vector(In::Length, Range::ANY);
 pub(super) const VELOCITY: Kind = Vector(In::Velocity, Range::ANY);
 pub(super) const PATH: Kind = Course(In::Length);
-const RECTANGLE: Kind = Kind::Table(&body::BOX);
+pub(super) const RECTANGLE: Kind = Kind::Table(&body::BOX);
 pub(super) const AMPLITUDE: Kind = Rows(&[(In::Time, Range::NOT_NEGATIVE), (In::Number, Range::ANY)]);
 pub(super) const RAMP: Kind = Quantity(In::Time, Range::NOT_NEGATIVE);
 /// That strength is divided by.
@@ -72,7 +72,7 @@ pub(super) static FOOTING: Table = Table {
     ],
 };
 
-static DISC: Table = Table {
+pub(super) static DISC: Table = Table {
     header: "disc = { center, radius, normal }",
     doc: "A flat disc",
     keys: &[

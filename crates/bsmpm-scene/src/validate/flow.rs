@@ -6,9 +6,9 @@ pub(super) use shown::check;
 
 use super::STANDARD_GRAVITY;
 use super::load::{circle, increasing};
-use super::place::{self, along};
-use super::site::{AroundStrip, segment};
-use crate::case::{Body, Drain, DrainSite, Face, Flow, Inflow, NamedMaterial, Support};
+use super::place;
+use super::site::{AroundStrip, places, plate, segment};
+use crate::case::{Body, Drain, DrainSite, Face, Flow, Inflow, NamedMaterial, Site, Support};
 use crate::nearest::hint;
 use crate::record::Record;
 use crate::region::{Region, skin};
@@ -197,24 +197,33 @@ impl Ground<'_> {
         bodies.iter().filter(|body| self.lets_through(body)).cloned().collect()
     }
 
-    /// A segment of the surface of bodies that let water through.
-    fn segment(&self, record: &Record, report: &mut Report<'_>) -> Option<[[f64; 2]; 2]> {
-        let ends = segment(record, self.around, report)?;
-        self.lies_at(record, ("from", along(ends)), report)?;
-        Some(ends)
+    /// A segment, or of a solid a plate, of the surface of bodies that let water through.
+    fn site(&self, record: &Record, report: &mut Report<'_>) -> Option<Site> {
+        let grid = self.around.grid?;
+        let (key, site) = match ["rectangle", "disc"].into_iter().find(|key| record.gives(key)) {
+            Some(key) => (key, Site::Plate(plate(record, self.around, report)?)),
+            None => {
+                let [from, to] = segment(record, self.around, report)?;
+                ("from", Site::Segment { from, to })
+            }
+        };
+        let inside = |at: &[f64; 3]| place::is_beyond(grid, *at).is_none();
+        self.lies_at(record, (key, places(site, grid).into_iter().filter(inside)), report)?;
+        Some(site)
     }
 
     /// Whether bodies that let water through are at all of these places, which a key gives.
     fn lies_at(
         &self,
         record: &Record,
-        (key, mut places): (&str, impl Iterator<Item = [f64; 2]>),
+        (key, mut places): (&str, impl Iterator<Item = [f64; 3]>),
         report: &mut Report<'_>,
     ) -> Option<()> {
         let (grid, permeable) = (self.around.grid?, self.permeable());
-        if let Some(at) = places.find(|at| !place::at_body(&permeable, grid, *at)) {
+        if let Some(at) = places.find(|at| !place::is_at(&permeable, grid, *at)) {
             let bodies = self.around.bodies.unwrap_or_default();
-            let under = bodies.iter().find(|body| place::at_body(std::slice::from_ref(*body), grid, at));
+            let under = bodies.iter().find(|body| place::is_at(std::slice::from_ref(*body), grid, at));
+            let at = &at[..grid.dims()];
             let message = match under {
                 Some(body) => format!(
                     "the body at {at:?} is of material.{}, which lets no water through: give it a permeability",
@@ -254,10 +263,14 @@ fn drain(record: &Record, ground: Ground<'_>, report: &mut Report<'_>) -> Option
         DrainSite::Lines(surface(record, ground, report)?)
     } else if record.gives("circle") {
         let (center, radius, places) = circle(record, ground.around, report)?;
-        ground.lies_at(record, ("circle", places.into_iter()), report)?;
+        ground.lies_at(record, ("circle", places.into_iter().map(|[x, y]| [x, y, 0.0])), report)?;
         DrainSite::Circle { center, radius }
     } else {
-        DrainSite::Lines(vec![ground.segment(record, report)?])
+        match ground.site(record, report)? {
+            Site::Plate(plate) => DrainSite::Plate(plate),
+            Site::Segment { from, to } => DrainSite::Lines(vec![[from, to]]),
+            Site::Face(_) => return None,
+        }
     };
     Some(Drain { name: record.text("name").map(str::to_owned), site, given: given? })
 }
@@ -341,7 +354,7 @@ fn inflow(record: &Record, ground: Ground<'_>, report: &mut Report<'_>) -> Optio
         false => record.number("rate").map(|rate| Course(vec![(0.0, rate)])),
     };
     let runs_off = record.flag("runs_off")?;
-    Some(Inflow { ends: ground.segment(record, report)?, rate: rate?, runs_off })
+    Some(Inflow { site: ground.site(record, report)?, rate: rate?, runs_off })
 }
 
 /// Whether water flows, or is kept from flowing, in any material.

@@ -7,10 +7,7 @@ use crate::words::{Geometry, Measurement, Side, Word};
 use bsmpm::stabilisation::Stabilisation;
 
 /// Tables and keys that only a plane knows, with what to do instead.
-const IN_A_PLANE: &[(&str, &str)] = &[
-    ("inflow", "give a head or a pressure at a face of the grid by [[drain]]"),
-    ("profile", "use histories at places, or frames"),
-];
+const IN_A_PLANE: &[(&str, &str)] = &[("profile", "use histories at places, or frames")];
 
 /// Quantities of histories that only a plane knows.
 const QUANTITIES: &[Measurement] = &[
@@ -35,9 +32,10 @@ pub(super) fn refuse(root: &Record, report: &mut Report<'_>) {
     for (key, instead) in IN_A_PLANE.iter().filter(|(key, _)| root.gives(key)) {
         root.error(key, format!("not available in a solid yet: {instead}"), report);
     }
-    for drain in root.records("drain") {
+    for drain in root.records("drain").iter().chain(root.records("inflow")) {
         for key in ["from", "to", "circle", "surface"].into_iter().filter(|key| drain.gives(key)) {
-            drain.error(key, "not available in a solid yet: name a face of the grid", report);
+            let message = "not available in a solid: name a face of the grid, a rectangle = { lower, upper } or a disc";
+            drain.error(key, message, report);
         }
     }
     for traction in root.records("traction") {
@@ -70,6 +68,7 @@ pub(super) fn refuse(root: &Record, report: &mut Report<'_>) {
 /// Of a plane what only a solid has.
 fn in_space(root: &Record, report: &mut Report<'_>) {
     let strips = root.records("footing").iter().chain(root.records("prescribed"));
+    let strips = strips.chain(root.records("drain")).chain(root.records("inflow"));
     for flat in root.records("traction").iter().chain(strips) {
         for key in ["rectangle", "disc"].into_iter().filter(|key| flat.gives(key)) {
             flat.error(key, "is in space: geometry = \"solid\" has it; here from and to", report);

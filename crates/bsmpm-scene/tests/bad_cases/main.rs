@@ -23,6 +23,7 @@ const SEEPING: &str = include_str!("seeping.toml");
 const ROUND: &str = include_str!("round.toml");
 const SOLID: &str = include_str!("solid.toml");
 const WET: &str = include_str!("wet.toml");
+const WET_SOLID: &str = include_str!("wet_solid.toml");
 
 /// One malformed case: `find` in the base becomes `put`, and an error must say `says` of `key`, `moved` lines below.
 pub struct Row {
@@ -73,7 +74,7 @@ fn verify_all(base: &str, rows: &[Row]) {
 
 #[test]
 fn the_bases_are_valid() {
-    for base in [DYNAMIC, STATIC, RUBBING, SEEPING, ROUND, SOLID, WET] {
+    for base in [DYNAMIC, STATIC, RUBBING, SEEPING, ROUND, SOLID, WET, WET_SOLID] {
         Case::from_text("case.toml", base, &[]).unwrap_or_else(|errors| panic!("{errors:#?}"));
     }
 }
@@ -147,6 +148,7 @@ fn still_water() {
 #[test]
 fn three_dimensions() {
     verify_all(SOLID, solid::SOLID);
+    verify_all(WET_SOLID, solid::WET);
     verify_all(STATIC, solid::IN_A_PLANE);
 }
 

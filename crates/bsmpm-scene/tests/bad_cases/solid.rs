@@ -17,6 +17,20 @@ const FLOWS: &str = "density = 2000\nporosity = 0.4\ndrainage = \"coupled\"\nper
 const PERMEABLE: &str = "density = 2000\nporosity = 0.4\ndrainage = \"coupled\"\npermeability = [1e-6, 1e-7]\n";
 
 /// Changes of `solid.toml`.
+pub const WET: &[Row] = &[
+    row(
+        "upper = [2.0, 2.0, 1.5] }\nseepage",
+        "upper = [2.5, 2.0, 1.5] }\nseepage",
+        "drain.0.rectangle",
+        "no rectangle",
+    ),
+    row("disc     = { center = [1.0", "disc = { center = [3.5", "drain.1.disc", "no body is at"),
+    row("upper = [1.0, 2.0, 1.5] }\nrate", "upper = [3.0, 2.0, 1.5] }\nrate", "inflow.0.rectangle", "no body is at"),
+    row("permeability = [\"2e-4 m/s\", ", "# [", "material.silt.retention", "permeability"),
+    row("disc = { center = [1.5, 1.0, 1.5], radius = 0.4 }", "from = [0, 0]\nto = [1, 0]", "inflow.1.from", "a disc"),
+    row("seepage   = true", "surface = true", "drain.0", "at most one"),
+];
+
 pub const SOLID: &[Row] = &[
     row("lower = [0.0, 0.0, 0.0]", "lower = [0.0, 0.0]", "grid.lower", "solid: of three"),
     row("cell  = [0.5, 1.0, 0.5]", "cell  = [0.5, 1.0]", "grid.cell", "solid: of three"),
@@ -105,12 +119,8 @@ pub const SOLID: &[Row] = &[
         "gravity.acceleration",
         "is not straight down",
     ),
-    row(
-        "[gravity]",
-        "[[inflow]]\nfrom = [0, 0]\nto = [1, 1]\nrate = 1e-6\n[gravity]",
-        "inflow",
-        "not available in a solid yet",
-    ),
+    row("[gravity]", "[[inflow]]\nfrom = [0, 0]\nto = [1, 1]\nrate = 1e-6\n[gravity]", "inflow.0.from", "or a disc")
+        .down(1),
     row("density = 2000", FLOWS, "drain.0.surface", "name a face of the grid").down(7),
     row("density = 2000", PERMEABLE, "material.soil.permeability", "expected").down(3),
     row("at    = [0.5, 0.0, 0.5]", "at    = [0.5, 0.5]", "point_load.0.at", "solid: of three"),

@@ -10,6 +10,7 @@ use std::collections::HashSet;
 use written::{STRESS, Written};
 
 const FULL: &str = include_str!("../full.toml");
+const WET_SOLID: &str = include_str!("../bad_cases/wet_solid.toml");
 const STATIC: &str = include_str!("../bad_cases/static.toml");
 const RUBBING: &str = include_str!("../bad_cases/rubbing.toml");
 const SEEPING: &str = include_str!("../bad_cases/seeping.toml");
@@ -168,6 +169,7 @@ fn bases() -> Vec<String> {
     bases.push(format!("{ratio}\n[gravity]\nacceleration = [0.0, -9.81]\n"));
     bases.push(SUCTION.to_owned());
     bases.push(SOLID.to_owned());
+    bases.push(WET_SOLID.to_owned());
     let knots = "knots = { x = [0.0, 0.5, 1.5, 4.0], y = [0.0, 1.0, 2.0, 3.0], z = [0.0, 1.0, 1.0, 3.0] }";
     let otherwise = SOLID.replacen("cell  = [0.5, 1.0, 0.5]", knots, 1);
     let plate = "rectangle    = { lower = [0.5, 2.0, 1.0], upper = [1.5, 3.0, 1.0] }";

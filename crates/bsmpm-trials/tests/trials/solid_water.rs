@@ -139,6 +139,39 @@ fn a_slice_through_which_water_flows_is_plane_strain() {
     assert!(apart(&silt, 3600.0, &[MOVED.as_slice(), &FLOWN].concat()) < 1e-9);
 }
 
+/// Silt into which it rains from above, and whose side lets out what seeps there.
+#[test]
+fn a_slice_into_which_it_rains_and_that_seeps_is_plane_strain() {
+    let rain =
+        changed(PLANE, "type = \"dynamic\"\nend = 0.3\ndt = 0.02", "type = \"consolidation\"\nend = 7200\ndt = 240");
+    let rain = changed(&rain, "porosity = 0.4", "porosity = 0.4\nretention = { alpha = 1.0, n = 2.0, residual = 0.1 }");
+    let rain = changed(&rain, "cohesion = \"1 kPa\"", "cohesion = \"20 kPa\"");
+    let rain = changed(&rain, "level = 0.8", "level = 0.4\nsuction = \"20 kPa\"\n[initial]\nk0 = 0.5");
+    let rain = changed(
+        &rain,
+        "face = \"left\"",
+        "from = [1, 0]\nto = [1, 1.5]\nseepage = true\n\
+         [[inflow]]\nfrom = [0, 1.5]\nto = [1, 1.5]\nrate = \"1e-4 m/s\"\nruns_off = true",
+    );
+    let solid = slice(&rain);
+    let solid =
+        changed(&solid, "from = [1, 0]\nto = [1, 1.5]", "rectangle = { lower = [1, 0, 0], upper = [1, 0.25, 1.5] }");
+    let solid = changed(
+        &solid,
+        "from = [0, 1.5]\nto = [1, 1.5]",
+        "rectangle = { lower = [0, 0, 1.5], upper = [1, 0.25, 1.5] }",
+    );
+    let (plane, found) = (run(&rain), run(&solid));
+    for (of_plane, of_solid) in MOVED.into_iter().chain(FLOWN) {
+        let [expected, found] = [at(&plane, of_plane, 7200.0), at(&found, of_solid, 7200.0)];
+        println!("{of_solid}: {expected:e}, {:e}", found / expected - 1.0);
+        assert!((found / expected - 1.0).abs() < 1e-8, "{of_solid}: {found} for {expected}");
+    }
+    let out = [at(&plane, "water-outflow", 7200.0), 4.0 * at(&found, "water-outflow", 7200.0)];
+    println!("{out:?}");
+    assert!(out[0] < 0.0 && (out[1] / out[0] - 1.0).abs() < 1e-8, "{out:?}");
+}
+
 /// A slope under a water table, at rest.
 #[test]
 fn a_slice_with_still_water_is_plane_strain() {

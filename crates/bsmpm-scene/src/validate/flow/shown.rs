@@ -1,11 +1,11 @@
 //! What is not shown to be right together with water that flows, and what is doubtful with it.
 
-use crate::case::{Body, Case, Drain, DrainSite, Face, Flow, Initial, Support};
+use crate::case::{Body, Case, Drain, DrainSite, Face, Flow, Initial, Site, Support};
 use crate::grid::{GridAxis, GridSpec};
 use crate::record::Record;
 use crate::report::Report;
 use crate::schema::LawName;
-use crate::validate::place;
+use crate::validate::{place, site};
 use crate::words::{AnalysisType, Side, Word};
 use bsmpm::model::Regime;
 use bsmpm::quadrature::Quadrature;
@@ -261,6 +261,7 @@ fn places(drain: &Drain, grid: &GridSpec) -> Vec<[f64; 3]> {
     match &drain.site {
         DrainSite::Lines(lines) => lines.iter().flatten().map(|[x, y]| [*x, *y, 0.0]).collect(),
         DrainSite::Circle { center, radius } => place::ring(*center, *radius).map(|[x, y]| [x, y, 0.0]).collect(),
+        DrainSite::Plate(plate) => site::places(Site::Plate(*plate), grid),
         DrainSite::Face(Face { axis, upper }) => {
             let mut ends = [grid.lower(), grid.upper()];
             let at = ends[usize::from(*upper)][*axis];
