@@ -260,6 +260,8 @@ fn drain(record: &Record, ground: Ground<'_>, report: &mut Report<'_>) -> Option
             record.error("surface", "false names nothing: give face, from and to, circle, or true", report);
             return None;
         }
+        // What is wrong with it in space is told there.
+        ground.around.grid.filter(|grid| grid.dims() == 2)?;
         DrainSite::Lines(surface(record, ground, report)?)
     } else if record.gives("circle") {
         let (center, radius, places) = circle(record, ground.around, report)?;

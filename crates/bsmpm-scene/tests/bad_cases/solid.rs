@@ -26,9 +26,13 @@ pub const WET: &[Row] = &[
     ),
     row("disc     = { center = [1.0", "disc = { center = [3.5", "drain.1.disc", "no body is at"),
     row("upper = [1.0, 2.0, 1.5] }\nrate", "upper = [3.0, 2.0, 1.5] }\nrate", "inflow.0.rectangle", "no body is at"),
-    row("permeability = [\"2e-4 m/s\", ", "# [", "material.silt.retention", "permeability"),
     row("disc = { center = [1.5, 1.0, 1.5], radius = 0.4 }", "from = [0, 0]\nto = [1, 0]", "inflow.1.from", "a disc"),
-    row("seepage   = true", "surface = true", "drain.0", "at most one"),
+    row(
+        "rectangle = { lower = [2.0, 0.0, 0.0], upper = [2.0, 2.0, 1.5] }",
+        "surface = true",
+        "drain.0.surface",
+        "a disc",
+    ),
 ];
 
 pub const SOLID: &[Row] = &[
