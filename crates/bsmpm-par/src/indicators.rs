@@ -82,7 +82,8 @@ impl IndicatorState {
     ) -> Result<Self, StepError> {
         let defect = quadrature::defect(model, points, halo);
         let compression = quadrature::compression(points, model.materials.len(), halo);
-        let noise = relative_pressure_noise(&model.grid, points, model.weighting, halo)?;
+        let young = model.materials.iter().map(|material| material.elastic().young).fold(0.0, f64::max);
+        let noise = relative_pressure_noise(&model.grid, points, (model.weighting, young), halo)?;
         let energy = recorder.books().map(|books| {
             let now = Stored::of(model, points, halo);
             let numbers = [books.flows.external.abs(), books.flows.plastic, books.start, now.kinetic + now.elastic];

@@ -231,7 +231,9 @@ fn fine_enough(
             most / cell
         ));
     }
-    if let Some((corner, angle)) = sharpest(&outline).filter(|(_, angle)| 2.0 * (0.5 * angle).sin() < 1.0) {
+    // On the axis of a body of revolution half of a corner is given.
+    let axis = (geometry == Geometry::Axisymmetric).then_some(-about[0]);
+    if let Some((corner, angle)) = sharpest(&outline, axis).filter(|(_, angle)| 2.0 * (0.5 * angle).sin() < 1.0) {
         report.warn(format!(
             "{}: the corner at [{}, {}] has {:.0} degrees: soil is pushed right by corners of 60 and more; a sharper one \
              acts as if rounded over a cell",
@@ -283,14 +285,16 @@ fn thickness(corners: &[[f64; 2]]) -> f64 {
     (0..corners.len()).map(across).fold(f64::INFINITY, f64::min)
 }
 
-/// The corner with the smallest angle inside, rad.
-fn sharpest(outline: &Outline) -> Option<([f64; 2], f64)> {
+/// The corner with the smallest angle inside, rad; of one at the x of an axis twice of it.
+fn sharpest(outline: &Outline, axis: Option<f64>) -> Option<([f64; 2], f64)> {
     let Outline::Polygon(corners) = outline else { return None };
     let of = |k: usize| {
         let (at, count) = (corners[k], corners.len());
         let (before, after) = (corners[(k + count - 1) % count] - at, corners[(k + 1) % count] - at);
         let angle = after.perp(&before).atan2(after.dot(&before));
-        ([at[0], at[1]], if angle < 0.0 { angle + std::f64::consts::TAU } else { angle })
+        let angle = if angle < 0.0 { angle + std::f64::consts::TAU } else { angle };
+        let is_half = axis.is_some_and(|axis| (at[0] - axis).abs() < 1e-9 * outline.radius());
+        ([at[0], at[1]], if is_half { 2.0 * angle } else { angle })
     };
     (0..corners.len()).map(of).min_by(|a, b| a.1.total_cmp(&b.1))
 }

@@ -55,15 +55,19 @@ pub fn pressure_noise<const D: usize>(
     Ok(Squares::of(grid, points, weighting, &|p| pressure(points, p), window, halo)?.noise(1.0))
 }
 
-/// Noise of the pressure over all points, relative to the mean of its magnitude; zero without pressure.
+/// Part of Young's modulus up to which a pressure is the rounding of F: what flies freely has no other.
+const ROUNDING: f64 = 1e-13;
+
+/// Noise of the pressure over all points, relative to the mean of its magnitude; zero where that is the rounding of
+/// material with Young's modulus `young`, Pa.
 pub fn relative_pressure_noise<const D: usize>(
     grid: &Grid<D>,
     points: &Points<D>,
-    weighting: Weighting,
+    (weighting, young): (Weighting, f64),
     halo: &dyn Halo,
 ) -> Result<Noise, StepError> {
     let squares = Squares::of(grid, points, weighting, &|p| pressure(points, p), None, halo)?;
-    Ok(if squares.mean == 0.0 { Noise::default() } else { squares.noise(squares.mean) })
+    Ok(if squares.mean <= ROUNDING * young { Noise::default() } else { squares.noise(squares.mean) })
 }
 
 /// -tr(sigma)/3 of a point, Pa.

@@ -170,7 +170,7 @@ fn compression_is_that_of_each_material() {
 fn the_noise_of_the_pressure_has_no_unit() {
     let mut scene = block::<PlaneStrain, 2>(2, 0..6);
     let noise = |scene: &Scene<PlaneStrain, 2>| {
-        relative_pressure_noise(&scene.model.grid, &scene.points, Weighting::Mass, &scene.halo()).unwrap()
+        relative_pressure_noise(&scene.model.grid, &scene.points, (Weighting::Mass, 0.0), &scene.halo()).unwrap()
     };
     assert_eq!(noise(&scene).about_plane, 0.0);
     // A checkerboard of points: 1 +- .5, times any stress.
