@@ -19,16 +19,16 @@ const PERMEABLE: &str = "density = 2000\nporosity = 0.4\ndrainage = \"coupled\"\
 /// Changes of `solid.toml`.
 pub const WET: &[Row] = &[
     row(
-        "upper = [2.0, 2.0, 1.5] }\nseepage",
-        "upper = [2.5, 2.0, 1.5] }\nseepage",
+        "upper = [2.0, 3.0, 1.5] }\nseepage",
+        "upper = [2.5, 3.0, 1.5] }\nseepage",
         "drain.0.rectangle",
         "no rectangle",
     ),
     row("disc     = { center = [1.0", "disc = { center = [3.5", "drain.1.disc", "no body is at"),
-    row("upper = [1.0, 2.0, 1.5] }\nrate", "upper = [3.0, 2.0, 1.5] }\nrate", "inflow.0.rectangle", "no body is at"),
+    row("upper = [1.0, 3.0, 1.5] }\nrate", "upper = [3.0, 3.0, 1.5] }\nrate", "inflow.0.rectangle", "no body is at"),
     row("disc = { center = [1.5, 1.0, 1.5], radius = 0.4 }", "from = [0, 0]\nto = [1, 0]", "inflow.1.from", "a disc"),
     row(
-        "rectangle = { lower = [2.0, 0.0, 0.0], upper = [2.0, 2.0, 1.5] }",
+        "rectangle = { lower = [2.0, 0.0, 0.0], upper = [2.0, 3.0, 1.5] }",
         "surface = true",
         "drain.0.surface",
         "a disc",

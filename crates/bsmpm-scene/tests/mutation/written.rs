@@ -123,7 +123,8 @@ impl Fits {
         let is_list = put == "[]" || put == "[1, 2, 3]";
         match kind {
             Kind::Quantity(dimension, range) | Kind::Profile(dimension, range, _) => !is_number(put, *dimension, range),
-            Kind::Either(dimension, range) => !is_number(put, *dimension, range),
+            // Of a solid a list of three is right, too.
+            Kind::Either(dimension, range) => put != "[1, 2, 3]" && !is_number(put, *dimension, range),
             Kind::Gradient(dimension) => !is_number(put, *dimension, &Range::ANY) || is_text,
             Kind::Measure => !is_number(put, Dimension::Number, &Range::ANY) && put != STRESS,
             Kind::Pair(..) | Kind::GradientPair(_) => true,
