@@ -156,7 +156,7 @@ fn picture((record, grid): (&RunRecord, [[f64; 3]; 2]), frame: &Frame, values: &
     let mut canvas = Canvas::new(layout.width, axes.bottom + 20.0);
     title(&mut canvas, layout.width, &record.manifest.case.title, &record.moment(frame.time));
     let place = |k: usize| axes.place((corners[k][0], corners[k][1]));
-    // Corner 3 of the grid, at the highest x, the lowest y and the highest z, is nearest: its edges would hide.
+    // The edges at the nearest corner would hide what is inside.
     for (from, to) in edges().filter(|(from, to)| *from != NEAREST && *to != NEAREST) {
         canvas.line([place(from), place(to)], THIN, OUTLINE);
     }
@@ -165,7 +165,7 @@ fn picture((record, grid): (&RunRecord, [[f64; 3]; 2]), frame: &Frame, values: &
     let mut nearest = Nearest::new([(right - left).max(1) as usize, (bottom - top).max(1) as usize]);
     let sizes = splat::sizes(frame, &record.manifest.case.geometry);
     let usual = splat::median(&sizes);
-    let ground = terrain(record, grid, usual);
+    let ground = terrain(record, grid, (usual, frame.time));
     let stones = ground.iter().zip(repeat(&usual)).zip(repeat(RIGID));
     for ((point, size), number) in frame.position.iter().zip(&sizes).zip(0_u32..).chain(stones) {
         let [across, up, depth] = view.place(point);
@@ -193,16 +193,18 @@ fn picture((record, grid): (&RunRecord, [[f64; 3]; 2]), frame: &Frame, values: &
     canvas
 }
 
-/// Places of rigid terrain inside the grid, half a point apart.
-fn terrain(record: &RunRecord, [lower, upper]: [[f64; 3]; 2], apart: f64) -> Vec<[f64; 3]> {
+/// Places of rigid terrain inside the grid at a time, half of `apart` (m) from each other.
+fn terrain(record: &RunRecord, [lower, upper]: [[f64; 3]; 2], (apart, time): (f64, f64)) -> Vec<[f64; 3]> {
     let Ok(case) = Case::from_text("case", &record.manifest.case.text, &[]) else { return Vec::new() };
     let mut places = Vec::new();
     let count = |axis: usize| ((upper[axis] - lower[axis]) / (0.5 * apart)).ceil().clamp(1.0, MOST_PLACES) as usize;
     for body in surfaces::rigid::<3>(&case, 0.0) {
         let Outline::Terrain(terrain) = &body.outline else { continue };
+        let moved = body.on_path(time);
         for (i, j) in (0..=count(0)).flat_map(|i| (0..=count(1)).map(move |j| (i, j))) {
             let at = [(0, i), (1, j)].map(|(axis, k)| k as f64 / count(axis) as f64 * (upper[axis] - lower[axis]));
-            places.push([lower[0] + at[0], lower[1] + at[1], lower[2] + terrain.height(at)]);
+            let height = terrain.height([at[0] - moved[0], at[1] - moved[1]]) + moved[2];
+            places.push([lower[0] + at[0], lower[1] + at[1], lower[2] + height]);
         }
     }
     places

@@ -21,6 +21,7 @@ const IN_A_PLANE: &[&str] = &[
     "inertia",
     "force",
     "moment",
+    "ramp",
     "amplitude",
     "start_velocity",
     "start_spin",
