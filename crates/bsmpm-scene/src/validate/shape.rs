@@ -2,7 +2,7 @@
 
 mod solid;
 
-pub(super) use solid::key;
+pub(super) use solid::{cuboid, key, raster};
 
 use super::place;
 use crate::case::RigidShape;

@@ -27,9 +27,9 @@ use point::RigidPoint;
 const PENALTY: f64 = 1e3;
 /// Passes in which all statuses are corrected, and those until which the ones that are off by half of the most are.
 const AT_ONCE: usize = 8;
+const BY_HALF: usize = 16;
 /// Passes in which friction in space is turned; later it keeps its direction for the step.
 const TURNS: usize = 3;
-const BY_HALF: usize = 16;
 /// Part of a cell below which a penetration is round-off.
 const ROUNDING: f64 = 1e-9;
 

@@ -1,10 +1,10 @@
 //! Rigid bodies in space: they rest, or move on a way without turning.
 
+use super::super::shape::{cuboid, raster};
 use super::super::site::AroundStrip;
 use super::{OVERLAP, Solidity, friction, way};
 use crate::case::{Case, Rigid, RigidShape, RigidSolid};
 use crate::record::Record;
-use crate::region::Raster;
 use crate::report::Report;
 use bsmpm::boundary::rigid::Outline;
 use bsmpm::tensor::Vector;
@@ -68,9 +68,7 @@ fn shape(record: &Record, report: &mut Report<'_>) -> Option<RigidSolid> {
         return revolved(shape, report);
     }
     if let Some(shape) = record.record("terrain").filter(|_| record.gives("terrain")) {
-        let rows = shape.rows("top")?.iter();
-        let heights: Vec<[f64; 3]> = rows.map(|row| [row.numbers[0], row.numbers[1], row.numbers[2]]).collect();
-        return match Raster::new(&heights, f64::NEG_INFINITY) {
+        return match raster(shape, "top", f64::NEG_INFINITY)? {
             Ok(raster) => Some(RigidSolid::Terrain(raster.surface())),
             Err(message) => {
                 shape.error("top", message, report);
@@ -78,12 +76,7 @@ fn shape(record: &Record, report: &mut Report<'_>) -> Option<RigidSolid> {
             }
         };
     }
-    let shape = record.record("box")?;
-    let (lower, upper) = (shape.vector("lower")?, shape.vector("upper")?);
-    if (0..3).any(|axis| lower[axis] >= upper[axis]) {
-        shape.error("upper", format!("{upper:?} is not above lower = {lower:?}: the body is empty"), report);
-        return None;
-    }
+    let [lower, upper] = cuboid(record, report)?;
     Some(RigidSolid::Box { lower, upper })
 }
 

@@ -100,25 +100,32 @@ fn read(record: &Record, report: &mut Report<'_>) -> Option<SolidShape> {
         record.error(key, "is an outline in a plane: give it a length, extrude = { ... }", report);
         return None;
     }
+    Some(SolidShape::Box { corners: cuboid(record, report)? })
+}
+
+/// Lower and upper corner of a record's box.
+pub(in super::super) fn cuboid(record: &Record, report: &mut Report<'_>) -> Option<[[f64; 3]; 2]> {
     let shape = record.record("box")?;
     let (lower, upper) = (shape.vector("lower")?, shape.vector("upper")?);
     if (0..3).any(|axis| lower[axis] >= upper[axis]) {
         shape.error("upper", format!("{upper:?} is not above lower = {lower:?}: the body is empty"), report);
         return None;
     }
-    Some(SolidShape::Box { corners: [lower, upper] })
+    Some([lower, upper])
+}
+
+/// Heights that a key of terrain gives, on a level.
+pub(in super::super) fn raster(shape: &Record, key: &str, level: f64) -> Option<Result<Raster, String>> {
+    let rows = shape.rows(key)?.iter();
+    let heights: Vec<[f64; 3]> = rows.map(|row| [row.numbers[0], row.numbers[1], row.numbers[2]]).collect();
+    Some(Raster::new(&heights, level))
 }
 
 /// Heights on others, or on a level.
 fn terrain(shape: &Record, report: &mut Report<'_>) -> Option<SolidShape> {
-    let raster = |key: &str, level: f64| -> Option<Result<Raster, String>> {
-        let rows = shape.rows(key)?.iter();
-        let heights: Vec<[f64; 3]> = rows.map(|row| [row.numbers[0], row.numbers[1], row.numbers[2]]).collect();
-        Some(Raster::new(&heights, level))
-    };
     let level = if shape.gives("level") { shape.number("level")? } else { f64::NEG_INFINITY };
-    let base = if shape.gives("base") { Some(raster("base", f64::NEG_INFINITY)?) } else { None };
-    let top = raster("top", level)?;
+    let base = if shape.gives("base") { Some(raster(shape, "base", f64::NEG_INFINITY)?) } else { None };
+    let top = raster(shape, "top", level)?;
     let whole = match (top, base) {
         (Err(message), _) => Err(("top", message)),
         (_, Some(Err(message))) => Err(("base", message)),
