@@ -6,6 +6,7 @@ use crate::case::{Body, Case, Nonlinear, Solver};
 use crate::grid::GridSpec;
 use crate::words::Factor;
 use bsmpm::grid::room;
+use bsmpm::model::Regime;
 use std::ops::Range;
 
 /// Largest number of cells, unknowns and matrix rows: PETSc's and MPI's counts are 32-bit here.
@@ -51,8 +52,10 @@ const KRYLOV_OF_WATER: u128 = bsmpm::solve::fgmres::MOST as u128 * 16;
 /// Bytes of a process that has next to nothing to solve: libraries and buffers of MPI and PETSc.
 const PROCESS: u64 = 47_000_000;
 
-/// Poisson's ratio up to which the stiffness that secants correct is without F-bar's coupling in space.
-pub(crate) const LOCAL: f64 = 0.45;
+/// Poisson's ratio up to which the stiffness that secants correct is without F-bar's coupling in space; and where
+/// material flows at rest, whose directions are nearly incompressible (`cases/results/solid.md`).
+const LOCAL: f64 = 0.45;
+const LOCAL_AT_REST: f64 = 0.4;
 
 /// Unknowns of a rank below which it mostly waits for others, in two dimensions.
 const FEWEST: u128 = 1000;
@@ -150,8 +153,8 @@ impl Systems {
         };
         // Of water one number of every node more.
         let wet = (unknowns + unknowns / dims as u128) * KRYLOV_OF_WATER;
-        // Around a preconditioner that is applied in place of solutions there is no general matrix either.
-        let around = solver.linear.applications > 0;
+        // In space, and around a preconditioner that is applied in place of solutions, there is no general matrix.
+        let around = solver.linear.applications > 0 || dims > 2;
         let krylov = unknowns * if around { KRYLOV_OF_WATER } else { KRYLOV };
         let repeated = again * (entries * REPEATED + 2 * factor);
         let general = match flows {
@@ -174,12 +177,19 @@ impl Case {
     /// Layers of nodes, beyond those of a cell, with which a node is coupled along an axis.
     pub(crate) fn beyond(&self) -> usize {
         let background = if self.solver.background > 0.0 { self.solver.background_kind.beyond() } else { 0 };
-        let poisson = self.materials.iter().map(|named| named.material.elastic().poisson).fold(0.0, f64::max);
         // In space the coupled stiffness has 343 blocks a node instead of 125, which pays near incompressibility only.
-        if self.grid.dims() == 3 && poisson <= LOCAL {
+        if self.grid.dims() == 3 && !self.is_nearly_incompressible() {
             return background;
         }
         background.max(self.stabilisation.beyond(self.grid.order))
+    }
+
+    /// Whether in space the stiffness that secants correct needs F-bar's coupling.
+    pub(crate) fn is_nearly_incompressible(&self) -> bool {
+        let poisson = self.materials.iter().map(|named| named.material.elastic().poisson).fold(0.0, f64::max);
+        let flows =
+            self.analysis.regime == Regime::QuasiStatic && self.materials.iter().any(|named| named.material.yields());
+        poisson > if flows { LOCAL_AT_REST } else { LOCAL }
     }
 
     /// Knot spans along each axis for which a run holds nodes at the start, see [`bsmpm::grid::room`]: at `least` so

@@ -177,14 +177,13 @@ pub(super) fn of_case(case: &mut Case, root: &Record, report: &mut Report<'_>) {
         solver.error("linear", message, report);
         return;
     }
-    let poisson = case.materials.iter().map(|named| named.material.elastic().poisson).fold(0.0, f64::max);
     let (dims, active) = (case.grid.dims(), case.estimate().active);
     // Near failure the preconditioner alone may give up before the ground does, and whether it does is the answer.
     let fails = case.strength_reduction.is_some();
     if dims < 3 || fails || solver.gives("linear") || case.flow.is_some() || condenses || active <= FEW_IN_SPACE {
         return;
     }
-    if poisson <= estimate::LOCAL {
+    if !case.is_nearly_incompressible() {
         let many = active > MANY_IN_SPACE;
         let word = if many { LinearSolver::MultigridCycles } else { LinearSolver::IncompleteCholesky };
         case.solver.linear = Linear { by_size: true, ..in_a_word(word) };

@@ -24,9 +24,12 @@ const MOST: usize = 30;
 /// Loosest and tightest relative residual of a direction; between them it follows the force measure, so that the
 /// convergence stays quadratic (Dembo, Eisenstat and Steihaug, 1982).
 const FORCING: (f64, f64) = (1e-10, 1e-3);
-/// The loosest where water flows, and around a rough solver: what preconditions is no factor of the derivative, and
-/// each tenth takes products.
+/// The loosest where water flows, around a rough solver, and in space: what preconditions is no factor of the
+/// derivative, and each tenth takes products.
 const LOOSE: f64 = 1e-1;
+/// Dimensions up to which the general matrix is factorised: in space it takes more than twice the memory for the same
+/// iterations (`cases/results/solid.md`).
+const PLANE: usize = 2;
 /// Relative residual above which a direction is none.
 const USELESS: f64 = 0.5;
 /// Shortest part of a direction that is tried.
@@ -91,7 +94,7 @@ fn direction<K: Kinematics<D>, const D: usize>(
     let forcing = |loosest: f64| residual.balance.measure().clamp(FORCING.0, loosest);
     counts.factorisations += 1;
     counts.iterations += 1;
-    let (du, krylov) = if solver.is_rough() {
+    let (du, krylov) = if solver.is_rough() || D > PLANE {
         around_stiffness(problem, residual, forcing(LOOSE), solver)?
     } else {
         let linearised = Linearised::at(problem, residual);
