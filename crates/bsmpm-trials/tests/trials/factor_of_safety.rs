@@ -187,8 +187,8 @@ fn turns_between_ends(length: f64, centre: [f64; 2], radius: f64) -> f64 {
     held / weight
 }
 
-/// Half of 10 m between rough ends: 1.404 with cells of 1 m, 1.398 with .5 m; the plane slope 1.110 and 1.111. The circles
-/// are those with the least bounds, 1.160 and 1.578.
+/// Half of 10 m between rough ends: 1.404 with cells of 1 m, 1.398 with .5 m; the plane slope 1.110 and 1.111. The
+/// circles are those with the least bounds, 1.160 and 1.578.
 #[test]
 fn rough_ends_hold_a_slope_up_to_what_a_cylinder_between_them_allows() {
     let of = |range, set: &[&str]| {
