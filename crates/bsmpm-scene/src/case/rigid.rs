@@ -91,6 +91,26 @@ impl RigidSolid {
         }
     }
 
+    /// m  corners of a box that it lies in.
+    pub fn corners(&self) -> [[f64; 3]; 2] {
+        match self {
+            Self::Box { lower, upper } => [*lower, *upper],
+            Self::Sphere { center, radius } => [-radius, *radius].map(|by| center.map(|at| at + by)),
+            Self::Revolved { about: [x, y], corners } => {
+                let most = |of: fn(&[f64; 2]) -> f64| corners.iter().map(of).fold(f64::NEG_INFINITY, f64::max);
+                let radius = most(|corner| corner[0]);
+                [
+                    [x - radius, y - radius, -most(|corner| -corner[1])],
+                    [x + radius, y + radius, most(|corner| corner[1])],
+                ]
+            }
+            Self::Terrain(terrain) => {
+                let top = terrain.heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+                [[f64::NEG_INFINITY; 3], [f64::INFINITY, f64::INFINITY, top]]
+            }
+        }
+    }
+
     /// Its outline about the reference point.
     pub fn outline(&self) -> Outline {
         match self {

@@ -92,6 +92,7 @@ pub const SOLID: &[Row] = &[
     )
     .down(2),
     row(BALL, "sphere = { center = [1.0, 1.5, 0.6], radius = 0.4 }", "rigid.0.sphere", "is in it at"),
+    row(BALL, "sphere = { center = [1.0, 1.5, 0.6], radius = 0.05 }", "rigid.0.sphere", "is in it at"),
     row(BALL, "sphere = { center = [1.0, 1.5], radius = 0.4 }", "rigid.0.sphere.center", "solid: of three"),
     row(BALL, "box = { lower = [0, 0, 3], upper = [1, 1, 3] }", "rigid.0.box.upper", "the body is empty"),
     row(BALL, "terrain = { top = [[0, 0, 1], [1, 0, 1]] }", "rigid.0.terrain.top", "two posts along x"),

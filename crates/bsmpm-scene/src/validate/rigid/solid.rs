@@ -6,7 +6,7 @@ use super::{OVERLAP, Solidity, friction, way};
 use crate::case::{Case, Rigid, RigidShape, RigidSolid};
 use crate::record::Record;
 use crate::report::Report;
-use bsmpm::boundary::rigid::Outline;
+use bsmpm::boundary::rigid::{Outline, Terrain};
 use bsmpm::tensor::Vector;
 
 /// Keys that only a plane knows.
@@ -26,7 +26,7 @@ const IN_A_PLANE: &[&str] = &[
     "start_velocity",
     "start_spin",
 ];
-/// Places along an edge of a body's box at which it is looked for.
+/// Places along an edge of what two boxes share at which a body is looked for.
 const PLACES: usize = 24;
 
 /// A rigid body; `None` after an error.
@@ -115,26 +115,23 @@ pub(super) fn solidity(solid: &RigidSolid) -> Solidity {
     Solidity { outline, thickness, corner: [solid.reference()[0], solid.reference()[2]] }
 }
 
-/// A body is not in it at the start, and its outline lies within the heights that are given.
+/// No body is in it when that comes, and its outline lies within the heights that are given.
 pub(super) fn check(case: &Case, (rigid, solid): (&Rigid, &RigidSolid), record: &Record, report: &mut Report<'_>) {
     let cell = case.grid.axes.iter().map(|axis| axis.shortest()).fold(f64::INFINITY, f64::min);
     let key = ["box", "sphere", "revolve", "terrain"].into_iter().find(|key| record.gives(key)).unwrap_or("box");
     let body = crate::surfaces::rigid_body::<3>(rigid, [0.0; 3], case.geometry);
-    let depth = |at: [f64; 3]| -body.outline.nearest(&body.pose(&Vector::zeros()).seen(&Vector::from(at))).distance;
     for (number, of) in case.bodies.iter().enumerate() {
-        let [lower, upper] = of.region.corners();
-        let place = |k: [usize; 3]| -> [f64; 3] {
-            std::array::from_fn(|axis| {
-                lower[axis] + (k[axis] as f64 + 0.5) / PLACES as f64 * (upper[axis] - lower[axis])
-            })
-        };
-        let places = (0..PLACES.pow(3)).map(|n| place([n / PLACES / PLACES, n / PLACES % PLACES, n % PLACES]));
-        let mut inside = places.filter(|at| of.region.contains_in_space(*at) && depth(*at) > OVERLAP * cell);
-        if let Some([x, y, z]) = inside.next() {
-            let message = format!(
-                "body.{number} is in it at [{x:.4}, {y:.4}, {z:.4}], by more than {OVERLAP} cells; subtract it from that body"
+        let stage = case.stages.iter().find(|stage| stage.add.contains(&number));
+        let moved = body.on_path(stage.map_or(0.0, |stage| stage.at));
+        let depth = |at: [f64; 3]| -body.outline.nearest(&body.pose(&moved).seen(&Vector::from(at))).distance;
+        let is_in = |at: &[f64; 3]| of.region.contains_in_space(*at) && depth(*at) > OVERLAP * cell;
+        if let Some([x, y, z]) = places(solid, &moved, of.region.corners(), cell).find(is_in) {
+            let is_in = stage.map_or(format!("body.{number} is"), |_| format!("a stage places body.{number}"));
+            record.error(
+                key,
+                format!("{is_in} in it at [{x:.4}, {y:.4}, {z:.4}], by more than {OVERLAP} cells; subtract it from that body"),
+                report,
             );
-            record.error(key, message, report);
         }
     }
     let RigidSolid::Terrain(terrain) = solid else { return };
@@ -150,4 +147,34 @@ pub(super) fn check(case: &Case, (rigid, solid): (&Rigid, &RigidSolid), record: 
             record.path_of(key)
         ));
     }
+}
+
+/// Places at which a body between two corners is looked for in a rigid one that has moved: all over what their boxes
+/// share, and below the posts of terrain, which may be narrower than that.
+fn places<'a>(
+    solid: &'a RigidSolid,
+    moved: &'a Vector<3>,
+    of: [[f64; 3]; 2],
+    cell: f64,
+) -> impl Iterator<Item = [f64; 3]> + 'a {
+    let own = solid.corners();
+    let lower: [f64; 3] = std::array::from_fn(|axis| of[0][axis].max(own[0][axis] + moved[axis]));
+    let edges: [f64; 3] = std::array::from_fn(|axis| of[1][axis].min(own[1][axis] + moved[axis]) - lower[axis]);
+    let place = move |k: [usize; 3]| -> [f64; 3] {
+        std::array::from_fn(|axis| lower[axis] + (k[axis] as f64 + 0.5) / PLACES as f64 * edges[axis])
+    };
+    let count = if edges.iter().all(|edge| *edge > 0.0) { PLACES.pow(3) } else { 0 };
+    let posts = match solid {
+        RigidSolid::Terrain(terrain) => Some(terrain),
+        _ => None,
+    };
+    let below = move |terrain: &'a Terrain| {
+        terrain.heights.iter().enumerate().map(move |(n, height)| {
+            let post = [n % terrain.count[0], n / terrain.count[0]];
+            let at = |axis: usize| terrain.lower[axis] + post[axis] as f64 * terrain.spacing[axis] + moved[axis];
+            [at(0), at(1), height + moved[2] - 2.0 * OVERLAP * cell]
+        })
+    };
+    let all_over = (0..count).map(move |n| place([n / PLACES / PLACES, n / PLACES % PLACES, n % PLACES]));
+    all_over.chain(posts.into_iter().flat_map(below))
 }
