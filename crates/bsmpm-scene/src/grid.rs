@@ -49,6 +49,11 @@ impl GridSpec {
         self.axes.len()
     }
 
+    /// Shortest edge of all cells, m.
+    pub fn shortest(&self) -> f64 {
+        self.axes.iter().map(GridAxis::shortest).fold(f64::INFINITY, f64::min)
+    }
+
     /// Lower corner, m: positions of points are relative to it; 0 along an axis that it does not have.
     pub fn lower(&self) -> [f64; 3] {
         std::array::from_fn(|axis| self.axes.get(axis).map_or(0.0, GridAxis::lower))

@@ -11,7 +11,7 @@ const PIECES: usize = 32;
 /// Straight pieces of the surface of `of` beside which none of `all` lies, m from the grid's lower corner; arcs as
 /// chords of part of a cell. Where a corner of a body touches another's edge a piece ends.
 pub(crate) fn skin(of: &Region, all: &[&Region], grid: &GridSpec) -> Vec<[[f64; 2]; 2]> {
-    let cell = grid.axes[0].shortest().min(grid.axes[1].shortest());
+    let cell = grid.shortest();
     let (off, lower) = (BESIDE * cell, grid.lower());
     let corners: Vec<[f64; 2]> =
         all.iter().flat_map(|region| region.edges(grid).0).flat_map(|edge| [edge.a, edge.b]).collect();

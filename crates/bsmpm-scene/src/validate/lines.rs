@@ -198,8 +198,8 @@ type Interface = ([f64; 2], (usize, usize), [f64; 2]);
 
 /// The place along an edge where the materials on both sides are least alike, if they are not.
 fn unlike(case: &Case, edge: &Edge) -> Option<Interface> {
-    let (lower, axes) = (case.grid.lower(), &case.grid.axes);
-    let aside = BESIDE * axes[0].shortest().min(axes[1].shortest());
+    let lower = case.grid.lower();
+    let aside = BESIDE * case.grid.shortest();
     let normal = usize::from(!edge.is_along(1)); // aside along x of a vertical edge, else along y
     let unlike = (0..SAMPLES).filter_map(|k| {
         let part = (k as f64 + 0.5) / SAMPLES as f64;

@@ -1,7 +1,7 @@
 //! Tractions, point loads, and the stress at the start.
 
 use super::material::profile;
-use super::place::{along, at_body, at_volume, beyond, is_at, is_beyond, ring};
+use super::place::{along, at_body, at_volume, beyond, is_at, is_beyond, ring, side_of_bodies};
 use super::site::{AroundStrip, places, plate, segment};
 use crate::case::{Acting, Body, Case, Gravity, Initial, LoadedLine, NamedMaterial, PointLoad, Push, Site, Traction};
 use crate::record::Record;
@@ -84,30 +84,28 @@ fn push(record: &Record, line: LoadedLine, around: AroundStrip<'_>, report: &mut
     }
     let profile = profile(record, "pressure")?;
     let (grid, bodies) = (around.grid?, around.bodies?);
-    let off = 0.25 * grid.axes[0].shortest().min(grid.axes[1].shortest());
     let holds = |at: [f64; 2]| bodies.iter().any(|body| body.region.contains(at));
-    let count = |side: f64| match line {
+    let count = |off: f64| match line {
         LoadedLine::Segment { from, to } => {
             let (x, y) = (to[0] - from[0], to[1] - from[1]);
-            let (x, y) = (-y / x.hypot(y) * off * side, x / x.hypot(y) * off * side);
+            let (x, y) = (-y / x.hypot(y) * off, x / x.hypot(y) * off);
             along([from, to]).filter(|at| holds([at[0] + x, at[1] + y])).count()
         }
-        LoadedLine::Circle { center, radius } => ring(center, radius - side * off).filter(|at| holds(*at)).count(),
+        LoadedLine::Circle { center, radius } => ring(center, radius - off).filter(|at| holds(*at)).count(),
         LoadedLine::Plate(plate) => {
             let inside = |mut at: [f64; 3]| {
-                at[plate.normal()] += side * off;
+                at[plate.normal()] += off;
                 bodies.iter().any(|body| body.region.contains_in_space(at))
             };
             places(Site::Plate(plate), grid).into_iter().filter(|at| inside(*at)).count()
         }
     };
-    let (left, right) = (count(1.0), count(-1.0));
-    if left.abs_diff(right) * 2 < left.max(right) {
-        let message = "bodies lie on both sides of it: a pressure acts on a free surface";
+    let Some(side) = side_of_bodies(grid, count) else {
+        let message = "bodies lie on both sides of it, or on none: a pressure acts on a free surface";
         record.error("pressure", message, report);
         return None;
-    }
-    Some(Push::Pressure { profile, side: if left > right { 1.0 } else { -1.0 } })
+    };
+    Some(Push::Pressure { profile, side })
 }
 
 /// All point loads in the order of the file, without those that have an error.

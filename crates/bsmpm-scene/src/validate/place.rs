@@ -58,7 +58,7 @@ pub(super) fn ring(center: [f64; 2], radius: f64) -> impl Iterator<Item = [f64; 
 /// Whether some body is within half the spacing of its points of a place: the splines would carry a force over more
 /// than a cell of empty room.
 pub(super) fn at_body(bodies: &[Body], grid: &GridSpec, at: [f64; 2]) -> bool {
-    let shortest = grid.axes[0].shortest().min(grid.axes[1].shortest());
+    let shortest = grid.shortest();
     bodies.iter().any(|body| {
         let half = 0.5 * shortest / body.points_per_cell as f64;
         let around = |k: usize, part: f64| {
@@ -85,12 +85,27 @@ pub(super) fn over([lower, upper]: [[f64; 3]; 2]) -> impl Iterator<Item = [f64; 
 
 /// As [`at_body`] of a solid.
 pub(super) fn at_volume(bodies: &[Body], grid: &GridSpec, at: [f64; 3]) -> bool {
-    let shortest = grid.axes.iter().map(|axis| axis.shortest()).fold(f64::INFINITY, f64::min);
+    let shortest = grid.shortest();
     bodies.iter().any(|body| {
         let half = 0.5 * shortest / body.points_per_cell as f64;
-        let off = |k: usize| [-half, 0.0, half][k];
-        (0..27).any(|n| body.region.contains_in_space([at[0] + off(n / 9), at[1] + off(n / 3 % 3), at[2] + off(n % 3)]))
+        let place = |part: f64, n: usize| {
+            let off = |k: usize| (k as f64 - 1.0) * part * half;
+            [at[0] + off(n / 9), at[1] + off(n / 3 % 3), at[2] + off(n % 3)]
+        };
+        DISTANCES.iter().any(|part| (0..27).any(|n| body.region.contains_in_space(place(*part, n))))
     })
+}
+
+/// Parts of the shortest cell beside a surface at which bodies are looked for, until one is there.
+const BESIDE: [f64; 3] = [0.25, 0.025, 0.0025];
+
+/// On which side of a surface bodies lie: 1 along its normal, -1 against it; `None` on both, or on none. `count` has
+/// the places so many metres along its normal at which there are any.
+pub(super) fn side_of_bodies(grid: &GridSpec, count: impl Fn(f64) -> usize) -> Option<f64> {
+    let counts = BESIDE.map(|part| part * grid.shortest()).map(|off| [count(off), count(-off)]);
+    let [along, against] = counts.into_iter().find(|counts| *counts != [0; 2])?;
+    let is_one = along.abs_diff(against) * 2 >= along.max(against);
+    is_one.then_some(if along > against { 1.0 } else { -1.0 })
 }
 
 /// Whether some body is within half the spacing of its points of a place.

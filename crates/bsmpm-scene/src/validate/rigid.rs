@@ -209,7 +209,7 @@ fn fine_enough(
     report: &mut Report<'_>,
 ) {
     let (Some(grid), Some(dt)) = (around.grid, around.dt) else { return };
-    let cell = grid.axes.iter().map(|axis| axis.shortest()).fold(f64::INFINITY, f64::min);
+    let cell = grid.shortest();
     let Solidity { outline, thickness, corner: about } = Solidity::of(rigid);
     let radius = outline.radius();
     let turns = geometry != Geometry::Solid;
@@ -383,7 +383,7 @@ fn longest(case: &Case) -> f64 {
 
 /// A place of a body among those that are `there` that is inside a rigid one as it is at the start, if there is one.
 fn overlap(case: &Case, rigid: &Rigid, there: impl Fn(usize) -> bool) -> Option<([f64; 2], usize)> {
-    let cell = case.grid.axes[0].shortest().min(case.grid.axes[1].shortest());
+    let cell = case.grid.shortest();
     let inset = OVERLAP * cell;
     let places: Vec<[f64; 2]> = match &rigid.shape {
         RigidShape::Circle { center, radius } => place::ring(*center, (radius - inset).max(0.0)).collect(),

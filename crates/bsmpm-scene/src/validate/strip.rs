@@ -1,6 +1,6 @@
 //! The footing and prescribed motions.
 
-use super::place::{is_beyond, is_in};
+use super::place::{is_beyond, is_in, side_of_bodies};
 use super::site::{AroundStrip, corners, normal_of, places, site};
 use crate::case::{Base, Case, Face, Footing, MotionPath, Prescribed, Site};
 use crate::record::Record;
@@ -66,9 +66,6 @@ pub(super) fn prescribed(root: &Record, around: AroundStrip<'_>, report: &mut Re
     found
 }
 
-/// Parts of the shortest cell beside a strip at which bodies are looked for.
-const BESIDE: f64 = 0.25;
-
 /// What a strip does that rubs and lets go, and what it may hold so; `None` where the key is a word, `Some(None)` after
 /// an error.
 fn rubs(
@@ -81,16 +78,15 @@ fn rubs(
     let table = record.record(key)?;
     let Some(law) = super::law(table, around.factor, report) else { return Some(None) };
     let (Some(grid), Some(bodies)) = (around.grid, around.bodies) else { return Some(None) };
-    let (off, normal) = (BESIDE * grid.axes[0].shortest().min(grid.axes[1].shortest()), normal_of(site));
-    let count = |side: f64| {
-        let beside = |at: [f64; 3]| std::array::from_fn(|axis| at[axis] + side * off * normal[axis]);
+    let normal = normal_of(site);
+    let count = |off: f64| {
+        let beside = |at: [f64; 3]| std::array::from_fn(|axis| at[axis] + off * normal[axis]);
         places(site, grid).into_iter().filter(|at| bodies.iter().any(|body| is_in(body, grid, beside(*at)))).count()
     };
-    let (left, right) = (count(1.0), count(-1.0));
-    if left.abs_diff(right) * 2 < left.max(right) {
-        record.error(key, "bodies lie on both sides of it: it rubs and lets go on one", report);
+    let Some(side) = side_of_bodies(grid, count) else {
+        record.error(key, "bodies lie on both sides of it, or on none: it rubs and lets go on one", report);
         return Some(None);
-    }
+    };
     let regime = root.record("analysis").and_then(|analysis| analysis.word("type"));
     if regime == Some(AnalysisType::Dynamic) {
         report.warn(format!(
@@ -99,7 +95,6 @@ fn rubs(
             record.path_of(key)
         ));
     }
-    let side = if left > right { 1.0 } else { -1.0 };
     let base = if law.friction > 0.0 { Base::Rough } else { Base::Smooth };
     Some(Some((base, Some(StripContact { law, inward: normal.map(|n| side * n).into() }))))
 }

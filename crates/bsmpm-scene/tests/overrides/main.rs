@@ -459,6 +459,21 @@ fn a_pressure_finds_the_body_that_it_presses_on() {
     }
 }
 
+/// From below, on a plate of a fifth of a cell's length, in flat cells and within one: the side was the wrong one where
+/// neither a quarter of x's cells nor of y's lay in it.
+#[test]
+fn a_pressure_finds_a_body_that_is_thinner_than_cells_are_long() {
+    let plate = "geometry = 'solid'\nanalysis = { type = 'quasi-static', steps = 1 }\n\
+                 grid = { lower = [0, 0, 0], upper = [4, 2, 2], cell = [1, 1, 0.1], order = 'quadratic' }\n\
+                 material.rubber = { model = 'hencky', young = 1e6, poisson = 0.3 }\nboundary = { left = 'fixed' }\n\
+                 [[body]]\nmaterial = 'rubber'\nbox = { lower = [0, 0, 0.5], upper = [4, 2, 0.7] }\npoints_per_cell = 2\n\
+                 [[traction]]\nrectangle = { lower = [0, 0, 0.5], upper = [4, 2, 0.5] }\npressure = 10.0\n";
+    for set in [&[] as &[&str], &["grid.cell=1.0"]] {
+        let Push::Pressure { side, .. } = valid(plate, set).tractions[0].push else { panic!() };
+        assert_eq!(side, 1.0, "above it, {set:?}");
+    }
+}
+
 /// Stress by depth on an upright surface, 1 m high, in a few pieces: its resultant to round-off, its moment about the
 /// foot to the midpoint rule's error, growth times piece^2 times height/12.
 #[test]

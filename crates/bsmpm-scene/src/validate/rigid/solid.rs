@@ -117,7 +117,7 @@ pub(super) fn solidity(solid: &RigidSolid) -> Solidity {
 
 /// No body is in it when that comes, and its outline lies within the heights that are given.
 pub(super) fn check(case: &Case, (rigid, solid): (&Rigid, &RigidSolid), record: &Record, report: &mut Report<'_>) {
-    let cell = case.grid.axes.iter().map(|axis| axis.shortest()).fold(f64::INFINITY, f64::min);
+    let cell = case.grid.shortest();
     let key = ["box", "sphere", "revolve", "terrain"].into_iter().find(|key| record.gives(key)).unwrap_or("box");
     let body = crate::surfaces::rigid_body::<3>(rigid, [0.0; 3], case.geometry);
     for (number, of) in case.bodies.iter().enumerate() {
