@@ -83,32 +83,43 @@ fn pieces<const D: usize>(
     pieces
 }
 
-/// Parts of a piece, along each axis, of which those inside a disc count.
-const PARTS: usize = 16;
+/// Strips of a piece whose lengths inside a disc are added up.
+const STRIPS: usize = 64;
 
-/// As [`over`] of what of a rectangle is nearer to `center` than `radius`, m: pieces across the rim count with that
-/// part, at its middle.
+/// As [`over`] of what of a rectangle is nearer to `center` than `radius`, m: pieces across the rim count with what of
+/// them is, at its middle.
 pub fn within<K: Kinematics<D>, const D: usize>(
     grid: &Grid<D>,
     (lower, upper): (&Vector<D>, &Vector<D>),
     (center, radius): (&Vector<D>, f64),
     count: usize,
 ) -> Vec<SurfacePoint<D>> {
+    let mut plane = (0..D).filter(|axis| lower[*axis] < upper[*axis]);
+    let (Some(a), Some(b)) = (plane.next(), plane.next()) else { return Vec::new() };
+    // Area and its moments of what is inside, in strips across an axis.
+    let strips = |(piece, edges): (&SurfacePoint<D>, &Vector<D>), across: usize, along: usize| {
+        let width = edges[across] / STRIPS as f64;
+        let (mut area, mut moment) = (0.0, Vector::<D>::zeros());
+        for strip in 0..STRIPS {
+            let x = piece.x[across] - 0.5 * edges[across] + (strip as f64 + 0.5) * width;
+            let half = (radius.powi(2) - (x - center[across]).powi(2)).max(0.0).sqrt();
+            let [from, to] = [-1.0, 1.0].map(|side| {
+                (center[along] + side * half - piece.x[along]).clamp(-0.5 * edges[along], 0.5 * edges[along])
+            });
+            let part = width * (to - from);
+            area += part;
+            moment[across] += part * x;
+            moment[along] += part * (piece.x[along] + 0.5 * (from + to));
+        }
+        (area, moment)
+    };
     let clipped = |(piece, edges): (SurfacePoint<D>, Vector<D>)| {
-        let parts: Vec<usize> = edges.iter().map(|edge| if *edge > 0.0 { PARTS } else { 1 }).collect();
-        let all: usize = parts.iter().product();
-        let part = |mut number: usize| {
-            Vector::from_fn(|axis, _| {
-                let k = number % parts[axis];
-                number /= parts[axis];
-                piece.x[axis] + edges[axis] * ((k as f64 + 0.5) / parts[axis] as f64 - 0.5)
-            })
-        };
-        let is_inside = |x: &Vector<D>| (x - center).norm_squared() < radius * radius;
-        let inside: Vec<Vector<D>> = (0..all).map(part).filter(is_inside).collect();
-        let x = inside.iter().fold(Vector::zeros(), |sum, x| sum + x) / inside.len() as f64;
-        let area = piece.area * inside.len() as f64 / all as f64 * K::weight(&x);
-        (!inside.is_empty()).then_some(SurfacePoint { x, area })
+        // Both ways, so that a disc keeps its symmetry.
+        let [one, other] = [(a, b), (b, a)].map(|(across, along)| strips((&piece, &edges), across, along));
+        let (area, moment) = (0.5 * (one.0 + other.0), 0.5 * (one.1 + other.1));
+        let mut x = piece.x;
+        (x[a], x[b]) = (moment[a] / area, moment[b] / area);
+        (area > 0.0).then(|| SurfacePoint { x, area: area * K::weight(&x) })
     };
     pieces(grid, lower, upper, count).into_iter().filter_map(clipped).collect()
 }
@@ -301,4 +312,26 @@ fn on_grid<const D: usize>(grid: &Grid<D>, x: &Vector<D>) -> Vector<D> {
 /// Values of the `width` functions of a cell of one axis.
 fn values(axis: &KnotVector, width: usize, x: f64, cell: usize) -> Vec<f64> {
     with_width!(lowered width, W => axis.basis::<W>(x, cell).0.to_vec())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::grid::KnotVector;
+    use crate::kinematics::Solid;
+
+    /// Between lines, across them, and within a piece of a cell.
+    #[test]
+    fn the_points_of_a_disc_have_its_area_and_its_middle() {
+        let grid = Grid::<3>::new([0; 3].map(|_| KnotVector::uniform(0.5, 8, 2).unwrap())).unwrap();
+        for (center, radius) in [([2.0, 2.0], 1.0), ([2.1, 1.9], 0.4), ([2.1, 1.9], 0.12), ([2.03, 1.95], 0.02)] {
+            let center = Vector::<3>::new(center[0], center[1], 1.0);
+            let [lower, upper] = [-radius, radius].map(|by| center + Vector::<3>::new(by, by, 0.0));
+            let points = within::<Solid, 3>(&grid, (&lower, &upper), (&center, radius), 4);
+            let area: f64 = points.iter().map(|point| point.area).sum();
+            let middle = points.iter().map(|point| point.x * point.area).sum::<Vector<3>>() / area;
+            assert!((area / (std::f64::consts::PI * radius.powi(2)) - 1.0).abs() < 3e-4, "{area}");
+            assert!((middle - center).norm() < 1e-3 * radius, "{middle}");
+        }
+    }
 }

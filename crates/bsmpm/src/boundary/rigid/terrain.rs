@@ -42,6 +42,10 @@ impl Terrain {
     /// Slope along an axis: central differences at the posts, bilinear between them, so that normals do not jump where
     /// the heights have a kink.
     fn slope(&self, at: [f64; 2], axis: usize) -> f64 {
+        let far = self.lower[axis] + (self.count[axis] - 1) as f64 * self.spacing[axis];
+        if at[axis] < self.lower[axis] || at[axis] > far {
+            return 0.0;
+        }
         let of = |i: usize, j: usize| {
             let post = [i, j];
             let (before, after) = (post[axis].saturating_sub(1), (post[axis] + 1).min(self.count[axis] - 1));
@@ -95,6 +99,13 @@ mod tests {
             let found = plane.nearest(&(foot + normal * distance));
             assert!((found.0 - distance).abs() < 1e-14 && (found.1 - normal).norm() < 1e-14);
         }
+    }
+
+    #[test]
+    fn beyond_the_posts_the_surface_is_level() {
+        let found = of(|x, y| 1.0 + 0.5 * x - 0.25 * y).nearest(&Vector::<3>::new(7.0, 2.0, 3.5));
+        assert!((found.0 - 0.5 / (1.0_f64 + 0.0625).sqrt()).abs() < 1e-14, "{}", found.0);
+        assert!(found.1[0] == 0.0 && found.1[1] > 0.2, "along x alone: {}", found.1);
     }
 
     #[test]
