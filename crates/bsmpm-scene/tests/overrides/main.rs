@@ -1,15 +1,16 @@
 //! `--set KEY=VALUE`, and what a valid case becomes.
 
+mod loads;
 mod materials;
 
 use bsmpm::kinematics::PlaneStrain;
-use bsmpm::material::{Law, Material, MohrCoulomb, Profile};
+use bsmpm::material::{Law, Material, MohrCoulomb};
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::tensor::Vector;
 use bsmpm_scene::words::{Factor, Ksp, Pc};
 use bsmpm_scene::{
-    BackgroundKind, Base, Case, Counted, Error, Every, Extent, Face, GridAxis, Initial, LoadedLine, Place, Push,
-    Quadrature, Quantity, Site, Support, seed,
+    BackgroundKind, Case, Counted, Error, Every, Extent, Face, GridAxis, Place, Quadrature, Quantity, Site, Support,
+    seed,
 };
 
 const FULL: &str = include_str!("../full.toml");
@@ -289,66 +290,6 @@ fn what_the_program_chooses_is_noted() {
 }
 
 #[test]
-fn strips_loads_and_initial_stress_arrive() {
-    let case = valid(FULL, &["footing.base=\"rough\""]);
-    let footing = case.footing.unwrap();
-    assert_eq!((footing.site.ends(), footing.base), (Some([[1.0, 2.5], [2.0, 2.5]]), Base::Rough));
-    assert_eq!(footing.path.rows, [(1.0, [0.0, -0.1, 0.0])]);
-    assert_eq!(valid(FULL, &[]).footing.unwrap().base, Base::Smooth);
-    let bases: Vec<Base> = case.prescribed.iter().map(|prescribed| prescribed.base).collect();
-    assert_eq!(bases, [Base::Smooth, Base::Rough]);
-    assert_eq!(case.prescribed[0].site, Site::Face(Face { axis: 0, upper: true }));
-    assert_eq!(case.prescribed[0].path.rows, [(1.0, [0.0, -0.01, 0.0])]);
-    assert_eq!(case.prescribed[1].path.rows, [(0.5, [0.0, -0.1, 0.0]), (1.0, [0.0; 3])]);
-    assert_eq!(
-        (case.tractions[0].push, case.tractions[0].ramp),
-        (Push::Stress([0.0, -2e4, 0.0].map(Profile::constant)), 0.5)
-    );
-    assert_eq!((case.point_loads[0].at, case.point_loads[0].force), ([3.5, 1.25, 0.0], [0.0, -1e3, 0.0]));
-    assert_eq!(case.initial, Some(Initial::AtRest(vec![0.5, 0.5, 0.5, 0.6])));
-    let elastic = FULL.replace("k0          = 0.6\n", "").replace("k0 = 0.5\n", "gravity = \"elastic\"\n");
-    assert_eq!(valid(&elastic, &[]).initial, Some(Initial::Elastic));
-    let own = FULL.replace("k0 = 0.5\n", "");
-    assert!(set(&own, &[]).is_err(), "not all materials have their own");
-    let k0 = ["material.sand.k0=0.4", "material.clay.k0=0.7", "material.block.k0=0"];
-    assert_eq!(valid(&own, &k0).initial, Some(Initial::AtRest(vec![0.4, 0.7, 0.0, 0.6])));
-}
-
-#[test]
-fn strips_hold_and_load_a_quasi_static_body() {
-    let free = STATIC.replace("bottom = \"fixed\"\n", "");
-    let errors = set(&free, &["traction.0={from=[0, 1], to=[2, 1], stress=[0, -1]}"]).unwrap_err();
-    assert_eq!(errors.len(), 2, "along x and y: {errors:?}");
-    let strip = |more: &str| format!("prescribed.0={{from=[0, 1], to=[2, 1], displacement=[0, -0.1]{more}}}");
-    assert!(valid(&free, &[&strip("")]).warnings.is_empty());
-    let errors = set(&free, &[&strip(", components=\"normal\"")]).unwrap_err();
-    assert!(errors.len() == 1 && errors[0].message.contains("along x"), "{errors:?}");
-    let face = "prescribed.0={face=\"bottom\", displacement=[0.1, 0]}";
-    assert!(valid(&free, &[face]).warnings.is_empty());
-    assert!(set(&free, &["prescribed.0={face=\"top\", displacement=[0, -0.1]}"]).is_err(), "no body reaches it");
-    let held = valid(&free, &["footing={from=[0, 1], to=[2, 1], displacement=[0, -0.1]}", "boundary.left=roller"]);
-    assert!(held.warnings.is_empty(), "{:?}", held.warnings);
-    for load in ["traction.0={from=[0, 1], to=[2, 1], stress=[0, -1]}", "point_load.0={at=[1, 1], force=[0, -1]}"] {
-        assert!(valid(STATIC, &[load]).warnings.is_empty(), "{load}");
-    }
-    assert!(!valid(STATIC, &["traction.0={from=[0, 1], to=[2, 1], stress=[0, 0]}"]).warnings.is_empty());
-}
-
-#[test]
-fn strips_and_loads_start_within_half_a_spacing_of_points() {
-    // The block's points are .25 m apart: its top is at 2.5 m. A strip may start with a part of it beyond the body.
-    let near = ["footing.from=[1.25, 2.62]", "footing.to=[1.75, 2.62]"];
-    assert!(doubts(FULL, &near).is_empty());
-    assert!(doubts(FULL, &["footing.from=[0.9, 2.5]", "footing.to=[2.3, 2.5]"]).is_empty());
-    for corner in ["[0.95, 2.55]", "[1.0, 2.5]", "[2.0, 2.5]", "[2.05, 2.45]", "[1.5, 2.25]"] {
-        assert!(doubts(FULL, &[&format!("point_load.0.at={corner}")]).is_empty(), "{corner}");
-    }
-    for far in ["[0.85, 2.5]", "[1.0, 2.63]", "[2.1, 2.6]"] {
-        assert!(set(FULL, &[&format!("point_load.0.at={far}")]).is_err(), "{far}");
-    }
-}
-
-#[test]
 fn free_faces_move_outward() {
     let case = valid(STATIC, &["grid.upper=[2.5, 1.9]"]);
     assert_eq!(case.grid.upper(), [3.0, 2.0, 0.0]);
@@ -408,92 +349,6 @@ fn drains_that_feed_the_ground_are_warned_of() {
     assert!(found.len() == 1 && found[0].starts_with("drain.4: ") && found[0].contains("51.8 cells"), "{found:?}");
     assert!(warned(&[]).is_empty() && warned(&[permeable, quick]).is_empty());
     assert!(warned(&[permeable, "water.level=1.0"]).is_empty());
-}
-
-/// A load that takes much of the ground's height, on a background that does not hold its surface.
-#[test]
-fn large_loads_on_little_background_are_warned_of() {
-    let case = include_str!("../../../../cases/validation/large_consolidation.toml");
-    let warned = |set: &[&str]| {
-        let warnings = valid(case, set).warnings;
-        warnings.iter().filter(|warning| warning.starts_with("solver.background: ")).cloned().collect::<Vec<_>>()
-    };
-    let found = warned(&["solver.background=1e-4"]);
-    assert!(found.len() == 1 && found[0].contains("a load of 0.50") && found[0].contains("with 1e-2"), "{found:?}");
-    assert!(warned(&[]).is_empty());
-    assert!(warned(&["solver.background=1e-4", "traction.0.stress=[0.0, \"-50 kPa\"]"]).is_empty());
-}
-
-/// A pressure: on the side where the body lies, by depth, on segments and on circles.
-#[test]
-fn a_pressure_finds_the_body_that_it_presses_on() {
-    let with = |traction: &str| set(FULL, &[&format!("traction.0={{ ramp = 0.5, {traction} }}")]);
-    let push = |traction: &str| with(traction).expect("a valid case").tractions[0].clone();
-    let push = |traction: &str| (push(traction).line, push(traction).push, push(traction).largest());
-    let side = |traction: &str| match push(traction).1 {
-        Push::Pressure { side, .. } => side,
-        Push::Stress(_) => panic!(),
-    };
-    assert_eq!(side("from = [0.0, 1.25], to = [1.0, 1.25], pressure = 1e3"), -1.0, "below, on the right of its way");
-    assert_eq!(side("from = [1.0, 1.25], to = [0.0, 1.25], pressure = 1e3"), 1.0);
-    assert_eq!(side("circle = { center = [0.5, 2.0], radius = 0.4 }, pressure = 1e3"), 1.0, "a disc");
-    let hole = "circle = { center = [2.75, 2.0], radius = 0.1 }, pressure = { value = 0.0, at_y = \"3 m\", per_metre = \"10 kPa/m\" }";
-    assert_eq!(side(hole), -1.0, "what surrounds it");
-    let (line, _, largest) = push(hole);
-    assert_eq!(line, LoadedLine::Circle { center: [2.75, 2.0], radius: 0.1 });
-    assert!((largest - 11e3).abs() < 1e-9, "at its lowest place: {largest}");
-    for (traction, told) in [
-        ("from = [0.0, 0.5], to = [1.0, 0.5], pressure = 1e3", "bodies lie on both sides of it"),
-        ("circle = { center = [9.0, 2.0], radius = 0.4 }, pressure = 1e3", "no part of it is inside the grid"),
-        ("circle = { center = [0.5, 2.0], radius = 0.9 }, pressure = 1e3", "no body is at"),
-        ("from = [0.0, 1.25], to = [1.0, 1.25], pressure = 1e3, stress = [0, 1]", "only one of stress, pressure"),
-        (
-            "from = [0.0, 1.25], circle = { center = [0.5, 2.0], radius = 0.4 }, pressure = 1e3",
-            "only one of from, circle",
-        ),
-        ("from = [0.0, 1.25], to = [1.0, 1.25]", "missing: one of stress, pressure"),
-        ("from = [0.0, 1.25], to = [1.0, 1.25], pressure = [0, 1]", "expected"),
-    ] {
-        let message = format!("{:?}", with(traction).expect_err("refused"));
-        assert!(message.contains(told), "{traction}: {message}");
-    }
-}
-
-/// From below, on a plate of a fifth of a cell's length, in flat cells and within one: the side was the wrong one where
-/// neither a quarter of x's cells nor of y's lay in it.
-#[test]
-fn a_pressure_finds_a_body_that_is_thinner_than_cells_are_long() {
-    let plate = "geometry = 'solid'\nanalysis = { type = 'quasi-static', steps = 1 }\n\
-                 grid = { lower = [0, 0, 0], upper = [4, 2, 2], cell = [1, 1, 0.1], order = 'quadratic' }\n\
-                 material.rubber = { model = 'hencky', young = 1e6, poisson = 0.3 }\nboundary = { left = 'fixed' }\n\
-                 [[body]]\nmaterial = 'rubber'\nbox = { lower = [0, 0, 0.5], upper = [4, 2, 0.7] }\npoints_per_cell = 2\n\
-                 [[traction]]\nrectangle = { lower = [0, 0, 0.5], upper = [4, 2, 0.5] }\npressure = 10.0\n";
-    for set in [&[] as &[&str], &["grid.cell=1.0"]] {
-        let Push::Pressure { side, .. } = valid(plate, set).tractions[0].push else { panic!() };
-        assert_eq!(side, 1.0, "above it, {set:?}");
-    }
-}
-
-/// Stress by depth on an upright surface, 1 m high, in a few pieces: its resultant to round-off, its moment about the
-/// foot to the midpoint rule's error, growth times piece^2 times height/12.
-#[test]
-fn stress_that_grows_with_depth_has_the_resultant_of_a_trapezium() {
-    let (value, growth) = ([-2e3, 1e3], [-8e3, 500.0]);
-    let traction = "traction.0={ from = [1.0, 0.25], to = [1.0, 1.25], ramp = 0.5, \
-                    stress = { value = [-2e3, \"1 kPa\"], at_y = 1.25, per_metre = [\"-8 kPa/m\", 500] } }";
-    let case = set(FULL, &[traction]).expect("a valid case");
-    let load = bsmpm_scene::model::model::<PlaneStrain, 2>(&case).expect("a model").boundary.loads.remove(0);
-    assert!(!load.follows && load.points.len() > 1, "{}", load.points.len());
-    let pieces = || load.points.iter().zip(&load.traction);
-    for axis in 0..2 {
-        let force: f64 = pieces().map(|(point, stress)| point.area * stress[axis]).sum();
-        assert!((force / (value[axis] + growth[axis] / 2.0) - 1.0).abs() < 1e-12, "{force}");
-        let moment: f64 = pieces().map(|(point, stress)| point.area * stress[axis] * (point.x[1] - 0.25)).sum();
-        let within: f64 = pieces().map(|(point, _)| growth[axis] * point.area.powi(3) / 12.0).sum();
-        assert!((moment - within - value[axis] / 2.0 - growth[axis] / 6.0).abs() < 1e-9, "{moment} {within}");
-    }
-    let foot = [value[0] + growth[0], value[1] + growth[1]];
-    assert!((case.tractions[0].largest() - foot[0].hypot(foot[1])).abs() < 1e-9);
 }
 
 #[test]
