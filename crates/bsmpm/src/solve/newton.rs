@@ -27,9 +27,6 @@ const FORCING: (f64, f64) = (1e-10, 1e-3);
 /// The loosest where water flows, around a rough solver, and in space: what preconditions is no factor of the
 /// derivative, and each tenth takes products.
 const LOOSE: f64 = 1e-1;
-/// Dimensions up to which the general matrix is factorised: in space it takes more than twice the memory for the same
-/// iterations (`cases/results/solid.md`).
-const PLANE: usize = 2;
 /// Relative residual above which a direction is none.
 const USELESS: f64 = 0.5;
 /// Shortest part of a direction that is tried.
@@ -94,7 +91,8 @@ fn direction<K: Kinematics<D>, const D: usize>(
     let forcing = |loosest: f64| residual.balance.measure().clamp(FORCING.0, loosest);
     counts.factorisations += 1;
     counts.iterations += 1;
-    let (du, krylov) = if solver.is_rough() || D > PLANE {
+    // In space a general matrix takes more than twice the memory for the same iterations (`cases/results/solid.md`).
+    let (du, krylov) = if solver.is_rough() || D == 3 {
         around_stiffness(problem, residual, forcing(LOOSE), solver)?
     } else {
         let linearised = Linearised::at(problem, residual);
