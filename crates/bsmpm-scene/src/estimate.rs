@@ -52,9 +52,9 @@ const KRYLOV_OF_WATER: u128 = bsmpm::solve::fgmres::MOST as u128 * 16;
 /// Bytes of a process that has next to nothing to solve: libraries and buffers of MPI and PETSc.
 const PROCESS: u64 = 47_000_000;
 
-/// Poisson's ratio up to which the stiffness that secants correct is without F-bar's coupling in space; and where
-/// material flows at rest, whose directions are nearly incompressible (`cases/results/solid.md`).
+/// Poisson's ratio up to which the stiffness that secants correct is without F-bar's coupling in space.
 const LOCAL: f64 = 0.45;
+/// The same of material that yields at rest: what flows is nearly incompressible (`cases/results/solid.md`).
 const LOCAL_AT_REST: f64 = 0.4;
 
 /// Unknowns of a rank below which it mostly waits for others, in two dimensions.
@@ -184,12 +184,13 @@ impl Case {
         background.max(self.stabilisation.beyond(self.grid.order))
     }
 
-    /// Whether in space the stiffness that secants correct needs F-bar's coupling.
+    /// Whether some material is so nearly incompressible that in space the stiffness of the secants has F-bar's coupling.
     pub(crate) fn is_nearly_incompressible(&self) -> bool {
-        let poisson = self.materials.iter().map(|named| named.material.elastic().poisson).fold(0.0, f64::max);
-        let flows =
-            self.analysis.regime == Regime::QuasiStatic && self.materials.iter().any(|named| named.material.yields());
-        poisson > if flows { LOCAL_AT_REST } else { LOCAL }
+        let is_at_rest = self.analysis.regime == Regime::QuasiStatic;
+        self.materials.iter().map(|named| &named.material).any(|material| {
+            let most = if is_at_rest && material.yields() { LOCAL_AT_REST } else { LOCAL };
+            material.elastic().poisson > most
+        })
     }
 
     /// Knot spans along each axis for which a run holds nodes at the start, see [`bsmpm::grid::room`]: at `least` so

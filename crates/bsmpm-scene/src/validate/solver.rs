@@ -183,24 +183,37 @@ pub(super) fn of_case(case: &mut Case, root: &Record, report: &mut Report<'_>) {
     if dims < 3 || fails || solver.gives("linear") || case.flow.is_some() || condenses || active <= FEW_IN_SPACE {
         return;
     }
-    if !case.is_nearly_incompressible() {
-        let many = active > MANY_IN_SPACE;
-        let word = if many { LinearSolver::MultigridCycles } else { LinearSolver::IncompleteCholesky };
-        case.solver.linear = Linear { by_size: true, ..in_a_word(word) };
-        let so_many = format!("up to {active} unknowns in space");
-        let reason = match many {
-            true => format!(
-                "{so_many}, more than {MANY_IN_SPACE}: what one application of an incomplete factor leaves grows with them; on \
-                 several ranks, where this need not repeat to the bit, only with solver.reproducible = false"
-            ),
-            false => format!(
-                "{so_many}, more than {FEW_IN_SPACE}: an application of an incomplete factor in place of a solution; a factor \
-                 takes longer than the iterations that it saves, and 2.5 times the memory with every doubling"
-            ),
-        };
-        report.notes.retain(|note| !note.key.starts_with("solver.linear"));
-        report.note("solver.linear", word.word(), reason);
+    let so_many = format!("up to {active} unknowns in space");
+    if case.is_nearly_incompressible() {
+        if case.solver.linear.factor.is_some() {
+            let reason = format!(
+                "{so_many} of nearly incompressible material, or of soil that flows at rest with poisson above 0.4: what \
+                 preconditioners leave in place of solutions takes several times as long"
+            );
+            chosen(LinearSolver::Direct, reason, report);
+        }
+        return;
     }
+    let many = active > MANY_IN_SPACE;
+    let word = if many { LinearSolver::MultigridCycles } else { LinearSolver::IncompleteCholesky };
+    case.solver.linear = Linear { by_size: true, ..in_a_word(word) };
+    let reason = match many {
+        true => format!(
+            "{so_many}, more than {MANY_IN_SPACE}: what one application of an incomplete factor leaves grows with them; on \
+             several ranks, where this need not repeat to the bit, only with solver.reproducible = false"
+        ),
+        false => format!(
+            "{so_many}, more than {FEW_IN_SPACE}: an application of an incomplete factor in place of a solution; a factor \
+             takes longer than the iterations that it saves, and 2.5 times the memory with every doubling"
+        ),
+    };
+    chosen(word, reason, report);
+}
+
+/// Notes what is taken, in place of what was before the case was known.
+fn chosen(word: LinearSolver, reason: String, report: &mut Report<'_>) {
+    report.notes.retain(|note| !note.key.starts_with("solver.linear"));
+    report.note("solver.linear", word.word(), reason);
 }
 
 /// What the case says of the linear solver by PETSc's names.
