@@ -6,7 +6,7 @@ use super::{OVERLAP, Solidity, friction, way};
 use crate::case::{Case, Rigid, RigidShape, RigidSolid};
 use crate::record::Record;
 use crate::report::Report;
-use bsmpm::boundary::rigid::{Outline, Terrain};
+use bsmpm::boundary::rigid::Outline;
 use bsmpm::tensor::Vector;
 
 /// Keys that only a plane knows.
@@ -125,13 +125,12 @@ pub(super) fn check(case: &Case, (rigid, solid): (&Rigid, &RigidSolid), record: 
         let moved = body.on_path(stage.map_or(0.0, |stage| stage.at));
         let depth = |at: [f64; 3]| -body.outline.nearest(&body.pose(&moved).seen(&Vector::from(at))).distance;
         let is_in = |at: &[f64; 3]| of.region.contains_in_space(*at) && depth(*at) > OVERLAP * cell;
-        if let Some([x, y, z]) = places(solid, &moved, of.region.corners(), cell).find(is_in) {
-            let is_in = stage.map_or(format!("body.{number} is"), |_| format!("a stage places body.{number}"));
-            record.error(
-                key,
-                format!("{is_in} in it at [{x:.4}, {y:.4}, {z:.4}], by more than {OVERLAP} cells; subtract it from that body"),
-                report,
+        if let Some([x, y, z]) = places(solid, &moved, of.region.corners(), cell).into_iter().find(is_in) {
+            let what = stage.map_or(format!("body.{number} is"), |_| format!("a stage places body.{number}"));
+            let message = format!(
+                "{what} in it at [{x:.4}, {y:.4}, {z:.4}], by more than {OVERLAP} cells; subtract it from that body"
             );
+            record.error(key, message, report);
         }
     }
     let RigidSolid::Terrain(terrain) = solid else { return };
@@ -150,31 +149,23 @@ pub(super) fn check(case: &Case, (rigid, solid): (&Rigid, &RigidSolid), record: 
 }
 
 /// Places at which a body between two corners is looked for in a rigid one that has moved: all over what their boxes
-/// share, and below the posts of terrain, which may be narrower than that.
-fn places<'a>(
-    solid: &'a RigidSolid,
-    moved: &'a Vector<3>,
-    of: [[f64; 3]; 2],
-    cell: f64,
-) -> impl Iterator<Item = [f64; 3]> + 'a {
+/// share, and below the posts of terrain, whose ridges may be narrower than that.
+fn places(solid: &RigidSolid, moved: &Vector<3>, of: [[f64; 3]; 2], cell: f64) -> Vec<[f64; 3]> {
     let own = solid.corners();
     let lower: [f64; 3] = std::array::from_fn(|axis| of[0][axis].max(own[0][axis] + moved[axis]));
     let edges: [f64; 3] = std::array::from_fn(|axis| of[1][axis].min(own[1][axis] + moved[axis]) - lower[axis]);
-    let place = move |k: [usize; 3]| -> [f64; 3] {
+    let place = |n: usize| -> [f64; 3] {
+        let k = [n / PLACES / PLACES, n / PLACES % PLACES, n % PLACES];
         std::array::from_fn(|axis| lower[axis] + (k[axis] as f64 + 0.5) / PLACES as f64 * edges[axis])
     };
     let count = if edges.iter().all(|edge| *edge > 0.0) { PLACES.pow(3) } else { 0 };
-    let posts = match solid {
-        RigidSolid::Terrain(terrain) => Some(terrain),
-        _ => None,
-    };
-    let below = move |terrain: &'a Terrain| {
-        terrain.heights.iter().enumerate().map(move |(n, height)| {
+    let mut places: Vec<[f64; 3]> = (0..count).map(place).collect();
+    if let RigidSolid::Terrain(terrain) = solid {
+        places.extend(terrain.heights.iter().enumerate().map(|(n, height)| {
             let post = [n % terrain.count[0], n / terrain.count[0]];
             let at = |axis: usize| terrain.lower[axis] + post[axis] as f64 * terrain.spacing[axis] + moved[axis];
             [at(0), at(1), height + moved[2] - 2.0 * OVERLAP * cell]
-        })
-    };
-    let all_over = (0..count).map(move |n| place([n / PLACES / PLACES, n / PLACES % PLACES, n % PLACES]));
-    all_over.chain(posts.into_iter().flat_map(below))
+        }));
+    }
+    places
 }
