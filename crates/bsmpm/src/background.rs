@@ -9,17 +9,18 @@
 
 mod form;
 mod ghost;
+mod tensor;
 
 use crate::exact::Exact;
 use crate::grid::shape::{Patch, Shape};
 use crate::grid::{Contributions, Grid, transfer};
 use crate::kinematics::Kinematics;
-use crate::lanes::{self, InLanes, LANES, Lanes, Simd};
+use crate::lanes::LANES;
 use crate::material::Material;
 use crate::nodal::Nodal;
 use crate::parallel::{Halo, LinearSolver};
 use crate::points::Points;
-use form::{Form, Forms};
+use form::{CellForms, Form, Forms};
 use ghost::GhostFaces;
 
 /// What the background resists.
@@ -72,7 +73,7 @@ pub struct Background {
 #[derive(Clone, Debug, Default)]
 pub struct Blocks {
     cells: Vec<SoftCell>, // ascending by patch
-    forms: Vec<Block>,    // of those cells, one for all whose breakpoints lie alike
+    forms: CellForms,
     faces: GhostFaces,
 }
 
@@ -82,71 +83,6 @@ struct SoftCell {
     patch: usize,
     form: usize,
     factor: f64, // Pa  c E, times a geometry's weight
-}
-
-/// The block of a cell, m^(D-2), row-major and symmetric to the last bit.
-#[derive(Clone, Debug)]
-enum Block {
-    /// (q+1)^D square, equal for every component, which do not couple
-    Scalar(Vec<f64>),
-    /// D (q+1)^D square, and behind it seven zeros, so that vectors of eight may reach beyond the end
-    Coupled(Vec<f64>),
-}
-
-impl Block {
-    /// Adds `factor` times it to a patch's block of D unknowns a node.
-    fn add_to<const D: usize>(&self, factor: f64, block: &mut [f64]) {
-        match self {
-            Self::Coupled(form) => block.iter_mut().zip(form).for_each(|(sum, value)| *sum += factor * value),
-            Self::Scalar(form) => {
-                let size = form.len().isqrt();
-                for (entry, value) in form.iter().enumerate() {
-                    let (a, b) = (entry / size, entry % size);
-                    for i in 0..D {
-                        block[(a * D + i) * size * D + b * D + i] += factor * value;
-                    }
-                }
-            }
-        }
-    }
-
-    /// What it makes of the nodes' `u`, into `product`.
-    fn multiply<const D: usize>(&self, u: &[[f64; D]], product: &mut [[f64; D]]) {
-        match self {
-            Self::Scalar(form) => {
-                for (sum, row) in product.iter_mut().zip(form.chunks_exact(u.len())) {
-                    let along = |i: usize| row.iter().zip(u).map(|(entry, u)| entry * u[i]).sum();
-                    *sum = std::array::from_fn(along);
-                }
-            }
-            Self::Coupled(form) => {
-                lanes::run(Product { form, u: u.as_flattened(), product: product.as_flattened_mut() });
-            }
-        }
-    }
-}
-
-/// A symmetric block times what the nodes have: eight rows at a time, of which each entry of `u` has its column's.
-struct Product<'a> {
-    form: &'a [f64],
-    u: &'a [f64],
-    product: &'a mut [f64],
-}
-
-impl InLanes for Product<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<S: Simd>(self, simd: S) {
-        for (eight, rows) in self.product.chunks_mut(LANES).enumerate() {
-            let mut sum = Lanes::splat(simd, 0.0);
-            for (column, u) in self.u.iter().enumerate() {
-                let entries = &self.form[column * self.u.len() + eight * LANES..];
-                sum = sum + Lanes::first_of(simd, entries) * *u;
-            }
-            rows.copy_from_slice(&sum.numbers()[..rows.len()]);
-        }
-    }
 }
 
 /// Fill below which a cell counts as partly filled. Results hardly depend on it between .5 and .9.
@@ -187,8 +123,8 @@ impl Background {
         let soft = |(number, patch): (usize, &Patch)| {
             let cell = grid.cell_at(patch.cell);
             let (lower, size) = grid.cell_box(&cell);
-            let weight = K::weight(&(lower + size * 0.5));
-            SoftCell { patch: number, form: forms.of(&cell), factor: self.coefficient * modulus(patch) * weight }
+            let factor = self.coefficient * modulus(patch) * K::weight(&(lower + size * 0.5));
+            SoftCell { patch: number, form: forms.of(&cell), factor }
         };
         let cells = cells.map(soft).collect();
         Blocks { cells, forms: forms.found, ..Blocks::default() }
@@ -244,15 +180,20 @@ impl Blocks {
         mut product: impl FnMut(usize, &[[f64; D]], &[[f64; D]]),
     ) {
         let size = shape.offsets().len();
-        let (mut own, mut forces) = ([[0.0; D]; MOST_NODES], [[0.0; D]; MOST_NODES]);
-        for soft in &self.cells {
-            let first = shape.patches()[soft.patch].first_node;
-            for (at_node, offset) in own[..size].iter_mut().zip(shape.offsets()) {
-                at_node.copy_from_slice(&u[Nodal::<D>::of(first + offset)]);
+        let (mut u_of, mut forces) = ([[0.0; D]; LANES * MOST_NODES], [[0.0; D]; LANES * MOST_NODES]);
+        for cells in self.cells.chunks(LANES) {
+            let first = |cell: &SoftCell| shape.patches()[cell.patch].first_node;
+            for (soft, own) in cells.iter().zip(u_of.chunks_exact_mut(size)) {
+                for (at_node, offset) in own.iter_mut().zip(shape.offsets()) {
+                    at_node.copy_from_slice(&u[Nodal::<D>::of(first(soft) + offset)]);
+                }
             }
-            self.forms[soft.form].multiply(&own[..size], &mut forces[..size]);
-            forces[..size].as_flattened_mut().iter_mut().for_each(|force| *force *= soft.factor);
-            product(first, &own[..size], &forces[..size]);
+            let numbers = cells.iter().map(|soft| soft.form);
+            self.forms.multiply(numbers, &u_of, &mut forces[..cells.len() * size]);
+            for ((soft, own), forces) in cells.iter().zip(u_of.chunks(size)).zip(forces.chunks_mut(size)) {
+                forces.as_flattened_mut().iter_mut().for_each(|force| *force *= soft.factor);
+                product(first(soft), own, forces);
+            }
         }
     }
 
@@ -279,7 +220,7 @@ impl Blocks {
     /// Adds that of the patch of this number, if it has one, to the patch's block.
     pub fn add_to<const D: usize>(&self, patch: usize, block: &mut [f64]) {
         if let Some(soft) = self.of(patch) {
-            self.forms[soft.form].add_to::<D>(soft.factor, block);
+            self.forms.add_to::<D>(soft.form, soft.factor, block);
         }
     }
 

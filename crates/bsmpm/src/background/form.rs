@@ -1,13 +1,13 @@
 //! The quadratic forms of the background over a cell, exact: products of one-dimensional integrals.
 
-use super::Block;
+use super::tensor::TensorForms;
 use crate::grid::shape::with_width;
 use crate::grid::{Grid, KnotVector};
-use crate::lanes::LANES;
+use crate::lanes::{self, InLanes, LANES, Lanes, Simd};
 use std::collections::BTreeMap;
 
 /// A form within a cell.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Form {
     /// int eps : eps dV, eps the symmetric gradient
     Strain,
@@ -15,55 +15,184 @@ pub(super) enum Form {
     Curvature,
 }
 
+/// The forms of cells, by number.
+#[derive(Clone, Debug)]
+pub(super) enum CellForms {
+    /// one for all cells whose breakpoints lie alike
+    Blocks(Vec<Block>),
+    /// of each cell, of the strain in space
+    ByAxes(TensorForms),
+}
+
+impl Default for CellForms {
+    fn default() -> Self {
+        Self::Blocks(Vec::new())
+    }
+}
+
+impl CellForms {
+    /// What up to eight forms make of the nodes of their cells, into `products`.
+    pub(super) fn multiply<const D: usize>(
+        &self,
+        numbers: impl ExactSizeIterator<Item = usize>,
+        u: &[[f64; D]],
+        products: &mut [[f64; D]],
+    ) {
+        match self {
+            Self::Blocks(blocks) => {
+                let size = products.len() / numbers.len();
+                for (number, (product, u)) in numbers.zip(products.chunks_mut(size).zip(u.chunks(size))) {
+                    blocks[number].multiply(u, product);
+                }
+            }
+            Self::ByAxes(forms) => forms.multiply(numbers, u.as_flattened(), products.as_flattened_mut()),
+        }
+    }
+
+    /// Adds `factor` times a form to a patch's block of D unknowns a node.
+    pub(super) fn add_to<const D: usize>(&self, number: usize, factor: f64, block: &mut [f64]) {
+        match self {
+            Self::Blocks(blocks) => blocks[number].add_to::<D>(factor, block),
+            Self::ByAxes(forms) => forms.add_to(number, factor, block),
+        }
+    }
+}
+
+/// The block of a cell, m^(D-2), row-major and symmetric to the last bit.
+#[derive(Clone, Debug)]
+pub(super) enum Block {
+    /// (q+1)^D square, equal for every component, which do not couple
+    Scalar(Vec<f64>),
+    /// D (q+1)^D square, and behind it seven zeros, so that vectors of eight may reach beyond the end
+    Coupled(Vec<f64>),
+}
+
+impl Block {
+    /// Adds `factor` times it to a patch's block of D unknowns a node.
+    fn add_to<const D: usize>(&self, factor: f64, block: &mut [f64]) {
+        match self {
+            Self::Coupled(form) => block.iter_mut().zip(form).for_each(|(sum, value)| *sum += factor * value),
+            Self::Scalar(form) => {
+                let size = form.len().isqrt();
+                for (entry, value) in form.iter().enumerate() {
+                    let (a, b) = (entry / size, entry % size);
+                    for i in 0..D {
+                        block[(a * D + i) * size * D + b * D + i] += factor * value;
+                    }
+                }
+            }
+        }
+    }
+
+    /// What it makes of the nodes' `u`, into `product`.
+    fn multiply<const D: usize>(&self, u: &[[f64; D]], product: &mut [[f64; D]]) {
+        match self {
+            Self::Scalar(form) => {
+                for (sum, row) in product.iter_mut().zip(form.chunks_exact(u.len())) {
+                    let along = |i: usize| row.iter().zip(u).map(|(entry, u)| entry * u[i]).sum();
+                    *sum = std::array::from_fn(along);
+                }
+            }
+            Self::Coupled(form) => {
+                lanes::run(Product { form, u: u.as_flattened(), product: product.as_flattened_mut() });
+            }
+        }
+    }
+}
+
+/// A symmetric block times what the nodes have: eight rows at a time, of which each entry of `u` has its column's.
+struct Product<'a> {
+    form: &'a [f64],
+    u: &'a [f64],
+    product: &'a mut [f64],
+}
+
+impl InLanes for Product<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        for (eight, rows) in self.product.chunks_mut(LANES).enumerate() {
+            let mut sum = Lanes::splat(simd, 0.0);
+            for (column, u) in self.u.iter().enumerate() {
+                let entries = &self.form[column * self.u.len() + eight * LANES..];
+                sum = sum + Lanes::first_of(simd, entries) * *u;
+            }
+            rows.copy_from_slice(&sum.numbers()[..rows.len()]);
+        }
+    }
+}
+
 /// The blocks of a form, each made once: cells whose breakpoints lie alike have the same, up to round-off.
 pub(super) struct Forms<'a, const D: usize> {
     grid: &'a Grid<D>,
     form: Form,
-    products: [Vec<FormProducts>; D], // per axis and cell
-    alike: [Vec<usize>; D],           // per axis and cell: the first of the cells next to each other that are alike
-    /// per axis: where each entry (a, b) of a block finds the product of its functions along that axis
-    entries: [Vec<usize>; D],
+    integrals: Integrals,
+    alike: [Vec<usize>; D], // per axis and cell: the first of the cells next to each other that are alike
     numbers: BTreeMap<[usize; D], usize>, // of what was found, by the first of the cells alike
     /// what was asked for
-    pub found: Vec<Block>,
+    pub found: CellForms,
 }
 
 /// int N_a N_b, int N_a' N_b', int N_a'' N_b'', int N_a' N_b and int N_a N_b' over a cell of one axis, row-major,
 /// (q + 1) square; m, 1/m, 1/m^3, 1, 1.
 pub(super) type FormProducts = [Vec<f64>; 5];
 /// The last two of them.
-const MIXED: [usize; 2] = [3, 4];
+pub(super) const MIXED: [usize; 2] = [3, 4];
 
 impl<'a, const D: usize> Forms<'a, D> {
     pub(super) fn new(grid: &'a Grid<D>, form: Form) -> Self {
-        let (width, nodes) = (grid.order() + 1, grid.cell_nodes());
-        let entries = std::array::from_fn(|axis| {
-            let along = |k: usize| k / width.pow((D - 1 - axis) as u32) % width;
-            (0..nodes * nodes).map(|entry| along(entry / nodes) * width + along(entry % nodes)).collect()
-        });
-        let products = products(grid);
-        let alike = products.each_ref().map(|products| first_alike(products));
-        Self { grid, form, products, alike, entries, numbers: BTreeMap::new(), found: Vec::new() }
+        let integrals = Integrals::of(grid);
+        let alike = std::array::from_fn(|axis| first_alike(&integrals.products[axis]));
+        // In space a block of the strain has 81² numbers, and in graded grids each cell its own.
+        let found = match form {
+            Form::Strain if D == 3 => CellForms::ByAxes(TensorForms::new(integrals.clone())),
+            _ => CellForms::default(),
+        };
+        Self { grid, form, integrals, alike, numbers: BTreeMap::new(), found }
     }
 
     /// Number of a cell's form among those found.
     pub(super) fn of(&mut self, cell: &[usize; D]) -> usize {
         let cell = std::array::from_fn(|axis| self.alike[axis][cell[axis]]);
-        if let Some(&number) = self.numbers.get(&cell) {
-            return number;
-        }
-        self.found.push(match self.form {
-            Form::Strain => Block::Coupled(self.strain(&cell)),
-            Form::Curvature => Block::Scalar(self.curvature(&cell)),
-        });
-        self.numbers.insert(cell, self.found.len() - 1);
-        self.found.len() - 1
+        let blocks = match &mut self.found {
+            CellForms::ByAxes(forms) => return forms.of(&cell),
+            CellForms::Blocks(blocks) => blocks,
+        };
+        *self.numbers.entry(cell).or_insert_with(|| {
+            blocks.push(match self.form {
+                Form::Strain => Block::Coupled(self.integrals.strain(&cell)),
+                Form::Curvature => Block::Scalar(self.integrals.curvature(&cell, self.grid.cell_box(&cell).1.into())),
+            });
+            blocks.len() - 1
+        })
+    }
+}
+
+/// Integrals along the axes of all cells, whose products are those over cells.
+#[derive(Clone, Debug)]
+pub(super) struct Integrals {
+    /// q + 1
+    pub width: usize,
+    /// per axis and cell
+    pub products: Vec<Vec<FormProducts>>,
+    /// per axis: where each entry (a, b) of a block finds the product of its functions along that axis
+    entries: Vec<Vec<usize>>,
+}
+
+impl Integrals {
+    pub(super) fn of<const D: usize>(grid: &Grid<D>) -> Self {
+        let (width, nodes) = (grid.order() + 1, grid.cell_nodes());
+        let of_axis = |axis: usize| {
+            let along = |k: usize| k / width.pow((D - 1 - axis) as u32) % width;
+            (0..nodes * nodes).map(|entry| along(entry / nodes) * width + along(entry % nodes)).collect()
+        };
+        Self { width, products: products(grid).into(), entries: (0..D).map(of_axis).collect() }
     }
 
-    /// Row-major (q + 1)^D square.
-    fn curvature(&self, cell: &[usize; D]) -> Vec<f64> {
-        let mut block = vec![0.0; self.grid.cell_nodes().pow(2)];
-        let size = self.grid.cell_box(cell).1;
+    /// Row-major (q + 1)^D square, of a cell of that `size`.
+    fn curvature<const D: usize>(&self, cell: &[usize; D], size: [f64; D]) -> Vec<f64> {
+        let mut block = vec![0.0; self.entries[0].len()];
         for i in 0..D {
             for j in 0..D {
                 let order = |axis| usize::from(axis == i) + usize::from(axis == j);
@@ -75,8 +204,8 @@ impl<'a, const D: usize> Forms<'a, D> {
 
     /// Row-major D (q + 1)^D square, with the room behind it: eps : eps is half of |grad u|^2, which does not couple
     /// the components, and half of sum_ij du_i/dx_j du_j/dx_i.
-    fn strain(&self, cell: &[usize; D]) -> Vec<f64> {
-        let nodes = self.grid.cell_nodes();
+    pub(super) fn strain<const D: usize>(&self, cell: &[usize; D]) -> Vec<f64> {
+        let nodes = self.entries[0].len().isqrt();
         let (mut plain, mut coupled) = (vec![0.0; nodes * nodes], vec![0.0; (nodes * D).pow(2)]);
         for i in 0..D {
             self.add(cell, 0.5, |axis| usize::from(axis == i), &mut plain);
@@ -103,9 +232,9 @@ impl<'a, const D: usize> Forms<'a, D> {
     }
 
     /// Adds `factor` times the integral of the products of the functions' derivatives, `of(axis)` along each axis.
-    fn add(&self, cell: &[usize; D], factor: f64, of: impl Fn(usize) -> usize, block: &mut [f64]) {
+    fn add<const D: usize>(&self, cell: &[usize; D], factor: f64, of: impl Fn(usize) -> usize, block: &mut [f64]) {
         let products: [&[f64]; D] = std::array::from_fn(|axis| &self.products[axis][cell[axis]][of(axis)][..]);
-        let entries = self.entries.each_ref().map(|entries| &entries[..block.len()]);
+        let entries: [&[usize]; D] = std::array::from_fn(|axis| &self.entries[axis][..block.len()]);
         for (entry, sum) in block.iter_mut().enumerate() {
             *sum += factor * (0..D).map(|axis| products[axis][entries[axis][entry]]).product::<f64>();
         }

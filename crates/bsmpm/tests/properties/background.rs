@@ -2,8 +2,8 @@
 
 use crate::support::random::Random;
 use crate::support::scene::{Scene, axis, hencky};
-use bsmpm::background::{Background, Extent, Kind};
-use bsmpm::grid::{Grid, KnotVector, Shape};
+use bsmpm::background::{Background, Blocks, Extent, Kind};
+use bsmpm::grid::{Contributions, Grid, KnotVector, Shape};
 use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
 use bsmpm::model::Regime;
 use bsmpm::tensor::{Tensor, Vector};
@@ -11,15 +11,10 @@ use bsmpm::tensor::{Tensor, Vector};
 const YOUNG: f64 = 50.0;
 const COEFFICIENT: f64 = 0.02;
 
-/// The blocks of all cells of a grid, a point in the middle of each; of a form that does not couple the components,
+/// The blocks of all cells of a grid; of a form that does not couple the components,
 /// that of the first one.
 fn blocks<K: Kinematics<D>, const D: usize>(axes: [KnotVector; D], kind: Kind) -> (Grid<D>, Vec<Vec<f64>>) {
-    let cells = axes.each_ref().map(|axis| 0..axis.cells());
-    let scene = Scene::<K, D>::new(axes, hencky(YOUNG, 0.3), Regime::QuasiStatic).body(cells, 1, 1.0, |x| x * 0.0);
-    let (grid, points) = (scene.model.grid.clone(), &scene.points);
-    let shape = Shape::at(&grid, points).expect("points inside");
-    let background = Background { kind, coefficient: COEFFICIENT, extent: Extent::Occupied };
-    let found = background.blocks::<K, D>(&grid, &shape, points, &scene.model.materials, &scene.halo());
+    let (grid, shape, found) = background::<K, D>(axes, kind);
     let size = shape.offsets().len() * D;
     let block = |patch: usize| {
         let mut block = vec![0.0; size * size];
@@ -31,6 +26,17 @@ fn blocks<K: Kinematics<D>, const D: usize>(axes: [KnotVector; D], kind: Kind) -
     };
     let blocks = (0..shape.patches().len()).map(block).collect();
     (grid, blocks)
+}
+
+/// The background of all cells of a grid, a point in the middle of each.
+fn background<K: Kinematics<D>, const D: usize>(axes: [KnotVector; D], kind: Kind) -> (Grid<D>, Shape<D>, Blocks) {
+    let cells = axes.each_ref().map(|axis| 0..axis.cells());
+    let scene = Scene::<K, D>::new(axes, hencky(YOUNG, 0.3), Regime::QuasiStatic).body(cells, 1, 1.0, |x| x * 0.0);
+    let (grid, points) = (scene.model.grid.clone(), &scene.points);
+    let shape = Shape::at(&grid, points).expect("points inside");
+    let background = Background { kind, coefficient: COEFFICIENT, extent: Extent::Occupied };
+    let found = background.blocks::<K, D>(&grid, &shape, points, &scene.model.materials, &scene.halo());
+    (grid, shape, found)
 }
 
 /// B u of a cell.
@@ -133,6 +139,43 @@ fn measures_strain<K: Kinematics<D>, const D: usize>(order: usize) {
         assert!((found / expected - 1.0).abs() <= 1e-11, "order {order}, cell {cell}: {found} for {expected}");
         let turn = std::array::from_fn(|i| Vector::<D>::from_fn(|j, _| part(i, j, -1.0)));
         assert!(energy(block, &motion(&turn)).abs() <= 1e-12 * expected, "order {order}, cell {cell}");
+    }
+}
+
+/// B u of all cells, which in space is made by axes.
+fn multiplies_by_its_blocks<K: Kinematics<D>, const D: usize>(order: usize, kind: Kind) {
+    let mut random = Random::new(7);
+    let axes = std::array::from_fn(|axis| if axis == 1 { self::axis(0.25, 3, order) } else { graded(order) });
+    let (grid, shape, found) = background::<K, D>(axes, kind);
+    let u: Vec<f64> = (0..grid.nodes() * D).map(|_| random.signed()).collect();
+    let (mut expected, mut work) = (vec![0.0; u.len()], 0.0);
+    for (number, patch) in shape.patches().iter().enumerate() {
+        let places =
+            || shape.offsets().iter().flat_map(|offset| (0..D).map(move |i| (patch.first_node + offset) * D + i));
+        let own: Vec<f64> = places().map(|at| u[at]).collect();
+        let mut block = vec![0.0; own.len().pow(2)];
+        found.add_to::<D>(number, &mut block);
+        places().zip(product(&block, &own)).for_each(|(at, force)| expected[at] += force);
+        work += energy(&block, &own);
+    }
+    let mut forces = Contributions::none(&grid, D, (0..grid.axes()[0].cells()).collect());
+    found.multiply::<D>(&shape, &u, &mut forces);
+    let largest = expected.iter().fold(0.0_f64, |most, force| most.max(force.abs()));
+    let forces = forces.alone();
+    for (force, expected) in forces.iter().zip(&expected) {
+        assert!((force - expected).abs() < 1e-13 * largest, "order {order}: {force:e} for {expected:e}");
+    }
+    let made = found.work::<D>(&shape, &u).value();
+    assert!((made - work).abs() < 1e-12 * work, "order {order}: {made:e} for {work:e}");
+}
+
+#[test]
+fn forces_are_those_of_the_blocks() {
+    for order in 1..=3 {
+        for kind in [Kind::Strain, Kind::Curvature] {
+            multiplies_by_its_blocks::<PlaneStrain, 2>(order, kind);
+            multiplies_by_its_blocks::<Solid, 3>(order, kind);
+        }
     }
 }
 

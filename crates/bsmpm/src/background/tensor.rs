@@ -1,0 +1,166 @@
+//! The strain form of cells in space, by one axis after another, eight cells at a time.
+//!
+//! In a graded grid no two cells have the same block. With quadratic splines each has 81² numbers, which every
+//! evaluation would read from memory; products of the integrals along the axes need 135 numbers of a cell and half of
+//! the operations.
+
+use super::form::{Integrals, MIXED};
+use crate::grid::shape::with_width;
+use crate::lanes::{self, InLanes, Lanes, Simd};
+
+/// Dimensions of space.
+const D: usize = 3;
+/// Largest number of functions of a cell along an axis, and of nodes.
+const MOST: [usize; 2] = [4, 64];
+/// Numbers of eight cells by node, and by pair of functions along an axis.
+type Eights<S> = [Lanes<S>; MOST[1]];
+type Matrix<S> = [Lanes<S>; MOST[0] * MOST[0]];
+
+/// Kinds of integrals along an axis: of the functions, of their slopes, of the row's slope, of the column's.
+const KINDS: [usize; 4] = [0, 1, MIXED[0], MIXED[1]];
+
+/// Kinds by axis of the square of a derivative.
+#[inline(always)]
+fn across(k: usize) -> [usize; D] {
+    std::array::from_fn(|axis| usize::from(axis == k))
+}
+
+/// Kinds by axis of u_i by u_j: the derivative of the row along j times that of the column along i.
+#[inline(always)]
+fn mixed(i: usize, j: usize) -> [usize; D] {
+    std::array::from_fn(|axis| if axis == j { 2 } else { 3 * usize::from(axis == i) })
+}
+
+#[inline(always)]
+fn half_unless(whole: bool) -> f64 {
+    if whole { 1.0 } else { 0.5 }
+}
+
+/// The matrix of each axis, by its kind.
+#[inline(always)]
+fn chosen<S: Simd>(matrices: &[[Matrix<S>; KINDS.len()]; D], kinds: [usize; D]) -> [&Matrix<S>; D] {
+    [0, 1, 2].map(|axis| &matrices[axis][kinds[axis]])
+}
+
+/// The forms of cells in space, by number.
+#[derive(Clone, Debug)]
+pub(super) struct TensorForms {
+    integrals: Integrals,
+    cells: Vec<[usize; D]>,
+}
+
+impl TensorForms {
+    pub(super) fn new(integrals: Integrals) -> Self {
+        Self { integrals, cells: Vec::new() }
+    }
+
+    /// The number of another cell's form.
+    pub(super) fn of(&mut self, cell: &[usize]) -> usize {
+        self.cells.push(cell.try_into().expect("a cell in space"));
+        self.cells.len() - 1
+    }
+
+    /// Adds `factor` times the block of a form, symmetric to the last bit, to a patch's.
+    pub(super) fn add_to(&self, number: usize, factor: f64, block: &mut [f64]) {
+        let (width, cell) = (self.integrals.width, self.cells[number]);
+        let products: [_; D] = std::array::from_fn(|axis| &self.integrals.products[axis][cell[axis]]);
+        let along = |node: usize| [node / width / width, node / width % width, node % width];
+        let nodes = width.pow(D as u32);
+        for (a, rows) in block.chunks_exact_mut(nodes * D * D).enumerate() {
+            for b in 0..nodes {
+                let (row, column) = (along(a), along(b));
+                let of = |axis: usize, kind: usize| products[axis][KINDS[kind]][row[axis] * width + column[axis]];
+                let values: [[f64; KINDS.len()]; D] = [0, 1, 2].map(|axis| [0, 1, 2, 3].map(|kind| of(axis, kind)));
+                for (i, j) in (0..D * D).map(|k| (k / D, k % D)) {
+                    let term = |kinds: [usize; D]| (0..D).map(|axis| values[axis][kinds[axis]]).product::<f64>();
+                    let squares = || (0..D).map(|k| term(across(k)) * half_unless(k == i)).sum();
+                    let value: f64 = if i == j { squares() } else { 0.5 * term(mixed(i, j)) };
+                    rows[i * nodes * D + b * D + j] += factor * value;
+                }
+            }
+        }
+    }
+
+    /// What up to eight forms make of `u`, both by cell, node and component.
+    pub(super) fn multiply(&self, numbers: impl Iterator<Item = usize>, u: &[f64], products: &mut [f64]) {
+        let cells: Vec<[usize; D]> = numbers.map(|number| self.cells[number]).collect();
+        with_width!(self.integrals.width, W => {
+            lanes::run(Product::<W> { integrals: &self.integrals, cells: &cells, u, products });
+        });
+    }
+}
+
+struct Product<'a, const W: usize> {
+    integrals: &'a Integrals,
+    cells: &'a [[usize; D]],
+    u: &'a [f64],
+    products: &'a mut [f64],
+}
+
+impl<const W: usize> InLanes for Product<'_, W> {
+    type Output = ();
+
+    /// `f_i = sum_j int eps(N e_i) : eps(u_j e_j)`: of j = i the derivatives along all axes, those across it by half;
+    /// of the others half of the derivative along j of the row times that along i of the column.
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        let nodes = W.pow(D as u32);
+        let cell = |lane: usize| lane.min(self.cells.len() - 1);
+        let none = [Lanes::splat(simd, 0.0); MOST[1]];
+        let mut matrices = [[[Lanes::splat(simd, 0.0); MOST[0] * MOST[0]]; KINDS.len()]; D];
+        for (axis, kinds) in matrices.iter_mut().enumerate() {
+            for (matrix, kind) in kinds.iter_mut().zip(KINDS) {
+                let products = &self.integrals.products[axis];
+                for (entry, value) in matrix[..W * W].iter_mut().enumerate() {
+                    *value = Lanes::from_fn(simd, |lane| products[self.cells[cell(lane)][axis]][kind][entry]);
+                }
+            }
+        }
+        let (mut u, mut f) = ([none; D], [none; D]);
+        for (j, own) in u.iter_mut().enumerate() {
+            for (node, value) in own[..nodes].iter_mut().enumerate() {
+                *value = Lanes::from_fn(simd, |lane| self.u[(cell(lane) * nodes + node) * D + j]);
+            }
+        }
+        for (i, f) in f.iter_mut().enumerate() {
+            for j in 0..D {
+                add::<W, S>(chosen(&matrices, across(j)), half_unless(j == i), &u[i], f);
+                if j != i {
+                    add::<W, S>(chosen(&matrices, mixed(i, j)), 0.5, &u[j], f);
+                }
+            }
+        }
+        for (lane, product) in self.products.chunks_exact_mut(nodes * D).take(self.cells.len()).enumerate() {
+            for (number, value) in product.iter_mut().enumerate() {
+                *value = f[number % D][number / D].numbers()[lane];
+            }
+        }
+    }
+}
+
+/// Adds `factor` times the tensor product of three matrices by `u`.
+#[inline(always)]
+fn add<const W: usize, S: Simd>(matrices: [&Matrix<S>; D], factor: f64, u: &Eights<S>, f: &mut Eights<S>) {
+    let (mut one, mut two) = (*u, *u);
+    along::<W, S>(matrices[2], 1, u, &mut one);
+    along::<W, S>(matrices[1], W, &one, &mut two);
+    along::<W, S>(matrices[0], W * W, &two, &mut one);
+    for (sum, value) in f[..W.pow(3)].iter_mut().zip(&one) {
+        *sum = *sum + *value * factor;
+    }
+}
+
+/// A matrix by what the nodes that lie so many numbers apart have.
+#[inline(always)]
+fn along<const W: usize, S: Simd>(matrix: &Matrix<S>, apart: usize, u: &Eights<S>, product: &mut Eights<S>) {
+    for line in 0..W * W {
+        let first = line / apart * apart * W + line % apart;
+        for a in 0..W {
+            let mut sum = matrix[a * W] * u[first];
+            for b in 1..W {
+                sum = sum + matrix[a * W + b] * u[first + b * apart];
+            }
+            product[first + a * apart] = sum;
+        }
+    }
+}
