@@ -184,7 +184,7 @@ impl Case {
         background.max(self.stabilisation.beyond(self.grid.order))
     }
 
-    /// Whether some material is so nearly incompressible that in space the stiffness of the secants has F-bar's coupling.
+    /// Whether some material is so nearly incompressible that in space the secants' stiffness has F-bar's coupling.
     pub(crate) fn is_nearly_incompressible(&self) -> bool {
         let is_at_rest = self.analysis.regime == Regime::QuasiStatic;
         self.materials.iter().map(|named| &named.material).any(|material| {

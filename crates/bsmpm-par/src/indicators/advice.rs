@@ -13,8 +13,9 @@ pub(super) fn of(name: &str, case: &Case) -> &'static str {
         }
         "pressure-noise-average" | "pressure-noise-plane" => {
             "the pressure jumps from point to point, so that stresses of single points mean little, though forces and \
-             displacements may be right; another [stabilisation] method (consistent-f-bar; of nearly incompressible material, poisson \
-             >= 0.49, subgrid-f-bar), or more points_per_cell; for pictures, [output] projected_pressure = true"
+             displacements may be right; another [stabilisation] method (consistent-f-bar), or more points_per_cell; nearly \
+             incompressible material, poisson >= 0.49, as undrained soil of poisson = 0.25 and the same shear modulus, with [water] \
+             bulk, or subgrid-f-bar; for pictures, [output] projected_pressure = true"
         }
         "quadrature-defect" => {
             "points have crowded or thinned out, and integrals over cells are off by about as much; more points_per_cell"

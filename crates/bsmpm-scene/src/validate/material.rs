@@ -235,6 +235,11 @@ fn retardation(record: &Record, regime: Option<Regime>, report: &mut Report<'_>)
     Some(time)
 }
 
+/// Poisson's ratio above which elastic material is warned of as nearly incompressible.
+const STIFF: f64 = 0.4999;
+/// That from which on material is that yields: Tresca's footing takes three times the iterations there.
+const STIFF_TO_FLOW: f64 = 0.499;
+
 fn warn_of_stiffness(record: &Record, young: Option<f64>, poisson: Option<f64>, report: &mut Report<'_>) {
     if let Some(young) = young.filter(|young| !(1e3..=1e12).contains(young)) {
         report.warn(format!(
@@ -243,7 +248,48 @@ fn warn_of_stiffness(record: &Record, young: Option<f64>, poisson: Option<f64>, 
             young * 1e-3
         ));
     }
-    if let Some(poisson) = poisson.filter(|poisson| *poisson > 0.4999) {
-        report.warn(format!("{}: poisson = {poisson} is nearly incompressible: expect poor convergence", record.path));
+    let Some(model) = record.word::<LawName>("model") else { return };
+    let is_nearly = |poisson: &f64| *poisson > STIFF || model != LawName::Hencky && *poisson >= STIFF_TO_FLOW;
+    let Some(poisson) = poisson.filter(is_nearly) else { return };
+    let by_itself =
+        [LawName::SensitiveClay, LawName::MuI, LawName::CamClay].contains(&model) || record.gives("drainage");
+    let instead = young.filter(|_| !by_itself).map(|young| as_undrained(young, poisson));
+    let instead = instead.map_or(String::new(), |(young, bulk)| {
+        format!(
+            "; as undrained soil it takes a fraction of them, with a smooth pressure: analysis.type = \"consolidation\" (and end in s), \
+             water.bulk = {bulk:.5e}, and of the material young = {young:.5e}, poisson = {DRAINED}, drainage = \"undrained\", \
+             porosity = {POROSITY}; stress - excess_pressure is then the total stress"
+        )
+    });
+    report.warn(format!(
+        "{}: poisson = {poisson} is nearly incompressible: expect many iterations, and pressures that jump from point to \
+         point{instead}",
+        record.path
+    ));
+}
+
+/// Poisson's ratio of a skeleton whose water carries the pressure, and the part of the volume that it has.
+const DRAINED: f64 = 0.25;
+const POROSITY: f64 = 0.5;
+
+/// Young's modulus of such a skeleton, and the bulk modulus of its water, with which undrained soil is elastic as
+/// `young` and `poisson` tell.
+fn as_undrained(young: f64, poisson: f64) -> (f64, f64) {
+    let skeleton = young * (1.0 + DRAINED) / (1.0 + poisson);
+    let bulk = |young: f64, poisson: f64| young / (3.0 * (1.0 - 2.0 * poisson));
+    (skeleton, POROSITY * (bulk(young, poisson) - bulk(skeleton, DRAINED)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn undrained_soil_is_as_stiff_as_what_it_stands_for() {
+        let (young, bulk) = as_undrained(1e5, 0.4999);
+        let shear = |young: f64, poisson: f64| young / (2.0 * (1.0 + poisson));
+        assert!((shear(young, DRAINED) / shear(1e5, 0.4999) - 1.0).abs() < 1e-12);
+        let whole = young / (3.0 * (1.0 - 2.0 * DRAINED)) + bulk / POROSITY;
+        assert!((whole * 3.0 * (1.0 - 2.0 * 0.4999) / 1e5 - 1.0).abs() < 1e-9);
     }
 }

@@ -96,8 +96,8 @@ pub(super) fn at_volume(bodies: &[Body], grid: &GridSpec, at: [f64; 3]) -> bool 
     })
 }
 
-/// Parts of the shortest cell beside a surface at which bodies are looked for, until one is there: nearer where they are
-/// thin, then as far as half a spacing of points.
+/// Parts of the shortest cell beside a surface at which bodies are looked for, until one is there: nearer where they
+/// are thin, then as far as half a spacing of points.
 const BESIDE: [f64; 4] = [0.25, 0.025, 0.0025, 0.51];
 
 /// On which side of a surface bodies lie: 1 along its normal, -1 against it; `None` on both, or on none. `count` has

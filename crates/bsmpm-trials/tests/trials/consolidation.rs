@@ -2,7 +2,7 @@
 //! within a cell; ranks agree, and a run that was cut in two goes on to the bit.
 
 use crate::support::cases::changed;
-use crate::support::results::{at, history, manifest};
+use crate::support::results::{at, history, last_frame, manifest};
 use crate::support::{Scratch, shipped};
 use bsmpm_io::residuals;
 
@@ -150,4 +150,70 @@ fn a_load_of_half_the_stiffness_leaves_pores_open_under_f_bar() {
         let ours = -at(&found, "top-y", time);
         assert!((ours / settled - 1.0).abs() < 0.02, "{time}: {ours} for {settled}");
     }
+}
+
+/// Keys that make a case of `material` one of undrained soil with the same shear modulus and compressibility.
+fn as_undrained(material: &str, young: f64, poisson: f64) -> Vec<String> {
+    let skeleton = young * 1.25 / (1.0 + poisson);
+    let bulk = young / (3.0 * (1.0 - 2.0 * poisson)) - skeleton / 1.5;
+    let of = |key: &str| format!("material.{material}.{key}");
+    vec![
+        "analysis.type=consolidation".into(),
+        format!("water.bulk={}", 0.5 * bulk),
+        format!("{}={skeleton}", of("young")),
+        format!("{}=0.25", of("poisson")),
+        format!("{}=undrained", of("drainage")),
+        format!("{}=0.5", of("porosity")),
+    ]
+}
+
+/// Pa  how far the whole pressure of a point of the lid's square, 48 a side, is from that of its four neighbours in the
+/// inner half: root mean square.
+fn oscillation(keys: &[String]) -> f64 {
+    let scratch = Scratch::new();
+    let case = shipped("validation/lid_square.toml");
+    let mut arguments = vec![case.to_str().unwrap(), "-o", "out", "-q"];
+    keys.iter().for_each(|key| arguments.extend(["--set", key]));
+    scratch.mpirun(1, &arguments).expect(0);
+    let frame = last_frame(&scratch.path("out"));
+    let mut pressure = vec![f64::NAN; 48 * 48];
+    let excess = frame.real("excess_pressure", 1);
+    for (point, (at, effective)) in frame.position.iter().zip(frame.real("pressure", 1).unwrap()).enumerate() {
+        let [column, row] = [0, 1].map(|axis| (at[axis] * 48.0) as usize);
+        pressure[row * 48 + column] = effective + excess.map_or(0.0, |excess| excess[point]);
+    }
+    let inner: Vec<usize> = (12..36).flat_map(|row| (12..36).map(move |column| row * 48 + column)).collect();
+    let apart =
+        |at: usize| pressure[at] - [at - 1, at + 1, at - 48, at + 48].map(|at| pressure[at]).iter().sum::<f64>() / 4.0;
+    (inner.iter().map(|&at| apart(at).powi(2)).sum::<f64>() / inner.len() as f64).sqrt()
+}
+
+#[test]
+fn nearly_incompressible_material_as_undrained_soil_has_a_smooth_pressure() {
+    let method = |name: &str| vec![format!("stabilisation.method={name}"), "output.every=1.0".to_owned()];
+    let [plain, pairs] = ["consistent-f-bar", "subgrid-f-bar"].map(|name| oscillation(&method(name)));
+    let mut keys = as_undrained("rubber", 1e6, 0.4999);
+    keys.extend(["stabilisation.method=consistent-f-bar", "output.every=1 s", "analysis.end=1 s"].map(str::to_owned));
+    let undrained = oscillation(&keys);
+    assert!(undrained < 0.3 * pairs && undrained < 0.003 * plain, "{undrained} {pairs} {plain}");
+}
+
+#[test]
+fn nearly_incompressible_clay_as_undrained_soil_takes_a_third_of_the_iterations() {
+    let evaluations = |keys: &[String]| {
+        let scratch = Scratch::new();
+        let case = shipped("short/strip_footing.toml");
+        let mut arguments = vec![case.to_str().unwrap(), "-o", "out", "-q", "--set", "analysis.steps=40"];
+        keys.iter().for_each(|key| arguments.extend(["--set", key]));
+        scratch.mpirun(1, &arguments).expect(0);
+        let load = at(&history(&scratch.path("out")), "p_over_c", 0.25);
+        (load, manifest(&scratch.path("out")).summary.iterations as f64)
+    };
+    let (load, many) =
+        evaluations(&["material.clay.poisson=0.4999", "analysis.end=0.25", "output.times=[0.25]"].map(str::to_owned));
+    let mut keys = as_undrained("clay", 1e5, 0.4999);
+    keys.extend(["analysis.end=0.25 s", "output.times=[\"0.25 s\"]"].map(str::to_owned));
+    let (undrained, few) = evaluations(&keys);
+    assert!(few < many / 3.0, "{few} {many}");
+    assert!((undrained / load - 1.0).abs() < 0.12, "{undrained} {load}"); // coarse cells: 3 % with .25 m
 }
