@@ -17,7 +17,7 @@ pub(crate) const MOST_POINTS: u128 = i32::MAX as u128;
 /// Bytes of a point that are always there: its state in a plane (about 200), shape functions (96), trial states and
 /// their answers. Measured, as all that follows, in the runs of `tests/shipped.rs`.
 const POINT: u128 = 536;
-/// The same in space: functions of 27 nodes by axes, whole tensors. Not measured in those runs.
+/// The same in space: functions of 27 nodes by axes, whole tensors.
 const POINT_IN_SPACE: u128 = 780;
 /// Bytes of a point's functions of the degree below, which `consistent-f-bar` averages with.
 const LOWERED: u128 = 64;
@@ -83,7 +83,7 @@ pub struct Estimate {
     /// Memory of the case, bytes, however many ranks share it: points, nodes, stiffness and its factor, where the
     /// bodies are at the start. Not what each rank adds, see [`Estimate::bytes_on`].
     pub bytes: u64,
-    /// Bytes that every further rank adds: the system again, where each factorises the whole.
+    /// Bytes that every further rank adds: the system again, where each factorises the whole, and ghost nodes in space.
     pub repeated: u64,
     /// Bytes that more than one rank add all together: coordinates of entries, as rows are summed by several.
     pub coordinates: u64,
@@ -222,6 +222,15 @@ impl Case {
         Some((pressures, pressures * (2 * order + 1).pow(self.grid.dims() as u32)))
     }
 
+    /// Bytes that another rank adds in space, where layers of nodes are large: those on both sides of the cut that rows
+    /// reach, with so many `bytes` a node, and of a dissection half the square of what separates the two, which each has.
+    fn ghosts(&self, occupied: u128, reach: u128, bytes: u128) -> u128 {
+        let longest = self.room([1; 2]).iter().map(|spans| (spans.len() + self.grid.order) as u128).max();
+        let nodes = reach * (occupied / longest.unwrap_or(1));
+        let separated = if self.solver.linear.factor == Some(Factor::Dissection) { 3 * nodes } else { 0 };
+        2 * nodes * bytes + separated.pow(2) * 8 / 2
+    }
+
     /// Sizes of the case.
     pub fn estimate(&self) -> Estimate {
         let (nodes, points) = (nodes(&self.grid), u128::from(self.points()));
@@ -254,6 +263,8 @@ impl Case {
             + systems.held
             + passing
             + wet;
+        let ghosts = if dims == 3 { self.ghosts(occupied, reach, stencil + every + vectors) } else { 0 };
+        let repeated = systems.repeated + wet_repeated + ghosts;
         let bounded = |number: u128| u64::try_from(number).unwrap_or(u64::MAX);
         Estimate {
             cells: bounded(cells(&self.grid)),
@@ -265,7 +276,7 @@ impl Case {
             points: self.points(),
             useful_ranks: bounded((dims * occupied / FEWEST).clamp(1, self.grid.spans(0) as u128)),
             bytes: bounded(bytes),
-            repeated: bounded(systems.repeated + wet_repeated),
+            repeated: bounded(repeated),
             coordinates: bounded(if self.solver.linear.applications > 0 { entries * BUILT } else { 0 }),
             newton: bounded(systems.perhaps[0]),
             newton_repeated: bounded(systems.perhaps[1]),

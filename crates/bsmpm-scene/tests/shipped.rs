@@ -199,6 +199,12 @@ const MEASURED: &[(&str, &[&str], usize, f64)] = &[
     ("round_column", &["grid.cell=0.05", "solver.linear=\"direct\""], 1, 899.0e6),
     ("round_column", &["grid.cell=0.05"], 1, 638.4e6),
     ("round_column", &["grid.cell=0.05"], 2, 1303.3e6),
+    ("square_footing", &[], 1, 302.0e6),
+    ("square_footing", &[], 2, 436.7e6),
+    ("square_footing", &["solver.nonlinear=newton"], 1, 314.2e6),
+    ("square_footing", &["material.clay.poisson=0.3"], 1, 165.7e6),
+    ("square_footing", &["material.clay.poisson=0.3", "grid.cell=0.125"], 1, 1139.5e6),
+    ("square_footing", &["material.clay.poisson=0.3", "grid.cell=0.125", "solver.nonlinear=newton"], 1, 1197.3e6),
 ];
 
 /// The same by secants and, where they stalled, Newton's method.
