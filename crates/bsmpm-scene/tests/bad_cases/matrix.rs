@@ -78,7 +78,8 @@ const MATRIX: &[Input] = &[
         ],
         taken: &[
             (POISSON, "poisson = 0.49995", "material.sand: poisson = 0.49995 is nearly incompressible"),
-            (POISSON, "poisson = 0.4999", ""),
+            (POISSON, "poisson = 0.499", "water.bulk = 1.66"),
+            (POISSON, "poisson = 0.4989", ""),
             (POISSON, "poisson = -0.99", ""),
         ],
         ..NONE
