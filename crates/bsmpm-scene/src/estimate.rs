@@ -223,7 +223,8 @@ impl Case {
     }
 
     /// Bytes that another rank adds in space, where layers of nodes are large: those on both sides of the cut that rows
-    /// reach, with so many `bytes` a node, and of a dissection half the square of what separates the two, which each has.
+    /// reach, with so many `bytes` a node, and of a dissection half the square of what separates the two, which both
+    /// have.
     fn ghosts(&self, occupied: u128, reach: u128, bytes: u128) -> u128 {
         let longest = self.room([1; 2]).iter().map(|spans| (spans.len() + self.grid.order) as u128).max();
         let nodes = reach * (occupied / longest.unwrap_or(1));
