@@ -9,6 +9,7 @@
 
 mod form;
 mod ghost;
+mod integrals;
 mod tensor;
 
 use crate::exact::Exact;

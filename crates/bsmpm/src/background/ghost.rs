@@ -5,7 +5,7 @@
 //! 2 nodes along its normal and q + 1 along it, one more than a cell; its cells may be those of two ranks. Where a
 //! repeated breakpoint lies between two cells there is no face: strains may jump there.
 
-use super::form::{FormProducts, products};
+use super::integrals::{FormProducts, products};
 use crate::grid::shape::{Patch, Shape};
 use crate::grid::{Contributions, Grid, KnotVector};
 use crate::kinematics::Kinematics;

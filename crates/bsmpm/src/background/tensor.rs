@@ -4,7 +4,7 @@
 //! evaluation would read from memory; products of the integrals along the axes need 135 numbers of a cell and half of
 //! the operations.
 
-use super::form::{Integrals, MIXED};
+use super::integrals::{Integrals, MIXED};
 use crate::grid::shape::with_width;
 use crate::lanes::{self, InLanes, Lanes, Simd};
 

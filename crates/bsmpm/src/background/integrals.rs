@@ -1,0 +1,125 @@
+//! Integrals of products of splines along the axes, whose products over the axes are the background's forms.
+
+use crate::grid::shape::with_width;
+use crate::grid::{Grid, KnotVector};
+use crate::lanes::LANES;
+
+/// int N_a N_b, int N_a' N_b', int N_a'' N_b'', int N_a' N_b and int N_a N_b' over a cell of one axis, row-major,
+/// (q + 1) square; m, 1/m, 1/m^3, 1, 1.
+pub(super) type FormProducts = [Vec<f64>; 5];
+/// The last two of them.
+pub(super) const MIXED: [usize; 2] = [3, 4];
+
+/// Integrals along the axes of all cells, whose products are those over cells.
+#[derive(Clone, Debug)]
+pub(super) struct Integrals {
+    /// q + 1
+    pub width: usize,
+    /// per axis and cell
+    pub products: Vec<Vec<FormProducts>>,
+    /// per axis: where each entry (a, b) of a block finds the product of its functions along that axis
+    entries: Vec<Vec<usize>>,
+}
+
+impl Integrals {
+    pub(super) fn of<const D: usize>(grid: &Grid<D>) -> Self {
+        let (width, nodes) = (grid.order() + 1, grid.cell_nodes());
+        let of_axis = |axis: usize| {
+            let along = |k: usize| k / width.pow((D - 1 - axis) as u32) % width;
+            (0..nodes * nodes).map(|entry| along(entry / nodes) * width + along(entry % nodes)).collect()
+        };
+        Self { width, products: products(grid).into(), entries: (0..D).map(of_axis).collect() }
+    }
+
+    /// Row-major (q + 1)^D square, of a cell of that `size`.
+    pub(super) fn curvature<const D: usize>(&self, cell: &[usize; D], size: [f64; D]) -> Vec<f64> {
+        let mut block = vec![0.0; self.entries[0].len()];
+        for i in 0..D {
+            for j in 0..D {
+                let order = |axis| usize::from(axis == i) + usize::from(axis == j);
+                self.add(cell, size[i] * size[j], order, &mut block);
+            }
+        }
+        block
+    }
+
+    /// Row-major D (q + 1)^D square, with the room behind it: eps : eps is half of |grad u|^2, which does not couple
+    /// the components, and half of sum_ij du_i/dx_j du_j/dx_i.
+    pub(super) fn strain<const D: usize>(&self, cell: &[usize; D]) -> Vec<f64> {
+        let nodes = self.entries[0].len().isqrt();
+        let (mut plain, mut coupled) = (vec![0.0; nodes * nodes], vec![0.0; (nodes * D).pow(2)]);
+        for i in 0..D {
+            self.add(cell, 0.5, |axis| usize::from(axis == i), &mut plain);
+        }
+        let mut mixed = vec![0.0; nodes * nodes];
+        for (i, j) in (0..D * D).map(|k| (k / D, k % D)) {
+            // Of u_i at a and u_j at b: the derivative of N_a along j times that of N_b along i.
+            let of = |axis| match (axis == j, axis == i) {
+                (true, false) => MIXED[0],
+                (false, true) => MIXED[1],
+                (both, _) => usize::from(both),
+            };
+            mixed.fill(0.0);
+            self.add(cell, 0.5, of, &mut mixed);
+            for (a, (mixed, plain)) in mixed.chunks_exact(nodes).zip(plain.chunks_exact(nodes)).enumerate() {
+                let row = coupled[(a * D + i) * nodes * D..].iter_mut().skip(j).step_by(D);
+                for (sum, (value, own)) in row.zip(mixed.iter().zip(plain)) {
+                    *sum = if i == j { own + value } else { 0.0 + value };
+                }
+            }
+        }
+        coupled.resize(coupled.len() + LANES - 1, 0.0);
+        coupled
+    }
+
+    /// Adds `factor` times the integral of the products of the functions' derivatives, `of(axis)` along each axis.
+    fn add<const D: usize>(&self, cell: &[usize; D], factor: f64, of: impl Fn(usize) -> usize, block: &mut [f64]) {
+        let products: [&[f64]; D] = std::array::from_fn(|axis| &self.products[axis][cell[axis]][of(axis)][..]);
+        let entries: [&[usize]; D] = std::array::from_fn(|axis| &self.entries[axis][..block.len()]);
+        for (entry, sum) in block.iter_mut().enumerate() {
+            *sum += factor * (0..D).map(|axis| products[axis][entries[axis][entry]]).product::<f64>();
+        }
+    }
+}
+
+/// The integrals of every cell of every axis.
+pub(super) fn products<const D: usize>(grid: &Grid<D>) -> [Vec<FormProducts>; D] {
+    let of_axis = |axis: &KnotVector| {
+        with_width!(axis.order() + 1, W => {
+            (0..axis.cells()).map(|cell| of_cell::<W>(axis, cell)).collect()
+        })
+    };
+    grid.axes().each_ref().map(of_axis)
+}
+
+fn of_cell<const W: usize>(axis: &KnotVector, cell: usize) -> FormProducts {
+    if !axis.has_length(cell) {
+        return std::array::from_fn(|_| vec![0.0; W * W]);
+    }
+    let (lower, upper) = (axis.breakpoint(cell), axis.breakpoint(cell + 1));
+    let (middle, half) = (0.5 * (lower + upper), 0.5 * (upper - lower));
+    // N' is at most quadratic in a cell: its central difference over any distance is N''.
+    let (behind, ahead) = (middle - half, middle + half);
+    let mut sums = [(); 5].map(|()| vec![0.0; W * W]);
+    for (at, weight) in GAUSS {
+        let (shift, weight) = (at * half, weight * half);
+        let (N, dN) = axis.basis::<W>(middle + shift, cell);
+        let slope = |x: f64| axis.basis::<W>(x + shift, cell).1;
+        let (before, after) = (slope(behind), slope(ahead));
+        let ddN = std::array::from_fn(|a| (after[a] - before[a]) / (2.0 * half));
+        for (sum, (rows, columns)) in sums.iter_mut().zip([(N, N), (dN, dN), (ddN, ddN), (dN, N), (N, dN)]) {
+            for (entry, value) in sum.iter_mut().enumerate() {
+                *value += weight * (rows[entry / W] * columns[entry % W]);
+            }
+        }
+    }
+    sums
+}
+
+/// Gauss-Legendre rule of four points on [-1, 1]: exact for products of two cubics.
+const GAUSS: [(f64, f64); 4] = [
+    (-0.861_136_311_594_052_6, 0.347_854_845_137_453_85),
+    (-0.339_981_043_584_856_3, 0.652_145_154_862_546_1),
+    (0.339_981_043_584_856_3, 0.652_145_154_862_546_1),
+    (0.861_136_311_594_052_6, 0.347_854_845_137_453_85),
+];
