@@ -43,14 +43,15 @@ impl RunOrder {
         PoolLoad { memory: self.case.estimate().bytes_with_newton_on(ranks), work: self.case.points() as f64 * steps }
     }
 
-    /// m  the size of its cells: the root of the largest area of one.
+    /// m  the size of its cells: the edge of a square, of a solid a cube, as large as the largest.
     pub fn cell(&self) -> f64 {
         Self::cell_of(&self.case)
     }
 
     /// The same of any case.
     pub fn cell_of(case: &Case) -> f64 {
-        case.grid.axes.iter().map(GridAxis::longest).product::<f64>().sqrt()
+        let size = case.grid.axes.iter().map(GridAxis::longest).product::<f64>();
+        if case.grid.axes.len() == 3 { size.cbrt() } else { size.sqrt() }
     }
 }
 
