@@ -36,16 +36,17 @@ pub fn rows<K: Kinematics<D>, const D: usize>(
         fields
     };
     let found = place::values::<K, D, _>(&model.grid, points, (&local, configuration), fields, halo);
-    let row = |((distance, at), found): (&(f64, [f64; 2]), &Option<[f64; FIELDS]>)| {
-        let [ux, uy, _, dx, dy, _, vx, vy, _, xx, yy, zz, xy, yz, xz, plastic] = (*found)?;
-        let moved = if profile.fixed { [0.0; 2] } else { [ux, uy] };
+    let row = |((distance, at), found): (&(f64, [f64; 3]), &Option<[f64; FIELDS]>)| {
+        let [ux, uy, uz, dx, dy, dz, vx, vy, vz, xx, yy, zz, xy, yz, xz, plastic] = (*found)?;
+        let moved = if profile.fixed { [0.0; 3] } else { [ux, uy, uz] };
         let stress = Symmetric([xx, yy, zz, xy, yz, xz]);
-        let mut row = vec![*distance, at[0] + moved[0], at[1] + moved[1]];
+        let mut row = vec![*distance];
+        row.extend((0..D).map(|axis| at[axis] + moved[axis]));
         for quantity in &profile.quantities {
             match quantity {
-                ProfileQuantity::Displacement => row.extend([dx, dy]),
-                ProfileQuantity::Velocity => row.extend([vx, vy]),
-                ProfileQuantity::Stress => row.extend([xx, yy, zz, xy]),
+                ProfileQuantity::Displacement => row.extend([dx, dy, dz].iter().take(D)),
+                ProfileQuantity::Velocity => row.extend([vx, vy, vz].iter().take(D)),
+                ProfileQuantity::Stress => row.extend(gather::shown::<D>(&stress.0)),
                 ProfileQuantity::P => row.push(invariants::pressure(&stress)),
                 ProfileQuantity::Q => row.push(invariants::deviatoric(&stress)),
                 ProfileQuantity::PlasticStrain => row.push(plastic),

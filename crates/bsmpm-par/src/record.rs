@@ -4,6 +4,7 @@ mod place;
 mod reported;
 
 use crate::checkpoint::{BooksForm, Outlet, RecordState, Row};
+use crate::gather::shown;
 use bsmpm::energy::{Books, Stored};
 use bsmpm::error::StepError;
 use bsmpm::kinematics::Kinematics;
@@ -19,7 +20,7 @@ use bsmpm_scene::model::vector;
 use bsmpm_scene::surfaces::{self, DrainPlace, Gauge};
 use bsmpm_scene::words::Measurement;
 use bsmpm_scene::{Case, Counted, GridSpec, History, Quantity, Stage};
-use place::{PLANE, at_followed, at_surface, both, displacement, followed_place, pore, section, shown};
+use place::{at_followed, at_surface, both, displacement, followed_place, pore, section};
 use reported::{at_face, contact, rigid};
 
 /// Place of the vertical normal stress among XX YY ZZ XY YZ XZ.
@@ -251,7 +252,7 @@ impl<const D: usize> Recorder<D> {
                 about[if D == 3 { 0 } else { 2 }..].to_vec()
             }
             Quantity::KineticEnergy { .. } => vec![observe::kinetic_energy(points, part, halo)],
-            Quantity::MeanStress { .. } => shown::<D>(observe::mean_stress(points, part, halo)),
+            Quantity::MeanStress { .. } => shown::<D>(&observe::mean_stress(points, part, halo)),
             Quantity::SectionForces { ends, fixed } => {
                 let forces = section((&model.grid, points), ends.map(|end| vector(end) - self.lower), *fixed, halo);
                 vec![forces.normal, forces.shear, forces.moment]
@@ -261,7 +262,8 @@ impl<const D: usize> Recorder<D> {
                 at_surface((model, points), vector(*at) - self.lower, velocity, halo)
             }
             Quantity::Stress { at, surface: true } => {
-                at_surface((model, points), vector(*at) - self.lower, |p| points.sigma.at(p).0, halo)[..PLANE].to_vec()
+                let stress = |p: usize| points.sigma.at(p).0;
+                shown::<D>(&at_surface((model, points), vector(*at) - self.lower, stress, halo))
             }
             Quantity::Heave { .. } => vec![observe::heave(points, part, halo)],
             Quantity::StressNoise => both(noise::stress_noise(&model.grid, points, model.weighting, VERTICAL, halo)?),

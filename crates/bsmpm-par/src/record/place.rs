@@ -1,5 +1,6 @@
 //! Quantities at a place: of the point that is followed, of the material there, of a section.
 
+use crate::gather::shown;
 use bsmpm::grid::Grid;
 use bsmpm::kinematics::Kinematics;
 use bsmpm::model::Model;
@@ -13,9 +14,6 @@ use bsmpm_scene::Quantity;
 use bsmpm_scene::model::vector;
 use bsmpm_scene::words::Measurement;
 use std::any::Any;
-
-/// Components of a stress in a plane among XX YY ZZ XY YZ XZ: the first ones.
-pub(super) const PLANE: usize = 4;
 
 /// The place of a history that follows the point nearest to it.
 pub(super) fn followed_place(quantity: &Quantity) -> Option<[f64; 3]> {
@@ -48,7 +46,7 @@ pub(super) fn at_followed<const D: usize>(
     let velocity = |p: usize| points.motion.as_ref().map_or([0.0; D], |motion| motion.v[p].into());
     match quantity {
         Quantity::Velocity { .. } => observe::at_point(points, id, halo, velocity).to_vec(),
-        Quantity::Stress { .. } => shown::<D>(observe::at_point(points, id, halo, |p| points.sigma.at(p).0)),
+        Quantity::Stress { .. } => shown::<D>(&observe::at_point(points, id, halo, |p| points.sigma.at(p).0)),
         _ => Vec::new(),
     }
 }
@@ -102,11 +100,6 @@ pub(super) fn section<const D: usize>(
     };
     let forces = from.zip(to).map(|(from, to)| observe::section_forces(grid, points, [from, to].map(plane), halo));
     forces.unwrap_or_default()
-}
-
-/// The components of a stress that a geometry has: in a plane without those that couple it with its normal.
-pub(super) fn shown<const D: usize>(stress: [f64; 6]) -> Vec<f64> {
-    stress[..if D == 2 { PLANE } else { stress.len() }].to_vec()
 }
 
 pub(super) fn both(noise: noise::Noise) -> Vec<f64> {

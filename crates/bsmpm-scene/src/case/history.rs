@@ -86,7 +86,7 @@ pub enum Quantity {
     /// N/m, N/m, N m/m  normal force, shear force and moment
     SectionForces {
         /// m  ends of the line, in the case's coordinates
-        ends: [[f64; 2]; 2],
+        ends: [[f64; 3]; 2],
         /// The line stays where it is in space; it goes with the material else.
         fixed: bool,
     },

@@ -8,8 +8,10 @@ use crate::words::ProfileQuantity;
 pub struct Profile {
     /// What its file is called after.
     pub name: String,
+    /// Axes of the geometry.
+    pub dims: usize,
     /// m  ends of the line, in the case's coordinates
-    pub ends: [[f64; 2]; 2],
+    pub ends: [[f64; 3]; 2],
     /// Places, the ends among them; one stands in the middle.
     pub count: usize,
     /// What is told of each.
@@ -31,19 +33,20 @@ impl Profile {
     pub fn columns(&self) -> Vec<Column> {
         let column = |name: &str, unit: &str| Column { name: name.to_owned(), unit: unit.to_owned() };
         let quantities = self.quantities.iter().flat_map(|quantity| {
-            let (names, unit) = quantity.columns();
+            let (names, unit) = quantity.columns_in(self.dims);
             names.iter().map(move |name| column(name, unit))
         });
-        ["distance", "x", "y"].map(|name| column(name, "m")).into_iter().chain(quantities).collect()
+        let places = ["distance", "x", "y", "z"].into_iter().take(1 + self.dims).map(|name| column(name, "m"));
+        places.chain(quantities).collect()
     }
 
     /// Places on the line (m, in the case's coordinates), and their distances from its beginning, m.
-    pub fn places(&self) -> Vec<(f64, [f64; 2])> {
+    pub fn places(&self) -> Vec<(f64, [f64; 3])> {
         let [from, to] = self.ends;
-        let length = (to[0] - from[0]).hypot(to[1] - from[1]);
+        let length = (to[0] - from[0]).hypot(to[1] - from[1]).hypot(to[2] - from[2]);
         let place = |number: usize| {
             let part = if self.count == 1 { 0.5 } else { number as f64 / (self.count - 1) as f64 };
-            (part * length, [0, 1].map(|axis| (1.0 - part) * from[axis] + part * to[axis]))
+            (part * length, [0, 1, 2].map(|axis| (1.0 - part) * from[axis] + part * to[axis]))
         };
         (0..self.count).map(place).collect()
     }

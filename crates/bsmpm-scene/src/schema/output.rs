@@ -118,8 +118,8 @@ pub(super) static PROFILE: Table = Table {
     doc: "Fields at places along a line, a file `profile_NAME.csv` with a row for every time and place in material",
     keys: &[
         key("name", Name, Required, "what its file is called after"),
-        key("from", Pair(In::Length, Range::ANY), Required, "where the line begins"),
-        key("to", Pair(In::Length, Range::ANY), Required, "where it ends"),
+        key("from", Vector(In::Length, Range::ANY), Required, "where the line begins"),
+        key("to", Vector(In::Length, Range::ANY), Required, "where it ends"),
         key("count", Count(1, 1000), Required, "places, equally spaced, the ends among them; one: the middle"),
         key("quantities", Choices(ProfileQuantity::WORDS), Required, "what is told of each place"),
         key(

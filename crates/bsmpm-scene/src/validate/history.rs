@@ -297,15 +297,15 @@ fn weighing(record: &Record, made: Made<'_>, report: &mut Report<'_>) -> Option<
 }
 
 /// Ends of a line that has a length.
-pub(super) fn ends(record: &Record, grid: Option<&GridSpec>, report: &mut Report<'_>) -> Option<[[f64; 2]; 2]> {
-    let [from, to] = [record.pair("from"), record.pair("to")];
+pub(super) fn ends(record: &Record, grid: Option<&GridSpec>, report: &mut Report<'_>) -> Option<[[f64; 3]; 2]> {
+    let [from, to] = [record.vector("from"), record.vector("to")];
     let ends = [from?, to?];
     if ends[0] == ends[1] {
-        record.error("to", format!("{:?} is where the line begins: it has no length", ends[1]), report);
+        record.error("to", format!("{:?} is where the line begins: it has no length", record.numbers("to")?), report);
         return None;
     }
     for (key, end) in ["from", "to"].into_iter().zip(ends) {
-        if let Some(beyond) = grid.and_then(|grid| place::beyond(grid, end)) {
+        if let Some(beyond) = grid.and_then(|grid| place::is_beyond(grid, end)) {
             record.error(key, beyond, report);
         }
     }

@@ -5,7 +5,7 @@ use crate::case::Profile;
 use crate::grid::GridSpec;
 use crate::record::Record;
 use crate::report::Report;
-use crate::words::ProfileQuantity;
+use crate::words::{Geometry, ProfileQuantity};
 use bsmpm::model::Regime;
 
 /// Profiles at most, each a file.
@@ -24,7 +24,7 @@ pub(super) fn read_all(
     }
     let mut profiles: Vec<Profile> = Vec::new();
     for record in records {
-        let Some(profile) = read(record, (regime, grid, end), report) else { continue };
+        let Some(profile) = read((root, record), (regime, grid, end), report) else { continue };
         // Files of some systems are not told apart by the case of letters.
         if profiles.iter().any(|other| other.name.eq_ignore_ascii_case(&profile.name)) {
             record.error("name", format!("there is a profile `{}` already", profile.name), report);
@@ -35,7 +35,7 @@ pub(super) fn read_all(
 }
 
 fn read(
-    record: &Record,
+    (root, record): (&Record, &Record),
     (regime, grid, end): (Option<Regime>, Option<&GridSpec>, Option<f64>),
     report: &mut Report<'_>,
 ) -> Option<Profile> {
@@ -59,6 +59,7 @@ fn read(
     times.dedup();
     Some(Profile {
         name: record.text("name")?.to_owned(),
+        dims: root.word::<Geometry>("geometry")?.dims(),
         ends: ends?,
         count: record.count("count")? as usize,
         quantities,

@@ -6,9 +6,6 @@ use crate::report::Report;
 use crate::words::{Geometry, Measurement, Side, Word};
 use bsmpm::stabilisation::Stabilisation;
 
-/// Tables and keys that only a plane knows, with what to do instead.
-const IN_A_PLANE: &[(&str, &str)] = &[("profile", "use histories at places, or frames")];
-
 /// Quantities of histories that only a plane knows.
 const QUANTITIES: &[Measurement] = &[
     Measurement::Front,
@@ -28,9 +25,6 @@ pub(super) fn refuse(root: &Record, report: &mut Report<'_>) {
     let Some(geometry) = root.word::<Geometry>("geometry") else { return };
     if geometry != Geometry::Solid {
         return in_space(root, report);
-    }
-    for (key, instead) in IN_A_PLANE.iter().filter(|(key, _)| root.gives(key)) {
-        root.error(key, format!("not available in a solid yet: {instead}"), report);
     }
     for drain in root.records("drain").iter().chain(root.records("inflow")) {
         for key in ["from", "to", "circle", "surface"].into_iter().filter(|key| drain.gives(key)) {
@@ -59,8 +53,8 @@ pub(super) fn refuse(root: &Record, report: &mut Report<'_>) {
         if let Some(quantity) = history.word::<Measurement>("quantity").filter(|of| QUANTITIES.contains(of)) {
             history.error("quantity", format!("\"{quantity}\" is not available in a solid yet: use frames"), report);
         }
-        for key in ["at_x", "surface"].into_iter().filter(|key| history.gives(key)) {
-            history.error(key, "not available in a solid yet: leave it out", report);
+        if history.gives("at_x") {
+            history.error("at_x", "not available in a solid yet: leave it out", report);
         }
     }
 }

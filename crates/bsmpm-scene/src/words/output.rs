@@ -90,11 +90,14 @@ choice! {
 }
 
 impl ProfileQuantity {
-    /// Names and unit of its columns.
-    pub fn columns(self) -> (&'static [&'static str], &'static str) {
+    /// Names and unit of its columns along so many axes.
+    pub fn columns_in(self, dims: usize) -> (&'static [&'static str], &'static str) {
         match self {
-            Self::Displacement => (&["displacement-x", "displacement-y"], "m"),
-            Self::Velocity => (&["velocity-x", "velocity-y"], "m/s"),
+            Self::Displacement => (&["displacement-x", "displacement-y", "displacement-z"][..dims], "m"),
+            Self::Velocity => (&["velocity-x", "velocity-y", "velocity-z"][..dims], "m/s"),
+            Self::Stress if dims == 3 => {
+                (&["stress-xx", "stress-yy", "stress-zz", "stress-xy", "stress-yz", "stress-xz"], "Pa")
+            }
             Self::Stress => (&["stress-xx", "stress-yy", "stress-zz", "stress-xy"], "Pa"),
             Self::P => (&["p"], "Pa"),
             Self::Q => (&["q"], "Pa"),

@@ -76,7 +76,10 @@ pub const SOLID: &[Row] = &[
     row("\"consistent-f-bar\"", "\"subgrid-f-bar\"", "stabilisation.method", "not shown to be right in a solid"),
     row("at = [1.0, 1.5, 1.0]", "at = [1.0, 1.5]", "history.0.at", "solid: of three"),
     row("at = [1.0, 1.5, 1.0]", "at = [1.0, 3.5, 1.0]", "history.0.at", "is outside the grid"),
-    row("at = [1.0, 1.5, 1.0]", "at = [1.0, 1.5, 1.0]\nsurface = true", "history.0.surface", "not available").down(1),
+    row("from  = [1.0, 1.5, 1.0]", "from  = [1.0, 1.5]", "profile.0.from", "solid: of three"),
+    row("from  = [1.0, 1.5, 1.0]", "from  = [1.0, 1.5, 3.5]", "profile.0.from", "which ends at z = 3"),
+    row("from  = [1.0, 1.5, 1.0]", "from  = [1.0, 1.5, 0.0]", "profile.0.to", "[1.0, 1.5, 0.0] is where").down(1),
+    row("at = [1.0, 1.5, 1.0]", "at = [1.0, 1.5, 1.0]\nat_x = 1.0", "history.0.at_x", "has no meaning").down(1),
     row(
         "quantity = \"reaction\"\nface = \"back\"",
         "quantity = \"front\"",

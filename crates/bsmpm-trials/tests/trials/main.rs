@@ -31,6 +31,7 @@ mod solid_contact;
 mod solid_loads;
 mod solid_rigid;
 mod solid_stages;
+mod solid_told;
 mod solid_water;
 mod stages;
 mod still_water;

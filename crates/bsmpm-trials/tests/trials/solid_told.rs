@@ -1,0 +1,112 @@
+//! What is told of lines and places in a solid: the closed forms of a block at rest, the same on any number of ranks
+//! and however a run is cut.
+
+use super::told_parts::goes_the_same_way;
+use crate::support::Scratch;
+use crate::support::results::{at, history};
+use bsmpm_io::table;
+
+/// 2 m of soil of 20 kN/m3 between smooth walls.
+const BLOCK: &str = r#"
+geometry = "solid"
+[analysis]
+type = "quasi-static"
+steps = 4
+[grid]
+lower = [0, 0, -1]
+upper = [0.75, 0.5, 2]
+cell = 0.25
+order = "quadratic"
+[material.soil]
+model = "hencky"
+young = "1 GPa"
+poisson = 0.3
+unit_weight = "20 kN/m3"
+[[body]]
+material = "soil"
+box = { lower = [0, 0, -1], upper = [0.75, 0.5, 1] }
+points_per_cell = 2
+[gravity]
+acceleration = [0, 0, -9.81]
+ramp = 1.0
+[boundary]
+left = "roller"
+right = "roller"
+front = "roller"
+back = "roller"
+bottom = "fixed"
+[solver]
+tolerance = 1e-14
+force_tolerance = 1e-11
+[output]
+every_steps = 2
+checkpoint = { every_steps = 2 }
+[[history]]
+quantity = "stress"
+at = [0.375, 0.25, 1]
+surface = true
+name = "surface"
+[[history]]
+quantity = "stress"
+at = [0.375, 0.25, 1]
+name = "nearest"
+[[profile]]
+name = "depth"
+from = [0.375, 0.25, 1]
+to = [0.375, 0.25, -1]
+count = 9
+quantities = ["displacement", "stress", "p", "q", "plastic-strain"]
+[[profile]]
+name = "window"
+from = [0.75, 0, 1.2]
+to = [0, 0.5, 0]
+count = 5
+quantities = ["stress"]
+times = [0.6, 1.0]
+fixed = true
+"#;
+const TABLES: [&str; 3] = ["history.csv", "profile_depth.csv", "profile_window.csv"];
+const WEIGHT: f64 = 20e3;
+
+#[test]
+fn lines_and_places_of_a_block_have_its_weight_on_any_ranks_and_after_a_restart() {
+    let scratch = Scratch::with_case(BLOCK);
+    scratch.mpirun(1, &["case.toml", "-q", "-o", "one"]).expect(0);
+    let one = scratch.path("one");
+    let rows = history(&one);
+    let [surface, nearest] = ["surface-zz", "nearest-zz"].map(|name| at(&rows, name, 1.0));
+    println!("at the surface {surface} Pa, nearest {nearest} Pa");
+    assert!(surface.abs() < nearest.abs());
+
+    let depth = table::read(&one.join("profile_depth.csv")).unwrap();
+    let of = |name: &str| depth.get(name).unwrap();
+    let at_end: Vec<usize> = (0..of("time").len()).filter(|&row| of("time")[row] == 1.0).collect();
+    assert_eq!(at_end.len(), 9);
+    let (poisson, largest) = (0.3, 2.0 * WEIGHT);
+    for row in at_end {
+        let vertical = -WEIGHT * of("distance")[row];
+        let aside = poisson / (1.0 - poisson) * vertical;
+        let expected = [("stress-xx", aside), ("stress-yy", aside), ("stress-zz", vertical)];
+        let shear = ["stress-xy", "stress-yz", "stress-xz"].map(|name| (name, 0.0));
+        let invariants = [("p", -(vertical + 2.0 * aside) / 3.0), ("q", aside - vertical)];
+        let inside = ![0.0, 2.0].contains(&of("distance")[row]);
+        for (name, exact) in expected.into_iter().chain(shear).chain(invariants) {
+            let off = (of(name)[row] - exact).abs() / largest;
+            println!("{} m, {name}: off by {off:.1e} of the largest", of("distance")[row]);
+            assert!(off < if inside { 1e-3 } else { 2e-2 });
+        }
+        assert_eq!(of("z")[row], 1.0 - of("distance")[row] + of("displacement-z")[row]);
+    }
+    // Times of its own; what is above the body is left out, and the line stays where it is.
+    let window = table::read(&one.join("profile_window.csv")).unwrap();
+    assert_eq!(window.get("time").unwrap(), [[0.6; 4], [1.0; 4]].as_flattened());
+    for (z, stress) in window.get("z").unwrap().iter().zip(window.get("stress-zz").unwrap()).skip(4) {
+        let off = (stress + WEIGHT * (1.0 - z)).abs() / largest;
+        println!("z {z}: off by {off:.1e}");
+        assert!(off < if *z > 0.8 { 2e-2 } else { 1e-3 });
+    }
+
+    for ranks in [2, 1] {
+        goes_the_same_way(&scratch, &TABLES, (ranks, 1e-9));
+    }
+}
