@@ -9,7 +9,7 @@ use bsmpm::energy::{Books, Stored};
 use bsmpm::error::StepError;
 use bsmpm::kinematics::Kinematics;
 use bsmpm::model::Model;
-use bsmpm::observe::{self, Part, noise};
+use bsmpm::observe::{self, Part, Section, noise};
 use bsmpm::parallel::Halo;
 use bsmpm::points::Points;
 use bsmpm::step::StepReport;
@@ -253,9 +253,10 @@ impl<const D: usize> Recorder<D> {
             }
             Quantity::KineticEnergy { .. } => vec![observe::kinetic_energy(points, part, halo)],
             Quantity::MeanStress { .. } => shown::<D>(&observe::mean_stress(points, part, halo)),
-            Quantity::SectionForces { ends, fixed } => {
-                let forces = section((&model.grid, points), ends.map(|end| vector(end) - self.lower), *fixed, halo);
-                vec![forces.normal, forces.shear, forces.moment]
+            Quantity::SectionForces { lines, round, fixed } => {
+                let local = lines.iter().map(|line| line.map(|end| vector(end) - self.lower));
+                let at_start = Section { lines: local.collect(), round: *round };
+                section((&model.grid, points), at_start, *fixed, halo)
             }
             Quantity::Velocity { at, surface: true } => {
                 let velocity = |p: usize| points.motion.as_ref().map_or([0.0; D], |motion| motion.v[p].into());

@@ -130,6 +130,9 @@ impl Page {
             for (suffix, part) in measured.columns().iter().filter(|(suffix, _)| !suffix.is_empty()) {
                 self.wrapped("  - ", &format!("`{suffix}`: {part}"));
             }
+            for (suffix, part) in measured.columns_in(3).iter().filter(|column| !measured.columns().contains(column)) {
+                self.wrapped("  - ", &format!("`{suffix}`: of a solid, {part}"));
+            }
         }
     }
 }

@@ -12,7 +12,7 @@ mod section;
 
 pub use front::front;
 pub use part::Part;
-pub use section::{SectionForces, section_forces};
+pub use section::{Section, SectionForces, section_forces};
 
 use crate::exact::Exact;
 use crate::grid::Grid;

@@ -5,7 +5,7 @@ use bsmpm::grid::Grid;
 use bsmpm::kinematics::Kinematics;
 use bsmpm::model::Model;
 use bsmpm::observe::place::{self, Configuration};
-use bsmpm::observe::{self, SectionForces, noise};
+use bsmpm::observe::{self, Section, SectionForces, noise};
 use bsmpm::parallel::Halo;
 use bsmpm::points::Points;
 use bsmpm::tensor::Vector;
@@ -13,7 +13,6 @@ use bsmpm::water::observed::PoreWater;
 use bsmpm_scene::Quantity;
 use bsmpm_scene::model::vector;
 use bsmpm_scene::words::Measurement;
-use std::any::Any;
 
 /// The place of a history that follows the point nearest to it.
 pub(super) fn followed_place(quantity: &Quantity) -> Option<[f64; 3]> {
@@ -84,22 +83,20 @@ pub(super) fn pore<const D: usize>(
     }
 }
 
-/// Resultants of the stress in a section; none out of a plane.
+/// Forces across a section, in the order of their columns; none across one that has lost its material.
 pub(super) fn section<const D: usize>(
     (grid, points): (&Grid<D>, &Points<D>),
-    ends: [Vector<D>; 2],
+    at_start: Section<D>,
     fixed: bool,
     halo: &dyn Halo,
-) -> SectionForces {
-    let placed = |end: Vector<D>| if fixed { Some(end) } else { observe::moved(points, &end, halo) };
-    let [from, to] = ends.map(placed);
-    let plane = |end: Vector<D>| Vector::<2>::new(end[0], end[1]);
-    let (grid, points): (&dyn Any, &dyn Any) = (grid, points);
-    let (Some(grid), Some(points)) = (grid.downcast_ref(), points.downcast_ref()) else {
-        return SectionForces::default();
-    };
-    let forces = from.zip(to).map(|(from, to)| observe::section_forces(grid, points, [from, to].map(plane), halo));
-    forces.unwrap_or_default()
+) -> Vec<f64> {
+    let placed = |end: &Vector<D>| if fixed { Some(*end) } else { observe::moved(points, end, halo) };
+    let lines = at_start.lines.iter().map(|[from, to]| Some([placed(from)?, placed(to)?]));
+    let present = lines.collect::<Option<_>>().map(|lines| Section { lines, ..at_start });
+    let forces = present.map_or_else(SectionForces::default, |of| observe::section_forces(grid, points, &of, halo));
+    let SectionForces { normal, shear, torsion, bending } = forces;
+    let in_plane = [normal, shear[0], bending[0]];
+    if D == 2 { in_plane.into() } else { vec![normal, shear[0], shear[1], torsion, bending[0], bending[1]] }
 }
 
 pub(super) fn both(noise: noise::Noise) -> Vec<f64> {

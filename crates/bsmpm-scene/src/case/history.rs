@@ -83,11 +83,13 @@ pub enum Quantity {
         /// the points that count
         of: Counted,
     },
-    /// N/m, N/m, N m/m  normal force, shear force and moment
+    /// N/m, N/m, N m/m  normal force, shear force and moment; in space N, N m of three forces and three moments
     SectionForces {
-        /// m  ends of the line, in the case's coordinates
-        ends: [[f64; 3]; 2],
-        /// The line stays where it is in space; it goes with the material else.
+        /// m  ends of the line, in the case's coordinates; in space of the lines along t1 and t2 through the middle
+        lines: Vec<[[f64; 3]; 2]>,
+        /// They are diameters of a disc; in space middle lines of a rectangle else.
+        round: bool,
+        /// The section stays where it is in space; it goes with the material else.
         fixed: bool,
     },
     /// N/m  force of a face's supports on the body
@@ -298,11 +300,13 @@ impl History {
     pub fn columns(&self) -> Vec<Column> {
         let measured = self.quantity.measurement();
         let unit = |unit: &str| if self.scale == 1.0 { unit.to_owned() } else { format!("scaled {unit}") };
-        let column = |(number, (suffix, _)): (usize, &(&str, &str))| Column {
-            name: format!("{}{suffix}", self.name),
-            unit: unit(self.geometry.unit(measured.unit_of(number)).unwrap_or(measured.unit_of(number))),
+        let dims = self.geometry.dims();
+        let column = |(number, (suffix, _)): (usize, &(&str, &str))| {
+            let in_plane = measured.unit_of(number, dims);
+            let unit = unit(self.geometry.unit(in_plane).unwrap_or(in_plane));
+            Column { name: format!("{}{suffix}", self.name), unit }
         };
-        measured.columns_in(self.geometry.dims()).iter().enumerate().map(column).collect()
+        measured.columns_in(dims).iter().enumerate().map(column).collect()
     }
 }
 

@@ -33,6 +33,15 @@ impl Plate {
         std::array::from_fn(|axis| 0.5 * (self.lower[axis] + self.upper[axis]))
     }
 
+    /// m  ends of the lines through its middle along the axes that follow the normal one
+    pub fn lines(&self) -> [[[f64; 3]; 2]; 2] {
+        let (normal, middle) = (self.normal(), self.middle());
+        [(normal + 1) % 3, (normal + 2) % 3].map(|axis| {
+            [self.lower, self.upper]
+                .map(|end| std::array::from_fn(|along| if along == axis { end[along] } else { middle[along] }))
+        })
+    }
+
     /// m  of a disc
     pub fn radius(&self) -> f64 {
         (0..3).map(|axis| 0.5 * (self.upper[axis] - self.lower[axis])).fold(0.0, f64::max)

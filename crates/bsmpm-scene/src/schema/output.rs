@@ -2,7 +2,7 @@
 
 use super::Kind::*;
 use super::Presence::{Default, Optional, Required};
-use super::{Dimension as In, Kind, Range, Table, body, key, one_of};
+use super::{Dimension as In, Kind, Range, Table, body, key, loads, one_of};
 use crate::words::{Format, FrameField, Measurement, ProfileQuantity, Side, Word};
 use std::ops::Bound::{Excluded, Included};
 
@@ -95,11 +95,18 @@ pub(super) static HISTORY: Table = Table {
         key("from", Pair(In::Length, Range::ANY), Optional, "of section-forces: where the line begins"),
         key("to", Pair(In::Length, Range::ANY), Optional, "of section-forces: where it ends"),
         key(
+            "rectangle",
+            loads::RECTANGLE,
+            Optional,
+            "of section-forces, of a solid instead: a box whose corners are alike along one axis",
+        ),
+        key("disc", Kind::Table(&loads::DISC), Optional, "of section-forces, of a solid instead: a disc"),
+        key(
             "fixed",
             Flag,
             Optional,
-            "of section-forces: whether the line stays where it is in space; it goes with the material that is at its ends at \
-             the start unless given",
+            "of section-forces: whether the section stays where it is in space; it goes with the material that is at its ends \
+             (of a solid at the ends of its middle lines) at the start unless given",
         ),
         key(
             "surface",
@@ -110,7 +117,11 @@ pub(super) static HISTORY: Table = Table {
         ),
         key("box", Kind::Table(&body::BOX), Optional, "of pressure-noise: the points inside; all unless given"),
     ],
-    exclusive: &[one_of(&["material", "body"], false), one_of(&["drain", "face"], false)],
+    exclusive: &[
+        one_of(&["material", "body"], false),
+        one_of(&["drain", "face"], false),
+        one_of(&["rectangle", "disc"], false),
+    ],
 };
 
 pub(super) static PROFILE: Table = Table {

@@ -1,6 +1,6 @@
 //! Histories and the checks of their columns.
 
-use super::{flow, place};
+use super::{flow, place, site};
 use crate::case::{Body, Check, Column, Counted, Face, History, NamedMaterial, Quantity, Support};
 use crate::grid::GridSpec;
 use crate::nearest::hint;
@@ -48,7 +48,7 @@ fn read(
 ) -> Option<History> {
     let measured: Measurement = record.word("quantity")?;
     let of_strip = record.gives("of") && measured.is_of_strip();
-    let (own, needed) = own_keys(measured);
+    let (own, needed) = own_keys(measured, root.word("geometry"));
     let belongs = |key: &&str| own.contains(key) || needed.contains(key) || (*key == "of" && of_strip);
     for key in KEYS.into_iter().filter(|key| !belongs(key) && record.gives(key)) {
         record.error(key, format!("has no meaning for quantity \"{measured}\""), report);
@@ -129,7 +129,7 @@ fn is_of_motion(measured: Measurement) -> bool {
 }
 
 /// Keys that belong to some quantities.
-const KEYS: [&str; 14] = [
+const KEYS: [&str; 16] = [
     "percentile",
     "face",
     "at",
@@ -144,10 +144,12 @@ const KEYS: [&str; 14] = [
     "rigid",
     "of",
     "drain",
+    "rectangle",
+    "disc",
 ];
 
 /// The keys that belong to a quantity, and those that it needs.
-fn own_keys(measured: Measurement) -> (&'static [&'static str], &'static [&'static str]) {
+fn own_keys(measured: Measurement, geometry: Option<Geometry>) -> (&'static [&'static str], &'static [&'static str]) {
     use Measurement::*;
     match measured {
         Runout => (&["percentile", "material", "body"], &[]),
@@ -159,6 +161,7 @@ fn own_keys(measured: Measurement) -> (&'static [&'static str], &'static [&'stat
         Displacement | PorePressure | ExcessPressure | Porosity | Flux => (&[], &["at"]),
         WaterOutflow => (&["drain", "face"], &[]),
         Velocity | Stress => (&["surface"], &["at"]),
+        SectionForces if geometry == Some(Geometry::Solid) => (&["fixed", "rectangle", "disc"], &[]),
         SectionForces => (&["fixed"], &["from", "to"]),
         PressureNoise => (&["box"], &[]),
         _ if measured.is_of_part() => (&["material", "body"], &[]),
@@ -192,10 +195,10 @@ fn quantity(
         Measurement::AngularMomentum => Quantity::AngularMomentum { of: counted(record, made, report)? },
         Measurement::KineticEnergy => Quantity::KineticEnergy { of: counted(record, made, report)? },
         Measurement::MeanStress => Quantity::MeanStress { of: counted(record, made, report)? },
-        Measurement::SectionForces => Quantity::SectionForces {
-            ends: ends(record, grid, report)?,
-            fixed: record.gives("fixed") && record.flag("fixed")?,
-        },
+        Measurement::SectionForces => {
+            let (lines, round) = section((root, record), grid, report)?;
+            Quantity::SectionForces { lines, round, fixed: record.gives("fixed") && record.flag("fixed")? }
+        }
         Measurement::Moment | Measurement::Work => return None,
         Measurement::Reaction => Quantity::Reaction { face: face(record, root, report)? },
         Measurement::Displacement => Quantity::Displacement { at: at(record, grid, report)? },
@@ -294,6 +297,23 @@ fn weighing(record: &Record, made: Made<'_>, report: &mut Report<'_>) -> Option<
         return None;
     }
     Some(of)
+}
+
+/// Lines of a section, and whether it is a disc: in a plane itself, of a solid the middle lines of a plate.
+fn section(
+    (root, record): (&Record, &Record),
+    grid: Option<&GridSpec>,
+    report: &mut Report<'_>,
+) -> Option<(Vec<[[f64; 3]; 2]>, bool)> {
+    if root.word::<Geometry>("geometry")? != Geometry::Solid {
+        return Some((vec![ends(record, grid, report)?], false));
+    }
+    if !record.gives("rectangle") && !record.gives("disc") {
+        report.error(record.origin, &record.path, "missing: rectangle or disc, across which a solid is cut");
+        return None;
+    }
+    let plate = site::plate(record, grid?, report)?;
+    Some((plate.lines().into(), plate.round))
 }
 
 /// Ends of a line that has a length.

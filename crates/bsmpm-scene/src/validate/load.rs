@@ -34,7 +34,7 @@ fn line(record: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Op
         return Some(LoadedLine::Circle { center, radius });
     }
     if let Some(key) = ["rectangle", "disc"].into_iter().find(|key| record.gives(key)) {
-        let plate = plate(record, around, report)?;
+        let plate = plate(record, around.grid?, report)?;
         let (grid, bodies) = (around.grid?, around.bodies?);
         let mut places = places(Site::Plate(plate), grid).into_iter();
         if let Some(at) = places.find(|at| beyond(grid, *at).is_none() && !at_volume(bodies, grid, *at)) {

@@ -85,8 +85,7 @@ pub(super) fn normal_of(site: Site) -> [f64; 3] {
 }
 
 /// A plate inside the grid; of a disc a part of it.
-pub(super) fn plate(record: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Option<Plate> {
-    let grid = around.grid?;
+pub(super) fn plate(record: &Record, grid: &GridSpec, report: &mut Report<'_>) -> Option<Plate> {
     if let Some(disc) = record.record("disc") {
         let (center, radius) = (disc.vector("center")?, disc.number("radius")?);
         let normal = disc.word::<Axis>("normal")? as usize;
@@ -119,7 +118,7 @@ pub(super) fn plate(record: &Record, around: AroundStrip<'_>, report: &mut Repor
 /// Where a footing or a prescribed motion holds.
 pub(super) fn site(record: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Option<Site> {
     if let Some(key) = ["rectangle", "disc"].into_iter().find(|key| record.gives(key)) {
-        let site = Site::Plate(plate(record, around, report)?);
+        let site = Site::Plate(plate(record, around.grid?, report)?);
         starts_at_body(record, key, site, around, report);
         return Some(site);
     }

@@ -9,7 +9,6 @@ use bsmpm::stabilisation::Stabilisation;
 /// Quantities of histories that only a plane knows.
 const QUANTITIES: &[Measurement] = &[
     Measurement::Front,
-    Measurement::SectionForces,
     Measurement::Moment,
     Measurement::RigidMoment,
     Measurement::RigidRotation,

@@ -27,7 +27,9 @@ choice! {
         /// Mean Cauchy stress, positive in tension, weighted with the points' present volumes.
         MeanStress = "mean-stress",
         /// What the stress transmits across the line from `from` to `to`, per metre of thickness: of the material on
-        /// its right on that on its left. What of the line is out of the body counts for nothing.
+        /// its right on that on its left. What of the line is out of the body counts for nothing. Of a solid across a
+        /// `rectangle` or a `disc`, of the material that its normal axis points to on that before; t1 and t2 are the axes
+        /// that follow the normal one (y and z of x, z and x of y, x and y of z), and turn with the section.
         SectionForces = "section-forces",
         /// Mass that has left the grid through faces with outflow since the start, per metre of thickness.
         Outflow = "outflow",
@@ -124,6 +126,14 @@ const SECTION: &[(&str, &str)] = &[
     ("-q", "shear force: on what is on the left of the line, along it"),
     ("-m", "moment about the line's middle (N m/m), positive where the side of `to` is in tension"),
 ];
+const SECTION_IN_SPACE: &[(&str, &str)] = &[
+    SECTION[0],
+    ("-q1", "shear force: on what is before the section, along t1"),
+    ("-q2", "shear force: on what is before the section, along t2"),
+    ("-t", "torsion (N m): moment about the normal through the section's middle, on what is before it"),
+    ("-m1", "moment about the section's middle (N m), positive where the side that t1 points to is in tension"),
+    ("-m2", "moment about the section's middle (N m), positive where the side that t2 points to is in tension"),
+];
 const RANGE: &[(&str, &str)] =
     &[("-mean", "their mean, weighted with present volumes"), ("-least", "the least"), ("-largest", "the largest")];
 const NOISE: &[(&str, &str)] =
@@ -203,6 +213,7 @@ impl Measurement {
     pub fn columns_in(self, dims: usize) -> &'static [(&'static str, &'static str)] {
         match (dims, self) {
             (3, Self::Stress | Self::MeanStress) => STRESS_IN_SPACE,
+            (3, Self::SectionForces) => SECTION_IN_SPACE,
             (3, Self::AngularMomentum) => VECTOR_IN_SPACE,
             (3, of) if of.columns() == VECTOR => VECTOR_IN_SPACE,
             (_, of) => of.columns(),
@@ -232,9 +243,10 @@ impl Measurement {
         }
     }
 
-    /// Unit of the numbers of a column.
-    pub fn unit_of(self, column: usize) -> &'static str {
-        if self == Self::SectionForces && column == 2 { "N m/m" } else { self.unit() }
+    /// Unit of the numbers of a column, of those along so many axes.
+    pub fn unit_of(self, column: usize, dims: usize) -> &'static str {
+        // Forces along the axes are first, then the moments.
+        if self == Self::SectionForces && column >= dims { "N m/m" } else { self.unit() }
     }
 
     /// Whether it is of the points of a material or a body, if one is given.

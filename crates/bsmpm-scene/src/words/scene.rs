@@ -36,6 +36,7 @@ impl Geometry {
             "kg/m" => "kg",
             "kg/s" => "kg m/s",
             "N/m" => "N",
+            "N m/m" => "N m",
             "J/m" => "J",
             "W/m" => "W",
             "m3/m" => "m3",

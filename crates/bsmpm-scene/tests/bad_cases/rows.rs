@@ -270,6 +270,7 @@ pub const TOLD: &[Row] = &[
     row("quantity = \"kinetic-energy\"", "quantity = \"energy\"", "history.7.body", "has no meaning").down(1),
     row("to       = [\"1 m\", 1.25]\n", "", "history.8.to", "quantity \"section-forces\" needs it").up(3),
     row("to       = [\"1 m\", 1.25]", "to = [1.0, 0.0]", "history.8.to", "it has no length"),
+    row("to       = [\"1 m\", 1.25]", "disc = { center = [1, 1], radius = 1 }", "history.8.disc", "has no meaning"),
     row("to       = [\"1 m\", 1.25]", "to = [1.0, 9.0]", "history.8.to", "outside the grid"),
     row("quantity = \"heave\"", "quantity = \"heave\"\nsurface = true", "history.5.surface", "has no meaning").down(1),
     row(

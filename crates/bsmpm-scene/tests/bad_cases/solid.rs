@@ -8,6 +8,8 @@ const LOADED: &str = "rectangle = { lower = [0.5, 1.0, 1.0], upper = [1.5, 2.0, 
 
 const PLATE: &str = "rectangle    = { lower = [0.5, 2.0, 1.0], upper = [1.5, 3.0, 1.0] }";
 
+const SECTION: &str = "rectangle = { lower = [0.0, 0.0, 0.5], upper = [1.5, 3.0, 0.5] }";
+
 const BALL: &str = "sphere = { center = [3.5, 0.5, 2.0], radius = 0.25 }";
 
 const BASE: &str = "base = [[2, 0, 1], [3, 0, 1], [2, 3, 1], [3, 3, 1]]";
@@ -77,6 +79,24 @@ pub const SOLID: &[Row] = &[
     row("at = [1.0, 1.5, 1.0]", "at = [1.0, 1.5]", "history.0.at", "solid: of three"),
     row("at = [1.0, 1.5, 1.0]", "at = [1.0, 3.5, 1.0]", "history.0.at", "is outside the grid"),
     row("from  = [1.0, 1.5, 1.0]", "from  = [1.0, 1.5]", "profile.0.from", "solid: of three"),
+    row(
+        "rectangle = { lower = [0.0, 0.0, 0.5]",
+        "# { lower = [0.0, 0.0, 0.5]",
+        "history.4",
+        "missing: rectangle or disc",
+    )
+    .up(2),
+    row(SECTION, "from = [0, 1]\nto = [1, 1]", "history.4.from", "has no meaning"),
+    row(SECTION, "rectangle = { lower = [0, 0, 0.5], upper = [1, 3, 0.6] }", "history.4.rectangle", "no rectangle"),
+    row(SECTION, "rectangle = { lower = [0, 0, 0.5], upper = [1, 4, 0.5] }", "history.4.rectangle", "ends at y = 3"),
+    row(
+        "disc     = { center = [3.0",
+        "rectangle = { lower = [0, 0, 0], upper = [1, 1, 0] }\ndisc = { center = [3.0",
+        "history.5.disc",
+        "rectangle",
+    )
+    .down(1),
+    row("disc     = { center = [3.0", "disc = { center = [9.0", "history.5.disc", "no part of it"),
     row("from  = [1.0, 1.5, 1.0]", "from  = [1.0, 1.5, 3.5]", "profile.0.from", "which ends at z = 3"),
     row("from  = [1.0, 1.5, 1.0]", "from  = [1.0, 1.5, 0.0]", "profile.0.to", "[1.0, 1.5, 0.0] is where").down(1),
     row("at = [1.0, 1.5, 1.0]", "at = [1.0, 1.5, 1.0]\nat_x = 1.0", "history.0.at_x", "has no meaning").down(1),

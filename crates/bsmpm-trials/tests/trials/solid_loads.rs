@@ -94,7 +94,7 @@ fn the_base_holds_what_acts_on_a_part_of_a_face() {
 }
 
 /// A bar of square section that is held at one end, 4 and 8 cells across.
-const BAR: &str = r#"
+pub const BAR: &str = r#"
 geometry = "solid"
 [analysis]
 type = "quasi-static"
