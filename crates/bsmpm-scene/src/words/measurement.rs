@@ -28,8 +28,8 @@ choice! {
         MeanStress = "mean-stress",
         /// What the stress transmits across the line from `from` to `to`, per metre of thickness: of the material on
         /// its right on that on its left. What of the line is out of the body counts for nothing. Of a solid across a
-        /// `rectangle` or a `disc`, of the material that its normal axis points to on that before; t1 and t2 are the axes
-        /// that follow the normal one (y and z of x, z and x of y, x and y of z), and turn with the section.
+        /// `rectangle` or a `disc`, of the material that its normal axis points to on that before; t1 and t2 are the
+        /// axes that follow the normal one (y and z of x, z and x of y, x and y of z), and turn with the section.
         SectionForces = "section-forces",
         /// Mass that has left the grid through faces with outflow since the start, per metre of thickness.
         Outflow = "outflow",

@@ -1,5 +1,5 @@
-//! What is told of lines, places and sections in a solid: the closed forms of a block at rest and of a bar that bends and
-//! twists, the same on any number of ranks and however a run is cut.
+//! What is told of lines, places and sections in a solid: the closed forms of a block at rest and of a bar that bends
+//! and twists, the same on any number of ranks and however a run is cut.
 
 use super::solid_loads::BAR;
 use super::told_parts::goes_the_same_way;

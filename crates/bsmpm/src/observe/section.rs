@@ -14,15 +14,15 @@ use crate::tensor::{Tensor, Vector};
 /// Where a body is cut: places in m, from the grid's lower corner.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Section<const D: usize> {
-    /// Ends of a line; of a solid of two lines that cross in their middles, of directions t1 and t2, at right angles: what
-    /// of the second is along the first counts for nothing.
+    /// Ends of a line; of a solid of two lines that cross in their middles, of directions t1 and t2, at right angles:
+    /// what of the second is along the first counts for nothing.
     pub lines: Vec<[Vector<D>; 2]>,
     /// Of a solid whether the lines are the axes of an ellipse; they are the lengths of a rectangle's sides else.
     pub round: bool,
 }
 
-/// Forces of the material beyond a section on that before it. In a plane they are per metre of thickness, t is the first
-/// direction and the second is the plane's normal, along which nothing is told.
+/// Forces of the material beyond a section on that before it. In a plane they are per metre of thickness, t is the
+/// first direction and the second is the plane's normal, along which nothing is told.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SectionForces {
     /// N  int sigma_nn dA, n = t1 x t2, in a plane to the right of t; positive in tension
@@ -147,8 +147,8 @@ impl<const D: usize> Cut<D> {
     }
 }
 
-/// Work of a stress on motions by 1 along the axes, `slope` the gradient of what moves, and on rotations by 1 about them,
-/// `turn` the gradients of what moves times the components of the arm; in a plane about its normal alone.
+/// Work of a stress on motions by 1 along the axes, `slope` the gradient of what moves, and on rotations by 1 about
+/// them, `turn` the gradients of what moves times the components of the arm; in a plane about its normal alone.
 fn force_and_moment<const D: usize>(
     stress: &Tensor,
     slope: &Vector<3>,
