@@ -201,7 +201,7 @@ impl Ground<'_> {
     fn site(&self, record: &Record, report: &mut Report<'_>) -> Option<Site> {
         let grid = self.around.grid?;
         let (key, site) = match ["rectangle", "disc"].into_iter().find(|key| record.gives(key)) {
-            Some(key) => (key, Site::Plate(plate(record, self.around.grid?, report)?)),
+            Some(key) => (key, Site::Plate(plate(record, grid, report)?)),
             None => {
                 let [from, to] = segment(record, self.around, report)?;
                 ("from", Site::Segment { from, to })

@@ -34,8 +34,8 @@ fn line(record: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Op
         return Some(LoadedLine::Circle { center, radius });
     }
     if let Some(key) = ["rectangle", "disc"].into_iter().find(|key| record.gives(key)) {
-        let plate = plate(record, around.grid?, report)?;
         let (grid, bodies) = (around.grid?, around.bodies?);
+        let plate = plate(record, grid, report)?;
         let mut places = places(Site::Plate(plate), grid).into_iter();
         if let Some(at) = places.find(|at| beyond(grid, *at).is_none() && !at_volume(bodies, grid, *at)) {
             let message = format!("no body is at {at:?} at the start; allowed: half a spacing of points from one");

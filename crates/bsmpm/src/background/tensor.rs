@@ -1,7 +1,7 @@
 //! The strain form of cells in space, by one axis after another, eight cells at a time.
 //!
 //! In a graded grid no two cells have the same block. With quadratic splines each has 81² numbers, which every
-//! evaluation would read from memory; products of the integrals along the axes need 135 numbers of a cell and half of
+//! evaluation would read from memory; products of the integrals along the axes need 108 numbers of a cell and half of
 //! the operations.
 
 use super::integrals::{Integrals, MIXED};
@@ -116,7 +116,7 @@ impl<const W: usize> InLanes for Product<'_, W> {
                 }
             }
         }
-        let (mut u, mut f) = ([none; D], [none; D]);
+        let (mut u, mut f, mut scratch) = ([none; D], [none; D], [none; 2]);
         for (j, own) in u.iter_mut().enumerate() {
             for (node, value) in own[..nodes].iter_mut().enumerate() {
                 *value = Lanes::from_fn(simd, |lane| self.u[(cell(lane) * nodes + node) * D + j]);
@@ -124,28 +124,33 @@ impl<const W: usize> InLanes for Product<'_, W> {
         }
         for (i, f) in f.iter_mut().enumerate() {
             for j in 0..D {
-                add::<W, S>(chosen(&matrices, across(j)), half_unless(j == i), &u[i], f);
+                add::<W, S>(chosen(&matrices, across(j)), half_unless(j == i), &u[i], f, &mut scratch);
                 if j != i {
-                    add::<W, S>(chosen(&matrices, mixed(i, j)), 0.5, &u[j], f);
+                    add::<W, S>(chosen(&matrices, mixed(i, j)), 0.5, &u[j], f, &mut scratch);
                 }
             }
         }
-        for (lane, product) in self.products.chunks_exact_mut(nodes * D).take(self.cells.len()).enumerate() {
-            for (number, value) in product.iter_mut().enumerate() {
-                *value = f[number % D][number / D].numbers()[lane];
-            }
+        for number in 0..nodes * D {
+            let values = f[number % D][number / D].numbers();
+            let at = self.products.iter_mut().skip(number).step_by(nodes * D);
+            at.zip(values).take(self.cells.len()).for_each(|(product, value)| *product = value);
         }
     }
 }
 
-/// Adds `factor` times the tensor product of three matrices by `u`.
+/// Adds `factor` times the tensor product of three matrices by `u`; what is in `one` and `two` does not matter.
 #[inline(always)]
-fn add<const W: usize, S: Simd>(matrices: [&Matrix<S>; D], factor: f64, u: &Eights<S>, f: &mut Eights<S>) {
-    let (mut one, mut two) = (*u, *u);
-    along::<W, S>(matrices[2], 1, u, &mut one);
-    along::<W, S>(matrices[1], W, &one, &mut two);
-    along::<W, S>(matrices[0], W * W, &two, &mut one);
-    for (sum, value) in f[..W.pow(3)].iter_mut().zip(&one) {
+fn add<const W: usize, S: Simd>(
+    matrices: [&Matrix<S>; D],
+    factor: f64,
+    u: &Eights<S>,
+    f: &mut Eights<S>,
+    [one, two]: &mut [Eights<S>; 2],
+) {
+    along::<W, S>(matrices[2], 1, u, one);
+    along::<W, S>(matrices[1], W, one, two);
+    along::<W, S>(matrices[0], W * W, two, one);
+    for (sum, value) in f[..W.pow(3)].iter_mut().zip(one) {
         *sum = *sum + *value * factor;
     }
 }
