@@ -75,6 +75,8 @@ pub(crate) struct CellTally {
     pub(crate) before: Vec<u64>,
     /// cells that hold points
     pub(crate) cells: u64,
+    /// m²  what cells have where one point stands for all as no lattice point is inside
+    pub(crate) alone: f64,
 }
 
 impl Region {
@@ -102,6 +104,15 @@ impl Region {
             Self::Box { lower, upper } => (upper[0] - lower[0]) * (upper[1] - lower[1]),
             Self::Outline(outline) => outline.area,
             Self::Solid(volume) => volume.volume(),
+        }
+    }
+
+    /// The part of it that lies in cells where one point stands for all as no lattice point is inside.
+    pub(crate) fn alone(&self) -> f64 {
+        match self {
+            Self::Box { .. } => 0.0,
+            Self::Outline(outline) => outline.tally.alone / outline.area,
+            Self::Solid(volume) => volume.tally().alone / volume.volume(),
         }
     }
 
@@ -183,6 +194,7 @@ impl Outline {
             tally.before.extend(std::iter::repeat_n(total, i + 1 - columns.end));
             columns.end = i + 1;
             tally.cells += column.parts.iter().map(|part| part.rows().len() as u64).sum::<u64>();
+            tally.alone += column.alone;
             total = column.parts.iter().fold(total, |sum, part| sum.saturating_add(part.points(points_per_cell)));
         }
         tally.before.push(total);

@@ -176,6 +176,16 @@ fn a_polygon_along_the_cells_is_a_box() {
     assert!(matches!(uncut.bodies[0].region, Region::Box { .. }));
 }
 
+/// A skew wall of a twentieth of a cell, and one of a cell.
+#[test]
+fn walls_thinner_than_points_lie_apart_are_warned_of() {
+    let warned = |thick: f64| {
+        let wall = format!("polygon = [[2.13, 1], [{}, 1], [{}, 9], [6.13, 9]]", 2.13 + thick, 6.13 + thick);
+        case(METRES, &[&wall], 2).warnings.iter().any(|told| told.contains("where one point stands for all"))
+    };
+    assert!(warned(0.05) && !warned(1.0));
+}
+
 #[test]
 fn circles_and_rings() {
     let pi = std::f64::consts::PI;

@@ -16,6 +16,8 @@ pub(crate) struct CellColumn {
     pub(crate) parts: Vec<RegionPart>,
     /// m²
     pub(crate) area: f64,
+    /// m²  of cells where one point stands for all as no lattice point is inside
+    pub(crate) alone: f64,
 }
 
 /// Some rows of a column.
@@ -76,7 +78,7 @@ pub(crate) fn column(edges: &[Edge], shapes: usize, (grid, n): (&GridSpec, usize
     let (across, up) = (&grid.axes[0], &grid.axes[1]);
     let x = [across.breakpoint(i), across.breakpoint(i + 1)];
     let near: Vec<Near> = edges.iter().filter_map(|edge| Some(Near { edge: *edge, span: edge.span(x)? })).collect();
-    let mut column = CellColumn { parts: Vec::new(), area: 0.0 };
+    let mut column = CellColumn { parts: Vec::new(), area: 0.0, alone: 0.0 };
     if near.is_empty() {
         return column;
     }
@@ -93,8 +95,9 @@ pub(crate) fn column(edges: &[Edge], shapes: usize, (grid, n): (&GridSpec, usize
             }
         }
         for row in rows.start.max(next)..rows.end {
-            let (places, area) = strip.cell([up.breakpoint(row), up.breakpoint(row + 1)]);
+            let (places, area, alone) = strip.cell([up.breakpoint(row), up.breakpoint(row + 1)]);
             column.area += area;
+            column.alone += if alone { area } else { 0.0 };
             if !places.is_empty() {
                 column.parts.push(RegionPart::Cut(row, places));
             }
@@ -153,12 +156,12 @@ impl CellStrip {
         Self { x, near, shapes, n, lines, middle }
     }
 
-    /// Points of the cell between two heights, and the area that is covered of it.
+    /// Points of the cell between two heights, the area that is covered of it, and whether one point stands for all.
     ///
     /// A point has the covered area of its own n-th of the cell along each axis; what is left of the others goes to the
     /// nearest point of the cell. A cell without a lattice point inside has one point, at the centroid if that is
     /// inside.
-    fn cell(&self, y: [f64; 2]) -> (Vec<CellPlace>, f64) {
+    fn cell(&self, y: [f64; 2]) -> (Vec<CellPlace>, f64, bool) {
         let size = (self.x[1] - self.x[0]).min(y[1] - y[0]);
         let sub = (self.x[1] - self.x[0]) * (y[1] - y[0]) / (self.n * self.n) as f64;
         let (mut places, mut left) = (Vec::new(), Vec::new());
@@ -182,10 +185,10 @@ impl CellStrip {
         }
         if places.is_empty() && sum.area > SLIVER * sub * (self.n * self.n) as f64 {
             places.push(CellPlace { x: self.within(&sum), area: sum.area });
-            return (places, sum.area);
+            return (places, sum.area, true);
         }
         left.iter().for_each(|left| give(&mut places, left));
-        (places, sum.area)
+        (places, sum.area, false)
     }
 
     /// Edges at some x and not above a height.
@@ -225,8 +228,8 @@ pub(super) fn part([lower, upper]: [f64; 2], k: usize, n: usize) -> [f64; 2] {
 }
 
 /// Gives the area of a place to the nearest of others, the first of several.
-pub(super) fn give<const D: usize>(places: &mut [CellPlace<D>], left: &CellPlace<D>) {
-    let distance = |place: &CellPlace<D>| (0..D).fold(0.0_f64, |sum, k| sum.hypot(place.x[k] - left.x[k]));
+fn give(places: &mut [CellPlace], left: &CellPlace) {
+    let distance = |place: &CellPlace| (0..2).fold(0.0_f64, |sum, k| sum.hypot(place.x[k] - left.x[k]));
     if let Some(nearest) = places.iter_mut().min_by(|a, b| distance(a).total_cmp(&distance(b))) {
         nearest.area += left.area;
     }

@@ -1,6 +1,6 @@
 //! Points of a shape in space by the vertical lines of a lattice, in whatever way it cuts the cells.
 
-use super::cells::{CellPlace, SLIVER, give, part, place};
+use super::cells::{CellPlace, SLIVER, part, place};
 use super::reached;
 use crate::grid::GridAxis;
 use std::ops::Range;
@@ -24,10 +24,12 @@ pub(super) struct LatticeCell {
     pub(super) row: usize,
     /// whether it is covered as a whole
     pub(super) whole: bool,
+    /// whether one point stands for all as no lattice point is inside
+    pub(super) alone: bool,
     pub(super) places: Vec<CellPlace<3>>,
 }
 
-/// A vertical line with the area that it stands for.
+/// A vertical line with the area that it stands for, m².
 struct Line {
     x: [f64; 2],
     area: f64,
@@ -37,7 +39,8 @@ struct Line {
 /// The cells with points of the column of cells above a rectangle.
 ///
 /// A point has the covered volume of its own n-th of the cell along each axis; what is left of the others goes to the
-/// nearest point of the cell. A cell without a lattice point inside has one point, in the largest piece.
+/// nearest points of the cell, in equal shares to those that are equally near. A cell without a lattice point inside
+/// has one point, at that place of its lines that is nearest to the centroid.
 pub(super) fn column(lines: &Lines<'_>, sides: [[f64; 2]; 2], up: &GridAxis, n: usize) -> Vec<LatticeCell> {
     let parts = (0..n * n).map(|k| lines.of([part(sides[0], k / n, n), part(sides[1], k % n, n)]));
     let parts: Vec<Vec<Line>> = parts.collect();
@@ -51,20 +54,20 @@ pub(super) fn column(lines: &Lines<'_>, sides: [[f64; 2]; 2], up: &GridAxis, n: 
 impl Lines<'_> {
     /// Those of a part of a cell.
     fn of(&self, sides: [[f64; 2]; 2]) -> Vec<Line> {
-        let [along_x, along_y] = [0, 1].map(|axis| shares(sides[axis], &self.ends[axis]));
+        let [along_x, along_y] = [0, 1].map(|axis| shares(sides[axis], &self.ends[axis], LINES));
         let at = |x: f64, y: f64, area: f64| Line { x: [x, y], area, covered: (self.covers)([x, y]) };
         along_x.iter().flat_map(|&(x, width)| along_y.iter().map(move |&(y, depth)| at(x, y, width * depth))).collect()
     }
 }
 
-/// Places of lines in an interval with the lengths that they stand for.
-fn shares([lower, upper]: [f64; 2], ends: &[f64]) -> Vec<(f64, f64)> {
+/// Places of lines in an interval with the lengths that they stand for, so many in each piece between ends.
+pub(super) fn shares([lower, upper]: [f64; 2], ends: &[f64], lines: usize) -> Vec<(f64, f64)> {
     let mut pieces = vec![lower];
     pieces.extend(ends.iter().filter(|end| lower < **end && **end < upper));
     pieces.push(upper);
     let of = |piece: &[f64]| {
         let [from, to] = [piece[0], piece[1]];
-        (0..LINES).map(move |k| (place([from, to], k, LINES), (to - from) / LINES as f64))
+        (0..lines).map(move |k| (place([from, to], k, lines), (to - from) / lines as f64))
     };
     pieces.windows(2).flat_map(of).collect()
 }
@@ -81,24 +84,16 @@ type Centre = ([f64; 2], Vec<[f64; 2]>);
 
 fn cell((parts, centres): (&[Vec<Line>], &[Centre]), z: [f64; 2], n: usize, row: usize) -> LatticeCell {
     let (mut places, mut left) = (Vec::new(), Vec::new());
-    let (mut sum, mut largest, mut whole) = (0.0, (0.0, [0.0; 3]), true);
+    let (mut sum, mut whole) = (Sum::default(), true);
     for (lines, ([x, y], middle)) in parts.iter().zip(centres) {
         for c in 0..n {
             let height = part(z, c, n);
             let (mut volume, mut full) = (0.0, 0.0);
             for line in lines {
                 full += line.area * (height[1] - height[0]);
-                for ends in &line.covered {
-                    let (lower, upper) = (ends[0].max(height[0]), ends[1].min(height[1]));
-                    let piece = line.area * (upper - lower).max(0.0);
-                    volume += piece;
-                    if piece > largest.0 {
-                        largest = (piece, [line.x[0], line.x[1], 0.5 * (lower + upper)]);
-                    }
-                }
+                volume += line.within(height).map(|ends| sum.add(line, ends)).sum::<f64>();
             }
             whole &= volume >= (1.0 - SLIVER) * full;
-            sum += volume;
             let at = [*x, *y, place(z, c, n)];
             let inside = middle.iter().any(|[lower, upper]| *lower < at[2] && at[2] < *upper);
             let list = if inside && volume > SLIVER * full { &mut places } else { &mut left };
@@ -107,10 +102,68 @@ fn cell((parts, centres): (&[Vec<Line>], &[Centre]), z: [f64; 2], n: usize, row:
             }
         }
     }
-    if places.is_empty() && sum > 0.0 {
-        places.push(CellPlace { x: largest.1, area: sum });
+    let alone = places.is_empty() && sum.volume > 0.0;
+    if alone {
+        let x = nearest_inside(parts, z, sum.centroid());
+        places.push(CellPlace { x, area: sum.volume });
     } else {
-        left.iter().for_each(|left| give(&mut places, left));
+        share(&mut places, &left);
     }
-    LatticeCell { row, whole, places }
+    LatticeCell { row, whole, alone, places }
+}
+
+impl Line {
+    /// What is covered of it between two heights.
+    fn within(&self, [from, to]: [f64; 2]) -> impl Iterator<Item = [f64; 2]> {
+        let within = self.covered.iter().map(move |[lower, upper]| [lower.max(from), upper.min(to)]);
+        within.filter(|[lower, upper]| lower < upper)
+    }
+}
+
+/// Volume, m³, and first moments, m⁴, of pieces of lines.
+#[derive(Clone, Copy, Debug, Default)]
+struct Sum {
+    volume: f64,
+    moment: [f64; 3],
+}
+
+impl Sum {
+    /// Adds a piece of a line and gives its volume.
+    fn add(&mut self, line: &Line, [lower, upper]: [f64; 2]) -> f64 {
+        let volume = line.area * (upper - lower);
+        let at = [line.x[0], line.x[1], 0.5 * (lower + upper)];
+        self.volume += volume;
+        self.moment = [0, 1, 2].map(|axis| self.moment[axis] + volume * at[axis]);
+        volume
+    }
+
+    fn centroid(&self) -> [f64; 3] {
+        self.moment.map(|moment| moment / self.volume)
+    }
+}
+
+fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
+    (0..3).fold(0.0_f64, |sum, k| sum.hypot(a[k] - b[k]))
+}
+
+/// The place inside, on a line of a cell between two heights, that is nearest to `to`: at its height or in the middle
+/// of what a line has.
+fn nearest_inside(parts: &[Vec<Line>], z: [f64; 2], to: [f64; 3]) -> [f64; 3] {
+    let on = |line: &Line, [lower, upper]: [f64; 2]| {
+        let height = if lower < to[2] && to[2] < upper { to[2] } else { 0.5 * (lower + upper) };
+        [line.x[0], line.x[1], height]
+    };
+    let pieces = parts.iter().flatten().flat_map(|line| line.within(z).map(move |ends| on(line, ends)));
+    pieces.min_by(|a, b| distance(*a, to).total_cmp(&distance(*b, to))).unwrap_or(to)
+}
+
+/// Shares out what is left among places: each to the nearest, in equal parts to those that are equally near, so that
+/// what is symmetric stays so.
+fn share(places: &mut [CellPlace<3>], left: &[CellPlace<3>]) {
+    for of in left {
+        let nearest = places.iter().map(|place| distance(place.x, of.x)).fold(f64::INFINITY, f64::min);
+        let near = |place: &&mut CellPlace<3>| distance(place.x, of.x) <= nearest * (1.0 + SLIVER);
+        let count = places.iter_mut().filter(near).count() as f64;
+        places.iter_mut().filter(near).for_each(|place| place.area += of.area / count);
+    }
 }

@@ -11,6 +11,9 @@ use crate::report::{Report, shortened};
 use crate::words::Geometry;
 use bsmpm::model::Regime;
 
+/// Part of a body in cells of one point each above which it is warned of: a face just beyond a grid line has a fifth, a
+/// tube with a wall of four fifths of the points' distance too, of a fifth all.
+const ALONE: f64 = 0.3;
 /// Bodies at most; every pair is tried for overlap.
 const MOST: usize = 10_000;
 /// Pairs of edges that are tried for overlap at most.
@@ -92,6 +95,16 @@ fn read(
             Some(record) => record.error("upper", message, report),
             None => record.error(shape::key(record), message, report),
         }
+    }
+    let alone = body.region.alone();
+    if alone > ALONE && body.points_per_cell > 1 {
+        report.warn(format!(
+            "{}: {:.0} % of it lies in cells where one point stands for all that is there, as its parts are thinner than \
+             its points lie apart: how it bends, and where its mass is within a cell, cannot be trusted; take smaller \
+             cells or more points_per_cell",
+            record.path,
+            1e2 * alone
+        ));
     }
     Some(body)
 }

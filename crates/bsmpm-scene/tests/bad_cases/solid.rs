@@ -230,17 +230,19 @@ pub const IN_A_PLANE: &[Row] = &[
     ),
 ];
 
-/// A pipe's wall of a hundredth of a cell and one of a fifth.
+/// Pipes' walls: by the factor of a hundredth of a cell and of a fifth, by their points of a tenth and of two fifths.
 #[test]
 fn thin_walls_are_warned_of() {
     let base = super::SOLID;
     let at = base.find("revolve =").expect("a turned outline");
     let end = at + base[at..].find("points_per_cell").expect("its points");
-    let warned = |outer: f64| {
-        let wall = format!("polygon = [[0.8, 1.0], [{outer}, 1.0], [{outer}, 2.0], [0.8, 2.0]]");
+    let warned = |[inner, outer]: [f64; 2], of: &str| {
+        let wall = format!("polygon = [[{inner}, 1.0], [{outer}, 1.0], [{outer}, 2.0], [{inner}, 2.0]]");
         let text = format!("{}revolve = {{ {wall}, about = [1.0, 1.5] }}\n{}", &base[..at], &base[end..]);
         let warnings = bsmpm_scene::Case::from_text("case.toml", &text, &[]).expect("a valid case").warnings;
-        warnings.iter().any(|told| told.contains("body.3.revolve: it is too thin for its points"))
+        warnings.iter().any(|told| told.starts_with("body.3") && told.contains(of))
     };
-    assert!(warned(0.803) && !warned(0.95));
+    let (factor, alone) = ("it is too thin for its points", "where one point stands for all");
+    assert!(warned([0.8, 0.803], factor) && !warned([0.8, 0.95], factor));
+    assert!(warned([0.8, 0.85], alone) && !warned([0.8, 0.99], alone));
 }
