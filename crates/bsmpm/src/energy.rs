@@ -177,9 +177,9 @@ impl Draft {
         }
         let mut rubbed = rubbed;
         if !nodes.rigid.is_empty() {
-            let [given, friction] = nodes.rigid.work(u, halo);
+            let [given, grown] = nodes.rigid.work(u, halo);
             flows.external += &given;
-            rubbed += &friction;
+            flows.integration -= &grown;
         }
         if let Some(inertia) = &nodes.inertia {
             rubbed.extend(nodes.dashpots.work::<D>(inertia, u, halo).into_iter().map(|work| 0.5 * work));

@@ -39,7 +39,8 @@ struct Line {
 /// The cells with points of the column of cells above a rectangle.
 ///
 /// A point has the covered volume of its own n-th of the cell along each axis; what is left of the others goes to the
-/// nearest points of the cell, in equal shares to those that are equally near. A cell without a lattice point inside
+/// nearest points of the cell, in equal shares to those that are equally near. Their volumes then are tilted so that
+/// the centroid is that of what is covered, as far as none loses more than half. A cell without a lattice point inside
 /// has one point, at that place of its lines that is nearest to the centroid.
 pub(super) fn column(lines: &Lines<'_>, sides: [[f64; 2]; 2], up: &GridAxis, n: usize) -> Vec<LatticeCell> {
     let parts = (0..n * n).map(|k| lines.of([part(sides[0], k / n, n), part(sides[1], k % n, n)]));
@@ -108,6 +109,9 @@ fn cell((parts, centres): (&[Vec<Line>], &[Centre]), z: [f64; 2], n: usize, row:
         places.push(CellPlace { x, area: sum.volume });
     } else {
         share(&mut places, &left);
+        if !whole {
+            balance(&mut places, sum.centroid(), SLIVER * (z[1] - z[0]));
+        }
     }
     LatticeCell { row, whole, alone, places }
 }
@@ -165,5 +169,25 @@ fn share(places: &mut [CellPlace<3>], left: &[CellPlace<3>]) {
         let near = |place: &&mut CellPlace<3>| distance(place.x, of.x) <= nearest * (1.0 + SLIVER);
         let count = places.iter_mut().filter(near).count() as f64;
         places.iter_mut().filter(near).for_each(|place| place.area += of.area / count);
+    }
+}
+
+/// Rounds over the axes by which a cell's points come to balance: where they are skew to the axes, each is off again by
+/// the next.
+const ROUNDS: usize = 4;
+
+/// Tilts the volumes of places so that their centroid comes to lie at `to`; their sum stays. Nothing is tilted along an
+/// axis where they lie within `least`, m.
+fn balance(places: &mut [CellPlace<3>], to: [f64; 3], least: f64) {
+    let volume: f64 = places.iter().map(|place| place.area).sum();
+    for axis in (0..ROUNDS).flat_map(|_| 0..3) {
+        let mean = places.iter().map(|place| place.area * place.x[axis]).sum::<f64>() / volume;
+        let square = |place: &CellPlace<3>| place.area * (place.x[axis] - mean).powi(2);
+        let variance = places.iter().map(square).sum::<f64>() / volume;
+        let reach = places.iter().map(|place| (place.x[axis] - mean).abs()).fold(0.0, f64::max);
+        if reach > least {
+            let slope = ((to[axis] - mean) / variance).clamp(-0.5 / reach, 0.5 / reach);
+            places.iter_mut().for_each(|place| place.area *= 1.0 + slope * (place.x[axis] - mean));
+        }
     }
 }

@@ -281,14 +281,15 @@ impl<const D: usize> RigidContacts<D> {
         Ok(corrected[0] as usize)
     }
 
-    /// J  work of the bodies on the material of this rank, and half of what of it friction takes, not positive.
+    /// J  work of the bodies on the material of this rank, and how much more the forces at the step's end would do.
     pub fn work(&self, u: &[f64], halo: &dyn Halo) -> [Exact; 2] {
         let motions = self.found(u, halo);
         let mut work = [Exact::ZERO; 2];
         for point in &self.points {
-            let moved = self.moved(point, u, &motions);
-            work[0].add(point.force(&moved).dot(&point.displacement(&self.offsets, u)));
-            work[1].add(0.5 * point.rubbed(&moved));
+            let (mean, grown) = point.mean(&self.moved(point, u, &motions));
+            let way = point.displacement(&self.offsets, u);
+            work[0].add(mean.dot(&way));
+            work[1].add(grown.dot(&way));
         }
         work
     }
@@ -326,7 +327,7 @@ impl<const D: usize> RigidContacts<D> {
             let (pushed, _) = point.pushed(&moved);
             let advance = point.carried_by(&motions[point.body]).norm().max(point.way);
             let touched = f64::from(u8::from(pushed > 0.0));
-            let work = point.force(&moved).dot(&point.displacement(&self.offsets, u));
+            let work = point.mean(&moved).0.dot(&point.displacement(&self.offsets, u));
             let slipped = pushed.max(0.0) * point.slipped(&moved);
             let each = [touched, pushed.max(0.0), slipped, -point.rubbed(&moved), work];
             sums[5 * point.body..].iter_mut().zip(each).for_each(|(sum, value)| sum.add(value));

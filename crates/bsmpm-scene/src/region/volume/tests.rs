@@ -70,7 +70,7 @@ fn spheres_and_turned_outlines_are_scaled_to_their_volume() {
     assert!(off(total(&found), 4.0 / 3.0 * PI * 1.2_f64.powi(3)) < 1e-12);
     let centroid = [0, 1, 2].map(|axis| found.iter().map(|at| at.area * at.x[axis]).sum::<f64>() / total(&found));
     for (axis, exact) in [2.0, 1.5, 1.6].into_iter().enumerate() {
-        assert!((centroid[axis] - exact).abs() < 5e-3, "centroid {centroid:?}");
+        assert!((centroid[axis] - exact).abs() < 1e-3, "centroid {centroid:?}");
     }
     let frustum = Section::polygon(&[[0.0, 0.2], [1.3, 0.2], [0.4, 2.9], [0.0, 2.9]]);
     let (found, _) = points(SolidShape::Revolved { outline: frustum, about: [2.0, 1.5] }, Vec::new(), 2);
@@ -98,7 +98,7 @@ fn surfaces_of_triangles_are_scaled_to_their_volume() {
     assert!(off(total(&found), 4.0 / 3.0 * radius.powi(3)) < 1e-12);
     for (axis, exact) in center.into_iter().enumerate() {
         let centroid = found.iter().map(|at| at.area * at.x[axis]).sum::<f64>() / total(&found);
-        assert!((centroid - exact).abs() < 5e-3, "centroid along {axis}: {centroid}");
+        assert!((centroid - exact).abs() < 1e-3, "centroid along {axis}: {centroid}");
     }
 }
 
@@ -190,7 +190,7 @@ fn thin_walls_stand_upright() {
                 (sum + at.area, moment + at.area * (at.x[2] - 0.5 * layer as f64 - 0.25))
             });
             assert!(off(sum, 0.25 * volume.volume()) < 1e-12, "layer {layer}: {sum}");
-            assert!(moment.abs() < 1e-12 * sum, "layer {layer}: {moment}");
+            assert!(moment.abs() < 1e-9 * sum, "layer {layer}: {moment}");
         }
         let alone = volume.tally().alone / volume.volume();
         assert!(if wall < 0.1 { (alone - 1.0).abs() < 1e-12 } else { alone < 0.3 }, "{alone}");

@@ -161,6 +161,7 @@ impl<const D: usize> RigidContacts<D> {
                     normal,
                     gap,
                     motion: along(&tangents, &step),
+                    approach: normal.dot(&step),
                     way: step.norm(),
                     arm: after.turned(&seen),
                     stiffness: PENALTY * stiffness,

@@ -45,6 +45,8 @@ pub(super) struct RigidPoint<const D: usize> {
     pub gap: f64,
     /// m  of the body along the outline in the step, as predicted
     pub motion: Along,
+    /// m  of the body towards the point in the step, as predicted
+    pub approach: f64,
     /// m  of the body there in any direction
     pub way: f64,
     /// m  from the body's reference point to the place, at the end
@@ -155,6 +157,19 @@ impl<const D: usize> RigidPoint<D> {
     pub fn force(&self, moved: &Vector<D>) -> Vector<D> {
         let (normal, along) = self.pushed(moved);
         self.normal * normal + self.vector(along)
+    }
+
+    /// N  force on the material as the step begins.
+    fn before(&self) -> Vector<D> {
+        let depth = -(self.gap + self.approach);
+        self.normal * (self.stiffness * depth.max(0.0)) + self.vector(self.carried)
+    }
+
+    /// N  mean of the forces as the step begins and ends, which counts for work; and what the one at its end is more.
+    pub fn mean(&self, moved: &Vector<D>) -> (Vector<D>, Vector<D>) {
+        let after = self.force(moved);
+        let mean = (self.before() + after) * 0.5;
+        (mean, after - mean)
     }
 
     /// N  change of the force with a change of what has moved; `whole`: with the part that is not symmetric.
