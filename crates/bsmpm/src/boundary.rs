@@ -156,7 +156,8 @@ impl<const D: usize> Boundary<D> {
         self.strips.iter().any(|strip| strip.contact.is_some())
     }
 
-    /// Force of every support on the body: the nodal `reaction` summed over the components that it decides, N.
+    /// Force of every support on the body: the nodal `reaction` summed over the components that it decides, N. What two
+    /// supports hold at their common edge counts for the one that it is normal to, which has the pressure there.
     pub fn reactions(&self, grid: &Grid<D>, reaction: &[f64], halo: &dyn Halo) -> Vec<Vec<f64>> {
         let owned = halo.owned();
         let mut counted = vec![false; reaction.len()];
@@ -171,8 +172,11 @@ impl<const D: usize> Boundary<D> {
             }
         };
         // Who holds goes first, then what pushes, then what rubs.
-        for (support, sums) in self.supports.iter().zip(sums.chunks_exact_mut(D)).rev() {
-            sum((support, sums), &|component| support.velocity[component].is_some());
+        for across in [true, false] {
+            for (support, sums) in self.supports.iter().zip(sums.chunks_exact_mut(D)).rev() {
+                let holds = |component: usize| support.velocity[component].is_some();
+                sum((support, sums), &|component| holds(component) && (component == support.axis) == across);
+            }
         }
         if self.has_contact() {
             let in_contact = |(support, _): &(&Support<D>, &mut [Exact])| support.contact.is_some();

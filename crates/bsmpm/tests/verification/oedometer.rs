@@ -106,3 +106,24 @@ fn the_face_feels_the_stress_times_its_area() {
     assert!((face / (M * 0.8_f64.ln() / 0.8) - 1.0).abs() <= 1e-10);
     assert!((bottom / face + 1.0).abs() <= 1e-10);
 }
+
+/// A rough bottom shares edges with smooth sides: what it holds there is pressure on them.
+#[test]
+fn the_sides_feel_the_stress_down_to_their_edge_on_a_fixed_bottom() {
+    let mut face = Support::<3>::roller(2, true);
+    face.velocity[2] = Some(-0.2);
+    let axes = std::array::from_fn(|_| axis(0.5, 2, 2));
+    let mut scene = Scene::<Solid, 3>::new(axes, hencky(1000.0, 0.3), Regime::QuasiStatic)
+        .body([0..2, 0..2, 0..2], 3, 1.0, |x| x * 0.0)
+        .rollers(0..2)
+        .support(Support::fixed(2, false))
+        .support(face);
+    scene.model.criteria.force = 1e-12;
+    let (scene, steps) = scene.solved(1.0, 1.0);
+    let (lambda, _) = scene.model.materials[0].elastic().lame();
+    let (supports, reactions) = (&scene.model.boundary.supports, &steps[0].report.reactions);
+    for (support, force) in supports.iter().zip(reactions).filter(|(support, _)| support.axis < 2) {
+        let pressure = force[support.axis] * if support.upper { -1.0 } else { 1.0 };
+        assert!((pressure / (-lambda * 0.8_f64.ln()) - 1.0).abs() <= 1e-10, "{pressure}");
+    }
+}
