@@ -9,8 +9,9 @@ use super::{Boundary, Support};
 use crate::exact::Exact;
 use crate::grid::{Grid, Shape};
 use crate::nodal::Nodal;
-use crate::parallel::Halo;
+use crate::parallel::{Halo, LinearSolver};
 use crate::points::Points;
+use crate::tensor::Vector;
 pub(super) use gap::face_cell;
 use gap::{ROUNDING, gaps};
 use node::ContactNode;
@@ -68,7 +69,8 @@ impl<const D: usize> Contacts<D> {
                     gap,
                     status: Status::Open,
                     rested: [false; D],
-                    last: None,
+                    beside: 0.0,
+                    way: 0.0,
                 };
                 let behind = grid.node_at(node);
                 let behind = std::array::from_fn(|axis| match (axis == face.axis, face.upper) {
@@ -134,28 +136,41 @@ impl<const D: usize> Contacts<D> {
         moving
     }
 
-    /// Adds friction, N, to what is out of balance and to the `reaction`, which has the normal forces.
-    pub fn add_friction(&self, f_oob: &mut [f64], reaction: &mut [f64]) {
+    /// Adds friction under the displacement `u` (m), N, to what is out of balance and to the `reaction`, which has the
+    /// normal forces.
+    pub fn add_friction(&self, u: &[f64], f_oob: &mut [f64], reaction: &mut [f64]) {
         for at in &self.nodes {
             let Status::Slip(direction) = at.status else { continue };
             let limit = at.limit(reaction);
+            let friction = at.rubbed(&direction, &at.slip(u), limit);
             for component in (0..D).filter(|&component| at.along[component] && limit > 0.0) {
-                let friction = -limit * direction[component];
-                f_oob[Nodal::<D>::at(at.node, component)] += friction;
-                reaction[Nodal::<D>::at(at.node, component)] = friction;
+                f_oob[Nodal::<D>::at(at.node, component)] += friction[component];
+                reaction[Nodal::<D>::at(at.node, component)] = friction[component];
             }
         }
     }
 
-    /// Adds what friction adds to the product of the derivative of the forces, which `out` holds at all components,
-    /// where `reaction` acts.
-    pub fn add_derivative(&self, reaction: &[f64], out: &mut [f64]) {
+    /// Adds what friction adds to the product of the derivative of the forces with `v` (m), which `out` holds at all
+    /// components, where `reaction` acts.
+    pub fn add_derivative(&self, reaction: &[f64], v: &[f64], out: &mut [f64]) {
         for at in &self.nodes {
             let Status::Slip(direction) = at.status else { continue };
-            let factor = if at.limit(reaction) > 0.0 { at.law.friction * at.inward } else { 0.0 };
+            let acts = at.limit(reaction) > 0.0;
+            let factor = if acts { at.law.friction * at.inward } else { 0.0 };
             let normal = out[Nodal::<D>::at(at.node, at.axis)];
+            let beside = if acts { at.rubbed(&direction, &at.slip(v), 0.0) } else { Vector::zeros() };
             for component in (0..D).filter(|&component| at.along[component]) {
-                out[Nodal::<D>::at(at.node, component)] += factor * direction[component] * normal;
+                out[Nodal::<D>::at(at.node, component)] += factor * direction[component] * normal - beside[component];
+            }
+        }
+    }
+
+    /// Adds what resists slips beside the directions of friction to the stiffness.
+    pub fn assemble(&self, solver: &mut dyn LinearSolver, halo: &dyn Halo) {
+        let owned = halo.owned();
+        for at in self.nodes.iter().filter(|at| owned.contains(at.node)) {
+            if let Some(block) = at.resists() {
+                solver.add_among(&[at.node], &block);
             }
         }
     }
@@ -166,12 +181,11 @@ impl<const D: usize> Contacts<D> {
         let owned = halo.owned();
         let mut corrected = [0.0];
         for at in &mut self.nodes {
-            let status = at.corrected(u, reaction, (force, ROUNDING * edge));
-            corrected[0] += f64::from(u8::from(status != at.status && owned.contains(at.node)));
-            if D > 2 && status != at.status {
-                at.last = Some((at.friction(reaction), at.slip(u)));
-            }
-            at.status = status;
+            let asked = at.corrected(u, reaction, (force, ROUNDING * edge));
+            let founded = at.beside == 0.0 && asked.beside > 0.0;
+            let is_corrected = asked.status != at.status || founded;
+            corrected[0] += f64::from(u8::from(is_corrected && owned.contains(at.node)));
+            (at.status, at.beside, at.way) = (asked.status, asked.beside, asked.way);
         }
         halo.reduce(&mut corrected);
         corrected[0] as usize

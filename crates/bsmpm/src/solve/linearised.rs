@@ -184,7 +184,7 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
             }
             nodes.dashpots.stiffness(inertia).for_each(|(c, stiffness)| out[c] += stiffness * moved[c]);
         }
-        nodes.contacts.add_derivative(self.reaction, out);
+        nodes.contacts.add_derivative(self.reaction, v, out);
         out.iter_mut().zip(&nodes.free).filter(|(_, free)| !**free).for_each(|(out, _)| *out = 0.0);
     }
 

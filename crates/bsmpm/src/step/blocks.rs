@@ -56,6 +56,7 @@ pub fn complete<K: Kinematics<D>, const D: usize>(
     let nodes = problem.nodes;
     problem.grips.assemble(solver);
     nodes.rigid.assemble(solver);
+    nodes.contacts.assemble(solver, problem.halo);
     if let Some(background) = &nodes.background {
         background.assemble::<D>(solver);
     }

@@ -261,7 +261,7 @@ impl Forces {
         if let Some(inertia) = &nodes.inertia {
             nodes.dashpots.add_forces(inertia, u, &mut forces.f_oob, &mut forces.reaction);
         }
-        nodes.contacts.add_friction(&mut forces.f_oob, &mut forces.reaction);
+        nodes.contacts.add_friction(u, &mut forces.f_oob, &mut forces.reaction);
         forces
     }
 }

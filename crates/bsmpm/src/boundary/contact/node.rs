@@ -15,6 +15,10 @@ const TURNED: f64 = 100.0;
 /// Parts of the displacement that is round-off, beside friction, from which on a slip has left it.
 const BESIDE: f64 = 1e-3;
 
+/// Displacements that are round-off, of a slip that is looked at: of one that is not known, or less, it is the slip on
+/// which what resists it beside friction is founded.
+const LEAST: f64 = 1e3;
+
 /// A node on a face with contact whose normal component nothing else holds.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ContactNode<const D: usize> {
@@ -36,8 +40,17 @@ pub(super) struct ContactNode<const D: usize> {
     pub status: Status<D>,
     /// components that did not move in the last step
     pub rested: [bool; D],
-    /// N, m  friction and slip under the statuses before
-    pub last: Option<(Vector<D>, Vector<D>)>,
+    /// N/m  what resists a slip beside the direction of friction: in space, where it is known
+    pub beside: f64,
+    /// m  slip on which that is founded; that of the last step as it begins
+    pub way: f64,
+}
+
+/// What a displacement and reaction ask of a node: its status, and what resists a slip beside that.
+pub(super) struct Asked<const D: usize> {
+    pub status: Status<D>,
+    pub beside: f64,
+    pub way: f64,
 }
 
 impl<const D: usize> ContactNode<D> {
@@ -51,6 +64,7 @@ impl<const D: usize> ContactNode<D> {
         }
         let slip = Vector::from_fn(|component, _| if self.along[component] { of(component) } else { 0.0 });
         self.status = if self.law.lifts && normal > -self.gap { Status::Open } else { self.met(&slip) };
+        (self.beside, self.way) = (0.0, slip.norm());
         let rubs = self.law.friction > 0.0;
         self.rested = std::array::from_fn(|component| {
             let held = component == self.axis || rubs && self.along[component];
@@ -117,49 +131,69 @@ impl<const D: usize> ContactNode<D> {
         slip.norm() > length && beside > BESIDE * length && limit * (now - direction).norm() > TURNED * force
     }
 
-    /// The direction that friction turns to where the slip has left it: to that of the slip at once it would go back
-    /// and forth where the node hardly slips, as friction then decides where it goes. So, as Alart and Curnier (1991),
-    /// only as far as the stiffness that the node has shown against its last change of friction asks for.
-    fn turned(&self, direction: Vector<D>, slip: &Vector<D>, reaction: &[f64]) -> Vector<D> {
-        let limit = self.limit(reaction);
-        let stiffness = self.last.map(|(force, place)| {
-            let (pulled, moved) = (-direction * limit - force, slip - place);
-            pulled.dot(&moved) / moved.norm_squared()
-        });
-        match stiffness.filter(|stiffness| *stiffness > 0.0 && stiffness.is_finite()) {
-            Some(stiffness) => (direction * limit + slip * stiffness).normalize(),
-            None => slip.normalize(),
-        }
+    /// N  friction on the body where it slips along `direction` but for `slip`, m: Newton's linear form of
+    /// mu N u_t / |u_t| about the last slip, of which the part beside `direction` turns it.
+    pub fn rubbed(&self, direction: &Vector<D>, slip: &Vector<D>, limit: f64) -> Vector<D> {
+        let along = -direction * limit;
+        if self.beside == 0.0 { along } else { along - (slip - direction * slip.dot(direction)) * self.beside }
     }
 
-    /// The status that displacement and reaction ask for.
-    pub fn corrected(&self, u: &[f64], reaction: &[f64], (force, length): (f64, f64)) -> Status<D> {
+    /// Row-major square of what resists a slip beside the direction of friction, N/m; none where nothing does.
+    pub fn resists(&self) -> Option<Vec<f64>> {
+        let Status::Slip(direction) = self.status else { return None };
+        let on = |component: usize| f64::from(u8::from(self.along[component]));
+        let of = |k: usize| {
+            let (i, j) = (k / D, k % D);
+            self.beside * (on(i) * f64::from(u8::from(i == j)) - direction[i] * direction[j])
+        };
+        (self.beside > 0.0).then(|| (0..D * D).map(of).collect())
+    }
+
+    /// The same status, founded on what is known now.
+    fn founded(&self, status: Status<D>, way: f64, reaction: &[f64]) -> Asked<D> {
+        let slips = D > 2 && self.law.friction > 0.0 && matches!(status, Status::Slip(_));
+        Asked { status, way, beside: if slips { self.limit(reaction) / way } else { 0.0 } }
+    }
+
+    /// What displacement and reaction ask for.
+    pub fn corrected(&self, u: &[f64], reaction: &[f64], (force, length): (f64, f64)) -> Asked<D> {
+        let (least, kept) = (LEAST * length, Asked { status: self.status, beside: self.beside, way: self.way });
+        let of = |status: Status<D>| self.founded(status, least, reaction);
         if self.status == Status::Open {
             let beyond = -self.gap - self.inward * u[Nodal::<D>::at(self.node, self.axis)];
             let slip = Vector::from_fn(|c, _| if self.along[c] { u[Nodal::<D>::at(self.node, c)] } else { 0.0 });
-            return if beyond > length { self.met(&slip) } else { Status::Open };
+            return if beyond > length { of(self.met(&slip)) } else { kept };
         }
         if self.law.lifts && self.pushed(reaction) < -force {
-            return Status::Open;
+            return of(Status::Open);
         }
         match self.status {
             Status::Stick => {
                 let held = self.friction(reaction);
-                if held.norm() > self.limit(reaction) + force { Status::Slip(-held.normalize()) } else { Status::Stick }
+                let slips = held.norm() > self.limit(reaction) + force;
+                if slips { of(Status::Slip(-held.normalize())) } else { kept }
             }
             Status::Slip(direction) if self.law.friction > 0.0 => {
                 let slip = self.slip(u);
                 let along = slip.dot(&direction);
+                if along < -length {
+                    return of(Status::Stick);
+                }
+                // In space friction turns with the slip: once it resists what is beside it, as else a node that hardly
+                // slips would go where friction does not look. On a line there is nothing to turn.
+                if D > 2 && self.beside == 0.0 && self.limit(reaction) > force {
+                    return self.founded(self.status, self.way.max(least), reaction);
+                }
                 match slip.try_normalize(0.0) {
-                    _ if along < -length => Status::Stick,
-                    // Along a plane friction turns with the slip; on a line there is nothing to turn.
                     Some(now) if self.is_off(&direction, (&slip, now), self.limit(reaction), (force, length)) => {
-                        Status::Slip(self.turned(direction, &slip, reaction))
+                        let way = along.max(least);
+                        let turned = (direction * (way - along) + slip).normalize();
+                        self.founded(Status::Slip(turned), way, reaction)
                     }
-                    _ => self.status,
+                    _ => kept,
                 }
             }
-            status => status,
+            _ => kept,
         }
     }
 }
