@@ -100,6 +100,17 @@ impl ValueReader<'_, '_> {
         self.fail(node, format!("expected {}, found {}", self.kind, node.show()))
     }
 
+    /// What a solid wants three numbers of.
+    fn not_of_three<T>(&mut self, node: &Node, dimension: Dimension) -> Option<T> {
+        let unit = if dimension == Dimension::LineForce { ", in N, written \"N/m\" as well" } else { "" };
+        let message = format!(
+            "expected {}, found {}: in a solid it has three components, [x, y, z]{unit}",
+            self.kind,
+            node.show()
+        );
+        self.fail(node, message)
+    }
+
     fn quantity(&mut self, node: &Node, dimension: Dimension, range: &Range) -> Option<f64> {
         let read = match &node.value {
             Value::Integer(text) if text.parse::<i64>().is_err() => Err(format!("{} is too large", shortened(text))),
@@ -167,10 +178,11 @@ impl ValueReader<'_, '_> {
     }
 
     fn quantities(&mut self, node: &Node, dimension: Dimension, range: &Range, length: Option<usize>) -> Option<Datum> {
-        let Value::List(items) = &node.value else { return self.unexpected(node) };
-        if length.is_some_and(|length| length != items.len()) {
-            return self.unexpected(node);
-        }
+        let items = match &node.value {
+            Value::List(items) if length.is_none_or(|length| length == items.len()) => items,
+            _ if length == Some(3) => return self.not_of_three(node, dimension),
+            _ => return self.unexpected(node),
+        };
         let read: Vec<Option<f64>> = items.iter().map(|item| self.quantity(item, dimension, range)).collect();
         read.into_iter().collect::<Option<Vec<f64>>>().map(Datum::Numbers)
     }

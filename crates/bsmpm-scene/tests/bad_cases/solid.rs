@@ -12,6 +12,8 @@ const SECTION: &str = "rectangle = { lower = [0.0, 0.0, 0.5], upper = [1.5, 3.0,
 
 const BALL: &str = "sphere = { center = [3.5, 0.5, 2.0], radius = 0.25 }";
 
+const FORCE: &str = "force = [\"1 N/m\", 0.0, 0.0]";
+
 const BASE: &str = "base = [[2, 0, 1], [3, 0, 1], [2, 3, 1], [3, 3, 1]]";
 
 const FLOWS: &str = "density = 2000\nporosity = 0.4\ndrainage = \"coupled\"\npermeability = [1e-6, 1e-7, 1e-6]\n\
@@ -153,6 +155,14 @@ pub const SOLID: &[Row] = &[
     row("density = 2000", PERMEABLE, "material.soil.permeability", "expected").down(3),
     row("at    = [0.5, 0.0, 0.5]", "at    = [0.5, 0.5]", "point_load.0.at", "solid: of three"),
     row("at    = [0.5, 0.0, 0.5]", "at    = [3.9, 0.1, 1.9]", "point_load.0.at", "no body is at [3.9, 0.1, 1.9]"),
+    row(FORCE, "force = \"-10 N\"", "point_load.0.force", "\"-10 N\": in a solid it has three components"),
+    row(
+        FORCE,
+        "force = [0.0, \"-10 N/m\"]",
+        "point_load.0.force",
+        "three components, [x, y, z], in N, written \"N/m\"",
+    ),
+    row(FORCE, "force = [0.0, 0.0, \"-10 N\"]", "point_load.0.force", "in a solid that of the whole force, in N"),
     row(PLATE, "from = [0, 1]\nto = [1, 1]", "footing.from", "a solid has plates"),
     row(PLATE, "rectangle = { lower = [0.5, 2, 1], upper = [1.5, 3, 1.2] }", "footing.rectangle", "no rectangle"),
     row(
