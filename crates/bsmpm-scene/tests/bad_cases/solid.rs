@@ -254,3 +254,25 @@ fn thin_walls_are_warned_of() {
     };
     assert!(warned(0.803) && !warned(0.95));
 }
+
+/// The default is that of plane strain wherever the cone is used; the word for it is not warned of.
+#[test]
+fn the_default_match_of_a_cone_is_warned_of_outside_of_plane_strain() {
+    let warned = |base: &str, given: &str| {
+        let law = format!("model = \"drucker-prager\"\nfriction = 30\ncohesion = 1e3{given}\n");
+        let text = base.replacen("model   = \"hencky\"", &law, 1);
+        let warnings = bsmpm_scene::Case::from_text("case.toml", &text, &[]).expect("a valid case").warnings;
+        warnings.into_iter().find(|told| told.contains("mohr-coulomb's"))
+    };
+    for base in [super::SOLID, super::ROUND] {
+        let told = warned(base, "").expect("a warning");
+        // (3 - sin 30)/sqrt(13) and (3 + sin 30)/sqrt(13).
+        assert!(told.contains("material.soil.match: not given") && told.contains("69.3 %"), "{told}");
+        assert!(told.contains("97.1 % in extension") && told.contains("give \"outer\""), "{told}");
+        for word in ["outer", "inner", "plane-strain"] {
+            assert_eq!(warned(base, &format!("\nmatch = \"{word}\"")), None);
+        }
+    }
+    let flat = warned(super::STATIC, "\nmatch = \"outer\"").expect("a warning");
+    assert!(flat.contains("in plane strain this cone has"), "{flat}");
+}
