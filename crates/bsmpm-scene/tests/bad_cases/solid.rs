@@ -69,6 +69,13 @@ pub const SOLID: &[Row] = &[
     row("[5, 3, 4, 5, 5, 4, 7, 3, 4]", "[5, 3, 4, 5, 5, 4]", "body.5.surface.triangles", "a list of 6"),
     row("5, 3, 6, 5, 5, 4],\n], scale = 0.5", "5, 3, 6, 5, 5, 4],\n], scale = 0.7", "body.5.surface", "ends at x = 4")
         .up(1),
+    row(
+        "5, 3, 6, 5, 5, 4],\n], scale = 0.5",
+        "5, 3, 6, 5, 5, 4],\n], scale = 500",
+        "body.5.surface",
+        "reach from [2500.000, 1500.000, 2000.000] to [3500.000, 2500.000, 3000.000] m: numbers are metres times scale",
+    )
+    .up(1),
     row("left   = \"roller\"", "left   = \"absorbing\"", "boundary.left", "not available in a solid yet"),
     row(
         "back   = \"roller\"\nbottom = \"fixed\"",
@@ -275,4 +282,19 @@ fn the_default_match_of_a_cone_is_warned_of_outside_of_plane_strain() {
     }
     let flat = warned(super::STATIC, "\nmatch = \"outer\"").expect("a warning");
     assert!(flat.contains("in plane strain this cone has"), "{flat}");
+}
+
+/// Every triangle of the surface turned; of one that is not the row of open surfaces tells.
+#[test]
+fn a_surface_that_is_turned_inside_out_as_a_whole_is_taken_and_warned_of() {
+    let base = super::SOLID;
+    let turned = base
+        .replacen("[5, 3, 4, 5, 5, 4, 7, 3, 4]", "[5, 3, 4, 7, 3, 4, 5, 5, 4]", 1)
+        .replacen("[5, 3, 4, 7, 3, 4, 5, 3, 6]", "[5, 3, 4, 5, 3, 6, 7, 3, 4]", 1)
+        .replacen("[7, 3, 4, 5, 5, 4, 5, 3, 6]", "[7, 3, 4, 5, 3, 6, 5, 5, 4]", 1)
+        .replacen("[5, 3, 4, 5, 3, 6, 5, 5, 4]", "[5, 3, 4, 5, 5, 4, 5, 3, 6]", 1);
+    let case = |text: &str| bsmpm_scene::Case::from_text("case.toml", text, &[]).expect("a valid case");
+    let warned = |text: &str| case(text).warnings.iter().any(|told| told.contains("triangles: all of them are turned"));
+    assert!(warned(&turned) && !warned(base));
+    assert_eq!(case(&turned).bodies[5].region, case(base).bodies[5].region);
 }
