@@ -56,7 +56,8 @@ pub(super) fn draw(
     Ok(NAME.to_owned())
 }
 
-/// The highest point, of a solid the top of its material, of every column of cells from left to right; an empty column breaks the line.
+/// The highest point, of a solid the top of its material, of every column of cells from left to right; an empty column
+/// breaks the line.
 fn surface(record: &RunRecord, frame: &Frame) -> Vec<(f64, f64)> {
     let Some((low, high)) = range(frame.position.iter().map(|point| point[0])) else { return Vec::new() };
     let grid = record.manifest.grid.as_ref();

@@ -293,8 +293,8 @@ fn check(record: &Record, law: &Parameters, layer: Option<&Layer>, report: &mut 
     Some(())
 }
 
-/// A cone that has another strength in plane strain than the pyramid it is to stand for; in other geometries one that is
-/// matched there by default.
+/// A cone that has another strength in plane strain than the pyramid it is to stand for; in other geometries one that
+/// is matched there by default.
 fn warn_of_match(record: &Record, law: &Parameters, geometry: Option<Geometry>, report: &mut Report<'_>) {
     let elastic = (Profile::constant(1.0), 0.0);
     let uniform = law.values.iter().map(|(key, profile)| (*key, Profile::constant(profile.value))).collect();
