@@ -29,7 +29,8 @@ pub const CHECK: u8 = 77;
 pub const WRONG_LAUNCH: u8 = 78;
 /// No convergence at the smallest step, or energy that no work explains; the last converged state is saved.
 pub const NO_CONVERGENCE: u8 = 80;
-/// Material left the grid, or a load its material; the last converged state is saved.
+/// Material left the grid where it must not, or all of it through outflow faces, or a load its material;
+/// the last converged state is saved.
 pub const LEFT: u8 = 81;
 
 /// All of them.

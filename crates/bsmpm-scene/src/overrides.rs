@@ -2,6 +2,7 @@
 
 use crate::document::{self, DocumentEntry, Node, Table, Value};
 use crate::error::Origin;
+use crate::record::UNREAD;
 use crate::report::{Report, shortened};
 use crate::schema::{Kind, ROOT, Table as Schema};
 
@@ -75,6 +76,9 @@ impl Setting<'_> {
             table.entries.push(DocumentEntry { key: name.to_owned(), origin: self.origin, node });
         }
         let Some(entry) = table.get_mut(name) else { return Ok(()) };
+        if self.parts[depth + 1] == "file" && matches!(kind, Some(Kind::Rows(_) | Kind::Course(_))) {
+            return Err(UNREAD.to_owned());
+        }
         match (kind, &mut entry.node.value) {
             (Some(Kind::Named(below)), Value::Table(named)) => self.in_named(named, below, depth + 1),
             _ => self.in_value(&mut entry.node, kind.and_then(Kind::table), depth + 1),
@@ -106,7 +110,9 @@ impl Setting<'_> {
                 if part == EACH && length > 0 && !last {
                     return items.iter_mut().try_for_each(|item| self.in_value(item, schema, depth + 1));
                 }
-                let index: usize = part.parse().map_err(|_| format!("`{}` is no index of a list", shortened(part)))?;
+                let index: usize = part.parse().map_err(|_| {
+                    format!("`{}` is no index of a list, which counts its {length} items from 0", shortened(part))
+                })?;
                 if index > length {
                     return Err(format!("index {index} is beyond the list of {length}"));
                 }

@@ -10,6 +10,7 @@ use crate::report::{Report, shortened};
 use crate::schema::{Group, Key, Kind, Presence, Table};
 use crate::unit::Dimension;
 use crate::words::{AnalysisType, Geometry, Word};
+pub(crate) use value::UNREAD;
 
 /// A table whose keys and values are as the schema says.
 #[derive(Clone, Debug)]

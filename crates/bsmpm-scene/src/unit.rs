@@ -205,7 +205,7 @@ pub(crate) fn parse_any(text: &str, meant: Option<Dimension>) -> Result<(f64, Di
         if meant == Some(Dimension::LineForce) && plain.ends_with('N') {
             return Err(format!(
                 "\"{written}\" is a force; plane strain is 1 m thick and takes forces per metre{units}; in axisymmetry \
-                 the number is that of the whole ring"
+                 the number is that of the whole ring, in a solid that of the whole force, in N, written \"N/m\" as well"
             ));
         }
         let all = UNITS.iter().filter(|(dimension, _)| meant.is_none_or(|meant| meant == *dimension));
@@ -350,6 +350,7 @@ mod tests {
             ("-", Length, "no number"),
             ("5 \u{202e}m", Length, "\\u{202e}"),
             ("5 kN", LineForce, "plane strain is 1 m thick and takes forces per metre (N/m, kN/m, MN/m)"),
+            ("5 kN", LineForce, "in a solid that of the whole force, in N, written \"N/m\" as well"),
             ("5 kPa", LineForce, "expected a force per metre of thickness (N/m"),
         ];
         for (text, dimension, says) in rows {

@@ -62,7 +62,9 @@ pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Op
     let contacts = contacts(record, factor, report);
     let (placed, made) = (grid.as_ref(), bodies.as_deref());
     let reduction = material::Reduction::of(record);
-    let around = material::Around { regime, grid: placed, bodies: made, stages: stages.as_deref(), reduction };
+    let geometry = record.word("geometry");
+    let around =
+        material::Around { regime, geometry, grid: placed, bodies: made, stages: stages.as_deref(), reduction };
     let materials = material::read_all(record, around, report);
     let mut gravity = gravity(record, end, report);
     let water = water::read(record, (placed, gravity.as_ref()), end, report);

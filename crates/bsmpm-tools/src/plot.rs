@@ -105,7 +105,7 @@ fn pictures(arguments: &PlotArguments) -> Result<(RunRecord, Vec<String>), Error
             names.extend(body::draw(&record, &frames, field, (range, section))?);
         }
         if has_surface(&record, reference.as_ref()) {
-            names.push(surface::draw(&record, &frames, reference.as_ref())?);
+            names.push(surface::draw(&record, (&frames, section), reference.as_ref())?);
         }
     }
     names.extend(curves::draw(&record, reference.as_ref())?);

@@ -76,6 +76,12 @@ pub enum StepError {
         /// Id and position (m) of the first one on this rank, if any.
         first: Option<(u64, Vec<f64>)>,
     },
+    /// All material would have left the grid through its outlets.
+    #[error("all material has left the grid through its outflow faces but {count} point(s), which leave in this step")]
+    Emptied {
+        /// Number of points over all ranks.
+        count: u64,
+    },
     /// A load has no material at some of its points any more.
     #[error("{points} point(s) of load {load} have lost their material")]
     Unloaded {

@@ -120,7 +120,11 @@ fn advice(error: &StepError, case: &Case) -> Vec<String> {
         ],
         StepError::Left { .. } | StepError::Outside { .. } => &[
             "a larger grid, or a support at the face where points left; steps down to 1/1024 threw them out as well",
-            "where material shall leave: [boundary] \"outflow\" there; what a strip or load is at stays, and not all leaves",
+            "where material shall leave: [boundary] \"outflow\" there; what a strip or load is at stays",
+        ],
+        StepError::Emptied { .. } => &[
+            "an [analysis] end before this time: nothing is left to compute, and the saved state is the last one with material",
+            "a larger grid, if it was to be followed farther",
         ],
         StepError::Unloaded { .. } => {
             &["a load or strip has no material any more: look where it was in the last frame"]

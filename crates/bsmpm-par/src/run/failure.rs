@@ -69,7 +69,9 @@ fn code_of(error: Option<&StepError>, step: u64) -> u8 {
     match error {
         Some(StepError::Unloaded { .. }) if step == 1 => exit::CASE,
         Some(StepError::Undrained { .. }) => exit::CASE,
-        Some(StepError::Unloaded { .. } | StepError::Left { .. } | StepError::Outside { .. }) => exit::LEFT,
+        Some(
+            StepError::Unloaded { .. } | StepError::Left { .. } | StepError::Emptied { .. } | StepError::Outside { .. },
+        ) => exit::LEFT,
         _ => exit::NO_CONVERGENCE,
     }
 }

@@ -2,10 +2,15 @@
 
 use super::{Datum, ListRow};
 use crate::document::{Node, Value};
+use crate::error::Origin;
 use crate::nearest::hint;
 use crate::report::{Report, shortened};
 use crate::schema::{Kind, Range, Words};
 use crate::unit::{self, Dimension};
+
+/// Of a file that `--set` names: a case is whole before it is overridden.
+pub(crate) const UNREAD: &str =
+    "files are read where the case file names them, not by --set: name it there, or set rows of numbers";
 
 /// Longest name of a material, column or check.
 const LONGEST_NAME: usize = 64;
@@ -100,6 +105,28 @@ impl ValueReader<'_, '_> {
         self.fail(node, format!("expected {}, found {}", self.kind, node.show()))
     }
 
+    /// A file that was named where none is read.
+    fn unread<T>(&mut self, node: &Node) -> Option<T> {
+        let message = match node.origin {
+            Origin::Override(_) => UNREAD,
+            Origin::Text(_) | Origin::Nowhere => {
+                "a file is named in braces, { file = \"rows.csv\" }, with nothing else in them but `along`"
+            }
+        };
+        self.fail(node, format!("found {}: {message}", node.show()))
+    }
+
+    /// What a solid wants three numbers of.
+    fn not_of_three<T>(&mut self, node: &Node, dimension: Dimension) -> Option<T> {
+        let unit = if dimension == Dimension::LineForce { ", in N, written \"N/m\" as well" } else { "" };
+        let message = format!(
+            "expected {}, found {}: in a solid it has three components, [x, y, z]{unit}",
+            self.kind,
+            node.show()
+        );
+        self.fail(node, message)
+    }
+
     fn quantity(&mut self, node: &Node, dimension: Dimension, range: &Range) -> Option<f64> {
         let read = match &node.value {
             Value::Integer(text) if text.parse::<i64>().is_err() => Err(format!("{} is too large", shortened(text))),
@@ -151,7 +178,11 @@ impl ValueReader<'_, '_> {
     }
 
     fn rows(&mut self, node: &Node, columns: &[(Dimension, Range)]) -> Option<Datum> {
-        let Value::List(items) = &node.value else { return self.unexpected(node) };
+        let items = match &node.value {
+            Value::List(items) => items,
+            Value::Table(table) if table.get("file").is_some() => return self.unread(node),
+            _ => return self.unexpected(node),
+        };
         let read: Vec<Option<ListRow>> = items.iter().map(|item| self.row(item, columns)).collect();
         read.into_iter().collect::<Option<Vec<ListRow>>>().map(Datum::Rows)
     }
@@ -167,10 +198,11 @@ impl ValueReader<'_, '_> {
     }
 
     fn quantities(&mut self, node: &Node, dimension: Dimension, range: &Range, length: Option<usize>) -> Option<Datum> {
-        let Value::List(items) = &node.value else { return self.unexpected(node) };
-        if length.is_some_and(|length| length != items.len()) {
-            return self.unexpected(node);
-        }
+        let items = match &node.value {
+            Value::List(items) if length.is_none_or(|length| length == items.len()) => items,
+            _ if length == Some(3) => return self.not_of_three(node, dimension),
+            _ => return self.unexpected(node),
+        };
         let read: Vec<Option<f64>> = items.iter().map(|item| self.quantity(item, dimension, range)).collect();
         read.into_iter().collect::<Option<Vec<f64>>>().map(Datum::Numbers)
     }

@@ -245,7 +245,7 @@ pub(crate) static MATERIAL: Table = Table {
             "match",
             Choice(Match::WORDS),
             Optional,
-            "where drucker-prager meets mohr-coulomb; plane-strain unless given",
+            "where drucker-prager meets mohr-coulomb; plane-strain unless given, which is warned of where it is none",
         ),
         key(
             "yield_stress",

@@ -19,7 +19,12 @@ pub static ROOT: Table = Table {
     keys: &[
         key("title", Text(200), Optional, "what the case is, in a line"),
         key("geometry", Choice(Geometry::WORDS), Required, "kind of the geometry"),
-        key("accuracy", Choice(Accuracy::WORDS), Optional, "cells, points, steps, tolerances that are not given"),
+        key(
+            "accuracy",
+            Choice(Accuracy::WORDS),
+            Optional,
+            "cells, points, steps, tolerances that are not given; not of a solid, which gives them",
+        ),
         key("analysis", Kind::Table(&ANALYSIS), Required, "kind of the analysis and its time"),
         key("grid", Kind::Table(&GRID), Required, "the parametric grid"),
         key("material", Named(&laws::MATERIAL), Required, "materials by name"),

@@ -8,7 +8,7 @@ use crate::grid::GridSpec;
 use crate::record::Record;
 use crate::report::Report;
 use crate::schema::{LawName, Range};
-use crate::words::{Side, Word};
+use crate::words::{Geometry, Side, Word};
 use bsmpm::material::{Material, Profile};
 use bsmpm::model::Regime;
 use law::{Parameters, law};
@@ -20,6 +20,7 @@ const MOST: usize = 65_536;
 #[derive(Clone, Copy)]
 pub(super) struct Around<'a> {
     pub(super) regime: Option<Regime>,
+    pub(super) geometry: Option<Geometry>,
     pub(super) grid: Option<&'a GridSpec>,
     pub(super) bodies: Option<&'a [Body]>,
     pub(super) stages: Option<&'a [Stage]>,
@@ -80,7 +81,7 @@ fn read(
     let saturated = density.and_then(|density| saturated(record, density, report));
     let ratio = if record.gives("ru") { record.number("ru") } else { Some(0.0) };
     let layer = Layer::of(number, around);
-    let law = law(record, (layer.as_ref(), around.grid), report);
+    let law = law(record, (layer.as_ref(), around.grid, around.geometry), report);
     let retardation = retardation(record, around.regime, report);
     let (young, poisson) = (profile(record, "young"), record.number("poisson"));
     if let (Some(young), Some(layer)) = (&young, &layer) {

@@ -12,6 +12,8 @@ const SECTION: &str = "rectangle = { lower = [0.0, 0.0, 0.5], upper = [1.5, 3.0,
 
 const BALL: &str = "sphere = { center = [3.5, 0.5, 2.0], radius = 0.25 }";
 
+const FORCE: &str = "force = [\"1 N/m\", 0.0, 0.0]";
+
 const BASE: &str = "base = [[2, 0, 1], [3, 0, 1], [2, 3, 1], [3, 3, 1]]";
 
 const FLOWS: &str = "density = 2000\nporosity = 0.4\ndrainage = \"coupled\"\npermeability = [1e-6, 1e-7, 1e-6]\n\
@@ -67,6 +69,13 @@ pub const SOLID: &[Row] = &[
     row("[5, 3, 4, 5, 5, 4, 7, 3, 4]", "[5, 3, 4, 5, 5, 4]", "body.5.surface.triangles", "a list of 6"),
     row("5, 3, 6, 5, 5, 4],\n], scale = 0.5", "5, 3, 6, 5, 5, 4],\n], scale = 0.7", "body.5.surface", "ends at x = 4")
         .up(1),
+    row(
+        "5, 3, 6, 5, 5, 4],\n], scale = 0.5",
+        "5, 3, 6, 5, 5, 4],\n], scale = 500",
+        "body.5.surface",
+        "reach from [2500.000, 1500.000, 2000.000] to [3500.000, 2500.000, 3000.000] m: numbers are metres times scale",
+    )
+    .up(1),
     row("left   = \"roller\"", "left   = \"absorbing\"", "boundary.left", "not available in a solid yet"),
     row(
         "back   = \"roller\"\nbottom = \"fixed\"",
@@ -153,6 +162,14 @@ pub const SOLID: &[Row] = &[
     row("density = 2000", PERMEABLE, "material.soil.permeability", "expected").down(3),
     row("at    = [0.5, 0.0, 0.5]", "at    = [0.5, 0.5]", "point_load.0.at", "solid: of three"),
     row("at    = [0.5, 0.0, 0.5]", "at    = [3.9, 0.1, 1.9]", "point_load.0.at", "no body is at [3.9, 0.1, 1.9]"),
+    row(FORCE, "force = \"-10 N\"", "point_load.0.force", "\"-10 N\": in a solid it has three components"),
+    row(
+        FORCE,
+        "force = [0.0, \"-10 N/m\"]",
+        "point_load.0.force",
+        "three components, [x, y, z], in N, written \"N/m\"",
+    ),
+    row(FORCE, "force = [0.0, 0.0, \"-10 N\"]", "point_load.0.force", "in a solid that of the whole force, in N"),
     row(PLATE, "from = [0, 1]\nto = [1, 1]", "footing.from", "a solid has plates"),
     row(PLATE, "rectangle = { lower = [0.5, 2, 1], upper = [1.5, 3, 1.2] }", "footing.rectangle", "no rectangle"),
     row(
@@ -245,4 +262,41 @@ fn thin_walls_are_warned_of() {
     let (factor, alone) = ("it is too thin for its points", "where one point stands for all");
     assert!(warned([0.8, 0.803], factor) && !warned([0.8, 0.95], factor));
     assert!(warned([0.8, 0.85], alone) && !warned([0.8, 0.99], alone));
+}
+
+/// The default is that of plane strain wherever the cone is used; the word for it is not warned of.
+#[test]
+fn the_default_match_of_a_cone_is_warned_of_outside_of_plane_strain() {
+    let warned = |base: &str, given: &str| {
+        let law = format!("model = \"drucker-prager\"\nfriction = 30\ncohesion = 1e3{given}\n");
+        let text = base.replacen("model   = \"hencky\"", &law, 1);
+        let warnings = bsmpm_scene::Case::from_text("case.toml", &text, &[]).expect("a valid case").warnings;
+        warnings.into_iter().find(|told| told.contains("mohr-coulomb's"))
+    };
+    for base in [super::SOLID, super::ROUND] {
+        let told = warned(base, "").expect("a warning");
+        // (3 - sin 30)/sqrt(13) and (3 + sin 30)/sqrt(13).
+        assert!(told.contains("material.soil.match: not given") && told.contains("69.3 %"), "{told}");
+        assert!(told.contains("97.1 % in extension") && told.contains("give \"outer\""), "{told}");
+        for word in ["outer", "inner", "plane-strain"] {
+            assert_eq!(warned(base, &format!("\nmatch = \"{word}\"")), None);
+        }
+    }
+    let flat = warned(super::STATIC, "\nmatch = \"outer\"").expect("a warning");
+    assert!(flat.contains("in plane strain this cone has"), "{flat}");
+}
+
+/// Every triangle of the surface turned; of one that is not the row of open surfaces tells.
+#[test]
+fn a_surface_that_is_turned_inside_out_as_a_whole_is_taken_and_warned_of() {
+    let base = super::SOLID;
+    let turned = base
+        .replacen("[5, 3, 4, 5, 5, 4, 7, 3, 4]", "[5, 3, 4, 7, 3, 4, 5, 5, 4]", 1)
+        .replacen("[5, 3, 4, 7, 3, 4, 5, 3, 6]", "[5, 3, 4, 5, 3, 6, 7, 3, 4]", 1)
+        .replacen("[7, 3, 4, 5, 5, 4, 5, 3, 6]", "[7, 3, 4, 5, 3, 6, 5, 5, 4]", 1)
+        .replacen("[5, 3, 4, 5, 3, 6, 5, 5, 4]", "[5, 3, 4, 5, 5, 4, 5, 3, 6]", 1);
+    let case = |text: &str| bsmpm_scene::Case::from_text("case.toml", text, &[]).expect("a valid case");
+    let warned = |text: &str| case(text).warnings.iter().any(|told| told.contains("triangles: all of them are turned"));
+    assert!(warned(&turned) && !warned(base));
+    assert_eq!(case(&turned).bodies[5].region, case(base).bodies[5].region);
 }

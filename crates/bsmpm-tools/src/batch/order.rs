@@ -69,12 +69,33 @@ fn slug(settings: &[String]) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::slug;
+    use super::{RunOrder, slug};
+    use bsmpm_scene::Case;
 
     #[test]
     fn names_are_plain() {
         let settings = ["grid.cell=\"10 mm\"".to_owned(), "body.*.points_per_cell = 3".to_owned()];
         assert_eq!(slug(&settings), "cell-10mm_points_per_cell-3_");
         assert_eq!(slug(&[]), "");
+    }
+
+    /// Of cells of several sizes the largest counts.
+    #[test]
+    fn the_size_of_a_cell_is_the_edge_of_a_square_or_cube_as_large() {
+        let of = |geometry: &str, corner: &str, grid: &str, made: &str| {
+            let text = format!(
+                "geometry = \"{geometry}\"\nanalysis = {{ type = \"quasi-static\", steps = 1 }}\n\
+                 grid = {{ {grid}, order = \"quadratic\" }}\n\
+                 material.soil = {{ model = \"hencky\", young = 1e6, poisson = 0.3 }}\nboundary.bottom = \"fixed\"\n\
+                 body = [{{ material = \"soil\", box = {{ lower = [{corner}], upper = [{made}] }}, points_per_cell = 2 }}]\n"
+            );
+            RunOrder::cell_of(&Case::from_text("case.toml", &text, &[]).expect("a valid case"))
+        };
+        let cells = "lower = [0.0, 0.0], upper = [8.0, 4.0], cell = [4.0, 1.0]";
+        assert_eq!(of("plane-strain", "0.0, 0.0", cells, "4.0, 2.0"), 2.0);
+        let cells = "lower = [0.0, 0.0, 0.0], upper = [8.0, 4.0, 4.0], cell = [8.0, 2.0, 4.0]";
+        assert!((of("solid", "0.0, 0.0, 0.0", cells, "8.0, 2.0, 4.0") - 4.0).abs() < 1e-12);
+        let knots = "knots = { x = [0.0, 1.0, 9.0], y = [0.0, 1.0, 2.0], z = [0.0, 1.0, 2.0] }";
+        assert!((of("solid", "0.0, 0.0, 0.0", knots, "1.0, 1.0, 1.0") - 2.0).abs() < 1e-12);
     }
 }

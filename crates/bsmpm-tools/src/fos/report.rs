@@ -133,6 +133,7 @@ impl FosReport {
         let [kink, doubled] = &self.criteria;
         text += &format!("\nfactor of safety, by the kink:     {}\n", kink.words());
         text += &format!("by twice the elastic displacement: {}\n", doubled.words());
+        text += self.which();
         self.notes.iter().for_each(|note| text += &format!("note: {note}\n"));
         let cpu: f64 = self.trials.iter().map(|row| row.trial.cpu_seconds).sum();
         let kept = self.trials.iter().filter(|row| row.trial.kept).count();
@@ -143,6 +144,21 @@ impl FosReport {
             self.seconds,
             self.jobs
         )
+    }
+
+    /// Which of both criteria is the factor of safety; nothing where no trial failed.
+    fn which(&self) -> &'static str {
+        match (&self.kink, self.criteria[1].first_failed) {
+            (_, None) => "",
+            (Some(_), _) => {
+                "use the kink, from which on displacements grow without measure; the other is a coarse check, too low \
+                 where soil yields long before the body fails\n"
+            }
+            (None, _) => {
+                "there is no kink: use the first, told by what the note says; the other is too low where soil yields long \
+                 before the body fails\n"
+            }
+        }
     }
 
     fn table(&self) -> String {

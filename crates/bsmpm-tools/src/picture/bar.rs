@@ -9,6 +9,8 @@ use super::ticks::Ticks;
 pub(crate) const BESIDE: f64 = 240.0;
 /// Room for a lying bar below the axes' own labels.
 pub(crate) const BELOW: f64 = 120.0;
+/// Below this height of the axes over their width a bar lies: an upright one has no room for its numbers and label.
+pub(crate) const LYING: f64 = 0.5;
 const THICK: f64 = 30.0;
 const SHADES: usize = 512;
 

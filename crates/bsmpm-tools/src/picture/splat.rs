@@ -12,7 +12,7 @@ use super::colour::Rgb;
 
 /// How far a point's colour reaches, in its own size: enough to close a body that is stretched to four times its
 /// length.
-const REACH: f64 = 2.0;
+pub(crate) const REACH: f64 = 2.0;
 /// How far the body reaches beyond its outer points, in their size.
 const SKIN: f64 = 0.5;
 /// dots  The most that is looked at beyond the window, which bounds the memory for huge points.
@@ -72,6 +72,8 @@ pub(crate) struct SplatWindow {
     /// Whether the body is held at the lower and upper ends of the ranges: what comes near to such an end goes up to
     /// it.
     pub walls: [[bool; 2]; 2],
+    /// How far a point's colour reaches, in its own size: [`REACH`] closes gaps between points of nearly four sizes.
+    pub reach: f64,
 }
 
 /// Draws the part of a body that lies in `window`, each point in its colour.
@@ -82,12 +84,19 @@ pub(crate) fn draw(
     (points, sizes): (&[[f64; 3]], &[f64]),
     colours: &[Rgb],
 ) {
+    for (place, point) in covered(axes, window, (points, sizes)) {
+        canvas.dot(place, colours[point]);
+    }
+}
+
+/// The dots of the sheet that a body covers, each with the point whose colour it takes.
+fn covered(axes: &ChartAxes, window: &SplatWindow, (points, sizes): (&[[f64; 3]], &[f64])) -> Vec<((i32, i32), usize)> {
     let [x, y] = window.ranges;
     let dots_per_metre = FINE as f64 * (axes.right - axes.left) / (axes.x.1 - axes.x.0);
     let dots = |size: &f64| (size * dots_per_metre).max(1.0);
     // Where the body is cut its points are small, but not their distances.
     let usual = dots(&median(sizes));
-    let reach = |size: &f64| REACH * dots(size).max(usual);
+    let reach = |size: &f64| window.reach * dots(size).max(usual);
     let largest = sizes.iter().map(reach).fold(0.0, f64::max);
     let (lower, upper) = (fine(axes.place((x.0, y.1))), fine(axes.place((x.1, y.0))));
     let mut nearest = Nearest::about(lower, upper, largest.min(MARGIN));
@@ -99,15 +108,17 @@ pub(crate) fn draw(
         }
     }
     let outside = nearest.distance_to_nobody();
+    let mut found = Vec::new();
     for (at, (&(_, point), outside)) in nearest.dots.iter().zip(outside).enumerate() {
         let Some(size) = sizes.get(point as usize) else { continue };
         if f64::from(outside) > reach(size) - SKIN * dots(size) {
             let place = (nearest.left + (at % nearest.width) as i32, nearest.top + (at / nearest.width) as i32);
             if (lower.0..upper.0).contains(&place.0) && (lower.1..upper.1).contains(&place.1) {
-                canvas.dot(place, colours[point as usize]);
+                found.push((place, point as usize));
             }
         }
     }
+    found
 }
 
 /// The middle one of the sizes.
@@ -185,5 +196,26 @@ impl Nearest {
             way[at] = [right, down, down_left, down_right].into_iter().flatten().fold(way[at], f32::min);
         }
         way
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::picture::axes::LINEAR;
+
+    #[test]
+    fn a_shorter_reach_leaves_gaps_open_and_fills_a_lattice() {
+        let points: Vec<[f64; 3]> =
+            [0.5, 1.5, 4.5, 5.5].into_iter().flat_map(|x| (0..6).map(move |y| [x, f64::from(y) + 0.5, 0.0])).collect();
+        let axes =
+            ChartAxes { left: 0.0, top: 0.0, right: 60.0, bottom: 60.0, x: (0.0, 6.0), y: (0.0, 6.0), scales: LINEAR };
+        let at = |reach: f64, x: f64| {
+            let window = SplatWindow { ranges: [(0.0, 6.0); 2], walls: Default::default(), reach };
+            let wanted = fine(axes.place((x, 3.0)));
+            covered(&axes, &window, (&points, &vec![1.0; points.len()])).iter().any(|(place, _)| *place == wanted)
+        };
+        assert!(at(REACH, 1.0) && at(REACH, 3.0) && at(1.4, 1.0) && !at(1.4, 3.0));
+        assert!(at(1.4, 1.9) && !at(1.4, 2.2));
     }
 }

@@ -4,23 +4,29 @@ use bsmpm_io::frame::Frame;
 use std::collections::HashMap;
 
 use super::body::region_of;
+use super::section;
 use crate::Error;
 use crate::picture::axes::{self, title};
 use crate::picture::bar::{self, Bar};
 use crate::picture::canvas::Canvas;
 use crate::picture::colour::{self, Rgb};
-use crate::picture::layout::Layout;
+use crate::picture::layout::{Layout, aspect};
 use crate::picture::splat;
 use crate::picture::ticks::range;
 use crate::record::{RunRecord, short};
 
 const ABOVE: f64 = 130.0;
+const RIGHT: f64 = 60.0;
+/// How far a part's colour reaches, in its size: it closes cracks of a stretched surface, and no gap of two parts.
+const REACH: f64 = 1.4;
+/// Range of colours over the size of a cell at least.
+const FLAT: f64 = 1e-3;
 /// The sun, towards it: from the upper left, steeply.
 const LIGHT: [f64; 3] = [-0.5, 0.5, 0.707];
 /// Share of the light that comes from everywhere.
 const AMBIENT: f64 = 0.35;
 
-/// The highest points of a frame, one in each part of a cell.
+/// The tops of the material of the highest points of a frame, one in each part of a cell.
 struct Heights {
     /// m  edges of the parts
     part: [f64; 2],
@@ -29,12 +35,14 @@ struct Heights {
 }
 
 impl Heights {
-    fn of(frame: &Frame, part: [f64; 2]) -> Self {
+    /// Of a body that goes on so far `above` its highest points, m.
+    fn of(frame: &Frame, part: [f64; 2], above: f64) -> Self {
         let mut points: HashMap<[i64; 2], [f64; 3]> = HashMap::new();
-        for point in &frame.position {
-            let highest = points.entry([0, 1].map(|axis| (point[axis] / part[axis]).floor() as i64)).or_insert(*point);
-            if point[2] > highest[2] {
-                *highest = *point;
+        for &[x, y, z] in &frame.position {
+            let top = [x, y, z + above];
+            let highest = points.entry([0, 1].map(|axis| (top[axis] / part[axis]).floor() as i64)).or_insert(top);
+            if top[2] > highest[2] {
+                *highest = top;
             }
         }
         Self { part, points }
@@ -69,9 +77,13 @@ impl Heights {
 pub(super) fn draw(record: &RunRecord, frames: &[Frame]) -> Result<Vec<String>, Error> {
     let cells = record.manifest.grid.as_ref().filter(|_| record.is_solid()).map(|grid| &grid.cell);
     let Some(&[x, y, ..]) = cells.map(Vec::as_slice) else { return Ok(Vec::new()) };
-    let heights: Vec<Heights> = frames.iter().map(|frame| Heights::of(frame, [0.5 * x, 0.5 * y])).collect();
+    let of = |frame: &Frame| Heights::of(frame, [0.5 * x, 0.5 * y], section::above(record, frame));
+    let heights: Vec<Heights> = frames.iter().map(of).collect();
     let ends = range(heights.iter().flat_map(|of| of.points.values()).map(|point| point[2]));
-    let Some(ends) = ends else { return Ok(Vec::new()) };
+    let Some((low, high)) = ends else { return Ok(Vec::new()) };
+    // A level surface is no relief of rounding.
+    let room = (FLAT * x.min(y) - (high - low)).max(0.0) / 2.0;
+    let ends = (low - room, high + room);
     let mut names = Vec::new();
     for (frame, heights) in frames.iter().zip(&heights) {
         let name = format!("height_{}.png", short(frame.time));
@@ -84,9 +96,10 @@ pub(super) fn draw(record: &RunRecord, frames: &[Frame]) -> Result<Vec<String>, 
 
 fn picture(record: &RunRecord, frame: &Frame, heights: &Heights, bar: Bar) -> Canvas {
     let [window, region] = region_of(record, std::slice::from_ref(frame), [0, 1]);
-    let layout = Layout::of(region, bar::BESIDE, 0.0);
+    let lying = aspect(region) < bar::LYING;
+    let layout = Layout::of(region, if lying { RIGHT } else { bar::BESIDE }, 0.0);
     let axes = layout.axes(ABOVE);
-    let mut canvas = Canvas::new(layout.width, axes.bottom + axes::BELOW);
+    let mut canvas = Canvas::new(layout.width, axes.bottom + axes::BELOW + if lying { bar::BELOW } else { 0.0 });
     let below = record.moment(frame.time) + ", from above";
     title(&mut canvas, layout.width, &record.manifest.case.title, &below);
     let mut parts: Vec<(&[i64; 2], &[f64; 3])> = heights.points.iter().collect();
@@ -98,10 +111,14 @@ fn picture(record: &RunRecord, frame: &Frame, heights: &Heights, bar: Bar) -> Ca
     let shades: Vec<Rgb> = parts.iter().map(shade).collect();
     let places: Vec<[f64; 3]> = parts.iter().map(|(_, point)| **point).collect();
     let sizes = vec![heights.part[0].max(heights.part[1]); places.len()];
-    let inside = splat::SplatWindow { ranges: window, walls: Default::default() };
+    let inside = splat::SplatWindow { ranges: window, walls: Default::default(), reach: REACH };
     splat::draw(&mut canvas, &axes, &inside, (&places, &sizes), &shades);
     axes.draw(&mut canvas, Some(("x", "m")), ("y", "m"));
-    bar.upright(&mut canvas, &axes);
+    if lying {
+        bar.lying(&mut canvas, &axes);
+    } else {
+        bar.upright(&mut canvas, &axes);
+    }
     canvas
 }
 
@@ -114,9 +131,9 @@ mod tests {
         let row = |x: f64, z: f64| [[x, 0.5, z], [x, 0.5, z - 1.0]];
         let position = [row(0.5, 1.0), row(1.5, 3.0), row(2.5, 1.0)].concat();
         let frame = Frame { step: 0, time: 0.0, position, fields: Vec::new() };
-        let heights = Heights::of(&frame, [1.0, 1.0]);
+        let heights = Heights::of(&frame, [1.0, 1.0], 0.25);
         assert_eq!(heights.points.len(), 3);
-        assert_eq!(heights.points[&[1, 0]], [1.5, 0.5, 3.0]);
+        assert_eq!(heights.points[&[1, 0]], [1.5, 0.5, 3.25]);
         assert_eq!((heights.slope([0, 0], 0), heights.slope([1, 0], 0), heights.slope([1, 0], 1)), (2.0, 0.0, 0.0));
         assert!(heights.lit([0, 0]) > heights.lit([2, 0]));
         assert_eq!(heights.lit([1, 0]), 1.0);

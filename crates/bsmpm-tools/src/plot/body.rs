@@ -4,7 +4,7 @@ use bsmpm_io::frame::Frame;
 use bsmpm_scene::{Case, Regime};
 
 use super::field::FieldName;
-use super::rigid;
+use super::{rigid, section};
 use crate::Error;
 use crate::picture::axes::{self, ChartAxes, title};
 use crate::picture::bar::{self, Bar};
@@ -53,13 +53,12 @@ fn picture(
     bar: Bar,
 ) -> Canvas {
     // A low and long body has its bar of colours lying below it.
-    let lying = aspect(region) < 0.5;
+    let lying = aspect(region) < bar::LYING;
     let layout = Layout::of(region, if lying { RIGHT } else { bar::BESIDE }, 0.0);
     let axes = layout.axes(ABOVE);
     let mut canvas = Canvas::new(layout.width, axes.bottom + axes::BELOW + if lying { bar::BELOW } else { 0.0 });
     let reduction = record.case.strength_reduction.map(|factor| format!(", strength divided by {factor}"));
-    let section = section.map(|y| format!(", section at y = {} m", short(y)));
-    let below = record.moment(frame.time) + &reduction.unwrap_or_default() + &section.unwrap_or_default();
+    let below = record.moment(frame.time) + &reduction.unwrap_or_default() + &section::named(section);
     title(&mut canvas, layout.width, &record.manifest.case.title, &below);
     let shades: Vec<_> = values.iter().map(|&value| colour::map(bar.share(value))).collect();
     let sizes = splat::sizes(frame, &record.manifest.case.geometry);
@@ -69,7 +68,7 @@ fn picture(
         Regime::QuasiStatic if record.manifest.grid.is_some() => record.walls(),
         _ => Default::default(),
     };
-    let inside = splat::SplatWindow { ranges, walls };
+    let inside = splat::SplatWindow { ranges, walls, reach: splat::REACH };
     splat::draw(&mut canvas, &axes, &inside, (&frame.position, &sizes), &shades);
     if let Some(case) = case {
         rigid::draw(&mut canvas, (&axes, region), (record, case), frame);

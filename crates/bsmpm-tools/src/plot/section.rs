@@ -2,8 +2,9 @@
 
 use bsmpm_io::frame::{FieldValues, Frame};
 
+use crate::picture::splat;
 use crate::picture::ticks::range;
-use crate::record::RunRecord;
+use crate::record::{RunRecord, short};
 
 /// The axis across the section.
 const ACROSS: usize = 1;
@@ -29,6 +30,25 @@ pub(super) fn of(record: &RunRecord, frames: Vec<Frame>) -> (Vec<Frame>, Option<
     (frames.iter().map(|frame| section(frame, middle, reach)).collect(), Some(middle))
 }
 
+/// m  how far the material of a solid goes on above its highest points: half of the usual share of one of the vertical,
+/// by the cells' proportions (where a body is cut its points are small, but not their distances). Of a plane 0: its
+/// surface is the line of its highest points.
+pub(super) fn above(record: &RunRecord, frame: &Frame) -> f64 {
+    let cell = record.manifest.grid.as_ref().map_or(&[][..], |grid| &grid.cell);
+    match cell {
+        &[x, y, z] if record.is_solid() => {
+            let usual = splat::median(&splat::sizes(frame, &record.manifest.case.geometry));
+            0.5 * usual * z / (x * y * z).cbrt()
+        }
+        _ => 0.0,
+    }
+}
+
+/// What a title says of a section.
+pub(super) fn named(section: Option<f64>) -> String {
+    section.map_or_else(String::new, |y| format!(", section at y = {} m", short(y)))
+}
+
 fn section(frame: &Frame, middle: f64, reach: f64) -> Frame {
     let near = |point: &[f64; 3]| (point[ACROSS] - middle).abs() <= reach;
     let kept: Vec<usize> = (0..frame.position.len()).filter(|&p| near(&frame.position[p])).collect();
@@ -52,6 +72,11 @@ fn taken<T: Copy>(values: &[T], kept: &[usize], components: usize) -> Vec<T> {
 mod tests {
     use super::*;
     use bsmpm_io::frame::Field;
+
+    #[test]
+    fn a_section_is_named_by_its_place() {
+        assert_eq!((named(Some(2.0)).as_str(), named(None).as_str()), (", section at y = 2 m", ""));
+    }
 
     #[test]
     fn a_section_has_the_points_near_it_with_all_that_is_theirs() {

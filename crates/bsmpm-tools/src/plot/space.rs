@@ -8,15 +8,16 @@ use std::iter::repeat;
 
 use super::field::FieldName;
 use crate::Error;
-use crate::picture::axes::{LABEL, THIN, title};
+use crate::picture::axes::{self, LABEL, THIN, title};
 use crate::picture::bar::{self, Bar};
-use crate::picture::canvas::{Canvas, FINE, TextAlign, fine};
+use crate::picture::canvas::{Canvas, FINE, TextAlign, fine, width};
 use crate::picture::colour::{self, INK, OUTLINE, Rgb};
-use crate::picture::layout::Layout;
+use crate::picture::layout::{Layout, aspect};
 use crate::picture::splat;
 use crate::record::{RunRecord, short};
 
 const ABOVE: f64 = 130.0;
+const RIGHT: f64 = 60.0;
 /// Pixels from the edges of the grid to what they are called.
 const BESIDE: f64 = 30.0;
 /// Where it is looked from: degrees from the front towards the right, and above the ground.
@@ -151,9 +152,11 @@ fn picture((record, grid): (&RunRecord, [[f64; 3]; 2]), frame: &Frame, values: &
         (low - room, high + room)
     };
     let region = [ends(0), ends(1)];
-    let layout = Layout::of(region, bar::BESIDE, 0.0);
+    let lying = aspect(region) < bar::LYING;
+    let layout = Layout::of(region, if lying { RIGHT } else { bar::BESIDE }, 0.0);
     let axes = layout.axes(ABOVE);
-    let mut canvas = Canvas::new(layout.width, axes.bottom + 20.0);
+    let below = if lying { axes::BELOW + bar::BELOW } else { 20.0 };
+    let mut canvas = Canvas::new(layout.width, axes.bottom + below);
     title(&mut canvas, layout.width, &record.manifest.case.title, &record.moment(frame.time));
     let place = |k: usize| axes.place((corners[k][0], corners[k][1]));
     // The edges at the nearest corner would hide what is inside.
@@ -187,9 +190,16 @@ fn picture((record, grid): (&RunRecord, [[f64; 3]; 2]), frame: &Frame, values: &
     };
     let ((x, below_x), (y, below_y), (left, z)) = (middle(0, 1), middle(1, 3), middle(0, 4));
     canvas.text(&label("x", 0), (x - 14.0, below_x + BESIDE), LABEL, TextAlign::Right, INK);
-    canvas.text(&label("y", 1), (y + 14.0, below_y + BESIDE), LABEL, TextAlign::Left, INK);
+    // Not into the bar beside the axes.
+    let text = label("y", 1);
+    let y = (y + 14.0).min(axes.right + 40.0 - width(&text, LABEL));
+    canvas.text(&text, (y, below_y + BESIDE), LABEL, TextAlign::Left, INK);
     canvas.upward(&label("z", 2), (left - BESIDE, z), LABEL, INK);
-    bar.upright(&mut canvas, &axes);
+    if lying {
+        bar.lying(&mut canvas, &axes);
+    } else {
+        bar.upright(&mut canvas, &axes);
+    }
     canvas
 }
 

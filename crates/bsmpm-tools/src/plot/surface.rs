@@ -4,6 +4,7 @@ use bsmpm_io::frame::Frame;
 use bsmpm_io::table::Columns;
 
 use super::body::{outline, region};
+use super::section;
 use crate::Error;
 use crate::picture::axes::{BELOW, title};
 use crate::picture::canvas::Canvas;
@@ -22,7 +23,11 @@ const LOWEST: f64 = 0.16;
 
 /// Draws the surfaces of all frames, with the points of a reference that has columns `time,x,y`; returns the picture's
 /// name.
-pub(super) fn draw(record: &RunRecord, frames: &[Frame], reference: Option<&Columns>) -> Result<String, Error> {
+pub(super) fn draw(
+    record: &RunRecord,
+    (frames, section): (&[Frame], Option<f64>),
+    reference: Option<&Columns>,
+) -> Result<String, Error> {
     let reference = reference.map(|table| places(record, frames, table)).unwrap_or_default();
     let entries = entries(record, frames, &reference);
     let entries: Vec<&LegendEntry> = entries.iter().collect();
@@ -30,9 +35,11 @@ pub(super) fn draw(record: &RunRecord, frames: &[Frame], reference: Option<&Colu
     let room = layout.width - 80.0;
     let axes = layout.axes(ABOVE + legend::height(&entries, room) + 20.0);
     let mut canvas = Canvas::new(layout.width, axes.bottom + BELOW);
-    let stretched = format!("Free surface, heights enlarged {:.1} times", layout.stretch);
-    let below = if layout.stretch > 1.0 { stretched.as_str() } else { "Free surface" };
-    title(&mut canvas, layout.width, &record.manifest.case.title, below);
+    let mut below = "Free surface".to_owned() + &section::named(section);
+    if layout.stretch > 1.0 {
+        below += &format!(", heights enlarged {:.1} times", layout.stretch);
+    }
+    title(&mut canvas, layout.width, &record.manifest.case.title, &below);
     legend::draw(&mut canvas, &entries, 40.0, ABOVE, room);
     axes.rules(&mut canvas);
     outline(&mut canvas, &axes, record);
@@ -49,7 +56,8 @@ pub(super) fn draw(record: &RunRecord, frames: &[Frame], reference: Option<&Colu
     Ok(NAME.to_owned())
 }
 
-/// The highest point of every column of cells from left to right; an empty column breaks the line.
+/// The highest point, of a solid the top of its material, of every column of cells from left to right; an empty column
+/// breaks the line.
 fn surface(record: &RunRecord, frame: &Frame) -> Vec<(f64, f64)> {
     let Some((low, high)) = range(frame.position.iter().map(|point| point[0])) else { return Vec::new() };
     let grid = record.manifest.grid.as_ref();
@@ -67,6 +75,8 @@ fn surface(record: &RunRecord, frame: &Frame) -> Vec<(f64, f64)> {
             *top = (x, y);
         }
     }
+    let above = section::above(record, frame);
+    highest.iter_mut().for_each(|top| top.1 += above);
     highest
 }
 

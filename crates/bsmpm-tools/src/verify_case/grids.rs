@@ -15,7 +15,7 @@ const MOST: f64 = 10.0;
 /// The case on each of them, the finest first.
 pub(super) struct Grids {
     pub orders: Vec<RunOrder>,
-    /// m  the size of the cells: the root of the area of one
+    /// m  the size of the cells: the root of the area of one, of a solid the cube root of its volume
     pub sizes: [f64; 3],
     pub own: Case,
 }

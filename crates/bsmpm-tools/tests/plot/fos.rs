@@ -159,6 +159,7 @@ fn the_factor_is_found_and_written_with_its_conditions_and_pictures() {
     let bench = Bench::new(SLOPE, "kink=1.373");
     let output = bench.fos_with("1", &[]);
     let said = text(&output.stdout);
+    assert!(said.contains("\nuse the kink, from which on displacements grow"), "{said}");
     assert!(output.status.success(), "{output:?}");
     assert!(said.contains("h = 1 m, 3 x 3 points a cell, order 2; consistent-f-bar; background 1e-4 E"), "{said}");
     assert!(said.contains("10 load steps; tolerances 1e-8 (energy), 1e-4 (forces); E = 100 MPa"), "{said}");
@@ -188,6 +189,7 @@ fn a_trial_without_equilibrium_is_a_result() {
         assert!(output.status.success(), "{output:?}");
         let said = text(&output.stdout);
         assert!(said.contains("at 0.875 of the load: no step converged"), "{said}");
+        assert!(said.contains("there is no kink: use the first"), "{said}");
         let found = bench.found();
         let number = |key: &str| found["factor_of_safety"][key].as_f64().unwrap();
         assert!(number("last_stable") < 1.373 && 1.373 <= number("first_failed"), "{found}");
@@ -224,6 +226,7 @@ fn a_body_that_never_stands_or_never_fails_is_told_so() {
     let output = bench.fos(&["--to", "2"]);
     let said = text(&output.stdout);
     assert!(output.status.success() && said.contains("above 2: no failure up to there"), "{said}");
+    assert!(!said.contains("use the"), "{said}");
     assert!(bench.found()["factor_of_safety"]["first_failed"].is_null());
     assert!(bench.path("slope.fos/fos.png").exists() && !bench.path("slope.fos/fos_displacement.png").exists());
 }

@@ -85,6 +85,11 @@ impl DruckerPrager {
         slope * (1.0 - eta_psi * eta_psi / 3.0).sqrt() / (1.0 - eta * eta_psi / 3.0)
     }
 
+    /// √J₂ over that of the cone which meets the pyramid elsewhere, at any mean stress: all have one tip.
+    pub fn strength_over(&self, other: Match) -> f64 {
+        self.fit.slopes(self.friction).1 / other.slopes(self.friction).1
+    }
+
     /// Where the cone meets the pyramid.
     pub fn fit(&self) -> Match {
         self.fit

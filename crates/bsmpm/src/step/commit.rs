@@ -48,10 +48,12 @@ pub fn check_inside<K: Kinematics<D>, const D: usize>(
     leaves.retain(wrongly);
     counts[1] = leaves.len() as f64;
     halo.reduce(&mut counts);
-    if counts[1] > 0.0 || counts[0] == 0.0 {
+    if counts[1] > 0.0 {
         let first = leaves.into_iter().next().map(|(p, x, _)| (points.id[p], x.as_slice().to_vec()));
-        let count = if counts[1] > 0.0 { counts[1] } else { counts[2] };
-        return Err(StepError::Left { count: count as u64, first });
+        return Err(StepError::Left { count: counts[1] as u64, first });
+    }
+    if counts[0] == 0.0 {
+        return Err(StepError::Emptied { count: counts[2] as u64 });
     }
     Ok(())
 }

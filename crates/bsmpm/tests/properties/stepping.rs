@@ -129,6 +129,21 @@ fn a_step_that_throws_points_out_of_the_grid_is_cut_and_ends_where_they_are_abou
     assert!(scene.points.x.iter().all(|x| x[0] >= 0.0) && scene.points.x[0][0] < 2.0 / 1024.0);
 }
 
+/// The last column, 0.875 m from the face, follows the others 0.75 s after them.
+#[test]
+fn a_grid_that_empties_through_its_outlets_ends_the_run_and_says_so() {
+    let mut scene = block(Regime::Dynamic);
+    scene.model.gravity = None;
+    scene.model.boundary.supports.clear();
+    scene.model.boundary.outlets = vec![(0, false)];
+    scene.points.motion.as_mut().unwrap().v.iter_mut().for_each(|v| *v = [-1.0, 0.0].into());
+    let failure = run(&mut scene, &Schedule::new(1.0 / 64.0, 2.0, []), 0).unwrap_err();
+    let last = failure.attempts.last().expect("an attempt");
+    assert!(matches!(last, StepError::Emptied { count: 4 }), "{failure:?}");
+    assert!(last.to_string().contains("all material has left the grid through its outflow faces"));
+    assert!((failure.t - 0.875).abs() < 1e-3 && scene.points.len() == 4, "{}", failure.t);
+}
+
 #[test]
 fn a_step_that_turns_material_inside_out_is_cut_and_then_finds_equilibrium() {
     let mut scene = block(Regime::QuasiStatic);

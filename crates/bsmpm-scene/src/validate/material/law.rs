@@ -5,8 +5,8 @@ use crate::grid::{GridAxis, GridSpec};
 use crate::record::Record;
 use crate::report::Report;
 use crate::schema::{Dimension, Kind, LawName, MATERIAL};
-use crate::words::Word;
-use bsmpm::material::{CamClay, Decay, Elastic, Graded, Material, Profile, Separation};
+use crate::words::{Geometry, Word};
+use bsmpm::material::{CamClay, Decay, Elastic, Graded, Match, Material, Profile, Separation};
 
 /// A law and its numbers, by the height in the case's coordinates and units.
 pub(super) struct Parameters {
@@ -65,7 +65,7 @@ fn in_si(key: &str, profile: Profile) -> Profile {
 /// The law of a material; `None` after an error.
 pub(super) fn law(
     record: &Record,
-    (layer, grid): (Option<&Layer>, Option<&GridSpec>),
+    (layer, grid, geometry): (Option<&Layer>, Option<&GridSpec>, Option<Geometry>),
     report: &mut Report<'_>,
 ) -> Option<Parameters> {
     let model: LawName = record.word("model")?;
@@ -101,6 +101,7 @@ pub(super) fn law(
         remould(record, &mut parameters, report)?;
     }
     check(record, &parameters, layer, report)?;
+    warn_of_match(record, &parameters, geometry, report);
     let [slow, fast] = ["mu_s", "mu_2"].map(|key| parameters.of(key).value);
     if model == LawName::MuI && slow > fast {
         record.error("mu_2", format!("{fast} is out of range; allowed: mu_2 >= mu_s = {slow}"), report);
@@ -289,16 +290,29 @@ fn check(record: &Record, law: &Parameters, layer: Option<&Layer>, report: &mut 
         let message = "\"closing\" needs friction and no cohesion: a gap is what opens where the stress is zero";
         record.error("separation", message, report);
     }
-    warn_of_plane_strain(record, law, report);
     Some(())
 }
 
-/// A cone that has another strength in plane strain than the pyramid it is to stand for.
-fn warn_of_plane_strain(record: &Record, law: &Parameters, report: &mut Report<'_>) {
+/// A cone that has another strength in plane strain than the pyramid it is to stand for; in other geometries one that
+/// is matched there by default.
+fn warn_of_match(record: &Record, law: &Parameters, geometry: Option<Geometry>, report: &mut Report<'_>) {
     let elastic = (Profile::constant(1.0), 0.0);
     let uniform = law.values.iter().map(|(key, profile)| (*key, Profile::constant(profile.value))).collect();
     let uniform = Parameters { model: law.model, values: uniform };
     let Some(Material::DruckerPrager(cone)) = uniform.material(record, elastic, (None, 1.0)) else { return };
+    if geometry.is_some_and(|geometry| geometry != Geometry::PlaneStrain) {
+        if !record.gives("match") {
+            report.warn(format!(
+                "{}: not given: the cone is matched in plane strain, which this is not, and has {:.1} % of mohr-coulomb's \
+                 strength in triaxial compression, {:.1} % in extension, at the same mean stress; give \"outer\" (all of it in compression), \
+                 \"inner\" (all in extension, and nowhere more) or \"plane-strain\"; use mohr-coulomb where that is meant",
+                record.path_of("match"),
+                100.0 * cone.strength_over(Match::Outer),
+                100.0 * cone.strength_over(Match::Inner)
+            ));
+        }
+        return;
+    }
     let ratio = cone.strength_in_plane_strain();
     if (ratio - 1.0).abs() > 0.005 {
         report.warn(format!(

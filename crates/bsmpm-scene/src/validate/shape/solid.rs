@@ -3,7 +3,7 @@
 use super::super::place;
 use super::BodyShape;
 use crate::grid::GridSpec;
-use crate::record::Record;
+use crate::record::{ListRow, Record};
 use crate::region::{Raster, Region, Section, SolidShape, Surface, Volume, solid_bounds};
 use crate::report::Report;
 use crate::words::Axis;
@@ -26,7 +26,7 @@ pub(super) fn region(
     }
     let outside = solid_bounds(&whole, &cut).into_iter().find_map(|corner| place::beyond(grid, corner));
     if let Some(message) = outside {
-        body.error(key, message, report);
+        body.error(key, message + &reach(&whole), report);
         return None;
     }
     let lower = grid.lower();
@@ -49,6 +49,27 @@ pub(super) fn region(
             None
         }
     }
+}
+
+/// Of a surface how far it reaches: files of it often have another unit.
+fn reach(shape: &SolidShape) -> String {
+    let SolidShape::Surface(surface) = shape else { return String::new() };
+    let [[x, y, z], [to_x, to_y, to_z]] = surface.bounds();
+    format!(
+        "; its triangles reach from [{x:.3}, {y:.3}, {z:.3}] to [{to_x:.3}, {to_y:.3}, {to_z:.3}] m: numbers are metres \
+         times scale, and scale = 0.001 takes millimetres"
+    )
+}
+
+/// Whether triangles turn clockwise seen from outside, all in all: the tetrahedra between them and a corner have a
+/// negative volume.
+fn is_turned(rows: &[ListRow]) -> bool {
+    let Some(first) = rows.first() else { return false };
+    let six = |row: &ListRow| {
+        let [a, b, c] = [0, 3, 6].map(|k| [0, 1, 2].map(|axis| row.numbers[k + axis] - first.numbers[axis]));
+        a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0])
+    };
+    rows.iter().map(six).sum::<f64>() < 0.0
 }
 
 /// The key that gives a body's or a cut's shape.
@@ -86,10 +107,19 @@ fn read(record: &Record, report: &mut Report<'_>) -> Option<SolidShape> {
     }
     if let Some(shape) = record.record("surface").filter(|_| record.gives("surface")) {
         let scale = shape.number("scale")?;
-        let rows = shape.rows("triangles")?.iter();
-        let scaled = rows.map(|row| std::array::from_fn(|k| scale * row.numbers[k]));
+        let rows = shape.rows("triangles")?;
+        let scaled = rows.iter().map(|row| std::array::from_fn(|k| scale * row.numbers[k]));
         return match Surface::new(scaled) {
-            Ok(surface) => Some(SolidShape::Surface(Box::new(surface))),
+            Ok(surface) => {
+                if is_turned(rows) {
+                    report.warn(format!(
+                        "{}: all of them are turned inside out, and taken for what they enclose: of a hole in the \
+                         ground, subtract it",
+                        shape.path_of("triangles")
+                    ));
+                }
+                Some(SolidShape::Surface(Box::new(surface)))
+            }
             Err(message) => {
                 shape.error("triangles", message, report);
                 None
