@@ -184,9 +184,8 @@ impl<const D: usize> StripAttachments<D> {
         let (offsets, mut corrected) = (&self.offsets, [0.0]);
         for held in &mut self.held {
             let Some(mut grip) = held.grip else { continue };
-            let status = grip.corrected(&held.trial(&grip, offsets, u), force / held.area);
-            corrected[0] += f64::from(u8::from(status != grip.status));
-            grip.status = status;
+            let is_corrected = grip.correct(&held.trial(&grip, offsets, u), force / held.area);
+            corrected[0] += f64::from(u8::from(is_corrected));
             held.grip = Some(grip);
         }
         halo.reduce(&mut corrected);

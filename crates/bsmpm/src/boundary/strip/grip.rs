@@ -23,6 +23,7 @@ pub struct StripContact<const D: usize> {
 pub(super) struct Grip<const D: usize> {
     contact: StripContact<D>,
     pub status: Status<D>,
+    beside: f64,       // of a tangential trial, the part that friction leaves of what is beside its direction; in space
     open_before: bool, // at the start of the step
 }
 
@@ -43,7 +44,7 @@ impl<const D: usize> Grip<D> {
     pub fn of(contact: StripContact<D>, carried: &Vector<D>) -> Self {
         let open_before = contact.is_open(carried);
         let closed = if contact.law.friction == 0.0 { Status::Slip(Vector::zeros()) } else { Status::Stick };
-        Self { contact, status: if open_before { Status::Open } else { closed }, open_before }
+        Self { contact, status: if open_before { Status::Open } else { closed }, beside: 0.0, open_before }
     }
 
     /// Pa  on the body at the start of the step.
@@ -66,6 +67,10 @@ impl<const D: usize> Grip<D> {
         match self.status {
             Status::Open => Vector::zeros(),
             Status::Stick => *vector,
+            Status::Slip(along) if self.beside > 0.0 => {
+                let (normal, slides) = (self.normal(vector), along * along.dot(vector));
+                normal + (vector - normal - slides) * self.beside
+            }
             Status::Slip(_) => self.normal(vector),
         }
     }
@@ -132,11 +137,29 @@ impl<const D: usize> Grip<D> {
             return;
         }
         let pressure = if presses > 0.0 { presses } else { pressed };
-        self.status = self.met(trial, pressure, 0.0);
+        self.take(self.met(trial, pressure, 0.0), trial);
+    }
+
+    /// Corrects the status that a `trial` contradicts by more than `doubt`, Pa; whether it did.
+    pub fn correct(&mut self, trial: &Vector<D>, doubt: f64) -> bool {
+        let (before, status) = (self.status, self.corrected(trial, doubt));
+        if status != before {
+            self.take(status, trial);
+        }
+        status != before
+    }
+
+    /// Takes a status, about the `trial` that asked for it: of friction in space the derivative of mu p t/|t| is beside
+    /// its direction mu p/|t|.
+    fn take(&mut self, status: Status<D>, trial: &Vector<D>) {
+        self.status = status;
+        let (normal, shear) = (self.contact.inward.dot(trial).max(0.0), (trial - self.normal(trial)).norm());
+        let turns = D > 2 && matches!(status, Status::Slip(_)) && shear > 0.0;
+        self.beside = if turns { (self.contact.law.friction * normal / shear).min(1.0) } else { 0.0 };
     }
 
     /// The status that a `trial` asks for, where it contradicts the present one by more than `doubt`, Pa.
-    pub fn corrected(&self, trial: &Vector<D>, doubt: f64) -> Status<D> {
+    fn corrected(&self, trial: &Vector<D>, doubt: f64) -> Status<D> {
         let pressure = self.contact.inward.dot(trial);
         match self.status {
             Status::Open if pressure > doubt => self.met(trial, pressure, 0.0),
