@@ -176,7 +176,7 @@ fn a_bar_hits_a_wall_and_leaves_it() {
 fn hertz(h: f64) -> (Vec<f64>, f64) {
     let (radius, depth, side) = (2.0, 4.0, (4.0 / h) as usize);
     let cylinder =
-        RigidBody { path: path(&[(1.0, [0.0, -0.002, 0.0])]), ..of(Outline::Circle(radius), [0.0, depth + radius]) };
+        RigidBody { path: path(&[(1.0, [0.0, -0.02, 0.0])]), ..of(Outline::Circle(radius), [0.0, depth + radius]) };
     let mut scene = ground(h, [side; 2], 2, Regime::QuasiStatic).rigid(cylinder);
     let found = last(&mut scene, 0.25, 1.0);
     let load = 2.0 * found.force[1];

@@ -3,8 +3,9 @@
 use crate::boundary::coulomb::{Contact, Status};
 use crate::tensor::Vector;
 
-/// Cosine of the angle between trial and friction from which on they are one.
-const ALIGNED: f64 = 1.0 - 1e-12;
+/// Times the traction by which statuses may be contradicted, by which friction may be off the direction of its trial:
+/// the tolerance of the forces themselves.
+const TURNED: f64 = 100.0;
 
 /// Contact of a strip.
 ///
@@ -168,12 +169,14 @@ impl<const D: usize> Grip<D> {
             Status::Stick => self.met(trial, pressure, doubt),
             Status::Slip(along) if along.norm_squared() > 0.0 => {
                 let shear = trial - self.normal(trial);
+                let limit = self.contact.law.friction * pressure;
+                let is_off = |now: Vector<D>| limit * (now - along).norm() > TURNED * doubt;
                 match shear.dot(&along) {
                     _ if pressure < -doubt => Status::Slip(Vector::zeros()),
                     // Whoever slid against friction has to stick first: to turn it at once goes back and forth for
                     // ever.
-                    slid if slid < self.contact.law.friction * pressure - doubt => Status::Stick,
-                    slid if slid < ALIGNED * shear.norm() => Status::Slip(shear.normalize()),
+                    slid if slid < limit - doubt => Status::Stick,
+                    _ if is_off(shear.normalize()) => Status::Slip(shear.normalize()),
                     _ => self.status,
                 }
             }
