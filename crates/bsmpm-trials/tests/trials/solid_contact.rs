@@ -168,3 +168,58 @@ fn a_bar_meets_a_wall_and_leaves_it() {
 }
 
 const BAR: &str = "box = { lower = [0.95, 0.5, 0.125], upper = [1.95, 0.75, 0.375] }\nvelocity = [1.0, 0.0, 0.0]";
+
+/// A cylinder, pressed by a smooth plate on a base that rubs, in either geometry: in part it sticks.
+fn pressed(solid: bool, friction: f64) -> String {
+    let (geometry, upper, faces, body, down) = match solid {
+        true => (
+            "solid",
+            "[1.5, 1.5, 1]",
+            "left = \"roller\"\nfront = \"roller\"\n",
+            "extrude = { circle = { center = [0, 0], radius = 1 }, along = \"z\", from = 0, to = 1 }\n\
+             subtract = [{ box = { lower = [-2, -2, -1], upper = [0, 2, 2] } }, { box = { lower = [-2, -2, -1], upper = [2, 0, 2] } }]",
+            "[0, 0, -0.02]",
+        ),
+        false => (
+            "axisymmetric",
+            "[1.5, 1]",
+            "left = \"roller\"\n",
+            "box = { lower = [0, 0], upper = [1, 1] }",
+            "[0, -0.02]",
+        ),
+    };
+    format!(
+        "geometry = \"{geometry}\"\nanalysis = {{ type = \"quasi-static\", steps = 5 }}\n\
+         [grid]\nlower = {}\nupper = {upper}\ncell = 0.125\norder = \"quadratic\"\n\
+         [boundary]\nbottom = {{ friction = {friction} }}\n{faces}\
+         [material.clay]\nmodel = \"hencky\"\nyoung = \"10 MPa\"\npoisson = 0.3\n\
+         [[body]]\nmaterial = \"clay\"\n{body}\npoints_per_cell = 2\n\
+         [[prescribed]]\nname = \"plate\"\nface = \"top\"\ndisplacement = {down}\ncomponents = \"normal\"\n\
+         [[history]]\nquantity = \"reaction\"\nof = \"plate\"\n[[history]]\nquantity = \"contact\"\nface = \"bottom\"\n\
+         [[history]]\nquantity = \"friction-power\"\nface = \"bottom\"\n",
+        if solid { "[0, 0, 0]" } else { "[0, 0]" },
+    )
+}
+
+/// Friction goes along the radius, askew to the cells, and most of the base or a part of it slips.
+#[test]
+fn a_cylinder_that_slips_in_part_is_the_axisymmetric_one() {
+    for friction in [0.05, 0.1, 0.2] {
+        let [(force, power, sliding), (round_force, round_power, round_sliding)] = [true, false].map(|solid| {
+            let scratch = Scratch::with_case(&pressed(solid, friction));
+            scratch.mpirun(1 + usize::from(solid), &["case.toml", "-q", "-o", "out"]).expect(0);
+            let table = history(&scratch.path("out"));
+            let (down, share) = if solid { ("z", 4.0) } else { ("y", 1.0) };
+            (
+                share * at(&table, &format!("reaction-{down}"), 1.0),
+                share * at(&table, "friction-power", 1.0),
+                at(&table, "contact-sliding", 1.0),
+            )
+        });
+        println!("mu = {friction}: {force} {round_force}, {power} {round_power}, {sliding} {round_sliding}");
+        // measured: forces 1.1e-4 apart, powers 3e-3
+        assert!((force / round_force - 1.0).abs() < 3e-4, "{force} for {round_force}");
+        assert!((power / round_power - 1.0).abs() < 6e-3, "{power} for {round_power}");
+        assert!((sliding - round_sliding).abs() < 0.06, "{sliding} for {round_sliding}");
+    }
+}

@@ -25,11 +25,10 @@ use point::RigidPoint;
 
 /// Stiffness of a point at an outline over that of its material, E A/h, and over its inertia.
 const PENALTY: f64 = 1e3;
-/// Passes in which all statuses are corrected, and those until which the ones that are off by half of the most are.
-const AT_ONCE: usize = 8;
-const BY_HALF: usize = 16;
-/// Passes in which friction in space is turned; later it keeps its direction for the step.
-const TURNS: usize = 3;
+/// Passes in which all statuses are corrected, and those until which the ones that are off by half of the most are: in
+/// a plane, and in space, where friction turns in them too.
+const AT_ONCE: [usize; 2] = [8, 24];
+const BY_HALF: [usize; 2] = [16, 32];
 /// Part of a cell below which a penetration is round-off.
 const ROUNDING: f64 = 1e-9;
 
@@ -257,12 +256,14 @@ impl<const D: usize> RigidContacts<D> {
             return Ok(0);
         }
         let motions = self.found(u, halo);
-        let (doubt, turns) = ((force, ROUNDING * self.edge), passes < TURNS);
-        let grips = self.points.iter().map(|point| point.corrected(&self.moved(point, u, &motions), doubt, turns));
+        let doubt = (force, ROUNDING * self.edge);
+        let moved: Vec<Vector<D>> = self.points.iter().map(|point| self.moved(point, u, &motions)).collect();
+        let grips = self.points.iter().zip(&moved).map(|(point, moved)| point.corrected(moved, doubt));
         let grips: Vec<(Grip, f64)> = grips.collect();
-        let share = if passes < AT_ONCE {
+        let space = usize::from(D > 2);
+        let share = if passes < AT_ONCE[space] {
             0.0
-        } else if passes < BY_HALF {
+        } else if passes < BY_HALF[space] {
             0.5
         } else {
             1.0
@@ -270,10 +271,10 @@ impl<const D: usize> RigidContacts<D> {
         let mut most = [grips.iter().map(|(_, by)| *by).fold(0.0, f64::max)];
         halo.maximum(&mut most);
         let mut corrected = [0.0];
-        for (point, (grip, by)) in self.points.iter_mut().zip(grips) {
+        for ((point, moved), (grip, by)) in self.points.iter_mut().zip(&moved).zip(grips) {
             if point.grip != grip && by >= share * most[0] {
                 corrected[0] += 1.0;
-                point.grip = grip;
+                point.take(grip, moved);
             }
         }
         halo.reduce(&mut corrected);

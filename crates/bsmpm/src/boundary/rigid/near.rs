@@ -107,10 +107,10 @@ impl<const D: usize> RigidContacts<D> {
             let goes_on = D == 3 || bodies[point.body].is_free();
             let least = if goes_on { point.gap } else { f64::INFINITY };
             let is_met = point.gap_after(&moved).min(least) <= CLOSE * contacts.edge;
-            if is_met { point.met(&moved) } else { Grip::Open }
+            (if is_met { point.met(&moved) } else { Grip::Open }, moved)
         };
-        let grips: Vec<Grip> = contacts.points.iter().map(grip).collect();
-        contacts.points.iter_mut().zip(grips).for_each(|(point, grip)| point.grip = grip);
+        let grips: Vec<(Grip, Vector<D>)> = contacts.points.iter().map(grip).collect();
+        contacts.points.iter_mut().zip(grips).for_each(|(point, (grip, moved))| point.take(grip, &moved));
         contacts.settle(halo)?;
         Ok(contacts)
     }
@@ -168,6 +168,7 @@ impl<const D: usize> RigidContacts<D> {
                     friction: body.friction,
                     carried,
                     grip: Grip::Open,
+                    beside: 0.0,
                 });
             }
         }

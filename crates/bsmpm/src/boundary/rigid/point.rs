@@ -25,8 +25,9 @@ fn product(a: Along, b: Along) -> f64 {
     if b[1] == 0.0 { a[0] * b[0] } else { a[0] * b[0] + a[1] * b[1] }
 }
 
-/// Part of the friction by which its direction in space may be off before it is turned.
-const TURNED: f64 = 0.1;
+/// Times the force by which statuses may be contradicted, by which friction in space may be off its direction: the
+/// tolerance of the forces themselves.
+const TURNED: f64 = 100.0;
 
 /// A point near a body. Forces on it act where its box comes nearest to the outline, by the functions of its own cell.
 #[derive(Clone, Debug)]
@@ -59,6 +60,8 @@ pub(super) struct RigidPoint<const D: usize> {
     pub carried: Along,
     /// what it does
     pub grip: Grip,
+    /// of what would hold it, the part that friction leaves of what is beside its direction; in space
+    pub beside: f64,
 }
 
 /// The tangents of an outline: of a plane the normal turned by a right angle.
@@ -143,8 +146,28 @@ impl<const D: usize> RigidPoint<D> {
         match self.grip {
             Grip::Open => (0.0, [0.0; 2]),
             Grip::Stick => (normal, self.held(moved)),
-            Grip::Slip(towards) => (normal, towards.map(|part| part * self.friction * normal)),
+            Grip::Slip(towards) => {
+                let beside = self.beside_of(towards, || self.held(moved));
+                (normal, [0, 1].map(|k| towards[k] * self.friction * normal + beside[k]))
+            }
         }
+    }
+
+    /// What friction leaves of what is beside its direction: Newton's linear form of mu N t/|t| about the last t.
+    fn beside_of(&self, towards: Along, held: impl Fn() -> Along) -> Along {
+        if self.beside == 0.0 {
+            return [0.0; 2];
+        }
+        let held = held();
+        let along = product(towards, held);
+        [0, 1].map(|k| self.beside * (held[k] - towards[k] * along))
+    }
+
+    /// Takes a status that what has `moved` asks for.
+    pub fn take(&mut self, grip: Grip, moved: &Vector<D>) {
+        let (held, limit) = (size(self.held(moved)), -self.friction * self.stiffness * self.gap_after(moved));
+        let turns = D > 2 && matches!(grip, Grip::Slip(_)) && held > 0.0;
+        (self.grip, self.beside) = (grip, if turns { (limit.max(0.0) / held).min(1.0) } else { 0.0 });
     }
 
     /// N  tangential force if it sticks.
@@ -181,10 +204,12 @@ impl<const D: usize> RigidPoint<D> {
                 let held = self.components(moved).map(|along| self.stiffness * along);
                 self.normal * normal - self.vector(held)
             }
-            Grip::Slip(towards) if whole => {
-                self.normal * normal + self.vector(towards.map(|part| part * self.friction * normal))
+            Grip::Slip(towards) => {
+                let held = || self.components(moved).map(|along| -self.stiffness * along);
+                let beside = self.vector(self.beside_of(towards, held));
+                let rubbed = if whole { self.friction * normal } else { 0.0 };
+                self.normal * normal + self.vector(towards.map(|part| part * rubbed)) + beside
             }
-            Grip::Slip(_) => self.normal * normal,
         }
     }
 
@@ -208,8 +233,8 @@ impl<const D: usize> RigidPoint<D> {
 
     /// The status that a displacement asks for, as far as forces are known to `force`, N, and lengths to `length`, m;
     /// and by how much it contradicts the one that is, N: of what has moved too far, what soil would have resisted
-    /// with. Friction in space is turned where `turns` says so.
-    pub fn corrected(&self, moved: &Vector<D>, (force, length): (f64, f64), turns: bool) -> (Grip, f64) {
+    /// with.
+    pub fn corrected(&self, moved: &Vector<D>, (force, length): (f64, f64)) -> (Grip, f64) {
         let soil = 1.0 / super::PENALTY;
         if self.grip == Grip::Open {
             let depth = -self.gap_after(moved);
@@ -222,31 +247,22 @@ impl<const D: usize> RigidPoint<D> {
             Grip::Stick if size(along) > limit + force => {
                 (Grip::Slip(along.map(|part| part / size(along))), size(along) - limit)
             }
-            Grip::Slip(towards) if towards != [0.0; 2] => self.rubbed_on(towards, moved, (limit, force), turns),
+            Grip::Slip(towards) if towards != [0.0; 2] => self.rubbed_on(towards, moved, (limit, force)),
             grip => (grip, 0.0),
         }
     }
 
     /// As [`Self::corrected`] of what slides.
-    fn rubbed_on(&self, towards: Along, moved: &Vector<D>, (limit, force): (f64, f64), turns: bool) -> (Grip, f64) {
+    fn rubbed_on(&self, towards: Along, moved: &Vector<D>, (limit, force): (f64, f64)) -> (Grip, f64) {
         let (soil, held) = (1.0 / super::PENALTY, self.held(moved));
         let against = product(towards, held);
-        let sticks = if D == 2 { against < limit - force } else { size(held) < limit - force || against <= 0.0 };
-        if sticks {
+        if against < limit - force {
             return (Grip::Stick, soil * (limit - against));
         }
-        if D == 2 || !turns {
-            return (self.grip, 0.0);
-        }
-        // Towards where soil would push back: turned at once to the slip, what hardly slides goes to and fro.
-        let slip = self.slip(moved);
-        let pushed = [0, 1].map(|k| limit * towards[k] - soil * self.stiffness * slip[k]);
-        if size(pushed) <= 0.0 {
-            return (self.grip, 0.0);
-        }
-        let next = pushed.map(|part| part / size(pushed));
-        let off = limit * (next[0] - towards[0]).hypot(next[1] - towards[1]);
-        if off > TURNED * limit + force { (Grip::Slip(next), off) } else { (self.grip, 0.0) }
+        // On a line there is nothing to turn.
+        let now = if D == 2 { towards } else { held.map(|part| part / size(held)) };
+        let off = limit * (now[0] - towards[0]).hypot(now[1] - towards[1]);
+        if off > TURNED * force { (Grip::Slip(now), off) } else { (self.grip, 0.0) }
     }
 
     /// Row-major square of the symmetric part of its stiffness, D unknowns for each node of the cell.

@@ -24,7 +24,7 @@ pub struct StripContact<const D: usize> {
 pub(super) struct Grip<const D: usize> {
     contact: StripContact<D>,
     pub status: Status<D>,
-    beside: f64,       // of a tangential trial, the part that friction leaves of what is beside its direction; in space
+    beside: f64, // of a tangential trial, the part that friction leaves of what is beside its direction; in space
     open_before: bool, // at the start of the step
 }
 
