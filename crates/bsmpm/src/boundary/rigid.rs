@@ -26,9 +26,9 @@ use point::RigidPoint;
 /// Stiffness of a point at an outline over that of its material, E A/h, and over its inertia.
 const PENALTY: f64 = 1e3;
 /// Passes in which all statuses are corrected, and those until which the ones that are off by half of the most are: in
-/// a plane, and in space, where friction turns in them too.
-const AT_ONCE: [usize; 2] = [8, 24];
-const BY_HALF: [usize; 2] = [16, 32];
+/// a plane, and in space, where friction turns in them too, with inertia and without.
+const AT_ONCE: [usize; 3] = [8, 12, 24];
+const BY_HALF: [usize; 3] = [16, 32, 32];
 /// Part of a cell below which a penetration is round-off.
 const ROUNDING: f64 = 1e-9;
 
@@ -260,10 +260,10 @@ impl<const D: usize> RigidContacts<D> {
         let moved: Vec<Vector<D>> = self.points.iter().map(|point| self.moved(point, u, &motions)).collect();
         let grips = self.points.iter().zip(&moved).map(|(point, moved)| point.corrected(moved, doubt));
         let grips: Vec<(Grip, f64)> = grips.collect();
-        let space = usize::from(D > 2);
-        let share = if passes < AT_ONCE[space] {
+        let kind = usize::from(D > 2) + usize::from(D > 2 && self.dt == 0.0);
+        let share = if passes < AT_ONCE[kind] {
             0.0
-        } else if passes < BY_HALF[space] {
+        } else if passes < BY_HALF[kind] {
             0.5
         } else {
             1.0

@@ -25,9 +25,9 @@ fn product(a: Along, b: Along) -> f64 {
     if b[1] == 0.0 { a[0] * b[0] } else { a[0] * b[0] + a[1] * b[1] }
 }
 
-/// Times the force by which statuses may be contradicted, by which friction in space may be off its direction: the
-/// tolerance of the forces themselves.
-const TURNED: f64 = 100.0;
+/// Part of the friction by which its direction in space may be off the one that its linear form is about: what that
+/// leaves is of second order, half a hundredth.
+const TURNED: f64 = 0.1;
 
 /// A point near a body. Forces on it act where its box comes nearest to the outline, by the functions of its own cell.
 #[derive(Clone, Debug)]
@@ -256,13 +256,14 @@ impl<const D: usize> RigidPoint<D> {
     fn rubbed_on(&self, towards: Along, moved: &Vector<D>, (limit, force): (f64, f64)) -> (Grip, f64) {
         let (soil, held) = (1.0 / super::PENALTY, self.held(moved));
         let against = product(towards, held);
-        if against < limit - force {
+        let sticks = if D == 2 { against < limit - force } else { size(held) < limit - force || against <= 0.0 };
+        if sticks {
             return (Grip::Stick, soil * (limit - against));
         }
         // On a line there is nothing to turn.
         let now = if D == 2 { towards } else { held.map(|part| part / size(held)) };
         let off = limit * (now[0] - towards[0]).hypot(now[1] - towards[1]);
-        if off > TURNED * force { (Grip::Slip(now), off) } else { (self.grip, 0.0) }
+        if off > TURNED * limit + force { (Grip::Slip(now), off) } else { (self.grip, 0.0) }
     }
 
     /// Row-major square of the symmetric part of its stiffness, D unknowns for each node of the cell.
