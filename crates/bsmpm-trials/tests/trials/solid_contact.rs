@@ -217,7 +217,7 @@ fn a_cylinder_that_slips_in_part_is_the_axisymmetric_one() {
             )
         });
         println!("mu = {friction}: {force} {round_force}, {power} {round_power}, {sliding} {round_sliding}");
-        // measured: forces 1.1e-4 apart, powers 3e-3
+        // measured: forces up to 1.5e-4 apart, powers 3.4e-3
         assert!((force / round_force - 1.0).abs() < 3e-4, "{force} for {round_force}");
         assert!((power / round_power - 1.0).abs() < 6e-3, "{power} for {round_power}");
         assert!((sliding - round_sliding).abs() < 0.06, "{sliding} for {round_sliding}");
