@@ -177,9 +177,10 @@ impl Draft {
         }
         let mut rubbed = rubbed;
         if !nodes.rigid.is_empty() {
-            let [given, grown] = nodes.rigid.work(u, halo);
+            let [given, grown, friction] = nodes.rigid.work(u, halo);
             flows.external += &given;
             flows.integration -= &grown;
+            rubbed += &friction;
         }
         if let Some(inertia) = &nodes.inertia {
             rubbed.extend(nodes.dashpots.work::<D>(inertia, u, halo).into_iter().map(|work| 0.5 * work));

@@ -150,8 +150,8 @@ fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
     (0..3).fold(0.0_f64, |sum, k| sum.hypot(a[k] - b[k]))
 }
 
-/// The place inside, on a line of a cell between two heights, that is nearest to `to`: at its height or in the middle
-/// of what a line has.
+/// The place inside, on a line of a cell between two heights, that is nearest to `to`, the first of several: at its
+/// height or in the middle of what a line has.
 fn nearest_inside(parts: &[Vec<Line>], z: [f64; 2], to: [f64; 3]) -> [f64; 3] {
     let on = |line: &Line, [lower, upper]: [f64; 2]| {
         let height = if lower < to[2] && to[2] < upper { to[2] } else { 0.5 * (lower + upper) };
@@ -176,18 +176,26 @@ fn share(places: &mut [CellPlace<3>], left: &[CellPlace<3>]) {
 /// the next.
 const ROUNDS: usize = 4;
 
-/// Tilts the volumes of places so that their centroid comes to lie at `to`; their sum stays. Nothing is tilted along an
-/// axis where they lie within `least`, m.
+/// Tilts the volumes of places so that their centroid comes to lie at `to`, as far as none loses more than half, nor
+/// gains more than that in a round along an axis; their sum stays. Nothing is tilted along an axis where they lie within `least`, m.
 fn balance(places: &mut [CellPlace<3>], to: [f64; 3], least: f64) {
     let volume: f64 = places.iter().map(|place| place.area).sum();
+    let halves: Vec<f64> = places.iter().map(|place| 0.5 * place.area).collect();
     for axis in (0..ROUNDS).flat_map(|_| 0..3) {
         let mean = places.iter().map(|place| place.area * place.x[axis]).sum::<f64>() / volume;
         let square = |place: &CellPlace<3>| place.area * (place.x[axis] - mean).powi(2);
         let variance = places.iter().map(square).sum::<f64>() / volume;
         let reach = places.iter().map(|place| (place.x[axis] - mean).abs()).fold(0.0, f64::max);
-        if reach > least {
-            let slope = ((to[axis] - mean) / variance).clamp(-0.5 / reach, 0.5 / reach);
-            places.iter_mut().for_each(|place| place.area *= 1.0 + slope * (place.x[axis] - mean));
+        if reach <= least {
+            continue;
         }
+        let mut slope = ((to[axis] - mean) / variance).clamp(-0.5 / reach, 0.5 / reach);
+        for (place, half) in places.iter().zip(&halves) {
+            let (arm, most) = (place.x[axis] - mean, (1.0 - half / place.area).max(0.0));
+            if slope * arm < -most {
+                slope = -most / arm;
+            }
+        }
+        places.iter_mut().for_each(|place| place.area *= 1.0 + slope * (place.x[axis] - mean));
     }
 }

@@ -34,7 +34,7 @@ choice! {
         /// Mass that has left the grid through faces with outflow since the start, per metre of thickness.
         Outflow = "outflow",
         /// Force of a face's supports, or of a strip or what else moves, on the body, per metre of thickness. What two
-        /// faces hold at their common edge counts for the one that it is normal to.
+        /// faces that hold do at their common edge counts for the one that it is normal to.
         Reaction = "reaction",
         /// Moment of the force of a strip or what else moves about its middle, counter-clockwise, per metre of
         /// thickness.

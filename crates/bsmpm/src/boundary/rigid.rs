@@ -282,15 +282,18 @@ impl<const D: usize> RigidContacts<D> {
         Ok(corrected[0] as usize)
     }
 
-    /// J  work of the bodies on the material of this rank, and how much more the forces at the step's end would do.
-    pub fn work(&self, u: &[f64], halo: &dyn Halo) -> [Exact; 2] {
+    /// J  work of the bodies on the material of this rank; how much more the forces at the step's end would do; and half
+    /// of what friction takes of it with inertia, where those are what counts, not positive.
+    pub fn work(&self, u: &[f64], halo: &dyn Halo) -> [Exact; 3] {
         let motions = self.found(u, halo);
-        let mut work = [Exact::ZERO; 2];
+        let mut work = [Exact::ZERO; 3];
         for point in &self.points {
-            let (mean, grown) = point.mean(&self.moved(point, u, &motions));
+            let moved = self.moved(point, u, &motions);
+            let (mean, grown) = point.mean(&moved, self.dt > 0.0);
             let way = point.displacement(&self.offsets, u);
             work[0].add(mean.dot(&way));
             work[1].add(grown.dot(&way));
+            work[2].add(if self.dt > 0.0 { 0.5 * point.rubbed(&moved) } else { 0.0 });
         }
         work
     }
@@ -328,7 +331,7 @@ impl<const D: usize> RigidContacts<D> {
             let (pushed, _) = point.pushed(&moved);
             let advance = point.carried_by(&motions[point.body]).norm().max(point.way);
             let touched = f64::from(u8::from(pushed > 0.0));
-            let work = point.mean(&moved).0.dot(&point.displacement(&self.offsets, u));
+            let work = point.mean(&moved, self.dt > 0.0).0.dot(&point.displacement(&self.offsets, u));
             let slipped = pushed.max(0.0) * point.slipped(&moved);
             let each = [touched, pushed.max(0.0), slipped, -point.rubbed(&moved), work];
             sums[5 * point.body..].iter_mut().zip(each).for_each(|(sum, value)| sum.add(value));

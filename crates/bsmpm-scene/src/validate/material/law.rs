@@ -305,7 +305,8 @@ fn warn_of_match(record: &Record, law: &Parameters, geometry: Option<Geometry>, 
             report.warn(format!(
                 "{}: not given: the cone is matched in plane strain, which this is not, and has {:.1} % of mohr-coulomb's \
                  strength in triaxial compression, {:.1} % in extension, at the same mean stress; give \"outer\" (all of \
-                 it in compression), \"inner\" (all in extension, and nowhere more) or \"plane-strain\"; use mohr-coulomb where that is meant",
+                 it in compression), \"inner\" (all in extension) or \"plane-strain\" (nowhere more); use mohr-coulomb \
+                 where that is meant",
                 record.path_of("match"),
                 100.0 * cone.strength_over(Match::Outer),
                 100.0 * cone.strength_over(Match::Inner)

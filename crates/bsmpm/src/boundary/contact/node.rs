@@ -8,7 +8,7 @@ use crate::tensor::Vector;
 /// what F tells of the gap is off by the curvature of the motion.
 const KEPT: f64 = 0.05;
 
-/// Times the force by which statuses may be contradicted, by which friction may be off the direction of the slip: the
+/// Times the force by which statuses may be contradicted, by which friction may be off Coulomb's law for the slip: the
 /// tolerance of the forces themselves.
 const TURNED: f64 = 100.0;
 
@@ -118,8 +118,8 @@ impl<const D: usize> ContactNode<D> {
         Vector::from_fn(|c, _| if on(c) { u[Nodal::<D>::at(self.node, c)] } else { 0.0 })
     }
 
-    /// Whether friction along `direction` misses that of the slip by more than the forces are known, N, and the slip
-    /// that of friction by more than round-off, m.
+    /// Whether friction about `direction` is off Coulomb's law for the slip by more than the forces are known, N, and the
+    /// slip beside it more than round-off, m.
     fn is_off(
         &self,
         direction: &Vector<D>,
@@ -128,7 +128,8 @@ impl<const D: usize> ContactNode<D> {
         (force, length): (f64, f64),
     ) -> bool {
         let beside = (slip - direction * slip.dot(direction)).norm();
-        slip.norm() > length && beside > BESIDE * length && limit * (now - direction).norm() > TURNED * force
+        let off = self.rubbed(direction, slip, limit) + now * limit;
+        slip.norm() > length && beside > BESIDE * length && off.norm() > TURNED * force
     }
 
     /// N  friction on the body where it slips along `direction` but for `slip`, m: Newton's linear form of
@@ -149,7 +150,7 @@ impl<const D: usize> ContactNode<D> {
         (self.beside > 0.0).then(|| (0..D * D).map(of).collect())
     }
 
-    /// The same status, founded on what is known now.
+    /// A status with what then resists a slip beside it, founded on the slip `way`, m.
     fn founded(&self, status: Status<D>, way: f64, reaction: &[f64]) -> Asked<D> {
         let slips = D > 2 && self.law.friction > 0.0 && matches!(status, Status::Slip(_));
         Asked { status, way, beside: if slips { self.limit(reaction) / way } else { 0.0 } }

@@ -25,9 +25,8 @@ fn product(a: Along, b: Along) -> f64 {
     if b[1] == 0.0 { a[0] * b[0] } else { a[0] * b[0] + a[1] * b[1] }
 }
 
-/// Part of the friction by which its direction in space may be off the one that its linear form is about: what that
-/// leaves is of second order, half a hundredth.
-const TURNED: f64 = 0.1;
+/// Part of the friction by which it may be off Coulomb's law for what would hold the point, in space.
+const TURNED: f64 = 0.02;
 
 /// A point near a body. Forces on it act where its box comes nearest to the outline, by the functions of its own cell.
 #[derive(Clone, Debug)]
@@ -182,16 +181,17 @@ impl<const D: usize> RigidPoint<D> {
         self.normal * normal + self.vector(along)
     }
 
-    /// N  force on the material as the step begins.
+    /// N  force on the material as a step without inertia begins.
     fn before(&self) -> Vector<D> {
         let depth = -(self.gap + self.approach);
-        self.normal * (self.stiffness * depth.max(0.0)) + self.vector(self.carried)
+        if depth > 0.0 { self.normal * (self.stiffness * depth) + self.vector(self.carried) } else { Vector::zeros() }
     }
 
     /// N  mean of the forces as the step begins and ends, which counts for work; and what the one at its end is more.
-    pub fn mean(&self, moved: &Vector<D>) -> (Vector<D>, Vector<D>) {
+    /// With inertia it is the one at the end: the stiffness, and with it the force at the start, is one of the step.
+    pub fn mean(&self, moved: &Vector<D>, inertia: bool) -> (Vector<D>, Vector<D>) {
         let after = self.force(moved);
-        let mean = (self.before() + after) * 0.5;
+        let mean = if inertia { after } else { (self.before() + after) * 0.5 };
         (mean, after - mean)
     }
 
@@ -261,8 +261,12 @@ impl<const D: usize> RigidPoint<D> {
             return (Grip::Stick, soil * (limit - against));
         }
         // On a line there is nothing to turn.
-        let now = if D == 2 { towards } else { held.map(|part| part / size(held)) };
-        let off = limit * (now[0] - towards[0]).hypot(now[1] - towards[1]);
+        if D == 2 {
+            return (self.grip, 0.0);
+        }
+        let now = held.map(|part| part / size(held));
+        let (_, rubbed) = self.pushed(moved);
+        let off = (rubbed[0] - limit * now[0]).hypot(rubbed[1] - limit * now[1]);
         if off > TURNED * limit + force { (Grip::Slip(now), off) } else { (self.grip, 0.0) }
     }
 

@@ -3,7 +3,7 @@
 use crate::boundary::coulomb::{Contact, Status};
 use crate::tensor::Vector;
 
-/// Times the traction by which statuses may be contradicted, by which friction may be off the direction of its trial:
+/// Times the traction by which statuses may be contradicted, by which friction may be off Coulomb's law for its trial:
 /// the tolerance of the forces themselves.
 const TURNED: f64 = 100.0;
 
@@ -170,7 +170,8 @@ impl<const D: usize> Grip<D> {
             Status::Slip(along) if along.norm_squared() > 0.0 => {
                 let shear = trial - self.normal(trial);
                 let limit = self.contact.law.friction * pressure;
-                let is_off = |now: Vector<D>| limit * (now - along).norm() > TURNED * doubt;
+                let rubbed = self.traction(trial) - self.normal(trial);
+                let is_off = |now: Vector<D>| (rubbed - now * limit).norm() > TURNED * doubt;
                 match shear.dot(&along) {
                     _ if pressure < -doubt => Status::Slip(Vector::zeros()),
                     // Whoever slid against friction has to stick first: to turn it at once goes back and forth for
