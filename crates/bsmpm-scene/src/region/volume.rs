@@ -8,8 +8,8 @@ use super::{Edge, MOST_WORK, Outline, RegionPart, reached};
 use crate::grid::{GridAxis, GridSpec};
 use std::ops::Range;
 
-/// Lines by which the volume of a shape less others is measured, times the edges that each is held against: some 1e-5 of
-/// a sphere's, in a tenth of a second.
+/// Lines by which the volume of a shape less others is measured, times the edges that each is held against: some 1e-5
+/// of a sphere's, in a tenth of a second.
 const MEASURED: usize = 4_000_000;
 
 /// A shape in space, less others.

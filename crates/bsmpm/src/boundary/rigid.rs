@@ -282,8 +282,8 @@ impl<const D: usize> RigidContacts<D> {
         Ok(corrected[0] as usize)
     }
 
-    /// J  work of the bodies on the material of this rank; how much more the forces at the step's end would do; and half
-    /// of what friction takes of it with inertia, where those are what counts, not positive.
+    /// J  work of the bodies on the material of this rank; how much more the forces at the step's end would do; and
+    /// half of what friction takes of it with inertia, where those are what counts, not positive.
     pub fn work(&self, u: &[f64], halo: &dyn Halo) -> [Exact; 3] {
         let motions = self.found(u, halo);
         let mut work = [Exact::ZERO; 3];

@@ -118,8 +118,8 @@ impl<const D: usize> ContactNode<D> {
         Vector::from_fn(|c, _| if on(c) { u[Nodal::<D>::at(self.node, c)] } else { 0.0 })
     }
 
-    /// Whether friction about `direction` is off Coulomb's law for the slip by more than the forces are known, N, and the
-    /// slip beside it more than round-off, m.
+    /// Whether friction about `direction` is off Coulomb's law for the slip by more than the forces are known, N, and
+    /// the slip beside it more than round-off, m.
     fn is_off(
         &self,
         direction: &Vector<D>,
