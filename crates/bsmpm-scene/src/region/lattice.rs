@@ -177,8 +177,8 @@ fn share(places: &mut [CellPlace<3>], left: &[CellPlace<3>]) {
 const ROUNDS: usize = 4;
 
 /// Tilts the volumes of places so that their centroid comes to lie at `to`, as far as none loses more than half, nor
-/// gains more than that in a round along an axis; their sum stays. Nothing is tilted along an axis where they lie within
-/// `least`, m.
+/// gains more than that in a round along an axis; their sum stays. Nothing is tilted along an axis where they lie
+/// within `least`, m.
 fn balance(places: &mut [CellPlace<3>], to: [f64; 3], least: f64) {
     let volume: f64 = places.iter().map(|place| place.area).sum();
     let halves: Vec<f64> = places.iter().map(|place| 0.5 * place.area).collect();
