@@ -227,7 +227,8 @@ pub(super) fn part([lower, upper]: [f64; 2], k: usize, n: usize) -> [f64; 2] {
     [k, k + 1].map(|k| if k == n { upper } else { lower + (upper - lower) * (k as f64 / n as f64) })
 }
 
-/// Gives the area of a place to the nearest of others, the first of several.
+/// Gives the area of a place to the nearest of others, the first of several: planes keep the points that they had, for
+/// the equal shares of a [solid](super::lattice) would move those of every slope.
 fn give(places: &mut [CellPlace], left: &CellPlace) {
     let distance = |place: &CellPlace| (0..2).fold(0.0_f64, |sum, k| sum.hypot(place.x[k] - left.x[k]));
     if let Some(nearest) = places.iter_mut().min_by(|a, b| distance(a).total_cmp(&distance(b))) {

@@ -33,8 +33,8 @@ choice! {
         SectionForces = "section-forces",
         /// Mass that has left the grid through faces with outflow since the start, per metre of thickness.
         Outflow = "outflow",
-        /// Force of a face's supports, or of a strip or what else moves, on the body, per metre of thickness. What two
-        /// faces that hold do at their common edge counts for the one that it is normal to.
+        /// Force of a face's supports, or of a strip or what else moves, on the body, per metre of thickness. At
+        /// an edge that two faces hold, a force counts for the face that it is normal to.
         Reaction = "reaction",
         /// Moment of the force of a strip or what else moves about its middle, counter-clockwise, per metre of
         /// thickness.
@@ -107,7 +107,8 @@ choice! {
         RigidSlip = "rigid-slip",
         /// The least distance of soil from a rigid body; 0 where it is touched, and before the first step.
         RigidGap = "rigid-gap",
-        /// Work of a rigid body on the soil since the start, friction among it, per metre of thickness.
+        /// Work of a rigid body on the soil since the start, friction among it, per metre of thickness: by the mean force
+        /// of every step, in dynamics by that at its end.
         RigidWork = "rigid-work",
         /// Where the energy of the points is, and where it went since the start, per metre of thickness: external =
         /// change of kinetic + change of elastic + plastic + numerical + closure.

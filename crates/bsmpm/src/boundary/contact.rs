@@ -69,8 +69,8 @@ impl<const D: usize> Contacts<D> {
                     gap,
                     status: Status::Open,
                     rested: [false; D],
-                    beside: 0.0,
-                    way: 0.0,
+                    transverse_stiffness: 0.0,
+                    slip_length: 0.0,
                 };
                 let behind = grid.node_at(node);
                 let behind = std::array::from_fn(|axis| match (axis == face.axis, face.upper) {
@@ -182,10 +182,11 @@ impl<const D: usize> Contacts<D> {
         let mut corrected = [0.0];
         for at in &mut self.nodes {
             let asked = at.corrected(u, reaction, (force, ROUNDING * edge));
-            let founded = at.beside == 0.0 && asked.beside > 0.0;
-            let is_corrected = asked.status != at.status || founded;
+            let is_new = at.transverse_stiffness == 0.0 && asked.transverse_stiffness > 0.0;
+            let is_corrected = asked.status != at.status || is_new;
             corrected[0] += f64::from(u8::from(is_corrected && owned.contains(at.node)));
-            (at.status, at.beside, at.way) = (asked.status, asked.beside, asked.way);
+            (at.status, at.transverse_stiffness, at.slip_length) =
+                (asked.status, asked.transverse_stiffness, asked.slip_length);
         }
         halo.reduce(&mut corrected);
         corrected[0] as usize

@@ -22,6 +22,11 @@ pub enum Status<const D: usize> {
     Slip(Vector<D>),
 }
 
+/// The part of a vector beside a unit vector.
+pub(super) fn transverse<const D: usize>(vector: &Vector<D>, unit: &Vector<D>) -> Vector<D> {
+    vector - unit * vector.dot(unit)
+}
+
 /// What a face or strip with contact did in a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ContactReport {

@@ -1,6 +1,6 @@
 //! A node on a face with contact: its statuses, and what displacement and reaction ask of them.
 
-use crate::boundary::coulomb::{Contact, Status};
+use crate::boundary::coulomb::{Contact, Status, transverse};
 use crate::nodal::Nodal;
 use crate::tensor::Vector;
 
@@ -15,8 +15,8 @@ const TURNED: f64 = 100.0;
 /// Parts of the displacement that is round-off, beside friction, from which on a slip has left it.
 const BESIDE: f64 = 1e-3;
 
-/// Displacements that are round-off, of a slip that is looked at: of one that is not known, or less, it is the slip on
-/// which what resists it beside friction is founded.
+/// Displacements that are round-off, of the smallest slip about which friction is linearised: one that is not known, or
+/// less, is taken for it.
 const LEAST: f64 = 1e3;
 
 /// A node on a face with contact whose normal component nothing else holds.
@@ -41,16 +41,16 @@ pub(super) struct ContactNode<const D: usize> {
     /// components that did not move in the last step
     pub rested: [bool; D],
     /// N/m  what resists a slip beside the direction of friction: in space, where it is known
-    pub beside: f64,
-    /// m  slip on which that is founded; that of the last step as it begins
-    pub way: f64,
+    pub transverse_stiffness: f64,
+    /// m  slip about which that is linear; that of the last step as it begins
+    pub slip_length: f64,
 }
 
 /// What a displacement and reaction ask of a node: its status, and what resists a slip beside that.
 pub(super) struct Asked<const D: usize> {
     pub status: Status<D>,
-    pub beside: f64,
-    pub way: f64,
+    pub transverse_stiffness: f64,
+    pub slip_length: f64,
 }
 
 impl<const D: usize> ContactNode<D> {
@@ -64,7 +64,7 @@ impl<const D: usize> ContactNode<D> {
         }
         let slip = Vector::from_fn(|component, _| if self.along[component] { of(component) } else { 0.0 });
         self.status = if self.law.lifts && normal > -self.gap { Status::Open } else { self.met(&slip) };
-        (self.beside, self.way) = (0.0, slip.norm());
+        (self.transverse_stiffness, self.slip_length) = (0.0, slip.norm());
         let rubs = self.law.friction > 0.0;
         self.rested = std::array::from_fn(|component| {
             let held = component == self.axis || rubs && self.along[component];
@@ -127,7 +127,7 @@ impl<const D: usize> ContactNode<D> {
         limit: f64,
         (force, length): (f64, f64),
     ) -> bool {
-        let beside = (slip - direction * slip.dot(direction)).norm();
+        let beside = transverse(slip, direction).norm();
         let off = self.rubbed(direction, slip, limit) + now * limit;
         slip.norm() > length && beside > BESIDE * length && off.norm() > TURNED * force
     }
@@ -136,7 +136,10 @@ impl<const D: usize> ContactNode<D> {
     /// mu N u_t / |u_t| about the last slip, of which the part beside `direction` turns it.
     pub fn rubbed(&self, direction: &Vector<D>, slip: &Vector<D>, limit: f64) -> Vector<D> {
         let along = -direction * limit;
-        if self.beside == 0.0 { along } else { along - (slip - direction * slip.dot(direction)) * self.beside }
+        if self.transverse_stiffness == 0.0 {
+            return along;
+        }
+        along - transverse(slip, direction) * self.transverse_stiffness
     }
 
     /// Row-major square of what resists a slip beside the direction of friction, N/m; none where nothing does.
@@ -145,21 +148,23 @@ impl<const D: usize> ContactNode<D> {
         let on = |component: usize| f64::from(u8::from(self.along[component]));
         let of = |k: usize| {
             let (i, j) = (k / D, k % D);
-            self.beside * (on(i) * f64::from(u8::from(i == j)) - direction[i] * direction[j])
+            self.transverse_stiffness * (on(i) * f64::from(u8::from(i == j)) - direction[i] * direction[j])
         };
-        (self.beside > 0.0).then(|| (0..D * D).map(of).collect())
+        (self.transverse_stiffness > 0.0).then(|| (0..D * D).map(of).collect())
     }
 
-    /// A status with what then resists a slip beside it, founded on the slip `way`, m.
-    fn founded(&self, status: Status<D>, way: f64, reaction: &[f64]) -> Asked<D> {
+    /// A status with what then resists a slip beside it, linear about a slip of `slip_length`, m.
+    fn linearised(&self, status: Status<D>, slip_length: f64, reaction: &[f64]) -> Asked<D> {
         let slips = D > 2 && self.law.friction > 0.0 && matches!(status, Status::Slip(_));
-        Asked { status, way, beside: if slips { self.limit(reaction) / way } else { 0.0 } }
+        let transverse_stiffness = if slips { self.limit(reaction) / slip_length } else { 0.0 };
+        Asked { status, transverse_stiffness, slip_length }
     }
 
     /// What displacement and reaction ask for.
     pub fn corrected(&self, u: &[f64], reaction: &[f64], (force, length): (f64, f64)) -> Asked<D> {
-        let (least, kept) = (LEAST * length, Asked { status: self.status, beside: self.beside, way: self.way });
-        let of = |status: Status<D>| self.founded(status, least, reaction);
+        let Self { status, transverse_stiffness, slip_length, .. } = *self;
+        let (least, kept) = (LEAST * length, Asked { status, transverse_stiffness, slip_length });
+        let of = |status: Status<D>| self.linearised(status, least, reaction);
         if self.status == Status::Open {
             let beyond = -self.gap - self.inward * u[Nodal::<D>::at(self.node, self.axis)];
             let slip = Vector::from_fn(|c, _| if self.along[c] { u[Nodal::<D>::at(self.node, c)] } else { 0.0 });
@@ -182,14 +187,14 @@ impl<const D: usize> ContactNode<D> {
                 }
                 // In space friction turns with the slip: once it resists what is beside it, as else a node that hardly
                 // slips would go where friction does not look. On a line there is nothing to turn.
-                if D > 2 && self.beside == 0.0 && self.limit(reaction) > force {
-                    return self.founded(self.status, self.way.max(least), reaction);
+                if D > 2 && transverse_stiffness == 0.0 && self.limit(reaction) > force {
+                    return self.linearised(self.status, slip_length.max(least), reaction);
                 }
                 match slip.try_normalize(0.0) {
                     Some(now) if self.is_off(&direction, (&slip, now), self.limit(reaction), (force, length)) => {
-                        let way = along.max(least);
-                        let turned = (direction * (way - along) + slip).normalize();
-                        self.founded(Status::Slip(turned), way, reaction)
+                        let length = along.max(least);
+                        let turned = (direction * (length - along) + slip).normalize();
+                        self.linearised(Status::Slip(turned), length, reaction)
                     }
                     _ => kept,
                 }

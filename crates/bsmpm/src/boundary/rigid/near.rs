@@ -168,7 +168,7 @@ impl<const D: usize> RigidContacts<D> {
                     friction: body.friction,
                     carried,
                     grip: Grip::Open,
-                    beside: 0.0,
+                    transverse_share: 0.0,
                 });
             }
         }

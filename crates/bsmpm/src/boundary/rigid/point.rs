@@ -60,7 +60,7 @@ pub(super) struct RigidPoint<const D: usize> {
     /// what it does
     pub grip: Grip,
     /// of what would hold it, the part that friction leaves of what is beside its direction; in space
-    pub beside: f64,
+    pub transverse_share: f64,
 }
 
 /// The tangents of an outline: of a plane the normal turned by a right angle.
@@ -146,27 +146,28 @@ impl<const D: usize> RigidPoint<D> {
             Grip::Open => (0.0, [0.0; 2]),
             Grip::Stick => (normal, self.held(moved)),
             Grip::Slip(towards) => {
-                let beside = self.beside_of(towards, || self.held(moved));
+                let beside = self.transverse(towards, || self.held(moved));
                 (normal, [0, 1].map(|k| towards[k] * self.friction * normal + beside[k]))
             }
         }
     }
 
     /// What friction leaves of what is beside its direction: Newton's linear form of mu N t/|t| about the last t.
-    fn beside_of(&self, towards: Along, held: impl Fn() -> Along) -> Along {
-        if self.beside == 0.0 {
+    fn transverse(&self, towards: Along, held: impl Fn() -> Along) -> Along {
+        if self.transverse_share == 0.0 {
             return [0.0; 2];
         }
         let held = held();
         let along = product(towards, held);
-        [0, 1].map(|k| self.beside * (held[k] - towards[k] * along))
+        [0, 1].map(|k| self.transverse_share * (held[k] - towards[k] * along))
     }
 
     /// Takes a status that what has `moved` asks for.
     pub fn take(&mut self, grip: Grip, moved: &Vector<D>) {
         let (held, limit) = (size(self.held(moved)), -self.friction * self.stiffness * self.gap_after(moved));
         let turns = D > 2 && matches!(grip, Grip::Slip(_)) && held > 0.0;
-        (self.grip, self.beside) = (grip, if turns { (limit.max(0.0) / held).min(1.0) } else { 0.0 });
+        self.grip = grip;
+        self.transverse_share = if turns { (limit.max(0.0) / held).min(1.0) } else { 0.0 };
     }
 
     /// N  tangential force if it sticks.
@@ -206,7 +207,7 @@ impl<const D: usize> RigidPoint<D> {
             }
             Grip::Slip(towards) => {
                 let held = || self.components(moved).map(|along| -self.stiffness * along);
-                let beside = self.vector(self.beside_of(towards, held));
+                let beside = self.vector(self.transverse(towards, held));
                 let rubbed = if whole { self.friction * normal } else { 0.0 };
                 self.normal * normal + self.vector(towards.map(|part| part * rubbed)) + beside
             }

@@ -1,6 +1,6 @@
 //! The law at a point of a strip that the material rubs along and comes off.
 
-use crate::boundary::coulomb::{Contact, Status};
+use crate::boundary::coulomb::{Contact, Status, transverse};
 use crate::tensor::Vector;
 
 /// Times the traction by which statuses may be contradicted, by which friction may be off Coulomb's law for its trial:
@@ -24,8 +24,8 @@ pub struct StripContact<const D: usize> {
 pub(super) struct Grip<const D: usize> {
     contact: StripContact<D>,
     pub status: Status<D>,
-    beside: f64, // of a tangential trial, the part that friction leaves of what is beside its direction; in space
-    open_before: bool, // at the start of the step
+    transverse_share: f64, // of a tangential trial, the part that friction leaves of what is beside its direction; in space
+    open_before: bool,     // at the start of the step
 }
 
 impl<const D: usize> StripContact<D> {
@@ -45,7 +45,7 @@ impl<const D: usize> Grip<D> {
     pub fn of(contact: StripContact<D>, carried: &Vector<D>) -> Self {
         let open_before = contact.is_open(carried);
         let closed = if contact.law.friction == 0.0 { Status::Slip(Vector::zeros()) } else { Status::Stick };
-        Self { contact, status: if open_before { Status::Open } else { closed }, beside: 0.0, open_before }
+        Self { contact, status: if open_before { Status::Open } else { closed }, transverse_share: 0.0, open_before }
     }
 
     /// Pa  on the body at the start of the step.
@@ -68,9 +68,9 @@ impl<const D: usize> Grip<D> {
         match self.status {
             Status::Open => Vector::zeros(),
             Status::Stick => *vector,
-            Status::Slip(along) if self.beside > 0.0 => {
-                let (normal, slides) = (self.normal(vector), along * along.dot(vector));
-                normal + (vector - normal - slides) * self.beside
+            Status::Slip(along) if self.transverse_share > 0.0 => {
+                let normal = self.normal(vector);
+                normal + transverse(&(vector - normal), &along) * self.transverse_share
             }
             Status::Slip(_) => self.normal(vector),
         }
@@ -156,7 +156,7 @@ impl<const D: usize> Grip<D> {
         self.status = status;
         let (normal, shear) = (self.contact.inward.dot(trial).max(0.0), (trial - self.normal(trial)).norm());
         let turns = D > 2 && matches!(status, Status::Slip(_)) && shear > 0.0;
-        self.beside = if turns { (self.contact.law.friction * normal / shear).min(1.0) } else { 0.0 };
+        self.transverse_share = if turns { (self.contact.law.friction * normal / shear).min(1.0) } else { 0.0 };
     }
 
     /// The status that a `trial` asks for, where it contradicts the present one by more than `doubt`, Pa.
