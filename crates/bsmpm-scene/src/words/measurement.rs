@@ -107,8 +107,8 @@ choice! {
         RigidSlip = "rigid-slip",
         /// The least distance of soil from a rigid body; 0 where it is touched, and before the first step.
         RigidGap = "rigid-gap",
-        /// Work of a rigid body on the soil since the start, friction among it, per metre of thickness: by the mean force
-        /// of every step, in dynamics by that at its end.
+        /// Work of a rigid body on the soil since the start, friction among it, per metre of thickness: by the mean
+        /// force of every step, in dynamics by that at its end.
         RigidWork = "rigid-work",
         /// Where the energy of the points is, and where it went since the start, per metre of thickness: external =
         /// change of kinetic + change of elastic + plastic + numerical + closure.
