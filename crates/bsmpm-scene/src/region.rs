@@ -4,6 +4,7 @@ mod cells;
 mod edge;
 mod extent;
 mod lattice;
+mod measure;
 mod raster;
 mod simple;
 mod skin;

@@ -80,7 +80,7 @@ impl Section {
     }
 
     /// What it covers of the line at `x`, upwards.
-    fn at(&self, x: f64) -> Vec<[f64; 2]> {
+    pub(super) fn at(&self, x: f64) -> Vec<[f64; 2]> {
         intervals(&self.edges, OUTLINE, x)
     }
 }

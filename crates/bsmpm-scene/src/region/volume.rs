@@ -3,14 +3,11 @@
 use super::cells::{CellPlace, of_cell, place};
 use super::extent::Extent;
 use super::lattice::{self, LINES};
+use super::measure;
 use super::solid::{SolidShape, less, plane};
 use super::{Edge, MOST_WORK, Outline, RegionPart, reached};
 use crate::grid::{GridAxis, GridSpec};
 use std::ops::Range;
-
-/// Lines by which the volume of a shape less others is measured, times the edges that each is held against: some 1e-5
-/// of a sphere's, in a tenth of a second.
-const MEASURED: usize = 4_000_000;
 
 /// A shape in space, less others.
 #[derive(Clone, Debug, PartialEq)]
@@ -214,7 +211,9 @@ impl Volume {
         self.tally = tally;
         let [partly, wholly] = sums;
         if !self.cut.is_empty() {
-            self.volume = self.measured();
+            let shapes: Vec<&SolidShape> = std::iter::once(&self.whole).chain(&self.cut).collect();
+            let covered = |at: [f64; 2]| self.vertical(at).iter().map(|[from, to]| to - from).sum();
+            self.volume = measure::volume(&shapes, self.bounds, covered);
         }
         if partly > 0.0 {
             let scale = (self.volume - wholly) / partly;
@@ -223,23 +222,6 @@ impl Volume {
         } else if wholly > 0.0 {
             self.volume = wholly;
         }
-    }
-
-    /// Its volume by many vertical lines, m³.
-    fn measured(&self) -> f64 {
-        let edges = edges(&self.whole) + self.cut.iter().map(edges).sum::<usize>();
-        let ends = self.ends();
-        let [lower, upper] = self.bounds;
-        let lines = (MEASURED / edges).isqrt();
-        let along = |axis: usize| {
-            let pieces = ends[axis].iter().filter(|end| lower[axis] < **end && **end < upper[axis]).count() + 1;
-            lattice::shares([lower[axis], upper[axis]], &ends[axis], (lines / pieces).max(LINES))
-        };
-        let (along_x, along_y) = (along(0), along(1));
-        let covered = |at: [f64; 2]| self.vertical(at).iter().map(|[from, to]| to - from).sum::<f64>();
-        let row =
-            |&(x, width): &(f64, f64)| width * along_y.iter().map(|&(y, depth)| depth * covered([x, y])).sum::<f64>();
-        along_x.iter().map(row).sum()
     }
 
     /// Places along axes 0 and 1, ascending, at which one of its shapes begins or ends.

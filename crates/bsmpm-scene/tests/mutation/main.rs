@@ -286,11 +286,15 @@ fn every_key_renamed_is_unknown_and_every_key_removed_is_missed_if_it_must_be_th
 
 #[test]
 fn i02_i07_every_value_that_the_schema_refuses_is_refused_at_its_place() {
-    let (mut accepted, mut refused) = (0, 0);
+    let (mut accepted, mut refused, mut seen) = (0, 0, HashSet::new());
     for base in bases() {
         for written in written::all(&base).iter().filter(|written| written.is_entry) {
             let span = &written.value;
             let own = &base[span.clone()];
+            // What an earlier base has word for word is not changed once more.
+            if !seen.insert((base.contains("\"solid\""), written.path.clone(), own.to_owned())) {
+                continue;
+            }
             let negated = own.strip_prefix('"').map_or(format!("-{own}"), |quoted| format!("\"-{quoted}"));
             for put in VALUES.iter().copied().chain([negated.as_str()]) {
                 let text = format!("{}{put}{}", &base[..span.start], &base[span.end..]);
