@@ -166,6 +166,8 @@ pub enum StepError {
         rounds: usize,
         /// |f_oob| / largest force.
         force: f64,
+        /// The worst nodes of this rank, worst first.
+        worst: Vec<WorstNode>,
     },
     /// Nothing holds a rigid body that moves freely, and it has no inertia: no equilibrium of it is known.
     #[error("nothing holds rigid body {body} in a motion that is free")]

@@ -48,10 +48,11 @@ type NodePlace = [f64; 6];
 /// The nodes whose forces are the least balanced, or the points that the ranks name, of all ranks.
 fn worst(world: &SimpleCommunicator, error: &StepError, grid: &GridSpec) -> Vec<Worst> {
     let (lower, dims) = (grid.lower(), grid.dims());
-    let kind = if matches!(error, StepError::NotConverged { .. }) { "node" } else { "point" };
+    let kind =
+        if matches!(error, StepError::NotConverged { .. } | StepError::Unbalanced { .. }) { "node" } else { "point" };
     let at = |x: &[f64]| -> [f64; 3] { std::array::from_fn(|axis| lower[axis] + x.get(axis).copied().unwrap_or(0.0)) };
     let mut own: Vec<NodePlace> = match error {
-        StepError::NotConverged { worst, .. } => worst
+        StepError::NotConverged { worst, .. } | StepError::Unbalanced { worst, .. } => worst
             .iter()
             .map(|node| {
                 let [x, y, z] = at(&node.x);
@@ -108,7 +109,11 @@ fn advice(error: &StepError, case: &Case) -> Vec<String> {
             "a smaller friction of the face in [boundary]: from about 1 on there may be no state, or several, that agree with it",
         ],
         StepError::Unbalanced { .. } => &[
-            "a larger [solver] force_tolerance; gravity with a ramp and no [initial] lets the body yield as it is loaded",
+            "points_per_cell = 3 or more, or a face of half a cell, where the body ends in a point at the place named: two \
+             points there cannot hold what a cell with next to no material carries",
+            "where much of the body yields it may not stand at all: gravity with a ramp and no [initial] lets it yield as it \
+             is loaded",
+            "a larger [solver] force_tolerance",
         ],
         StepError::Loose { .. } => &[
             "a quasi-static analysis knows no rigid body that nothing holds: leave a motion out of `free`, let it start on the \

@@ -201,6 +201,28 @@ fn ground_that_cannot_stand_has_no_start() {
     assert!(run.stderr.contains("the stress at the start"), "{}", run.stderr);
 }
 
+/// A toe that ends in a point has cells with next to no material there: two points along an axis cannot hold what these
+/// carry, and the run says where; three can.
+#[test]
+fn a_toe_that_ends_in_a_point_is_told_of_where_its_points_are_too_few() {
+    let changes = [
+        ("[[0, 0], [32, 0], [32, 2], [24, 2], [8, 10], [0, 10]]", "[[0, 0], [18, 0], [8, 5], [0, 5]]"),
+        ("upper = [32, 12]", "upper = [20, 6]"),
+        ("cell = \"2 m\"", "cell = \"1 m\""),
+        ("cohesion = 0.0\nfriction = 30.0", "cohesion = \"10 kPa\"\nfriction = 25.0"),
+    ];
+    let case = changes.iter().fold(SAND.to_owned(), |case, (part, by)| changed(&case, part, by));
+    let two = changed(&case, "points_per_cell = 3", "points_per_cell = 2");
+    let scratch = Scratch::with_case(&two);
+    let run = scratch.mpirun(2, &["case.toml", "-q", "-o", "two"]).expect(80);
+    let told = run.stderr.split_once("; node ").expect("the place").1;
+    assert!(told.contains(" at [17.5") && told.contains("points_per_cell = 3"), "{}", run.stderr);
+    scratch.write("case.toml", &case);
+    scratch.mpirun(2, &["case.toml", "-q", "-o", "three"]).expect(0);
+    let found = initial(&scratch, "three");
+    assert!(found.unbalance < 1e-4 && found.yielding == 0, "{found:?}");
+}
+
 /// Clay with a step of 3 m in its surface, at x = 12 m.
 fn stepped() -> String {
     let case = changed(SAND, "cohesion = 0.0\nfriction = 30.0", "cohesion = \"15 kPa\"\nfriction = 20.0");

@@ -11,6 +11,7 @@ use crate::model::Model;
 use crate::parallel::{Halo, LinearSolver};
 use crate::points::Points;
 use crate::solve;
+use crate::solve::convergence::worst_nodes;
 use crate::solve::round_off::RoundOff;
 use crate::step::commit;
 use crate::step::report::Counts;
@@ -82,7 +83,8 @@ pub fn settle<K: Kinematics<D>, const D: usize>(
             return Ok(Settling { rounds, evaluations: counts.evaluations });
         }
         if rounds == MOST_ROUNDS {
-            return Err(StepError::Unbalanced { rounds, force: balance.measure() });
+            let worst = worst_nodes(&problem, &balance);
+            return Err(StepError::Unbalanced { rounds, force: balance.measure(), worst });
         }
         // What is out of balance at first, the stress beyond yield returned, is held by forces that go.
         let (held, next) = (held.get_or_insert(balance.f_oob), (left - part).max(0.0));

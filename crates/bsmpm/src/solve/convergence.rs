@@ -149,7 +149,7 @@ impl Convergence {
             material,
             criteria: Box::new(self.criteria),
             history: self.history.clone(),
-            worst: worst_nodes(problem, residual),
+            worst: worst_nodes(problem, &residual.balance),
             unsolved,
         }
     }
@@ -185,12 +185,9 @@ pub fn inverted<K: Kinematics<D>, const D: usize>(
 }
 
 /// This rank's own nodes whose forces are the least balanced, worst first.
-fn worst_nodes<K: Kinematics<D>, const D: usize>(
-    problem: &Problem<'_, K, D>,
-    residual: &Residual<K, D>,
-) -> Vec<WorstNode> {
+pub fn worst_nodes<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>, balance: &Balance) -> Vec<WorstNode> {
     let grid = &problem.model.grid;
-    let force = |node: usize| Vector::<D>::from_column_slice(&residual.balance.f_oob[Nodal::<D>::of(node)]).norm();
+    let force = |node: usize| Vector::<D>::from_column_slice(&balance.f_oob[Nodal::<D>::of(node)]).norm();
     let mut nodes: Vec<usize> = problem.halo.owned().nodes().filter(|&node| force(node) > 0.0).collect();
     nodes.sort_by(|&a, &b| force(b).total_cmp(&force(a)));
     let told = |node: usize| {
